@@ -1,0 +1,56 @@
+// DepthImage: what the network eats, and the projection of a RangeImage onto it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "gnc/lidar/range_image.hpp"
+
+namespace tumblesight::gnc {
+
+// Depth of the target across the boresight, row 0 at the top (+z), column 0 at the left (-x). 0 = nothing
+// there; otherwise in (0, 1], nearer is brighter.
+struct DepthImage {
+  static constexpr int kSide = 100;
+  static constexpr int kCells = kSide * kSide;
+  std::array<float, kCells> value{};
+};
+
+enum class DepthEncoding : std::uint8_t {
+  kCentroidRelative = 0,  // 0.5 + 0.5 (centroid depth - depth) / target radius, clamped to [1/256, 1]
+  kPaperMaximum = 1,  // depth / largest depth of the image (paper, "Image" in the data generation section)
+};
+
+// How a frame becomes an image; part of the model image, since the network is trained for it.
+struct DepthProjection {
+  float swath_m = 0.0F;          // side of the square across the boresight that the image covers
+  float target_radius_m = 0.0F;  // scale of the centroid-relative depth
+  DepthEncoding encoding = DepthEncoding::kCentroidRelative;
+};
+
+enum class FrameStatus : std::uint8_t {
+  kOk = 0,
+  kBadRayCount,  // rays outside 16..128
+  kBadFov,       // field of view outside 1..40 degrees
+  kEmpty,        // fewer than kMinReturns usable returns
+  kFlat,         // every usable return at one and the same range: a stuck sensor, since real frames are noisy
+};
+
+// Accumulators of the projection, held by the caller so that nothing large lies on the stack.
+struct DepthImageScratch {
+  std::array<float, DepthImage::kCells> depth_sum_m{};
+  std::array<float, DepthImage::kCells> returns{};
+};
+
+inline constexpr int kMinReturns = 16;
+inline constexpr float kMaxRange_m = 500.0F;  // longer ranges count as no return (paper, sensor table)
+inline constexpr std::uint32_t kMinFov_urad = 17'453;   // 1 degree
+inline constexpr std::uint32_t kMaxFov_urad = 698'132;  // 40 degrees
+
+// Projects the returns on the plane across the boresight (x right, z up, boresight in the middle), averages
+// the depths (along +y) that fall in one cell and encodes them. Returns outside the swath are left out. The
+// work done is the same for every frame of one ray count. On any status but kOk `image` is unspecified.
+[[nodiscard]] FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& projection,
+                                           DepthImageScratch& scratch, DepthImage& image);
+
+}  // namespace tumblesight::gnc

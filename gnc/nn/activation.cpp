@@ -1,0 +1,76 @@
+#include "gnc/nn/activation.hpp"
+
+#include <cstdint>
+#include <cstring>
+
+namespace tumblesight::gnc {
+namespace {
+
+// The order of the comparisons sends NaN to -bound.
+inline float held_within(float x, float bound) {
+  const float above = x > -bound ? x : -bound;
+  return above < bound ? above : bound;
+}
+
+// e^x = 2^n e^r with n = round(x / ln 2), |r| <= ln(2) / 2, and e^r = 1 + r + r^2 q(r).
+inline float exp_one(float argument) {
+  constexpr float kLog2OfE = 1.44269504F;
+  constexpr float kRound = 12582912.0F;       // 1.5 * 2^23: adding and subtracting it rounds to an integer
+  constexpr float kLn2High = 0.693359375F;    // few enough bits that n times it is exact
+  constexpr float kLn2Low = -2.12194440e-4F;  // ln 2 minus the above
+  // Minimax fit of the relative error of e^r over +-ln(2)/2: 3e-9 before rounding.
+  constexpr float kQ0 = 0.49999994F;
+  constexpr float kQ1 = 0.166665211F;
+  constexpr float kQ2 = 0.041668389F;
+  constexpr float kQ3 = 0.00836871658F;
+  constexpr float kQ4 = 0.00138145988F;
+
+  const float x = held_within(argument, kExpArgumentBound);
+  const float n = (x * kLog2OfE + kRound) - kRound;
+  const float r = (x - n * kLn2High) - n * kLn2Low;
+  const float q = kQ0 + r * (kQ1 + r * (kQ2 + r * (kQ3 + r * kQ4)));
+  const float e_r = 1.0F + (r + r * r * q);
+  const std::uint32_t exponent = static_cast<std::uint32_t>(static_cast<std::int32_t>(n) + 127) << 23;
+  float two_to_n;
+  std::memcpy(&two_to_n, &exponent, sizeof two_to_n);
+  return e_r * two_to_n;
+}
+
+inline float sigmoid_one(float x) {
+  return 1.0F / (1.0F + exp_one(-x));
+}
+
+}  // namespace
+
+void exp(const float* in, float* out, int count) {
+  for (int i = 0; i < count; ++i) out[i] = exp_one(in[i]);
+}
+
+void sigmoid(const float* in, float* out, int count) {
+  for (int i = 0; i < count; ++i) out[i] = sigmoid_one(in[i]);
+}
+
+void tanh(const float* in, float* out, int count) {
+  for (int i = 0; i < count; ++i) out[i] = 2.0F * sigmoid_one(2.0F * in[i]) - 1.0F;
+}
+
+float sigmoid(float x) {
+  return sigmoid_one(x);
+}
+
+void relu(float* values, int count) {
+  for (int i = 0; i < count; ++i) values[i] = values[i] > 0.0F ? values[i] : 0.0F;
+}
+
+void softmax(const float* in, float* out, int count) {
+  float largest = in[0];
+  for (int i = 1; i < count; ++i) largest = in[i] > largest ? in[i] : largest;
+  float sum = 0.0F;
+  for (int i = 0; i < count; ++i) {
+    out[i] = exp_one(in[i] - largest);
+    sum += out[i];
+  }
+  for (int i = 0; i < count; ++i) out[i] = out[i] / sum;
+}
+
+}  // namespace tumblesight::gnc

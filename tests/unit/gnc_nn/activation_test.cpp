@@ -1,0 +1,130 @@
+#include "gnc/nn/activation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// 4 million arguments over +-bound, and every power of two with both signs.
+std::vector<float> dense_sweep(float bound) {
+  std::vector<float> x;
+  constexpr int kSteps = 2'000'000;
+  x.reserve(2 * kSteps + 1000);
+  for (int i = -kSteps; i <= kSteps; ++i) x.push_back(bound * static_cast<float>(i) / kSteps);
+  for (int e = -148; e <= 127; ++e) {
+    for (const float sign : {1.0F, -1.0F}) {
+      const float value = sign * std::ldexp(1.0F, e);
+      if (std::fabs(value) <= bound) x.push_back(value);
+    }
+  }
+  return x;
+}
+
+TEST(Exp, RelativeErrorIsBelow2em7WithinItsBounds) {
+  const std::vector<float> x = dense_sweep(kExpArgumentBound);
+  std::vector<float> y(x.size());
+  exp(x.data(), y.data(), static_cast<int>(x.size()));
+  double worst = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double exact = std::exp(static_cast<double>(x[i]));
+    worst = std::max(worst, std::fabs(y[i] - exact) / exact);
+  }
+  EXPECT_LT(worst, 2e-7);
+}
+
+TEST(Sigmoid, AbsoluteErrorIsBelow1p5em7) {
+  double worst = 0.0;
+  for (const float bound : {1.0F, 20.0F, 200.0F, 3e38F}) {
+    const std::vector<float> x = dense_sweep(bound);
+    std::vector<float> y(x.size());
+    sigmoid(x.data(), y.data(), static_cast<int>(x.size()));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      worst = std::max(worst, std::fabs(y[i] - 1.0 / (1.0 + std::exp(-static_cast<double>(x[i])))));
+    }
+  }
+  EXPECT_LT(worst, 1.5e-7);
+}
+
+TEST(Tanh, AbsoluteErrorIsBelow3em7) {
+  double worst = 0.0;
+  for (const float bound : {0.01F, 1.0F, 20.0F, 3e38F}) {
+    const std::vector<float> x = dense_sweep(bound);
+    std::vector<float> y(x.size());
+    tanh(x.data(), y.data(), static_cast<int>(x.size()));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      worst = std::max(worst, std::fabs(y[i] - std::tanh(static_cast<double>(x[i]))));
+      ASSERT_LE(std::fabs(y[i]), 1.0F) << x[i];
+    }
+  }
+  EXPECT_LT(worst, 3e-7);
+}
+
+TEST(Activations, AreExactAtZeroAndSaturateAtTheEnds) {
+  const std::array<float, 5> x{0.0F, kInfinity, -kInfinity, 3e38F, -3e38F};
+  std::array<float, 5> y{};
+  sigmoid(x.data(), y.data(), 5);
+  EXPECT_EQ(y[0], 0.5F);
+  EXPECT_EQ(y[1], 1.0F);
+  EXPECT_LT(y[2], 1e-37F);
+  EXPECT_EQ(y[1], y[3]);
+  EXPECT_EQ(y[2], y[4]);
+  tanh(x.data(), y.data(), 5);
+  EXPECT_EQ(y, (std::array<float, 5>{0.0F, 1.0F, -1.0F, 1.0F, -1.0F}));
+  exp(x.data(), y.data(), 1);
+  EXPECT_EQ(y[0], 1.0F);
+}
+
+TEST(Activations, StayFiniteAndBoundedForNanAndInfinity) {
+  for (const float bad : {kNan, -kNan, kInfinity, -kInfinity}) {
+    std::array<float, 1> y{bad};
+    exp(y.data(), y.data(), 1);
+    EXPECT_TRUE(std::isnormal(y[0]) && y[0] > 0.0F);
+    EXPECT_TRUE(sigmoid(bad) >= 0.0F && sigmoid(bad) <= 1.0F);
+    y[0] = bad;
+    tanh(y.data(), y.data(), 1);
+    EXPECT_LE(std::fabs(y[0]), 1.0F);
+  }
+}
+
+TEST(Relu, KeepsPositiveNumbersAndGivesZeroForTheRest) {
+  std::array<float, 6> x{-1.0F, 0.0F, 2.5F, kNan, -kInfinity, 1e-40F};
+  relu(x.data(), 6);
+  EXPECT_EQ(x, (std::array<float, 6>{0.0F, 0.0F, 2.5F, 0.0F, 0.0F, 1e-40F}));
+}
+
+TEST(Softmax, MatchesTheDefinitionAndAddsUpToOne) {
+  const std::array<float, 4> x{1000.0F, 1001.0F, 998.5F,
+                               1001.0F};  // overflows unless the largest is subtracted
+  std::array<float, 4> y{};
+  softmax(x.data(), y.data(), 4);
+  double sum = 0.0;
+  for (const float v : x) sum += std::exp(static_cast<double>(v) - 1001.0);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(y[i], std::exp(static_cast<double>(x[i]) - 1001.0) / sum, 2e-7);
+  EXPECT_NEAR(std::accumulate(y.begin(), y.end(), 0.0), 1.0, 1e-6);
+}
+
+TEST(Softmax, StaysFiniteForNanAndInfinity) {
+  for (const float bad : {kNan, kInfinity, -kInfinity}) {
+    for (const std::array<float, 3>& x :
+         {std::array<float, 3>{bad, bad, bad}, std::array<float, 3>{bad, 1.0F, 2.0F},
+          std::array<float, 3>{1.0F, bad, 2.0F}}) {
+      std::array<float, 3> y{};
+      softmax(x.data(), y.data(), 3);
+      for (const float p : y) EXPECT_TRUE(p >= 0.0F && p <= 1.0F) << p;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

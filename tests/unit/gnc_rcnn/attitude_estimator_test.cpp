@@ -1,0 +1,173 @@
+#include "gnc/rcnn/attitude_estimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "tests/unit/gnc_rcnn/test_models.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+std::unique_ptr<AttitudeEstimator> loaded(unsigned seed) {
+  auto estimator = std::make_unique<AttitudeEstimator>();
+  const std::vector<std::uint8_t> image = random_model_image(seed);
+  EXPECT_EQ(estimator->load(image.data(), image.size(), "test_craft"), ModelStatus::kOk);
+  return estimator;
+}
+
+// Bit for bit.
+void expect_same(const AttitudeEstimate& a, const AttitudeEstimate& b) {
+  EXPECT_EQ(a.q_lrf_trf.coeffs(), b.q_lrf_trf.coeffs());
+  EXPECT_EQ(a.predicted_error_rad, b.predicted_error_rad);
+  EXPECT_EQ(a.q_lrf_trf_single_frame.coeffs(), b.q_lrf_trf_single_frame.coeffs());
+  EXPECT_EQ(a.predicted_error_single_frame_rad, b.predicted_error_single_frame_rad);
+  EXPECT_EQ(a.frames_since_reset, b.frames_since_reset);
+}
+
+void expect_unit(const AttitudeEstimate& estimate) {
+  EXPECT_NEAR(estimate.q_lrf_trf.cast<double>().norm(), 1.0, 1e-6);
+  EXPECT_NEAR(estimate.q_lrf_trf_single_frame.cast<double>().norm(), 1.0, 1e-6);
+  EXPECT_GE(estimate.q_lrf_trf.w(), 0.0F);
+  EXPECT_GE(estimate.q_lrf_trf_single_frame.w(), 0.0F);
+  EXPECT_TRUE(estimate.predicted_error_rad >= 0.0F && estimate.predicted_error_rad <= 3.1415928F);
+}
+
+TEST(AttitudeEstimator, ContinuesBitForBitAfterSaveAndRestore) {
+  const auto estimator = loaded(31);
+  AttitudeEstimate estimate;
+  for (unsigned k = 0; k < 3; ++k) estimator->step(random_depth_image(k), estimate);
+  AttitudeEstimator::State saved;
+  estimator->save(saved);
+  const std::uint32_t crc = estimator->state_crc32();
+
+  std::vector<AttitudeEstimate> first(3);
+  for (unsigned k = 0; k < 3; ++k) estimator->step(random_depth_image(10 + k), first[k]);
+  EXPECT_NE(estimator->state_crc32(), crc);
+
+  const auto other = loaded(31);
+  for (AttitudeEstimator* restored : {estimator.get(), other.get()}) {
+    restored->restore(saved);
+    EXPECT_EQ(restored->state_crc32(), crc);
+    for (unsigned k = 0; k < 3; ++k) {
+      restored->step(random_depth_image(10 + k), estimate);
+      expect_same(estimate, first[k]);
+    }
+  }
+}
+
+TEST(AttitudeEstimator, StartsAnewAfterReset) {
+  const auto estimator = loaded(32);
+  AttitudeEstimate first, second, again;
+  estimator->step(random_depth_image(1), first);
+  EXPECT_EQ(first.frames_since_reset, 1U);
+  estimator->step(random_depth_image(1), second);
+  EXPECT_EQ(second.frames_since_reset, 2U);
+  EXPECT_NE(second.q_lrf_trf.coeffs(), first.q_lrf_trf.coeffs());  // memory matters
+  EXPECT_EQ(second.q_lrf_trf_single_frame.coeffs(), first.q_lrf_trf_single_frame.coeffs());
+  estimator->reset();
+  estimator->step(random_depth_image(1), again);
+  expect_same(again, first);
+}
+
+TEST(AttitudeEstimator, ResetsWhenAModelIsLoaded) {
+  const auto estimator = loaded(33);
+  AttitudeEstimate first, estimate;
+  estimator->step(random_depth_image(1), first);
+  const std::vector<std::uint8_t> image = random_model_image(33);
+  ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+  estimator->step(random_depth_image(1), estimate);
+  expect_same(estimate, first);
+}
+
+TEST(AttitudeEstimator, HasNoModelUntilAGoodOneIsLoaded) {
+  auto estimator = std::make_unique<AttitudeEstimator>();
+  EXPECT_FALSE(estimator->has_model());
+  const std::vector<std::uint8_t> rubbish(100, 0xA5);
+  EXPECT_EQ(estimator->load(rubbish.data(), rubbish.size(), nullptr), ModelStatus::kBadMagic);
+  EXPECT_FALSE(estimator->has_model());
+}
+
+TEST(AttitudeEstimator, GoesOnAsIfARefusedFrameHadNeverCome) {
+  const auto disturbed = loaded(34);
+  const auto undisturbed = loaded(34);
+  AttitudeEstimate a, b;
+  for (unsigned k = 0; k < 3; ++k) {
+    ASSERT_EQ(disturbed->step(random_frame(k), a), FrameStatus::kOk);
+    ASSERT_EQ(undisturbed->step(random_frame(k), b), FrameStatus::kOk);
+    RangeImage empty = random_frame(k);
+    empty.ranges.fill(0);
+    RangeImage wrong_rays = random_frame(k);
+    wrong_rays.rays = 200;
+    RangeImage wrong_fov = random_frame(k);
+    wrong_fov.fov_urad = 1;
+    EXPECT_EQ(disturbed->step(empty, a), FrameStatus::kEmpty);
+    EXPECT_EQ(disturbed->step(wrong_rays, a), FrameStatus::kBadRayCount);
+    EXPECT_EQ(disturbed->step(wrong_fov, a), FrameStatus::kBadFov);
+    expect_same(a, b);
+    EXPECT_EQ(disturbed->state_crc32(), undisturbed->state_crc32());
+  }
+}
+
+TEST(AttitudeEstimator, FrameAndItsDepthImageGiveTheSameEstimate) {
+  const auto estimator = loaded(35);
+  AttitudeEstimate from_frame, from_image;
+  ASSERT_EQ(estimator->step(random_frame(1), from_frame), FrameStatus::kOk);
+  const auto image = std::make_unique<DepthImage>(estimator->depth_image());
+  EXPECT_GT(std::count_if(image->value.begin(), image->value.end(), [](float v) { return v > 0.0F; }), 100);
+  estimator->reset();
+  estimator->step(*image, from_image);
+  expect_same(from_image, from_frame);
+}
+
+TEST(AttitudeEstimator, AlwaysGivesUnitQuaternions) {
+  for (unsigned seed = 40; seed < 46; ++seed) {
+    const auto estimator = loaded(seed);
+    AttitudeEstimate estimate;
+    for (unsigned k = 0; k < 4; ++k) {
+      estimator->step(k == 1 ? DepthImage{} : random_depth_image(seed + k), estimate);
+      expect_unit(estimate);
+    }
+  }
+}
+
+TEST(AttitudeEstimator, GivesUnitQuaternionsForZeroAndForOverflowingWeights) {
+  for (const float value : {0.0F, 1e30F, -1e30F, 3e38F}) {
+    auto weights = std::make_unique<NetworkWeights>();
+    for_each_tensor(*weights, [value](const char*, float* data, std::size_t count) {
+      for (std::size_t i = 0; i < count; ++i) data[i] = i % 3 == 0 ? value : -0.5F * value;
+    });
+    std::vector<std::uint8_t> image(kModelImageSize);
+    ASSERT_EQ(write_model_image(test_header(), *weights, image.data(), image.size()), image.size());
+    auto estimator = std::make_unique<AttitudeEstimator>();
+    ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+    AttitudeEstimate estimate;
+    for (unsigned k = 0; k < 3; ++k) {
+      estimator->step(random_depth_image(k), estimate);
+      expect_unit(estimate);
+    }
+  }
+}
+
+TEST(AttitudeEstimator, RecoversFromADamagedStateOnceItIsReset) {
+  const auto estimator = loaded(36);
+  AttitudeEstimate first, estimate;
+  estimator->step(random_depth_image(1), first);
+  AttitudeEstimator::State damaged;
+  damaged.lstm.h.fill(std::numeric_limits<float>::quiet_NaN());
+  damaged.lstm.c.fill(std::numeric_limits<float>::infinity());
+  estimator->restore(damaged);
+  for (unsigned k = 0; k < 3; ++k) {
+    estimator->step(random_depth_image(1), estimate);
+    expect_unit(estimate);
+  }
+  estimator->reset();
+  estimator->step(random_depth_image(1), estimate);
+  expect_same(estimate, first);
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

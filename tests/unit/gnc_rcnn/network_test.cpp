@@ -1,0 +1,97 @@
+#include "gnc/rcnn/network.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "tests/unit/gnc_rcnn/reference_network.hpp"
+#include "tests/unit/gnc_rcnn/test_models.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+template <class Flight>
+double largest_difference(const Flight& flight, const std::vector<double>& reference) {
+  EXPECT_EQ(flight.size(), reference.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    largest = std::max(largest, std::fabs(flight[i] - reference[i]));
+  }
+  return largest;
+}
+
+double largest_magnitude(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (const double v : values) largest = std::max(largest, std::fabs(v));
+  return largest;
+}
+
+TEST(Network, FollowsTheDoubleReferenceOverASequence) {
+  auto network = std::make_unique<Network>();
+  fill_random(network->weights(), 11);
+  ReferenceNetwork reference(network->weights());
+  LstmState state;
+  OutputVector single_frame, rcnn;
+  for (unsigned frame = 0; frame < 6; ++frame) {
+    SCOPED_TRACE(frame);
+    const DepthImage image = random_depth_image(100 + frame);
+    network->infer(image, state, single_frame, rcnn);
+    const ReferenceNetwork::Result expected = reference.infer(image);
+    EXPECT_GT(largest_magnitude(expected.single_frame), 0.1);  // the weights let something through
+    EXPECT_LT(largest_difference(network->dense2_output(), expected.dense2), 2e-5);
+    EXPECT_LT(largest_difference(network->lstm_input(), expected.lstm_input), 2e-4);
+    EXPECT_LT(largest_difference(single_frame, expected.single_frame), 2e-5);
+    EXPECT_LT(largest_difference(state.h, reference.h), 1e-4);
+    EXPECT_LT(largest_difference(state.c, reference.c), 2e-4);
+    EXPECT_LT(largest_difference(rcnn, expected.rcnn), 5e-4);
+  }
+}
+
+TEST(Network, GivesTheSameBitsWhateverCameBefore) {
+  auto network = std::make_unique<Network>();
+  fill_random(network->weights(), 12);
+  LstmState fresh, used, again;
+  OutputVector first_single, first_rcnn, single, rcnn;
+  const DepthImage image = random_depth_image(1);
+  network->infer(image, fresh, first_single, first_rcnn);
+  for (unsigned k = 0; k < 3; ++k) network->infer(random_depth_image(50 + k), used, single, rcnn);
+  network->infer(image, again, single, rcnn);
+  EXPECT_EQ(single, first_single);
+  EXPECT_EQ(rcnn, first_rcnn);
+  EXPECT_EQ(again.h, fresh.h);
+  EXPECT_EQ(again.c, fresh.c);
+}
+
+TEST(NetworkWeights, VisitsEveryParameterOnceUnderUniqueNames) {
+  auto weights = std::make_unique<NetworkWeights>();
+  std::vector<std::string> names;
+  std::size_t count = 0;
+  for_each_tensor(*weights, [&](const char* name, float* data, std::size_t size) {
+    names.emplace_back(name);
+    count += size;
+    std::fill_n(data, size, static_cast<float>(names.size()));
+  });
+  EXPECT_EQ(count, kParameterCount);
+  EXPECT_EQ(names.size(), kTensorCount);
+  EXPECT_EQ(names.front(), "conv1.weight");
+  EXPECT_EQ(names.back(), "head2.bias");
+
+  std::size_t index = 0;
+  for_each_tensor(std::as_const(*weights), [&](const char* name, auto* data, std::size_t size) {
+    static_assert(std::is_same_v<decltype(data), const float*>);
+    ASSERT_EQ(names[index], name);
+    ++index;
+    EXPECT_EQ(data[0], static_cast<float>(index)) << name << " shares memory with another tensor";
+    EXPECT_EQ(data[size - 1], static_cast<float>(index)) << name;
+  });
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

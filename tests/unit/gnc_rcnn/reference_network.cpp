@@ -1,0 +1,153 @@
+#include "tests/unit/gnc_rcnn/reference_network.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumblesight::gnc {
+namespace {
+
+using Numbers = ReferenceNetwork::Numbers;
+
+double exact_sigmoid(double x) {
+  return 1.0 / (1.0 + std::exp(-x));
+}
+
+void relu(Numbers& values) {
+  for (double& v : values) v = std::max(v, 0.0);
+}
+
+// A 2x2 window of a square image with `channels` channels, reduced by f(a, b, c, d); floor.
+template <class Reduce>
+Numbers pool(const Numbers& in, int side, Reduce reduce) {
+  const int channels = static_cast<int>(in.size()) / (side * side);
+  Numbers out;
+  for (int y = 0; y < side / 2; ++y) {
+    for (int x = 0; x < side / 2; ++x) {
+      for (int k = 0; k < channels; ++k) {
+        const auto at = [&](int dy, int dx) { return in[((2 * y + dy) * side + 2 * x + dx) * channels + k]; };
+        out.push_back(reduce(at(0, 0), at(0, 1), at(1, 0), at(1, 1)));
+      }
+    }
+  }
+  return out;
+}
+
+double largest(double a, double b, double c, double d) {
+  return std::max({a, b, c, d});
+}
+double mean(double a, double b, double c, double d) {
+  return (a + b + c + d) / 4.0;
+}
+
+void append_columns(const Numbers& output, Numbers& to) {
+  for (int k = 0; k < 8; ++k) {
+    const double* a = output.data() + 6 * k;
+    const double* b = a + 3;
+    double x1[3], across[3];
+    const double length_a = std::sqrt(std::max(a[0] * a[0] + a[1] * a[1] + a[2] * a[2], 1e-12));
+    for (int i = 0; i < 3; ++i) x1[i] = a[i] / length_a;
+    const double along = x1[0] * b[0] + x1[1] * b[1] + x1[2] * b[2];
+    for (int i = 0; i < 3; ++i) across[i] = b[i] - along * x1[i];
+    const double length_b =
+        std::sqrt(std::max(across[0] * across[0] + across[1] * across[1] + across[2] * across[2], 1e-12));
+    for (int i = 0; i < 3; ++i) to.push_back(x1[i]);
+    for (int i = 0; i < 3; ++i) to.push_back(across[i] / length_b);
+  }
+}
+
+}  // namespace
+
+ReferenceNetwork::ReferenceNetwork(const NetworkWeights& weights) : h(192, 0.0), c(192, 0.0) {
+  for_each_tensor(weights, [this](const char* name, const float* data, std::size_t count) {
+    tensors_[name] = Numbers(data, data + count);
+  });
+}
+
+Numbers ReferenceNetwork::conv(const std::string& name, const Numbers& in, int side) const {
+  const Numbers& weight = tensors_.at(name + ".weight");
+  const Numbers& bias = tensors_.at(name + ".bias");
+  const int channels_in = static_cast<int>(in.size()) / (side * side);
+  const int channels_out = static_cast<int>(bias.size());
+  Numbers out;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      Numbers sum = bias;
+      for (int ky = 0; ky < 3; ++ky) {
+        for (int kx = 0; kx < 3; ++kx) {
+          const int from_y = y + ky - 1, from_x = x + kx - 1;
+          if (from_y < 0 || from_y >= side || from_x < 0 || from_x >= side) continue;
+          for (int i = 0; i < channels_in; ++i) {
+            const double value = in[(from_y * side + from_x) * channels_in + i];
+            const double* row = weight.data() + ((ky * 3 + kx) * channels_in + i) * channels_out;
+            for (int o = 0; o < channels_out; ++o) sum[o] += value * row[o];
+          }
+        }
+      }
+      out.insert(out.end(), sum.begin(), sum.end());
+    }
+  }
+  return out;
+}
+
+Numbers ReferenceNetwork::dense(const std::string& name, const Numbers& in) const {
+  const Numbers& weight = tensors_.at(name + ".weight");
+  Numbers sum = tensors_.at(name + ".bias");
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    for (std::size_t o = 0; o < sum.size(); ++o) sum[o] += in[i] * weight.at(i * sum.size() + o);
+  }
+  return sum;
+}
+
+ReferenceNetwork::Result ReferenceNetwork::infer(const DepthImage& image) {
+  Numbers map(50 * 50 * 4);
+  for (int row = 0; row < 100; ++row) {
+    for (int column = 0; column < 100; ++column) {
+      map[((row / 2) * 50 + column / 2) * 4 + 2 * (row & 1) + (column & 1)] = image.value[row * 100 + column];
+    }
+  }
+  int side = 50;
+  for (const char* name : {"conv1", "conv2", "conv3"}) {
+    map = pool(conv(name, map, side), side, largest);
+    relu(map);
+    side /= 2;
+  }
+  map = conv("conv4", map, side);
+  relu(map);
+  map = pool(map, side, mean);
+
+  Result result;
+  Numbers dense1 = dense("dense1", map);
+  relu(dense1);
+  result.dense2 = dense("dense2", dense1);
+  relu(result.dense2);
+  result.single_frame = dense("cnn_out", result.dense2);
+
+  result.lstm_input = result.dense2;
+  append_columns(result.single_frame, result.lstm_input);
+  double sum = 0.0;
+  for (int k = 0; k < 8; ++k) sum += std::exp(result.single_frame[48 + k]);
+  for (int k = 0; k < 8; ++k) result.lstm_input.push_back(std::exp(result.single_frame[48 + k]) / sum);
+
+  Numbers gates = tensors_.at("lstm.bias");
+  const auto add_product = [&gates](const Numbers& in, const Numbers& weight) {
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      for (std::size_t g = 0; g < gates.size(); ++g) gates[g] += in[i] * weight.at(i * gates.size() + g);
+    }
+  };
+  add_product(result.lstm_input, tensors_.at("lstm.input"));
+  add_product(h, tensors_.at("lstm.recurrent"));
+  for (int i = 0; i < 192; ++i) {
+    c[i] = exact_sigmoid(gates[192 + i]) * c[i] + exact_sigmoid(gates[i]) * std::tanh(gates[384 + i]);
+    h[i] = exact_sigmoid(gates[576 + i]) * std::tanh(c[i]);
+  }
+
+  Numbers head = h;
+  head.insert(head.end(), result.lstm_input.begin(), result.lstm_input.end());
+  Numbers z = dense("head1", head);
+  relu(z);
+  result.rcnn = dense("head2", z);
+  for (int i = 0; i < 57; ++i) result.rcnn[i] += i < 48 ? result.lstm_input[128 + i] : result.single_frame[i];
+  return result;
+}
+
+}  // namespace tumblesight::gnc

@@ -1,0 +1,24 @@
+// Random networks and images for the RCNN's tests. Not for accuracy: nothing here was trained.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gnc/lidar/depth_image.hpp"
+#include "gnc/lidar/range_image.hpp"
+#include "gnc/rcnn/model_image.hpp"
+#include "gnc/rcnn/network.hpp"
+
+namespace tumblesight::gnc {
+
+// Weights that keep the activations near 1 from layer to layer.
+void fill_random(NetworkWeights& weights, unsigned seed);
+ModelHeader test_header();
+std::vector<std::uint8_t> random_model_image(unsigned seed);
+
+// A blob of random depths in the middle, nothing around it.
+DepthImage random_depth_image(unsigned seed);
+// A frame that make_depth_image() accepts for test_header()'s projection.
+RangeImage random_frame(unsigned seed);
+
+}  // namespace tumblesight::gnc
