@@ -1,0 +1,346 @@
+#include "fsw/app/attitude_init_app.hpp"
+
+#include "fsw/app/counter.hpp"
+#include "gnc/rcnn/crc32.hpp"
+
+namespace tumblesight::fsw {
+namespace {
+
+constexpr float kPi = 3.14159265F;
+
+std::int32_t bits_of(std::uint32_t sequence_number) {
+  return static_cast<std::int32_t>(sequence_number);
+}
+
+// Written so that a NaN fails.
+bool is_unit(const Eigen::Quaternionf& q) {
+  const float norm2 = q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
+  return norm2 > 0.9999F && norm2 < 1.0001F;
+}
+bool is_angle(float angle_rad) {
+  return angle_rad >= 0.0F && angle_rad <= 1.0001F * kPi;
+}
+
+bool is_sound(const gnc::AttitudeEstimate& estimate) {
+  return is_unit(estimate.q_lrf_trf) && is_unit(estimate.q_lrf_trf_single_frame) &&
+         is_angle(estimate.predicted_error_rad) && is_angle(estimate.predicted_error_single_frame_rad);
+}
+
+// The caller's promises about StepInputs: a platform that breaks them has a bug.
+bool keeps_limits(const StepInputs& inputs) {
+  const int frames = inputs.frame != nullptr ? inputs.frame_count : 0;
+  return inputs.command_count >= 0 && inputs.command_count <= config::kMaxCommandsPerStep && frames >= 0 &&
+         frames <= config::kMaxFramesPerStep && inputs.frame_wrong_size >= 0 &&
+         inputs.frame_wrong_size <= config::kMaxFramesPerStep &&
+         frames + inputs.frame_wrong_size <= config::kMaxFramesPerStep;
+}
+
+}  // namespace
+
+void AttitudeInitApp::init(const std::uint8_t* model_image, std::size_t size_bytes,
+                           const char* expected_target, hal::Stopwatch& stopwatch) {
+  stopwatch_ = &stopwatch;
+  model_status_ = estimator_.load(model_image, size_bytes, expected_target);
+  model_size_bytes_ = size_bytes < UINT32_MAX ? static_cast<std::uint32_t>(size_bytes) : UINT32_MAX;
+  model_to_report_ = true;
+  if (model_status_ == gnc::ModelStatus::kOk && mode_ != Mode::kSafe) enter_estimating();
+}
+
+void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) {
+  const std::uint64_t start_ns = stopwatch_ != nullptr ? stopwatch_->now_ns() : 0;
+  outputs = StepOutputs{};
+  const std::int64_t previous_ns = now_ns_;
+  const bool time_advances = cycle_time_advances(now_ns);
+  outputs.attitude.predicted_error_rad = kPi;
+  outputs.attitude.predicted_error_single_frame_rad = kPi;
+  count(counters_.cycles);
+
+  report_model(outputs);
+  const bool usable = TUMBLESIGHT_ASSERT(assertions_, stopwatch_ != nullptr && keeps_limits(inputs));
+  go_safe_on_assertion(outputs);
+  if (usable) run_commands(inputs, outputs);
+
+  outputs.attitude.validity = static_cast<std::uint8_t>(Validity::kStandby);
+  if (!time_advances) {
+    refuse_frames_of_cycle(inputs, elapsed_ms(previous_ns, now_ns), outputs);
+  } else if (mode_ == Mode::kEstimating) {
+    take_frames(inputs, outputs);
+  }
+  report_telemetry(start_ns, outputs);
+}
+
+void AttitudeInitApp::report(StepOutputs& outputs, EventId id, Severity severity, std::int32_t a,
+                             std::int32_t b, std::int32_t c) {
+  count(counters_.events);
+  if (!TUMBLESIGHT_ASSERT(assertions_, outputs.event_count < config::kMaxEventsPerStep)) return;
+  hal::Event& event = outputs.events[static_cast<std::size_t>(outputs.event_count++)];
+  event.time_ns = now_ns_;
+  event.id = static_cast<std::uint16_t>(id);
+  event.severity = static_cast<std::uint8_t>(severity);
+  event.arguments = {a, b, c};
+}
+
+void AttitudeInitApp::report_model(StepOutputs& outputs) {
+  if (!model_to_report_) return;
+  model_to_report_ = false;
+  const std::int32_t size_bytes = clamp_to_int32(model_size_bytes_);
+  if (model_status_ == gnc::ModelStatus::kOk) {
+    report(outputs, EventId::kModelActivated, Severity::kInformation, size_bytes,
+           static_cast<std::int32_t>(mode_));
+  } else {
+    report(outputs, EventId::kModelRefused, Severity::kError, static_cast<std::int32_t>(model_status_),
+           size_bytes);
+  }
+}
+
+void AttitudeInitApp::go_safe_on_assertion(StepOutputs& outputs) {
+  if (!assertions_.take()) return;
+  mode_ = Mode::kSafe;
+  report(outputs, EventId::kAssertion, Severity::kError, static_cast<std::int32_t>(assertions_.file()),
+         assertions_.line(), clamp_to_int32(assertions_.count()));
+}
+
+void AttitudeInitApp::reset_estimator() {
+  estimator_.reset();
+  count(counters_.estimator_resets);
+}
+
+void AttitudeInitApp::enter_estimating() {
+  reset_estimator();
+  gate_.forget();
+  outage_ = false;
+  mode_ = Mode::kEstimating;
+}
+
+void AttitudeInitApp::run_commands(const StepInputs& inputs, StepOutputs& outputs) {
+  for (int i = 0; i < inputs.command_count; ++i) {
+    const hal::Command& command = inputs.commands[static_cast<std::size_t>(i)];
+    const auto opcode = static_cast<std::int32_t>(command.opcode);
+    CommandRefusal why = CommandRefusal::kUnknownOpcode;
+    if (refuses(command, why)) {
+      count(counters_.commands_refused);
+      report(outputs, EventId::kCommandRefused, Severity::kWarning, opcode, command.payload_size,
+             static_cast<std::int32_t>(why));
+      continue;
+    }
+    const Mode before = mode_;
+    execute(static_cast<Opcode>(command.opcode));
+    count(counters_.commands_accepted);
+    report(outputs, EventId::kCommandAccepted, Severity::kInformation, opcode,
+           static_cast<std::int32_t>(before), static_cast<std::int32_t>(mode_));
+  }
+}
+
+bool AttitudeInitApp::refuses(const hal::Command& command, CommandRefusal& why) const {
+  const bool known = command.opcode >= static_cast<std::uint16_t>(Opcode::kNoop) &&
+                     command.opcode <= static_cast<std::uint16_t>(Opcode::kResetCounters);
+  if (!known) {
+    why = CommandRefusal::kUnknownOpcode;
+    return true;
+  }
+  if (command.payload_size != 0) {
+    why = CommandRefusal::kWrongLength;
+    return true;
+  }
+  if (static_cast<Opcode>(command.opcode) != Opcode::kEstimate) return false;
+  why = mode_ == Mode::kSafe ? CommandRefusal::kSafe : CommandRefusal::kNoModel;
+  return mode_ == Mode::kSafe || !estimator_.has_model();
+}
+
+void AttitudeInitApp::execute(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::kNoop:
+      break;
+    case Opcode::kEstimate:
+      if (mode_ != Mode::kEstimating) enter_estimating();
+      break;
+    case Opcode::kStandby:
+      mode_ = Mode::kStandby;
+      break;
+    case Opcode::kResetEstimator:
+      reset_estimator();
+      break;
+    case Opcode::kResetCounters:
+      counters_ = hal::Housekeeping{};
+      break;
+  }
+}
+
+bool AttitudeInitApp::cycle_time_advances(std::int64_t now_ns) {
+  const bool advances = !has_cycle_ || now_ns > now_ns_;
+  has_cycle_ = true;
+  now_ns_ = now_ns;
+  return advances;
+}
+
+void AttitudeInitApp::refuse_frames_of_cycle(const StepInputs& inputs, std::int32_t time_step_ms,
+                                             StepOutputs& outputs) {
+  std::uint32_t refused = 0;
+  if (mode_ == Mode::kEstimating) {
+    const int frames = inputs.frame != nullptr ? inputs.frame_count : 0;
+    count(counters_.frames_stale, static_cast<std::uint32_t>(frames));
+    count(counters_.frames_bad, static_cast<std::uint32_t>(inputs.frame_wrong_size));
+    refused = static_cast<std::uint32_t>(frames + inputs.frame_wrong_size);
+    count(counters_.frames_refused, refused);
+    if (refused == 0) count(counters_.frames_missing);
+    outputs.attitude.validity =
+        static_cast<std::uint8_t>(refused > 0 ? Validity::kFrameRefused : Validity::kNoFrame);
+  }
+  report(outputs, EventId::kCycleTimeNotAdvancing, Severity::kError, time_step_ms,
+         static_cast<std::int32_t>(refused));
+}
+
+void AttitudeInitApp::take_frames(const StepInputs& inputs, StepOutputs& outputs) {
+  const int frames = inputs.frame != nullptr ? inputs.frame_count : 0;
+  if (frames + inputs.frame_wrong_size == 0) {
+    outputs.attitude.validity = static_cast<std::uint8_t>(Validity::kNoFrame);
+    count(counters_.frames_missing);
+    if (!outage_) {
+      report(outputs, EventId::kFrameMissing, Severity::kWarning, bits_of(gate_.last_sequence_number()));
+    }
+    outage_ = true;
+    return;
+  }
+  outage_ = false;
+  outputs.attitude.validity = static_cast<std::uint8_t>(Validity::kFrameRefused);
+  for (int i = 0; i < inputs.frame_wrong_size; ++i) {
+    count(counters_.frames_refused);
+    count(counters_.frames_bad);
+    report(outputs, EventId::kFrameWrongSize, Severity::kWarning);
+  }
+  for (int i = 0; i < frames; ++i) take_frame(inputs.frame[i], outputs);
+}
+
+void AttitudeInitApp::take_frame(const gnc::RangeImage& frame, StepOutputs& outputs) {
+  if (passes_gate(frame, outputs)) {
+    use_frame(frame, outputs);
+  } else {
+    count(counters_.frames_refused);
+  }
+}
+
+bool AttitudeInitApp::passes_gate(const gnc::RangeImage& frame, StepOutputs& outputs) {
+  const std::int32_t number = bits_of(frame.sequence_number);
+  switch (gate_.judge(frame, now_ns_)) {
+    case FrameVerdict::kPass:
+      return true;
+    case FrameVerdict::kDuplicate:
+      count(counters_.frames_duplicate);
+      report(outputs, EventId::kFrameDuplicate, Severity::kWarning, number);
+      return false;
+    case FrameVerdict::kFromFuture:
+      count(counters_.frames_stale);
+      report(outputs, EventId::kFrameFromFuture, Severity::kWarning, number,
+             elapsed_ms(now_ns_, frame.exposure_time_ns));
+      return false;
+    case FrameVerdict::kExposureBackwards:
+      count(counters_.frames_stale);
+      report(outputs, EventId::kFrameExposureBackwards, Severity::kWarning, number,
+             elapsed_ms(gate_.last_exposure_time_ns(), frame.exposure_time_ns));
+      return false;
+    case FrameVerdict::kStale:
+      count(counters_.frames_stale);
+      report(outputs, EventId::kFrameStale, Severity::kWarning, number,
+             elapsed_ms(frame.exposure_time_ns, now_ns_));
+      return false;
+  }
+  return false;
+}
+
+void AttitudeInitApp::use_frame(const gnc::RangeImage& frame, StepOutputs& outputs) {
+  // The reset comes before the step, yet a frame refused for its content must leave the state as it was.
+  estimator_.save(state_before_frame_);
+  const std::uint32_t frames_before = state_before_frame_.frames_since_reset;
+  const bool reset_by_gap = frames_before > 0 && !gate_.one_period_after_last(frame);
+  if (reset_by_gap) estimator_.reset();
+
+  const std::uint64_t start_ns = stopwatch_->now_ns();
+  const gnc::FrameStatus status = estimator_.step(frame, estimate_);
+  if (status != gnc::FrameStatus::kOk) {
+    estimator_.restore(state_before_frame_);
+    count(counters_.frames_refused);
+    count(counters_.frames_bad);
+    report(outputs, EventId::kFrameBad, Severity::kWarning, bits_of(frame.sequence_number),
+           static_cast<std::int32_t>(status), frame.rays);
+    return;
+  }
+  counters_.inference_us = microseconds_since(start_ns);
+  if (counters_.inference_us > counters_.inference_max_us)
+    counters_.inference_max_us = counters_.inference_us;
+
+  const std::uint32_t skipped = gate_.numbers_skipped(frame);
+  if (skipped > 0) {
+    count(counters_.sequence_gaps, skipped == FrameGate::kWentBack ? 1U : skipped);
+    report(outputs, EventId::kSequenceSkipped, Severity::kWarning, bits_of(gate_.last_sequence_number() + 1U),
+           bits_of(frame.sequence_number), bits_of(skipped));
+  }
+  if (reset_by_gap) {
+    count(counters_.estimator_resets);
+    report(outputs, EventId::kEstimatorResetByGap, Severity::kWarning,
+           elapsed_ms(gate_.last_exposure_time_ns(), frame.exposure_time_ns), clamp_to_int32(frames_before));
+  }
+  gate_.accept(frame);
+  report_attitude(frame, outputs);
+}
+
+void AttitudeInitApp::report_attitude(const gnc::RangeImage& frame, StepOutputs& outputs) {
+  // The estimator promises this for any frame and any model it has loaded.
+  if (!TUMBLESIGHT_ASSERT(assertions_, is_sound(estimate_))) {
+    outputs.attitude.validity = static_cast<std::uint8_t>(Validity::kStandby);
+    return;
+  }
+  count(counters_.frames_used);
+  hal::AttitudeReport& attitude = outputs.attitude;
+  attitude.exposure_time_ns = frame.exposure_time_ns;
+  attitude.sequence_number = frame.sequence_number;
+  attitude.validity = static_cast<std::uint8_t>(Validity::kValid);
+  attitude.frames_since_reset = estimate_.frames_since_reset;
+  const Eigen::Quaternionf& q = estimate_.q_lrf_trf;
+  const Eigen::Quaternionf& q_single = estimate_.q_lrf_trf_single_frame;
+  attitude.q_lrf_trf = {q.w(), q.x(), q.y(), q.z()};
+  attitude.q_lrf_trf_single_frame = {q_single.w(), q_single.x(), q_single.y(), q_single.z()};
+  attitude.predicted_error_rad = estimate_.predicted_error_rad;
+  attitude.predicted_error_single_frame_rad = estimate_.predicted_error_single_frame_rad;
+}
+
+void AttitudeInitApp::report_telemetry(std::uint64_t start_ns, StepOutputs& outputs) {
+  if (stopwatch_ != nullptr) {
+    constexpr auto kBudget_us = static_cast<std::uint32_t>(config::kStepBudget_ns / 1000);
+    if (microseconds_since(start_ns) > kBudget_us) count(counters_.deadline_overruns);
+  }
+  go_safe_on_assertion(outputs);
+  outputs.attitude.time_ns = now_ns_;
+  outputs.housekeeping = counters_;
+  outputs.housekeeping.time_ns = now_ns_;
+  outputs.housekeeping.mode = static_cast<std::uint8_t>(mode_);
+}
+
+// Requires a stopwatch. A stopwatch that runs backwards measures 0.
+std::uint32_t AttitudeInitApp::microseconds_since(std::uint64_t start_ns) {
+  const std::uint64_t end_ns = stopwatch_->now_ns();
+  const std::uint64_t elapsed_us = end_ns > start_ns ? (end_ns - start_ns) / 1000U : 0U;
+  return elapsed_us < UINT32_MAX ? static_cast<std::uint32_t>(elapsed_us) : UINT32_MAX;
+}
+
+std::uint32_t AttitudeInitApp::state_crc32() const {
+  gnc::Crc32 crc;
+  crc.add_u32(estimator_.state_crc32());
+  crc.add_u32(static_cast<std::uint32_t>(mode_));
+  for (const bool flag : {estimator_.has_model(), has_cycle_, gate_.has_last(), outage_, model_to_report_}) {
+    crc.add_u32(flag ? 1U : 0U);
+  }
+  for (const std::int64_t time_ns : {now_ns_, gate_.last_exposure_time_ns()}) {
+    crc.add_u32(static_cast<std::uint32_t>(static_cast<std::uint64_t>(time_ns)));
+    crc.add_u32(static_cast<std::uint32_t>(static_cast<std::uint64_t>(time_ns) >> 32));
+  }
+  const hal::Housekeeping& c = counters_;
+  for (const std::uint32_t number :
+       {gate_.last_sequence_number(), assertions_.count(), c.cycles, c.commands_accepted, c.commands_refused,
+        c.frames_used, c.frames_missing, c.frames_refused, c.frames_duplicate, c.frames_stale, c.frames_bad,
+        c.sequence_gaps, c.estimator_resets, c.events}) {
+    crc.add_u32(number);
+  }
+  return crc.value();
+}
+
+}  // namespace tumblesight::fsw

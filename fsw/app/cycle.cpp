@@ -1,0 +1,43 @@
+#include "fsw/app/cycle.hpp"
+
+namespace tumblesight::fsw {
+namespace {
+
+void gather_frames(hal::Lidar& lidar, CycleWorkspace& workspace) {
+  StepInputs& inputs = workspace.inputs;
+  inputs.frame_count = 0;
+  inputs.frame_wrong_size = 0;
+  for (int i = 0; i < config::kMaxFramesPerStep; ++i) {
+    const hal::LidarStatus status =
+        lidar.receive(workspace.frames[static_cast<std::size_t>(inputs.frame_count)]);
+    if (status == hal::LidarStatus::kNoFrame) break;
+    if (status == hal::LidarStatus::kFrame) ++inputs.frame_count;
+    if (status == hal::LidarStatus::kWrongSize) ++inputs.frame_wrong_size;
+  }
+  inputs.frame = inputs.frame_count > 0 ? workspace.frames.data() : nullptr;
+}
+
+void gather_commands(hal::Link& link, StepInputs& inputs) {
+  inputs.command_count = 0;
+  for (hal::Command& command : inputs.commands) {
+    if (!link.receive(command)) break;
+    ++inputs.command_count;
+  }
+}
+
+}  // namespace
+
+CyclePublished run_cycle(AttitudeInitApp& app, hal::Lidar& lidar, hal::Link& link, std::int64_t now_ns,
+                         CycleWorkspace& workspace) {
+  gather_frames(lidar, workspace);
+  gather_commands(link, workspace.inputs);
+  app.step(now_ns, workspace.inputs, workspace.outputs);
+
+  const StepOutputs& outputs = workspace.outputs;
+  link.publish(outputs.attitude);
+  link.publish(outputs.housekeeping);
+  for (int i = 0; i < outputs.event_count; ++i) link.publish(outputs.events[static_cast<std::size_t>(i)]);
+  return {1, 1, outputs.event_count};
+}
+
+}  // namespace tumblesight::fsw

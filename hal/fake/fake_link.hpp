@@ -1,0 +1,34 @@
+// FakeLink: scripted telecommands in; keeps all telemetry for the test to look at. Host only.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "hal/link.hpp"
+
+namespace tumblesight::hal::fake {
+
+class FakeLink final : public Link {
+ public:
+  void add(const Command& command) { commands_.push_back(command); }
+  std::size_t waiting() const { return commands_.size(); }
+
+  bool receive(Command& command) override {
+    if (commands_.empty()) return false;
+    command = commands_.front();
+    commands_.pop_front();
+    return true;
+  }
+  void publish(const AttitudeReport& report) override { attitudes.push_back(report); }
+  void publish(const Housekeeping& housekeeping) override { telemetry.push_back(housekeeping); }
+  void publish(const Event& event) override { events.push_back(event); }
+
+  std::vector<AttitudeReport> attitudes;
+  std::vector<Housekeeping> telemetry;
+  std::vector<Event> events;
+
+ private:
+  std::deque<Command> commands_;
+};
+
+}  // namespace tumblesight::hal::fake

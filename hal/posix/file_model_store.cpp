@@ -1,0 +1,77 @@
+#include "hal/posix/file_model_store.hpp"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace tumblesight::hal::posix {
+namespace {
+
+// False when the file ends early or cannot be read.
+bool read_whole(int file, std::uint8_t* data, std::size_t size) {
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t count = read(file, data + done, size - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    done += static_cast<std::size_t>(count);
+  }
+  return true;
+}
+
+}  // namespace
+
+const char* to_string(FileStatus status) {
+  switch (status) {
+    case FileStatus::kOk:
+      return "ok";
+    case FileStatus::kMissing:
+      return "no such file";
+    case FileStatus::kUnreadable:
+      return "cannot be read";
+    case FileStatus::kEmpty:
+      return "the file is empty";
+    case FileStatus::kTooLarge:
+      return "the file is too large for a model image";
+    case FileStatus::kNoMemory:
+      return "no memory for it";
+  }
+  return "unknown";
+}
+
+FileModelStore::FileModelStore(const char* path, std::size_t max_bytes) {
+  // Not blocking: a named pipe in the image's place must not stop the start-up.
+  const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) {
+    status_ = errno == ENOENT || errno == ENOTDIR ? FileStatus::kMissing : FileStatus::kUnreadable;
+    return;
+  }
+  status_ = load(file, max_bytes);
+  (void)close(file);
+}
+
+FileModelStore::~FileModelStore() {
+  if (data_ != nullptr) (void)munmap(data_, size_);
+}
+
+FileStatus FileModelStore::load(int file, std::size_t max_bytes) {
+  struct stat about {};
+  if (fstat(file, &about) != 0 || !S_ISREG(about.st_mode)) return FileStatus::kUnreadable;
+  if (about.st_size <= 0) return FileStatus::kEmpty;
+  const auto size = static_cast<std::size_t>(about.st_size);
+  if (size > max_bytes) return FileStatus::kTooLarge;
+
+  void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) return FileStatus::kNoMemory;
+  data_ = static_cast<std::uint8_t*>(memory);
+  size_ = size;
+  return read_whole(file, data_, size_) ? FileStatus::kOk : FileStatus::kUnreadable;
+}
+
+ModelBytes FileModelStore::active_image() {
+  return status_ == FileStatus::kOk ? ModelBytes{data_, size_} : ModelBytes{};
+}
+
+}  // namespace tumblesight::hal::posix

@@ -1,0 +1,13 @@
+// MonotonicStopwatch: CLOCK_MONOTONIC, the clock that PosixPeriodicTask runs on.
+#pragma once
+
+#include "hal/stopwatch.hpp"
+
+namespace tumblesight::hal::posix {
+
+class MonotonicStopwatch final : public Stopwatch {
+ public:
+  std::uint64_t now_ns() override;
+};
+
+}  // namespace tumblesight::hal::posix

@@ -1,0 +1,27 @@
+// Everything that the flight side may not do, in one library, for the check of the symbol check.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+extern "C" int dds_write(int, const void*);
+extern "C" int something_from_elsewhere(int);
+
+namespace tumblesight::structure {
+
+struct Base {
+  virtual ~Base();
+};
+Base::~Base() = default;
+
+volatile float input = 1.0F;
+
+void* break_the_rules(int size) {
+  std::printf("%d %f\n", size, static_cast<double>(std::exp(input) + std::tanh(input)));
+  if (size < 0) throw size;
+  void* block = std::malloc(static_cast<std::size_t>(size));
+  std::free(block);
+  (void)dds_write(something_from_elsewhere(size), block);
+  return new int[static_cast<std::size_t>(size)];
+}
+
+}  // namespace tumblesight::structure
