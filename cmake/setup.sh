@@ -1,0 +1,79 @@
+# Set-up shared by sim/run and tests/run: packages, configuration, build. Sourced by bash; needs $root.
+# shellcheck shell=bash disable=SC2034,SC2154
+
+fail() {
+  echo "$(basename "$(dirname "$0")")/$(basename "$0"): $*" >&2
+  exit 1
+}
+
+# What the programs need; the tests and the training add theirs.
+packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
+  libassimp-dev libcli11-dev libfmt-dev libpng-dev nlohmann-json3-dev)
+packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libgtest-dev libgmock-dev)
+
+# Runs a command with its output in a log, which is shown only if it fails.
+quietly() { # what, log, command...
+  local what=$1 log=$2 started=$SECONDS
+  shift 2
+  mkdir -p "$(dirname "$log")"
+  "$@" >"$log" 2>&1 &
+  local job=$!
+  while kill -0 "$job" 2>/dev/null; do
+    [ -t 1 ] && printf '\r  %s, %d s ' "$what" $((SECONDS - started))
+    sleep 0.2
+  done
+  if wait "$job"; then
+    if [ -t 1 ]; then printf '\r\033[K'; fi
+    printf '  %s: done in %d s\n' "$what" $((SECONDS - started))
+    return 0
+  fi
+  printf '\n'
+  tail -n 25 "$log" >&2
+  return 1
+}
+
+# Installs the named packages that are not there yet. Touches neither apt nor the network if all are.
+install_missing() { # package...
+  command -v dpkg-query >/dev/null || fail "this set-up knows Debian's packages only; elsewhere, install what README.md lists and build with 'cmake --preset release'"
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+
+  echo "  Missing packages: ${missing[*]}"
+  local as_root=(env DEBIAN_FRONTEND=noninteractive)
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || fail "they need root to install, and there is no sudo; as root: apt-get install ${missing[*]}"
+    sudo -v || fail "sudo refuses; as root: apt-get install ${missing[*]}"
+    as_root=(sudo env DEBIAN_FRONTEND=noninteractive)
+  fi
+  quietly "reading package lists" "$root/build/log/apt_update.log" \
+    "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 update || fail "apt-get update failed (above); is there a network?"
+  quietly "installing ${#missing[@]} packages and what they need" "$root/build/log/apt_install.log" \
+    "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 install -y --no-install-recommends "${missing[@]}" ||
+    fail "apt-get install failed (above; all of it in build/log/apt_install.log)"
+}
+
+# Configures and builds a preset of CMakePresets.json, if there is anything to do.
+build_preset() { # preset
+  local folder="$root/build/$1"
+  if [ ! -f "$folder/build.ninja" ]; then
+    quietly "configuring" "$root/build/log/configure_$1.log" cmake -S "$root" --preset "$1" ||
+      fail "cmake failed (above; all of it in build/log/configure_$1.log)"
+  fi
+  ninja -C "$folder" -n 2>/dev/null | grep -q 'no work to do' && return 0
+  NINJA_STATUS='  building %f/%t, %es  ' ninja -C "$folder" -j "$(nproc)" || fail "the build failed (above)"
+}
+
+# One set-up at a time in one checkout; a second waits for the first.
+exclusively() { # command...
+  mkdir -p "$root/build"
+  exec 9>"$root/build/.lock"
+  if ! flock -n 9; then
+    echo "  Waiting for another set-up in this checkout to finish"
+    flock 9
+  fi
+  "$@"
+  exec 9>&-
+}

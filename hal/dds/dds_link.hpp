@@ -1,0 +1,52 @@
+// DdsLink: commands of topic sil/command in; attitude, housekeeping and events out to sil/attitude,
+// sil/telemetry and sil/event. The flight task is on one side of it, the bus thread, which speaks DDS, on the
+// other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "hal/dds/fixed_queue.hpp"
+#include "hal/dds/idl/topics.hpp"
+#include "hal/dds/mailbox_lock.hpp"
+#include "hal/link.hpp"
+
+namespace tumblesight::hal::dds {
+
+// What the flight task publishes in one cycle.
+struct CycleOutput {
+  StepDoneSample done{};  // with the number of samples below
+  AttitudeSample attitude{};
+  TelemetrySample telemetry{};
+  std::array<EventSample, kMaxEventsPerStep> events{};
+};
+
+class DdsLink final : public Link {
+ public:
+  using Counter = std::uint32_t (*)();
+
+  // `heap_allocations` of the flight task goes into the housekeeping.
+  explicit DdsLink(Counter heap_allocations) : heap_allocations_(heap_allocations) {}
+
+  // Bus thread.
+  void put(const CommandSample& sample);
+  // False: no cycle has ended that has not been taken.
+  bool take_output(CycleOutput& output);
+
+  // Flight task. What is published between the two belongs to cycle `k`.
+  void begin_cycle(std::uint32_t run_id, std::uint32_t k);
+  void end_cycle(std::uint32_t state_crc32);
+  [[nodiscard]] bool receive(Command& command) override;
+  void publish(const AttitudeReport& report) override;
+  void publish(const Housekeeping& housekeeping) override;
+  void publish(const Event& event) override;
+
+ private:
+  Counter heap_allocations_;
+  CycleOutput output_;  // of the cycle that runs
+  MailboxMutex mutex_;
+  FixedQueue<Command, 2 * kMaxCommandsPerStep> commands_;
+  FixedQueue<CycleOutput, 4> outputs_;
+};
+
+}  // namespace tumblesight::hal::dds

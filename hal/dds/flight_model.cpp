@@ -1,0 +1,53 @@
+#include "hal/dds/flight_model.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+
+#include "gnc/rcnn/model_image.hpp"
+#include "hal/posix/file_model_store.hpp"
+
+namespace tumblesight::hal::dds {
+namespace {
+
+// The folder that this program lies in, without a slash at its end.
+bool program_folder(char (&folder)[FlightOptions::kMaxPath]) {
+  const ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1);
+  if (length <= 0) return false;
+  folder[length] = '\0';
+  char* slash = std::strrchr(folder, '/');
+  if (slash == nullptr) return false;
+  *slash = '\0';
+  return true;
+}
+
+// In a build folder of the source tree, or wherever the sources were when this was built.
+void find_shipped_model(FlightOptions& options) {
+  char folder[FlightOptions::kMaxPath];
+  char path[FlightOptions::kMaxPath + 128];
+  if (program_folder(folder)) {
+    const int length =
+        std::snprintf(path, sizeof path, "%s/../../../fsw/models/%s.tsm", folder, options.target);
+    if (length > 0 && length < FlightOptions::kMaxPath && access(path, R_OK) == 0) {
+      std::strcpy(options.model_path, path);
+      return;
+    }
+  }
+  std::snprintf(options.model_path, sizeof options.model_path, "%s/fsw/models/%s.tsm", TUMBLESIGHT_SOURCE_DIR,
+                options.target);
+}
+
+}  // namespace
+
+void load_model(FlightOptions& options, fsw::AttitudeInitApp& app, Stopwatch& stopwatch) {
+  if (options.model_path[0] == '\0') find_shipped_model(options);
+  static posix::FileModelStore store(options.model_path);
+  const ModelBytes image = store.active_image();
+  app.init(image.data, image.size, options.target, stopwatch);
+  if (app.mode() != fsw::Mode::kStandby) return;
+  const char* reason = image.data == nullptr ? to_string(store.status()) : gnc::to_string(app.model_status());
+  std::fprintf(stderr, "flight: model image %s: %s; staying in STANDBY\n", options.model_path, reason);
+}
+
+}  // namespace tumblesight::hal::dds

@@ -1,0 +1,104 @@
+#include "hal/dds/flight_task.hpp"
+
+#include <cerrno>
+
+#include "fsw/config/limits.hpp"
+#include "hal/dds/heap_trap.hpp"
+
+namespace tumblesight::hal::dds {
+namespace {
+
+// The interface's names and the application's are the same values.
+static_assert(tumblesight_icd_MODE_STANDBY == static_cast<int>(fsw::Mode::kStandby));
+static_assert(tumblesight_icd_VALIDITY_VALID == static_cast<int>(fsw::Validity::kValid));
+static_assert(tumblesight_icd_OPCODE_ESTIMATE == static_cast<int>(fsw::Opcode::kEstimate));
+static_assert(tumblesight_icd_OPCODE_RESET_ESTIMATOR == static_cast<int>(fsw::Opcode::kResetEstimator));
+static_assert(tumblesight_icd_EVENT_MODEL_REFUSED == static_cast<int>(fsw::EventId::kModelRefused));
+static_assert(kMaxEventsPerStep >= fsw::config::kMaxEventsPerStep);
+
+void wait(sem_t& semaphore) {
+  while (sem_wait(&semaphore) != 0 && errno == EINTR) {
+  }
+}
+
+}  // namespace
+
+std::int64_t MissionClock::at(std::int64_t release_ns) const {
+  const double periods = static_cast<double>(release_ns - wall_ns) / static_cast<double>(period_ns);
+  return mission_time_ns +
+         static_cast<std::int64_t>(periods * static_cast<double>(fsw::config::kFramePeriod_ns));
+}
+
+FlightTask::FlightTask(fsw::AttitudeInitApp& app, DdsLidar& lidar, DdsLink& link,
+                       fsw::CycleWorkspace& workspace)
+    : app_(app), lidar_(lidar), link_(link), workspace_(workspace) {
+  sem_init(&go_, 0, 0);
+  sem_init(&done_, 0, 0);
+}
+
+bool FlightTask::start_lockstep(std::uint32_t run_id) {
+  return start(run_id);
+}
+
+bool FlightTask::start_free(std::uint32_t run_id, PeriodicTask& timer, const MissionClock& clock) {
+  timer_ = &timer;
+  clock_ = clock;
+  return start(run_id);
+}
+
+bool FlightTask::start(std::uint32_t run_id) {
+  run_id_ = run_id;
+  return pthread_create(&thread_, nullptr, thread_main, this) == 0;
+}
+
+void FlightTask::run_cycle(std::uint32_t k, std::int64_t now_ns) {
+  k_ = k;
+  now_ns_ = now_ns;
+  sem_post(&go_);
+  wait(done_);
+}
+
+void FlightTask::join() {
+  end_requested_ = true;
+  sem_post(&go_);
+  pthread_join(thread_, nullptr);
+}
+
+void* FlightTask::thread_main(void* self) {
+  static_cast<FlightTask*>(self)->run();
+  return nullptr;
+}
+
+void FlightTask::run() {
+  arm_heap_trap();
+  timer_ == nullptr ? run_lockstep() : run_free();
+  disarm_heap_trap();
+  heap_allocations_ = dds::heap_allocations();
+  first_heap_allocation_bytes_ = dds::first_heap_allocation_bytes();
+}
+
+void FlightTask::run_lockstep() {
+  for (;;) {
+    wait(go_);
+    if (end_requested_) return;
+    cycle(k_, now_ns_);
+    sem_post(&done_);
+  }
+}
+
+void FlightTask::run_free() {
+  bool last = false;
+  for (std::uint32_t k = 0; !last; ++k) {
+    const std::int64_t release_ns = timer_->wait_next_release_ns(slips_);
+    last = end_requested_;
+    cycle(k, clock_.at(release_ns));
+  }
+}
+
+void FlightTask::cycle(std::uint32_t k, std::int64_t now_ns) {
+  link_.begin_cycle(run_id_, k);
+  fsw::run_cycle(app_, lidar_, link_, now_ns, workspace_);
+  link_.end_cycle(app_.state_crc32());
+}
+
+}  // namespace tumblesight::hal::dds

@@ -1,0 +1,25 @@
+#include "hal/dds/idl/flight_end.hpp"
+
+namespace tumblesight::hal::dds {
+
+const char* to_string(FlightEnd end) {
+  switch (end) {
+    case FlightEnd::kComplete:
+      return "complete";
+    case FlightEnd::kBadArguments:
+      return "bad arguments";
+    case FlightEnd::kIcdUnequal:
+      return "the simulator was built from another interface definition";
+    case FlightEnd::kSimulatorGone:
+      return "the simulator is gone";
+    case FlightEnd::kSilence:
+      return "nothing came from a simulator for too long";
+    case FlightEnd::kTransport:
+      return "DDS failed";
+    case FlightEnd::kStepOutOfOrder:
+      return "the simulator skipped a step";
+  }
+  return "?";
+}
+
+}  // namespace tumblesight::hal::dds

@@ -1,0 +1,18 @@
+// Why the flight program ends; the numbers are its exit statuses.
+#pragma once
+
+namespace tumblesight::hal::dds {
+
+enum class FlightEnd : int {
+  kComplete = 0,  // the last step is done, or SIGTERM/SIGINT asked to stop
+  kBadArguments = 2,
+  kIcdUnequal = 3,     // simulator and flight were built from different interface definitions
+  kSimulatorGone = 4,  // killed, or its connection lost
+  kSilence = 5,        // no simulator, or no step from it, for longer than the timeout
+  kTransport = 6,      // DDS could not be set up, or refused a sample
+  kStepOutOfOrder = 7,
+};
+
+const char* to_string(FlightEnd end);
+
+}  // namespace tumblesight::hal::dds

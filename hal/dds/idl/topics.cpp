@@ -1,0 +1,119 @@
+#include "hal/dds/idl/topics.hpp"
+
+namespace tumblesight::hal::dds {
+namespace {
+
+// What a writer waits at most for a reader that cannot take more; with KEEP_LAST it is never reached.
+constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);
+
+constexpr Topic kHello{"sil/hello", &tumblesight_icd_Hello_desc, 4, true};
+constexpr Topic kLidarFrame{"sil/lidar_frame", &tumblesight_icd_LidarFrame_desc, 2 * kMaxFramesPerStep,
+                            false};
+constexpr Topic kCommand{"sil/command", &tumblesight_icd_Command_desc, 2 * kMaxCommandsPerStep, false};
+constexpr Topic kStep{"sil/step", &tumblesight_icd_Step_desc, 4, false};
+constexpr Topic kAttitude{"sil/attitude", &tumblesight_icd_Attitude_desc, 8, false};
+constexpr Topic kTelemetry{"sil/telemetry", &tumblesight_icd_Telemetry_desc, 8, false};
+constexpr Topic kEvent{"sil/event", &tumblesight_icd_Event_desc, 2 * kMaxEventsPerStep, false};
+constexpr Topic kStepDone{"sil/step_done", &tumblesight_icd_StepDone_desc, 8, false};
+constexpr Topic kTruth{"sil/truth", &tumblesight_icd_Truth_desc, 8, false};
+
+dds_qos_t* qos_of(const Topic& topic) {
+  dds_qos_t* qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, kMaxBlocking);
+  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, topic.history);
+  dds_qset_durability(qos, topic.for_late_joiners ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_PARTICIPANT);
+  return qos;
+}
+
+using Create = dds_entity_t (*)(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* qos,
+                                const dds_listener_t* listener);
+
+dds_entity_t create(dds_entity_t participant, const Topic& topic, Create create_endpoint) {
+  const dds_entity_t handle = dds_create_topic(participant, topic.type, topic.name, nullptr, nullptr);
+  if (handle < 0) return handle;
+  dds_qos_t* qos = qos_of(topic);
+  const dds_entity_t endpoint = create_endpoint(participant, handle, qos, nullptr);
+  dds_delete_qos(qos);
+  return endpoint;
+}
+
+}  // namespace
+
+template <>
+const Topic& topic_of<HelloSample>() {
+  return kHello;
+}
+template <>
+const Topic& topic_of<LidarFrameSample>() {
+  return kLidarFrame;
+}
+template <>
+const Topic& topic_of<CommandSample>() {
+  return kCommand;
+}
+template <>
+const Topic& topic_of<StepSample>() {
+  return kStep;
+}
+template <>
+const Topic& topic_of<AttitudeSample>() {
+  return kAttitude;
+}
+template <>
+const Topic& topic_of<TelemetrySample>() {
+  return kTelemetry;
+}
+template <>
+const Topic& topic_of<EventSample>() {
+  return kEvent;
+}
+template <>
+const Topic& topic_of<StepDoneSample>() {
+  return kStepDone;
+}
+template <>
+const Topic& topic_of<TruthSample>() {
+  return kTruth;
+}
+
+dds_entity_t create_writer(dds_entity_t participant, const Topic& topic) {
+  return create(participant, topic, dds_create_writer);
+}
+
+dds_entity_t create_reader(dds_entity_t participant, const Topic& topic) {
+  return create(participant, topic, dds_create_reader);
+}
+
+bool take_one(dds_entity_t reader, void* sample) {
+  constexpr int kMaxNotices = 16;
+  for (int i = 0; i < kMaxNotices; ++i) {
+    dds_sample_info_t info;
+    if (dds_take(reader, &sample, &info, 1, 1) <= 0) return false;
+    if (info.valid_data) return true;
+  }
+  return false;
+}
+
+int matched_readers(dds_entity_t writer) {
+  dds_publication_matched_status_t status{};
+  return dds_get_publication_matched_status(writer, &status) == 0 ? static_cast<int>(status.current_count)
+                                                                  : 0;
+}
+
+int matched_writers(dds_entity_t reader) {
+  dds_subscription_matched_status_t status{};
+  return dds_get_subscription_matched_status(reader, &status) == 0 ? static_cast<int>(status.current_count)
+                                                                   : 0;
+}
+
+bool saw_incompatible_writer(dds_entity_t reader) {
+  dds_requested_incompatible_qos_status_t status{};
+  return dds_get_requested_incompatible_qos_status(reader, &status) == 0 && status.total_count > 0;
+}
+
+bool wait_for_acknowledgment(dds_entity_t writer, std::int64_t timeout_ns) {
+  return dds_wait_for_acks(writer, timeout_ns) == 0;
+}
+
+}  // namespace tumblesight::hal::dds

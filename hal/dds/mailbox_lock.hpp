@@ -1,0 +1,31 @@
+// MailboxLock: what lies between the flight task and the bus thread is touched under this lock. Never held
+// for longer than a copy, never allocates.
+#pragma once
+
+#include <pthread.h>
+
+namespace tumblesight::hal::dds {
+
+class MailboxMutex {
+ public:
+  MailboxMutex() = default;
+  MailboxMutex(const MailboxMutex&) = delete;
+  MailboxMutex& operator=(const MailboxMutex&) = delete;
+
+ private:
+  friend class MailboxLock;
+  pthread_mutex_t mutex_ = PTHREAD_MUTEX_INITIALIZER;
+};
+
+class MailboxLock {
+ public:
+  explicit MailboxLock(MailboxMutex& mutex) : mutex_(mutex.mutex_) { pthread_mutex_lock(&mutex_); }
+  ~MailboxLock() { pthread_mutex_unlock(&mutex_); }
+  MailboxLock(const MailboxLock&) = delete;
+  MailboxLock& operator=(const MailboxLock&) = delete;
+
+ private:
+  pthread_mutex_t& mutex_;
+};
+
+}  // namespace tumblesight::hal::dds

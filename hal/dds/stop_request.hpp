@@ -1,0 +1,9 @@
+// SIGTERM and SIGINT as a wish to end, seen by the flight task between two steps.
+#pragma once
+
+namespace tumblesight::hal::dds {
+
+void accept_stop_requests();
+bool stop_requested();
+
+}  // namespace tumblesight::hal::dds

@@ -1,0 +1,37 @@
+// The options that several subcommands share, defined once so that they mean the same everywhere, and the
+// checks of their values: what is refused is refused with the limits that hold.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+namespace tumblesight::sim {
+
+// What is observed, and by which network.
+struct ScenarioArguments {
+  std::string target = "near_shoemaker";
+  std::string mesh;  // empty: the mesh that ships for the target
+  std::string mesh_up = "y";
+  double mesh_scale = 1.0;
+  std::string condition = "nominal";
+  std::uint32_t sequences = 30;
+  std::uint32_t frames = 10;
+  std::uint64_t seed = 1;
+  std::string model;  // empty: fsw/models/<target>.tsm of the source tree
+  std::string json;   // empty: none
+};
+
+// Defaults are what `arguments` holds when called.
+void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
+
+// Validators whose message names the limits, for instance "must be a whole number from 1 to 100000, not
+// 'many'".
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
+CLI::Validator number(double low, double high);
+
+// Throws std::runtime_error that names option, file and reason if `path` could not be written. Leaves no file
+// behind.
+void require_writable(const std::string& option, const std::string& path);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,62 @@
+// tumblesight: the host tool. One program, a subcommand for each job.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "sim/cli/evaluate_command.hpp"
+#ifdef TUMBLESIGHT_HAS_SIL
+#include "sim/cli/simulate_command.hpp"
+#endif
+#ifdef TUMBLESIGHT_HAS_TRAINING
+#include "sim/cli/train_command.hpp"
+#endif
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kBadArguments = 2;
+
+int report(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  // --help and commands that have said themselves why they failed.
+  if (error.get_exit_code() == 0 || error.get_name() == "RuntimeError") return app.exit(error);
+  if (error.get_name() == "RequiredError" && argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
+    std::fprintf(stderr, "tumblesight: there is no subcommand '%s' (see tumblesight --help)\n", argv[1]);
+    return kBadArguments;
+  }
+  std::string help = "tumblesight";
+  for (const CLI::App* command : app.get_subcommands()) help += " " + command->get_name();
+  std::fprintf(stderr, "tumblesight: %s (see %s --help)\n", error.what(), help.c_str());
+  return kBadArguments;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace tumblesight;
+  CLI::App app{"Tumblesight: the attitude of tumbling spacecraft from flash-LiDAR frames."};
+  app.name("tumblesight");
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(26);
+  try {
+#ifdef TUMBLESIGHT_HAS_SIL
+    std::string command_line = "tumblesight";
+    for (int i = 1; i < argc; ++i) command_line += std::string(" ") + argv[i];
+    sim::add_simulate_command(app, command_line);
+#endif
+    sim::add_evaluate_command(app);
+#ifdef TUMBLESIGHT_HAS_TRAINING
+    sim::add_train_command(app);
+#endif
+    app.footer(
+        "\nStart with\n  tumblesight simulate\n"
+        "and see `tumblesight SUBCOMMAND --help` for what each can do.\n");
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return report(app, error, argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tumblesight: %s\n", error.what());
+    return kFailed;
+  }
+  return 0;
+}

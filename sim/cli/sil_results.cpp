@@ -1,0 +1,224 @@
+#include "sim/cli/sil_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "sim/cli/summary.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+// Of the interface (docs/icd.md): the attitude's validity and the mode in the housekeeping.
+constexpr std::uint8_t kValid = 0;
+constexpr std::uint8_t kStandby = 0;
+
+Eigen::Quaterniond quaternion(const std::array<float, 4>& wxyz) {
+  const auto part = [&](std::size_t i) { return static_cast<double>(wxyz[i]); };
+  return {part(0), part(1), part(2), part(3)};
+}
+
+bool gave_attitude(const StepRecord& step) {
+  return step.answered && step.attitude.validity == kValid;
+}
+
+std::string file_name(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
+}
+
+const StepRecord* last_answered(const SilRecording& recording) {
+  const auto found = std::find_if(recording.steps.rbegin(), recording.steps.rend(),
+                                  [](const StepRecord& s) { return s.answered; });
+  return found == recording.steps.rend() ? nullptr : &*found;
+}
+
+std::vector<ReportPicture> pictures(const SilRecording& recording, const gnc::DepthProjection& projection) {
+  const auto scratch = std::make_unique<gnc::DepthImageScratch>();
+  std::vector<ReportPicture> pictures;
+  for (const auto& [index, frame] : recording.pictures) {
+    if (index >= recording.steps.size()) continue;
+    const StepRecord& step = recording.steps[index];
+    ReportPicture picture{step.sequence, step.frame_index, step.truth.range_m, {}};
+    if (gnc::make_depth_image(frame, projection, *scratch, picture.image) == gnc::FrameStatus::kOk) {
+      pictures.push_back(picture);
+    }
+  }
+  return pictures;
+}
+
+FactList settings_facts(const ScenarioArguments& scenario, const TargetSetup& setup,
+                        const SilSettings& settings) {
+  FactList list{"Settings", {}};
+  list.facts = {{"target", scenario.target},
+                {"mesh", file_name(setup.mesh_name)},
+                {"condition", scenario.condition},
+                {"sequences × frames", fmt::format("{} × {}", scenario.sequences, scenario.frames)},
+                {"seed", fmt::format("{}", scenario.seed)},
+                {"speed", settings.speed > 0.0 ? fmt::format("{:g} × real time", settings.speed) : "max"},
+                {"time", settings.free_running ? "free-running" : "lockstep"},
+                {"swath", fmt::format("{:.2f} m", setup.projection.swath_m)}};
+  return list;
+}
+
+FactList outcome_facts(const SilRecording& recording, const TargetSetup& setup) {
+  const InferenceTime time = inference_time(recording);
+  FactList list{"Flight program", {}};
+  list.facts = {
+      {"steps answered",
+       fmt::format("{} of {}", recording.steps_planned - recording.steps_missed, recording.steps_planned)},
+      {"inference, median", fmt::format("{:.2f} ms", 1e-3 * time.median_us)},
+      {"inference, longest", fmt::format("{:.2f} ms", 1e-3 * time.max_us)},
+      {"heap allocations", fmt::format("{}", recording.flight_heap_allocations)},
+      {"trace CRC-32", fmt::format("{:08x}", recording.trace_crc32)},
+      {"model", file_name(setup.model_path)},
+      {"model CRC-32", setup.model_status == gnc::ModelStatus::kOk ? fmt::format("{:08x}", setup.header.crc32)
+                                                                   : gnc::to_string(setup.model_status)}};
+  return list;
+}
+
+FactList counter_facts(const SilRecording& recording) {
+  FactList list{"Counters at the end", {}};
+  const StepRecord* last = last_answered(recording);
+  if (last == nullptr) return list;
+  const hal::Housekeeping& h = last->housekeeping;
+  const std::pair<const char*, std::uint32_t> counters[] = {
+      {"cycles", h.cycles},
+      {"frames used", h.frames_used},
+      {"frames missing", h.frames_missing},
+      {"frames refused", h.frames_refused},
+      {"… duplicate, stale, bad", h.frames_duplicate + h.frames_stale + h.frames_bad},
+      {"sequence numbers skipped", h.sequence_gaps},
+      {"estimator resets", h.estimator_resets},
+      {"commands accepted", h.commands_accepted},
+      {"commands refused", h.commands_refused},
+      {"events", h.events},
+      {"deadline overruns", h.deadline_overruns},
+  };
+  for (const auto& [name, count] : counters) list.facts.emplace_back(name, fmt::format("{}", count));
+  return list;
+}
+
+// Warnings and errors by number, in the order in which they first came up.
+FactList event_facts(const SilRecording& recording) {
+  struct Kind {
+    std::uint16_t id;
+    std::uint32_t count;
+    std::size_t first_step;
+  };
+  std::vector<Kind> kinds;
+  for (std::size_t i = 0; i < recording.steps.size(); ++i) {
+    for (const hal::Event& event : recording.steps[i].events) {
+      if (event.severity == 0) continue;
+      const auto known =
+          std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.id == event.id; });
+      if (known != kinds.end()) {
+        ++known->count;
+      } else {
+        kinds.push_back({event.id, 1, i});
+      }
+    }
+  }
+  FactList list{"Warnings and errors", {}};
+  for (const Kind& kind : kinds) {
+    list.facts.emplace_back(fmt::format("event {}", kind.id),
+                            fmt::format("{} times, first in step {}", kind.count, kind.first_step));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::vector<FrameResult> frame_results(const SilRecording& recording) {
+  std::vector<FrameResult> results;
+  for (const StepRecord& step : recording.steps) {
+    if (!step.answered) continue;
+    FrameResult result;
+    result.sequence = step.sequence;
+    result.frame = step.frame_index;
+    result.valid = gave_attitude(step);
+    result.truth = step.truth.q_lrf_trf;
+    result.rcnn = quaternion(step.attitude.q_lrf_trf);
+    result.cnn = quaternion(step.attitude.q_lrf_trf_single_frame);
+    result.rcnn_predicted_rad = static_cast<double>(step.attitude.predicted_error_rad);
+    result.cnn_predicted_rad = static_cast<double>(step.attitude.predicted_error_single_frame_rad);
+    results.push_back(result);
+  }
+  return results;
+}
+
+InferenceTime inference_time(const SilRecording& recording) {
+  std::vector<double> times_us;
+  for (const StepRecord& step : recording.steps) {
+    if (gave_attitude(step)) times_us.push_back(step.housekeeping.inference_us);
+  }
+  if (times_us.empty()) return {};
+  return {median(times_us), *std::max_element(times_us.begin(), times_us.end())};
+}
+
+std::vector<std::string> shortcomings(const SilRecording& recording) {
+  std::vector<std::string> found;
+  if (!recording.failure.empty()) found.push_back("The run ended early: " + recording.failure + ".");
+  if (recording.steps_missed > 0) {
+    found.push_back(fmt::format("{} of {} steps were not answered; the figures cover the others.",
+                                recording.steps_missed, recording.steps_planned));
+  }
+  const StepRecord* last = last_answered(recording);
+  const auto invalid = std::count_if(recording.steps.begin(), recording.steps.end(),
+                                     [](const StepRecord& s) { return s.answered && !gave_attitude(s); });
+  if (invalid > 0) {
+    found.push_back(
+        fmt::format("{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
+                    recording.steps_planned - recording.steps_missed,
+                    last->housekeeping.mode == kStandby ? ": the flight program is in STANDBY" : ""));
+  }
+  if (recording.flight_heap_allocations > 0) {
+    found.push_back(fmt::format("The flight task allocated heap memory {} times after its start.",
+                                recording.flight_heap_allocations));
+  }
+  return found;
+}
+
+nlohmann::ordered_json run_json(const ScenarioArguments& scenario, const SilRecording& recording) {
+  const std::vector<FrameResult> results = frame_results(recording);
+  const InferenceTime time = inference_time(recording);
+  nlohmann::ordered_json json{
+      {"target", scenario.target}, {"condition", scenario.condition}, {"sequences", scenario.sequences}};
+  json["rcnn"] = summary_json(summarise(last_frame_errors_deg(results, scenario.frames, Estimator::kRcnn)));
+  json["cnn"] = summary_json(summarise(last_frame_errors_deg(results, scenario.frames, Estimator::kCnn)));
+  json["inference_us"] = {{"median", time.median_us}, {"max", time.max_us}};
+  json["flight_heap_allocations"] = recording.flight_heap_allocations;
+  json["steps_missed"] = recording.steps_missed;
+  json["trace_crc32"] = recording.trace_crc32;
+  return json;
+}
+
+RunReport run_report(const ScenarioArguments& scenario, const TargetSetup& setup, const SilSettings& settings,
+                     const SilRecording& recording) {
+  const InferenceTime time = inference_time(recording);
+  RunReport report;
+  report.target = scenario.target;
+  report.condition = scenario.condition;
+  report.sequences = scenario.sequences;
+  report.frames = scenario.frames;
+  report.frame_period_s = kFramePeriod_s;
+  report.results = frame_results(recording);
+  report.pictures = pictures(recording, setup.projection);
+  report.paper = paper_figures(scenario.target, condition_from(scenario.condition));
+  report.steps_planned = recording.steps_planned;
+  report.steps_missed = recording.steps_missed;
+  report.heap_allocations = recording.flight_heap_allocations;
+  report.inference_median_us = time.median_us;
+  report.inference_max_us = time.max_us;
+  report.trace_crc32 = recording.trace_crc32;
+  report.notices = shortcomings(recording);
+  report.remarks = setup.warnings;
+  report.facts = {settings_facts(scenario, setup, settings), outcome_facts(recording, setup),
+                  counter_facts(recording)};
+  const FactList events = event_facts(recording);
+  if (!events.facts.empty()) report.facts.push_back(events);
+  return report;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,160 @@
+#include "sim/cli/simulate_command.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include "sim/cli/arguments.hpp"
+#include "sim/cli/sil_results.hpp"
+#include "sim/cli/summary.hpp"
+#include "sim/cli/target_setup.hpp"
+#include "sim/evaluation/progress.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSlowest = 0.1;
+constexpr double kFastest = 1000.0;
+constexpr std::uint64_t kLastDomain = 230;  // what UDP's port numbers leave room for
+constexpr int kRunFailed = 1;
+
+struct SimulateArguments {
+  ScenarioArguments scenario;
+  std::string speed = "max";
+  bool free_running = false;
+  std::string flight;  // empty: beside this program
+  int domain = -1;
+  std::string report;
+  std::string command_line;
+};
+
+CLI::Validator speed() {
+  const auto check = [](std::string& text) -> std::string {
+    if (text == "max" || number(kSlowest, kFastest)(text).empty()) return {};
+    return fmt::format("must be max or a number from {:g} to {:g}, not '{}'", kSlowest, kFastest, text);
+  };
+  return CLI::Validator(check, "", "speed");
+}
+
+std::string default_report(const ScenarioArguments& scenario) {
+  return fmt::format("{}/out/{}_{}_seed{}.html", TUMBLESIGHT_SOURCE_DIR, scenario.target, scenario.condition,
+                     scenario.seed);
+}
+
+std::string flight_path(const std::string& given) {
+  if (given == "none") return {};
+  const fs::path path =
+      given.empty() ? fs::read_symlink("/proc/self/exe").parent_path() / "flight" : fs::path(given);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) {
+    throw std::runtime_error(
+        fmt::format("flight program '{}' does not exist; name it with --flight", path.string()));
+  }
+  return path.string();
+}
+
+SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& setup) {
+  SilSettings settings;
+  settings.target = arguments.scenario.target;
+  settings.model_path = setup.model_path;
+  settings.flight_path = flight_path(arguments.flight);
+  settings.domain = arguments.domain;
+  settings.speed = arguments.speed == "max" ? 0.0 : std::stod(arguments.speed);
+  settings.free_running = arguments.free_running;
+  return settings;
+}
+
+void print_results(const ScenarioArguments& scenario, const SilRecording& recording,
+                   const RunReport& report) {
+  fmt::print("\n{}\n{}\n", headline_table(report.results, scenario.frames, report.paper),
+             by_frame_table(report.results, scenario.frames));
+  fmt::print("  steps            {} of {} answered\n", recording.steps_planned - recording.steps_missed,
+             recording.steps_planned);
+  fmt::print("  inference time   median {:.2f} ms, max {:.2f} ms\n", 1e-3 * report.inference_median_us,
+             1e-3 * report.inference_max_us);
+  fmt::print("  flight heap      {} allocations after init\n", recording.flight_heap_allocations);
+  fmt::print("  trace CRC-32     {:08x}\n", recording.trace_crc32);
+}
+
+SilRecording record(const SimulateArguments& arguments, const TargetSetup& setup,
+                    const SilSettings& settings) {
+  const ScenarioArguments& scenario = arguments.scenario;
+  const Condition condition = condition_from(scenario.condition);
+  std::vector<Sequence> sequences;
+  for (std::uint32_t i = 0; i < scenario.sequences; ++i) {
+    sequences.push_back(make_sequence(condition, scenario.seed, i, static_cast<int>(scenario.frames)));
+  }
+  const FlashLidar lidar(setup.mesh);
+  ProgressBar bar("simulating", "frames", std::uint64_t{scenario.sequences} * scenario.frames);
+  return run_sil(settings, lidar, static_cast<double>(setup.projection.swath_m), sequences,
+                 [&](std::uint32_t done, std::uint32_t) { bar.update(done); });
+}
+
+void simulate(SimulateArguments arguments) {
+  const ScenarioArguments& scenario = arguments.scenario;
+  if (arguments.report.empty()) arguments.report = default_report(scenario);
+  require_writable("--report", arguments.report);
+  if (!scenario.json.empty()) require_writable("--json", scenario.json);
+  const TargetSetup setup = set_up_target(scenario);
+  const SilSettings settings = sil_settings(arguments, setup);
+
+  fmt::print("\n  {}, {}, {} sequences of {} frames, seed {}\n  mesh {}, model {}\n\n", scenario.target,
+             scenario.condition, scenario.sequences, scenario.frames, scenario.seed, setup.mesh_name,
+             setup.model_path);
+  std::fflush(stdout);
+  for (const std::string& warning : setup.warnings) fmt::print(stderr, "  note: {}\n", warning);
+
+  const SilRecording recording = record(arguments, setup, settings);
+  RunReport report = run_report(scenario, setup, settings, recording);
+  report.command = arguments.command_line;
+  report.generated = fmt::format("{:%Y-%m-%d %H:%M %Z}", fmt::localtime(std::time(nullptr)));
+  print_results(scenario, recording, report);
+  if (!scenario.json.empty()) write_text_file(scenario.json, run_json(scenario, recording).dump(2) + "\n");
+  write_text_file(arguments.report, compose_report(report));
+  fmt::print("  report           {}\n\n", fs::absolute(arguments.report).lexically_normal().string());
+  std::fflush(stdout);
+
+  const std::vector<std::string> wrong = shortcomings(recording);
+  for (const std::string& sentence : wrong) fmt::print(stderr, "tumblesight: {}\n", sentence);
+  if (!wrong.empty()) throw CLI::RuntimeError(kRunFailed);
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, const std::string& command_line) {
+  CLI::App* command = app.add_subcommand(
+      "simulate", "Run the flight program against the simulated sensor over DDS, and report");
+  auto arguments = std::make_shared<SimulateArguments>();
+  arguments->command_line = command_line;
+  add_scenario_options(*command, arguments->scenario);
+  command->add_option("--speed", arguments->speed, "max, or N times real time, 0.1 to 1000")
+      ->check(speed())
+      ->type_name("max|N")
+      ->capture_default_str();
+  command->add_flag("--free-running", arguments->free_running,
+                    "flight on its own timer instead of in lockstep; with --speed 1 as in flight");
+  command
+      ->add_option("--flight", arguments->flight,
+                   "flight program to start [beside tumblesight]; none: one is running already, see --domain")
+      ->type_name("FILE");
+  command->add_option("--domain", arguments->domain, "DDS domain, 0 to 230 [a free one]")
+      ->check(whole_number(0, kLastDomain))
+      ->type_name("N");
+  command->add_option("--report", arguments->report, "HTML report [out/<target>_<condition>_seed<seed>.html]")
+      ->type_name("FILE");
+  command->footer(
+      "\nExample: 100 sequences with a degraded sensor, figures to a file\n"
+      "  tumblesight simulate --condition degraded --sequences 100 --seed 7 --json figures.json\n\n"
+      "The exit status is 0 only if every step was answered with an attitude, the flight task\n"
+      "left the heap alone and the report was written.\n");
+  command->callback([arguments] { simulate(*arguments); });
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,88 @@
+#include "sim/cli/target_setup.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+
+#include "gnc/rcnn/attitude_estimator.hpp"
+#include "sim/lidar/flash_lidar.hpp"
+#include "sim/target/mesh_file.hpp"
+#include "sim/target/targets.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr double kSwathTolerance = 0.02;  // of the model's swath: half an image cell to either side
+
+TriangleMesh load_mesh(const ScenarioArguments& arguments) {
+  if (arguments.mesh.empty()) return target_by_name(arguments.target);
+  MeshFileOptions options;
+  options.up = mesh_up_from(arguments.mesh_up);
+  options.scale = arguments.mesh_scale;
+  return load_mesh_file(arguments.mesh, options);
+}
+
+std::string model_path(const ScenarioArguments& arguments) {
+  if (!arguments.model.empty()) return arguments.model;
+  return std::string(TUMBLESIGHT_SOURCE_DIR) + "/fsw/models/" + arguments.target + ".tsm";
+}
+
+std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    const bool shipped = arguments.model.empty();
+    throw std::runtime_error(
+        fmt::format("model image '{}' does not exist{}", path,
+                    shipped ? "; train one for this target, or name one with --model" : ""));
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file.good() && !file.eof()) throw std::runtime_error("model image '" + path + "' cannot be read");
+  return bytes;
+}
+
+void frame_by_mesh(TargetSetup& setup) {
+  setup.projection.swath_m = static_cast<float>(swath_m(setup.mesh));
+  setup.projection.target_radius_m = setup.mesh.radius_m();
+  setup.warnings.push_back(fmt::format("Model image '{}' is refused: {}; frames cover the mesh's own swath.",
+                                       setup.model_path, gnc::to_string(setup.model_status)));
+}
+
+void frame_by_model(TargetSetup& setup) {
+  setup.projection = setup.header.projection;
+  const double of_model = static_cast<double>(setup.projection.swath_m);
+  const double of_mesh = swath_m(setup.mesh);
+  if (std::abs(of_mesh - of_model) <= kSwathTolerance * of_model) return;
+  setup.warnings.push_back(
+      fmt::format("The mesh needs a swath of {:.2f} m, the network was trained for {:.2f} m, which is used: "
+                  "{}",
+                  of_mesh, of_model,
+                  of_mesh > of_model ? "parts of the target may lie outside the image."
+                                     : "the target looks smaller than the network expects."));
+}
+
+}  // namespace
+
+TargetSetup set_up_target(const ScenarioArguments& arguments) {
+  TargetSetup setup;
+  setup.mesh = load_mesh(arguments);
+  setup.mesh_name = arguments.mesh.empty() ? "shipped" : arguments.mesh;
+  setup.model_path = model_path(arguments);
+  setup.model = read_model(arguments, setup.model_path);
+  const auto estimator = std::make_unique<gnc::AttitudeEstimator>();
+  setup.model_status = estimator->load(setup.model.data(), setup.model.size(), arguments.target.c_str());
+  if (setup.model_status == gnc::ModelStatus::kOk) {
+    setup.header = estimator->model();
+    frame_by_model(setup);
+  } else {
+    frame_by_mesh(setup);
+  }
+  return setup;
+}
+
+}  // namespace tumblesight::sim

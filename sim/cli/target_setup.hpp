@@ -1,0 +1,31 @@
+// TargetSetup: the mesh and the model image that a scenario's arguments name, and how the sensor frames them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gnc/rcnn/model_image.hpp"
+#include "sim/cli/arguments.hpp"
+#include "sim/target/triangle_mesh.hpp"
+
+namespace tumblesight::sim {
+
+struct TargetSetup {
+  TriangleMesh mesh;
+  std::string mesh_name;  // for the record: "shipped" or the file
+  std::string model_path;
+  std::vector<std::uint8_t> model;
+  gnc::ModelStatus model_status = gnc::ModelStatus::kTooShort;  // the host's own check of the image
+  gnc::ModelHeader header;                                      // if kOk
+  // The model's, so that the frames fill the image as in training; the mesh's if the model is no good.
+  gnc::DepthProjection projection;
+  std::vector<std::string> warnings;
+};
+
+// Throws std::runtime_error or std::invalid_argument that names what is missing or wrong: target, mesh, model
+// file. A model file that is there but refused is only a warning: the flight program has to find that out by
+// itself.
+TargetSetup set_up_target(const ScenarioArguments& arguments);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,76 @@
+#include "sim/evaluation/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
+
+double share_within(const std::vector<double>& errors_deg, double limit_deg) {
+  const auto inside =
+      std::count_if(errors_deg.begin(), errors_deg.end(), [=](double e) { return e <= limit_deg; });
+  return static_cast<double>(inside) / static_cast<double>(errors_deg.size());
+}
+
+}  // namespace
+
+double angular_error_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
+  const Eigen::Quaterniond between = a.conjugate() * b;
+  return 2.0 * std::atan2(between.vec().norm(), std::abs(between.w()));
+}
+
+double error_deg(const FrameResult& result, Estimator estimator) {
+  if (!result.valid) return 180.0;
+  return kDegPerRad *
+         angular_error_rad(result.truth, estimator == Estimator::kRcnn ? result.rcnn : result.cnn);
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+ErrorSummary summarise(std::vector<double> errors_deg) {
+  ErrorSummary summary;
+  if (errors_deg.empty()) return summary;
+  // A sorted sum does not depend on the order in which the errors came.
+  std::sort(errors_deg.begin(), errors_deg.end());
+  summary.count = errors_deg.size();
+  summary.mean_deg =
+      std::accumulate(errors_deg.begin(), errors_deg.end(), 0.0) / static_cast<double>(errors_deg.size());
+  summary.within_20deg = share_within(errors_deg, 20.0);
+  summary.within_5deg = share_within(errors_deg, 5.0);
+  summary.median_deg = median(std::move(errors_deg));
+  return summary;
+}
+
+std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& results, std::uint32_t frames,
+                                          Estimator estimator) {
+  std::vector<double> errors;
+  for (const FrameResult& result : results) {
+    if (result.frame + 1 == frames) errors.push_back(error_deg(result, estimator));
+  }
+  return errors;
+}
+
+std::vector<FrameErrors> errors_by_frame(const std::vector<FrameResult>& results, std::uint32_t frames) {
+  std::vector<std::vector<double>> rcnn(frames);
+  std::vector<std::vector<double>> cnn(frames);
+  for (const FrameResult& result : results) {
+    if (result.frame >= frames) continue;
+    rcnn[result.frame].push_back(error_deg(result, Estimator::kRcnn));
+    cnn[result.frame].push_back(error_deg(result, Estimator::kCnn));
+  }
+  std::vector<FrameErrors> by_frame;
+  for (std::uint32_t frame = 0; frame < frames; ++frame) {
+    by_frame.push_back({frame, summarise(std::move(rcnn[frame])), summarise(std::move(cnn[frame]))});
+  }
+  return by_frame;
+}
+
+}  // namespace tumblesight::sim

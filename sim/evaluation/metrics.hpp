@@ -1,0 +1,55 @@
+// Angular errors of attitude estimates and the figures that sum them up.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tumblesight::sim {
+
+// One frame of one sequence: the true attitude and what was estimated from it. Quaternions TRF to LRF; their
+// sign is of no matter, and they need not be exactly unit.
+struct FrameResult {
+  std::uint32_t sequence = 0;
+  std::uint32_t frame = 0;  // index in the sequence
+  bool valid = false;       // an estimate was given; otherwise the frame counts as 180 degrees off
+  Eigen::Quaterniond truth{1.0, 0.0, 0.0, 0.0};
+  Eigen::Quaterniond rcnn{1.0, 0.0, 0.0, 0.0};  // from all frames of the sequence so far
+  Eigen::Quaterniond cnn{1.0, 0.0, 0.0, 0.0};   // from this frame alone
+  double rcnn_predicted_rad = 0.0;              // the errors that the network itself expects
+  double cnn_predicted_rad = 0.0;
+};
+
+enum class Estimator { kRcnn, kCnn };
+
+// theta = 2 acos|q . q_hat| (paper, loss), in [0, pi]; computed through atan2, which also resolves small
+// angles.
+double angular_error_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
+double error_deg(const FrameResult& result, Estimator estimator);
+
+// Shares are 0..1, the limits themselves included. All zero when count is zero.
+struct ErrorSummary {
+  std::size_t count = 0;
+  double mean_deg = 0.0;
+  double median_deg = 0.0;
+  double within_20deg = 0.0;
+  double within_5deg = 0.0;
+};
+
+ErrorSummary summarise(std::vector<double> errors_deg);
+double median(std::vector<double> values);  // mean of the middle two when even; 0 when empty
+
+struct FrameErrors {
+  std::uint32_t frame = 0;
+  ErrorSummary rcnn;
+  ErrorSummary cnn;
+};
+
+// Errors of one estimator in the last frame (index frames - 1) of every sequence that got there.
+std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& results, std::uint32_t frames,
+                                          Estimator estimator);
+// One entry a frame index 0 .. frames - 1.
+std::vector<FrameErrors> errors_by_frame(const std::vector<FrameResult>& results, std::uint32_t frames);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,232 @@
+#include "sim/evaluation/report_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "sim/evaluation/charts.hpp"
+#include "sim/evaluation/picture.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr const char* kRcnnColour = "#1b5e9e";
+constexpr const char* kCnnColour = "#d0702a";
+constexpr std::array<const char*, 3> kAxisColours{"#b83227", "#3a8a3f", "#2b5fb0"};
+constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
+constexpr std::size_t kMostDots = 1500;  // in the scatter, so that a long run's page stays small
+
+std::vector<FrameResult> of_sequence(const RunReport& report, std::uint32_t sequence) {
+  std::vector<FrameResult> found;
+  for (const FrameResult& result : report.results) {
+    if (result.sequence == sequence) found.push_back(result);
+  }
+  return found;
+}
+
+const ReportPicture* picture_of(const RunReport& report, std::uint32_t sequence, std::uint32_t frame) {
+  for (const ReportPicture& picture : report.pictures) {
+    if (picture.sequence == sequence && picture.frame == frame) return &picture;
+  }
+  return nullptr;
+}
+
+std::vector<double> bin_shares_percent(const std::vector<double>& errors_deg,
+                                       const std::vector<double>& limits_deg) {
+  std::vector<double> shares(limits_deg.size(), 0.0);
+  for (const double error : errors_deg) {
+    const auto bin = std::lower_bound(limits_deg.begin(), limits_deg.end() - 1, error) - limits_deg.begin();
+    shares[static_cast<std::size_t>(bin)] += 100.0 / static_cast<double>(errors_deg.size());
+  }
+  return shares;
+}
+
+// Projected on the plane across the boresight; the part towards the sensor is not shortened, as the picture's
+// is not.
+void draw_triad(Svg& svg, Point centre, double size, const Eigen::Quaterniond& q_lrf_trf, double width,
+                double opacity) {
+  const Eigen::Matrix3d axes = q_lrf_trf.normalized().toRotationMatrix();
+  std::array<int, 3> order{0, 1, 2};
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return axes(1, a) > axes(1, b); });  // far ones first
+  for (const int axis : order) {
+    const Point tip{centre.x + size * axes(0, axis), centre.y - size * axes(2, axis)};
+    svg.line(centre, tip, {kAxisColours[static_cast<std::size_t>(axis)], width, "", opacity});
+    if (opacity == 1.0) svg.circle(tip, 1.5, kAxisColours[static_cast<std::size_t>(axis)]);
+  }
+}
+
+void draw_strip_column(Svg& svg, const RunReport& report, const FrameResult& result, double x, double side) {
+  const Point centre{x + 0.5 * side, 26.0 + side + 0.5 * side + 8.0};
+  svg.text({centre.x, 16.0}, fmt::format("{}", result.frame + 1), {"middle", 11.5, "#5a6069"});
+  if (const ReportPicture* picture = picture_of(report, result.sequence, result.frame)) {
+    svg.image({x, 24.0}, side, png_data_uri(depth_picture(picture->image)));
+  } else {
+    svg.rectangle({x, 24.0}, side, side, "#f2f3f5");
+  }
+  draw_triad(svg, centre, 0.46 * side, result.truth, 5.0, 0.28);
+  if (result.valid) draw_triad(svg, centre, 0.46 * side, result.rcnn, 1.5, 1.0);
+  const double text_y = 26.0 + 2.0 * side + 28.0;
+  const std::string rcnn =
+      result.valid ? fmt::format("{:.1f}°", error_deg(result, Estimator::kRcnn)) : "none";
+  const std::string cnn = result.valid ? fmt::format("{:.1f}°", error_deg(result, Estimator::kCnn)) : "none";
+  svg.text({centre.x, text_y}, rcnn, {"middle", 12.0, kRcnnColour, true});
+  svg.text({centre.x, text_y + 17.0}, cnn, {"middle", 12.0, kCnnColour});
+}
+
+Series component_series(const std::vector<FrameResult>& frames, int component, bool estimate) {
+  static constexpr std::array<const char*, 4> kColours{"#4b5563", "#b83227", "#3a8a3f", "#2b5fb0"};
+  static constexpr std::array<const char*, 4> kNames{"w", "x", "y", "z"};
+  const auto index = static_cast<std::size_t>(component);
+  Series series{estimate ? "" : kNames[index], kColours[index], "", {}, estimate};
+  Eigen::Quaterniond previous = frames.front().truth;
+  for (const FrameResult& frame : frames) {
+    // q and -q are one attitude: follow the sign that keeps the curve continuous, for the estimate too.
+    Eigen::Quaterniond q = frame.truth;
+    if (q.dot(previous) < 0.0) q.coeffs() = -q.coeffs();
+    previous = q;
+    if (estimate) {
+      if (!frame.valid) continue;
+      const double sign = frame.rcnn.dot(q) < 0.0 ? -1.0 : 1.0;
+      q.coeffs() = sign * frame.rcnn.coeffs();
+    }
+    const std::array<double, 4> parts{q.w(), q.x(), q.y(), q.z()};
+    series.points.push_back({frame.frame + 1.0, parts[index]});
+  }
+  return series;
+}
+
+}  // namespace
+
+std::string error_over_frames_figure(const RunReport& report) {
+  Series rcnn_mean{"RCNN mean", kRcnnColour, "", {}};
+  Series rcnn_median{"median", kRcnnColour, "2 4", {}};
+  Series cnn_mean{"CNN mean", kCnnColour, "", {}};
+  Series cnn_median{"median", kCnnColour, "2 4", {}};
+  for (const FrameErrors& errors : errors_by_frame(report.results, report.frames)) {
+    if (errors.rcnn.count == 0) continue;
+    const double x = errors.frame + 1.0;
+    rcnn_mean.points.push_back({x, errors.rcnn.mean_deg});
+    rcnn_median.points.push_back({x, errors.rcnn.median_deg});
+    cnn_mean.points.push_back({x, errors.cnn.mean_deg});
+    cnn_median.points.push_back({x, errors.cnn.median_deg});
+  }
+  LineChart chart;
+  chart.description = "Angular error of RCNN and single-frame CNN over the frame number";
+  chart.x_label = fmt::format("frame (one every {:.1f} s)", report.frame_period_s);
+  chart.y_label = "angular error [deg]";
+  chart.x_low = 1.0;
+  chart.x_high = std::max(2.0, static_cast<double>(report.frames));
+  chart.series = {rcnn_mean, rcnn_median, cnn_mean, cnn_median};
+  if (report.paper.rcnn) {
+    chart.series.push_back({"paper", kRcnnColour, "", {{chart.x_high, report.paper.rcnn->mean_deg}}});
+  }
+  if (report.paper.cnn)
+    chart.series.push_back({"", kCnnColour, "", {{chart.x_high, report.paper.cnn->mean_deg}}});
+  return line_chart(chart);
+}
+
+std::string error_histogram_figure(const RunReport& report) {
+  const std::vector<double> limits_deg{1, 2, 5, 10, 20, 45, 90, 180};
+  const auto rcnn =
+      bin_shares_percent(last_frame_errors_deg(report.results, report.frames, Estimator::kRcnn), limits_deg);
+  const auto cnn =
+      bin_shares_percent(last_frame_errors_deg(report.results, report.frames, Estimator::kCnn), limits_deg);
+  BarChart chart;
+  chart.description = "Distribution of the last frame's angular error, RCNN and CNN";
+  chart.x_label = "angular error of the last frame [deg]";
+  chart.y_label = "share of the sequences [%]";
+  chart.series_names = {"RCNN", "CNN"};
+  chart.series_colours = {kRcnnColour, kCnnColour};
+  for (std::size_t i = 0; i < limits_deg.size(); ++i) {
+    chart.groups.push_back(
+        {fmt::format("{:g}–{:g}", i == 0 ? 0.0 : limits_deg[i - 1], limits_deg[i]), {rcnn[i], cnn[i]}});
+  }
+  return bar_chart(chart);
+}
+
+std::string predicted_error_figure(const RunReport& report) {
+  AgreementChart chart;
+  chart.description = "Predicted angular error against the actual one";
+  chart.x_label = "error that the network predicts [deg]";
+  chart.y_label = "actual error [deg]";
+  Series rcnn{"RCNN, every frame", kRcnnColour, "", {}, true};
+  Series cnn{"CNN, every frame", kCnnColour, "", {}, true};
+  const std::size_t stride = 1 + report.results.size() / kMostDots;
+  for (std::size_t i = 0; i < report.results.size(); i += stride) {
+    const FrameResult& result = report.results[i];
+    if (!result.valid) continue;
+    rcnn.points.push_back({kDegPerRad * result.rcnn_predicted_rad, error_deg(result, Estimator::kRcnn)});
+    cnn.points.push_back({kDegPerRad * result.cnn_predicted_rad, error_deg(result, Estimator::kCnn)});
+  }
+  chart.low = 0.3;
+  chart.series = {cnn, rcnn};
+  return agreement_chart(chart);
+}
+
+std::string attitude_strip_figure(const RunReport& report, std::uint32_t sequence) {
+  constexpr double kLabels = 66.0;
+  constexpr double kGap = 6.0;
+  const std::vector<FrameResult> all = of_sequence(report, sequence);
+  const std::size_t columns = std::min<std::size_t>(all.size(), 10);
+  const double side = 90.0;
+  Svg svg(kLabels + 10.0 * (side + kGap), 2.0 * side + 80.0,
+          "Depth images, true and estimated body axes and errors of one sequence, frame by frame");
+  svg.text({0.0, 16.0}, "frame", {"start", 11.5, "#5a6069"});
+  svg.text({0.0, 24.0 + 0.5 * side}, "depth", {"start", 11.5, "#5a6069"});
+  svg.text({0.0, 30.0 + 1.5 * side}, "axes", {"start", 11.5, "#5a6069"});
+  for (int axis = 0; axis < 3; ++axis) {
+    svg.text({15.0 * axis, 48.0 + 1.5 * side}, std::string(1, static_cast<char>('x' + axis)),
+             {"start", 13.0, kAxisColours[static_cast<std::size_t>(axis)], true});
+  }
+  svg.text({0.0, 26.0 + 2.0 * side + 28.0}, "RCNN", {"start", 12.0, kRcnnColour, true});
+  svg.text({0.0, 26.0 + 2.0 * side + 45.0}, "CNN", {"start", 12.0, kCnnColour});
+  for (std::size_t column = 0; column < columns; ++column) {
+    // The last column is the last frame, however many there are.
+    const std::size_t index = columns < 2 ? 0 : column * (all.size() - 1) / (columns - 1);
+    draw_strip_column(svg, report, all[index], kLabels + static_cast<double>(column) * (side + kGap), side);
+  }
+  return svg.text();
+}
+
+std::string quaternion_figure(const RunReport& report, std::uint32_t sequence) {
+  const std::vector<FrameResult> frames = of_sequence(report, sequence);
+  if (frames.empty()) return {};
+  LineChart chart;
+  chart.description = "Quaternion components of one sequence, true and estimated";
+  chart.x_label = "frame";
+  chart.y_label = "quaternion component";
+  chart.x_low = 1.0;
+  chart.x_high = std::max(2.0, static_cast<double>(report.frames));
+  chart.y_low = -1.0;
+  chart.y_high = 1.0;
+  for (int component = 0; component < 4; ++component) {
+    chart.series.push_back(component_series(frames, component, false));
+  }
+  for (int component = 0; component < 4; ++component) {
+    chart.series.push_back(component_series(frames, component, true));
+  }
+  return line_chart(chart);
+}
+
+std::string gallery_figure(const std::vector<const ReportPicture*>& pictures) {
+  constexpr double kSide = 120.0;
+  constexpr double kGap = 8.0;
+  constexpr std::size_t kColumns = 8;
+  const std::size_t rows = (pictures.size() + kColumns - 1) / kColumns;
+  Svg svg(kColumns * (kSide + kGap) - kGap, static_cast<double>(rows) * (kSide + 26.0),
+          "Depth images of other sequences: sequence, frame and range");
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const double x = static_cast<double>(i % kColumns) * (kSide + kGap);
+    const double y = static_cast<double>(i / kColumns) * (kSide + 26.0);
+    svg.image({x, y}, kSide, png_data_uri(depth_picture(pictures[i]->image)));
+    svg.text({x + 0.5 * kSide, y + kSide + 16.0},
+             fmt::format("{} / {}, {:.0f} m", pictures[i]->sequence + 1, pictures[i]->frame + 1,
+                         pictures[i]->range_m),
+             {"middle", 11.5, "#5a6069"});
+  }
+  return svg.text();
+}
+
+}  // namespace tumblesight::sim

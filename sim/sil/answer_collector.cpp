@@ -1,0 +1,109 @@
+#include "sim/sil/answer_collector.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace tumblesight::sim {
+namespace {
+
+hal::AttitudeReport from_sample(const hal::dds::AttitudeSample& sample) {
+  hal::AttitudeReport report;
+  report.time_ns = sample.time_ns;
+  report.exposure_time_ns = sample.exposure_time_ns;
+  report.sequence_number = sample.sequence_number;
+  report.validity = sample.validity;
+  report.frames_since_reset = sample.frames_since_reset;
+  std::copy(std::begin(sample.q_lrf_trf), std::end(sample.q_lrf_trf), report.q_lrf_trf.begin());
+  report.predicted_error_rad = sample.predicted_error_rad;
+  std::copy(std::begin(sample.q_lrf_trf_single_frame), std::end(sample.q_lrf_trf_single_frame),
+            report.q_lrf_trf_single_frame.begin());
+  report.predicted_error_single_frame_rad = sample.predicted_error_single_frame_rad;
+  return report;
+}
+
+hal::Housekeeping from_sample(const hal::dds::TelemetrySample& sample) {
+  hal::Housekeeping housekeeping;
+  housekeeping.time_ns = sample.time_ns;
+  housekeeping.mode = sample.mode;
+  housekeeping.cycles = sample.cycles;
+  housekeeping.commands_accepted = sample.commands_accepted;
+  housekeeping.commands_refused = sample.commands_refused;
+  housekeeping.frames_used = sample.frames_used;
+  housekeeping.frames_missing = sample.frames_missing;
+  housekeeping.frames_refused = sample.frames_refused;
+  housekeeping.frames_duplicate = sample.frames_duplicate;
+  housekeeping.frames_stale = sample.frames_stale;
+  housekeeping.frames_bad = sample.frames_bad;
+  housekeeping.sequence_gaps = sample.sequence_gaps;
+  housekeeping.estimator_resets = sample.estimator_resets;
+  housekeeping.events = sample.events;
+  housekeeping.inference_us = sample.inference_us;
+  housekeeping.inference_max_us = sample.inference_max_us;
+  housekeeping.deadline_overruns = sample.deadline_overruns;
+  housekeeping.heap_allocations = sample.heap_allocations;
+  return housekeeping;
+}
+
+hal::Event from_sample(const hal::dds::EventSample& sample) {
+  hal::Event event;
+  event.time_ns = sample.time_ns;
+  event.id = sample.id;
+  event.severity = sample.severity;
+  std::copy(std::begin(sample.arguments), std::end(sample.arguments), event.arguments.begin());
+  return event;
+}
+
+}  // namespace
+
+bool AnswerCollector::Partial::complete() const {
+  return done && attitudes >= done->attitudes && telemetries >= done->telemetries &&
+         answer.events.size() >= done->events;
+}
+
+template <class Sample>
+AnswerCollector::Partial* AnswerCollector::partial_of(const Sample& sample) {
+  if (sample.run_id != run_id_) return nullptr;
+  Partial& partial = partials_[sample.k];
+  partial.answer.k = sample.k;
+  return &partial;
+}
+
+void AnswerCollector::collect() {
+  hal::dds::AttitudeSample attitude;
+  while (endpoints_.attitudes.take(attitude)) {
+    Partial* partial = partial_of(attitude);
+    if (partial == nullptr) continue;
+    partial->answer.attitude = from_sample(attitude);
+    ++partial->attitudes;
+  }
+  hal::dds::TelemetrySample telemetry;
+  while (endpoints_.telemetries.take(telemetry)) {
+    Partial* partial = partial_of(telemetry);
+    if (partial == nullptr) continue;
+    partial->answer.housekeeping = from_sample(telemetry);
+    ++partial->telemetries;
+  }
+  hal::dds::EventSample event;
+  while (endpoints_.events.take(event)) {
+    if (Partial* partial = partial_of(event)) partial->answer.events.push_back(from_sample(event));
+  }
+  hal::dds::StepDoneSample done;
+  while (endpoints_.steps_done.take(done)) {
+    Partial* partial = partial_of(done);
+    if (partial == nullptr) continue;
+    partial->answer.state_crc32 = done.state_crc32;
+    partial->done = done;
+  }
+}
+
+std::optional<StepAnswer> AnswerCollector::next() {
+  const auto found = std::find_if(partials_.begin(), partials_.end(),
+                                  [](const auto& entry) { return entry.second.complete(); });
+  if (found == partials_.end()) return std::nullopt;
+  StepAnswer answer = std::move(found->second.answer);
+  partials_.erase(found);
+  return answer;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,50 @@
+// AnswerCollector: puts flight's samples, which arrive in any order across topics, together to answers of
+// steps.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "hal/link.hpp"
+#include "sim/sil/simulator_endpoints.hpp"
+
+namespace tumblesight::sim {
+
+struct StepAnswer {
+  std::uint32_t k = 0;
+  hal::AttitudeReport attitude;
+  hal::Housekeeping housekeeping;
+  std::vector<hal::Event> events;
+  std::uint32_t state_crc32 = 0;
+};
+
+class AnswerCollector {
+ public:
+  AnswerCollector(SimulatorEndpoints& endpoints, std::uint32_t run_id)
+      : endpoints_(endpoints), run_id_(run_id) {}
+
+  // Takes what has arrived; samples of other runs are left out.
+  void collect();
+  // The oldest answer of which everything is here.
+  std::optional<StepAnswer> next();
+
+ private:
+  struct Partial {
+    StepAnswer answer;
+    std::uint32_t attitudes = 0;
+    std::uint32_t telemetries = 0;
+    std::optional<hal::dds::StepDoneSample> done;
+    bool complete() const;
+  };
+  // The step that a sample belongs to, or nullptr if it is of another run.
+  template <class Sample>
+  Partial* partial_of(const Sample& sample);
+
+  SimulatorEndpoints& endpoints_;
+  std::uint32_t run_id_;
+  std::map<std::uint32_t, Partial> partials_;
+};
+
+}  // namespace tumblesight::sim

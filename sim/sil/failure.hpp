@@ -1,0 +1,13 @@
+// SilFailure: why a run cannot go on, in words for the user.
+#pragma once
+
+#include <stdexcept>
+
+namespace tumblesight::sim {
+
+class SilFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,88 @@
+#include "sim/sil/flight_process.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "hal/dds/idl/flight_end.hpp"
+#include "sim/sil/failure.hpp"
+
+extern char** environ;
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr double kGrace_s = 2.0;
+
+class SpawnActions {
+ public:
+  explicit SpawnActions(const std::string& log_path) {
+    posix_spawn_file_actions_init(&actions_);
+    if (log_path.empty()) return;
+    posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0644);
+    posix_spawn_file_actions_adddup2(&actions_, STDERR_FILENO, STDOUT_FILENO);
+  }
+  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
+  SpawnActions(const SpawnActions&) = delete;
+  SpawnActions& operator=(const SpawnActions&) = delete;
+  const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_;
+};
+
+}  // namespace
+
+FlightProcess::FlightProcess(const std::string& program, const std::vector<std::string>& arguments,
+                             const std::string& log_path) {
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const SpawnActions actions(log_path);
+  const int error = posix_spawn(&pid_, program.c_str(), actions.get(), nullptr, argv.data(), environ);
+  if (error != 0)
+    throw SilFailure("the flight program " + program + " cannot be started: " + strerror(error));
+}
+
+FlightProcess::~FlightProcess() {
+  if (!running()) return;
+  kill(pid_, SIGTERM);
+  if (wait_for_end(kGrace_s)) return;
+  kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+}
+
+bool FlightProcess::running() {
+  if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) != 0;
+  return !ended_;
+}
+
+bool FlightProcess::wait_for_end(double timeout_s) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
+  while (running() && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  return ended_;
+}
+
+bool FlightProcess::ended_well() const {
+  return ended_ && WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
+}
+
+std::string FlightProcess::how_it_ended() const {
+  if (WIFSIGNALED(status_)) {
+    const int signal = WTERMSIG(status_);
+    return "was ended by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+  }
+  const int status = WEXITSTATUS(status_);
+  return "ended with exit status " + std::to_string(status) + ": " +
+         hal::dds::to_string(static_cast<hal::dds::FlightEnd>(status));
+}
+
+}  // namespace tumblesight::sim

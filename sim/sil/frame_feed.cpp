@@ -1,0 +1,50 @@
+#include "sim/sil/frame_feed.hpp"
+
+#include "sim/scenario/random.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::int64_t kFirstStep_ns = kFramePeriod_ns;  // mission time of step 0
+
+}  // namespace
+
+std::vector<PlannedStep> plan_steps(const std::vector<Sequence>& sequences) {
+  std::vector<PlannedStep> steps;
+  for (std::uint32_t s = 0; s < sequences.size(); ++s) {
+    for (std::uint32_t f = 0; f < sequences[s].frames.size(); ++f) {
+      const auto k = static_cast<std::int64_t>(steps.size());
+      steps.push_back({s, f, kFirstStep_ns + k * kFramePeriod_ns});
+    }
+  }
+  return steps;
+}
+
+FrameFeed::FrameFeed(const FlashLidar& lidar, double swath_m, const std::vector<Sequence>& sequences,
+                     const std::vector<PlannedStep>& steps)
+    : lidar_(lidar), swath_m_(swath_m), sequences_(sequences), steps_(steps) {
+  start_rendering(0);
+}
+
+const gnc::RangeImage& FrameFeed::next() {
+  rendering_.get();
+  const std::size_t step = next_step_++;
+  start_rendering(next_step_);
+  return frames_[step % 2];
+}
+
+void FrameFeed::start_rendering(std::size_t step) {
+  if (step >= steps_.size()) return;
+  rendering_ = std::async(std::launch::async, [this, step] { render(step, frames_[step % 2]); });
+}
+
+void FrameFeed::render(std::size_t step, gnc::RangeImage& frame) const {
+  const PlannedStep& plan = steps_[step];
+  const Sequence& sequence = sequences_[plan.sequence];
+  lidar_.expose(sequence.frames[plan.frame], sensor_settings(sequence.condition), swath_m_,
+                mix(sequence.noise_seed, plan.frame), frame);
+  frame.sequence_number = static_cast<std::uint32_t>(step);
+  frame.exposure_time_ns = plan.time_ns;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,33 @@
+// SimulatorEndpoints: the simulator's readers and writers, and one place to wait for an answer.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/dds/idl/topics.hpp"
+
+namespace tumblesight::sim {
+
+struct SimulatorEndpoints {
+  hal::dds::Writer<hal::dds::HelloSample> hello_out;
+  hal::dds::Writer<hal::dds::LidarFrameSample> frames;
+  hal::dds::Writer<hal::dds::CommandSample> commands;
+  hal::dds::Writer<hal::dds::StepSample> steps;
+  hal::dds::Writer<hal::dds::TruthSample> truth;  // nobody has to read it
+  hal::dds::Reader<hal::dds::HelloSample> hello_in;
+  hal::dds::Reader<hal::dds::AttitudeSample> attitudes;
+  hal::dds::Reader<hal::dds::TelemetrySample> telemetries;
+  hal::dds::Reader<hal::dds::EventSample> events;
+  hal::dds::Reader<hal::dds::StepDoneSample> steps_done;
+
+  explicit SimulatorEndpoints(dds_entity_t participant);  // throws SilFailure
+  // Every endpoint has its counterpart in flight: nothing will be lost from now on.
+  bool all_matched() const;
+  bool flight_gone() const { return steps_done.matched() == 0; }
+  // Until an answer has arrived that has not been taken (true), or the time is over.
+  bool wait_for_data(std::int64_t timeout_ns);
+
+ private:
+  dds_entity_t waitset_ = 0;
+};
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,52 @@
+#include "sim/sil/trace.hpp"
+
+namespace tumblesight::sim {
+
+void TraceDigest::add(std::uint32_t k, const StepRecord& record) {
+  crc_.add_u32(k);
+  add_time(record.time_ns);
+  add_report(record.attitude);
+  add_housekeeping(record.housekeeping);
+  crc_.add_u32(static_cast<std::uint32_t>(record.events.size()));
+  for (const hal::Event& event : record.events) add_event(event);
+  crc_.add_u32(record.state_crc32);
+}
+
+void TraceDigest::add_time(std::int64_t time_ns) {
+  const auto bits = static_cast<std::uint64_t>(time_ns);
+  crc_.add_u32(static_cast<std::uint32_t>(bits));
+  crc_.add_u32(static_cast<std::uint32_t>(bits >> 32));
+}
+
+void TraceDigest::add_report(const hal::AttitudeReport& report) {
+  add_time(report.time_ns);
+  add_time(report.exposure_time_ns);
+  crc_.add_u32(report.sequence_number);
+  crc_.add_u32(report.validity);
+  crc_.add_u32(report.frames_since_reset);
+  crc_.add_f32(report.q_lrf_trf.data(), report.q_lrf_trf.size());
+  crc_.add_f32(&report.predicted_error_rad, 1);
+  crc_.add_f32(report.q_lrf_trf_single_frame.data(), report.q_lrf_trf_single_frame.size());
+  crc_.add_f32(&report.predicted_error_single_frame_rad, 1);
+}
+
+void TraceDigest::add_housekeeping(const hal::Housekeeping& housekeeping) {
+  add_time(housekeeping.time_ns);
+  for (const std::uint32_t value :
+       {std::uint32_t{housekeeping.mode}, housekeeping.cycles, housekeeping.commands_accepted,
+        housekeeping.commands_refused, housekeeping.frames_used, housekeeping.frames_missing,
+        housekeeping.frames_refused, housekeeping.frames_duplicate, housekeeping.frames_stale,
+        housekeeping.frames_bad, housekeeping.sequence_gaps, housekeeping.estimator_resets,
+        housekeeping.events}) {
+    crc_.add_u32(value);
+  }
+}
+
+void TraceDigest::add_event(const hal::Event& event) {
+  add_time(event.time_ns);
+  crc_.add_u32(event.id);
+  crc_.add_u32(event.severity);
+  for (const std::int32_t argument : event.arguments) crc_.add_u32(static_cast<std::uint32_t>(argument));
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,20 @@
+// TriangleMesh: a target's surface in its own frame.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tumblesight::sim {
+
+struct TriangleMesh {
+  std::string name;  // for messages: the target, or the file
+  std::vector<Eigen::Vector3f> vertices_trf_m;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // vertex indices; both sides reflect
+
+  float radius_m() const;  // largest distance of a vertex from the TRF's origin
+};
+
+}  // namespace tumblesight::sim

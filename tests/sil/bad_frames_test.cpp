@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+using test::Conversation;
+
+constexpr std::uint8_t kValid = 0;
+constexpr std::uint8_t kNoFrame = 2;
+constexpr std::uint8_t kFrameRefused = 3;
+
+class BadFrames : public ::testing::Test {
+ protected:
+  BadFrames() : conversation_(test::settings()) {
+    for (int i = 0; i < 3; ++i) before_ = conversation_.step();
+  }
+  // After the bad frame a good one is used, and its counters are the only ones that moved.
+  void expect_recovery(std::uint32_t refused) {
+    const StepAnswer after = conversation_.finish();
+    EXPECT_EQ(after.attitude.validity, kValid);
+    EXPECT_EQ(after.housekeeping.frames_refused, refused);
+    EXPECT_EQ(after.housekeeping.frames_used, before_.housekeeping.frames_used + 1);
+    EXPECT_EQ(after.housekeeping.heap_allocations, 0U);
+  }
+
+  Conversation conversation_;
+  StepAnswer before_;
+};
+
+TEST_F(BadFrames, RepeatedSequenceNumberIsADuplicate) {
+  gnc::RangeImage frame = conversation_.good_frame();
+  --frame.sequence_number;
+  const StepAnswer answer = conversation_.step({frame});
+  EXPECT_EQ(answer.attitude.validity, kFrameRefused);
+  EXPECT_EQ(answer.housekeeping.frames_duplicate, 1U);
+  expect_recovery(1);
+}
+
+TEST_F(BadFrames, SkippedSequenceNumberIsCountedAndTheFrameUsed) {
+  gnc::RangeImage frame = conversation_.good_frame();
+  frame.sequence_number += 5;
+  const StepAnswer answer = conversation_.step({frame});
+  EXPECT_EQ(answer.attitude.validity, kValid);
+  EXPECT_EQ(answer.housekeeping.sequence_gaps, 5U);
+  EXPECT_EQ(answer.housekeeping.frames_refused, 0U);
+}
+
+TEST_F(BadFrames, TimeGoingBackwardsIsRefused) {
+  gnc::RangeImage frame = conversation_.good_frame();
+  frame.exposure_time_ns -= 2 * kFramePeriod_ns;
+  const StepAnswer answer = conversation_.step({frame});
+  EXPECT_EQ(answer.attitude.validity, kFrameRefused);
+  EXPECT_EQ(answer.housekeeping.frames_stale, 1U);
+  expect_recovery(1);
+}
+
+TEST_F(BadFrames, EmptyFrameIsRefused) {
+  gnc::RangeImage frame = conversation_.good_frame();
+  frame.ranges.fill(0);
+  const StepAnswer answer = conversation_.step({frame});
+  EXPECT_EQ(answer.attitude.validity, kFrameRefused);
+  EXPECT_EQ(answer.housekeeping.frames_bad, 1U);
+  expect_recovery(1);
+}
+
+TEST_F(BadFrames, FrameWithAllReturnsAtOneRangeIsRefused) {
+  gnc::RangeImage frame = conversation_.good_frame();
+  frame.ranges.fill(6400);
+  const StepAnswer answer = conversation_.step({frame});
+  EXPECT_EQ(answer.attitude.validity, kFrameRefused);
+  EXPECT_EQ(answer.housekeeping.frames_bad, 1U);
+  expect_recovery(1);
+}
+
+TEST_F(BadFrames, ImpossibleRayCountsAreRefused) {
+  std::uint32_t bad = 0;
+  for (const int rays : {0, 8, 129, 65'535}) {
+    gnc::RangeImage frame = conversation_.good_frame();
+    frame.rays = static_cast<std::uint16_t>(rays);
+    const StepAnswer answer = conversation_.step({frame});
+    EXPECT_EQ(answer.attitude.validity, kFrameRefused) << rays;
+    EXPECT_EQ(answer.housekeeping.frames_bad, ++bad) << rays;
+    EXPECT_FALSE(answer.events.empty()) << rays;
+  }
+  expect_recovery(4);
+}
+
+TEST_F(BadFrames, MissingFrameIsCounted) {
+  const StepAnswer answer = conversation_.step({});
+  EXPECT_EQ(answer.attitude.validity, kNoFrame);
+  EXPECT_EQ(answer.housekeeping.frames_missing, 1U);
+  expect_recovery(0);
+}
+
+TEST_F(BadFrames, MalformedCommandIsRefusedAndTheFrameUsed) {
+  hal::Command command = test::command(1);
+  command.payload_size = 255;
+  const StepAnswer answer = conversation_.step({conversation_.good_frame()}, {command});
+  EXPECT_EQ(answer.attitude.validity, kValid);
+  EXPECT_EQ(answer.housekeeping.commands_refused, 1U);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

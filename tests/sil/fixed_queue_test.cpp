@@ -1,0 +1,30 @@
+#include "hal/dds/fixed_queue.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tumblesight::hal::dds {
+namespace {
+
+TEST(FixedQueue, GivesBackInOrder) {
+  FixedQueue<int, 3> queue;
+  EXPECT_EQ(queue.pop(), nullptr);
+  for (int round = 0; round < 5; ++round) {
+    queue.push() = 2 * round;
+    queue.push() = 2 * round + 1;
+    EXPECT_EQ(*queue.pop(), 2 * round);
+    EXPECT_EQ(*queue.pop(), 2 * round + 1);
+    EXPECT_EQ(queue.pop(), nullptr);
+  }
+}
+
+TEST(FixedQueue, LosesTheOldestWhenFull) {
+  FixedQueue<int, 3> queue;
+  for (int i = 0; i < 5; ++i) queue.push() = i;
+  EXPECT_EQ(*queue.pop(), 2);
+  EXPECT_EQ(*queue.pop(), 3);
+  EXPECT_EQ(*queue.pop(), 4);
+  EXPECT_EQ(queue.pop(), nullptr);
+}
+
+}  // namespace
+}  // namespace tumblesight::hal::dds

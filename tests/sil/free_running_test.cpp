@@ -1,0 +1,34 @@
+#include <gtest/gtest.h>
+
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(FreeRunning, FlightAnswersOnItsOwnTimer) {
+  SilSettings settings = test::settings();
+  settings.free_running = true;
+  settings.speed = 27.0;  // a period in 100 ms
+  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(2, 1), {});
+  EXPECT_EQ(recording.failure, "");
+  EXPECT_EQ(recording.steps_planned, 20U);
+  EXPECT_LE(recording.steps_missed, 2U) << "a busy machine may lose a cycle, not more";
+  EXPECT_EQ(recording.flight_heap_allocations, 0U);
+  for (std::size_t k = 0; k < recording.steps.size(); ++k) {
+    const StepRecord& step = recording.steps[k];
+    if (!step.answered) continue;
+    EXPECT_EQ(step.attitude.sequence_number, k);
+    EXPECT_EQ(step.attitude.exposure_time_ns, step.time_ns);
+    EXPECT_GT(step.attitude.time_ns, step.time_ns) << "a cycle comes after the exposure of its frame";
+  }
+}
+
+TEST(FreeRunning, NeedsASpeed) {
+  SilSettings settings = test::settings();
+  settings.free_running = true;
+  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  EXPECT_NE(recording.failure.find("needs a speed"), std::string::npos) << recording.failure;
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,30 @@
+#include <gtest/gtest.h>
+
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+// Inference, commands, events and refusals, with the trap armed on the flight task all the time.
+TEST(Heap, TenThousandStepsWithoutAnAllocationOfTheFlightTask) {
+  constexpr std::uint32_t kSteps = 10'500;
+  constexpr std::uint16_t kResetEstimator = 4;
+  test::Conversation conversation(test::settings());
+  StepAnswer answer;
+  for (std::uint32_t k = 0; k + 1 < kSteps; ++k) {
+    gnc::RangeImage frame = conversation.good_frame();
+    if (k % 97 == 0) frame.ranges.fill(0);
+    std::vector<hal::Command> commands;
+    if (k % 10 == 0) commands = {test::command(kResetEstimator), test::command(999)};
+    answer = conversation.step({frame}, commands);
+    ASSERT_EQ(answer.housekeeping.heap_allocations, 0U) << "step " << k;
+  }
+  answer = conversation.finish();
+  EXPECT_EQ(answer.housekeeping.cycles, kSteps);
+  EXPECT_EQ(answer.housekeeping.heap_allocations, 0U);
+  EXPECT_EQ(answer.housekeeping.frames_bad, (kSteps - 2) / 97 + 1);
+  EXPECT_EQ(answer.housekeeping.frames_used, kSteps - answer.housekeeping.frames_bad);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

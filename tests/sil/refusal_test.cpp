@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <functional>
+#include <ostream>
+
+#include "hal/dds/idl/icd_hash.hpp"
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::uint8_t kStandby = 0;
+constexpr std::uint8_t kValidityStandby = 1;
+
+TEST(Refusal, UnequalInterfaceHashIsRefusedByBothSides) {
+  SilSettings settings = test::settings();
+  settings.flight_arguments = {"--icd-hash", "12345"};
+  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  EXPECT_NE(recording.failure.find("interface hash"), std::string::npos) << recording.failure;
+  EXPECT_EQ(recording.steps_missed, 10U);
+  const std::string message = test::read_file(settings.flight_log_path);
+  EXPECT_NE(message.find("interface hash"), std::string::npos) << message;
+  EXPECT_EQ(test::flight_child(), 0);
+}
+
+TEST(Refusal, InterfaceHashIsTheCrc32OfTheIdl) {
+  std::uint32_t crc = 0xFFFFFFFFU;
+  const std::string idl = test::read_file(TUMBLESIGHT_IDL);
+  ASSERT_FALSE(idl.empty());
+  for (const char c : idl) {
+    crc ^= static_cast<std::uint8_t>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? (crc >> 1) ^ 0xEDB88320U : crc >> 1;
+  }
+  EXPECT_EQ(hal::dds::kIcdHash, ~crc);
+}
+
+struct BadModel {
+  const char* name;
+  const char* message;
+  std::function<void(std::vector<std::uint8_t>&)> spoil;
+};
+
+// What a failing case is called; the default prints addresses.
+void PrintTo(const BadModel& model, std::ostream* out) {
+  *out << model.name;
+}
+
+class RefusedModel : public ::testing::TestWithParam<BadModel> {};
+
+TEST_P(RefusedModel, FlightSaysWhichAndAnswersInStandby) {
+  std::vector<std::uint8_t> bytes = test::model_bytes();
+  GetParam().spoil(bytes);
+  SilSettings settings = test::settings();
+  settings.model_path = test::temporary_path("bad.tsm");
+  test::write_file(settings.model_path, bytes);
+
+  test::Conversation conversation(settings);
+  EXPECT_EQ(conversation.session.flight_mode(), kStandby);
+  const StepAnswer first = conversation.step();
+  EXPECT_EQ(first.housekeeping.mode, kStandby);
+  EXPECT_EQ(first.attitude.validity, kValidityStandby);
+  ASSERT_FALSE(first.events.empty());
+  EXPECT_EQ(first.events[0].id, tumblesight_icd_EVENT_MODEL_REFUSED);
+  EXPECT_EQ(conversation.finish().attitude.validity, kValidityStandby);
+  const std::string message = test::read_file(settings.flight_log_path);
+  EXPECT_NE(message.find(GetParam().message), std::string::npos) << message;
+  EXPECT_NE(message.find("STANDBY"), std::string::npos) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sil, RefusedModel,
+    ::testing::Values(BadModel{"Magic", "magic", [](auto& bytes) { bytes[0] ^= 1; }},
+                      BadModel{"Version", "version", [](auto& bytes) { bytes[4] ^= 0xFF; }},
+                      BadModel{"HeaderCrc", "header", [](auto& bytes) { bytes[49] ^= 1; }},
+                      BadModel{"WeightCrc", "CRC", [](auto& bytes) { bytes[bytes.size() - 9] ^= 1; }},
+                      BadModel{"Size", "size", [](auto& bytes) { bytes.resize(bytes.size() - 4); }},
+                      BadModel{"TooShort", "short", [](auto& bytes) { bytes.resize(40); }},
+                      BadModel{"Empty", ".tsm", [](auto& bytes) { bytes.clear(); }}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(Refusal, ModelOfAnotherTargetEndsTheRunInWords) {
+  SilSettings settings = test::settings();
+  settings.target = "another_target";
+  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  EXPECT_NE(recording.failure.find("STANDBY"), std::string::npos) << recording.failure;
+  EXPECT_NE(test::read_file(settings.flight_log_path).find("target"), std::string::npos);
+}
+
+TEST(Refusal, MissingFilesAreNamed) {
+  SilSettings settings = test::settings();
+  settings.model_path = "/nonexistent/model.tsm";
+  const SilRecording no_model = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  EXPECT_NE(no_model.failure.find("/nonexistent/model.tsm"), std::string::npos) << no_model.failure;
+  settings.flight_path = "/nonexistent/flight";
+  const SilRecording no_flight = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  EXPECT_NE(no_flight.failure.find("/nonexistent/flight"), std::string::npos) << no_flight.failure;
+}
+
+TEST(Refusal, BadArgumentsOfFlightAreNamed) {
+  const std::vector<std::vector<std::string>> cases{{"--domain", "231"},    {"--domain", "-1"},
+                                                    {"--period-ms", "nan"}, {"--mode", "fast"},
+                                                    {"--colour", "red"},    {"--run-id"}};
+  for (const std::vector<std::string>& arguments : cases) {
+    SilSettings settings = test::settings();
+    settings.flight_arguments = arguments;
+    const SilRecording recording =
+        run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+    EXPECT_NE(recording.failure.find("exit status 2"), std::string::npos) << recording.failure;
+    const std::string message = test::read_file(settings.flight_log_path);
+    EXPECT_NE(message.find(arguments[0]), std::string::npos) << message;
+  }
+}
+
+TEST(Refusal, NobodyAnsweringIsSaidInWords) {
+  SilSettings settings = test::settings();
+  settings.flight_path.clear();
+  settings.step_timeout_s = 0.3;
+  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  EXPECT_NE(recording.failure.find("no flight program"), std::string::npos) << recording.failure;
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

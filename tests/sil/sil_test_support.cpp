@@ -1,0 +1,165 @@
+#include "tests/sil/sil_test_support.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+
+#include "gnc/rcnn/model_image.hpp"
+#include "sim/scenario/random.hpp"
+#include "sim/target/near_shoemaker.hpp"
+
+namespace tumblesight::sim::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_(fs::temp_directory_path() / ("tumblesight-sil-" + std::to_string(getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::vector<std::uint8_t> make_model() {
+  auto weights = std::make_unique<gnc::NetworkWeights>();
+  Random random(1);
+  gnc::for_each_tensor(*weights, [&](const char*, float* data, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) data[i] = static_cast<float>(0.05 * random.normal());
+  });
+  gnc::ModelHeader header;
+  header.projection.swath_m = static_cast<float>(kSwath_m);
+  header.projection.target_radius_m = static_cast<float>(kSwath_m / 2);
+  std::vector<std::uint8_t> image(gnc::kModelImageSize);
+  if (!gnc::set_target(header, kTarget) ||
+      gnc::write_model_image(header, *weights, image.data(), image.size()) != image.size()) {
+    throw std::logic_error("the test's model image could not be written");
+  }
+  return image;
+}
+
+pid_t parent_of(pid_t pid) {
+  // pid (comm) state ppid; comm may hold anything but its last ')' ends it.
+  const std::string stat = read_file("/proc/" + std::to_string(pid) + "/stat");
+  const std::size_t end = stat.rfind(") ");
+  return end == std::string::npos ? 0 : static_cast<pid_t>(std::atol(stat.c_str() + end + 4));
+}
+
+}  // namespace
+
+std::string temporary_path(const std::string& name) {
+  static const TemporaryFolder folder;
+  static std::atomic<int> count{0};
+  return folder.path() / (std::to_string(count++) + "-" + name);
+}
+
+void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+const std::vector<std::uint8_t>& model_bytes() {
+  static const std::vector<std::uint8_t> bytes = make_model();
+  return bytes;
+}
+
+const std::string& model_path() {
+  static const std::string path = [] {
+    const std::string file = temporary_path("model.tsm");
+    write_file(file, model_bytes());
+    return file;
+  }();
+  return path;
+}
+
+SilSettings settings() {
+  SilSettings result;
+  result.target = kTarget;
+  result.model_path = model_path();
+  result.flight_path = TUMBLESIGHT_FLIGHT;
+  result.flight_log_path = temporary_path("flight.log");
+  return result;
+}
+
+const FlashLidar& lidar() {
+  static const FlashLidar instance(make_near_shoemaker());
+  return instance;
+}
+
+std::vector<Sequence> sequences(int count, std::uint64_t seed) {
+  std::vector<Sequence> result;
+  for (int i = 0; i < count; ++i) {
+    result.push_back(make_sequence(Condition::kNominal, seed, static_cast<std::uint64_t>(i)));
+  }
+  return result;
+}
+
+const std::vector<gnc::RangeImage>& frames() {
+  static const std::vector<gnc::RangeImage> instance = [] {
+    const Sequence sequence = make_sequence(Condition::kNominal, 5, 0);
+    std::vector<gnc::RangeImage> images(sequence.frames.size());
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      lidar().expose(sequence.frames[i], sensor_settings(sequence.condition), kSwath_m, i, images[i]);
+    }
+    return images;
+  }();
+  return instance;
+}
+
+gnc::RangeImage Conversation::good_frame() const {
+  gnc::RangeImage frame = frames()[k % frames().size()];
+  frame.sequence_number = k;
+  frame.exposure_time_ns = time_ns(k);
+  return frame;
+}
+
+StepAnswer Conversation::step(const std::vector<gnc::RangeImage>& frames_of_step,
+                              std::vector<hal::Command> commands, bool last) {
+  StepInput input;
+  input.time_ns = time_ns(k);
+  for (const gnc::RangeImage& frame : frames_of_step) input.frames.push_back(&frame);
+  input.commands = std::move(commands);
+  input.last = last;
+  ++k;
+  return session.step(input);
+}
+
+StepAnswer Conversation::finish() {
+  StepAnswer answer = step({good_frame()}, {}, true);
+  session.finish();
+  return answer;
+}
+
+hal::Command command(std::uint16_t opcode) {
+  hal::Command result;
+  result.opcode = opcode;
+  return result;
+}
+
+pid_t flight_child() {
+  for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
+    const pid_t pid = static_cast<pid_t>(std::atol(entry.path().filename().c_str()));
+    if (pid > 0 && parent_of(pid) == getpid() && read_file(entry.path() / "comm") == "flight\n") return pid;
+  }
+  return 0;
+}
+
+}  // namespace tumblesight::sim::test

@@ -1,0 +1,106 @@
+// The host tool's command line: what it refuses, how it says so, and `evaluate`.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/sim_cli/run_tumblesight.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+struct Refusal {
+  const char* arguments;
+  int exit_code;
+  const char* message;  // part of the one line on the standard error stream
+};
+
+std::ostream& operator<<(std::ostream& out, const Refusal& refusal) {
+  return out << refusal.arguments;
+}
+
+class BadArguments : public ::testing::TestWithParam<Refusal> {};
+
+TEST_P(BadArguments, GiveOneClearLineAndAnExitCode) {
+  const Workplace here;
+  const Outcome outcome = here.run(GetParam().arguments);
+  EXPECT_EQ(outcome.exit_code, GetParam().exit_code);
+  EXPECT_NE(outcome.errors.find(GetParam().message), std::string::npos) << outcome.errors;
+  EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Evaluate, BadArguments,
+    ::testing::Values(
+        Refusal{"", 2, "subcommand is required"}, Refusal{"fly", 2, "no subcommand 'fly'"},
+        Refusal{"evaluate --sequences 0", 2, "--sequences: must be a whole number from 1 to 100000, not '0'"},
+        Refusal{"evaluate --sequences 2.5", 2, "not '2.5'"},
+        Refusal{"evaluate --sequences", 2, "--sequences"},
+        Refusal{"evaluate --frames 1001", 2, "from 1 to 1000"}, Refusal{"evaluate --seed -1", 2, "not '-1'"},
+        Refusal{"evaluate --threads 9999", 2, "from 0 to 1024"},
+        Refusal{"evaluate --condition foggy", 2, "must be one of nominal, degraded, not 'foggy'"},
+        Refusal{"evaluate --target 'a b'", 2, "must be 1 to 31 of a-z"},
+        Refusal{"evaluate --mesh x.stl --mesh-scale 0", 2, "from 1e-06 to 1e+06"},
+        Refusal{"evaluate --mesh x.stl --mesh-up x", 2, "must be one of y, z, not 'x'"},
+        Refusal{"evaluate --mesh-up z", 2, "requires --mesh"}, Refusal{"evaluate --colour", 2, "--colour"},
+        Refusal{"evaluate --target sputnik", 1, "near_shoemaker"},
+        Refusal{"evaluate --mesh /no/such.stl", 1, "/no/such.stl"},
+        Refusal{"evaluate --model /no/such.tsm", 1, "'/no/such.tsm' does not exist"},
+        Refusal{"evaluate --model /dev", 1, "'/dev' does not exist"},
+        Refusal{"evaluate --json /proc/none/x.json", 1, "--json /proc/none/x.json"}));
+
+TEST(Help, TeachesWithAnExample) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --help");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* part :
+       {"--target", "--mesh", "--condition", "--sequences", "--seed", "--json", "Example:"}) {
+    EXPECT_NE(outcome.output.find(part), std::string::npos) << part;
+  }
+}
+
+TEST(Evaluate, GivesTheSameFiguresWithOneAndTwoThreads) {
+  const Workplace here;
+  const std::string common = "evaluate --sequences 3 --frames 2 --seed 9 --model " + here.model();
+  ASSERT_EQ(here.run(common + " --threads 1 --json " + here.path("one.json")).exit_code, 0);
+  ASSERT_EQ(here.run(common + " --threads 2 --json " + here.path("two.json")).exit_code, 0);
+  const std::string one = content(here.path("one.json"));
+  EXPECT_FALSE(one.empty());
+  EXPECT_EQ(one, content(here.path("two.json")));
+}
+
+TEST(Evaluate, WritesARowWithBothEstimators) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --sequences 2 --frames 2 --condition degraded --model " +
+                                   here.model() + " --json " + here.path("rows.json"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("RCNN, 2 frames"), std::string::npos) << outcome.output;
+  const auto row = nlohmann::json::parse(content(here.path("rows.json"))).at("rows").at(0);
+  EXPECT_EQ(row.at("target"), "near_shoemaker");
+  EXPECT_EQ(row.at("mesh"), "shipped");
+  EXPECT_EQ(row.at("condition"), "degraded");
+  EXPECT_EQ(row.at("sequences"), 2);
+  for (const char* estimator : {"rcnn", "cnn"}) {
+    for (const char* figure : {"mean_deg", "median_deg", "within_20deg", "within_5deg"}) {
+      EXPECT_TRUE(row.at(estimator).at(figure).is_number()) << estimator << " " << figure;
+    }
+  }
+}
+
+TEST(Evaluate, NamesTheFaultOfAModelImage) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --sequences 1 --model " + here.model("magellan"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("is refused"), std::string::npos) << outcome.errors;
+}
+
+TEST(Evaluate, WarnsWhenTheNetworkWasTrainedForAnotherSwath) {
+  const Workplace here;
+  const Outcome outcome =
+      here.run("evaluate --sequences 1 --frames 1 --model " + here.model("near_shoemaker", 11.0F));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.errors.find("trained for 11.00 m"), std::string::npos) << outcome.errors;
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,60 @@
+// Runs the host tool as a user would and catches what it says; and a folder for its files.
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "tests/unit/sim_evaluation/arbitrary_model.hpp"
+
+namespace tumblesight::sim {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string output;
+  std::string errors;
+};
+
+inline std::string content(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Deleted with all it holds when this goes out of scope.
+class Workplace {
+ public:
+  Workplace() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "tumblesight_cli_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~Workplace() { std::filesystem::remove_all(folder_); }
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string model(const char* target = "near_shoemaker", float swath_m = 7.0F) const {
+    const std::vector<std::uint8_t> image = arbitrary_model(target, swath_m);
+    std::ofstream file(path("model.tsm"), std::ios::binary);
+    file.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
+    return path("model.tsm");
+  }
+
+  Outcome run(const std::string& arguments) const {
+    const std::string command = std::string("timeout 60 ") + TUMBLESIGHT_BINARY + " " + arguments + " >" +
+                                path("stdout") + " 2>" + path("stderr");
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(path("stdout")), content(path("stderr"))};
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,120 @@
+#include "sim/cli/sil_results.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tumblesight::sim {
+namespace {
+
+// Two sequences of two frames; every attitude 0.1 rad off, the single frame's 0.5 rad.
+SilRecording recording() {
+  SilRecording made;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    StepRecord step;
+    step.sequence = i / 2;
+    step.frame_index = i % 2;
+    step.truth = {Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), 50.0};
+    step.answered = true;
+    step.attitude.q_lrf_trf = {0.99875026F, 0.04997917F, 0.0F, 0.0F};
+    step.attitude.q_lrf_trf_single_frame = {0.96891242F, 0.0F, 0.24740396F, 0.0F};
+    step.housekeeping.mode = 1;
+    step.housekeeping.inference_us = 1000 + 100 * i;
+    made.steps.push_back(step);
+  }
+  made.steps_planned = 4;
+  made.trace_crc32 = 123;
+  return made;
+}
+
+ScenarioArguments scenario() {
+  ScenarioArguments made;
+  made.sequences = 2;
+  made.frames = 2;
+  return made;
+}
+
+TEST(RunJson, HasExactlyTheAgreedKeys) {
+  const nlohmann::ordered_json json = run_json(scenario(), recording());
+  std::string keys;
+  for (const auto& [key, value] : json.items()) keys += key + " ";
+  EXPECT_EQ(
+      keys,
+      "target condition sequences rcnn cnn inference_us flight_heap_allocations steps_missed trace_crc32 ");
+  EXPECT_NEAR(json["rcnn"]["mean_deg"].get<double>(), 5.7296, 1e-3);
+  EXPECT_NEAR(json["cnn"]["mean_deg"].get<double>(), 28.648, 1e-3);
+  EXPECT_EQ(json["rcnn"]["within_20deg"], 1.0);
+  EXPECT_EQ(json["cnn"]["within_20deg"], 0.0);
+  EXPECT_EQ(json["inference_us"]["median"], 1150.0);
+  EXPECT_EQ(json["inference_us"]["max"], 1300.0);
+  EXPECT_EQ(json["trace_crc32"], 123);
+}
+
+TEST(Shortcomings, AreNoneOfAGoodRun) {
+  EXPECT_TRUE(shortcomings(recording()).empty());
+}
+
+TEST(Shortcomings, NameAnEarlyEndAndTheStepsMissed) {
+  SilRecording cut = recording();
+  cut.steps.pop_back();
+  cut.steps_missed = 1;
+  cut.failure = "the flight program has ended";
+  const std::vector<std::string> found = shortcomings(cut);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NE(found[0].find("the flight program has ended"), std::string::npos);
+  EXPECT_NE(found[1].find("1 of 4 steps"), std::string::npos);
+}
+
+TEST(Shortcomings, NameAFlightProgramWithoutAModel) {
+  SilRecording standby = recording();
+  for (StepRecord& step : standby.steps) {
+    step.attitude.validity = 1;
+    step.housekeeping.mode = 0;
+  }
+  const std::vector<std::string> found = shortcomings(standby);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NE(found[0].find("STANDBY"), std::string::npos);
+  EXPECT_EQ(run_json(scenario(), standby)["rcnn"]["mean_deg"], 180.0);
+}
+
+TEST(Shortcomings, NameHeapAllocations) {
+  SilRecording allocating = recording();
+  allocating.flight_heap_allocations = 3;
+  EXPECT_EQ(shortcomings(allocating).size(), 1U);
+}
+
+TEST(FrameResults, LeaveOutStepsWithoutAnAnswer) {
+  SilRecording some = recording();
+  some.steps[2].answered = false;
+  EXPECT_EQ(frame_results(some).size(), 3U);
+}
+
+TEST(RunReport, CountsWarningsAndErrorsByEvent) {
+  SilRecording warned = recording();
+  warned.steps[1].events = {{0, 34, 1, {}}, {0, 10, 0, {}}};
+  warned.steps[3].events = {{0, 34, 1, {}}};
+  const RunReport report = run_report(scenario(), {}, {}, warned);
+  const auto& facts = report.facts.back().facts;
+  ASSERT_EQ(facts.size(), 1U);
+  EXPECT_EQ(facts[0].first, "event 34");
+  EXPECT_EQ(facts[0].second, "2 times, first in step 1");
+}
+
+TEST(RunReport, CarriesPicturesAndSettings) {
+  SilRecording recorded = recording();
+  gnc::RangeImage frame;
+  frame.rays = 128;
+  frame.fov_urad = 140'000;
+  for (int i = 0; i < 400; ++i) frame.ranges[8000 + i] = static_cast<std::uint16_t>(6400 + i % 7);
+  recorded.pictures = {{1, frame}, {99, frame}};
+  TargetSetup setup;
+  setup.projection = {7.0F, 3.8F, gnc::DepthEncoding::kCentroidRelative};
+  setup.model_path = "models/some.tsm";
+  setup.warnings = {"mind the swath"};
+  const RunReport report = run_report(scenario(), setup, {}, recorded);
+  ASSERT_EQ(report.pictures.size(), 1U);
+  EXPECT_EQ(report.pictures[0].frame, 1U);
+  EXPECT_EQ(report.remarks, std::vector<std::string>{"mind the swath"});
+  EXPECT_NE(compose_report(report).find("some.tsm"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,105 @@
+#include "sim/evaluation/metrics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
+
+Eigen::Quaterniond turned(double angle_deg, const Eigen::Vector3d& axis) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * kRadPerDeg, axis.normalized()));
+}
+
+Eigen::Quaterniond negated(const Eigen::Quaterniond& q) {
+  return {-q.w(), -q.x(), -q.y(), -q.z()};
+}
+
+FrameResult result(std::uint32_t sequence, std::uint32_t frame, double rcnn_deg, double cnn_deg,
+                   bool valid = true) {
+  FrameResult made;
+  made.sequence = sequence;
+  made.frame = frame;
+  made.valid = valid;
+  made.truth = turned(70.0, {1.0, -2.0, 0.5});
+  made.rcnn = turned(rcnn_deg, {0.3, 0.1, 1.0}) * made.truth;
+  made.cnn = turned(cnn_deg, {-1.0, 0.4, 0.2}) * made.truth;
+  return made;
+}
+
+TEST(AngularError, IsTheAngleOfTheRotationBetweenTwoAttitudes) {
+  const Eigen::Quaterniond attitude = turned(123.0, {0.2, 1.0, -0.7});
+  for (const double angle_deg : {0.0, 1e-7, 0.01, 5.0, 20.0, 90.0, 179.0, 180.0}) {
+    const Eigen::Quaterniond other = turned(angle_deg, {1.0, 2.0, 3.0}) * attitude;
+    EXPECT_NEAR(angular_error_rad(attitude, other) / kRadPerDeg, angle_deg, 1e-11 + 1e-9 * angle_deg);
+  }
+}
+
+TEST(AngularError, DoesNotDependOnTheSignOfAQuaternion) {
+  const Eigen::Quaterniond a = turned(10.0, {1.0, 0.0, 0.0});
+  const Eigen::Quaterniond b = turned(50.0, {1.0, 0.0, 0.0});
+  EXPECT_NEAR(angular_error_rad(a, negated(b)), 40.0 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(angular_error_rad(negated(a), b), 40.0 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(angular_error_rad(a, negated(a)), 0.0, 1e-12);
+}
+
+TEST(AngularError, AgreesWithThePapersFormula) {
+  const Eigen::Quaterniond a = turned(33.0, {1.0, 0.5, 0.0});
+  const Eigen::Quaterniond b = turned(-71.0, {0.0, 0.5, 2.0});
+  EXPECT_NEAR(angular_error_rad(a, b), 2.0 * std::acos(std::abs(a.dot(b))), 1e-9);
+}
+
+TEST(AngularError, StaysFiniteForQuaternionsOffUnitLength) {
+  Eigen::Quaterniond a = turned(5.0, {0.0, 0.0, 1.0});
+  Eigen::Quaterniond scaled = a;
+  scaled.coeffs() *= 1.0 + 1e-6;
+  EXPECT_NEAR(angular_error_rad(a, scaled), 0.0, 1e-7);
+}
+
+TEST(ErrorSummary, MatchesFiguresWorkedOutByHand) {
+  const ErrorSummary summary = summarise({30.0, 4.0, 5.0, 20.0, 1.0});
+  EXPECT_EQ(summary.count, 5U);
+  EXPECT_DOUBLE_EQ(summary.mean_deg, 12.0);
+  EXPECT_DOUBLE_EQ(summary.median_deg, 5.0);
+  EXPECT_DOUBLE_EQ(summary.within_20deg, 0.8);
+  EXPECT_DOUBLE_EQ(summary.within_5deg, 0.6);
+}
+
+TEST(ErrorSummary, MedianOfAnEvenCountIsTheMiddle) {
+  EXPECT_DOUBLE_EQ(median({4.0, 1.0, 3.0, 100.0}), 3.5);
+  EXPECT_DOUBLE_EQ(median({}), 0.0);
+}
+
+TEST(ErrorSummary, OfNothingCountsNothing) {
+  EXPECT_EQ(summarise({}).count, 0U);
+}
+
+TEST(LastFrame, LeavesOutSequencesThatEndedEarly) {
+  const std::vector<FrameResult> results{result(0, 0, 50.0, 90.0), result(0, 1, 3.0, 30.0),
+                                         result(1, 0, 60.0, 2.0)};
+  const std::vector<double> rcnn = last_frame_errors_deg(results, 2, Estimator::kRcnn);
+  ASSERT_EQ(rcnn.size(), 1U);
+  EXPECT_NEAR(rcnn[0], 3.0, 1e-9);
+  EXPECT_NEAR(last_frame_errors_deg(results, 2, Estimator::kCnn)[0], 30.0, 1e-9);
+}
+
+TEST(LastFrame, CountsAMissingAttitudeAsTheWorstOne) {
+  const std::vector<FrameResult> results{result(0, 0, 1.0, 1.0, false)};
+  EXPECT_DOUBLE_EQ(last_frame_errors_deg(results, 1, Estimator::kRcnn)[0], 180.0);
+}
+
+TEST(ErrorsByFrame, KeepFramesApart) {
+  const std::vector<FrameResult> results{result(0, 0, 40.0, 50.0), result(0, 1, 4.0, 60.0),
+                                         result(1, 0, 20.0, 70.0)};
+  const std::vector<FrameErrors> by_frame = errors_by_frame(results, 3);
+  ASSERT_EQ(by_frame.size(), 3U);
+  EXPECT_NEAR(by_frame[0].rcnn.mean_deg, 30.0, 1e-9);
+  EXPECT_NEAR(by_frame[0].cnn.mean_deg, 60.0, 1e-9);
+  EXPECT_NEAR(by_frame[1].rcnn.mean_deg, 4.0, 1e-9);
+  EXPECT_EQ(by_frame[2].rcnn.count, 0U);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

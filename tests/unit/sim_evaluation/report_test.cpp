@@ -1,0 +1,151 @@
+#include "sim/evaluation/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <stdexcept>
+
+#include "sim/evaluation/charts.hpp"
+#include "sim/evaluation/svg.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+// Empty if every element of the XML text is closed in order and every attribute is quoted; otherwise the
+// fault.
+std::string xml_fault(const std::string& xml) {
+  static const std::regex tag(R"rx(<(/?)([a-z]+)((?:\s+[a-zA-Z0-9:-]+="[^"<]*")*)\s*(/?)>)rx");
+  std::vector<std::string> open;
+  std::size_t seen = 0;
+  for (std::sregex_iterator it(xml.begin(), xml.end(), tag), end; it != end; ++it, ++seen) {
+    const std::string name = (*it)[2];
+    if ((*it)[1].length() > 0) {
+      if (open.empty() || open.back() != name) return "</" + name + "> out of order";
+      open.pop_back();
+    } else if ((*it)[4].length() == 0) {
+      open.push_back(name);
+    }
+  }
+  const auto brackets = static_cast<std::size_t>(std::count(xml.begin(), xml.end(), '<'));
+  if (brackets != seen) return "something that is no well-formed tag";
+  return open.empty() ? "" : "<" + open.back() + "> not closed";
+}
+
+std::vector<std::string> svgs_of(const std::string& html) {
+  std::vector<std::string> found;
+  for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1)) {
+    found.push_back(html.substr(at, html.find("</svg>", at) + 6 - at));
+  }
+  return found;
+}
+
+RunReport small_report() {
+  RunReport report;
+  report.target = "near_shoemaker";
+  report.condition = "nominal";
+  report.sequences = 3;
+  report.frames = 4;
+  report.frame_period_s = 2.7;
+  report.steps_planned = 12;
+  report.trace_crc32 = 0xDEADBEEF;
+  report.paper = paper_figures(report.target, Condition::kNominal);
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    FrameResult result;
+    result.sequence = i / 4;
+    result.frame = i % 4;
+    result.valid = i != 5;
+    result.rcnn = Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()));
+    result.cnn = Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()));
+    result.rcnn_predicted_rad = 0.08;
+    report.results.push_back(result);
+    ReportPicture picture{result.sequence, result.frame, 42.0, {}};
+    picture.image.value[5000 + i] = 0.5F;
+    report.pictures.push_back(picture);
+  }
+  report.facts = {{"Settings", {{"seed", "17"}, {"<odd> & \"name\"", "it's"}}}};
+  return report;
+}
+
+TEST(Report, ShowsTheFiguresBesideThePapers) {
+  const std::string html = compose_report(small_report());
+  EXPECT_NE(html.find("5.73°"), std::string::npos);   // 0.1 rad
+  EXPECT_NE(html.find("22.92°"), std::string::npos);  // 0.4 rad
+  EXPECT_NE(html.find("12.69°"), std::string::npos);
+  EXPECT_NE(html.find("40.94°"), std::string::npos);
+  EXPECT_NE(html.find("&lt;odd&gt; &amp; &quot;name&quot;"), std::string::npos);
+}
+
+TEST(Report, HoldsWellFormedFigures) {
+  const std::vector<std::string> svgs = svgs_of(compose_report(small_report()));
+  EXPECT_EQ(svgs.size(), 6U);
+  for (const std::string& svg : svgs) {
+    EXPECT_EQ(xml_fault(svg), "");
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(svg.find("inf"), std::string::npos);
+  }
+}
+
+TEST(Report, NeedsNothingButItself) {
+  std::string html = compose_report(small_report());
+  html = std::regex_replace(html, std::regex("xmlns=\"http://www.w3.org/2000/svg\""), "");
+  for (const char* outside : {"http:", "https:", "<script", "<link", "src=", "@import", "url("}) {
+    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
+  }
+}
+
+TEST(Report, OfARunThatEndedEarlySaysSo) {
+  RunReport report = small_report();
+  report.steps_missed = 12;
+  report.results.clear();
+  report.pictures.clear();
+  report.notices = {"The run ended early: flight program gone."};
+  const std::string html = compose_report(report);
+  EXPECT_NE(html.find("flight program gone"), std::string::npos);
+  EXPECT_NE(html.find("No sequence was answered to its end"), std::string::npos);
+}
+
+TEST(Report, DrawsASequenceThatBrokeOff) {
+  RunReport report = small_report();
+  report.results.resize(2);
+  for (const std::string& svg : svgs_of(compose_report(report))) EXPECT_EQ(xml_fault(svg), "");
+}
+
+TEST(XmlFault, FindsWhatItIsFor) {
+  EXPECT_NE(xml_fault("<svg><g></svg></g>"), "");
+  EXPECT_NE(xml_fault("<svg><text>a < b</text></svg>"), "");
+  EXPECT_NE(xml_fault("<svg><line x1=3/></svg>"), "");
+  EXPECT_EQ(xml_fault("<svg a=\"1\"><line x=\"3\"/></svg>"), "");
+}
+
+TEST(RoundTicks, CoverTheRangeInRoundSteps) {
+  EXPECT_EQ(round_ticks(0.0, 43.0, 5), (std::vector<double>{0, 10, 20, 30, 40, 50}));
+  EXPECT_EQ(round_ticks(-1.0, 1.0, 4), (std::vector<double>{-1, -0.5, 0, 0.5, 1}));
+  EXPECT_EQ(round_ticks(3.0, 3.0, 4), (std::vector<double>{3}));
+}
+
+TEST(WriteTextFile, MakesFoldersAndLeavesNoPartialFile) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumblesight_report_test";
+  std::filesystem::remove_all(folder);
+  write_text_file((folder / "deep" / "file.html").string(), "content");
+  std::ifstream file(folder / "deep" / "file.html");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "content");
+  const auto files = std::distance(std::filesystem::directory_iterator(folder / "deep"), {});
+  EXPECT_EQ(files, 1);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(WriteTextFile, SaysWhichFileCannotBeWritten) {
+  try {
+    write_text_file("/proc/no/such/file", "content");
+    FAIL() << "was written";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("/proc/no/such"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
