@@ -1,0 +1,52 @@
+// SequenceFeatures: what the frozen CNN says of whole rendered sequences: the LSTM's training data. Computed
+// by worker threads with the flight network itself, so that the LSTM learns on the very numbers it will see
+// in flight.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "gnc/rcnn/network.hpp"
+#include "sim/training/frame_stream.hpp"
+
+namespace tumblesight::sim {
+
+struct FeatureSet {
+  torch::Tensor dense2;     // [N, T, 128]
+  torch::Tensor output;     // [N, T, 57]
+  torch::Tensor r_lrf_trf;  // [N, T, 3, 3]
+};
+
+class SequenceFeatures {
+ public:
+  // Starts to compute sequences 0 .. count-1 of the seeded supply; meshes and conditions (nominal, degraded)
+  // take turns. `weights` must outlive this object.
+  SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights& weights, std::uint64_t seed,
+                   std::int64_t count, int workers);
+  ~SequenceFeatures();
+
+  // The first `count` sequences, waiting until they are there.
+  FeatureSet first(std::int64_t count);
+
+ private:
+  void work();
+  const TrainingTargets& targets_;
+  const gnc::NetworkWeights& weights_;
+  const std::uint64_t seed_;
+  const std::int64_t count_;
+  FeatureSet all_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<bool> done_;
+  std::int64_t claimed_ = 0;
+  std::int64_t prefix_ = 0;  // sequences 0 .. prefix-1 are done
+  bool stop_ = false;
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,57 @@
+// Requirement: training data is fresh, seeded, the same with any number of workers, and its labels are right.
+#include "sim/training/frame_stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "sim/target/near_shoemaker.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(Turned, EqualsARenderingOfTheTurnedAttitude) {
+  const TriangleMesh mesh = make_near_shoemaker();
+  const FlashLidar lidar(mesh);
+  const TrainingTargets targets = make_training_targets({mesh});
+  SensorSettings settings;
+  settings.noise = false;
+  const auto frame = std::make_unique<gnc::RangeImage>();
+  const auto scratch = std::make_unique<gnc::DepthImageScratch>();
+  const auto image = std::make_unique<gnc::DepthImage>();
+  const auto render = [&](const Eigen::Quaterniond& q) {
+    lidar.expose({q, Eigen::Vector3d::Zero(), 30.0}, settings, targets.projection.swath_m, 1, *frame);
+    EXPECT_EQ(make_depth_image(*frame, targets.projection, *scratch, *image), gnc::FrameStatus::kOk);
+    return torch::from_blob(image->value.data(), {1, 1, 100, 100}).clone();
+  };
+  const Eigen::Quaterniond q = Eigen::Quaterniond(0.8, -0.3, 0.4, 0.2).normalized();
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r = q.toRotationMatrix().cast<float>();
+  const FrameBatch straight{render(q), torch::from_blob(const_cast<float*>(r.data()), {1, 3, 3}).clone()};
+  for (int turns = 1; turns < 4; ++turns) {
+    const FrameBatch batch = turned(straight, turns);
+    Eigen::Matrix3d labelled;
+    for (int i = 0; i < 9; ++i) labelled(i / 3, i % 3) = batch.r_lrf_trf[0][i / 3][i % 3].item<double>();
+    const torch::Tensor difference = (batch.images - render(Eigen::Quaterniond(labelled))).abs();
+    EXPECT_LT((difference > 0.05).to(torch::kFloat).mean().item<double>(), 0.01)
+        << turns;  // edges may fall either way
+  }
+}
+
+TEST(FrameStream, IsTheSameWithAnyNumberOfWorkersAndFromAnyStart) {
+  const TrainingTargets targets = make_training_targets({make_near_shoemaker()});
+  FrameStream one(targets, 5, 4, 0, 1), three(targets, 5, 4, 0, 3), later(targets, 5, 4, 3, 2),
+      other(targets, 6, 4, 0, 1);
+  for (int i = 0; i < 6; ++i) {
+    const FrameBatch a = one.next();
+    const FrameBatch b = three.next();
+    EXPECT_TRUE(torch::equal(a.images, b.images)) << i;
+    EXPECT_TRUE(torch::equal(a.r_lrf_trf, b.r_lrf_trf)) << i;
+    if (i >= 3) {
+      EXPECT_TRUE(torch::equal(a.images, later.next().images)) << i;
+    }
+    EXPECT_FALSE(torch::equal(a.images, other.next().images)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

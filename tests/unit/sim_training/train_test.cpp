@@ -1,0 +1,110 @@
+// Requirement: a training run that is stopped at any moment goes on where its last checkpoint was, and ends
+// with the same network as one that ran through.
+#include "sim/training/train.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "sim/target/near_shoemaker.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TrainTest : public testing::Test {
+ protected:
+  TrainTest() : targets(make_training_targets({make_near_shoemaker()})) {
+    at::set_num_threads(1);
+    settings.cnn_batch = 8;
+    settings.cnn_images = 8 * 6;
+    settings.rcnn_sequences = 24;
+    settings.rcnn_iterations = 6;
+    settings.rcnn_batch = 8;
+  }
+  ~TrainTest() override { fs::remove_all(root); }
+
+  TrainingSettings in(const std::string& folder) {
+    TrainingSettings here = settings;
+    here.folder = root / folder;
+    fs::create_directories(here.folder);
+    return here;
+  }
+  static Cnn fresh_cnn() {
+    torch::manual_seed(1);
+    return Cnn();
+  }
+
+  const fs::path root = fs::temp_directory_path() / ("train_test_" + std::to_string(getpid()));
+  TrainingTargets targets;
+  TrainingSettings settings;
+  std::atomic<bool> never{false};
+};
+
+TEST_F(TrainTest, AStoppedCnnTrainingResumesToTheSameNetwork) {
+  Cnn through = fresh_cnn();
+  ASSERT_TRUE(train_cnn(targets, in("through"), through, never));
+
+  // Stopped before its first iteration, then "killed" after three: what the total stands at shapes the
+  // learning rate, so the shorter run is made by a checkpoint at every iteration and a stop from beside.
+  TrainingSettings stopped = in("stopped");
+  stopped.checkpoint_s = 0.0;
+  std::atomic<bool> stop{false};
+  Cnn first = fresh_cnn();
+  std::thread watcher([&] {
+    while (!fs::exists(stopped.folder + "/cnn.ckpt")) std::this_thread::yield();
+    stop = true;
+  });
+  const bool finished = train_cnn(targets, stopped, first, stop);
+  watcher.join();
+  EXPECT_FALSE(finished) << "the stop came too late to prove anything";
+  torch::manual_seed(99);  // what the weights are before the checkpoint is read must not matter
+  Cnn second;
+  ASSERT_TRUE(train_cnn(targets, stopped, second, never));
+  for (const auto& parameter : through->named_parameters()) {
+    EXPECT_TRUE(torch::equal(parameter.value(), second->named_parameters()[parameter.key()]))
+        << parameter.key();
+  }
+  EXPECT_TRUE(torch::equal(through->backbone->mean[0], second->backbone->mean[0]));
+}
+
+TEST_F(TrainTest, ALeftOverHalfWrittenCheckpointIsIgnored) {
+  const TrainingSettings here = in("half");
+  std::ofstream(here.folder + "/cnn.ckpt.new") << "half a checkpoint";
+  Cnn cnn = fresh_cnn();
+  EXPECT_TRUE(train_cnn(targets, here, cnn, never));
+}
+
+TEST_F(TrainTest, TheRecurrentStageLearnsOnTheCnnsFeaturesAndWritesLogAndCurve) {
+  const TrainingSettings here = in("rcnn");
+  Cnn cnn = fresh_cnn();
+  ASSERT_TRUE(train_cnn(targets, here, cnn, never));
+  Recurrent recurrent;
+  const torch::Tensor before = recurrent->head2->weight.detach().clone();
+  ASSERT_TRUE(train_rcnn(targets, here, cnn, recurrent, never));
+  EXPECT_FALSE(torch::equal(before, recurrent->head2->weight));
+
+  std::ifstream log(here.folder + "/log.csv");
+  std::string header, first, second;
+  std::getline(log, header);
+  std::getline(log, first);
+  std::getline(log, second);
+  EXPECT_EQ(header.rfind("stage,iteration,samples", 0), 0U);
+  EXPECT_EQ(first.rfind("cnn,6,48,", 0), 0U) << first;
+  EXPECT_EQ(second.rfind("rcnn,6,48,", 0), 0U) << second;
+  EXPECT_GT(fs::file_size(here.folder + "/curve.svg"), 500U);
+  EXPECT_TRUE(train_rcnn(targets, here, cnn, recurrent, never)) << "a finished stage is done at once";
+}
+
+TEST_F(TrainTest, AFolderThatCannotBeWrittenIsSaid) {
+  TrainingSettings here = settings;
+  here.folder = "/nonexistent/folder";
+  Cnn cnn;
+  EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
