@@ -21,6 +21,14 @@ bool is_angle(float angle_rad) {
   return angle_rad >= 0.0F && angle_rad <= 1.0001F * kPi;
 }
 
+hal::AttitudeReport without_attitude(Validity why) {
+  hal::AttitudeReport report;
+  report.validity = static_cast<std::uint8_t>(why);
+  report.predicted_error_rad = kPi;
+  report.predicted_error_single_frame_rad = kPi;
+  return report;
+}
+
 bool is_sound(const gnc::AttitudeEstimate& estimate) {
   return is_unit(estimate.q_lrf_trf) && is_unit(estimate.q_lrf_trf_single_frame) &&
          is_angle(estimate.predicted_error_rad) && is_angle(estimate.predicted_error_single_frame_rad);
@@ -49,18 +57,17 @@ void AttitudeInitApp::init(const std::uint8_t* model_image, std::size_t size_byt
 void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) {
   const std::uint64_t start_ns = stopwatch_ != nullptr ? stopwatch_->now_ns() : 0;
   outputs = StepOutputs{};
-  const std::int64_t previous_ns = now_ns_;
+  const std::int64_t previous_ns = has_cycle_ ? now_ns_ : now_ns;
   const bool time_advances = cycle_time_advances(now_ns);
-  outputs.attitude.predicted_error_rad = kPi;
-  outputs.attitude.predicted_error_single_frame_rad = kPi;
+  outputs.attitude = without_attitude(Validity::kStandby);
   count(counters_.cycles);
+  if (now_ns < previous_ns) start_anew_in_time();
 
   report_model(outputs);
   const bool usable = TUMBLESIGHT_ASSERT(assertions_, stopwatch_ != nullptr && keeps_limits(inputs));
   go_safe_on_assertion(outputs);
   if (usable) run_commands(inputs, outputs);
 
-  outputs.attitude.validity = static_cast<std::uint8_t>(Validity::kStandby);
   if (!time_advances) {
     refuse_frames_of_cycle(inputs, elapsed_ms(previous_ns, now_ns), outputs);
   } else if (mode_ == Mode::kEstimating) {
@@ -110,6 +117,14 @@ void AttitudeInitApp::enter_estimating() {
   gate_.forget();
   outage_ = false;
   mode_ = Mode::kEstimating;
+}
+
+// What is remembered lies in a future that the cycles take long to reach again, if ever: compared with it,
+// every frame until then would go backwards.
+void AttitudeInitApp::start_anew_in_time() {
+  if (mode_ != Mode::kEstimating) return;
+  reset_estimator();
+  gate_.forget();
 }
 
 void AttitudeInitApp::run_commands(const StepInputs& inputs, StepOutputs& outputs) {
@@ -208,7 +223,7 @@ void AttitudeInitApp::take_frames(const StepInputs& inputs, StepOutputs& outputs
     count(counters_.frames_bad);
     report(outputs, EventId::kFrameWrongSize, Severity::kWarning);
   }
-  for (int i = 0; i < frames; ++i) take_frame(inputs.frame[i], outputs);
+  for (int i = 0; i < frames && !assertions_.pending(); ++i) take_frame(inputs.frame[i], outputs);
 }
 
 void AttitudeInitApp::take_frame(const gnc::RangeImage& frame, StepOutputs& outputs) {
@@ -285,10 +300,7 @@ void AttitudeInitApp::use_frame(const gnc::RangeImage& frame, StepOutputs& outpu
 
 void AttitudeInitApp::report_attitude(const gnc::RangeImage& frame, StepOutputs& outputs) {
   // The estimator promises this for any frame and any model it has loaded.
-  if (!TUMBLESIGHT_ASSERT(assertions_, is_sound(estimate_))) {
-    outputs.attitude.validity = static_cast<std::uint8_t>(Validity::kStandby);
-    return;
-  }
+  if (!TUMBLESIGHT_ASSERT(assertions_, is_sound(estimate_))) return;
   count(counters_.frames_used);
   hal::AttitudeReport& attitude = outputs.attitude;
   attitude.exposure_time_ns = frame.exposure_time_ns;
@@ -309,6 +321,8 @@ void AttitudeInitApp::report_telemetry(std::uint64_t start_ns, StepOutputs& outp
     if (microseconds_since(start_ns) > kBudget_us) count(counters_.deadline_overruns);
   }
   go_safe_on_assertion(outputs);
+  // What an assertion of this very cycle throws doubt on must not leave it as an attitude.
+  if (mode_ == Mode::kSafe) outputs.attitude = without_attitude(Validity::kStandby);
   outputs.attitude.time_ns = now_ns_;
   outputs.housekeeping = counters_;
   outputs.housekeeping.time_ns = now_ns_;
@@ -325,6 +339,7 @@ std::uint32_t AttitudeInitApp::microseconds_since(std::uint64_t start_ns) {
 std::uint32_t AttitudeInitApp::state_crc32() const {
   gnc::Crc32 crc;
   crc.add_u32(estimator_.state_crc32());
+  crc.add_u32(estimator_.model().crc32);
   crc.add_u32(static_cast<std::uint32_t>(mode_));
   for (const bool flag : {estimator_.has_model(), has_cycle_, gate_.has_last(), outage_, model_to_report_}) {
     crc.add_u32(flag ? 1U : 0U);

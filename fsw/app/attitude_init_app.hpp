@@ -21,13 +21,17 @@
 // gnc::FrameStatus for content. A cycle without a frame is counted as missing, with an event where the outage
 // begins. Skipped sequence numbers are counted, with an event, and the frame is used.
 //
-// The LSTM starts anew: at init() with a good model; on entering ESTIMATING; by RESET_ESTIMATOR; and, with an
-// event, when a frame's exposure is not one period +- 10 % after the last accepted one, since it has learnt
-// steps of one period.
+// The LSTM starts anew: at init() with a good model; on entering ESTIMATING; by RESET_ESTIMATOR; when cycle
+// time goes back; and, with an event, when a frame's exposure is not one period +- 10 % after the last
+// accepted one, since it has learnt steps of one period.
 //
 // Cycle times must rise. A cycle whose time does not is an error: event, its frames are refused, its commands
-// are carried out (they carry no time and are the way out). Later cycles are compared with it, so that one
-// jump costs one cycle.
+// are carried out (they carry no time and are the way out). Where time went back, the last accepted frame is
+// forgotten and the estimator reset (counted; the event is that of the cycle time), since that frame's
+// exposure may lie in the future now. Later cycles are compared with this one, so that a jump costs one
+// cycle.
+//
+// No attitude leaves a cycle that ends in SAFE; an assertion ends the work on the cycle's frames.
 #pragma once
 
 #include <array>
@@ -91,8 +95,8 @@ class AttitudeInitApp {
   // overwritten.
   void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
 
-  // Over all that decides what step() will give, and over the counters; what the stopwatch measured is left
-  // out.
+  // Over all that decides what step() will give, the active model's CRC among it, and over the counters; what
+  // the stopwatch measured is left out.
   std::uint32_t state_crc32() const;
   Mode mode() const { return mode_; }
   // What init() found; kOk before the first init().
@@ -111,6 +115,7 @@ class AttitudeInitApp {
   bool refuses(const hal::Command& command, CommandRefusal& why) const;
   void execute(Opcode opcode);
 
+  void start_anew_in_time();
   bool cycle_time_advances(std::int64_t now_ns);
   void refuse_frames_of_cycle(const StepInputs& inputs, std::int32_t time_step_ms, StepOutputs& outputs);
   void take_frames(const StepInputs& inputs, StepOutputs& outputs);

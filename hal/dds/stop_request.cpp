@@ -1,14 +1,17 @@
 #include "hal/dds/stop_request.hpp"
 
+#include <atomic>
 #include <csignal>
 
 namespace tumblesight::hal::dds {
 namespace {
 
-volatile std::sig_atomic_t requested = 0;
+// The system hands a signal to any thread; the bus thread reads.
+std::atomic<bool> requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
 void request_stop(int) {
-  requested = 1;
+  requested = true;
 }
 
 }  // namespace
@@ -22,7 +25,7 @@ void accept_stop_requests() {
 }
 
 bool stop_requested() {
-  return requested != 0;
+  return requested;
 }
 
 }  // namespace tumblesight::hal::dds

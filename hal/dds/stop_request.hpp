@@ -1,4 +1,4 @@
-// SIGTERM and SIGINT as a wish to end, seen by the flight task between two steps.
+// SIGTERM and SIGINT as a wish to end, seen by the bus thread whenever it waits.
 #pragma once
 
 namespace tumblesight::hal::dds {

@@ -18,10 +18,8 @@ const char* to_string(FileStatus status);
 
 class FileModelStore final : public ModelStore {
  public:
-  static constexpr std::size_t kMaxBytes = 16U * 1024U * 1024U;
-
   // Maps memory for the image; the only time that it does.
-  explicit FileModelStore(const char* path, std::size_t max_bytes = kMaxBytes);
+  FileModelStore(const char* path, std::size_t max_bytes);
   ~FileModelStore();
   FileModelStore(const FileModelStore&) = delete;
   FileModelStore& operator=(const FileModelStore&) = delete;

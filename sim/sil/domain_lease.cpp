@@ -1,12 +1,15 @@
 #include "sim/sil/domain_lease.hpp"
 
+#include <errno.h>
 #include <fcntl.h>
+#include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "hal/dds/idl/domain.hpp"
 #include "sim/sil/failure.hpp"
@@ -18,6 +21,11 @@ namespace {
 constexpr std::uint32_t kFirstFree = 1;
 constexpr std::uint32_t kLastFree = 100;
 
+[[noreturn]] void fail_no_file(const std::string& folder, int error) {
+  throw SilFailure("no DDS domain can be taken: the lock's file in " + folder +
+                   " cannot be opened: " + strerror(error));
+}
+
 }  // namespace
 
 DomainLease::DomainLease(int wanted) {
@@ -25,34 +33,46 @@ DomainLease::DomainLease(int wanted) {
     throw SilFailure("DDS domain " + std::to_string(wanted) + " is out of range: 0 to " +
                      std::to_string(hal::dds::kMaxDomain));
   }
+  std::error_code no_folder;
+  const std::string folder = std::filesystem::temp_directory_path(no_folder);
+  if (no_folder) throw SilFailure("no DDS domain can be taken: no temporary folder: " + no_folder.message());
   if (wanted >= 0) {
-    if (try_lock(static_cast<std::uint32_t>(wanted))) return;
+    const Lock lock = try_lock(folder, static_cast<std::uint32_t>(wanted));
+    if (lock == Lock::kOurs) return;
+    if (lock == Lock::kNoFile) fail_no_file(folder, errno);
     throw SilFailure("DDS domain " + std::to_string(wanted) + " is in use by another run on this machine");
   }
+  bool any_taken = false;
+  int error = 0;
   for (std::uint32_t domain = kFirstFree; domain <= kLastFree; ++domain) {
-    if (try_lock(domain)) return;
+    const Lock lock = try_lock(folder, domain);
+    if (lock == Lock::kOurs) return;
+    any_taken |= lock == Lock::kTaken;
+    if (lock == Lock::kNoFile) error = errno;
   }
-  throw SilFailure("no free DDS domain: " + std::to_string(kLastFree) + " runs on this machine already");
+  if (!any_taken) fail_no_file(folder, error);
+  throw SilFailure("no free DDS domain from " + std::to_string(kFirstFree) + " to " +
+                   std::to_string(kLastFree) + ": other runs on this machine have them");
 }
 
 DomainLease::~DomainLease() {
   if (file_ >= 0) close(file_);
 }
 
-bool DomainLease::try_lock(std::uint32_t domain) {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("tumblesight-domain-" + std::to_string(domain) + ".lock");
+DomainLease::Lock DomainLease::try_lock(const std::string& folder, std::uint32_t domain) {
+  const std::string path = folder + "/tumblesight-domain-" + std::to_string(domain) + ".lock";
+  // Closed in other children of ours than the flight program: they may live longer than the run.
   // Without O_CREAT first: in a sticky directory Linux may refuse to "create" a file that another user owns.
   int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) file = open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644);
-  if (file < 0) return false;
+  if (file < 0) return Lock::kNoFile;
   if (flock(file, LOCK_EX | LOCK_NB) != 0) {
     close(file);
-    return false;
+    return Lock::kTaken;
   }
   file_ = file;
   domain_ = domain;
-  return true;
+  return Lock::kOurs;
 }
 
 }  // namespace tumblesight::sim

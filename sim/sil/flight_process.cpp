@@ -22,8 +22,10 @@ constexpr double kGrace_s = 2.0;
 
 class SpawnActions {
  public:
-  explicit SpawnActions(const std::string& log_path) {
+  SpawnActions(const std::string& log_path, int inherited_file) {
     posix_spawn_file_actions_init(&actions_);
+    // Onto itself: the one thing this does is to keep it open.
+    if (inherited_file >= 0) posix_spawn_file_actions_adddup2(&actions_, inherited_file, inherited_file);
     if (log_path.empty()) return;
     posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
                                      0644);
@@ -41,11 +43,11 @@ class SpawnActions {
 }  // namespace
 
 FlightProcess::FlightProcess(const std::string& program, const std::vector<std::string>& arguments,
-                             const std::string& log_path) {
+                             const std::string& log_path, int inherited_file) {
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  const SpawnActions actions(log_path);
+  const SpawnActions actions(log_path, inherited_file);
   const int error = posix_spawn(&pid_, program.c_str(), actions.get(), nullptr, argv.data(), environ);
   if (error != 0)
     throw SilFailure("the flight program " + program + " cannot be started: " + strerror(error));
@@ -60,7 +62,11 @@ FlightProcess::~FlightProcess() {
 }
 
 bool FlightProcess::running() {
-  if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) != 0;
+  if (ended_) return false;
+  const pid_t result = waitpid(pid_, &status_, WNOHANG);
+  ended_ = result != 0;
+  // The system keeps no status for a parent that ignores SIGCHLD.
+  status_lost_ = result < 0;
   return !ended_;
 }
 
@@ -72,10 +78,11 @@ bool FlightProcess::wait_for_end(double timeout_s) {
 }
 
 bool FlightProcess::ended_well() const {
-  return ended_ && WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
+  return ended_ && !status_lost_ && WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
 }
 
 std::string FlightProcess::how_it_ended() const {
+  if (status_lost_) return "ended, and its exit status is lost (is SIGCHLD ignored here?)";
   if (WIFSIGNALED(status_)) {
     const int signal = WTERMSIG(status_);
     return "was ended by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 using hal::dds::Role;
 
 constexpr auto kPoll = 20ms;
-constexpr double kRefusalGrace_s = 3.0;
+constexpr double kEndGrace_s = 3.0;
 
 // Not 0, which stands for "any" and "not ready".
 std::uint32_t make_run_id() {
@@ -84,7 +84,7 @@ std::vector<std::string> SilSession::flight_command_line() const {
 
 void SilSession::start_flight() {
   process_ = std::make_unique<FlightProcess>(settings_.flight_path, flight_command_line(),
-                                             settings_.flight_log_path);
+                                             settings_.flight_log_path, lease_.file());
 }
 
 // True once flight of this run is ready.
@@ -96,7 +96,7 @@ bool SilSession::read_hello() {
     if (hello.role != static_cast<std::uint8_t>(Role::kFlight) || !ours) continue;
     if (hello.icd_hash != hal::dds::kIcdHash) {
       // Flight refuses as well: let it say so itself.
-      if (process_) (void)process_->wait_for_end(kRefusalGrace_s);
+      if (process_) (void)process_->wait_for_end(kEndGrace_s);
       throw SilFailure("interface hash " + hex(hal::dds::kIcdHash) + ", flight's " + hex(hello.icd_hash) +
                        ": build both from the same tumblesight.idl");
     }
@@ -132,6 +132,12 @@ void SilSession::fail(const std::string& what) const {
 
 bool SilSession::flight_ended() {
   return (process_ && !process_->running()) || endpoints_->flight_gone();
+}
+
+// Of a flight program that somebody else has started, only its going is seen, not how it went.
+bool SilSession::flight_ended_as_it_should() {
+  if (!last_sent_) return false;
+  return !process_ || (process_->wait_for_end(kEndGrace_s) && process_->ended_well());
 }
 
 void SilSession::fail_flight_ended() const {
@@ -176,6 +182,7 @@ void SilSession::send(const StepInput& input) {
   step.commands = static_cast<std::uint8_t>(input.commands.size());
   step.last = input.last ? 1 : 0;
   write(endpoints_->steps, step);
+  last_sent_ = input.last;
 }
 
 StepAnswer SilSession::wait_for_answer(std::uint32_t k) {
@@ -184,6 +191,7 @@ StepAnswer SilSession::wait_for_answer(std::uint32_t k) {
   while (const std::optional<StepAnswer> answer = next_answer(deadline)) {
     if (answer->k == k) return *answer;
   }
+  if (flight_ended()) fail_flight_ended();
   fail("flight did not answer step " + std::to_string(k) + " within " +
        std::to_string(settings_.step_timeout_s) + " s of wall-clock time");
 }
@@ -198,6 +206,7 @@ std::optional<StepAnswer> SilSession::next_answer(Clock::time_point deadline) {
     if (!arrived && flight_ended()) {
       answers_->collect();  // its last words may have come in between
       if (auto answer = answers_->next()) return answer;
+      if (flight_ended_as_it_should()) return std::nullopt;
       fail_flight_ended();
     }
   }

@@ -43,7 +43,8 @@ class SilSession {
   // The two halves. After a step that was the `last`, no other may follow.
   void send(const StepInput& input);
   StepAnswer wait_for_answer(std::uint32_t k);
-  // Any answer that comes before `deadline`; free-running flight answers once a cycle, asked or not.
+  // Any answer that comes before `deadline`; free-running flight answers once a cycle, asked or not. Nothing
+  // too once flight has ended after the last step, as it should.
   std::optional<StepAnswer> next_answer(Clock::time_point deadline);
   // Sleeps, but not past the end of the flight program.
   void sleep_until(Clock::time_point time);
@@ -55,12 +56,14 @@ class SilSession {
   std::uint8_t flight_mode() const { return flight_mode_; }  // fsw::Mode that flight announced
   pid_t flight_pid() const { return process_ ? process_->pid() : 0; }
   std::uint32_t run_id() const { return run_id_; }
+  std::uint32_t domain() const { return lease_.domain(); }
 
  private:
   void start_flight();
   void shake_hands();
   bool read_hello();
   bool flight_ended();
+  bool flight_ended_as_it_should();
   [[noreturn]] void fail_flight_ended() const;
   std::vector<std::string> flight_command_line() const;
   [[noreturn]] void fail(const std::string& what) const;
@@ -74,6 +77,7 @@ class SilSession {
   std::unique_ptr<FlightProcess> process_;  // ends before the domain is given back
   hal::dds::LidarFrameSample frame_sample_{};
   std::uint32_t next_k_ = 0;
+  bool last_sent_ = false;
   std::uint8_t flight_mode_ = 0;
 };
 

@@ -21,6 +21,22 @@ TEST(FreeRunning, FlightAnswersOnItsOwnTimer) {
     EXPECT_EQ(step.attitude.exposure_time_ns, step.time_ns);
     EXPECT_GT(step.attitude.time_ns, step.time_ns) << "a cycle comes after the exposure of its frame";
   }
+  const std::string log = test::read_file(settings.flight_log_path);
+  EXPECT_NE(log.find("fixed priority"), std::string::npos) << log;
+  EXPECT_NE(log.find("memory locked"), std::string::npos) << log;
+}
+
+TEST(FreeRunning, LastFrameWithoutAnAttitudeIsMissedNotAFailure) {
+  SilSettings settings = test::settings();
+  settings.free_running = true;
+  settings.speed = 27.0;
+  std::vector<Sequence> sequences{make_sequence(Condition::kNominal, 1, 0, 5)};
+  sequences[0].frames.back().range_m = 5000.0;  // out of the sensor's reach: an empty frame
+  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, sequences, {});
+  EXPECT_EQ(recording.failure, "");
+  ASSERT_EQ(recording.steps.size(), 5U);
+  EXPECT_FALSE(recording.steps.back().answered);
+  EXPECT_GE(recording.steps_missed, 1U);
 }
 
 TEST(FreeRunning, NeedsASpeed) {

@@ -1,6 +1,7 @@
-#include "hal/dds/heap_trap.hpp"
+#include "hal/dds/flight/heap_trap.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cstdlib>
 #include <thread>
@@ -34,6 +35,10 @@ TEST(HeapTrap, CountsEveryWayToTheHeap) {
   std::free(block);
   EXPECT_EQ(allocations_during([&] { EXPECT_EQ(posix_memalign(&block, 256, 512), 0); }), 1U);
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(block) % 256, 0U);
+  std::free(block);
+  EXPECT_EQ(allocations_during([&] { use(block = valloc(10)); }), 1U);
+  std::free(block);
+  EXPECT_EQ(allocations_during([&] { use(block = pvalloc(10)); }), 1U);
   std::free(block);
   EXPECT_EQ(allocations_during([&] { use(block = ::operator new(9)); }), 1U);
   ::operator delete(block);

@@ -72,8 +72,10 @@ struct StartedSimulator {
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
     std::string program = TUMBLESIGHT_SIMULATOR_TO_KILL;
     SilSettings copy = settings;
-    char* argv[] = {program.data(), copy.model_path.data(), copy.flight_path.data(),
-                    copy.flight_log_path.data(), nullptr};
+    std::string domain = std::to_string(settings.domain);
+    char* argv[] = {program.data(),          copy.model_path.data(),
+                    copy.flight_path.data(), copy.flight_log_path.data(),
+                    domain.data(),           nullptr};
     posix_spawn(&pid, program.c_str(), &actions, nullptr, argv, environ);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);
@@ -85,11 +87,13 @@ struct StartedSimulator {
 
 TEST(Loss, SimulatorKilledEndsFlightWithAMessage) {
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // the orphaned flight program becomes our child
-  const SilSettings settings = test::settings();
+  SilSettings settings = test::settings();
+  settings.domain = test::spare_domain();
   const StartedSimulator simulator(settings);
   ASSERT_GT(simulator.flight, 0);
   kill(simulator.pid, SIGKILL);
   ASSERT_EQ(waitpid(simulator.pid, nullptr, 0), simulator.pid);
+  EXPECT_THROW(DomainLease(settings.domain), SilFailure) << "flight is still there";
 
   const auto begin = std::chrono::steady_clock::now();
   int status = -1;
@@ -102,6 +106,7 @@ TEST(Loss, SimulatorKilledEndsFlightWithAMessage) {
   ASSERT_EQ(ended, simulator.flight) << "flight did not end by itself";
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == kSimulatorGone) << status;
   EXPECT_NE(test::read_file(settings.flight_log_path).find("simulator is gone"), std::string::npos);
+  EXPECT_NO_THROW(DomainLease(settings.domain)) << "the domain is free again";
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   std::printf("flight ended %.1f s after the simulator was killed\n", took.count());
 }

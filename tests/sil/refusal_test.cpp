@@ -4,6 +4,8 @@
 #include <functional>
 #include <ostream>
 
+#include "gnc/rcnn/crc32.hpp"
+#include "gnc/rcnn/model_image.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
@@ -46,6 +48,17 @@ void PrintTo(const BadModel& model, std::ostream* out) {
   *out << model.name;
 }
 
+// A whole image, but of another network: its header's CRC is as it should be.
+void change_architecture(std::vector<std::uint8_t>& bytes) {
+  constexpr std::size_t kArchitecture = 12;
+  constexpr std::size_t kHeaderCrc = 64;
+  bytes[kArchitecture] ^= 1;
+  gnc::Crc32 crc;
+  crc.add(bytes.data(), kHeaderCrc);
+  crc.add(bytes.data() + gnc::kModelHeaderSize, gnc::kModelDataOffset - gnc::kModelHeaderSize);
+  for (unsigned i = 0; i < 4; ++i) bytes[kHeaderCrc + i] = static_cast<std::uint8_t>(crc.value() >> (8 * i));
+}
+
 class RefusedModel : public ::testing::TestWithParam<BadModel> {};
 
 TEST_P(RefusedModel, FlightSaysWhichAndAnswersInStandby) {
@@ -73,10 +86,13 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(BadModel{"Magic", "magic", [](auto& bytes) { bytes[0] ^= 1; }},
                       BadModel{"Version", "version", [](auto& bytes) { bytes[4] ^= 0xFF; }},
                       BadModel{"HeaderCrc", "header", [](auto& bytes) { bytes[49] ^= 1; }},
+                      BadModel{"Architecture", "network architecture", change_architecture},
+                      BadModel{"TooLarge", "too large",
+                               [](auto& bytes) { bytes.resize(8U * 1024U * 1024U + 1U); }},
                       BadModel{"WeightCrc", "CRC", [](auto& bytes) { bytes[bytes.size() - 9] ^= 1; }},
                       BadModel{"Size", "size", [](auto& bytes) { bytes.resize(bytes.size() - 4); }},
                       BadModel{"TooShort", "short", [](auto& bytes) { bytes.resize(40); }},
-                      BadModel{"Empty", ".tsm", [](auto& bytes) { bytes.clear(); }}),
+                      BadModel{"Empty", "file is empty", [](auto& bytes) { bytes.clear(); }}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Refusal, ModelOfAnotherTargetEndsTheRunInWords) {

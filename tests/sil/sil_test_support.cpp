@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -146,6 +147,29 @@ StepAnswer Conversation::finish() {
   StepAnswer answer = step({good_frame()}, {}, true);
   session.finish();
   return answer;
+}
+
+int spare_domain() {
+  // The ports of domains from 215 on lie above Linux's ephemeral ones.
+  constexpr int kFirst = 215;
+  constexpr int kCount = static_cast<int>(hal::dds::kMaxDomain) - kFirst + 1;
+  for (int i = 0; i < kCount; ++i) {
+    try {
+      // Processes beside each other begin at different ones.
+      return static_cast<int>(DomainLease(kFirst + (getpid() + i) % kCount).domain());
+    } catch (const SilFailure&) {
+    }
+  }
+  throw SilFailure("no spare DDS domain");
+}
+
+Environment::Environment(const char* name, const std::string& value) : name_(name) {
+  if (const char* before = std::getenv(name)) before_ = before;
+  setenv(name, value.c_str(), 1);
+}
+
+Environment::~Environment() {
+  before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_);
 }
 
 hal::Command command(std::uint16_t opcode) {

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,22 @@ class Conversation {
 
   SilSession session;
   std::uint32_t k = 0;  // of the next step
+};
+
+// A domain that is free and that no run chooses by itself, for who needs its number before the run.
+int spare_domain();
+
+// Sets an environment variable while it lives, for this process and those it starts.
+class Environment {
+ public:
+  Environment(const char* name, const std::string& value);
+  ~Environment();
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
 };
 
 hal::Command command(std::uint16_t opcode);

@@ -18,6 +18,10 @@ const char* to_string(FlightEnd end) {
       return "DDS failed";
     case FlightEnd::kStepOutOfOrder:
       return "the simulator skipped a step";
+    case FlightEnd::kHeapUsed:
+      return "the flight task used the heap";
+    case FlightEnd::kNoThread:
+      return "the system gave no thread for the flight task";
   }
   return "?";
 }

@@ -11,6 +11,8 @@ enum class FlightEnd : int {
   kSilence = 5,        // no simulator, or no step from it, for longer than the timeout
   kTransport = 6,      // DDS could not be set up, or refused a sample
   kStepOutOfOrder = 7,
+  kHeapUsed = 8,  // the run is complete, but the flight task took memory from the heap
+  kNoThread = 9,  // the system gave no thread for the flight task
 };
 
 const char* to_string(FlightEnd end);

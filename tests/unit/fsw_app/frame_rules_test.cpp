@@ -243,6 +243,35 @@ TEST_F(FrameRules, CycleTimeGoingBackWithoutFrameIsReportedAndCountsMissing) {
   EXPECT_EQ(out->housekeeping.frames_missing, 1U);
 }
 
+TEST_F(FrameRules, CycleTimeJumpingFarBackCostsOneCycle) {
+  now_ns -= 100 * config::kFramePeriod_ns;
+  step_good();
+  EXPECT_EQ(validity(), Validity::kFrameRefused);
+  EXPECT_EQ(out->event_count, 1);
+  EXPECT_EQ(events(EventId::kCycleTimeNotAdvancing), 1);
+  EXPECT_EQ(out->housekeeping.estimator_resets, before_.estimator_resets + 1);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U) << "frames of another time are no part of this motion";
+  EXPECT_EQ(out->event_count, 0);
+  step_good();
+  EXPECT_EQ(out->attitude.frames_since_reset, 2U);
+}
+
+TEST_F(FrameRules, CycleTimeGlitchingForwardForACycleCostsTheCycleBack) {
+  const std::int64_t before_glitch_ns = now_ns;
+  now_ns += 100 * config::kFramePeriod_ns;
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid) << "nothing tells a glitch from a pause yet";
+  now_ns = before_glitch_ns + config::kFramePeriod_ns;
+  step_good();
+  EXPECT_EQ(validity(), Validity::kFrameRefused);
+  EXPECT_EQ(events(EventId::kCycleTimeNotAdvancing), 1);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U);
+}
+
 TEST_F(FrameRules, FullestCycleFitsTheEvents) {
   init_with_model();  // its event comes with the next cycle
   step_good();

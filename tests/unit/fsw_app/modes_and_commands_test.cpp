@@ -5,6 +5,22 @@
 namespace tumblesight::fsw {
 namespace {
 
+// A stopwatch of a faulty platform: as a frame is about to be used, it fills the place for events, so that
+// the next event fails an assertion in the middle of the cycle.
+class SpoilingStopwatch final : public hal::Stopwatch {
+ public:
+  explicit SpoilingStopwatch(StepOutputs& outputs) : outputs_(outputs) {}
+  std::uint64_t now_ns() override {
+    if (armed && ++calls_ == 2) outputs_.event_count = config::kMaxEventsPerStep;
+    return 0;
+  }
+  bool armed = false;
+
+ private:
+  StepOutputs& outputs_;
+  int calls_ = 0;
+};
+
 class ModesAndCommands : public AppFixture {
  protected:
   // A platform that breaks the limits of StepInputs: a bug, hence an assertion.
@@ -229,6 +245,32 @@ TEST_F(ModesAndCommands, AssertionGoesSafeUntilStandbyIsCommanded) {
   EXPECT_EQ(validity(), Validity::kValid);
 }
 
+TEST_F(ModesAndCommands, NoAttitudeLeavesTheCycleThatAnAssertionEnds) {
+  SpoilingStopwatch spoiling(*out);
+  app->init(test_model_image().data(), test_model_image().size(), kTestTarget, spoiling);
+  step_good();
+  step_good();
+  // The numbers skipped are an event of the first frame; the second is as good.
+  sequence_number += 5;
+  std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
+  frames[0].exposure_time_ns -= 1'000'000;
+  frames[1].sequence_number += 1;
+  StepInputs inputs;
+  inputs.frame = frames.data();
+  inputs.frame_count = 2;
+  spoiling.armed = true;
+  app->step(next_time_ns(), inputs, *out);
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(out->housekeeping.mode, static_cast<int>(Mode::kSafe));
+  EXPECT_EQ(out->housekeeping.frames_used, 3U) << "the second frame is not touched";
+  EXPECT_EQ(validity(), Validity::kStandby);
+  EXPECT_EQ(out->attitude.time_ns, next_time_ns());
+  EXPECT_EQ(out->attitude.frames_since_reset, 0U);
+  EXPECT_EQ(out->attitude.sequence_number, 0U);
+  EXPECT_EQ(out->attitude.q_lrf_trf, (std::array<float, 4>{1.0F, 0.0F, 0.0F, 0.0F}));
+  EXPECT_FLOAT_EQ(out->attitude.predicted_error_rad, 3.14159265F);
+}
+
 TEST_F(ModesAndCommands, NewModelDoesNotEndSafe) {
   init_with_model();
   step_good();
@@ -286,6 +328,26 @@ TEST_F(ModesAndCommands, StopwatchRunningBackwardsMeasuresNothing) {
   step_good();
   EXPECT_EQ(out->housekeeping.inference_us, 0U);
   EXPECT_EQ(out->housekeeping.deadline_overruns, 0U);
+}
+
+TEST_F(ModesAndCommands, StateDigestTellsWhichModelIsActive) {
+  gnc::ModelHeader header;
+  auto weights = std::make_unique<gnc::NetworkWeights>();
+  std::vector<std::uint8_t> other = test_model_image();
+  ASSERT_EQ(gnc::read_model_image(other.data(), other.size(), kTestTarget, header, *weights),
+            gnc::ModelStatus::kOk);
+  bool changed = false;
+  gnc::for_each_tensor(*weights, [&](const char*, float* data, std::size_t) {
+    if (!changed) data[0] += 1.0F;
+    changed = true;
+  });
+  ASSERT_EQ(gnc::write_model_image(header, *weights, other.data(), other.size()), other.size());
+
+  init_with_model();
+  auto twin = std::make_unique<AttitudeInitApp>();
+  twin->init(other.data(), other.size(), kTestTarget, stopwatch);
+  ASSERT_EQ(twin->model_status(), gnc::ModelStatus::kOk);
+  EXPECT_NE(app->state_crc32(), twin->state_crc32());
 }
 
 TEST_F(ModesAndCommands, StateDigestFollowsModeEstimatorAndCounters) {

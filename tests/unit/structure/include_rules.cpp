@@ -29,13 +29,11 @@ std::string platform_of(const std::string& file) {
   return file.substr(0, file.find('/', 4) + 1);
 }
 
-// A platform's main.cpp is where the application and the platform meet. The named files are parts of that one
-// program, and of no library.
+// A platform's main.cpp, or all of its folder flight/, is where the application and the platform meet: parts
+// of a program, and of no library.
 bool belongs_to_main(const std::string& file) {
-  static const std::vector<std::string> kPrograms{"hal/dds/main", "hal/dds/flight_loop",
-                                                  "hal/dds/flight_model", "hal/dds/flight_task"};
-  const std::string stem = file.substr(0, file.rfind('.'));
-  return is_one_of(stem, kPrograms) || (starts_with(file, "hal/") && file == platform_of(file) + "main.cpp");
+  if (!starts_with(file, "hal/") || is_interface(file)) return false;
+  return file == platform_of(file) + "main.cpp" || starts_with(file, platform_of(file) + "flight/");
 }
 
 bool is_project(const std::string& path) {
@@ -72,6 +70,7 @@ std::string project_objection(const std::string& file, const std::string& path) 
     return only(starts_with_any(path, {"fsw/", "gnc/", "hal/"}), "a flight program knows no host code");
   }
   if (starts_with(file, "hal/")) {
+    if (belongs_to_main(path)) return "a platform's library knows nothing of its program";
     return only(starts_with_any(path, {"gnc/", platform_of(file)}) || is_interface(path),
                 "a platform knows gnc, the hal interfaces and itself only");
   }

@@ -1,4 +1,4 @@
-#include "hal/dds/heap_trap.hpp"
+#include "hal/dds/flight/heap_trap.hpp"
 
 #include <cerrno>
 
@@ -8,6 +8,8 @@ void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
+void* __libc_valloc(std::size_t size);
+void* __libc_pvalloc(std::size_t size);
 void __libc_free(void* block);
 }
 
@@ -79,6 +81,16 @@ int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
   if (aligned == nullptr) return ENOMEM;
   *block = aligned;
   return 0;
+}
+
+void* valloc(std::size_t size) {
+  tumblesight::hal::dds::note(size);
+  return __libc_valloc(size);
+}
+
+void* pvalloc(std::size_t size) {
+  tumblesight::hal::dds::note(size);
+  return __libc_pvalloc(size);
 }
 
 void free(void* block) {

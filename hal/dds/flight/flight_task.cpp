@@ -1,9 +1,12 @@
-#include "hal/dds/flight_task.hpp"
+#include "hal/dds/flight/flight_task.hpp"
 
 #include <cerrno>
+#include <cstdio>
+#include <cstring>
 
 #include "fsw/config/limits.hpp"
-#include "hal/dds/heap_trap.hpp"
+#include "hal/dds/flight/heap_trap.hpp"
+#include "hal/posix/realtime.hpp"
 
 namespace tumblesight::hal::dds {
 namespace {
@@ -21,6 +24,19 @@ void wait(sem_t& semaphore) {
   }
 }
 
+const char* granted(int error) {
+  return error == 0 ? "granted" : std::strerror(error);
+}
+
+// What is not granted costs punctuality, no more: the task runs without it.
+void become_realtime() {
+  // Above everything that is not itself real-time, below what others may have put higher on purpose.
+  constexpr int kPriority = 10;
+  const posix::RealtimeGrant grant = posix::request_realtime(kPriority);
+  std::fprintf(stderr, "flight: fixed priority %d: %s; ", kPriority, granted(grant.scheduler_error));
+  std::fprintf(stderr, "memory locked: %s\n", granted(grant.memory_lock_error));
+}
+
 }  // namespace
 
 std::int64_t MissionClock::at(std::int64_t release_ns) const {
@@ -36,19 +52,17 @@ FlightTask::FlightTask(fsw::AttitudeInitApp& app, DdsLidar& lidar, DdsLink& link
   sem_init(&done_, 0, 0);
 }
 
-bool FlightTask::start_lockstep(std::uint32_t run_id) {
-  return start(run_id);
+bool FlightTask::start(bool free_running) {
+  free_running_ = free_running;
+  started_ = pthread_create(&thread_, nullptr, thread_main, this) == 0;
+  if (started_) wait(done_);
+  return started_;
 }
 
-bool FlightTask::start_free(std::uint32_t run_id, PeriodicTask& timer, const MissionClock& clock) {
+void FlightTask::begin_free(PeriodicTask& timer, const MissionClock& clock) {
   timer_ = &timer;
   clock_ = clock;
-  return start(run_id);
-}
-
-bool FlightTask::start(std::uint32_t run_id) {
-  run_id_ = run_id;
-  return pthread_create(&thread_, nullptr, thread_main, this) == 0;
+  sem_post(&go_);
 }
 
 void FlightTask::run_cycle(std::uint32_t k, std::int64_t now_ns) {
@@ -59,6 +73,8 @@ void FlightTask::run_cycle(std::uint32_t k, std::int64_t now_ns) {
 }
 
 void FlightTask::join() {
+  if (!started_) return;
+  started_ = false;
   end_requested_ = true;
   sem_post(&go_);
   pthread_join(thread_, nullptr);
@@ -70,8 +86,10 @@ void* FlightTask::thread_main(void* self) {
 }
 
 void FlightTask::run() {
+  if (free_running_) become_realtime();
+  sem_post(&done_);
   arm_heap_trap();
-  timer_ == nullptr ? run_lockstep() : run_free();
+  free_running_ ? run_free() : run_lockstep();
   disarm_heap_trap();
   heap_allocations_ = dds::heap_allocations();
   first_heap_allocation_bytes_ = dds::first_heap_allocation_bytes();
@@ -87,6 +105,8 @@ void FlightTask::run_lockstep() {
 }
 
 void FlightTask::run_free() {
+  wait(go_);
+  if (timer_ == nullptr) return;  // ended before it began
   bool last = false;
   for (std::uint32_t k = 0; !last; ++k) {
     const std::int64_t release_ns = timer_->wait_next_release_ns(slips_);

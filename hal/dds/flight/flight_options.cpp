@@ -1,4 +1,4 @@
-#include "hal/dds/flight_options.hpp"
+#include "hal/dds/flight/flight_options.hpp"
 
 #include <cerrno>
 #include <cmath>
@@ -91,7 +91,7 @@ void print_flight_help() {
       "  --help             this text\n\n"
       "Exit status: 0 done, 2 bad arguments, 3 interface definitions unequal, 4 simulator gone, 5 nothing "
       "came for too\n"
-      "long, 6 DDS failed, 7 step out of order.\n");
+      "long, 6 DDS failed, 7 step out of order, 8 the flight task used the heap, 9 no thread for it.\n");
 }
 
 ParseResult parse_flight_options(int argc, char** argv, FlightOptions& options) {

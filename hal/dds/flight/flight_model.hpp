@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fsw/app/attitude_init_app.hpp"
-#include "hal/dds/flight_options.hpp"
+#include "hal/dds/flight/flight_options.hpp"
 #include "hal/stopwatch.hpp"
 
 namespace tumblesight::hal::dds {

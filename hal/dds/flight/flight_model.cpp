@@ -1,15 +1,18 @@
-#include "hal/dds/flight_model.hpp"
+#include "hal/dds/flight/flight_model.hpp"
 
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstring>
 
+#include "fsw/config/limits.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "hal/posix/file_model_store.hpp"
 
 namespace tumblesight::hal::dds {
 namespace {
+
+static_assert(gnc::kModelImageSize <= fsw::config::kMaxModelImageBytes, "the limit would refuse every image");
 
 // The folder that this program lies in, without a slash at its end.
 bool program_folder(char (&folder)[FlightOptions::kMaxPath]) {
@@ -42,7 +45,7 @@ void find_shipped_model(FlightOptions& options) {
 
 void load_model(FlightOptions& options, fsw::AttitudeInitApp& app, Stopwatch& stopwatch) {
   if (options.model_path[0] == '\0') find_shipped_model(options);
-  static posix::FileModelStore store(options.model_path);
+  static posix::FileModelStore store(options.model_path, fsw::config::kMaxModelImageBytes);
   const ModelBytes image = store.active_image();
   app.init(image.data, image.size, options.target, stopwatch);
   if (app.mode() != fsw::Mode::kStandby) return;

@@ -1,4 +1,4 @@
-#include "hal/dds/flight_loop.hpp"
+#include "hal/dds/flight/flight_loop.hpp"
 
 #include <cstdio>
 
@@ -43,24 +43,26 @@ FlightEnd carry_until_last(FlightBus& bus) {
   }
 }
 
-void report(const FlightTask& task) {
+// Once the task has ended: what the last telemetry could not tell any more.
+FlightEnd report(const FlightTask& task, FlightEnd end) {
+  if (task.slips() > 0)
+    std::fprintf(stderr, "flight: %u releases of the flight task slipped\n", task.slips());
   if (task.heap_allocations() > 0) {
     std::fprintf(stderr, "flight: the flight task used the heap %u times, first for %zu bytes\n",
                  task.heap_allocations(), task.first_heap_allocation_bytes());
+    if (end == FlightEnd::kComplete) return FlightEnd::kHeapUsed;
   }
-  if (task.slips() > 0)
-    std::fprintf(stderr, "flight: %u releases of the flight task slipped\n", task.slips());
+  return end;
 }
 
 }  // namespace
 
 FlightEnd run_lockstep(FlightBus& bus, FlightTask& task) {
-  if (!task.start_lockstep(bus.run_id())) return FlightEnd::kTransport;
+  task.join_run(bus.run_id());
   const FlightEnd end = lockstep_steps(bus, task);
   task.join();
   if (end == FlightEnd::kComplete) bus.flush();
-  report(task);
-  return end;
+  return report(task, end);
 }
 
 FlightEnd run_free(FlightBus& bus, FlightTask& task, Stopwatch& stopwatch, std::int64_t period_ns) {
@@ -71,13 +73,13 @@ FlightEnd run_free(FlightBus& bus, FlightTask& task, Stopwatch& stopwatch, std::
   // A quarter of a period after each exposure: the frame is there by then, and one that is a little late
   // still makes it.
   posix::PosixPeriodicTask timer(clock.wall_ns + period_ns / 4, period_ns);
-  if (!task.start_free(bus.run_id(), timer, clock)) return FlightEnd::kTransport;
+  task.join_run(bus.run_id());
+  task.begin_free(timer, clock);
   end = carry_until_last(bus);
   task.join();
   if (end == FlightEnd::kComplete && !bus.carry_out()) end = FlightEnd::kTransport;
   if (end == FlightEnd::kComplete) bus.flush();
-  report(task);
-  return end;
+  return report(task, end);
 }
 
 }  // namespace tumblesight::hal::dds

@@ -31,13 +31,16 @@ class FlightTask {
  public:
   FlightTask(fsw::AttitudeInitApp& app, DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace);
 
-  // Either of them starts the thread; false if the system gives none.
-  [[nodiscard]] bool start_lockstep(std::uint32_t run_id);
-  [[nodiscard]] bool start_free(std::uint32_t run_id, PeriodicTask& timer, const MissionClock& clock);
+  // Starts the thread and returns once it is ready; false if the system gives none. Free-running it asks for
+  // a fixed priority and locked memory, which takes longer than a cycle may wait: so start it before the run.
+  [[nodiscard]] bool start(bool free_running);
+  void join_run(std::uint32_t run_id) { run_id_ = run_id; }
+  // Free-running: cycles on the timer from now on.
+  void begin_free(PeriodicTask& timer, const MissionClock& clock);
 
   // Lockstep: one cycle; returns once it is over.
   void run_cycle(std::uint32_t k, std::int64_t now_ns);
-  // The thread ends; free-running after one more cycle.
+  // The thread ends; free-running after one more cycle, if they have begun. Nothing to do without a thread.
   void join();
 
   // Of the thread, once it has ended.
@@ -46,7 +49,6 @@ class FlightTask {
   std::uint32_t slips() const { return slips_; }
 
  private:
-  bool start(std::uint32_t run_id);
   static void* thread_main(void* self);
   void run();
   void run_lockstep();
@@ -57,11 +59,14 @@ class FlightTask {
   DdsLidar& lidar_;
   DdsLink& link_;
   fsw::CycleWorkspace& workspace_;
-  PeriodicTask* timer_ = nullptr;  // nullptr: lockstep
+  // Handed over by go_ before the first cycle.
+  PeriodicTask* timer_ = nullptr;
   MissionClock clock_;
   std::uint32_t run_id_ = 0;
 
   pthread_t thread_{};
+  bool started_ = false;
+  bool free_running_ = false;
   sem_t go_;
   sem_t done_;
   std::atomic<bool> end_requested_{false};

@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "hal/dds/flight_loop.hpp"
-#include "hal/dds/flight_model.hpp"
-#include "hal/dds/flight_options.hpp"
+#include "hal/dds/flight/flight_loop.hpp"
+#include "hal/dds/flight/flight_model.hpp"
+#include "hal/dds/flight/flight_options.hpp"
+#include "hal/dds/flight/heap_trap.hpp"
 #include "hal/dds/handshake.hpp"
-#include "hal/dds/heap_trap.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/stop_request.hpp"
 #include "hal/posix/monotonic_stopwatch.hpp"
@@ -52,6 +52,7 @@ hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options,
 }
 
 FlightEnd fly(const hal::dds::FlightOptions& options) {
+  if (!task.start(options.free_running)) return FlightEnd::kNoThread;
   const FlightEnd connected = connect(options);
   if (connected != FlightEnd::kComplete) return connected;
   const auto timeout_ns = static_cast<std::int64_t>(options.timeout_s * 1e9);
@@ -80,6 +81,7 @@ int main(int argc, char** argv) {
   hal::dds::load_model(options, app, stopwatch);
 
   const FlightEnd end = fly(options);
+  task.join();  // if there never was a run
   if (end != FlightEnd::kComplete) std::fprintf(stderr, "flight: %s\n", hal::dds::to_string(end));
   domain.close();
   return static_cast<int>(end);

@@ -4,11 +4,14 @@
 
 #include <cstdint>
 
+#include "hal/dds/flight/flight_task.hpp"
 #include "hal/dds/flight_bus.hpp"
-#include "hal/dds/flight_task.hpp"
 #include "hal/dds/idl/flight_end.hpp"
 
 namespace tumblesight::hal::dds {
+
+// Both take a task that has been started, return once it has ended, and report on the standard error stream
+// what the last telemetry could not tell. A run that was complete but for the heap ends with kHeapUsed.
 
 // Step after step until the last one.
 FlightEnd run_lockstep(FlightBus& bus, FlightTask& task);

@@ -1,0 +1,53 @@
+// Preloaded into the flight program by a test: a fault of the system that no input brings about.
+// TUMBLESIGHT_FAULT names it: "heap" makes the flight task use the heap each time that it reports a cycle
+// done, that is, after the cycle's telemetry; "thread" gives the program itself no thread (its libraries get
+// theirs).
+#include <dlfcn.h>
+#include <errno.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <stdlib.h>
+#include <string.h>
+
+namespace {
+
+bool fault_is(const char* name) {
+  const char* wanted = getenv("TUMBLESIGHT_FAULT");
+  return wanted != nullptr && strcmp(wanted, name) == 0;
+}
+
+// The original behind a name that this library stands in front of.
+template <class Function>
+Function original(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+bool is_of_flight(const void* code) {
+  Dl_info info;
+  if (dladdr(code, &info) == 0) return false;
+  const char* slash = strrchr(info.dli_fname, '/');
+  return strcmp(slash != nullptr ? slash + 1 : info.dli_fname, "flight") == 0;
+}
+
+}  // namespace
+
+extern "C" {
+
+int sem_post(sem_t* semaphore) noexcept {
+  static const auto post = original<int (*)(sem_t*)>("sem_post");
+  if (fault_is("heap")) {
+    void* volatile block = malloc(77);
+    free(block);
+  }
+  return post(semaphore);
+}
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*run)(void*),
+                   void* argument) noexcept {
+  using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+  static const auto create = original<Create>("pthread_create");
+  if (fault_is("thread") && is_of_flight(reinterpret_cast<const void*>(run))) return EAGAIN;
+  return create(thread, attributes, run, argument);
+}
+
+}  // extern "C"

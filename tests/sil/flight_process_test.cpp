@@ -1,0 +1,51 @@
+#include "sim/sil/flight_process.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(FlightProcess, TellsGoodEndsFromBadOnes) {
+  FlightProcess good("/bin/true", {}, "");
+  FlightProcess bad("/bin/false", {}, "");
+  ASSERT_TRUE(good.wait_for_end(5.0));
+  ASSERT_TRUE(bad.wait_for_end(5.0));
+  EXPECT_TRUE(good.ended_well());
+  EXPECT_FALSE(bad.ended_well());
+}
+
+TEST(FlightProcess, EndWithoutAStatusIsNoGoodEnd) {
+  const auto before = signal(SIGCHLD, SIG_IGN);
+  FlightProcess process("/bin/false", {}, "");
+  EXPECT_TRUE(process.wait_for_end(5.0));
+  signal(SIGCHLD, before);
+  EXPECT_FALSE(process.ended_well());
+  EXPECT_NE(process.how_it_ended().find("status is lost"), std::string::npos) << process.how_it_ended();
+}
+
+TEST(FlightProcess, HeapUsedAfterTheLastTelemetryIsAFailureOfTheRun) {
+  const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
+  const test::Environment fault("TUMBLESIGHT_FAULT", "heap");
+  const SilSettings settings = test::settings();
+  const std::vector<Sequence> one_step{make_sequence(Condition::kNominal, 1, 0, 1)};
+  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, one_step, {});
+  EXPECT_EQ(recording.steps_missed, 0U);
+  EXPECT_EQ(recording.flight_heap_allocations, 0U) << "the telemetry came before it";
+  EXPECT_NE(recording.failure.find("used the heap"), std::string::npos) << recording.failure;
+  EXPECT_NE(test::read_file(settings.flight_log_path).find("used the heap 1 times, first for 77 bytes"),
+            std::string::npos);
+}
+
+TEST(FlightProcess, NoThreadForTheFlightTaskIsSaidInWords) {
+  const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
+  const test::Environment fault("TUMBLESIGHT_FAULT", "thread");
+  const SilRecording recording =
+      run_sil(test::settings(), test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  EXPECT_NE(recording.failure.find("no thread for the flight task"), std::string::npos) << recording.failure;
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
