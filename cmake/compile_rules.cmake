@@ -1,18 +1,19 @@
 # Two sets of compile rules, each an interface target that a folder's library links.
 
 # Every source of the project (PUBLIC). Eigen without its own vector code: its summation order depends on the vector
-# width, and so does the layout of its types, which both sides share.
+# width, and so does the layout of its types, which both sides share. No contraction into fused multiply-add: the same
+# float bits on every processor.
 find_package(Eigen3 REQUIRED NO_MODULE)
 add_library(project_rules INTERFACE)
 target_link_libraries(project_rules INTERFACE Eigen3::Eigen)
 target_include_directories(project_rules INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_definitions(project_rules INTERFACE EIGEN_DONT_VECTORIZE)
-target_compile_options(project_rules INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+target_compile_options(project_rules INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
   -Wno-float-conversion)
 
 # The flight side's sources, beside that (PRIVATE, so that programs which link them are not bound): no exceptions, no
-# RTTI, no heap, and the same float bits on every processor (no contraction into fused multiply-add).
+# RTTI, no heap.
 add_library(flight_rules INTERFACE)
-target_compile_options(flight_rules INTERFACE -ffp-contract=off -ffunction-sections -fdata-sections
+target_compile_options(flight_rules INTERFACE -ffunction-sections -fdata-sections
   $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti -fno-threadsafe-statics>)
 target_compile_definitions(flight_rules INTERFACE EIGEN_NO_MALLOC EIGEN_NO_IO)

@@ -13,8 +13,12 @@ constexpr double kMaxRange_m = 100.0;
 constexpr double kMaxRate_rad_s = 20.0 * 0.017453292519943295;
 
 Eigen::Quaterniond uniform_attitude(Random& random) {
-  const Eigen::Vector4d q(random.normal(), random.normal(), random.normal(), random.normal());
-  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+  // One a statement: the order in which a compiler evaluates arguments is its own.
+  const double z = random.normal();
+  const double y = random.normal();
+  const double x = random.normal();
+  const double w = random.normal();
+  return Eigen::Quaterniond(w, x, y, z).normalized();
 }
 
 // Components uniform; drawn again until the norm is within the limit.

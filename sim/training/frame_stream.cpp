@@ -1,7 +1,9 @@
 #include "sim/training/frame_stream.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
+#include "gnc/rcnn/crc32.hpp"
 #include "sim/scenario/random.hpp"
 #include "sim/scenario/sequence.hpp"
 
@@ -19,20 +21,55 @@ struct Workspace {
   gnc::DepthImageScratch scratch;
 };
 
-// Renders frame `index`; draws again in the rare case that the sensor sees too little to be used.
-FrameTruth render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t index, Workspace& work) {
+// Frame `index` of a seed, and whether it can be used.
+bool try_render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t index, Workspace& work,
+                FrameTruth& truth) {
   const auto& lidar = *targets.lidars[index % targets.lidars.size()];
   const Condition condition =
       (index / targets.lidars.size()) % 2 == 0 ? Condition::kNominal : Condition::kDegraded;
-  for (std::uint64_t attempt = 0;; ++attempt) {
-    const Sequence sequence = make_sequence(condition, mix(seed, attempt), index, 1);
-    const FrameTruth& truth = sequence.frames.front();
-    lidar.expose(truth, sensor_settings(condition), targets.projection.swath_m, sequence.noise_seed,
-                 work.frame);
-    if (make_depth_image(work.frame, targets.projection, work.scratch, work.image) == gnc::FrameStatus::kOk) {
-      return truth;
+  const Sequence sequence = make_sequence(condition, seed, index, 1);
+  truth = sequence.frames.front();
+  lidar.expose(truth, sensor_settings(condition), targets.projection.swath_m, sequence.noise_seed,
+               work.frame);
+  return make_depth_image(work.frame, targets.projection, work.scratch, work.image) == gnc::FrameStatus::kOk;
+}
+
+// Renders frame `index`; draws again in the rare case that the sensor sees too little. Every target has shown
+// that it can be seen (make_training_targets), so this ends.
+FrameTruth render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t index, Workspace& work) {
+  FrameTruth truth;
+  for (std::uint64_t attempt = 0; !try_render(targets, mix(seed, attempt), index, work, truth); ++attempt) {
+  }
+  return truth;
+}
+
+// At least half of a few dozen frames of every mesh must be usable.
+void require_visible(const TrainingTargets& targets, const std::vector<TriangleMesh>& meshes) {
+  constexpr std::uint64_t kTries = 32;
+  const auto work = std::make_unique<Workspace>();
+  for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh) {
+    std::uint64_t seen = 0;
+    FrameTruth truth;
+    for (std::uint64_t i = 0; i < kTries; ++i)
+      seen += try_render(targets, 1, i * meshes.size() + mesh, *work, truth);
+    if (2 * seen < kTries) {
+      throw std::runtime_error(meshes[mesh].name + ": the sensor sees too little of it (fewer than " +
+                               std::to_string(gnc::kMinReturns) + " returns) in " +
+                               std::to_string(kTries - seen) + " of " + std::to_string(kTries) +
+                               " frames; is the surface complete and in metres?");
     }
   }
+}
+
+std::uint32_t crc32_of(const std::vector<TriangleMesh>& meshes) {
+  gnc::Crc32 crc;
+  for (const TriangleMesh& mesh : meshes) {
+    for (const Eigen::Vector3f& v : mesh.vertices_trf_m) crc.add_f32(v.data(), 3);
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::uint32_t index : triangle) crc.add_u32(index);
+    }
+  }
+  return crc.value();
 }
 
 // Turned a quarter about the boresight, counter-clockwise as the image is seen: (x, z) -> (-z, x).
@@ -54,6 +91,8 @@ TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes) {
     targets.projection.swath_m = std::max(targets.projection.swath_m, static_cast<float>(swath_m(mesh)));
     targets.projection.target_radius_m = std::max(targets.projection.target_radius_m, mesh.radius_m());
   }
+  targets.meshes_crc32 = crc32_of(meshes);
+  require_visible(targets, meshes);
   return targets;
 }
 

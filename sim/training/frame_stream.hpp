@@ -20,7 +20,9 @@ namespace tumblesight::sim {
 struct TrainingTargets {
   std::vector<std::unique_ptr<FlashLidar>> lidars;  // one a mesh
   gnc::DepthProjection projection;
+  std::uint32_t meshes_crc32 = 0;  // names the surfaces
 };
+// Throws std::runtime_error that names a mesh of which the sensor never sees enough.
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes);
 
 struct FrameBatch {

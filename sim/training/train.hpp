@@ -39,10 +39,8 @@ bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings,
 bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings, const Cnn& cnn,
                 Recurrent& recurrent, const std::atomic<bool>& stop);
 
-// Shared by the stages.
-double cosine_rate(double peak, std::int64_t iteration,
-                   std::int64_t total);  // short linear warm-up, then to zero
-// Mean since the last call, validation figures in degrees: fills the error columns of `point`.
+// Validation figures in degrees of a point of the log, from the errors of the best and of the chosen
+// hypothesis.
 void fill_errors(TrainingPoint& point, const torch::Tensor& best_rad, const torch::Tensor& chosen_rad);
 
 }  // namespace tumblesight::sim

@@ -1,24 +1,16 @@
-#include <chrono>
-#include <cmath>
-
-#include "sim/training/checkpoint.hpp"
+#include "gnc/rcnn/crc32.hpp"
 #include "sim/training/loss.hpp"
+#include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr double kDegrees = 57.29577951308232;
 constexpr double kGradientNorm = 1.0;  // paper: gradient threshold
-constexpr std::int64_t kValidationFrames = 1024;
+constexpr double kWeightDecay = 1e-4;
+constexpr int kValidationFrames = 1024;
 constexpr std::int64_t kIterationsPerPoint = 500;
 constexpr std::uint64_t kValidationSeed = 0x76616C6964ULL;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Share of the mean over all hypotheses in the loss: 30 % at the start, 2 % after a quarter.
 double spread_at(std::int64_t iteration, std::int64_t total) {
@@ -41,16 +33,43 @@ void validate(Cnn& cnn, const FrameBatch& data, const TrainingSettings& settings
   cnn->train();
 }
 
-}  // namespace
-
-double cosine_rate(double peak, std::int64_t iteration, std::int64_t total) {
-  constexpr std::int64_t kWarmUp = 200;
-  const double fraction = static_cast<double>(iteration) / static_cast<double>(total);
-  const double cosine = 0.5 * peak * (1.0 + std::cos(3.14159265358979 * std::min(1.0, fraction)));
-  return cosine * std::min(1.0, static_cast<double>(iteration + 1) / kWarmUp);
+double train_once(Cnn& cnn, const FrameBatch& batch, const TrainingSettings& settings, double spread,
+                  torch::optim::Optimizer& optimizer) {
+  const auto result = cnn->forward(batch.images.to(settings.device), settings.bfloat16);
+  const auto errors = hypothesis_errors(result.output, batch.r_lrf_trf.to(settings.device));
+  const torch::Tensor loss = hypothesis_loss(result.output, errors, spread);
+  optimizer.zero_grad();
+  loss.backward();
+  torch::nn::utils::clip_grad_norm_(cnn->parameters(), kGradientNorm);
+  optimizer.step();
+  return loss.item<double>();
 }
 
+StageSettings stage_settings(const TrainingTargets& targets, const TrainingSettings& settings) {
+  gnc::Crc32 crc;
+  for (const std::uint64_t value : {settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
+                                    static_cast<std::uint64_t>(settings.cnn_batch)}) {
+    crc.add_u32(static_cast<std::uint32_t>(value));
+    crc.add_u32(static_cast<std::uint32_t>(value >> 32));
+  }
+  crc.add_u32(targets.meshes_crc32);
+  StageSettings stage;
+  stage.name = "cnn";
+  stage.folder = settings.folder;
+  stage.iterations = settings.cnn_images / settings.cnn_batch;
+  stage.batch = settings.cnn_batch;
+  stage.unit = "images";
+  stage.learning_rate = settings.cnn_learning_rate;
+  stage.iterations_per_point = kIterationsPerPoint;
+  stage.checkpoint_s = settings.checkpoint_s;
+  stage.fingerprint = crc.value();
+  return stage;
+}
+
+}  // namespace
+
 void fill_errors(TrainingPoint& point, const torch::Tensor& best_rad, const torch::Tensor& chosen_rad) {
+  constexpr double kDegrees = 57.29577951308232;
   point.best_deg = best_rad.mean().item<double>() * kDegrees;
   point.mean_deg = chosen_rad.mean().item<double>() * kDegrees;
   point.median_deg = chosen_rad.median().item<double>() * kDegrees;
@@ -59,70 +78,33 @@ void fill_errors(TrainingPoint& point, const torch::Tensor& best_rad, const torc
 
 bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn,
                const std::atomic<bool>& stop) {
-  const std::string path = settings.folder + "/cnn.ckpt";
-  const std::int64_t total = settings.cnn_images / settings.cnn_batch;
+  const StageSettings shape = stage_settings(targets, settings);
+  Stage stage(shape);
   cnn->to(settings.device);
-  torch::optim::AdamW optimizer(cnn->parameters(),
-                                torch::optim::AdamWOptions(settings.cnn_learning_rate).weight_decay(1e-4));
-  CheckpointPosition position;
-  load_checkpoint(path, cnn, &optimizer, position);
-  if (position.iteration >= total) return true;
+  torch::optim::AdamW optimizer(
+      cnn->parameters(), torch::optim::AdamWOptions(settings.cnn_learning_rate).weight_decay(kWeightDecay));
+  stage.resume(cnn, optimizer);
+  if (stage.finished()) return true;
 
-  TrainingLog log(settings.folder, "cnn", position.iteration);
-  ProgressLine progress;
   const FrameBatch validation = render_frames(targets, kValidationSeed, 0, kValidationFrames);
-  FrameStream stream(targets, settings.seed, settings.cnn_batch, position.iteration, settings.workers);
-  const double seconds_before = position.seconds;
-  const std::int64_t first = position.iteration;
-  const auto start = Clock::now();
-  auto last_checkpoint = start;
-  double loss_sum = 0.0, last_loss = 0.0;
-  TrainingPoint point;
+  FrameStream stream(targets, settings.seed, settings.cnn_batch,
+                     static_cast<std::uint64_t>(stage.iteration()), settings.workers);
+  stage.start();
   cnn->train();
-  while (position.iteration < total && !stop) {
-    const double rate = cosine_rate(settings.cnn_learning_rate, position.iteration, total);
-    for (auto& group : optimizer.param_groups()) group.options().set_lr(rate);
-    const FrameBatch batch = stream.next();
-    const auto result = cnn->forward(batch.images.to(settings.device), settings.bfloat16);
-    const auto errors = hypothesis_errors(result.output, batch.r_lrf_trf.to(settings.device));
-    const torch::Tensor loss = hypothesis_loss(result.output, errors, spread_at(position.iteration, total));
-    optimizer.zero_grad();
-    loss.backward();
-    torch::nn::utils::clip_grad_norm_(cnn->parameters(), kGradientNorm);
-    optimizer.step();
-    loss_sum += loss.item<double>();
-
-    ++position.iteration;
-    position.seconds = seconds_before + seconds_since(start);
-    if (position.iteration % kIterationsPerPoint == 0 || position.iteration == total) {
-      const std::int64_t since = (position.iteration - 1) % kIterationsPerPoint + 1;
-      last_loss = loss_sum / static_cast<double>(since);
-      loss_sum = 0.0;
-      point = {"cnn",
-               position.iteration,
-               position.iteration * settings.cnn_batch,
-               position.seconds,
-               rate,
-               last_loss,
-               0,
-               0,
-               0,
-               0};
+  while (!stage.finished() && !stop) {
+    stage.set_rate(optimizer);
+    const double spread = spread_at(stage.iteration(), shape.iterations);
+    stage.advance(train_once(cnn, stream.next(), settings, spread, optimizer));
+    if (stage.point_due()) {
+      TrainingPoint point = stage.new_point();
       validate(cnn, validation, settings, point);
-      log.add(point);
+      stage.add_point(point);
     }
-    progress.show(
-        "cnn", position.iteration * settings.cnn_batch, total * settings.cnn_batch,
-        static_cast<double>((position.iteration - first) * settings.cnn_batch) / seconds_since(start),
-        "images", last_loss, point.mean_deg);
-    if (seconds_since(last_checkpoint) > settings.checkpoint_s) {
-      save_checkpoint(path, cnn, optimizer, position);
-      last_checkpoint = Clock::now();
-    }
+    stage.save_if_due(cnn, optimizer);
   }
-  save_checkpoint(path, cnn, optimizer, position);
-  progress.finish();
-  return position.iteration >= total;
+  stage.save(cnn, optimizer);
+  stage.finish_progress();
+  return stage.finished();
 }
 
 }  // namespace tumblesight::sim

@@ -1,28 +1,24 @@
-#include <chrono>
+#include <cstring>
 #include <memory>
 
-#include "sim/training/checkpoint.hpp"
+#include "gnc/rcnn/crc32.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/loss.hpp"
 #include "sim/training/sequence_features.hpp"
+#include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kGradientNorm = 1.0;
+constexpr double kWeightDecay = 1e-3;
 constexpr std::int64_t kValidationSequences = 512;
 constexpr std::uint64_t kValidationSeed = 0x76616C6964ULL + 1;
 constexpr std::int64_t kFirstSequences = 2048;      // there before the first iteration
 constexpr std::int64_t kSequencesPerIteration = 8;  // by how much the supply grows while it is learnt from
 constexpr std::int64_t kIterationsPerPoint = 100;
 constexpr double kSpread = 0.02;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Which sequences the iteration learns from depends on its number only, so a resumed run goes on as if
 // uninterrupted.
@@ -58,74 +54,76 @@ double train_once(Recurrent& recurrent, const FeatureSet& data, const torch::Ten
   return loss.item<double>();
 }
 
+// Of the frozen CNN: an LSTM is worth nothing on another one's features.
+std::uint32_t crc32_of_cnn(const gnc::NetworkWeights& weights) {
+  gnc::Crc32 crc;
+  gnc::for_each_tensor(weights, [&](const char* name, const float* data, std::size_t count) {
+    if (std::strncmp(name, "lstm", 4) != 0 && std::strncmp(name, "head", 4) != 0) crc.add_f32(data, count);
+  });
+  return crc.value();
+}
+
+StageSettings stage_settings(const TrainingTargets& targets, const TrainingSettings& settings,
+                             const gnc::NetworkWeights& weights) {
+  gnc::Crc32 crc;
+  for (const std::uint64_t value : {settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
+                                    static_cast<std::uint64_t>(settings.rcnn_iterations),
+                                    static_cast<std::uint64_t>(settings.rcnn_batch)}) {
+    crc.add_u32(static_cast<std::uint32_t>(value));
+    crc.add_u32(static_cast<std::uint32_t>(value >> 32));
+  }
+  crc.add_u32(targets.meshes_crc32);
+  crc.add_u32(crc32_of_cnn(weights));
+  StageSettings stage;
+  stage.name = "rcnn";
+  stage.folder = settings.folder;
+  stage.iterations = settings.rcnn_iterations;
+  stage.batch = settings.rcnn_batch;
+  stage.unit = "sequences";
+  stage.learning_rate = settings.rcnn_learning_rate;
+  stage.iterations_per_point = kIterationsPerPoint;
+  stage.checkpoint_s = settings.checkpoint_s;
+  stage.fingerprint = crc.value();
+  return stage;
+}
+
 }  // namespace
 
 bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings, const Cnn& cnn,
                 Recurrent& recurrent, const std::atomic<bool>& stop) {
-  const std::string path = settings.folder + "/rcnn.ckpt";
-  const std::int64_t total = settings.rcnn_iterations;
-  recurrent->to(settings.device);
-  torch::optim::AdamW optimizer(recurrent->parameters(),
-                                torch::optim::AdamWOptions(settings.rcnn_learning_rate).weight_decay(1e-3));
-  CheckpointPosition position;
-  const bool resumed = load_checkpoint(path, recurrent, &optimizer, position);
-  if (position.iteration >= total) return true;
-
   const auto weights = std::make_unique<gnc::NetworkWeights>();
   export_weights(cnn, recurrent, *weights);
+  Stage stage(stage_settings(targets, settings, *weights));
+  recurrent->to(settings.device);
+  torch::optim::AdamW optimizer(
+      recurrent->parameters(),
+      torch::optim::AdamWOptions(settings.rcnn_learning_rate).weight_decay(kWeightDecay));
+  const bool resumed = stage.resume(recurrent, optimizer);
+  if (stage.finished()) return true;
+
   const FeatureSet validation =
       SequenceFeatures(targets, *weights, kValidationSeed, kValidationSequences, settings.workers + 1)
           .first(kValidationSequences);
   SequenceFeatures supply(targets, *weights, settings.seed, settings.rcnn_sequences, settings.workers);
   if (!resumed) standardise(recurrent, supply.first(std::min(kFirstSequences, settings.rcnn_sequences)));
 
-  TrainingLog log(settings.folder, "rcnn", position.iteration);
-  ProgressLine progress;
-  const double seconds_before = position.seconds;
-  const std::int64_t first = position.iteration;
-  const auto start = Clock::now();
-  auto last_checkpoint = start;
-  double loss_sum = 0.0, last_loss = 0.0;
-  TrainingPoint point;
-  while (position.iteration < total && !stop) {
-    const double rate = cosine_rate(settings.rcnn_learning_rate, position.iteration, total);
-    for (auto& group : optimizer.param_groups()) group.options().set_lr(rate);
+  stage.start();
+  while (!stage.finished() && !stop) {
+    stage.set_rate(optimizer);
     const std::int64_t available =
-        std::min(settings.rcnn_sequences, kFirstSequences + kSequencesPerIteration * position.iteration);
-    const FeatureSet data = supply.first(available);
-    const torch::Tensor rows = draw(settings.seed, position.iteration, available, settings.rcnn_batch);
-    loss_sum += train_once(recurrent, data, rows, settings.device, optimizer);
-
-    ++position.iteration;
-    position.seconds = seconds_before + seconds_since(start);
-    if (position.iteration % kIterationsPerPoint == 0 || position.iteration == total) {
-      last_loss = loss_sum / static_cast<double>((position.iteration - 1) % kIterationsPerPoint + 1);
-      loss_sum = 0.0;
-      point = {"rcnn",
-               position.iteration,
-               position.iteration * settings.rcnn_batch,
-               position.seconds,
-               rate,
-               last_loss,
-               0,
-               0,
-               0,
-               0};
+        std::min(settings.rcnn_sequences, kFirstSequences + kSequencesPerIteration * stage.iteration());
+    const torch::Tensor rows = draw(settings.seed, stage.iteration(), available, settings.rcnn_batch);
+    stage.advance(train_once(recurrent, supply.first(available), rows, settings.device, optimizer));
+    if (stage.point_due()) {
+      TrainingPoint point = stage.new_point();
       validate(recurrent, validation, settings.device, point);
-      log.add(point);
+      stage.add_point(point);
     }
-    progress.show(
-        "rcnn", position.iteration * settings.rcnn_batch, total * settings.rcnn_batch,
-        static_cast<double>((position.iteration - first) * settings.rcnn_batch) / seconds_since(start),
-        "sequences", last_loss, point.mean_deg);
-    if (seconds_since(last_checkpoint) > settings.checkpoint_s) {
-      save_checkpoint(path, recurrent, optimizer, position);
-      last_checkpoint = Clock::now();
-    }
+    stage.save_if_due(recurrent, optimizer);
   }
-  save_checkpoint(path, recurrent, optimizer, position);
-  progress.finish();
-  return position.iteration >= total;
+  stage.save(recurrent, optimizer);
+  stage.finish_progress();
+  return stage.finished();
 }
 
 }  // namespace tumblesight::sim

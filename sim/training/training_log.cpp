@@ -61,8 +61,8 @@ std::string frame(const Axes& axes) {
     const double hours = axes.hours * i / 4;
     char label[32];
     std::snprintf(label, sizeof label, "%.0f min", hours * 60);
-    out << "<text text-anchor='middle' x='" << axes.x(hours) << "' y='" << axes.height - axes.bottom + 18
-        << "'>" << label << "</text>\n";
+    out << "<text text-anchor='" << (i == 4 ? "end" : "middle") << "' x='" << axes.x(hours) << "' y='"
+        << axes.height - axes.bottom + 18 << "'>" << label << "</text>\n";
   }
   return out.str();
 }
@@ -78,10 +78,13 @@ TrainingLog::TrainingLog(const std::string& folder, const std::string& stage, st
       points_.push_back(point);
   }
   in.close();
-  std::ofstream out(folder + "/log.csv");
+  const std::string fresh = folder + "/log.csv.new";  // a kill leaves the old log or the new one whole
+  std::ofstream out(fresh);
   if (!out) throw std::runtime_error("cannot write " + folder + "/log.csv: choose another folder with --out");
   out << kHeader << '\n';
   for (const TrainingPoint& p : points_) out << to_csv(p) << '\n';
+  out.close();
+  std::filesystem::rename(fresh, folder + "/log.csv");
 }
 
 void TrainingLog::add(const TrainingPoint& point) {

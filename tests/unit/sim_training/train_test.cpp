@@ -71,6 +71,34 @@ TEST_F(TrainTest, AStoppedCnnTrainingResumesToTheSameNetwork) {
   EXPECT_TRUE(torch::equal(through->backbone->mean[0], second->backbone->mean[0]));
 }
 
+TEST_F(TrainTest, ACheckpointOfOtherSettingsOrOfNothingIsRefused) {
+  TrainingSettings here = in("other");
+  Cnn cnn = fresh_cnn();
+  ASSERT_TRUE(train_cnn(targets, here, cnn, never));
+  here.seed += 1;
+  EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error) << "another seed";
+  here.seed -= 1;
+  EXPECT_TRUE(train_cnn(targets, here, cnn, never));
+  Recurrent recurrent;
+  ASSERT_TRUE(train_rcnn(targets, here, cnn, recurrent, never));
+  Cnn other = fresh_cnn();
+  EXPECT_THROW(train_rcnn(targets, here, other, recurrent, never), std::runtime_error)
+      << "an LSTM of another CNN";
+  std::ofstream(here.folder + "/cnn.ckpt") << "no checkpoint";
+  EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error) << "damaged";
+}
+
+TEST_F(TrainTest, AMeshThatTheSensorHardlySeesIsRefusedByName) {
+  const float h = 1e-4F;  // a needle: too few rays meet it
+  const TriangleMesh needle{"needle", {{-2, 0, h}, {2, 0, h}, {2, 0, -h}}, {{0, 1, 2}}};
+  try {
+    make_training_targets({needle});
+    FAIL() << "accepted a mesh that cannot be seen";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("needle"), std::string::npos);
+  }
+}
+
 TEST_F(TrainTest, ALeftOverHalfWrittenCheckpointIsIgnored) {
   const TrainingSettings here = in("half");
   std::ofstream(here.folder + "/cnn.ckpt.new") << "half a checkpoint";

@@ -1,0 +1,58 @@
+#include "sim/training/stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumblesight::sim {
+
+void Stage::start() {
+  log_ = std::make_unique<TrainingLog>(settings_.folder, settings_.name, position_.iteration);
+  start_ = last_save_ = Clock::now();
+}
+
+void Stage::set_rate(torch::optim::Optimizer& optimizer) {
+  constexpr double kWarmUp = 200.0;  // iterations
+  constexpr double kPi = 3.14159265358979;
+  const double fraction =
+      static_cast<double>(position_.iteration) / static_cast<double>(settings_.iterations);
+  const double warm = std::min(1.0, static_cast<double>(position_.iteration + 1) / kWarmUp);
+  rate_ = 0.5 * settings_.learning_rate * (1.0 + std::cos(kPi * std::min(1.0, fraction))) * warm;
+  for (auto& group : optimizer.param_groups()) group.options().set_lr(rate_);
+}
+
+void Stage::advance(double loss) {
+  ++position_.iteration;
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  position_.seconds = seconds_before_ + seconds;
+  loss_sum_ += loss;
+  ++losses_;
+  const double per_second = static_cast<double>((position_.iteration - first_iteration_) * settings_.batch) /
+                            std::max(seconds, 1e-3);
+  progress_.show(settings_.name, position_.iteration * settings_.batch,
+                 settings_.iterations * settings_.batch, per_second, settings_.unit, latest_.loss,
+                 latest_.mean_deg);
+}
+
+bool Stage::point_due() const {
+  return position_.iteration % settings_.iterations_per_point == 0 || finished();
+}
+
+TrainingPoint Stage::new_point() {
+  TrainingPoint point;
+  point.stage = settings_.name;
+  point.iteration = position_.iteration;
+  point.samples = position_.iteration * settings_.batch;
+  point.seconds = position_.seconds;
+  point.learning_rate = rate_;
+  point.loss = loss_sum_ / static_cast<double>(std::max<std::int64_t>(1, losses_));
+  loss_sum_ = 0.0;
+  losses_ = 0;
+  return point;
+}
+
+void Stage::add_point(const TrainingPoint& point) {
+  latest_ = point;
+  log_->add(point);
+}
+
+}  // namespace tumblesight::sim

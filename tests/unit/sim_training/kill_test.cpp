@@ -1,0 +1,84 @@
+// Requirement: a training run that is killed at any moment resumes, and ends with the very same model image.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+extern char** environ;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+pid_t start_training(const fs::path& folder) {
+  std::vector<std::string> words{TUMBLESIGHT_PROGRAM,
+                                 "train",
+                                 "--cnn-images",
+                                 "384",
+                                 "--rcnn-sequences",
+                                 "16",
+                                 "--rcnn-iterations",
+                                 "3",
+                                 "--checkpoint-seconds",
+                                 "0",
+                                 "--workers",
+                                 "1",
+                                 "--out",
+                                 folder.string()};
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = -1;
+  EXPECT_EQ(posix_spawn(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environ), 0);
+  posix_spawn_file_actions_destroy(&actions);
+  return child;
+}
+
+int wait_for(pid_t child) {
+  int status = -1;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+std::string contents(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(TrainingKilled, ResumesToTheSameModelImage) {
+  const fs::path root = fs::temp_directory_path() / ("kill_test_" + std::to_string(getpid()));
+  ASSERT_EQ(wait_for(start_training(root / "through")), 0);
+
+  // Killed in either stage, as soon as that stage has left a checkpoint.
+  for (const char* stage : {"cnn.ckpt", "rcnn.ckpt"}) {
+    const pid_t child = start_training(root / "killed");
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!fs::exists(root / "killed" / stage) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    kill(child, SIGKILL);
+    const int status = wait_for(child);
+    EXPECT_TRUE(WIFSIGNALED(status)) << "the kill in " << stage << " came too late to prove anything";
+    EXPECT_FALSE(fs::exists(root / "killed" / "near_shoemaker.tsm"));
+  }
+  ASSERT_EQ(wait_for(start_training(root / "killed")), 0);
+  const std::string image = contents(root / "through" / "near_shoemaker.tsm");
+  EXPECT_GT(image.size(), 1'000'000U);
+  EXPECT_TRUE(image == contents(root / "killed" / "near_shoemaker.tsm"));
+  fs::remove_all(root);
+}
+
+}  // namespace
