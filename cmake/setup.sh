@@ -11,18 +11,37 @@ packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev c
   libassimp-dev libcli11-dev libfmt-dev libpng-dev nlohmann-json3-dev)
 packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libgtest-dev libgmock-dev)
 
+# Ends a job with all that it has started, some of it as root, and then this script.
+end_with() { # job
+  trap '' INT TERM
+  if [ -n "$1" ]; then
+    { kill -TERM -- "-$1" || sudo -n kill -TERM -- "-$1" || kill -TERM "$1" || true; } 2>/dev/null
+    wait "$1" 2>/dev/null || true
+  fi
+  printf '\n'
+  fail "interrupted; the same command goes on from here"
+}
+
 # Runs a command with its output in a log, which is shown only if it fails.
 quietly() { # what, log, command...
-  local what=$1 log=$2 started=$SECONDS
+  local what=$1 log=$2 started=$SECONDS job=
   shift 2
   mkdir -p "$(dirname "$log")"
-  "$@" >"$log" 2>&1 &
-  local job=$!
+  # bash lets background jobs ignore Ctrl-C: it has to be handed on. A process group of its own (set -m) holds
+  # all that the job starts.
+  trap 'end_with "$job"' INT TERM
+  set -m
+  "$@" </dev/null >"$log" 2>&1 &
+  job=$!
+  set +m
   while kill -0 "$job" 2>/dev/null; do
     [ -t 1 ] && printf '\r  %s, %d s ' "$what" $((SECONDS - started))
     sleep 0.2
   done
-  if wait "$job"; then
+  local status=0
+  wait "$job" || status=$?
+  trap - INT TERM
+  if [ "$status" -eq 0 ]; then
     if [ -t 1 ]; then printf '\r\033[K'; fi
     printf '  %s: done in %d s\n' "$what" $((SECONDS - started))
     return 0

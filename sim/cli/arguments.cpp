@@ -16,13 +16,17 @@
 namespace tumblesight::sim {
 namespace {
 
+// Frames. A simulated one takes about half a kilobyte until the report is written.
+constexpr std::uint64_t kLongestRun = 1'000'000;
+
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
 }
 
-// A target's name is part of a file name and of the model image.
+}  // namespace
+
 CLI::Validator target_name() {
   const auto check = [](std::string& text) -> std::string {
     const bool plain = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
@@ -42,15 +46,15 @@ CLI::Validator one_of(const std::vector<std::string>& names) {
   return CLI::Validator(check, "", "choice");
 }
 
-}  // namespace
-
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
   const auto check = [low, high](std::string& text) -> std::string {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool whole = error == std::errc{} && end == text.data() + text.size();
-    if (whole && value >= low && value <= high) return {};
-    return fmt::format("must be a whole number from {} to {}, not '{}'", low, high, text);
+    const bool within = whole && value >= low && value <= high;
+    if (within && text == std::to_string(value)) return {};
+    return fmt::format("must be a whole number from {} to {}{}, not '{}'", low, high,
+                       within ? " without leading zeros" : "", text);
   };
   return CLI::Validator(check, "", "whole number");
 }
@@ -105,6 +109,29 @@ void add_scenario_options(CLI::App& command, ScenarioArguments& arguments) {
       ->capture_default_str();
   command.add_option("--model", arguments.model, "model image [fsw/models/<target>.tsm]")->type_name("FILE");
   command.add_option("--json", arguments.json, "write the figures to this file")->type_name("FILE");
+}
+
+void require_bearable_length(const ScenarioArguments& arguments) {
+  const std::uint64_t frames = std::uint64_t{arguments.sequences} * arguments.frames;
+  if (frames <= kLongestRun) return;
+  throw CLI::ValidationError("--sequences, --frames",
+                             fmt::format("{} x {} are {} frames in all, at most {} fit a run",
+                                         arguments.sequences, arguments.frames, frames, kLongestRun));
+}
+
+std::string full_path(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  const fs::path full = fs::weakly_canonical(absolute, error);
+  return (error ? absolute.lexically_normal() : full).string();
+}
+
+void require_different(const std::string& option, const std::string& path, const std::string& other_option,
+                       const std::string& other_path) {
+  if (path.empty() || other_path.empty() || full_path(path) != full_path(other_path)) return;
+  throw CLI::ValidationError(option,
+                             fmt::format("'{}' is the file of {} as well; give two", path, other_option));
 }
 
 void require_writable(const std::string& option, const std::string& path) {

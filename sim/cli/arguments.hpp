@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace tumblesight::sim {
 
@@ -25,10 +26,23 @@ struct ScenarioArguments {
 // Defaults are what `arguments` holds when called.
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
 
+// Throws CLI::ValidationError if sequences times frames is more than a run can hold in memory.
+void require_bearable_length(const ScenarioArguments& arguments);
+
 // Validators whose message names the limits, for instance "must be a whole number from 1 to 100000, not
-// 'many'".
+// 'many'". Leading zeros are refused: CLI11 would read an octal number.
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 CLI::Validator number(double low, double high);
+CLI::Validator one_of(const std::vector<std::string>& names);
+// It becomes part of a file name and of the model image: 1 to 31 of a-z, 0-9 and _.
+CLI::Validator target_name();
+
+// Absolute, with links, "." and ".." resolved as far as the path exists.
+std::string full_path(const std::string& path);
+
+// Throws CLI::ValidationError if both options name the same file, in whatever spelling.
+void require_different(const std::string& option, const std::string& path, const std::string& other_option,
+                       const std::string& other_path);
 
 // Throws std::runtime_error that names option, file and reason if `path` could not be written. Leaves no file
 // behind.

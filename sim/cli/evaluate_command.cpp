@@ -37,6 +37,7 @@ nlohmann::ordered_json result_json(const ScenarioArguments& scenario, const Targ
 
 void evaluate(const EvaluateArguments& arguments) {
   const ScenarioArguments& scenario = arguments.scenario;
+  require_bearable_length(scenario);
   if (!scenario.json.empty()) require_writable("--json", scenario.json);
   const TargetSetup setup = set_up_target(scenario);
   if (setup.model_status != gnc::ModelStatus::kOk) {

@@ -6,14 +6,11 @@
 #include <array>
 #include <memory>
 
+#include "hal/dds/idl/topics.hpp"
 #include "sim/cli/summary.hpp"
 
 namespace tumblesight::sim {
 namespace {
-
-// Of the interface (docs/icd.md): the attitude's validity and the mode in the housekeeping.
-constexpr std::uint8_t kValid = 0;
-constexpr std::uint8_t kStandby = 0;
 
 Eigen::Quaterniond quaternion(const std::array<float, 4>& wxyz) {
   const auto part = [&](std::size_t i) { return static_cast<double>(wxyz[i]); };
@@ -21,7 +18,7 @@ Eigen::Quaterniond quaternion(const std::array<float, 4>& wxyz) {
 }
 
 bool gave_attitude(const StepRecord& step) {
-  return step.answered && step.attitude.validity == kValid;
+  return step.answered && step.attitude.validity == tumblesight_icd_VALIDITY_VALID;
 }
 
 std::string file_name(const std::string& path) {
@@ -168,10 +165,10 @@ std::vector<std::string> shortcomings(const SilRecording& recording) {
   const auto invalid = std::count_if(recording.steps.begin(), recording.steps.end(),
                                      [](const StepRecord& s) { return s.answered && !gave_attitude(s); });
   if (invalid > 0) {
-    found.push_back(
-        fmt::format("{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
-                    recording.steps_planned - recording.steps_missed,
-                    last->housekeeping.mode == kStandby ? ": the flight program is in STANDBY" : ""));
+    found.push_back(fmt::format(
+        "{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
+        recording.steps_planned - recording.steps_missed,
+        last->housekeeping.mode == tumblesight_icd_MODE_STANDBY ? ": the flight program is in STANDBY" : ""));
   }
   if (recording.flight_heap_allocations > 0) {
     found.push_back(fmt::format("The flight task allocated heap memory {} times after its start.",

@@ -8,9 +8,12 @@
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
+#include <vector>
 
+#include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/sil_results.hpp"
+#include "sim/cli/simulate_arguments.hpp"
 #include "sim/cli/summary.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/evaluation/progress.hpp"
@@ -22,18 +25,10 @@ namespace fs = std::filesystem;
 
 constexpr double kSlowest = 0.1;
 constexpr double kFastest = 1000.0;
-constexpr std::uint64_t kLastDomain = 230;  // what UDP's port numbers leave room for
+constexpr double kTimeToStartFlight_s = 60.0;  // by hand
+constexpr int kFlightsOwnDomain = 0;           // unless told otherwise
 constexpr int kRunFailed = 1;
-
-struct SimulateArguments {
-  ScenarioArguments scenario;
-  std::string speed = "max";
-  bool free_running = false;
-  std::string flight;  // empty: beside this program
-  int domain = -1;
-  std::string report;
-  std::string command_line;
-};
+constexpr const char* kNoFlight = "none";
 
 CLI::Validator speed() {
   const auto check = [](std::string& text) -> std::string {
@@ -43,21 +38,41 @@ CLI::Validator speed() {
   return CLI::Validator(check, "", "speed");
 }
 
-std::string default_report(const ScenarioArguments& scenario) {
-  return fmt::format("{}/out/{}_{}_seed{}.html", TUMBLESIGHT_SOURCE_DIR, scenario.target, scenario.condition,
-                     scenario.seed);
+std::string default_report(const SimulateArguments& arguments) {
+  return fmt::format("{}/out/{}", TUMBLESIGHT_SOURCE_DIR, default_report_name(arguments));
+}
+
+fs::path shipped_flight() {
+  return fs::read_symlink("/proc/self/exe").parent_path() / "flight";
 }
 
 std::string flight_path(const std::string& given) {
-  if (given == "none") return {};
-  const fs::path path =
-      given.empty() ? fs::read_symlink("/proc/self/exe").parent_path() / "flight" : fs::path(given);
+  if (given == kNoFlight) return {};
+  const fs::path path = given.empty() ? shipped_flight() : fs::path(given);
   std::error_code error;
   if (!fs::is_regular_file(path, error)) {
     throw std::runtime_error(
         fmt::format("flight program '{}' does not exist; name it with --flight", path.string()));
   }
   return path.string();
+}
+
+// As one word for a shell.
+std::string shell_quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+// What the user has to start, for a shell.
+std::string flight_command_line(const SilSettings& settings) {
+  std::string line =
+      fmt::format("{} --domain {} --target {} --model {}", shell_quoted(shipped_flight().string()),
+                  settings.domain, settings.target, shell_quoted(full_path(settings.model_path)));
+  if (settings.free_running && settings.speed > 0.0) {
+    line += fmt::format(" --mode free-running --period-ms {:g}", 1e3 * kFramePeriod_s / settings.speed);
+  }
+  return line;
 }
 
 SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& setup) {
@@ -68,6 +83,10 @@ SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& 
   settings.domain = arguments.domain;
   settings.speed = arguments.speed == "max" ? 0.0 : std::stod(arguments.speed);
   settings.free_running = arguments.free_running;
+  if (arguments.flight == kNoFlight) {
+    if (settings.domain < 0) settings.domain = kFlightsOwnDomain;
+    settings.step_timeout_s = kTimeToStartFlight_s;
+  }
   return settings;
 }
 
@@ -97,31 +116,63 @@ SilRecording record(const SimulateArguments& arguments, const TargetSetup& setup
                  [&](std::uint32_t done, std::uint32_t) { bar.update(done); });
 }
 
+void announce(const ScenarioArguments& scenario, const TargetSetup& setup, const SilSettings& settings) {
+  fmt::print("\n  {}, {}, {} sequences of {} frames, seed {}\n  mesh {}, model {}\n\n", scenario.target,
+             scenario.condition, scenario.sequences, scenario.frames, scenario.seed, setup.mesh_name,
+             setup.model_path);
+  if (settings.flight_path.empty()) {
+    fmt::print(
+        "  Waiting up to {:g} s for the flight program. Unless it is running already, start\n    {}\n\n",
+        settings.step_timeout_s, flight_command_line(settings));
+  }
+  std::fflush(stdout);
+  for (const std::string& warning : setup.warnings) fmt::print(stderr, "  note: {}\n", warning);
+}
+
+// Report first; a file that cannot be written keeps no other from being written. Returns what went wrong.
+std::vector<std::string> write_files(const SimulateArguments& arguments, const RunReport& report,
+                                     const SilRecording& recording) {
+  std::vector<std::string> failures;
+  const auto attempt = [&](const auto& write) {
+    try {
+      write();
+    } catch (const std::exception& error) {
+      failures.emplace_back(error.what());
+    }
+  };
+  attempt([&] {
+    write_text_file(arguments.report, compose_report(report));
+    fmt::print("  report           {}\n", full_path(arguments.report));
+  });
+  const std::string& json = arguments.scenario.json;
+  attempt([&] {
+    if (!json.empty()) write_text_file(json, run_json(arguments.scenario, recording).dump(2) + "\n");
+  });
+  return failures;
+}
+
 void simulate(SimulateArguments arguments) {
   const ScenarioArguments& scenario = arguments.scenario;
-  if (arguments.report.empty()) arguments.report = default_report(scenario);
+  require_bearable_length(scenario);
+  if (arguments.report.empty()) arguments.report = default_report(arguments);
+  require_different("--json", scenario.json, "--report", arguments.report);
   require_writable("--report", arguments.report);
   if (!scenario.json.empty()) require_writable("--json", scenario.json);
   const TargetSetup setup = set_up_target(scenario);
   const SilSettings settings = sil_settings(arguments, setup);
 
-  fmt::print("\n  {}, {}, {} sequences of {} frames, seed {}\n  mesh {}, model {}\n\n", scenario.target,
-             scenario.condition, scenario.sequences, scenario.frames, scenario.seed, setup.mesh_name,
-             setup.model_path);
-  std::fflush(stdout);
-  for (const std::string& warning : setup.warnings) fmt::print(stderr, "  note: {}\n", warning);
+  announce(scenario, setup, settings);
 
   const SilRecording recording = record(arguments, setup, settings);
   RunReport report = run_report(scenario, setup, settings, recording);
   report.command = arguments.command_line;
   report.generated = fmt::format("{:%Y-%m-%d %H:%M %Z}", fmt::localtime(std::time(nullptr)));
   print_results(scenario, recording, report);
-  if (!scenario.json.empty()) write_text_file(scenario.json, run_json(scenario, recording).dump(2) + "\n");
-  write_text_file(arguments.report, compose_report(report));
-  fmt::print("  report           {}\n\n", fs::absolute(arguments.report).lexically_normal().string());
+  std::vector<std::string> wrong = shortcomings(recording);
+  for (const std::string& failure : write_files(arguments, report, recording)) wrong.push_back(failure);
+  fmt::print("\n");
   std::fflush(stdout);
 
-  const std::vector<std::string> wrong = shortcomings(recording);
   for (const std::string& sentence : wrong) fmt::print(stderr, "tumblesight: {}\n", sentence);
   if (!wrong.empty()) throw CLI::RuntimeError(kRunFailed);
 }
@@ -142,12 +193,18 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
                     "flight on its own timer instead of in lockstep; with --speed 1 as in flight");
   command
       ->add_option("--flight", arguments->flight,
-                   "flight program to start [beside tumblesight]; none: one is running already, see --domain")
+                   "flight program to start [beside tumblesight]; none: you start it, and are shown how")
       ->type_name("FILE");
-  command->add_option("--domain", arguments->domain, "DDS domain, 0 to 230 [a free one]")
-      ->check(whole_number(0, kLastDomain))
+  command
+      ->add_option(
+          "--domain", arguments->domain,
+          fmt::format("DDS domain, 0 to {} [a free one; 0 with --flight none]", hal::dds::kMaxDomain))
+      ->check(whole_number(0, hal::dds::kMaxDomain))
       ->type_name("N");
-  command->add_option("--report", arguments->report, "HTML report [out/<target>_<condition>_seed<seed>.html]")
+  command
+      ->add_option(
+          "--report", arguments->report,
+          "HTML report [out/<target>_<condition>_seed<seed>.html, with what else is not at its default]")
       ->type_name("FILE");
   command->footer(
       "\nExample: 100 sequences with a degraded sensor, figures to a file\n"

@@ -6,12 +6,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "sim/cli/arguments.hpp"
 #include "sim/target/mesh_file.hpp"
 #include "sim/target/targets.hpp"
 #include "sim/training/export_model.hpp"
@@ -19,6 +21,8 @@
 
 namespace tumblesight::sim {
 namespace {
+
+constexpr int kStopped = 3;  // exit status of a run that is to be continued
 
 std::atomic<bool> stop_requested{false};
 
@@ -80,14 +84,19 @@ int train(TrainOptions& options) {
   const bool finished = train_cnn(targets, options.settings, cnn, stop_requested) &&
                         train_rcnn(targets, options.settings, cnn, recurrent, stop_requested);
 
-  const std::string path = options.settings.folder + "/" + options.target + ".tsm";
+  const std::string& folder = options.settings.folder;
+  if (!finished) {
+    std::printf("Stopped. The same command goes on from the checkpoint in %s.\n", folder.c_str());
+    return kStopped;
+  }
+  const std::string path = folder + "/" + options.target + ".tsm";
   const auto weights = std::make_unique<gnc::NetworkWeights>();
   export_weights(cnn, recurrent, *weights);
   write_model_file(path, options.target, targets.projection, *weights);
-  std::printf("%s\n  model image    %s\n  training log   %s/log.csv\n  loss curve     %s/curve.svg\n",
-              finished ? "Training finished." : "Stopped; the same command goes on from the checkpoint.",
-              path.c_str(), options.settings.folder.c_str(), options.settings.folder.c_str());
-  return finished ? 0 : 3;
+  std::printf(
+      "Training finished.\n  model image    %s\n  training log   %s/log.csv\n  loss curve     %s/curve.svg\n",
+      path.c_str(), folder.c_str(), folder.c_str());
+  return 0;
 }
 
 }  // namespace
@@ -95,47 +104,50 @@ int train(TrainOptions& options) {
 void add_train_command(CLI::App& app) {
   auto options = std::make_shared<TrainOptions>();
   TrainingSettings& settings = options->settings;
-  settings.workers = static_cast<int>(std::max(1U, std::thread::hardware_concurrency() - 1));
+  settings.workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
   CLI::App* command = app.add_subcommand("train", "Train a network for a target and write its model image");
   command->footer(
       "Example: train NEAR on the shipped model and on a CAD file at once\n"
       "  tumblesight train --target near_shoemaker --mesh parametric --mesh near.stl --out out/near\n"
       "Kill it at any time: the same command goes on from the last checkpoint.");
   command->add_option("--target", options->target, "Target that the model image is for")
+      ->check(target_name())
       ->capture_default_str();
   command
       ->add_option("--mesh", options->meshes,
                    "Surface to train on: a CAD file, or 'parametric' for the shipped one; may be repeated")
       ->capture_default_str();
   command->add_option("--mesh-up", options->mesh_up, "Axis that points up in the files")
-      ->check(CLI::IsMember({"y", "z"}))
+      ->check(one_of({"y", "z"}))
       ->capture_default_str();
   command->add_option("--mesh-scale", options->mesh_scale, "Metres to a unit of the files")
-      ->check(CLI::PositiveNumber)
+      ->check(number(1e-6, 1e6))
       ->capture_default_str();
-  command->add_option("--seed", settings.seed, "Seed of data and weights")->capture_default_str();
+  command->add_option("--seed", settings.seed, "Seed of data and weights")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str();
   command->add_option("--out", settings.folder, "Folder of checkpoints, log, curve and model image")
       ->required();
   command->add_option("--cnn-images", settings.cnn_images, "Fresh images for the single-frame network")
-      ->check(CLI::Range(std::int64_t{64}, std::int64_t{1'000'000'000}))
+      ->check(whole_number(64, 1'000'000'000))
       ->capture_default_str();
   command->add_option("--rcnn-sequences", settings.rcnn_sequences, "Different sequences for the LSTM")
-      ->check(CLI::Range(std::int64_t{16}, std::int64_t{1'000'000}))
+      ->check(whole_number(16, 1'000'000))
       ->capture_default_str();
   command->add_option("--rcnn-iterations", settings.rcnn_iterations, "Batches of sequences for the LSTM")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{10'000'000}))
+      ->check(whole_number(1, 10'000'000))
       ->capture_default_str();
   command->add_option("--checkpoint-seconds", settings.checkpoint_s, "Wall-clock seconds between checkpoints")
-      ->check(CLI::Range(1.0, 3600.0))
+      ->check(number(0.0, 3600.0))
       ->capture_default_str();
   command->add_option("--workers", settings.workers, "Rendering threads")
-      ->check(CLI::Range(1, 256))
+      ->check(whole_number(1, 256))
       ->capture_default_str();
   command->add_option("--device", options->device, "Where to train")
-      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->check(one_of({"auto", "cpu", "cuda"}))
       ->capture_default_str();
   command->add_option("--precision", options->precision, "Of the convolutions while training")
-      ->check(CLI::IsMember({"auto", "float32", "bfloat16"}))
+      ->check(one_of({"auto", "float32", "bfloat16"}))
       ->capture_default_str();
   command->callback([options] { throw CLI::RuntimeError(train(*options)); });
 }

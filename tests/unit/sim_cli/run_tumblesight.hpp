@@ -46,11 +46,23 @@ class Workplace {
     return path("model.tsm");
   }
 
-  Outcome run(const std::string& arguments) const {
-    const std::string command = std::string("timeout 60 ") + TUMBLESIGHT_BINARY + " " + arguments + " >" +
-                                path("stdout") + " 2>" + path("stderr");
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(path("stdout")), content(path("stderr"))};
+  // A program in this folder that runs `lines` in a shell; gives its path.
+  std::string script(const std::string& name, const std::string& lines) const {
+    std::ofstream(path(name)) << "#!/bin/sh\n" << lines << "\n";
+    std::filesystem::permissions(path(name), std::filesystem::perms::owner_all);
+    return path(name);
+  }
+
+  // What it prints is in <name>.out and <name>.err from the start.
+  Outcome run(const std::string& arguments, const std::string& name = "run") const {
+    return run_command(std::string("timeout 60 ") + TUMBLESIGHT_BINARY + " " + arguments, name);
+  }
+  Outcome run_command(const std::string& command, const std::string& name) const {
+    const std::string out = path(name + ".out");
+    const std::string err = path(name + ".err");
+    const int status =
+        std::system(("cd " + folder_.string() + " && " + command + " >" + out + " 2>" + err).c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
   }
 
  private:

@@ -1,0 +1,57 @@
+#include "sim/cli/simulate_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <filesystem>
+#include <utility>
+
+#include "gnc/rcnn/crc32.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::size_t kMostOfStem = 40;  // characters: the whole name stays a legal one
+
+std::string plain_stem(const std::string& path) {
+  std::string stem = std::filesystem::path(path).stem().string().substr(0, kMostOfStem);
+  for (char& c : stem) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '.') c = '-';
+  }
+  return stem;
+}
+
+// "_mesh-near_model-best_1a2b3c4d"
+std::string files_part(const SimulateArguments& arguments) {
+  const std::pair<const char*, const std::string&> files[] = {
+      {"mesh", arguments.scenario.mesh}, {"model", arguments.scenario.model}, {"flight", arguments.flight}};
+  std::string part;
+  std::string paths;
+  for (const auto& [option, path] : files) {
+    if (path.empty()) continue;
+    part += fmt::format("_{}-{}", option, plain_stem(path));
+    paths += full_path(path) + '\n';
+  }
+  if (part.empty()) return {};
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(paths.data());
+  return fmt::format("{}_{:08x}", part, gnc::crc32(bytes, paths.size()));
+}
+
+}  // namespace
+
+std::string default_report_name(const SimulateArguments& arguments) {
+  const ScenarioArguments& scenario = arguments.scenario;
+  const SimulateArguments usual;
+  std::string name = fmt::format("{}_{}_seed{}", scenario.target, scenario.condition, scenario.seed);
+  if (scenario.sequences != usual.scenario.sequences || scenario.frames != usual.scenario.frames) {
+    name += fmt::format("_{}x{}", scenario.sequences, scenario.frames);
+  }
+  name += files_part(arguments);
+  if (scenario.mesh_up != usual.scenario.mesh_up) name += "_up-" + scenario.mesh_up;
+  if (scenario.mesh_scale != usual.scenario.mesh_scale) name += fmt::format("_scale{}", scenario.mesh_scale);
+  if (arguments.speed != usual.speed) name += "_speed" + arguments.speed;
+  if (arguments.free_running) name += "_free-running";
+  return name + ".html";
+}
+
+}  // namespace tumblesight::sim

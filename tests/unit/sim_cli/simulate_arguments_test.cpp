@@ -1,0 +1,70 @@
+#include "sim/cli/simulate_arguments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(DefaultReportName, IsShortForAUsualRun) {
+  SimulateArguments arguments;
+  arguments.scenario.condition = "degraded";
+  arguments.scenario.seed = 7;
+  EXPECT_EQ(default_report_name(arguments), "near_shoemaker_degraded_seed7.html");
+}
+
+TEST(DefaultReportName, NamesWhatIsNotAtItsDefault) {
+  SimulateArguments arguments;
+  arguments.scenario.sequences = 100;
+  arguments.speed = "2.5";
+  arguments.free_running = true;
+  EXPECT_EQ(default_report_name(arguments), "near_shoemaker_nominal_seed1_100x10_speed2.5_free-running.html");
+}
+
+TEST(DefaultReportName, TellsDifferentRunsApart) {
+  const std::vector<std::function<void(SimulateArguments&)>> changes{
+      [](SimulateArguments&) {},
+      [](SimulateArguments& a) { a.scenario.target = "magellan"; },
+      [](SimulateArguments& a) { a.scenario.condition = "degraded"; },
+      [](SimulateArguments& a) { a.scenario.seed = 2; },
+      [](SimulateArguments& a) { a.scenario.sequences = 31; },
+      [](SimulateArguments& a) { a.scenario.frames = 11; },
+      [](SimulateArguments& a) { a.scenario.mesh = "a/near.stl"; },
+      [](SimulateArguments& a) { a.scenario.mesh = "b/near.stl"; },
+      [](SimulateArguments& a) { a.scenario.mesh_up = "z"; },
+      [](SimulateArguments& a) { a.scenario.mesh_scale = 0.001; },
+      [](SimulateArguments& a) { a.scenario.model = "a/near.tsm"; },
+      [](SimulateArguments& a) { a.scenario.model = "b/near.tsm"; },
+      [](SimulateArguments& a) { a.flight = "none"; },
+      [](SimulateArguments& a) { a.speed = "1"; },
+      [](SimulateArguments& a) { a.free_running = true; },
+  };
+  std::set<std::string> names;
+  for (const auto& change : changes) {
+    SimulateArguments arguments;
+    change(arguments);
+    names.insert(default_report_name(arguments));
+  }
+  EXPECT_EQ(names.size(), changes.size());
+}
+
+TEST(DefaultReportName, StaysAPlainFileNameWhateverThePaths) {
+  SimulateArguments arguments;
+  arguments.scenario.mesh = "/some where/" + std::string(200, 'm') + "?&#.stl";
+  arguments.scenario.model = "../Modèle nº 1.tsm";
+  const std::string name = default_report_name(arguments);
+  EXPECT_LT(name.size(), 200U);
+  EXPECT_EQ(name.find_first_of(" ?&#/\\"), std::string::npos) << name;
+  for (const char c : name) EXPECT_GT(c, 0) << name;
+}
+
+TEST(RequireDifferent, SeesThroughSpellings) {
+  EXPECT_THROW(require_different("--json", "x/../out.txt", "--report", "./out.txt"), CLI::ValidationError);
+  EXPECT_NO_THROW(require_different("--json", "out.json", "--report", "out.html"));
+  EXPECT_NO_THROW(require_different("--json", "", "--report", ""));
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
