@@ -27,6 +27,9 @@ TEST(FlightProcess, EndWithoutAStatusIsNoGoodEnd) {
 }
 
 TEST(FlightProcess, HeapUsedAfterTheLastTelemetryIsAFailureOfTheRun) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer must come before any preloaded library";
+#endif
   const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
   const test::Environment fault("TUMBLESIGHT_FAULT", "heap");
   const SilSettings settings = test::settings();
@@ -40,6 +43,9 @@ TEST(FlightProcess, HeapUsedAfterTheLastTelemetryIsAFailureOfTheRun) {
 }
 
 TEST(FlightProcess, NoThreadForTheFlightTaskIsSaidInWords) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer must come before any preloaded library";
+#endif
   const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
   const test::Environment fault("TUMBLESIGHT_FAULT", "thread");
   const SilRecording recording =
