@@ -3,7 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gnc/rcnn/crc32.hpp"
+
 namespace tumblesight::sim {
+
+std::int64_t fingerprint(std::initializer_list<std::uint64_t> settings) {
+  gnc::Crc32 crc;
+  for (const std::uint64_t value : settings) {
+    crc.add_u32(static_cast<std::uint32_t>(value));
+    crc.add_u32(static_cast<std::uint32_t>(value >> 32));
+  }
+  return crc.value();
+}
 
 void Stage::start() {
   log_ = std::make_unique<TrainingLog>(settings_.folder, settings_.name, position_.iteration);

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <string>
 
@@ -22,6 +23,9 @@ struct StageSettings {
   double checkpoint_s = 0.0;
   std::int64_t fingerprint = 0;
 };
+
+// One number for all the settings that shape a stage's result.
+std::int64_t fingerprint(std::initializer_list<std::uint64_t> settings);
 
 class Stage {
  public:

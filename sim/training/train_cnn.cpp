@@ -1,4 +1,3 @@
-#include "gnc/rcnn/crc32.hpp"
 #include "sim/training/loss.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
@@ -46,13 +45,6 @@ double train_once(Cnn& cnn, const FrameBatch& batch, const TrainingSettings& set
 }
 
 StageSettings stage_settings(const TrainingTargets& targets, const TrainingSettings& settings) {
-  gnc::Crc32 crc;
-  for (const std::uint64_t value : {settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
-                                    static_cast<std::uint64_t>(settings.cnn_batch)}) {
-    crc.add_u32(static_cast<std::uint32_t>(value));
-    crc.add_u32(static_cast<std::uint32_t>(value >> 32));
-  }
-  crc.add_u32(targets.meshes_crc32);
   StageSettings stage;
   stage.name = "cnn";
   stage.folder = settings.folder;
@@ -62,7 +54,8 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.learning_rate = settings.cnn_learning_rate;
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;
-  stage.fingerprint = crc.value();
+  stage.fingerprint = fingerprint({settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
+                                   static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32});
   return stage;
 }
 

@@ -67,15 +67,6 @@ std::uint32_t crc32_of_cnn(const gnc::NetworkWeights& weights) {
 
 StageSettings stage_settings(const TrainingTargets& targets, const TrainingSettings& settings,
                              const gnc::NetworkWeights& weights) {
-  gnc::Crc32 crc;
-  for (const std::uint64_t value : {settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
-                                    static_cast<std::uint64_t>(settings.rcnn_iterations),
-                                    static_cast<std::uint64_t>(settings.rcnn_batch)}) {
-    crc.add_u32(static_cast<std::uint32_t>(value));
-    crc.add_u32(static_cast<std::uint32_t>(value >> 32));
-  }
-  crc.add_u32(targets.meshes_crc32);
-  crc.add_u32(crc32_of_cnn(weights));
   StageSettings stage;
   stage.name = "rcnn";
   stage.folder = settings.folder;
@@ -85,7 +76,10 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.learning_rate = settings.rcnn_learning_rate;
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;
-  stage.fingerprint = crc.value();
+  stage.fingerprint = fingerprint({settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
+                                   static_cast<std::uint64_t>(settings.rcnn_iterations),
+                                   static_cast<std::uint64_t>(settings.rcnn_batch), targets.meshes_crc32,
+                                   crc32_of_cnn(weights)});
   return stage;
 }
 
