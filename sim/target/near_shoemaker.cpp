@@ -14,10 +14,6 @@ constexpr float kQuarterTurn = kPi / 2.0F;
 constexpr float kDiagonal = kPi / 4.0F;                // heading of the corner between +x and +y
 constexpr float kOppositeDiagonal = 5.0F * kDiagonal;  // of the corner between -x and -y
 
-Eigen::Isometry3f turned(float angle_rad) {
-  return Eigen::Isometry3f(Eigen::AngleAxisf(angle_rad, Eigen::Vector3f::UnitZ()));
-}
-
 // Body and decks. The body is a regular octagon with flats on +-x, +-y and the diagonals.
 constexpr float kBodyFlat = 0.746F;  // distance of the flats from the axis
 constexpr float kBodyAft_z = -0.922F;

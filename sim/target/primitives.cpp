@@ -38,6 +38,19 @@ TriangleMesh placed(TriangleMesh part, const Eigen::Isometry3f& pose) {
   return part;
 }
 
+TriangleMesh mirrored(TriangleMesh part, int axis) {
+  for (Eigen::Vector3f& vertex : part.vertices_trf_m) {
+    vertex[axis] = -vertex[axis];
+  }
+  return part;
+}
+
+TriangleMesh with_mirror_image(const TriangleMesh& part, int axis) {
+  TriangleMesh both = part;
+  append(both, mirrored(part, axis));
+  return both;
+}
+
 TriangleMesh cap(const Loop& loop) {
   require(loop.size() >= 3, "cap: a loop needs at least three points");
   TriangleMesh mesh;
@@ -59,6 +72,16 @@ TriangleMesh band(const Loop& from, const Loop& to) {
     const std::size_t next = (i + 1) % n;
     mesh.triangles.push_back({index(i), index(next), index(n + next)});
     mesh.triangles.push_back({index(i), index(n + next), index(n + i)});
+  }
+  return mesh;
+}
+
+TriangleMesh strip(const Loop& from, const Loop& to) {
+  require(from.size() >= 2 && from.size() == to.size(),
+          "strip: two chains of equally many points, at least two");
+  TriangleMesh mesh;
+  for (std::size_t i = 1; i < from.size(); ++i) {
+    append(mesh, cap({from[i - 1], from[i], to[i], to[i - 1]}));
   }
   return mesh;
 }
@@ -94,6 +117,10 @@ TriangleMesh box(const Eigen::Vector3f& size) {
   const float x = size.x() / 2.0F;
   const float y = size.y() / 2.0F;
   return prism({{-x, -y}, {x, -y}, {x, y}, {-x, y}}, -size.z() / 2.0F, size.z() / 2.0F);
+}
+
+TriangleMesh box_between(const Eigen::Vector3f& min, const Eigen::Vector3f& max) {
+  return placed(box(max - min), Eigen::Isometry3f(Eigen::Translation3f((min + max) / 2.0F)));
 }
 
 TriangleMesh prism(const Outline& outline, float z_from, float z_to) {
@@ -162,6 +189,21 @@ Eigen::Isometry3f frame_along(const Eigen::Vector3f& origin, const Eigen::Vector
   pose.linear() = Eigen::Quaternionf::FromTwoVectors(Eigen::Vector3f::UnitZ(), axis).toRotationMatrix();
   pose.translation() = origin;
   return pose;
+}
+
+Eigen::Isometry3f frame_at(const Eigen::Vector3f& origin, const Eigen::Vector3f& x,
+                           const Eigen::Vector3f& y) {
+  Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
+  const Eigen::Vector3f z = x.cross(y).normalized();
+  pose.linear().col(0) = x.normalized();
+  pose.linear().col(1) = z.cross(x.normalized());
+  pose.linear().col(2) = z;
+  pose.translation() = origin;
+  return pose;
+}
+
+Eigen::Isometry3f turned(float angle_rad) {
+  return Eigen::Isometry3f(Eigen::AngleAxisf(angle_rad, Eigen::Vector3f::UnitZ()));
 }
 
 }  // namespace tumblesight::sim

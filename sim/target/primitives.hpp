@@ -2,8 +2,8 @@
 //
 // All lengths are in metres, all coordinates in the frame in which the part is built; `placed` moves a part
 // into another. Faces are one-sheeted and reflect on both sides, so the winding carries no meaning. Every
-// function but `append` and `placed` throws std::invalid_argument when its loop has too few points or its
-// size is not positive.
+// function but those that move or join parts throws std::invalid_argument when its loop has too few points or
+// its size is not positive.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,11 +20,17 @@ using Outline = std::vector<Eigen::Vector2f>;  // a polygon in a plane
 void append(TriangleMesh& whole, const TriangleMesh& part);
 // The part, each vertex p moved to pose * p.
 TriangleMesh placed(TriangleMesh part, const Eigen::Isometry3f& pose);
+// The part, mirrored in the plane through the origin across the axis (0 = x, 1 = y, 2 = z).
+TriangleMesh mirrored(TriangleMesh part, int axis);
+// The part and its mirror image.
+TriangleMesh with_mirror_image(const TriangleMesh& part, int axis);
 
 // The convex, plane polygon within a loop.
 TriangleMesh cap(const Loop& loop);
 // The strip between two loops of equally many points, point i of one joined to point i of the other.
 TriangleMesh band(const Loop& from, const Loop& to);
+// The open strip between two chains of equally many points, at least two.
+TriangleMesh strip(const Loop& from, const Loop& to);
 // The closed solid between two such loops: two caps and a band.
 TriangleMesh loft(const Loop& from, const Loop& to);
 
@@ -35,6 +41,8 @@ Outline regular_polygon(int sides, float radius, float first_corner_rad);
 
 // A box centred at the origin with its edges along the axes.
 TriangleMesh box(const Eigen::Vector3f& size);
+// A box with its edges along the axes, given by two opposite corners, the smaller coordinates first.
+TriangleMesh box_between(const Eigen::Vector3f& min, const Eigen::Vector3f& max);
 // A prism on a convex outline in the x-y plane, from z_from to z_to.
 TriangleMesh prism(const Outline& outline, float z_from, float z_to);
 // A prism whose cross-section is a convex profile in the vertical plane through the z axis at `heading_rad`
@@ -52,5 +60,9 @@ TriangleMesh tube(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float 
                   int sides);
 // Pose of a frame whose z axis points along `axis` and whose origin lies at `origin`.
 Eigen::Isometry3f frame_along(const Eigen::Vector3f& origin, const Eigen::Vector3f& axis);
+// Pose of a frame at `origin` whose x axis points along `x` and whose y axis is `y`, made perpendicular to x.
+Eigen::Isometry3f frame_at(const Eigen::Vector3f& origin, const Eigen::Vector3f& x, const Eigen::Vector3f& y);
+// Pose of a frame at the origin, turned about z.
+Eigen::Isometry3f turned(float angle_rad);
 
 }  // namespace tumblesight::sim

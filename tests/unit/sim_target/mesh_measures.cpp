@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <utility>
+
+#include "sim/target/primitives.hpp"
 
 namespace tumblesight::sim {
 
@@ -90,6 +93,58 @@ double closed_edge_share(const TriangleMesh& mesh) {
   const auto closed =
       std::count_if(uses.begin(), uses.end(), [](const auto& use) { return use.second == 2; });
   return static_cast<double>(closed) / static_cast<double>(uses.size());
+}
+
+std::vector<float> crossings_z_m(const TriangleMesh& mesh, float x, float y) {
+  const auto cross = [](const Eigen::Vector2f& u, const Eigen::Vector2f& v) {
+    return u.x() * v.y() - u.y() * v.x();
+  };
+  const Eigen::Vector2f p(x, y);
+  std::vector<float> heights;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Corners t = corners(mesh, i);
+    const Eigen::Vector2f a = t.a.head<2>() - p;
+    const Eigen::Vector2f b = t.b.head<2>() - p;
+    const Eigen::Vector2f c = t.c.head<2>() - p;
+    const float whole = cross(b - a, c - a);
+    const float of_a = cross(b, c) / whole;
+    const float of_b = cross(c, a) / whole;
+    if (whole != 0.0F && of_a >= 0.0F && of_b >= 0.0F && of_a + of_b <= 1.0F) {
+      heights.push_back(of_a * t.a.z() + of_b * t.b.z() + (1.0F - of_a - of_b) * t.c.z());
+    }
+  }
+  std::sort(heights.begin(), heights.end());
+  return heights;
+}
+
+float reach_m(const TriangleMesh& mesh, const Eigen::Vector3f& axis,
+              const std::function<bool(const Eigen::Vector3f&)>& belongs) {
+  float reach = -std::numeric_limits<float>::infinity();
+  for (const Eigen::Vector3f& v : mesh.vertices_trf_m) {
+    if (belongs(v)) {
+      reach = std::max(reach, axis.dot(v));
+    }
+  }
+  return reach;
+}
+
+bool is_sound(const TriangleMesh& mesh) {
+  for (const auto& t : mesh.triangles) {
+    for (const std::uint32_t corner : t) {
+      if (corner >= mesh.vertices_trf_m.size() || !mesh.vertices_trf_m[corner].allFinite()) {
+        return false;
+      }
+    }
+    const Eigen::Vector3f& a = mesh.vertices_trf_m[t[0]];
+    if ((mesh.vertices_trf_m[t[1]] - a).cross(mesh.vertices_trf_m[t[2]] - a).norm() <= 1e-8F) {
+      return false;
+    }
+  }
+  return true;
+}
+
+double moved_by_turn_m(const TriangleMesh& mesh, float angle_rad) {
+  return mean_distance_m(surface_points(mesh, 400), placed(mesh, turned(angle_rad)));
 }
 
 std::vector<Eigen::Vector3f> surface_points(const TriangleMesh& mesh, int count) {

@@ -80,12 +80,40 @@ TEST(Primitives, AppendedPartsKeepTheirTriangles) {
   EXPECT_NEAR(bounding_box(mesh).max().x(), 5.5F, 1e-6F);
 }
 
+TEST(Primitives, MirrorImageLiesAcrossTheAxisAndLeavesThePart) {
+  const TriangleMesh part = box_between({1.0F, -1.0F, 0.0F}, {2.0F, 3.0F, 5.0F});
+  const Eigen::AlignedBox3f image = bounding_box(mirrored(part, 1));
+  EXPECT_TRUE(image.min().isApprox(Eigen::Vector3f(1.0F, -3.0F, 0.0F), 1e-6F)) << image.min().transpose();
+  EXPECT_TRUE(image.max().isApprox(Eigen::Vector3f(2.0F, 1.0F, 5.0F), 1e-6F)) << image.max().transpose();
+  const TriangleMesh both = with_mirror_image(part, 0);
+  EXPECT_NEAR(area_m2(both), 2.0 * area_m2(part), 1e-4);
+  EXPECT_NEAR(bounding_box(both).min().x(), -2.0F, 1e-6F);
+  EXPECT_NEAR(bounding_box(both).max().x(), 2.0F, 1e-6F);
+}
+
+TEST(Primitives, StripJoinsItsChainsAndStaysOpen) {
+  const Loop from = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {3.0F, 0.0F, 0.0F}};
+  const Loop to = {{0.0F, 2.0F, 0.0F}, {1.0F, 2.0F, 0.0F}, {3.0F, 2.0F, 0.0F}};
+  EXPECT_NEAR(area_m2(strip(from, to)), 6.0, 1e-5);
+}
+
+TEST(Primitives, FrameIsRightHandedWithItsAxesWhereTold) {
+  const Eigen::Isometry3f pose = frame_at({1.0F, 2.0F, 3.0F}, {0.0F, 2.0F, 0.0F}, {0.0F, 1.0F, 4.0F});
+  EXPECT_TRUE((pose * Eigen::Vector3f(1.0F, 0.0F, 0.0F)).isApprox(Eigen::Vector3f(1.0F, 3.0F, 3.0F), 1e-6F));
+  EXPECT_TRUE((pose * Eigen::Vector3f(0.0F, 1.0F, 0.0F)).isApprox(Eigen::Vector3f(1.0F, 2.0F, 4.0F), 1e-6F));
+  EXPECT_TRUE((pose * Eigen::Vector3f(0.0F, 0.0F, 1.0F)).isApprox(Eigen::Vector3f(2.0F, 2.0F, 3.0F), 1e-6F));
+  EXPECT_TRUE((turned(static_cast<float>(kPi / 2.0)) * Eigen::Vector3f::UnitX())
+                  .isApprox(Eigen::Vector3f::UnitY(), 1e-6F));
+}
+
 TEST(Primitives, ImpossibleSizesAreRefused) {
   EXPECT_THROW(box({1.0F, 0.0F, 1.0F}), std::invalid_argument);
   EXPECT_THROW(box({1.0F, -1.0F, 1.0F}), std::invalid_argument);
   EXPECT_THROW(cap({{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}}), std::invalid_argument);
   EXPECT_THROW(band(Loop(3, Eigen::Vector3f::Zero()), Loop(4, Eigen::Vector3f::Zero())),
                std::invalid_argument);
+  EXPECT_THROW(strip({{0.0F, 0.0F, 0.0F}}, {{1.0F, 0.0F, 0.0F}}), std::invalid_argument);
+  EXPECT_THROW(box_between({1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 1.0F}), std::invalid_argument);
   EXPECT_THROW(frustum(2, 1.0F, 1.0F, 0.0F, 1.0F), std::invalid_argument);
   EXPECT_THROW(frustum(6, 1.0F, 1.0F, 1.0F, 1.0F), std::invalid_argument);
   EXPECT_THROW(revolve({{1.0F, 0.0F}}, 8), std::invalid_argument);
