@@ -265,7 +265,7 @@ bool AttitudeInitApp::passes_gate(const gnc::RangeImage& frame, StepOutputs& out
 void AttitudeInitApp::use_frame(const gnc::RangeImage& frame, StepOutputs& outputs) {
   // The reset comes before the step, yet a frame refused for its content must leave the state as it was.
   estimator_.save(state_before_frame_);
-  const std::uint32_t frames_before = state_before_frame_.frames_since_reset;
+  const std::uint32_t frames_before = state_before_frame_.track.frames;
   const bool reset_by_gap = frames_before > 0 && !gate_.one_period_after_last(frame);
   if (reset_by_gap) estimator_.reset();
 

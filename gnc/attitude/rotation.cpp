@@ -36,6 +36,32 @@ RotationColumns orthonormalise(const Eigen::Vector3f& a, const Eigen::Vector3f& 
   return {first, normalised(across)};
 }
 
+Eigen::Matrix3f product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
+  Eigen::Matrix3f result;
+  for (int column = 0; column < 3; ++column) result.col(column) = product(a, Eigen::Vector3f(b.col(column)));
+  return result;
+}
+
+Eigen::Matrix3f transpose_product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
+  Eigen::Matrix3f result;
+  for (int column = 0; column < 3; ++column) {
+    result.col(column) = transpose_product(a, Eigen::Vector3f(b.col(column)));
+  }
+  return result;
+}
+
+Eigen::Vector3f product(const Eigen::Matrix3f& a, const Eigen::Vector3f& b) {
+  return {dot(a.row(0), b), dot(a.row(1), b), dot(a.row(2), b)};
+}
+
+Eigen::Vector3f transpose_product(const Eigen::Matrix3f& a, const Eigen::Vector3f& b) {
+  return {dot(a.col(0), b), dot(a.col(1), b), dot(a.col(2), b)};
+}
+
+float trace_of_transpose_product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
+  return (dot(a.col(0), b.col(0)) + dot(a.col(1), b.col(1))) + dot(a.col(2), b.col(2));
+}
+
 Eigen::Matrix3f rotation_from_columns(const RotationColumns& columns) {
   const Eigen::Vector3f& u = columns.first;
   const Eigen::Vector3f& v = columns.second;

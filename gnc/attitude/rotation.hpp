@@ -18,6 +18,14 @@ RotationColumns orthonormalise(const Eigen::Vector3f& a, const Eigen::Vector3f& 
 
 Eigen::Matrix3f rotation_from_columns(const RotationColumns& columns);
 
+// a b, and a^T b. Written out, so that the order of summation does not depend on Eigen's version.
+Eigen::Matrix3f product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b);
+Eigen::Matrix3f transpose_product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b);
+Eigen::Vector3f product(const Eigen::Matrix3f& a, const Eigen::Vector3f& b);
+Eigen::Vector3f transpose_product(const Eigen::Matrix3f& a, const Eigen::Vector3f& b);
+// trace(a^T b) = 1 + 2 cos(angle between them).
+float trace_of_transpose_product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b);
+
 // Unit Hamilton quaternion with w >= 0 of a rotation matrix. Always unit: for a matrix that is no rotation it
 // is the direction of the best conditioned formula, for the zero matrix and for non-finite ones the identity.
 // Branch-free choice of the formula with the largest pivot (Shepperd 1978).

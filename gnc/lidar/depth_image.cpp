@@ -7,6 +7,8 @@ namespace tumblesight::gnc {
 namespace {
 
 constexpr int kMinRays = 16;
+constexpr std::uint16_t kMinRangeCounts =
+    static_cast<std::uint16_t>(kMinRange_m / RangeImage::kMetresPerCount);
 constexpr std::uint16_t kMaxRangeCounts =
     static_cast<std::uint16_t>(kMaxRange_m / RangeImage::kMetresPerCount);
 constexpr float kSmallestValue = 1.0F / 256.0F;  // a return is never mistaken for an empty cell
@@ -25,7 +27,25 @@ float ray_slope(int index, int rays, float tan_half_fov) {
 }
 
 bool usable(std::uint16_t range) {
-  return range != 0 && range <= kMaxRangeCounts;
+  return range >= kMinRangeCounts && range <= kMaxRangeCounts;
+}
+
+// Calls visit(point in the LRF [m], 1 for a usable return or 0) for every ray; row_done() after each row.
+template <class Visitor, class RowDone>
+void for_each_ray(const RangeImage& frame, Visitor&& visit, RowDone&& row_done) {
+  const float tan_half_fov = tan_small(static_cast<float>(frame.fov_urad) * 0.5e-6F);
+  for (int row = 0; row < frame.rays; ++row) {
+    const float v = -ray_slope(row, frame.rays, tan_half_fov);
+    for (int column = 0; column < frame.rays; ++column) {
+      const std::uint16_t range = frame.ranges[row * frame.rays + column];
+      const float u = ray_slope(column, frame.rays, tan_half_fov);
+      const float weight = usable(range) ? 1.0F : 0.0F;
+      const float depth_m =
+          weight * static_cast<float>(range) * RangeImage::kMetresPerCount / std::sqrt(1.0F + u * u + v * v);
+      visit(Eigen::Vector3f(u * depth_m, depth_m, v * depth_m), weight);
+    }
+    row_done();
+  }
 }
 
 struct Returns {
@@ -63,38 +83,56 @@ int cell_index(float position) {
   return inside ? static_cast<int>(scaled) : -1;
 }
 
-// Sums depths and counts returns cell by cell; returns the mean depth of all usable returns. The mean is
-// summed row by row, which keeps the float error far below the sensor's resolution.
-float accumulate(const RangeImage& frame, float swath_m, DepthImageScratch& scratch) {
+// Of all usable returns. Summed row by row, which keeps the float error far below the sensor's resolution.
+Eigen::Vector3f centroid_lrf_m(const RangeImage& frame) {
+  Eigen::Vector3f total_m = Eigen::Vector3f::Zero();
+  Eigen::Vector3f row_m = Eigen::Vector3f::Zero();
+  float count = 0.0F;
+  for_each_ray(
+      frame,
+      [&](const Eigen::Vector3f& point_m, float weight) {
+        row_m += point_m;
+        count += weight;
+      },
+      [&] {
+        total_m += row_m;
+        row_m.setZero();
+      });
+  return total_m / count;
+}
+
+// The shortest turn of +y into `direction` (unit, within 90 degrees of +y).
+Eigen::Matrix3f turn_of_y_to(const Eigen::Vector3f& direction) {
+  const float x = direction.x();
+  const float y = direction.y();
+  const float z = direction.z();
+  const float s = 1.0F / (1.0F + y);
+  Eigen::Matrix3f turn;
+  turn << 1.0F - s * x * x, x, -s * x * z,  //
+      -x, y, -z,                            //
+      -s * x * z, z, 1.0F - s * z * z;
+  return turn;
+}
+
+// Sums depths and counts returns cell by cell, in the view.
+void accumulate(const RangeImage& frame, const Eigen::Matrix3f& r_lrf_view, float swath_m,
+                DepthImageScratch& scratch) {
   scratch.depth_sum_m.fill(0.0F);
   scratch.returns.fill(0.0F);
-  const float tan_half_fov = tan_small(static_cast<float>(frame.fov_urad) * 0.5e-6F);
   const float per_swath = 1.0F / swath_m;
-  float depth_total_m = 0.0F;
-  float count_total = 0.0F;
-  for (int row = 0; row < frame.rays; ++row) {
-    const float v = -ray_slope(row, frame.rays, tan_half_fov);
-    float row_depth_m = 0.0F;
-    float row_count = 0.0F;
-    for (int column = 0; column < frame.rays; ++column) {
-      const std::uint16_t range = frame.ranges[row * frame.rays + column];
-      const float u = ray_slope(column, frame.rays, tan_half_fov);
-      const float weight = usable(range) ? 1.0F : 0.0F;
-      const float depth_m =
-          weight * static_cast<float>(range) * RangeImage::kMetresPerCount / std::sqrt(1.0F + u * u + v * v);
-      row_depth_m += depth_m;
-      row_count += weight;
-      const int x = cell_index(u * depth_m * per_swath);
-      const int y = cell_index(-v * depth_m * per_swath);
-      const bool inside = x >= 0 && y >= 0;
-      const int cell = inside ? y * DepthImage::kSide + x : 0;
-      scratch.depth_sum_m[cell] += inside ? depth_m : 0.0F;
-      scratch.returns[cell] += inside ? weight : 0.0F;
-    }
-    depth_total_m += row_depth_m;
-    count_total += row_count;
-  }
-  return depth_total_m / count_total;
+  const Eigen::Matrix3f r_view_lrf = r_lrf_view.transpose();
+  for_each_ray(
+      frame,
+      [&](const Eigen::Vector3f& point_lrf_m, float weight) {
+        const Eigen::Vector3f point_m = r_view_lrf * point_lrf_m;
+        const int x = cell_index(point_m.x() * per_swath);
+        const int y = cell_index(-point_m.z() * per_swath);
+        const bool inside = x >= 0 && y >= 0;
+        const int cell = inside ? y * DepthImage::kSide + x : 0;
+        scratch.depth_sum_m[cell] += inside ? point_m.y() : 0.0F;
+        scratch.returns[cell] += inside ? weight : 0.0F;
+      },
+      [] {});
 }
 
 void encode_centroid_relative(const DepthImageScratch& scratch, float centroid_m, float target_radius_m,
@@ -124,9 +162,13 @@ FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& pro
                              DepthImageScratch& scratch, DepthImage& image) {
   const FrameStatus status = validate(frame);
   if (status != FrameStatus::kOk) return status;
-  const float centroid_m = accumulate(frame, projection.swath_m, scratch);
-  if (projection.encoding == DepthEncoding::kCentroidRelative) {
-    encode_centroid_relative(scratch, centroid_m, projection.target_radius_m, image);
+  const bool centred = projection.encoding == DepthEncoding::kCentroidRelative;
+  const Eigen::Vector3f centroid_m = centroid_lrf_m(frame);
+  const float distance_m = centroid_m.norm();
+  image.r_lrf_view = centred ? turn_of_y_to(centroid_m / distance_m) : Eigen::Matrix3f::Identity();
+  accumulate(frame, image.r_lrf_view, projection.swath_m, scratch);
+  if (centred) {
+    encode_centroid_relative(scratch, distance_m, projection.target_radius_m, image);
   } else {
     encode_paper_maximum(scratch, image);
   }

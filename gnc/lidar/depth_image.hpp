@@ -1,6 +1,7 @@
 // DepthImage: what the network eats, and the projection of a RangeImage onto it.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 
@@ -8,17 +9,22 @@
 
 namespace tumblesight::gnc {
 
-// Depth of the target across the boresight, row 0 at the top (+z), column 0 at the left (-x). 0 = nothing
-// there; otherwise in (0, 1], nearer is brighter.
+// Depth of the target, seen along the view's +y, row 0 at the top (+z), column 0 at the left (-x). 0 =
+// nothing there; otherwise in (0, 1], nearer is brighter.
+//
+// The view is the LRF turned, by the shortest arc, so that its +y passes through the centroid of the returns.
+// In it a target off the boresight looks as it would on the boresight: what is learnt there holds everywhere.
 struct DepthImage {
   static constexpr int kSide = 100;
   static constexpr int kCells = kSide * kSide;
   std::array<float, kCells> value{};
+  Eigen::Matrix3f r_lrf_view = Eigen::Matrix3f::Identity();  // v_lrf = r_lrf_view v_view
 };
 
 enum class DepthEncoding : std::uint8_t {
   kCentroidRelative = 0,  // 0.5 + 0.5 (centroid depth - depth) / target radius, clamped to [1/256, 1]
-  kPaperMaximum = 1,  // depth / largest depth of the image (paper, "Image" in the data generation section)
+  // depth / largest depth of the image (paper, "Image" in the data generation section); the view is the LRF
+  kPaperMaximum = 1,
 };
 
 // How a frame becomes an image; part of the model image, since the network is trained for it.
@@ -43,13 +49,15 @@ struct DepthImageScratch {
 };
 
 inline constexpr int kMinReturns = 16;
+inline constexpr float kMinRange_m = 10.0F;   // nearer is the chaser itself: an arm, a mast, a panel
 inline constexpr float kMaxRange_m = 500.0F;  // longer ranges count as no return (paper, sensor table)
 inline constexpr std::uint32_t kMinFov_urad = 17'453;   // 1 degree
 inline constexpr std::uint32_t kMaxFov_urad = 698'132;  // 40 degrees
 
-// Projects the returns on the plane across the boresight (x right, z up, boresight in the middle), averages
-// the depths (along +y) that fall in one cell and encodes them. Returns outside the swath are left out. The
-// work done is the same for every frame of one ray count. On any status but kOk `image` is unspecified.
+// Projects the returns on the plane across the view's axis (x right, z up, axis in the middle), averages the
+// depths (along +y) that fall in one cell and encodes them. Returns nearer than kMinRange_m, farther than
+// kMaxRange_m or outside the swath are left out. The work done is the same for every frame of one ray count.
+// On any status but kOk `image` is unspecified.
 [[nodiscard]] FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& projection,
                                            DepthImageScratch& scratch, DepthImage& image);
 

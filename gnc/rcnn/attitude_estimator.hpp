@@ -6,19 +6,20 @@
 #include <cstdint>
 
 #include "gnc/lidar/depth_image.hpp"
+#include "gnc/rcnn/attitude_track.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "gnc/rcnn/network.hpp"
 
 namespace tumblesight::gnc {
 
-// One attitude, of the frame just given. Quaternions are Hamilton, unit, with a non-negative scalar part, and take
-// the target frame (TRF) to the LiDAR frame (LRF): v_lrf = q_lrf_trf * v_trf.
+// One attitude, of the frame just given. Quaternions are Hamilton, unit, with a non-negative scalar part, and
+// take the target frame (TRF) to the LiDAR frame (LRF): v_lrf = q_lrf_trf * v_trf.
 struct AttitudeEstimate {
   Eigen::Quaternionf q_lrf_trf{1.0F, 0.0F, 0.0F, 0.0F};  // from all frames since the reset (RCNN)
   float predicted_error_rad = 3.14159265F;               // expected angular error of q_lrf_trf
   Eigen::Quaternionf q_lrf_trf_single_frame{1.0F, 0.0F, 0.0F, 0.0F};  // from this frame alone (CNN)
   float predicted_error_single_frame_rad = 3.14159265F;
-  std::uint32_t frames_since_reset = 0;  // 1 for the first frame
+  std::uint32_t frames_since_reset = 0;  // 1 for the first frame of a track
 };
 
 // Owns weights, activations and LSTM state; no allocation. About 6 MB: place it in static storage.
@@ -27,12 +28,13 @@ class AttitudeEstimator {
   // What one frame leaves behind for the next: all that save() and restore() have to carry.
   struct State {
     LstmState lstm;
-    std::uint32_t frames_since_reset = 0;
+    AttitudeTrack track;
   };
 
   // Validates the whole image first; on any error the model loaded before, if any, stays in use.
   // `expected_target`: NUL-terminated target name, or nullptr to accept any. On success the state is reset.
-  [[nodiscard]] ModelStatus load(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target);
+  [[nodiscard]] ModelStatus load(const std::uint8_t* image, std::size_t size_bytes,
+                                 const char* expected_target);
   bool has_model() const { return has_model_; }
   const ModelHeader& model() const { return model_; }
 

@@ -16,8 +16,9 @@ constexpr std::size_t kOffsetTarget = 16;
 constexpr std::size_t kOffsetSwath = 48;
 constexpr std::size_t kOffsetRadius = 52;
 constexpr std::size_t kOffsetEncoding = 56;
-constexpr std::size_t kOffsetSectionCount = 60;
-constexpr std::size_t kOffsetHeaderCrc = 64;
+constexpr std::size_t kOffsetInertia = 60;
+constexpr std::size_t kOffsetSectionCount = 84;
+constexpr std::size_t kOffsetHeaderCrc = 88;
 // Bounds the reading of another network's section table, so that it is told apart from a damaged image.
 constexpr std::uint32_t kMaxSections = 256;
 
@@ -76,7 +77,8 @@ constexpr std::uint32_t compute_architecture_hash() {
                             shape::kFlat,      shape::kDense1,
                             shape::kDense2,    shape::kHypotheses,
                             shape::kOutput,    shape::kLstmInput,
-                            shape::kLstm,      shape::kHead};
+                            shape::kLstm,      shape::kHead,
+                            shape::kHeadOutput};
   std::uint32_t hash = 2166136261U;
   for (const int size : kSizes) hash = fnv1a(hash, static_cast<std::uint32_t>(size));
   for (const char letter : kNumerics) hash = fnv1a(hash, static_cast<std::uint32_t>(letter));
@@ -114,6 +116,20 @@ ModelStatus check_frame_of_header(const std::uint8_t* image, std::size_t size_by
   return ModelStatus::kOk;
 }
 
+// xx, yy, zz, xy, xz, yz.
+constexpr std::array<std::array<int, 2>, 6> kInertiaElements{
+    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+
+bool read_inertia(const std::uint8_t* image, Inertia& inertia) {
+  Eigen::Matrix3f tensor;
+  for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {
+    const auto [row, column] = kInertiaElements[i];
+    tensor(row, column) = get_f32(image + kOffsetInertia + 4 * i);
+    tensor(column, row) = tensor(row, column);
+  }
+  return make_inertia(tensor, inertia);
+}
+
 ModelStatus check_meaning(const std::uint8_t* image, const char* expected_target) {
   if (get_u32(image + kOffsetArchitecture) != kArchitectureHash) return ModelStatus::kBadArchitecture;
   ModelHeader header;
@@ -123,7 +139,8 @@ ModelStatus check_meaning(const std::uint8_t* image, const char* expected_target
     return ModelStatus::kBadTarget;
   }
   const bool possible =
-      is_positive(image + kOffsetSwath) && is_positive(image + kOffsetRadius) &&
+      read_inertia(image, header.inertia) && is_positive(image + kOffsetSwath) &&
+      is_positive(image + kOffsetRadius) &&
       get_u32(image + kOffsetEncoding) <= static_cast<std::uint32_t>(DepthEncoding::kPaperMaximum);
   return possible ? ModelStatus::kOk : ModelStatus::kBadValue;
 }
@@ -171,6 +188,7 @@ void read_header(const std::uint8_t* image, ModelHeader& header) {
   header.projection.swath_m = get_f32(image + kOffsetSwath);
   header.projection.target_radius_m = get_f32(image + kOffsetRadius);
   header.projection.encoding = static_cast<DepthEncoding>(get_u32(image + kOffsetEncoding));
+  (void)read_inertia(image, header.inertia);  // check_meaning() has seen that it is one
   header.crc32 = get_u32(image + kOffsetHeaderCrc);
 }
 
@@ -243,6 +261,10 @@ std::size_t write_model_image(const ModelHeader& header, const NetworkWeights& w
   put_f32(out + kOffsetSwath, header.projection.swath_m);
   put_f32(out + kOffsetRadius, header.projection.target_radius_m);
   put_u32(out + kOffsetEncoding, static_cast<std::uint32_t>(header.projection.encoding));
+  for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {
+    const auto [row, column] = kInertiaElements[i];
+    put_f32(out + kOffsetInertia + 4 * i, header.inertia.tensor_trf(row, column));
+  }
   put_u32(out + kOffsetSectionCount, static_cast<std::uint32_t>(kTensorCount));
 
   std::uint8_t* entry = out + kModelHeaderSize;

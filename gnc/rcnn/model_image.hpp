@@ -4,31 +4,33 @@
 // Layout, little-endian everywhere; floats are IEEE 754 binary32:
 //   offset  size  field
 //        0     4  magic "TSRM"
-//        4     2  format version (1)
-//        6     2  header size (68)
+//        4     2  format version (2)
+//        6     2  header size (92)
 //        8     4  total size of the image in bytes
 //       12     4  architecture hash: network_shape.hpp and the numerics (float32)
 //       16    32  target name, printable ASCII, NUL-padded, at least one NUL
 //       48     4  depth projection: swath [m], float
 //       52     4  depth projection: target radius [m], float
 //       56     4  depth projection: encoding
-//       60     4  number of sections (21)
-//       64     4  CRC-32 of bytes 0..63 and the section table
-//       68  16 n  section table: id (1, 2, ...), offset, size in bytes, CRC-32 of the section, 4 bytes each
-//      404     -  sections without gaps: the tensors in the order of for_each_tensor()
+//       60    24  inertia of the target in the TRF, only ratios matter: xx, yy, zz, xy, xz, yz, float
+//       84     4  number of sections (21)
+//       88     4  CRC-32 of bytes 0..87 and the section table
+//       92  16 n  section table: id (1, 2, ...), offset, size in bytes, CRC-32 of the section, 4 bytes each
+//      428     -  sections without gaps: the tensors in the order of for_each_tensor()
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network.hpp"
 
 namespace tumblesight::gnc {
 
-inline constexpr std::uint16_t kModelFormatVersion = 1;
-inline constexpr std::size_t kModelHeaderSize = 68;
+inline constexpr std::uint16_t kModelFormatVersion = 2;
+inline constexpr std::size_t kModelHeaderSize = 92;
 inline constexpr std::size_t kModelSectionEntrySize = 16;
 inline constexpr std::size_t kModelDataOffset = kModelHeaderSize + kTensorCount * kModelSectionEntrySize;
 inline constexpr std::size_t kModelImageSize = kModelDataOffset + kParameterCount * sizeof(float);
@@ -36,6 +38,7 @@ inline constexpr std::size_t kModelImageSize = kModelDataOffset + kParameterCoun
 struct ModelHeader {
   std::array<char, 32> target{};  // NUL-terminated name of the spacecraft the network was trained for
   DepthProjection projection;
+  Inertia inertia;  // how the target tumbles
   // Covers the header and, through the sections' CRCs, all weights: it names this very image. Set by the
   // reader.
   std::uint32_t crc32 = 0;
@@ -52,7 +55,7 @@ enum class ModelStatus : std::uint8_t {
   kBadTarget,        // of another spacecraft, or its name is malformed
   kBadSection,       // section id, offset or size not as the network demands
   kBadSectionCrc,    // weights damaged
-  kBadValue,         // a weight that is not finite, or an impossible depth projection
+  kBadValue,         // a weight that is not finite, an impossible depth projection or inertia
 };
 const char* to_string(ModelStatus status);
 

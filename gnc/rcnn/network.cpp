@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "gnc/attitude/rotation.hpp"
 #include "gnc/nn/activation.hpp"
 
 namespace tumblesight::gnc {
@@ -21,16 +20,7 @@ void relu(std::array<float, kCount>& values) {
 
 }  // namespace
 
-void Network::infer(const DepthImage& image, LstmState& state, OutputVector& single_frame_out,
-                    OutputVector& rcnn_out) {
-  infer_features(image);
-  layers::CnnOut::forward(weights_.cnn_out, dense2_, single_frame_out);
-  fill_lstm_input(single_frame_out);
-  layers::Recurrent::forward(weights_.lstm, lstm_input_, gates_, state);
-  correct(state, single_frame_out, rcnn_out);
-}
-
-void Network::infer_features(const DepthImage& image) {
+void Network::infer_frame(const DepthImage& image, OutputVector& out) {
   using namespace layers;
   ToDepth::forward(image.value, depth_channels_);
   Conv1::forward(weights_.conv1, depth_channels_, conv1_padded_, conv1_);
@@ -49,34 +39,17 @@ void Network::infer_features(const DepthImage& image) {
   relu(dense1_);
   Dense2::forward(weights_.dense2, dense1_, dense2_);
   relu(dense2_);
+  CnnOut::forward(weights_.cnn_out, dense2_, out);
 }
 
-void Network::fill_lstm_input(const OutputVector& single_frame_out) {
-  std::copy(dense2_.begin(), dense2_.end(), lstm_input_.begin());
-  float* columns = lstm_input_.data() + shape::kDense2;
-  for (int k = 0; k < shape::kHypotheses; ++k) {
-    const float* six = single_frame_out.data() + 6 * k;
-    const RotationColumns unit = orthonormalise({six[0], six[1], six[2]}, {six[3], six[4], six[5]});
-    for (int i = 0; i < 3; ++i) {
-      columns[6 * k + i] = unit.first[i];
-      columns[6 * k + 3 + i] = unit.second[i];
-    }
-  }
-  softmax(single_frame_out.data() + shape::kColumns, columns + shape::kColumns, shape::kHypotheses);
-}
-
-void Network::correct(const LstmState& state, const OutputVector& single_frame_out, OutputVector& rcnn_out) {
+void Network::infer_sequence(const layers::Recurrent::Input& input, LstmState& state,
+                             layers::Head2::Output& out) {
+  layers::Recurrent::forward(weights_.lstm, input, gates_, state);
   const auto after_hidden = std::copy(state.h.begin(), state.h.end(), head_input_.begin());
-  std::copy(lstm_input_.begin(), lstm_input_.end(), after_hidden);
+  std::copy(input.begin(), input.end(), after_hidden);
   layers::Head1::forward(weights_.head1, head_input_, head1_);
   relu(head1_);
-  layers::Head2::forward(weights_.head2, head1_, correction_);
-
-  const float* columns = lstm_input_.data() + shape::kDense2;
-  for (int i = 0; i < shape::kOutput; ++i) {
-    const float base = i < shape::kColumns ? columns[i] : single_frame_out[i];
-    rcnn_out[i] = base + correction_[i];
-  }
+  layers::Head2::forward(weights_.head2, head1_, out);
 }
 
 }  // namespace tumblesight::gnc

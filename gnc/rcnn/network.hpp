@@ -1,5 +1,5 @@
-// The RCNN: from a depth image and the LSTM's state to one output vector of this frame alone and one of all
-// frames.
+// The layers of the RCNN, their weights and activations. What their numbers mean: hypotheses.hpp (CNN) and
+// attitude_track.hpp (LSTM and head).
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ using Dense2 = Dense<shape::kDense1, shape::kDense2>;
 using CnnOut = Dense<shape::kDense2, shape::kOutput>;
 using Recurrent = Lstm<shape::kLstmInput, shape::kLstm>;
 using Head1 = Dense<shape::kLstm + shape::kLstmInput, shape::kHead>;
-using Head2 = Dense<shape::kHead, shape::kOutput>;
+using Head2 = Dense<shape::kHead, shape::kHeadOutput>;
 }  // namespace layers
 
 using LstmState = layers::Recurrent::State;
@@ -89,22 +89,15 @@ class Network {
   NetworkWeights& weights() { return weights_; }
   const NetworkWeights& weights() const { return weights_; }
 
-  // One frame. `single_frame_out` holds what the CNN says of this image alone, its six numbers a hypothesis
-  // not yet orthonormalised; `rcnn_out` what the LSTM makes of it given the frames before: the single frame's
-  // output with orthonormalised columns, plus a correction. `state` is advanced.
-  void infer(const DepthImage& image, LstmState& state, OutputVector& single_frame_out,
-             OutputVector& rcnn_out);
+  // CNN: of this image alone.
+  void infer_frame(const DepthImage& image, OutputVector& out);
+  // LSTM and recurrent head; `state` is advanced.
+  void infer_sequence(const layers::Recurrent::Input& input, LstmState& state, layers::Head2::Output& out);
 
-  // Of the last infer(): dense2's output (after ReLU), and what the LSTM was given: dense2's output,
-  // orthonormalised columns, softmax probabilities of the hypotheses.
-  const layers::Dense2::Output& dense2_output() const { return dense2_; }
-  const layers::Recurrent::Input& lstm_input() const { return lstm_input_; }
+  // Of the last infer_frame(): dense2's output (after ReLU).
+  const layers::Dense2::Output& features() const { return dense2_; }
 
  private:
-  void infer_features(const DepthImage& image);
-  void fill_lstm_input(const OutputVector& single_frame_out);
-  void correct(const LstmState& state, const OutputVector& single_frame_out, OutputVector& rcnn_out);
-
   NetworkWeights weights_;
 
   alignas(64) layers::Conv1::Input depth_channels_{};
@@ -122,11 +115,9 @@ class Network {
   alignas(64) layers::Pool4::Output pool4_{};
   alignas(64) layers::Dense1::Output dense1_{};
   alignas(64) layers::Dense2::Output dense2_{};
-  alignas(64) layers::Recurrent::Input lstm_input_{};
   alignas(64) layers::Recurrent::Gates gates_{};
   alignas(64) layers::Head1::Input head_input_{};
   alignas(64) layers::Head1::Output head1_{};
-  alignas(64) layers::Head2::Output correction_{};
 };
 
 }  // namespace tumblesight::gnc

@@ -11,6 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sim/scenario/sequence.hpp"
 #include "sim/target/targets.hpp"
 
 namespace tumblesight::sim {
@@ -69,7 +70,7 @@ CLI::Validator number(double low, double high) {
   return CLI::Validator(check, "", "number");
 }
 
-void add_scenario_options(CLI::App& command, ScenarioArguments& arguments) {
+void add_target_options(CLI::App& command, ScenarioArguments& arguments) {
   command
       .add_option("--target", arguments.target,
                   "spacecraft: " + joined(target_names()) + "; with --mesh any name")
@@ -90,11 +91,25 @@ void add_scenario_options(CLI::App& command, ScenarioArguments& arguments) {
       ->capture_default_str()
       ->needs(mesh);
   command
-      .add_option("--condition", arguments.condition,
-                  "sensor: nominal, or degraded (coarser, a tenth of the points lost)")
-      ->check(one_of({"nominal", "degraded"}))
+      .add_option("--inertia", arguments.inertia,
+                  "its inertia Ixx,Iyy,Izz,Ixy,Ixz,Iyz in kg m2, to let a target of your own tumble")
+      ->delimiter(',')
+      ->expected(6)
+      ->type_name("N,N,...");
+}
+
+std::string condition_help() {
+  return joined(condition_names());
+}
+
+void add_condition_option(CLI::App& command, ScenarioArguments& arguments) {
+  command.add_option("--condition", arguments.condition, condition_help())
+      ->check(one_of(condition_names()))
       ->type_name("NAME")
       ->capture_default_str();
+}
+
+void add_sequence_options(CLI::App& command, ScenarioArguments& arguments) {
   command.add_option("--sequences", arguments.sequences, "sequences to run, 1 to 100000")
       ->check(whole_number(1, 100'000))
       ->type_name("N")
@@ -107,6 +122,9 @@ void add_scenario_options(CLI::App& command, ScenarioArguments& arguments) {
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->type_name("N")
       ->capture_default_str();
+}
+
+void add_file_options(CLI::App& command, ScenarioArguments& arguments) {
   command.add_option("--model", arguments.model, "model image [fsw/models/<target>.tsm]")->type_name("FILE");
   command.add_option("--json", arguments.json, "write the figures to this file")->type_name("FILE");
 }

@@ -15,6 +15,7 @@ struct ScenarioArguments {
   std::string mesh;  // empty: the mesh that ships for the target
   std::string mesh_up = "y";
   double mesh_scale = 1.0;
+  std::vector<double> inertia;  // Ixx, Iyy, Izz, Ixy, Ixz, Iyz [kg m2]; empty: the shipped target's own
   std::string condition = "nominal";
   std::uint32_t sequences = 30;
   std::uint32_t frames = 10;
@@ -24,7 +25,13 @@ struct ScenarioArguments {
 };
 
 // Defaults are what `arguments` holds when called.
-void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
+void add_target_options(CLI::App& command, ScenarioArguments& arguments);    // --target, --mesh…, --inertia
+void add_condition_option(CLI::App& command, ScenarioArguments& arguments);  // --condition, a single one
+void add_sequence_options(CLI::App& command, ScenarioArguments& arguments);  // --sequences, --frames, --seed
+void add_file_options(CLI::App& command, ScenarioArguments& arguments);      // --model, --json
+
+// What --condition says of itself, wherever it stands.
+std::string condition_help();
 
 // Throws CLI::ValidationError if sequences times frames is more than a run can hold in memory.
 void require_bearable_length(const ScenarioArguments& arguments);

@@ -1,95 +1,138 @@
 #include "sim/cli/evaluate_command.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <memory>
-#include <stdexcept>
-#include <thread>
 
-#include "sim/cli/arguments.hpp"
-#include "sim/cli/summary.hpp"
-#include "sim/cli/target_setup.hpp"
-#include "sim/evaluation/monte_carlo.hpp"
+#include "sim/cli/evaluate_arguments.hpp"
+#include "sim/cli/evaluate_paper.hpp"
+#include "sim/cli/subject_setup.hpp"
+#include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/progress.hpp"
-#include "sim/evaluation/report.hpp"
+#include "sim/evaluation/results_csv.hpp"
+#include "sim/evaluation/results_json.hpp"
+#include "sim/evaluation/results_report.hpp"
+#include "sim/evaluation/results_table.hpp"
+#include "sim/evaluation/text_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-constexpr int kMostThreads = 1024;
+void require_usable_files(const EvaluateArguments& arguments) {
+  const std::string& json = arguments.scenario.json;
+  require_different("--csv", arguments.csv, "--json", json);
+  require_different("--report", arguments.report, "--json", json);
+  require_different("--report", arguments.report, "--csv", arguments.csv);
+  if (!json.empty()) require_writable("--json", json);
+  if (!arguments.csv.empty()) require_writable("--csv", arguments.csv);
+  if (!arguments.report.empty()) require_writable("--report", arguments.report);
+}
 
-struct EvaluateArguments {
-  ScenarioArguments scenario;
-  int threads = 0;  // 0: one a core
-};
+std::vector<Condition> conditions_of(const EvaluateArguments& arguments) {
+  std::vector<Condition> conditions;
+  for (const std::string& name : arguments.conditions) {
+    const Condition condition = condition_from(name);
+    const bool known = std::find(conditions.begin(), conditions.end(), condition) != conditions.end();
+    if (known) throw CLI::ValidationError("--condition", fmt::format("'{}' is given twice", name));
+    conditions.push_back(condition);
+  }
+  return conditions;
+}
 
-nlohmann::ordered_json result_json(const ScenarioArguments& scenario, const TargetSetup& setup,
-                                   const std::vector<FrameResult>& results) {
-  nlohmann::ordered_json row{{"target", scenario.target},
-                             {"mesh", setup.mesh_name},
-                             {"condition", scenario.condition},
-                             {"sequences", scenario.sequences}};
-  row["rcnn"] = summary_json(summarise(last_frame_errors_deg(results, scenario.frames, Estimator::kRcnn)));
-  row["cnn"] = summary_json(summarise(last_frame_errors_deg(results, scenario.frames, Estimator::kCnn)));
-  return nlohmann::ordered_json{{"rows", {row}}};
+void announce(const Subject& subject, const ExperimentSettings& settings) {
+  std::string conditions;
+  for (const Condition condition : settings.conditions) {
+    conditions += (conditions.empty() ? "" : ", ") + to_string(condition);
+  }
+  fmt::print("\n  {}, {}, {} sequences of {} frames, seed {}\n  mesh {}, model {}, CRC-32 {:08x}\n\n",
+             subject.target, conditions, settings.sequences, settings.frames, settings.seed,
+             subject.mesh_name, subject.model_name, subject.model_crc32);
+  std::fflush(stdout);
+}
+
+void print_cell(const SubjectResult& subject, const CellResult& cell) {
+  const PaperFigures paper = paper_figures(subject.target, cell.condition);
+  if (subject.cells.size() > 1) fmt::print("\n  {}\n", to_string(cell.condition));
+  fmt::print("\n{}\n{}\n", cell_table(cell.rcnn, cell.cnn, cell.baseline, cell.frames, paper),
+             by_frame_table(cell.by_frame));
+  fmt::print("  network              {:.2f} ms a frame (median, one thread)\n", cell.network_ms);
+  if (cell.baseline) {
+    fmt::print(
+        "  template matching    {:.0f} ms a frame; templates of the same mesh as the frames', last frames of "
+        "the "
+        "first {} sequences\n",
+        cell.baseline_ms, cell.baseline->count);
+  }
+}
+
+void print_results(const Results& results) {
+  const SubjectResult& subject = results.subjects.front();
+  for (const CellResult& cell : subject.cells) print_cell(subject, cell);
+  if (!subject.sweeps) return;
+  const Sweeps& sweeps = *subject.sweeps;
+  fmt::print("\n{}\n{}\n{}\n{}\n", curve_table("range [m]", subject.cells.front().by_range),
+             curve_table("rate, components drawn [deg/s]", subject.cells.front().by_rate),
+             curve_table("rate, norm drawn [deg/s]", sweeps.by_rate_norm),
+             curve_table("hidden share", sweeps.by_hidden_share));
+  for (const Check& check : checks_of(subject)) {
+    fmt::print("  {}: {}{}\n", check.what, text_of(check), check.holds() ? "" : "  MISSED");
+  }
+}
+
+void write_files(const EvaluateArguments& arguments, const Results& results) {
+  const std::string& json = arguments.scenario.json;
+  if (!json.empty()) write_text_file(json, results_json(results).dump(2) + "\n");
+  if (!arguments.csv.empty()) write_text_file(arguments.csv, results_csv(results));
+  if (arguments.report.empty()) return;
+  write_text_file(arguments.report, results_report(results));
+  fmt::print("  report               {}\n", full_path(arguments.report));
 }
 
 void evaluate(const EvaluateArguments& arguments) {
-  const ScenarioArguments& scenario = arguments.scenario;
-  require_bearable_length(scenario);
-  if (!scenario.json.empty()) require_writable("--json", scenario.json);
-  const TargetSetup setup = set_up_target(scenario);
-  if (setup.model_status != gnc::ModelStatus::kOk) {
-    throw std::runtime_error(
-        fmt::format("model image '{}' is refused: {}", setup.model_path, gnc::to_string(setup.model_status)));
+  ExperimentSettings settings = experiment_settings(arguments);
+  settings.conditions = conditions_of(arguments);
+  require_bearable_length(arguments.scenario);
+  require_usable_files(arguments);
+  const Subject subject = set_up_subject(arguments.scenario);
+  for (const Condition condition : settings.conditions) {
+    (void)scenario_settings(condition, settings.frames, subject.target, subject.inertia_kg_m2);
   }
-  for (const std::string& warning : setup.warnings) fmt::print(stderr, "  note: {}\n", warning);
+  announce(subject, settings);
 
-  MonteCarloSettings settings;
-  settings.condition = condition_from(scenario.condition);
-  settings.seed = scenario.seed;
-  settings.sequences = scenario.sequences;
-  settings.frames = scenario.frames;
-  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  settings.threads = arguments.threads > 0 ? arguments.threads : cores;
-
-  fmt::print("\n  {}, {}, {} sequences of {} frames, seed {}\n  mesh {}, model {}\n\n", scenario.target,
-             scenario.condition, scenario.sequences, scenario.frames, scenario.seed, setup.mesh_name,
-             setup.model_path);
-  std::fflush(stdout);
-  const FlashLidar lidar(setup.mesh);
-  ProgressBar bar("evaluating", "sequences", scenario.sequences);
-  const std::vector<FrameResult> results =
-      run_monte_carlo(lidar, static_cast<double>(setup.projection.swath_m), setup.model, settings,
-                      [&](std::uint32_t done) { bar.update(done); });
+  Results results;
+  results.seed = settings.seed;
+  results.command = arguments.command_line;
+  results.generated = fmt::format("{:%Y-%m-%d %H:%M %Z}", fmt::localtime(std::time(nullptr)));
+  ProgressBar bar("evaluating", "steps", steps_of(settings));
+  results.subjects.push_back(
+      run_experiment(subject, settings, [&](std::uint64_t done) { bar.update(done); }));
   bar.finish();
-
-  const PaperFigures paper = paper_figures(scenario.target, settings.condition);
-  fmt::print("\n{}\n{}\n", headline_table(results, scenario.frames, paper),
-             by_frame_table(results, scenario.frames));
-  if (!scenario.json.empty())
-    write_text_file(scenario.json, result_json(scenario, setup, results).dump(2) + "\n");
+  print_results(results);
+  write_files(arguments, results);
+  fmt::print("\n");
 }
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& app) {
+void add_evaluate_command(CLI::App& app, const std::string& command_line) {
   CLI::App* command =
       app.add_subcommand("evaluate", "Measure the accuracy of a model over many sequences, without DDS");
   auto arguments = std::make_shared<EvaluateArguments>();
-  arguments->scenario.sequences = 900;
-  add_scenario_options(*command, arguments->scenario);
-  command
-      ->add_option("--threads", arguments->threads,
-                   "worker threads; 0: one a core; the figures do not depend on it")
-      ->check(whole_number(0, kMostThreads))
-      ->type_name("N")
-      ->capture_default_str();
-  command->footer(
-      "\nExample: the paper's test of 900 sequences, degraded frames, figures to a file\n"
-      "  tumblesight evaluate --target near_shoemaker --condition degraded --json degraded.json\n");
-  command->callback([arguments] { evaluate(*arguments); });
+  arguments->command_line = command_line;
+  add_evaluate_options(*command, *arguments);
+  command->callback([arguments, command] {
+    arguments->sequences_given = command->get_option("--sequences")->count() > 0;
+    if (arguments->paper) {
+      require_paper_alone(*command);
+      evaluate_paper(*arguments);
+    } else {
+      evaluate(*arguments);
+    }
+  });
 }
 
 }  // namespace tumblesight::sim

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 namespace tumblesight::sim {
 
-void add_evaluate_command(CLI::App& app);
+// `command_line`: for the report.
+void add_evaluate_command(CLI::App& app, const std::string& command_line);
 
 }  // namespace tumblesight::sim

@@ -39,12 +39,12 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(26);
   try {
-#ifdef TUMBLESIGHT_HAS_SIL
     std::string command_line = "tumblesight";
     for (int i = 1; i < argc; ++i) command_line += std::string(" ") + argv[i];
+#ifdef TUMBLESIGHT_HAS_SIL
     sim::add_simulate_command(app, command_line);
 #endif
-    sim::add_evaluate_command(app);
+    sim::add_evaluate_command(app, command_line);
 #ifdef TUMBLESIGHT_HAS_TRAINING
     sim::add_train_command(app);
 #endif

@@ -1,6 +1,7 @@
 #include "sim/cli/simulate_arguments.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cctype>
 #include <filesystem>
@@ -49,6 +50,7 @@ std::string default_report_name(const SimulateArguments& arguments) {
   name += files_part(arguments);
   if (scenario.mesh_up != usual.scenario.mesh_up) name += "_up-" + scenario.mesh_up;
   if (scenario.mesh_scale != usual.scenario.mesh_scale) name += fmt::format("_scale{}", scenario.mesh_scale);
+  if (!scenario.inertia.empty()) name += fmt::format("_inertia{}", fmt::join(scenario.inertia, "-"));
   if (arguments.speed != usual.speed) name += "_speed" + arguments.speed;
   if (arguments.free_running) name += "_free-running";
   return name + ".html";

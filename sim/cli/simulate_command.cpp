@@ -14,9 +14,12 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/sil_results.hpp"
 #include "sim/cli/simulate_arguments.hpp"
-#include "sim/cli/summary.hpp"
 #include "sim/cli/target_setup.hpp"
+#include "sim/evaluation/curves.hpp"
+#include "sim/evaluation/experiment.hpp"
 #include "sim/evaluation/progress.hpp"
+#include "sim/evaluation/results_table.hpp"
+#include "sim/evaluation/text_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -92,8 +95,13 @@ SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& 
 
 void print_results(const ScenarioArguments& scenario, const SilRecording& recording,
                    const RunReport& report) {
-  fmt::print("\n{}\n{}\n", headline_table(report.results, scenario.frames, report.paper),
-             by_frame_table(report.results, scenario.frames));
+  const auto summary = [&](Estimator estimator) {
+    return summarise(last_frame_errors_deg(report.results, scenario.frames, estimator));
+  };
+  fmt::print(
+      "\n{}\n{}\n",
+      cell_table(summary(Estimator::kRcnn), summary(Estimator::kCnn), {}, scenario.frames, report.paper),
+      by_frame_table(errors_by_frame(report.results, scenario.frames)));
   fmt::print("  steps            {} of {} answered\n", recording.steps_planned - recording.steps_missed,
              recording.steps_planned);
   fmt::print("  inference time   median {:.2f} ms, max {:.2f} ms\n", 1e-3 * report.inference_median_us,
@@ -105,10 +113,11 @@ void print_results(const ScenarioArguments& scenario, const SilRecording& record
 SilRecording record(const SimulateArguments& arguments, const TargetSetup& setup,
                     const SilSettings& settings) {
   const ScenarioArguments& scenario = arguments.scenario;
-  const Condition condition = condition_from(scenario.condition);
+  const ScenarioSettings settings_of_sequence = scenario_settings(
+      condition_from(scenario.condition), scenario.frames, scenario.target, setup.inertia_kg_m2);
   std::vector<Sequence> sequences;
   for (std::uint32_t i = 0; i < scenario.sequences; ++i) {
-    sequences.push_back(make_sequence(condition, scenario.seed, i, static_cast<int>(scenario.frames)));
+    sequences.push_back(make_sequence(settings_of_sequence, scenario.seed, i));
   }
   const FlashLidar lidar(setup.mesh);
   ProgressBar bar("simulating", "frames", std::uint64_t{scenario.sequences} * scenario.frames);
@@ -184,7 +193,10 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "simulate", "Run the flight program against the simulated sensor over DDS, and report");
   auto arguments = std::make_shared<SimulateArguments>();
   arguments->command_line = command_line;
-  add_scenario_options(*command, arguments->scenario);
+  add_target_options(*command, arguments->scenario);
+  add_condition_option(*command, arguments->scenario);
+  add_sequence_options(*command, arguments->scenario);
+  add_file_options(*command, arguments->scenario);
   command->add_option("--speed", arguments->speed, "max, or N times real time, 0.1 to 1000")
       ->check(speed())
       ->type_name("max|N")

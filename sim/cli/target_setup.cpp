@@ -1,7 +1,10 @@
 #include "sim/cli/target_setup.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +13,7 @@
 #include <stdexcept>
 
 #include "gnc/rcnn/attitude_estimator.hpp"
+#include "sim/evaluation/results.hpp"
 #include "sim/lidar/flash_lidar.hpp"
 #include "sim/target/mesh_file.hpp"
 #include "sim/target/targets.hpp"
@@ -28,8 +32,36 @@ TriangleMesh load_mesh(const ScenarioArguments& arguments) {
 }
 
 std::string model_path(const ScenarioArguments& arguments) {
-  if (!arguments.model.empty()) return arguments.model;
-  return std::string(TUMBLESIGHT_SOURCE_DIR) + "/fsw/models/" + arguments.target + ".tsm";
+  return arguments.model.empty() ? shipped_model_path(arguments.target) : arguments.model;
+}
+
+bool ships(const std::string& target) {
+  const std::vector<std::string> names = target_names();
+  return std::find(names.begin(), names.end(), target) != names.end();
+}
+
+// No principal moment of a body exceeds the sum of the other two.
+bool is_possible(const Eigen::Matrix3d& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia, Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d moments = solver.eigenvalues();  // ascending
+  return inertia.allFinite() && moments[0] > 0.0 && moments[2] <= moments[0] + moments[1];
+}
+
+std::optional<Eigen::Matrix3d> inertia_of(const ScenarioArguments& arguments) {
+  const std::vector<double>& i = arguments.inertia;
+  if (i.empty()) {
+    return ships(arguments.target) ? std::optional(inertia_kg_m2(arguments.target)) : std::nullopt;
+  }
+  Eigen::Matrix3d inertia;
+  inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
+  if (!is_possible(inertia)) {
+    throw std::invalid_argument(
+        fmt::format("--inertia {}: no body has it; its principal moments must be positive and none larger "
+                    "than the sum of the "
+                    "other two",
+                    fmt::join(i, ",")));
+  }
+  return inertia;
 }
 
 std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const std::string& path) {
@@ -68,10 +100,16 @@ void frame_by_model(TargetSetup& setup) {
 
 }  // namespace
 
+std::string shipped_model_path(const std::string& name) {
+  return std::string(TUMBLESIGHT_SOURCE_DIR) + "/fsw/models/" + name + ".tsm";
+}
+
 TargetSetup set_up_target(const ScenarioArguments& arguments) {
   TargetSetup setup;
   setup.mesh = load_mesh(arguments);
-  setup.mesh_name = arguments.mesh.empty() ? "shipped" : arguments.mesh;
+  setup.mesh_name =
+      arguments.mesh.empty() ? kParametricMesh : std::filesystem::path(arguments.mesh).filename().string();
+  setup.inertia_kg_m2 = inertia_of(arguments);
   setup.model_path = model_path(arguments);
   setup.model = read_model(arguments, setup.model_path);
   const auto estimator = std::make_unique<gnc::AttitudeEstimator>();

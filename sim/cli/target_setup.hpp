@@ -1,7 +1,9 @@
 // TargetSetup: the mesh and the model image that a scenario's arguments name, and how the sensor frames them.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,8 @@ namespace tumblesight::sim {
 
 struct TargetSetup {
   TriangleMesh mesh;
-  std::string mesh_name;  // for the record: "shipped" or the file
+  std::string mesh_name;                         // for the record: "parametric" or the file's name
+  std::optional<Eigen::Matrix3d> inertia_kg_m2;  // in the TRF; nothing for a target that does not ship
   std::string model_path;
   std::vector<std::uint8_t> model;
   gnc::ModelStatus model_status = gnc::ModelStatus::kTooShort;  // the host's own check of the image
@@ -23,9 +26,12 @@ struct TargetSetup {
   std::vector<std::string> warnings;
 };
 
-// Throws std::runtime_error or std::invalid_argument that names what is missing or wrong: target, mesh, model
-// file. A model file that is there but refused is only a warning: the flight program has to find that out by
-// itself.
+// fsw/models/<name>.tsm of the source tree.
+std::string shipped_model_path(const std::string& name);
+
+// Throws std::runtime_error or std::invalid_argument that names what is missing or wrong: target, mesh,
+// inertia, model file. A model file that is there but refused is only a warning: the flight program has to
+// find that out by itself.
 TargetSetup set_up_target(const ScenarioArguments& arguments);
 
 }  // namespace tumblesight::sim

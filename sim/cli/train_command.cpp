@@ -31,6 +31,7 @@ struct TrainOptions {
   std::vector<std::string> meshes{"parametric"};
   std::string mesh_up = "y";
   double mesh_scale = 1.0;
+  std::string conditions = "all";
   std::string device = "auto";
   std::string precision = "auto";
   TrainingSettings settings;
@@ -55,6 +56,14 @@ TriangleMesh mesh_from(const TrainOptions& options, const std::string& name) {
   return load_mesh_file(name, file);
 }
 
+// Of a target of the user's own, any: a sphere's, with which a body tumbles as it spins.
+Eigen::Matrix3d inertia_of(const TrainOptions& options) {
+  const std::vector<std::string> known = target_names();
+  if (std::find(known.begin(), known.end(), options.target) != known.end())
+    return inertia_kg_m2(options.target);
+  return Eigen::Matrix3d::Identity();
+}
+
 void choose_device(TrainOptions& options) {
   const bool cuda = torch::cuda::is_available();
   if (options.device == "cuda" && !cuda) {
@@ -76,11 +85,12 @@ int train(TrainOptions& options) {
 
   std::vector<TriangleMesh> meshes;
   for (const std::string& name : options.meshes) meshes.push_back(mesh_from(options, name));
-  const TrainingTargets targets = make_training_targets(meshes);
+  const TrainingTargets targets = make_training_targets(
+      meshes, options.conditions == "paper" ? paper_conditions() : all_conditions(), inertia_of(options));
 
   torch::manual_seed(options.settings.seed);
   Cnn cnn;
-  Recurrent recurrent;
+  Recurrent recurrent(targets.inertia);
   const bool finished = train_cnn(targets, options.settings, cnn, stop_requested) &&
                         train_rcnn(targets, options.settings, cnn, recurrent, stop_requested);
 
@@ -92,7 +102,8 @@ int train(TrainOptions& options) {
   const std::string path = folder + "/" + options.target + ".tsm";
   const auto weights = std::make_unique<gnc::NetworkWeights>();
   export_weights(cnn, recurrent, *weights);
-  write_model_file(path, options.target, targets.projection, *weights);
+  shorten(*weights);
+  write_model_file(path, options.target, targets, *weights);
   std::printf(
       "Training finished.\n  model image    %s\n  training log   %s/log.csv\n  loss curve     %s/curve.svg\n",
       path.c_str(), folder.c_str(), folder.c_str());
@@ -128,8 +139,21 @@ void add_train_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--out", settings.folder, "Folder of checkpoints, log, curve and model image")
       ->required();
+  command
+      ->add_option("--conditions", options->conditions,
+                   "What to train on: all, or the paper's rule, nominal and degraded only")
+      ->check(one_of({"all", "paper"}))
+      ->capture_default_str();
+  command
+      ->add_option("--start-from", settings.start_from,
+                   "Model image whose CNN to begin with: another target's saves most of the time")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+  command->add_option("--cnn-rate", settings.cnn_learning_rate, "Highest learning rate of the CNN")
+      ->check(number(1e-6, 1e-1))
+      ->capture_default_str();
   command->add_option("--cnn-images", settings.cnn_images, "Fresh images for the single-frame network")
-      ->check(whole_number(64, 1'000'000'000))
+      ->check(whole_number(0, 1'000'000'000))
       ->capture_default_str();
   command->add_option("--rcnn-sequences", settings.rcnn_sequences, "Different sequences for the LSTM")
       ->check(whole_number(16, 1'000'000))

@@ -1,4 +1,4 @@
-// Charts: lines, grouped bars and scatter on labelled axes, as inline SVG.
+// Charts: lines, grouped bars, scatter on labelled axes, and tables of shares, as inline SVG.
 #pragma once
 
 #include <string>
@@ -11,9 +11,10 @@ namespace tumblesight::sim {
 struct Series {
   std::string name;
   std::string colour;
-  std::string dash;           // empty: solid
-  std::vector<Point> points;  // data units; a series of one point is drawn as a mark
-  bool markers = false;       // dots instead of a line
+  std::string dash;                  // empty: solid
+  std::vector<Point> points;         // data units; a series of one point is drawn as a mark
+  bool markers = false;              // dots instead of a line
+  std::vector<double> error_bars{};  // half their length, one a point; empty: none
 };
 
 struct LineChart {
@@ -23,7 +24,8 @@ struct LineChart {
   double x_low = 0.0;
   double x_high = 1.0;
   double y_low = 0.0;
-  double y_high = 0.0;  // not above y_low: chosen from the data
+  double y_high = 0.0;            // not above y_low: chosen from the data
+  std::vector<double> x_ticks{};  // empty: whole numbers from x_low
   std::vector<Series> series;
 };
 
@@ -52,9 +54,23 @@ struct AgreementChart {
   std::vector<Series> series;
 };
 
+// A table of shares, the darker a cell the larger its share.
+struct MatrixChart {
+  std::string description;
+  std::vector<std::string> columns;
+  struct Row {
+    std::string name;
+    std::vector<double> shares;  // 0..1, one a column
+    std::string remark;          // to the right of them
+  };
+  std::vector<Row> rows;
+  std::string remark_heading;
+};
+
 std::string line_chart(const LineChart& chart);
 std::string bar_chart(const BarChart& chart);
 std::string agreement_chart(const AgreementChart& chart);
+std::string matrix_chart(const MatrixChart& chart);
 
 // Round numbers, about `count` of them, that cover low..high; ascending.
 std::vector<double> round_ticks(double low, double high, int count);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/evaluation/statistics.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -22,10 +24,18 @@ double angular_error_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& 
   return 2.0 * std::atan2(between.vec().norm(), std::abs(between.w()));
 }
 
+bool has_estimate(const FrameResult& result, Estimator estimator) {
+  return estimator == Estimator::kBaseline ? result.baseline_valid : result.valid;
+}
+
+const Eigen::Quaterniond& estimate(const FrameResult& result, Estimator estimator) {
+  if (estimator == Estimator::kBaseline) return result.baseline;
+  return estimator == Estimator::kRcnn ? result.rcnn : result.cnn;
+}
+
 double error_deg(const FrameResult& result, Estimator estimator) {
-  if (!result.valid) return 180.0;
-  return kDegPerRad *
-         angular_error_rad(result.truth, estimator == Estimator::kRcnn ? result.rcnn : result.cnn);
+  if (!has_estimate(result, estimator)) return 180.0;
+  return kDegPerRad * angular_error_rad(result.truth, estimate(result, estimator));
 }
 
 double median(std::vector<double> values) {
@@ -43,34 +53,30 @@ ErrorSummary summarise(std::vector<double> errors_deg) {
   summary.count = errors_deg.size();
   summary.mean_deg =
       std::accumulate(errors_deg.begin(), errors_deg.end(), 0.0) / static_cast<double>(errors_deg.size());
+  summary.mean_standard_error_deg = mean_standard_error(errors_deg);
   summary.within_20deg = share_within(errors_deg, 20.0);
   summary.within_5deg = share_within(errors_deg, 5.0);
   summary.median_deg = median(std::move(errors_deg));
   return summary;
 }
 
+std::vector<FrameResult> last_frames(const std::vector<FrameResult>& results, std::uint32_t frames) {
+  std::vector<FrameResult> last;
+  for (const FrameResult& result : results) {
+    if (result.frame + 1 == frames) last.push_back(result);
+  }
+  return last;
+}
+
 std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& results, std::uint32_t frames,
                                           Estimator estimator) {
   std::vector<double> errors;
   for (const FrameResult& result : results) {
-    if (result.frame + 1 == frames) errors.push_back(error_deg(result, estimator));
+    if (result.frame + 1 != frames) continue;
+    if (estimator == Estimator::kBaseline && !result.has_baseline) continue;
+    errors.push_back(error_deg(result, estimator));
   }
   return errors;
-}
-
-std::vector<FrameErrors> errors_by_frame(const std::vector<FrameResult>& results, std::uint32_t frames) {
-  std::vector<std::vector<double>> rcnn(frames);
-  std::vector<std::vector<double>> cnn(frames);
-  for (const FrameResult& result : results) {
-    if (result.frame >= frames) continue;
-    rcnn[result.frame].push_back(error_deg(result, Estimator::kRcnn));
-    cnn[result.frame].push_back(error_deg(result, Estimator::kCnn));
-  }
-  std::vector<FrameErrors> by_frame;
-  for (std::uint32_t frame = 0; frame < frames; ++frame) {
-    by_frame.push_back({frame, summarise(std::move(rcnn[frame])), summarise(std::move(cnn[frame]))});
-  }
-  return by_frame;
 }
 
 }  // namespace tumblesight::sim

@@ -19,19 +19,27 @@ struct FrameResult {
   Eigen::Quaterniond cnn{1.0, 0.0, 0.0, 0.0};   // from this frame alone
   double rcnn_predicted_rad = 0.0;              // the errors that the network itself expects
   double cnn_predicted_rad = 0.0;
+  double range_m = 0.0;
+  double rate_rad_s = 0.0;      // norm
+  bool has_baseline = false;    // the template matcher was given this frame
+  bool baseline_valid = false;  // and found an attitude
+  Eigen::Quaterniond baseline{1.0, 0.0, 0.0, 0.0};
 };
 
-enum class Estimator { kRcnn, kCnn };
+enum class Estimator { kRcnn, kCnn, kBaseline };
 
 // theta = 2 acos|q . q_hat| (paper, loss), in [0, pi]; computed through atan2, which also resolves small
 // angles.
 double angular_error_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
-double error_deg(const FrameResult& result, Estimator estimator);
+bool has_estimate(const FrameResult& result, Estimator estimator);
+const Eigen::Quaterniond& estimate(const FrameResult& result, Estimator estimator);
+double error_deg(const FrameResult& result, Estimator estimator);  // 180 without an estimate
 
 // Shares are 0..1, the limits themselves included. All zero when count is zero.
 struct ErrorSummary {
   std::size_t count = 0;
   double mean_deg = 0.0;
+  double mean_standard_error_deg = 0.0;
   double median_deg = 0.0;
   double within_20deg = 0.0;
   double within_5deg = 0.0;
@@ -40,16 +48,10 @@ struct ErrorSummary {
 ErrorSummary summarise(std::vector<double> errors_deg);
 double median(std::vector<double> values);  // mean of the middle two when even; 0 when empty
 
-struct FrameErrors {
-  std::uint32_t frame = 0;
-  ErrorSummary rcnn;
-  ErrorSummary cnn;
-};
-
-// Errors of one estimator in the last frame (index frames - 1) of every sequence that got there.
+// The last frame (index frames - 1) of every sequence that got there, in the order of `results`.
+std::vector<FrameResult> last_frames(const std::vector<FrameResult>& results, std::uint32_t frames);
+// Errors of one estimator in the last frames; of the baseline only where it was run.
 std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& results, std::uint32_t frames,
                                           Estimator estimator);
-// One entry a frame index 0 .. frames - 1.
-std::vector<FrameErrors> errors_by_frame(const std::vector<FrameResult>& results, std::uint32_t frames);
 
 }  // namespace tumblesight::sim

@@ -16,18 +16,33 @@ namespace {
 constexpr std::chrono::milliseconds kProgressPeriod{50};
 
 struct Job {
-  const FlashLidar& lidar;
-  double swath_m;
+  const Sensor& sensor;
   const std::vector<std::uint8_t>& model;
+  const TemplateMatcher* matcher;
   const MonteCarloSettings& settings;
+  std::uint32_t frames;
   std::atomic<std::uint32_t> next{0};
   std::atomic<std::uint32_t> done{0};
   std::vector<FrameResult> results;
+  std::vector<double> network_ms;   // one a frame
+  std::vector<double> baseline_ms;  // one a sequence
+};
+
+class Stopwatch {
+ public:
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 FrameResult frame_result(const FrameTruth& truth, const gnc::AttitudeEstimate& estimate, bool valid) {
   FrameResult result;
   result.truth = truth.q_lrf_trf;
+  result.range_m = truth.range_m;
+  result.rate_rad_s = truth.rate_lrf_rad_s.norm();
   result.valid = valid;
   if (!valid) return result;
   result.rcnn = estimate.q_lrf_trf.cast<double>();
@@ -37,24 +52,37 @@ FrameResult frame_result(const FrameTruth& truth, const gnc::AttitudeEstimate& e
   return result;
 }
 
+void run_baseline(Job& job, const gnc::RangeImage& frame, FrameResult& result) {
+  const Stopwatch stopwatch;
+  const TemplateMatcher::Result match = job.matcher->match(frame);
+  job.baseline_ms[result.sequence] = stopwatch.ms();
+  result.has_baseline = true;
+  result.baseline_valid = match.valid;
+  result.baseline = match.q_lrf_trf;
+}
+
 void run_sequence(Job& job, std::uint32_t index, gnc::AttitudeEstimator& estimator, gnc::RangeImage& frame) {
-  const MonteCarloSettings& settings = job.settings;
-  const Sequence sequence =
-      make_sequence(settings.condition, settings.seed, index, static_cast<int>(settings.frames));
+  const ScenarioSettings& scenario = job.settings.scenario;
+  const Sequence sequence = make_sequence(scenario, job.settings.seed, index);
   estimator.reset();
-  for (std::uint32_t k = 0; k < settings.frames; ++k) {
+  for (std::uint32_t k = 0; k < job.frames; ++k) {
     const FrameTruth& truth = sequence.frames[k];
-    job.lidar.expose(truth, sensor_settings(settings.condition), job.swath_m, mix(sequence.noise_seed, k),
-                     frame);
+    job.sensor.lidar.expose(truth, sensor_settings(scenario.condition), job.sensor.swath_m,
+                            mix(sequence.noise_seed, k), frame);
     frame.sequence_number = k;
     frame.exposure_time_ns = kFramePeriod_ns * k;
     gnc::AttitudeEstimate estimate;
+    const std::size_t place = std::size_t{index} * job.frames + k;
+    const Stopwatch stopwatch;
     const bool valid = estimator.step(frame, estimate) == gnc::FrameStatus::kOk;
-    FrameResult& result = job.results[std::size_t{index} * settings.frames + k];
+    job.network_ms[place] = stopwatch.ms();
+    FrameResult& result = job.results[place];
     result = frame_result(truth, estimate, valid);
     result.sequence = index;
     result.frame = k;
   }
+  if (index < job.baseline_ms.size())
+    run_baseline(job, frame, job.results[(std::size_t{index} + 1) * job.frames - 1]);
 }
 
 void work(Job& job) {
@@ -71,12 +99,15 @@ void work(Job& job) {
 
 }  // namespace
 
-std::vector<FrameResult> run_monte_carlo(const FlashLidar& lidar, double swath_m,
-                                         const std::vector<std::uint8_t>& model,
-                                         const MonteCarloSettings& settings,
-                                         const std::function<void(std::uint32_t)>& progress) {
-  Job job{lidar, swath_m, model, settings, {}, {}, {}};
-  job.results.resize(std::size_t{settings.sequences} * settings.frames);
+MonteCarloResult run_monte_carlo(const Sensor& sensor, const std::vector<std::uint8_t>& model,
+                                 const TemplateMatcher* matcher, const MonteCarloSettings& settings,
+                                 const std::function<void(std::uint32_t)>& progress) {
+  if (settings.scenario.frames < 1) throw std::invalid_argument("a sequence needs at least one frame");
+  const auto frames = static_cast<std::uint32_t>(settings.scenario.frames);
+  Job job{sensor, model, matcher, settings, frames, {}, {}, {}, {}, {}};
+  job.results.resize(std::size_t{settings.sequences} * frames);
+  job.network_ms.resize(job.results.size());
+  if (matcher != nullptr) job.baseline_ms.resize(std::min(settings.baseline_sequences, settings.sequences));
   std::vector<std::future<void>> workers;
   for (int i = 0; i < std::max(1, settings.threads); ++i) {
     workers.push_back(std::async(std::launch::async, [&job] { work(job); }));
@@ -86,7 +117,7 @@ std::vector<FrameResult> run_monte_carlo(const FlashLidar& lidar, double swath_m
     worker.get();
   }
   progress(job.done);
-  return std::move(job.results);
+  return {std::move(job.results), median(std::move(job.network_ms)), median(std::move(job.baseline_ms))};
 }
 
 }  // namespace tumblesight::sim

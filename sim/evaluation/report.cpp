@@ -1,76 +1,19 @@
 #include "sim/evaluation/report.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
 
+#include "sim/evaluation/page.hpp"
 #include "sim/evaluation/report_figures.hpp"
+#include "sim/evaluation/results.hpp"
+#include "sim/evaluation/statistics.hpp"
 #include "sim/evaluation/svg.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr std::size_t kMostGalleryPictures = 8;
-
-constexpr const char* kStyle = R"css(
-:root { color-scheme: light; }
-* { box-sizing: border-box; }
-body { margin: 0; background: #fff; color: #22262d; line-height: 1.5; font-size: 15px;
-       font-family: "Inter", "Helvetica Neue", "Segoe UI", Arial, "Liberation Sans", sans-serif; }
-main { max-width: 1080px; margin: 0 auto; padding: 44px 32px 56px; }
-h1 { font-size: 30px; line-height: 1.2; margin: 0 0 4px; letter-spacing: -0.01em; }
-h2 { font-size: 18px; margin: 40px 0 6px; }
-p { margin: 6px 0 14px; max-width: 46em; }
-.sub { color: #6b7280; margin-bottom: 20px; }
-.notice.remark { border-color: #b58a1b; background: #fcf8ec; }
-.notice + .lead { margin-top: 20px; }
-.lead { font-size: 18px; line-height: 1.45; max-width: 44em; margin: 0 0 22px; }
-.notice { border-left: 4px solid #b83227; background: #fdf3f2; padding: 10px 16px; margin: 0 0 10px; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th { text-align: left; font-weight: 600; color: #4b5563; border-bottom: 1.5px solid #22262d; }
-th, td { padding: 6px 22px 6px 0; }
-td { border-bottom: 1px solid #e4e6ea; }
-.number { text-align: right; }
-.headline { width: 100%; }
-.headline td:first-child { font-weight: 600; }
-.headline tr.paper td, .headline tr.paper td:first-child { color: #6b7280; font-weight: 400; }
-.headline tr.paper td:first-child { padding-left: 18px; }
-.rcnn { color: #1b5e9e; } .cnn { color: #b65a1b; }
-.pair { display: grid; grid-template-columns: 1fr 1fr; gap: 8px 40px; }
-figure { margin: 0; break-inside: avoid; }
-figcaption { font-size: 13px; color: #5a6069; margin-top: 4px; max-width: 60em; }
-.pair h2 { margin-top: 32px; }
-svg { display: block; width: 100%; height: auto; font-family: inherit; }
-.facts { display: grid; grid-template-columns: repeat(3, 1fr); gap: 0 40px; align-items: start; }
-.facts table { width: 100%; font-size: 13px; }
-.facts td { padding: 4px 0; vertical-align: top; }
-.facts td:last-child { text-align: right; padding-left: 14px; }
-.facts td { white-space: nowrap; }
-footer { margin-top: 40px; color: #6b7280; font-size: 13px; border-top: 1px solid #e4e6ea; padding-top: 12px; }
-code { font-family: "SF Mono", Consolas, "DejaVu Sans Mono", monospace; font-size: 12px; overflow-wrap: anywhere; }
-@media (max-width: 760px) { .pair, .facts { grid-template-columns: 1fr; } main { padding: 24px 16px; } }
-@media print { main { max-width: none; padding: 0; } body { font-size: 11pt; } .lead { font-size: 13pt; }
-  .notice, svg, img { print-color-adjust: exact; -webkit-print-color-adjust: exact; } @page { margin: 16mm; } }
-)css";
-
-// The targets' names as people write them.
-std::string display_name(const std::string& target) {
-  if (target == "near_shoemaker") return "NEAR Shoemaker";
-  if (target == "magellan") return "Magellan";
-  if (target == "sacd_aquarius") return "SAC-D/Aquarius";
-  return target;
-}
-
-std::string percent(double share) {
-  return fmt::format("{:.1f} %", 100.0 * share);
-}
 
 std::string lead_sentence(const RunReport& report) {
   const ErrorSummary rcnn = summarise(last_frame_errors_deg(report.results, report.frames, Estimator::kRcnn));
@@ -93,18 +36,19 @@ std::string summary_row(const char* css_class, const char* name, const ErrorSumm
     return fmt::format("<tr><td class=\"{}\">{}</td><td class=number colspan=5>–</td></tr>\n", css_class,
                        name);
   return fmt::format(
-      "<tr><td class=\"{}\">{}</td><td class=number>{:.2f}°</td><td class=number>{:.2f}°</td>"
+      "<tr><td class=\"{}\">{}</td><td class=number>{}</td><td class=number>{}</td>"
       "<td class=number>{}</td><td class=number>{}</td><td class=number>{}</td></tr>\n",
-      css_class, name, summary.mean_deg, summary.median_deg, percent(summary.within_20deg),
-      percent(summary.within_5deg), summary.count);
+      css_class, name, degrees_text(summary.mean_deg, summary.mean_standard_error_deg),
+      degrees_text(summary.median_deg), percent_text(summary.within_20deg, summary.count),
+      percent_text(summary.within_5deg, summary.count), summary.count);
 }
 
-std::string paper_row(const std::optional<PaperFigure>& figure) {
+std::string paper_row(const std::optional<PaperFigure>& figure, std::uint32_t sequences) {
   if (!figure) return {};
   return fmt::format(
       "<tr class=paper><td>in the paper</td><td class=number>{:.2f}°</td><td class=number>–</td>"
-      "<td class=number>{:.0f} %</td><td class=number>–</td><td class=number>900</td></tr>\n",
-      figure->mean_deg, 100.0 * figure->within_20deg);
+      "<td class=number>{:.0f} %</td><td class=number>–</td><td class=number>{}</td></tr>\n",
+      figure->mean_deg, 100.0 * figure->within_20deg, sequences);
 }
 
 std::string headline_table(const RunReport& report) {
@@ -113,28 +57,27 @@ std::string headline_table(const RunReport& report) {
          "<th class=number>sequences</th></tr></thead><tbody>\n" +
          summary_row("rcnn", "RCNN, all frames",
                      summarise(last_frame_errors_deg(report.results, report.frames, Estimator::kRcnn))) +
-         paper_row(report.paper.rcnn) +
+         paper_row(report.paper.rcnn, report.paper.sequences) +
          summary_row("cnn", "CNN, last frame alone",
                      summarise(last_frame_errors_deg(report.results, report.frames, Estimator::kCnn))) +
-         paper_row(report.paper.cnn) + "</tbody></table>\n";
-}
-
-std::string figure(const std::string& heading, const std::string& svg, const std::string& caption) {
-  return fmt::format("<figure><h2>{}</h2>\n{}<figcaption>{}</figcaption></figure>\n", heading, svg, caption);
+         paper_row(report.paper.cnn, report.paper.sequences) + "</tbody></table>\n";
 }
 
 std::string charts_section(const RunReport& report, std::uint32_t shown) {
   return "<div class=pair>\n" +
-         figure("Error over the frames", error_over_frames_figure(report),
-                std::string("The recurrent network gathers what single frames leave open; the CNN sees each "
-                            "frame alone.") +
-                    (report.paper.rcnn ? " Circles: the paper's means, last frame." : "")) +
-         figure("Distribution of the last frame's error", error_histogram_figure(report),
-                "Errors near 90° and 180° are attitudes confused with the target's quasi-symmetric ones.") +
-         figure("Predicted against actual error", predicted_error_figure(report),
-                "Below the dashed line the estimate is better than the network claims, above it worse.") +
-         figure(fmt::format("Quaternion of sequence {}", shown + 1), quaternion_figure(report, shown),
-                "Lines: truth. Dots: RCNN. Sign chosen for continuity; TRF to LRF, scalar w first.") +
+         html_figure(
+             "Error over the frames", error_over_frames_figure(report),
+             std::string("The recurrent network gathers what single frames leave open; the CNN sees each "
+                         "frame alone.") +
+                 (report.paper.rcnn ? " Circles: the paper's means, last frame." : "")) +
+         html_figure(
+             "Distribution of the last frame's error", error_histogram_figure(report),
+             "Errors near 90° and 180° are attitudes confused with the target's quasi-symmetric ones.") +
+         html_figure(
+             "Predicted against actual error", predicted_error_figure(report),
+             "Below the dashed line the estimate is better than the network claims, above it worse.") +
+         html_figure(fmt::format("Quaternion of sequence {}", shown + 1), quaternion_figure(report, shown),
+                     "Lines: truth. Dots: RCNN. Sign chosen for continuity; TRF to LRF, scalar w first.") +
          "</div>\n";
 }
 
@@ -148,7 +91,7 @@ std::string gallery_section(const RunReport& report, std::uint32_t shown) {
   const std::size_t count = std::min(others.size(), kMostGalleryPictures);
   std::vector<const ReportPicture*> chosen;
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(others[i * others.size() / count]);
-  return figure(
+  return html_figure(
       "What the flight program sees", gallery_figure(chosen),
       "Frames of other sequences as the network receives them: 100 × 100 cells across the boresight, "
       "nearer is brighter. Below each: sequence / frame, range.");
@@ -182,7 +125,7 @@ std::string body(const RunReport& report) {
   html += fmt::format("<p class=lead>{}</p>\n", lead_sentence(report)) + headline_table(report);
   if (!report.results.empty()) {
     html +=
-        figure(
+        html_figure(
             fmt::format("Sequence {}, frame by frame", shown + 1), attitude_strip_figure(report, shown),
             "Top: the depth image the network receives, nearer is brighter. Below: the target's axes seen "
             "along "
@@ -199,31 +142,7 @@ std::string body(const RunReport& report) {
 }  // namespace
 
 std::string compose_report(const RunReport& report) {
-  return fmt::format(
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>Tumblesight: {}, "
-      "{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
-      escape_markup(report.target), escape_markup(report.condition), kStyle, body(report));
-}
-
-void write_text_file(const std::string& path, const std::string& content) {
-  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (!parent.empty()) std::filesystem::create_directories(parent, error);
-  if (error) throw std::runtime_error("cannot create folder '" + parent.string() + "': " + error.message());
-  // Written beside and renamed, so that a reader never finds half a file.
-  const std::string partial = path + "." + std::to_string(getpid()) + ".partial";
-  errno = 0;
-  std::ofstream file(partial, std::ios::binary);
-  file << content;
-  file.close();
-  const int reason = errno;
-  if (!file || std::rename(partial.c_str(), path.c_str()) != 0) {
-    const std::string message = std::strerror(reason != 0 ? reason : errno);
-    std::filesystem::remove(partial, error);
-    throw std::runtime_error("cannot write '" + path + "': " + message);
-  }
+  return html_page(fmt::format("{}, {}", report.target, report.condition), body(report));
 }
 
 }  // namespace tumblesight::sim

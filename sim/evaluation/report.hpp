@@ -48,7 +48,5 @@ struct RunReport {
 };
 
 std::string compose_report(const RunReport& report);
-// Creates missing folders. Throws std::runtime_error that names the file and the reason.
-void write_text_file(const std::string& path, const std::string& content);
 
 }  // namespace tumblesight::sim

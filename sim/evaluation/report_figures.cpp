@@ -6,13 +6,14 @@
 #include <array>
 
 #include "sim/evaluation/charts.hpp"
+#include "sim/evaluation/curves.hpp"
+#include "sim/evaluation/error_figures.hpp"
+#include "sim/evaluation/palette.hpp"
 #include "sim/evaluation/picture.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-constexpr const char* kRcnnColour = "#1b5e9e";
-constexpr const char* kCnnColour = "#d0702a";
 constexpr std::array<const char*, 3> kAxisColours{"#b83227", "#3a8a3f", "#2b5fb0"};
 constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
 constexpr std::size_t kMostDots = 1500;  // in the scatter, so that a long run's page stays small
@@ -30,16 +31,6 @@ const ReportPicture* picture_of(const RunReport& report, std::uint32_t sequence,
     if (picture.sequence == sequence && picture.frame == frame) return &picture;
   }
   return nullptr;
-}
-
-std::vector<double> bin_shares_percent(const std::vector<double>& errors_deg,
-                                       const std::vector<double>& limits_deg) {
-  std::vector<double> shares(limits_deg.size(), 0.0);
-  for (const double error : errors_deg) {
-    const auto bin = std::lower_bound(limits_deg.begin(), limits_deg.end() - 1, error) - limits_deg.begin();
-    shares[static_cast<std::size_t>(bin)] += 100.0 / static_cast<double>(errors_deg.size());
-  }
-  return shares;
 }
 
 // Projected on the plane across the boresight; the part towards the sensor is not shortened, as the picture's
@@ -104,13 +95,12 @@ std::string error_over_frames_figure(const RunReport& report) {
   Series rcnn_median{"median", kRcnnColour, "2 4", {}};
   Series cnn_mean{"CNN mean", kCnnColour, "", {}};
   Series cnn_median{"median", kCnnColour, "2 4", {}};
-  for (const FrameErrors& errors : errors_by_frame(report.results, report.frames)) {
+  for (const CurvePoint& errors : errors_by_frame(report.results, report.frames)) {
     if (errors.rcnn.count == 0) continue;
-    const double x = errors.frame + 1.0;
-    rcnn_mean.points.push_back({x, errors.rcnn.mean_deg});
-    rcnn_median.points.push_back({x, errors.rcnn.median_deg});
-    cnn_mean.points.push_back({x, errors.cnn.mean_deg});
-    cnn_median.points.push_back({x, errors.cnn.median_deg});
+    rcnn_mean.points.push_back({errors.at, errors.rcnn.mean_deg});
+    rcnn_median.points.push_back({errors.at, errors.rcnn.median_deg});
+    cnn_mean.points.push_back({errors.at, errors.cnn.mean_deg});
+    cnn_median.points.push_back({errors.at, errors.cnn.median_deg});
   }
   LineChart chart;
   chart.description = "Angular error of RCNN and single-frame CNN over the frame number";
@@ -128,22 +118,9 @@ std::string error_over_frames_figure(const RunReport& report) {
 }
 
 std::string error_histogram_figure(const RunReport& report) {
-  const std::vector<double> limits_deg{1, 2, 5, 10, 20, 45, 90, 180};
-  const auto rcnn =
-      bin_shares_percent(last_frame_errors_deg(report.results, report.frames, Estimator::kRcnn), limits_deg);
-  const auto cnn =
-      bin_shares_percent(last_frame_errors_deg(report.results, report.frames, Estimator::kCnn), limits_deg);
-  BarChart chart;
-  chart.description = "Distribution of the last frame's angular error, RCNN and CNN";
-  chart.x_label = "angular error of the last frame [deg]";
-  chart.y_label = "share of the sequences [%]";
-  chart.series_names = {"RCNN", "CNN"};
-  chart.series_colours = {kRcnnColour, kCnnColour};
-  for (std::size_t i = 0; i < limits_deg.size(); ++i) {
-    chart.groups.push_back(
-        {fmt::format("{:g}–{:g}", i == 0 ? 0.0 : limits_deg[i - 1], limits_deg[i]), {rcnn[i], cnn[i]}});
-  }
-  return bar_chart(chart);
+  return histogram_figure(histogram(last_frame_errors_deg(report.results, report.frames, Estimator::kRcnn)),
+                          histogram(last_frame_errors_deg(report.results, report.frames, Estimator::kCnn)),
+                          {});
 }
 
 std::string predicted_error_figure(const RunReport& report) {

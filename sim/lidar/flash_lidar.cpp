@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kSwathMargin = 1.05;  // room for the nearer parts of the target, which appear larger
 constexpr int kPacket = 16;
+constexpr double kMostOutlier_m = 20.0;
 
 // Where the sensor is and how it looks, in the target's frame.
 struct SensorPose {
@@ -22,9 +23,11 @@ struct SensorPose {
   Eigen::Vector3f origin_trf_m;
 };
 
-SensorPose pose_of(const FrameTruth& truth) {
+SensorPose pose_of(const FrameTruth& truth, double swath_m) {
   const Eigen::Matrix3d r_trf_lrf = truth.q_lrf_trf.conjugate().toRotationMatrix();
-  return {r_trf_lrf.cast<float>(), (r_trf_lrf * Eigen::Vector3d(0.0, -truth.range_m, 0.0)).cast<float>()};
+  const Eigen::Vector2d offset_m = truth.offset_swaths * swath_m;
+  const Eigen::Vector3d target_lrf_m(offset_m.x(), truth.range_m, offset_m.y());
+  return {r_trf_lrf.cast<float>(), (r_trf_lrf * -target_lrf_m).cast<float>()};
 }
 
 // Rounded to the sensor's Q9.7 counts; 0 where the range is out of reach.
@@ -39,6 +42,10 @@ std::uint16_t measure(double true_range_m, const SensorSettings& settings, std::
   Random random(mix(noise_seed, static_cast<std::uint64_t>(ray)));
   if (settings.dropout_share > 0.0 && random.uniform() < settings.dropout_share) return 0;
   const double sigma_m = settings.noise ? 0.1 + 0.01 * true_range_m : 0.0;
+  if (settings.outlier_share > 0.0 && random.uniform() < settings.outlier_share) {
+    const double error_m = random.uniform(std::min(5.0 * sigma_m, kMostOutlier_m), kMostOutlier_m);
+    return to_counts(true_range_m + (random.uniform() < 0.5 ? -error_m : error_m));
+  }
   return to_counts(true_range_m + (settings.noise ? sigma_m * random.normal() : 0.0));
 }
 
@@ -50,6 +57,7 @@ SensorSettings sensor_settings(Condition condition) {
     settings.rays = 100;
     settings.dropout_share = 0.1;
   }
+  if (condition == Condition::kOutliers) settings.outlier_share = 0.01;
   return settings;
 }
 
@@ -140,32 +148,41 @@ FlashLidar::FlashLidar(const TriangleMesh& mesh) : scene_(std::make_unique<Scene
 
 FlashLidar::~FlashLidar() = default;
 
-void FlashLidar::expose(const FrameTruth& truth, const SensorSettings& settings, double swath_m,
-                        std::uint64_t noise_seed, gnc::RangeImage& frame) const {
-  frame.rays = static_cast<std::uint16_t>(settings.rays);
-  frame.fov_urad = fov_urad(swath_m, truth.range_m);
-  frame.ranges.fill(0);
-  const SensorPose pose = pose_of(truth);
-  const double tan_half_fov = std::tan(frame.fov_urad * 0.5e-6);
-  const auto slope = [&](int i) {
-    return static_cast<float>(tan_half_fov * ((2.0 * i + 1.0) / settings.rays - 1.0));
-  };
+RangeGrid FlashLidar::true_ranges(const FrameTruth& truth, int rays, double swath_m) const {
+  RangeGrid grid;
+  grid.rays = rays;
+  grid.tan_half_fov = std::tan(fov_urad(swath_m, truth.range_m) * 0.5e-6);
+  grid.range_m.resize(static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays));
+  const SensorPose pose = pose_of(truth, swath_m);
 
   // Packets of 16 neighbours in a row: coherent rays are what Embree is fastest at.
   std::array<Eigen::Vector3f, kPacket> directions;
   directions.fill(Eigen::Vector3f::UnitY());
-  for (int row = 0; row < settings.rays; ++row) {
-    for (int first = 0; first < settings.rays; first += kPacket) {
-      const int count = std::min(kPacket, settings.rays - first);
+  for (int row = 0; row < rays; ++row) {
+    const auto up = static_cast<float>(-grid.slope(row));
+    for (int first = 0; first < rays; first += kPacket) {
+      const int count = std::min(kPacket, rays - first);
       for (int i = 0; i < count; ++i) {
-        directions[i] = pose.r_trf_lrf * Eigen::Vector3f(slope(first + i), 1.0F, -slope(row)).normalized();
+        const auto right = static_cast<float>(grid.slope(first + i));
+        directions[i] = pose.r_trf_lrf * Eigen::Vector3f(right, 1.0F, up).normalized();
       }
       const std::array<float, kPacket> ranges = scene_->cast(pose.origin_trf_m, directions, count);
-      for (int i = 0; i < count; ++i) {
-        if (!std::isfinite(ranges[i])) continue;
-        const int ray = row * settings.rays + first + i;
-        frame.ranges[ray] = measure(ranges[i], settings, noise_seed, ray);
-      }
+      std::copy_n(ranges.begin(), count, grid.range_m.begin() + row * rays + first);
+    }
+  }
+  return grid;
+}
+
+void FlashLidar::expose(const FrameTruth& truth, const SensorSettings& settings, double swath_m,
+                        std::uint64_t noise_seed, gnc::RangeImage& frame) const {
+  RangeGrid grid = true_ranges(truth, settings.rays, swath_m);
+  occlude(truth.occluder, grid);
+  frame.rays = static_cast<std::uint16_t>(settings.rays);
+  frame.fov_urad = fov_urad(swath_m, truth.range_m);
+  frame.ranges.fill(0);
+  for (int ray = 0; ray < settings.rays * settings.rays; ++ray) {
+    if (std::isfinite(grid.range_m[ray])) {
+      frame.ranges[ray] = measure(grid.range_m[ray], settings, noise_seed, ray);
     }
   }
 }

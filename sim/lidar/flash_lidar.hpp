@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "gnc/lidar/depth_image.hpp"
+#include "sim/lidar/occlusion.hpp"
 #include "sim/scenario/sequence.hpp"
 #include "sim/target/triangle_mesh.hpp"
 
@@ -13,6 +14,7 @@ namespace tumblesight::sim {
 struct SensorSettings {
   int rays = 128;
   double dropout_share = 0.0;  // of the returns, removed at random
+  double outlier_share = 0.0;  // of the returns, wrong by 5 sigma to 20 m, nearer or farther
   bool noise = true;           // sigma = 0.1 m + 0.01 range, Gaussian, along the ray (paper, sensor table)
 };
 
@@ -30,6 +32,9 @@ class FlashLidar {
   ~FlashLidar();
   FlashLidar(const FlashLidar&) = delete;
   FlashLidar& operator=(const FlashLidar&) = delete;
+
+  // Of one flash, without occluder, noise and losses. Thread-safe.
+  RangeGrid true_ranges(const FrameTruth& truth, int rays, double swath_m) const;
 
   // Fills rays, fov and ranges; sequence number and exposure time are the caller's. Thread-safe. The same
   // arguments give the same frame.

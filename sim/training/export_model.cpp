@@ -1,6 +1,7 @@
 #include "sim/training/export_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -49,11 +50,11 @@ void add_cnn(TensorsByName& tensors, const Cnn& cnn) {
 // W (x - mean) / deviation + b = (W / deviation) x + (b - (W / deviation) mean)
 void add_recurrent(TensorsByName& tensors, const Recurrent& recurrent) {
   const auto parameters = recurrent->lstm->named_parameters();
-  const torch::Tensor input = parameters["weight_ih_l0"] / recurrent->input_deviation;
+  const torch::Tensor input = parameters["weight_ih"] / recurrent->input_deviation;
   add(tensors, "lstm.input", input.t());
-  add(tensors, "lstm.recurrent", parameters["weight_hh_l0"].t());
+  add(tensors, "lstm.recurrent", parameters["weight_hh"].t());
   add(tensors, "lstm.bias",
-      parameters["bias_ih_l0"] + parameters["bias_hh_l0"] - torch::matmul(input, recurrent->input_mean));
+      parameters["bias_ih"] + parameters["bias_hh"] - torch::matmul(input, recurrent->input_mean));
 
   const torch::Tensor hidden = recurrent->head1->weight.narrow(1, 0, shape::kLstm);
   const torch::Tensor direct =
@@ -79,14 +80,25 @@ void export_weights(const Cnn& cnn, const Recurrent& recurrent, gnc::NetworkWeig
   });
 }
 
-void write_model_file(const std::string& path, const std::string& target,
-                      const gnc::DepthProjection& projection, const gnc::NetworkWeights& weights) {
+void shorten(gnc::NetworkWeights& weights) {
+  gnc::for_each_tensor(weights, [](const char*, float* data, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      int exponent = 0;
+      const float mantissa = std::frexp(data[i], &exponent);
+      data[i] = std::ldexp(std::nearbyint(mantissa * 1024.0F), exponent - 10);
+    }
+  });
+}
+
+void write_model_file(const std::string& path, const std::string& target, const TrainingTargets& targets,
+                      const gnc::NetworkWeights& weights) {
   gnc::ModelHeader header;
   if (!gnc::set_target(header, target.c_str())) {
     throw std::runtime_error("target name '" + target + "' must be printable and at most " +
                              std::to_string(header.target.size() - 1) + " characters long");
   }
-  header.projection = projection;
+  header.projection = targets.projection;
+  header.inertia = targets.inertia;
   std::vector<std::uint8_t> bytes(gnc::kModelImageSize);
   bytes.resize(gnc::write_model_image(header, weights, bytes.data(), bytes.size()));
   std::ofstream out(path + ".new", std::ios::binary);

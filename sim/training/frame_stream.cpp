@@ -10,7 +10,7 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::uint64_t kUses = 2;   // batches made of one rendered group: as it is, and turned
+constexpr std::uint64_t kUses = 4;   // batches made of one rendered group: each quarter turn of it
 constexpr std::uint64_t kAhead = 8;  // batches rendered ahead of the consumer
 constexpr int kSide = gnc::DepthImage::kSide;
 
@@ -25,9 +25,8 @@ struct Workspace {
 bool try_render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t index, Workspace& work,
                 FrameTruth& truth) {
   const auto& lidar = *targets.lidars[index % targets.lidars.size()];
-  const Condition condition =
-      (index / targets.lidars.size()) % 2 == 0 ? Condition::kNominal : Condition::kDegraded;
-  const Sequence sequence = make_sequence(condition, seed, index, 1);
+  const Condition condition = targets.conditions[(index / targets.lidars.size()) % targets.conditions.size()];
+  const Sequence sequence = make_sequence({condition, 1}, seed, index);
   truth = sequence.frames.front();
   lidar.expose(truth, sensor_settings(condition), targets.projection.swath_m, sequence.noise_seed,
                work.frame);
@@ -72,20 +71,44 @@ std::uint32_t crc32_of(const std::vector<TriangleMesh>& meshes) {
   return crc.value();
 }
 
-// Turned a quarter about the boresight, counter-clockwise as the image is seen: (x, z) -> (-z, x).
+// Turned a quarter about the view axis, counter-clockwise as the image is seen: (x, z) -> (-z, x).
 torch::Tensor quarter_turn() {
   return torch::tensor({0.0F, 0.0F, -1.0F, 0.0F, 1.0F, 0.0F, 1.0F, 0.0F, 0.0F}).view({3, 3});
 }
 
-torch::Tensor rotation_tensor(const FrameTruth& truth) {
-  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r = truth.q_lrf_trf.toRotationMatrix().cast<float>();
+torch::Tensor rotation_tensor(const FrameTruth& truth, const Eigen::Matrix3f& r_lrf_view) {
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r =
+      r_lrf_view.transpose() * truth.q_lrf_trf.toRotationMatrix().cast<float>();
   return torch::from_blob(const_cast<float*>(r.data()), {3, 3}, torch::kFloat).clone();
 }
 
 }  // namespace
 
-TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes) {
+std::vector<Condition> all_conditions() {
+  return {Condition::kNominal,  Condition::kDegraded, Condition::kOccluded, Condition::kTumbling,
+          Condition::kOffset,   Condition::kNominal,  Condition::kDegraded, Condition::kOccluded,
+          Condition::kTumbling, Condition::kOutliers};
+}
+
+std::vector<Condition> paper_conditions() {
+  return {Condition::kNominal, Condition::kDegraded};
+}
+
+std::uint64_t number_of(const std::vector<Condition>& conditions) {
+  std::uint64_t number = 0;
+  for (const Condition condition : conditions) number = mix(number, static_cast<std::uint64_t>(condition));
+  return number;
+}
+
+TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
+                                      const std::vector<Condition>& conditions,
+                                      const Eigen::Matrix3d& inertia_kg_m2) {
   TrainingTargets targets;
+  targets.inertia_kg_m2 = inertia_kg_m2;
+  if (!gnc::make_inertia(inertia_kg_m2.cast<float>(), targets.inertia)) {
+    throw std::invalid_argument("the target's inertia is not symmetric and positive definite");
+  }
+  targets.conditions = conditions;
   for (const TriangleMesh& mesh : meshes) {
     targets.lidars.push_back(std::make_unique<FlashLidar>(mesh));
     targets.projection.swath_m = std::max(targets.projection.swath_m, static_cast<float>(swath_m(mesh)));
@@ -102,14 +125,14 @@ FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std
   for (int i = 0; i < batch; ++i) {
     const FrameTruth truth = render(targets, seed, group * batch + i, work);
     result.images[i].copy_(torch::from_blob(work.image.value.data(), {1, kSide, kSide}, torch::kFloat));
-    result.r_lrf_trf[i].copy_(rotation_tensor(truth));
+    result.r_view_trf[i].copy_(rotation_tensor(truth, work.image.r_lrf_view));
   }
   return result;
 }
 
 FrameBatch turned(const FrameBatch& batch, std::int64_t quarter_turns) {
   return {torch::rot90(batch.images, quarter_turns, {2, 3}).contiguous(),
-          torch::matmul(torch::matrix_power(quarter_turn(), quarter_turns), batch.r_lrf_trf)};
+          torch::matmul(torch::matrix_power(quarter_turn(), quarter_turns), batch.r_view_trf)};
 }
 
 FrameStream::FrameStream(const TrainingTargets& targets, std::uint64_t seed, int batch,
@@ -137,11 +160,10 @@ void FrameStream::work() {
       group = claimed_++;
     }
     const FrameBatch batch = render_frames(targets_, seed_, group, batch_);
-    FrameBatch second = turned(batch, 1 + static_cast<std::int64_t>(mix(seed_, group) % 3));
-    {
+    for (std::uint64_t use = 0; use < kUses; ++use) {
+      FrameBatch copy = turned(batch, static_cast<std::int64_t>(use));
       const std::lock_guard<std::mutex> lock(mutex_);
-      ready_.emplace(group * kUses, batch);
-      ready_.emplace(group * kUses + 1, std::move(second));
+      ready_.emplace(group * kUses + use, std::move(copy));
     }
     changed_.notify_all();
   }

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
 #include "sim/lidar/flash_lidar.hpp"
 
@@ -20,19 +21,30 @@ namespace tumblesight::sim {
 struct TrainingTargets {
   std::vector<std::unique_ptr<FlashLidar>> lidars;  // one a mesh
   gnc::DepthProjection projection;
-  std::uint32_t meshes_crc32 = 0;  // names the surfaces
+  std::uint32_t meshes_crc32 = 0;     // names the surfaces
+  std::vector<Condition> conditions;  // that take turns; one may be there more than once
+  Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF
+  gnc::Inertia inertia;                                         // the same, as the flight code takes it
 };
-// Throws std::runtime_error that names a mesh of which the sensor never sees enough.
-TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes);
+// What the shipped networks are trained on, and the paper's rule: nominal and degraded frames only.
+std::vector<Condition> all_conditions();
+std::vector<Condition> paper_conditions();
+std::uint64_t number_of(const std::vector<Condition>& conditions);  // names them, for a fingerprint
+
+// Throws std::runtime_error that names a mesh of which the sensor never sees enough, and
+// std::invalid_argument for an impossible inertia.
+TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
+                                      const std::vector<Condition>& conditions,
+                                      const Eigen::Matrix3d& inertia_kg_m2 = Eigen::Matrix3d::Identity());
 
 struct FrameBatch {
-  torch::Tensor images;     // [B, 1, 100, 100]
-  torch::Tensor r_lrf_trf;  // [B, 3, 3]
+  torch::Tensor images;      // [B, 1, 100, 100]
+  torch::Tensor r_view_trf;  // [B, 3, 3], in the images' view
 };
 
-// The endless, seeded supply. Meshes and conditions (nominal, degraded) take turns. Each rendered group of
-// frames gives two batches: as it is, and turned about the boresight by quarter turns, which are exact new
-// views for free, since the image is square and the boresight its axis.
+// The endless, seeded supply. Meshes and conditions take turns. Each rendered group of
+// frames gives four batches, turned about the view axis by quarter turns: exact new views for free, since the
+// image is square.
 class FrameStream {
  public:
   FrameStream(const TrainingTargets& targets, std::uint64_t seed, int batch, std::uint64_t first_batch,
@@ -57,7 +69,7 @@ class FrameStream {
 
 // Group `group` of the supply, without threads (validation data: another seed).
 FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch);
-// The same frames turned about the boresight, counter-clockwise as the image is seen.
+// The same frames turned about the view axis, counter-clockwise as the image is seen.
 FrameBatch turned(const FrameBatch& batch, std::int64_t quarter_turns);
 
 }  // namespace tumblesight::sim

@@ -4,6 +4,8 @@
 
 #include <torch/torch.h>
 
+#include "sim/training/rcnn_module.hpp"
+
 namespace tumblesight::sim {
 
 struct HypothesisErrors {
@@ -21,5 +23,13 @@ HypothesisErrors hypothesis_errors(const torch::Tensor& output, const torch::Ten
 // keeps its alternatives apart instead of being blurred into their mean. `spread` keeps unused hypotheses
 // alive early on.
 torch::Tensor hypothesis_loss(const torch::Tensor& output, const HypothesisErrors& errors, double spread);
+
+// The recurrent part, likewise: error of the best cluster, + 0.3 x cross-entropy of choosing one as good as
+// the best (within 2 degrees), + 0.1 x cross-entropy of the expected error on the answer's. All frames count
+// alike.
+torch::Tensor tracking_loss(const TrackedSequences& tracked, const torch::Tensor& r_lrf_trf);
+
+// Geodesic distance of rotations [..., 3, 3] in radians, with a gradient that stays finite at both ends.
+torch::Tensor angle_between(const torch::Tensor& a, const torch::Tensor& b);
 
 }  // namespace tumblesight::sim

@@ -1,9 +1,12 @@
 #include "sim/training/rcnn_module.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "gnc/rcnn/network_shape.hpp"
+#include "sim/training/track_module.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;
@@ -13,6 +16,7 @@ namespace {
 constexpr std::array<int, BackboneImpl::kStages + 1> kChannels = {
     shape::kSpaceToDepthChannels, shape::kConv1, shape::kConv2, shape::kConv3, shape::kConv4};
 constexpr double kMomentum = 0.05;
+
 }  // namespace
 
 BackboneImpl::BackboneImpl() {
@@ -65,47 +69,48 @@ torch::Tensor orthonormal_columns(const torch::Tensor& output) {
   sizes.back() = shape::kHypotheses;
   sizes.insert(sizes.end(), {2, 3});
   const torch::Tensor six = output.narrow(-1, 0, shape::kColumns).reshape(sizes);
-  const auto normalised = [](const torch::Tensor& v) {
-    return v / v.square().sum(-1, true).clamp_min(1e-12).sqrt();
-  };
-  const torch::Tensor x1 = normalised(six.select(-2, 0));
-  const torch::Tensor b = six.select(-2, 1);
-  const torch::Tensor x2 = normalised(b - (x1 * b).sum(-1, true) * x1);
-  return torch::stack({x1, x2}, -2);
+  return rotation_from_columns(six.select(-2, 0), six.select(-2, 1)).narrow(-1, 0, 2).transpose(-1, -2);
 }
 
-torch::Tensor lstm_input(const torch::Tensor& dense2, const torch::Tensor& output) {
-  const torch::Tensor columns = orthonormal_columns(output).flatten(-3);
-  const torch::Tensor probabilities =
-      torch::softmax(output.narrow(-1, shape::kColumns, shape::kHypotheses), -1);
-  return torch::cat({dense2, columns, probabilities}, -1);
-}
-
-RecurrentImpl::RecurrentImpl() {
-  lstm = register_module(
-      "lstm", torch::nn::LSTM(torch::nn::LSTMOptions(shape::kLstmInput, shape::kLstm).batch_first(true)));
+RecurrentImpl::RecurrentImpl(const gnc::Inertia& inertia) : inertia_(inertia) {
+  lstm = register_module("lstm", torch::nn::LSTMCell(shape::kLstmInput, shape::kLstm));
   head1 = register_module("head1", torch::nn::Linear(shape::kLstm + shape::kLstmInput, shape::kHead));
-  head2 = register_module("head2", torch::nn::Linear(shape::kHead, shape::kOutput));
+  head2 = register_module("head2", torch::nn::Linear(shape::kHead, shape::kHeadOutput));
   input_mean = register_buffer("input_mean", torch::zeros({shape::kLstmInput}));
   input_deviation = register_buffer("input_deviation", torch::ones({shape::kLstmInput}));
   torch::NoGradGuard guard;
-  head2->weight.mul_(0.1);  // starts near the single-frame estimate
+  head2->weight.mul_(0.1);  // starts near the filter for smooth rotation
   head2->bias.zero_();
 }
 
 void RecurrentImpl::set_standardisation(const torch::Tensor& mean, const torch::Tensor& deviation) {
   torch::NoGradGuard guard;
   input_mean.copy_(mean);
-  input_deviation.copy_(deviation.clamp_min(1e-3));
+  input_deviation.copy_(deviation.clamp_min(1e-2));
 }
 
-torch::Tensor RecurrentImpl::forward(const torch::Tensor& dense2, const torch::Tensor& single_frame_output) {
-  const torch::Tensor x = (lstm_input(dense2, single_frame_output) - input_mean) / input_deviation;
-  const torch::Tensor h = std::get<0>(lstm(x));
-  const torch::Tensor correction = head2(torch::relu(head1(torch::cat({h, x}, -1))));
-  const torch::Tensor columns = orthonormal_columns(single_frame_output).flatten(-3);
-  const torch::Tensor rest = single_frame_output.narrow(-1, shape::kColumns, shape::kHypotheses + 1);
-  return torch::cat({columns, rest}, -1) + correction;
+TrackedSequences RecurrentImpl::forward(const SequenceHypotheses& sequences) {
+  const std::int64_t count = sequences.features.size(0);
+  const torch::Tensor nothing = torch::zeros({count, shape::kLstm}, sequences.features.options());
+  torch::Tensor h = nothing, c = nothing;
+  TrackModule track(inertia_);
+  std::vector<torch::Tensor> inputs, answers, means, anchors, errors;
+  for (std::int64_t k = 0; k < sequences.features.size(1); ++k) {
+    const FrameHypotheses frame(sequences.features.select(1, k), sequences.r_lrf_trf.select(1, k),
+                                sequences.logits.select(1, k));
+    track.predict(frame);
+    const torch::Tensor input = track.lstm_input(frame);
+    const torch::Tensor x = (input - input_mean) / input_deviation;
+    std::tie(h, c) = lstm(x, std::make_tuple(h, c));
+    const Fusion fusion = track.advance(frame, head2(torch::relu(head1(torch::cat({h, x}, -1)))));
+    inputs.push_back(input.detach());
+    answers.push_back(fusion.r_lrf_trf);
+    means.push_back(fusion.cluster_means);
+    anchors.push_back(fusion.anchor_logits);
+    errors.push_back(fusion.error_logit);
+  }
+  return {torch::stack(answers, 1), torch::stack(means, 1), torch::stack(anchors, 1), torch::stack(errors, 1),
+          torch::stack(inputs, 1)};
 }
 
 }  // namespace tumblesight::sim

@@ -7,6 +7,8 @@
 
 #include <array>
 
+#include "gnc/attitude/motion.hpp"
+
 namespace tumblesight::sim {
 
 // Convolution without bias, then (pooling and) batch norm with a learned offset and no gain: the next layer's
@@ -48,20 +50,38 @@ TORCH_MODULE(Cnn);
 
 // Hypotheses of an output [..., 57] as orthonormalised columns x1, x2 [..., 8, 2, 3].
 torch::Tensor orthonormal_columns(const torch::Tensor& output);
-// The LSTM's input [..., 184] from dense2's and the head's output.
-torch::Tensor lstm_input(const torch::Tensor& dense2, const torch::Tensor& output);
 
-// LSTM and recurrent head over sequences of single-frame results.
+// What the CNN says of whole sequences, as gnc::Hypotheses holds it.
+struct SequenceHypotheses {
+  torch::Tensor features;   // [B, T, 128] dense2's output
+  torch::Tensor r_lrf_trf;  // [B, T, 8, 3, 3]
+  torch::Tensor logits;     // [B, T, 8]
+};
+
+// What the recurrent part makes of them. Every candidate (the frame's hypotheses and the predicted attitude)
+// stands for the cluster around it.
+struct TrackedSequences {
+  torch::Tensor r_lrf_trf;      // [B, T, 3, 3] the answer
+  torch::Tensor cluster_means;  // [B, T, 9, 3, 3] what the answer would be with each candidate as the anchor
+  torch::Tensor anchor_logits;  // [B, T, 9]
+  torch::Tensor error_logits;   // [B, T]
+  torch::Tensor inputs;         // [B, T, 190] the LSTM's, not standardised, without gradient
+};
+
+// LSTM, recurrent head and attitude track (gnc/rcnn/attitude_track.hpp) over sequences of targets of one
+// inertia.
 class RecurrentImpl : public torch::nn::Module {
  public:
-  RecurrentImpl();
-  // dense2 [B, T, 128], single-frame output [B, T, 57] -> output [B, T, 57].
-  torch::Tensor forward(const torch::Tensor& dense2, const torch::Tensor& single_frame_output);
+  explicit RecurrentImpl(const gnc::Inertia& inertia = {});
+  TrackedSequences forward(const SequenceHypotheses& sequences);
   void set_standardisation(const torch::Tensor& input_mean, const torch::Tensor& input_deviation);
 
-  torch::nn::LSTM lstm{nullptr};
+  torch::nn::LSTMCell lstm{nullptr};
   torch::nn::Linear head1{nullptr}, head2{nullptr};
-  torch::Tensor input_mean, input_deviation;  // [184]
+  torch::Tensor input_mean, input_deviation;  // [190]
+
+ private:
+  gnc::Inertia inertia_;
 };
 TORCH_MODULE(Recurrent);
 

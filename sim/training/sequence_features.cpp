@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "gnc/rcnn/hypotheses.hpp"
 #include "gnc/rcnn/network_shape.hpp"
 #include "sim/scenario/random.hpp"
 #include "sim/scenario/sequence.hpp"
@@ -11,7 +12,7 @@ namespace tumblesight::sim {
 namespace shape = gnc::shape;
 namespace {
 
-constexpr int kFrames = kFramesPerSequence;
+constexpr int kFrames = kTrainingFrames;
 
 // Buffers of one worker.
 struct Workspace {
@@ -20,33 +21,65 @@ struct Workspace {
   gnc::DepthImage image;
   gnc::DepthImageScratch scratch;
   gnc::Network network;
-  gnc::LstmState lstm;
-  gnc::OutputVector single, recurrent;
+  gnc::OutputVector output;
 };
+
+// Of a rigid body: principal moments of three point-mass spreads, axes turned at random.
+Eigen::Matrix3d any_inertia(Random random) {
+  Eigen::Vector3d spread;
+  for (int i = 0; i < 3; ++i) spread[i] = random.uniform(0.3, 1.0);
+  Eigen::Vector4d q;
+  for (int i = 0; i < 4; ++i) q[i] = random.normal();
+  const Eigen::Matrix3d axes = Eigen::Quaterniond(q).normalized().toRotationMatrix();
+  const Eigen::Matrix3d inertia =
+      axes * (Eigen::Vector3d::Constant(spread.sum()) - spread).asDiagonal() * axes.transpose();
+  return 0.5 * (inertia + inertia.transpose());
+}
+
+ScenarioSettings scenario_of(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t number) {
+  const std::uint64_t turn = number / targets.lidars.size();
+  ScenarioSettings settings{targets.conditions[turn % targets.conditions.size()], kFrames};
+  settings.rate_law = (turn / targets.conditions.size()) % 2 == 0 ? RateLaw::kComponents : RateLaw::kNorm;
+  Random random(mix(mix(seed, number), 4));
+  settings.inertia_kg_m2 = random.uniform() < 0.75 ? targets.inertia_kg_m2 : any_inertia(random);
+  return settings;
+}
+
+void put_rotation(const Eigen::Matrix3f& rotation, float* at) {
+  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>{at} = rotation;
+}
+
+// Frame `row` (counted over all sequences) of `all`.
+void put_frame(const gnc::Network& network, const gnc::Hypotheses& hypotheses, const Eigen::Matrix3f& truth,
+               std::int64_t row, FeatureSet& all) {
+  const SequenceHypotheses& to = all.hypotheses;
+  std::copy(network.features().begin(), network.features().end(),
+            to.features.data_ptr<float>() + row * shape::kDense2);
+  std::copy(hypotheses.logit.begin(), hypotheses.logit.end(),
+            to.logits.data_ptr<float>() + row * shape::kHypotheses);
+  for (int i = 0; i < shape::kHypotheses; ++i) {
+    put_rotation(hypotheses.r_lrf_trf[i],
+                 to.r_lrf_trf.data_ptr<float>() + 9 * (row * shape::kHypotheses + i));
+  }
+  put_rotation(truth, all.r_lrf_trf.data_ptr<float>() + 9 * row);
+}
 
 // One sequence into row `index` of `all`; false when the sensor saw too little in one of its frames.
 bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t index, Workspace& work,
              FeatureSet& all) {
   const auto number = static_cast<std::uint64_t>(index);
   const auto& lidar = *targets.lidars[number % targets.lidars.size()];
-  const Condition condition =
-      (number / targets.lidars.size()) % 2 == 0 ? Condition::kNominal : Condition::kDegraded;
-  const Sequence sequence = make_sequence(condition, seed, number, kFrames);
-  float* dense2 = all.dense2.data_ptr<float>() + index * kFrames * shape::kDense2;
-  float* output = all.output.data_ptr<float>() + index * kFrames * shape::kOutput;
-  work.lstm = {};
-  float* rotation = all.r_lrf_trf.data_ptr<float>() + index * kFrames * 9;
+  const ScenarioSettings settings = scenario_of(targets, seed, number);
+  const Sequence sequence = make_sequence(settings, seed, number);
   for (int k = 0; k < kFrames; ++k) {
     const FrameTruth& truth = sequence.frames[k];
-    lidar.expose(truth, sensor_settings(condition), targets.projection.swath_m,
+    lidar.expose(truth, sensor_settings(settings.condition), targets.projection.swath_m,
                  mix(sequence.noise_seed, static_cast<std::uint64_t>(k)), work.frame);
     if (make_depth_image(work.frame, targets.projection, work.scratch, work.image) != gnc::FrameStatus::kOk)
       return false;
-    work.network.infer(work.image, work.lstm, work.single, work.recurrent);
-    dense2 = std::copy(work.network.dense2_output().begin(), work.network.dense2_output().end(), dense2);
-    output = std::copy(work.single.begin(), work.single.end(), output);
-    const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r = truth.q_lrf_trf.toRotationMatrix().cast<float>();
-    rotation = std::copy(r.data(), r.data() + 9, rotation);
+    work.network.infer_frame(work.image, work.output);
+    put_frame(work.network, gnc::hypotheses_of(work.output, work.image.r_lrf_view),
+              truth.q_lrf_trf.toRotationMatrix().cast<float>(), index * kFrames + k, all);
   }
   return true;
 }
@@ -59,7 +92,9 @@ SequenceFeatures::SequenceFeatures(const TrainingTargets& targets, const gnc::Ne
       weights_(weights),
       seed_(seed),
       count_(count),
-      all_{torch::empty({count, kFrames, shape::kDense2}), torch::empty({count, kFrames, shape::kOutput}),
+      all_{{torch::empty({count, kFrames, shape::kDense2}),
+            torch::empty({count, kFrames, shape::kHypotheses, 3, 3}),
+            torch::empty({count, kFrames, shape::kHypotheses})},
            torch::empty({count, kFrames, 3, 3})},
       done_(static_cast<std::size_t>(count), false) {
   for (int i = 0; i < workers; ++i) workers_.emplace_back([this] { work(); });
@@ -93,11 +128,27 @@ void SequenceFeatures::work() {
   }
 }
 
+std::int64_t SequenceFeatures::ready() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return prefix_;
+}
+
 FeatureSet SequenceFeatures::first(std::int64_t count) {
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait(lock, [&] { return prefix_ >= count; });
-  return {all_.dense2.narrow(0, 0, count), all_.output.narrow(0, 0, count),
-          all_.r_lrf_trf.narrow(0, 0, count)};
+  return first_of(all_, count);
+}
+
+FeatureSet first_of(const FeatureSet& data, std::int64_t count) {
+  const auto first = [count](const torch::Tensor& t) { return t.narrow(0, 0, count); };
+  const SequenceHypotheses& from = data.hypotheses;
+  return {{first(from.features), first(from.r_lrf_trf), first(from.logits)}, first(data.r_lrf_trf)};
+}
+
+FeatureSet rows_of(const FeatureSet& data, const torch::Tensor& rows, const torch::Device& device) {
+  const auto pick = [&](const torch::Tensor& t) { return t.index_select(0, rows).to(device); };
+  const SequenceHypotheses& from = data.hypotheses;
+  return {{pick(from.features), pick(from.r_lrf_trf), pick(from.logits)}, pick(data.r_lrf_trf)};
 }
 
 }  // namespace tumblesight::sim

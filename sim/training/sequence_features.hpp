@@ -13,23 +13,31 @@
 
 #include "gnc/rcnn/network.hpp"
 #include "sim/training/frame_stream.hpp"
+#include "sim/training/rcnn_module.hpp"
 
 namespace tumblesight::sim {
 
+inline constexpr int kTrainingFrames =
+    12;  // longer than the paper's sequences: in flight there is no last frame
+
 struct FeatureSet {
-  torch::Tensor dense2;     // [N, T, 128]
-  torch::Tensor output;     // [N, T, 57]
-  torch::Tensor r_lrf_trf;  // [N, T, 3, 3]
+  SequenceHypotheses hypotheses;
+  torch::Tensor r_lrf_trf;  // [N, T, 3, 3] the truth
 };
+FeatureSet first_of(const FeatureSet& data, std::int64_t count);
+FeatureSet rows_of(const FeatureSet& data, const torch::Tensor& rows, const torch::Device& device);
 
 class SequenceFeatures {
  public:
-  // Starts to compute sequences 0 .. count-1 of the seeded supply; meshes and conditions (nominal, degraded)
-  // take turns. `weights` must outlive this object.
+  // Starts to compute sequences 0 .. count-1 of the seeded supply; meshes and conditions take
+  // turns, and so do the laws of the rate; of the bodies that tumble, every
+  // fourth has another inertia than the target, lest the network trust it blindly. `weights` must outlive
+  // this object.
   SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights& weights, std::uint64_t seed,
                    std::int64_t count, int workers);
   ~SequenceFeatures();
 
+  std::int64_t ready();  // how many, from the first one on
   // The first `count` sequences, waiting until they are there.
   FeatureSet first(std::int64_t count);
 

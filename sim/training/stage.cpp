@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "gnc/rcnn/crc32.hpp"
 
@@ -14,6 +15,12 @@ std::int64_t fingerprint(std::initializer_list<std::uint64_t> settings) {
     crc.add_u32(static_cast<std::uint32_t>(value >> 32));
   }
   return crc.value();
+}
+
+std::uint64_t bits_of(double setting) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &setting, sizeof bits);
+  return bits;
 }
 
 void Stage::start() {

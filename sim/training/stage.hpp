@@ -26,6 +26,7 @@ struct StageSettings {
 
 // One number for all the settings that shape a stage's result.
 std::int64_t fingerprint(std::initializer_list<std::uint64_t> settings);
+std::uint64_t bits_of(double setting);
 
 class Stage {
  public:

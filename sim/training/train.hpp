@@ -14,7 +14,8 @@
 namespace tumblesight::sim {
 
 struct TrainingSettings {
-  std::string folder;  // checkpoints, log and model image go here
+  std::string folder;      // checkpoints, log and model image go here
+  std::string start_from;  // model image whose CNN training begins with; empty: random weights
   std::uint64_t seed = 1;
   int workers = 1;        // rendering threads
   bool bfloat16 = false;  // convolutions in bfloat16

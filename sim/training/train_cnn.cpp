@@ -1,3 +1,6 @@
+#include <memory>
+
+#include "sim/training/import_model.hpp"
 #include "sim/training/loss.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
@@ -8,11 +11,14 @@ namespace {
 constexpr double kGradientNorm = 1.0;  // paper: gradient threshold
 constexpr double kWeightDecay = 1e-4;
 constexpr int kValidationFrames = 1024;
+constexpr int kCalibrationFrames = 512;
 constexpr std::int64_t kIterationsPerPoint = 500;
 constexpr std::uint64_t kValidationSeed = 0x76616C6964ULL;
 
-// Share of the mean over all hypotheses in the loss: 30 % at the start, 2 % after a quarter.
-double spread_at(std::int64_t iteration, std::int64_t total) {
+// Share of the mean over all hypotheses in the loss: 30 % at the start from random weights, 2 % after a
+// quarter.
+double spread_at(const TrainingSettings& settings, std::int64_t iteration, std::int64_t total) {
+  if (!settings.start_from.empty()) return 0.02;
   const double done = static_cast<double>(iteration) / (0.25 * static_cast<double>(total));
   return done >= 1.0 ? 0.02 : 0.3 + (0.02 - 0.3) * done;
 }
@@ -24,7 +30,7 @@ void validate(Cnn& cnn, const FrameBatch& data, const TrainingSettings& settings
   for (std::int64_t i = 0; i < data.images.size(0); i += settings.cnn_batch) {
     const std::int64_t n = std::min<std::int64_t>(settings.cnn_batch, data.images.size(0) - i);
     const auto result = cnn->forward(data.images.narrow(0, i, n).to(settings.device), settings.bfloat16);
-    const auto errors = hypothesis_errors(result.output, data.r_lrf_trf.narrow(0, i, n).to(settings.device));
+    const auto errors = hypothesis_errors(result.output, data.r_view_trf.narrow(0, i, n).to(settings.device));
     best.push_back(errors.best_rad.cpu());
     chosen.push_back(errors.chosen_rad.cpu());
   }
@@ -35,7 +41,7 @@ void validate(Cnn& cnn, const FrameBatch& data, const TrainingSettings& settings
 double train_once(Cnn& cnn, const FrameBatch& batch, const TrainingSettings& settings, double spread,
                   torch::optim::Optimizer& optimizer) {
   const auto result = cnn->forward(batch.images.to(settings.device), settings.bfloat16);
-  const auto errors = hypothesis_errors(result.output, batch.r_lrf_trf.to(settings.device));
+  const auto errors = hypothesis_errors(result.output, batch.r_view_trf.to(settings.device));
   const torch::Tensor loss = hypothesis_loss(result.output, errors, spread);
   optimizer.zero_grad();
   loss.backward();
@@ -44,7 +50,17 @@ double train_once(Cnn& cnn, const FrameBatch& batch, const TrainingSettings& set
   return loss.item<double>();
 }
 
-StageSettings stage_settings(const TrainingTargets& targets, const TrainingSettings& settings) {
+// Returns what names the weights to begin with.
+std::uint64_t begin(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn) {
+  if (settings.start_from.empty()) return 0;
+  const auto model = std::make_unique<ModelFile>();
+  read_model_file(settings.start_from, *model);
+  import_cnn(model->weights, render_frames(targets, settings.seed, 0, kCalibrationFrames).images, cnn);
+  return model->header.crc32;
+}
+
+StageSettings stage_settings(const TrainingTargets& targets, const TrainingSettings& settings,
+                             std::uint64_t beginning) {
   StageSettings stage;
   stage.name = "cnn";
   stage.folder = settings.folder;
@@ -55,7 +71,9 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;
   stage.fingerprint = fingerprint({settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
-                                   static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32});
+                                   static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32,
+                                   number_of(targets.conditions), beginning,
+                                   bits_of(settings.cnn_learning_rate), settings.bfloat16});
   return stage;
 }
 
@@ -71,7 +89,7 @@ void fill_errors(TrainingPoint& point, const torch::Tensor& best_rad, const torc
 
 bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn,
                const std::atomic<bool>& stop) {
-  const StageSettings shape = stage_settings(targets, settings);
+  const StageSettings shape = stage_settings(targets, settings, begin(targets, settings, cnn));
   Stage stage(shape);
   cnn->to(settings.device);
   torch::optim::AdamW optimizer(
@@ -79,14 +97,16 @@ bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings,
   stage.resume(cnn, optimizer);
   if (stage.finished()) return true;
 
-  const FrameBatch validation = render_frames(targets, kValidationSeed, 0, kValidationFrames);
+  const FrameBatch validation =
+      render_frames(targets, kValidationSeed, 0,
+                    static_cast<int>(std::min<std::int64_t>(kValidationFrames, settings.cnn_images)));
   FrameStream stream(targets, settings.seed, settings.cnn_batch,
                      static_cast<std::uint64_t>(stage.iteration()), settings.workers);
   stage.start();
   cnn->train();
   while (!stage.finished() && !stop) {
     stage.set_rate(optimizer);
-    const double spread = spread_at(stage.iteration(), shape.iterations);
+    const double spread = spread_at(settings, stage.iteration(), shape.iterations);
     stage.advance(train_once(cnn, stream.next(), settings, spread, optimizer));
     if (stage.point_due()) {
       TrainingPoint point = stage.new_point();

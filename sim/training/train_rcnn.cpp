@@ -1,7 +1,10 @@
 #include <ATen/CPUGeneratorImpl.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <memory>
+#include <thread>
 
 #include "gnc/rcnn/crc32.hpp"
 #include "sim/training/export_model.hpp"
@@ -20,7 +23,6 @@ constexpr std::uint64_t kValidationSeed = 0x76616C6964ULL + 1;
 constexpr std::int64_t kFirstSequences = 2048;      // there before the first iteration
 constexpr std::int64_t kSequencesPerIteration = 8;  // by how much the supply grows while it is learnt from
 constexpr std::int64_t kIterationsPerPoint = 100;
-constexpr double kSpread = 0.02;
 
 // Which sequences the iteration learns from depends on its number only, so a resumed run goes on as if
 // uninterrupted.
@@ -30,25 +32,31 @@ torch::Tensor draw(std::uint64_t seed, std::int64_t iteration, std::int64_t avai
   return torch::randint(available, {batch}, generator, torch::kLong);
 }
 
-void standardise(Recurrent& recurrent, const FeatureSet& data) {
-  const torch::Tensor x = lstm_input(data.dense2, data.output).flatten(0, 1);
-  recurrent->set_standardisation(x.mean(0), x.std(0));
+void standardise(Recurrent& recurrent, const FeatureSet& data, const torch::Device& device) {
+  const FeatureSet some =
+      rows_of(data, torch::arange(std::min<std::int64_t>(512, data.r_lrf_trf.size(0))), device);
+  torch::NoGradGuard guard;
+  const torch::Tensor inputs = recurrent->forward(some.hypotheses).inputs.flatten(0, 1);
+  recurrent->set_standardisation(inputs.mean(0), inputs.std(0));
 }
 
+// Of the paper's last frame.
 void validate(Recurrent& recurrent, const FeatureSet& data, const torch::Device& device,
               TrainingPoint& point) {
   torch::NoGradGuard guard;
-  const torch::Tensor output = recurrent->forward(data.dense2.to(device), data.output.to(device));
-  const auto errors = hypothesis_errors(output.select(1, -1), data.r_lrf_trf.select(1, -1).to(device));
-  fill_errors(point, errors.best_rad.cpu(), errors.chosen_rad.cpu());
+  const FeatureSet all = rows_of(data, torch::arange(data.r_lrf_trf.size(0)), device);
+  const TrackedSequences tracked = recurrent->forward(all.hypotheses);
+  const torch::Tensor truth = all.r_lrf_trf.select(1, kFramesPerSequence - 1);
+  const auto last = [](const torch::Tensor& t) { return t.select(1, kFramesPerSequence - 1); };
+  const torch::Tensor clusters = angle_between(last(tracked.cluster_means), truth.unsqueeze(1));
+  fill_errors(point, std::get<0>(clusters.min(-1)).cpu(),
+              angle_between(last(tracked.r_lrf_trf), truth).cpu());
 }
 
 double train_once(Recurrent& recurrent, const FeatureSet& data, const torch::Tensor& rows,
                   const torch::Device& device, torch::optim::Optimizer& optimizer) {
-  const auto pick = [&](const torch::Tensor& t) { return t.index_select(0, rows).to(device); };
-  const torch::Tensor output = recurrent->forward(pick(data.dense2), pick(data.output));
-  const torch::Tensor loss =
-      hypothesis_loss(output, hypothesis_errors(output, pick(data.r_lrf_trf)), kSpread);
+  const FeatureSet batch = rows_of(data, rows, device);
+  const torch::Tensor loss = tracking_loss(recurrent->forward(batch.hypotheses), batch.r_lrf_trf);
   optimizer.zero_grad();
   loss.backward();
   torch::nn::utils::clip_grad_norm_(recurrent->parameters(), kGradientNorm);
@@ -62,6 +70,12 @@ std::uint32_t crc32_of_cnn(const gnc::NetworkWeights& weights) {
   gnc::for_each_tensor(weights, [&](const char* name, const float* data, std::size_t count) {
     if (std::strncmp(name, "lstm", 4) != 0 && std::strncmp(name, "head", 4) != 0) crc.add_f32(data, count);
   });
+  return crc.value();
+}
+
+std::uint32_t crc32_of(const gnc::Inertia& inertia) {
+  gnc::Crc32 crc;
+  crc.add_f32(inertia.tensor_trf.data(), 9);
   return crc.value();
 }
 
@@ -79,8 +93,19 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.fingerprint = fingerprint({settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
                                    static_cast<std::uint64_t>(settings.rcnn_iterations),
                                    static_cast<std::uint64_t>(settings.rcnn_batch), targets.meshes_crc32,
-                                   crc32_of_cnn(weights)});
+                                   number_of(targets.conditions), crc32_of_cnn(weights),
+                                   bits_of(settings.rcnn_learning_rate), crc32_of(targets.inertia)});
   return stage;
+}
+
+// False when it was told to stop while waiting.
+bool wait_for(SequenceFeatures& supply, std::int64_t count, const char* what, const std::atomic<bool>& stop) {
+  ProgressLine progress;
+  for (std::int64_t ready = supply.ready(); ready < count && !stop; ready = supply.ready()) {
+    progress.wait("rcnn", what, ready, count);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return !stop;
 }
 
 }  // namespace
@@ -97,11 +122,14 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
   const bool resumed = stage.resume(recurrent, optimizer);
   if (stage.finished()) return true;
 
-  const FeatureSet validation =
-      SequenceFeatures(targets, *weights, kValidationSeed, kValidationSequences, settings.workers + 1)
-          .first(kValidationSequences);
+  const std::int64_t test_count = std::min(kValidationSequences, settings.rcnn_sequences);
+  SequenceFeatures tests(targets, *weights, kValidationSeed, test_count, settings.workers + 1);
+  if (!wait_for(tests, test_count, "the validation sequences", stop)) return false;
+  const FeatureSet validation = tests.first(test_count);
   SequenceFeatures supply(targets, *weights, settings.seed, settings.rcnn_sequences, settings.workers);
-  if (!resumed) standardise(recurrent, supply.first(std::min(kFirstSequences, settings.rcnn_sequences)));
+  const std::int64_t at_first = std::min(kFirstSequences, settings.rcnn_sequences);
+  if (!wait_for(supply, at_first, "the first sequences", stop)) return false;
+  if (!resumed) standardise(recurrent, supply.first(at_first), settings.device);
 
   stage.start();
   while (!stage.finished() && !stop) {

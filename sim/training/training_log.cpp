@@ -121,12 +121,18 @@ void TrainingLog::draw() const {
       << "</svg>\n";
 }
 
+bool ProgressLine::due() {
+  const auto period = std::chrono::milliseconds(isatty(STDERR_FILENO) != 0 ? 500 : 30000);
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < period) return false;
+  last_ = now;
+  return true;
+}
+
 void ProgressLine::show(const std::string& stage, std::int64_t done, std::int64_t total, double per_second,
                         const char* unit, double loss, double validation_deg) {
+  if (!due()) return;
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  const auto now = std::chrono::steady_clock::now();
-  if (now - last_ < (terminal ? std::chrono::milliseconds(500) : std::chrono::milliseconds(30000))) return;
-  last_ = now;
   const double left_s = per_second > 0.0 ? static_cast<double>(total - done) / per_second : 0.0;
   std::fprintf(stderr,
                "%s%s %5.1f %%  %lld / %lld %s  %.0f %s/s  loss %.4f  validation %.2f deg  %.0f min left%s",
@@ -134,6 +140,14 @@ void ProgressLine::show(const std::string& stage, std::int64_t done, std::int64_
                100.0 * static_cast<double>(done) / static_cast<double>(total), static_cast<long long>(done),
                static_cast<long long>(total), unit, per_second, unit, loss, validation_deg, left_s / 60.0,
                terminal ? "" : "\n");
+}
+
+void ProgressLine::wait(const std::string& stage, const char* for_what, std::int64_t done,
+                        std::int64_t total) {
+  if (!due()) return;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  std::fprintf(stderr, "%s%s  waiting for %s: %lld of %lld%s", terminal ? "\r\033[K" : "", stage.c_str(),
+               for_what, static_cast<long long>(done), static_cast<long long>(total), terminal ? "" : "\n");
 }
 
 void ProgressLine::finish() {

@@ -41,9 +41,11 @@ class ProgressLine {
  public:
   void show(const std::string& stage, std::int64_t done, std::int64_t total, double per_second,
             const char* unit, double loss, double validation_deg);
+  void wait(const std::string& stage, const char* for_what, std::int64_t done, std::int64_t total);
   void finish();
 
  private:
+  bool due();
   std::chrono::steady_clock::time_point last_{};
 };
 

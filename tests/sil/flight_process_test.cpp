@@ -33,7 +33,7 @@ TEST(FlightProcess, HeapUsedAfterTheLastTelemetryIsAFailureOfTheRun) {
   const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
   const test::Environment fault("TUMBLESIGHT_FAULT", "heap");
   const SilSettings settings = test::settings();
-  const std::vector<Sequence> one_step{make_sequence(Condition::kNominal, 1, 0, 1)};
+  const std::vector<Sequence> one_step{make_sequence({Condition::kNominal, 1}, 1, 0)};
   const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, one_step, {});
   EXPECT_EQ(recording.steps_missed, 0U);
   EXPECT_EQ(recording.flight_heap_allocations, 0U) << "the telemetry came before it";

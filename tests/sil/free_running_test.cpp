@@ -30,7 +30,7 @@ TEST(FreeRunning, LastFrameWithoutAnAttitudeIsMissedNotAFailure) {
   SilSettings settings = test::settings();
   settings.free_running = true;
   settings.speed = 27.0;
-  std::vector<Sequence> sequences{make_sequence(Condition::kNominal, 1, 0, 5)};
+  std::vector<Sequence> sequences{make_sequence({Condition::kNominal, 5}, 1, 0)};
   sequences[0].frames.back().range_m = 5000.0;  // out of the sensor's reach: an empty frame
   const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, sequences, {});
   EXPECT_EQ(recording.failure, "");

@@ -70,7 +70,7 @@ TEST(Lockstep, AStepWaitsForEverythingThatItAnnounces) {
 // Only early can be told from here: how late a step may be depends on the machine.
 TEST(Lockstep, NoStepComesAheadOfTheWallClockTimesTheSpeed) {
   constexpr std::uint32_t kSteps = 6;
-  const std::vector<Sequence> sequences{make_sequence(Condition::kNominal, 1, 0, kSteps)};
+  const std::vector<Sequence> sequences{make_sequence({Condition::kNominal, kSteps}, 1, 0)};
   for (const double speed : {27.0, 13.5}) {
     SilSettings settings = test::settings();
     settings.speed = speed;
@@ -88,7 +88,7 @@ TEST(Lockstep, NoStepComesAheadOfTheWallClockTimesTheSpeed) {
 }
 
 TEST(Lockstep, WithoutASpeedMissionTimeRunsAheadOfTheWallClock) {
-  const std::vector<Sequence> sequences{make_sequence(Condition::kNominal, 1, 0, 20)};
+  const std::vector<Sequence> sequences{make_sequence({Condition::kNominal, 20}, 1, 0)};
   const auto begin = std::chrono::steady_clock::now();
   const SilRecording recording = run_sil(test::settings(), test::lidar(), test::kSwath_m, sequences, {});
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;

@@ -51,7 +51,7 @@ void PrintTo(const BadModel& model, std::ostream* out) {
 // A whole image, but of another network: its header's CRC is as it should be.
 void change_architecture(std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t kArchitecture = 12;
-  constexpr std::size_t kHeaderCrc = 64;
+  constexpr std::size_t kHeaderCrc = 88;
   bytes[kArchitecture] ^= 1;
   gnc::Crc32 crc;
   crc.add(bytes.data(), kHeaderCrc);

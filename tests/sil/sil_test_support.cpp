@@ -108,14 +108,14 @@ const FlashLidar& lidar() {
 std::vector<Sequence> sequences(int count, std::uint64_t seed) {
   std::vector<Sequence> result;
   for (int i = 0; i < count; ++i) {
-    result.push_back(make_sequence(Condition::kNominal, seed, static_cast<std::uint64_t>(i)));
+    result.push_back(make_sequence({Condition::kNominal}, seed, static_cast<std::uint64_t>(i)));
   }
   return result;
 }
 
 const std::vector<gnc::RangeImage>& frames() {
   static const std::vector<gnc::RangeImage> instance = [] {
-    const Sequence sequence = make_sequence(Condition::kNominal, 5, 0);
+    const Sequence sequence = make_sequence({Condition::kNominal}, 5, 0);
     std::vector<gnc::RangeImage> images(sequence.frames.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
       lidar().expose(sequence.frames[i], sensor_settings(sequence.condition), kSwath_m, i, images[i]);

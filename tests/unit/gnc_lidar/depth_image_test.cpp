@@ -1,4 +1,4 @@
-// Requirement: the depth image is the frame's returns on the plane across the boresight, averaged cell by
+// Requirement: the depth image is the frame's returns on the plane across the view's axis, averaged cell by
 // cell, in a scale that the network knows; frames that cannot be used are refused with the reason.
 #include "gnc/lidar/depth_image.hpp"
 
@@ -66,13 +66,17 @@ TEST_F(DepthImageTest, ATiltedPlaneBecomesARampInTheCentroidRelativeScale) {
 }
 
 TEST_F(DepthImageTest, RowZeroIsUpAndColumnZeroIsLeft) {
-  for (int row = 0; row < 20; ++row) {
-    for (int column = 100; column < 128; ++column) s->set(row, column, kRange_m + 0.1 * ((row + column) % 2));
+  // A wall without its lower left quarter, whose centroid therefore lies up and to the right.
+  for (int row = 0; row < 128; ++row) {
+    for (int column = row < 64 ? 0 : 64; column < 128; ++column) {
+      s->set(row, column, kRange_m + 0.1 * ((row + column) % 2));
+    }
   }
-  ASSERT_EQ(s->make(), FrameStatus::kOk);
-  EXPECT_GT(s->at(5, 90), 0.0F);
-  EXPECT_EQ(s->at(90, 90), 0.0F);
-  EXPECT_EQ(s->at(5, 5), 0.0F);
+  ASSERT_EQ(s->make({10.0F, 3.0F, DepthEncoding::kCentroidRelative}), FrameStatus::kOk);
+  EXPECT_GT(s->at(30, 25), 0.0F);
+  EXPECT_GT(s->at(30, 70), 0.0F);
+  EXPECT_GT(s->at(75, 70), 0.0F);
+  EXPECT_EQ(s->at(75, 25), 0.0F);
 }
 
 TEST_F(DepthImageTest, ReturnsInOneCellAreAveraged) {
@@ -113,6 +117,16 @@ TEST_F(DepthImageTest, ThePapersScaleDividesByTheLargestDepth) {
 TEST_F(DepthImageTest, RangesBeyondTheSensorsReachCountAsNoReturn) {
   for (int i = 0; i < 128 * 128; ++i) s->frame.ranges[i] = 64001;
   EXPECT_EQ(s->make(), FrameStatus::kEmpty);
+}
+
+TEST_F(DepthImageTest, ReturnsFromTheChaserItselfAreLeftOut) {
+  constexpr std::uint16_t kNearestUsed = 1280;                                                       // 10 m
+  for (int i = 0; i < 128 * 128; ++i) s->frame.ranges[i] = static_cast<std::uint16_t>(384 + i % 8);  // 3 m
+  EXPECT_EQ(s->make(), FrameStatus::kEmpty);
+  for (int i = 0; i < kMinReturns; ++i) s->frame.ranges[i] = kNearestUsed - 1;
+  EXPECT_EQ(s->make(), FrameStatus::kEmpty);
+  for (int i = 0; i < kMinReturns; ++i) s->frame.ranges[i] = static_cast<std::uint16_t>(kNearestUsed + i % 2);
+  EXPECT_EQ(s->make(), FrameStatus::kOk);
 }
 
 TEST_F(DepthImageTest, UnusableFramesAreRefusedWithTheReason) {

@@ -3,10 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <set>
 #include <vector>
 
+#include "tests/unit/gnc_rcnn/reference_network.hpp"
+#include "tests/unit/gnc_rcnn/reference_track.hpp"
 #include "tests/unit/gnc_rcnn/test_models.hpp"
 
 namespace tumblesight::gnc {
@@ -34,6 +40,118 @@ void expect_unit(const AttitudeEstimate& estimate) {
   EXPECT_GE(estimate.q_lrf_trf.w(), 0.0F);
   EXPECT_GE(estimate.q_lrf_trf_single_frame.w(), 0.0F);
   EXPECT_TRUE(estimate.predicted_error_rad >= 0.0F && estimate.predicted_error_rad <= 3.1415928F);
+}
+
+double angle_between(const Eigen::Quaternionf& q, const Eigen::Matrix3d& r) {
+  return q.cast<double>().angularDistance(Eigen::Quaterniond(r));
+}
+
+double largest_difference(const float* flight, const std::vector<double>& reference) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    largest = std::max(largest, std::fabs(flight[i] - reference[i]));
+  }
+  return largest;
+}
+
+// Blobs that change slowly and are seen under changing views.
+DepthImage image_of_sequence(unsigned frame) {
+  DepthImage image = random_depth_image(70);
+  const DepthImage other = random_depth_image(71);
+  const float share = 0.04F * static_cast<float>(frame);
+  for (int i = 0; i < DepthImage::kCells; ++i) image.value[i] += share * (other.value[i] - image.value[i]);
+  const float angle = 0.02F * static_cast<float>(frame % 5);
+  image.r_lrf_view = Eigen::AngleAxisf(angle, Eigen::Vector3f(0.6F, 0.0F, 0.8F)).toRotationMatrix();
+  return image;
+}
+
+TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
+  for (const unsigned seed : {62U, 66U, 68U}) {
+    auto weights = std::make_unique<NetworkWeights>();
+    fill_random(*weights, seed);
+    ReferenceNetwork network(*weights);
+    ReferenceTrack track(test_header().inertia.tensor_trf.cast<double>());
+    const auto estimator = loaded(seed);
+    for (unsigned frame = 0; frame < 14; ++frame) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", frame " << frame);
+      const DepthImage image = image_of_sequence(frame);
+      const ReferenceNetwork::Frame seen = network.infer_frame(image);
+      track.see(seen.output, image.r_lrf_view.cast<double>());
+      track.advance(network.infer_sequence(track.lstm_input(seen.dense2)));
+
+      AttitudeEstimate estimate;
+      AttitudeEstimator::State state;
+      estimator->step(image, estimate);
+      estimator->save(state);
+      EXPECT_LT(largest_difference(state.lstm.h.data(), network.h), 5e-4);
+      EXPECT_LT(largest_difference(state.lstm.c.data(), network.c), 5e-4);
+      for (int law = 0; law < kLaws; ++law) {
+        const Motion& motion = state.track.motion[law];
+        EXPECT_LT((motion.r_lrf_trf.cast<double>() - track.motion[law].attitude).norm(), 5e-4) << law;
+        EXPECT_LT((motion.rate_lrf.cast<double>() - track.motion[law].rate).norm(), 5e-4) << law;
+      }
+      EXPECT_NEAR(state.track.tumble_evidence, track.tumble_evidence, 0.02);
+      EXPECT_LT(angle_between(estimate.q_lrf_trf, track.motion[track.law()].attitude), 5e-4);
+      EXPECT_LT(angle_between(estimate.q_lrf_trf_single_frame, track.single_frame()), 5e-5);
+      EXPECT_NEAR(estimate.predicted_error_rad, track.error_rad, 5e-4);
+      EXPECT_NEAR(estimate.predicted_error_single_frame_rad, track.single_frame_error_rad(), 5e-5);
+      EXPECT_EQ(estimate.frames_since_reset, frame + 1);
+    }
+    // The sequences have something to say about the track.
+    EXPECT_GT(track.merged, 5);
+    EXPECT_GT(track.turned, 5);
+  }
+}
+
+TEST(AttitudeEstimator, CrcOfTheStateTellsEveryMemberApart) {
+  const auto estimator = loaded(37);
+  AttitudeEstimate estimate;
+  for (unsigned k = 0; k < 3; ++k) estimator->step(random_depth_image(k), estimate);
+  AttitudeEstimator::State state;
+  estimator->save(state);
+  std::vector<std::function<void(AttitudeEstimator::State&)>> changes{
+      [](auto& s) { ++s.track.frames; },
+      [](auto& s) { s.track.tumble_evidence = std::nextafter(s.track.tumble_evidence, 9.0F); }};
+  const auto add = [&changes](auto member, int count) {
+    for (int i = 0; i < count; ++i) {
+      changes.emplace_back([member, i](auto& s) { member(s)[i] = std::nextafter(member(s)[i], 9.0F); });
+    }
+  };
+  add([](auto& s) { return s.lstm.h.data(); }, shape::kLstm);
+  add([](auto& s) { return s.lstm.c.data(); }, shape::kLstm);
+  for (int law = 0; law < kLaws; ++law) {
+    add([law](auto& s) { return s.track.motion[law].r_lrf_trf.data(); }, 9);
+    add([law](auto& s) { return s.track.motion[law].rate_lrf.data(); }, 3);
+  }
+  std::set<std::uint32_t> crcs{estimator->state_crc32()};
+  for (const auto& change : changes) {
+    AttitudeEstimator::State changed = state;
+    change(changed);
+    estimator->restore(changed);
+    EXPECT_TRUE(crcs.insert(estimator->state_crc32()).second);
+  }
+}
+
+TEST(AttitudeEstimator, ExpectsNothingOfAnAttitudeThatIsNotFinite) {
+  auto weights = std::make_unique<NetworkWeights>();
+  fill_random(*weights, 38);
+  // The hypotheses overflow, the expected errors say that all is well.
+  weights->cnn_out.bias.fill(3e38F);
+  weights->cnn_out.weight.fill(3e38F);
+  weights->cnn_out.bias[shape::kOutput - 1] = -1e38F;
+  weights->head2.bias[shape::kHeadOutput - 1] = -30.0F;
+  std::vector<std::uint8_t> image(kModelImageSize);
+  ASSERT_EQ(write_model_image(test_header(), *weights, image.data(), image.size()), image.size());
+  auto estimator = std::make_unique<AttitudeEstimator>();
+  ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+  AttitudeEstimate estimate;
+  for (unsigned k = 0; k < 3; ++k) {
+    estimator->step(random_depth_image(k), estimate);
+    expect_unit(estimate);
+    EXPECT_EQ(estimate.q_lrf_trf.w(), 1.0F);
+    EXPECT_FLOAT_EQ(estimate.predicted_error_rad, 3.14159265F);
+    EXPECT_FLOAT_EQ(estimate.predicted_error_single_frame_rad, 3.14159265F);
+  }
 }
 
 TEST(AttitudeEstimator, ContinuesBitForBitAfterSaveAndRestore) {
@@ -152,21 +270,29 @@ TEST(AttitudeEstimator, GivesUnitQuaternionsForZeroAndForOverflowingWeights) {
   }
 }
 
-TEST(AttitudeEstimator, RecoversFromADamagedStateOnceItIsReset) {
+TEST(AttitudeEstimator, SurvivesADamagedStateAndForgetsItWhenReset) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const auto estimator = loaded(36);
   AttitudeEstimate first, estimate;
   estimator->step(random_depth_image(1), first);
   AttitudeEstimator::State damaged;
-  damaged.lstm.h.fill(std::numeric_limits<float>::quiet_NaN());
+  estimator->save(damaged);
+  damaged.lstm.h.fill(kNan);
   damaged.lstm.c.fill(std::numeric_limits<float>::infinity());
-  estimator->restore(damaged);
-  for (unsigned k = 0; k < 3; ++k) {
+  for (const float value : {kNan, std::numeric_limits<float>::infinity(), 1e30F, 0.0F}) {
+    for (Motion& motion : damaged.track.motion) {
+      motion.r_lrf_trf.setConstant(value);
+      motion.rate_lrf.setConstant(-value);
+    }
+    estimator->restore(damaged);
+    for (unsigned k = 0; k < 3; ++k) {
+      estimator->step(random_depth_image(1), estimate);
+      expect_unit(estimate);
+    }
+    estimator->reset();
     estimator->step(random_depth_image(1), estimate);
-    expect_unit(estimate);
+    expect_same(estimate, first);
   }
-  estimator->reset();
-  estimator->step(random_depth_image(1), estimate);
-  expect_same(estimate, first);
 }
 
 }  // namespace

@@ -40,13 +40,13 @@ void put_f32(Bytes& image, std::size_t at, float value) {
 // Makes the header's CRC right again after a change, so that the check behind it is the one that speaks.
 void seal_header(Bytes& image) {
   Crc32 crc;
-  crc.add(image.data(), 64);
-  crc.add(image.data() + 68, 16 * get_u32(image, 60));
-  put_u32(image, 64, crc.value());
+  crc.add(image.data(), 88);
+  crc.add(image.data() + 92, 16 * get_u32(image, 84));
+  put_u32(image, 88, crc.value());
 }
 
 void seal_section(Bytes& image, int index) {
-  const std::size_t entry = 68 + 16 * index;
+  const std::size_t entry = 92 + 16 * index;
   put_u32(image, entry + 12, crc32(image.data() + get_u32(image, entry + 4), get_u32(image, entry + 8)));
   seal_header(image);
 }
@@ -74,16 +74,16 @@ std::vector<Damage> damages() {
       {"HalfAHeader", ModelStatus::kTooShort, [](Bytes& b) { b.resize(40); }},
       {"HalfASectionTable", ModelStatus::kTooShort, [](Bytes& b) { b.resize(100); }},
       {"OtherMagic", ModelStatus::kBadMagic, [](Bytes& b) { b[3] = 'X'; }},
-      {"NextVersion", ModelStatus::kBadVersion, sealed([](Bytes& b) { b[4] = 2; })},
-      {"OtherHeaderSize", ModelStatus::kBadSize, sealed([](Bytes& b) { b[6] = 72; })},
-      {"NoSections", ModelStatus::kBadSize, sealed([](Bytes& b) { put_u32(b, 60, 0); })},
-      {"AbsurdSectionCount", ModelStatus::kBadSize, [](Bytes& b) { put_u32(b, 60, 0xFFFFFFFFU); }},
+      {"NextVersion", ModelStatus::kBadVersion, sealed([](Bytes& b) { b[4] = 3; })},
+      {"OtherHeaderSize", ModelStatus::kBadSize, sealed([](Bytes& b) { b[6] = 96; })},
+      {"NoSections", ModelStatus::kBadSize, sealed([](Bytes& b) { put_u32(b, 84, 0); })},
+      {"AbsurdSectionCount", ModelStatus::kBadSize, [](Bytes& b) { put_u32(b, 84, 0xFFFFFFFFU); }},
       {"LastByteMissing", ModelStatus::kBadSize, [](Bytes& b) { b.pop_back(); }},
       {"OneByteMore", ModelStatus::kBadSize, [](Bytes& b) { b.push_back(0); }},
       {"OtherTotalSize", ModelStatus::kBadSize, sealed([](Bytes& b) { b[8] ^= 4; })},
       {"BitFlipInTarget", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[17] ^= 1; }},
       {"BitFlipInSectionTable", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[200] ^= 0x80; }},
-      {"BitFlipInHeaderCrc", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[64] ^= 1; }},
+      {"BitFlipInHeaderCrc", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[88] ^= 1; }},
       {"OtherArchitecture", ModelStatus::kBadArchitecture, sealed([](Bytes& b) { b[12] ^= 1; })},
       {"OtherTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[16] = 'b'; })},
       {"LongerTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[26] = 's'; })},
@@ -98,17 +98,21 @@ std::vector<Damage> damages() {
       {"NegativeRadius", ModelStatus::kBadValue, sealed([](Bytes& b) { put_f32(b, 52, -3.0F); })},
       {"InfiniteRadius", ModelStatus::kBadValue, sealed([](Bytes& b) { put_f32(b, 52, kInfinity); })},
       {"UnknownEncoding", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 56, 2); })},
-      {"SectionMissing", ModelStatus::kBadSection, sealed([](Bytes& b) { put_u32(b, 60, 20); })},
-      {"OtherSectionId", ModelStatus::kBadSection, sealed([](Bytes& b) { put_u32(b, 68, 2); })},
+      {"NanInertia", ModelStatus::kBadValue, sealed([](Bytes& b) { put_f32(b, 64, kNan); })},
+      {"InfiniteProductOfInertia", ModelStatus::kBadValue,
+       sealed([](Bytes& b) { put_f32(b, 80, kInfinity); })},
+      {"IndefiniteInertia", ModelStatus::kBadValue, sealed([](Bytes& b) { put_f32(b, 72, 50.0F); })},
+      {"SectionMissing", ModelStatus::kBadSection, sealed([](Bytes& b) { put_u32(b, 84, 20); })},
+      {"OtherSectionId", ModelStatus::kBadSection, sealed([](Bytes& b) { put_u32(b, 92, 2); })},
       {"SectionOffsetOutside", ModelStatus::kBadSection,
-       sealed([](Bytes& b) { put_u32(b, 72, 0xFFFFFFF0U); })},
+       sealed([](Bytes& b) { put_u32(b, 96, 0xFFFFFFF0U); })},
       {"OtherSectionSize", ModelStatus::kBadSection,
-       sealed([](Bytes& b) { put_u32(b, 68 + 16 * 20 + 8, 1U << 31); })},
-      {"BitFlipInFirstWeight", ModelStatus::kBadSectionCrc, [](Bytes& b) { b[404] ^= 1; }},
+       sealed([](Bytes& b) { put_u32(b, 92 + 16 * 20 + 8, 1U << 31); })},
+      {"BitFlipInFirstWeight", ModelStatus::kBadSectionCrc, [](Bytes& b) { b[428] ^= 1; }},
       {"BitFlipInLastWeight", ModelStatus::kBadSectionCrc, [](Bytes& b) { b.back() ^= 0x80; }},
       {"NanInFirstSection", ModelStatus::kBadValue,
        [](Bytes& b) {
-         put_f32(b, 404, kNan);
+         put_f32(b, 428, kNan);
          seal_section(b, 0);
        }},
       {"InfinityInLastSection", ModelStatus::kBadValue,
@@ -162,22 +166,27 @@ TEST(ModelImage, ReadsBackWhatWasWrittenBitForBit) {
   EXPECT_EQ(found.projection.swath_m, header.projection.swath_m);
   EXPECT_EQ(found.projection.target_radius_m, header.projection.target_radius_m);
   EXPECT_EQ(found.projection.encoding, header.projection.encoding);
+  EXPECT_EQ(found.inertia.tensor_trf, header.inertia.tensor_trf);
+  EXPECT_EQ(found.inertia.inverse_trf, header.inertia.inverse_trf);
+  EXPECT_NE(found.inertia.tensor_trf, Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
   EXPECT_NE(found.crc32, 0U);
 }
 
 TEST(ModelImage, StandsInMemoryAsDocumented) {
   const Bytes& image = good_image();
   EXPECT_EQ(std::string(image.begin(), image.begin() + 4), "TSRM");
-  EXPECT_EQ(image[4] + 256 * image[5], 1);
-  EXPECT_EQ(image[6] + 256 * image[7], 68);
+  EXPECT_EQ(image[4] + 256 * image[5], 2);
+  EXPECT_EQ(image[6] + 256 * image[7], 92);
   EXPECT_EQ(get_u32(image, 8), image.size());
   EXPECT_EQ(get_u32(image, 12), architecture_hash());
   EXPECT_STREQ(reinterpret_cast<const char*>(image.data() + 16), "test_craft");
-  EXPECT_EQ(get_u32(image, 48), 0x40F00000U);  // 7.5
-  EXPECT_EQ(get_u32(image, 60), 21U);
-  EXPECT_EQ(get_u32(image, 68), 1U);
-  EXPECT_EQ(get_u32(image, 72), 404U);
-  EXPECT_EQ(get_u32(image, 76), 9U * 4 * 32 * 4);
+  EXPECT_EQ(get_u32(image, 48), 0x40F00000U);                     // 7.5
+  const float inertia[] = {3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F};  // xx, yy, zz, xy, xz, yz
+  EXPECT_EQ(std::memcmp(image.data() + 60, inertia, sizeof inertia), 0);
+  EXPECT_EQ(get_u32(image, 84), 21U);
+  EXPECT_EQ(get_u32(image, 92), 1U);
+  EXPECT_EQ(get_u32(image, 96), 428U);
+  EXPECT_EQ(get_u32(image, 100), 9U * 4 * 32 * 4);
 }
 
 TEST(ModelImage, IsAcceptedForAnyTargetWhenNoneIsExpected) {

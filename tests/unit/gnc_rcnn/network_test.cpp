@@ -31,24 +31,37 @@ double largest_magnitude(const std::vector<double>& values) {
   return largest;
 }
 
-TEST(Network, FollowsTheDoubleReferenceOverASequence) {
+TEST(Network, FollowsTheDoubleReferenceInEveryFrame) {
   auto network = std::make_unique<Network>();
   fill_random(network->weights(), 11);
-  ReferenceNetwork reference(network->weights());
-  LstmState state;
-  OutputVector single_frame, rcnn;
-  for (unsigned frame = 0; frame < 6; ++frame) {
+  const ReferenceNetwork reference(network->weights());
+  OutputVector output;
+  for (unsigned frame = 0; frame < 3; ++frame) {
     SCOPED_TRACE(frame);
     const DepthImage image = random_depth_image(100 + frame);
-    network->infer(image, state, single_frame, rcnn);
-    const ReferenceNetwork::Result expected = reference.infer(image);
-    EXPECT_GT(largest_magnitude(expected.single_frame), 0.1);  // the weights let something through
-    EXPECT_LT(largest_difference(network->dense2_output(), expected.dense2), 2e-5);
-    EXPECT_LT(largest_difference(network->lstm_input(), expected.lstm_input), 2e-4);
-    EXPECT_LT(largest_difference(single_frame, expected.single_frame), 2e-5);
+    network->infer_frame(image, output);
+    const ReferenceNetwork::Frame expected = reference.infer_frame(image);
+    EXPECT_GT(largest_magnitude(expected.output), 0.1);  // the weights let something through
+    EXPECT_LT(largest_difference(network->features(), expected.dense2), 2e-5);
+    EXPECT_LT(largest_difference(output, expected.output), 2e-5);
+  }
+}
+
+TEST(Network, FollowsTheDoubleReferenceOverASequence) {
+  auto network = std::make_unique<Network>();
+  fill_random(network->weights(), 13);
+  ReferenceNetwork reference(network->weights());
+  LstmState state;
+  layers::Head2::Output head;
+  for (unsigned frame = 0; frame < 20; ++frame) {
+    SCOPED_TRACE(frame);
+    const layers::Recurrent::Input input = random_lstm_input(frame);
+    network->infer_sequence(input, state, head);
+    const std::vector<double> expected = reference.infer_sequence({input.begin(), input.end()});
+    EXPECT_GT(largest_magnitude(expected), 0.1);
     EXPECT_LT(largest_difference(state.h, reference.h), 1e-4);
     EXPECT_LT(largest_difference(state.c, reference.c), 2e-4);
-    EXPECT_LT(largest_difference(rcnn, expected.rcnn), 5e-4);
+    EXPECT_LT(largest_difference(head, expected), 5e-4);
   }
 }
 
@@ -56,13 +69,19 @@ TEST(Network, GivesTheSameBitsWhateverCameBefore) {
   auto network = std::make_unique<Network>();
   fill_random(network->weights(), 12);
   LstmState fresh, used, again;
-  OutputVector first_single, first_rcnn, single, rcnn;
+  OutputVector first_output, output;
+  layers::Head2::Output first_head, head;
   const DepthImage image = random_depth_image(1);
-  network->infer(image, fresh, first_single, first_rcnn);
-  for (unsigned k = 0; k < 3; ++k) network->infer(random_depth_image(50 + k), used, single, rcnn);
-  network->infer(image, again, single, rcnn);
-  EXPECT_EQ(single, first_single);
-  EXPECT_EQ(rcnn, first_rcnn);
+  network->infer_frame(image, first_output);
+  network->infer_sequence(random_lstm_input(1), fresh, first_head);
+  for (unsigned k = 0; k < 3; ++k) {
+    network->infer_frame(random_depth_image(50 + k), output);
+    network->infer_sequence(random_lstm_input(50 + k), used, head);
+  }
+  network->infer_frame(image, output);
+  network->infer_sequence(random_lstm_input(1), again, head);
+  EXPECT_EQ(output, first_output);
+  EXPECT_EQ(head, first_head);
   EXPECT_EQ(again.h, fresh.h);
   EXPECT_EQ(again.c, fresh.c);
 }

@@ -39,22 +39,6 @@ double mean(double a, double b, double c, double d) {
   return (a + b + c + d) / 4.0;
 }
 
-void append_columns(const Numbers& output, Numbers& to) {
-  for (int k = 0; k < 8; ++k) {
-    const double* a = output.data() + 6 * k;
-    const double* b = a + 3;
-    double x1[3], across[3];
-    const double length_a = std::sqrt(std::max(a[0] * a[0] + a[1] * a[1] + a[2] * a[2], 1e-12));
-    for (int i = 0; i < 3; ++i) x1[i] = a[i] / length_a;
-    const double along = x1[0] * b[0] + x1[1] * b[1] + x1[2] * b[2];
-    for (int i = 0; i < 3; ++i) across[i] = b[i] - along * x1[i];
-    const double length_b =
-        std::sqrt(std::max(across[0] * across[0] + across[1] * across[1] + across[2] * across[2], 1e-12));
-    for (int i = 0; i < 3; ++i) to.push_back(x1[i]);
-    for (int i = 0; i < 3; ++i) to.push_back(across[i] / length_b);
-  }
-}
-
 }  // namespace
 
 ReferenceNetwork::ReferenceNetwork(const NetworkWeights& weights) : h(192, 0.0), c(192, 0.0) {
@@ -98,7 +82,7 @@ Numbers ReferenceNetwork::dense(const std::string& name, const Numbers& in) cons
   return sum;
 }
 
-ReferenceNetwork::Result ReferenceNetwork::infer(const DepthImage& image) {
+ReferenceNetwork::Frame ReferenceNetwork::infer_frame(const DepthImage& image) const {
   Numbers map(50 * 50 * 4);
   for (int row = 0; row < 100; ++row) {
     for (int column = 0; column < 100; ++column) {
@@ -115,26 +99,23 @@ ReferenceNetwork::Result ReferenceNetwork::infer(const DepthImage& image) {
   relu(map);
   map = pool(map, side, mean);
 
-  Result result;
+  Frame frame;
   Numbers dense1 = dense("dense1", map);
   relu(dense1);
-  result.dense2 = dense("dense2", dense1);
-  relu(result.dense2);
-  result.single_frame = dense("cnn_out", result.dense2);
+  frame.dense2 = dense("dense2", dense1);
+  relu(frame.dense2);
+  frame.output = dense("cnn_out", frame.dense2);
+  return frame;
+}
 
-  result.lstm_input = result.dense2;
-  append_columns(result.single_frame, result.lstm_input);
-  double sum = 0.0;
-  for (int k = 0; k < 8; ++k) sum += std::exp(result.single_frame[48 + k]);
-  for (int k = 0; k < 8; ++k) result.lstm_input.push_back(std::exp(result.single_frame[48 + k]) / sum);
-
+Numbers ReferenceNetwork::infer_sequence(const Numbers& lstm_input) {
   Numbers gates = tensors_.at("lstm.bias");
   const auto add_product = [&gates](const Numbers& in, const Numbers& weight) {
     for (std::size_t i = 0; i < in.size(); ++i) {
       for (std::size_t g = 0; g < gates.size(); ++g) gates[g] += in[i] * weight.at(i * gates.size() + g);
     }
   };
-  add_product(result.lstm_input, tensors_.at("lstm.input"));
+  add_product(lstm_input, tensors_.at("lstm.input"));
   add_product(h, tensors_.at("lstm.recurrent"));
   for (int i = 0; i < 192; ++i) {
     c[i] = exact_sigmoid(gates[192 + i]) * c[i] + exact_sigmoid(gates[i]) * std::tanh(gates[384 + i]);
@@ -142,12 +123,10 @@ ReferenceNetwork::Result ReferenceNetwork::infer(const DepthImage& image) {
   }
 
   Numbers head = h;
-  head.insert(head.end(), result.lstm_input.begin(), result.lstm_input.end());
+  head.insert(head.end(), lstm_input.begin(), lstm_input.end());
   Numbers z = dense("head1", head);
   relu(z);
-  result.rcnn = dense("head2", z);
-  for (int i = 0; i < 57; ++i) result.rcnn[i] += i < 48 ? result.lstm_input[128 + i] : result.single_frame[i];
-  return result;
+  return dense("head2", z);
 }
 
 }  // namespace tumblesight::gnc

@@ -1,5 +1,5 @@
-// The RCNN once more, in double precision and as plainly as possible, from the tensors by name: what the
-// flight network must come out as.
+// The RCNN's layers once more, in double precision and as plainly as possible, from the tensors by name: what
+// the flight network must come out as.
 #pragma once
 
 #include <map>
@@ -15,10 +15,11 @@ class ReferenceNetwork {
   using Numbers = std::vector<double>;
   explicit ReferenceNetwork(const NetworkWeights& weights);
 
-  struct Result {
-    Numbers dense2, lstm_input, single_frame, rcnn;
+  struct Frame {
+    Numbers dense2, output;
   };
-  Result infer(const DepthImage& image);  // advances h and c
+  Frame infer_frame(const DepthImage& image) const;
+  Numbers infer_sequence(const Numbers& lstm_input);  // the head's output; advances h and c
 
   Numbers h, c;
 

@@ -33,6 +33,9 @@ ModelHeader test_header() {
   if (!set_target(header, "test_craft")) std::abort();
   header.projection.swath_m = 7.5F;
   header.projection.target_radius_m = 3.25F;
+  Eigen::Matrix3f tensor_trf;
+  tensor_trf << 3.0F, 0.4F, -0.2F, 0.4F, 5.0F, 0.1F, -0.2F, 0.1F, 6.0F;
+  if (!make_inertia(tensor_trf, header.inertia)) std::abort();
   return header;
 }
 
@@ -55,6 +58,14 @@ DepthImage random_depth_image(unsigned seed) {
     }
   }
   return image;
+}
+
+layers::Recurrent::Input random_lstm_input(unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
+  layers::Recurrent::Input input;
+  for (float& value : input) value = uniform(engine);
+  return input;
 }
 
 RangeImage random_frame(unsigned seed) {

@@ -16,8 +16,9 @@ void fill_random(NetworkWeights& weights, unsigned seed);
 ModelHeader test_header();
 std::vector<std::uint8_t> random_model_image(unsigned seed);
 
-// A blob of random depths in the middle, nothing around it.
+// A blob of random depths in the middle, nothing around it; seen in the LRF.
 DepthImage random_depth_image(unsigned seed);
+layers::Recurrent::Input random_lstm_input(unsigned seed);
 // A frame that make_depth_image() accepts for test_header()'s projection.
 RangeImage random_frame(unsigned seed);
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/sim_cli/run_tumblesight.hpp"
@@ -42,7 +43,21 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --sequences", 2, "--sequences"},
         Refusal{"evaluate --frames 1001", 2, "from 1 to 1000"}, Refusal{"evaluate --seed -1", 2, "not '-1'"},
         Refusal{"evaluate --threads 9999", 2, "from 0 to 1024"},
-        Refusal{"evaluate --condition foggy", 2, "must be one of nominal, degraded, not 'foggy'"},
+        Refusal{
+            "evaluate --condition foggy", 2,
+            "must be one of nominal, degraded, occluded, tumbling, stress, offset, outliers, not 'foggy'"},
+        Refusal{"evaluate --condition nominal,nominal", 2, "'nominal' is given twice"},
+        Refusal{"evaluate --inertia 1,2,3", 2, "--inertia"},
+        Refusal{"evaluate --inertia 1,1,3,0,0,0", 1, "--inertia 1,1,3,0,0,0: no body has it"},
+        Refusal{"evaluate --inertia 1,1,nan,0,0,0", 1, "no body has it"},
+        Refusal{"evaluate --paper --target magellan", 2, "--paper: decides on --target itself"},
+        Refusal{"evaluate --paper --frames 5", 2, "decides on --frames itself"},
+        Refusal{"evaluate --mesh-folder meshes", 2, "requires --paper"},
+        Refusal{"evaluate --out folder", 2, "requires --paper"},
+        Refusal{"evaluate --paper --mesh-folder /no/such", 1, "--mesh-folder '/no/such' is not a folder"},
+        Refusal{"evaluate --no-baseline --baseline-sequences 5", 2, "excludes"},
+        Refusal{"evaluate --csv same --json same", 2, "'same' is the file of --json as well"},
+        Refusal{"evaluate --report /proc/none/x.html", 1, "--report /proc/none/x.html"},
         Refusal{"evaluate --target 'a b'", 2, "must be 1 to 31 of a-z"},
         Refusal{"evaluate --mesh x.stl --mesh-scale 0", 2, "from 1e-06 to 1e+06"},
         Refusal{"evaluate --mesh x.stl --mesh-up x", 2, "must be one of y, z, not 'x'"},
@@ -57,15 +72,16 @@ TEST(Help, TeachesWithAnExample) {
   const Workplace here;
   const Outcome outcome = here.run("evaluate --help");
   EXPECT_EQ(outcome.exit_code, 0);
-  for (const char* part :
-       {"--target", "--mesh", "--condition", "--sequences", "--seed", "--json", "Example:"}) {
+  for (const char* part : {"--target", "--mesh", "--condition", "--sequences", "--seed", "--json", "--report",
+                           "--paper", "Example:"}) {
     EXPECT_NE(outcome.output.find(part), std::string::npos) << part;
   }
 }
 
 TEST(Evaluate, GivesTheSameFiguresWithOneAndTwoThreads) {
   const Workplace here;
-  const std::string common = "evaluate --sequences 3 --frames 2 --seed 9 --model " + here.model();
+  const std::string common =
+      "evaluate --sequences 3 --frames 2 --seed 9 --no-baseline --model " + here.model();
   ASSERT_EQ(here.run(common + " --threads 1 --json " + here.path("one.json")).exit_code, 0);
   ASSERT_EQ(here.run(common + " --threads 2 --json " + here.path("two.json")).exit_code, 0);
   const std::string one = content(here.path("one.json"));
@@ -73,22 +89,55 @@ TEST(Evaluate, GivesTheSameFiguresWithOneAndTwoThreads) {
   EXPECT_EQ(one, content(here.path("two.json")));
 }
 
-TEST(Evaluate, WritesARowWithBothEstimators) {
+TEST(Evaluate, WritesARowWithAllEstimatorsForEachCondition) {
   const Workplace here;
-  const Outcome outcome = here.run("evaluate --sequences 2 --frames 2 --condition degraded --model " +
-                                   here.model() + " --json " + here.path("rows.json"));
+  const Outcome outcome = here.run(
+      "evaluate --sequences 2 --frames 2 --baseline-sequences 1 --condition degraded,offset --model " +
+      here.model() + " --json " + here.path("rows.json"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_NE(outcome.output.find("RCNN, 2 frames"), std::string::npos) << outcome.output;
-  const auto row = nlohmann::json::parse(content(here.path("rows.json"))).at("rows").at(0);
-  EXPECT_EQ(row.at("target"), "near_shoemaker");
-  EXPECT_EQ(row.at("mesh"), "shipped");
-  EXPECT_EQ(row.at("condition"), "degraded");
-  EXPECT_EQ(row.at("sequences"), 2);
-  for (const char* estimator : {"rcnn", "cnn"}) {
+  EXPECT_NE(outcome.output.find("template matching, 1 sequences"), std::string::npos) << outcome.output;
+  const auto rows = nlohmann::json::parse(content(here.path("rows.json"))).at("rows");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].at("target"), "near_shoemaker");
+  EXPECT_EQ(rows[0].at("mesh"), "parametric");
+  EXPECT_EQ(rows[0].at("condition"), "degraded");
+  EXPECT_EQ(rows[1].at("condition"), "offset");
+  EXPECT_EQ(rows[0].at("sequences"), 2);
+  for (const char* estimator : {"rcnn", "cnn", "baseline"}) {
     for (const char* figure : {"mean_deg", "median_deg", "within_20deg", "within_5deg"}) {
-      EXPECT_TRUE(row.at(estimator).at(figure).is_number()) << estimator << " " << figure;
+      EXPECT_TRUE(rows[0].at(estimator).at(figure).is_number()) << estimator << " " << figure;
     }
   }
+}
+
+TEST(Evaluate, WritesATableAndAPageToo) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model() +
+                                   " --csv " + here.path("rows.csv") + " --report " + here.path("page.html"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(content(here.path("rows.csv")).substr(0, 12), "target,mesh,");
+  EXPECT_NE(content(here.path("page.html")).find("--sequences 2"), std::string::npos);
+}
+
+// One triangle that is no shipped target.
+std::string own_mesh(const Workplace& here) {
+  std::ofstream(here.path("mine.obj"))
+      << "v -1 -1 0\nv 1 -1 0.5\nv 0 1.5 0\nv 0 0 2\nf 1 2 3\nf 1 2 4\nf 2 3 4\n";
+  return here.path("mine.obj");
+}
+
+TEST(Evaluate, OfATumblingTargetOfOnesOwnNeedsItsInertia) {
+  const Workplace here;
+  const std::string common =
+      "evaluate --sequences 1 --frames 2 --no-baseline --target mine --condition tumbling --mesh " +
+      own_mesh(here) + " --model " + here.model("mine", 4.0F);
+  const Outcome without = here.run(common);
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_NE(without.errors.find("needs the inertia of 'mine'"), std::string::npos) << without.errors;
+  EXPECT_NE(without.errors.find("--inertia Ixx,Iyy,Izz,Ixy,Ixz,Iyz"), std::string::npos) << without.errors;
+  const Outcome with = here.run(common + " --inertia 10,12,9,0,-1,0.5");
+  EXPECT_EQ(with.exit_code, 0) << with.errors;
 }
 
 TEST(Evaluate, NamesTheFaultOfAModelImage) {
@@ -100,8 +149,8 @@ TEST(Evaluate, NamesTheFaultOfAModelImage) {
 
 TEST(Evaluate, WarnsWhenTheNetworkWasTrainedForAnotherSwath) {
   const Workplace here;
-  const Outcome outcome =
-      here.run("evaluate --sequences 1 --frames 1 --model " + here.model("near_shoemaker", 11.0F));
+  const Outcome outcome = here.run("evaluate --sequences 1 --frames 1 --no-baseline --model " +
+                                   here.model("near_shoemaker", 11.0F));
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.errors.find("trained for 11.00 m"), std::string::npos) << outcome.errors;
 }

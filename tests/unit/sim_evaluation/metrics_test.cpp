@@ -4,44 +4,28 @@
 
 #include <cmath>
 
+#include "tests/unit/sim_evaluation/made_up_results.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
-
-Eigen::Quaterniond turned(double angle_deg, const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * kRadPerDeg, axis.normalized()));
-}
-
 Eigen::Quaterniond negated(const Eigen::Quaterniond& q) {
   return {-q.w(), -q.x(), -q.y(), -q.z()};
-}
-
-FrameResult result(std::uint32_t sequence, std::uint32_t frame, double rcnn_deg, double cnn_deg,
-                   bool valid = true) {
-  FrameResult made;
-  made.sequence = sequence;
-  made.frame = frame;
-  made.valid = valid;
-  made.truth = turned(70.0, {1.0, -2.0, 0.5});
-  made.rcnn = turned(rcnn_deg, {0.3, 0.1, 1.0}) * made.truth;
-  made.cnn = turned(cnn_deg, {-1.0, 0.4, 0.2}) * made.truth;
-  return made;
 }
 
 TEST(AngularError, IsTheAngleOfTheRotationBetweenTwoAttitudes) {
   const Eigen::Quaterniond attitude = turned(123.0, {0.2, 1.0, -0.7});
   for (const double angle_deg : {0.0, 1e-7, 0.01, 5.0, 20.0, 90.0, 179.0, 180.0}) {
     const Eigen::Quaterniond other = turned(angle_deg, {1.0, 2.0, 3.0}) * attitude;
-    EXPECT_NEAR(angular_error_rad(attitude, other) / kRadPerDeg, angle_deg, 1e-11 + 1e-9 * angle_deg);
+    EXPECT_NEAR(angular_error_rad(attitude, other) / kRadPerDegree, angle_deg, 1e-11 + 1e-9 * angle_deg);
   }
 }
 
 TEST(AngularError, DoesNotDependOnTheSignOfAQuaternion) {
   const Eigen::Quaterniond a = turned(10.0, {1.0, 0.0, 0.0});
   const Eigen::Quaterniond b = turned(50.0, {1.0, 0.0, 0.0});
-  EXPECT_NEAR(angular_error_rad(a, negated(b)), 40.0 * kRadPerDeg, 1e-12);
-  EXPECT_NEAR(angular_error_rad(negated(a), b), 40.0 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(angular_error_rad(a, negated(b)), 40.0 * kRadPerDegree, 1e-12);
+  EXPECT_NEAR(angular_error_rad(negated(a), b), 40.0 * kRadPerDegree, 1e-12);
   EXPECT_NEAR(angular_error_rad(a, negated(a)), 0.0, 1e-12);
 }
 
@@ -77,8 +61,8 @@ TEST(ErrorSummary, OfNothingCountsNothing) {
 }
 
 TEST(LastFrame, LeavesOutSequencesThatEndedEarly) {
-  const std::vector<FrameResult> results{result(0, 0, 50.0, 90.0), result(0, 1, 3.0, 30.0),
-                                         result(1, 0, 60.0, 2.0)};
+  const std::vector<FrameResult> results{result_with(0, 0, 50.0, 90.0), result_with(0, 1, 3.0, 30.0),
+                                         result_with(1, 0, 60.0, 2.0)};
   const std::vector<double> rcnn = last_frame_errors_deg(results, 2, Estimator::kRcnn);
   ASSERT_EQ(rcnn.size(), 1U);
   EXPECT_NEAR(rcnn[0], 3.0, 1e-9);
@@ -86,19 +70,21 @@ TEST(LastFrame, LeavesOutSequencesThatEndedEarly) {
 }
 
 TEST(LastFrame, CountsAMissingAttitudeAsTheWorstOne) {
-  const std::vector<FrameResult> results{result(0, 0, 1.0, 1.0, false)};
+  const std::vector<FrameResult> results{FrameResult{}};
   EXPECT_DOUBLE_EQ(last_frame_errors_deg(results, 1, Estimator::kRcnn)[0], 180.0);
 }
 
-TEST(ErrorsByFrame, KeepFramesApart) {
-  const std::vector<FrameResult> results{result(0, 0, 40.0, 50.0), result(0, 1, 4.0, 60.0),
-                                         result(1, 0, 20.0, 70.0)};
-  const std::vector<FrameErrors> by_frame = errors_by_frame(results, 3);
-  ASSERT_EQ(by_frame.size(), 3U);
-  EXPECT_NEAR(by_frame[0].rcnn.mean_deg, 30.0, 1e-9);
-  EXPECT_NEAR(by_frame[0].cnn.mean_deg, 60.0, 1e-9);
-  EXPECT_NEAR(by_frame[1].rcnn.mean_deg, 4.0, 1e-9);
-  EXPECT_EQ(by_frame[2].rcnn.count, 0U);
+TEST(LastFrame, OfTheBaselineCountsOnlyWhereItWasRun) {
+  std::vector<FrameResult> results{result_with(0, 0, 3.0, 3.0), result_with(1, 0, 3.0, 3.0),
+                                   result_with(2, 0, 3.0, 3.0)};
+  results[0].has_baseline = true;
+  results[0].baseline_valid = true;
+  results[0].baseline = turned(7.0, {0.0, 1.0, 0.0}) * results[0].truth;
+  results[1].has_baseline = true;  // and found nothing
+  const std::vector<double> errors = last_frame_errors_deg(results, 1, Estimator::kBaseline);
+  ASSERT_EQ(errors.size(), 2U);
+  EXPECT_NEAR(errors[0], 7.0, 1e-9);
+  EXPECT_DOUBLE_EQ(errors[1], 180.0);
 }
 
 }  // namespace

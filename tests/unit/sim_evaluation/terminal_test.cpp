@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/evaluation/progress.hpp"
+#include "sim/evaluation/results_table.hpp"
 #include "sim/evaluation/table.hpp"
 
 namespace tumblesight::sim {
@@ -25,6 +26,28 @@ TEST(Table, AlignsColumnsOfUtf8Text) {
 TEST(Table, RefusesSurplusCells) {
   Table table({"one"});
   EXPECT_THROW(table.row({"1", "2"}), std::invalid_argument);
+}
+
+TEST(ByFrameTable, SelectsAtMostTenFramesAndEndsWithTheLast) {
+  std::vector<FrameResult> results(37);
+  for (std::uint32_t i = 0; i < results.size(); ++i) {
+    results[i].frame = i;
+    results[i].valid = true;
+  }
+  const std::string table = by_frame_table(errors_by_frame(results, 37));
+  const std::string header = table.substr(0, table.find('\n'));
+  EXPECT_NE(header.find(" 37"), std::string::npos) << header;
+  EXPECT_LE(header.size(), 100U);
+}
+
+TEST(CellTable, ShowsEveryEstimatorWithItsErrorAndThePapersFigures) {
+  const ErrorSummary rcnn = summarise({1.0, 3.0});
+  const std::string table = cell_table(rcnn, summarise({10.0, 30.0}), summarise({50.0}), 10,
+                                       paper_figures("near_shoemaker", Condition::kNominal));
+  for (const char* part : {"2.00 ± 1.00°", "12.69°", "88 %", "20.00 ± 10.00°", "40.94°", "1 sequences"}) {
+    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
+  }
+  EXPECT_EQ(table.find("50.00 ±"), std::string::npos) << "the error of a single sequence cannot be known";
 }
 
 TEST(Progress, TellsRateAndTimeLeft) {

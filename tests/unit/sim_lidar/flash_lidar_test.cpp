@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -175,6 +176,111 @@ TEST(FlashLidar, SameSeedSameFrameAndAnotherSeedAnother) {
   lidar.expose(truth(30.0), {}, 4.0, 6, *c);
   EXPECT_EQ(a->ranges, b->ranges);
   EXPECT_NE(a->ranges, c->ranges);
+}
+
+TEST(FlashLidar, AnOccluderWithoutAShapeChangesNoBit) {
+  const FlashLidar lidar(box(1.0F));
+  FrameTruth open = truth(30.0), covered = truth(30.0);
+  covered.occluder = {OccluderShape::kNone, 1.0, 0.5, 0.3, 3.0};
+  auto a = std::make_unique<gnc::RangeImage>(), b = std::make_unique<gnc::RangeImage>();
+  lidar.expose(open, {}, 4.0, 5, *a);
+  lidar.expose(covered, {}, 4.0, 5, *b);
+  EXPECT_EQ(a->ranges, b->ranges);
+  // Noise included, and a count of the returns that is the closed form's: 2 m of 4 m at 29 m, seen from 30 m.
+  const double side = 128.0 * 2.0 / 4.0 * 30.0 / 29.0;
+  const auto returns =
+      std::count_if(a->ranges.begin(), a->ranges.end(), [](std::uint16_t r) { return r != 0; });
+  EXPECT_NEAR(static_cast<double>(returns), side * side, 2.0 * side);
+}
+
+TEST(FlashLidar, AnOccluderStandsInTheFrameWithTheSensorsNoiseAndTheOtherRaysKeepTheirBits) {
+  const FlashLidar lidar(box(1.0F));
+  FrameTruth covered = truth(30.0);
+  covered.occluder = {OccluderShape::kMast, 1.0, 0.5, 0.2, 6.0};
+  auto a = std::make_unique<gnc::RangeImage>(), b = std::make_unique<gnc::RangeImage>();
+  lidar.expose(truth(30.0), {}, 4.0, 5, *a);
+  lidar.expose(covered, {}, 4.0, 5, *b);
+  int blocked = 0;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < 128 * 128; ++i) {
+    if (a->ranges[i] == b->ranges[i]) continue;
+    const double error_m = b->ranges[i] * kCount_m - 6.0;  // 6.03 m at the corner of this field of view
+    ASSERT_LT(std::abs(error_m), 5.5 * 0.16);
+    ++blocked;
+    sum += error_m;
+    squares += error_m * error_m;
+  }
+  ASSERT_GT(blocked, 500);
+  EXPECT_NEAR(sum / blocked, 0.01, 0.03);
+  EXPECT_NEAR(std::sqrt(squares / blocked), 0.16, 0.02);  // 0.1 m + 1 % of 6 m
+}
+
+TEST(FlashLidar, ATargetOffTheBoresightAppearsWhereItIs) {
+  const FlashLidar lidar(square(1.0));
+  const double swath = 6.0;
+  const auto centroid = [&](const Eigen::Vector2d& offset_swaths) {
+    FrameTruth moved = truth(30.0);
+    moved.offset_swaths = offset_swaths;
+    const RangeGrid grid = lidar.true_ranges(moved, 128, swath);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int returns = 0;
+    for (int i = 0; i < 128 * 128; ++i) {
+      if (!std::isfinite(grid.range_m[i])) continue;
+      sum += grid.range_m[i] * Eigen::Vector3d(grid.slope(i % 128), 1.0, -grid.slope(i / 128)).normalized();
+      ++returns;
+    }
+    EXPECT_GT(returns, 1000);
+    return Eigen::Vector3d(sum / returns);
+  };
+  EXPECT_LT((centroid({0.0, 0.0}) - Eigen::Vector3d(0, 30, 0)).norm(), 0.03);
+  for (const Eigen::Vector2d& offset :
+       {Eigen::Vector2d(0.2, 0.0), Eigen::Vector2d(0.0, 0.2), Eigen::Vector2d(-0.12, 0.15)}) {
+    const Eigen::Vector3d expected(offset.x() * swath, 30.0, offset.y() * swath);
+    EXPECT_LT((centroid(offset) - expected).norm(), 0.03) << offset.transpose();
+  }
+}
+
+TEST(FlashLidar, OutliersAreOnePercentOfTheReturnsBeyondFiveSigmaAndTheOthersAreAsEver) {
+  const FlashLidar lidar(square(20.0));
+  auto frame = std::make_unique<gnc::RangeImage>();
+  auto exact = std::make_unique<gnc::RangeImage>();
+  SensorSettings settings = sensor_settings(Condition::kOutliers);
+  EXPECT_EQ(settings.rays, 128);
+  EXPECT_EQ(settings.dropout_share, 0.0);
+  for (const double range_m : {40.0, 100.0}) {
+    SensorSettings quiet;
+    quiet.noise = false;
+    lidar.expose(truth(range_m), quiet, 3.0, 1, *exact);
+    const double sigma_m = 0.1 + 0.01 * range_m;
+    int outliers = 0, nearer = 0, others = 0;
+    double sum = 0, squares = 0, fourth = 0, largest_m = 0;
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      lidar.expose(truth(range_m), settings, 3.0, seed, *frame);
+      for (int i = 0; i < 128 * 128; ++i) {
+        ASSERT_NE(frame->ranges[i], 0);
+        const double error_m = (frame->ranges[i] - exact->ranges[i]) * kCount_m;
+        const double z = error_m / sigma_m;
+        if (std::abs(z) > 4.99) {
+          ++outliers;
+          nearer += error_m < 0.0 ? 1 : 0;
+          largest_m = std::max(largest_m, std::abs(error_m));
+          continue;
+        }
+        ++others;
+        sum += z;
+        squares += z * z;
+        fourth += z * z * z * z;
+      }
+    }
+    // Bounds at four standard deviations of the counts and moments of 131,072 rays.
+    EXPECT_NEAR(outliers / (8.0 * 128 * 128), 0.01, 0.0011) << range_m;
+    EXPECT_NEAR(nearer / double(outliers), 0.5, 0.06) << range_m;
+    EXPECT_LE(largest_m, 20.0 + kCount_m);
+    EXPECT_GT(largest_m, 19.5);
+    EXPECT_NEAR(sum / others, 0.0, 0.012);
+    EXPECT_NEAR(squares / others, 1.0, 0.017);
+    EXPECT_NEAR(fourth / others, 3.0, 0.12);
+  }
 }
 
 TEST(FlashLidar, TheFieldOfViewHoldsTheWholeTargetAndStaysWithinTheSensorsLimits) {

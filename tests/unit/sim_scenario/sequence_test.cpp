@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
+#include <vector>
 
-#include "sim/dynamics/spin.hpp"
+#include "tests/unit/sim_scenario/uniformity.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -21,7 +21,7 @@ TEST(Sequence, AttitudesAreUniformOnSo3) {
   Eigen::Vector3d axis_sum = Eigen::Vector3d::Zero();
   Eigen::Vector3d axis_squared = Eigen::Vector3d::Zero();
   for (int i = 0; i < kMany; ++i) {
-    const Eigen::Quaterniond q = make_sequence(Condition::kNominal, 7, i, 1).frames[0].q_lrf_trf;
+    const Eigen::Quaterniond q = make_sequence({Condition::kNominal, 1}, 7, i).frames[0].q_lrf_trf;
     ASSERT_NEAR(q.norm(), 1.0, 1e-12);
     angle += 2.0 * std::acos(std::min(1.0, std::abs(q.w())));
     const Eigen::Vector3d z = q * Eigen::Vector3d::UnitZ();
@@ -36,7 +36,7 @@ TEST(Sequence, AttitudesAreUniformOnSo3) {
 TEST(Sequence, RangesAndRatesStayWithinThePapersLimitsAndFillThem) {
   double least_m = 1e9, most_m = 0.0, fastest = 0.0;
   for (int i = 0; i < kMany; ++i) {
-    const FrameTruth truth = make_sequence(Condition::kNominal, 8, i, 1).frames[0];
+    const FrameTruth truth = make_sequence({Condition::kNominal, 1}, 8, i).frames[0];
     least_m = std::min(least_m, truth.range_m);
     most_m = std::max(most_m, truth.range_m);
     fastest = std::max(fastest, truth.rate_lrf_rad_s.norm() / kDegree);
@@ -50,7 +50,7 @@ TEST(Sequence, RangesAndRatesStayWithinThePapersLimitsAndFillThem) {
 }
 
 TEST(Sequence, TurnsAtAConstantRateInTheLidarFrame) {
-  const Sequence sequence = make_sequence(Condition::kNominal, 9, 3);
+  const Sequence sequence = make_sequence({Condition::kNominal}, 9, 3);
   ASSERT_EQ(sequence.frames.size(), 10U);
   const double rate = sequence.frames[0].rate_lrf_rad_s.norm();
   const Eigen::Vector3d axis = sequence.frames[0].rate_lrf_rad_s / rate;
@@ -62,26 +62,19 @@ TEST(Sequence, TurnsAtAConstantRateInTheLidarFrame) {
   }
 }
 
-TEST(Spin, NinetyDegreesAboutZTakesXToY) {
-  const Eigen::Quaterniond q =
-      spin(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.0, 0.0, 30.0 * kDegree), 3.0);
-  EXPECT_LT((q * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
-  EXPECT_EQ(spin(q, Eigen::Vector3d::Zero(), 100.0).coeffs(), q.coeffs());
-}
-
 TEST(Sequence, SameSeedSameSequenceAndAnotherSeedAnother) {
-  const Sequence a = make_sequence(Condition::kDegraded, 1, 2);
-  const Sequence b = make_sequence(Condition::kDegraded, 1, 2);
+  const Sequence a = make_sequence({Condition::kDegraded}, 1, 2);
+  const Sequence b = make_sequence({Condition::kDegraded}, 1, 2);
   EXPECT_EQ(a.noise_seed, b.noise_seed);
   EXPECT_EQ(a.frames[9].q_lrf_trf.coeffs(), b.frames[9].q_lrf_trf.coeffs());
-  EXPECT_NE(a.noise_seed, make_sequence(Condition::kDegraded, 2, 2).noise_seed);
-  EXPECT_NE(a.noise_seed, make_sequence(Condition::kDegraded, 1, 3).noise_seed);
+  EXPECT_NE(a.noise_seed, make_sequence({Condition::kDegraded}, 2, 2).noise_seed);
+  EXPECT_NE(a.noise_seed, make_sequence({Condition::kDegraded}, 1, 3).noise_seed);
 }
 
 TEST(Sequence, IsTheSameWithEveryCompiler) {
   // Golden values: of the first build of this code with GCC 12. The order of the draws is part of the
   // interface, since seeds name sequences in every report.
-  const FrameTruth truth = make_sequence(Condition::kNominal, 1, 0, 1).frames[0];
+  const FrameTruth truth = make_sequence({Condition::kNominal, 1}, 1, 0).frames[0];
   const Eigen::Quaterniond q(-0.742786412024, -0.293947363779, 0.077305679075, -0.596562758997);
   EXPECT_LT((truth.q_lrf_trf.coeffs() - q.coeffs()).norm(), 1e-9);
   EXPECT_LT(
@@ -90,15 +83,82 @@ TEST(Sequence, IsTheSameWithEveryCompiler) {
   EXPECT_NEAR(truth.range_m, 59.252414092324, 1e-9);
 }
 
-TEST(Condition, NamesRoundTripAndUnknownOnesListTheKnown) {
-  for (const Condition condition : {Condition::kNominal, Condition::kDegraded}) {
-    EXPECT_EQ(condition_from(to_string(condition)), condition);
+// Norms over the largest.
+std::vector<double> relative_norms(RateLaw law) {
+  std::vector<double> norms;
+  for (int i = 0; i < kMany; ++i) {
+    ScenarioSettings settings;
+    settings.frames = 1;
+    settings.rate_law = law;
+    norms.push_back(make_sequence(settings, 10, i).frames[0].rate_lrf_rad_s.norm() / (20.0 * kDegree));
   }
-  try {
-    condition_from("foggy");
-    FAIL() << "accepted an unknown condition";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("nominal, degraded"), std::string::npos);
+  return norms;
+}
+
+TEST(RateLaw, NormIsUniformUpTo20DegreesPerSecond) {
+  EXPECT_LT(unlikeliness(relative_norms(RateLaw::kNorm)), kUnlikely);
+}
+
+TEST(RateLaw, ComponentsFillTheBallOf20DegreesPerSecondEvenly) {
+  std::vector<double> volumes = relative_norms(RateLaw::kComponents);
+  for (double& v : volumes) v = v * v * v;
+  EXPECT_LT(unlikeliness(volumes), kUnlikely);
+}
+
+TEST(RateLaw, ChangesTheNormOnly) {
+  ScenarioSettings settings;
+  const Sequence components = make_sequence(settings, 11, 5);
+  settings.rate_law = RateLaw::kNorm;
+  const Sequence norm = make_sequence(settings, 11, 5);
+  EXPECT_EQ(norm.frames[0].q_lrf_trf.coeffs(), components.frames[0].q_lrf_trf.coeffs());
+  EXPECT_EQ(norm.frames[0].range_m, components.frames[0].range_m);
+  EXPECT_EQ(norm.noise_seed, components.noise_seed);
+  EXPECT_LT(
+      (norm.frames[0].rate_lrf_rad_s.normalized() - components.frames[0].rate_lrf_rad_s.normalized()).norm(),
+      1e-12);
+  EXPECT_GT((norm.frames[0].rate_lrf_rad_s - components.frames[0].rate_lrf_rad_s).norm(), 1e-3);
+}
+
+TEST(Sequence, FixedValuesReplaceTheDrawnOnesAndMoveNoOtherDraw) {
+  ScenarioSettings settings;
+  settings.condition = Condition::kOccluded;
+  for (const RateLaw law : {RateLaw::kComponents, RateLaw::kNorm}) {
+    settings.rate_law = law;
+    const Sequence drawn = make_sequence(settings, 12, 1);
+    ScenarioSettings fixed_settings = settings;
+    fixed_settings.range_m = 35.0;
+    fixed_settings.rate_rad_s = 12.5 * kDegree;
+    fixed_settings.hidden_share = 0.4;
+    const Sequence fixed = make_sequence(fixed_settings, 12, 1);
+    EXPECT_EQ(fixed.noise_seed, drawn.noise_seed);
+    EXPECT_EQ(fixed.frames[0].q_lrf_trf.coeffs(), drawn.frames[0].q_lrf_trf.coeffs());
+    for (std::size_t k = 0; k < fixed.frames.size(); ++k) {
+      const FrameTruth &a = fixed.frames[k], &b = drawn.frames[k];
+      EXPECT_EQ(a.range_m, 35.0);
+      EXPECT_NEAR(a.rate_lrf_rad_s.norm(), 12.5 * kDegree, 1e-12);
+      EXPECT_LT((a.rate_lrf_rad_s.normalized() - b.rate_lrf_rad_s.normalized()).norm(), 1e-12);
+      EXPECT_EQ(a.occluder.hidden_share, 0.4);
+      EXPECT_EQ(a.occluder.shape, b.occluder.shape);
+      EXPECT_EQ(a.occluder.side_rad, b.occluder.side_rad);
+      EXPECT_EQ(a.occluder.across, b.occluder.across);
+      EXPECT_EQ(a.occluder.distance_m, b.occluder.distance_m);
+    }
+  }
+}
+
+TEST(Sequence, AtRateZeroTheTargetStandsStillUnderEveryLawAndCondition) {
+  for (const std::string& name : condition_names()) {
+    for (const RateLaw law : {RateLaw::kComponents, RateLaw::kNorm}) {
+      ScenarioSettings settings;
+      settings.condition = condition_from(name);
+      settings.rate_law = law;
+      settings.rate_rad_s = 0.0;
+      const Sequence sequence = make_sequence(settings, 13, 2);
+      for (const FrameTruth& frame : sequence.frames) {
+        EXPECT_EQ(frame.rate_lrf_rad_s.norm(), 0.0) << name;
+        EXPECT_LT((frame.q_lrf_trf.coeffs() - sequence.frames[0].q_lrf_trf.coeffs()).norm(), 1e-12) << name;
+      }
+    }
   }
 }
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "sim/target/near_shoemaker.hpp"
 
@@ -13,7 +15,7 @@ namespace {
 TEST(Turned, EqualsARenderingOfTheTurnedAttitude) {
   const TriangleMesh mesh = make_near_shoemaker();
   const FlashLidar lidar(mesh);
-  const TrainingTargets targets = make_training_targets({mesh});
+  const TrainingTargets targets = make_training_targets({mesh}, paper_conditions());
   SensorSettings settings;
   settings.noise = false;
   const auto frame = std::make_unique<gnc::RangeImage>();
@@ -30,7 +32,7 @@ TEST(Turned, EqualsARenderingOfTheTurnedAttitude) {
   for (int turns = 1; turns < 4; ++turns) {
     const FrameBatch batch = turned(straight, turns);
     Eigen::Matrix3d labelled;
-    for (int i = 0; i < 9; ++i) labelled(i / 3, i % 3) = batch.r_lrf_trf[0][i / 3][i % 3].item<double>();
+    for (int i = 0; i < 9; ++i) labelled(i / 3, i % 3) = batch.r_view_trf[0][i / 3][i % 3].item<double>();
     const torch::Tensor difference = (batch.images - render(Eigen::Quaterniond(labelled))).abs();
     EXPECT_LT((difference > 0.05).to(torch::kFloat).mean().item<double>(), 0.01)
         << turns;  // edges may fall either way
@@ -38,19 +40,57 @@ TEST(Turned, EqualsARenderingOfTheTurnedAttitude) {
 }
 
 TEST(FrameStream, IsTheSameWithAnyNumberOfWorkersAndFromAnyStart) {
-  const TrainingTargets targets = make_training_targets({make_near_shoemaker()});
+  const TrainingTargets targets = make_training_targets({make_near_shoemaker()}, paper_conditions());
   FrameStream one(targets, 5, 4, 0, 1), three(targets, 5, 4, 0, 3), later(targets, 5, 4, 3, 2),
       other(targets, 6, 4, 0, 1);
   for (int i = 0; i < 6; ++i) {
     const FrameBatch a = one.next();
     const FrameBatch b = three.next();
     EXPECT_TRUE(torch::equal(a.images, b.images)) << i;
-    EXPECT_TRUE(torch::equal(a.r_lrf_trf, b.r_lrf_trf)) << i;
+    EXPECT_TRUE(torch::equal(a.r_view_trf, b.r_view_trf)) << i;
     if (i >= 3) {
       EXPECT_TRUE(torch::equal(a.images, later.next().images)) << i;
     }
     EXPECT_FALSE(torch::equal(a.images, other.next().images)) << i;
   }
+}
+
+TEST(FrameStream, HandsOutEachRenderedGroupInItsFourQuarterTurns) {
+  const TrainingTargets targets = make_training_targets({make_near_shoemaker()}, all_conditions());
+  FrameStream stream(targets, 5, 4, 0, 1);
+  for (std::uint64_t group = 0; group < 2; ++group) {
+    const FrameBatch rendered = render_frames(targets, 5, group, 4);
+    for (std::int64_t turns = 0; turns < 4; ++turns) {
+      const FrameBatch batch = stream.next();
+      const FrameBatch expected = turned(rendered, turns);
+      EXPECT_TRUE(torch::equal(batch.images, expected.images)) << group << ' ' << turns;
+      EXPECT_TRUE(torch::allclose(batch.r_view_trf, expected.r_view_trf)) << group << ' ' << turns;
+    }
+  }
+}
+
+TEST(FrameStream, ConditionsTakeTurns) {
+  const TriangleMesh mesh = make_near_shoemaker();
+  const FrameBatch nominal = render_frames(make_training_targets({mesh}, {Condition::kNominal}), 5, 0, 4);
+  const FrameBatch both =
+      render_frames(make_training_targets({mesh}, {Condition::kNominal, Condition::kOccluded}), 5, 0, 4);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(torch::equal(both.images[i], nominal.images[i]), i % 2 == 0) << i;
+  }
+  // The occluded frames are of the same attitudes, and have fewer cells with returns.
+  const auto filled = [](const torch::Tensor& image) { return (image > 0.0).sum().item<std::int64_t>(); };
+  for (const int i : {1, 3}) EXPECT_LT(filled(both.images[i]), filled(nominal.images[i])) << i;
+}
+
+TEST(FrameStream, TheListsOfConditionsAreToldApart) {
+  const std::vector<Condition> nominal{Condition::kNominal}, twice{Condition::kNominal, Condition::kNominal},
+      swapped{Condition::kDegraded, Condition::kNominal};
+  EXPECT_EQ(number_of(paper_conditions()), number_of({Condition::kNominal, Condition::kDegraded}));
+  EXPECT_NE(number_of(paper_conditions()), number_of(swapped));
+  EXPECT_NE(number_of(nominal), number_of(twice));
+  EXPECT_NE(number_of(paper_conditions()), number_of(all_conditions()));
+  const std::vector<Condition> all = all_conditions();
+  EXPECT_EQ(std::count(all.begin(), all.end(), Condition::kStress), 0) << "the stress test is for tests only";
 }
 
 }  // namespace

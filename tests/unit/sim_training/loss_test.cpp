@@ -65,5 +65,77 @@ TEST(HypothesisLoss, FallsWhenTheLogitsNameTheBestHypothesis) {
   EXPECT_LT(hypothesis_loss(output, errors, 0.02).item<double>(), before);
 }
 
+constexpr double kPi = 3.14159265358979;
+
+torch::Tensor turned_by(double angle_rad) {
+  return matrix(Eigen::Matrix3f(
+      Eigen::AngleAxisf(static_cast<float>(angle_rad), Eigen::Vector3f(1, 2, -1).normalized())));
+}
+
+// One sequence of two frames. Of the nine clusters, 2 is the best by 0.1 rad, 5 as good within 1 degree; the
+// answer is cluster 7's, 0.8 rad off. The truth is the identity.
+struct Tracked {
+  TrackedSequences sequences;
+  torch::Tensor truth = torch::eye(3).expand({1, 2, 3, 3}).clone();
+
+  Tracked() {
+    std::vector<torch::Tensor> clusters;
+    for (int i = 0; i < shape::kCandidates; ++i) {
+      clusters.push_back(turned_by(i == 2 ? 0.2 : i == 5 ? 0.217 : 0.3 + 0.1 * (i == 7 ? 5 : i)));
+    }
+    sequences.cluster_means = torch::stack(clusters).expand({1, 2, shape::kCandidates, 3, 3}).clone();
+    sequences.r_lrf_trf = turned_by(0.8).expand({1, 2, 3, 3}).clone();
+    sequences.anchor_logits = torch::zeros({1, 2, shape::kCandidates});
+    sequences.error_logits = torch::zeros({1, 2});
+  }
+};
+
+TEST(TrackingLoss, IsItsClosedForm) {
+  Tracked t;
+  t.sequences.anchor_logits[0][0][2] = 1.0;  // frame 0: p = (e + 1) / (e + 8) that the choice is good
+  t.sequences.anchor_logits[0][1][7] = 2.0;  // frame 1: 2 / (e^2 + 8)
+  t.sequences.error_logits[0][1] = -1.5;
+  const double choice = -0.5 * (std::log((std::exp(1.0) + 1.0) / (std::exp(1.0) + 8.0)) +
+                                std::log(2.0 / (std::exp(2.0) + 8.0)));
+  const double p = 1.0 / (1.0 + std::exp(1.5));
+  const double error = 0.8 / kPi;
+  const double expected_error =
+      0.5 * (std::log(2.0) - error * std::log(p) - (1.0 - error) * std::log(1.0 - p));
+  EXPECT_NEAR(tracking_loss(t.sequences, t.truth).item<double>(), 0.2 + 0.3 * choice + 0.1 * expected_error,
+              1e-4);
+}
+
+TEST(TrackingLoss, DoesNotCareWhichOfTheGoodOnesIsChosenButThatOneIs) {
+  Tracked best, as_good, bad, none;
+  best.sequences.anchor_logits.select(-1, 2) += 3.0;
+  as_good.sequences.anchor_logits.select(-1, 5) += 3.0;
+  bad.sequences.anchor_logits.select(-1, 7) += 3.0;
+  const auto loss = [](const Tracked& t) { return tracking_loss(t.sequences, t.truth).item<double>(); };
+  EXPECT_NEAR(loss(best), loss(as_good), 1e-6);
+  EXPECT_LT(loss(best), loss(none) - 0.1);
+  EXPECT_GT(loss(bad), loss(none) + 0.1);
+}
+
+TEST(TrackingLoss, IsLeastInTheErrorLogitWhereItStatesTheAnswersError) {
+  Tracked t;
+  t.sequences.error_logits.fill_(std::log(0.8 / (kPi - 0.8)));
+  t.sequences.error_logits.requires_grad_();
+  tracking_loss(t.sequences, t.truth).backward();
+  EXPECT_LT(t.sequences.error_logits.grad().abs().max().item<double>(), 1e-5);
+}
+
+TEST(TrackingLoss, HasFiniteGradientsAtNoErrorAndAtHalfATurn) {
+  for (const double angle_rad : {0.0, kPi}) {
+    Tracked t;
+    t.sequences.cluster_means = turned_by(angle_rad).expand({1, 2, shape::kCandidates, 3, 3}).clone();
+    t.sequences.cluster_means.requires_grad_();
+    t.sequences.r_lrf_trf = t.sequences.cluster_means.select(2, 0);
+    tracking_loss(t.sequences, t.truth).backward();
+    const torch::Tensor gradient = t.sequences.cluster_means.grad();
+    EXPECT_TRUE(torch::isfinite(gradient).all().item<bool>()) << angle_rad;
+    EXPECT_LT(gradient.abs().max().item<double>(), 100.0) << angle_rad;
+  }
+}
+
 }  // namespace
 }  // namespace tumblesight::sim

@@ -7,8 +7,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
 
 #include "sim/target/near_shoemaker.hpp"
+#include "sim/training/export_model.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -17,7 +21,7 @@ namespace fs = std::filesystem;
 
 class TrainTest : public testing::Test {
  protected:
-  TrainTest() : targets(make_training_targets({make_near_shoemaker()})) {
+  TrainTest() : targets(make_training_targets({make_near_shoemaker()}, paper_conditions())) {
     at::set_num_threads(1);
     settings.cnn_batch = 8;
     settings.cnn_images = 8 * 6;
@@ -33,6 +37,12 @@ class TrainTest : public testing::Test {
     fs::create_directories(here.folder);
     return here;
   }
+  static std::string line_of(const std::string& path, int number) {
+    std::ifstream in(path);
+    std::string line;
+    for (int i = 0; i <= number; ++i) std::getline(in, line);
+    return line;
+  }
   static Cnn fresh_cnn() {
     torch::manual_seed(1);
     return Cnn();
@@ -47,6 +57,7 @@ class TrainTest : public testing::Test {
 TEST_F(TrainTest, AStoppedCnnTrainingResumesToTheSameNetwork) {
   Cnn through = fresh_cnn();
   ASSERT_TRUE(train_cnn(targets, in("through"), through, never));
+  EXPECT_EQ(line_of(root / "through/log.csv", 1).rfind("cnn,6,48,", 0), 0U);
 
   // Stopped before its first iteration, then "killed" after three: what the total stands at shapes the
   // learning rate, so the shorter run is made by a checkpoint at every iteration and a stop from beside.
@@ -78,12 +89,10 @@ TEST_F(TrainTest, ACheckpointOfOtherSettingsOrOfNothingIsRefused) {
   here.seed += 1;
   EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error) << "another seed";
   here.seed -= 1;
+  targets.conditions = {Condition::kNominal};
+  EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error) << "other conditions";
+  targets.conditions = paper_conditions();
   EXPECT_TRUE(train_cnn(targets, here, cnn, never));
-  Recurrent recurrent;
-  ASSERT_TRUE(train_rcnn(targets, here, cnn, recurrent, never));
-  Cnn other = fresh_cnn();
-  EXPECT_THROW(train_rcnn(targets, here, other, recurrent, never), std::runtime_error)
-      << "an LSTM of another CNN";
   std::ofstream(here.folder + "/cnn.ckpt") << "no checkpoint";
   EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error) << "damaged";
 }
@@ -92,7 +101,7 @@ TEST_F(TrainTest, AMeshThatTheSensorHardlySeesIsRefusedByName) {
   const float h = 1e-4F;  // a needle: too few rays meet it
   const TriangleMesh needle{"needle", {{-2, 0, h}, {2, 0, h}, {2, 0, -h}}, {{0, 1, 2}}};
   try {
-    make_training_targets({needle});
+    make_training_targets({needle}, paper_conditions());
     FAIL() << "accepted a mesh that cannot be seen";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("needle"), std::string::npos);
@@ -106,25 +115,36 @@ TEST_F(TrainTest, ALeftOverHalfWrittenCheckpointIsIgnored) {
   EXPECT_TRUE(train_cnn(targets, here, cnn, never));
 }
 
-TEST_F(TrainTest, TheRecurrentStageLearnsOnTheCnnsFeaturesAndWritesLogAndCurve) {
-  const TrainingSettings here = in("rcnn");
-  Cnn cnn = fresh_cnn();
+TEST_F(TrainTest, WithoutCnnImagesTheRecurrentStageLearnsOnTheGivenCnnAndWritesLogAndCurve) {
+  TrainingSettings here = in("recurrent_only");
+  here.cnn_images = 0;
+  here.start_from = here.folder + "/given.tsm";
+  torch::manual_seed(5);
+  Cnn given, cnn;
+  const auto weights = std::make_unique<gnc::NetworkWeights>();
+  export_weights(given, Recurrent(), *weights);
+  write_model_file(here.start_from, "given", targets, *weights);
+
   ASSERT_TRUE(train_cnn(targets, here, cnn, never));
+  EXPECT_FALSE(fs::exists(here.folder + "/cnn.ckpt")) << "there was nothing to train";
+  {
+    torch::NoGradGuard guard;
+    given->eval();
+    cnn->eval();
+    const torch::Tensor images = render_frames(targets, 2, 0, 8).images;
+    const torch::Tensor expected = given->forward(images, false).output;
+    EXPECT_TRUE(torch::allclose(cnn->forward(images, false).output, expected, 1e-4, 1e-4));
+  }
   Recurrent recurrent;
   const torch::Tensor before = recurrent->head2->weight.detach().clone();
   ASSERT_TRUE(train_rcnn(targets, here, cnn, recurrent, never));
   EXPECT_FALSE(torch::equal(before, recurrent->head2->weight));
-
-  std::ifstream log(here.folder + "/log.csv");
-  std::string header, first, second;
-  std::getline(log, header);
-  std::getline(log, first);
-  std::getline(log, second);
-  EXPECT_EQ(header.rfind("stage,iteration,samples", 0), 0U);
-  EXPECT_EQ(first.rfind("cnn,6,48,", 0), 0U) << first;
-  EXPECT_EQ(second.rfind("rcnn,6,48,", 0), 0U) << second;
+  EXPECT_EQ(line_of(here.folder + "/log.csv", 0).rfind("stage,iteration,samples", 0), 0U);
+  EXPECT_EQ(line_of(here.folder + "/log.csv", 1).rfind("rcnn,6,48,", 0), 0U);
   EXPECT_GT(fs::file_size(here.folder + "/curve.svg"), 500U);
   EXPECT_TRUE(train_rcnn(targets, here, cnn, recurrent, never)) << "a finished stage is done at once";
+  EXPECT_THROW(train_rcnn(targets, here, fresh_cnn(), recurrent, never), std::runtime_error)
+      << "an LSTM of another CNN";
 }
 
 TEST_F(TrainTest, AFolderThatCannotBeWrittenIsSaid) {

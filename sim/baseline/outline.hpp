@@ -1,0 +1,39 @@
+// OutlineField: how far every ray of a scan lies from the target's outline as the scan shows it.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sim/baseline/target_scan.hpp"
+
+namespace tumblesight::sim {
+
+class OutlineField {
+ public:
+  struct Distance {
+    double out_rays;           // distance outwards; negative: within the target. In rays of the scan
+    Eigen::Vector2d outwards;  // its gradient, unit: right, up
+  };
+
+  explicit OutlineField(const TargetScan& scan);
+
+  // At `column`, `row` (ray centres at whole numbers). False where the outline is not known: outside the
+  // frame and where the nearest edge is that of something before the target.
+  bool at(double column, double row, Distance& distance) const;
+
+ private:
+  struct Step {  // from a ray to the nearest one on the other side of the outline
+    int right = 0;
+    int down = 0;
+    int squared() const { return right * right + down * down; }
+  };
+  void sweep(std::vector<Step>& steps) const;
+  std::vector<Step> nearest(const std::vector<bool>& sought) const;
+
+  int rays_;
+  std::vector<Step> steps_;
+  std::vector<bool> inside_;
+  std::vector<bool> known_;
+};
+
+}  // namespace tumblesight::sim

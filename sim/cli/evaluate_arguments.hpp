@@ -1,0 +1,37 @@
+// The arguments of tumblesight evaluate.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/cli/arguments.hpp"
+#include "sim/evaluation/experiment.hpp"
+
+namespace tumblesight::sim {
+
+struct EvaluateArguments {
+  ScenarioArguments scenario;  // but for its condition
+  std::vector<std::string> conditions{"nominal"};
+  bool sequences_given = false;
+  int threads = 0;  // 0: one a core
+  bool curves = false;
+  bool no_baseline = false;
+  std::uint32_t baseline_sequences = 100;
+  std::string csv;     // empty: none
+  std::string report;  // empty: none
+  bool paper = false;
+  std::string mesh_folder;  // empty: parametric meshes only
+  std::string out;          // empty: docs, or out/paper if the number of sequences was given
+  std::string command_line;
+};
+
+void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments);
+// Throws CLI::ValidationError if an option was given on which --paper decides itself.
+void require_paper_alone(const CLI::App& command);
+
+// Everything but the conditions, from the arguments.
+ExperimentSettings experiment_settings(const EvaluateArguments& arguments);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,68 @@
+#include "sim/evaluation/checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr double kFlat = 1.5;
+constexpr double kMostOffsetCost_percent = 10.0;
+constexpr std::size_t kWindow = 10;  // frames
+
+void add_flatness(std::vector<Check>& checks, const std::string& what, const Curve& curve) {
+  const double value = flatness(curve);
+  if (value > 0.0) checks.push_back({what, value, kFlat, "×"});
+}
+
+double window_mean_deg(const Curve& curve, std::size_t from) {
+  double sum = 0.0;
+  for (std::size_t i = from; i < from + kWindow; ++i) sum += curve[i].rcnn.mean_deg;
+  return sum / static_cast<double>(kWindow);
+}
+
+void add_drift(std::vector<Check>& checks, const Curve& long_run) {
+  if (long_run.size() < 2 * kWindow) return;
+  const double tenth_deg = long_run[kFramesPerSequence - 1].rcnn.mean_deg;
+  if (tenth_deg <= 0.0) return;
+  double worst = 0.0;
+  for (std::size_t from = kFramesPerSequence; from + kWindow <= long_run.size(); ++from) {
+    worst = std::max(worst, window_mean_deg(long_run, from));
+  }
+  checks.push_back({fmt::format("error within {} frames over that of the 10th", long_run.size()),
+                    worst / tenth_deg, 1.0, "×"});
+}
+
+}  // namespace
+
+bool meets(const ErrorSummary& summary, const PaperFigure& goal) {
+  return summary.count > 0 && summary.mean_deg <= goal.mean_deg && summary.within_20deg >= goal.within_20deg;
+}
+
+std::vector<Check> checks_of(const SubjectResult& subject) {
+  std::vector<Check> checks;
+  const CellResult* nominal = cell_of(subject, Condition::kNominal);
+  const CellResult* offset = cell_of(subject, Condition::kOffset);
+  if (nominal != nullptr) {
+    add_flatness(checks, "largest over smallest error by range", nominal->by_range);
+    add_flatness(checks, "largest over smallest error by rate, components drawn", nominal->by_rate);
+  }
+  if (subject.sweeps) {
+    add_flatness(checks, "largest over smallest error by rate, norm drawn", subject.sweeps->by_rate_norm);
+    add_drift(checks, subject.sweeps->long_run);
+  }
+  if (nominal != nullptr && offset != nullptr && nominal->rcnn.mean_deg > 0.0) {
+    checks.push_back({"a target off the boresight costs",
+                      100.0 * (offset->rcnn.mean_deg / nominal->rcnn.mean_deg - 1.0), kMostOffsetCost_percent,
+                      " %"});
+  }
+  return checks;
+}
+
+std::string text_of(const Check& check) {
+  return fmt::format("{:.{}f}{}, at most {:g}{}", check.value, check.unit == "×" ? 2 : 1, check.unit,
+                     check.limit, check.unit);
+}
+
+}  // namespace tumblesight::sim

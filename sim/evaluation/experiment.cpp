@@ -1,0 +1,188 @@
+#include "sim/evaluation/experiment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "sim/evaluation/monte_carlo.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr int kHiddenSteps = 10;
+constexpr double kHiddenStep = 0.05;
+constexpr std::uint32_t kSweepFraction = 3;  // a swept value gets a third of a cell's sequences
+constexpr std::uint32_t kLongFraction = 9;
+constexpr std::uint32_t kLongFrames = 200;
+constexpr std::uint32_t kMostLong = 1000;  // sequences, so that their frames fit in memory
+
+struct Run {
+  enum class Kind { kCell, kRateNorm, kHiddenShare, kLong };
+  Kind kind = Kind::kCell;
+  ScenarioSettings scenario;
+  std::uint32_t sequences = 0;
+  std::uint32_t baseline_sequences = 0;
+};
+
+std::uint64_t steps_of(const Run& run, std::uint32_t sequences_done) {
+  return std::uint64_t{sequences_done} * static_cast<std::uint64_t>(run.scenario.frames) +
+         kStepsAMatch * std::min(sequences_done, run.baseline_sequences);
+}
+
+std::vector<Run> cells_of(const ExperimentSettings& settings) {
+  std::vector<Run> runs;
+  for (const Condition condition : settings.conditions) {
+    Run run;
+    run.scenario.condition = condition;
+    run.scenario.frames = static_cast<int>(settings.frames);
+    run.sequences = condition == Condition::kTumbling ? settings.tumbling_sequences : settings.sequences;
+    run.baseline_sequences = std::min(settings.baseline_sequences, run.sequences);
+    runs.push_back(run);
+  }
+  return runs;
+}
+
+std::vector<Run> sweeps_of(const ExperimentSettings& settings) {
+  Run base;
+  base.scenario.condition = settings.conditions.front();
+  base.scenario.frames = static_cast<int>(settings.frames);
+  base.sequences = settings.sequences;
+
+  std::vector<Run> runs{base};
+  runs.back().kind = Run::Kind::kRateNorm;
+  runs.back().scenario.rate_law = RateLaw::kNorm;
+  for (int step = 1; step <= kHiddenSteps; ++step) {
+    runs.push_back(base);
+    runs.back().kind = Run::Kind::kHiddenShare;
+    runs.back().scenario.condition = Condition::kOccluded;
+    runs.back().scenario.hidden_share = kHiddenStep * step;
+    runs.back().sequences = std::max(1U, settings.sequences / kSweepFraction);
+  }
+  runs.push_back(base);
+  runs.back().kind = Run::Kind::kLong;
+  runs.back().scenario.frames = static_cast<int>(kLongFrames);
+  runs.back().sequences = std::clamp(settings.sequences / kLongFraction, 1U, kMostLong);
+  return runs;
+}
+
+std::vector<Run> runs_of(const ExperimentSettings& settings) {
+  if (settings.conditions.empty()) throw std::invalid_argument("an experiment needs at least one condition");
+  std::vector<Run> runs = cells_of(settings);
+  if (!settings.curves) return runs;
+  const std::vector<Run> sweeps = sweeps_of(settings);
+  runs.insert(runs.end(), sweeps.begin(), sweeps.end());
+  return runs;
+}
+
+CellResult cell_result(const Run& run, const std::string& target, const MonteCarloResult& result) {
+  const auto frames = static_cast<std::uint32_t>(run.scenario.frames);
+  const std::vector<FrameResult> last = last_frames(result.frames, frames);
+  const auto errors = [&](Estimator estimator) {
+    return last_frame_errors_deg(result.frames, frames, estimator);
+  };
+  const std::vector<NearSymmetry> symmetries = near_symmetries(target);
+  CellResult cell;
+  cell.condition = run.scenario.condition;
+  cell.sequences = run.sequences;
+  cell.frames = frames;
+  cell.rcnn = summarise(errors(Estimator::kRcnn));
+  cell.cnn = summarise(errors(Estimator::kCnn));
+  cell.rcnn_histogram = histogram(errors(Estimator::kRcnn));
+  cell.cnn_histogram = histogram(errors(Estimator::kCnn));
+  if (run.baseline_sequences > 0) {
+    cell.baseline = summarise(errors(Estimator::kBaseline));
+    cell.baseline_histogram = histogram(errors(Estimator::kBaseline));
+  }
+  cell.network_ms = result.network_ms;
+  cell.baseline_ms = result.baseline_ms;
+  cell.by_frame = errors_by_frame(result.frames, frames);
+  cell.by_range = errors_by_range(last);
+  cell.by_rate = errors_by_rate(last);
+  cell.rcnn_confusion = confusion(last, Estimator::kRcnn, symmetries);
+  cell.cnn_confusion = confusion(last, Estimator::kCnn, symmetries);
+  cell.reliability = reliability(result.frames);
+  cell.detection = detection(result.frames);
+  return cell;
+}
+
+void take_sweep(const Run& run, const MonteCarloResult& result, Sweeps& sweeps) {
+  const auto frames = static_cast<std::uint32_t>(run.scenario.frames);
+  const std::vector<FrameResult> last = last_frames(result.frames, frames);
+  if (run.kind == Run::Kind::kRateNorm) {
+    sweeps.base = run.scenario.condition;
+    sweeps.by_rate_norm = errors_by_rate(last);
+  } else if (run.kind == Run::Kind::kHiddenShare) {
+    sweeps.sweep_sequences = run.sequences;
+    sweeps.by_hidden_share.push_back(curve_point(run.scenario.hidden_share.value_or(0.0), last));
+  } else {
+    sweeps.long_sequences = run.sequences;
+    sweeps.long_run = errors_by_frame(result.frames, frames);
+  }
+}
+
+void take(const Run& run, const MonteCarloResult& result, SubjectResult& into) {
+  if (run.kind == Run::Kind::kCell) {
+    into.cells.push_back(cell_result(run, into.target, result));
+    return;
+  }
+  if (!into.sweeps) into.sweeps.emplace();
+  take_sweep(run, result, *into.sweeps);
+}
+
+}  // namespace
+
+bool needs_inertia(Condition condition) {
+  return condition == Condition::kTumbling || condition == Condition::kStress;
+}
+
+ScenarioSettings scenario_settings(Condition condition, std::uint32_t frames, const std::string& target,
+                                   const std::optional<Eigen::Matrix3d>& inertia_kg_m2) {
+  if (needs_inertia(condition) && !inertia_kg_m2) {
+    throw std::invalid_argument(
+        fmt::format("condition {} needs the inertia of '{}', which is not known: give --inertia "
+                    "Ixx,Iyy,Izz,Ixy,Ixz,Iyz in kg m2",
+                    to_string(condition), target));
+  }
+  ScenarioSettings settings;
+  settings.condition = condition;
+  settings.frames = static_cast<int>(frames);
+  if (inertia_kg_m2) settings.inertia_kg_m2 = *inertia_kg_m2;
+  return settings;
+}
+
+std::uint64_t steps_of(const ExperimentSettings& settings) {
+  std::uint64_t steps = 0;
+  for (const Run& run : runs_of(settings)) steps += steps_of(run, run.sequences);
+  return steps;
+}
+
+SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& settings,
+                             const std::function<void(std::uint64_t)>& progress) {
+  std::vector<Run> runs = runs_of(settings);
+  for (Run& run : runs) {
+    run.scenario.inertia_kg_m2 =
+        scenario_settings(run.scenario.condition, settings.frames, subject.target, subject.inertia_kg_m2)
+            .inertia_kg_m2;
+  }
+  const FlashLidar lidar(subject.mesh);
+  std::unique_ptr<TemplateMatcher> matcher;
+  if (settings.baseline_sequences > 0) {
+    matcher = std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m);
+  }
+  SubjectResult result{subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}};
+  std::uint64_t done = 0;
+  for (const Run& run : runs) {
+    const MonteCarloSettings monte_carlo{run.scenario, settings.seed, run.sequences, run.baseline_sequences,
+                                         settings.threads};
+    take(run,
+         run_monte_carlo({lidar, subject.swath_m}, subject.model, matcher.get(), monte_carlo,
+                         [&](std::uint32_t sequences) { progress(done + steps_of(run, sequences)); }),
+         result);
+    done += steps_of(run, run.sequences);
+  }
+  return result;
+}
+
+}  // namespace tumblesight::sim

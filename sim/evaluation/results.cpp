@@ -1,0 +1,37 @@
+#include "sim/evaluation/results.hpp"
+
+#include <fmt/format.h>
+
+namespace tumblesight::sim {
+
+const CellResult* cell_of(const SubjectResult& subject, Condition condition) {
+  for (const CellResult& cell : subject.cells) {
+    if (cell.condition == condition) return &cell;
+  }
+  return nullptr;
+}
+
+std::vector<DetectionPoint> detection_of(const SubjectResult& subject) {
+  std::vector<DetectionPoint> sum;
+  for (const CellResult& cell : subject.cells) add(sum, cell.detection);
+  return sum;
+}
+
+std::string display_name(const std::string& target) {
+  if (target == "near_shoemaker") return "NEAR Shoemaker";
+  if (target == "magellan") return "Magellan";
+  if (target == "sacd_aquarius") return "SAC-D/Aquarius";
+  if (target == "sacd_aquarius_stowed") return "SAC-D/Aquarius, stowed";
+  return target;
+}
+
+std::string title_of(const SubjectResult& subject) {
+  const bool own_model = subject.model == subject.target;
+  const std::string rule = subject.model == subject.target + "_paper_rule"
+                               ? ", trained by the paper's rule"
+                               : fmt::format(", model {}", subject.model);
+  const std::string mesh = subject.mesh == kParametricMesh ? "parametric mesh" : subject.mesh;
+  return fmt::format("{}, {}{}", display_name(subject.target), mesh, own_model ? "" : rule);
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,126 @@
+#include "sim/evaluation/results_json.hpp"
+
+#include <fmt/format.h>
+
+namespace tumblesight::sim {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json confusion_json(const Confusion& confusion) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < confusion.names.size(); ++i) json[confusion.names[i]] = confusion.shares[i];
+  json["none"] = confusion.none;
+  json["blur_deg"] = confusion.blur_deg;
+  return json;
+}
+
+Json figure_json(const std::optional<PaperFigure>& figure) {
+  if (!figure) return nullptr;
+  return {{"mean_deg", figure->mean_deg}, {"within_20deg", figure->within_20deg}};
+}
+
+Json baseline_json(const CellResult& cell) {
+  if (!cell.baseline) return nullptr;
+  Json json = summary_json(*cell.baseline);
+  json["sequences"] = cell.baseline->count;
+  return json;
+}
+
+Json row_json(const Results& results, const SubjectResult& subject, const CellResult& cell) {
+  const PaperFigures paper = paper_figures(subject.target, cell.condition);
+  return {{"target", subject.target},
+          {"mesh", subject.mesh},
+          {"condition", to_string(cell.condition)},
+          {"sequences", cell.sequences},
+          {"rcnn", summary_json(cell.rcnn)},
+          {"cnn", summary_json(cell.cnn)},
+          {"baseline", baseline_json(cell)},
+          {"frames", cell.frames},
+          {"seed", results.seed},
+          {"model", subject.model},
+          {"model_crc32", fmt::format("{:08x}", subject.model_crc32)},
+          {"paper_rcnn", figure_json(paper.rcnn)},
+          {"paper_cnn", figure_json(paper.cnn)},
+          {"goal", figure_json(paper.goal)},
+          {"confusion", confusion_json(cell.rcnn_confusion)}};
+}
+
+Json curve_json(const Curve& curve) {
+  Json json = Json::array();
+  for (const CurvePoint& point : curve) {
+    json.push_back({{"at", point.at},
+                    {"sequences", point.rcnn.count},
+                    {"rcnn", summary_json(point.rcnn)},
+                    {"cnn", summary_json(point.cnn)}});
+  }
+  return json;
+}
+
+Json reliability_json(const std::vector<ReliabilityBin>& bins) {
+  Json json = Json::array();
+  for (const ReliabilityBin& bin : bins) {
+    json.push_back(
+        {{"predicted_deg", bin.predicted_deg}, {"real_deg", bin.real.mean_deg}, {"frames", bin.real.count}});
+  }
+  return json;
+}
+
+Json detection_json(const std::vector<DetectionPoint>& points) {
+  Json json = Json::array();
+  for (const DetectionPoint& point : points) {
+    json.push_back({{"threshold_deg", point.threshold_deg},
+                    {"wrong", point.wrong},
+                    {"wrong_flagged", point.wrong_flagged},
+                    {"right", point.right},
+                    {"right_flagged", point.right_flagged}});
+  }
+  return json;
+}
+
+Json curves_json(const SubjectResult& subject) {
+  const CellResult& base = subject.cells.front();
+  return {{"target", subject.target},
+          {"mesh", subject.mesh},
+          {"model", subject.model},
+          {"condition", to_string(base.condition)},
+          {"by_frame", curve_json(base.by_frame)},
+          {"by_range_m", curve_json(base.by_range)},
+          {"by_rate_components_deg_s", curve_json(base.by_rate)},
+          {"by_rate_norm_deg_s", curve_json(subject.sweeps->by_rate_norm)},
+          {"by_hidden_share", curve_json(subject.sweeps->by_hidden_share)},
+          {"long_run_by_frame", curve_json(subject.sweeps->long_run)},
+          {"histogram_limits_deg", histogram_limits_deg()},
+          {"histogram_rcnn", base.rcnn_histogram},
+          {"histogram_cnn", base.cnn_histogram},
+          {"reliability", reliability_json(base.reliability)},
+          {"detection_all_conditions", detection_json(detection_of(subject))}};
+}
+
+}  // namespace
+
+Json summary_json(const ErrorSummary& summary) {
+  Json json{{"mean_deg", summary.mean_deg},
+            {"median_deg", summary.median_deg},
+            {"within_20deg", summary.within_20deg},
+            {"within_5deg", summary.within_5deg},
+            {"mean_standard_error_deg", summary.mean_standard_error_deg}};
+  if (summary.count == 0) {
+    for (auto& value : json) value = nullptr;
+  }
+  return json;
+}
+
+Json results_json(const Results& results) {
+  Json rows = Json::array();
+  Json curves = Json::array();
+  for (const SubjectResult& subject : results.subjects) {
+    for (const CellResult& cell : subject.cells) rows.push_back(row_json(results, subject, cell));
+    if (subject.sweeps && !subject.cells.empty()) curves.push_back(curves_json(subject));
+  }
+  Json json{{"rows", rows}};
+  if (!curves.empty()) json["curves"] = curves;
+  return json;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,12 @@
+// Results as a Markdown document with a table for every figure.
+#pragma once
+
+#include <string>
+
+#include "sim/evaluation/results.hpp"
+
+namespace tumblesight::sim {
+
+std::string results_markdown(const Results& results);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,162 @@
+#include "tests/unit/gnc_rcnn/reference_track.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace tumblesight::gnc {
+namespace {
+
+const double kLost = 2.0 * (1.0 - std::cos(20.0 * M_PI / 180.0));
+
+double logistic(double x) {
+  return 1.0 / (1.0 + std::exp(-x));
+}
+
+Eigen::Matrix3d rotation_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  Eigen::Matrix3d rotation;
+  rotation.col(0) = a.normalized();
+  rotation.col(1) = (b - b.dot(rotation.col(0)) * rotation.col(0)).normalized();
+  rotation.col(2) = rotation.col(0).cross(rotation.col(1));
+  return rotation;
+}
+
+double angle_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  return Eigen::AngleAxisd(a.transpose() * b).angle() * 180.0 / M_PI;
+}
+
+Eigen::Vector3d bounded(const Eigen::Vector3d& rate) {
+  return rate.norm() > 1.9 ? Eigen::Vector3d(1.9 * rate.normalized()) : rate;
+}
+
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn) {
+  return Eigen::AngleAxisd(bounded(turn).norm(), turn.normalized()).toRotationMatrix();
+}
+
+// 3 - trace of the turn between them: for small angles, its square.
+double chord_square(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  return 3.0 - (a.transpose() * b).trace();
+}
+
+}  // namespace
+
+double attitude_gain_after(int frames) {
+  const double k = std::min(frames + 1, 10);
+  return 2.0 * (2.0 * k - 1.0) / (k * (k + 1.0));
+}
+
+double rate_gain_after(int frames) {
+  const double k = std::min(frames + 1, 10);
+  return std::min(0.999, 3.0 / (2.0 * k - 1.0));
+}
+
+double predicted_weight_after(int frames) {
+  const double gain = attitude_gain_after(frames);
+  return frames < 2 ? 3e-4 : (1.0 - gain) / gain;
+}
+
+void ReferenceTrack::see(const Numbers& output, const Eigen::Matrix3d& r_lrf_view) {
+  double sum = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Map<const Eigen::Vector3d> a(output.data() + 6 * i), b(output.data() + 6 * i + 3);
+    hypotheses_[i] = r_lrf_view * rotation_of(a, b);
+    logit_[i] = output.at(48 + i);
+    sum += std::exp(logit_[i]);
+  }
+  for (int i = 0; i < 8; ++i) probability_[i] = std::exp(logit_[i]) / sum;
+  likeliest_ = static_cast<int>(std::max_element(logit_.begin(), logit_.end()) - logit_.begin());
+  single_frame_error_rad_ = M_PI * logistic(output.at(56));
+  predict();
+}
+
+void ReferenceTrack::predict() {
+  if (frames == 0) {
+    predicted_.fill({hypotheses_[likeliest_], Eigen::Vector3d::Zero()});
+    return;
+  }
+  predicted_[0] = {rotation_by(motion[0].rate) * motion[0].attitude, bounded(motion[0].rate)};
+
+  Eigen::Matrix3d r = motion[1].attitude;
+  const Eigen::Vector3d momentum = r * inertia_ * r.transpose() * bounded(motion[1].rate);
+  const auto rate_at = [&](const Eigen::Matrix3d& at) -> Eigen::Vector3d {
+    return at * inertia_.inverse() * at.transpose() * momentum;
+  };
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Eigen::Matrix3d middle = rotation_by(rate_at(r) / 8.0) * r;
+    r = rotation_by(rate_at(middle) / 4.0) * r;
+  }
+  predicted_[1] = {r, rate_at(r)};
+}
+
+Eigen::Matrix3d ReferenceTrack::single_frame() {
+  std::array<double, 9> weights{};
+  std::copy(probability_.begin(), probability_.end(), weights.begin());
+  return mean_around(likeliest_, 0, weights);
+}
+
+ReferenceTrack::Numbers ReferenceTrack::lstm_input(const Numbers& dense2) const {
+  Numbers input = dense2;
+  const auto append = [&input](const Eigen::Matrix3d& rotation) {
+    for (int i = 0; i < 6; ++i) input.push_back(rotation(i % 3, i / 3));
+  };
+  const Eigen::Matrix3d& predicted = predicted_[law()].attitude;
+  for (const Eigen::Matrix3d& hypothesis : hypotheses_) append(predicted.transpose() * hypothesis);
+  input.insert(input.end(), probability_.begin(), probability_.end());
+  append(predicted);
+  return input;
+}
+
+Eigen::Matrix3d ReferenceTrack::mean_around(int anchor, int law, const std::array<double, 9>& weights) {
+  Eigen::Vector3d first = Eigen::Vector3d::Zero(), second = Eigen::Vector3d::Zero();
+  int members = 0;
+  for (int i = 0; i < 9; ++i) {
+    if (angle_deg(candidate(i, law), candidate(anchor, law)) >= 20.0) continue;
+    first += weights[i] * candidate(i, law).col(0);
+    second += weights[i] * candidate(i, law).col(1);
+    ++members;
+  }
+  merged += members > 1 ? 1 : 0;
+  return rotation_of(first, second);
+}
+
+void ReferenceTrack::correct(int law, int anchor, const std::array<double, 9>& weights, double rate_word) {
+  motion[law] = predicted_[law];
+  motion[law].attitude = mean_around(anchor, law, weights);
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(motion[law].attitude * predicted_[law].attitude.transpose()));
+  if (frames == 0 || turn.angle() >= M_PI / 3.0) return;
+  const double prior = rate_gain_after(frames);
+  motion[law].rate += logistic(rate_word + std::log(prior / (1.0 - prior))) * turn.angle() * turn.axis();
+  ++turned;
+}
+
+double ReferenceTrack::miss(int law) const {
+  double seen = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    if (angle_deg(hypotheses_[i], predicted_[law].attitude) < 20.0) seen += probability_[i];
+  }
+  return seen < 0.1 ? kLost : std::min(kLost, chord_square(motion[law].attitude, predicted_[law].attitude));
+}
+
+void ReferenceTrack::advance(const Numbers& head) {
+  std::array<double, 9> vote, weight;
+  for (int i = 0; i < 9; ++i) {
+    vote[i] = (i < 8 ? logit_[i] : 0.0) + head.at(i);
+    weight[i] = (i < 8 ? std::max(probability_[i], 1e-6) : predicted_weight_after(frames)) *
+                std::exp(std::clamp(head.at(9 + i), -8.0, 8.0));
+  }
+  const int anchor = static_cast<int>(std::max_element(vote.begin(), vote.end()) - vote.begin());
+  for (const int law : {0, 1}) correct(law, anchor, weight, head.at(18));
+  // Log-likelihood of Gaussian misses; the first two frames tell nothing.
+  const double a = attitude_gain_after(frames);
+  const double told = frames < 2 ? 0.0 : (1.0 - a) / (2.0 * a * a * 7e-4);
+  const std::array<double, 2> missed{miss(0), miss(1)};
+  const double nearer = missed[0] - missed[1];
+  tumble_evidence = std::clamp(0.9 * tumble_evidence + told * nearer, -6.0, 6.0);
+  for (const int law : {0, 1}) {
+    if (missed[law] >= kLost && missed[1 - law] < kLost) motion[law] = motion[1 - law];
+  }
+  error_rad = M_PI * logistic(head.at(19));
+  ++frames;
+}
+
+}  // namespace tumblesight::gnc
