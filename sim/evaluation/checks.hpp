@@ -20,8 +20,7 @@ struct Check {
 };
 
 // Of what was run only: flat over range and rate (largest over smallest bin), cost of a target off the
-// boresight, drift in a long run (largest mean of ten frames in a row after the tenth frame, over the tenth
-// frame's).
+// boresight, drift in a long run (mean of its second half over the tenth frame's).
 std::vector<Check> checks_of(const SubjectResult& subject);
 
 // "1.32×, at most 1.5×"

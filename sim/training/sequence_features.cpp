@@ -41,7 +41,7 @@ ScenarioSettings scenario_of(const TrainingTargets& targets, std::uint64_t seed,
   ScenarioSettings settings{targets.conditions[turn % targets.conditions.size()], kFrames};
   settings.rate_law = (turn / targets.conditions.size()) % 2 == 0 ? RateLaw::kComponents : RateLaw::kNorm;
   Random random(mix(mix(seed, number), 4));
-  settings.inertia_kg_m2 = random.uniform() < 0.75 ? targets.inertia_kg_m2 : any_inertia(random);
+  settings.inertia_kg_m2 = random.uniform() < 0.5 ? targets.inertia_kg_m2 : any_inertia(random);
   return settings;
 }
 

@@ -31,7 +31,7 @@ class SequenceFeatures {
  public:
   // Starts to compute sequences 0 .. count-1 of the seeded supply; meshes and conditions take
   // turns, and so do the laws of the rate; of the bodies that tumble, every
-  // fourth has another inertia than the target, lest the network trust it blindly. `weights` must outlive
+  // second has another inertia than the target, lest the network trust it blindly. `weights` must outlive
   // this object.
   SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights& weights, std::uint64_t seed,
                    std::int64_t count, int workers);
