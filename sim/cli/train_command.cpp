@@ -77,7 +77,15 @@ void choose_device(TrainOptions& options) {
   if (!use_cuda) at::set_num_threads(1);
 }
 
+// Without a CNN to begin with, too few images for one batch would leave it at random weights.
+void require_a_cnn(const TrainingSettings& settings) {
+  if (!settings.start_from.empty() || settings.cnn_images >= settings.cnn_batch) return;
+  throw CLI::ValidationError("--cnn-images", "must be at least " + std::to_string(settings.cnn_batch) +
+                                                 " unless --start-from names a model image to begin with");
+}
+
 int train(TrainOptions& options) {
+  require_a_cnn(options.settings);
   choose_device(options);
   std::filesystem::create_directories(options.settings.folder);
   std::signal(SIGINT, [](int) { stop_requested = true; });

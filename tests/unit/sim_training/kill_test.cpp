@@ -1,4 +1,5 @@
-// Requirement: a training run that is killed at any moment resumes, and ends with the very same model image.
+// Requirements: a training run that is killed at any moment resumes, and ends with the very same model image;
+// one that could not train a CNN is refused before it starts.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -20,11 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-pid_t start_training(const fs::path& folder) {
+pid_t start_training(const fs::path& folder, const char* cnn_images = "384") {
   std::vector<std::string> words{TUMBLESIGHT_PROGRAM,
                                  "train",
                                  "--cnn-images",
-                                 "384",
+                                 cnn_images,
                                  "--rcnn-sequences",
                                  "16",
                                  "--rcnn-iterations",
@@ -79,6 +80,14 @@ TEST(TrainingKilled, ResumesToTheSameModelImage) {
   EXPECT_GT(image.size(), 1'000'000U);
   EXPECT_TRUE(image == contents(root / "killed" / "near_shoemaker.tsm"));
   fs::remove_all(root);
+}
+
+TEST(TrainingWithoutACnn, IsRefusedAndLeavesNothingBehind) {
+  const fs::path folder = fs::temp_directory_path() / ("no_cnn_" + std::to_string(getpid()));
+  const int status = wait_for(start_training(folder, "63"));
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_FALSE(fs::exists(folder));
 }
 
 }  // namespace
