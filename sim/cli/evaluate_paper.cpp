@@ -10,13 +10,13 @@
 
 #include "sim/cli/subject_setup.hpp"
 #include "sim/cli/target_setup.hpp"
-#include "sim/evaluation/progress.hpp"
-#include "sim/evaluation/results_csv.hpp"
-#include "sim/evaluation/results_json.hpp"
-#include "sim/evaluation/results_markdown.hpp"
-#include "sim/evaluation/results_report.hpp"
-#include "sim/evaluation/results_table.hpp"
-#include "sim/evaluation/text_file.hpp"
+#include "sim/report/progress.hpp"
+#include "sim/report/results_csv.hpp"
+#include "sim/report/results_json.hpp"
+#include "sim/report/results_markdown.hpp"
+#include "sim/report/results_report.hpp"
+#include "sim/report/results_table.hpp"
+#include "sim/report/text_file.hpp"
 #include "sim/target/targets.hpp"
 
 namespace tumblesight::sim {

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "hal/dds/idl/topics.hpp"
-#include "sim/evaluation/results_json.hpp"
+#include "sim/report/results_json.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/cli/target_setup.hpp"
-#include "sim/evaluation/report.hpp"
+#include "sim/report/report.hpp"
 #include "sim/sil/sil_run.hpp"
 
 namespace tumblesight::sim {

@@ -17,9 +17,9 @@
 #include "sim/cli/target_setup.hpp"
 #include "sim/evaluation/curves.hpp"
 #include "sim/evaluation/experiment.hpp"
-#include "sim/evaluation/progress.hpp"
-#include "sim/evaluation/results_table.hpp"
-#include "sim/evaluation/text_file.hpp"
+#include "sim/report/progress.hpp"
+#include "sim/report/results_table.hpp"
+#include "sim/report/text_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "sim/evaluation/results_json.hpp"
 #include "sim/lidar/flash_lidar.hpp"
+#include "sim/report/results_json.hpp"
 #include "sim/target/targets.hpp"
 #include "tests/unit/sim_evaluation/arbitrary_model.hpp"
 

@@ -6,8 +6,8 @@
 
 #include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/record.hpp"
-#include "sim/evaluation/results_json.hpp"
-#include "tests/unit/sim_evaluation/sample_results.hpp"
+#include "sim/report/results_json.hpp"
+#include "tests/unit/sim_report/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {

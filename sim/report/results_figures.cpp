@@ -1,11 +1,11 @@
-#include "sim/evaluation/results_figures.hpp"
+#include "sim/report/results_figures.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "sim/evaluation/error_figures.hpp"
-#include "sim/evaluation/palette.hpp"
+#include "sim/report/error_figures.hpp"
+#include "sim/report/palette.hpp"
 
 namespace tumblesight::sim {
 namespace {

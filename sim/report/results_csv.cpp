@@ -1,4 +1,4 @@
-#include "sim/evaluation/results_csv.hpp"
+#include "sim/report/results_csv.hpp"
 
 #include <fmt/format.h>
 

@@ -1,15 +1,15 @@
-#include "sim/evaluation/report_figures.hpp"
+#include "sim/report/report_figures.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "sim/evaluation/charts.hpp"
 #include "sim/evaluation/curves.hpp"
-#include "sim/evaluation/error_figures.hpp"
-#include "sim/evaluation/palette.hpp"
-#include "sim/evaluation/picture.hpp"
+#include "sim/report/charts.hpp"
+#include "sim/report/error_figures.hpp"
+#include "sim/report/palette.hpp"
+#include "sim/report/picture.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gnc/lidar/depth_image.hpp"
-#include "sim/evaluation/colour_map.hpp"
+#include "sim/report/colour_map.hpp"
 
 namespace tumblesight::sim {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/evaluation/svg.hpp"
+#include "sim/report/svg.hpp"
 
 namespace tumblesight::sim {
 

@@ -1,4 +1,4 @@
-#include "sim/evaluation/picture.hpp"
+#include "sim/report/picture.hpp"
 
 #include <png.h>
 

@@ -1,4 +1,4 @@
-#include "sim/evaluation/table.hpp"
+#include "sim/report/table.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "sim/evaluation/text_file.hpp"
+#include "sim/report/text_file.hpp"
 
 #include <unistd.h>
 

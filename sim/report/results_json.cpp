@@ -1,4 +1,4 @@
-#include "sim/evaluation/results_json.hpp"
+#include "sim/report/results_json.hpp"
 
 #include <fmt/format.h>
 

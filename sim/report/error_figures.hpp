@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/evaluation/charts.hpp"
 #include "sim/evaluation/confusion.hpp"
 #include "sim/evaluation/curves.hpp"
 #include "sim/evaluation/reliability.hpp"
+#include "sim/report/charts.hpp"
 
 namespace tumblesight::sim {
 

@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/evaluation/progress.hpp"
-#include "sim/evaluation/results_table.hpp"
-#include "sim/evaluation/table.hpp"
+#include "sim/report/progress.hpp"
+#include "sim/report/results_table.hpp"
+#include "sim/report/table.hpp"
 
 namespace tumblesight::sim {
 namespace {

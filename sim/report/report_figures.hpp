@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/evaluation/report.hpp"
+#include "sim/report/report.hpp"
 
 namespace tumblesight::sim {
 

@@ -1,4 +1,4 @@
-#include "sim/evaluation/palette.hpp"
+#include "sim/report/palette.hpp"
 
 namespace tumblesight::sim {
 

@@ -1,8 +1,8 @@
-#include "sim/evaluation/page.hpp"
+#include "sim/report/page.hpp"
 
 #include <fmt/format.h>
 
-#include "sim/evaluation/svg.hpp"
+#include "sim/report/svg.hpp"
 
 namespace tumblesight::sim {
 namespace {

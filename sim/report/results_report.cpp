@@ -1,15 +1,15 @@
-#include "sim/evaluation/results_report.hpp"
+#include "sim/report/results_report.hpp"
 
 #include <fmt/format.h>
 
 #include "sim/evaluation/checks.hpp"
-#include "sim/evaluation/error_figures.hpp"
-#include "sim/evaluation/page.hpp"
-#include "sim/evaluation/palette.hpp"
-#include "sim/evaluation/results_figures.hpp"
-#include "sim/evaluation/results_table.hpp"
 #include "sim/evaluation/statistics.hpp"
-#include "sim/evaluation/svg.hpp"
+#include "sim/report/error_figures.hpp"
+#include "sim/report/page.hpp"
+#include "sim/report/palette.hpp"
+#include "sim/report/results_figures.hpp"
+#include "sim/report/results_table.hpp"
+#include "sim/report/svg.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <sstream>
 
-#include "sim/evaluation/results_csv.hpp"
-#include "sim/evaluation/results_json.hpp"
-#include "sim/evaluation/results_markdown.hpp"
-#include "tests/unit/sim_evaluation/sample_results.hpp"
+#include "sim/report/results_csv.hpp"
+#include "sim/report/results_json.hpp"
+#include "sim/report/results_markdown.hpp"
+#include "tests/unit/sim_report/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/evaluation/progress.hpp"
+#include "sim/report/progress.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

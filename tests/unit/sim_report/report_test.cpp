@@ -1,4 +1,4 @@
-#include "sim/evaluation/report.hpp"
+#include "sim/report/report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <regex>
 #include <stdexcept>
 
-#include "sim/evaluation/charts.hpp"
-#include "sim/evaluation/svg.hpp"
-#include "sim/evaluation/text_file.hpp"
-#include "tests/unit/sim_evaluation/markup_checks.hpp"
+#include "sim/report/charts.hpp"
+#include "sim/report/svg.hpp"
+#include "sim/report/text_file.hpp"
+#include "tests/unit/sim_report/markup_checks.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -1,11 +1,11 @@
-#include "sim/evaluation/results_table.hpp"
+#include "sim/report/results_table.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "sim/evaluation/statistics.hpp"
-#include "sim/evaluation/table.hpp"
+#include "sim/report/table.hpp"
 
 namespace tumblesight::sim {
 namespace {

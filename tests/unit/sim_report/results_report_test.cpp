@@ -1,9 +1,9 @@
-#include "sim/evaluation/results_report.hpp"
+#include "sim/report/results_report.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/sim_evaluation/markup_checks.hpp"
-#include "tests/unit/sim_evaluation/sample_results.hpp"
+#include "tests/unit/sim_report/markup_checks.hpp"
+#include "tests/unit/sim_report/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -1,14 +1,14 @@
-#include "sim/evaluation/report.hpp"
+#include "sim/report/report.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "sim/evaluation/page.hpp"
-#include "sim/evaluation/report_figures.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/evaluation/statistics.hpp"
-#include "sim/evaluation/svg.hpp"
+#include "sim/report/page.hpp"
+#include "sim/report/report_figures.hpp"
+#include "sim/report/svg.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/evaluation/charts.hpp"
+#include "sim/report/charts.hpp"
 
 #include <fmt/format.h>
 

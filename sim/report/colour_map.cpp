@@ -1,4 +1,4 @@
-#include "sim/evaluation/colour_map.hpp"
+#include "sim/report/colour_map.hpp"
 
 #include <algorithm>
 #include <cmath>

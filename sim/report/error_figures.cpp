@@ -1,11 +1,11 @@
-#include "sim/evaluation/error_figures.hpp"
+#include "sim/report/error_figures.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "sim/evaluation/palette.hpp"
 #include "sim/evaluation/statistics.hpp"
+#include "sim/report/palette.hpp"
 
 namespace tumblesight::sim {
 

@@ -1,4 +1,4 @@
-#include "sim/evaluation/svg.hpp"
+#include "sim/report/svg.hpp"
 
 #include <fmt/format.h>
 

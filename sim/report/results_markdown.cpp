@@ -1,10 +1,10 @@
-#include "sim/evaluation/results_markdown.hpp"
+#include "sim/report/results_markdown.hpp"
 
 #include <fmt/format.h>
 
 #include "sim/evaluation/checks.hpp"
-#include "sim/evaluation/results_table.hpp"
 #include "sim/evaluation/statistics.hpp"
+#include "sim/report/results_table.hpp"
 
 namespace tumblesight::sim {
 namespace {
