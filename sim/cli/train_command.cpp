@@ -1,5 +1,7 @@
 #include "sim/cli/train_command.hpp"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -64,6 +66,15 @@ Eigen::Matrix3d inertia_of(const TrainOptions& options) {
   return Eigen::Matrix3d::Identity();
 }
 
+// One thread a process: with rendering beside it, more of LibTorch's own threads only wait for each other,
+// and OpenBLAS's, where it does the matrix products, by spinning: a quarter of the training's time.
+void keep_to_one_thread() {
+  at::set_num_threads(1);
+  if (void* set_threads = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) {
+    reinterpret_cast<void (*)(int)>(set_threads)(1);
+  }
+}
+
 void choose_device(TrainOptions& options) {
   const bool cuda = torch::cuda::is_available();
   if (options.device == "cuda" && !cuda) {
@@ -73,8 +84,7 @@ void choose_device(TrainOptions& options) {
   options.settings.device = torch::Device(use_cuda ? torch::kCUDA : torch::kCPU);
   options.settings.bfloat16 =
       options.precision == "bfloat16" || (options.precision == "auto" && (use_cuda || cpu_has_bfloat16()));
-  // One thread a process: with rendering beside it, more of LibTorch's own threads only wait for each other.
-  if (!use_cuda) at::set_num_threads(1);
+  if (!use_cuda) keep_to_one_thread();
 }
 
 // Without a CNN to begin with, too few images for one batch would leave it at random weights.
