@@ -87,10 +87,6 @@ Eigen::Vector3f small_turn_of(const Eigen::Matrix3f& r) {
   return {half * (r(2, 1) - r(1, 2)), half * (r(0, 2) - r(2, 0)), half * (r(1, 0) - r(0, 1))};
 }
 
-Motion spin(const Motion& motion) {
-  return {product(rotation_by(motion.rate_lrf), motion.r_lrf_trf), bounded(motion.rate_lrf)};
-}
-
 Motion tumble(const Motion& motion, const Inertia& inertia) {
   const Eigen::Vector3f rate = bounded(motion.rate_lrf);
   const Eigen::Vector3f momentum_lrf =
@@ -103,6 +99,24 @@ Motion tumble(const Motion& motion, const Inertia& inertia) {
     r = product(rotation_by(rate_of(middle, momentum_lrf, inertia) * kStep), r);
   }
   return {r, rate_of(r, momentum_lrf, inertia)};
+}
+
+MotionLaws motion_laws(const Inertia& inertia) {
+  MotionLaws laws;
+  for (int law = kTumbleLaw; law < kLaws; ++law) laws[law] = inertia;
+  for (int axis = 0; axis < 3; ++axis) {
+    // S J S with S = diag(1, 1, sqrt(1/2)): positive definite as J is.
+    constexpr float kSqrtHalf = 0.70710678F;
+    Eigen::Matrix3f tensor_trf = inertia.tensor_trf;
+    for (int other = 0; other < 3; ++other) {
+      const float product_of_inertia = kSqrtHalf * tensor_trf(axis, other);
+      tensor_trf(axis, other) = tensor_trf(other, axis) = product_of_inertia;
+    }
+    tensor_trf(axis, axis) = 0.5F * inertia.tensor_trf(axis, axis);
+    // An inertia that is next to a rod's already stays as it is.
+    if (!make_inertia(tensor_trf, laws[kTumbleLaw + 1 + axis])) laws[kTumbleLaw + 1 + axis] = inertia;
+  }
+  return laws;
 }
 
 }  // namespace tumblesight::gnc

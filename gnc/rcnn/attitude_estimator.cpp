@@ -23,6 +23,7 @@ ModelStatus AttitudeEstimator::load(const std::uint8_t* image, std::size_t size_
                                     const char* expected_target) {
   const ModelStatus status = read_model_image(image, size_bytes, expected_target, model_, network_.weights());
   if (status == ModelStatus::kOk) {
+    laws_ = motion_laws(model_.inertia);
     has_model_ = true;
     reset();
   }
@@ -43,7 +44,7 @@ void AttitudeEstimator::step(const DepthImage& image, AttitudeEstimate& estimate
   OutputVector output;
   network_.infer_frame(image, output);
   const Hypotheses hypotheses = hypotheses_of(output, image.r_lrf_view);
-  const Prediction prediction = predict(state_.track, model_.inertia, hypotheses);
+  const Prediction prediction = predict(state_.track, laws_, hypotheses);
 
   layers::Recurrent::Input input;
   layers::Head2::Output head;
@@ -68,7 +69,7 @@ std::uint32_t AttitudeEstimator::state_crc32() const {
     crc.add_f32(motion.r_lrf_trf.data(), 9);
     crc.add_f32(motion.rate_lrf.data(), 3);
   }
-  crc.add_f32(&state_.track.tumble_evidence, 1);
+  crc.add_f32(state_.track.log_likelihood.data(), state_.track.log_likelihood.size());
   crc.add_u32(state_.track.frames);
   return crc.value();
 }

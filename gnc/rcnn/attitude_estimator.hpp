@@ -53,6 +53,7 @@ class AttitudeEstimator {
   Network network_;
   State state_;
   ModelHeader model_;
+  MotionLaws laws_;
   DepthImage image_;
   DepthImageScratch scratch_;
   bool has_model_ = false;

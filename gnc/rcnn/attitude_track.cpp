@@ -23,7 +23,7 @@ constexpr int kGains = 10;
 struct FilterGains {
   float predicted_weight;  // of the predicted attitude, the hypotheses of a frame weighing 1: (1 - a) / a
   float rate_logit;        // sigmoid^-1 of the rate's gain over the attitude's
-  float evidence;          // by how much the squared distance from a prediction tells: (1 - a) / (2 a^2)
+  float evidence;          // by how much a law's squared miss tells against it: (1 - a) / (2 a^2)
 };
 
 constexpr std::array<FilterGains, kGains> kFilterGains{{{0.0003F, 6.9067548F, 0.0F},
@@ -37,9 +37,9 @@ constexpr std::array<FilterGains, kGains> kFilterGains{{{0.0003F, 6.9067548F, 0.
                                                         {1.6470588F, -1.540445F, 2.1799308F},
                                                         {1.8947368F, -1.6739764F, 2.7423823F}}};
 
-constexpr float kMeasurementVariance_rad2 = 7e-4F;  // of a frame's attitude: 1.5 degrees
-constexpr float kLargestEvidence = 6.0F;
-constexpr float kMemory = 0.9F;                                   // of the evidence, from frame to frame
+constexpr float kLeastVariance_rad2 = 7e-4F;  // of a frame's attitude: 1.5 degrees
+constexpr float kLeastLogLikelihood = -6.0F;
+constexpr float kMemory = 0.9F;                                   // of the likelihoods, from frame to frame
 constexpr float kMissOfLostTarget = 2.0F * (1.0F - 0.93969262F);  // 20 degrees
 constexpr float kLeastSeen = 0.1F;  // probability near a prediction; with less, the target is lost
 
@@ -50,7 +50,10 @@ bool is_sound(const Motion& motion) {
 }
 
 bool is_sound(const AttitudeTrack& track) {
-  return is_sound(track.motion[0]) && is_sound(track.motion[1]) && std::isfinite(track.tumble_evidence);
+  bool sound = true;
+  for (int law = 0; law < kLaws; ++law)
+    sound = is_sound(track.motion[law]) && std::isfinite(track.log_likelihood[law]) && sound;
+  return sound;
 }
 
 // p exp(word) for the hypotheses, prior exp(word) for the predicted attitude.
@@ -96,14 +99,46 @@ Motion corrected(const Motion& predicted, const Eigen::Matrix3f& r_lrf_trf, floa
   return {r_lrf_trf, predicted.rate_lrf + rate_gain * small_turn_of(product(r_lrf_trf, lrf_predicted))};
 }
 
+float standing(const AttitudeTrack& track, int law) {
+  return track.log_likelihood[law] - kEvidenceAsked[law];
+}
+
+// Every law's log-likelihood falls by `told` times its squared miss. A law that has lost the target goes on
+// from where the best of those that see it does.
+void weigh_laws(const std::array<float, kLaws>& miss, float told, AttitudeTrack& track) {
+  float likeliest = kMemory * track.log_likelihood[0] - told * miss[0];
+  for (int law = 0; law < kLaws; ++law) {
+    track.log_likelihood[law] = kMemory * track.log_likelihood[law] - told * miss[law];
+    likeliest = std::max(likeliest, track.log_likelihood[law]);
+  }
+  int best = -1;
+  for (int law = 0; law < kLaws; ++law) {
+    track.log_likelihood[law] = std::max(kLeastLogLikelihood, track.log_likelihood[law] - likeliest);
+    const bool sees_it = miss[law] < kMissOfLostTarget;
+    best = sees_it && (best < 0 || standing(track, law) > standing(track, best)) ? law : best;
+  }
+  for (int law = 0; law < kLaws; ++law) {
+    if (best >= 0 && miss[law] >= kMissOfLostTarget) track.motion[law] = track.motion[best];
+  }
+}
+
 }  // namespace
 
-Prediction predict(const AttitudeTrack& track, const Inertia& inertia, const Hypotheses& hypotheses) {
+int AttitudeTrack::law() const {
+  int best = kSpinLaw;
+  for (int law = 1; law < kLaws; ++law) best = standing(*this, law) > standing(*this, best) ? law : best;
+  return best;
+}
+
+Prediction predict(const AttitudeTrack& track, const MotionLaws& laws, const Hypotheses& hypotheses) {
+  Prediction prediction;
   if (track.frames == 0 || !is_sound(track)) {
-    const Motion at_rest{hypotheses.r_lrf_trf[hypotheses.likeliest], Eigen::Vector3f::Zero()};
-    return {{at_rest, at_rest}, Law::kSpin};
+    prediction.motion.fill({hypotheses.r_lrf_trf[hypotheses.likeliest], Eigen::Vector3f::Zero()});
+    return prediction;
   }
-  return {{spin(track.motion[0]), tumble(track.motion[1], inertia)}, track.law()};
+  for (int law = 0; law < kLaws; ++law) prediction.motion[law] = tumble(track.motion[law], laws[law]);
+  prediction.law = track.law();
+  return prediction;
 }
 
 void fill_lstm_input(const layers::Dense2::Output& features, const Hypotheses& hypotheses,
@@ -139,16 +174,11 @@ TrackedAttitude advance(const Hypotheses& hypotheses, const Prediction& predicti
     miss[law] = squared_miss(hypotheses, prediction.motion[law], r_lrf_trf);
     track.motion[law] = corrected(prediction.motion[law], r_lrf_trf, rate_gain);
   }
-  const float evidence =
-      kMemory * track.tumble_evidence + (miss[0] - miss[1]) * (gains.evidence / kMeasurementVariance_rad2);
-  track.tumble_evidence = std::min(kLargestEvidence, std::max(-kLargestEvidence, evidence));
-  // A law that has lost the target goes on from where the other one sees it.
-  for (int law = 0; law < kLaws; ++law) {
-    if (miss[law] >= kMissOfLostTarget && miss[1 - law] < kMissOfLostTarget)
-      track.motion[law] = track.motion[1 - law];
-  }
+  const float predicted_error_rad = kPi * sigmoid(words[2 * kCandidates + 1]);
+  const float variance_rad2 = std::max(kLeastVariance_rad2, predicted_error_rad * predicted_error_rad);
+  weigh_laws(miss, gains.evidence / variance_rad2, track);
   ++track.frames;
-  return {track.motion[static_cast<int>(track.law())].r_lrf_trf, kPi * sigmoid(words[2 * kCandidates + 1])};
+  return {track.motion[track.law()].r_lrf_trf, predicted_error_rad};
 }
 
 }  // namespace tumblesight::gnc

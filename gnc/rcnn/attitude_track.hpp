@@ -12,25 +12,23 @@
 
 namespace tumblesight::gnc {
 
-// Two laws of motion are followed side by side: a spin constant in the LRF (the paper's sequences) and
-// torque-free rotation (its tumbling test). The one that has predicted better so far speaks.
-enum class Law : std::uint8_t { kSpin = 0, kTumble = 1 };
-inline constexpr int kLaws = 2;
-// With less evidence a target is taken to spin: where both laws say the same, rounding must not decide.
-inline constexpr float kEvidenceToTumble = 0.5F;
+// Several laws of motion are followed side by side; the one that has predicted best so far speaks. With less
+// evidence than this, a target is taken to spin, and to have the inertia that is known of it: where laws say
+// the same, rounding must not decide.
+inline constexpr std::array<float, kLaws> kEvidenceAsked{0.0F, 0.5F, 2.0F, 2.0F, 2.0F};
 
 struct AttitudeTrack {
-  std::array<Motion, kLaws> motion;  // at the last frame, by each law
-  float tumble_evidence = 0.0F;      // log-likelihood ratio of kTumble over kSpin
-  std::uint32_t frames = 0;          // since the reset
+  std::array<Motion, kLaws> motion;           // at the last frame, by each law
+  std::array<float, kLaws> log_likelihood{};  // of each law; 0 the likeliest one's, the others' below
+  std::uint32_t frames = 0;                   // since the reset
 
-  Law law() const { return tumble_evidence > kEvidenceToTumble ? Law::kTumble : Law::kSpin; }
+  int law() const;  // the one that speaks
 };
 
 struct Prediction {
   std::array<Motion, kLaws> motion;
-  Law law = Law::kSpin;
-  const Eigen::Matrix3f& r_lrf_trf() const { return motion[static_cast<int>(law)].r_lrf_trf; }
+  int law = kSpinLaw;
+  const Eigen::Matrix3f& r_lrf_trf() const { return motion[law].r_lrf_trf; }
 };
 
 struct TrackedAttitude {
@@ -40,7 +38,7 @@ struct TrackedAttitude {
 
 // For the frame that the hypotheses are of. Without a track (before the first frame, or when it is not
 // finite) the likeliest hypothesis, at rest.
-Prediction predict(const AttitudeTrack& track, const Inertia& inertia, const Hypotheses& hypotheses);
+Prediction predict(const AttitudeTrack& track, const MotionLaws& laws, const Hypotheses& hypotheses);
 
 // What the LSTM gets: dense2's output; for every hypothesis the first two columns of its turn relative to the
 // predicted attitude, in the TRF, where the alternatives of a symmetric target stand still; the

@@ -14,12 +14,13 @@ constexpr int kCandidates = shape::kCandidates;
 constexpr double kTraceOfSameAttitude = 1.0 + 2.0 * 0.93969262;  // 20 degrees apart
 constexpr double kLeastProbability = 1e-6;
 constexpr double kLargestExponent = 8.0;
-constexpr double kMeasurementVariance_rad2 = 7e-4;
-constexpr double kLargestEvidence = 6.0;
+constexpr double kLeastVariance_rad2 = 7e-4;
+constexpr double kLeastLogLikelihood = -6.0;
 constexpr double kMemory = 0.9;
 constexpr double kMissOfLostTarget = static_cast<double>(2.0F * (1.0F - 0.93969262F));
 constexpr double kLeastSeen = 0.1;
 constexpr int kGains = 10;
+constexpr double kPi = 3.14159265358979;
 
 struct FilterGains {
   double predicted_weight, rate_logit, evidence;
@@ -51,16 +52,20 @@ torch::Tensor trace_of_transpose_product(const torch::Tensor& a, const torch::Te
   return (a * b).sum({-1, -2});
 }
 
-// [B, K, 3, 3] and weights [B, K] -> the mean of the cluster of every candidate [B, K, 3, 3].
+// [..., K, 3, 3] and weights [..., K] -> the mean of the cluster of every candidate [..., K, 3, 3].
 torch::Tensor means_of_clusters(const torch::Tensor& candidates, const torch::Tensor& weights) {
-  const torch::Tensor flat = candidates.flatten(2);
-  const torch::Tensor same = torch::matmul(flat, flat.transpose(1, 2)).detach() > kTraceOfSameAttitude;
-  const torch::Tensor shares = same.to(torch::kFloat) * weights.unsqueeze(1);
+  const torch::Tensor flat = candidates.flatten(-2);
+  const torch::Tensor same = torch::matmul(flat, flat.transpose(-1, -2)).detach() > kTraceOfSameAttitude;
+  const torch::Tensor shares = same.to(torch::kFloat) * weights.unsqueeze(-2);
   return orthonormalised(torch::matmul(shares / shares.sum(-1, true), flat).view_as(candidates));
 }
 
-torch::Tensor picked(const torch::Tensor& candidates, const torch::Tensor& index) {
-  return candidates.gather(1, index.view({-1, 1, 1, 1}).expand({-1, 1, 3, 3})).squeeze(1);
+// Of every row the entry `index` [B] along the dimension `of`.
+torch::Tensor picked(const torch::Tensor& values, const torch::Tensor& index, int of = 1) {
+  std::vector<std::int64_t> one(static_cast<std::size_t>(values.dim()), 1), all = values.sizes().vec();
+  one[0] = -1;
+  all[static_cast<std::size_t>(of)] = 1;
+  return values.gather(of, index.view(one).expand(all)).squeeze(of);
 }
 
 torch::Tensor bounded(const torch::Tensor& rate) {
@@ -70,12 +75,12 @@ torch::Tensor bounded(const torch::Tensor& rate) {
 
 torch::Tensor cross_matrix(const torch::Tensor& v) {
   const torch::Tensor x = v.select(-1, 0), y = v.select(-1, 1), z = v.select(-1, 2), o = torch::zeros_like(x);
-  return torch::stack({o, -z, y, z, o, -x, -y, x, o}, -1).view({-1, 3, 3});
+  return torch::stack({o, -z, y, z, o, -x, -y, x, o}, -1).unflatten(-1, {3, 3});
 }
 
 torch::Tensor rotation_by(const torch::Tensor& turn) {
   const torch::Tensor v = bounded(turn);
-  const torch::Tensor angle = (v.square().sum(-1) + 1e-12).sqrt().view({-1, 1, 1});
+  const torch::Tensor angle = (v.square().sum(-1) + 1e-12).sqrt().unsqueeze(-1).unsqueeze(-1);
   const torch::Tensor k = cross_matrix(v);
   return torch::eye(3, v.options()) + torch::sin(angle) / angle * k +
          (1.0 - torch::cos(angle)) / angle.square() * torch::matmul(k, k);
@@ -94,36 +99,30 @@ torch::Tensor small_turn_of(const torch::Tensor& r) {
 }
 
 struct MotionTensors {
-  torch::Tensor r_lrf_trf, rate_lrf;
+  torch::Tensor r_lrf_trf, rate_lrf;  // [B, laws, 3, 3], [B, laws, 3]
 };
 
 MotionTensors spin(const MotionTensors& motion) {
   return {torch::matmul(rotation_by(motion.rate_lrf), motion.r_lrf_trf), bounded(motion.rate_lrf)};
 }
 
-// By the flight code itself, row by row: the gradient takes the turn as given.
-MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia& inertia) {
+// By the flight code itself, one by one: the gradient takes the turn as given.
+MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia* laws) {
   using RowMajor = Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>;
   const torch::Tensor before = motion.r_lrf_trf.detach().cpu().contiguous();
   const torch::Tensor rate_before = motion.rate_lrf.detach().cpu().contiguous();
   const torch::Tensor turn = torch::empty_like(before), rate = torch::empty_like(rate_before);
-  for (std::int64_t row = 0; row < before.size(0); ++row) {
+  const std::int64_t count = before.size(1);
+  for (std::int64_t i = 0; i < before.size(0) * count; ++i) {
     gnc::Motion m;
-    m.r_lrf_trf = RowMajor(before.data_ptr<float>() + 9 * row);
-    m.rate_lrf = Eigen::Map<Eigen::Vector3f>(rate_before.data_ptr<float>() + 3 * row);
-    const gnc::Motion after = gnc::tumble(m, inertia);
-    RowMajor{turn.data_ptr<float>() + 9 * row} = after.r_lrf_trf * m.r_lrf_trf.transpose();
-    Eigen::Map<Eigen::Vector3f>{rate.data_ptr<float>() + 3 * row} = after.rate_lrf;
+    m.r_lrf_trf = RowMajor(before.data_ptr<float>() + 9 * i);
+    m.rate_lrf = Eigen::Map<Eigen::Vector3f>(rate_before.data_ptr<float>() + 3 * i);
+    const gnc::Motion after = gnc::tumble(m, laws[i % count]);
+    RowMajor{turn.data_ptr<float>() + 9 * i} = after.r_lrf_trf * m.r_lrf_trf.transpose();
+    Eigen::Map<Eigen::Vector3f>{rate.data_ptr<float>() + 3 * i} = after.rate_lrf;
   }
   const torch::Tensor turned = torch::matmul(turn.to(motion.r_lrf_trf.device()), motion.r_lrf_trf);
   return {turned, rate.to(motion.rate_lrf.device())};
-}
-
-// Row by row: a where `second` is false, b where it is true.
-torch::Tensor chosen(const torch::Tensor& second, const torch::Tensor& a, const torch::Tensor& b) {
-  std::vector<std::int64_t> shape(static_cast<std::size_t>(a.dim()), 1);
-  shape[0] = -1;
-  return torch::where(second.view(shape), b, a);
 }
 
 }  // namespace
@@ -141,25 +140,36 @@ FrameHypotheses::FrameHypotheses(const torch::Tensor& features_, const torch::Te
       logits(logits_),
       probabilities(torch::softmax(logits_, -1)) {}
 
-torch::Tensor TrackModule::predicted_r() const {
-  return chosen(tumble_evidence_ > gnc::kEvidenceToTumble, r_lrf_trf_[0], r_lrf_trf_[1]);
+torch::Tensor TrackModule::standing() const {
+  const torch::Tensor asked =
+      torch::tensor(std::vector<float>(gnc::kEvidenceAsked.begin(), gnc::kEvidenceAsked.end()));
+  return log_likelihood_ - asked.to(log_likelihood_.device());
+}
+
+torch::Tensor TrackModule::law() const {
+  return standing().argmax(-1);
 }
 
 void TrackModule::predict(const FrameHypotheses& frame) {
   if (frames_ == 0) {
-    r_lrf_trf_.fill(picked(frame.r_lrf_trf, frame.logits.argmax(-1)));
-    rate_lrf_.fill(torch::zeros({frame.logits.size(0), 3}, frame.logits.options()));
-    tumble_evidence_ = torch::zeros({frame.logits.size(0)}, frame.logits.options());
+    const std::int64_t rows = frame.logits.size(0);
+    r_lrf_trf_ = picked(frame.r_lrf_trf, frame.logits.argmax(-1)).unsqueeze(1).expand({-1, gnc::kLaws, 3, 3});
+    rate_lrf_ = torch::zeros({rows, gnc::kLaws, 3}, frame.logits.options());
+    log_likelihood_ = torch::zeros({rows, gnc::kLaws}, frame.logits.options());
     return;
   }
-  const MotionTensors spun = spin({r_lrf_trf_[0], rate_lrf_[0]});
-  const MotionTensors tumbled = tumble({r_lrf_trf_[1], rate_lrf_[1]}, inertia_);
-  r_lrf_trf_ = {spun.r_lrf_trf, tumbled.r_lrf_trf};
-  rate_lrf_ = {spun.rate_lrf, tumbled.rate_lrf};
+  // The first law is a spin, through which the gradient goes.
+  static_assert(gnc::kSpinLaw == 0);
+  constexpr int kOthers = gnc::kLaws - 1;
+  const MotionTensors spun = spin({r_lrf_trf_.narrow(1, 0, 1), rate_lrf_.narrow(1, 0, 1)});
+  const MotionTensors tumbled =
+      tumble({r_lrf_trf_.narrow(1, 1, kOthers), rate_lrf_.narrow(1, 1, kOthers)}, laws_.data() + 1);
+  r_lrf_trf_ = torch::cat({spun.r_lrf_trf, tumbled.r_lrf_trf}, 1);
+  rate_lrf_ = torch::cat({spun.rate_lrf, tumbled.rate_lrf}, 1);
 }
 
 torch::Tensor TrackModule::lstm_input(const FrameHypotheses& frame) const {
-  const torch::Tensor predicted = predicted_r();
+  const torch::Tensor predicted = picked(r_lrf_trf_, law());
   const torch::Tensor relative = torch::matmul(predicted.transpose(-1, -2).unsqueeze(1), frame.r_lrf_trf);
   return torch::cat(
       {frame.features, two_columns(relative).flatten(1), frame.probabilities, two_columns(predicted)}, -1);
@@ -176,38 +186,38 @@ Fusion TrackModule::advance(const FrameHypotheses& frame, const torch::Tensor& w
       torch::cat({frame.logits, 0.0 * column}, -1) + word.narrow(-1, 0, kCandidates);
   const torch::Tensor anchor = anchor_logits.argmax(-1);
   const torch::Tensor rate_gain =
-      torch::sigmoid(word.select(-1, 2 * kCandidates) + gains.rate_logit).unsqueeze(-1);
+      torch::sigmoid(word.select(-1, 2 * kCandidates) + gains.rate_logit).view({-1, 1, 1});
+  const torch::Tensor error_logit = word.select(-1, 2 * kCandidates + 1);
 
-  std::array<torch::Tensor, gnc::kLaws> means, answers, misses;
-  for (std::size_t law = 0; law < gnc::kLaws; ++law) {
-    const torch::Tensor predicted = r_lrf_trf_[law];
-    means[law] = means_of_clusters(torch::cat({frame.r_lrf_trf, predicted.unsqueeze(1)}, 1), weights);
-    answers[law] = picked(means[law], anchor);
-    const torch::Tensor near =
-        (trace_of_transpose_product(frame.r_lrf_trf, predicted.unsqueeze(1)) > kTraceOfSameAttitude)
-            .to(torch::kFloat);
-    const torch::Tensor lost = (near * frame.probabilities).sum(-1) < kLeastSeen;
-    misses[law] = (3.0 - trace_of_transpose_product(predicted, answers[law]))
-                      .clamp_max(kMissOfLostTarget)
-                      .masked_fill(lost, kMissOfLostTarget)
-                      .detach();
-    if (frames_ > 0) {
-      const torch::Tensor turn = torch::matmul(answers[law], predicted.transpose(-1, -2));
-      rate_lrf_[law] = rate_lrf_[law] + rate_gain * small_turn_of(turn);
-    }
-    r_lrf_trf_[law] = answers[law];
+  const torch::Tensor hypotheses = frame.r_lrf_trf.unsqueeze(1);  // [B, 1, 8, 3, 3]
+  const torch::Tensor candidates =
+      torch::cat({hypotheses.expand({-1, gnc::kLaws, -1, -1, -1}), r_lrf_trf_.unsqueeze(2)}, 2);
+  const torch::Tensor means = means_of_clusters(candidates, weights.unsqueeze(1));  // [B, 5, 9, 3, 3]
+  const torch::Tensor answers = picked(means, anchor, 2);
+  const torch::Tensor near =
+      (trace_of_transpose_product(hypotheses, r_lrf_trf_.unsqueeze(2)) > kTraceOfSameAttitude)
+          .to(torch::kFloat);
+  const torch::Tensor unseen = (near * frame.probabilities.unsqueeze(1)).sum(-1) < kLeastSeen;
+  const torch::Tensor misses = (3.0 - trace_of_transpose_product(r_lrf_trf_, answers))
+                                   .clamp_max(kMissOfLostTarget)
+                                   .masked_fill(unseen, kMissOfLostTarget)
+                                   .detach();
+  if (frames_ > 0) {
+    rate_lrf_ = rate_lrf_ + rate_gain * small_turn_of(torch::matmul(answers, r_lrf_trf_.transpose(-1, -2)));
   }
-  const torch::Tensor nearer = (misses[0] - misses[1]) * (gains.evidence / kMeasurementVariance_rad2);
-  tumble_evidence_ = (kMemory * tumble_evidence_ + nearer).clamp(-kLargestEvidence, kLargestEvidence);
-  const torch::Tensor spin_lost = (misses[0] >= kMissOfLostTarget) & (misses[1] < kMissOfLostTarget);
-  const torch::Tensor tumble_lost = (misses[1] >= kMissOfLostTarget) & (misses[0] < kMissOfLostTarget);
-  r_lrf_trf_ = {chosen(spin_lost, answers[0], answers[1]), chosen(tumble_lost, answers[1], answers[0])};
-  rate_lrf_ = {chosen(spin_lost, rate_lrf_[0], rate_lrf_[1]),
-               chosen(tumble_lost, rate_lrf_[1], rate_lrf_[0])};
+
+  const torch::Tensor variance =
+      (kPi * torch::sigmoid(error_logit)).square().clamp_min(kLeastVariance_rad2).detach().unsqueeze(1);
+  log_likelihood_ = kMemory * log_likelihood_ - gains.evidence / variance * misses;
+  log_likelihood_ = (log_likelihood_ - log_likelihood_.amax(-1, true)).clamp_min(kLeastLogLikelihood);
+  // A law that has lost the target goes on from where the best of those that see it does.
+  const torch::Tensor lost = misses >= kMissOfLostTarget;
+  const torch::Tensor best = standing().masked_fill(lost, -1e9).argmax(-1);
+  const torch::Tensor moved = (lost & ~lost.all(-1, true)).unsqueeze(-1);
+  r_lrf_trf_ = torch::where(moved.unsqueeze(-1), picked(answers, best).unsqueeze(1), answers);
+  rate_lrf_ = torch::where(moved, picked(rate_lrf_, best).unsqueeze(1), rate_lrf_);
   ++frames_;
-  const torch::Tensor tumbles = tumble_evidence_ > gnc::kEvidenceToTumble;
-  return {chosen(tumbles, r_lrf_trf_[0], r_lrf_trf_[1]), chosen(tumbles, means[0], means[1]), anchor_logits,
-          word.select(-1, 2 * kCandidates + 1)};
+  return {picked(r_lrf_trf_, law()), picked(means, law()), anchor_logits, error_logit};
 }
 
 }  // namespace tumblesight::sim

@@ -4,8 +4,6 @@
 
 #include <torch/torch.h>
 
-#include <array>
-
 #include "gnc/rcnn/attitude_track.hpp"
 
 namespace tumblesight::sim {
@@ -31,19 +29,20 @@ struct Fusion {
 // One track a row of the batch. For every frame: predict(), lstm_input(), advance().
 class TrackModule {
  public:
-  explicit TrackModule(const gnc::Inertia& inertia) : inertia_(inertia) {}
+  explicit TrackModule(const gnc::Inertia& inertia) : laws_(gnc::motion_laws(inertia)) {}
   void predict(const FrameHypotheses& frame);
   torch::Tensor lstm_input(const FrameHypotheses& frame) const;  // [B, 190]
   Fusion advance(const FrameHypotheses& frame, const torch::Tensor& word);
 
  private:
-  torch::Tensor predicted_r() const;  // by the law that speaks [B, 3, 3]
+  torch::Tensor standing() const;  // log-likelihood less the evidence asked [B, 5]
+  torch::Tensor law() const;       // the one that speaks [B]
 
-  gnc::Inertia inertia_;
+  gnc::MotionLaws laws_;
   int frames_ = 0;
   // By each law of motion; after predict() in the frame to come, after advance() in the frame that was.
-  std::array<torch::Tensor, gnc::kLaws> r_lrf_trf_, rate_lrf_;  // [B, 3, 3], [B, 3]
-  torch::Tensor tumble_evidence_;                               // [B]
+  torch::Tensor r_lrf_trf_, rate_lrf_;  // [B, 5, 3, 3], [B, 5, 3]
+  torch::Tensor log_likelihood_;        // [B, 5]
 };
 
 }  // namespace tumblesight::sim

@@ -55,6 +55,34 @@ double predicted_weight_after(int frames) {
   return frames < 2 ? 3e-4 : (1.0 - gain) / gain;
 }
 
+ReferenceTrack::ReferenceTrack(const Eigen::Matrix3d& inertia_trf) {
+  inertia_.fill(inertia_trf);
+  inertia_[0].setIdentity();
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Matrix3d shrink = Eigen::Matrix3d::Identity();
+    shrink(axis, axis) = std::sqrt(0.5);
+    inertia_[2 + axis] = shrink * inertia_trf * shrink;
+  }
+}
+
+std::array<double, ReferenceTrack::kLaws> ReferenceTrack::handicapped() const {
+  std::array<double, kLaws> standing = log_likelihood;
+  standing[1] -= 0.5;
+  for (int law = 2; law < kLaws; ++law) standing[law] -= 2.0;
+  return standing;
+}
+
+int ReferenceTrack::law() const {
+  const auto standing = handicapped();
+  return static_cast<int>(std::max_element(standing.begin(), standing.end()) - standing.begin());
+}
+
+double ReferenceTrack::margin() const {
+  auto standing = handicapped();
+  std::sort(standing.begin(), standing.end());
+  return standing[kLaws - 1] - standing[kLaws - 2];
+}
+
 void ReferenceTrack::see(const Numbers& output, const Eigen::Matrix3d& r_lrf_view) {
   double sum = 0.0;
   for (int i = 0; i < 8; ++i) {
@@ -74,18 +102,19 @@ void ReferenceTrack::predict() {
     predicted_.fill({hypotheses_[likeliest_], Eigen::Vector3d::Zero()});
     return;
   }
-  predicted_[0] = {rotation_by(motion[0].rate) * motion[0].attitude, bounded(motion[0].rate)};
-
-  Eigen::Matrix3d r = motion[1].attitude;
-  const Eigen::Vector3d momentum = r * inertia_ * r.transpose() * bounded(motion[1].rate);
-  const auto rate_at = [&](const Eigen::Matrix3d& at) -> Eigen::Vector3d {
-    return at * inertia_.inverse() * at.transpose() * momentum;
-  };
-  for (int quarter = 0; quarter < 4; ++quarter) {
-    const Eigen::Matrix3d middle = rotation_by(rate_at(r) / 8.0) * r;
-    r = rotation_by(rate_at(middle) / 4.0) * r;
+  for (int law = 0; law < kLaws; ++law) {
+    const Eigen::Matrix3d& inertia = inertia_[law];
+    Eigen::Matrix3d r = motion[law].attitude;
+    const Eigen::Vector3d momentum = r * inertia * r.transpose() * bounded(motion[law].rate);
+    const auto rate_at = [&](const Eigen::Matrix3d& at) -> Eigen::Vector3d {
+      return at * inertia.inverse() * at.transpose() * momentum;
+    };
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const Eigen::Matrix3d middle = rotation_by(rate_at(r) / 8.0) * r;
+      r = rotation_by(rate_at(middle) / 4.0) * r;
+    }
+    predicted_[law] = {r, rate_at(r)};
   }
-  predicted_[1] = {r, rate_at(r)};
 }
 
 Eigen::Matrix3d ReferenceTrack::single_frame() {
@@ -110,7 +139,7 @@ Eigen::Matrix3d ReferenceTrack::mean_around(int anchor, int law, const std::arra
   Eigen::Vector3d first = Eigen::Vector3d::Zero(), second = Eigen::Vector3d::Zero();
   int members = 0;
   for (int i = 0; i < 9; ++i) {
-    if (angle_deg(candidate(i, law), candidate(anchor, law)) >= 20.0) continue;
+    if (!same(candidate(i, law), candidate(anchor, law))) continue;
     first += weights[i] * candidate(i, law).col(0);
     second += weights[i] * candidate(i, law).col(1);
     ++members;
@@ -129,10 +158,16 @@ void ReferenceTrack::correct(int law, int anchor, const std::array<double, 9>& w
   ++turned;
 }
 
-double ReferenceTrack::miss(int law) const {
+bool ReferenceTrack::same(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  const double apart_deg = angle_deg(a, b);
+  nearest_call_deg = std::min(nearest_call_deg, std::abs(apart_deg - 20.0));
+  return apart_deg < 20.0;
+}
+
+double ReferenceTrack::miss(int law) {
   double seen = 0.0;
   for (int i = 0; i < 8; ++i) {
-    if (angle_deg(hypotheses_[i], predicted_[law].attitude) < 20.0) seen += probability_[i];
+    if (same(hypotheses_[i], predicted_[law].attitude)) seen += probability_[i];
   }
   return seen < 0.1 ? kLost : std::min(kLost, chord_square(motion[law].attitude, predicted_[law].attitude));
 }
@@ -145,17 +180,25 @@ void ReferenceTrack::advance(const Numbers& head) {
                 std::exp(std::clamp(head.at(9 + i), -8.0, 8.0));
   }
   const int anchor = static_cast<int>(std::max_element(vote.begin(), vote.end()) - vote.begin());
-  for (const int law : {0, 1}) correct(law, anchor, weight, head.at(18));
+  for (int law = 0; law < kLaws; ++law) correct(law, anchor, weight, head.at(18));
+  error_rad = M_PI * logistic(head.at(19));
   // Log-likelihood of Gaussian misses; the first two frames tell nothing.
   const double a = attitude_gain_after(frames);
-  const double told = frames < 2 ? 0.0 : (1.0 - a) / (2.0 * a * a * 7e-4);
-  const std::array<double, 2> missed{miss(0), miss(1)};
-  const double nearer = missed[0] - missed[1];
-  tumble_evidence = std::clamp(0.9 * tumble_evidence + told * nearer, -6.0, 6.0);
-  for (const int law : {0, 1}) {
-    if (missed[law] >= kLost && missed[1 - law] < kLost) motion[law] = motion[1 - law];
+  const double variance = std::max(7e-4, error_rad * error_rad);
+  std::array<double, kLaws> missed;
+  for (int law = 0; law < kLaws; ++law) {
+    missed[law] = miss(law);
+    log_likelihood[law] *= 0.9;
+    if (frames >= 2) log_likelihood[law] -= (1.0 - a) / (2.0 * a * a) / variance * missed[law];
   }
-  error_rad = M_PI * logistic(head.at(19));
+  const double best = *std::max_element(log_likelihood.begin(), log_likelihood.end());
+  for (double& value : log_likelihood) value = std::max(-6.0, value - best);
+  std::array<double, kLaws> seeing = handicapped();
+  for (int law = 0; law < kLaws; ++law) seeing[law] -= missed[law] < kLost ? 0.0 : 1e9;
+  const auto guide = std::max_element(seeing.begin(), seeing.end()) - seeing.begin();
+  for (int law = 0; law < kLaws; ++law) {
+    if (missed[law] >= kLost && missed[guide] < kLost) motion[law] = motion[guide];
+  }
   ++frames;
 }
 

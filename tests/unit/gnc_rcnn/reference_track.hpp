@@ -11,7 +11,8 @@ namespace tumblesight::gnc {
 class ReferenceTrack {
  public:
   using Numbers = std::vector<double>;
-  explicit ReferenceTrack(const Eigen::Matrix3d& inertia_trf) : inertia_(inertia_trf) {}
+  static constexpr int kLaws = 5;
+  explicit ReferenceTrack(const Eigen::Matrix3d& inertia_trf);
 
   // A frame: the CNN's output (57 numbers) and the view that it is stated in.
   void see(const Numbers& output, const Eigen::Matrix3d& r_lrf_view);
@@ -27,17 +28,23 @@ class ReferenceTrack {
     Eigen::Matrix3d attitude;
     Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   };
-  std::array<Motion, 2> motion;  // by constant spin and by free tumbling
-  double tumble_evidence = 0.0;
-  int law() const { return tumble_evidence > 0.5 ? 1 : 0; }
+  // By constant spin, by free tumbling, and with the moment about x, y or z halved.
+  std::array<Motion, kLaws> motion;
+  std::array<double, kLaws> log_likelihood{};
+  int law() const;        // the likeliest, at a handicap
+  double margin() const;  // of its log-likelihood over the next one's
   double error_rad = 0.0;
   int frames = 0;
   int merged = 0;  // answers that were the mean of several candidates
   int turned = 0;  // answers that changed a rate
+  // How near any two attitudes so far came to 20 degrees apart, where rounding decides whether they are one.
+  double nearest_call_deg = 180.0;
 
  private:
   void predict();
-  double miss(int law) const;  // squared angle between prediction and answer, at most that of a lost target
+  std::array<double, kLaws> handicapped() const;
+  bool same(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
+  double miss(int law);  // squared angle between prediction and answer, at most that of a lost target
   void correct(int law, int anchor, const std::array<double, 9>& weights, double rate_word);
   // Of the frame's hypotheses and, last, one law's prediction.
   Eigen::Matrix3d mean_around(int anchor, int law, const std::array<double, 9>& weights);
@@ -45,9 +52,9 @@ class ReferenceTrack {
     return i < 8 ? hypotheses_[i] : predicted_[law].attitude;
   }
 
-  Eigen::Matrix3d inertia_;
+  std::array<Eigen::Matrix3d, kLaws> inertia_;
   std::array<Eigen::Matrix3d, 8> hypotheses_;
-  std::array<Motion, 2> predicted_;
+  std::array<Motion, kLaws> predicted_;
   std::array<double, 8> logit_, probability_;
   int likeliest_ = 0;
   double single_frame_error_rad_ = 0.0;

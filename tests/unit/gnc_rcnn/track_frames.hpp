@@ -61,7 +61,7 @@ inline Hypotheses frame_of(std::initializer_list<Alternative> alternatives) {
 // One frame of the estimator, with the head saying `head` whatever the LSTM saw.
 inline TrackedAttitude follow(const Hypotheses& frame, const layers::Head2::Output& head,
                               AttitudeTrack& track, const Inertia& inertia = {}) {
-  return advance(frame, predict(track, inertia, frame), head, track);
+  return advance(frame, predict(track, motion_laws(inertia), frame), head, track);
 }
 
 }  // namespace tumblesight::gnc
