@@ -7,7 +7,8 @@ find_package(Eigen3 REQUIRED NO_MODULE)
 add_library(project_rules INTERFACE)
 target_link_libraries(project_rules INTERFACE Eigen3::Eigen)
 target_include_directories(project_rules INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_definitions(project_rules INTERFACE EIGEN_DONT_VECTORIZE)
+target_compile_definitions(project_rules INTERFACE EIGEN_DONT_VECTORIZE
+  TUMBLESIGHT_FLOAT32=$<BOOL:${TUMBLESIGHT_FLOAT32}>)
 target_compile_options(project_rules INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
   -Wno-float-conversion)
 

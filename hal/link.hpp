@@ -13,17 +13,17 @@ struct Command {
   std::array<std::uint8_t, kMaxPayload> payload{};
 };
 
-// Answer to one cycle. Quaternions scalar first (w, x, y, z), TRF to LRF, unit.
+// Answer to one cycle. Quaternions scalar first (w, x, y, z), TRF to LRF, unit, with 30 bits behind the point.
 struct AttitudeReport {
   std::int64_t time_ns = 0;           // time of the cycle
   std::int64_t exposure_time_ns = 0;  // of the frame that the attitude belongs to
   std::uint32_t sequence_number = 0;  // likewise
   std::uint8_t validity = 0;          // fsw::Validity
   std::uint32_t frames_since_reset = 0;
-  std::array<float, 4> q_lrf_trf{1.0F, 0.0F, 0.0F, 0.0F};
-  float predicted_error_rad = 0.0F;
-  std::array<float, 4> q_lrf_trf_single_frame{1.0F, 0.0F, 0.0F, 0.0F};
-  float predicted_error_single_frame_rad = 0.0F;
+  std::array<std::int32_t, 4> q_lrf_trf{1 << 30, 0, 0, 0};
+  std::uint32_t predicted_error_urad = 0;
+  std::array<std::int32_t, 4> q_lrf_trf_single_frame{1 << 30, 0, 0, 0};
+  std::uint32_t predicted_error_single_frame_urad = 0;
 };
 
 struct Housekeeping {

@@ -6,32 +6,31 @@
 namespace tumblesight::fsw {
 namespace {
 
-constexpr float kPi = 3.14159265F;
-
 std::int32_t bits_of(std::uint32_t sequence_number) {
   return static_cast<std::int32_t>(sequence_number);
 }
 
-// Written so that a NaN fails.
-bool is_unit(const Eigen::Quaternionf& q) {
-  const float norm2 = q.w() * q.w() + q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
-  return norm2 > 0.9999F && norm2 < 1.0001F;
-}
-bool is_angle(float angle_rad) {
-  return angle_rad >= 0.0F && angle_rad <= 1.0001F * kPi;
+// Within 1e-6.
+bool is_unit(const gnc::QuaternionQ30& q) {
+  std::int64_t square = 0;  // 28 bits behind the point
+  for (const std::int32_t part : q) square += std::int64_t{part} * part >> 32;
+  constexpr std::int64_t kOne = std::int64_t{1} << 28;
+  constexpr std::int64_t kTolerance = kOne / 500'000;
+  return square > kOne - kTolerance && square < kOne + kTolerance;
 }
 
 hal::AttitudeReport without_attitude(Validity why) {
   hal::AttitudeReport report;
   report.validity = static_cast<std::uint8_t>(why);
-  report.predicted_error_rad = kPi;
-  report.predicted_error_single_frame_rad = kPi;
+  report.predicted_error_urad = gnc::kPi_urad;
+  report.predicted_error_single_frame_urad = gnc::kPi_urad;
   return report;
 }
 
 bool is_sound(const gnc::AttitudeEstimate& estimate) {
   return is_unit(estimate.q_lrf_trf) && is_unit(estimate.q_lrf_trf_single_frame) &&
-         is_angle(estimate.predicted_error_rad) && is_angle(estimate.predicted_error_single_frame_rad);
+         estimate.predicted_error_urad <= gnc::kPi_urad &&
+         estimate.predicted_error_single_frame_urad <= gnc::kPi_urad;
 }
 
 // The caller's promises about StepInputs: a platform that breaks them has a bug.
@@ -45,7 +44,8 @@ bool keeps_limits(const StepInputs& inputs) {
 
 }  // namespace
 
-void AttitudeInitApp::init(const std::uint8_t* model_image, std::size_t size_bytes,
+template <class N>
+void AttitudeInitApp<N>::init(const std::uint8_t* model_image, std::size_t size_bytes,
                            const char* expected_target, hal::Stopwatch& stopwatch) {
   stopwatch_ = &stopwatch;
   model_status_ = estimator_.load(model_image, size_bytes, expected_target);
@@ -54,7 +54,8 @@ void AttitudeInitApp::init(const std::uint8_t* model_image, std::size_t size_byt
   if (model_status_ == gnc::ModelStatus::kOk && mode_ != Mode::kSafe) enter_estimating();
 }
 
-void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) {
+template <class N>
+void AttitudeInitApp<N>::step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) {
   const std::uint64_t start_ns = stopwatch_ != nullptr ? stopwatch_->now_ns() : 0;
   outputs = StepOutputs{};
   const std::int64_t previous_ns = has_cycle_ ? now_ns_ : now_ns;
@@ -76,7 +77,8 @@ void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOu
   report_telemetry(start_ns, outputs);
 }
 
-void AttitudeInitApp::report(StepOutputs& outputs, EventId id, Severity severity, std::int32_t a,
+template <class N>
+void AttitudeInitApp<N>::report(StepOutputs& outputs, EventId id, Severity severity, std::int32_t a,
                              std::int32_t b, std::int32_t c) {
   count(counters_.events);
   if (!TUMBLESIGHT_ASSERT(assertions_, outputs.event_count < config::kMaxEventsPerStep)) return;
@@ -87,7 +89,8 @@ void AttitudeInitApp::report(StepOutputs& outputs, EventId id, Severity severity
   event.arguments = {a, b, c};
 }
 
-void AttitudeInitApp::report_model(StepOutputs& outputs) {
+template <class N>
+void AttitudeInitApp<N>::report_model(StepOutputs& outputs) {
   if (!model_to_report_) return;
   model_to_report_ = false;
   const std::int32_t size_bytes = clamp_to_int32(model_size_bytes_);
@@ -100,19 +103,22 @@ void AttitudeInitApp::report_model(StepOutputs& outputs) {
   }
 }
 
-void AttitudeInitApp::go_safe_on_assertion(StepOutputs& outputs) {
+template <class N>
+void AttitudeInitApp<N>::go_safe_on_assertion(StepOutputs& outputs) {
   if (!assertions_.take()) return;
   mode_ = Mode::kSafe;
   report(outputs, EventId::kAssertion, Severity::kError, static_cast<std::int32_t>(assertions_.file()),
          assertions_.line(), clamp_to_int32(assertions_.count()));
 }
 
-void AttitudeInitApp::reset_estimator() {
+template <class N>
+void AttitudeInitApp<N>::reset_estimator() {
   estimator_.reset();
   count(counters_.estimator_resets);
 }
 
-void AttitudeInitApp::enter_estimating() {
+template <class N>
+void AttitudeInitApp<N>::enter_estimating() {
   reset_estimator();
   gate_.forget();
   outage_ = false;
@@ -121,13 +127,15 @@ void AttitudeInitApp::enter_estimating() {
 
 // What is remembered lies in a future that the cycles take long to reach again, if ever: compared with it,
 // every frame until then would go backwards.
-void AttitudeInitApp::start_anew_in_time() {
+template <class N>
+void AttitudeInitApp<N>::start_anew_in_time() {
   if (mode_ != Mode::kEstimating) return;
   reset_estimator();
   gate_.forget();
 }
 
-void AttitudeInitApp::run_commands(const StepInputs& inputs, StepOutputs& outputs) {
+template <class N>
+void AttitudeInitApp<N>::run_commands(const StepInputs& inputs, StepOutputs& outputs) {
   for (int i = 0; i < inputs.command_count; ++i) {
     const hal::Command& command = inputs.commands[static_cast<std::size_t>(i)];
     const auto opcode = static_cast<std::int32_t>(command.opcode);
@@ -146,7 +154,8 @@ void AttitudeInitApp::run_commands(const StepInputs& inputs, StepOutputs& output
   }
 }
 
-bool AttitudeInitApp::refuses(const hal::Command& command, CommandRefusal& why) const {
+template <class N>
+bool AttitudeInitApp<N>::refuses(const hal::Command& command, CommandRefusal& why) const {
   const bool known = command.opcode >= static_cast<std::uint16_t>(Opcode::kNoop) &&
                      command.opcode <= static_cast<std::uint16_t>(Opcode::kResetCounters);
   if (!known) {
@@ -162,7 +171,8 @@ bool AttitudeInitApp::refuses(const hal::Command& command, CommandRefusal& why) 
   return mode_ == Mode::kSafe || !estimator_.has_model();
 }
 
-void AttitudeInitApp::execute(Opcode opcode) {
+template <class N>
+void AttitudeInitApp<N>::execute(Opcode opcode) {
   switch (opcode) {
     case Opcode::kNoop:
       break;
@@ -181,14 +191,16 @@ void AttitudeInitApp::execute(Opcode opcode) {
   }
 }
 
-bool AttitudeInitApp::cycle_time_advances(std::int64_t now_ns) {
+template <class N>
+bool AttitudeInitApp<N>::cycle_time_advances(std::int64_t now_ns) {
   const bool advances = !has_cycle_ || now_ns > now_ns_;
   has_cycle_ = true;
   now_ns_ = now_ns;
   return advances;
 }
 
-void AttitudeInitApp::refuse_frames_of_cycle(const StepInputs& inputs, std::int32_t time_step_ms,
+template <class N>
+void AttitudeInitApp<N>::refuse_frames_of_cycle(const StepInputs& inputs, std::int32_t time_step_ms,
                                              StepOutputs& outputs) {
   std::uint32_t refused = 0;
   if (mode_ == Mode::kEstimating) {
@@ -205,7 +217,8 @@ void AttitudeInitApp::refuse_frames_of_cycle(const StepInputs& inputs, std::int3
          static_cast<std::int32_t>(refused));
 }
 
-void AttitudeInitApp::take_frames(const StepInputs& inputs, StepOutputs& outputs) {
+template <class N>
+void AttitudeInitApp<N>::take_frames(const StepInputs& inputs, StepOutputs& outputs) {
   const int frames = inputs.frame != nullptr ? inputs.frame_count : 0;
   if (frames + inputs.frame_wrong_size == 0) {
     outputs.attitude.validity = static_cast<std::uint8_t>(Validity::kNoFrame);
@@ -226,7 +239,8 @@ void AttitudeInitApp::take_frames(const StepInputs& inputs, StepOutputs& outputs
   for (int i = 0; i < frames && !assertions_.pending(); ++i) take_frame(inputs.frame[i], outputs);
 }
 
-void AttitudeInitApp::take_frame(const gnc::RangeImage& frame, StepOutputs& outputs) {
+template <class N>
+void AttitudeInitApp<N>::take_frame(const gnc::RangeImage& frame, StepOutputs& outputs) {
   if (passes_gate(frame, outputs)) {
     use_frame(frame, outputs);
   } else {
@@ -234,7 +248,8 @@ void AttitudeInitApp::take_frame(const gnc::RangeImage& frame, StepOutputs& outp
   }
 }
 
-bool AttitudeInitApp::passes_gate(const gnc::RangeImage& frame, StepOutputs& outputs) {
+template <class N>
+bool AttitudeInitApp<N>::passes_gate(const gnc::RangeImage& frame, StepOutputs& outputs) {
   const std::int32_t number = bits_of(frame.sequence_number);
   switch (gate_.judge(frame, now_ns_)) {
     case FrameVerdict::kPass:
@@ -262,7 +277,8 @@ bool AttitudeInitApp::passes_gate(const gnc::RangeImage& frame, StepOutputs& out
   return false;
 }
 
-void AttitudeInitApp::use_frame(const gnc::RangeImage& frame, StepOutputs& outputs) {
+template <class N>
+void AttitudeInitApp<N>::use_frame(const gnc::RangeImage& frame, StepOutputs& outputs) {
   // The reset comes before the step, yet a frame refused for its content must leave the state as it was.
   estimator_.save(state_before_frame_);
   const std::uint32_t frames_before = state_before_frame_.track.frames;
@@ -298,7 +314,8 @@ void AttitudeInitApp::use_frame(const gnc::RangeImage& frame, StepOutputs& outpu
   report_attitude(frame, outputs);
 }
 
-void AttitudeInitApp::report_attitude(const gnc::RangeImage& frame, StepOutputs& outputs) {
+template <class N>
+void AttitudeInitApp<N>::report_attitude(const gnc::RangeImage& frame, StepOutputs& outputs) {
   // The estimator promises this for any frame and any model it has loaded.
   if (!TUMBLESIGHT_ASSERT(assertions_, is_sound(estimate_))) return;
   count(counters_.frames_used);
@@ -307,15 +324,14 @@ void AttitudeInitApp::report_attitude(const gnc::RangeImage& frame, StepOutputs&
   attitude.sequence_number = frame.sequence_number;
   attitude.validity = static_cast<std::uint8_t>(Validity::kValid);
   attitude.frames_since_reset = estimate_.frames_since_reset;
-  const Eigen::Quaternionf& q = estimate_.q_lrf_trf;
-  const Eigen::Quaternionf& q_single = estimate_.q_lrf_trf_single_frame;
-  attitude.q_lrf_trf = {q.w(), q.x(), q.y(), q.z()};
-  attitude.q_lrf_trf_single_frame = {q_single.w(), q_single.x(), q_single.y(), q_single.z()};
-  attitude.predicted_error_rad = estimate_.predicted_error_rad;
-  attitude.predicted_error_single_frame_rad = estimate_.predicted_error_single_frame_rad;
+  attitude.q_lrf_trf = estimate_.q_lrf_trf;
+  attitude.q_lrf_trf_single_frame = estimate_.q_lrf_trf_single_frame;
+  attitude.predicted_error_urad = estimate_.predicted_error_urad;
+  attitude.predicted_error_single_frame_urad = estimate_.predicted_error_single_frame_urad;
 }
 
-void AttitudeInitApp::report_telemetry(std::uint64_t start_ns, StepOutputs& outputs) {
+template <class N>
+void AttitudeInitApp<N>::report_telemetry(std::uint64_t start_ns, StepOutputs& outputs) {
   if (stopwatch_ != nullptr) {
     constexpr auto kBudget_us = static_cast<std::uint32_t>(config::kStepBudget_ns / 1000);
     if (microseconds_since(start_ns) > kBudget_us) count(counters_.deadline_overruns);
@@ -330,13 +346,15 @@ void AttitudeInitApp::report_telemetry(std::uint64_t start_ns, StepOutputs& outp
 }
 
 // Requires a stopwatch. A stopwatch that runs backwards measures 0.
-std::uint32_t AttitudeInitApp::microseconds_since(std::uint64_t start_ns) {
+template <class N>
+std::uint32_t AttitudeInitApp<N>::microseconds_since(std::uint64_t start_ns) {
   const std::uint64_t end_ns = stopwatch_->now_ns();
   const std::uint64_t elapsed_us = end_ns > start_ns ? (end_ns - start_ns) / 1000U : 0U;
   return elapsed_us < UINT32_MAX ? static_cast<std::uint32_t>(elapsed_us) : UINT32_MAX;
 }
 
-std::uint32_t AttitudeInitApp::state_crc32() const {
+template <class N>
+std::uint32_t AttitudeInitApp<N>::state_crc32() const {
   gnc::Crc32 crc;
   crc.add_u32(estimator_.state_crc32());
   crc.add_u32(estimator_.model().crc32);
@@ -357,5 +375,10 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
   }
   return crc.value();
 }
+
+template class AttitudeInitApp<gnc::FixedPoint>;
+#if TUMBLESIGHT_FLOAT32
+template class AttitudeInitApp<gnc::Float32>;
+#endif
 
 }  // namespace tumblesight::fsw

@@ -83,25 +83,41 @@ struct StepOutputs {
   int event_count = 0;
 };
 
-class AttitudeInitApp {
+// What a platform's main drives, whatever the numerics.
+class App {
  public:
   // Validates and loads the model image; without a good one the application stays in STANDBY and says why, in
   // an event of the next step. `expected_target`: NUL-terminated name, or nullptr for any. Called again it
-  // activates another model; when that one is refused, the earlier model and the mode stay. `stopwatch` must
-  // outlive the application.
-  void init(const std::uint8_t* model_image, std::size_t size_bytes, const char* expected_target,
-            hal::Stopwatch& stopwatch);
+  // activates another model; when that one is refused, the earlier model and the mode stay. `stopwatch`, and the
+  // image, of which weights in fixed point are read in place, must outlive the application.
+  virtual void init(const std::uint8_t* model_image, std::size_t size_bytes, const char* expected_target,
+                    hal::Stopwatch& stopwatch) = 0;
   // Commands first, in order; then the frames; then telemetry. `now_ns`: time of this cycle. `outputs` is
   // overwritten.
-  void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
+  virtual void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) = 0;
 
   // Over all that decides what step() will give, the active model's CRC among it, and over the counters; what
   // the stopwatch measured is left out.
-  std::uint32_t state_crc32() const;
-  Mode mode() const { return mode_; }
+  virtual std::uint32_t state_crc32() const = 0;
+  virtual Mode mode() const = 0;
   // What init() found; kOk before the first init().
-  gnc::ModelStatus model_status() const { return model_status_; }
-  const gnc::AttitudeEstimator& estimator() const { return estimator_; }
+  virtual gnc::ModelStatus model_status() const = 0;
+
+ protected:
+  ~App() = default;
+};
+
+// N: gnc::FixedPoint, which flies, or gnc::Float32 to compare with.
+template <class N>
+class AttitudeInitApp final : public App {
+ public:
+  void init(const std::uint8_t* model_image, std::size_t size_bytes, const char* expected_target,
+            hal::Stopwatch& stopwatch) override;
+  void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) override;
+  std::uint32_t state_crc32() const override;
+  Mode mode() const override { return mode_; }
+  gnc::ModelStatus model_status() const override { return model_status_; }
+  const gnc::AttitudeEstimator<N>& estimator() const { return estimator_; }
 
  private:
   void report(StepOutputs& outputs, EventId id, Severity severity, std::int32_t a = 0, std::int32_t b = 0,
@@ -126,8 +142,8 @@ class AttitudeInitApp {
   void report_telemetry(std::uint64_t start_ns, StepOutputs& outputs);
   std::uint32_t microseconds_since(std::uint64_t start_ns);
 
-  gnc::AttitudeEstimator estimator_;
-  gnc::AttitudeEstimator::State state_before_frame_;
+  gnc::AttitudeEstimator<N> estimator_;
+  typename gnc::AttitudeEstimator<N>::State state_before_frame_;
   gnc::AttitudeEstimate estimate_;
   FrameGate gate_;
   hal::Housekeeping counters_;
@@ -141,6 +157,7 @@ class AttitudeInitApp {
   bool model_to_report_ = false;
   bool outage_ = false;  // the previous cycle had no frame
 };
-static_assert(sizeof(AttitudeInitApp) <= config::kMaxAppBytes, "the application outgrew its memory budget");
+static_assert(sizeof(AttitudeInitApp<gnc::FixedPoint>) <= config::kMaxAppBytes,
+              "the application outgrew its memory budget");
 
 }  // namespace tumblesight::fsw

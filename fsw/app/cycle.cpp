@@ -27,7 +27,7 @@ void gather_commands(hal::Link& link, StepInputs& inputs) {
 
 }  // namespace
 
-CyclePublished run_cycle(AttitudeInitApp& app, hal::Lidar& lidar, hal::Link& link, std::int64_t now_ns,
+CyclePublished run_cycle(App& app, hal::Lidar& lidar, hal::Link& link, std::int64_t now_ns,
                          CycleWorkspace& workspace) {
   gather_frames(lidar, workspace);
   gather_commands(link, workspace.inputs);

@@ -26,7 +26,7 @@ struct CyclePublished {
 
 // Takes at most kMaxFramesPerStep deliveries of the lidar and kMaxCommandsPerStep commands; what is left
 // waits for the next cycle.
-CyclePublished run_cycle(AttitudeInitApp& app, hal::Lidar& lidar, hal::Link& link, std::int64_t now_ns,
+CyclePublished run_cycle(App& app, hal::Lidar& lidar, hal::Link& link, std::int64_t now_ns,
                          CycleWorkspace& workspace);
 
 }  // namespace tumblesight::fsw

@@ -34,8 +34,8 @@ inline constexpr std::int64_t kMaxFrameAge_ns = kFramePeriod_ns + kFramePeriodTo
 inline constexpr std::int64_t kStepBudget_ns = kFramePeriod_ns / 2;
 static_assert(kStepBudget_ns < kFramePeriod_ns, "a step must end before the next one starts");
 
-// Static memory of AttitudeInitApp: about 4.7 MB of float32 weights, the rest activations and state.
-inline constexpr std::size_t kMaxAppBytes = 8U * 1024U * 1024U;
+// Static memory of AttitudeInitApp in fixed point. Weights are read where the model image lies and do not count.
+inline constexpr std::size_t kMaxAppBytes = 128U * 1024U;
 inline constexpr std::size_t kMaxModelImageBytes = 8U * 1024U * 1024U;
 
 }  // namespace tumblesight::fsw::config

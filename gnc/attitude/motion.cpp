@@ -1,122 +1,165 @@
 #include "gnc/attitude/motion.hpp"
 
-#include <cmath>
-
-#include "gnc/attitude/rotation.hpp"
-
 namespace tumblesight::gnc {
 namespace {
 
 constexpr int kSteps = 4;
 
-Eigen::Vector3f bounded(const Eigen::Vector3f& rate) {
-  const float square = (rate.x() * rate.x() + rate.y() * rate.y()) + rate.z() * rate.z();
-  const float scale = square > kLargestRate * kLargestRate ? kLargestRate / std::sqrt(square) : 1.0F;
-  return rate * scale;
+// A length whose square overflows leaves no direction, and no rate.
+template <class Real>
+Vector3<Real> bounded(const Vector3<Real>& rate) {
+  constexpr Real kLargest = constant<Real>(kLargestRate);
+  const bool too_long = dot(rate, rate) > kLargest * kLargest;
+  const Vector3<Real> shortened = scaled<Real>(normalised(rate), kLargest);
+  return too_long ? shortened : rate;
 }
 
 // The rate of a body of this inertia whose angular momentum is `momentum_lrf`.
-Eigen::Vector3f rate_of(const Eigen::Matrix3f& r_lrf_trf, const Eigen::Vector3f& momentum_lrf,
-                        const Inertia& inertia) {
-  return product(r_lrf_trf, product(inertia.inverse_trf, transpose_product(r_lrf_trf, momentum_lrf)));
+template <class Real>
+Vector3<Real> rate_of(const Matrix3<Real>& r_lrf_trf, const Vector3<Real>& momentum_lrf,
+                      const Inertia<Real>& inertia) {
+  const Vector3<Real> momentum_trf = transpose_product<Real>(r_lrf_trf, momentum_lrf);
+  return product<Real>(r_lrf_trf, product<Real>(inertia.inverse_trf, momentum_trf));
+}
+
+// 1 - x k_0 (1 - x k_1 (1 - ...)): an alternating power series by the ratios of its neighbours.
+template <class Real, std::size_t kTerms>
+Real alternating_series(Real x, const std::array<Real, kTerms>& ratio) {
+  constexpr Real kOne = constant<Real>(1.0);
+  Real sum = kOne;
+  for (std::size_t k = kTerms; k-- > 0;) sum = kOne - x * ratio[k] * sum;
+  return sum;
+}
+
+template <class Real>
+Matrix3<Real> scaled(const Matrix3<Real>& matrix, Real factor) {
+  Matrix3<Real> result;
+  for (int column = 0; column < 3; ++column)
+    result.col(column) = gnc::scaled<Real>(Vector3<Real>(matrix.col(column)), factor);
+  return result;
+}
+
+// Adjugate: the inverse times the determinant.
+template <class Real>
+Matrix3<Real> adjugate(const Matrix3<Real>& j) {
+  Matrix3<Real> result;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      result(k, i) = j(i1, k1) * j(i2, k2) - j(i1, k2) * j(i2, k1);
+    }
+  }
+  return result;
 }
 
 }  // namespace
 
-bool make_inertia(const Eigen::Matrix3f& tensor_trf, Inertia& inertia) {
-  const Eigen::Matrix3f& j = tensor_trf;
-  const float trace = (j(0, 0) + j(1, 1)) + j(2, 2);
-  const bool symmetric = j(0, 1) == j(1, 0) && j(0, 2) == j(2, 0) && j(1, 2) == j(2, 1);
-  if (!std::isfinite(trace) || !(trace > 0.0F) || !symmetric) return false;
-  // Adjugate over determinant; the leading minors decide on definiteness.
-  Eigen::Matrix3f adjugate;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-      adjugate(k, i) = j(i1, k1) * j(i2, k2) - j(i1, k2) * j(i2, k1);
-    }
-  }
-  const float determinant = (j(0, 0) * adjugate(0, 0) + j(0, 1) * adjugate(1, 0)) + j(0, 2) * adjugate(2, 0);
-  const float size = trace / 3.0F;
-  const float smallest_determinant =
-      1e-4F * size * size * size;  // that of a rod a hundred times as long as thick
-  if (!(j(0, 0) > 0.0F) || !(adjugate(2, 2) > 0.0F) || !(determinant > smallest_determinant)) return false;
+template <class Real>
+bool make_inertia(const Matrix3<Real>& tensor_trf, Inertia<Real>& inertia) {
+  constexpr Real kZero{};
+  const Matrix3<Real>& given = tensor_trf;
+  const Real trace = (given(0, 0) + given(1, 1)) + given(2, 2);
+  const bool symmetric =
+      given(0, 1) == given(1, 0) && given(0, 2) == given(2, 0) && given(1, 2) == given(2, 1);
+  if (!is_finite(trace) || !(trace > kZero) || !symmetric) return false;
+
+  const Matrix3<Real> j = scaled<Real>(given, constant<Real>(3.0) / trace);
+  const Matrix3<Real> scaled_inverse = adjugate<Real>(j);
+  const Real determinant = (j(0, 0) * scaled_inverse(0, 0) + j(0, 1) * scaled_inverse(1, 0)) +
+                           j(0, 2) * scaled_inverse(2, 0);
+  // The leading minors decide on definiteness; the inverse's trace bounds its largest eigenvalue.
+  const Real inverse_trace = (scaled_inverse(0, 0) + scaled_inverse(1, 1)) + scaled_inverse(2, 2);
+  const bool definite = j(0, 0) > kZero && scaled_inverse(2, 2) > kZero && determinant > kZero;
+  if (!definite || !(constant<Real>(kSmallestMoment) * inverse_trace < determinant)) return false;
   inertia.tensor_trf = j;
-  inertia.inverse_trf = adjugate / determinant;
+  for (int i = 0; i < 9; ++i) inertia.inverse_trf(i) = scaled_inverse(i) / determinant;
   return true;
 }
 
-Eigen::Matrix3f rotation_by(const Eigen::Vector3f& turn) {
-  const Eigen::Vector3f v = bounded(turn);
-  const float s = (v.x() * v.x() + v.y() * v.y()) + v.z() * v.z();
+template <class Real>
+Matrix3<Real> rotation_by(const Vector3<Real>& turn) {
   // sin(a) / a and (1 - cos(a)) / a^2 as Taylor series in a^2.
-  const float a =
-      1.0F -
-      s / 6.0F *
-          (1.0F -
-           s / 20.0F * (1.0F - s / 42.0F * (1.0F - s / 72.0F * (1.0F - s / 110.0F * (1.0F - s / 156.0F)))));
-  const float b =
-      0.5F -
-      s / 24.0F *
-          (1.0F -
-           s / 30.0F * (1.0F - s / 56.0F * (1.0F - s / 90.0F * (1.0F - s / 132.0F * (1.0F - s / 182.0F)))));
-  const float c = 1.0F - b * s;
-  Eigen::Matrix3f r;
+  constexpr std::array<Real, 6> kSine{constant<Real>(1.0 / 6.0),   constant<Real>(1.0 / 20.0),
+                                      constant<Real>(1.0 / 42.0),  constant<Real>(1.0 / 72.0),
+                                      constant<Real>(1.0 / 110.0), constant<Real>(1.0 / 156.0)};
+  constexpr std::array<Real, 6> kCosine{constant<Real>(1.0 / 12.0),  constant<Real>(1.0 / 30.0),
+                                        constant<Real>(1.0 / 56.0),  constant<Real>(1.0 / 90.0),
+                                        constant<Real>(1.0 / 132.0), constant<Real>(1.0 / 182.0)};
+  const Vector3<Real> v = bounded<Real>(turn);
+  const Real s = dot(v, v);
+  const Real a = alternating_series<Real>(s, kSine);
+  const Real b = constant<Real>(0.5) * alternating_series<Real>(s, kCosine);
+  const Real c = constant<Real>(1.0) - b * s;
+  Matrix3<Real> r;
   r << c + b * v.x() * v.x(), b * v.x() * v.y() - a * v.z(), b * v.x() * v.z() + a * v.y(),
       b * v.x() * v.y() + a * v.z(), c + b * v.y() * v.y(), b * v.y() * v.z() - a * v.x(),
       b * v.x() * v.z() - a * v.y(), b * v.y() * v.z() + a * v.x(), c + b * v.z() * v.z();
   return r;
 }
 
-Eigen::Vector3f small_turn_of(const Eigen::Matrix3f& r) {
-  const float trace = (r(0, 0) + r(1, 1)) + r(2, 2);
-  const float y = 0.5F * (3.0F - trace);  // 1 - cos(angle)
+template <class Real>
+Vector3<Real> small_turn_of(const Matrix3<Real>& r) {
+  constexpr Real kHalf = constant<Real>(0.5);
+  const Real trace = (r(0, 0) + r(1, 1)) + r(2, 2);
+  const Real y = kHalf * (constant<Real>(3.0) - trace);  // 1 - cos(angle)
   // angle / sin(angle) as a series in y, of which the ratio of neighbours is n / (2n + 1).
-  const float f =
-      1.0F +
-      y * (1.0F / 3.0F) *
-          (1.0F +
-           y * (2.0F / 5.0F) *
-               (1.0F + y * (3.0F / 7.0F) *
-                           (1.0F + y * (4.0F / 9.0F) *
-                                       (1.0F + y * (5.0F / 11.0F) *
-                                                   (1.0F + y * (6.0F / 13.0F) *
-                                                               (1.0F + y * (7.0F / 15.0F) *
-                                                                           (1.0F + y * (8.0F / 17.0F))))))));
-  const float half = y < 0.5F ? 0.5F * f : 0.0F;  // 60 degrees
+  Real f = constant<Real>(1.0);
+  constexpr std::array<Real, 8> kRatio{constant<Real>(1.0 / 3.0),  constant<Real>(2.0 / 5.0),
+                                       constant<Real>(3.0 / 7.0),  constant<Real>(4.0 / 9.0),
+                                       constant<Real>(5.0 / 11.0), constant<Real>(6.0 / 13.0),
+                                       constant<Real>(7.0 / 15.0), constant<Real>(8.0 / 17.0)};
+  for (std::size_t k = kRatio.size(); k-- > 0;) f = constant<Real>(1.0) + y * kRatio[k] * f;
+  const Real half = y < kHalf ? kHalf * f : Real{};  // 60 degrees
   return {half * (r(2, 1) - r(1, 2)), half * (r(0, 2) - r(2, 0)), half * (r(1, 0) - r(0, 1))};
 }
 
-Motion tumble(const Motion& motion, const Inertia& inertia) {
-  const Eigen::Vector3f rate = bounded(motion.rate_lrf);
-  const Eigen::Vector3f momentum_lrf =
-      product(motion.r_lrf_trf, product(inertia.tensor_trf, transpose_product(motion.r_lrf_trf, rate)));
-  Eigen::Matrix3f r = motion.r_lrf_trf;
+template <class Real>
+Motion<Real> tumble(const Motion<Real>& motion, const Inertia<Real>& inertia) {
+  constexpr Real kStep = constant<Real>(1.0 / kSteps);
+  constexpr Real kHalfStep = constant<Real>(0.5 / kSteps);
+  const Vector3<Real> rate = bounded<Real>(motion.rate_lrf);
+  const Vector3<Real> rate_trf = transpose_product<Real>(motion.r_lrf_trf, rate);
+  const Vector3<Real> momentum_lrf =
+      product<Real>(motion.r_lrf_trf, product<Real>(inertia.tensor_trf, rate_trf));
+  Matrix3<Real> r = motion.r_lrf_trf;
   for (int i = 0; i < kSteps; ++i) {
-    constexpr float kStep = 1.0F / static_cast<float>(kSteps);
-    const Eigen::Matrix3f middle =
-        product(rotation_by(rate_of(r, momentum_lrf, inertia) * (0.5F * kStep)), r);
-    r = product(rotation_by(rate_of(middle, momentum_lrf, inertia) * kStep), r);
+    const Vector3<Real> half_turn = gnc::scaled<Real>(rate_of<Real>(r, momentum_lrf, inertia), kHalfStep);
+    const Matrix3<Real> middle = product<Real>(rotation_by<Real>(half_turn), r);
+    const Vector3<Real> turn = gnc::scaled<Real>(rate_of<Real>(middle, momentum_lrf, inertia), kStep);
+    r = product<Real>(rotation_by<Real>(turn), r);
   }
-  return {r, rate_of(r, momentum_lrf, inertia)};
+  return {r, rate_of<Real>(r, momentum_lrf, inertia)};
 }
 
-MotionLaws motion_laws(const Inertia& inertia) {
-  MotionLaws laws;
+template <class Real>
+MotionLaws<Real> motion_laws(const Inertia<Real>& inertia) {
+  MotionLaws<Real> laws;
   for (int law = kTumbleLaw; law < kLaws; ++law) laws[law] = inertia;
   for (int axis = 0; axis < 3; ++axis) {
     // S J S with S = diag(1, 1, sqrt(1/2)): positive definite as J is.
-    constexpr float kSqrtHalf = 0.70710678F;
-    Eigen::Matrix3f tensor_trf = inertia.tensor_trf;
+    Matrix3<Real> tensor_trf = inertia.tensor_trf;
     for (int other = 0; other < 3; ++other) {
-      const float product_of_inertia = kSqrtHalf * tensor_trf(axis, other);
+      const Real product_of_inertia = constant<Real>(0.70710678118654752) * tensor_trf(axis, other);
       tensor_trf(axis, other) = tensor_trf(other, axis) = product_of_inertia;
     }
-    tensor_trf(axis, axis) = 0.5F * inertia.tensor_trf(axis, axis);
+    tensor_trf(axis, axis) = constant<Real>(0.5) * inertia.tensor_trf(axis, axis);
     // An inertia that is next to a rod's already stays as it is.
-    if (!make_inertia(tensor_trf, laws[kTumbleLaw + 1 + axis])) laws[kTumbleLaw + 1 + axis] = inertia;
+    Inertia<Real>& law = laws[kTumbleLaw + 1 + axis];
+    if (!make_inertia<Real>(tensor_trf, law)) law = inertia;
   }
   return laws;
 }
+
+#define TUMBLESIGHT_INSTANTIATE(Real)                                           \
+  template bool make_inertia(const Matrix3<Real>&, Inertia<Real>&);             \
+  template Matrix3<Real> rotation_by(const Vector3<Real>&);                     \
+  template Vector3<Real> small_turn_of(const Matrix3<Real>&);                   \
+  template Motion<Real> tumble(const Motion<Real>&, const Inertia<Real>&);      \
+  template MotionLaws<Real> motion_laws(const Inertia<Real>&)
+
+TUMBLESIGHT_INSTANTIATE(Fixed);
+#if TUMBLESIGHT_FLOAT32
+TUMBLESIGHT_INSTANTIATE(float);
+#endif
 
 }  // namespace tumblesight::gnc

@@ -1,34 +1,88 @@
-// Rotations as the network states them (two columns) and as the outside wants them (quaternions).
+// Rotations as the network states them (two columns) and as the outside wants them (quaternions). Real: float
+// or Fixed.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+
+#include "gnc/numerics/real.hpp"
 
 namespace tumblesight::gnc {
 
 // First two columns of a rotation matrix; the third is their cross product.
+template <class Real>
 struct RotationColumns {
-  Eigen::Vector3f first;
-  Eigen::Vector3f second;
+  Vector3<Real> first;
+  Vector3<Real> second;
 };
 
-// Gram-Schmidt: x1 = a / |a|, x2 = (b - (x1 . b) x1) normalised. Squared lengths below 1e-12 count as 1e-12,
-// so zero or parallel vectors give columns that are short, never a division by zero; non-finite input gives
-// non-finite columns.
-RotationColumns orthonormalise(const Eigen::Vector3f& a, const Eigen::Vector3f& b);
-
-Eigen::Matrix3f rotation_from_columns(const RotationColumns& columns);
+// Gram-Schmidt: x1 = a / |a|, x2 = (b - (x1 . b) x1) normalised. Zero or parallel vectors give columns that are
+// short, never a division by zero; non-finite input gives non-finite columns.
+template <class Real>
+RotationColumns<Real> orthonormalise(const Vector3<Real>& a, const Vector3<Real>& b) {
+  const Vector3<Real> first = normalised(a);
+  const Vector3<Real> along = scaled<Real>(first, dot(first, b));
+  return {first, normalised(Vector3<Real>(b.x() - along.x(), b.y() - along.y(), b.z() - along.z()))};
+}
 
 // a b, and a^T b. Written out, so that the order of summation does not depend on Eigen's version.
-Eigen::Matrix3f product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b);
-Eigen::Matrix3f transpose_product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b);
-Eigen::Vector3f product(const Eigen::Matrix3f& a, const Eigen::Vector3f& b);
-Eigen::Vector3f transpose_product(const Eigen::Matrix3f& a, const Eigen::Vector3f& b);
-// trace(a^T b) = 1 + 2 cos(angle between them).
-float trace_of_transpose_product(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b);
+template <class Real>
+Vector3<Real> product(const Matrix3<Real>& a, const Vector3<Real>& b) {
+  return {dot(a.row(0), b), dot(a.row(1), b), dot(a.row(2), b)};
+}
+template <class Real>
+Vector3<Real> transpose_product(const Matrix3<Real>& a, const Vector3<Real>& b) {
+  return {dot(a.col(0), b), dot(a.col(1), b), dot(a.col(2), b)};
+}
+template <class Real>
+Matrix3<Real> product(const Matrix3<Real>& a, const Matrix3<Real>& b) {
+  Matrix3<Real> result;
+  for (int column = 0; column < 3; ++column)
+    result.col(column) = product<Real>(a, Vector3<Real>(b.col(column)));
+  return result;
+}
+template <class Real>
+Matrix3<Real> transpose_product(const Matrix3<Real>& a, const Matrix3<Real>& b) {
+  Matrix3<Real> result;
+  for (int column = 0; column < 3; ++column) {
+    result.col(column) = transpose_product<Real>(a, Vector3<Real>(b.col(column)));
+  }
+  return result;
+}
 
-// Unit Hamilton quaternion with w >= 0 of a rotation matrix. Always unit: for a matrix that is no rotation it
-// is the direction of the best conditioned formula, for the zero matrix and for non-finite ones the identity.
-// Branch-free choice of the formula with the largest pivot (Shepperd 1978).
-Eigen::Quaternionf quaternion_from_rotation(const Eigen::Matrix3f& rotation);
+// trace(a^T b) = 1 + 2 cos(angle between them).
+template <class Real>
+Real trace_of_transpose_product(const Matrix3<Real>& a, const Matrix3<Real>& b) {
+  return (dot(a.col(0), b.col(0)) + dot(a.col(1), b.col(1))) + dot(a.col(2), b.col(2));
+}
+
+template <class Real>
+Matrix3<Real> rotation_from_columns(const RotationColumns<Real>& columns) {
+  const Vector3<Real>& u = columns.first;
+  const Vector3<Real>& v = columns.second;
+  Matrix3<Real> rotation;
+  rotation.col(0) = u;
+  rotation.col(1) = v;
+  rotation(0, 2) = u.y() * v.z() - u.z() * v.y();
+  rotation(1, 2) = u.z() * v.x() - u.x() * v.z();
+  rotation(2, 2) = u.x() * v.y() - u.y() * v.x();
+  return rotation;
+}
+
+// Unit Hamilton quaternion, scalar first, with 30 bits behind the point.
+using QuaternionQ30 = std::array<std::int32_t, 4>;
+inline constexpr QuaternionQ30 kIdentityQ30{1 << 30, 0, 0, 0};
+
+// Unit quaternion with w >= 0 of a rotation matrix. Always unit: for a matrix that is no rotation it is the
+// direction of the best conditioned formula, for the zero matrix the identity. Branch-free choice of the
+// formula with the largest pivot (Shepperd 1978).
+QuaternionQ30 quaternion_from_rotation(const Matrix3<Fixed>& rotation);
+
+// For those who have floating point.
+inline Eigen::Quaterniond to_double(const QuaternionQ30& q) {
+  constexpr double kUnit = 1.0 / (1 << 30);
+  return {kUnit * q[0], kUnit * q[1], kUnit * q[2], kUnit * q[3]};
+}
 
 }  // namespace tumblesight::gnc

@@ -58,19 +58,8 @@ float sigmoid(float x) {
   return sigmoid_one(x);
 }
 
-void relu(float* values, int count) {
-  for (int i = 0; i < count; ++i) values[i] = values[i] > 0.0F ? values[i] : 0.0F;
-}
-
-void softmax(const float* in, float* out, int count) {
-  float largest = in[0];
-  for (int i = 1; i < count; ++i) largest = in[i] > largest ? in[i] : largest;
-  float sum = 0.0F;
-  for (int i = 0; i < count; ++i) {
-    out[i] = exp_one(in[i] - largest);
-    sum += out[i];
-  }
-  for (int i = 0; i < count; ++i) out[i] = out[i] / sum;
+float exp(float x) {
+  return exp_one(x);
 }
 
 }  // namespace tumblesight::gnc

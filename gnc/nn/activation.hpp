@@ -12,11 +12,6 @@ void exp(const float* in, float* out, int count);
 void sigmoid(const float* in, float* out, int count);
 void tanh(const float* in, float* out, int count);
 float sigmoid(float x);
-
-// max(x, 0); NaN gives 0.
-void relu(float* values, int count);
-
-// exp(x_k) over their sum, added in order, with the largest subtracted first.
-void softmax(const float* in, float* out, int count);
+float exp(float x);
 
 }  // namespace tumblesight::gnc

@@ -4,25 +4,40 @@
 #include <array>
 #include <cstddef>
 
-#include "gnc/nn/sliding_product.hpp"
+#include "gnc/nn/kernels.hpp"
+#include "gnc/nn/numerics.hpp"
 
 namespace tumblesight::gnc {
 
 // Summation per output: bias, then inputs ascending.
-template <int kIn, int kOut>
+template <class N, int kIn, int kOut>
 struct Dense {
-  using Input = std::array<float, kIn>;
-  using Output = std::array<float, kOut>;
-
-  struct Weights {
-    alignas(64) std::array<float, kIn * kOut> weight{};  // [in][out]
-    alignas(64) std::array<float, kOut> bias{};
-  };
+  static constexpr int kPaddedOut = N::padded(kOut);
   static constexpr std::size_t kParameters = (kIn + 1) * kOut;
+  static constexpr long kMacs = 1L * kIn * kOut;
+  using Weights = LayerWeights<N, kIn * kPaddedOut, kOut>;
+  using Input = std::array<DenseInput<N>, kIn>;
+  using Sums = std::array<Sum<N>, kPaddedOut>;
 
-  static void forward(const Weights& weights, const Input& in, Output& out) {
-    constexpr SlidingProductShape kShape{1, 1, 0, 0, 1, kIn, 0, kOut};
-    sliding_product(kShape, in.data(), weights.bias.data(), weights.weight.data(), out.data());
+  static void sum(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums) {
+    constexpr ProductShape kShape{1, 1, 0, 0, 1, kIn, 0, kPaddedOut};
+    kernels.multiply(kShape, in.data(), weights.bias.data(), weights.weight.data(), sums.data());
+  }
+
+  // Hidden layer: ReLU.
+  using Hidden = std::array<DenseInput<N>, kOut>;
+  static void hidden(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
+                     Hidden& out) {
+    sum(kernels, weights, in, sums);
+    for (int c = 0; c < kOut; ++c) activate(sums[c], N::kIsInteger ? weights.shift.data()[c] : 0, out[c]);
+  }
+
+  // Last layer: numbers with a meaning.
+  using Output = std::array<typename N::Real, kOut>;
+  static void output(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
+                     Output& out) {
+    sum(kernels, weights, in, sums);
+    for (int c = 0; c < kOut; ++c) out[c] = to_real(sums[c], N::kIsInteger ? weights.shift.data()[c] : 0);
   }
 };
 

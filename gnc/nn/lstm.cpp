@@ -5,6 +5,67 @@
 namespace tumblesight::gnc {
 namespace {
 
+// Of the sigmoid at 0, 1/32, ... 16.
+constexpr int kLinesToOne = 32;
+constexpr int kLines = 16 * kLinesToOne;
+
+// e^-x for x in [0, 16] as (e^(-x / 1024))^1024; its series ends below the last bit of a double. Evaluated by
+// the compiler only.
+constexpr double exp_of_minus(double x) {
+  const double t = -x / 1024.0;
+  double power = 1.0 + t * (1.0 + t / 2.0 * (1.0 + t / 3.0 * (1.0 + t / 4.0 * (1.0 + t / 5.0))));
+  for (int i = 0; i < 10; ++i) power *= power;
+  return power;
+}
+
+constexpr std::array<Fixed, kLines + 1> make_sigmoid_table() {
+  std::array<Fixed, kLines + 1> table{};
+  for (int i = 0; i <= kLines; ++i) table[i] = Fixed(1.0 / (1.0 + exp_of_minus(1.0 * i / kLinesToOne)));
+  return table;
+}
+constexpr std::array<Fixed, kLines + 1> kSigmoid = make_sigmoid_table();
+
+}  // namespace
+
+Fixed gate_sigmoid(Fixed x) {
+  constexpr int kFractionBits = Fixed::kFractionBits - 5;  // of a line
+  static_assert(1 << 5 == kLinesToOne);
+  constexpr std::int32_t kEnd = 16 << Fixed::kFractionBits;
+  const std::int32_t magnitude = x.raw() < 0 ? -x.raw() : x.raw();
+  const std::int32_t inside = magnitude < kEnd ? magnitude : kEnd - 1;
+  const std::int32_t line = inside >> kFractionBits;
+  const std::int64_t rise = kSigmoid[line + 1].raw() - kSigmoid[line].raw();
+  const std::int64_t along = inside & ((1 << kFractionBits) - 1);
+  const Fixed above = Fixed::from_raw(kSigmoid[line].raw() +
+                                      ((rise * along + (1 << (kFractionBits - 1))) >> kFractionBits));
+  return x.raw() < 0 ? Fixed(1.0) - above : above;
+}
+
+Fixed gate_tanh(Fixed x) {
+  const Fixed s = gate_sigmoid(x + x);
+  return (s + s) - Fixed(1.0);
+}
+
+void lstm_update(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h, Fixed* c) {
+  constexpr Fixed kBound(kLstmCellBound);
+  for (int i = 0; i < hidden; ++i) {
+    const auto gate = [&](int which) {
+      const int g = which * hidden + i;
+      return to_real(gates[g], shift[g]);
+    };
+    const Fixed input = gate_sigmoid(gate(0));
+    const Fixed forget = gate_sigmoid(gate(1));
+    const Fixed cell = gate_tanh(gate(2));
+    const Fixed output = gate_sigmoid(gate(3));
+    const Fixed sum = Fixed::dot(forget, c[i], input, cell, Fixed(), Fixed());
+    c[i] = sum > kBound ? kBound : sum < -kBound ? -kBound : sum;
+    to_input(output, gate_tanh(c[i]), h[i]);
+  }
+}
+
+#if TUMBLESIGHT_FLOAT32
+namespace {
+
 // NaN goes to the lower bound.
 inline float bounded_cell(float c) {
   const float above = c > -kLstmCellBound ? c : -kLstmCellBound;
@@ -13,7 +74,7 @@ inline float bounded_cell(float c) {
 
 }  // namespace
 
-void lstm_update(float* gates, int hidden, float* h, float* c) {
+void lstm_update(float* gates, const std::uint8_t*, int hidden, float* h, float* c) {
   float* input = gates;
   float* forget = gates + hidden;
   float* cell = gates + 2 * hidden;
@@ -25,5 +86,6 @@ void lstm_update(float* gates, int hidden, float* h, float* c) {
   tanh(c, h, hidden);
   for (int i = 0; i < hidden; ++i) h[i] = output[i] * h[i];
 }
+#endif
 
 }  // namespace tumblesight::gnc

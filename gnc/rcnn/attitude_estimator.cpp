@@ -1,77 +1,104 @@
 #include "gnc/rcnn/attitude_estimator.hpp"
 
-#include <cmath>
+#include <algorithm>
 
-#include "gnc/attitude/rotation.hpp"
+#include "gnc/numerics/conversion.hpp"
 #include "gnc/rcnn/crc32.hpp"
-#include "gnc/rcnn/hypotheses.hpp"
 
 namespace tumblesight::gnc {
+
+static_assert(sizeof(AttitudeEstimator<FixedPoint>) <= 128 * 1024, "budget of working memory");
+
 namespace {
 
-constexpr float kPi = 3.14159265F;
-
 // Of what is no rotation, as damaged weights or state may make it, nothing is expected.
-float error_of(const Eigen::Matrix3f& attitude, float predicted_rad) {
-  const float trace = trace_of_transpose_product(attitude, attitude);
-  return std::abs(trace - 3.0F) < 0.1F ? predicted_rad : kPi;
+std::uint32_t error_urad(const Matrix3<Fixed>& attitude, Fixed predicted_rad) {
+  const Fixed trace = trace_of_transpose_product<Fixed>(attitude, attitude);
+  const bool is_rotation = absolute(trace - Fixed(3.0)) < Fixed(0.1);
+  const std::int64_t scaled = std::int64_t{predicted_rad.raw()} * 1'000'000;
+  const std::int64_t urad = (scaled + (1 << (Fixed::kFractionBits - 1))) >> Fixed::kFractionBits;
+  return is_rotation ? static_cast<std::uint32_t>(std::min<std::int64_t>(kPi_urad, urad)) : kPi_urad;
+}
+
+void add_to(Crc32& crc, const float* values, std::size_t count) {
+  crc.add_f32(values, count);
+}
+void add_to(Crc32& crc, const Fixed* values, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) crc.add_u32(static_cast<std::uint32_t>(values[i].raw()));
+}
+void add_to(Crc32& crc, const std::int16_t* values, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) crc.add_u32(static_cast<std::uint32_t>(values[i]));
 }
 
 }  // namespace
 
-ModelStatus AttitudeEstimator::load(const std::uint8_t* image, std::size_t size_bytes,
-                                    const char* expected_target) {
-  const ModelStatus status = read_model_image(image, size_bytes, expected_target, model_, network_.weights());
+template <class N>
+ModelStatus AttitudeEstimator<N>::load(const std::uint8_t* image, std::size_t size_bytes,
+                                       const char* expected_target) {
+  const ModelStatus status =
+      read_model_image<N>(image, size_bytes, expected_target, model_, network_.weights());
   if (status == ModelStatus::kOk) {
-    laws_ = motion_laws(model_.inertia);
+    laws_ = motion_laws<Real>(converted<Real>(model_.inertia));
     has_model_ = true;
     reset();
   }
   return status;
 }
 
-void AttitudeEstimator::reset() {
+template <class N>
+void AttitudeEstimator<N>::reset() {
   state_ = State{};
 }
 
-FrameStatus AttitudeEstimator::step(const RangeImage& frame, AttitudeEstimate& estimate) {
-  const FrameStatus status = make_depth_image(frame, model_.projection, scratch_, image_);
+template <class N>
+FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, AttitudeEstimate& estimate) {
+  const FrameStatus status = make_depth_image(frame, model_.projection, network_.projection_scratch(), image_);
   if (status == FrameStatus::kOk) step(image_, estimate);
   return status;
 }
 
-void AttitudeEstimator::step(const DepthImage& image, AttitudeEstimate& estimate) {
-  OutputVector output;
+template <class N>
+void AttitudeEstimator<N>::step(const DepthImage& image, AttitudeEstimate& estimate) {
+  OutputVector<Real> output;
   network_.infer_frame(image, output);
-  const Hypotheses hypotheses = hypotheses_of(output, image.r_lrf_view);
-  const Prediction prediction = predict(state_.track, laws_, hypotheses);
+  const Hypotheses<Real> hypotheses = hypotheses_of<Real>(output, converted<Real>(image.r_lrf_view));
+  const Prediction<Real> prediction = predict<Real>(state_.track, laws_, hypotheses);
 
-  layers::Recurrent::Input input;
-  layers::Head2::Output head;
-  fill_lstm_input(network_.features(), hypotheses, prediction.r_lrf_trf(), input);
+  LstmInput<N> input;
+  HeadOutput<Real> head;
+  fill_lstm_input<N>(network_.features(), hypotheses, prediction.r_lrf_trf(), input);
   network_.infer_sequence(input, state_.lstm, head);
-  const TrackedAttitude tracked = advance(hypotheses, prediction, head, state_.track);
+  const TrackedAttitude<Real> tracked = advance<Real>(hypotheses, prediction, head, state_.track);
 
-  const Eigen::Matrix3f single_frame = mean_attitude(
-      hypotheses.r_lrf_trf.data(), hypotheses.probability.data(), shape::kHypotheses, hypotheses.likeliest);
-  estimate.q_lrf_trf = quaternion_from_rotation(tracked.r_lrf_trf);
-  estimate.predicted_error_rad = error_of(tracked.r_lrf_trf, tracked.predicted_error_rad);
+  const Matrix3<Fixed> attitude = converted<Fixed>(tracked.r_lrf_trf);
+  const Matrix3<Fixed> single_frame =
+      converted<Fixed>(mean_attitude<Real>(hypotheses.r_lrf_trf.data(), hypotheses.probability.data(),
+                                   shape::kHypotheses, hypotheses.likeliest));
+  estimate.q_lrf_trf = quaternion_from_rotation(attitude);
+  estimate.predicted_error_urad = error_urad(attitude, converted<Fixed>(tracked.predicted_error_rad));
   estimate.q_lrf_trf_single_frame = quaternion_from_rotation(single_frame);
-  estimate.predicted_error_single_frame_rad = error_of(single_frame, hypotheses.predicted_error_rad);
+  estimate.predicted_error_single_frame_urad =
+      error_urad(single_frame, converted<Fixed>(hypotheses.predicted_error_rad));
   estimate.frames_since_reset = state_.track.frames;
 }
 
-std::uint32_t AttitudeEstimator::state_crc32() const {
+template <class N>
+std::uint32_t AttitudeEstimator<N>::state_crc32() const {
   Crc32 crc;
-  crc.add_f32(state_.lstm.h.data(), state_.lstm.h.size());
-  crc.add_f32(state_.lstm.c.data(), state_.lstm.c.size());
-  for (const Motion& motion : state_.track.motion) {
-    crc.add_f32(motion.r_lrf_trf.data(), 9);
-    crc.add_f32(motion.rate_lrf.data(), 3);
+  add_to(crc, state_.lstm.h.data(), state_.lstm.h.size());
+  add_to(crc, state_.lstm.c.data(), state_.lstm.c.size());
+  for (const Motion<Real>& motion : state_.track.motion) {
+    add_to(crc, motion.r_lrf_trf.data(), 9);
+    add_to(crc, motion.rate_lrf.data(), 3);
   }
-  crc.add_f32(state_.track.log_likelihood.data(), state_.track.log_likelihood.size());
+  add_to(crc, state_.track.log_likelihood.data(), state_.track.log_likelihood.size());
   crc.add_u32(state_.track.frames);
   return crc.value();
 }
+
+template class AttitudeEstimator<FixedPoint>;
+#if TUMBLESIGHT_FLOAT32
+template class AttitudeEstimator<Float32>;
+#endif
 
 }  // namespace tumblesight::gnc

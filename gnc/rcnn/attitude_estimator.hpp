@@ -1,7 +1,7 @@
-// AttitudeEstimator: the RCNN with its explicit state, from LiDAR frames to attitudes.
+// AttitudeEstimator: the RCNN with its explicit state, from LiDAR frames to attitudes, in the numerics N (Float32 or
+// FixedPoint).
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 
@@ -12,23 +12,30 @@
 
 namespace tumblesight::gnc {
 
-// One attitude, of the frame just given. Quaternions are Hamilton, unit, with a non-negative scalar part, and
-// take the target frame (TRF) to the LiDAR frame (LRF): v_lrf = q_lrf_trf * v_trf.
+inline constexpr std::uint32_t kPi_urad = 3'141'593;
+
+// One attitude, of the frame just given, in integers whatever the numerics. Quaternions are Hamilton, unit, scalar
+// first and not negative, with 30 bits behind the point, and take the target frame (TRF) to the LiDAR frame (LRF):
+// v_lrf = q_lrf_trf * v_trf.
 struct AttitudeEstimate {
-  Eigen::Quaternionf q_lrf_trf{1.0F, 0.0F, 0.0F, 0.0F};  // from all frames since the reset (RCNN)
-  float predicted_error_rad = 3.14159265F;               // expected angular error of q_lrf_trf
-  Eigen::Quaternionf q_lrf_trf_single_frame{1.0F, 0.0F, 0.0F, 0.0F};  // from this frame alone (CNN)
-  float predicted_error_single_frame_rad = 3.14159265F;
+  QuaternionQ30 q_lrf_trf = kIdentityQ30;                // from all frames since the reset (RCNN)
+  std::uint32_t predicted_error_urad = kPi_urad;         // expected angular error of q_lrf_trf
+  QuaternionQ30 q_lrf_trf_single_frame = kIdentityQ30;   // from this frame alone (CNN)
+  std::uint32_t predicted_error_single_frame_urad = kPi_urad;
   std::uint32_t frames_since_reset = 0;  // 1 for the first frame of a track
 };
 
-// Owns weights, activations and LSTM state; no allocation. About 6 MB: place it in static storage.
+// Owns activations and state, and float32 weights; weights in fixed point are read where the model image lies,
+// which has to stay there. No allocation; place it in static storage.
+template <class N>
 class AttitudeEstimator {
  public:
+  using Real = typename N::Real;
+
   // What one frame leaves behind for the next: all that save() and restore() have to carry.
   struct State {
-    LstmState lstm;
-    AttitudeTrack track;
+    LstmState<N> lstm;
+    AttitudeTrack<Real> track;
   };
 
   // Validates the whole image first; on any error the model loaded before, if any, stays in use.
@@ -48,14 +55,14 @@ class AttitudeEstimator {
   void restore(const State& state) { state_ = state; }
   std::uint32_t state_crc32() const;
   const DepthImage& depth_image() const { return image_; }
+  Network<N>& network() { return network_; }
 
  private:
-  Network network_;
+  Network<N> network_;
   State state_;
   ModelHeader model_;
-  MotionLaws laws_;
+  MotionLaws<Real> laws_;
   DepthImage image_;
-  DepthImageScratch scratch_;
   bool has_model_ = false;
 };
 

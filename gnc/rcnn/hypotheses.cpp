@@ -1,55 +1,84 @@
 #include "gnc/rcnn/hypotheses.hpp"
 
-#include <algorithm>
-
-#include "gnc/attitude/rotation.hpp"
 #include "gnc/nn/activation.hpp"
 
 namespace tumblesight::gnc {
 namespace {
 
-constexpr float kPi = 3.14159265F;
-constexpr float kTraceOfSameAttitude = 1.0F + 2.0F * 0.93969262F;  // 1 + 2 cos 20 deg
+template <class Real>
+constexpr Real kTraceOfSameAttitude = constant<Real>(1.0 + 2.0 * 0.93969262078590838);  // 1 + 2 cos 20 deg
 static_assert(kSameAttitude_deg == 20.0F);
+
+// exp(x_k) over their sum, added in order, with the largest subtracted first.
+template <class Real>
+std::array<Real, shape::kHypotheses> softmax(const std::array<Real, shape::kHypotheses>& logit, Real largest) {
+  std::array<Real, shape::kHypotheses> share;
+  Real sum{};
+  for (int k = 0; k < shape::kHypotheses; ++k) {
+    share[k] = exp(logit[k] - largest);
+    sum += share[k];
+  }
+  for (Real& one : share) one = one / sum;
+  return share;
+}
 
 }  // namespace
 
-bool same_attitude(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
-  return trace_of_transpose_product(a, b) > kTraceOfSameAttitude;
+template <class Real>
+bool same_attitude(const Matrix3<Real>& a, const Matrix3<Real>& b) {
+  return trace_of_transpose_product<Real>(a, b) > kTraceOfSameAttitude<Real>;
 }
 
-Hypotheses hypotheses_of(const OutputVector& output, const Eigen::Matrix3f& r_lrf_view) {
-  Hypotheses result;
-  const float* logits = output.data() + shape::kColumns;
+template <class Real>
+Hypotheses<Real> hypotheses_of(const OutputVector<Real>& output, const Matrix3<Real>& r_lrf_view) {
+  Hypotheses<Real> result;
   result.likeliest = 0;
   for (int k = 0; k < shape::kHypotheses; ++k) {
-    const float* six = output.data() + 6 * k;
-    const Eigen::Matrix3f r_view_trf =
-        rotation_from_columns(orthonormalise({six[0], six[1], six[2]}, {six[3], six[4], six[5]}));
-    result.r_lrf_trf[k] = product(r_lrf_view, r_view_trf);
-    result.logit[k] = logits[k];
-    result.likeliest = logits[k] > logits[result.likeliest] ? k : result.likeliest;
+    const Real* six = output.data() + 6 * k;
+    const Matrix3<Real> r_view_trf = rotation_from_columns<Real>(
+        orthonormalise<Real>(Vector3<Real>(six[0], six[1], six[2]), Vector3<Real>(six[3], six[4], six[5])));
+    result.r_lrf_trf[k] = product<Real>(r_lrf_view, r_view_trf);
+    result.logit[k] = output[shape::kColumns + k];
+    result.likeliest = result.logit[k] > result.logit[result.likeliest] ? k : result.likeliest;
   }
-  softmax(logits, result.probability.data(), shape::kHypotheses);
-  result.predicted_error_rad = kPi * sigmoid(output[shape::kOutput - 1]);
+  result.probability = softmax<Real>(result.logit, result.logit[result.likeliest]);
+  result.predicted_error_rad = constant<Real>(kPi) * sigmoid(output[shape::kOutput - 1]);
   return result;
 }
 
-Eigen::Matrix3f mean_attitude(const Eigen::Matrix3f* candidates, const float* weights, int count,
-                              int anchor) {
-  Eigen::Vector3f first = Eigen::Vector3f::Zero();
-  Eigen::Vector3f second = Eigen::Vector3f::Zero();
-  float total = 0.0F;
+template <class Real>
+Matrix3<Real> mean_attitude(const Matrix3<Real>* candidates, const Real* weights, int count, int anchor) {
+  constexpr Real kZero{};
+  const auto is_same = [&](int i) {
+    const Real trace = trace_of_transpose_product<Real>(candidates[i], candidates[anchor]);
+    return i == anchor || trace > kTraceOfSameAttitude<Real>;
+  };
+  Real largest = kZero;
+  for (int i = 0; i < count; ++i) largest = is_same(i) && weights[i] > largest ? weights[i] : largest;
+  const bool none = !(largest > kZero);
+  const Real divisor = none ? constant<Real>(1.0) : largest;
+
+  Vector3<Real> first = Vector3<Real>::Zero();
+  Vector3<Real> second = Vector3<Real>::Zero();
   for (int i = 0; i < count; ++i) {
-    const float trace = trace_of_transpose_product(candidates[i], candidates[anchor]);
-    const bool same = i == anchor || trace > kTraceOfSameAttitude;
-    const float weight = same ? weights[i] : 0.0F;
-    const Eigen::Matrix3f& counted = candidates[same ? i : anchor];  // zero times NaN would be NaN
-    first += weight * counted.col(0);
-    second += weight * counted.col(1);
-    total += weight;
+    const bool same = is_same(i);
+    const Real share = none ? constant<Real>(i == anchor ? 1.0 : 0.0) : weights[i] / divisor;
+    const Real weight = same ? share : kZero;
+    const Matrix3<Real>& counted = candidates[same ? i : anchor];  // zero times NaN would be NaN
+    first += scaled<Real>(Vector3<Real>(counted.col(0)), weight);
+    second += scaled<Real>(Vector3<Real>(counted.col(1)), weight);
   }
-  return rotation_from_columns(orthonormalise(first / total, second / total));
+  return rotation_from_columns<Real>(orthonormalise<Real>(first, second));
 }
+
+#define TUMBLESIGHT_INSTANTIATE(Real)                                                              \
+  template bool same_attitude(const Matrix3<Real>&, const Matrix3<Real>&);                         \
+  template Hypotheses<Real> hypotheses_of(const OutputVector<Real>&, const Matrix3<Real>&);        \
+  template Matrix3<Real> mean_attitude(const Matrix3<Real>*, const Real*, int, int)
+
+TUMBLESIGHT_INSTANTIATE(Fixed);
+#if TUMBLESIGHT_FLOAT32
+TUMBLESIGHT_INSTANTIATE(float);
+#endif
 
 }  // namespace tumblesight::gnc

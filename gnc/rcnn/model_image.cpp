@@ -17,12 +17,13 @@ constexpr std::size_t kOffsetSwath = 48;
 constexpr std::size_t kOffsetRadius = 52;
 constexpr std::size_t kOffsetEncoding = 56;
 constexpr std::size_t kOffsetInertia = 60;
-constexpr std::size_t kOffsetSectionCount = 84;
-constexpr std::size_t kOffsetHeaderCrc = 88;
+constexpr std::size_t kOffsetNumerics = 84;
+constexpr std::size_t kOffsetSectionCount = 88;
+constexpr std::size_t kOffsetHeaderCrc = 92;
 // Bounds the reading of another network's section table, so that it is told apart from a damaged image.
 constexpr std::uint32_t kMaxSections = 256;
 
-static_assert(sizeof(float) == 4 && kModelImageSize < 0xFFFFFFFFU);
+static_assert(sizeof(float) == 4);
 
 std::uint16_t get_u16(const std::uint8_t* at) {
   return static_cast<std::uint16_t>(at[0] | (at[1] << 8));
@@ -60,17 +61,12 @@ bool is_finite_bits(std::uint32_t bits) {
   return (bits & 0x7F800000U) != 0x7F800000U;
 }
 
-bool is_positive(const std::uint8_t* at) {
-  return is_finite_bits(get_u32(at)) && get_f32(at) > 0.0F;
-}
-
 constexpr std::uint32_t fnv1a(std::uint32_t hash, std::uint32_t value) {
   for (int i = 0; i < 4; ++i) hash = (hash ^ ((value >> (8 * i)) & 0xFFU)) * 16777619U;
   return hash;
 }
 
 constexpr std::uint32_t compute_architecture_hash() {
-  constexpr char kNumerics[] = "float32";
   constexpr int kSizes[] = {shape::kImageSide, shape::kSpaceToDepthChannels,
                             shape::kConv1,     shape::kConv2,
                             shape::kConv3,     shape::kConv4,
@@ -81,16 +77,19 @@ constexpr std::uint32_t compute_architecture_hash() {
                             shape::kHeadOutput};
   std::uint32_t hash = 2166136261U;
   for (const int size : kSizes) hash = fnv1a(hash, static_cast<std::uint32_t>(size));
-  for (const char letter : kNumerics) hash = fnv1a(hash, static_cast<std::uint32_t>(letter));
   return hash;
 }
 
 constexpr std::uint32_t kArchitectureHash = compute_architecture_hash();
 
+constexpr std::size_t data_offset(std::size_t sections) {
+  return (kModelHeaderSize + sections * kModelSectionEntrySize + 63) / 64 * 64;
+}
+
 std::uint32_t header_crc(const std::uint8_t* image, std::size_t sections) {
   Crc32 crc;
   crc.add(image, kOffsetHeaderCrc);
-  crc.add(image + kModelHeaderSize, sections * kModelSectionEntrySize);
+  crc.add(image + kModelHeaderSize, data_offset(sections) - kModelHeaderSize);
   return crc.value();
 }
 
@@ -110,7 +109,7 @@ ModelStatus check_frame_of_header(const std::uint8_t* image, std::size_t size_by
   if (get_u16(image + kOffsetHeaderSize) != kModelHeaderSize) return ModelStatus::kBadSize;
   const std::uint32_t sections = get_u32(image + kOffsetSectionCount);
   if (sections < 1 || sections > kMaxSections) return ModelStatus::kBadSize;
-  if (size_bytes < kModelHeaderSize + sections * kModelSectionEntrySize) return ModelStatus::kTooShort;
+  if (size_bytes < data_offset(sections)) return ModelStatus::kTooShort;
   if (header_crc(image, sections) != get_u32(image + kOffsetHeaderCrc)) return ModelStatus::kBadHeaderCrc;
   if (get_u32(image + kOffsetTotalSize) != size_bytes) return ModelStatus::kBadSize;
   return ModelStatus::kOk;
@@ -120,17 +119,26 @@ ModelStatus check_frame_of_header(const std::uint8_t* image, std::size_t size_by
 constexpr std::array<std::array<int, 2>, 6> kInertiaElements{
     {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
 
-bool read_inertia(const std::uint8_t* image, Inertia& inertia) {
-  Eigen::Matrix3f tensor;
+// A trace of 3, but for rounding.
+bool read_inertia(const std::uint8_t* image, Inertia<Fixed>& inertia) {
+  Matrix3<Fixed> tensor;
   for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {
     const auto [row, column] = kInertiaElements[i];
-    tensor(row, column) = get_f32(image + kOffsetInertia + 4 * i);
+    tensor(row, column) = Fixed::from_raw(static_cast<std::int32_t>(get_u32(image + kOffsetInertia + 4 * i)));
     tensor(column, row) = tensor(row, column);
   }
-  return make_inertia(tensor, inertia);
+  const Fixed trace = (tensor(0, 0) + tensor(1, 1)) + tensor(2, 2);
+  return absolute(trace - Fixed(3.0)) < Fixed(1e-3) && make_inertia<Fixed>(tensor, inertia);
 }
 
-ModelStatus check_meaning(const std::uint8_t* image, const char* expected_target) {
+DepthProjection read_projection(const std::uint8_t* image) {
+  const std::uint32_t encoding = get_u32(image + kOffsetEncoding);
+  return {get_u32(image + kOffsetSwath), get_u32(image + kOffsetRadius),
+          static_cast<DepthEncoding>(encoding < 255 ? encoding : 255)};
+}
+
+ModelStatus check_meaning(const std::uint8_t* image, std::uint32_t numerics, const char* expected_target) {
+  if (get_u32(image + kOffsetNumerics) != numerics) return ModelStatus::kBadNumerics;
   if (get_u32(image + kOffsetArchitecture) != kArchitectureHash) return ModelStatus::kBadArchitecture;
   ModelHeader header;
   std::memcpy(header.target.data(), image + kOffsetTarget, header.target.size());
@@ -138,58 +146,199 @@ ModelStatus check_meaning(const std::uint8_t* image, const char* expected_target
   if (expected_target != nullptr && std::strcmp(header.target.data(), expected_target) != 0) {
     return ModelStatus::kBadTarget;
   }
-  const bool possible =
-      read_inertia(image, header.inertia) && is_positive(image + kOffsetSwath) &&
-      is_positive(image + kOffsetRadius) &&
-      get_u32(image + kOffsetEncoding) <= static_cast<std::uint32_t>(DepthEncoding::kPaperMaximum);
+  const bool possible = read_inertia(image, header.inertia) && is_possible(read_projection(image));
   return possible ? ModelStatus::kOk : ModelStatus::kBadValue;
-}
-
-// `count` floats as section `index` at `offset`.
-ModelStatus check_section(const std::uint8_t* image, std::size_t index, std::size_t offset,
-                          std::size_t count) {
-  const std::uint8_t* entry = image + kModelHeaderSize + index * kModelSectionEntrySize;
-  const std::size_t size = count * sizeof(float);
-  if (get_u32(entry) != index + 1 || get_u32(entry + 4) != offset || get_u32(entry + 8) != size) {
-    return ModelStatus::kBadSection;
-  }
-  if (crc32(image + offset, size) != get_u32(entry + 12)) return ModelStatus::kBadSectionCrc;
-  bool finite = true;
-  for (std::size_t i = 0; i < count; ++i) finite = is_finite_bits(get_u32(image + offset + 4 * i)) && finite;
-  return finite ? ModelStatus::kOk : ModelStatus::kBadValue;
-}
-
-// `weights` only lends the number and sizes of the tensors.
-ModelStatus check_sections(const std::uint8_t* image, std::size_t size_bytes, const NetworkWeights& weights) {
-  if (get_u32(image + kOffsetSectionCount) != kTensorCount || size_bytes != kModelImageSize) {
-    return ModelStatus::kBadSection;
-  }
-  ModelStatus status = ModelStatus::kOk;
-  std::size_t index = 0;
-  std::size_t offset = kModelDataOffset;
-  for_each_tensor(weights, [&](const char*, const float*, std::size_t count) {
-    if (status == ModelStatus::kOk) status = check_section(image, index, offset, count);
-    ++index;
-    offset += count * sizeof(float);
-  });
-  return status;
-}
-
-ModelStatus check(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
-                  const NetworkWeights& weights) {
-  ModelStatus status = check_frame_of_header(image, size_bytes);
-  if (status == ModelStatus::kOk) status = check_meaning(image, expected_target);
-  if (status == ModelStatus::kOk) status = check_sections(image, size_bytes, weights);
-  return status;
 }
 
 void read_header(const std::uint8_t* image, ModelHeader& header) {
   std::memcpy(header.target.data(), image + kOffsetTarget, header.target.size());
-  header.projection.swath_m = get_f32(image + kOffsetSwath);
-  header.projection.target_radius_m = get_f32(image + kOffsetRadius);
-  header.projection.encoding = static_cast<DepthEncoding>(get_u32(image + kOffsetEncoding));
+  header.projection = read_projection(image);
   (void)read_inertia(image, header.inertia);  // check_meaning() has seen that it is one
   header.crc32 = get_u32(image + kOffsetHeaderCrc);
+}
+
+// A tensor in the image: weights in fixed point one byte a number and read in place, all else four bytes.
+template <std::size_t kCount>
+constexpr std::size_t size_in_image(const FixedPoint::Weights<kCount>&) {
+  return kCount;
+}
+template <class Number, std::size_t kCount>
+constexpr std::size_t size_in_image(const std::array<Number, kCount>&) {
+  return 4 * kCount;
+}
+
+template <std::size_t kCount>
+void read(const std::uint8_t* from, FixedPoint::Weights<kCount>& tensor) {
+  tensor.lie_at(reinterpret_cast<const std::int8_t*>(from));
+}
+template <std::size_t kCount>
+void read(const std::uint8_t* from, std::array<float, kCount>& tensor) {
+  for (std::size_t i = 0; i < kCount; ++i) tensor[i] = get_f32(from + 4 * i);
+}
+template <class Integer, std::size_t kCount>
+void read(const std::uint8_t* from, std::array<Integer, kCount>& tensor) {
+  for (std::size_t i = 0; i < kCount; ++i) tensor[i] = static_cast<Integer>(get_u32(from + 4 * i));
+}
+
+template <std::size_t kCount>
+void write(const FixedPoint::Weights<kCount>& tensor, std::uint8_t* to) {
+  std::memcpy(to, tensor.data(), kCount);
+}
+template <std::size_t kCount>
+void write(const std::array<float, kCount>& tensor, std::uint8_t* to) {
+  for (std::size_t i = 0; i < kCount; ++i) put_f32(to + 4 * i, tensor[i]);
+}
+template <class Integer, std::size_t kCount>
+void write(const std::array<Integer, kCount>& tensor, std::uint8_t* to) {
+  for (std::size_t i = 0; i < kCount; ++i) put_u32(to + 4 * i, static_cast<std::uint32_t>(tensor[i]));
+}
+
+template <std::size_t kCount>
+bool is_possible_tensor(const std::uint8_t* at, const std::array<float, kCount>&) {
+  bool finite = true;
+  for (std::size_t i = 0; i < kCount; ++i) finite = is_finite_bits(get_u32(at + 4 * i)) && finite;
+  return finite;
+}
+template <class Tensor>
+bool is_possible_tensor(const std::uint8_t*, const Tensor&) {
+  return true;  // integers are judged layer by layer
+}
+
+ModelStatus check_entry(const std::uint8_t* image, std::size_t index, std::size_t offset, std::size_t size) {
+  const std::uint8_t* entry = image + kModelHeaderSize + index * kModelSectionEntrySize;
+  if (get_u32(entry) != index + 1 || get_u32(entry + 4) != offset || get_u32(entry + 8) != size) {
+    return ModelStatus::kBadSection;
+  }
+  return crc32(image + offset, size) == get_u32(entry + 12) ? ModelStatus::kOk : ModelStatus::kBadSectionCrc;
+}
+
+#if TUMBLESIGHT_FLOAT32
+ModelStatus check_layers(const std::uint8_t*, const NetworkWeights<Float32>&) {
+  return ModelStatus::kOk;
+}
+#endif
+
+// What a layer's integers may be, given the largest magnitude of its inputs.
+struct LayerLimits {
+  int group;
+  std::int64_t largest_input;
+  std::uint32_t largest_shift;
+};
+
+// Where the tensors of a layer lie.
+struct LayerInImage {
+  const std::uint8_t* weight = nullptr;
+  std::size_t weights = 0;
+  const std::uint8_t* recurrent = nullptr;
+  std::size_t recurrents = 0;
+  const std::uint8_t* bias = nullptr;
+  const std::uint8_t* shift = nullptr;
+};
+
+// Sum of the magnitudes of one channel's weights; -1 where one is -128, which has no opposite.
+std::int64_t magnitude_of(const std::uint8_t* weights, std::size_t count, std::size_t channels, std::size_t channel,
+                          std::size_t group) {
+  std::int64_t sum = 0;
+  bool symmetric = true;
+  for (std::size_t first = channel * group; first < count; first += channels * group) {
+    for (std::size_t i = first; i < first + group; ++i) {
+      const int weight = static_cast<std::int8_t>(weights[i]);
+      symmetric = symmetric && weight != -128;
+      sum += weight < 0 ? -weight : weight;
+    }
+  }
+  return symmetric ? sum : -1;
+}
+
+// No sum of the layer can leave 32 bits, rounding included, and every shift is in its range.
+bool is_possible_layer(const LayerInImage& layer, std::size_t channels, const LayerLimits& limits) {
+  const auto group = static_cast<std::size_t>(limits.group);
+  bool possible = true;
+  for (std::size_t c = 0; c < channels; ++c) {
+    const std::int64_t forward = magnitude_of(layer.weight, layer.weights, channels, c, group);
+    const std::int64_t recurrent =
+        layer.recurrents > 0 ? magnitude_of(layer.recurrent, layer.recurrents, channels, c, group) : 0;
+    const std::int64_t bias = static_cast<std::int32_t>(get_u32(layer.bias + 4 * c));
+    const std::uint32_t shift = get_u32(layer.shift + 4 * c);
+    const bool in_range = shift >= 1 && shift <= limits.largest_shift && forward >= 0 && recurrent >= 0;
+    const std::int64_t rounding = std::int64_t{1} << (in_range && shift <= 31 ? shift - 1 : 0);
+    const std::int64_t largest =
+        (bias < 0 ? -bias : bias) + (forward + recurrent) * limits.largest_input + rounding;
+    possible = possible && in_range && largest <= INT32_MAX;
+  }
+  return possible;
+}
+
+constexpr std::uint32_t kLargestActivationShift = 30;
+constexpr std::uint32_t kLargestOutputShift = 62;
+
+// `weights` only lends the sizes of the tensors.
+ModelStatus check_layers(const std::uint8_t* image, const NetworkWeights<FixedPoint>& weights) {
+  const LayerLimits conv{Int8Product::kGroup, 255, kLargestActivationShift};
+  const LayerLimits hidden{Int16Product::kGroup, 32767, kLargestActivationShift};
+  const LayerLimits output{Int16Product::kGroup, 32767, kLargestOutputShift};
+  const LayerLimits pooled{Int16Product::kGroup, 4 * kLargestOfFour, kLargestActivationShift};
+  // In the order of for_each_layer().
+  const std::array<LayerLimits, 10> limits{conv, conv, conv, conv, pooled, hidden, output, output, hidden, output};
+  const std::uint8_t* next = image + kModelDataOffset<FixedPoint>;
+  std::size_t index = 0;
+  bool possible = true;
+  for_each_layer(weights, [&](const char* name, const auto& layer) {
+    LayerInImage in_image;
+    for_each_tensor_of(name, layer, [&](const char*, const char* part, const auto& tensor) {
+      switch (part[0]) {
+        case 'w':
+          in_image.weight = next;
+          in_image.weights = size_in_image(tensor);
+          break;
+        case 'r':
+          in_image.recurrent = next;
+          in_image.recurrents = size_in_image(tensor);
+          break;
+        case 'b':
+          in_image.bias = next;
+          break;
+        default:
+          in_image.shift = next;
+      }
+      next += size_in_image(tensor);
+    });
+    possible = is_possible_layer(in_image, layer.bias.size(), limits[index++]) && possible;
+  });
+  return possible ? ModelStatus::kOk : ModelStatus::kBadValue;
+}
+
+// `weights` only lends the number and sizes of the tensors.
+template <class N>
+ModelStatus check_sections(const std::uint8_t* image, std::size_t size_bytes, const NetworkWeights<N>& weights) {
+  if (get_u32(image + kOffsetSectionCount) != kTensorCount<N> || size_bytes != kModelImageSize<N>) {
+    return ModelStatus::kBadSection;
+  }
+  ModelStatus status = ModelStatus::kOk;
+  std::size_t index = 0;
+  std::size_t offset = kModelDataOffset<N>;
+  for_each_tensor(weights, [&](const char*, const char*, const auto& tensor) {
+    const std::size_t size = size_in_image(tensor);
+    if (status == ModelStatus::kOk) status = check_entry(image, index, offset, size);
+    if (status == ModelStatus::kOk && !is_possible_tensor(image + offset, tensor)) status = ModelStatus::kBadValue;
+    ++index;
+    offset += size;
+  });
+  return status == ModelStatus::kOk ? check_layers(image, weights) : status;
+}
+
+template <class N>
+constexpr std::uint32_t numerics_of() {
+  return N::kIsInteger ? 1 : 0;
+}
+
+template <class N>
+ModelStatus check(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
+                  const NetworkWeights<N>& weights) {
+  ModelStatus status = check_frame_of_header(image, size_bytes);
+  if (status == ModelStatus::kOk) status = check_meaning(image, numerics_of<N>(), expected_target);
+  if (status == ModelStatus::kOk) status = check_sections<N>(image, size_bytes, weights);
+  return status;
 }
 
 }  // namespace
@@ -208,6 +357,8 @@ const char* to_string(ModelStatus status) {
       return "model image has the wrong size";
     case ModelStatus::kBadHeaderCrc:
       return "model image header is damaged (CRC)";
+    case ModelStatus::kBadNumerics:
+      return "model image of the other numerics (float32, fixed point)";
     case ModelStatus::kBadArchitecture:
       return "model image of another network architecture";
     case ModelStatus::kBadTarget:
@@ -226,17 +377,23 @@ std::uint32_t architecture_hash() {
   return kArchitectureHash;
 }
 
+template <class N>
 ModelStatus read_model_image(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
-                             ModelHeader& header, NetworkWeights& weights) {
-  const ModelStatus status = check(image, size_bytes, expected_target, weights);
+                             ModelHeader& header, NetworkWeights<N>& weights) {
+  const ModelStatus status = check<N>(image, size_bytes, expected_target, weights);
   if (status != ModelStatus::kOk) return status;
   read_header(image, header);
-  const std::uint8_t* next = image + kModelDataOffset;
-  for_each_tensor(weights, [&next](const char*, float* data, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) data[i] = get_f32(next + 4 * i);
-    next += count * sizeof(float);
+  const std::uint8_t* next = image + kModelDataOffset<N>;
+  for_each_tensor(weights, [&next](const char*, const char*, auto& tensor) {
+    read(next, tensor);
+    next += size_in_image(tensor);
   });
   return status;
+}
+
+bool is_float32(const std::uint8_t* image, std::size_t size_bytes) {
+  return check_frame_of_header(image, size_bytes) == ModelStatus::kOk &&
+         get_u32(image + kOffsetNumerics) == numerics_of<Float32>();
 }
 
 bool set_target(ModelHeader& header, const char* name) {
@@ -249,30 +406,34 @@ bool set_target(ModelHeader& header, const char* name) {
   return true;
 }
 
-std::size_t write_model_image(const ModelHeader& header, const NetworkWeights& weights, std::uint8_t* out,
+template <class N>
+std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights, std::uint8_t* out,
                               std::size_t capacity) {
-  if (capacity < kModelImageSize) return 0;
+  const std::size_t total = kModelImageSize<N>;
+  if (capacity < total) return 0;
+  std::memset(out, 0, kModelDataOffset<N>);
   std::memcpy(out, kMagic.data(), kMagic.size());
   put_u16(out + kOffsetVersion, kModelFormatVersion);
   put_u16(out + kOffsetHeaderSize, static_cast<std::uint16_t>(kModelHeaderSize));
-  put_u32(out + kOffsetTotalSize, static_cast<std::uint32_t>(kModelImageSize));
+  put_u32(out + kOffsetTotalSize, static_cast<std::uint32_t>(total));
   put_u32(out + kOffsetArchitecture, kArchitectureHash);
   std::memcpy(out + kOffsetTarget, header.target.data(), header.target.size());
-  put_f32(out + kOffsetSwath, header.projection.swath_m);
-  put_f32(out + kOffsetRadius, header.projection.target_radius_m);
+  put_u32(out + kOffsetSwath, header.projection.swath_mm);
+  put_u32(out + kOffsetRadius, header.projection.target_radius_mm);
   put_u32(out + kOffsetEncoding, static_cast<std::uint32_t>(header.projection.encoding));
   for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {
     const auto [row, column] = kInertiaElements[i];
-    put_f32(out + kOffsetInertia + 4 * i, header.inertia.tensor_trf(row, column));
+    put_u32(out + kOffsetInertia + 4 * i, static_cast<std::uint32_t>(header.inertia.tensor_trf(row, column).raw()));
   }
-  put_u32(out + kOffsetSectionCount, static_cast<std::uint32_t>(kTensorCount));
+  put_u32(out + kOffsetNumerics, numerics_of<N>());
+  put_u32(out + kOffsetSectionCount, static_cast<std::uint32_t>(kTensorCount<N>));
 
   std::uint8_t* entry = out + kModelHeaderSize;
   std::uint32_t id = 1;
-  std::size_t offset = kModelDataOffset;
-  for_each_tensor(weights, [&](const char*, const float* data, std::size_t count) {
-    const std::size_t size = count * sizeof(float);
-    for (std::size_t i = 0; i < count; ++i) put_f32(out + offset + 4 * i, data[i]);
+  std::size_t offset = kModelDataOffset<N>;
+  for_each_tensor(weights, [&](const char*, const char*, const auto& tensor) {
+    const std::size_t size = size_in_image(tensor);
+    write(tensor, out + offset);
     put_u32(entry, id++);
     put_u32(entry + 4, static_cast<std::uint32_t>(offset));
     put_u32(entry + 8, static_cast<std::uint32_t>(size));
@@ -280,8 +441,18 @@ std::size_t write_model_image(const ModelHeader& header, const NetworkWeights& w
     entry += kModelSectionEntrySize;
     offset += size;
   });
-  put_u32(out + kOffsetHeaderCrc, header_crc(out, kTensorCount));
-  return kModelImageSize;
+  put_u32(out + kOffsetHeaderCrc, header_crc(out, kTensorCount<N>));
+  return total;
 }
+
+#define TUMBLESIGHT_INSTANTIATE(N)                                                                            \
+  template ModelStatus read_model_image<N>(const std::uint8_t*, std::size_t, const char*, ModelHeader&,       \
+                                           NetworkWeights<N>&);                                               \
+  template std::size_t write_model_image<N>(const ModelHeader&, const NetworkWeights<N>&, std::uint8_t*, std::size_t)
+
+TUMBLESIGHT_INSTANTIATE(FixedPoint);
+#if TUMBLESIGHT_FLOAT32
+TUMBLESIGHT_INSTANTIATE(Float32);
+#endif
 
 }  // namespace tumblesight::gnc

@@ -54,10 +54,10 @@ void DdsLink::publish(const AttitudeReport& report) {
   sample.validity = report.validity;
   sample.frames_since_reset = report.frames_since_reset;
   std::copy(report.q_lrf_trf.begin(), report.q_lrf_trf.end(), sample.q_lrf_trf);
-  sample.predicted_error_rad = report.predicted_error_rad;
+  sample.predicted_error_urad = report.predicted_error_urad;
   std::copy(report.q_lrf_trf_single_frame.begin(), report.q_lrf_trf_single_frame.end(),
             sample.q_lrf_trf_single_frame);
-  sample.predicted_error_single_frame_rad = report.predicted_error_single_frame_rad;
+  sample.predicted_error_single_frame_urad = report.predicted_error_single_frame_urad;
   output_.done.attitudes = 1;
 }
 

@@ -125,7 +125,13 @@ void add_sequence_options(CLI::App& command, ScenarioArguments& arguments) {
 }
 
 void add_file_options(CLI::App& command, ScenarioArguments& arguments) {
-  command.add_option("--model", arguments.model, "model image [fsw/models/<target>.tsm]")->type_name("FILE");
+  CLI::Option* model = command.add_option("--model", arguments.model, "model image [the one that ships for the target]");
+  model->type_name("FILE");
+  command.add_option("--numerics", arguments.numerics, "of the model that ships: fixed point, as it flies, or float32")
+      ->check(one_of({"fixed", "float32"}))
+      ->type_name("fixed|float32")
+      ->capture_default_str()
+      ->excludes(model);
   command.add_option("--json", arguments.json, "write the figures to this file")->type_name("FILE");
 }
 

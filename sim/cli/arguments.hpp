@@ -20,7 +20,8 @@ struct ScenarioArguments {
   std::uint32_t sequences = 30;
   std::uint32_t frames = 10;
   std::uint64_t seed = 1;
-  std::string model;  // empty: fsw/models/<target>.tsm of the source tree
+  std::string numerics = "fixed";  // or "float32": of the model that ships
+  std::string model;               // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
   std::string json;   // empty: none
 };
 
@@ -28,7 +29,7 @@ struct ScenarioArguments {
 void add_target_options(CLI::App& command, ScenarioArguments& arguments);    // --target, --mesh…, --inertia
 void add_condition_option(CLI::App& command, ScenarioArguments& arguments);  // --condition, a single one
 void add_sequence_options(CLI::App& command, ScenarioArguments& arguments);  // --sequences, --frames, --seed
-void add_file_options(CLI::App& command, ScenarioArguments& arguments);      // --model, --json
+void add_file_options(CLI::App& command, ScenarioArguments& arguments);      // --model, --numerics, --json
 
 // What --condition says of itself, wherever it stands.
 std::string condition_help();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sim/cli/evaluate_command.hpp"
+#include "sim/cli/quantize_command.hpp"
 #ifdef TUMBLESIGHT_HAS_SIL
 #include "sim/cli/simulate_command.hpp"
 #endif
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
     sim::add_simulate_command(app, command_line);
 #endif
     sim::add_evaluate_command(app, command_line);
+    sim::add_quantize_command(app);
 #ifdef TUMBLESIGHT_HAS_TRAINING
     sim::add_train_command(app);
 #endif

@@ -7,15 +7,11 @@
 #include <memory>
 
 #include "hal/dds/idl/topics.hpp"
+#include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_json.hpp"
 
 namespace tumblesight::sim {
 namespace {
-
-Eigen::Quaterniond quaternion(const std::array<float, 4>& wxyz) {
-  const auto part = [&](std::size_t i) { return static_cast<double>(wxyz[i]); };
-  return {part(0), part(1), part(2), part(3)};
-}
 
 bool gave_attitude(const StepRecord& step) {
   return step.answered && step.attitude.validity == tumblesight_icd_VALIDITY_VALID;
@@ -55,7 +51,7 @@ FactList settings_facts(const ScenarioArguments& scenario, const TargetSetup& se
                 {"seed", fmt::format("{}", scenario.seed)},
                 {"speed", settings.speed > 0.0 ? fmt::format("{:g} × real time", settings.speed) : "max"},
                 {"time", settings.free_running ? "free-running" : "lockstep"},
-                {"swath", fmt::format("{:.2f} m", setup.projection.swath_m)}};
+                {"swath", fmt::format("{:.2f} m", 1e-3 * setup.projection.swath_mm)}};
   return list;
 }
 
@@ -136,10 +132,10 @@ std::vector<FrameResult> frame_results(const SilRecording& recording) {
     result.frame = step.frame_index;
     result.valid = gave_attitude(step);
     result.truth = step.truth.q_lrf_trf;
-    result.rcnn = quaternion(step.attitude.q_lrf_trf);
-    result.cnn = quaternion(step.attitude.q_lrf_trf_single_frame);
-    result.rcnn_predicted_rad = static_cast<double>(step.attitude.predicted_error_rad);
-    result.cnn_predicted_rad = static_cast<double>(step.attitude.predicted_error_single_frame_rad);
+    result.rcnn = gnc::to_double(step.attitude.q_lrf_trf);
+    result.cnn = gnc::to_double(step.attitude.q_lrf_trf_single_frame);
+    result.rcnn_predicted_rad = 1e-6 * step.attitude.predicted_error_urad;
+    result.cnn_predicted_rad = 1e-6 * step.attitude.predicted_error_single_frame_urad;
     results.push_back(result);
   }
   return results;
@@ -177,13 +173,26 @@ std::vector<std::string> shortcomings(const SilRecording& recording) {
   return found;
 }
 
-nlohmann::ordered_json run_json(const ScenarioArguments& scenario, const SilRecording& recording) {
+FactList numerics_facts(const NumericsComparison& numerics) {
+  return {"The float32 reference, on the same frames",
+          {{"mean error, last frame", degrees_text(numerics.float32.mean_deg)},
+           {"attitudes differ by, mean", degrees_text(numerics.difference.mean_deg)},
+           {"at most", degrees_text(numerics.largest_difference_deg)}}};
+}
+
+nlohmann::ordered_json run_json(const ScenarioArguments& scenario, const SilRecording& recording,
+                                const std::optional<NumericsComparison>& numerics) {
   const std::vector<FrameResult> results = frame_results(recording);
   const InferenceTime time = inference_time(recording);
   nlohmann::ordered_json json{
       {"target", scenario.target}, {"condition", scenario.condition}, {"sequences", scenario.sequences}};
   json["rcnn"] = summary_json(summarise(last_frame_errors_deg(results, scenario.frames, Estimator::kRcnn)));
   json["cnn"] = summary_json(summarise(last_frame_errors_deg(results, scenario.frames, Estimator::kCnn)));
+  if (numerics) {
+    json["float32"] = summary_json(numerics->float32);
+    json["difference_to_float32"] = {{"mean_deg", numerics->difference.mean_deg},
+                                     {"max_deg", numerics->largest_difference_deg}};
+  }
   json["inference_us"] = {{"median", time.median_us}, {"max", time.max_us}};
   json["flight_heap_allocations"] = recording.flight_heap_allocations;
   json["steps_missed"] = recording.steps_missed;

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/cli/float32_beside.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/report/report.hpp"
 #include "sim/sil/sil_run.hpp"
@@ -26,7 +28,9 @@ InferenceTime inference_time(const SilRecording& recording);
 // task's heap stayed untouched.
 std::vector<std::string> shortcomings(const SilRecording& recording);
 
-nlohmann::ordered_json run_json(const ScenarioArguments& scenario, const SilRecording& recording);
+nlohmann::ordered_json run_json(const ScenarioArguments& scenario, const SilRecording& recording,
+                                const std::optional<NumericsComparison>& numerics = {});
+FactList numerics_facts(const NumericsComparison& numerics);
 RunReport run_report(const ScenarioArguments& scenario, const TargetSetup& setup, const SilSettings& settings,
                      const SilRecording& recording);
 

@@ -47,6 +47,7 @@ std::string default_report_name(const SimulateArguments& arguments) {
   if (scenario.sequences != usual.scenario.sequences || scenario.frames != usual.scenario.frames) {
     name += fmt::format("_{}x{}", scenario.sequences, scenario.frames);
   }
+  if (scenario.numerics != usual.scenario.numerics) name += "_" + scenario.numerics;
   name += files_part(arguments);
   if (scenario.mesh_up != usual.scenario.mesh_up) name += "_up-" + scenario.mesh_up;
   if (scenario.mesh_scale != usual.scenario.mesh_scale) name += fmt::format("_scale{}", scenario.mesh_scale);

@@ -7,16 +7,19 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
 #include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/float32_beside.hpp"
 #include "sim/cli/sil_results.hpp"
 #include "sim/cli/simulate_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/evaluation/curves.hpp"
 #include "sim/evaluation/experiment.hpp"
+#include "sim/evaluation/statistics.hpp"
 #include "sim/report/progress.hpp"
 #include "sim/report/results_table.hpp"
 #include "sim/report/text_file.hpp"
@@ -110,8 +113,14 @@ void print_results(const ScenarioArguments& scenario, const SilRecording& record
   fmt::print("  trace CRC-32     {:08x}\n", recording.trace_crc32);
 }
 
-SilRecording record(const SimulateArguments& arguments, const TargetSetup& setup,
-                    const SilSettings& settings) {
+void print_numerics(const NumericsComparison& numerics) {
+  fmt::print("  float32 beside   mean {}; attitudes differ by {} on average, at most {}\n",
+             degrees_text(numerics.float32.mean_deg), degrees_text(numerics.difference.mean_deg),
+             degrees_text(numerics.largest_difference_deg));
+}
+
+SilRecording record(const SimulateArguments& arguments, const TargetSetup& setup, const SilSettings& settings,
+                    Float32Beside& float32) {
   const ScenarioArguments& scenario = arguments.scenario;
   const ScenarioSettings settings_of_sequence = scenario_settings(
       condition_from(scenario.condition), scenario.frames, scenario.target, setup.inertia_kg_m2);
@@ -121,8 +130,9 @@ SilRecording record(const SimulateArguments& arguments, const TargetSetup& setup
   }
   const FlashLidar lidar(setup.mesh);
   ProgressBar bar("simulating", "frames", std::uint64_t{scenario.sequences} * scenario.frames);
-  return run_sil(settings, lidar, static_cast<double>(setup.projection.swath_m), sequences,
-                 [&](std::uint32_t done, std::uint32_t) { bar.update(done); });
+  return run_sil(settings, lidar, 1e-3 * setup.projection.swath_mm, sequences,
+                 [&](std::uint32_t done, std::uint32_t) { bar.update(done); },
+                 [&](const StepRecord& step, const gnc::RangeImage& frame) { float32.frame_sent(step, frame); });
 }
 
 void announce(const ScenarioArguments& scenario, const TargetSetup& setup, const SilSettings& settings) {
@@ -140,7 +150,7 @@ void announce(const ScenarioArguments& scenario, const TargetSetup& setup, const
 
 // Report first; a file that cannot be written keeps no other from being written. Returns what went wrong.
 std::vector<std::string> write_files(const SimulateArguments& arguments, const RunReport& report,
-                                     const SilRecording& recording) {
+                                     const nlohmann::ordered_json& figures) {
   std::vector<std::string> failures;
   const auto attempt = [&](const auto& write) {
     try {
@@ -155,7 +165,7 @@ std::vector<std::string> write_files(const SimulateArguments& arguments, const R
   });
   const std::string& json = arguments.scenario.json;
   attempt([&] {
-    if (!json.empty()) write_text_file(json, run_json(arguments.scenario, recording).dump(2) + "\n");
+    if (!json.empty()) write_text_file(json, figures.dump(2) + "\n");
   });
   return failures;
 }
@@ -172,13 +182,18 @@ void simulate(SimulateArguments arguments) {
 
   announce(scenario, setup, settings);
 
-  const SilRecording recording = record(arguments, setup, settings);
+  Float32Beside float32(setup.model_path, setup.model, scenario.target);
+  const SilRecording recording = record(arguments, setup, settings, float32);
   RunReport report = run_report(scenario, setup, settings, recording);
+  std::optional<NumericsComparison> numerics;
+  if (float32) numerics = float32.compare(report.results, scenario.frames);
+  if (numerics) report.facts.insert(report.facts.begin() + 1, numerics_facts(*numerics));
   report.command = arguments.command_line;
   report.generated = fmt::format("{:%Y-%m-%d %H:%M %Z}", fmt::localtime(std::time(nullptr)));
   print_results(scenario, recording, report);
+  if (numerics) print_numerics(*numerics);
   std::vector<std::string> wrong = shortcomings(recording);
-  for (const std::string& failure : write_files(arguments, report, recording)) wrong.push_back(failure);
+  for (const std::string& failure : write_files(arguments, report, run_json(scenario, recording, numerics))) wrong.push_back(failure);
   fmt::print("\n");
   std::fflush(stdout);
 

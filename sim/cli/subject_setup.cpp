@@ -21,7 +21,7 @@ Subject set_up_subject(const ScenarioArguments& arguments) {
   subject.target = arguments.target;
   subject.mesh_name = setup.mesh_name;
   subject.mesh = std::move(setup.mesh);
-  subject.swath_m = static_cast<double>(setup.projection.swath_m);
+  subject.swath_m = 1e-3 * setup.projection.swath_mm;
   subject.model_name = std::filesystem::path(setup.model_path).stem().string();
   subject.model_crc32 = setup.header.crc32;
   subject.model = std::move(setup.model);

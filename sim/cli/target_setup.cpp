@@ -12,7 +12,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "sim/evaluation/host_estimator.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/lidar/flash_lidar.hpp"
 #include "sim/target/mesh_file.hpp"
@@ -32,7 +32,8 @@ TriangleMesh load_mesh(const ScenarioArguments& arguments) {
 }
 
 std::string model_path(const ScenarioArguments& arguments) {
-  return arguments.model.empty() ? shipped_model_path(arguments.target) : arguments.model;
+  if (!arguments.model.empty()) return arguments.model;
+  return shipped_model_path(arguments.target + (arguments.numerics == "float32" ? ".float32" : ""));
 }
 
 bool ships(const std::string& target) {
@@ -79,15 +80,14 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
 }
 
 void frame_by_mesh(TargetSetup& setup) {
-  setup.projection.swath_m = static_cast<float>(swath_m(setup.mesh));
-  setup.projection.target_radius_m = setup.mesh.radius_m();
+  setup.projection = projection_of(setup.mesh);
   setup.warnings.push_back(fmt::format("Model image '{}' is refused: {}; frames cover the mesh's own swath.",
                                        setup.model_path, gnc::to_string(setup.model_status)));
 }
 
 void frame_by_model(TargetSetup& setup) {
   setup.projection = setup.header.projection;
-  const double of_model = static_cast<double>(setup.projection.swath_m);
+  const double of_model = 1e-3 * setup.projection.swath_mm;
   const double of_mesh = swath_m(setup.mesh);
   if (std::abs(of_mesh - of_model) <= kSwathTolerance * of_model) return;
   setup.warnings.push_back(
@@ -112,10 +112,10 @@ TargetSetup set_up_target(const ScenarioArguments& arguments) {
   setup.inertia_kg_m2 = inertia_of(arguments);
   setup.model_path = model_path(arguments);
   setup.model = read_model(arguments, setup.model_path);
-  const auto estimator = std::make_unique<gnc::AttitudeEstimator>();
-  setup.model_status = estimator->load(setup.model.data(), setup.model.size(), arguments.target.c_str());
+  const HostEstimator estimator(setup.model, arguments.target.c_str());
+  setup.model_status = estimator.status();
   if (setup.model_status == gnc::ModelStatus::kOk) {
-    setup.header = estimator->model();
+    setup.header = estimator.model();
     frame_by_model(setup);
   } else {
     frame_by_mesh(setup);

@@ -16,7 +16,8 @@
 #include <vector>
 
 #include "sim/cli/arguments.hpp"
-#include "sim/target/mesh_file.hpp"
+#include "sim/cli/quantize_command.hpp"
+#include "sim/cli/surfaces.hpp"
 #include "sim/target/targets.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/train.hpp"
@@ -30,9 +31,7 @@ std::atomic<bool> stop_requested{false};
 
 struct TrainOptions {
   std::string target = "near_shoemaker";
-  std::vector<std::string> meshes{"parametric"};
-  std::string mesh_up = "y";
-  double mesh_scale = 1.0;
+  SurfaceArguments surfaces;
   std::string conditions = "all";
   std::string device = "auto";
   std::string precision = "auto";
@@ -48,14 +47,6 @@ bool cpu_has_bfloat16() {
     }
   }
   return false;
-}
-
-TriangleMesh mesh_from(const TrainOptions& options, const std::string& name) {
-  if (name == "parametric") return target_by_name(options.target);
-  MeshFileOptions file;
-  file.up = mesh_up_from(options.mesh_up);
-  file.scale = options.mesh_scale;
-  return load_mesh_file(name, file);
 }
 
 // Of a target of the user's own, any: a sphere's, with which a body tumbles as it spins.
@@ -94,6 +85,23 @@ void require_a_cnn(const TrainingSettings& settings) {
                                                  " unless --start-from names a model image to begin with");
 }
 
+std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurrent, const std::string& target,
+                                       const TrainingTargets& targets) {
+  auto model = std::make_unique<Float32Model>();
+  model->header = model_header(target, targets);
+  export_weights(cnn, recurrent, model->weights);
+  shorten(model->weights);
+  return model;
+}
+
+// The reference, and the image that flies.
+void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes,
+                  const std::unique_ptr<Float32Model>& model) {
+  write_model_file<gnc::Float32>(stem + ".float32.tsm", model->header, model->weights);
+  std::printf("Reference in float32: %s.float32.tsm\nIn fixed point, to fly:\n", stem.c_str());
+  quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm");
+}
+
 int train(TrainOptions& options) {
   require_a_cnn(options.settings);
   choose_device(options);
@@ -101,8 +109,7 @@ int train(TrainOptions& options) {
   std::signal(SIGINT, [](int) { stop_requested = true; });
   std::signal(SIGTERM, [](int) { stop_requested = true; });
 
-  std::vector<TriangleMesh> meshes;
-  for (const std::string& name : options.meshes) meshes.push_back(mesh_from(options, name));
+  const std::vector<TriangleMesh> meshes = load_surfaces(options.surfaces, options.target);
   const TrainingTargets targets = make_training_targets(
       meshes, options.conditions == "paper" ? paper_conditions() : all_conditions(), inertia_of(options));
 
@@ -117,14 +124,8 @@ int train(TrainOptions& options) {
     std::printf("Stopped. The same command goes on from the checkpoint in %s.\n", folder.c_str());
     return kStopped;
   }
-  const std::string path = folder + "/" + options.target + ".tsm";
-  const auto weights = std::make_unique<gnc::NetworkWeights>();
-  export_weights(cnn, recurrent, *weights);
-  shorten(*weights);
-  write_model_file(path, options.target, targets, *weights);
-  std::printf(
-      "Training finished.\n  model image    %s\n  training log   %s/log.csv\n  loss curve     %s/curve.svg\n",
-      path.c_str(), folder.c_str(), folder.c_str());
+  std::printf("Training finished: log and loss curve are %s/log.csv and curve.svg.\n", folder.c_str());
+  write_images(folder + "/" + options.target, meshes, model_of(cnn, recurrent, options.target, targets));
   return 0;
 }
 
@@ -134,7 +135,7 @@ void add_train_command(CLI::App& app) {
   auto options = std::make_shared<TrainOptions>();
   TrainingSettings& settings = options->settings;
   settings.workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
-  CLI::App* command = app.add_subcommand("train", "Train a network for a target and write its model image");
+  CLI::App* command = app.add_subcommand("train", "Train a network for a target and write its model images");
   command->footer(
       "Example: train NEAR on the shipped model and on a CAD file at once\n"
       "  tumblesight train --target near_shoemaker --mesh parametric --mesh near.stl --out out/near\n"
@@ -142,16 +143,7 @@ void add_train_command(CLI::App& app) {
   command->add_option("--target", options->target, "Target that the model image is for")
       ->check(target_name())
       ->capture_default_str();
-  command
-      ->add_option("--mesh", options->meshes,
-                   "Surface to train on: a CAD file, or 'parametric' for the shipped one; may be repeated")
-      ->capture_default_str();
-  command->add_option("--mesh-up", options->mesh_up, "Axis that points up in the files")
-      ->check(one_of({"y", "z"}))
-      ->capture_default_str();
-  command->add_option("--mesh-scale", options->mesh_scale, "Metres to a unit of the files")
-      ->check(number(1e-6, 1e6))
-      ->capture_default_str();
+  add_surface_options(*command, options->surfaces);
   command->add_option("--seed", settings.seed, "Seed of data and weights")
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();

@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "sim/evaluation/host_estimator.hpp"
 #include "sim/scenario/random.hpp"
 
 namespace tumblesight::sim {
@@ -45,10 +45,10 @@ FrameResult frame_result(const FrameTruth& truth, const gnc::AttitudeEstimate& e
   result.rate_rad_s = truth.rate_lrf_rad_s.norm();
   result.valid = valid;
   if (!valid) return result;
-  result.rcnn = estimate.q_lrf_trf.cast<double>();
-  result.cnn = estimate.q_lrf_trf_single_frame.cast<double>();
-  result.rcnn_predicted_rad = static_cast<double>(estimate.predicted_error_rad);
-  result.cnn_predicted_rad = static_cast<double>(estimate.predicted_error_single_frame_rad);
+  result.rcnn = gnc::to_double(estimate.q_lrf_trf);
+  result.cnn = gnc::to_double(estimate.q_lrf_trf_single_frame);
+  result.rcnn_predicted_rad = 1e-6 * estimate.predicted_error_urad;
+  result.cnn_predicted_rad = 1e-6 * estimate.predicted_error_single_frame_urad;
   return result;
 }
 
@@ -61,7 +61,7 @@ void run_baseline(Job& job, const gnc::RangeImage& frame, FrameResult& result) {
   result.baseline = match.q_lrf_trf;
 }
 
-void run_sequence(Job& job, std::uint32_t index, gnc::AttitudeEstimator& estimator, gnc::RangeImage& frame) {
+void run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::RangeImage& frame) {
   const ScenarioSettings& scenario = job.settings.scenario;
   const Sequence sequence = make_sequence(scenario, job.settings.seed, index);
   estimator.reset();
@@ -86,13 +86,13 @@ void run_sequence(Job& job, std::uint32_t index, gnc::AttitudeEstimator& estimat
 }
 
 void work(Job& job) {
-  const auto estimator = std::make_unique<gnc::AttitudeEstimator>();
+  HostEstimator estimator(job.model);
   const auto frame = std::make_unique<gnc::RangeImage>();
-  if (estimator->load(job.model.data(), job.model.size(), nullptr) != gnc::ModelStatus::kOk) {
+  if (estimator.status() != gnc::ModelStatus::kOk) {
     throw std::invalid_argument("the estimator refuses the model image");
   }
   for (std::uint32_t index = job.next++; index < job.settings.sequences; index = job.next++) {
-    run_sequence(job, index, *estimator, *frame);
+    run_sequence(job, index, estimator, *frame);
     ++job.done;
   }
 }

@@ -65,6 +65,11 @@ double swath_m(const TriangleMesh& mesh) {
   return 2.0 * kSwathMargin * mesh.radius_m();
 }
 
+gnc::DepthProjection projection_of(const TriangleMesh& mesh) {
+  const auto millimetres = [](double metres) { return static_cast<std::uint32_t>(std::lround(1e3 * metres)); };
+  return {millimetres(swath_m(mesh)), millimetres(static_cast<double>(mesh.radius_m()))};
+}
+
 std::uint32_t fov_urad(double swath_m, double range_m) {
   const double fov_rad = 2.0 * std::atan(swath_m / (2.0 * range_m));
   return static_cast<std::uint32_t>(

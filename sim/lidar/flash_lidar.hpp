@@ -23,6 +23,8 @@ SensorSettings sensor_settings(Condition condition);
 // Side of the square across the boresight that holds the whole target at any attitude; the FOV follows from
 // it.
 double swath_m(const TriangleMesh& mesh);
+// How a network for this mesh sees it: that swath, and the radius as the scale of depths.
+gnc::DepthProjection projection_of(const TriangleMesh& mesh);
 // 2 atan(swath / (2 range)), within 1..40 degrees.
 std::uint32_t fov_urad(double swath_m, double range_m);
 

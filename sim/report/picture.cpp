@@ -16,16 +16,18 @@ constexpr Rgb kEmptyCell{242, 243, 245};
 Picture depth_picture(const gnc::DepthImage& image) {
   float lowest = 1.0F;
   float highest = 0.0F;
-  for (const float value : image.value) {
-    if (value <= 0.0F) continue;
+  for (const std::uint16_t depth : image.depth) {
+    if (depth == 0) continue;
+    const float value = static_cast<float>(depth) / 65536.0F;
     lowest = std::min(lowest, value);
     highest = std::max(highest, value);
   }
   const float span = std::max(highest - lowest, 1e-3F);
   Picture picture{gnc::DepthImage::kSide, gnc::DepthImage::kSide, {}};
-  picture.pixels.reserve(image.value.size());
-  for (const float value : image.value) {
-    picture.pixels.push_back(value > 0.0F ? sequential_colour((value - lowest) / span) : kEmptyCell);
+  picture.pixels.reserve(image.depth.size());
+  for (const std::uint16_t depth : image.depth) {
+    const float value = static_cast<float>(depth) / 65536.0F;
+    picture.pixels.push_back(depth > 0 ? sequential_colour((value - lowest) / span) : kEmptyCell);
   }
   return picture;
 }

@@ -15,10 +15,10 @@ hal::AttitudeReport from_sample(const hal::dds::AttitudeSample& sample) {
   report.validity = sample.validity;
   report.frames_since_reset = sample.frames_since_reset;
   std::copy(std::begin(sample.q_lrf_trf), std::end(sample.q_lrf_trf), report.q_lrf_trf.begin());
-  report.predicted_error_rad = sample.predicted_error_rad;
+  report.predicted_error_urad = sample.predicted_error_urad;
   std::copy(std::begin(sample.q_lrf_trf_single_frame), std::end(sample.q_lrf_trf_single_frame),
             report.q_lrf_trf_single_frame.begin());
-  report.predicted_error_single_frame_rad = sample.predicted_error_single_frame_rad;
+  report.predicted_error_single_frame_urad = sample.predicted_error_single_frame_urad;
   return report;
 }
 

@@ -26,11 +26,12 @@ hal::Command command(std::uint16_t opcode) {
 class SilRun {
  public:
   SilRun(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
-         const std::vector<Sequence>& sequences,
-         const std::function<void(std::uint32_t, std::uint32_t)>& progress, SilRecording& recording)
+         const std::vector<Sequence>& sequences, const SilProgress& progress, const FrameObserver& frame_sent,
+         SilRecording& recording)
       : settings_(settings),
         sequences_(sequences),
         progress_(progress),
+        frame_sent_(frame_sent),
         recording_(recording),
         plan_(plan_steps(sequences)),
         feed_(lidar, swath_m, sequences, plan_) {
@@ -107,6 +108,7 @@ class SilRun {
     recording_.steps.push_back(step);
 
     const gnc::RangeImage& frame = feed_.next();
+    if (frame_sent_) frame_sent_(step, frame);
     if (plan.sequence < kPictureSequences) recording_.pictures.emplace_back(k, frame);
 
     StepInput input;
@@ -141,7 +143,8 @@ class SilRun {
 
   const SilSettings& settings_;
   const std::vector<Sequence>& sequences_;
-  const std::function<void(std::uint32_t, std::uint32_t)>& progress_;
+  const SilProgress& progress_;
+  const FrameObserver& frame_sent_;
   SilRecording& recording_;
   std::vector<PlannedStep> plan_;
   FrameFeed feed_;
@@ -163,11 +166,11 @@ void conclude(SilRecording& recording) {
 }  // namespace
 
 SilRecording run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
-                     const std::vector<Sequence>& sequences,
-                     const std::function<void(std::uint32_t, std::uint32_t)>& progress) {
+                     const std::vector<Sequence>& sequences, const SilProgress& progress,
+                     const FrameObserver& frame_sent) {
   SilRecording recording;
   try {
-    SilRun(settings, lidar, swath_m, sequences, progress, recording).run();
+    SilRun(settings, lidar, swath_m, sequences, progress, frame_sent, recording).run();
   } catch (const std::exception& error) {
     recording.failure = error.what();
   }

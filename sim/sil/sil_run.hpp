@@ -52,9 +52,11 @@ struct SilRecording {
 
 // Runs `sequences` one after the other, with a reset command before each. Never throws for what the flight
 // side does: whatever was recorded until then is returned with `failure` set. `progress(done, planned)` after
-// every step.
+// every step; `frame_sent` with each frame, in their order.
+using SilProgress = std::function<void(std::uint32_t done, std::uint32_t planned)>;
+using FrameObserver = std::function<void(const StepRecord& step, const gnc::RangeImage& frame)>;
 SilRecording run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
-                     const std::vector<Sequence>& sequences,
-                     const std::function<void(std::uint32_t, std::uint32_t)>& progress);
+                     const std::vector<Sequence>& sequences, const SilProgress& progress,
+                     const FrameObserver& frame_sent = {});
 
 }  // namespace tumblesight::sim

@@ -24,10 +24,10 @@ void TraceDigest::add_report(const hal::AttitudeReport& report) {
   crc_.add_u32(report.sequence_number);
   crc_.add_u32(report.validity);
   crc_.add_u32(report.frames_since_reset);
-  crc_.add_f32(report.q_lrf_trf.data(), report.q_lrf_trf.size());
-  crc_.add_f32(&report.predicted_error_rad, 1);
-  crc_.add_f32(report.q_lrf_trf_single_frame.data(), report.q_lrf_trf_single_frame.size());
-  crc_.add_f32(&report.predicted_error_single_frame_rad, 1);
+  for (const std::int32_t part : report.q_lrf_trf) crc_.add_u32(static_cast<std::uint32_t>(part));
+  crc_.add_u32(report.predicted_error_urad);
+  for (const std::int32_t part : report.q_lrf_trf_single_frame) crc_.add_u32(static_cast<std::uint32_t>(part));
+  crc_.add_u32(report.predicted_error_single_frame_urad);
 }
 
 void TraceDigest::add_housekeeping(const hal::Housekeeping& housekeeping) {

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <stdexcept>
-#include <vector>
 
 #include "gnc/rcnn/network_shape.hpp"
 
@@ -51,7 +47,7 @@ void add_cnn(TensorsByName& tensors, const Cnn& cnn) {
 void add_recurrent(TensorsByName& tensors, const Recurrent& recurrent) {
   const auto parameters = recurrent->lstm->named_parameters();
   const torch::Tensor input = parameters["weight_ih"] / recurrent->input_deviation;
-  add(tensors, "lstm.input", input.t());
+  add(tensors, "lstm.weight", input.t());
   add(tensors, "lstm.recurrent", parameters["weight_hh"].t());
   add(tensors, "lstm.bias",
       parameters["bias_ih"] + parameters["bias_hh"] - torch::matmul(input, recurrent->input_mean));
@@ -66,46 +62,43 @@ void add_recurrent(TensorsByName& tensors, const Recurrent& recurrent) {
 
 }  // namespace
 
-void export_weights(const Cnn& cnn, const Recurrent& recurrent, gnc::NetworkWeights& weights) {
+void export_weights(const Cnn& cnn, const Recurrent& recurrent, gnc::NetworkWeights<gnc::Float32>& weights) {
   torch::NoGradGuard guard;
   TensorsByName tensors;
   add_cnn(tensors, cnn);
   add_recurrent(tensors, recurrent);
-  gnc::for_each_tensor(weights, [&](const char* name, float* data, std::size_t count) {
+  gnc::for_each_tensor(weights, [&](const char* layer, const char* part, auto& tensor) {
+    const std::string name = std::string(layer) + "." + part;
     const auto found = tensors.find(name);
-    if (found == tensors.end() || found->second.numel() != static_cast<std::int64_t>(count)) {
-      throw std::logic_error(std::string("the trainer has no tensor of this size for ") + name);
+    if (found == tensors.end() || found->second.numel() != static_cast<std::int64_t>(tensor.size())) {
+      throw std::logic_error("the trainer has no tensor of this size for " + name);
     }
-    std::copy_n(found->second.data_ptr<float>(), count, data);
+    std::copy_n(found->second.data_ptr<float>(), tensor.size(), tensor.data());
   });
 }
 
-void shorten(gnc::NetworkWeights& weights) {
-  gnc::for_each_tensor(weights, [](const char*, float* data, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
+void shorten(gnc::NetworkWeights<gnc::Float32>& weights) {
+  gnc::for_each_tensor(weights, [](const char*, const char*, auto& tensor) {
+    for (float& value : tensor) {
       int exponent = 0;
-      const float mantissa = std::frexp(data[i], &exponent);
-      data[i] = std::ldexp(std::nearbyint(mantissa * 1024.0F), exponent - 10);
+      const float mantissa = std::frexp(value, &exponent);
+      value = std::ldexp(std::nearbyint(mantissa * 1024.0F), exponent - 10);
     }
   });
 }
 
-void write_model_file(const std::string& path, const std::string& target, const TrainingTargets& targets,
-                      const gnc::NetworkWeights& weights) {
+gnc::ModelHeader model_header(const std::string& target, const TrainingTargets& targets) {
   gnc::ModelHeader header;
   if (!gnc::set_target(header, target.c_str())) {
     throw std::runtime_error("target name '" + target + "' must be printable and at most " +
                              std::to_string(header.target.size() - 1) + " characters long");
   }
   header.projection = targets.projection;
-  header.inertia = targets.inertia;
-  std::vector<std::uint8_t> bytes(gnc::kModelImageSize);
-  bytes.resize(gnc::write_model_image(header, weights, bytes.data(), bytes.size()));
-  std::ofstream out(path + ".new", std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out || bytes.empty()) throw std::runtime_error("cannot write the model image " + path);
-  std::filesystem::rename(path + ".new", path);
+  const gnc::Matrix3<gnc::Fixed> tensor_trf = gnc::converted<gnc::Fixed>(targets.inertia.tensor_trf);
+  if (!gnc::make_inertia<gnc::Fixed>(tensor_trf, header.inertia)) {
+    throw std::runtime_error("the inertia of '" + target + "' is too near to a thin rod's");
+  }
+  return header;
 }
 
 }  // namespace tumblesight::sim

@@ -11,14 +11,13 @@ namespace tumblesight::sim {
 
 // Batch norm folded into the convolutions, standardisation into the LSTM and the head, layouts turned to the
 // flight side's. Modules may lie on any device.
-void export_weights(const Cnn& cnn, const Recurrent& recurrent, gnc::NetworkWeights& weights);
+void export_weights(const Cnn& cnn, const Recurrent& recurrent, gnc::NetworkWeights<gnc::Float32>& weights);
 
 // Rounds every weight to 10 significant bits: far below what shows in an attitude, and the image compresses
 // to half.
-void shorten(gnc::NetworkWeights& weights);
+void shorten(gnc::NetworkWeights<gnc::Float32>& weights);
 
-// Writes the image beside `path` and renames it over. Throws std::runtime_error naming the file.
-void write_model_file(const std::string& path, const std::string& target, const TrainingTargets& targets,
-                      const gnc::NetworkWeights& weights);
+// Throws std::runtime_error when the name or the inertia is not possible.
+gnc::ModelHeader model_header(const std::string& target, const TrainingTargets& targets);
 
 }  // namespace tumblesight::sim

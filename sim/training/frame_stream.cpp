@@ -28,7 +28,7 @@ bool try_render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_
   const Condition condition = targets.conditions[(index / targets.lidars.size()) % targets.conditions.size()];
   const Sequence sequence = make_sequence({condition, 1}, seed, index);
   truth = sequence.frames.front();
-  lidar.expose(truth, sensor_settings(condition), targets.projection.swath_m, sequence.noise_seed,
+  lidar.expose(truth, sensor_settings(condition), 1e-3 * targets.projection.swath_mm, sequence.noise_seed,
                work.frame);
   return make_depth_image(work.frame, targets.projection, work.scratch, work.image) == gnc::FrameStatus::kOk;
 }
@@ -76,6 +76,13 @@ torch::Tensor quarter_turn() {
   return torch::tensor({0.0F, 0.0F, -1.0F, 0.0F, 1.0F, 0.0F, 1.0F, 0.0F, 0.0F}).view({3, 3});
 }
 
+torch::Tensor image_tensor(const gnc::DepthImage& image) {
+  torch::Tensor tensor = torch::empty({1, kSide, kSide});
+  float* to = tensor.data_ptr<float>();
+  for (const std::uint16_t depth : image.depth) *to++ = static_cast<float>(depth) / 65536.0F;
+  return tensor;
+}
+
 torch::Tensor rotation_tensor(const FrameTruth& truth, const Eigen::Matrix3f& r_lrf_view) {
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r =
       r_lrf_view.transpose() * truth.q_lrf_trf.toRotationMatrix().cast<float>();
@@ -105,14 +112,15 @@ TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const Eigen::Matrix3d& inertia_kg_m2) {
   TrainingTargets targets;
   targets.inertia_kg_m2 = inertia_kg_m2;
-  if (!gnc::make_inertia(inertia_kg_m2.cast<float>(), targets.inertia)) {
+  if (!gnc::make_inertia<float>(inertia_kg_m2.cast<float>(), targets.inertia)) {
     throw std::invalid_argument("the target's inertia is not symmetric and positive definite");
   }
   targets.conditions = conditions;
   for (const TriangleMesh& mesh : meshes) {
     targets.lidars.push_back(std::make_unique<FlashLidar>(mesh));
-    targets.projection.swath_m = std::max(targets.projection.swath_m, static_cast<float>(swath_m(mesh)));
-    targets.projection.target_radius_m = std::max(targets.projection.target_radius_m, mesh.radius_m());
+    const gnc::DepthProjection of_mesh = projection_of(mesh);
+    targets.projection.swath_mm = std::max(targets.projection.swath_mm, of_mesh.swath_mm);
+    targets.projection.target_radius_mm = std::max(targets.projection.target_radius_mm, of_mesh.target_radius_mm);
   }
   targets.meshes_crc32 = crc32_of(meshes);
   require_visible(targets, meshes);
@@ -124,8 +132,8 @@ FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std
   FrameBatch result{torch::empty({batch, 1, kSide, kSide}), torch::empty({batch, 3, 3})};
   for (int i = 0; i < batch; ++i) {
     const FrameTruth truth = render(targets, seed, group * batch + i, work);
-    result.images[i].copy_(torch::from_blob(work.image.value.data(), {1, kSide, kSide}, torch::kFloat));
-    result.r_view_trf[i].copy_(rotation_tensor(truth, work.image.r_lrf_view));
+    result.images[i].copy_(image_tensor(work.image));
+    result.r_view_trf[i].copy_(rotation_tensor(truth, gnc::converted<float>(work.image.r_lrf_view)));
   }
   return result;
 }

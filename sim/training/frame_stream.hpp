@@ -24,7 +24,7 @@ struct TrainingTargets {
   std::uint32_t meshes_crc32 = 0;     // names the surfaces
   std::vector<Condition> conditions;  // that take turns; one may be there more than once
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF
-  gnc::Inertia inertia;                                         // the same, as the flight code takes it
+  gnc::Inertia<float> inertia;                                         // the same, as the flight code takes it
 };
 // What the shipped networks are trained on, and the paper's rule: nominal and degraded frames only.
 std::vector<Condition> all_conditions();

@@ -1,10 +1,7 @@
 #include "sim/training/import_model.hpp"
 
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <stdexcept>
-#include <vector>
+#include <string>
 
 #include "gnc/rcnn/network_shape.hpp"
 
@@ -14,11 +11,12 @@ namespace {
 
 using TensorsByName = std::map<std::string, torch::Tensor>;
 
-TensorsByName tensors_of(const gnc::NetworkWeights& weights) {
+TensorsByName tensors_of(const gnc::NetworkWeights<gnc::Float32>& weights) {
   TensorsByName tensors;
-  gnc::for_each_tensor(weights, [&](const char* name, const float* data, std::size_t count) {
-    tensors[name] =
-        torch::from_blob(const_cast<float*>(data), {static_cast<std::int64_t>(count)}, torch::kFloat).clone();
+  gnc::for_each_tensor(weights, [&](const char* layer, const char* part, const auto& tensor) {
+    tensors[std::string(layer) + "." + part] =
+        torch::from_blob(const_cast<float*>(tensor.data()), {static_cast<std::int64_t>(tensor.size())}, torch::kFloat)
+            .clone();
   });
   return tensors;
 }
@@ -54,17 +52,7 @@ torch::Tensor import_backbone(const TensorsByName& tensors, const torch::Tensor&
 
 }  // namespace
 
-void read_model_file(const std::string& path, ModelFile& model) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot open the model image " + path);
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file),
-                                        std::istreambuf_iterator<char>()};
-  const gnc::ModelStatus status =
-      gnc::read_model_image(bytes.data(), bytes.size(), nullptr, model.header, model.weights);
-  if (status != gnc::ModelStatus::kOk) throw std::runtime_error(path + ": " + gnc::to_string(status));
-}
-
-void import_cnn(const gnc::NetworkWeights& weights, const torch::Tensor& images, Cnn& cnn) {
+void import_cnn(const gnc::NetworkWeights<gnc::Float32>& weights, const torch::Tensor& images, Cnn& cnn) {
   torch::NoGradGuard guard;
   const TensorsByName tensors = tensors_of(weights);
   const torch::Tensor deviation = import_backbone(tensors, images, cnn->backbone);

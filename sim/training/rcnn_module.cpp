@@ -72,7 +72,7 @@ torch::Tensor orthonormal_columns(const torch::Tensor& output) {
   return rotation_from_columns(six.select(-2, 0), six.select(-2, 1)).narrow(-1, 0, 2).transpose(-1, -2);
 }
 
-RecurrentImpl::RecurrentImpl(const gnc::Inertia& inertia) : inertia_(inertia) {
+RecurrentImpl::RecurrentImpl(const gnc::Inertia<float>& inertia) : inertia_(inertia) {
   lstm = register_module("lstm", torch::nn::LSTMCell(shape::kLstmInput, shape::kLstm));
   head1 = register_module("head1", torch::nn::Linear(shape::kLstm + shape::kLstmInput, shape::kHead));
   head2 = register_module("head2", torch::nn::Linear(shape::kHead, shape::kHeadOutput));

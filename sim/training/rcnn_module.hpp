@@ -72,7 +72,7 @@ struct TrackedSequences {
 // inertia.
 class RecurrentImpl : public torch::nn::Module {
  public:
-  explicit RecurrentImpl(const gnc::Inertia& inertia = {});
+  explicit RecurrentImpl(const gnc::Inertia<float>& inertia = {});
   TrackedSequences forward(const SequenceHypotheses& sequences);
   void set_standardisation(const torch::Tensor& input_mean, const torch::Tensor& input_deviation);
 
@@ -81,7 +81,7 @@ class RecurrentImpl : public torch::nn::Module {
   torch::Tensor input_mean, input_deviation;  // [190]
 
  private:
-  gnc::Inertia inertia_;
+  gnc::Inertia<float> inertia_;
 };
 TORCH_MODULE(Recurrent);
 

@@ -16,12 +16,12 @@ constexpr int kFrames = kTrainingFrames;
 
 // Buffers of one worker.
 struct Workspace {
-  explicit Workspace(const gnc::NetworkWeights& weights) { network.weights() = weights; }
+  explicit Workspace(const gnc::NetworkWeights<gnc::Float32>& weights) { network.weights() = weights; }
   gnc::RangeImage frame;
   gnc::DepthImage image;
   gnc::DepthImageScratch scratch;
-  gnc::Network network;
-  gnc::OutputVector output;
+  gnc::Network<gnc::Float32> network;
+  gnc::OutputVector<float> output;
 };
 
 // Of a rigid body: principal moments of three point-mass spreads, axes turned at random.
@@ -50,7 +50,7 @@ void put_rotation(const Eigen::Matrix3f& rotation, float* at) {
 }
 
 // Frame `row` (counted over all sequences) of `all`.
-void put_frame(const gnc::Network& network, const gnc::Hypotheses& hypotheses, const Eigen::Matrix3f& truth,
+void put_frame(const gnc::Network<gnc::Float32>& network, const gnc::Hypotheses<float>& hypotheses, const Eigen::Matrix3f& truth,
                std::int64_t row, FeatureSet& all) {
   const SequenceHypotheses& to = all.hypotheses;
   std::copy(network.features().begin(), network.features().end(),
@@ -73,12 +73,12 @@ bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t in
   const Sequence sequence = make_sequence(settings, seed, number);
   for (int k = 0; k < kFrames; ++k) {
     const FrameTruth& truth = sequence.frames[k];
-    lidar.expose(truth, sensor_settings(settings.condition), targets.projection.swath_m,
+    lidar.expose(truth, sensor_settings(settings.condition), 1e-3 * targets.projection.swath_mm,
                  mix(sequence.noise_seed, static_cast<std::uint64_t>(k)), work.frame);
     if (make_depth_image(work.frame, targets.projection, work.scratch, work.image) != gnc::FrameStatus::kOk)
       return false;
     work.network.infer_frame(work.image, work.output);
-    put_frame(work.network, gnc::hypotheses_of(work.output, work.image.r_lrf_view),
+    put_frame(work.network, gnc::hypotheses_of<float>(work.output, gnc::converted<float>(work.image.r_lrf_view)),
               truth.q_lrf_trf.toRotationMatrix().cast<float>(), index * kFrames + k, all);
   }
   return true;
@@ -86,7 +86,7 @@ bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t in
 
 }  // namespace
 
-SequenceFeatures::SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights& weights,
+SequenceFeatures::SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights<gnc::Float32>& weights,
                                    std::uint64_t seed, std::int64_t count, int workers)
     : targets_(targets),
       weights_(weights),

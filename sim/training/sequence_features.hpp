@@ -33,7 +33,7 @@ class SequenceFeatures {
   // turns, and so do the laws of the rate; of the bodies that tumble, every
   // second has another inertia than the target, lest the network trust it blindly. `weights` must outlive
   // this object.
-  SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights& weights, std::uint64_t seed,
+  SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights<gnc::Float32>& weights, std::uint64_t seed,
                    std::int64_t count, int workers);
   ~SequenceFeatures();
 
@@ -44,7 +44,7 @@ class SequenceFeatures {
  private:
   void work();
   const TrainingTargets& targets_;
-  const gnc::NetworkWeights& weights_;
+  const gnc::NetworkWeights<gnc::Float32>& weights_;
   const std::uint64_t seed_;
   const std::int64_t count_;
   FeatureSet all_;

@@ -107,17 +107,17 @@ MotionTensors spin(const MotionTensors& motion) {
 }
 
 // By the flight code itself, one by one: the gradient takes the turn as given.
-MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia* laws) {
+MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia<float>* laws) {
   using RowMajor = Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>;
   const torch::Tensor before = motion.r_lrf_trf.detach().cpu().contiguous();
   const torch::Tensor rate_before = motion.rate_lrf.detach().cpu().contiguous();
   const torch::Tensor turn = torch::empty_like(before), rate = torch::empty_like(rate_before);
   const std::int64_t count = before.size(1);
   for (std::int64_t i = 0; i < before.size(0) * count; ++i) {
-    gnc::Motion m;
+    gnc::Motion<float> m;
     m.r_lrf_trf = RowMajor(before.data_ptr<float>() + 9 * i);
     m.rate_lrf = Eigen::Map<Eigen::Vector3f>(rate_before.data_ptr<float>() + 3 * i);
-    const gnc::Motion after = gnc::tumble(m, laws[i % count]);
+    const gnc::Motion<float> after = gnc::tumble<float>(m, laws[i % count]);
     RowMajor{turn.data_ptr<float>() + 9 * i} = after.r_lrf_trf * m.r_lrf_trf.transpose();
     Eigen::Map<Eigen::Vector3f>{rate.data_ptr<float>() + 3 * i} = after.rate_lrf;
   }

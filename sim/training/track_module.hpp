@@ -29,7 +29,7 @@ struct Fusion {
 // One track a row of the batch. For every frame: predict(), lstm_input(), advance().
 class TrackModule {
  public:
-  explicit TrackModule(const gnc::Inertia& inertia) : laws_(gnc::motion_laws(inertia)) {}
+  explicit TrackModule(const gnc::Inertia<float>& inertia) : laws_(gnc::motion_laws<float>(inertia)) {}
   void predict(const FrameHypotheses& frame);
   torch::Tensor lstm_input(const FrameHypotheses& frame) const;  // [B, 190]
   Fusion advance(const FrameHypotheses& frame, const torch::Tensor& word);
@@ -38,7 +38,7 @@ class TrackModule {
   torch::Tensor standing() const;  // log-likelihood less the evidence asked [B, 5]
   torch::Tensor law() const;       // the one that speaks [B]
 
-  gnc::MotionLaws laws_;
+  gnc::MotionLaws<float> laws_;
   int frames_ = 0;
   // By each law of motion; after predict() in the frame to come, after advance() in the frame that was.
   torch::Tensor r_lrf_trf_, rate_lrf_;  // [B, 5, 3, 3], [B, 5, 3]

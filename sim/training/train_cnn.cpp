@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "sim/quantization/model_file.hpp"
 #include "sim/training/import_model.hpp"
 #include "sim/training/loss.hpp"
 #include "sim/training/stage.hpp"
@@ -53,8 +54,7 @@ double train_once(Cnn& cnn, const FrameBatch& batch, const TrainingSettings& set
 // Returns what names the weights to begin with.
 std::uint64_t begin(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn) {
   if (settings.start_from.empty()) return 0;
-  const auto model = std::make_unique<ModelFile>();
-  read_model_file(settings.start_from, *model);
+  const std::unique_ptr<Float32Model> model = read_float32_model(settings.start_from);
   import_cnn(model->weights, render_frames(targets, settings.seed, 0, kCalibrationFrames).images, cnn);
   return model->header.crc32;
 }

@@ -65,22 +65,23 @@ double train_once(Recurrent& recurrent, const FeatureSet& data, const torch::Ten
 }
 
 // Of the frozen CNN: an LSTM is worth nothing on another one's features.
-std::uint32_t crc32_of_cnn(const gnc::NetworkWeights& weights) {
+std::uint32_t crc32_of_cnn(const gnc::NetworkWeights<gnc::Float32>& weights) {
   gnc::Crc32 crc;
-  gnc::for_each_tensor(weights, [&](const char* name, const float* data, std::size_t count) {
-    if (std::strncmp(name, "lstm", 4) != 0 && std::strncmp(name, "head", 4) != 0) crc.add_f32(data, count);
+  gnc::for_each_tensor(weights, [&](const char* layer, const char*, const auto& tensor) {
+    const bool recurrent = std::strncmp(layer, "lstm", 4) == 0 || std::strncmp(layer, "head", 4) == 0;
+    if (!recurrent) crc.add_f32(tensor.data(), tensor.size());
   });
   return crc.value();
 }
 
-std::uint32_t crc32_of(const gnc::Inertia& inertia) {
+std::uint32_t crc32_of(const gnc::Inertia<float>& inertia) {
   gnc::Crc32 crc;
   crc.add_f32(inertia.tensor_trf.data(), 9);
   return crc.value();
 }
 
 StageSettings stage_settings(const TrainingTargets& targets, const TrainingSettings& settings,
-                             const gnc::NetworkWeights& weights) {
+                             const gnc::NetworkWeights<gnc::Float32>& weights) {
   StageSettings stage;
   stage.name = "rcnn";
   stage.folder = settings.folder;
@@ -112,7 +113,7 @@ bool wait_for(SequenceFeatures& supply, std::int64_t count, const char* what, co
 
 bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings, const Cnn& cnn,
                 Recurrent& recurrent, const std::atomic<bool>& stop) {
-  const auto weights = std::make_unique<gnc::NetworkWeights>();
+  const auto weights = std::make_unique<gnc::NetworkWeights<gnc::Float32>>();
   export_weights(cnn, recurrent, *weights);
   Stage stage(stage_settings(targets, settings, *weights));
   recurrent->to(settings.device);

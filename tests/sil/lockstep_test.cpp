@@ -4,6 +4,7 @@
 #include <chrono>
 #include <future>
 
+#include "gnc/attitude/rotation.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -12,10 +13,6 @@ namespace {
 using test::Conversation;
 
 constexpr std::uint8_t kValid = 0;
-
-double norm_of(const std::array<float, 4>& q) {
-  return std::sqrt(double{q[0]} * q[0] + double{q[1]} * q[1] + double{q[2]} * q[2] + double{q[3]} * q[3]);
-}
 
 TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
   std::uint32_t done = 0;
@@ -41,7 +38,7 @@ TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
     EXPECT_EQ(step.attitude.exposure_time_ns, step.time_ns);
     EXPECT_EQ(step.attitude.frames_since_reset, k % 10 + 1)
         << "the estimator starts anew with every sequence";
-    EXPECT_NEAR(norm_of(step.attitude.q_lrf_trf), 1.0, 1e-5);
+    EXPECT_NEAR(gnc::to_double(step.attitude.q_lrf_trf).norm(), 1.0, 1e-6);
     EXPECT_EQ(step.housekeeping.frames_used, k + 1);
   }
   EXPECT_EQ(recording.pictures.size(), 30U);

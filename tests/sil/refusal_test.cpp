@@ -51,11 +51,11 @@ void PrintTo(const BadModel& model, std::ostream* out) {
 // A whole image, but of another network: its header's CRC is as it should be.
 void change_architecture(std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t kArchitecture = 12;
-  constexpr std::size_t kHeaderCrc = 88;
+  constexpr std::size_t kHeaderCrc = 92;
   bytes[kArchitecture] ^= 1;
   gnc::Crc32 crc;
   crc.add(bytes.data(), kHeaderCrc);
-  crc.add(bytes.data() + gnc::kModelHeaderSize, gnc::kModelDataOffset - gnc::kModelHeaderSize);
+  crc.add(bytes.data() + gnc::kModelHeaderSize, gnc::kModelDataOffset<gnc::FixedPoint> - gnc::kModelHeaderSize);
   for (unsigned i = 0; i < 4; ++i) bytes[kHeaderCrc + i] = static_cast<std::uint8_t>(crc.value() >> (8 * i));
 }
 

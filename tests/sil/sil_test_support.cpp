@@ -11,7 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "gnc/rcnn/model_image.hpp"
+#include "tests/unit/gnc_rcnn/test_models.hpp"
 #include "sim/scenario/random.hpp"
 #include "sim/target/near_shoemaker.hpp"
 
@@ -36,20 +36,11 @@ class TemporaryFolder {
 };
 
 std::vector<std::uint8_t> make_model() {
-  auto weights = std::make_unique<gnc::NetworkWeights>();
-  Random random(1);
-  gnc::for_each_tensor(*weights, [&](const char*, float* data, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) data[i] = static_cast<float>(0.05 * random.normal());
-  });
-  gnc::ModelHeader header;
-  header.projection.swath_m = static_cast<float>(kSwath_m);
-  header.projection.target_radius_m = static_cast<float>(kSwath_m / 2);
-  std::vector<std::uint8_t> image(gnc::kModelImageSize);
-  if (!gnc::set_target(header, kTarget) ||
-      gnc::write_model_image(header, *weights, image.data(), image.size()) != image.size()) {
-    throw std::logic_error("the test's model image could not be written");
-  }
-  return image;
+  gnc::ModelHeader header = gnc::test_header();
+  header.projection.swath_mm = static_cast<std::uint32_t>(1e3 * kSwath_m);
+  header.projection.target_radius_mm = header.projection.swath_mm / 2;
+  if (!gnc::set_target(header, kTarget)) throw std::logic_error("the test's target has no usable name");
+  return gnc::random_model_image<gnc::FixedPoint>(1, header);
 }
 
 pid_t parent_of(pid_t pid) {

@@ -7,7 +7,14 @@
 
 namespace tumblesight::hal::dds {
 
-// Without a usable image the application stays in STANDBY, and the reason goes to the standard error stream.
-void load_model(FlightOptions& options, fsw::AttitudeInitApp& app, Stopwatch& stopwatch);
+// The application in either numerics.
+struct FlightApps {
+  fsw::AttitudeInitApp<gnc::FixedPoint> fixed_point;
+  fsw::AttitudeInitApp<gnc::Float32> float32;
+};
+
+// The application that flies: the one asked for, or that of the image's numerics. Without a usable image it stays in
+// STANDBY, and the reason goes to the standard error stream.
+fsw::App& load_model(FlightOptions& options, FlightApps& apps, Stopwatch& stopwatch);
 
 }  // namespace tumblesight::hal::dds

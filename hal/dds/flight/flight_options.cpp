@@ -47,6 +47,12 @@ bool parse_mode(const char* option, const char* value, bool& free_running) {
          fail(option, value, "lockstep or free-running");
 }
 
+bool parse_numerics(const char* option, const char* value, FlightOptions& options) {
+  options.numerics_given = true;
+  options.float32 = std::strcmp(value, "float32") == 0;
+  return options.float32 || std::strcmp(value, "fixed") == 0 || fail(option, value, "fixed or float32");
+}
+
 bool parse_path(const char* option, const char* value, char* path) {
   if (value[0] == '\0' || std::strlen(value) >= FlightOptions::kMaxPath)
     return fail(option, value, "a file's path");
@@ -60,6 +66,7 @@ bool parse_one(const char* option, const char* value, FlightOptions& options) {
     options.target = value;
     return value[0] != '\0' || fail(option, value, "a target's name");
   }
+  if (std::strcmp(option, "--numerics") == 0) return parse_numerics(option, value, options);
   if (std::strcmp(option, "--domain") == 0) return parse_integer(option, value, kMaxDomain, options.domain);
   if (std::strcmp(option, "--run-id") == 0) return parse_integer(option, value, UINT32_MAX, options.run_id);
   if (std::strcmp(option, "--mode") == 0) return parse_mode(option, value, options.free_running);
@@ -82,6 +89,8 @@ void print_flight_help() {
       "(loopback)\n\n"
       "  --model FILE       model image [the one shipped for the target]\n"
       "  --target NAME      target that the model image must be for [near_shoemaker]\n"
+      "  --numerics N       fixed: in integers, as it flies; float32: the reference [fixed; with --model what it "
+      "is of]\n"
       "  --domain N         DDS domain [0]\n"
       "  --run-id N         simulator run to take part in; 0: the first that shows up [0]\n"
       "  --mode MODE        lockstep: the simulator is the time master; free-running: on a timer of its own "

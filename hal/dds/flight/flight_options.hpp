@@ -10,6 +10,8 @@ struct FlightOptions {
 
   char model_path[kMaxPath] = {};  // empty after parsing: the one shipped for the target
   const char* target = "near_shoemaker";
+  bool float32 = false;  // with a model of one's own: whatever the model is of, unless asked for
+  bool numerics_given = false;
   std::uint32_t domain = 0;
   std::uint32_t run_id = 0;  // 0: of the first simulator that shows up
   bool free_running = false;

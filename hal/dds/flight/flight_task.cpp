@@ -45,14 +45,14 @@ std::int64_t MissionClock::at(std::int64_t release_ns) const {
          static_cast<std::int64_t>(periods * static_cast<double>(fsw::config::kFramePeriod_ns));
 }
 
-FlightTask::FlightTask(fsw::AttitudeInitApp& app, DdsLidar& lidar, DdsLink& link,
-                       fsw::CycleWorkspace& workspace)
-    : app_(app), lidar_(lidar), link_(link), workspace_(workspace) {
+FlightTask::FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace)
+    : lidar_(lidar), link_(link), workspace_(workspace) {
   sem_init(&go_, 0, 0);
   sem_init(&done_, 0, 0);
 }
 
-bool FlightTask::start(bool free_running) {
+bool FlightTask::start(fsw::App& app, bool free_running) {
+  app_ = &app;
   free_running_ = free_running;
   started_ = pthread_create(&thread_, nullptr, thread_main, this) == 0;
   if (started_) wait(done_);
@@ -117,8 +117,8 @@ void FlightTask::run_free() {
 
 void FlightTask::cycle(std::uint32_t k, std::int64_t now_ns) {
   link_.begin_cycle(run_id_, k);
-  fsw::run_cycle(app_, lidar_, link_, now_ns, workspace_);
-  link_.end_cycle(app_.state_crc32());
+  fsw::run_cycle(*app_, lidar_, link_, now_ns, workspace_);
+  link_.end_cycle(app_->state_crc32());
 }
 
 }  // namespace tumblesight::hal::dds

@@ -29,11 +29,11 @@ struct MissionClock {
 
 class FlightTask {
  public:
-  FlightTask(fsw::AttitudeInitApp& app, DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace);
+  FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace);
 
   // Starts the thread and returns once it is ready; false if the system gives none. Free-running it asks for
   // a fixed priority and locked memory, which takes longer than a cycle may wait: so start it before the run.
-  [[nodiscard]] bool start(bool free_running);
+  [[nodiscard]] bool start(fsw::App& app, bool free_running);
   void join_run(std::uint32_t run_id) { run_id_ = run_id; }
   // Free-running: cycles on the timer from now on.
   void begin_free(PeriodicTask& timer, const MissionClock& clock);
@@ -55,7 +55,7 @@ class FlightTask {
   void run_free();
   void cycle(std::uint32_t k, std::int64_t now_ns);
 
-  fsw::AttitudeInitApp& app_;
+  fsw::App* app_ = nullptr;
   DdsLidar& lidar_;
   DdsLink& link_;
   fsw::CycleWorkspace& workspace_;

@@ -24,9 +24,9 @@ hal::dds::FlightEndpoints endpoints;
 hal::dds::DdsLidar lidar;
 hal::dds::DdsLink link{hal::dds::heap_allocations};
 hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
-fsw::AttitudeInitApp app;
+hal::dds::FlightApps apps;
 fsw::CycleWorkspace workspace;
-hal::dds::FlightTask task{app, lidar, link, workspace};
+hal::dds::FlightTask task{lidar, link, workspace};
 
 FlightEnd connect(const hal::dds::FlightOptions& options) {
   dds_return_t result = domain.open(options.domain);
@@ -36,7 +36,8 @@ FlightEnd connect(const hal::dds::FlightOptions& options) {
   return FlightEnd::kTransport;
 }
 
-hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options, std::int64_t timeout_ns) {
+hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options, const fsw::App& app,
+                                         std::int64_t timeout_ns) {
   hal::dds::HandshakeSettings settings;
   settings.icd_hash = options.icd_hash;
   settings.run_id = options.run_id;
@@ -51,12 +52,12 @@ hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options,
   return met;
 }
 
-FlightEnd fly(const hal::dds::FlightOptions& options) {
-  if (!task.start(options.free_running)) return FlightEnd::kNoThread;
+FlightEnd fly(const hal::dds::FlightOptions& options, fsw::App& app) {
+  if (!task.start(app, options.free_running)) return FlightEnd::kNoThread;
   const FlightEnd connected = connect(options);
   if (connected != FlightEnd::kComplete) return connected;
   const auto timeout_ns = static_cast<std::int64_t>(options.timeout_s * 1e9);
-  const hal::dds::HandshakeResult met = meet_simulator(options, timeout_ns);
+  const hal::dds::HandshakeResult met = meet_simulator(options, app, timeout_ns);
   if (met.end != FlightEnd::kComplete || met.stopped) return met.end;
 
   bus.join_run(met.run_id, timeout_ns);
@@ -78,9 +79,9 @@ int main(int argc, char** argv) {
       break;
   }
   hal::dds::accept_stop_requests();
-  hal::dds::load_model(options, app, stopwatch);
+  fsw::App& app = hal::dds::load_model(options, apps, stopwatch);
 
-  const FlightEnd end = fly(options);
+  const FlightEnd end = fly(options, app);
   task.join();  // if there never was a run
   if (end != FlightEnd::kComplete) std::fprintf(stderr, "flight: %s\n", hal::dds::to_string(end));
   domain.close();

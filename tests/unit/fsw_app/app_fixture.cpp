@@ -1,41 +1,21 @@
 #include "tests/unit/fsw_app/app_fixture.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <random>
 
-#include "gnc/rcnn/model_image.hpp"
+#include "tests/unit/gnc_rcnn/test_models.hpp"
 
 namespace tumblesight::fsw {
 namespace {
 
-bool is_unit(const std::array<float, 4>& q) {
-  return std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1.0F) < 1e-4F;
-}
-
-std::vector<std::uint8_t> make_image() {
-  auto weights = std::make_unique<gnc::NetworkWeights>();
-  std::mt19937 engine(7);
-  std::uniform_real_distribution<float> uniform(-0.05F, 0.05F);
-  gnc::for_each_tensor(*weights, [&](const char*, float* data, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) data[i] = uniform(engine);
-  });
-  gnc::ModelHeader header;
-  header.projection.swath_m = 7.5F;
-  header.projection.target_radius_m = 3.25F;
-  std::vector<std::uint8_t> image(gnc::kModelImageSize);
-  if (!gnc::set_target(header, kTestTarget) ||
-      gnc::write_model_image(header, *weights, image.data(), image.size()) != image.size()) {
-    std::abort();
-  }
-  return image;
+bool is_unit(const std::array<std::int32_t, 4>& q) {
+  return std::abs(gnc::to_double(q).norm() - 1.0) < 1e-6;
 }
 
 }  // namespace
 
 const std::vector<std::uint8_t>& test_model_image() {
-  static const std::vector<std::uint8_t> image = make_image();
-  return image;
+  return gnc::lasting_model_image<gnc::FixedPoint>(7);
 }
 
 gnc::RangeImage good_frame(std::uint32_t sequence_number, std::int64_t exposure_time_ns, unsigned scene) {
@@ -60,9 +40,7 @@ hal::Command command(Opcode opcode) {
 }
 
 void AppFixture::init_with_model() {
-  hal::fake::FakeModelStore store(test_model_image());
-  const hal::ModelBytes image = store.active_image();
-  app->init(image.data, image.size, kTestTarget, stopwatch);
+  app->init(test_model_image().data(), test_model_image().size(), kTestTarget, stopwatch);
 }
 
 const StepOutputs& AppFixture::step(const StepInputs& inputs) {
@@ -74,8 +52,8 @@ const StepOutputs& AppFixture::step(const StepInputs& inputs) {
   EXPECT_TRUE(is_unit(out->attitude.q_lrf_trf_single_frame));
   if (validity() != Validity::kValid) {
     EXPECT_EQ(out->attitude.frames_since_reset, 0U);
-    EXPECT_FLOAT_EQ(out->attitude.predicted_error_rad, 3.14159265F);
-    EXPECT_FLOAT_EQ(out->attitude.q_lrf_trf[0], 1.0F);
+    EXPECT_EQ(out->attitude.predicted_error_urad, gnc::kPi_urad);
+    EXPECT_EQ(out->attitude.q_lrf_trf, gnc::kIdentityQ30);
   }
   for (int i = 0; i < out->event_count; ++i)
     EXPECT_EQ(out->events[static_cast<std::size_t>(i)].time_ns, now_ns);

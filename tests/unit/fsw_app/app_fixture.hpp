@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "fsw/app/attitude_init_app.hpp"
-#include "hal/fake/fake_model_store.hpp"
 #include "hal/fake/fake_stopwatch.hpp"
 
 namespace tumblesight::fsw {
+
+using FixedPointApp = AttitudeInitApp<gnc::FixedPoint>;
 
 inline constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 
@@ -25,7 +26,7 @@ hal::Command command(Opcode opcode);
 
 class AppFixture : public ::testing::Test {
  protected:
-  AppFixture() : app(std::make_unique<AttitudeInitApp>()), out(std::make_unique<StepOutputs>()) {}
+  AppFixture() : app(std::make_unique<FixedPointApp>()), out(std::make_unique<StepOutputs>()) {}
 
   void init_with_model();
 
@@ -43,7 +44,7 @@ class AppFixture : public ::testing::Test {
   std::int32_t argument(EventId id, std::size_t index) const;  // of an event that must have been raised
   std::uint32_t estimator_crc() const { return app->estimator().state_crc32(); }
 
-  std::unique_ptr<AttitudeInitApp> app;
+  std::unique_ptr<FixedPointApp> app;
   std::unique_ptr<StepOutputs> out;
   hal::fake::FakeStopwatch stopwatch;
   std::int64_t now_ns = kStart_ns;

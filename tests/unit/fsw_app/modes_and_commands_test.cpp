@@ -1,6 +1,7 @@
 #include <string>
 
 #include "tests/unit/fsw_app/app_fixture.hpp"
+#include "tests/unit/gnc_rcnn/test_models.hpp"
 
 namespace tumblesight::fsw {
 namespace {
@@ -39,7 +40,7 @@ TEST_F(ModesAndCommands, GoodModelLeadsToEstimatingWithAnEvent) {
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
   ASSERT_NE(event(EventId::kModelActivated), nullptr);
-  EXPECT_EQ(argument(EventId::kModelActivated, 0), static_cast<std::int32_t>(gnc::kModelImageSize));
+  EXPECT_EQ(argument(EventId::kModelActivated, 0), static_cast<std::int32_t>(gnc::kModelImageSize<gnc::FixedPoint>));
   step_good();
   EXPECT_EQ(event(EventId::kModelActivated), nullptr) << "once only";
 }
@@ -62,9 +63,7 @@ TEST_F(ModesAndCommands, RefusedModelLeavesStandbyAndSaysWhichError) {
 }
 
 TEST_F(ModesAndCommands, MissingModelOrAnotherTargetLeavesStandby) {
-  hal::fake::FakeModelStore store;
-  const hal::ModelBytes none = store.active_image();
-  app->init(none.data, none.size, kTestTarget, stopwatch);
+  app->init(nullptr, 0, kTestTarget, stopwatch);
   EXPECT_EQ(app->model_status(), gnc::ModelStatus::kTooShort);
   EXPECT_EQ(app->mode(), Mode::kStandby);
   app->init(test_model_image().data(), test_model_image().size(), "another_craft", stopwatch);
@@ -176,7 +175,7 @@ TEST_F(ModesAndCommands, ResetEstimatorStartsASequenceYetRemembersTheLastFrame) 
 
 TEST_F(ModesAndCommands, SequenceAfterResetEqualsTheFirstSequenceBitForBit) {
   init_with_model();
-  std::array<std::array<float, 4>, 2> last{};
+  std::array<gnc::QuaternionQ30, 2> last{};
   std::array<std::uint32_t, 2> crc{};
   for (std::size_t run = 0; run < 2; ++run) {
     for (unsigned i = 0; i < 3; ++i) {
@@ -267,8 +266,8 @@ TEST_F(ModesAndCommands, NoAttitudeLeavesTheCycleThatAnAssertionEnds) {
   EXPECT_EQ(out->attitude.time_ns, next_time_ns());
   EXPECT_EQ(out->attitude.frames_since_reset, 0U);
   EXPECT_EQ(out->attitude.sequence_number, 0U);
-  EXPECT_EQ(out->attitude.q_lrf_trf, (std::array<float, 4>{1.0F, 0.0F, 0.0F, 0.0F}));
-  EXPECT_FLOAT_EQ(out->attitude.predicted_error_rad, 3.14159265F);
+  EXPECT_EQ(out->attitude.q_lrf_trf, gnc::kIdentityQ30);
+  EXPECT_EQ(out->attitude.predicted_error_urad, gnc::kPi_urad);
 }
 
 TEST_F(ModesAndCommands, NewModelDoesNotEndSafe) {
@@ -307,7 +306,7 @@ TEST_F(ModesAndCommands, InferenceTimeGoesToHousekeepingAndNowhereElse) {
   EXPECT_EQ(out->housekeeping.deadline_overruns, 0U);
   const std::uint32_t crc_fast = app->state_crc32();
 
-  auto slow = std::make_unique<AttitudeInitApp>();
+  auto slow = std::make_unique<FixedPointApp>();
   hal::fake::FakeStopwatch slow_stopwatch;
   slow_stopwatch.tick_ns = static_cast<std::uint64_t>(config::kStepBudget_ns);
   slow->init(test_model_image().data(), test_model_image().size(), kTestTarget, slow_stopwatch);
@@ -331,20 +330,9 @@ TEST_F(ModesAndCommands, StopwatchRunningBackwardsMeasuresNothing) {
 }
 
 TEST_F(ModesAndCommands, StateDigestTellsWhichModelIsActive) {
-  gnc::ModelHeader header;
-  auto weights = std::make_unique<gnc::NetworkWeights>();
-  std::vector<std::uint8_t> other = test_model_image();
-  ASSERT_EQ(gnc::read_model_image(other.data(), other.size(), kTestTarget, header, *weights),
-            gnc::ModelStatus::kOk);
-  bool changed = false;
-  gnc::for_each_tensor(*weights, [&](const char*, float* data, std::size_t) {
-    if (!changed) data[0] += 1.0F;
-    changed = true;
-  });
-  ASSERT_EQ(gnc::write_model_image(header, *weights, other.data(), other.size()), other.size());
-
+  const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
   init_with_model();
-  auto twin = std::make_unique<AttitudeInitApp>();
+  auto twin = std::make_unique<FixedPointApp>();
   twin->init(other.data(), other.size(), kTestTarget, stopwatch);
   ASSERT_EQ(twin->model_status(), gnc::ModelStatus::kOk);
   EXPECT_NE(app->state_crc32(), twin->state_crc32());
@@ -352,7 +340,7 @@ TEST_F(ModesAndCommands, StateDigestTellsWhichModelIsActive) {
 
 TEST_F(ModesAndCommands, StateDigestFollowsModeEstimatorAndCounters) {
   init_with_model();
-  auto twin = std::make_unique<AttitudeInitApp>();
+  auto twin = std::make_unique<FixedPointApp>();
   twin->init(test_model_image().data(), test_model_image().size(), kTestTarget, stopwatch);
   auto twin_out = std::make_unique<StepOutputs>();
   EXPECT_EQ(app->state_crc32(), twin->state_crc32());

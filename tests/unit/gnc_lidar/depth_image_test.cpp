@@ -11,7 +11,7 @@ namespace tumblesight::gnc {
 namespace {
 
 constexpr double kRange_m = 50.0;
-constexpr DepthProjection kProjection{6.0F, 3.0F, DepthEncoding::kCentroidRelative};
+constexpr DepthProjection kProjection{6000, 3000, DepthEncoding::kCentroidRelative};
 
 std::uint32_t fov_urad(double swath_m, double range_m) {
   return static_cast<std::uint32_t>(std::lround(2e6 * std::atan(swath_m / (2.0 * range_m))));
@@ -39,7 +39,7 @@ struct Bench {
   FrameStatus make(const DepthProjection& projection = kProjection) {
     return make_depth_image(frame, projection, scratch, image);
   }
-  float at(int row, int column) const { return image.value[row * DepthImage::kSide + column]; }
+  double at(int row, int column) const { return image.depth[row * DepthImage::kSide + column] / 65536.0; }
 };
 
 class DepthImageTest : public testing::Test {
@@ -72,11 +72,11 @@ TEST_F(DepthImageTest, RowZeroIsUpAndColumnZeroIsLeft) {
       s->set(row, column, kRange_m + 0.1 * ((row + column) % 2));
     }
   }
-  ASSERT_EQ(s->make({10.0F, 3.0F, DepthEncoding::kCentroidRelative}), FrameStatus::kOk);
-  EXPECT_GT(s->at(30, 25), 0.0F);
-  EXPECT_GT(s->at(30, 70), 0.0F);
-  EXPECT_GT(s->at(75, 70), 0.0F);
-  EXPECT_EQ(s->at(75, 25), 0.0F);
+  ASSERT_EQ(s->make({10000, 3000, DepthEncoding::kCentroidRelative}), FrameStatus::kOk);
+  EXPECT_GT(s->at(30, 25), 0.0);
+  EXPECT_GT(s->at(30, 70), 0.0);
+  EXPECT_GT(s->at(75, 70), 0.0);
+  EXPECT_EQ(s->at(75, 25), 0.0);
 }
 
 TEST_F(DepthImageTest, ReturnsInOneCellAreAveraged) {
@@ -94,22 +94,22 @@ TEST_F(DepthImageTest, NearerIsBrighterAndAReturnIsNeverZero) {
     for (int column = 0; column < 128; ++column)
       s->set(row, column, row < 32 ? kRange_m - 20.0 : kRange_m + 20.0);
   }
-  ASSERT_EQ(s->make({20.0F, 3.0F, DepthEncoding::kCentroidRelative}), FrameStatus::kOk);
-  float smallest = 1.0F;
-  float largest = 0.0F;
-  for (float value : s->image.value) {
-    if (value > 0.0F) smallest = std::min(smallest, value);
-    largest = std::max(largest, value);
+  ASSERT_EQ(s->make({20000, 3000, DepthEncoding::kCentroidRelative}), FrameStatus::kOk);
+  int smallest = DepthImage::kLargest;
+  int largest = 0;
+  for (const int depth : s->image.depth) {
+    if (depth > 0) smallest = std::min(smallest, depth);
+    largest = std::max(largest, depth);
   }
-  EXPECT_EQ(largest, 1.0F);
-  EXPECT_EQ(smallest, 1.0F / 256.0F);
+  EXPECT_EQ(largest, DepthImage::kLargest);
+  EXPECT_EQ(smallest, DepthImage::kSmallest);
 }
 
 TEST_F(DepthImageTest, ThePapersScaleDividesByTheLargestDepth) {
   for (int row = 0; row < 128; ++row) {
     for (int column = 0; column < 128; ++column) s->set(row, column, column < 64 ? 40.0 : 50.0);
   }
-  ASSERT_EQ(s->make({6.0F, 3.0F, DepthEncoding::kPaperMaximum}), FrameStatus::kOk);
+  ASSERT_EQ(s->make({6000, 3000, DepthEncoding::kPaperMaximum}), FrameStatus::kOk);
   EXPECT_NEAR(s->at(50, 20), 0.8, 1e-3);
   EXPECT_NEAR(s->at(50, 80), 1.0, 1e-3);
 }

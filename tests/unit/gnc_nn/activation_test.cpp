@@ -2,11 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 namespace tumblesight::gnc {
@@ -88,41 +86,12 @@ TEST(Activations, StayFiniteAndBoundedForNanAndInfinity) {
   for (const float bad : {kNan, -kNan, kInfinity, -kInfinity}) {
     std::array<float, 1> y{bad};
     exp(y.data(), y.data(), 1);
+    EXPECT_EQ(exp(bad), y[0]);
     EXPECT_TRUE(std::isnormal(y[0]) && y[0] > 0.0F);
     EXPECT_TRUE(sigmoid(bad) >= 0.0F && sigmoid(bad) <= 1.0F);
     y[0] = bad;
     tanh(y.data(), y.data(), 1);
     EXPECT_LE(std::fabs(y[0]), 1.0F);
-  }
-}
-
-TEST(Relu, KeepsPositiveNumbersAndGivesZeroForTheRest) {
-  std::array<float, 6> x{-1.0F, 0.0F, 2.5F, kNan, -kInfinity, 1e-40F};
-  relu(x.data(), 6);
-  EXPECT_EQ(x, (std::array<float, 6>{0.0F, 0.0F, 2.5F, 0.0F, 0.0F, 1e-40F}));
-}
-
-TEST(Softmax, MatchesTheDefinitionAndAddsUpToOne) {
-  const std::array<float, 4> x{1000.0F, 1001.0F, 998.5F,
-                               1001.0F};  // overflows unless the largest is subtracted
-  std::array<float, 4> y{};
-  softmax(x.data(), y.data(), 4);
-  double sum = 0.0;
-  for (const float v : x) sum += std::exp(static_cast<double>(v) - 1001.0);
-  for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_NEAR(y[i], std::exp(static_cast<double>(x[i]) - 1001.0) / sum, 2e-7);
-  EXPECT_NEAR(std::accumulate(y.begin(), y.end(), 0.0), 1.0, 1e-6);
-}
-
-TEST(Softmax, StaysFiniteForNanAndInfinity) {
-  for (const float bad : {kNan, kInfinity, -kInfinity}) {
-    for (const std::array<float, 3>& x :
-         {std::array<float, 3>{bad, bad, bad}, std::array<float, 3>{bad, 1.0F, 2.0F},
-          std::array<float, 3>{1.0F, bad, 2.0F}}) {
-      std::array<float, 3> y{};
-      softmax(x.data(), y.data(), 3);
-      for (const float p : y) EXPECT_TRUE(p >= 0.0F && p <= 1.0F) << p;
-    }
   }
 }
 

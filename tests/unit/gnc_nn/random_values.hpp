@@ -1,8 +1,10 @@
-// Seeded numbers for the layer tests.
+// Seeded numbers for the layer tests: floats within +-1, integers over their whole range.
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 namespace tumblesight::gnc {
@@ -10,20 +12,29 @@ namespace tumblesight::gnc {
 class RandomValues {
  public:
   explicit RandomValues(unsigned seed) : engine_(seed) {}
-  float next(float bound = 1.0F) { return bound * distribution_(engine_); }
-  template <class Container>
-  void fill(Container& values, float bound = 1.0F) {
-    for (auto& value : values) value = next(bound);
+  template <class Number = float>
+  Number next() {
+    if constexpr (std::is_floating_point_v<Number>) {
+      return std::uniform_real_distribution<Number>(-1, 1)(engine_);
+    } else {
+      constexpr bool kSigned = std::is_signed_v<Number>;
+      constexpr int kLargest = std::numeric_limits<Number>::max();
+      return static_cast<Number>(std::uniform_int_distribution<int>(kSigned ? -kLargest : 0, kLargest)(engine_));
+    }
   }
-  std::vector<float> vector(std::size_t count, float bound = 1.0F) {
-    std::vector<float> values(count);
-    fill(values, bound);
+  template <class Container>
+  void fill(Container& values) {
+    for (auto& value : values) value = next<std::decay_t<decltype(value)>>();
+  }
+  template <class Number = float>
+  std::vector<Number> vector(std::size_t count) {
+    std::vector<Number> values(count);
+    fill(values);
     return values;
   }
 
  private:
   std::mt19937 engine_;
-  std::uniform_real_distribution<float> distribution_{-1.0F, 1.0F};
 };
 
 }  // namespace tumblesight::gnc

@@ -18,32 +18,34 @@
 namespace tumblesight::gnc {
 namespace {
 
-std::unique_ptr<AttitudeEstimator> loaded(unsigned seed) {
-  auto estimator = std::make_unique<AttitudeEstimator>();
-  const std::vector<std::uint8_t> image = random_model_image(seed);
+template <class N>
+std::unique_ptr<AttitudeEstimator<N>> loaded(unsigned seed) {
+  auto estimator = std::make_unique<AttitudeEstimator<N>>();
+  const std::vector<std::uint8_t>& image = lasting_model_image<N>(seed);
   EXPECT_EQ(estimator->load(image.data(), image.size(), "test_craft"), ModelStatus::kOk);
   return estimator;
 }
 
 // Bit for bit.
 void expect_same(const AttitudeEstimate& a, const AttitudeEstimate& b) {
-  EXPECT_EQ(a.q_lrf_trf.coeffs(), b.q_lrf_trf.coeffs());
-  EXPECT_EQ(a.predicted_error_rad, b.predicted_error_rad);
-  EXPECT_EQ(a.q_lrf_trf_single_frame.coeffs(), b.q_lrf_trf_single_frame.coeffs());
-  EXPECT_EQ(a.predicted_error_single_frame_rad, b.predicted_error_single_frame_rad);
+  EXPECT_EQ(a.q_lrf_trf, b.q_lrf_trf);
+  EXPECT_EQ(a.predicted_error_urad, b.predicted_error_urad);
+  EXPECT_EQ(a.q_lrf_trf_single_frame, b.q_lrf_trf_single_frame);
+  EXPECT_EQ(a.predicted_error_single_frame_urad, b.predicted_error_single_frame_urad);
   EXPECT_EQ(a.frames_since_reset, b.frames_since_reset);
 }
 
 void expect_unit(const AttitudeEstimate& estimate) {
-  EXPECT_NEAR(estimate.q_lrf_trf.cast<double>().norm(), 1.0, 1e-6);
-  EXPECT_NEAR(estimate.q_lrf_trf_single_frame.cast<double>().norm(), 1.0, 1e-6);
-  EXPECT_GE(estimate.q_lrf_trf.w(), 0.0F);
-  EXPECT_GE(estimate.q_lrf_trf_single_frame.w(), 0.0F);
-  EXPECT_TRUE(estimate.predicted_error_rad >= 0.0F && estimate.predicted_error_rad <= 3.1415928F);
+  EXPECT_NEAR(to_double(estimate.q_lrf_trf).norm(), 1.0, 2e-9);
+  EXPECT_NEAR(to_double(estimate.q_lrf_trf_single_frame).norm(), 1.0, 2e-9);
+  EXPECT_GE(estimate.q_lrf_trf[0], 0);
+  EXPECT_GE(estimate.q_lrf_trf_single_frame[0], 0);
+  EXPECT_LE(estimate.predicted_error_urad, kPi_urad);
+  EXPECT_LE(estimate.predicted_error_single_frame_urad, kPi_urad);
 }
 
-double angle_between(const Eigen::Quaternionf& q, const Eigen::Matrix3d& r) {
-  return q.cast<double>().angularDistance(Eigen::Quaterniond(r));
+double angle_between(const QuaternionQ30& q, const Eigen::Matrix3d& r) {
+  return to_double(q).angularDistance(Eigen::Quaterniond(r));
 }
 
 double largest_difference(const float* flight, const std::vector<double>& reference) {
@@ -58,43 +60,51 @@ double largest_difference(const float* flight, const std::vector<double>& refere
 DepthImage image_of_sequence(unsigned frame) {
   DepthImage image = random_depth_image(70);
   const DepthImage other = random_depth_image(71);
-  const float share = 0.04F * static_cast<float>(frame);
-  for (int i = 0; i < DepthImage::kCells; ++i) image.value[i] += share * (other.value[i] - image.value[i]);
+  for (int i = 0; i < DepthImage::kCells; ++i) {
+    const int difference = other.depth[i] - image.depth[i];
+    image.depth[i] = static_cast<std::uint16_t>(image.depth[i] + difference * static_cast<int>(frame) / 25);
+  }
   const float angle = 0.02F * static_cast<float>(frame % 5);
-  image.r_lrf_view = Eigen::AngleAxisf(angle, Eigen::Vector3f(0.6F, 0.0F, 0.8F)).toRotationMatrix();
+  const Eigen::AngleAxisf view(angle, Eigen::Vector3f(0.6F, 0.0F, 0.8F));
+  image.r_lrf_view = converted<Fixed>(Eigen::Matrix3f(view.toRotationMatrix()));
   return image;
 }
 
+template <class N>
+class EstimatorOf : public testing::Test {};
+using BothNumerics = testing::Types<FixedPoint, Float32>;
+TYPED_TEST_SUITE(EstimatorOf, BothNumerics);
+
 TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
   for (const unsigned seed : {62U, 66U, 68U}) {
-    auto weights = std::make_unique<NetworkWeights>();
+    auto weights = std::make_unique<NetworkWeights<Float32>>();
     fill_random(*weights, seed);
     ReferenceNetwork network(*weights);
-    ReferenceTrack track(test_header().inertia.tensor_trf.cast<double>());
-    const auto estimator = loaded(seed);
+    ReferenceTrack track(converted<float>(test_header().inertia.tensor_trf).cast<double>());
+    const auto estimator = loaded<Float32>(seed);
     for (unsigned frame = 0; frame < 14; ++frame) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << ", frame " << frame);
       const DepthImage image = image_of_sequence(frame);
       const ReferenceNetwork::Frame seen = network.infer_frame(image);
-      track.see(seen.output, image.r_lrf_view.cast<double>());
+      track.see(seen.output, converted<float>(image.r_lrf_view).cast<double>());
       track.advance(network.infer_sequence(track.lstm_input(seen.dense2)));
 
       AttitudeEstimate estimate;
-      AttitudeEstimator::State state;
+      AttitudeEstimator<Float32>::State state;
       estimator->step(image, estimate);
       estimator->save(state);
       EXPECT_LT(largest_difference(state.lstm.h.data(), network.h), 5e-4);
       EXPECT_LT(largest_difference(state.lstm.c.data(), network.c), 5e-4);
       for (int law = 0; law < kLaws; ++law) {
-        const Motion& motion = state.track.motion[law];
+        const Motion<float>& motion = state.track.motion[law];
         EXPECT_LT((motion.r_lrf_trf.cast<double>() - track.motion[law].attitude).norm(), 5e-4) << law;
         EXPECT_LT((motion.rate_lrf.cast<double>() - track.motion[law].rate).norm(), 5e-4) << law;
         EXPECT_NEAR(state.track.log_likelihood[law], track.log_likelihood[law], 0.02) << law;
       }
       EXPECT_LT(angle_between(estimate.q_lrf_trf, track.motion[track.law()].attitude), 5e-4);
       EXPECT_LT(angle_between(estimate.q_lrf_trf_single_frame, track.single_frame()), 5e-5);
-      EXPECT_NEAR(estimate.predicted_error_rad, track.error_rad, 5e-4);
-      EXPECT_NEAR(estimate.predicted_error_single_frame_rad, track.single_frame_error_rad(), 5e-5);
+      EXPECT_NEAR(1e-6 * estimate.predicted_error_urad, track.error_rad, 5e-4);
+      EXPECT_NEAR(1e-6 * estimate.predicted_error_single_frame_urad, track.single_frame_error_rad(), 5e-5);
       EXPECT_EQ(estimate.frames_since_reset, frame + 1);
     }
     // The sequences have something to say about the track.
@@ -104,12 +114,12 @@ TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
 }
 
 TEST(AttitudeEstimator, CrcOfTheStateTellsEveryMemberApart) {
-  const auto estimator = loaded(37);
+  const auto estimator = loaded<Float32>(37);
   AttitudeEstimate estimate;
   for (unsigned k = 0; k < 3; ++k) estimator->step(random_depth_image(k), estimate);
-  AttitudeEstimator::State state;
+  AttitudeEstimator<Float32>::State state;
   estimator->save(state);
-  std::vector<std::function<void(AttitudeEstimator::State&)>> changes{[](auto& s) { ++s.track.frames; }};
+  std::vector<std::function<void(AttitudeEstimator<Float32>::State&)>> changes{[](auto& s) { ++s.track.frames; }};
   const auto add = [&changes](auto member, int count) {
     for (int i = 0; i < count; ++i) {
       changes.emplace_back([member, i](auto& s) { member(s)[i] = std::nextafter(member(s)[i], 9.0F); });
@@ -124,7 +134,7 @@ TEST(AttitudeEstimator, CrcOfTheStateTellsEveryMemberApart) {
   }
   std::set<std::uint32_t> crcs{estimator->state_crc32()};
   for (const auto& change : changes) {
-    AttitudeEstimator::State changed = state;
+    AttitudeEstimator<Float32>::State changed = state;
     change(changed);
     estimator->restore(changed);
     EXPECT_TRUE(crcs.insert(estimator->state_crc32()).second);
@@ -132,32 +142,32 @@ TEST(AttitudeEstimator, CrcOfTheStateTellsEveryMemberApart) {
 }
 
 TEST(AttitudeEstimator, ExpectsNothingOfAnAttitudeThatIsNotFinite) {
-  auto weights = std::make_unique<NetworkWeights>();
+  auto weights = std::make_unique<NetworkWeights<Float32>>();
   fill_random(*weights, 38);
   // The hypotheses overflow, the expected errors say that all is well.
   weights->cnn_out.bias.fill(3e38F);
   weights->cnn_out.weight.fill(3e38F);
   weights->cnn_out.bias[shape::kOutput - 1] = -1e38F;
   weights->head2.bias[shape::kHeadOutput - 1] = -30.0F;
-  std::vector<std::uint8_t> image(kModelImageSize);
-  ASSERT_EQ(write_model_image(test_header(), *weights, image.data(), image.size()), image.size());
-  auto estimator = std::make_unique<AttitudeEstimator>();
+  std::vector<std::uint8_t> image(kModelImageSize<Float32>);
+  ASSERT_EQ(write_model_image<Float32>(test_header(), *weights, image.data(), image.size()), image.size());
+  auto estimator = std::make_unique<AttitudeEstimator<Float32>>();
   ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
   AttitudeEstimate estimate;
   for (unsigned k = 0; k < 3; ++k) {
     estimator->step(random_depth_image(k), estimate);
     expect_unit(estimate);
-    EXPECT_EQ(estimate.q_lrf_trf.w(), 1.0F);
-    EXPECT_FLOAT_EQ(estimate.predicted_error_rad, 3.14159265F);
-    EXPECT_FLOAT_EQ(estimate.predicted_error_single_frame_rad, 3.14159265F);
+    EXPECT_EQ(estimate.q_lrf_trf, kIdentityQ30);
+    EXPECT_EQ(estimate.predicted_error_urad, kPi_urad);
+    EXPECT_EQ(estimate.predicted_error_single_frame_urad, kPi_urad);
   }
 }
 
-TEST(AttitudeEstimator, ContinuesBitForBitAfterSaveAndRestore) {
-  const auto estimator = loaded(31);
+TYPED_TEST(EstimatorOf, ContinuesBitForBitAfterSaveAndRestore) {
+  const auto estimator = loaded<TypeParam>(31);
   AttitudeEstimate estimate;
   for (unsigned k = 0; k < 3; ++k) estimator->step(random_depth_image(k), estimate);
-  AttitudeEstimator::State saved;
+  typename AttitudeEstimator<TypeParam>::State saved;
   estimator->save(saved);
   const std::uint32_t crc = estimator->state_crc32();
 
@@ -165,8 +175,8 @@ TEST(AttitudeEstimator, ContinuesBitForBitAfterSaveAndRestore) {
   for (unsigned k = 0; k < 3; ++k) estimator->step(random_depth_image(10 + k), first[k]);
   EXPECT_NE(estimator->state_crc32(), crc);
 
-  const auto other = loaded(31);
-  for (AttitudeEstimator* restored : {estimator.get(), other.get()}) {
+  const auto other = loaded<TypeParam>(31);
+  for (AttitudeEstimator<TypeParam>* restored : {estimator.get(), other.get()}) {
     restored->restore(saved);
     EXPECT_EQ(restored->state_crc32(), crc);
     for (unsigned k = 0; k < 3; ++k) {
@@ -176,41 +186,41 @@ TEST(AttitudeEstimator, ContinuesBitForBitAfterSaveAndRestore) {
   }
 }
 
-TEST(AttitudeEstimator, StartsAnewAfterReset) {
-  const auto estimator = loaded(32);
+TYPED_TEST(EstimatorOf, StartsAnewAfterReset) {
+  const auto estimator = loaded<TypeParam>(34);
   AttitudeEstimate first, second, again;
   estimator->step(random_depth_image(1), first);
   EXPECT_EQ(first.frames_since_reset, 1U);
   estimator->step(random_depth_image(1), second);
   EXPECT_EQ(second.frames_since_reset, 2U);
-  EXPECT_NE(second.q_lrf_trf.coeffs(), first.q_lrf_trf.coeffs());  // memory matters
-  EXPECT_EQ(second.q_lrf_trf_single_frame.coeffs(), first.q_lrf_trf_single_frame.coeffs());
+  EXPECT_NE(second.q_lrf_trf, first.q_lrf_trf);  // memory matters
+  EXPECT_EQ(second.q_lrf_trf_single_frame, first.q_lrf_trf_single_frame);
   estimator->reset();
   estimator->step(random_depth_image(1), again);
   expect_same(again, first);
 }
 
-TEST(AttitudeEstimator, ResetsWhenAModelIsLoaded) {
-  const auto estimator = loaded(33);
+TYPED_TEST(EstimatorOf, ResetsWhenAModelIsLoaded) {
+  const auto estimator = loaded<TypeParam>(33);
   AttitudeEstimate first, estimate;
   estimator->step(random_depth_image(1), first);
-  const std::vector<std::uint8_t> image = random_model_image(33);
+  const std::vector<std::uint8_t>& image = lasting_model_image<TypeParam>(33);
   ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
   estimator->step(random_depth_image(1), estimate);
   expect_same(estimate, first);
 }
 
-TEST(AttitudeEstimator, HasNoModelUntilAGoodOneIsLoaded) {
-  auto estimator = std::make_unique<AttitudeEstimator>();
+TYPED_TEST(EstimatorOf, HasNoModelUntilAGoodOneIsLoaded) {
+  auto estimator = std::make_unique<AttitudeEstimator<TypeParam>>();
   EXPECT_FALSE(estimator->has_model());
   const std::vector<std::uint8_t> rubbish(100, 0xA5);
   EXPECT_EQ(estimator->load(rubbish.data(), rubbish.size(), nullptr), ModelStatus::kBadMagic);
   EXPECT_FALSE(estimator->has_model());
 }
 
-TEST(AttitudeEstimator, GoesOnAsIfARefusedFrameHadNeverCome) {
-  const auto disturbed = loaded(34);
-  const auto undisturbed = loaded(34);
+TYPED_TEST(EstimatorOf, GoesOnAsIfARefusedFrameHadNeverCome) {
+  const auto disturbed = loaded<TypeParam>(34);
+  const auto undisturbed = loaded<TypeParam>(34);
   AttitudeEstimate a, b;
   for (unsigned k = 0; k < 3; ++k) {
     ASSERT_EQ(disturbed->step(random_frame(k), a), FrameStatus::kOk);
@@ -229,20 +239,20 @@ TEST(AttitudeEstimator, GoesOnAsIfARefusedFrameHadNeverCome) {
   }
 }
 
-TEST(AttitudeEstimator, FrameAndItsDepthImageGiveTheSameEstimate) {
-  const auto estimator = loaded(35);
+TYPED_TEST(EstimatorOf, FrameAndItsDepthImageGiveTheSameEstimate) {
+  const auto estimator = loaded<TypeParam>(35);
   AttitudeEstimate from_frame, from_image;
   ASSERT_EQ(estimator->step(random_frame(1), from_frame), FrameStatus::kOk);
   const auto image = std::make_unique<DepthImage>(estimator->depth_image());
-  EXPECT_GT(std::count_if(image->value.begin(), image->value.end(), [](float v) { return v > 0.0F; }), 100);
+  EXPECT_GT(std::count_if(image->depth.begin(), image->depth.end(), [](int depth) { return depth > 0; }), 100);
   estimator->reset();
   estimator->step(*image, from_image);
   expect_same(from_image, from_frame);
 }
 
-TEST(AttitudeEstimator, AlwaysGivesUnitQuaternions) {
+TYPED_TEST(EstimatorOf, AlwaysGivesUnitQuaternions) {
   for (unsigned seed = 40; seed < 46; ++seed) {
-    const auto estimator = loaded(seed);
+    const auto estimator = loaded<TypeParam>(seed);
     AttitudeEstimate estimate;
     for (unsigned k = 0; k < 4; ++k) {
       estimator->step(k == 1 ? DepthImage{} : random_depth_image(seed + k), estimate);
@@ -253,13 +263,13 @@ TEST(AttitudeEstimator, AlwaysGivesUnitQuaternions) {
 
 TEST(AttitudeEstimator, GivesUnitQuaternionsForZeroAndForOverflowingWeights) {
   for (const float value : {0.0F, 1e30F, -1e30F, 3e38F}) {
-    auto weights = std::make_unique<NetworkWeights>();
-    for_each_tensor(*weights, [value](const char*, float* data, std::size_t count) {
-      for (std::size_t i = 0; i < count; ++i) data[i] = i % 3 == 0 ? value : -0.5F * value;
+    auto weights = std::make_unique<NetworkWeights<Float32>>();
+    for_each_tensor(*weights, [value](const char*, const char*, auto& tensor) {
+      for (std::size_t i = 0; i < tensor.size(); ++i) tensor[i] = i % 3 == 0 ? value : -0.5F * value;
     });
-    std::vector<std::uint8_t> image(kModelImageSize);
-    ASSERT_EQ(write_model_image(test_header(), *weights, image.data(), image.size()), image.size());
-    auto estimator = std::make_unique<AttitudeEstimator>();
+    std::vector<std::uint8_t> image(kModelImageSize<Float32>);
+    ASSERT_EQ(write_model_image<Float32>(test_header(), *weights, image.data(), image.size()), image.size());
+    auto estimator = std::make_unique<AttitudeEstimator<Float32>>();
     ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
     AttitudeEstimate estimate;
     for (unsigned k = 0; k < 3; ++k) {
@@ -271,15 +281,15 @@ TEST(AttitudeEstimator, GivesUnitQuaternionsForZeroAndForOverflowingWeights) {
 
 TEST(AttitudeEstimator, SurvivesADamagedStateAndForgetsItWhenReset) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  const auto estimator = loaded(36);
+  const auto estimator = loaded<Float32>(36);
   AttitudeEstimate first, estimate;
   estimator->step(random_depth_image(1), first);
-  AttitudeEstimator::State damaged;
+  AttitudeEstimator<Float32>::State damaged;
   estimator->save(damaged);
   damaged.lstm.h.fill(kNan);
   damaged.lstm.c.fill(std::numeric_limits<float>::infinity());
   for (const float value : {kNan, std::numeric_limits<float>::infinity(), 1e30F, 0.0F}) {
-    for (Motion& motion : damaged.track.motion) {
+    for (Motion<float>& motion : damaged.track.motion) {
       motion.r_lrf_trf.setConstant(value);
       motion.rate_lrf.setConstant(-value);
     }

@@ -13,7 +13,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr layers::Head2::Output kSilent{};
+constexpr HeadOutput<float> kSilent{};
 
 const Eigen::Vector3d kAxis = Eigen::Vector3d(0.4, -0.3, 0.8).normalized();
 const Eigen::Matrix3d kStart = turn(2.2, {1.0, -2.0, 0.5});
@@ -21,19 +21,19 @@ const Eigen::Matrix3d kStart = turn(2.2, {1.0, -2.0, 0.5});
 // Column 1 of a turn about x carries the whole angle, and the mean of two such columns is an exact formula.
 TEST(AttitudeFilter, HasTheGainsOfTheLeastSquaresLine) {
   constexpr double kAngle = 15.0 * kDegree;
-  const Hypotheses frame = frame_of({{turn(kAngle, Eigen::Vector3d::UnitX()), 1.0F}});
-  const Prediction standing;
+  const Hypotheses<float> frame = frame_of({{turn(kAngle, Eigen::Vector3d::UnitX()), 1.0F}});
+  const Prediction<float> standing;
   for (int before = 0; before < 14; ++before) {
     SCOPED_TRACE(before);
-    AttitudeTrack track;
+    AttitudeTrack<float> track;
     track.frames = static_cast<std::uint32_t>(before);
-    const Eigen::Matrix3f now = advance(frame, standing, kSilent, track).r_lrf_trf;
+    const Eigen::Matrix3f now = advance<float>(frame, standing, kSilent, track).r_lrf_trf;
     const double angle = std::atan2(now(2, 1), now(1, 1));
     const double predicted_weight = std::sin(kAngle) / std::tan(angle) - std::cos(kAngle);
     EXPECT_NEAR(predicted_weight, predicted_weight_after(before), 3e-6);
     EXPECT_EQ(track.frames, static_cast<std::uint32_t>(before + 1));
     const double rate_gain = before == 0 ? 0.0 : rate_gain_after(before);
-    for (const Motion& motion : track.motion) {
+    for (const Motion<float>& motion : track.motion) {
       EXPECT_EQ(motion.r_lrf_trf, now);
       EXPECT_NEAR(motion.rate_lrf.x() / angle, rate_gain, 1e-5);
       EXPECT_NEAR(motion.rate_lrf.tail<2>().norm(), 0.0, 1e-6);
@@ -46,13 +46,13 @@ TEST(AttitudeFilter, FollowsAConstantRateAndLearnsIt) {
   for (const double step_deg : {0.0, 2.0, 12.0, 25.0, 54.0}) {
     SCOPED_TRACE(step_deg);
     const Eigen::Vector3d rate = step_deg * kDegree * kAxis;
-    AttitudeTrack track;
+    AttitudeTrack<float> track;
     Eigen::Matrix3d truth = kStart;
     for (int k = 0; k < 25; ++k, truth = turn(rate) * truth) {
-      const TrackedAttitude tracked = follow(frame_of({{truth, 1.0F}}), kSilent, track);
+      const TrackedAttitude<float> tracked = follow(frame_of({{truth, 1.0F}}), kSilent, track);
       EXPECT_LT(angle_between(tracked.r_lrf_trf, truth), k == 0 ? 1e-6 : 0.02 * kDegree) << k;
       if (k == 0) continue;
-      const Motion& motion = track.motion[static_cast<int>(track.law())];
+      const Motion<float>& motion = track.motion[static_cast<int>(track.law())];
       EXPECT_EQ(tracked.r_lrf_trf, motion.r_lrf_trf);
       const double rate_error = (motion.rate_lrf.cast<double>() - rate).norm();
       EXPECT_LT(rate_error, 0.1 * kDegree) << k;
@@ -98,13 +98,13 @@ TEST(AttitudeFilter, IsAsGoodAsTheLeastSquaresLineOfTheFirstTenFrames) {
       SCOPED_TRACE(std::to_string(one.step_deg) + " degrees, frames " + std::to_string(frames));
       double filter_square = 0.0, fit_square = 0.0, apart_square = 0.0, single_square = 0.0;
       for (int trial = 0; trial < 300; ++trial) {
-        AttitudeTrack track;
+        AttitudeTrack<float> track;
         Eigen::Matrix3d truth = kStart, answer = kStart;
         std::vector<Eigen::Vector3d> errors;
         for (int k = 0; k < frames; ++k) {
           if (k > 0) truth = step * truth;
           errors.emplace_back(normal(engine), normal(engine), normal(engine));
-          const Hypotheses frame = frame_of({{turn(errors.back()) * truth, 1.0F}});
+          const Hypotheses<float> frame = frame_of({{turn(errors.back()) * truth, 1.0F}});
           answer = follow(frame, kSilent, track).r_lrf_trf.cast<double>();
         }
         const Eigen::AngleAxisd off(Eigen::Matrix3d(answer * truth.transpose()));

@@ -14,7 +14,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-using Head = layers::Head2::Output;
+using Head = HeadOutput<float>;
 constexpr Head kSilent{};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
@@ -32,17 +32,17 @@ Head saying(int place, float word) {
 // Expects an error of less than a degree.
 const Head kSure = saying(kErrorWord, -6.0F);
 
-const Motion& motion_of(const AttitudeTrack& track) {
+const Motion<float>& motion_of(const AttitudeTrack<float>& track) {
   return track.motion[track.law()];
 }
 
-double rate_error(const AttitudeTrack& track, const Eigen::Vector3d& rate = kRate) {
+double rate_error(const AttitudeTrack<float>& track, const Eigen::Vector3d& rate = kRate) {
   return (motion_of(track).rate_lrf.cast<double>() - rate).norm();
 }
 
 // A spin by kRate from kStart, seen `frames` times without error.
-AttitudeTrack settled_track(int frames) {
-  AttitudeTrack track;
+AttitudeTrack<float> settled_track(int frames) {
+  AttitudeTrack<float> track;
   Eigen::Matrix3d truth = kStart;
   for (int k = 0; k < frames; ++k, truth = turn(kRate) * truth)
     follow(frame_of({{truth, 1.0F}}), kSilent, track);
@@ -52,11 +52,11 @@ Eigen::Matrix3d truth_after(int frames) {
   return turn(frames * kRate) * kStart;
 }
 
-Inertia slender_body() {
-  Inertia inertia;
+Inertia<float> slender_body() {
+  Inertia<float> inertia;
   Eigen::Matrix3f tensor_trf;
   tensor_trf << 1.0F, 0.2F, 0.0F, 0.2F, 4.0F, 0.0F, 0.0F, 0.0F, 4.5F;
-  EXPECT_TRUE(make_inertia(tensor_trf, inertia));
+  EXPECT_TRUE(make_inertia<float>(tensor_trf, inertia));
   return inertia;
 }
 
@@ -67,15 +67,15 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
   const auto any_vector = [&](float scale) {
     return Eigen::Vector3f(scale * normal(engine), scale * normal(engine), scale * normal(engine));
   };
-  const Inertia inertia = slender_body();
+  const Inertia<float> inertia = slender_body();
   int compared = 0, tumbling = 0, merged = 0, turned = 0;
   for (int sequence = 0; sequence < 20; ++sequence) {
-    Motion truth{kStart.cast<float>(), any_vector(0.3F)};
-    AttitudeTrack track;
+    Motion<float> truth{kStart.cast<float>(), any_vector(0.3F)};
+    AttitudeTrack<float> track;
     ReferenceTrack reference(inertia.tensor_trf.cast<double>());
-    for (int k = 0; k < 15; ++k, truth = tumble(truth, inertia)) {
+    for (int k = 0; k < 15; ++k, truth = tumble<float>(truth, inertia)) {
       SCOPED_TRACE(testing::Message() << sequence << ' ' << k);
-      OutputVector output{};
+      OutputVector<float> output{};
       for (int i = 0; i < shape::kHypotheses; ++i) {
         Eigen::Matrix3d r = turn(any_vector(0.03F).cast<double>()) * truth.r_lrf_trf.cast<double>();
         if (i % 3 == 1) r = r * kSymmetry;
@@ -91,7 +91,7 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
       reference.advance({head.begin(), head.end()});
       if (reference.nearest_call_deg < 1e-3) break;
       ++compared;
-      const TrackedAttitude tracked = follow(hypotheses_of(output, r_lrf_view), head, track, inertia);
+      const TrackedAttitude<float> tracked = follow(hypotheses_of<float>(output, r_lrf_view), head, track, inertia);
       for (int law = 0; law < kLaws; ++law) {
         ASSERT_LT((track.motion[law].r_lrf_trf.cast<double>() - reference.motion[law].attitude).norm(), 2e-5);
         ASSERT_LT((track.motion[law].rate_lrf.cast<double>() - reference.motion[law].rate).norm(), 2e-5);
@@ -114,14 +114,14 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
 }
 
 TEST(AttitudeTrack, StartsWithTheLikeliestHypothesisAtRest) {
-  const Hypotheses frame = frame_of({{kStart, 0.6F}, {kStart * kSymmetry, 0.4F}});
-  const Prediction prediction = predict(AttitudeTrack{}, motion_laws(Inertia{}), frame);
-  for (const Motion& motion : prediction.motion) {
+  const Hypotheses<float> frame = frame_of({{kStart, 0.6F}, {kStart * kSymmetry, 0.4F}});
+  const Prediction<float> prediction = predict<float>(AttitudeTrack<float>{}, motion_laws<float>(Inertia<float>{}), frame);
+  for (const Motion<float>& motion : prediction.motion) {
     EXPECT_EQ(motion.r_lrf_trf, frame.r_lrf_trf[0]);
     EXPECT_EQ(motion.rate_lrf.norm(), 0.0F);
   }
-  AttitudeTrack track;
-  const TrackedAttitude tracked = advance(frame, prediction, saying(kErrorWord, -3.0F), track);
+  AttitudeTrack<float> track;
+  const TrackedAttitude<float> tracked = advance<float>(frame, prediction, saying(kErrorWord, -3.0F), track);
   EXPECT_LT(angle_between(tracked.r_lrf_trf, kStart), 1e-6);
   EXPECT_NEAR(tracked.predicted_error_rad, M_PI / (1.0 + std::exp(3.0)), 1e-6);
   EXPECT_EQ(track.frames, 1U);
@@ -130,11 +130,11 @@ TEST(AttitudeTrack, StartsWithTheLikeliestHypothesisAtRest) {
 
 TEST(AttitudeTrack, GivesTheLstmTheHypothesesRelativeToThePrediction) {
   const Eigen::Matrix3d predicted = turn(0.7, {1.0, 1.0, 0.0});
-  const Hypotheses frame = frame_of({{kStart, 0.75F}, {kStart * kSymmetry, 0.25F}});
-  layers::Dense2::Output features;
+  const Hypotheses<float> frame = frame_of({{kStart, 0.75F}, {kStart * kSymmetry, 0.25F}});
+  Features<Float32> features;
   for (std::size_t i = 0; i < features.size(); ++i) features[i] = static_cast<float>(i);
-  layers::Recurrent::Input input;
-  fill_lstm_input(features, frame, predicted.cast<float>(), input);
+  LstmInput<Float32> input;
+  fill_lstm_input<Float32>(features, frame, predicted.cast<float>(), input);
   EXPECT_TRUE(std::equal(features.begin(), features.end(), input.begin()));
   for (int k = 0; k < shape::kHypotheses; ++k) {
     const Eigen::Matrix3d relative = predicted.transpose() * frame.r_lrf_trf[k].cast<double>();
@@ -147,9 +147,9 @@ TEST(AttitudeTrack, GivesTheLstmTheHypothesesRelativeToThePrediction) {
 }
 
 TEST(AttitudeTrack, GoesOnAtItsRateWhereTheHeadBelievesThePredictionAlone) {
-  AttitudeTrack track = settled_track(12);
+  AttitudeTrack<float> track = settled_track(12);
   const Eigen::Matrix3d wrong = turn(1.0, {0.0, 0.0, 1.0}) * truth_after(12);
-  const TrackedAttitude tracked = follow(frame_of({{wrong, 1.0F}}), saying(kPredicted, 50.0F), track);
+  const TrackedAttitude<float> tracked = follow(frame_of({{wrong, 1.0F}}), saying(kPredicted, 50.0F), track);
   EXPECT_LT(angle_between(tracked.r_lrf_trf, truth_after(12)), 1e-4);
   EXPECT_LT(rate_error(track), 1e-4);
 }
@@ -157,9 +157,9 @@ TEST(AttitudeTrack, GoesOnAtItsRateWhereTheHeadBelievesThePredictionAlone) {
 TEST(AttitudeTrack, TakesTheCandidateThatTheHeadAnchorsAt) {
   const Eigen::Matrix3d other = kStart * kSymmetry;
   for (const int anchor : {0, 1, 5}) {
-    AttitudeTrack track;
-    const Hypotheses frame = frame_of({{kStart, 0.6F}, {other, 0.4F}});
-    const TrackedAttitude tracked = follow(frame, saying(anchor, 60.0F), track);
+    AttitudeTrack<float> track;
+    const Hypotheses<float> frame = frame_of({{kStart, 0.6F}, {other, 0.4F}});
+    const TrackedAttitude<float> tracked = follow(frame, saying(anchor, 60.0F), track);
     EXPECT_LT(angle_between(tracked.r_lrf_trf, frame.r_lrf_trf[anchor].cast<double>()), 1e-6) << anchor;
   }
 }
@@ -167,7 +167,7 @@ TEST(AttitudeTrack, TakesTheCandidateThatTheHeadAnchorsAt) {
 TEST(AttitudeTrack, WeighsCandidatesByTheHeadsWordUpToItsBound) {
   const Eigen::Matrix3d near = turn(6.0 * kDegree, {0.3, 1.0, 0.2}) * kStart;
   const auto distance_to_start = [&](float word) {
-    AttitudeTrack track;
+    AttitudeTrack<float> track;
     return angle_between(
         follow(frame_of({{kStart, 0.5F}, {near, 0.5F}}), saying(kWeightWords + 1, word), track).r_lrf_trf,
         kStart);
@@ -181,32 +181,32 @@ TEST(AttitudeTrack, WeighsCandidatesByTheHeadsWordUpToItsBound) {
 
 TEST(AttitudeTrack, IsNotPulledByAlternativesHoweverLikely) {
   const Eigen::Matrix3d truth = truth_after(12);
-  AttitudeTrack alone = settled_track(12);
-  const TrackedAttitude expected = follow(frame_of({{truth, 0.3F}}), saying(0, 50.0F), alone);
+  AttitudeTrack<float> alone = settled_track(12);
+  const TrackedAttitude<float> expected = follow(frame_of({{truth, 0.3F}}), saying(0, 50.0F), alone);
   for (const double away_deg : {21.0, 60.0, 120.0, 180.0}) {
-    AttitudeTrack track = settled_track(12);
+    AttitudeTrack<float> track = settled_track(12);
     const Eigen::Matrix3d alternative = turn(away_deg * kDegree, {0.1, 1.0, -0.4}) * truth;
-    const Hypotheses frame = frame_of({{truth, 0.3F}, {alternative, 0.7F}});
-    const TrackedAttitude tracked = follow(frame, saying(0, 50.0F), track);
+    const Hypotheses<float> frame = frame_of({{truth, 0.3F}, {alternative, 0.7F}});
+    const TrackedAttitude<float> tracked = follow(frame, saying(0, 50.0F), track);
     EXPECT_LT((tracked.r_lrf_trf - expected.r_lrf_trf).norm(), 1e-6F) << away_deg;
   }
 }
 
 TEST(AttitudeTrack, KeepsItsRateWhenItChangesToASymmetricAttitude) {
-  AttitudeTrack track = settled_track(12);
+  AttitudeTrack<float> track = settled_track(12);
   follow(frame_of({{truth_after(12) * kSymmetry, 1.0F}}), kSilent, track);
   EXPECT_LT(angle_between(motion_of(track).r_lrf_trf, truth_after(12) * kSymmetry), 1e-5);
   EXPECT_LT(rate_error(track), 1e-4);
-  const Prediction next = predict(track, motion_laws(Inertia{}), frame_of({{kStart, 1.0F}}));
+  const Prediction<float> next = predict<float>(track, motion_laws<float>(Inertia<float>{}), frame_of({{kStart, 1.0F}}));
   EXPECT_LT(angle_between(next.r_lrf_trf(), truth_after(13) * kSymmetry), 2e-4);
 }
 
 TEST(AttitudeTrack, StaysOnItsBranchWhereTheHeadBelievesThePrediction) {
-  AttitudeTrack track;
+  AttitudeTrack<float> track;
   for (int k = 0; k < 15; ++k) {
     // The likelier hypothesis is now this one, now its symmetric partner.
     const float probability = k % 2 == 0 ? 0.6F : 0.4F;
-    const Hypotheses frame =
+    const Hypotheses<float> frame =
         frame_of({{truth_after(k), probability}, {truth_after(k) * kSymmetry, 1.0F - probability}});
     const Head head = k == 0 ? kSilent : saying(kPredicted, 50.0F);
     EXPECT_LT(angle_between(follow(frame, head, track).r_lrf_trf, truth_after(k)), 0.05 * kDegree) << k;
@@ -215,31 +215,31 @@ TEST(AttitudeTrack, StaysOnItsBranchWhereTheHeadBelievesThePrediction) {
 }
 
 TEST(AttitudeTrack, LearnsByWhichLawTheTargetMoves) {
-  const MotionLaws laws = motion_laws(slender_body());
+  const MotionLaws<float> laws = motion_laws<float>(slender_body());
   for (int law = 0; law < kLaws; ++law) {
     SCOPED_TRACE(law);
-    Motion truth{kStart.cast<float>(),
+    Motion<float> truth{kStart.cast<float>(),
                  (20.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized()).cast<float>()};
-    AttitudeTrack track;
-    for (int k = 0; k < 12; ++k, truth = tumble(truth, laws[law])) {
+    AttitudeTrack<float> track;
+    for (int k = 0; k < 12; ++k, truth = tumble<float>(truth, laws[law])) {
       const Eigen::Matrix3d exact = truth.r_lrf_trf.cast<double>();
-      const TrackedAttitude tracked = follow(frame_of({{exact, 1.0F}}), kSure, track, slender_body());
+      const TrackedAttitude<float> tracked = follow(frame_of({{exact, 1.0F}}), kSure, track, slender_body());
       if (k > 8) {
         EXPECT_LT(angle_between(tracked.r_lrf_trf, exact), 1.0 * kDegree) << k;
       }
     }
     EXPECT_EQ(track.law(), law);
-    EXPECT_EQ(predict(track, laws, frame_of({{kStart, 1.0F}})).law, law);
+    EXPECT_EQ(predict<float>(track, laws, frame_of({{kStart, 1.0F}})).law, law);
     EXPECT_EQ(track.log_likelihood[law], 0.0F);
     EXPECT_LT(track.log_likelihood[law == kSpinLaw ? kTumbleLaw : kSpinLaw], -2.0F);
   }
 }
 
 TEST(AttitudeTrack, OfAnUnsureNetworkNoLawIsLearnt) {
-  const Inertia inertia = slender_body();
-  Motion truth{kStart.cast<float>(), {0.1F, -0.08F, 0.2F}};
-  AttitudeTrack track;
-  for (int k = 0; k < 12; ++k, truth = tumble(truth, inertia)) {
+  const Inertia<float> inertia = slender_body();
+  Motion<float> truth{kStart.cast<float>(), {0.1F, -0.08F, 0.2F}};
+  AttitudeTrack<float> track;
+  for (int k = 0; k < 12; ++k, truth = tumble<float>(truth, inertia)) {
     follow(frame_of({{truth.r_lrf_trf.cast<double>(), 1.0F}}), saying(kErrorWord, 0.0F), track, inertia);
   }
   EXPECT_EQ(track.law(), kSpinLaw) << "measurements to 90 degrees cannot tell";
@@ -248,17 +248,17 @@ TEST(AttitudeTrack, OfAnUnsureNetworkNoLawIsLearnt) {
 TEST(AttitudeTrack, StartsAnewFromADamagedTrack) {
   for (int damage = 0; damage < 5; ++damage) {
     SCOPED_TRACE(damage);
-    AttitudeTrack track = settled_track(12);
+    AttitudeTrack<float> track = settled_track(12);
     if (damage == 0) track.motion[0].r_lrf_trf(1, 2) = kNan;
     if (damage == 1) track.motion[1].r_lrf_trf.setConstant(std::numeric_limits<float>::infinity());
     if (damage == 2) track.motion[0].rate_lrf.x() = kNan;
     if (damage == 3) track.motion[1].rate_lrf.y() = -std::numeric_limits<float>::infinity();
     if (damage == 4) track.log_likelihood[3] = kNan;
-    AttitudeTrack fresh;
+    AttitudeTrack<float> fresh;
     for (int k = 12; k < 16; ++k) {
-      const Hypotheses frame = frame_of({{truth_after(k), 1.0F}});
-      const TrackedAttitude tracked = follow(frame, kSilent, track);
-      const TrackedAttitude expected = follow(frame, kSilent, fresh);
+      const Hypotheses<float> frame = frame_of({{truth_after(k), 1.0F}});
+      const TrackedAttitude<float> tracked = follow(frame, kSilent, track);
+      const TrackedAttitude<float> expected = follow(frame, kSilent, fresh);
       EXPECT_EQ(tracked.r_lrf_trf, expected.r_lrf_trf);
       EXPECT_EQ(motion_of(track).rate_lrf, motion_of(fresh).rate_lrf);
       EXPECT_EQ(track.frames, fresh.frames);
@@ -267,20 +267,20 @@ TEST(AttitudeTrack, StartsAnewFromADamagedTrack) {
 }
 
 TEST(AttitudeTrack, LosesOneFrameToANonFiniteHypothesisThatItAnchorsAt) {
-  AttitudeTrack track = settled_track(12);
-  Hypotheses damaged = frame_of({{truth_after(12), 1.0F}});
+  AttitudeTrack<float> track = settled_track(12);
+  Hypotheses<float> damaged = frame_of({{truth_after(12), 1.0F}});
   damaged.r_lrf_trf[0](0, 0) = kNan;
   EXPECT_FALSE(follow(damaged, kSilent, track).r_lrf_trf.allFinite());
-  AttitudeTrack fresh;
+  AttitudeTrack<float> fresh;
   for (int k = 13; k < 16; ++k) {
-    const Hypotheses frame = frame_of({{truth_after(k), 1.0F}});
+    const Hypotheses<float> frame = frame_of({{truth_after(k), 1.0F}});
     EXPECT_EQ(follow(frame, kSilent, track).r_lrf_trf, follow(frame, kSilent, fresh).r_lrf_trf);
   }
 }
 
 TEST(AttitudeTrack, IgnoresANonFiniteHypothesisThatItDoesNotAnchorAt) {
-  AttitudeTrack track = settled_track(12);
-  Hypotheses damaged = frame_of({{truth_after(12), 1.0F}});
+  AttitudeTrack<float> track = settled_track(12);
+  Hypotheses<float> damaged = frame_of({{truth_after(12), 1.0F}});
   damaged.r_lrf_trf[3].setConstant(kNan);
   EXPECT_LT(angle_between(follow(damaged, kSilent, track).r_lrf_trf, truth_after(12)), 1e-4);
   EXPECT_LT(rate_error(track), 1e-4);
@@ -296,8 +296,8 @@ TEST(AttitudeTrack, NeverLeavesTheUnitQuaternionsWhateverItIsGiven) {
     }
   };
   for (int i = 0; i < 5000; ++i) {
-    AttitudeTrack track = settled_track(static_cast<int>(bits(engine) % 4));
-    Hypotheses frame = frame_of({{truth_after(3), 0.7F}, {kStart, 0.3F}});
+    AttitudeTrack<float> track = settled_track(static_cast<int>(bits(engine) % 4));
+    Hypotheses<float> frame = frame_of({{truth_after(3), 0.7F}, {kStart, 0.3F}});
     Head head{};
     damage(head.data(), head.size());
     if (i % 2 == 0) damage(frame.r_lrf_trf[i % 8].data(), 9);
@@ -305,8 +305,8 @@ TEST(AttitudeTrack, NeverLeavesTheUnitQuaternionsWhateverItIsGiven) {
     if (i % 5 == 0) damage(track.motion[i % kLaws].r_lrf_trf.data(), 9);
     if (i % 7 == 0) damage(track.motion[i % kLaws].rate_lrf.data(), 3);
     for (int k = 0; k < 3; ++k) {
-      const TrackedAttitude tracked = follow(frame, head, track);
-      ASSERT_NEAR(quaternion_from_rotation(tracked.r_lrf_trf).norm(), 1.0F, 1e-6F);
+      const TrackedAttitude<float> tracked = follow(frame, head, track);
+      ASSERT_NEAR(to_double(quaternion_from_rotation(converted<Fixed>(tracked.r_lrf_trf))).norm(), 1.0, 1e-6);
       ASSERT_TRUE(tracked.predicted_error_rad >= 0.0F && tracked.predicted_error_rad <= 3.1415928F);
       for (const float value : track.log_likelihood) ASSERT_TRUE(value >= -6.0F && value <= 0.0F) << value;
     }
@@ -316,22 +316,22 @@ TEST(AttitudeTrack, NeverLeavesTheUnitQuaternionsWhateverItIsGiven) {
 // The head may keep to the prediction while one law has lost the target: then that law's own answer must not
 // be taken for a hit.
 TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
-  const Inertia inertia = slender_body();
-  Motion truth{kStart.cast<float>(),
+  const Inertia<float> inertia = slender_body();
+  Motion<float> truth{kStart.cast<float>(),
                (20.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized()).cast<float>()};
-  AttitudeTrack track;
+  AttitudeTrack<float> track;
   std::mt19937 engine(9);
   std::normal_distribution<double> normal(0.0, 1.5 * kDegree);
-  for (int k = 0; k < 40; ++k, truth = tumble(truth, motion_laws(inertia)[kSpinLaw])) {
+  for (int k = 0; k < 40; ++k, truth = tumble<float>(truth, motion_laws<float>(inertia)[kSpinLaw])) {
     const Eigen::Matrix3d exact = truth.r_lrf_trf.cast<double>();
     const double x = normal(engine);
     const double y = normal(engine);
     const double z = normal(engine);
     const Eigen::Matrix3d seen = turn({x, y, z}) * exact;
     const Head head = k < 6 ? kSilent : saying(kPredicted, 50.0F);
-    const TrackedAttitude tracked = follow(frame_of({{seen, 1.0F}}), head, track, inertia);
+    const TrackedAttitude<float> tracked = follow(frame_of({{seen, 1.0F}}), head, track, inertia);
     EXPECT_LT(angle_between(tracked.r_lrf_trf, exact), 6.0 * kDegree) << "frame " << k;
-    for (const Motion& motion : track.motion) {
+    for (const Motion<float>& motion : track.motion) {
       EXPECT_LT(angle_between(motion.r_lrf_trf, exact), 60.0 * kDegree) << "frame " << k;
     }
   }
@@ -339,11 +339,11 @@ TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
 }
 
 TEST(AttitudeTrack, AStateThatHoldsNoRotationIsDropped) {
-  AttitudeTrack track;
+  AttitudeTrack<float> track;
   track.frames = 5;
   track.motion[0].r_lrf_trf.setZero();
   const Eigen::Matrix3d attitude = kStart;
-  const TrackedAttitude tracked =
+  const TrackedAttitude<float> tracked =
       follow(frame_of({{attitude, 1.0F}}), saying(kPredicted, 50.0F), track, slender_body());
   EXPECT_LT(angle_between(tracked.r_lrf_trf, attitude), 0.1 * kDegree);
   EXPECT_EQ(track.frames, 1U) << "a new track";

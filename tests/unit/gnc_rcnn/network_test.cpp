@@ -32,10 +32,10 @@ double largest_magnitude(const std::vector<double>& values) {
 }
 
 TEST(Network, FollowsTheDoubleReferenceInEveryFrame) {
-  auto network = std::make_unique<Network>();
+  auto network = std::make_unique<Network<Float32>>();
   fill_random(network->weights(), 11);
   const ReferenceNetwork reference(network->weights());
-  OutputVector output;
+  OutputVector<float> output;
   for (unsigned frame = 0; frame < 3; ++frame) {
     SCOPED_TRACE(frame);
     const DepthImage image = random_depth_image(100 + frame);
@@ -48,14 +48,14 @@ TEST(Network, FollowsTheDoubleReferenceInEveryFrame) {
 }
 
 TEST(Network, FollowsTheDoubleReferenceOverASequence) {
-  auto network = std::make_unique<Network>();
+  auto network = std::make_unique<Network<Float32>>();
   fill_random(network->weights(), 13);
   ReferenceNetwork reference(network->weights());
-  LstmState state;
-  layers::Head2::Output head;
+  LstmState<Float32> state;
+  HeadOutput<float> head;
   for (unsigned frame = 0; frame < 20; ++frame) {
     SCOPED_TRACE(frame);
-    const layers::Recurrent::Input input = random_lstm_input(frame);
+    const LstmInput<Float32> input = random_lstm_input(frame);
     network->infer_sequence(input, state, head);
     const std::vector<double> expected = reference.infer_sequence({input.begin(), input.end()});
     EXPECT_GT(largest_magnitude(expected), 0.1);
@@ -66,11 +66,11 @@ TEST(Network, FollowsTheDoubleReferenceOverASequence) {
 }
 
 TEST(Network, GivesTheSameBitsWhateverCameBefore) {
-  auto network = std::make_unique<Network>();
+  auto network = std::make_unique<Network<Float32>>();
   fill_random(network->weights(), 12);
-  LstmState fresh, used, again;
-  OutputVector first_output, output;
-  layers::Head2::Output first_head, head;
+  LstmState<Float32> fresh, used, again;
+  OutputVector<float> first_output, output;
+  HeadOutput<float> first_head, head;
   const DepthImage image = random_depth_image(1);
   network->infer_frame(image, first_output);
   network->infer_sequence(random_lstm_input(1), fresh, first_head);
@@ -87,29 +87,40 @@ TEST(Network, GivesTheSameBitsWhateverCameBefore) {
 }
 
 TEST(NetworkWeights, VisitsEveryParameterOnceUnderUniqueNames) {
-  auto weights = std::make_unique<NetworkWeights>();
+  auto weights = std::make_unique<NetworkWeights<Float32>>();
   std::vector<std::string> names;
   std::size_t count = 0;
-  for_each_tensor(*weights, [&](const char* name, float* data, std::size_t size) {
-    names.emplace_back(name);
-    count += size;
-    std::fill_n(data, size, static_cast<float>(names.size()));
+  for_each_tensor(*weights, [&](const char* layer, const char* part, auto& tensor) {
+    names.push_back(std::string(layer) + "." + part);
+    count += tensor.size();
+    tensor.fill(static_cast<float>(names.size()));
   });
   EXPECT_EQ(count, kParameterCount);
-  EXPECT_EQ(names.size(), kTensorCount);
+  EXPECT_EQ(names.size(), kTensorCount<Float32>);
   EXPECT_EQ(names.front(), "conv1.weight");
   EXPECT_EQ(names.back(), "head2.bias");
 
   std::size_t index = 0;
-  for_each_tensor(std::as_const(*weights), [&](const char* name, auto* data, std::size_t size) {
-    static_assert(std::is_same_v<decltype(data), const float*>);
-    ASSERT_EQ(names[index], name);
+  for_each_tensor(std::as_const(*weights), [&](const char*, const char*, const auto& tensor) {
     ++index;
-    EXPECT_EQ(data[0], static_cast<float>(index)) << name << " shares memory with another tensor";
-    EXPECT_EQ(data[size - 1], static_cast<float>(index)) << name;
+    EXPECT_EQ(tensor.front(), static_cast<float>(index)) << "shares memory with another tensor";
+    EXPECT_EQ(tensor.back(), static_cast<float>(index));
   });
   std::sort(names.begin(), names.end());
   EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
+}
+
+TEST(NetworkWeights, InFixedPointHaveAShiftForEveryChannelAndTakeALittleMoreThanAByteAParameter) {
+  const auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
+  std::size_t tensors = 0;
+  for_each_tensor(*weights, [&](const char*, const char*, const auto&) { ++tensors; });
+  EXPECT_EQ(tensors, kTensorCount<FixedPoint>);
+  for_each_layer(*weights, [](const char* name, const auto& layer) {
+    EXPECT_EQ(layer.shift.size(), layer.bias.size()) << name;
+    EXPECT_EQ(layer.bias.size() % kIntegerChannels, 0U) << name;
+  });
+  EXPECT_GE(kWeightBytes<FixedPoint>, kParameterCount);
+  EXPECT_LE(kWeightBytes<FixedPoint>, 1'200'000U);
 }
 
 }  // namespace

@@ -41,9 +41,9 @@ double mean(double a, double b, double c, double d) {
 
 }  // namespace
 
-ReferenceNetwork::ReferenceNetwork(const NetworkWeights& weights) : h(192, 0.0), c(192, 0.0) {
-  for_each_tensor(weights, [this](const char* name, const float* data, std::size_t count) {
-    tensors_[name] = Numbers(data, data + count);
+ReferenceNetwork::ReferenceNetwork(const NetworkWeights<Float32>& weights) : h(192, 0.0), c(192, 0.0) {
+  for_each_tensor(weights, [this](const char* layer, const char* part, const auto& tensor) {
+    tensors_[std::string(layer) + "." + part] = Numbers(tensor.begin(), tensor.end());
   });
 }
 
@@ -86,7 +86,7 @@ ReferenceNetwork::Frame ReferenceNetwork::infer_frame(const DepthImage& image) c
   Numbers map(50 * 50 * 4);
   for (int row = 0; row < 100; ++row) {
     for (int column = 0; column < 100; ++column) {
-      map[((row / 2) * 50 + column / 2) * 4 + 2 * (row & 1) + (column & 1)] = image.value[row * 100 + column];
+      map[((row / 2) * 50 + column / 2) * 4 + 2 * (row & 1) + (column & 1)] = image.depth[row * 100 + column] / 65536.0;
     }
   }
   int side = 50;
@@ -115,7 +115,7 @@ Numbers ReferenceNetwork::infer_sequence(const Numbers& lstm_input) {
       for (std::size_t g = 0; g < gates.size(); ++g) gates[g] += in[i] * weight.at(i * gates.size() + g);
     }
   };
-  add_product(lstm_input, tensors_.at("lstm.input"));
+  add_product(lstm_input, tensors_.at("lstm.weight"));
   add_product(h, tensors_.at("lstm.recurrent"));
   for (int i = 0; i < 192; ++i) {
     c[i] = exact_sigmoid(gates[192 + i]) * c[i] + exact_sigmoid(gates[i]) * std::tanh(gates[384 + i]);

@@ -13,7 +13,7 @@ namespace tumblesight::gnc {
 class ReferenceNetwork {
  public:
   using Numbers = std::vector<double>;
-  explicit ReferenceNetwork(const NetworkWeights& weights);
+  explicit ReferenceNetwork(const NetworkWeights<Float32>& weights);
 
   struct Frame {
     Numbers dense2, output;

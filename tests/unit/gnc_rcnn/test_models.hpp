@@ -12,13 +12,17 @@
 namespace tumblesight::gnc {
 
 // Weights that keep the activations near 1 from layer to layer.
-void fill_random(NetworkWeights& weights, unsigned seed);
+void fill_random(NetworkWeights<Float32>& weights, unsigned seed);
 ModelHeader test_header();
-std::vector<std::uint8_t> random_model_image(unsigned seed);
+template <class N>
+std::vector<std::uint8_t> random_model_image(unsigned seed, const ModelHeader& header = test_header());
+// The same, for the whole program: weights in fixed point are read where the image lies.
+template <class N>
+const std::vector<std::uint8_t>& lasting_model_image(unsigned seed);
 
 // A blob of random depths in the middle, nothing around it; seen in the LRF.
 DepthImage random_depth_image(unsigned seed);
-layers::Recurrent::Input random_lstm_input(unsigned seed);
+LstmInput<Float32> random_lstm_input(unsigned seed);
 // A frame that make_depth_image() accepts for test_header()'s projection.
 RangeImage random_frame(unsigned seed);
 

@@ -43,8 +43,8 @@ struct Alternative {
 
 // A frame whose first hypotheses are these, by falling probability; the others have none and stand 150
 // degrees from the first.
-inline Hypotheses frame_of(std::initializer_list<Alternative> alternatives) {
-  Hypotheses frame{};
+inline Hypotheses<float> frame_of(std::initializer_list<Alternative> alternatives) {
+  Hypotheses<float> frame{};
   const Eigen::Matrix3d far = turn(150.0 * kDegree, {0.3, -0.5, 0.8}) * alternatives.begin()->r_lrf_trf;
   for (int i = 0; i < shape::kHypotheses; ++i) {
     const bool given = i < static_cast<int>(alternatives.size());
@@ -59,9 +59,9 @@ inline Hypotheses frame_of(std::initializer_list<Alternative> alternatives) {
 }
 
 // One frame of the estimator, with the head saying `head` whatever the LSTM saw.
-inline TrackedAttitude follow(const Hypotheses& frame, const layers::Head2::Output& head,
-                              AttitudeTrack& track, const Inertia& inertia = {}) {
-  return advance(frame, predict(track, motion_laws(inertia), frame), head, track);
+inline TrackedAttitude<float> follow(const Hypotheses<float>& frame, const HeadOutput<float>& head,
+                              AttitudeTrack<float>& track, const Inertia<float>& inertia = {}) {
+  return advance<float>(frame, predict<float>(track, motion_laws<float>(inertia), frame), head, track);
 }
 
 }  // namespace tumblesight::gnc

@@ -131,7 +131,7 @@ TEST(Evaluate, OfATumblingTargetOfOnesOwnNeedsItsInertia) {
   const Workplace here;
   const std::string common =
       "evaluate --sequences 1 --frames 2 --no-baseline --target mine --condition tumbling --mesh " +
-      own_mesh(here) + " --model " + here.model("mine", 4.0F);
+      own_mesh(here) + " --model " + here.model("mine", 4000);
   const Outcome without = here.run(common);
   EXPECT_EQ(without.exit_code, 1);
   EXPECT_NE(without.errors.find("needs the inertia of 'mine'"), std::string::npos) << without.errors;
@@ -150,7 +150,7 @@ TEST(Evaluate, NamesTheFaultOfAModelImage) {
 TEST(Evaluate, WarnsWhenTheNetworkWasTrainedForAnotherSwath) {
   const Workplace here;
   const Outcome outcome = here.run("evaluate --sequences 1 --frames 1 --no-baseline --model " +
-                                   here.model("near_shoemaker", 11.0F));
+                                   here.model("near_shoemaker", 11000));
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.errors.find("trained for 11.00 m"), std::string::npos) << outcome.errors;
 }

@@ -39,8 +39,8 @@ class Workplace {
   Workplace& operator=(const Workplace&) = delete;
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string model(const char* target = "near_shoemaker", float swath_m = 7.0F) const {
-    const std::vector<std::uint8_t> image = arbitrary_model(target, swath_m);
+  std::string model(const char* target = "near_shoemaker", std::uint32_t swath_mm = 7000) const {
+    const std::vector<std::uint8_t> image = arbitrary_model(target, swath_mm);
     std::ofstream file(path("model.tsm"), std::ios::binary);
     file.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
     return path("model.tsm");

@@ -19,12 +19,14 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kSequences = 50;
 constexpr std::size_t kLeastRecorded = 500;  // sequences, for a record to hold anything against
 
-// <target>.tsm or <target>_paper_rule.tsm
+// <target>.tsm, <target>_paper_rule.tsm and those with .float32 before .tsm
 ScenarioArguments arguments_for(const fs::path& model) {
   ScenarioArguments arguments;
   arguments.target = model.stem().string();
-  const std::size_t rule = arguments.target.find("_paper_rule");
-  if (rule != std::string::npos) arguments.target.erase(rule);
+  for (const char* const suffix : {".float32", "_paper_rule"}) {
+    const std::size_t found = arguments.target.find(suffix);
+    if (found != std::string::npos) arguments.target.erase(found);
+  }
   arguments.model = model.string();
   return arguments;
 }

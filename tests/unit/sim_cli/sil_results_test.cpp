@@ -14,8 +14,8 @@ SilRecording recording() {
     step.frame_index = i % 2;
     step.truth = {Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), 50.0};
     step.answered = true;
-    step.attitude.q_lrf_trf = {0.99875026F, 0.04997917F, 0.0F, 0.0F};
-    step.attitude.q_lrf_trf_single_frame = {0.96891242F, 0.0F, 0.24740396F, 0.0F};
+    step.attitude.q_lrf_trf = {1072399895, 53664725, 0, 0};
+    step.attitude.q_lrf_trf_single_frame = {1040361791, 0, 265647978, 0};
     step.housekeeping.mode = 1;
     step.housekeeping.inference_us = 1000 + 100 * i;
     made.steps.push_back(step);
@@ -46,6 +46,17 @@ TEST(RunJson, HasExactlyTheAgreedKeys) {
   EXPECT_EQ(json["inference_us"]["median"], 1150.0);
   EXPECT_EQ(json["inference_us"]["max"], 1300.0);
   EXPECT_EQ(json["trace_crc32"], 123);
+}
+
+TEST(RunJson, TellsWhatTheReferenceMadeOfTheSameFrames) {
+  NumericsComparison numerics;
+  numerics.float32 = summarise({1.0, 2.0});
+  numerics.difference = summarise({0.25});
+  numerics.largest_difference_deg = 0.5;
+  const nlohmann::ordered_json json = run_json(scenario(), recording(), numerics);
+  EXPECT_EQ(json["float32"]["mean_deg"], 1.5);
+  EXPECT_EQ(json["difference_to_float32"]["mean_deg"], 0.25);
+  EXPECT_EQ(json["difference_to_float32"]["max_deg"], 0.5);
 }
 
 TEST(Shortcomings, AreNoneOfAGoodRun) {
@@ -106,7 +117,7 @@ TEST(RunReport, CarriesPicturesAndSettings) {
   for (int i = 0; i < 400; ++i) frame.ranges[8000 + i] = static_cast<std::uint16_t>(6400 + i % 7);
   recorded.pictures = {{1, frame}, {99, frame}};
   TargetSetup setup;
-  setup.projection = {7.0F, 3.8F, gnc::DepthEncoding::kCentroidRelative};
+  setup.projection = {7000, 3800, gnc::DepthEncoding::kCentroidRelative};
   setup.model_path = "models/some.tsm";
   setup.warnings = {"mind the swath"};
   const RunReport report = run_report(scenario(), setup, {}, recorded);

@@ -37,6 +37,7 @@ TEST(DefaultReportName, TellsDifferentRunsApart) {
       [](SimulateArguments& a) { a.scenario.mesh_scale = 0.001; },
       [](SimulateArguments& a) { a.scenario.model = "a/near.tsm"; },
       [](SimulateArguments& a) { a.scenario.model = "b/near.tsm"; },
+      [](SimulateArguments& a) { a.scenario.numerics = "float32"; },
       [](SimulateArguments& a) { a.flight = "none"; },
       [](SimulateArguments& a) { a.speed = "1"; },
       [](SimulateArguments& a) { a.free_running = true; },

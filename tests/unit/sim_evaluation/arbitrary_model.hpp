@@ -2,26 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include "gnc/rcnn/model_image.hpp"
-#include "sim/scenario/random.hpp"
+#include "tests/unit/gnc_rcnn/test_models.hpp"
 
 namespace tumblesight::sim {
 
-inline std::vector<std::uint8_t> arbitrary_model(const char* target, float swath_m = 7.0F) {
-  const auto weights = std::make_unique<gnc::NetworkWeights>();
-  Random random(4711);
-  gnc::for_each_tensor(*weights, [&](const char*, float* data, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) data[i] = static_cast<float>(random.uniform(-0.08, 0.08));
-  });
-  gnc::ModelHeader header;
-  header.projection = {swath_m, 3.8F, gnc::DepthEncoding::kCentroidRelative};
-  std::vector<std::uint8_t> image(gnc::kModelImageSize);
+inline std::vector<std::uint8_t> arbitrary_model(const char* target, std::uint32_t swath_mm = 7000) {
+  gnc::ModelHeader header = gnc::test_header();
+  header.projection = {swath_mm, 3800, gnc::DepthEncoding::kCentroidRelative};
   if (!gnc::set_target(header, target)) return {};
-  image.resize(gnc::write_model_image(header, *weights, image.data(), image.size()));
-  return image;
+  return gnc::random_model_image<gnc::FixedPoint>(4711, header);
 }
 
 }  // namespace tumblesight::sim

@@ -60,10 +60,10 @@ TEST(ColourMap, GrowsBrighterAllTheWay) {
 
 TEST(DepthPicture, ShowsNearCellsBrighterAndEmptyOnesApart) {
   gnc::DepthImage image;
-  image.value[0] = 0.3F;
-  image.value[1] = 0.7F;
+  image.depth[0] = 20000;
+  image.depth[1] = 45000;
   const Picture picture = depth_picture(image);
-  ASSERT_EQ(picture.pixels.size(), image.value.size());
+  ASSERT_EQ(picture.pixels.size(), image.depth.size());
   EXPECT_EQ(picture.pixels[0], sequential_colour(0.0));
   EXPECT_EQ(picture.pixels[1], sequential_colour(1.0));
   EXPECT_NE(picture.pixels[2], picture.pixels[0]);

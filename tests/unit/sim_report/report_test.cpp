@@ -37,7 +37,7 @@ RunReport small_report() {
     result.rcnn_predicted_rad = 0.08;
     report.results.push_back(result);
     ReportPicture picture{result.sequence, result.frame, 42.0, {}};
-    picture.image.value[5000 + i] = 0.5F;
+    picture.image.depth[5000 + i] = 32768;
     report.pictures.push_back(picture);
   }
   report.facts = {{"Settings", {{"seed", "17"}, {"<odd> & \"name\"", "it's"}}}};

@@ -22,9 +22,12 @@ TEST(Turned, EqualsARenderingOfTheTurnedAttitude) {
   const auto scratch = std::make_unique<gnc::DepthImageScratch>();
   const auto image = std::make_unique<gnc::DepthImage>();
   const auto render = [&](const Eigen::Quaterniond& q) {
-    lidar.expose({q, Eigen::Vector3d::Zero(), 30.0}, settings, targets.projection.swath_m, 1, *frame);
+    lidar.expose({q, Eigen::Vector3d::Zero(), 30.0}, settings, 1e-3 * targets.projection.swath_mm, 1, *frame);
     EXPECT_EQ(make_depth_image(*frame, targets.projection, *scratch, *image), gnc::FrameStatus::kOk);
-    return torch::from_blob(image->value.data(), {1, 1, 100, 100}).clone();
+    torch::Tensor tensor = torch::empty({1, 1, 100, 100});
+    float* to = tensor.data_ptr<float>();
+    for (const std::uint16_t depth : image->depth) *to++ = static_cast<float>(depth) / 65536.0F;
+    return tensor;
   };
   const Eigen::Quaterniond q = Eigen::Quaterniond(0.8, -0.3, 0.4, 0.2).normalized();
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r = q.toRotationMatrix().cast<float>();

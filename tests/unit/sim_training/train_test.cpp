@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "sim/target/near_shoemaker.hpp"
+#include "sim/quantization/model_file.hpp"
 #include "sim/training/export_model.hpp"
 
 namespace tumblesight::sim {
@@ -121,9 +122,9 @@ TEST_F(TrainTest, WithoutCnnImagesTheRecurrentStageLearnsOnTheGivenCnnAndWritesL
   here.start_from = here.folder + "/given.tsm";
   torch::manual_seed(5);
   Cnn given, cnn;
-  const auto weights = std::make_unique<gnc::NetworkWeights>();
+  const auto weights = std::make_unique<gnc::NetworkWeights<gnc::Float32>>();
   export_weights(given, Recurrent(), *weights);
-  write_model_file(here.start_from, "given", targets, *weights);
+  write_model_file(here.start_from, model_header("given", targets), *weights);
 
   ASSERT_TRUE(train_cnn(targets, here, cnn, never));
   EXPECT_FALSE(fs::exists(here.folder + "/cnn.ckpt")) << "there was nothing to train";

@@ -8,7 +8,7 @@ cmake_minimum_required(VERSION 3.25)
 # All that flight code may take from outside itself: what the compiler calls on its own, square roots, the list of the
 # processor's vector units, and Eigen's assertions in debug builds.
 set(allowed "^(memcpy|memmove|memset|memcmp|strlen|strcmp|strncmp|sqrtf?|abort)$"
-  "^(__stack_chk_fail|__assert_fail|_GLOBAL_OFFSET_TABLE_|__dso_handle|__cpu_model|__cpu_indicator_init)$"
+  "^(__stack_chk_fail|__assert_fail|_GLOBAL_OFFSET_TABLE_|__dso_handle|__cpu_model|__cpu_features2|__cpu_indicator_init)$"
   "^__(asan|ubsan|tsan|sanitizer|gcov|gcc_personality)_")
 # Never, not even defined in the library itself.
 set(never "^_ZT[IS]" "^(malloc|calloc|realloc|free|aligned_alloc|posix_memalign)$" "^_Zn[aw]" "^_Zd[al]" "^__cxa_"

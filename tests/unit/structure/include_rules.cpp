@@ -48,6 +48,11 @@ bool is_flight_header(const std::string& path) {
   return is_one_of(path, kAllowed) || starts_with(path, "Eigen/");
 }
 
+// A processor's own instructions, and the question whether it has them.
+bool is_instruction_header(const std::string& path) {
+  return is_one_of(path, {"immintrin.h", "cpuid.h", "arm_neon.h", "arm_acle.h"});
+}
+
 // Empty: any project include is fine.
 std::string project_objection(const std::string& file, const std::string& path) {
   const auto only = [&](bool allowed, const char* rule) {
@@ -82,6 +87,9 @@ std::string project_objection(const std::string& file, const std::string& path) 
 }
 
 std::string library_objection(const std::string& file, const std::string& path) {
+  if (is_instruction_header(path)) {
+    return starts_with(file, "gnc/nn/kernels") ? "" : "only the network's kernels know a processor's instructions";
+  }
   if ((starts_with_any(file, {"gnc/", "fsw/"}) || is_interface(file)) && !is_flight_header(path)) {
     return "not a header for the flight side";
   }

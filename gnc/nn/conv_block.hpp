@@ -1,0 +1,78 @@
+// ConvBlock: 3x3 convolution, pooling 2x2 and ReLU over a square HWC image, in one pass over pairs of rows.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "gnc/nn/kernels.hpp"
+#include "gnc/nn/numerics.hpp"
+
+namespace tumblesight::gnc {
+
+// A square HWC image inside a border of one pixel of zeros.
+template <class Number, int kImageSide, int kImageChannels>
+struct PaddedImage {
+  static constexpr int kSide = kImageSide;
+  static constexpr int kChannels = kImageChannels;
+  static constexpr int kRow = (kSide + 2) * kChannels;  // numbers to a row
+  std::array<Number, (kSide + 2) * kRow> number;
+
+  Number* row(int y) { return number.data() + (y + 1) * kRow + kChannels; }  // inside the border
+};
+
+// Zero padding 1, stride 1. Pooling leaves out a last row and column that fill no whole window; they are not
+// computed. Summation per output: bias, then ky, kx, input channel ascending; padding takes part as zeros.
+template <class N, int kSide, int kChannelsIn, int kChannelsOut>
+struct ConvBlock {
+  static_assert(kSide % 2 == 0 || kSide > 1);
+  static constexpr int kSideOut = kSide / 2;
+  static constexpr int kColumns = 2 * kSideOut;
+  static constexpr int kWeights = 3 * 3 * kChannelsIn * kChannelsOut;
+  static constexpr std::size_t kParameters = kWeights + kChannelsOut;
+  static constexpr long kMacs = 1L * kColumns * kColumns * kWeights;
+  using Weights = LayerWeights<N, kWeights, kChannelsOut>;
+  using Input = PaddedImage<ConvInput<N>, kSide, kChannelsIn>;
+  using Sums = std::array<Sum<N>, 2 * kColumns * kChannelsOut>;  // scratch: two rows
+
+  // The largest of each window, activated.
+  using MaxPooled = PaddedImage<ConvInput<N>, kSideOut, kChannelsOut>;
+  static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
+                      MaxPooled& out) {
+    out.number.fill({});
+    for (int y = 0; y < kSideOut; ++y) {
+      two_rows(kernels, weights, in, y, sums);
+      kernels.max_pool(sums.data(), kColumns, kChannelsOut, weights.shift.data(), out.row(y));
+    }
+  }
+
+  // The windows' four numbers, activated and then averaged; in fixed point they are added.
+  using AveragePooled = std::array<DenseInput<N>, kSideOut * kSideOut * kChannelsOut>;
+  static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
+                      AveragePooled& out) {
+    for (int y = 0; y < kSideOut; ++y) {
+      two_rows(kernels, weights, in, y, sums);
+      average_pool(weights, sums, out.data() + y * kSideOut * kChannelsOut);
+    }
+  }
+
+ private:
+  static void two_rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int y, Sums& sums) {
+    constexpr ProductShape kShape{2, kColumns,        Input::kRow, kChannelsIn,
+                                  3, 3 * kChannelsIn, Input::kRow, kChannelsOut};
+    kernels.convolve(kShape, in.number.data() + 2 * y * Input::kRow, weights.bias.data(), weights.weight.data(),
+                     sums.data());
+  }
+
+  static void average_pool(const Weights& weights, const Sums& sums, DenseInput<N>* out) {
+    constexpr int kBelow = kColumns * kChannelsOut;
+    for (int x = 0; x < kSideOut; ++x) {
+      for (int c = 0; c < kChannelsOut; ++c) {
+        const Sum<N>* const first = sums.data() + 2 * x * kChannelsOut + c;
+        const Sum<N> four[4] = {first[0], first[kChannelsOut], first[kBelow], first[kBelow + kChannelsOut]};
+        activate_four(four, N::kIsInteger ? weights.shift.data()[c] : 0, *out++);
+      }
+    }
+  }
+};
+
+}  // namespace tumblesight::gnc

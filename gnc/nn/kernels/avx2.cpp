@@ -1,0 +1,81 @@
+#include "gnc/nn/kernels/float_vectors.hpp"
+#include "gnc/nn/kernels/sets.hpp"
+#include "gnc/nn/kernels/x86_vectors.hpp"
+
+namespace tumblesight::gnc::kernels {
+namespace {
+
+// Both kinds of weights are widened to 16 bits and multiplied in pairs.
+struct Int16 {
+  using Kind = Int16Product;
+  static constexpr int kWidth = 8;
+  using Sums = __m256i;
+  using Weights = __m256i;
+  using Values = __m256i;
+  TUMBLESIGHT_INLINE Sums load(const std::int32_t* from) { return load_256(from); }
+  TUMBLESIGHT_INLINE void store(Sums sum, std::int32_t* to) { store_256(sum, to); }
+  TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) { return _mm256_cvtepi8_epi16(load_128(from)); }
+  TUMBLESIGHT_INLINE Values values(const std::int16_t* from) { return _mm256_set1_epi32(group_of(from)); }
+  TUMBLESIGHT_INLINE void add(Sums& sum, Values value, Weights weight) {
+    sum = _mm256_add_epi32(sum, _mm256_madd_epi16(value, weight));
+  }
+};
+
+// Of four products the pairs are summed apart, to be added at the end.
+struct Int8 {
+  using Kind = Int8Product;
+  static constexpr int kWidth = 8;
+  struct Sums {
+    __m256i low, high;  // channels 0..3 and 4..7, two sums each
+  };
+  using Weights = Sums;
+  using Values = __m256i;
+  TUMBLESIGHT_INLINE Sums load(const std::int32_t* from) {
+    return {_mm256_cvtepu32_epi64(load_128(from)), _mm256_cvtepu32_epi64(load_128(from + 4))};
+  }
+  TUMBLESIGHT_INLINE void store(const Sums& sum, std::int32_t* to) {
+    constexpr int kLanesInOrder = 0xD8;
+    store_256(_mm256_permute4x64_epi64(_mm256_hadd_epi32(sum.low, sum.high), kLanesInOrder), to);
+  }
+  TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) {
+    return {_mm256_cvtepi8_epi16(load_128(from)), _mm256_cvtepi8_epi16(load_128(from + 16))};
+  }
+  TUMBLESIGHT_INLINE Values values(const std::uint8_t* from) {
+    return _mm256_cvtepu8_epi16(_mm_set1_epi32(group_of(from)));
+  }
+  TUMBLESIGHT_INLINE void add(Sums& sum, Values value, const Weights& weight) {
+    sum.low = _mm256_add_epi32(sum.low, _mm256_madd_epi16(value, weight.low));
+    sum.high = _mm256_add_epi32(sum.high, _mm256_madd_epi16(value, weight.high));
+  }
+};
+
+void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
+              const std::int8_t* weights, std::int32_t* out) {
+  Blocks<Int8>::product<5, 1, 4>(shape, in, start, weights, out);
+}
+void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
+              const std::int8_t* weights, std::int32_t* out) {
+  Blocks<Int16>::product<4, 2, 8>(shape, in, start, weights, out);
+}
+void pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
+  max_pool<FixedPoint>(sums, columns, channels, shift, out);
+}
+
+}  // namespace
+
+const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, convolve, multiply, pool};
+
+#if TUMBLESIGHT_FLOAT32
+namespace {
+void float_multiply(const ProductShape& shape, const float* in, const float* start, const float* weights,
+                    float* out) {
+  float_product<8, 6, 2, 8>(shape, in, start, weights, out);
+}
+void float_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
+  max_pool<Float32>(sums, columns, channels, shift, out);
+}
+}  // namespace
+const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, float_multiply, float_multiply, float_pool};
+#endif
+
+}  // namespace tumblesight::gnc::kernels

@@ -1,0 +1,122 @@
+// The loops around an instruction set's inner step: pixels and channels in blocks, with every sum in a register.
+// Included by one source file a set, each compiled for that set; nothing here may be shared between them, so
+// all of it has internal linkage.
+#pragma once
+
+#include "gnc/nn/numerics.hpp"
+#include "gnc/nn/product.hpp"
+
+#define TUMBLESIGHT_INLINE [[gnu::always_inline]] static inline
+
+namespace tumblesight::gnc {
+namespace {
+
+// A Unit names its Kind of product, kWidth (output channels to a vector), types Sums, Weights and Values, and
+//   Sums load(const Sum*), void store(Sums, Sum*)   kWidth sums
+//   Weights weights(const Weight*)                  kGroup weights each of kWidth channels
+//   Values values(const Input*)                     kGroup inputs of one pixel
+//   void add(Sums&, Values, Weights)                adds the group's products, channel by channel
+template <class Unit>
+struct Blocks {
+  using Kind = typename Unit::Kind;
+  using Input = typename Kind::Input;
+  using Weight = typename Kind::Weight;
+  using Sum = typename Kind::Sum;
+  static constexpr int kGroup = Kind::kGroup;
+  static constexpr int kWidth = Unit::kWidth;
+
+  // kPixels pixels times kPacks vectors of channels. `in` and `out` hold a pointer for each pixel; start, weights
+  // and out point at the block's first channel.
+  template <int kPixels, int kPacks>
+  TUMBLESIGHT_INLINE void block(const ProductShape& shape, const Input* const* in, const Sum* start,
+                                const Weight* weights, Sum* const* out) {
+    typename Unit::Sums sum[kPixels][kPacks];
+#pragma GCC unroll 16
+    for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 16
+      for (int c = 0; c < kPacks; ++c) sum[p][c] = Unit::load(start + c * kWidth);
+    }
+    for (int strip = 0; strip < shape.strips; ++strip) {
+      const int offset = strip * shape.strip_step;
+      for (int i = 0; i < shape.strip_length; i += kGroup, weights += shape.channels * kGroup) {
+        typename Unit::Weights weight[kPacks];
+#pragma GCC unroll 16
+        for (int c = 0; c < kPacks; ++c) weight[c] = Unit::weights(weights + c * kWidth * kGroup);
+#pragma GCC unroll 16
+        for (int p = 0; p < kPixels; ++p) {
+          const typename Unit::Values value = Unit::values(in[p] + offset + i);
+#pragma GCC unroll 16
+          for (int c = 0; c < kPacks; ++c) Unit::add(sum[p][c], value, weight[c]);
+        }
+      }
+    }
+#pragma GCC unroll 16
+    for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 16
+      for (int c = 0; c < kPacks; ++c) Unit::store(sum[p][c], out[p] + c * kWidth);
+    }
+  }
+
+  // Every pixel of `shape`, for channels [first_channel, first_channel + kPacks * kWidth). The last block of
+  // pixels is moved back to end at the last pixel; what it does again comes out the same.
+  template <int kPixels, int kPacks>
+  TUMBLESIGHT_INLINE void all_pixels(const ProductShape& shape, int first_channel, const Input* in,
+                                     const Sum* start, const Weight* weights, Sum* out) {
+    const int pixels = shape.rows * shape.columns;
+    for (int next = 0; next < pixels; next += kPixels) {
+      const int first = next + kPixels <= pixels ? next : pixels - kPixels;
+      const Input* block_in[kPixels];
+      Sum* block_out[kPixels];
+      for (int p = 0; p < kPixels; ++p) {
+        const int y = (first + p) / shape.columns;
+        const int x = (first + p) % shape.columns;
+        block_in[p] = in + y * shape.row_step + x * shape.column_step;
+        block_out[p] = out + (first + p) * shape.channels + first_channel;
+      }
+      block<kPixels, kPacks>(shape, block_in, start + first_channel, weights + first_channel * kGroup, block_out);
+    }
+  }
+
+  // Blocks of kPacks vectors as far as they fit, then single vectors. Returns the first channel left over.
+  template <int kPixels, int kPacks>
+  TUMBLESIGHT_INLINE int all_channels(const ProductShape& shape, const Input* in, const Sum* start,
+                                      const Weight* weights, Sum* out) {
+    int c = 0;
+    for (; c + kPacks * kWidth <= shape.channels; c += kPacks * kWidth) {
+      all_pixels<kPixels, kPacks>(shape, c, in, start, weights, out);
+    }
+    for (; c + kWidth <= shape.channels; c += kWidth) all_pixels<kPixels, 1>(shape, c, in, start, weights, out);
+    return c;
+  }
+
+  // Blocks of kPixels x kPacks where there are that many pixels, one pixel and kSinglePacks vectors where there
+  // are not. Block sizes follow the number of registers: kPixels * kPacks sums, kPacks weights and one value.
+  template <int kPixels, int kPacks, int kSinglePacks>
+  TUMBLESIGHT_INLINE int product(const ProductShape& shape, const Input* in, const Sum* start,
+                                 const Weight* weights, Sum* out) {
+    return shape.rows * shape.columns >= kPixels
+               ? all_channels<kPixels, kPacks>(shape, in, start, weights, out)
+               : all_channels<1, kSinglePacks>(shape, in, start, weights, out);
+  }
+};
+
+// In plain loops, which the compiler vectorises for the set.
+template <class N>
+TUMBLESIGHT_INLINE void max_pool(const Sum<N>* __restrict sums, int columns, int channels,
+                                 const std::uint8_t* __restrict shift, ConvInput<N>* __restrict out) {
+  for (int x = 0; x + 1 < columns; x += 2) {
+    const Sum<N>* const left = sums + x * channels;
+    const Sum<N>* const right = left + channels;
+    const Sum<N>* const below_left = left + columns * channels;
+    const Sum<N>* const below_right = below_left + channels;
+    for (int c = 0; c < channels; ++c) {
+      const Sum<N> top = left[c] > right[c] ? left[c] : right[c];
+      const Sum<N> bottom = below_left[c] > below_right[c] ? below_left[c] : below_right[c];
+      activate(top > bottom ? top : bottom, N::kIsInteger ? shift[c] : 0, out[c]);
+    }
+    out += channels;
+  }
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

@@ -1,0 +1,25 @@
+// SSE2 on x86-64, NEON on AArch64: what every processor of the family has.
+#include "gnc/nn/kernels/float_vectors.hpp"
+#include "gnc/nn/kernels/sets.hpp"
+
+namespace tumblesight::gnc::kernels {
+namespace {
+
+#if defined(__aarch64__)
+constexpr int kPacks = 4, kSinglePacks = 12;  // 32 registers
+#else
+constexpr int kPacks = 2, kSinglePacks = 8;  // 16 registers
+#endif
+
+void multiply(const ProductShape& shape, const float* in, const float* start, const float* weights, float* out) {
+  float_product<4, 6, kPacks, kSinglePacks>(shape, in, start, weights, out);
+}
+void pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
+  max_pool<Float32>(sums, columns, channels, shift, out);
+}
+
+}  // namespace
+
+const Kernels<Float32> kFloat128Bit{InstructionSet::k128Bit, multiply, multiply, pool};
+
+}  // namespace tumblesight::gnc::kernels

@@ -1,0 +1,75 @@
+// Fixed: a real number in 32 bits, 24 of them behind the point. What the attitude algebra counts in where no
+// floating point is wanted; docs/numerics.md is the norm.
+#pragma once
+
+#include <cstdint>
+
+namespace tumblesight::gnc {
+
+// |value| <= 128 - 2^-24, always: results beyond saturate. Every operation rounds once, to the nearest, halves
+// up. The same bits on every processor, by definition: two's complement integers of 32 and 64 bits.
+class Fixed {
+ public:
+  static constexpr int kFractionBits = 24;
+  static constexpr std::int32_t kLargestRaw = 0x7FFFFFFF;
+
+  constexpr Fixed() = default;
+  // For constants, which the compiler evaluates.
+  explicit constexpr Fixed(double value)
+      : raw_(saturated(static_cast<std::int64_t>(value * kOne + (value < 0.0 ? -0.5 : 0.5)))) {}
+  static constexpr Fixed from_raw(std::int64_t raw) {
+    Fixed fixed;
+    fixed.raw_ = saturated(raw);
+    return fixed;
+  }
+  constexpr std::int32_t raw() const { return raw_; }
+
+  friend constexpr Fixed operator+(Fixed a, Fixed b) { return from_raw(std::int64_t{a.raw_} + b.raw_); }
+  friend constexpr Fixed operator-(Fixed a, Fixed b) { return from_raw(std::int64_t{a.raw_} - b.raw_); }
+  friend constexpr Fixed operator-(Fixed a) { return from_raw(-std::int64_t{a.raw_}); }
+  friend constexpr Fixed operator*(Fixed a, Fixed b) { return from_product(std::int64_t{a.raw_} * b.raw_); }
+  // By zero: the largest number of the dividend's sign.
+  friend constexpr Fixed operator/(Fixed a, Fixed b) {
+    if (b.raw_ == 0) return from_raw(a.raw_ < 0 ? -std::int64_t{kLargestRaw} : std::int64_t{kLargestRaw});
+    const std::int64_t divisor = b.raw_ < 0 ? -std::int64_t{b.raw_} : b.raw_;
+    const std::int64_t dividend = (b.raw_ < 0 ? -std::int64_t{a.raw_} : a.raw_) * (2 * kOne);
+    const std::int64_t truncated = dividend / divisor;
+    const std::int64_t floor = truncated - (truncated * divisor > dividend ? 1 : 0);
+    return from_raw((floor + 1) >> 1);
+  }
+  constexpr Fixed& operator+=(Fixed b) { return *this = *this + b; }
+  constexpr Fixed& operator*=(Fixed b) { return *this = *this * b; }
+
+  friend constexpr bool operator<(Fixed a, Fixed b) { return a.raw_ < b.raw_; }
+  friend constexpr bool operator>(Fixed a, Fixed b) { return a.raw_ > b.raw_; }
+  friend constexpr bool operator==(Fixed a, Fixed b) { return a.raw_ == b.raw_; }
+  friend constexpr bool operator!=(Fixed a, Fixed b) { return a.raw_ != b.raw_; }
+
+  // a0 b0 + a1 b1 + a2 b2, rounded once. Exact before that while |sum of the first two| <= 2^13.
+  static constexpr Fixed dot(Fixed a0, Fixed b0, Fixed a1, Fixed b1, Fixed a2, Fixed b2) {
+    const std::int64_t two = std::int64_t{a0.raw_} * b0.raw_ + std::int64_t{a1.raw_} * b1.raw_;
+    return from_product(bounded(two) + std::int64_t{a2.raw_} * b2.raw_);
+  }
+
+ private:
+  static constexpr std::int64_t kOne = std::int64_t{1} << kFractionBits;
+  static_assert((std::int64_t{-3} >> 1) == -2, "right shifts must be arithmetic");
+
+  static constexpr std::int32_t saturated(std::int64_t raw) {
+    return raw > kLargestRaw    ? kLargestRaw
+           : raw < -kLargestRaw ? -kLargestRaw
+                                : static_cast<std::int32_t>(raw);
+  }
+  static constexpr Fixed from_product(std::int64_t product) {
+    return from_raw((product + (kOne >> 1)) >> kFractionBits);
+  }
+  // Two products stay below 2^63; a third, below 2^62, must still fit on top.
+  static constexpr std::int64_t bounded(std::int64_t sum) {
+    constexpr std::int64_t kBound = std::int64_t{1} << 61;
+    return sum > kBound ? kBound : sum < -kBound ? -kBound : sum;
+  }
+
+  std::int32_t raw_ = 0;
+};
+
+}  // namespace tumblesight::gnc

@@ -1,0 +1,87 @@
+#include "gnc/numerics/functions.hpp"
+
+#include <algorithm>
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr std::int64_t kOne30 = std::int64_t{1} << 30;
+
+// Of numbers with 30 bits behind the point, |product| < 2^63.
+constexpr std::int64_t product30(std::int64_t a, std::int64_t b) {
+  return (a * b + (kOne30 >> 1)) >> 30;
+}
+
+constexpr std::int64_t constant30(double value) {
+  return static_cast<std::int64_t>(value * static_cast<double>(kOne30) + (value < 0.0 ? -0.5 : 0.5));
+}
+
+// 2^f for f in [0, 1), both with 30 bits behind the point: the series of e^(f ln 2) to the tenth power.
+std::int64_t exp2_of_fraction(std::int64_t f) {
+  constexpr std::int64_t kLn2 = constant30(0.693147180559945309);
+  const std::int64_t x = product30(f, kLn2);
+  std::int64_t sum = kOne30;
+  for (int n = 10; n >= 1; --n) {
+    constexpr std::int64_t kReciprocal[] = {0,
+                                            constant30(1.0),
+                                            constant30(1.0 / 2.0),
+                                            constant30(1.0 / 3.0),
+                                            constant30(1.0 / 4.0),
+                                            constant30(1.0 / 5.0),
+                                            constant30(1.0 / 6.0),
+                                            constant30(1.0 / 7.0),
+                                            constant30(1.0 / 8.0),
+                                            constant30(1.0 / 9.0),
+                                            constant30(1.0 / 10.0)};
+    sum = kOne30 + product30(product30(x, kReciprocal[n]), sum);
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::uint32_t integer_sqrt(std::uint64_t square) {
+  std::uint64_t root = 0;
+  for (int bit = 31; bit >= 0; --bit) {
+    const std::uint64_t larger = root | (std::uint64_t{1} << bit);
+    root = larger * larger <= square ? larger : root;
+  }
+  return static_cast<std::uint32_t>(root);
+}
+
+int highest_bit(std::uint64_t value) {
+  int highest = 0;
+  for (int step = 32; step >= 1; step /= 2) {
+    const bool above = (value >> step) != 0;
+    highest += above ? step : 0;
+    value = above ? value >> step : value;
+  }
+  return highest;
+}
+
+Fixed sqrt(Fixed x) {
+  // The square root of raw 2^24, rounded to the nearest: that of four times as much, halved.
+  const std::uint64_t raw = static_cast<std::uint64_t>(std::max(x.raw(), 0));
+  return Fixed::from_raw((static_cast<std::int64_t>(integer_sqrt(raw << (Fixed::kFractionBits + 2))) + 1) >> 1);
+}
+
+Fixed exp(Fixed x) {
+  // x / ln 2 = n + f with 30 bits behind the point: 24 + 30 bits of the product, less 24.
+  constexpr std::int64_t kLog2OfE = constant30(1.44269504088896341);
+  const std::int64_t in_octaves = (std::int64_t{x.raw()} * kLog2OfE + (std::int64_t{1} << 23)) >> 24;
+  const std::int64_t n = in_octaves >> 30;
+  const std::int64_t mantissa = exp2_of_fraction(in_octaves - n * kOne30);  // [1, 2)
+  // 30 bits behind the point to 24, times 2^n.
+  const int right = static_cast<int>(std::min<std::int64_t>(std::max<std::int64_t>(6 - n, 0), 40));
+  const std::int64_t half = right > 0 ? std::int64_t{1} << (right - 1) : 0;
+  return n > 6 ? Fixed::from_raw(Fixed::kLargestRaw) : Fixed::from_raw((mantissa + half) >> right);
+}
+
+Fixed sigmoid(Fixed x) {
+  const Fixed e = exp(x.raw() > 0 ? -x : x);  // <= 1
+  const Fixed one = Fixed::from_raw(std::int64_t{1} << Fixed::kFractionBits);
+  const Fixed below = e / (one + e);
+  return x.raw() > 0 ? one - below : below;
+}
+
+}  // namespace tumblesight::gnc

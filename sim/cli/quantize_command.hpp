@@ -1,0 +1,21 @@
+// `tumblesight quantize`: from a float32 model image to the one in fixed point that flies.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "sim/quantization/model_file.hpp"
+#include "sim/target/triangle_mesh.hpp"
+
+namespace tumblesight::sim {
+
+inline constexpr int kCalibrationSequences = 200;
+
+void add_quantize_command(CLI::App& app);
+
+// Shows its progress and prints what the layers lost. Throws as quantize_to_file does.
+void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
+                         const std::string& out);
+
+}  // namespace tumblesight::sim

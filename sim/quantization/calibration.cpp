@@ -1,0 +1,115 @@
+#include "sim/quantization/calibration.hpp"
+
+#include <memory>
+#include <stdexcept>
+
+#include "gnc/rcnn/network_flow.hpp"
+#include "sim/scenario/random.hpp"
+#include "sim/scenario/sequence.hpp"
+
+namespace tumblesight::sim {
+namespace shape = gnc::shape;
+namespace {
+
+constexpr int kFrames = 10;
+constexpr std::uint64_t kSeed = 0xCA11B8A7E;  // mixed below, as training's is: no seed a person gives
+
+template <class Number, int kSide, int kChannels>
+void append(const gnc::PaddedImage<Number, kSide, kChannels>& image, std::vector<double>& to) {
+  auto copy = std::make_unique<gnc::PaddedImage<Number, kSide, kChannels>>(image);
+  for (int y = 0; y < kSide; ++y) to.insert(to.end(), copy->row(y), copy->row(y) + kSide * kChannels);
+}
+template <class Number, std::size_t kCount>
+void append(const std::array<Number, kCount>& numbers, std::vector<double>& to) {
+  to.insert(to.end(), numbers.begin(), numbers.end());
+}
+
+}  // namespace
+
+ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
+                                   const gnc::DepthProjection& projection, std::uint64_t number) {
+  constexpr Condition kConditions[] = {Condition::kNominal, Condition::kDegraded, Condition::kOccluded,
+                                       Condition::kOutliers};
+  auto frame = std::make_unique<gnc::RangeImage>();
+  auto scratch = std::make_unique<gnc::DepthImageScratch>();
+  const FlashLidar& lidar = *lidars[number % lidars.size()];
+  ScenarioSettings scenario;
+  scenario.condition = kConditions[number / lidars.size() % std::size(kConditions)];
+  scenario.frames = kFrames;
+  const Sequence truth = make_sequence(scenario, mix(kSeed, number), number);
+  ImageSequence images;
+  for (int k = 0; k < kFrames; ++k) {
+    lidar.expose(truth.frames[k], sensor_settings(scenario.condition), 1e-3 * projection.swath_mm,
+                 mix(truth.noise_seed, static_cast<std::uint64_t>(k)), *frame);
+    gnc::DepthImage image;
+    if (make_depth_image(*frame, projection, *scratch, image) != gnc::FrameStatus::kOk) break;
+    images.push_back(image);
+  }
+  return images;
+}
+
+namespace {
+
+// One sequence through the estimator's own steps: note(layer, output) of everything, the attitudes as the result.
+template <class N, class Note>
+std::vector<gnc::Matrix3<typename N::Real>> follow(const gnc::NetworkWeights<N>& weights,
+                                                   const gnc::MotionLaws<typename N::Real>& laws,
+                                                   const ImageSequence& sequence, Note&& note) {
+  using Real = typename N::Real;
+  const gnc::Kernels<N>& kernels = gnc::fastest_kernels<N>();
+  auto arena = std::make_unique<gnc::Arena<N>>();
+  gnc::LstmState<N> state;
+  gnc::AttitudeTrack<Real> track;
+  std::vector<gnc::Matrix3<Real>> attitudes;
+  for (const gnc::DepthImage& image : sequence) {
+    gnc::Features<N> features;
+    gnc::OutputVector<Real> output;
+    gnc::LstmInput<N> input;
+    gnc::HeadOutput<Real> head;
+    gnc::run_frame<N>(kernels, weights, image, *arena, features, output, note);
+    const auto hypotheses = gnc::hypotheses_of<Real>(output, gnc::converted<Real>(image.r_lrf_view));
+    const auto prediction = gnc::predict<Real>(track, laws, hypotheses);
+    gnc::fill_lstm_input<N>(features, hypotheses, prediction.r_lrf_trf(), input);
+    note("lstm_input", input);
+    gnc::run_sequence<N>(kernels, weights, input, *arena, state, head, note);
+    attitudes.push_back(gnc::advance<Real>(hypotheses, prediction, head, track).r_lrf_trf);
+  }
+  return attitudes;
+}
+
+}  // namespace
+
+template <class N>
+Observations observe(const gnc::NetworkWeights<N>& weights, const gnc::MotionLaws<typename N::Real>& laws,
+                     const ImageSequence& sequence) {
+  Observations observations;
+  follow<N>(weights, laws, sequence,
+            [&observations](const char* layer, const auto& output) { append(output, observations[layer]); });
+  return observations;
+}
+
+template <class N>
+std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(const gnc::NetworkWeights<N>& weights,
+                                                         const gnc::MotionLaws<typename N::Real>& laws,
+                                                         const ImageSequence& sequence) {
+  return follow<N>(weights, laws, sequence, [](const char*, const auto&) {});
+}
+
+#define TUMBLESIGHT_INSTANTIATE(N)                                                                            \
+  template Observations observe<N>(const gnc::NetworkWeights<N>&, const gnc::MotionLaws<N::Real>&,            \
+                                   const ImageSequence&);                                                     \
+  template std::vector<gnc::Matrix3<N::Real>> attitudes_of<N>(const gnc::NetworkWeights<N>&,                  \
+                                                              const gnc::MotionLaws<N::Real>&,                \
+                                                              const ImageSequence&)
+TUMBLESIGHT_INSTANTIATE(gnc::Float32);
+TUMBLESIGHT_INSTANTIATE(gnc::FixedPoint);
+
+int channels_of(const std::string& layer) {
+  static const std::map<std::string, int> kChannels{
+      {"depth", shape::kSpaceToDepthChannels},
+      {"conv1", shape::kConv1},   {"conv2", shape::kConv2},   {"conv3", shape::kConv3}, {"conv4", shape::kConv4},
+      {"dense1", shape::kDense1}, {"dense2", shape::kDense2}, {"lstm_input", shape::kLstmInput}, {"lstm", shape::kLstm},   {"head1", shape::kHead}};
+  return kChannels.at(layer);
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,61 @@
+// From the float32 network to the fixed-point one that flies. docs/numerics.md is the norm of what comes out.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gnc/rcnn/model_image.hpp"
+#include "sim/quantization/calibration.hpp"
+#include "sim/quantization/rounding.hpp"
+
+namespace tumblesight::sim {
+
+// Real value over integer, channel by channel, of every hidden layer. For the report only: it does not leave the
+// host.
+using Scales = std::map<std::string, std::vector<double>>;
+
+struct QuantizedNetwork {
+  gnc::NetworkWeights<gnc::FixedPoint> weights;  // looks into `storage`
+  std::vector<std::vector<std::int8_t>> storage;
+  Scales scales;
+};
+
+// What the layers of the float32 network met with over the sequences.
+struct Statistics {
+  std::map<std::string, std::vector<double>> largest;  // of every channel of every hidden layer
+  std::map<std::string, InputStatistics> inputs;       // of every layer
+};
+
+// Collects them, sequence by sequence.
+class Calibration {
+ public:
+  // `weights` must outlive it.
+  Calibration(const gnc::NetworkWeights<gnc::Float32>& weights, const gnc::MotionLaws<float>& laws);
+  void add(const ImageSequence& sequence);
+  const Statistics& statistics() const { return statistics_; }
+
+ private:
+  const gnc::NetworkWeights<gnc::Float32>& weights_;
+  gnc::MotionLaws<float> laws_;
+  Statistics statistics_;
+};
+
+// Symmetric weights of 8 bits with a scale for each output channel, into which the scales of the inputs have been
+// drawn beforehand; powers of two where the layer's output has a meaning. What rounding the weights adds to a sum on
+// average is taken off its bias. Each activation's scale is its channel's
+// weights' times a power of two.
+std::unique_ptr<QuantizedNetwork> quantize(const gnc::NetworkWeights<gnc::Float32>& weights, const Statistics& statistics);
+
+struct LayerReport {
+  std::string layer;
+  double largest = 0.0;     // of the float32 network's outputs
+  double saturated = 0.0;   // share of the fixed-point outputs at the end of their range
+  double snr_db = 0.0;      // float32's output over the difference
+};
+// One line a hidden layer, over sequences that should not be those of the ranges.
+std::vector<LayerReport> compare(const gnc::NetworkWeights<gnc::Float32>& reference, const QuantizedNetwork& network,
+                                 const gnc::Inertia<gnc::Fixed>& inertia, const std::vector<ImageSequence>& sequences);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,180 @@
+// Requirement: every instruction set's kernels give the bits of their definition, for random and for extreme numbers,
+// and touch nothing else.
+#include "gnc/nn/kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "tests/unit/gnc_nn/random_values.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+// The definition in product.hpp, one number after the other.
+template <class Kind>
+std::vector<typename Kind::Sum> by_definition(const ProductShape& s, const std::vector<typename Kind::Input>& in,
+                                              const std::vector<typename Kind::Sum>& start,
+                                              const std::vector<typename Kind::Weight>& weights) {
+  std::vector<typename Kind::Sum> out;
+  for (int y = 0; y < s.rows; ++y) {
+    for (int x = 0; x < s.columns; ++x) {
+      for (int c = 0; c < s.channels; ++c) {
+        typename Kind::Sum sum = start[c];
+        for (int t = 0; t < s.strips; ++t) {
+          for (int i = 0; i < s.strip_length; ++i) {
+            const int place = t * s.strip_length + i;
+            const int weight = (place / Kind::kGroup * s.channels + c) * Kind::kGroup + place % Kind::kGroup;
+            sum += in[y * s.row_step + x * s.column_step + t * s.strip_step + i] * weights[weight];
+          }
+        }
+        out.push_back(sum);
+      }
+    }
+  }
+  return out;
+}
+
+ProductShape convolution(int rows, int columns, int in, int out) {
+  const int row = (columns + 2) * in;
+  return {rows, columns, row, in, 3, 3 * in, row, out};
+}
+ProductShape dense(int in, int out) {
+  return {1, 1, 0, 0, 1, in, 0, out};
+}
+
+// Channels and pixels that meet every block and every remainder.
+std::vector<ProductShape> shapes(bool integers) {
+  std::vector<ProductShape> all;
+  std::vector<int> channels{16, 32, 48, 64, 96, 128, 144, 160, 240};
+  if (!integers) channels.insert(channels.end(), {1, 3, 4, 15, 57, 100});
+  for (const int out : channels) {
+    all.push_back(convolution(5, 5, 4, out));
+    all.push_back(convolution(1, 3, 4, out));  // fewer pixels than any block
+    all.push_back(dense(38, out));
+  }
+  all.push_back(convolution(2, 3, 4, 64));
+  all.push_back(convolution(3, 3, 8, 48));
+  all.push_back(convolution(2, 24, 32, 64));
+  all.push_back(dense(382, 768));
+  return all;
+}
+
+std::size_t input_size(const ProductShape& s) {
+  return static_cast<std::size_t>((s.rows - 1) * s.row_step + (s.columns - 1) * s.column_step +
+                                  (s.strips - 1) * s.strip_step + s.strip_length);
+}
+
+template <class Kind>
+void expect_definition(Product<Kind>* product, const ProductShape& s, const std::vector<typename Kind::Input>& in,
+                       const std::vector<typename Kind::Sum>& start,
+                       const std::vector<typename Kind::Weight>& weights) {
+  using Sum = typename Kind::Sum;
+  const std::vector<Sum> expected = by_definition<Kind>(s, in, start, weights);
+  // One number more at either end, so that writes out of place show.
+  std::vector<Sum> out(expected.size() + 2, Sum{123});
+  product(s, in.data(), start.data(), weights.data(), out.data() + 1);
+  ASSERT_EQ(std::memcmp(out.data() + 1, expected.data(), expected.size() * sizeof(Sum)), 0);
+  EXPECT_EQ(out.front(), Sum{123});
+  EXPECT_EQ(out.back(), Sum{123});
+}
+
+template <class Kind>
+void expect_definition_for_all_shapes(Product<Kind>* product) {
+  constexpr bool kIntegers = Kind::kGroup > 1;
+  RandomValues random(7);
+  for (ProductShape s : shapes(kIntegers)) {
+    SCOPED_TRACE(::testing::Message() << s.rows << "x" << s.columns << ", " << s.strip_length << " to " << s.channels);
+    s.strip_length = s.strip_length / Kind::kGroup * Kind::kGroup;
+    const std::size_t weights = static_cast<std::size_t>(s.strips) * s.strip_length * s.channels;
+    auto start = random.vector<typename Kind::Sum>(s.channels);
+    if (kIntegers) {
+      for (auto& value : start) value = static_cast<typename Kind::Sum>(value / 4);
+    }
+    expect_definition<Kind>(product, s, random.vector<typename Kind::Input>(input_size(s)), start,
+                            random.vector<typename Kind::Weight>(weights));
+    if (!kIntegers) continue;
+    for (const int sign : {-1, 1}) {
+      expect_definition<Kind>(product, s,
+                              std::vector<typename Kind::Input>(
+                                  input_size(s), std::numeric_limits<typename Kind::Input>::max()),
+                              std::vector<typename Kind::Sum>(s.channels, 0),
+                              std::vector<typename Kind::Weight>(weights, static_cast<typename Kind::Weight>(127 * sign)));
+    }
+  }
+}
+
+template <class N>
+void expect_max_pool_by_definition(MaxPool<N>* max_pool) {
+  constexpr int kColumns = 10, kChannels = 48;
+  RandomValues random(11);
+  auto sums = random.vector<Sum<N>>(2 * kColumns * kChannels);
+  if (N::kIsInteger) {
+    for (auto& sum : sums) sum = static_cast<Sum<N>>(sum / 2);
+  }
+  std::vector<std::uint8_t> shift(kChannels);
+  for (int c = 0; c < kChannels; ++c) shift[c] = static_cast<std::uint8_t>(1 + (c * 7) % 28);
+  std::vector<ConvInput<N>> out(kColumns / 2 * kChannels);
+  max_pool(sums.data(), kColumns, kChannels, shift.data(), out.data());
+  for (int x = 0; x < kColumns / 2; ++x) {
+    for (int c = 0; c < kChannels; ++c) {
+      const auto at = [&](int row, int column) { return sums[(row * kColumns + 2 * x + column) * kChannels + c]; };
+      const double largest = std::max({at(0, 0), at(0, 1), at(1, 0), at(1, 1)});
+      // Rounded to the nearest, halves up.
+      const double scaled = N::kIsInteger ? std::floor(std::ldexp(largest, -shift[c]) + 0.5) : largest;
+      const double expected = std::max(0.0, N::kIsInteger ? std::min(255.0, scaled) : scaled);
+      ASSERT_EQ(out[x * kChannels + c], expected) << x << ' ' << c;
+    }
+  }
+}
+
+class KernelsOf : public ::testing::TestWithParam<InstructionSet> {
+ protected:
+  template <class N>
+  void check() {
+    const Kernels<N>* kernels = kernels_on<N>(GetParam());
+    if (kernels == nullptr) GTEST_SKIP() << "not built, or this processor lacks it";
+    EXPECT_EQ(kernels->set, GetParam());
+    expect_definition_for_all_shapes<typename N::ConvProduct>(kernels->convolve);
+    expect_definition_for_all_shapes<typename N::DenseProduct>(kernels->multiply);
+    expect_max_pool_by_definition<N>(kernels->max_pool);
+  }
+};
+
+TEST_P(KernelsOf, FixedPointHaveTheBitsOfTheirDefinition) {
+  check<FixedPoint>();
+}
+TEST_P(KernelsOf, Float32HaveTheBitsOfTheirDefinition) {
+  check<Float32>();
+}
+
+TEST_P(KernelsOf, AddToWhatLiesInTheOutputWhenStartIsTheOutput) {
+  const Kernels<FixedPoint>* kernels = kernels_on<FixedPoint>(GetParam());
+  if (kernels == nullptr) GTEST_SKIP() << "not built, or this processor lacks it";
+  RandomValues random(8);
+  const ProductShape s = dense(18, 208);
+  const auto in = random.vector<std::int16_t>(18);
+  const auto weights = random.vector<std::int8_t>(18 * 208);
+  std::vector<std::int32_t> out(208, 1000);
+  const auto expected = by_definition<Int16Product>(s, in, out, weights);
+  kernels->multiply(s, in.data(), out.data(), weights.data(), out.data());
+  EXPECT_EQ(out, expected);
+}
+
+std::string name_of(const ::testing::TestParamInfo<InstructionSet>& set) {
+  std::string name = to_string(set.param);
+  for (char& letter : name) letter = letter == '-' ? '_' : letter;
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(EverySet, KernelsOf, ::testing::ValuesIn(kInstructionSets), name_of);
+
+TEST(FastestKernels, AreThereForBothNumerics) {
+  EXPECT_EQ(&fastest_kernels<FixedPoint>(), kernels_on<FixedPoint>(fastest_kernels<FixedPoint>().set));
+  EXPECT_EQ(&fastest_kernels<Float32>(), kernels_on<Float32>(fastest_kernels<Float32>().set));
+  EXPECT_NE(kernels_on<FixedPoint>(InstructionSet::kPortable), nullptr);
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc
