@@ -2,10 +2,6 @@
 
 #include "gnc/nn/kernels/sets.hpp"
 
-#if TUMBLESIGHT_X86_KERNELS
-#include <cpuid.h>
-#endif
-
 namespace tumblesight::gnc {
 namespace {
 
@@ -51,59 +47,7 @@ constexpr KernelTable<Float32> built<Float32>() {
 }
 #endif
 
-#if TUMBLESIGHT_X86_KERNELS
-// Leaf 7, subleaf 1, EAX bit 4. clang 14's __builtin_cpu_supports does not know its name. AVX2 tells that the
-// operating system keeps the registers.
-bool has_avx_vnni() {
-  unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
-  return __get_cpuid_count(7, 1, &eax, &ebx, &ecx, &edx) != 0 && (eax & (1U << 4)) != 0 &&
-         __builtin_cpu_supports("avx2") != 0;
-}
-#endif
-
-bool processor_has(InstructionSet set) {
-#if TUMBLESIGHT_X86_KERNELS
-  switch (set) {
-    case InstructionSet::kAvx2:
-      return __builtin_cpu_supports("avx2") != 0;
-    case InstructionSet::kAvxVnni:
-      return has_avx_vnni();
-    case InstructionSet::kAvx512:
-      return __builtin_cpu_supports("avx512f") != 0;
-    case InstructionSet::kAvx512Vnni:
-      return __builtin_cpu_supports("avx512vnni") != 0 && __builtin_cpu_supports("avx512bw") != 0;
-    default:
-      return true;
-  }
-#else
-  (void)set;
-  return true;  // the build knows its processor
-#endif
-}
-
 }  // namespace
-
-const char* to_string(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::kPortable:
-      return "portable";
-    case InstructionSet::k128Bit:
-      return TUMBLESIGHT_NEON_KERNELS ? "neon" : "sse2";
-    case InstructionSet::kDotProduct:
-      return "neon-dotprod";
-    case InstructionSet::kDsp:
-      return "arm-dsp";
-    case InstructionSet::kAvx2:
-      return "avx2";
-    case InstructionSet::kAvxVnni:
-      return "avx-vnni";
-    case InstructionSet::kAvx512:
-      return "avx512";
-    case InstructionSet::kAvx512Vnni:
-      return "avx512-vnni";
-  }
-  return "unknown";
-}
 
 template <class N>
 const Kernels<N>* kernels_on(InstructionSet set) {

@@ -15,7 +15,7 @@ constexpr std::size_t kOffsetArchitecture = 12;
 constexpr std::size_t kOffsetTarget = 16;
 constexpr std::size_t kOffsetSwath = 48;
 constexpr std::size_t kOffsetRadius = 52;
-constexpr std::size_t kOffsetEncoding = 56;
+constexpr std::size_t kOffsetReserved = 56;
 constexpr std::size_t kOffsetInertia = 60;
 constexpr std::size_t kOffsetNumerics = 84;
 constexpr std::size_t kOffsetSectionCount = 88;
@@ -132,9 +132,7 @@ bool read_inertia(const std::uint8_t* image, Inertia<Fixed>& inertia) {
 }
 
 DepthProjection read_projection(const std::uint8_t* image) {
-  const std::uint32_t encoding = get_u32(image + kOffsetEncoding);
-  return {get_u32(image + kOffsetSwath), get_u32(image + kOffsetRadius),
-          static_cast<DepthEncoding>(encoding < 255 ? encoding : 255)};
+  return {get_u32(image + kOffsetSwath), get_u32(image + kOffsetRadius)};
 }
 
 ModelStatus check_meaning(const std::uint8_t* image, std::uint32_t numerics, const char* expected_target) {
@@ -146,7 +144,8 @@ ModelStatus check_meaning(const std::uint8_t* image, std::uint32_t numerics, con
   if (expected_target != nullptr && std::strcmp(header.target.data(), expected_target) != 0) {
     return ModelStatus::kBadTarget;
   }
-  const bool possible = read_inertia(image, header.inertia) && is_possible(read_projection(image));
+  const bool possible = read_inertia(image, header.inertia) && is_possible(read_projection(image)) &&
+                        get_u32(image + kOffsetReserved) == 0;
   return possible ? ModelStatus::kOk : ModelStatus::kBadValue;
 }
 
@@ -420,7 +419,6 @@ std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>
   std::memcpy(out + kOffsetTarget, header.target.data(), header.target.size());
   put_u32(out + kOffsetSwath, header.projection.swath_mm);
   put_u32(out + kOffsetRadius, header.projection.target_radius_mm);
-  put_u32(out + kOffsetEncoding, static_cast<std::uint32_t>(header.projection.encoding));
   for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {
     const auto [row, column] = kInertiaElements[i];
     put_u32(out + kOffsetInertia + 4 * i, static_cast<std::uint32_t>(header.inertia.tensor_trf(row, column).raw()));

@@ -11,7 +11,7 @@
 //       16    32  target name, printable ASCII, NUL-padded, at least one NUL
 //       48     4  depth projection: swath [mm]
 //       52     4  depth projection: target radius [mm]
-//       56     4  depth projection: encoding
+//       56     4  reserved, 0
 //       60    24  inertia of the target in the TRF, scaled to a trace of 3, with 24 bits behind the point: xx, yy,
 //                 zz, xy, xz, yz
 //       84     4  numerics: 0 float32, 1 fixed point

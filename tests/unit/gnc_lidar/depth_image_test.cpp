@@ -11,7 +11,7 @@ namespace tumblesight::gnc {
 namespace {
 
 constexpr double kRange_m = 50.0;
-constexpr DepthProjection kProjection{6000, 3000, DepthEncoding::kCentroidRelative};
+constexpr DepthProjection kProjection{6000, 3000};
 
 std::uint32_t fov_urad(double swath_m, double range_m) {
   return static_cast<std::uint32_t>(std::lround(2e6 * std::atan(swath_m / (2.0 * range_m))));
@@ -72,7 +72,7 @@ TEST_F(DepthImageTest, RowZeroIsUpAndColumnZeroIsLeft) {
       s->set(row, column, kRange_m + 0.1 * ((row + column) % 2));
     }
   }
-  ASSERT_EQ(s->make({10000, 3000, DepthEncoding::kCentroidRelative}), FrameStatus::kOk);
+  ASSERT_EQ(s->make({10000, 3000}), FrameStatus::kOk);
   EXPECT_GT(s->at(30, 25), 0.0);
   EXPECT_GT(s->at(30, 70), 0.0);
   EXPECT_GT(s->at(75, 70), 0.0);
@@ -94,7 +94,7 @@ TEST_F(DepthImageTest, NearerIsBrighterAndAReturnIsNeverZero) {
     for (int column = 0; column < 128; ++column)
       s->set(row, column, row < 32 ? kRange_m - 20.0 : kRange_m + 20.0);
   }
-  ASSERT_EQ(s->make({20000, 3000, DepthEncoding::kCentroidRelative}), FrameStatus::kOk);
+  ASSERT_EQ(s->make({20000, 3000}), FrameStatus::kOk);
   int smallest = DepthImage::kLargest;
   int largest = 0;
   for (const int depth : s->image.depth) {
@@ -105,13 +105,29 @@ TEST_F(DepthImageTest, NearerIsBrighterAndAReturnIsNeverZero) {
   EXPECT_EQ(smallest, DepthImage::kSmallest);
 }
 
-TEST_F(DepthImageTest, ThePapersScaleDividesByTheLargestDepth) {
-  for (int row = 0; row < 128; ++row) {
-    for (int column = 0; column < 128; ++column) s->set(row, column, column < 64 ? 40.0 : 50.0);
+TEST_F(DepthImageTest, AReturnFarFromTheTargetCountsForNoMoreThanARadius) {
+  // One in 16 lies 30 m behind the others, so the centroid 1.9 m: they are at 0.81. With its full distance it would draw
+  // a cell's mean down to 0.5.
+  s->frame.fov_urad = fov_urad(2.0, kRange_m);
+  for (int i = 0; i < 128 * 128; ++i) {
+    const bool far = i / 128 % 4 == 0 && i % 4 == 0;
+    s->set(i / 128, i % 128, far ? kRange_m + 30.0 : kRange_m);
   }
-  ASSERT_EQ(s->make({6000, 3000, DepthEncoding::kPaperMaximum}), FrameStatus::kOk);
-  EXPECT_NEAR(s->at(50, 20), 0.8, 1e-3);
-  EXPECT_NEAR(s->at(50, 80), 1.0, 1e-3);
+  ASSERT_EQ(s->make(), FrameStatus::kOk);
+  for (int column = 40; column < 60; ++column) EXPECT_NEAR(s->at(50, column), 0.77, 0.06);
+}
+
+TEST_F(DepthImageTest, ManyReturnsInOneCellStayAMean) {
+  s->frame.fov_urad = kMinFov_urad;  // 128 x 128 rays over less than a metre, all of them in two by two cells
+  for (int i = 0; i < 128 * 128; ++i) s->set(i / 128, i % 128, kRange_m + (i % 2 == 0 ? 1.0 : -1.0));
+  ASSERT_EQ(s->make({100'000, 3000}), FrameStatus::kOk);
+  int filled = 0;
+  for (const int depth : s->image.depth) {
+    if (depth == 0) continue;
+    EXPECT_NEAR(depth / 65536.0, 0.5, 0.01);
+    ++filled;
+  }
+  EXPECT_EQ(filled, 4);
 }
 
 TEST_F(DepthImageTest, RangesBeyondTheSensorsReachCountAsNoReturn) {

@@ -97,8 +97,7 @@ std::vector<Damage> damages() {
       {"HugeSwath", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 48, 100'001); })},
       {"NoRadius", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 52, 0); })},
       {"HugeRadius", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 52, 0xFFFFFFFFU); })},
-      {"UnknownEncoding", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 56, 2); })},
-      {"LargerEncoding", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 56, 256); })},
+      {"ReservedFieldInUse", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 56, 1); })},
       {"InertiaNotScaled", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 60, 5U << 24); })},
       {"LargestProductOfInertia", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 72, 0x80000000U); })},
       {"IndefiniteInertia", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 72, 2U << 24); })},
@@ -156,7 +155,6 @@ TEST(ModelImage, ReadsBackWhatWasWrittenBitForBit) {
   auto read = std::make_unique<NetworkWeights<Float32>>();
   fill_random(*written, 23);
   ModelHeader header = test_header();
-  header.projection.encoding = DepthEncoding::kPaperMaximum;
   Bytes image(kModelImageSize<Float32>);
   ASSERT_EQ(write_model_image<Float32>(header, *written, image.data(), image.size()), kModelImageSize<Float32>);
   ModelHeader found;
@@ -165,7 +163,6 @@ TEST(ModelImage, ReadsBackWhatWasWrittenBitForBit) {
   EXPECT_EQ(found.target, header.target);
   EXPECT_EQ(found.projection.swath_mm, header.projection.swath_mm);
   EXPECT_EQ(found.projection.target_radius_mm, header.projection.target_radius_mm);
-  EXPECT_EQ(found.projection.encoding, header.projection.encoding);
   // Scaled to a trace of 3 once more, which rounds.
   const auto scaled = [](const ModelHeader& h) { return converted<float>(h.inertia.tensor_trf); };
   EXPECT_LT((scaled(found) - scaled(header)).norm(), 1e-6F);

@@ -117,7 +117,7 @@ TEST(RunReport, CarriesPicturesAndSettings) {
   for (int i = 0; i < 400; ++i) frame.ranges[8000 + i] = static_cast<std::uint16_t>(6400 + i % 7);
   recorded.pictures = {{1, frame}, {99, frame}};
   TargetSetup setup;
-  setup.projection = {7000, 3800, gnc::DepthEncoding::kCentroidRelative};
+  setup.projection = {7000, 3800};
   setup.model_path = "models/some.tsm";
   setup.warnings = {"mind the swath"};
   const RunReport report = run_report(scenario(), setup, {}, recorded);

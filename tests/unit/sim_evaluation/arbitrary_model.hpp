@@ -10,7 +10,7 @@ namespace tumblesight::sim {
 
 inline std::vector<std::uint8_t> arbitrary_model(const char* target, std::uint32_t swath_mm = 7000) {
   gnc::ModelHeader header = gnc::test_header();
-  header.projection = {swath_mm, 3800, gnc::DepthEncoding::kCentroidRelative};
+  header.projection = {swath_mm, 3800};
   if (!gnc::set_target(header, target)) return {};
   return gnc::random_model_image<gnc::FixedPoint>(4711, header);
 }

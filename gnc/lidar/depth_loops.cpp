@@ -1,0 +1,19 @@
+#include "gnc/lidar/depth_loops.hpp"
+
+#include "gnc/lidar/depth_loops/sets.hpp"
+
+namespace tumblesight::gnc {
+
+const DepthLoops& depth_loops_within(InstructionSet set) {
+  const DepthLoops* fastest = &depth_loops::kPortable;
+#if TUMBLESIGHT_X86_KERNELS
+  for (const DepthLoops* const loops : {&depth_loops::kAvx2, &depth_loops::kAvx512}) {
+    if (loops->set <= set && processor_has(loops->set)) fastest = loops;
+  }
+#else
+  (void)set;
+#endif
+  return *fastest;
+}
+
+}  // namespace tumblesight::gnc

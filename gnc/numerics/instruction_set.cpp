@@ -1,0 +1,69 @@
+#include "gnc/numerics/instruction_set.hpp"
+
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
+namespace tumblesight::gnc {
+
+const char* to_string(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::kPortable:
+      return "portable";
+    case InstructionSet::k128Bit:
+#if defined(__ARM_NEON)
+      return "neon";
+#else
+      return "sse2";
+#endif
+    case InstructionSet::kDotProduct:
+      return "neon-dotprod";
+    case InstructionSet::kDsp:
+      return "arm-dsp";
+    case InstructionSet::kAvx2:
+      return "avx2";
+    case InstructionSet::kAvxVnni:
+      return "avx-vnni";
+    case InstructionSet::kAvx512:
+      return "avx512";
+    case InstructionSet::kAvx512Vnni:
+      return "avx512-vnni";
+  }
+  return "unknown";
+}
+
+#if defined(__x86_64__)
+namespace {
+
+// Leaf 7, subleaf 1, EAX bit 4. clang 14's __builtin_cpu_supports does not know its name. AVX2 tells that the
+// operating system keeps the registers.
+bool has_avx_vnni() {
+  unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
+  return __get_cpuid_count(7, 1, &eax, &ebx, &ecx, &edx) != 0 && (eax & (1U << 4)) != 0 &&
+         __builtin_cpu_supports("avx2") != 0;
+}
+
+}  // namespace
+
+bool processor_has(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::kAvx2:
+      return __builtin_cpu_supports("avx2") != 0;
+    case InstructionSet::kAvxVnni:
+      return has_avx_vnni();
+    case InstructionSet::kAvx512:
+      return __builtin_cpu_supports("avx512f") != 0;
+    case InstructionSet::kAvx512Vnni:
+      return __builtin_cpu_supports("avx512vnni") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+             __builtin_cpu_supports("avx512vl") != 0;
+    default:
+      return true;
+  }
+}
+#else
+bool processor_has(InstructionSet) {
+  return true;  // the build knows its processor
+}
+#endif
+
+}  // namespace tumblesight::gnc
