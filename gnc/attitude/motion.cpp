@@ -11,7 +11,8 @@ Vector3<Real> bounded(const Vector3<Real>& rate) {
   constexpr Real kLargest = constant<Real>(kLargestRate);
   const bool too_long = dot(rate, rate) > kLargest * kLargest;
   const Vector3<Real> shortened = scaled<Real>(normalised(rate), kLargest);
-  return too_long ? shortened : rate;
+  return {select(too_long, shortened.x(), rate.x()), select(too_long, shortened.y(), rate.y()),
+          select(too_long, shortened.z(), rate.z())};
 }
 
 // The rate of a body of this inertia whose angular momentum is `momentum_lrf`.
@@ -109,7 +110,7 @@ Vector3<Real> small_turn_of(const Matrix3<Real>& r) {
                                        constant<Real>(5.0 / 11.0), constant<Real>(6.0 / 13.0),
                                        constant<Real>(7.0 / 15.0), constant<Real>(8.0 / 17.0)};
   for (std::size_t k = kRatio.size(); k-- > 0;) f = constant<Real>(1.0) + y * kRatio[k] * f;
-  const Real half = y < kHalf ? kHalf * f : Real{};  // 60 degrees
+  const Real half = select(y < kHalf, kHalf * f, Real{});  // 60 degrees
   return {half * (r(2, 1) - r(1, 2)), half * (r(0, 2) - r(2, 0)), half * (r(1, 0) - r(0, 1))};
 }
 

@@ -9,10 +9,10 @@ using Candidate = std::array<std::int64_t, 4>;
 // |q| <= 2^41; the nearest, halves away from zero.
 QuaternionQ30 normalised(const Candidate& q) {
   std::int64_t bits = 0;
-  for (const std::int64_t part : q) bits |= part < 0 ? -part : part;
+  for (const std::int64_t part : q) bits |= magnitude_of(part);
   const int left = 30 - highest_bit(static_cast<std::uint64_t>(bits));
-  const std::int64_t up = std::int64_t{1} << (left > 0 ? left : 0);
-  const std::int64_t down = std::int64_t{1} << (left < 0 ? -left : 0);
+  const std::int64_t up = std::int64_t{1} << larger_of(left, 0);
+  const std::int64_t down = std::int64_t{1} << larger_of(-left, 0);
   std::array<std::int64_t, 4> scaled;
   std::uint64_t square = 0;
   for (int i = 0; i < 4; ++i) {
@@ -20,12 +20,12 @@ QuaternionQ30 normalised(const Candidate& q) {
     square += static_cast<std::uint64_t>(scaled[i] * scaled[i]);
   }
   const std::int64_t length = integer_sqrt(square);
-  const std::int64_t sign = q[0] < 0 ? -1 : 1;
+  const bool turned = q[0] < 0;
   QuaternionQ30 unit;
   for (int i = 0; i < 4; ++i) {
-    const std::int64_t magnitude = scaled[i] < 0 ? -scaled[i] : scaled[i];
-    const std::int64_t rounded = (magnitude * (std::int64_t{1} << 31) / (length > 0 ? length : 1) + 1) >> 1;
-    unit[i] = static_cast<std::int32_t>(scaled[i] < 0 ? -sign * rounded : sign * rounded);
+    const std::int64_t magnitude = magnitude_of(scaled[i]);
+    const std::int64_t rounded = (magnitude * (std::int64_t{1} << 31) / larger_of<std::int64_t>(length, 1) + 1) >> 1;
+    unit[i] = static_cast<std::int32_t>(select((scaled[i] < 0) != turned, -rounded, rounded));
   }
   return unit;
 }
@@ -46,7 +46,7 @@ QuaternionQ30 quaternion_from_rotation(const Matrix3<Fixed>& rotation) {
       {wz, xz, yz, kOne - r(0, 0) - r(1, 1) + r(2, 2)},
   }};
   std::size_t best = 0;
-  for (std::size_t k = 1; k < 4; ++k) best = candidates[k][k] > candidates[best][best] ? k : best;
+  for (std::size_t k = 1; k < 4; ++k) best = select(candidates[k][k] > candidates[best][best], k, best);
   return normalised(candidates[best]);
 }
 

@@ -1,7 +1,5 @@
 #include "gnc/lidar/depth_image.hpp"
 
-#include <algorithm>
-
 #include "gnc/lidar/depth_loops.hpp"
 #include "gnc/numerics/functions.hpp"
 
@@ -23,7 +21,7 @@ std::int64_t product30(std::int64_t a, std::int64_t b) {
 std::int64_t rounded_division(std::int64_t dividend, std::int64_t divisor) {
   const std::int64_t twice = 2 * dividend + divisor;
   const std::int64_t truncated = twice / (2 * divisor);
-  return truncated - (truncated * 2 * divisor > twice ? 1 : 0);
+  return truncated - static_cast<std::int64_t>(truncated * 2 * divisor > twice);
 }
 
 // tan(fov / 2), 30 bits behind the point: its series to the 11th power, within 1e-8.
@@ -95,13 +93,12 @@ static_assert(Fixed::kFractionBits == 24);
 
 // Parts are monotonous, so the first and the last are the largest.
 std::int64_t largest_part30(const Parts& parts, int count) {
-  const auto magnitude = [](std::int64_t value) { return value < 0 ? -value : value; };
-  return std::max(magnitude(parts.of_column(0)), magnitude(parts.of_column(count - 1))) +
-         std::max(magnitude(parts.of_row(0)), magnitude(parts.of_row(count - 1)));
+  return larger_of(magnitude_of(parts.of_column(0)), magnitude_of(parts.of_column(count - 1))) +
+         larger_of(magnitude_of(parts.of_row(0)), magnitude_of(parts.of_row(count - 1)));
 }
 
 std::int16_t saturated16(std::int64_t value) {
-  return static_cast<std::int16_t>(std::min<std::int64_t>(32767, std::max<std::int64_t>(-32767, value)));
+  return static_cast<std::int16_t>(held_between<std::int64_t>(value, -32767, 32767));
 }
 
 void make_coordinate(const Parts& parts, int count, std::int64_t factor8, int shift,
@@ -119,9 +116,9 @@ void make_cells(const Parts& x, const Parts& down, int count, std::uint32_t swat
   // Cells to the frame's unit times 2^16, 8 bits behind the point.
   const std::int64_t factor8 =
       rounded_division((std::int64_t{DepthImage::kSide} * 1000) << (16 + 8 - 6 - range_shift), swath_mm);
-  const std::int64_t largest = std::max(largest_part30(x, count), largest_part30(down, count)) * factor8;
+  const std::int64_t largest = larger_of(largest_part30(x, count), largest_part30(down, count)) * factor8;
   int bits = 2;
-  for (int more = 3; more <= 6; ++more) bits = (largest >> (38 - more)) < 32767 ? more : bits;
+  for (int more = 3; more <= 6; ++more) bits = select((largest >> (38 - more)) < 32767, more, bits);
   view.cells = static_cast<std::int16_t>(1 << (16 - bits));
   view.middle = static_cast<std::int16_t>((DepthImage::kSide / 2) << bits);
   make_coordinate(x, count, factor8, 38 - bits, view.x);
@@ -138,8 +135,8 @@ void make_depth(const Parts& depth, int count, DepthImageScratch::Coordinate& co
 void make_scale(std::int64_t centroid, std::uint32_t target_radius_mm, int range_shift,
                 DepthImageScratch::View& view) {
   const std::int64_t radius =
-      std::max<std::int64_t>(1, rounded_division((std::int64_t{target_radius_mm} * kMetre) << range_shift, 1000));
-  const int shift = std::max(0, 14 - highest_bit(static_cast<std::uint64_t>(radius)));
+      larger_of<std::int64_t>(1, rounded_division((std::int64_t{target_radius_mm} * kMetre) << range_shift, 1000));
+  const int shift = larger_of(0, 14 - highest_bit(static_cast<std::uint64_t>(radius)));
   view.centroid = saturated16(centroid);
   view.radius = saturated16(radius);
   view.radius_scale = static_cast<std::int16_t>(1 << shift);

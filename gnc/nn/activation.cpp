@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <cstring>
 
+#include "gnc/numerics/select.hpp"
+
 namespace tumblesight::gnc {
 namespace {
 
 // The order of the comparisons sends NaN to -bound.
 inline float held_within(float x, float bound) {
-  const float above = x > -bound ? x : -bound;
-  return above < bound ? above : bound;
+  return held_between(x, -bound, bound);
 }
 
 // e^x = 2^n e^r with n = round(x / ln 2), |r| <= ln(2) / 2, and e^r = 1 + r + r^2 q(r).

@@ -31,14 +31,13 @@ Fixed gate_sigmoid(Fixed x) {
   constexpr int kFractionBits = Fixed::kFractionBits - 5;  // of a line
   static_assert(1 << 5 == kLinesToOne);
   constexpr std::int32_t kEnd = 16 << Fixed::kFractionBits;
-  const std::int32_t magnitude = x.raw() < 0 ? -x.raw() : x.raw();
-  const std::int32_t inside = magnitude < kEnd ? magnitude : kEnd - 1;
+  const std::int32_t inside = smaller_of(magnitude_of(x.raw()), kEnd - 1);
   const std::int32_t line = inside >> kFractionBits;
   const std::int64_t rise = kSigmoid[line + 1].raw() - kSigmoid[line].raw();
   const std::int64_t along = inside & ((1 << kFractionBits) - 1);
   const Fixed above = Fixed::from_raw(kSigmoid[line].raw() +
                                       ((rise * along + (1 << (kFractionBits - 1))) >> kFractionBits));
-  return x.raw() < 0 ? Fixed(1.0) - above : above;
+  return select(x.raw() < 0, Fixed(1.0) - above, above);
 }
 
 Fixed gate_tanh(Fixed x) {
@@ -58,22 +57,12 @@ void lstm_update(const std::int32_t* gates, const std::uint8_t* shift, int hidde
     const Fixed cell = gate_tanh(gate(2));
     const Fixed output = gate_sigmoid(gate(3));
     const Fixed sum = Fixed::dot(forget, c[i], input, cell, Fixed(), Fixed());
-    c[i] = sum > kBound ? kBound : sum < -kBound ? -kBound : sum;
+    c[i] = held_between(sum, -kBound, kBound);
     to_input(output, gate_tanh(c[i]), h[i]);
   }
 }
 
 #if TUMBLESIGHT_FLOAT32
-namespace {
-
-// NaN goes to the lower bound.
-inline float bounded_cell(float c) {
-  const float above = c > -kLstmCellBound ? c : -kLstmCellBound;
-  return above < kLstmCellBound ? above : kLstmCellBound;
-}
-
-}  // namespace
-
 void lstm_update(float* gates, const std::uint8_t*, int hidden, float* h, float* c) {
   float* input = gates;
   float* forget = gates + hidden;
@@ -82,7 +71,7 @@ void lstm_update(float* gates, const std::uint8_t*, int hidden, float* h, float*
   sigmoid(input, input, 2 * hidden);
   tanh(cell, cell, hidden);
   sigmoid(output, output, hidden);
-  for (int i = 0; i < hidden; ++i) c[i] = bounded_cell(forget[i] * c[i] + input[i] * cell[i]);
+  for (int i = 0; i < hidden; ++i) c[i] = held_between(forget[i] * c[i] + input[i] * cell[i], -kLstmCellBound, kLstmCellBound);
   tanh(c, h, hidden);
   for (int i = 0; i < hidden; ++i) h[i] = output[i] * h[i];
 }

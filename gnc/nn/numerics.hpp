@@ -79,30 +79,25 @@ struct LayerWeights {
 
 // Activation: ReLU and, in fixed point, requantisation with saturation. NaN gives 0.
 inline void activate(float sum, int, float& out) {
-  out = sum > 0.0F ? sum : 0.0F;
+  out = select(sum > 0.0F, sum, 0.0F);
 }
 inline void activate(std::int32_t sum, int shift, std::uint8_t& out) {
-  const std::int32_t value = requantised(sum, shift);
-  out = static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value);
+  out = static_cast<std::uint8_t>(held_between(requantised(sum, shift), 0, 255));
 }
 inline void activate(std::int32_t sum, int shift, std::int16_t& out) {
-  const std::int32_t value = requantised(sum, shift);
-  out = static_cast<std::int16_t>(value < 0 ? 0 : value > 32767 ? 32767 : value);
+  out = static_cast<std::int16_t>(held_between(requantised(sum, shift), 0, 32767));
 }
 
 // The mean of four numbers, activated; in fixed point their sum, which loses nothing, each of at most 12 bits.
 inline constexpr int kLargestOfFour = 4095;
 inline void activate_four(const float (&sums)[4], int, float& out) {
   float total = 0.0F;
-  for (const float sum : sums) total += sum > 0.0F ? sum : 0.0F;
+  for (const float sum : sums) total += select(sum > 0.0F, sum, 0.0F);
   out = total / 4.0F;
 }
 inline void activate_four(const std::int32_t (&sums)[4], int shift, std::int16_t& out) {
   std::int32_t total = 0;
-  for (const std::int32_t sum : sums) {
-    const std::int32_t value = requantised(sum, shift);
-    total += value < 0 ? 0 : value > kLargestOfFour ? kLargestOfFour : value;
-  }
+  for (const std::int32_t sum : sums) total += held_between(requantised(sum, shift), 0, kLargestOfFour);
   out = static_cast<std::int16_t>(total);
 }
 
@@ -120,7 +115,7 @@ inline void to_input(float value, float& input) {
   input = value;
 }
 inline std::int16_t saturated_q15(std::int64_t value) {
-  return static_cast<std::int16_t>(value < -32767 ? -32767 : value > 32767 ? 32767 : value);
+  return static_cast<std::int16_t>(held_between<std::int64_t>(value, -32767, 32767));
 }
 inline void to_input(Fixed value, std::int16_t& input) {
   constexpr int kShift = Fixed::kFractionBits - 15;

@@ -16,7 +16,8 @@ inline void convert(Fixed from, float& to) {
 }
 // What is not finite counts as zero.
 inline void convert(float from, Fixed& to) {
-  to = Fixed(is_finite(from) ? std::min(128.0F, std::max(-128.0F, from)) : 0.0F);
+  const double scaled = double{select(is_finite(from), held_between(from, -128.0F, 128.0F), 0.0F)} * (1 << Fixed::kFractionBits);
+  to = Fixed::from_raw(static_cast<std::int64_t>(scaled + std::copysign(0.5, scaled)));
 }
 #endif
 

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "gnc/numerics/select.hpp"
+
 namespace tumblesight::gnc {
 
 // |value| <= 128 - 2^-24, always: results beyond saturate. Every operation rounds once, to the nearest, halves
@@ -30,12 +32,12 @@ class Fixed {
   friend constexpr Fixed operator*(Fixed a, Fixed b) { return from_product(std::int64_t{a.raw_} * b.raw_); }
   // By zero: the largest number of the dividend's sign.
   friend constexpr Fixed operator/(Fixed a, Fixed b) {
-    if (b.raw_ == 0) return from_raw(a.raw_ < 0 ? -std::int64_t{kLargestRaw} : std::int64_t{kLargestRaw});
-    const std::int64_t divisor = b.raw_ < 0 ? -std::int64_t{b.raw_} : b.raw_;
-    const std::int64_t dividend = (b.raw_ < 0 ? -std::int64_t{a.raw_} : a.raw_) * (2 * kOne);
+    const std::int64_t at_zero = select<std::int64_t>(a.raw_ < 0, -kLargestRaw, kLargestRaw);
+    const std::int64_t divisor = select<std::int64_t>(b.raw_ == 0, 1, magnitude_of<std::int64_t>(b.raw_));
+    const std::int64_t dividend = select<std::int64_t>(b.raw_ < 0, -std::int64_t{a.raw_}, a.raw_) * (2 * kOne);
     const std::int64_t truncated = dividend / divisor;
-    const std::int64_t floor = truncated - (truncated * divisor > dividend ? 1 : 0);
-    return from_raw((floor + 1) >> 1);
+    const std::int64_t floor = truncated - static_cast<std::int64_t>(truncated * divisor > dividend);
+    return from_raw(select(b.raw_ == 0, at_zero, (floor + 1) >> 1));
   }
   constexpr Fixed& operator+=(Fixed b) { return *this = *this + b; }
   constexpr Fixed& operator*=(Fixed b) { return *this = *this * b; }
@@ -56,9 +58,7 @@ class Fixed {
   static_assert((std::int64_t{-3} >> 1) == -2, "right shifts must be arithmetic");
 
   static constexpr std::int32_t saturated(std::int64_t raw) {
-    return raw > kLargestRaw    ? kLargestRaw
-           : raw < -kLargestRaw ? -kLargestRaw
-                                : static_cast<std::int32_t>(raw);
+    return static_cast<std::int32_t>(held_between<std::int64_t>(raw, -kLargestRaw, kLargestRaw));
   }
   static constexpr Fixed from_product(std::int64_t product) {
     return from_raw((product + (kOne >> 1)) >> kFractionBits);
@@ -66,10 +66,14 @@ class Fixed {
   // Two products stay below 2^63; a third, below 2^62, must still fit on top.
   static constexpr std::int64_t bounded(std::int64_t sum) {
     constexpr std::int64_t kBound = std::int64_t{1} << 61;
-    return sum > kBound ? kBound : sum < -kBound ? -kBound : sum;
+    return held_between(sum, -kBound, kBound);
   }
 
   std::int32_t raw_ = 0;
 };
+
+constexpr Fixed select(bool condition, Fixed yes, Fixed no) {
+  return Fixed::from_raw(select(condition, yes.raw(), no.raw()));
+}
 
 }  // namespace tumblesight::gnc

@@ -1,7 +1,5 @@
 #include "gnc/numerics/functions.hpp"
 
-#include <algorithm>
-
 namespace tumblesight::gnc {
 namespace {
 
@@ -44,7 +42,7 @@ std::uint32_t integer_sqrt(std::uint64_t square) {
   std::uint64_t root = 0;
   for (int bit = 31; bit >= 0; --bit) {
     const std::uint64_t larger = root | (std::uint64_t{1} << bit);
-    root = larger * larger <= square ? larger : root;
+    root = select(larger * larger <= square, larger, root);
   }
   return static_cast<std::uint32_t>(root);
 }
@@ -53,15 +51,15 @@ int highest_bit(std::uint64_t value) {
   int highest = 0;
   for (int step = 32; step >= 1; step /= 2) {
     const bool above = (value >> step) != 0;
-    highest += above ? step : 0;
-    value = above ? value >> step : value;
+    highest += select(above, step, 0);
+    value = select(above, value >> step, value);
   }
   return highest;
 }
 
 Fixed sqrt(Fixed x) {
   // The square root of raw 2^24, rounded to the nearest: that of four times as much, halved.
-  const std::uint64_t raw = static_cast<std::uint64_t>(std::max(x.raw(), 0));
+  const std::uint64_t raw = static_cast<std::uint64_t>(larger_of(x.raw(), 0));
   return Fixed::from_raw((static_cast<std::int64_t>(integer_sqrt(raw << (Fixed::kFractionBits + 2))) + 1) >> 1);
 }
 
@@ -72,16 +70,16 @@ Fixed exp(Fixed x) {
   const std::int64_t n = in_octaves >> 30;
   const std::int64_t mantissa = exp2_of_fraction(in_octaves - n * kOne30);  // [1, 2)
   // 30 bits behind the point to 24, times 2^n.
-  const int right = static_cast<int>(std::min<std::int64_t>(std::max<std::int64_t>(6 - n, 0), 40));
-  const std::int64_t half = right > 0 ? std::int64_t{1} << (right - 1) : 0;
-  return n > 6 ? Fixed::from_raw(Fixed::kLargestRaw) : Fixed::from_raw((mantissa + half) >> right);
+  const int right = static_cast<int>(held_between<std::int64_t>(6 - n, 0, 40));
+  const std::int64_t half = (std::int64_t{1} << right) >> 1;
+  return Fixed::from_raw(select<std::int64_t>(n > 6, Fixed::kLargestRaw, (mantissa + half) >> right));
 }
 
 Fixed sigmoid(Fixed x) {
-  const Fixed e = exp(x.raw() > 0 ? -x : x);  // <= 1
+  const Fixed e = exp(select(x.raw() > 0, -x, x));  // <= 1
   const Fixed one = Fixed::from_raw(std::int64_t{1} << Fixed::kFractionBits);
   const Fixed below = e / (one + e);
-  return x.raw() > 0 ? one - below : below;
+  return select(x.raw() > 0, one - below, below);
 }
 
 }  // namespace tumblesight::gnc

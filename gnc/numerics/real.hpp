@@ -63,7 +63,7 @@ Vector3<Real> scaled(const Vector3<Real>& v, Real factor) {
 inline Vector3<float> normalised(const Vector3<float>& v) {
   constexpr float kSmallest = 1e-12F;
   const float square = dot(v, v);
-  const float length = std::sqrt(square < kSmallest ? kSmallest : square);
+  const float length = std::sqrt(larger_of(square, kSmallest));
   return {v.x() / length, v.y() / length, v.z() / length};
 }
 Vector3<Fixed> normalised(const Vector3<Fixed>& v);
@@ -79,7 +79,7 @@ inline float absolute(float x) {
   return std::abs(x);
 }
 inline Fixed absolute(Fixed x) {
-  return x < Fixed() ? -x : x;
+  return select(x < Fixed(), -x, x);
 }
 
 }  // namespace tumblesight::gnc

@@ -17,7 +17,7 @@ std::uint32_t error_urad(const Matrix3<Fixed>& attitude, Fixed predicted_rad) {
   const bool is_rotation = absolute(trace - Fixed(3.0)) < Fixed(0.1);
   const std::int64_t scaled = std::int64_t{predicted_rad.raw()} * 1'000'000;
   const std::int64_t urad = (scaled + (1 << (Fixed::kFractionBits - 1))) >> Fixed::kFractionBits;
-  return is_rotation ? static_cast<std::uint32_t>(std::min<std::int64_t>(kPi_urad, urad)) : kPi_urad;
+  return select(is_rotation, static_cast<std::uint32_t>(smaller_of<std::int64_t>(kPi_urad, urad)), kPi_urad);
 }
 
 void add_to(Crc32& crc, const float* values, std::size_t count) {

@@ -52,7 +52,7 @@ template <class Real>
 bool is_sound(const Motion<Real>& motion) {
   const Real trace = trace_of_transpose_product<Real>(motion.r_lrf_trf, motion.r_lrf_trf);
   const Vector3<Real>& rate = motion.rate_lrf;
-  return absolute(trace - constant<Real>(3.0)) < constant<Real>(0.1) &&
+  return (absolute(trace - constant<Real>(3.0)) < constant<Real>(0.1)) &
          is_finite((rate.x() + rate.y()) + rate.z());
 }
 
@@ -60,7 +60,7 @@ template <class Real>
 bool is_sound(const AttitudeTrack<Real>& track) {
   bool sound = true;
   for (int law = 0; law < kLaws; ++law)
-    sound = is_sound<Real>(track.motion[law]) && is_finite(track.log_likelihood[law]) && sound;
+    sound &= is_sound<Real>(track.motion[law]) & is_finite(track.log_likelihood[law]);
   return sound;
 }
 
@@ -73,12 +73,12 @@ std::array<Real, kCandidates> weights_of(const Hypotheses<Real>& hypotheses, con
   std::array<Real, kCandidates> weights;
   Real largest = -kBound;
   for (int i = 0; i < kCandidates; ++i) {
-    weights[i] = std::min<Real>(kBound, std::max<Real>(-kBound, words[i]));
-    largest = std::max<Real>(largest, weights[i]);
+    weights[i] = held_between(words[i], -kBound, kBound);
+    largest = larger_of(largest, weights[i]);
   }
   for (int i = 0; i < kCandidates; ++i) {
     const Real prior = i < shape::kHypotheses
-                           ? std::max<Real>(constant<Real>(kLeastProbability), hypotheses.probability[i])
+                           ? larger_of(constant<Real>(kLeastProbability), hypotheses.probability[i])
                            : predicted_weight;
     weights[i] = exp(weights[i] - largest) * prior;
   }
@@ -91,8 +91,8 @@ int anchor_of(const Hypotheses<Real>& hypotheses, const Real* words) {
   Real largest = hypotheses.logit[0] + words[0];
   for (int i = 1; i < kCandidates; ++i) {
     const Real value = (i < shape::kHypotheses ? hypotheses.logit[i] : Real{}) + words[i];
-    anchor = value > largest ? i : anchor;
-    largest = std::max<Real>(largest, value);
+    anchor = select(value > largest, i, anchor);
+    largest = larger_of(largest, value);
   }
   return anchor;
 }
@@ -107,11 +107,11 @@ Real squared_miss(const Hypotheses<Real>& hypotheses, const Motion<Real>& predic
   Real seen{};
   for (int i = 0; i < shape::kHypotheses; ++i) {
     const bool near = same_attitude<Real>(hypotheses.r_lrf_trf[i], predicted.r_lrf_trf);
-    seen += near ? hypotheses.probability[i] : Real{};
+    seen += select(near, hypotheses.probability[i], Real{});
   }
   const Real miss =
       constant<Real>(3.0) - trace_of_transpose_product<Real>(predicted.r_lrf_trf, r_lrf_trf);
-  return seen < constant<Real>(kLeastSeen) ? kLost : std::min<Real>(miss, kLost);
+  return select(seen < constant<Real>(kLeastSeen), kLost, smaller_of(miss, kLost));
 }
 
 template <class Real>
@@ -132,7 +132,7 @@ Real standing(const AttitudeTrack<Real>& track, int law) {
 // How much the frame tells against a law with this squared miss.
 template <class Real>
 Real told(Real miss, Real evidence, Real variance_rad2) {
-  return std::min<Real>(constant<Real>(kMostTold), evidence * miss / variance_rad2);
+  return smaller_of(constant<Real>(kMostTold), evidence * miss / variance_rad2);
 }
 
 // Every law's log-likelihood falls by what is told against it. A law that has lost the target goes on from where
@@ -145,17 +145,20 @@ void weigh_laws(const std::array<Real, kLaws>& miss, Real evidence, Real varianc
     track.log_likelihood[law] =
         constant<Real>(kMemory) * track.log_likelihood[law] - told<Real>(miss[law], evidence, variance_rad2);
   }
-  const Real likeliest = *std::max_element(track.log_likelihood.begin(), track.log_likelihood.end());
-  int best = -1;
+  Real likeliest = track.log_likelihood[0];
+  for (const Real one : track.log_likelihood) likeliest = larger_of(likeliest, one);
+  int best = 0;
+  bool any_sees_it = false;
   for (int law = 0; law < kLaws; ++law) {
     track.log_likelihood[law] =
-        std::max<Real>(constant<Real>(kLeastLogLikelihood), track.log_likelihood[law] - likeliest);
+        larger_of(constant<Real>(kLeastLogLikelihood), track.log_likelihood[law] - likeliest);
     const bool sees_it = miss[law] < kLost;
-    best = sees_it && (best < 0 || standing(track, law) > standing(track, best)) ? law : best;
+    best = select(sees_it & (!any_sees_it | (standing(track, law) > standing(track, best))), law, best);
+    any_sees_it |= sees_it;
   }
   for (int law = 0; law < kLaws; ++law) {
-    const bool follows = best >= 0 && !(miss[law] < kLost);
-    track.motion[law] = track.motion[follows ? best : law];
+    const bool follows = any_sees_it & !(miss[law] < kLost);
+    track.motion[law] = track.motion[select(follows, best, law)];
   }
 }
 
@@ -164,7 +167,7 @@ void weigh_laws(const std::array<Real, kLaws>& miss, Real evidence, Real varianc
 template <class Real>
 int AttitudeTrack<Real>::law() const {
   int best = kSpinLaw;
-  for (int law = 1; law < kLaws; ++law) best = standing(*this, law) > standing(*this, best) ? law : best;
+  for (int law = 1; law < kLaws; ++law) best = select(standing(*this, law) > standing(*this, best), law, best);
   return best;
 }
 
@@ -172,14 +175,15 @@ template <class Real>
 Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
                          const Hypotheses<Real>& hypotheses) {
   // Both ways are gone in every frame, so that each takes the same time.
-  const bool has_track = track.frames > 0 && is_sound(track);
-  const Motion<Real> at_rest{hypotheses.r_lrf_trf[hypotheses.likeliest], Vector3<Real>::Zero()};
+  const bool has_track = (track.frames > 0) & is_sound(track);
+  std::array<Motion<Real>, 2> choice{};  // without a track, with one
+  choice[0] = {hypotheses.r_lrf_trf[hypotheses.likeliest], Vector3<Real>::Zero()};
   Prediction<Real> prediction;
   for (int law = 0; law < kLaws; ++law) {
-    const Motion<Real> moved = tumble<Real>(track.motion[law], laws[law]);
-    prediction.motion[law] = has_track ? moved : at_rest;
+    choice[1] = tumble<Real>(track.motion[law], laws[law]);
+    prediction.motion[law] = choice[has_track];
   }
-  prediction.law = has_track ? track.law() : kSpinLaw;
+  prediction.law = select(has_track, track.law(), kSpinLaw);
   return prediction;
 }
 
@@ -203,13 +207,14 @@ void fill_lstm_input(const Features<N>& features, const Hypotheses<typename N::R
 template <class Real>
 TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Prediction<Real>& prediction,
                               const HeadOutput<Real>& head, AttitudeTrack<Real>& track) {
-  if (!is_sound(track)) track = AttitudeTrack<Real>{};
+  const std::array<AttitudeTrack<Real>, 2> choice{AttitudeTrack<Real>{}, track};  // damaged, sound
+  track = choice[is_sound(track)];
   const FilterGains<Real>& filter = kFilterGains<Real>[std::min<std::uint32_t>(track.frames, kGains - 1)];
   const Real* words = head.data();
   const int anchor = anchor_of<Real>(hypotheses, words);
   const auto weights = weights_of<Real>(hypotheses, words + kCandidates, filter.predicted_weight);
   const Real learnt_gain = sigmoid(filter.rate_logit + words[2 * kCandidates]);
-  const Real rate_gain = track.frames > 0 ? learnt_gain : Real{};
+  const Real rate_gain = select(track.frames > 0, learnt_gain, Real{});
 
   std::array<Matrix3<Real>, kCandidates> candidates;
   std::copy(hypotheses.r_lrf_trf.begin(), hypotheses.r_lrf_trf.end(), candidates.begin());
@@ -223,7 +228,7 @@ TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Predicti
   }
   const Real predicted_error_rad = constant<Real>(kPi) * sigmoid(words[2 * kCandidates + 1]);
   const Real variance_rad2 =
-      std::max<Real>(constant<Real>(kLeastVariance_rad2), predicted_error_rad * predicted_error_rad);
+      larger_of(constant<Real>(kLeastVariance_rad2), predicted_error_rad * predicted_error_rad);
   weigh_laws<Real>(miss, filter.evidence, variance_rad2, track);
   ++track.frames;
   return {track.motion[track.law()].r_lrf_trf, predicted_error_rad};

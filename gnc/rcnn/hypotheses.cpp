@@ -39,7 +39,7 @@ Hypotheses<Real> hypotheses_of(const OutputVector<Real>& output, const Matrix3<R
         orthonormalise<Real>(Vector3<Real>(six[0], six[1], six[2]), Vector3<Real>(six[3], six[4], six[5])));
     result.r_lrf_trf[k] = product<Real>(r_lrf_view, r_view_trf);
     result.logit[k] = output[shape::kColumns + k];
-    result.likeliest = result.logit[k] > result.logit[result.likeliest] ? k : result.likeliest;
+    result.likeliest = select(result.logit[k] > result.logit[result.likeliest], k, result.likeliest);
   }
   result.probability = softmax<Real>(result.logit, result.logit[result.likeliest]);
   result.predicted_error_rad = constant<Real>(kPi) * sigmoid(output[shape::kOutput - 1]);
@@ -51,20 +51,20 @@ Matrix3<Real> mean_attitude(const Matrix3<Real>* candidates, const Real* weights
   constexpr Real kZero{};
   const auto is_same = [&](int i) {
     const Real trace = trace_of_transpose_product<Real>(candidates[i], candidates[anchor]);
-    return i == anchor || trace > kTraceOfSameAttitude<Real>;
+    return (i == anchor) | (trace > kTraceOfSameAttitude<Real>);
   };
   Real largest = kZero;
-  for (int i = 0; i < count; ++i) largest = is_same(i) && weights[i] > largest ? weights[i] : largest;
+  for (int i = 0; i < count; ++i) largest = select(is_same(i) & (weights[i] > largest), weights[i], largest);
   const bool none = !(largest > kZero);
-  const Real divisor = none ? constant<Real>(1.0) : largest;
+  const Real divisor = select(none, constant<Real>(1.0), largest);
 
   Vector3<Real> first = Vector3<Real>::Zero();
   Vector3<Real> second = Vector3<Real>::Zero();
   for (int i = 0; i < count; ++i) {
     const bool same = is_same(i);
-    const Real share = none ? constant<Real>(i == anchor ? 1.0 : 0.0) : weights[i] / divisor;
-    const Real weight = same ? share : kZero;
-    const Matrix3<Real>& counted = candidates[same ? i : anchor];  // zero times NaN would be NaN
+    const Real alone = select(i == anchor, constant<Real>(1.0), kZero);
+    const Real weight = select(same, select(none, alone, weights[i] / divisor), kZero);
+    const Matrix3<Real>& counted = candidates[select(same, i, anchor)];  // zero times NaN would be NaN
     first += scaled<Real>(Vector3<Real>(counted.col(0)), weight);
     second += scaled<Real>(Vector3<Real>(counted.col(1)), weight);
   }

@@ -10,8 +10,7 @@ inline void to_conv_input(std::uint16_t depth, float& out) {
   out = static_cast<float>(depth) * (1.0F / 65536.0F);
 }
 inline void to_conv_input(std::uint16_t depth, std::uint8_t& out) {
-  const int rounded = (depth + 128) >> 8;
-  out = static_cast<std::uint8_t>(rounded < 255 ? rounded : 255);
+  out = static_cast<std::uint8_t>(smaller_of((depth + 128) >> 8, 255));
 }
 
 // Every 2x2 pixels become one pixel of four channels, channel = 2 * (row & 1) + (column & 1).

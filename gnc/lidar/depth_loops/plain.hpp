@@ -15,8 +15,7 @@ constexpr int kMaxRays = RangeImage::kMaxRays;
 
 // All ones where from <= value < to, else 0.
 TUMBLESIGHT_INLINE std::uint16_t within(std::uint16_t value, std::uint16_t from, std::uint16_t to) {
-  const bool inside = static_cast<std::uint16_t>(value - from) < static_cast<std::uint16_t>(to - from);
-  return static_cast<std::uint16_t>(inside ? 0xFFFF : 0);
+  return mask_of<std::uint16_t>(static_cast<std::uint16_t>(value - from) < static_cast<std::uint16_t>(to - from));
 }
 TUMBLESIGHT_INLINE std::uint16_t usable(std::uint16_t range) {
   return within(range, kMinRange_counts, kMaxRange_counts + 1);
@@ -46,8 +45,8 @@ TUMBLESIGHT_INLINE Survey survey_of(const RangeImage& frame) {
       const auto near = static_cast<std::uint16_t>(ranges[column] | static_cast<std::uint16_t>(~good));
       const auto far = static_cast<std::uint16_t>(ranges[column] & good);
       count = static_cast<std::uint16_t>(count - good);
-      nearest = near < nearest ? near : nearest;
-      farthest = far > farthest ? far : farthest;
+      nearest = smaller_of(nearest, near);
+      farthest = larger_of(farthest, far);
     }
     survey.returns += count;
     survey.nearest = nearest;
@@ -128,8 +127,7 @@ TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const
 
     const std::int16_t view_depth = sum16(depth, product15(depth, sum16(view.depth.of_column[column], row_depth)));
     const auto before = static_cast<std::int16_t>(centroid - view_depth);
-    const std::int16_t above = before > radius ? radius : before;
-    const auto bounded = static_cast<std::int16_t>(above < -radius ? -radius : above);
+    const std::int16_t bounded = held_between<std::int16_t>(before, static_cast<std::int16_t>(-radius), radius);
     const std::int16_t value = product15(static_cast<std::int16_t>(bounded * radius_scale), value_of_radius);
     out.value[column] = static_cast<std::uint16_t>(kMiddleValue + value);
   }
@@ -150,7 +148,7 @@ TUMBLESIGHT_INLINE void accumulate_all(const RangeImage& frame, const Rays& rays
       for (int column = first; column < count; column += kApart) {
         std::uint32_t& cell = cells[projected.cell[column]];
         const std::uint32_t added = cell + (kOneReturn | projected.value[column]);
-        cell = cell < kMostReturns * kOneReturn ? added : cell;
+        cell = select(cell < kMostReturns * kOneReturn, added, cell);
       }
     }
   }
@@ -170,9 +168,8 @@ TUMBLESIGHT_INLINE void encode_all(const std::uint32_t* __restrict cells, std::u
     const std::uint32_t count = cells[i] >> kValueBits;
     // A mean of 14 bits, with 16 more, to the depth's 16 bits.
     const std::uint32_t mean = (sum * kReciprocals16[count] + (1U << 13)) >> 14;
-    const std::uint32_t above = mean < DepthImage::kSmallest ? DepthImage::kSmallest : mean;
-    const std::uint32_t bounded = above > DepthImage::kLargest ? DepthImage::kLargest : above;
-    depth[i] = static_cast<std::uint16_t>(count > 0 ? bounded : 0);
+    const auto bounded = held_between<std::uint32_t>(mean, DepthImage::kSmallest, DepthImage::kLargest);
+    depth[i] = static_cast<std::uint16_t>(bounded & mask_of<std::uint32_t>(count > 0));
   }
 }
 
