@@ -8,7 +8,7 @@ fail() {
 
 # What the programs need; the tests and the training add theirs.
 packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
-  libassimp-dev libcli11-dev libfmt-dev libpng-dev nlohmann-json3-dev)
+  libassimp-dev libcli11-dev libfmt-dev libonnx-dev libpng-dev libprotobuf-dev nlohmann-json3-dev)
 packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libgtest-dev libgmock-dev clang valgrind)
 
 # Ends a job with all that it has started, some of it as root, and then this script.

@@ -6,6 +6,9 @@
 
 #include "sim/cli/evaluate_command.hpp"
 #include "sim/cli/quantize_command.hpp"
+#ifdef TUMBLESIGHT_HAS_ONNX
+#include "sim/cli/export_command.hpp"
+#endif
 #ifdef TUMBLESIGHT_HAS_SIL
 #include "sim/cli/simulate_command.hpp"
 #endif
@@ -47,6 +50,9 @@ int main(int argc, char** argv) {
 #endif
     sim::add_evaluate_command(app, command_line);
     sim::add_quantize_command(app);
+#ifdef TUMBLESIGHT_HAS_ONNX
+    sim::add_export_command(app);
+#endif
 #ifdef TUMBLESIGHT_HAS_TRAINING
     sim::add_train_command(app);
 #endif

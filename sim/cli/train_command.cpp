@@ -1,7 +1,5 @@
 #include "sim/cli/train_command.hpp"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -20,6 +18,7 @@
 #include "sim/cli/surfaces.hpp"
 #include "sim/target/targets.hpp"
 #include "sim/training/export_model.hpp"
+#include "sim/training/one_thread.hpp"
 #include "sim/training/train.hpp"
 
 namespace tumblesight::sim {
@@ -55,15 +54,6 @@ Eigen::Matrix3d inertia_of(const TrainOptions& options) {
   if (std::find(known.begin(), known.end(), options.target) != known.end())
     return inertia_kg_m2(options.target);
   return Eigen::Matrix3d::Identity();
-}
-
-// One thread a process: with rendering beside it, more of LibTorch's own threads only wait for each other,
-// and OpenBLAS's, where it does the matrix products, by spinning: a quarter of the training's time.
-void keep_to_one_thread() {
-  at::set_num_threads(1);
-  if (void* set_threads = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) {
-    reinterpret_cast<void (*)(int)>(set_threads)(1);
-  }
 }
 
 void choose_device(TrainOptions& options) {

@@ -1,0 +1,119 @@
+// The peer ONNX Runtime: it runs the models that `tumblesight export` writes.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <vector>
+
+#include "sim/bench/onnx_runtime_library.hpp"
+#include "sim/bench/peer.hpp"
+#include "sim/onnx/onnx_model.hpp"
+
+namespace tumblesight::sim {
+namespace shape = gnc::shape;
+namespace {
+
+using Library = OnnxRuntimeLibrary;
+using Float32 = gnc::Float32;
+
+// A session with its tensors, which lie over numbers that stay where they are.
+class Session {
+ public:
+  Session(const Library& library, const Library::Handle& environment, const std::string& onnx_model)
+      : library_(library), session_(library.make_session(environment, onnx_model)) {}
+
+  template <class Numbers>
+  void input(const char* name, Numbers& numbers, const std::vector<std::int64_t>& tensor_shape) {
+    input_names_.push_back(name);
+    inputs_.push_back(tensor(numbers, tensor_shape));
+  }
+  template <class Numbers>
+  void output(const char* name, Numbers& numbers) {
+    output_names_.push_back(name);
+    outputs_.push_back(tensor(numbers, row(numbers)));
+  }
+  template <class Numbers>
+  static std::vector<std::int64_t> row(const Numbers& numbers) {
+    return {1, static_cast<std::int64_t>(numbers.size())};
+  }
+
+  void run() { library_.run(session_, input_names_, inputs_, output_names_, outputs_); }
+
+ private:
+  template <class Numbers>
+  Library::Object* tensor(Numbers& numbers, const std::vector<std::int64_t>& tensor_shape) {
+    tensors_.push_back(library_.make_tensor(numbers.data(), numbers.size(), tensor_shape));
+    return tensors_.back().get();
+  }
+
+  const Library& library_;
+  Library::Handle session_;
+  std::vector<Library::Handle> tensors_;
+  std::vector<const char*> input_names_, output_names_;
+  std::vector<Library::Object*> inputs_, outputs_;
+};
+
+class OnnxRuntime : public Peer {
+ public:
+  OnnxRuntime(const Float32Model& model, std::unique_ptr<Library> library)
+      : library_(std::move(library)),
+        environment_(library_->make_environment()),
+        cnn_(*library_, environment_, cnn_as_onnx(model)),
+        recurrent_(*library_, environment_, recurrent_as_onnx(model)) {
+    cnn_.input("image", image_, {1, 1, shape::kImageSide, shape::kImageSide});
+    cnn_.output("features", features_);
+    cnn_.output("output", out_);
+    recurrent_.input("input", input_, Session::row(input_));
+    recurrent_.input("h", before_.h, Session::row(before_.h));
+    recurrent_.input("c", before_.c, Session::row(before_.c));
+    recurrent_.output("output", head_);
+    recurrent_.output("h_next", after_.h);
+    recurrent_.output("c_next", after_.c);
+  }
+
+  std::string name() const override { return "ONNX Runtime " + library_->version(); }
+
+  void run_frame(const float* image, gnc::Features<Float32>& features,
+                 gnc::OutputVector<float>& out) override {
+    std::copy_n(image, image_.size(), image_.begin());
+    cnn_.run();
+    features = features_;
+    out = out_;
+  }
+
+  void run_sequence(const gnc::LstmInput<Float32>& input, gnc::LstmState<Float32>& state,
+                    gnc::HeadOutput<float>& out) override {
+    input_ = input;
+    before_ = state;
+    recurrent_.run();
+    state = after_;
+    out = head_;
+  }
+
+ private:
+  std::unique_ptr<Library> library_;
+  Library::Handle environment_;
+  Session cnn_, recurrent_;
+
+  std::array<float, shape::kImageSide * shape::kImageSide> image_{};
+  gnc::Features<Float32> features_{};
+  gnc::OutputVector<float> out_{};
+  gnc::LstmInput<Float32> input_{};
+  gnc::LstmState<Float32> before_{}, after_{};
+  gnc::HeadOutput<float> head_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Peer> make_onnx_runtime(const Float32Model& model, const std::string& library,
+                                        std::string& reason) {
+  auto found = Library::open(library, reason);
+  if (found == nullptr) return nullptr;
+  try {
+    return std::make_unique<OnnxRuntime>(model, std::move(found));
+  } catch (const std::runtime_error& error) {
+    reason = error.what();
+    return nullptr;
+  }
+}
+
+}  // namespace tumblesight::sim

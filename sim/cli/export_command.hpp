@@ -1,0 +1,10 @@
+// `tumblesight export`: a float32 model image for other runtimes.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tumblesight::sim {
+
+void add_export_command(CLI::App& app);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,88 @@
+#include "sim/onnx/graph_builder.hpp"
+
+#include <functional>
+#include <numeric>
+#include <stdexcept>
+
+namespace tumblesight::sim {
+namespace {
+
+void describe(onnx::ValueInfoProto& value, const std::string& name, const OnnxShape& shape,
+              const std::string& description) {
+  value.set_name(name);
+  value.set_doc_string(description);
+  onnx::TypeProto::Tensor& type = *value.mutable_type()->mutable_tensor_type();
+  type.set_elem_type(onnx::TensorProto::FLOAT);
+  for (const std::int64_t size : shape) type.mutable_shape()->add_dim()->set_dim_value(size);
+}
+
+onnx::AttributeProto& new_attribute(onnx::NodeProto& node, const std::string& name,
+                                    onnx::AttributeProto::AttributeType type) {
+  onnx::AttributeProto& attribute = *node.add_attribute();
+  attribute.set_name(name);
+  attribute.set_type(type);
+  return attribute;
+}
+
+}  // namespace
+
+std::string GraphBuilder::input(const std::string& name, const OnnxShape& shape,
+                                const std::string& description) {
+  describe(*graph_.add_input(), name, shape, description);
+  return name;
+}
+
+void GraphBuilder::output(const std::string& name, const OnnxShape& shape, const std::string& description) {
+  describe(*graph_.add_output(), name, shape, description);
+}
+
+std::string GraphBuilder::weights(const std::string& name, const OnnxShape& shape,
+                                  const std::vector<float>& values) {
+  const auto count = std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>());
+  if (count != static_cast<std::int64_t>(values.size()))
+    throw std::logic_error(name + " is not of its shape");
+  onnx::TensorProto& tensor = *graph_.add_initializer();
+  tensor.set_name(name);
+  tensor.set_data_type(onnx::TensorProto::FLOAT);
+  tensor.mutable_dims()->Add(shape.begin(), shape.end());
+  tensor.set_raw_data(values.data(), values.size() * sizeof(float));
+  return name;
+}
+
+std::string GraphBuilder::reshape(const std::string& value, const OnnxShape& shape, const std::string& name) {
+  onnx::TensorProto& tensor = *graph_.add_initializer();
+  tensor.set_name(name + ".shape");
+  tensor.set_data_type(onnx::TensorProto::INT64);
+  tensor.add_dims(static_cast<std::int64_t>(shape.size()));
+  tensor.mutable_int64_data()->Add(shape.begin(), shape.end());
+  return flow("Reshape", {value, name + ".shape"}, name);
+}
+
+std::string GraphBuilder::flow(const std::string& operation, const std::vector<std::string>& inputs,
+                               const std::string& name) {
+  node(operation, inputs, {name});
+  return name;
+}
+
+onnx::NodeProto& GraphBuilder::node(const std::string& operation, const std::vector<std::string>& inputs,
+                                    const std::vector<std::string>& outputs) {
+  onnx::NodeProto& node = *graph_.add_node();
+  node.set_op_type(operation);
+  for (const std::string& name : inputs) node.add_input(name);
+  for (const std::string& name : outputs) node.add_output(name);
+  for (const std::string& name : outputs) {
+    if (node.name().empty()) node.set_name(name);
+  }
+  return node;
+}
+
+void set_attribute(onnx::NodeProto& node, const std::string& name, std::int64_t value) {
+  new_attribute(node, name, onnx::AttributeProto::INT).set_i(value);
+}
+
+void set_attribute(onnx::NodeProto& node, const std::string& name, const OnnxShape& values) {
+  onnx::AttributeProto& attribute = new_attribute(node, name, onnx::AttributeProto::INTS);
+  attribute.mutable_ints()->Add(values.begin(), values.end());
+}
+
+}  // namespace tumblesight::sim
