@@ -43,6 +43,12 @@ bool has_avx_vnni() {
          __builtin_cpu_supports("avx2") != 0;
 }
 
+// With what nearly every processor that has it has beside it.
+bool has_avx512() {
+  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
+         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+}
+
 }  // namespace
 
 bool processor_has(InstructionSet set) {
@@ -52,10 +58,9 @@ bool processor_has(InstructionSet set) {
     case InstructionSet::kAvxVnni:
       return has_avx_vnni();
     case InstructionSet::kAvx512:
-      return __builtin_cpu_supports("avx512f") != 0;
+      return has_avx512();
     case InstructionSet::kAvx512Vnni:
-      return __builtin_cpu_supports("avx512vnni") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
-             __builtin_cpu_supports("avx512vl") != 0;
+      return has_avx512() && __builtin_cpu_supports("avx512vnni") != 0;
     default:
       return true;
   }

@@ -14,7 +14,7 @@ enum class InstructionSet : std::uint8_t {
   kDsp,         // fixed point: the dual 16-bit multiply-accumulate of Cortex-M and Cortex-R
   kAvx2,
   kAvxVnni,     // fixed point
-  kAvx512,      // float32
+  kAvx512,      // float32 and the depth image
   kAvx512Vnni,  // fixed point
 };
 // Slowest first.

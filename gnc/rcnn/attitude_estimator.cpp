@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gnc/lidar/depth_loops.hpp"
 #include "gnc/numerics/conversion.hpp"
 #include "gnc/rcnn/crc32.hpp"
 
@@ -52,7 +53,9 @@ void AttitudeEstimator<N>::reset() {
 
 template <class N>
 FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, AttitudeEstimate& estimate) {
-  const FrameStatus status = make_depth_image(frame, model_.projection, network_.projection_scratch(), image_);
+  const DepthLoops& loops = depth_loops_within(network_.kernels().set);
+  const FrameStatus status =
+      make_depth_image(frame, model_.projection, network_.projection_scratch(), image_, loops);
   if (status == FrameStatus::kOk) step(image_, estimate);
   return status;
 }

@@ -4,6 +4,7 @@
 #include <exception>
 #include <string>
 
+#include "sim/cli/bench_command.hpp"
 #include "sim/cli/evaluate_command.hpp"
 #include "sim/cli/quantize_command.hpp"
 #ifdef TUMBLESIGHT_HAS_ONNX
@@ -50,6 +51,7 @@ int main(int argc, char** argv) {
 #endif
     sim::add_evaluate_command(app, command_line);
     sim::add_quantize_command(app);
+    sim::add_bench_command(app);
 #ifdef TUMBLESIGHT_HAS_ONNX
     sim::add_export_command(app);
 #endif

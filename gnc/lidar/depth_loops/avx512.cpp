@@ -19,6 +19,6 @@ void encode(const std::uint32_t* cells, std::uint16_t* depth) {
 
 }  // namespace
 
-const DepthLoops kAvx512{InstructionSet::kAvx512Vnni, survey, sum_depths, accumulate, encode};
+const DepthLoops kAvx512{InstructionSet::kAvx512, survey, sum_depths, accumulate, encode};
 
 }  // namespace tumblesight::gnc::depth_loops

@@ -1,0 +1,33 @@
+#include "sim/bench/peak/chains.hpp"
+
+namespace tumblesight::sim::peak {
+namespace {
+
+struct Int8 {
+  using Vector = __m256i;
+  static constexpr double kMacs = 16;
+  [[gnu::always_inline]] static inline void add(Vector& sum, Vector a, Vector b) {
+    sum = _mm256_add_epi32(sum, _mm256_madd_epi16(a, b));
+  }
+};
+struct Float {
+  using Vector = __m256;
+  static constexpr double kMacs = 8;
+  [[gnu::always_inline]] static inline void add(Vector& sum, Vector a, Vector b) {
+    sum = _mm256_add_ps(sum, _mm256_mul_ps(a, b));  // rounded each, as the float32 kernels do
+  }
+};
+
+void fixed_point(std::uint64_t rounds) {
+  run_chains<Int8>(rounds);
+}
+void float32(std::uint64_t rounds) {
+  run_chains<Float>(rounds);
+}
+
+}  // namespace
+
+const Chains kFixedAvx2{fixed_point, kMacsARound<Int8>};
+const Chains kFloatAvx2{float32, kMacsARound<Float>};
+
+}  // namespace tumblesight::sim::peak

@@ -1,0 +1,31 @@
+// Independent chains of one step, enough of them to hide its latency.
+#pragma once
+
+#include <immintrin.h>
+
+#include "sim/bench/peak/sets.hpp"
+
+namespace tumblesight::sim::peak {
+namespace {
+
+constexpr int kChains = 12;
+
+// Step: a Vector type, kMacs a step, and `static void add(Vector& sum, Vector a, Vector b)`.
+template <class Step>
+[[gnu::always_inline]] inline void run_chains(std::uint64_t rounds) {
+  typename Step::Vector sum[kChains] = {};
+  typename Step::Vector a = {}, b = {};
+  for (std::uint64_t i = 0; i < rounds; ++i) {
+    asm volatile("" : "+x"(a), "+x"(b));  // as if they had changed
+#pragma GCC unroll 12
+    for (int chain = 0; chain < kChains; ++chain) Step::add(sum[chain], a, b);
+  }
+#pragma GCC unroll 12
+  for (int chain = 0; chain < kChains; ++chain) asm volatile("" : : "x"(sum[chain]));  // as if they were used
+}
+
+template <class Step>
+constexpr double kMacsARound = kChains * Step::kMacs;
+
+}  // namespace
+}  // namespace tumblesight::sim::peak

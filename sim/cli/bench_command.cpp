@@ -1,0 +1,144 @@
+#include "sim/cli/bench_command.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "sim/bench/network_bench.hpp"
+#include "sim/cli/arguments.hpp"
+#include "sim/cli/target_setup.hpp"
+#include "sim/lidar/flash_lidar.hpp"
+#include "sim/report/table.hpp"
+#include "sim/report/text_file.hpp"
+#include "sim/scenario/sequence.hpp"
+#include "sim/target/targets.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSequences = 5;
+
+struct BenchArguments {
+  std::string target = "near_shoemaker";
+  std::string onnxruntime;
+  std::string json;
+};
+
+std::vector<gnc::RangeImage> rendered_frames(const std::string& target) {
+  const TriangleMesh mesh = target_by_name(target);
+  const FlashLidar lidar(mesh);
+  const ScenarioSettings settings;
+  std::vector<gnc::RangeImage> frames;
+  for (int i = 0; i < kSequences; ++i) {
+    const Sequence sequence = make_sequence(settings, 1, static_cast<std::uint32_t>(i));
+    for (std::size_t k = 0; k < sequence.frames.size(); ++k) {
+      frames.emplace_back();
+      lidar.expose(sequence.frames[k], sensor_settings(settings.condition), swath_m(mesh), k, frames.back());
+    }
+  }
+  return frames;
+}
+
+std::vector<std::uint8_t> read_image(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error(fmt::format("cannot open the model image {}", path));
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void say(const std::string& what) {
+  fmt::print(stderr, "  measuring {}\n", what);
+}
+
+// Peers that are not there are said to be missing; one whose outputs differ ends the run.
+void bench_peers(const BenchArguments& arguments, const std::string& float32_path,
+                 const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
+  const auto model = read_float32_model(float32_path);
+  std::string reasons[2];
+  const std::unique_ptr<Peer> peers[2] = {make_onnx_runtime(*model, arguments.onnxruntime, reasons[0]),
+                                          make_libtorch(*model, reasons[1])};
+  for (int i = 0; i < 2; ++i) {
+    if (peers[i]) {
+      say(peers[i]->name());
+      rows.push_back(bench_peer(*peers[i], *model, frames));
+    } else {
+      fmt::print(stderr, "  left out: {}\n", reasons[i]);
+    }
+  }
+}
+
+std::string table_of(const std::vector<BenchRow>& rows) {
+  Table table({"", "numerics", "instructions", "median", "fastest", "GMAC/s", "of the peak"});
+  std::string before;
+  for (const BenchRow& row : rows) {
+    const std::string group = row.numerics + row.isa;
+    if (!before.empty() && group != before) table.rule();
+    before = group;
+    table.row({row.name, row.numerics, row.isa, fmt::format("{:.1f} us", row.median_us),
+               fmt::format("{:.1f} us", row.min_us),
+               row.macs > 0.0 ? fmt::format("{:.1f}", 1e-3 * row.macs / row.min_us) : "",
+               row.share_of_peak ? fmt::format("{:.0f} %", 100.0 * *row.share_of_peak) : ""});
+  }
+  return table.text();
+}
+
+nlohmann::ordered_json json_of(const std::vector<BenchRow>& rows) {
+  nlohmann::ordered_json json{{"rows", nlohmann::ordered_json::array()}};
+  for (const BenchRow& row : rows) {
+    nlohmann::ordered_json one{{"name", row.name},           {"numerics", row.numerics}, {"isa", row.isa},
+                               {"median_us", row.median_us}, {"min_us", row.min_us},     {"macs", row.macs}};
+    one["share_of_peak"] = row.share_of_peak ? nlohmann::ordered_json(*row.share_of_peak) : nullptr;
+    json["rows"].push_back(one);
+  }
+  return json;
+}
+
+void bench(const BenchArguments& arguments) {
+  if (!arguments.json.empty()) require_writable("--json", arguments.json);
+  const std::string fixed_path = shipped_model_path(arguments.target);
+  const std::string float32_path = shipped_model_path(arguments.target + ".float32");
+  const std::vector<gnc::RangeImage> frames = rendered_frames(arguments.target);
+  fmt::print("\n  {}, {:.1f} M multiply-accumulates a frame, one thread\n\n", arguments.target,
+             1e-6 * static_cast<double>(gnc::kMacCount));
+  std::fflush(stdout);
+  std::vector<BenchRow> rows;
+  for (const std::string& path : {fixed_path, float32_path}) {
+    for (BenchRow& row : bench_numerics({read_image(path), frames}, say)) rows.push_back(std::move(row));
+  }
+  bench_peers(arguments, float32_path, frames, rows);
+  fmt::print("\n{}\n", table_of(rows));
+  if (!arguments.json.empty()) write_text_file(arguments.json, json_of(rows).dump(2) + "\n");
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app) {
+  auto arguments = std::make_shared<BenchArguments>();
+  CLI::App* command = app.add_subcommand("bench", "Measure the flight network's speed, beside other runtimes'");
+  command->footer(
+      "\nOne thread, the shipped model in both numerics, every instruction set of this processor. A step goes\n"
+      "from ranges to quaternion; the network alone is what the other runtimes do as well. The peak is\n"
+      "measured: the same multiply-accumulate instructions without any memory.\n\n"
+      "ONNX Runtime takes part when its library is there: npm install --prefix build onnxruntime-node\n");
+  command->add_option("--target", arguments->target, "spacecraft whose model is measured")
+      ->check(one_of(target_names()))
+      ->type_name("NAME")
+      ->capture_default_str();
+  command
+      ->add_option("--onnxruntime", arguments->onnxruntime,
+                   "libonnxruntime.so [of onnxruntime-node in build/node_modules, or the system's]")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+  command->add_option("--json", arguments->json, "write the rows to this file")->type_name("FILE");
+  command->callback([arguments] { bench(*arguments); });
+}
+
+}  // namespace tumblesight::sim
