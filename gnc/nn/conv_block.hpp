@@ -51,7 +51,8 @@ struct ConvBlock {
                       AveragePooled& out) {
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);
-      average_pool(weights, sums, out.data() + y * kSideOut * kChannelsOut);
+      kernels.average_pool(sums.data(), kColumns, kChannelsOut, weights.shift.data(),
+                           out.data() + y * kSideOut * kChannelsOut);
     }
   }
 
@@ -61,17 +62,6 @@ struct ConvBlock {
                                   3, 3 * kChannelsIn, Input::kRow, kChannelsOut};
     kernels.convolve(kShape, in.number.data() + 2 * y * Input::kRow, weights.bias.data(), weights.weight.data(),
                      sums.data());
-  }
-
-  static void average_pool(const Weights& weights, const Sums& sums, DenseInput<N>* out) {
-    constexpr int kBelow = kColumns * kChannelsOut;
-    for (int x = 0; x < kSideOut; ++x) {
-      for (int c = 0; c < kChannelsOut; ++c) {
-        const Sum<N>* const first = sums.data() + 2 * x * kChannelsOut + c;
-        const Sum<N> four[4] = {first[0], first[kChannelsOut], first[kBelow], first[kBelow + kChannelsOut]};
-        activate_four(four, N::kIsInteger ? weights.shift.data()[c] : 0, *out++);
-      }
-    }
   }
 };
 

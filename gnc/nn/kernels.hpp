@@ -9,10 +9,12 @@
 
 namespace tumblesight::gnc {
 
-// `sums`: two rows of `columns` pixels; `out`: columns / 2 pixels, each the largest of a 2x2 window's sums,
-// activated.
+// `sums`: two rows of `columns` pixels; `out`: columns / 2 pixels, of each 2x2 window's sums the largest, activated, or
+// the four activated and then averaged (activate_four()).
 template <class N>
 using MaxPool = void(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift, ConvInput<N>* out);
+template <class N>
+using AveragePool = void(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift, DenseInput<N>* out);
 
 template <class N>
 struct Kernels {
@@ -20,6 +22,7 @@ struct Kernels {
   Product<typename N::ConvProduct>* convolve;
   Product<typename N::DenseProduct>* multiply;
   MaxPool<N>* max_pool;
+  AveragePool<N>* average_pool;
 };
 
 // nullptr where this numerics has no kernels of the set, or this build or this processor lacks it.

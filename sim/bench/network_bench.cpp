@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kMeasured_s = 0.6;  // a row
+constexpr double kPeerMeasured_s = 0.6;
 constexpr std::size_t kFewestRuns = 30;
 constexpr double kSameOutput = 1e-3;  // of the largest
 
@@ -35,13 +35,13 @@ Times times_of(std::vector<double> us) {
   return {us[us.size() / 2], us.front()};
 }
 
-// `run(i)` gives the microseconds of its i-th run; it runs until there is enough to go by.
+// `run(i)` gives the microseconds of its i-th run; it runs for so long, and often enough to go by.
 template <class Run>
-Times measured(const Run& run) {
+Times measured(double seconds, const Run& run) {
   for (std::size_t i = 0; i < 3; ++i) (void)run(i);
   std::vector<double> us;
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                                   std::chrono::duration<double>(kMeasured_s));
+                                                   std::chrono::duration<double>(seconds));
   while (us.size() < kFewestRuns || Clock::now() < end) us.push_back(run(us.size()));
   return times_of(std::move(us));
 }
@@ -63,7 +63,7 @@ template <class N>
 class Bench {
  public:
   Bench(const BenchSubject& subject, const gnc::Kernels<N>& kernels)
-      : frames_(subject.frames), kernels_(kernels), loops_(gnc::depth_loops_within(kernels.set)) {
+      : row_s_(subject.row_s), frames_(subject.frames), kernels_(kernels), loops_(gnc::depth_loops_within(kernels.set)) {
     const gnc::ModelStatus status = estimator_->load(subject.image.data(), subject.image.size(), nullptr);
     if (status != gnc::ModelStatus::kOk) throw std::runtime_error(gnc::to_string(status));
     estimator_->network().use(kernels);
@@ -74,13 +74,13 @@ class Bench {
   }
 
   std::vector<BenchRow> rows() {
-    const Times step = measured([&](std::size_t i) { return step_us(i); });
-    const Times depth = measured([&](std::size_t i) {
+    const Times step = measured(row_s_, [&](std::size_t i) { return step_us(i); });
+    const Times depth = measured(row_s_, [&](std::size_t i) {
       gnc::DepthImage& image = *images_[i % images_.size()];
       return timed([&] { (void)make_image(frames_[i % frames_.size()], image); });
     });
-    const Times network = measured([&](std::size_t i) { return network_us(i); });
-    const Times convolutions = measured([&](std::size_t i) { return convolutions_us(i); });
+    const Times network = measured(row_s_, [&](std::size_t i) { return network_us(i); });
+    const Times convolutions = measured(row_s_, [&](std::size_t i) { return convolutions_us(i); });
     return {row("step", step, gnc::kMacCount), row("depth image", depth, 0.0),
             row("network", network, gnc::kMacCount),
             row("convolutions", convolutions, kConvolutionMacs<N>, measured_peak_macs(kernels_.set, N::kIsInteger))};
@@ -121,6 +121,7 @@ class Bench {
     return us_between(begin, end);
   }
 
+  double row_s_;
   const std::vector<gnc::RangeImage>& frames_;
   const gnc::Kernels<N>& kernels_;
   const gnc::DepthLoops& loops_;
@@ -226,7 +227,7 @@ BenchRow bench_peer(Peer& peer, const Float32Model& model, const std::vector<gnc
     throw std::runtime_error(fmt::format("{} gives other outputs than ours: {:.2g} of the largest apart, at most {:g}",
                                          peer.name(), difference, kSameOutput));
   }
-  const Times times = measured([&](std::size_t i) { return comparison.peer_us(i); });
+  const Times times = measured(kPeerMeasured_s, [&](std::size_t i) { return comparison.peer_us(i); });
   return {peer.name(), "float32", "", times.median_us, times.min_us, gnc::kMacCount, {}};
 }
 

@@ -27,6 +27,7 @@ struct BenchRow {
 struct BenchSubject {
   std::vector<std::uint8_t> image;  // a model image of either numerics
   std::vector<gnc::RangeImage> frames;
+  double row_s = 0.6;  // how long each row is measured
 };
 
 // `started` is told the name of every numerics and set before it is measured.

@@ -51,19 +51,26 @@ struct Int8 {
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  Blocks<Int8>::product<5, 1, 4>(shape, in, start, weights, out);
+  if (Blocks<Int8>::is_narrow<5, 1, 4>(shape)) {
+    Blocks<Int8>::narrow_product<5, 1, 4>(shape, in, start, weights, out);
+  } else {
+    Blocks<Int8>::product<5, 1, 4>(shape, in, start, weights, out);
+  }
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Int16>::product<4, 2, 8>(shape, in, start, weights, out);
 }
-void pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
-  max_pool<FixedPoint>(sums, columns, channels, shift, out);
+void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
+  pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+}
+void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::int16_t* out) {
+  pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, convolve, multiply, pool};
+const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, convolve, multiply, max_pool, average_pool};
 
 #if TUMBLESIGHT_FLOAT32
 namespace {
@@ -71,11 +78,14 @@ void float_multiply(const ProductShape& shape, const float* in, const float* sta
                     float* out) {
   float_product<8, 6, 2, 8>(shape, in, start, weights, out);
 }
-void float_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
-  max_pool<Float32>(sums, columns, channels, shift, out);
+void float_max_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
+  pool<Float32, LargestOfFour<Float32>>(sums, columns, channels, shift, out);
+}
+void float_average_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
+  pool<Float32, MeanOfFour<Float32>>(sums, columns, channels, shift, out);
 }
 }  // namespace
-const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, float_multiply, float_multiply, float_pool};
+const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, float_multiply, float_multiply, float_max_pool, float_average_pool};
 #endif
 
 }  // namespace tumblesight::gnc::kernels

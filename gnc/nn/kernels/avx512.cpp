@@ -13,12 +13,15 @@ void multiply(const ProductShape& shape, const float* in, const float* start, co
     float_product<16, 12, 2, 12>(shape, in, start, weights, out);
   }
 }
-void pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
-  max_pool<Float32>(sums, columns, channels, shift, out);
+void max_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
+  pool<Float32, LargestOfFour<Float32>>(sums, columns, channels, shift, out);
+}
+void average_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
+  pool<Float32, MeanOfFour<Float32>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<Float32> kFloatAvx512{InstructionSet::kAvx512, multiply, multiply, pool};
+const Kernels<Float32> kFloatAvx512{InstructionSet::kAvx512, multiply, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

@@ -31,7 +31,9 @@ struct Int16 : Vnni {
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  if (shape.channels % 64 == 0) {
+  if (Blocks<Int8>::is_narrow<25, 1, 4>(shape)) {
+    Blocks<Int8>::narrow_product<25, 1, 4>(shape, in, start, weights, out);
+  } else if (shape.channels % 64 == 0) {
     Blocks<Int8>::product<6, 4, 8>(shape, in, start, weights, out);
   } else if (shape.channels % 48 == 0) {
     Blocks<Int8>::product<8, 3, 6>(shape, in, start, weights, out);
@@ -43,12 +45,15 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Int16>::product<6, 4, 12>(shape, in, start, weights, out);
 }
-void pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
-  max_pool<FixedPoint>(sums, columns, channels, shift, out);
+void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
+  pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+}
+void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::int16_t* out) {
+  pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvx512Vnni{InstructionSet::kAvx512Vnni, convolve, multiply, pool};
+const Kernels<FixedPoint> kFixedAvx512Vnni{InstructionSet::kAvx512Vnni, convolve, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

@@ -31,18 +31,25 @@ struct Int16 : Vnni {
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  Blocks<Int8>::product<6, 2, 8>(shape, in, start, weights, out);
+  if (Blocks<Int8>::is_narrow<5, 2, 4>(shape)) {
+    Blocks<Int8>::narrow_product<5, 2, 4>(shape, in, start, weights, out);
+  } else {
+    Blocks<Int8>::product<6, 2, 8>(shape, in, start, weights, out);
+  }
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Int16>::product<6, 2, 8>(shape, in, start, weights, out);
 }
-void pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
-  max_pool<FixedPoint>(sums, columns, channels, shift, out);
+void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
+  pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+}
+void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::int16_t* out) {
+  pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvxVnni{InstructionSet::kAvxVnni, convolve, multiply, pool};
+const Kernels<FixedPoint> kFixedAvxVnni{InstructionSet::kAvxVnni, convolve, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

@@ -67,11 +67,15 @@ struct Blocks {
       const int first = next + kPixels <= pixels ? next : pixels - kPixels;
       const Input* block_in[kPixels];
       Sum* block_out[kPixels];
+      const int y = first / shape.columns;
+      int x = first - y * shape.columns;
+      const Input* pixel = in + y * shape.row_step + x * shape.column_step;
       for (int p = 0; p < kPixels; ++p) {
-        const int y = (first + p) / shape.columns;
-        const int x = (first + p) % shape.columns;
-        block_in[p] = in + y * shape.row_step + x * shape.column_step;
+        block_in[p] = pixel;
         block_out[p] = out + (first + p) * shape.channels + first_channel;
+        const bool row_ends = ++x == shape.columns;
+        x = row_ends ? 0 : x;
+        pixel += row_ends ? shape.row_step - (shape.columns - 1) * shape.column_step : shape.column_step;
       }
       block<kPixels, kPacks>(shape, block_in, start + first_channel, weights + first_channel * kGroup, block_out);
     }
@@ -89,6 +93,54 @@ struct Blocks {
     return c;
   }
 
+  // The first layer, whose pixels are few numbers apart and whose sums are short: kPixels of a row side by side, at a
+  // distance that the compiler knows, need no pointer each.
+  template <int kPixels, int kPacks, int kColumnStep>
+  TUMBLESIGHT_INLINE bool is_narrow(const ProductShape& shape) {
+    return shape.column_step == kColumnStep && shape.columns % kPixels == 0 && shape.channels % (kPacks * kWidth) == 0;
+  }
+  template <int kPixels, int kPacks, int kColumnStep>
+  TUMBLESIGHT_INLINE void narrow_block(const ProductShape& shape, const Input* in, const Sum* start,
+                                       const Weight* weights, Sum* out) {
+    typename Unit::Sums sum[kPixels][kPacks];
+#pragma GCC unroll 32
+    for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 16
+      for (int c = 0; c < kPacks; ++c) sum[p][c] = Unit::load(start + c * kWidth);
+    }
+    for (int strip = 0; strip < shape.strips; ++strip) {
+      const Input* const strip_in = in + strip * shape.strip_step;
+      for (int i = 0; i < shape.strip_length; i += kGroup, weights += shape.channels * kGroup) {
+        typename Unit::Weights weight[kPacks];
+#pragma GCC unroll 16
+        for (int c = 0; c < kPacks; ++c) weight[c] = Unit::weights(weights + c * kWidth * kGroup);
+#pragma GCC unroll 32
+        for (int p = 0; p < kPixels; ++p) {
+          const typename Unit::Values value = Unit::values(strip_in + p * kColumnStep + i);
+#pragma GCC unroll 16
+          for (int c = 0; c < kPacks; ++c) Unit::add(sum[p][c], value, weight[c]);
+        }
+      }
+    }
+#pragma GCC unroll 32
+    for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 16
+      for (int c = 0; c < kPacks; ++c) Unit::store(sum[p][c], out + p * shape.channels + c * kWidth);
+    }
+  }
+  template <int kPixels, int kPacks, int kColumnStep>
+  TUMBLESIGHT_INLINE void narrow_product(const ProductShape& shape, const Input* in, const Sum* start,
+                                         const Weight* weights, Sum* out) {
+    for (int c = 0; c < shape.channels; c += kPacks * kWidth) {
+      for (int first = 0; first < shape.rows * shape.columns; first += kPixels) {
+        const int y = first / shape.columns;
+        const Input* const pixel = in + y * shape.row_step + (first - y * shape.columns) * kColumnStep;
+        narrow_block<kPixels, kPacks, kColumnStep>(shape, pixel, start + c, weights + c * kGroup,
+                                                   out + first * shape.channels + c);
+      }
+    }
+  }
+
   // Blocks of kPixels x kPacks where there are that many pixels, one pixel and kSinglePacks vectors where there
   // are not. Block sizes follow the number of registers: kPixels * kPacks sums, kPacks weights and one value.
   template <int kPixels, int kPacks, int kSinglePacks>
@@ -100,19 +152,43 @@ struct Blocks {
   }
 };
 
-// In plain loops, which the compiler vectorises for the set.
+// Pooling, in plain loops of a known length, which the compiler vectorises for the set.
 template <class N>
-TUMBLESIGHT_INLINE void max_pool(const Sum<N>* __restrict sums, int columns, int channels,
-                                 const std::uint8_t* __restrict shift, ConvInput<N>* __restrict out) {
+struct LargestOfFour {
+  using Out = ConvInput<N>;
+  TUMBLESIGHT_INLINE void pool(const Sum<N> (&four)[4], int shift, Out& out) {
+    const Sum<N> top = four[0] > four[1] ? four[0] : four[1];
+    const Sum<N> bottom = four[2] > four[3] ? four[2] : four[3];
+    activate(top > bottom ? top : bottom, shift, out);
+  }
+};
+template <class N>
+struct MeanOfFour {
+  using Out = DenseInput<N>;
+  TUMBLESIGHT_INLINE void pool(const Sum<N> (&four)[4], int shift, Out& out) { activate_four(four, shift, out); }
+};
+
+template <class N, class Pool, int kCount>
+TUMBLESIGHT_INLINE void pool_channels(const Sum<N>* __restrict left, int channels, int row_below,
+                                      const std::uint8_t* __restrict shift, typename Pool::Out* __restrict out) {
+  const Sum<N>* const right = left + channels;
+  for (int c = 0; c < kCount; ++c) {
+    const Sum<N> four[4] = {left[c], right[c], left[row_below + c], right[row_below + c]};
+    Pool::pool(four, N::kIsInteger ? shift[c] : 0, out[c]);
+  }
+}
+
+template <class N, class Pool>
+TUMBLESIGHT_INLINE void pool(const Sum<N>* __restrict sums, int columns, int channels,
+                             const std::uint8_t* __restrict shift, typename Pool::Out* __restrict out) {
   for (int x = 0; x + 1 < columns; x += 2) {
     const Sum<N>* const left = sums + x * channels;
-    const Sum<N>* const right = left + channels;
-    const Sum<N>* const below_left = left + columns * channels;
-    const Sum<N>* const below_right = below_left + channels;
-    for (int c = 0; c < channels; ++c) {
-      const Sum<N> top = left[c] > right[c] ? left[c] : right[c];
-      const Sum<N> bottom = below_left[c] > below_right[c] ? below_left[c] : below_right[c];
-      activate(top > bottom ? top : bottom, N::kIsInteger ? shift[c] : 0, out[c]);
+    int c = 0;
+    for (; c + 16 <= channels; c += 16) {
+      pool_channels<N, Pool, 16>(left + c, channels, columns * channels, shift + c, out + c);
+    }
+    for (; c < channels; ++c) {
+      pool_channels<N, Pool, 1>(left + c, channels, columns * channels, shift + c, out + c);
     }
     out += channels;
   }

@@ -14,12 +14,15 @@ constexpr int kPacks = 2, kSinglePacks = 8;  // 16 registers
 void multiply(const ProductShape& shape, const float* in, const float* start, const float* weights, float* out) {
   float_product<4, 6, kPacks, kSinglePacks>(shape, in, start, weights, out);
 }
-void pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
-  max_pool<Float32>(sums, columns, channels, shift, out);
+void max_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
+  pool<Float32, LargestOfFour<Float32>>(sums, columns, channels, shift, out);
+}
+void average_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
+  pool<Float32, MeanOfFour<Float32>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<Float32> kFloat128Bit{InstructionSet::k128Bit, multiply, multiply, pool};
+const Kernels<Float32> kFloat128Bit{InstructionSet::k128Bit, multiply, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

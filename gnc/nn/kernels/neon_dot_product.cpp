@@ -56,6 +56,6 @@ void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int3
 }  // namespace
 
 const Kernels<FixedPoint> kFixedDotProduct{InstructionSet::kDotProduct, convolve, kFixedNeon.multiply,
-                                           kFixedNeon.max_pool};
+                                           kFixedNeon.max_pool, kFixedNeon.average_pool};
 
 }  // namespace tumblesight::gnc::kernels

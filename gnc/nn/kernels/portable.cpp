@@ -11,17 +11,21 @@ void product(const ProductShape& shape, const typename Kind::Input* in, const ty
 }
 
 template <class N>
-void pool(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift, ConvInput<N>* out) {
-  max_pool<N>(sums, columns, channels, shift, out);
+void max_pool(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift, ConvInput<N>* out) {
+  pool<N, LargestOfFour<N>>(sums, columns, channels, shift, out);
+}
+template <class N>
+void average_pool(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift, DenseInput<N>* out) {
+  pool<N, MeanOfFour<N>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
 const Kernels<FixedPoint> kFixedPortable{InstructionSet::kPortable, product<Int8Product>, product<Int16Product>,
-                                         pool<FixedPoint>};
+                                         max_pool<FixedPoint>, average_pool<FixedPoint>};
 #if TUMBLESIGHT_FLOAT32
 const Kernels<Float32> kFloatPortable{InstructionSet::kPortable, product<Float32Product>, product<Float32Product>,
-                                      pool<Float32>};
+                                      max_pool<Float32>, average_pool<Float32>};
 #endif
 
 }  // namespace tumblesight::gnc::kernels

@@ -16,9 +16,11 @@ template <class Step>
   typename Step::Vector sum[kChains] = {};
   typename Step::Vector a = {}, b = {};
   for (std::uint64_t i = 0; i < rounds; ++i) {
-    asm volatile("" : "+x"(a), "+x"(b));  // as if they had changed
 #pragma GCC unroll 12
-    for (int chain = 0; chain < kChains; ++chain) Step::add(sum[chain], a, b);
+    for (int chain = 0; chain < kChains; ++chain) {
+      asm volatile("" : "+x"(a));  // as if it had changed
+      Step::add(sum[chain], a, b);
+    }
   }
 #pragma GCC unroll 12
   for (int chain = 0; chain < kChains; ++chain) asm volatile("" : : "x"(sum[chain]));  // as if they were used
