@@ -9,8 +9,8 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::uint64_t kRounds = 100'000;
-constexpr int kTries = 20;  // the fastest counts: others were interrupted
+constexpr std::uint64_t kRounds = 10'000;
+constexpr int kTries = 500;  // the fastest counts: others were interrupted
 
 double macs_per_second(const peak::Chains& chains) {
   double best_s = 1e9;

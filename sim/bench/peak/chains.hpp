@@ -15,6 +15,7 @@ template <class Step>
 [[gnu::always_inline]] inline void run_chains(std::uint64_t rounds) {
   typename Step::Vector sum[kChains] = {};
   typename Step::Vector a = {}, b = {};
+  asm volatile("" : "+x"(b));  // any number, for all that the compiler knows
   for (std::uint64_t i = 0; i < rounds; ++i) {
 #pragma GCC unroll 12
     for (int chain = 0; chain < kChains; ++chain) {
