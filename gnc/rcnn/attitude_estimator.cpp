@@ -9,6 +9,7 @@
 namespace tumblesight::gnc {
 
 static_assert(sizeof(AttitudeEstimator<FixedPoint>) <= 128 * 1024, "budget of working memory");
+static_assert(kModelImageSize<FixedPoint> <= 1'200'000, "budget of the model image");
 
 namespace {
 
