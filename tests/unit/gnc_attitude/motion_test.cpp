@@ -156,7 +156,7 @@ TEST(MotionLaws, KeepAnInertiaThatCannotBeHalved) {
   Inertia<float> thinnest;
   for (float thin = 1.0F; make_inertia<float>(tensor(1.0F, 1.0F, thin), thinnest); thin *= 0.5F) {
   }
-  const Inertia<float>& halved = motion_laws<float>(thinnest)[4];
+  const Inertia<float> halved = motion_laws<float>(thinnest)[4];
   EXPECT_EQ(halved.tensor_trf, thinnest.tensor_trf);
   EXPECT_EQ(halved.inverse_trf, thinnest.inverse_trf);
 }
