@@ -34,7 +34,7 @@ TUMBLESIGHT_INLINE std::int16_t sum16(std::int16_t a, std::int16_t b) {
   return static_cast<std::int16_t>(a + b);
 }
 
-TUMBLESIGHT_INLINE Survey survey_of(const RangeImage& frame) {
+Survey survey_of(const RangeImage& frame) {
   Survey survey;
   const int rays = frame.rays;
   for (int row = 0; row < rays; ++row) {
@@ -73,7 +73,7 @@ TUMBLESIGHT_INLINE void row_depths(const std::uint16_t* __restrict ranges, const
   }
 }
 
-TUMBLESIGHT_INLINE void sum_all_depths(const RangeImage& frame, Rays& rays) {
+void sum_all_depths(const RangeImage& frame, Rays& rays) {
   std::array<std::int16_t, kMaxRays> depths;
   const int count = frame.rays;
   rays.column_sum.fill(0);
@@ -133,7 +133,7 @@ TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const
   }
 }
 
-TUMBLESIGHT_INLINE void accumulate_all(const RangeImage& frame, const Rays& rays, const View& view,
+void accumulate_all(const RangeImage& frame, const Rays& rays, const View& view,
                                        std::uint32_t* __restrict cells) {
   constexpr std::uint32_t kOneReturn = 1U << kValueBits;
   constexpr int kApart = 8;  // neighbours fall into one cell, and would wait for each other
@@ -162,7 +162,7 @@ constexpr std::array<std::uint32_t, kMostReturns + 1> make_reciprocals() {
 }
 constexpr std::array<std::uint32_t, kMostReturns + 1> kReciprocals16 = make_reciprocals();
 
-TUMBLESIGHT_INLINE void encode_all(const std::uint32_t* __restrict cells, std::uint16_t* __restrict depth) {
+void encode_all(const std::uint32_t* __restrict cells, std::uint16_t* __restrict depth) {
   for (int i = 0; i < DepthImage::kCells; ++i) {
     const std::uint32_t sum = cells[i] & ((1U << kValueBits) - 1);
     const std::uint32_t count = cells[i] >> kValueBits;
@@ -171,6 +171,11 @@ TUMBLESIGHT_INLINE void encode_all(const std::uint32_t* __restrict cells, std::u
     const auto bounded = held_between<std::uint32_t>(mean, DepthImage::kSmallest, DepthImage::kLargest);
     depth[i] = static_cast<std::uint16_t>(bounded & mask_of<std::uint32_t>(count > 0));
   }
+}
+
+// As this source file is compiled.
+constexpr DepthLoops loops_of(InstructionSet set) {
+  return {set, survey_of, sum_all_depths, accumulate_all, encode_all};
 }
 
 }  // namespace
