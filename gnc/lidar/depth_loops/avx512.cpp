@@ -1,4 +1,8 @@
 #include "gnc/lidar/depth_loops/plain.hpp"
 #include "gnc/lidar/depth_loops/sets.hpp"
 
-const tumblesight::gnc::DepthLoops tumblesight::gnc::depth_loops::kAvx512 = loops_of(InstructionSet::kAvx512);
+namespace tumblesight::gnc::depth_loops {
+
+const DepthLoops kAvx512 = loops_of(InstructionSet::kAvx512);
+
+}  // namespace tumblesight::gnc::depth_loops

@@ -35,23 +35,19 @@ TUMBLESIGHT_INLINE std::int16_t sum16(std::int16_t a, std::int16_t b) {
 }
 
 Survey survey_of(const RangeImage& frame) {
-  Survey survey;
-  const int rays = frame.rays;
-  for (int row = 0; row < rays; ++row) {
-    const std::uint16_t* __restrict const ranges = frame.ranges.data() + row * rays;
-    std::uint16_t count = 0, nearest = survey.nearest, farthest = survey.farthest;
-    for (int column = 0; column < rays; ++column) {
-      const std::uint16_t good = usable(ranges[column]);
-      const auto near = static_cast<std::uint16_t>(ranges[column] | static_cast<std::uint16_t>(~good));
-      const auto far = static_cast<std::uint16_t>(ranges[column] & good);
-      count = static_cast<std::uint16_t>(count - good);
-      nearest = smaller_of(nearest, near);
-      farthest = larger_of(farthest, far);
-    }
-    survey.returns += count;
-    survey.nearest = nearest;
-    survey.farthest = farthest;
+  const int rays = frame.rays * frame.rays;
+  std::uint16_t returns = 0, nearest = 0xFFFF, farthest = 0;
+  for (int ray = 0; ray < rays; ++ray) {
+    const std::uint16_t range = frame.ranges[ray];
+    const std::uint16_t good = usable(range);
+    returns = static_cast<std::uint16_t>(returns - good);
+    nearest = smaller_of(nearest, static_cast<std::uint16_t>(range | static_cast<std::uint16_t>(~good)));
+    farthest = larger_of(farthest, static_cast<std::uint16_t>(range & good));
   }
+  Survey survey;
+  survey.returns = returns;
+  survey.nearest = nearest;
+  survey.farthest = farthest;
   return survey;
 }
 
@@ -133,8 +129,7 @@ TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const
   }
 }
 
-void accumulate_all(const RangeImage& frame, const Rays& rays, const View& view,
-                                       std::uint32_t* __restrict cells) {
+void accumulate_all(const RangeImage& frame, const Rays& rays, const View& view, std::uint32_t* __restrict cells) {
   constexpr std::uint32_t kOneReturn = 1U << kValueBits;
   constexpr int kApart = 8;  // neighbours fall into one cell, and would wait for each other
   std::array<std::int16_t, kMaxRays> depths;

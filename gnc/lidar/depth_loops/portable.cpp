@@ -1,4 +1,8 @@
 #include "gnc/lidar/depth_loops/plain.hpp"
 #include "gnc/lidar/depth_loops/sets.hpp"
 
-const tumblesight::gnc::DepthLoops tumblesight::gnc::depth_loops::kPortable = loops_of(InstructionSet::kPortable);
+namespace tumblesight::gnc::depth_loops {
+
+const DepthLoops kPortable = loops_of(InstructionSet::kPortable);
+
+}  // namespace tumblesight::gnc::depth_loops
