@@ -57,7 +57,8 @@ void AttitudeInitApp<N>::init(const std::uint8_t* model_image, std::size_t size_
 template <class N>
 void AttitudeInitApp<N>::step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) {
   const std::uint64_t start_ns = stopwatch_ != nullptr ? stopwatch_->now_ns() : 0;
-  outputs = StepOutputs{};
+  static constexpr StepOutputs kNothing{};  // not a temporary one, for which the stack has no room
+  outputs = kNothing;
   const std::int64_t previous_ns = has_cycle_ ? now_ns_ : now_ns;
   const bool time_advances = cycle_time_advances(now_ns);
   outputs.attitude = without_attitude(Validity::kStandby);

@@ -1,5 +1,7 @@
 #include "gnc/attitude/rotation.hpp"
 
+#include "gnc/numerics/division.hpp"
+
 namespace tumblesight::gnc {
 namespace {
 
@@ -11,21 +13,21 @@ QuaternionQ30 normalised(const Candidate& q) {
   std::int64_t bits = 0;
   for (const std::int64_t part : q) bits |= magnitude_of(part);
   const int left = 30 - highest_bit(static_cast<std::uint64_t>(bits));
-  const std::int64_t up = std::int64_t{1} << larger_of(left, 0);
-  const std::int64_t down = std::int64_t{1} << larger_of(-left, 0);
+  const std::int32_t up = std::int32_t{1} << larger_of(left, 0);
+  const std::int32_t down = std::int32_t{1} << larger_of(-left, 0);
   std::array<std::int64_t, 4> scaled;
   std::uint64_t square = 0;
   for (int i = 0; i < 4; ++i) {
-    scaled[i] = q[i] * up / down;
+    scaled[i] = quotient_of(q[i] * up, down);
     square += static_cast<std::uint64_t>(scaled[i] * scaled[i]);
   }
   const std::int64_t length = integer_sqrt(square);
-  const bool turned = q[0] < 0;
+  const bool turned = is_less<std::int64_t>(q[0], 0);
   QuaternionQ30 unit;
   for (int i = 0; i < 4; ++i) {
     const std::int64_t magnitude = magnitude_of(scaled[i]);
-    const std::int64_t rounded = (magnitude * (std::int64_t{1} << 31) / larger_of<std::int64_t>(length, 1) + 1) >> 1;
-    unit[i] = static_cast<std::int32_t>(select((scaled[i] < 0) != turned, -rounded, rounded));
+    const std::int64_t rounded = (quotient_of(magnitude * (std::int64_t{1} << 31), larger_of<std::int64_t>(length, 1)) + 1) >> 1;
+    unit[i] = static_cast<std::int32_t>(select(is_less<std::int64_t>(scaled[i], 0) != turned, -rounded, rounded));
   }
   return unit;
 }
@@ -46,7 +48,7 @@ QuaternionQ30 quaternion_from_rotation(const Matrix3<Fixed>& rotation) {
       {wz, xz, yz, kOne - r(0, 0) - r(1, 1) + r(2, 2)},
   }};
   std::size_t best = 0;
-  for (std::size_t k = 1; k < 4; ++k) best = select(candidates[k][k] > candidates[best][best], k, best);
+  for (std::size_t k = 1; k < 4; ++k) best = select(is_less(candidates[best][best], candidates[k][k]), k, best);
   return normalised(candidates[best]);
 }
 

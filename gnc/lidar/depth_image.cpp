@@ -1,6 +1,7 @@
 #include "gnc/lidar/depth_image.hpp"
 
 #include "gnc/lidar/depth_loops.hpp"
+#include "gnc/numerics/division.hpp"
 #include "gnc/numerics/functions.hpp"
 
 namespace tumblesight::gnc {
@@ -20,8 +21,8 @@ std::int64_t product30(std::int64_t a, std::int64_t b) {
 // To the nearest, halves up; divisor > 0.
 std::int64_t rounded_division(std::int64_t dividend, std::int64_t divisor) {
   const std::int64_t twice = 2 * dividend + divisor;
-  const std::int64_t truncated = twice / (2 * divisor);
-  return truncated - static_cast<std::int64_t>(truncated * 2 * divisor > twice);
+  const std::int64_t truncated = quotient_of(twice, 2 * divisor);
+  return truncated + less_mask(twice, truncated * 2 * divisor);
 }
 
 // tan(fov / 2), 30 bits behind the point: its series to the 11th power, within 1e-8.

@@ -16,8 +16,12 @@ inline void convert(Fixed from, float& to) {
 }
 // What is not finite counts as zero.
 inline void convert(float from, Fixed& to) {
-  const double scaled = double{select(is_finite(from), held_between(from, -128.0F, 128.0F), 0.0F)} * (1 << Fixed::kFractionBits);
-  to = Fixed::from_raw(static_cast<std::int64_t>(scaled + std::copysign(0.5, scaled)));
+  constexpr float kLargest = 127.99999F;  // the last one before 128
+  const float finite = select(is_finite(from), from, 0.0F);
+  const double scaled = double{held_between(finite, -kLargest, kLargest)} * (1 << Fixed::kFractionBits);
+  const auto inside = static_cast<std::int32_t>(scaled + std::copysign(0.5, scaled));
+  const std::int32_t not_above = select(finite > kLargest, Fixed::kLargestRaw, inside);
+  to = Fixed::from_raw(select(finite < -kLargest, -Fixed::kLargestRaw, not_above));
 }
 #endif
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "gnc/numerics/division.hpp"
 #include "gnc/numerics/select.hpp"
 
 namespace tumblesight::gnc {
@@ -35,15 +36,15 @@ class Fixed {
     const std::int64_t at_zero = select<std::int64_t>(a.raw_ < 0, -kLargestRaw, kLargestRaw);
     const std::int64_t divisor = select<std::int64_t>(b.raw_ == 0, 1, magnitude_of<std::int64_t>(b.raw_));
     const std::int64_t dividend = select<std::int64_t>(b.raw_ < 0, -std::int64_t{a.raw_}, a.raw_) * (2 * kOne);
-    const std::int64_t truncated = dividend / divisor;
-    const std::int64_t floor = truncated - static_cast<std::int64_t>(truncated * divisor > dividend);
+    const std::int64_t truncated = quotient_of(dividend, divisor);
+    const std::int64_t floor = truncated + less_mask(dividend, truncated * divisor);
     return from_raw(select(b.raw_ == 0, at_zero, (floor + 1) >> 1));
   }
   constexpr Fixed& operator+=(Fixed b) { return *this = *this + b; }
   constexpr Fixed& operator*=(Fixed b) { return *this = *this * b; }
 
-  friend constexpr bool operator<(Fixed a, Fixed b) { return a.raw_ < b.raw_; }
-  friend constexpr bool operator>(Fixed a, Fixed b) { return a.raw_ > b.raw_; }
+  friend constexpr bool operator<(Fixed a, Fixed b) { return is_less(a.raw_, b.raw_); }
+  friend constexpr bool operator>(Fixed a, Fixed b) { return is_less(b.raw_, a.raw_); }
   friend constexpr bool operator==(Fixed a, Fixed b) { return a.raw_ == b.raw_; }
   friend constexpr bool operator!=(Fixed a, Fixed b) { return a.raw_ != b.raw_; }
 

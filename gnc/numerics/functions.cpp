@@ -39,20 +39,29 @@ std::int64_t exp2_of_fraction(std::int64_t f) {
 }  // namespace
 
 std::uint32_t integer_sqrt(std::uint64_t square) {
-  std::uint64_t root = 0;
+  // Two bits of the square give one of the root; what is left of the square is at most twice the root.
+  std::uint32_t root = 0;
+  std::uint64_t rest = 0;
   for (int bit = 31; bit >= 0; --bit) {
-    const std::uint64_t larger = root | (std::uint64_t{1} << bit);
-    root = select(larger * larger <= square, larger, root);
+    rest = (rest << 2) | (square >> 62);
+    square <<= 2;
+    const std::uint64_t trial = (std::uint64_t{root} << 2) | 1;
+    const std::uint64_t fits = ~less_mask(rest, trial);
+    rest -= trial & fits;
+    root = (root << 1) | static_cast<std::uint32_t>(fits & 1);
   }
-  return static_cast<std::uint32_t>(root);
+  return root;
 }
 
 int highest_bit(std::uint64_t value) {
-  int highest = 0;
-  for (int step = 32; step >= 1; step /= 2) {
-    const bool above = (value >> step) != 0;
+  const auto upper = static_cast<std::uint32_t>(value >> 32);
+  int highest = select(upper != 0, 32, 0);
+  std::uint32_t rest = select(upper != 0, upper, static_cast<std::uint32_t>(value));
+#pragma GCC unroll 5
+  for (int step = 16; step >= 1; step /= 2) {
+    const bool above = (rest >> step) != 0;
     highest += select(above, step, 0);
-    value = select(above, value >> step, value);
+    rest = select(above, rest >> step, rest);
   }
   return highest;
 }
@@ -69,17 +78,22 @@ Fixed exp(Fixed x) {
   const std::int64_t in_octaves = (std::int64_t{x.raw()} * kLog2OfE + (std::int64_t{1} << 23)) >> 24;
   const std::int64_t n = in_octaves >> 30;
   const std::int64_t mantissa = exp2_of_fraction(in_octaves - n * kOne30);  // [1, 2)
-  // 30 bits behind the point to 24, times 2^n.
-  const int right = static_cast<int>(held_between<std::int64_t>(6 - n, 0, 40));
-  const std::int64_t half = (std::int64_t{1} << right) >> 1;
-  return Fixed::from_raw(select<std::int64_t>(n > 6, Fixed::kLargestRaw, (mantissa + half) >> right));
+  // 30 bits behind the point to 24, times 2^n: (mantissa + 2^(right - 1)) >> right, in shifts of 32 bits.
+  const int right = held_between(6 - static_cast<int>(n), 0, 33);
+  const auto m = static_cast<std::uint32_t>(mantissa);
+  const std::uint32_t halved = (m >> 1) + (std::uint32_t{1} << larger_of(right - 2, 0));
+  const int rest = larger_of(right - 1, 0);
+  const std::uint32_t by_more = halved >> (rest / 2) >> (rest - rest / 2);
+  const std::uint32_t by_one_or_none = select(is_less(right, 1), m, (m + 1) >> 1);
+  const std::uint32_t shifted = select(is_less(right, 2), by_one_or_none, by_more);
+  return Fixed::from_raw(select<std::int64_t>(is_less<std::int64_t>(6, n), Fixed::kLargestRaw, shifted));
 }
 
 Fixed sigmoid(Fixed x) {
-  const Fixed e = exp(select(x.raw() > 0, -x, x));  // <= 1
+  const Fixed e = exp(select(x > Fixed(), -x, x));  // <= 1
   const Fixed one = Fixed::from_raw(std::int64_t{1} << Fixed::kFractionBits);
   const Fixed below = e / (one + e);
-  return select(x.raw() > 0, one - below, below);
+  return select(x > Fixed(), one - below, below);
 }
 
 }  // namespace tumblesight::gnc

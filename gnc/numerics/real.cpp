@@ -1,5 +1,7 @@
 #include "gnc/numerics/real.hpp"
 
+#include "gnc/numerics/division.hpp"
+
 namespace tumblesight::gnc {
 
 Vector3<Fixed> normalised(const Vector3<Fixed>& v) {
@@ -21,8 +23,8 @@ Vector3<Fixed> normalised(const Vector3<Fixed>& v) {
   for (int i = 0; i < 3; ++i) {
     // Rounded to the nearest, halves away from zero.
     const std::int64_t magnitude = magnitude_of(raw[i]);
-    const std::int64_t rounded = (magnitude * (std::int64_t{2} << Fixed::kFractionBits) / divisor + 1) >> 1;
-    unit[i] = Fixed::from_raw(select(raw[i] < 0, -rounded, rounded));
+    const std::int64_t rounded = (quotient_of(magnitude * (std::int64_t{2} << Fixed::kFractionBits), divisor) + 1) >> 1;
+    unit[i] = Fixed::from_raw(select(is_less<std::int64_t>(raw[i], 0), -rounded, rounded));
   }
   return unit;
 }

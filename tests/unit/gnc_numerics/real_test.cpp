@@ -79,6 +79,8 @@ TEST(Conversion, TakesWhatIsNotFiniteForZeroAndSaturates) {
   EXPECT_EQ(converted<Fixed>(std::nanf("")), Fixed());
   EXPECT_EQ(converted<Fixed>(INFINITY), Fixed());
   EXPECT_EQ(converted<Fixed>(1e20F).raw(), Fixed::kLargestRaw);
+  EXPECT_EQ(converted<Fixed>(-128.0F).raw(), -Fixed::kLargestRaw);
+  EXPECT_EQ(converted<Fixed>(127.99999F).raw(), 2'147'483'520);
   EXPECT_EQ(converted<float>(Fixed(-2.5)), -2.5F);
 }
 

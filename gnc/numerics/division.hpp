@@ -1,0 +1,34 @@
+// Division of 64-bit integers in the same number of instructions whatever they are. Processors of 32 bits leave it to a
+// function of the compiler's, whose way depends on the numbers; there it is done by hand, a bit of the quotient at a time.
+#pragma once
+
+#include <cstdint>
+
+#include "gnc/numerics/select.hpp"
+
+namespace tumblesight::gnc {
+
+// divisor > 0.
+constexpr std::uint64_t quotient_bit_by_bit(std::uint64_t dividend, std::uint64_t divisor) {
+  std::uint64_t quotient = 0;
+  std::uint64_t rest = 0;
+  for (int bit = 63; bit >= 0; --bit) {
+    rest = (rest << 1) | ((dividend >> 63) & 1);
+    dividend <<= 1;
+    const std::uint64_t fits = ~less_mask(rest, divisor);
+    rest -= divisor & fits;
+    quotient = (quotient << 1) | (fits & 1);
+  }
+  return quotient;
+}
+
+// Towards zero; divisor > 0.
+constexpr std::int64_t quotient_of(std::int64_t dividend, std::int64_t divisor) {
+  if constexpr (sizeof(void*) == 8) return dividend / divisor;
+  const auto quotient = static_cast<std::int64_t>(quotient_bit_by_bit(
+      static_cast<std::uint64_t>(magnitude_of(dividend)), static_cast<std::uint64_t>(divisor)));
+  const std::int64_t sign = dividend >> 63;
+  return (quotient ^ sign) - sign;
+}
+
+}  // namespace tumblesight::gnc
