@@ -1,3 +1,6 @@
+// Layers are functions of their own ([[gnu::noinline]]), here and in dense.hpp and lstm.hpp, so that what each takes can be
+// told apart (tests/audit).
+//
 // ConvBlock: 3x3 convolution, pooling 2x2 and ReLU over a square HWC image, in one pass over pairs of rows.
 #pragma once
 
@@ -36,8 +39,8 @@ struct ConvBlock {
 
   // The largest of each window, activated.
   using MaxPooled = PaddedImage<ConvInput<N>, kSideOut, kChannelsOut>;
-  static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
-                      MaxPooled& out) {
+  [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
+                                        MaxPooled& out) {
     out.number.fill({});
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);
@@ -47,8 +50,8 @@ struct ConvBlock {
 
   // The windows' four numbers, activated and then averaged; in fixed point they are added.
   using AveragePooled = std::array<DenseInput<N>, kSideOut * kSideOut * kChannelsOut>;
-  static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
-                      AveragePooled& out) {
+  [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
+                                        AveragePooled& out) {
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);
       kernels.average_pool(sums.data(), kColumns, kChannelsOut, weights.shift.data(),
@@ -57,11 +60,28 @@ struct ConvBlock {
   }
 
  private:
+  // Rows 2 y and 2 y + 1. Where it costs nothing to compute them one by one, the first and the last row are spared the padding
+  // above and below, which adds nothing.
   static void two_rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int y, Sums& sums) {
-    constexpr ProductShape kShape{2, kColumns,        Input::kRow, kChannelsIn,
-                                  3, 3 * kChannelsIn, Input::kRow, kChannelsOut};
-    kernels.convolve(kShape, in.number.data() + 2 * y * Input::kRow, weights.bias.data(), weights.weight.data(),
-                     sums.data());
+    constexpr int kAll = 3;
+    const bool spares = kColumns % kernels.pixels == 0;
+    const int above = spares && y == 0 ? 1 : 0;
+    const int below = spares && 2 * y + 2 == kSide ? 1 : 0;
+    if (above + below == 0) {
+      rows(kernels, weights, in, 2 * y, 2, 0, kAll, sums.data());
+      return;
+    }
+    rows(kernels, weights, in, 2 * y, 1, above, kAll - above, sums.data());
+    rows(kernels, weights, in, 2 * y + 1, 1, 0, kAll - below, sums.data() + kColumns * kChannelsOut);
+  }
+
+  // `count` rows of sums from `first` on, over the strips (ky) from first_strip on.
+  static void rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int first, int count, int first_strip,
+                   int strips, Sum<N>* sums) {
+    const ProductShape shape{count,  kColumns,        Input::kRow, kChannelsIn,
+                             strips, 3 * kChannelsIn, Input::kRow, kChannelsOut};
+    kernels.convolve(shape, in.number.data() + (first + first_strip) * Input::kRow, weights.bias.data(),
+                     weights.weight.data() + first_strip * 3 * kChannelsIn * kChannelsOut, sums);
   }
 };
 

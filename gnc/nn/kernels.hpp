@@ -19,6 +19,7 @@ using AveragePool = void(const Sum<N>* sums, int columns, int channels, const st
 template <class N>
 struct Kernels {
   InstructionSet set;
+  int pixels;  // that a convolution computes together; a row of a multiple of them is as cheap alone as with others
   Product<typename N::ConvProduct>* convolve;
   Product<typename N::DenseProduct>* multiply;
   MaxPool<N>* max_pool;

@@ -46,8 +46,8 @@ struct Lstm {
   };
 
   // Summation per gate: bias, inputs ascending, then hidden units ascending.
-  static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
-                      State& state) {
+  [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
+                                        State& state) {
     constexpr ProductShape kFromInput{1, 1, 0, 0, 1, kIn, 0, kGates};
     constexpr ProductShape kFromHidden{1, 1, 0, 0, 1, kHidden, 0, kGates};
     kernels.multiply(kFromInput, in.data(), weights.bias.data(), weights.weight.data(), sums.data());

@@ -77,15 +77,34 @@ struct LayerWeights {
   typename N::template Shifts<kPaddedOut> shift{};
 };
 
+// Held between 0 and `largest`.
+inline std::int32_t saturated(std::int32_t value, std::int32_t largest) {
+  if constexpr (kMovesConditionally) return held_between(value, 0, largest);
+  const std::int32_t not_negative = value & ~(value >> 31);
+  const std::int32_t room = largest - not_negative;
+  return not_negative + (room & (room >> 31));
+}
+
+// The larger of two sums of a convolution, which model_image.hpp holds below this: so their difference has its true sign.
+inline constexpr std::int32_t kLargestConvolved = 1 << 30;
+inline float larger_convolved(float a, float b) {
+  return larger_of(a, b);
+}
+inline std::int32_t larger_convolved(std::int32_t a, std::int32_t b) {
+  if constexpr (kMovesConditionally) return larger_of(a, b);
+  const std::int32_t more = b - a;
+  return a + (more & ~(more >> 31));
+}
+
 // Activation: ReLU and, in fixed point, requantisation with saturation. NaN gives 0.
 inline void activate(float sum, int, float& out) {
   out = select(sum > 0.0F, sum, 0.0F);
 }
 inline void activate(std::int32_t sum, int shift, std::uint8_t& out) {
-  out = static_cast<std::uint8_t>(held_between(requantised(sum, shift), 0, 255));
+  out = static_cast<std::uint8_t>(saturated(requantised(sum, shift), 255));
 }
 inline void activate(std::int32_t sum, int shift, std::int16_t& out) {
-  out = static_cast<std::int16_t>(held_between(requantised(sum, shift), 0, 32767));
+  out = static_cast<std::int16_t>(saturated(requantised(sum, shift), 32767));
 }
 
 // The mean of four numbers, activated; in fixed point their sum, which loses nothing, each of at most 12 bits.
@@ -97,7 +116,7 @@ inline void activate_four(const float (&sums)[4], int, float& out) {
 }
 inline void activate_four(const std::int32_t (&sums)[4], int shift, std::int16_t& out) {
   std::int32_t total = 0;
-  for (const std::int32_t sum : sums) total += held_between(requantised(sum, shift), 0, kLargestOfFour);
+  for (const std::int32_t sum : sums) total += saturated(requantised(sum, shift), kLargestOfFour);
   out = static_cast<std::int16_t>(total);
 }
 

@@ -48,6 +48,8 @@ struct ProductShape {
 };
 inline constexpr int kIntegerChannels = 16;
 
+// Inputs of integers begin at a multiple of kGroup numbers in memory, rows, pixels and strips likewise.
+//
 // `start` may be `out` itself when there is one pixel: the product is then added to what lies there. `in`,
 // `weights` and `out` must not overlap.
 template <class Kind>

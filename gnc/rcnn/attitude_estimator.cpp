@@ -22,7 +22,7 @@ std::uint32_t error_urad(const Matrix3<Fixed>& attitude, Fixed predicted_rad) {
   return select(is_rotation, static_cast<std::uint32_t>(smaller_of<std::int64_t>(kPi_urad, urad)), kPi_urad);
 }
 
-void add_to(Crc32& crc, const float* values, std::size_t count) {
+[[maybe_unused]] void add_to(Crc32& crc, const float* values, std::size_t count) {
   crc.add_f32(values, count);
 }
 void add_to(Crc32& crc, const Fixed* values, std::size_t count) {
@@ -63,13 +63,10 @@ FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, AttitudeEstimate
 
 template <class N>
 void AttitudeEstimator<N>::step(const DepthImage& image, AttitudeEstimate& estimate) {
-  OutputVector<Real> output;
+  auto& [output, hypotheses, prediction, input, head] = passed_;
   network_.infer_frame(image, output);
-  const Hypotheses<Real> hypotheses = hypotheses_of<Real>(output, converted<Real>(image.r_lrf_view));
-  const Prediction<Real> prediction = predict<Real>(state_.track, laws_, hypotheses);
-
-  LstmInput<N> input;
-  HeadOutput<Real> head;
+  hypotheses = hypotheses_of<Real>(output, converted<Real>(image.r_lrf_view));
+  prediction = predict<Real>(state_.track, laws_, hypotheses);
   fill_lstm_input<N>(network_.features(), hypotheses, prediction.r_lrf_trf(), input);
   network_.infer_sequence(input, state_.lstm, head);
   const TrackedAttitude<Real> tracked = advance<Real>(hypotheses, prediction, head, state_.track);

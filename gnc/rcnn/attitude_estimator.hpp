@@ -58,8 +58,18 @@ class AttitudeEstimator {
   Network<N>& network() { return network_; }
 
  private:
+  // What one frame's stages hand on: here, so that the stack stays small.
+  struct Passed {
+    OutputVector<Real> output;
+    Hypotheses<Real> hypotheses;
+    Prediction<Real> prediction;
+    LstmInput<N> input;
+    HeadOutput<Real> head;
+  };
+
   Network<N> network_;
   State state_;
+  Passed passed_;
   ModelHeader model_;
   MotionLaws<Real> laws_;
   DepthImage image_;

@@ -50,7 +50,7 @@ void put_u32(std::uint8_t* at, std::uint32_t value) {
   for (int i = 0; i < 4; ++i) at[i] = static_cast<std::uint8_t>(value >> (8 * i));
 }
 
-void put_f32(std::uint8_t* at, float value) {
+[[maybe_unused]] void put_f32(std::uint8_t* at, float value) {
   std::uint32_t bits;
   std::memcpy(&bits, &value, sizeof bits);
   put_u32(at, bits);
@@ -222,6 +222,7 @@ struct LayerLimits {
   int group;
   std::int64_t largest_input;
   std::uint32_t largest_shift;
+  std::int64_t largest_sum = INT32_MAX;  // rounding included
 };
 
 // Where the tensors of a layer lie.
@@ -263,7 +264,7 @@ bool is_possible_layer(const LayerInImage& layer, std::size_t channels, const La
     const std::int64_t rounding = std::int64_t{1} << (in_range && shift <= 31 ? shift - 1 : 0);
     const std::int64_t largest =
         (bias < 0 ? -bias : bias) + (forward + recurrent) * limits.largest_input + rounding;
-    possible = possible && in_range && largest <= INT32_MAX;
+    possible = possible && in_range && largest <= limits.largest_sum;
   }
   return possible;
 }
@@ -273,7 +274,7 @@ constexpr std::uint32_t kLargestOutputShift = 62;
 
 // `weights` only lends the sizes of the tensors.
 ModelStatus check_layers(const std::uint8_t* image, const NetworkWeights<FixedPoint>& weights) {
-  const LayerLimits conv{Int8Product::kGroup, 255, kLargestActivationShift};
+  const LayerLimits conv{Int8Product::kGroup, 255, kLargestActivationShift, kLargestConvolved};
   const LayerLimits hidden{Int16Product::kGroup, 32767, kLargestActivationShift};
   const LayerLimits output{Int16Product::kGroup, 32767, kLargestOutputShift};
   const LayerLimits pooled{Int16Product::kGroup, 4 * kLargestOfFour, kLargestActivationShift};

@@ -15,7 +15,7 @@ inline void to_conv_input(std::uint16_t depth, std::uint8_t& out) {
 
 // Every 2x2 pixels become one pixel of four channels, channel = 2 * (row & 1) + (column & 1).
 template <class N>
-void space_to_depth(const DepthImage& image, typename Layers<N>::Conv1::Input& out) {
+[[gnu::noinline]] void space_to_depth(const DepthImage& image, typename Layers<N>::Conv1::Input& out) {
   constexpr int kSide = DepthImage::kSide;
   out.number.fill({});
   for (int y = 0; y < kSide / 2; ++y) {

@@ -3,8 +3,9 @@
 
 #include <cstring>
 
-#include "gnc/nn/kernels/blocks.hpp"
+#include "gnc/nn/kernels/scalar.hpp"
 #include "gnc/nn/kernels/sets.hpp"
+#include "gnc/nn/kernels/stretches.hpp"
 
 namespace tumblesight::gnc::kernels {
 namespace {
@@ -14,32 +15,105 @@ TUMBLESIGHT_INLINE std::uint32_t word(const void* from) {
   std::memcpy(&bytes, from, sizeof bytes);
   return bytes;
 }
-TUMBLESIGHT_INLINE std::uint32_t turned(std::uint32_t bytes) {
-  return (bytes >> 8) | (bytes << 24);
+// Bytes 1 and 3 as numbers of 16 bits; the compiler does not know that the turn is part of the instruction.
+TUMBLESIGHT_INLINE int16x2_t odd_signed(std::uint32_t bytes) {
+  int16x2_t numbers;
+  asm("sxtb16 %0, %1, ror #8" : "=r"(numbers) : "r"(bytes));
+  return numbers;
+}
+TUMBLESIGHT_INLINE int16x2_t odd_unsigned(std::uint32_t bytes) {
+  int16x2_t numbers;
+  asm("uxtb16 %0, %1, ror #8" : "=r"(numbers) : "r"(bytes));
+  return numbers;
 }
 
-// One channel: inputs 0 and 2 of a group in one word, 1 and 3 in the other.
+// A group's four inputs or weights of 8 bits as factors of 16: numbers 0 and 2 in one word, 1 and 3 in the other.
+struct Factors {
+  int16x2_t even, odd;
+};
+TUMBLESIGHT_INLINE Factors widened(const std::uint8_t* inputs) {
+  const std::uint32_t four = word(inputs);
+  return {static_cast<int16x2_t>(__uxtb16(four)), odd_unsigned(four)};
+}
+TUMBLESIGHT_INLINE Factors widened(const std::int8_t* weights) {
+  const std::uint32_t four = word(weights);
+  return {__sxtb16(static_cast<int8x4_t>(four)), odd_signed(four)};
+}
+
+// One group of one channel for six pixels. Left to itself the compiler loads the words one by one and runs out of registers.
+TUMBLESIGHT_INLINE void add_group(std::int32_t (&sum)[6], const Factors*& values, const std::int8_t*& weight, int step) {
+  std::int32_t even, odd;
+  std::uint64_t value;
+  asm("ldr %[odd], [%[weight]]\n"
+      "add %[weight], %[weight], %[step]\n"
+      "sxtb16 %[even], %[odd]\n"
+      "sxtb16 %[odd], %[odd], ror #8\n"
+      "ldrd %[value], %H[value], [%[values]], #8\n"
+      "smlad %[sum0], %[value], %[even], %[sum0]\n"
+      "smlad %[sum0], %H[value], %[odd], %[sum0]\n"
+      "ldrd %[value], %H[value], [%[values]], #8\n"
+      "smlad %[sum1], %[value], %[even], %[sum1]\n"
+      "smlad %[sum1], %H[value], %[odd], %[sum1]\n"
+      "ldrd %[value], %H[value], [%[values]], #8\n"
+      "smlad %[sum2], %[value], %[even], %[sum2]\n"
+      "smlad %[sum2], %H[value], %[odd], %[sum2]\n"
+      "ldrd %[value], %H[value], [%[values]], #8\n"
+      "smlad %[sum3], %[value], %[even], %[sum3]\n"
+      "smlad %[sum3], %H[value], %[odd], %[sum3]\n"
+      "ldrd %[value], %H[value], [%[values]], #8\n"
+      "smlad %[sum4], %[value], %[even], %[sum4]\n"
+      "smlad %[sum4], %H[value], %[odd], %[sum4]\n"
+      "ldrd %[value], %H[value], [%[values]], #8\n"
+      "smlad %[sum5], %[value], %[even], %[sum5]\n"
+      "smlad %[sum5], %H[value], %[odd], %[sum5]\n"
+      : [even] "=&r"(even), [odd] "=&r"(odd), [value] "=&r"(value), [values] "+r"(values), [weight] "+r"(weight),
+        [sum0] "+r"(sum[0]), [sum1] "+r"(sum[1]), [sum2] "+r"(sum[2]), [sum3] "+r"(sum[3]), [sum4] "+r"(sum[4]),
+        [sum5] "+r"(sum[5])
+      : [step] "r"(step)
+      : "memory");
+}
+
+// Convolution.
 struct Int8 {
-  using Kind = Int8Product;
-  static constexpr int kWidth = 1;
-  using Sums = std::int32_t;
-  struct Weights {
-    int16x2_t even, odd;
-  };
-  using Values = Weights;
-  TUMBLESIGHT_INLINE Sums load(const std::int32_t* from) { return *from; }
-  TUMBLESIGHT_INLINE void store(Sums sum, std::int32_t* to) { *to = sum; }
-  TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) {
-    const std::uint32_t four = word(from);
-    return {__sxtb16(static_cast<int8x4_t>(four)), __sxtb16(static_cast<int8x4_t>(turned(four)))};
+  static constexpr int kPixels = 6;
+  static constexpr int kStretch = 36;
+  static constexpr int kUnrolled = 3;
+  using Group = std::array<Factors, kPixels>;
+
+  TUMBLESIGHT_INLINE void prepare(const std::uint8_t* const (&in)[kPixels], int offset, Group& group) {
+#pragma GCC unroll 6
+    for (int p = 0; p < kPixels; ++p) group[p] = widened(in[p] + offset);
   }
-  TUMBLESIGHT_INLINE Values values(const std::uint8_t* from) {
-    const std::uint32_t four = word(from);
-    return {static_cast<int16x2_t>(__uxtb16(four)), static_cast<int16x2_t>(__uxtb16(turned(four)))};
+
+  TUMBLESIGHT_INLINE void add(const Group* stretch, int groups, const std::int32_t* start, int start_step,
+                              const std::int8_t* weights, std::int32_t* out, int channels) {
+    if (start != out) {
+      for (int p = 0; p < kPixels; ++p) std::memcpy(out + p * channels, start + p * start_step, sizeof(*start) * channels);
+    }
+    add_to(out, stretch, groups, weights, channels);
   }
-  TUMBLESIGHT_INLINE void add(Sums& sum, const Values& value, const Weights& weight) {
-    sum = __smlad(weight.even, value.even, sum);
-    sum = __smlad(weight.odd, value.odd, sum);
+
+  [[gnu::noinline]] static void add_to(std::int32_t* out, const Group* stretch, int groups, const std::int8_t* weights,
+                                       int channels) {
+    const int step = channels * Int8Product::kGroup;
+    const Factors* const end = stretch[0].data() + groups * kPixels;
+    const Factors* const end_unrolled = stretch[0].data() + groups / kUnrolled * kUnrolled * kPixels;
+    for (int c = 0; c < channels; ++c, ++out, weights += Int8Product::kGroup) {
+      asm("" : "+r"(out));  // one pointer, not one a pixel
+      std::int32_t sum[kPixels];
+#pragma GCC unroll 6
+      for (int p = 0; p < kPixels; ++p) sum[p] = out[p * channels];
+      const std::int8_t* weight = weights;
+      const Factors* values = stretch[0].data();
+      while (values != end_unrolled) {
+        add_group(sum, values, weight, step);
+        add_group(sum, values, weight, step);
+        add_group(sum, values, weight, step);
+      }
+      while (values != end) add_group(sum, values, weight, step);
+#pragma GCC unroll 6
+      for (int p = 0; p < kPixels; ++p) out[p * channels] = sum[p];
+    }
   }
 };
 
@@ -51,9 +125,9 @@ struct Int16 {
     std::int32_t first, second;
   };
   struct Weights {
-    int16x2_t first, second;
+    int16x2_t of_input0, of_input1;
   };
-  using Values = int16x2_t;
+  using Values = std::int32_t;
   TUMBLESIGHT_INLINE Sums load(const std::int32_t* from) { return {from[0], from[1]}; }
   TUMBLESIGHT_INLINE void store(const Sums& sum, std::int32_t* to) {
     to[0] = sum.first;
@@ -61,25 +135,28 @@ struct Int16 {
   }
   TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) {
     const std::uint32_t both = word(from);
-    const auto input0 = static_cast<std::uint32_t>(__sxtb16(static_cast<int8x4_t>(both)));
-    const auto input1 = static_cast<std::uint32_t>(__sxtb16(static_cast<int8x4_t>(turned(both))));
-    return {static_cast<int16x2_t>((input0 & 0xFFFFU) | (input1 << 16)),
-            static_cast<int16x2_t>((input0 >> 16) | (input1 & 0xFFFF0000U))};
+    return {__sxtb16(static_cast<int8x4_t>(both)), odd_signed(both)};
   }
-  TUMBLESIGHT_INLINE Values values(const std::int16_t* from) { return static_cast<int16x2_t>(word(from)); }
+  TUMBLESIGHT_INLINE Values values(const std::int16_t* from) { return static_cast<Values>(word(from)); }
   TUMBLESIGHT_INLINE void add(Sums& sum, Values value, const Weights& weight) {
-    sum.first = __smlad(weight.first, value, sum.first);
-    sum.second = __smlad(weight.second, value, sum.second);
+    sum.first = __smlabb(weight.of_input0, value, sum.first);
+    sum.second = __smlatb(weight.of_input0, value, sum.second);
+    sum.first = __smlabt(weight.of_input1, value, sum.first);
+    sum.second = __smlatt(weight.of_input1, value, sum.second);
   }
 };
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  Blocks<Int8>::product<2, 2, 4>(shape, in, start, weights, out);
+  if (shape.rows * shape.columns >= Int8::kPixels) {
+    Stretches<Int8>::product(shape, in, start, weights, out);
+  } else {
+    Blocks<Scalar<Int8Product>>::product<1, 1, 1>(shape, in, start, weights, out);
+  }
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  Blocks<Int16>::product<2, 1, 2>(shape, in, start, weights, out);
+  Blocks<Int16>::product<2, 1, 4>(shape, in, start, weights, out);
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
   pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
@@ -90,6 +167,6 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedDsp{InstructionSet::kDsp, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedDsp{InstructionSet::kDsp, Int8::kPixels, convolve, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

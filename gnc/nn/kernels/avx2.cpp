@@ -70,7 +70,7 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, 5, convolve, multiply, max_pool, average_pool};
 
 #if TUMBLESIGHT_FLOAT32
 namespace {
@@ -85,7 +85,7 @@ void float_average_pool(const float* sums, int columns, int channels, const std:
   pool<Float32, MeanOfFour<Float32>>(sums, columns, channels, shift, out);
 }
 }  // namespace
-const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, float_multiply, float_multiply, float_max_pool, float_average_pool};
+const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, 12, float_multiply, float_multiply, float_max_pool, float_average_pool};
 #endif
 
 }  // namespace tumblesight::gnc::kernels

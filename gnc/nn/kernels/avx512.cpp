@@ -22,6 +22,6 @@ void average_pool(const float* sums, int columns, int channels, const std::uint8
 
 }  // namespace
 
-const Kernels<Float32> kFloatAvx512{InstructionSet::kAvx512, multiply, multiply, max_pool, average_pool};
+const Kernels<Float32> kFloatAvx512{InstructionSet::kAvx512, 12, multiply, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

@@ -54,6 +54,6 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvx512Vnni{InstructionSet::kAvx512Vnni, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedAvx512Vnni{InstructionSet::kAvx512Vnni, 12, convolve, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

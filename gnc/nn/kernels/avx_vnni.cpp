@@ -50,6 +50,6 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvxVnni{InstructionSet::kAvxVnni, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedAvxVnni{InstructionSet::kAvxVnni, 6, convolve, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

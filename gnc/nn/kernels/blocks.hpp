@@ -157,9 +157,7 @@ template <class N>
 struct LargestOfFour {
   using Out = ConvInput<N>;
   TUMBLESIGHT_INLINE void pool(const Sum<N> (&four)[4], int shift, Out& out) {
-    const Sum<N> top = four[0] > four[1] ? four[0] : four[1];
-    const Sum<N> bottom = four[2] > four[3] ? four[2] : four[3];
-    activate(top > bottom ? top : bottom, shift, out);
+    activate(larger_convolved(larger_convolved(four[0], four[1]), larger_convolved(four[2], four[3])), shift, out);
   }
 };
 template <class N>

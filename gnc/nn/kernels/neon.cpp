@@ -1,4 +1,4 @@
-// Arm NEON, ARMv7 and ARMv8. Weights are widened to 16 bits; a group's inputs are multiplied lane by lane.
+// Arm NEON, ARMv7 and ARMv8.
 #include <arm_neon.h>
 
 #include <cstring>
@@ -8,6 +8,140 @@
 
 namespace tumblesight::gnc::kernels {
 namespace {
+
+// Convolution, signed times signed: of x w = (x - 128) w + 128 w the last part is the same for every pixel. As no weight is
+// -128, two products fit into 16 bits, and so two groups are multiplied before their products are added in pairs.
+constexpr int kQuad = 4;  // channels whose groups fill a vector
+
+TUMBLESIGHT_INLINE int8x16_t less_128(const std::uint8_t* group) {
+  std::uint32_t four;
+  std::memcpy(&four, group, sizeof four);
+  uint32x4_t spread = vdupq_n_u32(four);
+  asm("" : "+w"(spread));  // so that it is loaded where it is spread
+  return vreinterpretq_s8_u32(veorq_u32(spread, vdupq_n_u32(0x80808080)));
+}
+TUMBLESIGHT_INLINE int16x8_t product_low(int8x16_t a, int8x16_t b) {
+  return vmull_s8(vget_low_s8(a), vget_low_s8(b));
+}
+TUMBLESIGHT_INLINE int16x8_t product_high(int8x16_t a, int8x16_t b) {
+#if defined(__aarch64__)
+  return vmull_high_s8(a, b);
+#else
+  return vmull_s8(vget_high_s8(a), vget_high_s8(b));
+#endif
+}
+TUMBLESIGHT_INLINE int16x8_t plus_low(int16x8_t sum, int8x16_t a, int8x16_t b) {
+  return vmlal_s8(sum, vget_low_s8(a), vget_low_s8(b));
+}
+TUMBLESIGHT_INLINE int16x8_t plus_high(int16x8_t sum, int8x16_t a, int8x16_t b) {
+#if defined(__aarch64__)
+  return vmlal_high_s8(sum, a, b);
+#else
+  return vmlal_s8(sum, vget_high_s8(a), vget_high_s8(b));
+#endif
+}
+
+// Sums of four channels, each in two halves.
+struct Quad {
+  int32x4_t low, high;
+  TUMBLESIGHT_INLINE int32x4_t sums_of(const Quad& quad) {
+#if defined(__aarch64__)
+    return vpaddq_s32(quad.low, quad.high);
+#else
+    return vcombine_s32(vpadd_s32(vget_low_s32(quad.low), vget_high_s32(quad.low)),
+                        vpadd_s32(vget_low_s32(quad.high), vget_high_s32(quad.high)));
+#endif
+  }
+};
+
+// start + 128 times the sum of the weights, of kQuads quads of channels.
+template <int kQuads>
+TUMBLESIGHT_INLINE void start_sums(const ProductShape& shape, const std::int32_t* start, const std::int8_t* weights,
+                                   int32x4_t (&sums)[kQuads]) {
+  constexpr int kMost = 128;  // pairs of weights whose sum fits into 16 bits
+  int32x4_t total[kQuads] = {};
+  for (int rest = shape.strips * shape.strip_length / Int8Product::kGroup; rest > 0; rest -= kMost) {
+    int16x8_t pairs[kQuads] = {};
+    for (int i = smaller_of(rest, kMost); i > 0; --i, weights += shape.channels * Int8Product::kGroup) {
+      for (int q = 0; q < kQuads; ++q) pairs[q] = vpadalq_s8(pairs[q], vld1q_s8(weights + 16 * q));
+    }
+    for (int q = 0; q < kQuads; ++q) total[q] = vpadalq_s16(total[q], pairs[q]);
+  }
+  for (int q = 0; q < kQuads; ++q) sums[q] = vaddq_s32(vld1q_s32(start + kQuad * q), vshlq_n_s32(total[q], 7));
+}
+
+template <int kPixels, int kQuads>
+TUMBLESIGHT_INLINE void convolve_block(const ProductShape& shape, const std::uint8_t* const (&in)[kPixels],
+                                       const int32x4_t (&start)[kQuads], const std::int8_t* weights,
+                                       std::int32_t* const (&out)[kPixels]) {
+  Quad sum[kPixels][kQuads] = {};
+  const int next = shape.channels * Int8Product::kGroup;  // group
+  for (int strip = 0; strip < shape.strips; ++strip) {
+    int at = strip * shape.strip_step;
+    const int end = at + shape.strip_length;
+    for (; at + 8 <= end; at += 8, weights += 2 * next) {
+      int8x16_t first[kQuads], second[kQuads];
+#pragma GCC unroll 4
+      for (int q = 0; q < kQuads; ++q) {
+        first[q] = vld1q_s8(weights + 16 * q);
+        second[q] = vld1q_s8(weights + next + 16 * q);
+      }
+#pragma GCC unroll 4
+      for (int p = 0; p < kPixels; ++p) {
+        const int8x16_t value = less_128(in[p] + at), value_after = less_128(in[p] + at + 4);
+#pragma GCC unroll 4
+        for (int q = 0; q < kQuads; ++q) {
+          sum[p][q].low = vpadalq_s16(sum[p][q].low, plus_low(product_low(first[q], value), second[q], value_after));
+          sum[p][q].high = vpadalq_s16(sum[p][q].high, plus_high(product_high(first[q], value), second[q], value_after));
+          // Two quads at a time: more at once, and the registers do not suffice.
+          if (q % 2 == 1) asm volatile("" : "+w"(sum[p][q - 1].low), "+w"(sum[p][q - 1].high), "+w"(sum[p][q].low), "+w"(sum[p][q].high));
+        }
+      }
+    }
+    if (at < end) {
+#pragma GCC unroll 4
+      for (int p = 0; p < kPixels; ++p) {
+        const int8x16_t value = less_128(in[p] + at);
+#pragma GCC unroll 4
+        for (int q = 0; q < kQuads; ++q) {
+          const int8x16_t weight = vld1q_s8(weights + 16 * q);
+          sum[p][q].low = vpadalq_s16(sum[p][q].low, product_low(weight, value));
+          sum[p][q].high = vpadalq_s16(sum[p][q].high, product_high(weight, value));
+        }
+      }
+      weights += next;
+    }
+  }
+#pragma GCC unroll 4
+  for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 4
+    for (int q = 0; q < kQuads; ++q) vst1q_s32(out[p] + kQuad * q, vaddq_s32(start[q], Quad::sums_of(sum[p][q])));
+  }
+}
+
+// Every pixel, kPixels at a time, for channels in blocks of kQuads quads. The last pixels are moved back to end at the last
+// one; what is done again comes out the same.
+template <int kPixels, int kQuads>
+TUMBLESIGHT_INLINE void convolve_all(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
+                                     const std::int8_t* weights, std::int32_t* out) {
+  const int pixels = shape.rows * shape.columns;
+  for (int c = 0; c < shape.channels; c += kQuads * kQuad) {
+    const std::int8_t* const of_channels = weights + c * Int8Product::kGroup;
+    int32x4_t first_sums[kQuads];
+    start_sums<kQuads>(shape, start + c, of_channels, first_sums);
+    for (int next = 0; next < pixels; next += kPixels) {
+      const int first = smaller_of(next, pixels - kPixels);
+      const std::uint8_t* block_in[kPixels];
+      std::int32_t* block_out[kPixels];
+      for (int p = 0; p < kPixels; ++p) {
+        const int y = (first + p) / shape.columns;
+        block_in[p] = in + y * shape.row_step + (first + p - y * shape.columns) * shape.column_step;
+        block_out[p] = out + (first + p) * shape.channels + c;
+      }
+      convolve_block<kPixels, kQuads>(shape, block_in, first_sums, of_channels, block_out);
+    }
+  }
+}
 
 // Eight channels.
 struct Neon {
@@ -27,29 +161,7 @@ struct Neon {
   }
 };
 
-struct Int8 : Neon {
-  using Kind = Int8Product;
-  struct Weights {
-    int16x8_t of_input[4];
-  };
-  using Values = int16x4_t;
-  TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) {
-    const int8x8x4_t apart = vld4_s8(from);
-    return {{vmovl_s8(apart.val[0]), vmovl_s8(apart.val[1]), vmovl_s8(apart.val[2]), vmovl_s8(apart.val[3])}};
-  }
-  TUMBLESIGHT_INLINE Values values(const std::uint8_t* from) {
-    std::uint32_t group;
-    std::memcpy(&group, from, sizeof group);
-    return vget_low_s16(vreinterpretq_s16_u16(vmovl_u8(vreinterpret_u8_u32(vdup_n_u32(group)))));
-  }
-  TUMBLESIGHT_INLINE void add(Sums& sum, Values value, const Weights& weight) {
-    add_lane<0>(sum, value, weight.of_input[0]);
-    add_lane<1>(sum, value, weight.of_input[1]);
-    add_lane<2>(sum, value, weight.of_input[2]);
-    add_lane<3>(sum, value, weight.of_input[3]);
-  }
-};
-
+// Dense layers: weights are widened to 16 bits; a group's inputs are multiplied lane by lane.
 struct Int16 : Neon {
   using Kind = Int16Product;
   struct Weights {
@@ -71,15 +183,20 @@ struct Int16 : Neon {
   }
 };
 
+constexpr int kConvolvedPixels = 2;
 #if defined(__aarch64__)
-constexpr int kPixels = 5, kPacks = 2, kSinglePacks = 8;  // 32 registers
+constexpr int kQuads = 4, kPixels = 5, kPacks = 2, kSinglePacks = 8;  // 32 registers
 #else
-constexpr int kPixels = 4, kPacks = 1, kSinglePacks = 4;  // 16 registers
+constexpr int kQuads = 2, kPixels = 4, kPacks = 1, kSinglePacks = 4;  // 16 registers
 #endif
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  Blocks<Int8>::product<kPixels, kPacks, kSinglePacks>(shape, in, start, weights, out);
+  if (shape.rows * shape.columns >= kConvolvedPixels) {
+    convolve_all<kConvolvedPixels, kQuads>(shape, in, start, weights, out);
+  } else {
+    convolve_all<1, kQuads>(shape, in, start, weights, out);
+  }
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
@@ -94,6 +211,6 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedNeon{InstructionSet::k128Bit, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedNeon{InstructionSet::k128Bit, kConvolvedPixels, convolve, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

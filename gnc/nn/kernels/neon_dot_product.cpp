@@ -55,7 +55,7 @@ void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int3
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedDotProduct{InstructionSet::kDotProduct, convolve, kFixedNeon.multiply,
+const Kernels<FixedPoint> kFixedDotProduct{InstructionSet::kDotProduct, 5, convolve, kFixedNeon.multiply,
                                            kFixedNeon.max_pool, kFixedNeon.average_pool};
 
 }  // namespace tumblesight::gnc::kernels

@@ -1,5 +1,8 @@
+#include <type_traits>
+
 #include "gnc/nn/kernels/scalar.hpp"
 #include "gnc/nn/kernels/sets.hpp"
+#include "gnc/nn/kernels/stretches.hpp"
 
 namespace tumblesight::gnc::kernels {
 namespace {
@@ -8,6 +11,149 @@ template <class Kind>
 void product(const ProductShape& shape, const typename Kind::Input* in, const typename Kind::Sum* start,
              const typename Kind::Weight* weights, typename Kind::Sum* out) {
   Blocks<Scalar<Kind>>::template product<2, 4, 8>(shape, in, start, weights, out);
+}
+
+// Done with this sum before anything else begins: left to itself the compiler begins too much, and runs out of registers.
+TUMBLESIGHT_INLINE void complete(std::int32_t& sum) {
+  asm volatile("" : : "r"(sum) : "memory");
+}
+
+// A few pixels times four channels, every sum in a register.
+struct SumsInRegisters {
+#if defined(__sparc__)  // which keeps eight of its 32 registers for itself
+  static constexpr int kPixels = 3;
+#else
+  static constexpr int kPixels = 4;
+#endif
+  static constexpr int kChannels = 4;
+  static constexpr int kStretch = 72;
+  static constexpr int kGroup = Int8Product::kGroup;
+  struct alignas(kGroup) Inputs : std::array<std::uint8_t, kGroup> {};
+  using Group = std::array<Inputs, kPixels>;
+
+  TUMBLESIGHT_INLINE void prepare(const std::uint8_t* const (&in)[kPixels], int offset, Group& group) {
+#pragma GCC unroll 4
+    for (int p = 0; p < kPixels; ++p) {
+      std::memcpy(group[p].data(), __builtin_assume_aligned(in[p] + offset, kGroup), sizeof group[p]);
+    }
+  }
+
+  TUMBLESIGHT_INLINE void add_group(const Group& group, const std::int8_t* weight, std::int32_t (&sum)[kChannels][kPixels]) {
+#pragma GCC unroll 4
+    for (int i = 0; i < kGroup; ++i) {
+      std::int32_t value[kPixels];
+#pragma GCC unroll 4
+      for (int p = 0; p < kPixels; ++p) value[p] = group[p][i];
+#pragma GCC unroll 4
+      for (int k = 0; k < kChannels; ++k) {
+        const std::int32_t factor = weight[k * kGroup + i];
+#pragma GCC unroll 4
+        for (int p = 0; p < kPixels; ++p) {
+          sum[k][p] += value[p] * factor;
+          complete(sum[k][p]);
+        }
+      }
+    }
+  }
+
+  [[gnu::noinline]] static void add(const Group* stretch, int groups, const std::int32_t* start, int start_step,
+                                    const std::int8_t* weights, std::int32_t* out, int channels) {
+    for (int c = 0; c < channels; c += kChannels, start += kChannels, out += kChannels, weights += kChannels * Int8Product::kGroup) {
+      std::int32_t sum[kChannels][kPixels];
+#pragma GCC unroll 4
+      for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 4
+        for (int k = 0; k < kChannels; ++k) sum[k][p] = start[p * start_step + k];
+      }
+      const std::int8_t* weight = weights;
+      const Group* group = stretch;
+      const int step = channels * Int8Product::kGroup;
+      int rest = groups;
+      for (; rest >= 3; rest -= 3, group += 3, weight += 3 * step) {
+        add_group(group[0], weight, sum);
+        add_group(group[1], weight + step, sum);
+        add_group(group[2], weight + 2 * step, sum);
+      }
+      for (; rest > 0; --rest, ++group, weight += step) add_group(*group, weight, sum);
+#pragma GCC unroll 4
+      for (int p = 0; p < kPixels; ++p) {
+#pragma GCC unroll 4
+        for (int k = 0; k < kChannels; ++k) out[p * channels + k] = sum[k][p];
+      }
+    }
+  }
+};
+
+// With registers of 64 bits, two pixels in each: x0 + 2^32 x1 times a weight adds to two sums at once. A negative lower one
+// borrows from the upper one, and gives it back at the end.
+struct PairsByEight {
+  static constexpr int kPairs = 2;
+  static constexpr int kPixels = 2 * kPairs;
+  static constexpr int kChannels = 8;
+  static constexpr int kStretch = 18;
+  using Group = std::array<std::array<std::uint64_t, kPairs>, Int8Product::kGroup>;
+
+  TUMBLESIGHT_INLINE std::uint64_t pair_of(std::int32_t low, std::int32_t high) {
+    return static_cast<std::uint64_t>(low) + (static_cast<std::uint64_t>(high) << 32);
+  }
+  TUMBLESIGHT_INLINE std::int32_t low_of(std::uint64_t pair) { return static_cast<std::int32_t>(pair); }
+  TUMBLESIGHT_INLINE std::int32_t high_of(std::uint64_t pair) {
+    return static_cast<std::int32_t>((pair - static_cast<std::uint64_t>(low_of(pair))) >> 32);
+  }
+
+  TUMBLESIGHT_INLINE void prepare(const std::uint8_t* const (&in)[kPixels], int offset, Group& group) {
+#pragma GCC unroll 2
+    for (int p = 0; p < kPairs; ++p) {
+#pragma GCC unroll 4
+      for (int i = 0; i < Int8Product::kGroup; ++i) {
+        group[i][p] = pair_of(in[2 * p][offset + i], in[2 * p + 1][offset + i]);
+      }
+    }
+  }
+
+  [[gnu::noinline]] static void add(const Group* stretch, int groups, const std::int32_t* start, int start_step,
+                                    const std::int8_t* weights, std::int32_t* out, int channels) {
+    for (int c = 0; c < channels; c += kChannels, start += kChannels, out += kChannels, weights += kChannels * Int8Product::kGroup) {
+      std::uint64_t sum[kPairs][kChannels];
+#pragma GCC unroll 2
+      for (int p = 0; p < kPairs; ++p) {
+#pragma GCC unroll 8
+        for (int k = 0; k < kChannels; ++k) sum[p][k] = pair_of(start[2 * p * start_step + k], start[(2 * p + 1) * start_step + k]);
+      }
+      const std::int8_t* weight = weights;
+      for (const Group* group = stretch; group != stretch + groups; ++group, weight += channels * Int8Product::kGroup) {
+#pragma GCC unroll 4
+        for (int i = 0; i < Int8Product::kGroup; ++i) {
+#pragma GCC unroll 8
+          for (int k = 0; k < kChannels; ++k) {
+            const auto factor = static_cast<std::uint64_t>(std::int64_t{weight[k * Int8Product::kGroup + i]});
+#pragma GCC unroll 2
+            for (int p = 0; p < kPairs; ++p) sum[p][k] += (*group)[i][p] * factor;
+          }
+          asm volatile("" ::: "memory");  // what comes later is not fetched now: registers are few
+        }
+      }
+#pragma GCC unroll 2
+      for (int p = 0; p < kPairs; ++p) {
+#pragma GCC unroll 8
+        for (int k = 0; k < kChannels; ++k) {
+          out[2 * p * channels + k] = low_of(sum[p][k]);
+          out[(2 * p + 1) * channels + k] = high_of(sum[p][k]);
+        }
+      }
+    }
+  }
+};
+
+using Unit = std::conditional_t<sizeof(void*) == 8, PairsByEight, SumsInRegisters>;
+
+void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
+              const std::int8_t* weights, std::int32_t* out) {
+  if (shape.rows * shape.columns >= Unit::kPixels) {
+    Stretches<Unit>::product(shape, in, start, weights, out);
+  } else {
+    product<Int8Product>(shape, in, start, weights, out);
+  }
 }
 
 template <class N>
@@ -21,10 +167,10 @@ void average_pool(const Sum<N>* sums, int columns, int channels, const std::uint
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedPortable{InstructionSet::kPortable, product<Int8Product>, product<Int16Product>,
+const Kernels<FixedPoint> kFixedPortable{InstructionSet::kPortable, Unit::kPixels, convolve, product<Int16Product>,
                                          max_pool<FixedPoint>, average_pool<FixedPoint>};
 #if TUMBLESIGHT_FLOAT32
-const Kernels<Float32> kFloatPortable{InstructionSet::kPortable, product<Float32Product>, product<Float32Product>,
+const Kernels<Float32> kFloatPortable{InstructionSet::kPortable, 2, product<Float32Product>, product<Float32Product>,
                                       max_pool<Float32>, average_pool<Float32>};
 #endif
 

@@ -258,6 +258,13 @@ TEST(FixedPointImage, IsRefusedWhenASumCouldLeave32Bits) {
   EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
 }
 
+TEST(FixedPointImage, IsRefusedWhenTwoSumsOfAConvolutionCouldBeTooFarApart) {
+  Bytes image = random_model_image<FixedPoint>(7);
+  put_u32(image, offset_of(image, 1), 1U << 30);  // a bias of conv1
+  seal_section(image, 1);
+  EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
+}
+
 TEST(FixedPointImage, IsRefusedWithAWeightThatHasNoOpposite) {
   for (const int section : {0, 21, 22}) {  // conv1, lstm: forward and recurrent
     Bytes image = random_model_image<FixedPoint>(33);

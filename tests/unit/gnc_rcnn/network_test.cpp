@@ -96,6 +96,7 @@ TEST(NetworkWeights, VisitsEveryParameterOnceUnderUniqueNames) {
     tensor.fill(static_cast<float>(names.size()));
   });
   EXPECT_EQ(count, kParameterCount);
+  EXPECT_EQ(kMacCount, 34'858'368U) << "tests/audit/audit.py counts instructions to each of them";
   EXPECT_EQ(names.size(), kTensorCount<Float32>);
   EXPECT_EQ(names.front(), "conv1.weight");
   EXPECT_EQ(names.back(), "head2.bias");
