@@ -7,6 +7,7 @@
 #include "sim/cli/bench_command.hpp"
 #include "sim/cli/evaluate_command.hpp"
 #include "sim/cli/quantize_command.hpp"
+#include "sim/cli/record_command.hpp"
 #ifdef TUMBLESIGHT_HAS_ONNX
 #include "sim/cli/export_command.hpp"
 #endif
@@ -51,6 +52,7 @@ int main(int argc, char** argv) {
 #endif
     sim::add_evaluate_command(app, command_line);
     sim::add_quantize_command(app);
+    sim::add_record_command(app);
     sim::add_bench_command(app);
 #ifdef TUMBLESIGHT_HAS_ONNX
     sim::add_export_command(app);

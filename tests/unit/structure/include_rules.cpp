@@ -80,8 +80,8 @@ std::string project_objection(const std::string& file, const std::string& path) 
                 "a platform knows gnc, the hal interfaces and itself only");
   }
   if (starts_with(file, "sim/")) {
-    return only(starts_with_any(path, {"sim/", "gnc/", "hal/dds/idl/"}) || is_interface(path),
-                "sim knows sim, gnc, the hal interfaces and hal/dds/idl only");
+    return only(starts_with_any(path, {"sim/", "gnc/", "hal/dds/idl/", "hal/replay/recording.hpp"}) || is_interface(path),
+                "sim knows sim, gnc, the hal interfaces, hal/dds/idl and the recording's format only");
   }
   return {};
 }

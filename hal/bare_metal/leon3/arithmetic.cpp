@@ -1,0 +1,16 @@
+// Division of 64 bits, which the compiler leaves to a library; Debian's is for SPARC V9.
+#include "gnc/numerics/division.hpp"
+
+extern "C" {
+
+std::uint64_t __udivdi3(std::uint64_t dividend, std::uint64_t divisor) {
+  return tumblesight::gnc::quotient_bit_by_bit(dividend, divisor);
+}
+
+std::int64_t __divdi3(std::int64_t dividend, std::int64_t divisor) {
+  const auto magnitude = [](std::int64_t x) { return static_cast<std::uint64_t>(x < 0 ? -x : x); };
+  const auto quotient = static_cast<std::int64_t>(__udivdi3(magnitude(dividend), magnitude(divisor)));
+  return (dividend < 0) != (divisor < 0) ? -quotient : quotient;
+}
+
+}  // extern "C"

@@ -1,0 +1,63 @@
+#include "hal/replay/console_link.hpp"
+
+#include "hal/board.hpp"
+#include "hal/replay/text_line.hpp"
+
+namespace tumblesight::hal::replay {
+namespace {
+
+// 30 bits behind the point to millionths.
+std::int64_t millionths(std::int32_t q30) {
+  return (std::int64_t{q30} * 1'000'000 + (1 << 29)) >> 30;
+}
+// Microradians to hundredths of a degree.
+std::int64_t hundredths_of_degree(std::uint32_t urad) {
+  return (std::int64_t{urad} * 5'729'578 + 500'000'000) / 1'000'000'000;
+}
+
+}  // namespace
+
+void ConsoleLink::digest_time(std::int64_t time_ns) {
+  const auto bits = static_cast<std::uint64_t>(time_ns);
+  crc_.add_u32(static_cast<std::uint32_t>(bits));
+  crc_.add_u32(static_cast<std::uint32_t>(bits >> 32));
+}
+
+void ConsoleLink::publish(const AttitudeReport& report) {
+  report_ = report;
+  digest_time(report.time_ns);
+  digest_time(report.exposure_time_ns);
+  crc_.add_u32(report.sequence_number);
+  crc_.add_u32(report.validity);
+  crc_.add_u32(report.frames_since_reset);
+  for (const std::int32_t part : report.q_lrf_trf) crc_.add_u32(static_cast<std::uint32_t>(part));
+  crc_.add_u32(report.predicted_error_urad);
+  for (const std::int32_t part : report.q_lrf_trf_single_frame) crc_.add_u32(static_cast<std::uint32_t>(part));
+  crc_.add_u32(report.predicted_error_single_frame_urad);
+}
+
+void ConsoleLink::publish(const Housekeeping& housekeeping) {
+  housekeeping_ = housekeeping;
+  TextLine line;
+  line.number(report_.sequence_number, 6).number(report_.frames_since_reset, 5);
+  for (const std::int32_t part : report_.q_lrf_trf) line.decimal(millionths(part), 6, 11);
+  line.decimal(hundredths_of_degree(report_.predicted_error_urad), 2, 9);
+  line.decimal(housekeeping.inference_us, 3, 12);
+  line.text(report_.validity == 0 ? "\n" : "  not valid\n");
+  board::write(line.c_str());
+}
+
+void ConsoleLink::publish(const Event& event) {
+  digest_time(event.time_ns);
+  crc_.add_u32(event.id);
+  crc_.add_u32(event.severity);
+  TextLine line;
+  line.text("        event ").number(event.id);
+  for (const std::int32_t argument : event.arguments) {
+    crc_.add_u32(static_cast<std::uint32_t>(argument));
+    line.text(" ").number(argument);
+  }
+  board::write(line.text("\n").c_str());
+}
+
+}  // namespace tumblesight::hal::replay

@@ -1,0 +1,32 @@
+// ConsoleLink: telemetry as lines of text on the board's console, and a digest over all that must be the same on every
+// processor. Nobody sends commands.
+#pragma once
+
+#include <cstdint>
+
+#include "gnc/rcnn/crc32.hpp"
+#include "hal/link.hpp"
+
+namespace tumblesight::hal::replay {
+
+class ConsoleLink final : public Link {
+ public:
+  bool receive(Command&) override { return false; }
+  void publish(const AttitudeReport& report) override;
+  void publish(const Housekeeping& housekeeping) override;
+  void publish(const Event& event) override;
+
+  // Of every report and event so far, without what the stopwatch measured; `state_crc32` joins it.
+  void digest(std::uint32_t state_crc32) { crc_.add_u32(state_crc32); }
+  std::uint32_t digest() const { return crc_.value(); }
+  const Housekeeping& housekeeping() const { return housekeeping_; }
+
+ private:
+  void digest_time(std::int64_t time_ns);
+
+  gnc::Crc32 crc_;
+  AttitudeReport report_;
+  Housekeeping housekeeping_;
+};
+
+}  // namespace tumblesight::hal::replay

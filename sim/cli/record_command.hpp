@@ -1,0 +1,10 @@
+// tumblesight record: rendered frames as a recording, for the flight application where no simulator is.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tumblesight::sim {
+
+void add_record_command(CLI::App& app);
+
+}  // namespace tumblesight::sim
