@@ -1,0 +1,99 @@
+"""tests/audit/run: builds, flies and measures flight_replay on every processor. Options: --help."""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+
+import image
+import instruction_count
+import processors
+import report
+import stack
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOCUMENT, DATA = ROOT / "docs/audit.md", ROOT / "docs/audit.json"
+PROGRAMS = (("fixed", "flight_replay"), ("float32", "flight_replay_float32"))
+BUDGETS = {"ram": 192 * 1024, "stack": 4096, "text": 128 * 1024, "read_only": 24 * 1024}
+MACS = 34_858_368  # of a frame: kMacCount in gnc/rcnn/network.hpp, which a test holds to this
+
+
+def programs(processor):
+    return PROGRAMS if processor.float32 else PROGRAMS[:1]
+
+
+def build(processor):
+    preset, targets = processor.name, [name for _, name in programs(processor)]
+    for command in (["cmake", "--preset", preset], ["cmake", "--build", "--preset", preset, "--target", *targets]):
+        run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+        if run.returncode != 0:
+            raise SystemExit(f"audit: {' '.join(command)} failed:\n{run.stdout[-3000:]}{run.stderr[-3000:]}")
+
+
+def golden():
+    return {numerics: digest for _, numerics, digest in
+            (line.split() for line in (ROOT / "tests/audit/golden.txt").read_text().splitlines())}
+
+
+def measure(processor, numerics, program, plugin, folder):
+    names, steps, console = instruction_count.count(processor, program, plugin, folder, ROOT)
+    digest = next((line.split()[-1] for line in console if line.startswith("digest ")), "none")
+    heading = next(line for line in console if line.startswith("tumblesight, ")).split(", ")
+    # What the application does depends on what happens; all else has to be the same.
+    unequal = {name: sorted({step[i] for step in steps}) for i, name in enumerate(names)
+               if name not in ("application", "telemetry") and len({step[i] for step in steps}) > 1}
+    stages = {name: max(step[i] for step in steps) for i, name in enumerate(names)}
+    stages["application"] += stages.pop("telemetry")
+    sizes = image.sizes(processor, program)
+    stack_bytes, path = stack.worst_case(program.parents[1], numerics)
+    return {"digest": digest, "digest_is_golden": digest == golden()[numerics], "set": heading[3], "frames": heading[4],
+            "target": heading[1], "steps": len(steps), "stages": stages, "instructions": sum(stages.values()),
+            # Float32's branches are its processor's business.
+            "equal_counts": not unequal or numerics == "float32", "unequal": unequal,
+            "text": sizes["text"], "read_only": sizes["read_only"], "ram": sizes["data"] + sizes["bss"] + stack_bytes,
+            "stack": stack_bytes, "path": path, "forbidden": image.forbidden(processor, program.parents[1], program),
+            "floating_point": image.floating_point(processor, program) if numerics == "fixed" else []}
+
+
+def print_result(processor, numerics, r):
+    print(f"  {processor.name:<11} {numerics:<8} {r['digest']}  {r['instructions'] / 1e6:8.2f} M instructions "
+          f"{r['instructions'] / MACS:6.3f} /MAC   text {r['text'] / 1024:5.1f}  RAM {r['ram'] / 1024:6.1f}  stack "
+          f"{r['stack'] / 1024:4.1f} KiB", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="tests/audit/run", description=__doc__)
+    parser.add_argument("--processor", metavar="NAME", help="this one only; the documents stay as they are")
+    parser.add_argument("--accept", action="store_true", help="write the documents even if figures have grown")
+    arguments = parser.parse_args()
+    wanted = [processors.by_name(arguments.processor)] if arguments.processor else processors.ALL
+    folder = ROOT / "build/audit"
+    folder.mkdir(parents=True, exist_ok=True)
+    plugin = instruction_count.build_plugin(folder)
+
+    results = []
+    for processor in wanted:
+        if sys.stdout.isatty():
+            print(f"  {processor.name:<11} building", end="\r", flush=True)
+        build(processor)
+        place = folder / processor.name
+        place.mkdir(exist_ok=True)
+        for numerics, name in programs(processor):
+            program = ROOT / "build" / processor.name / "bin" / name
+            results.append((processor, numerics, measure(processor, numerics, program, plugin, place)))
+            print_result(*results[-1])
+
+    committed = json.loads(DATA.read_text())["processors"] if DATA.exists() else {}
+    wrong = report.failures(results, committed, BUDGETS, MACS)
+    for line in wrong:
+        print(f"  FAILED {line}")
+    if not arguments.processor and (not wrong or arguments.accept):
+        model = f"of {results[0][2]['target']}"
+        DATA.write_text(json.dumps(report.as_data(results, MACS), indent=1) + "\n")
+        DOCUMENT.write_text(report.as_document(results, MACS, BUDGETS, model, results[0][2]["frames"]))
+        print(f"\n  written: {DOCUMENT.relative_to(ROOT)}, {DATA.relative_to(ROOT)}")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,67 @@
+"""Counts the instructions of every step of flight_replay, stage by stage, with a plugin of QEMU."""
+import pathlib
+import re
+import subprocess
+
+# Stages in the order in which a step passes them, and the function with which each begins. The first begins a step, the
+# second ends it; what runs between two stages counts to the one before.
+STAGES = (
+    ("application", r"fsw::AttitudeInitApp<.*>::step\("),
+    ("(end)", r"replay::ConsoleLink::publish\(tumblesight::hal::AttitudeReport"),
+    ("depth image", r"gnc::make_depth_image\(.*DepthLoops const&\)"),
+    ("space to depth", r"gnc::space_to_depth<"),
+    ("conv1", r"ConvBlock<.*, 50, \d+, \d+>::forward\("),
+    ("conv2", r"ConvBlock<.*, 25, \d+, \d+>::forward\("),
+    ("conv3", r"ConvBlock<.*, 12, \d+, \d+>::forward\("),
+    ("conv4", r"ConvBlock<.*, 6, \d+, \d+>::forward\("),
+    ("dense1", r"Dense<.*, 2160, \d+>::hidden\("),
+    ("dense2", r"Dense<.*, 192, 128>::hidden\("),
+    ("single-frame head", r"Dense<.*, 128, 57>::output\("),
+    ("hypotheses", r"gnc::hypotheses_of<"),
+    ("prediction", r"gnc::predict<"),
+    ("LSTM input", r"gnc::fill_lstm_input<"),
+    ("LSTM", r"Lstm<.*>::forward\("),
+    ("recurrent head", r"Dense<.*, 382, 128>::hidden\("),
+    ("fusion", r"gnc::advance<"),
+    ("telemetry", r"BoardStopwatch::now_ns\("),
+)
+TIME_LIMIT_S = 1200
+
+
+def build_plugin(folder):
+    plugin = folder / "count_instructions.so"
+    source = pathlib.Path(__file__).with_suffix("").parent / "count_instructions.c"
+    subprocess.run(["gcc", "-O2", "-shared", "-fPIC", str(source), "-o", str(plugin)], check=True)
+    return plugin
+
+
+def addresses(processor, program):
+    """Of the stages' functions, by STAGES' order."""
+    listing = subprocess.run([processor.tool("nm"), "-C", str(program)], check=True, capture_output=True, text=True).stdout
+    symbols = [line.split(" ", 2) for line in listing.splitlines() if re.match(r"[0-9a-f]+ [tTwW] ", line)]
+    found = []
+    for name, pattern in STAGES:
+        matches = [(int(address, 16), symbol) for address, _, symbol in symbols if re.search(pattern, symbol)]
+        matches.sort(key=lambda match: "[clone" in match[1])  # the function itself before its parts
+        if not matches:
+            raise SystemExit(f"audit: {program}: no function for stage '{name}' ({pattern})")
+        found.append(matches[0][0] & ~1 if processor.prefix.startswith("arm-") else matches[0][0])
+    return found
+
+
+def count(processor, program, plugin, folder, root):
+    """({stage: instructions}, the console's lines); every step took the same."""
+    stages, out = folder / f"{program.name}.stages", folder / f"{program.name}.counts"
+    lines = (f"{address:x} {name}\n" for address, (name, _) in zip(addresses(processor, program), STAGES))
+    stages.write_text("".join(lines))
+    out.unlink(missing_ok=True)
+    command = [str(root / part) if part.startswith("toolchains/") else part for part in processor.emulator]
+    at = -1 if command[-1] == "-kernel" else len(command)
+    command[at:at] = ["-plugin", f"{plugin},stages={stages},out={out}"]
+    run = subprocess.run(command + [str(program)], capture_output=True, text=True, timeout=TIME_LIMIT_S, stdin=subprocess.DEVNULL)
+    console = (run.stdout + run.stderr).splitlines()
+    if run.returncode != 0:
+        raise SystemExit(f"audit: {program} on {processor.name} ended with {run.returncode}:\n" + "\n".join(console[-5:]))
+    steps = [tuple(map(int, line.split())) for line in out.read_text().splitlines()]
+    names = [name for name, _ in STAGES if name != "(end)"]
+    return names, steps, console

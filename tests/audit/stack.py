@@ -1,0 +1,70 @@
+"""Worst-case stack of one step, from the call graph that the compiler writes beside each object file (-fcallgraph-info=su)."""
+import re
+import sys
+
+# Where a call goes through a pointer it may reach any of these: the kernels of an instruction set and the platform's stopwatch.
+_INDIRECT = re.compile(r"kernels.*(convolve|multiply|product|max_pool|average_pool)|survey_of|sum_all_depths|accumulate_all|encode_all"
+                       r"|Stopwatch.*now_ns")
+_STEP = {"fixed": re.compile(r"AttitudeInitApp<.*step\(.*FixedPoint"), "float32": re.compile(r"AttitudeInitApp<.*step\(.*Float32")}
+_NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
+_EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
+_BYTES = re.compile(r"(\d+) bytes \((\w+)")
+LIBRARY_BYTES = 128  # assumed of a function that comes without its source: libgcc's 64-bit division
+
+
+def read_graph(build):
+    """({function: own bytes}, {function: callees}, {function: readable name})"""
+    own, callees, names = {}, {}, {}
+    for path in sorted(build.rglob("*.ci")):
+        text = path.read_text()
+        for title, label in _NODE.findall(text):
+            size = _BYTES.search(label)
+            if size:
+                if size[2] == "dynamic" and int(size[1]) > 0 and "bounded" not in label:
+                    raise SystemExit(f"audit: {label}: a stack frame that is not bounded")
+                function = title.rsplit(":", 1)[-1] if title.startswith("/") and ":_ZN" in title and "_GLOBAL__N_" not in title else title
+                own[function] = int(size[1])
+                names[function] = label.split("\\n")[0]
+        for source, target in _EDGE.findall(text):
+            callees.setdefault(_key(source), set()).add(_key(target))
+    return own, callees, names
+
+
+def _key(title):
+    """Functions with internal linkage keep their file; templates and inline functions are one, whichever file made them."""
+    return title.rsplit(":", 1)[-1] if title.startswith("/") and ":_ZN" in title and "_GLOBAL__N_" not in title else title
+
+
+def worst_case(build, numerics):
+    """(bytes, the functions on the deepest path) of AttitudeInitApp::step()."""
+    own, callees, names = read_graph(build)
+    indirect = [function for function, name in names.items() if _INDIRECT.search(name) or _INDIRECT.search(function)]
+    depth, path = {}, {}
+
+    def visit(function, above):
+        if function in above:
+            raise SystemExit(f"audit: {names.get(function, function)} calls itself")
+        if function in depth:
+            return depth[function]
+        targets = set()
+        for target in callees.get(function, ()):
+            targets.update(indirect if target == "__indirect_call" else (target,))
+        below, deepest = 0, None
+        for target in sorted(targets):
+            size = visit(target, above | {function})
+            if size > below:
+                below, deepest = size, target
+        depth[function] = own.get(function, LIBRARY_BYTES) + below
+        path[function] = deepest
+        return depth[function]
+
+    sys.setrecursionlimit(10000)
+    steps = [function for function, name in names.items() if _STEP[numerics].search(name) and "::step(" in name]
+    if len(steps) != 1:
+        raise SystemExit(f"audit: {build}: found {len(steps)} call graphs of a {numerics} step")
+    total = visit(steps[0], frozenset())
+    way, function = [], steps[0]
+    while function is not None:
+        way.append((names.get(function, function), own.get(function, LIBRARY_BYTES)))
+        function = path[function]
+    return total, way
