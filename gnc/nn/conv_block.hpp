@@ -1,7 +1,7 @@
+// ConvBlock: 3x3 convolution, pooling 2x2 and ReLU over a square HWC image, in one pass over pairs of rows.
+//
 // Layers are functions of their own ([[gnu::noinline]]), here and in dense.hpp and lstm.hpp, so that what each takes can be
 // told apart (tests/audit).
-//
-// ConvBlock: 3x3 convolution, pooling 2x2 and ReLU over a square HWC image, in one pass over pairs of rows.
 #pragma once
 
 #include <array>

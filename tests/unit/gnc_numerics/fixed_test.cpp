@@ -49,14 +49,14 @@ TEST(Fixed, SumsAreExactOrSaturate) {
 TEST(Fixed, ProductsAndQuotientsAreRoundedToTheNearestHalvesUp) {
   for (const Fixed a : numbers()) {
     for (const Fixed b : numbers()) {
-      const __int128 product = static_cast<__int128>(a.raw()) * b.raw() + (1 << 23);
-      ASSERT_EQ((a * b).raw(), Fixed::from_raw(static_cast<std::int64_t>(product >> 24)).raw());
+      const std::int64_t product = std::int64_t{a.raw()} * b.raw() + (1 << 23);
+      ASSERT_EQ((a * b).raw(), Fixed::from_raw(product >> 24).raw());
       if (b.raw() == 0) continue;
-      const long double quotient = static_cast<long double>(a.raw()) / b.raw() * (1 << 24);
-      ASSERT_EQ((a / b).raw(), Fixed::from_raw(static_cast<std::int64_t>(std::floor(
-                                                   std::min(1e12L, std::max(-1e12L, quotient)) + 0.5L)))
-                                   .raw())
-          << a.raw() << " / " << b.raw();
+      // Twice the quotient, towards zero; then down, if that was up.
+      const std::int64_t dividend = std::int64_t{a.raw()} * (1 << 25);
+      const std::int64_t twice = dividend / b.raw();
+      const bool was_up = dividend % b.raw() != 0 && (dividend < 0) != (b.raw() < 0);
+      ASSERT_EQ((a / b).raw(), Fixed::from_raw((twice - was_up + 1) >> 1).raw()) << a.raw() << " / " << b.raw();
     }
   }
 }
@@ -72,12 +72,10 @@ TEST(Fixed, DotProductsAreRoundedOnceAndSaturate) {
   const auto any = [&] { return all[engine() % all.size()]; };
   for (int i = 0; i < 20'000; ++i) {
     const Fixed a0 = any(), b0 = any(), a1 = any(), b1 = any(), a2 = any(), b2 = any();
-    const __int128 exact = static_cast<__int128>(a0.raw()) * b0.raw() + static_cast<__int128>(a1.raw()) * b1.raw() +
-                           static_cast<__int128>(a2.raw()) * b2.raw();
-    const __int128 two = static_cast<__int128>(a0.raw()) * b0.raw() + static_cast<__int128>(a1.raw()) * b1.raw();
-    if (two > (static_cast<__int128>(1) << 61) || two < -(static_cast<__int128>(1) << 61)) continue;
-    const __int128 rounded = (exact + (1 << 23)) >> 24;
-    ASSERT_EQ(Fixed::dot(a0, b0, a1, b1, a2, b2).raw(), Fixed::from_raw(static_cast<std::int64_t>(rounded)).raw());
+    const std::int64_t two = std::int64_t{a0.raw()} * b0.raw() + std::int64_t{a1.raw()} * b1.raw();
+    if (two > std::int64_t{1} << 61 || two < -(std::int64_t{1} << 61)) continue;
+    const std::int64_t rounded = (two + std::int64_t{a2.raw()} * b2.raw() + (1 << 23)) >> 24;
+    ASSERT_EQ(Fixed::dot(a0, b0, a1, b1, a2, b2).raw(), Fixed::from_raw(rounded).raw());
   }
   const Fixed most = Fixed::from_raw(Fixed::kLargestRaw);
   EXPECT_EQ(Fixed::dot(most, most, most, most, most, most), most);
