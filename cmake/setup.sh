@@ -9,13 +9,13 @@ fail() {
 # What the programs need; the tests and the training add theirs.
 packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
   libassimp-dev libcli11-dev libfmt-dev libonnx-dev libpng-dev libprotobuf-dev nlohmann-json3-dev)
-packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libgtest-dev libgmock-dev clang valgrind)
+packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libgtest-dev libgmock-dev clang python3 valgrind)
 # The processors of the audit: compilers, emulators, and GoogleTest's sources to build it for them.
-packages_to_audit=("${packages_to_run[@]}" python3 gcc googletest qemu-user qemu-system-arm qemu-system-misc qemu-system-sparc
+packages_to_audit=("${packages_to_run[@]}" gcc googletest python3 qemu-user qemu-system-arm qemu-system-misc qemu-system-sparc
   g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-riscv64-linux-gnu g++-powerpc-linux-gnu
   gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib
   gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf
-  g++-sparc64-linux-gnu libc6-dev-sparc-sparc64-cross lib32gcc-12-dev-sparc64-cross)
+  g++-sparc64-linux-gnu libc6-dev-sparc-sparc64-cross)
 
 # Ends a job with all that it has started, some of it as root, and then this script.
 end_with() { # job
