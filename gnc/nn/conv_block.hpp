@@ -32,7 +32,12 @@ struct ConvBlock {
   static constexpr int kColumns = 2 * kSideOut;
   static constexpr int kWeights = 3 * 3 * kChannelsIn * kChannelsOut;
   static constexpr std::size_t kParameters = kWeights + kChannelsOut;
-  static constexpr long kMacs = 1L * kColumns * kColumns * kWeights;
+  static constexpr long kMacs = 1L * kColumns * kColumns * kWeights;  // padding included
+  // What kernels do of them that compute so many pixels together.
+  static constexpr long macs_done(int pixels) {
+    const int rows_spared = kColumns % pixels != 0 ? 0 : kColumns == kSide ? 2 : 1;
+    return kMacs - 1L * rows_spared * kColumns * kWeights / 3;
+  }
   using Weights = LayerWeights<N, kWeights, kChannelsOut>;
   using Input = PaddedImage<ConvInput<N>, kSide, kChannelsIn>;
   using Sums = std::array<Sum<N>, 2 * kColumns * kChannelsOut>;  // scratch: two rows

@@ -54,9 +54,11 @@ double timed(const Run& run) {
 }
 
 template <class N>
-constexpr double kConvolutionMacs =
-    static_cast<double>(gnc::Layers<N>::Conv1::kMacs + gnc::Layers<N>::Conv2::kMacs + gnc::Layers<N>::Conv3::kMacs +
-                        gnc::Layers<N>::Conv4::kMacs);
+double convolution_macs(const gnc::Kernels<N>& kernels) {
+  using L = gnc::Layers<N>;
+  return static_cast<double>(L::Conv1::macs_done(kernels.pixels) + L::Conv2::macs_done(kernels.pixels) +
+                             L::Conv3::macs_done(kernels.pixels) + L::Conv4::macs_done(kernels.pixels));
+}
 
 // One numerics with one instruction set.
 template <class N>
@@ -83,7 +85,7 @@ class Bench {
     const Times convolutions = measured(row_s_, [&](std::size_t i) { return convolutions_us(i); });
     return {row("step", step, gnc::kMacCount), row("depth image", depth, 0.0),
             row("network", network, gnc::kMacCount),
-            row("convolutions", convolutions, kConvolutionMacs<N>, measured_peak_macs(kernels_.set, N::kIsInteger))};
+            row("convolutions", convolutions, convolution_macs(kernels_), measured_peak_macs(kernels_.set, N::kIsInteger))};
   }
 
  private:

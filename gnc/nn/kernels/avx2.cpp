@@ -54,7 +54,7 @@ void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int3
   if (Blocks<Int8>::is_narrow<5, 1, 4>(shape)) {
     Blocks<Int8>::narrow_product<5, 1, 4>(shape, in, start, weights, out);
   } else {
-    Blocks<Int8>::product<5, 1, 4>(shape, in, start, weights, out);
+    Blocks<Int8>::product<6, 1, 4>(shape, in, start, weights, out);
   }
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
@@ -70,7 +70,7 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, 5, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, 6, convolve, multiply, max_pool, average_pool};
 
 #if TUMBLESIGHT_FLOAT32
 namespace {
@@ -85,7 +85,7 @@ void float_average_pool(const float* sums, int columns, int channels, const std:
   pool<Float32, MeanOfFour<Float32>>(sums, columns, channels, shift, out);
 }
 }  // namespace
-const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, 12, float_multiply, float_multiply, float_max_pool, float_average_pool};
+const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, 6, float_multiply, float_multiply, float_max_pool, float_average_pool};
 #endif
 
 }  // namespace tumblesight::gnc::kernels

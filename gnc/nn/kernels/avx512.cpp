@@ -8,7 +8,7 @@ void multiply(const ProductShape& shape, const float* in, const float* start, co
   if (shape.channels % 64 == 0) {
     float_product<16, 6, 4, 12>(shape, in, start, weights, out);
   } else if (shape.channels % 48 == 0) {
-    float_product<16, 9, 3, 12>(shape, in, start, weights, out);
+    float_product<16, 6, 3, 12>(shape, in, start, weights, out);
   } else {
     float_product<16, 12, 2, 12>(shape, in, start, weights, out);
   }
@@ -22,6 +22,6 @@ void average_pool(const float* sums, int columns, int channels, const std::uint8
 
 }  // namespace
 
-const Kernels<Float32> kFloatAvx512{InstructionSet::kAvx512, 12, multiply, multiply, max_pool, average_pool};
+const Kernels<Float32> kFloatAvx512{InstructionSet::kAvx512, 6, multiply, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

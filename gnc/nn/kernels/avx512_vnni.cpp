@@ -36,7 +36,7 @@ void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int3
   } else if (shape.channels % 64 == 0) {
     Blocks<Int8>::product<6, 4, 8>(shape, in, start, weights, out);
   } else if (shape.channels % 48 == 0) {
-    Blocks<Int8>::product<8, 3, 6>(shape, in, start, weights, out);
+    Blocks<Int8>::product<6, 3, 6>(shape, in, start, weights, out);
   } else {
     Blocks<Int8>::product<12, 2, 8>(shape, in, start, weights, out);
   }
@@ -54,6 +54,6 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvx512Vnni{InstructionSet::kAvx512Vnni, 12, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedAvx512Vnni{InstructionSet::kAvx512Vnni, 6, convolve, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

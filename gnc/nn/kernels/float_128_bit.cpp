@@ -23,6 +23,6 @@ void average_pool(const float* sums, int columns, int channels, const std::uint8
 
 }  // namespace
 
-const Kernels<Float32> kFloat128Bit{InstructionSet::k128Bit, 12, multiply, multiply, max_pool, average_pool};
+const Kernels<Float32> kFloat128Bit{InstructionSet::k128Bit, 6, multiply, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels
