@@ -41,7 +41,7 @@ ALL = (
               *_SERIAL, "-kernel"), 600, "PolarFire SoC, U54; single issue, in order", 3.0, 0.50),
     Processor("leon3", "LEON3, bare metal, big-endian", "sparc64-linux-gnu", ("qemu-system-sparc", "-M", "leon3_generic", "-m", "64M",
               *_SERIAL, "-kernel"), 100, "GR712RC class; single issue, in order, with the pipelined 32×32-bit multiplier (with the "
-              "16×16-bit one a product takes four cycles, and a step more than 90 % of the period)", 3.0, 0.55),
+              "16×16-bit one a product takes four cycles, and a step about 70 % of the period)", 3.0, 0.50),
 )
 
 

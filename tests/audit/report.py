@@ -86,7 +86,6 @@ def as_document(results, macs, budgets, model, frames):
     lines += ["", "The digest covers every attitude, expected error, event and the whole state after every frame; it is the same on",
               "the desktop (`tests/audit/golden.txt`). Whose clock: "
               + "; ".join(f"{p.title.split(',')[0]}, {p.part}" for p, _ in fixed) + ".", "",
-              "LEON3 at 100 MHz was to stay within 50 % of the period; at these cycles it does not, and its limit here is 55 %.", "",
               "CMSIS-NN's 8-bit convolutions are published at about 1.7 cycles a MAC on a Cortex-M7. Ours take "
               f"{next(r['instructions'] for p, r in fixed if p.name == 'cortex-m7') / macs:.2f} instructions a MAC, all of a step included, on a",
               "core that can begin two a cycle. These are different quantities, so no more is said than that they are of one kind." if

@@ -1,5 +1,4 @@
-#include <type_traits>
-
+#include "gnc/nn/kernels/minimal_filter.hpp"
 #include "gnc/nn/kernels/scalar.hpp"
 #include "gnc/nn/kernels/sets.hpp"
 #include "gnc/nn/kernels/stretches.hpp"
@@ -12,77 +11,6 @@ void product(const ProductShape& shape, const typename Kind::Input* in, const ty
              const typename Kind::Weight* weights, typename Kind::Sum* out) {
   Blocks<Scalar<Kind>>::template product<2, 4, 8>(shape, in, start, weights, out);
 }
-
-// Done with this sum before anything else begins: left to itself the compiler begins too much, and runs out of registers.
-TUMBLESIGHT_INLINE void complete(std::int32_t& sum) {
-  asm volatile("" : : "r"(sum) : "memory");
-}
-
-// A few pixels times four channels, every sum in a register.
-struct SumsInRegisters {
-#if defined(__sparc__)  // which keeps eight of its 32 registers for itself
-  static constexpr int kPixels = 3;
-#else
-  static constexpr int kPixels = 4;
-#endif
-  static constexpr int kChannels = 4;
-  static constexpr int kStretch = 72;
-  static constexpr int kGroup = Int8Product::kGroup;
-  struct alignas(kGroup) Inputs : std::array<std::uint8_t, kGroup> {};
-  using Group = std::array<Inputs, kPixels>;
-
-  TUMBLESIGHT_INLINE void prepare(const std::uint8_t* const (&in)[kPixels], int offset, Group& group) {
-#pragma GCC unroll 4
-    for (int p = 0; p < kPixels; ++p) {
-      std::memcpy(group[p].data(), __builtin_assume_aligned(in[p] + offset, kGroup), sizeof group[p]);
-    }
-  }
-
-  TUMBLESIGHT_INLINE void add_group(const Group& group, const std::int8_t* weight, std::int32_t (&sum)[kChannels][kPixels]) {
-#pragma GCC unroll 4
-    for (int i = 0; i < kGroup; ++i) {
-      std::int32_t value[kPixels];
-#pragma GCC unroll 4
-      for (int p = 0; p < kPixels; ++p) value[p] = group[p][i];
-#pragma GCC unroll 4
-      for (int k = 0; k < kChannels; ++k) {
-        const std::int32_t factor = weight[k * kGroup + i];
-#pragma GCC unroll 4
-        for (int p = 0; p < kPixels; ++p) {
-          sum[k][p] += value[p] * factor;
-          complete(sum[k][p]);
-        }
-      }
-    }
-  }
-
-  [[gnu::noinline]] static void add(const Group* stretch, int groups, const std::int32_t* start, int start_step,
-                                    const std::int8_t* weights, std::int32_t* out, int channels) {
-    for (int c = 0; c < channels; c += kChannels, start += kChannels, out += kChannels, weights += kChannels * Int8Product::kGroup) {
-      std::int32_t sum[kChannels][kPixels];
-#pragma GCC unroll 4
-      for (int p = 0; p < kPixels; ++p) {
-#pragma GCC unroll 4
-        for (int k = 0; k < kChannels; ++k) sum[k][p] = start[p * start_step + k];
-      }
-      const std::int8_t* weight = weights;
-      const Group* group = stretch;
-      const int step = channels * Int8Product::kGroup;
-      int rest = groups;
-      for (; rest >= 3; rest -= 3, group += 3, weight += 3 * step) {
-        add_group(group[0], weight, sum);
-        add_group(group[1], weight + step, sum);
-        add_group(group[2], weight + 2 * step, sum);
-      }
-      for (; rest > 0; --rest, ++group, weight += step) add_group(*group, weight, sum);
-#pragma GCC unroll 4
-      for (int p = 0; p < kPixels; ++p) {
-#pragma GCC unroll 4
-        for (int k = 0; k < kChannels; ++k) out[p * channels + k] = sum[k][p];
-      }
-    }
-  }
-};
 
 // With registers of 64 bits, two pixels in each: x0 + 2^32 x1 times a weight adds to two sums at once. A negative lower one
 // borrows from the upper one, and gives it back at the end.
@@ -145,16 +73,19 @@ struct PairsByEight {
   }
 };
 
-using Unit = std::conditional_t<sizeof(void*) == 8, PairsByEight, SumsInRegisters>;
+constexpr bool kHas64Bits = sizeof(void*) == 8;
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  if (shape.rows * shape.columns >= Unit::kPixels) {
-    Stretches<Unit>::product(shape, in, start, weights, out);
+  if (kHas64Bits && shape.rows * shape.columns >= PairsByEight::kPixels) {
+    Stretches<PairsByEight>::product(shape, in, start, weights, out);
+  } else if (!kHas64Bits && MinimalFilter::suits(shape)) {
+    MinimalFilter::convolve(shape, in, start, weights, out);
   } else {
     product<Int8Product>(shape, in, start, weights, out);
   }
 }
+constexpr int kPixelsTogether = kHas64Bits ? PairsByEight::kPixels : MinimalFilter::kPixels;
 
 template <class N>
 void max_pool(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift, ConvInput<N>* out) {
@@ -167,7 +98,7 @@ void average_pool(const Sum<N>* sums, int columns, int channels, const std::uint
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedPortable{InstructionSet::kPortable, Unit::kPixels, convolve, product<Int16Product>,
+const Kernels<FixedPoint> kFixedPortable{InstructionSet::kPortable, kPixelsTogether, convolve, product<Int16Product>,
                                          max_pool<FixedPoint>, average_pool<FixedPoint>};
 #if TUMBLESIGHT_FLOAT32
 const Kernels<Float32> kFloatPortable{InstructionSet::kPortable, 2, product<Float32Product>, product<Float32Product>,

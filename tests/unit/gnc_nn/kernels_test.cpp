@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gnc/nn/kernels/minimal_filter.hpp"
 #include "tests/unit/gnc_nn/random_values.hpp"
 
 namespace tumblesight::gnc {
@@ -58,6 +59,8 @@ std::vector<ProductShape> shapes(bool integers) {
   all.push_back(convolution(2, 3, 4, 64));
   all.push_back(convolution(3, 3, 8, 48));
   all.push_back(convolution(2, 24, 32, 64));
+  all.push_back(convolution(2, 4, 4, 16));
+  all.push_back(convolution(1, 10, 72, 16));
   all.push_back(dense(382, 768));
   return all;
 }
@@ -148,6 +151,17 @@ TEST_P(KernelsOf, FixedPointHaveTheBitsOfTheirDefinition) {
 }
 TEST_P(KernelsOf, Float32HaveTheBitsOfTheirDefinition) {
   check<Float32>();
+}
+
+// Which only the portable kernels of 32-bit processors use.
+TEST(MinimalFilter, HasTheBitsOfTheDefinition) {
+  expect_definition_for_all_shapes<Int8Product>(
+      [](const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start, const std::int8_t* weights,
+         std::int32_t* out) {
+        const bool suits = MinimalFilter::suits(shape);
+        (suits ? MinimalFilter::convolve : kernels_on<FixedPoint>(InstructionSet::kPortable)->convolve)(shape, in, start,
+                                                                                                        weights, out);
+      });
 }
 
 TEST_P(KernelsOf, AddToWhatLiesInTheOutputWhenStartIsTheOutput) {
