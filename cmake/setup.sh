@@ -8,7 +8,8 @@ fail() {
 
 # What the programs need; the tests and the training add theirs.
 packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
-  libassimp-dev libcli11-dev libfmt-dev libonnx-dev libpng-dev libprotobuf-dev nlohmann-json3-dev)
+  libassimp-dev libcli11-dev libfmt-dev libonnx-dev libpng-dev libprotobuf-dev libssl-dev
+  nlohmann-json3-dev)
 packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libgtest-dev libgmock-dev clang python3 valgrind)
 # The processors of the audit: compilers, emulators, and GoogleTest's sources to build it for them.
 packages_to_audit=("${packages_to_run[@]}" gcc googletest python3 qemu-user qemu-system-arm qemu-system-misc qemu-system-sparc

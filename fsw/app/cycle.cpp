@@ -19,7 +19,7 @@ void gather_frames(hal::Lidar& lidar, CycleWorkspace& workspace) {
 
 void gather_commands(hal::Link& link, StepInputs& inputs) {
   inputs.command_count = 0;
-  for (hal::Command& command : inputs.commands) {
+  for (hal::CommandPacket& command : inputs.commands) {
     if (!link.receive(command)) break;
     ++inputs.command_count;
   }
@@ -27,17 +27,20 @@ void gather_commands(hal::Link& link, StepInputs& inputs) {
 
 }  // namespace
 
-CyclePublished run_cycle(App& app, hal::Lidar& lidar, hal::Link& link, std::int64_t now_ns,
-                         CycleWorkspace& workspace) {
-  gather_frames(lidar, workspace);
-  gather_commands(link, workspace.inputs);
+void run_cycle(App& app, const CycleInterfaces& interfaces, std::int64_t now_ns, std::uint32_t cycle_slips,
+               CycleWorkspace& workspace) {
+  gather_frames(interfaces.lidar, workspace);
+  gather_commands(interfaces.link, workspace.inputs);
+  workspace.inputs.cycle_slips = cycle_slips;
   app.step(now_ns, workspace.inputs, workspace.outputs);
 
   const StepOutputs& outputs = workspace.outputs;
+  hal::Link& link = interfaces.link;
   link.publish(outputs.attitude);
   link.publish(outputs.housekeeping);
   for (int i = 0; i < outputs.event_count; ++i) link.publish(outputs.events[static_cast<std::size_t>(i)]);
-  return {1, 1, outputs.event_count};
+  if (outputs.has_dump) link.publish(outputs.dump);
+  if (outputs.duties_done) interfaces.watchdog.kick();
 }
 
 }  // namespace tumblesight::fsw

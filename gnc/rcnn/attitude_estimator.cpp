@@ -48,6 +48,20 @@ ModelStatus AttitudeEstimator<N>::load(const std::uint8_t* image, std::size_t si
 }
 
 template <class N>
+ModelStatus AttitudeEstimator<N>::check(const std::uint8_t* image, std::size_t size_bytes,
+                                        const char* expected_target) const {
+  return check_model_image<N>(image, size_bytes, expected_target, network_.weights());
+}
+
+template <class N>
+void AttitudeEstimator<N>::reload(const std::uint8_t* image) {
+  take_model_image<N>(image, model_, network_.weights());
+  laws_ = motion_laws<Real>(converted<Real>(model_.inertia));
+  network_.use(fastest_kernels<N>());
+  has_model_ = true;
+}
+
+template <class N>
 void AttitudeEstimator<N>::reset() {
   state_ = State{};
 }
@@ -84,16 +98,33 @@ void AttitudeEstimator<N>::step(const DepthImage& image, AttitudeEstimate& estim
 }
 
 template <class N>
-std::uint32_t AttitudeEstimator<N>::state_crc32() const {
+std::uint32_t AttitudeEstimator<N>::crc32_of(const State& state) {
   Crc32 crc;
-  add_to(crc, state_.lstm.h.data(), state_.lstm.h.size());
-  add_to(crc, state_.lstm.c.data(), state_.lstm.c.size());
-  for (const Motion<Real>& motion : state_.track.motion) {
+  add_to(crc, state.lstm.h.data(), state.lstm.h.size());
+  add_to(crc, state.lstm.c.data(), state.lstm.c.size());
+  for (const Motion<Real>& motion : state.track.motion) {
     add_to(crc, motion.r_lrf_trf.data(), 9);
     add_to(crc, motion.rate_lrf.data(), 3);
   }
-  add_to(crc, state_.track.log_likelihood.data(), state_.track.log_likelihood.size());
-  crc.add_u32(state_.track.frames);
+  add_to(crc, state.track.log_likelihood.data(), state.track.log_likelihood.size());
+  crc.add_u32(state.track.frames);
+  return crc.value();
+}
+
+template <class N>
+std::uint32_t AttitudeEstimator<N>::constants_crc32() const {
+  Crc32 crc;
+  const auto add = [&crc](const auto& thing) {
+    crc.add(reinterpret_cast<const std::uint8_t*>(&thing), sizeof thing);
+  };
+  if constexpr (N::kIsInteger) {
+    for_each_tensor(network_.weights(), [&add](const char*, const char*, const auto& tensor) { add(tensor); });
+  }
+  const Kernels<N>* const kernels = &network_.kernels();
+  add(kernels);
+  add(model_);
+  add(laws_);
+  add(has_model_);
   return crc.value();
 }
 

@@ -42,6 +42,11 @@ class AttitudeEstimator {
   // `expected_target`: NUL-terminated target name, or nullptr to accept any. On success the state is reset.
   [[nodiscard]] ModelStatus load(const std::uint8_t* image, std::size_t size_bytes,
                                  const char* expected_target);
+  // Whether load() would take the image; nothing is changed.
+  [[nodiscard]] ModelStatus check(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target) const;
+  // Takes the loaded image over once more, wherever it lies now; the state goes on. For what memory has lost: the image
+  // has to be the one that is loaded, unchanged, which is not looked at again.
+  void reload(const std::uint8_t* image);
   bool has_model() const { return has_model_; }
   const ModelHeader& model() const { return model_; }
 
@@ -53,7 +58,11 @@ class AttitudeEstimator {
 
   void save(State& state) const { state = state_; }
   void restore(const State& state) { state_ = state; }
-  std::uint32_t state_crc32() const;
+  std::uint32_t state_crc32() const { return crc32_of(state_); }
+  static std::uint32_t crc32_of(const State& state);
+  // Over all that load() has set and no step changes, byte by byte as this processor holds it; float32's weights are left
+  // out.
+  std::uint32_t constants_crc32() const;
   const DepthImage& depth_image() const { return image_; }
   Network<N>& network() { return network_; }
 

@@ -332,15 +332,6 @@ constexpr std::uint32_t numerics_of() {
   return N::kIsInteger ? 1 : 0;
 }
 
-template <class N>
-ModelStatus check(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
-                  const NetworkWeights<N>& weights) {
-  ModelStatus status = check_frame_of_header(image, size_bytes);
-  if (status == ModelStatus::kOk) status = check_meaning(image, numerics_of<N>(), expected_target);
-  if (status == ModelStatus::kOk) status = check_sections<N>(image, size_bytes, weights);
-  return status;
-}
-
 }  // namespace
 
 const char* to_string(ModelStatus status) {
@@ -378,17 +369,34 @@ std::uint32_t architecture_hash() {
 }
 
 template <class N>
-ModelStatus read_model_image(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
-                             ModelHeader& header, NetworkWeights<N>& weights) {
-  const ModelStatus status = check<N>(image, size_bytes, expected_target, weights);
-  if (status != ModelStatus::kOk) return status;
+ModelStatus check_model_image(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
+                              const NetworkWeights<N>& weights) {
+  ModelStatus status = check_frame_of_header(image, size_bytes);
+  if (status == ModelStatus::kOk) status = check_meaning(image, numerics_of<N>(), expected_target);
+  if (status == ModelStatus::kOk) status = check_sections<N>(image, size_bytes, weights);
+  return status;
+}
+
+template <class N>
+void take_model_image(const std::uint8_t* image, ModelHeader& header, NetworkWeights<N>& weights) {
   read_header(image, header);
   const std::uint8_t* next = image + kModelDataOffset<N>;
   for_each_tensor(weights, [&next](const char*, const char*, auto& tensor) {
     read(next, tensor);
     next += size_in_image(tensor);
   });
+}
+
+template <class N>
+ModelStatus read_model_image(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
+                             ModelHeader& header, NetworkWeights<N>& weights) {
+  const ModelStatus status = check_model_image<N>(image, size_bytes, expected_target, weights);
+  if (status == ModelStatus::kOk) take_model_image<N>(image, header, weights);
   return status;
+}
+
+std::uint32_t model_image_crc32(const std::uint8_t* image) {
+  return get_u32(image + kOffsetHeaderCrc);
 }
 
 bool is_float32(const std::uint8_t* image, std::size_t size_bytes) {
@@ -445,6 +453,9 @@ std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>
 }
 
 #define TUMBLESIGHT_INSTANTIATE(N)                                                                            \
+  template ModelStatus check_model_image<N>(const std::uint8_t*, std::size_t, const char*,                    \
+                                            const NetworkWeights<N>&);                                        \
+  template void take_model_image<N>(const std::uint8_t*, ModelHeader&, NetworkWeights<N>&);                   \
   template ModelStatus read_model_image<N>(const std::uint8_t*, std::size_t, const char*, ModelHeader&,       \
                                            NetworkWeights<N>&);                                               \
   template std::size_t write_model_image<N>(const ModelHeader&, const NetworkWeights<N>&, std::uint8_t*, std::size_t)

@@ -79,6 +79,17 @@ template <class N>
                                            const char* expected_target, ModelHeader& header,
                                            NetworkWeights<N>& weights);
 
+// The two halves of that. `weights` only lends the sizes of its tensors to the check; what is taken over must have been
+// checked.
+template <class N>
+[[nodiscard]] ModelStatus check_model_image(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
+                                            const NetworkWeights<N>& weights);
+template <class N>
+void take_model_image(const std::uint8_t* image, ModelHeader& header, NetworkWeights<N>& weights);
+
+// The CRC-32 in an image's header, which names it. Of an image that has been checked.
+std::uint32_t model_image_crc32(const std::uint8_t* image);
+
 // Whether an image says of itself that it is one in float32; for choosing by which estimator to read it.
 bool is_float32(const std::uint8_t* image, std::size_t size_bytes);
 

@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <iterator>
 
+#include "hal/dds/idl/telemetry_fields.hpp"
+
 namespace tumblesight::hal::dds {
 
-static_assert(tumblesight_icd_COMMAND_PAYLOAD == Command::kMaxPayload, "the ICD's command is the link's");
+static_assert(tumblesight_icd_COMMAND_BYTES == CommandPacket::kMaxBytes, "the ICD's command is the link's");
+static_assert(tumblesight_icd_DUMP_BYTES == ModelDump::kMaxBytes, "the ICD's dump is the link's");
+static_assert(tumblesight_icd_REFUSALS == Housekeeping::kRefusals);
+static_assert(tumblesight_icd_STEP_TIME_BINS == Housekeeping::kStepTimeBins);
+static_assert(tumblesight_icd_BANKS == Housekeeping::kBanks);
 
 void DdsLink::put(const CommandSample& sample) {
   const MailboxLock lock(mutex_);
-  Command& command = commands_.push();
-  command.opcode = sample.opcode;
-  // A size beyond the payload stays visible to the application, which refuses it.
-  command.payload_size = sample.payload_size;
-  std::copy(std::begin(sample.payload), std::end(sample.payload), command.payload.begin());
+  CommandPacket& command = commands_.push();
+  // A size beyond the bytes stays visible to the application, which refuses it.
+  command.size = sample.size;
+  std::copy(std::begin(sample.bytes), std::end(sample.bytes), command.bytes.begin());
 }
 
 bool DdsLink::take_output(CycleOutput& output) {
@@ -36,9 +41,9 @@ void DdsLink::end_cycle(std::uint32_t state_crc32) {
   outputs_.push() = output_;
 }
 
-bool DdsLink::receive(Command& command) {
+bool DdsLink::receive(CommandPacket& command) {
   const MailboxLock lock(mutex_);
-  const Command* oldest = commands_.pop();
+  const CommandPacket* oldest = commands_.pop();
   if (oldest == nullptr) return false;
   command = *oldest;
   return true;
@@ -65,23 +70,7 @@ void DdsLink::publish(const Housekeeping& housekeeping) {
   TelemetrySample& sample = output_.telemetry;
   sample.run_id = output_.done.run_id;
   sample.k = output_.done.k;
-  sample.time_ns = housekeeping.time_ns;
-  sample.mode = housekeeping.mode;
-  sample.cycles = housekeeping.cycles;
-  sample.commands_accepted = housekeeping.commands_accepted;
-  sample.commands_refused = housekeeping.commands_refused;
-  sample.frames_used = housekeeping.frames_used;
-  sample.frames_missing = housekeeping.frames_missing;
-  sample.frames_refused = housekeeping.frames_refused;
-  sample.frames_duplicate = housekeeping.frames_duplicate;
-  sample.frames_stale = housekeeping.frames_stale;
-  sample.frames_bad = housekeeping.frames_bad;
-  sample.sequence_gaps = housekeeping.sequence_gaps;
-  sample.estimator_resets = housekeeping.estimator_resets;
-  sample.events = housekeeping.events;
-  sample.inference_us = housekeeping.inference_us;
-  sample.inference_max_us = housekeeping.inference_max_us;
-  sample.deadline_overruns = housekeeping.deadline_overruns;
+  copy_telemetry(housekeeping, sample);
   sample.heap_allocations = heap_allocations_();
   output_.done.telemetries = 1;
 }
@@ -96,6 +85,18 @@ void DdsLink::publish(const Event& event) {
   sample.severity = event.severity;
   std::copy(event.arguments.begin(), event.arguments.end(), sample.arguments);
   ++output_.done.events;
+}
+
+void DdsLink::publish(const ModelDump& dump) {
+  ModelDumpSample& sample = output_.dump;
+  sample.run_id = output_.done.run_id;
+  sample.k = output_.done.k;
+  sample.time_ns = dump.time_ns;
+  sample.bank = dump.bank;
+  sample.offset = dump.offset;
+  sample.size = dump.size;
+  std::copy(dump.bytes.begin(), dump.bytes.end(), sample.bytes);
+  output_.done.dumps = 1;
 }
 
 }  // namespace tumblesight::hal::dds

@@ -1,5 +1,5 @@
-// DdsLink: commands of topic sil/command in; attitude, housekeeping and events out to sil/attitude,
-// sil/telemetry and sil/event. The flight task is on one side of it, the bus thread, which speaks DDS, on the
+// DdsLink: commands of topic sil/command in; attitude, housekeeping, events and dumps out to sil/attitude,
+// sil/telemetry, sil/event and sil/model_dump. The flight task is on one side of it, the bus thread, which speaks DDS, on the
 // other.
 #pragma once
 
@@ -19,6 +19,7 @@ struct CycleOutput {
   AttitudeSample attitude{};
   TelemetrySample telemetry{};
   std::array<EventSample, kMaxEventsPerStep> events{};
+  ModelDumpSample dump{};
 };
 
 class DdsLink final : public Link {
@@ -36,16 +37,17 @@ class DdsLink final : public Link {
   // Flight task. What is published between the two belongs to cycle `k`.
   void begin_cycle(std::uint32_t run_id, std::uint32_t k);
   void end_cycle(std::uint32_t state_crc32);
-  [[nodiscard]] bool receive(Command& command) override;
+  [[nodiscard]] bool receive(CommandPacket& command) override;
   void publish(const AttitudeReport& report) override;
   void publish(const Housekeeping& housekeeping) override;
   void publish(const Event& event) override;
+  void publish(const ModelDump& dump) override;
 
  private:
   Counter heap_allocations_;
   CycleOutput output_;  // of the cycle that runs
   MailboxMutex mutex_;
-  FixedQueue<Command, 2 * kMaxCommandsPerStep> commands_;
+  FixedQueue<CommandPacket, 2 * kMaxCommandsPerStep> commands_;
   FixedQueue<CycleOutput, 4> outputs_;
 };
 

@@ -85,6 +85,7 @@ bool FlightBus::carry_out() {
     for (std::uint8_t i = 0; i < output_.done.events; ++i) {
       written &= endpoints_.events.write(output_.events[i]) == 0;
     }
+    if (output_.done.dumps > 0) written &= endpoints_.dumps.write(output_.dump) == 0;
     written &= endpoints_.steps_done.write(output_.done) == 0;
   }
   return written;
@@ -92,7 +93,8 @@ bool FlightBus::carry_out() {
 
 void FlightBus::flush() {
   for (const dds_entity_t writer : {endpoints_.attitudes.entity(), endpoints_.telemetries.entity(),
-                                    endpoints_.events.entity(), endpoints_.steps_done.entity()}) {
+                                    endpoints_.events.entity(), endpoints_.dumps.entity(),
+                                    endpoints_.steps_done.entity()}) {
     (void)wait_for_acknowledgment(writer, kLastWords_ns);
   }
 }

@@ -15,6 +15,7 @@ dds_return_t FlightEndpoints::open(dds_entity_t participant) {
   if (result == 0) result = attitudes.open(participant);
   if (result == 0) result = telemetries.open(participant);
   if (result == 0) result = events.open(participant);
+  if (result == 0) result = dumps.open(participant);
   if (result == 0) result = steps_done.open(participant);
   for (const dds_entity_t reader : {frames.entity(), commands.entity(), steps.entity()}) {
     if (result == 0) result = wake_on(reader);
@@ -30,7 +31,7 @@ dds_return_t FlightEndpoints::wake_on(dds_entity_t reader) {
 bool FlightEndpoints::all_matched() const {
   return hello_in.matched() > 0 && frames.matched() > 0 && commands.matched() > 0 && steps.matched() > 0 &&
          hello_out.matched() > 0 && attitudes.matched() > 0 && telemetries.matched() > 0 &&
-         events.matched() > 0 && steps_done.matched() > 0;
+         events.matched() > 0 && dumps.matched() > 0 && steps_done.matched() > 0;
 }
 
 void FlightEndpoints::wait_for_data(std::int64_t timeout_ns) {

@@ -16,6 +16,7 @@ struct FlightEndpoints {
   Writer<AttitudeSample> attitudes;
   Writer<TelemetrySample> telemetries;
   Writer<EventSample> events;
+  Writer<ModelDumpSample> dumps;
   Writer<StepDoneSample> steps_done;
 
   // 0 or a negative DDS return code.

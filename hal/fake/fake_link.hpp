@@ -10,10 +10,10 @@ namespace tumblesight::hal::fake {
 
 class FakeLink final : public Link {
  public:
-  void add(const Command& command) { commands_.push_back(command); }
+  void add(const CommandPacket& command) { commands_.push_back(command); }
   std::size_t waiting() const { return commands_.size(); }
 
-  bool receive(Command& command) override {
+  bool receive(CommandPacket& command) override {
     if (commands_.empty()) return false;
     command = commands_.front();
     commands_.pop_front();
@@ -22,13 +22,15 @@ class FakeLink final : public Link {
   void publish(const AttitudeReport& report) override { attitudes.push_back(report); }
   void publish(const Housekeeping& housekeeping) override { telemetry.push_back(housekeeping); }
   void publish(const Event& event) override { events.push_back(event); }
+  void publish(const ModelDump& dump) override { dumps.push_back(dump); }
 
   std::vector<AttitudeReport> attitudes;
   std::vector<Housekeeping> telemetry;
   std::vector<Event> events;
+  std::vector<ModelDump> dumps;
 
  private:
-  std::deque<Command> commands_;
+  std::deque<CommandPacket> commands_;
 };
 
 }  // namespace tumblesight::hal::fake

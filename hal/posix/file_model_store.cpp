@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstring>
+
 namespace tumblesight::hal::posix {
 namespace {
 
@@ -42,6 +44,14 @@ const char* to_string(FileStatus status) {
 }
 
 FileModelStore::FileModelStore(const char* path, std::size_t max_bytes) {
+  // Pages that nothing is written to take no memory.
+  void* memory = mmap(nullptr, kModelBanks * max_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) {
+    status_ = FileStatus::kNoMemory;
+    return;
+  }
+  data_ = static_cast<std::uint8_t*>(memory);
+  capacity_ = max_bytes;
   // Not blocking: a named pipe in the image's place must not stop the start-up.
   const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) {
@@ -53,7 +63,7 @@ FileModelStore::FileModelStore(const char* path, std::size_t max_bytes) {
 }
 
 FileModelStore::~FileModelStore() {
-  if (data_ != nullptr) (void)munmap(data_, size_);
+  if (data_ != nullptr) (void)munmap(data_, kModelBanks * capacity_);
 }
 
 FileStatus FileModelStore::load(int file, std::size_t max_bytes) {
@@ -63,15 +73,16 @@ FileStatus FileModelStore::load(int file, std::size_t max_bytes) {
   const auto size = static_cast<std::size_t>(about.st_size);
   if (size > max_bytes) return FileStatus::kTooLarge;
 
-  void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (memory == MAP_FAILED) return FileStatus::kNoMemory;
-  data_ = static_cast<std::uint8_t*>(memory);
+  if (!read_whole(file, data_, size)) return FileStatus::kUnreadable;
+  std::memcpy(data_ + capacity_, data_, size);
   size_ = size;
-  return read_whole(file, data_, size_) ? FileStatus::kOk : FileStatus::kUnreadable;
+  return FileStatus::kOk;
 }
 
-ModelBytes FileModelStore::active_image() {
-  return status_ == FileStatus::kOk ? ModelBytes{data_, size_} : ModelBytes{};
+ModelBank FileModelStore::bank(int index) {
+  if (data_ == nullptr) return {};
+  std::uint8_t* const memory = data_ + static_cast<std::size_t>(index) * capacity_;
+  return {memory, memory, size_, capacity_};
 }
 
 }  // namespace tumblesight::hal::posix

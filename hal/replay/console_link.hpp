@@ -11,10 +11,11 @@ namespace tumblesight::hal::replay {
 
 class ConsoleLink final : public Link {
  public:
-  bool receive(Command&) override { return false; }
+  bool receive(CommandPacket&) override { return false; }
   void publish(const AttitudeReport& report) override;
   void publish(const Housekeeping& housekeeping) override;
   void publish(const Event& event) override;
+  void publish(const ModelDump&) override {}  // nobody asks for one
 
   // Of every report and event so far, without what the stopwatch measured; `state_crc32` joins it.
   void digest(std::uint32_t state_crc32) { crc_.add_u32(state_crc32); }

@@ -14,7 +14,7 @@ namespace tumblesight::sim {
 namespace {
 
 bool gave_attitude(const StepRecord& step) {
-  return step.answered && step.attitude.validity == tumblesight_icd_VALIDITY_VALID;
+  return step.answered && gives_attitude(step.attitude);
 }
 
 std::string file_name(const std::string& path) {
@@ -82,12 +82,15 @@ FactList counter_facts(const SilRecording& recording) {
       {"frames missing", h.frames_missing},
       {"frames refused", h.frames_refused},
       {"… duplicate, stale, bad", h.frames_duplicate + h.frames_stale + h.frames_bad},
+      {"attitudes flagged doubtful", h.attitudes_doubtful},
       {"sequence numbers skipped", h.sequence_gaps},
       {"estimator resets", h.estimator_resets},
       {"commands accepted", h.commands_accepted},
       {"commands refused", h.commands_refused},
       {"events", h.events},
       {"deadline overruns", h.deadline_overruns},
+      {"model checked whole", h.model_passes},
+      {"memory repaired", h.memory_corrections + h.states_restored + h.constants_reloaded + h.model_blocks_repaired},
   };
   for (const auto& [name, count] : counters) list.facts.emplace_back(name, fmt::format("{}", count));
   return list;
@@ -164,7 +167,7 @@ std::vector<std::string> shortcomings(const SilRecording& recording) {
     found.push_back(fmt::format(
         "{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
         recording.steps_planned - recording.steps_missed,
-        last->housekeeping.mode == tumblesight_icd_MODE_STANDBY ? ": the flight program is in STANDBY" : ""));
+        last->housekeeping.mode != tumblesight_icd_MODE_RUN ? ": the flight program is not in RUN" : ""));
   }
   if (recording.flight_heap_allocations > 0) {
     found.push_back(fmt::format("The flight task allocated heap memory {} times after its start.",

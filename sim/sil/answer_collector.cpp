@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "hal/dds/idl/telemetry_fields.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -24,24 +26,7 @@ hal::AttitudeReport from_sample(const hal::dds::AttitudeSample& sample) {
 
 hal::Housekeeping from_sample(const hal::dds::TelemetrySample& sample) {
   hal::Housekeeping housekeeping;
-  housekeeping.time_ns = sample.time_ns;
-  housekeeping.mode = sample.mode;
-  housekeeping.cycles = sample.cycles;
-  housekeeping.commands_accepted = sample.commands_accepted;
-  housekeeping.commands_refused = sample.commands_refused;
-  housekeeping.frames_used = sample.frames_used;
-  housekeeping.frames_missing = sample.frames_missing;
-  housekeeping.frames_refused = sample.frames_refused;
-  housekeeping.frames_duplicate = sample.frames_duplicate;
-  housekeeping.frames_stale = sample.frames_stale;
-  housekeeping.frames_bad = sample.frames_bad;
-  housekeeping.sequence_gaps = sample.sequence_gaps;
-  housekeeping.estimator_resets = sample.estimator_resets;
-  housekeeping.events = sample.events;
-  housekeeping.inference_us = sample.inference_us;
-  housekeeping.inference_max_us = sample.inference_max_us;
-  housekeeping.deadline_overruns = sample.deadline_overruns;
-  housekeeping.heap_allocations = sample.heap_allocations;
+  hal::dds::copy_telemetry(sample, housekeeping);
   return housekeeping;
 }
 
@@ -54,11 +39,16 @@ hal::Event from_sample(const hal::dds::EventSample& sample) {
   return event;
 }
 
+std::vector<std::uint8_t> from_sample(const hal::dds::ModelDumpSample& sample) {
+  const std::size_t size = std::min<std::size_t>(sample.size, std::size(sample.bytes));
+  return {sample.bytes, sample.bytes + size};
+}
+
 }  // namespace
 
 bool AnswerCollector::Partial::complete() const {
   return done && attitudes >= done->attitudes && telemetries >= done->telemetries &&
-         answer.events.size() >= done->events;
+         answer.events.size() >= done->events && dumps >= done->dumps;
 }
 
 template <class Sample>
@@ -87,6 +77,13 @@ void AnswerCollector::collect() {
   hal::dds::EventSample event;
   while (endpoints_.events.take(event)) {
     if (Partial* partial = partial_of(event)) partial->answer.events.push_back(from_sample(event));
+  }
+  hal::dds::ModelDumpSample dump;
+  while (endpoints_.dumps.take(dump)) {
+    Partial* partial = partial_of(dump);
+    if (partial == nullptr) continue;
+    partial->answer.dump = from_sample(dump);
+    ++partial->dumps;
   }
   hal::dds::StepDoneSample done;
   while (endpoints_.steps_done.take(done)) {

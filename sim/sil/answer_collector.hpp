@@ -17,6 +17,7 @@ struct StepAnswer {
   hal::AttitudeReport attitude;
   hal::Housekeeping housekeeping;
   std::vector<hal::Event> events;
+  std::vector<std::uint8_t> dump;  // of a model bank; empty: none
   std::uint32_t state_crc32 = 0;
 };
 
@@ -35,6 +36,7 @@ class AnswerCollector {
     StepAnswer answer;
     std::uint32_t attitudes = 0;
     std::uint32_t telemetries = 0;
+    std::uint32_t dumps = 0;
     std::optional<hal::dds::StepDoneSample> done;
     bool complete() const;
   };

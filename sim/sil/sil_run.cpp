@@ -16,12 +16,6 @@ using Clock = SilSession::Clock;
 
 constexpr std::uint32_t kPictureSequences = 3;  // whose frames are kept
 
-hal::Command command(std::uint16_t opcode) {
-  hal::Command result;
-  result.opcode = opcode;
-  return result;
-}
-
 // One run: what is planned, the frames, and the recording as it grows.
 class SilRun {
  public:
@@ -57,7 +51,7 @@ class SilRun {
       if (settings_.speed > 0.0) session.sleep_until(begin + wall_time_of(k));
       session.publish_truth(plan_[k].sequence, plan_[k].frame, recording_.steps[k].truth, plan_[k].time_ns);
       record(k, session.step(input));
-      if (k == 0) require_estimating(recording_.steps[0].housekeeping);
+      if (k == 0) require_running(recording_.steps[0].housekeeping);
     }
   }
 
@@ -79,10 +73,10 @@ class SilRun {
     while (Clock::now() < deadline && !last_answered()) {
       const std::optional<StepAnswer> answer = session.next_answer(deadline);
       if (!answer) return;
-      require_estimating(answer->housekeeping);
+      require_running(answer->housekeeping);
       recording_.flight_heap_allocations = answer->housekeeping.heap_allocations;
-      // Only valid attitudes name the frame that they belong to.
-      const bool has_frame = answer->attitude.validity == tumblesight_icd_VALIDITY_VALID;
+      // Only attitudes name the frame that they belong to.
+      const bool has_frame = gives_attitude(answer->attitude);
       const std::uint32_t k = answer->attitude.sequence_number;
       if (has_frame && k < recording_.steps.size() && !recording_.steps[k].answered) record(k, *answer);
     }
@@ -115,9 +109,9 @@ class SilRun {
     input.time_ns = plan.time_ns;
     input.frames = {&frame};
     if (k == 0 && session.flight_mode() == tumblesight_icd_MODE_STANDBY) {
-      input.commands.push_back(command(tumblesight_icd_OPCODE_ESTIMATE));
+      input.commands.push_back(set_mode(tumblesight_icd_MODE_RUN));
     }
-    if (plan.frame == 0) input.commands.push_back(command(tumblesight_icd_OPCODE_RESET_ESTIMATOR));
+    if (plan.frame == 0) input.commands.push_back(reset_sequence());
     input.last = k + 1 == plan_.size();
     return input;
   }
@@ -134,9 +128,9 @@ class SilRun {
     if (progress_) progress_(answered_, recording_.steps_planned);
   }
 
-  void require_estimating(const hal::Housekeeping& housekeeping) const {
-    if (housekeeping.mode != tumblesight_icd_MODE_STANDBY) return;
-    throw SilFailure("flight stays in STANDBY: it has no usable model image for target " + settings_.target +
+  void require_running(const hal::Housekeeping& housekeeping) const {
+    if (housekeeping.mode != tumblesight_icd_MODE_SAFE) return;
+    throw SilFailure("flight is in SAFE: it has no usable model image for target " + settings_.target +
                      (settings_.model_path.empty() ? "" : " in " + settings_.model_path) +
                      "; its message says what is wrong with it");
   }
@@ -164,6 +158,10 @@ void conclude(SilRecording& recording) {
 }
 
 }  // namespace
+
+bool gives_attitude(const hal::AttitudeReport& report) {
+  return report.validity == tumblesight_icd_VALIDITY_VALID || report.validity == tumblesight_icd_VALIDITY_DOUBTFUL;
+}
 
 SilRecording run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
                      const std::vector<Sequence>& sequences, const SilProgress& progress,

@@ -2,12 +2,14 @@
 // between them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
+#include "hal/dds/idl/development_key.hpp"
 #include "hal/link.hpp"
 #include "sim/lidar/flash_lidar.hpp"
 #include "sim/scenario/sequence.hpp"
@@ -24,6 +26,7 @@ struct SilSettings {
   double step_timeout_s = 10.0;  // wall clock; a step not answered by then ends the run
   std::string flight_log_path;   // file for flight's messages; empty: they come out with our own
   std::vector<std::string> flight_arguments;  // further arguments for flight
+  std::array<std::uint8_t, 32> command_key = hal::dds::kDevelopmentKey;  // the same as flight's
 };
 
 // Everything recorded of one step. `frame` is what was sent (for pictures), kept only for the first
@@ -39,6 +42,9 @@ struct StepRecord {
   std::vector<hal::Event> events;
   std::uint32_t state_crc32 = 0;
 };
+
+// Valid or doubtful.
+bool gives_attitude(const hal::AttitudeReport& report);
 
 struct SilRecording {
   std::vector<StepRecord> steps;

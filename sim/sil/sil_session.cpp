@@ -51,7 +51,7 @@ void write(hal::dds::Writer<Sample>& writer, const Sample& sample) {
 }  // namespace
 
 SilSession::SilSession(const SilSettings& settings)
-    : settings_(settings), lease_(settings.domain), run_id_(make_run_id()) {
+    : settings_(settings), lease_(settings.domain), run_id_(make_run_id()), encoder_(settings.command_key) {
   const dds_return_t result = domain_.open(lease_.domain());
   if (result != 0) {
     throw SilFailure("DDS domain " + std::to_string(lease_.domain()) +
@@ -165,13 +165,15 @@ void SilSession::send(const StepInput& input) {
     std::copy(frame->ranges.begin(), frame->ranges.end(), frame_sample_.ranges);
     write(endpoints_->frames, frame_sample_);
   }
-  for (const hal::Command& command : input.commands) {
+  std::vector<hal::CommandPacket> packets;
+  for (const Telecommand& command : input.commands) packets.push_back(encoder_.packet(command));
+  packets.insert(packets.end(), input.packets.begin(), input.packets.end());
+  for (const hal::CommandPacket& packet : packets) {
     hal::dds::CommandSample sample{};
     sample.run_id = run_id_;
     sample.k = k;
-    sample.opcode = command.opcode;
-    sample.payload_size = command.payload_size;
-    std::copy(command.payload.begin(), command.payload.end(), sample.payload);
+    sample.size = packet.size;
+    std::copy(packet.bytes.begin(), packet.bytes.end(), sample.bytes);
     write(endpoints_->commands, sample);
   }
   hal::dds::StepSample step{};
@@ -179,7 +181,7 @@ void SilSession::send(const StepInput& input) {
   step.k = k;
   step.time_ns = input.time_ns;
   step.frames = static_cast<std::uint8_t>(input.frames.size());
-  step.commands = static_cast<std::uint8_t>(input.commands.size());
+  step.commands = static_cast<std::uint8_t>(packets.size());
   step.last = input.last ? 1 : 0;
   write(endpoints_->steps, step);
   last_sent_ = input.last;

@@ -19,6 +19,7 @@
 #include "sim/sil/flight_process.hpp"
 #include "sim/sil/sil_run.hpp"
 #include "sim/sil/simulator_endpoints.hpp"
+#include "sim/sil/telecommand.hpp"
 
 namespace tumblesight::sim {
 
@@ -26,7 +27,8 @@ namespace tumblesight::sim {
 struct StepInput {
   std::int64_t time_ns = 0;
   std::vector<const gnc::RangeImage*> frames;
-  std::vector<hal::Command> commands;
+  std::vector<Telecommand> commands;
+  std::vector<hal::CommandPacket> packets;  // behind these, as they are: what no ground would send
   bool last = false;
 };
 
@@ -75,6 +77,7 @@ class SilSession {
   std::unique_ptr<SimulatorEndpoints> endpoints_;
   std::unique_ptr<AnswerCollector> answers_;
   std::unique_ptr<FlightProcess> process_;  // ends before the domain is given back
+  TelecommandEncoder encoder_;
   hal::dds::LidarFrameSample frame_sample_{};
   std::uint32_t next_k_ = 0;
   bool last_sent_ = false;

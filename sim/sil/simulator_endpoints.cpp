@@ -23,11 +23,12 @@ SimulatorEndpoints::SimulatorEndpoints(dds_entity_t participant) {
   check(attitudes.open(participant));
   check(telemetries.open(participant));
   check(events.open(participant));
+  check(dumps.open(participant));
   check(steps_done.open(participant));
   waitset_ = dds_create_waitset(participant);
   check(waitset_);
   for (const dds_entity_t reader :
-       {attitudes.entity(), telemetries.entity(), events.entity(), steps_done.entity()}) {
+       {attitudes.entity(), telemetries.entity(), events.entity(), dumps.entity(), steps_done.entity()}) {
     const dds_entity_t condition = dds_create_readcondition(reader, DDS_ANY_STATE);
     check(condition);
     check(dds_waitset_attach(waitset_, condition, 0));
@@ -37,7 +38,7 @@ SimulatorEndpoints::SimulatorEndpoints(dds_entity_t participant) {
 bool SimulatorEndpoints::all_matched() const {
   return hello_out.matched() > 0 && frames.matched() > 0 && commands.matched() > 0 && steps.matched() > 0 &&
          hello_in.matched() > 0 && attitudes.matched() > 0 && telemetries.matched() > 0 &&
-         events.matched() > 0 && steps_done.matched() > 0;
+         events.matched() > 0 && dumps.matched() > 0 && steps_done.matched() > 0;
 }
 
 bool SimulatorEndpoints::wait_for_data(std::int64_t timeout_ns) {

@@ -37,7 +37,7 @@ void TraceDigest::add_housekeeping(const hal::Housekeeping& housekeeping) {
         housekeeping.commands_refused, housekeeping.frames_used, housekeeping.frames_missing,
         housekeeping.frames_refused, housekeeping.frames_duplicate, housekeeping.frames_stale,
         housekeeping.frames_bad, housekeeping.sequence_gaps, housekeeping.estimator_resets,
-        housekeeping.events}) {
+        housekeeping.attitudes_doubtful, housekeeping.events, housekeeping.model_passes}) {
     crc_.add_u32(value);
   }
 }

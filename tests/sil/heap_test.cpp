@@ -8,14 +8,13 @@ namespace {
 // Inference, commands, events and refusals, with the trap armed on the flight task all the time.
 TEST(Heap, TenThousandStepsWithoutAnAllocationOfTheFlightTask) {
   constexpr std::uint32_t kSteps = 10'500;
-  constexpr std::uint16_t kResetEstimator = 4;
   test::Conversation conversation(test::settings());
   StepAnswer answer;
   for (std::uint32_t k = 0; k + 1 < kSteps; ++k) {
     gnc::RangeImage frame = conversation.good_frame();
     if (k % 97 == 0) frame.ranges.fill(0);
-    std::vector<hal::Command> commands;
-    if (k % 10 == 0) commands = {test::command(kResetEstimator), test::command(999)};
+    std::vector<Telecommand> commands;
+    if (k % 10 == 0) commands = {reset_sequence(), {199, {}}};
     answer = conversation.step({frame}, commands);
     ASSERT_EQ(answer.housekeeping.heap_allocations, 0U) << "step " << k;
   }

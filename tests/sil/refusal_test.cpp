@@ -12,7 +12,6 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::uint8_t kStandby = 0;
 constexpr std::uint8_t kValidityStandby = 1;
 
 TEST(Refusal, UnequalInterfaceHashIsRefusedByBothSides) {
@@ -64,7 +63,7 @@ void change_architecture(std::vector<std::uint8_t>& bytes) {
 
 class RefusedModel : public ::testing::TestWithParam<BadModel> {};
 
-TEST_P(RefusedModel, FlightSaysWhichAndAnswersInStandby) {
+TEST_P(RefusedModel, FlightSaysWhichAndAnswersInSafe) {
   std::vector<std::uint8_t> bytes = test::model_bytes();
   GetParam().spoil(bytes);
   SilSettings settings = test::settings();
@@ -72,16 +71,16 @@ TEST_P(RefusedModel, FlightSaysWhichAndAnswersInStandby) {
   test::write_file(settings.model_path, bytes);
 
   test::Conversation conversation(settings);
-  EXPECT_EQ(conversation.session.flight_mode(), kStandby);
+  EXPECT_EQ(conversation.session.flight_mode(), tumblesight_icd_MODE_SAFE);
   const StepAnswer first = conversation.step();
-  EXPECT_EQ(first.housekeeping.mode, kStandby);
+  EXPECT_EQ(first.housekeeping.mode, tumblesight_icd_MODE_SAFE);
   EXPECT_EQ(first.attitude.validity, kValidityStandby);
   ASSERT_FALSE(first.events.empty());
   EXPECT_EQ(first.events[0].id, tumblesight_icd_EVENT_MODEL_REFUSED);
   EXPECT_EQ(conversation.finish().attitude.validity, kValidityStandby);
   const std::string message = test::read_file(settings.flight_log_path);
   EXPECT_NE(message.find(GetParam().message), std::string::npos) << message;
-  EXPECT_NE(message.find("STANDBY"), std::string::npos) << message;
+  EXPECT_NE(message.find("SAFE"), std::string::npos) << message;
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -102,7 +101,7 @@ TEST(Refusal, ModelOfAnotherTargetEndsTheRunInWords) {
   SilSettings settings = test::settings();
   settings.target = "another_target";
   const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
-  EXPECT_NE(recording.failure.find("STANDBY"), std::string::npos) << recording.failure;
+  EXPECT_NE(recording.failure.find("SAFE"), std::string::npos) << recording.failure;
   EXPECT_NE(test::read_file(settings.flight_log_path).find("target"), std::string::npos);
 }
 

@@ -124,7 +124,7 @@ gnc::RangeImage Conversation::good_frame() const {
 }
 
 StepAnswer Conversation::step(const std::vector<gnc::RangeImage>& frames_of_step,
-                              std::vector<hal::Command> commands, bool last) {
+                              std::vector<Telecommand> commands, bool last) {
   StepInput input;
   input.time_ns = time_ns(k);
   for (const gnc::RangeImage& frame : frames_of_step) input.frames.push_back(&frame);
@@ -161,12 +161,6 @@ Environment::Environment(const char* name, const std::string& value) : name_(nam
 
 Environment::~Environment() {
   before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_);
-}
-
-hal::Command command(std::uint16_t opcode) {
-  hal::Command result;
-  result.opcode = opcode;
-  return result;
 }
 
 pid_t flight_child() {

@@ -42,7 +42,7 @@ class Conversation {
 
   static std::int64_t time_ns(std::uint32_t k) { return (k + 1) * kFramePeriod_ns; }
   gnc::RangeImage good_frame() const;
-  StepAnswer step(const std::vector<gnc::RangeImage>& frames_of_step, std::vector<hal::Command> commands = {},
+  StepAnswer step(const std::vector<gnc::RangeImage>& frames_of_step, std::vector<Telecommand> commands = {},
                   bool last = false);
   StepAnswer step() { return step({good_frame()}); }
   StepAnswer finish();  // a good step that is the last, and flight's clean end
@@ -67,7 +67,6 @@ class Environment {
   std::optional<std::string> before_;
 };
 
-hal::Command command(std::uint16_t opcode);
 // Process id of the flight program that this process has started; 0: there is none.
 pid_t flight_child();
 

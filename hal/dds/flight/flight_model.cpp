@@ -43,17 +43,21 @@ void find_shipped_model(FlightOptions& options) {
 
 }  // namespace
 
-fsw::App& load_model(FlightOptions& options, FlightApps& apps, Stopwatch& stopwatch) {
+fsw::App& boot(FlightOptions& options, FlightApps& apps, Stopwatch& stopwatch, const CommandKey& command_key) {
   if (options.model_path[0] == '\0') find_shipped_model(options);
   static posix::FileModelStore store(options.model_path, fsw::config::kMaxModelImageBytes);
-  const ModelBytes image = store.active_image();
+  const Platform platform{&stopwatch, &store, &command_key};
+  const ModelBank image = store.bank(0);
   const bool float32 = options.numerics_given ? options.float32 : gnc::is_float32(image.data, image.size);
-  fsw::App& app = float32 ? static_cast<fsw::App&>(apps.float32) : apps.fixed_point;
-  app.init(image.data, image.size, options.target, stopwatch);
-  if (app.mode() != fsw::Mode::kStandby) return app;
-  const char* reason = image.data == nullptr ? to_string(store.status()) : gnc::to_string(app.model_status());
-  std::fprintf(stderr, "flight: model image %s: %s; staying in STANDBY\n", options.model_path, reason);
-  return app;
+  const auto boot_one = [&](auto& app) {
+    app.init(platform, options.target);
+    if (app.mode() == fsw::Mode::kRun) return;
+    const bool unread = store.status() != posix::FileStatus::kOk;
+    std::fprintf(stderr, "flight: model image %s: %s; the mode is SAFE\n", options.model_path,
+                 unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)));
+  };
+  float32 ? boot_one(apps.float32) : boot_one(apps.fixed_point);
+  return float32 ? static_cast<fsw::App&>(apps.float32_interface) : apps.fixed_point_interface;
 }
 
 }  // namespace tumblesight::hal::dds

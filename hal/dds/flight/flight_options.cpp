@@ -62,6 +62,7 @@ bool parse_path(const char* option, const char* value, char* path) {
 
 bool parse_one(const char* option, const char* value, FlightOptions& options) {
   if (std::strcmp(option, "--model") == 0) return parse_path(option, value, options.model_path);
+  if (std::strcmp(option, "--command-key") == 0) return parse_path(option, value, options.command_key_path);
   if (std::strcmp(option, "--target") == 0) {
     options.target = value;
     return value[0] != '\0' || fail(option, value, "a target's name");
@@ -91,6 +92,8 @@ void print_flight_help() {
       "  --target NAME      target that the model image must be for [near_shoemaker]\n"
       "  --numerics N       fixed: in integers, as it flies; float32: the reference [fixed; with --model what it "
       "is of]\n"
+      "  --command-key FILE key that telecommands must be signed with, 64 hexadecimal digits [one that everybody "
+      "knows]\n"
       "  --domain N         DDS domain [0]\n"
       "  --run-id N         simulator run to take part in; 0: the first that shows up [0]\n"
       "  --mode MODE        lockstep: the simulator is the time master; free-running: on a timer of its own "

@@ -8,6 +8,7 @@ namespace tumblesight::hal::dds {
 struct FlightOptions {
   static constexpr int kMaxPath = 1024;
 
+  char command_key_path[kMaxPath] = {};  // empty: the development key
   char model_path[kMaxPath] = {};  // empty after parsing: the one shipped for the target
   const char* target = "near_shoemaker";
   bool float32 = false;  // with a model of one's own: whatever the model is of, unless asked for

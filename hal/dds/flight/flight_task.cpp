@@ -14,8 +14,21 @@ namespace {
 // The interface's names and the application's are the same values.
 static_assert(tumblesight_icd_MODE_STANDBY == static_cast<int>(fsw::Mode::kStandby));
 static_assert(tumblesight_icd_VALIDITY_VALID == static_cast<int>(fsw::Validity::kValid));
-static_assert(tumblesight_icd_OPCODE_ESTIMATE == static_cast<int>(fsw::Opcode::kEstimate));
-static_assert(tumblesight_icd_OPCODE_RESET_ESTIMATOR == static_cast<int>(fsw::Opcode::kResetEstimator));
+static_assert(tumblesight_icd_MODE_RUN == static_cast<int>(fsw::Mode::kRun));
+static_assert(tumblesight_icd_MODE_SAFE == static_cast<int>(fsw::Mode::kSafe));
+static_assert(tumblesight_icd_VALIDITY_DOUBTFUL == static_cast<int>(fsw::Validity::kDoubtful));
+static_assert(tumblesight_icd_COMMAND_APID == fsw::kCommandApid);
+static_assert(tumblesight_icd_FUNCTION_NOOP == static_cast<int>(fsw::FunctionCode::kNoop));
+static_assert(tumblesight_icd_FUNCTION_RESET_COUNTERS == static_cast<int>(fsw::FunctionCode::kResetCounters));
+static_assert(tumblesight_icd_FUNCTION_SET_MODE == static_cast<int>(fsw::FunctionCode::kSetMode));
+static_assert(tumblesight_icd_FUNCTION_RESET_SEQUENCE == static_cast<int>(fsw::FunctionCode::kResetSequence));
+static_assert(tumblesight_icd_FUNCTION_MODEL_LOAD == static_cast<int>(fsw::FunctionCode::kModelLoad));
+static_assert(tumblesight_icd_FUNCTION_MODEL_VALIDATE == static_cast<int>(fsw::FunctionCode::kModelValidate));
+static_assert(tumblesight_icd_FUNCTION_MODEL_ACTIVATE == static_cast<int>(fsw::FunctionCode::kModelActivate));
+static_assert(tumblesight_icd_FUNCTION_MODEL_DUMP == static_cast<int>(fsw::FunctionCode::kModelDump));
+static_assert(tumblesight_icd_FUNCTION_SET_LIMIT == static_cast<int>(fsw::FunctionCode::kSetLimit));
+static_assert(tumblesight_icd_FUNCTION_ENABLE_RESPONSE == static_cast<int>(fsw::FunctionCode::kEnableResponse));
+static_assert(tumblesight_icd_FUNCTION_DISABLE_RESPONSE == static_cast<int>(fsw::FunctionCode::kDisableResponse));
 static_assert(tumblesight_icd_EVENT_MODEL_REFUSED == static_cast<int>(fsw::EventId::kModelRefused));
 static_assert(kMaxEventsPerStep >= fsw::config::kMaxEventsPerStep);
 
@@ -99,7 +112,7 @@ void FlightTask::run_lockstep() {
   for (;;) {
     wait(go_);
     if (end_requested_) return;
-    cycle(k_, now_ns_);
+    cycle(k_, now_ns_, 0);
     sem_post(&done_);
   }
 }
@@ -109,15 +122,16 @@ void FlightTask::run_free() {
   if (timer_ == nullptr) return;  // ended before it began
   bool last = false;
   for (std::uint32_t k = 0; !last; ++k) {
+    const std::uint32_t slips_before = slips_;
     const std::int64_t release_ns = timer_->wait_next_release_ns(slips_);
     last = end_requested_;
-    cycle(k, clock_.at(release_ns));
+    cycle(k, clock_.at(release_ns), slips_ - slips_before);
   }
 }
 
-void FlightTask::cycle(std::uint32_t k, std::int64_t now_ns) {
+void FlightTask::cycle(std::uint32_t k, std::int64_t now_ns, std::uint32_t slips) {
   link_.begin_cycle(run_id_, k);
-  fsw::run_cycle(*app_, lidar_, link_, now_ns, workspace_);
+  fsw::run_cycle(*app_, {lidar_, link_, watchdog_}, now_ns, slips, workspace_);
   link_.end_cycle(app_->state_crc32());
 }
 

@@ -53,9 +53,16 @@ class FlightTask {
   void run();
   void run_lockstep();
   void run_free();
-  void cycle(std::uint32_t k, std::int64_t now_ns);
+  void cycle(std::uint32_t k, std::int64_t now_ns, std::uint32_t slips);
+
+  // A desktop has none that could reset it.
+  class NoWatchdog final : public Watchdog {
+   public:
+    void kick() override {}
+  };
 
   fsw::App* app_ = nullptr;
+  NoWatchdog watchdog_;
   DdsLidar& lidar_;
   DdsLink& link_;
   fsw::CycleWorkspace& workspace_;

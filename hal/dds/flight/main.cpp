@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "hal/dds/flight/flight_key.hpp"
 #include "hal/dds/flight/flight_loop.hpp"
 #include "hal/dds/flight/flight_model.hpp"
 #include "hal/dds/flight/flight_options.hpp"
@@ -25,6 +26,7 @@ hal::dds::DdsLidar lidar;
 hal::dds::DdsLink link{hal::dds::heap_allocations};
 hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
 hal::dds::FlightApps apps;
+hal::CommandKey command_key;
 fsw::CycleWorkspace workspace;
 hal::dds::FlightTask task{lidar, link, workspace};
 
@@ -79,7 +81,8 @@ int main(int argc, char** argv) {
       break;
   }
   hal::dds::accept_stop_requests();
-  fsw::App& app = hal::dds::load_model(options, apps, stopwatch);
+  if (!hal::dds::read_command_key(options.command_key_path, command_key)) return static_cast<int>(FlightEnd::kBadArguments);
+  fsw::App& app = hal::dds::boot(options, apps, stopwatch, command_key);
 
   const FlightEnd end = fly(options, app);
   task.join();  // if there never was a run

@@ -31,7 +31,24 @@ class BoardStopwatch final : public Stopwatch {
   std::uint64_t now_ns() override { return board::now_ns(); }
 };
 
+// One bank, in the program itself, which nobody can write.
+class ProgramModelStore final : public ModelStore {
+ public:
+  ModelBank bank(int index) override {
+    const auto size = static_cast<std::size_t>(tumblesight_model_image_end - tumblesight_model_image);
+    return index == 0 ? ModelBank{tumblesight_model_image, nullptr, size, size} : ModelBank{};
+  }
+};
+
+class NoWatchdog final : public Watchdog {
+ public:
+  void kick() override {}
+};
+
 fsw::AttitudeInitApp<Numerics> app;
+fsw::AppOf<Numerics> app_interface{app};
+ProgramModelStore model_store;
+NoWatchdog watchdog;
 fsw::CycleWorkspace workspace;
 BoardStopwatch stopwatch;
 Recording recording;
@@ -43,9 +60,8 @@ int fail(const char* what, const char* why) {
 }
 
 int run() {
-  const auto model_size = static_cast<std::size_t>(tumblesight_model_image_end - tumblesight_model_image);
-  app.init(tumblesight_model_image, model_size, nullptr, stopwatch);
-  if (app.model_status() != gnc::ModelStatus::kOk) return fail("model image", gnc::to_string(app.model_status()));
+  app.init({&stopwatch, &model_store, nullptr}, nullptr);
+  if (app.mode() != fsw::Mode::kRun) return fail("model image", gnc::to_string(app.boot_status(0)));
   const auto recording_size = static_cast<std::size_t>(tumblesight_recording_end - tumblesight_recording);
   const RecordingStatus status = recording.open(tumblesight_recording, recording_size);
   if (status != RecordingStatus::kOk) return fail("recording", to_string(status));
@@ -58,7 +74,7 @@ int run() {
   while (recording.has_next()) {
     const std::int64_t now_ns = recording.next_exposure_time_ns();
     lidar.advance_to(now_ns);
-    fsw::run_cycle(app, lidar, link, now_ns, workspace);
+    fsw::run_cycle(app_interface, {lidar, link, watchdog}, now_ns, 0, workspace);
     link.digest(app.state_crc32());
   }
   const Housekeeping& housekeeping = link.housekeeping();

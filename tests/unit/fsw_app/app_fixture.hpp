@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "fsw/app/attitude_init_app.hpp"
+#include "hal/fake/fake_model_store.hpp"
 #include "hal/fake/fake_stopwatch.hpp"
+#include "tests/unit/fsw_app/make_packet.hpp"
 
 namespace tumblesight::fsw {
 
@@ -22,17 +24,22 @@ inline constexpr const char* kTestTarget = "test_craft";
 
 // A frame that the estimator accepts; `scene` varies what it shows.
 gnc::RangeImage good_frame(std::uint32_t sequence_number, std::int64_t exposure_time_ns, unsigned scene = 0);
-hal::Command command(Opcode opcode);
 
 class AppFixture : public ::testing::Test {
  protected:
   AppFixture() : app(std::make_unique<FixedPointApp>()), out(std::make_unique<StepOutputs>()) {}
 
+  // Both banks hold the test's model.
   void init_with_model();
+  void init(hal::fake::FakeModelStore& models, const char* expected_target = kTestTarget);
+
+  // Signed, with the next counter.
+  hal::CommandPacket command(FunctionCode function, const std::vector<std::uint8_t>& arguments = {});
+  hal::CommandPacket set_mode(Mode mode) { return command(FunctionCode::kSetMode, {static_cast<std::uint8_t>(mode)}); }
 
   // One cycle, a period after the one before. Without frame, or with the next one in time and order.
   const StepOutputs& step(const StepInputs& inputs);
-  const StepOutputs& step_commands(std::initializer_list<hal::Command> commands);
+  const StepOutputs& step_commands(std::initializer_list<hal::CommandPacket> commands);
   const StepOutputs& step_frame(const gnc::RangeImage& frame);
   const StepOutputs& step_good();
   gnc::RangeImage next_frame() const;  // as the sensor would deliver it for the coming cycle
@@ -47,6 +54,10 @@ class AppFixture : public ::testing::Test {
   std::unique_ptr<FixedPointApp> app;
   std::unique_ptr<StepOutputs> out;
   hal::fake::FakeStopwatch stopwatch;
+  hal::fake::FakeModelStore store;
+  std::uint32_t command_counter = 0;  // of the last command
+  // The attitudes of a random network jump as they like.
+  Protections protections{true, false};
   std::int64_t now_ns = kStart_ns;
   std::uint32_t sequence_number = 100;  // of the last good frame
 };

@@ -2,6 +2,7 @@
 
 #include "hal/fake/fake_lidar.hpp"
 #include "hal/fake/fake_link.hpp"
+#include "hal/fake/fake_watchdog.hpp"
 #include "tests/unit/fsw_app/app_fixture.hpp"
 
 namespace tumblesight::fsw {
@@ -10,24 +11,23 @@ namespace {
 class Cycle : public AppFixture {
  protected:
   Cycle() : workspace(std::make_unique<CycleWorkspace>()) { init_with_model(); }
-  CyclePublished run() {
+  void run(std::uint32_t slips = 0) {
     now_ns = next_time_ns();
-    return run_cycle(*app, lidar, link, now_ns, *workspace);
+    AppOf<gnc::FixedPoint> interface(*app);
+    run_cycle(interface, {lidar, link, watchdog}, now_ns, slips, *workspace);
   }
   Validity last_validity() const { return static_cast<Validity>(link.attitudes.back().validity); }
 
   std::unique_ptr<CycleWorkspace> workspace;
   hal::fake::FakeLidar lidar;
   hal::fake::FakeLink link;
+  hal::fake::FakeWatchdog watchdog;
 };
 
 TEST_F(Cycle, PublishesOneAttitudeOneTelemetryAndEveryEvent) {
   lidar.add(next_frame());
-  link.add(command(Opcode::kNoop));
-  const CyclePublished published = run();
-  EXPECT_EQ(published.attitudes, 1);
-  EXPECT_EQ(published.telemetries, 1);
-  EXPECT_EQ(published.events, 2);
+  link.add(command(FunctionCode::kNoop));
+  run();
   ASSERT_EQ(link.attitudes.size(), 1U);
   EXPECT_EQ(last_validity(), Validity::kValid);
   EXPECT_EQ(link.telemetry.size(), 1U);
@@ -36,9 +36,38 @@ TEST_F(Cycle, PublishesOneAttitudeOneTelemetryAndEveryEvent) {
   EXPECT_EQ(link.events[1].id, static_cast<int>(EventId::kCommandAccepted));
 }
 
+TEST_F(Cycle, WatchdogIsKickedOnceEveryDutyIsDone) {
+  run();
+  EXPECT_EQ(watchdog.kicks, 1);
+  run();
+  EXPECT_EQ(watchdog.kicks, 2);
+}
+
+TEST_F(Cycle, WatchdogIsNotKickedByAStepThatCouldNotDoItsDuties) {
+  app = std::make_unique<FixedPointApp>();  // never booted
+  run();
+  EXPECT_EQ(watchdog.kicks, 0);
+  EXPECT_EQ(link.telemetry.back().mode, static_cast<int>(Mode::kSafe)) << "telemetry goes on";
+}
+
+TEST_F(Cycle, MissedReleasesAreCountedAndToldOn) {
+  run(3);
+  EXPECT_EQ(link.telemetry.back().cycle_slips, 3U);
+  EXPECT_EQ(link.events.back().id, static_cast<int>(EventId::kCycleSlipped));
+}
+
+TEST_F(Cycle, PublishesADumpInTheCycleThatAskedForIt) {
+  link.add(command(FunctionCode::kModelDump, {0, 0, 0, 0, 0, 0, 4}));
+  run();
+  ASSERT_EQ(link.dumps.size(), 1U);
+  EXPECT_EQ(link.dumps[0].bytes[0], 'T');
+  run();
+  EXPECT_EQ(link.dumps.size(), 1U);
+}
+
 TEST_F(Cycle, NothingOfTheLastCycleIsLeftOver) {
   lidar.add(next_frame());
-  link.add(command(Opcode::kNoop));
+  link.add(command(FunctionCode::kNoop));
   run();
   run();
   EXPECT_EQ(last_validity(), Validity::kNoFrame);
@@ -47,7 +76,7 @@ TEST_F(Cycle, NothingOfTheLastCycleIsLeftOver) {
 }
 
 TEST_F(Cycle, CommandsBeyondTheLimitWaitForTheNextCycle) {
-  for (int i = 0; i < config::kMaxCommandsPerStep + 3; ++i) link.add(command(Opcode::kNoop));
+  for (int i = 0; i < config::kMaxCommandsPerStep + 3; ++i) link.add(command(FunctionCode::kNoop));
   run();
   EXPECT_EQ(link.waiting(), 3U);
   EXPECT_EQ(link.telemetry.back().commands_accepted, static_cast<unsigned>(config::kMaxCommandsPerStep));

@@ -218,7 +218,7 @@ TEST_F(FrameRules, CycleTimeNotAdvancingRefusesTheFrameButNotTheCommand) {
   gnc::RangeImage frame = next_frame();
   StepInputs inputs;
   inputs.frame = &frame;
-  inputs.commands[0] = command(Opcode::kNoop);
+  inputs.commands[0] = command(FunctionCode::kNoop);
   inputs.command_count = 1;
   step(inputs);
   EXPECT_EQ(validity(), Validity::kFrameRefused);
@@ -285,11 +285,11 @@ TEST_F(FrameRules, FullestCycleFitsTheEvents) {
   inputs.frame = frames.data();
   inputs.frame_count = 2;
   inputs.command_count = config::kMaxCommandsPerStep;
-  for (hal::Command& one : inputs.commands) one = command(Opcode::kNoop);
+  for (hal::CommandPacket& one : inputs.commands) one = command(FunctionCode::kNoop);
   step(inputs);
   EXPECT_EQ(out->event_count, 1 + config::kMaxCommandsPerStep + 2)
       << "model, commands, gap and reset of the second";
-  EXPECT_EQ(app->mode(), Mode::kEstimating);
+  EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ class FileModelStoreTest : public ::testing::Test {
   static void expect_none(const std::string& path, FileStatus status, std::size_t max_bytes = 4096) {
     FileModelStore store(path.c_str(), max_bytes);
     EXPECT_EQ(store.status(), status) << to_string(store.status());
-    EXPECT_EQ(store.active_image().data, nullptr);
-    EXPECT_EQ(store.active_image().size, 0U);
+    EXPECT_EQ(store.bank(0).size, 0U);
+    EXPECT_EQ(store.bank(1).size, 0U);
   }
 
   std::string folder_;
@@ -42,10 +42,19 @@ TEST_F(FileModelStoreTest, HoldsTheWholeFileAndKeepsItWhenTheFileChanges) {
   FileModelStore store(name.c_str(), 4096);
   ASSERT_EQ(store.status(), FileStatus::kOk);
   std::ofstream(name, std::ios::binary | std::ios::trunc) << "something else";
-  const ModelBytes image = store.active_image();
-  ASSERT_EQ(image.size, 4096U);
-  for (std::size_t i = 0; i < image.size; ++i)
-    ASSERT_EQ(image.data[i], static_cast<std::uint8_t>(i * 7)) << i;
+  for (const int index : {0, 1}) {
+    const ModelBank bank = store.bank(index);
+    ASSERT_EQ(bank.size, 4096U);
+    ASSERT_EQ(bank.capacity, 4096U);
+    for (std::size_t i = 0; i < bank.size; ++i) ASSERT_EQ(bank.data[i], static_cast<std::uint8_t>(i * 7)) << i;
+  }
+}
+
+TEST_F(FileModelStoreTest, BanksAreWrittenApart) {
+  FileModelStore store(write("model.tsm", 4096).c_str(), 4096);
+  store.bank(1).writable[4095] ^= 1;
+  EXPECT_NE(store.bank(0).data[4095], store.bank(1).data[4095]);
+  EXPECT_NE(store.bank(0).data, store.bank(1).data);
 }
 
 TEST_F(FileModelStoreTest, MissingFileIsSaidToBeMissing) {

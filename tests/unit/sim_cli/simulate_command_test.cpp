@@ -81,8 +81,8 @@ TEST(Simulate, FailsWhenTheFlightProgramRefusesTheModel) {
   const Outcome outcome = here.run("simulate --sequences 1 --frames 2 --model " + here.model("magellan") +
                                    " --report " + here.path("r.html"));
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.errors.find("STANDBY"), std::string::npos) << outcome.errors;
-  EXPECT_NE(content(here.path("r.html")).find("STANDBY"), std::string::npos);
+  EXPECT_NE(outcome.errors.find("SAFE"), std::string::npos) << outcome.errors;
+  EXPECT_NE(content(here.path("r.html")).find("SAFE"), std::string::npos);
 }
 
 // Flight's own default domain, so that the two meet when neither is told; and the command line shown works.

@@ -1,0 +1,68 @@
+#include "fsw/app/event_log.hpp"
+
+#include "fsw/app/counter.hpp"
+
+namespace tumblesight::fsw {
+namespace {
+
+constexpr std::uint32_t kMask = config::kEventRing - 1;
+
+constexpr std::size_t index_of(EventId id) {
+  for (std::size_t i = 0; i < kEventRules.size(); ++i) {
+    if (kEventRules[i].id == id) return i;
+  }
+  return kEventRules.size();
+}
+constexpr std::size_t kSuppressedIndex = index_of(EventId::kEventsSuppressed);
+static_assert(kSuppressedIndex < kEventRules.size());
+
+}  // namespace
+
+void EventLog::push(std::int64_t now_ns, const EventRule& rule, const std::array<std::int32_t, 3>& arguments,
+                    hal::Housekeeping& counters) {
+  count(counters.events);
+  if (waiting() == config::kEventRing) {
+    count(counters.events_lost);
+    return;
+  }
+  hal::Event& event = ring_[(first_ + count_++) & kMask];
+  event.time_ns = now_ns;
+  event.id = static_cast<std::uint16_t>(rule.id);
+  event.severity = static_cast<std::uint8_t>(rule.severity);
+  event.arguments = arguments;
+}
+
+void EventLog::raise(std::int64_t now_ns, EventId id, std::int32_t a, std::int32_t b, std::int32_t c,
+                     hal::Housekeeping& counters) {
+  const std::size_t index = index_of(id);
+  Kind& kind = kinds_[index];
+  if (kind.told < config::kMaxEventsOfAKind) {
+    ++kind.told;
+    push(now_ns, kEventRules[index], {a, b, c}, counters);
+  } else {
+    if (kind.suppressed < UINT16_MAX) ++kind.suppressed;
+    count(counters.events);
+    count(counters.events_suppressed);
+  }
+}
+
+void EventLog::end_cycle(std::int64_t now_ns, hal::Housekeeping& counters) {
+  if (++cycle_ < config::kEventWindow_cycles) return;
+  cycle_ = 0;
+  for (std::size_t i = 0; i < kinds_.size(); ++i) {
+    const Kind kind = kinds_[i];
+    kinds_[i] = {};
+    if (kind.suppressed == 0) continue;
+    push(now_ns, kEventRules[kSuppressedIndex], {static_cast<std::int32_t>(kEventRules[i].id), kind.suppressed, 0}, counters);
+  }
+}
+
+bool EventLog::take(hal::Event& event) {
+  if (waiting() == 0) return false;
+  count_ = waiting() - 1;
+  event = ring_[first_ & kMask];
+  first_ = (first_ + 1) & kMask;
+  return true;
+}
+
+}  // namespace tumblesight::fsw

@@ -1,0 +1,72 @@
+#include "sim/sil/telecommand.hpp"
+
+#include <openssl/evp.h>
+#include <openssl/hmac.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "hal/dds/idl/tumblesight.h"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 10;
+constexpr std::size_t kPrimaryHeaderBytes = 6;
+constexpr std::size_t kMacBytes = 16;
+constexpr std::size_t kTrailerBytes = 4 + kMacBytes;
+
+void append(std::vector<std::uint8_t>& bytes, std::uint32_t value, int count) {
+  for (int shift = 8 * (count - 1); shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+// CRC-16/CCITT-FALSE.
+std::uint16_t checksum(const std::vector<std::uint8_t>& bytes) {
+  std::uint32_t crc = 0xFFFF;
+  for (const std::uint8_t byte : bytes) {
+    crc ^= std::uint32_t{byte} << 8;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 0x8000U) != 0 ? (crc << 1 ^ 0x1021U) & 0xFFFFU : crc << 1 & 0xFFFFU;
+  }
+  return static_cast<std::uint16_t>(crc);
+}
+
+}  // namespace
+
+Telecommand set_mode(std::uint8_t mode) {
+  return {tumblesight_icd_FUNCTION_SET_MODE, {mode}};
+}
+Telecommand reset_sequence() {
+  return {tumblesight_icd_FUNCTION_RESET_SEQUENCE, {}};
+}
+
+hal::CommandPacket TelecommandEncoder::packet(const Telecommand& command) {
+  const std::size_t size = kHeaderBytes + command.arguments.size();
+  if (size + kTrailerBytes > hal::CommandPacket::kMaxBytes) {
+    throw std::invalid_argument("a telecommand of " + std::to_string(size + kTrailerBytes) + " bytes; at most " +
+                                std::to_string(hal::CommandPacket::kMaxBytes));
+  }
+  std::vector<std::uint8_t> bytes;
+  append(bytes, 0x1800U | tumblesight_icd_COMMAND_APID, 2);
+  append(bytes, 0xC000U | sequence_count_, 2);
+  append(bytes, static_cast<std::uint32_t>(size - kPrimaryHeaderBytes - 1), 2);
+  append(bytes, command.function, 1);
+  append(bytes, 0, 3);
+  bytes.insert(bytes.end(), command.arguments.begin(), command.arguments.end());
+  const std::uint16_t crc = checksum(bytes);
+  bytes[8] = static_cast<std::uint8_t>(crc >> 8);
+  bytes[9] = static_cast<std::uint8_t>(crc);
+  append(bytes, ++counter_, 4);
+  sequence_count_ = static_cast<std::uint16_t>((sequence_count_ + 1) & 0x3FFF);
+
+  std::array<std::uint8_t, EVP_MAX_MD_SIZE> code{};
+  HMAC(EVP_sha256(), key_.data(), static_cast<int>(key_.size()), bytes.data(), bytes.size(), code.data(), nullptr);
+  bytes.insert(bytes.end(), code.begin(), code.begin() + kMacBytes);
+
+  hal::CommandPacket packet;
+  packet.size = static_cast<std::uint16_t>(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), packet.bytes.begin());
+  return packet;
+}
+
+}  // namespace tumblesight::sim

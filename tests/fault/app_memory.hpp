@@ -1,0 +1,53 @@
+// AppMemory: where the parts of a flying application lie, for those who flip bits in them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "fsw/app/attitude_init_app.hpp"
+
+namespace tumblesight::fsw {
+
+struct Region {
+  std::uint8_t* data = nullptr;
+  std::size_t size = 0;
+
+  void flip(std::size_t bit) const { data[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8); }
+};
+
+struct AppMemory {
+  using App = AttitudeInitApp<gnc::FixedPoint>;
+  using Estimator = gnc::AttitudeEstimator<gnc::FixedPoint>;
+
+  template <class Thing>
+  static Region region_of(Thing& thing) {
+    return {reinterpret_cast<std::uint8_t*>(&thing), sizeof thing};
+  }
+
+  static AppState& state(App& app) { return *app.state_; }
+  // All three copies.
+  static Region voted_state(App& app) { return region_of(app.state_); }
+  static Region events(App& app) { return region_of(app.events_); }
+  // The copy of the estimator's state and the table of the blocks' checksums.
+  static Region guard(App& app) { return region_of(app.guard_); }
+  static Estimator& estimator(App& app) { return app.estimator_; }
+  // Biases, shifts and where the weights lie.
+  static Region constants(App& app) { return region_of(app.estimator_.network().weights()); }
+  // Whatever a frame writes anew.
+  static Region activations(App& app) {
+    auto& network = app.estimator_.network();
+    const Region whole = region_of(network), weights = region_of(network.weights());
+    std::uint8_t* const end = whole.data + whole.size;
+    return {weights.data + weights.size, static_cast<std::size_t>(end - (weights.data + weights.size))};
+  }
+  // The estimator hands its state out by value only.
+  static void flip_state_bit(App& app, std::size_t bit) {
+    Estimator::State state;
+    app.estimator_.save(state);
+    region_of(state).flip(bit);
+    app.estimator_.restore(state);
+  }
+  static constexpr std::size_t kStateBits = 8 * sizeof(Estimator::State);
+};
+
+}  // namespace tumblesight::fsw

@@ -1,0 +1,136 @@
+// Telecommands over the whole link: signed on the ground with another implementation than the one that checks them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "gnc/rcnn/model_image.hpp"
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::size_t kForged = 0, kReplayed = 1;  // fsw::CommandRefusal
+
+void append_u32(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+class Commands : public ::testing::Test {
+ protected:
+  StepAnswer step_packets(const std::vector<hal::CommandPacket>& packets) {
+    StepInput input;
+    const gnc::RangeImage frame = conversation_.good_frame();
+    input.time_ns = test::Conversation::time_ns(conversation_.k++);
+    input.frames = {&frame};
+    input.packets = packets;
+    return conversation_.session.step(input);
+  }
+  test::Conversation conversation_{test::settings()};
+};
+
+// Verifies TS-SEC-020, TS-SEC-030.
+TEST_F(Commands, ForgedAndRecordedOnesAreRefusedAndCounted) {
+  SilSettings settings = test::settings();
+  TelecommandEncoder ground(settings.command_key);
+  const hal::CommandPacket noop = ground.packet({tumblesight_icd_FUNCTION_NOOP, {}});
+  hal::CommandPacket spoilt = ground.packet({tumblesight_icd_FUNCTION_NOOP, {}});
+  spoilt.bytes[6] = tumblesight_icd_FUNCTION_RESET_COUNTERS;
+  settings.command_key[0] ^= 1;
+  const hal::CommandPacket stranger = TelecommandEncoder(settings.command_key).packet(set_mode(tumblesight_icd_MODE_SAFE));
+  const StepAnswer answer = step_packets({noop, noop, spoilt, stranger});
+  EXPECT_EQ(answer.housekeeping.commands_accepted, 1U);
+  EXPECT_EQ(answer.housekeeping.commands_refused_by[kReplayed], 1U);
+  EXPECT_EQ(answer.housekeeping.commands_refused_by[kForged], 2U);
+  EXPECT_EQ(answer.housekeeping.mode, tumblesight_icd_MODE_RUN);
+  EXPECT_TRUE(gives_attitude(answer.attitude));
+  conversation_.finish();
+}
+
+// Verifies TS-MODE-040, TS-MODE-050.
+TEST_F(Commands, ModesFollowTheCommands) {
+  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_SAFE)}).housekeeping.mode,
+            tumblesight_icd_MODE_SAFE);
+  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_RUN)}).housekeeping.mode,
+            tumblesight_icd_MODE_SAFE);
+  const StepAnswer answer = conversation_.step(
+      {conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_STANDBY), set_mode(tumblesight_icd_MODE_RUN)});
+  EXPECT_EQ(answer.housekeeping.mode, tumblesight_icd_MODE_RUN);
+  EXPECT_EQ(answer.attitude.frames_since_reset, 1U);
+  conversation_.finish();
+}
+
+// Verifies TS-MDL-020, TS-MDL-030, TS-MDL-040, TS-MDL-050.
+TEST_F(Commands, ModelIsLoadedDumpedBackValidatedAndActivatedInFlight) {
+  constexpr std::size_t kSegment = 1024, kPerStep = 8;
+  const std::vector<std::uint8_t>& image = test::model_bytes();
+  StepAnswer answer;
+  for (std::size_t offset = 0; offset < image.size();) {
+    std::vector<Telecommand> commands;
+    for (; commands.size() < kPerStep && offset < image.size(); offset += kSegment) {
+      Telecommand load{tumblesight_icd_FUNCTION_MODEL_LOAD, {}};
+      append_u32(load.arguments, static_cast<std::uint32_t>(offset));
+      const std::size_t size = std::min(kSegment, image.size() - offset);
+      load.arguments.insert(load.arguments.end(), image.begin() + static_cast<std::ptrdiff_t>(offset),
+                            image.begin() + static_cast<std::ptrdiff_t>(offset + size));
+      commands.push_back(load);
+    }
+    answer = conversation_.step({conversation_.good_frame()}, commands);
+    ASSERT_EQ(answer.housekeeping.commands_refused, 0U);
+  }
+  EXPECT_EQ(answer.housekeeping.model_bytes_loaded, image.size());
+
+  answer = conversation_.step({}, {{tumblesight_icd_FUNCTION_MODEL_DUMP, {1, 0, 0, 0x40, 0, 4, 0}}});
+  ASSERT_EQ(answer.dump.size(), kSegment);
+  EXPECT_TRUE(std::equal(answer.dump.begin(), answer.dump.end(), image.begin() + 0x4000));
+
+  const std::uint32_t crc32 = gnc::model_image_crc32(image.data());
+  Telecommand validate{tumblesight_icd_FUNCTION_MODEL_VALIDATE, {}}, activate{tumblesight_icd_FUNCTION_MODEL_ACTIVATE, {}};
+  append_u32(validate.arguments, static_cast<std::uint32_t>(image.size()));
+  append_u32(validate.arguments, crc32);
+  append_u32(activate.arguments, crc32);
+  answer = conversation_.step({}, {set_mode(tumblesight_icd_MODE_STANDBY), validate, activate, set_mode(tumblesight_icd_MODE_RUN)});
+  EXPECT_EQ(answer.housekeeping.commands_refused, 0U);
+  EXPECT_EQ(answer.housekeeping.bank_in_use, 1);
+  EXPECT_EQ(answer.housekeeping.bank_crc32[1], crc32);
+  EXPECT_EQ(answer.housekeeping.second_copy, 1) << "it is the same image";
+  conversation_.finish();
+}
+
+// Verifies TS-SEC-040.
+TEST(CommandKey, OfAFileReplacesTheOneThatEverybodyKnows) {
+  SilSettings settings = test::settings();
+  const std::string path = test::temporary_path("command.key");
+  std::ofstream(path) << std::string(64, 'a') << '\n';
+  settings.flight_arguments = {"--command-key", path};
+  {
+    test::Conversation conversation(settings);
+    const StepAnswer answer = conversation.step({conversation.good_frame()}, {reset_sequence()});
+    EXPECT_EQ(answer.housekeeping.commands_refused_by[kForged], 1U);
+    conversation.finish();
+  }
+  settings.command_key.fill(0xAA);
+  test::Conversation conversation(settings);
+  const StepAnswer answer = conversation.step({conversation.good_frame()}, {reset_sequence()});
+  EXPECT_EQ(answer.housekeeping.commands_accepted, 1U);
+  conversation.finish();
+}
+
+// Verifies TS-SEC-040.
+TEST(CommandKey, FileThatHoldsNoneEndsFlightWithTheReason) {
+  for (const std::string& content : {std::string(63, 'a'), std::string(65, 'a'), std::string(64, 'g'), std::string()}) {
+    SilSettings settings = test::settings();
+    const std::string path = test::temporary_path("command.key");
+    std::ofstream(path) << content;
+    settings.flight_arguments = {"--command-key", path};
+    EXPECT_THROW(SilSession{settings}, SilFailure);
+    EXPECT_NE(test::read_file(settings.flight_log_path).find("64 hexadecimal digits"), std::string::npos);
+  }
+  SilSettings settings = test::settings();
+  settings.flight_arguments = {"--command-key", "/nonexistent/key"};
+  EXPECT_THROW(SilSession{settings}, SilFailure);
+  EXPECT_NE(test::read_file(settings.flight_log_path).find("/nonexistent/key"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
