@@ -92,6 +92,9 @@ struct Event {
   std::uint16_t id = 0;       // fsw::EventId, stable
   std::uint8_t severity = 0;  // 0 information, 1 warning, 2 error
   std::array<std::int32_t, 3> arguments{};
+
+  // Then it differs from run to run, and belongs in no digest.
+  bool tells_of_wall_clock() const { return id > 20 && id < 30; }
 };
 
 // Part of a model bank, as MODEL_DUMP asked for.

@@ -208,7 +208,9 @@ void AttitudeInitApp<N>::supervise(const StepInputs& inputs, const StepOutputs& 
     const auto fault = static_cast<Fault>(i);
     const FaultMonitor::Change change = state.faults.observe(fault, (state.faults_seen & bit_of(fault)) != 0);
     if (change == FaultMonitor::Change::kPersists) respond(fault, report);
-    if (change == FaultMonitor::Change::kOver) report(EventId::kFaultOver, i);
+    if (change == FaultMonitor::Change::kOver) {
+      report(is_of_timing(fault) ? EventId::kTimingFaultOver : EventId::kFaultOver, i);
+    }
   }
 }
 
@@ -250,7 +252,7 @@ void AttitudeInitApp<N>::respond(Fault fault, const Reporter& report) {
   }
   if (response == Response::kIgnore) return;
   const auto index = static_cast<std::size_t>(fault);
-  report(EventId::kFaultPersists, static_cast<std::int32_t>(fault), static_cast<std::int32_t>(taken),
+  report(is_of_timing(fault) ? EventId::kTimingFaultPersists : EventId::kFaultPersists, static_cast<std::int32_t>(fault), static_cast<std::int32_t>(taken),
          config::kFaultRules[index].persistence_cycles);
 }
 
@@ -325,10 +327,10 @@ std::uint32_t AttitudeInitApp<N>::state_crc32() const {
   for (const std::uint32_t limit : state.limits) crc.add_u32(limit);
   const hal::Housekeeping& c = state.counters;
   for (const std::uint32_t number :
-       {state.gate.last_sequence_number(), state.assertions.count(), c.command_counter, state.faults.persisting(),
-        state.faults.disabled(), state.banks.in_use, state.banks.loaded_bytes, c.cycles, c.commands_accepted,
+       {state.gate.last_sequence_number(), state.assertions.count(), c.command_counter,
+        state.faults.persisting() & ~(bit_of(Fault::kDeadline) | bit_of(Fault::kSlip)), state.faults.disabled(), state.banks.in_use, state.banks.loaded_bytes, c.cycles, c.commands_accepted,
         c.commands_refused, c.frames_used, c.frames_missing, c.frames_refused, c.frames_duplicate, c.frames_stale,
-        c.frames_bad, c.sequence_gaps, c.estimator_resets, c.attitudes_doubtful, c.events, c.model_passes}) {
+        c.frames_bad, c.sequence_gaps, c.estimator_resets, c.attitudes_doubtful, c.model_passes}) {
     crc.add_u32(number);
   }
   return crc.value();

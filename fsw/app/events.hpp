@@ -20,8 +20,11 @@ enum class EventId : std::uint16_t {
   kCommandAccepted = 10,  // [function code, Mode before, Mode after]
 
   kCycleTimeNotAdvancing = 20,  // [this cycle minus the previous one, frames refused with it, -]
+  // 21 to 29 tell of the wall clock, so that no digest of a deterministic run may cover them.
   kCycleSlipped = 21,           // [releases missed, -, -]
-  kDeadlineOverrun = 22,        // [time of the step before this one, -, -]
+  kDeadlineOverrun = 22,        // [time of this step, -, -]
+  kTimingFaultPersists = 23,    // [Fault, Response taken, cycles of its rule]
+  kTimingFaultOver = 24,        // [Fault, -, -]
 
   kFrameMissing = 30,            // first cycle of an outage only [last accepted number, -, -]
   kFrameDuplicate = 31,          // [sequence number, -, -]
@@ -33,7 +36,7 @@ enum class EventId : std::uint16_t {
   kSequenceSkipped = 37,         // [number expected, number received, numbers skipped; -1: it went back]
 
   kEstimatorResetByGap = 40,    // [exposure gap, frames since the last reset, -]
-  kEstimatorResetByFault = 41,  // [Fault, frames since the last reset, -]
+  kEstimatorResetByFault = 41,  // [Fault, -, -]
   kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1 if it jumped]
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now
@@ -67,13 +70,15 @@ struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 39> kEventRules{{
+inline constexpr std::array<EventRule, 41> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kCommandAccepted, Severity::kInformation},
     {EventId::kCycleTimeNotAdvancing, Severity::kError},
     {EventId::kCycleSlipped, Severity::kWarning},
     {EventId::kDeadlineOverrun, Severity::kWarning},
+    {EventId::kTimingFaultPersists, Severity::kWarning},
+    {EventId::kTimingFaultOver, Severity::kInformation},
     {EventId::kFrameMissing, Severity::kWarning},
     {EventId::kFrameDuplicate, Severity::kWarning},
     {EventId::kFrameExposureBackwards, Severity::kWarning},

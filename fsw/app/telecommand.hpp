@@ -39,7 +39,7 @@ enum class FunctionCode : std::uint8_t {
   kModelDump = 8,        // bank u8, offset u32, size u16
   kSetLimit = 9,         // fsw::Limit u8, value u32
   kEnableResponse = 10,  // fsw::Fault u8
-  kDisableResponse = 11,
+  kDisableResponse = 11,  // fsw::Fault u8
 };
 
 // Why a command was not carried out, in the order of the checks.

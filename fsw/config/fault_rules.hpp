@@ -19,6 +19,11 @@ enum class Fault : std::uint8_t {
 };
 inline constexpr int kFaults = 8;
 
+// Faults that depend on how fast the machine is, not on what came in.
+constexpr bool is_of_timing(Fault fault) {
+  return fault == Fault::kDeadline || fault == Fault::kSlip;
+}
+
 enum class Response : std::uint8_t {
   kIgnore = 0,         // counted
   kFlag = 1,           // and told

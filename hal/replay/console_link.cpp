@@ -48,16 +48,15 @@ void ConsoleLink::publish(const Housekeeping& housekeeping) {
 }
 
 void ConsoleLink::publish(const Event& event) {
+  TextLine line;
+  line.text("        event ").number(event.id);
+  for (const std::int32_t argument : event.arguments) line.text(" ").number(argument);
+  board::write(line.text("\n").c_str());
+  if (event.tells_of_wall_clock()) return;
   digest_time(event.time_ns);
   crc_.add_u32(event.id);
   crc_.add_u32(event.severity);
-  TextLine line;
-  line.text("        event ").number(event.id);
-  for (const std::int32_t argument : event.arguments) {
-    crc_.add_u32(static_cast<std::uint32_t>(argument));
-    line.text(" ").number(argument);
-  }
-  board::write(line.text("\n").c_str());
+  for (const std::int32_t argument : event.arguments) crc_.add_u32(static_cast<std::uint32_t>(argument));
 }
 
 }  // namespace tumblesight::hal::replay

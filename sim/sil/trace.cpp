@@ -7,8 +7,9 @@ void TraceDigest::add(std::uint32_t k, const StepRecord& record) {
   add_time(record.time_ns);
   add_report(record.attitude);
   add_housekeeping(record.housekeeping);
-  crc_.add_u32(static_cast<std::uint32_t>(record.events.size()));
-  for (const hal::Event& event : record.events) add_event(event);
+  for (const hal::Event& event : record.events) {
+    if (!event.tells_of_wall_clock()) add_event(event);
+  }
   crc_.add_u32(record.state_crc32);
 }
 
@@ -37,7 +38,7 @@ void TraceDigest::add_housekeeping(const hal::Housekeeping& housekeeping) {
         housekeeping.commands_refused, housekeeping.frames_used, housekeeping.frames_missing,
         housekeeping.frames_refused, housekeeping.frames_duplicate, housekeeping.frames_stale,
         housekeeping.frames_bad, housekeeping.sequence_gaps, housekeeping.estimator_resets,
-        housekeeping.attitudes_doubtful, housekeeping.events, housekeeping.model_passes}) {
+        housekeeping.attitudes_doubtful, housekeeping.model_passes}) {
     crc_.add_u32(value);
   }
 }

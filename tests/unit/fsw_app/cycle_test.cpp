@@ -54,6 +54,7 @@ TEST_F(Cycle, MissedReleasesAreCountedAndToldOn) {
   run(3);
   EXPECT_EQ(link.telemetry.back().cycle_slips, 3U);
   EXPECT_EQ(link.events.back().id, static_cast<int>(EventId::kCycleSlipped));
+  EXPECT_TRUE(link.events.back().tells_of_wall_clock());
 }
 
 TEST_F(Cycle, PublishesADumpInTheCycleThatAskedForIt) {
