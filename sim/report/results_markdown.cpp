@@ -46,6 +46,8 @@ constexpr const char* kReadingNotes = R"md(
   from the last frame alone; on the first sequences of each cell only, since it takes so long.
 - Training draws its frames from other seeds: none of the test sequences was seen in training or tuning.
 - The paper: DOI 10.1016/j.conengprac.2026.107134. Goals: what this project set itself.
+- Requirements that these figures show to be met: TS-EST-010, TS-EST-020, TS-EST-030, TS-EST-040, TS-EST-050,
+  TS-EST-060, TS-EST-070, TS-EST-080, TS-EST-090 ([requirements](requirements.csv)).
 )md";
 
 std::string introduction(const Results& results) {

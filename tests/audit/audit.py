@@ -14,6 +14,7 @@ import stack
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT, DATA = ROOT / "docs/audit.md", ROOT / "docs/audit.json"
 PROGRAMS = (("fixed", "flight_replay"), ("float32", "flight_replay_float32"))
+# Verifies TS-MEM-030, TS-MEM-060.
 BUDGETS = {"ram": 192 * 1024, "stack": 6 * 1024, "text": 128 * 1024, "read_only": 24 * 1024}
 MACS = 34_858_368  # of a frame: kMacCount in gnc/rcnn/network.hpp, which a test holds to this
 
@@ -30,6 +31,7 @@ def build(processor):
             raise SystemExit(f"audit: {' '.join(command)} failed:\n{run.stdout[-3000:]}{run.stderr[-3000:]}")
 
 
+# Verifies TS-NUM-030.
 def golden():
     return {numerics: digest for _, numerics, digest in
             (line.split() for line in (ROOT / "tests/audit/golden.txt").read_text().splitlines())}

@@ -33,6 +33,7 @@ def sizes(processor, program):
     return total
 
 
+# Verifies TS-MEM-010.
 def forbidden(processor, build, program):
     """{kind: symbols} that the flight libraries ask for, or that a bare-metal program holds."""
     libraries = [path for folder in ("gnc", "fsw") for path in sorted((build / folder).rglob("*.a"))]
@@ -45,6 +46,7 @@ def forbidden(processor, build, program):
     return {kind: names for kind, names in found.items() if names}
 
 
+# Verifies TS-NUM-040.
 def floating_point(processor, program):
     """Functions of the project, of the fixed-point program, that compute in floating point."""
     listing = subprocess.run([processor.tool("objdump"), "-d", "-C", "--no-show-raw-insn", str(program)], check=True,

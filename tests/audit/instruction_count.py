@@ -49,6 +49,7 @@ def addresses(processor, program):
     return found
 
 
+# Verifies TS-NUM-070.
 def count(processor, program, plugin, folder, root):
     """({stage: instructions}, the console's lines); every step took the same."""
     stages, out = folder / f"{program.name}.stages", folder / f"{program.name}.counts"

@@ -24,6 +24,7 @@ class Processor:
 _SEMIHOSTED = ("-display", "none", "-monitor", "none", "-serial", "none", "-semihosting-config", "enable=on,target=native")
 _SERIAL = ("-display", "none", "-monitor", "none", "-serial", "stdio")
 
+# Verifies TS-TIM-010, TS-TIM-020, TS-TIM-030, TS-TIM-040.
 ALL = (
     Processor("cortex-a53", "Cortex-A53, Linux", "aarch64-linux-gnu", ("qemu-aarch64", "-cpu", "cortex-a53"), 1200,
               "Zynq UltraScale+; dual issue, in order", 0.35, 0.10),

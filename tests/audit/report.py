@@ -9,6 +9,7 @@ def _estimate_ms(processor, instructions):
     return instructions * CYCLES_PER_INSTRUCTION / processor.clock_mhz / 1e3
 
 
+# Verifies TS-TIM-050.
 def failures(results, committed, budgets, macs):
     """What is wrong, a line each."""
     wrong = []

@@ -35,6 +35,7 @@ def _key(title):
     return title.rsplit(":", 1)[-1] if title.startswith("/") and ":_ZN" in title and "_GLOBAL__N_" not in title else title
 
 
+# Verifies TS-MEM-030, TS-MEM-040.
 def worst_case(build, numerics):
     """(bytes, the functions on the deepest path) of AttitudeInitApp::step()."""
     own, callees, names = read_graph(build)

@@ -19,6 +19,7 @@ def result(**changes):
     return [(PROCESSOR, "fixed", {**good, **changes})]
 
 
+# Verifies TS-TIM-050.
 class Failures(unittest.TestCase):
     def of(self, committed=None, **changes):
         return report.failures(result(**changes), committed or {}, BUDGETS, MACS)
@@ -42,6 +43,7 @@ class Failures(unittest.TestCase):
         self.assertIn("ram has grown", self.of(before, ram=52)[0])
 
 
+# Verifies TS-MEM-030.
 class WorstCaseStack(unittest.TestCase):
     STEP = "void fsw::AttitudeInitApp<N>::step(int64_t) [with N = FixedPoint]"
 
@@ -62,6 +64,7 @@ class WorstCaseStack(unittest.TestCase):
         total, _ = self.of([("step", "__aeabi_uldivmod")], [("step", self.STEP, 100)])
         self.assertEqual(total, 100 + stack.LIBRARY_BYTES)
 
+    # Verifies TS-MEM-040.
     def test_refuses_recursion(self):
         with self.assertRaises(SystemExit):
             self.of([("step", "a"), ("a", "step")], [("step", self.STEP, 1), ("a", "a()", 1)])

@@ -28,6 +28,7 @@ class BadFrames : public ::testing::Test {
   StepAnswer before_;
 };
 
+// Verifies TS-LID-050.
 TEST_F(BadFrames, RepeatedSequenceNumberIsADuplicate) {
   gnc::RangeImage frame = conversation_.good_frame();
   --frame.sequence_number;
@@ -37,6 +38,7 @@ TEST_F(BadFrames, RepeatedSequenceNumberIsADuplicate) {
   expect_recovery(1);
 }
 
+// Verifies TS-LID-060.
 TEST_F(BadFrames, SkippedSequenceNumberIsCountedAndTheFrameUsed) {
   gnc::RangeImage frame = conversation_.good_frame();
   frame.sequence_number += 5;
@@ -46,6 +48,7 @@ TEST_F(BadFrames, SkippedSequenceNumberIsCountedAndTheFrameUsed) {
   EXPECT_EQ(answer.housekeeping.frames_refused, 0U);
 }
 
+// Verifies TS-LID-050.
 TEST_F(BadFrames, TimeGoingBackwardsIsRefused) {
   gnc::RangeImage frame = conversation_.good_frame();
   frame.exposure_time_ns -= 2 * kFramePeriod_ns;
@@ -55,6 +58,7 @@ TEST_F(BadFrames, TimeGoingBackwardsIsRefused) {
   expect_recovery(1);
 }
 
+// Verifies TS-LID-020.
 TEST_F(BadFrames, EmptyFrameIsRefused) {
   gnc::RangeImage frame = conversation_.good_frame();
   frame.ranges.fill(0);
@@ -64,6 +68,7 @@ TEST_F(BadFrames, EmptyFrameIsRefused) {
   expect_recovery(1);
 }
 
+// Verifies TS-LID-020.
 TEST_F(BadFrames, FrameWithAllReturnsAtOneRangeIsRefused) {
   gnc::RangeImage frame = conversation_.good_frame();
   frame.ranges.fill(6400);
@@ -73,6 +78,7 @@ TEST_F(BadFrames, FrameWithAllReturnsAtOneRangeIsRefused) {
   expect_recovery(1);
 }
 
+// Verifies TS-LID-010.
 TEST_F(BadFrames, ImpossibleRayCountsAreRefused) {
   std::uint32_t bad = 0;
   for (const int rays : {0, 8, 129, 65'535}) {
@@ -86,6 +92,7 @@ TEST_F(BadFrames, ImpossibleRayCountsAreRefused) {
   expect_recovery(4);
 }
 
+// Verifies TS-LID-060.
 TEST_F(BadFrames, MissingFrameIsCounted) {
   const StepAnswer answer = conversation_.step({});
   EXPECT_EQ(answer.attitude.validity, kNoFrame);

@@ -1,3 +1,4 @@
+// Verifies TS-SIL-020.
 #include <gtest/gtest.h>
 
 #include <atomic>

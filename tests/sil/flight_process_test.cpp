@@ -26,6 +26,7 @@ TEST(FlightProcess, EndWithoutAStatusIsNoGoodEnd) {
   EXPECT_NE(process.how_it_ended().find("status is lost"), std::string::npos) << process.how_it_ended();
 }
 
+// Verifies TS-MEM-020.
 TEST(FlightProcess, HeapUsedAfterTheLastTelemetryIsAFailureOfTheRun) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer must come before any preloaded library";

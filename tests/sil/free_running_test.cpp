@@ -5,6 +5,7 @@
 namespace tumblesight::sim {
 namespace {
 
+// Verifies TS-TIM-070, TS-TIM-080.
 TEST(FreeRunning, FlightAnswersOnItsOwnTimer) {
   SilSettings settings = test::settings();
   settings.free_running = true;

@@ -1,3 +1,4 @@
+// Verifies TS-MEM-020.
 #include <gtest/gtest.h>
 
 #include "tests/sil/sil_test_support.hpp"

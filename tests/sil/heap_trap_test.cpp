@@ -1,3 +1,4 @@
+// Verifies TS-MEM-020.
 #include "hal/dds/flight/heap_trap.hpp"
 
 #include <gtest/gtest.h>

@@ -12,6 +12,7 @@ namespace {
 
 using test::Conversation;
 
+// Verifies TS-SIL-010.
 TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
   std::uint32_t done = 0;
   SilSettings settings = test::settings();
@@ -45,6 +46,7 @@ TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
   EXPECT_EQ(recording.pictures.size(), 30U);
 }
 
+// Verifies TS-SIL-010.
 TEST(Lockstep, TheFlightProgramEndsWithTheLastStepAndLeavesNothingBehind) {
   Conversation conversation(test::settings());
   const pid_t pid = conversation.session.flight_pid();
@@ -54,6 +56,7 @@ TEST(Lockstep, TheFlightProgramEndsWithTheLastStepAndLeavesNothingBehind) {
   EXPECT_EQ(test::flight_child(), 0);
 }
 
+// Verifies TS-SIL-010.
 TEST(Lockstep, AStepWaitsForEverythingThatItAnnounces) {
   Conversation conversation(test::settings());
   // Commands and frames of one step: four commands, then the frame is used by the same cycle.
@@ -66,6 +69,7 @@ TEST(Lockstep, AStepWaitsForEverythingThatItAnnounces) {
 }
 
 // Only early can be told from here: how late a step may be depends on the machine.
+// Verifies TS-SIL-010.
 TEST(Lockstep, NoStepComesAheadOfTheWallClockTimesTheSpeed) {
   constexpr std::uint32_t kSteps = 6;
   const std::vector<Sequence> sequences{make_sequence({Condition::kNominal, kSteps}, 1, 0)};
@@ -94,6 +98,7 @@ TEST(Lockstep, WithoutASpeedMissionTimeRunsAheadOfTheWallClock) {
   EXPECT_LT(elapsed.count(), 20 * kFramePeriod_s);
 }
 
+// Verifies TS-SIL-020.
 TEST(Lockstep, RunsAtTheSameTimeDoNotDisturbEachOther) {
   const auto run = [](std::uint64_t seed) {
     return run_sil(test::settings(), test::lidar(), test::kSwath_m, test::sequences(4, seed), {});
@@ -109,6 +114,7 @@ TEST(Lockstep, RunsAtTheSameTimeDoNotDisturbEachOther) {
   EXPECT_NE(b.trace_crc32, alone.trace_crc32);
 }
 
+// Verifies TS-SIL-050.
 TEST(Lockstep, ADomainInUseIsRefused) {
   const DomainLease lease(-1);
   SilSettings settings = test::settings();

@@ -35,12 +35,14 @@ void expect_partial(const SilRecording& recording) {
   EXPECT_EQ(test::flight_child(), 0);
 }
 
+// Verifies TS-SIL-040.
 TEST(Loss, FlightKilledEndsTheRunAndKeepsWhatWasRecorded) {
   const SilRecording recording = run_with_signal(test::settings(), SIGKILL);
   EXPECT_NE(recording.failure.find("signal 9"), std::string::npos) << recording.failure;
   expect_partial(recording);
 }
 
+// Verifies TS-SIL-040.
 TEST(Loss, FlightThatNoLongerAnswersIsEnded) {
   SilSettings settings = test::settings();
   settings.step_timeout_s = 1.0;
@@ -49,6 +51,7 @@ TEST(Loss, FlightThatNoLongerAnswersIsEnded) {
   expect_partial(recording);
 }
 
+// Verifies TS-SIL-030.
 TEST(Loss, FlightAskedToStopEndsCleanly) {
   test::Conversation conversation(test::settings());
   conversation.step();
@@ -85,6 +88,7 @@ struct StartedSimulator {
   }
 };
 
+// Verifies TS-SIL-030.
 TEST(Loss, SimulatorKilledEndsFlightWithAMessage) {
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // the orphaned flight program becomes our child
   SilSettings settings = test::settings();

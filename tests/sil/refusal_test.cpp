@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint8_t kValidityStandby = 1;
 
+// Verifies TS-IFC-060.
 TEST(Refusal, UnequalInterfaceHashIsRefusedByBothSides) {
   SilSettings settings = test::settings();
   settings.flight_arguments = {"--icd-hash", "12345"};
@@ -28,6 +29,7 @@ TEST(Refusal, UnequalInterfaceHashIsRefusedByBothSides) {
   EXPECT_EQ(test::flight_child(), 0);
 }
 
+// Verifies TS-IFC-060.
 TEST(Refusal, InterfaceHashIsTheCrc32OfTheIdl) {
   std::uint32_t crc = 0xFFFFFFFFU;
   const std::string idl = test::read_file(TUMBLESIGHT_IDL);
@@ -63,6 +65,7 @@ void change_architecture(std::vector<std::uint8_t>& bytes) {
 
 class RefusedModel : public ::testing::TestWithParam<BadModel> {};
 
+// Verifies TS-IFC-020, TS-IFC-030, TS-IFC-050.
 TEST_P(RefusedModel, FlightSaysWhichAndAnswersInSafe) {
   std::vector<std::uint8_t> bytes = test::model_bytes();
   GetParam().spoil(bytes);
@@ -97,6 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadModel{"Empty", "file is empty", [](auto& bytes) { bytes.clear(); }}),
     [](const auto& test) { return std::string(test.param.name); });
 
+// Verifies TS-IFC-030.
 TEST(Refusal, ModelOfAnotherTargetEndsTheRunInWords) {
   SilSettings settings = test::settings();
   settings.target = "another_target";
@@ -105,6 +109,7 @@ TEST(Refusal, ModelOfAnotherTargetEndsTheRunInWords) {
   EXPECT_NE(test::read_file(settings.flight_log_path).find("target"), std::string::npos);
 }
 
+// Verifies TS-IFC-070, TS-SIL-040.
 TEST(Refusal, MissingFilesAreNamed) {
   SilSettings settings = test::settings();
   settings.model_path = "/nonexistent/model.tsm";
@@ -115,6 +120,7 @@ TEST(Refusal, MissingFilesAreNamed) {
   EXPECT_NE(no_flight.failure.find("/nonexistent/flight"), std::string::npos) << no_flight.failure;
 }
 
+// Verifies TS-SIL-040.
 TEST(Refusal, BadArgumentsOfFlightAreNamed) {
   const std::vector<std::vector<std::string>> cases{{"--domain", "231"},    {"--domain", "-1"},
                                                     {"--period-ms", "nan"}, {"--mode", "fast"},
@@ -130,6 +136,7 @@ TEST(Refusal, BadArgumentsOfFlightAreNamed) {
   }
 }
 
+// Verifies TS-SIL-040.
 TEST(Refusal, NobodyAnsweringIsSaidInWords) {
   SilSettings settings = test::settings();
   settings.flight_path.clear();

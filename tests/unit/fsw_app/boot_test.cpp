@@ -1,4 +1,5 @@
-// What init() makes of the banks, and how the first step tells it. Verifies TS-MODE-020, TS-MODE-030, TS-MDL-010.
+// What init() makes of the banks, and how the first step tells it.
+// Verifies TS-MODE-020, TS-MODE-030, TS-MDL-010.
 #include <string>
 
 #include "tests/unit/fsw_app/app_fixture.hpp"

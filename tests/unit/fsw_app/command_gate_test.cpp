@@ -1,4 +1,5 @@
-// Each rule of the command packet, violated alone. Verifies TS-CMD-010, TS-CMD-020, TS-SEC-020, TS-SEC-030.
+// Each rule of the command packet, violated alone.
+// Verifies TS-CMD-010, TS-CMD-020, TS-SEC-020, TS-SEC-030.
 #include "fsw/app/command_gate.hpp"
 
 #include <gtest/gtest.h>

@@ -24,6 +24,7 @@ class Cycle : public AppFixture {
   hal::fake::FakeWatchdog watchdog;
 };
 
+// Verifies TS-TLM-010.
 TEST_F(Cycle, PublishesOneAttitudeOneTelemetryAndEveryEvent) {
   lidar.add(next_frame());
   link.add(command(FunctionCode::kNoop));
@@ -36,6 +37,7 @@ TEST_F(Cycle, PublishesOneAttitudeOneTelemetryAndEveryEvent) {
   EXPECT_EQ(link.events[1].id, static_cast<int>(EventId::kCommandAccepted));
 }
 
+// Verifies TS-FDIR-160.
 TEST_F(Cycle, WatchdogIsKickedOnceEveryDutyIsDone) {
   run();
   EXPECT_EQ(watchdog.kicks, 1);
@@ -43,6 +45,7 @@ TEST_F(Cycle, WatchdogIsKickedOnceEveryDutyIsDone) {
   EXPECT_EQ(watchdog.kicks, 2);
 }
 
+// Verifies TS-FDIR-160.
 TEST_F(Cycle, WatchdogIsNotKickedByAStepThatCouldNotDoItsDuties) {
   app = std::make_unique<FixedPointApp>();  // never booted
   run();

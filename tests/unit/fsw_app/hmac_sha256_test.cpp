@@ -1,4 +1,5 @@
-// The vectors of FIPS 180-4's and RFC 4231's authors; Verifies TS-SEC-010.
+// The vectors of FIPS 180-4's and RFC 4231's authors.
+// Verifies TS-SEC-010.
 #include "fsw/app/hmac_sha256.hpp"
 
 #include <gtest/gtest.h>

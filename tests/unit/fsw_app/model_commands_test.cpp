@@ -1,4 +1,5 @@
-// Loading, validating, activating and dumping models. Verifies TS-MDL-020, TS-MDL-030, TS-MDL-040, TS-MDL-050.
+// Loading, validating, activating and dumping models.
+// Verifies TS-MDL-020, TS-MDL-030, TS-MDL-040, TS-MDL-050.
 #include <algorithm>
 
 #include "tests/unit/fsw_app/app_fixture.hpp"

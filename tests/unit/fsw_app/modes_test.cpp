@@ -1,4 +1,5 @@
-// Every pair of mode and cause, against the table as it was meant. Verifies TS-MODE-010.
+// Every pair of mode and cause, against the table as it was meant.
+// Verifies TS-MODE-010.
 #include "fsw/app/modes.hpp"
 
 #include <gtest/gtest.h>
@@ -33,6 +34,7 @@ TEST(Modes, EveryCauseLeadsWhereItShouldAndNowhereElse) {
   EXPECT_EQ(kTransitions.size(), meant.size()) << "a row twice, or one that nobody meant";
 }
 
+// Verifies TS-MODE-050.
 TEST(Modes, OnlyACommandEndsSafe) {
   for (const Transition& transition : kTransitions) {
     if (transition.from != Mode::kSafe || transition.to == Mode::kSafe) continue;

@@ -1,4 +1,5 @@
-// The digest of the state, and what the housekeeping tells. Verifies TS-TLM-010, TS-TLM-020.
+// The digest of the state, and what the housekeeping tells.
+// Verifies TS-TLM-010, TS-TLM-020.
 #include "tests/unit/fsw_app/app_fixture.hpp"
 #include "tests/unit/gnc_rcnn/test_models.hpp"
 

@@ -92,6 +92,7 @@ TEST(Tumble, OfASphereTurnsByTheRateInTheLidarFrameAndKeepsIt) {
   EXPECT_LT((later.rate_lrf - rate.cast<float>()).norm(), 1e-6F);
 }
 
+// Verifies TS-EST-140.
 TEST(Tumble, FollowsTorqueFreeRotation) {
   std::mt19937 engine(3);
   const Eigen::Matrix3f shapes[] = {tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F), tensor(1.0F, 4.0F, 4.5F),
@@ -134,6 +135,7 @@ TEST(Tumble, DependsOnRatiosOfTheInertiaOnly) {
   }
 }
 
+// Verifies TS-EST-140.
 TEST(MotionLaws, AreASpinTheInertiaAndEachOfItsMomentsHalved) {
   const Eigen::Matrix3f shape = tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F);
   Inertia<float> inertia;
@@ -161,6 +163,7 @@ TEST(MotionLaws, KeepAnInertiaThatCannotBeHalved) {
   EXPECT_EQ(halved.inverse_trf, thinnest.inverse_trf);
 }
 
+// Verifies TS-IFC-040.
 TEST(MakeInertia, TakesPositiveDefiniteTensorsOnly) {
   Inertia<float> inertia;
   const Eigen::Matrix3f good = tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F);

@@ -77,6 +77,7 @@ TEST(Orthonormalise, IsFiniteForDegenerateVectors) {
   EXPECT_EQ(orthonormalise<float>(zero, one).first, zero);
 }
 
+// Verifies TS-EST-100.
 TEST(QuaternionFromRotation, AgreesWithTheRotationItCameFrom) {
   Random random;
   for (int i = 0; i < 5000; ++i) {
@@ -88,6 +89,7 @@ TEST(QuaternionFromRotation, AgreesWithTheRotationItCameFrom) {
   }
 }
 
+// Verifies TS-EST-100.
 TEST(QuaternionFromRotation, HoldsNearHalfTurnsAboutEveryAxis) {
   Random random;
   for (int i = 0; i < 2000; ++i) {
@@ -109,6 +111,7 @@ TEST(QuaternionFromRotation, IsTheIdentityForTheIdentityAndTheZeroMatrix) {
   }
 }
 
+// Verifies TS-EST-100.
 TEST(QuaternionFromRotation, IsUnitForAnyMatrixOfFixedNumbers) {
   std::mt19937 engine(3);
   std::uniform_int_distribution<std::int32_t> any(-Fixed::kLargestRaw, Fixed::kLargestRaw);

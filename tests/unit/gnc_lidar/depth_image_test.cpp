@@ -1,5 +1,3 @@
-// Requirement: the depth image is the frame's returns on the plane across the view's axis, averaged cell by
-// cell, in a scale that the network knows; frames that cannot be used are refused with the reason.
 #include "gnc/lidar/depth_image.hpp"
 
 #include <gtest/gtest.h>
@@ -47,6 +45,7 @@ class DepthImageTest : public testing::Test {
   std::unique_ptr<Bench> s = std::make_unique<Bench>();
 };
 
+// Verifies TS-LID-070.
 TEST_F(DepthImageTest, ATiltedPlaneBecomesARampInTheCentroidRelativeScale) {
   // depth = range + 0.5 x, over the whole frame; x = u * depth, so depth = range / (1 - 0.5 u).
   const double t = std::tan(s->frame.fov_urad * 0.5e-6);
@@ -65,6 +64,7 @@ TEST_F(DepthImageTest, ATiltedPlaneBecomesARampInTheCentroidRelativeScale) {
   }
 }
 
+// Verifies TS-LID-070.
 TEST_F(DepthImageTest, RowZeroIsUpAndColumnZeroIsLeft) {
   // A wall without its lower left quarter, whose centroid therefore lies up and to the right.
   for (int row = 0; row < 128; ++row) {
@@ -79,6 +79,7 @@ TEST_F(DepthImageTest, RowZeroIsUpAndColumnZeroIsLeft) {
   EXPECT_EQ(s->at(75, 25), 0.0);
 }
 
+// Verifies TS-LID-080.
 TEST_F(DepthImageTest, ReturnsInOneCellAreAveraged) {
   for (int row = 0; row < 128; ++row) {
     for (int column = 0; column < 128; ++column)
@@ -89,6 +90,7 @@ TEST_F(DepthImageTest, ReturnsInOneCellAreAveraged) {
   for (int column = 40; column < 60; ++column) EXPECT_NEAR(s->at(50, column), 0.5, 0.03);
 }
 
+// Verifies TS-LID-070.
 TEST_F(DepthImageTest, NearerIsBrighterAndAReturnIsNeverZero) {
   for (int row = 0; row < 64; ++row) {
     for (int column = 0; column < 128; ++column)
@@ -105,6 +107,7 @@ TEST_F(DepthImageTest, NearerIsBrighterAndAReturnIsNeverZero) {
   EXPECT_EQ(smallest, DepthImage::kSmallest);
 }
 
+// Verifies TS-LID-080.
 TEST_F(DepthImageTest, AReturnFarFromTheTargetCountsForNoMoreThanARadius) {
   // One in 16 lies 30 m behind the others, so the centroid 1.9 m: they are at 0.81. With its full distance it would draw
   // a cell's mean down to 0.5.
@@ -117,6 +120,7 @@ TEST_F(DepthImageTest, AReturnFarFromTheTargetCountsForNoMoreThanARadius) {
   for (int column = 40; column < 60; ++column) EXPECT_NEAR(s->at(50, column), 0.77, 0.06);
 }
 
+// Verifies TS-LID-080.
 TEST_F(DepthImageTest, ManyReturnsInOneCellStayAMean) {
   s->frame.fov_urad = kMinFov_urad;  // 128 x 128 rays over less than a metre, all of them in two by two cells
   for (int i = 0; i < 128 * 128; ++i) s->set(i / 128, i % 128, kRange_m + (i % 2 == 0 ? 1.0 : -1.0));
@@ -130,11 +134,13 @@ TEST_F(DepthImageTest, ManyReturnsInOneCellStayAMean) {
   EXPECT_EQ(filled, 4);
 }
 
+// Verifies TS-LID-030.
 TEST_F(DepthImageTest, RangesBeyondTheSensorsReachCountAsNoReturn) {
   for (int i = 0; i < 128 * 128; ++i) s->frame.ranges[i] = 64001;
   EXPECT_EQ(s->make(), FrameStatus::kEmpty);
 }
 
+// Verifies TS-LID-020, TS-LID-030.
 TEST_F(DepthImageTest, ReturnsFromTheChaserItselfAreLeftOut) {
   constexpr std::uint16_t kNearestUsed = 1280;                                                       // 10 m
   for (int i = 0; i < 128 * 128; ++i) s->frame.ranges[i] = static_cast<std::uint16_t>(384 + i % 8);  // 3 m
@@ -145,6 +151,7 @@ TEST_F(DepthImageTest, ReturnsFromTheChaserItselfAreLeftOut) {
   EXPECT_EQ(s->make(), FrameStatus::kOk);
 }
 
+// Verifies TS-LID-010, TS-LID-020.
 TEST_F(DepthImageTest, UnusableFramesAreRefusedWithTheReason) {
   EXPECT_EQ(s->make(), FrameStatus::kEmpty);
   for (int i = 0; i < kMinReturns - 1; ++i) s->set(60, i, kRange_m + i);

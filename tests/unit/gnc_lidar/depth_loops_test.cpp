@@ -1,4 +1,4 @@
-// Requirement: the loops of every instruction set give the same depth image, for random and for extreme frames.
+// Verifies TS-NUM-010.
 #include "gnc/lidar/depth_loops.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,3 @@
-// Requirement: the image shows the target as it would look on the boresight, wherever in the field of view it
-// is, and states the turn by which it does; parts of the chaser in the field of view change nothing.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -111,6 +109,7 @@ Difference difference(const DepthImage& a, const DepthImage& b) {
   return {1.0 - static_cast<double>(both) / either, sum / both};
 }
 
+// Verifies TS-LID-090.
 TEST(DepthView, IsTheShortestTurnOfTheBoresightToTheCentroid) {
   for (const Eigen::Vector3d& position_m : kPositions_m) {
     const RangeImage frame = frame_of(position_m, some_attitude());
@@ -125,6 +124,7 @@ TEST(DepthView, IsTheShortestTurnOfTheBoresightToTheCentroid) {
   }
 }
 
+// Verifies TS-LID-090.
 TEST(DepthView, ShowsATargetOffTheBoresightAsOnTheBoresight) {
   const Eigen::Matrix3d r_lrf_trf = some_attitude();
   for (const Eigen::Vector3d& position_m : kPositions_m) {
@@ -142,6 +142,7 @@ TEST(DepthView, ShowsATargetOffTheBoresightAsOnTheBoresight) {
   }
 }
 
+// Verifies TS-LID-030.
 TEST(DepthView, IsTheSameWithPartsOfTheChaserInTheFieldOfView) {
   RangeImage clear = frame_of(kPositions_m[2], some_attitude());
   RangeImage occluded = clear;

@@ -1,3 +1,4 @@
+// Verifies TS-NUM-060. In float32.
 #include "gnc/nn/activation.hpp"
 
 #include <gtest/gtest.h>

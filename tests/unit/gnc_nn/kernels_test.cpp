@@ -1,5 +1,4 @@
-// Requirement: every instruction set's kernels give the bits of their definition, for random and for extreme numbers,
-// and touch nothing else.
+// Verifies TS-NUM-010, TS-MEM-090.
 #include "gnc/nn/kernels.hpp"
 
 #include <gtest/gtest.h>

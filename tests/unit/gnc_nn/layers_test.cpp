@@ -87,13 +87,16 @@ void expect_block_by_definition(double tolerance) {
   EXPECT_EQ(run->largest.row(1)[-1], 0);
 }
 
+// Verifies TS-NUM-090.
 TEST(ConvBlock, Float32MatchesItsDefinition) {
   expect_block_by_definition<Float32>(2e-5);
 }
+// Verifies TS-NUM-050.
 TEST(ConvBlock, FixedPointMatchesItsDefinitionExactly) {
   expect_block_by_definition<FixedPoint>(0.0);
 }
 
+// Verifies TS-NUM-090.
 TEST(Dense, Float32MatchesANaiveDoubleProduct) {
   using Layer = Dense<Float32, 131, 57>;
   auto weights = std::make_unique<Layer::Weights>();
@@ -115,6 +118,7 @@ TEST(Dense, Float32MatchesANaiveDoubleProduct) {
   }
 }
 
+// Verifies TS-NUM-050.
 TEST(Dense, FixedPointRequantisesHiddenNumbersAndGivesOutputsTheirMeaning) {
   using Layer = Dense<FixedPoint, 130, 57>;
   auto weights = std::make_unique<Layer::Weights>();
@@ -139,6 +143,7 @@ TEST(Dense, FixedPointRequantisesHiddenNumbersAndGivesOutputsTheirMeaning) {
   }
 }
 
+// Verifies TS-NUM-050.
 TEST(Requantisation, RoundsOnceToTheNearestHalvesUp) {
   EXPECT_EQ(requantised(5, 1), 3);
   EXPECT_EQ(requantised(-5, 1), -2);

@@ -37,6 +37,7 @@ TEST(Lstm, OneUnitStepAgreesWithTheEquationsWorkedByHand) {
   EXPECT_NEAR(state.h[0], o * std::tanh(c), 5e-7);
 }
 
+// Verifies TS-NUM-090.
 TEST(Lstm, TwentyStepsFollowADoubleImplementation) {
   constexpr int kIn = 11, kHidden = 24, kGates = 4 * kHidden;
   using Layer = Lstm<Float32, kIn, kHidden>;
@@ -67,6 +68,7 @@ TEST(Lstm, TwentyStepsFollowADoubleImplementation) {
   }
 }
 
+// Verifies TS-EST-170.
 TEST(Lstm, StateStaysBoundedForAnyPreActivationAndAnyCellLeftByABitFlip) {
   const float infinity = std::numeric_limits<float>::infinity();
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -82,6 +84,7 @@ TEST(Lstm, StateStaysBoundedForAnyPreActivationAndAnyCellLeftByABitFlip) {
   }
 }
 
+// Verifies TS-NUM-060.
 TEST(FixedPointGates, AreWithinTheirStatedErrorOfTheExactFunctions) {
   double worst_sigmoid = 0.0, worst_tanh = 0.0;
   for (std::int64_t raw = -Fixed::kLargestRaw; raw <= Fixed::kLargestRaw; raw += 10'007) {
@@ -135,6 +138,7 @@ TEST(FixedPointLstm, FollowsADoubleImplementationOfItsOwnIntegers) {
   }
 }
 
+// Verifies TS-EST-170.
 TEST(FixedPointLstm, StateStaysBoundedForAnySumAndAnyCellLeftByABitFlip) {
   for (const std::int32_t sum : {INT32_MAX, -INT32_MAX - 1, 0}) {
     for (const std::int32_t cell : {Fixed::kLargestRaw, -Fixed::kLargestRaw, 0}) {

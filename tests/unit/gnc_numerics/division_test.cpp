@@ -1,3 +1,4 @@
+// Verifies TS-NUM-070.
 #include "gnc/numerics/division.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Requirement: every operation rounds once, to the nearest, and saturates; nothing ever overflows.
+// Verifies TS-NUM-050.
 #include "gnc/numerics/fixed.hpp"
 
 #include <gtest/gtest.h>

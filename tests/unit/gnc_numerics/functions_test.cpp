@@ -1,3 +1,4 @@
+// Verifies TS-NUM-060.
 #include "gnc/numerics/functions.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Requirement: the attitude algebra is one source for both numerics, and both give the same within their rounding.
+// Verifies TS-NUM-090.
 #include "gnc/numerics/real.hpp"
 
 #include <gtest/gtest.h>

@@ -75,6 +75,7 @@ class EstimatorOf : public testing::Test {};
 using BothNumerics = testing::Types<FixedPoint, Float32>;
 TYPED_TEST_SUITE(EstimatorOf, BothNumerics);
 
+// Verifies TS-NUM-090.
 TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
   for (const unsigned seed : {62U, 66U, 68U}) {
     auto weights = std::make_unique<NetworkWeights<Float32>>();
@@ -113,6 +114,7 @@ TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
   }
 }
 
+// Verifies TS-IFC-090.
 TEST(AttitudeEstimator, CrcOfTheStateTellsEveryMemberApart) {
   const auto estimator = loaded<Float32>(37);
   AttitudeEstimate estimate;
@@ -141,6 +143,7 @@ TEST(AttitudeEstimator, CrcOfTheStateTellsEveryMemberApart) {
   }
 }
 
+// Verifies TS-EST-110.
 TEST(AttitudeEstimator, ExpectsNothingOfAnAttitudeThatIsNotFinite) {
   auto weights = std::make_unique<NetworkWeights<Float32>>();
   fill_random(*weights, 38);
@@ -186,6 +189,7 @@ TYPED_TEST(EstimatorOf, ContinuesBitForBitAfterSaveAndRestore) {
   }
 }
 
+// Verifies TS-EST-160.
 TYPED_TEST(EstimatorOf, StartsAnewAfterReset) {
   const auto estimator = loaded<TypeParam>(34);
   AttitudeEstimate first, second, again;
@@ -200,6 +204,7 @@ TYPED_TEST(EstimatorOf, StartsAnewAfterReset) {
   expect_same(again, first);
 }
 
+// Verifies TS-EST-160.
 TYPED_TEST(EstimatorOf, ResetsWhenAModelIsLoaded) {
   const auto estimator = loaded<TypeParam>(33);
   AttitudeEstimate first, estimate;
@@ -210,6 +215,7 @@ TYPED_TEST(EstimatorOf, ResetsWhenAModelIsLoaded) {
   expect_same(estimate, first);
 }
 
+// Verifies TS-IFC-050.
 TYPED_TEST(EstimatorOf, HasNoModelUntilAGoodOneIsLoaded) {
   auto estimator = std::make_unique<AttitudeEstimator<TypeParam>>();
   EXPECT_FALSE(estimator->has_model());
@@ -218,6 +224,7 @@ TYPED_TEST(EstimatorOf, HasNoModelUntilAGoodOneIsLoaded) {
   EXPECT_FALSE(estimator->has_model());
 }
 
+// Verifies TS-LID-010, TS-LID-040.
 TYPED_TEST(EstimatorOf, GoesOnAsIfARefusedFrameHadNeverCome) {
   const auto disturbed = loaded<TypeParam>(34);
   const auto undisturbed = loaded<TypeParam>(34);
@@ -250,6 +257,7 @@ TYPED_TEST(EstimatorOf, FrameAndItsDepthImageGiveTheSameEstimate) {
   expect_same(from_image, from_frame);
 }
 
+// Verifies TS-EST-100.
 TYPED_TEST(EstimatorOf, AlwaysGivesUnitQuaternions) {
   for (unsigned seed = 40; seed < 46; ++seed) {
     const auto estimator = loaded<TypeParam>(seed);
@@ -261,6 +269,7 @@ TYPED_TEST(EstimatorOf, AlwaysGivesUnitQuaternions) {
   }
 }
 
+// Verifies TS-EST-100.
 TEST(AttitudeEstimator, GivesUnitQuaternionsForZeroAndForOverflowingWeights) {
   for (const float value : {0.0F, 1e30F, -1e30F, 3e38F}) {
     auto weights = std::make_unique<NetworkWeights<Float32>>();
@@ -279,6 +288,7 @@ TEST(AttitudeEstimator, GivesUnitQuaternionsForZeroAndForOverflowingWeights) {
   }
 }
 
+// Verifies TS-EST-100, TS-EST-160, TS-EST-170.
 TEST(AttitudeEstimator, SurvivesADamagedStateAndForgetsItWhenReset) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const auto estimator = loaded<Float32>(36);

@@ -1,5 +1,4 @@
-// Requirement: with nothing said by the network, the attitude track is a filter for constant rate: gains of
-// the least-squares line up to the tenth frame, frozen from then on.
+// Verifies TS-EST-150. From the tenth frame on the gains are frozen.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>

@@ -61,6 +61,7 @@ Inertia<float> slender_body() {
 }
 
 // A tumbling target with a symmetry, measured to some degrees, and a head that says this and that.
+// Verifies TS-NUM-090.
 TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
   std::mt19937 engine(8);
   std::normal_distribution<float> normal;
@@ -179,6 +180,7 @@ TEST(AttitudeTrack, WeighsCandidatesByTheHeadsWordUpToItsBound) {
   EXPECT_EQ(distance_to_start(1000.0F), distance_to_start(8.0F));
 }
 
+// Verifies TS-EST-130.
 TEST(AttitudeTrack, IsNotPulledByAlternativesHoweverLikely) {
   const Eigen::Matrix3d truth = truth_after(12);
   AttitudeTrack<float> alone = settled_track(12);
@@ -192,6 +194,7 @@ TEST(AttitudeTrack, IsNotPulledByAlternativesHoweverLikely) {
   }
 }
 
+// Verifies TS-EST-130.
 TEST(AttitudeTrack, KeepsItsRateWhenItChangesToASymmetricAttitude) {
   AttitudeTrack<float> track = settled_track(12);
   follow(frame_of({{truth_after(12) * kSymmetry, 1.0F}}), kSilent, track);
@@ -201,6 +204,7 @@ TEST(AttitudeTrack, KeepsItsRateWhenItChangesToASymmetricAttitude) {
   EXPECT_LT(angle_between(next.r_lrf_trf(), truth_after(13) * kSymmetry), 2e-4);
 }
 
+// Verifies TS-EST-130.
 TEST(AttitudeTrack, StaysOnItsBranchWhereTheHeadBelievesThePrediction) {
   AttitudeTrack<float> track;
   for (int k = 0; k < 15; ++k) {
@@ -214,6 +218,7 @@ TEST(AttitudeTrack, StaysOnItsBranchWhereTheHeadBelievesThePrediction) {
   EXPECT_LT(rate_error(track), 1e-3);
 }
 
+// Verifies TS-EST-140.
 TEST(AttitudeTrack, LearnsByWhichLawTheTargetMoves) {
   const MotionLaws<float> laws = motion_laws<float>(slender_body());
   for (int law = 0; law < kLaws; ++law) {
@@ -245,6 +250,7 @@ TEST(AttitudeTrack, OfAnUnsureNetworkNoLawIsLearnt) {
   EXPECT_EQ(track.law(), kSpinLaw) << "measurements to 90 degrees cannot tell";
 }
 
+// Verifies TS-EST-170.
 TEST(AttitudeTrack, StartsAnewFromADamagedTrack) {
   for (int damage = 0; damage < 5; ++damage) {
     SCOPED_TRACE(damage);
@@ -286,6 +292,7 @@ TEST(AttitudeTrack, IgnoresANonFiniteHypothesisThatItDoesNotAnchorAt) {
   EXPECT_LT(rate_error(track), 1e-4);
 }
 
+// Verifies TS-EST-100, TS-EST-170.
 TEST(AttitudeTrack, NeverLeavesTheUnitQuaternionsWhateverItIsGiven) {
   std::mt19937 engine(6);
   std::uniform_int_distribution<std::uint32_t> bits;
@@ -315,6 +322,7 @@ TEST(AttitudeTrack, NeverLeavesTheUnitQuaternionsWhateverItIsGiven) {
 
 // The head may keep to the prediction while one law has lost the target: then that law's own answer must not
 // be taken for a hit.
+// Verifies TS-EST-140.
 TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
   const Inertia<float> inertia = slender_body();
   Motion<float> truth{kStart.cast<float>(),
@@ -338,6 +346,7 @@ TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
   EXPECT_EQ(track.law(), kSpinLaw);
 }
 
+// Verifies TS-EST-170.
 TEST(AttitudeTrack, AStateThatHoldsNoRotationIsDropped) {
   AttitudeTrack<float> track;
   track.frames = 5;

@@ -1,3 +1,4 @@
+// Verifies TS-IFC-020.
 #include "gnc/rcnn/crc32.hpp"
 
 #include <gtest/gtest.h>

@@ -43,6 +43,7 @@ float difference(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
+// Verifies TS-EST-120.
 TEST(Hypotheses, AreTurnedFromTheViewIntoTheLidarFrame) {
   const Eigen::Matrix3f r_lrf_view = turn(0.15F, {0.3F, 0.0F, -1.0F});
   OutputVector<float> output{};
@@ -61,6 +62,7 @@ TEST(Hypotheses, AreTurnedFromTheViewIntoTheLidarFrame) {
   }
 }
 
+// Verifies TS-EST-120.
 TEST(Hypotheses, NameTheLikeliestAndTheFirstOfEquals) {
   for (int best = 0; best < shape::kHypotheses; ++best) {
     OutputVector<float> output{};
@@ -76,6 +78,7 @@ TEST(Hypotheses, NameTheLikeliestAndTheFirstOfEquals) {
   }
 }
 
+// Verifies TS-EST-100.
 TEST(Hypotheses, MapTheErrorLogitOntoZeroToPi) {
   OutputVector<float> output{};
   for (const float logit : {-100.0F, -3.0F, 0.0F, 2.0F, 100.0F}) {
@@ -84,6 +87,7 @@ TEST(Hypotheses, MapTheErrorLogitOntoZeroToPi) {
   }
 }
 
+// Verifies TS-EST-100.
 TEST(Hypotheses, GiveAUnitQuaternionAndABoundedErrorWhateverTheNetworkSays) {
   std::mt19937 engine(5);
   std::uniform_int_distribution<std::uint32_t> bits;
@@ -104,6 +108,7 @@ TEST(Hypotheses, GiveAUnitQuaternionAndABoundedErrorWhateverTheNetworkSays) {
   }
 }
 
+// Verifies TS-EST-120.
 TEST(MeanAttitude, LiesBetweenItsCandidatesByTheirWeights) {
   const Eigen::Vector3f axis(0.2F, -1.0F, 0.6F);
   const Eigen::Matrix3f base = turn(2.0F, {1.0F, 1.0F, 0.0F});
@@ -117,6 +122,7 @@ TEST(MeanAttitude, LiesBetweenItsCandidatesByTheirWeights) {
   }
 }
 
+// Verifies TS-EST-120.
 TEST(MeanAttitude, TakesCandidatesWithinTwentyDegreesOfTheAnchorOnly) {
   const Eigen::Vector3f axis(0.2F, -1.0F, 0.6F);
   for (const float angle_deg : {0.1F, 10.0F, 19.9F, 20.1F, 45.0F, 90.0F, 179.0F}) {

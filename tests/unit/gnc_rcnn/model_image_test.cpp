@@ -124,6 +124,7 @@ std::vector<Damage> damages() {
 
 class DamagedModelImage : public ::testing::TestWithParam<Damage> {};
 
+// Verifies TS-IFC-020, TS-IFC-030, TS-IFC-040, TS-IFC-050.
 TEST_P(DamagedModelImage, IsRefusedAndThePreviousModelStaysInUse) {
   static const auto estimator = std::make_unique<AttitudeEstimator<Float32>>();
   static const auto untouched = std::make_unique<AttitudeEstimator<Float32>>();
@@ -150,6 +151,7 @@ TEST_P(DamagedModelImage, IsRefusedAndThePreviousModelStaysInUse) {
 INSTANTIATE_TEST_SUITE_P(EveryKind, DamagedModelImage, ::testing::ValuesIn(damages()),
                          [](const auto& damage) { return damage.param.name; });
 
+// Verifies TS-IFC-010.
 TEST(ModelImage, ReadsBackWhatWasWrittenBitForBit) {
   auto written = std::make_unique<NetworkWeights<Float32>>();
   auto read = std::make_unique<NetworkWeights<Float32>>();
@@ -170,6 +172,7 @@ TEST(ModelImage, ReadsBackWhatWasWrittenBitForBit) {
   EXPECT_NE(found.crc32, 0U);
 }
 
+// Verifies TS-IFC-010.
 TEST(ModelImage, StandsInMemoryAsDocumented) {
   const Bytes& image = good_image();
   EXPECT_EQ(std::string(image.begin(), image.begin() + 4), "TSRM");
@@ -215,6 +218,7 @@ std::size_t offset_of(const Bytes& image, int index) {
   return get_u32(image, kTable + 16 * static_cast<std::size_t>(index) + 4);
 }
 
+// Verifies TS-IFC-010, TS-MEM-080.
 TEST(FixedPointImage, LeavesItsWeightsInPlace) {
   const Bytes& image = lasting_model_image<FixedPoint>(30);
   ModelHeader header;
@@ -226,6 +230,7 @@ TEST(FixedPointImage, LeavesItsWeightsInPlace) {
   EXPECT_TRUE(std::equal(image.begin() + kFixedData, image.end(), again.begin() + kFixedData));
 }
 
+// Verifies TS-IFC-040.
 TEST(FixedPointImage, IsRefusedWhenAShiftIsOutOfItsRange) {
   ASSERT_EQ(read_fixed(random_model_image<FixedPoint>(31)), ModelStatus::kOk);
   for (const int section : {2, 20, 24}) {  // conv1, cnn_out, lstm
@@ -242,6 +247,7 @@ TEST(FixedPointImage, IsRefusedWhenAShiftIsOutOfItsRange) {
   EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
 }
 
+// Verifies TS-IFC-040.
 TEST(FixedPointImage, IsRefusedWhenASumCouldLeave32Bits) {
   for (const int section : {1, 19, 23, 29}) {  // biases of conv1, cnn_out, lstm, head2
     for (const std::uint32_t bias : {0x7FFFFFFFU, 0x80000000U, 0x7FFF0000U}) {
@@ -258,6 +264,7 @@ TEST(FixedPointImage, IsRefusedWhenASumCouldLeave32Bits) {
   EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
 }
 
+// Verifies TS-IFC-040.
 TEST(FixedPointImage, IsRefusedWhenTwoSumsOfAConvolutionCouldBeTooFarApart) {
   Bytes image = random_model_image<FixedPoint>(7);
   put_u32(image, offset_of(image, 1), 1U << 30);  // a bias of conv1
@@ -265,6 +272,7 @@ TEST(FixedPointImage, IsRefusedWhenTwoSumsOfAConvolutionCouldBeTooFarApart) {
   EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
 }
 
+// Verifies TS-IFC-040.
 TEST(FixedPointImage, IsRefusedWithAWeightThatHasNoOpposite) {
   for (const int section : {0, 21, 22}) {  // conv1, lstm: forward and recurrent
     Bytes image = random_model_image<FixedPoint>(33);
@@ -274,6 +282,7 @@ TEST(FixedPointImage, IsRefusedWithAWeightThatHasNoOpposite) {
   }
 }
 
+// Verifies TS-IFC-030.
 TEST(ModelImage, IsAcceptedForAnyTargetWhenNoneIsExpected) {
   ModelHeader header;
   auto weights = std::make_unique<NetworkWeights<Float32>>();
@@ -292,6 +301,7 @@ TEST(ModelImage, IsNotWrittenWhereItDoesNotFit) {
   EXPECT_EQ(out, Bytes(kModelImageSize<Float32> - 1, 0x55));
 }
 
+// Verifies TS-IFC-020.
 TEST(ModelImage, EverySingleBitFlipInHeaderAndSectionTableIsFound) {
   Bytes image = good_image();
   ModelHeader header;
@@ -313,6 +323,7 @@ TEST(ModelHeader, TakesOnlyNamesThatTheReaderAccepts) {
   EXPECT_TRUE(set_target(header, std::string(31, 'a').c_str()));
 }
 
+// Verifies TS-IFC-050.
 TEST(ModelStatus, EveryValueHasItsOwnWords) {
   std::vector<std::string> words;
   for (int i = 0; i <= static_cast<int>(ModelStatus::kBadValue); ++i) {

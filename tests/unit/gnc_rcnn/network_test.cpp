@@ -31,6 +31,7 @@ double largest_magnitude(const std::vector<double>& values) {
   return largest;
 }
 
+// Verifies TS-NUM-090.
 TEST(Network, FollowsTheDoubleReferenceInEveryFrame) {
   auto network = std::make_unique<Network<Float32>>();
   fill_random(network->weights(), 11);
@@ -47,6 +48,7 @@ TEST(Network, FollowsTheDoubleReferenceInEveryFrame) {
   }
 }
 
+// Verifies TS-NUM-090.
 TEST(Network, FollowsTheDoubleReferenceOverASequence) {
   auto network = std::make_unique<Network<Float32>>();
   fill_random(network->weights(), 13);
@@ -65,6 +67,7 @@ TEST(Network, FollowsTheDoubleReferenceOverASequence) {
   }
 }
 
+// Verifies TS-EST-160.
 TEST(Network, GivesTheSameBitsWhateverCameBefore) {
   auto network = std::make_unique<Network<Float32>>();
   fill_random(network->weights(), 12);
@@ -111,6 +114,7 @@ TEST(NetworkWeights, VisitsEveryParameterOnceUnderUniqueNames) {
   EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
 }
 
+// Verifies TS-MEM-070.
 TEST(NetworkWeights, InFixedPointHaveAShiftForEveryChannelAndTakeALittleMoreThanAByteAParameter) {
   const auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
   std::size_t tensors = 0;

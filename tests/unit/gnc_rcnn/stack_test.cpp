@@ -1,4 +1,4 @@
-// Requirement: a step needs at most 6 KiB of stack, with every numerics and instruction set.
+// Verifies TS-MEM-030.
 #include <gtest/gtest.h>
 #include <pthread.h>
 

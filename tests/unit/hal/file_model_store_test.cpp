@@ -1,3 +1,4 @@
+// Verifies TS-IFC-070.
 #include "hal/posix/file_model_store.hpp"
 
 #include <gtest/gtest.h>

@@ -21,6 +21,7 @@ void be_busy_until(std::int64_t time_ns) {
   }
 }
 
+// Verifies TS-TIM-070.
 TEST(PosixPeriodicTask, ReleasesStayOnTheGridWhateverTheCyclesTake) {
   const std::int64_t period_ns = 50 * kMillisecond_ns;
   const std::int64_t first_ns = now_ns() + period_ns;
@@ -40,6 +41,7 @@ TEST(PosixPeriodicTask, ReleasesStayOnTheGridWhateverTheCyclesTake) {
   EXPECT_LE((last_ns - first_ns) / period_ns, 7 + static_cast<std::int64_t>(slips));
 }
 
+// Verifies TS-TIM-070.
 TEST(PosixPeriodicTask, PassedReleasesAreCountedAndTheLatestIsServedAtOnce) {
   const std::int64_t period_ns = 1'000 * kMillisecond_ns;
   const std::int64_t first_ns = now_ns() - 5 * period_ns / 2;  // releases 0, 1 and 2 have passed
@@ -54,6 +56,7 @@ TEST(PosixPeriodicTask, PassedReleasesAreCountedAndTheLatestIsServedAtOnce) {
   EXPECT_EQ(slips, UINT32_MAX) << "saturates";
 }
 
+// Verifies TS-TIM-070.
 TEST(PosixPeriodicTask, PunctualTaskDoesNotSlip) {
   const std::int64_t period_ns = 400 * kMillisecond_ns;
   PosixPeriodicTask task(now_ns() + period_ns, period_ns);

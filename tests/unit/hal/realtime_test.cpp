@@ -1,3 +1,4 @@
+// Verifies TS-TIM-080.
 #include "hal/posix/realtime.hpp"
 
 #include <gtest/gtest.h>

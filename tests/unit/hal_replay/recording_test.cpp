@@ -1,3 +1,4 @@
+// Verifies TS-IFC-080.
 #include "hal/replay/recording.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Requirement: from some ten degrees and some ten centimetres beside the true pose the alignment ends at it.
+// From some ten degrees and some ten centimetres beside the true pose the alignment ends at it.
 #include "sim/baseline/alignment.hpp"
 
 #include <gtest/gtest.h>

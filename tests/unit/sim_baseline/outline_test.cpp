@@ -1,4 +1,4 @@
-// Requirement: distances to the outline are those to the drawn shape, dropouts within it do not count as
+// Distances to the outline are those to the drawn shape, dropouts within it do not count as
 // outline, and edges of the chaser's own parts are no outline at all.
 #include "sim/baseline/outline.hpp"
 

@@ -1,4 +1,4 @@
-// Requirement: signatures are centred on the returns, so that the place in the frame does not matter, and
+// Signatures are centred on the returns, so that the place in the frame does not matter, and
 // turn as the target does.
 #include "sim/baseline/signature.hpp"
 

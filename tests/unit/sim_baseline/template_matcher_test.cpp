@@ -1,4 +1,4 @@
-// Requirement: the baseline finds the attitude of a known target from one frame, wherever in the frame the
+// The baseline finds the attitude of a known target from one frame, wherever in the frame the
 // target is, and says when it cannot.
 #include "sim/baseline/template_matcher.hpp"
 

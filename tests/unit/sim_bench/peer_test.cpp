@@ -64,6 +64,7 @@ void expect_same_sequence(Peer& peer, Network& network) {
   }
 }
 
+// Verifies TS-TRN-060.
 TEST(OnnxRuntime, ComputesWhatWeDo) {
   const auto network = std::make_unique<Network>();
   std::string reason;

@@ -78,6 +78,7 @@ TEST(Help, TeachesWithAnExample) {
   }
 }
 
+// Verifies TS-SIL-060.
 TEST(Evaluate, GivesTheSameFiguresWithOneAndTwoThreads) {
   const Workplace here;
   const std::string common =

@@ -67,6 +67,7 @@ void check(const fs::path& model, const fs::path& record_file) {
   EXPECT_GT(checked, 0) << "no row on the parametric mesh in " << record_file;
 }
 
+// Verifies TS-EST-180.
 TEST(ShippedModels, AreAsGoodAsTheirRecords) {
   int models = 0;
   std::string without_record;

@@ -86,6 +86,7 @@ TEST(Shortcomings, NameAFlightProgramWithoutAModel) {
   EXPECT_EQ(run_json(scenario(), safe)["rcnn"]["mean_deg"], 180.0);
 }
 
+// Verifies TS-MEM-020.
 TEST(Shortcomings, NameHeapAllocations) {
   SilRecording allocating = recording();
   allocating.flight_heap_allocations = 3;

@@ -42,6 +42,7 @@ TEST(Simulate, RefusesArgumentsOutOfRange) {
   }
 }
 
+// Verifies TS-SIL-040.
 TEST(Simulate, RefusesAMissingFlightProgram) {
   const Workplace here;
   const Outcome outcome =
@@ -63,6 +64,7 @@ TEST(Simulate, LeavesFiguresAndAReport) {
 }
 
 // Tumbling, since both have to look up the target's inertia for it.
+// Verifies TS-SIL-060.
 TEST(Simulate, AgreesWithEvaluateOnTheSameSeed) {
   const Workplace here;
   const std::string common =
@@ -138,6 +140,7 @@ TEST(Simulate, EndsWellTwiceAtOnceWithOneReport) {
   }
 }
 
+// Verifies TS-SIL-040.
 TEST(Simulate, ReportsWhatWasDoneWhenTheFlightProgramIsKilled) {
   constexpr int kPlanned = 200;  // at 0.1 s a step: long enough to be interrupted
   const Workplace here;

@@ -1,4 +1,4 @@
-// Requirement: a spin turns the target at a constant rate about an axis that stands still in the LRF.
+// Verifies TS-SIL-080.
 #include "sim/dynamics/spin.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Requirement: without torque a rigid body keeps its angular momentum and its kinetic energy, and moves as
+// Verifies TS-SIL-080. Without torque a rigid body keeps its angular momentum and its kinetic energy, and moves as
 // the closed forms say where there are any.
 #include "sim/dynamics/tumble.hpp"
 

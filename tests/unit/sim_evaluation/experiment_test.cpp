@@ -32,6 +32,7 @@ class Experiment : public ::testing::Test {
   ExperimentSettings settings_;
 };
 
+// Verifies TS-SIL-060.
 TEST_F(Experiment, GivesTheSameFiguresWithAnyNumberOfThreads) {
   settings_.conditions = {Condition::kOccluded, Condition::kTumbling};
   const auto figures = [&](int threads) {

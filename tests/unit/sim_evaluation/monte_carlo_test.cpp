@@ -44,6 +44,7 @@ bool equal(const FrameResult& a, const FrameResult& b) {
          a.baseline.coeffs() == b.baseline.coeffs();
 }
 
+// Verifies TS-SIL-060.
 TEST_F(MonteCarlo, GivesTheSameBitsWithAnyNumberOfThreads) {
   const std::vector<FrameResult> one = run(1);
   const std::vector<FrameResult> two = run(2);
@@ -77,6 +78,7 @@ TEST_F(MonteCarlo, StartsEverySequenceAnew) {
 }
 
 // Training draws its frames from mix(seed, attempt).
+// Verifies TS-TRN-050.
 TEST_F(MonteCarlo, DrawsSequencesThatSimulationDrawsButTrainingDoesNot) {
   const std::vector<FrameResult> results = run(1, 5);
   const ScenarioSettings scenario = settings(1, 5).scenario;

@@ -1,5 +1,4 @@
-// Requirement: without noise the sensor reports the exact distance to the surface along each ray, from either
-// side of it; with noise the deviations are Gaussian along the ray with the paper's sigma.
+// Verifies TS-SIL-070.
 #include "sim/lidar/flash_lidar.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
-// Requirement: an occluder of any shape hides just the share of the target's returns that was asked for,
-// stands in the frame as the part of the chaser that it is, and is nearer than anything that the estimator
-// looks at.
+// Verifies TS-SIL-070. An occluder of any shape stands in the frame as the part of the chaser that it is, nearer than
+// anything that the estimator looks at.
 #include "sim/lidar/occlusion.hpp"
 
 #include <gtest/gtest.h>

@@ -53,6 +53,7 @@ std::size_t count_of_floats(const onnx::ModelProto& model) {
   return count;
 }
 
+// Verifies TS-TRN-060.
 TEST(OnnxModel, OfTheCnnIsValidAndOfItsSizes) {
   const onnx::ModelProto model = parsed(cnn_as_onnx(*random_model()));
   EXPECT_NO_THROW(onnx::checker::check_model(model));
@@ -62,6 +63,7 @@ TEST(OnnxModel, OfTheCnnIsValidAndOfItsSizes) {
             (Sizes{{"features", {1, shape::kDense2}}, {"output", {1, shape::kOutput}}}));
 }
 
+// Verifies TS-TRN-060.
 TEST(OnnxModel, OfTheRecurrentPartIsValidAndOfItsSizes) {
   const onnx::ModelProto model = parsed(recurrent_as_onnx(*random_model()));
   EXPECT_NO_THROW(onnx::checker::check_model(model));
@@ -72,6 +74,7 @@ TEST(OnnxModel, OfTheRecurrentPartIsValidAndOfItsSizes) {
                                                      {"c_next", {1, shape::kLstm}}}));
 }
 
+// Verifies TS-TRN-060.
 TEST(OnnxModel, HoldsEveryParameterOnce) {
   const auto model = random_model();
   constexpr std::size_t kSecondBias = 4 * shape::kLstm;  // which ONNX wants and the network has not

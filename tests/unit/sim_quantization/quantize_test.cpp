@@ -46,6 +46,7 @@ class QuantizeTest : public ::testing::Test {
 std::string* QuantizeTest::path = nullptr;
 QuantizationReport* QuantizeTest::report = nullptr;
 
+// Verifies TS-TRN-020.
 TEST_F(QuantizeTest, TheImageIsTakenByTheFlightEstimatorAndNamedByItsCrc) {
   std::ifstream file(*path, std::ios::binary);
   const std::vector<std::uint8_t> image{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -55,6 +56,7 @@ TEST_F(QuantizeTest, TheImageIsTakenByTheFlightEstimatorAndNamedByItsCrc) {
   EXPECT_EQ(estimator->model().crc32, report->crc32);
 }
 
+// Verifies TS-TRN-020.
 TEST_F(QuantizeTest, EveryLayerKeepsItsSignal) {
   ASSERT_EQ(report->layers.size(), 8U);
   for (const LayerReport& layer : report->layers) {

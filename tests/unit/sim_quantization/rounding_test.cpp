@@ -1,3 +1,4 @@
+// Verifies TS-TRN-020.
 // Rounding of weights: to the nearest where inputs are independent, for the sum where they go together.
 #include "sim/quantization/rounding.hpp"
 

@@ -1,4 +1,4 @@
-// Requirement: a condition changes what it names and nothing else.
+// Verifies TS-SIL-080.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// Requirement: sequences follow the paper's sampling, and a seed names the same ones everywhere.
+// Verifies TS-SIL-080. A seed names the same sequences everywhere.
 #include "sim/scenario/sequence.hpp"
 
 #include <gtest/gtest.h>

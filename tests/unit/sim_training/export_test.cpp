@@ -1,5 +1,4 @@
-// Requirement: an exported model image reproduces LibTorch's outputs to 1e-5 a frame, and its attitudes and
-// predicted errors to 1e-4 over whole sequences.
+// Verifies TS-TRN-010.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// Requirement: training data is fresh, seeded, the same with any number of workers, and its labels are right.
+// Verifies TS-TRN-040.
 #include "sim/training/frame_stream.hpp"
 
 #include <gtest/gtest.h>
@@ -85,6 +85,7 @@ TEST(FrameStream, ConditionsTakeTurns) {
   for (const int i : {1, 3}) EXPECT_LT(filled(both.images[i]), filled(nominal.images[i])) << i;
 }
 
+// Verifies TS-TRN-050.
 TEST(FrameStream, TheListsOfConditionsAreToldApart) {
   const std::vector<Condition> nominal{Condition::kNominal}, twice{Condition::kNominal, Condition::kNominal},
       swapped{Condition::kDegraded, Condition::kNominal};

@@ -1,3 +1,4 @@
+// Verifies TS-TRN-010.
 #include "sim/training/import_model.hpp"
 
 #include <gtest/gtest.h>

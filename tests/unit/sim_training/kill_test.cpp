@@ -1,5 +1,4 @@
-// Requirements: a training run that is killed at any moment resumes, and ends with the very same model image;
-// one that could not train a CNN is refused before it starts.
+// Verifies TS-TRN-030. A training that could not train a CNN is refused before it starts.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,4 +1,4 @@
-// Requirement: the trained error is the geodesic angle, with usable gradients everywhere.
+// The trained error is the geodesic angle, with usable gradients everywhere.
 #include "sim/training/loss.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// Requirement: a training run that is stopped at any moment goes on where its last checkpoint was, and ends
-// with the same network as one that ran through.
+// Verifies TS-TRN-030.
 #include "sim/training/train.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Verifies TS-TIM-060. Who may know whom: docs/architecture.md.
 #include "tests/unit/structure/include_rules.hpp"
 
 #include <gtest/gtest.h>
