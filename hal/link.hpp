@@ -87,14 +87,16 @@ struct Housekeeping {
   std::uint32_t heap_allocations = 0;  // of the flight task since init, where the platform can count them
 };
 
+// Events that differ from run to run, and belong in no digest.
+constexpr bool tells_of_wall_clock(std::uint16_t event_id) {
+  return event_id > 20 && event_id < 30;
+}
+
 struct Event {
   std::int64_t time_ns = 0;
   std::uint16_t id = 0;       // fsw::EventId, stable
   std::uint8_t severity = 0;  // 0 information, 1 warning, 2 error
   std::array<std::int32_t, 3> arguments{};
-
-  // Then it differs from run to run, and belongs in no digest.
-  bool tells_of_wall_clock() const { return id > 20 && id < 30; }
 };
 
 // Part of a model bank, as MODEL_DUMP asked for.

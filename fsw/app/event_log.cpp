@@ -13,8 +13,13 @@ constexpr std::size_t index_of(EventId id) {
   }
   return kEventRules.size();
 }
-constexpr std::size_t kSuppressedIndex = index_of(EventId::kEventsSuppressed);
-static_assert(kSuppressedIndex < kEventRules.size());
+// The event that tells of suppressed ones of this kind.
+const EventRule& summary_of(EventId id) {
+  constexpr std::size_t kOfTiming = index_of(EventId::kTimingEventsSuppressed);
+  constexpr std::size_t kOfOthers = index_of(EventId::kEventsSuppressed);
+  static_assert(kOfTiming < kEventRules.size() && kOfOthers < kEventRules.size());
+  return kEventRules[hal::tells_of_wall_clock(static_cast<std::uint16_t>(id)) ? kOfTiming : kOfOthers];
+}
 
 }  // namespace
 
@@ -53,7 +58,7 @@ void EventLog::end_cycle(std::int64_t now_ns, hal::Housekeeping& counters) {
     const Kind kind = kinds_[i];
     kinds_[i] = {};
     if (kind.suppressed == 0) continue;
-    push(now_ns, kEventRules[kSuppressedIndex], {static_cast<std::int32_t>(kEventRules[i].id), kind.suppressed, 0}, counters);
+    push(now_ns, summary_of(kEventRules[i].id), {static_cast<std::int32_t>(kEventRules[i].id), kind.suppressed, 0}, counters);
   }
 }
 

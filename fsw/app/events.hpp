@@ -25,6 +25,7 @@ enum class EventId : std::uint16_t {
   kDeadlineOverrun = 22,        // [time of this step, -, -]
   kTimingFaultPersists = 23,    // [Fault, Response taken, cycles of its rule]
   kTimingFaultOver = 24,        // [Fault, -, -]
+  kTimingEventsSuppressed = 25,  // [EventId of these, how many, -]
 
   kFrameMissing = 30,            // first cycle of an outage only [last accepted number, -, -]
   kFrameDuplicate = 31,          // [sequence number, -, -]
@@ -63,14 +64,14 @@ enum class EventId : std::uint16_t {
   kModelTableRebuilt = 75,  // [bank, -, -]; the blocks' checksums
   kBankSwitched = 76,       // [bank before, bank after, -]
 
-  kEventsSuppressed = 90,  // [EventId, how many, -]
+  kEventsSuppressed = 90,  // [EventId of the others, how many, -]
 };
 
 struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 41> kEventRules{{
+inline constexpr std::array<EventRule, 42> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kCommandAccepted, Severity::kInformation},
@@ -79,6 +80,7 @@ inline constexpr std::array<EventRule, 41> kEventRules{{
     {EventId::kDeadlineOverrun, Severity::kWarning},
     {EventId::kTimingFaultPersists, Severity::kWarning},
     {EventId::kTimingFaultOver, Severity::kInformation},
+    {EventId::kTimingEventsSuppressed, Severity::kInformation},
     {EventId::kFrameMissing, Severity::kWarning},
     {EventId::kFrameDuplicate, Severity::kWarning},
     {EventId::kFrameExposureBackwards, Severity::kWarning},

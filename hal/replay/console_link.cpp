@@ -52,7 +52,7 @@ void ConsoleLink::publish(const Event& event) {
   line.text("        event ").number(event.id);
   for (const std::int32_t argument : event.arguments) line.text(" ").number(argument);
   board::write(line.text("\n").c_str());
-  if (event.tells_of_wall_clock()) return;
+  if (tells_of_wall_clock(event.id)) return;
   digest_time(event.time_ns);
   crc_.add_u32(event.id);
   crc_.add_u32(event.severity);

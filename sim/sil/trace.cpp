@@ -8,7 +8,7 @@ void TraceDigest::add(std::uint32_t k, const StepRecord& record) {
   add_report(record.attitude);
   add_housekeeping(record.housekeeping);
   for (const hal::Event& event : record.events) {
-    if (!event.tells_of_wall_clock()) add_event(event);
+    if (!hal::tells_of_wall_clock(event.id)) add_event(event);
   }
   crc_.add_u32(record.state_crc32);
 }

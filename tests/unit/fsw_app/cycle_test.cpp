@@ -57,7 +57,7 @@ TEST_F(Cycle, MissedReleasesAreCountedAndToldOn) {
   run(3);
   EXPECT_EQ(link.telemetry.back().cycle_slips, 3U);
   EXPECT_EQ(link.events.back().id, static_cast<int>(EventId::kCycleSlipped));
-  EXPECT_TRUE(link.events.back().tells_of_wall_clock());
+  EXPECT_TRUE(hal::tells_of_wall_clock(link.events.back().id));
 }
 
 TEST_F(Cycle, PublishesADumpInTheCycleThatAskedForIt) {

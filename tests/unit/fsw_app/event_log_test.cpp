@@ -52,6 +52,16 @@ TEST_F(EventLogTest, TooManyOfAKindAreCountedAndToldAtTheEndOfTheWindow) {
   EXPECT_EQ(take_all().size(), 1U) << "a new window";
 }
 
+TEST_F(EventLogTest, SuppressedEventsOfTheWallClockAreToldApart) {
+  raise(EventId::kDeadlineOverrun, config::kMaxEventsOfAKind + 2);
+  take_all();
+  end_window();
+  const std::vector<hal::Event> summary = take_all();
+  ASSERT_EQ(summary.size(), 1U);
+  EXPECT_EQ(summary[0].id, static_cast<int>(EventId::kTimingEventsSuppressed));
+  EXPECT_TRUE(hal::tells_of_wall_clock(summary[0].id));
+}
+
 TEST_F(EventLogTest, FullRingLosesTheNewestAndCountsThem) {
   for (int kind = 0; kind < 5; ++kind) raise(kEventRules[static_cast<std::size_t>(kind)].id, config::kMaxEventsOfAKind);
   EXPECT_EQ(counters.events_lost, 5U * config::kMaxEventsOfAKind - config::kEventRing);

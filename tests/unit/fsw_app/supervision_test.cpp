@@ -53,7 +53,7 @@ TEST_F(Supervision, SlipsAreCountedToldAndFlaggedWhenTheyGoOn) {
   EXPECT_EQ(out->housekeeping.cycle_slips, 6U);
   EXPECT_TRUE(persists(Fault::kSlip));
   EXPECT_EQ(argument(EventId::kTimingFaultPersists, 0), static_cast<int>(Fault::kSlip));
-  EXPECT_TRUE(event(EventId::kTimingFaultPersists)->tells_of_wall_clock());
+  EXPECT_TRUE(hal::tells_of_wall_clock(event(EventId::kTimingFaultPersists)->id));
   step(StepInputs{});
   EXPECT_EQ(argument(EventId::kTimingFaultOver, 0), static_cast<int>(Fault::kSlip));
 }
