@@ -12,7 +12,8 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::size_t kMostOfStem = 40;  // characters: the whole name stays a legal one
+constexpr std::size_t kMostOfStem = 40;   // characters
+constexpr std::size_t kMostOfName = 200;  // a file system takes 255
 
 std::string plain_stem(const std::string& path) {
   std::string stem = std::filesystem::path(path).stem().string().substr(0, kMostOfStem);
@@ -20,6 +21,10 @@ std::string plain_stem(const std::string& path) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '.') c = '-';
   }
   return stem;
+}
+
+std::uint32_t crc32_of(const std::string& text) {
+  return gnc::crc32(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
 }
 
 // "_mesh-near_model-best_1a2b3c4d"
@@ -34,8 +39,13 @@ std::string files_part(const SimulateArguments& arguments) {
     paths += full_path(path) + '\n';
   }
   if (part.empty()) return {};
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(paths.data());
-  return fmt::format("{}_{:08x}", part, gnc::crc32(bytes, paths.size()));
+  return fmt::format("{}_{:08x}", part, crc32_of(paths));
+}
+
+// What is cut off still tells runs apart.
+std::string shortened(const std::string& name) {
+  if (name.size() <= kMostOfName) return name;
+  return fmt::format("{}_{:08x}", name.substr(0, kMostOfName), crc32_of(name));
 }
 
 }  // namespace
@@ -54,7 +64,7 @@ std::string default_report_name(const SimulateArguments& arguments) {
   if (!scenario.inertia.empty()) name += fmt::format("_inertia{}", fmt::join(scenario.inertia, "-"));
   if (arguments.speed != usual.speed) name += "_speed" + arguments.speed;
   if (arguments.free_running) name += "_free-running";
-  return name + ".html";
+  return shortened(name) + ".html";
 }
 
 }  // namespace tumblesight::sim

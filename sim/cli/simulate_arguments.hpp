@@ -19,7 +19,7 @@ struct SimulateArguments {
 
 // A file name that tells runs apart: target, condition and seed, then every option that is not at its
 // default, for instance "near_shoemaker_degraded_seed7_100x10_speed2.html". Files stand in it with their
-// stem, and all of them with a CRC-32 of their full paths.
+// stem, and all of them with a CRC-32 of their full paths; a name that gets too long is cut, with a CRC-32 of all of it.
 std::string default_report_name(const SimulateArguments& arguments);
 
 }  // namespace tumblesight::sim

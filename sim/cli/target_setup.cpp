@@ -12,6 +12,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "gnc/attitude/motion.hpp"
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/lidar/flash_lidar.hpp"
@@ -41,11 +42,18 @@ bool ships(const std::string& target) {
   return std::find(names.begin(), names.end(), target) != names.end();
 }
 
-// No principal moment of a body exceeds the sum of the other two.
+// Of anything between a hand's and a space station's size; beyond that arithmetic ends before bodies do.
+constexpr double kSmallestMoment_kg_m2 = 1e-6;
+constexpr double kLargestMoment_kg_m2 = 1e12;
+
+// No principal moment of a body exceeds the sum of the other two, and none is smaller than a model image may
+// hold.
 bool is_possible(const Eigen::Matrix3d& inertia) {
+  if (!inertia.allFinite() || inertia.cwiseAbs().maxCoeff() > kLargestMoment_kg_m2) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia, Eigen::EigenvaluesOnly);
   const Eigen::Vector3d moments = solver.eigenvalues();  // ascending
-  return inertia.allFinite() && moments[0] > 0.0 && moments[2] <= moments[0] + moments[1];
+  const double smallest = std::max(kSmallestMoment_kg_m2, gnc::kSmallestMoment * moments.mean());
+  return moments[0] >= smallest && moments[2] <= moments[0] + moments[1];
 }
 
 std::optional<Eigen::Matrix3d> inertia_of(const ScenarioArguments& arguments) {
@@ -56,11 +64,10 @@ std::optional<Eigen::Matrix3d> inertia_of(const ScenarioArguments& arguments) {
   Eigen::Matrix3d inertia;
   inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
   if (!is_possible(inertia)) {
-    throw std::invalid_argument(
-        fmt::format("--inertia {}: no body has it; its principal moments must be positive and none larger "
-                    "than the sum of the "
-                    "other two",
-                    fmt::join(i, ",")));
+    throw std::invalid_argument(fmt::format(
+        "--inertia {}: no body has it; its principal moments must be {:g} to {:g} kg m2, none larger "
+        "than the sum of the other two and none below {:g} of their mean",
+        fmt::join(i, ","), kSmallestMoment_kg_m2, kLargestMoment_kg_m2, gnc::kSmallestMoment));
   }
   return inertia;
 }

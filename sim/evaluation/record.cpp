@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -15,10 +17,29 @@ using Json = nlohmann::json;
 
 constexpr double kTolerance = 3.0;  // standard errors
 
+// nlohmann's own get() makes any number of any other.
+template <class Whole>
+Whole whole_number(const Json& row, const char* key) {
+  const Json& value = row.at(key);
+  constexpr std::uint64_t kLargest = std::numeric_limits<Whole>::max();
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() <= kLargest) return value.get<Whole>();
+  throw std::runtime_error(
+      fmt::format("{} must be a whole number up to {}, not {}", key, kLargest, value.dump()));
+}
+
+std::uint32_t crc32_from(const Json& row) {
+  const std::string text = row.at("model_crc32").get<std::string>();
+  const char* const last = text.data() + text.size();
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), last, value, 16);
+  if (text.size() == 8 && error == std::errc{} && end == last) return value;
+  throw std::runtime_error("model_crc32 must be eight hexadecimal digits, not '" + text + "'");
+}
+
 ErrorSummary summary_from(const Json& row, const char* estimator) {
   const Json& figures = row.at(estimator);
   ErrorSummary summary;
-  summary.count = row.at("sequences").get<std::size_t>();
+  summary.count = whole_number<std::size_t>(row, "sequences");
   summary.mean_deg = figures.at("mean_deg").get<double>();
   summary.mean_standard_error_deg = figures.at("mean_standard_error_deg").get<double>();
   summary.within_20deg = figures.at("within_20deg").get<double>();
@@ -29,11 +50,10 @@ Record record_from(const Json& row) {
   Record record;
   record.target = row.at("target").get<std::string>();
   record.mesh = row.at("mesh").get<std::string>();
-  record.model_crc32 =
-      static_cast<std::uint32_t>(std::stoul(row.at("model_crc32").get<std::string>(), nullptr, 16));
+  record.model_crc32 = crc32_from(row);
   record.condition = condition_from(row.at("condition").get<std::string>());
-  record.frames = row.at("frames").get<std::uint32_t>();
-  record.seed = row.at("seed").get<std::uint64_t>();
+  record.frames = whole_number<std::uint32_t>(row, "frames");
+  record.seed = whole_number<std::uint64_t>(row, "seed");
   record.rcnn = summary_from(row, "rcnn");
   record.cnn = summary_from(row, "cnn");
   return record;

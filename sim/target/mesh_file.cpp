@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -36,6 +38,22 @@ std::string number(double value) {
   return text;
 }
 
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+// Of the many formats that Assimp reads these are the ones promised, and tested with damaged files
+// (tests/fuzz); with others such files can end the program.
+void check_format(const std::string& path) {
+  const std::string extension = extension_of(path);
+  for (const char* known : {".stl", ".obj", ".gltf", ".glb"}) {
+    if (extension == known) return;
+  }
+  refuse(path, "cannot be read: its name must end in .stl, .obj, .gltf or .glb; export it as one of these");
+}
+
 void check_readable(const std::string& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -53,6 +71,36 @@ void check_readable(const std::string& path) {
     refuse(path, "cannot be opened; check its permissions");
   }
   std::fclose(file);
+}
+
+// Assimp reserves whatever memory a GLB file's header asks for, and loops over one that has none.
+void check_glb(const std::string& path) {
+  std::array<std::uint8_t, 16> header{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(header.data()), header.size());
+  if (!file.good() || !std::equal(header.begin(), header.begin() + 4, "glTF")) {
+    refuse(path, "cannot be read: it does not begin as a GLB file does");
+  }
+  const auto u32 = [&header](std::size_t at) {
+    return std::uint32_t{header[at]} | std::uint32_t{header[at + 1]} << 8 |
+           std::uint32_t{header[at + 2]} << 16 | std::uint32_t{header[at + 3]} << 24;
+  };
+  const std::uintmax_t size = std::filesystem::file_size(path);
+  if (u32(8) > size || u32(12) > size)
+    refuse(path, "cannot be read: its parts are larger than the file; export it again");
+}
+
+void check_gltf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  char first = 0;
+  file >> first;
+  if (first != '{') refuse(path, "cannot be read: it does not begin as a glTF file does, with {");
+}
+
+void check_start(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".glb") check_glb(path);
+  if (extension == ".gltf") check_gltf(path);
 }
 
 void check_vertices(const std::string& path, const std::vector<Eigen::Vector3f>& vertices) {
@@ -169,7 +217,12 @@ TriangleMesh import(const std::string& path, const MeshFileOptions& options) {
   importer.SetPropertyBool(AI_CONFIG_PP_PTV_KEEP_HIERARCHY, false);
   const unsigned steps = aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_PreTransformVertices |
                          aiProcess_SortByPType | aiProcess_ValidateDataStructure;
-  const aiScene* scene = importer.ReadFile(path, steps);
+  const aiScene* scene = nullptr;
+  try {
+    scene = importer.ReadFile(path, steps);
+  } catch (const std::exception& error) {  // out of memory, for instance
+    refuse(path, std::string("cannot be read: ") + error.what());
+  }
   if (scene == nullptr || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0U) {
     refuse(path, std::string("cannot be read as STL, OBJ, glTF or GLB: ") + importer.GetErrorString());
   }
@@ -200,6 +253,8 @@ TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& opti
     refuse(path, "the scale is " + number(options.scale) + ", it must be positive; correct --mesh-scale");
   }
   check_readable(path);
+  check_format(path);
+  check_start(path);
   TriangleMesh mesh = import(path, options);
   if (mesh.triangles.empty()) {
     refuse(path, "holds no triangles; export the surface as a triangle mesh");

@@ -28,9 +28,9 @@ inline constexpr double kMinMeshRadius_m = 0.1;
 // file is trusted to have its origin where the TRF's origin shall be. Nothing is repaired or removed but what
 // Assimp leaves out on reading (points, lines, glTF faces with an index out of range): a file with a fault is
 // refused. Throws std::runtime_error that names the file, what is wrong with it, the value and the limit, and
-// what to do, for: scale not positive or not finite; file missing, unreadable, or of no known format; no
-// triangles; vertices that are not finite; triangles without area; a radius outside
-// kMinMeshRadius_m..kMaxMeshRadius_m.
+// what to do, for: scale not positive or not finite; file missing, unreadable, or not named .stl, .obj, .gltf
+// or .glb and of that format; no triangles; vertices that are not finite; triangles without area; a radius
+// outside kMinMeshRadius_m..kMaxMeshRadius_m.
 TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 
 // "y" or "z"; throws std::invalid_argument otherwise.

@@ -176,6 +176,12 @@ TUMBLESIGHT_INLINE void pool_channels(const Sum<N>* __restrict left, int channel
   }
 }
 
+// Floats have no shifts, and no address is reckoned from that of nothing.
+template <class N>
+TUMBLESIGHT_INLINE const std::uint8_t* shift_of(const std::uint8_t* shift, int channel) {
+  return N::kIsInteger ? shift + channel : nullptr;
+}
+
 template <class N, class Pool>
 TUMBLESIGHT_INLINE void pool(const Sum<N>* __restrict sums, int columns, int channels,
                              const std::uint8_t* __restrict shift, typename Pool::Out* __restrict out) {
@@ -183,10 +189,10 @@ TUMBLESIGHT_INLINE void pool(const Sum<N>* __restrict sums, int columns, int cha
     const Sum<N>* const left = sums + x * channels;
     int c = 0;
     for (; c + 16 <= channels; c += 16) {
-      pool_channels<N, Pool, 16>(left + c, channels, columns * channels, shift + c, out + c);
+      pool_channels<N, Pool, 16>(left + c, channels, columns * channels, shift_of<N>(shift, c), out + c);
     }
     for (; c < channels; ++c) {
-      pool_channels<N, Pool, 1>(left + c, channels, columns * channels, shift + c, out + c);
+      pool_channels<N, Pool, 1>(left + c, channels, columns * channels, shift_of<N>(shift, c), out + c);
     }
     out += channels;
   }

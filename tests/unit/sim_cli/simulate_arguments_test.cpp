@@ -67,5 +67,17 @@ TEST(RequireDifferent, SeesThroughSpellings) {
   EXPECT_NO_THROW(require_different("--json", "", "--report", ""));
 }
 
+TEST(DefaultReportName, StaysShortEnoughForAFileAndTellsTheRunsApartStill) {
+  SimulateArguments arguments;
+  arguments.scenario.mesh = std::string(50, 'm') + ".stl";
+  arguments.scenario.model = std::string(50, 'n') + ".tsm";
+  arguments.scenario.inertia = std::vector<double>(6, -2.2250738585072014e-308);
+  arguments.speed = "1." + std::string(300, '0');
+  const std::string one = default_report_name(arguments);
+  arguments.speed += "1";
+  EXPECT_LE(one.size(), 255U);
+  EXPECT_NE(one, default_report_name(arguments));
+}
+
 }  // namespace
 }  // namespace tumblesight::sim

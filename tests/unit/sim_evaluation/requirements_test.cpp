@@ -97,6 +97,27 @@ TEST(Record, ThatIsDamagedIsNamed) {
   }
 }
 
+// Numbers that fit no field, and a CRC that is none, name themselves.
+TEST(Record, WithAnImpossibleNumberIsRefused) {
+  const std::string good = results_json(sample_results()).dump();
+  const std::pair<const char*, const char*> changes[] = {
+      {R"("frames":2)", R"("frames":-1)"},         {R"("frames":2)", R"("frames":1e30)"},
+      {R"("frames":2)", R"("frames":4294967296)"}, {R"("seed":7)", R"("seed":0.5)"},
+      {R"("00c0ffee")", R"("-1c0ffee")"},          {R"("00c0ffee")", R"("c0ffee")"},
+      {R"("00c0ffee")", R"("100c0ffee")"}};
+  for (const auto& [from, to] : changes) {
+    std::string text = good;
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), std::string(from).size(), to);
+    try {
+      read_records(text, "some.json");
+      FAIL() << to;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("must be"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(Record, ToleratesWhatChanceExplainsAndNoMore) {
   const ErrorSummary recorded = summary(900, 2.0, 0.1, 0.998);
   // 3 * 0.1 * sqrt(1 + 900 / 50)

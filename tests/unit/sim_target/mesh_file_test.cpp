@@ -148,6 +148,12 @@ TEST_F(MeshFile, MissingEmptyOrNoFileIsRefused) {
   expect_refused(write("empty.stl", ""), {"empty", "0 bytes"});
 }
 
+// Assimp reads PLY too, and ends the program on a damaged one.
+TEST_F(MeshFile, OtherFormatsAreRefusedByName) {
+  expect_refused(write("wedge.ply", "ply\n"), {".stl, .obj, .gltf or .glb"});
+  expect_refused(write("wedge", "v 0 0 0\n"), {".stl, .obj, .gltf or .glb"});
+}
+
 TEST(MeshUpAxis, IsYOrZ) {
   EXPECT_EQ(mesh_up_from("y"), MeshUp::kY);
   EXPECT_EQ(mesh_up_from("z"), MeshUp::kZ);
@@ -174,7 +180,7 @@ TEST_F(MeshFile, ScaleTurnsMillimetresIntoMetres) {
 }
 
 TEST_F(MeshFile, ObjComesIn) {
-  const TriangleMesh mesh = load_mesh_file(write("wedge.obj", obj()));
+  const TriangleMesh mesh = load_mesh_file(write("wedge.OBJ", obj()));
   EXPECT_EQ(mesh.triangles.size(), 4U);
   expect_box(mesh, {0.0F, -3.0F, 0.0F}, {1.0F, 0.0F, 2.0F});
 }
@@ -206,6 +212,16 @@ TEST_F(MeshFile, GlbComesIn) {
   put(bytes, static_cast<std::uint32_t>(buffer.size()));
   bytes += std::string("BIN\0", 4) + buffer;
   expect_box(load_mesh_file(write("wedge.glb", bytes)), {0.5F, -6.0F, 0.0F}, {2.5F, 0.0F, 4.0F});
+}
+
+// On which Assimp goes astray: it asks for gigabytes, or for hours.
+TEST_F(MeshFile, GltfThatIsNoneIsRefusedBeforeItIsRead) {
+  std::string bytes = "glTF";
+  for (const std::uint32_t number : {2U, 28U, 2'000'000'000U}) put(bytes, number);
+  expect_refused(write("large.glb", bytes + "JSON{}  "), {"larger than the file"});
+  expect_refused(write("other.glb", "ply\nformat ascii 1.0\nelement vertex 4\n"), {"GLB"});
+  expect_refused(write("short.glb", "glTF"), {"GLB"});
+  expect_refused(write("other.gltf", "ply\nformat ascii 1.0\nelement vertex 4\n"), {"glTF"});
 }
 
 TEST_F(MeshFile, UnknownOrCorruptContentIsRefused) {

@@ -1,0 +1,45 @@
+// Command lines of `tumblesight`, all subcommands with their own options and help: parsed, or refused with a
+// message. What the subcommands do is left out.
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "sim/cli/bench_command.hpp"
+#include "sim/cli/evaluate_command.hpp"
+#include "sim/cli/quantize_command.hpp"
+#include "sim/cli/record_command.hpp"
+#include "sim/cli/simulate_command.hpp"
+#include "tests/fuzz/arguments.hpp"
+
+namespace tumblesight::fuzz {
+namespace {
+
+std::unique_ptr<CLI::App> make_tool() {
+  auto tool = std::make_unique<CLI::App>("", "tumblesight");
+  tool->require_subcommand(1);
+  sim::add_simulate_command(*tool, "");
+  sim::add_evaluate_command(*tool, "");
+  sim::add_quantize_command(*tool);
+  sim::add_record_command(*tool);
+  sim::add_bench_command(*tool);
+  tool->parse_complete_callback([] { throw CLI::Success(); });  // before any subcommand does its work
+  return tool;
+}
+
+}  // namespace
+}  // namespace tumblesight::fuzz
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tumblesight::fuzz;
+  static const std::unique_ptr<CLI::App> tool = make_tool();
+  CommandLine line(Input(data, size));
+  try {
+    tool->parse(line.argc(), line.argv());
+  } catch (const CLI::CallForHelp&) {
+    require(!tool->help().empty(), "there is help");
+  } catch (const CLI::Success&) {
+    require(!tool->get_subcommands().empty(), "there is something to do");
+  } catch (const CLI::ParseError& error) {
+    require(error.get_exit_code() != 0 && error.what()[0] != '\0', "a refusal says why");
+  }
+  return 0;
+}

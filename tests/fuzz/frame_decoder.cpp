@@ -1,0 +1,145 @@
+// Frames of any content through make_depth_image(), with every instruction set of this processor, and now and
+// then on to an attitude.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "gnc/lidar/depth_loops.hpp"
+#include "tests/fuzz/check_estimate.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/unit/gnc_rcnn/test_models.hpp"
+
+namespace tumblesight::fuzz {
+namespace {
+
+enum : std::uint8_t {
+  kAnySize = 1,
+  kAnyProjection = 2,
+  kRepeated = 4,
+  kNextFrame = 8,
+  kStep = 0xF0
+};  // a step is dear: all four bits
+
+// Strokes of equal or scattered ranges, in the order of the rays: few bytes make a frame.
+void paint(Input& input, std::size_t rays, gnc::RangeImage& frame) {
+  std::size_t at = 0;
+  while (at < rays && !input.empty()) {
+    const std::uint32_t range = input.u16();
+    const std::uint32_t scatter = input.u8();
+    const std::size_t end = std::min<std::size_t>(rays, at + input.u16());
+    for (; at < end; ++at) {
+      const auto random = static_cast<std::uint32_t>(at) * 2654435761U >> 16;
+      frame.ranges[at] = static_cast<std::uint16_t>(range + random % (scatter + 1));
+    }
+  }
+}
+
+// The same few ranges over and over.
+void repeat(Input& input, std::size_t rays, gnc::RangeImage& frame) {
+  std::vector<std::uint16_t> ranges;
+  while (input.left() >= 2) ranges.push_back(input.u16());
+  for (std::size_t i = 0; i < rays && !ranges.empty(); ++i) frame.ranges[i] = ranges[i % ranges.size()];
+}
+
+gnc::RangeImage frame_of(Input& input, std::uint8_t flags) {
+  gnc::RangeImage frame;
+  frame.exposure_time_ns = static_cast<std::int64_t>(input.u64());
+  frame.sequence_number = input.u32();
+  const std::uint16_t rays = input.u16();
+  const std::uint32_t fov_urad = input.u32();
+  const bool any = (flags & kAnySize) != 0;
+  frame.rays = any ? rays : static_cast<std::uint16_t>(16 + rays % (gnc::RangeImage::kMaxRays - 15));
+  frame.fov_urad =
+      any ? fov_urad : gnc::kMinFov_urad + fov_urad % (gnc::kMaxFov_urad - gnc::kMinFov_urad + 1);
+  const std::size_t side = std::min<std::size_t>(frame.rays, gnc::RangeImage::kMaxRays);
+  (flags & kRepeated) != 0 ? repeat(input, side * side, frame) : paint(input, side * side, frame);
+  return frame;
+}
+
+gnc::DepthProjection projection_of(Input& input, std::uint8_t flags) {
+  if ((flags & kAnyProjection) == 0) return gnc::test_header().projection;
+  const auto length = [&input] {
+    return gnc::kMinProjection_mm + input.u24() % (gnc::kMaxProjection_mm - gnc::kMinProjection_mm + 1);
+  };
+  const std::uint32_t swath_mm = length();
+  return {swath_mm, length()};
+}
+
+void check_image(const gnc::DepthImage& image) {
+  for (const std::uint16_t depth : image.depth) {
+    require(depth == 0 || depth >= gnc::DepthImage::kSmallest,
+            "a return is never mistaken for an empty cell");
+  }
+  const gnc::Matrix3<gnc::Fixed>& view = image.r_lrf_view;
+  const double trace = gnc::trace_of_transpose_product<gnc::Fixed>(view, view).raw() * std::ldexp(1.0, -24);
+  require(std::abs(trace - 3.0) < 1e-5, "the view is a rotation");
+}
+
+struct Decoded {
+  gnc::FrameStatus status;
+  gnc::DepthImage image;
+};
+
+// With what an earlier frame may have left in the working memory.
+void decode(const gnc::RangeImage& frame, const gnc::DepthProjection& projection, gnc::InstructionSet set,
+            Decoded& decoded) {
+  static gnc::DepthImageScratch scratch;
+  decoded.status =
+      gnc::make_depth_image(frame, projection, scratch, decoded.image, gnc::depth_loops_within(set));
+}
+
+void check_all_sets(const gnc::RangeImage& frame, const gnc::DepthProjection& projection) {
+  static Decoded first, other;
+  decode(frame, projection, gnc::InstructionSet::kPortable, first);
+  if (first.status == gnc::FrameStatus::kOk) check_image(first.image);
+  for (const gnc::InstructionSet set : {gnc::InstructionSet::kAvx2, gnc::InstructionSet::kAvx512}) {
+    if (gnc::depth_loops_within(set).set != set) continue;  // not in this build or not on this processor
+    decode(frame, projection, set, other);
+    require(other.status == first.status, "every instruction set finds the same");
+    if (first.status != gnc::FrameStatus::kOk) continue;
+    require(other.image.depth == first.image.depth, "every instruction set makes the same image");
+    require(other.image.r_lrf_view == first.image.r_lrf_view, "every instruction set finds the same view");
+  }
+}
+
+class Estimator {
+ public:
+  Estimator() {
+    const std::vector<std::uint8_t>& image = gnc::lasting_model_image<gnc::FixedPoint>(1);
+    require(estimator_->load(image.data(), image.size(), nullptr) == gnc::ModelStatus::kOk,
+            "the model is good");
+  }
+  // `next`: of the track that is there.
+  void step(const gnc::RangeImage& frame, bool next) {
+    if (!next) estimator_->reset();
+    const std::uint32_t before = estimator_->state_crc32();
+    gnc::AttitudeEstimate estimate;
+    if (estimator_->step(frame, estimate) == gnc::FrameStatus::kOk) {
+      check_estimate(estimate);
+    } else {
+      require(estimator_->state_crc32() == before, "a refused frame leaves the state untouched");
+    }
+  }
+
+ private:
+  std::unique_ptr<gnc::AttitudeEstimator<gnc::FixedPoint>> estimator_ =
+      std::make_unique<gnc::AttitudeEstimator<gnc::FixedPoint>>();
+};
+
+}  // namespace
+}  // namespace tumblesight::fuzz
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tumblesight;
+  using namespace tumblesight::fuzz;
+  static Estimator estimator;
+  Input input(data, size);
+  const std::uint8_t flags = input.u8();
+  const gnc::DepthProjection projection = projection_of(input, flags);
+  static gnc::RangeImage frame;
+  frame = frame_of(input, flags);
+  check_all_sets(frame, projection);
+  if ((flags & kStep) == kStep) estimator.step(frame, (flags & kNextFrame) != 0);
+  return 0;
+}

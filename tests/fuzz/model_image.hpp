@@ -1,0 +1,79 @@
+// The model image's reader, and a step with what it accepts: for both numerics (model_image_fixed.cpp,
+// model_image_float32.cpp).
+#pragma once
+
+#include <cstring>
+#include <memory>
+
+#include "gnc/rcnn/attitude_estimator.hpp"
+#include "tests/fuzz/check_estimate.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/patched_image.hpp"
+#include "tests/unit/gnc_rcnn/test_models.hpp"
+
+namespace tumblesight::fuzz {
+
+// The kernels that an input asks for, or the next faster ones that there are. In the portable ones (0)
+// UndefinedBehaviorSanitizer sees every sum.
+template <class N>
+const gnc::Kernels<N>& kernels_by(std::uint8_t number) {
+  for (std::size_t i = number % gnc::kInstructionSets.size(); i < gnc::kInstructionSets.size(); ++i) {
+    const gnc::Kernels<N>* const found = gnc::kernels_on<N>(gnc::kInstructionSets[i]);
+    if (found != nullptr) return *found;
+  }
+  return gnc::fastest_kernels<N>();
+}
+
+template <class N>
+class ModelImageTarget {
+ public:
+  ModelImageTarget() {
+    const bool is_good =
+        estimator_->load(image_.data(), gnc::kModelImageSize<N>, nullptr) == gnc::ModelStatus::kOk;
+    require(is_good, "the image without patches is accepted");
+  }
+
+  void run(Input input) {
+    const std::uint8_t choice = input.u8();
+    const char* const target = (choice & 1) != 0 ? "test_craft" : nullptr;
+    const std::uint32_t frames = (choice & 2) != 0 ? 2 : 1;
+    estimator_->network().use(kernels_by<N>(choice >> 2));
+    const std::size_t size = image_.apply(input);
+    const std::uint32_t before = estimator_->model().crc32;
+    const gnc::ModelStatus status = estimator_->load(image_.data(), size, target);
+    require(estimator_->has_model(), "there is a model");
+    if (status == gnc::ModelStatus::kOk) {
+      check_model(target);
+      step(frames);
+    } else {
+      require(estimator_->model().crc32 == before, "a refused image leaves the model before it in use");
+    }
+    image_.undo();
+  }
+
+ private:
+  void check_model(const char* target) {
+    const gnc::ModelHeader& header = estimator_->model();
+    require(gnc::is_possible(header.projection), "an accepted depth projection is possible");
+    require(std::memchr(header.target.data(), '\0', header.target.size()) != nullptr, "a target's name ends");
+    require(target == nullptr || std::strcmp(header.target.data(), target) == 0,
+            "the target is the one expected");
+  }
+
+  // The first frame of a track, and one that has a track behind it.
+  void step(std::uint32_t frames) {
+    for (std::uint32_t i = 1; i <= frames; ++i) {
+      gnc::AttitudeEstimate estimate;
+      require(estimator_->step(frame_, estimate) == gnc::FrameStatus::kOk, "a good frame is used");
+      // Fewer where the weights left no attitude to go on from.
+      require(estimate.frames_since_reset >= 1 && estimate.frames_since_reset <= i, "frames are counted");
+      check_estimate(estimate);
+    }
+  }
+
+  PatchedImage image_{gnc::random_model_image<N>(1)};
+  gnc::RangeImage frame_ = gnc::random_frame(1);
+  std::unique_ptr<gnc::AttitudeEstimator<N>> estimator_ = std::make_unique<gnc::AttitudeEstimator<N>>();
+};
+
+}  // namespace tumblesight::fuzz
