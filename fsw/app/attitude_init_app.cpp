@@ -34,6 +34,7 @@ void AttitudeInitApp<N>::init(const hal::Platform& platform, const char* expecte
   *state_ = AppState{};
   events_ = EventLog{};
   state_->platform = platform;
+  state_->counters.command_counter = platform.last_command_counter;
   state_->expected_target = expected_target;
   state_->protections = protections;
   for (std::size_t i = 0; i < config::kLimitRules.size(); ++i) state_->limits[i] = config::kLimitRules[i].initial;

@@ -72,6 +72,16 @@ TEST_F(Commands, RecordedCommandSentAgainIsRefused) {
 }
 
 // Verifies TS-SEC-030.
+TEST_F(Commands, RecordedCommandIsRefusedAfterARestartTooWhereThePlatformKeepsTheCounter) {
+  const hal::CommandPacket standby = set_mode(Mode::kStandby);
+  step_commands({standby});
+  app->init({&stopwatch, &store, &kTestKey, out->housekeeping.command_counter}, kTestTarget, protections);
+  step_commands({standby});
+  EXPECT_EQ(app->mode(), Mode::kRun);
+  EXPECT_EQ(refused_by(CommandRefusal::kReplayed), 1U);
+}
+
+// Verifies TS-SEC-030.
 TEST_F(Commands, RefusedAuthenticCommandCannotBeReplayedInAnotherMode) {
   const hal::CommandPacket activate = command(FunctionCode::kModelActivate, {0, 0, 0, 0});
   step_commands({activate});
