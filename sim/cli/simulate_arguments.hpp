@@ -12,6 +12,7 @@ struct SimulateArguments {
   std::string speed = "max";
   bool free_running = false;
   std::string flight;  // empty: beside this program; "none": running already
+  std::string command_key;  // file; empty: the key that everybody knows
   int domain = -1;     // -1: none given
   std::string report;  // empty: default_report_name() in out/ of the source tree
   std::string command_line;

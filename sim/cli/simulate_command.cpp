@@ -23,6 +23,7 @@
 #include "sim/report/progress.hpp"
 #include "sim/report/results_table.hpp"
 #include "sim/report/text_file.hpp"
+#include "sim/sil/telecommand.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -75,6 +76,7 @@ std::string flight_command_line(const SilSettings& settings) {
   std::string line =
       fmt::format("{} --domain {} --target {} --model {}", shell_quoted(shipped_flight().string()),
                   settings.domain, settings.target, shell_quoted(full_path(settings.model_path)));
+  for (const std::string& argument : settings.flight_arguments) line += " " + shell_quoted(argument);
   if (settings.free_running && settings.speed > 0.0) {
     line += fmt::format(" --mode free-running --period-ms {:g}", 1e3 * kFramePeriod_s / settings.speed);
   }
@@ -89,6 +91,10 @@ SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& 
   settings.domain = arguments.domain;
   settings.speed = arguments.speed == "max" ? 0.0 : std::stod(arguments.speed);
   settings.free_running = arguments.free_running;
+  if (!arguments.command_key.empty()) {
+    settings.command_key = read_command_key(arguments.command_key);
+    settings.flight_arguments = {"--command-key", full_path(arguments.command_key)};
+  }
   if (arguments.flight == kNoFlight) {
     if (settings.domain < 0) settings.domain = kFlightsOwnDomain;
     settings.step_timeout_s = kTimeToStartFlight_s;
@@ -221,6 +227,11 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   command
       ->add_option("--flight", arguments->flight,
                    "flight program to start [beside tumblesight]; none: you start it, and are shown how")
+      ->type_name("FILE");
+  command
+      ->add_option("--command-key", arguments->command_key,
+                   "key that telecommands are signed with, 64 hexadecimal digits [one that everybody knows]")
+      ->check(CLI::ExistingFile)
       ->type_name("FILE");
   command
       ->add_option(

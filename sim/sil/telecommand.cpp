@@ -4,6 +4,8 @@
 #include <openssl/hmac.h>
 
 #include <algorithm>
+#include <cctype>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 
@@ -38,6 +40,25 @@ Telecommand set_mode(std::uint8_t mode) {
 }
 Telecommand reset_sequence() {
   return {tumblesight_icd_FUNCTION_RESET_SEQUENCE, {}};
+}
+
+std::array<std::uint8_t, 32> read_command_key(const std::string& path) {
+  std::ifstream file(path);
+  std::string digits;
+  for (char c; file.get(c);) {
+    if (std::isspace(static_cast<unsigned char>(c)) == 0) digits += c;
+  }
+  std::array<std::uint8_t, 32> key{};
+  const bool complete = digits.size() == 2 * key.size() &&
+                        digits.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+  if (!complete) {
+    throw std::runtime_error("command key '" + path + "' holds " + std::to_string(digits.size()) +
+                             " characters; expected 64 hexadecimal digits and nothing else");
+  }
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    key[i] = static_cast<std::uint8_t>(std::stoul(digits.substr(2 * i, 2), nullptr, 16));
+  }
+  return key;
 }
 
 hal::CommandPacket TelecommandEncoder::packet(const Telecommand& command) {

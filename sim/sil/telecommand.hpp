@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "hal/link.hpp"
@@ -17,6 +18,9 @@ struct Telecommand {
 
 Telecommand set_mode(std::uint8_t mode);
 Telecommand reset_sequence();
+
+// The key in a file: 64 hexadecimal digits and white space. Throws std::runtime_error that names the file otherwise.
+std::array<std::uint8_t, 32> read_command_key(const std::string& path);
 
 // Signs what it makes with a counter that rises from command to command.
 class TelecommandEncoder {

@@ -110,6 +110,23 @@ TEST(Simulate, ShowsTheFlightProgramThatItWaitsFor) {
   EXPECT_NE(outcome.output.find("2 of 2 answered"), std::string::npos) << outcome.output;
 }
 
+// Verifies TS-SEC-040.
+TEST(Simulate, GivesBothSidesTheKeyOfAFile) {
+  const Workplace here;
+  std::ofstream(here.path("mission.key")) << std::string(64, '7');
+  const Outcome outcome = here.run("simulate --sequences 1 --frames 2 --command-key mission.key --report r.html --model " + here.model());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+}
+
+// Verifies TS-SEC-040.
+TEST(Simulate, RefusesAFileThatHoldsNoKey) {
+  const Workplace here;
+  std::ofstream(here.path("short.key")) << "1234";
+  const Outcome outcome = here.run("simulate --sequences 1 --frames 2 --command-key short.key --model " + here.model());
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_NE(outcome.errors.find("64 hexadecimal digits"), std::string::npos) << outcome.errors;
+}
+
 // A flight program that spoils the place of one file while the run goes on.
 TEST(Simulate, WritesTheOtherFileWhenOneCannotBeWritten) {
   for (const char* lost : {"run.json", "run.html"}) {
