@@ -31,6 +31,7 @@ const char* to_string(Outcome outcome);
 
 struct Trial {
   Outcome outcome = Outcome::kMasked;
+  bool changed = false;  // an attitude, by a bit or more
   std::uint8_t cycles_to_recover = 0;  // from the first cycle that suffered to the first right attitude after it
 };
 

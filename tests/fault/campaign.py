@@ -43,9 +43,10 @@ def added_up(parts):
     """{(place, with protections): totals}"""
     totals = {}
     for p in parts:
-        t = totals.setdefault((p["place"], p["protected"]), {"count": 0, "slow": 0, "slowest_cycles": 0, "outcomes": {}})
+        t = totals.setdefault((p["place"], p["protected"]), {"count": 0, "changed": 0, "slow": 0, "slowest_cycles": 0, "outcomes": {}})
         t["count"] += p["count"]
         t["slow"] += p["slow"]
+        t["changed"] += p["changed"]
         t["slowest_cycles"] = max(t["slowest_cycles"], p["slowest_cycles"])
         for outcome, n in p["outcomes"].items():
             t["outcomes"][outcome] = t["outcomes"].get(outcome, 0) + n
@@ -76,8 +77,8 @@ def at_most(events, trials):
 
 
 def as_table(totals):
-    lines = ["| bit in | protections | flips | " + " | ".join(OUTCOMES) + " | silent wrong, at most (95 %) | slowest recovery |",
-             "|" + "---|" * (len(OUTCOMES) + 5)]
+    lines = ["| bit in | protections | flips | " + " | ".join(OUTCOMES) + " | attitude changed at all | silent wrong, at most (95 %) | slowest recovery |",
+             "|" + "---|" * (len(OUTCOMES) + 6)]
     for place in PLACES:
         for with_protections in (True, False):
             t = totals.get((place, with_protections))
@@ -86,15 +87,16 @@ def as_table(totals):
             silent = t["outcomes"].get("silent wrong", 0)
             lines.append(f"| {place} | {'on' if with_protections else 'off'} | {t['count']} | "
                          + " | ".join(str(t["outcomes"].get(o, 0)) for o in OUTCOMES)
-                         + f" | {100 * at_most(silent, t['count']):.2f} % | {t['slowest_cycles']} cycles |")
+                         + f" | {t['changed']} | {100 * at_most(silent, t['count']):.2f} % | {t['slowest_cycles']} cycles |")
     return "\n".join(lines)
 
 
 def document(totals, seed):
     return f"""# Faults
 
-Written by `tests/fault/run`: single bits flipped in a flying application (NEAR Shoemaker's model in fixed point, rendered sequences with their truth, seed {seed}), each in a
-process of its own. With the protections on, and the same flips with them off, to show what they buy.
+Written by `tests/fault/run`: single bits flipped in a flying application (NEAR Shoemaker's model in fixed point, rendered sequences with their truth, seed {seed}), in child
+processes that may die. With the protections on, and the same flips with vote, guards, scrubbing and checks of the attitude off, to show what they buy; packets
+and frames are judged in both.
 
 {as_table(totals)}
 

@@ -14,15 +14,16 @@ using namespace tumblesight::fault;
 nlohmann::ordered_json summary(const std::string& place, bool with_protections, std::uint64_t seed, std::uint32_t first,
                                const std::vector<Trial>& trials) {
   std::map<std::string, std::uint32_t> outcomes;
-  std::uint32_t slow = 0, slowest = 0;
+  std::uint32_t slow = 0, slowest = 0, changed = 0;
   for (const Trial& trial : trials) {
     ++outcomes[to_string(trial.outcome)];
+    changed += trial.changed ? 1U : 0U;
     const bool recovers = trial.outcome == Outcome::kMasked || trial.outcome == Outcome::kRecovered;
     if (recovers && trial.cycles_to_recover > 2) ++slow;
     if (recovers && trial.cycles_to_recover > slowest) slowest = trial.cycles_to_recover;
   }
   return {{"place", place}, {"protected", with_protections}, {"seed", seed}, {"first", first}, {"count", trials.size()},
-          {"outcomes", outcomes}, {"slow", slow}, {"slowest_cycles", slowest}};
+          {"outcomes", outcomes}, {"changed", changed}, {"slow", slow}, {"slowest_cycles", slowest}};
 }
 
 }  // namespace

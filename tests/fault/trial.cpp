@@ -202,6 +202,7 @@ Trial TrialRunner::judged(std::size_t first, const std::vector<CycleResult>& res
   for (std::size_t i = 0; i < results.size(); ++i) {
     const CycleResult& clean = clean_[first + i];
     const CycleResult& hit = results[i];
+    trial.changed = trial.changed || hit.q_lrf_trf != clean.q_lrf_trf;
     const bool suffers = clean.right() && !hit.right();
     silent_wrong = silent_wrong || (suffers && hit.validity == 0);
     since = suffers ? since + 1 : 0;
