@@ -36,7 +36,7 @@ std::uint32_t get_u32(const std::uint8_t* at) {
 
 float get_f32(const std::uint8_t* at) {
   const std::uint32_t bits = get_u32(at);
-  float value;
+  float value = 0.0F;
   std::memcpy(&value, &bits, sizeof value);
   return value;
 }
@@ -51,7 +51,7 @@ void put_u32(std::uint8_t* at, std::uint32_t value) {
 }
 
 [[maybe_unused]] void put_f32(std::uint8_t* at, float value) {
-  std::uint32_t bits;
+  std::uint32_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
   put_u32(at, bits);
 }

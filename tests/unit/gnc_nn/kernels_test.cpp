@@ -64,6 +64,9 @@ std::vector<ProductShape> shapes(bool integers) {
   all.push_back(convolution(2, 24, 32, 64));
   all.push_back(convolution(2, 4, 4, 16));
   all.push_back(convolution(1, 10, 72, 16));
+  all.push_back(convolution(1, 4, 8, 32));  // fewer pixels than three tiles of two
+  all.push_back(convolution(2, 4, 4, 16));
+  all.back().strips = 17;  // more than a stretch holds
   all.push_back(dense(382, 768));
   return all;
 }

@@ -25,6 +25,12 @@ TEST(ProcessorHas, ThePortableSetAlways) {
   EXPECT_TRUE(processor_has(InstructionSet::kPortable));
 }
 
+#if defined(__x86_64__)
+TEST(ProcessorHas, NoSetThatNobodyKnows) {
+  EXPECT_FALSE(processor_has(static_cast<InstructionSet>(200)));
+}
+#endif
+
 TEST(ProcessorHas, WithASetThoseItIsMadeOf) {
   const auto implies = [](InstructionSet larger, InstructionSet smaller) {
     return !processor_has(larger) || processor_has(smaller);
