@@ -14,6 +14,7 @@ packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libg
 packages_to_fuzz=("${packages_to_run[@]}" clang libclang-rt-dev)
 # The flight side alone, with gcc's counting of branches.
 packages_to_cover=(g++ cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev gcovr python3)
+packages_to_analyse=("${packages_to_run[@]}" libgtest-dev libgmock-dev clang clang-tidy cppcheck python3)
 # The processors of the audit: compilers, emulators, and GoogleTest's sources to build it for them.
 packages_to_audit=("${packages_to_run[@]}" gcc googletest python3 qemu-user qemu-system-arm qemu-system-misc qemu-system-sparc
   g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-riscv64-linux-gnu g++-powerpc-linux-gnu
