@@ -12,6 +12,9 @@ packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev c
   nlohmann-json3-dev)
 packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libgtest-dev libgmock-dev clang python3 valgrind)
 packages_to_fuzz=("${packages_to_run[@]}" clang libclang-rt-dev)
+# The flight side alone, with gcc's counting of branches.
+packages_to_cover=(g++ cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev gcovr python3)
+packages_to_analyse=("${packages_to_run[@]}" libgtest-dev libgmock-dev clang clang-tidy cppcheck python3)
 # The processors of the audit: compilers, emulators, and GoogleTest's sources to build it for them.
 packages_to_audit=("${packages_to_run[@]}" gcc googletest python3 qemu-user qemu-system-arm qemu-system-misc qemu-system-sparc
   g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-riscv64-linux-gnu g++-powerpc-linux-gnu
@@ -82,15 +85,20 @@ install_missing() { # package...
     fail "apt-get install failed (above; all of it in build/log/apt_install.log)"
 }
 
-# Configures and builds a preset of CMakePresets.json, all of it or the targets named, if there is anything to do.
+# Configures a preset of CMakePresets.json, if it has not been.
+configure_preset() { # preset
+  [ -f "$root/build/$1/build.ninja" ] && return 0
+  quietly "configuring" "$root/build/log/configure_$1.log" cmake -S "$root" --preset "$1" ||
+    fail "cmake failed (above; all of it in build/log/configure_$1.log)"
+}
+
+# Configures and builds a preset, or some targets of it, if there is anything to do.
 build_preset() { # preset, target...
   local folder="$root/build/$1"
-  if [ ! -f "$folder/build.ninja" ]; then
-    quietly "configuring" "$root/build/log/configure_$1.log" cmake -S "$root" --preset "$1" ||
-      fail "cmake failed (above; all of it in build/log/configure_$1.log)"
-  fi
-  ninja -C "$folder" -n "${@:2}" 2>/dev/null | grep -q 'no work to do' && return 0
-  NINJA_STATUS='  building %f/%t, %es  ' ninja -C "$folder" -j "$(nproc)" "${@:2}" || fail "the build failed (above)"
+  configure_preset "$1"
+  shift
+  ninja -C "$folder" -n "$@" 2>/dev/null | grep -q 'no work to do' && return 0
+  NINJA_STATUS='  building %f/%t, %es  ' ninja -C "$folder" -j "$(nproc)" "$@" || fail "the build failed (above)"
 }
 
 # One set-up at a time in one checkout; a second waits for the first.

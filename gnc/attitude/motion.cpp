@@ -8,7 +8,7 @@ constexpr int kSteps = 4;
 // A length whose square overflows leaves no direction, and no rate.
 template <class Real>
 Vector3<Real> bounded(const Vector3<Real>& rate) {
-  constexpr Real kLargest = constant<Real>(kLargestRate);
+  constexpr Real kLargest = constant<Real>(static_cast<double>(kLargestRate));
   const bool too_long = dot(rate, rate) > kLargest * kLargest;
   const Vector3<Real> shortened = scaled<Real>(normalised(rate), kLargest);
   return {select(too_long, shortened.x(), rate.x()), select(too_long, shortened.y(), rate.y()),

@@ -59,8 +59,8 @@ Centroid centroid_of(const DepthImageScratch::Rays& rays, int count, int returns
     up30 -= std::int64_t{rays.row_sum[i]} * rays.slope30[i];
     across30 += std::int64_t{rays.column_sum[i]} * rays.slope30[i];
   }
-  const auto slope = [depth](std::int64_t sum30) {
-    return Fixed::from_raw(rounded_division(rounded_shift(sum30, 30 - Fixed::kFractionBits), depth));
+  const auto slope = [divisor = larger_of<std::int64_t>(depth, 1)](std::int64_t sum30) {
+    return Fixed::from_raw(rounded_division(rounded_shift(sum30, 30 - Fixed::kFractionBits), divisor));
   };
   const Vector3<Fixed> direction = normalised(Vector3<Fixed>(slope(across30), Fixed(1.0), slope(up30)));
   const std::int64_t along8 = rounded_division(depth * 256, returns);

@@ -32,7 +32,7 @@ inline float exp_one(float argument) {
   const float q = kQ0 + r * (kQ1 + r * (kQ2 + r * (kQ3 + r * kQ4)));
   const float e_r = 1.0F + (r + r * r * q);
   const std::uint32_t exponent = static_cast<std::uint32_t>(static_cast<std::int32_t>(n) + 127) << 23;
-  float two_to_n;
+  float two_to_n = 0.0F;
   std::memcpy(&two_to_n, &exponent, sizeof two_to_n);
   return e_r * two_to_n;
 }

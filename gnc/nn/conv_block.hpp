@@ -27,7 +27,7 @@ struct PaddedImage {
 // computed. Summation per output: bias, then ky, kx, input channel ascending; padding takes part as zeros.
 template <class N, int kSide, int kChannelsIn, int kChannelsOut>
 struct ConvBlock {
-  static_assert(kSide % 2 == 0 || kSide > 1);
+  static_assert(kSide > 1 && kChannelsOut % kIntegerChannels == 0);
   static constexpr int kSideOut = kSide / 2;
   static constexpr int kColumns = 2 * kSideOut;
   static constexpr int kWeights = 3 * 3 * kChannelsIn * kChannelsOut;

@@ -10,7 +10,7 @@
 namespace tumblesight::gnc {
 
 // `sums`: two rows of `columns` pixels; `out`: columns / 2 pixels, of each 2x2 window's sums the largest, activated, or
-// the four activated and then averaged (activate_four()).
+// the four activated and then averaged (activate_four()). `channels` a multiple of kIntegerChannels in both numerics.
 template <class N>
 using MaxPool = void(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift, ConvInput<N>* out);
 template <class N>

@@ -46,7 +46,7 @@ Fixed gate_tanh(Fixed x) {
 }
 
 void lstm_update(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h, Fixed* c) {
-  constexpr Fixed kBound(kLstmCellBound);
+  constexpr Fixed kBound(static_cast<double>(kLstmCellBound));
   for (int i = 0; i < hidden; ++i) {
     const auto gate = [&](int which) {
       const int g = which * hidden + i;

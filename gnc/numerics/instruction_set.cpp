@@ -53,6 +53,11 @@ bool has_avx512() {
 
 bool processor_has(InstructionSet set) {
   switch (set) {
+    case InstructionSet::kPortable:
+    case InstructionSet::k128Bit:  // SSE2, which every x86-64 has
+    case InstructionSet::kDotProduct:  // not built here
+    case InstructionSet::kDsp:
+      return true;
     case InstructionSet::kAvx2:
       return __builtin_cpu_supports("avx2") != 0;
     case InstructionSet::kAvxVnni:
@@ -61,9 +66,8 @@ bool processor_has(InstructionSet set) {
       return has_avx512();
     case InstructionSet::kAvx512Vnni:
       return has_avx512() && __builtin_cpu_supports("avx512vnni") != 0;
-    default:
-      return true;
   }
+  return false;
 }
 #else
 bool processor_has(InstructionSet) {

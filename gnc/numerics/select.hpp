@@ -23,7 +23,7 @@ constexpr Integer select(bool condition, Integer yes, SameAs<Integer> no) {
   return static_cast<Integer>(no ^ ((yes ^ no) & mask_of<Integer>(condition)));
 }
 inline float select(bool condition, float yes, float no) {
-  std::uint32_t yes_bits, no_bits;
+  std::uint32_t yes_bits = 0, no_bits = 0;
   std::memcpy(&yes_bits, &yes, sizeof yes);
   std::memcpy(&no_bits, &no, sizeof no);
   const std::uint32_t bits = select(condition, yes_bits, no_bits);

@@ -120,8 +120,7 @@ std::uint32_t AttitudeEstimator<N>::constants_crc32() const {
   if constexpr (N::kIsInteger) {
     for_each_tensor(network_.weights(), [&add](const char*, const char*, const auto& tensor) { add(tensor); });
   }
-  const Kernels<N>* const kernels = &network_.kernels();
-  add(kernels);
+  add(reinterpret_cast<std::uintptr_t>(&network_.kernels()));
   add(model_);
   add(laws_);
   add(has_model_);

@@ -52,15 +52,18 @@ template <class Real>
 bool is_sound(const Motion<Real>& motion) {
   const Real trace = trace_of_transpose_product<Real>(motion.r_lrf_trf, motion.r_lrf_trf);
   const Vector3<Real>& rate = motion.rate_lrf;
-  return (absolute(trace - constant<Real>(3.0)) < constant<Real>(0.1)) &
-         is_finite((rate.x() + rate.y()) + rate.z());
+  const bool is_rotation = absolute(trace - constant<Real>(3.0)) < constant<Real>(0.1);
+  const bool has_rate = is_finite((rate.x() + rate.y()) + rate.z());
+  return is_rotation & has_rate;
 }
 
 template <class Real>
 bool is_sound(const AttitudeTrack<Real>& track) {
   bool sound = true;
-  for (int law = 0; law < kLaws; ++law)
-    sound &= is_sound<Real>(track.motion[law]) & is_finite(track.log_likelihood[law]);
+  for (int law = 0; law < kLaws; ++law) {
+    sound &= is_sound<Real>(track.motion[law]);
+    sound &= is_finite(track.log_likelihood[law]);
+  }
   return sound;
 }
 

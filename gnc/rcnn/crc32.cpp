@@ -43,7 +43,7 @@ void Crc32::add_u32(std::uint32_t value) {
 
 void Crc32::add_f32(const float* values, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
-    std::uint32_t bits;
+    std::uint32_t bits = 0;
     std::memcpy(&bits, values + i, sizeof bits);
     add_u32(bits);
   }

@@ -36,7 +36,7 @@ std::uint32_t get_u32(const std::uint8_t* at) {
 
 float get_f32(const std::uint8_t* at) {
   const std::uint32_t bits = get_u32(at);
-  float value;
+  float value = 0.0F;
   std::memcpy(&value, &bits, sizeof value);
   return value;
 }
@@ -51,7 +51,7 @@ void put_u32(std::uint8_t* at, std::uint32_t value) {
 }
 
 [[maybe_unused]] void put_f32(std::uint8_t* at, float value) {
-  std::uint32_t bits;
+  std::uint32_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
   put_u32(at, bits);
 }
@@ -192,28 +192,36 @@ void write(const std::array<Integer, kCount>& tensor, std::uint8_t* to) {
   for (std::size_t i = 0; i < kCount; ++i) put_u32(to + 4 * i, static_cast<std::uint32_t>(tensor[i]));
 }
 
-template <std::size_t kCount>
-bool is_possible_tensor(const std::uint8_t* at, const std::array<float, kCount>&) {
-  bool finite = true;
-  for (std::size_t i = 0; i < kCount; ++i) finite = is_finite_bits(get_u32(at + 4 * i)) && finite;
-  return finite;
-}
-template <class Tensor>
-bool is_possible_tensor(const std::uint8_t*, const Tensor&) {
-  return true;  // integers are judged layer by layer
-}
+// The section table, entry by entry: the first that is wrong decides.
+struct SectionCheck {
+  const std::uint8_t* image;
+  std::size_t offset;  // of the next section
+  std::uint32_t id = 1;
+  ModelStatus status = ModelStatus::kOk;
 
-ModelStatus check_entry(const std::uint8_t* image, std::size_t index, std::size_t offset, std::size_t size) {
-  const std::uint8_t* entry = image + kModelHeaderSize + index * kModelSectionEntrySize;
-  if (get_u32(entry) != index + 1 || get_u32(entry + 4) != offset || get_u32(entry + 8) != size) {
-    return ModelStatus::kBadSection;
+  void next(std::size_t size) {
+    if (status == ModelStatus::kOk) status = status_of_entry(size);
+    offset += size;
+    ++id;
   }
-  return crc32(image + offset, size) == get_u32(entry + 12) ? ModelStatus::kOk : ModelStatus::kBadSectionCrc;
-}
+
+ private:
+  ModelStatus status_of_entry(std::size_t size) const {
+    const std::uint8_t* entry = image + kModelHeaderSize + (id - 1) * kModelSectionEntrySize;
+    if (get_u32(entry) != id || get_u32(entry + 4) != offset || get_u32(entry + 8) != size) {
+      return ModelStatus::kBadSection;
+    }
+    return crc32(image + offset, size) == get_u32(entry + 12) ? ModelStatus::kOk : ModelStatus::kBadSectionCrc;
+  }
+};
 
 #if TUMBLESIGHT_FLOAT32
-ModelStatus check_layers(const std::uint8_t*, const NetworkWeights<Float32>&) {
-  return ModelStatus::kOk;
+ModelStatus check_layers(const std::uint8_t* image, const NetworkWeights<Float32>&) {
+  bool finite = true;
+  for (std::size_t at = kModelDataOffset<Float32>; at < kModelImageSize<Float32>; at += 4) {
+    finite = is_finite_bits(get_u32(image + at)) && finite;
+  }
+  return finite ? ModelStatus::kOk : ModelStatus::kBadValue;
 }
 #endif
 
@@ -233,6 +241,25 @@ struct LayerInImage {
   std::size_t recurrents = 0;
   const std::uint8_t* bias = nullptr;
   const std::uint8_t* shift = nullptr;
+
+  // `part`: as for_each_tensor_of() names it.
+  void put(const char* part, const std::uint8_t* at, std::size_t size) {
+    switch (part[0]) {
+      case 'w':
+        weight = at;
+        weights = size;
+        break;
+      case 'r':
+        recurrent = at;
+        recurrents = size;
+        break;
+      case 'b':
+        bias = at;
+        break;
+      default:
+        shift = at;
+    }
+  }
 };
 
 // Sum of the magnitudes of one channel's weights; -1 where one is -128, which has no opposite.
@@ -286,21 +313,7 @@ ModelStatus check_layers(const std::uint8_t* image, const NetworkWeights<FixedPo
   for_each_layer(weights, [&](const char* name, const auto& layer) {
     LayerInImage in_image;
     for_each_tensor_of(name, layer, [&](const char*, const char* part, const auto& tensor) {
-      switch (part[0]) {
-        case 'w':
-          in_image.weight = next;
-          in_image.weights = size_in_image(tensor);
-          break;
-        case 'r':
-          in_image.recurrent = next;
-          in_image.recurrents = size_in_image(tensor);
-          break;
-        case 'b':
-          in_image.bias = next;
-          break;
-        default:
-          in_image.shift = next;
-      }
+      in_image.put(part, next, size_in_image(tensor));
       next += size_in_image(tensor);
     });
     possible = is_possible_layer(in_image, layer.bias.size(), limits[index++]) && possible;
@@ -314,17 +327,10 @@ ModelStatus check_sections(const std::uint8_t* image, std::size_t size_bytes, co
   if (get_u32(image + kOffsetSectionCount) != kTensorCount<N> || size_bytes != kModelImageSize<N>) {
     return ModelStatus::kBadSection;
   }
-  ModelStatus status = ModelStatus::kOk;
-  std::size_t index = 0;
-  std::size_t offset = kModelDataOffset<N>;
-  for_each_tensor(weights, [&](const char*, const char*, const auto& tensor) {
-    const std::size_t size = size_in_image(tensor);
-    if (status == ModelStatus::kOk) status = check_entry(image, index, offset, size);
-    if (status == ModelStatus::kOk && !is_possible_tensor(image + offset, tensor)) status = ModelStatus::kBadValue;
-    ++index;
-    offset += size;
-  });
-  return status == ModelStatus::kOk ? check_layers(image, weights) : status;
+  SectionCheck check{image, kModelDataOffset<N>};
+  for_each_tensor(weights,
+                  [&check](const char*, const char*, const auto& tensor) { check.next(size_in_image(tensor)); });
+  return check.status == ModelStatus::kOk ? check_layers(image, weights) : check.status;
 }
 
 template <class N>

@@ -7,7 +7,6 @@ namespace tumblesight::sim {
 
 namespace {
 
-constexpr float kPi = 3.14159265359F;
 constexpr int kY = 1;
 
 // A cylinder along x, between two places.

@@ -64,7 +64,7 @@ struct Blocks {
                                      const Sum* start, const Weight* weights, Sum* out) {
     const int pixels = shape.rows * shape.columns;
     for (int next = 0; next < pixels; next += kPixels) {
-      const int first = next + kPixels <= pixels ? next : pixels - kPixels;
+      const int first = smaller_of(next, pixels - kPixels);
       const Input* block_in[kPixels];
       Sum* block_out[kPixels];
       const int y = first / shape.columns;
@@ -81,6 +81,10 @@ struct Blocks {
     }
   }
 
+  // Integers' channels come in whole kIntegerChannels.
+  template <int kPacks>
+  static constexpr bool kFillBlocks = kGroup > 1 && kIntegerChannels % (kPacks * kWidth) == 0;
+
   // Blocks of kPacks vectors as far as they fit, then single vectors. Returns the first channel left over.
   template <int kPixels, int kPacks>
   TUMBLESIGHT_INLINE int all_channels(const ProductShape& shape, const Input* in, const Sum* start,
@@ -89,7 +93,9 @@ struct Blocks {
     for (; c + kPacks * kWidth <= shape.channels; c += kPacks * kWidth) {
       all_pixels<kPixels, kPacks>(shape, c, in, start, weights, out);
     }
-    for (; c + kWidth <= shape.channels; c += kWidth) all_pixels<kPixels, 1>(shape, c, in, start, weights, out);
+    if constexpr (!kFillBlocks<kPacks>) {
+      for (; c + kWidth <= shape.channels; c += kWidth) all_pixels<kPixels, 1>(shape, c, in, start, weights, out);
+    }
     return c;
   }
 
@@ -97,7 +103,8 @@ struct Blocks {
   // distance that the compiler knows, need no pointer each.
   template <int kPixels, int kPacks, int kColumnStep>
   TUMBLESIGHT_INLINE bool is_narrow(const ProductShape& shape) {
-    return shape.column_step == kColumnStep && shape.columns % kPixels == 0 && shape.channels % (kPacks * kWidth) == 0;
+    static_assert(kFillBlocks<kPacks>);
+    return shape.column_step == kColumnStep && shape.columns % kPixels == 0;
   }
   template <int kPixels, int kPacks, int kColumnStep>
   TUMBLESIGHT_INLINE void narrow_block(const ProductShape& shape, const Input* in, const Sum* start,
@@ -166,11 +173,11 @@ struct MeanOfFour {
   TUMBLESIGHT_INLINE void pool(const Sum<N> (&four)[4], int shift, Out& out) { activate_four(four, shift, out); }
 };
 
-template <class N, class Pool, int kCount>
+template <class N, class Pool>
 TUMBLESIGHT_INLINE void pool_channels(const Sum<N>* __restrict left, int channels, int row_below,
                                       const std::uint8_t* __restrict shift, typename Pool::Out* __restrict out) {
   const Sum<N>* const right = left + channels;
-  for (int c = 0; c < kCount; ++c) {
+  for (int c = 0; c < kIntegerChannels; ++c) {
     const Sum<N> four[4] = {left[c], right[c], left[row_below + c], right[row_below + c]};
     Pool::pool(four, N::kIsInteger ? shift[c] : 0, out[c]);
   }
@@ -187,12 +194,8 @@ TUMBLESIGHT_INLINE void pool(const Sum<N>* __restrict sums, int columns, int cha
                              const std::uint8_t* __restrict shift, typename Pool::Out* __restrict out) {
   for (int x = 0; x + 1 < columns; x += 2) {
     const Sum<N>* const left = sums + x * channels;
-    int c = 0;
-    for (; c + 16 <= channels; c += 16) {
-      pool_channels<N, Pool, 16>(left + c, channels, columns * channels, shift_of<N>(shift, c), out + c);
-    }
-    for (; c < channels; ++c) {
-      pool_channels<N, Pool, 1>(left + c, channels, columns * channels, shift_of<N>(shift, c), out + c);
+    for (int c = 0; c < channels; c += kIntegerChannels) {
+      pool_channels<N, Pool>(left + c, channels, columns * channels, shift_of<N>(shift, c), out + c);
     }
     out += channels;
   }

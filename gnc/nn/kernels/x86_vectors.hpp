@@ -14,7 +14,7 @@ namespace {
 // kGroup inputs of one pixel, as 32 bits.
 template <class Input>
 TUMBLESIGHT_INLINE std::int32_t group_of(const Input* from) {
-  std::int32_t group;
+  std::int32_t group = 0;
   std::memcpy(&group, from, sizeof group);
   return group;
 }

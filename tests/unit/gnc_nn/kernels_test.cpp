@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -60,6 +64,9 @@ std::vector<ProductShape> shapes(bool integers) {
   all.push_back(convolution(2, 24, 32, 64));
   all.push_back(convolution(2, 4, 4, 16));
   all.push_back(convolution(1, 10, 72, 16));
+  all.push_back(convolution(1, 4, 8, 32));  // fewer pixels than three tiles of two
+  all.push_back(convolution(2, 4, 4, 16));
+  all.back().strips = 17;  // more than a stretch holds
   all.push_back(dense(382, 768));
   return all;
 }
@@ -108,26 +115,59 @@ void expect_definition_for_all_shapes(Product<Kind>* product) {
   }
 }
 
+// Two rows of sums and each channel's shift, to be pooled.
+template <class N>
+struct Pooled {
+  static constexpr int kColumns = 10, kChannels = 48;
+  std::vector<Sum<N>> sums;
+  std::vector<std::uint8_t> shift = std::vector<std::uint8_t>(kChannels);
+
+  Pooled() {
+    RandomValues random(11);
+    sums = random.vector<Sum<N>>(2 * kColumns * kChannels);
+    if (N::kIsInteger) {
+      for (auto& sum : sums) sum = static_cast<Sum<N>>(sum / 2);
+    }
+    for (int c = 0; c < kChannels; ++c) shift[c] = static_cast<std::uint8_t>(1 + (c * 7) % 28);
+  }
+  std::array<double, 4> four(int x, int c) const {
+    const auto at = [&](int row, int column) -> double {
+      return sums[(row * kColumns + 2 * x + column) * kChannels + c];
+    };
+    return {at(0, 0), at(0, 1), at(1, 0), at(1, 1)};
+  }
+  // Rounded to the nearest, halves up.
+  double activated(double sum, int c, double largest_integer) const {
+    if (!N::kIsInteger) return std::max(0.0, sum);
+    return std::min(largest_integer, std::max(0.0, std::floor(std::ldexp(sum, -shift[c]) + 0.5)));
+  }
+};
+
 template <class N>
 void expect_max_pool_by_definition(MaxPool<N>* max_pool) {
-  constexpr int kColumns = 10, kChannels = 48;
-  RandomValues random(11);
-  auto sums = random.vector<Sum<N>>(2 * kColumns * kChannels);
-  if (N::kIsInteger) {
-    for (auto& sum : sums) sum = static_cast<Sum<N>>(sum / 2);
+  const Pooled<N> pooled;
+  std::vector<ConvInput<N>> out(pooled.kColumns / 2 * pooled.kChannels);
+  max_pool(pooled.sums.data(), pooled.kColumns, pooled.kChannels, pooled.shift.data(), out.data());
+  for (int x = 0; x < pooled.kColumns / 2; ++x) {
+    for (int c = 0; c < pooled.kChannels; ++c) {
+      const auto four = pooled.four(x, c);
+      const double expected = pooled.activated(*std::max_element(four.begin(), four.end()), c, 255.0);
+      ASSERT_EQ(out[x * pooled.kChannels + c], expected) << x << ' ' << c;
+    }
   }
-  std::vector<std::uint8_t> shift(kChannels);
-  for (int c = 0; c < kChannels; ++c) shift[c] = static_cast<std::uint8_t>(1 + (c * 7) % 28);
-  std::vector<ConvInput<N>> out(kColumns / 2 * kChannels);
-  max_pool(sums.data(), kColumns, kChannels, shift.data(), out.data());
-  for (int x = 0; x < kColumns / 2; ++x) {
-    for (int c = 0; c < kChannels; ++c) {
-      const auto at = [&](int row, int column) { return sums[(row * kColumns + 2 * x + column) * kChannels + c]; };
-      const double largest = std::max({at(0, 0), at(0, 1), at(1, 0), at(1, 1)});
-      // Rounded to the nearest, halves up.
-      const double scaled = N::kIsInteger ? std::floor(std::ldexp(largest, -shift[c]) + 0.5) : largest;
-      const double expected = std::max(0.0, N::kIsInteger ? std::min(255.0, scaled) : scaled);
-      ASSERT_EQ(out[x * kChannels + c], expected) << x << ' ' << c;
+}
+
+// The mean in float32, summed in order; the sum in fixed point.
+template <class N>
+void expect_average_pool_by_definition(AveragePool<N>* average_pool) {
+  const Pooled<N> pooled;
+  std::vector<DenseInput<N>> out(pooled.kColumns / 2 * pooled.kChannels);
+  average_pool(pooled.sums.data(), pooled.kColumns, pooled.kChannels, pooled.shift.data(), out.data());
+  for (int x = 0; x < pooled.kColumns / 2; ++x) {
+    for (int c = 0; c < pooled.kChannels; ++c) {
+      Sum<N> total = 0;
+      for (const double sum : pooled.four(x, c)) total += static_cast<Sum<N>>(pooled.activated(sum, c, kLargestOfFour));
+      ASSERT_EQ(out[x * pooled.kChannels + c], N::kIsInteger ? total : total / 4) << x << ' ' << c;
     }
   }
 }
@@ -142,6 +182,7 @@ class KernelsOf : public ::testing::TestWithParam<InstructionSet> {
     expect_definition_for_all_shapes<typename N::ConvProduct>(kernels->convolve);
     expect_definition_for_all_shapes<typename N::DenseProduct>(kernels->multiply);
     expect_max_pool_by_definition<N>(kernels->max_pool);
+    expect_average_pool_by_definition<N>(kernels->average_pool);
   }
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -61,18 +62,38 @@ TEST(Motion, InFixedPointIsThatInFloat) {
   }
 }
 
-TEST(MakeInertia, RefusesInFixedPointWhatItRefusesInFloat) {
-  const auto diagonal = [](double x, double y, double z) {
-    Matrix3<Fixed> tensor = Matrix3<Fixed>::Zero();
-    tensor.diagonal() << Fixed(x), Fixed(y), Fixed(z);
-    return tensor;
+TEST(MakeInertia, TakesInFixedPointWhatItTakesInFloat) {
+  const auto tensor = [](float xx, float yy, float zz, float xy, float xz, float yz) {
+    Eigen::Matrix3f j;
+    j << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+    return j;
   };
-  Inertia<Fixed> inertia;
-  EXPECT_TRUE(make_inertia<Fixed>(diagonal(0.02, 1.49, 1.49), inertia));
-  for (const auto& bad : {diagonal(0.0, 0.0, 0.0), diagonal(-1.0, 2.0, 2.0), diagonal(0.009, 1.49, 1.5),
-                          diagonal(1e-7, 1e-7, 0.0)}) {
-    EXPECT_FALSE(make_inertia<Fixed>(bad, inertia));
+  const auto is_taken = [](const Eigen::Matrix3f& shape) {
+    Inertia<float> inertia;
+    Inertia<Fixed> fixed_inertia;
+    const bool taken = make_inertia<float>(shape, inertia);
+    EXPECT_EQ(make_inertia<Fixed>(converted<Fixed>(shape), fixed_inertia), taken) << shape;
+    return taken;
+  };
+  const Eigen::Matrix3f good = tensor(0.7F, 1.1F, 1.2F, 0.1F, -0.05F, 0.02F);
+  EXPECT_TRUE(is_taken(good));
+  EXPECT_TRUE(is_taken(tensor(0.02F, 1.49F, 1.49F, 0.0F, 0.0F, 0.0F)));
+
+  for (const auto [row, column] : {std::array{0, 1}, std::array{0, 2}, std::array{1, 2}}) {
+    Eigen::Matrix3f lopsided = good;
+    lopsided(row, column) += 0.01F;
+    EXPECT_FALSE(is_taken(lopsided)) << row << column;
   }
+  // A leading minor at a time that is not positive.
+  EXPECT_FALSE(is_taken(tensor(-0.5F, 1.7F, 1.8F, 0.0F, 0.0F, 0.0F)));
+  EXPECT_FALSE(is_taken(tensor(0.5F, -0.5F, 3.0F, 0.0F, 0.0F, 0.0F)));
+  EXPECT_FALSE(is_taken(tensor(0.8F, 0.9F, 1.3F, 0.9F, 0.0F, 0.0F)));
+  EXPECT_FALSE(is_taken(tensor(1.6F, 1.5F, -0.1F, 0.0F, 0.0F, 0.0F)));
+  EXPECT_FALSE(is_taken(tensor(0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F)));
+  EXPECT_FALSE(is_taken(tensor(-1.0F, -1.0F, -1.0F, 0.0F, 0.0F, 0.0F)));
+  EXPECT_FALSE(is_taken(tensor(1e-7F, 1e-7F, 0.0F, 0.0F, 0.0F, 0.0F)));
+  // Next to a rod's.
+  EXPECT_FALSE(is_taken(tensor(0.009F, 1.49F, 1.5F, 0.0F, 0.0F, 0.0F)));
 }
 
 TEST(Conversion, TakesWhatIsNotFiniteForZeroAndSaturates) {

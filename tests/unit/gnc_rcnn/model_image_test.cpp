@@ -92,6 +92,7 @@ std::vector<Damage> damages() {
       {"UnterminatedTarget", ModelStatus::kBadTarget,
        sealed([](Bytes& b) { std::fill_n(b.begin() + 16, 32, 'a'); })},
       {"UnprintableTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[18] = 7; })},
+      {"DeleteCharacterInTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[18] = 0x7F; })},
       {"RubbishBehindTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[40] = 'x'; })},
       {"NoSwath", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 48, 99); })},
       {"HugeSwath", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 48, 100'001); })},
@@ -102,6 +103,10 @@ std::vector<Damage> damages() {
       {"LargestProductOfInertia", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 72, 0x80000000U); })},
       {"IndefiniteInertia", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 72, 2U << 24); })},
       {"SectionMissing", ModelStatus::kBadSection, sealed([](Bytes& b) { put_u32(b, kSections, 20); })},
+      {"RoomBehindTheLastSection", ModelStatus::kBadSection, sealed([](Bytes& b) {
+         b.resize(b.size() + 4);
+         put_u32(b, 8, static_cast<std::uint32_t>(b.size()));
+       })},
       {"OtherSectionId", ModelStatus::kBadSection, sealed([](Bytes& b) { put_u32(b, kTable, 2); })},
       {"SectionOffsetOutside", ModelStatus::kBadSection,
        sealed([](Bytes& b) { put_u32(b, kTable + 4, 0xFFFFFFF0U); })},
@@ -203,8 +208,17 @@ TEST(ModelImage, StandsInMemoryAsDocumented) {
   EXPECT_EQ(get_u32(fixed, kTable + 16 + 4), kFixedData + 9 * 4 * 32);  // bias
   EXPECT_EQ(get_u32(fixed, kTable + 16 + 8), 4U * 32);
   EXPECT_EQ(get_u32(fixed, kTable + 32 + 8), 4U * 32);               // shifts
+}
+
+TEST(IsFloat32, IsToldByTheHeaderOfAWholeImageOnly) {
+  const Bytes& fixed = lasting_model_image<FixedPoint>(21);
+  EXPECT_TRUE(is_float32(good_image().data(), good_image().size()));
   EXPECT_FALSE(is_float32(fixed.data(), fixed.size()));
-  EXPECT_TRUE(is_float32(image.data(), image.size()));
+  EXPECT_FALSE(is_float32(good_image().data(), 40));
+  EXPECT_FALSE(is_float32(nullptr, 0));
+  Bytes damaged = good_image();
+  damaged[17] ^= 1;
+  EXPECT_FALSE(is_float32(damaged.data(), damaged.size()));
 }
 
 ModelStatus read_fixed(const Bytes& image) {
@@ -245,6 +259,17 @@ TEST(FixedPointImage, IsRefusedWhenAShiftIsOutOfItsRange) {
   put_u32(image, offset_of(image, 2), 31);  // of an activation at most 30
   seal_section(image, 2);
   EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
+}
+
+TEST(FixedPointImage, TakesAShiftBeyondASumsWidthWhereNumbersLeaveTheNetwork) {
+  for (const int section : {20, 24}) {  // cnn_out, lstm
+    for (const std::uint32_t shift : {1U, 31U, 32U, 62U}) {
+      Bytes image = random_model_image<FixedPoint>(31);
+      put_u32(image, offset_of(image, section), shift);
+      seal_section(image, section);
+      EXPECT_EQ(read_fixed(image), ModelStatus::kOk) << section << ' ' << shift;
+    }
+  }
 }
 
 // Verifies TS-IFC-040.
@@ -326,7 +351,8 @@ TEST(ModelHeader, TakesOnlyNamesThatTheReaderAccepts) {
 // Verifies TS-IFC-050.
 TEST(ModelStatus, EveryValueHasItsOwnWords) {
   std::vector<std::string> words;
-  for (int i = 0; i <= static_cast<int>(ModelStatus::kBadValue); ++i) {
+  // One more than there are: it has words too.
+  for (int i = 0; i <= static_cast<int>(ModelStatus::kBadNumerics) + 1; ++i) {
     words.emplace_back(to_string(static_cast<ModelStatus>(i)));
   }
   std::sort(words.begin(), words.end());

@@ -77,9 +77,9 @@ TEST(RecordingTest, RefusesWhatIsNone) {
   bad = good;
   bad[40] ^= 1;
   EXPECT_EQ(status_of(bad), RecordingStatus::kBadCrc);
-  for (const std::uint8_t rays : {0, 129}) {
+  for (const int rays : {0, 129}) {
     bad = good;
-    bad[6] = rays;
+    bad[6] = static_cast<std::uint8_t>(rays);
     renew_crc(bad);
     EXPECT_EQ(status_of(bad), RecordingStatus::kBadRays);
   }
