@@ -47,7 +47,7 @@ struct Housekeeping {
 
   std::uint32_t frames_used = 0;
   std::uint32_t frames_missing = 0;
-  std::uint32_t frames_refused = 0;    // all refusals: the kinds below and bad content
+  std::uint32_t frames_refused = 0;    // all refusals: the kinds below, and frames of the cycle that lost the model
   std::uint32_t frames_duplicate = 0;  // sequence number repeated
   std::uint32_t frames_stale = 0;      // exposure too old, in the future, or not after the previous one
   std::uint32_t frames_bad = 0;        // empty, flat, wrong ray count, field of view or size
@@ -79,7 +79,7 @@ struct Housekeeping {
 
   std::uint32_t inference_us = 0;  // last step of the estimator, by the stopwatch; not part of any digest
   std::uint32_t inference_max_us = 0;
-  std::uint32_t step_us = 0;  // the step before this one, whole
+  std::uint32_t step_us = 0;  // this step, but for the vote before it and the telemetry at its end
   std::uint32_t step_max_us = 0;
   std::array<std::uint32_t, kStepTimeBins> steps_by_time{};
   std::uint32_t deadline_overruns = 0;

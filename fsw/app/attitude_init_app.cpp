@@ -14,13 +14,15 @@ hal::AttitudeReport without_attitude(Validity why) {
   return report;
 }
 
+bool is_within(int count, int most) {
+  return count >= 0 && count <= most;
+}
+
 // The caller's promises about StepInputs: a platform that breaks them has a bug.
 bool keeps_limits(const StepInputs& inputs) {
   const int frames = inputs.frame != nullptr ? inputs.frame_count : 0;
-  return inputs.command_count >= 0 && inputs.command_count <= config::kMaxCommandsPerStep && frames >= 0 &&
-         frames <= config::kMaxFramesPerStep && inputs.frame_wrong_size >= 0 &&
-         inputs.frame_wrong_size <= config::kMaxFramesPerStep &&
-         frames + inputs.frame_wrong_size <= config::kMaxFramesPerStep;
+  return is_within(inputs.command_count, config::kMaxCommandsPerStep) && is_within(frames, config::kMaxFramesPerStep) &&
+         is_within(inputs.frame_wrong_size, config::kMaxFramesPerStep - frames);
 }
 
 bool is_complete(const hal::Platform& platform) {
@@ -112,7 +114,7 @@ void AttitudeInitApp<N>::step(std::int64_t now_ns, const StepInputs& inputs, Ste
     run_commands(inputs, outputs, report);
     if (!time_advances) {
       refuse_frames_of_cycle(inputs, elapsed_ms(previous_ns, now_ns), outputs, report);
-    } else if (state.mode == Mode::kRun && state.has_model()) {
+    } else if (state.mode == Mode::kRun) {
       take_frames(inputs, outputs, report);
     }
     supervise(inputs, outputs, start_ns, report);
@@ -156,11 +158,11 @@ void AttitudeInitApp<N>::report_boot(const Reporter& report) {
     const auto size_bytes = clamp_to_int32(state_->banks.record[bank].size_bytes);
     const gnc::ModelStatus status = state_->boot_status[bank];
     // An empty second bank is no error where the first one is good.
-    const bool needed = bank == 0 || size_bytes > 0;
-    if (status != gnc::ModelStatus::kOk && needed) {
-      report(EventId::kModelRefused, static_cast<std::int32_t>(status), size_bytes, static_cast<std::int32_t>(bank));
-    } else if (status == gnc::ModelStatus::kOk && bank == state_->banks.in_use) {
+    const bool needed = bank == 0 || size_bytes > 0, good = status == gnc::ModelStatus::kOk;
+    if (good && bank == state_->banks.in_use) {
       report(EventId::kModelActivated, size_bytes, static_cast<std::int32_t>(bank));
+    } else if (!good && needed) {
+      report(EventId::kModelRefused, static_cast<std::int32_t>(status), size_bytes, static_cast<std::int32_t>(bank));
     }
   }
   if (state_->mode == Mode::kSafe) report(EventId::kSafeEntered, state_->counters.safe_cause, -1);
@@ -248,7 +250,7 @@ void AttitudeInitApp<N>::respond(Fault fault, const Reporter& report) {
       taken = switch_bank(fault, report);
       break;
     case Response::kSafe:
-      enter(Cause::kFault, fault);
+      go_safe(fault, report);
       break;
   }
   if (response == Response::kIgnore) return;
@@ -257,19 +259,24 @@ void AttitudeInitApp<N>::respond(Fault fault, const Reporter& report) {
          config::kFaultRules[index].persistence_cycles);
 }
 
-// What it came to: the switch, or SAFE where the other bank holds no good model.
+// What it came to: the switch, nothing where there is a good model again, or SAFE where the other bank holds no good model.
 template <class N>
 Response AttitudeInitApp<N>::switch_bank(Fault fault, const Reporter& report) {
+  if (state_->has_model()) return Response::kFlag;  // a command of this cycle has activated it
   const std::uint32_t before = state_->banks.in_use, other = state_->banks.other();
   if (state_->banks.status(other) == BankStatus::kGood && activate(other) == gnc::ModelStatus::kOk) {
     count(state_->counters.bank_switches);
     report(EventId::kBankSwitched, static_cast<std::int32_t>(before), static_cast<std::int32_t>(other));
     return Response::kSwitchBank;
   }
-  if (enter(Cause::kFault, fault)) {
-    report(EventId::kSafeEntered, static_cast<std::int32_t>(Cause::kFault), static_cast<std::int32_t>(fault));
-  }
+  go_safe(fault, report);
   return Response::kSafe;
+}
+
+template <class N>
+void AttitudeInitApp<N>::go_safe(Fault fault, const Reporter& report) {
+  if (!enter(Cause::kFault, fault)) return;
+  report(EventId::kSafeEntered, static_cast<std::int32_t>(Cause::kFault), static_cast<std::int32_t>(fault));
 }
 
 template <class N>

@@ -124,6 +124,7 @@ class AttitudeInitApp final {
   void measure(std::uint64_t start_ns, const Reporter& report);
   void respond(Fault fault, const Reporter& report);
   Response switch_bank(Fault fault, const Reporter& report);
+  void go_safe(Fault fault, const Reporter& report);
   void report_telemetry(StepOutputs& outputs);
   std::uint32_t microseconds_since(std::uint64_t start_ns) const;
 

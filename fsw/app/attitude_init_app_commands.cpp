@@ -62,7 +62,7 @@ bool AttitudeInitApp<N>::carry_out(const Telecommand& command, StepOutputs& outp
   return false;
 }
 
-// What is no count stays: the command counter, why the mode is SAFE.
+// What is no count stays: the command counter, why the mode is SAFE. Events that still wait will be told, hence count anew.
 template <class N>
 void AttitudeInitApp<N>::reset_counters() {
   const hal::Housekeeping before = state_->counters;
@@ -70,6 +70,7 @@ void AttitudeInitApp<N>::reset_counters() {
   state_->counters.command_counter = before.command_counter;
   state_->counters.safe_cause = before.safe_cause;
   state_->counters.safe_fault = before.safe_fault;
+  state_->counters.events = events_.waiting();
 }
 
 template <class N>

@@ -55,9 +55,10 @@ void AttitudeInitApp<N>::take_frames(const StepInputs& inputs, StepOutputs& outp
   for (int i = 0; i < frames; ++i) take_frame(inputs.frame[i], outputs, report);
 }
 
+// There is no model in the cycle that has lost it; the response to that comes after the frames.
 template <class N>
 void AttitudeInitApp<N>::take_frame(const gnc::RangeImage& frame, StepOutputs& outputs, const Reporter& report) {
-  if (passes_gate(frame, report)) {
+  if (state_->has_model() && passes_gate(frame, report)) {
     use_frame(frame, outputs, report);
   } else {
     count(state_->counters.frames_refused);
@@ -140,7 +141,7 @@ void AttitudeInitApp<N>::report_attitude(const gnc::RangeImage& frame, StepOutpu
     // The estimator promises it for any frame and any model; memory that has been hit may break the promise.
     if (!is_sound(estimate_)) {
       state.faults_seen |= bit_of(Fault::kAttitudeUnsound);
-      outputs.attitude.validity = static_cast<std::uint8_t>(Validity::kFrameRefused);
+      state.attitude_check.forget();  // the next attitude is not one period after the last one known
       return;
     }
     const bool large = estimate_.predicted_error_urad > state.limit(Limit::kPredictedError_urad);

@@ -33,8 +33,7 @@ FaultMonitor::Change FaultMonitor::observe(Fault fault, bool present) {
 }
 
 Response FaultMonitor::response_to(Fault fault) const {
-  const Response response = rule_of(fault).response;
-  return (disabled_ & bit_of(fault)) != 0 && response > Response::kFlag ? Response::kFlag : response;
+  return (disabled_ & bit_of(fault)) != 0 ? Response::kFlag : rule_of(fault).response;
 }
 
 bool FaultMonitor::enable(std::uint8_t fault, bool enabled) {

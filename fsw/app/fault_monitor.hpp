@@ -21,7 +21,7 @@ class FaultMonitor {
   // kOver: it has persisted and is gone.
   Change observe(Fault fault, bool present);
 
-  // What to do about a fault that persists: by its rule, or at most to tell it.
+  // What to do about a fault that persists: by its rule, or, disabled, to tell it.
   Response response_to(Fault fault) const;
   // False: there is no such fault, or its response cannot be disabled.
   [[nodiscard]] bool enable(std::uint8_t fault, bool enabled);

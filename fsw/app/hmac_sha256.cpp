@@ -55,7 +55,8 @@ Sha256Digest Sha256::digest() {
   const std::uint64_t size_bits = 8 * size_bytes_;
   constexpr std::uint8_t kEnd = 0x80, kZero = 0;
   add(&kEnd, 1);
-  for (std::size_t i = 0; i < kBlock && size_bytes_ % kBlock != kBlock - kLengthField; ++i) add(&kZero, 1);
+  const std::size_t zeros = (2 * kBlock - kLengthField - size_bytes_ % kBlock) % kBlock;
+  for (std::size_t i = 0; i < zeros; ++i) add(&kZero, 1);
   for (int shift = 56; shift >= 0; shift -= 8) {
     const auto byte = static_cast<std::uint8_t>(size_bits >> shift);
     add(&byte, 1);

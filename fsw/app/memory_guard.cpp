@@ -50,7 +50,7 @@ void MemoryGuard<N>::check_state(Estimator& estimator, AppState& state, const Re
 template <class N>
 void MemoryGuard<N>::check_constants(Estimator& estimator, AppState& state, const Reporter& report) {
   if (estimator.constants_crc32() == state.constants_crc32) return;
-  for (std::uint32_t i = 0; i < ModelBanks<N>::kMaxBlocks && state.has_model(); ++i) check_block(state, report);
+  for (std::uint32_t i = 0; i < ModelBanks<N>::kBlocks && state.has_model(); ++i) check_block(state, report);
   if (!state.has_model()) return;
   estimator.reload(bank_in_use(state).data);
   if (estimator.constants_crc32() == state.constants_crc32) {
@@ -85,10 +85,6 @@ void MemoryGuard<N>::check_block(AppState& state, const Reporter& report) {
     case BlockCheck::Result::kRepaired:
       count(state.counters.model_blocks_repaired);
       report(EventId::kModelRepaired, bank, block);
-      break;
-    case BlockCheck::Result::kTableMended:
-      count(state.counters.model_tables_rebuilt);
-      report(EventId::kModelTableRebuilt, bank);
       break;
     case BlockCheck::Result::kLost:
       count(state.counters.model_blocks_lost);

@@ -5,7 +5,7 @@
 //   state of LSTM and track                CRC of the last cycle's     copy of the last cycle's; if that is hit too, reset
 //   biases, shifts, what load() has set    CRC at activation           model image
 //   weights, in the bank in use            checksum of each block      second copy in the other bank, if it holds one
-//   checksums of the blocks                CRC over the table          second copy; without one, the image's own CRCs
+//   checksums of the blocks                CRC over the table          image, if its own CRCs find it whole
 //   activations                            written anew every frame
 #pragma once
 

@@ -9,11 +9,9 @@ namespace {
 
 constexpr std::uint32_t kBlockBytes = config::kModelBlockBytes;
 
-std::uint32_t blocks_of(const ModelBankRecord& record) {
-  return (record.size_bytes + kBlockBytes - 1) / kBlockBytes;
-}
-std::uint32_t bytes_of_block(const ModelBankRecord& record, std::uint32_t block) {
-  const std::uint32_t rest = record.size_bytes - block * kBlockBytes;
+template <class N>
+std::uint32_t bytes_of_block(std::uint32_t block) {
+  const std::uint32_t rest = static_cast<std::uint32_t>(gnc::kModelImageSize<N>) - block * kBlockBytes;
   return rest < kBlockBytes ? rest : kBlockBytes;
 }
 
@@ -46,10 +44,8 @@ std::uint32_t ModelBanks<N>::table_crc32() const {
 template <class N>
 void ModelBanks<N>::make_table(hal::ModelStore& store, ModelBanksState& state) {
   const std::uint8_t* const data = store.bank(static_cast<int>(state.in_use)).data;
-  const ModelBankRecord& record = state.record[state.in_use];
-  block_crc32_.fill(0);
-  for (std::uint32_t block = 0; block < blocks_of(record) && block < kMaxBlocks; ++block) {
-    block_crc32_[block] = gnc::crc32(data + block * kBlockBytes, bytes_of_block(record, block));
+  for (std::uint32_t block = 0; block < kBlocks; ++block) {
+    block_crc32_[block] = gnc::crc32(data + block * kBlockBytes, bytes_of_block<N>(block));
   }
   state.next_block = 0;
   state.table_crc32 = table_crc32();
@@ -63,33 +59,25 @@ bool ModelBanks<N>::table_is_sound(const ModelBanksState& state) const {
 template <class N>
 BlockCheck ModelBanks<N>::check_block(hal::ModelStore& store, ModelBanksState& state) {
   using Result = BlockCheck::Result;
-  const ModelBankRecord& record = state.record[state.in_use];
   const std::uint32_t block = state.next_block;
-  state.next_block = block + 1 < blocks_of(record) ? block + 1 : 0;
+  state.next_block = block + 1 < kBlocks ? block + 1 : 0;
 
   const hal::ModelBank used = store.bank(static_cast<int>(state.in_use));
   const hal::ModelBank copy = store.bank(static_cast<int>(state.other()));
-  const std::uint32_t offset = block * kBlockBytes, bytes = bytes_of_block(record, block);
+  const std::uint32_t offset = block * kBlockBytes, bytes = bytes_of_block<N>(block);
   const std::uint32_t expected = block_crc32_[block];
-  const std::uint32_t crc_used = gnc::crc32(used.data + offset, bytes);
-  const bool has_copy = state.has_second_copy();
-  const std::uint32_t crc_copy = has_copy ? gnc::crc32(copy.data + offset, bytes) : ~expected;
+  const bool good = gnc::crc32(used.data + offset, bytes) == expected;
+  if (!state.has_second_copy()) return {good ? Result::kGood : Result::kLost, state.in_use, block};
+  const bool copy_good = gnc::crc32(copy.data + offset, bytes) == expected;
 
-  if (crc_used == expected) {
-    if (!has_copy || crc_copy == expected || copy.writable == nullptr) return {Result::kGood, state.in_use, block};
+  if (good) {
+    if (copy_good || copy.writable == nullptr) return {Result::kGood, state.in_use, block};
     std::memcpy(copy.writable + offset, used.data + offset, bytes);
     return {Result::kRepaired, state.other(), block};
   }
-  if (crc_copy == expected && used.writable != nullptr) {
-    std::memcpy(used.writable + offset, copy.data + offset, bytes);
-    return {Result::kRepaired, state.in_use, block};
-  }
-  if (has_copy && crc_copy == crc_used) {
-    block_crc32_[block] = crc_used;
-    state.table_crc32 = table_crc32();
-    return {Result::kTableMended, state.in_use, block};
-  }
-  return {Result::kLost, state.in_use, block};
+  if (!copy_good || used.writable == nullptr) return {Result::kLost, state.in_use, block};
+  std::memcpy(used.writable + offset, copy.data + offset, bytes);
+  return {Result::kRepaired, state.in_use, block};
 }
 
 template class ModelBanks<gnc::FixedPoint>;

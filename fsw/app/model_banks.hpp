@@ -2,7 +2,7 @@
 //
 // The image in use is checked block by block, some blocks a cycle, against a table of checksums. Where the other bank
 // holds the same image it is the second copy: of a block that differs, the copy that agrees with the table mends the other
-// one; and where both agree with each other, the table is mended.
+// one.
 #pragma once
 
 #include <array>
@@ -46,9 +46,8 @@ struct ModelBanksState {
 struct BlockCheck {
   enum class Result : std::uint8_t {
     kGood,
-    kRepaired,     // `bank` had been hit
-    kTableMended,  // both banks agree
-    kLost,         // `bank`, the one in use, has been hit, and there is no good copy or no way to write
+    kRepaired,  // `bank` had been hit
+    kLost,      // `bank`, the one in use, has been hit, and there is no good copy or no way to write
   };
   Result result = Result::kGood;
   std::uint32_t bank = 0;
@@ -58,7 +57,8 @@ struct BlockCheck {
 template <class N>
 class ModelBanks {
  public:
-  static constexpr std::uint32_t kMaxBlocks =
+  // Whatever passes the checks has the size of the network's image.
+  static constexpr std::uint32_t kBlocks =
       (gnc::kModelImageSize<N> + config::kModelBlockBytes - 1) / config::kModelBlockBytes;
 
   // A segment for the bank that is not in use. Segments come in order; one at offset 0 begins a new image. False: out of
@@ -75,7 +75,7 @@ class ModelBanks {
  private:
   std::uint32_t table_crc32() const;
 
-  std::array<std::uint32_t, kMaxBlocks> block_crc32_{};
+  std::array<std::uint32_t, kBlocks> block_crc32_{};
 };
 
 }  // namespace tumblesight::fsw

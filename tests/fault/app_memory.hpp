@@ -31,6 +31,8 @@ struct AppMemory {
   // The copy of the estimator's state and the table of the blocks' checksums.
   static Region guard(App& app) { return region_of(app.guard_); }
   static Estimator& estimator(App& app) { return app.estimator_; }
+  // Of the last frame, between estimator and report.
+  static gnc::AttitudeEstimate& estimate(App& app) { return app.estimate_; }
   // Biases, shifts and where the weights lie.
   static Region constants(App& app) { return region_of(app.estimator_.network().weights()); }
   // Whatever a frame writes anew.

@@ -73,6 +73,26 @@ TEST_F(Boot, NoSecondBankIsNoError) {
   EXPECT_EQ(events(EventId::kModelRefused), 0);
 }
 
+TEST_F(Boot, EmptyFirstBankIsToldEvenThoughTheSecondOneIsGood) {
+  store.banks[0] = {};
+  init(store);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(events(EventId::kModelRefused), 1);
+  EXPECT_EQ(argument(EventId::kModelRefused, 2), 0);
+  EXPECT_EQ(argument(EventId::kModelActivated, 1), 1);
+}
+
+TEST_F(Boot, FirstCycleMayHaveAnyTime) {
+  for (const std::int64_t first_ns : {std::int64_t{0}, std::int64_t{-1'000'000'000'000}}) {
+    init(store);
+    now_ns = first_ns - config::kFramePeriod_ns;
+    step_good();
+    EXPECT_EQ(validity(), Validity::kValid) << first_ns;
+    EXPECT_EQ(events(EventId::kCycleTimeNotAdvancing), 0) << first_ns;
+  }
+}
+
 TEST_F(Boot, WithoutAnyModelTheModeIsSafeAndSaysWhy) {
   spoil(0);
   spoil(1);
@@ -81,6 +101,7 @@ TEST_F(Boot, WithoutAnyModelTheModeIsSafeAndSaysWhy) {
   step_good();
   EXPECT_EQ(validity(), Validity::kStandby);
   EXPECT_EQ(events(EventId::kModelRefused), 2);
+  EXPECT_EQ(events(EventId::kModelActivated), 0);
   EXPECT_EQ(argument(EventId::kSafeEntered, 0), static_cast<int>(Cause::kNoModel));
   EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kNoModel));
   EXPECT_EQ(event(EventId::kModelRefused)->severity, static_cast<int>(Severity::kError));

@@ -125,6 +125,22 @@ TEST_F(Commands, RunInRunHasNoEffect) {
   EXPECT_EQ(out->housekeeping.estimator_resets, 1U) << "only the one of init()";
 }
 
+// Verifies TS-MODE-040, TS-MODE-050.
+TEST_F(Commands, OnlyEnteringRunStartsAnewAndOnlyEnteringSafeSaysWhy) {
+  step_good();
+  const std::uint32_t crc = estimator_crc();
+  step_commands({set_mode(Mode::kStandby), set_mode(Mode::kStandby)});
+  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kNone));
+  step_with_bug();
+  step_commands({set_mode(Mode::kSafe)});
+  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kAssertion)) << "what led there first";
+  step_commands({set_mode(Mode::kStandby)});
+  EXPECT_EQ(out->housekeeping.estimator_resets, 1U) << "only the one of init()";
+  EXPECT_EQ(estimator_crc(), crc);
+  step_commands({set_mode(Mode::kRun)});
+  EXPECT_EQ(out->housekeeping.estimator_resets, 2U);
+}
+
 // Verifies TS-CMD-120.
 TEST_F(Commands, BootAndUnknownModesCannotBeCommanded) {
   for (const std::uint8_t mode : {std::uint8_t{0}, std::uint8_t{4}, std::uint8_t{255}}) {
@@ -211,6 +227,18 @@ TEST_F(Commands, ResetCountersZeroesAllButItselfAndTheCounterThatStopsReplays) {
   EXPECT_EQ(refused_by(CommandRefusal::kReplayed), 1U);
 }
 
+// Verifies TS-TLM-040.
+TEST_F(Commands, EventsThatWaitWhenTheCountersAreResetAreCountedAnew) {
+  step_good();
+  StepInputs inputs;
+  inputs.command_count = config::kMaxCommandsPerStep;
+  for (hal::CommandPacket& one : inputs.commands) one = command(FunctionCode::kNoop);
+  inputs.commands.back() = command(FunctionCode::kResetCounters);
+  step(inputs);
+  EXPECT_GE(out->event_count, config::kMaxCommandsPerStep);
+  EXPECT_EQ(out->housekeeping.events, static_cast<std::uint32_t>(out->event_count)) << "all of them are told only now";
+}
+
 // Verifies TS-CMD-040.
 TEST_F(Commands, CommandsAreCarriedOutInOrderBeforeTheFrame) {
   step_good();
@@ -255,6 +283,27 @@ TEST_F(Commands, ResponsesAreDisabledAndEnabledButForThoseThatMustNot) {
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
   step_commands({command(FunctionCode::kEnableResponse, {kFaults})});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
+}
+
+TEST_F(Commands, InputsBeyondAnyLimitOfAStepAreABugOfTheCaller) {
+  struct Row {
+    int commands, frames, wrong_size;
+    bool bug;
+  };
+  const std::array<gnc::RangeImage, config::kMaxFramesPerStep> frames{next_frame(), next_frame()};
+  for (const Row& row : {Row{8, 2, 0, false}, Row{0, 0, 2, false}, Row{0, 1, 1, false}, Row{-1, 0, 0, true},
+                         Row{9, 0, 0, true}, Row{0, -1, 0, true}, Row{0, 3, 0, true}, Row{0, 0, -1, true},
+                         Row{0, 0, 3, true}, Row{0, 2, 1, true}}) {
+    StepInputs inputs;
+    inputs.command_count = row.commands;
+    inputs.frame = frames.data();
+    inputs.frame_count = row.frames;
+    inputs.frame_wrong_size = row.wrong_size;
+    init_with_model();
+    step(inputs);
+    EXPECT_EQ(events(EventId::kAssertion), row.bug ? 1 : 0) << row.commands << ' ' << row.frames << ' ' << row.wrong_size;
+    EXPECT_EQ(out->duties_done, !row.bug);
+  }
 }
 
 // Verifies TS-MODE-060.

@@ -39,7 +39,7 @@ class MemoryGuardTest : public AppFixture {
   }
   // Until every block has been checked once.
   void steps_of_a_pass() {
-    constexpr std::uint32_t kBlocks = ModelBanks<gnc::FixedPoint>::kMaxBlocks;
+    constexpr std::uint32_t kBlocks = ModelBanks<gnc::FixedPoint>::kBlocks;
     for (std::uint32_t block = 0; block <= kBlocks; block += AppMemory::state(*app).limit(Limit::kScrubBlocks)) step_good();
   }
   // A bit that means something.
@@ -49,6 +49,9 @@ class MemoryGuardTest : public AppFixture {
     for (std::size_t bit = 8 * 300; app->estimator().constants_crc32() == before; ++bit) region.flip(bit);
   }
   std::vector<std::uint8_t>& bank(std::size_t index) { return store.banks[index].memory; }
+  void hit_block(std::size_t index, std::size_t block) { bank(index)[block * config::kModelBlockBytes + 9] ^= 1; }
+  // Found in the very next cycle.
+  void hit_table() { AppMemory::guard(*app).flip(8 * 40); }
 };
 
 // Verifies TS-FDIR-010.
@@ -226,6 +229,117 @@ TEST_F(MemoryGuardTest, ConstantsThatNoBankHasAnyMoreGoSafe) {
   for (std::size_t at = 0; at < bank(0).size(); at += config::kModelBlockBytes) bank(0)[at + 64] ^= 1;
   step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, BankInRomThatIsHitMakesWayForItsSecondCopyAndIsNoneItself) {
+  for (const std::uint32_t used : {0U, 1U}) {
+    store.fill(test_model_image());
+    store.banks[used].writable = false;
+    init(store);
+    command_counter = 0;
+    if (used == 1) {
+      std::vector<std::uint8_t> arguments;
+      append_u32(arguments, gnc::model_image_crc32(test_model_image().data()));
+      step_commands({set_mode(Mode::kStandby), command(FunctionCode::kModelActivate, arguments), set_mode(Mode::kRun)});
+      ASSERT_EQ(out->housekeeping.bank_in_use, 1U);
+      ASSERT_EQ(out->housekeeping.second_copy, 1U);
+    }
+    hit_block(used, 20);
+    steps_of_a_pass();
+    EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+    EXPECT_EQ(out->housekeeping.model_blocks_repaired, 0U);
+    EXPECT_EQ(out->housekeeping.bank_in_use, 1 - used);
+    EXPECT_EQ(out->housekeeping.second_copy, 0U) << "the same CRC in its header, but no good image";
+    EXPECT_EQ(app->mode(), Mode::kRun);
+  }
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, SameHitInBothBanksIsNotTakenForTheTruth) {
+  hit_block(0, 100);
+  hit_block(1, 100);
+  steps_of_a_pass();
+  EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+  EXPECT_EQ(out->housekeeping.model_tables_rebuilt, 0U);
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, ScrubbingEndsWithTheFirstBlockThatIsLost) {
+  store.banks[1] = {};
+  init(store);
+  step_good();
+  for (const std::size_t block : {15U, 16U, 17U}) hit_block(0, block);  // all of the next cycle's share
+  step_good();
+  EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+  EXPECT_EQ(argument(EventId::kModelBlockLost, 1), 15);
+}
+
+// Verifies TS-FDIR-030, TS-FDIR-045.
+TEST_F(MemoryGuardTest, ConstantsAreNotReloadedFromAnImageWithALostBlock) {
+  store.banks[1] = {};
+  init(store);
+  step_good();
+  flip_a_constant();
+  for (const std::size_t block : {100U, 101U}) hit_block(0, block);  // not of the next cycle's share
+  step_good();
+  EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+  EXPECT_EQ(argument(EventId::kModelBlockLost, 1), 100);
+  EXPECT_EQ(out->housekeeping.constants_reloaded, 0U);
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+}
+
+// Verifies TS-FDIR-045, TS-FDIR-090.
+TEST_F(MemoryGuardTest, FrameOfTheCycleThatLosesTheModelIsRefusedAndCounted) {
+  bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  init(store);
+  step_good();
+  hit_block(0, 200);
+  hit_table();
+  step_good();
+  EXPECT_EQ(out->housekeeping.bank_switches, 1U);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+  EXPECT_EQ(validity(), Validity::kFrameRefused);
+  EXPECT_EQ(out->housekeeping.frames_refused, 1U);
+  EXPECT_EQ(out->housekeeping.frames_used, 1U);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, ModelActivatedInTheCycleThatLosesTheOtherStays) {
+  const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  bank(1) = other;
+  init(store);
+  step_commands({set_mode(Mode::kStandby)});
+  hit_block(0, 200);
+  hit_table();
+  std::vector<std::uint8_t> arguments;
+  append_u32(arguments, gnc::model_image_crc32(other.data()));
+  step_commands({command(FunctionCode::kModelActivate, arguments), set_mode(Mode::kRun)});
+  EXPECT_EQ(out->housekeeping.bank_in_use, 1U);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+  EXPECT_EQ(events(EventId::kSafeEntered), 0);
+  EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
+}
+
+// Verifies TS-FDIR-045, TS-MDL-020.
+TEST_F(MemoryGuardTest, UploadGoesOnWhenTheModelInUseIsLost) {
+  const auto load = [this](std::uint32_t offset) {
+    std::vector<std::uint8_t> arguments;
+    append_u32(arguments, offset);
+    arguments.insert(arguments.end(), {1, 2, 3, 4});
+    step_commands({command(FunctionCode::kModelLoad, arguments)});
+  };
+  load(0);
+  hit_block(0, 200);
+  hit_table();
+  step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kLoading));
+  load(4);
+  EXPECT_EQ(out->housekeeping.model_bytes_loaded, 8U);
 }
 
 // Verifies TS-FDIR-030.

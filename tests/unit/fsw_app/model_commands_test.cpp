@@ -61,6 +61,18 @@ class ModelCommands : public AppFixture {
   const std::vector<std::uint8_t>& other;
 };
 
+// A bank of which a platform says how large it would be, were there one.
+class HollowStore final : public hal::ModelStore {
+ public:
+  explicit HollowStore(hal::ModelStore& store) : store_(store) {}
+  hal::ModelBank bank(int index) override {
+    return index == 0 ? store_.bank(0) : hal::ModelBank{nullptr, nullptr, 0, 4096};
+  }
+
+ private:
+  hal::ModelStore& store_;
+};
+
 TEST_F(ModelCommands, NewModelIsLoadedInFlightValidatedActivatedAndRun) {
   load_all();
   EXPECT_EQ(validity(), Validity::kValid) << "the old one goes on while the new one comes in";
@@ -101,6 +113,28 @@ TEST_F(ModelCommands, SegmentThatWouldLeaveTheBankIsRefused) {
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
 }
 
+TEST_F(ModelCommands, SegmentLargerThanTheBankIsRefused) {
+  store.banks[1] = {std::vector<std::uint8_t>(2), 0, true};
+  init(store);
+  step_commands({segment(0, 3)});
+  EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
+  step_commands({segment(0, 2)});
+  EXPECT_EQ(events(EventId::kCommandAccepted), 1);
+}
+
+TEST_F(ModelCommands, ValidatedImageIsNotContinuedNorValidatedAgain) {
+  store.banks[1].memory.resize(other.size() + 10);
+  load_all();
+  step_commands({set_mode(Mode::kStandby), validate(), validate()});
+  EXPECT_EQ(events(EventId::kCommandAccepted), 2);
+  EXPECT_EQ(events(EventId::kCommandNoModel), 1);
+  step_commands({command(FunctionCode::kModelLoad, {0, static_cast<std::uint8_t>(other.size() >> 16),
+                                                    static_cast<std::uint8_t>(other.size() >> 8),
+                                                    static_cast<std::uint8_t>(other.size()), 1})});
+  EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
+  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kGood));
+}
+
 TEST_F(ModelCommands, BankThatCannotBeWrittenRefusesSegments) {
   store.banks[1].writable = false;
   init(store);
@@ -117,7 +151,12 @@ TEST_F(ModelCommands, DamagedWrongOrUnfinishedImagesAreNotValidated) {
   EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "another size";
   step_commands({validate(static_cast<std::uint32_t>(other.size()), 1)});
   EXPECT_EQ(argument(EventId::kCommandNoModel, 2), static_cast<int>(gnc::ModelStatus::kBadHeaderCrc));
+  step_commands({activate(0)});
+  EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "an image that is coming in has no CRC yet";
+  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kLoading));
   store.banks[1].memory[500'000] ^= 4;
+  step_commands({validate(static_cast<std::uint32_t>(other.size()), 1)});
+  EXPECT_EQ(argument(EventId::kCommandNoModel, 2), static_cast<int>(gnc::ModelStatus::kBadSectionCrc)) << "the image first";
   step_commands({validate()});
   EXPECT_EQ(argument(EventId::kModelRefused, 0), static_cast<int>(gnc::ModelStatus::kBadSectionCrc));
   EXPECT_EQ(argument(EventId::kModelRefused, 2), 1);
@@ -176,6 +215,11 @@ TEST_F(ModelCommands, DumpBeyondTheBankOrASecondOneInACycleIsRefused) {
   init(store);
   step_commands({dump(1, 0, 4)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
+  HollowStore hollow(store);
+  app->init({&stopwatch, &hollow, &kTestKey}, kTestTarget, protections);
+  step_commands({dump(1, 0, 4), dump(0, 0, 4)});
+  EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
+  EXPECT_EQ(events(EventId::kCommandAccepted), 1);
 }
 
 }  // namespace

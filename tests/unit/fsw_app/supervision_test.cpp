@@ -1,4 +1,7 @@
 // Faults of the world: outages, slips, overruns, doubtful attitudes, and the responses to them.
+#include <functional>
+#include <utility>
+
 #include "tests/fault/app_memory.hpp"
 #include "tests/unit/fsw_app/app_fixture.hpp"
 
@@ -19,7 +22,8 @@ class Supervision : public AppFixture {
 
 // Verifies TS-FDIR-110.
 TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndOverWithAGoodFrame) {
-  step_good();
+  for (int cycle = 1; cycle <= 4; ++cycle) step_good();
+  EXPECT_FALSE(persists(Fault::kOutage));
   for (int cycle = 1; cycle <= 3; ++cycle) {
     step(StepInputs{});
     EXPECT_FALSE(persists(Fault::kOutage)) << cycle;
@@ -68,6 +72,7 @@ TEST_F(Supervision, StepsBeyondTheirBudgetAreCountedToldAndFlaggedWhenTheyGoOn) 
   EXPECT_EQ(events(EventId::kDeadlineOverrun), 1);
   step_good();
   EXPECT_TRUE(persists(Fault::kDeadline));
+  EXPECT_EQ(argument(EventId::kTimingFaultPersists, 0), static_cast<int>(Fault::kDeadline));
   EXPECT_EQ(out->housekeeping.deadline_overruns, 3U) << "the limit counted in its own cycle too";
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
@@ -142,6 +147,7 @@ TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillGiven) {
     EXPECT_EQ(validity(), Validity::kDoubtful);
     EXPECT_GT(out->attitude.sequence_number, 0U);
     EXPECT_EQ(persists(Fault::kErrorLarge), cycle == 10);
+    EXPECT_FALSE(persists(Fault::kOutage)) << "there is an attitude";
   }
   EXPECT_EQ(out->housekeeping.attitudes_doubtful, 10U);
   set_limit(Limit::kPredictedError_urad, 3'141'593);
@@ -161,6 +167,84 @@ TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceWhenTheyGoOn) {
   EXPECT_EQ(argument(EventId::kEstimatorResetByFault, 0), static_cast<int>(Fault::kAttitudeJump));
   EXPECT_GE(doubtful, 3);
   EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Radiation strikes between the estimator and the check of what it gave: at the look at the stopwatch that lies there.
+class UnsoundAttitudes : public DoubtfulAttitudes {
+ protected:
+  class Strike final : public hal::Stopwatch {
+   public:
+    std::uint64_t now_ns() override {
+      if (++looks == at_look) strike();
+      return 0;
+    }
+    std::function<void()> strike;
+    int at_look = 0, looks = 0;
+  };
+  static constexpr int kBehindFirstFrame = 3, kBehindSecondFrame = 5;  // one look begins the step, two are of a frame
+
+  UnsoundAttitudes() { app->init({&strike, &store, &kTestKey}, kTestTarget, protections); }
+  gnc::AttitudeEstimate& estimate() { return AppMemory::estimate(*app); }
+  void strike_next_step(int at_look, std::function<void()> what) {
+    strike.strike = std::move(what);
+    strike.at_look = at_look;
+    strike.looks = 0;
+  }
+  Strike strike;
+};
+
+// Verifies TS-FDIR-090.
+TEST_F(UnsoundAttitudes, NoneLeavesWhicheverPartOfItWasHit) {
+  const std::function<void()> hits[] = {[this] { estimate().q_lrf_trf = {0, 0, 0, 0}; },
+                                        [this] { estimate().q_lrf_trf_single_frame = {INT32_MAX, 0, 0, 0}; },
+                                        [this] { estimate().predicted_error_urad = gnc::kPi_urad + 1; },
+                                        [this] { estimate().predicted_error_single_frame_urad = UINT32_MAX; }};
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  for (const std::function<void()>& hit : hits) {
+    strike_next_step(kBehindFirstFrame, hit);
+    step_scene(1);
+    EXPECT_EQ(validity(), Validity::kFrameRefused);
+    EXPECT_TRUE(persists(Fault::kAttitudeUnsound));
+    EXPECT_EQ(argument(EventId::kEstimatorResetByFault, 0), static_cast<int>(Fault::kAttitudeUnsound));
+    step_scene(1);
+    EXPECT_EQ(validity(), Validity::kValid);
+    EXPECT_EQ(out->attitude.frames_since_reset, 1U);
+  }
+}
+
+// Verifies TS-FDIR-090.
+TEST_F(UnsoundAttitudes, SecondOneLeavesTheReportOfTheFirst) {
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  strike_next_step(kBehindSecondFrame, [this] { estimate().q_lrf_trf = {0, 0, 0, 0}; });
+  std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
+  frames[0].exposure_time_ns -= 1'000'000;
+  frames[1].sequence_number += 1;
+  StepInputs inputs;
+  inputs.frame = frames.data();
+  inputs.frame_count = 2;
+  step(inputs);
+  EXPECT_TRUE(persists(Fault::kAttitudeUnsound));
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.sequence_number, frames[0].sequence_number);
+}
+
+// Verifies TS-FDIR-070.
+TEST_F(UnsoundAttitudes, NoneIsLeftOutOfWhatTheNextAreComparedWith) {
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  step_commands({command(FunctionCode::kDisableResponse, {static_cast<std::uint8_t>(Fault::kAttitudeUnsound)})});
+  set_limit(Limit::kAttitudeJump_urad, 87'266);
+  int jumps = 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    step_scene(1000 + 7 * i);
+    jumps += validity() == Validity::kDoubtful ? 1 : 0;
+  }
+  ASSERT_EQ(jumps, 1) << "the test needs a network that jumps";
+  strike_next_step(kBehindFirstFrame, [this] { estimate().q_lrf_trf = {0, 0, 0, 0}; });
+  step_scene(2000);
+  for (unsigned i = 0; i < 2; ++i) {
+    step_scene(3000 + 7 * i);
+    EXPECT_EQ(validity(), Validity::kValid) << "there are not yet two before it, one period apart";
+  }
 }
 
 // Verifies TS-FDIR-060.
