@@ -26,7 +26,7 @@ gnc::QuaternionQ30 product(const gnc::QuaternionQ30& a, const gnc::QuaternionQ30
 
 bool is_unit(const gnc::QuaternionQ30& q) {
   std::int64_t square = 0;  // 28 bits behind the point
-  for (const std::int32_t part : q) square += std::int64_t{part} * part >> 32;
+  for (const std::int32_t part : q) square += (static_cast<std::int64_t>(part) * part) >> 32;
   constexpr std::int64_t kOne28 = std::int64_t{1} << 28;
   constexpr std::int64_t kTolerance = kOne28 / 500'000;
   return square > kOne28 - kTolerance && square < kOne28 + kTolerance;

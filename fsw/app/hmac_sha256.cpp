@@ -35,7 +35,14 @@ void Sha256::take_block() {
     const std::uint32_t word = w[t % 16];
     const std::uint32_t t1 = h + (rotated(e, 6) ^ rotated(e, 11) ^ rotated(e, 25)) + ((e & f) ^ (~e & g)) + kRound[t] + word;
     const std::uint32_t t2 = (rotated(a, 2) ^ rotated(a, 13) ^ rotated(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
-    h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + t2;
+    h = g;
+    g = f;
+    f = e;
+    e = d + t1;
+    d = c;
+    c = b;
+    b = a;
+    a = t1 + t2;
     const std::uint32_t w1 = w[(t + 1) % 16], w14 = w[(t + 14) % 16];
     w[t % 16] = word + (rotated(w1, 7) ^ rotated(w1, 18) ^ (w1 >> 3)) + w[(t + 9) % 16] +
                 (rotated(w14, 17) ^ rotated(w14, 19) ^ (w14 >> 10));

@@ -40,7 +40,7 @@ class Voted {
 
  private:
   std::uint32_t word(std::size_t copy, std::size_t at) const {
-    std::uint32_t value;
+    std::uint32_t value = 0;
     std::memcpy(&value, reinterpret_cast<const std::uint8_t*>(&copies_[copy]) + at, 4);
     return value;
   }

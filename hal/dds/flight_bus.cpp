@@ -91,7 +91,7 @@ bool FlightBus::carry_out() {
   return written;
 }
 
-void FlightBus::flush() {
+void FlightBus::flush() const {
   for (const dds_entity_t writer : {endpoints_.attitudes.entity(), endpoints_.telemetries.entity(),
                                     endpoints_.events.entity(), endpoints_.dumps.entity(),
                                     endpoints_.steps_done.entity()}) {

@@ -35,7 +35,7 @@ class FlightBus {
   // Publishes what the flight task has put out. False if DDS refused a sample.
   [[nodiscard]] bool carry_out();
   // Until the simulator has all of it.
-  void flush();
+  void flush() const;
 
   // Why the run cannot go on: a stop request, silence, the simulator gone.
   [[nodiscard]] bool must_end(FlightEnd& end) const;

@@ -23,7 +23,7 @@ dds_return_t FlightEndpoints::open(dds_entity_t participant) {
   return result;
 }
 
-dds_return_t FlightEndpoints::wake_on(dds_entity_t reader) {
+dds_return_t FlightEndpoints::wake_on(dds_entity_t reader) const {
   const dds_entity_t condition = dds_create_readcondition(reader, DDS_ANY_STATE);
   return condition < 0 ? condition : dds_waitset_attach(waitset_, condition, 0);
 }
@@ -34,7 +34,7 @@ bool FlightEndpoints::all_matched() const {
          events.matched() > 0 && dumps.matched() > 0 && steps_done.matched() > 0;
 }
 
-void FlightEndpoints::wait_for_data(std::int64_t timeout_ns) {
+void FlightEndpoints::wait_for_data(std::int64_t timeout_ns) const {
   dds_attach_t trigger = 0;
   (void)dds_waitset_wait(waitset_, &trigger, 1, timeout_ns);
 }

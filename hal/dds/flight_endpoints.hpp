@@ -26,10 +26,10 @@ struct FlightEndpoints {
   // The time master has left, or its lease has run out.
   bool simulator_gone() const { return steps.matched() == 0; }
   // Until a frame, command or step has arrived that has not been taken, or the time is over.
-  void wait_for_data(std::int64_t timeout_ns);
+  void wait_for_data(std::int64_t timeout_ns) const;
 
  private:
-  [[nodiscard]] dds_return_t wake_on(dds_entity_t reader);
+  [[nodiscard]] dds_return_t wake_on(dds_entity_t reader) const;
 
   dds_entity_t waitset_ = 0;
 };

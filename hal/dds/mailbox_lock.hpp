@@ -14,7 +14,11 @@ class MailboxMutex {
 
  private:
   friend class MailboxLock;
+// glibc's macro says 0 for a pointer.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wzero-as-null-pointer-constant"
   pthread_mutex_t mutex_ = PTHREAD_MUTEX_INITIALIZER;
+#pragma GCC diagnostic pop
 };
 
 class MailboxLock {

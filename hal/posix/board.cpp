@@ -16,7 +16,8 @@ std::uint64_t now_ns() {
 }
 
 void end(int status) {
-  std::exit(status);
+  std::fflush(stdout);
+  std::_Exit(status);
 }
 
 }  // namespace tumblesight::hal::board

@@ -61,7 +61,7 @@ SilSession::SilSession(const SilSettings& settings)
   answers_ = std::make_unique<AnswerCollector>(*endpoints_, run_id_);
   hal::dds::HelloSample hello{};
   hello.role = static_cast<std::uint8_t>(Role::kSimulator);
-  hello.icd_hash = hal::dds::kIcdHash;
+  hello.icd_hash = hal::dds::icd_hash();
   hello.run_id = run_id_;
   hello.process_id = static_cast<std::uint32_t>(getpid());
   write(endpoints_->hello_out, hello);
@@ -94,10 +94,10 @@ bool SilSession::read_hello() {
   while (endpoints_->hello_in.take(hello)) {
     const bool ours = hello.run_id == run_id_ || hello.run_id == 0;
     if (hello.role != static_cast<std::uint8_t>(Role::kFlight) || !ours) continue;
-    if (hello.icd_hash != hal::dds::kIcdHash) {
+    if (hello.icd_hash != hal::dds::icd_hash()) {
       // Flight refuses as well: let it say so itself.
       if (process_) (void)process_->wait_for_end(kEndGrace_s);
-      throw SilFailure("interface hash " + hex(hal::dds::kIcdHash) + ", flight's " + hex(hello.icd_hash) +
+      throw SilFailure("interface hash " + hex(hal::dds::icd_hash()) + ", flight's " + hex(hello.icd_hash) +
                        ": build both from the same tumblesight.idl");
     }
     flight_mode_ = hello.flight_mode;

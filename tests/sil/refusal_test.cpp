@@ -38,7 +38,7 @@ TEST(Refusal, InterfaceHashIsTheCrc32OfTheIdl) {
     crc ^= static_cast<std::uint8_t>(c);
     for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? (crc >> 1) ^ 0xEDB88320U : crc >> 1;
   }
-  EXPECT_EQ(hal::dds::kIcdHash, ~crc);
+  EXPECT_EQ(hal::dds::icd_hash(), ~crc);
 }
 
 struct BadModel {

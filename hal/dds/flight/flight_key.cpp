@@ -41,7 +41,7 @@ bool read_command_key(const char* path, CommandKey& key) {
   }
   std::FILE* const file = std::fopen(path, "r");
   if (file == nullptr) {
-    std::fprintf(stderr, "flight: --command-key %s: %s\n", path, std::strerror(errno));
+    std::fprintf(stderr, "flight: --command-key %s: %s\n", path, strerrordesc_np(errno));
     return false;
   }
   CommandKey read{};

@@ -12,7 +12,7 @@ constexpr std::int64_t kPoll_ns = 1'000'000;
 FlightEnd lockstep_steps(FlightBus& bus, FlightTask& task) {
   for (std::uint32_t k = 0;; ++k) {
     StepSample step;
-    FlightEnd end;
+    FlightEnd end = FlightEnd::kComplete;
     if (!bus.wait_for_step(k, step, end)) return end;
     task.run_cycle(k, step.time_ns);
     if (!bus.carry_out()) return FlightEnd::kTransport;
@@ -38,7 +38,7 @@ FlightEnd carry_until_last(FlightBus& bus) {
     StepSample newer;
     while (bus.take_step(newer)) step = newer;
     if (step.last != 0 && (step.frames == 0 || bus.has_frame_of(step.k))) return FlightEnd::kComplete;
-    FlightEnd end;
+    FlightEnd end = FlightEnd::kComplete;
     if (bus.must_end(end)) return end;
   }
 }
@@ -67,7 +67,7 @@ FlightEnd run_lockstep(FlightBus& bus, FlightTask& task) {
 
 FlightEnd run_free(FlightBus& bus, FlightTask& task, Stopwatch& stopwatch, std::int64_t period_ns) {
   StepSample first;
-  FlightEnd end;
+  FlightEnd end = FlightEnd::kComplete;
   if (!wait_for_first_step(bus, first, end)) return end;
   const MissionClock clock{first.time_ns, static_cast<std::int64_t>(stopwatch.now_ns()), period_ns};
   // A quarter of a period after each exposure: the frame is there by then, and one that is a little late

@@ -33,7 +33,7 @@ void find_shipped_model(FlightOptions& options) {
   if (program_folder(folder)) {
     const int length = std::snprintf(path, sizeof path, "%s/../../../fsw/models/%s%s.tsm", folder, options.target, kind);
     if (length > 0 && length < FlightOptions::kMaxPath && access(path, R_OK) == 0) {
-      std::strcpy(options.model_path, path);
+      std::memcpy(options.model_path, path, static_cast<std::size_t>(length) + 1);
       return;
     }
   }
@@ -56,8 +56,12 @@ fsw::App& boot(FlightOptions& options, FlightApps& apps, Stopwatch& stopwatch, c
     std::fprintf(stderr, "flight: model image %s: %s; the mode is SAFE\n", options.model_path,
                  unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)));
   };
-  float32 ? boot_one(apps.float32) : boot_one(apps.fixed_point);
-  return float32 ? static_cast<fsw::App&>(apps.float32_interface) : apps.fixed_point_interface;
+  if (float32) {
+    boot_one(apps.float32);
+    return apps.float32_interface;
+  }
+  boot_one(apps.fixed_point);
+  return apps.fixed_point_interface;
 }
 
 }  // namespace tumblesight::hal::dds

@@ -54,9 +54,9 @@ bool parse_numerics(const char* option, const char* value, FlightOptions& option
 }
 
 bool parse_path(const char* option, const char* value, char* path) {
-  if (value[0] == '\0' || std::strlen(value) >= FlightOptions::kMaxPath)
-    return fail(option, value, "a file's path");
-  std::strcpy(path, value);
+  const std::size_t length = std::strlen(value);
+  if (length == 0 || length >= FlightOptions::kMaxPath) return fail(option, value, "a file's path");
+  std::memcpy(path, value, length + 1);
   return true;
 }
 
@@ -107,7 +107,7 @@ void print_flight_help() {
 }
 
 ParseResult parse_flight_options(int argc, char** argv, FlightOptions& options) {
-  options.icd_hash = kIcdHash;
+  options.icd_hash = icd_hash();
   for (int i = 1; i < argc; i += 2) {
     if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) return ParseResult::kHelp;
     if (i + 1 == argc) {

@@ -38,7 +38,7 @@ void wait(sem_t& semaphore) {
 }
 
 const char* granted(int error) {
-  return error == 0 ? "granted" : std::strerror(error);
+  return error == 0 ? "granted" : strerrordesc_np(error);
 }
 
 // What is not granted costs punctuality, no more: the task runs without it.

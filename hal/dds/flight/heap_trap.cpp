@@ -1,8 +1,12 @@
 #include "hal/dds/flight/heap_trap.hpp"
 
+#include <malloc.h>
+#include <stdlib.h>
+
 #include <cerrno>
 
-// glibc's own entry points behind the public names.
+// glibc's own entry points behind the public names; the names are glibc's.
+// NOLINTBEGIN(bugprone-reserved-identifier)
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -12,6 +16,7 @@ void* __libc_valloc(std::size_t size);
 void* __libc_pvalloc(std::size_t size);
 void __libc_free(void* block);
 }
+// NOLINTEND(bugprone-reserved-identifier)
 
 namespace tumblesight::hal::dds {
 namespace {

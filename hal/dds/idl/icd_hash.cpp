@@ -11,6 +11,8 @@ constexpr unsigned char kIdl[] = {
 
 }  // namespace
 
-const std::uint32_t kIcdHash = gnc::crc32(kIdl, sizeof kIdl);
+std::uint32_t icd_hash() {
+  return gnc::crc32(kIdl, sizeof kIdl);
+}
 
 }  // namespace tumblesight::hal::dds

@@ -5,6 +5,6 @@
 
 namespace tumblesight::hal::dds {
 
-extern const std::uint32_t kIcdHash;
+std::uint32_t icd_hash();
 
 }  // namespace tumblesight::hal::dds
