@@ -43,20 +43,22 @@ def check(root):
     """What is wrong, a line each."""
     wrong = []
     rows = rows_of(root, wrong)
-    tests = {".".join(names) for path in sorted((root / TESTS).glob("*.cpp")) for names in _TEST.findall(path.read_text(encoding="utf-8"))}
+    tests = {".".join(names) for path in (root / TESTS).glob("*.cpp") for names in _TEST.findall(path.read_text(encoding="utf-8"))}
     for row in rows:
         wrong += [f"docs/mcdc.md:{row.line}: there is no test {test}" for test in {row.true, row.false} - tests]
     wanted = [(path.relative_to(root).as_posix(), one.function, one.text, condition.text) for path in sources(root)
               for one in decisions_in(path.read_text(encoding="utf-8")) for condition in one.conditions]
     there = [row[1:5] for row in rows]
-    for path, function, decision, condition in wanted:
-        if wanted.count((path, function, decision, condition)) > there.count((path, function, decision, condition)):
+    for one in wanted:
+        path, function, decision, condition = one
+        if wanted.count(one) > there.count(one):
             wrong.append(f"{path}: {function}(): docs/mcdc.md lacks `{condition}` of `{decision}`")
     for row in rows:
         if there.count(row[1:5]) > wanted.count(row[1:5]):
             wrong.append(f"docs/mcdc.md:{row.line}: {row.path} has no `{row.condition}` of `{row.decision}` in {row.function}()")
-    if not wrong and f"{len({row[1:4] for row in rows})} of them with {len(rows)} conditions" not in (root / "docs/mcdc.md").read_text(encoding="utf-8"):
-        wrong.append(f"docs/mcdc.md: there are {len({row[1:4] for row in rows})} decisions with {len(rows)} conditions")
+    decisions = len({row[1:4] for row in rows})
+    if f"{decisions} of them with {len(rows)} conditions" not in (root / "docs/mcdc.md").read_text(encoding="utf-8"):
+        wrong.append(f"docs/mcdc.md: there are {decisions} decisions with {len(rows)} conditions")
     return wrong
 
 
@@ -64,7 +66,8 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--root", type=pathlib.Path, default=ROOT, help="another tree than this one")
     wrong = check(parser.parse_args(arguments).root)
-    print("\n".join(wrong))
+    for line in wrong:
+        print(line)
     return 1 if wrong else 0
 
 

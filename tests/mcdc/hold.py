@@ -37,7 +37,8 @@ def copy_with_handles(folder):
     """The tree with a handle around each condition. {(path, function, decision, condition): its number}"""
     numbers = {}
     write(folder / "held.hpp", HELD.encode())
-    for name in subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\0"):
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    for name in listed.split("\0"):
         if (ROOT / name).is_file() and ROOT / name not in sources(ROOT):
             write(folder / name, (ROOT / name).read_bytes())
     for path in sources(ROOT):
@@ -54,8 +55,8 @@ def copy_with_handles(folder):
 def passes(program, test, number=-1, value=False, timeout_s=120):
     environment = {**os.environ, "MCDC_CONDITION": str(number), "MCDC_VALUE": "1" if value else "0"}
     try:
-        return subprocess.run([program, f"--gtest_filter={test}"], env=environment, timeout=timeout_s, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL, check=False).returncode == 0
+        return subprocess.run([program, f"--gtest_filter={test}"], env=environment, timeout=timeout_s,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode == 0
     except subprocess.TimeoutExpired:
         return False
 
@@ -65,8 +66,9 @@ def main():
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/mcdc", help="where to build")
     folder = parser.parse_args().build.resolve()
     numbers = copy_with_handles(folder / "tree")
-    subprocess.run(["cmake", "-S", folder / "tree", "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DTUMBLESIGHT_SIL=OFF",
-                    "-DTUMBLESIGHT_TESTS=ON", f"-DCMAKE_CXX_FLAGS=-include {folder}/tree/held.hpp"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "-S", folder / "tree", "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug",
+                    "-DTUMBLESIGHT_SIL=OFF", "-DTUMBLESIGHT_TESTS=ON",
+                    f"-DCMAKE_CXX_FLAGS=-include {folder}/tree/held.hpp"], check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["ninja", "-C", folder, "test_fsw_app"], check=True)
     program = folder / "bin/test_fsw_app"
     if not passes(program, "*", timeout_s=1200):
