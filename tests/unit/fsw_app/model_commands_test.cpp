@@ -149,6 +149,7 @@ TEST_F(ModelCommands, DamagedWrongOrUnfinishedImagesAreNotValidated) {
   load_all();
   step_commands({validate(static_cast<std::uint32_t>(other.size()) - 1, gnc::model_image_crc32(other.data()))});
   EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "another size";
+  EXPECT_EQ(events(EventId::kModelRefused), 0) << "the image has not been looked at";
   step_commands({validate(static_cast<std::uint32_t>(other.size()), 1)});
   EXPECT_EQ(argument(EventId::kCommandNoModel, 2), static_cast<int>(gnc::ModelStatus::kBadHeaderCrc));
   step_commands({activate(0)});

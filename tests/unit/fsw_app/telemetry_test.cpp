@@ -38,7 +38,24 @@ TEST_F(Telemetry, StateDigestFollowsModeEstimatorAndCounters) {
   EXPECT_NE(app->state_crc32(), twin->state_crc32()) << "a command was counted";
 }
 
+// Verifies TS-TLM-040.
 TEST_F(Telemetry, EventsBeyondAStepsShareWaitForTheNextOne) {
+  for (std::size_t block = 0; block < 8; ++block) store.banks[1].memory[block * config::kModelBlockBytes + 9] ^= 1;
+  StepInputs inputs;
+  inputs.command_count = config::kMaxCommandsPerStep;
+  for (hal::CommandPacket& packet : inputs.commands) packet = command(FunctionCode::kNoop);
+  inputs.cycle_slips = 1;
+  step(inputs);
+  EXPECT_EQ(out->event_count, config::kMaxEventsPerStep);
+  EXPECT_EQ(out->housekeeping.events_waiting, 3U) << "activated, 8 repaired, 8 accepted, slipped, no frame: 19";
+  now_ns = next_time_ns();
+  app->step(now_ns, StepInputs{}, *out);
+  EXPECT_EQ(out->event_count, 3);
+  EXPECT_EQ(out->housekeeping.events_waiting, 0U);
+}
+
+// Verifies TS-TLM-040.
+TEST_F(Telemetry, EventsAreToldWaitingSuppressedOrLost) {
   hal::CommandPacket forged = command(FunctionCode::kNoop);
   forged.bytes[0] ^= 1;
   StepInputs inputs;
