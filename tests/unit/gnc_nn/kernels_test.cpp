@@ -63,7 +63,6 @@ std::vector<ProductShape> shapes(bool integers) {
   all.push_back(convolution(3, 3, 8, 48));
   all.push_back(convolution(2, 24, 32, 64));
   all.push_back(convolution(2, 4, 4, 16));
-  all.push_back(convolution(1, 10, 72, 16));
   all.push_back(convolution(1, 4, 8, 32));  // fewer pixels than three tiles of two
   all.push_back(convolution(2, 4, 4, 16));
   all.back().strips = 17;  // more than a stretch holds
@@ -94,7 +93,10 @@ template <class Kind>
 void expect_definition_for_all_shapes(Product<Kind>* product) {
   constexpr bool kIntegers = Kind::kGroup > 1;
   RandomValues random(7);
-  for (ProductShape s : shapes(kIntegers)) {
+  std::vector<ProductShape> all = shapes(kIntegers);
+  // Inputs enough for a second stretch; sums of 16-bit ones would leave 32 bits.
+  if (std::is_same_v<Kind, Int8Product>) all.push_back(convolution(1, 10, 72, 16));
+  for (ProductShape s : all) {
     SCOPED_TRACE(::testing::Message() << s.rows << "x" << s.columns << ", " << s.strip_length << " to " << s.channels);
     s.strip_length = s.strip_length / Kind::kGroup * Kind::kGroup;
     const std::size_t weights = static_cast<std::size_t>(s.strips) * s.strip_length * s.channels;
