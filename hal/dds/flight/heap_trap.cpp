@@ -1,8 +1,5 @@
 #include "hal/dds/flight/heap_trap.hpp"
 
-#include <malloc.h>
-#include <stdlib.h>
-
 #include <cerrno>
 
 // glibc's own entry points behind the public names; the names are glibc's.
@@ -55,6 +52,12 @@ std::size_t first_heap_allocation_bytes() {
 
 // operator new ends in malloc, so these are all the ways to the heap.
 extern "C" {
+
+// Declared here: the C library's headers name the parameters otherwise.
+void* memalign(std::size_t alignment, std::size_t size);
+int posix_memalign(void** block, std::size_t alignment, std::size_t size);
+void* valloc(std::size_t size);
+void* pvalloc(std::size_t size);
 
 void* malloc(std::size_t size) {
   tumblesight::hal::dds::note(size);
