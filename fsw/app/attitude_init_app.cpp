@@ -254,9 +254,9 @@ void AttitudeInitApp<N>::respond(Fault fault, const Reporter& report) {
       break;
   }
   if (response == Response::kIgnore) return;
-  const auto index = static_cast<std::size_t>(fault);
-  report(is_of_timing(fault) ? EventId::kTimingFaultPersists : EventId::kFaultPersists, static_cast<std::int32_t>(fault), static_cast<std::int32_t>(taken),
-         config::kFaultRules[index].persistence_cycles);
+  const EventId id = is_of_timing(fault) ? EventId::kTimingFaultPersists : EventId::kFaultPersists;
+  const config::FaultRule& rule = config::kFaultRules[static_cast<std::size_t>(fault)];
+  report(id, static_cast<std::int32_t>(fault), static_cast<std::int32_t>(taken), rule.persistence_cycles);
 }
 
 // What it came to: the switch, nothing where there is a good model again, or SAFE where the other bank holds no good model.

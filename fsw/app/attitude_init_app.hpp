@@ -81,8 +81,8 @@ class AttitudeInitApp final {
   // `now_ns`: time of this cycle. `outputs` is overwritten.
   void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
 
-  // Over all that decides what step() will give, the active model's CRC among it, and over the counters; what
-  // the stopwatch measured is left out.
+  // To compare runs: over the estimator's state, the active model's CRC, mode, times, last frame, limits, faults that
+  // persist and the counters. What depends on the wall clock is left out.
   std::uint32_t state_crc32() const;
   Mode mode() const { return state_->mode; }
   // What init() found in a bank; kOk before the first init().
