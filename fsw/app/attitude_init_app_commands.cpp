@@ -81,9 +81,11 @@ bool AttitudeInitApp<N>::set_mode(std::uint8_t mode, CommandRefusal& why) {
   if (mode == static_cast<std::uint8_t>(Mode::kSafe)) cause = Cause::kCommandSafe;
   why = CommandRefusal::kWrongArgument;
   if (cause == Cause::kNone) return false;
+  why = CommandRefusal::kWrongMode;
+  Mode to = state_->mode;
+  if (!next_mode(state_->mode, cause, to)) return false;
   why = CommandRefusal::kNoModel;
   if (cause == Cause::kCommandRun && !state_->has_model()) return false;
-  why = CommandRefusal::kWrongMode;
   return enter(cause);
 }
 

@@ -105,6 +105,8 @@ TEST_F(Boot, WithoutAnyModelTheModeIsSafeAndSaysWhy) {
   EXPECT_EQ(argument(EventId::kSafeEntered, 0), static_cast<int>(Cause::kNoModel));
   EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kNoModel));
   EXPECT_EQ(event(EventId::kModelRefused)->severity, static_cast<int>(Severity::kError));
+  step_commands({set_mode(Mode::kRun)});
+  EXPECT_EQ(events(EventId::kCommandWrongMode), 1) << "that comes before the model";
   step_commands({set_mode(Mode::kStandby), set_mode(Mode::kRun)});
   EXPECT_EQ(app->mode(), Mode::kStandby);
   EXPECT_EQ(events(EventId::kCommandNoModel), 1);
