@@ -3,63 +3,16 @@
 #include <cstring>
 
 #include "gnc/rcnn/crc32.hpp"
+#include "gnc/rcnn/model_format.hpp"
+#include "gnc/rcnn/model_values.hpp"
 
 namespace tumblesight::gnc {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kMagic{'T', 'S', 'R', 'M'};
-constexpr std::size_t kOffsetVersion = 4;
-constexpr std::size_t kOffsetHeaderSize = 6;
-constexpr std::size_t kOffsetTotalSize = 8;
-constexpr std::size_t kOffsetArchitecture = 12;
-constexpr std::size_t kOffsetTarget = 16;
-constexpr std::size_t kOffsetSwath = 48;
-constexpr std::size_t kOffsetRadius = 52;
-constexpr std::size_t kOffsetReserved = 56;
-constexpr std::size_t kOffsetInertia = 60;
-constexpr std::size_t kOffsetNumerics = 84;
-constexpr std::size_t kOffsetSectionCount = 88;
-constexpr std::size_t kOffsetHeaderCrc = 92;
+using namespace model_format;
+
 // Bounds the reading of another network's section table, so that it is told apart from a damaged image.
 constexpr std::uint32_t kMaxSections = 256;
-
-static_assert(sizeof(float) == 4);
-
-std::uint16_t get_u16(const std::uint8_t* at) {
-  return static_cast<std::uint16_t>(at[0] | (at[1] << 8));
-}
-
-std::uint32_t get_u32(const std::uint8_t* at) {
-  return static_cast<std::uint32_t>(at[0]) | (static_cast<std::uint32_t>(at[1]) << 8) |
-         (static_cast<std::uint32_t>(at[2]) << 16) | (static_cast<std::uint32_t>(at[3]) << 24);
-}
-
-float get_f32(const std::uint8_t* at) {
-  const std::uint32_t bits = get_u32(at);
-  float value = 0.0F;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
-void put_u16(std::uint8_t* at, std::uint16_t value) {
-  at[0] = static_cast<std::uint8_t>(value);
-  at[1] = static_cast<std::uint8_t>(value >> 8);
-}
-
-void put_u32(std::uint8_t* at, std::uint32_t value) {
-  for (int i = 0; i < 4; ++i) at[i] = static_cast<std::uint8_t>(value >> (8 * i));
-}
-
-[[maybe_unused]] void put_f32(std::uint8_t* at, float value) {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  put_u32(at, bits);
-}
-
-// By the bits, so that no compiler option can make it always true.
-bool is_finite_bits(std::uint32_t bits) {
-  return (bits & 0x7F800000U) != 0x7F800000U;
-}
 
 constexpr std::uint32_t fnv1a(std::uint32_t hash, std::uint32_t value) {
   for (int i = 0; i < 4; ++i) hash = (hash ^ ((value >> (8 * i)) & 0xFFU)) * 16777619U;
@@ -82,17 +35,6 @@ constexpr std::uint32_t compute_architecture_hash() {
 
 constexpr std::uint32_t kArchitectureHash = compute_architecture_hash();
 
-constexpr std::size_t data_offset(std::size_t sections) {
-  return (kModelHeaderSize + sections * kModelSectionEntrySize + 63) / 64 * 64;
-}
-
-std::uint32_t header_crc(const std::uint8_t* image, std::size_t sections) {
-  Crc32 crc;
-  crc.add(image, kOffsetHeaderCrc);
-  crc.add(image + kModelHeaderSize, data_offset(sections) - kModelHeaderSize);
-  return crc.value();
-}
-
 // At least one printable character, and NULs from the first to the end of the field.
 bool is_well_formed_target(const char* field, std::size_t size) {
   std::size_t length = 0;
@@ -114,10 +56,6 @@ ModelStatus check_frame_of_header(const std::uint8_t* image, std::size_t size_by
   if (get_u32(image + kOffsetTotalSize) != size_bytes) return ModelStatus::kBadSize;
   return ModelStatus::kOk;
 }
-
-// xx, yy, zz, xy, xz, yz.
-constexpr std::array<std::array<int, 2>, 6> kInertiaElements{
-    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
 
 // A trace of 3, but for rounding.
 bool read_inertia(const std::uint8_t* image, Inertia<Fixed>& inertia) {
@@ -156,16 +94,6 @@ void read_header(const std::uint8_t* image, ModelHeader& header) {
   header.crc32 = get_u32(image + kOffsetHeaderCrc);
 }
 
-// A tensor in the image: weights in fixed point one byte a number and read in place, all else four bytes.
-template <std::size_t kCount>
-constexpr std::size_t size_in_image(const FixedPoint::Weights<kCount>&) {
-  return kCount;
-}
-template <class Number, std::size_t kCount>
-constexpr std::size_t size_in_image(const std::array<Number, kCount>&) {
-  return 4 * kCount;
-}
-
 template <std::size_t kCount>
 void read(const std::uint8_t* from, FixedPoint::Weights<kCount>& tensor) {
   tensor.lie_at(reinterpret_cast<const std::int8_t*>(from));
@@ -177,19 +105,6 @@ void read(const std::uint8_t* from, std::array<float, kCount>& tensor) {
 template <class Integer, std::size_t kCount>
 void read(const std::uint8_t* from, std::array<Integer, kCount>& tensor) {
   for (std::size_t i = 0; i < kCount; ++i) tensor[i] = static_cast<Integer>(get_u32(from + 4 * i));
-}
-
-template <std::size_t kCount>
-void write(const FixedPoint::Weights<kCount>& tensor, std::uint8_t* to) {
-  std::memcpy(to, tensor.data(), kCount);
-}
-template <std::size_t kCount>
-void write(const std::array<float, kCount>& tensor, std::uint8_t* to) {
-  for (std::size_t i = 0; i < kCount; ++i) put_f32(to + 4 * i, tensor[i]);
-}
-template <class Integer, std::size_t kCount>
-void write(const std::array<Integer, kCount>& tensor, std::uint8_t* to) {
-  for (std::size_t i = 0; i < kCount; ++i) put_u32(to + 4 * i, static_cast<std::uint32_t>(tensor[i]));
 }
 
 // The section table, entry by entry: the first that is wrong decides.
@@ -211,131 +126,23 @@ struct SectionCheck {
     if (get_u32(entry) != id || get_u32(entry + 4) != offset || get_u32(entry + 8) != size) {
       return ModelStatus::kBadSection;
     }
-    return crc32(image + offset, size) == get_u32(entry + 12) ? ModelStatus::kOk : ModelStatus::kBadSectionCrc;
+    return crc32(image + offset, size) == get_u32(entry + 12) ? ModelStatus::kOk
+                                                              : ModelStatus::kBadSectionCrc;
   }
 };
-
-#if TUMBLESIGHT_FLOAT32
-ModelStatus check_layers(const std::uint8_t* image, const NetworkWeights<Float32>&) {
-  bool finite = true;
-  for (std::size_t at = kModelDataOffset<Float32>; at < kModelImageSize<Float32>; at += 4) {
-    finite = is_finite_bits(get_u32(image + at)) && finite;
-  }
-  return finite ? ModelStatus::kOk : ModelStatus::kBadValue;
-}
-#endif
-
-// What a layer's integers may be, given the largest magnitude of its inputs.
-struct LayerLimits {
-  int group;
-  std::int64_t largest_input;
-  std::uint32_t largest_shift;
-  std::int64_t largest_sum = INT32_MAX;  // rounding included
-};
-
-// Where the tensors of a layer lie.
-struct LayerInImage {
-  const std::uint8_t* weight = nullptr;
-  std::size_t weights = 0;
-  const std::uint8_t* recurrent = nullptr;
-  std::size_t recurrents = 0;
-  const std::uint8_t* bias = nullptr;
-  const std::uint8_t* shift = nullptr;
-
-  // `part`: as for_each_tensor_of() names it.
-  void put(const char* part, const std::uint8_t* at, std::size_t size) {
-    switch (part[0]) {
-      case 'w':
-        weight = at;
-        weights = size;
-        break;
-      case 'r':
-        recurrent = at;
-        recurrents = size;
-        break;
-      case 'b':
-        bias = at;
-        break;
-      default:
-        shift = at;
-    }
-  }
-};
-
-// Sum of the magnitudes of one channel's weights; -1 where one is -128, which has no opposite.
-std::int64_t magnitude_of(const std::uint8_t* weights, std::size_t count, std::size_t channels, std::size_t channel,
-                          std::size_t group) {
-  std::int64_t sum = 0;
-  bool symmetric = true;
-  for (std::size_t first = channel * group; first < count; first += channels * group) {
-    for (std::size_t i = first; i < first + group; ++i) {
-      const int weight = static_cast<std::int8_t>(weights[i]);
-      symmetric = symmetric && weight != -128;
-      sum += weight < 0 ? -weight : weight;
-    }
-  }
-  return symmetric ? sum : -1;
-}
-
-// No sum of the layer can leave 32 bits, rounding included, and every shift is in its range.
-bool is_possible_layer(const LayerInImage& layer, std::size_t channels, const LayerLimits& limits) {
-  const auto group = static_cast<std::size_t>(limits.group);
-  bool possible = true;
-  for (std::size_t c = 0; c < channels; ++c) {
-    const std::int64_t forward = magnitude_of(layer.weight, layer.weights, channels, c, group);
-    const std::int64_t recurrent =
-        layer.recurrents > 0 ? magnitude_of(layer.recurrent, layer.recurrents, channels, c, group) : 0;
-    const std::int64_t bias = static_cast<std::int32_t>(get_u32(layer.bias + 4 * c));
-    const std::uint32_t shift = get_u32(layer.shift + 4 * c);
-    const bool in_range = shift >= 1 && shift <= limits.largest_shift && forward >= 0 && recurrent >= 0;
-    const std::int64_t rounding = std::int64_t{1} << (in_range && shift <= 31 ? shift - 1 : 0);
-    const std::int64_t largest =
-        (bias < 0 ? -bias : bias) + (forward + recurrent) * limits.largest_input + rounding;
-    possible = possible && in_range && largest <= limits.largest_sum;
-  }
-  return possible;
-}
-
-constexpr std::uint32_t kLargestActivationShift = 30;
-constexpr std::uint32_t kLargestOutputShift = 62;
-
-// `weights` only lends the sizes of the tensors.
-ModelStatus check_layers(const std::uint8_t* image, const NetworkWeights<FixedPoint>& weights) {
-  const LayerLimits conv{Int8Product::kGroup, 255, kLargestActivationShift, kLargestConvolved};
-  const LayerLimits hidden{Int16Product::kGroup, 32767, kLargestActivationShift};
-  const LayerLimits output{Int16Product::kGroup, 32767, kLargestOutputShift};
-  const LayerLimits pooled{Int16Product::kGroup, 4 * kLargestOfFour, kLargestActivationShift};
-  // In the order of for_each_layer().
-  const std::array<LayerLimits, 10> limits{conv, conv, conv, conv, pooled, hidden, output, output, hidden, output};
-  const std::uint8_t* next = image + kModelDataOffset<FixedPoint>;
-  std::size_t index = 0;
-  bool possible = true;
-  for_each_layer(weights, [&](const char* name, const auto& layer) {
-    LayerInImage in_image;
-    for_each_tensor_of(name, layer, [&](const char*, const char* part, const auto& tensor) {
-      in_image.put(part, next, size_in_image(tensor));
-      next += size_in_image(tensor);
-    });
-    possible = is_possible_layer(in_image, layer.bias.size(), limits[index++]) && possible;
-  });
-  return possible ? ModelStatus::kOk : ModelStatus::kBadValue;
-}
 
 // `weights` only lends the number and sizes of the tensors.
 template <class N>
-ModelStatus check_sections(const std::uint8_t* image, std::size_t size_bytes, const NetworkWeights<N>& weights) {
+ModelStatus check_sections(const std::uint8_t* image, std::size_t size_bytes,
+                           const NetworkWeights<N>& weights) {
   if (get_u32(image + kOffsetSectionCount) != kTensorCount<N> || size_bytes != kModelImageSize<N>) {
     return ModelStatus::kBadSection;
   }
   SectionCheck check{image, kModelDataOffset<N>};
-  for_each_tensor(weights,
-                  [&check](const char*, const char*, const auto& tensor) { check.next(size_in_image(tensor)); });
-  return check.status == ModelStatus::kOk ? check_layers(image, weights) : check.status;
-}
-
-template <class N>
-constexpr std::uint32_t numerics_of() {
-  return N::kIsInteger ? 1 : 0;
+  for_each_tensor(
+      weights, [&check](const char*, const char*, const auto& tensor) { check.next(size_in_image(tensor)); });
+  if (check.status != ModelStatus::kOk) return check.status;
+  return has_possible_values(image, weights) ? ModelStatus::kOk : ModelStatus::kBadValue;
 }
 
 }  // namespace
@@ -420,51 +227,12 @@ bool set_target(ModelHeader& header, const char* name) {
   return true;
 }
 
-template <class N>
-std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights, std::uint8_t* out,
-                              std::size_t capacity) {
-  const std::size_t total = kModelImageSize<N>;
-  if (capacity < total) return 0;
-  std::memset(out, 0, kModelDataOffset<N>);
-  std::memcpy(out, kMagic.data(), kMagic.size());
-  put_u16(out + kOffsetVersion, kModelFormatVersion);
-  put_u16(out + kOffsetHeaderSize, static_cast<std::uint16_t>(kModelHeaderSize));
-  put_u32(out + kOffsetTotalSize, static_cast<std::uint32_t>(total));
-  put_u32(out + kOffsetArchitecture, kArchitectureHash);
-  std::memcpy(out + kOffsetTarget, header.target.data(), header.target.size());
-  put_u32(out + kOffsetSwath, header.projection.swath_mm);
-  put_u32(out + kOffsetRadius, header.projection.target_radius_mm);
-  for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {
-    const auto [row, column] = kInertiaElements[i];
-    put_u32(out + kOffsetInertia + 4 * i, static_cast<std::uint32_t>(header.inertia.tensor_trf(row, column).raw()));
-  }
-  put_u32(out + kOffsetNumerics, numerics_of<N>());
-  put_u32(out + kOffsetSectionCount, static_cast<std::uint32_t>(kTensorCount<N>));
-
-  std::uint8_t* entry = out + kModelHeaderSize;
-  std::uint32_t id = 1;
-  std::size_t offset = kModelDataOffset<N>;
-  for_each_tensor(weights, [&](const char*, const char*, const auto& tensor) {
-    const std::size_t size = size_in_image(tensor);
-    write(tensor, out + offset);
-    put_u32(entry, id++);
-    put_u32(entry + 4, static_cast<std::uint32_t>(offset));
-    put_u32(entry + 8, static_cast<std::uint32_t>(size));
-    put_u32(entry + 12, crc32(out + offset, size));
-    entry += kModelSectionEntrySize;
-    offset += size;
-  });
-  put_u32(out + kOffsetHeaderCrc, header_crc(out, kTensorCount<N>));
-  return total;
-}
-
-#define TUMBLESIGHT_INSTANTIATE(N)                                                                            \
-  template ModelStatus check_model_image<N>(const std::uint8_t*, std::size_t, const char*,                    \
-                                            const NetworkWeights<N>&);                                        \
-  template void take_model_image<N>(const std::uint8_t*, ModelHeader&, NetworkWeights<N>&);                   \
-  template ModelStatus read_model_image<N>(const std::uint8_t*, std::size_t, const char*, ModelHeader&,       \
-                                           NetworkWeights<N>&);                                               \
-  template std::size_t write_model_image<N>(const ModelHeader&, const NetworkWeights<N>&, std::uint8_t*, std::size_t)
+#define TUMBLESIGHT_INSTANTIATE(N)                                                                      \
+  template ModelStatus check_model_image<N>(const std::uint8_t*, std::size_t, const char*,              \
+                                            const NetworkWeights<N>&);                                  \
+  template void take_model_image<N>(const std::uint8_t*, ModelHeader&, NetworkWeights<N>&);             \
+  template ModelStatus read_model_image<N>(const std::uint8_t*, std::size_t, const char*, ModelHeader&, \
+                                           NetworkWeights<N>&)
 
 TUMBLESIGHT_INSTANTIATE(FixedPoint);
 #if TUMBLESIGHT_FLOAT32

@@ -1,0 +1,71 @@
+#include <cstring>
+
+#include "gnc/rcnn/model_format.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+using namespace model_format;
+
+template <std::size_t kCount>
+void write(const FixedPoint::Weights<kCount>& tensor, std::uint8_t* to) {
+  std::memcpy(to, tensor.data(), kCount);
+}
+template <std::size_t kCount>
+void write(const std::array<float, kCount>& tensor, std::uint8_t* to) {
+  for (std::size_t i = 0; i < kCount; ++i) put_f32(to + 4 * i, tensor[i]);
+}
+template <class Integer, std::size_t kCount>
+void write(const std::array<Integer, kCount>& tensor, std::uint8_t* to) {
+  for (std::size_t i = 0; i < kCount; ++i) put_u32(to + 4 * i, static_cast<std::uint32_t>(tensor[i]));
+}
+
+}  // namespace
+
+template <class N>
+std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights, std::uint8_t* out,
+                              std::size_t capacity) {
+  const std::size_t total = kModelImageSize<N>;
+  if (capacity < total) return 0;
+  std::memset(out, 0, kModelDataOffset<N>);
+  std::memcpy(out, kMagic.data(), kMagic.size());
+  put_u16(out + kOffsetVersion, kModelFormatVersion);
+  put_u16(out + kOffsetHeaderSize, static_cast<std::uint16_t>(kModelHeaderSize));
+  put_u32(out + kOffsetTotalSize, static_cast<std::uint32_t>(total));
+  put_u32(out + kOffsetArchitecture, architecture_hash());
+  std::memcpy(out + kOffsetTarget, header.target.data(), header.target.size());
+  put_u32(out + kOffsetSwath, header.projection.swath_mm);
+  put_u32(out + kOffsetRadius, header.projection.target_radius_mm);
+  for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {
+    const auto [row, column] = kInertiaElements[i];
+    put_u32(out + kOffsetInertia + 4 * i,
+            static_cast<std::uint32_t>(header.inertia.tensor_trf(row, column).raw()));
+  }
+  put_u32(out + kOffsetNumerics, numerics_of<N>());
+  put_u32(out + kOffsetSectionCount, static_cast<std::uint32_t>(kTensorCount<N>));
+
+  std::uint8_t* entry = out + kModelHeaderSize;
+  std::uint32_t id = 1;
+  std::size_t offset = kModelDataOffset<N>;
+  for_each_tensor(weights, [&](const char*, const char*, const auto& tensor) {
+    const std::size_t size = size_in_image(tensor);
+    write(tensor, out + offset);
+    put_u32(entry, id++);
+    put_u32(entry + 4, static_cast<std::uint32_t>(offset));
+    put_u32(entry + 8, static_cast<std::uint32_t>(size));
+    put_u32(entry + 12, crc32(out + offset, size));
+    entry += kModelSectionEntrySize;
+    offset += size;
+  });
+  put_u32(out + kOffsetHeaderCrc, header_crc(out, kTensorCount<N>));
+  return total;
+}
+
+template std::size_t write_model_image<FixedPoint>(const ModelHeader&, const NetworkWeights<FixedPoint>&,
+                                                   std::uint8_t*, std::size_t);
+#if TUMBLESIGHT_FLOAT32
+template std::size_t write_model_image<Float32>(const ModelHeader&, const NetworkWeights<Float32>&,
+                                                std::uint8_t*, std::size_t);
+#endif
+
+}  // namespace tumblesight::gnc
