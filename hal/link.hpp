@@ -85,6 +85,7 @@ struct Housekeeping {
   std::uint32_t deadline_overruns = 0;
   std::uint32_t cycle_slips = 0;
   std::uint32_t heap_allocations = 0;  // of the flight task since init, where the platform can count them
+  std::uint32_t stack_left_min_bytes = 0;  // of the flight task's stack, never used so far; 0: the platform does not measure it
 };
 
 // Events that differ from run to run, and belong in no digest.

@@ -71,7 +71,8 @@ void DdsLink::publish(const Housekeeping& housekeeping) {
   sample.run_id = output_.done.run_id;
   sample.k = output_.done.k;
   copy_telemetry(housekeeping, sample);
-  sample.heap_allocations = heap_allocations_();
+  sample.heap_allocations = gauges_.heap_allocations();
+  sample.stack_left_min_bytes = gauges_.stack_left_min_bytes();
   output_.done.telemetries = 1;
 }
 

@@ -24,10 +24,13 @@ struct CycleOutput {
 
 class DdsLink final : public Link {
  public:
-  using Counter = std::uint32_t (*)();
+  // What only the platform can tell of the flight task goes into the housekeeping.
+  struct Gauges {
+    std::uint32_t (*heap_allocations)();
+    std::uint32_t (*stack_left_min_bytes)();
+  };
 
-  // `heap_allocations` of the flight task goes into the housekeeping.
-  explicit DdsLink(Counter heap_allocations) : heap_allocations_(heap_allocations) {}
+  explicit DdsLink(const Gauges& gauges) : gauges_(gauges) {}
 
   // Bus thread.
   void put(const CommandSample& sample);
@@ -44,7 +47,7 @@ class DdsLink final : public Link {
   void publish(const ModelDump& dump) override;
 
  private:
-  Counter heap_allocations_;
+  Gauges gauges_;
   CycleOutput output_;  // of the cycle that runs
   MailboxMutex mutex_;
   FixedQueue<CommandPacket, 2 * kMaxCommandsPerStep> commands_;

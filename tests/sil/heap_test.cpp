@@ -1,6 +1,7 @@
-// Verifies TS-MEM-020.
+// Verifies TS-MEM-020, TS-MEM-100.
 #include <gtest/gtest.h>
 
+#include "hal/posix/painted_stack.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -22,6 +23,8 @@ TEST(Heap, TenThousandStepsWithoutAnAllocationOfTheFlightTask) {
   answer = conversation.finish();
   EXPECT_EQ(answer.housekeeping.cycles, kSteps);
   EXPECT_EQ(answer.housekeeping.heap_allocations, 0U);
+  EXPECT_GT(answer.housekeeping.stack_left_min_bytes, hal::posix::PaintedStack::kBytes / 4);
+  EXPECT_LT(answer.housekeeping.stack_left_min_bytes, hal::posix::PaintedStack::kBytes);
   EXPECT_EQ(answer.housekeeping.frames_bad, (kSteps - 2) / 97 + 1);
   EXPECT_EQ(answer.housekeeping.frames_used, kSteps - answer.housekeeping.frames_bad);
 }

@@ -58,8 +58,8 @@ std::int64_t MissionClock::at(std::int64_t release_ns) const {
          static_cast<std::int64_t>(periods * static_cast<double>(fsw::config::kFramePeriod_ns));
 }
 
-FlightTask::FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace)
-    : lidar_(lidar), link_(link), workspace_(workspace) {
+FlightTask::FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace, posix::PaintedStack& stack)
+    : lidar_(lidar), link_(link), workspace_(workspace), stack_(stack) {
   sem_init(&go_, 0, 0);
   sem_init(&done_, 0, 0);
 }
@@ -67,7 +67,7 @@ FlightTask::FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& work
 bool FlightTask::start(fsw::App& app, bool free_running) {
   app_ = &app;
   free_running_ = free_running;
-  started_ = pthread_create(&thread_, nullptr, thread_main, this) == 0;
+  started_ = stack_.start(thread_, thread_main, this);
   if (started_) wait(done_);
   return started_;
 }

@@ -13,6 +13,7 @@
 #include "fsw/app/cycle.hpp"
 #include "hal/dds/dds_lidar.hpp"
 #include "hal/dds/dds_link.hpp"
+#include "hal/posix/painted_stack.hpp"
 #include "hal/task.hpp"
 
 namespace tumblesight::hal::dds {
@@ -29,7 +30,7 @@ struct MissionClock {
 
 class FlightTask {
  public:
-  FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace);
+  FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace, posix::PaintedStack& stack);
 
   // Starts the thread and returns once it is ready; false if the system gives none. Free-running it asks for
   // a fixed priority and locked memory, which takes longer than a cycle may wait: so start it before the run.
@@ -66,6 +67,7 @@ class FlightTask {
   DdsLidar& lidar_;
   DdsLink& link_;
   fsw::CycleWorkspace& workspace_;
+  posix::PaintedStack& stack_;
   // Handed over by go_ before the first cycle.
   PeriodicTask* timer_ = nullptr;
   MissionClock clock_;

@@ -12,6 +12,7 @@
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/stop_request.hpp"
 #include "hal/posix/monotonic_stopwatch.hpp"
+#include "hal/posix/painted_stack.hpp"
 
 namespace {
 
@@ -23,12 +24,13 @@ hal::posix::MonotonicStopwatch stopwatch;
 hal::dds::Domain domain;
 hal::dds::FlightEndpoints endpoints;
 hal::dds::DdsLidar lidar;
-hal::dds::DdsLink link{hal::dds::heap_allocations};
+hal::posix::PaintedStack stack;
+hal::dds::DdsLink link{{hal::dds::heap_allocations, [] { return stack.least_left_bytes(); }}};
 hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
 hal::dds::FlightApps apps;
 hal::CommandKey command_key;
 fsw::CycleWorkspace workspace;
-hal::dds::FlightTask task{lidar, link, workspace};
+hal::dds::FlightTask task{lidar, link, workspace, stack};
 
 FlightEnd connect(const hal::dds::FlightOptions& options) {
   dds_return_t result = domain.open(options.domain);

@@ -55,6 +55,7 @@ void copy_telemetry(const From& from, To& to) {
   to.deadline_overruns = from.deadline_overruns;
   to.cycle_slips = from.cycle_slips;
   to.heap_allocations = from.heap_allocations;
+  to.stack_left_min_bytes = from.stack_left_min_bytes;
 }
 
 }  // namespace tumblesight::hal::dds
