@@ -1,8 +1,12 @@
 // Command lines out of inputs: an argument a line.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/fuzz/fuzz.hpp"
@@ -32,6 +36,22 @@ class CommandLine {
  private:
   std::vector<std::string> words_;
   std::vector<char*> pointers_;
+};
+
+// A parser for many command lines: to make one takes longer than to use it, but it remembers a little of each.
+class Reused {
+ public:
+  explicit Reused(std::function<std::unique_ptr<CLI::App>()> make) : make_(std::move(make)) {}
+  CLI::App& get() {
+    constexpr int kMostUses = 4096;
+    if (uses_++ % kMostUses == 0) app_ = make_();
+    return *app_;
+  }
+
+ private:
+  std::function<std::unique_ptr<CLI::App>()> make_;
+  std::unique_ptr<CLI::App> app_;
+  int uses_ = 0;
 };
 
 }  // namespace tumblesight::fuzz

@@ -30,7 +30,8 @@ std::unique_ptr<CLI::App> make_tool() {
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tumblesight::fuzz;
-  static const std::unique_ptr<CLI::App> tool = make_tool();
+  static Reused reused(make_tool);
+  CLI::App* const tool = &reused.get();
   CommandLine line(Input(data, size));
   try {
     tool->parse(line.argc(), line.argv());

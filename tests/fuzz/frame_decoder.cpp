@@ -13,13 +13,8 @@
 namespace tumblesight::fuzz {
 namespace {
 
-enum : std::uint8_t {
-  kAnySize = 1,
-  kAnyProjection = 2,
-  kRepeated = 4,
-  kNextFrame = 8,
-  kStep = 0xF0
-};  // a step is dear: all four bits
+enum : std::uint8_t { kAnySize = 1, kAnyProjection = 2, kRepeated = 4, kNextFrame = 8 };
+constexpr std::uint32_t kSteps = 4096;  // one input in so many: a step is dear
 
 // Strokes of equal or scattered ranges, in the order of the rays: few bytes make a frame.
 void paint(Input& input, std::size_t rays, gnc::RangeImage& frame) {
@@ -42,6 +37,12 @@ void repeat(Input& input, std::size_t rays, gnc::RangeImage& frame) {
   for (std::size_t i = 0; i < rays && !ranges.empty(); ++i) frame.ranges[i] = ranges[i % ranges.size()];
 }
 
+// Of the sides that there are, the short ones more often: a frame costs their square.
+std::uint16_t some_side(std::uint16_t number) {
+  constexpr unsigned kSides = gnc::RangeImage::kMaxRays - 15;
+  return static_cast<std::uint16_t>(16 + std::min(number % kSides, number / kSides % kSides));
+}
+
 gnc::RangeImage frame_of(Input& input, std::uint8_t flags) {
   gnc::RangeImage frame;
   frame.exposure_time_ns = static_cast<std::int64_t>(input.u64());
@@ -49,7 +50,7 @@ gnc::RangeImage frame_of(Input& input, std::uint8_t flags) {
   const std::uint16_t rays = input.u16();
   const std::uint32_t fov_urad = input.u32();
   const bool any = (flags & kAnySize) != 0;
-  frame.rays = any ? rays : static_cast<std::uint16_t>(16 + rays % (gnc::RangeImage::kMaxRays - 15));
+  frame.rays = any ? rays : some_side(rays);
   frame.fov_urad =
       any ? fov_urad : gnc::kMinFov_urad + fov_urad % (gnc::kMaxFov_urad - gnc::kMinFov_urad + 1);
   const std::size_t side = std::min<std::size_t>(frame.rays, gnc::RangeImage::kMaxRays);
@@ -135,11 +136,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tumblesight::fuzz;
   static Estimator estimator;
   Input input(data, size);
+  const bool steps = is_chosen(input, kSteps);
   const std::uint8_t flags = input.u8();
   const gnc::DepthProjection projection = projection_of(input, flags);
   static gnc::RangeImage frame;
   frame = frame_of(input, flags);
   check_all_sets(frame, projection);
-  if ((flags & kStep) == kStep) estimator.step(frame, (flags & kNextFrame) != 0);
+  if (steps) estimator.step(frame, (flags & kNextFrame) != 0);
   return 0;
 }

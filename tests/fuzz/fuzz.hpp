@@ -32,7 +32,7 @@ class Input {
   std::uint32_t u24() { return static_cast<std::uint32_t>(number(3)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(number(4)); }
   std::uint64_t u64() { return number(8); }
-  std::string text() { return {reinterpret_cast<const char*>(at_), left_}; }
+  std::string text() const { return {reinterpret_cast<const char*>(at_), left_}; }
 
  private:
   std::uint64_t number(int bytes) {
@@ -44,5 +44,17 @@ class Input {
   const std::uint8_t* at_;
   std::size_t left_;
 };
+
+// Whether an input goes on to what costs as much as many other inputs: one in `one_in`, by its bytes, so that
+// it is the same for the same input; of a corpus that is replayed, all.
+inline bool is_chosen([[maybe_unused]] const Input& input, [[maybe_unused]] std::uint32_t one_in) {
+#if TUMBLESIGHT_FUZZ
+  std::uint32_t hash = 2166136261U;
+  for (std::size_t i = 0; i < input.left(); ++i) hash = (hash ^ input.rest()[i]) * 16777619U;
+  return (hash ^ hash >> 16U) % one_in == 0;
+#else
+  return true;
+#endif
+}
 
 }  // namespace tumblesight::fuzz

@@ -1,5 +1,5 @@
-// The model image's reader, and a step with what it accepts: for both numerics (model_image_fixed.cpp,
-// model_image_float32.cpp).
+// The model image's reader, and now and then a step with what it accepts: for both numerics
+// (model_image_fixed.cpp, model_image_float32.cpp).
 #pragma once
 
 #include <cstring>
@@ -34,17 +34,19 @@ class ModelImageTarget {
   }
 
   void run(Input input) {
+    const bool reads_values = is_chosen(input, kReadsValues);
+    const bool steps = is_chosen(input, kSteps);
     const std::uint8_t choice = input.u8();
     const char* const target = (choice & 1) != 0 ? "test_craft" : nullptr;
     const std::uint32_t frames = (choice & 2) != 0 ? 2 : 1;
     estimator_->network().use(kernels_by<N>(choice >> 2));
-    const std::size_t size = image_.apply(input);
+    const std::size_t size = image_.apply(input, reads_values);
     const std::uint32_t before = estimator_->model().crc32;
     const gnc::ModelStatus status = estimator_->load(image_.data(), size, target);
     require(estimator_->has_model(), "there is a model");
     if (status == gnc::ModelStatus::kOk) {
       check_model(target);
-      step(frames);
+      if (steps) step(frames);
     } else {
       require(estimator_->model().crc32 == before, "a refused image leaves the model before it in use");
     }
@@ -52,6 +54,9 @@ class ModelImageTarget {
   }
 
  private:
+  // One in so many has its megabytes of values looked at; one in so many, a multiple, is used.
+  static constexpr std::uint32_t kReadsValues = 256, kSteps = 2048;
+
   void check_model(const char* target) {
     const gnc::ModelHeader& header = estimator_->model();
     require(gnc::is_possible(header.projection), "an accepted depth projection is possible");

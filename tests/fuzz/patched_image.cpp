@@ -48,18 +48,23 @@ PatchedImage::PatchedImage(std::vector<std::uint8_t> image) : original_(std::mov
     sections_.push_back({entry, get_u32(at + 4), get_u32(at + 8), get_u32(at + 12)});
   }
   the_image = this;
+  with_values_ = false;
+  const Section& last = sections_.back();
+  require(gnc::crc32(bytes_.data() + last.offset, last.size) != last.crc32,
+          "known_crc32.cpp stands before gnc::crc32()");
+  with_values_ = true;
 }
 
-std::size_t PatchedImage::apply(Input& input) {
+std::size_t PatchedImage::apply(Input& input, bool with_values) {
+  with_values_ = with_values;
   enum : std::uint8_t { kCorrectSections = 1, kCorrectHeader = 2, kCut = 4 };
   const std::uint8_t flags = input.u8();
-  const std::size_t size =
-      (flags & kCut) != 0 ? std::min<std::size_t>(input.u24(), bytes_.size()) : bytes_.size();
+  size_ = (flags & kCut) != 0 ? std::min<std::size_t>(input.u24(), bytes_.size()) : bytes_.size();
   for (int i = 0; i < kMostPatches && !input.empty(); ++i) patch(input);
-  if ((flags & kCorrectSections) != 0) correct_sections();
+  if (with_values && (flags & kCorrectSections) != 0) correct_sections();
   if ((flags & kCorrectHeader) != 0) correct_header();
-  forbid(bytes_.data() + size, bytes_.size() - size);
-  return size;
+  forbid(bytes_.data() + size_, bytes_.size() - size_);
+  return size_;
 }
 
 // Where: 0 the header and section table; n the nth section. What: a number of one or four bytes, once or
@@ -77,8 +82,9 @@ void PatchedImage::patch(Input& input) {
   const std::size_t room =
       size - first < static_cast<std::size_t>(width) ? 0 : (size - first - width) / step + 1;
   const std::size_t count = std::min<std::size_t>(often ? input.u24() : 1, room);
+  const std::uint32_t value = width == 4 ? input.u32() : input.u8();
   if (where > 0) sections_[where - 1].patched = true;
-  write(begin + first, step, count, width == 4 ? input.u32() : input.u8(), width);
+  if (where == 0 || with_values_) write(begin + first, step, count, value, width);
 }
 
 void PatchedImage::write(std::size_t first, std::size_t step, std::size_t count, std::uint32_t value,
@@ -111,16 +117,17 @@ void PatchedImage::correct_header() {
 
 bool PatchedImage::knows_crc32(const std::uint8_t* first, std::size_t size, std::uint32_t& crc32) const {
   const auto is_it = [&](const Section& section) {
-    return first == bytes_.data() + section.offset && size == section.size && !section.patched;
+    return first == bytes_.data() + section.offset && size == section.size;
   };
   const auto section = std::find_if(sections_.begin(), sections_.end(), is_it);
   if (section == sections_.end()) return false;
-  crc32 = section->crc32;
-  return true;
+  const bool is_wrong = section->patched || section == sections_.end() - 1;
+  crc32 = with_values_ || !is_wrong ? section->crc32 : ~section->crc32;
+  return !with_values_ || !section->patched;
 }
 
 void PatchedImage::undo() {
-  allow(bytes_.data(), bytes_.size());
+  allow(bytes_.data() + size_, bytes_.size() - size_);
   for (const Range& range : patched_) {
     std::memcpy(bytes_.data() + range.first, original_.data() + range.first, range.size);
   }

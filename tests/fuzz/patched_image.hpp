@@ -18,11 +18,15 @@ class PatchedImage {
   // Reads the patches from the input, applies them and, where the input wants it, corrects the CRCs of the
   // sections and of the header, so that the reader's checks of values are reached. Gives the size that the
   // reader is to be told: mostly the image's; the bytes behind it are out of bounds (AddressSanitizer).
-  std::size_t apply(Input& input);
+  // Without `with_values` the sections stay as they are, and their CRCs are taken for wrong: the last one's
+  // and those of sections that a patch would have touched. So the reader never comes to the values, which
+  // take a thousand times longer.
+  std::size_t apply(Input& input, bool with_values);
   void undo();
 
   const std::uint8_t* data() const { return bytes_.data(); }
-  // The CRC-32 of these bytes, if they are a section that no patch has touched.
+  // What is to be taken for the CRC-32 of these bytes, if they are a section: see apply(). False: work it
+  // out.
   bool knows_crc32(const std::uint8_t* first, std::size_t size, std::uint32_t& crc32) const;
 
  private:
@@ -44,6 +48,8 @@ class PatchedImage {
   std::vector<std::uint8_t> bytes_;
   std::vector<Section> sections_;
   std::vector<Range> patched_;
+  bool with_values_ = true;
+  std::size_t size_ = 0;  // that the reader was told
 };
 
 // The one that known_crc32.cpp asks; it lives as long as the program.

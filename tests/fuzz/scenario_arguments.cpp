@@ -19,10 +19,16 @@ struct Given {
   std::string speed = "max";
 };
 
+// The options are made once for many command lines; what they fill is as new for each.
 bool parse(CommandLine& line, Given& given) {
-  CLI::App app;
-  sim::add_evaluate_options(app, given.evaluate);
-  app.add_option("--speed", given.speed)->check(sim::number(0.1, 1000.0));
+  static Reused reused([&given] {
+    auto app = std::make_unique<CLI::App>();
+    sim::add_evaluate_options(*app, given.evaluate);
+    app->add_option("--speed", given.speed)->check(sim::number(0.1, 1000.0));
+    return app;
+  });
+  CLI::App& app = reused.get();
+  given = {};
   try {
     app.parse(line.argc(), line.argv());
     sim::require_bearable_length(given.evaluate.scenario);
@@ -96,7 +102,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tumblesight;
   using namespace tumblesight::fuzz;
   CommandLine line(Input(data, size));
-  Given given;
+  static Given given;
   if (!parse(line, given)) return 0;
   check_numbers(given);
   check_report_name(given);
