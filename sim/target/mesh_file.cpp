@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -20,6 +19,8 @@
 
 #include <assimp/Importer.hpp>
 #endif
+
+#include "sim/target/gltf_check.hpp"
 
 namespace tumblesight::sim {
 
@@ -73,34 +74,14 @@ void check_readable(const std::string& path) {
   std::fclose(file);
 }
 
-// Assimp reserves whatever memory a GLB file's header asks for, and loops over one that has none.
-void check_glb(const std::string& path) {
-  std::array<std::uint8_t, 16> header{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(header.data()), header.size());
-  if (!file.good() || !std::equal(header.begin(), header.begin() + 4, "glTF")) {
-    refuse(path, "cannot be read: it does not begin as a GLB file does");
-  }
-  const auto u32 = [&header](std::size_t at) {
-    return std::uint32_t{header[at]} | std::uint32_t{header[at + 1]} << 8 |
-           std::uint32_t{header[at + 2]} << 16 | std::uint32_t{header[at + 3]} << 24;
-  };
-  const std::uintmax_t size = std::filesystem::file_size(path);
-  if (u32(8) > size || u32(12) > size)
-    refuse(path, "cannot be read: its parts are larger than the file; export it again");
-}
-
-void check_gltf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  char first = 0;
-  file >> first;
-  if (first != '{') refuse(path, "cannot be read: it does not begin as a glTF file does, with {");
-}
-
 void check_start(const std::string& path) {
   const std::string extension = extension_of(path);
-  if (extension == ".glb") check_glb(path);
-  if (extension == ".gltf") check_gltf(path);
+  try {
+    if (extension == ".glb") check_glb(path);
+    if (extension == ".gltf") check_gltf(path);
+  } catch (const std::exception& error) {
+    refuse(path, error.what());
+  }
 }
 
 void check_vertices(const std::string& path, const std::vector<Eigen::Vector3f>& vertices) {
