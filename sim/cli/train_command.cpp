@@ -16,6 +16,7 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/quantize_command.hpp"
 #include "sim/cli/surfaces.hpp"
+#include "sim/scenario/sequence.hpp"
 #include "sim/target/targets.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/one_thread.hpp"
@@ -31,7 +32,7 @@ std::atomic<bool> stop_requested{false};
 struct TrainOptions {
   std::string target = "near_shoemaker";
   SurfaceArguments surfaces;
-  std::string conditions = "all";
+  std::vector<std::string> conditions = {"all"};
   std::string device = "auto";
   std::string precision = "auto";
   TrainingSettings settings;
@@ -54,6 +55,28 @@ Eigen::Matrix3d inertia_of(const TrainOptions& options) {
   if (std::find(known.begin(), known.end(), options.target) != known.end())
     return inertia_kg_m2(options.target);
   return Eigen::Matrix3d::Identity();
+}
+
+std::vector<Condition> conditions_of(const std::vector<std::string>& words) {
+  std::vector<Condition> conditions;
+  for (const std::string& word : words) {
+    std::vector<Condition> more;
+    if (word == "all") {
+      more = all_conditions();
+    } else if (word == "paper") {
+      more = paper_conditions();
+    } else {
+      more = {condition_from(word)};
+    }
+    conditions.insert(conditions.end(), more.begin(), more.end());
+  }
+  return conditions;
+}
+
+std::vector<std::string> condition_words() {
+  std::vector<std::string> words = condition_names();
+  words.insert(words.begin(), {"all", "paper"});
+  return words;
 }
 
 void choose_device(TrainOptions& options) {
@@ -100,8 +123,8 @@ int train(TrainOptions& options) {
   std::signal(SIGTERM, [](int) { stop_requested = true; });
 
   const std::vector<TriangleMesh> meshes = load_surfaces(options.surfaces, options.target);
-  const TrainingTargets targets = make_training_targets(
-      meshes, options.conditions == "paper" ? paper_conditions() : all_conditions(), inertia_of(options));
+  const TrainingTargets targets =
+      make_training_targets(meshes, conditions_of(options.conditions), inertia_of(options));
 
   torch::manual_seed(options.settings.seed);
   Cnn cnn;
@@ -141,8 +164,10 @@ void add_train_command(CLI::App& app) {
       ->required();
   command
       ->add_option("--conditions", options->conditions,
-                   "What to train on: all, or the paper's rule, nominal and degraded only")
-      ->check(one_of({"all", "paper"}))
+                   "What to train on, taking turns: all, paper (nominal and degraded only), single ones,\n"
+                   "or several: all,degraded sees degraded frames more often")
+      ->delimiter(',')
+      ->check(one_of(condition_words()))
       ->capture_default_str();
   command
       ->add_option("--start-from", settings.start_from,
