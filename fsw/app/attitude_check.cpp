@@ -61,4 +61,10 @@ bool AttitudeCheck::jumps(const gnc::QuaternionQ30& q_lrf_trf, std::uint32_t lim
   return jumped;
 }
 
+bool AttitudeCheck::repeats(const gnc::QuaternionQ30& q_lrf_trf_single_frame) {
+  const bool repeated = q_lrf_trf_single_frame == last_single_frame_;
+  last_single_frame_ = q_lrf_trf_single_frame;
+  return repeated;
+}
+
 }  // namespace tumblesight::fsw

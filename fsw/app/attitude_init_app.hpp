@@ -48,7 +48,7 @@ enum class Validity : std::uint8_t {
   kStandby,       // not in RUN
   kNoFrame,       // no frame came in this cycle
   kFrameRefused,  // a frame came and was refused; the event says why
-  kDoubtful,      // there is an attitude, but it expects too large an error, or has jumped
+  kDoubtful,      // there is an attitude, but it expects too large an error, has jumped, or is of a frozen frame
 };
 
 struct StepInputs {

@@ -146,13 +146,15 @@ void AttitudeInitApp<N>::report_attitude(const gnc::RangeImage& frame, StepOutpu
     }
     const bool large = estimate_.predicted_error_urad > state.limit(Limit::kPredictedError_urad);
     const bool jumps = state.attitude_check.jumps(estimate_.q_lrf_trf, state.limit(Limit::kAttitudeJump_urad));
+    const bool repeats = state.attitude_check.repeats(estimate_.q_lrf_trf_single_frame);
     if (large) state.faults_seen |= bit_of(Fault::kErrorLarge);
     if (jumps) state.faults_seen |= bit_of(Fault::kAttitudeJump);
-    if (large || jumps) {
+    if (repeats) state.faults_seen |= bit_of(Fault::kFrameFrozen);
+    if (large || jumps || repeats) {
       validity = Validity::kDoubtful;
       count(state.counters.attitudes_doubtful);
       report(EventId::kAttitudeDoubtful, bits_of(frame.sequence_number),
-             static_cast<std::int32_t>(estimate_.predicted_error_urad / 1000U), jumps ? 1 : 0);
+             static_cast<std::int32_t>(estimate_.predicted_error_urad / 1000U), (jumps ? 1 : 0) + (repeats ? 2 : 0));
     }
   }
   hal::AttitudeReport& attitude = outputs.attitude;

@@ -38,7 +38,7 @@ enum class EventId : std::uint16_t {
 
   kEstimatorResetByGap = 40,    // [exposure gap, frames since the last reset, -]
   kEstimatorResetByFault = 41,  // [Fault, -, -]
-  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1 if it jumped]
+  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: it jumped + 2: a frozen frame]
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now
   kFaultPersists = 51,  // [Fault, Response taken, cycles of its rule]

@@ -16,8 +16,9 @@ enum class Fault : std::uint8_t {
   kOutage = 5,            // no usable frame, in RUN
   kDeadline = 6,          // a step beyond its budget
   kSlip = 7,              // releases of the task that had passed before it was ready
+  kFrameFrozen = 8,       // the ranges of the frame before, under a new number
 };
-inline constexpr int kFaults = 8;
+inline constexpr int kFaults = 9;
 
 // Faults that depend on how fast the machine is, not on what came in.
 constexpr bool is_of_timing(Fault fault) {
@@ -50,6 +51,7 @@ inline constexpr std::array<FaultRule, kFaults> kFaultRules{{
     {Fault::kOutage, 4, Response::kFlag, true},
     {Fault::kDeadline, 3, Response::kFlag, true},
     {Fault::kSlip, 3, Response::kFlag, true},
+    {Fault::kFrameFrozen, 3, Response::kFlag, true},
 }};
 
 }  // namespace config

@@ -84,6 +84,20 @@ TEST(AttitudeCheck, LimitOfAHalfTurnSeesNoJump) {
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(check.jumps(q30(random_attitude(engine)), 3'141'593));
 }
 
+TEST(AttitudeCheck, TheSameBitsTwiceAreARepetition) {
+  AttitudeCheck check;
+  EXPECT_FALSE(check.repeats(gnc::kIdentityQ30)) << "the first has none before it";
+  EXPECT_TRUE(check.repeats(gnc::kIdentityQ30));
+  for (std::size_t i = 0; i < 4; ++i) {
+    gnc::QuaternionQ30 other = gnc::kIdentityQ30;
+    --other[i];
+    EXPECT_FALSE(check.repeats(other)) << "one bit";
+    EXPECT_TRUE(check.repeats(other));
+  }
+  check.forget();
+  EXPECT_FALSE(check.repeats(gnc::kIdentityQ30));
+}
+
 TEST(IsUnit, OfUnitQuaternionsAndNothingElse) {
   EXPECT_TRUE(is_unit(gnc::kIdentityQ30));
   EXPECT_TRUE(is_unit(q30(turned(1.0, {1, 2, 3}))));

@@ -141,8 +141,8 @@ class DoubtfulAttitudes : public Supervision {
 TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillGiven) {
   set_limit(Limit::kAttitudeJump_urad, 3'141'593);
   set_limit(Limit::kPredictedError_urad, 17'453);
-  for (int cycle = 1; cycle <= 10; ++cycle) {
-    step_scene(1);
+  for (unsigned cycle = 1; cycle <= 10; ++cycle) {
+    step_scene(cycle);
     ASSERT_GT(out->attitude.predicted_error_urad, 17'453U) << "the test needs a network that is in doubt";
     EXPECT_EQ(validity(), Validity::kDoubtful);
     EXPECT_GT(out->attitude.sequence_number, 0U);
@@ -151,7 +151,7 @@ TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillGiven) {
   }
   EXPECT_EQ(out->housekeeping.attitudes_doubtful, 10U);
   set_limit(Limit::kPredictedError_urad, 3'141'593);
-  step_scene(1);
+  step_scene(11);
   EXPECT_EQ(validity(), Validity::kValid);
 }
 
@@ -167,6 +167,26 @@ TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceWhenTheyGoOn) {
   EXPECT_EQ(argument(EventId::kEstimatorResetByFault, 0), static_cast<int>(Fault::kAttitudeJump));
   EXPECT_GE(doubtful, 3);
   EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Verifies TS-FDIR-170.
+TEST_F(DoubtfulAttitudes, FramesThatRepeatTheLastOneAreFlaggedAndToldWhenTheyGoOn) {
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  set_limit(Limit::kAttitudeJump_urad, 3'141'593);
+  gnc::RangeImage frame = next_frame();
+  step_frame(frame);
+  EXPECT_EQ(validity(), Validity::kValid);
+  for (int repetition = 1; repetition <= 3; ++repetition) {
+    ++frame.sequence_number;
+    frame.exposure_time_ns = next_time_ns();
+    step_frame(frame);
+    EXPECT_EQ(validity(), Validity::kDoubtful);
+    EXPECT_EQ(argument(EventId::kAttitudeDoubtful, 2), 2);
+    EXPECT_EQ(persists(Fault::kFrameFrozen), repetition == 3);
+  }
+  step_frame(good_frame(frame.sequence_number + 1, next_time_ns(), 2));
+  EXPECT_EQ(validity(), Validity::kValid) << "the sensor looks again";
+  EXPECT_EQ(out->housekeeping.attitudes_doubtful, 3U);
 }
 
 // Radiation strikes between the estimator and the check of what it gave: at the look at the stopwatch that lies there.
