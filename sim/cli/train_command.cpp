@@ -16,7 +16,6 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/quantize_command.hpp"
 #include "sim/cli/surfaces.hpp"
-#include "sim/scenario/sequence.hpp"
 #include "sim/target/targets.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/one_thread.hpp"
@@ -55,28 +54,6 @@ Eigen::Matrix3d inertia_of(const TrainOptions& options) {
   if (std::find(known.begin(), known.end(), options.target) != known.end())
     return inertia_kg_m2(options.target);
   return Eigen::Matrix3d::Identity();
-}
-
-std::vector<Condition> conditions_of(const std::vector<std::string>& words) {
-  std::vector<Condition> conditions;
-  for (const std::string& word : words) {
-    std::vector<Condition> more;
-    if (word == "all") {
-      more = all_conditions();
-    } else if (word == "paper") {
-      more = paper_conditions();
-    } else {
-      more = {condition_from(word)};
-    }
-    conditions.insert(conditions.end(), more.begin(), more.end());
-  }
-  return conditions;
-}
-
-std::vector<std::string> condition_words() {
-  std::vector<std::string> words = condition_names();
-  words.insert(words.begin(), {"all", "paper"});
-  return words;
 }
 
 void choose_device(TrainOptions& options) {
@@ -124,7 +101,7 @@ int train(TrainOptions& options) {
 
   const std::vector<TriangleMesh> meshes = load_surfaces(options.surfaces, options.target);
   const TrainingTargets targets =
-      make_training_targets(meshes, conditions_of(options.conditions), inertia_of(options));
+      make_training_targets(meshes, training_conditions(options.conditions), inertia_of(options));
 
   torch::manual_seed(options.settings.seed);
   Cnn cnn;
@@ -167,7 +144,7 @@ void add_train_command(CLI::App& app) {
                    "What to train on, taking turns: all, paper (nominal and degraded only), single ones,\n"
                    "or several: all,degraded sees degraded frames more often")
       ->delimiter(',')
-      ->check(one_of(condition_words()))
+      ->check(one_of(training_condition_words()))
       ->capture_default_str();
   command
       ->add_option("--start-from", settings.start_from,

@@ -134,10 +134,8 @@ void check_json(const std::string& text) {
 void check_gltf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos ||
-      text[text.find_first_not_of(" \t\r\n")] != '{') {
-    fail("it does not begin as a glTF file does, with {");
-  }
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos || text[first] != '{') fail("it does not begin as a glTF file does, with {");
   check_json(text);
 }
 

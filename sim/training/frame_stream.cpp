@@ -101,6 +101,25 @@ std::vector<Condition> paper_conditions() {
   return {Condition::kNominal, Condition::kDegraded};
 }
 
+std::vector<std::string> training_condition_words() {
+  std::vector<std::string> words{"all", "paper"};
+  for (const std::string& name : condition_names()) {
+    if (name != to_string(Condition::kStress)) words.push_back(name);
+  }
+  return words;
+}
+
+std::vector<Condition> training_conditions(const std::vector<std::string>& words) {
+  std::vector<Condition> conditions;
+  for (const std::string& word : words) {
+    const std::vector<Condition> more = word == "all"     ? all_conditions()
+                                        : word == "paper" ? paper_conditions()
+                                                          : std::vector<Condition>{condition_from(word)};
+    conditions.insert(conditions.end(), more.begin(), more.end());
+  }
+  return conditions;
+}
+
 std::uint64_t number_of(const std::vector<Condition>& conditions) {
   std::uint64_t number = 0;
   for (const Condition condition : conditions) number = mix(number, static_cast<std::uint64_t>(condition));

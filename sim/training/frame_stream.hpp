@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <string>
 #include <vector>
 
 #include "gnc/attitude/motion.hpp"
@@ -29,6 +30,10 @@ struct TrainingTargets {
 // What the shipped networks are trained on, and the paper's rule: nominal and degraded frames only.
 std::vector<Condition> all_conditions();
 std::vector<Condition> paper_conditions();
+// By words, one after the other: "all", "paper", or the name of a condition, which for the command line is any
+// but stress: that is for tests only. Throws std::invalid_argument for what is none.
+std::vector<std::string> training_condition_words();
+std::vector<Condition> training_conditions(const std::vector<std::string>& words);
 std::uint64_t number_of(const std::vector<Condition>& conditions);  // names them, for a fingerprint
 
 // Throws std::runtime_error that names a mesh of which the sensor never sees enough, and

@@ -97,5 +97,17 @@ TEST(FrameStream, TheListsOfConditionsAreToldApart) {
   EXPECT_EQ(std::count(all.begin(), all.end(), Condition::kStress), 0) << "the stress test is for tests only";
 }
 
+TEST(TrainingConditions, AreThoseOfTheWordsInTheirOrder) {
+  EXPECT_EQ(training_conditions({"all"}), all_conditions());
+  EXPECT_EQ(training_conditions({"paper"}), paper_conditions());
+  std::vector<Condition> more = all_conditions();
+  more.insert(more.end(), {Condition::kDegraded, Condition::kOffset});
+  EXPECT_EQ(training_conditions({"all", "degraded", "offset"}), more);
+  EXPECT_THROW(training_conditions({"all", "some"}), std::invalid_argument);
+  const std::vector<std::string> words = training_condition_words();
+  for (const std::string& word : words) EXPECT_FALSE(training_conditions({word}).empty());
+  EXPECT_EQ(std::count(words.begin(), words.end(), "stress"), 0) << "the stress test is for tests only";
+}
+
 }  // namespace
 }  // namespace tumblesight::sim
