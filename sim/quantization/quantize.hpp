@@ -8,7 +8,7 @@
 
 #include "gnc/rcnn/model_image.hpp"
 #include "sim/quantization/calibration.hpp"
-#include "sim/quantization/rounding.hpp"
+#include "sim/quantization/statistics.hpp"
 
 namespace tumblesight::sim {
 
@@ -22,30 +22,9 @@ struct QuantizedNetwork {
   Scales scales;
 };
 
-// What the layers of the float32 network met with over the sequences.
-struct Statistics {
-  std::map<std::string, std::vector<double>> largest;  // of every channel of every hidden layer
-  std::map<std::string, InputStatistics> inputs;       // of every layer
-};
-
-// Collects them, sequence by sequence.
-class Calibration {
- public:
-  // `weights` must outlive it.
-  Calibration(const gnc::NetworkWeights<gnc::Float32>& weights, const gnc::MotionLaws<float>& laws);
-  void add(const ImageSequence& sequence);
-  const Statistics& statistics() const { return statistics_; }
-
- private:
-  const gnc::NetworkWeights<gnc::Float32>& weights_;
-  gnc::MotionLaws<float> laws_;
-  Statistics statistics_;
-};
-
-// Symmetric weights of 8 bits with a scale for each output channel, into which the scales of the inputs have been
-// drawn beforehand; powers of two where the layer's output has a meaning. What rounding the weights adds to a sum on
-// average is taken off its bias. Each activation's scale is its channel's
-// weights' times a power of two.
+// Symmetric weights of 8 bits with a scale for each output channel (scales.hpp), into which the scales of the inputs have
+// been drawn beforehand; powers of two where the layer's output has a meaning. What rounding the weights adds to a sum on
+// average is taken off its bias. Each activation's scale is its channel's sum's times a power of two.
 std::unique_ptr<QuantizedNetwork> quantize(const gnc::NetworkWeights<gnc::Float32>& weights, const Statistics& statistics);
 
 struct LayerReport {

@@ -28,6 +28,10 @@ Eigen::VectorXd InputStatistics::mean() const {
   return sum_ / std::max(1.0, count_);
 }
 
+Eigen::VectorXd InputStatistics::variance() const {
+  return squares_.diagonal() / std::max(1.0, count_) - mean().cwiseAbs2();
+}
+
 Eigen::MatrixXd InputStatistics::covariance() const {
   const Eigen::VectorXd average = mean();
   const Eigen::MatrixXd full = squares_.selfadjointView<Eigen::Upper>();

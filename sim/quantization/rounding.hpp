@@ -17,6 +17,7 @@ class InputStatistics {
   int inputs() const { return static_cast<int>(sum_.size()); }
   Eigen::VectorXd mean() const;
   Eigen::MatrixXd covariance() const;
+  Eigen::VectorXd variance() const;
 
  private:
   double count_ = 0.0;

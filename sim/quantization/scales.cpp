@@ -1,0 +1,86 @@
+#include "sim/quantization/scales.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr int kLargestShift = 24;
+constexpr int kStepsToADoubling = 16;
+// Of the error of weights rounded one by one, what stays when others make up for it (measured; 0.1 and 1 give
+// worse networks).
+constexpr double kNotMadeUpFor = 0.3;
+// A power of two may be so many times smaller than what the largest weight asks for.
+constexpr int kHalvings = 2;
+
+// Mean square of a channel's sum in units of the sum when every weight is rounded on its own.
+double rounding_of_weights(const FloatLayer& layer, const InputStatistics& inputs) {
+  const Eigen::VectorXd variance = inputs.variance();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < layer.rows.size(); ++i) {
+    sum += variance[static_cast<Eigen::Index>(i)] / (layer.input_scale[i] * layer.input_scale[i]);
+  }
+  return sum / 12.0;
+}
+
+}  // namespace
+
+OutputScales scales_of_many_bits(const FloatLayer& layer, const std::vector<Distribution>& outputs,
+                                 double largest_integer) {
+  OutputScales scales;
+  for (int c = 0; c < layer.channels; ++c) {
+    const double sum = largest_weight(layer, c) / kLargestWeight;
+    const double steps = outputs.at(c).largest() / sum / largest_integer;
+    const int shift = steps > 2.0 ? static_cast<int>(std::ceil(std::log2(steps))) : 1;
+    scales.sum.push_back(sum);
+    scales.shift.push_back(std::min(shift, kLargestShift));
+  }
+  return scales;
+}
+
+OutputScales scales_of_few_bits(const FloatLayer& layer, const InputStatistics& inputs,
+                                const std::vector<Distribution>& outputs, double largest_integer) {
+  const double of_weights = kNotMadeUpFor * rounding_of_weights(layer, inputs);
+  OutputScales scales;
+  for (int c = 0; c < layer.channels; ++c) {
+    double best_sum = 0.0, least = std::numeric_limits<double>::infinity();
+    int best_shift = 1;
+    for (int i = 0; i < kLargestShift * kStepsToADoubling; ++i) {
+      const double sum = largest_weight(layer, c) / kLargestWeight *
+                         std::exp2(i % kStepsToADoubling / double{kStepsToADoubling});
+      const int shift = 1 + i / kStepsToADoubling;
+      const double loss =
+          of_weights * sum * sum + outputs.at(c).squared_loss(std::ldexp(sum, shift), largest_integer);
+      if (loss >= least) continue;
+      least = loss;
+      best_sum = sum;
+      best_shift = shift;
+    }
+    scales.sum.push_back(best_sum);
+    scales.shift.push_back(best_shift);
+  }
+  return scales;
+}
+
+std::vector<double> powers_of_two(const FloatLayer& layer, const InputStatistics& inputs) {
+  std::vector<double> scales;
+  for (int c = 0; c < layer.channels; ++c) {
+    scales.push_back(std::exp2(std::ceil(std::log2(largest_weight(layer, c) / kLargestWeight))));
+  }
+  Eigen::VectorXd least = integers_of(layer, scales, inputs).squared_loss;
+  std::vector<double> smaller = scales;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    for (double& scale : smaller) scale /= 2.0;
+    const Eigen::VectorXd loss = integers_of(layer, smaller, inputs).squared_loss;
+    for (int c = 0; c < layer.channels; ++c) {
+      if (loss[c] >= least[c]) continue;
+      least[c] = loss[c];
+      scales[c] = smaller[c];
+    }
+  }
+  return scales;
+}
+
+}  // namespace tumblesight::sim

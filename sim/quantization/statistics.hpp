@@ -1,0 +1,33 @@
+// What the layers of the float32 network meet with.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/quantization/calibration.hpp"
+#include "sim/quantization/distribution.hpp"
+#include "sim/quantization/rounding.hpp"
+
+namespace tumblesight::sim {
+
+struct Statistics {
+  std::map<std::string, std::vector<Distribution>> outputs;  // of every channel of every hidden layer
+  std::map<std::string, InputStatistics> inputs;             // of every layer
+};
+
+// Collects it, sequence by sequence.
+class Calibration {
+ public:
+  // `weights` must outlive it.
+  Calibration(const gnc::NetworkWeights<gnc::Float32>& weights, const gnc::MotionLaws<float>& laws);
+  void add(const ImageSequence& sequence);
+  const Statistics& statistics() const { return statistics_; }
+
+ private:
+  const gnc::NetworkWeights<gnc::Float32>& weights_;
+  gnc::MotionLaws<float> laws_;
+  Statistics statistics_;
+};
+
+}  // namespace tumblesight::sim
