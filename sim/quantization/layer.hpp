@@ -25,14 +25,15 @@ struct FloatLayer {
 
 void add_rows(FloatLayer& layer, const float* weights, std::size_t inputs);
 
-// One weight times one unit of its input; of a channel without weights next to nothing.
+// The largest weight times the unit of its input; never 0, so that a channel without weights has a scale too.
 double largest_weight(const FloatLayer& layer, int channel);
 
 struct IntegerLayer {
   Eigen::MatrixXd weight;  // [input][channel]
-  Eigen::VectorXd
-      rounded_away;  // of each channel's sum on average, in its units: for the bias to make up for
-  Eigen::VectorXd squared_loss;  // mean square of what else each channel's sum lost, in real units
+  // Of each channel's sum on average, in its units: for the bias to make up for.
+  Eigen::VectorXd rounded_away;
+  // Mean square of what else each channel's sum lost, in real units.
+  Eigen::VectorXd squared_loss;
 };
 // `scales`: what a unit of each channel's sum is worth.
 IntegerLayer integers_of(const FloatLayer& layer, const std::vector<double>& scales,

@@ -13,7 +13,6 @@ using gnc::FixedPoint;
 using gnc::Float32;
 namespace {
 
-constexpr double kLargestUint8 = 255.0;
 constexpr double kLargestInt16 = 32767.0 / 2.0;  // half of it: frames other than the calibration's may go beyond
 constexpr double kQ15 = 1.0 / 32768.0;
 
@@ -101,7 +100,7 @@ class Quantizer {
     return layer;
   }
 
-  // An 8-bit convolution's outputs, and conv4's, whose means of four have bits to spare.
+  // One with outputs of 8 bits; the last one's means of four have bits to spare.
   template <class From, class To>
   void convolution(const std::string& name, const From& from, const std::string& before, To& to) {
     const FloatLayer layer = layer_of(name, from, unit_of(before, 9));
@@ -163,53 +162,12 @@ class Quantizer {
   QuantizedNetwork& to_;
 };
 
-double largest_integer(const std::string& layer) {
-  if (layer == "conv4") return 4.0 * gnc::kLargestOfFour;
-  return layer.compare(0, 4, "conv") == 0 ? kLargestUint8 : 32767.0;
-}
-
-struct Tally {
-  double largest = 0.0, signal = 0.0, noise = 0.0, saturated = 0.0, count = 0.0;
-};
-
 }  // namespace
 
 std::unique_ptr<QuantizedNetwork> quantize(const gnc::NetworkWeights<Float32>& weights, const Statistics& statistics) {
   auto network = std::make_unique<QuantizedNetwork>();
   Quantizer(weights, statistics, *network).run();
   return network;
-}
-
-std::vector<LayerReport> compare(const gnc::NetworkWeights<Float32>& reference, const QuantizedNetwork& network,
-                                 const gnc::Inertia<gnc::Fixed>& inertia,
-                                 const std::vector<ImageSequence>& sequences) {
-  const auto float_laws = gnc::motion_laws<float>(gnc::converted<float>(inertia));
-  const auto fixed_laws = gnc::motion_laws<gnc::Fixed>(inertia);
-  std::map<std::string, Tally> tallies;
-  for (const ImageSequence& sequence : sequences) {
-    const Observations expected = observe<Float32>(reference, float_laws, sequence);
-    const Observations found = observe<FixedPoint>(network.weights, fixed_laws, sequence);
-    for (const auto& [layer, values] : expected) {
-      Tally& tally = tallies[layer];
-      const std::vector<double>& scales = network.scales.at(layer);
-      const std::vector<double>& integers = found.at(layer);
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        const double difference = integers[i] * scales[i % scales.size()] - values[i];
-        tally.largest = std::max(tally.largest, std::abs(values[i]));
-        tally.signal += values[i] * values[i];
-        tally.noise += difference * difference;
-        tally.saturated += std::abs(integers[i]) >= largest_integer(layer) ? 1.0 : 0.0;
-        tally.count += 1.0;
-      }
-    }
-  }
-  std::vector<LayerReport> report;
-  for (const char* layer : {"conv1", "conv2", "conv3", "conv4", "dense1", "dense2", "lstm", "head1"}) {
-    const Tally& tally = tallies[layer];
-    report.push_back({layer, tally.largest, tally.saturated / std::max(1.0, tally.count),
-                      10.0 * std::log10(std::max(1e-30, tally.signal) / std::max(1e-30, tally.noise))});
-  }
-  return report;
 }
 
 }  // namespace tumblesight::sim

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gnc/rcnn/model_image.hpp"
-#include "sim/quantization/calibration.hpp"
 #include "sim/quantization/statistics.hpp"
 
 namespace tumblesight::sim {
@@ -26,15 +25,5 @@ struct QuantizedNetwork {
 // been drawn beforehand; powers of two where the layer's output has a meaning. What rounding the weights adds to a sum on
 // average is taken off its bias. Each activation's scale is its channel's sum's times a power of two.
 std::unique_ptr<QuantizedNetwork> quantize(const gnc::NetworkWeights<gnc::Float32>& weights, const Statistics& statistics);
-
-struct LayerReport {
-  std::string layer;
-  double largest = 0.0;     // of the float32 network's outputs
-  double saturated = 0.0;   // share of the fixed-point outputs at the end of their range
-  double snr_db = 0.0;      // float32's output over the difference
-};
-// One line a hidden layer, over sequences that should not be those of the ranges.
-std::vector<LayerReport> compare(const gnc::NetworkWeights<gnc::Float32>& reference, const QuantizedNetwork& network,
-                                 const gnc::Inertia<gnc::Fixed>& inertia, const std::vector<ImageSequence>& sequences);
 
 }  // namespace tumblesight::sim

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim/evaluation/metrics.hpp"
+#include "sim/quantization/layer_report.hpp"
 #include "sim/quantization/model_file.hpp"
-#include "sim/quantization/quantize.hpp"
 #include "sim/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {

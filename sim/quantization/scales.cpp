@@ -45,18 +45,19 @@ OutputScales scales_of_few_bits(const FloatLayer& layer, const InputStatistics& 
   const double of_weights = kNotMadeUpFor * rounding_of_weights(layer, inputs);
   OutputScales scales;
   for (int c = 0; c < layer.channels; ++c) {
-    double best_sum = 0.0, least = std::numeric_limits<double>::infinity();
+    const double smallest = largest_weight(layer, c) / kLargestWeight;
+    double best_sum = smallest, least = std::numeric_limits<double>::infinity();
     int best_shift = 1;
-    for (int i = 0; i < kLargestShift * kStepsToADoubling; ++i) {
-      const double sum = largest_weight(layer, c) / kLargestWeight *
-                         std::exp2(i % kStepsToADoubling / double{kStepsToADoubling});
-      const int shift = 1 + i / kStepsToADoubling;
-      const double loss =
-          of_weights * sum * sum + outputs.at(c).squared_loss(std::ldexp(sum, shift), largest_integer);
-      if (loss >= least) continue;
-      least = loss;
-      best_sum = sum;
-      best_shift = shift;
+    for (int shift = 1; shift <= kLargestShift; ++shift) {
+      for (int step = 0; step < kStepsToADoubling; ++step) {
+        const double sum = smallest * std::exp2(step / double{kStepsToADoubling});
+        const double loss =
+            of_weights * sum * sum + outputs.at(c).squared_loss(std::ldexp(sum, shift), largest_integer);
+        if (loss >= least) continue;
+        least = loss;
+        best_sum = sum;
+        best_shift = shift;
+      }
     }
     scales.sum.push_back(best_sum);
     scales.shift.push_back(best_shift);

@@ -8,6 +8,8 @@
 
 namespace tumblesight::sim {
 
+inline constexpr double kLargestUint8 = 255.0;
+
 struct OutputScales {
   std::vector<double> sum;
   std::vector<int> shift;  // a unit of the output is one of the sum times 2^shift

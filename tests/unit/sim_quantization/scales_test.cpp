@@ -17,7 +17,6 @@ class ScalesTest : public ::testing::Test {
     add_rows(layer, weights.data(), 2);
     for (int i = 0; i < 100; ++i) inputs.add({i % 2 == 0 ? 1.0 : -1.0, i % 4 < 2 ? 1.0 : -1.0});
   }
-  double largest_weight_times_scale(double scale) const { return largest_weight(layer, 0) / scale; }
 
   std::array<float, 2> weights{1.0F, -0.25F};
   std::array<float, 1> bias{0.0F};
@@ -41,7 +40,7 @@ TEST_F(ScalesTest, OfFewBitsDoNotGiveTheirBitsToARareLargeValue) {
   const OutputScales scales = scales_of_few_bits(layer, inputs, {outputs}, 255.0);
   const double last = 255.0 * std::ldexp(scales.sum[0], scales.shift[0]);
   EXPECT_NEAR(last, 13.2, 1.0);  // where d/dT of T^2 / (12 * 255^2) and of 1e-6 * (30 - T)^2 cancel
-  EXPECT_LE(largest_weight_times_scale(scales.sum[0]), kLargestWeight + 1e-9);
+  EXPECT_LE(largest_weight(layer, 0) / scales.sum[0], kLargestWeight + 1e-9);
 }
 
 TEST_F(ScalesTest, OfFewBitsUseAllOfThemWhereWeightsCanSpareSome) {
