@@ -9,11 +9,13 @@ namespace tumblesight::hal {
 // A telecommand as it came in, with its security trailer; fsw/app/telecommand.hpp says what the bytes mean.
 struct CommandPacket {
   static constexpr int kMaxBytes = 1060;
-  std::uint16_t size = 0;  // a greater one than kMaxBytes stays visible to the application, which refuses the packet
+  std::uint16_t size =
+      0;  // a greater one than kMaxBytes stays visible to the application, which refuses the packet
   std::array<std::uint8_t, kMaxBytes> bytes{};
 };
 
-// Answer to one cycle. Quaternions scalar first (w, x, y, z), TRF to LRF, unit, with 30 bits behind the point.
+// Answer to one cycle. Quaternions scalar first (w, x, y, z), TRF to LRF, unit, with 30 bits behind the
+// point.
 struct AttitudeReport {
   std::int64_t time_ns = 0;           // time of the cycle
   std::int64_t exposure_time_ns = 0;  // of the frame that the attitude belongs to
@@ -33,10 +35,10 @@ struct Housekeeping {
   static constexpr int kBanks = 2;
 
   std::int64_t time_ns = 0;
-  std::uint8_t mode = 0;              // fsw::Mode
-  std::uint8_t safe_cause = 0;        // fsw::Cause that led to SAFE last; 0: none since start
-  std::uint8_t safe_fault = 0;        // fsw::Fault, if the cause is one
-  std::uint32_t faults_persisting = 0;  // bit n: fsw::Fault n
+  std::uint8_t mode = 0;                 // fsw::Mode
+  std::uint8_t safe_cause = 0;           // fsw::Cause that led to SAFE last; 0: none since start
+  std::uint8_t safe_fault = 0;           // fsw::Fault, if the cause is one
+  std::uint32_t faults_persisting = 0;   // bit n: fsw::Fault n
   std::uint32_t responses_disabled = 0;  // likewise
   std::uint32_t cycles = 0;
 
@@ -47,7 +49,8 @@ struct Housekeeping {
 
   std::uint32_t frames_used = 0;
   std::uint32_t frames_missing = 0;
-  std::uint32_t frames_refused = 0;    // all refusals: the kinds below, and frames of the cycle that lost the model
+  std::uint32_t frames_refused =
+      0;  // all refusals: the kinds below, and frames of the cycle that lost the model
   std::uint32_t frames_duplicate = 0;  // sequence number repeated
   std::uint32_t frames_stale = 0;      // exposure too old, in the future, or not after the previous one
   std::uint32_t frames_bad = 0;        // empty, flat, wrong ray count, field of view or size
@@ -61,9 +64,9 @@ struct Housekeeping {
   std::uint32_t events_waiting = 0;
   std::uint32_t events_waiting_max = 0;
 
-  std::uint32_t memory_corrections = 0;   // words of the voted state
-  std::uint32_t states_restored = 0;      // estimator's state, from its copy
-  std::uint32_t states_lost = 0;          // likewise, and its copy hit too
+  std::uint32_t memory_corrections = 0;  // words of the voted state
+  std::uint32_t states_restored = 0;     // estimator's state, from its copy
+  std::uint32_t states_lost = 0;         // likewise, and its copy hit too
   std::uint32_t constants_reloaded = 0;
   std::uint32_t model_blocks_repaired = 0;
   std::uint32_t model_blocks_lost = 0;
@@ -72,10 +75,10 @@ struct Housekeeping {
   std::uint32_t bank_switches = 0;
 
   std::uint8_t bank_in_use = 0;
-  std::uint8_t second_copy = 0;  // 1: the other bank holds the same image
-  std::array<std::uint8_t, kBanks> bank_status{};   // fsw::BankStatus
-  std::array<std::uint32_t, kBanks> bank_crc32{};   // header CRC-32 of the image in it
-  std::uint32_t model_bytes_loaded = 0;             // of the image that is coming in
+  std::uint8_t second_copy = 0;                    // 1: the other bank holds the same image
+  std::array<std::uint8_t, kBanks> bank_status{};  // fsw::BankStatus
+  std::array<std::uint32_t, kBanks> bank_crc32{};  // header CRC-32 of the image in it
+  std::uint32_t model_bytes_loaded = 0;            // of the image that is coming in
 
   std::uint32_t inference_us = 0;  // last step of the estimator, by the stopwatch; not part of any digest
   std::uint32_t inference_max_us = 0;
@@ -85,7 +88,8 @@ struct Housekeeping {
   std::uint32_t deadline_overruns = 0;
   std::uint32_t cycle_slips = 0;
   std::uint32_t heap_allocations = 0;  // of the flight task since init, where the platform can count them
-  std::uint32_t stack_left_min_bytes = 0;  // of the flight task's stack, never used so far; 0: the platform does not measure it
+  std::uint32_t stack_left_min_bytes =
+      0;  // of the flight task's stack, never used so far; 0: the platform does not measure it
 };
 
 // Events that differ from run to run, and belong in no digest.

@@ -1,5 +1,5 @@
-// ModelStore: the memory that model images lie in. Two banks: one is in use, the other holds a second copy of the same
-// image, or one that the ground is loading.
+// ModelStore: the memory that model images lie in. Two banks: one is in use, the other holds a second copy of
+// the same image, or one that the ground is loading.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-// Watchdog: resets the processor unless it is kicked in time. It is kicked once a cycle, after every duty of the cycle.
+// Watchdog: resets the processor unless it is kicked in time. It is kicked once a cycle, after every duty of
+// the cycle.
 #pragma once
 
 namespace tumblesight::hal {

@@ -1,5 +1,5 @@
-// What the application knows from one cycle to the next, but for the estimator's state and the events on their way. Kept
-// three times (voted.hpp).
+// What the application knows from one cycle to the next, but for the estimator's state and the events on
+// their way. Kept three times (voted.hpp).
 #pragma once
 
 #include <array>
@@ -17,7 +17,8 @@
 
 namespace tumblesight::fsw {
 
-// What protects the application from bit flips; all of it, but to measure what it buys (tests/fault).
+// What protects the application from bit flips; all of it, but to measure what it buys
+// (tests/campaigns/fault).
 struct Protections {
   bool memory = true;    // vote, guards and scrubbing
   bool attitude = true;  // checks of the attitude
@@ -34,7 +35,7 @@ struct alignas(8) AppState {
   ModelBanksState banks;
   AssertionLog assertions;
   std::array<std::uint32_t, kLimits> limits{};
-  std::uint32_t faults_seen = 0;  // in this cycle, bits
+  std::uint32_t faults_seen = 0;      // in this cycle, bits
   std::uint32_t estimator_crc32 = 0;  // of its state as the last cycle left it
   std::uint32_t constants_crc32 = 0;  // of what it keeps of the model
   std::array<gnc::ModelStatus, hal::kModelBanks> boot_status{};

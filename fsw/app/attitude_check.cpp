@@ -54,7 +54,8 @@ gnc::QuaternionQ30 propagated(const gnc::QuaternionQ30& before, const gnc::Quate
 }
 
 bool AttitudeCheck::jumps(const gnc::QuaternionQ30& q_lrf_trf, std::uint32_t limit_urad) {
-  const bool jumped = known_ >= 2 && cos_half_angle(propagated(before_, last_), q_lrf_trf) < cos_half_of(limit_urad);
+  const bool jumped =
+      known_ >= 2 && cos_half_angle(propagated(before_, last_), q_lrf_trf) < cos_half_of(limit_urad);
   before_ = last_;
   last_ = q_lrf_trf;
   known_ = known_ < 2 ? known_ + 1 : 2;

@@ -1,5 +1,5 @@
-// AttitudeCheck: whether an attitude lies where the last two lead to, if the target spins on as it did, and whether the
-// sensor still looks.
+// AttitudeCheck: whether an attitude lies where the last two lead to, if the target spins on as it did, and
+// whether the sensor still looks.
 #pragma once
 
 #include <array>
@@ -23,17 +23,18 @@ gnc::QuaternionQ30 propagated(const gnc::QuaternionQ30& before, const gnc::Quate
 class AttitudeCheck {
  public:
   void forget() { *this = AttitudeCheck{}; }
-  // Whether the attitude is farther from where the last two lead to than the limit; with fewer than two before it, not.
-  // Then it counts as the last one. Attitudes are one frame period apart.
+  // Whether the attitude is farther from where the last two lead to than the limit; with fewer than two
+  // before it, not. Then it counts as the last one. Attitudes are one frame period apart.
   bool jumps(const gnc::QuaternionQ30& q_lrf_trf, std::uint32_t limit_urad);
-  // Whether a frame alone gave the attitude that the one before gave, bit for bit: the same ranges under a new number, or
-  // a network that sees nothing. The noise of a sensor that looks turns at least the last bits.
+  // Whether a frame alone gave the attitude that the one before gave, bit for bit: the same ranges under a
+  // new number, or a network that sees nothing. The noise of a sensor that looks turns at least the last
+  // bits.
   bool repeats(const gnc::QuaternionQ30& q_lrf_trf_single_frame);
 
  private:
   gnc::QuaternionQ30 before_ = gnc::kIdentityQ30;
   gnc::QuaternionQ30 last_ = gnc::kIdentityQ30;
-  std::uint32_t known_ = 0;  // of these
+  std::uint32_t known_ = 0;                 // of these
   gnc::QuaternionQ30 last_single_frame_{};  // zeros, which no attitude has, at first
 };
 

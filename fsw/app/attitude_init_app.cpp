@@ -1,7 +1,7 @@
 #include "fsw/app/attitude_init_app.hpp"
 
 #include "fsw/app/counter.hpp"
-#include "gnc/rcnn/crc32.hpp"
+#include "gnc/numerics/crc32.hpp"
 
 namespace tumblesight::fsw {
 namespace {
@@ -21,7 +21,8 @@ bool is_within(int count, int most) {
 // The caller's promises about StepInputs: a platform that breaks them has a bug.
 bool keeps_limits(const StepInputs& inputs) {
   const int frames = inputs.frame != nullptr ? inputs.frame_count : 0;
-  return is_within(inputs.command_count, config::kMaxCommandsPerStep) && is_within(frames, config::kMaxFramesPerStep) &&
+  return is_within(inputs.command_count, config::kMaxCommandsPerStep) &&
+         is_within(frames, config::kMaxFramesPerStep) &&
          is_within(inputs.frame_wrong_size, config::kMaxFramesPerStep - frames);
 }
 
@@ -32,14 +33,16 @@ bool is_complete(const hal::Platform& platform) {
 }  // namespace
 
 template <class N>
-void AttitudeInitApp<N>::init(const hal::Platform& platform, const char* expected_target, Protections protections) {
+void AttitudeInitApp<N>::init(const hal::Platform& platform, const char* expected_target,
+                              Protections protections) {
   *state_ = AppState{};
   events_ = EventLog{};
   state_->platform = platform;
   state_->counters.command_counter = platform.last_command_counter;
   state_->expected_target = expected_target;
   state_->protections = protections;
-  for (std::size_t i = 0; i < config::kLimitRules.size(); ++i) state_->limits[i] = config::kLimitRules[i].initial;
+  for (std::size_t i = 0; i < config::kLimitRules.size(); ++i)
+    state_->limits[i] = config::kLimitRules[i].initial;
   estimator_.reset();
   if (TUMBLESIGHT_ASSERT(state_->assertions, is_complete(platform))) {
     for (std::uint32_t bank = 0; bank < hal::kModelBanks; ++bank) boot_from(bank);
@@ -67,8 +70,8 @@ void AttitudeInitApp<N>::boot_from(std::uint32_t bank) {
   record.crc32 = gnc::model_image_crc32(memory.data);
 }
 
-// The image of `bank`, of the size that its record tells; it is checked whole. On any other status than kOk the model
-// before stays in use.
+// The image of `bank`, of the size that its record tells; it is checked whole. On any other status than kOk
+// the model before stays in use.
 template <class N>
 gnc::ModelStatus AttitudeInitApp<N>::activate(std::uint32_t bank) {
   ModelBankRecord& record = state_->banks.record[bank];
@@ -91,7 +94,8 @@ void AttitudeInitApp<N>::step(std::int64_t now_ns, const StepInputs& inputs, Ste
   const std::uint32_t corrected = state_->protections.memory ? state_.vote() : 0;
   AppState& state = *state_;
   const Reporter report(state, events_);
-  const bool usable = TUMBLESIGHT_ASSERT(state.assertions, is_complete(state.platform) && keeps_limits(inputs));
+  const bool usable =
+      TUMBLESIGHT_ASSERT(state.assertions, is_complete(state.platform) && keeps_limits(inputs));
   const std::uint64_t start_ns = usable ? state.platform.stopwatch->now_ns() : 0;
   outputs.event_count = 0;
   outputs.has_dump = false;
@@ -162,7 +166,8 @@ void AttitudeInitApp<N>::report_boot(const Reporter& report) {
     if (good && bank == state_->banks.in_use) {
       report(EventId::kModelActivated, size_bytes, static_cast<std::int32_t>(bank));
     } else if (!good && needed) {
-      report(EventId::kModelRefused, static_cast<std::int32_t>(status), size_bytes, static_cast<std::int32_t>(bank));
+      report(EventId::kModelRefused, static_cast<std::int32_t>(status), size_bytes,
+             static_cast<std::int32_t>(bank));
     }
   }
   if (state_->mode == Mode::kSafe) report(EventId::kSafeEntered, state_->counters.safe_cause, -1);
@@ -195,8 +200,8 @@ void AttitudeInitApp<N>::start_anew_in_time() {
 }
 
 template <class N>
-void AttitudeInitApp<N>::supervise(const StepInputs& inputs, const StepOutputs& outputs, std::uint64_t start_ns,
-                                   const Reporter& report) {
+void AttitudeInitApp<N>::supervise(const StepInputs& inputs, const StepOutputs& outputs,
+                                   std::uint64_t start_ns, const Reporter& report) {
   AppState& state = *state_;
   const auto validity = static_cast<Validity>(outputs.attitude.validity);
   const bool has_attitude = validity == Validity::kValid || validity == Validity::kDoubtful;
@@ -219,8 +224,8 @@ void AttitudeInitApp<N>::supervise(const StepInputs& inputs, const StepOutputs& 
 
 template <class N>
 void AttitudeInitApp<N>::measure(std::uint64_t start_ns, const Reporter& report) {
-  constexpr std::array<std::uint32_t, hal::Housekeeping::kStepTimeBins - 1> kEdges_us{1'000,   3'000,   10'000,   30'000,
-                                                                                      100'000, 300'000, 1'000'000};
+  constexpr std::array<std::uint32_t, hal::Housekeeping::kStepTimeBins - 1> kEdges_us{
+      1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000};
   hal::Housekeeping& counters = state_->counters;
   counters.step_us = microseconds_since(start_ns);
   if (counters.step_us > counters.step_max_us) counters.step_max_us = counters.step_us;
@@ -259,7 +264,8 @@ void AttitudeInitApp<N>::respond(Fault fault, const Reporter& report) {
   report(id, static_cast<std::int32_t>(fault), static_cast<std::int32_t>(taken), rule.persistence_cycles);
 }
 
-// What it came to: the switch, nothing where there is a good model again, or SAFE where the other bank holds no good model.
+// What it came to: the switch, nothing where there is a good model again, or SAFE where the other bank holds
+// no good model.
 template <class N>
 Response AttitudeInitApp<N>::switch_bank(Fault fault, const Reporter& report) {
   if (state_->has_model()) return Response::kFlag;  // a command of this cycle has activated it
@@ -297,7 +303,8 @@ void AttitudeInitApp<N>::report_telemetry(StepOutputs& outputs) {
   counters.faults_persisting = state.faults.persisting();
   counters.responses_disabled = state.faults.disabled();
   counters.events_waiting = events_.waiting();
-  if (counters.events_waiting > counters.events_waiting_max) counters.events_waiting_max = counters.events_waiting;
+  if (counters.events_waiting > counters.events_waiting_max)
+    counters.events_waiting_max = counters.events_waiting;
   counters.bank_in_use = static_cast<std::uint8_t>(state.banks.in_use);
   counters.second_copy = state.banks.has_second_copy() ? 1 : 0;
   counters.model_bytes_loaded = state.banks.loaded_bytes;
@@ -327,7 +334,8 @@ std::uint32_t AttitudeInitApp<N>::state_crc32() const {
   crc.add_u32(estimator_.state_crc32());
   crc.add_u32(estimator_.model().crc32);
   crc.add_u32(static_cast<std::uint32_t>(state.mode));
-  for (const bool flag : {state.has_model(), state.has_cycle, state.gate.has_last(), state.outage, state.boot_to_report}) {
+  for (const bool flag :
+       {state.has_model(), state.has_cycle, state.gate.has_last(), state.outage, state.boot_to_report}) {
     crc.add_u32(flag ? 1U : 0U);
   }
   add_time(state.now_ns);
@@ -335,16 +343,33 @@ std::uint32_t AttitudeInitApp<N>::state_crc32() const {
   for (const std::uint32_t limit : state.limits) crc.add_u32(limit);
   const hal::Housekeeping& c = state.counters;
   for (const std::uint32_t number :
-       {state.gate.last_sequence_number(), state.assertions.count(), c.command_counter,
-        state.faults.persisting() & ~(bit_of(Fault::kDeadline) | bit_of(Fault::kSlip)), state.faults.disabled(), state.banks.in_use, state.banks.loaded_bytes, c.cycles, c.commands_accepted,
-        c.commands_refused, c.frames_used, c.frames_missing, c.frames_refused, c.frames_duplicate, c.frames_stale,
-        c.frames_bad, c.sequence_gaps, c.estimator_resets, c.attitudes_doubtful, c.model_passes}) {
+       {state.gate.last_sequence_number(),
+        state.assertions.count(),
+        c.command_counter,
+        state.faults.persisting() & ~(bit_of(Fault::kDeadline) | bit_of(Fault::kSlip)),
+        state.faults.disabled(),
+        state.banks.in_use,
+        state.banks.loaded_bytes,
+        c.cycles,
+        c.commands_accepted,
+        c.commands_refused,
+        c.frames_used,
+        c.frames_missing,
+        c.frames_refused,
+        c.frames_duplicate,
+        c.frames_stale,
+        c.frames_bad,
+        c.sequence_gaps,
+        c.estimator_resets,
+        c.attitudes_doubtful,
+        c.model_passes}) {
     crc.add_u32(number);
   }
   return crc.value();
 }
 
-// Of the members that are defined here; the others: attitude_init_app_commands.cpp, attitude_init_app_frames.cpp.
+// Of the members that are defined here; the others: attitude_init_app_commands.cpp,
+// attitude_init_app_frames.cpp.
 template class AttitudeInitApp<gnc::FixedPoint>;
 #if TUMBLESIGHT_FLOAT32
 template class AttitudeInitApp<gnc::Float32>;

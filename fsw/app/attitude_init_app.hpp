@@ -1,20 +1,21 @@
 // AttitudeInitApp: the flight application. One step() a period; a pure function of its state and inputs.
 //
 // A step, in this order:
-//   1. memory       majority vote over the application's state; guards of the estimator and the model (memory_guard.hpp)
+//   1. memory       majority vote over the application's state; guards of the estimator and the model
+//   (memory_guard.hpp)
 //   2. commands     in the order in which they came (telecommand.hpp, command_gate.hpp)
 //   3. frames       gate, estimator, checks of the attitude; in RUN only, else they are dropped
 //   4. supervision  persistence of faults and the responses to them (fault_rules.hpp)
 //   5. telemetry    attitude, housekeeping, events
 // Modes: modes.hpp. Rules of frames and commands, events, every field: docs/icd.md.
 //
-// Each refused frame is counted, gives an event and leaves the estimator untouched; see FrameGate for time and order,
-// gnc::FrameStatus for content. A cycle without a frame is counted as missing, with an event where the outage
-// begins. Skipped sequence numbers are counted, with an event, and the frame is used.
+// Each refused frame is counted, gives an event and leaves the estimator untouched; see FrameGate for time
+// and order, gnc::FrameStatus for content. A cycle without a frame is counted as missing, with an event where
+// the outage begins. Skipped sequence numbers are counted, with an event, and the frame is used.
 //
-// The estimator starts anew: on entering RUN; by RESET_SEQUENCE; when cycle time goes back; by the response to a fault; and,
-// with an event, when a frame's exposure is not one period +- 10 % after the last accepted one, since it has learnt steps of
-// one period.
+// The estimator starts anew: on entering RUN; by RESET_SEQUENCE; when cycle time goes back; by the response
+// to a fault; and, with an event, when a frame's exposure is not one period +- 10 % after the last accepted
+// one, since it has learnt steps of one period.
 //
 // Cycle times must rise. A cycle whose time does not is an error: event, its frames are refused, its commands
 // are carried out (they carry no time and are the way out). Where time went back, the last accepted frame is
@@ -48,7 +49,7 @@ enum class Validity : std::uint8_t {
   kStandby,       // not in RUN
   kNoFrame,       // no frame came in this cycle
   kFrameRefused,  // a frame came and was refused; the event says why
-  kDoubtful,      // there is an attitude, but it expects too large an error, has jumped, or is of a frozen frame
+  kDoubtful,  // there is an attitude, but it expects too large an error, has jumped, or is of a frozen frame
 };
 
 struct StepInputs {
@@ -74,15 +75,15 @@ struct StepOutputs {
 template <class N>
 class AttitudeInitApp final {
  public:
-  // Boots: looks for a good model in the banks, the first one first. With one the mode becomes RUN, else SAFE; events of
-  // the next step say what was found. Called again it boots again. `expected_target`: NUL-terminated name, or nullptr for
-  // any.
+  // Boots: looks for a good model in the banks, the first one first. With one the mode becomes RUN, else
+  // SAFE; events of the next step say what was found. Called again it boots again. `expected_target`:
+  // NUL-terminated name, or nullptr for any.
   void init(const hal::Platform& platform, const char* expected_target, Protections protections = {});
   // `now_ns`: time of this cycle. `outputs` is overwritten.
   void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
 
-  // To compare runs: over the estimator's state, the active model's CRC, mode, times, last frame, limits, faults that
-  // persist and the counters. What depends on the wall clock is left out.
+  // To compare runs: over the estimator's state, the active model's CRC, mode, times, last frame, limits,
+  // faults that persist and the counters. What depends on the wall clock is left out.
   std::uint32_t state_crc32() const;
   Mode mode() const { return state_->mode; }
   // What init() found in a bank; kOk before the first init().
@@ -90,7 +91,7 @@ class AttitudeInitApp final {
   const gnc::AttitudeEstimator<N>& estimator() const { return estimator_; }
 
  private:
-  friend struct AppMemory;  // tests/fault: where to flip bits
+  friend struct AppMemory;  // tests/campaigns/fault: where to flip bits
 
   bool enter(Cause cause, Fault fault = Fault::kStateLost);
   void reset_estimator();
@@ -105,8 +106,10 @@ class AttitudeInitApp final {
   void reset_counters();
   bool set_mode(std::uint8_t mode, CommandRefusal& why);
   bool load_segment(const Telecommand& command, CommandRefusal& why, std::int32_t& detail);
-  bool validate_model(const Telecommand& command, CommandRefusal& why, std::int32_t& detail, const Reporter& report);
-  bool activate_model(const Telecommand& command, CommandRefusal& why, std::int32_t& detail, const Reporter& report);
+  bool validate_model(const Telecommand& command, CommandRefusal& why, std::int32_t& detail,
+                      const Reporter& report);
+  bool activate_model(const Telecommand& command, CommandRefusal& why, std::int32_t& detail,
+                      const Reporter& report);
   bool dump_model(const Telecommand& command, StepOutputs& outputs, CommandRefusal& why) const;
   bool set_limit(const Telecommand& command, CommandRefusal& why, std::int32_t& detail);
 
@@ -120,7 +123,8 @@ class AttitudeInitApp final {
   void use_frame(const gnc::RangeImage& frame, StepOutputs& outputs, const Reporter& report);
   void report_attitude(const gnc::RangeImage& frame, StepOutputs& outputs, const Reporter& report);
 
-  void supervise(const StepInputs& inputs, const StepOutputs& outputs, std::uint64_t start_ns, const Reporter& report);
+  void supervise(const StepInputs& inputs, const StepOutputs& outputs, std::uint64_t start_ns,
+                 const Reporter& report);
   void measure(std::uint64_t start_ns, const Reporter& report);
   void respond(Fault fault, const Reporter& report);
   Response switch_bank(Fault fault, const Reporter& report);

@@ -8,7 +8,8 @@ static_assert(hal::Housekeeping::kRefusals == kCommandRefusals);
 static_assert(hal::ModelDump::kMaxBytes == kMaxModelSegmentBytes);
 
 template <class N>
-void AttitudeInitApp<N>::run_commands(const StepInputs& inputs, StepOutputs& outputs, const Reporter& report) {
+void AttitudeInitApp<N>::run_commands(const StepInputs& inputs, StepOutputs& outputs,
+                                      const Reporter& report) {
   hal::Housekeeping& counters = state_->counters;
   for (int i = 0; i < inputs.command_count; ++i) {
     const hal::CommandPacket& packet = inputs.commands[static_cast<std::size_t>(i)];
@@ -62,7 +63,8 @@ bool AttitudeInitApp<N>::carry_out(const Telecommand& command, StepOutputs& outp
   return false;
 }
 
-// What is no count stays: the command counter, why the mode is SAFE. Events that still wait will be told, hence count anew.
+// What is no count stays: the command counter, why the mode is SAFE. Events that still wait will be told,
+// hence count anew.
 template <class N>
 void AttitudeInitApp<N>::reset_counters() {
   const hal::Housekeeping before = state_->counters;
@@ -95,7 +97,8 @@ bool AttitudeInitApp<N>::load_segment(const Telecommand& command, CommandRefusal
   ModelBanksState& banks = state_->banks;
   why = CommandRefusal::kWrongArgument;
   detail = clamp_to_int32(banks.loaded_bytes);  // where the next segment belongs
-  return ModelBanks<N>::load(*state_->platform.models, banks, command.u32_at(0), command.arguments + kOffsetBytes,
+  return ModelBanks<N>::load(*state_->platform.models, banks, command.u32_at(0),
+                             command.arguments + kOffsetBytes,
                              static_cast<std::uint32_t>(command.argument_bytes - kOffsetBytes));
 }
 
@@ -108,7 +111,8 @@ bool AttitudeInitApp<N>::validate_model(const Telecommand& command, CommandRefus
   if (banks.status(bank) != BankStatus::kLoading || size_bytes != banks.loaded_bytes) return false;
   const std::uint8_t* const image = state_->platform.models->bank(static_cast<int>(bank)).data;
   gnc::ModelStatus status = estimator_.check(image, size_bytes, state_->expected_target);
-  if (status == gnc::ModelStatus::kOk && gnc::model_image_crc32(image) != crc32) status = gnc::ModelStatus::kBadHeaderCrc;
+  if (status == gnc::ModelStatus::kOk && gnc::model_image_crc32(image) != crc32)
+    status = gnc::ModelStatus::kBadHeaderCrc;
   if (status != gnc::ModelStatus::kOk) {
     detail = static_cast<std::int32_t>(status);
     report(EventId::kModelRefused, detail, clamp_to_int32(size_bytes), static_cast<std::int32_t>(bank));
@@ -137,7 +141,8 @@ bool AttitudeInitApp<N>::activate_model(const Telecommand& command, CommandRefus
 }
 
 template <class N>
-bool AttitudeInitApp<N>::dump_model(const Telecommand& command, StepOutputs& outputs, CommandRefusal& why) const {
+bool AttitudeInitApp<N>::dump_model(const Telecommand& command, StepOutputs& outputs,
+                                    CommandRefusal& why) const {
   const std::uint8_t bank = command.u8_at(0);
   const std::uint32_t offset = command.u32_at(1), size = command.u16_at(5);
   why = CommandRefusal::kWrongArgument;

@@ -18,8 +18,8 @@ bool is_sound(const gnc::AttitudeEstimate& estimate) {
 }  // namespace
 
 template <class N>
-void AttitudeInitApp<N>::refuse_frames_of_cycle(const StepInputs& inputs, std::int32_t time_step_ms, StepOutputs& outputs,
-                                                const Reporter& report) {
+void AttitudeInitApp<N>::refuse_frames_of_cycle(const StepInputs& inputs, std::int32_t time_step_ms,
+                                                StepOutputs& outputs, const Reporter& report) {
   std::uint32_t refused = 0;
   if (state_->mode == Mode::kRun) {
     hal::Housekeeping& counters = state_->counters;
@@ -57,7 +57,8 @@ void AttitudeInitApp<N>::take_frames(const StepInputs& inputs, StepOutputs& outp
 
 // There is no model in the cycle that has lost it; the response to that comes after the frames.
 template <class N>
-void AttitudeInitApp<N>::take_frame(const gnc::RangeImage& frame, StepOutputs& outputs, const Reporter& report) {
+void AttitudeInitApp<N>::take_frame(const gnc::RangeImage& frame, StepOutputs& outputs,
+                                    const Reporter& report) {
   if (state_->has_model() && passes_gate(frame, report)) {
     use_frame(frame, outputs, report);
   } else {
@@ -94,7 +95,8 @@ bool AttitudeInitApp<N>::passes_gate(const gnc::RangeImage& frame, const Reporte
 }
 
 template <class N>
-void AttitudeInitApp<N>::use_frame(const gnc::RangeImage& frame, StepOutputs& outputs, const Reporter& report) {
+void AttitudeInitApp<N>::use_frame(const gnc::RangeImage& frame, StepOutputs& outputs,
+                                   const Reporter& report) {
   // The reset comes before the step, yet a frame refused for its content must leave the state as it was.
   estimator_.save(state_before_frame_);
   const std::uint32_t frames_before = state_before_frame_.track.frames;
@@ -112,15 +114,14 @@ void AttitudeInitApp<N>::use_frame(const gnc::RangeImage& frame, StepOutputs& ou
     return;
   }
   counters.inference_us = microseconds_since(start_ns);
-  if (counters.inference_us > counters.inference_max_us)
-    counters.inference_max_us = counters.inference_us;
+  if (counters.inference_us > counters.inference_max_us) counters.inference_max_us = counters.inference_us;
 
   FrameGate& gate = state_->gate;
   const std::uint32_t skipped = gate.numbers_skipped(frame);
   if (skipped > 0) {
     count(counters.sequence_gaps, skipped == FrameGate::kWentBack ? 1U : skipped);
-    report(EventId::kSequenceSkipped, bits_of(gate.last_sequence_number() + 1U), bits_of(frame.sequence_number),
-           bits_of(skipped));
+    report(EventId::kSequenceSkipped, bits_of(gate.last_sequence_number() + 1U),
+           bits_of(frame.sequence_number), bits_of(skipped));
   }
   if (reset_by_gap) {
     count(counters.estimator_resets);
@@ -134,7 +135,8 @@ void AttitudeInitApp<N>::use_frame(const gnc::RangeImage& frame, StepOutputs& ou
 }
 
 template <class N>
-void AttitudeInitApp<N>::report_attitude(const gnc::RangeImage& frame, StepOutputs& outputs, const Reporter& report) {
+void AttitudeInitApp<N>::report_attitude(const gnc::RangeImage& frame, StepOutputs& outputs,
+                                         const Reporter& report) {
   AppState& state = *state_;
   Validity validity = Validity::kValid;
   if (state.protections.attitude) {
@@ -145,7 +147,8 @@ void AttitudeInitApp<N>::report_attitude(const gnc::RangeImage& frame, StepOutpu
       return;
     }
     const bool large = estimate_.predicted_error_urad > state.limit(Limit::kPredictedError_urad);
-    const bool jumps = state.attitude_check.jumps(estimate_.q_lrf_trf, state.limit(Limit::kAttitudeJump_urad));
+    const bool jumps =
+        state.attitude_check.jumps(estimate_.q_lrf_trf, state.limit(Limit::kAttitudeJump_urad));
     const bool repeats = state.attitude_check.repeats(estimate_.q_lrf_trf_single_frame);
     if (large) state.faults_seen |= bit_of(Fault::kErrorLarge);
     if (jumps) state.faults_seen |= bit_of(Fault::kAttitudeJump);
@@ -154,7 +157,8 @@ void AttitudeInitApp<N>::report_attitude(const gnc::RangeImage& frame, StepOutpu
       validity = Validity::kDoubtful;
       count(state.counters.attitudes_doubtful);
       report(EventId::kAttitudeDoubtful, bits_of(frame.sequence_number),
-             static_cast<std::int32_t>(estimate_.predicted_error_urad / 1000U), (jumps ? 1 : 0) + (repeats ? 2 : 0));
+             static_cast<std::int32_t>(estimate_.predicted_error_urad / 1000U),
+             (jumps ? 1 : 0) + (repeats ? 2 : 0));
     }
   }
   hal::AttitudeReport& attitude = outputs.attitude;
@@ -168,9 +172,9 @@ void AttitudeInitApp<N>::report_attitude(const gnc::RangeImage& frame, StepOutpu
   attitude.predicted_error_single_frame_urad = estimate_.predicted_error_single_frame_urad;
 }
 
-#define TUMBLESIGHT_INSTANTIATE(N)                                                                                    \
-  template void AttitudeInitApp<N>::refuse_frames_of_cycle(const StepInputs&, std::int32_t, StepOutputs&,             \
-                                                           const Reporter&);                                          \
+#define TUMBLESIGHT_INSTANTIATE(N)                                                                        \
+  template void AttitudeInitApp<N>::refuse_frames_of_cycle(const StepInputs&, std::int32_t, StepOutputs&, \
+                                                           const Reporter&);                              \
   template void AttitudeInitApp<N>::take_frames(const StepInputs&, StepOutputs&, const Reporter&)
 
 TUMBLESIGHT_INSTANTIATE(gnc::FixedPoint);

@@ -1,11 +1,13 @@
 #include "fsw/app/command_gate.hpp"
 
 #include "fsw/app/hmac_sha256.hpp"
+#include "gnc/numerics/crc16.hpp"
 
 namespace tumblesight::fsw {
 namespace {
 
-constexpr std::uint16_t kPacketIdentification = 0x1800 | kCommandApid;  // version 0, telecommand, secondary header
+constexpr std::uint16_t kPacketIdentification =
+    0x1800 | kCommandApid;  // version 0, telecommand, secondary header
 constexpr int kLengthOffset = 4, kFunctionOffset = 6, kReservedOffset = 7, kChecksumOffset = 8;
 constexpr int kPrimaryHeaderBytes = 6;
 
@@ -26,15 +28,16 @@ bool is_authentic(const hal::CommandPacket& packet, const hal::CommandKey& key) 
 
 bool is_well_formed(const std::uint8_t* packet) {
   constexpr int kUnsegmented = 3;
-  return u16(packet) == kPacketIdentification && packet[2] >> 6 == kUnsegmented && packet[kReservedOffset] == 0;
+  return u16(packet) == kPacketIdentification && packet[2] >> 6 == kUnsegmented &&
+         packet[kReservedOffset] == 0;
 }
 
 bool has_checksum(const std::uint8_t* packet, int size) {
   // As if the field were zero: the bytes before it, two zeros, the bytes behind.
-  std::uint16_t crc = crc16(packet, kChecksumOffset);
-  crc = crc16_of_more(crc, 0);
-  crc = crc16_of_more(crc, 0);
-  for (int i = kCommandHeaderBytes; i < size; ++i) crc = crc16_of_more(crc, packet[i]);
+  std::uint16_t crc = gnc::crc16(packet, kChecksumOffset);
+  crc = gnc::crc16_append(crc, 0);
+  crc = gnc::crc16_append(crc, 0);
+  for (int i = kCommandHeaderBytes; i < size; ++i) crc = gnc::crc16_append(crc, packet[i]);
   return crc == u16(packet + kChecksumOffset);
 }
 
@@ -53,12 +56,14 @@ bool refuses(const std::uint8_t* packet, int size, Mode mode, Admission& admissi
   };
   if (size < kCommandHeaderBytes || !is_well_formed(packet)) return refused(CommandRefusal::kMalformed);
   admission.function = packet[kFunctionOffset];
-  if (u16(packet + kLengthOffset) != size - kPrimaryHeaderBytes - 1) return refused(CommandRefusal::kWrongLength);
+  if (u16(packet + kLengthOffset) != size - kPrimaryHeaderBytes - 1)
+    return refused(CommandRefusal::kWrongLength);
   if (!has_checksum(packet, size)) return refused(CommandRefusal::kWrongChecksum);
   const CommandRule* rule = rule_of(admission.function);
   if (rule == nullptr) return refused(CommandRefusal::kUnknownFunction);
   const int arguments = size - kCommandHeaderBytes;
-  if (arguments < rule->least_bytes || arguments > rule->most_bytes) return refused(CommandRefusal::kWrongLength);
+  if (arguments < rule->least_bytes || arguments > rule->most_bytes)
+    return refused(CommandRefusal::kWrongLength);
   if ((rule->modes >> static_cast<int>(mode) & 1) == 0) return refused(CommandRefusal::kWrongMode);
   admission.command = {rule->function, packet + kCommandHeaderBytes, arguments};
   return false;
@@ -66,19 +71,8 @@ bool refuses(const std::uint8_t* packet, int size, Mode mode, Admission& admissi
 
 }  // namespace
 
-std::uint16_t crc16_of_more(std::uint16_t crc, std::uint8_t byte) {
-  std::uint32_t remainder = crc ^ (std::uint32_t{byte} << 8);
-  for (int bit = 0; bit < 8; ++bit) remainder = (remainder << 1) ^ ((remainder & 0x8000U) != 0 ? 0x1021U : 0U);
-  return static_cast<std::uint16_t>(remainder);
-}
-
-std::uint16_t crc16(const std::uint8_t* data, std::size_t size_bytes) {
-  std::uint16_t crc = 0xFFFF;
-  for (std::size_t i = 0; i < size_bytes; ++i) crc = crc16_of_more(crc, data[i]);
-  return crc;
-}
-
-Admission judge(const hal::CommandPacket& packet, const hal::CommandKey* key, std::uint32_t last_counter, Mode mode) {
+Admission judge(const hal::CommandPacket& packet, const hal::CommandKey* key, std::uint32_t last_counter,
+                Mode mode) {
   Admission admission;
   int size = packet.size;
   if (key != nullptr) {

@@ -1,5 +1,5 @@
-// CommandGate: what a packet must be before the application looks at what it asks for. Nothing of a packet is believed
-// before its authentication code has been checked.
+// CommandGate: what a packet must be before the application looks at what it asks for. Nothing of a packet is
+// believed before its authentication code has been checked.
 #pragma once
 
 #include <cstdint>
@@ -41,13 +41,14 @@ struct Admission {
   bool admitted = false;
   CommandRefusal why = CommandRefusal::kForged;  // if not admitted
   std::uint8_t function = 0;                     // 0 where nothing of the packet is to be believed
-  bool authentic = false;                        // then `counter` is to be remembered, whatever became of the rest
+  bool authentic = false;  // then `counter` is to be remembered, whatever became of the rest
   std::uint32_t counter = 0;
   Telecommand command;  // points into the packet
 };
 
-// `key`: nullptr where the link beneath authenticates; then there is no trailer. `last_counter`: of the last authentic
-// command.
-Admission judge(const hal::CommandPacket& packet, const hal::CommandKey* key, std::uint32_t last_counter, Mode mode);
+// `key`: nullptr where the link beneath authenticates; then there is no trailer. `last_counter`: of the last
+// authentic command.
+Admission judge(const hal::CommandPacket& packet, const hal::CommandKey* key, std::uint32_t last_counter,
+                Mode mode);
 
 }  // namespace tumblesight::fsw

@@ -53,8 +53,8 @@ class AppOf final : public App {
 };
 
 // Takes at most kMaxFramesPerStep deliveries of the lidar and kMaxCommandsPerStep commands; what is left
-// waits for the next cycle. `cycle_slips`: releases of the task missed since the last cycle. The watchdog is kicked once
-// all has been done and published.
+// waits for the next cycle. `cycle_slips`: releases of the task missed since the last cycle. The watchdog is
+// kicked once all has been done and published.
 void run_cycle(App& app, const CycleInterfaces& interfaces, std::int64_t now_ns, std::uint32_t cycle_slips,
                CycleWorkspace& workspace);
 

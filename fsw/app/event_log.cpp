@@ -58,7 +58,8 @@ void EventLog::end_cycle(std::int64_t now_ns, hal::Housekeeping& counters) {
     const Kind kind = kinds_[i];
     kinds_[i] = {};
     if (kind.suppressed == 0) continue;
-    push(now_ns, summary_of(kEventRules[i].id), {static_cast<std::int32_t>(kEventRules[i].id), kind.suppressed, 0}, counters);
+    push(now_ns, summary_of(kEventRules[i].id),
+         {static_cast<std::int32_t>(kEventRules[i].id), kind.suppressed, 0}, counters);
   }
 }
 

@@ -1,5 +1,5 @@
-// EventLog: a bounded ring of events on their way out. An event that comes too often is only counted, and the end of the
-// window tells how often. Whatever a bit flip makes of its indices, it stays within its memory.
+// EventLog: a bounded ring of events on their way out. An event that comes too often is only counted, and the
+// end of the window tells how often. Whatever a bit flip makes of its indices, it stays within its memory.
 #pragma once
 
 #include <array>
@@ -14,7 +14,8 @@ namespace tumblesight::fsw {
 class EventLog {
  public:
   // Counts into `counters`: events (all), events_suppressed, events_lost.
-  void raise(std::int64_t now_ns, EventId id, std::int32_t a, std::int32_t b, std::int32_t c, hal::Housekeeping& counters);
+  void raise(std::int64_t now_ns, EventId id, std::int32_t a, std::int32_t b, std::int32_t c,
+             hal::Housekeeping& counters);
   // At the end of every cycle.
   void end_cycle(std::int64_t now_ns, hal::Housekeeping& counters);
   // The oldest one. False: there is none.

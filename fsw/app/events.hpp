@@ -21,10 +21,10 @@ enum class EventId : std::uint16_t {
 
   kCycleTimeNotAdvancing = 20,  // [this cycle minus the previous one, frames refused with it, -]
   // 21 to 29 tell of the wall clock, so that no digest of a deterministic run may cover them.
-  kCycleSlipped = 21,           // [releases missed, -, -]
-  kDeadlineOverrun = 22,        // [time of this step, -, -]
-  kTimingFaultPersists = 23,    // [Fault, Response taken, cycles of its rule]
-  kTimingFaultOver = 24,        // [Fault, -, -]
+  kCycleSlipped = 21,            // [releases missed, -, -]
+  kDeadlineOverrun = 22,         // [time of this step, -, -]
+  kTimingFaultPersists = 23,     // [Fault, Response taken, cycles of its rule]
+  kTimingFaultOver = 24,         // [Fault, -, -]
   kTimingEventsSuppressed = 25,  // [EventId of these, how many, -]
 
   kFrameMissing = 30,            // first cycle of an outage only [last accepted number, -, -]

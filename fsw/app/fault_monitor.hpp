@@ -17,8 +17,8 @@ class FaultMonitor {
  public:
   enum class Change : std::uint8_t { kNone, kPersists, kOver };
 
-  // Once a cycle for each fault. kPersists: it has just been there as long as its rule says, and again as long after that.
-  // kOver: it has persisted and is gone.
+  // Once a cycle for each fault. kPersists: it has just been there as long as its rule says, and again as
+  // long after that. kOver: it has persisted and is gone.
   Change observe(Fault fault, bool present);
 
   // What to do about a fault that persists: by its rule, or, disabled, to tell it.

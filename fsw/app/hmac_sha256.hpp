@@ -1,5 +1,5 @@
-// HMAC-SHA-256 (RFC 2104, FIPS 180-4): proves that a telecommand comes from who has the key. Its time depends on the
-// length of the message alone.
+// HMAC-SHA-256 (RFC 2104, FIPS 180-4): proves that a telecommand comes from who has the key. Its time depends
+// on the length of the message alone.
 #pragma once
 
 #include <array>
@@ -25,7 +25,8 @@ class Sha256 {
   std::uint64_t size_bytes_ = 0;
 };
 
-Sha256Digest hmac_sha256(const std::array<std::uint8_t, 32>& key, const std::uint8_t* message, std::size_t size_bytes);
+Sha256Digest hmac_sha256(const std::array<std::uint8_t, 32>& key, const std::uint8_t* message,
+                         std::size_t size_bytes);
 
 // Looks at every byte, wherever the first difference is.
 bool equal_in_constant_time(const std::uint8_t* a, const std::uint8_t* b, std::size_t size_bytes);

@@ -28,7 +28,8 @@ void MemoryGuard<N>::check(Estimator& estimator, AppState& state, const Reporter
   check_state(estimator, state, report);
   if (!state.has_model()) return;
   check_table(estimator, state, report);
-  for (std::uint32_t i = 0; i < state.limit(Limit::kScrubBlocks) && state.has_model(); ++i) check_block(state, report);
+  for (std::uint32_t i = 0; i < state.limit(Limit::kScrubBlocks) && state.has_model(); ++i)
+    check_block(state, report);
   if (state.has_model()) check_constants(estimator, state, report);
 }
 
@@ -65,7 +66,8 @@ template <class N>
 void MemoryGuard<N>::check_table(const Estimator& estimator, AppState& state, const Reporter& report) {
   if (banks_.table_is_sound(state.banks)) return;
   const ModelBankRecord& record = state.banks.record[state.banks.in_use];
-  if (estimator.check(bank_in_use(state).data, record.size_bytes, state.expected_target) != gnc::ModelStatus::kOk) {
+  if (estimator.check(bank_in_use(state).data, record.size_bytes, state.expected_target) !=
+      gnc::ModelStatus::kOk) {
     lose_model(state);
     return;
   }

@@ -1,10 +1,10 @@
-// MemoryGuard: finds what radiation has done to the estimator's memory since the last cycle, and mends what it can. Bounded
-// in time: config::kLimitRules says how many blocks of the model are checked in a cycle.
+// MemoryGuard: finds what radiation has done to the estimator's memory since the last cycle, and mends what
+// it can. Bounded in time: config::kLimitRules says how many blocks of the model are checked in a cycle.
 //
 //   hit                                    found by                    mended from
-//   state of LSTM and track                CRC of the last cycle's     copy of the last cycle's; if that is hit too, reset
-//   biases, shifts, what load() has set    CRC at activation           model image
-//   weights, in the bank in use            checksum of each block      second copy in the other bank, if it holds one
+//   state of LSTM and track                CRC of the last cycle's     copy of the last cycle's; if that is
+//   hit too, reset biases, shifts, what load() has set    CRC at activation           model image weights, in
+//   the bank in use            checksum of each block      second copy in the other bank, if it holds one
 //   checksums of the blocks                CRC over the table          image, if its own CRCs find it whole
 //   activations                            written anew every frame
 #pragma once

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "gnc/rcnn/crc32.hpp"
+#include "gnc/numerics/crc32.hpp"
 
 namespace tumblesight::fsw {
 namespace {
@@ -18,13 +18,15 @@ std::uint32_t bytes_of_block(std::uint32_t block) {
 }  // namespace
 
 template <class N>
-bool ModelBanks<N>::load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset, const std::uint8_t* bytes,
-                         std::uint32_t count) {
+bool ModelBanks<N>::load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
+                         const std::uint8_t* bytes, std::uint32_t count) {
   const std::uint32_t bank = state.other();
   const hal::ModelBank memory = store.bank(static_cast<int>(bank));
   ModelBankRecord& record = state.record[bank];
-  const bool in_order = offset == 0 || (state.status(bank) == BankStatus::kLoading && offset == state.loaded_bytes);
-  if (!in_order || memory.writable == nullptr || count > memory.capacity || offset > memory.capacity - count) return false;
+  const bool in_order =
+      offset == 0 || (state.status(bank) == BankStatus::kLoading && offset == state.loaded_bytes);
+  if (!in_order || memory.writable == nullptr || count > memory.capacity || offset > memory.capacity - count)
+    return false;
   if (offset == 0) {
     record = {};
     record.status = static_cast<std::uint32_t>(BankStatus::kLoading);

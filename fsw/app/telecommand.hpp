@@ -1,5 +1,5 @@
-// Telecommands: CCSDS space packets (CCSDS 133.0-B) with a secondary header, and behind them the security trailer. Every
-// number is big-endian. Bit by bit: docs/icd.md.
+// Telecommands: CCSDS space packets (CCSDS 133.0-B) with a secondary header, and behind them the security
+// trailer. Every number is big-endian. Bit by bit: docs/icd.md.
 //
 //   offset  bytes  field
 //        0      2  packet version 0 (3 bits), type 1 (1), secondary header 1 (1), APID 0x1F0 (11)
@@ -26,34 +26,35 @@ inline constexpr int kCommandTrailerBytes = 20;
 inline constexpr int kCommandMacBytes = 16;
 inline constexpr int kMaxModelSegmentBytes = 1024;
 inline constexpr int kMaxCommandArgumentBytes = 4 + kMaxModelSegmentBytes;
-static_assert(kCommandHeaderBytes + kMaxCommandArgumentBytes + kCommandTrailerBytes <= hal::CommandPacket::kMaxBytes);
+static_assert(kCommandHeaderBytes + kMaxCommandArgumentBytes + kCommandTrailerBytes <=
+              hal::CommandPacket::kMaxBytes);
 
 enum class FunctionCode : std::uint8_t {
   kNoop = 1,
   kResetCounters = 2,
-  kSetMode = 3,          // mode u8: 1 STANDBY, 2 RUN, 3 SAFE
+  kSetMode = 3,  // mode u8: 1 STANDBY, 2 RUN, 3 SAFE
   kResetSequence = 4,
-  kModelLoad = 5,        // offset u32, 1...1024 bytes for the bank that is not in use
-  kModelValidate = 6,    // size u32, CRC-32 u32 of the image's header, of what has been loaded
-  kModelActivate = 7,    // CRC-32 u32, of what has been validated
-  kModelDump = 8,        // bank u8, offset u32, size u16
-  kSetLimit = 9,         // fsw::Limit u8, value u32
-  kEnableResponse = 10,  // fsw::Fault u8
+  kModelLoad = 5,         // offset u32, 1...1024 bytes for the bank that is not in use
+  kModelValidate = 6,     // size u32, CRC-32 u32 of the image's header, of what has been loaded
+  kModelActivate = 7,     // CRC-32 u32, of what has been validated
+  kModelDump = 8,         // bank u8, offset u32, size u16
+  kSetLimit = 9,          // fsw::Limit u8, value u32
+  kEnableResponse = 10,   // fsw::Fault u8
   kDisableResponse = 11,  // fsw::Fault u8
 };
 
 // Why a command was not carried out, in the order of the checks.
 enum class CommandRefusal : std::uint8_t {
-  kForged = 0,       // too short for a trailer, or its code is not the key's
-  kReplayed,         // counter not higher than that of the last authentic command
-  kMalformed,        // version, type, secondary header, flags, APID, or reserved field
-  kWrongLength,      // the length field and what came, or the arguments and the function
+  kForged = 0,   // too short for a trailer, or its code is not the key's
+  kReplayed,     // counter not higher than that of the last authentic command
+  kMalformed,    // version, type, secondary header, flags, APID, or reserved field
+  kWrongLength,  // the length field and what came, or the arguments and the function
   kWrongChecksum,
   kUnknownFunction,
-  kWrongMode,        // not in this mode
-  kWrongArgument,    // out of its range
-  kNoModel,          // no model to run, validate or activate; the event says which gnc::ModelStatus
-  kBusy,             // a dump of this cycle is already on its way
+  kWrongMode,      // not in this mode
+  kWrongArgument,  // out of its range
+  kNoModel,        // no model to run, validate or activate; the event says which gnc::ModelStatus
+  kBusy,           // a dump of this cycle is already on its way
 };
 inline constexpr int kCommandRefusals = 10;
 
@@ -68,9 +69,5 @@ struct Telecommand {
   }
   std::uint32_t u32_at(int offset) const { return std::uint32_t{u16_at(offset)} << 16 | u16_at(offset + 2); }
 };
-
-// CRC-16/CCITT-FALSE; the second takes one byte more.
-std::uint16_t crc16(const std::uint8_t* data, std::size_t size_bytes);
-std::uint16_t crc16_of_more(std::uint16_t crc, std::uint8_t byte);
 
 }  // namespace tumblesight::fsw

@@ -1,5 +1,5 @@
-// Voted: what must survive a bit flip, three times. Between two cycles the copies are equal; at the start of a cycle the
-// majority of every bit counts. Within a cycle only the first copy is worked on.
+// Voted: what must survive a bit flip, three times. Between two cycles the copies are equal; at the start of
+// a cycle the majority of every bit counts. Within a cycle only the first copy is worked on.
 #pragma once
 
 #include <array>
@@ -34,7 +34,8 @@ class Voted {
   // At the end of a cycle.
   void commit() {
     for (std::size_t copy = 1; copy < 3; ++copy) {
-      std::memcpy(static_cast<void*>(&copies_[copy]), copies_.data(), sizeof(State));  // what lies between the members too
+      std::memcpy(static_cast<void*>(&copies_[copy]), copies_.data(),
+                  sizeof(State));  // what lies between the members too
     }
   }
 

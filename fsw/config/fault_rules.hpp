@@ -8,15 +8,15 @@ namespace tumblesight::fsw {
 
 // Numbers are part of the interface (docs/icd.md).
 enum class Fault : std::uint8_t {
-  kStateLost = 0,         // the estimator's state was hit, and so was its copy
-  kModelCorrupted = 1,    // the model in use was hit, and no good copy of the place is left
-  kAttitudeUnsound = 2,   // not a unit quaternion, or an error beyond pi
-  kErrorLarge = 3,        // expected error beyond its limit
-  kAttitudeJump = 4,      // not where the last two attitudes lead to
-  kOutage = 5,            // no usable frame, in RUN
-  kDeadline = 6,          // a step beyond its budget
-  kSlip = 7,              // releases of the task that had passed before it was ready
-  kFrameFrozen = 8,       // the ranges of the frame before, under a new number
+  kStateLost = 0,        // the estimator's state was hit, and so was its copy
+  kModelCorrupted = 1,   // the model in use was hit, and no good copy of the place is left
+  kAttitudeUnsound = 2,  // not a unit quaternion, or an error beyond pi
+  kErrorLarge = 3,       // expected error beyond its limit
+  kAttitudeJump = 4,     // not where the last two attitudes lead to
+  kOutage = 5,           // no usable frame, in RUN
+  kDeadline = 6,         // a step beyond its budget
+  kSlip = 7,             // releases of the task that had passed before it was ready
+  kFrameFrozen = 8,      // the ranges of the frame before, under a new number
 };
 inline constexpr int kFaults = 9;
 

@@ -41,11 +41,13 @@ inline constexpr int kMaxCommandsPerStep = 8;
 // for good.
 inline constexpr int kMaxFramesPerStep = 2;
 
-// What one step hands out; what is left over waits for the next one, and what does not fit there either is counted as lost.
+// What one step hands out; what is left over waits for the next one, and what does not fit there either is
+// counted as lost.
 inline constexpr int kMaxEventsPerStep = 16;
 inline constexpr int kEventRing = 32;
 static_assert((kEventRing & (kEventRing - 1)) == 0, "a damaged place in the ring is masked");
-// Of one kind, within a window of so many cycles, no more are told; the window's end tells how many there were.
+// Of one kind, within a window of so many cycles, no more are told; the window's end tells how many there
+// were.
 inline constexpr int kMaxEventsOfAKind = 8;
 inline constexpr std::uint32_t kEventWindow_cycles = 16;
 
@@ -59,7 +61,8 @@ static_assert(kFramePeriodTolerance_ns > 0 && 2 * kFramePeriodTolerance_ns < kFr
 // A frame exposed longer ago than this says nothing about the attitude now. One cycle late is still of use.
 inline constexpr std::int64_t kMaxFrameAge_ns = kFramePeriod_ns + kFramePeriodTolerance_ns;
 
-// Static memory of AttitudeInitApp in fixed point. Weights are read where the model image lies and do not count.
+// Static memory of AttitudeInitApp in fixed point. Weights are read where the model image lies and do not
+// count.
 inline constexpr std::size_t kMaxAppBytes = 128U * 1024U;
 inline constexpr std::size_t kMaxModelImageBytes = 8U * 1024U * 1024U;
 

@@ -66,8 +66,8 @@ bool make_inertia(const Matrix3<Real>& tensor_trf, Inertia<Real>& inertia) {
 
   const Matrix3<Real> j = scaled<Real>(given, constant<Real>(3.0) / trace);
   const Matrix3<Real> scaled_inverse = adjugate<Real>(j);
-  const Real determinant = (j(0, 0) * scaled_inverse(0, 0) + j(0, 1) * scaled_inverse(1, 0)) +
-                           j(0, 2) * scaled_inverse(2, 0);
+  const Real determinant =
+      (j(0, 0) * scaled_inverse(0, 0) + j(0, 1) * scaled_inverse(1, 0)) + j(0, 2) * scaled_inverse(2, 0);
   // The leading minors decide on definiteness; the inverse's trace bounds its largest eigenvalue.
   const Real inverse_trace = (scaled_inverse(0, 0) + scaled_inverse(1, 1)) + scaled_inverse(2, 2);
   const bool definite = j(0, 0) > kZero && scaled_inverse(2, 2) > kZero && determinant > kZero;
@@ -151,11 +151,11 @@ MotionLaws<Real> motion_laws(const Inertia<Real>& inertia) {
   return laws;
 }
 
-#define TUMBLESIGHT_INSTANTIATE(Real)                                           \
-  template bool make_inertia(const Matrix3<Real>&, Inertia<Real>&);             \
-  template Matrix3<Real> rotation_by(const Vector3<Real>&);                     \
-  template Vector3<Real> small_turn_of(const Matrix3<Real>&);                   \
-  template Motion<Real> tumble(const Motion<Real>&, const Inertia<Real>&);      \
+#define TUMBLESIGHT_INSTANTIATE(Real)                                      \
+  template bool make_inertia(const Matrix3<Real>&, Inertia<Real>&);        \
+  template Matrix3<Real> rotation_by(const Vector3<Real>&);                \
+  template Vector3<Real> small_turn_of(const Matrix3<Real>&);              \
+  template Motion<Real> tumble(const Motion<Real>&, const Inertia<Real>&); \
   template MotionLaws<Real> motion_laws(const Inertia<Real>&)
 
 TUMBLESIGHT_INSTANTIATE(Fixed);

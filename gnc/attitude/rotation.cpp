@@ -11,10 +11,10 @@ using Candidate = std::array<std::int64_t, 4>;
 // |q| <= 2^41; the nearest, halves away from zero.
 QuaternionQ30 normalised(const Candidate& q) {
   std::int64_t bits = 0;
-  for (const std::int64_t part : q) bits |= magnitude_of(part);
+  for (const std::int64_t part : q) bits |= abs(part);
   const int left = 30 - highest_bit(static_cast<std::uint64_t>(bits));
-  const std::int32_t up = std::int32_t{1} << larger_of(left, 0);
-  const std::int32_t down = std::int32_t{1} << larger_of(-left, 0);
+  const std::int32_t up = std::int32_t{1} << max(left, 0);
+  const std::int32_t down = std::int32_t{1} << max(-left, 0);
   std::array<std::int64_t, 4> scaled;
   std::uint64_t square = 0;
   for (int i = 0; i < 4; ++i) {
@@ -25,9 +25,11 @@ QuaternionQ30 normalised(const Candidate& q) {
   const bool turned = is_less<std::int64_t>(q[0], 0);
   QuaternionQ30 unit;
   for (int i = 0; i < 4; ++i) {
-    const std::int64_t magnitude = magnitude_of(scaled[i]);
-    const std::int64_t rounded = (quotient_of(magnitude * (std::int64_t{1} << 31), larger_of<std::int64_t>(length, 1)) + 1) >> 1;
-    unit[i] = static_cast<std::int32_t>(select(is_less<std::int64_t>(scaled[i], 0) != turned, -rounded, rounded));
+    const std::int64_t magnitude = abs(scaled[i]);
+    const std::int64_t rounded =
+        (quotient_of(magnitude * (std::int64_t{1} << 31), max<std::int64_t>(length, 1)) + 1) >> 1;
+    unit[i] =
+        static_cast<std::int32_t>(select(is_less<std::int64_t>(scaled[i], 0) != turned, -rounded, rounded));
   }
   return unit;
 }
@@ -48,7 +50,8 @@ QuaternionQ30 quaternion_from_rotation(const Matrix3<Fixed>& rotation) {
       {wz, xz, yz, kOne - r(0, 0) - r(1, 1) + r(2, 2)},
   }};
   std::size_t best = 0;
-  for (std::size_t k = 1; k < 4; ++k) best = select(is_less(candidates[best][best], candidates[k][k]), k, best);
+  for (std::size_t k = 1; k < 4; ++k)
+    best = select(is_less(candidates[best][best], candidates[k][k]), k, best);
   return normalised(candidates[best]);
 }
 

@@ -17,8 +17,8 @@ struct RotationColumns {
   Vector3<Real> second;
 };
 
-// Gram-Schmidt: x1 = a / |a|, x2 = (b - (x1 . b) x1) normalised. Zero or parallel vectors give columns that are
-// short, never a division by zero; non-finite input gives non-finite columns.
+// Gram-Schmidt: x1 = a / |a|, x2 = (b - (x1 . b) x1) normalised. Zero or parallel vectors give columns that
+// are short, never a division by zero; non-finite input gives non-finite columns.
 template <class Real>
 RotationColumns<Real> orthonormalise(const Vector3<Real>& a, const Vector3<Real>& b) {
   const Vector3<Real> first = normalised(a);

@@ -29,7 +29,8 @@ std::int64_t rounded_division(std::int64_t dividend, std::int64_t divisor) {
 std::int64_t tan_half_fov30(std::uint32_t fov_urad) {
   const std::int64_t x = rounded_division(std::int64_t{fov_urad} * kOne30, 2'000'000);
   const std::int64_t s = product30(x, x);
-  constexpr std::int64_t kSeries[] = {357913941, 143165577, 57948660, 23481185, 9516822};  // 1/3, 2/15, 17/315, ...
+  constexpr std::int64_t kSeries[] = {357913941, 143165577, 57948660, 23481185,
+                                      9516822};  // 1/3, 2/15, 17/315, ...
   std::int64_t sum = 0;
   for (int k = 4; k >= 0; --k) sum = kSeries[k] + product30(s, sum);
   return x + product30(x, product30(s, sum));
@@ -59,7 +60,7 @@ Centroid centroid_of(const DepthImageScratch::Rays& rays, int count, int returns
     up30 -= std::int64_t{rays.row_sum[i]} * rays.slope30[i];
     across30 += std::int64_t{rays.column_sum[i]} * rays.slope30[i];
   }
-  const auto slope = [divisor = larger_of<std::int64_t>(depth, 1)](std::int64_t sum30) {
+  const auto slope = [divisor = max<std::int64_t>(depth, 1)](std::int64_t sum30) {
     return Fixed::from_raw(rounded_division(rounded_shift(sum30, 30 - Fixed::kFractionBits), divisor));
   };
   const Vector3<Fixed> direction = normalised(Vector3<Fixed>(slope(across30), Fixed(1.0), slope(up30)));
@@ -81,25 +82,29 @@ Matrix3<Fixed> turn_of_y_to(const Vector3<Fixed>& direction) {
   return turn;
 }
 
-// Of a point at depth 1 the coordinate along `axis`, 30 bits behind the point: the parts of a ray's column and row.
+// Of a point at depth 1 the coordinate along `axis`, 30 bits behind the point: the parts of a ray's column
+// and row.
 struct Parts {
   const Vector3<Fixed>& axis;
   const DepthImageScratch::Rays& rays;
-  std::int64_t of_column(int i) const { return rounded_shift(std::int64_t{axis.x().raw()} * rays.slope30[i], 24); }
+  std::int64_t of_column(int i) const {
+    return rounded_shift(std::int64_t{axis.x().raw()} * rays.slope30[i], 24);
+  }
   std::int64_t of_row(int i) const {
-    return std::int64_t{axis.y().raw()} * (1 << 6) - rounded_shift(std::int64_t{axis.z().raw()} * rays.slope30[i], 24);
+    return std::int64_t{axis.y().raw()} * (1 << 6) -
+           rounded_shift(std::int64_t{axis.z().raw()} * rays.slope30[i], 24);
   }
 };
 static_assert(Fixed::kFractionBits == 24);
 
 // Parts are monotonous, so the first and the last are the largest.
 std::int64_t largest_part30(const Parts& parts, int count) {
-  return larger_of(magnitude_of(parts.of_column(0)), magnitude_of(parts.of_column(count - 1))) +
-         larger_of(magnitude_of(parts.of_row(0)), magnitude_of(parts.of_row(count - 1)));
+  return max(abs(parts.of_column(0)), abs(parts.of_column(count - 1))) +
+         max(abs(parts.of_row(0)), abs(parts.of_row(count - 1)));
 }
 
 std::int16_t saturated16(std::int64_t value) {
-  return static_cast<std::int16_t>(held_between<std::int64_t>(value, -32767, 32767));
+  return static_cast<std::int16_t>(clamp<std::int64_t>(value, -32767, 32767));
 }
 
 void make_coordinate(const Parts& parts, int count, std::int64_t factor8, int shift,
@@ -117,7 +122,7 @@ void make_cells(const Parts& x, const Parts& down, int count, std::uint32_t swat
   // Cells to the frame's unit times 2^16, 8 bits behind the point.
   const std::int64_t factor8 =
       rounded_division((std::int64_t{DepthImage::kSide} * 1000) << (16 + 8 - 6 - range_shift), swath_mm);
-  const std::int64_t largest = larger_of(largest_part30(x, count), largest_part30(down, count)) * factor8;
+  const std::int64_t largest = max(largest_part30(x, count), largest_part30(down, count)) * factor8;
   int bits = 2;
   for (int more = 3; more <= 6; ++more) bits = select((largest >> (38 - more)) < 32767, more, bits);
   view.cells = static_cast<std::int16_t>(1 << (16 - bits));
@@ -136,8 +141,8 @@ void make_depth(const Parts& depth, int count, DepthImageScratch::Coordinate& co
 void make_scale(std::int64_t centroid, std::uint32_t target_radius_mm, int range_shift,
                 DepthImageScratch::View& view) {
   const std::int64_t radius =
-      larger_of<std::int64_t>(1, rounded_division((std::int64_t{target_radius_mm} * kMetre) << range_shift, 1000));
-  const int shift = larger_of(0, 14 - highest_bit(static_cast<std::uint64_t>(radius)));
+      max<std::int64_t>(1, rounded_division((std::int64_t{target_radius_mm} * kMetre) << range_shift, 1000));
+  const int shift = max(0, 14 - highest_bit(static_cast<std::uint64_t>(radius)));
   view.centroid = saturated16(centroid);
   view.radius = saturated16(radius);
   view.radius_scale = static_cast<std::int16_t>(1 << shift);

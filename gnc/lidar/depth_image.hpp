@@ -12,9 +12,9 @@ namespace tumblesight::gnc {
 
 struct DepthLoops;  // the inner loops, of one instruction set: depth_loops.hpp
 
-// Depth of the target, seen along the view's +y, row 0 at the top (+z), column 0 at the left (-x). Unsigned, 16
-// bits behind the point. 0 = nothing there; otherwise 0.5 + 0.5 (centroid depth - depth) / target radius, from 1/256
-// to 1: nearer is brighter.
+// Depth of the target, seen along the view's +y, row 0 at the top (+z), column 0 at the left (-x). Unsigned,
+// 16 bits behind the point. 0 = nothing there; otherwise 0.5 + 0.5 (centroid depth - depth) / target radius,
+// from 1/256 to 1: nearer is brighter.
 //
 // The view is the LRF turned, by the shortest arc, so that its +y passes through the centroid of the returns.
 // In it a target off the boresight looks as it would on the boresight: what is learnt there holds everywhere.
@@ -46,15 +46,18 @@ enum class FrameStatus : std::uint8_t {
 
 // Working memory of the projection, held by the caller so that nothing large lies on the stack.
 struct DepthImageScratch {
-  // What falls into no cell goes to the last ones, in turn: one alone would have every ray wait for the one before.
+  // What falls into no cell goes to the last ones, in turn: one alone would have every ray wait for the one
+  // before.
   static constexpr int kSpareCells = 16;
   std::array<std::uint32_t, DepthImage::kCells + kSpareCells> cells;
 
-  // The rays of a frame. Depths of it are counted in 2^-(6 + range_shift) m, so that the farthest fills 15 bits.
+  // The rays of a frame. Depths of it are counted in 2^-(6 + range_shift) m, so that the farthest fills 15
+  // bits.
   struct Rays {
     int range_shift;
-    std::array<std::int32_t, RangeImage::kMaxRays> slope30;   // of a column, or negated of a row; 30 bits behind the point
-    std::array<std::int16_t, RangeImage::kMaxRays> square16;  // its square, 16 bits
+    std::array<std::int32_t, RangeImage::kMaxRays>
+        slope30;  // of a column, or negated of a row; 30 bits behind the point
+    std::array<std::int16_t, RangeImage::kMaxRays> square16;              // its square, 16 bits
     std::array<std::uint32_t, RangeImage::kMaxRays> row_sum, column_sum;  // of depths
   } rays;
 
@@ -63,8 +66,8 @@ struct DepthImageScratch {
     std::array<std::int16_t, RangeImage::kMaxRays> of_column, of_row;
   };
   struct View {
-    Coordinate x, down;  // high half of the product with a depth: of a cell 2^-6, or up to 2^-2
-    Coordinate depth;    // less 1, with 15 bits behind the point
+    Coordinate x, down;            // high half of the product with a depth: of a cell 2^-6, or up to 2^-2
+    Coordinate depth;              // less 1, with 15 bits behind the point
     std::int16_t cells;            // high half of the product with a coordinate: whole cells
     std::int16_t middle;           // of the image, as a coordinate
     std::int16_t centroid;         // its depth in the view
@@ -80,13 +83,14 @@ inline constexpr int kMaxRange_m = 500;  // longer ranges count as no return (pa
 inline constexpr std::uint32_t kMinFov_urad = 17'453;   // 1 degree
 inline constexpr std::uint32_t kMaxFov_urad = 698'132;  // 40 degrees
 
-// Projects the returns on the plane across the view's axis (x right, z up, axis in the middle) and averages the depths
-// that fall in one cell, none counting for more than a radius from the centroid. Returns nearer than kMinRange_m,
-// farther than kMaxRange_m or outside the swath are left out. The work done is the same for every frame of one ray
-// count. On any status but kOk `image` is unspecified.
+// Projects the returns on the plane across the view's axis (x right, z up, axis in the middle) and averages
+// the depths that fall in one cell, none counting for more than a radius from the centroid. Returns nearer
+// than kMinRange_m, farther than kMaxRange_m or outside the swath are left out. The work done is the same for
+// every frame of one ray count. On any status but kOk `image` is unspecified.
 [[nodiscard]] FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& projection,
                                            DepthImageScratch& scratch, DepthImage& image);
 [[nodiscard]] FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& projection,
-                                           DepthImageScratch& scratch, DepthImage& image, const DepthLoops& loops);
+                                           DepthImageScratch& scratch, DepthImage& image,
+                                           const DepthLoops& loops);
 
 }  // namespace tumblesight::gnc

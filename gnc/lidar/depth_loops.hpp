@@ -1,5 +1,5 @@
-// DepthLoops: what the projection of a frame does ray by ray and cell by cell, in integers of 16 and 32 bits, built
-// for several instruction sets. What stands around it, once a frame, is in depth_image.cpp.
+// DepthLoops: what the projection of a frame does ray by ray and cell by cell, in integers of 16 and 32 bits,
+// built for several instruction sets. What stands around it, once a frame, is in depth_image.cpp.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct Survey {
 // A cell's sum: kValueBits of the sum of its values, above them how many.
 inline constexpr int kValueBits = 22;
 inline constexpr std::uint32_t kMostReturns = 255;  // of a cell that count
-inline constexpr int kMiddleValue = 8192;           // a return as far as the centroid; 0 and 16384: a radius beyond
+inline constexpr int kMiddleValue = 8192;  // a return as far as the centroid; 0 and 16384: a radius beyond
 
 struct DepthLoops {
   InstructionSet set;
@@ -30,8 +30,8 @@ struct DepthLoops {
   // Depths along the boresight, summed row by row and column by column into `rays`.
   void (*sum_depths)(const RangeImage& frame, DepthImageScratch::Rays& rays);
   // Adds every usable return to its cell.
-  void (*accumulate)(const RangeImage& frame, const DepthImageScratch::Rays& rays, const DepthImageScratch::View& view,
-                     std::uint32_t* cells);
+  void (*accumulate)(const RangeImage& frame, const DepthImageScratch::Rays& rays,
+                     const DepthImageScratch::View& view, std::uint32_t* cells);
   void (*encode)(const std::uint32_t* cells, std::uint16_t* depth);
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 // The order of the comparisons sends NaN to -bound.
 inline float held_within(float x, float bound) {
-  return held_between(x, -bound, bound);
+  return clamp(x, -bound, bound);
 }
 
 // e^x = 2^n e^r with n = round(x / ln 2), |r| <= ln(2) / 2, and e^r = 1 + r + r^2 q(r).

@@ -1,7 +1,7 @@
 // ConvBlock: 3x3 convolution, pooling 2x2 and ReLU over a square HWC image, in one pass over pairs of rows.
 //
-// Layers are functions of their own ([[gnu::noinline]]), here and in dense.hpp and lstm.hpp, so that what each takes can be
-// told apart (tests/audit).
+// Layers are functions of their own ([[gnu::noinline]]), here and in dense.hpp and lstm.hpp, so that what
+// each takes can be told apart (tests/audit).
 #pragma once
 
 #include <array>
@@ -44,8 +44,8 @@ struct ConvBlock {
 
   // The largest of each window, activated.
   using MaxPooled = PaddedImage<ConvInput<N>, kSideOut, kChannelsOut>;
-  [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
-                                        MaxPooled& out) {
+  [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
+                                        Sums& sums, MaxPooled& out) {
     out.number.fill({});
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);
@@ -55,8 +55,8 @@ struct ConvBlock {
 
   // The windows' four numbers, activated and then averaged; in fixed point they are added.
   using AveragePooled = std::array<DenseInput<N>, kSideOut * kSideOut * kChannelsOut>;
-  [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
-                                        AveragePooled& out) {
+  [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
+                                        Sums& sums, AveragePooled& out) {
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);
       kernels.average_pool(sums.data(), kColumns, kChannelsOut, weights.shift.data(),
@@ -65,9 +65,10 @@ struct ConvBlock {
   }
 
  private:
-  // Rows 2 y and 2 y + 1. Where it costs nothing to compute them one by one, the first and the last row are spared the padding
-  // above and below, which adds nothing.
-  static void two_rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int y, Sums& sums) {
+  // Rows 2 y and 2 y + 1. Where it costs nothing to compute them one by one, the first and the last row are
+  // spared the padding above and below, which adds nothing.
+  static void two_rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int y,
+                       Sums& sums) {
     constexpr int kAll = 3;
     const bool spares = kColumns % kernels.pixels == 0;
     const int above = spares && y == 0 ? 1 : 0;
@@ -81,8 +82,8 @@ struct ConvBlock {
   }
 
   // `count` rows of sums from `first` on, over the strips (ky) from first_strip on.
-  static void rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int first, int count, int first_strip,
-                   int strips, Sum<N>* sums) {
+  static void rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int first, int count,
+                   int first_strip, int strips, Sum<N>* sums) {
     const ProductShape shape{count,  kColumns,        Input::kRow, kChannelsIn,
                              strips, 3 * kChannelsIn, Input::kRow, kChannelsOut};
     kernels.convolve(shape, in.number.data() + (first + first_strip) * Input::kRow, weights.bias.data(),

@@ -26,16 +26,16 @@ struct Dense {
 
   // Hidden layer: ReLU.
   using Hidden = std::array<DenseInput<N>, kOut>;
-  [[gnu::noinline]] static void hidden(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
-                                       Hidden& out) {
+  [[gnu::noinline]] static void hidden(const Kernels<N>& kernels, const Weights& weights, const Input& in,
+                                       Sums& sums, Hidden& out) {
     sum(kernels, weights, in, sums);
     for (int c = 0; c < kOut; ++c) activate(sums[c], N::kIsInteger ? weights.shift.data()[c] : 0, out[c]);
   }
 
   // Last layer: numbers with a meaning.
   using Output = std::array<typename N::Real, kOut>;
-  [[gnu::noinline]] static void output(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
-                                       Output& out) {
+  [[gnu::noinline]] static void output(const Kernels<N>& kernels, const Weights& weights, const Input& in,
+                                       Sums& sums, Output& out) {
     sum(kernels, weights, in, sums);
     for (int c = 0; c < kOut; ++c) out[c] = to_real(sums[c], N::kIsInteger ? weights.shift.data()[c] : 0);
   }

@@ -31,12 +31,12 @@ Fixed gate_sigmoid(Fixed x) {
   constexpr int kFractionBits = Fixed::kFractionBits - 5;  // of a line
   static_assert(1 << 5 == kLinesToOne);
   constexpr std::int32_t kEnd = 16 << Fixed::kFractionBits;
-  const std::int32_t inside = smaller_of(magnitude_of(x.raw()), kEnd - 1);
+  const std::int32_t inside = min(abs(x.raw()), kEnd - 1);
   const std::int32_t line = inside >> kFractionBits;
   const std::int64_t rise = kSigmoid[line + 1].raw() - kSigmoid[line].raw();
   const std::int64_t along = inside & ((1 << kFractionBits) - 1);
-  const Fixed above = Fixed::from_raw(kSigmoid[line].raw() +
-                                      ((rise * along + (1 << (kFractionBits - 1))) >> kFractionBits));
+  const Fixed above =
+      Fixed::from_raw(kSigmoid[line].raw() + ((rise * along + (1 << (kFractionBits - 1))) >> kFractionBits));
   return select(x.raw() < 0, Fixed(1.0) - above, above);
 }
 
@@ -45,7 +45,8 @@ Fixed gate_tanh(Fixed x) {
   return (s + s) - Fixed(1.0);
 }
 
-void lstm_update(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h, Fixed* c) {
+void lstm_update(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h,
+                 Fixed* c) {
   constexpr Fixed kBound(static_cast<double>(kLstmCellBound));
   for (int i = 0; i < hidden; ++i) {
     const auto gate = [&](int which) {
@@ -57,7 +58,7 @@ void lstm_update(const std::int32_t* gates, const std::uint8_t* shift, int hidde
     const Fixed cell = gate_tanh(gate(2));
     const Fixed output = gate_sigmoid(gate(3));
     const Fixed sum = Fixed::dot(forget, c[i], input, cell, Fixed(), Fixed());
-    c[i] = held_between(sum, -kBound, kBound);
+    c[i] = clamp(sum, -kBound, kBound);
     to_input(output, gate_tanh(c[i]), h[i]);
   }
 }
@@ -71,7 +72,8 @@ void lstm_update(float* gates, const std::uint8_t*, int hidden, float* h, float*
   sigmoid(input, input, 2 * hidden);
   tanh(cell, cell, hidden);
   sigmoid(output, output, hidden);
-  for (int i = 0; i < hidden; ++i) c[i] = held_between(forget[i] * c[i] + input[i] * cell[i], -kLstmCellBound, kLstmCellBound);
+  for (int i = 0; i < hidden; ++i)
+    c[i] = clamp(forget[i] * c[i] + input[i] * cell[i], -kLstmCellBound, kLstmCellBound);
   tanh(c, h, hidden);
   for (int i = 0; i < hidden; ++i) h[i] = output[i] * h[i];
 }

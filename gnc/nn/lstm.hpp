@@ -13,14 +13,14 @@ namespace tumblesight::gnc {
 // one sign (tanh has long been flat by then) or when a bit flip left something huge or NaN behind.
 inline constexpr float kLstmCellBound = 64.0F;
 
-// `gates` (4 * hidden sums, order input, forget, cell, output, before their activations; floats are overwritten)
-// and the cells make the new state: c = forget * c + input * cell, h = output * tanh(c). |h| <= 1 and |c| <=
-// kLstmCellBound always.
+// `gates` (4 * hidden sums, order input, forget, cell, output, before their activations; floats are
+// overwritten) and the cells make the new state: c = forget * c + input * cell, h = output * tanh(c). |h| <=
+// 1 and |c| <= kLstmCellBound always.
 void lstm_update(float* gates, const std::uint8_t* shift, int hidden, float* h, float* c);
 void lstm_update(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h, Fixed* c);
 
-// sigmoid and tanh of the gates in fixed point: 512 straight lines over [0, 16), flat beyond; within 1.3e-5 and
-// 2.6e-5 of the exact values.
+// sigmoid and tanh of the gates in fixed point: 512 straight lines over [0, 16), flat beyond; within 1.3e-5
+// and 2.6e-5 of the exact values.
 Fixed gate_sigmoid(Fixed x);
 Fixed gate_tanh(Fixed x);
 
@@ -46,8 +46,8 @@ struct Lstm {
   };
 
   // Summation per gate: bias, inputs ascending, then hidden units ascending.
-  [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums,
-                                        State& state) {
+  [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
+                                        Sums& sums, State& state) {
     constexpr ProductShape kFromInput{1, 1, 0, 0, 1, kIn, 0, kGates};
     constexpr ProductShape kFromHidden{1, 1, 0, 0, 1, kHidden, 0, kGates};
     kernels.multiply(kFromInput, in.data(), weights.bias.data(), weights.weight.data(), sums.data());

@@ -11,8 +11,8 @@
 
 namespace tumblesight::gnc {
 
-// (sum + 2^(shift - 1)) >> shift: to the nearest, halves up. The one rounding between a layer's sum and the next
-// layer's input. 1 <= shift; sum + 2^(shift - 1) does not overflow, model_image.hpp sees to it.
+// (sum + 2^(shift - 1)) >> shift: to the nearest, halves up. The one rounding between a layer's sum and the
+// next layer's input. 1 <= shift; sum + 2^(shift - 1) does not overflow, model_image.hpp sees to it.
 inline std::int32_t requantised(std::int32_t sum, int shift) {
   return (sum + (std::int32_t{1} << (shift - 1))) >> shift;
 }
@@ -79,19 +79,20 @@ struct LayerWeights {
 
 // Held between 0 and `largest`.
 inline std::int32_t saturated(std::int32_t value, std::int32_t largest) {
-  if constexpr (kMovesConditionally) return held_between(value, 0, largest);
+  if constexpr (kMovesConditionally) return clamp(value, 0, largest);
   const std::int32_t not_negative = value & ~(value >> 31);
   const std::int32_t room = largest - not_negative;
   return not_negative + (room & (room >> 31));
 }
 
-// The larger of two sums of a convolution, which model_image.hpp holds below this: so their difference has its true sign.
+// The larger of two sums of a convolution, which model_image.hpp holds below this: so their difference has
+// its true sign.
 inline constexpr std::int32_t kLargestConvolved = 1 << 30;
 inline float larger_convolved(float a, float b) {
-  return larger_of(a, b);
+  return max(a, b);
 }
 inline std::int32_t larger_convolved(std::int32_t a, std::int32_t b) {
-  if constexpr (kMovesConditionally) return larger_of(a, b);
+  if constexpr (kMovesConditionally) return max(a, b);
   const std::int32_t more = b - a;
   return a + (more & ~(more >> 31));
 }
@@ -107,7 +108,8 @@ inline void activate(std::int32_t sum, int shift, std::int16_t& out) {
   out = static_cast<std::int16_t>(saturated(requantised(sum, shift), 32767));
 }
 
-// The mean of four numbers, activated; in fixed point their sum, which loses nothing, each of at most 12 bits.
+// The mean of four numbers, activated; in fixed point their sum, which loses nothing, each of at most 12
+// bits.
 inline constexpr int kLargestOfFour = 4095;
 inline void activate_four(const float (&sums)[4], int, float& out) {
   float total = 0.0F;
@@ -125,8 +127,8 @@ inline float to_real(float sum, int) {
   return sum;
 }
 inline Fixed to_real(std::int32_t sum, int shift) {
-  return Fixed::from_raw((std::int64_t{sum} * (1 << Fixed::kFractionBits) + (std::int64_t{1} << (shift - 1))) >>
-                         shift);
+  return Fixed::from_raw(
+      (std::int64_t{sum} * (1 << Fixed::kFractionBits) + (std::int64_t{1} << (shift - 1))) >> shift);
 }
 
 // The other way: 15 bits behind the point, saturating. A product is rounded once.
@@ -134,7 +136,7 @@ inline void to_input(float value, float& input) {
   input = value;
 }
 inline std::int16_t saturated_q15(std::int64_t value) {
-  return static_cast<std::int16_t>(held_between<std::int64_t>(value, -32767, 32767));
+  return static_cast<std::int16_t>(clamp<std::int64_t>(value, -32767, 32767));
 }
 inline void to_input(Fixed value, std::int16_t& input) {
   constexpr int kShift = Fixed::kFractionBits - 15;

@@ -1,4 +1,5 @@
-// Sliding product: the one operation under convolutions and dense layers, and the kinds of numbers it is made of.
+// Sliding product: the one operation under convolutions and dense layers, and the kinds of numbers it is made
+// of.
 #pragma once
 
 #include <cstdint>
@@ -31,11 +32,12 @@ struct Int16Product {
 //       in[y * row_step + x * column_step + t * strip_step + i]
 //       * weights[((t * strip_length + i) / kGroup * channels + c) * kGroup + i % kGroup]
 // Floats are added one by one in that order, products rounded before they are added (-ffp-contract=off), and
-// vectors run across output channels, so the bits of an output are the same whatever the vector width. Integers
-// are exact in any order, since no sum can leave 32 bits: model_image.hpp sees to it.
+// vectors run across output channels, so the bits of an output are the same whatever the vector width.
+// Integers are exact in any order, since no sum can leave 32 bits: model_image.hpp sees to it.
 //
-// A 3x3 convolution over a zero-padded HWC image is three strips (ky) of 3 * channels_in numbers (kx, channel); a
-// dense layer is one pixel and one strip. The work done depends on the shape only, never on the numbers.
+// A 3x3 convolution over a zero-padded HWC image is three strips (ky) of 3 * channels_in numbers (kx,
+// channel); a dense layer is one pixel and one strip. The work done depends on the shape only, never on the
+// numbers.
 struct ProductShape {
   int rows;
   int columns;
@@ -53,7 +55,8 @@ inline constexpr int kIntegerChannels = 16;
 // `start` may be `out` itself when there is one pixel: the product is then added to what lies there. `in`,
 // `weights` and `out` must not overlap.
 template <class Kind>
-using Product = void(const ProductShape& shape, const typename Kind::Input* in, const typename Kind::Sum* start,
-                     const typename Kind::Weight* weights, typename Kind::Sum* out);
+using Product = void(const ProductShape& shape, const typename Kind::Input* in,
+                     const typename Kind::Sum* start, const typename Kind::Weight* weights,
+                     typename Kind::Sum* out);
 
 }  // namespace tumblesight::gnc

@@ -18,7 +18,7 @@ inline void convert(Fixed from, float& to) {
 inline void convert(float from, Fixed& to) {
   constexpr float kLargest = 127.99999F;  // the last one before 128
   const float finite = select(is_finite(from), from, 0.0F);
-  const double scaled = static_cast<double>(held_between(finite, -kLargest, kLargest)) * (1 << Fixed::kFractionBits);
+  const double scaled = static_cast<double>(clamp(finite, -kLargest, kLargest)) * (1 << Fixed::kFractionBits);
   const auto inside = static_cast<std::int32_t>(scaled + std::copysign(0.5, scaled));
   const std::int32_t not_above = select(finite > kLargest, Fixed::kLargestRaw, inside);
   to = Fixed::from_raw(select(finite < -kLargest, -Fixed::kLargestRaw, not_above));

@@ -1,5 +1,6 @@
-// Division of 64-bit integers in the same number of instructions whatever they are. Processors of 32 bits leave it to a
-// function of the compiler's, whose way depends on the numbers; there it is done by hand, a bit of the quotient at a time.
+// Division of 64-bit integers in the same number of instructions whatever they are. Processors of 32 bits
+// leave it to a function of the compiler's, whose way depends on the numbers; there it is done by hand, a bit
+// of the quotient at a time.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +26,8 @@ constexpr std::uint64_t quotient_bit_by_bit(std::uint64_t dividend, std::uint64_
 // Towards zero; divisor > 0.
 constexpr std::int64_t quotient_of(std::int64_t dividend, std::int64_t divisor) {
   if constexpr (sizeof(void*) == 8) return dividend / divisor;
-  const auto quotient = static_cast<std::int64_t>(quotient_bit_by_bit(
-      static_cast<std::uint64_t>(magnitude_of(dividend)), static_cast<std::uint64_t>(divisor)));
+  const auto quotient = static_cast<std::int64_t>(
+      quotient_bit_by_bit(static_cast<std::uint64_t>(abs(dividend)), static_cast<std::uint64_t>(divisor)));
   const std::int64_t sign = dividend >> 63;
   return (quotient ^ sign) - sign;
 }

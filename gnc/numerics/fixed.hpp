@@ -9,8 +9,8 @@
 
 namespace tumblesight::gnc {
 
-// |value| <= 128 - 2^-24, always: results beyond saturate. Every operation rounds once, to the nearest, halves
-// up. The same bits on every processor, by definition: two's complement integers of 32 and 64 bits.
+// |value| <= 128 - 2^-24, always: results beyond saturate. Every operation rounds once, to the nearest,
+// halves up. The same bits on every processor, by definition: two's complement integers of 32 and 64 bits.
 class Fixed {
  public:
   static constexpr int kFractionBits = 24;
@@ -34,8 +34,9 @@ class Fixed {
   // By zero: the largest number of the dividend's sign.
   friend constexpr Fixed operator/(Fixed a, Fixed b) {
     const std::int64_t at_zero = select<std::int64_t>(a.raw_ < 0, -kLargestRaw, kLargestRaw);
-    const std::int64_t divisor = select<std::int64_t>(b.raw_ == 0, 1, magnitude_of<std::int64_t>(b.raw_));
-    const std::int64_t dividend = select<std::int64_t>(b.raw_ < 0, -std::int64_t{a.raw_}, a.raw_) * (2 * kOne);
+    const std::int64_t divisor = select<std::int64_t>(b.raw_ == 0, 1, abs<std::int64_t>(b.raw_));
+    const std::int64_t dividend =
+        select<std::int64_t>(b.raw_ < 0, -std::int64_t{a.raw_}, a.raw_) * (2 * kOne);
     const std::int64_t truncated = quotient_of(dividend, divisor);
     const std::int64_t floor = truncated + less_mask(dividend, truncated * divisor);
     return from_raw(select(b.raw_ == 0, at_zero, (floor + 1) >> 1));
@@ -59,7 +60,7 @@ class Fixed {
   static_assert((std::int64_t{-3} >> 1) == -2, "right shifts must be arithmetic");
 
   static constexpr std::int32_t saturated(std::int64_t raw) {
-    return static_cast<std::int32_t>(held_between<std::int64_t>(raw, -kLargestRaw, kLargestRaw));
+    return static_cast<std::int32_t>(clamp<std::int64_t>(raw, -kLargestRaw, kLargestRaw));
   }
   static constexpr Fixed from_product(std::int64_t product) {
     return from_raw((product + (kOne >> 1)) >> kFractionBits);
@@ -67,7 +68,7 @@ class Fixed {
   // Two products stay below 2^63; a third, below 2^62, must still fit on top.
   static constexpr std::int64_t bounded(std::int64_t sum) {
     constexpr std::int64_t kBound = std::int64_t{1} << 61;
-    return held_between(sum, -kBound, kBound);
+    return clamp(sum, -kBound, kBound);
   }
 
   std::int32_t raw_ = 0;

@@ -68,8 +68,9 @@ int highest_bit(std::uint64_t value) {
 
 Fixed sqrt(Fixed x) {
   // The square root of raw 2^24, rounded to the nearest: that of four times as much, halved.
-  const std::uint64_t raw = static_cast<std::uint64_t>(larger_of(x.raw(), 0));
-  return Fixed::from_raw((static_cast<std::int64_t>(integer_sqrt(raw << (Fixed::kFractionBits + 2))) + 1) >> 1);
+  const std::uint64_t raw = static_cast<std::uint64_t>(max(x.raw(), 0));
+  return Fixed::from_raw((static_cast<std::int64_t>(integer_sqrt(raw << (Fixed::kFractionBits + 2))) + 1) >>
+                         1);
 }
 
 Fixed exp(Fixed x) {
@@ -79,10 +80,10 @@ Fixed exp(Fixed x) {
   const std::int64_t n = in_octaves >> 30;
   const std::int64_t mantissa = exp2_of_fraction(in_octaves - n * kOne30);  // [1, 2)
   // 30 bits behind the point to 24, times 2^n: (mantissa + 2^(right - 1)) >> right, in shifts of 32 bits.
-  const int right = held_between(6 - static_cast<int>(n), 0, 33);
+  const int right = clamp(6 - static_cast<int>(n), 0, 33);
   const auto m = static_cast<std::uint32_t>(mantissa);
-  const std::uint32_t halved = (m >> 1) + (std::uint32_t{1} << larger_of(right - 2, 0));
-  const int rest = larger_of(right - 1, 0);
+  const std::uint32_t halved = (m >> 1) + (std::uint32_t{1} << max(right - 2, 0));
+  const int rest = max(right - 1, 0);
   const std::uint32_t by_more = halved >> (rest / 2) >> (rest - rest / 2);
   const std::uint32_t by_one_or_none = select(is_less(right, 1), m, (m + 1) >> 1);
   const std::uint32_t shifted = select(is_less(right, 2), by_one_or_none, by_more);

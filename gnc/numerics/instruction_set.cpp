@@ -54,7 +54,7 @@ bool has_avx512() {
 bool processor_has(InstructionSet set) {
   switch (set) {
     case InstructionSet::kPortable:
-    case InstructionSet::k128Bit:  // SSE2, which every x86-64 has
+    case InstructionSet::k128Bit:      // SSE2, which every x86-64 has
     case InstructionSet::kDotProduct:  // not built here
     case InstructionSet::kDsp:
       return true;

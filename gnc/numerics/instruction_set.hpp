@@ -1,5 +1,5 @@
-// Instruction sets for which there are inner loops of their own. All give the same bits; they differ in speed only.
-// On a target the build decides which exist, on a desktop the processor that is found.
+// Instruction sets for which there are inner loops of their own. All give the same bits; they differ in speed
+// only. On a target the build decides which exist, on a desktop the processor that is found.
 #pragma once
 
 #include <array>
@@ -19,8 +19,9 @@ enum class InstructionSet : std::uint8_t {
 };
 // Slowest first.
 inline constexpr std::array<InstructionSet, 8> kInstructionSets{
-    InstructionSet::kPortable, InstructionSet::k128Bit,  InstructionSet::kDotProduct, InstructionSet::kDsp,
-    InstructionSet::kAvx2,     InstructionSet::kAvxVnni, InstructionSet::kAvx512,     InstructionSet::kAvx512Vnni};
+    InstructionSet::kPortable, InstructionSet::k128Bit,    InstructionSet::kDotProduct,
+    InstructionSet::kDsp,      InstructionSet::kAvx2,      InstructionSet::kAvxVnni,
+    InstructionSet::kAvx512,   InstructionSet::kAvx512Vnni};
 
 const char* to_string(InstructionSet set);
 // Whether this processor can run a set that this build holds.

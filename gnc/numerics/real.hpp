@@ -58,12 +58,12 @@ Vector3<Real> scaled(const Vector3<Real>& v, Real factor) {
   return {v.x() * factor, v.y() * factor, v.z() * factor};
 }
 
-// v / |v|; the zero vector stays zero. Float: squared lengths below 1e-12 count as 1e-12. Fixed: the vector is
-// scaled to 30 bits first, so that short ones lose nothing.
+// v / |v|; the zero vector stays zero. Float: squared lengths below 1e-12 count as 1e-12. Fixed: the vector
+// is scaled to 30 bits first, so that short ones lose nothing.
 inline Vector3<float> normalised(const Vector3<float>& v) {
   constexpr float kSmallest = 1e-12F;
   const float square = dot(v, v);
-  const float length = std::sqrt(larger_of(square, kSmallest));
+  const float length = std::sqrt(max(square, kSmallest));
   return {v.x() / length, v.y() / length, v.z() / length};
 }
 Vector3<Fixed> normalised(const Vector3<Fixed>& v);

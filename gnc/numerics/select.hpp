@@ -1,5 +1,5 @@
-// Choices without branches: the same instructions whatever is chosen, so that the time of a step does not depend on the
-// data. Compilers are free to turn `condition ? yes : no` into a jump; they leave masks alone.
+// Choices without branches: the same instructions whatever is chosen, so that the time of a step does not
+// depend on the data. Compilers are free to turn `condition ? yes : no` into a jump; they leave masks alone.
 #pragma once
 
 #include <cstdint>
@@ -55,31 +55,39 @@ inline constexpr bool kMovesConditionally = false;
 
 template <class Integer>
 constexpr bool is_less(Integer a, SameAs<Integer> b) {
-  if constexpr (kMovesConditionally) return a < b;
-  else return (less_mask<Integer>(a, b) & 1) != 0;
+  if constexpr (kMovesConditionally)
+    return a < b;
+  else
+    return (less_mask<Integer>(a, b) & 1) != 0;
 }
 
 template <class Number>
-constexpr Number smaller_of(Number a, SameAs<Number> b) {
-  if constexpr (!std::is_integral_v<Number>) return select(b < a, b, a);
-  else if constexpr (kMovesConditionally) return b < a ? b : a;
-  else return static_cast<Number>(a ^ ((a ^ b) & less_mask<Number>(b, a)));
+constexpr Number min(Number a, SameAs<Number> b) {
+  if constexpr (!std::is_integral_v<Number>)
+    return select(b < a, b, a);
+  else if constexpr (kMovesConditionally)
+    return b < a ? b : a;
+  else
+    return static_cast<Number>(a ^ ((a ^ b) & less_mask<Number>(b, a)));
 }
 template <class Number>
-constexpr Number larger_of(Number a, SameAs<Number> b) {
-  if constexpr (!std::is_integral_v<Number>) return select(a < b, b, a);
-  else if constexpr (kMovesConditionally) return a < b ? b : a;
-  else return static_cast<Number>(a ^ ((a ^ b) & less_mask<Number>(a, b)));
+constexpr Number max(Number a, SameAs<Number> b) {
+  if constexpr (!std::is_integral_v<Number>)
+    return select(a < b, b, a);
+  else if constexpr (kMovesConditionally)
+    return a < b ? b : a;
+  else
+    return static_cast<Number>(a ^ ((a ^ b) & less_mask<Number>(a, b)));
 }
 template <class Integer>
-constexpr Integer magnitude_of(Integer value) {
+constexpr Integer abs(Integer value) {
   const Integer sign = static_cast<Integer>(value >> (8 * sizeof(Integer) - 1));
   return static_cast<Integer>((value ^ sign) - sign);
 }
 // Held between `low` and `high`; NaN gives `low`.
 template <class Number>
-constexpr Number held_between(Number value, SameAs<Number> low, SameAs<Number> high) {
-  return smaller_of<Number>(high, larger_of<Number>(low, value));
+constexpr Number clamp(Number value, SameAs<Number> low, SameAs<Number> high) {
+  return min<Number>(high, max<Number>(low, value));
 }
 
 }  // namespace tumblesight::gnc

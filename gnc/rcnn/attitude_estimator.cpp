@@ -4,7 +4,7 @@
 
 #include "gnc/lidar/depth_loops.hpp"
 #include "gnc/numerics/conversion.hpp"
-#include "gnc/rcnn/crc32.hpp"
+#include "gnc/numerics/crc32.hpp"
 
 namespace tumblesight::gnc {
 
@@ -19,7 +19,7 @@ std::uint32_t error_urad(const Matrix3<Fixed>& attitude, Fixed predicted_rad) {
   const bool is_rotation = absolute(trace - Fixed(3.0)) < Fixed(0.1);
   const std::int64_t scaled = std::int64_t{predicted_rad.raw()} * 1'000'000;
   const std::int64_t urad = (scaled + (1 << (Fixed::kFractionBits - 1))) >> Fixed::kFractionBits;
-  return select(is_rotation, static_cast<std::uint32_t>(smaller_of<std::int64_t>(kPi_urad, urad)), kPi_urad);
+  return select(is_rotation, static_cast<std::uint32_t>(min<std::int64_t>(kPi_urad, urad)), kPi_urad);
 }
 
 [[maybe_unused]] void add_to(Crc32& crc, const float* values, std::size_t count) {
@@ -86,9 +86,8 @@ void AttitudeEstimator<N>::step(const DepthImage& image, AttitudeEstimate& estim
   const TrackedAttitude<Real> tracked = advance<Real>(hypotheses, prediction, head, state_.track);
 
   const Matrix3<Fixed> attitude = converted<Fixed>(tracked.r_lrf_trf);
-  const Matrix3<Fixed> single_frame =
-      converted<Fixed>(mean_attitude<Real>(hypotheses.r_lrf_trf.data(), hypotheses.probability.data(),
-                                   shape::kHypotheses, hypotheses.likeliest));
+  const Matrix3<Fixed> single_frame = converted<Fixed>(mean_attitude<Real>(
+      hypotheses.r_lrf_trf.data(), hypotheses.probability.data(), shape::kHypotheses, hypotheses.likeliest));
   estimate.q_lrf_trf = quaternion_from_rotation(attitude);
   estimate.predicted_error_urad = error_urad(attitude, converted<Fixed>(tracked.predicted_error_rad));
   estimate.q_lrf_trf_single_frame = quaternion_from_rotation(single_frame);
@@ -118,7 +117,8 @@ std::uint32_t AttitudeEstimator<N>::constants_crc32() const {
     crc.add(reinterpret_cast<const std::uint8_t*>(&thing), sizeof thing);
   };
   if constexpr (N::kIsInteger) {
-    for_each_tensor(network_.weights(), [&add](const char*, const char*, const auto& tensor) { add(tensor); });
+    for_each_tensor(network_.weights(),
+                    [&add](const char*, const char*, const auto& tensor) { add(tensor); });
   }
   add(reinterpret_cast<std::uintptr_t>(&network_.kernels()));
   add(model_);

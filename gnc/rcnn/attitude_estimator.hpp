@@ -1,5 +1,5 @@
-// AttitudeEstimator: the RCNN with its explicit state, from LiDAR frames to attitudes, in the numerics N (Float32 or
-// FixedPoint).
+// AttitudeEstimator: the RCNN with its explicit state, from LiDAR frames to attitudes, in the numerics N
+// (Float32 or FixedPoint).
 #pragma once
 
 #include <cstddef>
@@ -14,19 +14,19 @@ namespace tumblesight::gnc {
 
 inline constexpr std::uint32_t kPi_urad = 3'141'593;
 
-// One attitude, of the frame just given, in integers whatever the numerics. Quaternions are Hamilton, unit, scalar
-// first and not negative, with 30 bits behind the point, and take the target frame (TRF) to the LiDAR frame (LRF):
-// v_lrf = q_lrf_trf * v_trf.
+// One attitude, of the frame just given, in integers whatever the numerics. Quaternions are Hamilton, unit,
+// scalar first and not negative, with 30 bits behind the point, and take the target frame (TRF) to the LiDAR
+// frame (LRF): v_lrf = q_lrf_trf * v_trf.
 struct AttitudeEstimate {
-  QuaternionQ30 q_lrf_trf = kIdentityQ30;                // from all frames since the reset (RCNN)
-  std::uint32_t predicted_error_urad = kPi_urad;         // expected angular error of q_lrf_trf
-  QuaternionQ30 q_lrf_trf_single_frame = kIdentityQ30;   // from this frame alone (CNN)
+  QuaternionQ30 q_lrf_trf = kIdentityQ30;               // from all frames since the reset (RCNN)
+  std::uint32_t predicted_error_urad = kPi_urad;        // expected angular error of q_lrf_trf
+  QuaternionQ30 q_lrf_trf_single_frame = kIdentityQ30;  // from this frame alone (CNN)
   std::uint32_t predicted_error_single_frame_urad = kPi_urad;
   std::uint32_t frames_since_reset = 0;  // 1 for the first frame of a track
 };
 
-// Owns activations and state, and float32 weights; weights in fixed point are read where the model image lies,
-// which has to stay there. No allocation; place it in static storage.
+// Owns activations and state, and float32 weights; weights in fixed point are read where the model image
+// lies, which has to stay there. No allocation; place it in static storage.
 template <class N>
 class AttitudeEstimator {
  public:
@@ -43,9 +43,10 @@ class AttitudeEstimator {
   [[nodiscard]] ModelStatus load(const std::uint8_t* image, std::size_t size_bytes,
                                  const char* expected_target);
   // Whether load() would take the image; nothing is changed.
-  [[nodiscard]] ModelStatus check(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target) const;
-  // Takes the loaded image over once more, wherever it lies now; the state goes on. For what memory has lost: the image
-  // has to be the one that is loaded, unchanged, which is not looked at again.
+  [[nodiscard]] ModelStatus check(const std::uint8_t* image, std::size_t size_bytes,
+                                  const char* expected_target) const;
+  // Takes the loaded image over once more, wherever it lies now; the state goes on. For what memory has lost:
+  // the image has to be the one that is loaded, unchanged, which is not looked at again.
   void reload(const std::uint8_t* image);
   bool has_model() const { return has_model_; }
   const ModelHeader& model() const { return model_; }
@@ -60,8 +61,8 @@ class AttitudeEstimator {
   void restore(const State& state) { state_ = state; }
   std::uint32_t state_crc32() const { return crc32_of(state_); }
   static std::uint32_t crc32_of(const State& state);
-  // Over all that load() has set and no step changes, byte by byte as this processor holds it; float32's weights are left
-  // out.
+  // Over all that load() has set and no step changes, byte by byte as this processor holds it; float32's
+  // weights are left out.
   std::uint32_t constants_crc32() const;
   const DepthImage& depth_image() const { return image_; }
   Network<N>& network() { return network_; }

@@ -29,16 +29,12 @@ constexpr FilterGains<Real> gains(double predicted_weight, double rate_logit, do
 }
 
 template <class Real>
-constexpr std::array<FilterGains<Real>, kGains> kFilterGains{{gains<Real>(0.0003, 6.9067548, 0.0),
-                                                              gains<Real>(0.0003, 6.9067548, 0.0),
-                                                              gains<Real>(0.2, 0.40546511, 0.12),
-                                                              gains<Real>(0.42857143, -0.28768207, 0.30612245),
-                                                              gains<Real>(0.66666667, -0.69314718, 0.55555556),
-                                                              gains<Real>(0.90909091, -0.98082925, 0.8677686),
-                                                              gains<Real>(1.1538462, -1.2039728, 1.2426036),
-                                                              gains<Real>(1.4, -1.3862944, 1.68),
-                                                              gains<Real>(1.6470588, -1.540445, 2.1799308),
-                                                              gains<Real>(1.8947368, -1.6739764, 2.7423823)}};
+constexpr std::array<FilterGains<Real>, kGains> kFilterGains{
+    {gains<Real>(0.0003, 6.9067548, 0.0), gains<Real>(0.0003, 6.9067548, 0.0),
+     gains<Real>(0.2, 0.40546511, 0.12), gains<Real>(0.42857143, -0.28768207, 0.30612245),
+     gains<Real>(0.66666667, -0.69314718, 0.55555556), gains<Real>(0.90909091, -0.98082925, 0.8677686),
+     gains<Real>(1.1538462, -1.2039728, 1.2426036), gains<Real>(1.4, -1.3862944, 1.68),
+     gains<Real>(1.6470588, -1.540445, 2.1799308), gains<Real>(1.8947368, -1.6739764, 2.7423823)}};
 
 constexpr double kLeastVariance_rad2 = 7e-4;  // of a frame's attitude: 1.5 degrees
 constexpr double kLeastLogLikelihood = -6.0;
@@ -67,8 +63,8 @@ bool is_sound(const AttitudeTrack<Real>& track) {
   return sound;
 }
 
-// p exp(word) for the hypotheses, prior exp(word) for the predicted attitude; all over one common factor, lest
-// they leave the range of Real.
+// p exp(word) for the hypotheses, prior exp(word) for the predicted attitude; all over one common factor,
+// lest they leave the range of Real.
 template <class Real>
 std::array<Real, kCandidates> weights_of(const Hypotheses<Real>& hypotheses, const Real* words,
                                          Real predicted_weight) {
@@ -76,12 +72,12 @@ std::array<Real, kCandidates> weights_of(const Hypotheses<Real>& hypotheses, con
   std::array<Real, kCandidates> weights;
   Real largest = -kBound;
   for (int i = 0; i < kCandidates; ++i) {
-    weights[i] = held_between(words[i], -kBound, kBound);
-    largest = larger_of(largest, weights[i]);
+    weights[i] = clamp(words[i], -kBound, kBound);
+    largest = max(largest, weights[i]);
   }
   for (int i = 0; i < kCandidates; ++i) {
     const Real prior = i < shape::kHypotheses
-                           ? larger_of(constant<Real>(kLeastProbability), hypotheses.probability[i])
+                           ? max(constant<Real>(kLeastProbability), hypotheses.probability[i])
                            : predicted_weight;
     weights[i] = exp(weights[i] - largest) * prior;
   }
@@ -95,7 +91,7 @@ int anchor_of(const Hypotheses<Real>& hypotheses, const Real* words) {
   for (int i = 1; i < kCandidates; ++i) {
     const Real value = (i < shape::kHypotheses ? hypotheses.logit[i] : Real{}) + words[i];
     anchor = select(value > largest, i, anchor);
-    largest = larger_of(largest, value);
+    largest = max(largest, value);
   }
   return anchor;
 }
@@ -112,9 +108,8 @@ Real squared_miss(const Hypotheses<Real>& hypotheses, const Motion<Real>& predic
     const bool near = same_attitude<Real>(hypotheses.r_lrf_trf[i], predicted.r_lrf_trf);
     seen += select(near, hypotheses.probability[i], Real{});
   }
-  const Real miss =
-      constant<Real>(3.0) - trace_of_transpose_product<Real>(predicted.r_lrf_trf, r_lrf_trf);
-  return select(seen < constant<Real>(kLeastSeen), kLost, smaller_of(miss, kLost));
+  const Real miss = constant<Real>(3.0) - trace_of_transpose_product<Real>(predicted.r_lrf_trf, r_lrf_trf);
+  return select(seen < constant<Real>(kLeastSeen), kLost, min(miss, kLost));
 }
 
 template <class Real>
@@ -126,20 +121,20 @@ Motion<Real> corrected(const Motion<Real>& predicted, const Matrix3<Real>& r_lrf
 
 template <class Real>
 Real standing(const AttitudeTrack<Real>& track, int law) {
-  constexpr std::array<Real, kLaws> kAsked{constant<Real>(kEvidenceAsked[0]), constant<Real>(kEvidenceAsked[1]),
-                                           constant<Real>(kEvidenceAsked[2]), constant<Real>(kEvidenceAsked[3]),
-                                           constant<Real>(kEvidenceAsked[4])};
+  constexpr std::array<Real, kLaws> kAsked{
+      constant<Real>(kEvidenceAsked[0]), constant<Real>(kEvidenceAsked[1]), constant<Real>(kEvidenceAsked[2]),
+      constant<Real>(kEvidenceAsked[3]), constant<Real>(kEvidenceAsked[4])};
   return track.log_likelihood[law] - kAsked[law];
 }
 
 // How much the frame tells against a law with this squared miss.
 template <class Real>
 Real told(Real miss, Real evidence, Real variance_rad2) {
-  return smaller_of(constant<Real>(kMostTold), evidence * miss / variance_rad2);
+  return min(constant<Real>(kMostTold), evidence * miss / variance_rad2);
 }
 
-// Every law's log-likelihood falls by what is told against it. A law that has lost the target goes on from where
-// the best of those that see it does.
+// Every law's log-likelihood falls by what is told against it. A law that has lost the target goes on from
+// where the best of those that see it does.
 template <class Real>
 void weigh_laws(const std::array<Real, kLaws>& miss, Real evidence, Real variance_rad2,
                 AttitudeTrack<Real>& track) {
@@ -149,12 +144,12 @@ void weigh_laws(const std::array<Real, kLaws>& miss, Real evidence, Real varianc
         constant<Real>(kMemory) * track.log_likelihood[law] - told<Real>(miss[law], evidence, variance_rad2);
   }
   Real likeliest = track.log_likelihood[0];
-  for (const Real one : track.log_likelihood) likeliest = larger_of(likeliest, one);
+  for (const Real one : track.log_likelihood) likeliest = max(likeliest, one);
   int best = 0;
   bool any_sees_it = false;
   for (int law = 0; law < kLaws; ++law) {
     track.log_likelihood[law] =
-        larger_of(constant<Real>(kLeastLogLikelihood), track.log_likelihood[law] - likeliest);
+        max(constant<Real>(kLeastLogLikelihood), track.log_likelihood[law] - likeliest);
     const bool sees_it = miss[law] < kLost;
     best = select(sees_it & (!any_sees_it | (standing(track, law) > standing(track, best))), law, best);
     any_sees_it |= sees_it;
@@ -170,7 +165,8 @@ void weigh_laws(const std::array<Real, kLaws>& miss, Real evidence, Real varianc
 template <class Real>
 int AttitudeTrack<Real>::law() const {
   int best = kSpinLaw;
-  for (int law = 1; law < kLaws; ++law) best = select(standing(*this, law) > standing(*this, best), law, best);
+  for (int law = 1; law < kLaws; ++law)
+    best = select(standing(*this, law) > standing(*this, best), law, best);
   return best;
 }
 
@@ -231,19 +227,19 @@ TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Predicti
   }
   const Real predicted_error_rad = constant<Real>(kPi) * sigmoid(words[2 * kCandidates + 1]);
   const Real variance_rad2 =
-      larger_of(constant<Real>(kLeastVariance_rad2), predicted_error_rad * predicted_error_rad);
+      max(constant<Real>(kLeastVariance_rad2), predicted_error_rad * predicted_error_rad);
   weigh_laws<Real>(miss, filter.evidence, variance_rad2, track);
   ++track.frames;
   return {track.motion[track.law()].r_lrf_trf, predicted_error_rad};
 }
 
-#define TUMBLESIGHT_INSTANTIATE(N)                                                                              \
-  template struct AttitudeTrack<N::Real>;                                                                       \
-  template Prediction<N::Real> predict(const AttitudeTrack<N::Real>&, const MotionLaws<N::Real>&,               \
-                                       const Hypotheses<N::Real>&);                                             \
-  template void fill_lstm_input<N>(const Features<N>&, const Hypotheses<N::Real>&, const Matrix3<N::Real>&,     \
-                                   LstmInput<N>&);                                                              \
-  template TrackedAttitude<N::Real> advance(const Hypotheses<N::Real>&, const Prediction<N::Real>&,             \
+#define TUMBLESIGHT_INSTANTIATE(N)                                                                          \
+  template struct AttitudeTrack<N::Real>;                                                                   \
+  template Prediction<N::Real> predict(const AttitudeTrack<N::Real>&, const MotionLaws<N::Real>&,           \
+                                       const Hypotheses<N::Real>&);                                         \
+  template void fill_lstm_input<N>(const Features<N>&, const Hypotheses<N::Real>&, const Matrix3<N::Real>&, \
+                                   LstmInput<N>&);                                                          \
+  template TrackedAttitude<N::Real> advance(const Hypotheses<N::Real>&, const Prediction<N::Real>&,         \
                                             const HeadOutput<N::Real>&, AttitudeTrack<N::Real>&)
 
 TUMBLESIGHT_INSTANTIATE(FixedPoint);

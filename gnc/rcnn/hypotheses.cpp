@@ -11,7 +11,8 @@ static_assert(kSameAttitude_deg == 20.0F);
 
 // exp(x_k) over their sum, added in order, with the largest subtracted first.
 template <class Real>
-std::array<Real, shape::kHypotheses> softmax(const std::array<Real, shape::kHypotheses>& logit, Real largest) {
+std::array<Real, shape::kHypotheses> softmax(const std::array<Real, shape::kHypotheses>& logit,
+                                             Real largest) {
   std::array<Real, shape::kHypotheses> share;
   Real sum{};
   for (int k = 0; k < shape::kHypotheses; ++k) {
@@ -71,9 +72,9 @@ Matrix3<Real> mean_attitude(const Matrix3<Real>* candidates, const Real* weights
   return rotation_from_columns<Real>(orthonormalise<Real>(first, second));
 }
 
-#define TUMBLESIGHT_INSTANTIATE(Real)                                                              \
-  template bool same_attitude(const Matrix3<Real>&, const Matrix3<Real>&);                         \
-  template Hypotheses<Real> hypotheses_of(const OutputVector<Real>&, const Matrix3<Real>&);        \
+#define TUMBLESIGHT_INSTANTIATE(Real)                                                       \
+  template bool same_attitude(const Matrix3<Real>&, const Matrix3<Real>&);                  \
+  template Hypotheses<Real> hypotheses_of(const OutputVector<Real>&, const Matrix3<Real>&); \
   template Matrix3<Real> mean_attitude(const Matrix3<Real>*, const Real*, int, int)
 
 TUMBLESIGHT_INSTANTIATE(Fixed);

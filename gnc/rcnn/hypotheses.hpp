@@ -27,9 +27,9 @@ inline constexpr float kSameAttitude_deg = 20.0F;
 template <class Real>
 bool same_attitude(const Matrix3<Real>& a, const Matrix3<Real>& b);
 
-// Weighted mean of those `candidates` that are the same attitude as candidate `anchor`: their first two columns
-// averaged and orthonormalised. Only ratios of the weights matter; where all are zero, the anchor. Not finite
-// where the anchor is not.
+// Weighted mean of those `candidates` that are the same attitude as candidate `anchor`: their first two
+// columns averaged and orthonormalised. Only ratios of the weights matter; where all are zero, the anchor.
+// Not finite where the anchor is not.
 template <class Real>
 Matrix3<Real> mean_attitude(const Matrix3<Real>* candidates, const Real* weights, int count, int anchor);
 

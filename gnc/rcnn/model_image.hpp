@@ -12,14 +12,16 @@
 //       48     4  depth projection: swath [mm]
 //       52     4  depth projection: target radius [mm]
 //       56     4  reserved, 0
-//       60    24  inertia of the target in the TRF, scaled to a trace of 3, with 24 bits behind the point: xx, yy,
+//       60    24  inertia of the target in the TRF, scaled to a trace of 3, with 24 bits behind the point:
+//       xx, yy,
 //                 zz, xy, xz, yz
 //       84     4  numerics: 0 float32, 1 fixed point
 //       88     4  number of sections: 21 or 31
 //       92     4  CRC-32 of bytes 0..91, the section table and the zeros behind it
 //       96  16 n  section table: id (1, 2, ...), offset, size in bytes, CRC-32 of the section, 4 bytes each
 //        -     -  zeros up to the next multiple of 64, where the first section begins
-//        -     -  sections without gaps: the tensors in the order of for_each_tensor(). Weights in fixed point take
+//        -     -  sections without gaps: the tensors in the order of for_each_tensor(). Weights in fixed
+//        point take
 //                 one byte each, all else four
 #pragma once
 
@@ -37,8 +39,9 @@ inline constexpr std::uint16_t kModelFormatVersion = 3;
 inline constexpr std::size_t kModelHeaderSize = 96;
 inline constexpr std::size_t kModelSectionEntrySize = 16;
 template <class N>
-inline constexpr std::size_t kModelDataOffset =
-    (kModelHeaderSize + kTensorCount<N> * kModelSectionEntrySize + 63) / 64 * 64;
+inline constexpr std::size_t kModelDataOffset = (kModelHeaderSize + kTensorCount<N> * kModelSectionEntrySize +
+                                                 63) /
+                                                64 * 64;
 template <class N>
 inline constexpr std::size_t kModelImageSize = kModelDataOffset<N> + kWeightBytes<N>;
 
@@ -62,28 +65,29 @@ enum class ModelStatus : std::uint8_t {
   kBadTarget,        // of another spacecraft, or its name is malformed
   kBadSection,       // section id, offset or size not as the network demands
   kBadSectionCrc,    // weights damaged
-  kBadValue,         // an impossible depth projection or inertia; a weight that is not finite; integers with which a
-                     // sum could leave 32 bits, or a shift out of its range
-  kBadNumerics,      // a whole image, but fixed point where float32 is wanted, or the other way round
+  kBadValue,  // an impossible depth projection or inertia; a weight that is not finite; integers with which a
+              // sum could leave 32 bits, or a shift out of its range
+  kBadNumerics,  // a whole image, but fixed point where float32 is wanted, or the other way round
 };
 const char* to_string(ModelStatus status);
 
 // Hash of everything that gives the numbers of an image their meaning.
 std::uint32_t architecture_hash();
 
-// Checks the whole image, then takes over header and weights; on any other status than kOk both are untouched.
-// Weights in fixed point stay in the image and are read there. `expected_target`: NUL-terminated name, or nullptr to
-// accept any. Checks come in the order of ModelStatus, but the depth projection's values before the sections.
+// Checks the whole image, then takes over header and weights; on any other status than kOk both are
+// untouched. Weights in fixed point stay in the image and are read there. `expected_target`: NUL-terminated
+// name, or nullptr to accept any. Checks come in the order of ModelStatus, but the depth projection's values
+// before the sections.
 template <class N>
 [[nodiscard]] ModelStatus read_model_image(const std::uint8_t* image, std::size_t size_bytes,
                                            const char* expected_target, ModelHeader& header,
                                            NetworkWeights<N>& weights);
 
-// The two halves of that. `weights` only lends the sizes of its tensors to the check; what is taken over must have been
-// checked.
+// The two halves of that. `weights` only lends the sizes of its tensors to the check; what is taken over must
+// have been checked.
 template <class N>
-[[nodiscard]] ModelStatus check_model_image(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
-                                            const NetworkWeights<N>& weights);
+[[nodiscard]] ModelStatus check_model_image(const std::uint8_t* image, std::size_t size_bytes,
+                                            const char* expected_target, const NetworkWeights<N>& weights);
 template <class N>
 void take_model_image(const std::uint8_t* image, ModelHeader& header, NetworkWeights<N>& weights);
 
@@ -96,7 +100,8 @@ bool is_float32(const std::uint8_t* image, std::size_t size_bytes);
 // Names the target. False, and nothing done, if the name is empty, too long or not printable ASCII.
 [[nodiscard]] bool set_target(ModelHeader& header, const char* name);
 
-// Bytes written: kModelImageSize, or 0 if `capacity` is less. The contents are not judged; the reader does that.
+// Bytes written: kModelImageSize, or 0 if `capacity` is less. The contents are not judged; the reader does
+// that.
 template <class N>
 [[nodiscard]] std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights,
                                             std::uint8_t* out, std::size_t capacity);

@@ -46,8 +46,8 @@ struct LayerInImage {
 };
 
 // Sum of the magnitudes of one channel's weights; -1 where one is -128, which has no opposite.
-std::int64_t magnitude_of(const std::uint8_t* weights, std::size_t count, std::size_t channels,
-                          std::size_t channel, std::size_t group) {
+std::int64_t abs(const std::uint8_t* weights, std::size_t count, std::size_t channels, std::size_t channel,
+                 std::size_t group) {
   std::int64_t sum = 0;
   bool symmetric = true;
   for (std::size_t first = channel * group; first < count; first += channels * group) {
@@ -65,9 +65,9 @@ bool is_possible_layer(const LayerInImage& layer, std::size_t channels, const La
   const auto group = static_cast<std::size_t>(limits.group);
   bool possible = true;
   for (std::size_t c = 0; c < channels; ++c) {
-    const std::int64_t forward = magnitude_of(layer.weight, layer.weights, channels, c, group);
+    const std::int64_t forward = abs(layer.weight, layer.weights, channels, c, group);
     const std::int64_t recurrent =
-        layer.recurrents > 0 ? magnitude_of(layer.recurrent, layer.recurrents, channels, c, group) : 0;
+        layer.recurrents > 0 ? abs(layer.recurrent, layer.recurrents, channels, c, group) : 0;
     const std::int64_t bias = static_cast<std::int32_t>(get_u32(layer.bias + 4 * c));
     const std::uint32_t shift = get_u32(layer.shift + 4 * c);
     const bool in_range = shift >= 1 && shift <= limits.largest_shift && forward >= 0 && recurrent >= 0;

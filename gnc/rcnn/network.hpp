@@ -1,5 +1,5 @@
-// The layers of the RCNN, their weights and activations, in the numerics N (Float32 or FixedPoint). What their
-// numbers mean: hypotheses.hpp (CNN) and attitude_track.hpp (LSTM and head).
+// The layers of the RCNN, their weights and activations, in the numerics N (Float32 or FixedPoint). What
+// their numbers mean: hypotheses.hpp (CNN) and attitude_track.hpp (LSTM and head).
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,8 @@ using LstmState = typename Layers<N>::Recurrent::State;
 template <class N>
 using Features = typename Layers<N>::Dense2::Hidden;
 
-// Per hypothesis k: six numbers at 6k, its logit at kColumns + k; last, the logit of the expected error over pi.
+// Per hypothesis k: six numbers at 6k, its logit at kColumns + k; last, the logit of the expected error over
+// pi.
 template <class Real>
 using OutputVector = std::array<Real, shape::kOutput>;
 template <class Real>
@@ -79,8 +80,8 @@ void for_each_layer(Weights& weights, Visitor&& visit) {
   visit("head2", weights.head2);
 }
 
-// visit(layer's name, part, tensor) for every tensor of a layer: data() and size(). Parts: weight, recurrent (LSTM
-// only), bias, shift (fixed point only).
+// visit(layer's name, part, tensor) for every tensor of a layer: data() and size(). Parts: weight, recurrent
+// (LSTM only), bias, shift (fixed point only).
 template <class Layer, class Visitor>
 void for_each_tensor_of(const char* name, Layer& layer, Visitor&& visit) {
   visit(name, "weight", layer.weight);
@@ -89,11 +90,12 @@ void for_each_tensor_of(const char* name, Layer& layer, Visitor&& visit) {
   if constexpr (HasShifts<Layer>::value) visit(name, "shift", layer.shift);
 }
 
-// For every tensor of the network, always in this order and under these names: the model image's sections, its
-// writer and the trainer's export all go by it. `weights` may be const; then so is the tensor.
+// For every tensor of the network, always in this order and under these names: the model image's sections,
+// its writer and the trainer's export all go by it. `weights` may be const; then so is the tensor.
 template <class Weights, class Visitor>
 void for_each_tensor(Weights& weights, Visitor&& visit) {
-  for_each_layer(weights, [&visit](const char* name, auto& layer) { for_each_tensor_of(name, layer, visit); });
+  for_each_layer(weights,
+                 [&visit](const char* name, auto& layer) { for_each_tensor_of(name, layer, visit); });
 }
 template <class N>
 inline constexpr std::size_t kTensorCount = N::kIsInteger ? 31 : 21;
@@ -118,8 +120,8 @@ inline constexpr std::size_t kMacCount = kSumOverLayers<MacsOf, FixedPoint>;
 template <class N>
 inline constexpr std::size_t kWeightBytes = kSumOverLayers<BytesInImageOf, N>;
 
-// Memory of the activations, planned by hand: what a layer reads lies in one buffer, what it writes in the other,
-// and its sums between them. Each buffer is as large as the largest thing that ever lies in it.
+// Memory of the activations, planned by hand: what a layer reads lies in one buffer, what it writes in the
+// other, and its sums between them. Each buffer is as large as the largest thing that ever lies in it.
 template <class N>
 class Arena {
  public:
@@ -139,16 +141,18 @@ class Arena {
 
  private:
   using L = Layers<N>;
-  static constexpr std::size_t kFront = std::max(
-      {sizeof(typename L::Conv1::Input), sizeof(typename L::Conv3::Input), sizeof(typename L::Conv4::AveragePooled)});
+  static constexpr std::size_t kFront =
+      std::max({sizeof(typename L::Conv1::Input), sizeof(typename L::Conv3::Input),
+                sizeof(typename L::Conv4::AveragePooled)});
   static constexpr std::size_t kBack =
-      std::max({sizeof(typename L::Conv2::Input), sizeof(typename L::Conv4::Input), sizeof(typename L::Dense1::Hidden)});
-  static constexpr std::size_t kSums =
-      std::max({sizeof(typename L::Conv1::Sums), sizeof(typename L::Conv2::Sums), sizeof(typename L::Conv3::Sums),
-                sizeof(typename L::Conv4::Sums), sizeof(typename L::Recurrent::Sums)});
+      std::max({sizeof(typename L::Conv2::Input), sizeof(typename L::Conv4::Input),
+                sizeof(typename L::Dense1::Hidden)});
+  static constexpr std::size_t kSums = std::max(
+      {sizeof(typename L::Conv1::Sums), sizeof(typename L::Conv2::Sums), sizeof(typename L::Conv3::Sums),
+       sizeof(typename L::Conv4::Sums), sizeof(typename L::Recurrent::Sums)});
 
-  // The first to write there makes the thing, whose numbers are no one's until then; it is found again as it was
-  // left.
+  // The first to write there makes the thing, whose numbers are no one's until then; it is found again as it
+  // was left.
   template <class Thing, std::size_t kSize>
   static Thing& placed(std::array<std::byte, kSize>& buffer) {
     static_assert(sizeof(Thing) <= kSize, "the arena's plan does not foresee this");

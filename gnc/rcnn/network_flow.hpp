@@ -10,7 +10,7 @@ inline void to_conv_input(std::uint16_t depth, float& out) {
   out = static_cast<float>(depth) * (1.0F / 65536.0F);
 }
 inline void to_conv_input(std::uint16_t depth, std::uint8_t& out) {
-  out = static_cast<std::uint8_t>(smaller_of((depth + 128) >> 8, 255));
+  out = static_cast<std::uint8_t>(min((depth + 128) >> 8, 255));
 }
 
 // Every 2x2 pixels become one pixel of four channels, channel = 2 * (row & 1) + (column & 1).
@@ -32,8 +32,9 @@ template <class N>
 }
 
 template <class N, class Observer>
-void run_frame(const Kernels<N>& kernels, const NetworkWeights<N>& weights, const DepthImage& image, Arena<N>& arena,
-               Features<N>& features, OutputVector<typename N::Real>& out, Observer&& observe) {
+void run_frame(const Kernels<N>& kernels, const NetworkWeights<N>& weights, const DepthImage& image,
+               Arena<N>& arena, Features<N>& features, OutputVector<typename N::Real>& out,
+               Observer&& observe) {
   using L = Layers<N>;
   auto& map1 = arena.template front<typename L::Conv1::Input>();
   auto& map2 = arena.template back<typename L::Conv2::Input>();
@@ -54,22 +55,26 @@ void run_frame(const Kernels<N>& kernels, const NetworkWeights<N>& weights, cons
   observe("conv4", flat);
   L::Dense1::hidden(kernels, weights.dense1, flat, arena.template sums<typename L::Dense1::Sums>(), hidden);
   observe("dense1", hidden);
-  L::Dense2::hidden(kernels, weights.dense2, hidden, arena.template sums<typename L::Dense2::Sums>(), features);
+  L::Dense2::hidden(kernels, weights.dense2, hidden, arena.template sums<typename L::Dense2::Sums>(),
+                    features);
   observe("dense2", features);
   L::CnnOut::output(kernels, weights.cnn_out, features, arena.template sums<typename L::CnnOut::Sums>(), out);
 }
 
 template <class N, class Observer>
 void run_sequence(const Kernels<N>& kernels, const NetworkWeights<N>& weights, const LstmInput<N>& input,
-                  Arena<N>& arena, LstmState<N>& state, HeadOutput<typename N::Real>& out, Observer&& observe) {
+                  Arena<N>& arena, LstmState<N>& state, HeadOutput<typename N::Real>& out,
+                  Observer&& observe) {
   using L = Layers<N>;
-  L::Recurrent::forward(kernels, weights.lstm, input, arena.template sums<typename L::Recurrent::Sums>(), state);
+  L::Recurrent::forward(kernels, weights.lstm, input, arena.template sums<typename L::Recurrent::Sums>(),
+                        state);
   observe("lstm", state.h);
   auto& head_input = arena.template front<typename L::Head1::Input>();
   auto& hidden = arena.template back<typename L::Head1::Hidden>();
   const auto after_hidden = std::copy(state.h.begin(), state.h.end(), head_input.begin());
   std::copy(input.begin(), input.end(), after_hidden);
-  L::Head1::hidden(kernels, weights.head1, head_input, arena.template sums<typename L::Head1::Sums>(), hidden);
+  L::Head1::hidden(kernels, weights.head1, head_input, arena.template sums<typename L::Head1::Sums>(),
+                   hidden);
   observe("head1", hidden);
   L::Head2::output(kernels, weights.head2, hidden, arena.template sums<typename L::Head2::Sums>(), out);
 }

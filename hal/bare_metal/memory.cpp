@@ -1,5 +1,5 @@
-// The four functions that a compiler takes for granted, word by word where both sides allow it. With them no C library is
-// needed.
+// The four functions that a compiler takes for granted, word by word where both sides allow it. With them no
+// C library is needed.
 #include <cstddef>
 #include <cstdint>
 

@@ -1,5 +1,5 @@
-// From reset to main(): what a C++ program finds done when it begins. A board's start_up sets up stack and processor and
-// jumps to start_program().
+// From reset to main(): what a C++ program finds done when it begins. A board's start_up sets up stack and
+// processor and jumps to start_program().
 #include <cstdint>
 #include <cstring>
 
@@ -20,7 +20,8 @@ int main();
 void start_program() {
   std::memcpy(data_start, data_load, static_cast<std::size_t>(data_end - data_start));
   std::memset(bss_start, 0, static_cast<std::size_t>(bss_end - bss_start));
-  for (const Constructor* constructor = init_array_start; constructor != init_array_end; ++constructor) (*constructor)();
+  for (const Constructor* constructor = init_array_start; constructor != init_array_end; ++constructor)
+    (*constructor)();
   tumblesight::hal::board::end(main());
 }
 

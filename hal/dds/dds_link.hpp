@@ -1,6 +1,6 @@
 // DdsLink: commands of topic sil/command in; attitude, housekeeping, events and dumps out to sil/attitude,
-// sil/telemetry, sil/event and sil/model_dump. The flight task is on one side of it, the bus thread, which speaks DDS, on the
-// other.
+// sil/telemetry, sil/event and sil/model_dump. The flight task is on one side of it, the bus thread, which
+// speaks DDS, on the other.
 #pragma once
 
 #include <array>

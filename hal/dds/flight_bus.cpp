@@ -92,9 +92,9 @@ bool FlightBus::carry_out() {
 }
 
 void FlightBus::flush() const {
-  for (const dds_entity_t writer : {endpoints_.attitudes.entity(), endpoints_.telemetries.entity(),
-                                    endpoints_.events.entity(), endpoints_.dumps.entity(),
-                                    endpoints_.steps_done.entity()}) {
+  for (const dds_entity_t writer :
+       {endpoints_.attitudes.entity(), endpoints_.telemetries.entity(), endpoints_.events.entity(),
+        endpoints_.dumps.entity(), endpoints_.steps_done.entity()}) {
     (void)wait_for_acknowledgment(writer, kLastWords_ns);
   }
 }

@@ -45,7 +45,8 @@ const char* to_string(FileStatus status) {
 
 FileModelStore::FileModelStore(const char* path, std::size_t max_bytes) {
   // Pages that nothing is written to take no memory.
-  void* memory = mmap(nullptr, kModelBanks * max_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  void* memory =
+      mmap(nullptr, kModelBanks * max_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {
     status_ = FileStatus::kNoMemory;
     return;

@@ -1,5 +1,5 @@
-// FileModelStore: the model image of a file in both banks, read whole when the store is made. Later changes of the file
-// do not reach it, nor do those of the banks reach the file.
+// FileModelStore: the model image of a file in both banks, read whole when the store is made. Later changes
+// of the file do not reach it, nor do those of the banks reach the file.
 #pragma once
 
 #include "hal/model_store.hpp"

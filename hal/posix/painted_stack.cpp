@@ -13,9 +13,11 @@ bool PaintedStack::start(pthread_t& thread, void* (*main)(void*), void* argument
   return started;
 }
 
-// A stack grows towards lower addresses on every processor that Linux runs on and this component is built for.
+// A stack grows towards lower addresses on every processor that Linux runs on and this component is built
+// for.
 std::uint32_t PaintedStack::least_left_bytes() const {
-  const auto used = std::find_if(words_.begin(), words_.end(), [](std::uint64_t word) { return word != kPattern; });
+  const auto used =
+      std::find_if(words_.begin(), words_.end(), [](std::uint64_t word) { return word != kPattern; });
   return static_cast<std::uint32_t>(static_cast<std::size_t>(used - words_.begin()) * sizeof(std::uint64_t));
 }
 

@@ -1,5 +1,5 @@
-// PaintedStack: the stack of one thread, in static memory and filled with a pattern, so that it shows how much of it was
-// never used.
+// PaintedStack: the stack of one thread, in static memory and filled with a pattern, so that it shows how
+// much of it was never used.
 #pragma once
 
 #include <pthread.h>
@@ -14,12 +14,15 @@ class PaintedStack {
  public:
   // A step needs a few KiB (docs/audit.md); the rest is for what the C library does on a thread's behalf.
 #ifdef __SANITIZE_THREAD__
-  static constexpr std::size_t kBytes = 2048 * 1024;  // the sanitizer's own storage of a thread lies there too
+  static constexpr std::size_t kBytes =
+      2048 * 1024;  // the sanitizer's own storage of a thread lies there too
 #else
   static constexpr std::size_t kBytes = 256 * 1024;
 #endif
 
-  PaintedStack() { words_.fill(kPattern); }
+  PaintedStack() {
+    words_.fill(kPattern);
+  }
   PaintedStack(const PaintedStack&) = delete;
   PaintedStack& operator=(const PaintedStack&) = delete;
 

@@ -32,7 +32,8 @@ void ConsoleLink::publish(const AttitudeReport& report) {
   crc_.add_u32(report.frames_since_reset);
   for (const std::int32_t part : report.q_lrf_trf) crc_.add_u32(static_cast<std::uint32_t>(part));
   crc_.add_u32(report.predicted_error_urad);
-  for (const std::int32_t part : report.q_lrf_trf_single_frame) crc_.add_u32(static_cast<std::uint32_t>(part));
+  for (const std::int32_t part : report.q_lrf_trf_single_frame)
+    crc_.add_u32(static_cast<std::uint32_t>(part));
   crc_.add_u32(report.predicted_error_single_frame_urad);
 }
 

@@ -1,10 +1,10 @@
-// ConsoleLink: telemetry as lines of text on the board's console, and a digest over all that must be the same on every
-// processor. Nobody sends commands.
+// ConsoleLink: telemetry as lines of text on the board's console, and a digest over all that must be the same
+// on every processor. Nobody sends commands.
 #pragma once
 
 #include <cstdint>
 
-#include "gnc/rcnn/crc32.hpp"
+#include "gnc/numerics/crc32.hpp"
 #include "hal/link.hpp"
 
 namespace tumblesight::hal::replay {

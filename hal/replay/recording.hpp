@@ -8,9 +8,9 @@
 //        8     4  frames
 //       12     …  the frames
 //      end     4  CRC-32 of all before
-// A frame: exposure time (8, ns), sequence number (4), field of view (4, urad); then for every row of rays, top first: column
-// of its first return (1), number of ranges from there on (1), these ranges (2 each, Q9.7 m). The row's other rays had no
-// return.
+// A frame: exposure time (8, ns), sequence number (4), field of view (4, urad); then for every row of rays,
+// top first: column of its first return (1), number of ranges from there on (1), these ranges (2 each, Q9.7
+// m). The row's other rays had no return.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,8 @@ namespace tumblesight::hal::replay {
 inline constexpr std::size_t kRecordingHeaderSize = 12;
 inline constexpr std::size_t kRecordingCrcSize = 4;
 // At most, of a frame.
-inline constexpr std::size_t kRecordedFrameSize = 16 + gnc::RangeImage::kMaxRays * (2 + 2 * gnc::RangeImage::kMaxRays);
+inline constexpr std::size_t kRecordedFrameSize =
+    16 + gnc::RangeImage::kMaxRays * (2 + 2 * gnc::RangeImage::kMaxRays);
 
 enum class RecordingStatus : std::uint8_t {
   kOk = 0,
@@ -57,8 +58,8 @@ class Recording {
   std::uint16_t rays_ = 0;
 };
 
-// For who makes one: each writes at `out`, which has room for the sizes above, and gives the bytes written. All frames have
-// the same number of rays.
+// For who makes one: each writes at `out`, which has room for the sizes above, and gives the bytes written.
+// All frames have the same number of rays.
 std::size_t write_recording_header(std::uint16_t rays, std::uint32_t frames, std::uint8_t* out);
 std::size_t write_recorded_frame(const gnc::RangeImage& frame, std::uint8_t* out);
 std::size_t write_recording_crc(const std::uint8_t* recording, std::size_t size, std::uint8_t* out);

@@ -5,7 +5,7 @@
 
 #include "sim/baseline/outline.hpp"
 #include "sim/baseline/target_scan.hpp"
-#include "sim/lidar/flash_lidar.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
-#include "sim/lidar/occlusion.hpp"
+#include "sim/world/sensor/occlusion.hpp"
 
 namespace tumblesight::sim {
 

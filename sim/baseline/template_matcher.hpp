@@ -9,8 +9,8 @@
 #include "gnc/lidar/range_image.hpp"
 #include "sim/baseline/alignment.hpp"
 #include "sim/baseline/signature.hpp"
-#include "sim/lidar/flash_lidar.hpp"
-#include "sim/target/triangle_mesh.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
+#include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
 

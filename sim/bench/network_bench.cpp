@@ -40,8 +40,8 @@ template <class Run>
 Times measured(double seconds, const Run& run) {
   for (std::size_t i = 0; i < 3; ++i) (void)run(i);
   std::vector<double> us;
-  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                                   std::chrono::duration<double>(seconds));
+  const Clock::time_point end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   while (us.size() < kFewestRuns || Clock::now() < end) us.push_back(run(us.size()));
   return times_of(std::move(us));
 }
@@ -65,7 +65,10 @@ template <class N>
 class Bench {
  public:
   Bench(const BenchSubject& subject, const gnc::Kernels<N>& kernels)
-      : row_s_(subject.row_s), frames_(subject.frames), kernels_(kernels), loops_(gnc::depth_loops_within(kernels.set)) {
+      : row_s_(subject.row_s),
+        frames_(subject.frames),
+        kernels_(kernels),
+        loops_(gnc::depth_loops_within(kernels.set)) {
     const gnc::ModelStatus status = estimator_->load(subject.image.data(), subject.image.size(), nullptr);
     if (status != gnc::ModelStatus::kOk) throw std::runtime_error(gnc::to_string(status));
     estimator_->network().use(kernels);
@@ -85,13 +88,19 @@ class Bench {
     const Times convolutions = measured(row_s_, [&](std::size_t i) { return convolutions_us(i); });
     return {row("step", step, gnc::kMacCount), row("depth image", depth, 0.0),
             row("network", network, gnc::kMacCount),
-            row("convolutions", convolutions, convolution_macs(kernels_), measured_peak_macs(kernels_.set, N::kIsInteger))};
+            row("convolutions", convolutions, convolution_macs(kernels_),
+                measured_peak_macs(kernels_.set, N::kIsInteger))};
   }
 
  private:
   BenchRow row(const char* name, const Times& times, double macs, std::optional<double> peak = {}) const {
-    BenchRow row{name, N::kIsInteger ? "fixed" : "float32", gnc::to_string(kernels_.set), times.median_us,
-                 times.min_us, macs, {}};
+    BenchRow row{name,
+                 N::kIsInteger ? "fixed" : "float32",
+                 gnc::to_string(kernels_.set),
+                 times.median_us,
+                 times.min_us,
+                 macs,
+                 {}};
     if (peak) row.share_of_peak = macs / (1e-6 * times.min_us) / *peak;
     return row;
   }
@@ -115,8 +124,8 @@ class Bench {
   double convolutions_us(std::size_t i) {
     Clock::time_point begin, end;
     gnc::OutputVector<typename N::Real> output;
-    gnc::run_frame<N>(kernels_, estimator_->network().weights(), *images_[i % images_.size()], *arena_, features_,
-                      output, [&](const char* layer, const auto&) {
+    gnc::run_frame<N>(kernels_, estimator_->network().weights(), *images_[i % images_.size()], *arena_,
+                      features_, output, [&](const char* layer, const auto&) {
                         if (std::strcmp(layer, "depth") == 0) begin = Clock::now();
                         if (std::strcmp(layer, "conv4") == 0) end = Clock::now();
                       });
@@ -137,7 +146,8 @@ class Bench {
 };
 
 template <class N>
-std::vector<BenchRow> bench_sets(const BenchSubject& subject, const std::function<void(const std::string&)>& started) {
+std::vector<BenchRow> bench_sets(const BenchSubject& subject,
+                                 const std::function<void(const std::string&)>& started) {
   std::vector<BenchRow> rows;
   for (const gnc::InstructionSet set : gnc::kInstructionSets) {
     const gnc::Kernels<N>* const kernels = gnc::kernels_on<N>(set);
@@ -157,7 +167,8 @@ class Comparison {
     const auto scratch = std::make_unique<gnc::DepthImageScratch>();
     for (const gnc::RangeImage& frame : frames) {
       auto image = std::make_unique<gnc::DepthImage>();
-      if (gnc::make_depth_image(frame, model.header.projection, *scratch, *image) != gnc::FrameStatus::kOk) continue;
+      if (gnc::make_depth_image(frame, model.header.projection, *scratch, *image) != gnc::FrameStatus::kOk)
+        continue;
       pixels_.emplace_back(image->depth.begin(), image->depth.end());
       for (float& pixel : pixels_.back()) pixel /= 65536.0F;
       images_.push_back(std::move(image));
@@ -217,17 +228,20 @@ class Comparison {
 
 }  // namespace
 
-std::vector<BenchRow> bench_numerics(const BenchSubject& subject, const std::function<void(const std::string&)>& started) {
-  return gnc::is_float32(subject.image.data(), subject.image.size()) ? bench_sets<gnc::Float32>(subject, started)
-                                                                     : bench_sets<gnc::FixedPoint>(subject, started);
+std::vector<BenchRow> bench_numerics(const BenchSubject& subject,
+                                     const std::function<void(const std::string&)>& started) {
+  return gnc::is_float32(subject.image.data(), subject.image.size())
+             ? bench_sets<gnc::Float32>(subject, started)
+             : bench_sets<gnc::FixedPoint>(subject, started);
 }
 
 BenchRow bench_peer(Peer& peer, const Float32Model& model, const std::vector<gnc::RangeImage>& frames) {
   Comparison comparison(peer, model, frames);
   const double difference = comparison.largest_difference();
   if (!(difference < kSameOutput)) {
-    throw std::runtime_error(fmt::format("{} gives other outputs than ours: {:.2g} of the largest apart, at most {:g}",
-                                         peer.name(), difference, kSameOutput));
+    throw std::runtime_error(
+        fmt::format("{} gives other outputs than ours: {:.2g} of the largest apart, at most {:g}",
+                    peer.name(), difference, kSameOutput));
   }
   const Times times = measured(kPeerMeasured_s, [&](std::size_t i) { return comparison.peer_us(i); });
   return {peer.name(), "float32", "", times.median_us, times.min_us, gnc::kMacCount, {}};

@@ -17,7 +17,8 @@ double macs_per_second(const peak::Chains& chains) {
   for (int i = 0; i < kTries; ++i) {
     const auto begin = std::chrono::steady_clock::now();
     chains.run(kRounds);
-    best_s = std::min(best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    best_s =
+        std::min(best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
   return static_cast<double>(kRounds) * chains.macs_a_round / best_s;
 }

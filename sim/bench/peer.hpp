@@ -5,7 +5,7 @@
 #include <string>
 
 #include "gnc/rcnn/network.hpp"
-#include "sim/quantization/model_file.hpp"
+#include "sim/model/model_file.hpp"
 
 namespace tumblesight::sim {
 
@@ -22,8 +22,10 @@ class Peer {
 };
 
 // Both run on one thread. nullptr, and why not in `reason`, where the runtime is not there.
-// `library`: libonnxruntime.so; empty: the one of npm's onnxruntime-node in build/node_modules, or the system's.
-std::unique_ptr<Peer> make_onnx_runtime(const Float32Model& model, const std::string& library, std::string& reason);
+// `library`: libonnxruntime.so; empty: the one of npm's onnxruntime-node in build/node_modules, or the
+// system's.
+std::unique_ptr<Peer> make_onnx_runtime(const Float32Model& model, const std::string& library,
+                                        std::string& reason);
 std::unique_ptr<Peer> make_libtorch(const Float32Model& model, std::string& reason);
 
 }  // namespace tumblesight::sim

@@ -11,8 +11,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/scenario/sequence.hpp"
-#include "sim/target/targets.hpp"
+#include "sim/world/scenario/sequence.hpp"
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -125,9 +125,12 @@ void add_sequence_options(CLI::App& command, ScenarioArguments& arguments) {
 }
 
 void add_file_options(CLI::App& command, ScenarioArguments& arguments) {
-  CLI::Option* model = command.add_option("--model", arguments.model, "model image [the one that ships for the target]");
+  CLI::Option* model =
+      command.add_option("--model", arguments.model, "model image [the one that ships for the target]");
   model->type_name("FILE");
-  command.add_option("--numerics", arguments.numerics, "of the model that ships: fixed point, as it flies, or float32")
+  command
+      .add_option("--numerics", arguments.numerics,
+                  "of the model that ships: fixed point, as it flies, or float32")
       ->check(one_of({"fixed", "float32"}))
       ->type_name("fixed|float32")
       ->capture_default_str()

@@ -21,7 +21,7 @@ struct ScenarioArguments {
   std::uint32_t frames = 10;
   std::uint64_t seed = 1;
   std::string numerics = "fixed";  // or "float32": of the model that ships
-  std::string model;               // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
+  std::string model;  // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
   std::string json;   // empty: none
 };
 

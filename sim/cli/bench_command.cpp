@@ -14,11 +14,11 @@
 #include "sim/bench/network_bench.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/target_setup.hpp"
-#include "sim/lidar/flash_lidar.hpp"
-#include "sim/report/table.hpp"
-#include "sim/report/text_file.hpp"
-#include "sim/scenario/sequence.hpp"
-#include "sim/target/targets.hpp"
+#include "sim/terminal/table.hpp"
+#include "sim/terminal/text_file.hpp"
+#include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -122,9 +122,11 @@ void bench(const BenchArguments& arguments) {
 
 void add_bench_command(CLI::App& app) {
   auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* command = app.add_subcommand("bench", "Measure the flight network's speed, beside other runtimes'");
+  CLI::App* command =
+      app.add_subcommand("bench", "Measure the flight network's speed, beside other runtimes'");
   command->footer(
-      "\nOne thread, the shipped model in both numerics, every instruction set of this processor. A step goes\n"
+      "\nOne thread, the shipped model in both numerics, every instruction set of this processor. A step "
+      "goes\n"
       "from ranges to quaternion; the network alone is what the other runtimes do as well. The peak is\n"
       "measured: the same multiply-accumulate instructions without any memory.\n\n"
       "ONNX Runtime takes part when its library is there: npm install --prefix build onnxruntime-node\n");

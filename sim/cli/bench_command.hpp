@@ -1,4 +1,5 @@
-// `tumblesight bench`: how fast the flight network is, with every numerics and instruction set, and beside other runtimes.
+// `tumblesight bench`: how fast the flight network is, with every numerics and instruction set, and beside
+// other runtimes.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -12,12 +12,12 @@
 #include "sim/cli/evaluate_paper.hpp"
 #include "sim/cli/subject_setup.hpp"
 #include "sim/evaluation/checks.hpp"
-#include "sim/report/progress.hpp"
 #include "sim/report/results_csv.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_report.hpp"
 #include "sim/report/results_table.hpp"
-#include "sim/report/text_file.hpp"
+#include "sim/terminal/progress.hpp"
+#include "sim/terminal/text_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

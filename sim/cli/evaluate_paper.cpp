@@ -10,14 +10,14 @@
 
 #include "sim/cli/subject_setup.hpp"
 #include "sim/cli/target_setup.hpp"
-#include "sim/report/progress.hpp"
 #include "sim/report/results_csv.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_markdown.hpp"
 #include "sim/report/results_report.hpp"
 #include "sim/report/results_table.hpp"
-#include "sim/report/text_file.hpp"
-#include "sim/target/targets.hpp"
+#include "sim/terminal/progress.hpp"
+#include "sim/terminal/text_file.hpp"
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/onnx/onnx_file.hpp"
-#include "sim/quantization/model_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -31,13 +31,16 @@ void Float32Beside::frame_sent(const StepRecord& step, const gnc::RangeImage& fr
   answers_.push_back(answer);
 }
 
-NumericsComparison Float32Beside::compare(const std::vector<FrameResult>& results, std::uint32_t frames) const {
+NumericsComparison Float32Beside::compare(const std::vector<FrameResult>& results,
+                                          std::uint32_t frames) const {
   NumericsComparison comparison;
   comparison.float32 = summarise(last_frame_errors_deg(answers_, frames, Estimator::kRcnn));
   std::vector<double> differences;
   auto answer = answers_.begin();  // both in the order of the steps; the flight program may have missed some
   for (const FrameResult& result : results) {
-    const auto same = [&](const FrameResult& a) { return a.sequence == result.sequence && a.frame == result.frame; };
+    const auto same = [&](const FrameResult& a) {
+      return a.sequence == result.sequence && a.frame == result.frame;
+    };
     answer = std::find_if(answer, answers_.end(), same);
     if (answer == answers_.end()) break;
     if (result.valid && answer->valid) {

@@ -20,9 +20,10 @@ struct NumericsComparison {
 
 class Float32Beside {
  public:
-  // Of the fixed-point image <name>.tsm the reference is <name>.float32.tsm in the same folder. Nothing is there to
-  // compare without such a file, or where what flies is float32 itself.
-  Float32Beside(const std::string& model_path, const std::vector<std::uint8_t>& model, const std::string& target);
+  // Of the fixed-point image <name>.tsm the reference is <name>.float32.tsm in the same folder. Nothing is
+  // there to compare without such a file, or where what flies is float32 itself.
+  Float32Beside(const std::string& model_path, const std::vector<std::uint8_t>& model,
+                const std::string& target);
 
   explicit operator bool() const { return estimator_ != nullptr; }
   void frame_sent(const StepRecord& step, const gnc::RangeImage& frame);

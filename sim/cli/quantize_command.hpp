@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/quantization/model_file.hpp"
-#include "sim/target/triangle_mesh.hpp"
+#include "sim/model/model_file.hpp"
+#include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
 

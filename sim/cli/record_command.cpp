@@ -10,10 +10,10 @@
 #include "hal/replay/recording.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/target_setup.hpp"
-#include "sim/lidar/flash_lidar.hpp"
-#include "sim/report/progress.hpp"
-#include "sim/scenario/random.hpp"
-#include "sim/scenario/sequence.hpp"
+#include "sim/terminal/progress.hpp"
+#include "sim/world/scenario/random.hpp"
+#include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -71,7 +71,8 @@ void record(const RecordArguments& arguments) {
   for (std::uint32_t i = 0; i < wanted.sequences; ++i) {
     const Sequence sequence = make_sequence(settings, wanted.seed, i);
     for (std::uint32_t k = 0; k < wanted.frames; ++k) {
-      lidar.expose(sequence.frames[k], sensor, target.projection.swath_mm / 1000.0, mix(sequence.noise_seed, k), *frame);
+      lidar.expose(sequence.frames[k], sensor, target.projection.swath_mm / 1000.0,
+                   mix(sequence.noise_seed, k), *frame);
       frame->sequence_number = i * wanted.frames + k;
       frame->exposure_time_ns = kFramePeriod_ns * (frame->sequence_number + kPause_frames * i);
       recorder.add(*frame);
@@ -92,7 +93,8 @@ void add_record_command(CLI::App& app) {
   arguments->scenario.sequences = 2;
   CLI::App* command = app.add_subcommand("record", "Render frames into a file, for flight_replay on a board");
   command->footer(
-      "\nWhat the LiDAR would have delivered, a frame each 2.7 s; hal/replay/recording.hpp has the format.\n\n"
+      "\nWhat the LiDAR would have delivered, a frame each 2.7 s; hal/replay/recording.hpp has the "
+      "format.\n\n"
       "Example: what flies on the processors of the audit\n"
       "  tumblesight record --target near_shoemaker --condition degraded --out frames.tslr\n");
   add_target_options(*command, arguments->scenario);

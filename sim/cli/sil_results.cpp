@@ -90,7 +90,8 @@ FactList counter_facts(const SilRecording& recording) {
       {"events", h.events},
       {"deadline overruns", h.deadline_overruns},
       {"model checked whole", h.model_passes},
-      {"memory repaired", h.memory_corrections + h.states_restored + h.constants_reloaded + h.model_blocks_repaired},
+      {"memory repaired",
+       h.memory_corrections + h.states_restored + h.constants_reloaded + h.model_blocks_repaired},
       {"bytes of its stack never used", h.stack_left_min_bytes},
   };
   for (const auto& [name, count] : counters) list.facts.emplace_back(name, fmt::format("{}", count));

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "gnc/rcnn/crc32.hpp"
+#include "gnc/numerics/crc32.hpp"
 
 namespace tumblesight::sim {
 namespace {

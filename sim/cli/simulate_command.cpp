@@ -20,10 +20,10 @@
 #include "sim/evaluation/curves.hpp"
 #include "sim/evaluation/experiment.hpp"
 #include "sim/evaluation/statistics.hpp"
-#include "sim/report/progress.hpp"
 #include "sim/report/results_table.hpp"
-#include "sim/report/text_file.hpp"
 #include "sim/sil/telecommand.hpp"
+#include "sim/terminal/progress.hpp"
+#include "sim/terminal/text_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -136,9 +136,10 @@ SilRecording record(const SimulateArguments& arguments, const TargetSetup& setup
   }
   const FlashLidar lidar(setup.mesh);
   ProgressBar bar("simulating", "frames", std::uint64_t{scenario.sequences} * scenario.frames);
-  return run_sil(settings, lidar, 1e-3 * setup.projection.swath_mm, sequences,
-                 [&](std::uint32_t done, std::uint32_t) { bar.update(done); },
-                 [&](const StepRecord& step, const gnc::RangeImage& frame) { float32.frame_sent(step, frame); });
+  return run_sil(
+      settings, lidar, 1e-3 * setup.projection.swath_mm, sequences,
+      [&](std::uint32_t done, std::uint32_t) { bar.update(done); },
+      [&](const StepRecord& step, const gnc::RangeImage& frame) { float32.frame_sent(step, frame); });
 }
 
 void announce(const ScenarioArguments& scenario, const TargetSetup& setup, const SilSettings& settings) {
@@ -199,7 +200,8 @@ void simulate(SimulateArguments arguments) {
   print_results(scenario, recording, report);
   if (numerics) print_numerics(*numerics);
   std::vector<std::string> wrong = shortcomings(recording);
-  for (const std::string& failure : write_files(arguments, report, run_json(scenario, recording, numerics))) wrong.push_back(failure);
+  for (const std::string& failure : write_files(arguments, report, run_json(scenario, recording, numerics)))
+    wrong.push_back(failure);
   fmt::print("\n");
   std::fflush(stdout);
 

@@ -1,8 +1,8 @@
 #include "sim/cli/surfaces.hpp"
 
 #include "sim/cli/arguments.hpp"
-#include "sim/target/mesh_file.hpp"
-#include "sim/target/targets.hpp"
+#include "sim/world/target/mesh_file.hpp"
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 

@@ -1,11 +1,12 @@
-// The surfaces that a network is trained for or measured on: shipped meshes and CAD files, one option for all.
+// The surfaces that a network is trained for or measured on: shipped meshes and CAD files, one option for
+// all.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
-#include "sim/target/triangle_mesh.hpp"
+#include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
 

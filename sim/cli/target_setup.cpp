@@ -15,9 +15,9 @@
 #include "gnc/attitude/motion.hpp"
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/evaluation/results.hpp"
-#include "sim/lidar/flash_lidar.hpp"
-#include "sim/target/mesh_file.hpp"
-#include "sim/target/targets.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
+#include "sim/world/target/mesh_file.hpp"
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 namespace {

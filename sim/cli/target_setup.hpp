@@ -9,7 +9,7 @@
 
 #include "gnc/rcnn/model_image.hpp"
 #include "sim/cli/arguments.hpp"
-#include "sim/target/triangle_mesh.hpp"
+#include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
 

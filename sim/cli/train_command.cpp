@@ -16,10 +16,10 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/quantize_command.hpp"
 #include "sim/cli/surfaces.hpp"
-#include "sim/target/targets.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/one_thread.hpp"
 #include "sim/training/train.hpp"
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 namespace {

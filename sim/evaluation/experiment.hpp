@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sim/evaluation/results.hpp"
-#include "sim/target/triangle_mesh.hpp"
+#include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
 

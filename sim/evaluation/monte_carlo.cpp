@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "sim/evaluation/host_estimator.hpp"
-#include "sim/scenario/random.hpp"
+#include "sim/world/scenario/random.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "sim/baseline/template_matcher.hpp"
 #include "sim/evaluation/metrics.hpp"
-#include "sim/lidar/flash_lidar.hpp"
-#include "sim/scenario/sequence.hpp"
+#include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/scenario/sequence.hpp"
+#include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 

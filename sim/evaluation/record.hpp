@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/evaluation/metrics.hpp"
-#include "sim/scenario/sequence.hpp"
+#include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 

@@ -11,7 +11,7 @@
 #include "sim/evaluation/curves.hpp"
 #include "sim/evaluation/paper.hpp"
 #include "sim/evaluation/reliability.hpp"
-#include "sim/scenario/sequence.hpp"
+#include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 

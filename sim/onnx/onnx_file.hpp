@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "sim/quantization/model_file.hpp"
+#include "sim/model/model_file.hpp"
 
 namespace tumblesight::sim {
 

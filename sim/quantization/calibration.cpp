@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "gnc/rcnn/network_flow.hpp"
-#include "sim/scenario/random.hpp"
-#include "sim/scenario/sequence.hpp"
+#include "sim/world/scenario/random.hpp"
+#include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;
@@ -50,7 +50,8 @@ ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
 
 namespace {
 
-// One sequence through the estimator's own steps: note(layer, output) of everything, the attitudes as the result.
+// One sequence through the estimator's own steps: note(layer, output) of everything, the attitudes as the
+// result.
 template <class N, class Note>
 std::vector<gnc::Matrix3<typename N::Real>> follow(const gnc::NetworkWeights<N>& weights,
                                                    const gnc::MotionLaws<typename N::Real>& laws,
@@ -95,20 +96,25 @@ std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(const gnc::NetworkWeigh
   return follow<N>(weights, laws, sequence, [](const char*, const auto&) {});
 }
 
-#define TUMBLESIGHT_INSTANTIATE(N)                                                                            \
-  template Observations observe<N>(const gnc::NetworkWeights<N>&, const gnc::MotionLaws<N::Real>&,            \
-                                   const ImageSequence&);                                                     \
-  template std::vector<gnc::Matrix3<N::Real>> attitudes_of<N>(const gnc::NetworkWeights<N>&,                  \
-                                                              const gnc::MotionLaws<N::Real>&,                \
-                                                              const ImageSequence&)
+#define TUMBLESIGHT_INSTANTIATE(N)                                                                 \
+  template Observations observe<N>(const gnc::NetworkWeights<N>&, const gnc::MotionLaws<N::Real>&, \
+                                   const ImageSequence&);                                          \
+  template std::vector<gnc::Matrix3<N::Real>> attitudes_of<N>(                                     \
+      const gnc::NetworkWeights<N>&, const gnc::MotionLaws<N::Real>&, const ImageSequence&)
 TUMBLESIGHT_INSTANTIATE(gnc::Float32);
 TUMBLESIGHT_INSTANTIATE(gnc::FixedPoint);
 
 int channels_of(const std::string& layer) {
-  static const std::map<std::string, int> kChannels{
-      {"depth", shape::kSpaceToDepthChannels},
-      {"conv1", shape::kConv1},   {"conv2", shape::kConv2},   {"conv3", shape::kConv3}, {"conv4", shape::kConv4},
-      {"dense1", shape::kDense1}, {"dense2", shape::kDense2}, {"lstm_input", shape::kLstmInput}, {"lstm", shape::kLstm},   {"head1", shape::kHead}};
+  static const std::map<std::string, int> kChannels{{"depth", shape::kSpaceToDepthChannels},
+                                                    {"conv1", shape::kConv1},
+                                                    {"conv2", shape::kConv2},
+                                                    {"conv3", shape::kConv3},
+                                                    {"conv4", shape::kConv4},
+                                                    {"dense1", shape::kDense1},
+                                                    {"dense2", shape::kDense2},
+                                                    {"lstm_input", shape::kLstmInput},
+                                                    {"lstm", shape::kLstm},
+                                                    {"head1", shape::kHead}};
   return kChannels.at(layer);
 }
 

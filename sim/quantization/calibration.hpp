@@ -8,18 +8,19 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
-#include "sim/lidar/flash_lidar.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 
 using ImageSequence = std::vector<gnc::DepthImage>;
 
-// Sequence `number` of ten frames, meshes and conditions taking turns, of seeds that neither training nor evaluation
-// draws from. It ends before a frame of which the sensor sees too little.
+// Sequence `number` of ten frames, meshes and conditions taking turns, of seeds that neither training nor
+// evaluation draws from. It ends before a frame of which the sensor sees too little.
 ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
                                    const gnc::DepthProjection& projection, std::uint64_t number);
 
-// What one hidden layer gave, channel by channel, over a whole sequence: value of channel c of pixel p of frame f at
+// What one hidden layer gave, channel by channel, over a whole sequence: value of channel c of pixel p of
+// frame f at
 // [(f * pixels + p) * channels + c]. Borders are left out.
 using Observations = std::map<std::string, std::vector<double>>;
 

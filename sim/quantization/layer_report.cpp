@@ -21,8 +21,8 @@ struct Tally {
 
 }  // namespace
 
-std::vector<LayerReport> compare(const gnc::NetworkWeights<Float32>& reference, const QuantizedNetwork& network,
-                                 const gnc::Inertia<gnc::Fixed>& inertia,
+std::vector<LayerReport> compare(const gnc::NetworkWeights<Float32>& reference,
+                                 const QuantizedNetwork& network, const gnc::Inertia<gnc::Fixed>& inertia,
                                  const std::vector<ImageSequence>& sequences) {
   const auto float_laws = gnc::motion_laws<float>(gnc::converted<float>(inertia));
   const auto fixed_laws = gnc::motion_laws<gnc::Fixed>(inertia);

@@ -13,7 +13,8 @@ using gnc::FixedPoint;
 using gnc::Float32;
 namespace {
 
-constexpr double kLargestInt16 = 32767.0 / 2.0;  // half of it: frames other than the calibration's may go beyond
+constexpr double kLargestInt16 =
+    32767.0 / 2.0;  // half of it: frames other than the calibration's may go beyond
 constexpr double kQ15 = 1.0 / 32768.0;
 
 std::int32_t to_integer(double value) {
@@ -85,7 +86,8 @@ class Quantizer {
   // The unit of each of a layer's inputs, which `layer` gives.
   std::vector<double> unit_of(const std::string& layer, int times = 1) const {
     std::vector<double> units;
-    for (int i = 0; i < times; ++i) units.insert(units.end(), to_.scales.at(layer).begin(), to_.scales.at(layer).end());
+    for (int i = 0; i < times; ++i)
+      units.insert(units.end(), to_.scales.at(layer).begin(), to_.scales.at(layer).end());
     return units;
   }
   static std::vector<double> joined(std::vector<double> a, const std::vector<double>& b) {
@@ -104,13 +106,15 @@ class Quantizer {
   template <class From, class To>
   void convolution(const std::string& name, const From& from, const std::string& before, To& to) {
     const FloatLayer layer = layer_of(name, from, unit_of(before, 9));
-    put<gnc::Int8Product::kGroup>(layer, scales_of_few_bits(layer, inputs_of(layer), outputs_of(layer), kLargestUint8), to);
+    put<gnc::Int8Product::kGroup>(
+        layer, scales_of_few_bits(layer, inputs_of(layer), outputs_of(layer), kLargestUint8), to);
   }
   template <class From, class To>
   void last_convolution(const std::string& name, const From& from, const std::string& before, To& to) {
     const FloatLayer layer = layer_of(name, from, unit_of(before, 9));
     // The range is that of means of four; each of the four may be their whole sum.
-    put<gnc::Int8Product::kGroup>(layer, scales_of_many_bits(layer, outputs_of(layer), gnc::kLargestOfFour / 4.0), to);
+    put<gnc::Int8Product::kGroup>(
+        layer, scales_of_many_bits(layer, outputs_of(layer), gnc::kLargestOfFour / 4.0), to);
     for (double& scale : to_.scales.at(name)) scale /= 4.0;  // the sum of a window stands for its mean
   }
   template <class From, class To>
@@ -154,8 +158,12 @@ class Quantizer {
     put_output_shifts(layer, scales, to);
   }
 
-  const InputStatistics& inputs_of(const FloatLayer& layer) const { return statistics_.inputs.at(layer.name); }
-  const std::vector<Distribution>& outputs_of(const FloatLayer& layer) const { return statistics_.outputs.at(layer.name); }
+  const InputStatistics& inputs_of(const FloatLayer& layer) const {
+    return statistics_.inputs.at(layer.name);
+  }
+  const std::vector<Distribution>& outputs_of(const FloatLayer& layer) const {
+    return statistics_.outputs.at(layer.name);
+  }
 
   const gnc::NetworkWeights<Float32>& from_;
   const Statistics& statistics_;
@@ -164,7 +172,8 @@ class Quantizer {
 
 }  // namespace
 
-std::unique_ptr<QuantizedNetwork> quantize(const gnc::NetworkWeights<Float32>& weights, const Statistics& statistics) {
+std::unique_ptr<QuantizedNetwork> quantize(const gnc::NetworkWeights<Float32>& weights,
+                                           const Statistics& statistics) {
   auto network = std::make_unique<QuantizedNetwork>();
   Quantizer(weights, statistics, *network).run();
   return network;

@@ -43,11 +43,13 @@ struct Rendered {
 
 }  // namespace
 
-QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
-                                    const std::string& path, const std::function<void(std::uint64_t)>& progress) {
+QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
+                                    int sequences, const std::string& path,
+                                    const std::function<void(std::uint64_t)>& progress) {
   const Rendered rendered(meshes);
   const int held_back = sequences / kReportShare;
-  Calibration calibration(model.weights, gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia)));
+  Calibration calibration(model.weights,
+                          gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia)));
   std::vector<ImageSequence> kept;
   for (int i = 0; i < sequences; ++i) {
     ImageSequence sequence =

@@ -1,5 +1,5 @@
-// Rounding of weights so that the sums change as little as possible: each weight's rounding error is made up for by
-// the weights after it, as far as their inputs go together (Frantar et al. 2023, GPTQ).
+// Rounding of weights so that the sums change as little as possible: each weight's rounding error is made up
+// for by the weights after it, as far as their inputs go together (Frantar et al. 2023, GPTQ).
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 // The colours of what is compared, the same in every figure.
 #pragma once
 
-#include "sim/scenario/sequence.hpp"
+#include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 

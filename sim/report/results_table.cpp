@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "sim/evaluation/statistics.hpp"
-#include "sim/report/table.hpp"
+#include "sim/terminal/table.hpp"
 
 namespace tumblesight::sim {
 namespace {

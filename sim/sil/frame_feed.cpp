@@ -1,6 +1,6 @@
 #include "sim/sil/frame_feed.hpp"
 
-#include "sim/scenario/random.hpp"
+#include "sim/world/scenario/random.hpp"
 
 namespace tumblesight::sim {
 namespace {

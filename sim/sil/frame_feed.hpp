@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
-#include "sim/lidar/flash_lidar.hpp"
-#include "sim/scenario/sequence.hpp"
+#include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 

@@ -160,7 +160,8 @@ void conclude(SilRecording& recording) {
 }  // namespace
 
 bool gives_attitude(const hal::AttitudeReport& report) {
-  return report.validity == tumblesight_icd_VALIDITY_VALID || report.validity == tumblesight_icd_VALIDITY_DOUBTFUL;
+  return report.validity == tumblesight_icd_VALIDITY_VALID ||
+         report.validity == tumblesight_icd_VALIDITY_DOUBTFUL;
 }
 
 SilRecording run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,

@@ -11,8 +11,8 @@
 #include "gnc/lidar/range_image.hpp"
 #include "hal/dds/idl/development_key.hpp"
 #include "hal/link.hpp"
-#include "sim/lidar/flash_lidar.hpp"
-#include "sim/scenario/sequence.hpp"
+#include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 
@@ -25,7 +25,7 @@ struct SilSettings {
   bool free_running = false;     // flight on its own 2.7 s timer (divided by speed) instead of in lockstep
   double step_timeout_s = 10.0;  // wall clock; a step not answered by then ends the run
   std::string flight_log_path;   // file for flight's messages; empty: they come out with our own
-  std::vector<std::string> flight_arguments;  // further arguments for flight
+  std::vector<std::string> flight_arguments;                             // further arguments for flight
   std::array<std::uint8_t, 32> command_key = hal::dds::kDevelopmentKey;  // the same as flight's
 };
 

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "gnc/numerics/crc16.hpp"
 #include "hal/dds/idl/tumblesight.h"
 
 namespace tumblesight::sim {
@@ -20,17 +21,8 @@ constexpr std::size_t kMacBytes = 16;
 constexpr std::size_t kTrailerBytes = 4 + kMacBytes;
 
 void append(std::vector<std::uint8_t>& bytes, std::uint32_t value, int count) {
-  for (int shift = 8 * (count - 1); shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
-}
-
-// CRC-16/CCITT-FALSE.
-std::uint16_t checksum(const std::vector<std::uint8_t>& bytes) {
-  std::uint32_t crc = 0xFFFF;
-  for (const std::uint8_t byte : bytes) {
-    crc ^= std::uint32_t{byte} << 8;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc & 0x8000U) != 0 ? (crc << 1 ^ 0x1021U) & 0xFFFFU : crc << 1 & 0xFFFFU;
-  }
-  return static_cast<std::uint16_t>(crc);
+  for (int shift = 8 * (count - 1); shift >= 0; shift -= 8)
+    bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
 }  // namespace
@@ -64,8 +56,8 @@ std::array<std::uint8_t, 32> read_command_key(const std::string& path) {
 hal::CommandPacket TelecommandEncoder::packet(const Telecommand& command) {
   const std::size_t size = kHeaderBytes + command.arguments.size();
   if (size + kTrailerBytes > hal::CommandPacket::kMaxBytes) {
-    throw std::invalid_argument("a telecommand of " + std::to_string(size + kTrailerBytes) + " bytes; at most " +
-                                std::to_string(hal::CommandPacket::kMaxBytes));
+    throw std::invalid_argument("a telecommand of " + std::to_string(size + kTrailerBytes) +
+                                " bytes; at most " + std::to_string(hal::CommandPacket::kMaxBytes));
   }
   std::vector<std::uint8_t> bytes;
   append(bytes, 0x1800U | tumblesight_icd_COMMAND_APID, 2);
@@ -74,14 +66,15 @@ hal::CommandPacket TelecommandEncoder::packet(const Telecommand& command) {
   append(bytes, command.function, 1);
   append(bytes, 0, 3);
   bytes.insert(bytes.end(), command.arguments.begin(), command.arguments.end());
-  const std::uint16_t crc = checksum(bytes);
+  const std::uint16_t crc = gnc::crc16(bytes.data(), bytes.size());
   bytes[8] = static_cast<std::uint8_t>(crc >> 8);
   bytes[9] = static_cast<std::uint8_t>(crc);
   append(bytes, ++counter_, 4);
   sequence_count_ = static_cast<std::uint16_t>((sequence_count_ + 1) & 0x3FFF);
 
   std::array<std::uint8_t, EVP_MAX_MD_SIZE> code{};
-  HMAC(EVP_sha256(), key_.data(), static_cast<int>(key_.size()), bytes.data(), bytes.size(), code.data(), nullptr);
+  HMAC(EVP_sha256(), key_.data(), static_cast<int>(key_.size()), bytes.data(), bytes.size(), code.data(),
+       nullptr);
   bytes.insert(bytes.end(), code.begin(), code.begin() + kMacBytes);
 
   hal::CommandPacket packet;

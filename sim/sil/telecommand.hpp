@@ -1,5 +1,5 @@
-// Telecommands as the ground makes them: CCSDS space packets with a checksum, signed with HMAC-SHA-256 (OpenSSL's, so that
-// flight's own is held against another implementation). Bit by bit: docs/icd.md.
+// Telecommands as the ground makes them: CCSDS space packets with a checksum, signed with HMAC-SHA-256
+// (OpenSSL's, so that flight's own is held against another implementation). Bit by bit: docs/icd.md.
 #pragma once
 
 #include <array>
@@ -19,7 +19,8 @@ struct Telecommand {
 Telecommand set_mode(std::uint8_t mode);
 Telecommand reset_sequence();
 
-// The key in a file: 64 hexadecimal digits and white space. Throws std::runtime_error that names the file otherwise.
+// The key in a file: 64 hexadecimal digits and white space. Throws std::runtime_error that names the file
+// otherwise.
 std::array<std::uint8_t, 32> read_command_key(const std::string& path);
 
 // Signs what it makes with a counter that rises from command to command.

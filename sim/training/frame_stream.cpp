@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "gnc/rcnn/crc32.hpp"
-#include "sim/scenario/random.hpp"
-#include "sim/scenario/sequence.hpp"
+#include "gnc/numerics/crc32.hpp"
+#include "sim/world/scenario/random.hpp"
+#include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -139,7 +139,8 @@ TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
     targets.lidars.push_back(std::make_unique<FlashLidar>(mesh));
     const gnc::DepthProjection of_mesh = projection_of(mesh);
     targets.projection.swath_mm = std::max(targets.projection.swath_mm, of_mesh.swath_mm);
-    targets.projection.target_radius_mm = std::max(targets.projection.target_radius_mm, of_mesh.target_radius_mm);
+    targets.projection.target_radius_mm =
+        std::max(targets.projection.target_radius_mm, of_mesh.target_radius_mm);
   }
   targets.meshes_crc32 = crc32_of(meshes);
   require_visible(targets, meshes);

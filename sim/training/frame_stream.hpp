@@ -14,7 +14,7 @@
 
 #include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
-#include "sim/lidar/flash_lidar.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 
@@ -25,13 +25,13 @@ struct TrainingTargets {
   std::uint32_t meshes_crc32 = 0;     // names the surfaces
   std::vector<Condition> conditions;  // that take turns; one may be there more than once
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF
-  gnc::Inertia<float> inertia;                                         // the same, as the flight code takes it
+  gnc::Inertia<float> inertia;                                  // the same, as the flight code takes it
 };
 // What the shipped networks are trained on, and the paper's rule: nominal and degraded frames only.
 std::vector<Condition> all_conditions();
 std::vector<Condition> paper_conditions();
-// By words, one after the other: "all", "paper", or the name of a condition, which for the command line is any
-// but stress: that is for tests only. Throws std::invalid_argument for what is none.
+// By words, one after the other: "all", "paper", or the name of a condition, which for the command line is
+// any but stress: that is for tests only. Throws std::invalid_argument for what is none.
 std::vector<std::string> training_condition_words();
 std::vector<Condition> training_conditions(const std::vector<std::string>& words);
 std::uint64_t number_of(const std::vector<Condition>& conditions);  // names them, for a fingerprint

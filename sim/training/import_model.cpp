@@ -15,7 +15,8 @@ TensorsByName tensors_of(const gnc::NetworkWeights<gnc::Float32>& weights) {
   TensorsByName tensors;
   gnc::for_each_tensor(weights, [&](const char* layer, const char* part, const auto& tensor) {
     tensors[std::string(layer) + "." + part] =
-        torch::from_blob(const_cast<float*>(tensor.data()), {static_cast<std::int64_t>(tensor.size())}, torch::kFloat)
+        torch::from_blob(const_cast<float*>(tensor.data()), {static_cast<std::int64_t>(tensor.size())},
+                         torch::kFloat)
             .clone();
   });
   return tensors;

@@ -1,5 +1,5 @@
 // The network as LibTorch modules, for training. Shapes and semantics are those of
-// gnc/rcnn/network_shape.hpp; the flight network must give the same numbers (tests/unit/sim_training proves
+// gnc/rcnn/network_shape.hpp; the flight network must give the same numbers (tests/unit/sim/training proves
 // it).
 #pragma once
 

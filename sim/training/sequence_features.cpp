@@ -5,8 +5,8 @@
 
 #include "gnc/rcnn/hypotheses.hpp"
 #include "gnc/rcnn/network_shape.hpp"
-#include "sim/scenario/random.hpp"
-#include "sim/scenario/sequence.hpp"
+#include "sim/world/scenario/random.hpp"
+#include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;
@@ -50,8 +50,8 @@ void put_rotation(const Eigen::Matrix3f& rotation, float* at) {
 }
 
 // Frame `row` (counted over all sequences) of `all`.
-void put_frame(const gnc::Network<gnc::Float32>& network, const gnc::Hypotheses<float>& hypotheses, const Eigen::Matrix3f& truth,
-               std::int64_t row, FeatureSet& all) {
+void put_frame(const gnc::Network<gnc::Float32>& network, const gnc::Hypotheses<float>& hypotheses,
+               const Eigen::Matrix3f& truth, std::int64_t row, FeatureSet& all) {
   const SequenceHypotheses& to = all.hypotheses;
   std::copy(network.features().begin(), network.features().end(),
             to.features.data_ptr<float>() + row * shape::kDense2);
@@ -78,7 +78,8 @@ bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t in
     if (make_depth_image(work.frame, targets.projection, work.scratch, work.image) != gnc::FrameStatus::kOk)
       return false;
     work.network.infer_frame(work.image, work.output);
-    put_frame(work.network, gnc::hypotheses_of<float>(work.output, gnc::converted<float>(work.image.r_lrf_view)),
+    put_frame(work.network,
+              gnc::hypotheses_of<float>(work.output, gnc::converted<float>(work.image.r_lrf_view)),
               truth.q_lrf_trf.toRotationMatrix().cast<float>(), index * kFrames + k, all);
   }
   return true;
@@ -86,8 +87,9 @@ bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t in
 
 }  // namespace
 
-SequenceFeatures::SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights<gnc::Float32>& weights,
-                                   std::uint64_t seed, std::int64_t count, int workers)
+SequenceFeatures::SequenceFeatures(const TrainingTargets& targets,
+                                   const gnc::NetworkWeights<gnc::Float32>& weights, std::uint64_t seed,
+                                   std::int64_t count, int workers)
     : targets_(targets),
       weights_(weights),
       seed_(seed),

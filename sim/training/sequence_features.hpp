@@ -33,8 +33,8 @@ class SequenceFeatures {
   // turns, and so do the laws of the rate; of the bodies that tumble, every
   // second has another inertia than the target, lest the network trust it blindly. `weights` must outlive
   // this object.
-  SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights<gnc::Float32>& weights, std::uint64_t seed,
-                   std::int64_t count, int workers);
+  SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights<gnc::Float32>& weights,
+                   std::uint64_t seed, std::int64_t count, int workers);
   ~SequenceFeatures();
 
   std::int64_t ready();  // how many, from the first one on

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "gnc/rcnn/crc32.hpp"
+#include "gnc/numerics/crc32.hpp"
 
 namespace tumblesight::sim {
 

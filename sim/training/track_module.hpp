@@ -1,5 +1,5 @@
 // gnc/rcnn/attitude_track.hpp in LibTorch, for batches and with gradients. The flight code must give the same
-// numbers (tests/unit/sim_training proves it).
+// numbers (tests/unit/sim/training proves it).
 #pragma once
 
 #include <torch/torch.h>

@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "sim/quantization/model_file.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/training/import_model.hpp"
 #include "sim/training/loss.hpp"
 #include "sim/training/stage.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <thread>
 
-#include "gnc/rcnn/crc32.hpp"
+#include "gnc/numerics/crc32.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/loss.hpp"
 #include "sim/training/sequence_features.hpp"

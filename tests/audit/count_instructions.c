@@ -1,7 +1,8 @@
 /* A plugin for QEMU: counts the instructions that a program executes, stage by stage.
      qemu-… -plugin count_instructions.so,stages=FILE,out=FILE …
-   `stages`: lines "ADDRESS NAME", the address (hexadecimal) where the stage's function begins; a stage lasts until the next one
-   begins. The first stage begins a step, the second ends it. `out`: a line a step, the stages' counts in that order. */
+   `stages`: lines "ADDRESS NAME", the address (hexadecimal) where the stage's function begins; a stage lasts
+   until the next one begins. The first stage begins a step, the second ends it. `out`: a line a step, the
+   stages' counts in that order. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,14 +13,17 @@ typedef uint64_t qemu_plugin_id_t;
 struct qemu_plugin_tb;
 struct qemu_plugin_insn;
 enum { QEMU_PLUGIN_CB_NO_REGS = 0, QEMU_PLUGIN_INLINE_ADD_U64 = 0 };
-void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t id, void (*callback)(qemu_plugin_id_t, struct qemu_plugin_tb*));
+void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t id,
+                                           void (*callback)(qemu_plugin_id_t, struct qemu_plugin_tb*));
 size_t qemu_plugin_tb_n_insns(const struct qemu_plugin_tb* tb);
 struct qemu_plugin_insn* qemu_plugin_tb_get_insn(const struct qemu_plugin_tb* tb, size_t index);
 uint64_t qemu_plugin_insn_vaddr(const struct qemu_plugin_insn* insn);
-void qemu_plugin_register_vcpu_insn_exec_inline(struct qemu_plugin_insn* insn, int operation, void* to, uint64_t value);
-void qemu_plugin_register_vcpu_insn_exec_cb(struct qemu_plugin_insn* insn, void (*callback)(unsigned, void*), int flags,
-                                            void* data);
-void qemu_plugin_register_atexit_cb(qemu_plugin_id_t id, void (*callback)(qemu_plugin_id_t, void*), void* data);
+void qemu_plugin_register_vcpu_insn_exec_inline(struct qemu_plugin_insn* insn, int operation, void* to,
+                                                uint64_t value);
+void qemu_plugin_register_vcpu_insn_exec_cb(struct qemu_plugin_insn* insn, void (*callback)(unsigned, void*),
+                                            int flags, void* data);
+void qemu_plugin_register_atexit_cb(qemu_plugin_id_t id, void (*callback)(qemu_plugin_id_t, void*),
+                                    void* data);
 
 __attribute__((visibility("default"))) int qemu_plugin_version = 1;
 
@@ -28,9 +32,9 @@ static uint64_t address[kMaxStages];
 static int stages;
 static FILE* out;
 
-static uint64_t executed;             /* so far */
-static uint64_t at_last_change;       /* of stage */
-static uint64_t count[kMaxStages];    /* of this step */
+static uint64_t executed;          /* so far */
+static uint64_t at_last_change;    /* of stage */
+static uint64_t count[kMaxStages]; /* of this step */
 static int current = kEnd;
 
 static void begin_stage(unsigned processor, void* data) {
@@ -55,7 +59,8 @@ static void translate(qemu_plugin_id_t id, struct qemu_plugin_tb* tb) {
     const uint64_t at = qemu_plugin_insn_vaddr(insn);
     for (int stage = 0; stage < stages; ++stage) {
       if (address[stage] == at)
-        qemu_plugin_register_vcpu_insn_exec_cb(insn, begin_stage, QEMU_PLUGIN_CB_NO_REGS, (void*)(intptr_t)stage);
+        qemu_plugin_register_vcpu_insn_exec_cb(insn, begin_stage, QEMU_PLUGIN_CB_NO_REGS,
+                                               (void*)(intptr_t)stage);
     }
     qemu_plugin_register_vcpu_insn_exec_inline(insn, QEMU_PLUGIN_INLINE_ADD_U64, &executed, 1);
   }
@@ -75,7 +80,8 @@ static int read_stages(const char* path) {
   return stages > kEnd ? 0 : -1;
 }
 
-__attribute__((visibility("default"))) int qemu_plugin_install(qemu_plugin_id_t id, const void* info, int argc, char** argv) {
+__attribute__((visibility("default"))) int qemu_plugin_install(qemu_plugin_id_t id, const void* info,
+                                                               int argc, char** argv) {
   (void)info;
   int status = -1;
   for (int i = 0; i < argc; ++i) {

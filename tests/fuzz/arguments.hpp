@@ -38,7 +38,8 @@ class CommandLine {
   std::vector<char*> pointers_;
 };
 
-// A parser for many command lines: to make one takes longer than to use it, but it remembers a little of each.
+// A parser for many command lines: to make one takes longer than to use it, but it remembers a little of
+// each.
 class Reused {
  public:
   explicit Reused(std::function<std::unique_ptr<CLI::App>()> make) : make_(std::move(make)) {}

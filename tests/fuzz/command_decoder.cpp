@@ -1,5 +1,6 @@
-// Telecommands of any content, as the application meets them: bytes as they are, and packets whose headers, checksums and
-// authentication codes are right so that what they ask for is reached. Each is counted as accepted or refused, once.
+// Telecommands of any content, as the application meets them: bytes as they are, and packets whose headers,
+// checksums and authentication codes are right so that what they ask for is reached. Each is counted as
+// accepted or refused, once.
 #include <algorithm>
 #include <memory>
 #include <vector>
@@ -8,8 +9,8 @@
 #include "hal/fake/fake_model_store.hpp"
 #include "hal/fake/fake_stopwatch.hpp"
 #include "tests/fuzz/fuzz.hpp"
-#include "tests/unit/fsw_app/make_packet.hpp"
-#include "tests/unit/gnc_rcnn/test_models.hpp"
+#include "tests/support/make_packet.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace tumblesight::fuzz {
 namespace {
@@ -51,7 +52,8 @@ hal::CommandPacket next_packet(Input& input, std::uint32_t& counter) {
     fsw::set_checksum(packet);
   }
   if (kind % 4 == 2) packet[input.u8() % packet.size()] = input.u8();
-  hal::CommandPacket signed_packet = fsw::signed_with(fsw::kTestKey, kind & 0x10U ? input.u32() : ++counter, packet);
+  hal::CommandPacket signed_packet =
+      fsw::signed_with(fsw::kTestKey, kind & 0x10U ? input.u32() : ++counter, packet);
   if ((kind & 0x20U) != 0) signed_packet.size = input.u16();
   return signed_packet;
 }
@@ -62,7 +64,8 @@ void check(const fsw::StepOutputs& outputs, std::uint32_t sent, std::uint32_t to
   std::uint32_t by_reason = 0;
   for (const std::uint32_t count : h.commands_refused_by) by_reason += count;
   require(by_reason == h.commands_refused, "every refusal has its reason");
-  require(h.events == told + h.events_waiting + h.events_suppressed + h.events_lost, "every event is accounted for");
+  require(h.events == told + h.events_waiting + h.events_suppressed + h.events_lost,
+          "every event is accounted for");
   require(h.mode >= 1 && h.mode <= 3, "the mode is one of the table's");
   require(!outputs.has_dump || outputs.dump.size <= hal::ModelDump::kMaxBytes, "a dump fits");
 }
@@ -82,7 +85,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     flown.inputs->command_count = 1;
     hal::CommandPacket& packet = flown.inputs->commands[0];
     packet = fuzz::next_packet(input, counter);
-    resets = packet.bytes[6] == static_cast<std::uint8_t>(fsw::FunctionCode::kResetCounters);  // ends the counting
+    resets =
+        packet.bytes[6] == static_cast<std::uint8_t>(fsw::FunctionCode::kResetCounters);  // ends the counting
     flown.app->step(1'000'000'000 + std::int64_t{step} * 2'700'000'000, *flown.inputs, *flown.outputs);
     ++sent;
     told += static_cast<std::uint32_t>(flown.outputs->event_count);

@@ -1,5 +1,5 @@
 // Command lines of the flight program on a desktop.
-#include "hal/dds/flight/flight_options.hpp"
+#include "fsw/programs/desktop/flight_options.hpp"
 
 #include <cstring>
 

@@ -8,7 +8,7 @@
 #include "gnc/lidar/depth_loops.hpp"
 #include "tests/fuzz/check_estimate.hpp"
 #include "tests/fuzz/fuzz.hpp"
-#include "tests/unit/gnc_rcnn/test_models.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace tumblesight::fuzz {
 namespace {
@@ -95,7 +95,8 @@ void decode(const gnc::RangeImage& frame, const gnc::DepthProjection& projection
 }
 
 // The portable loops, and beside them those of one set.
-void check_set(const gnc::RangeImage& frame, const gnc::DepthProjection& projection, gnc::InstructionSet set) {
+void check_set(const gnc::RangeImage& frame, const gnc::DepthProjection& projection,
+               gnc::InstructionSet set) {
   static Decoded first, other;
   decode(frame, projection, gnc::InstructionSet::kPortable, first);
   if (first.status == gnc::FrameStatus::kOk) check_image(first.image);
@@ -147,7 +148,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
 #ifdef TUMBLESIGHT_FUZZ  // in turn: each costs as much as all the rest
   check_set(frame, projection, size % 2 == 0 ? gnc::InstructionSet::kAvx512 : gnc::InstructionSet::kAvx2);
 #else
-  for (const auto set : {gnc::InstructionSet::kAvx2, gnc::InstructionSet::kAvx512}) check_set(frame, projection, set);
+  for (const auto set : {gnc::InstructionSet::kAvx2, gnc::InstructionSet::kAvx512})
+    check_set(frame, projection, set);
 #endif
   if (steps) estimator.step(frame, (flags & kNextFrame) != 0);
   return 0;

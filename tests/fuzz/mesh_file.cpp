@@ -1,5 +1,5 @@
 // Mesh files of any content: a mesh that the sensor can look at, or a message that names the file.
-#include "sim/target/mesh_file.hpp"
+#include "sim/world/target/mesh_file.hpp"
 
 #include <unistd.h>
 

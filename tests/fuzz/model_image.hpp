@@ -9,7 +9,7 @@
 #include "tests/fuzz/check_estimate.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/patched_image.hpp"
-#include "tests/unit/gnc_rcnn/test_models.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace tumblesight::fuzz {
 

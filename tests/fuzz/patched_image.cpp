@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "gnc/rcnn/crc32.hpp"
+#include "gnc/numerics/crc32.hpp"
 #include "gnc/rcnn/model_image.hpp"
 
 #if defined(__has_feature)

@@ -101,7 +101,8 @@ TEST_F(BadFrames, MissingFrameIsCounted) {
 }
 
 TEST_F(BadFrames, MalformedCommandIsRefusedAndTheFrameUsed) {
-  const StepAnswer answer = conversation_.step({conversation_.good_frame()}, {{tumblesight_icd_FUNCTION_NOOP, {1}}});
+  const StepAnswer answer =
+      conversation_.step({conversation_.good_frame()}, {{tumblesight_icd_FUNCTION_NOOP, {1}}});
   EXPECT_TRUE(gives_attitude(answer.attitude));
   EXPECT_EQ(answer.housekeeping.commands_refused, 1U);
 }

@@ -1,4 +1,5 @@
-// Telecommands over the whole link: signed on the ground with another implementation than the one that checks them.
+// Telecommands over the whole link: signed on the ground with another implementation than the one that checks
+// them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +38,8 @@ TEST_F(Commands, ForgedAndRecordedOnesAreRefusedAndCounted) {
   hal::CommandPacket spoilt = ground.packet({tumblesight_icd_FUNCTION_NOOP, {}});
   spoilt.bytes[6] = tumblesight_icd_FUNCTION_RESET_COUNTERS;
   settings.command_key[0] ^= 1;
-  const hal::CommandPacket stranger = TelecommandEncoder(settings.command_key).packet(set_mode(tumblesight_icd_MODE_SAFE));
+  const hal::CommandPacket stranger =
+      TelecommandEncoder(settings.command_key).packet(set_mode(tumblesight_icd_MODE_SAFE));
   const StepAnswer answer = step_packets({noop, noop, spoilt, stranger});
   EXPECT_EQ(answer.housekeeping.commands_accepted, 1U);
   EXPECT_EQ(answer.housekeeping.commands_refused_by[kReplayed], 1U);
@@ -49,12 +51,15 @@ TEST_F(Commands, ForgedAndRecordedOnesAreRefusedAndCounted) {
 
 // Verifies TS-MODE-040, TS-MODE-050.
 TEST_F(Commands, ModesFollowTheCommands) {
-  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_SAFE)}).housekeeping.mode,
+  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_SAFE)})
+                .housekeeping.mode,
             tumblesight_icd_MODE_SAFE);
-  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_RUN)}).housekeeping.mode,
+  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_RUN)})
+                .housekeeping.mode,
             tumblesight_icd_MODE_SAFE);
-  const StepAnswer answer = conversation_.step(
-      {conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_STANDBY), set_mode(tumblesight_icd_MODE_RUN)});
+  const StepAnswer answer =
+      conversation_.step({conversation_.good_frame()},
+                         {set_mode(tumblesight_icd_MODE_STANDBY), set_mode(tumblesight_icd_MODE_RUN)});
   EXPECT_EQ(answer.housekeeping.mode, tumblesight_icd_MODE_RUN);
   EXPECT_EQ(answer.attitude.frames_since_reset, 1U);
   conversation_.finish();
@@ -85,11 +90,13 @@ TEST_F(Commands, ModelIsLoadedDumpedBackValidatedAndActivatedInFlight) {
   EXPECT_TRUE(std::equal(answer.dump.begin(), answer.dump.end(), image.begin() + 0x4000));
 
   const std::uint32_t crc32 = gnc::model_image_crc32(image.data());
-  Telecommand validate{tumblesight_icd_FUNCTION_MODEL_VALIDATE, {}}, activate{tumblesight_icd_FUNCTION_MODEL_ACTIVATE, {}};
+  Telecommand validate{tumblesight_icd_FUNCTION_MODEL_VALIDATE, {}},
+      activate{tumblesight_icd_FUNCTION_MODEL_ACTIVATE, {}};
   append_u32(validate.arguments, static_cast<std::uint32_t>(image.size()));
   append_u32(validate.arguments, crc32);
   append_u32(activate.arguments, crc32);
-  answer = conversation_.step({}, {set_mode(tumblesight_icd_MODE_STANDBY), validate, activate, set_mode(tumblesight_icd_MODE_RUN)});
+  answer = conversation_.step(
+      {}, {set_mode(tumblesight_icd_MODE_STANDBY), validate, activate, set_mode(tumblesight_icd_MODE_RUN)});
   EXPECT_EQ(answer.housekeeping.commands_refused, 0U);
   EXPECT_EQ(answer.housekeeping.bank_in_use, 1);
   EXPECT_EQ(answer.housekeeping.bank_crc32[1], crc32);
@@ -118,7 +125,8 @@ TEST(CommandKey, OfAFileReplacesTheOneThatEverybodyKnows) {
 
 // Verifies TS-SEC-040.
 TEST(CommandKey, FileThatHoldsNoneEndsFlightWithTheReason) {
-  for (const std::string& content : {std::string(63, 'a'), std::string(65, 'a'), std::string(64, 'g'), std::string()}) {
+  for (const std::string& content :
+       {std::string(63, 'a'), std::string(65, 'a'), std::string(64, 'g'), std::string()}) {
     SilSettings settings = test::settings();
     const std::string path = test::temporary_path("command.key");
     std::ofstream(path) << content;

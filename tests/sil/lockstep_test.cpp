@@ -18,12 +18,11 @@ TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
   SilSettings settings = test::settings();
   settings.target = "near_shoemaker";  // a random network's attitudes would jump
   settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
-  const SilRecording recording =
-      run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(3, 1),
-              [&](std::uint32_t answered, std::uint32_t planned) {
-                EXPECT_EQ(planned, 30U);
-                EXPECT_EQ(answered, ++done);
-              });
+  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(3, 1),
+                                         [&](std::uint32_t answered, std::uint32_t planned) {
+                                           EXPECT_EQ(planned, 30U);
+                                           EXPECT_EQ(answered, ++done);
+                                         });
   EXPECT_EQ(recording.failure, "");
   EXPECT_EQ(recording.steps_planned, 30U);
   EXPECT_EQ(recording.steps_missed, 0U);
@@ -60,8 +59,8 @@ TEST(Lockstep, TheFlightProgramEndsWithTheLastStepAndLeavesNothingBehind) {
 TEST(Lockstep, AStepWaitsForEverythingThatItAnnounces) {
   Conversation conversation(test::settings());
   // Commands and frames of one step: four commands, then the frame is used by the same cycle.
-  const StepAnswer answer =
-      conversation.step({conversation.good_frame()}, std::vector<Telecommand>(4, {tumblesight_icd_FUNCTION_NOOP, {}}));
+  const StepAnswer answer = conversation.step(
+      {conversation.good_frame()}, std::vector<Telecommand>(4, {tumblesight_icd_FUNCTION_NOOP, {}}));
   EXPECT_EQ(answer.housekeeping.commands_accepted, 4U);
   EXPECT_EQ(answer.housekeeping.frames_used, 1U);
   EXPECT_GE(answer.events.size(), 4U);

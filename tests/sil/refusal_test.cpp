@@ -4,7 +4,7 @@
 #include <functional>
 #include <ostream>
 
-#include "gnc/rcnn/crc32.hpp"
+#include "gnc/numerics/crc32.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
 #include "tests/sil/sil_test_support.hpp"
@@ -59,7 +59,8 @@ void change_architecture(std::vector<std::uint8_t>& bytes) {
   bytes[kArchitecture] ^= 1;
   gnc::Crc32 crc;
   crc.add(bytes.data(), kHeaderCrc);
-  crc.add(bytes.data() + gnc::kModelHeaderSize, gnc::kModelDataOffset<gnc::FixedPoint> - gnc::kModelHeaderSize);
+  crc.add(bytes.data() + gnc::kModelHeaderSize,
+          gnc::kModelDataOffset<gnc::FixedPoint> - gnc::kModelHeaderSize);
   for (unsigned i = 0; i < 4; ++i) bytes[kHeaderCrc + i] = static_cast<std::uint8_t>(crc.value() >> (8 * i));
 }
 

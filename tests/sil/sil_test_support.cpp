@@ -11,9 +11,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "tests/unit/gnc_rcnn/test_models.hpp"
-#include "sim/scenario/random.hpp"
-#include "sim/target/near_shoemaker.hpp"
+#include "sim/world/scenario/random.hpp"
+#include "sim/world/target/near_shoemaker.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace tumblesight::sim::test {
 namespace {

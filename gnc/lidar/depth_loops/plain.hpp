@@ -1,5 +1,5 @@
-// The loops, written so that a compiler can vectorise them. Included by one source file an instruction set; all of it
-// has internal linkage.
+// The loops, written so that a compiler can vectorise them. Included by one source file an instruction set;
+// all of it has internal linkage.
 #pragma once
 
 #include "gnc/lidar/depth_loops.hpp"
@@ -15,7 +15,8 @@ constexpr int kMaxRays = RangeImage::kMaxRays;
 
 // All ones where from <= value < to, else 0.
 TUMBLESIGHT_INLINE std::uint16_t within(std::uint16_t value, std::uint16_t from, std::uint16_t to) {
-  return mask_of<std::uint16_t>(static_cast<std::uint16_t>(value - from) < static_cast<std::uint16_t>(to - from));
+  return mask_of<std::uint16_t>(static_cast<std::uint16_t>(value - from) <
+                                static_cast<std::uint16_t>(to - from));
 }
 TUMBLESIGHT_INLINE std::uint16_t usable(std::uint16_t range) {
   return within(range, kMinRange_counts, kMaxRange_counts + 1);
@@ -41,8 +42,8 @@ Survey survey_of(const RangeImage& frame) {
     const std::uint16_t range = frame.ranges[ray];
     const std::uint16_t good = usable(range);
     returns = static_cast<std::uint16_t>(returns - good);
-    nearest = smaller_of(nearest, static_cast<std::uint16_t>(range | static_cast<std::uint16_t>(~good)));
-    farthest = larger_of(farthest, static_cast<std::uint16_t>(range & good));
+    nearest = min(nearest, static_cast<std::uint16_t>(range | static_cast<std::uint16_t>(~good)));
+    farthest = max(farthest, static_cast<std::uint16_t>(range & good));
   }
   Survey survey;
   survey.returns = returns;
@@ -51,10 +52,10 @@ Survey survey_of(const RangeImage& frame) {
   return survey;
 }
 
-// Depths of one row of rays along the boresight, in the frame's unit; 0 where there is no usable return. Range over
-// sqrt(1 + s), s = u^2 + v^2 < 0.2662, as a polynomial within 2e-5.
-TUMBLESIGHT_INLINE void row_depths(const std::uint16_t* __restrict ranges, const Rays& rays, int row, int count,
-                                   std::int16_t* __restrict depths) {
+// Depths of one row of rays along the boresight, in the frame's unit; 0 where there is no usable return.
+// Range over sqrt(1 + s), s = u^2 + v^2 < 0.2662, as a polynomial within 2e-5.
+TUMBLESIGHT_INLINE void row_depths(const std::uint16_t* __restrict ranges, const Rays& rays, int row,
+                                   int count, std::int16_t* __restrict depths) {
   const std::int16_t v_square = rays.square16[row];
   const auto scale = static_cast<std::uint16_t>(1 << rays.range_shift);
   for (int column = 0; column < count; ++column) {
@@ -101,14 +102,15 @@ struct Row {
   std::array<std::uint16_t, kMaxRays> value;
 };
 
-TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const View& view, int row, int count,
-                                    Row& __restrict out) {
+TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const View& view, int row,
+                                    int count, Row& __restrict out) {
   constexpr std::int16_t kSide = DepthImage::kSide;
   const std::int16_t row_x = view.x.of_row[row], row_down = view.down.of_row[row];
   const std::int16_t row_depth = view.depth.of_row[row];
   const std::int16_t cells = view.cells;
   const std::int16_t middle = view.middle, centroid = view.centroid;
-  const std::int16_t radius = view.radius, radius_scale = view.radius_scale, value_of_radius = view.value_of_radius;
+  const std::int16_t radius = view.radius, radius_scale = view.radius_scale,
+                     value_of_radius = view.value_of_radius;
   for (int column = 0; column < count; ++column) {
     const std::int16_t depth = depths[column];
     const std::int16_t along_x = high_half(depth, sum16(view.x.of_column[column], row_x));
@@ -121,15 +123,17 @@ TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const
     const auto cell = static_cast<std::uint16_t>(down * kSide + x);
     out.cell[column] = static_cast<std::uint16_t>((cell & inside) | (kSpare[column] & ~inside));
 
-    const std::int16_t view_depth = sum16(depth, product15(depth, sum16(view.depth.of_column[column], row_depth)));
+    const std::int16_t view_depth =
+        sum16(depth, product15(depth, sum16(view.depth.of_column[column], row_depth)));
     const auto before = static_cast<std::int16_t>(centroid - view_depth);
-    const std::int16_t bounded = held_between<std::int16_t>(before, static_cast<std::int16_t>(-radius), radius);
+    const std::int16_t bounded = clamp<std::int16_t>(before, static_cast<std::int16_t>(-radius), radius);
     const std::int16_t value = product15(static_cast<std::int16_t>(bounded * radius_scale), value_of_radius);
     out.value[column] = static_cast<std::uint16_t>(kMiddleValue + value);
   }
 }
 
-void accumulate_all(const RangeImage& frame, const Rays& rays, const View& view, std::uint32_t* __restrict cells) {
+void accumulate_all(const RangeImage& frame, const Rays& rays, const View& view,
+                    std::uint32_t* __restrict cells) {
   constexpr std::uint32_t kOneReturn = 1U << kValueBits;
   constexpr int kApart = 8;  // neighbours fall into one cell, and would wait for each other
   std::array<std::int16_t, kMaxRays> depths;
@@ -163,7 +167,7 @@ void encode_all(const std::uint32_t* __restrict cells, std::uint16_t* __restrict
     const std::uint32_t count = cells[i] >> kValueBits;
     // A mean of 14 bits, with 16 more, to the depth's 16 bits.
     const std::uint32_t mean = (sum * kReciprocals16[count] + (1U << 13)) >> 14;
-    const auto bounded = held_between<std::uint32_t>(mean, DepthImage::kSmallest, DepthImage::kLargest);
+    const auto bounded = clamp<std::uint32_t>(mean, DepthImage::kSmallest, DepthImage::kLargest);
     depth[i] = static_cast<std::uint16_t>(bounded & mask_of<std::uint32_t>(count > 0));
   }
 }

@@ -27,7 +27,8 @@ TUMBLESIGHT_INLINE int16x2_t odd_unsigned(std::uint32_t bytes) {
   return numbers;
 }
 
-// A group's four inputs or weights of 8 bits as factors of 16: numbers 0 and 2 in one word, 1 and 3 in the other.
+// A group's four inputs or weights of 8 bits as factors of 16: numbers 0 and 2 in one word, 1 and 3 in the
+// other.
 struct Factors {
   int16x2_t even, odd;
 };
@@ -40,8 +41,10 @@ TUMBLESIGHT_INLINE Factors widened(const std::int8_t* weights) {
   return {__sxtb16(static_cast<int8x4_t>(four)), odd_signed(four)};
 }
 
-// One group of one channel for six pixels. Left to itself the compiler loads the words one by one and runs out of registers.
-TUMBLESIGHT_INLINE void add_group(std::int32_t (&sum)[6], const Factors*& values, const std::int8_t*& weight, int step) {
+// One group of one channel for six pixels. Left to itself the compiler loads the words one by one and runs
+// out of registers.
+TUMBLESIGHT_INLINE void add_group(std::int32_t (&sum)[6], const Factors*& values, const std::int8_t*& weight,
+                                  int step) {
   std::int32_t even, odd;
   std::uint64_t value;
   asm("ldr %[odd], [%[weight]]\n"
@@ -66,9 +69,9 @@ TUMBLESIGHT_INLINE void add_group(std::int32_t (&sum)[6], const Factors*& values
       "ldrd %[value], %H[value], [%[values]], #8\n"
       "smlad %[sum5], %[value], %[even], %[sum5]\n"
       "smlad %[sum5], %H[value], %[odd], %[sum5]\n"
-      : [even] "=&r"(even), [odd] "=&r"(odd), [value] "=&r"(value), [values] "+r"(values), [weight] "+r"(weight),
-        [sum0] "+r"(sum[0]), [sum1] "+r"(sum[1]), [sum2] "+r"(sum[2]), [sum3] "+r"(sum[3]), [sum4] "+r"(sum[4]),
-        [sum5] "+r"(sum[5])
+      : [even] "=&r"(even), [odd] "=&r"(odd), [value] "=&r"(value), [values] "+r"(values),
+        [weight] "+r"(weight), [sum0] "+r"(sum[0]), [sum1] "+r"(sum[1]), [sum2] "+r"(sum[2]),
+        [sum3] "+r"(sum[3]), [sum4] "+r"(sum[4]), [sum5] "+r"(sum[5])
       : [step] "r"(step)
       : "memory");
 }
@@ -88,13 +91,14 @@ struct Int8 {
   TUMBLESIGHT_INLINE void add(const Group* stretch, int groups, const std::int32_t* start, int start_step,
                               const std::int8_t* weights, std::int32_t* out, int channels) {
     if (start != out) {
-      for (int p = 0; p < kPixels; ++p) std::memcpy(out + p * channels, start + p * start_step, sizeof(*start) * channels);
+      for (int p = 0; p < kPixels; ++p)
+        std::memcpy(out + p * channels, start + p * start_step, sizeof(*start) * channels);
     }
     add_to(out, stretch, groups, weights, channels);
   }
 
-  [[gnu::noinline]] static void add_to(std::int32_t* out, const Group* stretch, int groups, const std::int8_t* weights,
-                                       int channels) {
+  [[gnu::noinline]] static void add_to(std::int32_t* out, const Group* stretch, int groups,
+                                       const std::int8_t* weights, int channels) {
     const int step = channels * Int8Product::kGroup;
     const Factors* const end = stretch[0].data() + groups * kPixels;
     const Factors* const end_unrolled = stretch[0].data() + groups / kUnrolled * kUnrolled * kPixels;
@@ -158,15 +162,18 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Int16>::product<2, 1, 4>(shape, in, start, weights, out);
 }
-void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
+void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
+              std::uint8_t* out) {
   pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
-void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::int16_t* out) {
+void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
+                  std::int16_t* out) {
   pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedDsp{InstructionSet::kDsp, Int8::kPixels, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedDsp{InstructionSet::kDsp, Int8::kPixels, convolve, multiply, max_pool,
+                                    average_pool};
 
 }  // namespace tumblesight::gnc::kernels

@@ -61,10 +61,12 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Int16>::product<4, 2, 8>(shape, in, start, weights, out);
 }
-void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
+void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
+              std::uint8_t* out) {
   pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
-void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::int16_t* out) {
+void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
+                  std::int16_t* out) {
   pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
@@ -85,7 +87,8 @@ void float_average_pool(const float* sums, int columns, int channels, const std:
   pool<Float32, MeanOfFour<Float32>>(sums, columns, channels, shift, out);
 }
 }  // namespace
-const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, 6, float_multiply, float_multiply, float_max_pool, float_average_pool};
+const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, 6, float_multiply, float_multiply, float_max_pool,
+                                  float_average_pool};
 #endif
 
 }  // namespace tumblesight::gnc::kernels

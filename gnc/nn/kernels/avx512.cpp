@@ -4,7 +4,8 @@
 namespace tumblesight::gnc::kernels {
 namespace {
 
-void multiply(const ProductShape& shape, const float* in, const float* start, const float* weights, float* out) {
+void multiply(const ProductShape& shape, const float* in, const float* start, const float* weights,
+              float* out) {
   if (shape.channels % 64 == 0) {
     float_product<16, 6, 4, 12>(shape, in, start, weights, out);
   } else if (shape.channels % 48 == 0) {

@@ -41,15 +41,18 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Int16>::product<6, 2, 8>(shape, in, start, weights, out);
 }
-void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
+void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
+              std::uint8_t* out) {
   pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
-void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::int16_t* out) {
+void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
+                  std::int16_t* out) {
   pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvxVnni{InstructionSet::kAvxVnni, 6, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedAvxVnni{
+    InstructionSet::kAvxVnni, 6, convolve, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

@@ -1,6 +1,6 @@
-// The loops around an instruction set's inner step: pixels and channels in blocks, with every sum in a register.
-// Included by one source file a set, each compiled for that set; nothing here may be shared between them, so
-// all of it has internal linkage.
+// The loops around an instruction set's inner step: pixels and channels in blocks, with every sum in a
+// register. Included by one source file a set, each compiled for that set; nothing here may be shared between
+// them, so all of it has internal linkage.
 #pragma once
 
 #include "gnc/nn/numerics.hpp"
@@ -25,8 +25,8 @@ struct Blocks {
   static constexpr int kGroup = Kind::kGroup;
   static constexpr int kWidth = Unit::kWidth;
 
-  // kPixels pixels times kPacks vectors of channels. `in` and `out` hold a pointer for each pixel; start, weights
-  // and out point at the block's first channel.
+  // kPixels pixels times kPacks vectors of channels. `in` and `out` hold a pointer for each pixel; start,
+  // weights and out point at the block's first channel.
   template <int kPixels, int kPacks>
   TUMBLESIGHT_INLINE void block(const ProductShape& shape, const Input* const* in, const Sum* start,
                                 const Weight* weights, Sum* const* out) {
@@ -64,7 +64,7 @@ struct Blocks {
                                      const Sum* start, const Weight* weights, Sum* out) {
     const int pixels = shape.rows * shape.columns;
     for (int next = 0; next < pixels; next += kPixels) {
-      const int first = smaller_of(next, pixels - kPixels);
+      const int first = min(next, pixels - kPixels);
       const Input* block_in[kPixels];
       Sum* block_out[kPixels];
       const int y = first / shape.columns;
@@ -77,7 +77,8 @@ struct Blocks {
         x = row_ends ? 0 : x;
         pixel += row_ends ? shape.row_step - (shape.columns - 1) * shape.column_step : shape.column_step;
       }
-      block<kPixels, kPacks>(shape, block_in, start + first_channel, weights + first_channel * kGroup, block_out);
+      block<kPixels, kPacks>(shape, block_in, start + first_channel, weights + first_channel * kGroup,
+                             block_out);
     }
   }
 
@@ -94,13 +95,14 @@ struct Blocks {
       all_pixels<kPixels, kPacks>(shape, c, in, start, weights, out);
     }
     if constexpr (!kFillBlocks<kPacks>) {
-      for (; c + kWidth <= shape.channels; c += kWidth) all_pixels<kPixels, 1>(shape, c, in, start, weights, out);
+      for (; c + kWidth <= shape.channels; c += kWidth)
+        all_pixels<kPixels, 1>(shape, c, in, start, weights, out);
     }
     return c;
   }
 
-  // The first layer, whose pixels are few numbers apart and whose sums are short: kPixels of a row side by side, at a
-  // distance that the compiler knows, need no pointer each.
+  // The first layer, whose pixels are few numbers apart and whose sums are short: kPixels of a row side by
+  // side, at a distance that the compiler knows, need no pointer each.
   template <int kPixels, int kPacks, int kColumnStep>
   TUMBLESIGHT_INLINE bool is_narrow(const ProductShape& shape) {
     static_assert(kFillBlocks<kPacks>);
@@ -148,8 +150,9 @@ struct Blocks {
     }
   }
 
-  // Blocks of kPixels x kPacks where there are that many pixels, one pixel and kSinglePacks vectors where there
-  // are not. Block sizes follow the number of registers: kPixels * kPacks sums, kPacks weights and one value.
+  // Blocks of kPixels x kPacks where there are that many pixels, one pixel and kSinglePacks vectors where
+  // there are not. Block sizes follow the number of registers: kPixels * kPacks sums, kPacks weights and one
+  // value.
   template <int kPixels, int kPacks, int kSinglePacks>
   TUMBLESIGHT_INLINE int product(const ProductShape& shape, const Input* in, const Sum* start,
                                  const Weight* weights, Sum* out) {
@@ -164,18 +167,22 @@ template <class N>
 struct LargestOfFour {
   using Out = ConvInput<N>;
   TUMBLESIGHT_INLINE void pool(const Sum<N> (&four)[4], int shift, Out& out) {
-    activate(larger_convolved(larger_convolved(four[0], four[1]), larger_convolved(four[2], four[3])), shift, out);
+    activate(larger_convolved(larger_convolved(four[0], four[1]), larger_convolved(four[2], four[3])), shift,
+             out);
   }
 };
 template <class N>
 struct MeanOfFour {
   using Out = DenseInput<N>;
-  TUMBLESIGHT_INLINE void pool(const Sum<N> (&four)[4], int shift, Out& out) { activate_four(four, shift, out); }
+  TUMBLESIGHT_INLINE void pool(const Sum<N> (&four)[4], int shift, Out& out) {
+    activate_four(four, shift, out);
+  }
 };
 
 template <class N, class Pool>
 TUMBLESIGHT_INLINE void pool_channels(const Sum<N>* __restrict left, int channels, int row_below,
-                                      const std::uint8_t* __restrict shift, typename Pool::Out* __restrict out) {
+                                      const std::uint8_t* __restrict shift,
+                                      typename Pool::Out* __restrict out) {
   const Sum<N>* const right = left + channels;
   for (int c = 0; c < kIntegerChannels; ++c) {
     const Sum<N> four[4] = {left[c], right[c], left[row_below + c], right[row_below + c]};

@@ -11,7 +11,8 @@ constexpr int kPacks = 4, kSinglePacks = 12;  // 32 registers
 constexpr int kPacks = 2, kSinglePacks = 8;  // 16 registers
 #endif
 
-void multiply(const ProductShape& shape, const float* in, const float* start, const float* weights, float* out) {
+void multiply(const ProductShape& shape, const float* in, const float* start, const float* weights,
+              float* out) {
   float_product<4, 6, kPacks, kSinglePacks>(shape, in, start, weights, out);
 }
 void max_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {

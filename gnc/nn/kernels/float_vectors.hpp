@@ -29,8 +29,8 @@ struct FloatVectors {
   using Sums = typename VectorOf<kWidth>::Type;
   using Weights = Sums;
   using Values = float;
-  // Floats in memory seen as a vector. It need not be aligned as one: a packed struct, because clang 14 forgets
-  // the alignment of a vector typedef on its way through a template.
+  // Floats in memory seen as a vector. It need not be aligned as one: a packed struct, because clang 14
+  // forgets the alignment of a vector typedef on its way through a template.
   struct __attribute__((packed, aligned(alignof(float)), may_alias)) InMemory {
     Sums vector;
   };
@@ -42,8 +42,8 @@ struct FloatVectors {
 };
 
 // The channels left over, from `first` on: a product of their own whose rows of weights are as long as all.
-TUMBLESIGHT_INLINE void rest_of_channels(const ProductShape& shape, int first, const float* in, const float* start,
-                                         const float* weights, float* out) {
+TUMBLESIGHT_INLINE void rest_of_channels(const ProductShape& shape, int first, const float* in,
+                                         const float* start, const float* weights, float* out) {
   for (int c = first; c < shape.channels; ++c) {
     Blocks<Scalar<Float32Product>>::all_pixels<1, 1>(shape, c, in, start, weights, out);
   }
@@ -52,8 +52,8 @@ TUMBLESIGHT_INLINE void rest_of_channels(const ProductShape& shape, int first, c
 template <int kWidth, int kPixels, int kPacks, int kSinglePacks>
 TUMBLESIGHT_INLINE void float_product(const ProductShape& shape, const float* in, const float* start,
                                       const float* weights, float* out) {
-  const int done = Blocks<FloatVectors<kWidth>>::template product<kPixels, kPacks, kSinglePacks>(shape, in, start,
-                                                                                               weights, out);
+  const int done = Blocks<FloatVectors<kWidth>>::template product<kPixels, kPacks, kSinglePacks>(
+      shape, in, start, weights, out);
   rest_of_channels(shape, done, in, start, weights, out);
 }
 

@@ -9,8 +9,9 @@
 namespace tumblesight::gnc::kernels {
 namespace {
 
-// Convolution, signed times signed: of x w = (x - 128) w + 128 w the last part is the same for every pixel. As no weight is
-// -128, two products fit into 16 bits, and so two groups are multiplied before their products are added in pairs.
+// Convolution, signed times signed: of x w = (x - 128) w + 128 w the last part is the same for every pixel.
+// As no weight is -128, two products fit into 16 bits, and so two groups are multiplied before their products
+// are added in pairs.
 constexpr int kQuad = 4;  // channels whose groups fill a vector
 
 TUMBLESIGHT_INLINE int8x16_t less_128(const std::uint8_t* group) {
@@ -56,18 +57,19 @@ struct Quad {
 
 // start + 128 times the sum of the weights, of kQuads quads of channels.
 template <int kQuads>
-TUMBLESIGHT_INLINE void start_sums(const ProductShape& shape, const std::int32_t* start, const std::int8_t* weights,
-                                   int32x4_t (&sums)[kQuads]) {
+TUMBLESIGHT_INLINE void start_sums(const ProductShape& shape, const std::int32_t* start,
+                                   const std::int8_t* weights, int32x4_t (&sums)[kQuads]) {
   constexpr int kMost = 128;  // pairs of weights whose sum fits into 16 bits
   int32x4_t total[kQuads] = {};
   for (int rest = shape.strips * shape.strip_length / Int8Product::kGroup; rest > 0; rest -= kMost) {
     int16x8_t pairs[kQuads] = {};
-    for (int i = smaller_of(rest, kMost); i > 0; --i, weights += shape.channels * Int8Product::kGroup) {
+    for (int i = min(rest, kMost); i > 0; --i, weights += shape.channels * Int8Product::kGroup) {
       for (int q = 0; q < kQuads; ++q) pairs[q] = vpadalq_s8(pairs[q], vld1q_s8(weights + 16 * q));
     }
     for (int q = 0; q < kQuads; ++q) total[q] = vpadalq_s16(total[q], pairs[q]);
   }
-  for (int q = 0; q < kQuads; ++q) sums[q] = vaddq_s32(vld1q_s32(start + kQuad * q), vshlq_n_s32(total[q], 7));
+  for (int q = 0; q < kQuads; ++q)
+    sums[q] = vaddq_s32(vld1q_s32(start + kQuad * q), vshlq_n_s32(total[q], 7));
 }
 
 template <int kPixels, int kQuads>
@@ -91,10 +93,15 @@ TUMBLESIGHT_INLINE void convolve_block(const ProductShape& shape, const std::uin
         const int8x16_t value = less_128(in[p] + at), value_after = less_128(in[p] + at + 4);
 #pragma GCC unroll 4
         for (int q = 0; q < kQuads; ++q) {
-          sum[p][q].low = vpadalq_s16(sum[p][q].low, plus_low(product_low(first[q], value), second[q], value_after));
-          sum[p][q].high = vpadalq_s16(sum[p][q].high, plus_high(product_high(first[q], value), second[q], value_after));
+          sum[p][q].low =
+              vpadalq_s16(sum[p][q].low, plus_low(product_low(first[q], value), second[q], value_after));
+          sum[p][q].high =
+              vpadalq_s16(sum[p][q].high, plus_high(product_high(first[q], value), second[q], value_after));
           // Two quads at a time: more at once, and the registers do not suffice.
-          if (q % 2 == 1) asm volatile("" : "+w"(sum[p][q - 1].low), "+w"(sum[p][q - 1].high), "+w"(sum[p][q].low), "+w"(sum[p][q].high));
+          if (q % 2 == 1)
+            asm volatile(""
+                         : "+w"(sum[p][q - 1].low), "+w"(sum[p][q - 1].high), "+w"(sum[p][q].low),
+                           "+w"(sum[p][q].high));
         }
       }
     }
@@ -115,22 +122,24 @@ TUMBLESIGHT_INLINE void convolve_block(const ProductShape& shape, const std::uin
 #pragma GCC unroll 4
   for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 4
-    for (int q = 0; q < kQuads; ++q) vst1q_s32(out[p] + kQuad * q, vaddq_s32(start[q], Quad::sums_of(sum[p][q])));
+    for (int q = 0; q < kQuads; ++q)
+      vst1q_s32(out[p] + kQuad * q, vaddq_s32(start[q], Quad::sums_of(sum[p][q])));
   }
 }
 
-// Every pixel, kPixels at a time, for channels in blocks of kQuads quads. The last pixels are moved back to end at the last
-// one; what is done again comes out the same.
+// Every pixel, kPixels at a time, for channels in blocks of kQuads quads. The last pixels are moved back to
+// end at the last one; what is done again comes out the same.
 template <int kPixels, int kQuads>
-TUMBLESIGHT_INLINE void convolve_all(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
-                                     const std::int8_t* weights, std::int32_t* out) {
+TUMBLESIGHT_INLINE void convolve_all(const ProductShape& shape, const std::uint8_t* in,
+                                     const std::int32_t* start, const std::int8_t* weights,
+                                     std::int32_t* out) {
   const int pixels = shape.rows * shape.columns;
   for (int c = 0; c < shape.channels; c += kQuads * kQuad) {
     const std::int8_t* const of_channels = weights + c * Int8Product::kGroup;
     int32x4_t first_sums[kQuads];
     start_sums<kQuads>(shape, start + c, of_channels, first_sums);
     for (int next = 0; next < pixels; next += kPixels) {
-      const int first = smaller_of(next, pixels - kPixels);
+      const int first = min(next, pixels - kPixels);
       const std::uint8_t* block_in[kPixels];
       std::int32_t* block_out[kPixels];
       for (int p = 0; p < kPixels; ++p) {
@@ -202,15 +211,18 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Int16>::product<kPixels, kPacks, kSinglePacks>(shape, in, start, weights, out);
 }
-void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::uint8_t* out) {
+void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
+              std::uint8_t* out) {
   pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
-void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift, std::int16_t* out) {
+void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
+                  std::int16_t* out) {
   pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedNeon{InstructionSet::k128Bit, kConvolvedPixels, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedNeon{
+    InstructionSet::k128Bit, kConvolvedPixels, convolve, multiply, max_pool, average_pool};
 
 }  // namespace tumblesight::gnc::kernels

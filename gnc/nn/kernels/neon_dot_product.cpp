@@ -25,9 +25,15 @@ struct Int8 {
 #if defined(__ARM_FEATURE_MATMUL_INT8)
   using Weights = int8x16_t;
   using Values = uint8x16_t;
-  TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) { return vld1q_s8(from); }
-  TUMBLESIGHT_INLINE Values values(const std::uint8_t* from) { return group(from); }
-  TUMBLESIGHT_INLINE void add(Sums& sum, Values value, Weights weight) { sum = vusdotq_s32(sum, value, weight); }
+  TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) {
+    return vld1q_s8(from);
+  }
+  TUMBLESIGHT_INLINE Values values(const std::uint8_t* from) {
+    return group(from);
+  }
+  TUMBLESIGHT_INLINE void add(Sums& sum, Values value, Weights weight) {
+    sum = vusdotq_s32(sum, value, weight);
+  }
 #else
   // Signed times signed only: of x w = (x - 128) w + 128 w the last part is the same for every pixel.
   struct Weights {
@@ -55,7 +61,8 @@ void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int3
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedDotProduct{InstructionSet::kDotProduct, 5, convolve, kFixedNeon.multiply,
-                                           kFixedNeon.max_pool, kFixedNeon.average_pool};
+const Kernels<FixedPoint> kFixedDotProduct{
+    InstructionSet::kDotProduct, 5, convolve, kFixedNeon.multiply, kFixedNeon.max_pool,
+    kFixedNeon.average_pool};
 
 }  // namespace tumblesight::gnc::kernels

@@ -12,8 +12,8 @@ void product(const ProductShape& shape, const typename Kind::Input* in, const ty
   Blocks<Scalar<Kind>>::template product<2, 4, 8>(shape, in, start, weights, out);
 }
 
-// With registers of 64 bits, two pixels in each: x0 + 2^32 x1 times a weight adds to two sums at once. A negative lower one
-// borrows from the upper one, and gives it back at the end.
+// With registers of 64 bits, two pixels in each: x0 + 2^32 x1 times a weight adds to two sums at once. A
+// negative lower one borrows from the upper one, and gives it back at the end.
 struct PairsByEight {
   static constexpr int kPairs = 2;
   static constexpr int kPixels = 2 * kPairs;
@@ -39,17 +39,21 @@ struct PairsByEight {
     }
   }
 
-  [[gnu::noinline]] static void add(const Group* stretch, int groups, const std::int32_t* start, int start_step,
-                                    const std::int8_t* weights, std::int32_t* out, int channels) {
-    for (int c = 0; c < channels; c += kChannels, start += kChannels, out += kChannels, weights += kChannels * Int8Product::kGroup) {
+  [[gnu::noinline]] static void add(const Group* stretch, int groups, const std::int32_t* start,
+                                    int start_step, const std::int8_t* weights, std::int32_t* out,
+                                    int channels) {
+    for (int c = 0; c < channels;
+         c += kChannels, start += kChannels, out += kChannels, weights += kChannels * Int8Product::kGroup) {
       std::uint64_t sum[kPairs][kChannels];
 #pragma GCC unroll 2
       for (int p = 0; p < kPairs; ++p) {
 #pragma GCC unroll 8
-        for (int k = 0; k < kChannels; ++k) sum[p][k] = pair_of(start[2 * p * start_step + k], start[(2 * p + 1) * start_step + k]);
+        for (int k = 0; k < kChannels; ++k)
+          sum[p][k] = pair_of(start[2 * p * start_step + k], start[(2 * p + 1) * start_step + k]);
       }
       const std::int8_t* weight = weights;
-      for (const Group* group = stretch; group != stretch + groups; ++group, weight += channels * Int8Product::kGroup) {
+      for (const Group* group = stretch; group != stretch + groups;
+           ++group, weight += channels * Int8Product::kGroup) {
 #pragma GCC unroll 4
         for (int i = 0; i < Int8Product::kGroup; ++i) {
 #pragma GCC unroll 8
@@ -92,17 +96,20 @@ void max_pool(const Sum<N>* sums, int columns, int channels, const std::uint8_t*
   pool<N, LargestOfFour<N>>(sums, columns, channels, shift, out);
 }
 template <class N>
-void average_pool(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift, DenseInput<N>* out) {
+void average_pool(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift,
+                  DenseInput<N>* out) {
   pool<N, MeanOfFour<N>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedPortable{InstructionSet::kPortable, kPixelsTogether, convolve, product<Int16Product>,
-                                         max_pool<FixedPoint>, average_pool<FixedPoint>};
+const Kernels<FixedPoint> kFixedPortable{
+    InstructionSet::kPortable, kPixelsTogether,      convolve,
+    product<Int16Product>,     max_pool<FixedPoint>, average_pool<FixedPoint>};
 #if TUMBLESIGHT_FLOAT32
-const Kernels<Float32> kFloatPortable{InstructionSet::kPortable, 2, product<Float32Product>, product<Float32Product>,
-                                      max_pool<Float32>, average_pool<Float32>};
+const Kernels<Float32> kFloatPortable{InstructionSet::kPortable, 2,
+                                      product<Float32Product>,   product<Float32Product>,
+                                      max_pool<Float32>,         average_pool<Float32>};
 #endif
 
 }  // namespace tumblesight::gnc::kernels

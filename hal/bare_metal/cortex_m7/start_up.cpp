@@ -15,8 +15,8 @@ struct VectorTable {
 };
 extern "C" [[gnu::section(".first"), gnu::used]] const VectorTable vector_table = {
     stack_top,
-    {reset, unexpected_trap, unexpected_trap, unexpected_trap, unexpected_trap, unexpected_trap, nullptr, nullptr, nullptr,
-     nullptr, unexpected_trap, unexpected_trap, nullptr, unexpected_trap, unexpected_trap}};
+    {reset, unexpected_trap, unexpected_trap, unexpected_trap, unexpected_trap, unexpected_trap, nullptr,
+     nullptr, nullptr, nullptr, unexpected_trap, unexpected_trap, nullptr, unexpected_trap, unexpected_trap}};
 
 // Turns the floating-point unit on: compiled code may use its registers anywhere.
 void reset() {

@@ -1,4 +1,5 @@
-// APB UART 1 and GPTIMER 1. The processor ends in error mode, where QEMU stops; it tells no status, so the console has to.
+// APB UART 1 and GPTIMER 1. The processor ends in error mode, where QEMU stops; it tells no status, so the
+// console has to.
 #include "hal/board.hpp"
 
 namespace tumblesight::hal::board {

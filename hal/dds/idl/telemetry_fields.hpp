@@ -17,7 +17,8 @@ void copy_telemetry(const From& from, To& to) {
   to.cycles = from.cycles;
   to.commands_accepted = from.commands_accepted;
   to.commands_refused = from.commands_refused;
-  std::copy(std::begin(from.commands_refused_by), std::end(from.commands_refused_by), std::begin(to.commands_refused_by));
+  std::copy(std::begin(from.commands_refused_by), std::end(from.commands_refused_by),
+            std::begin(to.commands_refused_by));
   to.command_counter = from.command_counter;
   to.frames_used = from.frames_used;
   to.frames_missing = from.frames_missing;

@@ -28,7 +28,7 @@ template <class Step>
 }
 
 template <class Step>
-constexpr double kMacsARound = kChains * Step::kMacs;
+constexpr double kMacsARound = kChains* Step::kMacs;
 
 }  // namespace
 }  // namespace tumblesight::sim::peak

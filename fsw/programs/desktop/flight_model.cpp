@@ -1,0 +1,70 @@
+#include "fsw/programs/desktop/flight_model.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+
+#include "fsw/config/limits.hpp"
+#include "gnc/rcnn/model_image.hpp"
+#include "hal/posix/file_model_store.hpp"
+
+namespace tumblesight::hal::dds {
+namespace {
+
+static_assert(gnc::kModelImageSize<gnc::Float32> <= fsw::config::kMaxModelImageBytes,
+              "the limit would refuse every image");
+
+// The folder that this program lies in, without a slash at its end.
+bool program_folder(char (&folder)[FlightOptions::kMaxPath]) {
+  const ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1);
+  if (length <= 0) return false;
+  folder[length] = '\0';
+  char* slash = std::strrchr(folder, '/');
+  if (slash == nullptr) return false;
+  *slash = '\0';
+  return true;
+}
+
+// In a build folder of the source tree, or wherever the sources were when this was built.
+void find_shipped_model(FlightOptions& options) {
+  char folder[FlightOptions::kMaxPath];
+  char path[FlightOptions::kMaxPath + 128];
+  const char* const kind = options.float32 ? ".float32" : "";
+  if (program_folder(folder)) {
+    const int length =
+        std::snprintf(path, sizeof path, "%s/../../../fsw/models/%s%s.tsm", folder, options.target, kind);
+    if (length > 0 && length < FlightOptions::kMaxPath && access(path, R_OK) == 0) {
+      std::memcpy(options.model_path, path, static_cast<std::size_t>(length) + 1);
+      return;
+    }
+  }
+  std::snprintf(options.model_path, sizeof options.model_path, "%s/fsw/models/%s%s.tsm",
+                TUMBLESIGHT_SOURCE_DIR, options.target, kind);
+}
+
+}  // namespace
+
+fsw::App& boot(FlightOptions& options, FlightApps& apps, Stopwatch& stopwatch,
+               const CommandKey& command_key) {
+  if (options.model_path[0] == '\0') find_shipped_model(options);
+  static posix::FileModelStore store(options.model_path, fsw::config::kMaxModelImageBytes);
+  const Platform platform{&stopwatch, &store, &command_key};
+  const ModelBank image = store.bank(0);
+  const bool float32 = options.numerics_given ? options.float32 : gnc::is_float32(image.data, image.size);
+  const auto boot_one = [&](auto& app) {
+    app.init(platform, options.target);
+    if (app.mode() == fsw::Mode::kRun) return;
+    const bool unread = store.status() != posix::FileStatus::kOk;
+    std::fprintf(stderr, "flight: model image %s: %s; the mode is SAFE\n", options.model_path,
+                 unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)));
+  };
+  if (float32) {
+    boot_one(apps.float32);
+    return apps.float32_interface;
+  }
+  boot_one(apps.fixed_point);
+  return apps.fixed_point_interface;
+}
+
+}  // namespace tumblesight::hal::dds

@@ -1,0 +1,124 @@
+#include "fsw/programs/desktop/flight_options.hpp"
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "hal/dds/idl/domain.hpp"
+#include "hal/dds/idl/icd_hash.hpp"
+
+namespace tumblesight::hal::dds {
+namespace {
+
+bool fail(const char* option, const char* value, const char* expected) {
+  std::fprintf(stderr, "flight: %s %s: expected %s\n", option, value, expected);
+  return false;
+}
+
+bool parse_integer(const char* option, const char* value, std::uint32_t max, std::uint32_t& result) {
+  char* end = nullptr;
+  errno = 0;
+  const unsigned long long number = std::strtoull(value, &end, 10);
+  if (end == value || *end != '\0' || value[0] == '-' || errno != 0 || number > max) {
+    char expected[48];
+    std::snprintf(expected, sizeof expected, "a whole number from 0 to %u", max);
+    return fail(option, value, expected);
+  }
+  result = static_cast<std::uint32_t>(number);
+  return true;
+}
+
+bool parse_number(const char* option, const char* value, double min, double max, double& result) {
+  char* end = nullptr;
+  result = std::strtod(value, &end);
+  if (end == value || *end != '\0' || !std::isfinite(result) || result < min || result > max) {
+    char expected[64];
+    std::snprintf(expected, sizeof expected, "a number from %g to %g", min, max);
+    return fail(option, value, expected);
+  }
+  return true;
+}
+
+bool parse_mode(const char* option, const char* value, bool& free_running) {
+  free_running = std::strcmp(value, "free-running") == 0;
+  return free_running || std::strcmp(value, "lockstep") == 0 ||
+         fail(option, value, "lockstep or free-running");
+}
+
+bool parse_numerics(const char* option, const char* value, FlightOptions& options) {
+  options.numerics_given = true;
+  options.float32 = std::strcmp(value, "float32") == 0;
+  return options.float32 || std::strcmp(value, "fixed") == 0 || fail(option, value, "fixed or float32");
+}
+
+bool parse_path(const char* option, const char* value, char* path) {
+  const std::size_t length = std::strlen(value);
+  if (length == 0 || length >= FlightOptions::kMaxPath) return fail(option, value, "a file's path");
+  std::memcpy(path, value, length + 1);
+  return true;
+}
+
+bool parse_one(const char* option, const char* value, FlightOptions& options) {
+  if (std::strcmp(option, "--model") == 0) return parse_path(option, value, options.model_path);
+  if (std::strcmp(option, "--command-key") == 0) return parse_path(option, value, options.command_key_path);
+  if (std::strcmp(option, "--target") == 0) {
+    options.target = value;
+    return value[0] != '\0' || fail(option, value, "a target's name");
+  }
+  if (std::strcmp(option, "--numerics") == 0) return parse_numerics(option, value, options);
+  if (std::strcmp(option, "--domain") == 0) return parse_integer(option, value, kMaxDomain, options.domain);
+  if (std::strcmp(option, "--run-id") == 0) return parse_integer(option, value, UINT32_MAX, options.run_id);
+  if (std::strcmp(option, "--mode") == 0) return parse_mode(option, value, options.free_running);
+  if (std::strcmp(option, "--period-ms") == 0)
+    return parse_number(option, value, 1.0, 60'000.0, options.period_ms);
+  if (std::strcmp(option, "--timeout-s") == 0)
+    return parse_number(option, value, 0.1, 86'400.0, options.timeout_s);
+  // For tests of the refusal; not in the help.
+  if (std::strcmp(option, "--icd-hash") == 0)
+    return parse_integer(option, value, UINT32_MAX, options.icd_hash);
+  std::fprintf(stderr, "flight: unknown option %s\n", option);
+  return false;
+}
+
+}  // namespace
+
+void print_flight_help() {
+  std::printf(
+      "flight: the Tumblesight flight application on a desktop, connected to a simulator over DDS "
+      "(loopback)\n\n"
+      "  --model FILE       model image [the one shipped for the target]\n"
+      "  --target NAME      target that the model image must be for [near_shoemaker]\n"
+      "  --numerics N       fixed: in integers, as it flies; float32: the reference [fixed; with --model "
+      "what it "
+      "is of]\n"
+      "  --command-key FILE key that telecommands must be signed with, 64 hexadecimal digits [one that "
+      "everybody "
+      "knows]\n"
+      "  --domain N         DDS domain [0]\n"
+      "  --run-id N         simulator run to take part in; 0: the first that shows up [0]\n"
+      "  --mode MODE        lockstep: the simulator is the time master; free-running: on a timer of its own "
+      "[lockstep]\n"
+      "  --period-ms N      free-running: wall-clock period of a cycle [2700]\n"
+      "  --timeout-s N      end after so long without a simulator, or without a step from it [60]\n"
+      "  --help             this text\n\n"
+      "Exit status: 0 done, 2 bad arguments, 3 interface definitions unequal, 4 simulator gone, 5 nothing "
+      "came for too\n"
+      "long, 6 DDS failed, 7 step out of order, 8 the flight task used the heap, 9 no thread for it.\n");
+}
+
+ParseResult parse_flight_options(int argc, char** argv, FlightOptions& options) {
+  options.icd_hash = icd_hash();
+  for (int i = 1; i < argc; i += 2) {
+    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) return ParseResult::kHelp;
+    if (i + 1 == argc) {
+      std::fprintf(stderr, "flight: %s: unknown option, or its value is missing\n", argv[i]);
+      return ParseResult::kError;
+    }
+    if (!parse_one(argv[i], argv[i + 1], options)) return ParseResult::kError;
+  }
+  return ParseResult::kRun;
+}
+
+}  // namespace tumblesight::hal::dds

@@ -1,0 +1,141 @@
+#include "fsw/programs/desktop/flight_task.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "fsw/config/limits.hpp"
+#include "fsw/programs/desktop/heap_trap.hpp"
+#include "hal/posix/realtime.hpp"
+
+namespace tumblesight::hal::dds {
+namespace {
+
+// The interface's names and the application's are the same values.
+static_assert(tumblesight_icd_MODE_STANDBY == static_cast<int>(fsw::Mode::kStandby));
+static_assert(tumblesight_icd_VALIDITY_VALID == static_cast<int>(fsw::Validity::kValid));
+static_assert(tumblesight_icd_MODE_RUN == static_cast<int>(fsw::Mode::kRun));
+static_assert(tumblesight_icd_MODE_SAFE == static_cast<int>(fsw::Mode::kSafe));
+static_assert(tumblesight_icd_VALIDITY_DOUBTFUL == static_cast<int>(fsw::Validity::kDoubtful));
+static_assert(tumblesight_icd_COMMAND_APID == fsw::kCommandApid);
+static_assert(tumblesight_icd_FUNCTION_NOOP == static_cast<int>(fsw::FunctionCode::kNoop));
+static_assert(tumblesight_icd_FUNCTION_RESET_COUNTERS == static_cast<int>(fsw::FunctionCode::kResetCounters));
+static_assert(tumblesight_icd_FUNCTION_SET_MODE == static_cast<int>(fsw::FunctionCode::kSetMode));
+static_assert(tumblesight_icd_FUNCTION_RESET_SEQUENCE == static_cast<int>(fsw::FunctionCode::kResetSequence));
+static_assert(tumblesight_icd_FUNCTION_MODEL_LOAD == static_cast<int>(fsw::FunctionCode::kModelLoad));
+static_assert(tumblesight_icd_FUNCTION_MODEL_VALIDATE == static_cast<int>(fsw::FunctionCode::kModelValidate));
+static_assert(tumblesight_icd_FUNCTION_MODEL_ACTIVATE == static_cast<int>(fsw::FunctionCode::kModelActivate));
+static_assert(tumblesight_icd_FUNCTION_MODEL_DUMP == static_cast<int>(fsw::FunctionCode::kModelDump));
+static_assert(tumblesight_icd_FUNCTION_SET_LIMIT == static_cast<int>(fsw::FunctionCode::kSetLimit));
+static_assert(tumblesight_icd_FUNCTION_ENABLE_RESPONSE ==
+              static_cast<int>(fsw::FunctionCode::kEnableResponse));
+static_assert(tumblesight_icd_FUNCTION_DISABLE_RESPONSE ==
+              static_cast<int>(fsw::FunctionCode::kDisableResponse));
+static_assert(tumblesight_icd_EVENT_MODEL_REFUSED == static_cast<int>(fsw::EventId::kModelRefused));
+static_assert(kMaxEventsPerStep >= fsw::config::kMaxEventsPerStep);
+
+void wait(sem_t& semaphore) {
+  while (sem_wait(&semaphore) != 0 && errno == EINTR) {
+  }
+}
+
+const char* granted(int error) {
+  return error == 0 ? "granted" : strerrordesc_np(error);
+}
+
+// What is not granted costs punctuality, no more: the task runs without it.
+void become_realtime() {
+  // Above everything that is not itself real-time, below what others may have put higher on purpose.
+  constexpr int kPriority = 10;
+  const posix::RealtimeGrant grant = posix::request_realtime(kPriority);
+  std::fprintf(stderr, "flight: fixed priority %d: %s; ", kPriority, granted(grant.scheduler_error));
+  std::fprintf(stderr, "memory locked: %s\n", granted(grant.memory_lock_error));
+}
+
+}  // namespace
+
+std::int64_t MissionClock::at(std::int64_t release_ns) const {
+  const double periods = static_cast<double>(release_ns - wall_ns) / static_cast<double>(period_ns);
+  return mission_time_ns +
+         static_cast<std::int64_t>(periods * static_cast<double>(fsw::config::kFramePeriod_ns));
+}
+
+FlightTask::FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace,
+                       posix::PaintedStack& stack)
+    : lidar_(lidar), link_(link), workspace_(workspace), stack_(stack) {
+  sem_init(&go_, 0, 0);
+  sem_init(&done_, 0, 0);
+}
+
+bool FlightTask::start(fsw::App& app, bool free_running) {
+  app_ = &app;
+  free_running_ = free_running;
+  started_ = stack_.start(thread_, thread_main, this);
+  if (started_) wait(done_);
+  return started_;
+}
+
+void FlightTask::begin_free(PeriodicTask& timer, const MissionClock& clock) {
+  timer_ = &timer;
+  clock_ = clock;
+  sem_post(&go_);
+}
+
+void FlightTask::run_cycle(std::uint32_t k, std::int64_t now_ns) {
+  k_ = k;
+  now_ns_ = now_ns;
+  sem_post(&go_);
+  wait(done_);
+}
+
+void FlightTask::join() {
+  if (!started_) return;
+  started_ = false;
+  end_requested_ = true;
+  sem_post(&go_);
+  pthread_join(thread_, nullptr);
+}
+
+void* FlightTask::thread_main(void* self) {
+  static_cast<FlightTask*>(self)->run();
+  return nullptr;
+}
+
+void FlightTask::run() {
+  if (free_running_) become_realtime();
+  sem_post(&done_);
+  arm_heap_trap();
+  free_running_ ? run_free() : run_lockstep();
+  disarm_heap_trap();
+  heap_allocations_ = dds::heap_allocations();
+  first_heap_allocation_bytes_ = dds::first_heap_allocation_bytes();
+}
+
+void FlightTask::run_lockstep() {
+  for (;;) {
+    wait(go_);
+    if (end_requested_) return;
+    cycle(k_, now_ns_, 0);
+    sem_post(&done_);
+  }
+}
+
+void FlightTask::run_free() {
+  wait(go_);
+  if (timer_ == nullptr) return;  // ended before it began
+  bool last = false;
+  for (std::uint32_t k = 0; !last; ++k) {
+    const std::uint32_t slips_before = slips_;
+    const std::int64_t release_ns = timer_->wait_next_release_ns(slips_);
+    last = end_requested_;
+    cycle(k, clock_.at(release_ns), slips_ - slips_before);
+  }
+}
+
+void FlightTask::cycle(std::uint32_t k, std::int64_t now_ns, std::uint32_t slips) {
+  link_.begin_cycle(run_id_, k);
+  fsw::run_cycle(*app_, {lidar_, link_, watchdog_}, now_ns, slips, workspace_);
+  link_.end_cycle(app_->state_crc32());
+}
+
+}  // namespace tumblesight::hal::dds

@@ -1,0 +1,95 @@
+// The desktop flight program: the flight application on a Linux machine, with DDS as its sensor and its radio
+// link.
+#include <cstdio>
+#include <cstdlib>
+
+#include "fsw/programs/desktop/flight_key.hpp"
+#include "fsw/programs/desktop/flight_loop.hpp"
+#include "fsw/programs/desktop/flight_model.hpp"
+#include "fsw/programs/desktop/flight_options.hpp"
+#include "fsw/programs/desktop/heap_trap.hpp"
+#include "hal/dds/handshake.hpp"
+#include "hal/dds/idl/domain.hpp"
+#include "hal/dds/stop_request.hpp"
+#include "hal/posix/monotonic_stopwatch.hpp"
+#include "hal/posix/painted_stack.hpp"
+
+namespace {
+
+using namespace tumblesight;
+using hal::dds::FlightEnd;
+
+// All of the flight side's memory.
+hal::posix::MonotonicStopwatch stopwatch;
+hal::dds::Domain domain;
+hal::dds::FlightEndpoints endpoints;
+hal::dds::DdsLidar lidar;
+hal::posix::PaintedStack stack;
+hal::dds::DdsLink link{{hal::dds::heap_allocations, [] { return stack.least_left_bytes(); }}};
+hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
+hal::dds::FlightApps apps;
+hal::CommandKey command_key;
+fsw::CycleWorkspace workspace;
+hal::dds::FlightTask task{lidar, link, workspace, stack};
+
+FlightEnd connect(const hal::dds::FlightOptions& options) {
+  dds_return_t result = domain.open(options.domain);
+  if (result == 0) result = endpoints.open(domain.participant());
+  if (result == 0) return FlightEnd::kComplete;
+  std::fprintf(stderr, "flight: DDS domain %u: %s\n", options.domain, dds_strretcode(result));
+  return FlightEnd::kTransport;
+}
+
+hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options, const fsw::App& app,
+                                         std::int64_t timeout_ns) {
+  hal::dds::HandshakeSettings settings;
+  settings.icd_hash = options.icd_hash;
+  settings.run_id = options.run_id;
+  settings.mode = static_cast<std::uint8_t>(app.mode());
+  settings.timeout_ns = timeout_ns;
+  const hal::dds::HandshakeResult met = hal::dds::shake_hands(endpoints, settings, stopwatch);
+  if (met.end == FlightEnd::kIcdUnequal) {
+    std::fprintf(stderr,
+                 "flight: interface hash %08x, simulator's %08x: build both from the same tumblesight.idl\n",
+                 options.icd_hash, met.simulator_icd_hash);
+  }
+  return met;
+}
+
+FlightEnd fly(const hal::dds::FlightOptions& options, fsw::App& app) {
+  if (!task.start(app, options.free_running)) return FlightEnd::kNoThread;
+  const FlightEnd connected = connect(options);
+  if (connected != FlightEnd::kComplete) return connected;
+  const auto timeout_ns = static_cast<std::int64_t>(options.timeout_s * 1e9);
+  const hal::dds::HandshakeResult met = meet_simulator(options, app, timeout_ns);
+  if (met.end != FlightEnd::kComplete || met.stopped) return met.end;
+
+  bus.join_run(met.run_id, timeout_ns);
+  if (!options.free_running) return hal::dds::run_lockstep(bus, task);
+  return hal::dds::run_free(bus, task, stopwatch, static_cast<std::int64_t>(options.period_ms * 1e6));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hal::dds::FlightOptions options;
+  switch (hal::dds::parse_flight_options(argc, argv, options)) {
+    case hal::dds::ParseResult::kHelp:
+      hal::dds::print_flight_help();
+      return EXIT_SUCCESS;
+    case hal::dds::ParseResult::kError:
+      return static_cast<int>(FlightEnd::kBadArguments);
+    case hal::dds::ParseResult::kRun:
+      break;
+  }
+  hal::dds::accept_stop_requests();
+  if (!hal::dds::read_command_key(options.command_key_path, command_key))
+    return static_cast<int>(FlightEnd::kBadArguments);
+  fsw::App& app = hal::dds::boot(options, apps, stopwatch, command_key);
+
+  const FlightEnd end = fly(options, app);
+  task.join();  // if there never was a run
+  if (end != FlightEnd::kComplete) std::fprintf(stderr, "flight: %s\n", hal::dds::to_string(end));
+  domain.close();
+  return static_cast<int>(end);
+}

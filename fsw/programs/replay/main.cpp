@@ -1,0 +1,100 @@
+// flight_replay: the flight application in its periodic loop, on any board, fed with recorded frames. The
+// model image and the recording are part of the program (blobs.S); the recording is the time master, so
+// nothing waits.
+#include <cstddef>
+#include <cstdint>
+
+#include "fsw/app/attitude_init_app.hpp"
+#include "fsw/app/cycle.hpp"
+#include "gnc/nn/kernels.hpp"
+#include "hal/board.hpp"
+#include "hal/replay/console_link.hpp"
+#include "hal/replay/recording.hpp"
+#include "hal/replay/replay_lidar.hpp"
+#include "hal/replay/text_line.hpp"
+
+extern "C" {
+extern const std::uint8_t tumblesight_model_image[], tumblesight_model_image_end[];
+extern const std::uint8_t tumblesight_recording[], tumblesight_recording_end[];
+}
+
+namespace tumblesight::hal::replay {
+namespace {
+
+#if TUMBLESIGHT_REPLAY_FLOAT32
+using Numerics = gnc::Float32;
+#else
+using Numerics = gnc::FixedPoint;
+#endif
+
+class BoardStopwatch final : public Stopwatch {
+ public:
+  std::uint64_t now_ns() override { return board::now_ns(); }
+};
+
+// One bank, in the program itself, which nobody can write.
+class ProgramModelStore final : public ModelStore {
+ public:
+  ModelBank bank(int index) override {
+    const auto size = static_cast<std::size_t>(tumblesight_model_image_end - tumblesight_model_image);
+    return index == 0 ? ModelBank{tumblesight_model_image, nullptr, size, size} : ModelBank{};
+  }
+};
+
+class NoWatchdog final : public Watchdog {
+ public:
+  void kick() override {}
+};
+
+fsw::AttitudeInitApp<Numerics> app;
+fsw::AppOf<Numerics> app_interface{app};
+ProgramModelStore model_store;
+NoWatchdog watchdog;
+fsw::CycleWorkspace workspace;
+BoardStopwatch stopwatch;
+Recording recording;
+ConsoleLink link;
+
+int fail(const char* what, const char* why) {
+  board::write(TextLine().text("flight_replay: ").text(what).text(": ").text(why).text("\n").c_str());
+  return 1;
+}
+
+int run() {
+  app.init({&stopwatch, &model_store, nullptr}, nullptr);
+  if (app.mode() != fsw::Mode::kRun) return fail("model image", gnc::to_string(app.boot_status(0)));
+  const auto recording_size = static_cast<std::size_t>(tumblesight_recording_end - tumblesight_recording);
+  const RecordingStatus status = recording.open(tumblesight_recording, recording_size);
+  if (status != RecordingStatus::kOk) return fail("recording", to_string(status));
+
+  board::write(TextLine()
+                   .text("tumblesight, ")
+                   .text(app.estimator().model().target.data())
+                   .text(", ")
+                   .text(Numerics::kName)
+                   .text(", ")
+                   .text(gnc::to_string(gnc::fastest_kernels<Numerics>().set))
+                   .text(", ")
+                   .number(recording.frames())
+                   .text(" frames\n")
+                   .c_str());
+  board::write(" frame  run          w          x          y          z    ± deg          ms\n");
+  ReplayLidar lidar(recording);
+  while (recording.has_next()) {
+    const std::int64_t now_ns = recording.next_exposure_time_ns();
+    lidar.advance_to(now_ns);
+    fsw::run_cycle(app_interface, {lidar, link, watchdog}, now_ns, 0, workspace);
+    link.digest(app.state_crc32());
+  }
+  const Housekeeping& housekeeping = link.housekeeping();
+  if (housekeeping.frames_used != recording.frames()) return fail("recording", "not every frame was used");
+  board::write(TextLine().text("digest ").hexadecimal(link.digest()).text("\n").c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace tumblesight::hal::replay
+
+int main() {
+  tumblesight::hal::board::end(tumblesight::hal::replay::run());
+}

@@ -1,0 +1,59 @@
+#include "sim/model/model_file.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <vector>
+
+namespace tumblesight::sim {
+namespace {
+
+using gnc::FixedPoint;
+using gnc::Float32;
+
+template <class N>
+std::uint32_t crc_of(const std::vector<std::uint8_t>& image, const std::string& path) {
+  gnc::ModelHeader header;
+  const auto weights = std::make_unique<gnc::NetworkWeights<N>>();
+  const gnc::ModelStatus status =
+      gnc::read_model_image<N>(image.data(), image.size(), nullptr, header, *weights);
+  if (status != gnc::ModelStatus::kOk) {
+    throw std::runtime_error("the model image " + path + " would be refused: " + gnc::to_string(status));
+  }
+  return header.crc32;
+}
+
+}  // namespace
+
+std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error("cannot open the model image " + path);
+  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file),
+                                        std::istreambuf_iterator<char>()};
+  auto model = std::make_unique<Float32Model>();
+  const gnc::ModelStatus status =
+      gnc::read_model_image<Float32>(bytes.data(), bytes.size(), nullptr, model->header, model->weights);
+  if (status != gnc::ModelStatus::kOk) throw std::runtime_error(path + ": " + gnc::to_string(status));
+  return model;
+}
+
+template <class N>
+std::uint32_t write_model_file(const std::string& path, const gnc::ModelHeader& header,
+                               const gnc::NetworkWeights<N>& weights) {
+  std::vector<std::uint8_t> bytes(gnc::kModelImageSize<N>);
+  bytes.resize(gnc::write_model_image<N>(header, weights, bytes.data(), bytes.size()));
+  const std::uint32_t crc32 = crc_of<N>(bytes, path);
+  std::ofstream out(path + ".new", std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) throw std::runtime_error("cannot write the model image " + path);
+  std::filesystem::rename(path + ".new", path);
+  return crc32;
+}
+template std::uint32_t write_model_file(const std::string&, const gnc::ModelHeader&,
+                                        const gnc::NetworkWeights<Float32>&);
+template std::uint32_t write_model_file(const std::string&, const gnc::ModelHeader&,
+                                        const gnc::NetworkWeights<FixedPoint>&);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,157 @@
+#include "sim/world/scenario/sequence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/world/dynamics/spin.hpp"
+#include "sim/world/dynamics/tumble.hpp"
+#include "sim/world/scenario/random.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kMinRange_m = 20.0;
+constexpr double kMaxRange_m = 100.0;
+constexpr double kMaxRate_rad_s = 20.0 * kPi / 180.0;
+constexpr double kMinHidden = 0.05;
+constexpr double kMaxHidden = 0.30;
+
+struct NamedCondition {
+  Condition condition;
+  const char* name;
+};
+
+constexpr std::array<NamedCondition, 7> kConditions{{{Condition::kNominal, "nominal"},
+                                                     {Condition::kDegraded, "degraded"},
+                                                     {Condition::kOccluded, "occluded"},
+                                                     {Condition::kTumbling, "tumbling"},
+                                                     {Condition::kStress, "stress"},
+                                                     {Condition::kOffset, "offset"},
+                                                     {Condition::kOutliers, "outliers"}}};
+
+Eigen::Quaterniond uniform_attitude(Random& random) {
+  // One a statement: the order in which a compiler evaluates arguments is its own.
+  const double z = random.normal();
+  const double y = random.normal();
+  const double x = random.normal();
+  const double w = random.normal();
+  return Eigen::Quaterniond(w, x, y, z).normalized();
+}
+
+// Components uniform; drawn again until the norm is within the limit.
+Eigen::Vector3d uniform_rate(Random& random) {
+  Eigen::Vector3d rate;
+  do {
+    for (int i = 0; i < 3; ++i) rate[i] = random.uniform(-kMaxRate_rad_s, kMaxRate_rad_s);
+  } while (rate.norm() > kMaxRate_rad_s);
+  return rate;
+}
+
+// Draws of one purpose have a stream of their own, so that a new one does not move the others.
+Random stream_for(std::uint64_t seed, std::uint64_t index, std::uint64_t purpose) {
+  return Random(mix(mix(seed, index), purpose));
+}
+
+Eigen::Vector3d apply_rate_settings(const ScenarioSettings& settings, Eigen::Vector3d rate, Random random) {
+  if (settings.rate_law == RateLaw::kNorm) rate *= kMaxRate_rad_s * random.uniform() / rate.norm();
+  if (settings.rate_rad_s) rate *= *settings.rate_rad_s / rate.norm();
+  return rate;
+}
+
+void rotate_freely(const ScenarioSettings& settings, std::vector<FrameTruth>& frames) {
+  Eigen::Matrix3d inertia = settings.inertia_kg_m2;
+  if (settings.condition == Condition::kStress) inertia(2, 2) *= 0.5;
+  const Tumble tumble(inertia);
+  TumbleState state{frames.front().q_lrf_trf,
+                    frames.front().q_lrf_trf.conjugate() * frames.front().rate_lrf_rad_s};
+  for (FrameTruth& frame : frames) {
+    frame.q_lrf_trf = state.q_lrf_trf;
+    frame.rate_lrf_rad_s = state.q_lrf_trf * state.rate_trf_rad_s;
+    state = tumble.after(state, kFramePeriod_s);
+  }
+}
+
+// One occluder for the whole sequence; the side it comes from turns and its axis wanders, each steadily.
+void add_occluder(const ScenarioSettings& settings, Random random, std::vector<FrameTruth>& frames) {
+  constexpr std::array<OccluderShape, 3> kShapes{OccluderShape::kArm, OccluderShape::kMast,
+                                                 OccluderShape::kPanelEdge};
+  Occluder occluder;
+  occluder.shape = kShapes[random.next() % kShapes.size()];
+  const double drawn_share = random.uniform(kMinHidden, kMaxHidden);
+  occluder.hidden_share = settings.hidden_share.value_or(drawn_share);
+  occluder.distance_m = random.uniform(1.5, 8.0);
+  const double side_rad = random.uniform(0.0, 2.0 * kPi);
+  const double turn_rad = random.uniform(-0.15, 0.15);
+  const double first_across = random.uniform(0.15, 0.85);
+  const double last_across = random.uniform(0.15, 0.85);
+  const double steps = std::max<double>(1.0, static_cast<double>(frames.size()) - 1.0);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const double time = static_cast<double>(k);
+    occluder.side_rad = side_rad + turn_rad * time;
+    occluder.across = first_across + (last_across - first_across) * time / steps;
+    frames[k].occluder = occluder;
+  }
+}
+
+void set_off_boresight(Random random, std::vector<FrameTruth>& frames) {
+  const double angle_rad = random.uniform(0.0, 2.0 * kPi);
+  const double offset_swaths = random.uniform(0.0, kMaxOffset_swaths);
+  for (FrameTruth& frame : frames) {
+    frame.offset_swaths = offset_swaths * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> condition_names() {
+  std::vector<std::string> names;
+  for (const NamedCondition& known : kConditions) names.emplace_back(known.name);
+  return names;
+}
+
+std::string to_string(Condition condition) {
+  for (const NamedCondition& known : kConditions) {
+    if (known.condition == condition) return known.name;
+  }
+  throw std::logic_error("a condition without a name");
+}
+
+Condition condition_from(const std::string& name) {
+  std::string all;
+  for (const NamedCondition& known : kConditions) {
+    if (name == known.name) return known.condition;
+    all += (all.empty() ? "" : ", ") + std::string(known.name);
+  }
+  throw std::invalid_argument("condition '" + name + "' is unknown; there are: " + all);
+}
+
+Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std::uint64_t index) {
+  Random random(mix(seed, index));
+  const Eigen::Quaterniond q0 = uniform_attitude(random);
+  const Eigen::Vector3d drawn_rate = uniform_rate(random);
+  const Eigen::Vector3d rate = apply_rate_settings(settings, drawn_rate, stream_for(seed, index, 1));
+  const double drawn_range_m = random.uniform(kMinRange_m, kMaxRange_m);
+  const double range_m = settings.range_m.value_or(drawn_range_m);
+
+  Sequence sequence;
+  sequence.condition = settings.condition;
+  sequence.noise_seed = random.next();
+  sequence.frames.reserve(static_cast<std::size_t>(settings.frames));
+  for (int k = 0; k < settings.frames; ++k) {
+    sequence.frames.push_back({spin(q0, rate, kFramePeriod_s * k), rate, range_m});
+  }
+  const bool free = settings.condition == Condition::kTumbling || settings.condition == Condition::kStress;
+  if (free) rotate_freely(settings, sequence.frames);
+  if (settings.condition == Condition::kOccluded) {
+    add_occluder(settings, stream_for(seed, index, 2), sequence.frames);
+  }
+  if (settings.condition == Condition::kOffset) {
+    set_off_boresight(stream_for(seed, index, 3), sequence.frames);
+  }
+  return sequence;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Holds docs/mcdc.md to the decisions of fsw/app and fsw/config and to the tests of tests/unit/fsw/app. Run by ctest."""
+import argparse
+import collections
+import pathlib
+import re
+import sys
+
+from decisions import decisions_in
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+FOLDERS = ("fsw/app", "fsw/config")
+TESTS = "tests/unit/fsw/app"
+_TEST = re.compile(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.M)
+_CASE = re.compile(r"(\w+\.\w+)(?: \([^()]+\))?")
+
+# In one row of the page; `true`, `false`: the tests in which the condition, being so, decides.
+Row = collections.namedtuple("Row", "line path function decision condition true false")
+
+
+def sources(root):
+    return [path for folder in FOLDERS for path in sorted((root / folder).glob("*.[ch]pp"))]
+
+
+def rows_of(root, wrong):
+    rows, path, function, decision = [], "", "", ""
+    for number, line in enumerate((root / "docs/mcdc.md").read_text(encoding="utf-8").splitlines(), 1):
+        if line.startswith("## "):
+            path = line[3:]
+        if not line.startswith("| ") or line.startswith("| function "):
+            continue
+        cells = [cell.strip().strip("`").replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+        cases = [_CASE.fullmatch(cell) for cell in cells[3:]]
+        if len(cells) != 5 or not all(cases):
+            wrong.append(f"docs/mcdc.md:{number}: five cells, the last two a test each: Suite.Name or Suite.Name (row)")
+            continue
+        function, decision = cells[0] or function, cells[1] or decision
+        rows.append(Row(number, path, function, decision, cells[2], cases[0][1], cases[1][1]))
+    return rows
+
+
+def check(root):
+    """What is wrong, a line each."""
+    wrong = []
+    rows = rows_of(root, wrong)
+    tests = {".".join(names) for path in (root / TESTS).glob("*.cpp") for names in _TEST.findall(path.read_text(encoding="utf-8"))}
+    for row in rows:
+        wrong += [f"docs/mcdc.md:{row.line}: there is no test {test}" for test in {row.true, row.false} - tests]
+    wanted = [(path.relative_to(root).as_posix(), one.function, one.text, condition.text) for path in sources(root)
+              for one in decisions_in(path.read_text(encoding="utf-8")) for condition in one.conditions]
+    there = [row[1:5] for row in rows]
+    for one in wanted:
+        path, function, decision, condition = one
+        if wanted.count(one) > there.count(one):
+            wrong.append(f"{path}: {function}(): docs/mcdc.md lacks `{condition}` of `{decision}`")
+    for row in rows:
+        if there.count(row[1:5]) > wanted.count(row[1:5]):
+            wrong.append(f"docs/mcdc.md:{row.line}: {row.path} has no `{row.condition}` of `{row.decision}` in {row.function}()")
+    decisions = len({row[1:4] for row in rows})
+    if f"{decisions} of them with {len(rows)} conditions" not in (root / "docs/mcdc.md").read_text(encoding="utf-8"):
+        wrong.append(f"docs/mcdc.md: there are {decisions} decisions with {len(rows)} conditions")
+    return wrong
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT, help="another tree than this one")
+    wrong = check(parser.parse_args(arguments).root)
+    for line in wrong:
+        print(line)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

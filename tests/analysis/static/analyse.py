@@ -1,0 +1,150 @@
+"""Runs compilers and analysers over the sources and prints what they find. Exit status 1 if they find anything."""
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+BUILD = ROOT / "build/static"
+FLIGHT = ("gnc/", "fsw/", "hal/")
+
+# On top of an ordinary build's: -Wall -Wextra -Wshadow -Wconversion (cmake/compile_rules.cmake).
+STRICT = ["-Wpedantic", "-Wcast-qual", "-Wdouble-promotion", "-Wextra-semi", "-Wfloat-conversion", "-Wformat=2",
+          "-Wimplicit-fallthrough", "-Wmissing-declarations", "-Wnon-virtual-dtor", "-Wold-style-cast", "-Woverloaded-virtual",
+          "-Wredundant-decls", "-Wswitch-enum", "-Wundef", "-Wvla", "-Wzero-as-null-pointer-constant"]
+STRICT_GCC = ["-Walloca", "-Warith-conversion", "-Wdisabled-optimization", "-Wduplicated-branches", "-Wduplicated-cond",
+              "-Wlogical-op", "-Wnull-dereference", "-Wstrict-overflow=2", "-Wstringop-overflow=4", "-Wsuggest-override",
+              "-Wtrampolines"]
+STRICT_CLANG = ["-Wcomma", "-Wconditional-uninitialized", "-Wloop-analysis", "-Wmissing-variable-declarations", "-Wshadow-all",
+                "-Wunreachable-code"]
+# Nothing runs before main() but what a program (hal/*/flight/) makes of its own objects.
+LIBRARIES_CLANG = ["-Wexit-time-destructors", "-Wglobal-constructors"]
+# Not chosen:
+#   -Wsign-conversion    indexes are int, the standard library's sizes are not: a cast at each would hide more than it shows
+#   -Wuseless-cast       whether a cast to time_t or long is useless depends on the processor
+#   -Wcast-align=strict  the network's arena is aligned to cache lines, which its type, bytes, does not tell
+#   -Wswitch-default     would keep -Wswitch-enum from naming what a switch forgets
+#   -Wfloat-equal        a symmetric matrix has equal numbers
+#   of -Weverything      padding, templates instantiated elsewhere, vtables: no defects
+
+CPPCHECK = ["cppcheck", "--enable=warning,performance,portability", "--std=c++17", "--language=c++", "--inline-suppr",
+            "--quiet", "--error-exitcode=1", "--template={file}:{line}: {message} [{id}]",
+            "--suppress=*:/usr/*", "--suppress=*:*/build/static/*",
+            "--suppress=shiftTooManyBitsSigned"]  # right shifts are arithmetic, as gnc/numerics/fixed.hpp asserts
+
+
+class Source:
+    def __init__(self, path, arguments, folder):
+        self.path, self.arguments, self.folder = path, arguments, folder
+
+    def is_flight(self):
+        return self.path.startswith(FLIGHT)
+
+
+def sources():
+    """One compile command a file of the project's own."""
+    found = {}
+    for entry in json.loads((BUILD / "compile_commands.json").read_text()):
+        path = pathlib.Path(entry["file"])
+        # The same sources once more, for the test that they need no floating point.
+        again = "flight_in_integers" in entry["command"]
+        if again or path.suffix != ".cpp" or (ROOT / "build") in path.parents:
+            continue
+        arguments = shlex.split(entry["command"])
+        output = arguments.index("-o")
+        del arguments[output:output + 2]
+        name = str(path.relative_to(ROOT))
+        found.setdefault(name, Source(name, arguments, entry["directory"]))
+    return list(found.values())
+
+
+def gcc(source):
+    # Optimised, since GCC looks for null pointers and array bounds by then only.
+    return source.arguments + STRICT + STRICT_GCC + ["-O2", "-o", "/dev/null"]
+
+
+def clang(source):
+    strict = []
+    if source.is_flight():
+        strict = STRICT + STRICT_CLANG + ([] if "/flight/" in source.path else LIBRARIES_CLANG)
+    return ["clang++"] + source.arguments[1:] + strict + ["-fsyntax-only", "-Wno-ignored-optimization-argument"]
+
+
+def clang_tidy(source):
+    return ["clang-tidy", "--quiet", "-p", str(BUILD / "flight"), str(ROOT / source.path)]
+
+
+def cppcheck(source):
+    return CPPCHECK + [a for a in source.arguments if a.startswith(("-I", "-D"))] + [str(ROOT / source.path)]
+
+
+TOOLS = {"gcc": gcc, "clang": clang, "clang-tidy": clang_tidy, "cppcheck": cppcheck}
+FOR_THE_REST = ("clang",)  # GCC compiles it with every build
+
+
+def findings_of(text):
+    """'file:line: words' of every warning and error, without notes."""
+    for line in text.splitlines():
+        match = re.match(r"(\S+?):(\d+):(?:\d+:)? (?!note:)(?:(?:fatal )?(?:warning|error): )?(.+)", line)
+        if match:
+            yield f"{match[1].replace(f'{ROOT}/', '')}:{match[2]}: {match[3]}"
+
+
+def run(tool, source):
+    done = subprocess.run(TOOLS[tool](source), cwd=source.folder, capture_output=True, text=True)
+    found = list(findings_of(done.stdout + done.stderr))
+    if done.returncode != 0 and not found:
+        found = [f"{source.path}:1: {tool} failed: {(done.stderr or done.stdout).strip()[-300:]}"]
+    return found
+
+
+def analyse(tool, chosen):
+    """Prints the findings, each once although many sources include its header; how many, and the time."""
+    started = time.monotonic()
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = {line for lines in pool.map(lambda source: run(tool, source), chosen) for line in lines}
+    for line in sorted(found):
+        print(f"  {line}", flush=True)
+    return len(found), time.monotonic() - started
+
+
+def write_flight_commands(chosen):
+    """For clang-tidy, which else analyses a file once for every command that compiles it."""
+    (BUILD / "flight").mkdir(exist_ok=True)
+    commands = [{"directory": s.folder, "file": str(ROOT / s.path), "arguments": s.arguments} for s in chosen]
+    (BUILD / "flight/compile_commands.json").write_text(json.dumps(commands))
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="tests/analysis/static/run")
+    parser.add_argument("--flight", action="store_true")
+    parser.add_argument("--tool", action="append", choices=TOOLS)
+    parser.add_argument("paths", nargs="*")
+    options = parser.parse_args()
+
+    everything = sources()
+    flight = [s for s in everything if s.is_flight()]
+    write_flight_commands(flight)
+    rest = [] if options.flight else [s for s in everything if not s.is_flight()]
+    rows = []
+    for tool in options.tool or TOOLS:
+        for name, part in (("flight", flight), ("rest", rest if tool in FOR_THE_REST else [])):
+            part = [s for s in part if not options.paths or s.path.startswith(tuple(options.paths))]
+            if part:
+                rows.append((tool, name, len(part), *analyse(tool, part)))
+    print(f"  {'tool':12}{'sources':9}{'files':>6}{'findings':>10}{'time':>8}")
+    for tool, name, files, found, seconds in rows:
+        print(f"  {tool:12}{name:9}{files:6}{found:10}{seconds:6.0f} s")
+    if not rows:
+        print("  no such source")
+    return 0 if rows and all(row[3] == 0 for row in rows) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

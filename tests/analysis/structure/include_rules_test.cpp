@@ -1,0 +1,124 @@
+// Verifies TS-TIM-060. Who may know whom: docs/architecture.md.
+#include "tests/analysis/structure/include_rules.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace tumblesight::structure {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_source(const fs::path& path) {
+  return path.extension() == ".hpp" || path.extension() == ".cpp" || path.extension() == ".h" ||
+         path.extension() == ".c";
+}
+
+std::string text_of(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+std::string objection_to(const std::string& file, const std::string& line) {
+  const std::vector<Include> includes = includes_of(line);
+  return includes.size() == 1 ? objection(file, includes[0]) : "no include found";
+}
+
+// Folder by folder, every source of the project.
+class IncludeArrows : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(IncludeArrows, NobodyKnowsWhomTheyMayNot) {
+  const fs::path root = TUMBLESIGHT_SOURCE_DIR;
+  if (!fs::exists(root / GetParam())) GTEST_SKIP() << "no such folder here";
+  int includes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root / GetParam())) {
+    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+    const std::string file = fs::relative(entry.path(), root).generic_string();
+    for (const Include& include : includes_of(text_of(entry.path()))) {
+      ++includes;
+      const std::string why = objection(file, include);
+      EXPECT_TRUE(why.empty()) << file << ":" << include.line << ": " << include.path << ": " << why;
+    }
+  }
+  EXPECT_GT(includes, 0) << "the scan found nothing to look at";
+}
+
+INSTANTIATE_TEST_SUITE_P(Tree, IncludeArrows, ::testing::Values("gnc", "fsw", "hal", "sim"),
+                         [](const auto& folder) { return std::string(folder.param); });
+
+TEST(IncludeScanner, FindsIncludesHoweverTheyAreWritten) {
+  const std::vector<Include> includes = includes_of(
+      "// #include \"fsw/app/cycle.hpp\"\n#include <vector>\n  #  include \"gnc/a.hpp\"  // why\nint "
+      "include;\n"
+      "#if X\n#include<dds/dds.h>\n#endif\n");
+  ASSERT_EQ(includes.size(), 3U);
+  EXPECT_EQ(includes[0].path, "vector");
+  EXPECT_FALSE(includes[0].quoted);
+  EXPECT_EQ(includes[0].line, 2);
+  EXPECT_EQ(includes[1].path, "gnc/a.hpp");
+  EXPECT_TRUE(includes[1].quoted);
+  EXPECT_EQ(includes[2].path, "dds/dds.h");
+}
+
+TEST(IncludeScanner, EveryForbiddenArrowIsCaught) {
+  const std::vector<std::pair<const char*, const char*>> forbidden{
+      {"gnc/rcnn/a.cpp", "#include \"fsw/config/limits.hpp\""},
+      {"gnc/rcnn/a.cpp", "#include \"hal/link.hpp\""},
+      {"gnc/rcnn/a.cpp", "#include \"a.hpp\""},
+      {"gnc/rcnn/a.cpp", "#include <vector>"},
+      {"gnc/rcnn/a.cpp", "#include <cstdio>"},
+      {"gnc/rcnn/a.hpp", "#include <chrono>"},
+      {"fsw/app/a.cpp", "#include \"hal/dds/dds_link.hpp\""},
+      {"fsw/app/a.cpp", "#include \"hal/posix/periodic_task.hpp\""},
+      {"fsw/app/a.cpp", "#include \"sim/sil/sil_run.hpp\""},
+      {"fsw/app/a.cpp", "#include <dds/dds.h>"},
+      {"fsw/app/a.cpp", "#include <time.h>"},
+      {"gnc/lidar/a.cpp", "#include <immintrin.h>"},
+      {"hal/link.hpp", "#include \"fsw/app/events.hpp\""},
+      {"hal/link.hpp", "#include \"hal/posix/realtime.hpp\""},
+      {"hal/link.hpp", "#include <string>"},
+      {"hal/posix/a.cpp", "#include \"fsw/config/limits.hpp\""},
+      {"hal/posix/a.cpp", "#include \"hal/dds/dds_link.hpp\""},
+      {"hal/posix/a.cpp", "#include <dds/dds.h>"},
+      {"fsw/programs/desktop/main.cpp", "#include \"sim/sil/sil_run.hpp\""},
+      {"fsw/app/a.cpp", "#include \"fsw/programs/desktop/flight_task.hpp\""},
+      {"hal/posix/main.cpp", "#include \"fsw/app/cycle.hpp\""},
+      {"hal/dds/dds_link.cpp", "#include \"fsw/app/cycle.hpp\""},
+      {"hal/dds/flight_endpoints.cpp", "#include \"fsw/app/cycle.hpp\""},
+      {"hal/dds/flight_bus.cpp", "#include \"fsw/config/limits.hpp\""},
+      {"hal/dds/flight_bus.cpp", "#include \"fsw/programs/desktop/flight_task.hpp\""},
+      {"fsw/programs/desktop/flight_task.cpp", "#include \"sim/sil/sil_run.hpp\""},
+      {"hal/flight.hpp", "#include \"fsw/app/cycle.hpp\""},
+      {"hal/dds/idl/topics.cpp", "#include \"hal/dds/dds_link.hpp\""},
+      {"sim/sil/a.cpp", "#include \"fsw/app/attitude_init_app.hpp\""},
+      {"sim/sil/a.cpp", "#include \"hal/dds/dds_link.hpp\""},
+      {"sim/evaluation/a.cpp", "#include <dds/dds.h>"},
+  };
+  for (const auto& [file, line] : forbidden) EXPECT_NE(objection_to(file, line), "") << file << ": " << line;
+}
+
+TEST(IncludeScanner, AllowedArrowsPass) {
+  const std::vector<std::pair<const char*, const char*>> allowed{
+      {"gnc/rcnn/a.cpp", "#include <Eigen/Core>"},
+      {"gnc/rcnn/a.cpp", "#include \"gnc/lidar/range_image.hpp\""},
+      {"gnc/nn/kernels/a.cpp", "#include <immintrin.h>"},
+      {"fsw/app/a.cpp", "#include \"hal/link.hpp\""},
+      {"hal/posix/a.cpp", "#include <time.h>"},
+      {"hal/posix/a.cpp", "#include \"hal/posix/a.hpp\""},
+      {"fsw/programs/desktop/flight_task.cpp", "#include \"fsw/app/cycle.hpp\""},
+      {"fsw/programs/desktop/main.cpp", "#include \"hal/posix/realtime.hpp\""},
+      {"fsw/programs/desktop/main.cpp", "#include \"hal/dds/flight_bus.hpp\""},
+      {"sim/sil/a.cpp", "#include \"hal/dds/idl/topics.hpp\""},
+      {"sim/sil/a.cpp", "#include <dds/dds.h>"},
+      {"sim/cli/a.cpp", "#include <vector>"},
+      {"tests/unit/a.cpp", "#include \"fsw/app/cycle.hpp\""},
+  };
+  for (const auto& [file, line] : allowed) EXPECT_EQ(objection_to(file, line), "") << file << ": " << line;
+}
+
+}  // namespace
+}  // namespace tumblesight::structure

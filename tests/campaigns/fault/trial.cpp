@@ -1,0 +1,229 @@
+#include "tests/campaigns/fault/trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "tests/campaigns/fault/app_memory.hpp"
+#include "tests/support/make_packet.hpp"
+
+namespace tumblesight::fault {
+namespace {
+
+using fsw::AppMemory;
+using fsw::Region;
+
+// A pass over the model takes 24.
+constexpr std::size_t cycles_per_trial(Place place) {
+  return place == Place::kWeights ? 30 : 15;
+}
+constexpr std::int64_t kStart_ns = 1'000'000'000'000;
+constexpr const char* kNoTarget = nullptr;
+
+// Between two sequences lies a pause, so that the estimator starts anew by itself.
+std::int64_t time_of(std::size_t cycle) {
+  const std::size_t pauses = cycle / sim::kFramesPerSequence;
+  return kStart_ns + static_cast<std::int64_t>(cycle + pauses) * sim::kFramePeriod_ns;
+}
+
+std::uint64_t mixed(std::uint64_t x) {  // splitmix64
+  x += 0x9E3779B97F4A7C15U;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31);
+}
+
+// Flips a bit of the activations in the middle of a step: before the n-th product of the network.
+struct {
+  const gnc::Kernels<gnc::FixedPoint>* real = nullptr;
+  Region region;
+  std::size_t bit = 0;
+  int countdown = -1;
+} hook;
+
+void strike() {
+  if (hook.countdown >= 0 && hook.countdown-- == 0) hook.region.flip(hook.bit);
+}
+void convolve(const gnc::ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
+              const std::int8_t* weights, std::int32_t* out) {
+  strike();
+  hook.real->convolve(shape, in, start, weights, out);
+}
+void multiply(const gnc::ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
+              const std::int8_t* weights, std::int32_t* out) {
+  strike();
+  hook.real->multiply(shape, in, start, weights, out);
+}
+constexpr int kProductsInAStep = 50;
+
+const gnc::Kernels<gnc::FixedPoint>& hooked_kernels() {
+  hook.real = &gnc::fastest_kernels<gnc::FixedPoint>();
+  static const gnc::Kernels<gnc::FixedPoint> kernels{
+      hook.real->set, hook.real->pixels, convolve, multiply, hook.real->max_pool, hook.real->average_pool};
+  return kernels;
+}
+
+double angle_deg(const gnc::QuaternionQ30& q, const Eigen::Quaterniond& truth) {
+  const Eigen::Quaterniond attitude = gnc::to_double(q);
+  const double dot = std::abs(attitude.dot(truth)) / std::max(1e-9, attitude.norm());
+  return 2.0 * std::acos(std::min(1.0, dot)) * 180.0 / 3.14159265358979323846;
+}
+
+}  // namespace
+
+TrialRunner::TrialRunner(const Flight& flight, bool with_protections, bool hooked)
+    : flight_(flight), protected_(with_protections) {
+  store_.fill(flight.model);
+  if (hooked) AppMemory::estimator(*app_).network().use(hooked_kernels());
+  app_->init({&stopwatch_, &store_, &fsw::kTestKey}, kNoTarget, {protected_, protected_});
+  fly_undisturbed();
+}
+
+void TrialRunner::fly_undisturbed() {
+  for (std::size_t cycle = 0; cycle < flight_.frames.size(); ++cycle) {
+    before_.push_back(std::make_unique<App>(*app_));
+    prepare(cycle);
+    clean_.push_back(fly(cycle));
+    resets_.push_back(outputs_->housekeeping.estimator_resets);
+  }
+}
+
+// A frame and a command that does nothing but count.
+void TrialRunner::prepare(std::size_t cycle) {
+  inputs_->commands[0] =
+      fsw::signed_with(fsw::kTestKey, static_cast<std::uint32_t>(cycle + 1),
+                       fsw::packet_of(static_cast<std::uint8_t>(fsw::FunctionCode::kNoop)));
+  inputs_->command_count = 1;
+  static gnc::RangeImage frame;
+  frame = flight_.frames[cycle];
+  frame.sequence_number = static_cast<std::uint32_t>(cycle + 1);
+  frame.exposure_time_ns = time_of(cycle);
+  inputs_->frame = &frame;
+}
+
+CycleResult TrialRunner::fly(std::size_t cycle) {
+  app_->step(time_of(cycle), *inputs_, *outputs_);
+  CycleResult result;
+  result.q_lrf_trf = outputs_->attitude.q_lrf_trf;
+  result.validity = outputs_->attitude.validity;
+  const bool has_attitude = result.validity == 0 || result.validity == 4;
+  if (has_attitude) result.error_deg = angle_deg(result.q_lrf_trf, flight_.truth[cycle].q_lrf_trf);
+  return result;
+}
+
+void TrialRunner::flip_one(Place place, std::mt19937& engine) {
+  const auto flip_any = [&engine](Region region) { region.flip(engine() % (8 * region.size)); };
+  switch (place) {
+    case Place::kWeights:
+      flip_any({store_.banks[0].memory.data(), store_.banks[0].memory.size()});
+      break;
+    case Place::kActivations:
+      hook.region = AppMemory::activations(*app_);
+      hook.bit = engine() % (8 * hook.region.size);
+      hook.countdown = static_cast<int>(engine() % kProductsInAStep);
+      break;
+    case Place::kEstimatorState:
+      AppMemory::flip_state_bit(*app_, engine() % AppMemory::kStateBits);
+      break;
+    case Place::kApplicationState: {
+      const Region regions[] = {AppMemory::voted_state(*app_), AppMemory::events(*app_),
+                                AppMemory::guard(*app_)};
+      std::size_t bit = engine() % (8 * (regions[0].size + regions[1].size + regions[2].size));
+      for (const Region& region : regions) {
+        if (bit < 8 * region.size) {
+          region.flip(bit);
+          break;
+        }
+        bit -= 8 * region.size;
+      }
+      break;
+    }
+    case Place::kModelDescriptor: {
+      fsw::ModelBanksState& banks = AppMemory::state(*app_).banks;
+      const Region descriptor = AppMemory::region_of(banks), constants = AppMemory::constants(*app_);
+      const std::size_t bit = engine() % (8 * (descriptor.size + constants.size));
+      bit < 8 * descriptor.size ? descriptor.flip(bit) : constants.flip(bit - 8 * descriptor.size);
+      break;
+    }
+    case Place::kCommand: {
+      hal::CommandPacket& packet = inputs_->commands[0];
+      const std::size_t bit = engine() % (8 * (sizeof packet.size + packet.size));
+      if (bit < 16) {
+        AppMemory::region_of(packet.size).flip(bit);
+      } else {
+        Region{packet.bytes.data(), packet.bytes.size()}.flip(bit - 16);
+      }
+      break;
+    }
+    case Place::kFrame: {
+      auto& frame = const_cast<gnc::RangeImage&>(*inputs_->frame);
+      flip_any(AppMemory::region_of(frame));
+      break;
+    }
+  }
+}
+
+Trial TrialRunner::run(Place place, std::uint64_t seed, std::uint32_t number) {
+  std::mt19937 engine(
+      static_cast<std::uint32_t>(mixed(seed * 1000003 + static_cast<std::uint64_t>(place)) + mixed(number)));
+  const std::size_t first = engine() % (flight_.frames.size() - cycles_per_trial(place));
+  // In place: the application holds pointers into the banks.
+  for (auto& bank : store_.banks) std::copy(flight_.model.begin(), flight_.model.end(), bank.memory.begin());
+  hook.countdown = -1;
+  *app_ = *before_[first];
+  prepare(first);
+  flip_one(place, engine);
+  std::vector<CycleResult> results;
+  for (std::size_t cycle = first; cycle < first + cycles_per_trial(place); ++cycle) {
+    if (cycle > first) prepare(cycle);
+    results.push_back(fly(cycle));
+  }
+  cycles_flown_ = first + cycles_per_trial(place);
+  return judged(first, results);
+}
+
+bool TrialRunner::noticed() const {
+  const hal::Housekeeping& h = outputs_->housekeeping;
+  return h.memory_corrections + h.states_restored + h.states_lost + h.constants_reloaded +
+                 h.model_blocks_repaired + h.model_blocks_lost + h.model_tables_rebuilt + h.bank_switches +
+                 h.commands_refused + h.frames_refused + h.sequence_gaps >
+             0 ||
+         h.estimator_resets != resets_[cycles_flown_ - 1] ||
+         h.mode != static_cast<std::uint8_t>(fsw::Mode::kRun);
+}
+
+bool TrialRunner::counts_every_command(std::size_t cycles) const {
+  const hal::Housekeeping& h = outputs_->housekeeping;
+  return std::size_t{h.commands_accepted} + h.commands_refused == cycles;
+}
+
+Trial TrialRunner::judged(std::size_t first, const std::vector<CycleResult>& results) const {
+  Trial trial;
+  bool silent_wrong = false;
+  bool suffered_in_the_end = false;
+  std::size_t since = 0;  // cycles that suffered, on end
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const CycleResult& clean = clean_[first + i];
+    const CycleResult& hit = results[i];
+    trial.changed = trial.changed || hit.q_lrf_trf != clean.q_lrf_trf;
+    const bool suffers = clean.right() && !hit.right();
+    silent_wrong = silent_wrong || (suffers && hit.validity == 0);
+    since = suffers ? since + 1 : 0;
+    if (since > trial.cycles_to_recover) trial.cycles_to_recover = static_cast<std::uint8_t>(since);
+    suffered_in_the_end = suffers;
+  }
+  if (silent_wrong) {
+    trial.outcome = Outcome::kSilentWrong;
+  } else if (!counts_every_command(cycles_flown_)) {
+    trial.outcome = Outcome::kLostCount;
+  } else if (outputs_->housekeeping.mode == static_cast<std::uint8_t>(fsw::Mode::kSafe)) {
+    trial.outcome = Outcome::kSafe;
+  } else if (suffered_in_the_end) {
+    trial.outcome = Outcome::kFlaggedWrong;
+  } else {
+    trial.outcome = noticed() || trial.cycles_to_recover > 0 ? Outcome::kRecovered : Outcome::kMasked;
+  }
+  return trial;
+}
+
+}  // namespace tumblesight::fault

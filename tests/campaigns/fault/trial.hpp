@@ -1,0 +1,55 @@
+// TrialRunner: one bit, one flight.
+#pragma once
+
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "fsw/app/attitude_init_app.hpp"
+#include "hal/fake/fake_model_store.hpp"
+#include "hal/fake/fake_stopwatch.hpp"
+#include "tests/campaigns/fault/campaign.hpp"
+
+namespace tumblesight::fault {
+
+// What a cycle gave, as far as an outcome depends on it.
+struct CycleResult {
+  gnc::QuaternionQ30 q_lrf_trf{};
+  std::uint8_t validity = 0;
+  double error_deg = 180.0;
+
+  bool right() const { return validity == 0 && error_deg <= 20.0; }
+};
+
+class TrialRunner {
+ public:
+  // `hooked`: for flips in the middle of a step.
+  TrialRunner(const Flight& flight, bool with_protections, bool hooked);
+  Trial run(Place place, std::uint64_t seed, std::uint32_t number);
+
+ private:
+  using App = fsw::AttitudeInitApp<gnc::FixedPoint>;
+
+  // What an undisturbed flight leaves before each of its cycles, and gives in it.
+  void fly_undisturbed();
+  void prepare(std::size_t cycle);
+  CycleResult fly(std::size_t cycle);
+  void flip_one(Place place, std::mt19937& engine);
+  Trial judged(std::size_t first, const std::vector<CycleResult>& results) const;
+  bool noticed() const;
+  bool counts_every_command(std::size_t cycles) const;
+
+  const Flight& flight_;
+  bool protected_;
+  hal::fake::FakeStopwatch stopwatch_;
+  hal::fake::FakeModelStore store_;
+  std::unique_ptr<App> app_ = std::make_unique<App>();
+  std::unique_ptr<fsw::StepInputs> inputs_ = std::make_unique<fsw::StepInputs>();
+  std::unique_ptr<fsw::StepOutputs> outputs_ = std::make_unique<fsw::StepOutputs>();
+  std::vector<std::unique_ptr<App>> before_;  // each cycle
+  std::vector<CycleResult> clean_;
+  std::vector<std::uint32_t> resets_;  // of the undisturbed flight, after each cycle
+  std::size_t cycles_flown_ = 0;
+};
+
+}  // namespace tumblesight::fault

@@ -1,0 +1,78 @@
+// Prints digests over what the estimator makes of many frames, for every numerics and instruction set of this
+// build and this processor, a line each: numerics, set, frames, CRC-32 of every frame's quaternions, expected
+// errors and state.
+//   digest FRAMES        with each instruction set
+//   digest FRAMES SET    with one
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+#include "gnc/numerics/crc32.hpp"
+#include "gnc/rcnn/attitude_estimator.hpp"
+#include "tests/support/test_models.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr unsigned kSeed = 47;
+constexpr int kDifferentFrames = 37;  // no divisor of a sequence's length: no two sequences are alike
+constexpr int kSequence = 10;
+
+template <class N>
+class Digest {
+ public:
+  explicit Digest(const Kernels<N>& kernels) : image_(random_model_image<N>(kSeed)) {
+    if (estimator_->load(image_.data(), image_.size(), nullptr) != ModelStatus::kOk) std::abort();
+    estimator_->network().use(kernels);
+  }
+
+  std::uint32_t over(int frames) {
+    Crc32 crc;
+    for (int i = 0; i < frames; ++i) {
+      if (i % kSequence == 0) estimator_->reset();
+      AttitudeEstimate estimate;
+      const RangeImage frame = random_frame(static_cast<unsigned>(i % kDifferentFrames));
+      crc.add_u32(static_cast<std::uint32_t>(estimator_->step(frame, estimate)));
+      for (const std::int32_t part : estimate.q_lrf_trf) crc.add_u32(static_cast<std::uint32_t>(part));
+      for (const std::int32_t part : estimate.q_lrf_trf_single_frame)
+        crc.add_u32(static_cast<std::uint32_t>(part));
+      crc.add_u32(estimate.predicted_error_urad);
+      crc.add_u32(estimate.predicted_error_single_frame_urad);
+      crc.add_u32(estimator_->state_crc32());
+    }
+    return crc.value();
+  }
+
+ private:
+  std::vector<std::uint8_t> image_;
+  std::unique_ptr<AttitudeEstimator<N>> estimator_ = std::make_unique<AttitudeEstimator<N>>();
+};
+
+template <class N>
+void print(int frames, const char* only) {
+  for (const InstructionSet set : kInstructionSets) {
+    const Kernels<N>* const kernels = kernels_on<N>(set);
+    if (kernels == nullptr || (only != nullptr && std::strcmp(only, to_string(set)) != 0)) continue;
+    std::printf("%s %s %d %08x\n", N::kIsInteger ? "fixed" : "float32", to_string(set), frames,
+                static_cast<unsigned>(Digest<N>(*kernels).over(frames)));
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc
+
+int main(int argc, char** argv) {
+  const int frames = argc > 1 ? std::atoi(argv[1]) : 0;
+  if (frames < 1 || frames > 1'000'000) {
+    std::fprintf(stderr, "usage: digest FRAMES [INSTRUCTION SET]\n");
+    return 2;
+  }
+  const char* const only = argc > 2 ? argv[2] : nullptr;
+  tumblesight::gnc::print<tumblesight::gnc::FixedPoint>(frames, only);
+#if TUMBLESIGHT_FLOAT32
+  tumblesight::gnc::print<tumblesight::gnc::Float32>(frames, only);
+#endif
+  return 0;
+}

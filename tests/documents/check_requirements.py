@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+"""Holds docs/requirements.csv, the tests and docs/verification.md to each other. Run by ctest; alone: tests/documents/check_requirements.py [--write]
+
+A test names what it verifies in a comment of its own, "Verifies TS-NUM-010, TS-NUM-020." behind // or #: directly above the
+test, or at the file's head for all of the file.
+"""
+import argparse
+import collections
+import csv
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+COLUMNS = ["id", "text", "rationale", "verification"]
+METHODS = {"T": "test", "A": "analysis", "I": "inspection"}
+GROUPS = {
+    "EST": "Attitude estimation", "LID": "LiDAR frames and depth image", "NUM": "Numerics", "TIM": "Time", "MEM": "Memory",
+    "IFC": "Interfaces", "MODE": "Modes", "CMD": "Commands", "TLM": "Telemetry", "FDIR": "Faults", "MDL": "Model banks",
+    "SEC": "Security", "SIL": "Software in the loop", "TRN": "Training and quantization",
+}
+_ID = re.compile(r"TS-(?:%s)-\d{3}" % "|".join(GROUPS))
+_DOCUMENT = re.compile(r"(?<![\w/])(?:docs|fsw|gnc|hal|sim|tests)/[\w./-]*\w")
+
+_SOURCES = {".cpp", ".hpp", ".c", ".py", ".cmake", ".txt", ".sh", ""}
+_COMMENT = {"C++": re.compile(r"\s*//(.*)"), "other": re.compile(r"\s*#(.*)")}
+_VERIFIES = re.compile(r"\s*Verifies\b(.*)")
+_TEST = re.compile(r"\s*(?:TEST|TEST_F|TEST_P|TYPED_TEST)\(\s*(\w+),\s*(\w+)\)")
+_INSTANTIATED = re.compile(r"\s*INSTANTIATE_TEST_SUITE_P\(\s*(\w+),\s*(\w+)")
+_ADDED = re.compile(r"\s*add_test\(NAME\s+(\S+)")
+_METHOD = re.compile(r"\s+def (test\w*)\(")
+_CLASS = re.compile(r"class (\w+)\(")
+
+Requirement = collections.namedtuple("Requirement", COLUMNS)
+Claim = collections.namedtuple("Claim", "path line id test")  # test: suite.name, empty for all of the file
+
+
+def read_requirements(root, wrong):
+    """{id: Requirement} in the file's order; what is malformed is told and left out."""
+    found = {}
+    with open(root / "docs/requirements.csv", newline="", encoding="utf-8") as file:
+        rows = csv.reader(file)
+        if next(rows, None) != COLUMNS:
+            wrong.append(f"docs/requirements.csv:1: the columns have to be {','.join(COLUMNS)}")
+            return found
+        for row in rows:
+            at = f"docs/requirements.csv:{rows.line_num}"
+            if len(row) != len(COLUMNS):
+                wrong.append(f"{at}: {len(row)} fields instead of {len(COLUMNS)}")
+                continue
+            one = Requirement(*row)
+            if not _ID.fullmatch(one.id):
+                wrong.append(f"{at}: '{one.id}' is no id: TS-<group>-<three digits>, groups {' '.join(GROUPS)}")
+            elif one.id in found:
+                wrong.append(f"{at}: {one.id} is there twice")
+            elif " shall " not in one.text or not one.text.endswith("."):
+                wrong.append(f"{at}: {one.id}: the text is no sentence with 'shall'")
+            elif not one.rationale:
+                wrong.append(f"{at}: {one.id} has no rationale")
+            elif one.verification not in METHODS:
+                wrong.append(f"{at}: {one.id}: verification is '{one.verification}' instead of {', '.join(METHODS)}")
+            else:
+                found[one.id] = one
+    return found
+
+
+def comment_of(path):
+    return _COMMENT["C++" if path.suffix in (".cpp", ".hpp", ".c") else "other"]
+
+
+def is_head(lines, comment):
+    """Whether nothing but comments, blank lines and a docstring stands in these lines."""
+    text = re.sub(r'\A((?:#.*\n|\s)*)"""(?:.|\n)*?"""', r"\1", "\n".join(lines))
+    return all(not line.strip() or comment.match(line) for line in text.splitlines())
+
+
+def test_below(lines, number, comment):
+    """Name of the test that begins in lines[number], behind comments; None if there is none."""
+    while number < len(lines) and comment.match(lines[number]):
+        number += 1
+    text = "\n".join(lines[number:number + 3])
+    for pattern, name in ((_TEST, "{0}.{1}"), (_INSTANTIATED, "{0}/{1}"), (_ADDED, "{0}"), (_CLASS, "{0}")):
+        match = pattern.match(text)
+        if match:
+            return re.sub(r"\$\{\w+\}", "…", name.format(*match.groups()))
+    match = _METHOD.match(text)
+    if match:
+        above = [_CLASS.match(line) for line in lines[:number]]
+        return f"{[m[1] for m in above if m][-1]}.{match[1]}"
+    return None
+
+
+def claims_in(root, path, wrong):
+    lines = path.read_text(encoding="utf-8").splitlines()
+    name, comment = path.relative_to(root).as_posix(), comment_of(path)
+    claims = []
+    for number, line in enumerate(lines):
+        claim = comment.match(line) and _VERIFIES.match(comment.match(line)[1])
+        if not claim:
+            continue
+        at, words, end = f"{name}:{number + 1}", claim[1], number + 1
+        while "." not in words and end < len(lines) and comment.match(lines[end]):
+            words, end = words + " " + comment.match(lines[end])[1], end + 1
+        test = "" if is_head(lines[:number], comment) else test_below(lines, end, comment)
+        if test is None and comment is _COMMENT["C++"]:
+            wrong.append(f"{at}: stands neither above a test nor at the file's head")
+        for word in re.split(r",|\band\b", words.split(".")[0]):
+            if _ID.fullmatch(word.strip()):
+                claims.append(Claim(name, number + 1, word.strip(), test or ""))
+            else:
+                wrong.append(f"{at}: '{word.strip()}' is no id")
+    return claims
+
+
+def read_claims(root, wrong):
+    claims = []
+    for path in sorted((root / "tests").rglob("*")):
+        apart = (root / "tests/documents/check_requirements.py", root / "tests/documents/test_check_requirements.py",
+             root / "tests/fuzz/corpus")
+        if path.suffix in _SOURCES and path.is_file() and not any(one == path or one in path.parents for one in apart):
+            claims += claims_in(root, path, wrong)
+    return claims
+
+
+def is_audit(claim):
+    """Whether a script of the audit says it, rather than a test."""
+    path = pathlib.PurePath(claim.path)
+    return path.parent.as_posix() == "tests/audit" and path.suffix in (".py", "") and not path.name.startswith("test_")
+
+
+def read_documents(root):
+    """{id: documents that name it}"""
+    naming = collections.defaultdict(list)
+    documents = [root / "README.md", root / "fsw/models/README.md", *sorted((root / "docs").glob("*.md"))]
+    for path in documents:
+        if path.exists() and path.name != "verification.md":
+            for one in sorted(set(_ID.findall(path.read_text(encoding="utf-8")))):
+                naming[one].append(path.relative_to(root).as_posix())
+    return naming
+
+
+def inspected(root, requirement):
+    """The documents and sources that an inspection of this requirement looks at."""
+    return [name for name in _DOCUMENT.findall(requirement.text + " " + requirement.rationale) if (root / name).is_file()]
+
+
+def check(root):
+    """(what is wrong, a line each; docs/verification.md as it should be)"""
+    wrong = []
+    requirements, claims, documents = read_requirements(root, wrong), read_claims(root, wrong), read_documents(root)
+    for claim in claims:
+        if claim.id not in requirements:
+            wrong.append(f"{claim.path}:{claim.line}: there is no requirement {claim.id}")
+    for name in sorted(set(documents) - set(requirements)):
+        wrong.append(f"{documents[name][0]}: there is no requirement {name}")
+    verified = collections.defaultdict(list)
+    for one in requirements.values():
+        mine = [claim for claim in claims if claim.id == one.id]
+        verified[one.id] = list(dict.fromkeys((claim.test or pathlib.PurePath(claim.path).name, claim.path) for claim in mine))
+        if one.verification == "T" and all(map(is_audit, mine)):
+            wrong.append(f"docs/requirements.csv: no test names {one.id}")
+        if one.verification == "A":
+            verified[one.id] += [(name, name) for name in documents[one.id]]
+            if not documents[one.id] and not any(map(is_audit, mine)):
+                wrong.append(f"docs/requirements.csv: neither a script of tests/audit nor a document names {one.id}")
+        if one.verification == "I":
+            verified[one.id] += [(name, name) for name in inspected(root, one)]
+            if not inspected(root, one):
+                wrong.append(f"docs/requirements.csv: {one.id} names no file to inspect")
+    return wrong, as_document(requirements, verified)
+
+
+def as_document(requirements, verified):
+    counts = collections.Counter(one.verification for one in requirements.values())
+    lines = [
+        "# Verification",
+        "",
+        "Written by `tests/documents/check_requirements.py --write` from [requirements.csv](requirements.csv), which has the reasons too, and",
+        "from what the tests say that they verify; a test fails when this page is not what the script would write.",
+        "",
+        f"{len(requirements)} requirements. **T**, test ({counts['T']}): ctest runs it. **A**, analysis ({counts['A']}): the audit of the onboard",
+        f"processors (`tests/audit/run`) measures it, or the document shows it. **I**, inspection ({counts['I']}): read the file.",
+    ]
+    for group, title in GROUPS.items():
+        rows = sorted(one for one in requirements.values() if one.id.split("-")[1] == group)
+        if not rows:
+            continue
+        lines += ["", f"## {title}", "", "| id | requirement | verified by | |", "|---|---|---|---|"]
+        for one in rows:
+            by = ", ".join(f"[{name}]({link(path)})" for name, path in verified[one.id])
+            text = one.text.replace("|", "\\|")
+            lines.append(f"| {one.id} | {text} | {by} | {one.verification} |")
+    return "\n".join(lines) + "\n"
+
+
+def link(path):
+    """From docs/."""
+    return path[len("docs/"):] if path.startswith("docs/") else "../" + path
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--write", action="store_true", help="write docs/verification.md")
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT, help="another tree than this one")
+    options = parser.parse_args(arguments)
+    wrong, document = check(options.root)
+    page = options.root / "docs/verification.md"
+    if options.write:
+        page.write_text(document, encoding="utf-8")
+    elif not page.exists() or page.read_text(encoding="utf-8") != document:
+        wrong.append("docs/verification.md is not up to date: tests/documents/check_requirements.py --write")
+    for line in wrong:
+        print(line)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,111 @@
+#include "tests/unit/fsw/app/app_fixture.hpp"
+
+#include <cmath>
+#include <random>
+
+#include "tests/support/test_models.hpp"
+
+namespace tumblesight::fsw {
+namespace {
+
+bool has_unit_norm(const std::array<std::int32_t, 4>& q) {
+  return std::abs(gnc::to_double(q).norm() - 1.0) < 1e-6;
+}
+
+}  // namespace
+
+const std::vector<std::uint8_t>& test_model_image() {
+  return gnc::lasting_model_image<gnc::FixedPoint>(7);
+}
+
+gnc::RangeImage good_frame(std::uint32_t sequence_number, std::int64_t exposure_time_ns, unsigned scene) {
+  gnc::RangeImage frame;
+  frame.exposure_time_ns = exposure_time_ns;
+  frame.sequence_number = sequence_number;
+  frame.fov_urad = 150'000;
+  frame.rays = 32;
+  std::mt19937 engine(scene);
+  for (std::size_t row = 8; row < 24; ++row) {
+    for (std::size_t column = 8; column < 24; ++column) {
+      frame.ranges[row * 32 + column] = static_cast<std::uint16_t>(50 * 128 - 200 + engine() % 400);
+    }
+  }
+  return frame;
+}
+
+void AppFixture::init_with_model() {
+  store.fill(test_model_image());
+  init(store);
+}
+
+void AppFixture::init(hal::fake::FakeModelStore& models, const char* expected_target) {
+  app->init({&stopwatch, &models, &kTestKey}, expected_target, protections);
+}
+
+hal::CommandPacket AppFixture::command(FunctionCode function, const std::vector<std::uint8_t>& arguments) {
+  return signed_with(kTestKey, ++command_counter, packet_of(static_cast<std::uint8_t>(function), arguments));
+}
+
+const StepOutputs& AppFixture::step(const StepInputs& inputs) {
+  now_ns = next_time_ns();
+  app->step(now_ns, inputs, *out);
+  // What every report keeps, whatever came in.
+  EXPECT_EQ(out->attitude.time_ns, now_ns);
+  EXPECT_TRUE(has_unit_norm(out->attitude.q_lrf_trf));
+  EXPECT_TRUE(has_unit_norm(out->attitude.q_lrf_trf_single_frame));
+  if (validity() != Validity::kValid && validity() != Validity::kDoubtful) {
+    EXPECT_EQ(out->attitude.frames_since_reset, 0U);
+    EXPECT_EQ(out->attitude.predicted_error_urad, gnc::kPi_urad);
+    EXPECT_EQ(out->attitude.q_lrf_trf, gnc::kIdentityQ30);
+  }
+  for (int i = 0; i < out->event_count; ++i)
+    EXPECT_EQ(out->events[static_cast<std::size_t>(i)].time_ns, now_ns);
+  return *out;
+}
+
+const StepOutputs& AppFixture::step_commands(std::initializer_list<hal::CommandPacket> commands) {
+  StepInputs inputs;
+  for (const hal::CommandPacket& one : commands)
+    inputs.commands[static_cast<std::size_t>(inputs.command_count++)] = one;
+  return step(inputs);
+}
+
+const StepOutputs& AppFixture::step_frame(const gnc::RangeImage& frame) {
+  StepInputs inputs;
+  inputs.frame = &frame;
+  return step(inputs);
+}
+
+const StepOutputs& AppFixture::step_good() {
+  const gnc::RangeImage frame = next_frame();
+  sequence_number = frame.sequence_number;
+  return step_frame(frame);
+}
+
+gnc::RangeImage AppFixture::next_frame() const {
+  return good_frame(sequence_number + 1, next_time_ns(), sequence_number);
+}
+
+int AppFixture::events(EventId id) const {
+  int count = 0;
+  for (int i = 0; i < out->event_count; ++i) {
+    count += out->events[static_cast<std::size_t>(i)].id == static_cast<std::uint16_t>(id) ? 1 : 0;
+  }
+  return count;
+}
+
+const hal::Event* AppFixture::event(EventId id) const {
+  for (int i = 0; i < out->event_count; ++i) {
+    const hal::Event& candidate = out->events[static_cast<std::size_t>(i)];
+    if (candidate.id == static_cast<std::uint16_t>(id)) return &candidate;
+  }
+  return nullptr;
+}
+
+std::int32_t AppFixture::argument(EventId id, std::size_t index) const {
+  const hal::Event* raised = event(id);
+  EXPECT_NE(raised, nullptr) << "event " << static_cast<int>(id);
+  return raised != nullptr ? raised->arguments[index] : INT32_MIN;
+}
+
+}  // namespace tumblesight::fsw

@@ -1,0 +1,296 @@
+#include "tests/unit/fsw/app/app_fixture.hpp"
+
+namespace tumblesight::fsw {
+namespace {
+
+class FrameRules : public AppFixture {
+ protected:
+  FrameRules() {
+    init_with_model();
+    step_good();
+    step_good();
+    before_ = out->housekeeping;
+    crc_ = estimator_crc();
+  }
+
+  // The frame is refused for `id`; nothing but the counters moved. Returns what was counted.
+  const hal::Housekeeping& expect_refused(const gnc::RangeImage& frame, EventId id) {
+    step_frame(frame);
+    expect_refusal(id);
+    return out->housekeeping;
+  }
+  void expect_refusal(EventId id) {
+    EXPECT_EQ(validity(), Validity::kFrameRefused);
+    EXPECT_EQ(out->event_count, 1);
+    ASSERT_NE(event(id), nullptr);
+    EXPECT_NE(event(id)->severity, static_cast<int>(Severity::kInformation));
+    EXPECT_EQ(out->housekeeping.frames_refused, before_.frames_refused + 1);
+    EXPECT_EQ(out->housekeeping.frames_used, before_.frames_used);
+    EXPECT_EQ(out->housekeeping.estimator_resets, before_.estimator_resets);
+    EXPECT_EQ(
+        out->housekeeping.frames_duplicate + out->housekeeping.frames_stale + out->housekeeping.frames_bad,
+        1U);
+    EXPECT_EQ(estimator_crc(), crc_);
+  }
+
+  hal::Housekeeping before_;
+  std::uint32_t crc_ = 0;
+};
+
+TEST_F(FrameRules, GoodFramesOnePeriodApartBuildASequence) {
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 3U);
+  EXPECT_EQ(out->attitude.sequence_number, sequence_number);
+  EXPECT_EQ(out->attitude.exposure_time_ns, now_ns);
+  EXPECT_EQ(out->event_count, 0);
+  EXPECT_EQ(out->housekeeping.frames_used, 3U);
+  EXPECT_EQ(out->housekeeping.frames_refused + out->housekeeping.frames_missing, 0U);
+  EXPECT_NE(estimator_crc(), crc_);
+}
+
+TEST_F(FrameRules, MissingFramesAreCountedAndReportedOnceAnOutage) {
+  step(StepInputs{});
+  EXPECT_EQ(validity(), Validity::kNoFrame);
+  EXPECT_EQ(events(EventId::kFrameMissing), 1);
+  EXPECT_EQ(estimator_crc(), crc_);
+  step(StepInputs{});
+  EXPECT_EQ(out->housekeeping.frames_missing, 2U);
+  EXPECT_EQ(events(EventId::kFrameMissing), 0);
+  step_good();
+  step(StepInputs{});
+  EXPECT_EQ(events(EventId::kFrameMissing), 1);
+  EXPECT_EQ(out->housekeeping.frames_refused, 0U);
+}
+
+TEST_F(FrameRules, RepeatedSequenceNumberIsRefused) {
+  gnc::RangeImage frame = next_frame();
+  frame.sequence_number = sequence_number;
+  EXPECT_EQ(expect_refused(frame, EventId::kFrameDuplicate).frames_duplicate, 1U);
+}
+
+TEST_F(FrameRules, ExposureNotAfterTheLastOneIsRefused) {
+  gnc::RangeImage frame = next_frame();
+  frame.exposure_time_ns = now_ns;
+  EXPECT_EQ(expect_refused(frame, EventId::kFrameExposureBackwards).frames_stale, 1U);
+}
+
+TEST_F(FrameRules, OldExposureIsRefused) {
+  now_ns += 10 * config::kFramePeriod_ns;
+  gnc::RangeImage frame = next_frame();
+  frame.exposure_time_ns = next_time_ns() - config::kMaxFrameAge_ns - 1;
+  EXPECT_EQ(expect_refused(frame, EventId::kFrameStale).frames_stale, 1U);
+  EXPECT_EQ(argument(EventId::kFrameStale, 1), 2970);
+}
+
+TEST_F(FrameRules, ExposureInTheFutureIsRefused) {
+  gnc::RangeImage frame = next_frame();
+  frame.exposure_time_ns += 1'000'000;
+  EXPECT_EQ(expect_refused(frame, EventId::kFrameFromFuture).frames_stale, 1U);
+  EXPECT_EQ(argument(EventId::kFrameFromFuture, 1), 1);
+}
+
+TEST_F(FrameRules, EmptyFrameIsRefused) {
+  gnc::RangeImage frame = next_frame();
+  frame.ranges.fill(0);
+  EXPECT_EQ(expect_refused(frame, EventId::kFrameBad).frames_bad, 1U);
+  EXPECT_EQ(argument(EventId::kFrameBad, 1), static_cast<int>(gnc::FrameStatus::kEmpty));
+}
+
+TEST_F(FrameRules, FlatFrameIsRefused) {
+  gnc::RangeImage frame = next_frame();
+  for (std::uint16_t& range : frame.ranges) range = range == 0 ? 0 : 6400;
+  EXPECT_EQ(expect_refused(frame, EventId::kFrameBad).frames_bad, 1U);
+  EXPECT_EQ(argument(EventId::kFrameBad, 1), static_cast<int>(gnc::FrameStatus::kFlat));
+}
+
+TEST_F(FrameRules, WrongRayCountIsRefused) {
+  gnc::RangeImage frame = next_frame();
+  frame.rays = 129;
+  EXPECT_EQ(expect_refused(frame, EventId::kFrameBad).frames_bad, 1U);
+  EXPECT_EQ(argument(EventId::kFrameBad, 1), static_cast<int>(gnc::FrameStatus::kBadRayCount));
+  EXPECT_EQ(argument(EventId::kFrameBad, 2), 129);
+}
+
+TEST_F(FrameRules, ImpossibleFieldOfViewIsRefused) {
+  gnc::RangeImage frame = next_frame();
+  frame.fov_urad = gnc::kMaxFov_urad + 1;
+  EXPECT_EQ(expect_refused(frame, EventId::kFrameBad).frames_bad, 1U);
+  EXPECT_EQ(argument(EventId::kFrameBad, 1), static_cast<int>(gnc::FrameStatus::kBadFov));
+}
+
+TEST_F(FrameRules, FrameOfWrongSizeIsRefused) {
+  StepInputs inputs;
+  inputs.frame_wrong_size = 1;
+  step(inputs);
+  expect_refusal(EventId::kFrameWrongSize);
+  EXPECT_EQ(out->housekeeping.frames_bad, 1U);
+  EXPECT_EQ(out->housekeeping.frames_missing, 0U);
+}
+
+TEST_F(FrameRules, BadFrameAfterAGapLeavesTheStateEvenThoughAGoodOneWouldResetIt) {
+  now_ns += 5 * config::kFramePeriod_ns;
+  gnc::RangeImage frame = next_frame();
+  frame.ranges.fill(0);
+  expect_refused(frame, EventId::kFrameBad);
+}
+
+TEST_F(FrameRules, SequenceContinuesAfterARefusedFrameThatTookNoTime) {
+  StepInputs inputs;
+  std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
+  frames[0].sequence_number = sequence_number;
+  inputs.frame = frames.data();
+  inputs.frame_count = 2;
+  step(inputs);
+  EXPECT_EQ(validity(), Validity::kValid) << "the second of the two is good";
+  EXPECT_EQ(out->attitude.frames_since_reset, 3U);
+  EXPECT_EQ(out->housekeeping.frames_duplicate, 1U);
+}
+
+TEST_F(FrameRules, RefusedSecondFrameLeavesTheReportOfTheFirst) {
+  StepInputs inputs;
+  std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
+  inputs.frame = frames.data();
+  inputs.frame_count = 2;
+  step(inputs);
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.sequence_number, frames[0].sequence_number);
+  EXPECT_EQ(out->housekeeping.frames_duplicate, 1U);
+}
+
+TEST_F(FrameRules, FrameOneCycleLateIsCaughtUpWith) {
+  const gnc::RangeImage late = next_frame();
+  step(StepInputs{});
+  StepInputs inputs;
+  ++sequence_number;
+  std::array<gnc::RangeImage, 2> frames{late, next_frame()};
+  inputs.frame = frames.data();
+  inputs.frame_count = 2;
+  step(inputs);
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 4U) << "the sequence is whole again";
+  EXPECT_EQ(out->attitude.exposure_time_ns, now_ns);
+  EXPECT_EQ(events(EventId::kEstimatorResetByGap), 0);
+}
+
+TEST_F(FrameRules, SkippedNumbersAreCountedAndTheFrameUsedWithoutReset) {
+  sequence_number += 3;
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->housekeeping.sequence_gaps, 3U);
+  ASSERT_NE(event(EventId::kSequenceSkipped), nullptr);
+  EXPECT_EQ(event(EventId::kSequenceSkipped)->arguments, (std::array<std::int32_t, 3>{103, 106, 3}));
+  EXPECT_EQ(out->attitude.frames_since_reset, 3U);
+}
+
+TEST_F(FrameRules, NumbersGoingBackAreOneGapAndTheFrameUsed) {
+  sequence_number = 0;
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->housekeeping.sequence_gaps, 1U);
+  ASSERT_NE(event(EventId::kSequenceSkipped), nullptr);
+  EXPECT_EQ(argument(EventId::kSequenceSkipped, 2), -1);
+}
+
+TEST_F(FrameRules, ExposureGapOffThePeriodResetsTheEstimatorWithAnEvent) {
+  now_ns += config::kFramePeriodTolerance_ns + 1'000'000;
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U);
+  EXPECT_EQ(out->housekeeping.estimator_resets, before_.estimator_resets + 1);
+  ASSERT_NE(event(EventId::kEstimatorResetByGap), nullptr);
+  EXPECT_EQ(event(EventId::kEstimatorResetByGap)->arguments, (std::array<std::int32_t, 3>{2971, 2, 0}));
+}
+
+TEST_F(FrameRules, ExposureGapWithinTheToleranceKeepsTheSequence) {
+  now_ns += config::kFramePeriodTolerance_ns;
+  step_good();
+  EXPECT_EQ(out->attitude.frames_since_reset, 3U);
+  now_ns -= config::kFramePeriodTolerance_ns;
+  step_good();
+  EXPECT_EQ(out->attitude.frames_since_reset, 4U);
+  EXPECT_EQ(out->event_count, 0);
+}
+
+TEST_F(FrameRules, CycleTimeNotAdvancingRefusesTheFrameButNotTheCommand) {
+  const std::int64_t next = next_time_ns();
+  now_ns -= config::kFramePeriod_ns;  // so that the next cycle has the time of the last one
+  gnc::RangeImage frame = next_frame();
+  StepInputs inputs;
+  inputs.frame = &frame;
+  inputs.commands[0] = command(FunctionCode::kNoop);
+  inputs.command_count = 1;
+  step(inputs);
+  EXPECT_EQ(validity(), Validity::kFrameRefused);
+  ASSERT_NE(event(EventId::kCycleTimeNotAdvancing), nullptr);
+  EXPECT_EQ(event(EventId::kCycleTimeNotAdvancing)->arguments, (std::array<std::int32_t, 3>{0, 1, 0}));
+  EXPECT_EQ(out->housekeeping.frames_stale, 1U);
+  EXPECT_EQ(out->housekeeping.frames_refused, 1U);
+  EXPECT_EQ(out->housekeeping.commands_accepted, 1U);
+  EXPECT_EQ(estimator_crc(), crc_);
+  ASSERT_EQ(next_time_ns(), next);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 3U);
+}
+
+TEST_F(FrameRules, CycleTimeGoingBackWithoutFrameIsReportedAndCountsMissing) {
+  now_ns -= 3 * config::kFramePeriod_ns;
+  step(StepInputs{});
+  EXPECT_EQ(validity(), Validity::kNoFrame);
+  ASSERT_NE(event(EventId::kCycleTimeNotAdvancing), nullptr);
+  EXPECT_EQ(argument(EventId::kCycleTimeNotAdvancing, 0), -5400);
+  EXPECT_EQ(out->housekeeping.frames_missing, 1U);
+}
+
+TEST_F(FrameRules, CycleTimeJumpingFarBackCostsOneCycle) {
+  now_ns -= 100 * config::kFramePeriod_ns;
+  step_good();
+  EXPECT_EQ(validity(), Validity::kFrameRefused);
+  EXPECT_EQ(out->event_count, 1);
+  EXPECT_EQ(events(EventId::kCycleTimeNotAdvancing), 1);
+  EXPECT_EQ(out->housekeeping.estimator_resets, before_.estimator_resets + 1);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U) << "frames of another time are no part of this motion";
+  EXPECT_EQ(out->event_count, 0);
+  step_good();
+  EXPECT_EQ(out->attitude.frames_since_reset, 2U);
+}
+
+TEST_F(FrameRules, CycleTimeGlitchingForwardForACycleCostsTheCycleBack) {
+  const std::int64_t before_glitch_ns = now_ns;
+  now_ns += 100 * config::kFramePeriod_ns;
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid) << "nothing tells a glitch from a pause yet";
+  now_ns = before_glitch_ns + config::kFramePeriod_ns;
+  step_good();
+  EXPECT_EQ(validity(), Validity::kFrameRefused);
+  EXPECT_EQ(events(EventId::kCycleTimeNotAdvancing), 1);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U);
+}
+
+TEST_F(FrameRules, FullestCycleFitsTheEvents) {
+  init_with_model();  // its event comes with the next cycle
+  step_good();
+  init_with_model();
+  sequence_number += 5;
+  now_ns += 10 * config::kFramePeriod_ns;
+  std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
+  frames[0].exposure_time_ns -= 1'000'000'000;
+  frames[1].sequence_number += 5;
+  StepInputs inputs;
+  inputs.frame = frames.data();
+  inputs.frame_count = 2;
+  inputs.command_count = config::kMaxCommandsPerStep;
+  for (hal::CommandPacket& one : inputs.commands) one = command(FunctionCode::kNoop);
+  step(inputs);
+  EXPECT_EQ(out->event_count, 1 + config::kMaxCommandsPerStep + 2)
+      << "model, commands, gap and reset of the second";
+  EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+}  // namespace
+}  // namespace tumblesight::fsw

@@ -1,0 +1,385 @@
+// Bit flips between two cycles, in every part of memory that outlives a cycle.
+#include <random>
+
+#include "tests/campaigns/fault/app_memory.hpp"
+#include "tests/support/test_models.hpp"
+#include "tests/unit/fsw/app/app_fixture.hpp"
+
+namespace tumblesight::fsw {
+namespace {
+
+class MemoryGuardTest : public AppFixture {
+ protected:
+  MemoryGuardTest() {
+    init_with_model();
+    step_good();
+    step_good();
+  }
+  // What an application that was never hit gives for the frames so far and the next one.
+  gnc::QuaternionQ30 undisturbed_next() {
+    auto twin = std::make_unique<FixedPointApp>();
+    hal::fake::FakeModelStore models;
+    models.fill(test_model_image());
+    twin->init({&stopwatch, &models, &kTestKey}, kTestTarget, protections);
+    auto twin_out = std::make_unique<StepOutputs>();
+    for (std::uint32_t number = 101; number <= sequence_number + 1; ++number) {
+      StepInputs inputs;
+      const std::int64_t time_ns = kStart_ns + (number - 100) * config::kFramePeriod_ns;
+      const gnc::RangeImage frame = good_frame(number, time_ns, number - 1);
+      inputs.frame = &frame;
+      twin->step(time_ns, inputs, *twin_out);
+    }
+    return twin_out->attitude.q_lrf_trf;
+  }
+  void expect_undisturbed_step() {
+    const gnc::QuaternionQ30 expected = undisturbed_next();
+    step_good();
+    EXPECT_EQ(validity(), Validity::kValid);
+    EXPECT_EQ(out->attitude.q_lrf_trf, expected);
+  }
+  // Until every block has been checked once.
+  void steps_of_a_pass() {
+    constexpr std::uint32_t kBlocks = ModelBanks<gnc::FixedPoint>::kBlocks;
+    for (std::uint32_t block = 0; block <= kBlocks;
+         block += AppMemory::state(*app).limit(Limit::kScrubBlocks))
+      step_good();
+  }
+  // A bit that means something.
+  void flip_a_constant() {
+    const std::uint32_t before = app->estimator().constants_crc32();
+    const Region region = AppMemory::constants(*app);
+    for (std::size_t bit = 8 * 300; app->estimator().constants_crc32() == before; ++bit) region.flip(bit);
+  }
+  std::vector<std::uint8_t>& bank(std::size_t index) { return store.banks[index].memory; }
+  void hit_block(std::size_t index, std::size_t block) {
+    bank(index)[block * config::kModelBlockBytes + 9] ^= 1;
+  }
+  // Found in the very next cycle.
+  void hit_table() { AppMemory::guard(*app).flip(8 * 40); }
+};
+
+// Verifies TS-FDIR-010.
+TEST_F(MemoryGuardTest, FlippedBitsOfTheVotedStateAreOutvotedAndCounted) {
+  const Region region = AppMemory::voted_state(*app);
+  std::mt19937 engine(1);
+  std::uint32_t corrections = 0;
+  for (int i = 0; i < 30; ++i) {
+    region.flip(engine() % (8 * region.size));
+    expect_undisturbed_step();
+    EXPECT_TRUE(events(EventId::kMemoryCorrected) == 1 || out->housekeeping.events_suppressed > 0);
+    EXPECT_EQ(out->housekeeping.memory_corrections, ++corrections);
+    EXPECT_EQ(app->mode(), Mode::kRun);
+  }
+  EXPECT_EQ(out->housekeeping.frames_used, 32U) << "no counter is lost";
+}
+
+// Verifies TS-FDIR-020.
+TEST_F(MemoryGuardTest, FlippedBitsOfTheEstimatorsStateAreRestoredFromTheCopy) {
+  std::mt19937 engine(2);
+  std::uint32_t restored = 0;
+  for (int i = 0; i < 20; ++i) {
+    AppMemory::flip_state_bit(*app, engine() % AppMemory::kStateBits);
+    const bool seen = estimator_crc() != AppMemory::state(*app).estimator_crc32;  // padding does not count
+    expect_undisturbed_step();
+    restored += seen ? 1U : 0U;
+    EXPECT_EQ(out->housekeeping.states_restored, restored);
+  }
+  EXPECT_GT(restored, 10U);
+  EXPECT_EQ(out->housekeeping.states_lost, 0U);
+}
+
+// Verifies TS-FDIR-020.
+TEST_F(MemoryGuardTest, StateAndCopyHitTogetherStartTheSequenceAnew) {
+  AppMemory::flip_state_bit(*app, 5);
+  const Region guard = AppMemory::guard(*app);
+  constexpr std::size_t kStateBytes = AppMemory::kStateBits / 8;
+  guard.flip(8 * (guard.size - kStateBytes) + 5);  // the copy is its last member
+  step_good();
+  EXPECT_EQ(out->housekeeping.states_lost, 1U);
+  EXPECT_EQ(argument(EventId::kEstimatorResetByFault, 0), static_cast<int>(Fault::kStateLost));
+  EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kResetSequence));
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U);
+  EXPECT_EQ(events(EventId::kFaultOver), 1);
+}
+
+// Verifies TS-FDIR-030.
+TEST_F(MemoryGuardTest, FlippedBitsOfBiasesShiftsAndPointersAreReloadedFromTheBank) {
+  const Region region = AppMemory::constants(*app);
+  std::mt19937 engine(3);
+  std::uint32_t reloaded = 0;
+  for (int i = 0; i < 20; ++i) {
+    region.flip(engine() % (8 * region.size));
+    const bool seen =
+        app->estimator().constants_crc32() != AppMemory::state(*app).constants_crc32;  // no padding
+    expect_undisturbed_step();
+    reloaded += seen ? 1U : 0U;
+    EXPECT_EQ(out->housekeeping.constants_reloaded, reloaded);
+  }
+  EXPECT_GT(reloaded, 15U);
+}
+
+// Verifies TS-FDIR-040.
+TEST_F(MemoryGuardTest, FlippedWeightIsRepairedFromTheSecondCopyWithinAPass) {
+  bank(0)[700'000] ^= 0x10;
+  steps_of_a_pass();
+  EXPECT_EQ(out->housekeeping.model_blocks_repaired, 1U);
+  EXPECT_EQ(bank(0), bank(1));
+  EXPECT_EQ(bank(0), test_model_image());
+  EXPECT_EQ(app->mode(), Mode::kRun);
+  EXPECT_GE(out->housekeeping.model_passes, 1U);
+}
+
+// Verifies TS-FDIR-040.
+TEST_F(MemoryGuardTest, FlippedBitOfTheSecondCopyIsRepairedFromTheBankInUse) {
+  bank(1).back() ^= 0x80;
+  steps_of_a_pass();
+  EXPECT_EQ(out->housekeeping.model_blocks_repaired, 1U);
+  EXPECT_EQ(bank(1), test_model_image());
+}
+
+// Verifies TS-FDIR-040.
+TEST_F(MemoryGuardTest, SecondCopyThatCannotBeWrittenIsLeftAsItIs) {
+  store.banks[1].writable = false;
+  bank(1)[0] ^= 1;
+  steps_of_a_pass();
+  EXPECT_EQ(out->housekeeping.model_blocks_repaired, 0U);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Verifies TS-FDIR-040.
+TEST_F(MemoryGuardTest, FlippedBitsOfTheTableAreMended) {
+  const Region guard = AppMemory::guard(*app);
+  guard.flip(8 * 40 + 3);
+  expect_undisturbed_step();
+  EXPECT_EQ(out->housekeeping.model_tables_rebuilt, 1U);
+  EXPECT_EQ(events(EventId::kModelTableRebuilt), 1);
+  steps_of_a_pass();
+  EXPECT_EQ(out->housekeeping.model_blocks_repaired, 0U);
+  EXPECT_EQ(bank(0), test_model_image());
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, SameBlockHitInBothBanksSwitchesOrGoesSafe) {
+  bank(0)[700'000] ^= 0x10;
+  bank(1)[700'001] ^= 0x10;
+  for (int i = 0; i < 30 && app->mode() == Mode::kRun; ++i) step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(validity(), Validity::kStandby);
+  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kFault));
+  EXPECT_EQ(out->housekeeping.safe_fault, static_cast<int>(Fault::kModelCorrupted));
+  EXPECT_EQ(events(EventId::kModelBlockLost), 1);
+  EXPECT_EQ(events(EventId::kSafeEntered), 1);
+  EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kSafe));
+  step_commands({set_mode(Mode::kStandby), set_mode(Mode::kRun)});
+  EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "what is damaged does not run again";
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, DamagedModelWithoutSecondCopyFallsBackOnAnotherGoodOne) {
+  const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  bank(1) = other;
+  init(store);
+  step_good();
+  bank(0)[5'000] ^= 1;
+  for (int i = 0; i < 30 && out->housekeeping.bank_switches == 0; ++i) step_good();
+  EXPECT_EQ(argument(EventId::kBankSwitched, 0), 0);
+  EXPECT_EQ(argument(EventId::kBankSwitched, 1), 1);
+  EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kSwitchBank));
+  EXPECT_EQ(app->mode(), Mode::kRun);
+  EXPECT_EQ(app->estimator().model().crc32, gnc::model_image_crc32(other.data()));
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, BankInRomThatIsHitCannotBeRepaired) {
+  store.banks[0].writable = false;
+  store.banks[1] = {};
+  init(store);
+  step_good();
+  bank(0)[5'000] ^= 1;
+  for (int i = 0; i < 30 && app->mode() == Mode::kRun; ++i) step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, TableAndModelHitTogetherGoSafeWithoutASecondCopy) {
+  store.banks[1] = {};
+  init(store);
+  step_good();
+  bank(0)[900'000] ^= 1;
+  AppMemory::guard(*app).flip(8 * 40);
+  step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(out->housekeeping.model_tables_rebuilt, 0U);
+}
+
+// Verifies TS-FDIR-030.
+TEST_F(MemoryGuardTest, ConstantsHitTogetherWithTheirImageAreMendedFirstInTheImage) {
+  flip_a_constant();
+  for (std::size_t at = 0; at < bank(0).size(); at += config::kModelBlockBytes) bank(0)[at + 64] ^= 1;
+  expect_undisturbed_step();
+  EXPECT_EQ(out->housekeeping.constants_reloaded, 1U);
+  EXPECT_EQ(bank(0), test_model_image());
+}
+
+// Verifies TS-FDIR-030.
+TEST_F(MemoryGuardTest, ConstantsThatNoBankHasAnyMoreGoSafe) {
+  store.banks[1] = {};
+  init(store);
+  step_good();
+  flip_a_constant();
+  for (std::size_t at = 0; at < bank(0).size(); at += config::kModelBlockBytes) bank(0)[at + 64] ^= 1;
+  step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, BankInRomThatIsHitMakesWayForItsSecondCopyAndIsNoneItself) {
+  for (const std::uint32_t used : {0U, 1U}) {
+    store.fill(test_model_image());
+    store.banks[used].writable = false;
+    init(store);
+    command_counter = 0;
+    if (used == 1) {
+      std::vector<std::uint8_t> arguments;
+      append_u32(arguments, gnc::model_image_crc32(test_model_image().data()));
+      step_commands(
+          {set_mode(Mode::kStandby), command(FunctionCode::kModelActivate, arguments), set_mode(Mode::kRun)});
+      ASSERT_EQ(out->housekeeping.bank_in_use, 1U);
+      ASSERT_EQ(out->housekeeping.second_copy, 1U);
+    }
+    hit_block(used, 20);
+    steps_of_a_pass();
+    EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+    EXPECT_EQ(out->housekeeping.model_blocks_repaired, 0U);
+    EXPECT_EQ(out->housekeeping.bank_in_use, 1 - used);
+    EXPECT_EQ(out->housekeeping.second_copy, 0U) << "the same CRC in its header, but no good image";
+    EXPECT_EQ(app->mode(), Mode::kRun);
+  }
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, SameHitInBothBanksIsNotTakenForTheTruth) {
+  hit_block(0, 100);
+  hit_block(1, 100);
+  steps_of_a_pass();
+  EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+  EXPECT_EQ(out->housekeeping.model_tables_rebuilt, 0U);
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, ScrubbingEndsWithTheFirstBlockThatIsLost) {
+  store.banks[1] = {};
+  init(store);
+  step_good();
+  for (const std::size_t block : {15U, 16U, 17U}) hit_block(0, block);  // all of the next cycle's share
+  step_good();
+  EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+  EXPECT_EQ(argument(EventId::kModelBlockLost, 1), 15);
+}
+
+// Verifies TS-FDIR-030, TS-FDIR-045.
+TEST_F(MemoryGuardTest, ConstantsAreNotReloadedFromAnImageWithALostBlock) {
+  store.banks[1] = {};
+  init(store);
+  step_good();
+  flip_a_constant();
+  for (const std::size_t block : {100U, 101U}) hit_block(0, block);  // not of the next cycle's share
+  step_good();
+  EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+  EXPECT_EQ(argument(EventId::kModelBlockLost, 1), 100);
+  EXPECT_EQ(out->housekeeping.constants_reloaded, 0U);
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+}
+
+// Verifies TS-FDIR-045, TS-FDIR-090.
+TEST_F(MemoryGuardTest, FrameOfTheCycleThatLosesTheModelIsRefusedAndCounted) {
+  bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  init(store);
+  step_good();
+  hit_block(0, 200);
+  hit_table();
+  step_good();
+  EXPECT_EQ(out->housekeeping.bank_switches, 1U);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+  EXPECT_EQ(validity(), Validity::kFrameRefused);
+  EXPECT_EQ(out->housekeeping.frames_refused, 1U);
+  EXPECT_EQ(out->housekeeping.frames_used, 1U);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, ModelActivatedInTheCycleThatLosesTheOtherStays) {
+  const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  bank(1) = other;
+  init(store);
+  step_commands({set_mode(Mode::kStandby)});
+  hit_block(0, 200);
+  hit_table();
+  std::vector<std::uint8_t> arguments;
+  append_u32(arguments, gnc::model_image_crc32(other.data()));
+  step_commands({command(FunctionCode::kModelActivate, arguments), set_mode(Mode::kRun)});
+  EXPECT_EQ(out->housekeeping.bank_in_use, 1U);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+  EXPECT_EQ(events(EventId::kSafeEntered), 0);
+  EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
+}
+
+// Verifies TS-FDIR-045, TS-MDL-020.
+TEST_F(MemoryGuardTest, UploadGoesOnWhenTheModelInUseIsLost) {
+  const auto load = [this](std::uint32_t offset) {
+    std::vector<std::uint8_t> arguments;
+    append_u32(arguments, offset);
+    arguments.insert(arguments.end(), {1, 2, 3, 4});
+    step_commands({command(FunctionCode::kModelLoad, arguments)});
+  };
+  load(0);
+  hit_block(0, 200);
+  hit_table();
+  step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kLoading));
+  load(4);
+  EXPECT_EQ(out->housekeeping.model_bytes_loaded, 8U);
+}
+
+// Verifies TS-FDIR-030.
+TEST_F(MemoryGuardTest, ConstantsThatAreNotThoseOfTheActivationGoSafe) {
+  const Region voted = AppMemory::voted_state(*app);
+  const std::size_t one = voted.size / 3;
+  const auto offset = static_cast<std::size_t>(
+      reinterpret_cast<std::uint8_t*>(&AppMemory::state(*app).constants_crc32) - voted.data);
+  for (const std::size_t copy : {std::size_t{0}, one})
+    voted.data[copy + offset] ^= 1;  // the same hit in two copies
+  step_good();
+  EXPECT_EQ(app->mode(), Mode::kRun) << "the other bank is activated";
+  EXPECT_EQ(out->housekeeping.bank_switches, 1U);
+}
+
+// Verifies TS-FDIR-080.
+TEST_F(MemoryGuardTest, ActivationsAreWrittenAnew) {
+  const Region region = AppMemory::activations(*app);
+  std::mt19937 engine(5);
+  for (int i = 0; i < 20; ++i) {
+    for (int flips = 0; flips < 50; ++flips) region.flip(engine() % (8 * region.size));
+    expect_undisturbed_step();
+  }
+}
+
+TEST_F(MemoryGuardTest, WithoutProtectionsAFlipStays) {
+  protections = {false, false};
+  init(store);
+  step_good();
+  AppMemory::state(*app).mode = Mode::kSafe;
+  step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(out->housekeeping.memory_corrections, 0U);
+}
+
+}  // namespace
+}  // namespace tumblesight::fsw

@@ -1,0 +1,47 @@
+// Every pair of mode and cause, against the table as it was meant.
+// Verifies TS-MODE-010.
+#include "fsw/app/modes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <utility>
+
+namespace tumblesight::fsw {
+namespace {
+
+TEST(Modes, EveryCauseLeadsWhereItShouldAndNowhereElse) {
+  const Mode kBoot = Mode::kBoot, kStandby = Mode::kStandby, kRun = Mode::kRun, kSafe = Mode::kSafe;
+  const std::map<std::pair<Mode, Cause>, Mode> meant{
+      {{kBoot, Cause::kModelFound}, kRun},        {{kBoot, Cause::kNoModel}, kSafe},
+      {{kBoot, Cause::kAssertion}, kSafe},        {{kStandby, Cause::kCommandStandby}, kStandby},
+      {{kStandby, Cause::kCommandRun}, kRun},     {{kStandby, Cause::kCommandSafe}, kSafe},
+      {{kStandby, Cause::kFault}, kSafe},         {{kStandby, Cause::kAssertion}, kSafe},
+      {{kRun, Cause::kCommandStandby}, kStandby}, {{kRun, Cause::kCommandRun}, kRun},
+      {{kRun, Cause::kCommandSafe}, kSafe},       {{kRun, Cause::kFault}, kSafe},
+      {{kRun, Cause::kAssertion}, kSafe},         {{kSafe, Cause::kCommandStandby}, kStandby},
+      {{kSafe, Cause::kCommandSafe}, kSafe},      {{kSafe, Cause::kAssertion}, kSafe},
+  };
+  for (int mode = 0; mode <= 3; ++mode) {
+    for (int cause = 0; cause <= static_cast<int>(Cause::kAssertion); ++cause) {
+      const std::pair<Mode, Cause> at{static_cast<Mode>(mode), static_cast<Cause>(cause)};
+      Mode to = static_cast<Mode>(99);
+      const auto found = meant.find(at);
+      EXPECT_EQ(next_mode(at.first, at.second, to), found != meant.end()) << mode << ' ' << cause;
+      EXPECT_EQ(to, found != meant.end() ? found->second : static_cast<Mode>(99)) << mode << ' ' << cause;
+    }
+  }
+  EXPECT_EQ(kTransitions.size(), meant.size()) << "a row twice, or one that nobody meant";
+}
+
+// Verifies TS-MODE-050.
+TEST(Modes, OnlyACommandEndsSafe) {
+  for (const Transition& transition : kTransitions) {
+    if (transition.from != Mode::kSafe || transition.to == Mode::kSafe) continue;
+    EXPECT_EQ(transition.cause, Cause::kCommandStandby);
+    EXPECT_EQ(transition.to, Mode::kStandby) << "never straight to RUN";
+  }
+}
+
+}  // namespace
+}  // namespace tumblesight::fsw

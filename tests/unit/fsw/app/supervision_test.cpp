@@ -1,0 +1,293 @@
+// Faults of the world: outages, slips, overruns, doubtful attitudes, and the responses to them.
+#include <functional>
+#include <utility>
+
+#include "tests/campaigns/fault/app_memory.hpp"
+#include "tests/unit/fsw/app/app_fixture.hpp"
+
+namespace tumblesight::fsw {
+namespace {
+
+class Supervision : public AppFixture {
+ protected:
+  Supervision() { init_with_model(); }
+  void set_limit(Limit which, std::uint32_t value) {
+    std::vector<std::uint8_t> arguments{static_cast<std::uint8_t>(which)};
+    append_u32(arguments, value);
+    step_commands({command(FunctionCode::kSetLimit, arguments)});
+    ASSERT_EQ(events(EventId::kCommandAccepted), 1);
+  }
+  bool persists(Fault fault) const { return (out->housekeeping.faults_persisting & bit_of(fault)) != 0; }
+};
+
+// Verifies TS-FDIR-110.
+TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndOverWithAGoodFrame) {
+  for (int cycle = 1; cycle <= 4; ++cycle) step_good();
+  EXPECT_FALSE(persists(Fault::kOutage));
+  for (int cycle = 1; cycle <= 3; ++cycle) {
+    step(StepInputs{});
+    EXPECT_FALSE(persists(Fault::kOutage)) << cycle;
+  }
+  gnc::RangeImage bad = next_frame();
+  bad.ranges.fill(0);
+  step_frame(bad);
+  EXPECT_TRUE(persists(Fault::kOutage)) << "a refused frame is none";
+  EXPECT_EQ(argument(EventId::kFaultPersists, 0), static_cast<int>(Fault::kOutage));
+  EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
+  step_good();
+  EXPECT_FALSE(persists(Fault::kOutage));
+  EXPECT_EQ(argument(EventId::kFaultOver, 0), static_cast<int>(Fault::kOutage));
+}
+
+// Verifies TS-FDIR-110.
+TEST_F(Supervision, NobodyMissesFramesInStandby) {
+  step_commands({set_mode(Mode::kStandby)});
+  for (int cycle = 0; cycle < 10; ++cycle) step(StepInputs{});
+  EXPECT_EQ(out->housekeeping.faults_persisting, 0U);
+}
+
+// Verifies TS-FDIR-120.
+TEST_F(Supervision, SlipsAreCountedToldAndFlaggedWhenTheyGoOn) {
+  StepInputs inputs;
+  inputs.cycle_slips = 2;
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    step(inputs);
+    EXPECT_EQ(argument(EventId::kCycleSlipped, 0), 2);
+  }
+  EXPECT_EQ(out->housekeeping.cycle_slips, 6U);
+  EXPECT_TRUE(persists(Fault::kSlip));
+  EXPECT_EQ(argument(EventId::kTimingFaultPersists, 0), static_cast<int>(Fault::kSlip));
+  EXPECT_TRUE(hal::tells_of_wall_clock(event(EventId::kTimingFaultPersists)->id));
+  step(StepInputs{});
+  EXPECT_EQ(argument(EventId::kTimingFaultOver, 0), static_cast<int>(Fault::kSlip));
+}
+
+// Verifies TS-FDIR-130, TS-TLM-050.
+TEST_F(Supervision, StepsBeyondTheirBudgetAreCountedToldAndFlaggedWhenTheyGoOn) {
+  stopwatch.tick_ns = 300'000'000;
+  step_good();
+  EXPECT_EQ(out->housekeeping.deadline_overruns, 0U) << "900 ms";
+  set_limit(Limit::kStepBudget_us, 1'000);
+  step_good();
+  EXPECT_EQ(events(EventId::kDeadlineOverrun), 1);
+  step_good();
+  EXPECT_TRUE(persists(Fault::kDeadline));
+  EXPECT_EQ(argument(EventId::kTimingFaultPersists, 0), static_cast<int>(Fault::kDeadline));
+  EXPECT_EQ(out->housekeeping.deadline_overruns, 3U) << "the limit counted in its own cycle too";
+  EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Verifies TS-TLM-050.
+TEST_F(Supervision, StepTimesFillTheHistogram) {
+  const std::uint64_t ticks_ms[] = {0, 1, 3, 10, 30, 100, 300, 1'000};
+  for (const std::uint64_t tick : ticks_ms) {
+    stopwatch.tick_ns = tick * 1'000'000;
+    step(StepInputs{});  // two looks at the stopwatch: one tick
+  }
+  for (const std::uint32_t count : out->housekeeping.steps_by_time) EXPECT_EQ(count, 1U);
+  EXPECT_EQ(out->housekeeping.step_max_us, 1'000'000U);
+  stopwatch.tick_ns = 0;
+  step(StepInputs{});
+  EXPECT_EQ(out->housekeeping.step_us, 0U);
+  EXPECT_EQ(out->housekeeping.step_max_us, 1'000'000U);
+}
+
+TEST_F(Supervision, InferenceTimeGoesToHousekeepingAndNowhereElse) {
+  stopwatch.tick_ns = 4'000;
+  step_good();
+  EXPECT_EQ(out->housekeeping.inference_us, 4U);
+  const std::uint32_t crc_fast = app->state_crc32();
+
+  auto slow = std::make_unique<FixedPointApp>();
+  hal::fake::FakeStopwatch slow_stopwatch;
+  slow_stopwatch.tick_ns = 400'000'000;
+  slow->init({&slow_stopwatch, &store, &kTestKey}, kTestTarget, protections);
+  const gnc::RangeImage frame = good_frame(sequence_number, now_ns, sequence_number - 1);
+  StepInputs inputs;
+  inputs.frame = &frame;
+  slow->step(now_ns, inputs, *out);
+  EXPECT_EQ(out->housekeeping.inference_max_us, 400'000U);
+  EXPECT_EQ(slow->state_crc32(), crc_fast) << "time within the budget is not in the digest";
+}
+
+TEST_F(Supervision, StopwatchRunningBackwardsMeasuresNothing) {
+  stopwatch.time_ns = 1'000'000'000;
+  stopwatch.tick_ns = std::uint64_t{0} - 1'000'000;
+  step_good();
+  EXPECT_EQ(out->housekeeping.inference_us, 0U);
+  EXPECT_EQ(out->housekeeping.deadline_overruns, 0U);
+}
+
+TEST_F(Supervision, StopwatchLeapingFarAheadSaturates) {
+  stopwatch.tick_ns = std::uint64_t{1} << 60;
+  step(StepInputs{});
+  EXPECT_EQ(out->housekeeping.step_us, UINT32_MAX);
+}
+
+class DoubtfulAttitudes : public Supervision {
+ protected:
+  DoubtfulAttitudes() {
+    protections.attitude = true;
+    init_with_model();
+  }
+  // By its content, a frame that has the random network say something else than the one before.
+  void step_scene(unsigned scene) {
+    const gnc::RangeImage frame = good_frame(++sequence_number, next_time_ns(), scene);
+    step_frame(frame);
+  }
+};
+
+// Verifies TS-FDIR-140.
+TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillGiven) {
+  set_limit(Limit::kAttitudeJump_urad, 3'141'593);
+  set_limit(Limit::kPredictedError_urad, 17'453);
+  for (unsigned cycle = 1; cycle <= 10; ++cycle) {
+    step_scene(cycle);
+    ASSERT_GT(out->attitude.predicted_error_urad, 17'453U) << "the test needs a network that is in doubt";
+    EXPECT_EQ(validity(), Validity::kDoubtful);
+    EXPECT_GT(out->attitude.sequence_number, 0U);
+    EXPECT_EQ(persists(Fault::kErrorLarge), cycle == 10);
+    EXPECT_FALSE(persists(Fault::kOutage)) << "there is an attitude";
+  }
+  EXPECT_EQ(out->housekeeping.attitudes_doubtful, 10U);
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  step_scene(11);
+  EXPECT_EQ(validity(), Validity::kValid);
+}
+
+// Verifies TS-FDIR-150.
+TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceWhenTheyGoOn) {
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  set_limit(Limit::kAttitudeJump_urad, 87'266);
+  int doubtful = 0;
+  for (unsigned i = 0; i < 40 && out->housekeeping.estimator_resets < 2; ++i) {
+    step_scene(1000 + 7 * i);
+    if (validity() == Validity::kDoubtful) ++doubtful;
+  }
+  EXPECT_EQ(argument(EventId::kEstimatorResetByFault, 0), static_cast<int>(Fault::kAttitudeJump));
+  EXPECT_GE(doubtful, 3);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Verifies TS-FDIR-170.
+TEST_F(DoubtfulAttitudes, FramesThatRepeatTheLastOneAreFlaggedAndToldWhenTheyGoOn) {
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  set_limit(Limit::kAttitudeJump_urad, 3'141'593);
+  gnc::RangeImage frame = next_frame();
+  step_frame(frame);
+  EXPECT_EQ(validity(), Validity::kValid);
+  for (int repetition = 1; repetition <= 3; ++repetition) {
+    ++frame.sequence_number;
+    frame.exposure_time_ns = next_time_ns();
+    step_frame(frame);
+    EXPECT_EQ(validity(), Validity::kDoubtful);
+    EXPECT_EQ(argument(EventId::kAttitudeDoubtful, 2), 2);
+    EXPECT_EQ(persists(Fault::kFrameFrozen), repetition == 3);
+  }
+  step_frame(good_frame(frame.sequence_number + 1, next_time_ns(), 2));
+  EXPECT_EQ(validity(), Validity::kValid) << "the sensor looks again";
+  EXPECT_EQ(out->housekeeping.attitudes_doubtful, 3U);
+}
+
+// Radiation strikes between the estimator and the check of what it gave: at the look at the stopwatch that
+// lies there.
+class UnsoundAttitudes : public DoubtfulAttitudes {
+ protected:
+  class Strike final : public hal::Stopwatch {
+   public:
+    std::uint64_t now_ns() override {
+      if (++looks == at_look) strike();
+      return 0;
+    }
+    std::function<void()> strike;
+    int at_look = 0, looks = 0;
+  };
+  static constexpr int kBehindFirstFrame = 3,
+                       kBehindSecondFrame = 5;  // one look begins the step, two are of a frame
+
+  UnsoundAttitudes() { app->init({&strike, &store, &kTestKey}, kTestTarget, protections); }
+  gnc::AttitudeEstimate& estimate() { return AppMemory::estimate(*app); }
+  void strike_next_step(int at_look, std::function<void()> what) {
+    strike.strike = std::move(what);
+    strike.at_look = at_look;
+    strike.looks = 0;
+  }
+  Strike strike;
+};
+
+// Verifies TS-FDIR-090.
+TEST_F(UnsoundAttitudes, NoneLeavesWhicheverPartOfItWasHit) {
+  const std::function<void()> hits[] = {
+      [this] {
+        estimate().q_lrf_trf = {0, 0, 0, 0};
+      },
+      [this] {
+        estimate().q_lrf_trf_single_frame = {INT32_MAX, 0, 0, 0};
+      },
+      [this] { estimate().predicted_error_urad = gnc::kPi_urad + 1; },
+      [this] { estimate().predicted_error_single_frame_urad = UINT32_MAX; }};
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  for (const std::function<void()>& hit : hits) {
+    strike_next_step(kBehindFirstFrame, hit);
+    step_scene(1);
+    EXPECT_EQ(validity(), Validity::kFrameRefused);
+    EXPECT_TRUE(persists(Fault::kAttitudeUnsound));
+    EXPECT_EQ(argument(EventId::kEstimatorResetByFault, 0), static_cast<int>(Fault::kAttitudeUnsound));
+    step_scene(1);
+    EXPECT_EQ(validity(), Validity::kValid);
+    EXPECT_EQ(out->attitude.frames_since_reset, 1U);
+  }
+}
+
+// Verifies TS-FDIR-090.
+TEST_F(UnsoundAttitudes, SecondOneLeavesTheReportOfTheFirst) {
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  strike_next_step(kBehindSecondFrame, [this] { estimate().q_lrf_trf = {0, 0, 0, 0}; });
+  std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
+  frames[0].exposure_time_ns -= 1'000'000;
+  frames[1].sequence_number += 1;
+  StepInputs inputs;
+  inputs.frame = frames.data();
+  inputs.frame_count = 2;
+  step(inputs);
+  EXPECT_TRUE(persists(Fault::kAttitudeUnsound));
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.sequence_number, frames[0].sequence_number);
+}
+
+// Verifies TS-FDIR-070.
+TEST_F(UnsoundAttitudes, NoneIsLeftOutOfWhatTheNextAreComparedWith) {
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  step_commands(
+      {command(FunctionCode::kDisableResponse, {static_cast<std::uint8_t>(Fault::kAttitudeUnsound)})});
+  set_limit(Limit::kAttitudeJump_urad, 87'266);
+  int jumps = 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    step_scene(1000 + 7 * i);
+    jumps += validity() == Validity::kDoubtful ? 1 : 0;
+  }
+  ASSERT_EQ(jumps, 1) << "the test needs a network that jumps";
+  strike_next_step(kBehindFirstFrame, [this] { estimate().q_lrf_trf = {0, 0, 0, 0}; });
+  step_scene(2000);
+  for (unsigned i = 0; i < 2; ++i) {
+    step_scene(3000 + 7 * i);
+    EXPECT_EQ(validity(), Validity::kValid) << "there are not yet two before it, one period apart";
+  }
+}
+
+// Verifies TS-FDIR-060.
+TEST_F(DoubtfulAttitudes, DisabledResponseTellsButDoesNotReset) {
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  set_limit(Limit::kAttitudeJump_urad, 87'266);
+  step_commands({command(FunctionCode::kDisableResponse, {static_cast<std::uint8_t>(Fault::kAttitudeJump)})});
+  bool told = false;
+  for (unsigned i = 0; i < 40 && !told; ++i) {
+    step_scene(1000 + 7 * i);
+    told = persists(Fault::kAttitudeJump);
+  }
+  EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
+  EXPECT_EQ(out->housekeeping.estimator_resets, 1U);
+}
+
+}  // namespace
+}  // namespace tumblesight::fsw

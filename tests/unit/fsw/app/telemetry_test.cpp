@@ -1,0 +1,83 @@
+// The digest of the state, and what the housekeeping tells.
+// Verifies TS-TLM-010, TS-TLM-020.
+#include "tests/support/test_models.hpp"
+#include "tests/unit/fsw/app/app_fixture.hpp"
+
+namespace tumblesight::fsw {
+namespace {
+
+class Telemetry : public AppFixture {
+ protected:
+  Telemetry() : twin(std::make_unique<FixedPointApp>()), twin_out(std::make_unique<StepOutputs>()) {
+    init_with_model();
+    twin->init({&stopwatch, &store, &kTestKey}, kTestTarget, protections);
+  }
+  std::unique_ptr<FixedPointApp> twin;
+  std::unique_ptr<StepOutputs> twin_out;
+};
+
+TEST_F(Telemetry, StateDigestTellsWhichModelIsActive) {
+  hal::fake::FakeModelStore other;
+  other.fill(gnc::lasting_model_image<gnc::FixedPoint>(8));
+  twin->init({&stopwatch, &other, &kTestKey}, kTestTarget, protections);
+  ASSERT_EQ(twin->mode(), Mode::kRun);
+  EXPECT_NE(app->state_crc32(), twin->state_crc32());
+}
+
+TEST_F(Telemetry, StateDigestFollowsModeEstimatorAndCounters) {
+  EXPECT_EQ(app->state_crc32(), twin->state_crc32());
+  step_good();
+  EXPECT_NE(app->state_crc32(), twin->state_crc32());
+  const gnc::RangeImage frame = good_frame(sequence_number, now_ns, sequence_number - 1);
+  StepInputs inputs;
+  inputs.frame = &frame;
+  twin->step(now_ns, inputs, *twin_out);
+  EXPECT_EQ(app->state_crc32(), twin->state_crc32());
+  step_commands({command(FunctionCode::kNoop)});
+  twin->step(now_ns, StepInputs{}, *twin_out);
+  EXPECT_NE(app->state_crc32(), twin->state_crc32()) << "a command was counted";
+}
+
+// Verifies TS-TLM-040.
+TEST_F(Telemetry, EventsBeyondAStepsShareWaitForTheNextOne) {
+  for (std::size_t block = 0; block < 8; ++block)
+    store.banks[1].memory[block * config::kModelBlockBytes + 9] ^= 1;
+  StepInputs inputs;
+  inputs.command_count = config::kMaxCommandsPerStep;
+  for (hal::CommandPacket& packet : inputs.commands) packet = command(FunctionCode::kNoop);
+  inputs.cycle_slips = 1;
+  step(inputs);
+  EXPECT_EQ(out->event_count, config::kMaxEventsPerStep);
+  EXPECT_EQ(out->housekeeping.events_waiting, 3U)
+      << "activated, 8 repaired, 8 accepted, slipped, no frame: 19";
+  now_ns = next_time_ns();
+  app->step(now_ns, StepInputs{}, *out);
+  EXPECT_EQ(out->event_count, 3);
+  EXPECT_EQ(out->housekeeping.events_waiting, 0U);
+}
+
+// Verifies TS-TLM-040.
+TEST_F(Telemetry, EventsAreToldWaitingSuppressedOrLost) {
+  hal::CommandPacket forged = command(FunctionCode::kNoop);
+  forged.bytes[0] ^= 1;
+  StepInputs inputs;
+  inputs.command_count = config::kMaxCommandsPerStep;
+  for (hal::CommandPacket& packet : inputs.commands) packet = forged;
+  inputs.cycle_slips = 1;
+  inputs.frame_wrong_size = 2;
+  int told = 0;
+  for (int cycle = 0; cycle < 40; ++cycle) {
+    step(inputs);
+    told += out->event_count;
+    EXPECT_LE(out->event_count, config::kMaxEventsPerStep);
+    const hal::Housekeeping& h = out->housekeeping;
+    EXPECT_EQ(h.events,
+              static_cast<std::uint32_t>(told) + h.events_waiting + h.events_suppressed + h.events_lost);
+    EXPECT_GE(h.events_waiting_max, h.events_waiting);
+  }
+  EXPECT_GT(out->housekeeping.events_suppressed, 0U);
+  EXPECT_EQ(out->housekeeping.commands_refused, 40U * config::kMaxCommandsPerStep);
+}
+
+}  // namespace
+}  // namespace tumblesight::fsw

@@ -1,0 +1,201 @@
+#include "gnc/attitude/motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "gnc/attitude/rotation.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Eigen::Matrix3f tensor(float xx, float yy, float zz, float xy = 0.0F, float xz = 0.0F, float yz = 0.0F) {
+  Eigen::Matrix3f j;
+  j << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return j;
+}
+
+Eigen::Vector3d any_axis(std::mt19937& engine) {
+  std::normal_distribution<double> normal;
+  return Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
+}
+
+Eigen::Matrix3d exact_turn(const Eigen::Vector3d& turn) {
+  return Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+}
+
+double angle_between(const Eigen::Matrix3f& a, const Eigen::Matrix3d& b) {
+  return 2.0 * std::asin(std::min(1.0, (a.cast<double>() - b).norm() / std::sqrt(8.0)));
+}
+
+// Torque-free motion from the angular momentum, in steps so short that they count as exact.
+struct Exact {
+  Eigen::Matrix3d r_lrf_trf;
+  Eigen::Vector3d rate_lrf;
+};
+Exact exact_tumble(const Eigen::Matrix3d& start, const Eigen::Vector3d& rate,
+                   const Eigen::Matrix3d& inertia) {
+  constexpr int kSteps = 2000;
+  const Eigen::Vector3d momentum = start * inertia * start.transpose() * rate;
+  const auto rate_at = [&](const Eigen::Matrix3d& r) -> Eigen::Vector3d {
+    return r * inertia.inverse() * r.transpose() * momentum;
+  };
+  Eigen::Matrix3d r = start;
+  for (int i = 0; i < kSteps; ++i) {
+    const Eigen::Matrix3d middle = exact_turn(rate_at(r) * (0.5 / kSteps)) * r;
+    r = exact_turn(rate_at(middle) / kSteps) * r;
+  }
+  return {r, rate_at(r)};
+}
+
+TEST(RotationBy, IsTheExponentialAndBoundsItsAngle) {
+  std::mt19937 engine(1);
+  EXPECT_EQ(rotation_by<float>(Eigen::Vector3f::Zero()), Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
+  for (const float angle : {1e-6F, 0.01F, 0.5F, 1.0F, 1.5F, 1.89F, 2.5F, 1e3F, 1e30F}) {
+    for (int i = 0; i < 50; ++i) {
+      const Eigen::Vector3d axis = any_axis(engine);
+      const Eigen::Matrix3d exact = exact_turn(std::min(angle, kLargestRate) * axis);
+      const Eigen::Matrix3f r = rotation_by<float>((angle * axis).cast<float>());
+      // A length whose square overflows leaves no direction.
+      if (angle > 1e20F) {
+        EXPECT_EQ(r, Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
+        continue;
+      }
+      EXPECT_LT((r.cast<double>() - exact).cwiseAbs().maxCoeff(), 1e-6) << angle;
+    }
+  }
+}
+
+TEST(SmallTurnOf, InvertsRotationByBelowSixtyDegreesAndIsZeroAbove) {
+  std::mt19937 engine(2);
+  for (const double angle_deg : {0.0, 1e-4, 1.0, 20.0, 45.0, 59.9, 60.1, 90.0, 179.9}) {
+    for (int i = 0; i < 50; ++i) {
+      const Eigen::Vector3d turn = angle_deg * kDegree * any_axis(engine);
+      const Eigen::Vector3d found = small_turn_of<float>(exact_turn(turn).cast<float>()).cast<double>();
+      EXPECT_LT((found - (angle_deg < 60.0 ? turn : Eigen::Vector3d::Zero())).norm(), 1e-5) << angle_deg;
+    }
+  }
+}
+
+TEST(Tumble, OfASphereTurnsByTheRateInTheLidarFrameAndKeepsIt) {
+  const Eigen::Matrix3d start = exact_turn({0.5, -1.0, 1.5});
+  const Eigen::Vector3d rate(0.3, 0.6, -0.4);
+  const Motion<float> later = tumble<float>({start.cast<float>(), rate.cast<float>()}, Inertia<float>{});
+  EXPECT_LT(angle_between(later.r_lrf_trf, exact_turn(rate) * start), 1e-6);
+  EXPECT_LT((later.rate_lrf - rate.cast<float>()).norm(), 1e-6F);
+}
+
+// Verifies TS-EST-140.
+TEST(Tumble, FollowsTorqueFreeRotation) {
+  std::mt19937 engine(3);
+  const Eigen::Matrix3f shapes[] = {tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F), tensor(1.0F, 4.0F, 4.5F),
+                                    tensor(5.0F, 5.0F, 8.0F)};
+  for (const Eigen::Matrix3f& shape : shapes) {
+    Inertia<float> inertia;
+    ASSERT_TRUE(make_inertia<float>(shape, inertia));
+    for (const double rate_deg : {5.0, 27.0, 54.0}) {
+      for (int i = 0; i < 40; ++i) {
+        const Eigen::Matrix3d start = exact_turn(2.0 * any_axis(engine));
+        const Eigen::Vector3d rate = rate_deg * kDegree * any_axis(engine);
+        const Exact exact = exact_tumble(start, rate, shape.cast<double>());
+        const Motion<float> later = tumble<float>({start.cast<float>(), rate.cast<float>()}, inertia);
+        const double miss_deg = angle_between(later.r_lrf_trf, exact.r_lrf_trf) / kDegree;
+        EXPECT_LT((later.rate_lrf.cast<double>() - exact.rate_lrf).norm(), 0.03 * rate.norm()) << rate_deg;
+        EXPECT_LT(miss_deg, rate_deg > 30.0 ? 0.5 : 0.1) << rate_deg;
+      }
+    }
+  }
+}
+
+TEST(Tumble, AboutAPrincipalAxisIsASpin) {
+  const Eigen::Matrix3d start = exact_turn({0.5, -1.0, 1.5});
+  Inertia<float> inertia;
+  ASSERT_TRUE(make_inertia<float>(tensor(2.0F, 3.0F, 4.0F), inertia));
+  const Eigen::Vector3d rate = 0.8 * start.col(1);
+  const Motion<float> later = tumble<float>({start.cast<float>(), rate.cast<float>()}, inertia);
+  EXPECT_LT(angle_between(later.r_lrf_trf, exact_turn(rate) * start), 2e-6);
+  EXPECT_LT((later.rate_lrf - rate.cast<float>()).norm(), 2e-6F);
+}
+
+TEST(Tumble, DependsOnRatiosOfTheInertiaOnly) {
+  const Eigen::Matrix3f shape = tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F);
+  const Motion<float> motion{exact_turn({0.5, -1.0, 1.5}).cast<float>(), {0.3F, -0.2F, 0.7F}};
+  Inertia<float> inertia, scaled;
+  ASSERT_TRUE(make_inertia<float>(shape, inertia));
+  for (const float scale : {1e-3F, 1e6F}) {
+    ASSERT_TRUE(make_inertia<float>(scale * shape, scaled));
+    EXPECT_LT((tumble<float>(motion, scaled).r_lrf_trf - tumble<float>(motion, inertia).r_lrf_trf).norm(),
+              1e-5F);
+  }
+}
+
+// Verifies TS-EST-140.
+TEST(MotionLaws, AreASpinTheInertiaAndEachOfItsMomentsHalved) {
+  const Eigen::Matrix3f shape = tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F);
+  Inertia<float> inertia;
+  ASSERT_TRUE(make_inertia<float>(shape, inertia));
+  const MotionLaws<float> laws = motion_laws<float>(inertia);
+  EXPECT_EQ(laws[kSpinLaw].tensor_trf, Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
+  const Eigen::Matrix3f own = shape * (3.0F / shape.trace());
+  EXPECT_LT((laws[kTumbleLaw].tensor_trf - own).norm(), 1e-6F);
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Matrix3f shrink = Eigen::Matrix3f::Identity();
+    shrink(axis, axis) = std::sqrt(0.5F);
+    const Inertia<float>& halved = laws[2 + axis];
+    const Eigen::Matrix3f expected = shrink * shape * shrink;
+    EXPECT_LT((halved.tensor_trf - expected * (3.0F / expected.trace())).norm(), 1e-6F) << axis;
+    EXPECT_LT((halved.inverse_trf * halved.tensor_trf - Eigen::Matrix3f::Identity()).norm(), 1e-5F) << axis;
+  }
+}
+
+TEST(MotionLaws, KeepAnInertiaThatCannotBeHalved) {
+  Inertia<float> thinnest;
+  for (float thin = 1.0F; make_inertia<float>(tensor(1.0F, 1.0F, thin), thinnest); thin *= 0.5F) {
+  }
+  const Inertia<float> halved = motion_laws<float>(thinnest)[4];
+  EXPECT_EQ(halved.tensor_trf, thinnest.tensor_trf);
+  EXPECT_EQ(halved.inverse_trf, thinnest.inverse_trf);
+}
+
+// Verifies TS-IFC-040.
+TEST(MakeInertia, TakesPositiveDefiniteTensorsOnly) {
+  Inertia<float> inertia;
+  const Eigen::Matrix3f good = tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F);
+  ASSERT_TRUE(make_inertia<float>(good, inertia));
+  const Eigen::Matrix3f taken = inertia.tensor_trf;
+  EXPECT_LT((taken - good * (3.0F / good.trace())).norm(), 1e-6F);
+  EXPECT_LT((inertia.inverse_trf * taken - Eigen::Matrix3f::Identity()).cwiseAbs().maxCoeff(), 2e-6F);
+
+  Eigen::Matrix3f lopsided = good;
+  lopsided(0, 1) += 0.1F;
+  for (const Eigen::Matrix3f& bad :
+       {Eigen::Matrix3f(Eigen::Matrix3f::Zero()), tensor(-1.0F, 2.0F, 2.0F), tensor(-1.0F, -2.0F, 9.0F),
+        tensor(1.0F, 2.0F, -0.1F), tensor(1.0F, 1.0F, 1.0F, 2.0F), tensor(1.0F, 1.0F, 1e-5F),
+        tensor(kNan, 1.0F, 1.0F), tensor(1.0F, 1.0F, 1.0F, 0.0F, kNan), tensor(kInfinity, 1.0F, 1.0F),
+        tensor(1.0F, 1.0F, 1.0F, 0.0F, 0.0F, kInfinity), tensor(1.0F, 1.0F, 0.005F), lopsided}) {
+    EXPECT_FALSE(make_inertia<float>(bad, inertia)) << bad;
+  }
+  EXPECT_EQ(inertia.tensor_trf, taken);
+}
+
+TEST(Product, AgreesWithEigenForMatricesAndVectors) {
+  const Eigen::Matrix3f a = tensor(0.3F, -0.5F, 0.7F, 0.2F, 0.9F, -0.8F) + Eigen::Matrix3f::Identity();
+  Eigen::Matrix3f b;
+  b << 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F, 8.0F, 10.0F;
+  const Eigen::Vector3f v(1.0F, -2.0F, 0.5F);
+  EXPECT_TRUE(product<float>(b, a).isApprox(b * a, 1e-6F));
+  EXPECT_TRUE(transpose_product<float>(b, a).isApprox(b.transpose() * a, 1e-6F));
+  EXPECT_TRUE(product<float>(b, v).isApprox(b * v, 1e-6F));
+  EXPECT_TRUE(transpose_product<float>(b, v).isApprox(b.transpose() * v, 1e-6F));
+  EXPECT_NEAR(trace_of_transpose_product<float>(b, a), (b.transpose() * a).trace(), 1e-5F);
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

@@ -1,0 +1,240 @@
+// Verifies TS-NUM-010, TS-MEM-090.
+#include "gnc/nn/kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "gnc/nn/kernels/minimal_filter.hpp"
+#include "tests/unit/gnc/nn/random_values.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+// The definition in product.hpp, one number after the other.
+template <class Kind>
+std::vector<typename Kind::Sum> by_definition(const ProductShape& s,
+                                              const std::vector<typename Kind::Input>& in,
+                                              const std::vector<typename Kind::Sum>& start,
+                                              const std::vector<typename Kind::Weight>& weights) {
+  std::vector<typename Kind::Sum> out;
+  for (int y = 0; y < s.rows; ++y) {
+    for (int x = 0; x < s.columns; ++x) {
+      for (int c = 0; c < s.channels; ++c) {
+        typename Kind::Sum sum = start[c];
+        for (int t = 0; t < s.strips; ++t) {
+          for (int i = 0; i < s.strip_length; ++i) {
+            const int place = t * s.strip_length + i;
+            const int weight = (place / Kind::kGroup * s.channels + c) * Kind::kGroup + place % Kind::kGroup;
+            sum += in[y * s.row_step + x * s.column_step + t * s.strip_step + i] * weights[weight];
+          }
+        }
+        out.push_back(sum);
+      }
+    }
+  }
+  return out;
+}
+
+ProductShape convolution(int rows, int columns, int in, int out) {
+  const int row = (columns + 2) * in;
+  return {rows, columns, row, in, 3, 3 * in, row, out};
+}
+ProductShape dense(int in, int out) {
+  return {1, 1, 0, 0, 1, in, 0, out};
+}
+
+// Channels and pixels that meet every block and every remainder.
+std::vector<ProductShape> shapes(bool integers) {
+  std::vector<ProductShape> all;
+  std::vector<int> channels{16, 32, 48, 64, 96, 128, 144, 160, 240};
+  if (!integers) channels.insert(channels.end(), {1, 3, 4, 15, 57, 100});
+  for (const int out : channels) {
+    all.push_back(convolution(5, 5, 4, out));
+    all.push_back(convolution(1, 3, 4, out));  // fewer pixels than any block
+    all.push_back(dense(38, out));
+  }
+  all.push_back(convolution(2, 3, 4, 64));
+  all.push_back(convolution(3, 3, 8, 48));
+  all.push_back(convolution(2, 24, 32, 64));
+  all.push_back(convolution(2, 4, 4, 16));
+  all.push_back(convolution(1, 4, 8, 32));  // fewer pixels than three tiles of two
+  all.push_back(convolution(2, 4, 4, 16));
+  all.back().strips = 17;  // more than a stretch holds
+  all.push_back(dense(382, 768));
+  return all;
+}
+
+std::size_t input_size(const ProductShape& s) {
+  return static_cast<std::size_t>((s.rows - 1) * s.row_step + (s.columns - 1) * s.column_step +
+                                  (s.strips - 1) * s.strip_step + s.strip_length);
+}
+
+template <class Kind>
+void expect_definition(Product<Kind>* product, const ProductShape& s,
+                       const std::vector<typename Kind::Input>& in,
+                       const std::vector<typename Kind::Sum>& start,
+                       const std::vector<typename Kind::Weight>& weights) {
+  using Sum = typename Kind::Sum;
+  const std::vector<Sum> expected = by_definition<Kind>(s, in, start, weights);
+  // One number more at either end, so that writes out of place show.
+  std::vector<Sum> out(expected.size() + 2, Sum{123});
+  product(s, in.data(), start.data(), weights.data(), out.data() + 1);
+  ASSERT_EQ(std::memcmp(out.data() + 1, expected.data(), expected.size() * sizeof(Sum)), 0);
+  EXPECT_EQ(out.front(), Sum{123});
+  EXPECT_EQ(out.back(), Sum{123});
+}
+
+template <class Kind>
+void expect_definition_for_all_shapes(Product<Kind>* product) {
+  constexpr bool kIntegers = Kind::kGroup > 1;
+  RandomValues random(7);
+  std::vector<ProductShape> all = shapes(kIntegers);
+  // Inputs enough for a second stretch; sums of 16-bit ones would leave 32 bits.
+  if (std::is_same_v<Kind, Int8Product>) all.push_back(convolution(1, 10, 72, 16));
+  for (ProductShape s : all) {
+    SCOPED_TRACE(::testing::Message()
+                 << s.rows << "x" << s.columns << ", " << s.strip_length << " to " << s.channels);
+    s.strip_length = s.strip_length / Kind::kGroup * Kind::kGroup;
+    const std::size_t weights = static_cast<std::size_t>(s.strips) * s.strip_length * s.channels;
+    auto start = random.vector<typename Kind::Sum>(s.channels);
+    if (kIntegers) {
+      for (auto& value : start) value = static_cast<typename Kind::Sum>(value / 4);
+    }
+    expect_definition<Kind>(product, s, random.vector<typename Kind::Input>(input_size(s)), start,
+                            random.vector<typename Kind::Weight>(weights));
+    if (!kIntegers) continue;
+    for (const int sign : {-1, 1}) {
+      expect_definition<Kind>(
+          product, s,
+          std::vector<typename Kind::Input>(input_size(s), std::numeric_limits<typename Kind::Input>::max()),
+          std::vector<typename Kind::Sum>(s.channels, 0),
+          std::vector<typename Kind::Weight>(weights, static_cast<typename Kind::Weight>(127 * sign)));
+    }
+  }
+}
+
+// Two rows of sums and each channel's shift, to be pooled.
+template <class N>
+struct Pooled {
+  static constexpr int kColumns = 10, kChannels = 48;
+  std::vector<Sum<N>> sums;
+  std::vector<std::uint8_t> shift = std::vector<std::uint8_t>(kChannels);
+
+  Pooled() {
+    RandomValues random(11);
+    sums = random.vector<Sum<N>>(2 * kColumns * kChannels);
+    if (N::kIsInteger) {
+      for (auto& sum : sums) sum = static_cast<Sum<N>>(sum / 2);
+    }
+    for (int c = 0; c < kChannels; ++c) shift[c] = static_cast<std::uint8_t>(1 + (c * 7) % 28);
+  }
+  std::array<double, 4> four(int x, int c) const {
+    const auto at = [&](int row, int column) -> double {
+      return sums[(row * kColumns + 2 * x + column) * kChannels + c];
+    };
+    return {at(0, 0), at(0, 1), at(1, 0), at(1, 1)};
+  }
+  // Rounded to the nearest, halves up.
+  double activated(double sum, int c, double largest_integer) const {
+    if (!N::kIsInteger) return std::max(0.0, sum);
+    return std::min(largest_integer, std::max(0.0, std::floor(std::ldexp(sum, -shift[c]) + 0.5)));
+  }
+};
+
+template <class N>
+void expect_max_pool_by_definition(MaxPool<N>* max_pool) {
+  const Pooled<N> pooled;
+  std::vector<ConvInput<N>> out(pooled.kColumns / 2 * pooled.kChannels);
+  max_pool(pooled.sums.data(), pooled.kColumns, pooled.kChannels, pooled.shift.data(), out.data());
+  for (int x = 0; x < pooled.kColumns / 2; ++x) {
+    for (int c = 0; c < pooled.kChannels; ++c) {
+      const auto four = pooled.four(x, c);
+      const double expected = pooled.activated(*std::max_element(four.begin(), four.end()), c, 255.0);
+      ASSERT_EQ(out[x * pooled.kChannels + c], expected) << x << ' ' << c;
+    }
+  }
+}
+
+// The mean in float32, summed in order; the sum in fixed point.
+template <class N>
+void expect_average_pool_by_definition(AveragePool<N>* average_pool) {
+  const Pooled<N> pooled;
+  std::vector<DenseInput<N>> out(pooled.kColumns / 2 * pooled.kChannels);
+  average_pool(pooled.sums.data(), pooled.kColumns, pooled.kChannels, pooled.shift.data(), out.data());
+  for (int x = 0; x < pooled.kColumns / 2; ++x) {
+    for (int c = 0; c < pooled.kChannels; ++c) {
+      Sum<N> total = 0;
+      for (const double sum : pooled.four(x, c))
+        total += static_cast<Sum<N>>(pooled.activated(sum, c, kLargestOfFour));
+      ASSERT_EQ(out[x * pooled.kChannels + c], N::kIsInteger ? total : total / 4) << x << ' ' << c;
+    }
+  }
+}
+
+class KernelsOf : public ::testing::TestWithParam<InstructionSet> {
+ protected:
+  template <class N>
+  void check() {
+    const Kernels<N>* kernels = kernels_on<N>(GetParam());
+    if (kernels == nullptr) GTEST_SKIP() << "not built, or this processor lacks it";
+    EXPECT_EQ(kernels->set, GetParam());
+    expect_definition_for_all_shapes<typename N::ConvProduct>(kernels->convolve);
+    expect_definition_for_all_shapes<typename N::DenseProduct>(kernels->multiply);
+    expect_max_pool_by_definition<N>(kernels->max_pool);
+    expect_average_pool_by_definition<N>(kernels->average_pool);
+  }
+};
+
+TEST_P(KernelsOf, FixedPointHaveTheBitsOfTheirDefinition) {
+  check<FixedPoint>();
+}
+TEST_P(KernelsOf, Float32HaveTheBitsOfTheirDefinition) {
+  check<Float32>();
+}
+
+// Which only the portable kernels of 32-bit processors use.
+TEST(MinimalFilter, HasTheBitsOfTheDefinition) {
+  expect_definition_for_all_shapes<Int8Product>([](const ProductShape& shape, const std::uint8_t* in,
+                                                   const std::int32_t* start, const std::int8_t* weights,
+                                                   std::int32_t* out) {
+    const bool suits = MinimalFilter::suits(shape);
+    (suits ? MinimalFilter::convolve : kernels_on<FixedPoint>(InstructionSet::kPortable)->convolve)(
+        shape, in, start, weights, out);
+  });
+}
+
+TEST_P(KernelsOf, AddToWhatLiesInTheOutputWhenStartIsTheOutput) {
+  const Kernels<FixedPoint>* kernels = kernels_on<FixedPoint>(GetParam());
+  if (kernels == nullptr) GTEST_SKIP() << "not built, or this processor lacks it";
+  RandomValues random(8);
+  const ProductShape s = dense(18, 208);
+  const auto in = random.vector<std::int16_t>(18);
+  const auto weights = random.vector<std::int8_t>(18 * 208);
+  std::vector<std::int32_t> out(208, 1000);
+  const auto expected = by_definition<Int16Product>(s, in, out, weights);
+  kernels->multiply(s, in.data(), out.data(), weights.data(), out.data());
+  EXPECT_EQ(out, expected);
+}
+
+std::string name_of(const ::testing::TestParamInfo<InstructionSet>& set) {
+  std::string name = to_string(set.param);
+  for (char& letter : name) letter = letter == '-' ? '_' : letter;
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(EverySet, KernelsOf, ::testing::ValuesIn(kInstructionSets), name_of);
+
+TEST(FastestKernels, AreThereForBothNumerics) {
+  EXPECT_EQ(&fastest_kernels<FixedPoint>(), kernels_on<FixedPoint>(fastest_kernels<FixedPoint>().set));
+  EXPECT_EQ(&fastest_kernels<Float32>(), kernels_on<Float32>(fastest_kernels<Float32>().set));
+  EXPECT_NE(kernels_on<FixedPoint>(InstructionSet::kPortable), nullptr);
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

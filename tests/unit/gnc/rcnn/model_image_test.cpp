@@ -1,0 +1,369 @@
+#include "gnc/rcnn/model_image.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gnc/numerics/conversion.hpp"
+#include "gnc/numerics/crc32.hpp"
+#include "gnc/rcnn/attitude_estimator.hpp"
+#include "tests/support/test_models.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+void put_u32(Bytes& image, std::size_t at, std::uint32_t value) {
+  for (int i = 0; i < 4; ++i) image[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
+}
+
+std::uint32_t get_u32(const Bytes& image, std::size_t at) {
+  return image[at] | image[at + 1] << 8 | image[at + 2] << 16 |
+         static_cast<std::uint32_t>(image[at + 3]) << 24;
+}
+
+constexpr std::size_t kSections = 88;
+constexpr std::size_t kHeaderCrc = 92;
+constexpr std::size_t kTable = 96;
+constexpr std::size_t kFloatData = 448;  // 96 + 16 * 21, to the next multiple of 64
+constexpr std::size_t kFixedData = 640;  // 96 + 16 * 31, likewise
+
+// Makes the header's CRC right again after a change, so that the check behind it is the one that speaks.
+void seal_header(Bytes& image) {
+  const std::size_t end = (kTable + 16 * get_u32(image, kSections) + 63) / 64 * 64;
+  Crc32 crc;
+  crc.add(image.data(), kHeaderCrc);
+  if (end <= image.size()) crc.add(image.data() + kTable, end - kTable);
+  put_u32(image, kHeaderCrc, crc.value());
+}
+
+void seal_section(Bytes& image, int index) {
+  const std::size_t entry = kTable + 16 * index;
+  put_u32(image, entry + 12, crc32(image.data() + get_u32(image, entry + 4), get_u32(image, entry + 8)));
+  seal_header(image);
+}
+
+const Bytes& good_image() {
+  return lasting_model_image<Float32>(21);
+}
+
+struct Damage {
+  const char* name;
+  ModelStatus expected;
+  std::function<void(Bytes&)> apply;
+};
+
+std::vector<Damage> damages() {
+  const auto sealed = [](auto change) {
+    return [change](Bytes& b) {
+      change(b);
+      seal_header(b);
+    };
+  };
+  return {
+      {"Empty", ModelStatus::kTooShort, [](Bytes& b) { b.clear(); }},
+      {"HalfAHeader", ModelStatus::kTooShort, [](Bytes& b) { b.resize(40); }},
+      {"HalfASectionTable", ModelStatus::kTooShort, [](Bytes& b) { b.resize(100); }},
+      {"OtherMagic", ModelStatus::kBadMagic, [](Bytes& b) { b[3] = 'X'; }},
+      {"NextVersion", ModelStatus::kBadVersion, sealed([](Bytes& b) { b[4] = 4; })},
+      {"OtherHeaderSize", ModelStatus::kBadSize, sealed([](Bytes& b) { b[6] = 92; })},
+      {"NoSections", ModelStatus::kBadSize, sealed([](Bytes& b) { put_u32(b, kSections, 0); })},
+      {"AbsurdSectionCount", ModelStatus::kBadSize, [](Bytes& b) { put_u32(b, kSections, 0xFFFFFFFFU); }},
+      {"LastByteMissing", ModelStatus::kBadSize, [](Bytes& b) { b.pop_back(); }},
+      {"OneByteMore", ModelStatus::kBadSize, [](Bytes& b) { b.push_back(0); }},
+      {"OtherTotalSize", ModelStatus::kBadSize, sealed([](Bytes& b) { b[8] ^= 4; })},
+      {"BitFlipInTarget", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[17] ^= 1; }},
+      {"BitFlipInSectionTable", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[200] ^= 0x80; }},
+      {"BitFlipInHeaderCrc", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[kHeaderCrc] ^= 1; }},
+      {"RubbishBehindTheSectionTable", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[kFloatData - 1] = 1; }},
+      {"OtherNumerics", ModelStatus::kBadNumerics, sealed([](Bytes& b) { b[84] = 1; })},
+      {"UnknownNumerics", ModelStatus::kBadNumerics, sealed([](Bytes& b) { b[84] = 2; })},
+      {"OtherArchitecture", ModelStatus::kBadArchitecture, sealed([](Bytes& b) { b[12] ^= 1; })},
+      {"OtherTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[16] = 'b'; })},
+      {"LongerTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[26] = 's'; })},
+      {"UnnamedTarget", ModelStatus::kBadTarget,
+       sealed([](Bytes& b) { std::fill_n(b.begin() + 16, 32, 0); })},
+      {"UnterminatedTarget", ModelStatus::kBadTarget,
+       sealed([](Bytes& b) { std::fill_n(b.begin() + 16, 32, 'a'); })},
+      {"UnprintableTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[18] = 7; })},
+      {"DeleteCharacterInTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[18] = 0x7F; })},
+      {"RubbishBehindTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[40] = 'x'; })},
+      {"NoSwath", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 48, 99); })},
+      {"HugeSwath", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 48, 100'001); })},
+      {"NoRadius", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 52, 0); })},
+      {"HugeRadius", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 52, 0xFFFFFFFFU); })},
+      {"ReservedFieldInUse", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 56, 1); })},
+      {"InertiaNotScaled", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 60, 5U << 24); })},
+      {"LargestProductOfInertia", ModelStatus::kBadValue,
+       sealed([](Bytes& b) { put_u32(b, 72, 0x80000000U); })},
+      {"IndefiniteInertia", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 72, 2U << 24); })},
+      {"SectionMissing", ModelStatus::kBadSection, sealed([](Bytes& b) { put_u32(b, kSections, 20); })},
+      {"RoomBehindTheLastSection", ModelStatus::kBadSection, sealed([](Bytes& b) {
+         b.resize(b.size() + 4);
+         put_u32(b, 8, static_cast<std::uint32_t>(b.size()));
+       })},
+      {"OtherSectionId", ModelStatus::kBadSection, sealed([](Bytes& b) { put_u32(b, kTable, 2); })},
+      {"SectionOffsetOutside", ModelStatus::kBadSection,
+       sealed([](Bytes& b) { put_u32(b, kTable + 4, 0xFFFFFFF0U); })},
+      {"OtherSectionSize", ModelStatus::kBadSection,
+       sealed([](Bytes& b) { put_u32(b, kTable + 16 * 20 + 8, 1U << 31); })},
+      {"BitFlipInFirstWeight", ModelStatus::kBadSectionCrc, [](Bytes& b) { b[kFloatData] ^= 1; }},
+      {"BitFlipInLastWeight", ModelStatus::kBadSectionCrc, [](Bytes& b) { b.back() ^= 0x80; }},
+      {"NanInFirstSection", ModelStatus::kBadValue,
+       [](Bytes& b) {
+         put_u32(b, kFloatData, 0x7FC00000U);
+         seal_section(b, 0);
+       }},
+      {"InfinityInLastSection", ModelStatus::kBadValue,
+       [](Bytes& b) {
+         put_u32(b, b.size() - 4, 0xFF800000U);
+         seal_section(b, 20);
+       }},
+  };
+}
+
+class DamagedModelImage : public ::testing::TestWithParam<Damage> {};
+
+// Verifies TS-IFC-020, TS-IFC-030, TS-IFC-040, TS-IFC-050.
+TEST_P(DamagedModelImage, IsRefusedAndThePreviousModelStaysInUse) {
+  static const auto estimator = std::make_unique<AttitudeEstimator<Float32>>();
+  static const auto untouched = std::make_unique<AttitudeEstimator<Float32>>();
+  ASSERT_EQ(estimator->load(good_image().data(), good_image().size(), "test_craft"), ModelStatus::kOk);
+  ASSERT_EQ(untouched->load(good_image().data(), good_image().size(), "test_craft"), ModelStatus::kOk);
+  AttitudeEstimate before, after;
+  estimator->step(random_depth_image(1), before);
+  untouched->step(random_depth_image(1), before);
+
+  Bytes image = random_model_image<Float32>(22);  // other weights than those in use
+  GetParam().apply(image);
+  EXPECT_EQ(estimator->load(image.data(), image.size(), "test_craft"), GetParam().expected)
+      << to_string(GetParam().expected);
+
+  EXPECT_TRUE(estimator->has_model());
+  EXPECT_EQ(estimator->model().crc32, untouched->model().crc32);
+  estimator->step(random_depth_image(2), after);
+  untouched->step(random_depth_image(2), before);
+  EXPECT_EQ(after.q_lrf_trf, before.q_lrf_trf);
+  EXPECT_EQ(after.predicted_error_urad, before.predicted_error_urad);
+  EXPECT_EQ(estimator->state_crc32(), untouched->state_crc32());
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryKind, DamagedModelImage, ::testing::ValuesIn(damages()),
+                         [](const auto& damage) { return damage.param.name; });
+
+// Verifies TS-IFC-010.
+TEST(ModelImage, ReadsBackWhatWasWrittenBitForBit) {
+  auto written = std::make_unique<NetworkWeights<Float32>>();
+  auto read = std::make_unique<NetworkWeights<Float32>>();
+  fill_random(*written, 23);
+  ModelHeader header = test_header();
+  Bytes image(kModelImageSize<Float32>);
+  ASSERT_EQ(write_model_image<Float32>(header, *written, image.data(), image.size()),
+            kModelImageSize<Float32>);
+  ModelHeader found;
+  ASSERT_EQ(read_model_image<Float32>(image.data(), image.size(), "test_craft", found, *read),
+            ModelStatus::kOk);
+  EXPECT_EQ(std::memcmp(read.get(), written.get(), sizeof(NetworkWeights<Float32>)), 0);
+  EXPECT_EQ(found.target, header.target);
+  EXPECT_EQ(found.projection.swath_mm, header.projection.swath_mm);
+  EXPECT_EQ(found.projection.target_radius_mm, header.projection.target_radius_mm);
+  // Scaled to a trace of 3 once more, which rounds.
+  const auto scaled = [](const ModelHeader& h) { return converted<float>(h.inertia.tensor_trf); };
+  EXPECT_LT((scaled(found) - scaled(header)).norm(), 1e-6F);
+  EXPECT_GT((scaled(found) - Eigen::Matrix3f::Identity()).norm(), 0.1F);
+  EXPECT_NE(found.crc32, 0U);
+}
+
+// Verifies TS-IFC-010.
+TEST(ModelImage, StandsInMemoryAsDocumented) {
+  const Bytes& image = good_image();
+  EXPECT_EQ(std::string(image.begin(), image.begin() + 4), "TSRM");
+  EXPECT_EQ(image[4] + 256 * image[5], 3);
+  EXPECT_EQ(image[6] + 256 * image[7], 96);
+  EXPECT_EQ(get_u32(image, 8), image.size());
+  EXPECT_EQ(get_u32(image, 12), architecture_hash());
+  EXPECT_STREQ(reinterpret_cast<const char*>(image.data() + 16), "test_craft");
+  EXPECT_EQ(get_u32(image, 48), 7500U);
+  EXPECT_EQ(get_u32(image, 52), 3250U);
+  const double inertia[] = {3.0, 5.0, 6.0, 0.4, -0.2, 0.1};  // xx, yy, zz, xy, xz, yz
+  for (int i = 0; i < 6; ++i) {
+    const auto raw = static_cast<std::int32_t>(get_u32(image, 60 + 4 * static_cast<std::size_t>(i)));
+    EXPECT_NEAR(raw / 16777216.0, inertia[i] * 3.0 / 14.0, 2e-7) << i;
+  }
+  EXPECT_EQ(get_u32(image, 84), 0U);
+  EXPECT_EQ(get_u32(image, kSections), 21U);
+  EXPECT_EQ(get_u32(image, kTable), 1U);
+  EXPECT_EQ(get_u32(image, kTable + 4), kFloatData);
+  EXPECT_EQ(get_u32(image, kTable + 8), 9U * 4 * 32 * 4);
+
+  const Bytes& fixed = lasting_model_image<FixedPoint>(21);
+  EXPECT_EQ(fixed.size(), kModelImageSize<FixedPoint>);
+  EXPECT_EQ(get_u32(fixed, 84), 1U);
+  EXPECT_EQ(get_u32(fixed, kSections), 31U);
+  EXPECT_EQ(get_u32(fixed, kTable + 4), kFixedData);
+  EXPECT_EQ(get_u32(fixed, kTable + 8), 9U * 4 * 32);                   // a byte a weight
+  EXPECT_EQ(get_u32(fixed, kTable + 16 + 4), kFixedData + 9 * 4 * 32);  // bias
+  EXPECT_EQ(get_u32(fixed, kTable + 16 + 8), 4U * 32);
+  EXPECT_EQ(get_u32(fixed, kTable + 32 + 8), 4U * 32);  // shifts
+}
+
+TEST(IsFloat32, IsToldByTheHeaderOfAWholeImageOnly) {
+  const Bytes& fixed = lasting_model_image<FixedPoint>(21);
+  EXPECT_TRUE(is_float32(good_image().data(), good_image().size()));
+  EXPECT_FALSE(is_float32(fixed.data(), fixed.size()));
+  EXPECT_FALSE(is_float32(good_image().data(), 40));
+  EXPECT_FALSE(is_float32(nullptr, 0));
+  Bytes damaged = good_image();
+  damaged[17] ^= 1;
+  EXPECT_FALSE(is_float32(damaged.data(), damaged.size()));
+}
+
+ModelStatus read_fixed(const Bytes& image) {
+  ModelHeader header;
+  static auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
+  return read_model_image<FixedPoint>(image.data(), image.size(), nullptr, header, *weights);
+}
+
+// Section `index` of the fixed-point image: three a layer, but four of the LSTM.
+std::size_t offset_of(const Bytes& image, int index) {
+  return get_u32(image, kTable + 16 * static_cast<std::size_t>(index) + 4);
+}
+
+// Verifies TS-IFC-010, TS-MEM-080.
+TEST(FixedPointImage, LeavesItsWeightsInPlace) {
+  const Bytes& image = lasting_model_image<FixedPoint>(30);
+  ModelHeader header;
+  auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
+  ASSERT_EQ(read_model_image<FixedPoint>(image.data(), image.size(), "test_craft", header, *weights),
+            ModelStatus::kOk);
+  EXPECT_EQ(static_cast<const void*>(weights->conv1.weight.data()), image.data() + kFixedData);
+  Bytes again(image.size());
+  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, again.data(), again.size()), image.size());
+  EXPECT_TRUE(std::equal(image.begin() + kFixedData, image.end(), again.begin() + kFixedData));
+}
+
+// Verifies TS-IFC-040.
+TEST(FixedPointImage, IsRefusedWhenAShiftIsOutOfItsRange) {
+  ASSERT_EQ(read_fixed(random_model_image<FixedPoint>(31)), ModelStatus::kOk);
+  for (const int section : {2, 20, 24}) {  // conv1, cnn_out, lstm
+    for (const std::uint32_t shift : {0U, 63U, 255U, 0xFFFFFFFFU}) {
+      Bytes image = random_model_image<FixedPoint>(31);
+      put_u32(image, offset_of(image, section), shift);
+      seal_section(image, section);
+      EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue) << section << ' ' << shift;
+    }
+  }
+  Bytes image = random_model_image<FixedPoint>(31);
+  put_u32(image, offset_of(image, 2), 31);  // of an activation at most 30
+  seal_section(image, 2);
+  EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
+}
+
+TEST(FixedPointImage, TakesAShiftBeyondASumsWidthWhereNumbersLeaveTheNetwork) {
+  for (const int section : {20, 24}) {  // cnn_out, lstm
+    for (const std::uint32_t shift : {1U, 31U, 32U, 62U}) {
+      Bytes image = random_model_image<FixedPoint>(31);
+      put_u32(image, offset_of(image, section), shift);
+      seal_section(image, section);
+      EXPECT_EQ(read_fixed(image), ModelStatus::kOk) << section << ' ' << shift;
+    }
+  }
+}
+
+// Verifies TS-IFC-040.
+TEST(FixedPointImage, IsRefusedWhenASumCouldLeave32Bits) {
+  for (const int section : {1, 19, 23, 29}) {  // biases of conv1, cnn_out, lstm, head2
+    for (const std::uint32_t bias : {0x7FFFFFFFU, 0x80000000U, 0x7FFF0000U}) {
+      Bytes image = random_model_image<FixedPoint>(32);
+      put_u32(image, offset_of(image, section), bias);
+      seal_section(image, section);
+      EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue) << section << ' ' << bias;
+    }
+  }
+  // Weights alone: 2160 inputs of up to 16380, each times 127.
+  Bytes image = random_model_image<FixedPoint>(32);
+  std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(offset_of(image, 12)),
+              get_u32(image, kTable + 16 * 12 + 8), 127);
+  seal_section(image, 12);
+  EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
+}
+
+// Verifies TS-IFC-040.
+TEST(FixedPointImage, IsRefusedWhenTwoSumsOfAConvolutionCouldBeTooFarApart) {
+  Bytes image = random_model_image<FixedPoint>(7);
+  put_u32(image, offset_of(image, 1), 1U << 30);  // a bias of conv1
+  seal_section(image, 1);
+  EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
+}
+
+// Verifies TS-IFC-040.
+TEST(FixedPointImage, IsRefusedWithAWeightThatHasNoOpposite) {
+  for (const int section : {0, 21, 22}) {  // conv1, lstm: forward and recurrent
+    Bytes image = random_model_image<FixedPoint>(33);
+    image[offset_of(image, section) + 5] = 0x80;
+    seal_section(image, section);
+    EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue) << section;
+  }
+}
+
+// Verifies TS-IFC-030.
+TEST(ModelImage, IsAcceptedForAnyTargetWhenNoneIsExpected) {
+  ModelHeader header;
+  auto weights = std::make_unique<NetworkWeights<Float32>>();
+  EXPECT_EQ(read_model_image<Float32>(good_image().data(), good_image().size(), nullptr, header, *weights),
+            ModelStatus::kOk);
+  EXPECT_STREQ(header.target.data(), "test_craft");
+  EXPECT_EQ(read_model_image<Float32>(good_image().data(), good_image().size(), "", header, *weights),
+            ModelStatus::kBadTarget);
+  EXPECT_EQ(read_model_image<Float32>(nullptr, 0, nullptr, header, *weights), ModelStatus::kTooShort);
+}
+
+TEST(ModelImage, IsNotWrittenWhereItDoesNotFit) {
+  auto weights = std::make_unique<NetworkWeights<Float32>>();
+  Bytes out(kModelImageSize<Float32> - 1, 0x55);
+  EXPECT_EQ(write_model_image<Float32>(test_header(), *weights, out.data(), out.size()), 0U);
+  EXPECT_EQ(out, Bytes(kModelImageSize<Float32> - 1, 0x55));
+}
+
+// Verifies TS-IFC-020.
+TEST(ModelImage, EverySingleBitFlipInHeaderAndSectionTableIsFound) {
+  Bytes image = good_image();
+  ModelHeader header;
+  auto weights = std::make_unique<NetworkWeights<Float32>>();
+  for (std::size_t bit = 0; bit < 8 * kModelDataOffset<Float32>; ++bit) {
+    image[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
+    ASSERT_NE(read_model_image<Float32>(image.data(), image.size(), nullptr, header, *weights),
+              ModelStatus::kOk)
+        << bit;
+    image[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
+  }
+}
+
+TEST(ModelHeader, TakesOnlyNamesThatTheReaderAccepts) {
+  ModelHeader header = test_header();
+  EXPECT_FALSE(set_target(header, ""));
+  EXPECT_FALSE(set_target(header, std::string(32, 'a').c_str()));
+  EXPECT_FALSE(set_target(header, "tab\tbed"));
+  EXPECT_STREQ(header.target.data(), "test_craft");
+  EXPECT_TRUE(set_target(header, std::string(31, 'a').c_str()));
+}
+
+// Verifies TS-IFC-050.
+TEST(ModelStatus, EveryValueHasItsOwnWords) {
+  std::vector<std::string> words;
+  // One more than there are: it has words too.
+  for (int i = 0; i <= static_cast<int>(ModelStatus::kBadNumerics) + 1; ++i) {
+    words.emplace_back(to_string(static_cast<ModelStatus>(i)));
+  }
+  std::sort(words.begin(), words.end());
+  EXPECT_EQ(std::adjacent_find(words.begin(), words.end()), words.end());
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

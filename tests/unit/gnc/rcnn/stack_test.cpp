@@ -1,0 +1,92 @@
+// Verifies TS-MEM-030.
+#include <gtest/gtest.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "gnc/rcnn/attitude_estimator.hpp"
+#include "tests/support/test_models.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr std::size_t kBudget_bytes = 6 * 1024;
+constexpr std::size_t kStack_bytes = 256 * 1024;
+constexpr std::uint8_t kUntouched = 0xA5;
+
+template <class N>
+struct Run {
+  AttitudeEstimator<N>* estimator;
+  const RangeImage* frame;
+  std::uintptr_t begin = 0;  // where the step's own frame begins
+  FrameStatus status = FrameStatus::kEmpty;
+};
+
+template <class N>
+void* step(void* argument) {
+  auto& run = *static_cast<Run<N>*>(argument);
+  AttitudeEstimate estimate;
+  run.begin = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
+  run.status = run.estimator->step(*run.frame, estimate);
+  return nullptr;
+}
+
+// On a stack of its own: how far below its caller's frame the step has written.
+template <class N>
+std::size_t stack_of_a_step(AttitudeEstimator<N>& estimator, const RangeImage& frame) {
+  void* memory = nullptr;
+  if (posix_memalign(&memory, 4096, kStack_bytes) != 0) return SIZE_MAX;
+  auto* const stack = static_cast<std::uint8_t*>(memory);
+  std::fill(stack, stack + kStack_bytes, kUntouched);
+  Run<N> run{&estimator, &frame};
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstack(&attributes, stack, kStack_bytes);
+  pthread_t thread;
+  EXPECT_EQ(pthread_create(&thread, &attributes, step<N>, &run), 0);
+  pthread_join(thread, nullptr);
+  pthread_attr_destroy(&attributes);
+  EXPECT_EQ(run.status, FrameStatus::kOk);
+  const std::uint8_t* lowest = stack;
+  while (lowest < stack + kStack_bytes && *lowest == kUntouched) ++lowest;
+  const std::size_t used = run.begin - reinterpret_cast<std::uintptr_t>(lowest);
+  std::free(memory);
+  return used;
+}
+
+template <class N>
+void expect_within_budget() {
+  const std::vector<std::uint8_t> image = random_model_image<N>(61);
+  const auto estimator = std::make_unique<AttitudeEstimator<N>>();
+  ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+  const RangeImage frame = random_frame(62);
+  for (const InstructionSet set : kInstructionSets) {
+    const Kernels<N>* const kernels = kernels_on<N>(set);
+    if (kernels == nullptr) continue;
+    estimator->network().use(*kernels);
+    AttitudeEstimate estimate;
+    ASSERT_EQ(estimator->step(frame, estimate),
+              FrameStatus::kOk);  // once, for the dynamic linker's own needs
+    const std::size_t used = stack_of_a_step(*estimator, frame);
+    std::printf("  %s, %s: %zu bytes\n", N::kName, to_string(set), used);
+    EXPECT_LE(used, kBudget_bytes) << N::kName << ", " << to_string(set);
+  }
+}
+
+TEST(Stack, OfAStepIsWithinItsBudget) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "AddressSanitizer keeps room between variables";
+#elif !defined(__OPTIMIZE__)
+  GTEST_SKIP() << "without optimisation every variable lies on the stack";
+#endif
+  expect_within_budget<FixedPoint>();
+  expect_within_budget<Float32>();
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

@@ -1,0 +1,95 @@
+// Other runtimes compute what the flight network computes.
+#include "sim/bench/peer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "gnc/rcnn/network_flow.hpp"
+#include "tests/support/test_models.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+using gnc::Float32;
+constexpr float kTolerance = 1e-3F;  // of the largest number
+constexpr int kFrames = 5;
+
+struct Network {
+  Network() {
+    model.header = gnc::test_header();
+    gnc::fill_random(model.weights, 9);
+    ours.weights() = model.weights;
+  }
+  Float32Model model;
+  gnc::Network<Float32> ours;
+};
+
+template <class Numbers>
+void expect_near(const Numbers& numbers, const Numbers& expected, const char* what) {
+  float largest = 0.0F;
+  for (const float value : expected) largest = std::max(largest, std::abs(value));
+  ASSERT_GT(largest, 0.0F) << what;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_NEAR(numbers[i], expected[i], kTolerance * largest) << what << ", number " << i;
+  }
+}
+
+void expect_same_frames(Peer& peer, Network& network) {
+  for (unsigned seed = 0; seed < kFrames; ++seed) {
+    const gnc::DepthImage image = gnc::random_depth_image(seed);
+    std::vector<float> numbers(image.depth.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) gnc::to_conv_input(image.depth[i], numbers[i]);
+    gnc::OutputVector<float> expected, out;
+    gnc::Features<Float32> features;
+    network.ours.infer_frame(image, expected);
+    peer.run_frame(numbers.data(), features, out);
+    expect_near(features, network.ours.features(), "features");
+    expect_near(out, expected, "output of the CNN");
+  }
+}
+
+void expect_same_sequence(Peer& peer, Network& network) {
+  gnc::LstmState<Float32> expected_state, state;
+  for (unsigned seed = 0; seed < kFrames; ++seed) {
+    const gnc::LstmInput<Float32> input = gnc::random_lstm_input(seed);
+    gnc::HeadOutput<float> expected, out;
+    network.ours.infer_sequence(input, expected_state, expected);
+    peer.run_sequence(input, state, out);
+    expect_near(state.h, expected_state.h, "hidden state");
+    expect_near(state.c, expected_state.c, "cells");
+    expect_near(out, expected, "output of the head");
+  }
+}
+
+// Verifies TS-TRN-060.
+TEST(OnnxRuntime, ComputesWhatWeDo) {
+  const auto network = std::make_unique<Network>();
+  std::string reason;
+  const auto peer = make_onnx_runtime(network->model, "", reason);
+  if (peer == nullptr) GTEST_SKIP() << reason;
+  expect_same_frames(*peer, *network);
+  expect_same_sequence(*peer, *network);
+}
+
+TEST(OnnxRuntime, ThatIsNotThereIsSaid) {
+  const auto network = std::make_unique<Network>();
+  std::string reason;
+  EXPECT_EQ(make_onnx_runtime(network->model, "/no/such/library.so", reason), nullptr);
+  EXPECT_FALSE(reason.empty());
+}
+
+TEST(LibTorch, ComputesWhatWeDo) {
+  const auto network = std::make_unique<Network>();
+  std::string reason;
+  const auto peer = make_libtorch(network->model, reason);
+  if (TUMBLESIGHT_TRAINING == 0 && peer == nullptr) GTEST_SKIP() << reason;
+  ASSERT_NE(peer, nullptr) << reason;
+  expect_same_frames(*peer, *network);
+  expect_same_sequence(*peer, *network);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,163 @@
+// The host tool's command line: what it refuses, how it says so, and `evaluate`.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/sim/cli/run_tumblesight.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+struct Refusal {
+  const char* arguments;
+  int exit_code;
+  const char* message;  // part of the one line on the standard error stream
+};
+
+std::ostream& operator<<(std::ostream& out, const Refusal& refusal) {
+  return out << refusal.arguments;
+}
+
+class BadArguments : public ::testing::TestWithParam<Refusal> {};
+
+TEST_P(BadArguments, GiveOneClearLineAndAnExitCode) {
+  const Workplace here;
+  const Outcome outcome = here.run(GetParam().arguments);
+  EXPECT_EQ(outcome.exit_code, GetParam().exit_code);
+  EXPECT_NE(outcome.errors.find(GetParam().message), std::string::npos) << outcome.errors;
+  EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Evaluate, BadArguments,
+    ::testing::Values(
+        Refusal{"", 2, "subcommand is required"}, Refusal{"fly", 2, "no subcommand 'fly'"},
+        Refusal{"evaluate --sequences 0", 2, "--sequences: must be a whole number from 1 to 100000, not '0'"},
+        Refusal{"evaluate --sequences 2.5", 2, "not '2.5'"},
+        Refusal{"evaluate --sequences 010", 2, "without leading zeros, not '010'"},
+        Refusal{"evaluate --sequences 0x10", 2, "not '0x10'"}, Refusal{"evaluate --frames 08", 2, "not '08'"},
+        Refusal{"evaluate --seed 007", 2, "not '007'"}, Refusal{"evaluate --threads 02", 2, "not '02'"},
+        Refusal{"evaluate --sequences 100000 --frames 11", 2, "1100000 frames in all, at most 1000000"},
+        Refusal{"evaluate --sequences", 2, "--sequences"},
+        Refusal{"evaluate --frames 1001", 2, "from 1 to 1000"}, Refusal{"evaluate --seed -1", 2, "not '-1'"},
+        Refusal{"evaluate --threads 9999", 2, "from 0 to 1024"},
+        Refusal{
+            "evaluate --condition foggy", 2,
+            "must be one of nominal, degraded, occluded, tumbling, stress, offset, outliers, not 'foggy'"},
+        Refusal{"evaluate --condition nominal,nominal", 2, "'nominal' is given twice"},
+        Refusal{"evaluate --inertia 1,2,3", 2, "--inertia"},
+        Refusal{"evaluate --inertia 1,1,3,0,0,0", 1, "--inertia 1,1,3,0,0,0: no body has it"},
+        Refusal{"evaluate --inertia 1,1,nan,0,0,0", 1, "no body has it"},
+        Refusal{"evaluate --inertia 1e-300,1e-300,1e-300,0,0,0", 1, "must be 1e-06 to 1e+12 kg m2"},
+        Refusal{"evaluate --inertia 1e300,1e300,1e300,0,0,0", 1, "must be 1e-06 to 1e+12 kg m2"},
+        Refusal{"evaluate --inertia 0.001,1,1,0,0,0", 1, "none below 0.01 of their mean"},
+        Refusal{"evaluate --paper --target magellan", 2, "--paper: decides on --target itself"},
+        Refusal{"evaluate --paper --frames 5", 2, "decides on --frames itself"},
+        Refusal{"evaluate --mesh-folder meshes", 2, "requires --paper"},
+        Refusal{"evaluate --out folder", 2, "requires --paper"},
+        Refusal{"evaluate --paper --mesh-folder /no/such", 1, "--mesh-folder '/no/such' is not a folder"},
+        Refusal{"evaluate --no-baseline --baseline-sequences 5", 2, "excludes"},
+        Refusal{"evaluate --csv same --json same", 2, "'same' is the file of --json as well"},
+        Refusal{"evaluate --report /proc/none/x.html", 1, "--report /proc/none/x.html"},
+        Refusal{"evaluate --target 'a b'", 2, "must be 1 to 31 of a-z"},
+        Refusal{"evaluate --mesh x.stl --mesh-scale 0", 2, "from 1e-06 to 1e+06"},
+        Refusal{"evaluate --mesh x.stl --mesh-up x", 2, "must be one of y, z, not 'x'"},
+        Refusal{"evaluate --mesh-up z", 2, "requires --mesh"}, Refusal{"evaluate --colour", 2, "--colour"},
+        Refusal{"evaluate --target sputnik", 1, "near_shoemaker"},
+        Refusal{"evaluate --mesh /no/such.stl", 1, "/no/such.stl"},
+        Refusal{"evaluate --model /no/such.tsm", 1, "'/no/such.tsm' does not exist"},
+        Refusal{"evaluate --model /dev", 1, "'/dev' does not exist"},
+        Refusal{"evaluate --json /proc/none/x.json", 1, "--json /proc/none/x.json"}));
+
+TEST(Help, TeachesWithAnExample) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --help");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* part : {"--target", "--mesh", "--condition", "--sequences", "--seed", "--json", "--report",
+                           "--paper", "Example:"}) {
+    EXPECT_NE(outcome.output.find(part), std::string::npos) << part;
+  }
+}
+
+// Verifies TS-SIL-060.
+TEST(Evaluate, GivesTheSameFiguresWithOneAndTwoThreads) {
+  const Workplace here;
+  const std::string common =
+      "evaluate --sequences 3 --frames 2 --seed 9 --no-baseline --model " + here.model();
+  ASSERT_EQ(here.run(common + " --threads 1 --json " + here.path("one.json")).exit_code, 0);
+  ASSERT_EQ(here.run(common + " --threads 2 --json " + here.path("two.json")).exit_code, 0);
+  const std::string one = content(here.path("one.json"));
+  EXPECT_FALSE(one.empty());
+  EXPECT_EQ(one, content(here.path("two.json")));
+}
+
+TEST(Evaluate, WritesARowWithAllEstimatorsForEachCondition) {
+  const Workplace here;
+  const Outcome outcome = here.run(
+      "evaluate --sequences 2 --frames 2 --baseline-sequences 1 --condition degraded,offset --model " +
+      here.model() + " --json " + here.path("rows.json"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("RCNN, 2 frames"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("template matching, 1 sequences"), std::string::npos) << outcome.output;
+  const auto rows = nlohmann::json::parse(content(here.path("rows.json"))).at("rows");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].at("target"), "near_shoemaker");
+  EXPECT_EQ(rows[0].at("mesh"), "parametric");
+  EXPECT_EQ(rows[0].at("condition"), "degraded");
+  EXPECT_EQ(rows[1].at("condition"), "offset");
+  EXPECT_EQ(rows[0].at("sequences"), 2);
+  for (const char* estimator : {"rcnn", "cnn", "baseline"}) {
+    for (const char* figure : {"mean_deg", "median_deg", "within_20deg", "within_5deg"}) {
+      EXPECT_TRUE(rows[0].at(estimator).at(figure).is_number()) << estimator << " " << figure;
+    }
+  }
+}
+
+TEST(Evaluate, WritesATableAndAPageToo) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model() +
+                                   " --csv " + here.path("rows.csv") + " --report " + here.path("page.html"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(content(here.path("rows.csv")).substr(0, 12), "target,mesh,");
+  EXPECT_NE(content(here.path("page.html")).find("--sequences 2"), std::string::npos);
+}
+
+// One triangle that is no shipped target.
+std::string own_mesh(const Workplace& here) {
+  std::ofstream(here.path("mine.obj"))
+      << "v -1 -1 0\nv 1 -1 0.5\nv 0 1.5 0\nv 0 0 2\nf 1 2 3\nf 1 2 4\nf 2 3 4\n";
+  return here.path("mine.obj");
+}
+
+TEST(Evaluate, OfATumblingTargetOfOnesOwnNeedsItsInertia) {
+  const Workplace here;
+  const std::string common =
+      "evaluate --sequences 1 --frames 2 --no-baseline --target mine --condition tumbling --mesh " +
+      own_mesh(here) + " --model " + here.model("mine", 4000);
+  const Outcome without = here.run(common);
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_NE(without.errors.find("needs the inertia of 'mine'"), std::string::npos) << without.errors;
+  EXPECT_NE(without.errors.find("--inertia Ixx,Iyy,Izz,Ixy,Ixz,Iyz"), std::string::npos) << without.errors;
+  const Outcome with = here.run(common + " --inertia 10,12,9,0,-1,0.5");
+  EXPECT_EQ(with.exit_code, 0) << with.errors;
+}
+
+TEST(Evaluate, NamesTheFaultOfAModelImage) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --sequences 1 --model " + here.model("magellan"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("is refused"), std::string::npos) << outcome.errors;
+}
+
+TEST(Evaluate, WarnsWhenTheNetworkWasTrainedForAnotherSwath) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --sequences 1 --frames 1 --no-baseline --model " +
+                                   here.model("near_shoemaker", 11000));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.errors.find("trained for 11.00 m"), std::string::npos) << outcome.errors;
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

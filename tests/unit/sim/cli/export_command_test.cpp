@@ -1,0 +1,42 @@
+// `tumblesight export`: what it writes, says and refuses.
+#include <gtest/gtest.h>
+
+#include "tests/support/test_models.hpp"
+#include "tests/unit/sim/cli/run_tumblesight.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+std::string float32_model(const Workplace& here) {
+  const std::vector<std::uint8_t> image = gnc::random_model_image<gnc::Float32>(3);
+  std::ofstream file(here.path("x.float32.tsm"), std::ios::binary);
+  file.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
+  return here.path("x.float32.tsm");
+}
+
+TEST(Export, WritesBothModelsAndNamesThem) {
+  const Workplace here;
+  const Outcome outcome = here.run("export --model " + float32_model(here) + " --onnx net");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  for (const char* name : {"net.cnn.onnx", "net.recurrent.onnx"}) {
+    EXPECT_GT(content(here.path(name)).size(), 100'000U) << name;
+    EXPECT_NE(outcome.output.find(name), std::string::npos) << outcome.output;
+  }
+}
+
+TEST(Export, RefusesFixedPointAFolderAndAPlaceThatIsNotThere) {
+  const Workplace here;
+  const std::string model = float32_model(here);
+  const Outcome fixed = here.run("export --model " + here.model() + " --onnx net");
+  EXPECT_EQ(fixed.exit_code, 1);
+  EXPECT_NE(fixed.errors.find("model.tsm: "), std::string::npos) << fixed.errors;
+  const Outcome folder = here.run("export --model " + model + " --onnx ./");
+  EXPECT_EQ(folder.exit_code, 2);
+  EXPECT_NE(folder.errors.find("--onnx: './' is a folder"), std::string::npos) << folder.errors;
+  const Outcome nowhere = here.run("export --model " + model + " --onnx /no/such/net");
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_NE(nowhere.errors.find("/no/such/net.cnn.onnx"), std::string::npos) << nowhere.errors;
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

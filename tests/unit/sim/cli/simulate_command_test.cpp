@@ -1,0 +1,192 @@
+// `tumblesight simulate` as a user runs it, flight program and DDS included.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <future>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/unit/sim/cli/run_tumblesight.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+// False if it has not come true within half a minute.
+bool wait_for(const std::function<bool()>& condition) {
+  for (int i = 0; i < 600; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
+TEST(Simulate, RefusesArgumentsOutOfRange) {
+  const Workplace here;
+  const std::pair<const char*, const char*> refusals[] = {
+      {"--speed fast", "must be max or a number from 0.1 to 1000, not 'fast'"},
+      {"--speed 0", "not '0'"},
+      {"--domain 231", "from 0 to 230"},
+      {"--domain 010", "without leading zeros, not '010'"},
+      {"--sequences 100000 --frames 1000", "100000000 frames in all, at most 1000000"},
+      {"--json x --report x", "--json: 'x' is the file of --report as well"},
+      {"--json x --report ../$(basename $PWD)/./x", "is the file of --report as well"},
+      {"--sequences 1e3", "from 1 to 100000"},
+      {"--report /proc/none/report.html", "--report /proc/none/report.html"},
+  };
+  for (const auto& [arguments, message] : refusals) {
+    const Outcome outcome = here.run(std::string("simulate ") + arguments);
+    EXPECT_NE(outcome.exit_code, 0) << arguments;
+    EXPECT_NE(outcome.errors.find(message), std::string::npos) << outcome.errors;
+  }
+}
+
+// Verifies TS-SIL-040.
+TEST(Simulate, RefusesAMissingFlightProgram) {
+  const Workplace here;
+  const Outcome outcome =
+      here.run("simulate --flight /no/flight --report " + here.path("r.html") + " --model " + here.model());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("'/no/flight' does not exist"), std::string::npos) << outcome.errors;
+}
+
+TEST(Simulate, LeavesFiguresAndAReport) {
+  const Workplace here;
+  const Outcome outcome = here.run("simulate --sequences 2 --frames 3 --seed 4 --model " + here.model() +
+                                   " --json " + here.path("run.json") + " --report " + here.path("run.html"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const auto json = nlohmann::json::parse(content(here.path("run.json")));
+  EXPECT_EQ(json.at("steps_missed"), 0);
+  EXPECT_EQ(json.at("flight_heap_allocations"), 0);
+  EXPECT_NE(content(here.path("run.html")).find("</html>"), std::string::npos);
+  EXPECT_NE(outcome.output.find("6 of 6 answered"), std::string::npos) << outcome.output;
+}
+
+// Tumbling, since both have to look up the target's inertia for it.
+// Verifies TS-SIL-060.
+TEST(Simulate, AgreesWithEvaluateOnTheSameSeed) {
+  const Workplace here;
+  const std::string common =
+      " --condition tumbling --sequences 2 --frames 3 --seed 4 --model " + here.model() + " --json ";
+  ASSERT_EQ(here.run("simulate --report " + here.path("r.html") + common + here.path("sil.json")).exit_code,
+            0);
+  ASSERT_EQ(here.run("evaluate --no-baseline" + common + here.path("direct.json")).exit_code, 0);
+  const auto sil = nlohmann::json::parse(content(here.path("sil.json")));
+  const auto direct = nlohmann::json::parse(content(here.path("direct.json"))).at("rows").at(0);
+  EXPECT_EQ(sil.at("rcnn"), direct.at("rcnn"));
+  EXPECT_EQ(sil.at("cnn"), direct.at("cnn"));
+}
+
+TEST(Simulate, FailsWhenTheFlightProgramRefusesTheModel) {
+  const Workplace here;
+  const Outcome outcome = here.run("simulate --sequences 1 --frames 2 --model " + here.model("magellan") +
+                                   " --report " + here.path("r.html"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("SAFE"), std::string::npos) << outcome.errors;
+  EXPECT_NE(content(here.path("r.html")).find("SAFE"), std::string::npos);
+}
+
+// Flight's own default domain, so that the two meet when neither is told; and the command line shown works.
+TEST(Simulate, ShowsTheFlightProgramThatItWaitsFor) {
+  const Workplace here;
+  auto simulation = std::async(std::launch::async, [&] {
+    return here.run("simulate --flight none --sequences 1 --frames 2 --model " + here.model() +
+                    " --report r.html");
+  });
+  std::string command;
+  EXPECT_TRUE(wait_for([&] {
+    const std::string shown = content(here.path("run.out"));
+    const std::size_t start = shown.find(std::string("'") + FLIGHT_BINARY);
+    if (start == std::string::npos || shown.find('\n', start) == std::string::npos) return false;
+    command = shown.substr(start, shown.find('\n', start) - start);
+    return true;
+  }));
+  EXPECT_NE(command.find("--domain 0"), std::string::npos) << command;
+  const Outcome flight = here.run_command("timeout 30 " + command, "flight");
+  const Outcome outcome = simulation.get();
+  EXPECT_EQ(flight.exit_code, 0) << flight.errors;
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("2 of 2 answered"), std::string::npos) << outcome.output;
+}
+
+// Verifies TS-SEC-040.
+TEST(Simulate, GivesBothSidesTheKeyOfAFile) {
+  const Workplace here;
+  std::ofstream(here.path("mission.key")) << std::string(64, '7');
+  const Outcome outcome = here.run(
+      "simulate --sequences 1 --frames 2 --command-key mission.key --report r.html --model " + here.model());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+}
+
+// Verifies TS-SEC-040.
+TEST(Simulate, RefusesAFileThatHoldsNoKey) {
+  const Workplace here;
+  std::ofstream(here.path("short.key")) << "1234";
+  const Outcome outcome =
+      here.run("simulate --sequences 1 --frames 2 --command-key short.key --model " + here.model());
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_NE(outcome.errors.find("64 hexadecimal digits"), std::string::npos) << outcome.errors;
+}
+
+// A flight program that spoils the place of one file while the run goes on.
+TEST(Simulate, WritesTheOtherFileWhenOneCannotBeWritten) {
+  for (const char* lost : {"run.json", "run.html"}) {
+    const Workplace here;
+    const std::string flight =
+        here.script("flight.sh", "mkdir " + here.path(lost) + "\nexec " + FLIGHT_BINARY + " \"$@\"");
+    const Outcome outcome =
+        here.run("simulate --sequences 1 --frames 2 --json run.json --report run.html --model " +
+                 here.model() + " --flight " + flight);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_NE(outcome.errors.find(std::string("cannot write '") + lost), std::string::npos) << outcome.errors;
+    const std::string kept = lost == std::string("run.json") ? "run.html" : "run.json";
+    EXPECT_FALSE(content(here.path(kept)).empty()) << kept;
+  }
+}
+
+TEST(Simulate, EndsWellTwiceAtOnceWithOneReport) {
+  const Workplace here;
+  const std::string arguments =
+      "simulate --sequences 3 --frames 4 --report same.html --model " + here.model();
+  auto first = std::async(std::launch::async, [&] { return here.run(arguments, "first"); });
+  const Outcome second = here.run(arguments, "second");
+  EXPECT_EQ(first.get().exit_code, 0) << content(here.path("first.err"));
+  EXPECT_EQ(second.exit_code, 0) << second.errors;
+  EXPECT_NE(content(here.path("same.html")).find("</html>"), std::string::npos);
+  for (const auto& entry : std::filesystem::directory_iterator(here.path(""))) {
+    EXPECT_NE(entry.path().extension(), ".partial");
+  }
+}
+
+// Verifies TS-SIL-040.
+TEST(Simulate, ReportsWhatWasDoneWhenTheFlightProgramIsKilled) {
+  constexpr int kPlanned = 200;  // at 0.1 s a step: long enough to be interrupted
+  const Workplace here;
+  const std::string flight =
+      here.script("flight.sh", "echo $$ >" + here.path("id") + "\nexec " + FLIGHT_BINARY + " \"$@\"");
+  auto simulation = std::async(std::launch::async, [&] {
+    return here.run(
+        "simulate --sequences 100 --frames 2 --speed 27 --json run.json --report run.html --model " +
+        here.model() + " --flight " + flight);
+  });
+  ASSERT_TRUE(
+      wait_for([&] { return content(here.path("run.err")).find("simulating") != std::string::npos; }));
+  ASSERT_EQ(kill(std::stoi(content(here.path("id"))), SIGKILL), 0);
+  const Outcome outcome = simulation.get();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("signal 9"), std::string::npos) << outcome.errors;
+
+  const auto json = nlohmann::json::parse(content(here.path("run.json")));
+  const int answered = kPlanned - json.at("steps_missed").get<int>();
+  EXPECT_GT(answered, 0);
+  EXPECT_LT(answered, kPlanned);
+  EXPECT_TRUE(json.at("rcnn").at("mean_deg").is_number());
+  const std::string html = content(here.path("run.html"));
+  EXPECT_NE(html.find("The run ended early"), std::string::npos);
+  EXPECT_NE(html.find(std::to_string(answered) + " of " + std::to_string(kPlanned)), std::string::npos);
+  EXPECT_NE(html.find("<svg"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

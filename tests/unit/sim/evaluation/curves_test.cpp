@@ -1,0 +1,77 @@
+#include "sim/evaluation/curves.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/unit/sim/evaluation/made_up_results.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+FrameResult at_range(double range_m, double rcnn_deg) {
+  FrameResult made = result_with(0, 9, rcnn_deg, 2.0 * rcnn_deg);
+  made.range_m = range_m;
+  return made;
+}
+
+TEST(ErrorsByFrame, KeepFramesApart) {
+  const std::vector<FrameResult> results{result_with(0, 0, 40.0, 50.0), result_with(0, 1, 4.0, 60.0),
+                                         result_with(1, 0, 20.0, 70.0)};
+  const Curve by_frame = errors_by_frame(results, 3);
+  ASSERT_EQ(by_frame.size(), 3U);
+  EXPECT_EQ(by_frame[0].at, 1.0);
+  EXPECT_NEAR(by_frame[0].rcnn.mean_deg, 30.0, 1e-9);
+  EXPECT_NEAR(by_frame[0].cnn.mean_deg, 60.0, 1e-9);
+  EXPECT_NEAR(by_frame[1].rcnn.mean_deg, 4.0, 1e-9);
+  EXPECT_EQ(by_frame[2].rcnn.count, 0U);
+}
+
+TEST(Binned, GivesALowerEdgeToTheBinAboveItAndTheLastEdgeToTheLastBin) {
+  const std::vector<FrameResult> results{at_range(20.0, 1.0), at_range(29.999, 3.0), at_range(30.0, 5.0),
+                                         at_range(100.0, 7.0)};
+  const Curve curve = errors_by_range(results);
+  ASSERT_EQ(curve.size(), 8U);
+  EXPECT_EQ(curve[0].at, 25.0);
+  EXPECT_EQ(curve[0].rcnn.count, 2U);
+  EXPECT_NEAR(curve[0].rcnn.mean_deg, 2.0, 1e-9);
+  EXPECT_NEAR(curve[0].cnn.mean_deg, 4.0, 1e-9);
+  EXPECT_NEAR(curve[1].rcnn.mean_deg, 5.0, 1e-9);
+  EXPECT_EQ(curve[2].rcnn.count, 0U);
+  EXPECT_NEAR(curve[7].rcnn.mean_deg, 7.0, 1e-9);
+}
+
+TEST(Binned, LeavesOutWhatLiesBeyondTheEdges) {
+  const Curve curve = errors_by_range({at_range(19.9, 1.0), at_range(100.1, 1.0)});
+  for (const CurvePoint& point : curve) EXPECT_EQ(point.rcnn.count, 0U);
+}
+
+TEST(ErrorsByRate, UsesTheNormInDegrees) {
+  FrameResult made = result_with(0, 9, 6.0, 8.0);
+  made.rate_rad_s = 18.0 * kRadPerDegree;
+  const Curve curve = errors_by_rate({made});
+  ASSERT_EQ(curve.size(), 8U);
+  EXPECT_EQ(curve[7].at, 18.75);
+  EXPECT_EQ(curve[7].rcnn.count, 1U);
+}
+
+TEST(Flatness, ComparesTheBinsThatHoldEnough) {
+  Curve curve(3);
+  curve[0].rcnn = summarise(std::vector<double>(40, 2.0));
+  curve[1].rcnn = summarise(std::vector<double>(40, 3.0));
+  curve[2].rcnn = summarise(std::vector<double>(5, 90.0));
+  EXPECT_DOUBLE_EQ(flatness(curve), 1.5);
+  EXPECT_DOUBLE_EQ(flatness(curve, 5), 45.0);
+  EXPECT_EQ(flatness(curve, 41), 0.0);
+}
+
+TEST(Histogram, CountsALimitInTheBinBelowIt) {
+  const std::vector<double> shares = histogram({0.0, 1.0, 1.5, 180.0});
+  EXPECT_DOUBLE_EQ(shares.front(), 0.5);
+  EXPECT_DOUBLE_EQ(shares[1], 0.25);
+  EXPECT_DOUBLE_EQ(shares.back(), 0.25);
+  EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

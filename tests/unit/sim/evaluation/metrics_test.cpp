@@ -1,0 +1,91 @@
+#include "sim/evaluation/metrics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/sim/evaluation/made_up_results.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+Eigen::Quaterniond negated(const Eigen::Quaterniond& q) {
+  return {-q.w(), -q.x(), -q.y(), -q.z()};
+}
+
+TEST(AngularError, IsTheAngleOfTheRotationBetweenTwoAttitudes) {
+  const Eigen::Quaterniond attitude = turned(123.0, {0.2, 1.0, -0.7});
+  for (const double angle_deg : {0.0, 1e-7, 0.01, 5.0, 20.0, 90.0, 179.0, 180.0}) {
+    const Eigen::Quaterniond other = turned(angle_deg, {1.0, 2.0, 3.0}) * attitude;
+    EXPECT_NEAR(angular_error_rad(attitude, other) / kRadPerDegree, angle_deg, 1e-11 + 1e-9 * angle_deg);
+  }
+}
+
+TEST(AngularError, DoesNotDependOnTheSignOfAQuaternion) {
+  const Eigen::Quaterniond a = turned(10.0, {1.0, 0.0, 0.0});
+  const Eigen::Quaterniond b = turned(50.0, {1.0, 0.0, 0.0});
+  EXPECT_NEAR(angular_error_rad(a, negated(b)), 40.0 * kRadPerDegree, 1e-12);
+  EXPECT_NEAR(angular_error_rad(negated(a), b), 40.0 * kRadPerDegree, 1e-12);
+  EXPECT_NEAR(angular_error_rad(a, negated(a)), 0.0, 1e-12);
+}
+
+TEST(AngularError, AgreesWithThePapersFormula) {
+  const Eigen::Quaterniond a = turned(33.0, {1.0, 0.5, 0.0});
+  const Eigen::Quaterniond b = turned(-71.0, {0.0, 0.5, 2.0});
+  EXPECT_NEAR(angular_error_rad(a, b), 2.0 * std::acos(std::abs(a.dot(b))), 1e-9);
+}
+
+TEST(AngularError, StaysFiniteForQuaternionsOffUnitLength) {
+  Eigen::Quaterniond a = turned(5.0, {0.0, 0.0, 1.0});
+  Eigen::Quaterniond scaled = a;
+  scaled.coeffs() *= 1.0 + 1e-6;
+  EXPECT_NEAR(angular_error_rad(a, scaled), 0.0, 1e-7);
+}
+
+TEST(ErrorSummary, MatchesFiguresWorkedOutByHand) {
+  const ErrorSummary summary = summarise({30.0, 4.0, 5.0, 20.0, 1.0});
+  EXPECT_EQ(summary.count, 5U);
+  EXPECT_DOUBLE_EQ(summary.mean_deg, 12.0);
+  EXPECT_DOUBLE_EQ(summary.median_deg, 5.0);
+  EXPECT_DOUBLE_EQ(summary.within_20deg, 0.8);
+  EXPECT_DOUBLE_EQ(summary.within_5deg, 0.6);
+}
+
+TEST(ErrorSummary, MedianOfAnEvenCountIsTheMiddle) {
+  EXPECT_DOUBLE_EQ(median({4.0, 1.0, 3.0, 100.0}), 3.5);
+  EXPECT_DOUBLE_EQ(median({}), 0.0);
+}
+
+TEST(ErrorSummary, OfNothingCountsNothing) {
+  EXPECT_EQ(summarise({}).count, 0U);
+}
+
+TEST(LastFrame, LeavesOutSequencesThatEndedEarly) {
+  const std::vector<FrameResult> results{result_with(0, 0, 50.0, 90.0), result_with(0, 1, 3.0, 30.0),
+                                         result_with(1, 0, 60.0, 2.0)};
+  const std::vector<double> rcnn = last_frame_errors_deg(results, 2, Estimator::kRcnn);
+  ASSERT_EQ(rcnn.size(), 1U);
+  EXPECT_NEAR(rcnn[0], 3.0, 1e-9);
+  EXPECT_NEAR(last_frame_errors_deg(results, 2, Estimator::kCnn)[0], 30.0, 1e-9);
+}
+
+TEST(LastFrame, CountsAMissingAttitudeAsTheWorstOne) {
+  const std::vector<FrameResult> results{FrameResult{}};
+  EXPECT_DOUBLE_EQ(last_frame_errors_deg(results, 1, Estimator::kRcnn)[0], 180.0);
+}
+
+TEST(LastFrame, OfTheBaselineCountsOnlyWhereItWasRun) {
+  std::vector<FrameResult> results{result_with(0, 0, 3.0, 3.0), result_with(1, 0, 3.0, 3.0),
+                                   result_with(2, 0, 3.0, 3.0)};
+  results[0].has_baseline = true;
+  results[0].baseline_valid = true;
+  results[0].baseline = turned(7.0, {0.0, 1.0, 0.0}) * results[0].truth;
+  results[1].has_baseline = true;  // and found nothing
+  const std::vector<double> errors = last_frame_errors_deg(results, 1, Estimator::kBaseline);
+  ASSERT_EQ(errors.size(), 2U);
+  EXPECT_NEAR(errors[0], 7.0, 1e-9);
+  EXPECT_DOUBLE_EQ(errors[1], 180.0);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

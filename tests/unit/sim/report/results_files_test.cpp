@@ -1,0 +1,109 @@
+// Results as JSON, CSV and Markdown.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "sim/report/results_csv.hpp"
+#include "sim/report/results_json.hpp"
+#include "sim/report/results_markdown.hpp"
+#include "tests/unit/sim/report/sample_results.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// Fields of a CSV line, quotes resolved.
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+TEST(SummaryJson, HoldsTheFourFiguresAndTheStandardError) {
+  EXPECT_EQ(
+      summary_json(summarise({10.0, 30.0, 2.0, 2.0})).dump().substr(0, 94),
+      R"({"mean_deg":11.0,"median_deg":6.0,"within_20deg":0.75,"within_5deg":0.5,"mean_standard_error_d)");
+}
+
+TEST(SummaryJson, IsNullWithoutASequence) {
+  const nlohmann::ordered_json json = summary_json({});
+  EXPECT_EQ(json.size(), 5U);
+  for (const auto& [key, value] : json.items()) EXPECT_TRUE(value.is_null()) << key;
+}
+
+TEST(ResultsJson, HasARowForEachSubjectAndCondition) {
+  const nlohmann::ordered_json json = results_json(sample_results());
+  ASSERT_EQ(json.at("rows").size(), 3U);
+  const auto& row = json["rows"][1];
+  std::string keys;
+  for (const auto& [key, value] : row.items()) keys += key + " ";
+  EXPECT_EQ(keys.substr(0, 50), "target mesh condition sequences rcnn cnn baseline ");
+  EXPECT_EQ(row["condition"], "occluded");
+  EXPECT_EQ(row["sequences"], 40);
+  EXPECT_EQ(row["seed"], 7);
+  EXPECT_EQ(row["model_crc32"], "00c0ffee");
+  EXPECT_EQ(row["baseline"]["sequences"], 3);
+  EXPECT_DOUBLE_EQ(row["baseline"]["mean_deg"].get<double>(), 31.0);
+  EXPECT_DOUBLE_EQ(row["paper_rcnn"]["mean_deg"].get<double>(), 22.86);
+  EXPECT_TRUE(json["rows"][2]["baseline"].is_null());
+  EXPECT_TRUE(json["rows"][2]["paper_rcnn"].is_null());
+}
+
+TEST(ResultsJson, HasTheCurvesOfSubjectsThatWereSwept) {
+  const nlohmann::ordered_json json = results_json(sample_results());
+  ASSERT_EQ(json.at("curves").size(), 1U);
+  EXPECT_EQ(json["curves"][0]["by_hidden_share"].size(), 2U);
+  EXPECT_EQ(json["curves"][0]["by_range_m"].size(), 8U);
+  EXPECT_EQ(json["curves"][0]["long_run_by_frame"].size(), 30U);
+}
+
+TEST(ResultsCsv, HasALineAnEstimatorWithAsManyFieldsAsTheHeader) {
+  const std::vector<std::string> lines = lines_of(results_csv(sample_results()));
+  ASSERT_EQ(lines.size(), 1U + 3U + 3U + 2U);
+  const std::size_t columns = fields_of(lines.front()).size();
+  for (const std::string& line : lines) EXPECT_EQ(fields_of(line).size(), columns) << line;
+  EXPECT_NE(lines[1].find("\"near, \"\"odd\"\".stl\""), std::string::npos) << lines[1];
+  const std::vector<std::string> fields = fields_of(lines[3]);
+  EXPECT_EQ(fields[7], "baseline");
+  EXPECT_EQ(fields[8], "3");
+  EXPECT_EQ(fields[9], "31.0000");
+}
+
+TEST(ResultsMarkdown, ShowsOursThePapersAndTheGoalWithCrcAndSeed) {
+  const std::string text = results_markdown(sample_results());
+  for (const char* part :
+       {"`00c0ffee`", "`12345678`", "seed 7", "12.69°, 88 %", "2.50°, 99.8 %", "40.94°, 45 %",
+        "tumblesight evaluate --paper", "magellan is left out", "| occluded | 40 |"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
+}
+
+TEST(ResultsMarkdown, HoldsTablesWithAsManyCellsAsTheirHeader) {
+  std::ptrdiff_t columns = 0;
+  for (const std::string& line : lines_of(results_markdown(sample_results()))) {
+    const std::ptrdiff_t bars = std::count(line.begin(), line.end(), '|');
+    if (bars > 0 && columns > 0) {
+      EXPECT_EQ(bars, columns) << line;
+    }
+    columns = bars;
+  }
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

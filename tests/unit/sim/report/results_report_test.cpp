@@ -1,0 +1,46 @@
+#include "sim/report/results_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/sim/report/markup_checks.hpp"
+#include "tests/unit/sim/report/sample_results.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(ResultsReport, HoldsWellFormedFigures) {
+  const std::vector<std::string> svgs = svgs_of(results_report(sample_results()));
+  EXPECT_EQ(svgs.size(), 10U);
+  for (const std::string& svg : svgs) {
+    EXPECT_EQ(xml_fault(svg), "");
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(svg.find("inf"), std::string::npos);
+  }
+}
+
+TEST(ResultsReport, NeedsNothingButItself) {
+  EXPECT_EQ(outside_reference(results_report(sample_results())), "");
+}
+
+TEST(ResultsReport, ShowsEveryCellAndEscapesNames) {
+  const std::string html = results_report(sample_results());
+  for (const char* part : {"occluded", "offset", "12.69°, 88 %", "near, &quot;odd&quot;.stl",
+                           "mine, parametric mesh", "00c0ffee", "magellan is left out"}) {
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  }
+}
+
+TEST(ResultsReport, OfOneCellHasItsFiguresWithoutSweeps) {
+  Results results = sample_results();
+  results.subjects.erase(results.subjects.begin());
+  const std::vector<std::string> svgs = svgs_of(results_report(results));
+  EXPECT_GE(svgs.size(), 5U);
+  for (const std::string& svg : svgs) EXPECT_EQ(xml_fault(svg), "");
+}
+
+TEST(ResultsReport, OfNothingIsStillAPage) {
+  EXPECT_NE(results_report({}).find("</html>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,113 @@
+// Verifies TS-TRN-040.
+#include "sim/training/frame_stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "sim/world/target/near_shoemaker.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(Turned, EqualsARenderingOfTheTurnedAttitude) {
+  const TriangleMesh mesh = make_near_shoemaker();
+  const FlashLidar lidar(mesh);
+  const TrainingTargets targets = make_training_targets({mesh}, paper_conditions());
+  SensorSettings settings;
+  settings.noise = false;
+  const auto frame = std::make_unique<gnc::RangeImage>();
+  const auto scratch = std::make_unique<gnc::DepthImageScratch>();
+  const auto image = std::make_unique<gnc::DepthImage>();
+  const auto render = [&](const Eigen::Quaterniond& q) {
+    lidar.expose({q, Eigen::Vector3d::Zero(), 30.0}, settings, 1e-3 * targets.projection.swath_mm, 1, *frame);
+    EXPECT_EQ(make_depth_image(*frame, targets.projection, *scratch, *image), gnc::FrameStatus::kOk);
+    torch::Tensor tensor = torch::empty({1, 1, 100, 100});
+    float* to = tensor.data_ptr<float>();
+    for (const std::uint16_t depth : image->depth) *to++ = static_cast<float>(depth) / 65536.0F;
+    return tensor;
+  };
+  const Eigen::Quaterniond q = Eigen::Quaterniond(0.8, -0.3, 0.4, 0.2).normalized();
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> r = q.toRotationMatrix().cast<float>();
+  const FrameBatch straight{render(q), torch::from_blob(const_cast<float*>(r.data()), {1, 3, 3}).clone()};
+  for (int turns = 1; turns < 4; ++turns) {
+    const FrameBatch batch = turned(straight, turns);
+    Eigen::Matrix3d labelled;
+    for (int i = 0; i < 9; ++i) labelled(i / 3, i % 3) = batch.r_view_trf[0][i / 3][i % 3].item<double>();
+    const torch::Tensor difference = (batch.images - render(Eigen::Quaterniond(labelled))).abs();
+    EXPECT_LT((difference > 0.05).to(torch::kFloat).mean().item<double>(), 0.01)
+        << turns;  // edges may fall either way
+  }
+}
+
+TEST(FrameStream, IsTheSameWithAnyNumberOfWorkersAndFromAnyStart) {
+  const TrainingTargets targets = make_training_targets({make_near_shoemaker()}, paper_conditions());
+  FrameStream one(targets, 5, 4, 0, 1), three(targets, 5, 4, 0, 3), later(targets, 5, 4, 3, 2),
+      other(targets, 6, 4, 0, 1);
+  for (int i = 0; i < 6; ++i) {
+    const FrameBatch a = one.next();
+    const FrameBatch b = three.next();
+    EXPECT_TRUE(torch::equal(a.images, b.images)) << i;
+    EXPECT_TRUE(torch::equal(a.r_view_trf, b.r_view_trf)) << i;
+    if (i >= 3) {
+      EXPECT_TRUE(torch::equal(a.images, later.next().images)) << i;
+    }
+    EXPECT_FALSE(torch::equal(a.images, other.next().images)) << i;
+  }
+}
+
+TEST(FrameStream, HandsOutEachRenderedGroupInItsFourQuarterTurns) {
+  const TrainingTargets targets = make_training_targets({make_near_shoemaker()}, all_conditions());
+  FrameStream stream(targets, 5, 4, 0, 1);
+  for (std::uint64_t group = 0; group < 2; ++group) {
+    const FrameBatch rendered = render_frames(targets, 5, group, 4);
+    for (std::int64_t turns = 0; turns < 4; ++turns) {
+      const FrameBatch batch = stream.next();
+      const FrameBatch expected = turned(rendered, turns);
+      EXPECT_TRUE(torch::equal(batch.images, expected.images)) << group << ' ' << turns;
+      EXPECT_TRUE(torch::allclose(batch.r_view_trf, expected.r_view_trf)) << group << ' ' << turns;
+    }
+  }
+}
+
+TEST(FrameStream, ConditionsTakeTurns) {
+  const TriangleMesh mesh = make_near_shoemaker();
+  const FrameBatch nominal = render_frames(make_training_targets({mesh}, {Condition::kNominal}), 5, 0, 4);
+  const FrameBatch both =
+      render_frames(make_training_targets({mesh}, {Condition::kNominal, Condition::kOccluded}), 5, 0, 4);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(torch::equal(both.images[i], nominal.images[i]), i % 2 == 0) << i;
+  }
+  // The occluded frames are of the same attitudes, and have fewer cells with returns.
+  const auto filled = [](const torch::Tensor& image) { return (image > 0.0).sum().item<std::int64_t>(); };
+  for (const int i : {1, 3}) EXPECT_LT(filled(both.images[i]), filled(nominal.images[i])) << i;
+}
+
+// Verifies TS-TRN-050.
+TEST(FrameStream, TheListsOfConditionsAreToldApart) {
+  const std::vector<Condition> nominal{Condition::kNominal}, twice{Condition::kNominal, Condition::kNominal},
+      swapped{Condition::kDegraded, Condition::kNominal};
+  EXPECT_EQ(number_of(paper_conditions()), number_of({Condition::kNominal, Condition::kDegraded}));
+  EXPECT_NE(number_of(paper_conditions()), number_of(swapped));
+  EXPECT_NE(number_of(nominal), number_of(twice));
+  EXPECT_NE(number_of(paper_conditions()), number_of(all_conditions()));
+  const std::vector<Condition> all = all_conditions();
+  EXPECT_EQ(std::count(all.begin(), all.end(), Condition::kStress), 0) << "the stress test is for tests only";
+}
+
+TEST(TrainingConditions, AreThoseOfTheWordsInTheirOrder) {
+  EXPECT_EQ(training_conditions({"all"}), all_conditions());
+  EXPECT_EQ(training_conditions({"paper"}), paper_conditions());
+  std::vector<Condition> more = all_conditions();
+  more.insert(more.end(), {Condition::kDegraded, Condition::kOffset});
+  EXPECT_EQ(training_conditions({"all", "degraded", "offset"}), more);
+  EXPECT_THROW(training_conditions({"all", "some"}), std::invalid_argument);
+  const std::vector<std::string> words = training_condition_words();
+  for (const std::string& word : words) EXPECT_FALSE(training_conditions({word}).empty());
+  EXPECT_EQ(std::count(words.begin(), words.end(), "stress"), 0) << "the stress test is for tests only";
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,269 @@
+#include "sim/world/target/mesh_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/unit/sim/world/target/mesh_measures.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A wedge whose box differs along every axis, so that a swapped or mirrored axis shows: corners (0,0,0),
+// (1,0,0), (0,2,0), (0,0,3) of the file's axes.
+constexpr float kWedge[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
+constexpr std::uint16_t kFaces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+
+template <typename T>
+void put(std::string& bytes, const T& value) {
+  char raw[sizeof(T)];
+  std::memcpy(raw, &value, sizeof(T));
+  bytes.append(raw, sizeof(T));
+}
+
+std::string stl(const std::vector<std::vector<float>>& triangles) {
+  std::string bytes(80, ' ');
+  put(bytes, static_cast<std::uint32_t>(triangles.size()));
+  for (const std::vector<float>& corners : triangles) {
+    bytes.append(12, '\0');  // normal
+    for (const float c : corners) {
+      put(bytes, c);
+    }
+    bytes.append(2, '\0');  // attributes
+  }
+  return bytes;
+}
+
+std::vector<std::vector<float>> wedge_triangles(float scale = 1.0F) {
+  std::vector<std::vector<float>> triangles;
+  for (const auto& face : kFaces) {
+    std::vector<float>& corners = triangles.emplace_back();
+    for (const std::uint16_t vertex : face) {
+      for (const float c : kWedge[vertex]) {
+        corners.push_back(scale * c);
+      }
+    }
+  }
+  return triangles;
+}
+
+[[maybe_unused]] std::string obj() {
+  std::string text;
+  for (const auto& v : kWedge) {
+    text += "v " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + "\n";
+  }
+  for (const auto& f : kFaces) {
+    text += "f " + std::to_string(f[0] + 1) + " " + std::to_string(f[1] + 1) + " " +
+            std::to_string(f[2] + 1) + "\n";
+  }
+  return text;
+}
+
+[[maybe_unused]] std::string gltf_buffer() {
+  std::string bytes;
+  for (const auto& v : kWedge) {
+    for (const float c : v) {
+      put(bytes, c);
+    }
+  }
+  for (const auto& f : kFaces) {
+    for (const std::uint16_t i : f) {
+      put(bytes, i);
+    }
+  }
+  return bytes;
+}
+
+// The wedge at half size under a node that doubles it and moves it by (0.5, 0, 0).
+[[maybe_unused]] std::string gltf(const std::string& buffer_uri) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"children":[1],"translation":[0.5,0,0]},{"mesh":0,"scale":[2,2,2]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":4}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,2,3]},
+{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
+"buffers":[{"uri":")" +
+         buffer_uri + R"(","byteLength":72}]})";
+}
+
+class MeshFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("tumblesight_mesh_file_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& bytes) const {
+    const fs::path path = folder_ / name;
+    std::ofstream(path, std::ios::binary) << bytes;
+    return path.string();
+  }
+
+  // Loads a file that must be refused: the message names the file and contains every one of `parts`.
+  static void expect_refused(const std::string& path, const std::vector<std::string>& parts,
+                             const MeshFileOptions& options = {}) {
+    try {
+      (void)load_mesh_file(path, options);
+      ADD_FAILURE() << path << " was not refused";
+    } catch (const std::runtime_error& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(path), std::string::npos) << message;
+      for (const std::string& part : parts) {
+        EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
+      }
+    }
+  }
+
+  fs::path folder_;
+};
+
+[[maybe_unused]] void expect_box(const TriangleMesh& mesh, const Eigen::Vector3f& min,
+                                 const Eigen::Vector3f& max) {
+  const Eigen::AlignedBox3f box = bounding_box(mesh);
+  EXPECT_LT((box.min() - min).norm(), 1e-5F) << box.min().transpose();
+  EXPECT_LT((box.max() - max).norm(), 1e-5F) << box.max().transpose();
+}
+
+TEST_F(MeshFile, BadScaleIsRefused) {
+  const std::string path = write("wedge.stl", stl(wedge_triangles()));
+  expect_refused(path, {"scale", "0", "--mesh-scale"}, {MeshUp::kY, 0.0});
+  expect_refused(path, {"scale", "-1", "positive"}, {MeshUp::kY, -1.0});
+  expect_refused(path, {"scale", "nan"}, {MeshUp::kY, std::numeric_limits<double>::quiet_NaN()});
+}
+
+TEST_F(MeshFile, MissingEmptyOrNoFileIsRefused) {
+  expect_refused((folder_ / "missing.stl").string(), {"no such file"});
+  expect_refused(folder_.string(), {"not a file"});
+  expect_refused(write("empty.stl", ""), {"empty", "0 bytes"});
+}
+
+// Assimp reads PLY too, and ends the program on a damaged one.
+TEST_F(MeshFile, OtherFormatsAreRefusedByName) {
+  expect_refused(write("wedge.ply", "ply\n"), {".stl, .obj, .gltf or .glb"});
+  expect_refused(write("wedge", "v 0 0 0\n"), {".stl, .obj, .gltf or .glb"});
+}
+
+TEST(MeshUpAxis, IsYOrZ) {
+  EXPECT_EQ(mesh_up_from("y"), MeshUp::kY);
+  EXPECT_EQ(mesh_up_from("z"), MeshUp::kZ);
+  EXPECT_THROW(mesh_up_from("x"), std::invalid_argument);
+}
+
+#ifdef TUMBLESIGHT_HAS_ASSIMP
+
+// y up: TRF x = X, y = -Z, z = Y.
+TEST_F(MeshFile, StlComesInWithBothUpAxesJoined) {
+  const std::string path = write("wedge.stl", stl(wedge_triangles()));
+  const TriangleMesh y_up = load_mesh_file(path);
+  EXPECT_EQ(y_up.name, path);
+  EXPECT_EQ(y_up.triangles.size(), 4U);
+  EXPECT_EQ(y_up.vertices_trf_m.size(), 4U);
+  EXPECT_NEAR(area_m2(y_up), 1.0 + 1.5 + 3.0 + 3.5, 1e-5);
+  expect_box(y_up, {0.0F, -3.0F, 0.0F}, {1.0F, 0.0F, 2.0F});
+  expect_box(load_mesh_file(path, {MeshUp::kZ, 1.0}), {0.0F, 0.0F, 0.0F}, {1.0F, 2.0F, 3.0F});
+}
+
+TEST_F(MeshFile, ScaleTurnsMillimetresIntoMetres) {
+  const std::string path = write("mm.stl", stl(wedge_triangles(1000.0F)));
+  expect_box(load_mesh_file(path, {MeshUp::kZ, 0.001}), {0.0F, 0.0F, 0.0F}, {1.0F, 2.0F, 3.0F});
+}
+
+TEST_F(MeshFile, ObjComesIn) {
+  const TriangleMesh mesh = load_mesh_file(write("wedge.OBJ", obj()));
+  EXPECT_EQ(mesh.triangles.size(), 4U);
+  expect_box(mesh, {0.0F, -3.0F, 0.0F}, {1.0F, 0.0F, 2.0F});
+}
+
+TEST_F(MeshFile, QuadsAreTriangulated) {
+  const TriangleMesh mesh =
+      load_mesh_file(write("quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"), {MeshUp::kZ, 1.0});
+  EXPECT_EQ(mesh.triangles.size(), 2U);
+  EXPECT_NEAR(area_m2(mesh), 1.0, 1e-6);
+}
+
+TEST_F(MeshFile, GltfComesInWithItsNodeTransforms) {
+  (void)write("wedge.bin", gltf_buffer());
+  const TriangleMesh mesh = load_mesh_file(write("wedge.gltf", gltf("wedge.bin")));
+  EXPECT_EQ(mesh.triangles.size(), 4U);
+  expect_box(mesh, {0.5F, -6.0F, 0.0F}, {2.5F, 0.0F, 4.0F});
+}
+
+TEST_F(MeshFile, GlbComesIn) {
+  std::string json = gltf("");
+  json.replace(json.find("\"uri\":\"\","), 9, "");
+  json.append((4 - json.size() % 4) % 4, ' ');
+  const std::string buffer = gltf_buffer();
+  std::string bytes = "glTF";
+  put(bytes, std::uint32_t{2});
+  put(bytes, static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + buffer.size()));
+  put(bytes, static_cast<std::uint32_t>(json.size()));
+  bytes += "JSON" + json;
+  put(bytes, static_cast<std::uint32_t>(buffer.size()));
+  bytes += std::string("BIN\0", 4) + buffer;
+  expect_box(load_mesh_file(write("wedge.glb", bytes)), {0.5F, -6.0F, 0.0F}, {2.5F, 0.0F, 4.0F});
+}
+
+// On which Assimp goes astray: it asks for gigabytes, or for hours.
+TEST_F(MeshFile, GltfThatIsNoneIsRefusedBeforeItIsRead) {
+  std::string bytes = "glTF";
+  for (const std::uint32_t number : {2U, 28U, 2'000'000'000U}) put(bytes, number);
+  expect_refused(write("large.glb", bytes + "JSON{}  "), {"larger than the file"});
+  expect_refused(write("other.glb", "ply\nformat ascii 1.0\nelement vertex 4\n"), {"GLB"});
+  expect_refused(write("short.glb", "glTF"), {"GLB"});
+  expect_refused(write("other.gltf", "ply\nformat ascii 1.0\nelement vertex 4\n"), {"glTF"});
+}
+
+TEST_F(MeshFile, UnknownOrCorruptContentIsRefused) {
+  expect_refused(write("notes.txt", "not a mesh\n"), {"cannot be read"});
+  expect_refused(write("broken.gltf", "{\"asset\":"), {"cannot be read"});
+  const std::string whole = stl(wedge_triangles());
+  expect_refused(write("truncated.stl", whole.substr(0, whole.size() - 60)), {"cannot be read"});
+  expect_refused(write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99\n"), {});
+}
+
+TEST_F(MeshFile, FileWithoutTrianglesIsRefused) {
+  expect_refused(write("none.stl", stl({})), {});
+  expect_refused(write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), {});
+}
+
+TEST_F(MeshFile, NotANumberIsRefusedAndCounted) {
+  auto triangles = wedge_triangles();
+  triangles[2][4] = std::numeric_limits<float>::quiet_NaN();
+  expect_refused(write("nan.stl", stl(triangles)), {"1 of", "not finite", "nan"});
+  triangles[2][4] = std::numeric_limits<float>::infinity();
+  expect_refused(write("inf.stl", stl(triangles)), {"1 of", "not finite", "inf"});
+}
+
+TEST_F(MeshFile, TrianglesWithoutAreaAreRefusedAndCounted) {
+  auto triangles = wedge_triangles();
+  triangles.push_back({0, 0, 0, 1, 0, 0, 1, 0, 0});  // two equal corners
+  triangles.push_back({0, 0, 0, 1, 0, 0, 3, 0, 0});  // three on a line
+  expect_refused(write("flat.stl", stl(triangles)), {"2 of 6", "no area", "triangle 4"});
+}
+
+TEST_F(MeshFile, SizeBeyondTheSensorIsRefusedWithTheLimit) {
+  expect_refused(write("large.stl", stl(wedge_triangles(3.0F))), {"9 m", "6.9 m", "--mesh-scale"});
+  expect_refused(write("small.stl", stl(wedge_triangles(0.001F))), {"0.003 m", "0.1 m", "--mesh-scale"});
+}
+
+#else
+
+TEST_F(MeshFile, WithoutAssimpTheErrorSaysWhatToInstall) {
+  expect_refused(write("wedge.stl", stl(wedge_triangles())), {"libassimp-dev"});
+}
+
+#endif
+
+}  // namespace
+}  // namespace tumblesight::sim

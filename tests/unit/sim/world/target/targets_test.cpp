@@ -1,0 +1,72 @@
+#include "sim/world/target/targets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "sim/world/target/mesh_file.hpp"
+#include "tests/unit/sim/world/target/mesh_measures.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(Targets, AreFoundByNameSoundAndOfASizeForTheSensor) {
+  EXPECT_EQ(target_names(), (std::vector<std::string>{"near_shoemaker", "magellan", "sacd_aquarius",
+                                                      "sacd_aquarius_stowed"}));
+  for (const std::string& name : target_names()) {
+    const TriangleMesh mesh = target_by_name(name);
+    EXPECT_EQ(mesh.name, name);
+    EXPECT_GT(mesh.triangles.size(), 1000U) << name;
+    EXPECT_LT(mesh.triangles.size(), 7000U) << name;
+    EXPECT_TRUE(is_sound(mesh)) << name;
+    EXPECT_LT(mesh.radius_m(), kMaxMeshRadius_m) << name;
+  }
+}
+
+TEST(Targets, UnknownNameIsRefusedWithTheKnownOnes) {
+  const std::function<void()> calls[] = {[] { (void)target_by_name("sputnik"); },
+                                         [] { (void)inertia_kg_m2("sputnik"); }};
+  for (const auto& call : calls) {
+    try {
+      call();
+      FAIL() << "no exception";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("sputnik"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("near_shoemaker"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("sacd_aquarius_stowed"), std::string::npos);
+    }
+  }
+}
+
+// Symmetric, positive definite, and no principal moment exceeds the sum of the others.
+TEST(Targets, InertiasAreThoseOfRigidBodies) {
+  for (const std::string& name : target_names()) {
+    const Eigen::Matrix3d inertia = inertia_kg_m2(name);
+    EXPECT_EQ(inertia, inertia.transpose()) << name;
+    const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
+    EXPECT_GT(moments[0], 0.0) << name;
+    EXPECT_LT(moments[2], moments[0] + moments[1]) << name;
+  }
+}
+
+TEST(Targets, InertiasAreThePapers) {
+  Eigen::Matrix3d near;
+  near << 372.38, -2.86, -2.95, -2.86, 372.45, -4.42, -2.95, -4.42, 316.17;
+  EXPECT_EQ(inertia_kg_m2("near_shoemaker"), near);
+  Eigen::Matrix3d magellan;
+  magellan << 3266.61, 2.62, 36.17, 2.62, 4772.03, -42.65, 36.17, -42.65, 2897.59;
+  EXPECT_EQ(inertia_kg_m2("magellan"), magellan);
+  // Given in y-up axes; ours are x, -z, y of those.
+  Eigen::Matrix3d aquarius_y_up;
+  aquarius_y_up << 2644.24, 972.97, -2.10, 972.97, 1329.64, 11.49, -2.10, 11.49, 3086.41;
+  Eigen::Matrix3d r_trf_y_up;
+  r_trf_y_up << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  EXPECT_EQ(inertia_kg_m2("sacd_aquarius"), r_trf_y_up * aquarius_y_up * r_trf_y_up.transpose());
+  EXPECT_EQ(inertia_kg_m2("sacd_aquarius_stowed"), inertia_kg_m2("sacd_aquarius"));
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
