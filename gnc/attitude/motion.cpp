@@ -3,27 +3,28 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr int kSteps = 4;
+constexpr int kSteps = 4;  // of the midpoint method per frame
 
-// A length whose square overflows leaves no direction, and no rate.
+// The rate limited to kLargestRate. Float: a vector whose squared length overflows becomes zero.
 template <class Real>
-Vector3<Real> bounded(const Vector3<Real>& rate) {
+Vector3<Real> clamp_length(const Vector3<Real>& rate) {
   constexpr Real kLargest = constant<Real>(static_cast<double>(kLargestRate));
   const bool too_long = dot(rate, rate) > kLargest * kLargest;
-  const Vector3<Real> shortened = scaled<Real>(normalised(rate), kLargest);
+  const Vector3<Real> shortened = scaled<Real>(normalized(rate), kLargest);
   return {select(too_long, shortened.x(), rate.x()), select(too_long, shortened.y(), rate.y()),
           select(too_long, shortened.z(), rate.z())};
 }
 
-// The rate of a body of this inertia whose angular momentum is `momentum_lrf`.
+// Angular rate in the LRF of a body with this inertia and the angular momentum `momentum_lrf`.
 template <class Real>
-Vector3<Real> rate_of(const Matrix3<Real>& r_lrf_trf, const Vector3<Real>& momentum_lrf,
-                      const Inertia<Real>& inertia) {
+Vector3<Real> rate_from_momentum(const Matrix3<Real>& r_lrf_trf, const Vector3<Real>& momentum_lrf,
+                                 const Inertia<Real>& inertia) {
   const Vector3<Real> momentum_trf = transpose_product<Real>(r_lrf_trf, momentum_lrf);
   return product<Real>(r_lrf_trf, product<Real>(inertia.inverse_trf, momentum_trf));
 }
 
-// 1 - x k_0 (1 - x k_1 (1 - ...)): an alternating power series by the ratios of its neighbours.
+// 1 - x k_0 (1 - x k_1 (1 - ...)): an alternating power series, given by the ratios of consecutive
+// coefficients.
 template <class Real, std::size_t kTerms>
 Real alternating_series(Real x, const std::array<Real, kTerms>& ratio) {
   constexpr Real kOne = constant<Real>(1.0);
@@ -68,7 +69,8 @@ bool make_inertia(const Matrix3<Real>& tensor_trf, Inertia<Real>& inertia) {
   const Matrix3<Real> scaled_inverse = adjugate<Real>(j);
   const Real determinant =
       (j(0, 0) * scaled_inverse(0, 0) + j(0, 1) * scaled_inverse(1, 0)) + j(0, 2) * scaled_inverse(2, 0);
-  // The leading minors decide on definiteness; the inverse's trace bounds its largest eigenvalue.
+  // Positive definite if all leading minors are positive (Sylvester). The trace of the inverse bounds its
+  // largest eigenvalue, and so the smallest moment.
   const Real inverse_trace = (scaled_inverse(0, 0) + scaled_inverse(1, 1)) + scaled_inverse(2, 2);
   const bool definite = j(0, 0) > kZero && scaled_inverse(2, 2) > kZero && determinant > kZero;
   if (!definite || !(constant<Real>(kSmallestMoment) * inverse_trace < determinant)) return false;
@@ -78,7 +80,7 @@ bool make_inertia(const Matrix3<Real>& tensor_trf, Inertia<Real>& inertia) {
 }
 
 template <class Real>
-Matrix3<Real> rotation_by(const Vector3<Real>& turn) {
+Matrix3<Real> rotation_from_vector(const Vector3<Real>& turn) {
   // sin(a) / a and (1 - cos(a)) / a^2 as Taylor series in a^2.
   constexpr std::array<Real, 6> kSine{constant<Real>(1.0 / 6.0),   constant<Real>(1.0 / 20.0),
                                       constant<Real>(1.0 / 42.0),  constant<Real>(1.0 / 72.0),
@@ -86,7 +88,7 @@ Matrix3<Real> rotation_by(const Vector3<Real>& turn) {
   constexpr std::array<Real, 6> kCosine{constant<Real>(1.0 / 12.0),  constant<Real>(1.0 / 30.0),
                                         constant<Real>(1.0 / 56.0),  constant<Real>(1.0 / 90.0),
                                         constant<Real>(1.0 / 132.0), constant<Real>(1.0 / 182.0)};
-  const Vector3<Real> v = bounded<Real>(turn);
+  const Vector3<Real> v = clamp_length<Real>(turn);
   const Real s = dot(v, v);
   const Real a = alternating_series<Real>(s, kSine);
   const Real b = constant<Real>(0.5) * alternating_series<Real>(s, kCosine);
@@ -99,37 +101,39 @@ Matrix3<Real> rotation_by(const Vector3<Real>& turn) {
 }
 
 template <class Real>
-Vector3<Real> small_turn_of(const Matrix3<Real>& r) {
+Vector3<Real> small_rotation_vector(const Matrix3<Real>& r) {
   constexpr Real kHalf = constant<Real>(0.5);
   const Real trace = (r(0, 0) + r(1, 1)) + r(2, 2);
   const Real y = kHalf * (constant<Real>(3.0) - trace);  // 1 - cos(angle)
-  // angle / sin(angle) as a series in y, of which the ratio of neighbours is n / (2n + 1).
+  // angle / sin(angle) as a power series in y; the ratio of consecutive coefficients is n / (2n + 1).
   Real f = constant<Real>(1.0);
   constexpr std::array<Real, 8> kRatio{constant<Real>(1.0 / 3.0),  constant<Real>(2.0 / 5.0),
                                        constant<Real>(3.0 / 7.0),  constant<Real>(4.0 / 9.0),
                                        constant<Real>(5.0 / 11.0), constant<Real>(6.0 / 13.0),
                                        constant<Real>(7.0 / 15.0), constant<Real>(8.0 / 17.0)};
   for (std::size_t k = kRatio.size(); k-- > 0;) f = constant<Real>(1.0) + y * kRatio[k] * f;
-  const Real half = select(y < kHalf, kHalf * f, Real{});  // 60 degrees
+  const Real half = select(y < kHalf, kHalf * f, Real{});  // y < 1/2: below 60 degrees
   return {half * (r(2, 1) - r(1, 2)), half * (r(0, 2) - r(2, 0)), half * (r(1, 0) - r(0, 1))};
 }
 
 template <class Real>
-Motion<Real> tumble(const Motion<Real>& motion, const Inertia<Real>& inertia) {
+Motion<Real> propagate(const Motion<Real>& motion, const Inertia<Real>& inertia) {
   constexpr Real kStep = constant<Real>(1.0 / kSteps);
   constexpr Real kHalfStep = constant<Real>(0.5 / kSteps);
-  const Vector3<Real> rate = bounded<Real>(motion.rate_lrf);
+  const Vector3<Real> rate = clamp_length<Real>(motion.rate_lrf);
   const Vector3<Real> rate_trf = transpose_product<Real>(motion.r_lrf_trf, rate);
   const Vector3<Real> momentum_lrf =
       product<Real>(motion.r_lrf_trf, product<Real>(inertia.tensor_trf, rate_trf));
   Matrix3<Real> r = motion.r_lrf_trf;
   for (int i = 0; i < kSteps; ++i) {
-    const Vector3<Real> half_turn = gnc::scaled<Real>(rate_of<Real>(r, momentum_lrf, inertia), kHalfStep);
-    const Matrix3<Real> middle = product<Real>(rotation_by<Real>(half_turn), r);
-    const Vector3<Real> turn = gnc::scaled<Real>(rate_of<Real>(middle, momentum_lrf, inertia), kStep);
-    r = product<Real>(rotation_by<Real>(turn), r);
+    const Vector3<Real> half_turn =
+        gnc::scaled<Real>(rate_from_momentum<Real>(r, momentum_lrf, inertia), kHalfStep);
+    const Matrix3<Real> middle = product<Real>(rotation_from_vector<Real>(half_turn), r);
+    const Vector3<Real> turn =
+        gnc::scaled<Real>(rate_from_momentum<Real>(middle, momentum_lrf, inertia), kStep);
+    r = product<Real>(rotation_from_vector<Real>(turn), r);
   }
-  return {r, rate_of<Real>(r, momentum_lrf, inertia)};
+  return {r, rate_from_momentum<Real>(r, momentum_lrf, inertia)};
 }
 
 template <class Real>
@@ -137,25 +141,25 @@ MotionLaws<Real> motion_laws(const Inertia<Real>& inertia) {
   MotionLaws<Real> laws;
   for (int law = kTumbleLaw; law < kLaws; ++law) laws[law] = inertia;
   for (int axis = 0; axis < 3; ++axis) {
-    // S J S with S = diag(1, 1, sqrt(1/2)): positive definite as J is.
+    // S J S with S = diag(1, 1, sqrt(1/2)) (here for z): halves the moment and stays positive definite.
     Matrix3<Real> tensor_trf = inertia.tensor_trf;
     for (int other = 0; other < 3; ++other) {
       const Real product_of_inertia = constant<Real>(0.70710678118654752) * tensor_trf(axis, other);
       tensor_trf(axis, other) = tensor_trf(other, axis) = product_of_inertia;
     }
     tensor_trf(axis, axis) = constant<Real>(0.5) * inertia.tensor_trf(axis, axis);
-    // An inertia that is next to a rod's already stays as it is.
+    // If the result is too close to the inertia of a rod, the law keeps the target's own inertia.
     Inertia<Real>& law = laws[kTumbleLaw + 1 + axis];
     if (!make_inertia<Real>(tensor_trf, law)) law = inertia;
   }
   return laws;
 }
 
-#define TUMBLESIGHT_INSTANTIATE(Real)                                      \
-  template bool make_inertia(const Matrix3<Real>&, Inertia<Real>&);        \
-  template Matrix3<Real> rotation_by(const Vector3<Real>&);                \
-  template Vector3<Real> small_turn_of(const Matrix3<Real>&);              \
-  template Motion<Real> tumble(const Motion<Real>&, const Inertia<Real>&); \
+#define TUMBLESIGHT_INSTANTIATE(Real)                                         \
+  template bool make_inertia(const Matrix3<Real>&, Inertia<Real>&);           \
+  template Matrix3<Real> rotation_from_vector(const Vector3<Real>&);          \
+  template Vector3<Real> small_rotation_vector(const Matrix3<Real>&);         \
+  template Motion<Real> propagate(const Motion<Real>&, const Inertia<Real>&); \
   template MotionLaws<Real> motion_laws(const Inertia<Real>&)
 
 TUMBLESIGHT_INSTANTIATE(Fixed);

@@ -1,5 +1,7 @@
-// Motion: attitude and rate of a rotating target, and where they are one frame later, by which law. Time is
-// counted in frames, so that a rate is the turn of one frame period, in radians. Real: float or Fixed.
+// Torque-free rotation of the target: attitude and angular rate, and their prediction one frame ahead.
+//
+// Time is counted in frame periods: a rate is the rotation vector of one frame, in radians per frame.
+// Real: float or Fixed (Q7.24).
 #pragma once
 
 #include <array>
@@ -11,20 +13,21 @@ namespace tumblesight::gnc {
 
 template <class Real>
 struct Motion {
-  Matrix3<Real> r_lrf_trf = Matrix3<Real>::Identity();
-  Vector3<Real> rate_lrf = Vector3<Real>::Zero();  // radians a frame
+  Matrix3<Real> r_lrf_trf = Matrix3<Real>::Identity();  // v_lrf = r_lrf_trf v_trf
+  Vector3<Real> rate_lrf = Vector3<Real>::Zero();       // [rad per frame]
 };
 
-// Inertia of the target in the TRF, scaled to a trace of 3, since only ratios matter; and its inverse.
+// Inertia tensor of the target in the TRF and its inverse. Scaled to a trace of 3: only the ratios matter for
+// torque-free rotation.
 template <class Real>
 struct Inertia {
   Matrix3<Real> tensor_trf = Matrix3<Real>::Identity();
   Matrix3<Real> inverse_trf = Matrix3<Real>::Identity();
 };
-// No moment of inertia may be smaller than this beside the mean of all three.
+// Smallest principal moment of inertia that is accepted, as a fraction of the mean of all three.
 inline constexpr double kSmallestMoment = 0.01;
-// False unless the tensor is finite, symmetric and positive definite, with moments not below kSmallestMoment;
-// `inertia` is untouched then.
+// Scales `tensor_trf` (any unit) and inverts it. Returns false and leaves `inertia` unchanged unless the
+// tensor is finite, symmetric and positive definite and no principal moment is below kSmallestMoment.
 template <class Real>
 [[nodiscard]] bool make_inertia(const Matrix3<Real>& tensor_trf, Inertia<Real>& inertia);
 
@@ -33,32 +36,39 @@ Inertia<To> converted(const Inertia<Fixed>& inertia) {
   return {converted<To>(inertia.tensor_trf), converted<To>(inertia.inverse_trf)};
 }
 
-// Longer rates are shortened to this before they are used: twice what the network is trained for.
+// Rates are limited to this length before use [rad per frame]: twice the largest rate of the training data.
 inline constexpr float kLargestRate = 1.9F;
 
-// exp([turn]x); for turns up to kLargestRate within 1e-6.
+// Rotation matrix of a rotation vector [rad]: exp([turn]x), by Taylor series. Vectors longer than
+// kLargestRate are limited to it. Error of an element at most 1e-6.
 template <class Real>
-Matrix3<Real> rotation_by(const Vector3<Real>& turn);
-// Its inverse for turns below 60 degrees, within 1e-5; zero for longer ones.
+Matrix3<Real> rotation_from_vector(const Vector3<Real>& turn);
+// Rotation vector [rad] of a rotation matrix, the inverse of rotation_from_vector(), for angles below 60
+// degrees; error at most 1e-5. Zero for larger angles.
 template <class Real>
-Vector3<Real> small_turn_of(const Matrix3<Real>& rotation);
+Vector3<Real> small_rotation_vector(const Matrix3<Real>& rotation);
 
-// One frame later, free of torque: angular momentum is constant in the LRF and the rate follows from the
-// attitude (paper, tumbling test). Of a sphere's inertia the rate is constant in the LRF (paper, sampling of
-// the sequences). Midpoint method in four steps; at 54 degrees a frame within about 0.5 degrees.
+// Motion one frame later, without torque: the angular momentum is constant in the LRF, and the rate follows
+// from the attitude (paper, tumbling test). With the inertia of a sphere the rate is constant in the LRF
+// (paper, sampling of the sequences). Midpoint method with four steps; error about 0.5 degrees at 54 degrees
+// per frame.
 template <class Real>
-Motion<Real> tumble(const Motion<Real>& motion, const Inertia<Real>& inertia);
+Motion<Real> propagate(const Motion<Real>& motion, const Inertia<Real>& inertia);
 
-// The laws of motion that a target is thought to follow: tumbling with
-//   0     a sphere's inertia: it spins at a rate constant in the LRF
-//   1     its own inertia
-//   2..4  its own with the moment about the TRF's x, y or z axis halved, for an inertia known to a factor of
-//         two only: fuel is spent, an appendage broke off or never unfolded
+// The laws of motion that the track follows in parallel. Each is torque-free rotation with an inertia of its
+// own:
+//   0     that of a sphere: spin at a rate constant in the LRF
+//   1     that of the target
+//   2..4  that of the target with the moment about the TRF's x, y or z axis halved. They cover an inertia
+//   known only to
+//         a factor of two: fuel was spent, or an appendage broke off or did not deploy.
 inline constexpr int kLaws = 5;
 inline constexpr int kSpinLaw = 0;
 inline constexpr int kTumbleLaw = 1;
 template <class Real>
 using MotionLaws = std::array<Inertia<Real>, kLaws>;
+// The inertias of all laws for a target with `inertia`. A law whose halved moment would fall below
+// kSmallestMoment gets `inertia` itself.
 template <class Real>
 MotionLaws<Real> motion_laws(const Inertia<Real>& inertia);
 

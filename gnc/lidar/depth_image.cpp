@@ -8,68 +8,70 @@ namespace tumblesight::gnc {
 namespace {
 
 constexpr int kMinRays = 16;
-constexpr int kMetre = 64;  // depths to a metre, times 2^range_shift
+constexpr int kMetre = 64;  // units of depth per metre, before the scale of 2^range_shift
 
-constexpr std::int64_t kOne30 = std::int64_t{1} << 30;
+constexpr std::int64_t kOneQ30 = std::int64_t{1} << 30;
 
-constexpr std::int64_t rounded_shift(std::int64_t value, int shift) {
+// value / 2^shift, to the nearest, halves up.
+constexpr std::int64_t rounding_shift_right(std::int64_t value, int shift) {
   return (value + (std::int64_t{1} << (shift - 1))) >> shift;
 }
-std::int64_t product30(std::int64_t a, std::int64_t b) {
-  return rounded_shift(a * b, 30);
+std::int64_t multiply_q30(std::int64_t a, std::int64_t b) {
+  return rounding_shift_right(a * b, 30);
 }
-// To the nearest, halves up; divisor > 0.
-std::int64_t rounded_division(std::int64_t dividend, std::int64_t divisor) {
+// dividend / divisor, to the nearest, halves up. Requires divisor > 0.
+std::int64_t rounding_divide(std::int64_t dividend, std::int64_t divisor) {
   const std::int64_t twice = 2 * dividend + divisor;
-  const std::int64_t truncated = quotient_of(twice, 2 * divisor);
+  const std::int64_t truncated = divide(twice, 2 * divisor);
   return truncated + less_mask(twice, truncated * 2 * divisor);
 }
 
-// tan(fov / 2), 30 bits behind the point: its series to the 11th power, within 1e-8.
-std::int64_t tan_half_fov30(std::uint32_t fov_urad) {
-  const std::int64_t x = rounded_division(std::int64_t{fov_urad} * kOne30, 2'000'000);
-  const std::int64_t s = product30(x, x);
+// tan(fov / 2) in Q30: Taylor series up to the 11th power, error at most 1e-8.
+std::int64_t tan_half_fov_q30(std::uint32_t fov_urad) {
+  const std::int64_t x = rounding_divide(std::int64_t{fov_urad} * kOneQ30, 2'000'000);
+  const std::int64_t s = multiply_q30(x, x);
   constexpr std::int64_t kSeries[] = {357913941, 143165577, 57948660, 23481185,
                                       9516822};  // 1/3, 2/15, 17/315, ...
   std::int64_t sum = 0;
-  for (int k = 4; k >= 0; --k) sum = kSeries[k] + product30(s, sum);
-  return x + product30(x, product30(s, sum));
+  for (int k = 4; k >= 0; --k) sum = kSeries[k] + multiply_q30(s, sum);
+  return x + multiply_q30(x, multiply_q30(s, sum));
 }
 
 void make_rays(const RangeImage& frame, std::uint16_t farthest, DepthImageScratch::Rays& rays) {
   rays.range_shift = 15 - highest_bit(farthest);
-  const std::int64_t tan30 = tan_half_fov30(frame.fov_urad);
+  const std::int64_t tan_q30 = tan_half_fov_q30(frame.fov_urad);
   for (int i = 0; i < frame.rays; ++i) {
-    const std::int64_t slope = rounded_division(tan30 * (2 * i + 1 - frame.rays), frame.rays);
-    rays.slope30[i] = static_cast<std::int32_t>(slope);
-    rays.square16[i] = static_cast<std::int16_t>(rounded_shift(slope * slope, 44));
+    const std::int64_t slope = rounding_divide(tan_q30 * (2 * i + 1 - frame.rays), frame.rays);
+    rays.slope_q30[i] = static_cast<std::int32_t>(slope);
+    rays.square_q16[i] = static_cast<std::int16_t>(rounding_shift_right(slope * slope, 44));
   }
 }
 
-// Where the centroid of the usable returns lies: along (u, 1, v), and how far, in the frame's unit.
+// Centroid of the usable returns: its direction in the LRF and its distance in the frame's unit of depth.
 struct Centroid {
-  Vector3<Fixed> direction;  // unit
+  Vector3<Fixed> direction;  // unit vector
   std::int64_t distance;
 };
-Centroid centroid_of(const DepthImageScratch::Rays& rays, int count, int returns) {
+Centroid find_centroid(const DepthImageScratch::Rays& rays, int count, int returns) {
   std::int64_t depth = 0;
-  std::int64_t across30 = 0;
-  std::int64_t up30 = 0;
+  std::int64_t across_q30 = 0;
+  std::int64_t up_q30 = 0;
   for (int i = 0; i < count; ++i) {
     depth += rays.row_sum[i];
-    up30 -= std::int64_t{rays.row_sum[i]} * rays.slope30[i];
-    across30 += std::int64_t{rays.column_sum[i]} * rays.slope30[i];
+    up_q30 -= std::int64_t{rays.row_sum[i]} * rays.slope_q30[i];
+    across_q30 += std::int64_t{rays.column_sum[i]} * rays.slope_q30[i];
   }
-  const auto slope = [divisor = max<std::int64_t>(depth, 1)](std::int64_t sum30) {
-    return Fixed::from_raw(rounded_division(rounded_shift(sum30, 30 - Fixed::kFractionBits), divisor));
+  const auto slope = [divisor = max<std::int64_t>(depth, 1)](std::int64_t sum_q30) {
+    return Fixed::from_raw(
+        rounding_divide(rounding_shift_right(sum_q30, 30 - Fixed::kFractionBits), divisor));
   };
-  const Vector3<Fixed> direction = normalised(Vector3<Fixed>(slope(across30), Fixed(1.0), slope(up30)));
-  const std::int64_t along8 = rounded_division(depth * 256, returns);
-  return {direction, rounded_division(along8 * (1 << (Fixed::kFractionBits - 8)), direction.y().raw())};
+  const Vector3<Fixed> direction = normalized(Vector3<Fixed>(slope(across_q30), Fixed(1.0), slope(up_q30)));
+  const std::int64_t along_q8 = rounding_divide(depth * 256, returns);
+  return {direction, rounding_divide(along_q8 * (1 << (Fixed::kFractionBits - 8)), direction.y().raw())};
 }
 
-// The shortest turn of +y into `direction` (unit, within 90 degrees of +y).
-Matrix3<Fixed> turn_of_y_to(const Vector3<Fixed>& direction) {
+// The shortest rotation that takes +y to `direction`, a unit vector within 90 degrees of +y.
+Matrix3<Fixed> rotation_of_y_to(const Vector3<Fixed>& direction) {
   constexpr Fixed kOne(1.0);
   const Fixed x = direction.x();
   const Fixed y = direction.y();
@@ -82,76 +84,76 @@ Matrix3<Fixed> turn_of_y_to(const Vector3<Fixed>& direction) {
   return turn;
 }
 
-// Of a point at depth 1 the coordinate along `axis`, 30 bits behind the point: the parts of a ray's column
-// and row.
-struct Parts {
+// Coordinate along `axis` of the point at depth 1 on a ray, in Q30: the sum of a term of the ray's column and
+// a term of its row.
+struct RayTerms {
   const Vector3<Fixed>& axis;
   const DepthImageScratch::Rays& rays;
-  std::int64_t of_column(int i) const {
-    return rounded_shift(std::int64_t{axis.x().raw()} * rays.slope30[i], 24);
+  std::int64_t column_term(int i) const {
+    return rounding_shift_right(std::int64_t{axis.x().raw()} * rays.slope_q30[i], 24);
   }
-  std::int64_t of_row(int i) const {
+  std::int64_t row_term(int i) const {
     return std::int64_t{axis.y().raw()} * (1 << 6) -
-           rounded_shift(std::int64_t{axis.z().raw()} * rays.slope30[i], 24);
+           rounding_shift_right(std::int64_t{axis.z().raw()} * rays.slope_q30[i], 24);
   }
 };
 static_assert(Fixed::kFractionBits == 24);
 
-// Parts are monotonous, so the first and the last are the largest.
-std::int64_t largest_part30(const Parts& parts, int count) {
-  return max(abs(parts.of_column(0)), abs(parts.of_column(count - 1))) +
-         max(abs(parts.of_row(0)), abs(parts.of_row(count - 1)));
+// Largest absolute coordinate. The terms are monotonic, so that the first or the last is the largest.
+std::int64_t max_coordinate_q30(const RayTerms& terms, int count) {
+  return max(abs(terms.column_term(0)), abs(terms.column_term(count - 1))) +
+         max(abs(terms.row_term(0)), abs(terms.row_term(count - 1)));
 }
 
-std::int16_t saturated16(std::int64_t value) {
+std::int16_t saturate16(std::int64_t value) {
   return static_cast<std::int16_t>(clamp<std::int64_t>(value, -32767, 32767));
 }
 
-void make_coordinate(const Parts& parts, int count, std::int64_t factor8, int shift,
+void make_coordinate(const RayTerms& terms, int count, std::int64_t factor_q8, int shift,
                      DepthImageScratch::Coordinate& coordinate) {
   for (int i = 0; i < count; ++i) {
-    coordinate.of_column[i] = saturated16(rounded_shift(parts.of_column(i) * factor8, shift));
-    coordinate.of_row[i] = saturated16(rounded_shift(parts.of_row(i) * factor8, shift));
+    coordinate.column[i] = saturate16(rounding_shift_right(terms.column_term(i) * factor_q8, shift));
+    coordinate.row[i] = saturate16(rounding_shift_right(terms.row_term(i) * factor_q8, shift));
   }
 }
 
-// x and down: cells with as many bits behind the point as 16 bits leave, two to six.
-void make_cells(const Parts& x, const Parts& down, int count, std::uint32_t swath_mm,
+// x and down in cells, with as many fraction bits as fit into 16 bits: two to six.
+void make_cells(const RayTerms& x, const RayTerms& down, int count, std::uint32_t swath_mm,
                 DepthImageScratch::View& view) {
   const int range_shift = x.rays.range_shift;
-  // Cells to the frame's unit times 2^16, 8 bits behind the point.
-  const std::int64_t factor8 =
-      rounded_division((std::int64_t{DepthImage::kSide} * 1000) << (16 + 8 - 6 - range_shift), swath_mm);
-  const std::int64_t largest = max(largest_part30(x, count), largest_part30(down, count)) * factor8;
+  // Cells per unit of depth, times 2^16, in Q8.
+  const std::int64_t factor_q8 =
+      rounding_divide((std::int64_t{DepthImage::kSide} * 1000) << (16 + 8 - 6 - range_shift), swath_mm);
+  const std::int64_t largest = max(max_coordinate_q30(x, count), max_coordinate_q30(down, count)) * factor_q8;
   int bits = 2;
   for (int more = 3; more <= 6; ++more) bits = select((largest >> (38 - more)) < 32767, more, bits);
   view.cells = static_cast<std::int16_t>(1 << (16 - bits));
   view.middle = static_cast<std::int16_t>((DepthImage::kSide / 2) << bits);
-  make_coordinate(x, count, factor8, 38 - bits, view.x);
-  make_coordinate(down, count, factor8, 38 - bits, view.down);
+  make_coordinate(x, count, factor_q8, 38 - bits, view.x);
+  make_coordinate(down, count, factor_q8, 38 - bits, view.down);
 }
 
-void make_depth(const Parts& depth, int count, DepthImageScratch::Coordinate& coordinate) {
+void make_depth(const RayTerms& depth, int count, DepthImageScratch::Coordinate& coordinate) {
   for (int i = 0; i < count; ++i) {
-    coordinate.of_column[i] = saturated16(rounded_shift(depth.of_column(i), 15));
-    coordinate.of_row[i] = saturated16(rounded_shift(depth.of_row(i) - kOne30, 15));
+    coordinate.column[i] = saturate16(rounding_shift_right(depth.column_term(i), 15));
+    coordinate.row[i] = saturate16(rounding_shift_right(depth.row_term(i) - kOneQ30, 15));
   }
 }
 
 void make_scale(std::int64_t centroid, std::uint32_t target_radius_mm, int range_shift,
                 DepthImageScratch::View& view) {
   const std::int64_t radius =
-      max<std::int64_t>(1, rounded_division((std::int64_t{target_radius_mm} * kMetre) << range_shift, 1000));
+      max<std::int64_t>(1, rounding_divide((std::int64_t{target_radius_mm} * kMetre) << range_shift, 1000));
   const int shift = max(0, 14 - highest_bit(static_cast<std::uint64_t>(radius)));
-  view.centroid = saturated16(centroid);
-  view.radius = saturated16(radius);
+  view.centroid = saturate16(centroid);
+  view.radius = saturate16(radius);
   view.radius_scale = static_cast<std::int16_t>(1 << shift);
-  view.value_of_radius = saturated16(rounded_division(std::int64_t{kMiddleValue} << 15, radius << shift));
+  view.inverse_radius = saturate16(rounding_divide(std::int64_t{kCentroidValue} << 15, radius << shift));
 }
 
-FrameStatus status_of(const Survey& survey) {
-  if (survey.returns < kMinReturns) return FrameStatus::kEmpty;
-  return survey.nearest == survey.farthest ? FrameStatus::kFlat : FrameStatus::kOk;
+FrameStatus status_of(const ReturnSummary& summary) {
+  if (summary.returns < kMinReturns) return FrameStatus::kEmpty;
+  return summary.nearest == summary.farthest ? FrameStatus::kFlat : FrameStatus::kOk;
 }
 
 FrameStatus status_of(const RangeImage& frame) {
@@ -169,21 +171,21 @@ bool is_possible(const DepthProjection& projection) {
 
 FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& projection,
                              DepthImageScratch& scratch, DepthImage& image) {
-  return make_depth_image(frame, projection, scratch, image, depth_loops_within(kInstructionSets.back()));
+  return make_depth_image(frame, projection, scratch, image, fastest_depth_loops(kInstructionSets.back()));
 }
 
 FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& projection,
                              DepthImageScratch& scratch, DepthImage& image, const DepthLoops& loops) {
   FrameStatus status = status_of(frame);
   if (status != FrameStatus::kOk) return status;
-  const Survey survey = loops.survey(frame);
-  status = status_of(survey);
+  const ReturnSummary summary = loops.summarize_returns(frame);
+  status = status_of(summary);
   if (status != FrameStatus::kOk) return status;
 
-  make_rays(frame, survey.farthest, scratch.rays);
+  make_rays(frame, summary.farthest, scratch.rays);
   loops.sum_depths(frame, scratch.rays);
-  const Centroid centroid = centroid_of(scratch.rays, frame.rays, survey.returns);
-  image.r_lrf_view = turn_of_y_to(centroid.direction);
+  const Centroid centroid = find_centroid(scratch.rays, frame.rays, summary.returns);
+  image.r_lrf_view = rotation_of_y_to(centroid.direction);
 
   const Vector3<Fixed> right = image.r_lrf_view.col(0);
   const Vector3<Fixed> down = -image.r_lrf_view.col(2);

@@ -1,10 +1,10 @@
 #include "gnc/lidar/depth_loops.hpp"
 
-#include "gnc/lidar/depth_loops/sets.hpp"
+#include "gnc/lidar/depth_loops_sets.hpp"
 
 namespace tumblesight::gnc {
 
-const DepthLoops& depth_loops_within(InstructionSet set) {
+const DepthLoops& fastest_depth_loops(InstructionSet set) {
   const DepthLoops* fastest = &depth_loops::kPortable;
 #if TUMBLESIGHT_X86_KERNELS
   for (const DepthLoops* const loops : {&depth_loops::kAvx2, &depth_loops::kAvx512}) {

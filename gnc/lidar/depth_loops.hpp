@@ -1,5 +1,6 @@
-// DepthLoops: what the projection of a frame does ray by ray and cell by cell, in integers of 16 and 32 bits,
-// built for several instruction sets. What stands around it, once a frame, is in depth_image.cpp.
+// DepthLoops: the part of the projection that runs once per ray or per cell, in integers of 16 and 32 bits,
+// compiled for several instruction sets that give the same bits. The part that runs once per frame is in
+// depth_image.cpp. Formats: docs/numerics.md.
 #pragma once
 
 #include <array>
@@ -13,29 +14,34 @@ namespace tumblesight::gnc {
 inline constexpr int kMinRange_counts = kMinRange_m * 128;
 inline constexpr int kMaxRange_counts = kMaxRange_m * 128;
 
-struct Survey {
-  int returns = 0;  // usable ones
+// The usable returns of a frame; ranges in counts (Q9.7 m).
+struct ReturnSummary {
+  int returns = 0;
   std::uint16_t nearest = 0xFFFF;
   std::uint16_t farthest = 0;
 };
 
-// A cell's sum: kValueBits of the sum of its values, above them how many.
+// A cell accumulates the sum of its values in the low kValueBits and their number in the bits above.
 inline constexpr int kValueBits = 22;
-inline constexpr std::uint32_t kMostReturns = 255;  // of a cell that count
-inline constexpr int kMiddleValue = 8192;  // a return as far as the centroid; 0 and 16384: a radius beyond
+inline constexpr std::uint32_t kMaxReturnsPerCell = 255;  // further returns are ignored
+inline constexpr int kCentroidValue =
+    8192;  // of a return at the centroid's depth; 0 and 16384: one radius away
 
 struct DepthLoops {
   InstructionSet set;
-  Survey (*survey)(const RangeImage& frame);
-  // Depths along the boresight, summed row by row and column by column into `rays`.
+  ReturnSummary (*summarize_returns)(const RangeImage& frame);
+  // Sums the depths along the boresight over each row and each column; writes rays.row_sum and
+  // rays.column_sum.
   void (*sum_depths)(const RangeImage& frame, DepthImageScratch::Rays& rays);
-  // Adds every usable return to its cell.
+  // Clears the cells and adds every usable return to its cell. `cells`: DepthImage::kCells + kSpareCells.
   void (*accumulate)(const RangeImage& frame, const DepthImageScratch::Rays& rays,
                      const DepthImageScratch::View& view, std::uint32_t* cells);
+  // Mean value of each cell, as a depth in unsigned Q0.16; 0 for an empty cell. `depth`: DepthImage::kCells.
   void (*encode)(const std::uint32_t* cells, std::uint16_t* depth);
 };
 
-// The fastest of this set and those before it that this build and this processor have.
-const DepthLoops& depth_loops_within(InstructionSet set);
+// The fastest loops, among those that this build contains and this processor runs, for `set` or an
+// instruction set before it in kInstructionSets.
+const DepthLoops& fastest_depth_loops(InstructionSet set);
 
 }  // namespace tumblesight::gnc

@@ -1,30 +1,35 @@
-// ConvBlock: 3x3 convolution, pooling 2x2 and ReLU over a square HWC image, in one pass over pairs of rows.
+// ConvBlock: 3x3 convolution, 2x2 pooling and ReLU over a square HWC image, in one pass over pairs of rows.
 //
-// Layers are functions of their own ([[gnu::noinline]]), here and in dense.hpp and lstm.hpp, so that what
-// each takes can be told apart (tests/audit).
+// The functions of the layers, here and in dense.hpp and lstm.hpp, are [[gnu::noinline]], so that the audit
+// can count the instructions of each layer (tests/audit).
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-#include "gnc/nn/kernels.hpp"
-#include "gnc/nn/numerics.hpp"
+#include "gnc/nn/kernels/kernels.hpp"
+#include "gnc/nn/kernels/numerics.hpp"
 
 namespace tumblesight::gnc {
 
-// A square HWC image inside a border of one pixel of zeros.
+// A square image in HWC order (row, column, channel) inside a border of one pixel of zeros.
 template <class Number, int kImageSide, int kImageChannels>
 struct PaddedImage {
   static constexpr int kSide = kImageSide;
   static constexpr int kChannels = kImageChannels;
-  static constexpr int kRow = (kSide + 2) * kChannels;  // numbers to a row
-  std::array<Number, (kSide + 2) * kRow> number;
+  static constexpr int kRow = (kSide + 2) * kChannels;  // values per row
+  std::array<Number, (kSide + 2) * kRow> values;
 
-  Number* row(int y) { return number.data() + (y + 1) * kRow + kChannels; }  // inside the border
+  Number* row(int y) { return values.data() + (y + 1) * kRow + kChannels; }  // first value inside the border
 };
 
-// Zero padding 1, stride 1. Pooling leaves out a last row and column that fill no whole window; they are not
-// computed. Summation per output: bias, then ky, kx, input channel ascending; padding takes part as zeros.
+// Zero padding 1, stride 1. An odd last row and column, which fill no whole pooling window, are not computed.
+// Order of summation of an output: bias, then ky, kx and input channel ascending; the padding is added as
+// zeros.
+//
+// N: Float32 or FixedPoint. Input kSide x kSide x kChannelsIn, output kSideOut x kSideOut x kChannelsOut. In
+// fixed point inputs are uint8, weights int8, sums int32 and each output channel has a shift of 1..30
+// (docs/numerics.md).
 template <class N, int kSide, int kChannelsIn, int kChannelsOut>
 struct ConvBlock {
   static_assert(kSide > 1 && kChannelsOut % kIntegerChannels == 0);
@@ -32,8 +37,8 @@ struct ConvBlock {
   static constexpr int kColumns = 2 * kSideOut;
   static constexpr int kWeights = 3 * 3 * kChannelsIn * kChannelsOut;
   static constexpr std::size_t kParameters = kWeights + kChannelsOut;
-  static constexpr long kMacs = 1L * kColumns * kColumns * kWeights;  // padding included
-  // What kernels do of them that compute so many pixels together.
+  static constexpr long kMacs = 1L * kColumns * kColumns * kWeights;  // including those with the padding
+  // Those that kernels execute which compute `pixels` pixels together.
   static constexpr long macs_done(int pixels) {
     const int rows_spared = kColumns % pixels != 0 ? 0 : kColumns == kSide ? 2 : 1;
     return kMacs - 1L * rows_spared * kColumns * kWeights / 3;
@@ -42,18 +47,19 @@ struct ConvBlock {
   using Input = PaddedImage<ConvInput<N>, kSide, kChannelsIn>;
   using Sums = std::array<Sum<N>, 2 * kColumns * kChannelsOut>;  // scratch: two rows
 
-  // The largest of each window, activated.
+  // Max pooling: the activation of the largest sum of each window. `sums` is scratch memory.
   using MaxPooled = PaddedImage<ConvInput<N>, kSideOut, kChannelsOut>;
   [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                         Sums& sums, MaxPooled& out) {
-    out.number.fill({});
+    out.values.fill({});
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);
       kernels.max_pool(sums.data(), kColumns, kChannelsOut, weights.shift.data(), out.row(y));
     }
   }
 
-  // The windows' four numbers, activated and then averaged; in fixed point they are added.
+  // Average pooling: the mean of the four activations of each window; in fixed point their sum, which is
+  // exact.
   using AveragePooled = std::array<DenseInput<N>, kSideOut * kSideOut * kChannelsOut>;
   [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                         Sums& sums, AveragePooled& out) {
@@ -65,28 +71,28 @@ struct ConvBlock {
   }
 
  private:
-  // Rows 2 y and 2 y + 1. Where it costs nothing to compute them one by one, the first and the last row are
-  // spared the padding above and below, which adds nothing.
+  // Sums of rows 2 y and 2 y + 1. If rows can be computed one at a time at no cost, the first row skips the
+  // padding above and the last row the padding below.
   static void two_rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int y,
                        Sums& sums) {
-    constexpr int kAll = 3;
-    const bool spares = kColumns % kernels.pixels == 0;
-    const int above = spares && y == 0 ? 1 : 0;
-    const int below = spares && 2 * y + 2 == kSide ? 1 : 0;
+    constexpr int kStrips = 3;
+    const bool skips_padding = kColumns % kernels.pixels == 0;
+    const int above = skips_padding && y == 0 ? 1 : 0;
+    const int below = skips_padding && 2 * y + 2 == kSide ? 1 : 0;
     if (above + below == 0) {
-      rows(kernels, weights, in, 2 * y, 2, 0, kAll, sums.data());
+      rows(kernels, weights, in, 2 * y, 2, 0, kStrips, sums.data());
       return;
     }
-    rows(kernels, weights, in, 2 * y, 1, above, kAll - above, sums.data());
-    rows(kernels, weights, in, 2 * y + 1, 1, 0, kAll - below, sums.data() + kColumns * kChannelsOut);
+    rows(kernels, weights, in, 2 * y, 1, above, kStrips - above, sums.data());
+    rows(kernels, weights, in, 2 * y + 1, 1, 0, kStrips - below, sums.data() + kColumns * kChannelsOut);
   }
 
-  // `count` rows of sums from `first` on, over the strips (ky) from first_strip on.
+  // Sums of `count` rows starting at row `first`, over `strips` strips (ky) starting at `first_strip`.
   static void rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int first, int count,
                    int first_strip, int strips, Sum<N>* sums) {
     const ProductShape shape{count,  kColumns,        Input::kRow, kChannelsIn,
                              strips, 3 * kChannelsIn, Input::kRow, kChannelsOut};
-    kernels.convolve(shape, in.number.data() + (first + first_strip) * Input::kRow, weights.bias.data(),
+    kernels.convolve(shape, in.values.data() + (first + first_strip) * Input::kRow, weights.bias.data(),
                      weights.weight.data() + first_strip * 3 * kChannelsIn * kChannelsOut, sums);
   }
 };

@@ -1,15 +1,17 @@
-// Dense: fully connected layer with bias.
+// Dense: fully connected layer with bias, from kIn inputs to kOut outputs.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-#include "gnc/nn/kernels.hpp"
-#include "gnc/nn/numerics.hpp"
+#include "gnc/nn/kernels/kernels.hpp"
+#include "gnc/nn/kernels/numerics.hpp"
 
 namespace tumblesight::gnc {
 
-// Summation per output: bias, then inputs ascending.
+// N: Float32 or FixedPoint. Order of summation of an output: bias, then inputs ascending. In fixed point
+// inputs are int16, weights int8, sums int32; the weights have outputs up to a multiple of kIntegerChannels,
+// kPaddedOut.
 template <class N, int kIn, int kOut>
 struct Dense {
   static constexpr int kPaddedOut = N::padded(kOut);
@@ -19,12 +21,13 @@ struct Dense {
   using Input = std::array<DenseInput<N>, kIn>;
   using Sums = std::array<Sum<N>, kPaddedOut>;
 
+  // The sums before the activation.
   static void sum(const Kernels<N>& kernels, const Weights& weights, const Input& in, Sums& sums) {
     constexpr ProductShape kShape{1, 1, 0, 0, 1, kIn, 0, kPaddedOut};
     kernels.multiply(kShape, in.data(), weights.bias.data(), weights.weight.data(), sums.data());
   }
 
-  // Hidden layer: ReLU.
+  // Hidden layer: ReLU; in fixed point requantized to 0..32767 with a shift of 1..30 per output.
   using Hidden = std::array<DenseInput<N>, kOut>;
   [[gnu::noinline]] static void hidden(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                        Sums& sums, Hidden& out) {
@@ -32,7 +35,7 @@ struct Dense {
     for (int c = 0; c < kOut; ++c) activate(sums[c], N::kIsInteger ? weights.shift.data()[c] : 0, out[c]);
   }
 
-  // Last layer: numbers with a meaning.
+  // Last layer: no activation; in fixed point the sum / 2^shift as Fixed, with a shift of 1..62 per output.
   using Output = std::array<typename N::Real, kOut>;
   [[gnu::noinline]] static void output(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                        Sums& sums, Output& out) {

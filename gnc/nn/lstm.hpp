@@ -1,29 +1,33 @@
-// Lstm: one step of a long short-term memory layer with explicit state.
+// Lstm: one step of a long short-term memory layer with explicit state (Hochreiter 1997, with forget gate).
 #pragma once
 
 #include <array>
 #include <cstddef>
 
-#include "gnc/nn/kernels.hpp"
-#include "gnc/nn/numerics.hpp"
+#include "gnc/nn/kernels/kernels.hpp"
+#include "gnc/nn/kernels/numerics.hpp"
 
 namespace tumblesight::gnc {
 
-// Bound on the cells. A cell moves by less than 1 a step, so it takes effect only after that many steps of
-// one sign (tanh has long been flat by then) or when a bit flip left something huge or NaN behind.
+// Bound on the cells. A cell changes by less than 1 per step, so that the bound takes effect only after 64
+// steps of one sign, when tanh has long been flat, or after a bit flip has left a huge value or NaN.
 inline constexpr float kLstmCellBound = 64.0F;
 
-// `gates` (4 * hidden sums, order input, forget, cell, output, before their activations; floats are
-// overwritten) and the cells make the new state: c = forget * c + input * cell, h = output * tanh(c). |h| <=
-// 1 and |c| <= kLstmCellBound always.
+// Updates the state from the sums of the gates: c = forget * c + input * cell, h = output * tanh(c).
+// Afterwards |h| <= 1 and |c| <= kLstmCellBound, whatever the arguments.
+//
+// gates  4 * hidden sums before activation, in the order input, forget, cell, output; the float version
+// overwrites them shift  fixed point: 4 * hidden shifts of 1..62, a sum is worth sum / 2^shift; float: not
+// used h      hidden state, `hidden` values; int16 in Q0.15 c      cells, `hidden` values
 void lstm_update(float* gates, const std::uint8_t* shift, int hidden, float* h, float* c);
 void lstm_update(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h, Fixed* c);
 
-// sigmoid and tanh of the gates in fixed point: 512 straight lines over [0, 16), flat beyond; within 1.3e-5
-// and 2.6e-5 of the exact values.
+// sigmoid and tanh of the gates in fixed point: 512 linear segments over [0, 16), constant beyond. Error at
+// most 1.3e-5 and 2.6e-5.
 Fixed gate_sigmoid(Fixed x);
 Fixed gate_tanh(Fixed x);
 
+// N: Float32 or FixedPoint; kIn inputs (int16 in fixed point), kHidden units.
 template <class N, int kIn, int kHidden>
 struct Lstm {
   static constexpr int kGates = 4 * kHidden;
@@ -34,10 +38,11 @@ struct Lstm {
   using Sums = std::array<Sum<N>, kGates>;  // scratch
 
   struct State {
-    std::array<DenseInput<N>, kHidden> h{};  // in fixed point 15 bits behind the point
+    std::array<DenseInput<N>, kHidden> h{};  // Q0.15 in fixed point
     std::array<typename N::Real, kHidden> c{};
   };
-  // Of the input; recurrent: [hidden][gates], into the same sums, so of the same scale.
+  // The base class holds the weights of the input. `recurrent` holds those of the hidden state,
+  // [hidden][gates]; both products are added to the same sums and have the same scale.
   struct Weights : LayerWeights<N, kIn * kGates, kGates> {
     using Forward = LayerWeights<N, kIn * kGates, kGates>;
     static constexpr std::size_t kBytesInImage =
@@ -45,7 +50,8 @@ struct Lstm {
     alignas(64) typename N::template Weights<kHidden * kGates> recurrent{};
   };
 
-  // Summation per gate: bias, inputs ascending, then hidden units ascending.
+  // One step; updates `state`. Order of summation per gate: bias, inputs ascending, then hidden units
+  // ascending.
   [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                         Sums& sums, State& state) {
     constexpr ProductShape kFromInput{1, 1, 0, 0, 1, kIn, 0, kGates};

@@ -1,4 +1,4 @@
-// Between Fixed and whatever the network counts in.
+// Conversion between Fixed (Q7.24) and the number type of a network: Fixed itself or float.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,8 @@
 
 namespace tumblesight::gnc {
 
+// convert(from, to): float to Fixed rounds to the nearest, halves away from zero, and saturates. NaN and
+// infinities become zero. Fixed to float rounds to 24 significant bits.
 inline void convert(Fixed from, Fixed& to) {
   to = from;
 }
@@ -14,9 +16,8 @@ inline void convert(Fixed from, Fixed& to) {
 inline void convert(Fixed from, float& to) {
   to = static_cast<float>(from.raw()) * (1.0F / (1 << Fixed::kFractionBits));
 }
-// What is not finite counts as zero.
 inline void convert(float from, Fixed& to) {
-  constexpr float kLargest = 127.99999F;  // the last one before 128
+  constexpr float kLargest = 127.99999F;  // the largest float below 128
   const float finite = select(is_finite(from), from, 0.0F);
   const double scaled = static_cast<double>(clamp(finite, -kLargest, kLargest)) * (1 << Fixed::kFractionBits);
   const auto inside = static_cast<std::int32_t>(scaled + std::copysign(0.5, scaled));
@@ -25,6 +26,7 @@ inline void convert(float from, Fixed& to) {
 }
 #endif
 
+// The same as a return value: converted<float>(fixed), converted<Fixed>(matrix).
 template <class To, class From>
 To converted(From from) {
   To to;

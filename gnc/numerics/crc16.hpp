@@ -1,5 +1,5 @@
-// CRC-16/CCITT-FALSE (polynomial 0x1021, initial value 0xFFFF, not reflected): the checksum of telecommand
-// packets.
+// CRC-16/CCITT-FALSE, the checksum of telecommand packets: polynomial 0x1021, initial value 0xFFFF, not
+// reflected, no final complement.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace tumblesight::gnc {
 
-// Over `size_bytes` bytes from `data`. The CRC of the nine ASCII digits "123456789" is 0x29B1.
+// CRC of `size_bytes` bytes at `data`. No bytes give 0xFFFF; the nine ASCII digits "123456789" give 0x29B1.
 std::uint16_t crc16(const std::uint8_t* data, std::size_t size_bytes);
-// `crc` continued by one more byte.
+// Extends `crc` by one byte.
 std::uint16_t crc16_append(std::uint16_t crc, std::uint8_t byte);
 
 }  // namespace tumblesight::gnc

@@ -1,4 +1,4 @@
-// CRC-32 (IEEE 802.3: reflected polynomial 0xEDB88320, initial value and final complement all ones).
+// CRC-32 (IEEE 802.3): reflected polynomial 0xEDB88320, initial value and final complement all ones.
 #pragma once
 
 #include <cstddef>
@@ -6,16 +6,17 @@
 
 namespace tumblesight::gnc {
 
+// CRC of `size_bytes` bytes at `data`. No bytes give 0; the nine ASCII digits "123456789" give 0xCBF43926.
 std::uint32_t crc32(const std::uint8_t* data, std::size_t size_bytes);
 
-// The same over data that comes in pieces. Numbers are taken little-endian, so that a CRC over values is the
-// same on every host.
+// The same CRC over data that arrives in pieces. Numbers are added as little-endian bytes, so that the CRC of
+// values is the same on every host.
 class Crc32 {
  public:
   void add(const std::uint8_t* data, std::size_t size_bytes);
   void add_u32(std::uint32_t value);
-  void add_f32(const float* values, std::size_t count);
-  std::uint32_t value() const { return ~remainder_; }
+  void add_f32(const float* values, std::size_t count);  // the bits of `count` IEEE 754 floats
+  std::uint32_t value() const { return ~remainder_; }    // of everything added so far; more may be added
 
  private:
   std::uint32_t remainder_ = 0xFFFFFFFFU;

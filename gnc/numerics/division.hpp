@@ -1,6 +1,5 @@
-// Division of 64-bit integers in the same number of instructions whatever they are. Processors of 32 bits
-// leave it to a function of the compiler's, whose way depends on the numbers; there it is done by hand, a bit
-// of the quotient at a time.
+// Division of 64-bit integers whose instruction count does not depend on the operands. On 32-bit processors
+// the compiler's runtime function for it does depend on them; there one quotient bit is computed at a time.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +8,8 @@
 
 namespace tumblesight::gnc {
 
-// divisor > 0.
-constexpr std::uint64_t quotient_bit_by_bit(std::uint64_t dividend, std::uint64_t divisor) {
+// dividend / divisor by restoring division, 64 iterations. Requires divisor > 0.
+constexpr std::uint64_t divide_bit_by_bit(std::uint64_t dividend, std::uint64_t divisor) {
   std::uint64_t quotient = 0;
   std::uint64_t rest = 0;
   for (int bit = 63; bit >= 0; --bit) {
@@ -23,11 +22,11 @@ constexpr std::uint64_t quotient_bit_by_bit(std::uint64_t dividend, std::uint64_
   return quotient;
 }
 
-// Towards zero; divisor > 0.
-constexpr std::int64_t quotient_of(std::int64_t dividend, std::int64_t divisor) {
+// dividend / divisor, truncated toward zero. Requires divisor > 0.
+constexpr std::int64_t divide(std::int64_t dividend, std::int64_t divisor) {
   if constexpr (sizeof(void*) == 8) return dividend / divisor;
   const auto quotient = static_cast<std::int64_t>(
-      quotient_bit_by_bit(static_cast<std::uint64_t>(abs(dividend)), static_cast<std::uint64_t>(divisor)));
+      divide_bit_by_bit(static_cast<std::uint64_t>(abs(dividend)), static_cast<std::uint64_t>(divisor)));
   const std::int64_t sign = dividend >> 63;
   return (quotient ^ sign) - sign;
 }

@@ -3,35 +3,35 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr std::int64_t kOne30 = std::int64_t{1} << 30;
+constexpr std::int64_t kOneQ30 = std::int64_t{1} << 30;
 
-// Of numbers with 30 bits behind the point, |product| < 2^63.
-constexpr std::int64_t product30(std::int64_t a, std::int64_t b) {
-  return (a * b + (kOne30 >> 1)) >> 30;
+// Product of two Q30 numbers, rounded to the nearest, halves up. Requires |a b| < 2^63.
+constexpr std::int64_t multiply_q30(std::int64_t a, std::int64_t b) {
+  return (a * b + (kOneQ30 >> 1)) >> 30;
 }
 
-constexpr std::int64_t constant30(double value) {
-  return static_cast<std::int64_t>(value * static_cast<double>(kOne30) + (value < 0.0 ? -0.5 : 0.5));
+constexpr std::int64_t constant_q30(double value) {
+  return static_cast<std::int64_t>(value * static_cast<double>(kOneQ30) + (value < 0.0 ? -0.5 : 0.5));
 }
 
-// 2^f for f in [0, 1), both with 30 bits behind the point: the series of e^(f ln 2) to the tenth power.
-std::int64_t exp2_of_fraction(std::int64_t f) {
-  constexpr std::int64_t kLn2 = constant30(0.693147180559945309);
-  const std::int64_t x = product30(f, kLn2);
-  std::int64_t sum = kOne30;
+// 2^f for f in [0, 1), both in Q30: Taylor series of e^(f ln 2) up to the tenth power.
+std::int64_t exp2_fraction_q30(std::int64_t f) {
+  constexpr std::int64_t kLn2 = constant_q30(0.693147180559945309);
+  const std::int64_t x = multiply_q30(f, kLn2);
+  std::int64_t sum = kOneQ30;
   for (int n = 10; n >= 1; --n) {
     constexpr std::int64_t kReciprocal[] = {0,
-                                            constant30(1.0),
-                                            constant30(1.0 / 2.0),
-                                            constant30(1.0 / 3.0),
-                                            constant30(1.0 / 4.0),
-                                            constant30(1.0 / 5.0),
-                                            constant30(1.0 / 6.0),
-                                            constant30(1.0 / 7.0),
-                                            constant30(1.0 / 8.0),
-                                            constant30(1.0 / 9.0),
-                                            constant30(1.0 / 10.0)};
-    sum = kOne30 + product30(product30(x, kReciprocal[n]), sum);
+                                            constant_q30(1.0),
+                                            constant_q30(1.0 / 2.0),
+                                            constant_q30(1.0 / 3.0),
+                                            constant_q30(1.0 / 4.0),
+                                            constant_q30(1.0 / 5.0),
+                                            constant_q30(1.0 / 6.0),
+                                            constant_q30(1.0 / 7.0),
+                                            constant_q30(1.0 / 8.0),
+                                            constant_q30(1.0 / 9.0),
+                                            constant_q30(1.0 / 10.0)};
+    sum = kOneQ30 + multiply_q30(multiply_q30(x, kReciprocal[n]), sum);
   }
   return sum;
 }
@@ -39,15 +39,15 @@ std::int64_t exp2_of_fraction(std::int64_t f) {
 }  // namespace
 
 std::uint32_t integer_sqrt(std::uint64_t square) {
-  // Two bits of the square give one of the root; what is left of the square is at most twice the root.
+  // Digit-by-digit method: two bits of the square give one bit of the root.
   std::uint32_t root = 0;
-  std::uint64_t rest = 0;
+  std::uint64_t remainder = 0;
   for (int bit = 31; bit >= 0; --bit) {
-    rest = (rest << 2) | (square >> 62);
+    remainder = (remainder << 2) | (square >> 62);
     square <<= 2;
     const std::uint64_t trial = (std::uint64_t{root} << 2) | 1;
-    const std::uint64_t fits = ~less_mask(rest, trial);
-    rest -= trial & fits;
+    const std::uint64_t fits = ~less_mask(remainder, trial);
+    remainder -= trial & fits;
     root = (root << 1) | static_cast<std::uint32_t>(fits & 1);
   }
   return root;
@@ -67,26 +67,26 @@ int highest_bit(std::uint64_t value) {
 }
 
 Fixed sqrt(Fixed x) {
-  // The square root of raw 2^24, rounded to the nearest: that of four times as much, halved.
+  // sqrt(raw 2^24), rounded to the nearest: half of sqrt(raw 2^26), rounded.
   const std::uint64_t raw = static_cast<std::uint64_t>(max(x.raw(), 0));
   return Fixed::from_raw((static_cast<std::int64_t>(integer_sqrt(raw << (Fixed::kFractionBits + 2))) + 1) >>
                          1);
 }
 
 Fixed exp(Fixed x) {
-  // x / ln 2 = n + f with 30 bits behind the point: 24 + 30 bits of the product, less 24.
-  constexpr std::int64_t kLog2OfE = constant30(1.44269504088896341);
+  // x / ln 2 = n + f in Q30: the product has 24 + 30 fraction bits, of which 24 are dropped.
+  constexpr std::int64_t kLog2OfE = constant_q30(1.44269504088896341);
   const std::int64_t in_octaves = (std::int64_t{x.raw()} * kLog2OfE + (std::int64_t{1} << 23)) >> 24;
   const std::int64_t n = in_octaves >> 30;
-  const std::int64_t mantissa = exp2_of_fraction(in_octaves - n * kOne30);  // [1, 2)
-  // 30 bits behind the point to 24, times 2^n: (mantissa + 2^(right - 1)) >> right, in shifts of 32 bits.
+  const std::int64_t mantissa = exp2_fraction_q30(in_octaves - n * kOneQ30);  // [1, 2)
+  // From Q30 to Q24, times 2^n: (mantissa + 2^(right - 1)) >> right, with shifts of 32-bit integers only.
   const int right = clamp(6 - static_cast<int>(n), 0, 33);
   const auto m = static_cast<std::uint32_t>(mantissa);
   const std::uint32_t halved = (m >> 1) + (std::uint32_t{1} << max(right - 2, 0));
   const int rest = max(right - 1, 0);
-  const std::uint32_t by_more = halved >> (rest / 2) >> (rest - rest / 2);
-  const std::uint32_t by_one_or_none = select(is_less(right, 1), m, (m + 1) >> 1);
-  const std::uint32_t shifted = select(is_less(right, 2), by_one_or_none, by_more);
+  const std::uint32_t shifted_by_more = halved >> (rest / 2) >> (rest - rest / 2);
+  const std::uint32_t shifted_by_at_most_one = select(is_less(right, 1), m, (m + 1) >> 1);
+  const std::uint32_t shifted = select(is_less(right, 2), shifted_by_at_most_one, shifted_by_more);
   return Fixed::from_raw(select<std::int64_t>(is_less<std::int64_t>(6, n), Fixed::kLargestRaw, shifted));
 }
 

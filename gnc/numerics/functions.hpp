@@ -1,4 +1,5 @@
-// Elementary functions of integers and Fixed numbers. Norm and errors: docs/numerics.md.
+// Elementary functions of integers and of Fixed (Q7.24). Definitions and errors: docs/numerics.md. The
+// instruction count of each does not depend on its argument.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +8,16 @@
 
 namespace tumblesight::gnc {
 
-// Largest r with r^2 <= square. 32 steps whatever the number.
+// Largest r with r^2 <= square. Exact; 32 iterations.
 std::uint32_t integer_sqrt(std::uint64_t square);
-// Position of the highest bit set, 0 for 0 and 1.
+// Index of the highest bit that is set, 0 to 63; 0 for the values 0 and 1.
 int highest_bit(std::uint64_t value);
 
-// Within 2^-24 of the exact result each.
-Fixed sqrt(Fixed x);     // of negative numbers 0
-Fixed exp(Fixed x);      // saturates above ln 128
-Fixed sigmoid(Fixed x);  // 1 / (1 + e^-x)
+// Square root, error at most 2^-24. Negative arguments give 0.
+Fixed sqrt(Fixed x);
+// e^x, error at most 2^-24 for x <= 0 and relative 1e-8 above. Saturates for x > ln 128.
+Fixed exp(Fixed x);
+// Logistic function 1 / (1 + e^-x), error at most 2^-23.
+Fixed sigmoid(Fixed x);
 
 }  // namespace tumblesight::gnc

@@ -35,15 +35,15 @@ const char* to_string(InstructionSet set) {
 #if defined(__x86_64__)
 namespace {
 
-// Leaf 7, subleaf 1, EAX bit 4. clang 14's __builtin_cpu_supports does not know its name. AVX2 tells that the
-// operating system keeps the registers.
+// CPUID leaf 7, subleaf 1, EAX bit 4: clang 14's __builtin_cpu_supports does not know the name. The check for
+// AVX2 makes sure that the operating system saves the vector registers.
 bool has_avx_vnni() {
   unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
   return __get_cpuid_count(7, 1, &eax, &ebx, &ecx, &edx) != 0 && (eax & (1U << 4)) != 0 &&
          __builtin_cpu_supports("avx2") != 0;
 }
 
-// With what nearly every processor that has it has beside it.
+// AVX-512F with the extensions that the kernels use and that nearly every such processor has.
 bool has_avx512() {
   return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
          __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
@@ -54,8 +54,8 @@ bool has_avx512() {
 bool processor_has(InstructionSet set) {
   switch (set) {
     case InstructionSet::kPortable:
-    case InstructionSet::k128Bit:      // SSE2, which every x86-64 has
-    case InstructionSet::kDotProduct:  // not built here
+    case InstructionSet::k128Bit:      // SSE2: part of x86-64
+    case InstructionSet::kDotProduct:  // not in x86 builds
     case InstructionSet::kDsp:
       return true;
     case InstructionSet::kAvx2:
@@ -71,7 +71,7 @@ bool processor_has(InstructionSet set) {
 }
 #else
 bool processor_has(InstructionSet) {
-  return true;  // the build knows its processor
+  return true;  // the build contains only what its target processor has
 }
 #endif
 

@@ -1,5 +1,6 @@
-// Instruction sets for which there are inner loops of their own. All give the same bits; they differ in speed
-// only. On a target the build decides which exist, on a desktop the processor that is found.
+// Instruction sets for which the library has optimized inner loops. All of them compute the same bits; only
+// the speed differs. On a target processor the compiler flags decide which ones exist; on a desktop the
+// processor is examined at start-up.
 #pragma once
 
 #include <array>
@@ -8,23 +9,24 @@
 namespace tumblesight::gnc {
 
 enum class InstructionSet : std::uint8_t {
-  kPortable,    // plain C++, every processor
+  kPortable,    // plain C++, for every processor
   k128Bit,      // float32: SSE2 or NEON; fixed point: NEON
-  kDotProduct,  // fixed point: Arm's 8-bit dot product
-  kDsp,         // fixed point: the dual 16-bit multiply-accumulate of Cortex-M and Cortex-R
+  kDotProduct,  // fixed point: 8-bit dot product of ARMv8.2
+  kDsp,         // fixed point: dual 16-bit multiply-accumulate of Cortex-M and Cortex-R
   kAvx2,
   kAvxVnni,     // fixed point
   kAvx512,      // float32 and the depth image
   kAvx512Vnni,  // fixed point
 };
-// Slowest first.
+// In ascending order of speed.
 inline constexpr std::array<InstructionSet, 8> kInstructionSets{
     InstructionSet::kPortable, InstructionSet::k128Bit,    InstructionSet::kDotProduct,
     InstructionSet::kDsp,      InstructionSet::kAvx2,      InstructionSet::kAvxVnni,
     InstructionSet::kAvx512,   InstructionSet::kAvx512Vnni};
 
+// Lower-case name for logs and options, such as "avx512-vnni"; "unknown" for a value outside the enumeration.
 const char* to_string(InstructionSet set);
-// Whether this processor can run a set that this build holds.
+// Whether this processor can run `set`. Answers only for sets that this build contains.
 bool processor_has(InstructionSet set);
 
 }  // namespace tumblesight::gnc

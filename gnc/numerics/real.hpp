@@ -1,5 +1,6 @@
-// What the attitude algebra is written in: Real is float or Fixed, one source for both. Vectors and matrices
-// are Eigen's; what rounds or degenerates in a way of its own in either number system stands here.
+// The operations of the attitude algebra, for Real = float and Real = Fixed, so that the algebra is written
+// once. Vectors and matrices are Eigen's. The operations here fix the order of summation, the rounding and
+// the degenerate cases of each number type.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,6 +34,7 @@ using Vector3 = Eigen::Matrix<Real, 3, 1>;
 template <class Real>
 using Matrix3 = Eigen::Matrix<Real, 3, 3>;
 
+// A compile-time constant, rounded to Real.
 template <class Real>
 constexpr Real constant(double value) {
   return static_cast<Real>(value);
@@ -40,34 +42,37 @@ constexpr Real constant(double value) {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-// a0 b0 + a1 b1 + a2 b2: summed from first to last in float, rounded once in fixed point.
+// a0 b0 + a1 b1 + a2 b2: in float summed from left to right, in fixed point rounded once at the end.
 inline float sum_of_products(float a0, float b0, float a1, float b1, float a2, float b2) {
   return (a0 * b0 + a1 * b1) + a2 * b2;
 }
 inline Fixed sum_of_products(Fixed a0, Fixed b0, Fixed a1, Fixed b1, Fixed a2, Fixed b2) {
   return Fixed::dot(a0, b0, a1, b1, a2, b2);
 }
-// Of vectors, rows and columns.
+// Dot product of two vectors, rows or columns of three elements.
 template <class A, class B>
 typename A::Scalar dot(const A& a, const B& b) {
   return sum_of_products(a(0), b(0), a(1), b(1), a(2), b(2));
 }
 
+// v times factor.
 template <class Real>
 Vector3<Real> scaled(const Vector3<Real>& v, Real factor) {
   return {v.x() * factor, v.y() * factor, v.z() * factor};
 }
 
-// v / |v|; the zero vector stays zero. Float: squared lengths below 1e-12 count as 1e-12. Fixed: the vector
-// is scaled to 30 bits first, so that short ones lose nothing.
-inline Vector3<float> normalised(const Vector3<float>& v) {
+// v / |v|; the zero vector stays zero. Float: squared lengths below 1e-12 are raised to 1e-12. Fixed: the
+// vector is first scaled to 30 bits, so that short vectors keep their precision; error at most 2^-24 per
+// element.
+inline Vector3<float> normalized(const Vector3<float>& v) {
   constexpr float kSmallest = 1e-12F;
   const float square = dot(v, v);
   const float length = std::sqrt(max(square, kSmallest));
   return {v.x() / length, v.y() / length, v.z() / length};
 }
-Vector3<Fixed> normalised(const Vector3<Fixed>& v);
+Vector3<Fixed> normalized(const Vector3<Fixed>& v);
 
+// Neither NaN nor infinite; always true for Fixed.
 inline bool is_finite(float x) {
   return std::isfinite(x);
 }
@@ -75,10 +80,11 @@ inline bool is_finite(Fixed) {
   return true;
 }
 
-inline float absolute(float x) {
+// Absolute value; integers: select.hpp.
+inline float abs(float x) {
   return std::abs(x);
 }
-inline Fixed absolute(Fixed x) {
+inline Fixed abs(Fixed x) {
   return select(x < Fixed(), -x, x);
 }
 

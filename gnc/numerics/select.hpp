@@ -1,5 +1,5 @@
-// Choices without branches: the same instructions whatever is chosen, so that the time of a step does not
-// depend on the data. Compilers are free to turn `condition ? yes : no` into a jump; they leave masks alone.
+// Selection without branches: the executed instructions do not depend on the data, and so neither does the
+// time of a step. Compilers may turn `condition ? yes : no` into a jump; they do not do that with masks.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,21 @@
 
 namespace tumblesight::gnc {
 
-// All ones or all zeros.
+// All bits one if `condition`, else zero.
 template <class Integer>
-constexpr Integer mask_of(bool condition) {
+constexpr Integer mask_if(bool condition) {
   return static_cast<Integer>(-static_cast<Integer>(condition));
 }
 
-// Of the first argument's type: int and std::int32_t are different ones on some processors.
+// Keeps a parameter out of template argument deduction (C++20: std::type_identity_t), so that it converts to
+// the type of the first argument. On some processors int and std::int32_t are different types.
 template <class Number>
-using SameAs = std::common_type_t<Number>;
+using NonDeduced = std::common_type_t<Number>;
 
+// `yes` if `condition`, else `no`; for integers and floats (bit for bit, including NaN).
 template <class Integer, class = std::enable_if_t<std::is_integral_v<Integer>>>
-constexpr Integer select(bool condition, Integer yes, SameAs<Integer> no) {
-  return static_cast<Integer>(no ^ ((yes ^ no) & mask_of<Integer>(condition)));
+constexpr Integer select(bool condition, Integer yes, NonDeduced<Integer> no) {
+  return static_cast<Integer>(no ^ ((yes ^ no) & mask_if<Integer>(condition)));
 }
 inline float select(bool condition, float yes, float no) {
   std::uint32_t yes_bits = 0, no_bits = 0;
@@ -31,14 +33,16 @@ inline float select(bool condition, float yes, float no) {
   return yes;
 }
 
-// All ones where a < b. Without a comparison, which some processors can only make with a jump.
+// All bits one if a < b, else zero. Avoids a comparison instruction, since some processors need a jump to use
+// its result.
 template <class Integer>
-constexpr Integer less_mask(Integer a, SameAs<Integer> b) {
+constexpr Integer less_mask(Integer a, NonDeduced<Integer> b) {
   static_assert(std::is_integral_v<Integer>);
   if constexpr (sizeof(Integer) < 8) {
     return static_cast<Integer>((static_cast<std::int64_t>(a) - static_cast<std::int64_t>(b)) >> 63);
   } else {
-    // The difference's sign, or its borrow; where that would overflow, or not, the operands tell.
+    // The borrow of a - b: decided by the top bits of the operands if they differ, else by that of the
+    // difference.
     const auto x = static_cast<std::uint64_t>(a), y = static_cast<std::uint64_t>(b);
     const std::uint64_t first = std::is_signed_v<Integer> ? x & ~y : ~x & y;
     const std::uint64_t borrow = first | (~(x ^ y) & (x - y));
@@ -46,47 +50,50 @@ constexpr Integer less_mask(Integer a, SameAs<Integer> b) {
   }
 }
 
-// Where there are conditional moves, compilers use them, and comparisons are as good as masks.
+// With conditional moves the compiler implements a comparison without a jump, and masks are not needed.
 #if defined(__x86_64__) || defined(__aarch64__)
-inline constexpr bool kMovesConditionally = true;
+inline constexpr bool kHasConditionalMoves = true;
 #else
-inline constexpr bool kMovesConditionally = false;
+inline constexpr bool kHasConditionalMoves = false;
 #endif
 
+// a < b, without a branch.
 template <class Integer>
-constexpr bool is_less(Integer a, SameAs<Integer> b) {
-  if constexpr (kMovesConditionally)
+constexpr bool is_less(Integer a, NonDeduced<Integer> b) {
+  if constexpr (kHasConditionalMoves)
     return a < b;
   else
     return (less_mask<Integer>(a, b) & 1) != 0;
 }
 
+// The smaller and the larger of two numbers; `a` if they are equal or one is NaN.
 template <class Number>
-constexpr Number min(Number a, SameAs<Number> b) {
+constexpr Number min(Number a, NonDeduced<Number> b) {
   if constexpr (!std::is_integral_v<Number>)
     return select(b < a, b, a);
-  else if constexpr (kMovesConditionally)
+  else if constexpr (kHasConditionalMoves)
     return b < a ? b : a;
   else
     return static_cast<Number>(a ^ ((a ^ b) & less_mask<Number>(b, a)));
 }
 template <class Number>
-constexpr Number max(Number a, SameAs<Number> b) {
+constexpr Number max(Number a, NonDeduced<Number> b) {
   if constexpr (!std::is_integral_v<Number>)
     return select(a < b, b, a);
-  else if constexpr (kMovesConditionally)
+  else if constexpr (kHasConditionalMoves)
     return a < b ? b : a;
   else
     return static_cast<Number>(a ^ ((a ^ b) & less_mask<Number>(a, b)));
 }
+// Absolute value; the most negative integer stays as it is.
 template <class Integer>
 constexpr Integer abs(Integer value) {
   const Integer sign = static_cast<Integer>(value >> (8 * sizeof(Integer) - 1));
   return static_cast<Integer>((value ^ sign) - sign);
 }
-// Held between `low` and `high`; NaN gives `low`.
+// `value` limited to [low, high]; NaN gives `low`.
 template <class Number>
-constexpr Number clamp(Number value, SameAs<Number> low, SameAs<Number> high) {
+constexpr Number clamp(Number value, NonDeduced<Number> low, NonDeduced<Number> high) {
   return min<Number>(high, max<Number>(low, value));
 }
 

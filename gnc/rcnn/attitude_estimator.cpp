@@ -8,15 +8,16 @@
 
 namespace tumblesight::gnc {
 
-static_assert(sizeof(AttitudeEstimator<FixedPoint>) <= 128 * 1024, "budget of working memory");
-static_assert(kModelImageSize<FixedPoint> <= 1'200'000, "budget of the model image");
+static_assert(sizeof(AttitudeEstimator<FixedPoint>) <= 128 * 1024, "working memory exceeds its budget");
+static_assert(kModelImageSize<FixedPoint> <= 1'200'000, "the model image exceeds its budget");
 
 namespace {
 
-// Of what is no rotation, as damaged weights or state may make it, nothing is expected.
+// Expected error in microradians; pi if `attitude` is not a rotation, as damaged weights or a damaged state
+// may cause.
 std::uint32_t error_urad(const Matrix3<Fixed>& attitude, Fixed predicted_rad) {
   const Fixed trace = trace_of_transpose_product<Fixed>(attitude, attitude);
-  const bool is_rotation = absolute(trace - Fixed(3.0)) < Fixed(0.1);
+  const bool is_rotation = abs(trace - Fixed(3.0)) < Fixed(0.1);
   const std::int64_t scaled = std::int64_t{predicted_rad.raw()} * 1'000'000;
   const std::int64_t urad = (scaled + (1 << (Fixed::kFractionBits - 1))) >> Fixed::kFractionBits;
   return select(is_rotation, static_cast<std::uint32_t>(min<std::int64_t>(kPi_urad, urad)), kPi_urad);
@@ -68,7 +69,7 @@ void AttitudeEstimator<N>::reset() {
 
 template <class N>
 FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, AttitudeEstimate& estimate) {
-  const DepthLoops& loops = depth_loops_within(network_.kernels().set);
+  const DepthLoops& loops = fastest_depth_loops(network_.kernels().set);
   const FrameStatus status =
       make_depth_image(frame, model_.projection, network_.projection_scratch(), image_, loops);
   if (status == FrameStatus::kOk) step(image_, estimate);
@@ -77,9 +78,9 @@ FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, AttitudeEstimate
 
 template <class N>
 void AttitudeEstimator<N>::step(const DepthImage& image, AttitudeEstimate& estimate) {
-  auto& [output, hypotheses, prediction, input, head] = passed_;
+  auto& [output, hypotheses, prediction, input, head] = intermediates_;
   network_.infer_frame(image, output);
-  hypotheses = hypotheses_of<Real>(output, converted<Real>(image.r_lrf_view));
+  hypotheses = decode_hypotheses<Real>(output, converted<Real>(image.r_lrf_view));
   prediction = predict<Real>(state_.track, laws_, hypotheses);
   fill_lstm_input<N>(network_.features(), hypotheses, prediction.r_lrf_trf(), input);
   network_.infer_sequence(input, state_.lstm, head);
@@ -113,8 +114,8 @@ std::uint32_t AttitudeEstimator<N>::crc32_of(const State& state) {
 template <class N>
 std::uint32_t AttitudeEstimator<N>::constants_crc32() const {
   Crc32 crc;
-  const auto add = [&crc](const auto& thing) {
-    crc.add(reinterpret_cast<const std::uint8_t*>(&thing), sizeof thing);
+  const auto add = [&crc](const auto& object) {
+    crc.add(reinterpret_cast<const std::uint8_t*>(&object), sizeof object);
   };
   if constexpr (N::kIsInteger) {
     for_each_tensor(network_.weights(),

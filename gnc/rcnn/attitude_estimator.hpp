@@ -1,5 +1,5 @@
-// AttitudeEstimator: the RCNN with its explicit state, from LiDAR frames to attitudes, in the numerics N
-// (Float32 or FixedPoint).
+// AttitudeEstimator: the RCNN with its explicit state, from LiDAR frames to attitudes. N: Float32 or
+// FixedPoint.
 #pragma once
 
 #include <cstddef>
@@ -14,62 +14,65 @@ namespace tumblesight::gnc {
 
 inline constexpr std::uint32_t kPi_urad = 3'141'593;
 
-// One attitude, of the frame just given, in integers whatever the numerics. Quaternions are Hamilton, unit,
-// scalar first and not negative, with 30 bits behind the point, and take the target frame (TRF) to the LiDAR
-// frame (LRF): v_lrf = q_lrf_trf * v_trf.
+// The attitude at one frame, in integers for both numerics. Quaternions are unit, Hamilton, scalar first with
+// w >= 0, in Q1.30, and take the target frame (TRF) to the LiDAR frame (LRF): v_lrf = q_lrf_trf * v_trf.
 struct AttitudeEstimate {
-  QuaternionQ30 q_lrf_trf = kIdentityQ30;               // from all frames since the reset (RCNN)
-  std::uint32_t predicted_error_urad = kPi_urad;        // expected angular error of q_lrf_trf
+  QuaternionQ30 q_lrf_trf = kIdentityQ30;               // from all frames since reset (RCNN)
+  std::uint32_t predicted_error_urad = kPi_urad;        // expected angular error of q_lrf_trf, 0..pi
   QuaternionQ30 q_lrf_trf_single_frame = kIdentityQ30;  // from this frame alone (CNN)
   std::uint32_t predicted_error_single_frame_urad = kPi_urad;
   std::uint32_t frames_since_reset = 0;  // 1 for the first frame of a track
 };
 
-// Owns activations and state, and float32 weights; weights in fixed point are read where the model image
-// lies, which has to stay there. No allocation; place it in static storage.
+// Owns the activations, the state and float32 weights. Fixed-point weights are read in place from the model
+// image, which must stay valid and unchanged at its address. No allocation. Up to 128 KiB: place it in static
+// storage.
 template <class N>
 class AttitudeEstimator {
  public:
   using Real = typename N::Real;
 
-  // What one frame leaves behind for the next: all that save() and restore() have to carry.
+  // Everything that one frame passes on to the next.
   struct State {
     LstmState<N> lstm;
     AttitudeTrack<Real> track;
   };
 
-  // Validates the whole image first; on any error the model loaded before, if any, stays in use.
-  // `expected_target`: NUL-terminated target name, or nullptr to accept any. On success the state is reset.
+  // Validates the whole image, then uses it and resets the state. On any error the model loaded before, if
+  // any, stays in use. `expected_target`: NUL-terminated target name, or nullptr to accept any.
   [[nodiscard]] ModelStatus load(const std::uint8_t* image, std::size_t size_bytes,
                                  const char* expected_target);
-  // Whether load() would take the image; nothing is changed.
+  // The status that load() would return; changes nothing.
   [[nodiscard]] ModelStatus check(const std::uint8_t* image, std::size_t size_bytes,
                                   const char* expected_target) const;
-  // Takes the loaded image over once more, wherever it lies now; the state goes on. For what memory has lost:
-  // the image has to be the one that is loaded, unchanged, which is not looked at again.
+  // Repairs damaged memory: derives everything again from the loaded image, now at `image`, and keeps the
+  // state. The image must be the loaded one, unchanged; it is not validated again.
   void reload(const std::uint8_t* image);
   bool has_model() const { return has_model_; }
   const ModelHeader& model() const { return model_; }
 
+  // Forgets all frames seen so far.
   void reset();
-  // Not kOk: the frame is refused, estimate and state are untouched. Requires has_model().
+  // Processes one frame. On any status except kOk the frame is refused; `estimate` and the state are
+  // unchanged. Requires has_model().
   [[nodiscard]] FrameStatus step(const RangeImage& frame, AttitudeEstimate& estimate);
-  // The same from a ready depth image (tests, training, evaluation).
+  // The same from a depth image (tests, training, evaluation).
   void step(const DepthImage& image, AttitudeEstimate& estimate);
 
   void save(State& state) const { state = state_; }
   void restore(const State& state) { state_ = state; }
   std::uint32_t state_crc32() const { return crc32_of(state_); }
   static std::uint32_t crc32_of(const State& state);
-  // Over all that load() has set and no step changes, byte by byte as this processor holds it; float32's
-  // weights are left out.
+  // CRC of everything that load() sets and no step changes, except float32 weights. Computed over the memory
+  // of this processor: the value differs between processors.
   std::uint32_t constants_crc32() const;
+  // Of the last frame that was not refused.
   const DepthImage& depth_image() const { return image_; }
   Network<N>& network() { return network_; }
 
  private:
-  // What one frame's stages hand on: here, so that the stack stays small.
-  struct Passed {
+  // Results of the stages of a frame; members, to keep the stack small.
+  struct Intermediates {
     OutputVector<Real> output;
     Hypotheses<Real> hypotheses;
     Prediction<Real> prediction;
@@ -79,7 +82,7 @@ class AttitudeEstimator {
 
   Network<N> network_;
   State state_;
-  Passed passed_;
+  Intermediates intermediates_;
   ModelHeader model_;
   MotionLaws<Real> laws_;
   DepthImage image_;

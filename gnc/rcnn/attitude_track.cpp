@@ -8,19 +8,19 @@ namespace tumblesight::gnc {
 namespace {
 
 constexpr int kCandidates = shape::kCandidates;
-constexpr double kLeastProbability = 1e-6;  // so that the weights of a cluster never all vanish
-constexpr double kLargestExponent = 8.0;    // of the network's word on a weight
+constexpr double kMinProbability = 1e-6;  // so that the weights of a group of candidates are never all zero
+constexpr double kMaxCorrection = 8.0;    // of the logarithm of a weight, by the network
 
-// The gains with which a straight line is fitted to k equally good measurements, one by one: attitude
-// a = 2 (2k - 1) / (k (k + 1)), rate over attitude 3 / (2k - 1). Frozen at k = 10, so that the track never
-// turns deaf.
+// Gains of the recursive least-squares fit of a straight line to k equally good measurements: attitude gain
+// a = 2 (2k - 1) / (k (k + 1)), ratio of the rate gain to it 3 / (2k - 1). Constant from k = 10 on, so that
+// the track keeps responding to measurements.
 constexpr int kGains = 10;
 
 template <class Real>
 struct FilterGains {
-  Real predicted_weight;  // of the predicted attitude, the hypotheses of a frame weighing 1: (1 - a) / a
-  Real rate_logit;        // sigmoid^-1 of the rate's gain over the attitude's
-  Real evidence;          // by how much a law's squared miss tells against it: (1 - a) / (2 a^2)
+  Real predicted_weight;  // of the predicted attitude relative to the hypotheses of a frame: (1 - a) / a
+  Real rate_logit;        // logit of the ratio of the rate gain to the attitude gain
+  Real evidence;          // by which a law's log-likelihood falls per squared innovation: (1 - a) / (2 a^2)
 };
 
 template <class Real>
@@ -36,127 +36,135 @@ constexpr std::array<FilterGains<Real>, kGains> kFilterGains{
      gains<Real>(1.1538462, -1.2039728, 1.2426036), gains<Real>(1.4, -1.3862944, 1.68),
      gains<Real>(1.6470588, -1.540445, 2.1799308), gains<Real>(1.8947368, -1.6739764, 2.7423823)}};
 
-constexpr double kLeastVariance_rad2 = 7e-4;  // of a frame's attitude: 1.5 degrees
-constexpr double kLeastLogLikelihood = -6.0;
-constexpr double kMostTold = 64.0;                              // by one frame against a law
-constexpr double kMemory = 0.9;                                 // of the likelihoods, from frame to frame
-constexpr double kMissOfLostTarget = 2.0 * (1.0 - 0.93969262);  // 20 degrees
-constexpr double kLeastSeen = 0.1;  // probability near a prediction; with less, the target is lost
+constexpr double kMinVariance_rad2 = 7e-4;  // of the attitude of a frame: (1.5 degrees)^2
+constexpr double kMinLogLikelihood = -6.0;
+constexpr double kMaxEvidence = 64.0;                               // against a law by one frame
+constexpr double kLikelihoodDecay = 0.9;                            // factor on the log-likelihoods per frame
+constexpr double kLostTargetInnovation = 2.0 * (1.0 - 0.93969262);  // squared innovation of 20 degrees
+// Sum over the hypotheses near the prediction of a law. With less, the law has lost the target.
+constexpr double kMinProbabilityNearPrediction = 0.1;
 
-// False for what a damaged state may hold: not finite, or no rotation.
+// False for a damaged state: not finite, or not a rotation.
 template <class Real>
-bool is_sound(const Motion<Real>& motion) {
+bool is_valid(const Motion<Real>& motion) {
   const Real trace = trace_of_transpose_product<Real>(motion.r_lrf_trf, motion.r_lrf_trf);
   const Vector3<Real>& rate = motion.rate_lrf;
-  const bool is_rotation = absolute(trace - constant<Real>(3.0)) < constant<Real>(0.1);
+  const bool is_rotation = abs(trace - constant<Real>(3.0)) < constant<Real>(0.1);
   const bool has_rate = is_finite((rate.x() + rate.y()) + rate.z());
   return is_rotation & has_rate;
 }
 
 template <class Real>
-bool is_sound(const AttitudeTrack<Real>& track) {
-  bool sound = true;
+bool is_valid(const AttitudeTrack<Real>& track) {
+  bool valid = true;
   for (int law = 0; law < kLaws; ++law) {
-    sound &= is_sound<Real>(track.motion[law]);
-    sound &= is_finite(track.log_likelihood[law]);
+    valid &= is_valid<Real>(track.motion[law]);
+    valid &= is_finite(track.log_likelihood[law]);
   }
-  return sound;
+  return valid;
 }
 
-// p exp(word) for the hypotheses, prior exp(word) for the predicted attitude; all over one common factor,
-// lest they leave the range of Real.
+// Weights of the candidates: probability times exp(correction) for a hypothesis, predicted_weight times
+// exp(correction) for the predicted attitude. All are divided by a common factor, so that they stay within
+// the range of Real.
 template <class Real>
-std::array<Real, kCandidates> weights_of(const Hypotheses<Real>& hypotheses, const Real* words,
-                                         Real predicted_weight) {
-  constexpr Real kBound = constant<Real>(kLargestExponent);
+std::array<Real, kCandidates> candidate_weights(const Hypotheses<Real>& hypotheses, const Real* corrections,
+                                                Real predicted_weight) {
+  constexpr Real kBound = constant<Real>(kMaxCorrection);
   std::array<Real, kCandidates> weights;
   Real largest = -kBound;
   for (int i = 0; i < kCandidates; ++i) {
-    weights[i] = clamp(words[i], -kBound, kBound);
+    weights[i] = clamp(corrections[i], -kBound, kBound);
     largest = max(largest, weights[i]);
   }
   for (int i = 0; i < kCandidates; ++i) {
     const Real prior = i < shape::kHypotheses
-                           ? max(constant<Real>(kLeastProbability), hypotheses.probability[i])
+                           ? max(constant<Real>(kMinProbability), hypotheses.probability[i])
                            : predicted_weight;
     weights[i] = exp(weights[i] - largest) * prior;
   }
   return weights;
 }
 
+// The candidate with the largest corrected logit. The logit of the predicted attitude is 0 before the
+// correction.
 template <class Real>
-int anchor_of(const Hypotheses<Real>& hypotheses, const Real* words) {
+int choose_anchor(const Hypotheses<Real>& hypotheses, const Real* corrections) {
   int anchor = 0;
-  Real largest = hypotheses.logit[0] + words[0];
+  Real largest = hypotheses.logit[0] + corrections[0];
   for (int i = 1; i < kCandidates; ++i) {
-    const Real value = (i < shape::kHypotheses ? hypotheses.logit[i] : Real{}) + words[i];
+    const Real value = (i < shape::kHypotheses ? hypotheses.logit[i] : Real{}) + corrections[i];
     anchor = select(value > largest, i, anchor);
     largest = max(largest, value);
   }
   return anchor;
 }
 
-// The squared angle between where the law saw the target coming and where it now is. A miss tells no more
-// than that the target is lost; and it is lost, however near the answer, where the frame shows nothing near
-// the prediction: the answer may be that very prediction.
+// Squared angle between the attitude that a law predicted and the result, at most kLostTargetInnovation: the
+// law has lost the target. That is also the value if the hypotheses show nothing near the prediction, since
+// the result may then be the prediction itself.
 template <class Real>
-Real squared_miss(const Hypotheses<Real>& hypotheses, const Motion<Real>& predicted,
-                  const Matrix3<Real>& r_lrf_trf) {
-  constexpr Real kLost = constant<Real>(kMissOfLostTarget);
-  Real seen{};
+Real squared_innovation(const Hypotheses<Real>& hypotheses, const Motion<Real>& predicted,
+                        const Matrix3<Real>& r_lrf_trf) {
+  constexpr Real kLost = constant<Real>(kLostTargetInnovation);
+  Real probability_near{};
   for (int i = 0; i < shape::kHypotheses; ++i) {
-    const bool near = same_attitude<Real>(hypotheses.r_lrf_trf[i], predicted.r_lrf_trf);
-    seen += select(near, hypotheses.probability[i], Real{});
+    const bool is_near = same_attitude<Real>(hypotheses.r_lrf_trf[i], predicted.r_lrf_trf);
+    probability_near += select(is_near, hypotheses.probability[i], Real{});
   }
-  const Real miss = constant<Real>(3.0) - trace_of_transpose_product<Real>(predicted.r_lrf_trf, r_lrf_trf);
-  return select(seen < constant<Real>(kLeastSeen), kLost, min(miss, kLost));
+  const Real innovation_squared =
+      constant<Real>(3.0) - trace_of_transpose_product<Real>(predicted.r_lrf_trf, r_lrf_trf);
+  return select(probability_near < constant<Real>(kMinProbabilityNearPrediction), kLost,
+                min(innovation_squared, kLost));
 }
 
+// The motion after the measurement `r_lrf_trf`. Innovations of 60 degrees or more leave the rate as it is.
 template <class Real>
 Motion<Real> corrected(const Motion<Real>& predicted, const Matrix3<Real>& r_lrf_trf, Real rate_gain) {
   const Matrix3<Real> lrf_predicted = predicted.r_lrf_trf.transpose();
-  const Vector3<Real> miss = small_turn_of<Real>(product<Real>(r_lrf_trf, lrf_predicted));
-  return {r_lrf_trf, predicted.rate_lrf + scaled<Real>(miss, rate_gain)};
+  const Vector3<Real> innovation = small_rotation_vector<Real>(product<Real>(r_lrf_trf, lrf_predicted));
+  return {r_lrf_trf, predicted.rate_lrf + scaled<Real>(innovation, rate_gain)};
 }
 
+// The value by which the laws are compared: log-likelihood minus required evidence.
 template <class Real>
-Real standing(const AttitudeTrack<Real>& track, int law) {
-  constexpr std::array<Real, kLaws> kAsked{
-      constant<Real>(kEvidenceAsked[0]), constant<Real>(kEvidenceAsked[1]), constant<Real>(kEvidenceAsked[2]),
-      constant<Real>(kEvidenceAsked[3]), constant<Real>(kEvidenceAsked[4])};
-  return track.log_likelihood[law] - kAsked[law];
+Real score(const AttitudeTrack<Real>& track, int law) {
+  constexpr std::array<Real, kLaws> kRequired{
+      constant<Real>(kRequiredEvidence[0]), constant<Real>(kRequiredEvidence[1]),
+      constant<Real>(kRequiredEvidence[2]), constant<Real>(kRequiredEvidence[3]),
+      constant<Real>(kRequiredEvidence[4])};
+  return track.log_likelihood[law] - kRequired[law];
 }
 
-// How much the frame tells against a law with this squared miss.
+// Evidence of a frame against a law with this squared innovation.
 template <class Real>
-Real told(Real miss, Real evidence, Real variance_rad2) {
-  return min(constant<Real>(kMostTold), evidence * miss / variance_rad2);
+Real evidence_against(Real innovation_squared, Real evidence, Real variance_rad2) {
+  return min(constant<Real>(kMaxEvidence), evidence * innovation_squared / variance_rad2);
 }
 
-// Every law's log-likelihood falls by what is told against it. A law that has lost the target goes on from
-// where the best of those that see it does.
+// Lowers the log-likelihood of each law by the evidence against it. A law that has lost the target takes over
+// the motion of the best law that has not.
 template <class Real>
-void weigh_laws(const std::array<Real, kLaws>& miss, Real evidence, Real variance_rad2,
+void weigh_laws(const std::array<Real, kLaws>& innovation_squared, Real evidence, Real variance_rad2,
                 AttitudeTrack<Real>& track) {
-  constexpr Real kLost = constant<Real>(kMissOfLostTarget);
+  constexpr Real kLost = constant<Real>(kLostTargetInnovation);
   for (int law = 0; law < kLaws; ++law) {
-    track.log_likelihood[law] =
-        constant<Real>(kMemory) * track.log_likelihood[law] - told<Real>(miss[law], evidence, variance_rad2);
+    track.log_likelihood[law] = constant<Real>(kLikelihoodDecay) * track.log_likelihood[law] -
+                                evidence_against<Real>(innovation_squared[law], evidence, variance_rad2);
   }
   Real likeliest = track.log_likelihood[0];
-  for (const Real one : track.log_likelihood) likeliest = max(likeliest, one);
+  for (const Real value : track.log_likelihood) likeliest = max(likeliest, value);
   int best = 0;
-  bool any_sees_it = false;
+  bool any_follows = false;
   for (int law = 0; law < kLaws; ++law) {
-    track.log_likelihood[law] =
-        max(constant<Real>(kLeastLogLikelihood), track.log_likelihood[law] - likeliest);
-    const bool sees_it = miss[law] < kLost;
-    best = select(sees_it & (!any_sees_it | (standing(track, law) > standing(track, best))), law, best);
-    any_sees_it |= sees_it;
+    track.log_likelihood[law] = max(constant<Real>(kMinLogLikelihood), track.log_likelihood[law] - likeliest);
+    const bool follows = innovation_squared[law] < kLost;
+    best = select(follows & (!any_follows | (score(track, law) > score(track, best))), law, best);
+    any_follows |= follows;
   }
   for (int law = 0; law < kLaws; ++law) {
-    const bool follows = any_sees_it & !(miss[law] < kLost);
-    track.motion[law] = track.motion[select(follows, best, law)];
+    const bool takes_over = any_follows & !(innovation_squared[law] < kLost);
+    track.motion[law] = track.motion[select(takes_over, best, law)];
   }
 }
 
@@ -165,21 +173,20 @@ void weigh_laws(const std::array<Real, kLaws>& miss, Real evidence, Real varianc
 template <class Real>
 int AttitudeTrack<Real>::law() const {
   int best = kSpinLaw;
-  for (int law = 1; law < kLaws; ++law)
-    best = select(standing(*this, law) > standing(*this, best), law, best);
+  for (int law = 1; law < kLaws; ++law) best = select(score(*this, law) > score(*this, best), law, best);
   return best;
 }
 
 template <class Real>
 Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
                          const Hypotheses<Real>& hypotheses) {
-  // Both ways are gone in every frame, so that each takes the same time.
-  const bool has_track = (track.frames > 0) & is_sound(track);
-  std::array<Motion<Real>, 2> choice{};  // without a track, with one
+  // Both alternatives are computed in every frame, so that the time does not depend on the state.
+  const bool has_track = (track.frames > 0) & is_valid(track);
+  std::array<Motion<Real>, 2> choice{};  // [0] without a track, [1] with a track
   choice[0] = {hypotheses.r_lrf_trf[hypotheses.likeliest], Vector3<Real>::Zero()};
   Prediction<Real> prediction;
   for (int law = 0; law < kLaws; ++law) {
-    choice[1] = tumble<Real>(track.motion[law], laws[law]);
+    choice[1] = propagate<Real>(track.motion[law], laws[law]);
     prediction.motion[law] = choice[has_track];
   }
   prediction.law = select(has_track, track.law(), kSpinLaw);
@@ -191,44 +198,45 @@ void fill_lstm_input(const Features<N>& features, const Hypotheses<typename N::R
                      const Matrix3<typename N::Real>& predicted_r_lrf_trf, LstmInput<N>& input) {
   using Real = typename N::Real;
   auto* next = std::copy(features.begin(), features.end(), input.begin());
-  const auto put_columns = [&next](const Matrix3<Real>& rotation) {
+  const auto append_columns = [&next](const Matrix3<Real>& rotation) {
     for (int column = 0; column < 2; ++column) {
       for (int row = 0; row < 3; ++row) to_input(rotation(row, column), *next++);
     }
   };
   for (const Matrix3<Real>& r_lrf_trf : hypotheses.r_lrf_trf) {
-    put_columns(transpose_product<Real>(predicted_r_lrf_trf, r_lrf_trf));
+    append_columns(transpose_product<Real>(predicted_r_lrf_trf, r_lrf_trf));
   }
   for (const Real probability : hypotheses.probability) to_input(probability, *next++);
-  put_columns(predicted_r_lrf_trf);
+  append_columns(predicted_r_lrf_trf);
 }
 
 template <class Real>
 TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Prediction<Real>& prediction,
                               const HeadOutput<Real>& head, AttitudeTrack<Real>& track) {
-  const std::array<AttitudeTrack<Real>, 2> choice{AttitudeTrack<Real>{}, track};  // damaged, sound
-  track = choice[is_sound(track)];
+  const std::array<AttitudeTrack<Real>, 2> choice{AttitudeTrack<Real>{}, track};  // [0] damaged, [1] valid
+  track = choice[is_valid(track)];
   const FilterGains<Real>& filter = kFilterGains<Real>[std::min<std::uint32_t>(track.frames, kGains - 1)];
-  const Real* words = head.data();
-  const int anchor = anchor_of<Real>(hypotheses, words);
-  const auto weights = weights_of<Real>(hypotheses, words + kCandidates, filter.predicted_weight);
-  const Real learnt_gain = sigmoid(filter.rate_logit + words[2 * kCandidates]);
-  const Real rate_gain = select(track.frames > 0, learnt_gain, Real{});
+  const Real* corrections = head.data();
+  const int anchor = choose_anchor<Real>(hypotheses, corrections);
+  const auto weights =
+      candidate_weights<Real>(hypotheses, corrections + kCandidates, filter.predicted_weight);
+  const Real learned_gain = sigmoid(filter.rate_logit + corrections[2 * kCandidates]);
+  const Real rate_gain = select(track.frames > 0, learned_gain, Real{});
 
   std::array<Matrix3<Real>, kCandidates> candidates;
   std::copy(hypotheses.r_lrf_trf.begin(), hypotheses.r_lrf_trf.end(), candidates.begin());
-  std::array<Real, kLaws> miss;
+  std::array<Real, kLaws> innovation_squared;
   for (int law = 0; law < kLaws; ++law) {
     candidates[shape::kHypotheses] = prediction.motion[law].r_lrf_trf;
     const Matrix3<Real> r_lrf_trf =
         mean_attitude<Real>(candidates.data(), weights.data(), kCandidates, anchor);
-    miss[law] = squared_miss<Real>(hypotheses, prediction.motion[law], r_lrf_trf);
+    innovation_squared[law] = squared_innovation<Real>(hypotheses, prediction.motion[law], r_lrf_trf);
     track.motion[law] = corrected<Real>(prediction.motion[law], r_lrf_trf, rate_gain);
   }
-  const Real predicted_error_rad = constant<Real>(kPi) * sigmoid(words[2 * kCandidates + 1]);
+  const Real predicted_error_rad = constant<Real>(kPi) * sigmoid(corrections[2 * kCandidates + 1]);
   const Real variance_rad2 =
-      max(constant<Real>(kLeastVariance_rad2), predicted_error_rad * predicted_error_rad);
-  weigh_laws<Real>(miss, filter.evidence, variance_rad2, track);
+      max(constant<Real>(kMinVariance_rad2), predicted_error_rad * predicted_error_rad);
+  weigh_laws<Real>(innovation_squared, filter.evidence, variance_rad2, track);
   ++track.frames;
   return {track.motion[track.law()].r_lrf_trf, predicted_error_rad};
 }

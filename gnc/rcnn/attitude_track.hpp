@@ -1,6 +1,7 @@
-// AttitudeTrack: the motion carried from frame to frame. Each frame, the attitude where the motion seen so
-// far leads is one more candidate beside the frame's hypotheses; the recurrent network says which of them to
-// believe and how much, by correcting the gains of a filter for smooth rotation. Real: float or Fixed.
+// AttitudeTrack: the motion of the target, carried from frame to frame. The attitude predicted from the
+// motion so far is one more candidate besides the hypotheses of a frame. A filter for smooth rotation
+// combines them; the recurrent network corrects the choice of the candidate, the weights and the gain of the
+// filter. Real: float or Fixed (Q7.24).
 #pragma once
 
 #include <array>
@@ -11,20 +12,22 @@
 
 namespace tumblesight::gnc {
 
-// Several laws of motion are followed side by side; the one that has predicted best so far speaks. With less
-// evidence than this, a target is taken to spin, and to have the inertia that is known of it: where laws say
-// the same, rounding must not decide.
-inline constexpr std::array<double, kLaws> kEvidenceAsked{0.0, 0.5, 2.0, 2.0, 2.0};
+// All laws of motion (motion.hpp) are followed in parallel, and the one that has predicted best so far gives
+// the result. A law needs this much more log-likelihood than the others: with less evidence the target is
+// assumed to spin, then to have its nominal inertia. Otherwise rounding would decide between laws that
+// predict the same.
+inline constexpr std::array<double, kLaws> kRequiredEvidence{0.0, 0.5, 2.0, 2.0, 2.0};
 
 template <class Real>
 struct AttitudeTrack {
-  std::array<Motion<Real>, kLaws> motion;    // at the last frame, by each law
-  std::array<Real, kLaws> log_likelihood{};  // of each law; 0 the likeliest one's, the others' below
-  std::uint32_t frames = 0;                  // since the reset
+  std::array<Motion<Real>, kLaws> motion;    // at the last frame, for each law
+  std::array<Real, kLaws> log_likelihood{};  // of each law: 0 for the likeliest, negative for the others
+  std::uint32_t frames = 0;                  // since reset
 
-  int law() const;  // the one that speaks
+  int law() const;  // index of the law that gives the result
 };
 
+// The motion of each law, propagated to the current frame.
 template <class Real>
 struct Prediction {
   std::array<Motion<Real>, kLaws> motion;
@@ -38,20 +41,25 @@ struct TrackedAttitude {
   Real predicted_error_rad;  // 0..pi
 };
 
-// For the frame that the hypotheses are of. Without a track (before the first frame, or when it is not
-// finite) the likeliest hypothesis, at rest.
+// Predicts the motion at the frame that `hypotheses` belong to. Without a valid track (before the first
+// frame, or if the state is damaged: not finite, or not a rotation) the prediction is the likeliest
+// hypothesis, at rest.
 template <class Real>
 Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
                          const Hypotheses<Real>& hypotheses);
 
-// What the LSTM gets: dense2's output; for every hypothesis the first two columns of its turn relative to the
-// predicted attitude, in the TRF, where the alternatives of a symmetric target stand still; the
-// probabilities; the predicted attitude's first two columns.
+// Fills the input of the LSTM: the output of dense2; for each hypothesis the first two columns of its
+// rotation relative to the predicted attitude, expressed in the TRF, where the alternatives of a symmetric
+// target are constant; the probabilities; the first two columns of the predicted attitude.
 template <class N>
 void fill_lstm_input(const Features<N>& features, const Hypotheses<typename N::Real>& hypotheses,
                      const Matrix3<typename N::Real>& predicted_r_lrf_trf, LstmInput<N>& input);
 
-// Fuses hypotheses and prediction by the recurrent head's word and moves the track on.
+// Combines the hypotheses and the prediction of a frame into the attitude, and advances `track` to that
+// frame.
+//
+// head   corrections from the recurrent network, layout in network_shape.hpp (kHeadOutput)
+// track  a damaged track is reset first
 template <class Real>
 TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Prediction<Real>& prediction,
                               const HeadOutput<Real>& head, AttitudeTrack<Real>& track);

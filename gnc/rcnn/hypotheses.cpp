@@ -9,18 +9,18 @@ template <class Real>
 constexpr Real kTraceOfSameAttitude = constant<Real>(1.0 + 2.0 * 0.93969262078590838);  // 1 + 2 cos 20 deg
 static_assert(kSameAttitude_deg == 20.0F);
 
-// exp(x_k) over their sum, added in order, with the largest subtracted first.
+// Softmax: exp(x_k - largest) over their sum, added in order.
 template <class Real>
 std::array<Real, shape::kHypotheses> softmax(const std::array<Real, shape::kHypotheses>& logit,
                                              Real largest) {
-  std::array<Real, shape::kHypotheses> share;
+  std::array<Real, shape::kHypotheses> probability;
   Real sum{};
   for (int k = 0; k < shape::kHypotheses; ++k) {
-    share[k] = exp(logit[k] - largest);
-    sum += share[k];
+    probability[k] = exp(logit[k] - largest);
+    sum += probability[k];
   }
-  for (Real& one : share) one = one / sum;
-  return share;
+  for (Real& p : probability) p = p / sum;
+  return probability;
 }
 
 }  // namespace
@@ -31,13 +31,14 @@ bool same_attitude(const Matrix3<Real>& a, const Matrix3<Real>& b) {
 }
 
 template <class Real>
-Hypotheses<Real> hypotheses_of(const OutputVector<Real>& output, const Matrix3<Real>& r_lrf_view) {
+Hypotheses<Real> decode_hypotheses(const OutputVector<Real>& output, const Matrix3<Real>& r_lrf_view) {
   Hypotheses<Real> result;
   result.likeliest = 0;
   for (int k = 0; k < shape::kHypotheses; ++k) {
-    const Real* six = output.data() + 6 * k;
-    const Matrix3<Real> r_view_trf = rotation_from_columns<Real>(
-        orthonormalise<Real>(Vector3<Real>(six[0], six[1], six[2]), Vector3<Real>(six[3], six[4], six[5])));
+    const Real* columns = output.data() + 6 * k;
+    const Matrix3<Real> r_view_trf =
+        rotation_from_columns<Real>(orthonormalize<Real>(Vector3<Real>(columns[0], columns[1], columns[2]),
+                                                         Vector3<Real>(columns[3], columns[4], columns[5])));
     result.r_lrf_trf[k] = product<Real>(r_lrf_view, r_view_trf);
     result.logit[k] = output[shape::kColumns + k];
     result.likeliest = select(result.logit[k] > result.logit[result.likeliest], k, result.likeliest);
@@ -63,18 +64,19 @@ Matrix3<Real> mean_attitude(const Matrix3<Real>* candidates, const Real* weights
   Vector3<Real> second = Vector3<Real>::Zero();
   for (int i = 0; i < count; ++i) {
     const bool same = is_same(i);
-    const Real alone = select(i == anchor, constant<Real>(1.0), kZero);
-    const Real weight = select(same, select(none, alone, weights[i] / divisor), kZero);
-    const Matrix3<Real>& counted = candidates[select(same, i, anchor)];  // zero times NaN would be NaN
-    first += scaled<Real>(Vector3<Real>(counted.col(0)), weight);
-    second += scaled<Real>(Vector3<Real>(counted.col(1)), weight);
+    const Real anchor_only = select(i == anchor, constant<Real>(1.0), kZero);
+    const Real weight = select(same, select(none, anchor_only, weights[i] / divisor), kZero);
+    // Another candidate is replaced by the anchor, since its weight of zero times NaN would be NaN.
+    const Matrix3<Real>& member = candidates[select(same, i, anchor)];
+    first += scaled<Real>(Vector3<Real>(member.col(0)), weight);
+    second += scaled<Real>(Vector3<Real>(member.col(1)), weight);
   }
-  return rotation_from_columns<Real>(orthonormalise<Real>(first, second));
+  return rotation_from_columns<Real>(orthonormalize<Real>(first, second));
 }
 
-#define TUMBLESIGHT_INSTANTIATE(Real)                                                       \
-  template bool same_attitude(const Matrix3<Real>&, const Matrix3<Real>&);                  \
-  template Hypotheses<Real> hypotheses_of(const OutputVector<Real>&, const Matrix3<Real>&); \
+#define TUMBLESIGHT_INSTANTIATE(Real)                                                           \
+  template bool same_attitude(const Matrix3<Real>&, const Matrix3<Real>&);                      \
+  template Hypotheses<Real> decode_hypotheses(const OutputVector<Real>&, const Matrix3<Real>&); \
   template Matrix3<Real> mean_attitude(const Matrix3<Real>*, const Real*, int, int)
 
 TUMBLESIGHT_INSTANTIATE(Fixed);

@@ -1,5 +1,5 @@
-// Hypotheses: what the CNN says of one frame: several attitudes, since one frame of a nearly symmetric target
-// leaves several open, with their probabilities. Real: float or Fixed.
+// Hypotheses: the attitudes that the CNN derives from one frame, with their probabilities. There are several,
+// since one frame of a nearly symmetric target does not determine the attitude. Real: float or Fixed (Q7.24).
 #pragma once
 
 #include <array>
@@ -11,25 +11,30 @@ namespace tumblesight::gnc {
 
 template <class Real>
 struct Hypotheses {
-  std::array<Matrix3<Real>, shape::kHypotheses> r_lrf_trf;
+  std::array<Matrix3<Real>, shape::kHypotheses> r_lrf_trf;  // v_lrf = r_lrf_trf v_trf
   std::array<Real, shape::kHypotheses> logit;
-  std::array<Real, shape::kHypotheses> probability;
-  int likeliest;  // the first of equals
-  Real predicted_error_rad;
+  std::array<Real, shape::kHypotheses> probability;  // softmax of the logits
+  int likeliest;             // index of the largest logit; the first if several are equal
+  Real predicted_error_rad;  // expected error of the likeliest one, 0..pi
 };
 
-// `output` states the attitudes in the depth image's view.
+// Hypotheses from the output of the CNN, which states the attitudes in the view frame of the depth image.
+// `r_lrf_view`: v_lrf = r_lrf_view v_view. Non-finite outputs give non-finite attitudes.
 template <class Real>
-Hypotheses<Real> hypotheses_of(const OutputVector<Real>& output, const Matrix3<Real>& r_lrf_view);
+Hypotheses<Real> decode_hypotheses(const OutputVector<Real>& output, const Matrix3<Real>& r_lrf_view);
 
-// Attitudes nearer to each other than this are one attitude, measured twice; farther ones are alternatives.
+// Attitudes closer than this are measurements of the same attitude; others are alternatives.
 inline constexpr float kSameAttitude_deg = 20.0F;
 template <class Real>
 bool same_attitude(const Matrix3<Real>& a, const Matrix3<Real>& b);
 
-// Weighted mean of those `candidates` that are the same attitude as candidate `anchor`: their first two
-// columns averaged and orthonormalised. Only ratios of the weights matter; where all are zero, the anchor.
-// Not finite where the anchor is not.
+// Weighted mean of the candidates that are the same attitude as the candidate `anchor`: their first two
+// columns are averaged and orthonormalized.
+//
+// candidates  `count` rotation matrices; non-finite ones are skipped, but if the anchor is not finite neither
+// is the
+//             result
+// weights     `count` weights >= 0; only their ratios matter. If all are zero the result is the anchor
 template <class Real>
 Matrix3<Real> mean_attitude(const Matrix3<Real>* candidates, const Real* weights, int count, int anchor);
 

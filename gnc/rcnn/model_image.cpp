@@ -66,7 +66,7 @@ bool read_inertia(const std::uint8_t* image, Inertia<Fixed>& inertia) {
     tensor(column, row) = tensor(row, column);
   }
   const Fixed trace = (tensor(0, 0) + tensor(1, 1)) + tensor(2, 2);
-  return absolute(trace - Fixed(3.0)) < Fixed(1e-3) && make_inertia<Fixed>(tensor, inertia);
+  return abs(trace - Fixed(3.0)) < Fixed(1e-3) && make_inertia<Fixed>(tensor, inertia);
 }
 
 DepthProjection read_projection(const std::uint8_t* image) {
@@ -96,7 +96,7 @@ void read_header(const std::uint8_t* image, ModelHeader& header) {
 
 template <std::size_t kCount>
 void read(const std::uint8_t* from, FixedPoint::Weights<kCount>& tensor) {
-  tensor.lie_at(reinterpret_cast<const std::int8_t*>(from));
+  tensor.set_data(reinterpret_cast<const std::int8_t*>(from));
 }
 template <std::size_t kCount>
 void read(const std::uint8_t* from, std::array<float, kCount>& tensor) {

@@ -85,10 +85,10 @@ constexpr std::uint32_t kLargestOutputShift = 62;
 }  // namespace
 
 bool has_possible_values(const std::uint8_t* image, const NetworkWeights<FixedPoint>& weights) {
-  const LayerLimits conv{Int8Product::kGroup, 255, kLargestActivationShift, kLargestConvolved};
+  const LayerLimits conv{Int8Product::kGroup, 255, kLargestActivationShift, kMaxConvSum};
   const LayerLimits hidden{Int16Product::kGroup, 32767, kLargestActivationShift};
   const LayerLimits output{Int16Product::kGroup, 32767, kLargestOutputShift};
-  const LayerLimits pooled{Int16Product::kGroup, 4 * kLargestOfFour, kLargestActivationShift};
+  const LayerLimits pooled{Int16Product::kGroup, 4 * kMaxAveragedActivation, kLargestActivationShift};
   // In the order of for_each_layer().
   const std::array<LayerLimits, 10> limits{conv,   conv,   conv,   conv,   pooled,
                                            hidden, output, output, hidden, output};

@@ -17,7 +17,7 @@ inline void to_conv_input(std::uint16_t depth, std::uint8_t& out) {
 template <class N>
 [[gnu::noinline]] void space_to_depth(const DepthImage& image, typename Layers<N>::Conv1::Input& out) {
   constexpr int kSide = DepthImage::kSide;
-  out.number.fill({});
+  out.values.fill({});
   for (int y = 0; y < kSide / 2; ++y) {
     const std::uint16_t* const top = image.depth.data() + 2 * y * kSide;
     const std::uint16_t* const bottom = top + kSide;

@@ -68,7 +68,7 @@ class Bench {
       : row_s_(subject.row_s),
         frames_(subject.frames),
         kernels_(kernels),
-        loops_(gnc::depth_loops_within(kernels.set)) {
+        loops_(gnc::fastest_depth_loops(kernels.set)) {
     const gnc::ModelStatus status = estimator_->load(subject.image.data(), subject.image.size(), nullptr);
     if (status != gnc::ModelStatus::kOk) throw std::runtime_error(gnc::to_string(status));
     estimator_->network().use(kernels);

@@ -68,7 +68,7 @@ std::vector<gnc::Matrix3<typename N::Real>> follow(const gnc::NetworkWeights<N>&
     gnc::LstmInput<N> input;
     gnc::HeadOutput<Real> head;
     gnc::run_frame<N>(kernels, weights, image, *arena, features, output, note);
-    const auto hypotheses = gnc::hypotheses_of<Real>(output, gnc::converted<Real>(image.r_lrf_view));
+    const auto hypotheses = gnc::decode_hypotheses<Real>(output, gnc::converted<Real>(image.r_lrf_view));
     const auto prediction = gnc::predict<Real>(track, laws, hypotheses);
     gnc::fill_lstm_input<N>(features, hypotheses, prediction.r_lrf_trf(), input);
     note("lstm_input", input);

@@ -11,7 +11,7 @@ using gnc::Float32;
 namespace {
 
 double largest_integer(const std::string& layer) {
-  if (layer == "conv4") return 4.0 * gnc::kLargestOfFour;
+  if (layer == "conv4") return 4.0 * gnc::kMaxAveragedActivation;
   return layer.compare(0, 4, "conv") == 0 ? kLargestUint8 : 32767.0;
 }
 

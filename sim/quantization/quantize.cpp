@@ -32,7 +32,7 @@ void put_weights(const IntegerLayer& layer, std::size_t first, std::size_t count
           static_cast<std::int8_t>(layer.weight(static_cast<Eigen::Index>(first + i), c));
     }
   }
-  weights.lie_at(bytes.data());
+  weights.set_data(bytes.data());
 }
 
 template <class Weights>
@@ -114,7 +114,7 @@ class Quantizer {
     const FloatLayer layer = layer_of(name, from, unit_of(before, 9));
     // The range is that of means of four; each of the four may be their whole sum.
     put<gnc::Int8Product::kGroup>(
-        layer, scales_of_many_bits(layer, outputs_of(layer), gnc::kLargestOfFour / 4.0), to);
+        layer, scales_of_many_bits(layer, outputs_of(layer), gnc::kMaxAveragedActivation / 4.0), to);
     for (double& scale : to_.scales.at(name)) scale /= 4.0;  // the sum of a window stands for its mean
   }
   template <class From, class To>

@@ -79,7 +79,7 @@ bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t in
       return false;
     work.network.infer_frame(work.image, work.output);
     put_frame(work.network,
-              gnc::hypotheses_of<float>(work.output, gnc::converted<float>(work.image.r_lrf_view)),
+              gnc::decode_hypotheses<float>(work.output, gnc::converted<float>(work.image.r_lrf_view)),
               truth.q_lrf_trf.toRotationMatrix().cast<float>(), index * kFrames + k, all);
   }
   return true;

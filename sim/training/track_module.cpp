@@ -117,7 +117,7 @@ MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia<float>* law
     gnc::Motion<float> m;
     m.r_lrf_trf = RowMajor(before.data_ptr<float>() + 9 * i);
     m.rate_lrf = Eigen::Map<Eigen::Vector3f>(rate_before.data_ptr<float>() + 3 * i);
-    const gnc::Motion<float> after = gnc::tumble<float>(m, laws[i % count]);
+    const gnc::Motion<float> after = gnc::propagate<float>(m, laws[i % count]);
     RowMajor{turn.data_ptr<float>() + 9 * i} = after.r_lrf_trf * m.r_lrf_trf.transpose();
     Eigen::Map<Eigen::Vector3f>{rate.data_ptr<float>() + 3 * i} = after.rate_lrf;
   }
@@ -142,7 +142,7 @@ FrameHypotheses::FrameHypotheses(const torch::Tensor& features_, const torch::Te
 
 torch::Tensor TrackModule::standing() const {
   const torch::Tensor asked =
-      torch::tensor(std::vector<float>(gnc::kEvidenceAsked.begin(), gnc::kEvidenceAsked.end()));
+      torch::tensor(std::vector<float>(gnc::kRequiredEvidence.begin(), gnc::kRequiredEvidence.end()));
   return log_likelihood_ - asked.to(log_likelihood_.device());
 }
 

@@ -17,7 +17,7 @@ STAGES = (
     ("dense1", r"Dense<.*, 2160, \d+>::hidden\("),
     ("dense2", r"Dense<.*, 192, 128>::hidden\("),
     ("single-frame head", r"Dense<.*, 128, 57>::output\("),
-    ("hypotheses", r"gnc::hypotheses_of<"),
+    ("hypotheses", r"gnc::decode_hypotheses<"),
     ("prediction", r"gnc::predict<"),
     ("LSTM input", r"gnc::fill_lstm_input<"),
     ("LSTM", r"Lstm<.*>::forward\("),

@@ -91,7 +91,7 @@ void decode(const gnc::RangeImage& frame, const gnc::DepthProjection& projection
             Decoded& decoded) {
   static gnc::DepthImageScratch scratch;
   decoded.status =
-      gnc::make_depth_image(frame, projection, scratch, decoded.image, gnc::depth_loops_within(set));
+      gnc::make_depth_image(frame, projection, scratch, decoded.image, gnc::fastest_depth_loops(set));
 }
 
 // The portable loops, and beside them those of one set.
@@ -100,7 +100,7 @@ void check_set(const gnc::RangeImage& frame, const gnc::DepthProjection& project
   static Decoded first, other;
   decode(frame, projection, gnc::InstructionSet::kPortable, first);
   if (first.status == gnc::FrameStatus::kOk) check_image(first.image);
-  if (gnc::depth_loops_within(set).set != set) return;  // not in this build or not on this processor
+  if (gnc::fastest_depth_loops(set).set != set) return;  // not in this build or not on this processor
   decode(frame, projection, set, other);
   require(other.status == first.status, "every instruction set finds the same");
   if (first.status != gnc::FrameStatus::kOk) return;

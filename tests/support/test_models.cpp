@@ -51,7 +51,7 @@ class RandomIntegers {
   void put(Weights& tensor) {
     auto& bytes = storage_.emplace_back(tensor.size());
     for (std::int8_t& byte : bytes) byte = static_cast<std::int8_t>(next());
-    tensor.lie_at(bytes.data());
+    tensor.set_data(bytes.data());
   }
   std::mt19937 engine_;
   std::vector<std::vector<std::int8_t>> storage_;

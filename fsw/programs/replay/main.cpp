@@ -6,7 +6,7 @@
 
 #include "fsw/app/attitude_init_app.hpp"
 #include "fsw/app/cycle.hpp"
-#include "gnc/nn/kernels.hpp"
+#include "gnc/nn/kernels/kernels.hpp"
 #include "hal/board.hpp"
 #include "hal/replay/console_link.hpp"
 #include "hal/replay/recording.hpp"

@@ -1,21 +1,22 @@
-// Arm's DSP instructions, for Cortex-M and Cortex-R: two 16-bit products added to a sum at once (SMLAD).
+// Arm's DSP instructions for Cortex-M and Cortex-R: SMLAD adds two 16-bit products to a sum.
 #include <arm_acle.h>
 
 #include <cstring>
 
+#include "gnc/nn/kernels/chunked_convolution.hpp"
 #include "gnc/nn/kernels/scalar.hpp"
 #include "gnc/nn/kernels/sets.hpp"
-#include "gnc/nn/kernels/stretches.hpp"
 
 namespace tumblesight::gnc::kernels {
 namespace {
 
-TUMBLESIGHT_INLINE std::uint32_t word(const void* from) {
+TUMBLESIGHT_INLINE std::uint32_t load_word(const void* from) {
   std::uint32_t bytes;
   std::memcpy(&bytes, from, sizeof bytes);
   return bytes;
 }
-// Bytes 1 and 3 as numbers of 16 bits; the compiler does not know that the turn is part of the instruction.
+// Bytes 1 and 3 as 16-bit numbers. In assembly, since the compiler does not use the rotation that is part of
+// the instruction.
 TUMBLESIGHT_INLINE int16x2_t odd_signed(std::uint32_t bytes) {
   int16x2_t numbers;
   asm("sxtb16 %0, %1, ror #8" : "=r"(numbers) : "r"(bytes));
@@ -27,22 +28,22 @@ TUMBLESIGHT_INLINE int16x2_t odd_unsigned(std::uint32_t bytes) {
   return numbers;
 }
 
-// A group's four inputs or weights of 8 bits as factors of 16: numbers 0 and 2 in one word, 1 and 3 in the
+// The four 8-bit inputs or weights of a group as 16-bit factors: numbers 0 and 2 in one word, 1 and 3 in the
 // other.
 struct Factors {
   int16x2_t even, odd;
 };
 TUMBLESIGHT_INLINE Factors widened(const std::uint8_t* inputs) {
-  const std::uint32_t four = word(inputs);
+  const std::uint32_t four = load_word(inputs);
   return {static_cast<int16x2_t>(__uxtb16(four)), odd_unsigned(four)};
 }
 TUMBLESIGHT_INLINE Factors widened(const std::int8_t* weights) {
-  const std::uint32_t four = word(weights);
+  const std::uint32_t four = load_word(weights);
   return {__sxtb16(static_cast<int8x4_t>(four)), odd_signed(four)};
 }
 
-// One group of one channel for six pixels. Left to itself the compiler loads the words one by one and runs
-// out of registers.
+// Adds one group of one channel for six pixels. In assembly, since the compiler loads the words one at a time
+// and runs out of registers.
 TUMBLESIGHT_INLINE void add_group(std::int32_t (&sum)[6], const Factors*& values, const std::int8_t*& weight,
                                   int step) {
   std::int32_t even, odd;
@@ -76,10 +77,10 @@ TUMBLESIGHT_INLINE void add_group(std::int32_t (&sum)[6], const Factors*& values
       : "memory");
 }
 
-// Convolution.
+// Convolution, for ChunkedConvolution.
 struct Int8 {
   static constexpr int kPixels = 6;
-  static constexpr int kStretch = 36;
+  static constexpr int kChunkGroups = 36;
   static constexpr int kUnrolled = 3;
   using Group = std::array<Factors, kPixels>;
 
@@ -88,27 +89,27 @@ struct Int8 {
     for (int p = 0; p < kPixels; ++p) group[p] = widened(in[p] + offset);
   }
 
-  TUMBLESIGHT_INLINE void add(const Group* stretch, int groups, const std::int32_t* start, int start_step,
+  TUMBLESIGHT_INLINE void add(const Group* chunk, int groups, const std::int32_t* start, int start_step,
                               const std::int8_t* weights, std::int32_t* out, int channels) {
     if (start != out) {
       for (int p = 0; p < kPixels; ++p)
         std::memcpy(out + p * channels, start + p * start_step, sizeof(*start) * channels);
     }
-    add_to(out, stretch, groups, weights, channels);
+    add_to(out, chunk, groups, weights, channels);
   }
 
-  [[gnu::noinline]] static void add_to(std::int32_t* out, const Group* stretch, int groups,
+  [[gnu::noinline]] static void add_to(std::int32_t* out, const Group* chunk, int groups,
                                        const std::int8_t* weights, int channels) {
     const int step = channels * Int8Product::kGroup;
-    const Factors* const end = stretch[0].data() + groups * kPixels;
-    const Factors* const end_unrolled = stretch[0].data() + groups / kUnrolled * kUnrolled * kPixels;
+    const Factors* const end = chunk[0].data() + groups * kPixels;
+    const Factors* const end_unrolled = chunk[0].data() + groups / kUnrolled * kUnrolled * kPixels;
     for (int c = 0; c < channels; ++c, ++out, weights += Int8Product::kGroup) {
-      asm("" : "+r"(out));  // one pointer, not one a pixel
+      asm("" : "+r"(out));  // keeps one pointer instead of one per pixel
       std::int32_t sum[kPixels];
 #pragma GCC unroll 6
       for (int p = 0; p < kPixels; ++p) sum[p] = out[p * channels];
       const std::int8_t* weight = weights;
-      const Factors* values = stretch[0].data();
+      const Factors* values = chunk[0].data();
       while (values != end_unrolled) {
         add_group(sum, values, weight, step);
         add_group(sum, values, weight, step);
@@ -121,7 +122,8 @@ struct Int8 {
   }
 };
 
-// Two channels: their weights of input 0 in one word, of input 1 in the other.
+// Dense layers, for Blocks: two channels. The weights of input 0 are in one word, those of input 1 in the
+// other.
 struct Int16 {
   using Kind = Int16Product;
   static constexpr int kWidth = 2;
@@ -129,7 +131,7 @@ struct Int16 {
     std::int32_t first, second;
   };
   struct Weights {
-    int16x2_t of_input0, of_input1;
+    int16x2_t input0, input1;
   };
   using Values = std::int32_t;
   TUMBLESIGHT_INLINE Sums load(const std::int32_t* from) { return {from[0], from[1]}; }
@@ -138,22 +140,22 @@ struct Int16 {
     to[1] = sum.second;
   }
   TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) {
-    const std::uint32_t both = word(from);
+    const std::uint32_t both = load_word(from);
     return {__sxtb16(static_cast<int8x4_t>(both)), odd_signed(both)};
   }
-  TUMBLESIGHT_INLINE Values values(const std::int16_t* from) { return static_cast<Values>(word(from)); }
+  TUMBLESIGHT_INLINE Values values(const std::int16_t* from) { return static_cast<Values>(load_word(from)); }
   TUMBLESIGHT_INLINE void add(Sums& sum, Values value, const Weights& weight) {
-    sum.first = __smlabb(weight.of_input0, value, sum.first);
-    sum.second = __smlatb(weight.of_input0, value, sum.second);
-    sum.first = __smlabt(weight.of_input1, value, sum.first);
-    sum.second = __smlatt(weight.of_input1, value, sum.second);
+    sum.first = __smlabb(weight.input0, value, sum.first);
+    sum.second = __smlatb(weight.input0, value, sum.second);
+    sum.first = __smlabt(weight.input1, value, sum.first);
+    sum.second = __smlatt(weight.input1, value, sum.second);
   }
 };
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
   if (shape.rows * shape.columns >= Int8::kPixels) {
-    Stretches<Int8>::product(shape, in, start, weights, out);
+    ChunkedConvolution<Int8>::product(shape, in, start, weights, out);
   } else {
     Blocks<Scalar<Int8Product>>::product<1, 1, 1>(shape, in, start, weights, out);
   }
@@ -164,11 +166,11 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
               std::uint8_t* out) {
-  pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+  pool<FixedPoint, MaxPooling<FixedPoint>>(sums, columns, channels, shift, out);
 }
 void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
                   std::int16_t* out) {
-  pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+  pool<FixedPoint, AveragePooling<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace tumblesight::gnc::kernels {
 namespace {
 
-// Both kinds of weights are widened to 16 bits and multiplied in pairs.
+// Dense layers: the weights are widened to 16 bits and multiplied in pairs.
 struct Int16 {
   using Kind = Int16Product;
   static constexpr int kWidth = 8;
@@ -21,12 +21,13 @@ struct Int16 {
   }
 };
 
-// Of four products the pairs are summed apart, to be added at the end.
+// Convolution: weights and inputs are widened to 16 bits. A group has four products; the sums of its two
+// pairs are kept separately and added at the end.
 struct Int8 {
   using Kind = Int8Product;
   static constexpr int kWidth = 8;
   struct Sums {
-    __m256i low, high;  // channels 0..3 and 4..7, two sums each
+    __m256i low, high;  // channels 0..3 and 4..7, two partial sums each
   };
   using Weights = Sums;
   using Values = __m256i;
@@ -63,11 +64,11 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
               std::uint8_t* out) {
-  pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+  pool<FixedPoint, MaxPooling<FixedPoint>>(sums, columns, channels, shift, out);
 }
 void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
                   std::int16_t* out) {
-  pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+  pool<FixedPoint, AveragePooling<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace
@@ -81,10 +82,10 @@ void float_multiply(const ProductShape& shape, const float* in, const float* sta
   float_product<8, 6, 2, 8>(shape, in, start, weights, out);
 }
 void float_max_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
-  pool<Float32, LargestOfFour<Float32>>(sums, columns, channels, shift, out);
+  pool<Float32, MaxPooling<Float32>>(sums, columns, channels, shift, out);
 }
 void float_average_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
-  pool<Float32, MeanOfFour<Float32>>(sums, columns, channels, shift, out);
+  pool<Float32, AveragePooling<Float32>>(sums, columns, channels, shift, out);
 }
 }  // namespace
 const Kernels<Float32> kFloatAvx2{InstructionSet::kAvx2, 6, float_multiply, float_multiply, float_max_pool,

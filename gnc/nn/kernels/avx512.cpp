@@ -15,10 +15,10 @@ void multiply(const ProductShape& shape, const float* in, const float* start, co
   }
 }
 void max_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
-  pool<Float32, LargestOfFour<Float32>>(sums, columns, channels, shift, out);
+  pool<Float32, MaxPooling<Float32>>(sums, columns, channels, shift, out);
 }
 void average_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
-  pool<Float32, MeanOfFour<Float32>>(sums, columns, channels, shift, out);
+  pool<Float32, AveragePooling<Float32>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace

@@ -43,11 +43,11 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
               std::uint8_t* out) {
-  pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+  pool<FixedPoint, MaxPooling<FixedPoint>>(sums, columns, channels, shift, out);
 }
 void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
                   std::int16_t* out) {
-  pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+  pool<FixedPoint, AveragePooling<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace

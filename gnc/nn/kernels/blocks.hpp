@@ -1,64 +1,65 @@
-// The loops around an instruction set's inner step: pixels and channels in blocks, with every sum in a
-// register. Included by one source file a set, each compiled for that set; nothing here may be shared between
-// them, so all of it has internal linkage.
+// The loops around the innermost operations of an instruction set: blocks of pixels and channels whose sums
+// are all in registers. One source file per instruction set includes this file and is compiled for that set.
+// No code may be shared between the sets, so that everything here has internal linkage.
 #pragma once
 
-#include "gnc/nn/numerics.hpp"
-#include "gnc/nn/product.hpp"
+#include "gnc/nn/kernels/numerics.hpp"
+#include "gnc/nn/kernels/product.hpp"
 
 #define TUMBLESIGHT_INLINE [[gnu::always_inline]] static inline
 
 namespace tumblesight::gnc {
 namespace {
 
-// A Unit names its Kind of product, kWidth (output channels to a vector), types Sums, Weights and Values, and
+// Ops defines the vector operations: the Kind of product, kWidth (output channels per vector), the types
+// Sums, Weights and Values, and
 //   Sums load(const Sum*), void store(Sums, Sum*)   kWidth sums
-//   Weights weights(const Weight*)                  kGroup weights each of kWidth channels
+//   Weights weights(const Weight*)                  kGroup weights of each of kWidth channels
 //   Values values(const Input*)                     kGroup inputs of one pixel
-//   void add(Sums&, Values, Weights)                adds the group's products, channel by channel
-template <class Unit>
+//   void add(Sums&, Values, Weights)                adds the products of the group to the sum of each channel
+template <class Ops>
 struct Blocks {
-  using Kind = typename Unit::Kind;
+  using Kind = typename Ops::Kind;
   using Input = typename Kind::Input;
   using Weight = typename Kind::Weight;
   using Sum = typename Kind::Sum;
   static constexpr int kGroup = Kind::kGroup;
-  static constexpr int kWidth = Unit::kWidth;
+  static constexpr int kWidth = Ops::kWidth;
 
-  // kPixels pixels times kPacks vectors of channels. `in` and `out` hold a pointer for each pixel; start,
-  // weights and out point at the block's first channel.
+  // One block: kPixels pixels and kPacks vectors of channels. `in` and `out` hold a pointer per pixel.
+  // `start`, `weights` and `out` point to the first channel of the block.
   template <int kPixels, int kPacks>
   TUMBLESIGHT_INLINE void block(const ProductShape& shape, const Input* const* in, const Sum* start,
                                 const Weight* weights, Sum* const* out) {
-    typename Unit::Sums sum[kPixels][kPacks];
+    typename Ops::Sums sum[kPixels][kPacks];
 #pragma GCC unroll 16
     for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 16
-      for (int c = 0; c < kPacks; ++c) sum[p][c] = Unit::load(start + c * kWidth);
+      for (int c = 0; c < kPacks; ++c) sum[p][c] = Ops::load(start + c * kWidth);
     }
     for (int strip = 0; strip < shape.strips; ++strip) {
       const int offset = strip * shape.strip_step;
       for (int i = 0; i < shape.strip_length; i += kGroup, weights += shape.channels * kGroup) {
-        typename Unit::Weights weight[kPacks];
+        typename Ops::Weights weight[kPacks];
 #pragma GCC unroll 16
-        for (int c = 0; c < kPacks; ++c) weight[c] = Unit::weights(weights + c * kWidth * kGroup);
+        for (int c = 0; c < kPacks; ++c) weight[c] = Ops::weights(weights + c * kWidth * kGroup);
 #pragma GCC unroll 16
         for (int p = 0; p < kPixels; ++p) {
-          const typename Unit::Values value = Unit::values(in[p] + offset + i);
+          const typename Ops::Values value = Ops::values(in[p] + offset + i);
 #pragma GCC unroll 16
-          for (int c = 0; c < kPacks; ++c) Unit::add(sum[p][c], value, weight[c]);
+          for (int c = 0; c < kPacks; ++c) Ops::add(sum[p][c], value, weight[c]);
         }
       }
     }
 #pragma GCC unroll 16
     for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 16
-      for (int c = 0; c < kPacks; ++c) Unit::store(sum[p][c], out[p] + c * kWidth);
+      for (int c = 0; c < kPacks; ++c) Ops::store(sum[p][c], out[p] + c * kWidth);
     }
   }
 
-  // Every pixel of `shape`, for channels [first_channel, first_channel + kPacks * kWidth). The last block of
-  // pixels is moved back to end at the last pixel; what it does again comes out the same.
+  // All pixels of `shape` for channels [first_channel, first_channel + kPacks * kWidth). The last block is
+  // moved back to end at the last pixel; the pixels that it computes a second time get the same values.
   template <int kPixels, int kPacks>
   TUMBLESIGHT_INLINE void all_pixels(const ProductShape& shape, int first_channel, const Input* in,
                                      const Sum* start, const Weight* weights, Sum* out) {
@@ -82,11 +83,12 @@ struct Blocks {
     }
   }
 
-  // Integers' channels come in whole kIntegerChannels.
+  // Integer products have a multiple of kIntegerChannels channels, so that no single vectors remain.
   template <int kPacks>
   static constexpr bool kFillBlocks = kGroup > 1 && kIntegerChannels % (kPacks * kWidth) == 0;
 
-  // Blocks of kPacks vectors as far as they fit, then single vectors. Returns the first channel left over.
+  // Blocks of kPacks vectors as far as they fit, then single vectors. Returns the first channel that is not
+  // computed.
   template <int kPixels, int kPacks>
   TUMBLESIGHT_INLINE int all_channels(const ProductShape& shape, const Input* in, const Sum* start,
                                       const Weight* weights, Sum* out) {
@@ -101,8 +103,8 @@ struct Blocks {
     return c;
   }
 
-  // The first layer, whose pixels are few numbers apart and whose sums are short: kPixels of a row side by
-  // side, at a distance that the compiler knows, need no pointer each.
+  // For the first layer, whose pixels have few channels and whose sums are short: kPixels adjacent pixels of
+  // a row at a distance known to the compiler do not need a pointer each.
   template <int kPixels, int kPacks, int kColumnStep>
   TUMBLESIGHT_INLINE bool is_narrow(const ProductShape& shape) {
     static_assert(kFillBlocks<kPacks>);
@@ -111,30 +113,30 @@ struct Blocks {
   template <int kPixels, int kPacks, int kColumnStep>
   TUMBLESIGHT_INLINE void narrow_block(const ProductShape& shape, const Input* in, const Sum* start,
                                        const Weight* weights, Sum* out) {
-    typename Unit::Sums sum[kPixels][kPacks];
+    typename Ops::Sums sum[kPixels][kPacks];
 #pragma GCC unroll 32
     for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 16
-      for (int c = 0; c < kPacks; ++c) sum[p][c] = Unit::load(start + c * kWidth);
+      for (int c = 0; c < kPacks; ++c) sum[p][c] = Ops::load(start + c * kWidth);
     }
     for (int strip = 0; strip < shape.strips; ++strip) {
       const Input* const strip_in = in + strip * shape.strip_step;
       for (int i = 0; i < shape.strip_length; i += kGroup, weights += shape.channels * kGroup) {
-        typename Unit::Weights weight[kPacks];
+        typename Ops::Weights weight[kPacks];
 #pragma GCC unroll 16
-        for (int c = 0; c < kPacks; ++c) weight[c] = Unit::weights(weights + c * kWidth * kGroup);
+        for (int c = 0; c < kPacks; ++c) weight[c] = Ops::weights(weights + c * kWidth * kGroup);
 #pragma GCC unroll 32
         for (int p = 0; p < kPixels; ++p) {
-          const typename Unit::Values value = Unit::values(strip_in + p * kColumnStep + i);
+          const typename Ops::Values value = Ops::values(strip_in + p * kColumnStep + i);
 #pragma GCC unroll 16
-          for (int c = 0; c < kPacks; ++c) Unit::add(sum[p][c], value, weight[c]);
+          for (int c = 0; c < kPacks; ++c) Ops::add(sum[p][c], value, weight[c]);
         }
       }
     }
 #pragma GCC unroll 32
     for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 16
-      for (int c = 0; c < kPacks; ++c) Unit::store(sum[p][c], out + p * shape.channels + c * kWidth);
+      for (int c = 0; c < kPacks; ++c) Ops::store(sum[p][c], out + p * shape.channels + c * kWidth);
     }
   }
   template <int kPixels, int kPacks, int kColumnStep>
@@ -150,9 +152,9 @@ struct Blocks {
     }
   }
 
-  // Blocks of kPixels x kPacks where there are that many pixels, one pixel and kSinglePacks vectors where
-  // there are not. Block sizes follow the number of registers: kPixels * kPacks sums, kPacks weights and one
-  // value.
+  // The product: blocks of kPixels pixels and kPacks vectors, or of one pixel and kSinglePacks vectors if
+  // there are fewer pixels. A block needs kPixels * kPacks registers for sums, kPacks for weights and one for
+  // a value. Returns the first channel that is not computed.
   template <int kPixels, int kPacks, int kSinglePacks>
   TUMBLESIGHT_INLINE int product(const ProductShape& shape, const Input* in, const Sum* start,
                                  const Weight* weights, Sum* out) {
@@ -162,20 +164,19 @@ struct Blocks {
   }
 };
 
-// Pooling, in plain loops of a known length, which the compiler vectorises for the set.
+// Pooling, in loops of a constant length that the compiler vectorizes for the instruction set.
 template <class N>
-struct LargestOfFour {
+struct MaxPooling {
   using Out = ConvInput<N>;
   TUMBLESIGHT_INLINE void pool(const Sum<N> (&four)[4], int shift, Out& out) {
-    activate(larger_convolved(larger_convolved(four[0], four[1]), larger_convolved(four[2], four[3])), shift,
-             out);
+    activate(max_conv_sum(max_conv_sum(four[0], four[1]), max_conv_sum(four[2], four[3])), shift, out);
   }
 };
 template <class N>
-struct MeanOfFour {
+struct AveragePooling {
   using Out = DenseInput<N>;
   TUMBLESIGHT_INLINE void pool(const Sum<N> (&four)[4], int shift, Out& out) {
-    activate_four(four, shift, out);
+    activate_and_average(four, shift, out);
   }
 };
 
@@ -190,7 +191,7 @@ TUMBLESIGHT_INLINE void pool_channels(const Sum<N>* __restrict left, int channel
   }
 }
 
-// Floats have no shifts, and no address is reckoned from that of nothing.
+// Pointer to the shift of `channel`. Floats have no shifts: arithmetic on a null pointer is undefined.
 template <class N>
 TUMBLESIGHT_INLINE const std::uint8_t* shift_of(const std::uint8_t* shift, int channel) {
   return N::kIsInteger ? shift + channel : nullptr;

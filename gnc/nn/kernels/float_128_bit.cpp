@@ -1,4 +1,4 @@
-// SSE2 on x86-64, NEON on AArch64: what every processor of the family has.
+// SSE2 on x86-64, NEON on AArch64: part of the base instruction set.
 #include "gnc/nn/kernels/float_vectors.hpp"
 #include "gnc/nn/kernels/sets.hpp"
 
@@ -16,10 +16,10 @@ void multiply(const ProductShape& shape, const float* in, const float* start, co
   float_product<4, 6, kPacks, kSinglePacks>(shape, in, start, weights, out);
 }
 void max_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
-  pool<Float32, LargestOfFour<Float32>>(sums, columns, channels, shift, out);
+  pool<Float32, MaxPooling<Float32>>(sums, columns, channels, shift, out);
 }
 void average_pool(const float* sums, int columns, int channels, const std::uint8_t* shift, float* out) {
-  pool<Float32, MeanOfFour<Float32>>(sums, columns, channels, shift, out);
+  pool<Float32, AveragePooling<Float32>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace

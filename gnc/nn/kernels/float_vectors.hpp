@@ -1,4 +1,4 @@
-// Vectors of floats of any width, in GCC's and clang's vector extension.
+// Vectors of floats of any width, with the vector extension of GCC and clang.
 #pragma once
 
 #include "gnc/nn/kernels/scalar.hpp"
@@ -6,7 +6,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-// Each width is written out, since GCC 12 ignores a vector size that depends on a template parameter.
+// One specialization per width, since GCC 12 ignores a vector size that depends on a template parameter.
 template <int kWidth>
 struct VectorOf;
 template <>
@@ -29,8 +29,8 @@ struct FloatVectors {
   using Sums = typename VectorOf<kWidth>::Type;
   using Weights = Sums;
   using Values = float;
-  // Floats in memory seen as a vector. It need not be aligned as one: a packed struct, because clang 14
-  // forgets the alignment of a vector typedef on its way through a template.
+  // Unaligned access to floats as a vector. A packed struct, because clang 14 drops the alignment attribute
+  // of a vector typedef that is passed through a template.
   struct __attribute__((packed, aligned(alignof(float)), may_alias)) InMemory {
     Sums vector;
   };
@@ -41,9 +41,9 @@ struct FloatVectors {
   TUMBLESIGHT_INLINE void add(Sums& sum, Values value, Weights weight) { sum += weight * value; }
 };
 
-// The channels left over, from `first` on: a product of their own whose rows of weights are as long as all.
-TUMBLESIGHT_INLINE void rest_of_channels(const ProductShape& shape, int first, const float* in,
-                                         const float* start, const float* weights, float* out) {
+// The channels from `first` on, one at a time.
+TUMBLESIGHT_INLINE void remaining_channels(const ProductShape& shape, int first, const float* in,
+                                           const float* start, const float* weights, float* out) {
   for (int c = first; c < shape.channels; ++c) {
     Blocks<Scalar<Float32Product>>::all_pixels<1, 1>(shape, c, in, start, weights, out);
   }
@@ -54,7 +54,7 @@ TUMBLESIGHT_INLINE void float_product(const ProductShape& shape, const float* in
                                       const float* weights, float* out) {
   const int done = Blocks<FloatVectors<kWidth>>::template product<kPixels, kPacks, kSinglePacks>(
       shape, in, start, weights, out);
-  rest_of_channels(shape, done, in, start, weights, out);
+  remaining_channels(shape, done, in, start, weights, out);
 }
 
 }  // namespace

@@ -9,32 +9,32 @@
 namespace tumblesight::gnc::kernels {
 namespace {
 
-// Convolution, signed times signed: of x w = (x - 128) w + 128 w the last part is the same for every pixel.
-// As no weight is -128, two products fit into 16 bits, and so two groups are multiplied before their products
-// are added in pairs.
-constexpr int kQuad = 4;  // channels whose groups fill a vector
+// Convolution, with products of signed numbers only: x w = (x - 128) w + 128 w, where the last term is the
+// same for every pixel. No weight is -128, so that the sum of two products fits into 16 bits: two groups are
+// multiplied before their products are added in pairs.
+constexpr int kQuad = 4;  // channels whose groups fill one vector
 
-TUMBLESIGHT_INLINE int8x16_t less_128(const std::uint8_t* group) {
+TUMBLESIGHT_INLINE int8x16_t minus_128(const std::uint8_t* group) {
   std::uint32_t four;
   std::memcpy(&four, group, sizeof four);
-  uint32x4_t spread = vdupq_n_u32(four);
-  asm("" : "+w"(spread));  // so that it is loaded where it is spread
-  return vreinterpretq_s8_u32(veorq_u32(spread, vdupq_n_u32(0x80808080)));
+  uint32x4_t broadcast = vdupq_n_u32(four);
+  asm("" : "+w"(broadcast));  // keeps the load and the broadcast one instruction
+  return vreinterpretq_s8_u32(veorq_u32(broadcast, vdupq_n_u32(0x80808080)));
 }
-TUMBLESIGHT_INLINE int16x8_t product_low(int8x16_t a, int8x16_t b) {
+TUMBLESIGHT_INLINE int16x8_t multiply_low(int8x16_t a, int8x16_t b) {
   return vmull_s8(vget_low_s8(a), vget_low_s8(b));
 }
-TUMBLESIGHT_INLINE int16x8_t product_high(int8x16_t a, int8x16_t b) {
+TUMBLESIGHT_INLINE int16x8_t multiply_high(int8x16_t a, int8x16_t b) {
 #if defined(__aarch64__)
   return vmull_high_s8(a, b);
 #else
   return vmull_s8(vget_high_s8(a), vget_high_s8(b));
 #endif
 }
-TUMBLESIGHT_INLINE int16x8_t plus_low(int16x8_t sum, int8x16_t a, int8x16_t b) {
+TUMBLESIGHT_INLINE int16x8_t multiply_add_low(int16x8_t sum, int8x16_t a, int8x16_t b) {
   return vmlal_s8(sum, vget_low_s8(a), vget_low_s8(b));
 }
-TUMBLESIGHT_INLINE int16x8_t plus_high(int16x8_t sum, int8x16_t a, int8x16_t b) {
+TUMBLESIGHT_INLINE int16x8_t multiply_add_high(int16x8_t sum, int8x16_t a, int8x16_t b) {
 #if defined(__aarch64__)
   return vmlal_high_s8(sum, a, b);
 #else
@@ -42,10 +42,10 @@ TUMBLESIGHT_INLINE int16x8_t plus_high(int16x8_t sum, int8x16_t a, int8x16_t b) 
 #endif
 }
 
-// Sums of four channels, each in two halves.
+// Sums of four channels, each as two partial sums.
 struct Quad {
   int32x4_t low, high;
-  TUMBLESIGHT_INLINE int32x4_t sums_of(const Quad& quad) {
+  TUMBLESIGHT_INLINE int32x4_t add_pairs(const Quad& quad) {
 #if defined(__aarch64__)
     return vpaddq_s32(quad.low, quad.high);
 #else
@@ -55,15 +55,15 @@ struct Quad {
   }
 };
 
-// start + 128 times the sum of the weights, of kQuads quads of channels.
+// start + 128 times the sum of the weights, for kQuads quads of channels.
 template <int kQuads>
 TUMBLESIGHT_INLINE void start_sums(const ProductShape& shape, const std::int32_t* start,
                                    const std::int8_t* weights, int32x4_t (&sums)[kQuads]) {
-  constexpr int kMost = 128;  // pairs of weights whose sum fits into 16 bits
+  constexpr int kMaxPairs = 128;  // pairs of weights whose sum fits into 16 bits
   int32x4_t total[kQuads] = {};
-  for (int rest = shape.strips * shape.strip_length / Int8Product::kGroup; rest > 0; rest -= kMost) {
+  for (int rest = shape.strips * shape.strip_length / Int8Product::kGroup; rest > 0; rest -= kMaxPairs) {
     int16x8_t pairs[kQuads] = {};
-    for (int i = min(rest, kMost); i > 0; --i, weights += shape.channels * Int8Product::kGroup) {
+    for (int i = min(rest, kMaxPairs); i > 0; --i, weights += shape.channels * Int8Product::kGroup) {
       for (int q = 0; q < kQuads; ++q) pairs[q] = vpadalq_s8(pairs[q], vld1q_s8(weights + 16 * q));
     }
     for (int q = 0; q < kQuads; ++q) total[q] = vpadalq_s16(total[q], pairs[q]);
@@ -77,27 +77,27 @@ TUMBLESIGHT_INLINE void convolve_block(const ProductShape& shape, const std::uin
                                        const int32x4_t (&start)[kQuads], const std::int8_t* weights,
                                        std::int32_t* const (&out)[kPixels]) {
   Quad sum[kPixels][kQuads] = {};
-  const int next = shape.channels * Int8Product::kGroup;  // group
+  const int group_step = shape.channels * Int8Product::kGroup;
   for (int strip = 0; strip < shape.strips; ++strip) {
     int at = strip * shape.strip_step;
     const int end = at + shape.strip_length;
-    for (; at + 8 <= end; at += 8, weights += 2 * next) {
+    for (; at + 8 <= end; at += 8, weights += 2 * group_step) {
       int8x16_t first[kQuads], second[kQuads];
 #pragma GCC unroll 4
       for (int q = 0; q < kQuads; ++q) {
         first[q] = vld1q_s8(weights + 16 * q);
-        second[q] = vld1q_s8(weights + next + 16 * q);
+        second[q] = vld1q_s8(weights + group_step + 16 * q);
       }
 #pragma GCC unroll 4
       for (int p = 0; p < kPixels; ++p) {
-        const int8x16_t value = less_128(in[p] + at), value_after = less_128(in[p] + at + 4);
+        const int8x16_t value = minus_128(in[p] + at), next_value = minus_128(in[p] + at + 4);
 #pragma GCC unroll 4
         for (int q = 0; q < kQuads; ++q) {
-          sum[p][q].low =
-              vpadalq_s16(sum[p][q].low, plus_low(product_low(first[q], value), second[q], value_after));
-          sum[p][q].high =
-              vpadalq_s16(sum[p][q].high, plus_high(product_high(first[q], value), second[q], value_after));
-          // Two quads at a time: more at once, and the registers do not suffice.
+          sum[p][q].low = vpadalq_s16(sum[p][q].low,
+                                      multiply_add_low(multiply_low(first[q], value), second[q], next_value));
+          sum[p][q].high = vpadalq_s16(
+              sum[p][q].high, multiply_add_high(multiply_high(first[q], value), second[q], next_value));
+          // Two quads at a time: with more the compiler runs out of registers.
           if (q % 2 == 1)
             asm volatile(""
                          : "+w"(sum[p][q - 1].low), "+w"(sum[p][q - 1].high), "+w"(sum[p][q].low),
@@ -108,36 +108,36 @@ TUMBLESIGHT_INLINE void convolve_block(const ProductShape& shape, const std::uin
     if (at < end) {
 #pragma GCC unroll 4
       for (int p = 0; p < kPixels; ++p) {
-        const int8x16_t value = less_128(in[p] + at);
+        const int8x16_t value = minus_128(in[p] + at);
 #pragma GCC unroll 4
         for (int q = 0; q < kQuads; ++q) {
           const int8x16_t weight = vld1q_s8(weights + 16 * q);
-          sum[p][q].low = vpadalq_s16(sum[p][q].low, product_low(weight, value));
-          sum[p][q].high = vpadalq_s16(sum[p][q].high, product_high(weight, value));
+          sum[p][q].low = vpadalq_s16(sum[p][q].low, multiply_low(weight, value));
+          sum[p][q].high = vpadalq_s16(sum[p][q].high, multiply_high(weight, value));
         }
       }
-      weights += next;
+      weights += group_step;
     }
   }
 #pragma GCC unroll 4
   for (int p = 0; p < kPixels; ++p) {
 #pragma GCC unroll 4
     for (int q = 0; q < kQuads; ++q)
-      vst1q_s32(out[p] + kQuad * q, vaddq_s32(start[q], Quad::sums_of(sum[p][q])));
+      vst1q_s32(out[p] + kQuad * q, vaddq_s32(start[q], Quad::add_pairs(sum[p][q])));
   }
 }
 
-// Every pixel, kPixels at a time, for channels in blocks of kQuads quads. The last pixels are moved back to
-// end at the last one; what is done again comes out the same.
+// All pixels, kPixels at a time, for channels in blocks of kQuads quads. The last block is moved back to end
+// at the last pixel; the pixels computed a second time get the same values.
 template <int kPixels, int kQuads>
 TUMBLESIGHT_INLINE void convolve_all(const ProductShape& shape, const std::uint8_t* in,
                                      const std::int32_t* start, const std::int8_t* weights,
                                      std::int32_t* out) {
   const int pixels = shape.rows * shape.columns;
   for (int c = 0; c < shape.channels; c += kQuads * kQuad) {
-    const std::int8_t* const of_channels = weights + c * Int8Product::kGroup;
+    const std::int8_t* const channel_weights = weights + c * Int8Product::kGroup;
     int32x4_t first_sums[kQuads];
-    start_sums<kQuads>(shape, start + c, of_channels, first_sums);
+    start_sums<kQuads>(shape, start + c, channel_weights, first_sums);
     for (int next = 0; next < pixels; next += kPixels) {
       const int first = min(next, pixels - kPixels);
       const std::uint8_t* block_in[kPixels];
@@ -147,7 +147,7 @@ TUMBLESIGHT_INLINE void convolve_all(const ProductShape& shape, const std::uint8
         block_in[p] = in + y * shape.row_step + (first + p - y * shape.columns) * shape.column_step;
         block_out[p] = out + (first + p) * shape.channels + c;
       }
-      convolve_block<kPixels, kQuads>(shape, block_in, first_sums, of_channels, block_out);
+      convolve_block<kPixels, kQuads>(shape, block_in, first_sums, channel_weights, block_out);
     }
   }
 }
@@ -170,16 +170,17 @@ struct Neon {
   }
 };
 
-// Dense layers: weights are widened to 16 bits; a group's inputs are multiplied lane by lane.
+// Dense layers: the weights are widened to 16 bits, and each input of a group is multiplied with them as a
+// lane.
 struct Int16 : Neon {
   using Kind = Int16Product;
   struct Weights {
-    int16x8_t of_input[2];
+    int16x8_t input[2];
   };
   using Values = int16x4_t;
   TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) {
-    const int8x8x2_t apart = vld2_s8(from);
-    return {{vmovl_s8(apart.val[0]), vmovl_s8(apart.val[1])}};
+    const int8x8x2_t deinterleaved = vld2_s8(from);
+    return {{vmovl_s8(deinterleaved.val[0]), vmovl_s8(deinterleaved.val[1])}};
   }
   TUMBLESIGHT_INLINE Values values(const std::int16_t* from) {
     std::uint32_t group;
@@ -187,8 +188,8 @@ struct Int16 : Neon {
     return vreinterpret_s16_u32(vdup_n_u32(group));
   }
   TUMBLESIGHT_INLINE void add(Sums& sum, Values value, const Weights& weight) {
-    add_lane<0>(sum, value, weight.of_input[0]);
-    add_lane<1>(sum, value, weight.of_input[1]);
+    add_lane<0>(sum, value, weight.input[0]);
+    add_lane<1>(sum, value, weight.input[1]);
   }
 };
 
@@ -213,11 +214,11 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
               std::uint8_t* out) {
-  pool<FixedPoint, LargestOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+  pool<FixedPoint, MaxPooling<FixedPoint>>(sums, columns, channels, shift, out);
 }
 void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
                   std::int16_t* out) {
-  pool<FixedPoint, MeanOfFour<FixedPoint>>(sums, columns, channels, shift, out);
+  pool<FixedPoint, AveragePooling<FixedPoint>>(sums, columns, channels, shift, out);
 }
 
 }  // namespace

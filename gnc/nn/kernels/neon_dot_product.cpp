@@ -1,4 +1,4 @@
-// Arm's 8-bit dot products (ARMv8.2 and later) for the convolutions; all else as in NEON.
+// Arm's 8-bit dot product (ARMv8.2 and later) for the convolutions; everything else is the same as in NEON.
 #include <arm_neon.h>
 
 #include <cstring>
@@ -9,7 +9,7 @@
 namespace tumblesight::gnc::kernels {
 namespace {
 
-// Four channels, four inputs each.
+// Four channels with four inputs each.
 struct Int8 {
   using Kind = Int8Product;
   static constexpr int kWidth = 4;
@@ -35,7 +35,8 @@ struct Int8 {
     sum = vusdotq_s32(sum, value, weight);
   }
 #else
-  // Signed times signed only: of x w = (x - 128) w + 128 w the last part is the same for every pixel.
+  // Products of signed numbers only: x w = (x - 128) w + 128 w, where the last term is the same for every
+  // pixel.
   struct Weights {
     int8x16_t weight;
     int32x4_t times_128;

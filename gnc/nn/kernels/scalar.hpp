@@ -1,4 +1,4 @@
-// One channel at a time: what every processor can do, and what is left over where vectors do not fit.
+// One channel at a time: for processors without vectors, and for channels that do not fill a vector.
 #pragma once
 
 #include "gnc/nn/kernels/blocks.hpp"

@@ -1,7 +1,8 @@
-// The kernels that exist, one source file a set. Which of them a build holds: CMakeLists.txt.
+// All tables of kernels, one source file per instruction set. The CMakeLists.txt of this folder decides which
+// of them a build contains.
 #pragma once
 
-#include "gnc/nn/kernels.hpp"
+#include "gnc/nn/kernels/kernels.hpp"
 
 namespace tumblesight::gnc::kernels {
 

@@ -1,4 +1,4 @@
-// Loads and stores of x86's vectors of integers.
+// Loads and stores of integer vectors on x86.
 #pragma once
 
 #include <immintrin.h>
@@ -11,7 +11,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-// kGroup inputs of one pixel, as 32 bits.
+// The kGroup inputs of one pixel as a 32-bit word.
 template <class Input>
 TUMBLESIGHT_INLINE std::int32_t group_of(const Input* from) {
   std::int32_t group = 0;

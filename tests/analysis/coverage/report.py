@@ -6,8 +6,8 @@ import sys
 # Run only where the processor has the set, by the flags that Linux shows. The kernels of other families are not even compiled
 # here: the audit's emulators test them.
 NEEDS = {
-    "gnc/lidar/depth_loops/avx2.cpp": "avx2",
-    "gnc/lidar/depth_loops/avx512.cpp": "avx512bw",
+    "gnc/lidar/depth_loops_avx2.cpp": "avx2",
+    "gnc/lidar/depth_loops_avx512.cpp": "avx512bw",
     "gnc/nn/kernels/avx2.cpp": "avx2",
     "gnc/nn/kernels/avx_vnni.cpp": "avx_vnni",
     "gnc/nn/kernels/avx512.cpp": "avx512bw",

@@ -57,12 +57,13 @@ Exact exact_tumble(const Eigen::Matrix3d& start, const Eigen::Vector3d& rate,
 
 TEST(RotationBy, IsTheExponentialAndBoundsItsAngle) {
   std::mt19937 engine(1);
-  EXPECT_EQ(rotation_by<float>(Eigen::Vector3f::Zero()), Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
+  EXPECT_EQ(rotation_from_vector<float>(Eigen::Vector3f::Zero()),
+            Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
   for (const float angle : {1e-6F, 0.01F, 0.5F, 1.0F, 1.5F, 1.89F, 2.5F, 1e3F, 1e30F}) {
     for (int i = 0; i < 50; ++i) {
       const Eigen::Vector3d axis = any_axis(engine);
       const Eigen::Matrix3d exact = exact_turn(std::min(angle, kLargestRate) * axis);
-      const Eigen::Matrix3f r = rotation_by<float>((angle * axis).cast<float>());
+      const Eigen::Matrix3f r = rotation_from_vector<float>((angle * axis).cast<float>());
       // A length whose square overflows leaves no direction.
       if (angle > 1e20F) {
         EXPECT_EQ(r, Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
@@ -78,7 +79,8 @@ TEST(SmallTurnOf, InvertsRotationByBelowSixtyDegreesAndIsZeroAbove) {
   for (const double angle_deg : {0.0, 1e-4, 1.0, 20.0, 45.0, 59.9, 60.1, 90.0, 179.9}) {
     for (int i = 0; i < 50; ++i) {
       const Eigen::Vector3d turn = angle_deg * kDegree * any_axis(engine);
-      const Eigen::Vector3d found = small_turn_of<float>(exact_turn(turn).cast<float>()).cast<double>();
+      const Eigen::Vector3d found =
+          small_rotation_vector<float>(exact_turn(turn).cast<float>()).cast<double>();
       EXPECT_LT((found - (angle_deg < 60.0 ? turn : Eigen::Vector3d::Zero())).norm(), 1e-5) << angle_deg;
     }
   }
@@ -87,7 +89,7 @@ TEST(SmallTurnOf, InvertsRotationByBelowSixtyDegreesAndIsZeroAbove) {
 TEST(Tumble, OfASphereTurnsByTheRateInTheLidarFrameAndKeepsIt) {
   const Eigen::Matrix3d start = exact_turn({0.5, -1.0, 1.5});
   const Eigen::Vector3d rate(0.3, 0.6, -0.4);
-  const Motion<float> later = tumble<float>({start.cast<float>(), rate.cast<float>()}, Inertia<float>{});
+  const Motion<float> later = propagate<float>({start.cast<float>(), rate.cast<float>()}, Inertia<float>{});
   EXPECT_LT(angle_between(later.r_lrf_trf, exact_turn(rate) * start), 1e-6);
   EXPECT_LT((later.rate_lrf - rate.cast<float>()).norm(), 1e-6F);
 }
@@ -105,7 +107,7 @@ TEST(Tumble, FollowsTorqueFreeRotation) {
         const Eigen::Matrix3d start = exact_turn(2.0 * any_axis(engine));
         const Eigen::Vector3d rate = rate_deg * kDegree * any_axis(engine);
         const Exact exact = exact_tumble(start, rate, shape.cast<double>());
-        const Motion<float> later = tumble<float>({start.cast<float>(), rate.cast<float>()}, inertia);
+        const Motion<float> later = propagate<float>({start.cast<float>(), rate.cast<float>()}, inertia);
         const double miss_deg = angle_between(later.r_lrf_trf, exact.r_lrf_trf) / kDegree;
         EXPECT_LT((later.rate_lrf.cast<double>() - exact.rate_lrf).norm(), 0.03 * rate.norm()) << rate_deg;
         EXPECT_LT(miss_deg, rate_deg > 30.0 ? 0.5 : 0.1) << rate_deg;
@@ -119,7 +121,7 @@ TEST(Tumble, AboutAPrincipalAxisIsASpin) {
   Inertia<float> inertia;
   ASSERT_TRUE(make_inertia<float>(tensor(2.0F, 3.0F, 4.0F), inertia));
   const Eigen::Vector3d rate = 0.8 * start.col(1);
-  const Motion<float> later = tumble<float>({start.cast<float>(), rate.cast<float>()}, inertia);
+  const Motion<float> later = propagate<float>({start.cast<float>(), rate.cast<float>()}, inertia);
   EXPECT_LT(angle_between(later.r_lrf_trf, exact_turn(rate) * start), 2e-6);
   EXPECT_LT((later.rate_lrf - rate.cast<float>()).norm(), 2e-6F);
 }
@@ -131,8 +133,9 @@ TEST(Tumble, DependsOnRatiosOfTheInertiaOnly) {
   ASSERT_TRUE(make_inertia<float>(shape, inertia));
   for (const float scale : {1e-3F, 1e6F}) {
     ASSERT_TRUE(make_inertia<float>(scale * shape, scaled));
-    EXPECT_LT((tumble<float>(motion, scaled).r_lrf_trf - tumble<float>(motion, inertia).r_lrf_trf).norm(),
-              1e-5F);
+    EXPECT_LT(
+        (propagate<float>(motion, scaled).r_lrf_trf - propagate<float>(motion, inertia).r_lrf_trf).norm(),
+        1e-5F);
   }
 }
 

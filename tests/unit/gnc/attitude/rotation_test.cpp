@@ -38,7 +38,7 @@ TEST(Orthonormalise, GivesARotationForAnyTwoIndependentVectors) {
   for (int i = 0; i < 2000; ++i) {
     const float scale = std::pow(10.0F, static_cast<float>(i % 9) - 4.0F);
     const Eigen::Matrix3d r =
-        rotation_from_columns<float>(orthonormalise<float>(random.vector(scale), random.vector()))
+        rotation_from_columns<float>(orthonormalize<float>(random.vector(scale), random.vector()))
             .cast<double>();
     ASSERT_LT((r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 5e-5) << i;
     ASSERT_NEAR(r.determinant(), 1.0, 5e-5) << i;
@@ -50,7 +50,7 @@ TEST(Orthonormalise, KeepsTheFirstDirectionAndThePlane) {
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3f a = random.vector();
     const Eigen::Vector3f b = random.vector();
-    const RotationColumns<float> columns = orthonormalise<float>(a, b);
+    const RotationColumns<float> columns = orthonormalize<float>(a, b);
     EXPECT_LT((columns.first - a.normalized()).norm(), 1e-6F);
     EXPECT_NEAR(columns.second.dot(a.cross(b).normalized()), 0.0F, 1e-5F);
     EXPECT_GT(columns.second.dot(b), 0.0F);
@@ -61,7 +61,7 @@ TEST(Orthonormalise, LeavesARotationUnchanged) {
   Random random;
   for (int i = 0; i < 200; ++i) {
     const Eigen::Matrix3f r = random.quaternion().toRotationMatrix().cast<float>();
-    const Eigen::Matrix3f again = rotation_from_columns<float>(orthonormalise<float>(r.col(0), r.col(1)));
+    const Eigen::Matrix3f again = rotation_from_columns<float>(orthonormalize<float>(r.col(0), r.col(1)));
     EXPECT_LT((again - r).cwiseAbs().maxCoeff(), 1e-6F);
   }
 }
@@ -71,11 +71,11 @@ TEST(Orthonormalise, IsFiniteForDegenerateVectors) {
   const Eigen::Vector3f one{1.0F, 2.0F, 3.0F};
   for (const auto& pair :
        {std::pair{zero, zero}, {zero, one}, {one, zero}, {one, one}, {one, Eigen::Vector3f(-one)}}) {
-    const RotationColumns<float> columns = orthonormalise<float>(pair.first, pair.second);
+    const RotationColumns<float> columns = orthonormalize<float>(pair.first, pair.second);
     EXPECT_TRUE(columns.first.allFinite() && columns.second.allFinite());
     EXPECT_NEAR(quaternion_of(rotation_from_columns<float>(columns).cast<double>()).norm(), 1.0, 1e-6);
   }
-  EXPECT_EQ(orthonormalise<float>(zero, one).first, zero);
+  EXPECT_EQ(orthonormalize<float>(zero, one).first, zero);
 }
 
 // Verifies TS-EST-100.

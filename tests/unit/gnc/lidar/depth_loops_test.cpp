@@ -51,9 +51,9 @@ class DepthLoopsOf : public ::testing::TestWithParam<InstructionSet> {
  protected:
   void expect_equal(const RangeImage& frame, const DepthProjection& projection) {
     const FrameStatus expected =
-        make_depth_image(frame, projection, *scratch, *image, depth_loops_within(InstructionSet::kPortable));
+        make_depth_image(frame, projection, *scratch, *image, fastest_depth_loops(InstructionSet::kPortable));
     const FrameStatus found =
-        make_depth_image(frame, projection, *scratch, *other, depth_loops_within(GetParam()));
+        make_depth_image(frame, projection, *scratch, *other, fastest_depth_loops(GetParam()));
     ASSERT_EQ(found, expected);
     if (expected != FrameStatus::kOk) return;
     EXPECT_EQ(other->depth, image->depth);
@@ -66,7 +66,7 @@ class DepthLoopsOf : public ::testing::TestWithParam<InstructionSet> {
 };
 
 TEST_P(DepthLoopsOf, GiveThePortableOnesBits) {
-  if (depth_loops_within(GetParam()).set != GetParam())
+  if (fastest_depth_loops(GetParam()).set != GetParam())
     GTEST_SKIP() << "none of its own, or not on this processor";
   Random random(20);
   for (const Kind& kind : kinds(random)) {

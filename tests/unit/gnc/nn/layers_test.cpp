@@ -25,7 +25,7 @@ struct BlockRun {
     RandomValues random(seed);
     if constexpr (N::kIsInteger) {
       storage = random.vector<std::int8_t>(Block::kWeights);
-      weights.weight.lie_at(storage.data());
+      weights.weight.set_data(storage.data());
       for (auto& bias : weights.bias) bias = random.next<std::int16_t>();
       weights.shift.fill(9);
     } else {
@@ -36,7 +36,7 @@ struct BlockRun {
       for (int i = 0; i < kSide * kIn; ++i) in.row(y)[i] = random.next<ConvInput<N>>();
     }
     random.fill(sums);  // what lay in the scratch must not matter
-    random.fill(largest.number);
+    random.fill(largest.values);
   }
   void forward() {
     Block::forward(fastest_kernels<N>(), weights, in, sums, largest);
@@ -77,14 +77,14 @@ void expect_block_by_definition(double tolerance) {
         const double largest = run->activated(*std::max_element(four, four + 4), 255.0);
         ASSERT_NEAR(run->largest.row(y)[x * kOut + c], largest, tolerance) << y << ' ' << x << ' ' << c;
         double total = 0.0;
-        for (const double one : four) total += run->activated(one, kLargestOfFour);
+        for (const double one : four) total += run->activated(one, kMaxAveragedActivation);
         ASSERT_NEAR(run->mean[(y * (kSide / 2) + x) * kOut + c], N::kIsInteger ? total : total / 4.0,
                     tolerance);
       }
     }
   }
   // The border that the next convolution wants.
-  for (int i = 0; i < run->largest.kRow; ++i) EXPECT_EQ(run->largest.number[i], 0);
+  for (int i = 0; i < run->largest.kRow; ++i) EXPECT_EQ(run->largest.values[i], 0);
   EXPECT_EQ(run->largest.row(1)[-1], 0);
 }
 
@@ -125,7 +125,7 @@ TEST(Dense, FixedPointRequantisesHiddenNumbersAndGivesOutputsTheirMeaning) {
   auto weights = std::make_unique<Layer::Weights>();
   RandomValues random(4);
   const auto storage = random.vector<std::int8_t>(130 * 64);
-  weights->weight.lie_at(storage.data());
+  weights->weight.set_data(storage.data());
   for (auto& bias : weights->bias) bias = random.next<std::int16_t>();
   weights->shift.fill(14);
   Layer::Input in;
@@ -147,13 +147,13 @@ TEST(Dense, FixedPointRequantisesHiddenNumbersAndGivesOutputsTheirMeaning) {
 
 // Verifies TS-NUM-050.
 TEST(Requantisation, RoundsOnceToTheNearestHalvesUp) {
-  EXPECT_EQ(requantised(5, 1), 3);
-  EXPECT_EQ(requantised(-5, 1), -2);
-  EXPECT_EQ(requantised(7, 3), 1);
-  EXPECT_EQ(requantised(3, 3), 0);
-  EXPECT_EQ(requantised(4, 3), 1);
-  EXPECT_EQ(requantised(-4, 3), 0);
-  EXPECT_EQ(requantised(INT32_MAX - (1 << 29), 30), 1);
+  EXPECT_EQ(requantize(5, 1), 3);
+  EXPECT_EQ(requantize(-5, 1), -2);
+  EXPECT_EQ(requantize(7, 3), 1);
+  EXPECT_EQ(requantize(3, 3), 0);
+  EXPECT_EQ(requantize(4, 3), 1);
+  EXPECT_EQ(requantize(-4, 3), 0);
+  EXPECT_EQ(requantize(INT32_MAX - (1 << 29), 30), 1);
   std::int16_t input = 0;
   to_input(Fixed(1.0), input);
   EXPECT_EQ(input, 32767);

@@ -111,8 +111,8 @@ TEST(FixedPointLstm, FollowsADoubleImplementationOfItsOwnIntegers) {
   for (std::int8_t& w : forward) w = static_cast<std::int8_t>(weight(engine));
   for (std::int8_t& w : recurrent) w = static_cast<std::int8_t>(weight(engine));
   Layer::Weights weights;
-  weights.weight.lie_at(forward.data());
-  weights.recurrent.lie_at(recurrent.data());
+  weights.weight.set_data(forward.data());
+  weights.recurrent.set_data(recurrent.data());
   for (std::int32_t& bias : weights.bias) bias = 100 * weight(engine);
   weights.shift.fill(kShift);
   Layer::State state;

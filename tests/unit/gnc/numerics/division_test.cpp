@@ -21,16 +21,16 @@ TEST(Division, BitByBitIsTheProcessorsOwn) {
   for (int i = 0; i < 100'000; ++i) {
     const std::uint64_t dividend = number(engine);
     const std::uint64_t divisor = (number(engine) >> 1) + 1;
-    ASSERT_EQ(quotient_bit_by_bit(dividend, divisor), dividend / divisor) << dividend << " / " << divisor;
+    ASSERT_EQ(divide_bit_by_bit(dividend, divisor), dividend / divisor) << dividend << " / " << divisor;
   }
-  EXPECT_EQ(quotient_bit_by_bit(UINT64_MAX, 1), UINT64_MAX);
-  EXPECT_EQ(quotient_bit_by_bit(UINT64_MAX, INT64_MAX), 2U);
+  EXPECT_EQ(divide_bit_by_bit(UINT64_MAX, 1), UINT64_MAX);
+  EXPECT_EQ(divide_bit_by_bit(UINT64_MAX, INT64_MAX), 2U);
 }
 
 TEST(Division, GoesTowardsZero) {
-  EXPECT_EQ(quotient_of(7, 2), 3);
-  EXPECT_EQ(quotient_of(-7, 2), -3);
-  EXPECT_EQ(quotient_of(0, 5), 0);
+  EXPECT_EQ(divide(7, 2), 3);
+  EXPECT_EQ(divide(-7, 2), -3);
+  EXPECT_EQ(divide(0, 5), 0);
 }
 
 template <class Integer>

@@ -31,12 +31,12 @@ TEST(Normalised, IsAUnitVectorHoweverShort) {
     for (int i = 0; i < 500; ++i) {
       const Vector3<Fixed> v = to_fixed(any_vector(engine, scale));
       if (v == Vector3<Fixed>::Zero()) continue;
-      const Eigen::Vector3f unit = to_float(normalised(v));
+      const Eigen::Vector3f unit = to_float(normalized(v));
       ASSERT_LT((unit - to_float(v).normalized()).norm(), 2e-7F) << to_float(v).transpose();
     }
   }
-  EXPECT_EQ(normalised(Vector3<Fixed>(Vector3<Fixed>::Zero())), Vector3<Fixed>(Vector3<Fixed>::Zero()));
-  EXPECT_EQ(normalised(Eigen::Vector3f(Eigen::Vector3f::Zero())), Eigen::Vector3f(Eigen::Vector3f::Zero()));
+  EXPECT_EQ(normalized(Vector3<Fixed>(Vector3<Fixed>::Zero())), Vector3<Fixed>(Vector3<Fixed>::Zero()));
+  EXPECT_EQ(normalized(Eigen::Vector3f(Eigen::Vector3f::Zero())), Eigen::Vector3f(Eigen::Vector3f::Zero()));
 }
 
 TEST(Motion, InFixedPointIsThatInFloat) {
@@ -52,14 +52,17 @@ TEST(Motion, InFixedPointIsThatInFloat) {
     const Eigen::Matrix3f start =
         Eigen::AngleAxisf(2.0F, any_vector(engine, 1.0F).normalized()).toRotationMatrix();
     const Eigen::Vector3f rate = any_vector(engine, 0.5F);
-    const Motion<float> later = tumble<float>({start, rate}, inertia);
-    const Motion<Fixed> fixed_later = tumble<Fixed>({converted<Fixed>(start), to_fixed(rate)}, fixed_inertia);
+    const Motion<float> later = propagate<float>({start, rate}, inertia);
+    const Motion<Fixed> fixed_later =
+        propagate<Fixed>({converted<Fixed>(start), to_fixed(rate)}, fixed_inertia);
     ASSERT_LT((converted<float>(fixed_later.r_lrf_trf) - later.r_lrf_trf).norm(), 5e-6F);
     ASSERT_LT((to_float(fixed_later.rate_lrf) - later.rate_lrf).norm(), 5e-6F);
-    const Eigen::Matrix3f turn = rotation_by<float>(rate);
-    ASSERT_LT((converted<float>(rotation_by<Fixed>(to_fixed(rate))) - turn).norm(), 2e-6F);
-    ASSERT_LT((to_float(small_turn_of<Fixed>(converted<Fixed>(turn))) - small_turn_of<float>(turn)).norm(),
-              2e-5F);
+    const Eigen::Matrix3f turn = rotation_from_vector<float>(rate);
+    ASSERT_LT((converted<float>(rotation_from_vector<Fixed>(to_fixed(rate))) - turn).norm(), 2e-6F);
+    ASSERT_LT(
+        (to_float(small_rotation_vector<Fixed>(converted<Fixed>(turn))) - small_rotation_vector<float>(turn))
+            .norm(),
+        2e-5F);
   }
 }
 

@@ -74,7 +74,7 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
     Motion<float> truth{kStart.cast<float>(), any_vector(0.3F)};
     AttitudeTrack<float> track;
     ReferenceTrack reference(inertia.tensor_trf.cast<double>());
-    for (int k = 0; k < 15; ++k, truth = tumble<float>(truth, inertia)) {
+    for (int k = 0; k < 15; ++k, truth = propagate<float>(truth, inertia)) {
       SCOPED_TRACE(testing::Message() << sequence << ' ' << k);
       OutputVector<float> output{};
       for (int i = 0; i < shape::kHypotheses; ++i) {
@@ -93,7 +93,7 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
       if (reference.nearest_call_deg < 1e-3) break;
       ++compared;
       const TrackedAttitude<float> tracked =
-          follow(hypotheses_of<float>(output, r_lrf_view), head, track, inertia);
+          follow(decode_hypotheses<float>(output, r_lrf_view), head, track, inertia);
       for (int law = 0; law < kLaws; ++law) {
         ASSERT_LT((track.motion[law].r_lrf_trf.cast<double>() - reference.motion[law].attitude).norm(), 2e-5);
         ASSERT_LT((track.motion[law].rate_lrf.cast<double>() - reference.motion[law].rate).norm(), 2e-5);
@@ -229,7 +229,7 @@ TEST(AttitudeTrack, LearnsByWhichLawTheTargetMoves) {
     Motion<float> truth{kStart.cast<float>(),
                         (20.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized()).cast<float>()};
     AttitudeTrack<float> track;
-    for (int k = 0; k < 12; ++k, truth = tumble<float>(truth, laws[law])) {
+    for (int k = 0; k < 12; ++k, truth = propagate<float>(truth, laws[law])) {
       const Eigen::Matrix3d exact = truth.r_lrf_trf.cast<double>();
       const TrackedAttitude<float> tracked = follow(frame_of({{exact, 1.0F}}), kSure, track, slender_body());
       if (k > 8) {
@@ -247,7 +247,7 @@ TEST(AttitudeTrack, OfAnUnsureNetworkNoLawIsLearnt) {
   const Inertia<float> inertia = slender_body();
   Motion<float> truth{kStart.cast<float>(), {0.1F, -0.08F, 0.2F}};
   AttitudeTrack<float> track;
-  for (int k = 0; k < 12; ++k, truth = tumble<float>(truth, inertia)) {
+  for (int k = 0; k < 12; ++k, truth = propagate<float>(truth, inertia)) {
     follow(frame_of({{truth.r_lrf_trf.cast<double>(), 1.0F}}), saying(kErrorWord, 0.0F), track, inertia);
   }
   EXPECT_EQ(track.law(), kSpinLaw) << "measurements to 90 degrees cannot tell";
@@ -333,7 +333,7 @@ TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
   AttitudeTrack<float> track;
   std::mt19937 engine(9);
   std::normal_distribution<double> normal(0.0, 1.5 * kDegree);
-  for (int k = 0; k < 40; ++k, truth = tumble<float>(truth, motion_laws<float>(inertia)[kSpinLaw])) {
+  for (int k = 0; k < 40; ++k, truth = propagate<float>(truth, motion_laws<float>(inertia)[kSpinLaw])) {
     const Eigen::Matrix3d exact = truth.r_lrf_trf.cast<double>();
     const double x = normal(engine);
     const double y = normal(engine);

@@ -51,7 +51,7 @@ TEST(Hypotheses, AreTurnedFromTheViewIntoTheLidarFrame) {
     r_view_trf[k] = turn(0.7F * static_cast<float>(k), {1.0F, static_cast<float>(k), -0.5F});
     set_hypothesis(output, k, r_view_trf[k], 0.5F * static_cast<float>(k % 3));
   }
-  const Hypotheses<float> hypotheses = hypotheses_of<float>(output, r_lrf_view);
+  const Hypotheses<float> hypotheses = decode_hypotheses<float>(output, r_lrf_view);
   double sum = 0.0;
   for (int k = 0; k < shape::kHypotheses; ++k) sum += std::exp(0.5 * (k % 3));
   for (int k = 0; k < shape::kHypotheses; ++k) {
@@ -69,11 +69,11 @@ TEST(Hypotheses, NameTheLikeliestAndTheFirstOfEquals) {
       set_hypothesis(output, k, turn(0.8F * static_cast<float>(k + 1), Eigen::Vector3f::UnitZ()),
                      k == best ? -1.0F : -2.0F);
     }
-    const Hypotheses<float> hypotheses = hypotheses_of<float>(output, kIdentity);
+    const Hypotheses<float> hypotheses = decode_hypotheses<float>(output, kIdentity);
     EXPECT_EQ(hypotheses.likeliest, best);
     EXPECT_LT(difference(single_frame(hypotheses), hypotheses.r_lrf_trf[best]), 1e-6F);
     for (int k = best; k < shape::kHypotheses; ++k) output[kLogits + k] = 5.0F;
-    EXPECT_EQ(hypotheses_of<float>(output, kIdentity).likeliest, best);
+    EXPECT_EQ(decode_hypotheses<float>(output, kIdentity).likeliest, best);
   }
 }
 
@@ -82,8 +82,8 @@ TEST(Hypotheses, MapTheErrorLogitOntoZeroToPi) {
   OutputVector<float> output{};
   for (const float logit : {-100.0F, -3.0F, 0.0F, 2.0F, 100.0F}) {
     output[kErrorLogit] = logit;
-    EXPECT_NEAR(hypotheses_of<float>(output, kIdentity).predicted_error_rad, M_PI / (1.0 + std::exp(-logit)),
-                1e-6);
+    EXPECT_NEAR(decode_hypotheses<float>(output, kIdentity).predicted_error_rad,
+                M_PI / (1.0 + std::exp(-logit)), 1e-6);
   }
 }
 
@@ -98,7 +98,8 @@ TEST(Hypotheses, GiveAUnitQuaternionAndABoundedErrorWhateverTheNetworkSays) {
       std::memcpy(&value, &pattern, sizeof value);
       if (i % 2 == 0 && pattern % 5 != 0) value = 0.0F;
     }
-    const Hypotheses<float> hypotheses = hypotheses_of<float>(output, turn(0.1F, Eigen::Vector3f::UnitX()));
+    const Hypotheses<float> hypotheses =
+        decode_hypotheses<float>(output, turn(0.1F, Eigen::Vector3f::UnitX()));
     const QuaternionQ30 q = quaternion_from_rotation(converted<Fixed>(single_frame(hypotheses)));
     ASSERT_NEAR(to_double(q).norm(), 1.0, 1e-6);
     ASSERT_GE(q[0], 0);

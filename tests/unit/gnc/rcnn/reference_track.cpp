@@ -29,7 +29,7 @@ Eigen::Vector3d bounded(const Eigen::Vector3d& rate) {
   return rate.norm() > 1.9 ? Eigen::Vector3d(1.9 * rate.normalized()) : rate;
 }
 
-Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn) {
+Eigen::Matrix3d rotation_from_vector(const Eigen::Vector3d& turn) {
   return Eigen::AngleAxisd(bounded(turn).norm(), turn.normalized()).toRotationMatrix();
 }
 
@@ -110,8 +110,8 @@ void ReferenceTrack::predict() {
       return at * inertia.inverse() * at.transpose() * momentum;
     };
     for (int quarter = 0; quarter < 4; ++quarter) {
-      const Eigen::Matrix3d middle = rotation_by(rate_at(r) / 8.0) * r;
-      r = rotation_by(rate_at(middle) / 4.0) * r;
+      const Eigen::Matrix3d middle = rotation_from_vector(rate_at(r) / 8.0) * r;
+      r = rotation_from_vector(rate_at(middle) / 4.0) * r;
     }
     predicted_[law] = {r, rate_at(r)};
   }

@@ -112,7 +112,7 @@ class ExportTest : public testing::Test {
       depth_image(sequence, k);
       gnc::OutputVector<float> output;
       network->infer_frame(*image, output);
-      const auto hypotheses = gnc::hypotheses_of<float>(output, gnc::converted<float>(image->r_lrf_view));
+      const auto hypotheses = gnc::decode_hypotheses<float>(output, gnc::converted<float>(image->r_lrf_view));
       std::vector<torch::Tensor> turns;
       for (const Eigen::Matrix3f& r : hypotheses.r_lrf_trf) turns.push_back(tensor_of(r));
       auto dense2 = network->features();

@@ -1,4 +1,4 @@
-#include "gnc/nn/kernels.hpp"
+#include "gnc/nn/kernels/kernels.hpp"
 
 #include "gnc/nn/kernels/sets.hpp"
 
@@ -8,7 +8,7 @@ namespace {
 template <class N>
 using KernelTable = std::array<const Kernels<N>*, kInstructionSets.size()>;
 
-// What this build holds, in the order of InstructionSet.
+// The kernels that this build contains, in the order of InstructionSet.
 template <class N>
 constexpr KernelTable<N> built();
 
@@ -59,7 +59,7 @@ const Kernels<N>* kernels_on(InstructionSet set) {
 template <class N>
 const Kernels<N>& fastest_kernels() {
   const Kernels<N>* fastest = kernels_on<N>(InstructionSet::kPortable);
-  for (const InstructionSet set : kInstructionSets) {  // slowest first
+  for (const InstructionSet set : kInstructionSets) {  // in ascending order of speed
     const Kernels<N>* const found = kernels_on<N>(set);
     fastest = found != nullptr ? found : fastest;
   }

@@ -1,4 +1,5 @@
-// The sets that exist, one source file each. Which of them a build holds: CMakeLists.txt.
+// All tables of depth loops, one source file per instruction set. The CMakeLists.txt of this folder decides
+// which of them a build contains.
 #pragma once
 
 #include "gnc/lidar/depth_loops.hpp"

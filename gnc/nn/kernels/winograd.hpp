@@ -1,10 +1,10 @@
-// Convolution 3x3 with two thirds of the multiplications, for processors with 32-bit registers and no
-// vectors, on which a multiplication costs what any instruction costs. Winograd's minimal filter: of a row
-// d0...d3 and the weights g0...g2
+// 3x3 convolution with two thirds of the multiplications, for processors with 32-bit registers and no
+// vectors, on which a multiplication costs as much as an addition. Winograd's minimal filter F(2, 3), applied
+// to the rows: for inputs d0...d3 and weights g0...g2
 //   d0 g0 + d1 g1 + d2 g2 = m0 + (m1 + m2) / 2        m0 = (d0 - d2) g0    m1 = (d1 + d2) (g0 + g1 + g2)
 //   d1 g0 + d2 g1 + d3 g2 =      (m1 - m2) / 2 - m3   m3 = (d1 - d3) g2    m2 = (d2 - d1) (g0 - g1 + g2)
-// exactly, since m1 + m2 and m1 - m2 are even. The m are summed over inputs and rows of weights before they
-// are put together. Included by source files as blocks.hpp is.
+// This is exact, since m1 + m2 and m1 - m2 are even. The m are summed over all inputs and rows of weights
+// before they are combined. Included by the source files of the instruction sets, like blocks.hpp.
 #pragma once
 
 #include "gnc/nn/kernels/blocks.hpp"
@@ -12,46 +12,47 @@
 namespace tumblesight::gnc {
 namespace {
 
-struct MinimalFilter {
-  static constexpr int kTiles = 3;  // of two pixels, side by side
+struct Winograd {
+  static constexpr int kTiles = 3;  // tiles of two adjacent pixels
   static constexpr int kPixels = 2 * kTiles;
   static constexpr int kGroup = Int8Product::kGroup;
-  static constexpr int kStretch =
+  static constexpr int kChunkGroups =
       16;  // groups whose inputs are turned into differences and sums before they are used
 
-  // Of one input of a tile: d0 - d2 and d1 + d2, d2 - d1 and d1 - d3; two numbers in one, the first one
-  // above.
-  using Turned = std::array<std::uint64_t, 2>;
-  using Group = std::array<std::array<Turned, kTiles>, kGroup>;
+  // One input of a tile: d0 - d2 and d1 + d2, then d2 - d1 and d1 - d3. Two numbers per word, the first in
+  // the high half.
+  using TransformedInput = std::array<std::uint64_t, 2>;
+  using Group = std::array<std::array<TransformedInput, kTiles>, kGroup>;
   using Sums = std::int32_t[kTiles][4];
 
-  static bool suits(const ProductShape& shape) {
+  // Whether `shape` is a 3-wide convolution over an even number of columns with enough pixels.
+  static bool supports(const ProductShape& shape) {
     return shape.strip_length == 3 * shape.column_step && shape.columns % 2 == 0 &&
            shape.rows * shape.columns >= kPixels;
   }
 
-  TUMBLESIGHT_INLINE std::uint64_t pair_of(std::int32_t first, std::int32_t second) {
+  TUMBLESIGHT_INLINE std::uint64_t pack_pair(std::int32_t first, std::int32_t second) {
     return std::uint64_t{static_cast<std::uint32_t>(first)} << 32 | static_cast<std::uint32_t>(second);
   }
 
-  // `column_step` numbers lie between neighbours in a row.
-  TUMBLESIGHT_INLINE void turn(const std::uint8_t* const (&in)[kTiles], int offset, int column_step,
-                               Group& group) {
+  // `column_step`: values from one pixel of a row to the next.
+  TUMBLESIGHT_INLINE void transform_input(const std::uint8_t* const (&in)[kTiles], int offset,
+                                          int column_step, Group& group) {
     for (int t = 0; t < kTiles; ++t) {
       const std::uint8_t* const d = in[t] + offset;
 #pragma GCC unroll 4
       for (int i = 0; i < kGroup; ++i) {
         const std::int32_t d0 = d[i], d1 = d[column_step + i], d2 = d[2 * column_step + i],
                            d3 = d[3 * column_step + i];
-        group[i][t] = {pair_of(d0 - d2, d1 + d2), pair_of(d2 - d1, d1 - d3)};
+        group[i][t] = {pack_pair(d0 - d2, d1 + d2), pack_pair(d2 - d1, d1 - d3)};
       }
     }
   }
 
-  // The group's inputs times the weights of one channel.
+  // Adds the products of a group's inputs and the weights of one channel.
 #if defined(__sparc__)
-  // Written down, since a compiler takes the pairs apart, which here are fetched at once, and runs out of
-  // registers.
+  // In assembly: a pair is loaded with one instruction. The compiler loads its halves separately and runs out
+  // of registers.
   TUMBLESIGHT_INLINE void add(const Group* group, const std::int8_t* const (&weight)[3], Sums& sums) {
 #define TUMBLESIGHT_TILE(at, a, b, c, d) \
   "ldd [%[in]+" #at                      \
@@ -99,7 +100,7 @@ struct MinimalFilter {
       const std::int32_t factor[4] = {g0, (g0 + g2) + g1, (g0 + g2) - g1, g2};
 #pragma GCC unroll 3
       for (int t = 0; t < kTiles; ++t) {
-        const Turned& two = (*group)[i][t];
+        const TransformedInput& two = (*group)[i][t];
         add_to(sums[t][0], static_cast<std::int32_t>(two[0] >> 32), factor[0]);
         add_to(sums[t][1], static_cast<std::int32_t>(two[0]), factor[1]);
         add_to(sums[t][2], static_cast<std::int32_t>(two[1] >> 32), factor[2]);
@@ -107,33 +108,34 @@ struct MinimalFilter {
       }
     }
   }
-  // Done with this sum before anything else begins: left to itself the compiler begins too much, and runs out
-  // of registers.
+  // The empty assembly statement finishes this sum before the next one starts. Without it the compiler
+  // interleaves too many sums and runs out of registers.
   TUMBLESIGHT_INLINE void add_to(std::int32_t& sum, std::int32_t value, std::int32_t factor) {
     sum += value * factor;
     asm volatile("" : : "r"(sum) : "memory");
   }
 #endif
 
-  // The stretch's part of six pixels in one channel. A function of its own, lest the compiler take the
-  // stretch apart. `step`: from a group's weights to the next one's; `apart`: to those of the next column.
-  [[gnu::noinline]] static void add_stretch(const Group* stretch, int groups, int step, int apart,
-                                            const std::int32_t* start, int start_step,
-                                            const std::int8_t* weights, std::int32_t* out, int channels) {
+  // Adds the products of a chunk to the sums of six pixels in all channels. Not inlined: otherwise the
+  // compiler splits the chunk into separate variables. `step`: from the weights of a group to those of the
+  // next group; `column_step`: to those of the next column of the filter.
+  [[gnu::noinline]] static void add_chunk(const Group* chunk, int groups, int step, int column_step,
+                                          const std::int32_t* start, int start_step,
+                                          const std::int8_t* weights, std::int32_t* out, int channels) {
     for (int c = 0; c < channels; ++c) {
       Sums sums{};
-      const std::int8_t* weight[3] = {weights, weights + apart, weights + 2 * apart};
-      for (const Group* group = stretch; group != stretch + groups; ++group) {
+      const std::int8_t* weight[3] = {weights, weights + column_step, weights + 2 * column_step};
+      for (const Group* group = chunk; group != chunk + groups; ++group) {
         add(group, weight, sums);
         for (const std::int8_t*& at : weight) at += step;
       }
-      put_together(sums, start + c, start_step, out + c, channels);
+      transform_output(sums, start + c, start_step, out + c, channels);
       weights += kGroup;
     }
   }
 
-  TUMBLESIGHT_INLINE void put_together(const Sums& sums, const std::int32_t* start, int start_step,
-                                       std::int32_t* out, int out_step) {
+  TUMBLESIGHT_INLINE void transform_output(const Sums& sums, const std::int32_t* start, int start_step,
+                                           std::int32_t* out, int out_step) {
 #pragma GCC unroll 3
     for (const auto& m : sums) {
       out[0] = start[0] + (m[0] + ((m[1] + m[2]) >> 1));
@@ -146,42 +148,43 @@ struct MinimalFilter {
   // Six pixels, all channels.
   TUMBLESIGHT_INLINE void tiles(const ProductShape& shape, const std::uint8_t* const (&in)[kTiles],
                                 const std::int32_t* start, const std::int8_t* weights, std::int32_t* out) {
-    Group stretch[kStretch];
-    // Where a pixel has one group of inputs only, the strips make one stretch together.
-    const bool joined = shape.column_step == kGroup && shape.strips <= kStretch;
+    Group chunk[kChunkGroups];
+    // If a pixel has only one group of inputs, all strips form one chunk.
+    const bool joined = shape.column_step == kGroup && shape.strips <= kChunkGroups;
     const int runs = joined ? 1 : shape.strips;
     const int run = joined ? shape.strips : shape.column_step / kGroup;  // groups
     const int in_step = joined ? shape.strip_step : kGroup;
-    const int apart = shape.column_step * shape.channels;
-    const int step = joined ? 3 * apart : kGroup * shape.channels;
+    const int weight_column_step = shape.column_step * shape.channels;
+    const int step = joined ? 3 * weight_column_step : kGroup * shape.channels;
     int start_step = 0;  // the same for every pixel
     for (int strip = 0; strip < runs; ++strip) {
-      for (int first = 0; first < run; first += kStretch) {
-        const int groups = min(run - first, kStretch);
+      for (int first = 0; first < run; first += kChunkGroups) {
+        const int groups = min(run - first, kChunkGroups);
         for (int g = 0; g < groups; ++g) {
-          turn(in, strip * shape.strip_step + (first + g) * in_step, shape.column_step, stretch[g]);
+          transform_input(in, strip * shape.strip_step + (first + g) * in_step, shape.column_step, chunk[g]);
         }
-        add_stretch(stretch, groups, step, apart, start, start_step,
-                    weights + strip * 3 * apart + first * step, out, shape.channels);
+        add_chunk(chunk, groups, step, weight_column_step, start, start_step,
+                  weights + strip * 3 * weight_column_step + first * step, out, shape.channels);
         start = out;
         start_step = shape.channels;
       }
     }
   }
 
-  // The last tiles are moved back to end at the last one; what is done again comes out the same.
+  // The last tiles are moved back to end at the last pixel; the pixels computed a second time get the same
+  // values.
   static void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
                        const std::int8_t* weights, std::int32_t* out) {
     const int columns = shape.columns / 2;
     const int count = shape.rows * columns;
     for (int next = 0; next < count; next += kTiles) {
       const int first = min(next, count - kTiles);
-      const std::uint8_t* of_tile[kTiles];
+      const std::uint8_t* tile_in[kTiles];
       for (int t = 0; t < kTiles; ++t) {
         const int y = (first + t) / columns;
-        of_tile[t] = in + y * shape.row_step + 2 * (first + t - y * columns) * shape.column_step;
+        tile_in[t] = in + y * shape.row_step + 2 * (first + t - y * columns) * shape.column_step;
       }
-      tiles(shape, of_tile, start, weights, out + 2 * first * shape.channels);
+      tiles(shape, tile_in, start, weights, out + 2 * first * shape.channels);
     }
   }
 };

@@ -1,5 +1,5 @@
 // Verifies TS-NUM-010, TS-MEM-090.
-#include "gnc/nn/kernels.hpp"
+#include "gnc/nn/kernels/kernels.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "gnc/nn/kernels/minimal_filter.hpp"
+#include "gnc/nn/kernels/winograd.hpp"
 #include "tests/unit/gnc/nn/random_values.hpp"
 
 namespace tumblesight::gnc {
@@ -172,7 +172,7 @@ void expect_average_pool_by_definition(AveragePool<N>* average_pool) {
     for (int c = 0; c < pooled.kChannels; ++c) {
       Sum<N> total = 0;
       for (const double sum : pooled.four(x, c))
-        total += static_cast<Sum<N>>(pooled.activated(sum, c, kLargestOfFour));
+        total += static_cast<Sum<N>>(pooled.activated(sum, c, kMaxAveragedActivation));
       ASSERT_EQ(out[x * pooled.kChannels + c], N::kIsInteger ? total : total / 4) << x << ' ' << c;
     }
   }
@@ -200,12 +200,12 @@ TEST_P(KernelsOf, Float32HaveTheBitsOfTheirDefinition) {
 }
 
 // Which only the portable kernels of 32-bit processors use.
-TEST(MinimalFilter, HasTheBitsOfTheDefinition) {
+TEST(Winograd, HasTheBitsOfTheDefinition) {
   expect_definition_for_all_shapes<Int8Product>([](const ProductShape& shape, const std::uint8_t* in,
                                                    const std::int32_t* start, const std::int8_t* weights,
                                                    std::int32_t* out) {
-    const bool suits = MinimalFilter::suits(shape);
-    (suits ? MinimalFilter::convolve : kernels_on<FixedPoint>(InstructionSet::kPortable)->convolve)(
+    const bool supports = Winograd::supports(shape);
+    (supports ? Winograd::convolve : kernels_on<FixedPoint>(InstructionSet::kPortable)->convolve)(
         shape, in, start, weights, out);
   });
 }

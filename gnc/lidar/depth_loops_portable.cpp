@@ -1,0 +1,8 @@
+#include "gnc/lidar/depth_loops_plain.hpp"
+#include "gnc/lidar/depth_loops_sets.hpp"
+
+namespace tumblesight::gnc::depth_loops {
+
+const DepthLoops kPortable = make_loops(InstructionSet::kPortable);
+
+}  // namespace tumblesight::gnc::depth_loops
