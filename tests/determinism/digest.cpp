@@ -1,8 +1,8 @@
-// Prints digests over what the estimator makes of many frames, for every numerics and instruction set of this
-// build and this processor, a line each: numerics, set, frames, CRC-32 of every frame's quaternions, expected
-// errors and state.
-//   digest FRAMES        with each instruction set
-//   digest FRAMES SET    with one
+// Prints digests of the estimates of many frames, one line for each numerics and instruction set of this
+// build and this processor: numerics, set, number of frames, CRC-32 of the quaternions, expected errors and
+// state of every frame.
+//   digest FRAMES        with every instruction set
+//   digest FRAMES SET    with one instruction set
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -16,7 +16,8 @@ namespace tumblesight::gnc {
 namespace {
 
 constexpr unsigned kSeed = 47;
-constexpr int kDifferentFrames = 37;  // no divisor of a sequence's length: no two sequences are alike
+constexpr int kDifferentFrames =
+    37;  // coprime to the length of a sequence, so that no two sequences are the same
 constexpr int kSequence = 10;
 
 template <class N>
@@ -34,9 +35,9 @@ class Digest {
       AttitudeEstimate estimate;
       const RangeImage frame = random_frame(static_cast<unsigned>(i % kDifferentFrames));
       crc.add_u32(static_cast<std::uint32_t>(estimator_->step(frame, estimate)));
-      for (const std::int32_t part : estimate.q_lrf_trf) crc.add_u32(static_cast<std::uint32_t>(part));
-      for (const std::int32_t part : estimate.q_lrf_trf_single_frame)
-        crc.add_u32(static_cast<std::uint32_t>(part));
+      for (const std::int32_t element : estimate.q_lrf_trf) crc.add_u32(static_cast<std::uint32_t>(element));
+      for (const std::int32_t element : estimate.q_lrf_trf_single_frame)
+        crc.add_u32(static_cast<std::uint32_t>(element));
       crc.add_u32(estimate.predicted_error_urad);
       crc.add_u32(estimate.predicted_error_single_frame_urad);
       crc.add_u32(estimator_->state_crc32());

@@ -1,5 +1,5 @@
-// Counts the instructions of inferences under callgrind: one dump of its counters after each of ten frames,
-// for every instruction set that this processor (as callgrind shows it) has. Prints what each dump is, in
+// Runs inferences under callgrind: one dump of its counters after each of ten frames, for every instruction
+// set of the processor that callgrind emulates. Prints the numerics and instruction set of each dump, in
 // order.
 #include <valgrind/callgrind.h>
 
@@ -30,7 +30,8 @@ RangeImage empty_frame() {
   return frame;
 }
 
-// Nothing but 16 returns, every ray the nearest or the farthest, noise, and what the sensor model renders.
+// Only 16 returns; every ray the nearest and every ray the farthest usable range; noise; frames of the sensor
+// model.
 std::vector<RangeImage> frames() {
   std::vector<RangeImage> all(4, empty_frame());
   std::mt19937 engine(9);

@@ -18,6 +18,9 @@ inline std::int32_t requantize(std::int32_t sum, int shift) {
   return (sum + (std::int32_t{1} << (shift - 1))) >> shift;
 }
 
+// A policy N defines: Real, the type of physical values; ConvProduct and DenseProduct, the number types of
+// the layers (product.hpp); padded(channels), the number of output channels that are stored; Weights and
+// Shifts, the containers of a layer's parameters.
 struct Float32 {
   static constexpr const char* kName = "float32";
   static constexpr bool kIsInteger = false;
@@ -59,6 +62,8 @@ struct FixedPoint {
   using Shifts = std::array<std::uint8_t, kOut>;
 };
 
+// Inputs of convolutions: float or uint8. Inputs of dense layers and the LSTM: float or int16. Sums: float or
+// int32.
 template <class N>
 using ConvInput = typename N::ConvProduct::Input;
 template <class N>
@@ -72,6 +77,7 @@ template <class N, std::size_t kWeights, int kOut>
 struct LayerWeights {
   static constexpr int kPaddedOut = N::padded(kOut);
   static constexpr int kShifts = N::kIsInteger ? kPaddedOut : 0;
+  // The weights, then a bias and a shift (fixed point) of 4 bytes each per stored channel.
   static constexpr std::size_t kBytesInImage =
       kWeights * sizeof(typename N::DenseProduct::Weight) + 4U * (kPaddedOut + kShifts);
   alignas(64) typename N::template Weights<kWeights> weight{};

@@ -22,12 +22,12 @@ Eigen::Matrix3f tensor(float xx, float yy, float zz, float xy = 0.0F, float xz =
   return j;
 }
 
-Eigen::Vector3d any_axis(std::mt19937& engine) {
+Eigen::Vector3d random_axis(std::mt19937& engine) {
   std::normal_distribution<double> normal;
   return Eigen::Vector3d(normal(engine), normal(engine), normal(engine)).normalized();
 }
 
-Eigen::Matrix3d exact_turn(const Eigen::Vector3d& turn) {
+Eigen::Matrix3d exact_rotation(const Eigen::Vector3d& turn) {
   return Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
 }
 
@@ -35,7 +35,7 @@ double angle_between(const Eigen::Matrix3f& a, const Eigen::Matrix3d& b) {
   return 2.0 * std::asin(std::min(1.0, (a.cast<double>() - b).norm() / std::sqrt(8.0)));
 }
 
-// Torque-free motion from the angular momentum, in steps so short that they count as exact.
+// Torque-free motion from the angular momentum, in steps short enough to be regarded as exact.
 struct Exact {
   Eigen::Matrix3d r_lrf_trf;
   Eigen::Vector3d rate_lrf;
@@ -49,22 +49,22 @@ Exact exact_tumble(const Eigen::Matrix3d& start, const Eigen::Vector3d& rate,
   };
   Eigen::Matrix3d r = start;
   for (int i = 0; i < kSteps; ++i) {
-    const Eigen::Matrix3d middle = exact_turn(rate_at(r) * (0.5 / kSteps)) * r;
-    r = exact_turn(rate_at(middle) / kSteps) * r;
+    const Eigen::Matrix3d middle = exact_rotation(rate_at(r) * (0.5 / kSteps)) * r;
+    r = exact_rotation(rate_at(middle) / kSteps) * r;
   }
   return {r, rate_at(r)};
 }
 
-TEST(RotationBy, IsTheExponentialAndBoundsItsAngle) {
+TEST(RotationFromVector, IsTheExponentialAndLimitsTheAngle) {
   std::mt19937 engine(1);
   EXPECT_EQ(rotation_from_vector<float>(Eigen::Vector3f::Zero()),
             Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
   for (const float angle : {1e-6F, 0.01F, 0.5F, 1.0F, 1.5F, 1.89F, 2.5F, 1e3F, 1e30F}) {
     for (int i = 0; i < 50; ++i) {
-      const Eigen::Vector3d axis = any_axis(engine);
-      const Eigen::Matrix3d exact = exact_turn(std::min(angle, kLargestRate) * axis);
+      const Eigen::Vector3d axis = random_axis(engine);
+      const Eigen::Matrix3d exact = exact_rotation(std::min(angle, kLargestRate) * axis);
       const Eigen::Matrix3f r = rotation_from_vector<float>((angle * axis).cast<float>());
-      // A length whose square overflows leaves no direction.
+      // If the squared length overflows, the vector becomes zero.
       if (angle > 1e20F) {
         EXPECT_EQ(r, Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
         continue;
@@ -74,28 +74,28 @@ TEST(RotationBy, IsTheExponentialAndBoundsItsAngle) {
   }
 }
 
-TEST(SmallTurnOf, InvertsRotationByBelowSixtyDegreesAndIsZeroAbove) {
+TEST(SmallRotationVector, InvertsRotationFromVectorBelowSixtyDegreesAndIsZeroAbove) {
   std::mt19937 engine(2);
   for (const double angle_deg : {0.0, 1e-4, 1.0, 20.0, 45.0, 59.9, 60.1, 90.0, 179.9}) {
     for (int i = 0; i < 50; ++i) {
-      const Eigen::Vector3d turn = angle_deg * kDegree * any_axis(engine);
+      const Eigen::Vector3d turn = angle_deg * kDegree * random_axis(engine);
       const Eigen::Vector3d found =
-          small_rotation_vector<float>(exact_turn(turn).cast<float>()).cast<double>();
+          small_rotation_vector<float>(exact_rotation(turn).cast<float>()).cast<double>();
       EXPECT_LT((found - (angle_deg < 60.0 ? turn : Eigen::Vector3d::Zero())).norm(), 1e-5) << angle_deg;
     }
   }
 }
 
-TEST(Tumble, OfASphereTurnsByTheRateInTheLidarFrameAndKeepsIt) {
-  const Eigen::Matrix3d start = exact_turn({0.5, -1.0, 1.5});
+TEST(Propagate, SphereSpinsAtAConstantRateInTheLidarFrame) {
+  const Eigen::Matrix3d start = exact_rotation({0.5, -1.0, 1.5});
   const Eigen::Vector3d rate(0.3, 0.6, -0.4);
   const Motion<float> later = propagate<float>({start.cast<float>(), rate.cast<float>()}, Inertia<float>{});
-  EXPECT_LT(angle_between(later.r_lrf_trf, exact_turn(rate) * start), 1e-6);
+  EXPECT_LT(angle_between(later.r_lrf_trf, exact_rotation(rate) * start), 1e-6);
   EXPECT_LT((later.rate_lrf - rate.cast<float>()).norm(), 1e-6F);
 }
 
 // Verifies TS-EST-140.
-TEST(Tumble, FollowsTorqueFreeRotation) {
+TEST(Propagate, FollowsTorqueFreeRotation) {
   std::mt19937 engine(3);
   const Eigen::Matrix3f shapes[] = {tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F), tensor(1.0F, 4.0F, 4.5F),
                                     tensor(5.0F, 5.0F, 8.0F)};
@@ -104,31 +104,31 @@ TEST(Tumble, FollowsTorqueFreeRotation) {
     ASSERT_TRUE(make_inertia<float>(shape, inertia));
     for (const double rate_deg : {5.0, 27.0, 54.0}) {
       for (int i = 0; i < 40; ++i) {
-        const Eigen::Matrix3d start = exact_turn(2.0 * any_axis(engine));
-        const Eigen::Vector3d rate = rate_deg * kDegree * any_axis(engine);
+        const Eigen::Matrix3d start = exact_rotation(2.0 * random_axis(engine));
+        const Eigen::Vector3d rate = rate_deg * kDegree * random_axis(engine);
         const Exact exact = exact_tumble(start, rate, shape.cast<double>());
         const Motion<float> later = propagate<float>({start.cast<float>(), rate.cast<float>()}, inertia);
-        const double miss_deg = angle_between(later.r_lrf_trf, exact.r_lrf_trf) / kDegree;
+        const double error_deg = angle_between(later.r_lrf_trf, exact.r_lrf_trf) / kDegree;
         EXPECT_LT((later.rate_lrf.cast<double>() - exact.rate_lrf).norm(), 0.03 * rate.norm()) << rate_deg;
-        EXPECT_LT(miss_deg, rate_deg > 30.0 ? 0.5 : 0.1) << rate_deg;
+        EXPECT_LT(error_deg, rate_deg > 30.0 ? 0.5 : 0.1) << rate_deg;
       }
     }
   }
 }
 
-TEST(Tumble, AboutAPrincipalAxisIsASpin) {
-  const Eigen::Matrix3d start = exact_turn({0.5, -1.0, 1.5});
+TEST(Propagate, RotationAboutAPrincipalAxisIsASpin) {
+  const Eigen::Matrix3d start = exact_rotation({0.5, -1.0, 1.5});
   Inertia<float> inertia;
   ASSERT_TRUE(make_inertia<float>(tensor(2.0F, 3.0F, 4.0F), inertia));
   const Eigen::Vector3d rate = 0.8 * start.col(1);
   const Motion<float> later = propagate<float>({start.cast<float>(), rate.cast<float>()}, inertia);
-  EXPECT_LT(angle_between(later.r_lrf_trf, exact_turn(rate) * start), 2e-6);
+  EXPECT_LT(angle_between(later.r_lrf_trf, exact_rotation(rate) * start), 2e-6);
   EXPECT_LT((later.rate_lrf - rate.cast<float>()).norm(), 2e-6F);
 }
 
-TEST(Tumble, DependsOnRatiosOfTheInertiaOnly) {
+TEST(Propagate, DependsOnRatiosOfTheInertiaOnly) {
   const Eigen::Matrix3f shape = tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F);
-  const Motion<float> motion{exact_turn({0.5, -1.0, 1.5}).cast<float>(), {0.3F, -0.2F, 0.7F}};
+  const Motion<float> motion{exact_rotation({0.5, -1.0, 1.5}).cast<float>(), {0.3F, -0.2F, 0.7F}};
   Inertia<float> inertia, scaled;
   ASSERT_TRUE(make_inertia<float>(shape, inertia));
   for (const float scale : {1e-3F, 1e6F}) {
@@ -149,10 +149,10 @@ TEST(MotionLaws, AreASpinTheInertiaAndEachOfItsMomentsHalved) {
   const Eigen::Matrix3f own = shape * (3.0F / shape.trace());
   EXPECT_LT((laws[kTumbleLaw].tensor_trf - own).norm(), 1e-6F);
   for (int axis = 0; axis < 3; ++axis) {
-    Eigen::Matrix3f shrink = Eigen::Matrix3f::Identity();
-    shrink(axis, axis) = std::sqrt(0.5F);
+    Eigen::Matrix3f scale_half = Eigen::Matrix3f::Identity();
+    scale_half(axis, axis) = std::sqrt(0.5F);
     const Inertia<float>& halved = laws[2 + axis];
-    const Eigen::Matrix3f expected = shrink * shape * shrink;
+    const Eigen::Matrix3f expected = scale_half * shape * scale_half;
     EXPECT_LT((halved.tensor_trf - expected * (3.0F / expected.trace())).norm(), 1e-6F) << axis;
     EXPECT_LT((halved.inverse_trf * halved.tensor_trf - Eigen::Matrix3f::Identity()).norm(), 1e-5F) << axis;
   }
@@ -168,24 +168,24 @@ TEST(MotionLaws, KeepAnInertiaThatCannotBeHalved) {
 }
 
 // Verifies TS-IFC-040.
-TEST(MakeInertia, TakesPositiveDefiniteTensorsOnly) {
+TEST(MakeInertia, AcceptsPositiveDefiniteTensorsOnly) {
   Inertia<float> inertia;
   const Eigen::Matrix3f good = tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F);
   ASSERT_TRUE(make_inertia<float>(good, inertia));
-  const Eigen::Matrix3f taken = inertia.tensor_trf;
-  EXPECT_LT((taken - good * (3.0F / good.trace())).norm(), 1e-6F);
-  EXPECT_LT((inertia.inverse_trf * taken - Eigen::Matrix3f::Identity()).cwiseAbs().maxCoeff(), 2e-6F);
+  const Eigen::Matrix3f accepted = inertia.tensor_trf;
+  EXPECT_LT((accepted - good * (3.0F / good.trace())).norm(), 1e-6F);
+  EXPECT_LT((inertia.inverse_trf * accepted - Eigen::Matrix3f::Identity()).cwiseAbs().maxCoeff(), 2e-6F);
 
-  Eigen::Matrix3f lopsided = good;
-  lopsided(0, 1) += 0.1F;
+  Eigen::Matrix3f asymmetric = good;
+  asymmetric(0, 1) += 0.1F;
   for (const Eigen::Matrix3f& bad :
        {Eigen::Matrix3f(Eigen::Matrix3f::Zero()), tensor(-1.0F, 2.0F, 2.0F), tensor(-1.0F, -2.0F, 9.0F),
         tensor(1.0F, 2.0F, -0.1F), tensor(1.0F, 1.0F, 1.0F, 2.0F), tensor(1.0F, 1.0F, 1e-5F),
         tensor(kNan, 1.0F, 1.0F), tensor(1.0F, 1.0F, 1.0F, 0.0F, kNan), tensor(kInfinity, 1.0F, 1.0F),
-        tensor(1.0F, 1.0F, 1.0F, 0.0F, 0.0F, kInfinity), tensor(1.0F, 1.0F, 0.005F), lopsided}) {
+        tensor(1.0F, 1.0F, 1.0F, 0.0F, 0.0F, kInfinity), tensor(1.0F, 1.0F, 0.005F), asymmetric}) {
     EXPECT_FALSE(make_inertia<float>(bad, inertia)) << bad;
   }
-  EXPECT_EQ(inertia.tensor_trf, taken);
+  EXPECT_EQ(inertia.tensor_trf, accepted);
 }
 
 TEST(Product, AgreesWithEigenForMatricesAndVectors) {

@@ -33,7 +33,7 @@ Eigen::Quaterniond quaternion_of(const Eigen::Matrix3d& rotation) {
   return to_double(quaternion_from_rotation(converted<Fixed>(Eigen::Matrix3f(rotation.cast<float>()))));
 }
 
-TEST(Orthonormalise, GivesARotationForAnyTwoIndependentVectors) {
+TEST(Orthonormalize, GivesARotationForAnyTwoIndependentVectors) {
   Random random;
   for (int i = 0; i < 2000; ++i) {
     const float scale = std::pow(10.0F, static_cast<float>(i % 9) - 4.0F);
@@ -45,7 +45,7 @@ TEST(Orthonormalise, GivesARotationForAnyTwoIndependentVectors) {
   }
 }
 
-TEST(Orthonormalise, KeepsTheFirstDirectionAndThePlane) {
+TEST(Orthonormalize, KeepsTheFirstDirectionAndThePlane) {
   Random random;
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3f a = random.vector();
@@ -57,7 +57,7 @@ TEST(Orthonormalise, KeepsTheFirstDirectionAndThePlane) {
   }
 }
 
-TEST(Orthonormalise, LeavesARotationUnchanged) {
+TEST(Orthonormalize, LeavesARotationUnchanged) {
   Random random;
   for (int i = 0; i < 200; ++i) {
     const Eigen::Matrix3f r = random.quaternion().toRotationMatrix().cast<float>();
@@ -66,7 +66,7 @@ TEST(Orthonormalise, LeavesARotationUnchanged) {
   }
 }
 
-TEST(Orthonormalise, IsFiniteForDegenerateVectors) {
+TEST(Orthonormalize, IsFiniteForDegenerateVectors) {
   const Eigen::Vector3f zero = Eigen::Vector3f::Zero();
   const Eigen::Vector3f one{1.0F, 2.0F, 3.0F};
   for (const auto& pair :
@@ -91,7 +91,7 @@ TEST(QuaternionFromRotation, AgreesWithTheRotationItCameFrom) {
 }
 
 // Verifies TS-EST-100.
-TEST(QuaternionFromRotation, HoldsNearHalfTurnsAboutEveryAxis) {
+TEST(QuaternionFromRotation, IsAccurateNearHalfTurnsAboutEveryAxis) {
   Random random;
   for (int i = 0; i < 2000; ++i) {
     Eigen::Vector3d axis = random.vector().cast<double>().normalized();
@@ -115,10 +115,11 @@ TEST(QuaternionFromRotation, IsTheIdentityForTheIdentityAndTheZeroMatrix) {
 // Verifies TS-EST-100.
 TEST(QuaternionFromRotation, IsUnitForAnyMatrixOfFixedNumbers) {
   std::mt19937 engine(3);
-  std::uniform_int_distribution<std::int32_t> any(-Fixed::kLargestRaw, Fixed::kLargestRaw);
+  std::uniform_int_distribution<std::int32_t> raw_values(-Fixed::kLargestRaw, Fixed::kLargestRaw);
   for (int i = 0; i < 2000; ++i) {
     Matrix3<Fixed> matrix;
-    for (int k = 0; k < 9; ++k) matrix(k) = Fixed::from_raw(i % 3 == 0 ? Fixed::kLargestRaw : any(engine));
+    for (int k = 0; k < 9; ++k)
+      matrix(k) = Fixed::from_raw(i % 3 == 0 ? Fixed::kLargestRaw : raw_values(engine));
     const QuaternionQ30 q = quaternion_from_rotation(matrix);
     ASSERT_NEAR(to_double(q).norm(), 1.0, 2e-9);
     ASSERT_GE(q[0], 0);

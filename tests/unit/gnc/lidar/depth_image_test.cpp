@@ -15,16 +15,16 @@ std::uint32_t fov_urad(double swath_m, double range_m) {
   return static_cast<std::uint32_t>(std::lround(2e6 * std::atan(swath_m / (2.0 * range_m))));
 }
 
-struct Bench {
+struct Projection {
   RangeImage frame;
   DepthImageScratch scratch;
   DepthImage image;
 
-  Bench() {
+  Projection() {
     frame.rays = 128;
     frame.fov_urad = fov_urad(6.0, kRange_m);
   }
-  // Range that ray (row, column) has to a point at depth y: y * sqrt(1 + u^2 + v^2).
+  // Range along ray (row, column) to a point at a depth, in counts: depth * sqrt(1 + u^2 + v^2).
   std::uint16_t counts(int row, int column, double depth_m) const {
     const double t = std::tan(frame.fov_urad * 0.5e-6);
     const double u = t * ((2.0 * column + 1.0) / frame.rays - 1.0);
@@ -42,7 +42,7 @@ struct Bench {
 
 class DepthImageTest : public testing::Test {
  protected:
-  std::unique_ptr<Bench> s = std::make_unique<Bench>();
+  std::unique_ptr<Projection> s = std::make_unique<Projection>();
 };
 
 // Verifies TS-LID-070.
@@ -66,7 +66,7 @@ TEST_F(DepthImageTest, ATiltedPlaneBecomesARampInTheCentroidRelativeScale) {
 
 // Verifies TS-LID-070.
 TEST_F(DepthImageTest, RowZeroIsUpAndColumnZeroIsLeft) {
-  // A wall without its lower left quarter, whose centroid therefore lies up and to the right.
+  // A wall without its lower left quarter: its centroid lies above and to the right of the middle.
   for (int row = 0; row < 128; ++row) {
     for (int column = row < 64 ? 0 : 64; column < 128; ++column) {
       s->set(row, column, kRange_m + 0.1 * ((row + column) % 2));
@@ -85,7 +85,7 @@ TEST_F(DepthImageTest, ReturnsInOneCellAreAveraged) {
     for (int column = 0; column < 128; ++column)
       s->set(row, column, kRange_m + ((row + column) % 2 == 0 ? 0.4 : -0.4));
   }
-  s->frame.fov_urad = fov_urad(2.0, kRange_m);  // 128 rays over a third of the image: 14 returns a cell
+  s->frame.fov_urad = fov_urad(2.0, kRange_m);  // 128 rays over a third of the image: 14 returns per cell
   ASSERT_EQ(s->make(), FrameStatus::kOk);
   for (int column = 40; column < 60; ++column) EXPECT_NEAR(s->at(50, column), 0.5, 0.03);
 }
@@ -108,9 +108,9 @@ TEST_F(DepthImageTest, NearerIsBrighterAndAReturnIsNeverZero) {
 }
 
 // Verifies TS-LID-080.
-TEST_F(DepthImageTest, AReturnFarFromTheTargetCountsForNoMoreThanARadius) {
-  // One in 16 lies 30 m behind the others, so the centroid 1.9 m: they are at 0.81. With its full distance it
-  // would draw a cell's mean down to 0.5.
+TEST_F(DepthImageTest, DepthIsLimitedToARadiusFromTheCentroid) {
+  // One return in 16 lies 30 m behind the others, which puts the centroid 1.9 m behind them: they are at
+  // 0.81. With its full distance it would lower the mean of a cell to 0.5.
   s->frame.fov_urad = fov_urad(2.0, kRange_m);
   for (int i = 0; i < 128 * 128; ++i) {
     const bool far = i / 128 % 4 == 0 && i % 4 == 0;
@@ -121,8 +121,8 @@ TEST_F(DepthImageTest, AReturnFarFromTheTargetCountsForNoMoreThanARadius) {
 }
 
 // Verifies TS-LID-080.
-TEST_F(DepthImageTest, ManyReturnsInOneCellStayAMean) {
-  s->frame.fov_urad = kMinFov_urad;  // 128 x 128 rays over less than a metre, all of them in two by two cells
+TEST_F(DepthImageTest, ManyReturnsInOneCellAreAveraged) {
+  s->frame.fov_urad = kMinFov_urad;  // 128 x 128 rays over less than a metre, all within 2 x 2 cells
   for (int i = 0; i < 128 * 128; ++i) s->set(i / 128, i % 128, kRange_m + (i % 2 == 0 ? 1.0 : -1.0));
   ASSERT_EQ(s->make({100'000, 3000}), FrameStatus::kOk);
   int filled = 0;
@@ -141,7 +141,7 @@ TEST_F(DepthImageTest, RangesBeyondTheSensorsReachCountAsNoReturn) {
 }
 
 // Verifies TS-LID-020, TS-LID-030.
-TEST_F(DepthImageTest, ReturnsFromTheChaserItselfAreLeftOut) {
+TEST_F(DepthImageTest, ReturnsFromTheChaserItselfAreIgnored) {
   constexpr std::uint16_t kNearestUsed = 1280;                                                       // 10 m
   for (int i = 0; i < 128 * 128; ++i) s->frame.ranges[i] = static_cast<std::uint16_t>(384 + i % 8);  // 3 m
   EXPECT_EQ(s->make(), FrameStatus::kEmpty);

@@ -15,12 +15,12 @@ namespace {
 
 using Range = std::function<int(int ray)>;
 
-struct Kind {
+struct FrameKind {
   const char* name;
   Range range;
 };
 
-// Of a seed, the same on every platform.
+// Gives the same numbers on every platform for the same seed.
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
@@ -30,7 +30,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-std::vector<Kind> kinds(Random& random) {
+std::vector<FrameKind> frame_kinds(Random& random) {
   return {{"Noise", [&](int) { return random.below(65536); }},
           {"Target", [&](int ray) { return ray % 5 == 0 ? 0 : 6400 + random.below(400); }},
           {"NearestAndFarthest", [](int ray) { return ray % 2 == 0 ? 1280 : 64000; }},
@@ -65,11 +65,11 @@ class DepthLoopsOf : public ::testing::TestWithParam<InstructionSet> {
   std::unique_ptr<DepthImage> other = std::make_unique<DepthImage>();
 };
 
-TEST_P(DepthLoopsOf, GiveThePortableOnesBits) {
+TEST_P(DepthLoopsOf, HaveTheBitsOfThePortableLoops) {
   if (fastest_depth_loops(GetParam()).set != GetParam())
-    GTEST_SKIP() << "none of its own, or not on this processor";
+    GTEST_SKIP() << "no loops for this set, or not on this processor";
   Random random(20);
-  for (const Kind& kind : kinds(random)) {
+  for (const FrameKind& kind : frame_kinds(random)) {
     for (const int rays : {16, 17, 31, 100, 127, 128}) {
       for (const std::uint32_t fov_urad : {kMinFov_urad, 140'000U, kMaxFov_urad}) {
         const auto frame = frame_of(kind.range, static_cast<std::uint16_t>(rays), fov_urad);

@@ -18,12 +18,12 @@ constexpr DepthProjection kProjection{20000, 3000};
 constexpr double kDistance_m = 20.0;
 constexpr int kRays = 128;
 
-// Rectangle in the TRF, across z and off the middle.
+// Rectangle in the TRF, perpendicular to z.
 struct Plate {
   Eigen::Vector3d centre_m;
   double half_x_m, half_y_m;
 };
-// No symmetry: a large plate, a wing on one side, a box lid above a corner.
+// No symmetry: a large plate, a wing on one side, a smaller plate above a corner.
 const std::array<Plate, 3> kTarget{
     {{{0.0, 0.0, 0.0}, 2.0, 1.5}, {{-3.0, 0.6, 0.0}, 1.0, 0.5}, {{1.0, -0.7, 1.0}, 0.8, 0.6}}};
 
@@ -32,7 +32,7 @@ Eigen::Vector3d ray_of(std::uint32_t fov_urad, int row, int column) {
   return {t * ((2.0 * column + 1.0) / kRays - 1.0), 1.0, t * (1.0 - (2.0 * row + 1.0) / kRays)};
 }
 
-// What the sensor sees of the target at `position_m`: every ray against every plate, in the TRF.
+// Frame of the target at `position_m`: every ray is intersected with every plate, in the TRF.
 RangeImage frame_of(const Eigen::Vector3d& position_m, const Eigen::Matrix3d& r_lrf_trf) {
   RangeImage frame;
   frame.rays = kRays;
@@ -84,14 +84,15 @@ Eigen::Vector3d off_boresight(double right_deg, double up_deg) {
 const std::vector<Eigen::Vector3d> kPositions_m = {off_boresight(9.0, 0.0), off_boresight(0.0, -9.0),
                                                    off_boresight(-8.0, 8.0), off_boresight(7.0, 8.0)};
 
-// The plates' side up, tilted.
-Eigen::Matrix3d some_attitude() {
+// The face of the plates toward the sensor, tilted.
+Eigen::Matrix3d tilted_attitude() {
   const Eigen::AngleAxisd facing(M_PI_2, Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd tilt(0.4, Eigen::Vector3d(0.5, 0.2, 1.0).normalized());
   return (tilt * facing).toRotationMatrix();
 }
 
-// Of the cells that either image fills: the share that only one does, and the others' mean difference.
+// Of the cells filled in at least one image: the share filled in only one, and the mean difference of the
+// others.
 struct Difference {
   double one_sided = 0.0, mean = 0.0;
 };
@@ -112,7 +113,7 @@ Difference difference(const DepthImage& a, const DepthImage& b) {
 // Verifies TS-LID-090.
 TEST(DepthView, IsTheShortestTurnOfTheBoresightToTheCentroid) {
   for (const Eigen::Vector3d& position_m : kPositions_m) {
-    const RangeImage frame = frame_of(position_m, some_attitude());
+    const RangeImage frame = frame_of(position_m, tilted_attitude());
     const Eigen::Matrix3d turn = converted<float>(image_of(frame)->r_lrf_view).cast<double>();
     EXPECT_LT((turn.transpose() * turn - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-6);
     EXPECT_NEAR(turn.determinant(), 1.0, 1e-6);
@@ -126,25 +127,25 @@ TEST(DepthView, IsTheShortestTurnOfTheBoresightToTheCentroid) {
 
 // Verifies TS-LID-090.
 TEST(DepthView, ShowsATargetOffTheBoresightAsOnTheBoresight) {
-  const Eigen::Matrix3d r_lrf_trf = some_attitude();
+  const Eigen::Matrix3d r_lrf_trf = tilted_attitude();
   for (const Eigen::Vector3d& position_m : kPositions_m) {
     const auto image = image_of(frame_of(position_m, r_lrf_trf));
     const Eigen::Matrix3d r_view_lrf = converted<float>(image->r_lrf_view).cast<double>().transpose();
     const Eigen::Vector3d on_boresight_m = r_view_lrf * position_m;
-    const auto turned = image_of(frame_of(on_boresight_m, r_view_lrf * r_lrf_trf));
-    EXPECT_LT((converted<float>(turned->r_lrf_view) - Eigen::Matrix3f::Identity()).norm(), 0.01F);
-    const Difference sampling = difference(*image, *turned);
+    const auto rotated = image_of(frame_of(on_boresight_m, r_view_lrf * r_lrf_trf));
+    EXPECT_LT((converted<float>(rotated->r_lrf_view) - Eigen::Matrix3f::Identity()).norm(), 0.01F);
+    const Difference sampling = difference(*image, *rotated);
     EXPECT_LT(sampling.one_sided, 0.1);
     EXPECT_LT(sampling.mean, 0.01);
-    // An image that the turn did not reach differs by more than sampling.
-    const auto unturned = image_of(frame_of(on_boresight_m, r_lrf_trf));
-    EXPECT_GT(difference(*image, *unturned).mean, 4.0 * sampling.mean);
+    // Without the rotation of the view the images differ by more than the sampling.
+    const auto unrotated = image_of(frame_of(on_boresight_m, r_lrf_trf));
+    EXPECT_GT(difference(*image, *unrotated).mean, 4.0 * sampling.mean);
   }
 }
 
 // Verifies TS-LID-030.
 TEST(DepthView, IsTheSameWithPartsOfTheChaserInTheFieldOfView) {
-  RangeImage clear = frame_of(kPositions_m[2], some_attitude());
+  RangeImage clear = frame_of(kPositions_m[2], tilted_attitude());
   RangeImage occluded = clear;
   int hidden = 0;
   for (int row = 30; row < kRays; ++row) {  // a mast from below, over part of the target

@@ -19,7 +19,7 @@ struct BlockRun {
   typename Block::Sums sums{};
   typename Block::MaxPooled largest;
   typename Block::AveragePooled mean;
-  std::vector<std::int8_t> storage;  // of fixed-point weights
+  std::vector<std::int8_t> storage;  // of the fixed-point weights
 
   explicit BlockRun(unsigned seed) {
     RandomValues random(seed);
@@ -35,7 +35,7 @@ struct BlockRun {
     for (int y = 0; y < kSide; ++y) {
       for (int i = 0; i < kSide * kIn; ++i) in.row(y)[i] = random.next<ConvInput<N>>();
     }
-    random.fill(sums);  // what lay in the scratch must not matter
+    random.fill(sums);  // the contents of the scratch memory must not matter
     random.fill(largest.values);
   }
   void forward() {
@@ -51,8 +51,8 @@ struct BlockRun {
       if (from_y < 0 || from_y >= kSide || from_x < 0 || from_x >= kSide) continue;
       for (int i = 0; i < kIn; ++i) {
         constexpr int kGroup = N::ConvProduct::kGroup;
-        const int place = tap * kIn + i;
-        const int weight = (place / kGroup * kOut + out) * kGroup + place % kGroup;
+        const int index = tap * kIn + i;
+        const int weight = (index / kGroup * kOut + out) * kGroup + index % kGroup;
         total += static_cast<double>(in.row(from_y)[from_x * kIn + i]) * weights.weight.data()[weight];
       }
     }
@@ -66,7 +66,7 @@ struct BlockRun {
 
 template <class N>
 void expect_block_by_definition(double tolerance) {
-  constexpr int kSide = 9, kIn = 4, kOut = 48;  // an odd side: the last row and column fill no window
+  constexpr int kSide = 9, kIn = 4, kOut = 48;  // an odd side: the last row and column fill no pooling window
   auto run = std::make_unique<BlockRun<N, kSide, kIn, kOut>>(1);
   run->forward();
   for (int y = 0; y < kSide / 2; ++y) {
@@ -77,13 +77,13 @@ void expect_block_by_definition(double tolerance) {
         const double largest = run->activated(*std::max_element(four, four + 4), 255.0);
         ASSERT_NEAR(run->largest.row(y)[x * kOut + c], largest, tolerance) << y << ' ' << x << ' ' << c;
         double total = 0.0;
-        for (const double one : four) total += run->activated(one, kMaxAveragedActivation);
+        for (const double value : four) total += run->activated(value, kMaxAveragedActivation);
         ASSERT_NEAR(run->mean[(y * (kSide / 2) + x) * kOut + c], N::kIsInteger ? total : total / 4.0,
                     tolerance);
       }
     }
   }
-  // The border that the next convolution wants.
+  // The border of zeros that the next convolution needs.
   for (int i = 0; i < run->largest.kRow; ++i) EXPECT_EQ(run->largest.values[i], 0);
   EXPECT_EQ(run->largest.row(1)[-1], 0);
 }
@@ -120,7 +120,7 @@ TEST(Dense, Float32MatchesANaiveDoubleProduct) {
 }
 
 // Verifies TS-NUM-050.
-TEST(Dense, FixedPointRequantisesHiddenNumbersAndGivesOutputsTheirMeaning) {
+TEST(Dense, FixedPointRequantizesHiddenValuesAndScalesOutputs) {
   using Layer = Dense<FixedPoint, 130, 57>;
   auto weights = std::make_unique<Layer::Weights>();
   RandomValues random(4);
@@ -146,7 +146,7 @@ TEST(Dense, FixedPointRequantisesHiddenNumbersAndGivesOutputsTheirMeaning) {
 }
 
 // Verifies TS-NUM-050.
-TEST(Requantisation, RoundsOnceToTheNearestHalvesUp) {
+TEST(Requantization, RoundsOnceToTheNearestHalvesUp) {
   EXPECT_EQ(requantize(5, 1), 3);
   EXPECT_EQ(requantize(-5, 1), -2);
   EXPECT_EQ(requantize(7, 3), 1);

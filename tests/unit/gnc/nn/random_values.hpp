@@ -1,4 +1,5 @@
-// Seeded numbers for the layer tests: floats within +-1, integers over their whole range.
+// Seeded random values for the layer tests: floats within +-1, integers over their whole range except the
+// most negative.
 #pragma once
 
 #include <cstddef>

@@ -9,18 +9,18 @@
 namespace tumblesight::gnc {
 namespace {
 
-std::uint32_t crc_of(const std::string& text) {
+std::uint32_t text_crc(const std::string& text) {
   return crc32(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
 }
 
 TEST(Crc32, GivesThePublishedCheckValues) {
-  EXPECT_EQ(crc_of("123456789"), 0xCBF43926U);
-  EXPECT_EQ(crc_of(""), 0U);
-  EXPECT_EQ(crc_of("a"), 0xE8B7BE43U);
-  EXPECT_EQ(crc_of(std::string(32, '\xFF')), 0xFF6CAB0BU);
+  EXPECT_EQ(text_crc("123456789"), 0xCBF43926U);
+  EXPECT_EQ(text_crc(""), 0U);
+  EXPECT_EQ(text_crc("a"), 0xE8B7BE43U);
+  EXPECT_EQ(text_crc(std::string(32, '\xFF')), 0xFF6CAB0BU);
 }
 
-TEST(Crc32, DoesNotDependOnHowTheDataIsCut) {
+TEST(Crc32, DoesNotDependOnHowTheDataIsSplit) {
   const std::string text = "The quick brown fox jumps over the lazy dog";
   for (std::size_t cut = 0; cut <= text.size(); ++cut) {
     Crc32 crc;
@@ -31,15 +31,15 @@ TEST(Crc32, DoesNotDependOnHowTheDataIsCut) {
   }
 }
 
-TEST(Crc32, TakesNumbersLittleEndian) {
-  Crc32 of_number, of_float, of_bytes;
-  of_number.add_u32(0x3F800001U);
+TEST(Crc32, AddsNumbersAsLittleEndianBytes) {
+  Crc32 number_crc, float_crc, bytes_crc;
+  number_crc.add_u32(0x3F800001U);
   const float value = 1.00000012F;  // 0x3F800001
-  of_float.add_f32(&value, 1);
+  float_crc.add_f32(&value, 1);
   const std::array<std::uint8_t, 4> bytes{0x01, 0x00, 0x80, 0x3F};
-  of_bytes.add(bytes.data(), bytes.size());
-  EXPECT_EQ(of_number.value(), of_bytes.value());
-  EXPECT_EQ(of_float.value(), of_bytes.value());
+  bytes_crc.add(bytes.data(), bytes.size());
+  EXPECT_EQ(number_crc.value(), bytes_crc.value());
+  EXPECT_EQ(float_crc.value(), bytes_crc.value());
 }
 
 }  // namespace

@@ -17,12 +17,12 @@ constexpr double kLargest = 128.0 - kUnit;
 double value_of(Fixed x) {
   return x.raw() * kUnit;
 }
-double bounded(long double x) {
+double saturated(long double x) {
   return static_cast<double>(std::min<long double>(kLargest, std::max<long double>(-kLargest, x)));
 }
 
-// Extremes, small numbers, and numbers of every size.
-std::vector<Fixed> numbers() {
+// Extremes, small numbers, and numbers of every magnitude.
+std::vector<Fixed> test_values() {
   std::vector<Fixed> all;
   for (const std::int64_t raw : {0L, 1L, 2L, 3L, 1L << 23, 1L << 24, 3L << 23, 0x7FFFFFFEL, 0x7FFFFFFFL}) {
     all.push_back(Fixed::from_raw(raw));
@@ -37,50 +37,51 @@ std::vector<Fixed> numbers() {
 }
 
 TEST(Fixed, SumsAreExactOrSaturate) {
-  for (const Fixed a : numbers()) {
-    for (const Fixed b : numbers()) {
-      ASSERT_EQ(value_of(a + b), bounded(value_of(a) + value_of(b)));
-      ASSERT_EQ(value_of(a - b), bounded(value_of(a) - value_of(b)));
+  for (const Fixed a : test_values()) {
+    for (const Fixed b : test_values()) {
+      ASSERT_EQ(value_of(a + b), saturated(value_of(a) + value_of(b)));
+      ASSERT_EQ(value_of(a - b), saturated(value_of(a) - value_of(b)));
     }
     EXPECT_EQ(value_of(-a), -value_of(a));
   }
 }
 
 TEST(Fixed, ProductsAndQuotientsAreRoundedToTheNearestHalvesUp) {
-  for (const Fixed a : numbers()) {
-    for (const Fixed b : numbers()) {
+  for (const Fixed a : test_values()) {
+    for (const Fixed b : test_values()) {
       const std::int64_t product = std::int64_t{a.raw()} * b.raw() + (1 << 23);
       ASSERT_EQ((a * b).raw(), Fixed::from_raw(product >> 24).raw());
       if (b.raw() == 0) continue;
-      // Twice the quotient, towards zero; then down, if that was up.
+      // Twice the quotient, truncated; then the floor of it.
       const std::int64_t dividend = std::int64_t{a.raw()} * (1 << 25);
       const std::int64_t twice = dividend / b.raw();
-      const bool was_up = dividend % b.raw() != 0 && (dividend < 0) != (b.raw() < 0);
-      ASSERT_EQ((a / b).raw(), Fixed::from_raw((twice - was_up + 1) >> 1).raw())
+      const bool truncated_up = dividend % b.raw() != 0 && (dividend < 0) != (b.raw() < 0);
+      ASSERT_EQ((a / b).raw(), Fixed::from_raw((twice - truncated_up + 1) >> 1).raw())
           << a.raw() << " / " << b.raw();
     }
   }
 }
 
-TEST(Fixed, DividesByZeroIntoTheLargestNumber) {
+TEST(Fixed, DivisionByZeroGivesTheLargestNumber) {
   EXPECT_EQ((Fixed(1.0) / Fixed()).raw(), Fixed::kLargestRaw);
   EXPECT_EQ((Fixed(-1.0) / Fixed()).raw(), -Fixed::kLargestRaw);
 }
 
 TEST(Fixed, DotProductsAreRoundedOnceAndSaturate) {
-  const std::vector<Fixed> all = numbers();
+  const std::vector<Fixed> all = test_values();
   std::mt19937 engine(2);
-  const auto any = [&] { return all[engine() % all.size()]; };
+  const auto random_value = [&] { return all[engine() % all.size()]; };
   for (int i = 0; i < 20'000; ++i) {
-    const Fixed a0 = any(), b0 = any(), a1 = any(), b1 = any(), a2 = any(), b2 = any();
+    const Fixed a0 = random_value(), b0 = random_value(), a1 = random_value(), b1 = random_value(),
+                a2 = random_value(), b2 = random_value();
     const std::int64_t two = std::int64_t{a0.raw()} * b0.raw() + std::int64_t{a1.raw()} * b1.raw();
     if (two > std::int64_t{1} << 61 || two < -(std::int64_t{1} << 61)) continue;
     const std::int64_t rounded = (two + std::int64_t{a2.raw()} * b2.raw() + (1 << 23)) >> 24;
     ASSERT_EQ(Fixed::dot(a0, b0, a1, b1, a2, b2).raw(), Fixed::from_raw(rounded).raw());
   }
-  const Fixed most = Fixed::from_raw(Fixed::kLargestRaw);
-  EXPECT_EQ(Fixed::dot(most, most, most, most, most, most), most);
-  EXPECT_EQ(Fixed::dot(most, -most, most, -most, most, -most), -most);
+  const Fixed largest = Fixed::from_raw(Fixed::kLargestRaw);
+  EXPECT_EQ(Fixed::dot(largest, largest, largest, largest, largest, largest), largest);
+  EXPECT_EQ(Fixed::dot(largest, -largest, largest, -largest, largest, -largest), -largest);
 }
 
 TEST(Fixed, ConstantsAreRoundedToTheNearestAndSaturate) {

@@ -16,7 +16,7 @@ double value_of(Fixed x) {
   return x.raw() * kUnit;
 }
 
-// Largest error of `function` against `exact`, over a sweep of all numbers.
+// Largest error of `function` against `exact` over a sweep of the whole range.
 template <class Function, class Exact>
 double worst_error(Function function, Exact exact) {
   double worst = 0.0;
@@ -28,7 +28,7 @@ double worst_error(Function function, Exact exact) {
   return worst;
 }
 
-TEST(Sqrt, IsWithinItsLastBit) {
+TEST(Sqrt, ErrorIsAtMostOneUnit) {
   EXPECT_LE(
       worst_error([](Fixed x) { return sqrt(x); }, [](double x) { return std::sqrt(std::max(0.0, x)); }),
       kUnit);
@@ -36,15 +36,15 @@ TEST(Sqrt, IsWithinItsLastBit) {
   EXPECT_EQ(sqrt(Fixed(-1.0)), Fixed());
 }
 
-TEST(Exp, IsWithinItsLastBitOrThreeTenMillionths) {
-  const auto scaled = [](double x) { return std::exp(x); };
-  EXPECT_LE(worst_error([](Fixed x) { return exp(x); }, scaled), 128.0 * 3e-9 + kUnit);
+TEST(Exp, ErrorIsAtMostOneUnitPlusRelative3em9) {
+  const auto exact = [](double x) { return std::exp(x); };
+  EXPECT_LE(worst_error([](Fixed x) { return exp(x); }, exact), 128.0 * 3e-9 + kUnit);
   EXPECT_EQ(exp(Fixed()), Fixed(1.0));
   EXPECT_EQ(exp(Fixed(127.0)).raw(), Fixed::kLargestRaw);
   EXPECT_EQ(exp(Fixed(-127.0)), Fixed());
 }
 
-TEST(Sigmoid, IsWithinTwoLastBits) {
+TEST(Sigmoid, ErrorIsAtMostTwoUnits) {
   EXPECT_LE(
       worst_error([](Fixed x) { return sigmoid(x); }, [](double x) { return 1.0 / (1.0 + std::exp(-x)); }),
       2.0 * kUnit);
@@ -64,7 +64,7 @@ TEST(IntegerSqrt, IsTheLargestRootNotAbove) {
   EXPECT_EQ(integer_sqrt(0), 0U);
 }
 
-TEST(HighestBit, IsItsPosition) {
+TEST(HighestBit, IsThePositionOfTheHighestBitSet) {
   EXPECT_EQ(highest_bit(0), 0);
   for (int bit = 0; bit < 64; ++bit) {
     EXPECT_EQ(highest_bit(std::uint64_t{1} << bit), bit);

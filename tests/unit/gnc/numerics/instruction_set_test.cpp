@@ -1,4 +1,4 @@
-// Requirement: what is chosen at start-up runs on the processor that is found.
+// Requirement: the instruction set chosen at start-up runs on the processor of the machine.
 #include "gnc/numerics/instruction_set.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-TEST(InstructionSets, HaveNamesOfTheirOwn) {
+TEST(InstructionSets, HaveDistinctNames) {
   std::set<std::string> names;
   for (const InstructionSet set : kInstructionSets) names.insert(to_string(set));
   EXPECT_EQ(names.size(), kInstructionSets.size());
@@ -17,7 +17,7 @@ TEST(InstructionSets, HaveNamesOfTheirOwn) {
   EXPECT_STREQ(to_string(static_cast<InstructionSet>(200)), "unknown");
 }
 
-TEST(InstructionSets, ComeSlowestFirst) {
+TEST(InstructionSets, AreListedInTheOrderOfTheEnumeration) {
   for (std::size_t i = 0; i < kInstructionSets.size(); ++i)
     EXPECT_EQ(static_cast<std::size_t>(kInstructionSets[i]), i);
 }
@@ -27,12 +27,12 @@ TEST(ProcessorHas, ThePortableSetAlways) {
 }
 
 #if defined(__x86_64__)
-TEST(ProcessorHas, NoSetThatNobodyKnows) {
+TEST(ProcessorHas, NoUnknownSet) {
   EXPECT_FALSE(processor_has(static_cast<InstructionSet>(200)));
 }
 #endif
 
-TEST(ProcessorHas, WithASetThoseItIsMadeOf) {
+TEST(ProcessorHas, TheSetsThatASetIncludes) {
   const auto implies = [](InstructionSet larger, InstructionSet smaller) {
     return !processor_has(larger) || processor_has(smaller);
   };

@@ -56,8 +56,8 @@ double largest_difference(const float* flight, const std::vector<double>& refere
   return largest;
 }
 
-// Blobs that change slowly and are seen under changing views.
-DepthImage image_of_sequence(unsigned frame) {
+// Images of blobs that change slowly, in changing view frames.
+DepthImage sequence_image(unsigned frame) {
   DepthImage image = random_depth_image(70);
   const DepthImage other = random_depth_image(71);
   for (int i = 0; i < DepthImage::kCells; ++i) {
@@ -85,10 +85,10 @@ TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
     const auto estimator = loaded<Float32>(seed);
     for (unsigned frame = 0; frame < 14; ++frame) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << ", frame " << frame);
-      const DepthImage image = image_of_sequence(frame);
-      const ReferenceNetwork::Frame seen = network.infer_frame(image);
-      track.see(seen.output, converted<float>(image.r_lrf_view).cast<double>());
-      track.advance(network.infer_sequence(track.lstm_input(seen.dense2)));
+      const DepthImage image = sequence_image(frame);
+      const ReferenceNetwork::Frame frame_output = network.infer_frame(image);
+      track.observe(frame_output.output, converted<float>(image.r_lrf_view).cast<double>());
+      track.advance(network.infer_sequence(track.lstm_input(frame_output.dense2)));
 
       AttitudeEstimate estimate;
       AttitudeEstimator<Float32>::State state;
@@ -108,14 +108,14 @@ TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
       EXPECT_NEAR(1e-6 * estimate.predicted_error_single_frame_urad, track.single_frame_error_rad(), 5e-5);
       EXPECT_EQ(estimate.frames_since_reset, frame + 1);
     }
-    // The sequences have something to say about the track.
-    EXPECT_GT(track.merged, 5);
-    EXPECT_GT(track.turned, 5);
+    // The sequences exercise the track.
+    EXPECT_GT(track.means_taken, 5);
+    EXPECT_GT(track.rates_corrected, 5);
   }
 }
 
 // Verifies TS-IFC-090.
-TEST(AttitudeEstimator, CrcOfTheStateTellsEveryMemberApart) {
+TEST(AttitudeEstimator, CrcOfTheStateCoversEveryMember) {
   const auto estimator = loaded<Float32>(37);
   AttitudeEstimate estimate;
   for (unsigned k = 0; k < 3; ++k) estimator->step(random_depth_image(k), estimate);
@@ -145,10 +145,10 @@ TEST(AttitudeEstimator, CrcOfTheStateTellsEveryMemberApart) {
 }
 
 // Verifies TS-EST-110.
-TEST(AttitudeEstimator, ExpectsNothingOfAnAttitudeThatIsNotFinite) {
+TEST(AttitudeEstimator, ExpectsAnErrorOfPiForANonFiniteAttitude) {
   auto weights = std::make_unique<NetworkWeights<Float32>>();
   fill_random(*weights, 38);
-  // The hypotheses overflow, the expected errors say that all is well.
+  // The hypotheses overflow, while the expected errors are small.
   weights->cnn_out.bias.fill(3e38F);
   weights->cnn_out.weight.fill(3e38F);
   weights->cnn_out.bias[shape::kOutput - 1] = -1e38F;
@@ -191,7 +191,7 @@ TYPED_TEST(EstimatorOf, ContinuesBitForBitAfterSaveAndRestore) {
 }
 
 // Verifies TS-EST-160.
-TYPED_TEST(EstimatorOf, StartsAnewAfterReset) {
+TYPED_TEST(EstimatorOf, StartsOverAfterReset) {
   const auto estimator = loaded<TypeParam>(34);
   AttitudeEstimate first, second, again;
   estimator->step(random_depth_image(1), first);
@@ -220,13 +220,13 @@ TYPED_TEST(EstimatorOf, ResetsWhenAModelIsLoaded) {
 TYPED_TEST(EstimatorOf, HasNoModelUntilAGoodOneIsLoaded) {
   auto estimator = std::make_unique<AttitudeEstimator<TypeParam>>();
   EXPECT_FALSE(estimator->has_model());
-  const std::vector<std::uint8_t> rubbish(100, 0xA5);
-  EXPECT_EQ(estimator->load(rubbish.data(), rubbish.size(), nullptr), ModelStatus::kBadMagic);
+  const std::vector<std::uint8_t> garbage(100, 0xA5);
+  EXPECT_EQ(estimator->load(garbage.data(), garbage.size(), nullptr), ModelStatus::kBadMagic);
   EXPECT_FALSE(estimator->has_model());
 }
 
 // Verifies TS-LID-010, TS-LID-040.
-TYPED_TEST(EstimatorOf, GoesOnAsIfARefusedFrameHadNeverCome) {
+TYPED_TEST(EstimatorOf, IsUnaffectedByRefusedFrames) {
   const auto disturbed = loaded<TypeParam>(34);
   const auto undisturbed = loaded<TypeParam>(34);
   AttitudeEstimate a, b;

@@ -15,37 +15,37 @@ namespace tumblesight::gnc {
 namespace {
 
 using Head = HeadOutput<float>;
-constexpr Head kSilent{};
+constexpr Head kNoCorrection{};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 const Eigen::Vector3d kRate = 9.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized();
 const Eigen::Matrix3d kStart = turn(2.2, {1.0, -2.0, 0.5});
-// By a symmetry of the target.
+// A symmetry of the target.
 const Eigen::Matrix3d kSymmetry = turn(M_PI, {0.0, 1.0, 1.0});
 
-Head saying(int place, float word) {
+Head head_with(int index, float value) {
   Head head{};
-  head[place] = word;
+  head[index] = value;
   return head;
 }
 
-// Expects an error of less than a degree.
-const Head kSure = saying(kErrorWord, -6.0F);
+// The network expects an error of less than a degree.
+const Head kConfident = head_with(kErrorLogit, -6.0F);
 
-const Motion<float>& motion_of(const AttitudeTrack<float>& track) {
+const Motion<float>& current_motion(const AttitudeTrack<float>& track) {
   return track.motion[track.law()];
 }
 
 double rate_error(const AttitudeTrack<float>& track, const Eigen::Vector3d& rate = kRate) {
-  return (motion_of(track).rate_lrf.cast<double>() - rate).norm();
+  return (current_motion(track).rate_lrf.cast<double>() - rate).norm();
 }
 
-// A spin by kRate from kStart, seen `frames` times without error.
-AttitudeTrack<float> settled_track(int frames) {
+// The track of a spin at kRate from kStart after `frames` measurements without error.
+AttitudeTrack<float> converged_track(int frames) {
   AttitudeTrack<float> track;
   Eigen::Matrix3d truth = kStart;
   for (int k = 0; k < frames; ++k, truth = turn(kRate) * truth)
-    follow(frame_of({{truth, 1.0F}}), kSilent, track);
+    follow(make_frame({{truth, 1.0F}}), kNoCorrection, track);
   return track;
 }
 Eigen::Matrix3d truth_after(int frames) {
@@ -60,37 +60,37 @@ Inertia<float> slender_body() {
   return inertia;
 }
 
-// A tumbling target with a symmetry, measured to some degrees, and a head that says this and that.
+// A tumbling target with a symmetry, measurement errors of some degrees and random outputs of the head.
 // Verifies TS-NUM-090.
 TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
   std::mt19937 engine(8);
   std::normal_distribution<float> normal;
-  const auto any_vector = [&](float scale) {
+  const auto random_vector = [&](float scale) {
     return Eigen::Vector3f(scale * normal(engine), scale * normal(engine), scale * normal(engine));
   };
   const Inertia<float> inertia = slender_body();
-  int compared = 0, tumbling = 0, merged = 0, turned = 0;
+  int compared = 0, tumbling = 0, merged = 0, corrected = 0;
   for (int sequence = 0; sequence < 20; ++sequence) {
-    Motion<float> truth{kStart.cast<float>(), any_vector(0.3F)};
+    Motion<float> truth{kStart.cast<float>(), random_vector(0.3F)};
     AttitudeTrack<float> track;
     ReferenceTrack reference(inertia.tensor_trf.cast<double>());
     for (int k = 0; k < 15; ++k, truth = propagate<float>(truth, inertia)) {
       SCOPED_TRACE(testing::Message() << sequence << ' ' << k);
       OutputVector<float> output{};
       for (int i = 0; i < shape::kHypotheses; ++i) {
-        Eigen::Matrix3d r = turn(any_vector(0.03F).cast<double>()) * truth.r_lrf_trf.cast<double>();
+        Eigen::Matrix3d r = turn(random_vector(0.03F).cast<double>()) * truth.r_lrf_trf.cast<double>();
         if (i % 3 == 1) r = r * kSymmetry;
         for (int n = 0; n < 6; ++n) output[6 * i + n] = 2.0F * static_cast<float>(r(n % 3, n / 3));
         output[shape::kColumns + i] = normal(engine);
       }
       Head head;
-      for (float& word : head) word = 2.0F * normal(engine);
+      for (float& value : head) value = 2.0F * normal(engine);
       head[1] = head[4] = head[7] = -9.0F;  // mostly against the symmetric alternatives
       const Eigen::Matrix3f r_lrf_view = turn(0.1, {1.0, 0.0, static_cast<double>(k % 3)}).cast<float>();
 
-      reference.see({output.begin(), output.end()}, r_lrf_view.cast<double>());
+      reference.observe({output.begin(), output.end()}, r_lrf_view.cast<double>());
       reference.advance({head.begin(), head.end()});
-      if (reference.nearest_call_deg < 1e-3) break;
+      if (reference.smallest_margin_deg < 1e-3) break;
       ++compared;
       const TrackedAttitude<float> tracked =
           follow(decode_hypotheses<float>(output, r_lrf_view), head, track, inertia);
@@ -99,24 +99,24 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
         ASSERT_LT((track.motion[law].rate_lrf.cast<double>() - reference.motion[law].rate).norm(), 2e-5);
         ASSERT_NEAR(track.log_likelihood[law], reference.log_likelihood[law], 5e-3);
       }
-      if (reference.margin() > 0.01) {  // nearer to a draw, rounding decides
+      if (reference.margin() > 0.01) {  // closer than that, rounding decides
         ASSERT_EQ(track.law(), reference.law());
       }
-      ASSERT_EQ(tracked.r_lrf_trf, motion_of(track).r_lrf_trf);
+      ASSERT_EQ(tracked.r_lrf_trf, current_motion(track).r_lrf_trf);
       ASSERT_NEAR(tracked.predicted_error_rad, reference.error_rad, 1e-6);
     }
     tumbling += reference.law() > 0 ? 1 : 0;
-    merged += reference.merged;
-    turned += reference.turned;
+    merged += reference.means_taken;
+    corrected += reference.rates_corrected;
   }
   EXPECT_GT(compared, 250) << "of 300 frames";
   EXPECT_GT(tumbling, 5);
   EXPECT_GT(merged, 300);
-  EXPECT_GT(turned, 300);
+  EXPECT_GT(corrected, 300);
 }
 
 TEST(AttitudeTrack, StartsWithTheLikeliestHypothesisAtRest) {
-  const Hypotheses<float> frame = frame_of({{kStart, 0.6F}, {kStart * kSymmetry, 0.4F}});
+  const Hypotheses<float> frame = make_frame({{kStart, 0.6F}, {kStart * kSymmetry, 0.4F}});
   const Prediction<float> prediction =
       predict<float>(AttitudeTrack<float>{}, motion_laws<float>(Inertia<float>{}), frame);
   for (const Motion<float>& motion : prediction.motion) {
@@ -124,16 +124,17 @@ TEST(AttitudeTrack, StartsWithTheLikeliestHypothesisAtRest) {
     EXPECT_EQ(motion.rate_lrf.norm(), 0.0F);
   }
   AttitudeTrack<float> track;
-  const TrackedAttitude<float> tracked = advance<float>(frame, prediction, saying(kErrorWord, -3.0F), track);
+  const TrackedAttitude<float> tracked =
+      advance<float>(frame, prediction, head_with(kErrorLogit, -3.0F), track);
   EXPECT_LT(angle_between(tracked.r_lrf_trf, kStart), 1e-6);
   EXPECT_NEAR(tracked.predicted_error_rad, M_PI / (1.0 + std::exp(3.0)), 1e-6);
   EXPECT_EQ(track.frames, 1U);
-  EXPECT_EQ(motion_of(track).rate_lrf.norm(), 0.0F);
+  EXPECT_EQ(current_motion(track).rate_lrf.norm(), 0.0F);
 }
 
 TEST(AttitudeTrack, GivesTheLstmTheHypothesesRelativeToThePrediction) {
   const Eigen::Matrix3d predicted = turn(0.7, {1.0, 1.0, 0.0});
-  const Hypotheses<float> frame = frame_of({{kStart, 0.75F}, {kStart * kSymmetry, 0.25F}});
+  const Hypotheses<float> frame = make_frame({{kStart, 0.75F}, {kStart * kSymmetry, 0.25F}});
   Features<Float32> features;
   for (std::size_t i = 0; i < features.size(); ++i) features[i] = static_cast<float>(i);
   LstmInput<Float32> input;
@@ -149,31 +150,33 @@ TEST(AttitudeTrack, GivesTheLstmTheHypothesesRelativeToThePrediction) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(input[shape::kLstmInput - 6 + i], predicted(i % 3, i / 3), 1e-6);
 }
 
-TEST(AttitudeTrack, GoesOnAtItsRateWhereTheHeadBelievesThePredictionAlone) {
-  AttitudeTrack<float> track = settled_track(12);
+TEST(AttitudeTrack, ContinuesAtItsRateIfTheHeadSelectsThePrediction) {
+  AttitudeTrack<float> track = converged_track(12);
   const Eigen::Matrix3d wrong = turn(1.0, {0.0, 0.0, 1.0}) * truth_after(12);
-  const TrackedAttitude<float> tracked = follow(frame_of({{wrong, 1.0F}}), saying(kPredicted, 50.0F), track);
+  const TrackedAttitude<float> tracked =
+      follow(make_frame({{wrong, 1.0F}}), head_with(kPredicted, 50.0F), track);
   EXPECT_LT(angle_between(tracked.r_lrf_trf, truth_after(12)), 1e-4);
   EXPECT_LT(rate_error(track), 1e-4);
 }
 
-TEST(AttitudeTrack, TakesTheCandidateThatTheHeadAnchorsAt) {
+TEST(AttitudeTrack, UsesTheAnchorThatTheHeadSelects) {
   const Eigen::Matrix3d other = kStart * kSymmetry;
   for (const int anchor : {0, 1, 5}) {
     AttitudeTrack<float> track;
-    const Hypotheses<float> frame = frame_of({{kStart, 0.6F}, {other, 0.4F}});
-    const TrackedAttitude<float> tracked = follow(frame, saying(anchor, 60.0F), track);
+    const Hypotheses<float> frame = make_frame({{kStart, 0.6F}, {other, 0.4F}});
+    const TrackedAttitude<float> tracked = follow(frame, head_with(anchor, 60.0F), track);
     EXPECT_LT(angle_between(tracked.r_lrf_trf, frame.r_lrf_trf[anchor].cast<double>()), 1e-6) << anchor;
   }
 }
 
-TEST(AttitudeTrack, WeighsCandidatesByTheHeadsWordUpToItsBound) {
+TEST(AttitudeTrack, WeighsCandidatesByTheHeadsCorrectionUpToItsBound) {
   const Eigen::Matrix3d near = turn(6.0 * kDegree, {0.3, 1.0, 0.2}) * kStart;
-  const auto distance_to_start = [&](float word) {
+  const auto distance_to_start = [&](float correction) {
     AttitudeTrack<float> track;
-    return angle_between(
-        follow(frame_of({{kStart, 0.5F}, {near, 0.5F}}), saying(kWeightWords + 1, word), track).r_lrf_trf,
-        kStart);
+    return angle_between(follow(make_frame({{kStart, 0.5F}, {near, 0.5F}}),
+                                head_with(kWeightCorrections + 1, correction), track)
+                             .r_lrf_trf,
+                         kStart);
   };
   EXPECT_NEAR(distance_to_start(0.0F), 3.0 * kDegree, 2e-3);
   EXPECT_NEAR(distance_to_start(std::log(2.0F)), 4.0 * kDegree, 2e-3);
@@ -183,46 +186,46 @@ TEST(AttitudeTrack, WeighsCandidatesByTheHeadsWordUpToItsBound) {
 }
 
 // Verifies TS-EST-130.
-TEST(AttitudeTrack, IsNotPulledByAlternativesHoweverLikely) {
+TEST(AttitudeTrack, IgnoresAlternativesWhateverTheirProbability) {
   const Eigen::Matrix3d truth = truth_after(12);
-  AttitudeTrack<float> alone = settled_track(12);
-  const TrackedAttitude<float> expected = follow(frame_of({{truth, 0.3F}}), saying(0, 50.0F), alone);
+  AttitudeTrack<float> alone = converged_track(12);
+  const TrackedAttitude<float> expected = follow(make_frame({{truth, 0.3F}}), head_with(0, 50.0F), alone);
   for (const double away_deg : {21.0, 60.0, 120.0, 180.0}) {
-    AttitudeTrack<float> track = settled_track(12);
+    AttitudeTrack<float> track = converged_track(12);
     const Eigen::Matrix3d alternative = turn(away_deg * kDegree, {0.1, 1.0, -0.4}) * truth;
-    const Hypotheses<float> frame = frame_of({{truth, 0.3F}, {alternative, 0.7F}});
-    const TrackedAttitude<float> tracked = follow(frame, saying(0, 50.0F), track);
+    const Hypotheses<float> frame = make_frame({{truth, 0.3F}, {alternative, 0.7F}});
+    const TrackedAttitude<float> tracked = follow(frame, head_with(0, 50.0F), track);
     EXPECT_LT((tracked.r_lrf_trf - expected.r_lrf_trf).norm(), 1e-6F) << away_deg;
   }
 }
 
 // Verifies TS-EST-130.
 TEST(AttitudeTrack, KeepsItsRateWhenItChangesToASymmetricAttitude) {
-  AttitudeTrack<float> track = settled_track(12);
-  follow(frame_of({{truth_after(12) * kSymmetry, 1.0F}}), kSilent, track);
-  EXPECT_LT(angle_between(motion_of(track).r_lrf_trf, truth_after(12) * kSymmetry), 1e-5);
+  AttitudeTrack<float> track = converged_track(12);
+  follow(make_frame({{truth_after(12) * kSymmetry, 1.0F}}), kNoCorrection, track);
+  EXPECT_LT(angle_between(current_motion(track).r_lrf_trf, truth_after(12) * kSymmetry), 1e-5);
   EXPECT_LT(rate_error(track), 1e-4);
   const Prediction<float> next =
-      predict<float>(track, motion_laws<float>(Inertia<float>{}), frame_of({{kStart, 1.0F}}));
+      predict<float>(track, motion_laws<float>(Inertia<float>{}), make_frame({{kStart, 1.0F}}));
   EXPECT_LT(angle_between(next.r_lrf_trf(), truth_after(13) * kSymmetry), 2e-4);
 }
 
 // Verifies TS-EST-130.
-TEST(AttitudeTrack, StaysOnItsBranchWhereTheHeadBelievesThePrediction) {
+TEST(AttitudeTrack, StaysOnItsBranchIfTheHeadSelectsThePrediction) {
   AttitudeTrack<float> track;
   for (int k = 0; k < 15; ++k) {
-    // The likelier hypothesis is now this one, now its symmetric partner.
+    // The likelier hypothesis alternates between the truth and its symmetric counterpart.
     const float probability = k % 2 == 0 ? 0.6F : 0.4F;
     const Hypotheses<float> frame =
-        frame_of({{truth_after(k), probability}, {truth_after(k) * kSymmetry, 1.0F - probability}});
-    const Head head = k == 0 ? kSilent : saying(kPredicted, 50.0F);
+        make_frame({{truth_after(k), probability}, {truth_after(k) * kSymmetry, 1.0F - probability}});
+    const Head head = k == 0 ? kNoCorrection : head_with(kPredicted, 50.0F);
     EXPECT_LT(angle_between(follow(frame, head, track).r_lrf_trf, truth_after(k)), 0.05 * kDegree) << k;
   }
   EXPECT_LT(rate_error(track), 1e-3);
 }
 
 // Verifies TS-EST-140.
-TEST(AttitudeTrack, LearnsByWhichLawTheTargetMoves) {
+TEST(AttitudeTrack, FindsTheLawOfMotion) {
   const MotionLaws<float> laws = motion_laws<float>(slender_body());
   for (int law = 0; law < kLaws; ++law) {
     SCOPED_TRACE(law);
@@ -231,33 +234,35 @@ TEST(AttitudeTrack, LearnsByWhichLawTheTargetMoves) {
     AttitudeTrack<float> track;
     for (int k = 0; k < 12; ++k, truth = propagate<float>(truth, laws[law])) {
       const Eigen::Matrix3d exact = truth.r_lrf_trf.cast<double>();
-      const TrackedAttitude<float> tracked = follow(frame_of({{exact, 1.0F}}), kSure, track, slender_body());
+      const TrackedAttitude<float> tracked =
+          follow(make_frame({{exact, 1.0F}}), kConfident, track, slender_body());
       if (k > 8) {
         EXPECT_LT(angle_between(tracked.r_lrf_trf, exact), 1.0 * kDegree) << k;
       }
     }
     EXPECT_EQ(track.law(), law);
-    EXPECT_EQ(predict<float>(track, laws, frame_of({{kStart, 1.0F}})).law, law);
+    EXPECT_EQ(predict<float>(track, laws, make_frame({{kStart, 1.0F}})).law, law);
     EXPECT_EQ(track.log_likelihood[law], 0.0F);
     EXPECT_LT(track.log_likelihood[law == kSpinLaw ? kTumbleLaw : kSpinLaw], -2.0F);
   }
 }
 
-TEST(AttitudeTrack, OfAnUnsureNetworkNoLawIsLearnt) {
+TEST(AttitudeTrack, FindsNoLawFromUncertainMeasurements) {
   const Inertia<float> inertia = slender_body();
   Motion<float> truth{kStart.cast<float>(), {0.1F, -0.08F, 0.2F}};
   AttitudeTrack<float> track;
   for (int k = 0; k < 12; ++k, truth = propagate<float>(truth, inertia)) {
-    follow(frame_of({{truth.r_lrf_trf.cast<double>(), 1.0F}}), saying(kErrorWord, 0.0F), track, inertia);
+    follow(make_frame({{truth.r_lrf_trf.cast<double>(), 1.0F}}), head_with(kErrorLogit, 0.0F), track,
+           inertia);
   }
-  EXPECT_EQ(track.law(), kSpinLaw) << "measurements to 90 degrees cannot tell";
+  EXPECT_EQ(track.law(), kSpinLaw) << "an expected error of 90 degrees does not distinguish the laws";
 }
 
 // Verifies TS-EST-170.
-TEST(AttitudeTrack, StartsAnewFromADamagedTrack) {
+TEST(AttitudeTrack, StartsOverFromADamagedTrack) {
   for (int damage = 0; damage < 5; ++damage) {
     SCOPED_TRACE(damage);
-    AttitudeTrack<float> track = settled_track(12);
+    AttitudeTrack<float> track = converged_track(12);
     if (damage == 0) track.motion[0].r_lrf_trf(1, 2) = kNan;
     if (damage == 1) track.motion[1].r_lrf_trf.setConstant(std::numeric_limits<float>::infinity());
     if (damage == 2) track.motion[0].rate_lrf.x() = kNan;
@@ -265,38 +270,38 @@ TEST(AttitudeTrack, StartsAnewFromADamagedTrack) {
     if (damage == 4) track.log_likelihood[3] = kNan;
     AttitudeTrack<float> fresh;
     for (int k = 12; k < 16; ++k) {
-      const Hypotheses<float> frame = frame_of({{truth_after(k), 1.0F}});
-      const TrackedAttitude<float> tracked = follow(frame, kSilent, track);
-      const TrackedAttitude<float> expected = follow(frame, kSilent, fresh);
+      const Hypotheses<float> frame = make_frame({{truth_after(k), 1.0F}});
+      const TrackedAttitude<float> tracked = follow(frame, kNoCorrection, track);
+      const TrackedAttitude<float> expected = follow(frame, kNoCorrection, fresh);
       EXPECT_EQ(tracked.r_lrf_trf, expected.r_lrf_trf);
-      EXPECT_EQ(motion_of(track).rate_lrf, motion_of(fresh).rate_lrf);
+      EXPECT_EQ(current_motion(track).rate_lrf, current_motion(fresh).rate_lrf);
       EXPECT_EQ(track.frames, fresh.frames);
     }
   }
 }
 
-TEST(AttitudeTrack, LosesOneFrameToANonFiniteHypothesisThatItAnchorsAt) {
-  AttitudeTrack<float> track = settled_track(12);
-  Hypotheses<float> damaged = frame_of({{truth_after(12), 1.0F}});
+TEST(AttitudeTrack, LosesOneFrameToANonFiniteAnchor) {
+  AttitudeTrack<float> track = converged_track(12);
+  Hypotheses<float> damaged = make_frame({{truth_after(12), 1.0F}});
   damaged.r_lrf_trf[0](0, 0) = kNan;
-  EXPECT_FALSE(follow(damaged, kSilent, track).r_lrf_trf.allFinite());
+  EXPECT_FALSE(follow(damaged, kNoCorrection, track).r_lrf_trf.allFinite());
   AttitudeTrack<float> fresh;
   for (int k = 13; k < 16; ++k) {
-    const Hypotheses<float> frame = frame_of({{truth_after(k), 1.0F}});
-    EXPECT_EQ(follow(frame, kSilent, track).r_lrf_trf, follow(frame, kSilent, fresh).r_lrf_trf);
+    const Hypotheses<float> frame = make_frame({{truth_after(k), 1.0F}});
+    EXPECT_EQ(follow(frame, kNoCorrection, track).r_lrf_trf, follow(frame, kNoCorrection, fresh).r_lrf_trf);
   }
 }
 
-TEST(AttitudeTrack, IgnoresANonFiniteHypothesisThatItDoesNotAnchorAt) {
-  AttitudeTrack<float> track = settled_track(12);
-  Hypotheses<float> damaged = frame_of({{truth_after(12), 1.0F}});
+TEST(AttitudeTrack, IgnoresANonFiniteHypothesisThatIsNotTheAnchor) {
+  AttitudeTrack<float> track = converged_track(12);
+  Hypotheses<float> damaged = make_frame({{truth_after(12), 1.0F}});
   damaged.r_lrf_trf[3].setConstant(kNan);
-  EXPECT_LT(angle_between(follow(damaged, kSilent, track).r_lrf_trf, truth_after(12)), 1e-4);
+  EXPECT_LT(angle_between(follow(damaged, kNoCorrection, track).r_lrf_trf, truth_after(12)), 1e-4);
   EXPECT_LT(rate_error(track), 1e-4);
 }
 
 // Verifies TS-EST-100, TS-EST-170.
-TEST(AttitudeTrack, NeverLeavesTheUnitQuaternionsWhateverItIsGiven) {
+TEST(AttitudeTrack, GivesUnitQuaternionsForAnyInput) {
   std::mt19937 engine(6);
   std::uniform_int_distribution<std::uint32_t> bits;
   const auto damage = [&](float* values, std::size_t count) {
@@ -306,8 +311,8 @@ TEST(AttitudeTrack, NeverLeavesTheUnitQuaternionsWhateverItIsGiven) {
     }
   };
   for (int i = 0; i < 5000; ++i) {
-    AttitudeTrack<float> track = settled_track(static_cast<int>(bits(engine) % 4));
-    Hypotheses<float> frame = frame_of({{truth_after(3), 0.7F}, {kStart, 0.3F}});
+    AttitudeTrack<float> track = converged_track(static_cast<int>(bits(engine) % 4));
+    Hypotheses<float> frame = make_frame({{truth_after(3), 0.7F}, {kStart, 0.3F}});
     Head head{};
     damage(head.data(), head.size());
     if (i % 2 == 0) damage(frame.r_lrf_trf[i % 8].data(), 9);
@@ -323,9 +328,8 @@ TEST(AttitudeTrack, NeverLeavesTheUnitQuaternionsWhateverItIsGiven) {
   }
 }
 
-// The head may keep to the prediction while one law has lost the target: then that law's own answer must not
-// be taken for a hit.
-// Verifies TS-EST-140.
+// The head may select the prediction while one law has lost the target. The result of that law then equals
+// its prediction, which must not count as a match. Verifies TS-EST-140.
 TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
   const Inertia<float> inertia = slender_body();
   Motion<float> truth{kStart.cast<float>(),
@@ -339,8 +343,8 @@ TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
     const double y = normal(engine);
     const double z = normal(engine);
     const Eigen::Matrix3d seen = turn({x, y, z}) * exact;
-    const Head head = k < 6 ? kSilent : saying(kPredicted, 50.0F);
-    const TrackedAttitude<float> tracked = follow(frame_of({{seen, 1.0F}}), head, track, inertia);
+    const Head head = k < 6 ? kNoCorrection : head_with(kPredicted, 50.0F);
+    const TrackedAttitude<float> tracked = follow(make_frame({{seen, 1.0F}}), head, track, inertia);
     EXPECT_LT(angle_between(tracked.r_lrf_trf, exact), 6.0 * kDegree) << "frame " << k;
     for (const Motion<float>& motion : track.motion) {
       EXPECT_LT(angle_between(motion.r_lrf_trf, exact), 60.0 * kDegree) << "frame " << k;
@@ -350,13 +354,13 @@ TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
 }
 
 // Verifies TS-EST-170.
-TEST(AttitudeTrack, AStateThatHoldsNoRotationIsDropped) {
+TEST(AttitudeTrack, AStateWithoutARotationIsReset) {
   AttitudeTrack<float> track;
   track.frames = 5;
   track.motion[0].r_lrf_trf.setZero();
   const Eigen::Matrix3d attitude = kStart;
   const TrackedAttitude<float> tracked =
-      follow(frame_of({{attitude, 1.0F}}), saying(kPredicted, 50.0F), track, slender_body());
+      follow(make_frame({{attitude, 1.0F}}), head_with(kPredicted, 50.0F), track, slender_body());
   EXPECT_LT(angle_between(tracked.r_lrf_trf, attitude), 0.1 * kDegree);
   EXPECT_EQ(track.frames, 1U) << "a new track";
 }

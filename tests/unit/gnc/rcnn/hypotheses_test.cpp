@@ -43,7 +43,7 @@ float difference(const Eigen::Matrix3f& a, const Eigen::Matrix3f& b) {
 }
 
 // Verifies TS-EST-120.
-TEST(Hypotheses, AreTurnedFromTheViewIntoTheLidarFrame) {
+TEST(Hypotheses, AreRotatedFromTheViewIntoTheLidarFrame) {
   const Eigen::Matrix3f r_lrf_view = turn(0.15F, {0.3F, 0.0F, -1.0F});
   OutputVector<float> output{};
   std::array<Eigen::Matrix3f, shape::kHypotheses> r_view_trf;
@@ -88,7 +88,7 @@ TEST(Hypotheses, MapTheErrorLogitOntoZeroToPi) {
 }
 
 // Verifies TS-EST-100.
-TEST(Hypotheses, GiveAUnitQuaternionAndABoundedErrorWhateverTheNetworkSays) {
+TEST(Hypotheses, GiveAUnitQuaternionAndABoundedErrorForAnyOutput) {
   std::mt19937 engine(5);
   std::uniform_int_distribution<std::uint32_t> bits;
   for (int i = 0; i < 20000; ++i) {
@@ -138,7 +138,7 @@ TEST(MeanAttitude, TakesCandidatesWithinTwentyDegreesOfTheAnchorOnly) {
 TEST(MeanAttitude, DoesNotDependOnTheScaleOfTheWeights) {
   const std::array<Eigen::Matrix3f, 2> candidates{turn(1.0F, {1.0F, 2.0F, 3.0F}),
                                                   turn(1.1F, {1.0F, 2.0F, 3.0F})};
-  // Down to the least that a candidate of no probability keeps when the network speaks against it.
+  // Down to the smallest weight that a candidate with a probability of zero can have after the correction.
   for (const float scale : {1.0F, 1e3F, 1e-3F, 3e-10F}) {
     const std::array<float, 2> weights{0.5F * scale, 0.5F * scale};
     const Eigen::Matrix3f mean = mean_attitude<float>(candidates.data(), weights.data(), 2, 0);

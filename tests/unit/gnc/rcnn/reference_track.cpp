@@ -33,7 +33,7 @@ Eigen::Matrix3d rotation_from_vector(const Eigen::Vector3d& turn) {
   return Eigen::AngleAxisd(bounded(turn).norm(), turn.normalized()).toRotationMatrix();
 }
 
-// 3 - trace of the turn between them: for small angles, its square.
+// 3 - trace of the relative rotation: for small angles the squared angle.
 double chord_square(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return 3.0 - (a.transpose() * b).trace();
 }
@@ -65,25 +65,25 @@ ReferenceTrack::ReferenceTrack(const Eigen::Matrix3d& inertia_trf) {
   }
 }
 
-std::array<double, ReferenceTrack::kLaws> ReferenceTrack::handicapped() const {
-  std::array<double, kLaws> standing = log_likelihood;
-  standing[1] -= 0.5;
-  for (int law = 2; law < kLaws; ++law) standing[law] -= 2.0;
-  return standing;
+std::array<double, ReferenceTrack::kLaws> ReferenceTrack::scores() const {
+  std::array<double, kLaws> score = log_likelihood;
+  score[1] -= 0.5;
+  for (int law = 2; law < kLaws; ++law) score[law] -= 2.0;
+  return score;
 }
 
 int ReferenceTrack::law() const {
-  const auto standing = handicapped();
-  return static_cast<int>(std::max_element(standing.begin(), standing.end()) - standing.begin());
+  const auto score = scores();
+  return static_cast<int>(std::max_element(score.begin(), score.end()) - score.begin());
 }
 
 double ReferenceTrack::margin() const {
-  auto standing = handicapped();
-  std::sort(standing.begin(), standing.end());
-  return standing[kLaws - 1] - standing[kLaws - 2];
+  auto score = scores();
+  std::sort(score.begin(), score.end());
+  return score[kLaws - 1] - score[kLaws - 2];
 }
 
-void ReferenceTrack::see(const Numbers& output, const Eigen::Matrix3d& r_lrf_view) {
+void ReferenceTrack::observe(const Values& output, const Eigen::Matrix3d& r_lrf_view) {
   double sum = 0.0;
   for (int i = 0; i < 8; ++i) {
     const Eigen::Map<const Eigen::Vector3d> a(output.data() + 6 * i), b(output.data() + 6 * i + 3);
@@ -123,8 +123,8 @@ Eigen::Matrix3d ReferenceTrack::single_frame() {
   return mean_around(likeliest_, 0, weights);
 }
 
-ReferenceTrack::Numbers ReferenceTrack::lstm_input(const Numbers& dense2) const {
-  Numbers input = dense2;
+ReferenceTrack::Values ReferenceTrack::lstm_input(const Values& dense2) const {
+  Values input = dense2;
   const auto append = [&input](const Eigen::Matrix3d& rotation) {
     for (int i = 0; i < 6; ++i) input.push_back(rotation(i % 3, i / 3));
   };
@@ -144,35 +144,39 @@ Eigen::Matrix3d ReferenceTrack::mean_around(int anchor, int law, const std::arra
     second += weights[i] * candidate(i, law).col(1);
     ++members;
   }
-  merged += members > 1 ? 1 : 0;
+  means_taken += members > 1 ? 1 : 0;
   return rotation_of(first, second);
 }
 
-void ReferenceTrack::correct(int law, int anchor, const std::array<double, 9>& weights, double rate_word) {
+void ReferenceTrack::correct(int law, int anchor, const std::array<double, 9>& weights,
+                             double rate_correction) {
   motion[law] = predicted_[law];
   motion[law].attitude = mean_around(anchor, law, weights);
   const Eigen::AngleAxisd turn(Eigen::Matrix3d(motion[law].attitude * predicted_[law].attitude.transpose()));
   if (frames == 0 || turn.angle() >= M_PI / 3.0) return;
   const double prior = rate_gain_after(frames);
-  motion[law].rate += logistic(rate_word + std::log(prior / (1.0 - prior))) * turn.angle() * turn.axis();
-  ++turned;
+  motion[law].rate +=
+      logistic(rate_correction + std::log(prior / (1.0 - prior))) * turn.angle() * turn.axis();
+  ++rates_corrected;
 }
 
 bool ReferenceTrack::same(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  const double apart_deg = angle_deg(a, b);
-  nearest_call_deg = std::min(nearest_call_deg, std::abs(apart_deg - 20.0));
-  return apart_deg < 20.0;
+  const double angle_between_deg = angle_deg(a, b);
+  smallest_margin_deg = std::min(smallest_margin_deg, std::abs(angle_between_deg - 20.0));
+  return angle_between_deg < 20.0;
 }
 
-double ReferenceTrack::miss(int law) {
-  double seen = 0.0;
+double ReferenceTrack::squared_innovation(int law) {
+  double probability_near = 0.0;
   for (int i = 0; i < 8; ++i) {
-    if (same(hypotheses_[i], predicted_[law].attitude)) seen += probability_[i];
+    if (same(hypotheses_[i], predicted_[law].attitude)) probability_near += probability_[i];
   }
-  return seen < 0.1 ? kLost : std::min(kLost, chord_square(motion[law].attitude, predicted_[law].attitude));
+  return probability_near < 0.1
+             ? kLost
+             : std::min(kLost, chord_square(motion[law].attitude, predicted_[law].attitude));
 }
 
-void ReferenceTrack::advance(const Numbers& head) {
+void ReferenceTrack::advance(const Values& head) {
   std::array<double, 9> vote, weight;
   for (int i = 0; i < 9; ++i) {
     vote[i] = (i < 8 ? logit_[i] : 0.0) + head.at(i);
@@ -182,22 +186,22 @@ void ReferenceTrack::advance(const Numbers& head) {
   const int anchor = static_cast<int>(std::max_element(vote.begin(), vote.end()) - vote.begin());
   for (int law = 0; law < kLaws; ++law) correct(law, anchor, weight, head.at(18));
   error_rad = M_PI * logistic(head.at(19));
-  // Log-likelihood of Gaussian misses; the first two frames tell nothing.
+  // Log-likelihood of Gaussian innovations; the first two frames are no evidence.
   const double a = attitude_gain_after(frames);
   const double variance = std::max(7e-4, error_rad * error_rad);
-  std::array<double, kLaws> missed;
+  std::array<double, kLaws> innovation;
   for (int law = 0; law < kLaws; ++law) {
-    missed[law] = miss(law);
+    innovation[law] = squared_innovation(law);
     log_likelihood[law] *= 0.9;
-    if (frames >= 2) log_likelihood[law] -= (1.0 - a) / (2.0 * a * a) / variance * missed[law];
+    if (frames >= 2) log_likelihood[law] -= (1.0 - a) / (2.0 * a * a) / variance * innovation[law];
   }
   const double best = *std::max_element(log_likelihood.begin(), log_likelihood.end());
   for (double& value : log_likelihood) value = std::max(-6.0, value - best);
-  std::array<double, kLaws> seeing = handicapped();
-  for (int law = 0; law < kLaws; ++law) seeing[law] -= missed[law] < kLost ? 0.0 : 1e9;
-  const auto guide = std::max_element(seeing.begin(), seeing.end()) - seeing.begin();
+  std::array<double, kLaws> following = scores();
+  for (int law = 0; law < kLaws; ++law) following[law] -= innovation[law] < kLost ? 0.0 : 1e9;
+  const auto best_law = std::max_element(following.begin(), following.end()) - following.begin();
   for (int law = 0; law < kLaws; ++law) {
-    if (missed[law] >= kLost && missed[guide] < kLost) motion[law] = motion[guide];
+    if (innovation[law] >= kLost && innovation[best_law] < kLost) motion[law] = motion[best_law];
   }
   ++frames;
 }

@@ -23,7 +23,7 @@ template <class N>
 struct Run {
   AttitudeEstimator<N>* estimator;
   const RangeImage* frame;
-  std::uintptr_t begin = 0;  // where the step's own frame begins
+  std::uintptr_t begin = 0;  // of the stack frame of step()
   FrameStatus status = FrameStatus::kEmpty;
 };
 
@@ -36,9 +36,9 @@ void* step(void* argument) {
   return nullptr;
 }
 
-// On a stack of its own: how far below its caller's frame the step has written.
+// Bytes below the frame of its caller that a step has written, on a stack of its own.
 template <class N>
-std::size_t stack_of_a_step(AttitudeEstimator<N>& estimator, const RangeImage& frame) {
+std::size_t stack_use_of_step(AttitudeEstimator<N>& estimator, const RangeImage& frame) {
   void* memory = nullptr;
   if (posix_memalign(&memory, 4096, kStack_bytes) != 0) return SIZE_MAX;
   auto* const stack = static_cast<std::uint8_t*>(memory);
@@ -71,18 +71,18 @@ void expect_within_budget() {
     estimator->network().use(*kernels);
     AttitudeEstimate estimate;
     ASSERT_EQ(estimator->step(frame, estimate),
-              FrameStatus::kOk);  // once, for the dynamic linker's own needs
-    const std::size_t used = stack_of_a_step(*estimator, frame);
+              FrameStatus::kOk);  // the first call also runs the dynamic linker
+    const std::size_t used = stack_use_of_step(*estimator, frame);
     std::printf("  %s, %s: %zu bytes\n", N::kName, to_string(set), used);
     EXPECT_LE(used, kBudget_bytes) << N::kName << ", " << to_string(set);
   }
 }
 
-TEST(Stack, OfAStepIsWithinItsBudget) {
+TEST(Stack, UseOfAStepIsWithinItsBudget) {
 #if defined(__SANITIZE_ADDRESS__)
-  GTEST_SKIP() << "AddressSanitizer keeps room between variables";
+  GTEST_SKIP() << "AddressSanitizer adds space between variables";
 #elif !defined(__OPTIMIZE__)
-  GTEST_SKIP() << "without optimisation every variable lies on the stack";
+  GTEST_SKIP() << "without optimization every variable is on the stack";
 #endif
   expect_within_budget<FixedPoint>();
   expect_within_budget<Float32>();

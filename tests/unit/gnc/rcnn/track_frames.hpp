@@ -1,4 +1,4 @@
-// Frames and words of the network, made up, for the tests of the attitude track.
+// Synthetic frames and network outputs for the tests of the attitude track.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,11 +12,11 @@ namespace tumblesight::gnc {
 
 inline constexpr double kDegree = M_PI / 180.0;
 
-// Places in the head's output.
+// Indexes into the output of the recurrent head.
 inline constexpr int kPredicted = shape::kHypotheses;  // among the candidates
-inline constexpr int kWeightWords = shape::kCandidates;
-inline constexpr int kRateWord = 2 * shape::kCandidates;
-inline constexpr int kErrorWord = kRateWord + 1;
+inline constexpr int kWeightCorrections = shape::kCandidates;
+inline constexpr int kRateCorrection = 2 * shape::kCandidates;
+inline constexpr int kErrorLogit = kRateCorrection + 1;
 
 inline Eigen::Matrix3d turn(double angle_rad, const Eigen::Vector3d& axis) {
   return Eigen::AngleAxisd(angle_rad, axis.normalized()).toRotationMatrix();
@@ -29,7 +29,7 @@ inline Eigen::Matrix3d turn(const Eigen::Vector3d& rotation_vector_rad) {
 }
 
 inline double angle_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  // Of the chord, since the arc cosine is blind to small angles.
+  // From the chord, since the arc cosine is inaccurate for small angles.
   return 2.0 * std::asin(std::min(1.0, (a - b).norm() / (2.0 * std::sqrt(2.0))));
 }
 inline double angle_between(const Eigen::Matrix3f& a, const Eigen::Matrix3d& b) {
@@ -41,24 +41,24 @@ struct Alternative {
   float probability;
 };
 
-// A frame whose first hypotheses are these, by falling probability; the others have none and stand 150
-// degrees from the first.
-inline Hypotheses<float> frame_of(std::initializer_list<Alternative> alternatives) {
+// A frame whose first hypotheses are these, in descending probability. The others have a probability of zero
+// and are 150 degrees from the first.
+inline Hypotheses<float> make_frame(std::initializer_list<Alternative> alternatives) {
   Hypotheses<float> frame{};
   const Eigen::Matrix3d far = turn(150.0 * kDegree, {0.3, -0.5, 0.8}) * alternatives.begin()->r_lrf_trf;
   for (int i = 0; i < shape::kHypotheses; ++i) {
     const bool given = i < static_cast<int>(alternatives.size());
-    const Alternative one = given ? alternatives.begin()[i] : Alternative{far, 0.0F};
-    frame.r_lrf_trf[i] = one.r_lrf_trf.cast<float>();
-    frame.probability[i] = one.probability;
-    frame.logit[i] = given ? 10.0F + std::log(one.probability) : -30.0F;
+    const Alternative alternative = given ? alternatives.begin()[i] : Alternative{far, 0.0F};
+    frame.r_lrf_trf[i] = alternative.r_lrf_trf.cast<float>();
+    frame.probability[i] = alternative.probability;
+    frame.logit[i] = given ? 10.0F + std::log(alternative.probability) : -30.0F;
     frame.likeliest = frame.logit[i] > frame.logit[frame.likeliest] ? i : frame.likeliest;
   }
   frame.predicted_error_rad = 0.1F;
   return frame;
 }
 
-// One frame of the estimator, with the head saying `head` whatever the LSTM saw.
+// One frame of the estimator, with `head` as the output of the recurrent head.
 inline TrackedAttitude<float> follow(const Hypotheses<float>& frame, const HeadOutput<float>& head,
                                      AttitudeTrack<float>& track, const Inertia<float>& inertia = {}) {
   return advance<float>(frame, predict<float>(track, motion_laws<float>(inertia), frame), head, track);

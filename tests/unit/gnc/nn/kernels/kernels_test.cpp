@@ -17,7 +17,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-// The definition in product.hpp, one number after the other.
+// The definition in product.hpp, one number at a time.
 template <class Kind>
 std::vector<typename Kind::Sum> by_definition(const ProductShape& s,
                                               const std::vector<typename Kind::Input>& in,
@@ -30,8 +30,8 @@ std::vector<typename Kind::Sum> by_definition(const ProductShape& s,
         typename Kind::Sum sum = start[c];
         for (int t = 0; t < s.strips; ++t) {
           for (int i = 0; i < s.strip_length; ++i) {
-            const int place = t * s.strip_length + i;
-            const int weight = (place / Kind::kGroup * s.channels + c) * Kind::kGroup + place % Kind::kGroup;
+            const int index = t * s.strip_length + i;
+            const int weight = (index / Kind::kGroup * s.channels + c) * Kind::kGroup + index % Kind::kGroup;
             sum += in[y * s.row_step + x * s.column_step + t * s.strip_step + i] * weights[weight];
           }
         }
@@ -50,7 +50,7 @@ ProductShape dense(int in, int out) {
   return {1, 1, 0, 0, 1, in, 0, out};
 }
 
-// Channels and pixels that meet every block and every remainder.
+// Numbers of channels and pixels that cover every block size and every remainder.
 std::vector<ProductShape> shapes(bool integers) {
   std::vector<ProductShape> all;
   std::vector<int> channels{16, 32, 48, 64, 96, 128, 144, 160, 240};
@@ -66,7 +66,7 @@ std::vector<ProductShape> shapes(bool integers) {
   all.push_back(convolution(2, 4, 4, 16));
   all.push_back(convolution(1, 4, 8, 32));  // fewer pixels than three tiles of two
   all.push_back(convolution(2, 4, 4, 16));
-  all.back().strips = 17;  // more than a stretch holds
+  all.back().strips = 17;  // more than a chunk holds
   all.push_back(dense(382, 768));
   return all;
 }
@@ -83,7 +83,7 @@ void expect_definition(Product<Kind>* product, const ProductShape& s,
                        const std::vector<typename Kind::Weight>& weights) {
   using Sum = typename Kind::Sum;
   const std::vector<Sum> expected = by_definition<Kind>(s, in, start, weights);
-  // One number more at either end, so that writes out of place show.
+  // One extra number at each end shows writes outside the output.
   std::vector<Sum> out(expected.size() + 2, Sum{123});
   product(s, in.data(), start.data(), weights.data(), out.data() + 1);
   ASSERT_EQ(std::memcmp(out.data() + 1, expected.data(), expected.size() * sizeof(Sum)), 0);
@@ -96,7 +96,7 @@ void expect_definition_for_all_shapes(Product<Kind>* product) {
   constexpr bool kIntegers = Kind::kGroup > 1;
   RandomValues random(7);
   std::vector<ProductShape> all = shapes(kIntegers);
-  // Inputs enough for a second stretch; sums of 16-bit ones would leave 32 bits.
+  // Enough inputs for a second chunk. Sums of 16-bit inputs would exceed 32 bits.
   if (std::is_same_v<Kind, Int8Product>) all.push_back(convolution(1, 10, 72, 16));
   for (ProductShape s : all) {
     SCOPED_TRACE(::testing::Message()
@@ -120,14 +120,14 @@ void expect_definition_for_all_shapes(Product<Kind>* product) {
   }
 }
 
-// Two rows of sums and each channel's shift, to be pooled.
+// Two rows of sums to be pooled, and the shift of each channel.
 template <class N>
-struct Pooled {
+struct PoolingInput {
   static constexpr int kColumns = 10, kChannels = 48;
   std::vector<Sum<N>> sums;
   std::vector<std::uint8_t> shift = std::vector<std::uint8_t>(kChannels);
 
-  Pooled() {
+  PoolingInput() {
     RandomValues random(11);
     sums = random.vector<Sum<N>>(2 * kColumns * kChannels);
     if (N::kIsInteger) {
@@ -135,7 +135,7 @@ struct Pooled {
     }
     for (int c = 0; c < kChannels; ++c) shift[c] = static_cast<std::uint8_t>(1 + (c * 7) % 28);
   }
-  std::array<double, 4> four(int x, int c) const {
+  std::array<double, 4> window(int x, int c) const {
     const auto at = [&](int row, int column) -> double {
       return sums[(row * kColumns + 2 * x + column) * kChannels + c];
     };
@@ -150,14 +150,14 @@ struct Pooled {
 
 template <class N>
 void expect_max_pool_by_definition(MaxPool<N>* max_pool) {
-  const Pooled<N> pooled;
-  std::vector<ConvInput<N>> out(pooled.kColumns / 2 * pooled.kChannels);
-  max_pool(pooled.sums.data(), pooled.kColumns, pooled.kChannels, pooled.shift.data(), out.data());
-  for (int x = 0; x < pooled.kColumns / 2; ++x) {
-    for (int c = 0; c < pooled.kChannels; ++c) {
-      const auto four = pooled.four(x, c);
-      const double expected = pooled.activated(*std::max_element(four.begin(), four.end()), c, 255.0);
-      ASSERT_EQ(out[x * pooled.kChannels + c], expected) << x << ' ' << c;
+  const PoolingInput<N> input;
+  std::vector<ConvInput<N>> out(input.kColumns / 2 * input.kChannels);
+  max_pool(input.sums.data(), input.kColumns, input.kChannels, input.shift.data(), out.data());
+  for (int x = 0; x < input.kColumns / 2; ++x) {
+    for (int c = 0; c < input.kChannels; ++c) {
+      const auto window = input.window(x, c);
+      const double expected = input.activated(*std::max_element(window.begin(), window.end()), c, 255.0);
+      ASSERT_EQ(out[x * input.kChannels + c], expected) << x << ' ' << c;
     }
   }
 }
@@ -165,15 +165,15 @@ void expect_max_pool_by_definition(MaxPool<N>* max_pool) {
 // The mean in float32, summed in order; the sum in fixed point.
 template <class N>
 void expect_average_pool_by_definition(AveragePool<N>* average_pool) {
-  const Pooled<N> pooled;
-  std::vector<DenseInput<N>> out(pooled.kColumns / 2 * pooled.kChannels);
-  average_pool(pooled.sums.data(), pooled.kColumns, pooled.kChannels, pooled.shift.data(), out.data());
-  for (int x = 0; x < pooled.kColumns / 2; ++x) {
-    for (int c = 0; c < pooled.kChannels; ++c) {
+  const PoolingInput<N> input;
+  std::vector<DenseInput<N>> out(input.kColumns / 2 * input.kChannels);
+  average_pool(input.sums.data(), input.kColumns, input.kChannels, input.shift.data(), out.data());
+  for (int x = 0; x < input.kColumns / 2; ++x) {
+    for (int c = 0; c < input.kChannels; ++c) {
       Sum<N> total = 0;
-      for (const double sum : pooled.four(x, c))
-        total += static_cast<Sum<N>>(pooled.activated(sum, c, kMaxAveragedActivation));
-      ASSERT_EQ(out[x * pooled.kChannels + c], N::kIsInteger ? total : total / 4) << x << ' ' << c;
+      for (const double sum : input.window(x, c))
+        total += static_cast<Sum<N>>(input.activated(sum, c, kMaxAveragedActivation));
+      ASSERT_EQ(out[x * input.kChannels + c], N::kIsInteger ? total : total / 4) << x << ' ' << c;
     }
   }
 }
@@ -199,18 +199,18 @@ TEST_P(KernelsOf, Float32HaveTheBitsOfTheirDefinition) {
   check<Float32>();
 }
 
-// Which only the portable kernels of 32-bit processors use.
+// Only the portable kernels of 32-bit processors use it.
 TEST(Winograd, HasTheBitsOfTheDefinition) {
   expect_definition_for_all_shapes<Int8Product>([](const ProductShape& shape, const std::uint8_t* in,
                                                    const std::int32_t* start, const std::int8_t* weights,
                                                    std::int32_t* out) {
-    const bool supports = Winograd::supports(shape);
-    (supports ? Winograd::convolve : kernels_on<FixedPoint>(InstructionSet::kPortable)->convolve)(
+    const bool supported = Winograd::supports(shape);
+    (supported ? Winograd::convolve : kernels_on<FixedPoint>(InstructionSet::kPortable)->convolve)(
         shape, in, start, weights, out);
   });
 }
 
-TEST_P(KernelsOf, AddToWhatLiesInTheOutputWhenStartIsTheOutput) {
+TEST_P(KernelsOf, AddToTheOutputIfItIsTheStart) {
   const Kernels<FixedPoint>* kernels = kernels_on<FixedPoint>(GetParam());
   if (kernels == nullptr) GTEST_SKIP() << "not built, or this processor lacks it";
   RandomValues random(8);
@@ -230,7 +230,7 @@ std::string name_of(const ::testing::TestParamInfo<InstructionSet>& set) {
 }
 INSTANTIATE_TEST_SUITE_P(EverySet, KernelsOf, ::testing::ValuesIn(kInstructionSets), name_of);
 
-TEST(FastestKernels, AreThereForBothNumerics) {
+TEST(FastestKernels, ExistForBothNumerics) {
   EXPECT_EQ(&fastest_kernels<FixedPoint>(), kernels_on<FixedPoint>(fastest_kernels<FixedPoint>().set));
   EXPECT_EQ(&fastest_kernels<Float32>(), kernels_on<Float32>(fastest_kernels<Float32>().set));
   EXPECT_NE(kernels_on<FixedPoint>(InstructionSet::kPortable), nullptr);
