@@ -1,5 +1,5 @@
-# Instruction sets for which inner loops are built in addition to the portable ones. On a desktop: all those of the
-# processor family, selected at start-up. On a target processor: those that its compiler flags enable.
+# Inner loops beside the portable ones: on a desktop for all that its family of processors may have, chosen at start-up;
+# on a target for what its compiler flags name.
 include(CheckCXXSourceCompiles)
 check_cxx_source_compiles("#if !defined(__x86_64__)\n#error\n#endif\nint main() {}" TUMBLESIGHT_X86_KERNELS)
 check_cxx_source_compiles("#if !defined(__ARM_NEON)\n#error\n#endif\nint main() {}" TUMBLESIGHT_NEON_KERNELS)

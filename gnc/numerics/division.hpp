@@ -11,12 +11,12 @@ namespace tumblesight::gnc {
 // dividend / divisor by restoring division, 64 iterations. Requires divisor > 0.
 constexpr std::uint64_t divide_bit_by_bit(std::uint64_t dividend, std::uint64_t divisor) {
   std::uint64_t quotient = 0;
-  std::uint64_t rest = 0;
+  std::uint64_t remaining = 0;
   for (int bit = 63; bit >= 0; --bit) {
-    rest = (rest << 1) | ((dividend >> 63) & 1);
+    remaining = (remaining << 1) | ((dividend >> 63) & 1);
     dividend <<= 1;
-    const std::uint64_t fits = ~less_mask(rest, divisor);
-    rest -= divisor & fits;
+    const std::uint64_t fits = ~less_mask(remaining, divisor);
+    remaining -= divisor & fits;
     quotient = (quotient << 1) | (fits & 1);
   }
   return quotient;

@@ -56,12 +56,12 @@ std::uint32_t integer_sqrt(std::uint64_t square) {
 int highest_bit(std::uint64_t value) {
   const auto upper = static_cast<std::uint32_t>(value >> 32);
   int highest = select(upper != 0, 32, 0);
-  std::uint32_t rest = select(upper != 0, upper, static_cast<std::uint32_t>(value));
+  std::uint32_t remaining = select(upper != 0, upper, static_cast<std::uint32_t>(value));
 #pragma GCC unroll 5
   for (int step = 16; step >= 1; step /= 2) {
-    const bool above = (rest >> step) != 0;
+    const bool above = (remaining >> step) != 0;
     highest += select(above, step, 0);
-    rest = select(above, rest >> step, rest);
+    remaining = select(above, remaining >> step, remaining);
   }
   return highest;
 }
@@ -83,8 +83,8 @@ Fixed exp(Fixed x) {
   const int right = clamp(6 - static_cast<int>(n), 0, 33);
   const auto m = static_cast<std::uint32_t>(mantissa);
   const std::uint32_t halved = (m >> 1) + (std::uint32_t{1} << max(right - 2, 0));
-  const int rest = max(right - 1, 0);
-  const std::uint32_t shifted_by_more = halved >> (rest / 2) >> (rest - rest / 2);
+  const int remaining = max(right - 1, 0);
+  const std::uint32_t shifted_by_more = halved >> (remaining / 2) >> (remaining - remaining / 2);
   const std::uint32_t shifted_by_at_most_one = select(is_less(right, 1), m, (m + 1) >> 1);
   const std::uint32_t shifted = select(is_less(right, 2), shifted_by_at_most_one, shifted_by_more);
   return Fixed::from_raw(select<std::int64_t>(is_less<std::int64_t>(6, n), Fixed::kLargestRaw, shifted));

@@ -1,6 +1,6 @@
-# Runs the digest program and compares every line of its output with the golden values.
+# Runs the digest program and compares every line of it with the golden values.
 #   cmake -DDIGEST=<program> -DFRAMES=<number> -DGOLDEN=<file> [-DSET=<instruction set>] -P check_digest.cmake
-# Sets LINES to the output.
+# LINES then holds what it printed.
 cmake_minimum_required(VERSION 3.25)
 
 execute_process(COMMAND ${DIGEST} ${FRAMES} ${SET} OUTPUT_VARIABLE output RESULT_VARIABLE result)
@@ -13,11 +13,11 @@ set(numerics_seen "")
 foreach(line IN LISTS LINES)
   string(REGEX MATCH "^([^ ]+) ([^ ]+) ([0-9]+) ([0-9a-f]+)$" matched "${line}")
   if(NOT matched OR NOT "${CMAKE_MATCH_1} ${CMAKE_MATCH_3} ${CMAKE_MATCH_4}" IN_LIST golden)
-    message(FATAL_ERROR "differs from ${GOLDEN}: ${line}")
+    message(FATAL_ERROR "not as in ${GOLDEN}: ${line}")
   endif()
   list(APPEND numerics_seen ${CMAKE_MATCH_1})
 endforeach()
 if(NOT "fixed" IN_LIST numerics_seen)
-  message(FATAL_ERROR "no digest of fixed point in the output:\n${output}")
+  message(FATAL_ERROR "no digest of fixed point:\n${output}")
 endif()
-message(STATUS "equal to the golden digests:\n${output}")
+message(STATUS "as golden:\n${output}")

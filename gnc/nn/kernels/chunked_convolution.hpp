@@ -40,8 +40,9 @@ struct ChunkedConvolution {
     typename Ops::Group chunk[Ops::kChunkGroups];
     Position position;
     int start_step = 0;  // the same for every pixel
-    for (int rest = shape.strips * shape.strip_length / kGroup; rest > 0; rest -= Ops::kChunkGroups) {
-      const int groups = min(rest, Ops::kChunkGroups);
+    for (int remaining = shape.strips * shape.strip_length / kGroup; remaining > 0;
+         remaining -= Ops::kChunkGroups) {
+      const int groups = min(remaining, Ops::kChunkGroups);
       prepare(shape, in, groups, position, chunk);
       Ops::add(chunk, groups, start, start_step, weights, out, shape.channels);
       weights += groups * kGroup * shape.channels;

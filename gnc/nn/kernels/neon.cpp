@@ -61,9 +61,10 @@ TUMBLESIGHT_INLINE void start_sums(const ProductShape& shape, const std::int32_t
                                    const std::int8_t* weights, int32x4_t (&sums)[kQuads]) {
   constexpr int kMaxPairs = 128;  // pairs of weights whose sum fits into 16 bits
   int32x4_t total[kQuads] = {};
-  for (int rest = shape.strips * shape.strip_length / Int8Product::kGroup; rest > 0; rest -= kMaxPairs) {
+  for (int remaining = shape.strips * shape.strip_length / Int8Product::kGroup; remaining > 0;
+       remaining -= kMaxPairs) {
     int16x8_t pairs[kQuads] = {};
-    for (int i = min(rest, kMaxPairs); i > 0; --i, weights += shape.channels * Int8Product::kGroup) {
+    for (int i = min(remaining, kMaxPairs); i > 0; --i, weights += shape.channels * Int8Product::kGroup) {
       for (int q = 0; q < kQuads; ++q) pairs[q] = vpadalq_s8(pairs[q], vld1q_s8(weights + 16 * q));
     }
     for (int q = 0; q < kQuads; ++q) total[q] = vpadalq_s16(total[q], pairs[q]);
