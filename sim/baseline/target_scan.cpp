@@ -87,10 +87,6 @@ Eigen::Vector3d TargetScan::direction(int ray) const {
   return Eigen::Vector3d(slope(ray % rays), 1.0, -slope(ray / rays)).normalized();
 }
 
-double range_sigma_m(double range_m) {
-  return 0.1 + 0.01 * range_m;
-}
-
 std::optional<TargetScan> scan_of(const gnc::RangeImage& frame) {
   if (frame.rays < kMinRays || frame.rays > gnc::RangeImage::kMaxRays) return std::nullopt;
   if (frame.fov_urad < gnc::kMinFov_urad || frame.fov_urad > gnc::kMaxFov_urad) return std::nullopt;

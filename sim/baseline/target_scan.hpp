@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
-#include "sim/world/sensor/occlusion.hpp"
+#include "sim/world/sensor/range_grid.hpp"
+#include "sim/world/sensor/range_noise.hpp"
 
 namespace tumblesight::sim {
 
@@ -31,9 +32,6 @@ struct TargetScan {
   Eigen::Vector3d direction(int ray) const;  // LRF, unit
   bool on_target(int ray) const { return kind[ray] == RayKind::kReturn || kind[ray] == RayKind::kLost; }
 };
-
-// One-sigma noise of a range (paper, sensor table).
-double range_sigma_m(double range_m);
 
 // Nothing when the frame's rays or field of view are out of the sensor's limits or too few rays return.
 std::optional<TargetScan> scan_of(const gnc::RangeImage& frame);

@@ -16,8 +16,7 @@
 #include "sim/cli/target_setup.hpp"
 #include "sim/terminal/table.hpp"
 #include "sim/terminal/text_file.hpp"
-#include "sim/world/scenario/sequence.hpp"
-#include "sim/world/sensor/flash_lidar.hpp"
+#include "sim/world/frame_renderer.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
@@ -25,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSequences = 5;
+constexpr std::uint64_t kSequences = 5;
 
 struct BenchArguments {
   std::string target = "near_shoemaker";
@@ -36,13 +35,12 @@ struct BenchArguments {
 std::vector<gnc::RangeImage> rendered_frames(const std::string& target) {
   const TriangleMesh mesh = target_by_name(target);
   const FlashLidar lidar(mesh);
-  const ScenarioSettings settings;
+  const FrameRenderer renderer(lidar, swath_m(mesh));
   std::vector<gnc::RangeImage> frames;
-  for (int i = 0; i < kSequences; ++i) {
-    const Sequence sequence = make_sequence(settings, 1, static_cast<std::uint32_t>(i));
-    for (std::size_t k = 0; k < sequence.frames.size(); ++k) {
-      frames.emplace_back();
-      lidar.expose(sequence.frames[k], sensor_settings(settings.condition), swath_m(mesh), k, frames.back());
+  for (std::uint64_t i = 0; i < kSequences; ++i) {
+    const Sequence sequence = make_sequence({}, 1, i);
+    for (std::uint32_t k = 0; k < sequence.frames.size(); ++k) {
+      renderer.render(sequence, k, frames.emplace_back());
     }
   }
   return frames;
@@ -58,7 +56,7 @@ void say(const std::string& what) {
   fmt::print(stderr, "  measuring {}\n", what);
 }
 
-// Peers that are not there are said to be missing; one whose outputs differ ends the run.
+// A runtime that is not installed is reported as left out; one whose outputs differ ends the run.
 void bench_peers(const BenchArguments& arguments, const std::string& float32_path,
                  const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
   const auto model = read_float32_model(float32_path);
@@ -106,7 +104,7 @@ void bench(const BenchArguments& arguments) {
   const std::string fixed_path = shipped_model_path(arguments.target);
   const std::string float32_path = shipped_model_path(arguments.target + ".float32");
   const std::vector<gnc::RangeImage> frames = rendered_frames(arguments.target);
-  fmt::print("\n  {}, {:.1f} M multiply-accumulates a frame, one thread\n\n", arguments.target,
+  fmt::print("\n  {}, {:.1f} M multiply-accumulates per frame, one thread\n\n", arguments.target,
              1e-6 * static_cast<double>(gnc::kMacCount));
   std::fflush(stdout);
   std::vector<BenchRow> rows;
@@ -123,13 +121,13 @@ void bench(const BenchArguments& arguments) {
 void add_bench_command(CLI::App& app) {
   auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command =
-      app.add_subcommand("bench", "Measure the flight network's speed, beside other runtimes'");
+      app.add_subcommand("bench", "Measure the speed of the flight network and of other runtimes");
   command->footer(
-      "\nOne thread, the shipped model in both numerics, every instruction set of this processor. A step "
-      "goes\n"
-      "from ranges to quaternion; the network alone is what the other runtimes do as well. The peak is\n"
-      "measured: the same multiply-accumulate instructions without any memory.\n\n"
-      "ONNX Runtime takes part when its library is there: npm install --prefix build onnxruntime-node\n");
+      "\nMeasures one thread with the shipped model in both numerics and with every instruction set of this\n"
+      "processor. A step goes from ranges to quaternion. Other runtimes execute the network alone. The peak "
+      "is\n"
+      "measured with the same multiply-accumulate instructions without memory access.\n\n"
+      "ONNX Runtime is measured if its library is installed: npm install --prefix build onnxruntime-node\n");
   command->add_option("--target", arguments->target, "spacecraft whose model is measured")
       ->check(one_of(target_names()))
       ->type_name("NAME")

@@ -1,4 +1,4 @@
-// `tumblesight bench`: how fast the flight network is, with every numerics and instruction set, and beside
+// tumblesight bench: the speed of the flight network in both numerics with every instruction set, and of
 // other runtimes.
 #pragma once
 

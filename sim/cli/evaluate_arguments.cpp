@@ -69,6 +69,7 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
   add_output_options(command, arguments);
   add_paper_options(command, arguments);
   command.footer(
+      "\nConditions\n" + condition_explanations() +
       "\nThe error is the angle between true and estimated attitude in the last frame of a sequence; ± is "
       "one\n"
       "standard error. Template matching, the classical way, sees renderings of the same mesh as the "

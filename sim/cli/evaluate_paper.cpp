@@ -65,7 +65,7 @@ struct Job {
 
 Job job_of(const EvaluateArguments& arguments, const PlannedSubject& planned) {
   Job job{set_up_subject(planned.scenario), experiment_settings(arguments)};
-  job.settings.conditions = paper_conditions(planned.scenario.target);
+  job.settings.conditions = evaluated_conditions(planned.scenario.target);
   job.settings.curves = planned.curves;
   if (!planned.baseline) job.settings.baseline_sequences = 0;
   if (!arguments.sequences_given) job.settings.tumbling_sequences = kPaperTumblingSequences;

@@ -1,10 +1,11 @@
 #include "sim/cli/float32_beside.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 
@@ -44,7 +45,7 @@ NumericsComparison Float32Beside::compare(const std::vector<FrameResult>& result
     answer = std::find_if(answer, answers_.end(), same);
     if (answer == answers_.end()) break;
     if (result.valid && answer->valid) {
-      differences.push_back(angular_error_rad(result.rcnn, answer->rcnn) * 180.0 / M_PI);
+      differences.push_back(kDegPerRad * angular_error_rad(result.rcnn, answer->rcnn));
     }
   }
   if (!differences.empty()) {

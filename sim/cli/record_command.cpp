@@ -7,13 +7,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "hal/replay/recording.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/target_setup.hpp"
+#include "sim/recording/make_recording.hpp"
 #include "sim/terminal/progress.hpp"
-#include "sim/world/scenario/random.hpp"
-#include "sim/world/scenario/sequence.hpp"
-#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -21,30 +18,6 @@ namespace {
 struct RecordArguments {
   ScenarioArguments scenario;
   std::string out;
-};
-
-// Between two sequences, so that the application takes the second for a new one.
-constexpr std::int64_t kPause_frames = 2;
-
-class Recorder {
- public:
-  Recorder(std::uint16_t rays, std::uint32_t frames) : bytes_(hal::replay::kRecordingHeaderSize) {
-    hal::replay::write_recording_header(rays, frames, bytes_.data());
-  }
-  void add(const gnc::RangeImage& frame) {
-    const std::size_t size = bytes_.size();
-    bytes_.resize(size + hal::replay::kRecordedFrameSize);
-    bytes_.resize(size + hal::replay::write_recorded_frame(frame, bytes_.data() + size));
-  }
-  const std::vector<std::uint8_t>& finish() {
-    const std::size_t size = bytes_.size();
-    bytes_.resize(size + hal::replay::kRecordingCrcSize);
-    hal::replay::write_recording_crc(bytes_.data(), size, bytes_.data() + size);
-    return bytes_;
-  }
-
- private:
-  std::vector<std::uint8_t> bytes_;
 };
 
 void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes) {
@@ -57,30 +30,19 @@ void record(const RecordArguments& arguments) {
   const ScenarioArguments& wanted = arguments.scenario;
   require_writable("--out", arguments.out);
   const TargetSetup target = set_up_target(wanted);
-  ScenarioSettings settings;
-  settings.condition = condition_from(wanted.condition);
-  settings.frames = static_cast<int>(wanted.frames);
-  if (target.inertia_kg_m2) settings.inertia_kg_m2 = *target.inertia_kg_m2;
-  const SensorSettings sensor = sensor_settings(settings.condition);
+  RecordingSettings settings;
+  settings.scenario =
+      scenario_settings(condition_from(wanted.condition), wanted.frames, wanted.target, target.inertia_kg_m2);
+  settings.seed = wanted.seed;
+  settings.sequences = wanted.sequences;
   const FlashLidar lidar(target.mesh);
+  const FrameRenderer renderer(lidar, 1e-3 * target.projection.swath_mm);
 
   const std::uint32_t total = wanted.sequences * wanted.frames;
-  Recorder recorder(static_cast<std::uint16_t>(sensor.rays), total);
-  const auto frame = std::make_unique<gnc::RangeImage>();
   ProgressBar bar("recording", "frames", total);
-  for (std::uint32_t i = 0; i < wanted.sequences; ++i) {
-    const Sequence sequence = make_sequence(settings, wanted.seed, i);
-    for (std::uint32_t k = 0; k < wanted.frames; ++k) {
-      lidar.expose(sequence.frames[k], sensor, target.projection.swath_mm / 1000.0,
-                   mix(sequence.noise_seed, k), *frame);
-      frame->sequence_number = i * wanted.frames + k;
-      frame->exposure_time_ns = kFramePeriod_ns * (frame->sequence_number + kPause_frames * i);
-      recorder.add(*frame);
-      bar.update(frame->sequence_number + 1);
-    }
-  }
+  const std::vector<std::uint8_t> bytes =
+      make_recording(renderer, settings, [&](std::uint32_t done) { bar.update(done); });
   bar.finish();
-  const std::vector<std::uint8_t>& bytes = recorder.finish();
   write_file(arguments.out, bytes);
   fmt::print("\n  {} {} frames of {}, {} bytes: {}\n\n", total, wanted.condition, wanted.target, bytes.size(),
              full_path(arguments.out));
@@ -91,16 +53,19 @@ void record(const RecordArguments& arguments) {
 void add_record_command(CLI::App& app) {
   auto arguments = std::make_shared<RecordArguments>();
   arguments->scenario.sequences = 2;
-  CLI::App* command = app.add_subcommand("record", "Render frames into a file, for flight_replay on a board");
+  CLI::App* command =
+      app.add_subcommand("record", "Render frames into a recording, for flight_replay on a board");
   command->footer(
-      "\nWhat the LiDAR would have delivered, a frame each 2.7 s; hal/replay/recording.hpp has the "
-      "format.\n\n"
-      "Example: what flies on the processors of the audit\n"
+      "\nThe file holds the frames of the LiDAR, one every 2.7 s, with a pause between two sequences.\n"
+      "hal/replay/recording.hpp describes the format.\n\n"
+      "Conditions\n" +
+      condition_explanations() +
+      "\nExample: a recording as the audit replays it on every processor\n"
       "  tumblesight record --target near_shoemaker --condition degraded --out frames.tslr\n");
   add_target_options(*command, arguments->scenario);
   add_condition_option(*command, arguments->scenario);
   add_sequence_options(*command, arguments->scenario);
-  command->add_option("--out", arguments->out, "Recording to write")->required()->type_name("FILE");
+  command->add_option("--out", arguments->out, "recording to write")->required()->type_name("FILE");
   command->callback([arguments] { record(*arguments); });
 }
 

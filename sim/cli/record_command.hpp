@@ -1,4 +1,5 @@
-// tumblesight record: rendered frames as a recording, for the flight application where no simulator is.
+// tumblesight record: rendered frames as a recording, for the flight application on a machine without
+// simulator.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// From arguments to what an experiment measures.
+// Makes the subject of an experiment from arguments.
 #pragma once
 
 #include "sim/cli/arguments.hpp"
@@ -6,8 +6,8 @@
 
 namespace tumblesight::sim {
 
-// Prints what a user should know of the mesh and the model on the standard error stream. Throws as
-// set_up_target does, and std::runtime_error that names the fault of a model image that is refused.
+// Prints warnings about the mesh and the model to the standard error stream. Throws as set_up_target does,
+// and std::runtime_error that gives the reason if the model image is refused.
 Subject set_up_subject(const ScenarioArguments& arguments);
 
 }  // namespace tumblesight::sim

@@ -9,12 +9,12 @@ namespace tumblesight::sim {
 void add_surface_options(CLI::App& command, SurfaceArguments& arguments) {
   command
       .add_option("--mesh", arguments.meshes,
-                  "Surface of the target: a CAD file, or 'parametric' for the shipped one; may be repeated")
+                  "surface of the target: a CAD file, or 'parametric' for the shipped mesh; may be repeated")
       ->capture_default_str();
-  command.add_option("--mesh-up", arguments.mesh_up, "Axis that points up in the files")
+  command.add_option("--mesh-up", arguments.mesh_up, "axis that points up in the files")
       ->check(one_of({"y", "z"}))
       ->capture_default_str();
-  command.add_option("--mesh-scale", arguments.mesh_scale, "Metres to a unit of the files")
+  command.add_option("--mesh-scale", arguments.mesh_scale, "metres per unit of the files")
       ->check(number(1e-6, 1e6))
       ->capture_default_str();
 }

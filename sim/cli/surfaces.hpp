@@ -1,5 +1,4 @@
-// The surfaces that a network is trained for or measured on: shipped meshes and CAD files, one option for
-// all.
+// The surfaces that a network is trained for or quantized with: shipped meshes and CAD files, in one option.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -22,7 +22,7 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kSwathTolerance = 0.02;  // of the model's swath: half an image cell to either side
+constexpr double kSwathTolerance = 0.02;  // relative to the model's swath: half an image cell on either side
 
 TriangleMesh load_mesh(const ScenarioArguments& arguments) {
   if (arguments.mesh.empty()) return target_by_name(arguments.target);
@@ -37,16 +37,11 @@ std::string model_path(const ScenarioArguments& arguments) {
   return shipped_model_path(arguments.target + (arguments.numerics == "float32" ? ".float32" : ""));
 }
 
-bool ships(const std::string& target) {
-  const std::vector<std::string> names = target_names();
-  return std::find(names.begin(), names.end(), target) != names.end();
-}
-
-// Of anything between a hand's and a space station's size; beyond that arithmetic ends before bodies do.
+// Covers bodies from the size of a hand to that of a space station and keeps the arithmetic in range.
 constexpr double kSmallestMoment_kg_m2 = 1e-6;
 constexpr double kLargestMoment_kg_m2 = 1e12;
 
-// No principal moment of a body exceeds the sum of the other two, and none is smaller than a model image may
+// No principal moment of a body exceeds the sum of the other two. None may be smaller than a model image can
 // hold.
 bool is_possible(const Eigen::Matrix3d& inertia) {
   if (!inertia.allFinite() || inertia.cwiseAbs().maxCoeff() > kLargestMoment_kg_m2) return false;
@@ -59,13 +54,13 @@ bool is_possible(const Eigen::Matrix3d& inertia) {
 std::optional<Eigen::Matrix3d> inertia_of(const ScenarioArguments& arguments) {
   const std::vector<double>& i = arguments.inertia;
   if (i.empty()) {
-    return ships(arguments.target) ? std::optional(inertia_kg_m2(arguments.target)) : std::nullopt;
+    return find_target(arguments.target) ? std::optional(inertia_kg_m2(arguments.target)) : std::nullopt;
   }
   Eigen::Matrix3d inertia;
   inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
   if (!is_possible(inertia)) {
     throw std::invalid_argument(fmt::format(
-        "--inertia {}: no body has it; its principal moments must be {:g} to {:g} kg m2, none larger "
+        "--inertia {}: not a possible inertia; its principal moments must be {:g} to {:g} kg m2, none larger "
         "than the sum of the other two and none below {:g} of their mean",
         fmt::join(i, ","), kSmallestMoment_kg_m2, kLargestMoment_kg_m2, gnc::kSmallestMoment));
   }
@@ -78,7 +73,7 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
     const bool shipped = arguments.model.empty();
     throw std::runtime_error(
         fmt::format("model image '{}' does not exist{}", path,
-                    shipped ? "; train one for this target, or name one with --model" : ""));
+                    shipped ? "; train one for this target, or give one with --model" : ""));
   }
   std::ifstream file(path, std::ios::binary);
   std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -88,8 +83,9 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
 
 void frame_by_mesh(TargetSetup& setup) {
   setup.projection = projection_of(setup.mesh);
-  setup.warnings.push_back(fmt::format("Model image '{}' is refused: {}; frames cover the mesh's own swath.",
-                                       setup.model_path, gnc::to_string(setup.model_status)));
+  setup.warnings.push_back(
+      fmt::format("Model image '{}' is refused: {}; the frames cover the swath of the mesh.",
+                  setup.model_path, gnc::to_string(setup.model_status)));
 }
 
 void frame_by_model(TargetSetup& setup) {
@@ -97,12 +93,12 @@ void frame_by_model(TargetSetup& setup) {
   const double of_model = 1e-3 * setup.projection.swath_mm;
   const double of_mesh = swath_m(setup.mesh);
   if (std::abs(of_mesh - of_model) <= kSwathTolerance * of_model) return;
-  setup.warnings.push_back(
-      fmt::format("The mesh needs a swath of {:.2f} m, the network was trained for {:.2f} m, which is used: "
-                  "{}",
-                  of_mesh, of_model,
-                  of_mesh > of_model ? "parts of the target may lie outside the image."
-                                     : "the target looks smaller than the network expects."));
+  setup.warnings.push_back(fmt::format(
+      "The mesh needs a swath of {:.2f} m, but the network was trained for {:.2f} m, which is used: "
+      "{}",
+      of_mesh, of_model,
+      of_mesh > of_model ? "parts of the target may lie outside the image."
+                         : "the target looks smaller than the network expects."));
 }
 
 }  // namespace

@@ -7,16 +7,16 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kFlat = 1.5;
-constexpr double kMostOffsetCost_percent = 10.0;
+constexpr double kMaxFlatness = 1.5;
+constexpr double kMaxOffsetCost_percent = 10.0;
 
 void add_flatness(std::vector<Check>& checks, const std::string& what, const Curve& curve) {
   const double value = flatness(curve);
-  if (value > 0.0) checks.push_back({what, value, kFlat, "×"});
+  if (value > 0.0) checks.push_back({what, value, kMaxFlatness, "×"});
 }
 
-// The mean of the second half: a single late frame's error is as uncertain as the 10th's, and the largest of
-// many is always larger.
+// Uses the mean of the second half: the error of a single late frame is as uncertain as that of the 10th, and
+// the largest of many is biased upwards.
 void add_drift(std::vector<Check>& checks, const Curve& long_run) {
   if (long_run.size() < 2 * kFramesPerSequence) return;
   const double tenth_deg = long_run[kFramesPerSequence - 1].rcnn.mean_deg;
@@ -50,7 +50,7 @@ std::vector<Check> checks_of(const SubjectResult& subject) {
   }
   if (nominal != nullptr && offset != nullptr && nominal->rcnn.mean_deg > 0.0) {
     checks.push_back({"a target off the boresight costs",
-                      100.0 * (offset->rcnn.mean_deg / nominal->rcnn.mean_deg - 1.0), kMostOffsetCost_percent,
+                      100.0 * (offset->rcnn.mean_deg / nominal->rcnn.mean_deg - 1.0), kMaxOffsetCost_percent,
                       " %"});
   }
   return checks;

@@ -1,4 +1,4 @@
-// Checks: what is required of a network beyond its errors in the tables, and whether it holds.
+// Checks: requirements on a network beyond its errors in the tables.
 #pragma once
 
 #include <string>
@@ -8,19 +8,20 @@
 
 namespace tumblesight::sim {
 
-// Mean at most the goal's and share at least the goal's.
+// Whether the mean is at most the goal's and the share at least the goal's. False for an empty summary.
 bool meets(const ErrorSummary& summary, const PaperFigure& goal);
 
 struct Check {
   std::string what;
   double value = 0.0;
-  double limit = 0.0;  // holds up to here
-  std::string unit;    // behind both
+  double limit = 0.0;  // inclusive
+  std::string unit;    // of both, as appended to the number
   bool holds() const { return value <= limit; }
 };
 
-// Of what was run only: flat over range and rate (largest over smallest bin), cost of a target off the
-// boresight, drift in a long run (mean of its second half over the tenth frame's).
+// The checks that the runs of this subject allow: flatness over range and rate (largest over smallest bin),
+// cost of a target off the boresight, drift in a long run (mean of its second half over the mean of the tenth
+// frame).
 std::vector<Check> checks_of(const SubjectResult& subject);
 
 // "1.32×, at most 1.5×"

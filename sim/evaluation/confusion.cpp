@@ -1,10 +1,17 @@
 #include "sim/evaluation/confusion.hpp"
 
+#include <cstdlib>
+
+#include "sim/world/math/angles.hpp"
+#include "sim/world/target/targets.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegPerRad = 180.0 / kPi;
+// "+90°", "180°", "−90°"
+std::string angle_name(int deg) {
+  return (deg < 0 ? "−" : deg < 180 ? "+" : "") + std::to_string(std::abs(deg)) + "°";
+}
 
 NearSymmetry about_z(const std::string& name, double angle_rad) {
   return {name, Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()))};
@@ -15,7 +22,7 @@ struct Nearest {
   double error_deg;
 };
 
-// q_lrf_trf = truth * symmetry is the attitude that looks like the truth.
+// truth * symmetry is the attitude that looks like the truth.
 Nearest nearest_symmetry(const FrameResult& result, Estimator estimator,
                          const std::vector<NearSymmetry>& symmetries) {
   Nearest nearest{0, 180.0};
@@ -32,12 +39,12 @@ Nearest nearest_symmetry(const FrameResult& result, Estimator estimator,
 
 std::vector<NearSymmetry> near_symmetries(const std::string& target) {
   std::vector<NearSymmetry> symmetries{about_z("right", 0.0)};
-  if (target == "near_shoemaker") {
-    symmetries.push_back(about_z("+90°", 0.5 * kPi));
-    symmetries.push_back(about_z("180°", kPi));
-    symmetries.push_back(about_z("−90°", -0.5 * kPi));
+  const TargetRow* shipped = find_target(target);
+  const int fold = shipped != nullptr ? shipped->symmetry_about_z : 1;
+  for (int i = 1; i < fold; ++i) {
+    const int signed_step = 2 * i > fold ? i - fold : i;  // angles from -180 (excluded) to 180 degrees
+    symmetries.push_back(about_z(angle_name(360 * signed_step / fold), 2.0 * signed_step / fold * kPi));
   }
-  if (target == "magellan") symmetries.push_back(about_z("180°", kPi));
   return symmetries;
 }
 

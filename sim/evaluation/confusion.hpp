@@ -11,14 +11,14 @@
 
 namespace tumblesight::sim {
 
-// A rotation of the target in its own frame after which it looks nearly as before. Those known are all about
-// z and go by their angle.
+// A rotation of the target in its own frame after which it looks nearly the same. Named by its angle about z.
 struct NearSymmetry {
   std::string name;
   Eigen::Quaterniond q_trf;
 };
 
-// The identity ("right") first; alone for targets without any, a user's own among them.
+// From TargetRow::symmetry_about_z. The identity ("right") comes first. It is the only one for a target
+// without a symmetry and for one that does not ship.
 std::vector<NearSymmetry> near_symmetries(const std::string& target);
 
 inline constexpr double kConfusionLimit_deg = 20.0;  // the paper's limit of success
@@ -27,13 +27,15 @@ struct Confusion {
   std::vector<std::string> names;  // of the symmetries
   std::vector<double> shares;      // 0..1 of the estimates, within kConfusionLimit_deg of the true attitude
                                    // turned by that symmetry
-  double none = 0.0;               // of no such attitude
-  double blur_deg = 0.0;  // mean error to the nearest of these attitudes: what is left without confusion
+  double none = 0.0;               // share 0..1 of the estimates that are near no such attitude
+  // Mean error to the nearest of these attitudes: what is left without confusion.
+  double blur_deg = 0.0;
   double blur_standard_error_deg = 0.0;
   std::size_t count = 0;
 };
 
-// An estimate that is missing counts as none, 180 degrees off. Of the baseline only frames where it was run.
+// A missing estimate counts as none and as 180 degrees off. For the baseline only the frames where it was run
+// count.
 Confusion confusion(const std::vector<FrameResult>& results, Estimator estimator,
                     const std::vector<NearSymmetry>& symmetries);
 

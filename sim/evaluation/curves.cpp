@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "sim/world/math/angles.hpp"
+
 namespace tumblesight::sim {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
 
 std::vector<double> even_edges(double low, double high, int bins) {
   std::vector<double> edges;
@@ -65,12 +65,12 @@ Curve errors_by_rate(const std::vector<FrameResult>& last) {
       even_edges(0.0, 20.0, 8));
 }
 
-double flatness(const Curve& curve, std::size_t least) {
+double flatness(const Curve& curve, std::size_t min_count) {
   double smallest = 0.0;
   double largest = 0.0;
   int used = 0;
   for (const CurvePoint& point : curve) {
-    if (point.rcnn.count < least) continue;
+    if (point.rcnn.count < min_count) continue;
     smallest = used == 0 ? point.rcnn.mean_deg : std::min(smallest, point.rcnn.mean_deg);
     largest = std::max(largest, point.rcnn.mean_deg);
     ++used;

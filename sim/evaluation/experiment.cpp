@@ -1,7 +1,5 @@
 #include "sim/evaluation/experiment.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
@@ -13,10 +11,10 @@ namespace {
 
 constexpr int kHiddenSteps = 10;
 constexpr double kHiddenStep = 0.05;
-constexpr std::uint32_t kSweepFraction = 3;  // a swept value gets a third of a cell's sequences
+constexpr std::uint32_t kSweepFraction = 3;  // a swept value runs a third of a cell's sequences
 constexpr std::uint32_t kLongFraction = 9;
 constexpr std::uint32_t kLongFrames = 200;
-constexpr std::uint32_t kMostLong = 1000;  // sequences, so that their frames fit in memory
+constexpr std::uint32_t kMaxLongSequences = 1000;  // limited by the memory for their frames
 
 struct Run {
   enum class Kind { kCell, kRateNorm, kHiddenShare, kLong };
@@ -28,7 +26,7 @@ struct Run {
 
 std::uint64_t steps_of(const Run& run, std::uint32_t sequences_done) {
   return std::uint64_t{sequences_done} * static_cast<std::uint64_t>(run.scenario.frames) +
-         kStepsAMatch * std::min(sequences_done, run.baseline_sequences);
+         kStepsPerMatch * std::min(sequences_done, run.baseline_sequences);
 }
 
 std::vector<Run> cells_of(const ExperimentSettings& settings) {
@@ -63,7 +61,7 @@ std::vector<Run> sweeps_of(const ExperimentSettings& settings) {
   runs.push_back(base);
   runs.back().kind = Run::Kind::kLong;
   runs.back().scenario.frames = static_cast<int>(kLongFrames);
-  runs.back().sequences = std::clamp(settings.sequences / kLongFraction, 1U, kMostLong);
+  runs.back().sequences = std::clamp(settings.sequences / kLongFraction, 1U, kMaxLongSequences);
   return runs;
 }
 
@@ -133,25 +131,6 @@ void take(const Run& run, const MonteCarloResult& result, SubjectResult& into) {
 
 }  // namespace
 
-bool needs_inertia(Condition condition) {
-  return condition == Condition::kTumbling || condition == Condition::kStress;
-}
-
-ScenarioSettings scenario_settings(Condition condition, std::uint32_t frames, const std::string& target,
-                                   const std::optional<Eigen::Matrix3d>& inertia_kg_m2) {
-  if (needs_inertia(condition) && !inertia_kg_m2) {
-    throw std::invalid_argument(
-        fmt::format("condition {} needs the inertia of '{}', which is not known: give --inertia "
-                    "Ixx,Iyy,Izz,Ixy,Ixz,Iyz in kg m2",
-                    to_string(condition), target));
-  }
-  ScenarioSettings settings;
-  settings.condition = condition;
-  settings.frames = static_cast<int>(frames);
-  if (inertia_kg_m2) settings.inertia_kg_m2 = *inertia_kg_m2;
-  return settings;
-}
-
 std::uint64_t steps_of(const ExperimentSettings& settings) {
   std::uint64_t steps = 0;
   for (const Run& run : runs_of(settings)) steps += steps_of(run, run.sequences);
@@ -167,6 +146,7 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
             .inertia_kg_m2;
   }
   const FlashLidar lidar(subject.mesh);
+  const FrameRenderer renderer(lidar, subject.swath_m);
   std::unique_ptr<TemplateMatcher> matcher;
   if (settings.baseline_sequences > 0) {
     matcher = std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m);
@@ -177,7 +157,7 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
     const MonteCarloSettings monte_carlo{run.scenario, settings.seed, run.sequences, run.baseline_sequences,
                                          settings.threads};
     take(run,
-         run_monte_carlo({lidar, subject.swath_m}, subject.model, matcher.get(), monte_carlo,
+         run_monte_carlo(renderer, subject.model, matcher.get(), monte_carlo,
                          [&](std::uint32_t sequences) { progress(done + steps_of(run, sequences)); }),
          result);
     done += steps_of(run, run.sequences);

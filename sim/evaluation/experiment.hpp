@@ -15,9 +15,9 @@ namespace tumblesight::sim {
 
 // What is measured.
 struct Subject {
-  std::string target;
+  std::string target;  // key
   std::string mesh_name;
-  TriangleMesh mesh;  // rendered for the frames and for the templates of the baseline alike
+  TriangleMesh mesh;  // rendered for the frames and for the templates of the baseline
   double swath_m = 0.0;
   std::string model_name;
   std::uint32_t model_crc32 = 0;
@@ -27,29 +27,24 @@ struct Subject {
 
 struct ExperimentSettings {
   std::vector<Condition> conditions{
-      Condition::kNominal};  // one cell each; the first is the base of the curves
+      Condition::kNominal};  // one cell each; the first one is the base of the curves
   std::uint64_t seed = 1;
   std::uint32_t sequences = 900;
   std::uint32_t tumbling_sequences = 900;
   std::uint32_t frames = kFramesPerSequence;
-  std::uint32_t baseline_sequences = 100;  // of each cell; 0: no baseline
-  bool curves = false;                     // the sweeps as well
+  std::uint32_t baseline_sequences = 100;  // per cell; 0: no baseline
+  bool curves = false;                     // run the sweeps too
   int threads = 1;
 };
 
-// tumbling and stress rotate as a rigid body does.
-bool needs_inertia(Condition condition);
-// Throws std::invalid_argument that says what to do if the condition needs an inertia and there is none.
-ScenarioSettings scenario_settings(Condition condition, std::uint32_t frames, const std::string& target,
-                                   const std::optional<Eigen::Matrix3d>& inertia_kg_m2);
-
-// The size of an experiment in steps of about equal duration: one a frame, and kStepsAMatch a match of the
-// baseline.
-inline constexpr std::uint64_t kStepsAMatch = 100;
+// The size of an experiment in steps of about equal duration: one per frame, and kStepsPerMatch per match of
+// the baseline.
+inline constexpr std::uint64_t kStepsPerMatch = 100;
 std::uint64_t steps_of(const ExperimentSettings& settings);
 
-// Runs cell after cell. `progress`: steps done so far, of steps_of(settings); called on the calling thread.
-// Throws std::invalid_argument for a model that is refused or an inertia that is missing.
+// Runs cell after cell. `progress`: steps done so far, out of steps_of(settings); called on the calling
+// thread. Throws std::invalid_argument if the model is refused, an inertia is missing or there are no
+// conditions.
 SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& settings,
                              const std::function<void(std::uint64_t)>& progress);
 

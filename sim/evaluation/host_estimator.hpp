@@ -1,4 +1,5 @@
-// HostEstimator: the flight estimator in the numerics that a model image is of.
+// HostEstimator: the flight estimator on the ground, in the numerics of the given model image (fixed point or
+// float32).
 #pragma once
 
 #include <cstdint>
@@ -11,11 +12,11 @@ namespace tumblesight::sim {
 
 class HostEstimator {
  public:
-  // `image` must stay. `expected_target`: nullptr to accept any.
+  // `image` must outlive this object. `expected_target`: the target that the image must be for; nullptr: any.
   explicit HostEstimator(const std::vector<std::uint8_t>& image, const char* expected_target = nullptr);
 
   gnc::ModelStatus status() const { return status_; }
-  // The rest requires status() to be kOk.
+  // The functions below require status() to be kOk. They are those of gnc::AttitudeEstimator.
   const gnc::ModelHeader& model() const;
   void reset();
   [[nodiscard]] gnc::FrameStatus step(const gnc::RangeImage& frame, gnc::AttitudeEstimate& estimate);

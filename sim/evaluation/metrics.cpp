@@ -5,11 +5,10 @@
 #include <numeric>
 
 #include "sim/evaluation/statistics.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
 
 double share_within(const std::vector<double>& errors_deg, double limit_deg) {
   const auto inside =
@@ -48,7 +47,7 @@ double median(std::vector<double> values) {
 ErrorSummary summarise(std::vector<double> errors_deg) {
   ErrorSummary summary;
   if (errors_deg.empty()) return summary;
-  // A sorted sum does not depend on the order in which the errors came.
+  // The sum of sorted values does not depend on the order of the results.
   std::sort(errors_deg.begin(), errors_deg.end());
   summary.count = errors_deg.size();
   summary.mean_deg =

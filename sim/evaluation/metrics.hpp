@@ -1,4 +1,4 @@
-// Angular errors of attitude estimates and the figures that sum them up.
+// Metrics: angular errors of attitude estimates and their summaries.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,34 +8,34 @@
 
 namespace tumblesight::sim {
 
-// One frame of one sequence: the true attitude and what was estimated from it. Quaternions TRF to LRF; their
-// sign is of no matter, and they need not be exactly unit.
+// One frame of one sequence: the true attitude and the estimates. Quaternions TRF to LRF, of either sign, and
+// approximately unit.
 struct FrameResult {
   std::uint32_t sequence = 0;
   std::uint32_t frame = 0;  // index in the sequence
-  bool valid = false;       // an estimate was given; otherwise the frame counts as 180 degrees off
+  bool valid = false;       // an estimate was given; otherwise the error counts as 180 degrees
   Eigen::Quaterniond truth{1.0, 0.0, 0.0, 0.0};
   Eigen::Quaterniond rcnn{1.0, 0.0, 0.0, 0.0};  // from all frames of the sequence so far
   Eigen::Quaterniond cnn{1.0, 0.0, 0.0, 0.0};   // from this frame alone
-  double rcnn_predicted_rad = 0.0;              // the errors that the network itself expects
+  double rcnn_predicted_rad = 0.0;              // the errors that the network predicts for its estimates
   double cnn_predicted_rad = 0.0;
   double range_m = 0.0;
   double rate_rad_s = 0.0;      // norm
-  bool has_baseline = false;    // the template matcher was given this frame
-  bool baseline_valid = false;  // and found an attitude
+  bool has_baseline = false;    // the template matcher was run on this frame
+  bool baseline_valid = false;  // it found an attitude
   Eigen::Quaterniond baseline{1.0, 0.0, 0.0, 0.0};
 };
 
 enum class Estimator { kRcnn, kCnn, kBaseline };
 
-// theta = 2 acos|q . q_hat| (paper, loss), in [0, pi]; computed through atan2, which also resolves small
-// angles.
+// theta = 2 acos|q . q_hat| (paper, loss), in [0, pi]. Computed with atan2, which is accurate for small
+// angles too.
 double angular_error_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 bool has_estimate(const FrameResult& result, Estimator estimator);
 const Eigen::Quaterniond& estimate(const FrameResult& result, Estimator estimator);
-double error_deg(const FrameResult& result, Estimator estimator);  // 180 without an estimate
+double error_deg(const FrameResult& result, Estimator estimator);  // 0..180; 180 without an estimate
 
-// Shares are 0..1, the limits themselves included. All zero when count is zero.
+// Shares are 0..1 and include the limit. All zero if count is zero.
 struct ErrorSummary {
   std::size_t count = 0;
   double mean_deg = 0.0;
@@ -46,11 +46,11 @@ struct ErrorSummary {
 };
 
 ErrorSummary summarise(std::vector<double> errors_deg);
-double median(std::vector<double> values);  // mean of the middle two when even; 0 when empty
+double median(std::vector<double> values);  // mean of the middle two for an even count; 0 if empty
 
-// The last frame (index frames - 1) of every sequence that got there, in the order of `results`.
+// The last frame (index frames - 1) of every sequence that has one, in the order of `results`.
 std::vector<FrameResult> last_frames(const std::vector<FrameResult>& results, std::uint32_t frames);
-// Errors of one estimator in the last frames; of the baseline only where it was run.
+// Errors of one estimator in the last frames; for the baseline only where it was run.
 std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& results, std::uint32_t frames,
                                           Estimator estimator);
 

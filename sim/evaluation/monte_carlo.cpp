@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "sim/evaluation/host_estimator.hpp"
-#include "sim/world/scenario/random.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -16,7 +15,7 @@ namespace {
 constexpr std::chrono::milliseconds kProgressPeriod{50};
 
 struct Job {
-  const Sensor& sensor;
+  const FrameRenderer& renderer;
   const std::vector<std::uint8_t>& model;
   const TemplateMatcher* matcher;
   const MonteCarloSettings& settings;
@@ -24,8 +23,8 @@ struct Job {
   std::atomic<std::uint32_t> next{0};
   std::atomic<std::uint32_t> done{0};
   std::vector<FrameResult> results;
-  std::vector<double> network_ms;   // one a frame
-  std::vector<double> baseline_ms;  // one a sequence
+  std::vector<double> network_ms;   // per frame
+  std::vector<double> baseline_ms;  // per sequence
 };
 
 class Stopwatch {
@@ -62,15 +61,11 @@ void run_baseline(Job& job, const gnc::RangeImage& frame, FrameResult& result) {
 }
 
 void run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::RangeImage& frame) {
-  const ScenarioSettings& scenario = job.settings.scenario;
-  const Sequence sequence = make_sequence(scenario, job.settings.seed, index);
+  const Sequence sequence = make_sequence(job.settings.scenario, job.settings.seed, index);
   estimator.reset();
   for (std::uint32_t k = 0; k < job.frames; ++k) {
     const FrameTruth& truth = sequence.frames[k];
-    job.sensor.lidar.expose(truth, sensor_settings(scenario.condition), job.sensor.swath_m,
-                            mix(sequence.noise_seed, k), frame);
-    frame.sequence_number = k;
-    frame.exposure_time_ns = kFramePeriod_ns * k;
+    job.renderer.render(sequence, k, frame);
     gnc::AttitudeEstimate estimate;
     const std::size_t place = std::size_t{index} * job.frames + k;
     const Stopwatch stopwatch;
@@ -99,12 +94,12 @@ void work(Job& job) {
 
 }  // namespace
 
-MonteCarloResult run_monte_carlo(const Sensor& sensor, const std::vector<std::uint8_t>& model,
+MonteCarloResult run_monte_carlo(const FrameRenderer& renderer, const std::vector<std::uint8_t>& model,
                                  const TemplateMatcher* matcher, const MonteCarloSettings& settings,
                                  const std::function<void(std::uint32_t)>& progress) {
   if (settings.scenario.frames < 1) throw std::invalid_argument("a sequence needs at least one frame");
   const auto frames = static_cast<std::uint32_t>(settings.scenario.frames);
-  Job job{sensor, model, matcher, settings, frames, {}, {}, {}, {}, {}};
+  Job job{renderer, model, matcher, settings, frames, {}, {}, {}, {}, {}};
   job.results.resize(std::size_t{settings.sequences} * frames);
   job.network_ms.resize(job.results.size());
   if (matcher != nullptr) job.baseline_ms.resize(std::min(settings.baseline_sequences, settings.sequences));

@@ -1,18 +1,22 @@
 #include "sim/evaluation/paper.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
+
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-constexpr PaperFigure kNone{-1.0, 0.0};
+constexpr PaperFigure kNotPublished{-1.0, 0.0};
 
 struct Row {
-  const char* target;
+  const char* target;  // TargetRow::paper_key
   Condition condition;
   PaperFigure rcnn;
   PaperFigure goal;
-  PaperFigure cnn = kNone;
+  PaperFigure cnn = kNotPublished;
 };
 
 constexpr Row kRows[] = {
@@ -34,9 +38,10 @@ constexpr Row kRows[] = {
 }  // namespace
 
 PaperFigures paper_figures(const std::string& target, Condition condition) {
-  const std::string published = target == "sacd_aquarius_stowed" ? "sacd_aquarius" : target;
+  const TargetRow* shipped = find_target(target);
+  if (shipped == nullptr || shipped->paper_key == nullptr) return {};
   const auto* row = std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) {
-    return r.target == published && r.condition == condition;
+    return std::string_view(r.target) == shipped->paper_key && r.condition == condition;
   });
   if (row == std::end(kRows)) return {};
   PaperFigures figures;
@@ -45,15 +50,6 @@ PaperFigures paper_figures(const std::string& target, Condition condition) {
   if (condition == Condition::kTumbling) figures.sequences = kPaperTumblingSequences;
   if (row->cnn.mean_deg >= 0.0) figures.cnn = row->cnn;
   return figures;
-}
-
-std::vector<Condition> paper_conditions(const std::string& target) {
-  std::vector<Condition> conditions{Condition::kNominal, Condition::kDegraded, Condition::kOccluded,
-                                    Condition::kTumbling};
-  if (target == "near_shoemaker") conditions.push_back(Condition::kStress);
-  conditions.push_back(Condition::kOffset);
-  conditions.push_back(Condition::kOutliers);
-  return conditions;
 }
 
 }  // namespace tumblesight::sim

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/world/math/angles.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
-
-double share(std::size_t part, std::size_t all, double of_none) {
-  return all == 0 ? of_none : static_cast<double>(part) / static_cast<double>(all);
+double share(std::size_t part, std::size_t all, double if_none) {
+  return all == 0 ? if_none : static_cast<double>(part) / static_cast<double>(all);
 }
 
 }  // namespace

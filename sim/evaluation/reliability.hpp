@@ -1,5 +1,5 @@
-// Reliability: is the error that the network predicts for itself right, and does it tell when the attitude is
-// wrong?
+// Reliability: whether the error that the network predicts for its estimate is correct, and whether it
+// detects wrong attitudes.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,8 @@
 
 namespace tumblesight::sim {
 
-inline constexpr double kWrong_deg = 20.0;  // an attitude farther off is wrong (the paper's limit of success)
+inline constexpr double kWrong_deg =
+    20.0;  // a larger error is a wrong attitude (the paper's limit of success)
 inline constexpr std::size_t kReliabilityBins = 10;
 
 struct ReliabilityBin {
@@ -17,28 +18,28 @@ struct ReliabilityBin {
   ErrorSummary real;
 };
 
-// The RCNN's estimates in ascending order of their predicted error, cut into kReliabilityBins parts of equal
-// count (fewer when there are fewer estimates). Estimates that were not given are left out: no error was
+// The RCNN's estimates in ascending order of their predicted error, divided into kReliabilityBins parts of
+// equal count (fewer if there are fewer estimates). Frames without an estimate are left out: no error was
 // predicted.
 std::vector<ReliabilityBin> reliability(const std::vector<FrameResult>& results);
 
-// What a consumer does who throws away estimates with a predicted error above a threshold.
+// The effect of rejecting every estimate with a predicted error above a threshold.
 struct DetectionPoint {
   double threshold_deg = 0.0;
-  std::size_t wrong = 0;          // estimates that are wrong
-  std::size_t wrong_flagged = 0;  // of these, thrown away
+  std::size_t wrong = 0;          // wrong estimates
+  std::size_t wrong_flagged = 0;  // wrong estimates that are rejected
   std::size_t right = 0;
-  std::size_t right_flagged = 0;  // thrown away for nothing
+  std::size_t right_flagged = 0;  // right estimates that are rejected
 
-  double detected() const;      // share 0..1 of the wrong ones; 1 when there are none
-  double false_alarms() const;  // share 0..1 of the right ones
-  double wrong_among_kept() const;
+  double detected() const;          // share 0..1 of the wrong estimates that is rejected; 1 if there are none
+  double false_alarms() const;      // share 0..1 of the right estimates that is rejected; 0 if there are none
+  double wrong_among_kept() const;  // share 0..1 of the accepted estimates that is wrong; 0 if there are none
 };
 
 const std::vector<double>& detection_thresholds_deg();
-// One point a threshold.
+// One point per threshold.
 std::vector<DetectionPoint> detection(const std::vector<FrameResult>& results);
-// Adds the counts of `more`, threshold by threshold; to nothing gives `more`.
+// Adds the counts of `more` per threshold. An empty `sum` becomes `more`.
 void add(std::vector<DetectionPoint>& sum, const std::vector<DetectionPoint>& more);
 
 }  // namespace tumblesight::sim

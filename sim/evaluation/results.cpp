@@ -17,14 +17,6 @@ std::vector<DetectionPoint> detection_of(const SubjectResult& subject) {
   return sum;
 }
 
-std::string display_name(const std::string& target) {
-  if (target == "near_shoemaker") return "NEAR Shoemaker";
-  if (target == "magellan") return "Magellan";
-  if (target == "sacd_aquarius") return "SAC-D/Aquarius";
-  if (target == "sacd_aquarius_stowed") return "SAC-D/Aquarius, stowed";
-  return target;
-}
-
 std::string title_of(const SubjectResult& subject) {
   const bool own_model = subject.model == subject.target;
   const std::string rule = subject.model == subject.target + "_paper_rule"

@@ -1,4 +1,4 @@
-// Results: every figure of an experiment, and nothing else: what tables, files and reports are made from.
+// Results: every figure of an experiment. Tables, files and reports are made from it alone.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,22 @@
 #include "sim/evaluation/paper.hpp"
 #include "sim/evaluation/reliability.hpp"
 #include "sim/world/scenario/sequence.hpp"
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 
 // The name of the mesh that ships for a target.
 inline constexpr const char* kParametricMesh = "parametric";
 
-// One condition, last frames unless said otherwise.
+// The figures of one condition: of last frames unless stated otherwise.
 struct CellResult {
   Condition condition = Condition::kNominal;
   std::uint32_t sequences = 0;
-  std::uint32_t frames = 0;  // a sequence
+  std::uint32_t frames = 0;  // per sequence
   ErrorSummary rcnn;
   ErrorSummary cnn;
-  std::optional<ErrorSummary> baseline;  // over the first sequences only: see its count
-  double network_ms = 0.0;               // a frame, one thread
+  std::optional<ErrorSummary> baseline;  // over the first sequences only, see its count
+  double network_ms = 0.0;               // per frame, one thread
   double baseline_ms = 0.0;
   Curve by_frame;
   Curve by_range;
@@ -40,21 +41,21 @@ struct CellResult {
   std::vector<DetectionPoint> detection;    // every frame
 };
 
-// Runs beside the conditions: `base` is the condition they are made under.
+// Further runs, made under the condition `base`.
 struct Sweeps {
   Condition base = Condition::kNominal;
-  Curve by_rate_norm;                 // rates drawn by their norm; cells draw them by components
-  Curve by_hidden_share;              // at: share 0..1 of the target's returns that an occluder hides
+  Curve by_rate_norm;                 // RateLaw::kNorm; cells use kComponents
+  Curve by_hidden_share;              // at: share 0..1 of the target's returns that is hidden
   Curve long_run;                     // by frame
-  std::uint32_t sweep_sequences = 0;  // of each hidden share
+  std::uint32_t sweep_sequences = 0;  // per hidden share
   std::uint32_t long_sequences = 0;
 };
 
 // One network on one mesh.
 struct SubjectResult {
-  std::string target;
-  std::string mesh;   // kParametricMesh or the name of the file
-  std::string model;  // file name without its ending
+  std::string target;  // key
+  std::string mesh;    // kParametricMesh or the name of the file
+  std::string model;   // file name without its extension
   std::uint32_t model_crc32 = 0;
   std::vector<CellResult> cells;
   std::optional<Sweeps> sweeps;
@@ -62,21 +63,19 @@ struct SubjectResult {
 
 struct Results {
   std::uint64_t seed = 0;
-  std::string command;             // that makes them again
-  std::string generated;           // when, for the reader
+  std::string command;             // reproduces them
+  std::string generated;           // date and time, as text
   std::vector<std::string> notes;  // what is missing, and why
   std::vector<SubjectResult> subjects;
 };
 
-// The figure of one condition, or nullptr when it was not run.
+// The figures of one condition, or nullptr if it was not run.
 const CellResult* cell_of(const SubjectResult& subject, Condition condition);
-// Detection over all conditions of a subject.
+// Detection, summed over all conditions of a subject.
 std::vector<DetectionPoint> detection_of(const SubjectResult& subject);
 
-// "NEAR Shoemaker" for "near_shoemaker"; a target that does not ship keeps its own name.
-std::string display_name(const std::string& target);
-// "NEAR Shoemaker, parametric mesh" or "NEAR Shoemaker, near.stl"; a model that is not the target's own is
-// named as well.
+// "NEAR Shoemaker, parametric mesh" or "NEAR Shoemaker, near.stl". A model that is not the target's own is
+// named too.
 std::string title_of(const SubjectResult& subject);
 
 }  // namespace tumblesight::sim

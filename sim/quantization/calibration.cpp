@@ -4,7 +4,8 @@
 #include <stdexcept>
 
 #include "gnc/rcnn/network_flow.hpp"
-#include "sim/world/scenario/random.hpp"
+#include "sim/world/frame_renderer.hpp"
+#include "sim/world/math/random.hpp"
 #include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
@@ -12,7 +13,7 @@ namespace shape = gnc::shape;
 namespace {
 
 constexpr int kFrames = 10;
-constexpr std::uint64_t kSeed = 0xCA11B8A7E;  // mixed below, as training's is: no seed a person gives
+constexpr std::uint64_t kSeed = 0xCA11B8A7E;  // hashed below: no user gives such a seed
 
 template <class Number, int kSide, int kChannels>
 void append(const gnc::PaddedImage<Number, kSide, kChannels>& image, std::vector<double>& to) {
@@ -28,19 +29,17 @@ void append(const std::array<Number, kCount>& numbers, std::vector<double>& to) 
 
 ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
                                    const gnc::DepthProjection& projection, std::uint64_t number) {
-  constexpr Condition kConditions[] = {Condition::kNominal, Condition::kDegraded, Condition::kOccluded,
-                                       Condition::kOutliers};
+  const std::vector<Condition> conditions = calibration_conditions();
   auto frame = std::make_unique<gnc::RangeImage>();
   auto scratch = std::make_unique<gnc::DepthImageScratch>();
-  const FlashLidar& lidar = *lidars[number % lidars.size()];
+  const FrameRenderer renderer(*lidars[number % lidars.size()], 1e-3 * projection.swath_mm);
   ScenarioSettings scenario;
-  scenario.condition = kConditions[number / lidars.size() % std::size(kConditions)];
+  scenario.condition = conditions[number / lidars.size() % conditions.size()];
   scenario.frames = kFrames;
   const Sequence truth = make_sequence(scenario, mix(kSeed, number), number);
   ImageSequence images;
   for (int k = 0; k < kFrames; ++k) {
-    lidar.expose(truth.frames[k], sensor_settings(scenario.condition), 1e-3 * projection.swath_mm,
-                 mix(truth.noise_seed, static_cast<std::uint64_t>(k)), *frame);
+    renderer.render(truth, static_cast<std::uint32_t>(k), *frame);
     gnc::DepthImage image;
     if (make_depth_image(*frame, projection, *scratch, image) != gnc::FrameStatus::kOk) break;
     images.push_back(image);
@@ -50,8 +49,8 @@ ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
 
 namespace {
 
-// One sequence through the estimator's own steps: note(layer, output) of everything, the attitudes as the
-// result.
+// Runs one sequence through the steps of the estimator and returns the attitudes. Calls note(layer, output)
+// for every layer.
 template <class N, class Note>
 std::vector<gnc::Matrix3<typename N::Real>> follow(const gnc::NetworkWeights<N>& weights,
                                                    const gnc::MotionLaws<typename N::Real>& laws,

@@ -1,4 +1,4 @@
-// Calibration: rendered sequences, and what the layers of a network make of them.
+// Calibration: rendered sequences, and the values of a network's layers for them.
 #pragma once
 
 #include <cstdint>
@@ -14,27 +14,29 @@ namespace tumblesight::sim {
 
 using ImageSequence = std::vector<gnc::DepthImage>;
 
-// Sequence `number` of ten frames, meshes and conditions taking turns, of seeds that neither training nor
-// evaluation draws from. It ends before a frame of which the sensor sees too little.
+// Calibration sequence `number`: ten frames; meshes and calibration_conditions() take turns. Neither training
+// nor evaluation uses its seed. The sequence ends before a frame in which the sensor sees too little of the
+// target.
 ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
                                    const gnc::DepthProjection& projection, std::uint64_t number);
 
-// What one hidden layer gave, channel by channel, over a whole sequence: value of channel c of pixel p of
-// frame f at
-// [(f * pixels + p) * channels + c]. Borders are left out.
+// By layer: its outputs over a whole sequence. Channel c of pixel p of frame f is at [(f * pixels + p) *
+// channels + c]. Borders are left out.
 using Observations = std::map<std::string, std::vector<double>>;
 
-// Runs one sequence through the estimator's own steps. Numbers are the layers' own: in fixed point integers.
+// Runs one sequence through the steps of the estimator. Values are in the numerics of the network: integers
+// in fixed point.
 template <class N>
 Observations observe(const gnc::NetworkWeights<N>& weights, const gnc::MotionLaws<typename N::Real>& laws,
                      const ImageSequence& sequence);
 
-// The attitudes that the estimator gives for the sequence, frame by frame.
+// The estimated attitudes (TRF to LRF), one per frame.
 template <class N>
 std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(const gnc::NetworkWeights<N>& weights,
                                                          const gnc::MotionLaws<typename N::Real>& laws,
                                                          const ImageSequence& sequence);
 
+// Number of channels of a layer; throws std::out_of_range for an unknown name.
 int channels_of(const std::string& layer);
 
 }  // namespace tumblesight::sim

@@ -1,5 +1,7 @@
 #include "sim/quantization/quantize_file.hpp"
 
+#include "sim/world/math/angles.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -24,7 +26,7 @@ std::vector<double> differences_deg(const Float32Model& model, const gnc::Networ
     const auto found = attitudes_of<FixedPoint>(fixed, fixed_laws, sequence);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const Eigen::Quaterniond other = quaternion(gnc::converted<float>(found[i]));
-      differences.push_back(angular_error_rad(quaternion(expected[i]), other) * 180.0 / M_PI);
+      differences.push_back(kDegPerRad * angular_error_rad(quaternion(expected[i]), other));
     }
   }
   return differences;

@@ -1,25 +1,15 @@
 #include "sim/report/palette.hpp"
 
+#include <cstddef>
+#include <iterator>
+
 namespace tumblesight::sim {
 
+// One colour per condition in the order of the table of conditions, and spare ones for conditions to come.
 const char* colour_of(Condition condition) {
-  switch (condition) {
-    case Condition::kNominal:
-      return kRcnnColour;
-    case Condition::kDegraded:
-      return "#3fa0a8";
-    case Condition::kOccluded:
-      return "#b83227";
-    case Condition::kTumbling:
-      return "#3a8a3f";
-    case Condition::kStress:
-      return "#7a4fa0";
-    case Condition::kOffset:
-      return "#b58a1b";
-    case Condition::kOutliers:
-      return "#5a6069";
-  }
-  return "#000000";
+  static constexpr const char* kColours[] = {kRcnnColour, "#3fa0a8", "#b83227", "#3a8a3f", "#7a4fa0",
+                                             "#b58a1b",   "#5a6069", "#c25b8f", "#8a6d3b", "#4c7a9b"};
+  return kColours[static_cast<std::size_t>(condition) % std::size(kColours)];
 }
 
 }  // namespace tumblesight::sim

@@ -10,12 +10,12 @@
 #include "sim/report/error_figures.hpp"
 #include "sim/report/palette.hpp"
 #include "sim/report/picture.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr std::array<const char*, 3> kAxisColours{"#b83227", "#3a8a3f", "#2b5fb0"};
-constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
 constexpr std::size_t kMostDots = 1500;  // in the scatter, so that a long run's page stays small
 
 std::vector<FrameResult> of_sequence(const RunReport& report, std::uint32_t sequence) {

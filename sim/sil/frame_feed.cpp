@@ -1,7 +1,5 @@
 #include "sim/sil/frame_feed.hpp"
 
-#include "sim/world/scenario/random.hpp"
-
 namespace tumblesight::sim {
 namespace {
 
@@ -22,7 +20,7 @@ std::vector<PlannedStep> plan_steps(const std::vector<Sequence>& sequences) {
 
 FrameFeed::FrameFeed(const FlashLidar& lidar, double swath_m, const std::vector<Sequence>& sequences,
                      const std::vector<PlannedStep>& steps)
-    : lidar_(lidar), swath_m_(swath_m), sequences_(sequences), steps_(steps) {
+    : renderer_(lidar, swath_m), sequences_(sequences), steps_(steps) {
   start_rendering(0);
 }
 
@@ -40,11 +38,8 @@ void FrameFeed::start_rendering(std::size_t step) {
 
 void FrameFeed::render(std::size_t step, gnc::RangeImage& frame) const {
   const PlannedStep& plan = steps_[step];
-  const Sequence& sequence = sequences_[plan.sequence];
-  lidar_.expose(sequence.frames[plan.frame], sensor_settings(sequence.condition), swath_m_,
-                mix(sequence.noise_seed, plan.frame), frame);
-  frame.sequence_number = static_cast<std::uint32_t>(step);
-  frame.exposure_time_ns = plan.time_ns;
+  renderer_.render(sequences_[plan.sequence], plan.frame, {static_cast<std::uint32_t>(step), plan.time_ns},
+                   frame);
 }
 
 }  // namespace tumblesight::sim

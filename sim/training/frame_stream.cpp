@@ -4,13 +4,14 @@
 #include <stdexcept>
 
 #include "gnc/numerics/crc32.hpp"
-#include "sim/world/scenario/random.hpp"
+#include "sim/world/frame_renderer.hpp"
+#include "sim/world/math/random.hpp"
 #include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::uint64_t kUses = 4;   // batches made of one rendered group: each quarter turn of it
+constexpr std::uint64_t kUses = 4;   // batches per rendered group: one for each quarter turn
 constexpr std::uint64_t kAhead = 8;  // batches rendered ahead of the consumer
 constexpr int kSide = gnc::DepthImage::kSide;
 
@@ -21,20 +22,20 @@ struct Workspace {
   gnc::DepthImageScratch scratch;
 };
 
-// Frame `index` of a seed, and whether it can be used.
+// Renders frame `index` of a seed. False if the sensor sees too little of the target.
 bool try_render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t index, Workspace& work,
                 FrameTruth& truth) {
   const auto& lidar = *targets.lidars[index % targets.lidars.size()];
   const Condition condition = targets.conditions[(index / targets.lidars.size()) % targets.conditions.size()];
   const Sequence sequence = make_sequence({condition, 1}, seed, index);
   truth = sequence.frames.front();
-  lidar.expose(truth, sensor_settings(condition), 1e-3 * targets.projection.swath_mm, sequence.noise_seed,
-               work.frame);
+  FrameRenderer(lidar, 1e-3 * targets.projection.swath_mm, noise_seed_per_sequence)
+      .render(sequence, 0, work.frame);
   return make_depth_image(work.frame, targets.projection, work.scratch, work.image) == gnc::FrameStatus::kOk;
 }
 
-// Renders frame `index`; draws again in the rare case that the sensor sees too little. Every target has shown
-// that it can be seen (make_training_targets), so this ends.
+// Renders frame `index`. In the rare case that the sensor sees too little it is drawn again from another
+// seed. The loop ends, because make_training_targets has checked that every target is visible.
 FrameTruth render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t index, Workspace& work) {
   FrameTruth truth;
   for (std::uint64_t attempt = 0; !try_render(targets, mix(seed, attempt), index, work, truth); ++attempt) {
@@ -42,7 +43,7 @@ FrameTruth render(const TrainingTargets& targets, std::uint64_t seed, std::uint6
   return truth;
 }
 
-// At least half of a few dozen frames of every mesh must be usable.
+// Requires that at least half of a few dozen frames of every mesh can be used.
 void require_visible(const TrainingTargets& targets, const std::vector<TriangleMesh>& meshes) {
   constexpr std::uint64_t kTries = 32;
   const auto work = std::make_unique<Workspace>();
@@ -71,7 +72,7 @@ std::uint32_t crc32_of(const std::vector<TriangleMesh>& meshes) {
   return crc.value();
 }
 
-// Turned a quarter about the view axis, counter-clockwise as the image is seen: (x, z) -> (-z, x).
+// Rotation by a quarter turn about the view axis, counter-clockwise in the image: (x, z) -> (-z, x).
 torch::Tensor quarter_turn() {
   return torch::tensor({0.0F, 0.0F, -1.0F, 0.0F, 1.0F, 0.0F, 1.0F, 0.0F, 0.0F}).view({3, 3});
 }
@@ -90,41 +91,6 @@ torch::Tensor rotation_tensor(const FrameTruth& truth, const Eigen::Matrix3f& r_
 }
 
 }  // namespace
-
-std::vector<Condition> all_conditions() {
-  return {Condition::kNominal,  Condition::kDegraded, Condition::kOccluded, Condition::kTumbling,
-          Condition::kOffset,   Condition::kNominal,  Condition::kDegraded, Condition::kOccluded,
-          Condition::kTumbling, Condition::kOutliers};
-}
-
-std::vector<Condition> paper_conditions() {
-  return {Condition::kNominal, Condition::kDegraded};
-}
-
-std::vector<std::string> training_condition_words() {
-  std::vector<std::string> words{"all", "paper"};
-  for (const std::string& name : condition_names()) {
-    if (name != to_string(Condition::kStress)) words.push_back(name);
-  }
-  return words;
-}
-
-std::vector<Condition> training_conditions(const std::vector<std::string>& words) {
-  std::vector<Condition> conditions;
-  for (const std::string& word : words) {
-    const std::vector<Condition> more = word == "all"     ? all_conditions()
-                                        : word == "paper" ? paper_conditions()
-                                                          : std::vector<Condition>{condition_from(word)};
-    conditions.insert(conditions.end(), more.begin(), more.end());
-  }
-  return conditions;
-}
-
-std::uint64_t number_of(const std::vector<Condition>& conditions) {
-  std::uint64_t number = 0;
-  for (const Condition condition : conditions) number = mix(number, static_cast<std::uint64_t>(condition));
-  return number;
-}
 
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,

@@ -1,4 +1,5 @@
-// FrameStream: batches of single rendered frames, made by worker threads while the network trains.
+// FrameStream: batches of single rendered frames for training the CNN, made by worker threads while the
+// network trains.
 #pragma once
 
 #include <torch/torch.h>
@@ -14,48 +15,41 @@
 
 #include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
+#include "sim/training/training_conditions.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 
-// The targets' surfaces that one network is trained for, and how it sees them.
+// The surfaces of the target that one network is trained for, and how it sees them.
 struct TrainingTargets {
-  std::vector<std::unique_ptr<FlashLidar>> lidars;  // one a mesh
-  gnc::DepthProjection projection;
-  std::uint32_t meshes_crc32 = 0;     // names the surfaces
-  std::vector<Condition> conditions;  // that take turns; one may be there more than once
+  std::vector<std::unique_ptr<FlashLidar>> lidars;  // one per mesh
+  gnc::DepthProjection projection;                  // holds all meshes
+  std::uint32_t meshes_crc32 = 0;                   // identifies the surfaces
+  std::vector<Condition> conditions;                // drawn in turn; may contain one more than once
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF
   gnc::Inertia<float> inertia;                                  // the same, as the flight code takes it
 };
-// What the shipped networks are trained on, and the paper's rule: nominal and degraded frames only.
-std::vector<Condition> all_conditions();
-std::vector<Condition> paper_conditions();
-// By words, one after the other: "all", "paper", or the name of a condition, which for the command line is
-// any but stress: that is for tests only. Throws std::invalid_argument for what is none.
-std::vector<std::string> training_condition_words();
-std::vector<Condition> training_conditions(const std::vector<std::string>& words);
-std::uint64_t number_of(const std::vector<Condition>& conditions);  // names them, for a fingerprint
 
-// Throws std::runtime_error that names a mesh of which the sensor never sees enough, and
-// std::invalid_argument for an impossible inertia.
+// Throws std::runtime_error that names a mesh of which the sensor sees too little in most frames, and
+// std::invalid_argument for an inertia that is not symmetric and positive definite.
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,
                                       const Eigen::Matrix3d& inertia_kg_m2 = Eigen::Matrix3d::Identity());
 
 struct FrameBatch {
-  torch::Tensor images;      // [B, 1, 100, 100]
-  torch::Tensor r_view_trf;  // [B, 3, 3], in the images' view
+  torch::Tensor images;      // [B, 1, 100, 100], depth 0..1
+  torch::Tensor r_view_trf;  // [B, 3, 3], attitude in the image's view frame
 };
 
-// The endless, seeded supply. Meshes and conditions take turns. Each rendered group of
-// frames gives four batches, turned about the view axis by quarter turns: exact new views for free, since the
-// image is square.
+// An endless supply of batches, determined by the seed. Meshes and conditions are drawn in turn. Each
+// rendered group of frames gives four batches, one for each quarter turn about the view axis: the image is
+// square, so that these are exact new views at no rendering cost.
 class FrameStream {
  public:
   FrameStream(const TrainingTargets& targets, std::uint64_t seed, int batch, std::uint64_t first_batch,
               int workers);
   ~FrameStream();
-  FrameBatch next();  // in order, whatever the number of workers
+  FrameBatch next();  // the next batch; the order does not depend on the number of workers
 
  private:
   void work();
@@ -67,14 +61,14 @@ class FrameStream {
   std::condition_variable changed_;
   std::map<std::uint64_t, FrameBatch> ready_;
   std::uint64_t claimed_;  // next group to render
-  std::uint64_t wanted_;   // next batch to hand out
+  std::uint64_t wanted_;   // next batch to return
   bool stop_ = false;
   std::vector<std::thread> workers_;
 };
 
-// Group `group` of the supply, without threads (validation data: another seed).
+// Group `group` of the supply, without threads. Validation data uses another seed.
 FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch);
-// The same frames turned about the view axis, counter-clockwise as the image is seen.
+// The same frames, turned about the view axis counter-clockwise in the image.
 FrameBatch turned(const FrameBatch& batch, std::int64_t quarter_turns);
 
 }  // namespace tumblesight::sim

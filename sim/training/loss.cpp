@@ -2,15 +2,15 @@
 
 #include "gnc/rcnn/network_shape.hpp"
 #include "sim/training/rcnn_module.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;
 
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLogitWeight = 0.3;
 constexpr double kErrorWeight = 0.1;
-constexpr double kAsGood_rad = 2.0 * kPi / 180.0;
+constexpr double kAsGood_rad = 2.0 * kRadPerDeg;
 
 torch::Tensor expected_error_loss(const torch::Tensor& logit, const torch::Tensor& error_rad) {
   return torch::binary_cross_entropy_with_logits(logit, (error_rad.detach() / kPi).clamp(0.0, 1.0));

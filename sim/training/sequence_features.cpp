@@ -5,7 +5,8 @@
 
 #include "gnc/rcnn/hypotheses.hpp"
 #include "gnc/rcnn/network_shape.hpp"
-#include "sim/world/scenario/random.hpp"
+#include "sim/world/frame_renderer.hpp"
+#include "sim/world/math/random.hpp"
 #include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
@@ -24,8 +25,9 @@ struct Workspace {
   gnc::OutputVector<float> output;
 };
 
-// Of a rigid body: principal moments of three point-mass spreads, axes turned at random.
-Eigen::Matrix3d any_inertia(Random random) {
+// The inertia of some rigid body: principal moments from the spread of its mass along three axes, axes turned
+// at random.
+Eigen::Matrix3d random_inertia(Random random) {
   Eigen::Vector3d spread;
   for (int i = 0; i < 3; ++i) spread[i] = random.uniform(0.3, 1.0);
   Eigen::Vector4d q;
@@ -41,7 +43,7 @@ ScenarioSettings scenario_of(const TrainingTargets& targets, std::uint64_t seed,
   ScenarioSettings settings{targets.conditions[turn % targets.conditions.size()], kFrames};
   settings.rate_law = (turn / targets.conditions.size()) % 2 == 0 ? RateLaw::kComponents : RateLaw::kNorm;
   Random random(mix(mix(seed, number), 4));
-  settings.inertia_kg_m2 = random.uniform() < 0.5 ? targets.inertia_kg_m2 : any_inertia(random);
+  settings.inertia_kg_m2 = random.uniform() < 0.5 ? targets.inertia_kg_m2 : random_inertia(random);
   return settings;
 }
 
@@ -64,17 +66,16 @@ void put_frame(const gnc::Network<gnc::Float32>& network, const gnc::Hypotheses<
   put_rotation(truth, all.r_lrf_trf.data_ptr<float>() + 9 * row);
 }
 
-// One sequence into row `index` of `all`; false when the sensor saw too little in one of its frames.
+// Computes one sequence into row `index` of `all`. False if the sensor sees too little in one of its frames.
 bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t index, Workspace& work,
              FeatureSet& all) {
   const auto number = static_cast<std::uint64_t>(index);
-  const auto& lidar = *targets.lidars[number % targets.lidars.size()];
-  const ScenarioSettings settings = scenario_of(targets, seed, number);
-  const Sequence sequence = make_sequence(settings, seed, number);
+  const FrameRenderer renderer(*targets.lidars[number % targets.lidars.size()],
+                               1e-3 * targets.projection.swath_mm);
+  const Sequence sequence = make_sequence(scenario_of(targets, seed, number), seed, number);
   for (int k = 0; k < kFrames; ++k) {
     const FrameTruth& truth = sequence.frames[k];
-    lidar.expose(truth, sensor_settings(settings.condition), 1e-3 * targets.projection.swath_mm,
-                 mix(sequence.noise_seed, static_cast<std::uint64_t>(k)), work.frame);
+    renderer.render(sequence, static_cast<std::uint32_t>(k), work.frame);
     if (make_depth_image(work.frame, targets.projection, work.scratch, work.image) != gnc::FrameStatus::kOk)
       return false;
     work.network.infer_frame(work.image, work.output);

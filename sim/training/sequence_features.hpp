@@ -1,6 +1,6 @@
-// SequenceFeatures: what the frozen CNN says of whole rendered sequences: the LSTM's training data. Computed
-// by worker threads with the flight network itself, so that the LSTM learns on the very numbers it will see
-// in flight.
+// SequenceFeatures: the output of the frozen CNN for whole rendered sequences, which is the training data of
+// the LSTM. Worker threads compute it with the flight network, so that the LSTM is trained on the same
+// numbers as in flight.
 #pragma once
 
 #include <torch/torch.h>
@@ -17,28 +17,29 @@
 
 namespace tumblesight::sim {
 
-inline constexpr int kTrainingFrames =
-    12;  // longer than the paper's sequences: in flight there is no last frame
+// Longer than the paper's sequences: in flight there is no last frame.
+inline constexpr int kTrainingFrames = 12;
 
 struct FeatureSet {
   SequenceHypotheses hypotheses;
-  torch::Tensor r_lrf_trf;  // [N, T, 3, 3] the truth
+  torch::Tensor r_lrf_trf;  // [N, T, 3, 3], true attitudes
 };
+// The first `count` sequences, without a copy.
 FeatureSet first_of(const FeatureSet& data, std::int64_t count);
+// The given sequences, copied to `device`.
 FeatureSet rows_of(const FeatureSet& data, const torch::Tensor& rows, const torch::Device& device);
 
 class SequenceFeatures {
  public:
-  // Starts to compute sequences 0 .. count-1 of the seeded supply; meshes and conditions take
-  // turns, and so do the laws of the rate; of the bodies that tumble, every
-  // second has another inertia than the target, lest the network trust it blindly. `weights` must outlive
-  // this object.
+  // Starts to compute sequences 0 .. count-1 of the seed. Meshes, conditions and rate laws are drawn in turn.
+  // Half of the tumbling bodies have a random inertia instead of the target's, so that the network does not
+  // rely on it. `targets` and `weights` must outlive this object.
   SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights<gnc::Float32>& weights,
                    std::uint64_t seed, std::int64_t count, int workers);
   ~SequenceFeatures();
 
-  std::int64_t ready();  // how many, from the first one on
-  // The first `count` sequences, waiting until they are there.
+  std::int64_t ready();  // number of sequences computed without a gap, from the first one
+  // The first `count` sequences. Waits until they are computed.
   FeatureSet first(std::int64_t count);
 
  private:

@@ -5,6 +5,7 @@
 #include "sim/training/loss.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -72,7 +73,7 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.checkpoint_s = settings.checkpoint_s;
   stage.fingerprint = fingerprint({settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
                                    static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32,
-                                   number_of(targets.conditions), beginning,
+                                   conditions_hash(targets.conditions), beginning,
                                    bits_of(settings.cnn_learning_rate), settings.bfloat16});
   return stage;
 }
@@ -80,11 +81,10 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
 }  // namespace
 
 void fill_errors(TrainingPoint& point, const torch::Tensor& best_rad, const torch::Tensor& chosen_rad) {
-  constexpr double kDegrees = 57.29577951308232;
-  point.best_deg = best_rad.mean().item<double>() * kDegrees;
-  point.mean_deg = chosen_rad.mean().item<double>() * kDegrees;
-  point.median_deg = chosen_rad.median().item<double>() * kDegrees;
-  point.within_20deg = (chosen_rad * kDegrees <= 20.0).to(torch::kFloat).mean().item<double>();
+  point.best_deg = best_rad.mean().item<double>() * kDegPerRad;
+  point.mean_deg = chosen_rad.mean().item<double>() * kDegPerRad;
+  point.median_deg = chosen_rad.median().item<double>() * kDegPerRad;
+  point.within_20deg = (chosen_rad * kDegPerRad <= 20.0).to(torch::kFloat).mean().item<double>();
 }
 
 bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn,

@@ -12,6 +12,7 @@
 #include "sim/training/sequence_features.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
+#include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -94,7 +95,7 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.fingerprint = fingerprint({settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
                                    static_cast<std::uint64_t>(settings.rcnn_iterations),
                                    static_cast<std::uint64_t>(settings.rcnn_batch), targets.meshes_crc32,
-                                   number_of(targets.conditions), crc32_of_cnn(weights),
+                                   conditions_hash(targets.conditions), crc32_of_cnn(weights),
                                    bits_of(settings.rcnn_learning_rate), crc32_of(targets.inertia)});
   return stage;
 }

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "gnc/rcnn/attitude_estimator.hpp"
+#include "sim/world/frame_renderer.hpp"
 #include "sim/world/scenario/sequence.hpp"
-#include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/targets.hpp"
 #include "tests/support/test_models.hpp"
 
@@ -43,12 +43,11 @@ std::vector<RangeImage> frames() {
   }
   const sim::TriangleMesh mesh = sim::target_by_name("near_shoemaker");
   const sim::FlashLidar lidar(mesh);
-  sim::ScenarioSettings settings;
-  const sim::Sequence sequence = sim::make_sequence(settings, 3, 0);
-  for (std::size_t i = 0; i < 6; ++i) {
+  const sim::FrameRenderer renderer(lidar, sim::swath_m(mesh));
+  const sim::Sequence sequence = sim::make_sequence({}, 3, 0);
+  for (std::uint32_t i = 0; i < 6; ++i) {
     all.push_back(empty_frame());
-    lidar.expose(sequence.frames[i], sim::sensor_settings(settings.condition), sim::swath_m(mesh), i,
-                 all.back());
+    renderer.render(sequence, i, all.back());
   }
   return all;
 }

@@ -1,15 +1,16 @@
-// Records of shipped models: JSON of any kind is read or refused with a message.
+// Figures of shipped models: any JSON is read or refused with a message.
 #include <stdexcept>
 
-#include "sim/evaluation/record.hpp"
+#include "sim/evaluation/shipped_figures.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tumblesight;
   try {
-    for (const sim::Record& record : sim::read_records(fuzz::Input(data, size).text(), "some.json")) {
-      (void)sim::worse_than(record.rcnn, record.cnn);
-      fuzz::require(!sim::to_string(record.condition).empty(), "a condition that was accepted has a name");
+    for (const sim::ShippedFigures& figures :
+         sim::read_shipped_figures(fuzz::Input(data, size).text(), "some.json")) {
+      (void)sim::worse_than(figures.rcnn, figures.cnn);
+      fuzz::require(!sim::to_string(figures.condition).empty(), "a condition that was accepted has a name");
     }
   } catch (const std::runtime_error& error) {
     const std::string message = error.what();

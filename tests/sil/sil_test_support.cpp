@@ -11,7 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "sim/world/scenario/random.hpp"
+#include "sim/world/math/random.hpp"
 #include "sim/world/target/near_shoemaker.hpp"
 #include "tests/support/test_models.hpp"
 
@@ -109,7 +109,7 @@ const std::vector<gnc::RangeImage>& frames() {
     const Sequence sequence = make_sequence({Condition::kNominal}, 5, 0);
     std::vector<gnc::RangeImage> images(sequence.frames.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
-      lidar().expose(sequence.frames[i], sensor_settings(sequence.condition), kSwath_m, i, images[i]);
+      FrameRenderer(lidar(), kSwath_m).render(sequence, static_cast<std::uint32_t>(i), images[i]);
     }
     return images;
   }();

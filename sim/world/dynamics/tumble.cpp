@@ -8,9 +8,9 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kLongestStep_s = 0.05;
+constexpr double kMaxStep_s = 0.05;
 
-// Both the state and its time derivative: quaternion (x, y, z, w), then the rate.
+// The state or its time derivative: quaternion (x, y, z, w), then the rate.
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 
 }  // namespace
@@ -18,7 +18,7 @@ using Vector7d = Eigen::Matrix<double, 7, 1>;
 Tumble::Tumble(const Eigen::Matrix3d& inertia_trf_kg_m2) : inertia_(inertia_trf_kg_m2) {
   const bool symmetric = inertia_.isApprox(inertia_.transpose(), 1e-9);
   if (!symmetric || inertia_.llt().info() != Eigen::Success) {
-    throw std::invalid_argument("an inertia must be symmetric and positive definite");
+    throw std::invalid_argument("the inertia must be symmetric and positive definite");
   }
   inverse_ = inertia_.inverse();
 }
@@ -34,7 +34,7 @@ TumbleState Tumble::after(const TumbleState& state, double time_s) const {
   };
   Vector7d x;
   x << state.q_lrf_trf.coeffs(), state.rate_trf_rad_s;
-  const int steps = std::max(1, static_cast<int>(std::ceil(time_s / kLongestStep_s)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(time_s / kMaxStep_s)));
   const double h = time_s / steps;
   for (int i = 0; i < steps; ++i) {
     const Vector7d k1 = derivative(x);

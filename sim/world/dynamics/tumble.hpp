@@ -1,4 +1,4 @@
-// Torque-free rotation of a rigid body.
+// Tumble: torque-free rotation of a rigid body.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,15 +7,17 @@ namespace tumblesight::sim {
 
 struct TumbleState {
   Eigen::Quaterniond q_lrf_trf;
-  Eigen::Vector3d rate_trf_rad_s;  // body axes
+  Eigen::Vector3d rate_trf_rad_s;  // in body axes
 };
 
-// Euler's equation I w' = (I w) x w with q' = q (0, w) / 2 (paper, tumbling test), integrated by a classical
-// Runge-Kutta method in steps of at most 50 ms: at 20 deg/s the error of a sequence stays below 1e-6 rad.
+// Euler's equation I w' = (I w) x w with q' = q (0, w) / 2 (paper, tumbling test). Integrated with the
+// classical fourth-order Runge-Kutta method in steps of at most 50 ms: at 20 deg/s the error after a sequence
+// is below 1e-6 rad. Rigid body, no energy dissipation, no torques.
 class Tumble {
  public:
-  // `inertia_trf_kg_m2` must be symmetric and positive definite; throws std::invalid_argument if not.
+  // Throws std::invalid_argument if `inertia_trf_kg_m2` is not symmetric and positive definite.
   explicit Tumble(const Eigen::Matrix3d& inertia_trf_kg_m2);
+  // State `time_s` (at least 0) after `state`.
   TumbleState after(const TumbleState& state, double time_s) const;
 
  private:

@@ -7,33 +7,20 @@
 
 #include "sim/world/dynamics/spin.hpp"
 #include "sim/world/dynamics/tumble.hpp"
-#include "sim/world/scenario/random.hpp"
+#include "sim/world/math/angles.hpp"
+#include "sim/world/math/random.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kMinRange_m = 20.0;
 constexpr double kMaxRange_m = 100.0;
-constexpr double kMaxRate_rad_s = 20.0 * kPi / 180.0;
-constexpr double kMinHidden = 0.05;
-constexpr double kMaxHidden = 0.30;
-
-struct NamedCondition {
-  Condition condition;
-  const char* name;
-};
-
-constexpr std::array<NamedCondition, 7> kConditions{{{Condition::kNominal, "nominal"},
-                                                     {Condition::kDegraded, "degraded"},
-                                                     {Condition::kOccluded, "occluded"},
-                                                     {Condition::kTumbling, "tumbling"},
-                                                     {Condition::kStress, "stress"},
-                                                     {Condition::kOffset, "offset"},
-                                                     {Condition::kOutliers, "outliers"}}};
+constexpr double kMaxRate_rad_s = 20.0 * kRadPerDeg;
+constexpr double kMinHiddenShare = 0.05;
+constexpr double kMaxHiddenShare = 0.30;
 
 Eigen::Quaterniond uniform_attitude(Random& random) {
-  // One a statement: the order in which a compiler evaluates arguments is its own.
+  // One draw per statement: the evaluation order of arguments is unspecified.
   const double z = random.normal();
   const double y = random.normal();
   const double x = random.normal();
@@ -41,7 +28,7 @@ Eigen::Quaterniond uniform_attitude(Random& random) {
   return Eigen::Quaterniond(w, x, y, z).normalized();
 }
 
-// Components uniform; drawn again until the norm is within the limit.
+// Uniform components, drawn until the norm is within the limit.
 Eigen::Vector3d uniform_rate(Random& random) {
   Eigen::Vector3d rate;
   do {
@@ -50,7 +37,7 @@ Eigen::Vector3d uniform_rate(Random& random) {
   return rate;
 }
 
-// Draws of one purpose have a stream of their own, so that a new one does not move the others.
+// Every purpose has a stream of its own, so that a new draw does not change the others.
 Random stream_for(std::uint64_t seed, std::uint64_t index, std::uint64_t purpose) {
   return Random(mix(mix(seed, index), purpose));
 }
@@ -63,7 +50,7 @@ Eigen::Vector3d apply_rate_settings(const ScenarioSettings& settings, Eigen::Vec
 
 void rotate_freely(const ScenarioSettings& settings, std::vector<FrameTruth>& frames) {
   Eigen::Matrix3d inertia = settings.inertia_kg_m2;
-  if (settings.condition == Condition::kStress) inertia(2, 2) *= 0.5;
+  inertia(2, 2) *= row_of(settings.condition).inertia_zz_factor;
   const Tumble tumble(inertia);
   TumbleState state{frames.front().q_lrf_trf,
                     frames.front().q_lrf_trf.conjugate() * frames.front().rate_lrf_rad_s};
@@ -74,13 +61,13 @@ void rotate_freely(const ScenarioSettings& settings, std::vector<FrameTruth>& fr
   }
 }
 
-// One occluder for the whole sequence; the side it comes from turns and its axis wanders, each steadily.
+// One occluder for the whole sequence. Its side and its axis move at constant speed.
 void add_occluder(const ScenarioSettings& settings, Random random, std::vector<FrameTruth>& frames) {
   constexpr std::array<OccluderShape, 3> kShapes{OccluderShape::kArm, OccluderShape::kMast,
                                                  OccluderShape::kPanelEdge};
   Occluder occluder;
   occluder.shape = kShapes[random.next() % kShapes.size()];
-  const double drawn_share = random.uniform(kMinHidden, kMaxHidden);
+  const double drawn_share = random.uniform(kMinHiddenShare, kMaxHiddenShare);
   occluder.hidden_share = settings.hidden_share.value_or(drawn_share);
   occluder.distance_m = random.uniform(1.5, 8.0);
   const double side_rad = random.uniform(0.0, 2.0 * kPi);
@@ -96,9 +83,9 @@ void add_occluder(const ScenarioSettings& settings, Random random, std::vector<F
   }
 }
 
-void set_off_boresight(Random random, std::vector<FrameTruth>& frames) {
+void move_off_boresight(double max_offset_swaths, Random random, std::vector<FrameTruth>& frames) {
   const double angle_rad = random.uniform(0.0, 2.0 * kPi);
-  const double offset_swaths = random.uniform(0.0, kMaxOffset_swaths);
+  const double offset_swaths = random.uniform(0.0, max_offset_swaths);
   for (FrameTruth& frame : frames) {
     frame.offset_swaths = offset_swaths * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
   }
@@ -106,26 +93,17 @@ void set_off_boresight(Random random, std::vector<FrameTruth>& frames) {
 
 }  // namespace
 
-std::vector<std::string> condition_names() {
-  std::vector<std::string> names;
-  for (const NamedCondition& known : kConditions) names.emplace_back(known.name);
-  return names;
-}
-
-std::string to_string(Condition condition) {
-  for (const NamedCondition& known : kConditions) {
-    if (known.condition == condition) return known.name;
+ScenarioSettings scenario_settings(Condition condition, std::uint32_t frames, const std::string& target,
+                                   const std::optional<Eigen::Matrix3d>& inertia_kg_m2) {
+  if (needs_inertia(condition) && !inertia_kg_m2) {
+    throw std::invalid_argument("condition " + to_string(condition) + " needs the inertia of '" + target +
+                                "', which is not known: give --inertia Ixx,Iyy,Izz,Ixy,Ixz,Iyz in kg m2");
   }
-  throw std::logic_error("a condition without a name");
-}
-
-Condition condition_from(const std::string& name) {
-  std::string all;
-  for (const NamedCondition& known : kConditions) {
-    if (name == known.name) return known.condition;
-    all += (all.empty() ? "" : ", ") + std::string(known.name);
-  }
-  throw std::invalid_argument("condition '" + name + "' is unknown; there are: " + all);
+  ScenarioSettings settings;
+  settings.condition = condition;
+  settings.frames = static_cast<int>(frames);
+  if (inertia_kg_m2) settings.inertia_kg_m2 = *inertia_kg_m2;
+  return settings;
 }
 
 Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std::uint64_t index) {
@@ -143,13 +121,11 @@ Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std
   for (int k = 0; k < settings.frames; ++k) {
     sequence.frames.push_back({spin(q0, rate, kFramePeriod_s * k), rate, range_m});
   }
-  const bool free = settings.condition == Condition::kTumbling || settings.condition == Condition::kStress;
-  if (free) rotate_freely(settings, sequence.frames);
-  if (settings.condition == Condition::kOccluded) {
-    add_occluder(settings, stream_for(seed, index, 2), sequence.frames);
-  }
-  if (settings.condition == Condition::kOffset) {
-    set_off_boresight(stream_for(seed, index, 3), sequence.frames);
+  const ConditionRow& condition = row_of(settings.condition);
+  if (condition.rotation == RotationLaw::kTorqueFree) rotate_freely(settings, sequence.frames);
+  if (condition.occluded) add_occluder(settings, stream_for(seed, index, 2), sequence.frames);
+  if (condition.max_offset_swaths > 0.0) {
+    move_off_boresight(condition.max_offset_swaths, stream_for(seed, index, 3), sequence.frames);
   }
   return sequence;
 }

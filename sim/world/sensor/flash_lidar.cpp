@@ -8,16 +8,15 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/world/scenario/random.hpp"
+#include "sim/world/sensor/ray_effects.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr double kSwathMargin = 1.05;  // room for the nearer parts of the target, which appear larger
-constexpr int kPacket = 16;
-constexpr double kMostOutlier_m = 20.0;
+constexpr int kPacket = 16;            // rays per call of Embree
 
-// Where the sensor is and how it looks, in the target's frame.
+// Pose of the sensor in the target's frame.
 struct SensorPose {
   Eigen::Matrix3f r_trf_lrf;
   Eigen::Vector3f origin_trf_m;
@@ -30,36 +29,18 @@ SensorPose pose_of(const FrameTruth& truth, double swath_m) {
   return {r_trf_lrf.cast<float>(), (r_trf_lrf * -target_lrf_m).cast<float>()};
 }
 
-// Rounded to the sensor's Q9.7 counts; 0 where the range is out of reach.
+// Rounded to the sensor's Q9.7 counts; 0 (no return) outside (0, gnc::kMaxRange_m].
 std::uint16_t to_counts(double range_m) {
   if (!(range_m > 0.0) || range_m > gnc::kMaxRange_m) return 0;
   return static_cast<std::uint16_t>(std::max(1L, std::lround(range_m / gnc::RangeImage::kMetresPerCount)));
 }
 
-// One ray's measurement: every ray draws from its own stream, so order and threads do not matter.
-std::uint16_t measure(double true_range_m, const SensorSettings& settings, std::uint64_t noise_seed,
-                      int ray) {
-  Random random(mix(noise_seed, static_cast<std::uint64_t>(ray)));
-  if (settings.dropout_share > 0.0 && random.uniform() < settings.dropout_share) return 0;
-  const double sigma_m = settings.noise ? 0.1 + 0.01 * true_range_m : 0.0;
-  if (settings.outlier_share > 0.0 && random.uniform() < settings.outlier_share) {
-    const double error_m = random.uniform(std::min(5.0 * sigma_m, kMostOutlier_m), kMostOutlier_m);
-    return to_counts(true_range_m + (random.uniform() < 0.5 ? -error_m : error_m));
-  }
-  return to_counts(true_range_m + (settings.noise ? sigma_m * random.normal() : 0.0));
+// Every ray draws from a stream of its own, so that order and threads do not matter.
+Random stream_of_ray(std::uint64_t noise_seed, int ray) {
+  return Random(mix(noise_seed, static_cast<std::uint64_t>(ray)));
 }
 
 }  // namespace
-
-SensorSettings sensor_settings(Condition condition) {
-  SensorSettings settings;
-  if (condition == Condition::kDegraded) {
-    settings.rays = 100;
-    settings.dropout_share = 0.1;
-  }
-  if (condition == Condition::kOutliers) settings.outlier_share = 0.01;
-  return settings;
-}
 
 double swath_m(const TriangleMesh& mesh) {
   return 2.0 * kSwathMargin * mesh.radius_m();
@@ -87,7 +68,7 @@ struct FlashLidar::Scene {
   }
 
   void build(const TriangleMesh& mesh);
-  // Ranges of one packet of unit directions (TRF); infinity where nothing is hit.
+  // Ranges along the first `count` unit directions of a packet (TRF); infinity where nothing is hit.
   std::array<float, kPacket> cast(const Eigen::Vector3f& origin,
                                   const std::array<Eigen::Vector3f, kPacket>& directions, int count) const;
 };
@@ -162,7 +143,7 @@ RangeGrid FlashLidar::true_ranges(const FrameTruth& truth, int rays, double swat
   grid.range_m.resize(static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays));
   const SensorPose pose = pose_of(truth, swath_m);
 
-  // Packets of 16 neighbours in a row: coherent rays are what Embree is fastest at.
+  // Packets of neighbours in a row: Embree is fastest with coherent rays.
   std::array<Eigen::Vector3f, kPacket> directions;
   directions.fill(Eigen::Vector3f::UnitY());
   for (int row = 0; row < rays; ++row) {
@@ -189,7 +170,8 @@ void FlashLidar::expose(const FrameTruth& truth, const SensorSettings& settings,
   frame.ranges.fill(0);
   for (int ray = 0; ray < settings.rays * settings.rays; ++ray) {
     if (std::isfinite(grid.range_m[ray])) {
-      frame.ranges[ray] = measure(grid.range_m[ray], settings, noise_seed, ray);
+      frame.ranges[ray] =
+          to_counts(measured_range_m(grid.range_m[ray], settings, stream_of_ray(noise_seed, ray)));
     }
   }
 }

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr double kArmSlimness = 0.25;  // half its width over its length inside the target's outline
 
+// Unit vector towards the side from which the occluder comes. The second axis is a quarter turn further.
 struct Axes {
-  double along_x,
-      along_y;  // towards the side that the occluder comes from; the other axis is a quarter turn on
+  double along_x;
+  double along_y;
 };
 
-// The value that `share` of the values, but at least one, do not exceed.
+// The smallest value that is not exceeded by `share` of the values, and by at least one. Reorders the values.
 double quantile(std::vector<double>& values, double share) {
   const auto count = static_cast<long>(values.size());
   const long wanted = std::clamp(std::lround(share * static_cast<double>(count)), 1L, count);
@@ -36,8 +38,8 @@ void for_each_ray(const RangeGrid& grid, const Axes& axes, Visitor&& visit) {
   }
 }
 
-// How large the shape must grow to reach a ray; each shape is {rays : growth <= some limit}.
-double growth(OccluderShape shape, double from_side, double from_axis) {
+// Size at which the shape just reaches a ray: each shape is the set of rays with required_size <= its size.
+double required_size(OccluderShape shape, double from_side, double from_axis) {
   switch (shape) {
     case OccluderShape::kArm:
       return std::max(from_side, std::abs(from_axis) / kArmSlimness);
@@ -68,11 +70,11 @@ void occlude(const Occluder& occluder, RangeGrid& grid) {
   const double axis = quantile(across, occluder.across);
   std::vector<double> sizes;
   for_each_ray(grid, axes, [&](int ray, double a, double c) {
-    if (std::isfinite(grid.range_m[ray])) sizes.push_back(growth(occluder.shape, side - a, c - axis));
+    if (std::isfinite(grid.range_m[ray])) sizes.push_back(required_size(occluder.shape, side - a, c - axis));
   });
   const double size = quantile(sizes, occluder.hidden_share);
   for_each_ray(grid, axes, [&](int ray, double a, double c) {
-    if (growth(occluder.shape, side - a, c - axis) > size) return;
+    if (required_size(occluder.shape, side - a, c - axis) > size) return;
     const double x = grid.slope(ray % grid.rays);
     const double y = grid.slope(ray / grid.rays);
     grid.range_m[ray] = occluder.distance_m * std::sqrt(1.0 + x * x + y * y);

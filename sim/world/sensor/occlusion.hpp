@@ -1,25 +1,33 @@
-// Occlusion: which rays of a flash a part of the chaser blocks.
+// Occlusion: the rays of a flash that a part of the chaser blocks (its arm, mast or panel).
+//
+// Model: one opaque flat shape at one distance, in front of everything else. It is sized in every frame so
+// that it hides a given share of the target's returns. Limits: no depth of its own, one occluder per frame.
 #pragma once
 
-#include <vector>
-
-#include "sim/world/scenario/occluder.hpp"
+#include "sim/world/sensor/range_grid.hpp"
 
 namespace tumblesight::sim {
 
-// A square grid of true ranges, row by row from the top left, as in gnc::RangeImage; infinity: nothing is
-// hit.
-struct RangeGrid {
-  int rays = 0;  // to a side
-  double tan_half_fov = 0.0;
-  std::vector<double> range_m;
-
-  double slope(int index) const { return tan_half_fov * ((2.0 * index + 1.0) / rays - 1.0); }
+enum class OccluderShape {
+  kNone,
+  kArm,        // reaches in from one side and ends over the target
+  kMast,       // crosses the whole frame
+  kPanelEdge,  // covers everything beyond a straight edge
 };
 
-// Puts the occluder before the target: blocked rays get its range. It is made just large enough to hide
-// `hidden_share` of the rays that hit the target (to within one or two returns, of which it always hides
-// one). No effect on a frame without returns.
+// In one frame. The share is given instead of a size, so that a test of "20 % hidden" hides 20 % in every
+// frame, whatever the target's attitude.
+struct Occluder {
+  OccluderShape shape = OccluderShape::kNone;
+  // Side from which it comes, counter-clockwise from the right edge of the image.
+  double side_rad = 0.0;
+  double across = 0.5;        // arm, mast: share 0..1 of the target's returns to the left of its axis
+  double hidden_share = 0.0;  // 0..1 of the target's returns
+  double distance_m = 3.0;    // from the sensor, along the boresight
+};
+
+// Puts the occluder in front of the target: blocked rays get its range. It hides `hidden_share` of the rays
+// that hit the target to within one or two returns, and at least one. A frame without returns is not changed.
 void occlude(const Occluder& occluder, RangeGrid& grid);
 
 }  // namespace tumblesight::sim

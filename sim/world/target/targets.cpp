@@ -1,5 +1,7 @@
 #include "sim/world/target/targets.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "sim/world/target/magellan.hpp"
@@ -10,53 +12,56 @@ namespace tumblesight::sim {
 
 namespace {
 
-struct Inertia {
-  double xx, yy, zz, xy, xz,
-      yz;  // kg m^2, elements of the tensor (products of inertia with their minus sign)
+// The paper gives Aquarius in y-up axes, as the display model is: only then do its plane of symmetry and its
+// axis of least inertia (28 deg from z) agree with the mesh. Its (X, Y, Z) are the TRF's (x, z, -y). The
+// tensor is that of the flight configuration and is used for the stowed one too.
+constexpr InertiaElements kAquariusInertia = {2644.24, 3086.41, 1329.64, 2.10, 972.97, -11.49};
+
+constexpr TargetRow kTargets[] = {
+    {"near_shoemaker",
+     "NEAR Shoemaker",
+     make_near_shoemaker,
+     {372.38, 372.45, 316.17, -2.86, -2.95, -4.42},
+     4,
+     "near_shoemaker"},
+    {"magellan", "Magellan", make_magellan, {3266.61, 4772.03, 2897.59, 2.62, 36.17, -42.65}, 2, "magellan"},
+    {"sacd_aquarius", "SAC-D/Aquarius", make_sacd_aquarius, kAquariusInertia, 1, "sacd_aquarius"},
+    {"sacd_aquarius_stowed", "SAC-D/Aquarius, stowed", make_sacd_aquarius_stowed, kAquariusInertia, 1,
+     "sacd_aquarius"},
 };
 
-struct Target {
-  const char* name;
-  TriangleMesh (*make)();
-  Inertia inertia;
-};
-
-// The paper's (X, Y, Z) of Aquarius are our (x, z, -y).
-constexpr Inertia kAquariusInertia = {2644.24, 3086.41, 1329.64, 2.10, 972.97, -11.49};
-
-constexpr Target kTargets[] = {
-    {"near_shoemaker", make_near_shoemaker, {372.38, 372.45, 316.17, -2.86, -2.95, -4.42}},
-    {"magellan", make_magellan, {3266.61, 4772.03, 2897.59, 2.62, 36.17, -42.65}},
-    {"sacd_aquarius", make_sacd_aquarius, kAquariusInertia},
-    {"sacd_aquarius_stowed", make_sacd_aquarius_stowed, kAquariusInertia}};
-
-const Target& find(const std::string& name) {
+const TargetRow& shipped_target(const std::string& key) {
+  if (const TargetRow* row = find_target(key)) return *row;
   std::string known;
-  for (const Target& target : kTargets) {
-    if (name == target.name) {
-      return target;
-    }
-    known += known.empty() ? target.name : std::string(", ") + target.name;
-  }
-  throw std::invalid_argument("target '" + name + "' is unknown; the targets are: " + known);
+  for (const TargetRow& row : kTargets) known += (known.empty() ? "" : ", ") + std::string(row.key);
+  throw std::invalid_argument("target '" + key + "' is unknown; the targets are: " + known);
 }
 
 }  // namespace
 
+const TargetRow* find_target(const std::string& key) {
+  const TargetRow* row = std::find_if(std::begin(kTargets), std::end(kTargets),
+                                      [&](const TargetRow& r) { return key == r.key; });
+  return row == std::end(kTargets) ? nullptr : row;
+}
+
 std::vector<std::string> target_names() {
   std::vector<std::string> names;
-  for (const Target& target : kTargets) {
-    names.emplace_back(target.name);
-  }
+  for (const TargetRow& row : kTargets) names.emplace_back(row.key);
   return names;
 }
 
+std::string display_name(const std::string& target) {
+  const TargetRow* row = find_target(target);
+  return row != nullptr ? row->display_name : target;
+}
+
 TriangleMesh target_by_name(const std::string& name) {
-  return find(name).make();
+  return shipped_target(name).make_mesh();
 }
 
 Eigen::Matrix3d inertia_kg_m2(const std::string& target) {
-  const Inertia& i = find(target).inertia;
+  const InertiaElements& i = shipped_target(target).inertia;
   Eigen::Matrix3d tensor;
   tensor << i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz;
   return tensor;

@@ -1,4 +1,8 @@
-// The targets that ship with Tumblesight, by name.
+// The table of the targets that ship with Tumblesight. Command line, evaluation, training and reports all
+// follow it.
+//
+// To add a target: its mesh in a file of its own (as near_shoemaker.cpp), its row in targets.cpp, its model
+// images in fsw/models. Figures of the paper are optional (sim/evaluation/paper.cpp).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,14 +13,34 @@
 
 namespace tumblesight::sim {
 
-std::vector<std::string> target_names();
-// The mesh of a shipped target, its name set. Throws std::invalid_argument that names the targets there are.
+// Elements of an inertia tensor, products of inertia with their minus sign.
+struct InertiaElements {
+  double xx, yy, zz, xy, xz, yz;  // kg m^2
+};
+
+struct TargetRow {
+  const char* key;           // on the command line, in model images, in file names: 1 to 31 of a-z, 0-9 and _
+  const char* display_name;  // in reports
+  TriangleMesh (*make_mesh)();
+  // About the centre of mass, in the TRF's directions.
+  InertiaElements inertia;
+  // The target looks nearly the same after 1/n of a turn about z; 1: no such symmetry.
+  int symmetry_about_z;
+  // Key of the target in the paper whose figures stand beside this one's; nullptr: none.
+  const char* paper_key;
+};
+
+// nullptr for a target that does not ship, for instance a user's own.
+const TargetRow* find_target(const std::string& key);
+
+std::vector<std::string> target_names();  // the keys
+// "NEAR Shoemaker" for "near_shoemaker"; a target that does not ship keeps its key.
+std::string display_name(const std::string& target);
+// The mesh of a shipped target, its name set. Throws std::invalid_argument that lists the shipped targets if
+// `name` is not one of them.
 TriangleMesh target_by_name(const std::string& name);
-// Inertia tensor of a shipped target about its centre of mass, in the TRF's directions (paper, spacecraft
-// table). The paper's Aquarius is in y-up axes, as the display model is: only read so are its plane of
-// symmetry and its axis of least inertia (28 deg from z) those of the mesh. It is turned into the z-up TRF
-// here. It is that of the flight configuration and serves for the stowed one too. Throws as target_by_name
-// does.
+// Inertia tensor of a shipped target (paper, spacecraft table), see TargetRow::inertia. Throws as
+// target_by_name does.
 Eigen::Matrix3d inertia_kg_m2(const std::string& target);
 
 }  // namespace tumblesight::sim

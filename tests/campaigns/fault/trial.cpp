@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "sim/world/math/angles.hpp"
 #include "tests/campaigns/fault/app_memory.hpp"
 #include "tests/support/make_packet.hpp"
 
@@ -66,7 +67,7 @@ const gnc::Kernels<gnc::FixedPoint>& hooked_kernels() {
 double angle_deg(const gnc::QuaternionQ30& q, const Eigen::Quaterniond& truth) {
   const Eigen::Quaterniond attitude = gnc::to_double(q);
   const double dot = std::abs(attitude.dot(truth)) / std::max(1e-9, attitude.norm());
-  return 2.0 * std::acos(std::min(1.0, dot)) * 180.0 / 3.14159265358979323846;
+  return 2.0 * std::acos(std::min(1.0, dot)) * 180.0 / sim::kPi;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "sim/world/scenario/random.hpp"
+#include "sim/world/math/random.hpp"
 #include "tests/unit/sim/baseline/jointed_arm.hpp"
 
 namespace tumblesight::sim {

@@ -1,4 +1,4 @@
-// The model images that ship with Tumblesight are as good as the record beside each says.
+// The model images that ship with Tumblesight are as accurate as the figures in the file beside each.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 #include "sim/cli/subject_setup.hpp"
 #include "sim/evaluation/monte_carlo.hpp"
-#include "sim/evaluation/record.hpp"
 #include "sim/evaluation/results.hpp"
+#include "sim/evaluation/shipped_figures.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kSequences = 50;
-constexpr std::size_t kLeastRecorded = 500;  // sequences, for a record to hold anything against
+constexpr std::size_t kMinShipped = 500;  // sequences, for figures that are worth a comparison
 
 // <target>.tsm, <target>_paper_rule.tsm and those with .float32 before .tsm
 ScenarioArguments arguments_for(const fs::path& model) {
@@ -31,59 +31,60 @@ ScenarioArguments arguments_for(const fs::path& model) {
   return arguments;
 }
 
-MonteCarloResult fly(const Subject& subject, const FlashLidar& lidar, const Record& record) {
+MonteCarloResult run(const Subject& subject, const FlashLidar& lidar, const ShippedFigures& shipped) {
   MonteCarloSettings settings;
   settings.scenario =
-      scenario_settings(record.condition, record.frames, subject.target, subject.inertia_kg_m2);
-  settings.seed = record.seed;
+      scenario_settings(shipped.condition, shipped.frames, subject.target, subject.inertia_kg_m2);
+  settings.seed = shipped.seed;
   settings.sequences = kSequences;
   settings.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return run_monte_carlo({lidar, subject.swath_m}, subject.model, nullptr, settings, [](std::uint32_t) {});
+  return run_monte_carlo(FrameRenderer(lidar, subject.swath_m), subject.model, nullptr, settings,
+                         [](std::uint32_t) {});
 }
 
-void expect_as_recorded(const Subject& subject, const FlashLidar& lidar, const Record& record) {
-  SCOPED_TRACE(to_string(record.condition));
-  ASSERT_EQ(record.target, subject.target);
-  ASSERT_EQ(record.model_crc32, subject.model_crc32) << "the record is of another image: measure it again";
-  ASSERT_GE(record.rcnn.count, kLeastRecorded);
-  const std::vector<FrameResult> frames = fly(subject, lidar, record).frames;
+void expect_as_shipped(const Subject& subject, const FlashLidar& lidar, const ShippedFigures& shipped) {
+  SCOPED_TRACE(to_string(shipped.condition));
+  ASSERT_EQ(shipped.target, subject.target);
+  ASSERT_EQ(shipped.model_crc32, subject.model_crc32) << "the figures are of another image: measure again";
+  ASSERT_GE(shipped.rcnn.count, kMinShipped);
+  const std::vector<FrameResult> frames = run(subject, lidar, shipped).frames;
   const auto summary = [&](Estimator estimator) {
-    return summarise(last_frame_errors_deg(frames, record.frames, estimator));
+    return summarise(last_frame_errors_deg(frames, shipped.frames, estimator));
   };
-  EXPECT_EQ(worse_than(record.rcnn, summary(Estimator::kRcnn)), "") << "RCNN";
-  EXPECT_EQ(worse_than(record.cnn, summary(Estimator::kCnn)), "") << "CNN";
+  EXPECT_EQ(worse_than(shipped.rcnn, summary(Estimator::kRcnn)), "") << "RCNN";
+  EXPECT_EQ(worse_than(shipped.cnn, summary(Estimator::kCnn)), "") << "CNN";
 }
 
-void check(const fs::path& model, const fs::path& record_file) {
+void check(const fs::path& model, const fs::path& figures_file) {
   SCOPED_TRACE(model.string());
   const Subject subject = set_up_subject(arguments_for(model));
   const FlashLidar lidar(subject.mesh);
   int checked = 0;
-  for (const Record& record : read_records(content(record_file), record_file.string())) {
-    if (record.mesh != kParametricMesh) continue;
-    expect_as_recorded(subject, lidar, record);
+  for (const ShippedFigures& shipped : read_shipped_figures(content(figures_file), figures_file.string())) {
+    if (shipped.mesh != kParametricMesh) continue;
+    expect_as_shipped(subject, lidar, shipped);
     ++checked;
   }
-  EXPECT_GT(checked, 0) << "no row on the parametric mesh in " << record_file;
+  EXPECT_GT(checked, 0) << "no row on the parametric mesh in " << figures_file;
 }
 
 // Verifies TS-EST-180.
-TEST(ShippedModels, AreAsGoodAsTheirRecords) {
+TEST(ShippedModels, AreAsAccurateAsTheirFigures) {
   int models = 0;
-  std::string without_record;
+  std::string without_figures;
   for (const auto& entry : fs::directory_iterator(TUMBLESIGHT_SOURCE_DIR "/fsw/models")) {
     if (entry.path().extension() != ".tsm") continue;
     ++models;
-    const fs::path record = fs::path(entry.path()).replace_extension(".json");
-    if (fs::exists(record)) {
-      check(entry.path(), record);
+    const fs::path figures = fs::path(entry.path()).replace_extension(".json");
+    if (fs::exists(figures)) {
+      check(entry.path(), figures);
     } else {
-      without_record += " " + entry.path().filename().string();
+      without_figures += " " + entry.path().filename().string();
     }
   }
   EXPECT_GT(models, 0) << "no model image in fsw/models";
-  if (!without_record.empty()) {
-    GTEST_SKIP() << "no record beside" << without_record
+  if (!without_figures.empty()) {
+    GTEST_SKIP() << "no figures beside" << without_figures
                  << ": write fsw/models/<name>.json with tumblesight evaluate --json";
   }
 }

@@ -48,7 +48,7 @@ TEST(Binned, LeavesOutWhatLiesBeyondTheEdges) {
 
 TEST(ErrorsByRate, UsesTheNormInDegrees) {
   FrameResult made = result_with(0, 9, 6.0, 8.0);
-  made.rate_rad_s = 18.0 * kRadPerDegree;
+  made.rate_rad_s = 18.0 * kRadPerDeg;
   const Curve curve = errors_by_rate({made});
   ASSERT_EQ(curve.size(), 8U);
   EXPECT_EQ(curve[7].at, 18.75);

@@ -74,7 +74,7 @@ TEST_F(Experiment, SweepsRateHiddenShareAndALongRunAndCountsEveryStep) {
   EXPECT_EQ(counted, 3U);
 }
 
-TEST_F(Experiment, SaysWhatToDoWhenATumblingTargetsInertiaIsUnknown) {
+TEST_F(Experiment, ReportsWhatToDoWhenTheInertiaIsUnknown) {
   subject_.inertia_kg_m2.reset();
   settings_.conditions = {Condition::kStress};
   try {
@@ -85,10 +85,10 @@ TEST_F(Experiment, SaysWhatToDoWhenATumblingTargetsInertiaIsUnknown) {
   }
 }
 
-TEST_F(Experiment, CountsAMatchOfTheBaselineAsManySteps) {
+TEST_F(Experiment, CountsAMatchOfTheBaselineAsSeveralSteps) {
   const std::uint64_t without = steps_of(settings_);
   settings_.baseline_sequences = 2;
-  EXPECT_EQ(steps_of(settings_), without + 2 * kStepsAMatch);
+  EXPECT_EQ(steps_of(settings_), without + 2 * kStepsPerMatch);
 }
 
 }  // namespace

@@ -5,13 +5,12 @@
 #include <cstdint>
 
 #include "sim/evaluation/metrics.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 
-inline constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
-
 inline Eigen::Quaterniond turned(double angle_deg, const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * kRadPerDegree, axis.normalized()));
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * kRadPerDeg, axis.normalized()));
 }
 
 inline FrameResult result_with(std::uint32_t sequence, std::uint32_t frame, double rcnn_deg, double cnn_deg) {

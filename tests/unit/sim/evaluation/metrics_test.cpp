@@ -17,15 +17,15 @@ TEST(AngularError, IsTheAngleOfTheRotationBetweenTwoAttitudes) {
   const Eigen::Quaterniond attitude = turned(123.0, {0.2, 1.0, -0.7});
   for (const double angle_deg : {0.0, 1e-7, 0.01, 5.0, 20.0, 90.0, 179.0, 180.0}) {
     const Eigen::Quaterniond other = turned(angle_deg, {1.0, 2.0, 3.0}) * attitude;
-    EXPECT_NEAR(angular_error_rad(attitude, other) / kRadPerDegree, angle_deg, 1e-11 + 1e-9 * angle_deg);
+    EXPECT_NEAR(angular_error_rad(attitude, other) / kRadPerDeg, angle_deg, 1e-11 + 1e-9 * angle_deg);
   }
 }
 
 TEST(AngularError, DoesNotDependOnTheSignOfAQuaternion) {
   const Eigen::Quaterniond a = turned(10.0, {1.0, 0.0, 0.0});
   const Eigen::Quaterniond b = turned(50.0, {1.0, 0.0, 0.0});
-  EXPECT_NEAR(angular_error_rad(a, negated(b)), 40.0 * kRadPerDegree, 1e-12);
-  EXPECT_NEAR(angular_error_rad(negated(a), b), 40.0 * kRadPerDegree, 1e-12);
+  EXPECT_NEAR(angular_error_rad(a, negated(b)), 40.0 * kRadPerDeg, 1e-12);
+  EXPECT_NEAR(angular_error_rad(negated(a), b), 40.0 * kRadPerDeg, 1e-12);
   EXPECT_NEAR(angular_error_rad(a, negated(a)), 0.0, 1e-12);
 }
 

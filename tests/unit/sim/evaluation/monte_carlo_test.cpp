@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "sim/world/scenario/random.hpp"
+#include "sim/world/math/random.hpp"
 #include "sim/world/target/targets.hpp"
 #include "tests/unit/sim/evaluation/arbitrary_model.hpp"
 
@@ -23,7 +23,7 @@ class MonteCarlo : public ::testing::Test {
     return made;
   }
   MonteCarloResult run(const MonteCarloSettings& settings, const TemplateMatcher* matcher = nullptr) {
-    return run_monte_carlo({lidar_, swath_m(mesh_)}, model_, matcher, settings,
+    return run_monte_carlo(FrameRenderer(lidar_, swath_m(mesh_)), model_, matcher, settings,
                            [&](std::uint32_t done) { last_progress_ = done; });
   }
   std::vector<FrameResult> run(int threads, std::uint64_t seed = 5) {
@@ -69,7 +69,7 @@ TEST_F(MonteCarlo, DependsOnTheSeed) {
   EXPECT_FALSE(equal(a.front(), b.front()));
 }
 
-TEST_F(MonteCarlo, StartsEverySequenceAnew) {
+TEST_F(MonteCarlo, ResetsTheEstimatorBeforeEverySequence) {
   const std::vector<FrameResult> results = run(1);
   MonteCarloSettings one_sequence = settings(1, 5);
   one_sequence.sequences = 1;

@@ -9,7 +9,7 @@ namespace {
 
 FrameResult predicted(double predicted_deg, double real_deg) {
   FrameResult made = result_with(0, 0, real_deg, 0.0);
-  made.rcnn_predicted_rad = predicted_deg * kRadPerDegree;
+  made.rcnn_predicted_rad = predicted_deg * kRadPerDeg;
   return made;
 }
 

@@ -1,11 +1,11 @@
-// What results are held against: the paper's figures and the goals, further checks, a shipped model's own
-// record.
+// What results are compared with: the paper's figures and the goals, further checks, the figures of a shipped
+// model.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
 #include "sim/evaluation/checks.hpp"
-#include "sim/evaluation/record.hpp"
+#include "sim/evaluation/shipped_figures.hpp"
 #include "sim/report/results_json.hpp"
 #include "tests/unit/sim/report/sample_results.hpp"
 
@@ -21,7 +21,7 @@ ErrorSummary summary(std::size_t count, double mean_deg, double error_deg, doubl
   return made;
 }
 
-TEST(PaperFigures, CoverItsConditions) {
+TEST(PaperFigures, CoverThePapersConditions) {
   for (const char* target : {"near_shoemaker", "magellan", "sacd_aquarius", "sacd_aquarius_stowed"}) {
     for (const Condition condition :
          {Condition::kNominal, Condition::kDegraded, Condition::kOccluded, Condition::kTumbling}) {
@@ -57,7 +57,7 @@ TEST(Checks, MeasureTheCostOfAnOffset) {
   EXPECT_EQ(text_of(checks[0]), "15.0 %, at most 10 %");
 }
 
-// 3 degrees in the second half of the run, against 2 degrees in the tenth frame.
+// 3 degrees in the second half of the run, 2 degrees in the tenth frame.
 TEST(Checks, FindDriftInALongRun) {
   SubjectResult subject;
   subject.sweeps.emplace();
@@ -71,25 +71,26 @@ TEST(Checks, FindDriftInALongRun) {
   EXPECT_FALSE(checks[0].holds());
 }
 
-TEST(Record, IsReadBackFromTheJsonOfAnEvaluation) {
-  const std::vector<Record> records = read_records(results_json(sample_results()).dump(), "some.json");
-  ASSERT_EQ(records.size(), 3U);
-  EXPECT_EQ(records[1].target, "near_shoemaker");
-  EXPECT_EQ(records[1].condition, Condition::kOccluded);
-  EXPECT_EQ(records[1].model_crc32, 0x00C0FFEEU);
-  EXPECT_EQ(records[1].frames, 2U);
-  EXPECT_EQ(records[1].seed, 7U);
+TEST(ShippedFigures, AreReadBackFromTheJsonOfAnEvaluation) {
+  const std::vector<ShippedFigures> rows =
+      read_shipped_figures(results_json(sample_results()).dump(), "some.json");
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[1].target, "near_shoemaker");
+  EXPECT_EQ(rows[1].condition, Condition::kOccluded);
+  EXPECT_EQ(rows[1].model_crc32, 0x00C0FFEEU);
+  EXPECT_EQ(rows[1].frames, 2U);
+  EXPECT_EQ(rows[1].seed, 7U);
   const CellResult cell = sample_cell(Condition::kOccluded, 15.0, true);
-  EXPECT_EQ(records[1].rcnn.count, 40U);
-  EXPECT_DOUBLE_EQ(records[1].rcnn.mean_deg, cell.rcnn.mean_deg);
-  EXPECT_DOUBLE_EQ(records[1].rcnn.mean_standard_error_deg, cell.rcnn.mean_standard_error_deg);
-  EXPECT_DOUBLE_EQ(records[1].cnn.within_20deg, cell.cnn.within_20deg);
+  EXPECT_EQ(rows[1].rcnn.count, 40U);
+  EXPECT_DOUBLE_EQ(rows[1].rcnn.mean_deg, cell.rcnn.mean_deg);
+  EXPECT_DOUBLE_EQ(rows[1].rcnn.mean_standard_error_deg, cell.rcnn.mean_standard_error_deg);
+  EXPECT_DOUBLE_EQ(rows[1].cnn.within_20deg, cell.cnn.within_20deg);
 }
 
-TEST(Record, ThatIsDamagedIsNamed) {
+TEST(ShippedFigures, ADamagedFileIsNamed) {
   for (const char* text : {"", "{}", R"({"rows":[{"target":"x"}]})"}) {
     try {
-      read_records(text, "fsw/models/x.json");
+      read_shipped_figures(text, "fsw/models/x.json");
       FAIL() << text;
     } catch (const std::runtime_error& error) {
       EXPECT_NE(std::string(error.what()).find("fsw/models/x.json"), std::string::npos);
@@ -97,8 +98,8 @@ TEST(Record, ThatIsDamagedIsNamed) {
   }
 }
 
-// Numbers that fit no field, and a CRC that is none, name themselves.
-TEST(Record, WithAnImpossibleNumberIsRefused) {
+// Numbers outside the range of their field and malformed CRCs.
+TEST(ShippedFigures, AnImpossibleNumberIsRefused) {
   const std::string good = results_json(sample_results()).dump();
   const std::pair<const char*, const char*> changes[] = {
       {R"("frames":2)", R"("frames":-1)"},         {R"("frames":2)", R"("frames":1e30)"},
@@ -110,7 +111,7 @@ TEST(Record, WithAnImpossibleNumberIsRefused) {
     ASSERT_NE(text.find(from), std::string::npos) << from;
     text.replace(text.find(from), std::string(from).size(), to);
     try {
-      read_records(text, "some.json");
+      read_shipped_figures(text, "some.json");
       FAIL() << to;
     } catch (const std::runtime_error& error) {
       EXPECT_NE(std::string(error.what()).find("must be"), std::string::npos) << error.what();
@@ -118,15 +119,15 @@ TEST(Record, WithAnImpossibleNumberIsRefused) {
   }
 }
 
-TEST(Record, ToleratesWhatChanceExplainsAndNoMore) {
-  const ErrorSummary recorded = summary(900, 2.0, 0.1, 0.998);
+TEST(ShippedFigures, TolerateWhatChanceExplainsAndNoMore) {
+  const ErrorSummary shipped = summary(900, 2.0, 0.1, 0.998);
   // 3 * 0.1 * sqrt(1 + 900 / 50)
-  EXPECT_NEAR(mean_tolerance_deg(recorded, 50), 0.3 * std::sqrt(19.0), 1e-12);
-  EXPECT_EQ(worse_than(recorded, summary(50, 3.2, 0.5, 1.0)), "");
-  EXPECT_NE(worse_than(recorded, summary(50, 3.4, 0.5, 1.0)), "");
-  EXPECT_EQ(worse_than(recorded, summary(50, 2.0, 0.5, 0.98)), "");
-  EXPECT_NE(worse_than(recorded, summary(50, 2.0, 0.5, 0.90)).find("90.0 % within 20°"), std::string::npos);
-  EXPECT_EQ(worse_than(recorded, summary(50, 0.1, 0.0, 1.0)), "");
+  EXPECT_NEAR(mean_tolerance_deg(shipped, 50), 0.3 * std::sqrt(19.0), 1e-12);
+  EXPECT_EQ(worse_than(shipped, summary(50, 3.2, 0.5, 1.0)), "");
+  EXPECT_NE(worse_than(shipped, summary(50, 3.4, 0.5, 1.0)), "");
+  EXPECT_EQ(worse_than(shipped, summary(50, 2.0, 0.5, 0.98)), "");
+  EXPECT_NE(worse_than(shipped, summary(50, 2.0, 0.5, 0.90)).find("90.0 % within 20°"), std::string::npos);
+  EXPECT_EQ(worse_than(shipped, summary(50, 0.1, 0.0, 1.0)), "");
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ class ExportTest : public testing::Test {
   }
 
   TrainingTargets targets =
-      make_training_targets({make_near_shoemaker()}, paper_conditions(), near_inertia());
+      make_training_targets({make_near_shoemaker()}, paper_training_conditions(), near_inertia());
   Cnn cnn;
   Recurrent recurrent{targets.inertia};
   std::unique_ptr<gnc::Network<gnc::Float32>> network = std::make_unique<gnc::Network<gnc::Float32>>();

@@ -27,7 +27,7 @@ Cnn make_used_cnn(const torch::Tensor& images) {
 }
 
 TEST(ImportModel, ImportedCnnComputesWhatTheModelImageComputes) {
-  const TrainingTargets targets = make_training_targets({make_near_shoemaker()}, paper_conditions());
+  const TrainingTargets targets = make_training_targets({make_near_shoemaker()}, paper_training_conditions());
   const torch::Tensor images = render_frames(targets, 1, 0, 32).images;
   const Cnn original = make_used_cnn(images);
   const auto weights = std::make_unique<gnc::NetworkWeights<gnc::Float32>>();

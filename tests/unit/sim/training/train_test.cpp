@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 class TrainTest : public testing::Test {
  protected:
-  TrainTest() : targets(make_training_targets({make_near_shoemaker()}, paper_conditions())) {
+  TrainTest() : targets(make_training_targets({make_near_shoemaker()}, paper_training_conditions())) {
     at::set_num_threads(1);
     settings.cnn_batch = 8;
     settings.cnn_images = 8 * 6;
@@ -91,7 +91,7 @@ TEST_F(TrainTest, ACheckpointOfOtherSettingsOrOfNothingIsRefused) {
   here.seed -= 1;
   targets.conditions = {Condition::kNominal};
   EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error) << "other conditions";
-  targets.conditions = paper_conditions();
+  targets.conditions = paper_training_conditions();
   EXPECT_TRUE(train_cnn(targets, here, cnn, never));
   std::ofstream(here.folder + "/cnn.ckpt") << "no checkpoint";
   EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error) << "damaged";
@@ -101,7 +101,7 @@ TEST_F(TrainTest, AMeshThatTheSensorHardlySeesIsRefusedByName) {
   const float h = 1e-4F;  // a needle: too few rays meet it
   const TriangleMesh needle{"needle", {{-2, 0, h}, {2, 0, h}, {2, 0, -h}}, {{0, 1, 2}}};
   try {
-    make_training_targets({needle}, paper_conditions());
+    make_training_targets({needle}, paper_training_conditions());
     FAIL() << "accepted a mesh that cannot be seen";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("needle"), std::string::npos);

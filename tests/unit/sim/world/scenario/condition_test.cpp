@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/world/math/angles.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "tests/unit/sim/world/scenario/uniformity.hpp"
 
@@ -107,7 +108,7 @@ TEST(Occluded, HidesSharesUniformOn5To30PercentBehindEveryShape) {
     ++shapes[static_cast<std::size_t>(occluder.shape)];
     // Nearer than the estimator's least range, also at the corner of the widest field of view.
     EXPECT_GT(occluder.distance_m, 1.0);
-    EXPECT_LT(occluder.distance_m * std::sqrt(1.0 + 2.0 * std::pow(std::tan(20.0 * M_PI / 180.0), 2)), 10.0);
+    EXPECT_LT(occluder.distance_m * std::sqrt(1.0 + 2.0 * std::pow(std::tan(20.0 * kRadPerDeg), 2)), 10.0);
   }
   EXPECT_LT(unlikeliness(shares), kUnlikely);
   EXPECT_EQ(shapes[static_cast<std::size_t>(OccluderShape::kNone)], 0);

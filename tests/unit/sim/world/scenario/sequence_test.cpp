@@ -6,13 +6,13 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/world/math/angles.hpp"
 #include "tests/unit/sim/world/scenario/uniformity.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr int kMany = 4000;
-constexpr double kDegree = 0.017453292519943295;
 
 TEST(Sequence, AttitudesAreUniformOnSo3) {
   // For a uniform rotation the angle has density (1 - cos a) / pi: its mean is pi/2 + 2/pi, and the image of
@@ -39,7 +39,7 @@ TEST(Sequence, RangesAndRatesStayWithinThePapersLimitsAndFillThem) {
     const FrameTruth truth = make_sequence({Condition::kNominal, 1}, 8, i).frames[0];
     least_m = std::min(least_m, truth.range_m);
     most_m = std::max(most_m, truth.range_m);
-    fastest = std::max(fastest, truth.rate_lrf_rad_s.norm() / kDegree);
+    fastest = std::max(fastest, truth.rate_lrf_rad_s.norm() / kRadPerDeg);
   }
   EXPECT_GE(least_m, 20.0);
   EXPECT_LT(least_m, 20.2);
@@ -90,7 +90,7 @@ std::vector<double> relative_norms(RateLaw law) {
     ScenarioSettings settings;
     settings.frames = 1;
     settings.rate_law = law;
-    norms.push_back(make_sequence(settings, 10, i).frames[0].rate_lrf_rad_s.norm() / (20.0 * kDegree));
+    norms.push_back(make_sequence(settings, 10, i).frames[0].rate_lrf_rad_s.norm() / (20.0 * kRadPerDeg));
   }
   return norms;
 }
@@ -127,7 +127,7 @@ TEST(Sequence, FixedValuesReplaceTheDrawnOnesAndMoveNoOtherDraw) {
     const Sequence drawn = make_sequence(settings, 12, 1);
     ScenarioSettings fixed_settings = settings;
     fixed_settings.range_m = 35.0;
-    fixed_settings.rate_rad_s = 12.5 * kDegree;
+    fixed_settings.rate_rad_s = 12.5 * kRadPerDeg;
     fixed_settings.hidden_share = 0.4;
     const Sequence fixed = make_sequence(fixed_settings, 12, 1);
     EXPECT_EQ(fixed.noise_seed, drawn.noise_seed);
@@ -135,7 +135,7 @@ TEST(Sequence, FixedValuesReplaceTheDrawnOnesAndMoveNoOtherDraw) {
     for (std::size_t k = 0; k < fixed.frames.size(); ++k) {
       const FrameTruth &a = fixed.frames[k], &b = drawn.frames[k];
       EXPECT_EQ(a.range_m, 35.0);
-      EXPECT_NEAR(a.rate_lrf_rad_s.norm(), 12.5 * kDegree, 1e-12);
+      EXPECT_NEAR(a.rate_lrf_rad_s.norm(), 12.5 * kRadPerDeg, 1e-12);
       EXPECT_LT((a.rate_lrf_rad_s.normalized() - b.rate_lrf_rad_s.normalized()).norm(), 1e-12);
       EXPECT_EQ(a.occluder.hidden_share, 0.4);
       EXPECT_EQ(a.occluder.shape, b.occluder.shape);

@@ -9,6 +9,8 @@
 #include <limits>
 #include <memory>
 
+#include "sim/world/scenario/condition.hpp"
+
 namespace tumblesight::sim {
 namespace {
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/near_shoemaker.hpp"
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/world/math/angles.hpp"
 #include "sim/world/target/primitives.hpp"
 #include "sim/world/target/targets.hpp"
 #include "tests/unit/sim/world/target/mesh_measures.hpp"
@@ -150,7 +151,7 @@ TEST(Aquarius, LiesInTheTrfAsItsInertiaSays) {
   const Eigen::Matrix3d axes_shell = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(shell).eigenvectors();
   const Eigen::Matrix3d axes_paper =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia_kg_m2("sacd_aquarius")).eigenvectors();
-  EXPECT_GT(std::abs(axes_shell.col(0).dot(axes_paper.col(0))), std::cos(3.0 * M_PI / 180.0));
+  EXPECT_GT(std::abs(axes_shell.col(0).dot(axes_paper.col(0))), std::cos(3.0 * kRadPerDeg));
   EXPECT_LT(std::abs(axes_paper.col(0).y()), 0.02);
   EXPECT_LT(std::abs(axes_shell.col(0).y()), 0.02);
 }

@@ -1,0 +1,39 @@
+#include "sim/training/training_conditions.hpp"
+
+#include "sim/world/math/random.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+std::vector<Condition> conditions_of(const std::string& word) {
+  if (word == "all") return all_training_conditions();
+  if (word == "paper") return paper_training_conditions();
+  return {condition_from(word)};
+}
+
+}  // namespace
+
+std::vector<std::string> training_condition_words() {
+  std::vector<std::string> words{"all", "paper"};
+  for (const ConditionRow& row : kConditions) {
+    if (row.training != kNotTrained) words.emplace_back(row.name);
+  }
+  return words;
+}
+
+std::vector<Condition> training_conditions(const std::vector<std::string>& words) {
+  std::vector<Condition> conditions;
+  for (const std::string& word : words) {
+    const std::vector<Condition> more = conditions_of(word);
+    conditions.insert(conditions.end(), more.begin(), more.end());
+  }
+  return conditions;
+}
+
+std::uint64_t conditions_hash(const std::vector<Condition>& conditions) {
+  std::uint64_t hash = 0;
+  for (const Condition condition : conditions) hash = mix(hash, static_cast<std::uint64_t>(condition));
+  return hash;
+}
+
+}  // namespace tumblesight::sim

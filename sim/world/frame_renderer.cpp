@@ -1,0 +1,27 @@
+#include "sim/world/frame_renderer.hpp"
+
+#include "sim/world/math/random.hpp"
+
+namespace tumblesight::sim {
+
+std::uint64_t noise_seed_per_frame(const Sequence& sequence, std::uint32_t frame) {
+  return mix(sequence.noise_seed, frame);
+}
+
+std::uint64_t noise_seed_per_sequence(const Sequence& sequence, std::uint32_t) {
+  return sequence.noise_seed;
+}
+
+void FrameRenderer::render(const Sequence& sequence, std::uint32_t frame, const FrameStamp& stamp,
+                           gnc::RangeImage& image) const {
+  lidar_.expose(sequence.frames[frame], sensor_settings(sequence.condition), swath_m_,
+                noise_seed_(sequence, frame), image);
+  image.sequence_number = stamp.sequence_number;
+  image.exposure_time_ns = stamp.exposure_time_ns;
+}
+
+void FrameRenderer::render(const Sequence& sequence, std::uint32_t frame, gnc::RangeImage& image) const {
+  render(sequence, frame, {frame, kFramePeriod_ns * frame}, image);
+}
+
+}  // namespace tumblesight::sim
