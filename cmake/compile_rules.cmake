@@ -6,11 +6,13 @@
 find_package(Eigen3 REQUIRED NO_MODULE)
 add_library(project_rules INTERFACE)
 target_link_libraries(project_rules INTERFACE Eigen3::Eigen)
-target_include_directories(project_rules INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(project_rules INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+  $<INSTALL_INTERFACE:include/tumblesight>)
 target_compile_definitions(project_rules INTERFACE EIGEN_DONT_VECTORIZE
   TUMBLESIGHT_FLOAT32=$<BOOL:${TUMBLESIGHT_FLOAT32}>)
-target_compile_options(project_rules INTERFACE -ffp-contract=off -fno-math-errno -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
-  -Wno-float-conversion -Wno-psabi)
+target_compile_options(project_rules INTERFACE -ffp-contract=off -fno-math-errno
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wshadow;-Wconversion;-Wno-sign-conversion;-Wno-float-conversion;-Wno-psabi>")
+target_compile_features(project_rules INTERFACE cxx_std_17)
 
 # flight_rules: for the sources of the flight side, in addition: no exceptions, no RTTI, no heap. PRIVATE, so that
 # programs that link the libraries are free of them.

@@ -32,7 +32,7 @@ def read_graph(build):
 
 def _key(title):
     """Functions with internal linkage keep their file in the key. Templates and inline functions have one key for all files."""
-    return title.rsplit(":", 1)[-1] if title.startswith("/") and ":_ZN" in title and "_GLOBAL__N_" not in title else title
+    return title.rsplit(":", 1)[-1] if ":_ZN" in title and "_GLOBAL__N_" not in title else title
 
 
 # Verifies TS-MEM-030, TS-MEM-040.

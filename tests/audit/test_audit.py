@@ -61,6 +61,12 @@ class WorstCaseStack(unittest.TestCase):
         self.assertEqual(total, 420)
         self.assertEqual([name for name, _ in path], [self.STEP, "kernels::convolve()", "leaf()"])
 
+    def test_inline_function_is_one_node_in_every_file(self):
+        name = "_ZN11tumblesight3gnc7reciprocalEv"
+        nodes = [("step", self.STEP, 100), (f"../a.cpp:{name}", "reciprocal()", 40)]
+        total, _ = self.of([("step", f"/build/b.cpp:{name}")], nodes)
+        self.assertEqual(total, 140)
+
     def test_counts_functions_without_a_call_graph(self):
         total, _ = self.of([("step", "__aeabi_uldivmod")], [("step", self.STEP, 100)])
         self.assertEqual(total, 100 + stack.LIBRARY_BYTES)
