@@ -1,5 +1,5 @@
-# Inner loops beside the portable ones: on a desktop for all that its family of processors may have, chosen at start-up;
-# on a target for what its compiler flags name.
+# The kernels built in addition to the portable ones. x86-64: all of the family, selected at start-up. Others: those of
+# the instruction sets that the compiler flags select.
 include(CheckCXXSourceCompiles)
 check_cxx_source_compiles("#if !defined(__x86_64__)\n#error\n#endif\nint main() {}" TUMBLESIGHT_X86_KERNELS)
 check_cxx_source_compiles("#if !defined(__ARM_NEON)\n#error\n#endif\nint main() {}" TUMBLESIGHT_NEON_KERNELS)

@@ -6,6 +6,11 @@ fail() {
   exit 1
 }
 
+# The Debian packages that the toolchain files name: require_program(VARIABLE PROGRAM PACKAGES).
+packages_of_toolchains() {
+  sed -nE 's/^require_program\([^ ]+ [^ ]+ "?([^")]+)"?\)$/\1/p' "$root"/toolchains/*.cmake | tr ' ' '\n' | sort -u
+}
+
 # What the programs need; the tests and the training add theirs.
 packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
   libassimp-dev libcli11-dev libfmt-dev libonnx-dev libpng-dev libprotobuf-dev libssl-dev
@@ -16,11 +21,8 @@ packages_to_fuzz=("${packages_to_run[@]}" clang libclang-rt-dev)
 packages_to_cover=(g++ cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev gcovr python3)
 packages_to_analyse=("${packages_to_run[@]}" libgtest-dev libgmock-dev clang clang-tidy cppcheck python3)
 # The processors of the audit: compilers, emulators, and GoogleTest's sources to build it for them.
-packages_to_audit=("${packages_to_run[@]}" gcc googletest python3 qemu-user qemu-system-arm qemu-system-misc qemu-system-sparc
-  g++-aarch64-linux-gnu g++-arm-linux-gnueabihf g++-riscv64-linux-gnu g++-powerpc-linux-gnu
-  gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib
-  gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf
-  g++-sparc64-linux-gnu libc6-dev-sparc-sparc64-cross)
+packages_to_audit=("${packages_to_run[@]}" gcc googletest python3
+  $(packages_of_toolchains))
 
 # Ends a job with all that it has started, some of it as root, and then this script.
 end_with() { # job

@@ -10,5 +10,5 @@ set(CMAKE_SYSTEM_PROCESSOR arm)
 set(flags "-mcpu=cortex-r5 -marm -mfpu=vfpv3-d16 -mfloat-abi=hard")
 set(CMAKE_CXX_FLAGS_INIT "${flags}")
 set(CMAKE_ASM_FLAGS_INIT "${flags}")
-# The machine without anything takes no -kernel.
+# QEMU's machine "none" has no option -kernel.
 set(CMAKE_CROSSCOMPILING_EMULATOR "${CMAKE_CURRENT_LIST_DIR}/cortex-r5f-emulator;${TUMBLESIGHT_QEMU}")

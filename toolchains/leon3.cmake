@@ -1,5 +1,5 @@
 # LEON3 (GR712RC class; SPARC V8, big-endian) without an operating system; QEMU's board leon3_generic. The compiler is
-# Debian's for 64-bit SPARC, told to be a 32-bit one.
+# Debian's for 64-bit SPARC in its 32-bit mode.
 include(${CMAKE_CURRENT_LIST_DIR}/require.cmake)
 require_program(CMAKE_C_COMPILER sparc64-linux-gnu-gcc "g++-sparc64-linux-gnu libc6-dev-sparc-sparc64-cross")
 require_program(CMAKE_CXX_COMPILER sparc64-linux-gnu-g++ "g++-sparc64-linux-gnu libc6-dev-sparc-sparc64-cross")

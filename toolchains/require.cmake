@@ -1,4 +1,5 @@
-# What a toolchain file cannot do without; says which package brings it.
+# Finds a program that a toolchain file needs, or stops with the name of its Debian package. cmake/setup.sh reads these
+# lines to install the packages.
 function(require_program variable name package)
   find_program(${variable} ${name})
   if(NOT ${variable})

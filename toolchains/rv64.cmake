@@ -1,5 +1,5 @@
-# RISC-V rv64gc without an operating system; QEMU's board virt. There is no libstdc++ for it in Debian: its headers are
-# newlib's for Arm, and nothing of the library is linked.
+# RISC-V rv64gc without an operating system; QEMU's board virt. Debian has no libstdc++ for it: the headers are
+# those of newlib for Arm, and the library is not linked.
 include(${CMAKE_CURRENT_LIST_DIR}/require.cmake)
 require_program(CMAKE_C_COMPILER riscv64-unknown-elf-gcc "gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf")
 require_program(CMAKE_CXX_COMPILER riscv64-unknown-elf-g++ "gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf")

@@ -1,5 +1,5 @@
-// The four functions that a compiler takes for granted, word by word where both sides allow it. With them no
-// C library is needed.
+// The memory functions that compiled code may call, so that no C library is needed. They work on words where
+// both operands are aligned.
 #include <cstddef>
 #include <cstdint>
 
@@ -31,7 +31,7 @@ void* memcpy(void* __restrict to, const void* __restrict from, std::size_t size)
 void* memmove(void* to, const void* from, std::size_t size) {
   auto* out = static_cast<std::uint8_t*>(to);
   const auto* in = static_cast<const std::uint8_t*>(from);
-  if (out <= in) return memcpy(to, from, size);  // forwards, so what overlaps has been read before
+  if (out <= in) return memcpy(to, from, size);  // forwards: an overlapping byte is read before it is written
   while (size-- > 0) out[size] = in[size];
   return to;
 }

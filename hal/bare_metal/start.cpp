@@ -1,11 +1,11 @@
-// From reset to main(): what a C++ program finds done when it begins. A board's start_up sets up stack and
-// processor and jumps to start_program().
+// The start-up common to all boards: initializes memory, runs constructors, calls main(). A board's start_up
+// sets up the processor and the stack, then calls start_program().
 #include <cstdint>
 #include <cstring>
 
 #include "hal/board.hpp"
 
-// Where things lie: the board's linker script.
+// Addresses from the board's linker script.
 extern "C" {
 extern std::uint8_t data_start[], data_end[], data_load[], bss_start[], bss_end[];
 using Constructor = void (*)();

@@ -5,7 +5,8 @@
 
 namespace tumblesight::hal::dds {
 
-static_assert(tumblesight_icd_RANGES == gnc::RangeImage::kMaxReturns, "the ICD's frame is the sensor's");
+static_assert(tumblesight_icd_RANGES == gnc::RangeImage::kMaxReturns,
+              "a frame of the wire definition fills a RangeImage");
 
 void DdsLidar::put(const LidarFrameSample& sample) {
   const MailboxLock lock(mutex_);

@@ -1,5 +1,5 @@
-// DdsLidar: frames of topic sil/lidar_frame as the LiDAR of the flight application. The bus thread puts them
-// in, the flight task takes them out.
+// DdsLidar: the frames of topic sil/lidar_frame as the LiDAR of the flight application. The bus thread puts
+// them in, the flight task receives them.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,10 @@ namespace tumblesight::hal::dds {
 
 class DdsLidar final : public Lidar {
  public:
+  // A full queue drops its oldest frame.
   void put(const LidarFrameSample& sample);
 
-  // A frame whose ray count cannot be one of this interface is kWrongSize.
+  // kWrongSize: the ray count is 0 or above RangeImage::kMaxRays. Other faults are left to the application.
   [[nodiscard]] LidarStatus receive(gnc::RangeImage& frame) override;
 
  private:

@@ -1,4 +1,5 @@
-// FixedQueue: first in, first out, at most N; a full queue loses its oldest entry.
+// FixedQueue: a first-in first-out queue of at most N entries, without heap. A full queue drops its oldest
+// entry.
 #pragma once
 
 #include <array>
@@ -9,14 +10,14 @@ namespace tumblesight::hal::dds {
 template <class T, std::size_t N>
 class FixedQueue {
  public:
-  // The slot of the new entry, still holding what an earlier one left there.
+  // The slot of the new entry, for the caller to fill. It still holds an earlier entry.
   T& push() {
     if (size_ == N) pop();
     T& slot = entries_[(first_ + size_) % N];
     ++size_;
     return slot;
   }
-  // The oldest entry, or nullptr; valid until the next push().
+  // The oldest entry, or nullptr if the queue is empty. Valid until the next push().
   const T* pop() {
     if (size_ == 0) return nullptr;
     const T& oldest = entries_[first_];

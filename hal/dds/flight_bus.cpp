@@ -7,9 +7,9 @@
 namespace tumblesight::hal::dds {
 namespace {
 
-// How often a stop request or a lost simulator is looked for while nothing arrives.
+// Interval of the checks for a stop request and a lost simulator while no sample arrives.
 constexpr std::int64_t kPoll_ns = 100'000'000;
-constexpr std::int64_t kLastWords_ns = 2'000'000'000;
+constexpr std::int64_t kFlushTimeout_ns = 2'000'000'000;
 
 }  // namespace
 
@@ -95,7 +95,7 @@ void FlightBus::flush() const {
   for (const dds_entity_t writer :
        {endpoints_.attitudes.entity(), endpoints_.telemetries.entity(), endpoints_.events.entity(),
         endpoints_.dumps.entity(), endpoints_.steps_done.entity()}) {
-    (void)wait_for_acknowledgment(writer, kLastWords_ns);
+    (void)wait_for_acknowledgment(writer, kFlushTimeout_ns);
   }
 }
 

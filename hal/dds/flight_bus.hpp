@@ -1,5 +1,5 @@
-// FlightBus: carries samples between DDS and the flight task's LiDAR and link. Runs on the bus thread alone,
-// since Cyclone DDS takes from the heap as it likes, which the flight task must not.
+// FlightBus: carries samples between DDS and the flight task's LiDAR and link. It runs on the bus thread
+// only: Cyclone DDS allocates from the heap, which the flight task must not do.
 #pragma once
 
 #include <cstdint>
@@ -17,27 +17,29 @@ class FlightBus {
   FlightBus(FlightEndpoints& endpoints, DdsLidar& lidar, DdsLink& link, Stopwatch& stopwatch)
       : endpoints_(endpoints), lidar_(lidar), link_(link), stopwatch_(stopwatch) {}
 
-  // From now on samples of other runs are left out; silence for longer than `timeout_ns` ends the run.
+  // From now on samples of other runs are ignored, and the run ends if no step arrives for `timeout_ns`.
   void join_run(std::uint32_t run_id, std::int64_t timeout_ns);
   std::uint32_t run_id() const { return run_id_; }
 
-  // The oldest step announced and not yet taken.
+  // Takes the oldest step that has arrived. False: there is none.
   bool take_step(StepSample& step);
-  // Lockstep. DDS gives no order across topics, so a step is ready only once everything that it announces has
-  // been handed to the flight task. False: there will be no step `k`, `end` says why.
+  // Lockstep: waits for step `k` and hands its frames and commands to the flight task. DDS does not keep the
+  // order across topics, so that the step is ready only when all the samples it announces have arrived.
+  // False: there will be no step `k`, and `end` gives the reason.
   [[nodiscard]] bool wait_for_step(std::uint32_t k, StepSample& step, FlightEnd& end);
 
-  // Free-running: hands over whatever has come, and returns once more has or the time is over.
+  // Free-running: hands all samples that have arrived to the flight task, then waits for more, at most
+  // `timeout_ns`.
   void carry_in(std::int64_t timeout_ns);
-  // Step of the latest frame handed over, and whether there was one.
+  // Whether the flight task has received the frame of step `k` or of a later one.
   bool has_frame_of(std::uint32_t k) const { return has_frame_ && latest_frame_k_ >= k; }
 
-  // Publishes what the flight task has put out. False if DDS refused a sample.
+  // Publishes the output of all cycles that have ended. False if DDS refused a sample.
   [[nodiscard]] bool carry_out();
-  // Until the simulator has all of it.
+  // Waits until the simulator has received all published samples, at most 2 s per topic.
   void flush() const;
 
-  // Why the run cannot go on: a stop request, silence, the simulator gone.
+  // Whether the run must end: stop request, timeout or simulator gone. `end` gives the reason.
   [[nodiscard]] bool must_end(FlightEnd& end) const;
 
  private:

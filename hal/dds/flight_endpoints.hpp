@@ -1,4 +1,4 @@
-// FlightEndpoints: the flight program's readers and writers, and one place to wait for any of them.
+// FlightEndpoints: the DDS readers and writers of the flight program, and a wait for data on any reader.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@ struct FlightEndpoints {
   Writer<ModelDumpSample> dumps;
   Writer<StepDoneSample> steps_done;
 
-  // 0 or a negative DDS return code.
+  // Creates all endpoints. Returns 0 or a negative DDS return code.
   [[nodiscard]] dds_return_t open(dds_entity_t participant);
-  // Every endpoint has its counterpart: nothing will be lost from now on.
+  // Whether every endpoint is matched with the simulator's: no sample is lost from then on.
   bool all_matched() const;
-  // The time master has left, or its lease has run out.
+  // The simulator has left, or its lease has expired.
   bool simulator_gone() const { return steps.matched() == 0; }
-  // Until a frame, command or step has arrived that has not been taken, or the time is over.
+  // Waits until a frame, command or step is there to be taken, at most `timeout_ns`.
   void wait_for_data(std::int64_t timeout_ns) const;
 
  private:

@@ -8,9 +8,9 @@ namespace tumblesight::hal::dds {
 namespace {
 
 constexpr std::int64_t kPoll_ns = 5'000'000;
-constexpr std::int64_t kFarewell_ns = 2'000'000'000;
+constexpr std::int64_t kRefusalTimeout_ns = 2'000'000'000;
 
-// Run id 0 says "here, but not ready": it carries the hash, so that the simulator can refuse as well.
+// Run id 0 means "present, not ready". The sample carries the hash, so that the simulator can refuse too.
 bool announce(FlightEndpoints& endpoints, const HandshakeSettings& settings, std::uint32_t run_id) {
   HelloSample hello{};
   hello.role = static_cast<std::uint8_t>(Role::kFlight);
@@ -21,14 +21,15 @@ bool announce(FlightEndpoints& endpoints, const HandshakeSettings& settings, std
   return endpoints.hello_out.write(hello) == 0;
 }
 
-// The simulator has to learn of the unequal hash before this process ends.
-void let_simulator_read_hello(FlightEndpoints& endpoints, Stopwatch& stopwatch) {
+// Waits until the simulator has received the unequal hash, so that it can report it too.
+void wait_until_hello_is_read(FlightEndpoints& endpoints, Stopwatch& stopwatch) {
   const std::uint64_t begin_ns = stopwatch.now_ns();
-  while (endpoints.hello_out.matched() == 0 && stopwatch.now_ns() - begin_ns < kFarewell_ns) usleep(10'000);
-  (void)wait_for_acknowledgment(endpoints.hello_out.entity(), kFarewell_ns);
+  while (endpoints.hello_out.matched() == 0 && stopwatch.now_ns() - begin_ns < kRefusalTimeout_ns)
+    usleep(10'000);
+  (void)wait_for_acknowledgment(endpoints.hello_out.entity(), kRefusalTimeout_ns);
 }
 
-bool meant_for_us(const HelloSample& hello, std::uint32_t run_id) {
+bool is_from_simulator_of(const HelloSample& hello, std::uint32_t run_id) {
   return hello.role == static_cast<std::uint8_t>(Role::kSimulator) && (run_id == 0 || hello.run_id == run_id);
 }
 
@@ -47,17 +48,18 @@ HandshakeResult shake_hands(FlightEndpoints& endpoints, const HandshakeSettings&
   while (!met || !endpoints.all_matched()) {
     HelloSample hello;
     while (!met && endpoints.hello_in.take(hello)) {
-      if (!meant_for_us(hello, settings.run_id)) continue;
+      if (!is_from_simulator_of(hello, settings.run_id)) continue;
       met = true;
       result.run_id = hello.run_id;
       result.simulator_icd_hash = hello.icd_hash;
     }
     if (met && result.simulator_icd_hash != settings.icd_hash) {
-      let_simulator_read_hello(endpoints, stopwatch);
+      wait_until_hello_is_read(endpoints, stopwatch);
       result.end = FlightEnd::kIcdUnequal;
       return result;
     }
-    // Another release's Hello may be of another type: then it never arrives, but the mismatch shows.
+    // The hello of another release can be of another type. It never arrives then, but DDS reports the
+    // mismatch.
     if (endpoints.hello_in.saw_incompatible()) {
       result.end = FlightEnd::kIcdUnequal;
       return result;

@@ -1,5 +1,5 @@
-// The flight side's handshake on sil/hello: both sides announce themselves with the hash of the interface
-// definition; steps begin once the hashes agree and every reader has found its writer.
+// The flight side's handshake on sil/hello. Both sides announce themselves with the hash of the interface
+// definition. Steps begin when the hashes are equal and every reader is matched with its writer.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,19 @@ namespace tumblesight::hal::dds {
 
 struct HandshakeSettings {
   std::uint32_t icd_hash = 0;
-  std::uint32_t run_id = 0;  // 0: that of the first simulator that shows up
-  std::uint8_t mode = 0;     // fsw::Mode, for the simulator to know what it meets
+  std::uint32_t run_id = 0;  // 0: that of the first simulator found
+  std::uint8_t mode = 0;     // fsw::Mode, reported to the simulator
   std::int64_t timeout_ns = 0;
 };
 
 struct HandshakeResult {
   FlightEnd end = FlightEnd::kComplete;  // kComplete: ready for step 0
-  bool stopped = false;                  // kComplete, but because somebody asked to stop
-  std::uint32_t run_id = 0;              // of the simulator
+  bool stopped = false;                  // kComplete because of a stop request: there is no run
+  std::uint32_t run_id = 0;              // the simulator's
   std::uint32_t simulator_icd_hash = 0;
 };
 
+// Blocks until the handshake is complete or has failed, at most `timeout_ns`.
 HandshakeResult shake_hands(FlightEndpoints& endpoints, const HandshakeSettings& settings,
                             Stopwatch& stopwatch);
 

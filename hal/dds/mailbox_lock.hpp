@@ -1,5 +1,5 @@
-// MailboxLock: what lies between the flight task and the bus thread is touched under this lock. Never held
-// for longer than a copy, never allocates.
+// MailboxLock: guards the queues between the flight task and the bus thread. It is held for one copy at most
+// and does not allocate.
 #pragma once
 
 #include <pthread.h>
@@ -14,7 +14,7 @@ class MailboxMutex {
 
  private:
   friend class MailboxLock;
-// glibc's macro says 0 for a pointer.
+// glibc's macro initializes a pointer with 0.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wzero-as-null-pointer-constant"
   pthread_mutex_t mutex_ = PTHREAD_MUTEX_INITIALIZER;

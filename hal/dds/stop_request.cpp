@@ -6,7 +6,7 @@
 namespace tumblesight::hal::dds {
 namespace {
 
-// The system hands a signal to any thread; the bus thread reads.
+// Written by whichever thread receives the signal, read by the bus thread.
 std::atomic<bool> requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 

@@ -1,4 +1,4 @@
-// FakeLidar: delivers what a test has scripted, in order. Host only.
+// FakeLidar: delivers the frames that a test has added, in order. Host only.
 #pragma once
 
 #include <deque>

@@ -1,4 +1,4 @@
-// FakeModelStore: two banks in memory, for the test to fill and to spoil. Host only.
+// FakeModelStore: two banks in memory that a test can fill and damage. Host only.
 #pragma once
 
 #include <array>
@@ -16,14 +16,14 @@ class FakeModelStore final : public ModelStore {
     if (bank.memory.empty()) return {};
     return {bank.memory.data(), bank.writable ? bank.memory.data() : nullptr, bank.size, bank.memory.size()};
   }
-  // Both banks hold `image`, with room for nothing larger.
+  // Puts `image` into both banks. Their capacity is its size.
   void fill(const std::vector<std::uint8_t>& image) {
     for (Bank& bank : banks) bank = {image, image.size(), true};
   }
 
   struct Bank {
-    std::vector<std::uint8_t> memory;  // empty: there is no such bank
-    std::size_t size = 0;              // of the image at start
+    std::vector<std::uint8_t> memory;  // empty: the bank does not exist
+    std::size_t size = 0;              // of the image at start-up, bytes
     bool writable = true;
   };
   std::array<Bank, kModelBanks> banks;

@@ -1,4 +1,4 @@
-// FakeStopwatch: every look at it takes as long as the test says.
+// FakeStopwatch: its time advances by a fixed amount per call. Host only.
 #pragma once
 
 #include "hal/stopwatch.hpp"
@@ -13,7 +13,7 @@ class FakeStopwatch final : public Stopwatch {
   }
 
   std::uint64_t time_ns = 0;
-  std::uint64_t tick_ns = 0;  // added at every call; as a huge number it runs backwards
+  std::uint64_t tick_ns = 0;  // added at every call; wraps, so that 2^64 - n runs backwards
 };
 
 }  // namespace tumblesight::hal::fake

@@ -1,4 +1,4 @@
-// FakeWatchdog: counts. Host only.
+// FakeWatchdog: counts the kicks. Host only.
 #pragma once
 
 #include "hal/watchdog.hpp"

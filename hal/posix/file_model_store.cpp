@@ -11,7 +11,7 @@
 namespace tumblesight::hal::posix {
 namespace {
 
-// False when the file ends early or cannot be read.
+// False if the file ends early or cannot be read.
 bool read_whole(int file, std::uint8_t* data, std::size_t size) {
   std::size_t done = 0;
   while (done < size) {
@@ -38,13 +38,13 @@ const char* to_string(FileStatus status) {
     case FileStatus::kTooLarge:
       return "the file is too large for a model image";
     case FileStatus::kNoMemory:
-      return "no memory for it";
+      return "no memory for the model banks";
   }
   return "unknown";
 }
 
 FileModelStore::FileModelStore(const char* path, std::size_t max_bytes) {
-  // Pages that nothing is written to take no memory.
+  // Pages take memory only when they are written.
   void* memory =
       mmap(nullptr, kModelBanks * max_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {
@@ -53,7 +53,7 @@ FileModelStore::FileModelStore(const char* path, std::size_t max_bytes) {
   }
   data_ = static_cast<std::uint8_t*>(memory);
   capacity_ = max_bytes;
-  // Not blocking: a named pipe in the image's place must not stop the start-up.
+  // Non-blocking, so that a named pipe in place of the image does not block the start-up.
   const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) {
     status_ = errno == ENOENT || errno == ENOTDIR ? FileStatus::kMissing : FileStatus::kUnreadable;

@@ -1,5 +1,5 @@
-// FileModelStore: the model image of a file in both banks, read whole when the store is made. Later changes
-// of the file do not reach it, nor do those of the banks reach the file.
+// FileModelStore: both model banks hold the image of a file, which is read completely by the constructor.
+// Later changes to the file do not reach the banks, and changes to the banks do not reach the file.
 #pragma once
 
 #include "hal/model_store.hpp"
@@ -11,21 +11,21 @@ enum class FileStatus : std::uint8_t {
   kMissing,     // no such file
   kUnreadable,  // no permission, not a regular file, or the reading failed
   kEmpty,
-  kTooLarge,  // more bytes than allowed
-  kNoMemory,
+  kTooLarge,  // more than max_bytes
+  kNoMemory,  // the system could not map the banks
 };
 const char* to_string(FileStatus status);
 
 class FileModelStore final : public ModelStore {
  public:
-  // Maps memory for the banks, `max_bytes` each; the only time that it does.
+  // Maps memory for the banks, `max_bytes` each, and reads the file. No other function allocates.
   FileModelStore(const char* path, std::size_t max_bytes);
   ~FileModelStore();
   FileModelStore(const FileModelStore&) = delete;
   FileModelStore& operator=(const FileModelStore&) = delete;
 
   FileStatus status() const { return status_; }
-  // Empty unless status() is kOk, and without memory only where there was none.
+  // Without an image (size 0) unless status() is kOk. Without memory only if status() is kNoMemory.
   ModelBank bank(int index) override;
 
  private:

@@ -1,4 +1,4 @@
-// MonotonicStopwatch: CLOCK_MONOTONIC, the clock that PosixPeriodicTask runs on.
+// MonotonicStopwatch: CLOCK_MONOTONIC, the clock of PosixPeriodicTask.
 #pragma once
 
 #include "hal/stopwatch.hpp"

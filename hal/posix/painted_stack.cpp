@@ -13,8 +13,7 @@ bool PaintedStack::start(pthread_t& thread, void* (*main)(void*), void* argument
   return started;
 }
 
-// A stack grows towards lower addresses on every processor that Linux runs on and this component is built
-// for.
+// The stack grows towards lower addresses on every supported Linux processor.
 std::uint32_t PaintedStack::least_left_bytes() const {
   const auto used =
       std::find_if(words_.begin(), words_.end(), [](std::uint64_t word) { return word != kPattern; });

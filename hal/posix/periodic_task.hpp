@@ -1,5 +1,5 @@
-// PosixPeriodicTask: releases at absolute times of CLOCK_MONOTONIC, first_release + k * period, so that the
-// length of one cycle never shifts the next.
+// PosixPeriodicTask: releases at the absolute times first_release + k * period of CLOCK_MONOTONIC, so that
+// the length of one cycle does not shift the next.
 #pragma once
 
 #include "hal/task.hpp"
@@ -10,11 +10,11 @@ class PosixPeriodicTask final : public PeriodicTask {
  public:
   static constexpr std::int64_t kMinPeriod_ns = 100'000;
 
-  // Times of CLOCK_MONOTONIC. A shorter period than kMinPeriod_ns is taken as that.
+  // Times of CLOCK_MONOTONIC. Periods below kMinPeriod_ns are raised to it.
   PosixPeriodicTask(std::int64_t first_release_ns, std::int64_t period_ns);
 
-  // Every release that passed while the task was still busy is added to `slips` (which saturates); the last
-  // of them is served at once, late, those before it are skipped. Signals do not shorten the wait.
+  // Adds the releases that passed while the task was busy to `slips`, which saturates. The latest of them is
+  // served at once, late; the earlier ones are skipped. Signals do not shorten the wait.
   std::int64_t wait_next_release_ns(std::uint32_t& slips) override;
 
  private:

@@ -60,7 +60,7 @@ RecordingStatus Recording::open(const std::uint8_t* bytes, std::size_t size) {
   return RecordingStatus::kOk;
 }
 
-// 0 where the frame does not fit into the recording, or a row not into the frame.
+// Bytes of the next frame. 0 if it exceeds the recording, or one of its rows the frame.
 std::size_t Recording::next_size() const {
   std::size_t at = at_ + kFrameHeaderSize;
   for (int row = 0; row < rays_; ++row) {

@@ -1,4 +1,4 @@
-// ReplayLidar: a recording's frames, each once its exposure time has come.
+// ReplayLidar: delivers each frame of a recording when its exposure time has come.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ TextLine& TextLine::decimal(std::int64_t value, int decimals, int width) {
   std::array<char, 24> reversed;
   int size = 0;
   std::uint64_t rest = value < 0 ? 0 - static_cast<std::uint64_t>(value) : static_cast<std::uint64_t>(value);
-  // At least one digit before the point; 64 bits have 20.
+  // At least one digit before the point. 64 bits have at most 20 digits.
   for (int digit = 0; digit < 20 && (rest != 0 || digit <= decimals); ++digit) {
     if (digit == decimals && decimals > 0) reversed[size++] = '.';
     reversed[size++] = static_cast<char>('0' + rest % 10);

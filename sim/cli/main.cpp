@@ -4,6 +4,8 @@
 #include <exception>
 #include <string>
 
+#include "cmake/version.hpp"
+#include "gnc/rcnn/model_image.hpp"
 #include "sim/cli/bench_command.hpp"
 #include "sim/cli/evaluate_command.hpp"
 #include "sim/cli/quantize_command.hpp"
@@ -12,6 +14,7 @@
 #include "sim/cli/export_command.hpp"
 #endif
 #ifdef TUMBLESIGHT_HAS_SIL
+#include "hal/dds/idl/icd_hash.hpp"
 #include "sim/cli/simulate_command.hpp"
 #endif
 #ifdef TUMBLESIGHT_HAS_TRAINING
@@ -36,12 +39,26 @@ int report(const CLI::App& app, const CLI::ParseError& error, int argc, char** a
   return kBadArguments;
 }
 
+// Program version, commit, format version of model images, hash of the interface definition: one per line.
+std::string version_text() {
+  std::string text = std::string("tumblesight ") + tumblesight::kVersion + "\ncommit " +
+                     tumblesight::kCommit + "\nmodel format " +
+                     std::to_string(tumblesight::gnc::kModelFormatVersion);
+#ifdef TUMBLESIGHT_HAS_SIL
+  char hash[16];
+  std::snprintf(hash, sizeof hash, "%08x", static_cast<unsigned>(tumblesight::hal::dds::icd_hash()));
+  text += std::string("\ninterface ") + hash;
+#endif
+  return text;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace tumblesight;
   CLI::App app{"Tumblesight: the attitude of tumbling spacecraft from flash-LiDAR frames."};
   app.name("tumblesight");
+  app.set_version_flag("--version", version_text(), "version, commit, model format and interface hash");
   app.require_subcommand(1);
   app.get_formatter()->column_width(26);
   try {

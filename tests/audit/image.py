@@ -1,4 +1,4 @@
-"""What a program consists of: sizes by kind, and what must not be in it."""
+"""The contents of a program: sizes by kind, forbidden symbols, floating-point arithmetic."""
 import re
 import subprocess
 
@@ -9,21 +9,19 @@ _FORBIDDEN = {
     "stdio": r"(v?f?s?n?printf|puts|putchar|fwrite|fopen)",
     "libm": r"((a?(sin|cos|tan)h?|atan2|exp[2m1]*|log[12]?[0p]?|pow|fmod|hypot)[fl]?)",
 }
-# Arithmetic in floating point, by the tools' prefix; loads and stores of such registers are no arithmetic.
+# Floating-point arithmetic per architecture. Loads and stores of floating-point registers are not arithmetic.
 _FLOATING = {
-    "aarch64-linux-gnu": r"\tf(add|sub|mul|div|n?madd|n?msub|sqrt|cvt\w+|cmp|abs|neg|min|max)\b|\t[su]cvtf\b",
-    "arm-linux-gnueabihf": r"\tv(add|sub|n?mul|div|n?ml[as]|fn?m[as]|sqrt|cmpe?|cvt\w?|abs|neg)(eq|ne|lt|gt|le|ge|mi|pl)?\.f(32|64)",
-    "arm-none-eabi": r"\tv(add|sub|n?mul|div|n?ml[as]|fn?m[as]|sqrt|cmpe?|cvt\w?|abs|neg)(eq|ne|lt|gt|le|ge|mi|pl)?\.f(32|64)",
-    "riscv64-linux-gnu": r"\tf(add|sub|mul|div|sqrt|n?madd|n?msub|cvt|eq|lt|le|min|max)\.",
-    "riscv64-unknown-elf": r"\tf(add|sub|mul|div|sqrt|n?madd|n?msub|cvt|eq|lt|le|min|max)\.",
-    "powerpc-linux-gnu": r"\tf(adds?|subs?|muls?|divs?|n?madds?|n?msubs?|ctiwz?|rsp|cmpu|neg|abs|res|rsqrte)\b",
-    "sparc64-linux-gnu": r"\tf(add|sub|mul|div|sqrt|cmpe?|itos|itod|stoi|dtoi|stod|dtos|neg|abs)[sd]?\b",
+    "aarch64": r"\tf(add|sub|mul|div|n?madd|n?msub|sqrt|cvt\w+|cmp|abs|neg|min|max)\b|\t[su]cvtf\b",
+    "arm": r"\tv(add|sub|n?mul|div|n?ml[as]|fn?m[as]|sqrt|cmpe?|cvt\w?|abs|neg)(eq|ne|lt|gt|le|ge|mi|pl)?\.f(32|64)",
+    "riscv64": r"\tf(add|sub|mul|div|sqrt|n?madd|n?msub|cvt|eq|lt|le|min|max)\.",
+    "ppc": r"\tf(adds?|subs?|muls?|divs?|n?madds?|n?msubs?|ctiwz?|rsp|cmpu|neg|abs|res|rsqrte)\b",
+    "sparc": r"\tf(add|sub|mul|div|sqrt|cmpe?|itos|itod|stoi|dtoi|stod|dtos|neg|abs)[sd]?\b",
 }
 _SOFT_FLOAT = r"__(aeabi_[fd]|aeabi_[ui]l?2[fd]|(add|sub|mul|div|float|fix)\w*[sdt]f)"
 
 
 def sizes(processor, program):
-    """Bytes of the project's own functions and data in the program, by kind; the model image and the frames are not counted."""
+    """Bytes of the project's own functions and data in the program, by kind, without the model image and the frames."""
     listing = subprocess.run([processor.tool("nm"), "-S", "-C", str(program)], check=True, capture_output=True, text=True).stdout
     total = {"text": 0, "read_only": 0, "data": 0, "bss": 0}
     for line in listing.splitlines():
@@ -35,23 +33,23 @@ def sizes(processor, program):
 
 # Verifies TS-MEM-010.
 def forbidden(processor, build, program):
-    """{kind: symbols} that the flight libraries ask for, or that a bare-metal program holds."""
+    """{kind: symbols}: the forbidden ones that the flight libraries need or that a bare-metal program contains."""
     libraries = [path for folder in ("gnc", "fsw") for path in sorted((build / folder).rglob("*.a"))]
     undefined = subprocess.run([processor.tool("nm"), "-u", *map(str, libraries)], check=True, capture_output=True, text=True).stdout
     symbols = {line.split()[-1] for line in undefined.splitlines() if line.strip().startswith("U ")}
-    if processor.prefix in ("arm-none-eabi", "riscv64-unknown-elf", "sparc64-linux-gnu"):
-        all_of_it = subprocess.run([processor.tool("nm"), str(program)], check=True, capture_output=True, text=True).stdout
-        symbols |= {line.split()[-1] for line in all_of_it.splitlines() if line.strip()}
+    if processor.bare_metal:
+        listing = subprocess.run([processor.tool("nm"), str(program)], check=True, capture_output=True, text=True).stdout
+        symbols |= {line.split()[-1] for line in listing.splitlines() if line.strip()}
     found = {kind: sorted(s for s in symbols if re.fullmatch(pattern, s)) for kind, pattern in _FORBIDDEN.items()}
     return {kind: names for kind, names in found.items() if names}
 
 
 # Verifies TS-NUM-040.
 def floating_point(processor, program):
-    """Functions of the project, of the fixed-point program, that compute in floating point."""
+    """The project's functions in the fixed-point program that use floating-point arithmetic."""
     listing = subprocess.run([processor.tool("objdump"), "-d", "-C", "--no-show-raw-insn", str(program)], check=True,
                              capture_output=True, text=True).stdout
-    pattern = re.compile(_FLOATING[processor.prefix] + "|" + _SOFT_FLOAT)
+    pattern = re.compile(_FLOATING[processor.architecture] + "|" + _SOFT_FLOAT)
     found, function = set(), ""
     for line in listing.splitlines():
         heading = re.match(r"[0-9a-f]+ <(.*)>:$", line)

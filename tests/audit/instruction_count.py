@@ -1,10 +1,10 @@
-"""Counts the instructions of every step of flight_replay, stage by stage, with a plugin of QEMU."""
+"""Counts the instructions of every step of flight_replay per stage, with a QEMU plugin."""
 import pathlib
 import re
 import subprocess
 
-# Stages in the order in which a step passes them, and the function with which each begins. The first begins a step, the
-# second ends it; what runs between two stages counts to the one before.
+# The stages in the order of execution, each with the function that begins it. The first one begins a step, the second one ends
+# it. Code between two stages counts for the earlier one.
 STAGES = (
     ("application", r"fsw::AttitudeInitApp<.*>::step\("),
     ("(end)", r"replay::ConsoleLink::publish\(tumblesight::hal::AttitudeReport"),
@@ -36,33 +36,33 @@ def build_plugin(folder):
 
 
 def addresses(processor, program):
-    """Of the stages' functions, by STAGES' order."""
+    """The addresses of the stages' functions, in the order of STAGES."""
     listing = subprocess.run([processor.tool("nm"), "-C", str(program)], check=True, capture_output=True, text=True).stdout
     symbols = [line.split(" ", 2) for line in listing.splitlines() if re.match(r"[0-9a-f]+ [tTwW] ", line)]
     found = []
     for name, pattern in STAGES:
         matches = [(int(address, 16), symbol) for address, _, symbol in symbols if re.search(pattern, symbol)]
-        matches.sort(key=lambda match: "[clone" in match[1])  # the function itself before its parts
+        matches.sort(key=lambda match: "[clone" in match[1])  # the function itself before its clones
         if not matches:
             raise SystemExit(f"audit: {program}: no function for stage '{name}' ({pattern})")
-        found.append(matches[0][0] & ~1 if processor.prefix.startswith("arm-") else matches[0][0])
+        found.append(matches[0][0] & ~1 if processor.architecture == "arm" else matches[0][0])
     return found
 
 
 # Verifies TS-NUM-070.
-def count(processor, program, plugin, folder, root):
-    """({stage: instructions}, the console's lines); every step took the same."""
+def count(processor, program, plugin, folder):
+    """(names of the stages, [instructions per stage] of every step, lines of the console)"""
     stages, out = folder / f"{program.name}.stages", folder / f"{program.name}.counts"
     lines = (f"{address:x} {name}\n" for address, (name, _) in zip(addresses(processor, program), STAGES))
     stages.write_text("".join(lines))
     out.unlink(missing_ok=True)
-    command = [str(root / part) if part.startswith("toolchains/") else part for part in processor.emulator]
+    command = list(processor.emulator)
     at = -1 if command[-1] == "-kernel" else len(command)
     command[at:at] = ["-plugin", f"{plugin},stages={stages},out={out}"]
     run = subprocess.run(command + [str(program)], capture_output=True, text=True, timeout=TIME_LIMIT_S, stdin=subprocess.DEVNULL)
     console = (run.stdout + run.stderr).splitlines()
     if run.returncode != 0:
-        raise SystemExit(f"audit: {program} on {processor.name} ended with {run.returncode}:\n" + "\n".join(console[-5:]))
+        raise SystemExit(f"audit: {program} on {processor.name} ended with status {run.returncode}:\n" + "\n".join(console[-5:]))
     steps = [tuple(map(int, line.split())) for line in out.read_text().splitlines()]
     names = [name for name, _ in STAGES if name != "(end)"]
     return names, steps, console

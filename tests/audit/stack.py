@@ -2,14 +2,14 @@
 import re
 import sys
 
-# Where a call goes through a pointer it may reach any of these: the kernels of an instruction set and the platform's stopwatch.
+# The functions that a call through a pointer can reach: the kernels of an instruction set and the platform's stopwatch.
 _INDIRECT = re.compile(r"kernels.*(convolve|multiply|product|max_pool|average_pool)|survey_of|sum_all_depths|accumulate_all|encode_all"
                        r"|Stopwatch.*now_ns")
 _STEP = {"fixed": re.compile(r"AttitudeInitApp<.*step\(.*FixedPoint"), "float32": re.compile(r"AttitudeInitApp<.*step\(.*Float32")}
 _NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
 _EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
 _BYTES = re.compile(r"(\d+) bytes \((\w+)")
-LIBRARY_BYTES = 128  # assumed of a function that comes without its source: libgcc's 64-bit division
+LIBRARY_BYTES = 128  # assumed for a function without a call graph: libgcc's 64-bit division
 
 
 def read_graph(build):
@@ -21,8 +21,8 @@ def read_graph(build):
             size = _BYTES.search(label)
             if size:
                 if size[2] == "dynamic" and int(size[1]) > 0 and "bounded" not in label:
-                    raise SystemExit(f"audit: {label}: a stack frame that is not bounded")
-                function = title.rsplit(":", 1)[-1] if title.startswith("/") and ":_ZN" in title and "_GLOBAL__N_" not in title else title
+                    raise SystemExit(f"audit: {label}: a stack frame without a bound")
+                function = _key(title)
                 own[function] = int(size[1])
                 names[function] = label.split("\\n")[0]
         for source, target in _EDGE.findall(text):
@@ -31,8 +31,8 @@ def read_graph(build):
 
 
 def _key(title):
-    """Functions with internal linkage keep their file; templates and inline functions are one, whichever file made them."""
-    return title.rsplit(":", 1)[-1] if title.startswith("/") and ":_ZN" in title and "_GLOBAL__N_" not in title else title
+    """Functions with internal linkage keep their file in the key. Templates and inline functions have one key for all files."""
+    return title.rsplit(":", 1)[-1] if ":_ZN" in title and "_GLOBAL__N_" not in title else title
 
 
 # Verifies TS-MEM-030, TS-MEM-040.

@@ -1,5 +1,6 @@
-"""The audit fails when it has to. Run by ctest; alone: python3 -m unittest discover tests/audit"""
+"""Tests of the audit itself. Run by ctest; alone: python3 -m unittest discover tests/audit"""
 import pathlib
+import re
 import tempfile
 import unittest
 
@@ -24,10 +25,10 @@ class Failures(unittest.TestCase):
     def of(self, committed=None, **changes):
         return report.failures(result(**changes), committed or {}, BUDGETS, MACS)
 
-    def test_none_where_all_is_well(self):
+    def test_none_for_good_figures(self):
         self.assertEqual(self.of(), [])
 
-    def test_each_requirement_has_its_own(self):
+    def test_each_limit_is_reported(self):
         for changes, words in (({"digest_is_golden": False}, "digest"), ({"equal_counts": False}, "depends on the frame"),
                                ({"forbidden": {"heap": ["malloc"]}}, "malloc"), ({"floating_point": ["f()"]}, "floating point"),
                                ({"instructions": 1201}, "per MAC"), ({"ram": 101}, "ram"), ({"stack": 11}, "stack")):
@@ -36,7 +37,7 @@ class Failures(unittest.TestCase):
                 self.assertEqual(len(wrong), 1)
                 self.assertIn(words, wrong[0])
 
-    def test_more_than_two_percent_more_is_growth(self):
+    def test_growth_of_more_than_two_percent_is_reported(self):
         before = {"cortex-m7": {"fixed": {"instructions": 1000, "text": 50, "read_only": 50, "ram": 50, "stack": 5}}}
         self.assertEqual(self.of(before, instructions=1020), [])
         self.assertIn("grown from 1000 to 1021", self.of(before, instructions=1021)[0])
@@ -54,13 +55,19 @@ class WorstCaseStack(unittest.TestCase):
             pathlib.Path(folder, "a.ci").write_text(text)
             return stack.worst_case(pathlib.Path(folder), "fixed")
 
-    def test_is_the_deepest_path_with_pointers_to_kernels(self):
+    def test_is_the_deepest_path_including_calls_through_pointers(self):
         nodes = [("step", self.STEP, 100), ("shallow", "shallow()", 50), ("conv", "kernels::convolve()", 300), ("leaf", "leaf()", 20)]
         total, path = self.of([("step", "shallow"), ("step", "__indirect_call"), ("conv", "leaf")], nodes)
         self.assertEqual(total, 420)
         self.assertEqual([name for name, _ in path], [self.STEP, "kernels::convolve()", "leaf()"])
 
-    def test_counts_functions_without_source(self):
+    def test_inline_function_is_one_node_in_every_file(self):
+        name = "_ZN11tumblesight3gnc7reciprocalEv"
+        nodes = [("step", self.STEP, 100), (f"../a.cpp:{name}", "reciprocal()", 40)]
+        total, _ = self.of([("step", f"/build/b.cpp:{name}")], nodes)
+        self.assertEqual(total, 140)
+
+    def test_counts_functions_without_a_call_graph(self):
         total, _ = self.of([("step", "__aeabi_uldivmod")], [("step", self.STEP, 100)])
         self.assertEqual(total, 100 + stack.LIBRARY_BYTES)
 
@@ -71,8 +78,46 @@ class WorstCaseStack(unittest.TestCase):
 
 
 class Stages(unittest.TestCase):
-    def test_begin_and_end_a_step(self):
+    def test_first_two_begin_and_end_a_step(self):
         self.assertEqual([name for name, _ in instruction_count.STAGES[:2]], ["application", "(end)"])
+
+
+class Processors(unittest.TestCase):
+    def test_each_has_a_preset_and_a_toolchain_file(self):
+        names = [processor.name for processor in processors.ALL]
+        self.assertEqual(names, list(processors.presets()))
+        toolchains = {path.stem for path in (processors.ROOT / "toolchains").glob("*.cmake")
+                      if re.search(r"CMAKE_CROSSCOMPILING_EMULATOR", path.read_text())}
+        self.assertEqual(set(names), toolchains)
+
+    def test_title_and_numerics_are_those_of_the_preset(self):
+        self.assertEqual(PROCESSOR.title, "Cortex-M7, bare metal")
+        self.assertFalse(PROCESSOR.float32)
+        self.assertTrue(processors.by_name("leon3").float32)
+
+    def test_unknown_name_is_refused(self):
+        with self.assertRaisesRegex(SystemExit, "cortex-a53"):
+            processors.by_name("z80")
+
+
+class Documents(unittest.TestCase):
+    FIGURES = {"set": "portable", "stages": {"application": 400, "conv1": 600}}
+
+    def test_table_of_the_readme_is_replaced_between_its_marks(self):
+        text = f"before\n{report.BEGIN}\nold\n{report.END}\nafter\n"
+        self.assertEqual(report.with_table(text, "new"), f"before\n{report.BEGIN}\nnew\n{report.END}\nafter\n")
+
+    def test_missing_mark_is_refused(self):
+        with self.assertRaises(SystemExit):
+            report.with_table(f"{report.END}\n{report.BEGIN}\n", "new")
+
+    def test_readme_has_the_marks(self):
+        report.with_table((processors.ROOT / "README.md").read_text(), "new")
+
+    def test_document_and_summary_name_every_processor(self):
+        results = result(**self.FIGURES)
+        for text in (report.as_document(results, MACS, BUDGETS, "of x", "20 frames"), report.as_summary(results, MACS)):
+            self.assertIn("| Cortex-M7, bare metal", text)
 
 
 if __name__ == "__main__":

@@ -10,8 +10,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tumblesight;
   using namespace tumblesight::fuzz;
   CommandLine line(Input(data, size));
-  hal::dds::FlightOptions options;
-  if (hal::dds::parse_flight_options(line.argc(), line.argv(), options) != hal::dds::ParseResult::kRun)
+  fsw::desktop::FlightOptions options;
+  if (fsw::desktop::parse_flight_options(line.argc(), line.argv(), options) !=
+      fsw::desktop::ParseResult::kRun)
     return 0;
   require(options.domain <= hal::dds::kMaxDomain, "a domain is one of DDS");
   require(options.period_ms >= 1.0 && options.period_ms <= 60'000.0, "a period is within its limits");

@@ -15,7 +15,7 @@ class BadFrames : public ::testing::Test {
   BadFrames() : conversation_(test::settings()) {
     for (int i = 0; i < 3; ++i) before_ = conversation_.step();
   }
-  // After the bad frame a good one is used, and its counters are the only ones that moved.
+  // After the bad frame a good one is used. No other counters have changed.
   void expect_recovery(std::uint32_t refused) {
     const StepAnswer after = conversation_.finish();
     EXPECT_TRUE(gives_attitude(after.attitude));
@@ -49,7 +49,7 @@ TEST_F(BadFrames, SkippedSequenceNumberIsCountedAndTheFrameUsed) {
 }
 
 // Verifies TS-LID-050.
-TEST_F(BadFrames, TimeGoingBackwardsIsRefused) {
+TEST_F(BadFrames, FrameOlderThanThePreviousOneIsRefused) {
   gnc::RangeImage frame = conversation_.good_frame();
   frame.exposure_time_ns -= 2 * kFramePeriod_ns;
   const StepAnswer answer = conversation_.step({frame});

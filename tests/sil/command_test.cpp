@@ -1,5 +1,5 @@
-// Telecommands over the whole link: signed on the ground with another implementation than the one that checks
-// them.
+// Telecommands over the whole link. The ground signs them with another implementation than the one that
+// checks them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class Commands : public ::testing::Test {
 };
 
 // Verifies TS-SEC-020, TS-SEC-030.
-TEST_F(Commands, ForgedAndRecordedOnesAreRefusedAndCounted) {
+TEST_F(Commands, ForgedAndReplayedCommandsAreRefusedAndCounted) {
   SilSettings settings = test::settings();
   TelecommandEncoder ground(settings.command_key);
   const hal::CommandPacket noop = ground.packet({tumblesight_icd_FUNCTION_NOOP, {}});
@@ -105,7 +105,7 @@ TEST_F(Commands, ModelIsLoadedDumpedBackValidatedAndActivatedInFlight) {
 }
 
 // Verifies TS-SEC-040.
-TEST(CommandKey, OfAFileReplacesTheOneThatEverybodyKnows) {
+TEST(CommandKey, FromAFileReplacesTheDevelopmentKey) {
   SilSettings settings = test::settings();
   const std::string path = test::temporary_path("command.key");
   std::ofstream(path) << std::string(64, 'a') << '\n';
@@ -124,7 +124,7 @@ TEST(CommandKey, OfAFileReplacesTheOneThatEverybodyKnows) {
 }
 
 // Verifies TS-SEC-040.
-TEST(CommandKey, FileThatHoldsNoneEndsFlightWithTheReason) {
+TEST(CommandKey, InvalidFileEndsFlightWithTheReason) {
   for (const std::string& content :
        {std::string(63, 'a'), std::string(65, 'a'), std::string(64, 'g'), std::string()}) {
     SilSettings settings = test::settings();

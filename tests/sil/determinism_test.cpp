@@ -19,7 +19,7 @@ std::uint32_t trace(std::uint64_t seed, double speed = 0.0) {
   return recording.trace_crc32;
 }
 
-// Keeps every core busy while it lives.
+// Keeps every core busy during its lifetime.
 class Load {
  public:
   Load() {
@@ -47,7 +47,7 @@ TEST(Determinism, OneSeedGivesOneTraceAtAnySpeedAndLoad) {
     const Load load;
     EXPECT_EQ(trace(7), reference);
   }
-  EXPECT_NE(trace(8), reference) << "the trace says nothing about what flight answered";
+  EXPECT_NE(trace(8), reference) << "the trace does not depend on the answers";
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
-// Preloaded into the flight program by a test: a fault of the system that no input brings about.
-// TUMBLESIGHT_FAULT names it: "heap" makes the flight task use the heap each time that it reports a cycle
-// done, that is, after the cycle's telemetry; "thread" gives the program itself no thread (its libraries get
-// theirs).
+// A library that tests preload into the flight program to cause a fault that no input can cause.
+// TUMBLESIGHT_FAULT selects it. "heap": the flight task allocates each time that it reports the end of a
+// cycle, which is after the cycle's telemetry. "thread": the program itself gets no thread; its libraries do.
 #include <dlfcn.h>
 #include <errno.h>
 #include <pthread.h>
@@ -16,7 +15,7 @@ bool fault_is(const char* name) {
   return wanted != nullptr && strcmp(wanted, name) == 0;
 }
 
-// The original behind a name that this library stands in front of.
+// The original of a function that this library replaces.
 template <class Function>
 Function original(const char* name) {
   return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));

@@ -8,7 +8,7 @@
 namespace tumblesight::sim {
 namespace {
 
-TEST(FlightProcess, TellsGoodEndsFromBadOnes) {
+TEST(FlightProcess, DistinguishesSuccessFromFailure) {
   FlightProcess good("/bin/true", {}, "");
   FlightProcess bad("/bin/false", {}, "");
   ASSERT_TRUE(good.wait_for_end(5.0));
@@ -17,7 +17,7 @@ TEST(FlightProcess, TellsGoodEndsFromBadOnes) {
   EXPECT_FALSE(bad.ended_well());
 }
 
-TEST(FlightProcess, EndWithoutAStatusIsNoGoodEnd) {
+TEST(FlightProcess, EndWithoutAStatusIsAFailure) {
   const auto before = signal(SIGCHLD, SIG_IGN);
   FlightProcess process("/bin/false", {}, "");
   EXPECT_TRUE(process.wait_for_end(5.0));
@@ -29,7 +29,7 @@ TEST(FlightProcess, EndWithoutAStatusIsNoGoodEnd) {
 // Verifies TS-MEM-020.
 TEST(FlightProcess, HeapUsedAfterTheLastTelemetryIsAFailureOfTheRun) {
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "AddressSanitizer must come before any preloaded library";
+  GTEST_SKIP() << "AddressSanitizer must be loaded before any other library";
 #endif
   const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
   const test::Environment fault("TUMBLESIGHT_FAULT", "heap");
@@ -43,9 +43,9 @@ TEST(FlightProcess, HeapUsedAfterTheLastTelemetryIsAFailureOfTheRun) {
             std::string::npos);
 }
 
-TEST(FlightProcess, NoThreadForTheFlightTaskIsSaidInWords) {
+TEST(FlightProcess, MissingThreadForTheFlightTaskIsReported) {
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "AddressSanitizer must come before any preloaded library";
+  GTEST_SKIP() << "AddressSanitizer must be loaded before any other library";
 #endif
   const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
   const test::Environment fault("TUMBLESIGHT_FAULT", "thread");

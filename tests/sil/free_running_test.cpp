@@ -9,11 +9,11 @@ namespace {
 TEST(FreeRunning, FlightAnswersOnItsOwnTimer) {
   SilSettings settings = test::settings();
   settings.free_running = true;
-  settings.speed = 27.0;  // a period in 100 ms
+  settings.speed = 27.0;  // a period of 100 ms
   const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(2, 1), {});
   EXPECT_EQ(recording.failure, "");
   EXPECT_EQ(recording.steps_planned, 20U);
-  EXPECT_LE(recording.steps_missed, 2U) << "a busy machine may lose a cycle, not more";
+  EXPECT_LE(recording.steps_missed, 2U) << "a busy machine may lose a cycle or two";
   EXPECT_EQ(recording.flight_heap_allocations, 0U);
   for (std::size_t k = 0; k < recording.steps.size(); ++k) {
     const StepRecord& step = recording.steps[k];
@@ -27,12 +27,12 @@ TEST(FreeRunning, FlightAnswersOnItsOwnTimer) {
   EXPECT_NE(log.find("memory locked"), std::string::npos) << log;
 }
 
-TEST(FreeRunning, LastFrameWithoutAnAttitudeIsMissedNotAFailure) {
+TEST(FreeRunning, MissingAttitudeOfTheLastFrameIsCountedAsMissed) {
   SilSettings settings = test::settings();
   settings.free_running = true;
   settings.speed = 27.0;
   std::vector<Sequence> sequences{make_sequence({Condition::kNominal, 5}, 1, 0)};
-  sequences[0].frames.back().range_m = 5000.0;  // out of the sensor's reach: an empty frame
+  sequences[0].frames.back().range_m = 5000.0;  // beyond the sensor's range: an empty frame
   const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, sequences, {});
   EXPECT_EQ(recording.failure, "");
   ASSERT_EQ(recording.steps.size(), 5U);

@@ -7,7 +7,7 @@
 namespace tumblesight::sim {
 namespace {
 
-// Inference, commands, events and refusals, with the trap armed on the flight task all the time.
+// Inference, commands, events and refusals. The trap is armed on the flight task in all cycles.
 TEST(Heap, TenThousandStepsWithoutAnAllocationOfTheFlightTask) {
   constexpr std::uint32_t kSteps = 10'500;
   test::Conversation conversation(test::settings());

@@ -16,7 +16,7 @@ using test::Conversation;
 TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
   std::uint32_t done = 0;
   SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";  // a random network's attitudes would jump
+  settings.target = "near_shoemaker";  // the attitudes of a random network would jump
   settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
   const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(3, 1),
                                          [&](std::uint32_t answered, std::uint32_t planned) {
@@ -38,7 +38,7 @@ TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
     EXPECT_EQ(step.attitude.time_ns, step.time_ns);
     EXPECT_EQ(step.attitude.exposure_time_ns, step.time_ns);
     EXPECT_EQ(step.attitude.frames_since_reset, k % 10 + 1)
-        << "the estimator starts anew with every sequence";
+        << "the estimator is reset at the start of every sequence";
     EXPECT_NEAR(gnc::to_double(step.attitude.q_lrf_trf).norm(), 1.0, 1e-6);
     EXPECT_EQ(step.housekeeping.frames_used, k + 1);
   }
@@ -46,7 +46,7 @@ TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
 }
 
 // Verifies TS-SIL-010.
-TEST(Lockstep, TheFlightProgramEndsWithTheLastStepAndLeavesNothingBehind) {
+TEST(Lockstep, FlightEndsWithTheLastStepAndLeavesNoProcess) {
   Conversation conversation(test::settings());
   const pid_t pid = conversation.session.flight_pid();
   EXPECT_EQ(test::flight_child(), pid);
@@ -56,7 +56,7 @@ TEST(Lockstep, TheFlightProgramEndsWithTheLastStepAndLeavesNothingBehind) {
 }
 
 // Verifies TS-SIL-010.
-TEST(Lockstep, AStepWaitsForEverythingThatItAnnounces) {
+TEST(Lockstep, StepWaitsForAllSamplesItAnnounces) {
   Conversation conversation(test::settings());
   // Commands and frames of one step: four commands, then the frame is used by the same cycle.
   const StepAnswer answer = conversation.step(
@@ -67,9 +67,9 @@ TEST(Lockstep, AStepWaitsForEverythingThatItAnnounces) {
   EXPECT_EQ(conversation.finish().housekeeping.cycles, 2U);
 }
 
-// Only early can be told from here: how late a step may be depends on the machine.
+// Checks only that no step is early: how late a step is depends on the machine.
 // Verifies TS-SIL-010.
-TEST(Lockstep, NoStepComesAheadOfTheWallClockTimesTheSpeed) {
+TEST(Lockstep, NoStepIsEarlierThanTheSpeedAllows) {
   constexpr std::uint32_t kSteps = 6;
   const std::vector<Sequence> sequences{make_sequence({Condition::kNominal, kSteps}, 1, 0)};
   for (const double speed : {27.0, 13.5}) {
@@ -88,7 +88,7 @@ TEST(Lockstep, NoStepComesAheadOfTheWallClockTimesTheSpeed) {
   }
 }
 
-TEST(Lockstep, WithoutASpeedMissionTimeRunsAheadOfTheWallClock) {
+TEST(Lockstep, WithoutASpeedMissionTimeIsFasterThanTheWallClock) {
   const std::vector<Sequence> sequences{make_sequence({Condition::kNominal, 20}, 1, 0)};
   const auto begin = std::chrono::steady_clock::now();
   const SilRecording recording = run_sil(test::settings(), test::lidar(), test::kSwath_m, sequences, {});
@@ -98,7 +98,7 @@ TEST(Lockstep, WithoutASpeedMissionTimeRunsAheadOfTheWallClock) {
 }
 
 // Verifies TS-SIL-020.
-TEST(Lockstep, RunsAtTheSameTimeDoNotDisturbEachOther) {
+TEST(Lockstep, ConcurrentRunsDoNotDisturbEachOther) {
   const auto run = [](std::uint64_t seed) {
     return run_sil(test::settings(), test::lidar(), test::kSwath_m, test::sequences(4, seed), {});
   };
@@ -114,7 +114,7 @@ TEST(Lockstep, RunsAtTheSameTimeDoNotDisturbEachOther) {
 }
 
 // Verifies TS-SIL-050.
-TEST(Lockstep, ADomainInUseIsRefused) {
+TEST(Lockstep, DomainInUseIsRefused) {
   const DomainLease lease(-1);
   SilSettings settings = test::settings();
   settings.domain = static_cast<int>(lease.domain());
@@ -124,12 +124,12 @@ TEST(Lockstep, ADomainInUseIsRefused) {
   EXPECT_EQ(recording.steps_missed, 10U);
 }
 
-TEST(Lockstep, AFolderWhereNoLockCanBeMadeIsSaidInWords) {
+TEST(Lockstep, FolderWithoutWriteAccessForTheLockIsReported) {
   const test::Environment folder("TMPDIR", "/proc");
   for (const int wanted : {-1, 3}) {
     try {
       const DomainLease lease(wanted);
-      ADD_FAILURE() << "a lock in /proc";
+      ADD_FAILURE() << "/proc accepted a lock file";
     } catch (const SilFailure& failure) {
       EXPECT_NE(std::string(failure.what()).find("/proc cannot be opened"), std::string::npos)
           << failure.what();
@@ -137,7 +137,7 @@ TEST(Lockstep, AFolderWhereNoLockCanBeMadeIsSaidInWords) {
   }
 }
 
-TEST(Lockstep, FlightStartedByHandTakesPartInTheFirstRunThatShowsUp) {
+TEST(Lockstep, FlightStartedByHandJoinsTheFirstRunItFinds) {
   SilSettings settings = test::settings();
   settings.domain = test::spare_domain();
   FlightProcess flight(settings.flight_path,
@@ -152,8 +152,8 @@ TEST(Lockstep, FlightStartedByHandTakesPartInTheFirstRunThatShowsUp) {
   EXPECT_TRUE(flight.ended_well());
 }
 
-// Not a check of speed, which depends on the machine, but the place where it is measured: no inference in
-// SAFE.
+// Measures the time of a round trip without inference (mode SAFE). It does not check the time, which depends
+// on the machine.
 TEST(Lockstep, RoundTripWithoutInference) {
   SilSettings settings = test::settings();
   settings.flight_arguments = {"--target", "another_target"};

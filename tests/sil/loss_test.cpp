@@ -36,14 +36,14 @@ void expect_partial(const SilRecording& recording) {
 }
 
 // Verifies TS-SIL-040.
-TEST(Loss, FlightKilledEndsTheRunAndKeepsWhatWasRecorded) {
+TEST(Loss, KilledFlightEndsTheRunAndKeepsItsResults) {
   const SilRecording recording = run_with_signal(test::settings(), SIGKILL);
   EXPECT_NE(recording.failure.find("signal 9"), std::string::npos) << recording.failure;
   expect_partial(recording);
 }
 
 // Verifies TS-SIL-040.
-TEST(Loss, FlightThatNoLongerAnswersIsEnded) {
+TEST(Loss, FlightThatStopsAnsweringIsEnded) {
   SilSettings settings = test::settings();
   settings.step_timeout_s = 1.0;
   const SilRecording recording = run_with_signal(settings, SIGSTOP);
@@ -52,7 +52,7 @@ TEST(Loss, FlightThatNoLongerAnswersIsEnded) {
 }
 
 // Verifies TS-SIL-030.
-TEST(Loss, FlightAskedToStopEndsCleanly) {
+TEST(Loss, FlightEndsCleanlyOnAStopRequest) {
   test::Conversation conversation(test::settings());
   conversation.step();
   const pid_t pid = conversation.session.flight_pid();
@@ -62,7 +62,7 @@ TEST(Loss, FlightAskedToStopEndsCleanly) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
 }
 
-// Starts the program that is to be killed and returns once its flight program answers steps.
+// Starts the simulator that will be killed, and returns when its flight program answers steps.
 struct StartedSimulator {
   pid_t pid = 0;
   pid_t flight = 0;
@@ -89,15 +89,15 @@ struct StartedSimulator {
 };
 
 // Verifies TS-SIL-030.
-TEST(Loss, SimulatorKilledEndsFlightWithAMessage) {
-  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // the orphaned flight program becomes our child
+TEST(Loss, KilledSimulatorEndsFlightWithAMessage) {
+  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // the orphaned flight program becomes a child of the test
   SilSettings settings = test::settings();
   settings.domain = test::spare_domain();
   const StartedSimulator simulator(settings);
   ASSERT_GT(simulator.flight, 0);
   kill(simulator.pid, SIGKILL);
   ASSERT_EQ(waitpid(simulator.pid, nullptr, 0), simulator.pid);
-  EXPECT_THROW(DomainLease(settings.domain), SilFailure) << "flight is still there";
+  EXPECT_THROW(DomainLease(settings.domain), SilFailure) << "flight still uses the domain";
 
   const auto begin = std::chrono::steady_clock::now();
   int status = -1;

@@ -19,7 +19,7 @@ TEST(Refusal, UnequalInterfaceHashIsRefusedByBothSides) {
   SilSettings settings = test::settings();
   settings.flight_arguments = {"--icd-hash", "12345"};
   const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
-  // Whoever notices first says it: the simulator by the hash, or flight, which ends with the reason.
+  // The first side to notice reports it: the simulator by the hash, or flight by the reason of its end.
   EXPECT_TRUE(recording.failure.find("interface hash") != std::string::npos ||
               recording.failure.find("another interface definition") != std::string::npos)
       << recording.failure;
@@ -47,12 +47,12 @@ struct BadModel {
   std::function<void(std::vector<std::uint8_t>&)> spoil;
 };
 
-// What a failing case is called; the default prints addresses.
+// The name of a case in messages: GoogleTest would print addresses.
 void PrintTo(const BadModel& model, std::ostream* out) {
   *out << model.name;
 }
 
-// A whole image, but of another network: its header's CRC is as it should be.
+// A complete image of another network, with a correct CRC in its header.
 void change_architecture(std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t kArchitecture = 12;
   constexpr std::size_t kHeaderCrc = 92;
@@ -67,7 +67,7 @@ void change_architecture(std::vector<std::uint8_t>& bytes) {
 class RefusedModel : public ::testing::TestWithParam<BadModel> {};
 
 // Verifies TS-IFC-020, TS-IFC-030, TS-IFC-050.
-TEST_P(RefusedModel, FlightSaysWhichAndAnswersInSafe) {
+TEST_P(RefusedModel, FlightNamesItAndAnswersInSafe) {
   std::vector<std::uint8_t> bytes = test::model_bytes();
   GetParam().spoil(bytes);
   SilSettings settings = test::settings();
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 // Verifies TS-IFC-030.
-TEST(Refusal, ModelOfAnotherTargetEndsTheRunInWords) {
+TEST(Refusal, ModelOfAnotherTargetEndsTheRunWithTheReason) {
   SilSettings settings = test::settings();
   settings.target = "another_target";
   const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
@@ -138,7 +138,7 @@ TEST(Refusal, BadArgumentsOfFlightAreNamed) {
 }
 
 // Verifies TS-SIL-040.
-TEST(Refusal, NobodyAnsweringIsSaidInWords) {
+TEST(Refusal, RunWithoutAFlightProgramIsReported) {
   SilSettings settings = test::settings();
   settings.flight_path.clear();
   settings.step_timeout_s = 0.3;

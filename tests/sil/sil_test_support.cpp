@@ -44,7 +44,7 @@ std::vector<std::uint8_t> make_model() {
 }
 
 pid_t parent_of(pid_t pid) {
-  // pid (comm) state ppid; comm may hold anything but its last ')' ends it.
+  // "pid (comm) state ppid": comm can hold any character; the last ')' ends it.
   const std::string stat = read_file("/proc/" + std::to_string(pid) + "/stat");
   const std::size_t end = stat.rfind(") ");
   return end == std::string::npos ? 0 : static_cast<pid_t>(std::atol(stat.c_str() + end + 4));
@@ -141,12 +141,12 @@ StepAnswer Conversation::finish() {
 }
 
 int spare_domain() {
-  // The ports of domains from 215 on lie above Linux's ephemeral ones.
+  // The ports of domains from 215 on are above Linux's ephemeral ports.
   constexpr int kFirst = 215;
   constexpr int kCount = static_cast<int>(hal::dds::kMaxDomain) - kFirst + 1;
   for (int i = 0; i < kCount; ++i) {
     try {
-      // Processes beside each other begin at different ones.
+      // Concurrent processes start at different domains.
       return static_cast<int>(DomainLease(kFirst + (getpid() + i) % kCount).domain());
     } catch (const SilFailure&) {
     }

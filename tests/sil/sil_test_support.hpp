@@ -1,4 +1,4 @@
-// What the SIL tests share: a model with arbitrary weights, frames, settings, and a look at the processes.
+// Shared by the SIL tests: a model with arbitrary weights, frames, settings, and the state of processes.
 #pragma once
 
 #include <sys/types.h>
@@ -17,7 +17,7 @@ namespace tumblesight::sim::test {
 inline constexpr const char* kTarget = "test_target";
 inline constexpr double kSwath_m = 8.0;
 
-// A file of its own for each call in a folder that goes with the process.
+// A new file name at each call, in a folder that is removed at the end of the process.
 std::string temporary_path(const std::string& name);
 void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes);
 std::string read_file(const std::string& path);
@@ -26,7 +26,7 @@ std::string read_file(const std::string& path);
 const std::vector<std::uint8_t>& model_bytes();
 const std::string& model_path();
 
-// The real flight program, a free domain, its messages in a file.
+// The flight program of this build, a free domain, and a file for the program's messages.
 SilSettings settings();
 
 const FlashLidar& lidar();
@@ -34,8 +34,7 @@ std::vector<Sequence> sequences(int count, std::uint64_t seed);
 // Good frames of one sequence.
 const std::vector<gnc::RangeImage>& frames();
 
-// Sends frames with sequence numbers and exposure times that follow the steps; a test spoils what it wants
-// spoilt.
+// Sends frames with sequence numbers and exposure times that follow the steps. A test may modify them.
 class Conversation {
  public:
   explicit Conversation(const SilSettings& settings) : session(settings) {}
@@ -45,16 +44,16 @@ class Conversation {
   StepAnswer step(const std::vector<gnc::RangeImage>& frames_of_step, std::vector<Telecommand> commands = {},
                   bool last = false);
   StepAnswer step() { return step({good_frame()}); }
-  StepAnswer finish();  // a good step that is the last, and flight's clean end
+  StepAnswer finish();  // a last step with a good frame; expects flight to end cleanly
 
   SilSession session;
   std::uint32_t k = 0;  // of the next step
 };
 
-// A domain that is free and that no run chooses by itself, for who needs its number before the run.
+// A free domain that no run selects by itself, for tests that need its number before the run.
 int spare_domain();
 
-// Sets an environment variable while it lives, for this process and those it starts.
+// Sets an environment variable during its lifetime, for this process and its children.
 class Environment {
  public:
   Environment(const char* name, const std::string& value);
@@ -67,7 +66,7 @@ class Environment {
   std::optional<std::string> before_;
 };
 
-// Process id of the flight program that this process has started; 0: there is none.
+// Process id of the flight program started by this process; 0: there is none.
 pid_t flight_child();
 
 }  // namespace tumblesight::sim::test

@@ -1,4 +1,4 @@
-// A simulator that goes on until the test kills it, a minute at most. Arguments: model image, flight program,
+// A simulator that runs until the test kills it, at most a minute. Arguments: model image, flight program,
 // file for flight's messages, DDS domain. Writes flight's process id to the standard output.
 #include <cstdio>
 #include <cstdlib>

@@ -7,23 +7,24 @@
 
 #include "hal/dds/idl/development_key.hpp"
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 namespace {
 
-constexpr std::size_t kDigits = 2 * std::tuple_size_v<CommandKey>;
+constexpr std::size_t kDigits = 2 * std::tuple_size_v<hal::CommandKey>;
 
-int value_of(int digit) {
+// -1 if it is not a hexadecimal digit.
+int hex_value(int digit) {
   if (digit >= '0' && digit <= '9') return digit - '0';
   const int lower = std::tolower(digit);
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-// True if the file holds just so many digits.
-bool read_digits(std::FILE* file, CommandKey& key) {
+// Returns whether the file holds exactly kDigits digits.
+bool read_digits(std::FILE* file, hal::CommandKey& key) {
   std::size_t digits = 0;
   for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
     if (std::isspace(c) != 0) continue;
-    const int value = value_of(c);
+    const int value = hex_value(c);
     if (value < 0 || digits == kDigits) return false;
     std::uint8_t& byte = key[digits / 2];
     byte = static_cast<std::uint8_t>(byte << 4 | value);
@@ -34,9 +35,9 @@ bool read_digits(std::FILE* file, CommandKey& key) {
 
 }  // namespace
 
-bool read_command_key(const char* path, CommandKey& key) {
+bool read_command_key(const char* path, hal::CommandKey& key) {
   if (path[0] == '\0') {
-    key = kDevelopmentKey;
+    key = hal::dds::kDevelopmentKey;
     return true;
   }
   std::FILE* const file = std::fopen(path, "r");
@@ -44,7 +45,7 @@ bool read_command_key(const char* path, CommandKey& key) {
     std::fprintf(stderr, "flight: --command-key %s: %s\n", path, strerrordesc_np(errno));
     return false;
   }
-  CommandKey read{};
+  hal::CommandKey read{};
   const bool complete = read_digits(file, read);
   std::fclose(file);
   if (complete) {
@@ -56,4 +57,4 @@ bool read_command_key(const char* path, CommandKey& key) {
   return complete;
 }
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

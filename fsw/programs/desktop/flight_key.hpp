@@ -1,12 +1,13 @@
-// The key of telecommands, out of a file.
+// Reads the key of the telecommands' authentication code from a file.
 #pragma once
 
 #include "hal/command_key.hpp"
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 
-// The file holds 64 hexadecimal digits and white space. False: `key` is untouched, and the reason has gone to
-// the standard error stream. An empty path gives the development key.
-[[nodiscard]] bool read_command_key(const char* path, CommandKey& key);
+// The file holds 64 hexadecimal digits; white space between them is ignored. An empty path gives the public
+// development key. Returns false if the file cannot be read or holds anything else: the reason is written to
+// the standard error stream and `key` stays unchanged.
+[[nodiscard]] bool read_command_key(const char* path, hal::CommandKey& key);
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

@@ -4,23 +4,27 @@
 
 #include "hal/posix/periodic_task.hpp"
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 namespace {
+
+using hal::dds::FlightBus;
+using hal::dds::FlightEnd;
+using hal::dds::StepSample;
 
 constexpr std::int64_t kPoll_ns = 1'000'000;
 
-FlightEnd lockstep_steps(FlightBus& bus, FlightTask& task) {
+FlightEnd exchange_steps(FlightBus& bus, FlightTask& task) {
   for (std::uint32_t k = 0;; ++k) {
     StepSample step;
     FlightEnd end = FlightEnd::kComplete;
     if (!bus.wait_for_step(k, step, end)) return end;
-    task.run_cycle(k, step.time_ns);
+    task.request_cycle(k, step.time_ns);
     if (!bus.carry_out()) return FlightEnd::kTransport;
     if (step.last != 0) return FlightEnd::kComplete;
   }
 }
 
-// The simulator's first step tells what time it is.
+// The simulator's first step sets the mission time. False: there will be none, `end` gives the reason.
 bool wait_for_first_step(FlightBus& bus, StepSample& step, FlightEnd& end) {
   while (!bus.take_step(step)) {
     if (bus.must_end(end)) return false;
@@ -29,7 +33,7 @@ bool wait_for_first_step(FlightBus& bus, StepSample& step, FlightEnd& end) {
   return true;
 }
 
-// Until the last step and its frame are with the flight task.
+// Returns when the flight task has received the last step and its frame.
 FlightEnd carry_until_last(FlightBus& bus) {
   StepSample step{};
   for (;;) {
@@ -43,8 +47,8 @@ FlightEnd carry_until_last(FlightBus& bus) {
   }
 }
 
-// Once the task has ended: what the last telemetry could not tell any more.
-FlightEnd report(const FlightTask& task, FlightEnd end) {
+// Reports slips and heap use after the task has ended: too late for telemetry.
+FlightEnd report_end(const FlightTask& task, FlightEnd end) {
   if (task.slips() > 0)
     std::fprintf(stderr, "flight: %u releases of the flight task slipped\n", task.slips());
   if (task.heap_allocations() > 0) {
@@ -57,29 +61,30 @@ FlightEnd report(const FlightTask& task, FlightEnd end) {
 
 }  // namespace
 
-FlightEnd run_lockstep(FlightBus& bus, FlightTask& task) {
-  task.join_run(bus.run_id());
-  const FlightEnd end = lockstep_steps(bus, task);
+FlightEnd exchange_in_lockstep(FlightBus& bus, FlightTask& task) {
+  task.set_run_id(bus.run_id());
+  const FlightEnd end = exchange_steps(bus, task);
   task.join();
   if (end == FlightEnd::kComplete) bus.flush();
-  return report(task, end);
+  return report_end(task, end);
 }
 
-FlightEnd run_free(FlightBus& bus, FlightTask& task, Stopwatch& stopwatch, std::int64_t period_ns) {
+FlightEnd exchange_free_running(FlightBus& bus, FlightTask& task, hal::Stopwatch& stopwatch,
+                                std::int64_t period_ns) {
   StepSample first;
   FlightEnd end = FlightEnd::kComplete;
   if (!wait_for_first_step(bus, first, end)) return end;
   const MissionClock clock{first.time_ns, static_cast<std::int64_t>(stopwatch.now_ns()), period_ns};
-  // A quarter of a period after each exposure: the frame is there by then, and one that is a little late
-  // still makes it.
-  posix::PosixPeriodicTask timer(clock.wall_ns + period_ns / 4, period_ns);
-  task.join_run(bus.run_id());
-  task.begin_free(timer, clock);
+  // Cycles start a quarter of a period after each exposure, so that a frame which is slightly late is still
+  // used.
+  hal::posix::PosixPeriodicTask timer(clock.wall_ns + period_ns / 4, period_ns);
+  task.set_run_id(bus.run_id());
+  task.start_cycles(timer, clock);
   end = carry_until_last(bus);
   task.join();
   if (end == FlightEnd::kComplete && !bus.carry_out()) end = FlightEnd::kTransport;
   if (end == FlightEnd::kComplete) bus.flush();
-  return report(task, end);
+  return report_end(task, end);
 }
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

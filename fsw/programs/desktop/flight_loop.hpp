@@ -1,5 +1,5 @@
-// What the bus thread does while the flight task runs: in lockstep with the simulator, or beside a task on
-// its own timer.
+// The work of the bus thread while the flight task runs: it exchanges samples between DDS and the task,
+// either in lockstep with the simulator or beside a task on its own timer.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,17 @@
 #include "hal/dds/flight_bus.hpp"
 #include "hal/dds/idl/flight_end.hpp"
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 
-// Both take a task that has been started, return once it has ended, and report on the standard error stream
-// what the last telemetry could not tell. A run that was complete but for the heap ends with kHeapUsed.
+// Both functions need a task that has been started, and return after it has ended. They report slips and heap
+// use on the standard error stream, since telemetry cannot report what happens after the last cycle. A
+// complete run in which the flight task used the heap returns kHeapUsed.
 
-// Step after step until the last one.
-FlightEnd run_lockstep(FlightBus& bus, FlightTask& task);
+// Runs one cycle per step of the simulator until its last step.
+hal::dds::FlightEnd exchange_in_lockstep(hal::dds::FlightBus& bus, FlightTask& task);
 
-// A cycle every `period_ns` until the simulator's last step.
-FlightEnd run_free(FlightBus& bus, FlightTask& task, Stopwatch& stopwatch, std::int64_t period_ns);
+// Lets the task run a cycle every `period_ns` of wall-clock time until the simulator's last step.
+hal::dds::FlightEnd exchange_free_running(hal::dds::FlightBus& bus, FlightTask& task,
+                                          hal::Stopwatch& stopwatch, std::int64_t period_ns);
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

@@ -9,13 +9,13 @@
 #include "gnc/rcnn/model_image.hpp"
 #include "hal/posix/file_model_store.hpp"
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 namespace {
 
 static_assert(gnc::kModelImageSize<gnc::Float32> <= fsw::config::kMaxModelImageBytes,
               "the limit would refuse every image");
 
-// The folder that this program lies in, without a slash at its end.
+// The folder of this program, without a slash at its end.
 bool program_folder(char (&folder)[FlightOptions::kMaxPath]) {
   const ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1);
   if (length <= 0) return false;
@@ -26,7 +26,8 @@ bool program_folder(char (&folder)[FlightOptions::kMaxPath]) {
   return true;
 }
 
-// In a build folder of the source tree, or wherever the sources were when this was built.
+// Looks in the source tree around the build folder that this program is in, then in the source tree it was
+// built from.
 void find_shipped_model(FlightOptions& options) {
   char folder[FlightOptions::kMaxPath];
   char path[FlightOptions::kMaxPath + 128];
@@ -45,17 +46,17 @@ void find_shipped_model(FlightOptions& options) {
 
 }  // namespace
 
-fsw::App& boot(FlightOptions& options, FlightApps& apps, Stopwatch& stopwatch,
-               const CommandKey& command_key) {
+fsw::App& boot(FlightOptions& options, FlightApps& apps, hal::Stopwatch& stopwatch,
+               const hal::CommandKey& command_key) {
   if (options.model_path[0] == '\0') find_shipped_model(options);
-  static posix::FileModelStore store(options.model_path, fsw::config::kMaxModelImageBytes);
-  const Platform platform{&stopwatch, &store, &command_key};
-  const ModelBank image = store.bank(0);
+  static hal::posix::FileModelStore store(options.model_path, fsw::config::kMaxModelImageBytes);
+  const hal::Platform platform{&stopwatch, &store, &command_key};
+  const hal::ModelBank image = store.bank(0);
   const bool float32 = options.numerics_given ? options.float32 : gnc::is_float32(image.data, image.size);
   const auto boot_one = [&](auto& app) {
     app.init(platform, options.target);
     if (app.mode() == fsw::Mode::kRun) return;
-    const bool unread = store.status() != posix::FileStatus::kOk;
+    const bool unread = store.status() != hal::posix::FileStatus::kOk;
     std::fprintf(stderr, "flight: model image %s: %s; the mode is SAFE\n", options.model_path,
                  unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)));
   };
@@ -67,4 +68,4 @@ fsw::App& boot(FlightOptions& options, FlightApps& apps, Stopwatch& stopwatch,
   return apps.fixed_point_interface;
 }
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

@@ -1,4 +1,4 @@
-// Boots the flight application with the model image that the command line asks for.
+// Boots the flight application with the model image selected on the command line.
 #pragma once
 
 #include "fsw/app/cycle.hpp"
@@ -6,7 +6,7 @@
 #include "hal/command_key.hpp"
 #include "hal/stopwatch.hpp"
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 
 // The application in either numerics.
 struct FlightApps {
@@ -16,8 +16,10 @@ struct FlightApps {
   fsw::AppOf<gnc::Float32> float32_interface{float32};
 };
 
-// Boots the application that flies: the one asked for, or that of the image's numerics. Without a usable
-// image its mode is SAFE, and the reason goes to the standard error stream.
-fsw::App& boot(FlightOptions& options, FlightApps& apps, Stopwatch& stopwatch, const CommandKey& command_key);
+// Boots the application of the requested numerics, or of the image's numerics if none are requested, and
+// returns it. Without a usable image its mode is SAFE, and the reason is written to the standard error
+// stream. Call it once.
+fsw::App& boot(FlightOptions& options, FlightApps& apps, hal::Stopwatch& stopwatch,
+               const hal::CommandKey& command_key);
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

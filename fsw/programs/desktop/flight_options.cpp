@@ -6,10 +6,12 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "cmake/version.hpp"
+#include "gnc/rcnn/model_image.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 namespace {
 
 bool fail(const char* option, const char* value, const char* expected) {
@@ -68,14 +70,15 @@ bool parse_one(const char* option, const char* value, FlightOptions& options) {
     return value[0] != '\0' || fail(option, value, "a target's name");
   }
   if (std::strcmp(option, "--numerics") == 0) return parse_numerics(option, value, options);
-  if (std::strcmp(option, "--domain") == 0) return parse_integer(option, value, kMaxDomain, options.domain);
+  if (std::strcmp(option, "--domain") == 0)
+    return parse_integer(option, value, hal::dds::kMaxDomain, options.domain);
   if (std::strcmp(option, "--run-id") == 0) return parse_integer(option, value, UINT32_MAX, options.run_id);
   if (std::strcmp(option, "--mode") == 0) return parse_mode(option, value, options.free_running);
   if (std::strcmp(option, "--period-ms") == 0)
     return parse_number(option, value, 1.0, 60'000.0, options.period_ms);
   if (std::strcmp(option, "--timeout-s") == 0)
     return parse_number(option, value, 0.1, 86'400.0, options.timeout_s);
-  // For tests of the refusal; not in the help.
+  // For the test of the refusal; not in the help.
   if (std::strcmp(option, "--icd-hash") == 0)
     return parse_integer(option, value, UINT32_MAX, options.icd_hash);
   std::fprintf(stderr, "flight: unknown option %s\n", option);
@@ -90,27 +93,32 @@ void print_flight_help() {
       "(loopback)\n\n"
       "  --model FILE       model image [the one shipped for the target]\n"
       "  --target NAME      target that the model image must be for [near_shoemaker]\n"
-      "  --numerics N       fixed: in integers, as it flies; float32: the reference [fixed; with --model "
-      "what it "
-      "is of]\n"
-      "  --command-key FILE key that telecommands must be signed with, 64 hexadecimal digits [one that "
-      "everybody "
-      "knows]\n"
+      "  --numerics N       fixed: fixed point, as flown; float32: the reference [fixed; with --model: as "
+      "the image]\n"
+      "  --command-key FILE key that signs telecommands, 64 hexadecimal digits [the public development key]\n"
       "  --domain N         DDS domain [0]\n"
-      "  --run-id N         simulator run to take part in; 0: the first that shows up [0]\n"
-      "  --mode MODE        lockstep: the simulator is the time master; free-running: on a timer of its own "
+      "  --run-id N         simulator run to join; 0: the first one found [0]\n"
+      "  --mode MODE        lockstep: the simulator sets the time; free-running: cycles on a timer "
       "[lockstep]\n"
       "  --period-ms N      free-running: wall-clock period of a cycle [2700]\n"
-      "  --timeout-s N      end after so long without a simulator, or without a step from it [60]\n"
+      "  --timeout-s N      end after this long without a simulator or a step from it [60]\n"
+      "  --version          version, commit, model format and interface hash\n"
       "  --help             this text\n\n"
-      "Exit status: 0 done, 2 bad arguments, 3 interface definitions unequal, 4 simulator gone, 5 nothing "
-      "came for too\n"
-      "long, 6 DDS failed, 7 step out of order, 8 the flight task used the heap, 9 no thread for it.\n");
+      "Exit status: 0 complete, 2 bad arguments, 3 interface definitions differ, 4 simulator gone, 5 "
+      "timeout,\n"
+      "6 DDS failed, 7 step out of order, 8 the flight task used the heap, 9 no thread for the flight "
+      "task.\n");
+}
+
+void print_flight_version() {
+  std::printf("flight %s\ncommit %s\nmodel format %d\ninterface %08x\n", kVersion, kCommit,
+              int{gnc::kModelFormatVersion}, static_cast<unsigned>(hal::dds::icd_hash()));
 }
 
 ParseResult parse_flight_options(int argc, char** argv, FlightOptions& options) {
-  options.icd_hash = icd_hash();
+  options.icd_hash = hal::dds::icd_hash();
   for (int i = 1; i < argc; i += 2) {
+    if (std::strcmp(argv[i], "--version") == 0) return ParseResult::kVersion;
     if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) return ParseResult::kHelp;
     if (i + 1 == argc) {
       std::fprintf(stderr, "flight: %s: unknown option, or its value is missing\n", argv[i]);
@@ -121,4 +129,4 @@ ParseResult parse_flight_options(int argc, char** argv, FlightOptions& options) 
   return ParseResult::kRun;
 }
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

@@ -8,10 +8,10 @@
 #include "fsw/programs/desktop/heap_trap.hpp"
 #include "hal/posix/realtime.hpp"
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 namespace {
 
-// The interface's names and the application's are the same values.
+// The wire definition and the application use the same values.
 static_assert(tumblesight_icd_MODE_STANDBY == static_cast<int>(fsw::Mode::kStandby));
 static_assert(tumblesight_icd_VALIDITY_VALID == static_cast<int>(fsw::Validity::kValid));
 static_assert(tumblesight_icd_MODE_RUN == static_cast<int>(fsw::Mode::kRun));
@@ -32,7 +32,7 @@ static_assert(tumblesight_icd_FUNCTION_ENABLE_RESPONSE ==
 static_assert(tumblesight_icd_FUNCTION_DISABLE_RESPONSE ==
               static_cast<int>(fsw::FunctionCode::kDisableResponse));
 static_assert(tumblesight_icd_EVENT_MODEL_REFUSED == static_cast<int>(fsw::EventId::kModelRefused));
-static_assert(kMaxEventsPerStep >= fsw::config::kMaxEventsPerStep);
+static_assert(hal::dds::kMaxEventsPerStep >= fsw::config::kMaxEventsPerStep);
 
 void wait(sem_t& semaphore) {
   while (sem_wait(&semaphore) != 0 && errno == EINTR) {
@@ -43,11 +43,11 @@ const char* granted(int error) {
   return error == 0 ? "granted" : strerrordesc_np(error);
 }
 
-// What is not granted costs punctuality, no more: the task runs without it.
+// Without these grants the task runs as well, with more jitter.
 void become_realtime() {
-  // Above everything that is not itself real-time, below what others may have put higher on purpose.
+  // Above all tasks without a real-time priority, below tasks that were given a high one on purpose.
   constexpr int kPriority = 10;
-  const posix::RealtimeGrant grant = posix::request_realtime(kPriority);
+  const hal::posix::RealtimeGrant grant = hal::posix::request_realtime(kPriority);
   std::fprintf(stderr, "flight: fixed priority %d: %s; ", kPriority, granted(grant.scheduler_error));
   std::fprintf(stderr, "memory locked: %s\n", granted(grant.memory_lock_error));
 }
@@ -60,14 +60,14 @@ std::int64_t MissionClock::at(std::int64_t release_ns) const {
          static_cast<std::int64_t>(periods * static_cast<double>(fsw::config::kFramePeriod_ns));
 }
 
-FlightTask::FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace,
-                       posix::PaintedStack& stack)
+FlightTask::FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsLink& link, CycleWorkspace& workspace,
+                       hal::posix::PaintedStack& stack)
     : lidar_(lidar), link_(link), workspace_(workspace), stack_(stack) {
   sem_init(&go_, 0, 0);
   sem_init(&done_, 0, 0);
 }
 
-bool FlightTask::start(fsw::App& app, bool free_running) {
+bool FlightTask::start(App& app, bool free_running) {
   app_ = &app;
   free_running_ = free_running;
   started_ = stack_.start(thread_, thread_main, this);
@@ -75,13 +75,13 @@ bool FlightTask::start(fsw::App& app, bool free_running) {
   return started_;
 }
 
-void FlightTask::begin_free(PeriodicTask& timer, const MissionClock& clock) {
+void FlightTask::start_cycles(hal::PeriodicTask& timer, const MissionClock& clock) {
   timer_ = &timer;
   clock_ = clock;
   sem_post(&go_);
 }
 
-void FlightTask::run_cycle(std::uint32_t k, std::int64_t now_ns) {
+void FlightTask::request_cycle(std::uint32_t k, std::int64_t now_ns) {
   k_ = k;
   now_ns_ = now_ns;
   sem_post(&go_);
@@ -105,13 +105,13 @@ void FlightTask::run() {
   if (free_running_) become_realtime();
   sem_post(&done_);
   arm_heap_trap();
-  free_running_ ? run_free() : run_lockstep();
+  free_running_ ? run_on_timer() : run_on_request();
   disarm_heap_trap();
-  heap_allocations_ = dds::heap_allocations();
-  first_heap_allocation_bytes_ = dds::first_heap_allocation_bytes();
+  heap_allocations_ = desktop::heap_allocations();
+  first_heap_allocation_bytes_ = desktop::first_heap_allocation_bytes();
 }
 
-void FlightTask::run_lockstep() {
+void FlightTask::run_on_request() {
   for (;;) {
     wait(go_);
     if (end_requested_) return;
@@ -120,9 +120,9 @@ void FlightTask::run_lockstep() {
   }
 }
 
-void FlightTask::run_free() {
+void FlightTask::run_on_timer() {
   wait(go_);
-  if (timer_ == nullptr) return;  // ended before it began
+  if (timer_ == nullptr) return;  // join() came before start_cycles()
   bool last = false;
   for (std::uint32_t k = 0; !last; ++k) {
     const std::uint32_t slips_before = slips_;
@@ -138,4 +138,4 @@ void FlightTask::cycle(std::uint32_t k, std::int64_t now_ns, std::uint32_t slips
   link_.end_cycle(app_->state_crc32());
 }
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

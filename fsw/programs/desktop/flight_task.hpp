@@ -1,4 +1,4 @@
-// FlightTask: the thread that runs the flight application, under the heap trap from its first cycle to its
+// FlightTask: the thread that runs the flight application. The heap trap is armed from its first cycle to its
 // last.
 #pragma once
 
@@ -16,35 +16,40 @@
 #include "hal/posix/painted_stack.hpp"
 #include "hal/task.hpp"
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 
-// Free-running: mission time advances one frame period a timer period, from `mission_time_ns` at `wall_ns`
-// on.
+// Free-running: mission time starts with `mission_time_ns` at wall-clock time `wall_ns` and advances one
+// frame period per timer period.
 struct MissionClock {
   std::int64_t mission_time_ns = 0;
-  std::int64_t wall_ns = 0;  // of the timer's clock
+  std::int64_t wall_ns = 0;  // on the timer's clock
   std::int64_t period_ns = 1;
 
+  // Mission time at a release of the timer.
   std::int64_t at(std::int64_t release_ns) const;
 };
 
 class FlightTask {
  public:
-  FlightTask(DdsLidar& lidar, DdsLink& link, fsw::CycleWorkspace& workspace, posix::PaintedStack& stack);
+  FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsLink& link, CycleWorkspace& workspace,
+             hal::posix::PaintedStack& stack);
 
-  // Starts the thread and returns once it is ready; false if the system gives none. Free-running it asks for
-  // a fixed priority and locked memory, which takes longer than a cycle may wait: so start it before the run.
-  [[nodiscard]] bool start(fsw::App& app, bool free_running);
-  void join_run(std::uint32_t run_id) { run_id_ = run_id; }
-  // Free-running: cycles on the timer from now on.
-  void begin_free(PeriodicTask& timer, const MissionClock& clock);
+  // Starts the thread and returns when it is ready; false if the system provides no thread. A free-running
+  // task requests a fixed priority and locked memory, which takes longer than a cycle: start it before the
+  // run.
+  [[nodiscard]] bool start(App& app, bool free_running);
+  // Call it before the first cycle: telemetry carries the run id.
+  void set_run_id(std::uint32_t run_id) { run_id_ = run_id; }
+  // Free-running: cycles start with the timer's next release.
+  void start_cycles(hal::PeriodicTask& timer, const MissionClock& clock);
 
-  // Lockstep: one cycle; returns once it is over.
-  void run_cycle(std::uint32_t k, std::int64_t now_ns);
-  // The thread ends; free-running after one more cycle, if they have begun. Nothing to do without a thread.
+  // Lockstep: runs one cycle and returns when it has ended.
+  void request_cycle(std::uint32_t k, std::int64_t now_ns);
+  // Ends the thread; a free-running task that has started its cycles runs one more. No effect without a
+  // thread.
   void join();
 
-  // Of the thread, once it has ended.
+  // Of the thread, valid after join().
   std::uint32_t heap_allocations() const { return heap_allocations_; }
   std::size_t first_heap_allocation_bytes() const { return first_heap_allocation_bytes_; }
   std::uint32_t slips() const { return slips_; }
@@ -52,24 +57,24 @@ class FlightTask {
  private:
   static void* thread_main(void* self);
   void run();
-  void run_lockstep();
-  void run_free();
+  void run_on_request();
+  void run_on_timer();
   void cycle(std::uint32_t k, std::int64_t now_ns, std::uint32_t slips);
 
-  // A desktop has none that could reset it.
-  class NoWatchdog final : public Watchdog {
+  // Nothing on a desktop resets the processor.
+  class NoWatchdog final : public hal::Watchdog {
    public:
     void kick() override {}
   };
 
-  fsw::App* app_ = nullptr;
+  App* app_ = nullptr;
   NoWatchdog watchdog_;
-  DdsLidar& lidar_;
-  DdsLink& link_;
-  fsw::CycleWorkspace& workspace_;
-  posix::PaintedStack& stack_;
-  // Handed over by go_ before the first cycle.
-  PeriodicTask* timer_ = nullptr;
+  hal::dds::DdsLidar& lidar_;
+  hal::dds::DdsLink& link_;
+  CycleWorkspace& workspace_;
+  hal::posix::PaintedStack& stack_;
+  // Written before go_ is posted for the first cycle.
+  hal::PeriodicTask* timer_ = nullptr;
   MissionClock clock_;
   std::uint32_t run_id_ = 0;
 
@@ -79,12 +84,12 @@ class FlightTask {
   sem_t go_;
   sem_t done_;
   std::atomic<bool> end_requested_{false};
-  std::uint32_t k_ = 0;      // lockstep: of the cycle to run, handed over by go_
-  std::int64_t now_ns_ = 0;  // likewise
+  std::uint32_t k_ = 0;      // lockstep: of the requested cycle, written before go_ is posted
+  std::int64_t now_ns_ = 0;  // same
 
   std::uint32_t heap_allocations_ = 0;
   std::size_t first_heap_allocation_bytes_ = 0;
   std::uint32_t slips_ = 0;
 };
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

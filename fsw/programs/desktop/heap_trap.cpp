@@ -2,7 +2,7 @@
 
 #include <cerrno>
 
-// glibc's own entry points behind the public names; the names are glibc's.
+// The C library's own allocator behind the public names.
 // NOLINTBEGIN(bugprone-reserved-identifier)
 extern "C" {
 void* __libc_malloc(std::size_t size);
@@ -15,7 +15,7 @@ void __libc_free(void* block);
 }
 // NOLINTEND(bugprone-reserved-identifier)
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 namespace {
 
 struct Trap {
@@ -24,10 +24,10 @@ struct Trap {
   std::size_t first_bytes = 0;
 };
 
-// In the executable itself, so that touching it never allocates.
+// In the executable and not in a shared library, so that the first access does not allocate.
 thread_local Trap trap;
 
-void note(std::size_t size) {
+void count_allocation(std::size_t size) {
   if (!trap.armed) return;
   if (trap.allocations == 0) trap.first_bytes = size;
   ++trap.allocations;
@@ -48,36 +48,36 @@ std::size_t first_heap_allocation_bytes() {
   return trap.first_bytes;
 }
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop
 
-// operator new ends in malloc, so these are all the ways to the heap. ThreadSanitizer needs them itself: with
-// it nothing is counted.
+// operator new calls malloc, so these functions cover all allocations. ThreadSanitizer replaces them itself:
+// with it nothing is counted.
 #ifndef __SANITIZE_THREAD__
 extern "C" {
 
-// Declared here: the C library's headers name the parameters otherwise.
+// Declared here because the C library's headers use other parameter names.
 void* memalign(std::size_t alignment, std::size_t size);
 int posix_memalign(void** block, std::size_t alignment, std::size_t size);
 void* valloc(std::size_t size);
 void* pvalloc(std::size_t size);
 
 void* malloc(std::size_t size) {
-  tumblesight::hal::dds::note(size);
+  tumblesight::fsw::desktop::count_allocation(size);
   return __libc_malloc(size);
 }
 
 void* calloc(std::size_t count, std::size_t size) {
-  tumblesight::hal::dds::note(count * size);
+  tumblesight::fsw::desktop::count_allocation(count * size);
   return __libc_calloc(count, size);
 }
 
 void* realloc(void* block, std::size_t size) {
-  tumblesight::hal::dds::note(size);
+  tumblesight::fsw::desktop::count_allocation(size);
   return __libc_realloc(block, size);
 }
 
 void* memalign(std::size_t alignment, std::size_t size) {
-  tumblesight::hal::dds::note(size);
+  tumblesight::fsw::desktop::count_allocation(size);
   return __libc_memalign(alignment, size);
 }
 
@@ -94,12 +94,12 @@ int posix_memalign(void** block, std::size_t alignment, std::size_t size) {
 }
 
 void* valloc(std::size_t size) {
-  tumblesight::hal::dds::note(size);
+  tumblesight::fsw::desktop::count_allocation(size);
   return __libc_valloc(size);
 }
 
 void* pvalloc(std::size_t size) {
-  tumblesight::hal::dds::note(size);
+  tumblesight::fsw::desktop::count_allocation(size);
   return __libc_pvalloc(size);
 }
 

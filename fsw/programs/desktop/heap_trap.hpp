@@ -1,18 +1,18 @@
-// The heap trap: counts what a thread allocates. Linked into the desktop flight program only, where it stands
-// in front of the C library's allocator for every library of the process, Cyclone DDS included.
+// Heap trap: counts the allocations of one thread. It replaces the allocator of the program that it is linked
+// into, for every library of the process including Cyclone DDS. Only the desktop flight program links it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 
-// From now on the calling thread's allocations count. Other threads are never counted.
+// Starts and stops counting the calling thread's allocations. Other threads are not counted.
 void arm_heap_trap();
 void disarm_heap_trap();
 
-// Of the calling thread since the trap was armed first.
+// Of the calling thread, while the trap was armed.
 std::uint32_t heap_allocations();
-std::size_t first_heap_allocation_bytes();  // size of the first one, to find the culprit; 0 if there was none
+std::size_t first_heap_allocation_bytes();  // helps to find the cause; 0: no allocation
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

@@ -1,4 +1,4 @@
-// The desktop flight program: the flight application on a Linux machine, with DDS as its sensor and its radio
+// The desktop flight program: the flight application on a Linux machine, with DDS as its sensor and radio
 // link.
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +17,7 @@
 namespace {
 
 using namespace tumblesight;
+using namespace tumblesight::fsw::desktop;
 using hal::dds::FlightEnd;
 
 // All of the flight side's memory.
@@ -25,14 +26,14 @@ hal::dds::Domain domain;
 hal::dds::FlightEndpoints endpoints;
 hal::dds::DdsLidar lidar;
 hal::posix::PaintedStack stack;
-hal::dds::DdsLink link{{hal::dds::heap_allocations, [] { return stack.least_left_bytes(); }}};
+hal::dds::DdsLink link{{heap_allocations, [] { return stack.least_left_bytes(); }}};
 hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
-hal::dds::FlightApps apps;
+FlightApps apps;
 hal::CommandKey command_key;
 fsw::CycleWorkspace workspace;
-hal::dds::FlightTask task{lidar, link, workspace, stack};
+FlightTask task{lidar, link, workspace, stack};
 
-FlightEnd connect(const hal::dds::FlightOptions& options) {
+FlightEnd connect(const FlightOptions& options) {
   dds_return_t result = domain.open(options.domain);
   if (result == 0) result = endpoints.open(domain.participant());
   if (result == 0) return FlightEnd::kComplete;
@@ -40,7 +41,7 @@ FlightEnd connect(const hal::dds::FlightOptions& options) {
   return FlightEnd::kTransport;
 }
 
-hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options, const fsw::App& app,
+hal::dds::HandshakeResult meet_simulator(const FlightOptions& options, const fsw::App& app,
                                          std::int64_t timeout_ns) {
   hal::dds::HandshakeSettings settings;
   settings.icd_hash = options.icd_hash;
@@ -50,13 +51,14 @@ hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options,
   const hal::dds::HandshakeResult met = hal::dds::shake_hands(endpoints, settings, stopwatch);
   if (met.end == FlightEnd::kIcdUnequal) {
     std::fprintf(stderr,
-                 "flight: interface hash %08x, simulator's %08x: build both from the same tumblesight.idl\n",
+                 "flight: interface hash %08x differs from the simulator's %08x: build both from the same "
+                 "tumblesight.idl\n",
                  options.icd_hash, met.simulator_icd_hash);
   }
   return met;
 }
 
-FlightEnd fly(const hal::dds::FlightOptions& options, fsw::App& app) {
+FlightEnd fly(const FlightOptions& options, fsw::App& app) {
   if (!task.start(app, options.free_running)) return FlightEnd::kNoThread;
   const FlightEnd connected = connect(options);
   if (connected != FlightEnd::kComplete) return connected;
@@ -65,30 +67,33 @@ FlightEnd fly(const hal::dds::FlightOptions& options, fsw::App& app) {
   if (met.end != FlightEnd::kComplete || met.stopped) return met.end;
 
   bus.join_run(met.run_id, timeout_ns);
-  if (!options.free_running) return hal::dds::run_lockstep(bus, task);
-  return hal::dds::run_free(bus, task, stopwatch, static_cast<std::int64_t>(options.period_ms * 1e6));
+  if (!options.free_running) return exchange_in_lockstep(bus, task);
+  return exchange_free_running(bus, task, stopwatch, static_cast<std::int64_t>(options.period_ms * 1e6));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  hal::dds::FlightOptions options;
-  switch (hal::dds::parse_flight_options(argc, argv, options)) {
-    case hal::dds::ParseResult::kHelp:
-      hal::dds::print_flight_help();
+  FlightOptions options;
+  switch (parse_flight_options(argc, argv, options)) {
+    case ParseResult::kHelp:
+      print_flight_help();
       return EXIT_SUCCESS;
-    case hal::dds::ParseResult::kError:
+    case ParseResult::kVersion:
+      print_flight_version();
+      return EXIT_SUCCESS;
+    case ParseResult::kError:
       return static_cast<int>(FlightEnd::kBadArguments);
-    case hal::dds::ParseResult::kRun:
+    case ParseResult::kRun:
       break;
   }
   hal::dds::accept_stop_requests();
-  if (!hal::dds::read_command_key(options.command_key_path, command_key))
+  if (!read_command_key(options.command_key_path, command_key))
     return static_cast<int>(FlightEnd::kBadArguments);
-  fsw::App& app = hal::dds::boot(options, apps, stopwatch, command_key);
+  fsw::App& app = boot(options, apps, stopwatch, command_key);
 
   const FlightEnd end = fly(options, app);
-  task.join();  // if there never was a run
+  task.join();  // no effect after a run
   if (end != FlightEnd::kComplete) std::fprintf(stderr, "flight: %s\n", hal::dds::to_string(end));
   domain.close();
   return static_cast<int>(end);

@@ -1,4 +1,4 @@
-/* The model image and the recorded frames, as bytes. Which files: CMakeLists.txt. */
+/* The model image and the recorded frames as bytes. CMakeLists.txt selects the files. */
 
   .section .model_image, "a"
   .balign 64

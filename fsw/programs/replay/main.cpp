@@ -1,6 +1,6 @@
-// flight_replay: the flight application in its periodic loop, on any board, fed with recorded frames. The
-// model image and the recording are part of the program (blobs.S); the recording is the time master, so
-// nothing waits.
+// flight_replay: the flight application in its periodic loop with recorded frames, on any board. The model
+// image and the recording are part of the program (blobs.S). The recording gives the time, so that the
+// program never waits.
 #include <cstddef>
 #include <cstdint>
 
@@ -32,7 +32,7 @@ class BoardStopwatch final : public Stopwatch {
   std::uint64_t now_ns() override { return board::now_ns(); }
 };
 
-// One bank, in the program itself, which nobody can write.
+// One read-only bank: the image in the program.
 class ProgramModelStore final : public ModelStore {
  public:
   ModelBank bank(int index) override {

@@ -1,4 +1,4 @@
-// Console and exit by semihosting: a debugger, or QEMU, listens. On a real board: a UART, and a reset.
+// Console and exit by semihosting, for QEMU or a debugger. A real board uses a UART and a reset.
 #include "hal/board.hpp"
 
 namespace tumblesight::hal::board {
@@ -27,7 +27,7 @@ void write(const char* text) {
   semihosting(kWrite0, text);
 }
 
-// To be called at least every 171 s, when the counter has gone round.
+// Must be called at least every 171 s, the period of the counter.
 std::uint64_t now_ns() {
   static std::uint64_t ticks = 0;
   static std::uint32_t last = 0;

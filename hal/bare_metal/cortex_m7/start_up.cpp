@@ -1,4 +1,4 @@
-// The vector table, and what the core needs before C++ runs on it.
+// The vector table, and the set-up of the core before C++ code runs.
 #include <cstdint>
 
 extern "C" {
@@ -18,7 +18,7 @@ extern "C" [[gnu::section(".first"), gnu::used]] const VectorTable vector_table 
     {reset, unexpected_trap, unexpected_trap, unexpected_trap, unexpected_trap, unexpected_trap, nullptr,
      nullptr, nullptr, nullptr, unexpected_trap, unexpected_trap, nullptr, unexpected_trap, unexpected_trap}};
 
-// Turns the floating-point unit on: compiled code may use its registers anywhere.
+// Enables the floating-point unit first: compiled code may use its registers anywhere.
 void reset() {
   auto* const coprocessor_access = reinterpret_cast<volatile std::uint32_t*>(0xE000ED88);
   *coprocessor_access = *coprocessor_access | (0xFU << 20);

@@ -1,4 +1,4 @@
-// Console and exit by semihosting: a debugger, or QEMU, listens. On a real board: a UART, and a reset.
+// Console and exit by semihosting, for QEMU or a debugger. A real board uses a UART and a reset.
 #include "hal/board.hpp"
 
 namespace tumblesight::hal::board {
@@ -18,7 +18,8 @@ void write(const char* text) {
   semihosting(kWrite0, text);
 }
 
-// The cycle counter, a nanosecond each in QEMU. To be called at least every 4.2 s, when it has gone round.
+// The cycle counter: a cycle takes 1 ns in QEMU. Must be called at least every 4.2 s, the period of the
+// counter.
 std::uint64_t now_ns() {
   static std::uint64_t total = 0;
   static std::uint32_t last = 0;

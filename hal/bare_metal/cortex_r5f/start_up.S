@@ -1,4 +1,4 @@
-/* Vectors, and what the core needs before C++ runs on it. */
+/* The vectors, and the set-up of the core before C++ code runs. */
   .syntax unified
   .arm
 
@@ -18,14 +18,14 @@ vectors:
   .type reset, %function
 reset:
   ldr sp, =stack_top
-  /* The floating-point unit: access for all, then on. */
+  /* Enables the floating-point unit. */
   mrc p15, 0, r0, c1, c0, 2
   orr r0, r0, #0xf00000
   mcr p15, 0, r0, c1, c0, 2
   isb
   mov r0, #0x40000000
   vmsr fpexc, r0
-  /* The cycle counter, from 0. */
+  /* Starts the cycle counter from 0. */
   mov r0, #5
   mcr p15, 0, r0, c9, c12, 0
   mov r0, #0x80000000

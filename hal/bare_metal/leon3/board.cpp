@@ -1,5 +1,5 @@
-// APB UART 1 and GPTIMER 1. The processor ends in error mode, where QEMU stops; it tells no status, so the
-// console has to.
+// APB UART 1 and GPTIMER 1. The program ends in the processor's error mode, where QEMU stops. QEMU reports no
+// status, so that end() writes it to the console.
 #include "hal/board.hpp"
 
 namespace tumblesight::hal::board {
@@ -32,7 +32,7 @@ void write(const char* text) {
   }
 }
 
-// To be called at least every 71 minutes, when the counter has gone round.
+// Must be called at least every 71 minutes, the period of the counter.
 std::uint64_t now_ns() {
   static std::uint64_t ticks = 0;
   static std::uint32_t last = 0;
@@ -52,7 +52,7 @@ std::uint64_t now_ns() {
 
 void end(int status) {
   write(status == 0 ? "ended: success\n" : "ended: failure\n");
-  // A trap while traps are off.
+  // A trap while traps are disabled leads to error mode.
   asm volatile("wr %%g0, 0x1fc0, %%psr\n nop\n nop\n nop\n ta 0" ::: "memory");
   for (;;) {
   }

@@ -1,4 +1,5 @@
-/* The trap table, window overflow and underflow (eight register windows), and what the core needs before C++ runs on it. */
+/* The trap table, the handlers of window overflow and underflow (eight register windows), and the set-up of the core
+   before C++ code runs. */
 
 #define PSR_FLOAT_PIL_SUPERVISOR 0x1fc0
 #define PSR_TRAPS 0x20
@@ -29,7 +30,7 @@ trap_table:
 reset:
   set trap_table, %g1
   wr %g1, %tbr
-  wr %g0, 2, %wim               /* the window after this one is the last */
+  wr %g0, 2, %wim               /* the next window is the invalid one */
   wr %g0, PSR_FLOAT_PIL_SUPERVISOR, %psr
   nop
   nop
@@ -43,7 +44,7 @@ reset:
   call start_program
   nop
 
-/* In the window that was not to be entered. The one beyond it goes to its stack and becomes the last. */
+/* Runs in the invalid window. Saves the window beyond it to its stack, which becomes the invalid one. */
 window_overflow:
   mov %wim, %l3
   mov %g1, %l7
@@ -68,7 +69,7 @@ window_overflow:
   jmp %l1
   rett %l2
 
-/* Two windows before the one that is wanted back from its stack. */
+/* Runs two windows before the one to be restored from its stack. */
 window_underflow:
   mov %wim, %l3
   sll %l3, 1, %l4

@@ -1,4 +1,4 @@
-/* What the core needs before C++ runs on it, in machine mode. */
+/* The set-up of the core before C++ code runs, in machine mode. */
   .section .first, "ax"
   .global reset
 reset:
@@ -10,7 +10,7 @@ reset:
   mv tp, zero
   la t0, trap
   csrw mtvec, t0
-  /* The floating-point unit on. */
+  /* Enables the floating-point unit. */
   li t0, 0x2000
   csrs mstatus, t0
   call start_program

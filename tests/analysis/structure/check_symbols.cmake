@@ -1,16 +1,16 @@
-# Looks with nm at what flight libraries need from outside.
+# Checks with nm the symbols that the flight libraries need from outside.
 #   cmake -DNM=<nm> -DLIBRARIES=<a.a;b.a> [-DMUST_CATCH=<symbol;...>] -P check_symbols.cmake
-# Fails when a symbol breaks the rules of the flight side. With MUST_CATCH it passes only if every symbol named there is
-# caught: the check of this check.
+# Fails if a symbol is forbidden on the flight side. With MUST_CATCH it passes only if every symbol named there is caught:
+# this tests the check itself.
 
 cmake_minimum_required(VERSION 3.25)
 
-# All that flight code may take from outside itself: what the compiler calls on its own, square roots, the list of the
-# processor's vector units, and Eigen's assertions in debug builds.
+# The only symbols that flight code may need from outside: functions that the compiler calls by itself, square roots, the
+# detection of the processor's vector units, and Eigen's assertions in debug builds.
 set(allowed "^(memcpy|memmove|memset|memcmp|strlen|strcmp|strncmp|sqrtf?|abort)$"
   "^(__stack_chk_fail|__assert_fail|_GLOBAL_OFFSET_TABLE_|__dso_handle|__cpu_model|__cpu_features2|__cpu_indicator_init)$"
   "^__(asan|ubsan|tsan|sanitizer|gcov|gcc_personality)_")
-# Never, not even defined in the library itself.
+# Forbidden even if the library defines them itself.
 set(never "^_ZT[IS]" "^(malloc|calloc|realloc|free|aligned_alloc|posix_memalign)$" "^_Zn[aw]" "^_Zd[al]" "^__cxa_"
   "^_?_?(v?f?s?n?printf|puts|putchar|fwrite|fputs)" "^dds_"
   "^_?_?(exp|exp2|expm1|log|log2|log10|log1p|pow|sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|cbrt|hypot|erf|fmod)[fl]?(_finite)?$")
@@ -60,7 +60,7 @@ if(looked_at EQUAL 0)
   message(FATAL_ERROR "no symbols found in ${LIBRARIES}")
 endif()
 
-# What one of the libraries takes from another of them is looked at there.
+# A symbol that one of the libraries needs from another one is checked there.
 list(REMOVE_DUPLICATES undefined)
 list(REMOVE_ITEM undefined ${defined_somewhere})
 foreach(symbol IN LISTS undefined)
@@ -77,10 +77,10 @@ if(DEFINED MUST_CATCH)
       message(FATAL_ERROR "${symbol} was not caught; caught: ${caught}")
     endif()
   endforeach()
-  message(STATUS "caught, as it should be: ${caught}")
+  message(STATUS "caught as expected: ${caught}")
 elseif(caught)
   list(JOIN caught "\n  " caught)
-  message(FATAL_ERROR "not for the flight side:\n  ${caught}\nin ${LIBRARIES}")
+  message(FATAL_ERROR "forbidden on the flight side:\n  ${caught}\nin ${LIBRARIES}")
 else()
-  message(STATUS "${looked_at} symbols looked at in ${LIBRARIES}")
+  message(STATUS "${looked_at} symbols checked in ${LIBRARIES}")
 endif()

@@ -24,16 +24,18 @@ bool is_interface(const std::string& path) {
   return starts_with(path, "hal/") && std::count(path.begin(), path.end(), '/') == 1;
 }
 
-// "hal/dds/main.cpp" -> "hal/dds/"
-std::string platform_of(const std::string& file) {
-  return file.substr(0, file.find('/', 4) + 1);
+// The first `folders` folders of a file's path, with the '/' behind them.
+std::string first_folders(const std::string& file, int folders) {
+  std::size_t end = 0;
+  for (int i = 0; i < folders; ++i) end = file.find('/', end) + 1;
+  return file.substr(0, end);
 }
 
 bool is_project(const std::string& path) {
-  return starts_with_any(path, {"gnc/", "fsw/", "hal/", "sim/", "tests/"});
+  return starts_with_any(path, {"gnc/", "fsw/", "hal/", "sim/", "tests/", "cmake/"});
 }
 
-// What of the standard library needs neither heap, exceptions, I/O nor a clock.
+// The headers of the standard library that need neither heap, exceptions, I/O nor a clock.
 bool is_flight_header(const std::string& path) {
   static const std::vector<std::string> kAllowed{
       "algorithm", "array",  "cmath",   "cstddef",     "cstdint", "cstring", "initializer_list",
@@ -41,50 +43,70 @@ bool is_flight_header(const std::string& path) {
   return is_one_of(path, kAllowed) || starts_with(path, "Eigen/");
 }
 
-// A processor's own instructions, and the question whether it has them.
+// Intrinsics of a processor, and the header that detects them.
 bool is_instruction_header(const std::string& path) {
   return is_one_of(path, {"immintrin.h", "cpuid.h", "arm_neon.h", "arm_acle.h"});
 }
 
-// Empty: any project include is fine.
-std::string project_objection(const std::string& file, const std::string& path) {
-  const auto only = [&](bool allowed, const char* rule) {
-    return allowed ? std::string() : std::string(rule);
-  };
-  if (starts_with(file, "gnc/")) return only(starts_with(path, "gnc/"), "gnc knows gnc only");
+// The value types and checksums of gnc that the interfaces and platforms use.
+bool is_value_type(const std::string& path) {
+  return starts_with_any(path, {"gnc/numerics/", "gnc/attitude/"}) || path == "gnc/lidar/range_image.hpp";
+}
+
+struct Verdict {
+  bool allowed;
+  const char* rule;
+};
+
+Verdict verdict_on_fsw(const std::string& file, const std::string& path) {
   if (starts_with(file, "fsw/programs/")) {
-    return only(starts_with_any(path, {"fsw/", "gnc/", "hal/"}), "a flight program knows no ground code");
+    const bool other_program =
+        starts_with(path, "fsw/programs/") && !starts_with(path, first_folders(file, 3));
+    return {starts_with_any(path, {"fsw/", "gnc/", "hal/", "cmake/version.hpp"}) && !other_program &&
+                !starts_with(path, "hal/fake/"),
+            "a flight program knows fsw, gnc and platforms that fly; no other program and no ground code"};
   }
-  if (starts_with(file, "fsw/")) {
-    if (starts_with(path, "fsw/programs/")) return "the application knows nothing of its programs";
-    return only(starts_with_any(path, {"fsw/", "gnc/"}) || is_interface(path),
-                "fsw knows fsw, gnc and the hal interfaces only");
-  }
-  if (is_interface(file)) {
-    return only(starts_with(path, "gnc/") || is_interface(path),
-                "a hal interface knows gnc and hal interfaces only");
+  return {(starts_with_any(path, {"fsw/", "gnc/", "hal/messages/"}) || is_interface(path)) &&
+              !starts_with(path, "fsw/programs/"),
+          "the application knows itself, gnc, the hal interfaces and messages only"};
+}
+
+Verdict verdict_on_hal(const std::string& file, const std::string& path) {
+  if (starts_with(file, "hal/messages/")) {
+    return {starts_with(path, "hal/messages/") || is_value_type(path),
+            "messages know messages and gnc's value types only"};
   }
   if (starts_with(file, "hal/dds/idl/")) {
-    return only(starts_with_any(path, {"hal/dds/idl/", "gnc/"}),
-                "the interface definition knows gnc and itself only");
+    return {starts_with_any(path, {"hal/dds/idl/", "hal/messages/"}) || is_value_type(path),
+            "the wire definition knows itself, messages and gnc's value types only"};
   }
-  if (starts_with(file, "hal/")) {
-    return only(starts_with_any(path, {"gnc/", platform_of(file)}) || is_interface(path),
-                "a platform knows gnc, the hal interfaces and itself only");
+  const bool common = is_interface(path) || starts_with(path, "hal/messages/") || is_value_type(path);
+  if (is_interface(file)) {
+    return {common, "a hal interface knows interfaces, messages and gnc's value types only"};
   }
+  return {common || starts_with(path, first_folders(file, 2)),
+          "a platform knows itself, the hal interfaces, messages and gnc's value types only"};
+}
+
+// Empty: the file may include this header of the project.
+std::string project_objection(const std::string& file, const std::string& path) {
+  Verdict verdict{true, ""};
+  if (starts_with(file, "gnc/")) verdict = {starts_with(path, "gnc/"), "gnc knows gnc only"};
+  if (starts_with(file, "fsw/")) verdict = verdict_on_fsw(file, path);
+  if (starts_with(file, "hal/")) verdict = verdict_on_hal(file, path);
   if (starts_with(file, "sim/")) {
-    return only(starts_with_any(path, {"sim/", "gnc/", "hal/dds/idl/", "hal/replay/recording.hpp"}) ||
-                    is_interface(path),
-                "sim knows sim, gnc, the hal interfaces, hal/dds/idl and the recording's format only");
+    verdict = {starts_with_any(path, {"sim/", "gnc/", "hal/messages/", "hal/dds/idl/", "hal/replay/",
+                                      "cmake/version.hpp"}),
+               "sim knows sim, gnc, hal/messages, hal/dds/idl and hal/replay only"};
   }
-  return {};
+  return verdict.allowed ? std::string() : verdict.rule;
 }
 
 std::string library_objection(const std::string& file, const std::string& path) {
   if (is_instruction_header(path)) {
     const bool knows_processors =
         starts_with_any(file, {"gnc/nn/kernels/", "gnc/numerics/instruction_set", "sim/bench/peak/"});
-    return knows_processors ? "" : "only kernels, and what measures them, know a processor's instructions";
+    return knows_processors ? "" : "only the kernels and the benchmark of their peak speed use intrinsics";
   }
   const bool is_flight = starts_with_any(file, {"gnc/", "fsw/"}) && !starts_with(file, "fsw/programs/");
   if ((is_flight || is_interface(file)) && !is_flight_header(path)) {
@@ -114,6 +136,25 @@ std::string objection(const std::string& file, const Include& include) {
   if (include.quoted && !starts_with_any(file, {"hal/dds/", "sim/", "tests/"}))
     return "not written from the root";
   return library_objection(file, include.path);
+}
+
+void FolderGraph::add(const std::string& file, const Include& include) {
+  if (!include.quoted || !is_project(include.path)) return;
+  const std::string from = file.substr(0, file.rfind('/'));
+  const std::string to = include.path.substr(0, include.path.rfind('/'));
+  if (from != to) edges_.try_emplace({from, to}, file + " includes " + include.path);
+}
+
+std::vector<std::string> FolderGraph::mutual_pairs() const {
+  std::vector<std::string> pairs;
+  for (const auto& [edge, example] : edges_) {
+    const auto& [from, to] = edge;
+    const auto back = edges_.find({to, from});
+    if (from < to && back != edges_.end()) {
+      pairs.push_back(from + " <-> " + to + ": " + example + "; " + back->second);
+    }
+  }
+  return pairs;
 }
 
 }  // namespace tumblesight::structure

@@ -1,4 +1,4 @@
-// Verifies TS-TIM-060. Who may know whom: docs/architecture.md.
+// Verifies TS-TIM-060. The rules: "Who may know whom", docs/architecture.md.
 #include "tests/analysis/structure/include_rules.hpp"
 
 #include <gtest/gtest.h>
@@ -28,29 +28,69 @@ std::string objection_to(const std::string& file, const std::string& line) {
   return includes.size() == 1 ? objection(file, includes[0]) : "no include found";
 }
 
-// Folder by folder, every source of the project.
-class IncludeArrows : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(IncludeArrows, NobodyKnowsWhomTheyMayNot) {
+// Calls visit(file, include) for each include line of each source in the project's folder.
+template <class Visit>
+void visit_includes(const std::string& folder, const Visit& visit) {
   const fs::path root = TUMBLESIGHT_SOURCE_DIR;
-  if (!fs::exists(root / GetParam())) GTEST_SKIP() << "no such folder here";
-  int includes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(root / GetParam())) {
+  for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
     if (!entry.is_regular_file() || !is_source(entry.path())) continue;
     const std::string file = fs::relative(entry.path(), root).generic_string();
-    for (const Include& include : includes_of(text_of(entry.path()))) {
-      ++includes;
-      const std::string why = objection(file, include);
-      EXPECT_TRUE(why.empty()) << file << ":" << include.line << ": " << include.path << ": " << why;
-    }
+    for (const Include& include : includes_of(text_of(entry.path()))) visit(file, include);
   }
-  EXPECT_GT(includes, 0) << "the scan found nothing to look at";
 }
 
-INSTANTIATE_TEST_SUITE_P(Tree, IncludeArrows, ::testing::Values("gnc", "fsw", "hal", "sim"),
+class IncludeRules : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(IncludeRules, HoldForEverySource) {
+  int includes = 0;
+  visit_includes(GetParam(), [&](const std::string& file, const Include& include) {
+    ++includes;
+    const std::string why = objection(file, include);
+    EXPECT_TRUE(why.empty()) << file << ":" << include.line << ": " << include.path << ": " << why;
+  });
+  EXPECT_GT(includes, 0) << "the scan found no include lines";
+}
+
+INSTANTIATE_TEST_SUITE_P(Tree, IncludeRules, ::testing::Values("gnc", "fsw", "hal", "sim"),
                          [](const auto& folder) { return std::string(folder.param); });
 
-TEST(IncludeScanner, FindsIncludesHoweverTheyAreWritten) {
+TEST(FolderGraph, NoTwoFoldersOfTheProjectIncludeEachOther) {
+  FolderGraph graph;
+  for (const char* folder : {"gnc", "fsw", "hal", "sim"}) {
+    visit_includes(folder,
+                   [&](const std::string& file, const Include& include) { graph.add(file, include); });
+  }
+  for (const std::string& pair : graph.mutual_pairs()) ADD_FAILURE() << pair;
+}
+
+TEST(FolderGraph, MutualPairIsReportedOnceWithAnExampleInEachDirection) {
+  FolderGraph graph;
+  graph.add("gnc/a/x.cpp", {1, "gnc/b/y.hpp", true});
+  graph.add("gnc/a/x.cpp", {2, "gnc/c/y.hpp", true});
+  EXPECT_TRUE(graph.mutual_pairs().empty());
+  graph.add("gnc/b/z.hpp", {1, "gnc/a/x.hpp", true});
+  graph.add("gnc/b/z.hpp", {2, "gnc/a/w.hpp", true});
+  EXPECT_EQ(graph.mutual_pairs(),
+            (std::vector<std::string>{"gnc/a <-> gnc/b: gnc/a/x.cpp includes gnc/b/y.hpp; gnc/b/z.hpp "
+                                      "includes gnc/a/x.hpp"}));
+}
+
+TEST(FolderGraph, FolderAndItsOwnSubfolderAreAPairToo) {
+  FolderGraph graph;
+  graph.add("gnc/a/x.cpp", {1, "gnc/a/b/y.hpp", true});
+  graph.add("gnc/a/b/y.hpp", {1, "gnc/a/x.hpp", true});
+  EXPECT_EQ(graph.mutual_pairs().size(), 1U);
+}
+
+TEST(FolderGraph, IncludesWithinAFolderAndOfLibrariesDoNotCount) {
+  FolderGraph graph;
+  graph.add("gnc/a/x.cpp", {1, "gnc/a/y.hpp", true});
+  graph.add("gnc/a/y.hpp", {1, "gnc/a/x.hpp", true});
+  graph.add("gnc/a/x.cpp", {1, "Eigen/Core", false});
+  EXPECT_TRUE(graph.mutual_pairs().empty());
+}
+
+TEST(IncludeScanner, FindsEveryFormOfInclude) {
   const std::vector<Include> includes = includes_of(
       "// #include \"fsw/app/cycle.hpp\"\n#include <vector>\n  #  include \"gnc/a.hpp\"  // why\nint "
       "include;\n"
@@ -64,7 +104,7 @@ TEST(IncludeScanner, FindsIncludesHoweverTheyAreWritten) {
   EXPECT_EQ(includes[2].path, "dds/dds.h");
 }
 
-TEST(IncludeScanner, EveryForbiddenArrowIsCaught) {
+TEST(IncludeRule, CatchesEveryForbiddenInclude) {
   const std::vector<std::pair<const char*, const char*>> forbidden{
       {"gnc/rcnn/a.cpp", "#include \"fsw/config/limits.hpp\""},
       {"gnc/rcnn/a.cpp", "#include \"hal/link.hpp\""},
@@ -81,8 +121,12 @@ TEST(IncludeScanner, EveryForbiddenArrowIsCaught) {
       {"hal/link.hpp", "#include \"fsw/app/events.hpp\""},
       {"hal/link.hpp", "#include \"hal/posix/realtime.hpp\""},
       {"hal/link.hpp", "#include <string>"},
+      {"hal/link.hpp", "#include \"gnc/rcnn/attitude_estimator.hpp\""},
+      {"hal/messages/housekeeping.hpp", "#include \"hal/link.hpp\""},
+      {"hal/messages/housekeeping.hpp", "#include \"fsw/app/events.hpp\""},
       {"hal/posix/a.cpp", "#include \"fsw/config/limits.hpp\""},
       {"hal/posix/a.cpp", "#include \"hal/dds/dds_link.hpp\""},
+      {"hal/posix/a.cpp", "#include \"gnc/rcnn/attitude_estimator.hpp\""},
       {"hal/posix/a.cpp", "#include <dds/dds.h>"},
       {"fsw/programs/desktop/main.cpp", "#include \"sim/sil/sil_run.hpp\""},
       {"fsw/app/a.cpp", "#include \"fsw/programs/desktop/flight_task.hpp\""},
@@ -92,21 +136,30 @@ TEST(IncludeScanner, EveryForbiddenArrowIsCaught) {
       {"hal/dds/flight_bus.cpp", "#include \"fsw/config/limits.hpp\""},
       {"hal/dds/flight_bus.cpp", "#include \"fsw/programs/desktop/flight_task.hpp\""},
       {"fsw/programs/desktop/flight_task.cpp", "#include \"sim/sil/sil_run.hpp\""},
+      {"fsw/programs/desktop/main.cpp", "#include \"fsw/programs/replay/a.hpp\""},
+      {"fsw/programs/desktop/main.cpp", "#include \"hal/fake/fake_lidar.hpp\""},
+      {"fsw/app/a.cpp", "#include \"cmake/version.hpp\""},
       {"hal/flight.hpp", "#include \"fsw/app/cycle.hpp\""},
       {"hal/dds/idl/topics.cpp", "#include \"hal/dds/dds_link.hpp\""},
       {"sim/sil/a.cpp", "#include \"fsw/app/attitude_init_app.hpp\""},
       {"sim/sil/a.cpp", "#include \"hal/dds/dds_link.hpp\""},
+      {"sim/sil/a.cpp", "#include \"hal/link.hpp\""},
+      {"sim/sil/a.cpp", "#include \"hal/posix/realtime.hpp\""},
       {"sim/evaluation/a.cpp", "#include <dds/dds.h>"},
   };
   for (const auto& [file, line] : forbidden) EXPECT_NE(objection_to(file, line), "") << file << ": " << line;
 }
 
-TEST(IncludeScanner, AllowedArrowsPass) {
+TEST(IncludeRule, AcceptsAllowedIncludes) {
   const std::vector<std::pair<const char*, const char*>> allowed{
       {"gnc/rcnn/a.cpp", "#include <Eigen/Core>"},
       {"gnc/rcnn/a.cpp", "#include \"gnc/lidar/range_image.hpp\""},
       {"gnc/nn/kernels/a.cpp", "#include <immintrin.h>"},
       {"fsw/app/a.cpp", "#include \"hal/link.hpp\""},
+      {"fsw/app/a.cpp", "#include \"hal/messages/housekeeping.hpp\""},
+      {"hal/link.hpp", "#include \"hal/messages/housekeeping.hpp\""},
+      {"hal/lidar.hpp", "#include \"gnc/lidar/range_image.hpp\""},
+      {"hal/replay/a.cpp", "#include \"gnc/numerics/crc32.hpp\""},
       {"hal/posix/a.cpp", "#include <time.h>"},
       {"hal/posix/a.cpp", "#include \"hal/posix/a.hpp\""},
       {"fsw/programs/desktop/flight_task.cpp", "#include \"fsw/app/cycle.hpp\""},
@@ -114,6 +167,8 @@ TEST(IncludeScanner, AllowedArrowsPass) {
       {"fsw/programs/desktop/main.cpp", "#include \"hal/dds/flight_bus.hpp\""},
       {"sim/sil/a.cpp", "#include \"hal/dds/idl/topics.hpp\""},
       {"sim/sil/a.cpp", "#include <dds/dds.h>"},
+      {"sim/sil/a.cpp", "#include \"hal/messages/housekeeping.hpp\""},
+      {"sim/cli/main.cpp", "#include \"cmake/version.hpp\""},
       {"sim/cli/a.cpp", "#include <vector>"},
       {"tests/unit/a.cpp", "#include \"fsw/app/cycle.hpp\""},
   };

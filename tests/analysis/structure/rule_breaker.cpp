@@ -1,4 +1,4 @@
-// Everything that the flight side may not do, in one library, for the check of the symbol check.
+// A library that breaks every rule of the flight side, to test the check of symbols.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -132,9 +132,9 @@ class Soak : public ::testing::Test {
 
   void step() {
     const std::uint64_t begin_ns = stopwatch_.now_ns();
-    hal::dds::arm_heap_trap();
+    fsw::desktop::arm_heap_trap();
     app_->step(now_ns_, *inputs_, *outputs_);
-    hal::dds::disarm_heap_trap();
+    fsw::desktop::disarm_heap_trap();
     longest_ns_ = std::max(longest_ns_, stopwatch_.now_ns() - begin_ns);
   }
 
@@ -193,7 +193,7 @@ TEST_F(Soak, AHundredThousandCyclesOfEverythingAtOnce) {
     ASSERT_TRUE(outputs_->duties_done);
     in_run += app_->mode() == Mode::kRun ? 1U : 0U;
   }
-  EXPECT_EQ(hal::dds::heap_allocations(), 0U);
+  EXPECT_EQ(fsw::desktop::heap_allocations(), 0U);
   EXPECT_GT(restarts, 5U);
   EXPECT_GT(in_run, kCycles / 3);
   EXPECT_LT(longest_ns_, 1'350'000'000U);

@@ -5,7 +5,7 @@
 namespace tumblesight::hal::dds {
 namespace {
 
-TEST(FixedQueue, GivesBackInOrder) {
+TEST(FixedQueue, ReturnsEntriesInOrder) {
   FixedQueue<int, 3> queue;
   EXPECT_EQ(queue.pop(), nullptr);
   for (int round = 0; round < 5; ++round) {
@@ -17,7 +17,7 @@ TEST(FixedQueue, GivesBackInOrder) {
   }
 }
 
-TEST(FixedQueue, LosesTheOldestWhenFull) {
+TEST(FixedQueue, DropsTheOldestEntryWhenFull) {
   FixedQueue<int, 3> queue;
   for (int i = 0; i < 5; ++i) queue.push() = i;
   EXPECT_EQ(*queue.pop(), 2);

@@ -52,14 +52,14 @@ TEST_F(FileModelStoreTest, HoldsTheWholeFileAndKeepsItWhenTheFileChanges) {
   }
 }
 
-TEST_F(FileModelStoreTest, BanksAreWrittenApart) {
+TEST_F(FileModelStoreTest, BanksAreIndependent) {
   FileModelStore store(write("model.tsm", 4096).c_str(), 4096);
   store.bank(1).writable[4095] ^= 1;
   EXPECT_NE(store.bank(0).data[4095], store.bank(1).data[4095]);
   EXPECT_NE(store.bank(0).data, store.bank(1).data);
 }
 
-TEST_F(FileModelStoreTest, MissingFileIsSaidToBeMissing) {
+TEST_F(FileModelStoreTest, MissingFileIsReported) {
   expect_none(path("none.tsm"), FileStatus::kMissing);
   expect_none(write("file", 1) + "/below_a_file", FileStatus::kMissing);
 }
@@ -72,7 +72,7 @@ TEST_F(FileModelStoreTest, EmptyFileIsRefused) {
   expect_none(write("empty.tsm", 0), FileStatus::kEmpty);
 }
 
-TEST_F(FileModelStoreTest, WhatIsNoRegularFileIsUnreadable) {
+TEST_F(FileModelStoreTest, NonRegularFileIsUnreadable) {
   expect_none(folder_, FileStatus::kUnreadable);
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   expect_none(path("pipe"), FileStatus::kUnreadable);
@@ -85,7 +85,7 @@ TEST_F(FileModelStoreTest, ForbiddenFileIsUnreadable) {
   expect_none(name, FileStatus::kUnreadable);
 }
 
-TEST(FileStatusText, EveryStatusHasItsOwnWords) {
+TEST(FileStatusText, EveryStatusHasItsOwnText) {
   std::vector<std::string> words;
   for (int i = 0; i <= static_cast<int>(FileStatus::kNoMemory); ++i) {
     words.emplace_back(to_string(static_cast<FileStatus>(i)));

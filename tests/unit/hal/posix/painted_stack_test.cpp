@@ -14,7 +14,7 @@ constexpr std::size_t kDeep = 100'000;
 [[gnu::noinline]] void use_deep_stack() {
   unsigned char bytes[kDeep];
   std::memset(bytes, 1, sizeof bytes);
-  asm volatile("" : : "r"(bytes) : "memory");  // so that nothing is left out
+  asm volatile("" : : "r"(bytes) : "memory");  // keeps the array
 }
 
 void* go_deep(void*) {
@@ -35,7 +35,7 @@ std::uint32_t left_after(void* (*main)(void*)) {
   return stack->least_left_bytes();
 }
 
-TEST(PaintedStack, ShowsHowDeepItsThreadEverWas) {
+TEST(PaintedStack, ShowsTheGreatestDepthOfItsThread) {
   const std::uint32_t shallow = left_after(stay_shallow);
   const std::uint32_t deep = left_after(go_deep);
   EXPECT_GT(shallow, PaintedStack::kBytes / 2);

@@ -12,8 +12,8 @@
 namespace tumblesight::hal::posix {
 namespace {
 
-// In a thread of its own, so that no other test runs at a fixed priority.
-TEST(Realtime, GrantSaysWhatTheThreadReallyGot) {
+// In a separate thread, so that no other test runs at a fixed priority.
+TEST(Realtime, GrantMatchesTheThreadsScheduling) {
   std::thread([] {
     const RealtimeGrant grant = request_realtime(10);
     (void)munlockall();

@@ -18,7 +18,7 @@ gnc::RangeImage frame_number(std::uint32_t k) {
   frame.fov_urad = 140'000 + k;
   frame.sequence_number = k;
   frame.exposure_time_ns = std::int64_t{2'700'000'000} * k;
-  // Empty rows, a full one, one with a hole, a single return at each end.
+  // Empty rows, a full row, a row with a hole, and rows with one return at an end.
   for (int i = 0; i < kRays; ++i) frame.ranges[3 * kRays + i] = static_cast<std::uint16_t>(0xFF00 + i);
   frame.ranges[5 * kRays + 4] = 6400;
   frame.ranges[5 * kRays + 9] = static_cast<std::uint16_t>(6401 + k);
@@ -37,13 +37,13 @@ std::vector<std::uint8_t> recorded(std::uint32_t frames) {
   return bytes;
 }
 
-// As if it had been written so.
+// Renews the CRC after a change.
 void renew_crc(std::vector<std::uint8_t>& bytes) {
   write_recording_crc(bytes.data(), bytes.size() - kRecordingCrcSize,
                       bytes.data() + bytes.size() - kRecordingCrcSize);
 }
 
-TEST(RecordingTest, GivesBackTheFramesBitForBit) {
+TEST(RecordingTest, ReturnsTheFramesBitForBit) {
   const auto bytes = recorded(3);
   Recording recording;
   ASSERT_EQ(recording.open(bytes.data(), bytes.size()), RecordingStatus::kOk);
@@ -64,7 +64,7 @@ TEST(RecordingTest, GivesBackTheFramesBitForBit) {
   EXPECT_FALSE(recording.has_next());
 }
 
-TEST(RecordingTest, RefusesWhatIsNone) {
+TEST(RecordingTest, RefusesInvalidFiles) {
   const auto good = recorded(1);
   const auto status_of = [](const std::vector<std::uint8_t>& bytes) {
     return Recording().open(bytes.data(), bytes.size());
@@ -88,9 +88,9 @@ TEST(RecordingTest, RefusesWhatIsNone) {
   }
 }
 
-TEST(RecordingTest, EndsBeforeAFrameThatIsNotWholeOrDoesNotFitItsRays) {
+TEST(RecordingTest, EndsBeforeAnIncompleteOrInvalidFrame) {
   auto bytes = recorded(2);
-  bytes[8] = 3;  // says it has one more
+  bytes[8] = 3;  // one more than there are
   renew_crc(bytes);
   Recording recording;
   ASSERT_EQ(recording.open(bytes.data(), bytes.size()), RecordingStatus::kOk);
@@ -106,7 +106,7 @@ TEST(RecordingTest, EndsBeforeAFrameThatIsNotWholeOrDoesNotFitItsRays) {
   EXPECT_FALSE(recording.has_next());
 }
 
-TEST(ReplayLidarTest, DeliversAFrameOnceItsTimeHasCome) {
+TEST(ReplayLidarTest, DeliversAFrameAtItsExposureTime) {
   const auto bytes = recorded(2);
   Recording recording;
   ASSERT_EQ(recording.open(bytes.data(), bytes.size()), RecordingStatus::kOk);

@@ -19,7 +19,7 @@ TEST(TextLine, WritesTheSmallestAndTheLargestNumber) {
   EXPECT_STREQ(TextLine().number(std::numeric_limits<std::int64_t>::max()).c_str(), "9223372036854775807");
 }
 
-TEST(TextLine, CutsOffWhatDoesNotFit) {
+TEST(TextLine, CutsOffTextThatDoesNotFit) {
   TextLine line;
   for (int i = 0; i < 100; ++i) line.text("0123456789");
   EXPECT_EQ(std::string(line.c_str()).size(), 119U);

@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <thread>
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::fsw::desktop {
 namespace {
 
-// Keeps the compiler from removing an allocation that nobody uses.
+// Keeps the compiler from removing an allocation whose result is not used.
 void use(void* block) {
   asm volatile("" : : "g"(block) : "memory");
 }
@@ -24,9 +24,9 @@ std::uint32_t allocations_during(Action&& action) {
   return heap_allocations() - before;
 }
 
-TEST(HeapTrap, CountsEveryWayToTheHeap) {
+TEST(HeapTrap, CountsEveryAllocationFunction) {
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "AddressSanitizer brings an allocator of its own";
+  GTEST_SKIP() << "AddressSanitizer replaces the allocator";
 #endif
   EXPECT_EQ(allocations_during([] {}), 0U);
   void* block = nullptr;
@@ -48,7 +48,7 @@ TEST(HeapTrap, CountsEveryWayToTheHeap) {
   ::operator delete(block);
 }
 
-TEST(HeapTrap, RemembersTheSizeOfTheFirst) {
+TEST(HeapTrap, RemembersTheSizeOfTheFirstAllocation) {
   std::thread([] {
     arm_heap_trap();
     void* first = std::malloc(1234);
@@ -63,7 +63,7 @@ TEST(HeapTrap, RemembersTheSizeOfTheFirst) {
   }).join();
 }
 
-TEST(HeapTrap, CountsTheArmedThreadOnly) {
+TEST(HeapTrap, CountsOnlyTheArmedThread) {
   std::thread other;
   void* block = nullptr;
   const std::uint32_t count_before = heap_allocations();
@@ -76,4 +76,4 @@ TEST(HeapTrap, CountsTheArmedThreadOnly) {
 }
 
 }  // namespace
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::fsw::desktop

@@ -1,0 +1,29 @@
+# cmake -DBUILD=<build folder> -DEXAMPLES=<this folder> -DFRAMES=<recording> -DGENERATOR=<generator> -P check_install.cmake
+# Installs the package, builds the examples against it and runs the first one.
+cmake_minimum_required(VERSION 3.25)
+
+function(run_or_fail)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${command}: ${result}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+set(prefix ${BUILD}/installed)
+set(examples ${BUILD}/installed_examples)
+file(REMOVE_RECURSE ${prefix} ${examples} ${prefix}_elsewhere)
+run_or_fail(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
+# The package must not depend on the folder that it was installed to.
+file(RENAME ${prefix} ${prefix}_elsewhere)
+run_or_fail(${CMAKE_COMMAND} -S ${EXAMPLES} -B ${examples} -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release
+  -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${prefix}_elsewhere)
+run_or_fail(${CMAKE_COMMAND} --build ${examples})
+run_or_fail(${examples}/attitude_from_frames ${prefix}_elsewhere/share/tumblesight/models/near_shoemaker.tsm ${FRAMES})
+string(REGEX MATCHALL "frame +[0-9]+: q_lrf_trf( +-?[01]\\.[0-9]+)+, expected error" frames "${output}")
+list(LENGTH frames count)
+if(NOT count EQUAL 20)
+  message(FATAL_ERROR "expected attitudes of 20 frames, found ${count}:\n${output}")
+endif()
+message(STATUS "the installed package builds the examples; attitudes of ${count} frames")
