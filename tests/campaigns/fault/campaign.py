@@ -94,25 +94,36 @@ def as_table(totals):
 def document(totals, seed):
     return f"""# Faults
 
-Written by `tests/campaigns/fault/run`: single bits flipped in a flying application (NEAR Shoemaker's model in fixed point, rendered sequences with their truth, seed {seed}), in child
-processes that may die. With the protections on, and the same flips with vote, guards, scrubbing and checks of the attitude off, to show what they buy; packets
-and frames are judged in both.
+Written by `tests/campaigns/fault/run`. The campaign flips single bits in a running flight application: NEAR
+Shoemaker's model in fixed point, rendered sequences with known true attitudes, seed {seed}. Trials run
+in child processes, so that a crash is one of the outcomes. The same flips are made twice. With the
+protections **on**, everything works as in flight. With the protections **off**, the vote, the guards, the
+scrubbing and the checks of the attitude are disabled, which shows what they contribute. Packets and frames
+are checked in both cases.
 
 {as_table(totals)}
 
-*Masked*: no attitude suffered and nobody noticed. *Recovered*: noticed, in RUN, attitudes right again. *Safe*: noticed, in SAFE. *Silent wrong*: an attitude flagged valid
-that is more than 20° off where without the flip it was right. *Lost count*: a command neither counted as accepted nor as refused. Goals: no crash, hang, lost count or
-attitude that stays wrong; silent wrong at most 0.05 % of flips in weights and 0.1 % elsewhere; recovery within two cycles.
-
-| place | bits |
+| outcome | meaning |
 |---|---|
-| weights | of the image in use, flipped between two cycles; 30 cycles follow, in which the whole image is checked once |
-| activations | of all layers, flipped in the middle of a step, before one of the network's products |
-| estimator state | of LSTM and track, between two cycles; 15 cycles follow, as in the rows below |
-| application state | of all three copies of the voted state, the events on their way, the copy of the estimator's state, the blocks' checksums |
-| model descriptor | records of the banks; biases, shifts and pointers that loading has set |
-| command | of the packet and its size |
-| frame | of ranges, exposure time, sequence number, field of view, rays |
+| masked | no attitude suffered, and nothing was detected |
+| recovered | detected; the application is in RUN, and its attitudes are right again |
+| safe | detected; the application is in SAFE |
+| flagged wrong | detected, but the attitudes are still not right at the end of the trial |
+| silent wrong | an attitude flagged valid is more than 20° off, where it was right without the flip |
+| lost count | a command was counted neither as accepted nor as refused |
+
+Goals: no crash, no hang, no lost count, and no attitude that stays wrong. At most 0.05 % of the flips in
+weights, and 0.1 % elsewhere, give a silent wrong attitude. The application recovers within two cycles.
+
+| place | what is flipped |
+|---|---|
+| weights | the image in use, between two cycles; 30 cycles follow, in which the whole image is checked once |
+| activations | all layers, in the middle of a step, before one of the network's products |
+| estimator state | LSTM and track, between two cycles; 15 cycles follow, as in the rows below |
+| application state | all three copies of the voted state, the waiting events, the copy of the estimator's state, the checksums of the blocks |
+| model descriptor | records of the banks; biases, shifts and pointers that were set when the model was loaded |
+| command | the packet and its size |
+| frame | ranges, exposure time, sequence number, field of view, ray count |
 
 Not covered: stack, registers, code, the platform's memory, and more than one flip at a time.
 """
