@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "tests/campaigns/fault/app_memory.hpp"
+#include "tests/support/app_memory.hpp"
 #include "tests/support/make_packet.hpp"
 
 namespace tumblesight::fault {

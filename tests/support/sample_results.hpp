@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/evaluation/results.hpp"
-#include "tests/unit/sim/evaluation/made_up_results.hpp"
+#include "tests/support/made_up_results.hpp"
 
 namespace tumblesight::sim {
 
