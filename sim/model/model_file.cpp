@@ -26,9 +26,20 @@ std::uint32_t crc_of(const std::vector<std::uint8_t>& image, const std::string& 
 
 }  // namespace
 
+std::string remedy_for_missing_image(const std::string& path) {
+  constexpr char kSuffix[] = ".float32.tsm";
+  const std::filesystem::path image = std::filesystem::absolute(path).lexically_normal();
+  const std::string name = image.filename().string();
+  const std::size_t suffix = name.rfind(kSuffix);
+  const std::filesystem::path script = image.parent_path() / "fetch_float32";
+  std::error_code error;
+  if (suffix == std::string::npos || !std::filesystem::exists(script, error)) return "";
+  return "; get it with: fsw/models/fetch_float32 " + name.substr(0, suffix);
+}
+
 std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot open the model image " + path);
+  if (!file) throw std::runtime_error("cannot open the model image " + path + remedy_for_missing_image(path));
   const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file),
                                         std::istreambuf_iterator<char>()};
   auto model = std::make_unique<Float32Model>();

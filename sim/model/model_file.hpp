@@ -8,6 +8,10 @@
 
 namespace tumblesight::sim {
 
+// What to do about a model image that does not exist: for <target>.float32.tsm of fsw/models the command that
+// gets it out of the repository's history, behind "; "; empty for other files.
+std::string remedy_for_missing_image(const std::string& path);
+
 struct Float32Model {
   gnc::ModelHeader header;
   gnc::NetworkWeights<gnc::Float32> weights;

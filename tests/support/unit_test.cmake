@@ -6,7 +6,8 @@ target_precompile_headers(test_precompiled PRIVATE <gtest/gtest.h> <Eigen/Geomet
 target_compile_options(test_precompiled PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 
 # One program of unit tests, and a ctest test for each of its tests.
-#   add_unit_test(<program> SOURCES <file>... LIBRARIES <target>... [TIMEOUT <seconds>] [COST <n>] [PRECOMPILED <target>])
+#   add_unit_test(<program> SOURCES <file>... LIBRARIES <target>... [TIMEOUT <seconds>] [COST <n>]
+#     [PRECOMPILED <target>])
 # COST: ctest starts tests of a higher cost first. PRECOMPILED: the target whose precompiled headers it takes.
 function(add_unit_test program)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT;COST;PRECOMPILED" "SOURCES;LIBRARIES")
@@ -24,4 +25,13 @@ function(add_unit_test program)
   target_precompile_headers(${program} REUSE_FROM ${arg_PRECOMPILED})
   target_compile_options(${program} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${arg_TIMEOUT} COST ${arg_COST})
+endfunction()
+
+# Sets properties of tests that ctest discovers: set_unit_test_properties(<test>... PROPERTIES <name> <value>...)
+function(set_unit_test_properties)
+  list(JOIN ARGN " " arguments)
+  string(MD5 id "${arguments}")
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/test_properties_${id}.cmake)
+  file(WRITE ${script} "set_tests_properties(${arguments})\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
 endfunction()

@@ -9,6 +9,7 @@
 #include "sim/evaluation/monte_carlo.hpp"
 #include "sim/evaluation/record.hpp"
 #include "sim/evaluation/results.hpp"
+#include "sim/model/model_file.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -65,6 +66,18 @@ void check(const fs::path& model, const fs::path& record_file) {
     ++checked;
   }
   EXPECT_GT(checked, 0) << "no row on the parametric mesh in " << record_file;
+}
+
+// A float32 image that is not in the tree is still compared: its record is.
+TEST(ShippedModels, AreThereForEveryRecord) {
+  int records = 0;
+  for (const auto& entry : fs::directory_iterator(TUMBLESIGHT_SOURCE_DIR "/fsw/models")) {
+    if (entry.path().extension() != ".json") continue;
+    ++records;
+    const fs::path image = fs::path(entry.path()).replace_extension(".tsm");
+    EXPECT_TRUE(fs::exists(image)) << image << " is missing" << remedy_for_missing_image(image.string());
+  }
+  EXPECT_GT(records, 0) << "no record in fsw/models";
 }
 
 // Verifies TS-EST-180.
