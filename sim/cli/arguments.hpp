@@ -41,7 +41,7 @@ void require_bearable_length(const ScenarioArguments& arguments);
 // 'many'". Leading zeros are refused: CLI11 would read an octal number.
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 CLI::Validator number(double low, double high);
-// A file; one of fsw/models that is missing is refused with the command that gets it.
+// An existing file. The message about a missing image of fsw/models names the command that gets it.
 CLI::Validator existing_model_image();
 CLI::Validator one_of(const std::vector<std::string>& names);
 // It becomes part of a file name and of the model image: 1 to 31 of a-z, 0-9 and _.

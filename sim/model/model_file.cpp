@@ -27,14 +27,15 @@ std::uint32_t crc_of(const std::vector<std::uint8_t>& image, const std::string& 
 }  // namespace
 
 std::string remedy_for_missing_image(const std::string& path) {
-  constexpr char kSuffix[] = ".float32.tsm";
-  const std::filesystem::path image = std::filesystem::absolute(path).lexically_normal();
-  const std::string name = image.filename().string();
-  const std::size_t suffix = name.rfind(kSuffix);
-  const std::filesystem::path script = image.parent_path() / "fetch_float32";
+  const std::filesystem::path image(path);
+  const std::string name = image.stem().string();
+  const auto ends_with = [&name](const std::string& end) {
+    return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+  };
   std::error_code error;
-  if (suffix == std::string::npos || !std::filesystem::exists(script, error)) return "";
-  return "; get it with: fsw/models/fetch_float32 " + name.substr(0, suffix);
+  const bool is_in_history = (ends_with(".float32") || ends_with("_paper_rule")) &&
+                             std::filesystem::exists(image.parent_path() / "fetch_images", error);
+  return is_in_history ? "; get it with: fsw/models/fetch_images " + name : "";
 }
 
 std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {

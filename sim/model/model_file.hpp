@@ -8,8 +8,8 @@
 
 namespace tumblesight::sim {
 
-// What to do about a model image that does not exist: for <target>.float32.tsm of fsw/models the command that
-// gets it out of the repository's history, behind "; "; empty for other files.
+// The end of a message about a model image that does not exist: "; get it with: COMMAND" for the images of
+// fsw/models that are in the repository's history only, empty for other files.
 std::string remedy_for_missing_image(const std::string& path);
 
 struct Float32Model {

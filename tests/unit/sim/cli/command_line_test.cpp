@@ -70,9 +70,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --model /no/such.tsm", 1, "'/no/such.tsm' does not exist"},
         Refusal{"evaluate --model /dev", 1, "'/dev' does not exist"},
         Refusal{"evaluate --model " TUMBLESIGHT_SOURCE_DIR "/fsw/models/none.float32.tsm", 1,
-                "get it with: fsw/models/fetch_float32 none"},
+                "get it with: fsw/models/fetch_images none.float32"},
         Refusal{"quantize --mesh parametric --model " TUMBLESIGHT_SOURCE_DIR "/fsw/models/none.float32.tsm",
-                2, "get it with: fsw/models/fetch_float32 none"},
+                2, "get it with: fsw/models/fetch_images none.float32"},
         Refusal{"evaluate --json /proc/none/x.json", 1, "--json /proc/none/x.json"}));
 
 TEST(Help, TeachesWithAnExample) {

@@ -68,7 +68,7 @@ void check(const fs::path& model, const fs::path& record_file) {
   EXPECT_GT(checked, 0) << "no row on the parametric mesh in " << record_file;
 }
 
-// A float32 image that is not in the tree is still compared: its record is.
+// Every record is in the tree, not every image is: none may be left out unnoticed.
 TEST(ShippedModels, AreThereForEveryRecord) {
   int records = 0;
   for (const auto& entry : fs::directory_iterator(TUMBLESIGHT_SOURCE_DIR "/fsw/models")) {
