@@ -1,4 +1,4 @@
-# Set-up shared by sim/run and tests/run: packages, configuration, build. Sourced by bash; needs $root.
+# Set-up shared by sim/run, tests/run and the scripts below tests/: packages, configuration, build. Sourced by bash; needs $root.
 # shellcheck shell=bash disable=SC2034,SC2154
 
 fail() {
@@ -12,19 +12,21 @@ packages_of_toolchains() {
 }
 
 # What the programs need; the tests and the training add theirs.
+# Debian 12's packages. What each is for, and its name on other systems: docs/packages.md. A change here belongs there too.
 packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
   libassimp-dev libcli11-dev libfmt-dev libonnx-dev libpng-dev libprotobuf-dev libssl-dev
   nlohmann-json3-dev)
-packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libgtest-dev libgmock-dev clang python3 valgrind)
-packages_to_fuzz=("${packages_to_run[@]}" clang libclang-rt-dev)
-# The flight side alone, with gcc's counting of branches.
+packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libgtest-dev libgmock-dev clang
+  clang-format git python3 valgrind)
+packages_to_fuzz=("${packages_to_run[@]}" clang libclang-rt-dev python3)
+# The flight side only, with GCC's branch counts.
 packages_to_cover=(g++ cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev gcovr python3)
 packages_to_analyse=("${packages_to_run[@]}" libgtest-dev libgmock-dev clang clang-tidy cppcheck python3)
 # The processors of the audit: compilers, emulators, and GoogleTest's sources to build it for them.
 packages_to_audit=("${packages_to_run[@]}" gcc googletest python3
   $(packages_of_toolchains))
 
-# Ends a job with all that it has started, some of it as root, and then this script.
+# Ends a job with all processes that it started, some of them as root, and then this script.
 end_with() { # job
   trap '' INT TERM
   if [ -n "$1" ]; then
@@ -32,16 +34,16 @@ end_with() { # job
     wait "$1" 2>/dev/null || true
   fi
   printf '\n'
-  fail "interrupted; the same command goes on from here"
+  fail "interrupted; run the same command again to continue"
 }
 
-# Runs a command with its output in a log, which is shown only if it fails.
+# Runs a command with its output in a log. Prints the end of the log if the command fails.
 quietly() { # what, log, command...
   local what=$1 log=$2 started=$SECONDS job=
   shift 2
   mkdir -p "$(dirname "$log")"
-  # bash lets background jobs ignore Ctrl-C: it has to be handed on. A process group of its own (set -m) holds
-  # all that the job starts.
+  # Background jobs of bash ignore Ctrl-C, so the trap ends them. The job has a process group of its own (set -m), which
+  # contains all processes that it starts.
   trap 'end_with "$job"' INT TERM
   set -m
   "$@" </dev/null >"$log" 2>&1 &
@@ -64,9 +66,9 @@ quietly() { # what, log, command...
   return 1
 }
 
-# Installs the named packages that are not there yet. Touches neither apt nor the network if all are.
+# Installs the packages that are missing. Uses neither apt nor the network if none is.
 install_missing() { # package...
-  command -v dpkg-query >/dev/null || fail "this set-up knows Debian's packages only; elsewhere, install what README.md lists and build with 'cmake --preset release'"
+  command -v dpkg-query >/dev/null || fail "packages are installed on Debian only; on other systems install those of docs/packages.md and build with CMake, as described there"
   local missing=() package
   for package in "$@"; do
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
@@ -76,34 +78,34 @@ install_missing() { # package...
   echo "  Missing packages: ${missing[*]}"
   local as_root=(env DEBIAN_FRONTEND=noninteractive)
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || fail "they need root to install, and there is no sudo; as root: apt-get install ${missing[*]}"
-    sudo -v || fail "sudo refuses; as root: apt-get install ${missing[*]}"
+    command -v sudo >/dev/null || fail "installing them needs root, and there is no sudo; as root: apt-get install ${missing[*]}"
+    sudo -v || fail "sudo failed; as root: apt-get install ${missing[*]}"
     as_root=(sudo env DEBIAN_FRONTEND=noninteractive)
   fi
   quietly "reading package lists" "$root/build/log/apt_update.log" \
-    "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 update || fail "apt-get update failed (above); is there a network?"
-  quietly "installing ${#missing[@]} packages and what they need" "$root/build/log/apt_install.log" \
+    "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 update || fail "apt-get update failed (see above); it needs network access"
+  quietly "installing ${#missing[@]} packages and their dependencies" "$root/build/log/apt_install.log" \
     "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 install -y --no-install-recommends "${missing[@]}" ||
-    fail "apt-get install failed (above; all of it in build/log/apt_install.log)"
+    fail "apt-get install failed (see above; the whole log: build/log/apt_install.log)"
 }
 
-# Configures a preset of CMakePresets.json, if it has not been.
+# Configures a preset of CMakePresets.json unless that is done.
 configure_preset() { # preset
   [ -f "$root/build/$1/build.ninja" ] && return 0
   quietly "configuring" "$root/build/log/configure_$1.log" cmake -S "$root" --preset "$1" ||
-    fail "cmake failed (above; all of it in build/log/configure_$1.log)"
+    fail "cmake failed (see above; the whole log: build/log/configure_$1.log)"
 }
 
-# Configures and builds a preset, or some targets of it, if there is anything to do.
+# Configures and builds a preset, or some targets of it. Prints nothing if all is up to date.
 build_preset() { # preset, target...
   local folder="$root/build/$1"
   configure_preset "$1"
   shift
   ninja -C "$folder" -n "$@" 2>/dev/null | grep -q 'no work to do' && return 0
-  NINJA_STATUS='  building %f/%t, %es  ' ninja -C "$folder" -j "$(nproc)" "$@" || fail "the build failed (above)"
+  NINJA_STATUS='  building %f/%t, %es  ' ninja -C "$folder" -j "$(nproc)" "$@" || fail "the build failed (see above)"
 }
 
-# One set-up at a time in one checkout; a second waits for the first.
+# Allows one set-up at a time in a checkout; a second one waits for the first.
 exclusively() { # command...
   mkdir -p "$root/build"
   exec 9>"$root/build/.lock"

@@ -11,6 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "sim/model/model_file.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -35,6 +36,14 @@ CLI::Validator target_name() {
     return fmt::format("must be 1 to 31 of a-z, 0-9 and _, not '{}'", text);
   };
   return CLI::Validator(check, "", "target name");
+}
+
+CLI::Validator existing_model_image() {
+  const auto check = [](std::string& path) -> std::string {
+    const std::string refusal = CLI::ExistingFile(path);
+    return refusal.empty() ? refusal : refusal + remedy_for_missing_image(path);
+  };
+  return CLI::Validator(check, "", "model image");
 }
 
 CLI::Validator one_of(const std::vector<std::string>& names) {

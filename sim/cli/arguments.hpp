@@ -41,6 +41,8 @@ void require_bearable_length(const ScenarioArguments& arguments);
 // 'many'". Leading zeros are refused: CLI11 would read an octal number.
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 CLI::Validator number(double low, double high);
+// An existing file. The message about a missing image of fsw/models names the command that gets it.
+CLI::Validator existing_model_image();
 CLI::Validator one_of(const std::vector<std::string>& names);
 // It becomes part of a file name and of the model image: 1 to 31 of a-z, 0-9 and _.
 CLI::Validator target_name();

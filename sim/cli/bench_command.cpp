@@ -14,6 +14,7 @@
 #include "sim/bench/network_bench.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/target_setup.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/terminal/table.hpp"
 #include "sim/terminal/text_file.hpp"
 #include "sim/world/frame_renderer.hpp"
@@ -48,7 +49,10 @@ std::vector<gnc::RangeImage> rendered_frames(const std::string& target) {
 
 std::vector<std::uint8_t> read_image(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error(fmt::format("cannot open the model image {}", path));
+  if (!file) {
+    throw std::runtime_error(
+        fmt::format("cannot open the model image {}{}", path, remedy_for_missing_image(path)));
+  }
   return {std::istreambuf_iterator<char>(file), {}};
 }
 

@@ -10,6 +10,7 @@
 
 #include "sim/cli/subject_setup.hpp"
 #include "sim/cli/target_setup.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/report/results_csv.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_markdown.hpp"
@@ -38,6 +39,11 @@ std::string brought_mesh(const EvaluateArguments& arguments, const std::string& 
 
 std::string model_in(const std::string& folder, const std::string& name) {
   const fs::path model = fs::path(folder) / (name + ".tsm");
+  const std::string remedy = remedy_for_missing_image(model.string());
+  const bool is_recorded = is_file(fs::path(folder) / (name + ".json"));
+  if (is_recorded && !is_file(model) && !remedy.empty()) {
+    throw std::runtime_error(fmt::format("model image '{}' does not exist{}", model.string(), remedy));
+  }
   return is_file(model) ? model.string() : std::string{};
 }
 

@@ -54,7 +54,7 @@ void add_export_command(CLI::App& app) {
       "  tumblesight export --model out/near/near_shoemaker.float32.tsm --onnx out/near/near_shoemaker\n");
   command->add_option("--model", arguments->model, "Model image in float32, as `tumblesight train` writes it")
       ->required()
-      ->check(CLI::ExistingFile)
+      ->check(existing_model_image())
       ->type_name("FILE");
   command->add_option("--onnx", arguments->onnx, "What the names of both files begin with")
       ->required()

@@ -72,7 +72,7 @@ void add_quantize_command(CLI::App& app) {
       "near.stl\n");
   command->add_option("--model", arguments->model, "Model image in float32, as `tumblesight train` writes it")
       ->required()
-      ->check(CLI::ExistingFile)
+      ->check(existing_model_image())
       ->type_name("FILE");
   command->add_option("--out", arguments->out, "Model image to write [--model without .float32]")
       ->type_name("FILE");

@@ -15,6 +15,7 @@
 #include "gnc/attitude/motion.hpp"
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/evaluation/results.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/mesh_file.hpp"
 #include "sim/world/target/targets.hpp"
@@ -70,6 +71,10 @@ std::optional<Eigen::Matrix3d> inertia_of(const ScenarioArguments& arguments) {
 std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
+    const std::string remedy = remedy_for_missing_image(path);
+    if (!remedy.empty()) {
+      throw std::runtime_error(fmt::format("model image '{}' does not exist{}", path, remedy));
+    }
     const bool shipped = arguments.model.empty();
     throw std::runtime_error(
         fmt::format("model image '{}' does not exist{}", path,

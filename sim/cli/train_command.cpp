@@ -149,7 +149,7 @@ void add_train_command(CLI::App& app) {
   command
       ->add_option("--start-from", settings.start_from,
                    "Model image whose CNN to begin with: another target's saves most of the time")
-      ->check(CLI::ExistingFile)
+      ->check(existing_model_image())
       ->type_name("FILE");
   command->add_option("--cnn-rate", settings.cnn_learning_rate, "Highest learning rate of the CNN")
       ->check(number(1e-6, 1e-1))

@@ -26,9 +26,21 @@ std::uint32_t crc_of(const std::vector<std::uint8_t>& image, const std::string& 
 
 }  // namespace
 
+std::string remedy_for_missing_image(const std::string& path) {
+  const std::filesystem::path image(path);
+  const std::string name = image.stem().string();
+  const auto ends_with = [&name](const std::string& end) {
+    return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+  };
+  std::error_code error;
+  const bool is_in_history = (ends_with(".float32") || ends_with("_paper_rule")) &&
+                             std::filesystem::exists(image.parent_path() / "fetch_images", error);
+  return is_in_history ? "; get it with: fsw/models/fetch_images " + name : "";
+}
+
 std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot open the model image " + path);
+  if (!file) throw std::runtime_error("cannot open the model image " + path + remedy_for_missing_image(path));
   const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file),
                                         std::istreambuf_iterator<char>()};
   auto model = std::make_unique<Float32Model>();

@@ -8,6 +8,10 @@
 
 namespace tumblesight::sim {
 
+// The end of a message about a model image that does not exist: "; get it with: COMMAND" for the images of
+// fsw/models that are in the repository's history only, empty for other files.
+std::string remedy_for_missing_image(const std::string& path);
+
 struct Float32Model {
   gnc::ModelHeader header;
   gnc::NetworkWeights<gnc::Float32> weights;

@@ -1,4 +1,4 @@
-# Every inference of one numerics and instruction set takes the same number of instructions, whatever the frame.
+# Checks that every inference of one numerics and instruction set takes the same number of instructions, whatever the frame.
 #   cmake -DPROGRAM=<inference_count> -DFOLDER=<scratch> -P check_counts.cmake
 cmake_minimum_required(VERSION 3.25)
 

@@ -1,6 +1,6 @@
 # Runs the digest program and compares every line of it with the golden values.
 #   cmake -DDIGEST=<program> -DFRAMES=<number> -DGOLDEN=<file> [-DSET=<instruction set>] -P check_digest.cmake
-# LINES then holds what it printed.
+# Sets LINES to the lines that the program printed.
 cmake_minimum_required(VERSION 3.25)
 
 execute_process(COMMAND ${DIGEST} ${FRAMES} ${SET} OUTPUT_VARIABLE output RESULT_VARIABLE result)
@@ -13,11 +13,11 @@ set(numerics_seen "")
 foreach(line IN LISTS LINES)
   string(REGEX MATCH "^([^ ]+) ([^ ]+) ([0-9]+) ([0-9a-f]+)$" matched "${line}")
   if(NOT matched OR NOT "${CMAKE_MATCH_1} ${CMAKE_MATCH_3} ${CMAKE_MATCH_4}" IN_LIST golden)
-    message(FATAL_ERROR "not as in ${GOLDEN}: ${line}")
+    message(FATAL_ERROR "digest differs from ${GOLDEN}: ${line}")
   endif()
   list(APPEND numerics_seen ${CMAKE_MATCH_1})
 endforeach()
 if(NOT "fixed" IN_LIST numerics_seen)
-  message(FATAL_ERROR "no digest of fixed point:\n${output}")
+  message(FATAL_ERROR "the output has no fixed-point digest:\n${output}")
 endif()
-message(STATUS "as golden:\n${output}")
+message(STATUS "all digests are golden:\n${output}")

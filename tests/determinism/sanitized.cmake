@@ -11,7 +11,9 @@ function(must)
   endif()
 endfunction()
 
-must(${CMAKE_COMMAND} -S ${SOURCE} --preset sanitize -B ${BUILD} -DTUMBLESIGHT_SIL=OFF)
+# -O1 and few debug symbols: compiles in half the time of the preset's.
+must(${CMAKE_COMMAND} -S ${SOURCE} --preset sanitize -B ${BUILD} -DTUMBLESIGHT_SIL=OFF
+  "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1 -DNDEBUG")
 must(${CMAKE_COMMAND} --build ${BUILD} --target ${tests})
 foreach(test IN LISTS tests)
   must(${BUILD}/bin/${test})

@@ -1,5 +1,5 @@
-# Builds the digest program in another way and compares its digests: of 20 frames with every instruction set, of 1,000
-# with the fastest one in fixed point.
+# Builds the digest program with another compiler or other flags and compares its digests with the golden ones: 20 frames with
+# every instruction set, 1,000 frames with the fastest set in fixed point.
 #   cmake -DSOURCE=<source tree> -DBUILD=<build folder> -DCOMPILER=<c++> -DFLAGS=<flags> -DGOLDEN=<file> -P variant.cmake
 cmake_minimum_required(VERSION 3.25)
 

@@ -1,10 +1,10 @@
-"""Prints lines and branches taken, file by file, from gcovr's JSON; exit status 1 below the least share of branches."""
+"""Prints the lines and branches executed, per file, from gcovr's JSON. Exit status 1 below the required share of branches."""
 import json
 import pathlib
 import sys
 
-# Run only where the processor has the set, by the flags that Linux shows. The kernels of other families are not even compiled
-# here: the audit's emulators test them.
+# Kernels that run only on processors with the instruction set, by its name in /proc/cpuinfo. Kernels of other processor
+# families are not compiled here; the audit tests them in emulators.
 NEEDS = {
     "gnc/lidar/depth_loops_avx2.cpp": "avx2",
     "gnc/lidar/depth_loops_avx512.cpp": "avx512bw",
@@ -47,7 +47,7 @@ def all_branches_of(file):
 
 
 def missing(file):
-    """file:line, and how many of the line's branches were never taken. In a template they are those of all its instances."""
+    """"FILE:LINE: N of M branches" for each line with branches never taken. A template's branches are those of all instances."""
     for line in counted_lines(file):
         branches = branches_of(line)
         if branches.taken < branches.total:
@@ -71,7 +71,7 @@ def report(files, least):
         print(f"  {folder:{width}}  {str(lines):19}  {branches}")
     total = sum((branches for _, branches in folders.values()), Count())
     passed = total.total > 0 and total.percent() >= least
-    print(f"  {total.percent():.1f} % of {total.total} branches taken, {least:g} % wanted: {'passed' if passed else 'FAILED'}")
+    print(f"  {total.percent():.1f} % of {total.total} branches taken, {least:g} % required: {'passed' if passed else 'FAILED'}")
     return passed
 
 

@@ -1,4 +1,4 @@
-"""Runs compilers and analysers over the sources and prints what they find. Exit status 1 if they find anything."""
+"""Runs compilers and analysers over the sources and prints their findings. Exit status 1 if there are any."""
 import argparse
 import concurrent.futures
 import json
@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 BUILD = ROOT / "build/static"
 FLIGHT = ("gnc/", "fsw/", "hal/")
 
-# On top of an ordinary build's: -Wall -Wextra -Wshadow -Wconversion (cmake/compile_rules.cmake).
+# In addition to those of an ordinary build: -Wall -Wextra -Wshadow -Wconversion (cmake/compile_rules.cmake).
 STRICT = ["-Wpedantic", "-Wcast-qual", "-Wdouble-promotion", "-Wextra-semi", "-Wfloat-conversion", "-Wformat=2",
           "-Wimplicit-fallthrough", "-Wmissing-declarations", "-Wnon-virtual-dtor", "-Wold-style-cast", "-Woverloaded-virtual",
           "-Wredundant-decls", "-Wswitch-enum", "-Wundef", "-Wvla", "-Wzero-as-null-pointer-constant"]
@@ -23,15 +23,15 @@ STRICT_GCC = ["-Walloca", "-Warith-conversion", "-Wdisabled-optimization", "-Wdu
               "-Wtrampolines"]
 STRICT_CLANG = ["-Wcomma", "-Wconditional-uninitialized", "-Wloop-analysis", "-Wmissing-variable-declarations", "-Wshadow-all",
                 "-Wunreachable-code"]
-# Nothing runs before main() but what a program (hal/*/flight/) makes of its own objects.
+# No code runs before main(), except the constructors of a program's own objects (fsw/programs/).
 LIBRARIES_CLANG = ["-Wexit-time-destructors", "-Wglobal-constructors"]
-# Not chosen:
-#   -Wsign-conversion    indexes are int, the standard library's sizes are not: a cast at each would hide more than it shows
+# Not used:
+#   -Wsign-conversion    indexes are int and the standard library's sizes are not; a cast at each would hide more than it shows
 #   -Wuseless-cast       whether a cast to time_t or long is useless depends on the processor
-#   -Wcast-align=strict  the network's arena is aligned to cache lines, which its type, bytes, does not tell
-#   -Wswitch-default     would keep -Wswitch-enum from naming what a switch forgets
-#   -Wfloat-equal        a symmetric matrix has equal numbers
-#   of -Weverything      padding, templates instantiated elsewhere, vtables: no defects
+#   -Wcast-align=strict  the network's arena is aligned to cache lines, which its type (bytes) does not show
+#   -Wswitch-default     a default label keeps -Wswitch-enum from naming the missing cases
+#   -Wfloat-equal        the entries of a symmetric matrix are compared on purpose
+#   of -Weverything      padding, templates instantiated elsewhere, vtables: not defects
 
 CPPCHECK = ["cppcheck", "--enable=warning,performance,portability", "--std=c++17", "--language=c++", "--inline-suppr",
             "--quiet", "--error-exitcode=1", "--template={file}:{line}: {message} [{id}]",
@@ -48,11 +48,11 @@ class Source:
 
 
 def sources():
-    """One compile command a file of the project's own."""
+    """One compile command per source file of the project."""
     found = {}
     for entry in json.loads((BUILD / "compile_commands.json").read_text()):
         path = pathlib.Path(entry["file"])
-        # The same sources once more, for the test that they need no floating point.
+        # The second compilation of the same sources, which shows that they need no floating point.
         again = "flight_in_integers" in entry["command"]
         if again or path.suffix != ".cpp" or (ROOT / "build") in path.parents:
             continue
@@ -65,14 +65,14 @@ def sources():
 
 
 def gcc(source):
-    # Optimised, since GCC looks for null pointers and array bounds by then only.
+    # Optimized, since GCC checks null pointers and array bounds only then.
     return source.arguments + STRICT + STRICT_GCC + ["-O2", "-o", "/dev/null"]
 
 
 def clang(source):
     strict = []
     if source.is_flight():
-        strict = STRICT + STRICT_CLANG + ([] if "/flight/" in source.path else LIBRARIES_CLANG)
+        strict = STRICT + STRICT_CLANG + ([] if source.path.startswith("fsw/programs/") else LIBRARIES_CLANG)
     return ["clang++"] + source.arguments[1:] + strict + ["-fsyntax-only", "-Wno-ignored-optimization-argument"]
 
 
@@ -84,38 +84,49 @@ def cppcheck(source):
     return CPPCHECK + [a for a in source.arguments if a.startswith(("-I", "-D"))] + [str(ROOT / source.path)]
 
 
-TOOLS = {"gcc": gcc, "clang": clang, "clang-tidy": clang_tidy, "cppcheck": cppcheck}
-FOR_THE_REST = ("clang",)  # GCC compiles it with every build
+TOOLS = {"gcc": gcc, "clang": clang, "cppcheck": cppcheck, "clang-tidy": clang_tidy}
+FOR_THE_REST = ("clang",)  # GCC compiles the rest with every build
 
 
 def findings_of(text):
-    """'file:line: words' of every warning and error, without notes."""
+    """'FILE:LINE: MESSAGE' of every warning and error, without notes."""
     for line in text.splitlines():
         match = re.match(r"(\S+?):(\d+):(?:\d+:)? (?!note:)(?:(?:fatal )?(?:warning|error): )?(.+)", line)
         if match:
             yield f"{match[1].replace(f'{ROOT}/', '')}:{match[2]}: {match[3]}"
 
 
-def run(tool, source):
+def run(task):
+    """(findings of one tool on one source, seconds)"""
+    tool, source = task
+    started = time.monotonic()
     done = subprocess.run(TOOLS[tool](source), cwd=source.folder, capture_output=True, text=True)
     found = list(findings_of(done.stdout + done.stderr))
     if done.returncode != 0 and not found:
         found = [f"{source.path}:1: {tool} failed: {(done.stderr or done.stdout).strip()[-300:]}"]
-    return found
+    return found, time.monotonic() - started
 
 
-def analyse(tool, chosen):
-    """Prints the findings, each once although many sources include its header; how many, and the time."""
-    started = time.monotonic()
+def analyse(parts):
+    """Runs every (tool, name, sources) and prints the findings, each once although many sources include its header. Returns
+    the rows of the table: tool, name, number of files, findings and seconds, summed over the processes."""
+    tasks = [(tool, source) for tool, _, chosen in parts for source in chosen]
+    # One pool for all tools, the slowest one first, so that no processor waits for the last file of a tool.
+    tasks.sort(key=lambda task: list(TOOLS).index(task[0]), reverse=True)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = {line for lines in pool.map(lambda source: run(tool, source), chosen) for line in lines}
-    for line in sorted(found):
-        print(f"  {line}", flush=True)
-    return len(found), time.monotonic() - started
+        results = {(tool, source.path): result for (tool, source), result in zip(tasks, pool.map(run, tasks))}
+    rows = []
+    for tool, name, chosen in parts:
+        mine = [results[tool, source.path] for source in chosen]
+        found = {line for lines, _ in mine for line in lines}
+        for line in sorted(found):
+            print(f"  {line}", flush=True)
+        rows.append((tool, name, len(chosen), len(found), sum(seconds for _, seconds in mine)))
+    return rows
 
 
 def write_flight_commands(chosen):
-    """For clang-tidy, which else analyses a file once for every command that compiles it."""
+    """For clang-tidy, which would otherwise analyse a file once for every command that compiles it."""
     (BUILD / "flight").mkdir(exist_ok=True)
     commands = [{"directory": s.folder, "file": str(ROOT / s.path), "arguments": s.arguments} for s in chosen]
     (BUILD / "flight/compile_commands.json").write_text(json.dumps(commands))
@@ -132,17 +143,18 @@ def main():
     flight = [s for s in everything if s.is_flight()]
     write_flight_commands(flight)
     rest = [] if options.flight else [s for s in everything if not s.is_flight()]
-    rows = []
+    parts = []
     for tool in options.tool or TOOLS:
         for name, part in (("flight", flight), ("rest", rest if tool in FOR_THE_REST else [])):
             part = [s for s in part if not options.paths or s.path.startswith(tuple(options.paths))]
             if part:
-                rows.append((tool, name, len(part), *analyse(tool, part)))
+                parts.append((tool, name, part))
+    rows = analyse(parts)
     print(f"  {'tool':12}{'sources':9}{'files':>6}{'findings':>10}{'time':>8}")
     for tool, name, files, found, seconds in rows:
         print(f"  {tool:12}{name:9}{files:6}{found:10}{seconds:6.0f} s")
     if not rows:
-        print("  no such source")
+        print("  no source matches the given paths")
     return 0 if rows and all(row[3] == 0 for row in rows) else 1
 
 

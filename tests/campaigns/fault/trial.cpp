@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "sim/world/math/angles.hpp"
-#include "tests/campaigns/fault/app_memory.hpp"
+#include "tests/support/app_memory.hpp"
 #include "tests/support/make_packet.hpp"
 
 namespace tumblesight::fault {

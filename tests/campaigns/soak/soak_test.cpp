@@ -12,7 +12,7 @@
 #include "fsw/programs/desktop/heap_trap.hpp"
 #include "hal/fake/fake_model_store.hpp"
 #include "hal/posix/monotonic_stopwatch.hpp"
-#include "tests/campaigns/fault/app_memory.hpp"
+#include "tests/support/app_memory.hpp"
 #include "tests/support/make_packet.hpp"
 #include "tests/support/test_models.hpp"
 

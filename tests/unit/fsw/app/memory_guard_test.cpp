@@ -1,7 +1,7 @@
 // Bit flips between two cycles, in every part of memory that outlives a cycle.
 #include <random>
 
-#include "tests/campaigns/fault/app_memory.hpp"
+#include "tests/support/app_memory.hpp"
 #include "tests/support/test_models.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 

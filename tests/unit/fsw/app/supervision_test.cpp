@@ -2,7 +2,7 @@
 #include <functional>
 #include <utility>
 
-#include "tests/campaigns/fault/app_memory.hpp"
+#include "tests/support/app_memory.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
 namespace tumblesight::fsw {

@@ -69,6 +69,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --mesh /no/such.stl", 1, "/no/such.stl"},
         Refusal{"evaluate --model /no/such.tsm", 1, "'/no/such.tsm' does not exist"},
         Refusal{"evaluate --model /dev", 1, "'/dev' does not exist"},
+        Refusal{"evaluate --model " TUMBLESIGHT_SOURCE_DIR "/fsw/models/none.float32.tsm", 1,
+                "get it with: fsw/models/fetch_images none.float32"},
+        Refusal{"quantize --mesh parametric --model " TUMBLESIGHT_SOURCE_DIR "/fsw/models/none.float32.tsm",
+                2, "get it with: fsw/models/fetch_images none.float32"},
         Refusal{"evaluate --json /proc/none/x.json", 1, "--json /proc/none/x.json"}));
 
 TEST(Help, TeachesWithAnExample) {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/sim/evaluation/arbitrary_model.hpp"
+#include "tests/support/arbitrary_model.hpp"
 
 namespace tumblesight::sim {
 

@@ -9,6 +9,7 @@
 #include "sim/evaluation/monte_carlo.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/evaluation/shipped_figures.hpp"
+#include "sim/model/model_file.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -66,6 +67,18 @@ void check(const fs::path& model, const fs::path& figures_file) {
     ++checked;
   }
   EXPECT_GT(checked, 0) << "no row on the parametric mesh in " << figures_file;
+}
+
+// Every record is in the tree, not every image is: none may be left out unnoticed.
+TEST(ShippedModels, AreThereForEveryRecord) {
+  int records = 0;
+  for (const auto& entry : fs::directory_iterator(TUMBLESIGHT_SOURCE_DIR "/fsw/models")) {
+    if (entry.path().extension() != ".json") continue;
+    ++records;
+    const fs::path image = fs::path(entry.path()).replace_extension(".tsm");
+    EXPECT_TRUE(fs::exists(image)) << image << " is missing" << remedy_for_missing_image(image.string());
+  }
+  EXPECT_GT(records, 0) << "no record in fsw/models";
 }
 
 // Verifies TS-EST-180.

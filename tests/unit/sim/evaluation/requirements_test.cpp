@@ -7,7 +7,7 @@
 #include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/shipped_figures.hpp"
 #include "sim/report/results_json.hpp"
-#include "tests/unit/sim/report/sample_results.hpp"
+#include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {

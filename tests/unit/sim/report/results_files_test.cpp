@@ -7,7 +7,7 @@
 #include "sim/report/results_csv.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_markdown.hpp"
-#include "tests/unit/sim/report/sample_results.hpp"
+#include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {

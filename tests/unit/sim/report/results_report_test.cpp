@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/sample_results.hpp"
 #include "tests/unit/sim/report/markup_checks.hpp"
-#include "tests/unit/sim/report/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {

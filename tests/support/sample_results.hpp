@@ -1,0 +1,63 @@
+// Results of two subjects as an experiment gives them, from made-up errors.
+#pragma once
+
+#include "sim/evaluation/results.hpp"
+#include "tests/support/made_up_results.hpp"
+
+namespace tumblesight::sim {
+
+inline CellResult sample_cell(Condition condition, double rcnn_deg, bool baseline) {
+  std::vector<FrameResult> frames;
+  for (std::uint32_t i = 0; i < 80; ++i) {
+    frames.push_back(result_with(i / 2, i % 2, rcnn_deg + 0.1 * i, 30.0 + i));
+    frames.back().range_m = 20.5 + i;
+    frames.back().rate_rad_s = 0.004 * i;
+    frames.back().rcnn_predicted_rad = 0.01 * i;
+  }
+  const std::vector<FrameResult> last = last_frames(frames, 2);
+  CellResult cell;
+  cell.condition = condition;
+  cell.sequences = 40;
+  cell.frames = 2;
+  cell.rcnn = summarise(last_frame_errors_deg(frames, 2, Estimator::kRcnn));
+  cell.cnn = summarise(last_frame_errors_deg(frames, 2, Estimator::kCnn));
+  if (baseline) {
+    cell.baseline = summarise({1.0, 2.0, 90.0});
+    cell.baseline_histogram = histogram({1.0, 2.0, 90.0});
+  }
+  cell.network_ms = 0.5;
+  cell.baseline_ms = 123.0;
+  cell.by_frame = errors_by_frame(frames, 2);
+  cell.by_range = errors_by_range(last);
+  cell.by_rate = errors_by_rate(last);
+  cell.rcnn_histogram = histogram(last_frame_errors_deg(frames, 2, Estimator::kRcnn));
+  cell.cnn_histogram = histogram(last_frame_errors_deg(frames, 2, Estimator::kCnn));
+  cell.rcnn_confusion = confusion(last, Estimator::kRcnn, near_symmetries("near_shoemaker"));
+  cell.cnn_confusion = confusion(last, Estimator::kCnn, near_symmetries("near_shoemaker"));
+  cell.reliability = reliability(frames);
+  cell.detection = detection(frames);
+  return cell;
+}
+
+inline Results sample_results() {
+  SubjectResult near{"near_shoemaker", "near, \"odd\".stl", "near_shoemaker", 0x00C0FFEE, {}, {}};
+  near.cells = {sample_cell(Condition::kNominal, 1.0, true), sample_cell(Condition::kOccluded, 15.0, true)};
+  Sweeps sweeps;
+  sweeps.by_rate_norm = near.cells.front().by_rate;
+  sweeps.by_hidden_share = {{0.05, near.cells[0].rcnn, near.cells[0].cnn},
+                            {0.5, near.cells[1].rcnn, near.cells[1].cnn}};
+  for (int frame = 1; frame <= 30; ++frame) {
+    sweeps.long_run.push_back({static_cast<double>(frame), near.cells[0].rcnn, near.cells[0].cnn});
+  }
+  near.sweeps = sweeps;
+  SubjectResult mine{
+      "mine", kParametricMesh, "other", 0x12345678, {sample_cell(Condition::kOffset, 3.0, false)}, {}};
+  Results results;
+  results.seed = 7;
+  results.command = "tumblesight evaluate --paper";
+  results.notes = {"magellan is left out: no model ships yet."};
+  results.subjects = {near, mine};
+  return results;
+}
+
+}  // namespace tumblesight::sim

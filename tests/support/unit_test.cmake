@@ -1,0 +1,37 @@
+# GoogleTest and Eigen's geometry take longer to read than most tests take to compile: they are compiled once for all tests.
+add_library(test_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+target_link_libraries(test_precompiled PRIVATE project_rules GTest::gtest)
+target_precompile_headers(test_precompiled PRIVATE <gtest/gtest.h> <Eigen/Geometry>)
+# ccache takes a precompiled header's includes from the output of the preprocessor.
+target_compile_options(test_precompiled PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+
+# One program of unit tests, and a ctest test for each of its tests.
+#   add_unit_test(<program> SOURCES <file>... LIBRARIES <target>... [TIMEOUT <seconds>] [COST <n>]
+#     [PRECOMPILED <target>])
+# COST: ctest starts tests of a higher cost first. PRECOMPILED: the target whose precompiled headers it takes.
+function(add_unit_test program)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT;COST;PRECOMPILED" "SOURCES;LIBRARIES")
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT ${test_timeout_s})
+  endif()
+  if(NOT arg_COST)
+    set(arg_COST 0)
+  endif()
+  if(NOT arg_PRECOMPILED)
+    set(arg_PRECOMPILED test_precompiled)
+  endif()
+  add_executable(${program} ${arg_SOURCES})
+  target_link_libraries(${program} PRIVATE ${arg_LIBRARIES} project_rules GTest::gtest_main)
+  target_precompile_headers(${program} REUSE_FROM ${arg_PRECOMPILED})
+  target_compile_options(${program} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${arg_TIMEOUT} COST ${arg_COST})
+endfunction()
+
+# Sets properties of tests that ctest discovers: set_unit_test_properties(<test>... PROPERTIES <name> <value>...)
+function(set_unit_test_properties)
+  list(JOIN ARGN " " arguments)
+  string(MD5 id "${arguments}")
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/test_properties_${id}.cmake)
+  file(WRITE ${script} "set_tests_properties(${arguments})\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
+endfunction()
