@@ -1,4 +1,4 @@
-// Records of shipped models: JSON of any kind is read or refused with a message.
+// Records of shipped models: any JSON is read, or refused with a message.
 #include <stdexcept>
 
 #include "sim/evaluation/record.hpp"
