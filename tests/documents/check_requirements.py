@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Holds docs/requirements.csv, the tests and docs/verification.md to each other. Run by ctest; alone: tests/documents/check_requirements.py [--write]
+"""Checks that docs/requirements.csv, the tests and docs/verification.md agree. Run by ctest, or by hand:
+tests/documents/check_requirements.py [--write]
 
-A test names what it verifies in a comment of its own, "Verifies TS-NUM-010, TS-NUM-020." behind // or #: directly above the
-test, or at the file's head for all of the file.
+A test names the requirements that it verifies in a comment of its own, "Verifies TS-NUM-010, TS-NUM-020." after // or #. The
+comment is directly above the test, or at the head of the file for all its tests.
 """
 import argparse
 import collections
@@ -32,16 +33,16 @@ _METHOD = re.compile(r"\s+def (test\w*)\(")
 _CLASS = re.compile(r"class (\w+)\(")
 
 Requirement = collections.namedtuple("Requirement", COLUMNS)
-Claim = collections.namedtuple("Claim", "path line id test")  # test: suite.name, empty for all of the file
+Claim = collections.namedtuple("Claim", "path line id test")  # test: suite.name; empty for the whole file
 
 
 def read_requirements(root, wrong):
-    """{id: Requirement} in the file's order; what is malformed is told and left out."""
+    """{id: Requirement} in the file's order. Malformed rows are reported in `wrong` and left out."""
     found = {}
     with open(root / "docs/requirements.csv", newline="", encoding="utf-8") as file:
         rows = csv.reader(file)
         if next(rows, None) != COLUMNS:
-            wrong.append(f"docs/requirements.csv:1: the columns have to be {','.join(COLUMNS)}")
+            wrong.append(f"docs/requirements.csv:1: the columns must be {','.join(COLUMNS)}")
             return found
         for row in rows:
             at = f"docs/requirements.csv:{rows.line_num}"
@@ -50,11 +51,11 @@ def read_requirements(root, wrong):
                 continue
             one = Requirement(*row)
             if not _ID.fullmatch(one.id):
-                wrong.append(f"{at}: '{one.id}' is no id: TS-<group>-<three digits>, groups {' '.join(GROUPS)}")
+                wrong.append(f"{at}: '{one.id}' is not an id: TS-<group>-<three digits>, groups {' '.join(GROUPS)}")
             elif one.id in found:
-                wrong.append(f"{at}: {one.id} is there twice")
+                wrong.append(f"{at}: {one.id} is in the table twice")
             elif " shall " not in one.text or not one.text.endswith("."):
-                wrong.append(f"{at}: {one.id}: the text is no sentence with 'shall'")
+                wrong.append(f"{at}: {one.id}: the text is not a sentence with 'shall'")
             elif not one.rationale:
                 wrong.append(f"{at}: {one.id} has no rationale")
             elif one.verification not in METHODS:
@@ -69,13 +70,13 @@ def comment_of(path):
 
 
 def is_head(lines, comment):
-    """Whether nothing but comments, blank lines and a docstring stands in these lines."""
+    """Whether these lines are only comments, blank lines and a docstring."""
     text = re.sub(r'\A((?:#.*\n|\s)*)"""(?:.|\n)*?"""', r"\1", "\n".join(lines))
     return all(not line.strip() or comment.match(line) for line in text.splitlines())
 
 
 def test_below(lines, number, comment):
-    """Name of the test that begins in lines[number], behind comments; None if there is none."""
+    """Name of the test that begins at lines[number], after comments; None if there is none."""
     while number < len(lines) and comment.match(lines[number]):
         number += 1
     text = "\n".join(lines[number:number + 3])
@@ -103,12 +104,12 @@ def claims_in(root, path, wrong):
             words, end = words + " " + comment.match(lines[end])[1], end + 1
         test = "" if is_head(lines[:number], comment) else test_below(lines, end, comment)
         if test is None and comment is _COMMENT["C++"]:
-            wrong.append(f"{at}: stands neither above a test nor at the file's head")
+            wrong.append(f"{at}: the comment is neither above a test nor at the file's head")
         for word in re.split(r",|\band\b", words.split(".")[0]):
             if _ID.fullmatch(word.strip()):
                 claims.append(Claim(name, number + 1, word.strip(), test or ""))
             else:
-                wrong.append(f"{at}: '{word.strip()}' is no id")
+                wrong.append(f"{at}: '{word.strip()}' is not an id")
     return claims
 
 
@@ -123,13 +124,13 @@ def read_claims(root, wrong):
 
 
 def is_audit(claim):
-    """Whether a script of the audit says it, rather than a test."""
+    """Whether the claim is in a script of the audit rather than in a test."""
     path = pathlib.PurePath(claim.path)
     return path.parent.as_posix() == "tests/audit" and path.suffix in (".py", "") and not path.name.startswith("test_")
 
 
 def read_documents(root):
-    """{id: documents that name it}"""
+    """{id: the documents that name it}"""
     naming = collections.defaultdict(list)
     documents = [root / "README.md", root / "fsw/models/README.md", *sorted((root / "docs").glob("*.md"))]
     for path in documents:
@@ -140,12 +141,12 @@ def read_documents(root):
 
 
 def inspected(root, requirement):
-    """The documents and sources that an inspection of this requirement looks at."""
+    """The documents and sources to inspect for this requirement."""
     return [name for name in _DOCUMENT.findall(requirement.text + " " + requirement.rationale) if (root / name).is_file()]
 
 
 def check(root):
-    """(what is wrong, a line each; docs/verification.md as it should be)"""
+    """(errors, one line each; docs/verification.md as it must be)"""
     wrong = []
     requirements, claims, documents = read_requirements(root, wrong), read_claims(root, wrong), read_documents(root)
     for claim in claims:
@@ -175,11 +176,11 @@ def as_document(requirements, verified):
     lines = [
         "# Verification",
         "",
-        "Written by `tests/documents/check_requirements.py --write` from [requirements.csv](requirements.csv), which has the reasons too, and",
-        "from what the tests say that they verify; a test fails when this page is not what the script would write.",
+        "Generated by `tests/documents/check_requirements.py --write` from [requirements.csv](requirements.csv), which also gives the",
+        "rationale, and from the comments in the tests. A test fails if this page is out of date.",
         "",
-        f"{len(requirements)} requirements. **T**, test ({counts['T']}): ctest runs it. **A**, analysis ({counts['A']}): the audit of the onboard",
-        f"processors (`tests/audit/run`) measures it, or the document shows it. **I**, inspection ({counts['I']}): read the file.",
+        f"{len(requirements)} requirements. **T** is a test ({counts['T']}) that ctest runs. **A** is an analysis ({counts['A']}): the audit of the onboard",
+        f"processors (`tests/audit/run`) measures it, or a document shows it. **I** is an inspection ({counts['I']}) of the file.",
     ]
     for group, title in GROUPS.items():
         rows = sorted(one for one in requirements.values() if one.id.split("-")[1] == group)
@@ -194,14 +195,14 @@ def as_document(requirements, verified):
 
 
 def link(path):
-    """From docs/."""
+    """A link to the path from a page in docs/."""
     return path[len("docs/"):] if path.startswith("docs/") else "../" + path
 
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--write", action="store_true", help="write docs/verification.md")
-    parser.add_argument("--root", type=pathlib.Path, default=ROOT, help="another tree than this one")
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT, help="source tree to check [this one]")
     options = parser.parse_args(arguments)
     wrong, document = check(options.root)
     page = options.root / "docs/verification.md"

@@ -1,4 +1,4 @@
-"""The check of the requirements fails when it has to. Run by ctest; alone: python3 -m unittest discover tests/documents"""
+"""Tests of the requirements check: it fails when it has to. Run by ctest, or by hand: python3 -m unittest discover tests/documents"""
 import contextlib
 import io
 import pathlib
@@ -26,7 +26,7 @@ class Tree(unittest.TestCase):
         path.write_text(text, encoding="utf-8")
 
     def run_check(self, *options):
-        """(status, the lines that it prints)"""
+        """(exit status, lines printed)"""
         out = io.StringIO()
         with contextlib.redirect_stdout(out):
             status = check.main(["--root", str(self.root), *options])
@@ -58,7 +58,7 @@ class Table(Tree):
 
     def test_malformed_rows(self):
         for row, word in (("TS-NUM-020,The component shall add.,T\n", "3 fields"), ("TS-NUM-20,The component shall add.,Sums.,T\n", "'TS-NUM-20'"),
-                          ("TS-XYZ-020,The component shall add.,Sums.,T\n", "'TS-XYZ-020'"), (ROW, "TS-NUM-010 is there twice"),
+                          ("TS-XYZ-020,The component shall add.,Sums.,T\n", "'TS-XYZ-020'"), (ROW, "TS-NUM-010 is in the table twice"),
                           ("TS-NUM-020,The component adds.,Sums.,T\n", "'shall'"), ("TS-NUM-020,The component shall add,Sums.,T\n", "sentence"),
                           ("TS-NUM-020,The component shall add.,,T\n", "no rationale"),
                           ("TS-NUM-020,The component shall add.,Sums.,test\n", "verification is 'test'")):
@@ -72,7 +72,7 @@ class Tests(Tree):
         self.put("tests/unit/sum_test.cpp", CPP.replace("// Verifies TS-NUM-010.\n", ""))
         self.expect_one("no test names TS-NUM-010")
 
-    def test_a_script_of_the_audit_is_no_test(self):
+    def test_a_script_of_the_audit_is_not_a_test(self):
         self.put("tests/unit/sum_test.cpp", "")
         self.put("tests/audit/audit.py", "# Verifies TS-NUM-010.\n")
         self.expect_one("no test names TS-NUM-010")
@@ -81,11 +81,11 @@ class Tests(Tree):
         self.put("tests/run", "#!/bin/sh\n# Verifies TS-NUM-020.\n")
         self.expect_one("tests/run:2", "no requirement TS-NUM-020")
 
-    def test_a_test_names_what_is_no_id(self):
+    def test_a_test_names_something_that_is_not_an_id(self):
         for words in ("TS-NUM-10", "TS-NUM-010 TS-NUM-020", "TS-NUM-010,", "it all", ""):
             with self.subTest(words):
                 self.put("tests/other_test.cpp", f"// Verifies {words}.\n")
-                self.expect_one("tests/other_test.cpp:1", "is no id")
+                self.expect_one("tests/other_test.cpp:1", "is not an id")
 
     def test_a_comment_above_something_else(self):
         self.put("tests/unit/sum_test.cpp", CPP.replace("TEST(Sum, IsRight)", "class Sum"))
@@ -96,7 +96,7 @@ class Others(Tree):
     def put_row(self, verification, rationale="Sums."):
         self.put("docs/requirements.csv", HEADER + f"TS-NUM-010,The component shall add.,{rationale},{verification}\n")
 
-    def test_nobody_names_an_analysis(self):
+    def test_nothing_names_an_analysis(self):
         self.put_row("A")
         self.expect_one("neither a script of tests/audit nor a document names TS-NUM-010")
 

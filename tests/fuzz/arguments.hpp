@@ -1,4 +1,4 @@
-// Command lines out of inputs: an argument a line.
+// Command lines made of inputs: one argument per line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,7 +13,7 @@
 
 namespace tumblesight::fuzz {
 
-// As main() gets it: NUL-terminated words, of which the first is the program.
+// As main() receives it: NUL-terminated words, the first one is the program.
 class CommandLine {
  public:
   explicit CommandLine(Input input) {
@@ -38,8 +38,8 @@ class CommandLine {
   std::vector<char*> pointers_;
 };
 
-// A parser for many command lines: to make one takes longer than to use it, but it remembers a little of
-// each.
+// A parser for many command lines. Making one takes longer than using it, but its memory grows with each use,
+// so it is replaced now and then.
 class Reused {
  public:
   explicit Reused(std::function<std::unique_ptr<CLI::App>()> make) : make_(std::move(make)) {}

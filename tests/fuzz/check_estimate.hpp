@@ -1,4 +1,4 @@
-// What every estimate has to be, whatever frame, weights and state it comes from.
+// What holds for every estimate, whatever its frame, weights and state.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
-// Telecommands of any content, as the application meets them: bytes as they are, and packets whose headers,
-// checksums and authentication codes are right so that what they ask for is reached. Each is counted as
-// accepted or refused, once.
+// Telecommands of any content, given to the application: arbitrary bytes, and packets with valid headers,
+// checksums and authentication codes, so that their functions are reached. Each is counted once, as accepted
+// or refused.
 #include <algorithm>
 #include <memory>
 #include <vector>
@@ -27,7 +27,7 @@ struct Flown {
 
   Flown() {
     store.fill(gnc::lasting_model_image<gnc::FixedPoint>(7));
-    // Scrubbing is another subject, and takes its time.
+    // Without scrubbing, which is slow and not under test here.
     booted->init({&stopwatch, &store, &fsw::kTestKey}, nullptr, {false, true});
   }
 };
@@ -47,7 +47,7 @@ hal::CommandPacket next_packet(Input& input, std::uint32_t& counter) {
   }
   const std::uint8_t function = input.u8();
   packet = fsw::packet_of(function, bytes_of(input, input.u8() % 64U));
-  if (kind % 4 == 1) {  // one number of the header as it likes, with the checksum that belongs to it
+  if (kind % 4 == 1) {  // one arbitrary byte, with a matching checksum
     packet[input.u8() % packet.size()] = input.u8();
     fsw::set_checksum(packet);
   }

@@ -1,5 +1,5 @@
-// Command lines of `tumblesight`, all subcommands with their own options and help: parsed, or refused with a
-// message. What the subcommands do is left out.
+// Command lines of `tumblesight`, all subcommands with their options and help: they are parsed, or refused
+// with a message. The subcommands themselves do not run.
 #include <CLI/CLI.hpp>
 #include <memory>
 

@@ -1,5 +1,5 @@
-// Frames of any content through make_depth_image(), with the instruction sets of this processor, and now and
-// then on to an attitude.
+// Frames of any content, given to make_depth_image() with the instruction sets of this processor and, for
+// some inputs, to the estimator.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -14,9 +14,9 @@ namespace tumblesight::fuzz {
 namespace {
 
 enum : std::uint8_t { kAnySize = 1, kAnyProjection = 2, kRepeated = 4, kNextFrame = 8 };
-constexpr std::uint32_t kSteps = 4096;  // one input in so many: a step is dear
+constexpr std::uint32_t kSteps = 4096;  // one input in kSteps: a step is slow
 
-// Strokes of equal or scattered ranges, in the order of the rays: few bytes make a frame.
+// Fills runs of rays with equal or scattered ranges, so that a few bytes make a frame.
 void paint(Input& input, std::size_t rays, gnc::RangeImage& frame) {
   std::size_t at = 0;
   while (at < rays && !input.empty()) {
@@ -30,7 +30,7 @@ void paint(Input& input, std::size_t rays, gnc::RangeImage& frame) {
   }
 }
 
-// The same few ranges over and over: twice as many with every copy.
+// Repeats a few ranges over the whole frame, doubling them with every copy.
 void repeat(Input& input, std::size_t rays, gnc::RangeImage& frame) {
   std::size_t count = 0;
   while (input.left() >= 2 && count < rays) frame.ranges[count++] = input.u16();
@@ -41,7 +41,7 @@ void repeat(Input& input, std::size_t rays, gnc::RangeImage& frame) {
   }
 }
 
-// Of the sides that there are, the short ones more often: a frame costs their square.
+// Any valid side, short ones more often: the cost of a frame is its square.
 std::uint16_t some_side(std::uint16_t number) {
   constexpr unsigned kSides = gnc::RangeImage::kMaxRays - 15;
   return static_cast<std::uint16_t>(16 + std::min(number % kSides, number / kSides % kSides));
@@ -73,8 +73,7 @@ gnc::DepthProjection projection_of(Input& input, std::uint8_t flags) {
 
 void check_image(const gnc::DepthImage& image) {
   for (const std::uint16_t depth : image.depth) {
-    require(depth == 0 || depth >= gnc::DepthImage::kSmallest,
-            "a return is never mistaken for an empty cell");
+    require(depth == 0 || depth >= gnc::DepthImage::kSmallest, "a return never looks like an empty cell");
   }
   const gnc::Matrix3<gnc::Fixed>& view = image.r_lrf_view;
   const double trace = gnc::trace_of_transpose_product<gnc::Fixed>(view, view).raw() * std::ldexp(1.0, -24);
@@ -86,7 +85,7 @@ struct Decoded {
   gnc::DepthImage image;
 };
 
-// With what an earlier frame may have left in the working memory.
+// The scratch memory keeps what earlier frames have left in it.
 void decode(const gnc::RangeImage& frame, const gnc::DepthProjection& projection, gnc::InstructionSet set,
             Decoded& decoded) {
   static gnc::DepthImageScratch scratch;
@@ -94,7 +93,7 @@ void decode(const gnc::RangeImage& frame, const gnc::DepthProjection& projection
       gnc::make_depth_image(frame, projection, scratch, decoded.image, gnc::fastest_depth_loops(set));
 }
 
-// The portable loops, and beside them those of one set.
+// Compares the portable loops with those of one instruction set.
 void check_set(const gnc::RangeImage& frame, const gnc::DepthProjection& projection,
                gnc::InstructionSet set) {
   static Decoded first, other;
@@ -102,10 +101,11 @@ void check_set(const gnc::RangeImage& frame, const gnc::DepthProjection& project
   if (first.status == gnc::FrameStatus::kOk) check_image(first.image);
   if (gnc::fastest_depth_loops(set).set != set) return;  // not in this build or not on this processor
   decode(frame, projection, set, other);
-  require(other.status == first.status, "every instruction set finds the same");
+  require(other.status == first.status, "the status is the same with every instruction set");
   if (first.status != gnc::FrameStatus::kOk) return;
-  require(other.image.depth == first.image.depth, "every instruction set makes the same image");
-  require(other.image.r_lrf_view == first.image.r_lrf_view, "every instruction set finds the same view");
+  require(other.image.depth == first.image.depth, "the image is the same with every instruction set");
+  require(other.image.r_lrf_view == first.image.r_lrf_view,
+          "the view is the same with every instruction set");
 }
 
 class Estimator {
@@ -115,7 +115,7 @@ class Estimator {
     require(estimator_->load(image.data(), image.size(), nullptr) == gnc::ModelStatus::kOk,
             "the model is good");
   }
-  // `next`: of the track that is there.
+  // `next`: continues the current track.
   void step(const gnc::RangeImage& frame, bool next) {
     if (!next) estimator_->reset();
     const std::uint32_t before = estimator_->state_crc32();
@@ -145,7 +145,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const gnc::DepthProjection projection = projection_of(input, flags);
   static gnc::RangeImage frame;
   frame = frame_of(input, flags);
-#ifdef TUMBLESIGHT_FUZZ  // in turn: each costs as much as all the rest
+#ifdef TUMBLESIGHT_FUZZ  // one set per input: each costs as much as everything else
   check_set(frame, projection, size % 2 == 0 ? gnc::InstructionSet::kAvx512 : gnc::InstructionSet::kAvx2);
 #else
   for (const auto set : {gnc::InstructionSet::kAvx2, gnc::InstructionSet::kAvx512})

@@ -1,6 +1,6 @@
-// A fuzz target is one file with LLVMFuzzerTestOneInput(). libFuzzer calls it with inputs of its own making,
-// replay.cpp with those of the corpus. Whatever they are, it returns; what must hold then is said by
-// require().
+// A fuzz target is one file with LLVMFuzzerTestOneInput(). libFuzzer calls it with inputs that it generates,
+// replay.cpp with the inputs of the corpus. It must return whatever the input; require() checks what must
+// hold.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ inline void require(bool holds, const char* what) {
   std::abort();
 }
 
-// Numbers taken from an input one after the other, little-endian; zeros behind its end.
+// Reads little-endian numbers from an input, one after the other. Beyond its end they are zero.
 class Input {
  public:
   Input(const std::uint8_t* data, std::size_t size) : at_(data), left_(size) {}
@@ -45,8 +45,8 @@ class Input {
   std::size_t left_;
 };
 
-// Whether an input goes on to what costs as much as many other inputs: one in `one_in`, by its bytes, so that
-// it is the same for the same input; of a corpus that is replayed, all.
+// Whether an input also goes through an expensive check: one input in `one_in`. A hash of its bytes decides,
+// so that the answer is the same for the same input. In a replay of the corpus: every input.
 inline bool is_chosen([[maybe_unused]] const Input& input, [[maybe_unused]] std::uint32_t one_in) {
 #if TUMBLESIGHT_FUZZ
   std::uint32_t hash = 2166136261U;

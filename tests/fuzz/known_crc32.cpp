@@ -1,8 +1,8 @@
-// Stands before gnc::crc32() in programs that link it with --wrap: those of a patched image's sections as it
-// says.
+// Replaces gnc::crc32() in programs linked with --wrap: for the sections of a patched image, the CRC is the
+// one that the image gives.
 #include "tests/fuzz/patched_image.hpp"
 
-// The linker's name of gnc::crc32(), and what it calls the one behind this.
+// The linker's names of the original gnc::crc32() and of its replacement.
 extern "C" std::uint32_t __real__ZN11tumblesight3gnc5crc32EPKhm(const std::uint8_t* data,
                                                                 std::size_t size_bytes);
 extern "C" std::uint32_t __wrap__ZN11tumblesight3gnc5crc32EPKhm(const std::uint8_t* data,

@@ -1,4 +1,5 @@
-// Mesh files of any content: a mesh that the sensor can look at, or a message that names the file.
+// Mesh files of any content: the result is a mesh that the sensor can render, or a message that names the
+// file.
 #include "sim/world/target/mesh_file.hpp"
 
 #include <unistd.h>
@@ -17,11 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 4> kNames{"mesh.stl", "mesh.obj", "mesh.gltf", "mesh.glb"};
-// One input in so many: Assimp fills 16 MiB for each, whatever its size.
+// One input in kObj is OBJ: Assimp fills 16 MiB for each, whatever its size.
 constexpr std::uint32_t kObj = 256;
 constexpr std::size_t kObjName = 1;
 
-// In memory where the system has such a file system; gone when the program ends.
+// A folder in memory where there is such a file system; removed when the program ends.
 class Folder {
  public:
   Folder() {

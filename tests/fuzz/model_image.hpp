@@ -1,5 +1,5 @@
-// The model image's reader, and now and then a step with what it accepts: for both numerics
-// (model_image_fixed.cpp, model_image_float32.cpp).
+// The reader of model images, and for some inputs a step with the accepted model. For both numerics:
+// model_image_fixed.cpp, model_image_float32.cpp.
 #pragma once
 
 #include <cstring>
@@ -13,8 +13,8 @@
 
 namespace tumblesight::fuzz {
 
-// The kernels that an input asks for, or the next faster ones that there are. In the portable ones (0)
-// UndefinedBehaviorSanitizer sees every sum.
+// The kernels that an input asks for, or the next faster ones available. In the portable ones (0)
+// UndefinedBehaviorSanitizer checks every sum.
 template <class N>
 const gnc::Kernels<N>& kernels_by(std::uint8_t number) {
   for (std::size_t i = number % gnc::kInstructionSets.size(); i < gnc::kInstructionSets.size(); ++i) {
@@ -48,13 +48,13 @@ class ModelImageTarget {
       check_model(target);
       if (steps) step(frames);
     } else {
-      require(estimator_->model().crc32 == before, "a refused image leaves the model before it in use");
+      require(estimator_->model().crc32 == before, "a refused image leaves the earlier model in use");
     }
     image_.undo();
   }
 
  private:
-  // One in so many has its megabytes of values looked at; one in so many, a multiple, is used.
+  // One input in kReadsValues has its values read; one in kSteps, a multiple, also makes a step.
   static constexpr std::uint32_t kReadsValues = 256, kSteps = 2048;
 
   void check_model(const char* target) {
@@ -65,12 +65,12 @@ class ModelImageTarget {
             "the target is the one expected");
   }
 
-  // The first frame of a track, and one that has a track behind it.
+  // The first frame of a track and, with two frames, one that continues it.
   void step(std::uint32_t frames) {
     for (std::uint32_t i = 1; i <= frames; ++i) {
       gnc::AttitudeEstimate estimate;
       require(estimator_->step(frame_, estimate) == gnc::FrameStatus::kOk, "a good frame is used");
-      // Fewer where the weights left no attitude to go on from.
+      // Fewer if the weights left no attitude to continue from.
       require(estimate.frames_since_reset >= 1 && estimate.frames_since_reset <= i, "frames are counted");
       check_estimate(estimate);
     }

@@ -51,7 +51,7 @@ PatchedImage::PatchedImage(std::vector<std::uint8_t> image) : original_(std::mov
   with_values_ = false;
   const Section& last = sections_.back();
   require(gnc::crc32(bytes_.data() + last.offset, last.size) != last.crc32,
-          "known_crc32.cpp stands before gnc::crc32()");
+          "known_crc32.cpp replaces gnc::crc32()");
   with_values_ = true;
 }
 
@@ -67,8 +67,8 @@ std::size_t PatchedImage::apply(Input& input, bool with_values) {
   return size_;
 }
 
-// Where: 0 the header and section table; n the nth section. What: a number of one or four bytes, once or
-// again and again.
+// Where: 0 is the header and section table, n the nth section. What: a number of one or four bytes, once or
+// repeatedly.
 void PatchedImage::patch(Input& input) {
   const std::size_t where = input.u8() % (sections_.size() + 1);
   const std::uint8_t how = input.u8();
@@ -103,7 +103,7 @@ void PatchedImage::correct_sections() {
   }
 }
 
-// Of as many sections as the header now says, as the reader does.
+// Over as many sections as the header now gives, as in the reader.
 void PatchedImage::correct_header() {
   const std::uint64_t sections = get_u32(bytes_.data() + kOffsetSectionCount);
   const std::uint64_t end = (gnc::kModelHeaderSize + sections * gnc::kModelSectionEntrySize + 63) / 64 * 64;

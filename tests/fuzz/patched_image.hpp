@@ -1,5 +1,6 @@
-// PatchedImage: a whole model image with some of its bytes replaced as an input says. It lies in memory once,
-// since an image has more than a megabyte and an input a few bytes; what was replaced is put back at the end.
+// PatchedImage: a whole model image with some bytes replaced, as an input specifies. An image has more than a
+// megabyte and an input a few bytes, so there is one image in memory and the replaced bytes are restored
+// after each input.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +13,20 @@ namespace tumblesight::fuzz {
 
 class PatchedImage {
  public:
-  // `image`: one that is accepted.
+  // `image` must be valid.
   explicit PatchedImage(std::vector<std::uint8_t> image);
 
-  // Reads the patches from the input, applies them and, where the input wants it, corrects the CRCs of the
-  // sections and of the header, so that the reader's checks of values are reached. Gives the size that the
-  // reader is to be told: mostly the image's; the bytes behind it are out of bounds (AddressSanitizer).
-  // Without `with_values` the sections stay as they are, and their CRCs are taken for wrong: the last one's
-  // and those of sections that a patch would have touched. So the reader never comes to the values, which
-  // take a thousand times longer.
+  // Reads the patches from the input and applies them. If the input asks for it, corrects the CRCs of the
+  // sections and of the header, so that the reader's checks of values are reached. Returns the size to give
+  // to the reader, usually the image's; bytes beyond it are out of bounds for AddressSanitizer. Without
+  // `with_values` the sections are not patched. Instead, the CRCs of the last section and of those that a
+  // patch would have changed are reported as wrong, so that the reader does not reach the values, which take
+  // a thousand times longer.
   std::size_t apply(Input& input, bool with_values);
   void undo();
 
   const std::uint8_t* data() const { return bytes_.data(); }
-  // What is to be taken for the CRC-32 of these bytes, if they are a section: see apply(). False: work it
-  // out.
+  // Gives the CRC-32 to use for these bytes if they are a section: see apply(). False: compute it.
   bool knows_crc32(const std::uint8_t* first, std::size_t size, std::uint32_t& crc32) const;
 
  private:
@@ -49,10 +49,10 @@ class PatchedImage {
   std::vector<Section> sections_;
   std::vector<Range> patched_;
   bool with_values_ = true;
-  std::size_t size_ = 0;  // that the reader was told
+  std::size_t size_ = 0;  // given to the reader
 };
 
-// The one that known_crc32.cpp asks; it lives as long as the program.
+// The image that known_crc32.cpp asks; it exists until the program ends.
 inline const PatchedImage* the_image = nullptr;
 
 }  // namespace tumblesight::fuzz

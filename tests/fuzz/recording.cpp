@@ -1,4 +1,4 @@
-// Recordings of any content. What they hold is read back as it is written.
+// Recordings of any content. A frame that is read must be the same when it is written and read again.
 #include "hal/replay/recording.hpp"
 
 #include <limits>
@@ -13,7 +13,7 @@ namespace {
 
 namespace replay = hal::replay;
 
-// A header and a CRC that are right, so that the frames are reached.
+// Adds a valid header and CRC, so that the frames are reached.
 std::vector<std::uint8_t> with_header_and_crc(Input& input) {
   std::vector<std::uint8_t> bytes(replay::kRecordingHeaderSize);
   const auto rays = static_cast<std::uint16_t>(input.u8() + 1);
@@ -71,7 +71,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::vector<std::uint8_t> bytes =
       as_it_is ? std::vector<std::uint8_t>(input.rest(), input.rest() + input.left())
                : with_header_and_crc(input);
-  // Of exactly its size, so that AddressSanitizer sees every byte read beyond it.
+  // A copy of exactly the input's size, so that AddressSanitizer sees every byte read beyond it.
   const std::unique_ptr<std::uint8_t[]> exact(new std::uint8_t[bytes.size()]);
   std::copy(bytes.begin(), bytes.end(), exact.get());
   read_all(exact.get(), bytes.size());

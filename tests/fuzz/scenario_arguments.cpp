@@ -1,6 +1,6 @@
-// Options of a scenario, from the command line's words to what is made of them: numbers within their limits,
-// conditions, the report's file name, the settings of an experiment, an inertia and the tumbling that follows
-// from it.
+// Options of a scenario, from the words of the command line to their use: numbers within their limits,
+// conditions, the report's file name, the settings of an experiment, an inertia and the tumbling motion with
+// it.
 #include <CLI/CLI.hpp>
 #include <cmath>
 
@@ -19,7 +19,7 @@ struct Given {
   std::string speed = "max";
 };
 
-// The options are made once for many command lines; what they fill is as new for each.
+// The options are made once for many command lines. The values are reset for each.
 bool parse(CommandLine& line, Given& given) {
   static Reused reused([&given] {
     auto app = std::make_unique<CLI::App>();
@@ -64,10 +64,10 @@ void check_report_name(const Given& given) {
   arguments.speed = given.speed;
   const std::string name = sim::default_report_name(arguments);
   require(name.size() <= kLongestFileName, "a report's name is short enough for a file");
-  require(name.find('/') == std::string::npos, "a report's name is no path");
+  require(name.find('/') == std::string::npos, "a report's name is not a path");
 }
 
-// Whether set_up_target() takes the inertia: then it goes on to the model, which is missing.
+// Whether set_up_target() accepts the inertia. If so, it continues to the model, which is missing.
 bool is_accepted(sim::ScenarioArguments scenario) {
   scenario.mesh.clear();
   scenario.model = "/dev/null/none";
@@ -88,7 +88,8 @@ void check_tumbling(const sim::ScenarioArguments& scenario, sim::Condition condi
   settings.inertia_kg_m2 << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
   try {
     for (const sim::FrameTruth& frame : sim::make_sequence(settings, scenario.seed, 0).frames) {
-      require(std::abs(frame.q_lrf_trf.norm() - 1.0) < 1e-9, "a tumbling body's attitude is one");
+      require(std::abs(frame.q_lrf_trf.norm() - 1.0) < 1e-9,
+              "a tumbling body's attitude is a unit quaternion");
       require(frame.rate_lrf_rad_s.allFinite(), "a tumbling body's rate is finite");
     }
   } catch (const std::invalid_argument&) {

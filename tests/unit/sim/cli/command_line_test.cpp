@@ -69,10 +69,6 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --mesh /no/such.stl", 1, "/no/such.stl"},
         Refusal{"evaluate --model /no/such.tsm", 1, "'/no/such.tsm' does not exist"},
         Refusal{"evaluate --model /dev", 1, "'/dev' does not exist"},
-        Refusal{"evaluate --model " TUMBLESIGHT_SOURCE_DIR "/fsw/models/none.float32.tsm", 1,
-                "get it with: fsw/models/fetch_images none.float32"},
-        Refusal{"quantize --mesh parametric --model " TUMBLESIGHT_SOURCE_DIR "/fsw/models/none.float32.tsm",
-                2, "get it with: fsw/models/fetch_images none.float32"},
         Refusal{"evaluate --json /proc/none/x.json", 1, "--json /proc/none/x.json"}));
 
 TEST(Help, TeachesWithAnExample) {
@@ -161,6 +157,17 @@ TEST(Evaluate, WarnsWhenTheNetworkWasTrainedForAnotherSwath) {
                                    here.model("near_shoemaker", 11000));
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.errors.find("trained for 11.00 m"), std::string::npos) << outcome.errors;
+}
+
+TEST(ModelImage, ThatIsInTheHistoryOnlyIsRefusedWithTheCommandThatGetsIt) {
+  const Workplace here;
+  const std::string image = TUMBLESIGHT_SOURCE_DIR "/fsw/models/none.float32.tsm";
+  for (const char* const command : {"evaluate --model ", "quantize --mesh parametric --model "}) {
+    const Outcome outcome = here.run(command + image);
+    EXPECT_NE(outcome.exit_code, 0);
+    EXPECT_NE(outcome.errors.find("fsw/models/fetch_images none.float32"), std::string::npos)
+        << outcome.errors;
+  }
 }
 
 }  // namespace
