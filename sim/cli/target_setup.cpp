@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 
 #include "gnc/attitude/motion.hpp"
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/evaluation/results.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/mesh_file.hpp"
 #include "sim/world/target/targets.hpp"
@@ -80,10 +79,7 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
         fmt::format("model image '{}' does not exist{}", path,
                     shipped ? "; train one for this target, or name one with --model" : ""));
   }
-  std::ifstream file(path, std::ios::binary);
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file.good() && !file.eof()) throw std::runtime_error("model image '" + path + "' cannot be read");
-  return bytes;
+  return read_model_bytes(path);
 }
 
 void frame_by_mesh(TargetSetup& setup) {

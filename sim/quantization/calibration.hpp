@@ -35,6 +35,4 @@ std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(const gnc::NetworkWeigh
                                                          const gnc::MotionLaws<typename N::Real>& laws,
                                                          const ImageSequence& sequence);
 
-int channels_of(const std::string& layer);
-
 }  // namespace tumblesight::sim
