@@ -1,5 +1,5 @@
-// How a model image lies in memory (model_image.hpp): what its reader, its writer and the check of its values
-// share.
+// Layout of a model image in memory (model_image.hpp): what its reader, its writer and the check of its
+// values share.
 #pragma once
 
 #include <array>
@@ -79,7 +79,8 @@ constexpr std::uint32_t numerics_of() {
   return N::kIsInteger ? 1 : 0;
 }
 
-// A tensor in the image: weights in fixed point one byte a number and read in place, all else four bytes.
+// Bytes of a tensor in the image: one per weight in fixed point, which is read in place; four per number
+// otherwise.
 template <std::size_t kCount>
 constexpr std::size_t size_in_image(const FixedPoint::Weights<kCount>&) {
   return kCount;

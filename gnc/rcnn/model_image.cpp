@@ -11,7 +11,7 @@ namespace {
 
 using namespace model_format;
 
-// Bounds the reading of another network's section table, so that it is told apart from a damaged image.
+// Limit for the section table of another network, which is recognised as such if its header is intact.
 constexpr std::uint32_t kMaxSections = 256;
 
 constexpr std::uint32_t fnv1a(std::uint32_t hash, std::uint32_t value) {
@@ -20,16 +20,8 @@ constexpr std::uint32_t fnv1a(std::uint32_t hash, std::uint32_t value) {
 }
 
 constexpr std::uint32_t compute_architecture_hash() {
-  constexpr int kSizes[] = {shape::kImageSide, shape::kSpaceToDepthChannels,
-                            shape::kConv1,     shape::kConv2,
-                            shape::kConv3,     shape::kConv4,
-                            shape::kFlat,      shape::kDense1,
-                            shape::kDense2,    shape::kHypotheses,
-                            shape::kOutput,    shape::kLstmInput,
-                            shape::kLstm,      shape::kHead,
-                            shape::kHeadOutput};
   std::uint32_t hash = 2166136261U;
-  for (const int size : kSizes) hash = fnv1a(hash, static_cast<std::uint32_t>(size));
+  for (const int size : shape::kHashed) hash = fnv1a(hash, static_cast<std::uint32_t>(size));
   return hash;
 }
 
@@ -44,7 +36,7 @@ bool is_well_formed_target(const char* field, std::size_t size) {
   return padded;
 }
 
-ModelStatus check_frame_of_header(const std::uint8_t* image, std::size_t size_bytes) {
+ModelStatus check_header_integrity(const std::uint8_t* image, std::size_t size_bytes) {
   if (image == nullptr || size_bytes < kModelHeaderSize) return ModelStatus::kTooShort;
   if (std::memcmp(image, kMagic.data(), kMagic.size()) != 0) return ModelStatus::kBadMagic;
   if (get_u16(image + kOffsetVersion) != kModelFormatVersion) return ModelStatus::kBadVersion;
@@ -57,7 +49,7 @@ ModelStatus check_frame_of_header(const std::uint8_t* image, std::size_t size_by
   return ModelStatus::kOk;
 }
 
-// A trace of 3, but for rounding.
+// False if the matrix is no inertia with a trace of 3, except for rounding.
 bool read_inertia(const std::uint8_t* image, Inertia<Fixed>& inertia) {
   Matrix3<Fixed> tensor;
   for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {
@@ -73,7 +65,8 @@ DepthProjection read_projection(const std::uint8_t* image) {
   return {get_u32(image + kOffsetSwath), get_u32(image + kOffsetRadius)};
 }
 
-ModelStatus check_meaning(const std::uint8_t* image, std::uint32_t numerics, const char* expected_target) {
+ModelStatus check_header_values(const std::uint8_t* image, std::uint32_t numerics,
+                                const char* expected_target) {
   if (get_u32(image + kOffsetNumerics) != numerics) return ModelStatus::kBadNumerics;
   if (get_u32(image + kOffsetArchitecture) != kArchitectureHash) return ModelStatus::kBadArchitecture;
   ModelHeader header;
@@ -90,7 +83,7 @@ ModelStatus check_meaning(const std::uint8_t* image, std::uint32_t numerics, con
 void read_header(const std::uint8_t* image, ModelHeader& header) {
   std::memcpy(header.target.data(), image + kOffsetTarget, header.target.size());
   header.projection = read_projection(image);
-  (void)read_inertia(image, header.inertia);  // check_meaning() has seen that it is one
+  (void)read_inertia(image, header.inertia);  // valid: check_header_values()
   header.crc32 = get_u32(image + kOffsetHeaderCrc);
 }
 
@@ -107,7 +100,7 @@ void read(const std::uint8_t* from, std::array<Integer, kCount>& tensor) {
   for (std::size_t i = 0; i < kCount; ++i) tensor[i] = static_cast<Integer>(get_u32(from + 4 * i));
 }
 
-// The section table, entry by entry: the first that is wrong decides.
+// Checks the section table entry by entry. `status` is that of the first bad entry.
 struct SectionCheck {
   const std::uint8_t* image;
   std::size_t offset;  // of the next section
@@ -131,7 +124,7 @@ struct SectionCheck {
   }
 };
 
-// `weights` only lends the number and sizes of the tensors.
+// Uses only the number and sizes of the tensors in `weights`.
 template <class N>
 ModelStatus check_sections(const std::uint8_t* image, std::size_t size_bytes,
                            const NetworkWeights<N>& weights) {
@@ -184,8 +177,8 @@ std::uint32_t architecture_hash() {
 template <class N>
 ModelStatus check_model_image(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
                               const NetworkWeights<N>& weights) {
-  ModelStatus status = check_frame_of_header(image, size_bytes);
-  if (status == ModelStatus::kOk) status = check_meaning(image, numerics_of<N>(), expected_target);
+  ModelStatus status = check_header_integrity(image, size_bytes);
+  if (status == ModelStatus::kOk) status = check_header_values(image, numerics_of<N>(), expected_target);
   if (status == ModelStatus::kOk) status = check_sections<N>(image, size_bytes, weights);
   return status;
 }
@@ -213,7 +206,7 @@ std::uint32_t model_image_crc32(const std::uint8_t* image) {
 }
 
 bool is_float32(const std::uint8_t* image, std::size_t size_bytes) {
-  return check_frame_of_header(image, size_bytes) == ModelStatus::kOk &&
+  return check_header_integrity(image, size_bytes) == ModelStatus::kOk &&
          get_u32(image + kOffsetNumerics) == numerics_of<Float32>();
 }
 

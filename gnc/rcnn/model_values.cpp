@@ -8,15 +8,29 @@ namespace {
 using model_format::get_u32;
 using model_format::size_in_image;
 
-// What a layer's integers may be, given the largest magnitude of its inputs.
+// Limits of one layer's integers.
 struct LayerLimits {
-  int group;
-  std::int64_t largest_input;
+  int group;                   // inputs whose weights lie side by side
+  std::int64_t largest_input;  // magnitude
   std::uint32_t largest_shift;
-  std::int64_t largest_sum = INT32_MAX;  // rounding included
+  std::int64_t largest_sum;  // magnitude, rounding included
 };
 
-// Where the tensors of a layer lie.
+constexpr std::uint32_t kLargestActivationShift = 30;
+constexpr std::uint32_t kLargestRealShift = 62;  // of sums that become real numbers: outputs and LSTM gates
+
+constexpr LayerLimits limits_of(const LayerRow& row) {
+  if (row.kind == LayerKind::kConvolution) {
+    return {Int8Product::kGroup, 255, kLargestActivationShift, kLargestConvolved};
+  }
+  const int before = layer_index(row.reads[0]);
+  const bool reads_average = before < kLayerCount && kLayers[before].output == LayerOutput::kAveragePooled;
+  const bool real = row.kind == LayerKind::kLstm || row.output == LayerOutput::kOutput;
+  return {Int16Product::kGroup, reads_average ? 4 * kMaxAveragedActivation : 32767,
+          real ? kLargestRealShift : kLargestActivationShift, INT32_MAX};
+}
+
+// The tensors of one layer in the image.
 struct LayerInImage {
   const std::uint8_t* weight = nullptr;
   std::size_t weights = 0;
@@ -45,9 +59,9 @@ struct LayerInImage {
   }
 };
 
-// Sum of the magnitudes of one channel's weights; -1 where one is -128, which has no opposite.
-std::int64_t abs(const std::uint8_t* weights, std::size_t count, std::size_t channels, std::size_t channel,
-                 std::size_t group) {
+// Sum of the magnitudes of one channel's weights; -1 if one of them is -128, which int8 cannot negate.
+std::int64_t sum_of_magnitudes(const std::uint8_t* weights, std::size_t count, std::size_t channels,
+                               std::size_t channel, std::size_t group) {
   std::int64_t sum = 0;
   bool symmetric = true;
   for (std::size_t first = channel * group; first < count; first += channels * group) {
@@ -60,14 +74,14 @@ std::int64_t abs(const std::uint8_t* weights, std::size_t count, std::size_t cha
   return symmetric ? sum : -1;
 }
 
-// No sum of the layer can leave 32 bits, rounding included, and every shift is in its range.
-bool is_possible_layer(const LayerInImage& layer, std::size_t channels, const LayerLimits& limits) {
+// Whether no sum of the layer can exceed its limit, rounding included, and every shift is in range.
+bool is_valid_layer(const LayerInImage& layer, std::size_t channels, const LayerLimits& limits) {
   const auto group = static_cast<std::size_t>(limits.group);
   bool possible = true;
   for (std::size_t c = 0; c < channels; ++c) {
-    const std::int64_t forward = abs(layer.weight, layer.weights, channels, c, group);
+    const std::int64_t forward = sum_of_magnitudes(layer.weight, layer.weights, channels, c, group);
     const std::int64_t recurrent =
-        layer.recurrents > 0 ? abs(layer.recurrent, layer.recurrents, channels, c, group) : 0;
+        layer.recurrents > 0 ? sum_of_magnitudes(layer.recurrent, layer.recurrents, channels, c, group) : 0;
     const std::int64_t bias = static_cast<std::int32_t>(get_u32(layer.bias + 4 * c));
     const std::uint32_t shift = get_u32(layer.shift + 4 * c);
     const bool in_range = shift >= 1 && shift <= limits.largest_shift && forward >= 0 && recurrent >= 0;
@@ -79,29 +93,20 @@ bool is_possible_layer(const LayerInImage& layer, std::size_t channels, const La
   return possible;
 }
 
-constexpr std::uint32_t kLargestActivationShift = 30;
-constexpr std::uint32_t kLargestOutputShift = 62;
-
 }  // namespace
 
 bool has_possible_values(const std::uint8_t* image, const NetworkWeights<FixedPoint>& weights) {
-  const LayerLimits conv{Int8Product::kGroup, 255, kLargestActivationShift, kMaxConvSum};
-  const LayerLimits hidden{Int16Product::kGroup, 32767, kLargestActivationShift};
-  const LayerLimits output{Int16Product::kGroup, 32767, kLargestOutputShift};
-  const LayerLimits pooled{Int16Product::kGroup, 4 * kMaxAveragedActivation, kLargestActivationShift};
-  // In the order of for_each_layer().
-  const std::array<LayerLimits, 10> limits{conv,   conv,   conv,   conv,   pooled,
-                                           hidden, output, output, hidden, output};
   const std::uint8_t* next = image + kModelDataOffset<FixedPoint>;
-  std::size_t index = 0;
   bool possible = true;
-  for_each_layer(weights, [&](const char* name, const auto& layer) {
+  for_each_index<0, kLayerCount>([&](auto index) {
+    constexpr LayerLimits kLimits = limits_of(kLayers[decltype(index)::value]);
+    const auto& layer = layer_weights<decltype(index)::value>(weights);
     LayerInImage in_image;
-    for_each_tensor_of(name, layer, [&](const char*, const char* part, const auto& tensor) {
+    for_each_tensor_of(layer, [&](const char* part, const auto& tensor) {
       in_image.put(part, next, size_in_image(tensor));
       next += size_in_image(tensor);
     });
-    possible = is_possible_layer(in_image, layer.bias.size(), limits[index++]) && possible;
+    possible = is_valid_layer(in_image, layer.bias.size(), kLimits) && possible;
   });
   return possible;
 }
@@ -109,7 +114,7 @@ bool has_possible_values(const std::uint8_t* image, const NetworkWeights<FixedPo
 #if TUMBLESIGHT_FLOAT32
 namespace {
 
-// By the bits, so that no compiler option can make it always true.
+// On the bits: with fast-math a compiler may assume that std::isfinite() is always true.
 bool is_finite_bits(std::uint32_t bits) {
   return (bits & 0x7F800000U) != 0x7F800000U;
 }

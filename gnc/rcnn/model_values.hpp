@@ -1,4 +1,4 @@
-// What the numbers in a model image may be.
+// Range check of the tensors in a model image.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,9 @@
 
 namespace tumblesight::gnc {
 
-// Whether every weight of the whole image is finite (float32), or no sum of a layer can leave 32 bits and
-// every shift is in its range (fixed point). `weights` only lends the sizes of its tensors.
+// `image` is complete. In fixed point: whether no sum of any layer can leave 32 bits, no weight is -128 and
+// every shift is in range. In float32: whether every weight is finite. Only the sizes of the tensors in
+// `weights` are used.
 bool has_possible_values(const std::uint8_t* image, const NetworkWeights<FixedPoint>& weights);
 #if TUMBLESIGHT_FLOAT32
 bool has_possible_values(const std::uint8_t* image, const NetworkWeights<Float32>& weights);

@@ -5,8 +5,6 @@
 namespace tumblesight::gnc {
 
 static_assert(DepthImage::kSide == shape::kImageSide);
-static_assert(std::tuple_size_v<Layers<FixedPoint>::Conv4::AveragePooled> == shape::kFlat,
-              "dense1 eats the flattened average pool");
 static_assert(sizeof(Network<FixedPoint>) <= 80 * 1024, "budget of the activations");
 
 namespace {

@@ -1,11 +1,13 @@
-// The layers of the RCNN, their weights and activations, in the numerics N (Float32 or FixedPoint). What
-// their numbers mean: hypotheses.hpp (CNN) and attitude_track.hpp (LSTM and head).
+// The RCNN in the numerics N (Float32 or FixedPoint): types, weights and activations of the layers in
+// network_shape.hpp. What its numbers mean: hypotheses.hpp (CNN) and attitude_track.hpp (LSTM and recurrent
+// head).
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/nn/conv_block.hpp"
@@ -15,154 +17,189 @@
 
 namespace tumblesight::gnc {
 
-// The layers, in the order in which an image passes them; sizes: network_shape.hpp.
-template <class N>
-struct Layers {
-  using Conv1 = ConvBlock<N, shape::kImageSide / 2, shape::kSpaceToDepthChannels, shape::kConv1>;
-  using Conv2 = ConvBlock<N, Conv1::kSideOut, shape::kConv1, shape::kConv2>;
-  using Conv3 = ConvBlock<N, Conv2::kSideOut, shape::kConv2, shape::kConv3>;
-  using Conv4 = ConvBlock<N, Conv3::kSideOut, shape::kConv3, shape::kConv4>;
-  using Dense1 = Dense<N, shape::kFlat, shape::kDense1>;
-  using Dense2 = Dense<N, shape::kDense1, shape::kDense2>;
-  using CnnOut = Dense<N, shape::kDense2, shape::kOutput>;
-  using Recurrent = Lstm<N, shape::kLstmInput, shape::kLstm>;
-  using Head1 = Dense<N, shape::kLstm + shape::kLstmInput, shape::kHead>;
-  using Head2 = Dense<N, shape::kHead, shape::kHeadOutput>;
+// Per kind of layer: its type, and how a layer without state runs. `sums` is scratch.
+template <LayerKind kKind>
+struct LayerOfKind;
+
+template <>
+struct LayerOfKind<LayerKind::kConvolution> {
+  template <class N, int kIndex>
+  using Type = ConvBlock<N, kLayers[kIndex].side, kLayers[kIndex].inputs, kLayers[kIndex].outputs>;
+
+  // The type of `out` selects the pooling.
+  template <class Layer, LayerOutput, class N, class Out>
+  static void run(const Kernels<N>& kernels, const typename Layer::Weights& weights,
+                  const typename Layer::Input& in, typename Layer::Sums& sums, Out& out) {
+    Layer::forward(kernels, weights, in, sums, out);
+  }
 };
 
-template <class N>
-using LstmInput = typename Layers<N>::Recurrent::Input;
-template <class N>
-using LstmState = typename Layers<N>::Recurrent::State;
-template <class N>
-using Features = typename Layers<N>::Dense2::Hidden;
+template <>
+struct LayerOfKind<LayerKind::kDense> {
+  template <class N, int kIndex>
+  using Type = Dense<N, kLayers[kIndex].inputs, kLayers[kIndex].outputs>;
 
-// Per hypothesis k: six numbers at 6k, its logit at kColumns + k; last, the logit of the expected error over
-// pi.
+  template <class Layer, LayerOutput kOutput, class N, class Out>
+  static void run(const Kernels<N>& kernels, const typename Layer::Weights& weights,
+                  const typename Layer::Input& in, typename Layer::Sums& sums, Out& out) {
+    if constexpr (kOutput == LayerOutput::kHidden) {
+      Layer::hidden(kernels, weights, in, sums, out);
+    } else {
+      Layer::output(kernels, weights, in, sums, out);
+    }
+  }
+};
+
+template <>
+struct LayerOfKind<LayerKind::kLstm> {
+  template <class N, int kIndex>
+  using Type = Lstm<N, kLayers[kIndex].inputs, kLayers[kIndex].outputs>;
+};
+
+template <class N, int kIndex>
+using Layer = typename LayerOfKind<kLayers[kIndex].kind>::template Type<N, kIndex>;
+
+template <int kFirst, class Visitor, int... kOffset>
+[[gnu::always_inline]] inline void for_each_offset(Visitor& visit, std::integer_sequence<int, kOffset...>) {
+  (visit(std::integral_constant<int, kFirst + kOffset>()), ...);
+}
+// visit(index) with the compile-time constants kFirst, kFirst + 1, ... kEnd - 1. No loop at run time.
+template <int kFirst, int kEnd, class Visitor>
+[[gnu::always_inline]] inline void for_each_index(Visitor&& visit) {
+  for_each_offset<kFirst>(visit, std::make_integer_sequence<int, kEnd - kFirst>());
+}
+
+template <class N>
+using LstmInput = typename Layer<N, kLstmLayer>::Input;
+template <class N>
+using LstmState = typename Layer<N, kLstmLayer>::State;
+template <class N>
+using Features = typename Layer<N, kFeatureLayer>::Hidden;
+
+// Output of the CNN. Per hypothesis k: six numbers at 6k, its logit at kColumns + k; last, the logit of the
+// expected error over pi.
 template <class Real>
 using OutputVector = std::array<Real, shape::kOutput>;
 template <class Real>
 using HeadOutput = std::array<Real, shape::kHeadOutput>;
 
-template <class N>
-struct NetworkWeights {
-  typename Layers<N>::Conv1::Weights conv1;
-  typename Layers<N>::Conv2::Weights conv2;
-  typename Layers<N>::Conv3::Weights conv3;
-  typename Layers<N>::Conv4::Weights conv4;
-  typename Layers<N>::Dense1::Weights dense1;
-  typename Layers<N>::Dense2::Weights dense2;
-  typename Layers<N>::CnnOut::Weights cnn_out;
-  typename Layers<N>::Recurrent::Weights lstm;
-  typename Layers<N>::Head1::Weights head1;
-  typename Layers<N>::Head2::Weights head2;
+// Whether the weights of a layer have the tensor `recurrent`, and how many shifts.
+template <class LayerWeights, class = void>
+struct HasRecurrent : std::false_type {};
+template <class LayerWeights>
+struct HasRecurrent<LayerWeights, std::void_t<decltype(std::declval<LayerWeights&>().recurrent)>>
+    : std::true_type {};
+template <class LayerWeights>
+using HasShifts = std::bool_constant<(std::remove_const_t<LayerWeights>::kShifts > 0)>;
+
+// Sums and maxima over all layers.
+template <class N, class Indices = std::make_integer_sequence<int, kLayerCount>>
+struct LayerTotals;
+template <class N, int... kIndex>
+struct LayerTotals<N, std::integer_sequence<int, kIndex...>> {
+  template <class Weights>
+  static constexpr std::size_t kTensorsOf =
+      2 + std::size_t{HasRecurrent<Weights>::value} + std::size_t{HasShifts<Weights>::value};
+  static constexpr std::size_t kTensors = (kTensorsOf<typename Layer<N, kIndex>::Weights> + ...);
+  static constexpr std::size_t kParameters = (Layer<N, kIndex>::kParameters + ...);
+  static constexpr std::size_t kMacs = (static_cast<std::size_t>(Layer<N, kIndex>::kMacs) + ...);
+  static constexpr std::size_t kBytesInImage = (Layer<N, kIndex>::Weights::kBytesInImage + ...);
+  static constexpr std::size_t kLargestSums = std::max({sizeof(typename Layer<N, kIndex>::Sums)...});
+  // Of the layers with an even (0) or odd (1) index.
+  template <int kParity>
+  static constexpr std::size_t kLargestInput =
+      std::max({(kIndex % 2 == kParity ? sizeof(typename Layer<N, kIndex>::Input) : 0)...});
 };
 
-template <class Layer, class = void>
-struct HasRecurrent : std::false_type {};
-template <class Layer>
-struct HasRecurrent<Layer, std::void_t<decltype(std::declval<Layer&>().recurrent)>> : std::true_type {};
-template <class Layer>
-using HasShifts = std::bool_constant<(std::remove_const_t<Layer>::kShifts > 0)>;
-
-// visit(name, layer) for every layer, always in this order.
-template <class Weights, class Visitor>
-void for_each_layer(Weights& weights, Visitor&& visit) {
-  visit("conv1", weights.conv1);
-  visit("conv2", weights.conv2);
-  visit("conv3", weights.conv3);
-  visit("conv4", weights.conv4);
-  visit("dense1", weights.dense1);
-  visit("dense2", weights.dense2);
-  visit("cnn_out", weights.cnn_out);
-  visit("lstm", weights.lstm);
-  visit("head1", weights.head1);
-  visit("head2", weights.head2);
-}
-
-// visit(layer's name, part, tensor) for every tensor of a layer: data() and size(). Parts: weight, recurrent
-// (LSTM only), bias, shift (fixed point only).
-template <class Layer, class Visitor>
-void for_each_tensor_of(const char* name, Layer& layer, Visitor&& visit) {
-  visit(name, "weight", layer.weight);
-  if constexpr (HasRecurrent<Layer>::value) visit(name, "recurrent", layer.recurrent);
-  visit(name, "bias", layer.bias);
-  if constexpr (HasShifts<Layer>::value) visit(name, "shift", layer.shift);
-}
-
-// For every tensor of the network, always in this order and under these names: the model image's sections,
-// its writer and the trainer's export all go by it. `weights` may be const; then so is the tensor.
-template <class Weights, class Visitor>
-void for_each_tensor(Weights& weights, Visitor&& visit) {
-  for_each_layer(weights,
-                 [&visit](const char* name, auto& layer) { for_each_tensor_of(name, layer, visit); });
-}
+inline constexpr std::size_t kParameterCount = LayerTotals<FixedPoint>::kParameters;  // that are learnt
+inline constexpr std::size_t kMacCount = LayerTotals<FixedPoint>::kMacs;  // multiply-accumulates per frame
 template <class N>
-inline constexpr std::size_t kTensorCount = N::kIsInteger ? 31 : 21;
-
-// Sums over the layers: parameters that are learnt, multiply-accumulates of a frame, bytes in a model image.
-template <template <class Layer> class Count, class N>
-inline constexpr std::size_t kSumOverLayers =
-    Count<typename Layers<N>::Conv1>::value + Count<typename Layers<N>::Conv2>::value +
-    Count<typename Layers<N>::Conv3>::value + Count<typename Layers<N>::Conv4>::value +
-    Count<typename Layers<N>::Dense1>::value + Count<typename Layers<N>::Dense2>::value +
-    Count<typename Layers<N>::CnnOut>::value + Count<typename Layers<N>::Recurrent>::value +
-    Count<typename Layers<N>::Head1>::value + Count<typename Layers<N>::Head2>::value;
-template <class Layer>
-using ParametersOf = std::integral_constant<std::size_t, Layer::kParameters>;
-template <class Layer>
-using MacsOf = std::integral_constant<std::size_t, static_cast<std::size_t>(Layer::kMacs)>;
-template <class Layer>
-using BytesInImageOf = std::integral_constant<std::size_t, Layer::Weights::kBytesInImage>;
-
-inline constexpr std::size_t kParameterCount = kSumOverLayers<ParametersOf, FixedPoint>;
-inline constexpr std::size_t kMacCount = kSumOverLayers<MacsOf, FixedPoint>;
+inline constexpr std::size_t kTensorCount = LayerTotals<N>::kTensors;
 template <class N>
-inline constexpr std::size_t kWeightBytes = kSumOverLayers<BytesInImageOf, N>;
+inline constexpr std::size_t kWeightBytes = LayerTotals<N>::kBytesInImage;
 
-// Memory of the activations, planned by hand: what a layer reads lies in one buffer, what it writes in the
-// other, and its sums between them. Each buffer is as large as the largest thing that ever lies in it.
+template <class N, int kIndex>
+struct WeightsOfLayer {
+  typename Layer<N, kIndex>::Weights weights;
+};
+template <class N, class Indices>
+struct WeightsOfLayers;
+template <class N, int... kIndex>
+struct WeightsOfLayers<N, std::integer_sequence<int, kIndex...>> : WeightsOfLayer<N, kIndex>... {};
+
+template <class N>
+struct NetworkWeights : WeightsOfLayers<N, std::make_integer_sequence<int, kLayerCount>> {};
+
+template <int kIndex, class N>
+auto& layer_weights(NetworkWeights<N>& network) {
+  return static_cast<WeightsOfLayer<N, kIndex>&>(network).weights;
+}
+template <int kIndex, class N>
+const auto& layer_weights(const NetworkWeights<N>& network) {
+  return static_cast<const WeightsOfLayer<N, kIndex>&>(network).weights;
+}
+
+// visit(row, layer's weights) for every layer in the table's order. `network` may be const.
+template <class Network, class Visitor>
+[[gnu::always_inline]] inline void for_each_layer(Network& network, Visitor&& visit) {
+  for_each_index<0, kLayerCount>([&network, &visit ](auto index) __attribute__((always_inline)) {
+    constexpr int kIndex = decltype(index)::value;
+    visit(kLayers[kIndex], layer_weights<kIndex>(network));
+  });
+}
+
+// visit(part, tensor) for every tensor of a layer: data() and size(). Parts: weight, recurrent (LSTM only),
+// bias, shift (fixed point only).
+template <class LayerWeights, class Visitor>
+[[gnu::always_inline]] inline void for_each_tensor_of(LayerWeights& layer, Visitor&& visit) {
+  visit("weight", layer.weight);
+  if constexpr (HasRecurrent<LayerWeights>::value) visit("recurrent", layer.recurrent);
+  visit("bias", layer.bias);
+  if constexpr (HasShifts<LayerWeights>::value) visit("shift", layer.shift);
+}
+
+// visit(layer's name, part, tensor) for every tensor of the network. The model image's sections, its writer
+// and the trainer's export all use this order and these names. `network` may be const; then so is the tensor.
+template <class Network, class Visitor>
+[[gnu::always_inline]] inline void for_each_tensor(Network& network, Visitor&& visit) {
+  for_each_layer(network, [&visit](const LayerRow& row, auto& layer) {
+    for_each_tensor_of(layer,
+                       [&visit, &row](const char* part, auto& tensor) { visit(row.name, part, tensor); });
+  });
+}
+
+// Memory of the activations: two buffers for the layers' inputs, used in turn, and one for their sums. Each
+// buffer is as large as the largest object that it ever holds.
 template <class N>
 class Arena {
  public:
-  template <class Thing>
-  Thing& front() {
-    return placed<Thing>(buffers_.front);
+  // What layer kIndex reads. Its output is the input of layer kIndex + 1, in the other buffer.
+  template <int kIndex>
+  typename Layer<N, kIndex>::Input& input() {
+    using Input = typename Layer<N, kIndex>::Input;
+    if constexpr (kIndex % 2 == 0) return in_place<Input>(buffers_.even);
+    if constexpr (kIndex % 2 == 1) return in_place<Input>(buffers_.odd);
   }
-  template <class Thing>
-  Thing& back() {
-    return placed<Thing>(buffers_.back);
+  template <int kIndex>
+  typename Layer<N, kIndex>::Sums& sums() {
+    return in_place<typename Layer<N, kIndex>::Sums>(buffers_.sums);
   }
-  template <class Thing>
-  Thing& sums() {
-    return placed<Thing>(buffers_.sums);
-  }
-  DepthImageScratch& projection_scratch() { return placed<DepthImageScratch>(all_); }
+  // Over all three buffers.
+  DepthImageScratch& projection_scratch() { return in_place<DepthImageScratch>(all_); }
 
  private:
-  using L = Layers<N>;
-  static constexpr std::size_t kFront =
-      std::max({sizeof(typename L::Conv1::Input), sizeof(typename L::Conv3::Input),
-                sizeof(typename L::Conv4::AveragePooled)});
-  static constexpr std::size_t kBack =
-      std::max({sizeof(typename L::Conv2::Input), sizeof(typename L::Conv4::Input),
-                sizeof(typename L::Dense1::Hidden)});
-  static constexpr std::size_t kSums = std::max(
-      {sizeof(typename L::Conv1::Sums), sizeof(typename L::Conv2::Sums), sizeof(typename L::Conv3::Sums),
-       sizeof(typename L::Conv4::Sums), sizeof(typename L::Recurrent::Sums)});
-
-  // The first to write there makes the thing, whose numbers are no one's until then; it is found again as it
-  // was left.
-  template <class Thing, std::size_t kSize>
-  static Thing& placed(std::array<std::byte, kSize>& buffer) {
-    static_assert(sizeof(Thing) <= kSize, "the arena's plan does not foresee this");
-    return *reinterpret_cast<Thing*>(buffer.data());
+  // Every object is written before it is read: what a buffer held for another layer is never used.
+  template <class Object, std::size_t kSize>
+  static Object& in_place(std::array<std::byte, kSize>& buffer) {
+    static_assert(sizeof(Object) <= kSize);
+    return *reinterpret_cast<Object*>(buffer.data());
   }
 
+  using Totals = LayerTotals<N>;
   struct Buffers {
-    alignas(64) std::array<std::byte, kFront> front;
-    alignas(64) std::array<std::byte, kSums> sums;
-    alignas(64) std::array<std::byte, kBack> back;
+    alignas(64) std::array<std::byte, Totals::template kLargestInput<0>> even;
+    alignas(64) std::array<std::byte, Totals::kLargestSums> sums;
+    alignas(64) std::array<std::byte, Totals::template kLargestInput<1>> odd;
   };
   union {
     Buffers buffers_;
@@ -170,26 +207,27 @@ class Arena {
   };
 };
 
-// Weights (in fixed point where the model image lies) and activations; place it in static storage. Which
-// instructions run does not depend on the image, the state or the weights.
+// Weights (in fixed point they are read where the model image lies) and activations; place it in static
+// storage. Which instructions run does not depend on the image, the state or the weights.
 template <class N>
 class Network {
  public:
   NetworkWeights<N>& weights() { return weights_; }
   const NetworkWeights<N>& weights() const { return weights_; }
 
-  // CNN: of this image alone.
+  // The CNN, on one image; no state.
   void infer_frame(const DepthImage& image, OutputVector<typename N::Real>& out);
-  // LSTM and recurrent head; `state` is advanced.
+  // LSTM and recurrent head. Advances `state` by one frame.
   void infer_sequence(const LstmInput<N>& input, LstmState<N>& state, HeadOutput<typename N::Real>& out);
 
-  // For the frame's depth image, before infer_frame(): the activations' memory, which no one needs then.
+  // Scratch for making the frame's depth image. It shares the memory of the activations: use it before
+  // infer_frame() only.
   DepthImageScratch& projection_scratch() { return arena_.projection_scratch(); }
 
-  // Of the last infer_frame(): dense2's output (after ReLU).
+  // Of the last infer_frame(): the output of layer kFeatureLayer, after ReLU.
   const Features<N>& features() const { return features_; }
 
-  // The fastest kernels there are, unless told otherwise.
+  // Default: the fastest kernels of this build and processor.
   void use(const Kernels<N>& kernels) { kernels_ = &kernels; }
   const Kernels<N>& kernels() const { return *kernels_; }
 

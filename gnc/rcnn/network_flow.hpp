@@ -1,5 +1,5 @@
-// The network's flow, layer by layer. `observe(name, output)` is shown what every layer gets; in flight no
-// one looks, and it costs nothing.
+// The data flow from layer to layer. Each function calls observe(name, values) with every network input and
+// with every hidden layer's output; in flight the observer is empty and costs nothing.
 #pragma once
 
 #include "gnc/rcnn/network.hpp"
@@ -15,7 +15,7 @@ inline void to_conv_input(std::uint16_t depth, std::uint8_t& out) {
 
 // Every 2x2 pixels become one pixel of four channels, channel = 2 * (row & 1) + (column & 1).
 template <class N>
-[[gnu::noinline]] void space_to_depth(const DepthImage& image, typename Layers<N>::Conv1::Input& out) {
+[[gnu::noinline]] void space_to_depth(const DepthImage& image, typename Layer<N, 0>::Input& out) {
   constexpr int kSide = DepthImage::kSide;
   out.values.fill({});
   for (int y = 0; y < kSide / 2; ++y) {
@@ -31,52 +31,56 @@ template <class N>
   }
 }
 
+// One layer without state, from `in` to `out`.
+template <int kIndex, class N, class Out>
+[[gnu::always_inline]] inline void run_layer(const Kernels<N>& kernels, const NetworkWeights<N>& weights,
+                                             const typename Layer<N, kIndex>::Input& in, Arena<N>& arena,
+                                             Out& out) {
+  constexpr LayerRow kRow = kLayers[kIndex];
+  LayerOfKind<kRow.kind>::template run<Layer<N, kIndex>, kRow.output>(kernels, layer_weights<kIndex>(weights),
+                                                                      in, arena.template sums<kIndex>(), out);
+}
+
+// Layers kFirst to kLast, each from its input in the arena to the next one's. The last one writes `out`,
+// which is not observed.
+template <int kFirst, int kLast, class N, class Out, class Observer>
+[[gnu::always_inline]] inline void run_layers(const Kernels<N>& kernels, const NetworkWeights<N>& weights,
+                                              Arena<N>& arena, Out& out, Observer&& observe) {
+  if constexpr (kFirst == kLast) {
+    run_layer<kLast>(kernels, weights, arena.template input<kLast>(), arena, out);
+  } else {
+    auto& next = arena.template input<kFirst + 1>();
+    run_layer<kFirst>(kernels, weights, arena.template input<kFirst>(), arena, next);
+    observe(kLayers[kFirst].name, next);
+    run_layers<kFirst + 1, kLast>(kernels, weights, arena, out, observe);
+  }
+}
+
+// The CNN. `features`: output of layer kFeatureLayer.
 template <class N, class Observer>
 void run_frame(const Kernels<N>& kernels, const NetworkWeights<N>& weights, const DepthImage& image,
                Arena<N>& arena, Features<N>& features, OutputVector<typename N::Real>& out,
                Observer&& observe) {
-  using L = Layers<N>;
-  auto& map1 = arena.template front<typename L::Conv1::Input>();
-  auto& map2 = arena.template back<typename L::Conv2::Input>();
-  auto& map3 = arena.template front<typename L::Conv3::Input>();
-  auto& map4 = arena.template back<typename L::Conv4::Input>();
-  auto& flat = arena.template front<typename L::Dense1::Input>();
-  auto& hidden = arena.template back<typename L::Dense1::Hidden>();
-
-  space_to_depth<N>(image, map1);
-  observe("depth", map1);
-  L::Conv1::forward(kernels, weights.conv1, map1, arena.template sums<typename L::Conv1::Sums>(), map2);
-  observe("conv1", map2);
-  L::Conv2::forward(kernels, weights.conv2, map2, arena.template sums<typename L::Conv2::Sums>(), map3);
-  observe("conv2", map3);
-  L::Conv3::forward(kernels, weights.conv3, map3, arena.template sums<typename L::Conv3::Sums>(), map4);
-  observe("conv3", map4);
-  L::Conv4::forward(kernels, weights.conv4, map4, arena.template sums<typename L::Conv4::Sums>(), flat);
-  observe("conv4", flat);
-  L::Dense1::hidden(kernels, weights.dense1, flat, arena.template sums<typename L::Dense1::Sums>(), hidden);
-  observe("dense1", hidden);
-  L::Dense2::hidden(kernels, weights.dense2, hidden, arena.template sums<typename L::Dense2::Sums>(),
-                    features);
-  observe("dense2", features);
-  L::CnnOut::output(kernels, weights.cnn_out, features, arena.template sums<typename L::CnnOut::Sums>(), out);
+  auto& folded = arena.template input<0>();
+  space_to_depth<N>(image, folded);
+  observe(kDepthInput, folded);
+  run_layers<0, kFeatureLayer>(kernels, weights, arena, features, observe);
+  observe(kLayers[kFeatureLayer].name, features);
+  run_layer<kCnnOutputLayer>(kernels, weights, features, arena, out);
 }
 
+// LSTM and recurrent head. Advances `state` by one frame.
 template <class N, class Observer>
 void run_sequence(const Kernels<N>& kernels, const NetworkWeights<N>& weights, const LstmInput<N>& input,
                   Arena<N>& arena, LstmState<N>& state, HeadOutput<typename N::Real>& out,
                   Observer&& observe) {
-  using L = Layers<N>;
-  L::Recurrent::forward(kernels, weights.lstm, input, arena.template sums<typename L::Recurrent::Sums>(),
-                        state);
-  observe("lstm", state.h);
-  auto& head_input = arena.template front<typename L::Head1::Input>();
-  auto& hidden = arena.template back<typename L::Head1::Hidden>();
+  Layer<N, kLstmLayer>::forward(kernels, layer_weights<kLstmLayer>(weights), input,
+                                arena.template sums<kLstmLayer>(), state);
+  observe(kLayers[kLstmLayer].name, state.h);
+  auto& head_input = arena.template input<kLstmLayer + 1>();
   const auto after_hidden = std::copy(state.h.begin(), state.h.end(), head_input.begin());
   std::copy(input.begin(), input.end(), after_hidden);
-  L::Head1::hidden(kernels, weights.head1, head_input, arena.template sums<typename L::Head1::Sums>(),
-                   hidden);
-  observe("head1", hidden);
-  L::Head2::output(kernels, weights.head2, hidden, arena.template sums<typename L::Head2::Sums>(), out);
+  run_layers<kLstmLayer + 1, kHeadOutputLayer>(kernels, weights, arena, out, observe);
 }
 
 }  // namespace tumblesight::gnc

@@ -1,19 +1,24 @@
-// The sizes of the RCNN, once: the flight network, the trainer and the model image all read them here.
+// The RCNN as one table: its sizes, then its layers. Everything else about the network is derived from it:
+// types, weights and data flow (network.hpp, network_flow.hpp), model image (model_image.hpp), and on the
+// ground training, quantization, ONNX export and bench.
 #pragma once
 
-namespace tumblesight::gnc::shape {
+#include <array>
+#include <cstdint>
+
+namespace tumblesight::gnc {
+
+namespace shape {
 
 inline constexpr int kImageSide = 100;
-// Backbone: space-to-depth 2x2, then four 3x3 convolutions (zero padding 1), each with bias; the first three
-// are followed by max-pooling 2x2 (floor) and ReLU, the last by ReLU and average pooling 2x2.
 inline constexpr int kSpaceToDepthChannels = 4;  // channel = 2 * (row & 1) + (column & 1)
 inline constexpr int kConv1 = 32;                // 50x50 -> 25x25
 inline constexpr int kConv2 = 64;                // 25x25 -> 12x12
 inline constexpr int kConv3 = 128;               // 12x12 -> 6x6
 inline constexpr int kConv4 = 240;               // 6x6   -> 3x3
 inline constexpr int kFlat = 3 * 3 * kConv4;
-inline constexpr int kDense1 = 192;  // ReLU
-inline constexpr int kDense2 = 128;  // ReLU
+inline constexpr int kDense1 = 192;
+inline constexpr int kDense2 = 128;
 
 // Output of the single-frame head: kHypotheses attitudes as two unnormalised columns of R_view_trf (six
 // numbers each), their logits, and the logit of the expected error over pi.
@@ -21,15 +26,132 @@ inline constexpr int kHypotheses = 8;
 inline constexpr int kColumns = 6 * kHypotheses;
 inline constexpr int kOutput = kColumns + kHypotheses + 1;
 
-// LSTM input: Dense2's output; two columns of every hypothesis relative to the predicted attitude; the
+// LSTM input: output of dense2; two columns of each hypothesis relative to the predicted attitude; the
 // softmax probabilities; two columns of the predicted attitude.
 inline constexpr int kLstmInput = kDense2 + kColumns + kHypotheses + 6;
 inline constexpr int kLstm = 192;
-// Recurrent head: Dense(ReLU) over [LSTM hidden, LSTM input], then a Dense whose output corrects, for the
-// kHypotheses candidates of the frame and the predicted one: the logits of choosing them, then the logarithms
-// of their weights; then the rate's gain; last, the logit of the expected error over pi.
+
+// Output of the recurrent head, for the kHypotheses candidates of the frame and the predicted one:
+// corrections to the logits of choosing them, then to the logarithms of their weights; then the correction to
+// the rate's gain; last, the logit of the expected error over pi.
 inline constexpr int kHead = 128;
 inline constexpr int kCandidates = kHypotheses + 1;
 inline constexpr int kHeadOutput = 2 * kCandidates + 2;
 
-}  // namespace tumblesight::gnc::shape
+// Hashed in this order into every model image (architecture_hash()): an image fits only the sizes it was made
+// for.
+inline constexpr int kHashed[] = {
+    kImageSide, kSpaceToDepthChannels, kConv1,  kConv2,     kConv3, kConv4, kFlat,      kDense1,
+    kDense2,    kHypotheses,           kOutput, kLstmInput, kLstm,  kHead,  kHeadOutput};
+
+}  // namespace shape
+
+// To add a kind: docs/contributing.md.
+enum class LayerKind : std::uint8_t {
+  kConvolution,  // 3x3, zero padding 1, pooling 2x2 (floor), ReLU: gnc/nn/conv_block.hpp
+  kDense,        // fully connected: gnc/nn/dense.hpp
+  kLstm,         // one step of a long short-term memory: gnc/nn/lstm.hpp
+};
+
+// What a layer gives.
+enum class LayerOutput : std::uint8_t {
+  kMaxPooled,      // convolution: maximum of each 2x2 window, then ReLU
+  kAveragePooled,  // convolution: ReLU, then the mean of each 2x2 window; read as a flat vector, pixel by
+                   // pixel
+  kHidden,         // dense: ReLU; LSTM: hidden state
+  kOutput,         // dense: values with a meaning, no activation
+};
+
+struct LayerRow {
+  const char* name;  // of its tensors, in files and reports
+  LayerKind kind;
+  LayerOutput output;
+  int inputs;   // channels of the input image (convolution), else values
+  int outputs;  // channels (convolution), hidden units (LSTM), else values
+  int side;     // convolution: pixels along one side of the input image; else 0
+  std::array<const char*, 2>
+      reads;  // the layer or network input that it reads; a second one is appended to it
+};
+
+// The network's inputs: the depth image folded 2x2 into four channels, and the LSTM input.
+inline constexpr const char* kDepthInput = "depth";
+inline constexpr const char* kLstmInput = "lstm_input";
+
+constexpr LayerRow max_pooled_convolution(const char* name, const char* reads, int side, int inputs,
+                                          int outputs) {
+  return {name, LayerKind::kConvolution, LayerOutput::kMaxPooled, inputs, outputs, side, {reads}};
+}
+constexpr LayerRow average_pooled_convolution(const char* name, const char* reads, int side, int inputs,
+                                              int outputs) {
+  return {name, LayerKind::kConvolution, LayerOutput::kAveragePooled, inputs, outputs, side, {reads}};
+}
+constexpr LayerRow hidden_dense(const char* name, std::array<const char*, 2> reads, int inputs, int outputs) {
+  return {name, LayerKind::kDense, LayerOutput::kHidden, inputs, outputs, 0, reads};
+}
+constexpr LayerRow output_dense(const char* name, std::array<const char*, 2> reads, int inputs, int outputs) {
+  return {name, LayerKind::kDense, LayerOutput::kOutput, inputs, outputs, 0, reads};
+}
+constexpr LayerRow lstm(const char* name, std::array<const char*, 2> reads, int inputs, int hidden_units) {
+  return {name, LayerKind::kLstm, LayerOutput::kHidden, inputs, hidden_units, 0, reads};
+}
+
+// The layers in the order in which a frame passes them: first the CNN, whose last layer is the single-frame
+// head, then the LSTM and the recurrent head. This is also the order of the tensors in a model image.
+inline constexpr LayerRow kLayers[] = {
+    max_pooled_convolution("conv1", kDepthInput, 50, shape::kSpaceToDepthChannels, shape::kConv1),
+    max_pooled_convolution("conv2", "conv1", 25, shape::kConv1, shape::kConv2),
+    max_pooled_convolution("conv3", "conv2", 12, shape::kConv2, shape::kConv3),
+    average_pooled_convolution("conv4", "conv3", 6, shape::kConv3, shape::kConv4),
+    hidden_dense("dense1", {"conv4"}, shape::kFlat, shape::kDense1),
+    hidden_dense("dense2", {"dense1"}, shape::kDense1, shape::kDense2),
+    output_dense("cnn_out", {"dense2"}, shape::kDense2, shape::kOutput),
+    lstm("lstm", {kLstmInput}, shape::kLstmInput, shape::kLstm),
+    hidden_dense("head1", {"lstm", kLstmInput}, shape::kLstm + shape::kLstmInput, shape::kHead),
+    output_dense("head2", {"head1"}, shape::kHead, shape::kHeadOutput),
+};
+inline constexpr int kLayerCount = static_cast<int>(sizeof kLayers / sizeof kLayers[0]);
+
+constexpr bool is_same_name(const char* a, const char* b) {
+  while (*a != '\0' && *a == *b) {
+    ++a;
+    ++b;
+  }
+  return *a == *b;
+}
+
+// Row of the layer of that name; kLayerCount if there is none.
+constexpr int layer_index(const char* name) {
+  int index = 0;
+  while (index < kLayerCount && !is_same_name(kLayers[index].name, name)) ++index;
+  return index;
+}
+
+// The rows that the data flow refers to.
+inline constexpr int kLstmLayer = layer_index("lstm");
+inline constexpr int kCnnOutputLayer = kLstmLayer - 1;
+inline constexpr int kFeatureLayer = kLstmLayer - 2;  // its output, the features, begins the LSTM input
+inline constexpr int kHeadOutputLayer = kLayerCount - 1;
+
+// How many values of one frame have this name: a network input's or a layer's output.
+constexpr int values_per_frame(const char* name) {
+  if (is_same_name(name, kDepthInput)) return shape::kImageSide * shape::kImageSide;
+  if (is_same_name(name, kLstmInput)) return shape::kLstmInput;
+  const LayerRow& row = kLayers[layer_index(name)];
+  return row.kind == LayerKind::kConvolution ? (row.side / 2) * (row.side / 2) * row.outputs : row.outputs;
+}
+
+// Every layer is as wide as what it reads.
+constexpr bool is_consistent() {
+  for (const LayerRow& row : kLayers) {
+    int values = 0;
+    for (const char* name : row.reads) values += name != nullptr ? values_per_frame(name) : 0;
+    const int pixels = row.kind == LayerKind::kConvolution ? row.side * row.side : 1;
+    if (values != pixels * row.inputs) return false;
+  }
+  return true;
+}
+static_assert(is_consistent(), "a layer's inputs do not match what it reads");
+static_assert(kLayers[kFeatureLayer].outputs == shape::kDense2 &&
+              kLayers[kHeadOutputLayer].outputs == shape::kHeadOutput);
+
+}  // namespace tumblesight::gnc

@@ -1,51 +1,85 @@
-// The peer LibTorch: the network as TorchScript, frozen and optimized for inference. It runs on one thread
-// where it is used by the thread that made it.
+// The peer LibTorch: the network as TorchScript, frozen and optimized for inference. It runs on one thread if
+// it is used by the thread that created it.
 #include <torch/script.h>
 #include <torch/version.h>
 
 #include <algorithm>
+#include <array>
+#include <string>
 #include <vector>
 
 #include "sim/bench/peer.hpp"
+#include "sim/model/network_layers.hpp"
+#include "sim/training/flight_layout.hpp"
 #include "sim/training/one_thread.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;
 namespace {
 
-constexpr int kWarmUps = 10;  // the first runs compile
+constexpr int kWarmUps = 10;  // the first runs compile the network
 
-// Convolutions become oneDNN's. Of one vector at a time, addmv (OpenBLAS) is faster than linear, and than
-// lstm_cell.
-constexpr const char* kCnn = R"(
-def forward(self, image):
-    x = torch.pixel_unshuffle(image, 2)
-    x = torch.max_pool2d(torch.relu(torch.conv2d(x, self.conv1_weight, self.conv1_bias, [1, 1], [1, 1])), [2, 2])
-    x = torch.max_pool2d(torch.relu(torch.conv2d(x, self.conv2_weight, self.conv2_bias, [1, 1], [1, 1])), [2, 2])
-    x = torch.max_pool2d(torch.relu(torch.conv2d(x, self.conv3_weight, self.conv3_bias, [1, 1], [1, 1])), [2, 2])
-    x = torch.relu(torch.conv2d(x, self.conv4_weight, self.conv4_bias, [1, 1], [1, 1]))
-    x = torch.flatten(torch.avg_pool2d(x, [2, 2]))
-    x = torch.relu(torch.addmv(self.dense1_bias, self.dense1_weight, x))
-    features = torch.relu(torch.addmv(self.dense2_bias, self.dense2_weight, x))
-    return features, torch.addmv(self.cnn_out_bias, self.cnn_out_weight, features)
-)";
-constexpr const char* kRecurrent = R"(
-def forward(self, input, h, c):
-    gates = torch.addmv(self.lstm_bias, self.lstm_both, torch.cat([input, h]))
-    take, keep, cell, show = torch.chunk(gates, 4)
-    c_next = torch.sigmoid(keep) * c + torch.sigmoid(take) * torch.tanh(cell)
-    h_next = torch.sigmoid(show) * torch.tanh(c_next)
-    x = torch.relu(torch.addmv(self.head1_bias, self.head1_weight, torch.cat([h_next, input])))
-    return torch.addmv(self.head2_bias, self.head2_weight, x), h_next, c_next
-)";
-
-template <class Numbers>
-torch::Tensor tensor_of(const Numbers& numbers, torch::IntArrayRef sizes) {
-  return torch::from_blob(const_cast<float*>(numbers.data()), sizes, torch::kFloat);
+std::string comma_separated(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
 }
-template <class Numbers>
-torch::Tensor vector_of(const Numbers& numbers) {
-  return tensor_of(numbers, {static_cast<std::int64_t>(numbers.size())});
+
+// TorchScript of one layer: assigns its output to the variable of its name. Convolutions become oneDNN's. For
+// single vectors addmv (OpenBLAS) is faster than linear and than lstm_cell.
+std::string convolution_script(const gnc::LayerRow& row) {
+  const std::string name = row.name;
+  const std::string activated = "torch.relu(torch.conv2d(" + std::string(row.reads[0]) + ", self." + name +
+                                "_weight, self." + name + "_bias, [1, 1], [1, 1]))";
+  return "    " + name + " = " +
+         (row.output == gnc::LayerOutput::kMaxPooled
+              ? "torch.max_pool2d(" + activated + ", [2, 2])\n"
+              : "torch.flatten(torch.avg_pool2d(" + activated + ", [2, 2]))\n");
+}
+
+std::string dense_script(const gnc::LayerRow& row) {
+  const std::string name = row.name;
+  const std::vector<std::string> reads = reads_of(row);
+  const std::string in = reads.size() == 1 ? reads[0] : "torch.cat([" + comma_separated(reads) + "])";
+  const std::string sums = "torch.addmv(self." + name + "_bias, self." + name + "_weight, " + in + ")";
+  return "    " + name + " = " + (is_hidden(row) ? "torch.relu(" + sums + ")\n" : sums + "\n");
+}
+
+std::string lstm_script(const gnc::LayerRow& row) {
+  return "    gates = torch.addmv(self.lstm_bias, self.lstm_both, torch.cat([" + std::string(row.reads[0]) +
+         ", h]))\n"
+         "    take, keep, cell, show = torch.chunk(gates, 4)\n"
+         "    c_next = torch.sigmoid(keep) * c + torch.sigmoid(take) * torch.tanh(cell)\n"
+         "    " +
+         row.name + " = torch.sigmoid(show) * torch.tanh(c_next)\n";
+}
+
+std::string script_of_layers(int first, int end) {
+  std::string script;
+  for (int i = first; i < end; ++i) {
+    const gnc::LayerRow& row = gnc::kLayers[i];
+    script += row.kind == gnc::LayerKind::kConvolution ? convolution_script(row)
+              : row.kind == gnc::LayerKind::kDense     ? dense_script(row)
+                                                       : lstm_script(row);
+  }
+  return script;
+}
+
+std::string cnn_script() {
+  return std::string("def forward(self, image):\n    ") + gnc::kDepthInput +
+         " = torch.pixel_unshuffle(image, 2)\n" + script_of_layers(0, gnc::kLstmLayer) + "    return " +
+         gnc::kLayers[gnc::kFeatureLayer].name + ", " + gnc::kLayers[gnc::kCnnOutputLayer].name + "\n";
+}
+
+std::string recurrent_script() {
+  return std::string("def forward(self, ") + gnc::kLstmInput + ", h, c):\n" +
+         script_of_layers(gnc::kLstmLayer, gnc::kLayerCount) + "    return " +
+         gnc::kLayers[gnc::kHeadOutputLayer].name + ", " + gnc::kLayers[gnc::kLstmLayer].name + ", c_next\n";
+}
+
+template <std::size_t kCount>
+torch::Tensor tensor_of(const std::array<float, kCount>& values) {
+  return tensor_of(TensorView{values.data(), values.size()});
 }
 
 template <class Numbers>
@@ -53,31 +87,24 @@ void copy_to(const c10::IValue& value, Numbers& numbers) {
   std::copy_n(value.toTensor().contiguous().data_ptr<float>(), numbers.size(), numbers.data());
 }
 
-// LibTorch's own order of a tensor's numbers: outputs before inputs, images channel by channel.
-torch::Tensor arranged(const std::string& layer, const torch::Tensor& weight, std::int64_t outputs) {
-  if (layer.rfind("conv", 0) == 0) return weight.view({3, 3, -1, outputs}).permute({3, 2, 0, 1});
-  if (layer != "dense1") return weight.view({-1, outputs}).t();
-  return weight.view({-1, shape::kConv4, outputs}).permute({2, 1, 0}).flatten(1);
-}
-
 // Every tensor under the name <layer>_<part>.
 void register_weights(const gnc::NetworkWeights<gnc::Float32>& weights, torch::jit::Module& module) {
-  gnc::for_each_layer(weights, [&module](const char* layer_name, const auto& layer) {
-    const auto outputs = static_cast<std::int64_t>(layer.bias.size());
-    gnc::for_each_tensor_of(layer_name, layer, [&](const char*, const std::string& part, const auto& tensor) {
-      const torch::Tensor flat = vector_of(tensor);
-      const torch::Tensor own = part == "bias" ? flat : arranged(layer_name, flat, outputs);
-      module.register_buffer(std::string(layer_name) + "_" + part,
-                             own.clone(torch::MemoryFormat::Contiguous));
-    });
-  });
-  module.register_buffer(
-      "lstm_both",
-      torch::cat({module.attr("lstm_weight").toTensor(), module.attr("lstm_recurrent").toTensor()}, 1));
+  const auto add = [&module](const std::string& name, const torch::Tensor& tensor) {
+    module.register_buffer(name, tensor.clone(torch::MemoryFormat::Contiguous));
+  };
+  for (const Float32Layer& layer : layers_of(weights)) {
+    const std::string name = layer.row.name;
+    const torch::Tensor weight = weight_from_flight(layer.row, tensor_of(layer.weight));
+    add(name + "_weight", weight);
+    add(name + "_bias", tensor_of(layer.bias));
+    if (layer.row.kind != gnc::LayerKind::kLstm) continue;
+    const torch::Tensor recurrent = weight_from_flight(layer.row, tensor_of(layer.recurrent));
+    add(name + "_both", torch::cat({weight, recurrent}, 1));
+  }
 }
 
-// What `forward` does not use, freezing drops.
-torch::jit::Module optimized(const Float32Model& model, const char* name, const char* forward) {
+// Freezing drops the weights that `forward` does not use.
+torch::jit::Module optimized(const Float32Model& model, const char* name, const std::string& forward) {
   torch::jit::Module module(name);
   module.register_attribute("training", c10::BoolType::get(), false);
   register_weights(model.weights, module);
@@ -90,7 +117,8 @@ torch::jit::Module optimized(const Float32Model& model, const char* name, const 
 class LibTorch : public Peer {
  public:
   explicit LibTorch(const Float32Model& model)
-      : cnn_(optimized(model, "Cnn", kCnn)), recurrent_(optimized(model, "Recurrent", kRecurrent)) {
+      : cnn_(optimized(model, "Cnn", cnn_script())),
+        recurrent_(optimized(model, "Recurrent", recurrent_script())) {
     const std::vector<float> image(shape::kImageSide * shape::kImageSide);
     gnc::Features<gnc::Float32> features;
     gnc::OutputVector<float> out;
@@ -118,7 +146,7 @@ class LibTorch : public Peer {
                     gnc::HeadOutput<float>& out) override {
     const c10::InferenceMode no_gradients;
     const auto results =
-        recurrent_.forward({vector_of(input), vector_of(state.h), vector_of(state.c)}).toTuple();
+        recurrent_.forward({tensor_of(input), tensor_of(state.h), tensor_of(state.c)}).toTuple();
     copy_to(results->elements()[0], out);
     copy_to(results->elements()[1], state.h);
     copy_to(results->elements()[2], state.c);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 #include "gnc/lidar/depth_loops.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kPeerMeasured_s = 0.6;
 constexpr std::size_t kFewestRuns = 30;
-constexpr double kSameOutput = 1e-3;  // of the largest
+constexpr double kSameOutput = 1e-3;  // largest difference allowed, relative to the largest output
 
 double us_between(Clock::time_point begin, Clock::time_point end) {
   return std::chrono::duration<double, std::micro>(end - begin).count();
@@ -35,7 +35,7 @@ Times times_of(std::vector<double> us) {
   return {us[us.size() / 2], us.front()};
 }
 
-// `run(i)` gives the microseconds of its i-th run; it runs for so long, and often enough to go by.
+// `run(i)` returns the duration of run i in microseconds. Runs for `seconds`, but at least kFewestRuns times.
 template <class Run>
 Times measured(double seconds, const Run& run) {
   for (std::size_t i = 0; i < 3; ++i) (void)run(i);
@@ -53,11 +53,18 @@ double timed(const Run& run) {
   return us_between(begin, Clock::now());
 }
 
+constexpr int kConvolutions = [] {
+  int count = 0;
+  while (gnc::kLayers[count].kind == gnc::LayerKind::kConvolution) ++count;
+  return count;
+}();
+
 template <class N>
 double convolution_macs(const gnc::Kernels<N>& kernels) {
-  using L = gnc::Layers<N>;
-  return static_cast<double>(L::Conv1::macs_done(kernels.pixels) + L::Conv2::macs_done(kernels.pixels) +
-                             L::Conv3::macs_done(kernels.pixels) + L::Conv4::macs_done(kernels.pixels));
+  long macs = 0;
+  gnc::for_each_index<0, kConvolutions>(
+      [&](auto index) { macs += gnc::Layer<N, decltype(index)::value>::macs_done(kernels.pixels); });
+  return static_cast<double>(macs);
 }
 
 // One numerics with one instruction set.
@@ -125,9 +132,9 @@ class Bench {
     Clock::time_point begin, end;
     gnc::OutputVector<typename N::Real> output;
     gnc::run_frame<N>(kernels_, estimator_->network().weights(), *images_[i % images_.size()], *arena_,
-                      features_, output, [&](const char* layer, const auto&) {
-                        if (std::strcmp(layer, "depth") == 0) begin = Clock::now();
-                        if (std::strcmp(layer, "conv4") == 0) end = Clock::now();
+                      features_, output, [&](std::string_view name, const auto&) {
+                        if (name == gnc::kDepthInput) begin = Clock::now();
+                        if (name == gnc::kLayers[kConvolutions - 1].name) end = Clock::now();
                       });
     return us_between(begin, end);
   }
@@ -158,7 +165,7 @@ std::vector<BenchRow> bench_sets(const BenchSubject& subject,
   return rows;
 }
 
-// Ours and a peer's, frame by frame with the state kept.
+// Our network and a peer's on the same frames, each with its own state.
 class Comparison {
  public:
   Comparison(Peer& peer, const Float32Model& model, const std::vector<gnc::RangeImage>& frames)
@@ -175,7 +182,7 @@ class Comparison {
     }
   }
 
-  // Largest difference over the largest output.
+  // Largest difference relative to the largest output.
   double largest_difference() {
     gnc::LstmState<gnc::Float32> our_state{}, their_state{};
     double difference = 0.0, largest = 1e-9;
@@ -212,7 +219,7 @@ class Comparison {
   }
 
  private:
-  // The rest of it comes from algebra that is measured as part of a step only.
+  // The features only. The rest of the input comes from algebra that is not part of the network.
   static gnc::LstmInput<gnc::Float32> lstm_input(const gnc::Features<gnc::Float32>& features) {
     gnc::LstmInput<gnc::Float32> input{};
     std::copy(features.begin(), features.end(), input.begin());
@@ -240,7 +247,7 @@ BenchRow bench_peer(Peer& peer, const Float32Model& model, const std::vector<gnc
   const double difference = comparison.largest_difference();
   if (!(difference < kSameOutput)) {
     throw std::runtime_error(
-        fmt::format("{} gives other outputs than ours: {:.2g} of the largest apart, at most {:g}",
+        fmt::format("the outputs of {} differ from ours by {:.2g} of the largest output; the limit is {:g}",
                     peer.name(), difference, kSameOutput));
   }
   const Times times = measured(kPeerMeasured_s, [&](std::size_t i) { return comparison.peer_us(i); });

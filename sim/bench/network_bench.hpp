@@ -1,5 +1,5 @@
-// How long the parts of a step take, on one thread, with every numerics and instruction set, and beside them
-// the same network in other runtimes.
+// Run time of an estimator step and of its parts on one thread, for every instruction set, and of the same
+// network in other runtimes.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,30 @@
 namespace tumblesight::sim {
 
 struct BenchRow {
-  std::string name;  // step, depth image, network, convolutions; or a peer's
+  std::string name;  // step, depth image, network or convolutions; or the peer's name
   std::string numerics;
   std::string isa;
   double median_us = 0.0;
   double min_us = 0.0;
-  double macs = 0.0;  // 0: none are counted
-  std::optional<double>
-      share_of_peak;  // of the fastest run: multiply-accumulates a second over the core's peak
+  double macs = 0.0;  // multiply-accumulates per run; 0: not counted
+  // Of the fastest run: multiply-accumulates per second over the measured peak of the core, 0 to 1.
+  std::optional<double> share_of_peak;
 };
 
 struct BenchSubject {
   std::vector<std::uint8_t> image;  // a model image of either numerics
   std::vector<gnc::RangeImage> frames;
-  double row_s = 0.6;  // how long each row is measured
+  double row_s = 0.6;  // measuring time per row
 };
 
-// `started` is told the name of every numerics and set before it is measured.
+// Calls `started` with the names of numerics and instruction set before measuring them. Throws
+// std::runtime_error if the image is refused.
 std::vector<BenchRow> bench_numerics(const BenchSubject& subject,
                                      const std::function<void(const std::string&)>& started);
 
-// The network of `peer`: CNN and recurrent part, the state kept from frame to frame, the depth image left
-// out. Throws std::runtime_error if its outputs are not ours (float32), before anything is timed.
+// Run time of the network in `peer`: CNN and recurrent part, without the depth image. The state is kept from
+// frame to frame. First compares the outputs with ours (float32) and throws std::runtime_error if they
+// differ.
 BenchRow bench_peer(Peer& peer, const Float32Model& model, const std::vector<gnc::RangeImage>& frames);
 
 }  // namespace tumblesight::sim

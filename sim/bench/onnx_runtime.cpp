@@ -1,4 +1,4 @@
-// The peer ONNX Runtime: it runs the models that `tumblesight export` writes.
+// The peer ONNX Runtime, with the models that `tumblesight export` writes.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -15,7 +15,7 @@ namespace {
 using Library = OnnxRuntimeLibrary;
 using Float32 = gnc::Float32;
 
-// A session with its tensors, which lie over numbers that stay where they are.
+// A session with its tensors, which refer to memory of the caller.
 class Session {
  public:
   Session(const Library& library, const Library::Handle& environment, const std::string& onnx_model)

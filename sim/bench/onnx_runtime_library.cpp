@@ -17,10 +17,10 @@ struct Base {
   const char* (*version_string)();
 };
 
-// The oldest version that has all of this; later ones give the same table for it.
+// The oldest interface version with all functions used here. Later libraries still provide its table.
 constexpr std::uint32_t kTableVersion = 11;
 
-// Places in the table.
+// Indices in the table.
 constexpr int kGetErrorMessage = 2;
 constexpr int kCreateEnv = 3;
 constexpr int kCreateSessionFromArray = 8;
@@ -76,7 +76,7 @@ std::vector<std::string> candidates_for(const std::string& path) {
 
 }  // namespace
 
-// It stays loaded: its threads and thread-local objects would outlive an unloading.
+// Never unloaded: its threads and thread-local objects would outlive the library.
 std::unique_ptr<OnnxRuntimeLibrary> OnnxRuntimeLibrary::open(const std::string& path, std::string& reason) {
   const std::vector<std::string> candidates = candidates_for(path);
   void* library = nullptr;
@@ -84,9 +84,10 @@ std::unique_ptr<OnnxRuntimeLibrary> OnnxRuntimeLibrary::open(const std::string& 
     if (library == nullptr) library = dlopen(candidate.c_str(), RTLD_NOW | RTLD_LOCAL);
   }
   if (library == nullptr) {
-    reason = candidates.size() == 1 ? std::string(dlerror())
-                                    : "no libonnxruntime.so.1; `npm install --prefix build --ignore-scripts "
-                                      "onnxruntime-node` brings one";
+    reason = candidates.size() == 1
+                 ? std::string(dlerror())
+                 : "no libonnxruntime.so.1 found; `npm install --prefix build --ignore-scripts "
+                   "onnxruntime-node` installs one";
     return nullptr;
   }
   void* const get_base = dlsym(library, "OrtGetApiBase");
@@ -97,7 +98,7 @@ std::unique_ptr<OnnxRuntimeLibrary> OnnxRuntimeLibrary::open(const std::string& 
   std::unique_ptr<OnnxRuntimeLibrary> result(
       new OnnxRuntimeLibrary(reinterpret_cast<const void* (*)()>(get_base)()));
   if (result->table_ != nullptr) return result;
-  reason = "ONNX Runtime " + result->version() + " is too old";
+  reason = "ONNX Runtime " + result->version() + " is too old: version 1.11 or later is needed";
   return nullptr;
 }
 

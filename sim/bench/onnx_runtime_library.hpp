@@ -1,6 +1,6 @@
-// ONNX Runtime's C interface, as far as a session on one thread needs it, from a shared library found at run
-// time. npm ships that without a header: the table of functions only ever grows at its end, so a
-// function keeps its place in it.
+// The part of ONNX Runtime's C interface that a session on one thread needs, from a shared library loaded at
+// run time. npm ships the library without a header. Its table of functions only grows at the end, so that
+// each function keeps its index.
 #pragma once
 
 #include <cstddef>
@@ -13,22 +13,22 @@ namespace tumblesight::sim {
 
 class OnnxRuntimeLibrary {
  public:
-  // What its functions hand out and take back; of each kind nothing but the address is known.
+  // Opaque objects of the library.
   struct Object;
   using Release = void (*)(Object*);
   using Handle = std::unique_ptr<Object, Release>;
 
-  // Of this path; empty: of $TUMBLESIGHT_ONNXRUNTIME, npm's onnxruntime-node in build/node_modules, or the
-  // system. nullptr, and why in `reason`.
+  // `path` empty: $TUMBLESIGHT_ONNXRUNTIME, else npm's onnxruntime-node in build/node_modules, else the
+  // system's library. Returns nullptr and sets `reason` if there is none.
   static std::unique_ptr<OnnxRuntimeLibrary> open(const std::string& path, std::string& reason);
 
   std::string version() const;
 
-  // Each throws std::runtime_error with ONNX Runtime's own words.
+  // Each throws std::runtime_error with ONNX Runtime's message.
   Handle make_environment() const;
-  // One thread, all optimizations, node after node.
+  // One thread, all optimizations, sequential execution. `onnx_model`: contents of an .onnx file.
   Handle make_session(const Handle& environment, const std::string& onnx_model) const;
-  // Over the caller's numbers, which stay where they are.
+  // A tensor over the caller's memory, which must outlive it.
   Handle make_tensor(float* numbers, std::size_t count, const std::vector<std::int64_t>& shape) const;
   void run(const Handle& session, const std::vector<const char*>& input_names,
            const std::vector<Object*>& inputs, const std::vector<const char*>& output_names,

@@ -10,7 +10,7 @@ namespace tumblesight::sim {
 namespace {
 
 constexpr std::uint64_t kRounds = 10'000;
-constexpr int kTries = 500;  // the fastest counts: others were interrupted
+constexpr int kTries = 500;  // the fastest one counts, since the others may have been interrupted
 
 double macs_per_second(const peak::Chains& chains) {
   double best_s = 1e9;
@@ -20,7 +20,7 @@ double macs_per_second(const peak::Chains& chains) {
     best_s =
         std::min(best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
-  return static_cast<double>(kRounds) * chains.macs_a_round / best_s;
+  return static_cast<double>(kRounds) * chains.macs_per_round / best_s;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What this core's multiply-accumulate instructions give at most, measured: independent chains in registers,
-// no memory.
+// Measured peak rate of this core's multiply-accumulate instructions: independent chains in registers, no
+// memory access.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,9 @@
 
 namespace tumblesight::sim {
 
-// Multiply-accumulates a second of the instructions that the kernels of this set use for convolutions;
-// nothing where there is no measurement. `is_integer`: fixed point, else float32.
+// Multiply-accumulates per second, for the instructions that the kernels of this set use in convolutions.
+// nullopt if the processor lacks the set or there is no measurement for it. `is_integer`: fixed point, else
+// float32.
 std::optional<double> measured_peak_macs(gnc::InstructionSet set, bool is_integer);
 
 }  // namespace tumblesight::sim

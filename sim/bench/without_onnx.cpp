@@ -3,7 +3,7 @@
 namespace tumblesight::sim {
 
 std::unique_ptr<Peer> make_onnx_runtime(const Float32Model&, const std::string&, std::string& reason) {
-  reason = "built without ONNX: install libonnx-dev and libprotobuf-dev and configure anew";
+  reason = "built without ONNX: install libonnx-dev and libprotobuf-dev and configure again";
   return nullptr;
 }
 

@@ -4,8 +4,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -45,15 +43,6 @@ std::vector<gnc::RangeImage> rendered_frames(const std::string& target) {
     }
   }
   return frames;
-}
-
-std::vector<std::uint8_t> read_image(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    throw std::runtime_error(
-        fmt::format("cannot open the model image {}{}", path, remedy_for_missing_image(path)));
-  }
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 void say(const std::string& what) {
@@ -113,7 +102,8 @@ void bench(const BenchArguments& arguments) {
   std::fflush(stdout);
   std::vector<BenchRow> rows;
   for (const std::string& path : {fixed_path, float32_path}) {
-    for (BenchRow& row : bench_numerics({read_image(path), frames}, say)) rows.push_back(std::move(row));
+    for (BenchRow& row : bench_numerics({read_model_bytes(path), frames}, say))
+      rows.push_back(std::move(row));
   }
   bench_peers(arguments, float32_path, frames, rows);
   fmt::print("\n{}\n", table_of(rows));

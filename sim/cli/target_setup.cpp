@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 
@@ -80,10 +78,7 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
         fmt::format("model image '{}' does not exist{}", path,
                     shipped ? "; train one for this target, or give one with --model" : ""));
   }
-  std::ifstream file(path, std::ios::binary);
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file.good() && !file.eof()) throw std::runtime_error("model image '" + path + "' cannot be read");
-  return bytes;
+  return read_model_bytes(path);
 }
 
 void frame_by_mesh(TargetSetup& setup) {

@@ -80,7 +80,7 @@ std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurren
   auto model = std::make_unique<Float32Model>();
   model->header = model_header(target, targets);
   export_weights(cnn, recurrent, model->weights);
-  shorten(model->weights);
+  round_to_10_bits(model->weights);
   return model;
 }
 

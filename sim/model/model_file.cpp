@@ -4,7 +4,6 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
-#include <vector>
 
 namespace tumblesight::sim {
 namespace {
@@ -12,14 +11,16 @@ namespace {
 using gnc::FixedPoint;
 using gnc::Float32;
 
+// Reads the image back as the flight program would.
 template <class N>
-std::uint32_t crc_of(const std::vector<std::uint8_t>& image, const std::string& path) {
+std::uint32_t checked_crc32(const std::vector<std::uint8_t>& image, const std::string& path) {
   gnc::ModelHeader header;
   const auto weights = std::make_unique<gnc::NetworkWeights<N>>();
   const gnc::ModelStatus status =
       gnc::read_model_image<N>(image.data(), image.size(), nullptr, header, *weights);
   if (status != gnc::ModelStatus::kOk) {
-    throw std::runtime_error("the model image " + path + " would be refused: " + gnc::to_string(status));
+    throw std::runtime_error("model image '" + path +
+                             "' is not written, since it would be refused: " + gnc::to_string(status));
   }
   return header.crc32;
 }
@@ -38,11 +39,17 @@ std::string remedy_for_missing_image(const std::string& path) {
   return is_in_history ? "; get it with: fsw/models/fetch_images " + name : "";
 }
 
-std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
+std::vector<std::uint8_t> read_model_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot open the model image " + path + remedy_for_missing_image(path));
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file),
-                                        std::istreambuf_iterator<char>()};
+  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file.is_open() || file.bad()) {
+    throw std::runtime_error("model image '" + path + "' cannot be read" + remedy_for_missing_image(path));
+  }
+  return bytes;
+}
+
+std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
+  const std::vector<std::uint8_t> bytes = read_model_bytes(path);
   auto model = std::make_unique<Float32Model>();
   const gnc::ModelStatus status =
       gnc::read_model_image<Float32>(bytes.data(), bytes.size(), nullptr, model->header, model->weights);
@@ -55,11 +62,11 @@ std::uint32_t write_model_file(const std::string& path, const gnc::ModelHeader& 
                                const gnc::NetworkWeights<N>& weights) {
   std::vector<std::uint8_t> bytes(gnc::kModelImageSize<N>);
   bytes.resize(gnc::write_model_image<N>(header, weights, bytes.data(), bytes.size()));
-  const std::uint32_t crc32 = crc_of<N>(bytes, path);
+  const std::uint32_t crc32 = checked_crc32<N>(bytes, path);
   std::ofstream out(path + ".new", std::ios::binary);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   out.close();
-  if (!out) throw std::runtime_error("cannot write the model image " + path);
+  if (!out) throw std::runtime_error("model image '" + path + "' cannot be written");
   std::filesystem::rename(path + ".new", path);
   return crc32;
 }

@@ -1,8 +1,10 @@
-// Model image files in, model image files out.
+// Model image files: the only place on the ground that reads or writes them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "gnc/rcnn/model_image.hpp"
 
@@ -12,15 +14,20 @@ namespace tumblesight::sim {
 // fsw/models that are in the repository's history only, empty for other files.
 std::string remedy_for_missing_image(const std::string& path);
 
+// The bytes of a file, not checked: for the estimators, which check the image themselves and read fixed-point
+// weights in place. Throws std::runtime_error that names the file if it cannot be read.
+std::vector<std::uint8_t> read_model_bytes(const std::string& path);
+
 struct Float32Model {
   gnc::ModelHeader header;
   gnc::NetworkWeights<gnc::Float32> weights;
 };
-// Throws std::runtime_error that names the file and why it is refused.
+// Throws std::runtime_error that names the file and the reason if it cannot be read or is no valid float32
+// image.
 std::unique_ptr<Float32Model> read_float32_model(const std::string& path);
 
-// Writes beside `path` and renames over; returns the image's CRC. Throws std::runtime_error that names the
-// file.
+// Writes the file under a temporary name, then renames it. Returns the image's CRC-32. Throws
+// std::runtime_error that names the file if it cannot be written, or if the reader would refuse the image.
 template <class N>
 std::uint32_t write_model_file(const std::string& path, const gnc::ModelHeader& header,
                                const gnc::NetworkWeights<N>& weights);

@@ -40,7 +40,7 @@ std::string GraphBuilder::weights(const std::string& name, const OnnxShape& shap
                                   const std::vector<float>& values) {
   const auto count = std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>());
   if (count != static_cast<std::int64_t>(values.size()))
-    throw std::logic_error(name + " is not of its shape");
+    throw std::logic_error(name + ": the number of values does not match the shape");
   onnx::TensorProto& tensor = *graph_.add_initializer();
   tensor.set_name(name);
   tensor.set_data_type(onnx::TensorProto::FLOAT);

@@ -1,4 +1,4 @@
-// GraphBuilder: writes an ONNX graph node by node. A value is known by its name, a dense tensor of float32.
+// GraphBuilder: writes an ONNX graph node by node. A value is a float32 tensor, identified by its name.
 #pragma once
 
 #include <onnx/onnx_pb.h>
@@ -15,17 +15,19 @@ class GraphBuilder {
  public:
   explicit GraphBuilder(onnx::GraphProto& graph) : graph_(graph) {}
 
-  // Each gives the name of the value that it makes; `description` becomes the doc string.
+  // Each returns the name of the new value. `description` becomes the doc string.
   std::string input(const std::string& name, const OnnxShape& shape, const std::string& description);
+  // Throws std::logic_error if the number of values does not match the shape.
   std::string weights(const std::string& name, const OnnxShape& shape, const std::vector<float>& values);
   std::string reshape(const std::string& value, const OnnxShape& shape, const std::string& name);
+  // A node with one output and no attributes.
   std::string flow(const std::string& operation, const std::vector<std::string>& inputs,
                    const std::string& name);
 
-  // The value of that name leaves the graph.
+  // Makes an existing value an output of the graph.
   void output(const std::string& name, const OnnxShape& shape, const std::string& description);
 
-  // For all else that a node may have; it is named after its first output.
+  // A node with any inputs and outputs, for setting attributes. It is named after its first named output.
   onnx::NodeProto& node(const std::string& operation, const std::vector<std::string>& inputs,
                         const std::vector<std::string>& outputs);
 

@@ -1,4 +1,4 @@
-// ONNX files out.
+// Writes the float32 network as ONNX files.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ struct OnnxFiles {
   OnnxFile cnn, recurrent;
 };
 
-// <prefix>.cnn.onnx and <prefix>.recurrent.onnx. Each is written beside its place and renamed, once both are
-// whole. Throws std::runtime_error that names the file.
+// Writes <prefix>.cnn.onnx and <prefix>.recurrent.onnx under temporary names and renames them when both are
+// complete. Throws std::runtime_error that names the file if one cannot be written.
 OnnxFiles write_onnx_files(const Float32Model& model, const std::string& prefix);
 
 }  // namespace tumblesight::sim

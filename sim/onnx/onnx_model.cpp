@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdio>
+#include <map>
 #include <vector>
 
+#include "sim/model/network_layers.hpp"
 #include "sim/onnx/graph_builder.hpp"
 #include "sim/onnx/weight_layout.hpp"
 
@@ -14,55 +16,91 @@ namespace {
 constexpr int kIrVersion = 8;
 constexpr int kOpset = 13;
 
-template <class Layer>
-std::string convolution(GraphBuilder& graph, const std::string& name, const Layer& layer,
-                        const std::string& value) {
-  const auto out = static_cast<std::int64_t>(layer.bias.size());
-  const auto in = static_cast<std::int64_t>(layer.weight.size()) / out / 9;
-  graph.weights(name + ".weight", {out, in, 3, 3}, convolution_of_onnx(layer));
-  graph.weights(name + ".bias", {out}, values_of(layer.bias));
-  onnx::NodeProto& node = graph.node("Conv", {value, name + ".weight", name + ".bias"}, {name});
-  set_attribute(node, "kernel_shape", OnnxShape{3, 3});
-  set_attribute(node, "pads", OnnxShape{1, 1, 1, 1});
-  return graph.flow("Relu", {name}, name + ".relu");
-}
+// Adds the network's layers to a graph. Values are known by the names in the network's table.
+class LayerGraph {
+ public:
+  explicit LayerGraph(GraphBuilder& graph) : graph_(graph) {}
 
-std::string pooled_2x2(GraphBuilder& graph, const std::string& operation, const std::string& value) {
-  onnx::NodeProto& node = graph.node(operation, {value}, {value + ".pooled"});
-  set_attribute(node, "kernel_shape", OnnxShape{2, 2});
-  set_attribute(node, "strides", OnnxShape{2, 2});
-  return node.output(0);
-}
+  // `value` is what the layers read as `name`.
+  void set_input(const char* name, const std::string& value) { values_[name] = value; }
 
-// `weight`: [in][out], as the layer's own.
-template <class Bias>
-std::string dense(GraphBuilder& graph, const std::string& name, const std::vector<float>& weight,
-                  const Bias& bias, const std::string& value, const std::string& result) {
-  const auto out = static_cast<std::int64_t>(bias.size());
-  const auto in = static_cast<std::int64_t>(weight.size()) / out;
-  graph.weights(name + ".weight", {in, out}, weight);
-  graph.weights(name + ".bias", {out}, values_of(bias));
-  return graph.flow("Gemm", {value, name + ".weight", name + ".bias"}, result);
-}
+  void add(const Float32Layer& layer) {
+    switch (layer.row.kind) {
+      case gnc::LayerKind::kConvolution:
+        return add_convolution(layer);
+      case gnc::LayerKind::kDense:
+        return add_dense(layer);
+      case gnc::LayerKind::kLstm:
+        return add_lstm(layer);
+    }
+  }
 
-// Gives the new hidden state; the new cells are the value "cells".
-template <class Layer>
-std::string lstm(GraphBuilder& graph, const Layer& layer, const std::string& input) {
-  constexpr std::int64_t kIn = shape::kLstmInput, kHidden = shape::kLstm, kGates = 4 * kHidden;
-  std::vector<float> bias = gates_of_onnx(layer.bias);
-  bias.resize(2 * kGates);  // the second half is added as well
-  graph.weights("lstm.weight", {1, kGates, kIn}, gates_of_onnx(layer.weight));
-  graph.weights("lstm.recurrent", {1, kGates, kHidden}, gates_of_onnx(layer.recurrent));
-  graph.weights("lstm.bias", {1, 2 * kGates}, bias);
-  const std::string step = graph.reshape(input, {1, 1, kIn}, "step");
-  const std::string h = graph.reshape("h", {1, 1, kHidden}, "h.before");
-  const std::string c = graph.reshape("c", {1, 1, kHidden}, "c.before");
-  const std::string whole_batch;  // no lengths of sequences
-  onnx::NodeProto& node = graph.node(
-      "LSTM", {step, "lstm.weight", "lstm.recurrent", "lstm.bias", whole_batch, h, c}, {"", "lstm", "cells"});
-  set_attribute(node, "hidden_size", kHidden);
-  return "lstm";
-}
+ private:
+  void add_convolution(const Float32Layer& layer) {
+    const std::string name = layer.row.name;
+    const std::int64_t out = layer.row.outputs, in = layer.row.inputs;
+    graph_.weights(name + ".weight", {out, in, 3, 3}, convolution_of_onnx(layer));
+    graph_.weights(name + ".bias", {out}, values_of(layer.bias));
+    onnx::NodeProto& node =
+        graph_.node("Conv", {values_.at(layer.row.reads[0]), name + ".weight", name + ".bias"}, {name});
+    set_attribute(node, "kernel_shape", OnnxShape{3, 3});
+    set_attribute(node, "pads", OnnxShape{1, 1, 1, 1});
+    const std::string activated = graph_.flow("Relu", {name}, name + ".relu");
+    const bool average = layer.row.output == gnc::LayerOutput::kAveragePooled;
+    onnx::NodeProto& pooling =
+        graph_.node(average ? "AveragePool" : "MaxPool", {activated}, {activated + ".pooled"});
+    set_attribute(pooling, "kernel_shape", OnnxShape{2, 2});
+    set_attribute(pooling, "strides", OnnxShape{2, 2});
+    values_[name] = pooling.output(0);
+  }
+
+  void add_dense(const Float32Layer& layer) {
+    const std::string name = layer.row.name;
+    const bool is_output = !is_hidden(layer.row);
+    const std::string value = dense_input(layer.row);
+    graph_.weights(name + ".weight", {layer.row.inputs, layer.row.outputs}, dense_of_onnx(layer));
+    graph_.weights(name + ".bias", {layer.row.outputs}, values_of(layer.bias));
+    graph_.flow("Gemm", {value, name + ".weight", name + ".bias"}, is_output ? "output" : name);
+    if (is_output) return;
+    const bool is_feature_layer = name == gnc::kLayers[gnc::kFeatureLayer].name;
+    values_[name] = graph_.flow("Relu", {name}, is_feature_layer ? "features" : name + ".relu");
+  }
+
+  // The vector that a dense layer reads.
+  std::string dense_input(const gnc::LayerRow& row) {
+    if (reads_flat_image(row)) return graph_.flow("Flatten", {values_.at(row.reads[0])}, "flat");
+    std::vector<std::string> values;
+    for (const std::string& name : reads_of(row)) values.push_back(values_.at(name));
+    if (values.size() == 1) return values.front();
+    onnx::NodeProto& joined = graph_.node("Concat", values, {"head.input"});
+    set_attribute(joined, "axis", 1);
+    return joined.output(0);
+  }
+
+  // Reads the values "h" and "c", gives "h_next" and "c_next".
+  void add_lstm(const Float32Layer& layer) {
+    const std::int64_t in = layer.row.inputs, hidden = layer.row.outputs, gates = 4 * hidden;
+    const auto units = static_cast<std::size_t>(hidden);
+    std::vector<float> bias = gates_of_onnx(layer.bias, units);
+    bias.resize(2 * bias.size());  // ONNX adds a second half
+    graph_.weights("lstm.weight", {1, gates, in}, gates_of_onnx(layer.weight, units));
+    graph_.weights("lstm.recurrent", {1, gates, hidden}, gates_of_onnx(layer.recurrent, units));
+    graph_.weights("lstm.bias", {1, 2 * gates}, bias);
+    const std::string step = graph_.reshape(values_.at(layer.row.reads[0]), {1, 1, in}, "step");
+    const std::string h = graph_.reshape("h", {1, 1, hidden}, "h.before");
+    const std::string c = graph_.reshape("c", {1, 1, hidden}, "c.before");
+    const std::string no_lengths;  // every sequence takes part in whole
+    onnx::NodeProto& node =
+        graph_.node("LSTM", {step, "lstm.weight", "lstm.recurrent", "lstm.bias", no_lengths, h, c},
+                    {"", "lstm", "cells"});
+    set_attribute(node, "hidden_size", hidden);
+    values_[layer.row.name] = graph_.reshape("lstm", {1, hidden}, "h_next");
+    graph_.reshape("cells", {1, hidden}, "c_next");
+  }
+
+  GraphBuilder& graph_;
+  std::map<std::string, std::string> values_;  // ONNX name by the table's name
+};
 
 void add_metadata(onnx::ModelProto& model, const std::string& key, const std::string& value) {
   onnx::StringStringEntryProto& entry = *model.add_metadata_props();
@@ -128,44 +166,32 @@ void describe_recurrent_outputs(GraphBuilder& graph) {
 }  // namespace
 
 std::string cnn_as_onnx(const Float32Model& model) {
-  const auto& weights = model.weights;
   onnx::ModelProto result = new_model(model.header, "cnn", "Attitude hypotheses from one depth image.");
   GraphBuilder graph(*result.mutable_graph());
-  std::string x =
+  const std::string image =
       graph.input("image", {1, 1, shape::kImageSide, shape::kImageSide},
                   "Depth image, row 0 at the top. 0: nothing there; otherwise 0.5 + 0.5 (depth of the "
                   "centroid - depth) / radius of the target, nearer is brighter, up to 1. Its sides span "
                   "swath_mm across the line of sight to the centroid.");
-  onnx::NodeProto& folding = graph.node("SpaceToDepth", {x}, {"folded"});
+  onnx::NodeProto& folding = graph.node("SpaceToDepth", {image}, {"folded"});
   set_attribute(folding, "blocksize", 2);
-  x = pooled_2x2(graph, "MaxPool", convolution(graph, "conv1", weights.conv1, "folded"));
-  x = pooled_2x2(graph, "MaxPool", convolution(graph, "conv2", weights.conv2, x));
-  x = pooled_2x2(graph, "MaxPool", convolution(graph, "conv3", weights.conv3, x));
-  x = pooled_2x2(graph, "AveragePool", convolution(graph, "conv4", weights.conv4, x));
-  x = graph.flow("Flatten", {x}, "flat");
-  x = dense(graph, "dense1", dense_after_flattening(weights.dense1), weights.dense1.bias, x, "dense1");
-  x = graph.flow("Relu", {x}, "dense1.relu");
-  x = dense(graph, "dense2", values_of(weights.dense2.weight), weights.dense2.bias, x, "dense2");
-  x = graph.flow("Relu", {x}, "features");
-  dense(graph, "cnn_out", values_of(weights.cnn_out.weight), weights.cnn_out.bias, x, "output");
+  LayerGraph layers(graph);
+  layers.set_input(gnc::kDepthInput, "folded");
+  const std::vector<Float32Layer> all = layers_of(model.weights);
+  for (int i = 0; i < gnc::kLstmLayer; ++i) layers.add(all[i]);
   describe_cnn_outputs(graph);
   return result.SerializeAsString();
 }
 
 std::string recurrent_as_onnx(const Float32Model& model) {
-  const auto& weights = model.weights;
   onnx::ModelProto result = new_model(model.header, "recurrent",
                                       "What to believe of one frame's hypotheses, from all frames so far.");
   GraphBuilder graph(*result.mutable_graph());
   describe_recurrent_inputs(graph);
-  lstm(graph, weights.lstm, "input");
-  std::string x = graph.reshape("lstm", {1, shape::kLstm}, "h_next");
-  graph.reshape("cells", {1, shape::kLstm}, "c_next");
-  onnx::NodeProto& both = graph.node("Concat", {x, "input"}, {"head.input"});
-  set_attribute(both, "axis", 1);
-  x = dense(graph, "head1", values_of(weights.head1.weight), weights.head1.bias, "head.input", "head1");
-  x = graph.flow("Relu", {x}, "head1.relu");
-  dense(graph, "head2", values_of(weights.head2.weight), weights.head2.bias, x, "output");
+  LayerGraph layers(graph);
+  layers.set_input(gnc::kLstmInput, "input");
+  const std::vector<Float32Layer> all = layers_of(model.weights);
+  for (int i = gnc::kLstmLayer; i < gnc::kLayerCount; ++i) layers.add(all[i]);
   describe_recurrent_outputs(graph);
   return result.SerializeAsString();
 }

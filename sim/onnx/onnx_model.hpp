@@ -1,5 +1,5 @@
-// The float32 network as ONNX models (opset 13), for other runtimes and tools. Between the two stands
-// attitude algebra that is not part of them: gnc/rcnn/hypotheses.hpp and attitude_track.hpp.
+// The float32 network as two ONNX models (opset 13), for other runtimes and tools. The attitude algebra
+// between the two is not part of them: gnc/rcnn/hypotheses.hpp and attitude_track.hpp.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace tumblesight::sim {
 
-// A whole model, serialized: the contents of an .onnx file. The values' doc strings say what they mean; the
-// metadata name target, image (CRC-32) and depth projection.
+// Each returns a serialized model, the contents of an .onnx file. Doc strings describe inputs and outputs;
+// the metadata contain target, CRC-32 of the model image and depth projection.
 //
 // Inputs:  image [1, 1, 100, 100]
 // Outputs: features [1, kDense2], after ReLU; output [1, kOutput]
@@ -17,7 +17,7 @@ std::string cnn_as_onnx(const Float32Model& model);
 
 // Inputs:  input [1, kLstmInput]; h, c [1, kLstm]
 // Outputs: output [1, kHeadOutput]; h_next, c_next [1, kLstm]
-// Without the bound on the cells (kLstmCellBound), which no sequence of frames reaches.
+// The bound on the cells (kLstmCellBound) is left out: no sequence of frames reaches it.
 std::string recurrent_as_onnx(const Float32Model& model);
 
 }  // namespace tumblesight::sim

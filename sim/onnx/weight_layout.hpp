@@ -1,22 +1,21 @@
-// From the flight network's order of weights to ONNX's.
+// From the flight network's layout of weights to ONNX's.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "gnc/rcnn/network.hpp"
+#include "sim/model/network_layers.hpp"
 
 namespace tumblesight::sim {
 
-template <class Tensor>
-std::vector<float> values_of(const Tensor& tensor) {
-  return {tensor.data(), tensor.data() + tensor.size()};
+inline std::vector<float> values_of(const TensorView& tensor) {
+  return {tensor.begin(), tensor.end()};
 }
 
 // [ky][kx][in][out] -> [out][in][ky][kx]
-template <class Layer>
-std::vector<float> convolution_of_onnx(const Layer& layer) {
-  const std::size_t out = layer.bias.size(), in = layer.weight.size() / out / 9;
+inline std::vector<float> convolution_of_onnx(const Float32Layer& layer) {
+  const auto out = static_cast<std::size_t>(layer.row.outputs),
+             in = static_cast<std::size_t>(layer.row.inputs);
   std::vector<float> result;
   for (std::size_t o = 0; o < out; ++o) {
     for (std::size_t i = 0; i < in; ++i) {
@@ -26,16 +25,17 @@ std::vector<float> convolution_of_onnx(const Layer& layer) {
   return result;
 }
 
-// [pixel][channel][out] -> [channel][pixel][out]: a flat image goes pixel by pixel here, channel by channel
-// there.
-template <class Layer>
-std::vector<float> dense_after_flattening(const Layer& layer) {
-  constexpr std::size_t kChannels = gnc::shape::kConv4, kPixels = gnc::shape::kFlat / kChannels;
-  const std::size_t out = layer.bias.size();
+// [in][out]; behind an image [pixel][channel][out] -> [channel][pixel][out], since ONNX flattens channel by
+// channel.
+inline std::vector<float> dense_of_onnx(const Float32Layer& layer) {
+  if (!reads_flat_image(layer.row)) return values_of(layer.weight);
+  const auto channels = static_cast<std::size_t>(channels_of(layer.row.reads[0]));
+  const auto out = static_cast<std::size_t>(layer.row.outputs);
+  const std::size_t pixels = static_cast<std::size_t>(layer.row.inputs) / channels;
   std::vector<float> result;
-  for (std::size_t channel = 0; channel < kChannels; ++channel) {
-    for (std::size_t pixel = 0; pixel < kPixels; ++pixel) {
-      const float* const row = layer.weight.data() + (pixel * kChannels + channel) * out;
+  for (std::size_t channel = 0; channel < channels; ++channel) {
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+      const float* const row = layer.weight.data + (pixel * channels + channel) * out;
       result.insert(result.end(), row, row + out);
     }
   }
@@ -43,14 +43,12 @@ std::vector<float> dense_after_flattening(const Layer& layer) {
 }
 
 // [row][gate] with the gates input, forget, cell, output -> [gate][row] with input, output, forget, cell.
-template <class Tensor>
-std::vector<float> gates_of_onnx(const Tensor& tensor) {
-  constexpr std::size_t kHidden = gnc::shape::kLstm, kGates = 4 * kHidden;
-  const std::size_t rows = tensor.size() / kGates;
+inline std::vector<float> gates_of_onnx(const TensorView& tensor, std::size_t hidden) {
+  const std::size_t gates = 4 * hidden, rows = tensor.size / gates;
   std::vector<float> result;
   for (const std::size_t gate : {0, 3, 1, 2}) {
-    for (std::size_t unit = gate * kHidden; unit < (gate + 1) * kHidden; ++unit) {
-      for (std::size_t row = 0; row < rows; ++row) result.push_back(tensor[row * kGates + unit]);
+    for (std::size_t unit = gate * hidden; unit < (gate + 1) * hidden; ++unit) {
+      for (std::size_t row = 0; row < rows; ++row) result.push_back(tensor[row * gates + unit]);
     }
   }
   return result;

@@ -103,18 +103,4 @@ std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(const gnc::NetworkWeigh
 TUMBLESIGHT_INSTANTIATE(gnc::Float32);
 TUMBLESIGHT_INSTANTIATE(gnc::FixedPoint);
 
-int channels_of(const std::string& layer) {
-  static const std::map<std::string, int> kChannels{{"depth", shape::kSpaceToDepthChannels},
-                                                    {"conv1", shape::kConv1},
-                                                    {"conv2", shape::kConv2},
-                                                    {"conv3", shape::kConv3},
-                                                    {"conv4", shape::kConv4},
-                                                    {"dense1", shape::kDense1},
-                                                    {"dense2", shape::kDense2},
-                                                    {"lstm_input", shape::kLstmInput},
-                                                    {"lstm", shape::kLstm},
-                                                    {"head1", shape::kHead}};
-  return kChannels.at(layer);
-}
-
 }  // namespace tumblesight::sim

@@ -36,7 +36,4 @@ std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(const gnc::NetworkWeigh
                                                          const gnc::MotionLaws<typename N::Real>& laws,
                                                          const ImageSequence& sequence);
 
-// Number of channels of a layer; throws std::out_of_range for an unknown name.
-int channels_of(const std::string& layer);
-
 }  // namespace tumblesight::sim

@@ -29,7 +29,7 @@ IntegerLayer integers_of(const FloatLayer& layer, const std::vector<double>& sca
       exact(i, c) = layer.weight(static_cast<std::size_t>(i), c) / scale[c];
   }
   const Eigen::MatrixXd covariance = unit.asDiagonal() * inputs.covariance() * unit.asDiagonal();
-  const Eigen::MatrixXd integers = rounded(exact, covariance, kLargestWeight);
+  const Eigen::MatrixXd integers = rounded_weights(exact, covariance, kLargestWeight);
   const Eigen::MatrixXd lost = exact - integers;
   const Eigen::VectorXd squares = lost.cwiseProduct(covariance * lost).colwise().sum().transpose();
   return {integers, lost.transpose() * unit.cwiseProduct(inputs.mean()),

@@ -1,4 +1,4 @@
-// One layer of the float32 network, and its weights as integers.
+// One layer of the float32 network, and its weights rounded to integers.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,32 +10,36 @@
 
 namespace tumblesight::sim {
 
-// Of the integers that weights become.
+// Magnitude of the integers that weights are rounded to.
 inline constexpr double kLargestWeight = 127.0;
 
-// A layer's float weights as [input][channel], and the real value of one unit of each input.
+// A layer whose inputs are integers. weight() has the inputs' scales multiplied in, so that it applies to
+// integers.
 struct FloatLayer {
   std::string name;
   int channels;
-  std::vector<const float*> rows;  // one an input: its `channels` weights
-  std::vector<double> input_scale;
-  const float* bias;
+  std::vector<const float*> rows;   // per input: its `channels` weights, not owned
+  std::vector<double> input_scale;  // per input: real value of one unit
+  const float* bias;                // [channels], not owned
   double weight(std::size_t input, int channel) const { return rows[input][channel] * input_scale[input]; }
 };
 
+// Appends `inputs` rows: `weights` is [inputs][channels].
 void add_rows(FloatLayer& layer, const float* weights, std::size_t inputs);
 
-// The largest weight times the unit of its input; never 0, so that a channel without weights has a scale too.
+// Largest magnitude of weight() in a channel. Never 0, so that every channel gets a scale.
 double largest_weight(const FloatLayer& layer, int channel);
 
 struct IntegerLayer {
   Eigen::MatrixXd weight;  // [input][channel]
-  // Of each channel's sum on average, in its units: for the bias to make up for.
-  Eigen::VectorXd rounded_away;
-  // Mean square of what else each channel's sum lost, in real units.
+  // Per channel, in units of its sum: the mean that rounding the weights takes from the sum. The bias adds it
+  // back.
+  Eigen::VectorXd mean_loss;
+  // Per channel, in real units: mean square of the rest of the sum's error.
   Eigen::VectorXd squared_loss;
 };
-// `scales`: what a unit of each channel's sum is worth.
+// `scales`: per channel, real value of one unit of its sum. Weights beyond +-kLargestWeight
+// saturate.
 IntegerLayer integers_of(const FloatLayer& layer, const std::vector<double>& scales,
                          const InputStatistics& inputs);
 

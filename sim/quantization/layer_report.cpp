@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/network_layers.hpp"
 #include "sim/quantization/scales.hpp"
 
 namespace tumblesight::sim {
@@ -10,9 +11,18 @@ using gnc::FixedPoint;
 using gnc::Float32;
 namespace {
 
-double largest_integer(const std::string& layer) {
-  if (layer == "conv4") return 4.0 * gnc::kMaxAveragedActivation;
-  return layer.compare(0, 4, "conv") == 0 ? kLargestUint8 : 32767.0;
+// Where the layer's integers end. Network inputs are not reported: any number will do.
+double largest_integer(const std::string& name) {
+  const int index = gnc::layer_index(name.c_str());
+  if (index == gnc::kLayerCount) return 32767.0;
+  switch (gnc::kLayers[index].output) {
+    case gnc::LayerOutput::kMaxPooled:
+      return kLargestUint8;
+    case gnc::LayerOutput::kAveragePooled:
+      return 4.0 * gnc::kMaxAveragedActivation;
+    default:
+      return 32767.0;
+  }
 }
 
 struct Tally {
@@ -45,9 +55,10 @@ std::vector<LayerReport> compare(const gnc::NetworkWeights<Float32>& reference,
     }
   }
   std::vector<LayerReport> report;
-  for (const char* layer : {"conv1", "conv2", "conv3", "conv4", "dense1", "dense2", "lstm", "head1"}) {
-    const Tally& tally = tallies[layer];
-    report.push_back({layer, tally.largest, tally.saturated / std::max(1.0, tally.count),
+  for (const gnc::LayerRow& row : gnc::kLayers) {
+    if (!is_hidden(row)) continue;
+    const Tally& tally = tallies[row.name];
+    report.push_back({row.name, tally.largest, tally.saturated / std::max(1.0, tally.count),
                       10.0 * std::log10(std::max(1e-30, tally.signal) / std::max(1e-30, tally.noise))});
   }
   return report;

@@ -1,4 +1,4 @@
-// What each layer loses on the way to fixed point.
+// How much each layer loses by quantization.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace tumblesight::sim {
 
 struct LayerReport {
   std::string layer;
-  double largest = 0.0;    // of the float32 network's outputs
-  double saturated = 0.0;  // share of the fixed-point outputs at the end of their range
-  double snr_db = 0.0;     // float32's output over the difference
+  double largest = 0.0;    // largest magnitude of the float32 network's outputs
+  double saturated = 0.0;  // share of the fixed-point outputs at the end of their range, 0 to 1
+  double snr_db = 0.0;     // power of the float32 outputs over that of the difference
 };
-// One line a hidden layer, over sequences that should not be those of the ranges.
+// One row per hidden layer. `sequences` should not be those that the scales were chosen on.
 std::vector<LayerReport> compare(const gnc::NetworkWeights<gnc::Float32>& reference,
                                  const QuantizedNetwork& network, const gnc::Inertia<gnc::Fixed>& inertia,
                                  const std::vector<ImageSequence>& sequences);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "gnc/rcnn/network_shape.hpp"
+#include "sim/model/network_layers.hpp"
 #include "sim/quantization/scales.hpp"
 
 namespace tumblesight::sim {
@@ -13,15 +13,15 @@ using gnc::FixedPoint;
 using gnc::Float32;
 namespace {
 
-constexpr double kLargestInt16 =
-    32767.0 / 2.0;  // half of it: frames other than the calibration's may go beyond
+// Half the range: frames other than those of the calibration may exceed its largest value.
+constexpr double kLargestInt16 = 32767.0 / 2.0;
 constexpr double kQ15 = 1.0 / 32768.0;
 
 std::int32_t to_integer(double value) {
   return static_cast<std::int32_t>(std::lround(std::min(2147483647.0, std::max(-2147483647.0, value))));
 }
 
-// Weights of the inputs [first, first + count) in groups, as the kernels want them.
+// Weights of the inputs [first, first + count), in the kernels' layout (gnc/nn/product.hpp).
 template <std::size_t kCount>
 void put_weights(const IntegerLayer& layer, std::size_t first, std::size_t count, std::size_t padded_channels,
                  std::size_t group, QuantizedNetwork& network, FixedPoint::Weights<kCount>& weights) {
@@ -41,18 +41,19 @@ void put_bias(const FloatLayer& layer, const std::vector<double>& scales, const 
   weights.bias.fill(0);
   weights.shift.fill(1);
   for (int c = 0; c < layer.channels; ++c) {
-    weights.bias[c] = to_integer(layer.bias[c] / scales[c] + integers.rounded_away[c]);
+    weights.bias[c] = to_integer(layer.bias[c] / scales[c] + integers.mean_loss[c]);
   }
 }
 
-// Shifts from the sum, whose unit is a power of two, to 24 bits behind the point.
+// Shifts from the sum, whose unit is a power of two, to Q7.24.
 template <class Weights>
 void put_output_shifts(const FloatLayer& layer, const std::vector<double>& scales, Weights& weights) {
   for (int c = 0; c < layer.channels; ++c) {
     const double shift = -std::log2(scales[c]);
     if (shift < 1.0 || shift > 62.0) {
-      throw std::runtime_error(layer.name + ", channel " + std::to_string(c) + ": weights up to " +
-                               std::to_string(largest_weight(layer, c)) + " have no place in fixed point");
+      throw std::runtime_error("layer " + layer.name + ", channel " + std::to_string(c) +
+                               ": the largest weight, " + std::to_string(largest_weight(layer, c)) +
+                               ", is outside the range of fixed point");
     }
     weights.shift[c] = static_cast<std::uint8_t>(shift);
   }
@@ -64,63 +65,70 @@ class Quantizer {
       : from_(from), statistics_(statistics), to_(to) {}
 
   void run() {
-    auto& weights = to_.weights;
-    to_.scales["depth"].assign(shape::kSpaceToDepthChannels, 1.0 / 256.0);
-    convolution("conv1", from_.conv1, "depth", weights.conv1);
-    convolution("conv2", from_.conv2, "conv1", weights.conv2);
-    convolution("conv3", from_.conv3, "conv2", weights.conv3);
-    last_convolution("conv4", from_.conv4, "conv3", weights.conv4);
-    hidden("dense1", from_.dense1, unit_of("conv4", shape::kFlat / shape::kConv4), weights.dense1);
-    hidden("dense2", from_.dense2, unit_of("dense1"), weights.dense2);
-    output("cnn_out", from_.cnn_out, unit_of("dense2"), weights.cnn_out);
-
-    to_.scales["lstm_input"] = to_.scales.at("dense2");
-    to_.scales["lstm_input"].resize(shape::kLstmInput, kQ15);
-    to_.scales["lstm"].assign(shape::kLstm, kQ15);
-    lstm(joined(unit_of("lstm_input"), unit_of("lstm")), weights.lstm);
-    hidden("head1", from_.head1, joined(unit_of("lstm"), unit_of("lstm_input")), weights.head1);
-    output("head2", from_.head2, unit_of("head1"), weights.head2);
+    to_.scales[gnc::kDepthInput].assign(shape::kSpaceToDepthChannels, 1.0 / 256.0);
+    gnc::for_each_index<0, gnc::kLayerCount>([this](auto index) {
+      constexpr int kIndex = decltype(index)::value;
+      constexpr gnc::LayerRow kRow = gnc::kLayers[kIndex];
+      const auto& from = gnc::layer_weights<kIndex>(from_);
+      auto& to = gnc::layer_weights<kIndex>(to_.weights);
+      if constexpr (kRow.kind == gnc::LayerKind::kLstm) {
+        lstm(kRow, from, to);
+      } else if constexpr (kRow.output == gnc::LayerOutput::kMaxPooled) {
+        max_pooled_convolution(kRow, from, to);
+      } else if constexpr (kRow.output == gnc::LayerOutput::kAveragePooled) {
+        average_pooled_convolution(kRow, from, to);
+      } else if constexpr (kRow.output == gnc::LayerOutput::kHidden) {
+        hidden_dense(kRow, from, to);
+      } else {
+        output_dense(kRow, from, to);
+      }
+    });
   }
 
  private:
-  // The unit of each of a layer's inputs, which `layer` gives.
-  std::vector<double> unit_of(const std::string& layer, int times = 1) const {
+  // The unit of each input of the layer's sums.
+  std::vector<double> input_units(const gnc::LayerRow& row) const {
     std::vector<double> units;
-    for (int i = 0; i < times; ++i)
-      units.insert(units.end(), to_.scales.at(layer).begin(), to_.scales.at(layer).end());
+    const auto append = [&](const std::string& name, int times) {
+      const std::vector<double>& scales = to_.scales.at(name);
+      for (int i = 0; i < times; ++i) units.insert(units.end(), scales.begin(), scales.end());
+    };
+    for (const std::string& name : reads_of(row)) {
+      const bool convolution = row.kind == gnc::LayerKind::kConvolution;
+      append(name, convolution ? inputs_per_sum(row) / row.inputs
+                               : gnc::values_per_frame(name.c_str()) / channels_of(name));
+    }
+    if (row.kind == gnc::LayerKind::kLstm) append(row.name, 1);
     return units;
-  }
-  static std::vector<double> joined(std::vector<double> a, const std::vector<double>& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
   }
 
   template <class From>
-  static FloatLayer layer_of(const std::string& name, const From& from, const std::vector<double>& units) {
-    FloatLayer layer{name, static_cast<int>(from.bias.size()), {}, units, from.bias.data()};
+  FloatLayer layer_of(const gnc::LayerRow& row, const From& from) const {
+    FloatLayer layer{row.name, static_cast<int>(from.bias.size()), {}, input_units(row), from.bias.data()};
     add_rows(layer, from.weight.data(), from.weight.size() / from.bias.size());
     return layer;
   }
 
-  // One with outputs of 8 bits; the last one's means of four have bits to spare.
+  // Outputs of 8 bits.
   template <class From, class To>
-  void convolution(const std::string& name, const From& from, const std::string& before, To& to) {
-    const FloatLayer layer = layer_of(name, from, unit_of(before, 9));
+  void max_pooled_convolution(const gnc::LayerRow& row, const From& from, To& to) {
+    const FloatLayer layer = layer_of(row, from);
     put<gnc::Int8Product::kGroup>(
-        layer, scales_of_few_bits(layer, inputs_of(layer), outputs_of(layer), kLargestUint8), to);
+        layer, scales_of_least_loss(layer, inputs_of(layer), outputs_of(layer), kLargestUint8), to);
+  }
+  // Outputs are the sums of four integers of 12 bits, so they have bits to spare.
+  template <class From, class To>
+  void average_pooled_convolution(const gnc::LayerRow& row, const From& from, To& to) {
+    const FloatLayer layer = layer_of(row, from);
+    // The observed outputs are means of four: one of the four may be as large as their sum.
+    put<gnc::Int8Product::kGroup>(layer, scales_that_fit(layer, outputs_of(layer), gnc::kMaxAveragedActivation / 4.0),
+                                  to);
+    for (double& scale : to_.scales.at(row.name)) scale /= 4.0;  // the sum of a window stands for its mean
   }
   template <class From, class To>
-  void last_convolution(const std::string& name, const From& from, const std::string& before, To& to) {
-    const FloatLayer layer = layer_of(name, from, unit_of(before, 9));
-    // The range is that of means of four; each of the four may be their whole sum.
-    put<gnc::Int8Product::kGroup>(
-        layer, scales_of_many_bits(layer, outputs_of(layer), gnc::kMaxAveragedActivation / 4.0), to);
-    for (double& scale : to_.scales.at(name)) scale /= 4.0;  // the sum of a window stands for its mean
-  }
-  template <class From, class To>
-  void hidden(const std::string& name, const From& from, const std::vector<double>& units, To& to) {
-    const FloatLayer layer = layer_of(name, from, units);
-    put<gnc::Int16Product::kGroup>(layer, scales_of_many_bits(layer, outputs_of(layer), kLargestInt16), to);
+  void hidden_dense(const gnc::LayerRow& row, const From& from, To& to) {
+    const FloatLayer layer = layer_of(row, from);
+    put<gnc::Int16Product::kGroup>(layer, scales_that_fit(layer, outputs_of(layer), kLargestInt16), to);
   }
 
   // Weights, biases and shifts of a layer whose outputs are activations.
@@ -136,8 +144,8 @@ class Quantizer {
   }
 
   template <class From, class To>
-  void output(const std::string& name, const From& from, const std::vector<double>& units, To& to) {
-    const FloatLayer layer = layer_of(name, from, units);
+  void output_dense(const gnc::LayerRow& row, const From& from, To& to) {
+    const FloatLayer layer = layer_of(row, from);
     const std::vector<double> scales = powers_of_two(layer, inputs_of(layer));
     const IntegerLayer integers = integers_of(layer, scales, inputs_of(layer));
     put_weights(integers, 0, layer.rows.size(), to.bias.size(), gnc::Int16Product::kGroup, to_, to.weight);
@@ -145,15 +153,22 @@ class Quantizer {
     put_output_shifts(layer, scales, to);
   }
 
-  template <class To>
-  void lstm(const std::vector<double>& units, To& to) {
-    FloatLayer layer = layer_of("lstm", from_.lstm, units);
-    add_rows(layer, from_.lstm.recurrent.data(), shape::kLstm);
+  // The LSTM's input and its hidden state have a fixed unit, 2^-15, except for the features, which keep
+  // theirs.
+  template <class From, class To>
+  void lstm(const gnc::LayerRow& row, const From& from, To& to) {
+    to_.scales[gnc::kLstmInput] = to_.scales.at(gnc::kLayers[gnc::kFeatureLayer].name);
+    to_.scales[gnc::kLstmInput].resize(static_cast<std::size_t>(row.inputs), kQ15);
+    to_.scales[row.name].assign(static_cast<std::size_t>(row.outputs), kQ15);
+
+    FloatLayer layer = layer_of(row, from);
+    const auto inputs = static_cast<std::size_t>(row.inputs), hidden = static_cast<std::size_t>(row.outputs);
+    add_rows(layer, from.recurrent.data(), hidden);
     const std::vector<double> scales = powers_of_two(layer, inputs_of(layer));
     constexpr std::size_t kGroup = gnc::Int16Product::kGroup;
     const IntegerLayer integers = integers_of(layer, scales, inputs_of(layer));
-    put_weights(integers, 0, shape::kLstmInput, to.bias.size(), kGroup, to_, to.weight);
-    put_weights(integers, shape::kLstmInput, shape::kLstm, to.bias.size(), kGroup, to_, to.recurrent);
+    put_weights(integers, 0, inputs, to.bias.size(), kGroup, to_, to.weight);
+    put_weights(integers, inputs, hidden, to.bias.size(), kGroup, to_, to.recurrent);
     put_bias(layer, scales, integers, to);
     put_output_shifts(layer, scales, to);
   }

@@ -1,4 +1,4 @@
-// From the float32 network to the fixed-point one that flies. docs/numerics.md is the norm of what comes out.
+// From the float32 network to the fixed-point one that flies. Specification of the result: docs/numerics.md.
 #pragma once
 
 #include <map>
@@ -11,20 +11,21 @@
 
 namespace tumblesight::sim {
 
-// Real value over integer, channel by channel, of every hidden layer. For the report only: it does not leave
-// the host.
+// Per network input and hidden layer: real value of one unit, channel by channel. Not part of the model
+// image.
 using Scales = std::map<std::string, std::vector<double>>;
 
 struct QuantizedNetwork {
-  gnc::NetworkWeights<gnc::FixedPoint> weights;  // looks into `storage`
+  gnc::NetworkWeights<gnc::FixedPoint> weights;  // they point into `storage`
   std::vector<std::vector<std::int8_t>> storage;
   Scales scales;
 };
 
-// Symmetric weights of 8 bits with a scale for each output channel (scales.hpp), into which the scales of the
-// inputs have been drawn beforehand; powers of two where the layer's output has a meaning. What rounding the
-// weights adds to a sum on average is taken off its bias. Each activation's scale is its channel's sum's
-// times a power of two.
+// Weights become symmetric 8-bit integers with one scale per output channel (scales.hpp), after the inputs'
+// scales have been multiplied into them. The scale is a power of two where the output is a real number. The
+// bias compensates the mean error of the rounded weights. An activation's scale is its channel's sum's times
+// a power of two, so that a shift is the only operation between layers. Throws std::runtime_error that names
+// the layer and channel if the weights are outside the range of fixed point.
 std::unique_ptr<QuantizedNetwork> quantize(const gnc::NetworkWeights<gnc::Float32>& weights,
                                            const Statistics& statistics);
 

@@ -8,14 +8,14 @@ namespace {
 using gnc::FixedPoint;
 using gnc::Float32;
 
-// Of `sequences` one in this many is kept for the report.
+// One sequence in this many is kept for the report.
 constexpr int kReportShare = 4;
 
 Eigen::Quaterniond quaternion(const gnc::Matrix3<float>& rotation) {
   return Eigen::Quaterniond(rotation.cast<double>()).normalized();
 }
 
-// The angle between what both numerics make of the same frames, frame by frame.
+// Angle between the attitudes of both numerics, per frame.
 std::vector<double> differences_deg(const Float32Model& model, const gnc::NetworkWeights<FixedPoint>& fixed,
                                     const std::vector<ImageSequence>& sequences) {
   const auto float_laws = gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia));

@@ -1,4 +1,4 @@
-// The whole way from a float32 model to the fixed-point image that flies, and what was lost on it.
+// Calibrates and quantizes a float32 model, writes the fixed-point image and reports the losses.
 #pragma once
 
 #include <functional>
@@ -14,12 +14,13 @@ namespace tumblesight::sim {
 
 struct QuantizationReport {
   std::vector<LayerReport> layers;
-  ErrorSummary difference;  // between the attitudes of both numerics, a frame each
+  ErrorSummary difference;  // angles between the attitudes of both numerics, one per frame
   std::size_t size_bytes = 0;
   std::uint32_t crc32 = 0;
 };
-// Calibrates on most of `sequences` rendered sequences, reports on the rest, and writes the image.
-// `progress`: sequences done. Throws std::runtime_error that names the file.
+// Renders `sequences` sequences: three quarters calibrate, the last quarter is for the report. Calls
+// `progress` with the number of sequences done. Deterministic. Throws std::runtime_error that names the file
+// if it cannot be written.
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
                                     int sequences, const std::string& path,
                                     const std::function<void(std::uint64_t)>& progress);

@@ -7,7 +7,7 @@
 namespace tumblesight::sim {
 namespace {
 
-// Added to the covariance's diagonal, as a share of its mean: samples are few beside inputs.
+// Added to the covariance's diagonal, as a fraction of the diagonal's mean: there are few samples per input.
 constexpr double kDamping = 0.01;
 
 }  // namespace
@@ -38,7 +38,7 @@ Eigen::MatrixXd InputStatistics::covariance() const {
   return full / std::max(1.0, count_) - average * average.transpose();
 }
 
-Eigen::MatrixXd rounded(Eigen::MatrixXd weights, const Eigen::MatrixXd& covariance, double largest) {
+Eigen::MatrixXd rounded_weights(Eigen::MatrixXd weights, const Eigen::MatrixXd& covariance, double largest) {
   const Eigen::Index inputs = weights.rows();
   Eigen::MatrixXd damped = covariance;
   const double damping = kDamping * covariance.diagonal().mean() + 1e-12;

@@ -1,5 +1,6 @@
-// Rounding of weights so that the sums change as little as possible: each weight's rounding error is made up
-// for by the weights after it, as far as their inputs go together (Frantar et al. 2023, GPTQ).
+// Rounds weights to integers so that the sums change as little as possible: the weights that are not yet
+// rounded compensate each weight's rounding error, as far as their inputs are correlated (Frantar et al.
+// 2023, GPTQ).
 #pragma once
 
 #include <Eigen/Core>
@@ -13,11 +14,12 @@ class InputStatistics {
   explicit InputStatistics(int inputs) : sum_(Eigen::VectorXd::Zero(inputs)), squares_(inputs, inputs) {
     squares_.setZero();
   }
-  void add(const std::vector<double>& sample);
+  void add(const std::vector<double>& sample);  // one value per input
   int inputs() const { return static_cast<int>(sum_.size()); }
+  // All zero if there are no samples.
   Eigen::VectorXd mean() const;
-  Eigen::MatrixXd covariance() const;
   Eigen::VectorXd variance() const;
+  Eigen::MatrixXd covariance() const;
 
  private:
   double count_ = 0.0;
@@ -25,7 +27,8 @@ class InputStatistics {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> squares_;  // upper triangle
 };
 
-// `weights`: [input][channel], in units of the integers wanted. Returns integers within +-largest.
-Eigen::MatrixXd rounded(Eigen::MatrixXd weights, const Eigen::MatrixXd& covariance, double largest);
+// `weights`: [input][channel], in units of the integers. `covariance`: of the inputs. Returns integers within
+// +-largest, as doubles.
+Eigen::MatrixXd rounded_weights(Eigen::MatrixXd weights, const Eigen::MatrixXd& covariance, double largest);
 
 }  // namespace tumblesight::sim

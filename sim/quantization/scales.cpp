@@ -8,15 +8,15 @@ namespace tumblesight::sim {
 namespace {
 
 constexpr int kLargestShift = 24;
-constexpr int kStepsToADoubling = 16;
-// Of the error of weights rounded one by one, what stays when others make up for it (measured; 0.1 and 1 give
-// worse networks).
-constexpr double kNotMadeUpFor = 0.3;
-// A power of two may be so many times smaller than what the largest weight asks for.
+constexpr int kStepsPerOctave = 16;
+// Fraction of the error of weights rounded independently that remains when other weights compensate it
+// (rounding.hpp). Tuned: 0.1 and 1 give worse networks.
+constexpr double kUncompensated = 0.3;
+// How many times a power of two may be halved below the one that fits the largest weight.
 constexpr int kHalvings = 2;
 
-// Mean square of a channel's sum in units of the sum when every weight is rounded on its own.
-double rounding_of_weights(const FloatLayer& layer, const InputStatistics& inputs) {
+// Mean square error of a sum, in its units, when every weight is rounded independently.
+double rounding_error(const FloatLayer& layer, const InputStatistics& inputs) {
   const Eigen::VectorXd variance = inputs.variance();
   double sum = 0.0;
   for (std::size_t i = 0; i < layer.rows.size(); ++i) {
@@ -27,8 +27,8 @@ double rounding_of_weights(const FloatLayer& layer, const InputStatistics& input
 
 }  // namespace
 
-OutputScales scales_of_many_bits(const FloatLayer& layer, const std::vector<Distribution>& outputs,
-                                 double largest_integer) {
+OutputScales scales_that_fit(const FloatLayer& layer, const std::vector<Distribution>& outputs,
+                             double largest_integer) {
   OutputScales scales;
   for (int c = 0; c < layer.channels; ++c) {
     const double sum = largest_weight(layer, c) / kLargestWeight;
@@ -40,17 +40,17 @@ OutputScales scales_of_many_bits(const FloatLayer& layer, const std::vector<Dist
   return scales;
 }
 
-OutputScales scales_of_few_bits(const FloatLayer& layer, const InputStatistics& inputs,
-                                const std::vector<Distribution>& outputs, double largest_integer) {
-  const double of_weights = kNotMadeUpFor * rounding_of_weights(layer, inputs);
+OutputScales scales_of_least_loss(const FloatLayer& layer, const InputStatistics& inputs,
+                                  const std::vector<Distribution>& outputs, double largest_integer) {
+  const double of_weights = kUncompensated * rounding_error(layer, inputs);
   OutputScales scales;
   for (int c = 0; c < layer.channels; ++c) {
     const double smallest = largest_weight(layer, c) / kLargestWeight;
     double best_sum = smallest, least = std::numeric_limits<double>::infinity();
     int best_shift = 1;
     for (int shift = 1; shift <= kLargestShift; ++shift) {
-      for (int step = 0; step < kStepsToADoubling; ++step) {
-        const double sum = smallest * std::exp2(step / double{kStepsToADoubling});
+      for (int step = 0; step < kStepsPerOctave; ++step) {
+        const double sum = smallest * std::exp2(step / double{kStepsPerOctave});
         const double loss =
             of_weights * sum * sum + outputs.at(c).squared_loss(std::ldexp(sum, shift), largest_integer);
         if (loss >= least) continue;

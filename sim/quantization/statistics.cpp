@@ -2,33 +2,11 @@
 
 #include <algorithm>
 
-#include "gnc/rcnn/network_shape.hpp"
+#include "sim/model/network_layers.hpp"
 
 namespace tumblesight::sim {
-namespace shape = gnc::shape;
 using gnc::Float32;
 namespace {
-
-// Where a layer's inputs are observed.
-struct LayerInput {
-  const char* name;
-  const char* from;
-  int side;  // of a convolution's input image; 0 for a dense layer
-  int inputs;
-};
-constexpr int kHalf = shape::kImageSide / 2;
-constexpr LayerInput kLayerInputs[] = {
-    {"conv1", "depth", kHalf, 9 * shape::kSpaceToDepthChannels},
-    {"conv2", "conv1", kHalf / 2, 9 * shape::kConv1},
-    {"conv3", "conv2", kHalf / 4, 9 * shape::kConv2},
-    {"conv4", "conv3", kHalf / 8, 9 * shape::kConv3},
-    {"dense1", "conv4", 0, shape::kFlat},
-    {"dense2", "dense1", 0, shape::kDense1},
-    {"cnn_out", "dense2", 0, shape::kDense2},
-    {"lstm", "lstm_input", 0, shape::kLstmInput + shape::kLstm},
-    {"head1", "lstm", 0, shape::kLstm + shape::kLstmInput},
-    {"head2", "head1", 0, shape::kHead},
-};
 
 // The 3x3 neighbourhood of a pixel, zeros outside the image.
 std::vector<double> neighbourhood(const double* image, int side, int channels, int y, int x) {
@@ -41,7 +19,7 @@ std::vector<double> neighbourhood(const double* image, int side, int channels, i
   return sample;
 }
 
-// At most this many pixels of an image, spread over it.
+// About this many pixels per image are sampled, at regular intervals; each frame starts at another one.
 constexpr int kPixelsPerImage = 36;
 
 std::vector<double> frame_of(const Observations& observations, const std::string& layer, std::size_t frame,
@@ -52,29 +30,31 @@ std::vector<double> frame_of(const Observations& observations, const std::string
           all.begin() + static_cast<std::ptrdiff_t>((frame + 1) * size)};
 }
 
-void add_samples(const LayerInput& layer, const Observations& observations, std::size_t frames,
-                 Statistics& statistics) {
-  InputStatistics& inputs = statistics.inputs.at(layer.name);
+void add_windows(const gnc::LayerRow& row, const std::vector<double>& image, std::size_t frame,
+                 InputStatistics& inputs) {
+  const int pixels = row.side * row.side;
+  const int step = std::max(1, pixels / kPixelsPerImage);
+  for (int pixel = static_cast<int>(frame) % step; pixel < pixels; pixel += step) {
+    inputs.add(neighbourhood(image.data(), row.side, row.inputs, pixel / row.side, pixel % row.side));
+  }
+}
+
+void add_samples(const gnc::LayerRow& row, const Observations& observations, std::size_t frames,
+                 InputStatistics& inputs) {
   for (std::size_t frame = 0; frame < frames; ++frame) {
-    std::vector<double> sample = frame_of(observations, layer.from, frame, frames);
-    if (layer.side > 0) {
-      const int channels = layer.inputs / 9;
-      const int pixels = layer.side * layer.side;
-      const int step = std::max(1, pixels / kPixelsPerImage);
-      for (int pixel = static_cast<int>(frame) % step; pixel < pixels; pixel += step) {
-        inputs.add(
-            neighbourhood(sample.data(), layer.side, channels, pixel / layer.side, pixel % layer.side));
-      }
-      continue;
-    }
-    const auto append = [&](const std::vector<double>& more) {
+    std::vector<double> sample;
+    const auto append = [&sample](const std::vector<double>& more) {
       sample.insert(sample.end(), more.begin(), more.end());
     };
-    if (std::string(layer.name) == "lstm") {
-      append(frame > 0 ? frame_of(observations, "lstm", frame - 1, frames)
-                       : std::vector<double>(shape::kLstm, 0.0));
+    for (const std::string& name : reads_of(row)) append(frame_of(observations, name, frame, frames));
+    if (row.kind == gnc::LayerKind::kConvolution) {
+      add_windows(row, sample, frame, inputs);
+      continue;
     }
-    if (std::string(layer.name) == "head1") append(frame_of(observations, "lstm_input", frame, frames));
+    if (row.kind == gnc::LayerKind::kLstm) {  // the hidden state of the frame before
+      append(frame > 0 ? frame_of(observations, row.name, frame - 1, frames)
+                       : std::vector<double>(static_cast<std::size_t>(row.outputs), 0.0));
+    }
     inputs.add(sample);
   }
 }
@@ -83,8 +63,8 @@ void add_samples(const LayerInput& layer, const Observations& observations, std:
 
 Calibration::Calibration(const gnc::NetworkWeights<Float32>& weights, const gnc::MotionLaws<float>& laws)
     : weights_(weights), laws_(laws) {
-  for (const LayerInput& layer : kLayerInputs)
-    statistics_.inputs.emplace(layer.name, InputStatistics(layer.inputs));
+  for (const gnc::LayerRow& row : gnc::kLayers)
+    statistics_.inputs.emplace(row.name, InputStatistics(inputs_per_sum(row)));
 }
 
 void Calibration::add(const ImageSequence& sequence) {
@@ -96,7 +76,8 @@ void Calibration::add(const ImageSequence& sequence) {
     outputs.resize(channels);
     for (std::size_t i = 0; i < values.size(); ++i) outputs[i % channels].add(values[i]);
   }
-  for (const LayerInput& layer : kLayerInputs) add_samples(layer, observations, sequence.size(), statistics_);
+  for (const gnc::LayerRow& row : gnc::kLayers)
+    add_samples(row, observations, sequence.size(), statistics_.inputs.at(row.name));
 }
 
 }  // namespace tumblesight::sim

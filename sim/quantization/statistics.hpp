@@ -1,4 +1,4 @@
-// What the layers of the float32 network meet with.
+// Statistics of the float32 network's layers over the calibration sequences.
 #pragma once
 
 #include <map>
@@ -12,11 +12,13 @@
 namespace tumblesight::sim {
 
 struct Statistics {
-  std::map<std::string, std::vector<Distribution>> outputs;  // of every channel of every hidden layer
-  std::map<std::string, InputStatistics> inputs;             // of every layer
+  // By name: per channel of every network input and hidden layer.
+  std::map<std::string, std::vector<Distribution>> outputs;
+  // By layer: of the inputs of one sum (inputs_per_sum()).
+  std::map<std::string, InputStatistics> inputs;
 };
 
-// Collects it, sequence by sequence.
+// Collects statistics sequence by sequence.
 class Calibration {
  public:
   // `weights` must outlive it.

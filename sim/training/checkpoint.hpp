@@ -1,4 +1,4 @@
-// Checkpoint: module, optimiser and position of one stage in one file, replaced atomically.
+// Checkpoint file of one stage: module, optimiser and position. Replaced atomically.
 #pragma once
 
 #include <torch/torch.h>
@@ -13,10 +13,11 @@ namespace tumblesight::sim {
 struct CheckpointPosition {
   std::int64_t iteration = 0;
   double seconds = 0.0;
-  std::int64_t fingerprint = 0;  // of all settings that shape the result
+  std::int64_t fingerprint = 0;  // hash of all settings that affect the result: fingerprint() in stage.hpp
 };
 
-// Written beside the old one and renamed over it: a kill at any moment leaves one of the two whole.
+// Writes a temporary file and renames it: if the process is killed, either the old or the new checkpoint is
+// intact.
 template <typename Module>
 void save_checkpoint(const std::string& path, const Module& module, const torch::optim::Optimizer& optimizer,
                      const CheckpointPosition& position) {
@@ -32,8 +33,9 @@ void save_checkpoint(const std::string& path, const Module& module, const torch:
   std::filesystem::rename(path + ".new", path);
 }
 
-// False when there is no checkpoint. Throws std::runtime_error when it cannot be read, or is of a run with
-// other settings: going on with those would silently mix two runs.
+// Restores all arguments. Returns false if there is no checkpoint. Throws std::runtime_error that names the
+// file if it cannot be read or if its fingerprint differs from position.fingerprint: continuing would mix two
+// runs.
 template <typename Module>
 bool load_checkpoint(const std::string& path, Module& module, torch::optim::Optimizer& optimizer,
                      CheckpointPosition& position) {
@@ -49,13 +51,14 @@ bool load_checkpoint(const std::string& path, Module& module, torch::optim::Opti
     archive.read("optimizer", optimizer_archive);
   } catch (const c10::Error&) {
     throw std::runtime_error(
-        path + ": not a checkpoint of this program; choose another --out, or delete the file to start anew");
+        path +
+        " is not a checkpoint of this program; choose another --out, or delete the file to start again");
   }
   if (fingerprint.item<std::int64_t>() != position.fingerprint) {
     throw std::runtime_error(
         path +
-        ": of a training with other settings (meshes, seed, amounts); choose another --out, "
-        "or repeat the command that made it");
+        " belongs to a training with other settings (meshes, conditions, seed, numbers of samples); "
+        "choose another --out, or repeat the command that made it");
   }
   module->load(module_archive);
   optimizer.load(optimizer_archive);

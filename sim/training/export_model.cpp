@@ -5,79 +5,104 @@
 #include <map>
 #include <stdexcept>
 
-#include "gnc/rcnn/network_shape.hpp"
+#include "sim/training/flight_layout.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;
 namespace {
 
-using TensorsByName = std::map<std::string, torch::Tensor>;
+// By <layer>.<part>, in the flight network's layout.
+class FlightTensors {
+ public:
+  void add(const std::string& name, const torch::Tensor& tensor) {
+    tensors_[name] = tensor.detach().to(torch::kCPU, torch::kFloat).contiguous();
+  }
 
-void add(TensorsByName& tensors, const std::string& name, const torch::Tensor& tensor) {
-  tensors[name] = tensor.detach().to(torch::kCPU, torch::kFloat).contiguous();
+  // `weight` in LibTorch's layout.
+  void add_layer(const gnc::LayerRow& row, const torch::Tensor& weight, const torch::Tensor& bias) {
+    add(std::string(row.name) + ".weight", weight_to_flight(row, weight));
+    add(std::string(row.name) + ".bias", bias);
+  }
+
+  void copy_to(gnc::NetworkWeights<gnc::Float32>& weights) const {
+    gnc::for_each_tensor(weights, [&](const char* layer, const char* part, auto& tensor) {
+      const std::string name = std::string(layer) + "." + part;
+      const auto found = tensors_.find(name);
+      if (found == tensors_.end() || found->second.numel() != static_cast<std::int64_t>(tensor.size())) {
+        throw std::logic_error("the trainer has no tensor of this size for " + name);
+      }
+      std::copy_n(found->second.data_ptr<float>(), tensor.size(), tensor.data());
+    });
+  }
+
+ private:
+  std::map<std::string, torch::Tensor> tensors_;
+};
+
+struct WeightAndBias {
+  torch::Tensor weight, bias;
+};
+
+// The batch norm behind a convolution becomes part of it.
+WeightAndBias with_batch_norm(const Backbone& backbone, int stage) {
+  const torch::Tensor scale = (backbone->variance[stage] + BackboneImpl::kEpsilon).rsqrt();
+  return {backbone->weight[stage] * scale.view({-1, 1, 1, 1}),
+          backbone->offset[stage] - backbone->mean[stage] * scale};
 }
 
-// [out, in, 3, 3] with the norm that follows -> [3][3][in][out] and a bias.
-void add_convolutions(TensorsByName& tensors, const Backbone& backbone) {
-  for (int i = 0; i < BackboneImpl::kStages; ++i) {
-    const std::string layer = "conv" + std::to_string(i + 1);
-    const torch::Tensor scale = (backbone->variance[i] + BackboneImpl::kEpsilon).rsqrt();
-    add(tensors, layer + ".weight", (backbone->weight[i] * scale.view({-1, 1, 1, 1})).permute({2, 3, 1, 0}));
-    add(tensors, layer + ".bias", backbone->offset[i] - backbone->mean[i] * scale);
+// The standardisation of the LSTM input becomes part of a layer that reads it from input `first` on:
+// W (x - mean) / deviation + b = (W / deviation) x + (b - (W / deviation) mean)
+WeightAndBias with_standardisation(const Recurrent& recurrent, const torch::Tensor& weight,
+                                   const torch::Tensor& bias, std::int64_t first) {
+  const torch::Tensor scaled = weight.narrow(1, first, shape::kLstmInput) / recurrent->input_deviation;
+  return {torch::cat({weight.narrow(1, 0, first), scaled}, 1),
+          bias - torch::matmul(scaled, recurrent->input_mean)};
+}
+
+void add_cnn(FlightTensors& tensors, const Cnn& cnn) {
+  int index = 0;
+  for (const gnc::LayerRow& row : cnn_rows(gnc::LayerKind::kConvolution)) {
+    const WeightAndBias layer = with_batch_norm(cnn->backbone, index++);
+    tensors.add_layer(row, layer.weight, layer.bias);
+  }
+  index = 0;
+  for (const gnc::LayerRow& row : cnn_rows(gnc::LayerKind::kDense)) {
+    const torch::nn::Linear& layer = cnn->dense[index++];
+    tensors.add_layer(row, layer->weight, layer->bias);
   }
 }
 
-void add_dense(TensorsByName& tensors, const std::string& layer, const torch::Tensor& weight,
-               const torch::Tensor& bias) {
-  add(tensors, layer + ".weight", weight.t());
-  add(tensors, layer + ".bias", bias);
-}
-
-void add_cnn(TensorsByName& tensors, const Cnn& cnn) {
-  add_convolutions(tensors, cnn->backbone);
-  // LibTorch flattens channel by channel, the flight network pixel by pixel.
-  const torch::Tensor dense1 =
-      cnn->dense1->weight.view({shape::kDense1, shape::kConv4, 9}).transpose(1, 2).flatten(1);
-  add_dense(tensors, "dense1", dense1, cnn->dense1->bias);
-  add_dense(tensors, "dense2", cnn->dense2->weight, cnn->dense2->bias);
-  add_dense(tensors, "cnn_out", cnn->output->weight, cnn->output->bias);
-}
-
-// W (x - mean) / deviation + b = (W / deviation) x + (b - (W / deviation) mean)
-void add_recurrent(TensorsByName& tensors, const Recurrent& recurrent) {
+void add_recurrent(FlightTensors& tensors, const Recurrent& recurrent) {
+  const gnc::LayerRow& row = gnc::kLayers[gnc::kLstmLayer];
   const auto parameters = recurrent->lstm->named_parameters();
-  const torch::Tensor input = parameters["weight_ih"] / recurrent->input_deviation;
-  add(tensors, "lstm.weight", input.t());
-  add(tensors, "lstm.recurrent", parameters["weight_hh"].t());
-  add(tensors, "lstm.bias",
-      parameters["bias_ih"] + parameters["bias_hh"] - torch::matmul(input, recurrent->input_mean));
+  const WeightAndBias lstm = with_standardisation(recurrent, parameters["weight_ih"],
+                                                  parameters["bias_ih"] + parameters["bias_hh"], 0);
+  tensors.add_layer(row, lstm.weight, lstm.bias);
+  tensors.add(std::string(row.name) + ".recurrent", weight_to_flight(row, parameters["weight_hh"]));
 
-  const torch::Tensor hidden = recurrent->head1->weight.narrow(1, 0, shape::kLstm);
-  const torch::Tensor direct =
-      recurrent->head1->weight.narrow(1, shape::kLstm, shape::kLstmInput) / recurrent->input_deviation;
-  add_dense(tensors, "head1", torch::cat({hidden, direct}, 1),
-            recurrent->head1->bias - torch::matmul(direct, recurrent->input_mean));
-  add_dense(tensors, "head2", recurrent->head2->weight, recurrent->head2->bias);
+  std::size_t index = 0;
+  for (const gnc::LayerRow& head : head_rows()) {
+    const torch::nn::Linear& layer = recurrent->head[index++];
+    const std::vector<std::string> reads = reads_of(head);
+    const bool standardised = reads.back() == gnc::kLstmInput;
+    const WeightAndBias folded = standardised ? with_standardisation(recurrent, layer->weight, layer->bias,
+                                                                     head.inputs - shape::kLstmInput)
+                                              : WeightAndBias{layer->weight, layer->bias};
+    tensors.add_layer(head, folded.weight, folded.bias);
+  }
 }
 
 }  // namespace
 
 void export_weights(const Cnn& cnn, const Recurrent& recurrent, gnc::NetworkWeights<gnc::Float32>& weights) {
   torch::NoGradGuard guard;
-  TensorsByName tensors;
+  FlightTensors tensors;
   add_cnn(tensors, cnn);
   add_recurrent(tensors, recurrent);
-  gnc::for_each_tensor(weights, [&](const char* layer, const char* part, auto& tensor) {
-    const std::string name = std::string(layer) + "." + part;
-    const auto found = tensors.find(name);
-    if (found == tensors.end() || found->second.numel() != static_cast<std::int64_t>(tensor.size())) {
-      throw std::logic_error("the trainer has no tensor of this size for " + name);
-    }
-    std::copy_n(found->second.data_ptr<float>(), tensor.size(), tensor.data());
-  });
+  tensors.copy_to(weights);
 }
 
-void shorten(gnc::NetworkWeights<gnc::Float32>& weights) {
+void round_to_10_bits(gnc::NetworkWeights<gnc::Float32>& weights) {
   gnc::for_each_tensor(weights, [](const char*, const char*, auto& tensor) {
     for (float& value : tensor) {
       int exponent = 0;
@@ -90,13 +115,14 @@ void shorten(gnc::NetworkWeights<gnc::Float32>& weights) {
 gnc::ModelHeader model_header(const std::string& target, const TrainingTargets& targets) {
   gnc::ModelHeader header;
   if (!gnc::set_target(header, target.c_str())) {
-    throw std::runtime_error("target name '" + target + "' must be printable and at most " +
-                             std::to_string(header.target.size() - 1) + " characters long");
+    throw std::runtime_error("target name '" + target + "' must be printable ASCII of 1 to " +
+                             std::to_string(header.target.size() - 1) + " characters");
   }
   header.projection = targets.projection;
   const gnc::Matrix3<gnc::Fixed> tensor_trf = gnc::converted<gnc::Fixed>(targets.inertia.tensor_trf);
   if (!gnc::make_inertia<gnc::Fixed>(tensor_trf, header.inertia)) {
-    throw std::runtime_error("the inertia of '" + target + "' is too near to a thin rod's");
+    throw std::runtime_error("the inertia of '" + target +
+                             "' is too close to that of a thin rod: no principal moment may be near zero");
   }
   return header;
 }

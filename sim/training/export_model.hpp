@@ -9,15 +9,17 @@
 
 namespace tumblesight::sim {
 
-// Batch norm folded into the convolutions, standardisation into the LSTM and the head, layouts turned to the
-// flight side's. Modules may lie on any device.
+// Copies the modules' weights into the flight network's layout. Batch norm is folded into the convolutions,
+// the standardisation of the LSTM input into the LSTM and the recurrent head. The modules may be on any
+// device.
 void export_weights(const Cnn& cnn, const Recurrent& recurrent, gnc::NetworkWeights<gnc::Float32>& weights);
 
-// Rounds every weight to 10 significant bits: far below what shows in an attitude, and the image compresses
-// to half.
-void shorten(gnc::NetworkWeights<gnc::Float32>& weights);
+// Rounds every weight to 10 significant bits. The effect on attitudes is far below their error, and the image
+// compresses to half its size.
+void round_to_10_bits(gnc::NetworkWeights<gnc::Float32>& weights);
 
-// Throws std::runtime_error when the name or the inertia is not possible.
+// Header of the model image for `target`. Throws std::runtime_error if the name is empty, longer than 31
+// characters or not printable ASCII, or if fixed point cannot represent the inertia.
 gnc::ModelHeader model_header(const std::string& target, const TrainingTargets& targets);
 
 }  // namespace tumblesight::sim

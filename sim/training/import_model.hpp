@@ -1,4 +1,5 @@
-// From a model image back to the LibTorch CNN: to go on training it, or to begin another target's from it.
+// From a model image back to the LibTorch CNN: to continue its training, or to start another target's
+// training.
 #pragma once
 
 #include "gnc/rcnn/model_image.hpp"
@@ -6,9 +7,9 @@
 
 namespace tumblesight::sim {
 
-// Makes `cnn` compute what the weights compute. An image holds no batch statistics: they are taken from
-// `images` [B, 1, 100, 100] of what it is to be trained on, and the layers are rescaled so that the function
-// stays the same. The LSTM is not taken over: it is worth nothing on another CNN's features.
+// Makes `cnn` compute the same function as the weights. A model image has no batch statistics: they are
+// measured on `images` [B, 1, 100, 100], which should be those of the training to come, and the layers are
+// rescaled to keep the function. The LSTM is not imported: it only works with the features of its own CNN.
 void import_cnn(const gnc::NetworkWeights<gnc::Float32>& weights, const torch::Tensor& images, Cnn& cnn);
 
 }  // namespace tumblesight::sim

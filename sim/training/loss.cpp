@@ -27,7 +27,7 @@ HypothesisErrors hypothesis_errors(const torch::Tensor& output, const torch::Ten
   const torch::Tensor columns = orthonormal_columns(output);  // [..., 8, 2, 3]
   const torch::Tensor x3 = torch::cross(columns.select(-2, 0), columns.select(-2, 1), -1);
   const torch::Tensor rotation = torch::cat({columns, x3.unsqueeze(-2)}, -2);  // rows are the columns of R
-  const torch::Tensor truth = r_lrf_trf.transpose(-1, -2).unsqueeze(-3);       // likewise
+  const torch::Tensor truth = r_lrf_trf.transpose(-1, -2).unsqueeze(-3);       // the same for the truth
   HypothesisErrors errors;
   errors.angle_rad = angle_between(rotation, truth);
   errors.best_rad = std::get<0>(errors.angle_rad.min(-1));

@@ -1,5 +1,5 @@
-// What the networks are trained for: several attitude hypotheses with probabilities, and an honest expected
-// error.
+// Losses of both training stages. They ask for several attitude hypotheses with probabilities and for a
+// calibrated expected error.
 #pragma once
 
 #include <torch/torch.h>
@@ -9,27 +9,27 @@
 namespace tumblesight::sim {
 
 struct HypothesisErrors {
-  torch::Tensor angle_rad;   // [..., 8] geodesic error of each hypothesis
-  torch::Tensor best_rad;    // [...] the smallest
-  torch::Tensor chosen_rad;  // [...] of the one with the largest logit: what the flight network answers
+  torch::Tensor angle_rad;  // [..., 8] geodesic error of each hypothesis
+  torch::Tensor best_rad;   // [...] of the best hypothesis
+  torch::Tensor
+      chosen_rad;  // [...] of the hypothesis with the largest logit, which the CNN alone would report
 };
 
-// output [..., 57], r_lrf_trf [..., 3, 3].
+// output: of the CNN [..., 57]; r_lrf_trf: truth [..., 3, 3], in the frame of the hypotheses.
 HypothesisErrors hypothesis_errors(const torch::Tensor& output, const torch::Tensor& r_lrf_trf);
 
-// Winner-takes-most: (1 - spread) x best + spread x mean of all, + 0.3 x cross-entropy of the logits on the
-// best one,
-// + 0.1 x binary cross-entropy of the error logit on the chosen one's error over pi. A symmetric target then
-// keeps its alternatives apart instead of being blurred into their mean. `spread` keeps unused hypotheses
-// alive early on.
+// (1 - spread) * error of the best hypothesis + spread * mean error of all + 0.3 * cross-entropy of the
+// logits with the best hypothesis + 0.1 * binary cross-entropy of the error logit with the chosen
+// hypothesis's error over pi. Training mainly the best hypothesis keeps the alternatives of a symmetric
+// target apart instead of averaging them. `spread` (0 to 1) keeps unused hypotheses in training early on.
 torch::Tensor hypothesis_loss(const torch::Tensor& output, const HypothesisErrors& errors, double spread);
 
-// The recurrent part, likewise: error of the best cluster, + 0.3 x cross-entropy of choosing one as good as
-// the best (within 2 degrees), + 0.1 x cross-entropy of the expected error on the answer's. All frames count
-// alike.
+// The same for the recurrent part, over all frames with equal weight: error of the best cluster + 0.3 *
+// cross-entropy of choosing a cluster within 2 degrees of the best + 0.1 * binary cross-entropy of the error
+// logit with the estimate's error over pi. r_lrf_trf: truth [B, T, 3, 3].
 torch::Tensor tracking_loss(const TrackedSequences& tracked, const torch::Tensor& r_lrf_trf);
 
-// Geodesic distance of rotations [..., 3, 3] in radians, with a gradient that stays finite at both ends.
+// Geodesic distance of rotations [..., 3, 3] in radians. Its gradient is finite at 0 and at pi.
 torch::Tensor angle_between(const torch::Tensor& a, const torch::Tensor& b);
 
 }  // namespace tumblesight::sim

@@ -1,10 +1,10 @@
-// LibTorch and the libraries under it on one thread.
+// Limits LibTorch and the libraries that it uses to one thread.
 #pragma once
 
 namespace tumblesight::sim {
 
-// For what the calling thread computes from now on. With rendering beside it, more of LibTorch's own threads
-// only wait for each other, and OpenBLAS's, where it does the matrix products, by spinning: a quarter of the
+// Applies to everything that the calling thread computes from now on. While other threads render, LibTorch's
+// own threads mostly wait for each other. OpenBLAS's threads wait by spinning, which costs a quarter of the
 // training's time.
 void keep_to_one_thread();
 

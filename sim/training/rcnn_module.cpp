@@ -1,34 +1,41 @@
 #include "sim/training/rcnn_module.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
-#include "gnc/rcnn/network_shape.hpp"
+#include "sim/model/network_layers.hpp"
 #include "sim/training/track_module.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;
-namespace F = torch::nn::functional;
 
 namespace {
-constexpr std::array<int, BackboneImpl::kStages + 1> kChannels = {
-    shape::kSpaceToDepthChannels, shape::kConv1, shape::kConv2, shape::kConv3, shape::kConv4};
+
 constexpr double kMomentum = 0.05;
+
+torch::nn::Linear linear_of(const gnc::LayerRow& row) {
+  return torch::nn::Linear(row.inputs, row.outputs);
+}
+
+// In the checkpoints the single-frame head has a name of its own.
+std::string module_name(const gnc::LayerRow& row) {
+  return is_hidden(row) ? row.name : "output";
+}
 
 }  // namespace
 
 BackboneImpl::BackboneImpl() {
-  for (int i = 0; i < kStages; ++i) {
+  int i = 0;
+  for (const gnc::LayerRow& row : cnn_rows(gnc::LayerKind::kConvolution)) {
     const std::string stage = std::to_string(i + 1);
-    const double he = std::sqrt(2.0 / (9.0 * kChannels[i]));
-    weight[i] =
-        register_parameter("weight" + stage, torch::randn({kChannels[i + 1], kChannels[i], 3, 3}) * he);
-    offset[i] = register_parameter("offset" + stage, torch::zeros({kChannels[i + 1]}));
-    mean[i] = register_buffer("mean" + stage, torch::zeros({kChannels[i + 1]}));
-    variance[i] = register_buffer("variance" + stage, torch::ones({kChannels[i + 1]}));
-    gain_[i] = register_buffer("gain" + stage, torch::ones({kChannels[i + 1]}));
+    const double he = std::sqrt(2.0 / (9.0 * row.inputs));
+    weight[i] = register_parameter("weight" + stage, torch::randn({row.outputs, row.inputs, 3, 3}) * he);
+    offset[i] = register_parameter("offset" + stage, torch::zeros({row.outputs}));
+    mean[i] = register_buffer("mean" + stage, torch::zeros({row.outputs}));
+    variance[i] = register_buffer("variance" + stage, torch::ones({row.outputs}));
+    gain_[i] = register_buffer("gain" + stage, torch::ones({row.outputs}));
+    ++i;
   }
 }
 
@@ -48,19 +55,19 @@ torch::Tensor BackboneImpl::forward(const torch::Tensor& images, bool fast) {
 
 CnnImpl::CnnImpl() {
   backbone = register_module("backbone", Backbone());
-  dense1 = register_module("dense1", torch::nn::Linear(shape::kFlat, shape::kDense1));
-  dense2 = register_module("dense2", torch::nn::Linear(shape::kDense1, shape::kDense2));
-  output = register_module("output", torch::nn::Linear(shape::kDense2, shape::kOutput));
+  for (const gnc::LayerRow& row : cnn_rows(gnc::LayerKind::kDense))
+    dense.push_back(register_module(module_name(row), linear_of(row)));
   // Hypotheses that start apart specialise sooner.
   torch::NoGradGuard guard;
-  output->bias.slice(0, 0, shape::kColumns).normal_(0.0, 0.7);
+  dense.back()->bias.slice(0, 0, shape::kColumns).normal_(0.0, 0.7);
 }
 
 CnnOutput CnnImpl::forward(const torch::Tensor& images, bool fast) {
-  const torch::Tensor x = torch::relu(dense1(backbone(images, fast)));
+  torch::Tensor x = backbone(images, fast);
+  for (std::size_t i = 0; i + 1 < dense.size(); ++i) x = torch::relu(dense[i](x));
   CnnOutput result;
-  result.dense2 = torch::relu(dense2(x));
-  result.output = output(result.dense2);
+  result.features = x;
+  result.output = dense.back()(x);
   return result;
 }
 
@@ -74,19 +81,23 @@ torch::Tensor orthonormal_columns(const torch::Tensor& output) {
 
 RecurrentImpl::RecurrentImpl(const gnc::Inertia<float>& inertia) : inertia_(inertia) {
   lstm = register_module("lstm", torch::nn::LSTMCell(shape::kLstmInput, shape::kLstm));
-  head1 = register_module("head1", torch::nn::Linear(shape::kLstm + shape::kLstmInput, shape::kHead));
-  head2 = register_module("head2", torch::nn::Linear(shape::kHead, shape::kHeadOutput));
+  for (const gnc::LayerRow& row : head_rows()) head.push_back(register_module(row.name, linear_of(row)));
   input_mean = register_buffer("input_mean", torch::zeros({shape::kLstmInput}));
   input_deviation = register_buffer("input_deviation", torch::ones({shape::kLstmInput}));
   torch::NoGradGuard guard;
-  head2->weight.mul_(0.1);  // starts near the filter for smooth rotation
-  head2->bias.zero_();
+  head.back()->weight.mul_(0.1);  // starts near the filter for smooth rotation
+  head.back()->bias.zero_();
 }
 
 void RecurrentImpl::set_standardisation(const torch::Tensor& mean, const torch::Tensor& deviation) {
   torch::NoGradGuard guard;
   input_mean.copy_(mean);
   input_deviation.copy_(deviation.clamp_min(1e-2));
+}
+
+torch::Tensor RecurrentImpl::head_output(torch::Tensor x) {
+  for (std::size_t i = 0; i + 1 < head.size(); ++i) x = torch::relu(head[i](x));
+  return head.back()(x);
 }
 
 TrackedSequences RecurrentImpl::forward(const SequenceHypotheses& sequences) {
@@ -102,7 +113,7 @@ TrackedSequences RecurrentImpl::forward(const SequenceHypotheses& sequences) {
     const torch::Tensor input = track.lstm_input(frame);
     const torch::Tensor x = (input - input_mean) / input_deviation;
     std::tie(h, c) = lstm(x, std::make_tuple(h, c));
-    const Fusion fusion = track.advance(frame, head2(torch::relu(head1(torch::cat({h, x}, -1)))));
+    const Fusion fusion = track.advance(frame, head_output(torch::cat({h, x}, -1)));
     inputs.push_back(input.detach());
     answers.push_back(fusion.r_lrf_trf);
     means.push_back(fusion.cluster_means);

@@ -1,4 +1,4 @@
-// Stage: what both stages of training have in common: position, learning rate, log, progress, checkpoints.
+// Stage: the part that both training stages share: position, learning rate, log, progress and checkpoints.
 #pragma once
 
 #include <chrono>
@@ -13,20 +13,20 @@
 namespace tumblesight::sim {
 
 struct StageSettings {
-  std::string name;  // "cnn" or "rcnn": of the checkpoint and in the log
+  std::string name;  // "cnn" or "rcnn": in the checkpoint's file name and in the log
   std::string folder;
   std::int64_t iterations = 0;
   int batch = 0;
-  const char* unit = "";       // what a batch holds
-  double learning_rate = 0.0;  // the highest: short linear warm-up, then a cosine to zero
-  std::int64_t iterations_per_point = 0;
-  double checkpoint_s = 0.0;
+  const char* unit = "";                  // of a batch: "images" or "sequences"
+  double learning_rate = 0.0;             // maximum: short linear warm-up, then a cosine to zero
+  std::int64_t iterations_per_point = 0;  // between points of the log
+  double checkpoint_s = 0.0;              // wall-clock time between checkpoints
   std::int64_t fingerprint = 0;
 };
 
-// One number for all the settings that shape a stage's result.
+// Hash of the settings that affect a stage's result. A checkpoint of other settings is refused.
 std::int64_t fingerprint(std::initializer_list<std::uint64_t> settings);
-std::uint64_t bits_of(double setting);
+std::uint64_t bits_of(double setting);  // for fingerprint()
 
 class Stage {
  public:
@@ -34,7 +34,7 @@ class Stage {
     position_.fingerprint = settings.fingerprint;
   }
 
-  // True if a checkpoint was found: module, optimiser and position are its then.
+  // Restores module, optimiser and position from the checkpoint. Returns false if there is none.
   template <typename Module>
   bool resume(Module& module, torch::optim::Optimizer& optimizer) {
     const bool found = load_checkpoint(path(), module, optimizer, position_);
@@ -46,11 +46,11 @@ class Stage {
 
   std::int64_t iteration() const { return position_.iteration; }
   bool finished() const { return position_.iteration >= settings_.iterations; }
-  void set_rate(torch::optim::Optimizer& optimizer);
+  void set_rate(torch::optim::Optimizer& optimizer);  // for the next iteration
 
-  void advance(double loss);  // one more iteration done
+  void advance(double loss);  // after every iteration
   bool point_due() const;
-  TrainingPoint new_point();  // its validation figures are the caller's to fill
+  TrainingPoint new_point();  // the caller fills in the validation figures
   void add_point(const TrainingPoint& point);
 
   template <typename Module>

@@ -43,7 +43,7 @@ torch::Tensor orthonormalised(const torch::Tensor& matrix) {
   return rotation_from_columns(matrix.select(-1, 0), matrix.select(-1, 1));
 }
 
-// First two columns, one after the other: [..., 3, 3] -> [..., 6].
+// The first column, then the second: [..., 3, 3] -> [..., 6].
 torch::Tensor two_columns(const torch::Tensor& rotation) {
   return rotation.narrow(-1, 0, 2).transpose(-1, -2).flatten(-2);
 }
@@ -52,7 +52,8 @@ torch::Tensor trace_of_transpose_product(const torch::Tensor& a, const torch::Te
   return (a * b).sum({-1, -2});
 }
 
-// [..., K, 3, 3] and weights [..., K] -> the mean of the cluster of every candidate [..., K, 3, 3].
+// Candidates [..., K, 3, 3] with weights [..., K] -> mean of the cluster around each candidate [..., K, 3,
+// 3].
 torch::Tensor means_of_clusters(const torch::Tensor& candidates, const torch::Tensor& weights) {
   const torch::Tensor flat = candidates.flatten(-2);
   const torch::Tensor same = torch::matmul(flat, flat.transpose(-1, -2)).detach() > kTraceOfSameAttitude;
@@ -60,7 +61,7 @@ torch::Tensor means_of_clusters(const torch::Tensor& candidates, const torch::Te
   return orthonormalised(torch::matmul(shares / shares.sum(-1, true), flat).view_as(candidates));
 }
 
-// Of every row the entry `index` [B] along the dimension `of`.
+// For every row of the batch, the entry `index` [B] along the dimension `of`.
 torch::Tensor picked(const torch::Tensor& values, const torch::Tensor& index, int of = 1) {
   std::vector<std::int64_t> one(static_cast<std::size_t>(values.dim()), 1), all = values.sizes().vec();
   one[0] = -1;
@@ -106,7 +107,7 @@ MotionTensors spin(const MotionTensors& motion) {
   return {torch::matmul(rotation_by(motion.rate_lrf), motion.r_lrf_trf), bounded(motion.rate_lrf)};
 }
 
-// By the flight code itself, one by one: the gradient takes the turn as given.
+// Calls the flight code for each motion. The gradient treats the turn as a constant.
 MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia<float>* laws) {
   using RowMajor = Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>;
   const torch::Tensor before = motion.r_lrf_trf.detach().cpu().contiguous();
@@ -158,7 +159,7 @@ void TrackModule::predict(const FrameHypotheses& frame) {
     log_likelihood_ = torch::zeros({rows, gnc::kLaws}, frame.logits.options());
     return;
   }
-  // The first law is a spin, through which the gradient goes.
+  // The first law is a spin: the gradient flows through it.
   static_assert(gnc::kSpinLaw == 0);
   constexpr int kOthers = gnc::kLaws - 1;
   const MotionTensors spun = spin({r_lrf_trf_.narrow(1, 0, 1), rate_lrf_.narrow(1, 0, 1)});
@@ -175,19 +176,20 @@ torch::Tensor TrackModule::lstm_input(const FrameHypotheses& frame) const {
       {frame.features, two_columns(relative).flatten(1), frame.probabilities, two_columns(predicted)}, -1);
 }
 
-Fusion TrackModule::advance(const FrameHypotheses& frame, const torch::Tensor& word) {
+Fusion TrackModule::advance(const FrameHypotheses& frame, const torch::Tensor& head_output) {
   const FilterGains gains = gains_at(frames_);
   const torch::Tensor column = torch::ones({frame.logits.size(0), 1}, frame.logits.options());
   const torch::Tensor prior =
       torch::cat({frame.probabilities.clamp_min(kLeastProbability), column * gains.predicted_weight}, -1);
   const torch::Tensor weights =
-      prior * word.narrow(-1, kCandidates, kCandidates).clamp(-kLargestExponent, kLargestExponent).exp();
+      prior *
+      head_output.narrow(-1, kCandidates, kCandidates).clamp(-kLargestExponent, kLargestExponent).exp();
   const torch::Tensor anchor_logits =
-      torch::cat({frame.logits, 0.0 * column}, -1) + word.narrow(-1, 0, kCandidates);
+      torch::cat({frame.logits, 0.0 * column}, -1) + head_output.narrow(-1, 0, kCandidates);
   const torch::Tensor anchor = anchor_logits.argmax(-1);
   const torch::Tensor rate_gain =
-      torch::sigmoid(word.select(-1, 2 * kCandidates) + gains.rate_logit).view({-1, 1, 1});
-  const torch::Tensor error_logit = word.select(-1, 2 * kCandidates + 1);
+      torch::sigmoid(head_output.select(-1, 2 * kCandidates) + gains.rate_logit).view({-1, 1, 1});
+  const torch::Tensor error_logit = head_output.select(-1, 2 * kCandidates + 1);
 
   const torch::Tensor hypotheses = frame.r_lrf_trf.unsqueeze(1);  // [B, 1, 8, 3, 3]
   const torch::Tensor candidates =
@@ -210,7 +212,7 @@ Fusion TrackModule::advance(const FrameHypotheses& frame, const torch::Tensor& w
       (kPi * torch::sigmoid(error_logit)).square().clamp_min(kLeastVariance_rad2).detach().unsqueeze(1);
   log_likelihood_ = kMemory * log_likelihood_ - gains.evidence / variance * misses;
   log_likelihood_ = (log_likelihood_ - log_likelihood_.amax(-1, true)).clamp_min(kLeastLogLikelihood);
-  // A law that has lost the target goes on from where the best of those that see it does.
+  // A law that has lost the target continues from the state of the best law that has not.
   const torch::Tensor lost = misses >= kMissOfLostTarget;
   const torch::Tensor best = standing().masked_fill(lost, -1e9).argmax(-1);
   const torch::Tensor moved = (lost & ~lost.all(-1, true)).unsqueeze(-1);

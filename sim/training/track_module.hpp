@@ -1,5 +1,7 @@
-// gnc/rcnn/attitude_track.hpp in LibTorch, for batches and with gradients. The flight code must give the same
-// numbers (tests/unit/sim/training proves it).
+// gnc/rcnn/attitude_track.hpp in LibTorch: for batches, with gradients. The flight code gives the same values
+// (tests/unit/sim/training/export_test.cpp).
+//
+// Shapes: B rows of a batch, 8 hypotheses, 9 candidates, 5 laws of motion.
 #pragma once
 
 #include <torch/torch.h>
@@ -8,9 +10,11 @@
 
 namespace tumblesight::sim {
 
-// From two columns [..., 3] each, by Gram-Schmidt: [..., 3, 3].
+// Gram-Schmidt orthonormalisation of two columns [..., 3] each; the third is their cross product: [..., 3,
+// 3].
 torch::Tensor rotation_from_columns(const torch::Tensor& a, const torch::Tensor& b);
 
+// The CNN's output for one frame.
 struct FrameHypotheses {
   FrameHypotheses(const torch::Tensor& features, const torch::Tensor& r_lrf_trf, const torch::Tensor& logits);
   torch::Tensor features;       // [B, 128]
@@ -19,6 +23,7 @@ struct FrameHypotheses {
   torch::Tensor probabilities;  // [B, 8]
 };
 
+// The estimate for one frame; as TrackedSequences, without T.
 struct Fusion {
   torch::Tensor r_lrf_trf;      // [B, 3, 3]
   torch::Tensor cluster_means;  // [B, 9, 3, 3]
@@ -26,21 +31,23 @@ struct Fusion {
   torch::Tensor error_logit;    // [B]
 };
 
-// One track a row of the batch. For every frame: predict(), lstm_input(), advance().
+// One track per row of the batch. For every frame call predict(), lstm_input() and advance(), in this order.
 class TrackModule {
  public:
   explicit TrackModule(const gnc::Inertia<float>& inertia) : laws_(gnc::motion_laws<float>(inertia)) {}
   void predict(const FrameHypotheses& frame);
   torch::Tensor lstm_input(const FrameHypotheses& frame) const;  // [B, 190]
-  Fusion advance(const FrameHypotheses& frame, const torch::Tensor& word);
+  // `head_output`: of the recurrent head [B, 20].
+  Fusion advance(const FrameHypotheses& frame, const torch::Tensor& head_output);
 
  private:
-  torch::Tensor standing() const;  // log-likelihood less the evidence asked [B, 5]
-  torch::Tensor law() const;       // the one that speaks [B]
+  torch::Tensor standing() const;  // log-likelihood minus the evidence required (gnc::kEvidenceAsked) [B, 5]
+  torch::Tensor law() const;       // index of the law with the highest standing [B]
 
   gnc::MotionLaws<float> laws_;
   int frames_ = 0;
-  // By each law of motion; after predict() in the frame to come, after advance() in the frame that was.
+  // Per law of motion. After predict() they refer to the coming frame, after advance() to the frame just
+  // processed.
   torch::Tensor r_lrf_trf_, rate_lrf_;  // [B, 5, 3, 3], [B, 5, 3]
   torch::Tensor log_likelihood_;        // [B, 5]
 };

@@ -1,5 +1,5 @@
-// The two stages of training: first the single-frame CNN on endless fresh frames, then the LSTM and its head
-// on the frozen CNN's features over whole sequences.
+// The two stages of training: first the CNN on an endless stream of newly rendered frames, then the LSTM and
+// the recurrent head on the frozen CNN's features over whole sequences. Described in docs/training.md.
 #pragma once
 
 #include <atomic>
@@ -14,8 +14,8 @@
 namespace tumblesight::sim {
 
 struct TrainingSettings {
-  std::string folder;      // checkpoints, log and model image go here
-  std::string start_from;  // model image whose CNN training begins with; empty: random weights
+  std::string folder;      // for checkpoints, log and model images; must exist
+  std::string start_from;  // model image whose CNN is the starting point; empty: random weights
   std::uint64_t seed = 1;
   int workers = 1;        // rendering threads
   bool bfloat16 = false;  // convolutions in bfloat16
@@ -26,21 +26,22 @@ struct TrainingSettings {
   int cnn_batch = 64;
   double cnn_learning_rate = 1e-3;
 
-  std::int64_t rcnn_sequences = 16'000;  // different ones
+  std::int64_t rcnn_sequences = 16'000;  // distinct sequences
   std::int64_t rcnn_iterations = 4'000;
   int rcnn_batch = 128;
   double rcnn_learning_rate = 1e-3;
 };
 
-// Each stage resumes from the checkpoint in `settings.folder` if there is one and returns at once if it was
-// finished. Both end early, after a checkpoint, when `stop` becomes true; they return whether the stage is
-// finished.
+// Each stage resumes from the checkpoint in `settings.folder` if there is one, and returns at once if that
+// stage was finished. When `stop` becomes true, it saves a checkpoint and returns. Returns whether the stage
+// is finished. Throws std::runtime_error if a file cannot be read or written, or if a checkpoint is of other
+// settings.
 bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn,
                const std::atomic<bool>& stop);
 bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings, const Cnn& cnn,
                 Recurrent& recurrent, const std::atomic<bool>& stop);
 
-// Validation figures in degrees of a point of the log, from the errors of the best and of the chosen
+// Fills in the validation figures of a log point from the errors [N] of the best and of the chosen
 // hypothesis.
 void fill_errors(TrainingPoint& point, const torch::Tensor& best_rad, const torch::Tensor& chosen_rad);
 

@@ -10,15 +10,15 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kGradientNorm = 1.0;  // paper: gradient threshold
+constexpr double kGradientNorm = 1.0;  // the paper's gradient threshold
 constexpr double kWeightDecay = 1e-4;
 constexpr int kValidationFrames = 1024;
 constexpr int kCalibrationFrames = 512;
 constexpr std::int64_t kIterationsPerPoint = 500;
 constexpr std::uint64_t kValidationSeed = 0x76616C6964ULL;
 
-// Share of the mean over all hypotheses in the loss: 30 % at the start from random weights, 2 % after a
-// quarter.
+// Weight of the mean over all hypotheses in the loss: 2 %; from random weights 30 % at first, falling to 2 %
+// in the first quarter.
 double spread_at(const TrainingSettings& settings, std::int64_t iteration, std::int64_t total) {
   if (!settings.start_from.empty()) return 0.02;
   const double done = static_cast<double>(iteration) / (0.25 * static_cast<double>(total));
@@ -52,8 +52,8 @@ double train_once(Cnn& cnn, const FrameBatch& batch, const TrainingSettings& set
   return loss.item<double>();
 }
 
-// Returns what names the weights to begin with.
-std::uint64_t begin(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn) {
+// Loads the starting weights and returns their CRC-32; 0 for random weights.
+std::uint64_t load_start(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn) {
   if (settings.start_from.empty()) return 0;
   const std::unique_ptr<Float32Model> model = read_float32_model(settings.start_from);
   import_cnn(model->weights, render_frames(targets, settings.seed, 0, kCalibrationFrames).images, cnn);
@@ -61,7 +61,7 @@ std::uint64_t begin(const TrainingTargets& targets, const TrainingSettings& sett
 }
 
 StageSettings stage_settings(const TrainingTargets& targets, const TrainingSettings& settings,
-                             std::uint64_t beginning) {
+                             std::uint64_t start_crc32) {
   StageSettings stage;
   stage.name = "cnn";
   stage.folder = settings.folder;
@@ -73,7 +73,7 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.checkpoint_s = settings.checkpoint_s;
   stage.fingerprint = fingerprint({settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
                                    static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32,
-                                   conditions_hash(targets.conditions), beginning,
+                                   conditions_hash(targets.conditions), start_crc32,
                                    bits_of(settings.cnn_learning_rate), settings.bfloat16});
   return stage;
 }
@@ -89,7 +89,7 @@ void fill_errors(TrainingPoint& point, const torch::Tensor& best_rad, const torc
 
 bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn,
                const std::atomic<bool>& stop) {
-  const StageSettings shape = stage_settings(targets, settings, begin(targets, settings, cnn));
+  const StageSettings shape = stage_settings(targets, settings, load_start(targets, settings, cnn));
   Stage stage(shape);
   cnn->to(settings.device);
   torch::optim::AdamW optimizer(

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <memory>
 #include <thread>
 
@@ -21,12 +20,12 @@ constexpr double kGradientNorm = 1.0;
 constexpr double kWeightDecay = 1e-3;
 constexpr std::int64_t kValidationSequences = 512;
 constexpr std::uint64_t kValidationSeed = 0x76616C6964ULL + 1;
-constexpr std::int64_t kFirstSequences = 2048;      // there before the first iteration
-constexpr std::int64_t kSequencesPerIteration = 8;  // by how much the supply grows while it is learnt from
+constexpr std::int64_t kFirstSequences = 2048;      // available before the first iteration
+constexpr std::int64_t kSequencesPerIteration = 8;  // added with every iteration
 constexpr std::int64_t kIterationsPerPoint = 100;
 
-// Which sequences the iteration learns from depends on its number only, so a resumed run goes on as if
-// uninterrupted.
+// Rows of the iteration's batch. They depend only on seed and iteration, so that a resumed run equals an
+// uninterrupted one.
 torch::Tensor draw(std::uint64_t seed, std::int64_t iteration, std::int64_t available, int batch) {
   auto generator =
       at::make_generator<at::CPUGeneratorImpl>(seed * 1'000'003ULL + static_cast<std::uint64_t>(iteration));
@@ -41,7 +40,7 @@ void standardise(Recurrent& recurrent, const FeatureSet& data, const torch::Devi
   recurrent->set_standardisation(inputs.mean(0), inputs.std(0));
 }
 
-// Of the paper's last frame.
+// Errors in the last frame of the paper's sequences.
 void validate(Recurrent& recurrent, const FeatureSet& data, const torch::Device& device,
               TrainingPoint& point) {
   torch::NoGradGuard guard;
@@ -65,12 +64,11 @@ double train_once(Recurrent& recurrent, const FeatureSet& data, const torch::Ten
   return loss.item<double>();
 }
 
-// Of the frozen CNN: an LSTM is worth nothing on another one's features.
+// CRC-32 of the frozen CNN's weights. An LSTM only works with the features of its own CNN.
 std::uint32_t crc32_of_cnn(const gnc::NetworkWeights<gnc::Float32>& weights) {
   gnc::Crc32 crc;
   gnc::for_each_tensor(weights, [&](const char* layer, const char*, const auto& tensor) {
-    const bool recurrent = std::strncmp(layer, "lstm", 4) == 0 || std::strncmp(layer, "head", 4) == 0;
-    if (!recurrent) crc.add_f32(tensor.data(), tensor.size());
+    if (gnc::layer_index(layer) < gnc::kLstmLayer) crc.add_f32(tensor.data(), tensor.size());
   });
   return crc.value();
 }
@@ -100,7 +98,7 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   return stage;
 }
 
-// False when it was told to stop while waiting.
+// Returns false if `stop` became true before `count` sequences were ready.
 bool wait_for(SequenceFeatures& supply, std::int64_t count, const char* what, const std::atomic<bool>& stop) {
   ProgressLine progress;
   for (std::int64_t ready = supply.ready(); ready < count && !stop; ready = supply.ready()) {

@@ -16,13 +16,12 @@ namespace tumblesight::gnc {
 void fill_random(NetworkWeights<Float32>& weights, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
-  for_each_layer(weights, [&](const char* name, auto& layer) {
-    // Of what a weight is added up over: inputs of a convolution or a dense layer, hidden units of the
-    // others.
+  for_each_layer(weights, [&](const LayerRow& row, auto& layer) {
+    // How many weights are added up: a channel's inputs in the CNN, hidden units behind it.
     std::size_t fan_in = layer.weight.size() / layer.bias.size();
-    if (std::strcmp(name, "lstm") == 0) fan_in = shape::kLstm;
-    if (std::strncmp(name, "head", 4) == 0) fan_in = shape::kHead;
-    for_each_tensor_of(name, layer, [&](const char*, const char* part, auto& tensor) {
+    if (row.kind == LayerKind::kLstm) fan_in = shape::kLstm;
+    if (layer_index(row.name) > kLstmLayer) fan_in = shape::kHead;
+    for_each_tensor_of(layer, [&](const char* part, auto& tensor) {
       const float bound =
           std::strcmp(part, "bias") == 0 ? 0.1F : std::sqrt(6.0F / static_cast<float>(fan_in));
       for (float& value : tensor) value = bound * uniform(engine);
@@ -30,13 +29,13 @@ void fill_random(NetworkWeights<Float32>& weights, unsigned seed) {
   });
 }
 
-// Integers whose sums fill each layer's range: shifts by the sums' expected size.
+// Random integers. The shifts are chosen so that the outputs use each layer's range.
 class RandomIntegers {
  public:
   explicit RandomIntegers(unsigned seed) : engine_(seed) {
-    constexpr std::array<std::uint8_t, 10> kShifts{8, 9, 9, 7, 8, 8, 20, 22, 10, 21};
+    constexpr std::array<std::uint8_t, kLayerCount> kShifts{8, 9, 9, 7, 8, 8, 20, 22, 10, 21};
     std::size_t index = 0;
-    for_each_layer(weights, [&](const char*, auto& layer) {
+    for_each_layer(weights, [&](const LayerRow&, auto& layer) {
       put(layer.weight);
       if constexpr (HasRecurrent<std::remove_reference_t<decltype(layer)>>::value) put(layer.recurrent);
       for (std::int32_t& bias : layer.bias) bias = 40 * next();

@@ -1,4 +1,4 @@
-// Random networks and images for the RCNN's tests. Not for accuracy: nothing here was trained.
+// Random networks and frames for tests. The networks are not trained, so their attitudes are meaningless.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace tumblesight::gnc {
 
-// Weights that keep the activations near 1 from layer to layer.
+// Weights with which the activations of all layers are of order 1.
 void fill_random(NetworkWeights<Float32>& weights, unsigned seed);
 ModelHeader test_header();
 template <class N>
 std::vector<std::uint8_t> random_model_image(unsigned seed, const ModelHeader& header = test_header());
-// The same, for the whole program: weights in fixed point are read where the image lies.
+// The same, kept until the program ends: fixed-point weights are read from the image.
 template <class N>
 const std::vector<std::uint8_t>& lasting_model_image(unsigned seed);
 
-// A blob of random depths in the middle, nothing around it; seen in the LRF.
+// Random depths in the middle, nothing around them; the view is the LRF.
 DepthImage random_depth_image(unsigned seed);
 LstmInput<Float32> random_lstm_input(unsigned seed);
 // A frame that make_depth_image() accepts for test_header()'s projection.

@@ -14,7 +14,7 @@ struct Float {
   using Vector = __m256;
   static constexpr double kMacs = 8;
   [[gnu::always_inline]] static inline void add(Vector& sum, Vector a, Vector b) {
-    sum = _mm256_add_ps(sum, _mm256_mul_ps(a, b));  // rounded each, as the float32 kernels do
+    sum = _mm256_add_ps(sum, _mm256_mul_ps(a, b));  // two roundings, as in the float32 kernels
   }
 };
 
@@ -27,7 +27,7 @@ void float32(std::uint64_t rounds) {
 
 }  // namespace
 
-const Chains kFixedAvx2{fixed_point, kMacsARound<Int8>};
-const Chains kFloatAvx2{float32, kMacsARound<Float>};
+const Chains kFixedAvx2{fixed_point, kMacsPerRound<Int8>};
+const Chains kFloatAvx2{float32, kMacsPerRound<Float>};
 
 }  // namespace tumblesight::sim::peak

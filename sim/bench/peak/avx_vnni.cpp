@@ -17,6 +17,6 @@ void fixed_point(std::uint64_t rounds) {
 
 }  // namespace
 
-const Chains kFixedAvxVnni{fixed_point, kMacsARound<Int8>};
+const Chains kFixedAvxVnni{fixed_point, kMacsPerRound<Int8>};
 
 }  // namespace tumblesight::sim::peak

@@ -1,4 +1,4 @@
-// Independent chains of one step, enough of them to hide its latency.
+// Independent chains of one instruction sequence, enough of them to hide its latency.
 #pragma once
 
 #include <immintrin.h>
@@ -10,25 +10,26 @@ namespace {
 
 constexpr int kChains = 12;
 
-// Step: a Vector type, kMacs a step, and `static void add(Vector& sum, Vector a, Vector b)`.
+// Step: a Vector type, its kMacs, and `static void add(Vector& sum, Vector a, Vector b)`.
 template <class Step>
 [[gnu::always_inline]] inline void run_chains(std::uint64_t rounds) {
   typename Step::Vector sum[kChains] = {};
   typename Step::Vector a = {}, b = {};
-  asm volatile("" : "+x"(b));  // any number, for all that the compiler knows
+  asm volatile("" : "+x"(b));  // the compiler must not know its value
   for (std::uint64_t i = 0; i < rounds; ++i) {
 #pragma GCC unroll 12
     for (int chain = 0; chain < kChains; ++chain) {
-      asm volatile("" : "+x"(a));  // as if it had changed
+      asm volatile("" : "+x"(a));  // nor assume that it stays the same
       Step::add(sum[chain], a, b);
     }
   }
 #pragma GCC unroll 12
-  for (int chain = 0; chain < kChains; ++chain) asm volatile("" : : "x"(sum[chain]));  // as if they were used
+  for (int chain = 0; chain < kChains; ++chain)
+    asm volatile("" : : "x"(sum[chain]));  // keeps the results alive
 }
 
 template <class Step>
-constexpr double kMacsARound = kChains* Step::kMacs;
+constexpr double kMacsPerRound = kChains* Step::kMacs;
 
 }  // namespace
 }  // namespace tumblesight::sim::peak

@@ -7,7 +7,7 @@ struct Float {
   using Vector = __m128;
   static constexpr double kMacs = 4;
   [[gnu::always_inline]] static inline void add(Vector& sum, Vector a, Vector b) {
-    sum = _mm_add_ps(sum, _mm_mul_ps(a, b));  // rounded each, as the float32 kernels do
+    sum = _mm_add_ps(sum, _mm_mul_ps(a, b));  // two roundings, as in the float32 kernels
   }
 };
 
@@ -17,6 +17,6 @@ void float32(std::uint64_t rounds) {
 
 }  // namespace
 
-const Chains kFloatSse2{float32, kMacsARound<Float>};
+const Chains kFloatSse2{float32, kMacsPerRound<Float>};
 
 }  // namespace tumblesight::sim::peak

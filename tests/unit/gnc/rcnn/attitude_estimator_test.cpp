@@ -88,7 +88,7 @@ TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
       const DepthImage image = sequence_image(frame);
       const ReferenceNetwork::Frame frame_output = network.infer_frame(image);
       track.observe(frame_output.output, converted<float>(image.r_lrf_view).cast<double>());
-      track.advance(network.infer_sequence(track.lstm_input(frame_output.dense2)));
+      track.advance(network.infer_sequence(track.lstm_input(frame_output.features)));
 
       AttitudeEstimate estimate;
       AttitudeEstimator<Float32>::State state;
@@ -149,10 +149,10 @@ TEST(AttitudeEstimator, ExpectsAnErrorOfPiForANonFiniteAttitude) {
   auto weights = std::make_unique<NetworkWeights<Float32>>();
   fill_random(*weights, 38);
   // The hypotheses overflow, while the expected errors are small.
-  weights->cnn_out.bias.fill(3e38F);
-  weights->cnn_out.weight.fill(3e38F);
-  weights->cnn_out.bias[shape::kOutput - 1] = -1e38F;
-  weights->head2.bias[shape::kHeadOutput - 1] = -30.0F;
+  layer_weights<kCnnOutputLayer>(*weights).bias.fill(3e38F);
+  layer_weights<kCnnOutputLayer>(*weights).weight.fill(3e38F);
+  layer_weights<kCnnOutputLayer>(*weights).bias[shape::kOutput - 1] = -1e38F;
+  layer_weights<kHeadOutputLayer>(*weights).bias[shape::kHeadOutput - 1] = -30.0F;
   std::vector<std::uint8_t> image(kModelImageSize<Float32>);
   ASSERT_EQ(write_model_image<Float32>(test_header(), *weights, image.data(), image.size()), image.size());
   auto estimator = std::make_unique<AttitudeEstimator<Float32>>();

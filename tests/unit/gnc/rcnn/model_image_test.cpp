@@ -32,9 +32,9 @@ constexpr std::size_t kSections = 88;
 constexpr std::size_t kHeaderCrc = 92;
 constexpr std::size_t kTable = 96;
 constexpr std::size_t kFloatData = 448;  // 96 + 16 * 21, to the next multiple of 64
-constexpr std::size_t kFixedData = 640;  // 96 + 16 * 31, likewise
+constexpr std::size_t kFixedData = 640;  // 96 + 16 * 31, to the next multiple of 64
 
-// Makes the header's CRC right again after a change, so that the check behind it is the one that speaks.
+// Corrects the header's CRC after a change, so that a later check finds the error.
 void seal_header(Bytes& image) {
   const std::size_t end = (kTable + 16 * get_u32(image, kSections) + 63) / 64 * 64;
   Crc32 crc;
@@ -74,14 +74,15 @@ std::vector<Damage> damages() {
       {"NextVersion", ModelStatus::kBadVersion, sealed([](Bytes& b) { b[4] = 4; })},
       {"OtherHeaderSize", ModelStatus::kBadSize, sealed([](Bytes& b) { b[6] = 92; })},
       {"NoSections", ModelStatus::kBadSize, sealed([](Bytes& b) { put_u32(b, kSections, 0); })},
-      {"AbsurdSectionCount", ModelStatus::kBadSize, [](Bytes& b) { put_u32(b, kSections, 0xFFFFFFFFU); }},
+      {"HugeSectionCount", ModelStatus::kBadSize, [](Bytes& b) { put_u32(b, kSections, 0xFFFFFFFFU); }},
       {"LastByteMissing", ModelStatus::kBadSize, [](Bytes& b) { b.pop_back(); }},
       {"OneByteMore", ModelStatus::kBadSize, [](Bytes& b) { b.push_back(0); }},
       {"OtherTotalSize", ModelStatus::kBadSize, sealed([](Bytes& b) { b[8] ^= 4; })},
       {"BitFlipInTarget", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[17] ^= 1; }},
       {"BitFlipInSectionTable", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[200] ^= 0x80; }},
       {"BitFlipInHeaderCrc", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[kHeaderCrc] ^= 1; }},
-      {"RubbishBehindTheSectionTable", ModelStatus::kBadHeaderCrc, [](Bytes& b) { b[kFloatData - 1] = 1; }},
+      {"NonzeroByteBehindTheSectionTable", ModelStatus::kBadHeaderCrc,
+       [](Bytes& b) { b[kFloatData - 1] = 1; }},
       {"OtherNumerics", ModelStatus::kBadNumerics, sealed([](Bytes& b) { b[84] = 1; })},
       {"UnknownNumerics", ModelStatus::kBadNumerics, sealed([](Bytes& b) { b[84] = 2; })},
       {"OtherArchitecture", ModelStatus::kBadArchitecture, sealed([](Bytes& b) { b[12] ^= 1; })},
@@ -93,7 +94,7 @@ std::vector<Damage> damages() {
        sealed([](Bytes& b) { std::fill_n(b.begin() + 16, 32, 'a'); })},
       {"UnprintableTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[18] = 7; })},
       {"DeleteCharacterInTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[18] = 0x7F; })},
-      {"RubbishBehindTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[40] = 'x'; })},
+      {"NonzeroByteBehindTarget", ModelStatus::kBadTarget, sealed([](Bytes& b) { b[40] = 'x'; })},
       {"NoSwath", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 48, 99); })},
       {"HugeSwath", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 48, 100'001); })},
       {"NoRadius", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 52, 0); })},
@@ -181,7 +182,7 @@ TEST(ModelImage, ReadsBackWhatWasWrittenBitForBit) {
 }
 
 // Verifies TS-IFC-010.
-TEST(ModelImage, StandsInMemoryAsDocumented) {
+TEST(ModelImage, HasTheDocumentedLayout) {
   const Bytes& image = good_image();
   EXPECT_EQ(std::string(image.begin(), image.begin() + 4), "TSRM");
   EXPECT_EQ(image[4] + 256 * image[5], 3);
@@ -207,13 +208,13 @@ TEST(ModelImage, StandsInMemoryAsDocumented) {
   EXPECT_EQ(get_u32(fixed, 84), 1U);
   EXPECT_EQ(get_u32(fixed, kSections), 31U);
   EXPECT_EQ(get_u32(fixed, kTable + 4), kFixedData);
-  EXPECT_EQ(get_u32(fixed, kTable + 8), 9U * 4 * 32);                   // a byte a weight
+  EXPECT_EQ(get_u32(fixed, kTable + 8), 9U * 4 * 32);                   // one byte per weight
   EXPECT_EQ(get_u32(fixed, kTable + 16 + 4), kFixedData + 9 * 4 * 32);  // bias
   EXPECT_EQ(get_u32(fixed, kTable + 16 + 8), 4U * 32);
   EXPECT_EQ(get_u32(fixed, kTable + 32 + 8), 4U * 32);  // shifts
 }
 
-TEST(IsFloat32, IsToldByTheHeaderOfAWholeImageOnly) {
+TEST(IsFloat32, NeedsAnIntactHeader) {
   const Bytes& fixed = lasting_model_image<FixedPoint>(21);
   EXPECT_TRUE(is_float32(good_image().data(), good_image().size()));
   EXPECT_FALSE(is_float32(fixed.data(), fixed.size()));
@@ -230,7 +231,7 @@ ModelStatus read_fixed(const Bytes& image) {
   return read_model_image<FixedPoint>(image.data(), image.size(), nullptr, header, *weights);
 }
 
-// Section `index` of the fixed-point image: three a layer, but four of the LSTM.
+// Section `index` of the fixed-point image. Each layer has three sections, the LSTM four.
 std::size_t offset_of(const Bytes& image, int index) {
   return get_u32(image, kTable + 16 * static_cast<std::size_t>(index) + 4);
 }
@@ -242,14 +243,14 @@ TEST(FixedPointImage, LeavesItsWeightsInPlace) {
   auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
   ASSERT_EQ(read_model_image<FixedPoint>(image.data(), image.size(), "test_craft", header, *weights),
             ModelStatus::kOk);
-  EXPECT_EQ(static_cast<const void*>(weights->conv1.weight.data()), image.data() + kFixedData);
+  EXPECT_EQ(static_cast<const void*>(layer_weights<0>(*weights).weight.data()), image.data() + kFixedData);
   Bytes again(image.size());
   ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, again.data(), again.size()), image.size());
   EXPECT_TRUE(std::equal(image.begin() + kFixedData, image.end(), again.begin() + kFixedData));
 }
 
 // Verifies TS-IFC-040.
-TEST(FixedPointImage, IsRefusedWhenAShiftIsOutOfItsRange) {
+TEST(FixedPointImage, IsRefusedIfAShiftIsOutOfRange) {
   ASSERT_EQ(read_fixed(random_model_image<FixedPoint>(31)), ModelStatus::kOk);
   for (const int section : {2, 20, 24}) {  // conv1, cnn_out, lstm
     for (const std::uint32_t shift : {0U, 63U, 255U, 0xFFFFFFFFU}) {
@@ -260,12 +261,12 @@ TEST(FixedPointImage, IsRefusedWhenAShiftIsOutOfItsRange) {
     }
   }
   Bytes image = random_model_image<FixedPoint>(31);
-  put_u32(image, offset_of(image, 2), 31);  // of an activation at most 30
+  put_u32(image, offset_of(image, 2), 31);  // for an activation at most 30
   seal_section(image, 2);
   EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue);
 }
 
-TEST(FixedPointImage, TakesAShiftBeyondASumsWidthWhereNumbersLeaveTheNetwork) {
+TEST(FixedPointImage, MayHaveShiftsUpTo62ForOutputsAndGates) {
   for (const int section : {20, 24}) {  // cnn_out, lstm
     for (const std::uint32_t shift : {1U, 31U, 32U, 62U}) {
       Bytes image = random_model_image<FixedPoint>(31);
@@ -277,7 +278,7 @@ TEST(FixedPointImage, TakesAShiftBeyondASumsWidthWhereNumbersLeaveTheNetwork) {
 }
 
 // Verifies TS-IFC-040.
-TEST(FixedPointImage, IsRefusedWhenASumCouldLeave32Bits) {
+TEST(FixedPointImage, IsRefusedIfASumCouldLeave32Bits) {
   for (const int section : {1, 19, 23, 29}) {  // biases of conv1, cnn_out, lstm, head2
     for (const std::uint32_t bias : {0x7FFFFFFFU, 0x80000000U, 0x7FFF0000U}) {
       Bytes image = random_model_image<FixedPoint>(32);
@@ -295,7 +296,7 @@ TEST(FixedPointImage, IsRefusedWhenASumCouldLeave32Bits) {
 }
 
 // Verifies TS-IFC-040.
-TEST(FixedPointImage, IsRefusedWhenTwoSumsOfAConvolutionCouldBeTooFarApart) {
+TEST(FixedPointImage, IsRefusedIfTheDifferenceOfTwoSumsCouldLeave32Bits) {
   Bytes image = random_model_image<FixedPoint>(7);
   put_u32(image, offset_of(image, 1), 1U << 30);  // a bias of conv1
   seal_section(image, 1);
@@ -303,7 +304,7 @@ TEST(FixedPointImage, IsRefusedWhenTwoSumsOfAConvolutionCouldBeTooFarApart) {
 }
 
 // Verifies TS-IFC-040.
-TEST(FixedPointImage, IsRefusedWithAWeightThatHasNoOpposite) {
+TEST(FixedPointImage, IsRefusedIfAWeightIsMinus128) {
   for (const int section : {0, 21, 22}) {  // conv1, lstm: forward and recurrent
     Bytes image = random_model_image<FixedPoint>(33);
     image[offset_of(image, section) + 5] = 0x80;
@@ -324,7 +325,7 @@ TEST(ModelImage, IsAcceptedForAnyTargetWhenNoneIsExpected) {
   EXPECT_EQ(read_model_image<Float32>(nullptr, 0, nullptr, header, *weights), ModelStatus::kTooShort);
 }
 
-TEST(ModelImage, IsNotWrittenWhereItDoesNotFit) {
+TEST(ModelImage, IsNotWrittenIntoTooSmallABuffer) {
   auto weights = std::make_unique<NetworkWeights<Float32>>();
   Bytes out(kModelImageSize<Float32> - 1, 0x55);
   EXPECT_EQ(write_model_image<Float32>(test_header(), *weights, out.data(), out.size()), 0U);
@@ -332,7 +333,7 @@ TEST(ModelImage, IsNotWrittenWhereItDoesNotFit) {
 }
 
 // Verifies TS-IFC-020.
-TEST(ModelImage, EverySingleBitFlipInHeaderAndSectionTableIsFound) {
+TEST(ModelImage, IsRefusedAfterAnyBitFlipInHeaderOrSectionTable) {
   Bytes image = good_image();
   ModelHeader header;
   auto weights = std::make_unique<NetworkWeights<Float32>>();
@@ -345,7 +346,7 @@ TEST(ModelImage, EverySingleBitFlipInHeaderAndSectionTableIsFound) {
   }
 }
 
-TEST(ModelHeader, TakesOnlyNamesThatTheReaderAccepts) {
+TEST(ModelHeader, AcceptsOnlyNamesThatTheReaderAccepts) {
   ModelHeader header = test_header();
   EXPECT_FALSE(set_target(header, ""));
   EXPECT_FALSE(set_target(header, std::string(32, 'a').c_str()));
@@ -355,14 +356,14 @@ TEST(ModelHeader, TakesOnlyNamesThatTheReaderAccepts) {
 }
 
 // Verifies TS-IFC-050.
-TEST(ModelStatus, EveryValueHasItsOwnWords) {
-  std::vector<std::string> words;
-  // One more than there are: it has words too.
+TEST(ModelStatus, HasADistinctTextForEveryValue) {
+  std::vector<std::string> texts;
+  // One value beyond the last: an unknown status has a text too.
   for (int i = 0; i <= static_cast<int>(ModelStatus::kBadNumerics) + 1; ++i) {
-    words.emplace_back(to_string(static_cast<ModelStatus>(i)));
+    texts.emplace_back(to_string(static_cast<ModelStatus>(i)));
   }
-  std::sort(words.begin(), words.end());
-  EXPECT_EQ(std::adjacent_find(words.begin(), words.end()), words.end());
+  std::sort(texts.begin(), texts.end());
+  EXPECT_EQ(std::adjacent_find(texts.begin(), texts.end()), texts.end());
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ double largest_magnitude(const std::vector<double>& values) {
 }
 
 // Verifies TS-NUM-090.
-TEST(Network, FollowsTheDoubleReferenceInEveryFrame) {
+TEST(Network, AgreesWithTheDoubleReferenceInEveryFrame) {
   auto network = std::make_unique<Network<Float32>>();
   fill_random(network->weights(), 11);
   const ReferenceNetwork reference(network->weights());
@@ -42,14 +42,14 @@ TEST(Network, FollowsTheDoubleReferenceInEveryFrame) {
     const DepthImage image = random_depth_image(100 + frame);
     network->infer_frame(image, output);
     const ReferenceNetwork::Frame expected = reference.infer_frame(image);
-    EXPECT_GT(largest_magnitude(expected.output), 0.1);  // the weights let something through
-    EXPECT_LT(largest_difference(network->features(), expected.dense2), 2e-5);
+    EXPECT_GT(largest_magnitude(expected.output), 0.1);  // the weights do not suppress everything
+    EXPECT_LT(largest_difference(network->features(), expected.features), 2e-5);
     EXPECT_LT(largest_difference(output, expected.output), 2e-5);
   }
 }
 
 // Verifies TS-NUM-090.
-TEST(Network, FollowsTheDoubleReferenceOverASequence) {
+TEST(Network, AgreesWithTheDoubleReferenceOverASequence) {
   auto network = std::make_unique<Network<Float32>>();
   fill_random(network->weights(), 13);
   ReferenceNetwork reference(network->weights());
@@ -68,7 +68,7 @@ TEST(Network, FollowsTheDoubleReferenceOverASequence) {
 }
 
 // Verifies TS-EST-160.
-TEST(Network, GivesTheSameBitsWhateverCameBefore) {
+TEST(Network, GivesTheSameBitsAfterAnyOtherInputs) {
   auto network = std::make_unique<Network<Float32>>();
   fill_random(network->weights(), 12);
   LstmState<Float32> fresh, used, again;
@@ -99,7 +99,7 @@ TEST(NetworkWeights, VisitsEveryParameterOnceUnderUniqueNames) {
     tensor.fill(static_cast<float>(names.size()));
   });
   EXPECT_EQ(count, kParameterCount);
-  EXPECT_EQ(kMacCount, 34'858'368U) << "tests/audit/audit.py counts instructions to each of them";
+  EXPECT_EQ(kMacCount, 34'858'368U) << "tests/audit/audit.py divides instruction counts by it";
   EXPECT_EQ(names.size(), kTensorCount<Float32>);
   EXPECT_EQ(names.front(), "conv1.weight");
   EXPECT_EQ(names.back(), "head2.bias");
@@ -115,14 +115,14 @@ TEST(NetworkWeights, VisitsEveryParameterOnceUnderUniqueNames) {
 }
 
 // Verifies TS-MEM-070.
-TEST(NetworkWeights, InFixedPointHaveAShiftForEveryChannelAndTakeALittleMoreThanAByteAParameter) {
+TEST(NetworkWeights, InFixedPointHaveAShiftPerChannelAndTakeLittleMoreThanAByteEach) {
   const auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
   std::size_t tensors = 0;
   for_each_tensor(*weights, [&](const char*, const char*, const auto&) { ++tensors; });
   EXPECT_EQ(tensors, kTensorCount<FixedPoint>);
-  for_each_layer(*weights, [](const char* name, const auto& layer) {
-    EXPECT_EQ(layer.shift.size(), layer.bias.size()) << name;
-    EXPECT_EQ(layer.bias.size() % kIntegerChannels, 0U) << name;
+  for_each_layer(*weights, [](const LayerRow& row, const auto& layer) {
+    EXPECT_EQ(layer.shift.size(), layer.bias.size()) << row.name;
+    EXPECT_EQ(layer.bias.size() % kIntegerChannels, 0U) << row.name;
   });
   EXPECT_GE(kWeightBytes<FixedPoint>, kParameterCount);
   EXPECT_LE(kWeightBytes<FixedPoint>, 1'200'000U);

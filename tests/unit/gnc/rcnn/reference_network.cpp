@@ -16,9 +16,9 @@ void relu(Numbers& values) {
   for (double& v : values) v = std::max(v, 0.0);
 }
 
-// A 2x2 window of a square image with `channels` channels, reduced by f(a, b, c, d); floor.
-template <class Reduce>
-Numbers pool(const Numbers& in, int side, Reduce reduce) {
+// Every 2x2 window of a square image, channel by channel, reduced to one value. A last odd row and column are
+// left out.
+Numbers pool(const Numbers& in, int side, double (*reduce)(double, double, double, double)) {
   const int channels = static_cast<int>(in.size()) / (side * side);
   Numbers out;
   for (int y = 0; y < side / 2; ++y) {
@@ -90,22 +90,20 @@ ReferenceNetwork::Frame ReferenceNetwork::infer_frame(const DepthImage& image) c
           image.depth[row * 100 + column] / 65536.0;
     }
   }
-  int side = 50;
-  for (const char* name : {"conv1", "conv2", "conv3"}) {
-    map = pool(conv(name, map, side), side, largest);
-    relu(map);
-    side /= 2;
-  }
-  map = conv("conv4", map, side);
-  relu(map);
-  map = pool(map, side, mean);
-
   Frame frame;
-  Numbers dense1 = dense("dense1", map);
-  relu(dense1);
-  frame.dense2 = dense("dense2", dense1);
-  relu(frame.dense2);
-  frame.output = dense("cnn_out", frame.dense2);
+  for (int i = 0; i < kLstmLayer; ++i) {
+    const LayerRow& row = kLayers[i];
+    if (row.kind == LayerKind::kConvolution) {
+      map = conv(row.name, map, row.side);
+      relu(map);
+      map = pool(map, row.side, row.output == LayerOutput::kMaxPooled ? largest : mean);
+    } else {
+      map = dense(row.name, map);
+      if (row.output == LayerOutput::kHidden) relu(map);
+    }
+    if (i == kFeatureLayer) frame.features = map;
+  }
+  frame.output = map;
   return frame;
 }
 
@@ -123,11 +121,13 @@ Numbers ReferenceNetwork::infer_sequence(const Numbers& lstm_input) {
     h[i] = exact_sigmoid(gates[576 + i]) * std::tanh(c[i]);
   }
 
-  Numbers head = h;
-  head.insert(head.end(), lstm_input.begin(), lstm_input.end());
-  Numbers z = dense("head1", head);
-  relu(z);
-  return dense("head2", z);
+  Numbers values = h;
+  values.insert(values.end(), lstm_input.begin(), lstm_input.end());
+  for (int i = kLstmLayer + 1; i < kLayerCount; ++i) {
+    values = dense(kLayers[i].name, values);
+    if (kLayers[i].output == LayerOutput::kHidden) relu(values);
+  }
+  return values;
 }
 
 }  // namespace tumblesight::gnc

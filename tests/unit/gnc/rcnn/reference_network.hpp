@@ -1,5 +1,5 @@
-// The RCNN's layers once more, in double precision and as plainly as possible, from the tensors by name: what
-// the flight network must come out as.
+// Reference implementation of the RCNN in double precision, as simple as possible. It uses the network's
+// table and its tensors by name, but none of the flight code.
 #pragma once
 
 #include <map>
@@ -16,12 +16,13 @@ class ReferenceNetwork {
   explicit ReferenceNetwork(const NetworkWeights<Float32>& weights);
 
   struct Frame {
-    Numbers dense2, output;
+    Numbers features, output;
   };
   Frame infer_frame(const DepthImage& image) const;
-  Numbers infer_sequence(const Numbers& lstm_input);  // the head's output; advances h and c
+  // Returns the output of the recurrent head. Advances h and c by one frame.
+  Numbers infer_sequence(const Numbers& lstm_input);
 
-  Numbers h, c;
+  Numbers h, c;  // the LSTM's state
 
  private:
   Numbers conv(const std::string& name, const Numbers& in, int side) const;

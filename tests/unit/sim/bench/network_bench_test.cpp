@@ -1,4 +1,4 @@
-// The bench measures every part with every instruction set that this processor has.
+// The bench measures every part with every instruction set of this processor.
 #include "sim/bench/network_bench.hpp"
 
 #include <gtest/gtest.h>
@@ -37,12 +37,12 @@ void expect_rows_of_every_set() {
   }
 }
 
-TEST(NetworkBench, HasEveryPartWithEverySet) {
+TEST(NetworkBench, MeasuresEveryPartWithEveryInstructionSet) {
   expect_rows_of_every_set<gnc::FixedPoint>();
   expect_rows_of_every_set<gnc::Float32>();
 }
 
-TEST(Peak, IsMeasuredWhereTheProcessorHasTheSet) {
+TEST(Peak, IsMeasuredOnlyIfTheProcessorHasTheInstructionSet) {
   for (const gnc::InstructionSet set : gnc::kInstructionSets) {
     for (const bool is_integer : {false, true}) {
       const std::optional<double> peak = measured_peak_macs(set, is_integer);

@@ -1,4 +1,4 @@
-// Other runtimes compute what the flight network computes.
+// Other runtimes compute the same as the flight network in float32.
 #include "sim/bench/peer.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace tumblesight::sim {
 namespace {
 
 using gnc::Float32;
-constexpr float kTolerance = 1e-3F;  // of the largest number
+constexpr float kTolerance = 1e-3F;  // relative to the largest value
 constexpr int kFrames = 5;
 
 struct Network {
@@ -65,7 +65,7 @@ void expect_same_sequence(Peer& peer, Network& network) {
 }
 
 // Verifies TS-TRN-060.
-TEST(OnnxRuntime, ComputesWhatWeDo) {
+TEST(OnnxRuntime, ComputesTheSameAsTheFlightNetwork) {
   const auto network = std::make_unique<Network>();
   std::string reason;
   const auto peer = make_onnx_runtime(network->model, "", reason);
@@ -74,14 +74,14 @@ TEST(OnnxRuntime, ComputesWhatWeDo) {
   expect_same_sequence(*peer, *network);
 }
 
-TEST(OnnxRuntime, ThatIsNotThereIsSaid) {
+TEST(OnnxRuntime, GivesAReasonIfTheLibraryIsMissing) {
   const auto network = std::make_unique<Network>();
   std::string reason;
   EXPECT_EQ(make_onnx_runtime(network->model, "/no/such/library.so", reason), nullptr);
   EXPECT_FALSE(reason.empty());
 }
 
-TEST(LibTorch, ComputesWhatWeDo) {
+TEST(LibTorch, ComputesTheSameAsTheFlightNetwork) {
   const auto network = std::make_unique<Network>();
   std::string reason;
   const auto peer = make_libtorch(network->model, reason);

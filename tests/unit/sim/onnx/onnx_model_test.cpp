@@ -1,4 +1,5 @@
-// What `tumblesight export` writes: valid ONNX of the network's sizes. That it computes the same: sim_bench.
+// The files of `tumblesight export` are valid ONNX of the network's sizes. Their outputs are checked in
+// tests/unit/sim/bench/peer_test.cpp.
 #include "sim/onnx/onnx_model.hpp"
 
 #include <gtest/gtest.h>
@@ -54,7 +55,7 @@ std::size_t count_of_floats(const onnx::ModelProto& model) {
 }
 
 // Verifies TS-TRN-060.
-TEST(OnnxModel, OfTheCnnIsValidAndOfItsSizes) {
+TEST(OnnxModel, OfTheCnnIsValidAndHasItsSizes) {
   const onnx::ModelProto model = parsed(cnn_as_onnx(*random_model()));
   EXPECT_NO_THROW(onnx::checker::check_model(model));
   EXPECT_EQ(sizes_of(model.graph().input()),
@@ -64,7 +65,7 @@ TEST(OnnxModel, OfTheCnnIsValidAndOfItsSizes) {
 }
 
 // Verifies TS-TRN-060.
-TEST(OnnxModel, OfTheRecurrentPartIsValidAndOfItsSizes) {
+TEST(OnnxModel, OfTheRecurrentPartIsValidAndHasItsSizes) {
   const onnx::ModelProto model = parsed(recurrent_as_onnx(*random_model()));
   EXPECT_NO_THROW(onnx::checker::check_model(model));
   EXPECT_EQ(sizes_of(model.graph().input()),
@@ -77,12 +78,12 @@ TEST(OnnxModel, OfTheRecurrentPartIsValidAndOfItsSizes) {
 // Verifies TS-TRN-060.
 TEST(OnnxModel, HoldsEveryParameterOnce) {
   const auto model = random_model();
-  constexpr std::size_t kSecondBias = 4 * shape::kLstm;  // which ONNX wants and the network has not
+  constexpr std::size_t kSecondBias = 4 * shape::kLstm;  // required by ONNX, all zero
   EXPECT_EQ(count_of_floats(parsed(cnn_as_onnx(*model))) + count_of_floats(parsed(recurrent_as_onnx(*model))),
             gnc::kParameterCount + kSecondBias);
 }
 
-TEST(OnnxModel, NamesTheImageThatItIsOf) {
+TEST(OnnxModel, HasTheMetadataOfTheModelImage) {
   const onnx::ModelProto model = parsed(cnn_as_onnx(*random_model()));
   std::map<std::string, std::string> metadata;
   for (const auto& entry : model.metadata_props()) metadata[entry.key()] = entry.value();
@@ -92,7 +93,7 @@ TEST(OnnxModel, NamesTheImageThatItIsOf) {
                                                           {"target_radius_mm", "3250"}}));
 }
 
-TEST(OnnxFile, HoldsTheModelAndNothingIsLeftBeside) {
+TEST(OnnxFile, HoldsTheModelAndNoTemporaryFileRemains) {
   const auto model = random_model();
   const auto folder = std::filesystem::temp_directory_path() / (std::to_string(getpid()) + "_onnx");
   std::filesystem::create_directory(folder);
@@ -107,7 +108,7 @@ TEST(OnnxFile, HoldsTheModelAndNothingIsLeftBeside) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(OnnxFile, ThatCannotBeWrittenIsNamed) {
+TEST(OnnxFile, ThatCannotBeWrittenIsNamedInTheError) {
   try {
     (void)write_onnx_files(*random_model(), "/nonexistent/near");
     FAIL() << "a file was written into a folder that does not exist";

@@ -1,5 +1,5 @@
 // Verifies TS-TRN-020.
-// What rounding and saturation cost, against closed forms.
+// Loss by rounding and saturation, compared with closed forms.
 #include "sim/quantization/distribution.hpp"
 
 #include <gtest/gtest.h>
@@ -7,14 +7,14 @@
 namespace tumblesight::sim {
 namespace {
 
-TEST(Distribution, OfEvenValuesLosesATwelfthOfTheSquaredUnit) {
+TEST(Distribution, LosesATwelfthOfTheSquaredUnitIfUniform) {
   Distribution even;
   for (int i = 1; i <= 10'000; ++i) even.add(i * 1e-4);
   const double unit = 1.0 / 255.0;
   EXPECT_NEAR(even.squared_loss(unit, 255.0), unit * unit / 12.0, 0.02 * unit * unit);
 }
 
-TEST(Distribution, BeyondTheLargestIntegerLosesTheSquaredExcess) {
+TEST(Distribution, LosesTheSquaredExcessBeyondTheLargestInteger) {
   Distribution two;
   two.add(0.0);
   two.add(8.0);
@@ -23,7 +23,7 @@ TEST(Distribution, BeyondTheLargestIntegerLosesTheSquaredExcess) {
   EXPECT_EQ(two.largest(), 8.0);
 }
 
-TEST(Distribution, OfZerosLosesNothing) {
+TEST(Distribution, LosesNothingIfAllValuesAreZero) {
   Distribution zeros;
   EXPECT_EQ(zeros.squared_loss(1.0, 255.0), 0.0);
   zeros.add(0.0);

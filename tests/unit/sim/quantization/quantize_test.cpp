@@ -1,10 +1,9 @@
-// From float32 to fixed point, on a network of random weights and rendered sequences.
+// Quantization of a network with random weights on rendered sequences, and of the shipped NEAR.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
 #include "sim/quantization/quantize_file.hpp"
 #include "sim/world/target/near_shoemaker.hpp"
@@ -46,7 +45,7 @@ std::string* QuantizeTest::path = nullptr;
 QuantizationReport* QuantizeTest::report = nullptr;
 
 // Verifies TS-TRN-020.
-TEST_F(QuantizeTest, TheImageIsTakenByTheFlightEstimatorAndNamedByItsCrc) {
+TEST_F(QuantizeTest, WritesAnImageThatTheFlightEstimatorLoads) {
   std::ifstream file(*path, std::ios::binary);
   const std::vector<std::uint8_t> image{std::istreambuf_iterator<char>(file),
                                         std::istreambuf_iterator<char>()};
@@ -58,7 +57,7 @@ TEST_F(QuantizeTest, TheImageIsTakenByTheFlightEstimatorAndNamedByItsCrc) {
 }
 
 // Verifies TS-TRN-020.
-TEST_F(QuantizeTest, EveryLayerKeepsItsSignal) {
+TEST_F(QuantizeTest, KeepsTheSignalOfEveryLayer) {
   ASSERT_EQ(report->layers.size(), 8U);
   for (const LayerReport& layer : report->layers) {
     EXPECT_GT(layer.snr_db, 20.0) << layer.layer;
@@ -66,8 +65,8 @@ TEST_F(QuantizeTest, EveryLayerKeepsItsSignal) {
   }
 }
 
-// Verifies TS-TRN-020. Trained networks have rare large activations, random ones have not: with scales after
-// the largest value seen, the shipped NEAR's convolutions kept 19 dB of their signal.
+// Verifies TS-TRN-020. Unlike random networks, trained ones have rare large activations. With scales chosen
+// to hold the largest of them, the shipped NEAR's convolutions had a signal-to-noise ratio of only 19 dB.
 TEST(QuantizeShipped, NearKeepsTheSignalOfEveryLayerBeforeTheHypotheses) {
   const auto model = read_float32_model(TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.float32.tsm");
   const std::string path = temporary("_near.tsm");
@@ -75,45 +74,17 @@ TEST(QuantizeShipped, NearKeepsTheSignalOfEveryLayerBeforeTheHypotheses) {
       quantize_to_file(*model, {make_near_shoemaker()}, 20, path, [](std::uint64_t) {});
   std::filesystem::remove(path);
   for (const LayerReport& layer : report.layers) {
-    if (layer.layer == "lstm" || layer.layer == "head1")
-      continue;  // behind the choice of a hypothesis, which may flip
+    // The layers after the choice of a hypothesis are left out: that choice may differ between the numerics.
+    if (gnc::layer_index(layer.layer.c_str()) >= gnc::kLstmLayer) continue;
     EXPECT_GT(layer.snr_db, 27.0) << layer.layer;
   }
   EXPECT_LT(report.difference.median_deg, 0.5);
 }
 
-TEST_F(QuantizeTest, ProgressAndReportCoverWhatWasRendered) {
+TEST_F(QuantizeTest, ReportsProgressAndTheDifferenceOfAQuarterOfTheFrames) {
   EXPECT_EQ(steps, kSequences);
   EXPECT_GT(report->difference.count, 0U);
   EXPECT_LE(report->difference.count, 30U);  // a quarter of the sequences, ten frames each
-}
-
-TEST(ModelFile, RefusesAFileThatIsNoModelImage) {
-  try {
-    (void)read_float32_model("/dev/null");
-    FAIL() << "an empty file was taken";
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("/dev/null"), std::string::npos);
-  }
-}
-
-TEST(ModelFile, IsReadBackAsItWasWritten) {
-  const std::string path = temporary("_float32.tsm");
-  const auto model = random_model();
-  const std::uint32_t crc32 = write_model_file<gnc::Float32>(path, model->header, model->weights);
-  const auto read_back = read_float32_model(path);
-  std::filesystem::remove(path);
-  EXPECT_EQ(read_back->header.crc32, crc32);
-  EXPECT_EQ(read_back->weights.conv1.weight, model->weights.conv1.weight);
-}
-
-TEST(ModelFile, ThatCannotBeWrittenOrWouldBeRefusedIsSaid) {
-  const auto model = random_model();
-  EXPECT_THROW(write_model_file<gnc::Float32>("/nonexistent/x.tsm", model->header, model->weights),
-               std::runtime_error);
-  model->weights.conv1.bias[0] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW(write_model_file<gnc::Float32>(temporary("_nan.tsm"), model->header, model->weights),
-               std::runtime_error);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ constexpr int kFrames = 16;
 constexpr double kTolerance = 3e-4;
 constexpr double kPi = 3.14159265358979323846;
 
-// Weights as unlike a fresh network as a trained one: norms with statistics of their own, a head that
+// Makes the weights differ from a new network's as a trained network's do: norms with statistics, a head that
 // corrects.
 void disturb(Cnn& cnn, Recurrent& recurrent) {
   torch::NoGradGuard guard;
@@ -32,7 +32,7 @@ void disturb(Cnn& cnn, Recurrent& recurrent) {
     cnn->backbone->mean[i].normal_(0.0, 0.3);
     cnn->backbone->variance[i].uniform_(0.5, 2.0);
   }
-  recurrent->head2->weight.mul_(5.0);
+  recurrent->head.back()->weight.mul_(5.0);
   recurrent->set_standardisation(torch::randn({gnc::shape::kLstmInput}) * 0.3,
                                  torch::rand({gnc::shape::kLstmInput}) + 0.5);
 }
@@ -43,18 +43,18 @@ Eigen::Matrix3d near_inertia() {  // paper, spacecraft table
   return inertia;
 }
 
-// As sparse as real ones.
+// As sparse as a rendered one.
 torch::Tensor random_image() {
   return torch::rand({100, 100}) * (torch::rand({100, 100}) < 0.3).to(torch::kFloat);
 }
 
-// What the estimator is given: the images, and which way each is looked at.
+// Input of the estimator: depth images and their viewing directions.
 struct ImageSequence {
   torch::Tensor images;  // [T, 1, 100, 100]
   std::vector<Eigen::Matrix3f> r_lrf_view;
 };
 
-// A target that moves smoothly: nearly the same image, in a view that turns along with the target.
+// A target that moves smoothly: nearly constant images in a view that turns with the target.
 ImageSequence moving_target(Condition condition, std::uint64_t index) {
   ScenarioSettings settings;
   settings.condition = condition;
@@ -67,12 +67,12 @@ ImageSequence moving_target(Condition condition, std::uint64_t index) {
     images.push_back((image + 0.05 * random_image()).unsqueeze(0));
     result.r_lrf_view.push_back(truth.q_lrf_trf.toRotationMatrix().cast<float>());
   }
-  // In steps of the flight side's depth.
+  // In units of the flight side's depth.
   result.images = torch::floor(torch::stack(images).clamp(0.0, 0.999) * 65536.0) / 65536.0;
   return result;
 }
 
-// A target that is elsewhere in every frame: each prediction is wrong, each hypothesis far from the last
+// An unrelated target in every frame: each prediction is wrong, and each hypothesis far from the previous
 // ones.
 ImageSequence unrelated_frames(std::uint64_t index) {
   ImageSequence result = moving_target(Condition::kNominal, index);
@@ -105,7 +105,7 @@ class ExportTest : public testing::Test {
     image->r_lrf_view = gnc::converted<gnc::Fixed>(sequence.r_lrf_view[k]);
   }
 
-  // What the flight CNN says of the sequence: the recurrent module of the trainer gets the same.
+  // The flight CNN's output for the sequence, as input for the trainer's recurrent module.
   SequenceHypotheses hypotheses_of(const ImageSequence& sequence) {
     std::vector<torch::Tensor> features, rotations, logits;
     for (int k = 0; k < kFrames; ++k) {
@@ -138,8 +138,8 @@ class ExportTest : public testing::Test {
     return estimator;
   }
 
-  // Steps the estimator through the sequence and holds every answer to LibTorch's.
-  void expect_equal_answers(const ImageSequence& sequence, const char* what) {
+  // Steps the estimator through the sequence and compares every estimate with LibTorch's.
+  void expect_equal_estimates(const ImageSequence& sequence, const char* what) {
     const auto estimator = estimator_from_file();
     const TrackedSequences expected = recurrent->forward(hypotheses_of(sequence));
     for (int k = 0; k < kFrames; ++k) {
@@ -165,7 +165,7 @@ class ExportTest : public testing::Test {
   std::unique_ptr<gnc::DepthImage> image = std::make_unique<gnc::DepthImage>();
 };
 
-TEST_F(ExportTest, TheFlightCnnEqualsLibTorchs) {
+TEST_F(ExportTest, TheFlightCnnEqualsTheOneInLibTorch) {
   torch::NoGradGuard guard;
   const ImageSequence sequence = unrelated_frames(0);
   const CnnOutput expected = cnn->forward(sequence.images, false);
@@ -177,26 +177,26 @@ TEST_F(ExportTest, TheFlightCnnEqualsLibTorchs) {
       ASSERT_NEAR(output[i], expected.output[k][i].item<float>(), 1e-5) << "frame " << k << " output " << i;
     }
     for (int i = 0; i < gnc::shape::kDense2; ++i) {
-      ASSERT_NEAR(network->features()[i], expected.dense2[k][i].item<float>(), 1e-5) << "frame " << k;
+      ASSERT_NEAR(network->features()[i], expected.features[k][i].item<float>(), 1e-5) << "frame " << k;
     }
   }
 }
 
-TEST_F(ExportTest, TheEstimatorAnswersAsLibTorchOverWholeSequencesOfATargetInMotion) {
+TEST_F(ExportTest, TheEstimatorAgreesWithLibTorchOverSequencesOfAMovingTarget) {
   torch::NoGradGuard guard;
   for (std::uint64_t index = 0; index < 3; ++index) {
-    expect_equal_answers(moving_target(Condition::kNominal, index), "spinning");
-    expect_equal_answers(moving_target(Condition::kTumbling, index), "tumbling");
+    expect_equal_estimates(moving_target(Condition::kNominal, index), "spinning");
+    expect_equal_estimates(moving_target(Condition::kTumbling, index), "tumbling");
   }
 }
 
-TEST_F(ExportTest, TheEstimatorAnswersAsLibTorchWhenEveryFrameContradictsTheLast) {
+TEST_F(ExportTest, TheEstimatorAgreesWithLibTorchIfEveryFrameContradictsTheLast) {
   torch::NoGradGuard guard;
   for (std::uint64_t index = 0; index < 3; ++index)
-    expect_equal_answers(unrelated_frames(index), "unrelated");
+    expect_equal_estimates(unrelated_frames(index), "unrelated");
 }
 
-TEST_F(ExportTest, ABadTargetNameIsSaid) {
+TEST_F(ExportTest, ATargetNameThatIsTooLongIsRefused) {
   EXPECT_THROW(model_header(std::string(40, 'a'), targets), std::runtime_error);
 }
 

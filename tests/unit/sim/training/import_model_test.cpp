@@ -14,7 +14,7 @@
 namespace tumblesight::sim {
 namespace {
 
-// A network with batch statistics and offsets that are not the initial ones.
+// A network whose batch statistics and offsets differ from the initial ones.
 Cnn make_used_cnn(const torch::Tensor& images) {
   torch::manual_seed(3);
   Cnn cnn;
@@ -44,7 +44,8 @@ TEST(ImportModel, ImportedCnnComputesWhatTheModelImageComputes) {
   const torch::Tensor actual = imported->forward(other_images, false).output;
   EXPECT_LT((expected - actual).abs().max().item<double>(), 1e-4 * expected.abs().max().item<double>());
 
-  // While training, the norm goes by the batch it was calibrated on: the function is still the same there.
+  // In training mode the norm uses the statistics of the batch. On the calibration images the function is the
+  // same.
   imported->train();
   const torch::Tensor in_training = imported->forward(images, false).output;
   imported->eval();

@@ -1,4 +1,6 @@
-// Verifies TS-TRN-030. A training that could not train a CNN is refused before it starts.
+// Verifies TS-TRN-030.
+// A training that is killed resumes to the same result. One without enough images for a CNN is refused at the
+// start.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -62,7 +64,7 @@ TEST(TrainingKilled, ResumesToTheSameModelImage) {
   const fs::path root = fs::temp_directory_path() / ("kill_test_" + std::to_string(getpid()));
   ASSERT_EQ(wait_for(start_training(root / "through")), 0);
 
-  // Killed in either stage, as soon as that stage has left a checkpoint.
+  // Killed in each stage as soon as its first checkpoint exists.
   for (const char* stage : {"cnn.ckpt", "rcnn.ckpt"}) {
     const pid_t child = start_training(root / "killed");
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
@@ -71,7 +73,7 @@ TEST(TrainingKilled, ResumesToTheSameModelImage) {
     }
     kill(child, SIGKILL);
     const int status = wait_for(child);
-    EXPECT_TRUE(WIFSIGNALED(status)) << "the kill in " << stage << " came too late to prove anything";
+    EXPECT_TRUE(WIFSIGNALED(status)) << "the kill in " << stage << " came after the training had finished";
     EXPECT_FALSE(fs::exists(root / "killed" / "near_shoemaker.tsm"));
   }
   ASSERT_EQ(wait_for(start_training(root / "killed")), 0);
@@ -81,7 +83,7 @@ TEST(TrainingKilled, ResumesToTheSameModelImage) {
   fs::remove_all(root);
 }
 
-TEST(TrainingWithoutACnn, IsRefusedAndLeavesNothingBehind) {
+TEST(TrainingWithoutACnn, IsRefusedAndCreatesNoFolder) {
   const fs::path folder = fs::temp_directory_path() / ("no_cnn_" + std::to_string(getpid()));
   const int status = wait_for(start_training(folder, "63"));
   ASSERT_TRUE(WIFEXITED(status));

@@ -1,4 +1,4 @@
-// The trained error is the geodesic angle, with usable gradients everywhere.
+// The losses are built on the geodesic angle and have finite gradients everywhere.
 #include "sim/training/loss.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ torch::Tensor matrix(const Eigen::Matrix3f& r) {
   return t;
 }
 
-// An output whose hypothesis k is `r` (columns scaled and sheared: only their directions may count).
+// Sets hypothesis k to `r`, with scaled and sheared columns: only the orthonormalised columns may matter.
 void set_hypothesis(torch::Tensor& output, int k, const Eigen::Matrix3f& r) {
   const Eigen::Vector3f a = 2.0F * r.col(0), b = 0.5F * r.col(1) + 0.7F * r.col(0);
   for (int i = 0; i < 3; ++i) {
@@ -56,7 +56,7 @@ TEST(HypothesisLoss, HasFiniteGradientsAtNoErrorAndAtHalfATurn) {
   }
 }
 
-TEST(HypothesisLoss, FallsWhenTheLogitsNameTheBestHypothesis) {
+TEST(HypothesisLoss, DecreasesIfTheLogitsPreferTheBestHypothesis) {
   torch::manual_seed(1);
   torch::Tensor output = torch::randn({1, shape::kOutput});
   const HypothesisErrors errors = hypothesis_errors(output, torch::eye(3).unsqueeze(0));
@@ -72,8 +72,8 @@ torch::Tensor turned_by(double angle_rad) {
       Eigen::AngleAxisf(static_cast<float>(angle_rad), Eigen::Vector3f(1, 2, -1).normalized())));
 }
 
-// One sequence of two frames. Of the nine clusters, 2 is the best by 0.1 rad, 5 as good within 1 degree; the
-// answer is cluster 7's, 0.8 rad off. The truth is the identity.
+// One sequence of two frames; the truth is the identity. Of the nine clusters, 2 is the best by 0.1 rad and 5
+// is within 1 degree of it. The estimate is that of cluster 7, with an error of 0.8 rad.
 struct Tracked {
   TrackedSequences sequences;
   torch::Tensor truth = torch::eye(3).expand({1, 2, 3, 3}).clone();
@@ -90,7 +90,7 @@ struct Tracked {
   }
 };
 
-TEST(TrackingLoss, IsItsClosedForm) {
+TEST(TrackingLoss, EqualsItsClosedForm) {
   Tracked t;
   t.sequences.anchor_logits[0][0][2] = 1.0;  // frame 0: p = (e + 1) / (e + 8) that the choice is good
   t.sequences.anchor_logits[0][1][7] = 2.0;  // frame 1: 2 / (e^2 + 8)
@@ -105,7 +105,7 @@ TEST(TrackingLoss, IsItsClosedForm) {
               1e-4);
 }
 
-TEST(TrackingLoss, DoesNotCareWhichOfTheGoodOnesIsChosenButThatOneIs) {
+TEST(TrackingLoss, TreatsAllGoodClustersAlikeAndPrefersThemToTheOthers) {
   Tracked best, as_good, bad, none;
   best.sequences.anchor_logits.select(-1, 2) += 3.0;
   as_good.sequences.anchor_logits.select(-1, 5) += 3.0;
@@ -116,7 +116,7 @@ TEST(TrackingLoss, DoesNotCareWhichOfTheGoodOnesIsChosenButThatOneIs) {
   EXPECT_GT(loss(bad), loss(none) + 0.1);
 }
 
-TEST(TrackingLoss, IsLeastInTheErrorLogitWhereItStatesTheAnswersError) {
+TEST(TrackingLoss, IsMinimalIfTheErrorLogitStatesTheError) {
   Tracked t;
   t.sequences.error_logits.fill_(std::log(0.8 / (kPi - 0.8)));
   t.sequences.error_logits.requires_grad_();

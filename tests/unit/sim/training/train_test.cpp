@@ -59,8 +59,8 @@ TEST_F(TrainTest, AStoppedCnnTrainingResumesToTheSameNetwork) {
   ASSERT_TRUE(train_cnn(targets, in("through"), through, never));
   EXPECT_EQ(line_of(root / "through/log.csv", 1).rfind("cnn,6,48,", 0), 0U);
 
-  // Stopped before its first iteration, then "killed" after three: what the total stands at shapes the
-  // learning rate, so the shorter run is made by a checkpoint at every iteration and a stop from beside.
+  // The learning rate depends on the total number of iterations, so the run cannot be shortened by its
+  // settings. It saves a checkpoint at every iteration, and another thread stops it after the first one.
   TrainingSettings stopped = in("stopped");
   stopped.checkpoint_s = 0.0;
   std::atomic<bool> stop{false};
@@ -71,8 +71,8 @@ TEST_F(TrainTest, AStoppedCnnTrainingResumesToTheSameNetwork) {
   });
   const bool finished = train_cnn(targets, stopped, first, stop);
   watcher.join();
-  EXPECT_FALSE(finished) << "the stop came too late to prove anything";
-  torch::manual_seed(99);  // what the weights are before the checkpoint is read must not matter
+  EXPECT_FALSE(finished) << "the stop came after the training had finished";
+  torch::manual_seed(99);  // the weights before the checkpoint is read must not matter
   Cnn second;
   ASSERT_TRUE(train_cnn(targets, stopped, second, never));
   for (const auto& parameter : through->named_parameters()) {
@@ -82,7 +82,7 @@ TEST_F(TrainTest, AStoppedCnnTrainingResumesToTheSameNetwork) {
   EXPECT_TRUE(torch::equal(through->backbone->mean[0], second->backbone->mean[0]));
 }
 
-TEST_F(TrainTest, ACheckpointOfOtherSettingsOrOfNothingIsRefused) {
+TEST_F(TrainTest, ACheckpointOfOtherSettingsOrADamagedOneIsRefused) {
   TrainingSettings here = in("other");
   Cnn cnn = fresh_cnn();
   ASSERT_TRUE(train_cnn(targets, here, cnn, never));
@@ -97,7 +97,7 @@ TEST_F(TrainTest, ACheckpointOfOtherSettingsOrOfNothingIsRefused) {
   EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error) << "damaged";
 }
 
-TEST_F(TrainTest, AMeshThatTheSensorHardlySeesIsRefusedByName) {
+TEST_F(TrainTest, AMeshThatTheSensorHardlySeesIsRefusedByItsName) {
   const float h = 1e-4F;  // a needle: too few rays meet it
   const TriangleMesh needle{"needle", {{-2, 0, h}, {2, 0, h}, {2, 0, -h}}, {{0, 1, 2}}};
   try {
@@ -108,14 +108,14 @@ TEST_F(TrainTest, AMeshThatTheSensorHardlySeesIsRefusedByName) {
   }
 }
 
-TEST_F(TrainTest, ALeftOverHalfWrittenCheckpointIsIgnored) {
+TEST_F(TrainTest, AnIncompleteCheckpointFileIsIgnored) {
   const TrainingSettings here = in("half");
   std::ofstream(here.folder + "/cnn.ckpt.new") << "half a checkpoint";
   Cnn cnn = fresh_cnn();
   EXPECT_TRUE(train_cnn(targets, here, cnn, never));
 }
 
-TEST_F(TrainTest, WithoutCnnImagesTheRecurrentStageLearnsOnTheGivenCnnAndWritesLogAndCurve) {
+TEST_F(TrainTest, WithoutCnnImagesTheRecurrentStageUsesTheGivenCnnAndWritesLogAndCurve) {
   TrainingSettings here = in("recurrent_only");
   here.cnn_images = 0;
   here.start_from = here.folder + "/given.tsm";
@@ -136,18 +136,18 @@ TEST_F(TrainTest, WithoutCnnImagesTheRecurrentStageLearnsOnTheGivenCnnAndWritesL
     EXPECT_TRUE(torch::allclose(cnn->forward(images, false).output, expected, 1e-4, 1e-4));
   }
   Recurrent recurrent;
-  const torch::Tensor before = recurrent->head2->weight.detach().clone();
+  const torch::Tensor before = recurrent->head.back()->weight.detach().clone();
   ASSERT_TRUE(train_rcnn(targets, here, cnn, recurrent, never));
-  EXPECT_FALSE(torch::equal(before, recurrent->head2->weight));
+  EXPECT_FALSE(torch::equal(before, recurrent->head.back()->weight));
   EXPECT_EQ(line_of(here.folder + "/log.csv", 0).rfind("stage,iteration,samples", 0), 0U);
   EXPECT_EQ(line_of(here.folder + "/log.csv", 1).rfind("rcnn,6,48,", 0), 0U);
   EXPECT_GT(fs::file_size(here.folder + "/curve.svg"), 500U);
-  EXPECT_TRUE(train_rcnn(targets, here, cnn, recurrent, never)) << "a finished stage is done at once";
+  EXPECT_TRUE(train_rcnn(targets, here, cnn, recurrent, never)) << "a finished stage returns at once";
   EXPECT_THROW(train_rcnn(targets, here, fresh_cnn(), recurrent, never), std::runtime_error)
       << "an LSTM of another CNN";
 }
 
-TEST_F(TrainTest, AFolderThatCannotBeWrittenIsSaid) {
+TEST_F(TrainTest, AFolderThatCannotBeWrittenIsAnError) {
   TrainingSettings here = settings;
   here.folder = "/nonexistent/folder";
   Cnn cnn;
