@@ -6,7 +6,7 @@ import subprocess
 # Stages in the order in which a step passes them, and the function with which each begins. The first begins a step, the
 # second ends it; what runs between two stages counts to the one before.
 STAGES = (
-    ("application", r"fsw::AttitudeInitApp<.*>::step\("),
+    ("application", r"fsw::AttitudeInitApp::step\("),
     ("(end)", r"replay::ConsoleLink::publish\(tumblesight::hal::AttitudeReport"),
     ("depth image", r"gnc::make_depth_image\(.*DepthLoops const&\)"),
     ("space to depth", r"gnc::space_to_depth<"),

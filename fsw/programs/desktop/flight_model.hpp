@@ -8,16 +8,10 @@
 
 namespace tumblesight::hal::dds {
 
-// The application in either numerics.
-struct FlightApps {
-  fsw::AttitudeInitApp<gnc::FixedPoint> fixed_point;
-  fsw::AttitudeInitApp<gnc::Float32> float32;
-  fsw::AppOf<gnc::FixedPoint> fixed_point_interface{fixed_point};
-  fsw::AppOf<gnc::Float32> float32_interface{float32};
-};
-
-// Boots the application that flies: the one asked for, or that of the image's numerics. Without a usable
-// image its mode is SAFE, and the reason goes to the standard error stream.
-fsw::App& boot(FlightOptions& options, FlightApps& apps, Stopwatch& stopwatch, const CommandKey& command_key);
+// Boots `app`. Without a usable image its mode is SAFE, and the reason goes to the standard error stream.
+// If the options or the image ask for float32, the fixed-point program replaces itself by flight_float32 from
+// its own folder, with the same arguments `argv`.
+void boot(FlightOptions& options, fsw::AttitudeInitApp& app, Stopwatch& stopwatch,
+          const CommandKey& command_key, char** argv);
 
 }  // namespace tumblesight::hal::dds

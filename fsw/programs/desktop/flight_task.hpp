@@ -34,7 +34,7 @@ class FlightTask {
 
   // Starts the thread and returns once it is ready; false if the system gives none. Free-running it asks for
   // a fixed priority and locked memory, which takes longer than a cycle may wait: so start it before the run.
-  [[nodiscard]] bool start(fsw::App& app, bool free_running);
+  [[nodiscard]] bool start(fsw::AttitudeInitApp& app, bool free_running);
   void join_run(std::uint32_t run_id) { run_id_ = run_id; }
   // Free-running: cycles on the timer from now on.
   void begin_free(PeriodicTask& timer, const MissionClock& clock);
@@ -62,7 +62,7 @@ class FlightTask {
     void kick() override {}
   };
 
-  fsw::App* app_ = nullptr;
+  fsw::AttitudeInitApp* app_ = nullptr;
   NoWatchdog watchdog_;
   DdsLidar& lidar_;
   DdsLink& link_;

@@ -27,7 +27,7 @@ hal::dds::DdsLidar lidar;
 hal::posix::PaintedStack stack;
 hal::dds::DdsLink link{{hal::dds::heap_allocations, [] { return stack.least_left_bytes(); }}};
 hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
-hal::dds::FlightApps apps;
+fsw::AttitudeInitApp app;
 hal::CommandKey command_key;
 fsw::CycleWorkspace workspace;
 hal::dds::FlightTask task{lidar, link, workspace, stack};
@@ -40,8 +40,7 @@ FlightEnd connect(const hal::dds::FlightOptions& options) {
   return FlightEnd::kTransport;
 }
 
-hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options, const fsw::App& app,
-                                         std::int64_t timeout_ns) {
+hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options, std::int64_t timeout_ns) {
   hal::dds::HandshakeSettings settings;
   settings.icd_hash = options.icd_hash;
   settings.run_id = options.run_id;
@@ -56,12 +55,12 @@ hal::dds::HandshakeResult meet_simulator(const hal::dds::FlightOptions& options,
   return met;
 }
 
-FlightEnd fly(const hal::dds::FlightOptions& options, fsw::App& app) {
+FlightEnd fly(const hal::dds::FlightOptions& options) {
   if (!task.start(app, options.free_running)) return FlightEnd::kNoThread;
   const FlightEnd connected = connect(options);
   if (connected != FlightEnd::kComplete) return connected;
   const auto timeout_ns = static_cast<std::int64_t>(options.timeout_s * 1e9);
-  const hal::dds::HandshakeResult met = meet_simulator(options, app, timeout_ns);
+  const hal::dds::HandshakeResult met = meet_simulator(options, timeout_ns);
   if (met.end != FlightEnd::kComplete || met.stopped) return met.end;
 
   bus.join_run(met.run_id, timeout_ns);
@@ -85,9 +84,9 @@ int main(int argc, char** argv) {
   hal::dds::accept_stop_requests();
   if (!hal::dds::read_command_key(options.command_key_path, command_key))
     return static_cast<int>(FlightEnd::kBadArguments);
-  fsw::App& app = hal::dds::boot(options, apps, stopwatch, command_key);
+  hal::dds::boot(options, app, stopwatch, command_key, argv);
 
-  const FlightEnd end = fly(options, app);
+  const FlightEnd end = fly(options);
   task.join();  // if there never was a run
   if (end != FlightEnd::kComplete) std::fprintf(stderr, "flight: %s\n", hal::dds::to_string(end));
   domain.close();
