@@ -168,13 +168,21 @@ constexpr std::array kCommands{
     CommandRow{{FunctionCode::kDisableResponse, 1, 1, kAlways}, disable_response},
 };
 
-// One comparison and one direct call per row: the analysis of the worst-case stack follows no pointers.
+// The handler is a constant, so this is a direct call: the analysis of the worst-case stack follows no
+// pointers.
+template <std::size_t kRow>
+bool call(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  constexpr auto kHandler = kCommands[kRow].handler;
+  return kHandler(command, context, refusal);
+}
+
+// One comparison per row.
 template <std::size_t... kRow>
 bool dispatch(std::index_sequence<kRow...>, const Telecommand& command, const CommandContext& context,
               Refusal& refusal) {
   bool done = false;
   ((kCommands[kRow].rule.function == command.function
-        ? static_cast<void>(done = kCommands[kRow].handler(command, context, refusal))
+        ? static_cast<void>(done = call<kRow>(command, context, refusal))
         : static_cast<void>(0)),
    ...);
   return done;

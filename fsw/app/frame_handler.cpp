@@ -151,7 +151,8 @@ Validity FrameHandler::check_attitude(const gnc::RangeImage& frame) {
   if (large) state_.faults_seen |= bit_of(Fault::kErrorLarge);
   if (jumps) state_.faults_seen |= bit_of(Fault::kAttitudeJump);
   if (repeats) state_.faults_seen |= bit_of(Fault::kFrameFrozen);
-  if (!(large || jumps || repeats)) return Validity::kValid;
+  const bool doubtful = large || jumps || repeats;
+  if (!doubtful) return Validity::kValid;
   count(state_.counters.attitudes_doubtful);
   report_(EventId::kAttitudeDoubtful, bits_of(frame.sequence_number),
           static_cast<std::int32_t>(estimate.predicted_error_urad / 1000U),

@@ -12,7 +12,7 @@ struct Event {
   std::int64_t time_ns = 0;  // cycle time
   EventId id{};
   Severity severity = Severity::kInformation;
-  std::array<std::int32_t, 3> arguments{};  // hal/messages/event_id.hpp
+  std::array<std::int32_t, 3> arguments{};  // by EventId
 };
 
 }  // namespace tumblesight::hal

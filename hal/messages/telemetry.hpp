@@ -21,7 +21,7 @@ struct Telemetry {
   std::int64_t time_ns = 0;  // cycle time
   Mode mode = Mode::kBoot;
   Cause safe_cause = Cause::kNone;       // of the last change to SAFE; NONE: never since start
-  Fault safe_fault = Fault::kStateLost;  // if safe_cause is FAULT
+  Fault safe_fault = Fault::kStateLost;  // valid if safe_cause is FAULT
   std::uint32_t faults_persisting = 0;   // bit n: Fault n
   std::uint32_t responses_disabled = 0;  // bit n: Fault n
   std::uint32_t cycles = 0;
@@ -67,12 +67,12 @@ struct Telemetry {
   std::uint32_t inference_max_us = 0;
   std::uint32_t step_us = 0;  // this step, without the vote before it and the telemetry at its end
   std::uint32_t step_max_us = 0;
-  // Steps shorter than 1, 3, 10, 30, 100, 300 and 1000 ms, and all longer ones.
+  // steps shorter than 1, 3, 10, 30, 100, 300 and 1000 ms, and all longer ones
   std::array<std::uint32_t, kStepTimeBins> steps_by_time{};
   std::uint32_t deadline_overruns = 0;
   std::uint32_t cycle_slips = 0;
   std::uint32_t heap_allocations = 0;  // of the flight task since init, where the platform counts them
-  // Of the flight task's stack, never used since start; 0: the platform does not measure it.
+  // of the flight task's stack, never used since start; 0: the platform does not measure it
   std::uint32_t stack_left_min_bytes = 0;
 };
 

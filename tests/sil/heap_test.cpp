@@ -16,7 +16,7 @@ TEST(Heap, TenThousandStepsWithoutAnAllocationOfTheFlightTask) {
     gnc::RangeImage frame = conversation.good_frame();
     if (k % 97 == 0) frame.ranges.fill(0);
     std::vector<Telecommand> commands;
-    if (k % 10 == 0) commands = {reset_sequence(), {199, {}}};
+    if (k % 10 == 0) commands = {reset_sequence(), {hal::FunctionCode{199}, {}}};
     answer = conversation.step({frame}, commands);
     ASSERT_EQ(answer.telemetry.heap_allocations, 0U) << "step " << k;
   }
