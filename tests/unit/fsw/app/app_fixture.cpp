@@ -49,7 +49,7 @@ hal::CommandPacket AppFixture::command(FunctionCode function, const std::vector<
 const StepOutputs& AppFixture::step(const StepInputs& inputs) {
   now_ns = next_time_ns();
   app->step(now_ns, inputs, *out);
-  // What every report keeps, whatever came in.
+  // Properties of every report, for any input.
   EXPECT_EQ(out->attitude.time_ns, now_ns);
   EXPECT_TRUE(has_unit_norm(out->attitude.q_lrf_trf));
   EXPECT_TRUE(has_unit_norm(out->attitude.q_lrf_trf_single_frame));
@@ -89,7 +89,7 @@ gnc::RangeImage AppFixture::next_frame() const {
 int AppFixture::events(EventId id) const {
   int count = 0;
   for (int i = 0; i < out->event_count; ++i) {
-    count += out->events[static_cast<std::size_t>(i)].id == static_cast<std::uint16_t>(id) ? 1 : 0;
+    count += out->events[static_cast<std::size_t>(i)].id == id ? 1 : 0;
   }
   return count;
 }
@@ -97,7 +97,7 @@ int AppFixture::events(EventId id) const {
 const hal::Event* AppFixture::event(EventId id) const {
   for (int i = 0; i < out->event_count; ++i) {
     const hal::Event& candidate = out->events[static_cast<std::size_t>(i)];
-    if (candidate.id == static_cast<std::uint16_t>(id)) return &candidate;
+    if (candidate.id == id) return &candidate;
   }
   return nullptr;
 }

@@ -1,4 +1,4 @@
-// What the commands do, and what each refusal leaves. Those of the model: model_commands_test.cpp.
+// The effect of each command and of each refusal. Commands for models: model_commands_test.cpp.
 #include <string>
 
 #include "tests/unit/fsw/app/app_fixture.hpp"
@@ -9,14 +9,14 @@ namespace {
 class Commands : public AppFixture {
  protected:
   Commands() { init_with_model(); }
-  // A platform that breaks the limits of StepInputs: a bug, hence an assertion.
+  // Inputs beyond the limits of StepInputs, which are a bug of the platform and fail an assertion.
   const StepOutputs& step_with_bug() {
     StepInputs inputs;
     inputs.command_count = config::kMaxCommandsPerStep + 1;
     return step(inputs);
   }
   std::uint32_t refused_by(CommandRefusal why) const {
-    return out->housekeeping.commands_refused_by[static_cast<std::size_t>(why)];
+    return out->telemetry.commands_refused_by[static_cast<std::size_t>(why)];
   }
 };
 
@@ -25,7 +25,7 @@ TEST_F(Commands, NoopIsAcceptedAndChangesNothing) {
   step_good();
   const std::uint32_t crc = estimator_crc();
   step_commands({command(FunctionCode::kNoop)});
-  EXPECT_EQ(out->housekeeping.commands_accepted, 1U);
+  EXPECT_EQ(out->telemetry.commands_accepted, 1U);
   EXPECT_EQ(events(EventId::kCommandAccepted), 1);
   EXPECT_EQ(app->mode(), Mode::kRun);
   EXPECT_EQ(estimator_crc(), crc);
@@ -54,9 +54,9 @@ TEST_F(Commands, EveryRefusalHasItsOwnEventAndCounter) {
     EXPECT_EQ(refused_by(why), 1U) << static_cast<int>(why);
     EXPECT_EQ(events(event_of(why)), 1) << static_cast<int>(why);
   }
-  EXPECT_EQ(out->housekeeping.commands_refused, 8U);
-  EXPECT_EQ(out->housekeeping.commands_accepted, 0U);
-  EXPECT_EQ(out->housekeeping.command_counter, command_counter);
+  EXPECT_EQ(out->telemetry.commands_refused, 8U);
+  EXPECT_EQ(out->telemetry.commands_accepted, 0U);
+  EXPECT_EQ(out->telemetry.command_counter, command_counter);
   EXPECT_EQ(argument(EventId::kCommandUnknown, 0), 99);
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
@@ -72,10 +72,10 @@ TEST_F(Commands, RecordedCommandSentAgainIsRefused) {
 }
 
 // Verifies TS-SEC-030.
-TEST_F(Commands, RecordedCommandIsRefusedAfterARestartTooWhereThePlatformKeepsTheCounter) {
+TEST_F(Commands, RecordedCommandIsRefusedAfterARestartIfThePlatformKeepsTheCounter) {
   const hal::CommandPacket standby = set_mode(Mode::kStandby);
   step_commands({standby});
-  app->init({&stopwatch, &store, &kTestKey, out->housekeeping.command_counter}, kTestTarget, protections);
+  app->init({&stopwatch, &store, &kTestKey, out->telemetry.command_counter}, kTestTarget, protections);
   step_commands({standby});
   EXPECT_EQ(app->mode(), Mode::kRun);
   EXPECT_EQ(refused_by(CommandRefusal::kReplayed), 1U);
@@ -91,17 +91,17 @@ TEST_F(Commands, RefusedAuthenticCommandCannotBeReplayedInAnotherMode) {
 }
 
 // Verifies TS-CMD-120, TS-MODE-040.
-TEST_F(Commands, StandbyGivesNoAttitudeAndRunStartsAnew) {
+TEST_F(Commands, StandbyGivesNoAttitudeAndRunStartsANewSequence) {
   step_good();
   step_good();
   step_commands({set_mode(Mode::kStandby)});
   EXPECT_EQ(app->mode(), Mode::kStandby);
-  EXPECT_EQ(out->housekeeping.frames_missing, 0U) << "nobody waits for frames in STANDBY";
+  EXPECT_EQ(out->telemetry.frames_missing, 0U) << "no frames are expected in STANDBY";
   step_good();
   EXPECT_EQ(validity(), Validity::kStandby);
-  EXPECT_EQ(out->housekeeping.frames_used, 2U);
+  EXPECT_EQ(out->telemetry.frames_used, 2U);
 
-  // A new session of the sensor may number from anywhere, even the number last used.
+  // A restarted sensor may begin with any sequence number, even the last used one.
   StepInputs inputs;
   inputs.commands[0] = set_mode(Mode::kRun);
   inputs.command_count = 1;
@@ -112,7 +112,7 @@ TEST_F(Commands, StandbyGivesNoAttitudeAndRunStartsAnew) {
   EXPECT_EQ(argument(EventId::kCommandAccepted, 2), static_cast<int>(Mode::kRun));
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
-  EXPECT_EQ(out->housekeeping.sequence_gaps, 0U);
+  EXPECT_EQ(out->telemetry.sequence_gaps, 0U);
 }
 
 // Verifies TS-CMD-120.
@@ -120,25 +120,25 @@ TEST_F(Commands, RunInRunHasNoEffect) {
   step_good();
   const std::uint32_t crc = estimator_crc();
   step_commands({set_mode(Mode::kRun)});
-  EXPECT_EQ(out->housekeeping.commands_accepted, 1U);
+  EXPECT_EQ(out->telemetry.commands_accepted, 1U);
   EXPECT_EQ(estimator_crc(), crc);
-  EXPECT_EQ(out->housekeeping.estimator_resets, 1U) << "only the one of init()";
+  EXPECT_EQ(out->telemetry.estimator_resets, 1U) << "only the reset by init()";
 }
 
 // Verifies TS-MODE-040, TS-MODE-050.
-TEST_F(Commands, OnlyEnteringRunStartsAnewAndOnlyEnteringSafeSaysWhy) {
+TEST_F(Commands, OnlyEnteringRunResetsAndOnlyEnteringSafeSetsTheCause) {
   step_good();
   const std::uint32_t crc = estimator_crc();
   step_commands({set_mode(Mode::kStandby), set_mode(Mode::kStandby)});
-  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kNone));
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kNone);
   step_with_bug();
   step_commands({set_mode(Mode::kSafe)});
-  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kAssertion)) << "what led there first";
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kAssertion) << "the cause of the first change to SAFE";
   step_commands({set_mode(Mode::kStandby)});
-  EXPECT_EQ(out->housekeeping.estimator_resets, 1U) << "only the one of init()";
+  EXPECT_EQ(out->telemetry.estimator_resets, 1U) << "only the reset by init()";
   EXPECT_EQ(estimator_crc(), crc);
   step_commands({set_mode(Mode::kRun)});
-  EXPECT_EQ(out->housekeeping.estimator_resets, 2U);
+  EXPECT_EQ(out->telemetry.estimator_resets, 2U);
 }
 
 // Verifies TS-CMD-120.
@@ -154,10 +154,10 @@ TEST_F(Commands, BootAndUnknownModesCannotBeCommanded) {
 TEST_F(Commands, SafeIsLeftForStandbyOnly) {
   step_commands({set_mode(Mode::kSafe)});
   EXPECT_EQ(app->mode(), Mode::kSafe);
-  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kCommandSafe));
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kCommandSafe);
   step_good();
   EXPECT_EQ(validity(), Validity::kStandby);
-  EXPECT_EQ(out->housekeeping.mode, static_cast<int>(Mode::kSafe)) << "telemetry goes on";
+  EXPECT_EQ(out->telemetry.mode, Mode::kSafe) << "telemetry continues";
   step_commands({set_mode(Mode::kRun)});
   EXPECT_EQ(refused_by(CommandRefusal::kWrongMode), 1U);
   EXPECT_EQ(app->mode(), Mode::kSafe);
@@ -168,7 +168,7 @@ TEST_F(Commands, SafeIsLeftForStandbyOnly) {
 }
 
 // Verifies TS-CMD-130.
-TEST_F(Commands, ResetSequenceStartsASequenceYetRemembersTheLastFrame) {
+TEST_F(Commands, ResetSequenceStartsASequenceButKeepsTheLastFrame) {
   step_good();
   const gnc::RangeImage used = next_frame();
   step_good();
@@ -179,12 +179,12 @@ TEST_F(Commands, ResetSequenceStartsASequenceYetRemembersTheLastFrame) {
   inputs.command_count = 1;
   inputs.frame = &used;
   step(inputs);
-  EXPECT_EQ(validity(), Validity::kFrameRefused) << "the frame has been used before the reset";
-  EXPECT_EQ(out->housekeeping.frames_duplicate, 1U);
-  EXPECT_EQ(out->housekeeping.estimator_resets, 2U);
+  EXPECT_EQ(validity(), Validity::kFrameRefused) << "the frame was used before the reset";
+  EXPECT_EQ(out->telemetry.frames_duplicate, 1U);
+  EXPECT_EQ(out->telemetry.estimator_resets, 2U);
   step_good();
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
-  EXPECT_EQ(events(EventId::kEstimatorResetByGap), 0) << "a new sequence has no gap behind it";
+  EXPECT_EQ(events(EventId::kEstimatorResetByGap), 0) << "a new sequence has no gap before it";
 }
 
 // Verifies TS-CMD-130.
@@ -206,29 +206,29 @@ TEST_F(Commands, SequenceAfterResetEqualsTheFirstSequenceBitForBit) {
   }
   EXPECT_EQ(last[0], last[1]);
   EXPECT_EQ(crc[0], crc[1]);
-  EXPECT_EQ(out->housekeeping.sequence_gaps, 0U);
+  EXPECT_EQ(out->telemetry.sequence_gaps, 0U);
 }
 
 // Verifies TS-CMD-110.
-TEST_F(Commands, ResetCountersZeroesAllButItselfAndTheCounterThatStopsReplays) {
+TEST_F(Commands, ResetCountersKeepsOnlyItselfAndTheCommandCounter) {
   stopwatch.tick_ns = 5'000;
   step_good();
   const hal::CommandPacket noop = command(FunctionCode::kNoop);
   step_commands({noop});
-  EXPECT_GT(out->housekeeping.inference_max_us, 0U);
+  EXPECT_GT(out->telemetry.inference_max_us, 0U);
   step_commands({command(FunctionCode::kResetCounters)});
-  EXPECT_EQ(out->housekeeping.commands_accepted, 1U);
-  EXPECT_EQ(out->housekeeping.frames_used, 0U);
-  EXPECT_EQ(out->housekeeping.inference_max_us, 0U);
-  EXPECT_EQ(out->housekeeping.estimator_resets, 0U);
-  EXPECT_EQ(out->housekeeping.command_counter, command_counter);
+  EXPECT_EQ(out->telemetry.commands_accepted, 1U);
+  EXPECT_EQ(out->telemetry.frames_used, 0U);
+  EXPECT_EQ(out->telemetry.inference_max_us, 0U);
+  EXPECT_EQ(out->telemetry.estimator_resets, 0U);
+  EXPECT_EQ(out->telemetry.command_counter, command_counter);
   EXPECT_EQ(app->mode(), Mode::kRun);
   step_commands({noop});
   EXPECT_EQ(refused_by(CommandRefusal::kReplayed), 1U);
 }
 
 // Verifies TS-TLM-040.
-TEST_F(Commands, EventsThatWaitWhenTheCountersAreResetAreCountedAnew) {
+TEST_F(Commands, WaitingEventsAreCountedAgainAfterACounterReset) {
   step_good();
   StepInputs inputs;
   inputs.command_count = config::kMaxCommandsPerStep;
@@ -236,8 +236,8 @@ TEST_F(Commands, EventsThatWaitWhenTheCountersAreResetAreCountedAnew) {
   inputs.commands.back() = command(FunctionCode::kResetCounters);
   step(inputs);
   EXPECT_GE(out->event_count, config::kMaxCommandsPerStep);
-  EXPECT_EQ(out->housekeeping.events, static_cast<std::uint32_t>(out->event_count))
-      << "all of them are told only now";
+  EXPECT_EQ(out->telemetry.events, static_cast<std::uint32_t>(out->event_count))
+      << "all of them are sent after the reset";
 }
 
 // Verifies TS-CMD-040.
@@ -251,11 +251,11 @@ TEST_F(Commands, CommandsAreCarriedOutInOrderBeforeTheFrame) {
   inputs.frame = &frame;
   step(inputs);
   EXPECT_EQ(validity(), Validity::kStandby);
-  EXPECT_EQ(out->housekeeping.frames_used, 1U);
+  EXPECT_EQ(out->telemetry.frames_used, 1U);
 }
 
 // Verifies TS-CMD-140.
-TEST_F(Commands, LimitsAreTakenWithinTheirRangeAndRefusedBeyond) {
+TEST_F(Commands, LimitsAreAcceptedWithinTheirRangeOnly) {
   const auto set_limit = [this](int which, std::uint32_t value) {
     std::vector<std::uint8_t> arguments{static_cast<std::uint8_t>(which)};
     append_u32(arguments, value);
@@ -274,12 +274,12 @@ TEST_F(Commands, LimitsAreTakenWithinTheirRangeAndRefusedBeyond) {
 }
 
 // Verifies TS-CMD-150.
-TEST_F(Commands, ResponsesAreDisabledAndEnabledButForThoseThatMustNot) {
+TEST_F(Commands, ResponsesAreDisabledAndEnabledExceptMandatoryOnes) {
   const auto fault = static_cast<std::uint8_t>(Fault::kAttitudeJump);
   step_commands({command(FunctionCode::kDisableResponse, {fault})});
-  EXPECT_EQ(out->housekeeping.responses_disabled, bit_of(Fault::kAttitudeJump));
+  EXPECT_EQ(out->telemetry.responses_disabled, bit_of(Fault::kAttitudeJump));
   step_commands({command(FunctionCode::kEnableResponse, {fault})});
-  EXPECT_EQ(out->housekeeping.responses_disabled, 0U);
+  EXPECT_EQ(out->telemetry.responses_disabled, 0U);
   step_commands(
       {command(FunctionCode::kDisableResponse, {static_cast<std::uint8_t>(Fault::kModelCorrupted)})});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
@@ -287,7 +287,7 @@ TEST_F(Commands, ResponsesAreDisabledAndEnabledButForThoseThatMustNot) {
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
 }
 
-TEST_F(Commands, InputsBeyondAnyLimitOfAStepAreABugOfTheCaller) {
+TEST_F(Commands, InputsBeyondALimitAreABugOfTheCaller) {
   struct Row {
     int commands, frames, wrong_size;
     bool bug;
@@ -310,7 +310,7 @@ TEST_F(Commands, InputsBeyondAnyLimitOfAStepAreABugOfTheCaller) {
 }
 
 // Verifies TS-MODE-060.
-TEST_F(Commands, AssertionGoesSafeUntilStandbyIsCommanded) {
+TEST_F(Commands, AssertionLeadsToSafeUntilStandbyIsCommanded) {
   step_good();
   step_with_bug();
   EXPECT_EQ(app->mode(), Mode::kSafe);
