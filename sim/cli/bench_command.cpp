@@ -54,11 +54,11 @@ std::vector<std::uint8_t> read_image(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-void say(const std::string& what) {
+void print_measuring(const std::string& what) {
   fmt::print(stderr, "  measuring {}\n", what);
 }
 
-// Peers that are not there are said to be missing; one whose outputs differ ends the run.
+// A peer that is not installed is reported and left out; one whose outputs differ ends the run.
 void bench_peers(const BenchArguments& arguments, const std::string& float32_path,
                  const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
   const auto model = read_float32_model(float32_path);
@@ -67,7 +67,7 @@ void bench_peers(const BenchArguments& arguments, const std::string& float32_pat
                                           make_libtorch(*model, reasons[1])};
   for (int i = 0; i < 2; ++i) {
     if (peers[i]) {
-      say(peers[i]->name());
+      print_measuring(peers[i]->name());
       rows.push_back(bench_peer(*peers[i], *model, frames));
     } else {
       fmt::print(stderr, "  left out: {}\n", reasons[i]);
@@ -106,12 +106,13 @@ void bench(const BenchArguments& arguments) {
   const std::string fixed_path = shipped_model_path(arguments.target);
   const std::string float32_path = shipped_model_path(arguments.target + ".float32");
   const std::vector<gnc::RangeImage> frames = rendered_frames(arguments.target);
-  fmt::print("\n  {}, {:.1f} M multiply-accumulates a frame, one thread\n\n", arguments.target,
+  fmt::print("\n  {}, {:.1f} M multiply-accumulates per frame, one thread\n\n", arguments.target,
              1e-6 * static_cast<double>(gnc::kMacCount));
   std::fflush(stdout);
   std::vector<BenchRow> rows;
   for (const std::string& path : {fixed_path, float32_path}) {
-    for (BenchRow& row : bench_numerics({read_image(path), frames}, say)) rows.push_back(std::move(row));
+    for (BenchRow& row : bench_numerics({read_image(path), frames}, print_measuring))
+      rows.push_back(std::move(row));
   }
   bench_peers(arguments, float32_path, frames, rows);
   fmt::print("\n{}\n", table_of(rows));
@@ -123,23 +124,23 @@ void bench(const BenchArguments& arguments) {
 void add_bench_command(CLI::App& app) {
   auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command =
-      app.add_subcommand("bench", "Measure the flight network's speed, beside other runtimes'");
+      app.add_subcommand("bench", "Measure the speed of the flight network, compared with other runtimes");
   command->footer(
       "\nOne thread, the shipped model in both numerics, every instruction set of this processor. A step "
       "goes\n"
-      "from ranges to quaternion; the network alone is what the other runtimes do as well. The peak is\n"
-      "measured: the same multiply-accumulate instructions without any memory.\n\n"
-      "ONNX Runtime takes part when its library is there: npm install --prefix build onnxruntime-node\n");
-  command->add_option("--target", arguments->target, "spacecraft whose model is measured")
-      ->check(one_of(target_names()))
-      ->type_name("NAME")
-      ->capture_default_str();
+      "from ranges to quaternion. The other runtimes run the network alone. The peak is measured with the "
+      "same\n"
+      "multiply-accumulate instructions and no memory access.\n\n"
+      "ONNX Runtime is measured when its library is installed: npm install --prefix build "
+      "onnxruntime-node\n");
+  add_target_option(*command, arguments->target, TargetChoice::kShipped);
   command
-      ->add_option("--onnxruntime", arguments->onnxruntime,
-                   "libonnxruntime.so [of onnxruntime-node in build/node_modules, or the system's]")
+      ->add_option(
+          "--onnxruntime", arguments->onnxruntime,
+          "libonnxruntime.so [that of onnxruntime-node in build/node_modules, otherwise the system's]")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
-  command->add_option("--json", arguments->json, "write the rows to this file")->type_name("FILE");
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { bench(*arguments); });
 }
 

@@ -1,5 +1,5 @@
-// `tumblesight bench`: how fast the flight network is, with every numerics and instruction set, and beside
-// other runtimes.
+// `tumblesight bench`: speed of the flight network in both numerics and with every instruction set, compared
+// with other runtimes.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -93,14 +93,14 @@ void add_record_command(CLI::App& app) {
   arguments->scenario.sequences = 2;
   CLI::App* command = app.add_subcommand("record", "Render frames into a file, for flight_replay on a board");
   command->footer(
-      "\nWhat the LiDAR would have delivered, a frame each 2.7 s; hal/replay/recording.hpp has the "
-      "format.\n\n"
-      "Example: what flies on the processors of the audit\n"
+      "\nThe frames of the LiDAR, one per 2.7 s. The file format is described in "
+      "hal/replay/recording.hpp.\n\n"
+      "Example: a recording like the one that the audit of the processors uses\n"
       "  tumblesight record --target near_shoemaker --condition degraded --out frames.tslr\n");
   add_target_options(*command, arguments->scenario);
-  add_condition_option(*command, arguments->scenario);
+  add_condition_option(*command, arguments->scenario.condition);
   add_sequence_options(*command, arguments->scenario);
-  command->add_option("--out", arguments->out, "Recording to write")->required()->type_name("FILE");
+  command->add_option("--out", arguments->out, "recording to write")->required()->type_name("FILE");
   command->callback([arguments] { record(*arguments); });
 }
 

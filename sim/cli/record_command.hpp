@@ -1,4 +1,5 @@
-// tumblesight record: rendered frames as a recording, for the flight application where no simulator is.
+// `tumblesight record`: renders frames into a recording, for the flight application on boards without a
+// simulator.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -16,7 +16,7 @@
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
-#include "sim/world/target/mesh_file.hpp"
+#include "sim/world/target/target_mesh.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
@@ -25,11 +25,10 @@ namespace {
 constexpr double kSwathTolerance = 0.02;  // of the model's swath: half an image cell to either side
 
 TriangleMesh load_mesh(const ScenarioArguments& arguments) {
-  if (arguments.mesh.empty()) return target_by_name(arguments.target);
   MeshFileOptions options;
   options.up = mesh_up_from(arguments.mesh_up);
   options.scale = arguments.mesh_scale;
-  return load_mesh_file(arguments.mesh, options);
+  return target_mesh(arguments.target, arguments.mesh.empty() ? kParametricMesh : arguments.mesh, options);
 }
 
 std::string model_path(const ScenarioArguments& arguments) {
@@ -42,7 +41,7 @@ bool ships(const std::string& target) {
   return std::find(names.begin(), names.end(), target) != names.end();
 }
 
-// Of anything between a hand's and a space station's size; beyond that arithmetic ends before bodies do.
+// Covers bodies from the size of a hand to that of a space station.
 constexpr double kSmallestMoment_kg_m2 = 1e-6;
 constexpr double kLargestMoment_kg_m2 = 1e12;
 
@@ -64,10 +63,11 @@ std::optional<Eigen::Matrix3d> inertia_of(const ScenarioArguments& arguments) {
   Eigen::Matrix3d inertia;
   inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
   if (!is_possible(inertia)) {
-    throw std::invalid_argument(fmt::format(
-        "--inertia {}: no body has it; its principal moments must be {:g} to {:g} kg m2, none larger "
-        "than the sum of the other two and none below {:g} of their mean",
-        fmt::join(i, ","), kSmallestMoment_kg_m2, kLargestMoment_kg_m2, gnc::kSmallestMoment));
+    throw std::invalid_argument(
+        fmt::format("--inertia {}: no rigid body has this inertia; its principal moments must be {:g} to "
+                    "{:g} kg m2, none larger "
+                    "than the sum of the other two and none below {:g} of their mean",
+                    fmt::join(i, ","), kSmallestMoment_kg_m2, kLargestMoment_kg_m2, gnc::kSmallestMoment));
   }
   return inertia;
 }
@@ -78,7 +78,7 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
     const bool shipped = arguments.model.empty();
     throw std::runtime_error(
         fmt::format("model image '{}' does not exist{}", path,
-                    shipped ? "; train one for this target, or name one with --model" : ""));
+                    shipped ? "; train one for this target, or give one with --model" : ""));
   }
   std::ifstream file(path, std::ios::binary);
   std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -88,8 +88,9 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
 
 void frame_by_mesh(TargetSetup& setup) {
   setup.projection = projection_of(setup.mesh);
-  setup.warnings.push_back(fmt::format("Model image '{}' is refused: {}; frames cover the mesh's own swath.",
-                                       setup.model_path, gnc::to_string(setup.model_status)));
+  setup.warnings.push_back(
+      fmt::format("Model image '{}' is refused: {}. The frames cover the mesh's own swath.", setup.model_path,
+                  gnc::to_string(setup.model_status)));
 }
 
 void frame_by_model(TargetSetup& setup) {
@@ -98,7 +99,7 @@ void frame_by_model(TargetSetup& setup) {
   const double of_mesh = swath_m(setup.mesh);
   if (std::abs(of_mesh - of_model) <= kSwathTolerance * of_model) return;
   setup.warnings.push_back(
-      fmt::format("The mesh needs a swath of {:.2f} m, the network was trained for {:.2f} m, which is used: "
+      fmt::format("The mesh needs a swath of {:.2f} m. The network was trained for {:.2f} m, which is used: "
                   "{}",
                   of_mesh, of_model,
                   of_mesh > of_model ? "parts of the target may lie outside the image."

@@ -1,4 +1,4 @@
-// TargetSetup: the mesh and the model image that a scenario's arguments name, and how the sensor frames them.
+// TargetSetup: the mesh and the model image that a scenario's arguments name, and the swath of the frames.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,13 +15,13 @@ namespace tumblesight::sim {
 
 struct TargetSetup {
   TriangleMesh mesh;
-  std::string mesh_name;                         // for the record: "parametric" or the file's name
-  std::optional<Eigen::Matrix3d> inertia_kg_m2;  // in the TRF; nothing for a target that does not ship
+  std::string mesh_name;                         // "parametric" or the file's name
+  std::optional<Eigen::Matrix3d> inertia_kg_m2;  // in the TRF; empty for a target that does not ship
   std::string model_path;
   std::vector<std::uint8_t> model;
   gnc::ModelStatus model_status = gnc::ModelStatus::kTooShort;  // the host's own check of the image
   gnc::ModelHeader header;                                      // if kOk
-  // The model's, so that the frames fill the image as in training; the mesh's if the model is no good.
+  // The model's, so that the target fills the image as in training. The mesh's if the model is refused.
   gnc::DepthProjection projection;
   std::vector<std::string> warnings;
 };
@@ -30,8 +30,8 @@ struct TargetSetup {
 std::string shipped_model_path(const std::string& name);
 
 // Throws std::runtime_error or std::invalid_argument that names what is missing or wrong: target, mesh,
-// inertia, model file. A model file that is there but refused is only a warning: the flight program has to
-// find that out by itself.
+// inertia, model file. A model file that exists but is refused is only a warning: the flight program has to
+// detect that.
 TargetSetup set_up_target(const ScenarioArguments& arguments);
 
 }  // namespace tumblesight::sim

@@ -12,11 +12,9 @@
 #include "sim/evaluation/paper.hpp"
 #include "sim/evaluation/reliability.hpp"
 #include "sim/world/scenario/sequence.hpp"
+#include "sim/world/target/target_mesh.hpp"
 
 namespace tumblesight::sim {
-
-// The name of the mesh that ships for a target.
-inline constexpr const char* kParametricMesh = "parametric";
 
 // One condition, last frames unless said otherwise.
 struct CellResult {

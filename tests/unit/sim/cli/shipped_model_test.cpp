@@ -1,4 +1,4 @@
-// The model images that ship with Tumblesight are as good as the record beside each says.
+// The shipped model images are as accurate as the figures stored with them say.
 #include <gtest/gtest.h>
 
 #include <algorithm>
