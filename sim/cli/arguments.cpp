@@ -13,18 +13,48 @@
 
 #include "sim/model/model_file.hpp"
 #include "sim/world/scenario/sequence.hpp"
+#include "sim/world/target/target_mesh.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-// Frames. A simulated one takes about half a kilobyte until the report is written.
-constexpr std::uint64_t kLongestRun = 1'000'000;
+// A simulated frame takes about half a kilobyte until the report is written.
+constexpr std::uint64_t kMaxRunFrames = 1'000'000;
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
+}
+
+std::string condition_help() {
+  return "sensor and motion: " + joined(condition_names());
+}
+
+// `mesh` is one file name or a list of them.
+template <class Mesh>
+void add_mesh_file_options(CLI::App& command, Mesh& mesh, std::string& up, double& scale,
+                           const std::string& help) {
+  CLI::Option* option = command.add_option("--mesh", mesh, help);
+  option->type_name("FILE");
+  command.add_option("--mesh-up", up, "axis of the mesh file that points along the target frame's z")
+      ->check(one_of({"y", "z"}))
+      ->type_name("y|z")
+      ->capture_default_str()
+      ->needs(option);
+  command.add_option("--mesh-scale", scale, "metres per unit of the mesh file")
+      ->check(number(1e-6, 1e6))
+      ->type_name("X")
+      ->capture_default_str()
+      ->needs(option);
+}
+
+MeshFileOptions mesh_file_options(const MeshArguments& arguments) {
+  MeshFileOptions options;
+  options.up = mesh_up_from(arguments.mesh_up);
+  options.scale = arguments.mesh_scale;
+  return options;
 }
 
 }  // namespace
@@ -33,7 +63,7 @@ CLI::Validator target_name() {
   const auto check = [](std::string& text) -> std::string {
     const bool plain = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
     if (plain && !text.empty() && text.size() < 32) return {};
-    return fmt::format("must be 1 to 31 of a-z, 0-9 and _, not '{}'", text);
+    return fmt::format("must be 1 to 31 characters of a-z, 0-9 and _, not '{}'", text);
   };
   return CLI::Validator(check, "", "target name");
 }
@@ -79,43 +109,73 @@ CLI::Validator number(double low, double high) {
   return CLI::Validator(check, "", "number");
 }
 
-void add_target_options(CLI::App& command, ScenarioArguments& arguments) {
-  command
-      .add_option("--target", arguments.target,
-                  "spacecraft: " + joined(target_names()) + "; with --mesh any name")
-      ->check(target_name())
+void add_target_option(CLI::App& command, std::string& target, TargetChoice choice) {
+  const std::string shipped = "spacecraft: " + joined(target_names());
+  const bool any = choice == TargetChoice::kAny;
+  command.add_option("--target", target, any ? shipped + ", or with --mesh a name of your own" : shipped)
+      ->check(any ? target_name() : one_of(target_names()))
       ->type_name("NAME")
       ->capture_default_str();
-  CLI::Option* mesh = command.add_option(
-      "--mesh", arguments.mesh, "its surface from a file (STL, OBJ, glTF) instead of the shipped mesh");
-  mesh->type_name("FILE");
-  command.add_option("--mesh-up", arguments.mesh_up, "the file's axis that is the target frame's z")
-      ->check(one_of({"y", "z"}))
-      ->type_name("y|z")
-      ->capture_default_str()
-      ->needs(mesh);
-  command.add_option("--mesh-scale", arguments.mesh_scale, "metres to a unit of the file")
-      ->check(number(1e-6, 1e6))
-      ->type_name("X")
-      ->capture_default_str()
-      ->needs(mesh);
+}
+
+void add_condition_option(CLI::App& command, std::string& condition) {
+  command.add_option("--condition", condition, condition_help())
+      ->check(one_of(condition_names()))
+      ->type_name("NAME")
+      ->capture_default_str();
+}
+
+void add_condition_option(CLI::App& command, std::vector<std::string>& conditions) {
+  command.add_option("--condition", conditions, condition_help() + "; several: a,b")
+      ->delimiter(',')
+      ->check(one_of(condition_names()))
+      ->type_name("NAMES")
+      ->capture_default_str();
+}
+
+void add_seed_option(CLI::App& command, std::uint64_t& seed) {
+  command.add_option("--seed", seed, "seed of all random numbers; the same seed gives the same run")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_float32_model_option(CLI::App& command, std::string& model) {
+  command.add_option("--model", model, "model image in float32, as `tumblesight train` writes it")
+      ->required()
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+}
+
+void add_json_option(CLI::App& command, std::string& json) {
+  command.add_option("--json", json, "write the figures to this file")->type_name("FILE");
+}
+
+void add_report_option(CLI::App& command, std::string& report, const std::string& default_text) {
+  command
+      .add_option("--report", report,
+                  "write an HTML page with figures and tables to this file" + default_text)
+      ->type_name("FILE");
+}
+
+void add_target_options(CLI::App& command, ScenarioArguments& arguments) {
+  add_target_option(command, arguments.target, TargetChoice::kAny);
+  add_mesh_file_options(
+      command, arguments.mesh, arguments.mesh_up, arguments.mesh_scale,
+      "surface of the target: a file (STL, OBJ, glTF), or parametric for the mesh that ships [parametric]");
   command
       .add_option("--inertia", arguments.inertia,
-                  "its inertia Ixx,Iyy,Izz,Ixy,Ixz,Iyz in kg m2, to let a target of your own tumble")
+                  "inertia Ixx,Iyy,Izz,Ixy,Ixz,Iyz of the target in kg m2, for a tumbling target of your own")
       ->delimiter(',')
       ->expected(6)
       ->type_name("N,N,...");
 }
 
-std::string condition_help() {
-  return joined(condition_names());
-}
-
-void add_condition_option(CLI::App& command, ScenarioArguments& arguments) {
-  command.add_option("--condition", arguments.condition, condition_help())
-      ->check(one_of(condition_names()))
-      ->type_name("NAME")
-      ->capture_default_str();
+void add_mesh_options(CLI::App& command, MeshArguments& arguments) {
+  add_mesh_file_options(
+      command, arguments.meshes, arguments.mesh_up, arguments.mesh_scale,
+      "surface of the target: a file (STL, OBJ, glTF), or parametric for the mesh that ships; "
+      "may be repeated [parametric]");
 }
 
 void add_sequence_options(CLI::App& command, ScenarioArguments& arguments) {
@@ -123,36 +183,40 @@ void add_sequence_options(CLI::App& command, ScenarioArguments& arguments) {
       ->check(whole_number(1, 100'000))
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("--frames", arguments.frames, "frames a sequence, 1 to 1000")
+  command.add_option("--frames", arguments.frames, "frames per sequence, 1 to 1000")
       ->check(whole_number(1, 1000))
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("--seed", arguments.seed, "same seed, same attitudes, ranges, rates and noise")
-      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-      ->type_name("N")
-      ->capture_default_str();
+  add_seed_option(command, arguments.seed);
 }
 
-void add_file_options(CLI::App& command, ScenarioArguments& arguments) {
+void add_model_options(CLI::App& command, ScenarioArguments& arguments) {
   CLI::Option* model =
       command.add_option("--model", arguments.model, "model image [the one that ships for the target]");
   model->type_name("FILE");
   command
       .add_option("--numerics", arguments.numerics,
-                  "of the model that ships: fixed point, as it flies, or float32")
+                  "which of the shipped models: fixed point, as it flies, or float32")
       ->check(one_of({"fixed", "float32"}))
       ->type_name("fixed|float32")
       ->capture_default_str()
       ->excludes(model);
-  command.add_option("--json", arguments.json, "write the figures to this file")->type_name("FILE");
 }
 
-void require_bearable_length(const ScenarioArguments& arguments) {
+std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std::string& target) {
+  std::vector<TriangleMesh> meshes;
+  for (const std::string& mesh : arguments.meshes) {
+    meshes.push_back(target_mesh(target, mesh, mesh_file_options(arguments)));
+  }
+  return meshes;
+}
+
+void require_supported_length(const ScenarioArguments& arguments) {
   const std::uint64_t frames = std::uint64_t{arguments.sequences} * arguments.frames;
-  if (frames <= kLongestRun) return;
+  if (frames <= kMaxRunFrames) return;
   throw CLI::ValidationError("--sequences, --frames",
-                             fmt::format("{} x {} are {} frames in all, at most {} fit a run",
-                                         arguments.sequences, arguments.frames, frames, kLongestRun));
+                             fmt::format("{} x {} are {} frames in all; a run has at most {}",
+                                         arguments.sequences, arguments.frames, frames, kMaxRunFrames));
 }
 
 std::string full_path(const std::string& path) {
@@ -166,8 +230,8 @@ std::string full_path(const std::string& path) {
 void require_different(const std::string& option, const std::string& path, const std::string& other_option,
                        const std::string& other_path) {
   if (path.empty() || other_path.empty() || full_path(path) != full_path(other_path)) return;
-  throw CLI::ValidationError(option,
-                             fmt::format("'{}' is the file of {} as well; give two", path, other_option));
+  throw CLI::ValidationError(
+      option, fmt::format("'{}' is also the file of {}; give two different files", path, other_option));
 }
 
 void require_writable(const std::string& option, const std::string& path) {

@@ -1,5 +1,5 @@
-// The options that several subcommands share, defined once so that they mean the same everywhere, and the
-// checks of their values: what is refused is refused with the limits that hold.
+// The options that several verbs share, each defined once so that it means the same everywhere, and the
+// checks of their values. A refused value is reported with its limits.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,54 +7,79 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/target/triangle_mesh.hpp"
+
 namespace tumblesight::sim {
 
-// What is observed, and by which network.
+// The observed target and motion, and the network.
 struct ScenarioArguments {
   std::string target = "near_shoemaker";
-  std::string mesh;  // empty: the mesh that ships for the target
+  std::string mesh;  // a file, or "parametric"; empty: the same
   std::string mesh_up = "y";
   double mesh_scale = 1.0;
-  std::vector<double> inertia;  // Ixx, Iyy, Izz, Ixy, Ixz, Iyz [kg m2]; empty: the shipped target's own
+  std::vector<double> inertia;  // Ixx, Iyy, Izz, Ixy, Ixz, Iyz [kg m2]; empty: the shipped target's
   std::string condition = "nominal";
   std::uint32_t sequences = 30;
-  std::uint32_t frames = 10;
+  std::uint32_t frames = 10;  // per sequence
   std::uint64_t seed = 1;
-  std::string numerics = "fixed";  // or "float32": of the model that ships
+  std::string numerics = "fixed";  // or "float32": which of the shipped models
   std::string model;  // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
   std::string json;   // empty: none
 };
 
-// Defaults are what `arguments` holds when called.
-void add_target_options(CLI::App& command, ScenarioArguments& arguments);    // --target, --mesh…, --inertia
-void add_condition_option(CLI::App& command, ScenarioArguments& arguments);  // --condition, a single one
-void add_sequence_options(CLI::App& command, ScenarioArguments& arguments);  // --sequences, --frames, --seed
-void add_file_options(CLI::App& command, ScenarioArguments& arguments);      // --model, --numerics, --json
+// The surfaces that a network is made for.
+struct MeshArguments {
+  std::vector<std::string> meshes{"parametric"};  // files, or "parametric" for the mesh that ships
+  std::string mesh_up = "y";
+  double mesh_scale = 1.0;
+};
 
-// What --condition says of itself, wherever it stands.
-std::string condition_help();
+enum class TargetChoice {
+  kShipped,  // only targets that ship
+  kAny,      // with --mesh, targets of the user's own as well
+};
+
+// One option each. The default shown in the help is the value of the variable at the time of the call.
+void add_target_option(CLI::App& command, std::string& target, TargetChoice choice);
+void add_condition_option(CLI::App& command, std::string& condition);  // --condition, one
+void add_condition_option(CLI::App& command,
+                          std::vector<std::string>& conditions);  // --condition, one or more
+void add_seed_option(CLI::App& command, std::uint64_t& seed);
+void add_float32_model_option(CLI::App& command, std::string& model);  // --model, required
+void add_json_option(CLI::App& command, std::string& json);
+void add_report_option(CLI::App& command, std::string& report, const std::string& default_text);
+
+// Groups of options.
+void add_target_options(CLI::App& command, ScenarioArguments& arguments);  // --target, --mesh…, --inertia
+void add_mesh_options(CLI::App& command,
+                      MeshArguments& arguments);  // --mesh (repeated), --mesh-up, --mesh-scale
+void add_sequence_options(CLI::App& command, ScenarioArguments& arguments);  // --sequences, --frames, --seed
+void add_model_options(CLI::App& command, ScenarioArguments& arguments);     // --model, --numerics
+
+// Throws as target_mesh does.
+std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std::string& target);
 
 // Throws CLI::ValidationError if sequences times frames is more than a run can hold in memory.
-void require_bearable_length(const ScenarioArguments& arguments);
+void require_supported_length(const ScenarioArguments& arguments);
 
-// Validators whose message names the limits, for instance "must be a whole number from 1 to 100000, not
-// 'many'". Leading zeros are refused: CLI11 would read an octal number.
+// Validators whose message names the limits, for example "must be a whole number from 1 to 100000, not
+// 'many'". Leading zeros are refused, because CLI11 would read an octal number.
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 CLI::Validator number(double low, double high);
 // An existing file. The message about a missing image of fsw/models names the command that gets it.
 CLI::Validator existing_model_image();
 CLI::Validator one_of(const std::vector<std::string>& names);
-// It becomes part of a file name and of the model image: 1 to 31 of a-z, 0-9 and _.
+// 1 to 31 characters of a-z, 0-9 and _: the name becomes part of a file name and of the model image.
 CLI::Validator target_name();
 
-// Absolute, with links, "." and ".." resolved as far as the path exists.
+// Absolute; links, "." and ".." are resolved as far as the path exists.
 std::string full_path(const std::string& path);
 
-// Throws CLI::ValidationError if both options name the same file, in whatever spelling.
+// Throws CLI::ValidationError if both options name the same file, however it is spelled.
 void require_different(const std::string& option, const std::string& path, const std::string& other_option,
                        const std::string& other_path);
 
-// Throws std::runtime_error that names option, file and reason if `path` could not be written. Leaves no file
+// Throws std::runtime_error that names option, file and reason if `path` cannot be written. Leaves no file
 // behind.
 void require_writable(const std::string& option, const std::string& path);
 

@@ -45,11 +45,11 @@ std::vector<gnc::RangeImage> rendered_frames(const std::string& target) {
   return frames;
 }
 
-void say(const std::string& what) {
+void print_measuring(const std::string& what) {
   fmt::print(stderr, "  measuring {}\n", what);
 }
 
-// A runtime that is not installed is reported as left out; one whose outputs differ ends the run.
+// A peer that is not installed is reported and left out; one whose outputs differ ends the run.
 void bench_peers(const BenchArguments& arguments, const std::string& float32_path,
                  const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
   const auto model = read_float32_model(float32_path);
@@ -58,7 +58,7 @@ void bench_peers(const BenchArguments& arguments, const std::string& float32_pat
                                           make_libtorch(*model, reasons[1])};
   for (int i = 0; i < 2; ++i) {
     if (peers[i]) {
-      say(peers[i]->name());
+      print_measuring(peers[i]->name());
       rows.push_back(bench_peer(*peers[i], *model, frames));
     } else {
       fmt::print(stderr, "  left out: {}\n", reasons[i]);
@@ -102,7 +102,7 @@ void bench(const BenchArguments& arguments) {
   std::fflush(stdout);
   std::vector<BenchRow> rows;
   for (const std::string& path : {fixed_path, float32_path}) {
-    for (BenchRow& row : bench_numerics({read_model_bytes(path), frames}, say))
+    for (BenchRow& row : bench_numerics({read_model_bytes(path), frames}, print_measuring))
       rows.push_back(std::move(row));
   }
   bench_peers(arguments, float32_path, frames, rows);
@@ -115,23 +115,23 @@ void bench(const BenchArguments& arguments) {
 void add_bench_command(CLI::App& app) {
   auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command =
-      app.add_subcommand("bench", "Measure the speed of the flight network and of other runtimes");
+      app.add_subcommand("bench", "Measure the speed of the flight network, compared with other runtimes");
   command->footer(
-      "\nMeasures one thread with the shipped model in both numerics and with every instruction set of this\n"
-      "processor. A step goes from ranges to quaternion. Other runtimes execute the network alone. The peak "
-      "is\n"
-      "measured with the same multiply-accumulate instructions without memory access.\n\n"
-      "ONNX Runtime is measured if its library is installed: npm install --prefix build onnxruntime-node\n");
-  command->add_option("--target", arguments->target, "spacecraft whose model is measured")
-      ->check(one_of(target_names()))
-      ->type_name("NAME")
-      ->capture_default_str();
+      "\nOne thread, the shipped model in both numerics, every instruction set of this processor. A step "
+      "goes\n"
+      "from ranges to quaternion. The other runtimes run the network alone. The peak is measured with the "
+      "same\n"
+      "multiply-accumulate instructions and no memory access.\n\n"
+      "ONNX Runtime is measured when its library is installed: npm install --prefix build "
+      "onnxruntime-node\n");
+  add_target_option(*command, arguments->target, TargetChoice::kShipped);
   command
-      ->add_option("--onnxruntime", arguments->onnxruntime,
-                   "libonnxruntime.so [of onnxruntime-node in build/node_modules, or the system's]")
+      ->add_option(
+          "--onnxruntime", arguments->onnxruntime,
+          "libonnxruntime.so [that of onnxruntime-node in build/node_modules, otherwise the system's]")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
-  command->add_option("--json", arguments->json, "write the rows to this file")->type_name("FILE");
+  add_json_option(*command, arguments->json);
   command->callback([arguments] { bench(*arguments); });
 }
 

@@ -1,5 +1,5 @@
-// tumblesight bench: the speed of the flight network in both numerics with every instruction set, and of
-// other runtimes.
+// `tumblesight bench`: speed of the flight network in both numerics and with every instruction set, compared
+// with other runtimes.
 #pragma once
 
 #include <CLI/CLI.hpp>

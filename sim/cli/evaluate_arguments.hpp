@@ -12,10 +12,10 @@
 namespace tumblesight::sim {
 
 struct EvaluateArguments {
-  ScenarioArguments scenario;  // but for its condition
+  ScenarioArguments scenario;  // without its condition
   std::vector<std::string> conditions{"nominal"};
   bool sequences_given = false;
-  int threads = 0;  // 0: one a core
+  int threads = 0;  // 0: one per core
   bool curves = false;
   bool no_baseline = false;
   std::uint32_t baseline_sequences = 100;
@@ -28,10 +28,10 @@ struct EvaluateArguments {
 };
 
 void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments);
-// Throws CLI::ValidationError if an option was given on which --paper decides itself.
-void require_paper_alone(const CLI::App& command);
+// Throws CLI::ValidationError if an option was given that --paper sets itself.
+void refuse_options_set_by_paper(const CLI::App& command);
 
-// Everything but the conditions, from the arguments.
+// All settings except the conditions.
 ExperimentSettings experiment_settings(const EvaluateArguments& arguments);
 
 }  // namespace tumblesight::sim

@@ -1,11 +1,9 @@
 #include "sim/cli/evaluate_command.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 
 #include "sim/cli/evaluate_arguments.hpp"
@@ -14,8 +12,9 @@
 #include "sim/evaluation/checks.hpp"
 #include "sim/report/results_csv.hpp"
 #include "sim/report/results_json.hpp"
-#include "sim/report/results_report.hpp"
-#include "sim/report/results_table.hpp"
+#include "sim/report/results_page.hpp"
+#include "sim/report/results_tables.hpp"
+#include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text_file.hpp"
 
@@ -55,16 +54,15 @@ void announce(const Subject& subject, const ExperimentSettings& settings) {
 }
 
 void print_cell(const SubjectResult& subject, const CellResult& cell) {
-  const PaperFigures paper = paper_figures(subject.target, cell.condition);
   if (subject.cells.size() > 1) fmt::print("\n  {}\n", to_string(cell.condition));
-  fmt::print("\n{}\n{}\n", cell_table(cell.rcnn, cell.cnn, cell.baseline, cell.frames, paper),
-             by_frame_table(cell.by_frame));
-  fmt::print("  network              {:.2f} ms a frame (median, one thread)\n", cell.network_ms);
+  fmt::print("\n{}\n{}\n", terminal_text(cell_table(subject.target, cell)),
+             terminal_text(by_frame_table(cell.by_frame)));
+  fmt::print("  network              {:.2f} ms per frame (median, one thread)\n", cell.network_ms);
   if (cell.baseline) {
     fmt::print(
-        "  template matching    {:.0f} ms a frame; templates of the same mesh as the frames', last frames of "
-        "the "
-        "first {} sequences\n",
+        "  template matching    {:.0f} ms per frame; templates of the same mesh as the frames, last frames "
+        "of the first {} "
+        "sequences\n",
         cell.baseline_ms, cell.baseline->count);
   }
 }
@@ -74,10 +72,10 @@ void print_results(const Results& results) {
   for (const CellResult& cell : subject.cells) print_cell(subject, cell);
   if (!subject.sweeps) return;
   const Sweeps& sweeps = *subject.sweeps;
-  fmt::print("\n{}\n{}\n{}\n{}\n", curve_table("range [m]", subject.cells.front().by_range),
-             curve_table("rate, components drawn [deg/s]", subject.cells.front().by_rate),
-             curve_table("rate, norm drawn [deg/s]", sweeps.by_rate_norm),
-             curve_table("hidden share", sweeps.by_hidden_share));
+  fmt::print("\n{}\n{}\n{}\n{}\n", terminal_text(curve_table("range [m]", subject.cells.front().by_range)),
+             terminal_text(curve_table("rate, components drawn [deg/s]", subject.cells.front().by_rate)),
+             terminal_text(curve_table("rate, norm drawn [deg/s]", sweeps.by_rate_norm)),
+             terminal_text(curve_table("hidden [%]", sweeps.by_hidden_share, 100.0)));
   for (const Check& check : checks_of(subject)) {
     fmt::print("  {}: {}{}\n", check.what, text_of(check), check.holds() ? "" : "  MISSED");
   }
@@ -88,14 +86,14 @@ void write_files(const EvaluateArguments& arguments, const Results& results) {
   if (!json.empty()) write_text_file(json, results_json(results).dump(2) + "\n");
   if (!arguments.csv.empty()) write_text_file(arguments.csv, results_csv(results));
   if (arguments.report.empty()) return;
-  write_text_file(arguments.report, results_report(results));
+  write_text_file(arguments.report, results_page(results));
   fmt::print("  report               {}\n", full_path(arguments.report));
 }
 
 void evaluate(const EvaluateArguments& arguments) {
   ExperimentSettings settings = experiment_settings(arguments);
   settings.conditions = conditions_of(arguments);
-  require_bearable_length(arguments.scenario);
+  require_supported_length(arguments.scenario);
   require_usable_files(arguments);
   const Subject subject = set_up_subject(arguments.scenario);
   for (const Condition condition : settings.conditions) {
@@ -106,7 +104,7 @@ void evaluate(const EvaluateArguments& arguments) {
   Results results;
   results.seed = settings.seed;
   results.command = arguments.command_line;
-  results.generated = fmt::format("{:%Y-%m-%d %H:%M %Z}", fmt::localtime(std::time(nullptr)));
+  results.generated = local_time_text();
   ProgressBar bar("evaluating", "steps", steps_of(settings));
   results.subjects.push_back(
       run_experiment(subject, settings, [&](std::uint64_t done) { bar.update(done); }));
@@ -119,15 +117,15 @@ void evaluate(const EvaluateArguments& arguments) {
 }  // namespace
 
 void add_evaluate_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command =
-      app.add_subcommand("evaluate", "Measure the accuracy of a model over many sequences, without DDS");
+  CLI::App* command = app.add_subcommand(
+      "evaluate", "Measure the accuracy of a model over many sequences, without the flight program");
   auto arguments = std::make_shared<EvaluateArguments>();
   arguments->command_line = command_line;
   add_evaluate_options(*command, *arguments);
   command->callback([arguments, command] {
     arguments->sequences_given = command->get_option("--sequences")->count() > 0;
     if (arguments->paper) {
-      require_paper_alone(*command);
+      refuse_options_set_by_paper(*command);
       evaluate_paper(*arguments);
     } else {
       evaluate(*arguments);

@@ -1,4 +1,5 @@
-// tumblesight evaluate: accuracy of a model over many sequences, straight from renderer to estimator.
+// `tumblesight evaluate`: accuracy of a model over many sequences, from the renderer directly to the
+// estimator.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,7 +7,7 @@
 
 namespace tumblesight::sim {
 
-// `command_line`: for the report.
+// `command_line` is shown in the report.
 void add_evaluate_command(CLI::App& app, const std::string& command_line);
 
 }  // namespace tumblesight::sim

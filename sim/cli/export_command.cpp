@@ -18,16 +18,15 @@ struct ExportArguments {
   std::string onnx;
 };
 
-constexpr const char* kHowTheyGoTogether =
-    "For every frame: its depth image through the CNN; the attitude predicted from the frames before;\n"
-    "both into the recurrent network's input; h_next and c_next are h and c of the next frame. The\n"
-    "algebra between the two is gnc/rcnn/hypotheses.hpp and gnc/rcnn/attitude_track.hpp; the models' doc\n"
-    "strings say what each number means.\n";
+constexpr const char* kUseOfTheModels =
+    "For every frame: run the CNN on its depth image, predict the attitude from the frames before, and give\n"
+    "both to the recurrent network. h_next and c_next are h and c of the next frame. The algebra between\n"
+    "the two models is in gnc/rcnn/hypotheses.hpp and gnc/rcnn/attitude_track.hpp. The doc strings of the\n"
+    "models describe every input and output.\n";
 
 void require_a_name(const std::string& prefix) {
   if (!std::filesystem::path(prefix).filename().empty()) return;
-  throw CLI::ValidationError("--onnx",
-                             "'" + prefix + "' is a folder; what the files' names begin with is missing");
+  throw CLI::ValidationError("--onnx", "'" + prefix + "' is a folder; add the first part of the file names");
 }
 
 void export_model(const ExportArguments& arguments) {
@@ -40,7 +39,7 @@ void export_model(const ExportArguments& arguments) {
              files.cnn.size_bytes);
   fmt::print("  {}, {} bytes: input, state -> corrections, next state\n\n", full_path(files.recurrent.path),
              files.recurrent.size_bytes);
-  fmt::print("{}\n", kHowTheyGoTogether);
+  fmt::print("{}\n", kUseOfTheModels);
 }
 
 }  // namespace
@@ -49,14 +48,11 @@ void add_export_command(CLI::App& app) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", "Write a float32 model image as ONNX models");
   command->footer(
-      std::string("\nWrites PREFIX.cnn.onnx and PREFIX.recurrent.onnx (opset 13).\n") + kHowTheyGoTogether +
+      std::string("\nWrites PREFIX.cnn.onnx and PREFIX.recurrent.onnx (opset 13).\n") + kUseOfTheModels +
       "\nExample\n"
       "  tumblesight export --model out/near/near_shoemaker.float32.tsm --onnx out/near/near_shoemaker\n");
-  command->add_option("--model", arguments->model, "Model image in float32, as `tumblesight train` writes it")
-      ->required()
-      ->check(existing_model_image())
-      ->type_name("FILE");
-  command->add_option("--onnx", arguments->onnx, "What the names of both files begin with")
+  add_float32_model_option(*command, arguments->model);
+  command->add_option("--onnx", arguments->onnx, "first part of both file names")
       ->required()
       ->type_name("PREFIX");
   command->callback([arguments] { export_model(*arguments); });

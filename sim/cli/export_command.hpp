@@ -1,4 +1,4 @@
-// `tumblesight export`: a float32 model image for other runtimes.
+// `tumblesight export`: a float32 model image as ONNX models, for other runtimes.
 #pragma once
 
 #include <CLI/CLI.hpp>

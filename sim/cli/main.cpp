@@ -1,4 +1,4 @@
-// tumblesight: the host tool. One program, a subcommand for each job.
+// tumblesight: the ground tool, with one subcommand per job.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -27,7 +27,7 @@ constexpr int kFailed = 1;
 constexpr int kBadArguments = 2;
 
 int report(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
-  // --help and commands that have said themselves why they failed.
+  // --help, and commands that have already reported their failure.
   if (error.get_exit_code() == 0 || error.get_name() == "RuntimeError") return app.exit(error);
   if (error.get_name() == "RequiredError" && argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
     std::fprintf(stderr, "tumblesight: there is no subcommand '%s' (see tumblesight --help)\n", argv[1]);
@@ -56,7 +56,7 @@ std::string version_text() {
 
 int main(int argc, char** argv) {
   using namespace tumblesight;
-  CLI::App app{"Tumblesight: the attitude of tumbling spacecraft from flash-LiDAR frames."};
+  CLI::App app{"Tumblesight: attitude of tumbling spacecraft from flash-LiDAR frames."};
   app.name("tumblesight");
   app.set_version_flag("--version", version_text(), "version, commit, model format and interface hash");
   app.require_subcommand(1);
@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
 #endif
     app.footer(
         "\nStart with\n  tumblesight simulate\n"
-        "and see `tumblesight SUBCOMMAND --help` for what each can do.\n");
+        "and see `tumblesight SUBCOMMAND --help` for the options of each.\n");
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return report(app, error, argc, argv);

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "sim/cli/arguments.hpp"
-#include "sim/cli/surfaces.hpp"
 #include "sim/quantization/quantize_file.hpp"
 #include "sim/terminal/progress.hpp"
 
@@ -17,7 +16,7 @@ namespace {
 struct QuantizeArguments {
   std::string model;
   std::string out;
-  SurfaceArguments surfaces;
+  MeshArguments meshes;
   int sequences = kCalibrationSequences;
 };
 
@@ -35,7 +34,7 @@ void print_report(const QuantizationReport& report, const std::string& path) {
     fmt::print("  {:<8} {:>16.3f} {:>10.3f} % {:>7.1f} dB\n", layer.layer, layer.largest,
                100.0 * layer.saturated, layer.snr_db);
   }
-  fmt::print("\n  attitudes differ from float32's by {:.3f}° (mean), {:.3f}° (median), over {} frames\n",
+  fmt::print("\n  attitudes differ from float32 by {:.3f}° (mean), {:.3f}° (median), over {} frames\n",
              report.difference.mean_deg, report.difference.median_deg, report.difference.count);
   fmt::print("  {}, {} bytes, CRC-32 {:08x}\n\n", full_path(path), report.size_bytes, report.crc32);
 }
@@ -45,8 +44,8 @@ void quantize_file(QuantizeArguments arguments) {
   require_different("--model", arguments.model, "--out", arguments.out);
   require_writable("--out", arguments.out);
   const auto model = read_float32_model(arguments.model);
-  quantize_and_report(*model, load_surfaces(arguments.surfaces, model->header.target.data()),
-                      arguments.sequences, arguments.out);
+  quantize_and_report(*model, load_meshes(arguments.meshes, model->header.target.data()), arguments.sequences,
+                      arguments.out);
 }
 
 }  // namespace
@@ -63,22 +62,22 @@ void quantize_and_report(const Float32Model& model, const std::vector<TriangleMe
 void add_quantize_command(CLI::App& app) {
   auto arguments = std::make_shared<QuantizeArguments>();
   CLI::App* command =
-      app.add_subcommand("quantize", "Turn a float32 model image into the fixed-point one that flies");
+      app.add_subcommand("quantize", "Make the fixed-point model image that flies from a float32 one");
   command->footer(
-      "\nWeights get 8 bits with a scale for each channel, activations 8 and 16, by what rendered\n"
-      "sequences bring; the table says what each layer loses.\n\n"
+      "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits. The scales are chosen\n"
+      "on rendered sequences. The table shows the quantization error of each layer.\n\n"
       "Example\n"
       "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm --mesh parametric --mesh "
       "near.stl\n");
-  command->add_option("--model", arguments->model, "Model image in float32, as `tumblesight train` writes it")
-      ->required()
-      ->check(existing_model_image())
+  add_float32_model_option(*command, arguments->model);
+  command->add_option("--out", arguments->out, "model image to write [--model without .float32]")
       ->type_name("FILE");
-  command->add_option("--out", arguments->out, "Model image to write [--model without .float32]")
-      ->type_name("FILE");
-  add_surface_options(*command, arguments->surfaces);
-  command->add_option("--sequences", arguments->sequences, "Rendered sequences of ten frames to calibrate on")
+  add_mesh_options(*command, arguments->meshes);
+  command
+      ->add_option("--sequences", arguments->sequences,
+                   "sequences of ten frames to render for calibration, 10 to 10000")
       ->check(whole_number(10, 10'000))
+      ->type_name("N")
       ->capture_default_str();
   command->callback([arguments] { quantize_file(*arguments); });
 }

@@ -1,4 +1,4 @@
-// `tumblesight quantize`: from a float32 model image to the one in fixed point that flies.
+// `tumblesight quantize`: makes the fixed-point model image that flies from a float32 one.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,7 +14,7 @@ inline constexpr int kCalibrationSequences = 200;
 
 void add_quantize_command(CLI::App& app);
 
-// Shows its progress and prints what the layers lost. Throws as quantize_to_file does.
+// Shows its progress and prints the quantization error of each layer. Throws as quantize_to_file does.
 void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
                          const std::string& out);
 

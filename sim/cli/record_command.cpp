@@ -63,7 +63,7 @@ void add_record_command(CLI::App& app) {
       "\nExample: a recording as the audit replays it on every processor\n"
       "  tumblesight record --target near_shoemaker --condition degraded --out frames.tslr\n");
   add_target_options(*command, arguments->scenario);
-  add_condition_option(*command, arguments->scenario);
+  add_condition_option(*command, arguments->scenario.condition);
   add_sequence_options(*command, arguments->scenario);
   command->add_option("--out", arguments->out, "recording to write")->required()->type_name("FILE");
   command->callback([arguments] { record(*arguments); });

@@ -1,4 +1,4 @@
-// tumblesight record: rendered frames as a recording, for the flight application on a machine without
+// `tumblesight record`: renders frames into a recording, for the flight application on boards without a
 // simulator.
 #pragma once
 

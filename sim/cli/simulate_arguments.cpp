@@ -12,11 +12,11 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::size_t kMostOfStem = 40;   // characters
-constexpr std::size_t kMostOfName = 200;  // a file system takes 255
+constexpr std::size_t kMaxStemLength = 40;   // characters
+constexpr std::size_t kMaxNameLength = 200;  // a file system takes 255
 
 std::string plain_stem(const std::string& path) {
-  std::string stem = std::filesystem::path(path).stem().string().substr(0, kMostOfStem);
+  std::string stem = std::filesystem::path(path).stem().string().substr(0, kMaxStemLength);
   for (char& c : stem) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '.') c = '-';
   }
@@ -42,10 +42,10 @@ std::string files_part(const SimulateArguments& arguments) {
   return fmt::format("{}_{:08x}", part, crc32_of(paths));
 }
 
-// What is cut off still tells runs apart.
-std::string shortened(const std::string& name) {
-  if (name.size() <= kMostOfName) return name;
-  return fmt::format("{}_{:08x}", name.substr(0, kMostOfName), crc32_of(name));
+// The CRC-32 keeps the names of different runs different.
+std::string with_limited_length(const std::string& name) {
+  if (name.size() <= kMaxNameLength) return name;
+  return fmt::format("{}_{:08x}", name.substr(0, kMaxNameLength), crc32_of(name));
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::string default_report_name(const SimulateArguments& arguments) {
   if (!scenario.inertia.empty()) name += fmt::format("_inertia{}", fmt::join(scenario.inertia, "-"));
   if (arguments.speed != usual.speed) name += "_speed" + arguments.speed;
   if (arguments.free_running) name += "_free-running";
-  return shortened(name) + ".html";
+  return with_limited_length(name) + ".html";
 }
 
 }  // namespace tumblesight::sim

@@ -1,4 +1,4 @@
-// The arguments of `tumblesight simulate`, and the name that they give to its report.
+// The arguments of `tumblesight simulate`, and the default name of its report.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@ struct SimulateArguments {
   ScenarioArguments scenario;
   std::string speed = "max";
   bool free_running = false;
-  std::string flight;       // empty: beside this program; "none": running already
-  std::string command_key;  // file; empty: the key that everybody knows
+  std::string flight;       // empty: in the folder of this program; "none": started by the user
+  std::string command_key;  // file; empty: the public development key
   int domain = -1;          // -1: none given
   std::string report;       // empty: default_report_name() in out/ of the source tree
   std::string command_line;
 };
 
-// A file name that tells runs apart: target, condition and seed, then every option that is not at its
-// default, for instance "near_shoemaker_degraded_seed7_100x10_speed2.html". Files stand in it with their
-// stem, and all of them with a CRC-32 of their full paths; a name that gets too long is cut, with a CRC-32 of
-// all of it.
+// A file name that differs between different runs: target, condition and seed, then every option that is not
+// at its default, for example "near_shoemaker_degraded_seed7_100x10_speed2.html". Files appear with their
+// stem, followed by one CRC-32 of their full paths. A name that is too long is cut and ends in the CRC-32 of
+// the full name.
 std::string default_report_name(const SimulateArguments& arguments);
 
 }  // namespace tumblesight::sim

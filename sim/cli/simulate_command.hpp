@@ -1,4 +1,4 @@
-// tumblesight simulate: a software-in-the-loop run against the flight program, with figures and a report.
+// `tumblesight simulate`: a software-in-the-loop run with the flight program, with figures and a report.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,7 +6,7 @@
 
 namespace tumblesight::sim {
 
-// `command_line`: for the record in the report.
+// `command_line` is shown in the report.
 void add_simulate_command(CLI::App& app, const std::string& command_line);
 
 }  // namespace tumblesight::sim

@@ -1,4 +1,4 @@
-// Makes the subject of an experiment from arguments.
+// The subject of an experiment, made from arguments.
 #pragma once
 
 #include "sim/cli/arguments.hpp"
@@ -6,8 +6,8 @@
 
 namespace tumblesight::sim {
 
-// Prints warnings about the mesh and the model to the standard error stream. Throws as set_up_target does,
-// and std::runtime_error that gives the reason if the model image is refused.
+// Prints the warnings of set_up_target on the standard error stream. Throws as set_up_target does, and
+// std::runtime_error that names the fault of a model image that is refused.
 Subject set_up_subject(const ScenarioArguments& arguments);
 
 }  // namespace tumblesight::sim

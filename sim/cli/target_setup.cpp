@@ -15,7 +15,7 @@
 #include "sim/evaluation/results.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
-#include "sim/world/target/mesh_file.hpp"
+#include "sim/world/target/target_mesh.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
@@ -24,11 +24,10 @@ namespace {
 constexpr double kSwathTolerance = 0.02;  // relative to the model's swath: half an image cell on either side
 
 TriangleMesh load_mesh(const ScenarioArguments& arguments) {
-  if (arguments.mesh.empty()) return target_by_name(arguments.target);
   MeshFileOptions options;
   options.up = mesh_up_from(arguments.mesh_up);
   options.scale = arguments.mesh_scale;
-  return load_mesh_file(arguments.mesh, options);
+  return target_mesh(arguments.target, arguments.mesh.empty() ? kParametricMesh : arguments.mesh, options);
 }
 
 std::string model_path(const ScenarioArguments& arguments) {
@@ -36,7 +35,7 @@ std::string model_path(const ScenarioArguments& arguments) {
   return shipped_model_path(arguments.target + (arguments.numerics == "float32" ? ".float32" : ""));
 }
 
-// Covers bodies from the size of a hand to that of a space station and keeps the arithmetic in range.
+// Covers bodies from the size of a hand to that of a space station.
 constexpr double kSmallestMoment_kg_m2 = 1e-6;
 constexpr double kLargestMoment_kg_m2 = 1e12;
 
@@ -58,10 +57,11 @@ std::optional<Eigen::Matrix3d> inertia_of(const ScenarioArguments& arguments) {
   Eigen::Matrix3d inertia;
   inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
   if (!is_possible(inertia)) {
-    throw std::invalid_argument(fmt::format(
-        "--inertia {}: not a possible inertia; its principal moments must be {:g} to {:g} kg m2, none larger "
-        "than the sum of the other two and none below {:g} of their mean",
-        fmt::join(i, ","), kSmallestMoment_kg_m2, kLargestMoment_kg_m2, gnc::kSmallestMoment));
+    throw std::invalid_argument(
+        fmt::format("--inertia {}: no rigid body has this inertia; its principal moments must be {:g} to "
+                    "{:g} kg m2, none larger "
+                    "than the sum of the other two and none below {:g} of their mean",
+                    fmt::join(i, ","), kSmallestMoment_kg_m2, kLargestMoment_kg_m2, gnc::kSmallestMoment));
   }
   return inertia;
 }
@@ -84,8 +84,8 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
 void frame_by_mesh(TargetSetup& setup) {
   setup.projection = projection_of(setup.mesh);
   setup.warnings.push_back(
-      fmt::format("Model image '{}' is refused: {}; the frames cover the swath of the mesh.",
-                  setup.model_path, gnc::to_string(setup.model_status)));
+      fmt::format("Model image '{}' is refused: {}. The frames cover the mesh's own swath.", setup.model_path,
+                  gnc::to_string(setup.model_status)));
 }
 
 void frame_by_model(TargetSetup& setup) {
@@ -93,12 +93,12 @@ void frame_by_model(TargetSetup& setup) {
   const double of_model = 1e-3 * setup.projection.swath_mm;
   const double of_mesh = swath_m(setup.mesh);
   if (std::abs(of_mesh - of_model) <= kSwathTolerance * of_model) return;
-  setup.warnings.push_back(fmt::format(
-      "The mesh needs a swath of {:.2f} m, but the network was trained for {:.2f} m, which is used: "
-      "{}",
-      of_mesh, of_model,
-      of_mesh > of_model ? "parts of the target may lie outside the image."
-                         : "the target looks smaller than the network expects."));
+  setup.warnings.push_back(
+      fmt::format("The mesh needs a swath of {:.2f} m. The network was trained for {:.2f} m, which is used: "
+                  "{}",
+                  of_mesh, of_model,
+                  of_mesh > of_model ? "parts of the target may lie outside the image."
+                                     : "the target looks smaller than the network expects."));
 }
 
 }  // namespace

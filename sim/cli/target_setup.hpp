@@ -1,5 +1,4 @@
-// TargetSetup: the mesh and the model image that the arguments of a scenario name, and the swath of the
-// frames.
+// TargetSetup: the mesh and the model image that a scenario's arguments name, and the swath of the frames.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,14 +15,13 @@ namespace tumblesight::sim {
 
 struct TargetSetup {
   TriangleMesh mesh;
-  std::string mesh_name;                         // "parametric" or the name of the file
+  std::string mesh_name;                         // "parametric" or the file's name
   std::optional<Eigen::Matrix3d> inertia_kg_m2;  // in the TRF; empty if not known
   std::string model_path;
   std::vector<std::uint8_t> model;
-  gnc::ModelStatus model_status = gnc::ModelStatus::kTooShort;  // of the check on the host
-  gnc::ModelHeader header;                                      // valid if kOk
-  // That of the model, so that the frames fill the image as in training; that of the mesh if the model is
-  // refused.
+  gnc::ModelStatus model_status = gnc::ModelStatus::kTooShort;  // the host's own check of the image
+  gnc::ModelHeader header;                                      // if kOk
+  // The model's, so that the target fills the image as in training. The mesh's if the model is refused.
   gnc::DepthProjection projection;
   std::vector<std::string> warnings;
 };
@@ -32,8 +30,8 @@ struct TargetSetup {
 std::string shipped_model_path(const std::string& name);
 
 // Throws std::runtime_error or std::invalid_argument that names what is missing or wrong: target, mesh,
-// inertia or model file. A model file that exists but is refused is only a warning, because the flight
-// program checks it itself.
+// inertia, model file. A model file that exists but is refused is only a warning: the flight program has to
+// detect that.
 TargetSetup set_up_target(const ScenarioArguments& arguments);
 
 }  // namespace tumblesight::sim

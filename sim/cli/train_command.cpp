@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -15,7 +14,6 @@
 
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/quantize_command.hpp"
-#include "sim/cli/surfaces.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/one_thread.hpp"
 #include "sim/training/train.hpp"
@@ -24,20 +22,20 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr int kStopped = 3;  // exit status of a run that is to be continued
+constexpr int kStopped = 3;  // exit status of a run that was stopped and can be continued
 
 std::atomic<bool> stop_requested{false};
 
 struct TrainOptions {
   std::string target = "near_shoemaker";
-  SurfaceArguments surfaces;
+  MeshArguments meshes;
   std::vector<std::string> conditions = {"all"};
   std::string device = "auto";
   std::string precision = "auto";
   TrainingSettings settings;
 };
 
-// Whether bfloat16 convolutions are worth it: oneDNN has fast ones for these x86 extensions.
+// Whether bfloat16 convolutions are fast: oneDNN has kernels for these x86 extensions.
 bool cpu_has_bfloat16() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
@@ -48,7 +46,7 @@ bool cpu_has_bfloat16() {
   return false;
 }
 
-// Of a target of the user's own, any: a sphere's, with which a body tumbles as it spins.
+// For a target of the user's own, the inertia of a sphere: its free rotation is a constant spin.
 Eigen::Matrix3d inertia_of(const TrainOptions& options) {
   const std::vector<std::string> known = target_names();
   if (std::find(known.begin(), known.end(), options.target) != known.end())
@@ -68,11 +66,11 @@ void choose_device(TrainOptions& options) {
   if (!use_cuda) keep_to_one_thread();
 }
 
-// Without a CNN to begin with, too few images for one batch would leave it at random weights.
+// With fewer images than one batch and no CNN to start from, the weights would stay random.
 void require_a_cnn(const TrainingSettings& settings) {
   if (!settings.start_from.empty() || settings.cnn_images >= settings.cnn_batch) return;
   throw CLI::ValidationError("--cnn-images", "must be at least " + std::to_string(settings.cnn_batch) +
-                                                 " unless --start-from names a model image to begin with");
+                                                 " unless --start-from names a model image");
 }
 
 std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurrent, const std::string& target,
@@ -88,7 +86,7 @@ std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurren
 void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes,
                   const std::unique_ptr<Float32Model>& model) {
   write_model_file<gnc::Float32>(stem + ".float32.tsm", model->header, model->weights);
-  std::printf("Reference in float32: %s.float32.tsm\nIn fixed point, to fly:\n", stem.c_str());
+  std::printf("Reference in float32: %s.float32.tsm\nFixed point, as it flies:\n", stem.c_str());
   quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm");
 }
 
@@ -99,7 +97,7 @@ int train(TrainOptions& options) {
   std::signal(SIGINT, [](int) { stop_requested = true; });
   std::signal(SIGTERM, [](int) { stop_requested = true; });
 
-  const std::vector<TriangleMesh> meshes = load_surfaces(options.surfaces, options.target);
+  const std::vector<TriangleMesh> meshes = load_meshes(options.meshes, options.target);
   const TrainingTargets targets =
       make_training_targets(meshes, training_conditions(options.conditions), inertia_of(options));
 
@@ -111,10 +109,10 @@ int train(TrainOptions& options) {
 
   const std::string& folder = options.settings.folder;
   if (!finished) {
-    std::printf("Stopped. The same command goes on from the checkpoint in %s.\n", folder.c_str());
+    std::printf("Stopped. The same command continues from the checkpoint in %s.\n", folder.c_str());
     return kStopped;
   }
-  std::printf("Training finished: log and loss curve are %s/log.csv and curve.svg.\n", folder.c_str());
+  std::printf("Training finished. Log: %s/log.csv, error curve: curve.svg.\n", folder.c_str());
   write_images(folder + "/" + options.target, meshes, model_of(cnn, recurrent, options.target, targets));
   return 0;
 }
@@ -127,53 +125,61 @@ void add_train_command(CLI::App& app) {
   settings.workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
   CLI::App* command = app.add_subcommand("train", "Train a network for a target and write its model images");
   command->footer(
-      "Example: train NEAR on the shipped model and on a CAD file at once\n"
-      "  tumblesight train --target near_shoemaker --mesh parametric --mesh near.stl --out out/near\n"
-      "Kill it at any time: the same command goes on from the last checkpoint.");
-  command->add_option("--target", options->target, "Target that the model image is for")
-      ->check(target_name())
-      ->capture_default_str();
-  add_surface_options(*command, options->surfaces);
-  command->add_option("--seed", settings.seed, "Seed of data and weights")
-      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-      ->capture_default_str();
-  command->add_option("--out", settings.folder, "Folder of checkpoints, log, curve and model image")
-      ->required();
+      "\nA run may be interrupted at any time: the same command continues from the last checkpoint.\n\n"
+      "Example: train for NEAR Shoemaker on the shipped mesh and on a CAD file\n"
+      "  tumblesight train --target near_shoemaker --mesh parametric --mesh near.stl --out out/near\n");
+  add_target_option(*command, options->target, TargetChoice::kAny);
+  add_mesh_options(*command, options->meshes);
+  add_seed_option(*command, settings.seed);
+  command->add_option("--out", settings.folder, "folder for checkpoints, log, error curve and model images")
+      ->required()
+      ->type_name("DIR");
   command
-      ->add_option("--conditions", options->conditions,
-                   "What to train on, taking turns: all, paper (nominal and degraded only), single ones,\n"
-                   "or several: all,degraded sees degraded frames more often")
+      ->add_option(
+          "--condition,--conditions", options->conditions,
+          "conditions to train on in turn: all, paper (nominal and degraded), single ones, or several: "
+          "all,degraded has degraded frames more often")
       ->delimiter(',')
       ->check(one_of(training_condition_words()))
+      ->type_name("NAMES")
       ->capture_default_str();
   command
       ->add_option("--start-from", settings.start_from,
-                   "Model image whose CNN to begin with: another target's saves most of the time")
+                   "model image whose CNN to start from; that of another target saves most of the time")
       ->check(existing_model_image())
       ->type_name("FILE");
-  command->add_option("--cnn-rate", settings.cnn_learning_rate, "Highest learning rate of the CNN")
+  command->add_option("--cnn-rate", settings.cnn_learning_rate, "highest learning rate of the CNN")
       ->check(number(1e-6, 1e-1))
+      ->type_name("X")
       ->capture_default_str();
-  command->add_option("--cnn-images", settings.cnn_images, "Fresh images for the single-frame network")
+  command->add_option("--cnn-images", settings.cnn_images, "new images to train the CNN on")
       ->check(whole_number(0, 1'000'000'000))
+      ->type_name("N")
       ->capture_default_str();
-  command->add_option("--rcnn-sequences", settings.rcnn_sequences, "Different sequences for the LSTM")
+  command->add_option("--rcnn-sequences", settings.rcnn_sequences, "different sequences to train the LSTM on")
       ->check(whole_number(16, 1'000'000))
+      ->type_name("N")
       ->capture_default_str();
-  command->add_option("--rcnn-iterations", settings.rcnn_iterations, "Batches of sequences for the LSTM")
+  command
+      ->add_option("--rcnn-iterations", settings.rcnn_iterations, "batches of sequences to train the LSTM on")
       ->check(whole_number(1, 10'000'000))
+      ->type_name("N")
       ->capture_default_str();
-  command->add_option("--checkpoint-seconds", settings.checkpoint_s, "Wall-clock seconds between checkpoints")
+  command->add_option("--checkpoint-seconds", settings.checkpoint_s, "wall-clock seconds between checkpoints")
       ->check(number(0.0, 3600.0))
+      ->type_name("X")
       ->capture_default_str();
-  command->add_option("--workers", settings.workers, "Rendering threads")
+  command->add_option("--workers", settings.workers, "rendering threads")
       ->check(whole_number(1, 256))
+      ->type_name("N")
       ->capture_default_str();
-  command->add_option("--device", options->device, "Where to train")
+  command->add_option("--device", options->device, "device to train on")
       ->check(one_of({"auto", "cpu", "cuda"}))
+      ->type_name("auto|cpu|cuda")
       ->capture_default_str();
-  command->add_option("--precision", options->precision, "Of the convolutions while training")
+  command->add_option("--precision", options->precision, "precision of the convolutions in training")
       ->check(one_of({"auto", "float32", "bfloat16"}))
+      ->type_name("auto|float32|bfloat16")
       ->capture_default_str();
   command->callback([options] { throw CLI::RuntimeError(train(*options)); });
 }

@@ -1,4 +1,4 @@
-// tumblesight train: trains a network for a target and writes its model image.
+// `tumblesight train`: trains a network for a target and writes its model images.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -12,12 +12,10 @@
 #include "sim/evaluation/paper.hpp"
 #include "sim/evaluation/reliability.hpp"
 #include "sim/world/scenario/sequence.hpp"
+#include "sim/world/target/target_mesh.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
-
-// The name of the mesh that ships for a target.
-inline constexpr const char* kParametricMesh = "parametric";
 
 // The figures of one condition: of last frames unless stated otherwise.
 struct CellResult {

@@ -15,7 +15,7 @@ constexpr double kRight = 508.0;
 constexpr double kTop = 34.0;
 constexpr double kBottom = 272.0;
 constexpr double kLegendRow = 17.0;
-constexpr double kCharacterWidth = 6.6;  // of a legend's text, about
+constexpr double kCharacterWidth = 6.6;  // of legend text, approximately
 const Stroke kGrid{"#e4e6ea", 1.0, "", 1.0};
 const Stroke kAxis{"#8a9099", 1.0, "", 1.0};
 
@@ -69,7 +69,7 @@ void draw_key(Svg& svg, Point at, const Series& series) {
   }
 }
 
-// Entries of a legend, set in rows from the left. Names may hold UTF-8.
+// Places the entries of a legend in rows from the left. Names are UTF-8.
 class LegendRows {
  public:
   Point place(const std::string& name, double key_width) {
@@ -84,14 +84,15 @@ class LegendRows {
     x_ += width;
     return at;
   }
-  double height() const { return kLegendRow * row_; }  // beyond the first row's
+  double height() const { return kLegendRow * row_; }  // of the rows below the first
 
  private:
   double x_ = kLeft;
   int row_ = 0;
 };
 
-// Series without a name go with a named one. Returns the height of the rows beyond the first.
+// A series without a name belongs to a named one and has no entry. Returns the height of the rows below the
+// first.
 double draw_legend(Svg& svg, const std::vector<Series>& series) {
   LegendRows rows;
   for (const Series& entry : series) {
@@ -103,7 +104,7 @@ double draw_legend(Svg& svg, const std::vector<Series>& series) {
   return rows.height();
 }
 
-// Bars that do not reach beyond the axis.
+// Clamped to the axis.
 void draw_error_bars(Svg& svg, const Scale& x, const Scale& y, const Series& series) {
   for (std::size_t i = 0; i < std::min(series.error_bars.size(), series.points.size()); ++i) {
     const Point& point = series.points[i];
@@ -153,7 +154,7 @@ void draw_bar_group(Svg& svg, const BarChart& chart, const Scale& y, const BarGr
   svg.text({left + 0.5 * width, kBottom + 18.0}, group.name, {"middle", 11.5, "#5a6069"});
 }
 
-// Pale for nothing, dark for all; the root brings out small shares.
+// Pale for 0, dark for 1. The square root makes small shares visible.
 void draw_share(Svg& svg, Point corner, double width, double height, double share) {
   const double depth = std::sqrt(std::clamp(share, 0.0, 1.0));
   const auto channel = [&](double pale, double dark) { return std::lround(pale + depth * (dark - pale)); };
@@ -162,6 +163,17 @@ void draw_share(Svg& svg, Point corner, double width, double height, double shar
       fmt::format("#{:02x}{:02x}{:02x}", channel(243.0, 27.0), channel(245.0, 94.0), channel(247.0, 158.0)));
   svg.text({corner.x + 0.5 * width - 1.0, corner.y + 0.5 * height + 3.5},
            fmt::format("{:.1f} %", 100.0 * share), {"middle", 11.5, depth > 0.55 ? "#ffffff" : "#2b2f36"});
+}
+
+// 1, 2 and 5 times the powers of ten within low..high, both above 0.
+std::vector<double> logarithmic_ticks(double low, double high) {
+  std::vector<double> ticks;
+  for (double power = std::pow(10.0, std::floor(std::log10(low))); power <= high; power *= 10.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      if (factor * power >= low && factor * power <= high) ticks.push_back(factor * power);
+    }
+  }
+  return ticks;
 }
 
 }  // namespace
@@ -184,9 +196,11 @@ std::string line_chart(const LineChart& chart) {
   Svg svg(kWidth, kHeight, chart.description);
   const double y_high = chart.y_high > chart.y_low ? chart.y_high : std::max(1.0, largest_y(chart.series));
   const double legend = draw_legend(svg, chart.series);
-  const std::vector<double> y_ticks = round_ticks(chart.y_low, y_high, 5);
+  const std::vector<double> y_ticks =
+      chart.logarithmic_y ? logarithmic_ticks(chart.y_low, y_high) : round_ticks(chart.y_low, y_high, 5);
   const Scale x{chart.x_low, chart.x_high, kLeft + 8.0, kRight - 8.0};
-  const Scale y{y_ticks.front(), y_ticks.back(), kBottom, kTop + legend};
+  const Scale y = chart.logarithmic_y ? Scale{chart.y_low, y_high, kBottom, kTop + legend, true}
+                                      : Scale{y_ticks.front(), y_ticks.back(), kBottom, kTop + legend};
   draw_y_axis(svg, y, y_ticks, chart.y_label);
   std::vector<double> x_ticks = chart.x_ticks;
   const double x_step = std::max(1.0, std::ceil((chart.x_high - chart.x_low) / 12.0));

@@ -1,4 +1,4 @@
-// Charts: lines, grouped bars, scatter on labelled axes, and tables of shares, as inline SVG.
+// Charts as inline SVG: lines, grouped bars and scatter on labelled axes, and matrices of shares.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ struct Series {
   std::string name;
   std::string colour;
   std::string dash;                  // empty: solid
-  std::vector<Point> points;         // data units; a series of one point is drawn as a mark
+  std::vector<Point> points;         // in data units; a series of one point is drawn as a ring
   bool markers = false;              // dots instead of a line
-  std::vector<double> error_bars{};  // half their length, one a point; empty: none
+  std::vector<double> error_bars{};  // half their length, one per point; empty: none
 };
 
 struct LineChart {
@@ -25,13 +25,14 @@ struct LineChart {
   double x_high = 1.0;
   double y_low = 0.0;
   double y_high = 0.0;            // not above y_low: chosen from the data
+  bool logarithmic_y = false;     // needs 0 < y_low < y_high
   std::vector<double> x_ticks{};  // empty: whole numbers from x_low
   std::vector<Series> series;
 };
 
 struct BarGroup {
   std::string name;
-  std::vector<double> values;  // one a series
+  std::vector<double> values;  // one per series
 };
 
 struct BarChart {
@@ -43,7 +44,7 @@ struct BarChart {
   std::vector<BarGroup> groups;
 };
 
-// Both axes logarithmic, low..high alike, with the diagonal of equality. Points outside are drawn on the
+// Both axes are logarithmic from low to high, with the diagonal of equality. Points outside are drawn on the
 // edge.
 struct AgreementChart {
   std::string description;
@@ -54,14 +55,14 @@ struct AgreementChart {
   std::vector<Series> series;
 };
 
-// A table of shares, the darker a cell the larger its share.
+// A matrix of shares; a darker cell is a larger share.
 struct MatrixChart {
   std::string description;
   std::vector<std::string> columns;
   struct Row {
     std::string name;
-    std::vector<double> shares;  // 0..1, one a column
-    std::string remark;          // to the right of them
+    std::vector<double> shares;  // 0..1, one per column
+    std::string remark;          // to the right of the cells
   };
   std::vector<Row> rows;
   std::string remark_heading;
@@ -72,7 +73,7 @@ std::string bar_chart(const BarChart& chart);
 std::string agreement_chart(const AgreementChart& chart);
 std::string matrix_chart(const MatrixChart& chart);
 
-// Round numbers, about `count` of them, that cover low..high; ascending.
+// About `count` round numbers that cover low..high, ascending.
 std::vector<double> round_ticks(double low, double high, int count);
 
 }  // namespace tumblesight::sim

@@ -1,5 +1,5 @@
-// A sequential colour map for depth: dark blue through teal to pale yellow, rising evenly in lightness, so
-// that it also reads in grey print.
+// A sequential colour map for depth, from dark blue through teal to pale yellow. Its lightness rises evenly,
+// so that it also works in grey print.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@ namespace tumblesight::sim {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-// `value` in 0..1, clamped.
+// `value` is clamped to 0..1.
 Rgb sequential_colour(double value);
 
 }  // namespace tumblesight::sim

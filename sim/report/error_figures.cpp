@@ -50,7 +50,7 @@ std::string histogram_figure(const std::vector<double>& rcnn, const std::vector<
 std::string confusion_figure(const std::vector<Named<Confusion>>& rows) {
   if (rows.empty()) return {};
   MatrixChart chart;
-  chart.description = "Shares of the estimates by the nearly symmetric attitude that they belong to";
+  chart.description = "Share of the estimates near each nearly symmetric attitude";
   chart.columns = rows.front().figures.names;
   chart.columns.emplace_back("none of these");
   chart.remark_heading = "blur";
@@ -64,9 +64,9 @@ std::string confusion_figure(const std::vector<Named<Confusion>>& rows) {
 
 std::string reliability_figure(const std::vector<Named<std::vector<ReliabilityBin>>>& lines) {
   AgreementChart chart;
-  chart.description = "Mean real error over the error that the network predicts";
-  chart.x_label = "error that the RCNN predicts [deg]";
-  chart.y_label = "real error, mean [deg]";
+  chart.description = "Mean actual error over the predicted error";
+  chart.x_label = "predicted error [deg]";
+  chart.y_label = "actual error, mean [deg]";
   chart.low = 0.3;
   for (const auto& [name, colour, bins] : lines) {
     Series series{name, colour, "", {}};
@@ -79,13 +79,14 @@ std::string reliability_figure(const std::vector<Named<std::vector<ReliabilityBi
 std::string detection_figure(const std::vector<DetectionPoint>& points) {
   if (points.empty() || points.front().wrong == 0) return {};
   LineChart chart;
-  chart.description = "Share of the wrong estimates that are flagged over the share of right ones flagged";
-  chart.x_label = "right estimates flagged [%]";
-  chart.y_label = "wrong estimates flagged [%]";
+  chart.description =
+      "Share of the wrong estimates that are rejected over the share of right estimates rejected";
+  chart.x_label = "right estimates rejected [%]";
+  chart.y_label = "wrong estimates rejected [%]";
   chart.x_high = 100.0;
   chart.y_high = 100.0;
   chart.x_ticks = round_ticks(0.0, 100.0, 10);
-  Series series{"RCNN, by the threshold on its predicted error", kRcnnColour, "", {{100.0, 100.0}}};
+  Series series{"RCNN, threshold on the predicted error", kRcnnColour, "", {{100.0, 100.0}}};
   for (const DetectionPoint& point : points) {
     series.points.push_back({100.0 * point.false_alarms(), 100.0 * point.detected()});
   }

@@ -1,5 +1,5 @@
-// Figures of errors, as inline SVG: what the reports of single runs and of whole experiments have in common,
-// and what the latter need beside it. Empty text where there is nothing to show.
+// Figures of angular errors as inline SVG, for the pages of runs and of experiments. Empty text where there
+// is nothing to show.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace tumblesight::sim {
 
-// The mean error of one estimator as a line; points without sequences are left out. `bars`: one standard
-// error to either side.
+// The mean error of one estimator as a line; points without sequences are left out. `bars`: with error bars
+// of one standard error.
 Series mean_series(const std::string& name, const std::string& colour, const Curve& curve,
                    Estimator estimator, bool bars);
 
@@ -28,7 +28,7 @@ struct Named {
   T figures;
 };
 
-// A row each; all must be of the same symmetries.
+// One row each; all must have the same symmetries.
 std::string confusion_figure(const std::vector<Named<Confusion>>& rows);
 std::string reliability_figure(const std::vector<Named<std::vector<ReliabilityBin>>>& lines);
 std::string detection_figure(const std::vector<DetectionPoint>& points);

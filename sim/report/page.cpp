@@ -27,9 +27,10 @@ th, td { padding: 6px 22px 6px 0; }
 td { border-bottom: 1px solid #e4e6ea; }
 .number { text-align: right; }
 .headline { width: 100%; }
-.headline td:first-child { font-weight: 600; }
-.headline tr.paper td, .headline tr.paper td:first-child { color: #6b7280; font-weight: 400; }
-.headline tr.paper td:first-child { padding-left: 18px; }
+.headline th.number { text-align: right; }
+.headline td:last-child, .headline th:last-child { padding-right: 0; }
+.paper { color: #6b7280; font-weight: 400; }
+.headline td:first-child .paper { padding-left: 18px; }
 .results { width: 100%; font-size: 13.5px; } .results th, .results td { padding: 4px 14px 4px 0; }
 .results th { white-space: nowrap; } .results td { white-space: nowrap; } .results th.number { text-align: right; }
 .results td:last-child, .results th:last-child { padding-right: 0; }
@@ -55,17 +56,6 @@ code { font-family: "SF Mono", Consolas, "DejaVu Sans Mono", monospace; font-siz
   .notice, svg, img { print-color-adjust: exact; -webkit-print-color-adjust: exact; } @page { margin: 16mm; } }
 )css";
 
-std::string table_row(const std::vector<std::string>& cells, const char* tag, const HtmlTable& table) {
-  if (cells.size() == 1 && table.header.size() > 1) {
-    return fmt::format("<tr class=group><th colspan={}>{}</th></tr>\n", table.header.size(), cells.front());
-  }
-  std::string html = "<tr>";
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    html += fmt::format("<{0}{1}>{2}</{0}>", tag, i < table.text_columns ? "" : " class=number", cells[i]);
-  }
-  return html + "</tr>\n";
-}
-
 }  // namespace
 
 std::string html_page(const std::string& title, const std::string& body) {
@@ -80,13 +70,6 @@ std::string html_page(const std::string& title, const std::string& body) {
 std::string html_figure(const std::string& heading, const std::string& svg, const std::string& caption) {
   if (svg.empty()) return {};
   return fmt::format("<figure><h2>{}</h2>\n{}<figcaption>{}</figcaption></figure>\n", heading, svg, caption);
-}
-
-std::string html_table(const HtmlTable& table) {
-  std::string html = fmt::format("<table class=\"{}\"><thead>\n{}</thead><tbody>\n", table.css_class,
-                                 table_row(table.header, "th", table));
-  for (const std::vector<std::string>& row : table.rows) html += table_row(row, "td", table);
-  return html + "</tbody></table>\n";
 }
 
 }  // namespace tumblesight::sim

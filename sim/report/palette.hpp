@@ -1,4 +1,4 @@
-// The colours of what is compared, the same in every figure.
+// The colours of estimators and conditions, the same in every figure.
 #pragma once
 
 #include "sim/world/scenario/sequence.hpp"

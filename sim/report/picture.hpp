@@ -1,4 +1,4 @@
-// Pictures for the report: 8-bit RGB images, PNG (libpng) and data URIs.
+// Pictures for pages: 8-bit RGB images as PNG (libpng) and data URIs.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ struct Picture {
   std::vector<Rgb> pixels;  // row-major, top row first
 };
 
-// Depth through the colour map, stretched over the depths that occur; empty cells in a light grey.
+// Depth in colours of colour_map.hpp, scaled to the depths that occur in the image. Empty cells are light
+// grey.
 Picture depth_picture(const gnc::DepthImage& image);
 
 // Throws std::runtime_error when libpng fails, std::invalid_argument when pixels do not match the size.

@@ -1,4 +1,4 @@
-// Results as CSV: one line an estimator in a cell. Only figures, as in the JSON.
+// Results as CSV: one line per estimator and condition.
 #pragma once
 
 #include <string>
@@ -7,7 +7,9 @@
 
 namespace tumblesight::sim {
 
-// First line: the columns' names. Shares are 0..1; a figure that does not exist is empty.
+// The first line names the columns (csv_columns()). Errors are in degrees, shares are 0..1, a figure that
+// does not exist is empty. Durations are left out, so that the same run gives the same bytes on any number of
+// threads.
 std::string results_csv(const Results& results);
 
 }  // namespace tumblesight::sim

@@ -17,7 +17,7 @@ bool any_points(const LineChart& chart) {
                      [](const Series& s) { return s.points.size() > 1; });
 }
 
-std::string drawn(const LineChart& chart) {
+std::string line_chart_or_nothing(const LineChart& chart) {
   return any_points(chart) ? line_chart(chart) : std::string{};
 }
 
@@ -70,7 +70,7 @@ std::string frames_figure(const SubjectResult& subject) {
     chart.series.push_back(
         mean_series("CNN", kCnnColour, subject.cells.front().by_frame, Estimator::kCnn, false));
   }
-  return drawn(chart);
+  return line_chart_or_nothing(chart);
 }
 
 std::string range_figure(const CellResult& cell) {
@@ -83,7 +83,7 @@ std::string range_figure(const CellResult& cell) {
   chart.x_ticks = round_ticks(20.0, 100.0, 8);
   chart.series = {mean_series("RCNN", kRcnnColour, cell.by_range, Estimator::kRcnn, true),
                   mean_series("CNN", kCnnColour, cell.by_range, Estimator::kCnn, true)};
-  return drawn(chart);
+  return line_chart_or_nothing(chart);
 }
 
 std::string rate_figure(const SubjectResult& subject) {
@@ -103,7 +103,7 @@ std::string rate_figure(const SubjectResult& subject) {
   } else {
     chart.series.push_back(mean_series("CNN", kCnnColour, components, Estimator::kCnn, true));
   }
-  return drawn(chart);
+  return line_chart_or_nothing(chart);
 }
 
 std::string hidden_share_figure(const Sweeps& sweeps) {
@@ -117,7 +117,7 @@ std::string hidden_share_figure(const Sweeps& sweeps) {
   chart.x_ticks = round_ticks(0.0, 50.0, 10);
   chart.series = {mean_series("RCNN", kRcnnColour, percent, Estimator::kRcnn, true),
                   mean_series("CNN", kCnnColour, percent, Estimator::kCnn, true)};
-  return drawn(chart);
+  return line_chart_or_nothing(chart);
 }
 
 std::string long_run_figure(const Sweeps& sweeps) {
@@ -133,7 +133,7 @@ std::string long_run_figure(const Sweeps& sweeps) {
     const double tenth_deg = sweeps.long_run[kFramesPerSequence - 1].rcnn.mean_deg;
     chart.series.push_back({"10th frame", "#8a9099", "5 4", {{0.0, tenth_deg}, {chart.x_high, tenth_deg}}});
   }
-  return drawn(chart);
+  return line_chart_or_nothing(chart);
 }
 
 }  // namespace tumblesight::sim

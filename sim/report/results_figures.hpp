@@ -1,4 +1,4 @@
-// The figures of one network on one mesh, as inline SVG; empty text where there is nothing to show.
+// Figures of one network on one mesh, as inline SVG. Empty text where there is nothing to show.
 #pragma once
 
 #include <string>

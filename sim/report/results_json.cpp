@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sim/report/results_columns.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -100,13 +102,13 @@ Json curves_json(const SubjectResult& subject) {
 }  // namespace
 
 Json summary_json(const ErrorSummary& summary) {
-  Json json{{"mean_deg", summary.mean_deg},
-            {"median_deg", summary.median_deg},
-            {"within_20deg", summary.within_20deg},
-            {"within_5deg", summary.within_5deg},
-            {"mean_standard_error_deg", summary.mean_standard_error_deg}};
-  if (summary.count == 0) {
-    for (auto& value : json) value = nullptr;
+  const auto figure_or_null = [&](double value) { return summary.count == 0 ? Json(nullptr) : Json(value); };
+  Json json = Json::object();
+  for (const SummaryFigure& figure : summary_figures())
+    json[figure.key] = figure_or_null(summary.*figure.value);
+  for (const SummaryFigure& figure : summary_figures()) {
+    if (figure.in_degrees && figure.error_key != nullptr)
+      json[figure.error_key] = figure_or_null(figure.error(summary));
   }
   return json;
 }

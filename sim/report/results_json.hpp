@@ -1,5 +1,5 @@
-// Results as JSON. Only figures: the same run gives the same bytes on any number of threads, so times are
-// left out.
+// Results as JSON. Durations are left out, so that the same run gives the same bytes on any number of
+// threads.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,11 +8,12 @@
 
 namespace tumblesight::sim {
 
-// {"mean_deg", "median_deg", "within_20deg", "within_5deg", "mean_standard_error_deg"}; null without a
-// sequence.
+// The figures of summary_figures() by their keys, then the standard errors of those in degrees. All null
+// without a sequence.
 nlohmann::ordered_json summary_json(const ErrorSummary& summary);
 
-// {"rows": [one a subject and condition], "curves": [one a subject with sweeps]}; without sweeps no "curves".
+// {"rows": [one per subject and condition], "curves": [one per subject with sweeps]}; no "curves" without
+// sweeps.
 nlohmann::ordered_json results_json(const Results& results);
 
 }  // namespace tumblesight::sim

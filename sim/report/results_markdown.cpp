@@ -2,130 +2,73 @@
 
 #include <fmt/format.h>
 
-#include "sim/evaluation/checks.hpp"
-#include "sim/evaluation/statistics.hpp"
-#include "sim/report/results_table.hpp"
+#include <set>
+
+#include "sim/report/results_tables.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-using Cells = std::vector<std::string>;
-
-std::string line(const Cells& cells) {
-  std::string text = "|";
-  for (const std::string& cell : cells) text += " " + cell + " |";
-  return text + "\n";
-}
-
-// First column to the left, the others to the right.
-std::string table(const Cells& header, const std::vector<Cells>& rows) {
-  if (rows.empty()) return {};
-  std::string text = line(header) + "|---|";
-  for (std::size_t i = 1; i < header.size(); ++i) text += "---:|";
-  text += "\n";
-  for (const Cells& row : rows) text += line(row);
-  return text + "\n";
-}
-
-std::string within_5deg_text(const ErrorSummary& summary) {
-  return summary.count == 0 ? "-" : percent_text(summary.within_5deg, summary.count);
-}
-
-std::string verdict(const CellResult& cell, const std::optional<PaperFigure>& goal) {
-  if (!goal) return "";
-  return meets(cell.rcnn, *goal) ? "yes" : "**no**";
-}
-
 constexpr const char* kReadingNotes = R"md(
-- Error: angle between true and estimated attitude in the last frame of a sequence. ± is one standard error: s/√n of
-  a mean, binomial of a share (from (k + ½)/(n + 1), so that 100 % is not quoted as certain).
-- `parametric` is the mesh that ships here; `<target>.stl` is a mesh from --mesh-folder, in the record NASA's display
+- Error: the angle between true and estimated attitude in the last frame of a sequence. ± is one standard error: s/√n
+  for a mean, binomial for a share. The binomial one is taken at (k + ½)/(n + 1), so that 100 % is not quoted as certain.
+- `parametric` is the mesh that ships with this project. `<target>.stl` is a mesh from --mesh-folder: here NASA's display
   model of the spacecraft, which is not part of this project.
-- RCNN: the recurrent network after all frames. CNN: the same network's estimate from the last frame alone. Template
-  matching: the classical way, renderings of the same mesh as the frames', refined by iterated closest points, also
-  from the last frame alone; on the first sequences of each cell only, since it takes so long.
-- Training draws its frames from other seeds: none of the test sequences was seen in training or tuning.
-- The paper: DOI 10.1016/j.conengprac.2026.107134. Goals: what this project set itself.
-- Requirements that these figures show to be met: TS-EST-010, TS-EST-020, TS-EST-030, TS-EST-040, TS-EST-050,
-  TS-EST-060, TS-EST-070, TS-EST-080, TS-EST-090 ([requirements](requirements.csv)).
+- RCNN: the recurrent network after all frames. CNN: the same network's estimate from the last frame alone. Templates:
+  classical template matching with renderings of the same mesh as the frames, refined by iterated closest points, also
+  from the last frame alone. It is slow and runs on the first sequences of each condition only.
+- Training draws its frames from other seeds: no test sequence was seen in training or tuning.
+- Paper: DOI 10.1016/j.conengprac.2026.107134. Goal: the goals that this project set itself.
+- These figures show that the requirements TS-EST-010, TS-EST-020, TS-EST-030, TS-EST-040, TS-EST-050, TS-EST-060,
+  TS-EST-070, TS-EST-080 and TS-EST-090 are met ([requirements](requirements.csv)).
 )md";
 
 std::string introduction(const Results& results) {
   std::string text = fmt::format(
-      "# Results\n\nMade by\n\n```\n{}\n```\n\nwith seed {}. Every number below comes from that run; running "
-      "it again "
-      "gives the same ones, but for the times.\n{}",
+      "# Results\n\nMade by\n\n```\n{}\n```\n\nwith seed {}. Every figure below comes from that run. Another "
+      "run gives "
+      "the same figures, except for the times.\n{}",
       results.command, results.seed, kReadingNotes);
   for (const std::string& note : results.notes) text += "- Note: " + note + "\n";
   return text + "\n";
 }
 
 std::string models_section(const Results& results) {
-  std::vector<Cells> rows;
+  DataTable table{{"model image", "CRC-32", "spacecraft"}, {}};
+  std::set<std::string> listed;
   for (const SubjectResult& subject : results.subjects) {
-    const Cells row{"`" + subject.model + ".tsm`", fmt::format("`{:08x}`", subject.model_crc32),
-                    display_name(subject.target)};
-    bool known = false;
-    for (const Cells& other : rows) known = known || other == row;
-    if (!known) rows.push_back(row);
+    const std::string crc32 = fmt::format("`{:08x}`", subject.model_crc32);
+    if (!listed.insert(subject.model + crc32 + subject.target).second) continue;
+    table.rows.push_back({{"`" + subject.model + ".tsm`"}, {crc32}, {display_name(subject.target)}});
   }
-  return "## Models\n\n" + table({"model image", "CRC-32", "spacecraft"}, rows);
+  return "## Models\n\n" + markdown_text(table);
 }
 
 std::string accuracy_section(const Results& results) {
-  std::string text = "## Accuracy of the RCNN beside the paper's\n\n";
+  std::string text = "## Accuracy of the RCNN, compared with the paper\n\n";
   for (const SubjectResult& subject : results.subjects) {
-    std::vector<Cells> rows;
-    for (const CellResult& cell : subject.cells) {
-      const PaperFigures paper = paper_figures(subject.target, cell.condition);
-      rows.push_back({to_string(cell.condition), fmt::format("{}", cell.sequences),
-                      "**" + mean_text(cell.rcnn) + "**", degrees_text(cell.rcnn.median_deg),
-                      "**" + within_20deg_text(cell.rcnn) + "**", within_5deg_text(cell.rcnn),
-                      figure_text(paper.rcnn), figure_text(paper.goal), verdict(cell, paper.goal)});
-    }
-    text +=
-        fmt::format("### {}\n\n`{}.tsm`, CRC-32 `{:08x}`\n\n", title_of(subject), subject.model,
-                    subject.model_crc32) +
-        table({"condition", "sequences", "mean", "median", "≤ 20°", "≤ 5°", "the paper", "goal", "goal met"},
-              rows);
+    text += fmt::format("### {}\n\n`{}.tsm`, CRC-32 `{:08x}`\n\n", title_of(subject), subject.model,
+                        subject.model_crc32) +
+            markdown_text(conditions_table({subject}, kAccuracyTable));
   }
   return text;
 }
 
 std::string others_section(const Results& results) {
-  std::vector<Cells> rows;
-  for (const SubjectResult& subject : results.subjects) {
-    for (const CellResult& cell : subject.cells) {
-      const bool tried = cell.baseline.has_value();
-      rows.push_back(
-          {title_of(subject), to_string(cell.condition), mean_text(cell.cnn), within_20deg_text(cell.cnn),
-           figure_text(paper_figures(subject.target, cell.condition).cnn),
-           tried ? mean_text(*cell.baseline) : "-", tried ? within_20deg_text(*cell.baseline) : "-",
-           tried ? fmt::format("{}", cell.baseline->count) : "-", fmt::format("{:.2f}", cell.network_ms),
-           tried ? fmt::format("{:.0f}", cell.baseline_ms) : "-"});
-    }
-  }
-  return "## Other estimators in the same run\n\nTimes: milliseconds a frame on one thread, median; the "
-         "network's "
+  return "## Other estimators in the same run\n\nTimes: milliseconds per frame on one thread, median. The "
+         "network's time "
          "covers CNN and RCNN together.\n\n" +
-         table({"spacecraft, mesh", "condition", "CNN", "≤ 20°", "the paper's CNN", "template matching",
-                "≤ 20°", "on sequences", "network ms", "template ms"},
-               rows);
+         markdown_text(conditions_table(results.subjects, kOtherEstimatorsTable));
 }
 
-std::string curve_table(const std::string& heading, const std::string& at, const Curve& curve,
-                        double scale = 1.0) {
-  std::vector<Cells> rows;
-  for (const CurvePoint& point : curve) {
-    if (point.rcnn.count == 0) continue;
-    rows.push_back({fmt::format("{:g}", scale * point.at), fmt::format("{}", point.rcnn.count),
-                    mean_text(point.rcnn), within_20deg_text(point.rcnn), mean_text(point.cnn)});
-  }
-  if (rows.empty()) return {};
-  return "**" + heading + "**\n\n" + table({at, "sequences", "RCNN", "≤ 20°", "CNN"}, rows);
+// With its heading; nothing without points.
+std::string curve_section(const std::string& heading, const std::string& at, const Curve& curve,
+                          double scale = 1.0) {
+  const DataTable table = curve_table(at, curve, scale);
+  return table.rows.empty() ? std::string{} : "**" + heading + "**\n\n" + markdown_text(table);
 }
 
-// Of a long run a selection.
+// A selection of the frames of a long run.
 Curve thinned(const Curve& curve) {
   Curve kept;
   for (const CurvePoint& point : curve) {
@@ -135,110 +78,53 @@ Curve thinned(const Curve& curve) {
   return kept;
 }
 
-std::string frames_table(const SubjectResult& subject) {
-  Cells header{"frame"};
-  for (const CellResult& cell : subject.cells) header.push_back(to_string(cell.condition));
-  std::vector<Cells> rows;
-  for (std::size_t frame = 0; frame < subject.cells.front().by_frame.size(); ++frame) {
-    Cells row{fmt::format("{}", frame + 1)};
-    for (const CellResult& cell : subject.cells)
-      row.push_back(degrees_text(cell.by_frame[frame].rcnn.mean_deg));
-    rows.push_back(row);
-  }
-  return "**Mean error of the RCNN by frame**\n\n" + table(header, rows);
+std::string sweeps_section(const Sweeps& sweeps) {
+  const std::string condition = to_string(sweeps.base);
+  return curve_section("Rate, norm drawn, " + condition, "middle of the bin [°/s]", sweeps.by_rate_norm) +
+         curve_section("Occluded, hidden share of the target's returns", "hidden [%]", sweeps.by_hidden_share,
+                       100.0) +
+         curve_section(fmt::format("A run of {} frames, {}", sweeps.long_run.size(), condition), "frame",
+                       thinned(sweeps.long_run));
 }
 
-std::string histogram_table(const CellResult& cell) {
-  const std::vector<double>& limits = histogram_limits_deg();
-  std::vector<Cells> rows;
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    rows.push_back({fmt::format("{:g}–{:g}°", i == 0 ? 0.0 : limits[i - 1], limits[i]),
-                    percent_text(cell.rcnn_histogram[i]), percent_text(cell.cnn_histogram[i]),
-                    cell.baseline_histogram.empty() ? "-" : percent_text(cell.baseline_histogram[i])});
-  }
-  return fmt::format("**Distribution of the error, {}**\n\n", to_string(cell.condition)) +
-         table({"error", "RCNN", "CNN", "template matching"}, rows);
+std::string confusion_section(const SubjectResult& subject) {
+  return "**Share of each nearly symmetric attitude** (the target turned about z; within 20° of it; blur: "
+         "mean error to "
+         "the nearest of them)\n\n" +
+         markdown_text(confusion_table(subject));
 }
 
-std::string confusion_table(const SubjectResult& subject) {
-  Cells header{"condition"};
-  for (const std::string& name : subject.cells.front().rcnn_confusion.names) header.push_back(name);
-  for (const char* name : {"none of these", "blur", "CNN right", "CNN blur"}) header.emplace_back(name);
-  std::vector<Cells> rows;
-  for (const CellResult& cell : subject.cells) {
-    Cells row{to_string(cell.condition)};
-    for (const double share : cell.rcnn_confusion.shares) row.push_back(percent_text(share));
-    row.push_back(percent_text(cell.rcnn_confusion.none));
-    row.push_back(degrees_text(cell.rcnn_confusion.blur_deg, cell.rcnn_confusion.blur_standard_error_deg));
-    row.push_back(percent_text(cell.cnn_confusion.shares.front()));
-    row.push_back(degrees_text(cell.cnn_confusion.blur_deg, cell.cnn_confusion.blur_standard_error_deg));
-    rows.push_back(row);
-  }
-  return "**Which of the nearly symmetric attitudes** (turned about z; within 20° of it; blur: mean error to "
-         "the nearest of "
-         "them)\n\n" +
-         table(header, rows);
-}
-
-std::string reliability_table(const CellResult& cell) {
-  std::vector<Cells> rows;
-  for (const ReliabilityBin& bin : cell.reliability) {
-    rows.push_back({degrees_text(bin.predicted_deg), degrees_text(bin.real.mean_deg),
-                    degrees_text(bin.real.median_deg), fmt::format("{}", bin.real.count)});
-  }
+std::string reliability_section(const CellResult& cell) {
   return fmt::format(
-             "**Predicted and real error of the RCNN, {}, every frame, in tenths by the predicted "
+             "**Predicted and actual error of the RCNN, {}, every frame, in tenths sorted by the predicted "
              "error**\n\n",
              to_string(cell.condition)) +
-         table({"predicted", "real, mean", "real, median", "frames"}, rows);
+         markdown_text(reliability_table(cell));
 }
 
-std::string detection_table(const SubjectResult& subject) {
-  std::vector<Cells> rows;
-  std::size_t wrong = 0;
-  std::size_t all = 0;
-  for (const DetectionPoint& point : detection_of(subject)) {
-    wrong = point.wrong;
-    all = point.wrong + point.right;
-    rows.push_back({fmt::format("{:g}°", point.threshold_deg), percent_text(point.detected()),
-                    percent_text(point.false_alarms()),
-                    fmt::format("{:.2f} %", 100.0 * point.wrong_among_kept())});
-  }
+std::string detection_section(const SubjectResult& subject) {
+  const DataTable table = detection_table(subject);
+  if (table.rows.empty()) return {};
+  const DetectionPoint last = detection_of(subject).back();
   return fmt::format(
-             "**Does it know when it is wrong?** All conditions, every frame: {} of {} estimates are more "
-             "than "
-             "20° off. Thrown away when the predicted error is above a threshold:\n\n",
-             wrong, all) +
-         table({"threshold", "wrong ones thrown away", "right ones thrown away", "wrong among the kept"},
-               rows);
-}
-
-std::string checks_table(const SubjectResult& subject) {
-  std::vector<Cells> rows;
-  for (const Check& check : checks_of(subject)) {
-    rows.push_back({check.what, text_of(check), check.holds() ? "yes" : "**no**"});
-  }
-  return table({"check", "value and limit", "holds"}, rows);
+             "**Detection of wrong estimates.** All conditions, every frame: {} of {} estimates are more "
+             "than 20° off. An "
+             "estimate is rejected when its predicted error is above a threshold:\n\n",
+             last.wrong, last.wrong + last.right) +
+         markdown_text(table);
 }
 
 std::string details_of(const SubjectResult& subject) {
   const CellResult& base = subject.cells.front();
   const std::string condition = to_string(base.condition);
-  std::string text =
-      "### " + title_of(subject) + "\n\n" + checks_table(subject) + frames_table(subject) +
-      curve_table("Range, " + condition, "middle of the bin [m]", base.by_range) +
-      curve_table("Rate, components drawn, " + condition, "middle of the bin [°/s]", base.by_rate);
-  if (subject.sweeps) {
-    const Sweeps& sweeps = *subject.sweeps;
-    text += curve_table("Rate, norm drawn, " + to_string(sweeps.base), "middle of the bin [°/s]",
-                        sweeps.by_rate_norm) +
-            curve_table("Occluded, hidden share of the target's returns", "hidden [%]",
-                        sweeps.by_hidden_share, 100.0) +
-            curve_table(fmt::format("A run of {} frames, {}", sweeps.long_run.size(), to_string(sweeps.base)),
-                        "frame", thinned(sweeps.long_run));
-  }
-  return text + histogram_table(base) + confusion_table(subject) + reliability_table(base) +
-         detection_table(subject);
+  return "### " + title_of(subject) + "\n\n" + markdown_text(checks_table(subject)) +
+         "**Mean error of the RCNN by frame**\n\n" + markdown_text(frames_table(subject)) +
+         curve_section("Range, " + condition, "middle of the bin [m]", base.by_range) +
+         curve_section("Rate, components drawn, " + condition, "middle of the bin [°/s]", base.by_rate) +
+         (subject.sweeps ? sweeps_section(*subject.sweeps) : std::string{}) +
+         fmt::format("**Distribution of the error, {}**\n\n", condition) +
+         markdown_text(histogram_table(base)) + confusion_section(subject) + reliability_section(base) +
+         detection_section(subject);
 }
 
 }  // namespace

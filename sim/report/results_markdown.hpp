@@ -1,4 +1,4 @@
-// Results as a Markdown document with a table for every figure.
+// Results as a Markdown document: docs/results.md is one.
 #pragma once
 
 #include <string>

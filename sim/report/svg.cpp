@@ -99,4 +99,9 @@ std::string Svg::text() const {
   return body_ + "</svg>\n";
 }
 
+std::string standalone_svg(const std::string& svg) {
+  static const std::string kTag = "<svg ";
+  return kTag + "font-family=\"sans-serif\" style=\"background:#fff\" " + svg.substr(kTag.size());
+}
+
 }  // namespace tumblesight::sim

@@ -1,5 +1,5 @@
-// Svg: a small writer of inline SVG. Coordinates in user units (pixels at natural size), origin at the top
-// left.
+// Svg: a small writer of SVG. Coordinates are in user units (pixels at natural size), the origin is at the
+// top left.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace tumblesight::sim {
 
-// For text and attribute values in HTML and SVG alike.
+// For text and attribute values in HTML and SVG.
 std::string escape_markup(const std::string& text);
 
 struct Point {
@@ -27,12 +27,12 @@ struct TextStyle {
   double size = 12.0;
   std::string colour = "#444";
   bool bold = false;
-  double rotate_deg = 0.0;  // about the text's own point
+  double rotate_deg = 0.0;  // about the point of the text
 };
 
 class Svg {
  public:
-  // `description`: what a reader who cannot see the picture is told.
+  // `description`: alternative text for readers who cannot see the picture.
   Svg(double width, double height, const std::string& description);
 
   void line(Point from, Point to, const Stroke& stroke);
@@ -43,10 +43,13 @@ class Svg {
   void image(Point corner, double side, const std::string& uri);  // square, pixels kept sharp
   void text(Point at, const std::string& content, const TextStyle& style = {});
 
-  std::string text() const;  // the whole <svg> element
+  std::string text() const;  // the <svg> element, for a page
 
  private:
   std::string body_;
 };
+
+// The same element for a file of its own: with a font and a white background.
+std::string standalone_svg(const std::string& svg);
 
 }  // namespace tumblesight::sim

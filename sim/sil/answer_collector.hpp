@@ -1,5 +1,5 @@
-// AnswerCollector: puts flight's samples, which arrive in any order across topics, together to answers of
-// steps.
+// AnswerCollector: combines the samples of the flight program, which arrive in any order across topics, into
+// one answer per step.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct StepAnswer {
   hal::AttitudeReport attitude;
   hal::Telemetry telemetry;
   std::vector<hal::Event> events;
-  std::vector<std::uint8_t> dump;  // of a model bank; empty: none
+  std::vector<std::uint8_t> dump;  // part of a model bank; empty: none
   std::uint32_t state_crc32 = 0;
 };
 
@@ -26,9 +26,9 @@ class AnswerCollector {
   AnswerCollector(SimulatorEndpoints& endpoints, std::uint32_t run_id)
       : endpoints_(endpoints), run_id_(run_id) {}
 
-  // Takes what has arrived; samples of other runs are left out.
+  // Takes all samples that have arrived. Those of other runs are discarded.
   void collect();
-  // The oldest answer of which everything is here.
+  // The oldest complete answer, if there is one.
   std::optional<StepAnswer> next();
 
  private:
@@ -40,7 +40,7 @@ class AnswerCollector {
     std::optional<hal::dds::StepDoneSample> done;
     bool complete() const;
   };
-  // The step that a sample belongs to, or nullptr if it is of another run.
+  // The step of a sample, or nullptr if it belongs to another run.
   template <class Sample>
   Partial* partial_of(const Sample& sample);
 

@@ -17,12 +17,12 @@
 namespace tumblesight::sim {
 namespace {
 
-// Domain 0 is everybody's default, and ports of domains above 100 lie in Linux's ephemeral range.
+// Domain 0 is the default of DDS programs. Ports of domains above 100 are in Linux's ephemeral range.
 constexpr std::uint32_t kFirstFree = 1;
 constexpr std::uint32_t kLastFree = 100;
 
 [[noreturn]] void fail_no_file(const std::string& folder, int error) {
-  throw SilFailure("no DDS domain can be taken: the lock's file in " + folder +
+  throw SilFailure("no DDS domain can be reserved: the lock file in " + folder +
                    " cannot be opened: " + strerror(error));
 }
 
@@ -35,7 +35,8 @@ DomainLease::DomainLease(int wanted) {
   }
   std::error_code no_folder;
   const std::string folder = std::filesystem::temp_directory_path(no_folder);
-  if (no_folder) throw SilFailure("no DDS domain can be taken: no temporary folder: " + no_folder.message());
+  if (no_folder)
+    throw SilFailure("no DDS domain can be reserved: no temporary folder: " + no_folder.message());
   if (wanted >= 0) {
     const Lock lock = try_lock(folder, static_cast<std::uint32_t>(wanted));
     if (lock == Lock::kOurs) return;
@@ -52,7 +53,7 @@ DomainLease::DomainLease(int wanted) {
   }
   if (!any_taken) fail_no_file(folder, error);
   throw SilFailure("no free DDS domain from " + std::to_string(kFirstFree) + " to " +
-                   std::to_string(kLastFree) + ": other runs on this machine have them");
+                   std::to_string(kLastFree) + ": other runs on this machine use them");
 }
 
 DomainLease::~DomainLease() {
@@ -61,8 +62,8 @@ DomainLease::~DomainLease() {
 
 DomainLease::Lock DomainLease::try_lock(const std::string& folder, std::uint32_t domain) {
   const std::string path = folder + "/tumblesight-domain-" + std::to_string(domain) + ".lock";
-  // Closed in other children of ours than the flight program: they may live longer than the run.
-  // Without O_CREAT first: in a sticky directory Linux may refuse to "create" a file that another user owns.
+  // O_CLOEXEC: only the flight program may inherit the file; other child processes may outlive the run. First
+  // without O_CREAT: in a sticky directory Linux may refuse to "create" a file that belongs to another user.
   int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) file = open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644);
   if (file < 0) return Lock::kNoFile;

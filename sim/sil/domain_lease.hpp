@@ -1,6 +1,6 @@
-// DomainLease: a DDS domain for one run alone, so that runs beside each other on a machine do not meet. Held
-// by a lock on a file in the temporary directory. The flight program inherits the file, so that the domain
-// stays taken as long as either of the two lives; the system lets go of it however they end.
+// DomainLease: a DDS domain for one run only, so that concurrent runs on a machine do not meet. It is held by
+// a lock on a file in the temporary folder. The flight program inherits the file, so that the domain stays
+// taken while either process lives. The system releases the lock however they end.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,20 @@ namespace tumblesight::sim {
 
 class DomainLease {
  public:
-  // `wanted`: a domain, or -1 for a free one. Throws SilFailure if it is taken, none is free, or
-  // the lock's file cannot be opened.
+  // `wanted`: a domain, or -1 for a free one. Throws SilFailure if it is taken, none is free, or the lock
+  // file cannot be opened.
   explicit DomainLease(int wanted);
   ~DomainLease();
   DomainLease(const DomainLease&) = delete;
   DomainLease& operator=(const DomainLease&) = delete;
 
   std::uint32_t domain() const { return domain_; }
-  // For FlightProcess to hand down.
+  // The lock file, which FlightProcess lets the child inherit.
   int file() const { return file_; }
 
  private:
   enum class Lock { kOurs, kTaken, kNoFile };
-  // kNoFile: errno says why.
+  // errno holds the reason of kNoFile.
   Lock try_lock(const std::string& folder, std::uint32_t domain);
 
   int file_ = -1;

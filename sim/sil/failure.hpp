@@ -1,4 +1,4 @@
-// SilFailure: why a run cannot go on, in words for the user.
+// SilFailure: the reason why a run cannot continue, as a message for the user.
 #pragma once
 
 #include <stdexcept>

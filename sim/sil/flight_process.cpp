@@ -24,7 +24,7 @@ class SpawnActions {
  public:
   SpawnActions(const std::string& log_path, int inherited_file) {
     posix_spawn_file_actions_init(&actions_);
-    // Onto itself: the one thing this does is to keep it open.
+    // dup2 onto itself clears the close-on-exec flag.
     if (inherited_file >= 0) posix_spawn_file_actions_adddup2(&actions_, inherited_file, inherited_file);
     if (log_path.empty()) return;
     posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
@@ -65,7 +65,7 @@ bool FlightProcess::running() {
   if (ended_) return false;
   const pid_t result = waitpid(pid_, &status_, WNOHANG);
   ended_ = result != 0;
-  // The system keeps no status for a parent that ignores SIGCHLD.
+  // A parent that ignores SIGCHLD gets no exit status.
   status_lost_ = result < 0;
   return !ended_;
 }
@@ -82,7 +82,7 @@ bool FlightProcess::ended_well() const {
 }
 
 std::string FlightProcess::how_it_ended() const {
-  if (status_lost_) return "ended, and its exit status is lost (is SIGCHLD ignored here?)";
+  if (status_lost_) return "ended with an unknown exit status (is SIGCHLD ignored?)";
   if (WIFSIGNALED(status_)) {
     const int signal = WTERMSIG(status_);
     return "was ended by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";

@@ -1,4 +1,4 @@
-// FlightProcess: the flight program as a child process. It never outlives this object.
+// FlightProcess: the flight program as a child process, which ends with this object at the latest.
 #pragma once
 
 #include <sys/types.h>
@@ -10,27 +10,27 @@ namespace tumblesight::sim {
 
 class FlightProcess {
  public:
-  // `log_path`: file for its messages; empty: they come out with our own. `inherited_file`: descriptor that
-  // stays open in it, under its number; -1: none. Throws SilFailure if it cannot be started.
+  // `log_path`: file for its messages; empty: our own output. `inherited_file`: descriptor that the child
+  // inherits under the same number; -1: none. Throws SilFailure if the program cannot be started.
   FlightProcess(const std::string& program, const std::vector<std::string>& arguments,
                 const std::string& log_path, int inherited_file = -1);
-  // Asks it to end, and kills it if it does not within two seconds.
+  // Sends SIGTERM, and after two seconds SIGKILL.
   ~FlightProcess();
   FlightProcess(const FlightProcess&) = delete;
   FlightProcess& operator=(const FlightProcess&) = delete;
 
   bool running();
-  // True once it has ended.
+  // Waits until it has ended (true) or the timeout is over (false).
   bool wait_for_end(double timeout_s);
   bool ended() const { return ended_; }
-  bool ended_well() const;           // ended, known to be with exit status 0
+  bool ended_well() const;           // ended with exit status 0
   std::string how_it_ended() const;  // "ended with exit status 4: the simulator is gone"
   pid_t pid() const { return pid_; }
 
  private:
   pid_t pid_ = 0;
   bool ended_ = false;
-  bool status_lost_ = false;  // ended, but nobody can tell how
+  bool status_lost_ = false;  // it ended, but the exit status is unknown
   int status_ = 0;
 };
 

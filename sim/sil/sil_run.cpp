@@ -14,57 +14,58 @@ namespace {
 
 using Clock = SilSession::Clock;
 
-constexpr std::uint32_t kPictureSequences = 3;  // whose frames are kept
+constexpr std::uint32_t kPictureSequences = 3;  // the frames of these are kept
 
-// One run: what is planned, the frames, and the recording as it grows.
+// One run: its plan, its frames, and its result so far.
 class SilRun {
  public:
   SilRun(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
          const std::vector<Sequence>& sequences, const SilProgress& progress, const FrameObserver& frame_sent,
-         SilRecording& recording)
+         SilRunResult& result)
       : settings_(settings),
         sequences_(sequences),
         progress_(progress),
         frame_sent_(frame_sent),
-        recording_(recording),
+        result_(result),
         plan_(plan_steps(sequences)),
         feed_(lidar, swath_m, sequences, plan_) {
-    recording_.steps_planned = static_cast<std::uint32_t>(plan_.size());
-    recording_.steps.reserve(plan_.size());
+    result_.steps_planned = static_cast<std::uint32_t>(plan_.size());
+    result_.steps.reserve(plan_.size());
   }
 
   void run() {
     if (plan_.empty()) return;
     if (settings_.free_running && !(settings_.speed > 0.0)) {
-      throw SilFailure("free running needs a speed: 1 for real time, N for N times real time");
+      throw SilFailure(
+          "a free-running flight program needs a speed: --speed 1 for real time, N for N times real time");
     }
     SilSession session(settings_);
-    settings_.free_running ? run_free(session) : run_lockstep(session);
+    settings_.free_running ? simulate_free_running(session) : simulate_in_lockstep(session);
     session.finish();
   }
 
  private:
-  void run_lockstep(SilSession& session) {
+  void simulate_in_lockstep(SilSession& session) {
     const auto begin = Clock::now();
     for (std::uint32_t k = 0; k < plan_.size(); ++k) {
       const StepInput input = prepare(session, k);
       if (settings_.speed > 0.0) session.sleep_until(begin + wall_time_of(k));
-      session.publish_truth(plan_[k].sequence, plan_[k].frame, recording_.steps[k].truth, plan_[k].time_ns);
-      record(k, session.step(input));
-      if (k == 0) require_running(recording_.steps[0].telemetry);
+      session.publish_truth(plan_[k].sequence, plan_[k].frame, result_.steps[k].truth, plan_[k].time_ns);
+      store_answer(k, session.step(input));
+      if (k == 0) require_running(result_.steps[0].telemetry);
     }
   }
 
-  // Frames go out on the wall clock's time; answers are matched to them by sequence number.
-  void run_free(SilSession& session) {
+  // Frames are sent by the wall clock. Answers are matched to them by sequence number.
+  void simulate_free_running(SilSession& session) {
     const auto begin = Clock::now();
     for (std::uint32_t k = 0; k < plan_.size(); ++k) {
       const StepInput input = prepare(session, k);
       receive_until(session, begin + wall_time_of(k));
-      session.publish_truth(plan_[k].sequence, plan_[k].frame, recording_.steps[k].truth, plan_[k].time_ns);
+      session.publish_truth(plan_[k].sequence, plan_[k].frame, result_.steps[k].truth, plan_[k].time_ns);
       session.send(input);
     }
-    // The last frame's answer comes with the next cycle, or not at all.
+    // The answer to the last frame comes with the next cycle, or never.
     const auto grace = wall_time_of(2);
     receive_until(session, begin + wall_time_of(static_cast<std::uint32_t>(plan_.size())) + grace);
   }
@@ -74,17 +75,15 @@ class SilRun {
       const std::optional<StepAnswer> answer = session.next_answer(deadline);
       if (!answer) return;
       require_running(answer->telemetry);
-      recording_.flight_heap_allocations = answer->telemetry.heap_allocations;
-      // Only attitudes name the frame that they belong to.
+      result_.flight_heap_allocations = answer->telemetry.heap_allocations;
+      // Only a report with an attitude names its frame.
       const bool has_frame = gives_attitude(answer->attitude);
       const std::uint32_t k = answer->attitude.sequence_number;
-      if (has_frame && k < recording_.steps.size() && !recording_.steps[k].answered) record(k, *answer);
+      if (has_frame && k < result_.steps.size() && !result_.steps[k].answered) store_answer(k, *answer);
     }
   }
 
-  bool last_answered() const {
-    return recording_.steps.size() == plan_.size() && recording_.steps.back().answered;
-  }
+  bool last_answered() const { return result_.steps.size() == plan_.size() && result_.steps.back().answered; }
 
   // Mission time as wall time, from the start of the run.
   Clock::duration wall_time_of(std::uint32_t k) const {
@@ -94,16 +93,16 @@ class SilRun {
 
   StepInput prepare(const SilSession& session, std::uint32_t k) {
     const PlannedStep& plan = plan_[k];
-    StepRecord step;
+    StepResult step;
     step.sequence = plan.sequence;
     step.frame_index = plan.frame;
     step.time_ns = plan.time_ns;
     step.truth = sequences_[plan.sequence].frames[plan.frame];
-    recording_.steps.push_back(step);
+    result_.steps.push_back(step);
 
     const gnc::RangeImage& frame = feed_.next();
     if (frame_sent_) frame_sent_(step, frame);
-    if (plan.sequence < kPictureSequences) recording_.pictures.emplace_back(k, frame);
+    if (plan.sequence < kPictureSequences) result_.pictures.emplace_back(k, frame);
 
     StepInput input;
     input.time_ns = plan.time_ns;
@@ -116,45 +115,45 @@ class SilRun {
     return input;
   }
 
-  void record(std::uint32_t k, const StepAnswer& answer) {
-    StepRecord& step = recording_.steps[k];
+  void store_answer(std::uint32_t k, const StepAnswer& answer) {
+    StepResult& step = result_.steps[k];
     step.answered = true;
     step.attitude = answer.attitude;
     step.telemetry = answer.telemetry;
     step.events = answer.events;
     step.state_crc32 = answer.state_crc32;
-    recording_.flight_heap_allocations = answer.telemetry.heap_allocations;
+    result_.flight_heap_allocations = answer.telemetry.heap_allocations;
     ++answered_;
-    if (progress_) progress_(answered_, recording_.steps_planned);
+    if (progress_) progress_(answered_, result_.steps_planned);
   }
 
   void require_running(const hal::Telemetry& telemetry) const {
     if (telemetry.mode != hal::Mode::kSafe) return;
-    throw SilFailure("flight is in SAFE: it has no usable model image for target " + settings_.target +
-                     (settings_.model_path.empty() ? "" : " in " + settings_.model_path) +
-                     "; its message says what is wrong with it");
+    throw SilFailure("the flight program is in SAFE mode: it has no usable model image for target " +
+                     settings_.target + (settings_.model_path.empty() ? "" : " in " + settings_.model_path) +
+                     "; see its message for the reason");
   }
 
   const SilSettings& settings_;
   const std::vector<Sequence>& sequences_;
   const SilProgress& progress_;
   const FrameObserver& frame_sent_;
-  SilRecording& recording_;
+  SilRunResult& result_;
   std::vector<PlannedStep> plan_;
   FrameFeed feed_;
   std::uint32_t answered_ = 0;
 };
 
-void conclude(SilRecording& recording) {
+void conclude(SilRunResult& result) {
   std::uint32_t answered = 0;
   TraceDigest digest;
-  for (std::uint32_t k = 0; k < recording.steps.size(); ++k) {
-    if (!recording.steps[k].answered) continue;
+  for (std::uint32_t k = 0; k < result.steps.size(); ++k) {
+    if (!result.steps[k].answered) continue;
     ++answered;
-    digest.add(k, recording.steps[k]);
+    digest.add(k, result.steps[k]);
   }
-  recording.steps_missed = recording.steps_planned - answered;
-  recording.trace_crc32 = digest.value();
+  result.steps_missed = result.steps_planned - answered;
+  result.trace_crc32 = digest.value();
 }
 
 }  // namespace
@@ -163,17 +162,17 @@ bool gives_attitude(const hal::AttitudeReport& report) {
   return report.validity == hal::Validity::kValid || report.validity == hal::Validity::kDoubtful;
 }
 
-SilRecording run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
+SilRunResult run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
                      const std::vector<Sequence>& sequences, const SilProgress& progress,
                      const FrameObserver& frame_sent) {
-  SilRecording recording;
+  SilRunResult result;
   try {
-    SilRun(settings, lidar, swath_m, sequences, progress, frame_sent, recording).run();
+    SilRun(settings, lidar, swath_m, sequences, progress, frame_sent, result).run();
   } catch (const std::exception& error) {
-    recording.failure = error.what();
+    result.failure = error.what();
   }
-  conclude(recording);
-  return recording;
+  conclude(result);
+  return result;
 }
 
 }  // namespace tumblesight::sim

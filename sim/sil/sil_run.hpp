@@ -1,5 +1,5 @@
-// A software-in-the-loop run: the simulator as time master, the flight program as a second process, DDS
-// between them.
+// A software-in-the-loop (SIL) run: the simulator is the time master, the flight program is a second process,
+// and they communicate over DDS.
 #pragma once
 
 #include <array>
@@ -17,21 +17,20 @@
 namespace tumblesight::sim {
 
 struct SilSettings {
-  std::string target = "near_shoemaker";  // name that the model image must carry
-  std::string model_path;                 // handed to flight
-  std::string flight_path;                // program to start; empty: one is expected to be running already
-  int domain = -1;               // DDS domain; -1: a free one, so that runs beside each other do not meet
-  double speed = 0.0;            // 0: as fast as the machine goes; 1: real time; N: N times real time
-  bool free_running = false;     // flight on its own 2.7 s timer (divided by speed) instead of in lockstep
-  double step_timeout_s = 10.0;  // wall clock; a step not answered by then ends the run
-  std::string flight_log_path;   // file for flight's messages; empty: they come out with our own
-  std::vector<std::string> flight_arguments;                             // further arguments for flight
-  std::array<std::uint8_t, 32> command_key = hal::dds::kDevelopmentKey;  // the same as flight's
+  std::string target = "near_shoemaker";  // that the model image must be for
+  std::string model_path;                 // passed to the flight program
+  std::string flight_path;                // program to start; empty: the user starts it
+  int domain = -1;                        // DDS domain; -1: a free one, so that concurrent runs do not meet
+  double speed = 0.0;                     // times real time; 0: as fast as possible
+  bool free_running = false;              // flight on its own timer, 2.7 s divided by speed, not in lockstep
+  double step_timeout_s = 10.0;           // wall clock; a step without an answer by then ends the run
+  std::string flight_log_path;            // file for the messages of flight; empty: our own output
+  std::vector<std::string> flight_arguments;                             // additional ones
+  std::array<std::uint8_t, 32> command_key = hal::dds::kDevelopmentKey;  // flight must have the same
 };
 
-// Everything recorded of one step. `frame` is what was sent (for pictures), kept only for the first
-// sequences.
-struct StepRecord {
+// One step: what was sent, and the answer of the flight program.
+struct StepResult {
   std::uint32_t sequence = 0;
   std::uint32_t frame_index = 0;
   std::int64_t time_ns = 0;
@@ -43,25 +42,26 @@ struct StepRecord {
   std::uint32_t state_crc32 = 0;
 };
 
-// Valid or doubtful.
+// Whether the report holds an attitude: valid or doubtful.
 bool gives_attitude(const hal::AttitudeReport& report);
 
-struct SilRecording {
-  std::vector<StepRecord> steps;
-  std::vector<std::pair<std::size_t, gnc::RangeImage>> pictures;  // (index into steps, frame)
+struct SilRunResult {
+  std::vector<StepResult> steps;
+  std::vector<std::pair<std::size_t, gnc::RangeImage>>
+      pictures;  // index into steps, frame; of the first sequences only
   std::uint32_t steps_planned = 0;
-  std::uint32_t steps_missed = 0;             // planned but never answered
-  std::uint32_t flight_heap_allocations = 0;  // from the last telemetry
-  std::uint32_t trace_crc32 = 0;              // over every answered step's bits, wall-clock times left out
-  std::string failure;  // empty, or why the run ended early (flight gone, ICD unequal, ...)
+  std::uint32_t steps_missed = 0;             // without an answer
+  std::uint32_t flight_heap_allocations = 0;  // from the last answer
+  std::uint32_t trace_crc32 = 0;              // TraceDigest over all answered steps
+  std::string failure;  // empty, or why the run ended early (flight program gone, different ICD hash, ...)
 };
 
-// Runs `sequences` one after the other, with a reset command before each. Never throws for what the flight
-// side does: whatever was recorded until then is returned with `failure` set. `progress(done, planned)` after
-// every step; `frame_sent` with each frame, in their order.
+// Runs `sequences` in order, with a reset command before each. `swath_m` is the width of the frames at the
+// target's range. `progress(done, planned)` is called after every step, `frame_sent` with every frame, in
+// order. Does not throw: a run that ends early returns the steps up to then, with `failure` set.
 using SilProgress = std::function<void(std::uint32_t done, std::uint32_t planned)>;
-using FrameObserver = std::function<void(const StepRecord& step, const gnc::RangeImage& frame)>;
-SilRecording run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
+using FrameObserver = std::function<void(const StepResult& step, const gnc::RangeImage& frame)>;
+SilRunResult run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
                      const std::vector<Sequence>& sequences, const SilProgress& progress,
                      const FrameObserver& frame_sent = {});
 

@@ -19,7 +19,7 @@ using hal::dds::Role;
 constexpr auto kPoll = 20ms;
 constexpr double kEndGrace_s = 3.0;
 
-// Not 0, which stands for "any" and "not ready".
+// Not 0, which means "any" and "not ready".
 std::uint32_t make_run_id() {
   return std::max(1U, static_cast<std::uint32_t>(std::random_device{}()));
 }
@@ -87,7 +87,7 @@ void SilSession::start_flight() {
                                              settings_.flight_log_path, lease_.file());
 }
 
-// True once flight of this run is ready.
+// Reads the hellos of flight. True once the flight program of this run is ready.
 bool SilSession::read_hello() {
   bool ready = false;
   hal::dds::HelloSample hello;
@@ -95,10 +95,10 @@ bool SilSession::read_hello() {
     const bool ours = hello.run_id == run_id_ || hello.run_id == 0;
     if (hello.role != static_cast<std::uint8_t>(Role::kFlight) || !ours) continue;
     if (hello.icd_hash != hal::dds::icd_hash()) {
-      // Flight refuses as well: let it say so itself.
+      // Flight refuses as well; wait for its own message.
       if (process_) (void)process_->wait_for_end(kEndGrace_s);
-      throw SilFailure("interface hash " + hex(hal::dds::icd_hash()) + ", flight's " + hex(hello.icd_hash) +
-                       ": build both from the same tumblesight.idl");
+      throw SilFailure("interface hash " + hex(hal::dds::icd_hash()) + ", but " + hex(hello.icd_hash) +
+                       " in the flight program: build both from the same tumblesight.idl");
     }
     flight_mode_ = static_cast<hal::Mode>(hello.flight_mode);
     ready = hello.run_id == run_id_;
@@ -112,11 +112,12 @@ void SilSession::shake_hands() {
   while (!ready || !endpoints_->all_matched()) {
     ready = read_hello() || ready;
     if (endpoints_->hello_in.saw_incompatible()) {
-      throw SilFailure("flight's hello is of another type: build both from the same tumblesight.idl");
+      throw SilFailure(
+          "the hello of the flight program has another type: build both from the same tumblesight.idl");
     }
-    if (process_ && !process_->running()) fail("flight " + process_->how_it_ended());
+    if (process_ && !process_->running()) fail("the flight program " + process_->how_it_ended());
     if (Clock::now() > deadline) {
-      fail(process_ ? "flight was started but did not announce itself"
+      fail(process_ ? "the flight program was started but did not announce itself"
                     : "no flight program announced itself in DDS domain " + std::to_string(lease_.domain()) +
                           "; start one with --domain " + std::to_string(lease_.domain()));
     }
@@ -134,8 +135,8 @@ bool SilSession::flight_ended() {
   return (process_ && !process_->running()) || endpoints_->flight_gone();
 }
 
-// Of a flight program that somebody else has started, only its going is seen, not how it went.
-bool SilSession::flight_ended_as_it_should() {
+// The exit status is known only of a flight program that we started.
+bool SilSession::flight_ended_after_last_step() {
   if (!last_sent_) return false;
   return !process_ || (process_->wait_for_end(kEndGrace_s) && process_->ended_well());
 }
@@ -143,8 +144,8 @@ bool SilSession::flight_ended_as_it_should() {
 void SilSession::fail_flight_ended() const {
   const std::string step = next_k_ == 0 ? "before step 0" : "at step " + std::to_string(next_k_ - 1);
   if (!process_ || !process_->ended())
-    fail("the connection to flight was lost " + step + "; start both again");
-  fail("flight " + process_->how_it_ended() + ", " + step + "; see what it wrote, and run again");
+    fail("the connection to the flight program was lost " + step + "; start both again");
+  fail("the flight program " + process_->how_it_ended() + ", " + step + "; see its messages, and run again");
 }
 
 StepAnswer SilSession::step(const StepInput& input) {
@@ -194,7 +195,7 @@ StepAnswer SilSession::wait_for_answer(std::uint32_t k) {
     if (answer->k == k) return *answer;
   }
   if (flight_ended()) fail_flight_ended();
-  fail("flight did not answer step " + std::to_string(k) + " within " +
+  fail("the flight program did not answer step " + std::to_string(k) + " within " +
        std::to_string(settings_.step_timeout_s) + " s of wall-clock time");
 }
 
@@ -206,9 +207,9 @@ std::optional<StepAnswer> SilSession::next_answer(Clock::time_point deadline) {
     if (left <= Clock::duration::zero()) return std::nullopt;
     const bool arrived = endpoints_->wait_for_data(std::min<Clock::duration>(left, kPoll).count());
     if (!arrived && flight_ended()) {
-      answers_->collect();  // its last words may have come in between
+      answers_->collect();  // the last samples may have arrived in between
       if (auto answer = answers_->next()) return answer;
-      if (flight_ended_as_it_should()) return std::nullopt;
+      if (flight_ended_after_last_step()) return std::nullopt;
       fail_flight_ended();
     }
   }
@@ -223,8 +224,10 @@ void SilSession::sleep_until(Clock::time_point time) {
 
 void SilSession::finish() {
   if (!process_) return;
-  if (!process_->wait_for_end(settings_.step_timeout_s)) fail("flight did not end after its last step");
-  if (!process_->ended_well()) fail("flight " + process_->how_it_ended() + ", after the last step");
+  if (!process_->wait_for_end(settings_.step_timeout_s))
+    fail("the flight program did not end after its last step");
+  if (!process_->ended_well())
+    fail("the flight program " + process_->how_it_ended() + ", after the last step");
 }
 
 void SilSession::publish_truth(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth,

@@ -1,4 +1,4 @@
-// SilSession: a running flight program and the conversation with it, from the handshake to the last step.
+// SilSession: a running flight program and the exchange with it, from the handshake to the last step.
 #pragma once
 
 #include <sys/types.h>
@@ -23,39 +23,39 @@
 
 namespace tumblesight::sim {
 
-// What the simulator sends for one step. Frames carry their own exposure time and sequence number.
+// What the simulator sends for one step. Each frame has its own exposure time and sequence number.
 struct StepInput {
   std::int64_t time_ns = 0;
   std::vector<const gnc::RangeImage*> frames;
   std::vector<Telecommand> commands;
-  std::vector<hal::CommandPacket> packets;  // behind these, as they are: what no ground would send
+  std::vector<hal::CommandPacket> packets;  // sent after `commands`, unchanged: for tests of invalid packets
   bool last = false;
 };
 
-// All of it throws SilFailure when the run cannot go on.
+// Every function throws SilFailure when the run cannot continue.
 class SilSession {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Takes a domain, starts flight and returns once both sides are ready.
+  // Reserves a domain, starts the flight program, and returns when both sides are ready.
   explicit SilSession(const SilSettings& settings);
 
-  // Lockstep: one step and its answer. Steps are counted from 0.
+  // Lockstep: sends one step and waits for its answer. Steps count from 0.
   StepAnswer step(const StepInput& input);
-  // The two halves. After a step that was the `last`, no other may follow.
+  // The two halves of step(). No step may follow the `last`.
   void send(const StepInput& input);
   StepAnswer wait_for_answer(std::uint32_t k);
-  // Any answer that comes before `deadline`; free-running flight answers once a cycle, asked or not. Nothing
-  // too once flight has ended after the last step, as it should.
+  // The next answer before `deadline`, of any step: a free-running flight program answers once per cycle.
+  // Nothing if there was none, or if flight has ended after the last step.
   std::optional<StepAnswer> next_answer(Clock::time_point deadline);
-  // Sleeps, but not past the end of the flight program.
+  // Sleeps until `time`, or throws as soon as the flight program ends.
   void sleep_until(Clock::time_point time);
-  // After the last step: flight ends by itself.
+  // After the last step: waits until the flight program ends, which it does by itself.
   void finish();
 
   void publish_truth(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth,
                      std::int64_t time_ns);
-  hal::Mode flight_mode() const { return flight_mode_; }  // that flight announced
+  hal::Mode flight_mode() const { return flight_mode_; }  // in the hello of flight
   pid_t flight_pid() const { return process_ ? process_->pid() : 0; }
   std::uint32_t run_id() const { return run_id_; }
   std::uint32_t domain() const { return lease_.domain(); }
@@ -65,7 +65,7 @@ class SilSession {
   void shake_hands();
   bool read_hello();
   bool flight_ended();
-  bool flight_ended_as_it_should();
+  bool flight_ended_after_last_step();
   [[noreturn]] void fail_flight_ended() const;
   std::vector<std::string> flight_command_line() const;
   [[noreturn]] void fail(const std::string& what) const;
@@ -76,7 +76,7 @@ class SilSession {
   hal::dds::Domain domain_;
   std::unique_ptr<SimulatorEndpoints> endpoints_;
   std::unique_ptr<AnswerCollector> answers_;
-  std::unique_ptr<FlightProcess> process_;  // ends before the domain is given back
+  std::unique_ptr<FlightProcess> process_;  // destroyed before the domain is released
   TelecommandEncoder encoder_;
   hal::dds::LidarFrameSample frame_sample_{};
   std::uint32_t next_k_ = 0;

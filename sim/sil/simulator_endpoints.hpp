@@ -1,4 +1,4 @@
-// SimulatorEndpoints: the simulator's readers and writers, and one place to wait for an answer.
+// SimulatorEndpoints: the DDS readers and writers of the simulator, and a wait set for the answers.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ struct SimulatorEndpoints {
   hal::dds::Writer<hal::dds::LidarFrameSample> frames;
   hal::dds::Writer<hal::dds::CommandSample> commands;
   hal::dds::Writer<hal::dds::StepSample> steps;
-  hal::dds::Writer<hal::dds::TruthSample> truth;  // nobody has to read it
+  hal::dds::Writer<hal::dds::TruthSample> truth;  // for displays; not read by flight
   hal::dds::Reader<hal::dds::HelloSample> hello_in;
   hal::dds::Reader<hal::dds::AttitudeSample> attitudes;
   hal::dds::Reader<hal::dds::TelemetrySample> telemetries;
@@ -21,10 +21,10 @@ struct SimulatorEndpoints {
   hal::dds::Reader<hal::dds::StepDoneSample> steps_done;
 
   explicit SimulatorEndpoints(dds_entity_t participant);  // throws SilFailure
-  // Every endpoint has its counterpart in flight: nothing will be lost from now on.
+  // Every endpoint is matched with its counterpart in flight, so that no sample is lost from now on.
   bool all_matched() const;
   bool flight_gone() const { return steps_done.matched() == 0; }
-  // Until an answer has arrived that has not been taken (true), or the time is over.
+  // Waits until there is an answer that was not taken yet (true), or the time is over (false).
   bool wait_for_data(std::int64_t timeout_ns);
 
  private:

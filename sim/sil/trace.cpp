@@ -2,15 +2,15 @@
 
 namespace tumblesight::sim {
 
-void TraceDigest::add(std::uint32_t k, const StepRecord& record) {
+void TraceDigest::add(std::uint32_t k, const StepResult& step) {
   crc_.add_u32(k);
-  add_time(record.time_ns);
-  add_report(record.attitude);
-  add_telemetry(record.telemetry);
-  for (const hal::Event& event : record.events) {
+  add_time(step.time_ns);
+  add_report(step.attitude);
+  add_telemetry(step.telemetry);
+  for (const hal::Event& event : step.events) {
     if (!hal::depends_on_wall_clock(event.id)) add_event(event);
   }
-  crc_.add_u32(record.state_crc32);
+  crc_.add_u32(step.state_crc32);
 }
 
 void TraceDigest::add_time(std::int64_t time_ns) {

@@ -1,5 +1,5 @@
-// TraceDigest: CRC-32 over what flight answered, bit for bit. Two runs with one seed have the same digest at
-// any speed and load: everything that depends on the wall clock is left out.
+// TraceDigest: CRC-32 over the answers of the flight program, bit for bit. Two runs with the same seed have
+// the same digest at any speed and load, because everything that depends on the wall clock is left out.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace tumblesight::sim {
 class TraceDigest {
  public:
   // Little-endian: k, time, report, telemetry without timing and heap counters, events, state CRC.
-  void add(std::uint32_t k, const StepRecord& record);
+  void add(std::uint32_t k, const StepResult& step);
   std::uint32_t value() const { return crc_.value(); }
 
  private:

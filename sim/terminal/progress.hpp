@@ -1,4 +1,4 @@
-// ProgressBar: how far a long job is, how fast it goes and how long it still takes.
+// ProgressBar: progress, rate and remaining time of a long job.
 #pragma once
 
 #include <chrono>
@@ -8,18 +8,22 @@
 
 namespace tumblesight::sim {
 
-// Rewrites one line in place on a terminal; elsewhere (a log file) prints at most a line a tenth of the
-// way and a second.
+// On a terminal it rewrites one line in place. Elsewhere (a log file) it prints a line for every tenth of the
+// job and after every half minute, but at most one per second.
 class ProgressBar {
  public:
-  // `unit` in the plural: "frames".
-  ProgressBar(std::string label, std::string unit, std::uint64_t total, std::FILE* stream = stderr);
+  // `unit` in the plural: "frames". `done_before`: what an earlier run of the same job had done, for a
+  // correct rate.
+  ProgressBar(std::string label, std::string unit, std::uint64_t total, std::FILE* stream = stderr,
+              std::uint64_t done_before = 0);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  void update(std::uint64_t done);  // not thread-safe
-  void finish();                    // leaves the last line standing; update() after it has no effect
+  // `note` is shown at the end of the line. Not thread-safe.
+  void update(std::uint64_t done, const std::string& note = {});
+  // Keeps the last line; update() has no effect afterwards.
+  void finish();
 
  private:
   void print(std::uint64_t done, double elapsed_s);
@@ -30,14 +34,18 @@ class ProgressBar {
   std::FILE* stream_;
   bool in_place_;
   bool finished_ = false;
-  std::uint64_t done_ = 0;
-  std::uint64_t printed_tenth_ = 0;
+  std::uint64_t done_before_;
+  std::uint64_t done_;
+  std::string note_;
+  std::uint64_t printed_tenth_;
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point printed_;
 };
 
-// The line itself, for `done` of `total` after `elapsed_s`; with a bar of `bar_columns` characters (0: none).
+// The text of the line for `done` of `total`, of which all but `done_before` took `elapsed_s`. With a bar of
+// `bar_columns` characters (0: none).
 std::string progress_line(const std::string& label, const std::string& unit, std::uint64_t done,
-                          std::uint64_t total, double elapsed_s, int bar_columns);
+                          std::uint64_t total, double elapsed_s, int bar_columns,
+                          std::uint64_t done_before = 0);
 
 }  // namespace tumblesight::sim

@@ -1,4 +1,4 @@
-// Table: aligned text for a terminal.
+// Table: a table as aligned text for a terminal.
 #pragma once
 
 #include <string>
@@ -6,14 +6,15 @@
 
 namespace tumblesight::sim {
 
-// First column left-aligned, the others right-aligned. Cells may hold UTF-8; a code point counts as one
-// column.
+// The first column is left-aligned, the others are right-aligned. Text is UTF-8; every code point counts as
+// one column.
 class Table {
  public:
   explicit Table(std::vector<std::string> header);
-  void row(std::vector<std::string> cells);  // missing cells are empty, surplus ones an std::invalid_argument
-  void rule();                               // a line between the rows before and after
-  std::string text() const;                  // every line ends in a newline
+  // Missing cells are empty. Throws std::invalid_argument if there are more cells than columns.
+  void row(std::vector<std::string> cells);
+  void rule();               // a horizontal line below the rows so far
+  std::string text() const;  // every line ends in a newline
 
  private:
   std::vector<std::string> header_;

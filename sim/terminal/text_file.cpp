@@ -16,7 +16,7 @@ void write_text_file(const std::string& path, const std::string& content) {
   std::error_code error;
   if (!parent.empty()) std::filesystem::create_directories(parent, error);
   if (error) throw std::runtime_error("cannot create folder '" + parent.string() + "': " + error.message());
-  // Written beside and renamed, so that a reader never finds half a file.
+  // Written under another name, then renamed, so that a reader never finds a part of the file.
   const std::string partial = path + "." + std::to_string(getpid()) + ".partial";
   errno = 0;
   std::ofstream file(partial, std::ios::binary);

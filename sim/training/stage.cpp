@@ -1,5 +1,7 @@
 #include "sim/training/stage.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -26,6 +28,8 @@ std::uint64_t bits_of(double setting) {
 void Stage::start() {
   log_ = std::make_unique<TrainingLog>(settings_.folder, settings_.name, position_.iteration);
   start_ = last_save_ = Clock::now();
+  progress_ = std::make_unique<ProgressBar>(settings_.name, settings_.unit, samples(settings_.iterations),
+                                            stderr, samples(position_.iteration));
 }
 
 void Stage::set_rate(torch::optim::Optimizer& optimizer) {
@@ -44,11 +48,8 @@ void Stage::advance(double loss) {
   position_.seconds = seconds_before_ + seconds;
   loss_sum_ += loss;
   ++losses_;
-  const double per_second = static_cast<double>((position_.iteration - first_iteration_) * settings_.batch) /
-                            std::max(seconds, 1e-3);
-  progress_.show(settings_.name, position_.iteration * settings_.batch,
-                 settings_.iterations * settings_.batch, per_second, settings_.unit, latest_.loss,
-                 latest_.mean_deg);
+  progress_->update(samples(position_.iteration),
+                    fmt::format("loss {:.4f}  validation {:.2f} deg", latest_.loss, latest_.mean_deg));
 }
 
 bool Stage::point_due() const {

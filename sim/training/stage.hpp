@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "sim/terminal/progress.hpp"
 #include "sim/training/checkpoint.hpp"
 #include "sim/training/training_log.hpp"
 
@@ -39,7 +40,6 @@ class Stage {
   bool resume(Module& module, torch::optim::Optimizer& optimizer) {
     const bool found = load_checkpoint(path(), module, optimizer, position_);
     seconds_before_ = position_.seconds;
-    first_iteration_ = position_.iteration;
     return found;
   }
   void start();  // opens the log and starts the clock
@@ -63,19 +63,23 @@ class Stage {
     save_checkpoint(path(), module, optimizer, position_);
     last_save_ = Clock::now();
   }
-  void finish_progress() { progress_.finish(); }
+  void finish_progress() {
+    if (progress_) progress_->finish();
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
+  std::uint64_t samples(std::int64_t iterations) const {
+    return static_cast<std::uint64_t>(iterations * settings_.batch);
+  }
   std::string path() const { return settings_.folder + "/" + settings_.name + ".ckpt"; }
 
   StageSettings settings_;
   CheckpointPosition position_;
   double seconds_before_ = 0.0;
-  std::int64_t first_iteration_ = 0;
   Clock::time_point start_, last_save_;
   std::unique_ptr<TrainingLog> log_;
-  ProgressLine progress_;
+  std::unique_ptr<ProgressBar> progress_;
   double rate_ = 0.0;
   double loss_sum_ = 0.0;
   std::int64_t losses_ = 0;

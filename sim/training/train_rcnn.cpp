@@ -100,9 +100,10 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
 
 // Returns false if `stop` became true before `count` sequences were ready.
 bool wait_for(SequenceFeatures& supply, std::int64_t count, const char* what, const std::atomic<bool>& stop) {
-  ProgressLine progress;
+  if (supply.ready() >= count) return !stop;
+  ProgressBar progress("rcnn", what, static_cast<std::uint64_t>(count));
   for (std::int64_t ready = supply.ready(); ready < count && !stop; ready = supply.ready()) {
-    progress.wait("rcnn", what, ready, count);
+    progress.update(static_cast<std::uint64_t>(ready));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   return !stop;
@@ -124,11 +125,11 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
 
   const std::int64_t test_count = std::min(kValidationSequences, settings.rcnn_sequences);
   SequenceFeatures tests(targets, *weights, kValidationSeed, test_count, settings.workers + 1);
-  if (!wait_for(tests, test_count, "the validation sequences", stop)) return false;
+  if (!wait_for(tests, test_count, "validation sequences", stop)) return false;
   const FeatureSet validation = tests.first(test_count);
   SequenceFeatures supply(targets, *weights, settings.seed, settings.rcnn_sequences, settings.workers);
   const std::int64_t at_first = std::min(kFirstSequences, settings.rcnn_sequences);
-  if (!wait_for(supply, at_first, "the first sequences", stop)) return false;
+  if (!wait_for(supply, at_first, "first sequences", stop)) return false;
   if (!resumed) standardise(recurrent, supply.first(at_first), settings.device);
 
   stage.start();

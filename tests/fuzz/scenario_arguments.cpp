@@ -31,9 +31,9 @@ bool parse(CommandLine& line, Given& given) {
   given = {};
   try {
     app.parse(line.argc(), line.argv());
-    sim::require_bearable_length(given.evaluate.scenario);
+    sim::require_supported_length(given.evaluate.scenario);
     sim::require_different("--csv", given.evaluate.csv, "--json", given.evaluate.scenario.json);
-    if (given.evaluate.paper) sim::require_paper_alone(app);
+    if (given.evaluate.paper) sim::refuse_options_set_by_paper(app);
     return true;
   } catch (const CLI::ParseError&) {
     return false;

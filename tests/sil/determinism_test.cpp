@@ -12,7 +12,7 @@ namespace {
 std::uint32_t trace(std::uint64_t seed, double speed = 0.0) {
   SilSettings settings = test::settings();
   settings.speed = speed;
-  const SilRecording recording =
+  const SilRunResult recording =
       run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(5, seed), {});
   EXPECT_EQ(recording.failure, "");
   EXPECT_EQ(recording.steps_missed, 0U);

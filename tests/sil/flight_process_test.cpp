@@ -35,7 +35,7 @@ TEST(FlightProcess, HeapUsedAfterTheLastTelemetryIsAFailureOfTheRun) {
   const test::Environment fault("TUMBLESIGHT_FAULT", "heap");
   const SilSettings settings = test::settings();
   const std::vector<Sequence> one_step{make_sequence({Condition::kNominal, 1}, 1, 0)};
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, one_step, {});
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, one_step, {});
   EXPECT_EQ(recording.steps_missed, 0U);
   EXPECT_EQ(recording.flight_heap_allocations, 0U) << "the telemetry came before it";
   EXPECT_NE(recording.failure.find("used the heap"), std::string::npos) << recording.failure;
@@ -49,7 +49,7 @@ TEST(FlightProcess, MissingThreadForTheFlightTaskIsReported) {
 #endif
   const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
   const test::Environment fault("TUMBLESIGHT_FAULT", "thread");
-  const SilRecording recording =
+  const SilRunResult recording =
       run_sil(test::settings(), test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
   EXPECT_NE(recording.failure.find("no thread for the flight task"), std::string::npos) << recording.failure;
 }

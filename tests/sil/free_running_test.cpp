@@ -10,13 +10,13 @@ TEST(FreeRunning, FlightAnswersOnItsOwnTimer) {
   SilSettings settings = test::settings();
   settings.free_running = true;
   settings.speed = 27.0;  // a period of 100 ms
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(2, 1), {});
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(2, 1), {});
   EXPECT_EQ(recording.failure, "");
   EXPECT_EQ(recording.steps_planned, 20U);
   EXPECT_LE(recording.steps_missed, 2U) << "a busy machine may lose a cycle or two";
   EXPECT_EQ(recording.flight_heap_allocations, 0U);
   for (std::size_t k = 0; k < recording.steps.size(); ++k) {
-    const StepRecord& step = recording.steps[k];
+    const StepResult& step = recording.steps[k];
     if (!step.answered) continue;
     EXPECT_EQ(step.attitude.sequence_number, k);
     EXPECT_EQ(step.attitude.exposure_time_ns, step.time_ns);
@@ -33,7 +33,7 @@ TEST(FreeRunning, MissingAttitudeOfTheLastFrameIsCountedAsMissed) {
   settings.speed = 27.0;
   std::vector<Sequence> sequences{make_sequence({Condition::kNominal, 5}, 1, 0)};
   sequences[0].frames.back().range_m = 5000.0;  // beyond the sensor's range: an empty frame
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, sequences, {});
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, sequences, {});
   EXPECT_EQ(recording.failure, "");
   ASSERT_EQ(recording.steps.size(), 5U);
   EXPECT_FALSE(recording.steps.back().answered);
@@ -43,7 +43,7 @@ TEST(FreeRunning, MissingAttitudeOfTheLastFrameIsCountedAsMissed) {
 TEST(FreeRunning, NeedsASpeed) {
   SilSettings settings = test::settings();
   settings.free_running = true;
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
   EXPECT_NE(recording.failure.find("needs a speed"), std::string::npos) << recording.failure;
 }
 

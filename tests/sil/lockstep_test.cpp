@@ -18,7 +18,7 @@ TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
   SilSettings settings = test::settings();
   settings.target = "near_shoemaker";  // the attitudes of a random network would jump
   settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(3, 1),
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(3, 1),
                                          [&](std::uint32_t answered, std::uint32_t planned) {
                                            EXPECT_EQ(planned, 30U);
                                            EXPECT_EQ(answered, ++done);
@@ -30,7 +30,7 @@ TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
   EXPECT_EQ(done, 30U);
   ASSERT_EQ(recording.steps.size(), 30U);
   for (std::uint32_t k = 0; k < 30; ++k) {
-    const StepRecord& step = recording.steps[k];
+    const StepResult& step = recording.steps[k];
     EXPECT_TRUE(step.answered);
     EXPECT_EQ(step.sequence, k / 10);
     EXPECT_TRUE(gives_attitude(step.attitude)) << "step " << k;
@@ -77,7 +77,7 @@ TEST(Lockstep, NoStepIsEarlierThanTheSpeedAllows) {
     settings.speed = speed;
     const auto begin = std::chrono::steady_clock::now();
     std::uint32_t steps = 0;
-    const SilRecording recording =
+    const SilRunResult recording =
         run_sil(settings, test::lidar(), test::kSwath_m, sequences, [&](std::uint32_t done, std::uint32_t) {
           const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
           EXPECT_GE(elapsed.count(), (done - 1) * kFramePeriod_s / speed) << "step " << done - 1;
@@ -91,7 +91,7 @@ TEST(Lockstep, NoStepIsEarlierThanTheSpeedAllows) {
 TEST(Lockstep, WithoutASpeedMissionTimeIsFasterThanTheWallClock) {
   const std::vector<Sequence> sequences{make_sequence({Condition::kNominal, 20}, 1, 0)};
   const auto begin = std::chrono::steady_clock::now();
-  const SilRecording recording = run_sil(test::settings(), test::lidar(), test::kSwath_m, sequences, {});
+  const SilRunResult recording = run_sil(test::settings(), test::lidar(), test::kSwath_m, sequences, {});
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   EXPECT_EQ(recording.failure, "");
   EXPECT_LT(elapsed.count(), 20 * kFramePeriod_s);
@@ -102,11 +102,11 @@ TEST(Lockstep, ConcurrentRunsDoNotDisturbEachOther) {
   const auto run = [](std::uint64_t seed) {
     return run_sil(test::settings(), test::lidar(), test::kSwath_m, test::sequences(4, seed), {});
   };
-  const SilRecording alone = run(21);
+  const SilRunResult alone = run(21);
   auto first = std::async(std::launch::async, run, 21);
   auto second = std::async(std::launch::async, run, 22);
-  const SilRecording a = first.get();
-  const SilRecording b = second.get();
+  const SilRunResult a = first.get();
+  const SilRunResult b = second.get();
   EXPECT_EQ(a.failure, "");
   EXPECT_EQ(b.failure, "");
   EXPECT_EQ(a.trace_crc32, alone.trace_crc32);
@@ -118,7 +118,7 @@ TEST(Lockstep, DomainInUseIsRefused) {
   const DomainLease lease(-1);
   SilSettings settings = test::settings();
   settings.domain = static_cast<int>(lease.domain());
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
   const std::string expected = "domain " + std::to_string(lease.domain()) + " is in use";
   EXPECT_NE(recording.failure.find(expected), std::string::npos) << recording.failure;
   EXPECT_EQ(recording.steps_missed, 10U);
@@ -145,7 +145,7 @@ TEST(Lockstep, FlightStartedByHandJoinsTheFirstRunItFinds) {
                         settings.model_path},
                        settings.flight_log_path);
   settings.flight_path.clear();
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
   EXPECT_EQ(recording.failure, "");
   EXPECT_EQ(recording.steps_missed, 0U);
   EXPECT_TRUE(flight.wait_for_end(5.0));

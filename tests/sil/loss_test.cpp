@@ -19,14 +19,14 @@ namespace {
 constexpr int kSimulatorGone = 4;  // exit status of flight
 
 // Runs five sequences and sends `signal` to flight after the seventh step.
-SilRecording run_with_signal(const SilSettings& settings, int signal) {
+SilRunResult run_with_signal(const SilSettings& settings, int signal) {
   return run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(5, 3),
                  [&](std::uint32_t done, std::uint32_t) {
                    if (done == 7) kill(test::flight_child(), signal);
                  });
 }
 
-void expect_partial(const SilRecording& recording) {
+void expect_partial(const SilRunResult& recording) {
   EXPECT_EQ(recording.steps_planned, 50U);
   EXPECT_GE(recording.steps.size(), 7U);
   EXPECT_GE(recording.steps_missed, 40U);
@@ -37,7 +37,7 @@ void expect_partial(const SilRecording& recording) {
 
 // Verifies TS-SIL-040.
 TEST(Loss, KilledFlightEndsTheRunAndKeepsItsResults) {
-  const SilRecording recording = run_with_signal(test::settings(), SIGKILL);
+  const SilRunResult recording = run_with_signal(test::settings(), SIGKILL);
   EXPECT_NE(recording.failure.find("signal 9"), std::string::npos) << recording.failure;
   expect_partial(recording);
 }
@@ -46,7 +46,7 @@ TEST(Loss, KilledFlightEndsTheRunAndKeepsItsResults) {
 TEST(Loss, FlightThatStopsAnsweringIsEnded) {
   SilSettings settings = test::settings();
   settings.step_timeout_s = 1.0;
-  const SilRecording recording = run_with_signal(settings, SIGSTOP);
+  const SilRunResult recording = run_with_signal(settings, SIGSTOP);
   EXPECT_NE(recording.failure.find("did not answer step"), std::string::npos) << recording.failure;
   expect_partial(recording);
 }

@@ -18,7 +18,7 @@ constexpr hal::Validity kValidityStandby = hal::Validity::kStandby;
 TEST(Refusal, UnequalInterfaceHashIsRefusedByBothSides) {
   SilSettings settings = test::settings();
   settings.flight_arguments = {"--icd-hash", "12345"};
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
   // The first side to notice reports it: the simulator by the hash, or flight by the reason of its end.
   EXPECT_TRUE(recording.failure.find("interface hash") != std::string::npos ||
               recording.failure.find("another interface definition") != std::string::npos)
@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Refusal, ModelOfAnotherTargetEndsTheRunWithTheReason) {
   SilSettings settings = test::settings();
   settings.target = "another_target";
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
   EXPECT_NE(recording.failure.find("SAFE"), std::string::npos) << recording.failure;
   EXPECT_NE(test::read_file(settings.flight_log_path).find("target"), std::string::npos);
 }
@@ -114,10 +114,10 @@ TEST(Refusal, ModelOfAnotherTargetEndsTheRunWithTheReason) {
 TEST(Refusal, MissingFilesAreNamed) {
   SilSettings settings = test::settings();
   settings.model_path = "/nonexistent/model.tsm";
-  const SilRecording no_model = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  const SilRunResult no_model = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
   EXPECT_NE(no_model.failure.find("/nonexistent/model.tsm"), std::string::npos) << no_model.failure;
   settings.flight_path = "/nonexistent/flight";
-  const SilRecording no_flight = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  const SilRunResult no_flight = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
   EXPECT_NE(no_flight.failure.find("/nonexistent/flight"), std::string::npos) << no_flight.failure;
 }
 
@@ -129,7 +129,7 @@ TEST(Refusal, BadArgumentsOfFlightAreNamed) {
   for (const std::vector<std::string>& arguments : cases) {
     SilSettings settings = test::settings();
     settings.flight_arguments = arguments;
-    const SilRecording recording =
+    const SilRunResult recording =
         run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
     EXPECT_NE(recording.failure.find("exit status 2"), std::string::npos) << recording.failure;
     const std::string message = test::read_file(settings.flight_log_path);
@@ -142,7 +142,7 @@ TEST(Refusal, RunWithoutAFlightProgramIsReported) {
   SilSettings settings = test::settings();
   settings.flight_path.clear();
   settings.step_timeout_s = 0.3;
-  const SilRecording recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
   EXPECT_NE(recording.failure.find("no flight program"), std::string::npos) << recording.failure;
 }
 

@@ -28,7 +28,7 @@ hal::dds::DdsLidar lidar;
 hal::posix::PaintedStack stack;
 hal::dds::DdsLink link{{heap_allocations, [] { return stack.least_left_bytes(); }}};
 hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
-AttitudeInitApp app;
+fsw::AttitudeInitApp app;
 hal::CommandKey command_key;
 fsw::CycleWorkspace workspace;
 FlightTask task{lidar, link, workspace, stack};

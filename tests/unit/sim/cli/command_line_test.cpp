@@ -1,4 +1,4 @@
-// The host tool's command line: what it refuses, how it says so, and `evaluate`.
+// The command line of the ground tool: refused arguments and their messages, help, and `evaluate`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --sequences 010", 2, "without leading zeros, not '010'"},
         Refusal{"evaluate --sequences 0x10", 2, "not '0x10'"}, Refusal{"evaluate --frames 08", 2, "not '08'"},
         Refusal{"evaluate --seed 007", 2, "not '007'"}, Refusal{"evaluate --threads 02", 2, "not '02'"},
-        Refusal{"evaluate --sequences 100000 --frames 11", 2, "1100000 frames in all, at most 1000000"},
+        Refusal{"evaluate --sequences 100000 --frames 11", 2,
+                "1100000 frames in all; a run has at most 1000000"},
         Refusal{"evaluate --sequences", 2, "--sequences"},
         Refusal{"evaluate --frames 1001", 2, "from 1 to 1000"}, Refusal{"evaluate --seed -1", 2, "not '-1'"},
         Refusal{"evaluate --threads 9999", 2, "from 0 to 1024"},
@@ -48,20 +49,20 @@ INSTANTIATE_TEST_SUITE_P(
             "must be one of nominal, degraded, occluded, tumbling, stress, offset, outliers, not 'foggy'"},
         Refusal{"evaluate --condition nominal,nominal", 2, "'nominal' is given twice"},
         Refusal{"evaluate --inertia 1,2,3", 2, "--inertia"},
-        Refusal{"evaluate --inertia 1,1,3,0,0,0", 1, "--inertia 1,1,3,0,0,0: not a possible inertia"},
-        Refusal{"evaluate --inertia 1,1,nan,0,0,0", 1, "not a possible inertia"},
+        Refusal{"evaluate --inertia 1,1,3,0,0,0", 1, "--inertia 1,1,3,0,0,0: no rigid body has this inertia"},
+        Refusal{"evaluate --inertia 1,1,nan,0,0,0", 1, "no rigid body has this inertia"},
         Refusal{"evaluate --inertia 1e-300,1e-300,1e-300,0,0,0", 1, "must be 1e-06 to 1e+12 kg m2"},
         Refusal{"evaluate --inertia 1e300,1e300,1e300,0,0,0", 1, "must be 1e-06 to 1e+12 kg m2"},
         Refusal{"evaluate --inertia 0.001,1,1,0,0,0", 1, "none below 0.01 of their mean"},
-        Refusal{"evaluate --paper --target magellan", 2, "--paper: decides on --target itself"},
-        Refusal{"evaluate --paper --frames 5", 2, "decides on --frames itself"},
+        Refusal{"evaluate --paper --target magellan", 2, "--paper: sets --target itself"},
+        Refusal{"evaluate --paper --frames 5", 2, "sets --frames itself"},
         Refusal{"evaluate --mesh-folder meshes", 2, "requires --paper"},
         Refusal{"evaluate --out folder", 2, "requires --paper"},
         Refusal{"evaluate --paper --mesh-folder /no/such", 1, "--mesh-folder '/no/such' is not a folder"},
         Refusal{"evaluate --no-baseline --baseline-sequences 5", 2, "excludes"},
-        Refusal{"evaluate --csv same --json same", 2, "'same' is the file of --json as well"},
+        Refusal{"evaluate --csv same --json same", 2, "'same' is also the file of --json"},
         Refusal{"evaluate --report /proc/none/x.html", 1, "--report /proc/none/x.html"},
-        Refusal{"evaluate --target 'a b'", 2, "must be 1 to 31 of a-z"},
+        Refusal{"evaluate --target 'a b'", 2, "must be 1 to 31 characters of a-z"},
         Refusal{"evaluate --mesh x.stl --mesh-scale 0", 2, "from 1e-06 to 1e+06"},
         Refusal{"evaluate --mesh x.stl --mesh-up x", 2, "must be one of y, z, not 'x'"},
         Refusal{"evaluate --mesh-up z", 2, "requires --mesh"}, Refusal{"evaluate --colour", 2, "--colour"},
@@ -100,7 +101,7 @@ TEST(Evaluate, WritesARowWithAllEstimatorsForEachCondition) {
       here.model() + " --json " + here.path("rows.json"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_NE(outcome.output.find("RCNN, 2 frames"), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("template matching, 1 sequences"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("first 1 sequences"), std::string::npos) << outcome.output;
   const auto rows = nlohmann::json::parse(content(here.path("rows.json"))).at("rows");
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0].at("target"), "near_shoemaker");
@@ -115,7 +116,7 @@ TEST(Evaluate, WritesARowWithAllEstimatorsForEachCondition) {
   }
 }
 
-TEST(Evaluate, WritesATableAndAPageToo) {
+TEST(Evaluate, WritesACsvFileAndAPage) {
   const Workplace here;
   const Outcome outcome = here.run("evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model() +
                                    " --csv " + here.path("rows.csv") + " --report " + here.path("page.html"));
@@ -124,14 +125,14 @@ TEST(Evaluate, WritesATableAndAPageToo) {
   EXPECT_NE(content(here.path("page.html")).find("--sequences 2"), std::string::npos);
 }
 
-// One triangle that is no shipped target.
+// A small mesh that is not a shipped target.
 std::string own_mesh(const Workplace& here) {
   std::ofstream(here.path("mine.obj"))
       << "v -1 -1 0\nv 1 -1 0.5\nv 0 1.5 0\nv 0 0 2\nf 1 2 3\nf 1 2 4\nf 2 3 4\n";
   return here.path("mine.obj");
 }
 
-TEST(Evaluate, OfATumblingTargetOfOnesOwnNeedsItsInertia) {
+TEST(Evaluate, NeedsTheInertiaOfATumblingTargetOfTheUsersOwn) {
   const Workplace here;
   const std::string common =
       "evaluate --sequences 1 --frames 2 --no-baseline --target mine --condition tumbling --mesh " +

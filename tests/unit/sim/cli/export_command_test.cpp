@@ -1,4 +1,4 @@
-// `tumblesight export`: what it writes, says and refuses.
+// `tumblesight export`: its files, its output and its refusals.
 #include <gtest/gtest.h>
 
 #include "tests/support/test_models.hpp"
@@ -24,7 +24,7 @@ TEST(Export, WritesBothModelsAndNamesThem) {
   }
 }
 
-TEST(Export, RefusesFixedPointAFolderAndAPlaceThatIsNotThere) {
+TEST(Export, RefusesFixedPointAFolderAndAMissingFolder) {
   const Workplace here;
   const std::string model = float32_model(here);
   const Outcome fixed = here.run("export --model " + here.model() + " --onnx net");

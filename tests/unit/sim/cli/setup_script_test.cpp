@@ -1,4 +1,4 @@
-// cmake/setup.sh: what it starts in the background ends with it.
+// cmake/setup.sh: its background jobs end with it.
 #include <gtest/gtest.h>
 
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 class SetUpScript : public ::testing::TestWithParam<const char*> {};
 
-// The job writes its process ids, one of them a grandchild's, and would go on for a minute.
+// The job writes its process ids, including one of a grandchild, and would run for a minute.
 TEST_P(SetUpScript, EndsItsJobWhenInterrupted) {
   const Workplace here;
   const std::string job =

@@ -1,4 +1,4 @@
-// The model images that ship with Tumblesight are as accurate as the figures in the file beside each.
+// The shipped model images are as accurate as the figures stored with them say.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -13,7 +13,7 @@
 namespace tumblesight::sim {
 namespace {
 
-// False if it has not come true within half a minute.
+// False if the condition is still false after half a minute.
 bool wait_for(const std::function<bool()>& condition) {
   for (int i = 0; i < 600; ++i) {
     if (condition()) return true;
@@ -29,9 +29,9 @@ TEST(Simulate, RefusesArgumentsOutOfRange) {
       {"--speed 0", "not '0'"},
       {"--domain 231", "from 0 to 230"},
       {"--domain 010", "without leading zeros, not '010'"},
-      {"--sequences 100000 --frames 1000", "100000000 frames in all, at most 1000000"},
-      {"--json x --report x", "--json: 'x' is the file of --report as well"},
-      {"--json x --report ../$(basename $PWD)/./x", "is the file of --report as well"},
+      {"--sequences 100000 --frames 1000", "100000000 frames in all; a run has at most 1000000"},
+      {"--json x --report x", "--json: 'x' is also the file of --report"},
+      {"--json x --report ../$(basename $PWD)/./x", "is also the file of --report"},
       {"--sequences 1e3", "from 1 to 100000"},
       {"--report /proc/none/report.html", "--report /proc/none/report.html"},
   };
@@ -63,7 +63,7 @@ TEST(Simulate, LeavesFiguresAndAReport) {
   EXPECT_NE(outcome.output.find("6 of 6 answered"), std::string::npos) << outcome.output;
 }
 
-// Tumbling, since both have to look up the target's inertia for it.
+// Tumbling, because both need the inertia of the target for it.
 // Verifies TS-SIL-060.
 TEST(Simulate, AgreesWithEvaluateOnTheSameSeed) {
   const Workplace here;
@@ -87,7 +87,7 @@ TEST(Simulate, FailsWhenTheFlightProgramRefusesTheModel) {
   EXPECT_NE(content(here.path("r.html")).find("SAFE"), std::string::npos);
 }
 
-// Flight's own default domain, so that the two meet when neither is told; and the command line shown works.
+// Both programs use the default domain without --domain, and the command that is shown works.
 TEST(Simulate, ShowsTheFlightProgramThatItWaitsFor) {
   const Workplace here;
   auto simulation = std::async(std::launch::async, [&] {
@@ -129,7 +129,7 @@ TEST(Simulate, RefusesAFileThatHoldsNoKey) {
   EXPECT_NE(outcome.errors.find("64 hexadecimal digits"), std::string::npos) << outcome.errors;
 }
 
-// A flight program that spoils the place of one file while the run goes on.
+// The flight program makes one of the files impossible to write during the run.
 TEST(Simulate, WritesTheOtherFileWhenOneCannotBeWritten) {
   for (const char* lost : {"run.json", "run.html"}) {
     const Workplace here;
@@ -145,7 +145,7 @@ TEST(Simulate, WritesTheOtherFileWhenOneCannotBeWritten) {
   }
 }
 
-TEST(Simulate, EndsWellTwiceAtOnceWithOneReport) {
+TEST(Simulate, SucceedsTwiceAtOnceWithTheSameReport) {
   const Workplace here;
   const std::string arguments =
       "simulate --sequences 3 --frames 4 --report same.html --model " + here.model();

@@ -36,7 +36,7 @@ inline std::vector<std::string> svgs_of(const std::string& html) {
   return found;
 }
 
-// What a page would load or run from outside itself; empty: nothing.
+// A reference of a page to something outside it, or a script; empty: none.
 inline std::string outside_reference(std::string html) {
   html = std::regex_replace(html, std::regex("xmlns=\"http://www.w3.org/2000/svg\""), "");
   for (const char* outside : {"http:", "https:", "<script", "<link", "src=", "@import", "url("}) {

@@ -73,7 +73,7 @@ TEST(ResultsJson, HasTheCurvesOfSubjectsThatWereSwept) {
   EXPECT_EQ(json["curves"][0]["long_run_by_frame"].size(), 30U);
 }
 
-TEST(ResultsCsv, HasALineAnEstimatorWithAsManyFieldsAsTheHeader) {
+TEST(ResultsCsv, HasALinePerEstimatorWithAsManyFieldsAsTheHeader) {
   const std::vector<std::string> lines = lines_of(results_csv(sample_results()));
   ASSERT_EQ(lines.size(), 1U + 3U + 3U + 2U);
   const std::size_t columns = fields_of(lines.front()).size();

@@ -1,4 +1,4 @@
-#include "sim/cli/sil_results.hpp"
+#include "sim/report/sil_report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@ namespace tumblesight::sim {
 namespace {
 
 // Two sequences of two frames; every attitude 0.1 rad off, the single frame's 0.5 rad.
-SilRecording recording() {
-  SilRecording made;
+SilRunResult run() {
+  SilRunResult made;
   for (std::uint32_t i = 0; i < 4; ++i) {
-    StepRecord step;
+    StepResult step;
     step.sequence = i / 2;
     step.frame_index = i % 2;
     step.truth = {Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), 50.0};
@@ -25,15 +25,17 @@ SilRecording recording() {
   return made;
 }
 
-ScenarioArguments scenario() {
-  ScenarioArguments made;
+SilRunSetup setup() {
+  SilRunSetup made;
+  made.target = "near_shoemaker";
+  made.condition = "nominal";
   made.sequences = 2;
   made.frames = 2;
   return made;
 }
 
 TEST(RunJson, HasExactlyTheAgreedKeys) {
-  const nlohmann::ordered_json json = run_json(scenario(), recording());
+  const nlohmann::ordered_json json = run_json(setup(), run());
   std::string keys;
   for (const auto& [key, value] : json.items()) keys += key + " ";
   EXPECT_EQ(
@@ -48,62 +50,62 @@ TEST(RunJson, HasExactlyTheAgreedKeys) {
   EXPECT_EQ(json["trace_crc32"], 123);
 }
 
-TEST(RunJson, TellsWhatTheReferenceMadeOfTheSameFrames) {
+TEST(RunJson, HoldsTheComparisonWithTheFloat32Reference) {
   NumericsComparison numerics;
   numerics.float32 = summarise({1.0, 2.0});
   numerics.difference = summarise({0.25});
   numerics.largest_difference_deg = 0.5;
-  const nlohmann::ordered_json json = run_json(scenario(), recording(), numerics);
+  const nlohmann::ordered_json json = run_json(setup(), run(), numerics);
   EXPECT_EQ(json["float32"]["mean_deg"], 1.5);
   EXPECT_EQ(json["difference_to_float32"]["mean_deg"], 0.25);
   EXPECT_EQ(json["difference_to_float32"]["max_deg"], 0.5);
 }
 
-TEST(Shortcomings, AreNoneOfAGoodRun) {
-  EXPECT_TRUE(shortcomings(recording()).empty());
+TEST(RunFaults, AreNoneOfAGoodRun) {
+  EXPECT_TRUE(run_faults(run()).empty());
 }
 
-TEST(Shortcomings, NameAnEarlyEndAndTheStepsMissed) {
-  SilRecording cut = recording();
+TEST(RunFaults, NameAnEarlyEndAndTheStepsMissed) {
+  SilRunResult cut = run();
   cut.steps.pop_back();
   cut.steps_missed = 1;
   cut.failure = "the flight program has ended";
-  const std::vector<std::string> found = shortcomings(cut);
+  const std::vector<std::string> found = run_faults(cut);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NE(found[0].find("the flight program has ended"), std::string::npos);
   EXPECT_NE(found[1].find("1 of 4 steps"), std::string::npos);
 }
 
-TEST(Shortcomings, NameAFlightProgramWithoutAModel) {
-  SilRecording safe = recording();
-  for (StepRecord& step : safe.steps) {
+TEST(RunFaults, NameAFlightProgramWithoutAModel) {
+  SilRunResult safe = run();
+  for (StepResult& step : safe.steps) {
     step.attitude.validity = hal::Validity::kStandby;
     step.telemetry.mode = hal::Mode::kSafe;
   }
-  const std::vector<std::string> found = shortcomings(safe);
+  const std::vector<std::string> found = run_faults(safe);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NE(found[0].find("not in RUN"), std::string::npos);
-  EXPECT_EQ(run_json(scenario(), safe)["rcnn"]["mean_deg"], 180.0);
+  EXPECT_EQ(run_json(setup(), safe)["rcnn"]["mean_deg"], 180.0);
 }
 
 // Verifies TS-MEM-020.
-TEST(Shortcomings, NameHeapAllocations) {
-  SilRecording allocating = recording();
+TEST(RunFaults, NameHeapAllocations) {
+  SilRunResult allocating = run();
   allocating.flight_heap_allocations = 3;
-  EXPECT_EQ(shortcomings(allocating).size(), 1U);
+  EXPECT_EQ(run_faults(allocating).size(), 1U);
 }
 
 TEST(FrameResults, LeaveOutStepsWithoutAnAnswer) {
-  SilRecording some = recording();
+  SilRunResult some = run();
   some.steps[2].answered = false;
   EXPECT_EQ(frame_results(some).size(), 3U);
 }
 
 TEST(RunReport, CountsWarningsAndErrorsByEvent) {
-  SilRecording warned = recording();
+  SilRunResult warned = run();
   warned.steps[1].events = {{0, 34, 1, {}}, {0, 10, 0, {}}};
   warned.steps[3].events = {{0, 34, 1, {}}};
-  const RunReport report = run_report(scenario(), {}, {}, warned);
+  const RunReport report = run_report(setup(), warned);
   const auto& facts = report.facts.back().facts;
   ASSERT_EQ(facts.size(), 1U);
   EXPECT_EQ(facts[0].first, "event 34");
@@ -111,21 +113,21 @@ TEST(RunReport, CountsWarningsAndErrorsByEvent) {
 }
 
 TEST(RunReport, CarriesPicturesAndSettings) {
-  SilRecording recorded = recording();
+  SilRunResult recorded = run();
   gnc::RangeImage frame;
   frame.rays = 128;
   frame.fov_urad = 140'000;
   for (int i = 0; i < 400; ++i) frame.ranges[8000 + i] = static_cast<std::uint16_t>(6400 + i % 7);
   recorded.pictures = {{1, frame}, {99, frame}};
-  TargetSetup setup;
-  setup.projection = {7000, 3800};
-  setup.model_path = "models/some.tsm";
-  setup.warnings = {"mind the swath"};
-  const RunReport report = run_report(scenario(), setup, {}, recorded);
+  SilRunSetup described = setup();
+  described.projection = {7000, 3800};
+  described.model_path = "models/some.tsm";
+  described.remarks = {"another swath"};
+  const RunReport report = run_report(described, recorded);
   ASSERT_EQ(report.pictures.size(), 1U);
   EXPECT_EQ(report.pictures[0].frame, 1U);
-  EXPECT_EQ(report.remarks, std::vector<std::string>{"mind the swath"});
-  EXPECT_NE(compose_report(report).find("some.tsm"), std::string::npos);
+  EXPECT_EQ(report.remarks, std::vector<std::string>{"another swath"});
+  EXPECT_NE(run_page(report).find("some.tsm"), std::string::npos);
 }
 
 }  // namespace

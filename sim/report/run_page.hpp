@@ -1,5 +1,5 @@
-// Report: what happened in a software-in-the-loop run, as one self-contained HTML page (no scripts, nothing
-// loaded).
+// The report of a software-in-the-loop run as an HTML page: one self-contained file, no scripts, nothing
+// loaded.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include "gnc/lidar/depth_image.hpp"
 #include "sim/evaluation/metrics.hpp"
 #include "sim/evaluation/paper.hpp"
+#include "sim/report/data_table.hpp"
 
 namespace tumblesight::sim {
 
@@ -28,10 +29,10 @@ struct FactList {
 struct RunReport {
   std::string target;
   std::string condition;
-  std::string command;    // what was run
-  std::string generated;  // when, for the reader
+  std::string command;    // that was run
+  std::string generated;  // date and time, as text
   std::uint32_t sequences = 0;
-  std::uint32_t frames = 0;  // a sequence
+  std::uint32_t frames = 0;  // per sequence
   double frame_period_s = 0.0;
   std::vector<FrameResult> results;  // answered steps only
   std::vector<ReportPicture> pictures;
@@ -42,11 +43,14 @@ struct RunReport {
   double inference_median_us = 0.0;
   double inference_max_us = 0.0;
   std::uint32_t trace_crc32 = 0;
-  std::vector<std::string> notices;  // what went wrong; shown at the top
-  std::vector<std::string> remarks;  // what else a reader should know; shown below them
+  std::vector<std::string> notices;  // faults of the run; shown at the top
+  std::vector<std::string> remarks;  // further remarks; shown below them
   std::vector<FactList> facts;       // settings, counters
 };
 
-std::string compose_report(const RunReport& report);
+// Errors of RCNN and CNN in the last frame, with the paper's below them.
+DataTable run_errors_table(const RunReport& report);
+
+std::string run_page(const RunReport& report);
 
 }  // namespace tumblesight::sim

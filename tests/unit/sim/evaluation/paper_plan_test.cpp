@@ -1,11 +1,13 @@
-// What `tumblesight evaluate --paper` sets out to measure, by the models and meshes there are.
+// What `tumblesight evaluate --paper` measures, given the models and meshes that exist.
+#include "sim/evaluation/paper_plan.hpp"
+
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
-#include "sim/cli/evaluate_paper.hpp"
-#include "tests/unit/sim/cli/run_tumblesight.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -17,36 +19,36 @@ std::string stem(const std::string& path) {
 class PaperPlanTest : public ::testing::Test {
  protected:
   void put(const std::string& name) { std::ofstream(here_.path(name)) << "x"; }
-  PaperPlan plan() { return plan_paper(arguments_, here_.path("")); }
+  PaperPlan plan() { return plan_paper(mesh_folder_, here_.path("")); }
 
-  Workplace here_;
-  EvaluateArguments arguments_;
+  TemporaryFolder here_;
+  std::string mesh_folder_;
 };
 
-TEST_F(PaperPlanTest, TakesTheParametricMeshWithCurvesAndNotesWhatHasNoModel) {
+TEST_F(PaperPlanTest, TakesTheParametricMeshWithCurvesAndNotesTargetsWithoutAModel) {
   put("magellan.tsm");
   const PaperPlan made = plan();
   ASSERT_EQ(made.subjects.size(), 1U);
-  EXPECT_EQ(made.subjects[0].scenario.target, "magellan");
-  EXPECT_EQ(made.subjects[0].scenario.mesh, "");
+  EXPECT_EQ(made.subjects[0].target, "magellan");
+  EXPECT_EQ(made.subjects[0].mesh, "");
   EXPECT_TRUE(made.subjects[0].curves);
   ASSERT_FALSE(made.notes.empty());
   EXPECT_NE(made.notes.front().find("near_shoemaker is left out: no model near_shoemaker.tsm"),
             std::string::npos);
 }
 
-TEST_F(PaperPlanTest, TakesABroughtMeshFirstAndDrawsTheCurvesOnIt) {
+TEST_F(PaperPlanTest, TakesAMeshFileFirstAndDrawsTheCurvesOnIt) {
   put("near_shoemaker.tsm");
   put("magellan.tsm");
   put("near_shoemaker.stl");
-  arguments_.mesh_folder = here_.path("");
+  mesh_folder_ = here_.path("");
   const PaperPlan made = plan();
   ASSERT_EQ(made.subjects.size(), 3U);
-  EXPECT_EQ(stem(made.subjects[0].scenario.mesh), "near_shoemaker");
+  EXPECT_EQ(stem(made.subjects[0].mesh), "near_shoemaker");
   EXPECT_TRUE(made.subjects[0].curves);
-  EXPECT_EQ(made.subjects[1].scenario.mesh, "");
+  EXPECT_EQ(made.subjects[1].mesh, "");
   EXPECT_FALSE(made.subjects[1].curves);
-  EXPECT_EQ(made.subjects[2].scenario.target, "magellan");
+  EXPECT_EQ(made.subjects[2].target, "magellan");
   EXPECT_TRUE(made.subjects[2].curves);
 }
 
@@ -55,8 +57,8 @@ TEST_F(PaperPlanTest, AddsTheModelTrainedByThePapersRuleAsARowOfItsOwn) {
   put("near_shoemaker_paper_rule.tsm");
   const PaperPlan made = plan();
   ASSERT_EQ(made.subjects.size(), 2U);
-  EXPECT_EQ(stem(made.subjects[1].scenario.model), "near_shoemaker_paper_rule");
-  EXPECT_EQ(made.subjects[1].scenario.target, "near_shoemaker");
+  EXPECT_EQ(stem(made.subjects[1].model), "near_shoemaker_paper_rule");
+  EXPECT_EQ(made.subjects[1].target, "near_shoemaker");
   EXPECT_FALSE(made.subjects[1].baseline);
   EXPECT_FALSE(made.subjects[1].curves);
 }

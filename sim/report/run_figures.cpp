@@ -1,4 +1,4 @@
-#include "sim/report/report_figures.hpp"
+#include "sim/report/run_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace tumblesight::sim {
 namespace {
 
 constexpr std::array<const char*, 3> kAxisColours{"#b83227", "#3a8a3f", "#2b5fb0"};
-constexpr std::size_t kMostDots = 1500;  // in the scatter, so that a long run's page stays small
+constexpr std::size_t kMaxDots = 1500;  // in the scatter, so that a long run's page stays small
 
 std::vector<FrameResult> of_sequence(const RunReport& report, std::uint32_t sequence) {
   std::vector<FrameResult> found;
@@ -33,8 +33,7 @@ const ReportPicture* picture_of(const RunReport& report, std::uint32_t sequence,
   return nullptr;
 }
 
-// Projected on the plane across the boresight; the part towards the sensor is not shortened, as the picture's
-// is not.
+// Orthographic projection along the boresight, as in the depth image.
 void draw_triad(Svg& svg, Point centre, double size, const Eigen::Quaterniond& q_lrf_trf, double width,
                 double opacity) {
   const Eigen::Matrix3d axes = q_lrf_trf.normalized().toRotationMatrix();
@@ -125,12 +124,12 @@ std::string error_histogram_figure(const RunReport& report) {
 
 std::string predicted_error_figure(const RunReport& report) {
   AgreementChart chart;
-  chart.description = "Predicted angular error against the actual one";
-  chart.x_label = "error that the network predicts [deg]";
+  chart.description = "Actual angular error over the predicted one";
+  chart.x_label = "predicted error [deg]";
   chart.y_label = "actual error [deg]";
   Series rcnn{"RCNN, every frame", kRcnnColour, "", {}, true};
   Series cnn{"CNN, every frame", kCnnColour, "", {}, true};
-  const std::size_t stride = 1 + report.results.size() / kMostDots;
+  const std::size_t stride = 1 + report.results.size() / kMaxDots;
   for (std::size_t i = 0; i < report.results.size(); i += stride) {
     const FrameResult& result = report.results[i];
     if (!result.valid) continue;

@@ -1,17 +1,12 @@
-#include "sim/report/report.hpp"
+#include "sim/report/run_page.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <regex>
-#include <stdexcept>
 
 #include "sim/report/charts.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/terminal/text_file.hpp"
 #include "tests/unit/sim/report/markup_checks.hpp"
 
 namespace tumblesight::sim {
@@ -44,8 +39,8 @@ RunReport small_report() {
   return report;
 }
 
-TEST(Report, ShowsTheFiguresBesideThePapers) {
-  const std::string html = compose_report(small_report());
+TEST(RunPage, ShowsTheFiguresBesideThePapers) {
+  const std::string html = run_page(small_report());
   EXPECT_NE(html.find("5.73°"), std::string::npos);   // 0.1 rad
   EXPECT_NE(html.find("22.92°"), std::string::npos);  // 0.4 rad
   EXPECT_NE(html.find("12.69°"), std::string::npos);
@@ -53,8 +48,8 @@ TEST(Report, ShowsTheFiguresBesideThePapers) {
   EXPECT_NE(html.find("&lt;odd&gt; &amp; &quot;name&quot;"), std::string::npos);
 }
 
-TEST(Report, HoldsWellFormedFigures) {
-  const std::vector<std::string> svgs = svgs_of(compose_report(small_report()));
+TEST(RunPage, HoldsWellFormedFigures) {
+  const std::vector<std::string> svgs = svgs_of(run_page(small_report()));
   EXPECT_EQ(svgs.size(), 6U);
   for (const std::string& svg : svgs) {
     EXPECT_EQ(xml_fault(svg), "");
@@ -63,25 +58,25 @@ TEST(Report, HoldsWellFormedFigures) {
   }
 }
 
-TEST(Report, NeedsNothingButItself) {
-  EXPECT_EQ(outside_reference(compose_report(small_report())), "");
+TEST(RunPage, NeedsNothingButItself) {
+  EXPECT_EQ(outside_reference(run_page(small_report())), "");
 }
 
-TEST(Report, OfARunThatEndedEarlySaysSo) {
+TEST(RunPage, OfARunThatEndedEarlySaysSo) {
   RunReport report = small_report();
   report.steps_missed = 12;
   report.results.clear();
   report.pictures.clear();
   report.notices = {"The run ended early: flight program gone."};
-  const std::string html = compose_report(report);
+  const std::string html = run_page(report);
   EXPECT_NE(html.find("flight program gone"), std::string::npos);
-  EXPECT_NE(html.find("No sequence was answered to its end"), std::string::npos);
+  EXPECT_NE(html.find("No sequence was answered completely"), std::string::npos);
 }
 
-TEST(Report, DrawsASequenceThatBrokeOff) {
+TEST(RunPage, DrawsASequenceThatBrokeOff) {
   RunReport report = small_report();
   report.results.resize(2);
-  for (const std::string& svg : svgs_of(compose_report(report))) EXPECT_EQ(xml_fault(svg), "");
+  for (const std::string& svg : svgs_of(run_page(report))) EXPECT_EQ(xml_fault(svg), "");
 }
 
 TEST(XmlFault, FindsWhatItIsFor) {
@@ -95,26 +90,6 @@ TEST(RoundTicks, CoverTheRangeInRoundSteps) {
   EXPECT_EQ(round_ticks(0.0, 43.0, 5), (std::vector<double>{0, 10, 20, 30, 40, 50}));
   EXPECT_EQ(round_ticks(-1.0, 1.0, 4), (std::vector<double>{-1, -0.5, 0, 0.5, 1}));
   EXPECT_EQ(round_ticks(3.0, 3.0, 4), (std::vector<double>{3}));
-}
-
-TEST(WriteTextFile, MakesFoldersAndLeavesNoPartialFile) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumblesight_report_test";
-  std::filesystem::remove_all(folder);
-  write_text_file((folder / "deep" / "file.html").string(), "content");
-  std::ifstream file(folder / "deep" / "file.html");
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "content");
-  const auto files = std::distance(std::filesystem::directory_iterator(folder / "deep"), {});
-  EXPECT_EQ(files, 1);
-  std::filesystem::remove_all(folder);
-}
-
-TEST(WriteTextFile, SaysWhichFileCannotBeWritten) {
-  try {
-    write_text_file("/proc/no/such/file", "content");
-    FAIL() << "was written";
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("/proc/no/such"), std::string::npos);
-  }
 }
 
 }  // namespace

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
-#include "sim/report/results_table.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/table.hpp"
+#include "sim/terminal/text_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -28,29 +31,7 @@ TEST(Table, RefusesSurplusCells) {
   EXPECT_THROW(table.row({"1", "2"}), std::invalid_argument);
 }
 
-TEST(ByFrameTable, SelectsAtMostTenFramesAndEndsWithTheLast) {
-  std::vector<FrameResult> results(37);
-  for (std::uint32_t i = 0; i < results.size(); ++i) {
-    results[i].frame = i;
-    results[i].valid = true;
-  }
-  const std::string table = by_frame_table(errors_by_frame(results, 37));
-  const std::string header = table.substr(0, table.find('\n'));
-  EXPECT_NE(header.find(" 37"), std::string::npos) << header;
-  EXPECT_LE(header.size(), 100U);
-}
-
-TEST(CellTable, ShowsEveryEstimatorWithItsErrorAndThePapersFigures) {
-  const ErrorSummary rcnn = summarise({1.0, 3.0});
-  const std::string table = cell_table(rcnn, summarise({10.0, 30.0}), summarise({50.0}), 10,
-                                       paper_figures("near_shoemaker", Condition::kNominal));
-  for (const char* part : {"2.00 ± 1.00°", "12.69°", "88 %", "20.00 ± 10.00°", "40.94°", "1 sequences"}) {
-    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
-  }
-  EXPECT_EQ(table.find("50.00 ±"), std::string::npos) << "the error of a single sequence cannot be known";
-}
-
-TEST(Progress, TellsRateAndTimeLeft) {
+TEST(Progress, ShowsRateAndTimeLeft) {
   EXPECT_EQ(progress_line("simulating", "frames", 50, 200, 10.0, 0),
             "  simulating   25 %  50/200 frames  5.0/s  30 s left");
   EXPECT_EQ(progress_line("simulating", "frames", 200, 200, 100.0, 0),
@@ -58,12 +39,18 @@ TEST(Progress, TellsRateAndTimeLeft) {
   EXPECT_EQ(progress_line("x", "frames", 0, 200, 0.0, 4), "  x  ────    0 %  0/200 frames");
 }
 
+TEST(Progress, CountsOnlyTheWorkOfThisRunForTheRate) {
+  EXPECT_EQ(progress_line("cnn", "images", 150, 200, 10.0, 0, 100),
+            "  cnn   75 %  150/200 images  5.0/s  10 s left");
+  EXPECT_EQ(progress_line("cnn", "images", 100, 200, 10.0, 0, 100), "  cnn   50 %  100/200 images");
+}
+
 TEST(Progress, PrintsFewLinesIntoAFileTheLastOfThemWhenDone) {
   std::FILE* file = std::tmpfile();
   ASSERT_NE(file, nullptr);
   {
     ProgressBar bar("job", "steps", 1000, file);
-    for (std::uint64_t i = 0; i <= 1000; ++i) bar.update(i);
+    for (std::uint64_t i = 0; i <= 1000; ++i) bar.update(i, "loss 0.5");
   }
   std::rewind(file);
   std::string text;
@@ -71,7 +58,28 @@ TEST(Progress, PrintsFewLinesIntoAFileTheLastOfThemWhenDone) {
   std::fclose(file);
   EXPECT_EQ(text.find('\r'), std::string::npos);
   EXPECT_NE(text.find("100 %  1000/1000 steps"), std::string::npos) << text;
+  EXPECT_NE(text.find("loss 0.5\n"), std::string::npos) << text;
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 10);
+}
+
+TEST(WriteTextFile, MakesFoldersAndLeavesNoPartialFile) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumblesight_report_test";
+  std::filesystem::remove_all(folder);
+  write_text_file((folder / "deep" / "file.html").string(), "content");
+  std::ifstream file(folder / "deep" / "file.html");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "content");
+  const auto files = std::distance(std::filesystem::directory_iterator(folder / "deep"), {});
+  EXPECT_EQ(files, 1);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(WriteTextFile, SaysWhichFileCannotBeWritten) {
+  try {
+    write_text_file("/proc/no/such/file", "content");
+    FAIL() << "was written";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("/proc/no/such"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "sim/report/results_report.hpp"
+#include "sim/report/results_page.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace tumblesight::sim {
 namespace {
 
-TEST(ResultsReport, HoldsWellFormedFigures) {
-  const std::vector<std::string> svgs = svgs_of(results_report(sample_results()));
+TEST(ResultsPage, HoldsWellFormedFigures) {
+  const std::vector<std::string> svgs = svgs_of(results_page(sample_results()));
   EXPECT_EQ(svgs.size(), 10U);
   for (const std::string& svg : svgs) {
     EXPECT_EQ(xml_fault(svg), "");
@@ -18,28 +18,28 @@ TEST(ResultsReport, HoldsWellFormedFigures) {
   }
 }
 
-TEST(ResultsReport, NeedsNothingButItself) {
-  EXPECT_EQ(outside_reference(results_report(sample_results())), "");
+TEST(ResultsPage, NeedsNothingButItself) {
+  EXPECT_EQ(outside_reference(results_page(sample_results())), "");
 }
 
-TEST(ResultsReport, ShowsEveryCellAndEscapesNames) {
-  const std::string html = results_report(sample_results());
+TEST(ResultsPage, ShowsEveryCellAndEscapesNames) {
+  const std::string html = results_page(sample_results());
   for (const char* part : {"occluded", "offset", "12.69°, 88 %", "near, &quot;odd&quot;.stl",
                            "mine, parametric mesh", "00c0ffee", "magellan is left out"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
 }
 
-TEST(ResultsReport, OfOneCellHasItsFiguresWithoutSweeps) {
+TEST(ResultsPage, OfOneCellHasItsFiguresWithoutSweeps) {
   Results results = sample_results();
   results.subjects.erase(results.subjects.begin());
-  const std::vector<std::string> svgs = svgs_of(results_report(results));
+  const std::vector<std::string> svgs = svgs_of(results_page(results));
   EXPECT_GE(svgs.size(), 5U);
   for (const std::string& svg : svgs) EXPECT_EQ(xml_fault(svg), "");
 }
 
-TEST(ResultsReport, OfNothingIsStillAPage) {
-  EXPECT_NE(results_report({}).find("</html>"), std::string::npos);
+TEST(ResultsPage, OfNothingIsStillAPage) {
+  EXPECT_NE(results_page({}).find("</html>"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+#include "sim/evaluation/float32_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace tumblesight::sim {
+
+Float32Reference::Float32Reference(const std::string& model_path, const std::vector<std::uint8_t>& model,
+                                   const std::string& target) {
+  if (gnc::is_float32(model.data(), model.size())) return;
+  std::ifstream file(std::filesystem::path(model_path).replace_extension(".float32.tsm"), std::ios::binary);
+  image_.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  if (!gnc::is_float32(image_.data(), image_.size())) return;
+  estimator_ = std::make_unique<HostEstimator>(image_, target.c_str());
+  if (estimator_->status() != gnc::ModelStatus::kOk) estimator_.reset();
+}
+
+void Float32Reference::add(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth,
+                           const gnc::RangeImage& image) {
+  if (!estimator_) return;
+  if (frame == 0) estimator_->reset();
+  gnc::AttitudeEstimate estimate;
+  FrameResult result;
+  result.sequence = sequence;
+  result.frame = frame;
+  result.truth = truth.q_lrf_trf;
+  result.valid = estimator_->step(image, estimate) == gnc::FrameStatus::kOk;
+  result.rcnn = gnc::to_double(estimate.q_lrf_trf);
+  results_.push_back(result);
+}
+
+NumericsComparison Float32Reference::compare(const std::vector<FrameResult>& results,
+                                             std::uint32_t frames) const {
+  NumericsComparison comparison;
+  comparison.float32 = summarise(last_frame_errors_deg(results_, frames, Estimator::kRcnn));
+  std::vector<double> differences;
+  auto reference = results_.begin();  // both are in the order of the frames; `results` may lack some
+  for (const FrameResult& result : results) {
+    const auto same = [&](const FrameResult& a) {
+      return a.sequence == result.sequence && a.frame == result.frame;
+    };
+    reference = std::find_if(reference, results_.end(), same);
+    if (reference == results_.end()) break;
+    if (result.valid && reference->valid) {
+      differences.push_back(angular_error_rad(result.rcnn, reference->rcnn) * 180.0 / M_PI);
+    }
+  }
+  if (!differences.empty()) {
+    comparison.largest_difference_deg = *std::max_element(differences.begin(), differences.end());
+  }
+  comparison.difference = summarise(differences);
+  return comparison;
+}
+
+}  // namespace tumblesight::sim

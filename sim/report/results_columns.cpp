@@ -1,0 +1,228 @@
+#include "sim/report/results_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "sim/evaluation/checks.hpp"
+#include "sim/evaluation/statistics.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+double mean_error(const ErrorSummary& summary) {
+  return summary.mean_standard_error_deg;
+}
+
+// The error of a single sequence cannot be known.
+std::string mean_text(const ErrorSummary& summary) {
+  if (summary.count == 1) return degrees_text(summary.mean_deg);
+  return degrees_text(summary.mean_deg, summary.mean_standard_error_deg);
+}
+
+std::string median_text(const ErrorSummary& summary) {
+  return degrees_text(summary.median_deg);
+}
+
+template <double ErrorSummary::*share>
+double share_error(const ErrorSummary& summary) {
+  return share_standard_error(summary.*share, summary.count);
+}
+
+template <double ErrorSummary::*share>
+std::string share_text(const ErrorSummary& summary) {
+  return percent_text(summary.*share, summary.count);
+}
+
+std::string paper_degrees(double deg) {
+  return degrees_text(deg);
+}
+
+std::string paper_percent(double share) {
+  return fmt::format("{:.3g} %", 100.0 * share);
+}
+
+// Quoted where a comma, a quotation mark or a line break would end the field.
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::vector<CsvColumn> make_csv_columns() {
+  using Row = EstimatorRow;
+  std::vector<CsvColumn> columns{
+      {"target", [](const Row& row) { return csv_text(row.subject.target); }},
+      {"mesh", [](const Row& row) { return csv_text(row.subject.mesh); }},
+      {"model", [](const Row& row) { return csv_text(row.subject.model); }},
+      {"model_crc32", [](const Row& row) { return fmt::format("{:08x}", row.subject.model_crc32); }},
+      {"condition", [](const Row& row) { return to_string(row.cell.condition); }},
+      {"frames", [](const Row& row) { return std::to_string(row.cell.frames); }},
+      {"seed", [](const Row& row) { return std::to_string(row.results.seed); }},
+      {"estimator", [](const Row& row) { return std::string(row.estimator); }},
+      {"sequences", [](const Row& row) { return std::to_string(row.summary.count); }}};
+  const auto number = [](const Row& row, double value, int decimals) {
+    return row.summary.count == 0 ? std::string{} : fmt::format("{:.{}f}", value, decimals);
+  };
+  for (const SummaryFigure& figure : summary_figures()) {
+    columns.push_back({figure.key, [&figure, number](const Row& row) {
+                         return number(row, row.summary.*figure.value, figure.decimals);
+                       }});
+    if (figure.error_key == nullptr) continue;
+    columns.push_back({figure.error_key, [&figure, number](const Row& row) {
+                         return number(row, figure.error(row.summary), figure.decimals);
+                       }});
+  }
+  for (const SummaryFigure& figure : summary_figures()) {
+    if (figure.paper == nullptr) continue;
+    columns.push_back({std::string("paper_") + figure.key, [&figure](const Row& row) {
+                         return row.paper ? fmt::format("{}", (*row.paper).*figure.paper) : std::string{};
+                       }});
+  }
+  return columns;
+}
+
+const ErrorSummary* summary_of(const CellResult& cell, Estimator estimator) {
+  if (estimator == Estimator::kRcnn) return &cell.rcnn;
+  if (estimator == Estimator::kCnn) return &cell.cnn;
+  return cell.baseline ? &*cell.baseline : nullptr;
+}
+
+// The figures of one estimator. The heading of those in degrees names the estimator; the shares stand next to
+// them.
+void add_figures(std::vector<ConditionColumn>& columns, const char* name, Estimator estimator,
+                 const std::function<ConditionTables(const SummaryFigure&)>& tables_of) {
+  for (const SummaryFigure& figure : summary_figures()) {
+    const ConditionTables tables = tables_of(figure);
+    if (tables == 0) continue;
+    const Mark mark = estimator == Estimator::kRcnn && figure.paper != nullptr ? Mark::kRcnn : Mark::kNone;
+    columns.push_back({tables,
+                       figure.in_degrees ? fmt::format("{} {}", name, figure.heading) : figure.heading,
+                       [&figure, estimator, mark](const ConditionRow& row) {
+                         const ErrorSummary* summary = summary_of(row.cell, estimator);
+                         return summary == nullptr ? TableCell{"-"} : figure_cell(figure, *summary, mark);
+                       }});
+  }
+}
+
+TableCell goal_cell(const ConditionRow& row) {
+  if (!row.paper.goal) return {"-"};
+  return {paper_text(row.paper.goal), meets(row.cell.rcnn, *row.paper.goal) ? Mark::kMet : Mark::kMissed};
+}
+
+TableCell goal_met_cell(const ConditionRow& row) {
+  if (!row.paper.goal) return {""};
+  const bool met = meets(row.cell.rcnn, *row.paper.goal);
+  return {met ? "yes" : "no", met ? Mark::kMet : Mark::kMissed};
+}
+
+std::vector<ConditionColumn> make_condition_columns() {
+  using Row = ConditionRow;
+  constexpr ConditionTables kOthers = kOtherEstimatorsTable;
+  std::vector<ConditionColumn> columns{
+      {kOthers, "spacecraft, mesh", [](const Row& row) -> TableCell { return {title_of(row.subject)}; }},
+      {~0U, "condition", [](const Row& row) -> TableCell { return {to_string(row.cell.condition)}; }},
+      {kAccuracyTable, "sequences",
+       [](const Row& row) -> TableCell { return {std::to_string(row.cell.sequences)}; }}};
+  add_figures(columns, "RCNN", Estimator::kRcnn, [](const SummaryFigure& figure) {
+    return kAccuracyTable | (figure.paper != nullptr ? kOverviews : 0U);
+  });
+  columns.push_back({kOverviews | kAccuracyTable, "paper",
+                     [](const Row& row) -> TableCell { return {paper_text(row.paper.rcnn)}; }});
+  columns.push_back({kOverviews | kAccuracyTable, "goal", goal_cell});
+  columns.push_back({kAccuracyTable, "goal met", goal_met_cell});
+  const auto others = [](const SummaryFigure& figure) {
+    if (figure.paper == nullptr) return 0U;
+    return kOthers | kPageOverview | (figure.value == &ErrorSummary::mean_deg ? kTerminalOverview : 0U);
+  };
+  add_figures(columns, "CNN", Estimator::kCnn, others);
+  columns.push_back(
+      {kOthers, "CNN in the paper", [](const Row& row) -> TableCell { return {paper_text(row.paper.cnn)}; }});
+  add_figures(columns, "templates", Estimator::kBaseline, others);
+  columns.push_back({kOthers, "templates on sequences", [](const Row& row) -> TableCell {
+                       return {row.cell.baseline ? std::to_string(row.cell.baseline->count) : "-"};
+                     }});
+  columns.push_back({kOthers, "network ms", [](const Row& row) -> TableCell {
+                       return {fmt::format("{:.2f}", row.cell.network_ms)};
+                     }});
+  columns.push_back({kOthers, "templates ms", [](const Row& row) -> TableCell {
+                       return {row.cell.baseline ? fmt::format("{:.0f}", row.cell.baseline_ms) : "-"};
+                     }});
+  return columns;
+}
+
+}  // namespace
+
+const std::vector<SummaryFigure>& summary_figures() {
+  static const std::vector<SummaryFigure> figures{
+      {"mean_deg", "mean_standard_error_deg", true, "mean", 4, &ErrorSummary::mean_deg, mean_error, mean_text,
+       &PaperFigure::mean_deg, paper_degrees},
+      {"median_deg", nullptr, true, "median", 4, &ErrorSummary::median_deg, nullptr, median_text, nullptr,
+       nullptr},
+      {"within_20deg", "within_20deg_standard_error", false, "within 20°", 5, &ErrorSummary::within_20deg,
+       share_error<&ErrorSummary::within_20deg>, share_text<&ErrorSummary::within_20deg>,
+       &PaperFigure::within_20deg, paper_percent},
+      {"within_5deg", "within_5deg_standard_error", false, "within 5°", 5, &ErrorSummary::within_5deg,
+       share_error<&ErrorSummary::within_5deg>, share_text<&ErrorSummary::within_5deg>, nullptr, nullptr}};
+  return figures;
+}
+
+const SummaryFigure& summary_figure(double ErrorSummary::*value) {
+  for (const SummaryFigure& figure : summary_figures()) {
+    if (figure.value == value) return figure;
+  }
+  throw std::out_of_range("an error figure that is not in summary_figures()");
+}
+
+TableCell figure_cell(const SummaryFigure& figure, const ErrorSummary& summary, Mark mark) {
+  if (summary.count == 0) return {"-"};
+  return {figure.text(summary), mark};
+}
+
+TableCell paper_cell(const SummaryFigure& figure, const PaperFigure& paper) {
+  if (figure.paper == nullptr) return {"-"};
+  return {figure.paper_text(paper.*figure.paper), Mark::kPaper};
+}
+
+std::string paper_text(const std::optional<PaperFigure>& figure) {
+  if (!figure) return "-";
+  std::string text;
+  for (const SummaryFigure& column : summary_figures()) {
+    if (column.paper != nullptr) text += (text.empty() ? "" : ", ") + paper_cell(column, *figure).text;
+  }
+  return text;
+}
+
+std::vector<EstimatorRow> estimator_rows(const Results& results) {
+  std::vector<EstimatorRow> rows;
+  for (const SubjectResult& subject : results.subjects) {
+    for (const CellResult& cell : subject.cells) {
+      const PaperFigures paper = paper_figures(subject.target, cell.condition);
+      rows.push_back({results, subject, cell, "rcnn", cell.rcnn, paper.rcnn});
+      rows.push_back({results, subject, cell, "cnn", cell.cnn, paper.cnn});
+      if (cell.baseline) rows.push_back({results, subject, cell, "baseline", *cell.baseline, std::nullopt});
+    }
+  }
+  return rows;
+}
+
+const std::vector<CsvColumn>& csv_columns() {
+  static const std::vector<CsvColumn> columns = make_csv_columns();
+  return columns;
+}
+
+std::vector<ConditionRow> condition_rows(const SubjectResult& subject) {
+  std::vector<ConditionRow> rows;
+  for (const CellResult& cell : subject.cells) {
+    rows.push_back({subject, cell, paper_figures(subject.target, cell.condition)});
+  }
+  return rows;
+}
+
+const std::vector<ConditionColumn>& condition_columns() {
+  static const std::vector<ConditionColumn> columns = make_condition_columns();
+  return columns;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,82 @@
+// The columns of results, each described once. CSV, JSON, terminal, Markdown and HTML all go by these lists,
+// so that a new figure or column is one new entry here.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/evaluation/results.hpp"
+#include "sim/report/data_table.hpp"
+
+namespace tumblesight::sim {
+
+// One figure of an error summary.
+struct SummaryFigure {
+  const char* key;        // in CSV and JSON, with its unit
+  const char* error_key;  // of its standard error; nullptr: it has none
+  bool in_degrees;        // otherwise a share; JSON holds the standard errors of figures in degrees only
+  const char* heading;    // in tables
+  int decimals;           // in the CSV file, of the figure and of its standard error
+  double ErrorSummary::*value;
+  double (*error)(const ErrorSummary&);
+  std::string (*text)(
+      const ErrorSummary&);    // in tables, with unit and standard error; not called without a sequence
+  double PaperFigure::*paper;  // nullptr: not published
+  std::string (*paper_text)(double paper);
+};
+const std::vector<SummaryFigure>& summary_figures();
+// The one whose value is this member. Throws std::out_of_range if there is none.
+const SummaryFigure& summary_figure(double ErrorSummary::*value);
+
+// In tables. "-" without a sequence.
+TableCell figure_cell(const SummaryFigure& figure, const ErrorSummary& summary, Mark mark = Mark::kNone);
+// "-" where the paper does not have it.
+TableCell paper_cell(const SummaryFigure& figure, const PaperFigure& paper);
+// "12.69°, 88 %", or "-"; the share of a goal keeps its decimals.
+std::string paper_text(const std::optional<PaperFigure>& figure);
+
+// One estimator under one condition: a line of the CSV file. Holds references into the results.
+struct EstimatorRow {
+  const Results& results;
+  const SubjectResult& subject;
+  const CellResult& cell;
+  const char* estimator;  // "rcnn", "cnn", "baseline"
+  const ErrorSummary& summary;
+  std::optional<PaperFigure> paper;
+};
+std::vector<EstimatorRow> estimator_rows(const Results& results);
+
+struct CsvColumn {
+  std::string name;
+  std::function<std::string(const EstimatorRow&)> field;  // empty text: there is no such figure
+};
+const std::vector<CsvColumn>& csv_columns();
+
+// One condition of one network on one mesh: a line of the tables. Holds references into the results.
+struct ConditionRow {
+  const SubjectResult& subject;
+  const CellResult& cell;
+  PaperFigures paper;
+};
+std::vector<ConditionRow> condition_rows(const SubjectResult& subject);
+
+// The tables with a line per condition, as a set of bits.
+using ConditionTables = std::uint32_t;
+inline constexpr ConditionTables kTerminalOverview = 1;  // narrow
+inline constexpr ConditionTables kPageOverview = 2;
+inline constexpr ConditionTables kAccuracyTable = 4;         // of the RCNN, in full
+inline constexpr ConditionTables kOtherEstimatorsTable = 8;  // CNN, template matching, times
+inline constexpr ConditionTables kOverviews = kTerminalOverview | kPageOverview;
+
+struct ConditionColumn {
+  ConditionTables tables;  // that show it
+  std::string heading;
+  std::function<TableCell(const ConditionRow&)> cell;
+};
+// In their order from left to right.
+const std::vector<ConditionColumn>& condition_columns();
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,178 @@
+#include "sim/report/results_page.hpp"
+
+#include <fmt/format.h>
+
+#include "sim/evaluation/checks.hpp"
+#include "sim/evaluation/statistics.hpp"
+#include "sim/report/error_figures.hpp"
+#include "sim/report/page.hpp"
+#include "sim/report/palette.hpp"
+#include "sim/report/results_figures.hpp"
+#include "sim/report/results_tables.hpp"
+#include "sim/report/svg.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+std::string overview_section(const Results& results) {
+  return html_text(conditions_table(results.subjects, kPageOverview), "results") +
+         "<p class=sub>Mean angular error of the last frame ± one standard error, and the share of the "
+         "sequences within "
+         "20°. RCNN: from all frames. CNN: from the last frame alone. Templates: classical template "
+         "matching, renderings of "
+         "the same mesh matched to the last frame and refined by iterated closest points, on the first "
+         "sequences of each "
+         "condition. Goals: <span class=met>met</span>, <span class=missed>missed</span>.</p>\n";
+}
+
+// One network on one mesh: its error under each condition.
+std::string lead_of(const SubjectResult& subject) {
+  std::string errors;
+  for (const CellResult& cell : subject.cells) {
+    errors += fmt::format("{}{} ({})", errors.empty() ? "" : ", ",
+                          figure_cell(summary_figure(&ErrorSummary::mean_deg), cell.rcnn).text,
+                          to_string(cell.condition));
+  }
+  return fmt::format("After {} frames the mean error of the attitude of {} is {}.",
+                     subject.cells.front().frames, escape_markup(display_name(subject.target)), errors);
+}
+
+// Many: how they compare with the paper and the goals.
+std::string lead_of(const std::vector<SubjectResult>& subjects) {
+  std::size_t published = 0;
+  std::size_t better = 0;
+  std::size_t met = 0;
+  for (const SubjectResult& subject : subjects) {
+    for (const CellResult& cell : subject.cells) {
+      const PaperFigures paper = paper_figures(subject.target, cell.condition);
+      if (!paper.rcnn || !paper.goal) continue;
+      ++published;
+      if (cell.rcnn.mean_deg < paper.rcnn->mean_deg) ++better;
+      if (meets(cell.rcnn, *paper.goal)) ++met;
+    }
+  }
+  return fmt::format(
+      "For {} lines of the table the paper published a figure. In {} of them the mean error here is smaller, "
+      "and {} meet "
+      "the goal that this project set itself.",
+      published, better, met);
+}
+
+std::string lead_sentence(const Results& results) {
+  const bool single = results.subjects.size() == 1 && !results.subjects.front().cells.empty();
+  return single ? lead_of(results.subjects.front()) : lead_of(results.subjects);
+}
+
+std::string confusion_section(const SubjectResult& subject) {
+  std::vector<Named<Confusion>> rows;
+  for (const CellResult& cell : subject.cells)
+    rows.push_back({to_string(cell.condition), "", cell.rcnn_confusion});
+  return html_figure(
+      "Confused attitudes", confusion_figure(rows),
+      "RCNN, last frame: the share within 20° of the true attitude (right), or of the attitude turned about "
+      "z, where the target looks nearly the same. Blur: mean error to the nearest of these attitudes.");
+}
+
+std::string reliability_section(const SubjectResult& subject) {
+  std::vector<Named<std::vector<ReliabilityBin>>> lines;
+  for (const CellResult& cell : subject.cells) {
+    lines.push_back({to_string(cell.condition), colour_of(cell.condition), cell.reliability});
+  }
+  return html_figure("Predicted and actual error", reliability_figure(lines),
+                     "RCNN, every frame, in tenths sorted by the predicted error. On the dashed line the "
+                     "prediction is right "
+                     "on average. Above it the network is overconfident.") +
+         html_figure(
+             "Detection of wrong estimates", detection_figure(detection_of(subject)),
+             "RCNN, every frame of all conditions. Wrong: more than 20° off. Each mark is a threshold on the "
+             "predicted error, from 1° at the right to 90° at the left.");
+}
+
+std::string detection_section(const SubjectResult& subject) {
+  const DataTable table = detection_table(subject);
+  if (table.rows.empty()) return {};
+  const DetectionPoint last = detection_of(subject).back();
+  return html_figure(
+      "Thresholds on the predicted error", html_text(table, "results"),
+      fmt::format("RCNN, every frame of all conditions: {} estimates, {} of them wrong. An estimate is "
+                  "rejected when its predicted error is above the threshold.",
+                  last.wrong + last.right, last.wrong));
+}
+
+std::string sweeps_section(const Sweeps& sweeps) {
+  return html_figure(
+             "Hidden share", hidden_share_figure(sweeps),
+             fmt::format(
+                 "An arm, a mast or a panel edge in front of the target in every frame. {} sequences per "
+                 "point. Bars: one standard error.",
+                 sweeps.sweep_sequences)) +
+         html_figure(fmt::format("Run of {} frames", sweeps.long_run.size()), long_run_figure(sweeps),
+                     fmt::format("{} sequences, {}. The recurrent state must not drift.",
+                                 sweeps.long_sequences, to_string(sweeps.base)));
+}
+
+std::string figures_of(const SubjectResult& subject) {
+  const CellResult& base = subject.cells.front();
+  const std::string condition = to_string(base.condition);
+  const std::string rate_caption =
+      subject.sweeps ? "Two ways to draw the rate, as in the paper: by its components (few slow sequences) "
+                       "or by its norm."
+                     : "The components of the rate are drawn, so that there are few slow sequences.";
+  return "<div class=pair>\n" +
+         html_figure("Error by condition", conditions_figure(subject), "Mean error of the last frame.") +
+         html_figure("Error over the frames", frames_figure(subject),
+                     fmt::format("Mean error of the RCNN by condition. Dashed: the CNN, {}.", condition)) +
+         html_figure("Range", range_figure(base),
+                     fmt::format("{}, last frame. Bars: one standard error.", condition)) +
+         html_figure("Rate", rate_figure(subject), rate_caption + " Bars: one standard error.") +
+         (subject.sweeps ? sweeps_section(*subject.sweeps) : std::string{}) +
+         html_figure("Distribution of the error",
+                     histogram_figure(base.rcnn_histogram, base.cnn_histogram, base.baseline_histogram),
+                     fmt::format("{}, last frame.", condition)) +
+         confusion_section(subject) + reliability_section(subject) + detection_section(subject) + "</div>\n";
+}
+
+std::string times_text(const CellResult& cell) {
+  std::string text = fmt::format("network {:.2f} ms per frame", cell.network_ms);
+  if (cell.baseline) text += fmt::format(", template matching {:.0f} ms", cell.baseline_ms);
+  return text + " (median, one thread)";
+}
+
+std::string chapter(const Results& results, const SubjectResult& subject) {
+  const CellResult& base = subject.cells.front();
+  return fmt::format(
+             "<h2 class=chapter>{}</h2>\n<p class=sub>model {}.tsm, CRC-32 <code>{:08x}</code>; seed {}; {} "
+             "sequences of {} frames ({}); {}</p>\n",
+             escape_markup(title_of(subject)), escape_markup(subject.model), subject.model_crc32,
+             results.seed, base.sequences, base.frames, to_string(base.condition), times_text(base)) +
+         html_text(checks_table(subject), "results") + figures_of(subject);
+}
+
+// Among several subjects those with sweeps have a chapter; a single subject always has one.
+bool has_chapter(const Results& results, const SubjectResult& subject) {
+  return !subject.cells.empty() && (subject.sweeps.has_value() || results.subjects.size() == 1);
+}
+
+std::string notes_section(const std::vector<std::string>& notes) {
+  std::string lines;
+  for (const std::string& note : notes) lines += (lines.empty() ? "" : "<br>\n") + escape_markup(note);
+  return lines.empty() ? lines : fmt::format("<div class=\"notice remark\">{}</div>\n", lines);
+}
+
+}  // namespace
+
+std::string results_page(const Results& results) {
+  std::string body = "<h1>Accuracy of attitude initialisation</h1>\n";
+  body += fmt::format("<p class=sub>Tumblesight, Monte Carlo evaluation, seed {}</p>\n<p class=lead>{}</p>\n",
+                      results.seed, lead_sentence(results));
+  body += notes_section(results.notes);
+  body += overview_section(results);
+  for (const SubjectResult& subject : results.subjects) {
+    if (has_chapter(results, subject)) body += chapter(results, subject);
+  }
+  body += fmt::format("<footer>{}<br><code>{}</code></footer>\n", escape_markup(results.generated),
+                      escape_markup(results.command));
+  return html_page("accuracy", body);
+}
+
+}  // namespace tumblesight::sim

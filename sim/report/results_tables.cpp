@@ -1,0 +1,184 @@
+#include "sim/report/results_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/evaluation/checks.hpp"
+#include "sim/evaluation/statistics.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+using Cells = std::vector<TableCell>;
+
+constexpr std::size_t kMaxFrameColumns = 10;
+
+Cells estimator_cells(const EstimatorErrors& errors) {
+  Cells cells{{errors.name, errors.mark}};
+  for (const SummaryFigure& figure : summary_figures()) cells.push_back(figure_cell(figure, errors.summary));
+  cells.push_back({std::to_string(errors.summary.count)});
+  return cells;
+}
+
+Cells paper_cells(const PaperFigure& paper, std::uint32_t sequences) {
+  Cells cells{{"in the paper", Mark::kPaper}};
+  for (const SummaryFigure& figure : summary_figures()) cells.push_back(paper_cell(figure, paper));
+  cells.push_back({std::to_string(sequences), Mark::kPaper});
+  return cells;
+}
+
+std::vector<std::string> condition_header(ConditionTables table) {
+  std::vector<std::string> header;
+  for (const ConditionColumn& column : condition_columns()) {
+    if ((column.tables & table) != 0) header.push_back(column.heading);
+  }
+  return header;
+}
+
+Cells condition_cells(const ConditionRow& row, ConditionTables table) {
+  Cells cells;
+  for (const ConditionColumn& column : condition_columns()) {
+    if ((column.tables & table) != 0) cells.push_back(column.cell(row));
+  }
+  return cells;
+}
+
+}  // namespace
+
+DataTable estimators_table(const std::vector<EstimatorErrors>& estimators, std::uint32_t paper_sequences) {
+  DataTable table{{"error of the last frame"}, {}};
+  for (const SummaryFigure& figure : summary_figures()) table.header.emplace_back(figure.heading);
+  table.header.emplace_back("sequences");
+  for (const EstimatorErrors& errors : estimators) {
+    table.rows.push_back(estimator_cells(errors));
+    if (errors.paper) table.rows.push_back(paper_cells(*errors.paper, paper_sequences));
+  }
+  return table;
+}
+
+DataTable cell_table(const std::string& target, const CellResult& cell) {
+  const PaperFigures paper = paper_figures(target, cell.condition);
+  std::vector<EstimatorErrors> estimators{
+      {fmt::format("RCNN, {} frames", cell.frames), Mark::kRcnn, cell.rcnn, paper.rcnn},
+      {"CNN, last frame alone", Mark::kCnn, cell.cnn, paper.cnn}};
+  if (cell.baseline) estimators.push_back({"template matching", Mark::kNone, *cell.baseline, std::nullopt});
+  return estimators_table(estimators, paper.sequences);
+}
+
+DataTable conditions_table(const std::vector<SubjectResult>& subjects, ConditionTables table) {
+  DataTable made{condition_header(table), {}};
+  for (const SubjectResult& subject : subjects) {
+    if ((table & kOverviews) != 0) made.rows.push_back({{title_of(subject)}});
+    for (const ConditionRow& row : condition_rows(subject)) made.rows.push_back(condition_cells(row, table));
+  }
+  return made;
+}
+
+DataTable by_frame_table(const Curve& by_frame) {
+  const std::size_t columns = std::min<std::size_t>(by_frame.size(), kMaxFrameColumns);
+  DataTable table{{"error by frame [deg]"},
+                  {{{"RCNN mean"}}, {{"RCNN median"}}, {{"CNN mean"}}, {{"CNN median"}}}};
+  for (std::size_t column = 0; column < columns; ++column) {
+    const CurvePoint& errors = by_frame[columns < 2 ? 0 : column * (by_frame.size() - 1) / (columns - 1)];
+    table.header.push_back(fmt::format("{:g}", errors.at));
+    const double figures[] = {errors.rcnn.mean_deg, errors.rcnn.median_deg, errors.cnn.mean_deg,
+                              errors.cnn.median_deg};
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      table.rows[i].push_back({errors.rcnn.count == 0 ? "-" : fmt::format("{:.1f}", figures[i])});
+    }
+  }
+  return table;
+}
+
+DataTable frames_table(const SubjectResult& subject) {
+  DataTable table{{"frame"}, {}};
+  for (const CellResult& cell : subject.cells) table.header.push_back(to_string(cell.condition));
+  for (std::size_t frame = 0; frame < subject.cells.front().by_frame.size(); ++frame) {
+    Cells row{{std::to_string(frame + 1)}};
+    for (const CellResult& cell : subject.cells)
+      row.push_back({degrees_text(cell.by_frame[frame].rcnn.mean_deg)});
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+DataTable curve_table(const std::string& at, const Curve& curve, double scale) {
+  const SummaryFigure& mean = summary_figure(&ErrorSummary::mean_deg);
+  const SummaryFigure& within_20deg = summary_figure(&ErrorSummary::within_20deg);
+  DataTable table{{at, "sequences", "RCNN mean", within_20deg.heading, "CNN mean"}, {}};
+  for (const CurvePoint& point : curve) {
+    if (point.rcnn.count == 0) continue;
+    table.rows.push_back({{fmt::format("{:g}", scale * point.at)},
+                          {std::to_string(point.rcnn.count)},
+                          figure_cell(mean, point.rcnn),
+                          figure_cell(within_20deg, point.rcnn),
+                          figure_cell(mean, point.cnn)});
+  }
+  return table;
+}
+
+DataTable histogram_table(const CellResult& cell) {
+  const std::vector<double>& limits = histogram_limits_deg();
+  DataTable table{{"error", "RCNN", "CNN", "templates"}, {}};
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    table.rows.push_back(
+        {{fmt::format("{:g}–{:g}°", i == 0 ? 0.0 : limits[i - 1], limits[i])},
+         {percent_text(cell.rcnn_histogram[i])},
+         {percent_text(cell.cnn_histogram[i])},
+         {cell.baseline_histogram.empty() ? "-" : percent_text(cell.baseline_histogram[i])}});
+  }
+  return table;
+}
+
+DataTable confusion_table(const SubjectResult& subject) {
+  DataTable table{{"condition"}, {}};
+  for (const std::string& name : subject.cells.front().rcnn_confusion.names) table.header.push_back(name);
+  for (const char* name : {"none of these", "blur", "CNN right", "CNN blur"}) table.header.emplace_back(name);
+  for (const CellResult& cell : subject.cells) {
+    const Confusion& rcnn = cell.rcnn_confusion;
+    const Confusion& cnn = cell.cnn_confusion;
+    Cells row{{to_string(cell.condition)}};
+    for (const double share : rcnn.shares) row.push_back({percent_text(share)});
+    row.push_back({percent_text(rcnn.none)});
+    row.push_back({degrees_text(rcnn.blur_deg, rcnn.blur_standard_error_deg)});
+    row.push_back({percent_text(cnn.shares.front())});
+    row.push_back({degrees_text(cnn.blur_deg, cnn.blur_standard_error_deg)});
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+DataTable reliability_table(const CellResult& cell) {
+  DataTable table{{"predicted", "actual, mean", "actual, median", "frames"}, {}};
+  for (const ReliabilityBin& bin : cell.reliability) {
+    table.rows.push_back({{degrees_text(bin.predicted_deg)},
+                          {degrees_text(bin.real.mean_deg)},
+                          {degrees_text(bin.real.median_deg)},
+                          {std::to_string(bin.real.count)}});
+  }
+  return table;
+}
+
+DataTable detection_table(const SubjectResult& subject) {
+  DataTable table{{"threshold", "wrong rejected", "right rejected", "wrong among the accepted"}, {}};
+  for (const DetectionPoint& point : detection_of(subject)) {
+    table.rows.push_back({{fmt::format("{:g}°", point.threshold_deg)},
+                          {percent_text(point.detected())},
+                          {percent_text(point.false_alarms())},
+                          {fmt::format("{:.2f} %", 100.0 * point.wrong_among_kept())}});
+  }
+  return table;
+}
+
+DataTable checks_table(const SubjectResult& subject) {
+  DataTable table{{"check", "value and limit", "met"}, {}};
+  for (const Check& check : checks_of(subject)) {
+    table.rows.push_back({{check.what},
+                          {text_of(check)},
+                          {check.holds() ? "yes" : "no", check.holds() ? Mark::kMet : Mark::kMissed}});
+  }
+  return table;
+}
+
+}  // namespace tumblesight::sim

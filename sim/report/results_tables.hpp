@@ -1,0 +1,43 @@
+// The tables of results, as data: terminal, Markdown document and HTML page show the same ones.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/evaluation/results.hpp"
+#include "sim/report/data_table.hpp"
+#include "sim/report/results_columns.hpp"
+
+namespace tumblesight::sim {
+
+// The errors of one estimator, and the paper's figure for it.
+struct EstimatorErrors {
+  std::string name;
+  Mark mark = Mark::kNone;
+  ErrorSummary summary;
+  std::optional<PaperFigure> paper;
+};
+// One line per estimator with every figure and the number of sequences, below it the paper's.
+DataTable estimators_table(const std::vector<EstimatorErrors>& estimators, std::uint32_t paper_sequences);
+// The same for one condition: RCNN, CNN and, where it was run, template matching.
+DataTable cell_table(const std::string& target, const CellResult& cell);
+
+// A line per condition, with the columns that belong into `table`; overviews have a title above each
+// subject's lines.
+DataTable conditions_table(const std::vector<SubjectResult>& subjects, ConditionTables table);
+
+// Mean and median of RCNN and CNN, a column per frame; of more than ten frames a selection that ends with the
+// last.
+DataTable by_frame_table(const Curve& by_frame);
+// Mean of the RCNN, a line per frame, a column per condition.
+DataTable frames_table(const SubjectResult& subject);
+// A line per point with sequences. `at`: what the curve runs over; its values are multiplied by `scale`.
+DataTable curve_table(const std::string& at, const Curve& curve, double scale = 1.0);
+DataTable histogram_table(const CellResult& cell);
+DataTable confusion_table(const SubjectResult& subject);
+DataTable reliability_table(const CellResult& cell);
+// Rejection of estimates by a threshold on their predicted error.
+DataTable detection_table(const SubjectResult& subject);
+DataTable checks_table(const SubjectResult& subject);
+
+}  // namespace tumblesight::sim

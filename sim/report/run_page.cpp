@@ -1,0 +1,125 @@
+#include "sim/report/run_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/evaluation/results.hpp"
+#include "sim/evaluation/statistics.hpp"
+#include "sim/report/page.hpp"
+#include "sim/report/results_tables.hpp"
+#include "sim/report/run_figures.hpp"
+#include "sim/report/svg.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::size_t kMaxGalleryPictures = 8;
+
+ErrorSummary last_frame_errors(const RunReport& report, Estimator estimator) {
+  return summarise(last_frame_errors_deg(report.results, report.frames, estimator));
+}
+
+std::string lead_sentence(const RunReport& report) {
+  const ErrorSummary rcnn = last_frame_errors(report, Estimator::kRcnn);
+  if (rcnn.count == 0) return "No sequence was answered completely, so there is no error to report.";
+  const auto within = static_cast<std::size_t>(rcnn.within_20deg * static_cast<double>(rcnn.count) + 0.5);
+  return fmt::format(
+      "After {} frames the mean attitude error is {:.1f}° (median {:.1f}°). It is within 20° in {} of {} "
+      "sequences. {} of "
+      "{} steps were answered. The flight task allocated {} after its start.",
+      report.frames, rcnn.mean_deg, rcnn.median_deg, within, rcnn.count,
+      report.steps_planned - report.steps_missed, report.steps_planned,
+      report.heap_allocations == 0 ? "no heap memory"
+                                   : fmt::format("heap memory {} times", report.heap_allocations));
+}
+
+std::string charts_section(const RunReport& report, std::uint32_t shown) {
+  return "<div class=pair>\n" +
+         html_figure("Error over the frames", error_over_frames_figure(report),
+                     std::string("The RCNN combines all frames so far. The CNN sees each frame alone.") +
+                         (report.paper.rcnn ? " Circles: the paper's means, last frame." : "")) +
+         html_figure(
+             "Distribution of the last frame's error", error_histogram_figure(report),
+             "Errors near 90° and 180° are attitudes confused with nearly symmetric ones of the target.") +
+         html_figure("Predicted and actual error", predicted_error_figure(report),
+                     "Below the dashed line the error is smaller than predicted, above it larger.") +
+         html_figure(
+             fmt::format("Quaternion of sequence {}", shown + 1), quaternion_figure(report, shown),
+             "Lines: true. Dots: RCNN. The sign is chosen for continuity. TRF to LRF, scalar w first.") +
+         "</div>\n";
+}
+
+// Pictures of sequences other than the one shown frame by frame, evenly spread over those that were kept.
+std::string gallery_section(const RunReport& report, std::uint32_t shown) {
+  std::vector<const ReportPicture*> others;
+  for (const ReportPicture& picture : report.pictures) {
+    if (picture.sequence != shown) others.push_back(&picture);
+  }
+  if (others.empty()) return {};
+  const std::size_t count = std::min(others.size(), kMaxGalleryPictures);
+  std::vector<const ReportPicture*> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(others[i * others.size() / count]);
+  return html_figure("Input of the network", gallery_figure(chosen),
+                     "Frames of other sequences as the network receives them: 100 × 100 cells perpendicular "
+                     "to the boresight, nearer is "
+                     "brighter. Below each: sequence / frame, range.");
+}
+
+std::string facts_section(const RunReport& report) {
+  std::string html = "<div class=facts>\n";
+  for (const FactList& list : report.facts) {
+    html += fmt::format("<section><h2>{}</h2><table>", escape_markup(list.title));
+    for (const auto& [name, value] : list.facts) {
+      html += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escape_markup(name), escape_markup(value));
+    }
+    html += "</table></section>\n";
+  }
+  return html + "</div>\n";
+}
+
+std::string body(const RunReport& report) {
+  const std::uint32_t shown = report.results.empty() ? 0 : report.results.front().sequence;
+  std::string html = fmt::format("<h1>Attitude of {}, {} condition</h1>\n",
+                                 escape_markup(display_name(report.target)), escape_markup(report.condition));
+  html += fmt::format(
+      "<p class=sub>Software-in-the-loop run of Tumblesight: {} sequences of {} frames, {:.1f} s apart</p>\n",
+      report.sequences, report.frames, report.frame_period_s);
+  for (const std::string& notice : report.notices) {
+    html += fmt::format("<div class=notice>{}</div>\n", escape_markup(notice));
+  }
+  for (const std::string& remark : report.remarks) {
+    html += fmt::format("<div class=\"notice remark\">{}</div>\n", escape_markup(remark));
+  }
+  html += fmt::format("<p class=lead>{}</p>\n", lead_sentence(report)) +
+          html_text(run_errors_table(report), "headline");
+  if (!report.results.empty()) {
+    html += html_figure(fmt::format("Sequence {}, frame by frame", shown + 1),
+                        attitude_strip_figure(report, shown),
+                        "Top: the depth image that the network receives, nearer is brighter. Middle: the "
+                        "target's axes seen along the "
+                        "boresight, true (broad, pale) and as the RCNN estimates them (thin, dark). Bottom: "
+                        "angular errors.") +
+            charts_section(report, shown) + gallery_section(report, shown);
+  }
+  html += facts_section(report);
+  html += fmt::format("<footer>{}<br><code>{}</code></footer>\n", escape_markup(report.generated),
+                      escape_markup(report.command));
+  return html;
+}
+
+}  // namespace
+
+DataTable run_errors_table(const RunReport& report) {
+  return estimators_table(
+      {{fmt::format("RCNN, {} frames", report.frames), Mark::kRcnn,
+        last_frame_errors(report, Estimator::kRcnn), report.paper.rcnn},
+       {"CNN, last frame alone", Mark::kCnn, last_frame_errors(report, Estimator::kCnn), report.paper.cnn}},
+      report.paper.sequences);
+}
+
+std::string run_page(const RunReport& report) {
+  return html_page(fmt::format("{}, {}", report.target, report.condition), body(report));
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,231 @@
+#include "sim/report/sil_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "hal/dds/idl/topics.hpp"
+#include "sim/evaluation/statistics.hpp"
+#include "sim/report/results_json.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+bool gave_attitude(const StepResult& step) {
+  return step.answered && gives_attitude(step.attitude);
+}
+
+std::string file_name(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
+}
+
+const StepResult* last_answered(const SilRunResult& run) {
+  const auto found =
+      std::find_if(run.steps.rbegin(), run.steps.rend(), [](const StepResult& s) { return s.answered; });
+  return found == run.steps.rend() ? nullptr : &*found;
+}
+
+std::vector<ReportPicture> pictures(const SilRunResult& run, const gnc::DepthProjection& projection) {
+  const auto scratch = std::make_unique<gnc::DepthImageScratch>();
+  std::vector<ReportPicture> pictures;
+  for (const auto& [index, frame] : run.pictures) {
+    if (index >= run.steps.size()) continue;
+    const StepResult& step = run.steps[index];
+    ReportPicture picture{step.sequence, step.frame_index, step.truth.range_m, {}};
+    if (gnc::make_depth_image(frame, projection, *scratch, picture.image) == gnc::FrameStatus::kOk) {
+      pictures.push_back(picture);
+    }
+  }
+  return pictures;
+}
+
+FactList settings_facts(const SilRunSetup& setup) {
+  FactList list{"Settings", {}};
+  list.facts = {{"target", setup.target},
+                {"mesh", file_name(setup.mesh_name)},
+                {"condition", setup.condition},
+                {"sequences × frames", fmt::format("{} × {}", setup.sequences, setup.frames)},
+                {"seed", fmt::format("{}", setup.seed)},
+                {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
+                {"time", setup.free_running ? "free-running" : "lockstep"},
+                {"swath", fmt::format("{:.2f} m", 1e-3 * setup.projection.swath_mm)}};
+  return list;
+}
+
+FactList numerics_facts(const NumericsComparison& numerics) {
+  return {"Float32 reference, same frames",
+          {{"mean error, last frame", degrees_text(numerics.float32.mean_deg)},
+           {"difference of the attitudes, mean", degrees_text(numerics.difference.mean_deg)},
+           {"difference of the attitudes, max", degrees_text(numerics.largest_difference_deg)}}};
+}
+
+FactList outcome_facts(const SilRunResult& run, const SilRunSetup& setup) {
+  const InferenceTime time = inference_time(run);
+  FactList list{"Flight program", {}};
+  list.facts = {
+      {"steps answered", fmt::format("{} of {}", run.steps_planned - run.steps_missed, run.steps_planned)},
+      {"inference time, median", fmt::format("{:.2f} ms", 1e-3 * time.median_us)},
+      {"inference time, max", fmt::format("{:.2f} ms", 1e-3 * time.max_us)},
+      {"heap allocations", fmt::format("{}", run.flight_heap_allocations)},
+      {"trace CRC-32", fmt::format("{:08x}", run.trace_crc32)},
+      {"model", file_name(setup.model_path)},
+      {"model CRC-32", setup.model_crc32}};
+  return list;
+}
+
+FactList counter_facts(const SilRunResult& run) {
+  FactList list{"Counters at the end", {}};
+  const StepResult* last = last_answered(run);
+  if (last == nullptr) return list;
+  const hal::Telemetry& h = last->telemetry;
+  const std::pair<const char*, std::uint32_t> counters[] = {
+      {"cycles", h.cycles},
+      {"frames used", h.frames_used},
+      {"frames missing", h.frames_missing},
+      {"frames refused", h.frames_refused},
+      {"… duplicate, stale or bad", h.frames_duplicate + h.frames_stale + h.frames_bad},
+      {"attitudes doubtful", h.attitudes_doubtful},
+      {"sequence numbers skipped", h.sequence_gaps},
+      {"estimator resets", h.estimator_resets},
+      {"commands accepted", h.commands_accepted},
+      {"commands refused", h.commands_refused},
+      {"events", h.events},
+      {"deadline overruns", h.deadline_overruns},
+      {"complete model checks", h.model_passes},
+      {"memory errors repaired",
+       h.memory_corrections + h.states_restored + h.constants_reloaded + h.model_blocks_repaired},
+      {"stack never used [bytes]", h.stack_left_min_bytes},
+  };
+  for (const auto& [name, count] : counters) list.facts.emplace_back(name, fmt::format("{}", count));
+  return list;
+}
+
+// Warnings and errors by event id, in the order in which they first occurred.
+FactList event_facts(const SilRunResult& run) {
+  struct Kind {
+    hal::EventId id;
+    std::uint32_t count;
+    std::size_t first_step;
+  };
+  std::vector<Kind> kinds;
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
+    for (const hal::Event& event : run.steps[i].events) {
+      if (event.severity == hal::Severity::kInformation) continue;
+      const auto known =
+          std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.id == event.id; });
+      if (known != kinds.end()) {
+        ++known->count;
+      } else {
+        kinds.push_back({event.id, 1, i});
+      }
+    }
+  }
+  FactList list{"Warnings and errors", {}};
+  for (const Kind& kind : kinds) {
+    list.facts.emplace_back(fmt::format("event {}", static_cast<int>(kind.id)),
+                            fmt::format("{} times, first in step {}", kind.count, kind.first_step));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::vector<FrameResult> frame_results(const SilRunResult& run) {
+  std::vector<FrameResult> results;
+  for (const StepResult& step : run.steps) {
+    if (!step.answered) continue;
+    FrameResult result;
+    result.sequence = step.sequence;
+    result.frame = step.frame_index;
+    result.valid = gave_attitude(step);
+    result.truth = step.truth.q_lrf_trf;
+    result.rcnn = gnc::to_double(step.attitude.q_lrf_trf);
+    result.cnn = gnc::to_double(step.attitude.q_lrf_trf_single_frame);
+    result.rcnn_predicted_rad = 1e-6 * step.attitude.predicted_error_urad;
+    result.cnn_predicted_rad = 1e-6 * step.attitude.predicted_error_single_frame_urad;
+    results.push_back(result);
+  }
+  return results;
+}
+
+InferenceTime inference_time(const SilRunResult& run) {
+  std::vector<double> times_us;
+  for (const StepResult& step : run.steps) {
+    if (gave_attitude(step)) times_us.push_back(step.telemetry.inference_us);
+  }
+  if (times_us.empty()) return {};
+  return {median(times_us), *std::max_element(times_us.begin(), times_us.end())};
+}
+
+std::vector<std::string> run_faults(const SilRunResult& run) {
+  std::vector<std::string> found;
+  if (!run.failure.empty()) found.push_back("The run ended early: " + run.failure + ".");
+  if (run.steps_missed > 0) {
+    found.push_back(fmt::format("{} of {} steps were not answered; the figures cover the others.",
+                                run.steps_missed, run.steps_planned));
+  }
+  const StepResult* last = last_answered(run);
+  const auto invalid = std::count_if(run.steps.begin(), run.steps.end(),
+                                     [](const StepResult& s) { return s.answered && !gave_attitude(s); });
+  if (invalid > 0) {
+    found.push_back(fmt::format(
+        "{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
+        run.steps_planned - run.steps_missed,
+        last->telemetry.mode != hal::Mode::kRun ? ": the flight program is not in RUN" : ""));
+  }
+  if (run.flight_heap_allocations > 0) {
+    found.push_back(fmt::format("The flight task allocated heap memory {} times after its start.",
+                                run.flight_heap_allocations));
+  }
+  return found;
+}
+
+nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& run,
+                                const std::optional<NumericsComparison>& numerics) {
+  const std::vector<FrameResult> results = frame_results(run);
+  const InferenceTime time = inference_time(run);
+  nlohmann::ordered_json json{
+      {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
+  json["rcnn"] = summary_json(summarise(last_frame_errors_deg(results, setup.frames, Estimator::kRcnn)));
+  json["cnn"] = summary_json(summarise(last_frame_errors_deg(results, setup.frames, Estimator::kCnn)));
+  if (numerics) {
+    json["float32"] = summary_json(numerics->float32);
+    json["difference_to_float32"] = {{"mean_deg", numerics->difference.mean_deg},
+                                     {"max_deg", numerics->largest_difference_deg}};
+  }
+  json["inference_us"] = {{"median", time.median_us}, {"max", time.max_us}};
+  json["flight_heap_allocations"] = run.flight_heap_allocations;
+  json["steps_missed"] = run.steps_missed;
+  json["trace_crc32"] = run.trace_crc32;
+  return json;
+}
+
+RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
+                     const std::optional<NumericsComparison>& numerics) {
+  const InferenceTime time = inference_time(run);
+  RunReport report;
+  report.target = setup.target;
+  report.condition = setup.condition;
+  report.sequences = setup.sequences;
+  report.frames = setup.frames;
+  report.frame_period_s = kFramePeriod_s;
+  report.results = frame_results(run);
+  report.pictures = pictures(run, setup.projection);
+  report.paper = paper_figures(setup.target, condition_from(setup.condition));
+  report.steps_planned = run.steps_planned;
+  report.steps_missed = run.steps_missed;
+  report.heap_allocations = run.flight_heap_allocations;
+  report.inference_median_us = time.median_us;
+  report.inference_max_us = time.max_us;
+  report.trace_crc32 = run.trace_crc32;
+  report.notices = run_faults(run);
+  report.remarks = setup.remarks;
+  report.facts = {settings_facts(setup), outcome_facts(run, setup), counter_facts(run)};
+  if (numerics) report.facts.push_back(numerics_facts(*numerics));
+  const FactList events = event_facts(run);
+  if (!events.facts.empty()) report.facts.push_back(events);
+  return report;
+}
+
+}  // namespace tumblesight::sim

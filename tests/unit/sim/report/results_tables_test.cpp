@@ -1,0 +1,86 @@
+#include "sim/report/results_tables.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/unit/sim/report/sample_results.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(DataTable, IsWrittenForTerminalMarkdownAndHtml) {
+  const DataTable table{{"what", "error"},
+                        {{{"a title"}}, {{"RCNN|x", Mark::kRcnn}, {"1.0°"}}, {{"CNN"}, {"-"}}}};
+  EXPECT_EQ(terminal_text(table),
+            "  what       error\n"
+            " ──────────────────\n"
+            "  a title\n"
+            "    RCNN|x    1.0°\n"
+            "    CNN          -\n");
+  EXPECT_EQ(markdown_text(table),
+            "| what | error |\n|---|---:|\n| a title |  |\n| **RCNN\\|x** | 1.0° |\n| CNN | - |\n\n");
+  const std::string html = html_text(table, "results");
+  EXPECT_NE(html.find("<tr class=group><th colspan=2>a title</th></tr>"), std::string::npos) << html;
+  EXPECT_NE(html.find("<td><b class=rcnn>RCNN|x</b></td><td class=number>1.0°</td>"), std::string::npos)
+      << html;
+  EXPECT_NE(html.find("<span class=quiet>–</span>"), std::string::npos) << html;
+}
+
+TEST(DataTable, WithoutRowsIsEmpty) {
+  const DataTable table{{"what", "error"}, {}};
+  EXPECT_EQ(terminal_text(table) + markdown_text(table) + html_text(table, "results"), "");
+}
+
+TEST(CsvColumns, HaveDifferentNames) {
+  std::set<std::string> names;
+  for (const CsvColumn& column : csv_columns()) names.insert(column.name);
+  EXPECT_EQ(names.size(), csv_columns().size());
+}
+
+// Every column of the tables with a line per condition is shown somewhere, and every line has as many cells
+// as the header.
+TEST(ConditionColumns, FillTheirTables) {
+  ConditionTables shown = 0;
+  for (const ConditionColumn& column : condition_columns()) {
+    EXPECT_NE(column.tables, 0U) << column.heading;
+    shown |= column.tables;
+  }
+  const Results results = sample_results();
+  for (const ConditionTables kind :
+       {kTerminalOverview, kPageOverview, kAccuracyTable, kOtherEstimatorsTable}) {
+    const DataTable table = conditions_table(results.subjects, kind);
+    EXPECT_NE(shown & kind, 0U);
+    for (const auto& row : table.rows) {
+      EXPECT_TRUE(row.size() == 1 || row.size() == table.header.size());
+    }
+  }
+}
+
+TEST(ByFrameTable, SelectsAtMostTenFramesAndEndsWithTheLast) {
+  std::vector<FrameResult> results(37);
+  for (std::uint32_t i = 0; i < results.size(); ++i) {
+    results[i].frame = i;
+    results[i].valid = true;
+  }
+  const std::string table = terminal_text(by_frame_table(errors_by_frame(results, 37)));
+  const std::string header = table.substr(0, table.find('\n'));
+  EXPECT_NE(header.find(" 37"), std::string::npos) << header;
+  EXPECT_LE(header.size(), 100U);
+}
+
+TEST(CellTable, ShowsEveryEstimatorWithItsErrorAndThePapersFigures) {
+  CellResult cell;
+  cell.frames = 10;
+  cell.rcnn = summarise({1.0, 3.0});
+  cell.cnn = summarise({10.0, 30.0});
+  cell.baseline = summarise({50.0});
+  const std::string table = terminal_text(cell_table("near_shoemaker", cell));
+  for (const char* part : {"RCNN, 10 frames", "2.00 ± 1.00°", "12.69°", "88 %", "20.00 ± 10.00°", "40.94°"}) {
+    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
+  }
+  EXPECT_EQ(table.find("50.00 ±"), std::string::npos) << "the error of a single sequence cannot be known";
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
