@@ -10,7 +10,7 @@
 // from the same sources: the same code is compiled as often as before.
 #pragma once
 
-#include "gnc/nn/numerics.hpp"
+#include "gnc/nn/kernels/numerics.hpp"
 
 namespace tumblesight::fsw {
 

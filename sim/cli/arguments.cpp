@@ -143,7 +143,7 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed) {
 void add_float32_model_option(CLI::App& command, std::string& model) {
   command.add_option("--model", model, "model image in float32, as `tumblesight train` writes it")
       ->required()
-      ->check(CLI::ExistingFile)
+      ->check(existing_model_image())
       ->type_name("FILE");
 }
 

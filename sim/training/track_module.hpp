@@ -41,7 +41,7 @@ class TrackModule {
   Fusion advance(const FrameHypotheses& frame, const torch::Tensor& head_output);
 
  private:
-  torch::Tensor standing() const;  // log-likelihood minus the evidence required (gnc::kEvidenceAsked) [B, 5]
+  torch::Tensor standing() const;  // log-likelihood minus the evidence required (gnc::kRequiredEvidence) [B, 5]
   torch::Tensor law() const;       // index of the law with the highest standing [B]
 
   gnc::MotionLaws<float> laws_;

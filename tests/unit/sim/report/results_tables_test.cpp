@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "tests/unit/sim/report/sample_results.hpp"
+#include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {
