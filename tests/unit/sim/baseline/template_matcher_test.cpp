@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "sim/world/math/random.hpp"
+#include "sim/world/scenario/sequence.hpp"
 #include "tests/unit/sim/baseline/jointed_arm.hpp"
 
 namespace tumblesight::sim {
