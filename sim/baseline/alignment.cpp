@@ -12,23 +12,24 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kResidualLimit = 3.0;     // sigma
-constexpr double kDepthGate_m = 0.5;       // beside 2.5 sigma: pairs farther apart count little
-constexpr double kOutlineGate_rays = 4.0;  // the same for outlines, at the last iteration
+constexpr double kDepthGate_m = 0.5;       // or 2.5 sigma if larger: pairs farther apart have little weight
+constexpr double kOutlineGate_rays = 4.0;  // the same for outlines in the last iteration
 constexpr double kFirstOutlineGate_rays = 12.0;
-constexpr double kGrazing = 0.2;  // cosine: flatter surfaces say little along the ray
-constexpr double kSurfaceStep =
-    3.0;  // neighbours farther apart than this many ray spacings lie on two surfaces
-constexpr double kLargestTurn_rad = 0.25;  // of a step
-constexpr double kTurnDamping_rad = 0.5;   // prior of a step, so that what is not observed stays
+constexpr double kGrazing = 0.2;  // cosine of the incidence angle below which a pair is not used
+// Neighbours farther apart than this many ray spacings lie on two surfaces.
+constexpr double kSurfaceStep = 3.0;
+constexpr double kMaxTurn_rad = 0.25;     // per step
+constexpr double kTurnDamping_rad = 0.5;  // prior of a step: unobservable directions do not move
 constexpr double kMoveDamping_m = 1.0;
 constexpr double kStill_rad = 5e-4;
 constexpr double kStill_m = 2e-3;
 
-// The surface visible from a pose, in the view: the sensor turned so that its +y passes through the origin.
+// The surface visible from a pose, in the view frame: the sensor rotated so that its +y points at the TRF's
+// origin.
 struct Surface {
   RangeGrid grid;
   Eigen::Matrix3d r_view_lrf;
-  Eigen::Vector3d origin_m;  // of the TRF, in the view
+  Eigen::Vector3d origin_m;  // origin of the TRF in the view frame
 
   bool hit(int row, int column) const {
     return row >= 0 && row < grid.rays && column >= 0 && column < grid.rays &&
@@ -38,14 +39,14 @@ struct Surface {
     return Eigen::Vector3d(grid.slope(column), 1.0, -grid.slope(row)).normalized() *
            grid.range_m[row * grid.rays + column];
   }
-  // Cell that a line of sight falls into; false outside.
+  // The cell of a line of sight; false outside the grid.
   bool cell(const Eigen::Vector3d& direction, int& row, int& column) const {
     const double scale = 0.5 * grid.rays / (grid.tan_half_fov * direction.y());
     column = static_cast<int>(std::floor(0.5 * grid.rays + scale * direction.x()));
     row = static_cast<int>(std::floor(0.5 * grid.rays - scale * direction.z()));
     return row >= 0 && row < grid.rays && column >= 0 && column < grid.rays;
   }
-  // Difference of the points beside, along a row or a column; false across an edge.
+  // Difference of the two neighbouring points in a row or a column; false across an edge.
   bool tangent(int row, int column, int down, int right, Eigen::Vector3d& difference) const {
     if (!hit(row - down, column - right) || !hit(row + down, column + right)) return false;
     difference = point(row + down, column + right) - point(row - down, column - right);
@@ -64,19 +65,19 @@ Surface surface_at(const FlashLidar& lidar, double swath_m, const TargetPose& po
   return surface;
 }
 
-// Falls from 1 at 0 to 1/4 at the gate and on with the fourth power (Geman and McClure).
+// 1 at 0, 1/4 at the gate, then decreasing with the fourth power (Geman and McClure).
 double robust_weight(double residual, double gate) {
   const double ratio = residual / gate;
   const double w = 1.0 / (1.0 + ratio * ratio);
   return w * w;
 }
 
-// Normal equations of the small motion (turn, move) of the target about its origin, in the view.
+// Normal equations of a small motion (turn, move) of the target about its origin, in the view frame.
 struct Equations {
   Matrix6 information = Matrix6::Zero();
   Vector6 gradient = Vector6::Zero();
 
-  // A pair asks the point at `arm_m` from the origin to move by `wanted_m` along `along`.
+  // Adds a pair: the point at `arm_m` from the origin should move by `wanted_m` in the direction `along`.
   void add(const Eigen::Vector3d& arm_m, const Eigen::Vector3d& along, double wanted_m, double weight) {
     Vector6 row;
     row << arm_m.cross(along), along;
@@ -90,7 +91,7 @@ struct Equations {
     damped.diagonal().tail<3>().array() += 1.0 / (kMoveDamping_m * kMoveDamping_m);
     Vector6 step = damped.ldlt().solve(gradient);
     const double turn = step.head<3>().norm();
-    if (turn > kLargestTurn_rad) step *= kLargestTurn_rad / turn;
+    if (turn > kMaxTurn_rad) step *= kMaxTurn_rad / turn;
     return step;
   }
 };
@@ -154,7 +155,7 @@ void add_outline_pairs(const TargetScan& scan, const OutlineField& outline, cons
       const double right = lrf_m.x() / lrf_m.y(), up = lrf_m.z() / lrf_m.y();
       OutlineField::Distance distance;
       if (!outline.at(middle + right / rays_to_slope, middle - up / rays_to_slope, distance)) continue;
-      // The outermost cell's centre lies half a cell within the rendered outline.
+      // The centre of the outermost cell lies half a cell inside the rendered outline.
       const double out_rays = distance.out_rays + half_a_cell_rays;
       const Eigen::Vector2d g = distance.outwards;
       // A motion m changes the slopes by (m_x - right m_y, m_z - up m_y) / y.

@@ -1,4 +1,5 @@
-// Alignment: registers a scan with the target's surface, from an approximate pose (iterated closest points).
+// Alignment: registration of a scan with the target's surface from an approximate pose (iterative closest
+// points, ICP).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,30 +12,33 @@ namespace tumblesight::sim {
 
 struct TargetPose {
   Eigen::Quaterniond q_lrf_trf;
-  Eigen::Vector3d origin_lrf_m;  // of the TRF
+  Eigen::Vector3d origin_lrf_m;  // origin of the TRF
 };
 
 enum class AlignmentPairs {
   kRangesAndOutline,
-  kRangesOnly,  // as in textbook ICP, which knows points only; silhouettes count in residual_m still
+  kRangesOnly,  // as in textbook ICP, which uses points only; residual_m includes silhouettes in both cases
 };
 
-// Renders the surface that is visible from the current pose, pairs the scan with it and moves the pose by a
-// damped Gauss-Newton step, over again. Two kinds of pairs, each weighted by what the sensor knows of it:
-//   along a ray, the measured and the rendered point (point to plane), sigma = the range noise;
-//   across the rays, a point of the rendered outline and the measured outline next to it, sigma = one ray.
+// Iterates: renders the surface that is visible from the current pose, pairs the scan with it and moves the
+// pose by a damped Gauss-Newton step. There are two kinds of pairs, each weighted by the accuracy of the
+// sensor:
+//   along a ray: the measured and the rendered point (point to plane), sigma = the range noise;
+//   across the rays: a point of the rendered outline and the nearest measured outline, sigma = one ray
+//   spacing.
 class Alignment {
  public:
-  // `lidar` renders the target and must outlive this; swath_m: of its renderings (sim::swath_m).
+  // `lidar` renders the target and must outlive this object. `swath_m`: of its renderings (sim::swath_m).
   Alignment(const FlashLidar& lidar, double swath_m, AlignmentPairs pairs)
       : lidar_(lidar), swath_m_(swath_m), pairs_(pairs) {}
 
-  // At most `iterations` steps on renderings of rays x rays; fewer once they no longer move the pose.
+  // At most `iterations` steps on renderings of rays x rays; stops earlier when the pose has converged.
   TargetPose refine(const TargetScan& scan, const OutlineField& outline, TargetPose pose, int rays,
                     int iterations) const;
 
-  // Root mean square of range minus rendered range over all rays that one or the other sees hit the target.
-  // It counts as 3 sigma of the range noise where it is larger and where only one of them hits.
+  // Root mean square of the difference between measured and rendered range over all rays that hit the target
+  // in either. A difference is limited to 3 sigma of the range noise; it counts as 3 sigma where only one of
+  // them hits.
   double residual_m(const TargetScan& scan, const TargetPose& pose, int rays) const;
 
  private:

@@ -6,7 +6,7 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr int kFar = 1 << 12;  // no such ray; its square still fits an int
+constexpr int kFar = 1 << 12;  // no such ray; its square fits an int
 
 bool touches_blocked(const TargetScan& scan, int ray) {
   const int row = ray / scan.rays, column = ray % scan.rays;
@@ -20,7 +20,8 @@ bool touches_blocked(const TargetScan& scan, int ray) {
 
 }  // namespace
 
-// Danielsson's vector distance transform: down with rightward and leftward passes, then up likewise.
+// Danielsson's vector distance transform: downwards with passes to the right and to the left, then upwards
+// the same way.
 void OutlineField::sweep(std::vector<Step>& steps) const {
   const auto improve = [&](int row, int column, int step_right, int step_down) {
     const int from_row = row + step_down, from_column = column + step_right;
@@ -73,7 +74,7 @@ bool OutlineField::at(double column, double row, Distance& distance) const {
   const Step& step = steps_[ray];
   const double length = std::sqrt(static_cast<double>(step.squared()));
   const double sign = inside_[ray] ? -1.0 : 1.0;
-  // Outwards is away from the nearest ray on the target, or towards the nearest beside it.
+  // Outwards is away from the nearest ray on the target, or towards the nearest one outside it.
   distance.outwards = Eigen::Vector2d(-step.right, step.down) * (sign / length);
   distance.out_rays = sign * (length - 0.5) + distance.outwards.dot(Eigen::Vector2d(column - c, r - row));
   return true;

@@ -1,4 +1,4 @@
-// OutlineField: how far every ray of a scan lies from the target's outline as the scan shows it.
+// OutlineField: distance of every ray of a scan from the outline of the target in that scan.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,18 +11,18 @@ namespace tumblesight::sim {
 class OutlineField {
  public:
   struct Distance {
-    double out_rays;           // distance outwards; negative: within the target. In rays of the scan
-    Eigen::Vector2d outwards;  // its gradient, unit: right, up
+    double out_rays;           // signed distance in ray spacings; negative inside the target
+    Eigen::Vector2d outwards;  // its gradient, unit vector: right, up
   };
 
   explicit OutlineField(const TargetScan& scan);
 
-  // At `column`, `row` (ray centres at whole numbers). False where the outline is not known: outside the
-  // frame and where the nearest edge is that of something before the target.
+  // At `column`, `row` (ray centres at integers). False where the outline is not known: outside the frame,
+  // and where the nearest edge belongs to an object in front of the target.
   bool at(double column, double row, Distance& distance) const;
 
  private:
-  struct Step {  // from a ray to the nearest one on the other side of the outline
+  struct Step {  // offset from a ray to the nearest one on the other side of the outline
     int right = 0;
     int down = 0;
     int squared() const { return right * right + down * down; }

@@ -8,12 +8,12 @@ namespace tumblesight::sim {
 namespace {
 
 constexpr double kMargin = 1.1;
-constexpr float kEnoughRays = 0.25F;  // in a cell, to tell how much of it is covered
+constexpr float kEnoughRays = 0.25F;  // rays needed in a cell to know its cover
 
 struct Cells {
   std::array<float, Signature::kCells> rays{}, hits{}, depth{};
 
-  // Shared between the four nearest cells, so that a shift by part of a cell changes little.
+  // Distributed over the four nearest cells, so that a shift by part of a cell has little effect.
   void add(double column, double row, bool hit, float depth_m) {
     const int c = static_cast<int>(std::floor(column)), r = static_cast<int>(std::floor(row));
     for (int i = 0; i < 4; ++i) {

@@ -9,8 +9,9 @@ namespace tumblesight::sim {
 namespace {
 
 constexpr int kMinRays = 16;
-constexpr int kNeighboursOfADropout = 5;  // of 8: as many as a ray lost at a straight edge has
-constexpr double kOutlierWindow_m = 7.0;  // the largest target's radius: no return is farther from the middle
+constexpr int kNeighboursOfADropout = 5;  // of 8: the count of a ray lost at a straight edge
+constexpr double kOutlierWindow_m =
+    7.0;  // radius of the largest target: no return is farther from the centre
 
 void mark_dropouts(TargetScan& scan) {
   const std::vector<RayKind> seen = scan.kind;
@@ -29,7 +30,7 @@ void mark_dropouts(TargetScan& scan) {
   }
 }
 
-// Direction and range of the middle of the returns. The mean range is the same with noise and without.
+// Direction and range of the centre of the returns. The mean range is not biased by noise.
 void find_centre(TargetScan& scan) {
   std::vector<float> ranges;
   double right = 0.0, up = 0.0;

@@ -11,17 +11,18 @@ namespace {
 
 constexpr double kQuarterTurn_rad = 1.5707963267948966;
 constexpr double kGoldenAngle_rad = 2.399963229728653;
-constexpr double kTemplateRange_m = 40.0;  // between near frames, with much perspective, and far ones
+constexpr double kTemplateRange_m =
+    40.0;  // a compromise between near frames, with much perspective, and far ones
 constexpr int kTemplateRays = 64;
 constexpr int kCoarseRays = 64;
 constexpr int kFineRays = 128;
 constexpr int kFinalists = 4;           // candidates that are refined on fine renderings
 constexpr int kFinalIterations = 2;     // times icp_iterations
-constexpr double kShift_radii = 0.2;    // of the centroid, by what hides a part of the target
+constexpr double kShift_radii = 0.2;    // of the centroid if a part of the target is hidden
 constexpr int kRanked = 3000;           // templates among which candidates are sought
-constexpr double kDistinct_rad = 0.13;  // candidates nearer to each other end in the same place
-constexpr double kDepthTrust_m = 0.15;  // depth of a cell counts half as much as cover at this noise
-constexpr double kRaysToACell = 28.0;   // of a full frame
+constexpr double kDistinct_rad = 0.13;  // candidates closer to each other converge to the same attitude
+constexpr double kDepthTrust_m = 0.15;  // range noise of a cell at which depth counts half as much as cover
+constexpr double kRaysPerCell = 28.0;   // in a full frame
 
 void require(bool holds, const std::string& name, int value, const std::string& limit) {
   if (!holds) {
@@ -56,8 +57,8 @@ Eigen::Quaterniond centring(const Eigen::Vector3d& towards) {
   return Eigen::Quaterniond::FromTwoVectors(towards, Eigen::Vector3d::UnitY());
 }
 
-// Where the centroid of the returns may be if nothing were hidden: where it is, and around it if something
-// is.
+// Possible directions of the centroid if nothing were hidden: the measured one, and others around it if a
+// part of the target is hidden.
 std::vector<Eigen::Vector3d> possible_centres(const TargetScan& scan, double target_radius_m) {
   std::vector<Eigen::Vector3d> centres{scan.towards};
   if (std::find(scan.kind.begin(), scan.kind.end(), RayKind::kBlocked) == scan.kind.end()) return centres;
@@ -83,8 +84,8 @@ TemplateMatcher::TemplateMatcher(const TriangleMesh& mesh, double swath_m,
   render_templates();
 }
 
-// One rendering a direction; rolls within a quarter turn from the same returns, the other quarters by turning
-// the frame's signature instead.
+// One rendering per direction. Rolls within a quarter turn use the same returns; the other quarters are
+// covered by turning the frame's signature.
 void TemplateMatcher::render_templates() {
   const int rolls = settings_.rolls / 4;
   templates_.reserve(static_cast<std::size_t>(settings_.directions) * static_cast<std::size_t>(rolls));
@@ -92,7 +93,7 @@ void TemplateMatcher::render_templates() {
     const Eigen::Quaterniond q_lrf_trf = lattice_attitude(i, settings_.directions);
     const FrameTruth truth{q_lrf_trf, Eigen::Vector3d::Zero(), kTemplateRange_m};
     const auto scan = scan_of(lidar_.true_ranges(truth, kTemplateRays, swath_m_));
-    if (!scan) continue;  // edge-on, thinner than the rays are apart: no frame shows it either
+    if (!scan) continue;  // edge-on and thinner than the ray spacing: no frame shows it either
     for (int k = 0; k < rolls; ++k) {
       const double roll_rad = kQuarterTurn_rad * k / rolls;
       const Eigen::Quaterniond turn = rolled(roll_rad) * centring(scan->towards);
@@ -105,7 +106,7 @@ void TemplateMatcher::render_templates() {
 
 std::vector<TemplateMatcher::Candidate> TemplateMatcher::ranked(
     const TargetScan& scan, const std::vector<Eigen::Vector3d>& centres) const {
-  const double noise_m = range_sigma_m(scan.centre_range_m) / std::sqrt(kRaysToACell);
+  const double noise_m = range_sigma_m(scan.centre_range_m) / std::sqrt(kRaysPerCell);
   const double depth_weight = 1.0 / (1.0 + (noise_m / kDepthTrust_m) * (noise_m / kDepthTrust_m));
   std::vector<Candidate> all;
   all.reserve(4 * centres.size() * templates_.size());
@@ -138,7 +139,7 @@ TargetPose TemplateMatcher::pose_of(const Candidate& candidate, const Eigen::Vec
           to_lrf * (Eigen::Vector3d(0.0, range_m, 0.0) + t.origin_view_m)};
 }
 
-// The best templates, but only one of those close to each other.
+// The poses of the best templates, only one of those close to each other.
 std::vector<TargetPose> TemplateMatcher::starts(const TargetScan& scan) const {
   const std::vector<Eigen::Vector3d> centres = possible_centres(scan, target_radius_m_);
   std::vector<TargetPose> poses;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "sim/world/frame_renderer.hpp"
 #include "sim/world/math/random.hpp"
 #include "sim/world/target/near_shoemaker.hpp"
 #include "tests/support/test_models.hpp"

@@ -1,4 +1,4 @@
-// A model image with arbitrary weights: useless as a network, but a valid one that answers every frame.
+// A valid model image with arbitrary weights: its estimates are wrong, but it gives one for every frame.
 #pragma once
 
 #include <cstdint>

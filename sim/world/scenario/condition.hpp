@@ -66,8 +66,8 @@ inline constexpr ConditionRow kConditions[] = {
      kPaperSensor, RotationLaw::kTorqueFree, 1.0, false, 0.0, kBothRounds, false, false, kEveryTarget},
     {Condition::kStress, "stress", "tumbling with the inertia about z halved",
      kPaperSensor, RotationLaw::kTorqueFree, 0.5, false, 0.0, kNotTrained, false, false, "near_shoemaker"},
-    {Condition::kOffset, "offset", "target off the boresight by up to 20 % of the swath",
-     kPaperSensor, RotationLaw::kConstantRate, 1.0, false, kMaxOffset_swaths, kFirstRound, false, false, kEveryTarget},
+    {Condition::kOffset, "offset", "target off the boresight by up to 20 % of the swath", kPaperSensor,
+     RotationLaw::kConstantRate, 1.0, false, kMaxOffset_swaths, kFirstRound, false, false, kEveryTarget},
     {Condition::kOutliers, "outliers", "1 % of the returns wrong by 5 sigma to 20 m",
      kOutlierSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, kSecondRound, false, true, kEveryTarget},
 };

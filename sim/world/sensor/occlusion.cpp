@@ -16,7 +16,7 @@ struct Axes {
   double along_y;
 };
 
-// The smallest value that is not exceeded by `share` of the values, and by at least one. Reorders the values.
+// The smallest of the values that at least `share` of them, and at least one, do not exceed. Reorders them.
 double quantile(std::vector<double>& values, double share) {
   const auto count = static_cast<long>(values.size());
   const long wanted = std::clamp(std::lround(share * static_cast<double>(count)), 1L, count);

@@ -18,13 +18,13 @@ using nlohmann::json;
 
 constexpr int kMaxDepth = 32;
 constexpr std::uint64_t kMaxElements = 100'000'000;
-constexpr std::size_t kGlbHeaderBytes = 20;  // the file's, 12, and the first chunk's
+constexpr std::size_t kGlbHeaderBytes = 20;  // 12 of the file and 8 of its first chunk
 
 [[noreturn]] void fail(const std::string& why) {
   throw std::runtime_error("cannot be read: " + why + "; export it again");
 }
 
-// Refuses what two readers could take for two different things, or what exhausts the stack of one.
+// Refuses duplicate keys, which parsers interpret differently, and deep nesting, which exhausts the stack.
 class Strict {
  public:
   bool operator()(int depth, json::parse_event_t event, const json& parsed) {
@@ -59,7 +59,7 @@ const json& member(const json& object, const char* key, const std::string& where
   return *found;
 }
 
-// An array that may be left out.
+// An optional array; empty if absent.
 const json& list(const json& object, const char* key) {
   static const json kNone = json::array();
   const auto found = object.find(key);
@@ -76,7 +76,7 @@ std::uint64_t whole(const json& value, std::uint64_t limit, const std::string& w
   return value.get<std::uint64_t>();
 }
 
-using Counts = std::vector<std::uint64_t>;  // of the elements of each accessor
+using Counts = std::vector<std::uint64_t>;  // elements per accessor
 
 Counts accessor_counts(const json& file) {
   Counts counts;
@@ -91,8 +91,8 @@ std::uint64_t count_of(const json& accessor, const Counts& counts, const std::st
   return counts[whole(accessor, counts.size(), where)];
 }
 
-// Points, lines (3 ways), triangles, strips and fans of them, in the order of their numbers.
-constexpr std::array<std::uint64_t, 7> kFewest{1, 2, 2, 2, 3, 3, 3};
+// By primitive mode: points, lines, line loop, line strip, triangles, triangle strip, triangle fan.
+constexpr std::array<std::uint64_t, 7> kMinCorners{1, 2, 2, 2, 3, 3, 3};
 
 void check_primitive(const json& primitive, const Counts& counts, const std::string& where) {
   const json& attributes = member(primitive, "attributes", where);
@@ -100,15 +100,15 @@ void check_primitive(const json& primitive, const Counts& counts, const std::str
       count_of(member(attributes, "POSITION", where + "'s attributes"), counts, where + "'s POSITION");
   for (const auto& [name, accessor] : attributes.items()) {
     if (count_of(accessor, counts, where + "'s attribute") != elements) {
-      fail(where + " has not as many of each attribute");
+      fail(where + " has attributes of different counts");
     }
   }
   const auto indices = primitive.find("indices");
   if (indices != primitive.end()) elements = count_of(*indices, counts, where + "'s indices");
-  const std::uint64_t mode = whole(primitive.value("mode", json(4U)), kFewest.size(), where + "'s mode");
-  if (elements < kFewest[mode]) {
+  const std::uint64_t mode = whole(primitive.value("mode", json(4U)), kMinCorners.size(), where + "'s mode");
+  if (elements < kMinCorners[mode]) {
     fail(where + " of mode " + std::to_string(mode) + " has " + std::to_string(elements) +
-         " corners, fewer than " + std::to_string(kFewest[mode]));
+         " corners, fewer than " + std::to_string(kMinCorners[mode]));
   }
 }
 
@@ -135,7 +135,7 @@ void check_gltf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos || text[first] != '{') fail("it does not begin as a glTF file does, with {");
+  if (first == std::string::npos || text[first] != '{') fail("it does not begin with {, as a glTF file does");
   check_json(text);
 }
 
@@ -155,7 +155,7 @@ void check_glb(const std::string& path) {
   if (!std::equal(header.begin() + 16, header.end(), "JSON")) fail("its first part is not JSON");
   std::string text(u32(12), '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.erase(text.find_last_not_of('\0') + 1);  // with which some programs fill up to four bytes
+  text.erase(text.find_last_not_of('\0') + 1);  // padding of some exporters
   check_json(text);
 }
 

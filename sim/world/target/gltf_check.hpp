@@ -1,13 +1,13 @@
-// What glTF 2.0 files must hold before Assimp sees them. It trusts their counts: a strip of no points becomes
-// four thousand million triangles, a header's length the memory that it reserves.
+// Checks of glTF 2.0 files before Assimp reads them. Assimp trusts their counts: it turns a strip without
+// points into four billion triangles and reserves as much memory as a header claims.
 #pragma once
 
 #include <string>
 
 namespace tumblesight::sim {
 
-// Reads the file's JSON (of a GLB file, its first chunk). Throws std::runtime_error that says what is wrong,
-// without the file's name.
+// Check the JSON of the file (in a GLB file: its first chunk). Throw std::runtime_error that says what is
+// wrong, without the name of the file.
 void check_gltf(const std::string& path);
 void check_glb(const std::string& path);
 

@@ -3,13 +3,13 @@
 #include <iterator>
 #include <vector>
 
+#include "sim/world/math/angles.hpp"
 #include "sim/world/target/primitives.hpp"
 
 namespace tumblesight::sim {
 
 namespace {
 
-constexpr float kPi = 3.14159265359F;
 constexpr int kX = 0;
 constexpr int kY = 1;
 
@@ -51,7 +51,7 @@ TriangleMesh subreflector() {
   append(mesh, revolve(antenna, 12));
   TriangleMesh pair =
       with_mirror_image(tube({0.888F, 0.025F, 1.394F}, {0.169F, 0.250F, 2.494F}, 0.013F, 0.013F, 6), kY);
-  for (const float heading : {0.0F, 2.0F * kPi / 3.0F, 4.0F * kPi / 3.0F}) {
+  for (const float heading : {0.0F, 2.0F * kPi_f / 3.0F, 4.0F * kPi_f / 3.0F}) {
     append(mesh, placed(pair, turned(heading)));
     append(mesh, placed(box_between({-0.320F, -0.042F, 2.484F}, {-0.270F, 0.042F, 2.510F}), turned(heading)));
   }
@@ -91,7 +91,7 @@ TriangleMesh bus() {
   for (const Level& level : kLevels) {
     Loop& loop = loops.emplace_back();
     for (int side = 0; side < kSides; ++side) {
-      const Eigen::Isometry3f pose = turned(2.0F * kPi * static_cast<float>(side) / kSides);
+      const Eigen::Isometry3f pose = turned(2.0F * kPi_f * static_cast<float>(side) / kSides);
       loop.push_back(pose * Eigen::Vector3f(level.apothem, -level.half_flat, level.z));
       loop.push_back(pose * Eigen::Vector3f(level.apothem, level.half_flat, level.z));
     }
@@ -187,7 +187,7 @@ TriangleMesh medium_gain_antenna() {
   TriangleMesh mesh =
       placed(revolve(cone, 24), frame_along({0.0F, 0.848F, -0.5525F}, {0.0F, 0.882F, 0.471F}));
   append(mesh, upright_prism({{0.727F, -0.584F}, {0.876F, -0.584F}, {0.876F, -0.473F}, {0.798F, -0.482F}},
-                             kPi / 2.0F, -0.064F, 0.064F));
+                             kPi_f / 2.0F, -0.064F, 0.064F));
   return mesh;
 }
 
@@ -235,7 +235,7 @@ TriangleMesh thruster_pod() {
 }
 
 TriangleMesh pods_and_struts() {
-  TriangleMesh one = placed(thruster_pod(), turned(kPi / 4.0F));
+  TriangleMesh one = placed(thruster_pod(), turned(kPi_f / 4.0F));
   append(one, tube({0.203F, 0.321F, -1.141F}, {1.169F, 1.365F, -1.283F}, 0.050F, 0.040F, 6));
   const Eigen::Vector3f rods[][2] = {{{0.810F, 0.048F, -1.663F}, {1.443F, 1.429F, -1.545F}},
                                      {{0.114F, 0.798F, -1.660F}, {1.418F, 1.456F, -1.545F}},

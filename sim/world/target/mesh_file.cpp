@@ -26,7 +26,8 @@ namespace tumblesight::sim {
 
 namespace {
 
-// A triangle whose area is below this share of its longest edge squared has none, in single precision.
+// A triangle with an area below this share of its longest edge squared counts as one without area: the limit
+// of single precision.
 constexpr double kMinAreaShare = 1e-7;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
@@ -45,8 +46,8 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
-// Of the many formats that Assimp reads these are the ones promised, and tested with damaged files
-// (tests/fuzz); with others such files can end the program.
+// Assimp reads more formats. Only these are supported and tested with damaged files (tests/fuzz); damaged
+// files of other formats can crash it.
 void check_format(const std::string& path) {
   const std::string extension = extension_of(path);
   for (const char* known : {".stl", ".obj", ".gltf", ".glb"}) {
@@ -96,8 +97,9 @@ void check_vertices(const std::string& path, const std::vector<Eigen::Vector3f>&
                    number(first->y()) + ", " + number(first->z()) + "); repair the mesh and export it again");
 }
 
-// Gives vertices at exactly one place one index. (Assimp's own step joins within a tolerance in the file's
-// unit, which can make small triangles degenerate, and takes not-a-number for equal to anything.)
+// Gives vertices at exactly the same place the same index. (The step of Assimp joins within a tolerance in
+// the unit of the file, which can make small triangles degenerate, and treats not-a-number as equal to
+// anything.)
 void join_equal_vertices(TriangleMesh& mesh) {
   std::map<std::array<float, 3>, std::uint32_t> index_at;
   std::vector<std::uint32_t> joined;
@@ -145,14 +147,15 @@ void check_triangles(const std::string& path, const TriangleMesh& mesh) {
 
 void check_radius(const std::string& path, const TriangleMesh& mesh, double scale) {
   const double radius = mesh.radius_m();
-  const std::string measured = "its farthest vertex lies " + number(radius) + " m from the origin";
+  const std::string measured = "its farthest vertex is " + number(radius) + " m from the origin";
   const std::string advice =
-      "; the file's unit is probably not the metre: give its length in metres with --mesh-scale"
+      "; the unit of the file is probably not the metre: give its length in metres with --mesh-scale"
       " (now " +
       number(scale) + ", 0.001 for millimetres)";
   if (radius > kMaxMeshRadius_m) {
-    refuse(path, measured + ", the sensor's 40 degrees hold " + number(kMaxMeshRadius_m) +
-                     " m at 20 m range" + advice + ", or the mesh is not centred on its origin");
+    refuse(path, measured + ", at most " + number(kMaxMeshRadius_m) +
+                     " m fit into the sensor's 40 degrees at a range of 20 m" + advice +
+                     ", or the mesh is not centred on its origin");
   }
   if (radius < kMinMeshRadius_m) {
     refuse(path, measured + ", at least " + number(kMinMeshRadius_m) + " m are needed" + advice);
@@ -161,7 +164,7 @@ void check_radius(const std::string& path, const TriangleMesh& mesh, double scal
 
 #ifdef TUMBLESIGHT_HAS_ASSIMP
 
-// Turns the file's axes into the TRF's.
+// Rotation from the axes of the file to the TRF.
 Eigen::Matrix3d axes_trf_file(MeshUp up) {
   if (up == MeshUp::kZ) {
     return Eigen::Matrix3d::Identity();
@@ -189,7 +192,7 @@ void append_faces(const aiMesh& part, const MeshFileOptions& options, TriangleMe
 
 TriangleMesh import(const std::string& path, const MeshFileOptions& options) {
   Assimp::Importer importer;
-  // Only the surface matters. Points and lines are sorted into meshes of their own and left out: no ray meets
+  // Only the surface is needed. Points and lines are sorted into separate meshes and left out: no ray hits
   // them.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                               aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
@@ -201,7 +204,7 @@ TriangleMesh import(const std::string& path, const MeshFileOptions& options) {
   const aiScene* scene = nullptr;
   try {
     scene = importer.ReadFile(path, steps);
-  } catch (const std::exception& error) {  // out of memory, for instance
+  } catch (const std::exception& error) {  // for instance out of memory
     refuse(path, std::string("cannot be read: ") + error.what());
   }
   if (scene == nullptr || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0U) {
@@ -254,7 +257,7 @@ MeshUp mesh_up_from(const std::string& name) {
   if (name == "z") {
     return MeshUp::kZ;
   }
-  throw std::invalid_argument("mesh up axis '" + name + "' is unknown; it is y or z");
+  throw std::invalid_argument("mesh up axis '" + name + "' is unknown; it must be y or z");
 }
 
 }  // namespace tumblesight::sim

@@ -7,8 +7,8 @@
 
 namespace tumblesight::sim {
 
-// Which of the file's axes points up, that is along the TRF's z. glTF is y-up by its standard; STL and OBJ do
-// not say, and y is the default for them too, so that one default holds for all files.
+// The axis of the file that points up, that is along the TRF's z. glTF is y-up by its standard. STL and OBJ
+// do not define it; y is the default for them too, so that one default holds for all files.
 enum class MeshUp {
   kY,  // TRF x = file x, y = -file z, z = file y
   kZ,  // the file's axes are the TRF's
@@ -16,21 +16,23 @@ enum class MeshUp {
 
 struct MeshFileOptions {
   MeshUp up = MeshUp::kY;
-  double scale = 1.0;  // metres to a unit of the file
+  double scale = 1.0;  // metres per unit of the file, positive
 };
 
-// A mesh must fit the sensor at the scenarios' shortest range (20 m, field of view at most 40 degrees: a
-// swath of 14.5 m, less a margin), and a target smaller than a hand is a wrong unit.
+// A mesh must fit into the sensor's field of view at the shortest range of the scenarios: at 20 m, 40 degrees
+// cover a swath of 14.5 m, from which a margin is subtracted. A target smaller than a hand indicates a wrong
+// unit.
 inline constexpr double kMaxMeshRadius_m = 6.9;
 inline constexpr double kMinMeshRadius_m = 0.1;
 
-// The file's triangles in the TRF, metres, with its node transforms applied and equal vertices joined; the
-// file is trusted to have its origin where the TRF's origin shall be. Nothing is repaired or removed but what
-// Assimp leaves out on reading (points, lines, glTF faces with an index out of range): a file with a fault is
-// refused. Throws std::runtime_error that names the file, what is wrong with it, the value and the limit, and
-// what to do, for: scale not positive or not finite; file missing, unreadable, or not named .stl, .obj, .gltf
-// or .glb and of that format; no triangles; vertices that are not finite; triangles without area; a radius
-// outside kMinMeshRadius_m..kMaxMeshRadius_m.
+// The triangles of the file in the TRF, in metres, with node transforms applied and equal vertices joined.
+// The origin of the file becomes the origin of the TRF. A faulty file is refused, not repaired; only what
+// Assimp itself skips is left out (points, lines, glTF faces with an index out of range).
+//
+// Throws std::runtime_error that names the file, the fault, the value, the limit and the remedy for: a scale
+// that is not positive and finite; a file that is missing, unreadable, or not of the format that its
+// extension .stl, .obj, .gltf or .glb names; no triangles; vertices that are not finite; triangles without
+// area; a radius outside kMinMeshRadius_m..kMaxMeshRadius_m.
 TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 
 // "y" or "z"; throws std::invalid_argument otherwise.

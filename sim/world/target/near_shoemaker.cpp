@@ -3,15 +3,15 @@
 #include <cmath>
 #include <iterator>
 
+#include "sim/world/math/angles.hpp"
 #include "sim/world/target/primitives.hpp"
 
 namespace tumblesight::sim {
 
 namespace {
 
-constexpr float kPi = 3.14159265359F;
-constexpr float kQuarterTurn = kPi / 2.0F;
-constexpr float kDiagonal = kPi / 4.0F;                // heading of the corner between +x and +y
+constexpr float kQuarterTurn = kPi_f / 2.0F;
+constexpr float kDiagonal = kPi_f / 4.0F;              // heading of the corner between +x and +y
 constexpr float kOppositeDiagonal = 5.0F * kDiagonal;  // of the corner between -x and -y
 
 // Body and decks. The body is a regular octagon with flats on +-x, +-y and the diagonals.
@@ -24,8 +24,8 @@ constexpr float kDeckThickness = 0.051F;
 constexpr float kAftDeck_z = -0.973F;  // outer faces of the decks
 constexpr float kForwardDeck_z = 0.529F;
 
-// The main thruster: a horn sunk into the flat between +x and +y with the bell in it. Distances u along the
-// diagonal.
+// The main thruster: a horn recessed in the flat between +x and +y, with the bell inside. Distances u are
+// along the diagonal.
 constexpr float kThruster_z = -0.222F;
 constexpr float kHornTip_u = 0.335F;
 constexpr float kHornMouth_u = 0.804F;
@@ -52,7 +52,7 @@ TriangleMesh diagonal_flat_with_hole(float half_edge) {
 }
 
 TriangleMesh body() {
-  const float half_edge = kBodyFlat * std::tan(kPi / 8.0F);
+  const float half_edge = kBodyFlat * std::tan(kPi_f / 8.0F);
   TriangleMesh mesh;
   for (int side = 0; side < 8; ++side) {
     if (side == 1) {
@@ -68,7 +68,7 @@ TriangleMesh body() {
   return mesh;
 }
 
-// A square deck. The forward one lacks the corners (+x,-y) and (-x,+y), the aft one (+x,+y) and (-x,-y).
+// The square decks. The forward one lacks the corners (+x,-y) and (-x,+y), the aft one (+x,+y) and (-x,-y).
 TriangleMesh decks() {
   const float a = kDeckHalf;
   const float c = kDeckHalf - kDeckChamfer;
@@ -79,7 +79,7 @@ TriangleMesh decks() {
   return mesh;
 }
 
-// The gussets that widen the body's diagonal flats, in a concave sweep, to the corners of the decks.
+// The gussets between the body's diagonal flats and the corners of the decks, with a concave profile.
 TriangleMesh gussets() {
   // Cross-sections from the body to the deck: height above the first, and the outline's points in order.
   struct Section {
@@ -108,7 +108,7 @@ TriangleMesh gussets() {
   return mesh;
 }
 
-// One solar panel on +x with its two brackets and their feet on the forward deck; the others are turned
+// One solar panel on +x with its two brackets and their feet on the forward deck. The others are rotated
 // copies.
 TriangleMesh panels() {
   TriangleMesh one =
@@ -137,8 +137,7 @@ TriangleMesh panels() {
   return mesh;
 }
 
-// High-gain antenna: dish on a conical skirt, feed on a tripod. The tripod has three legs under a four-fold
-// body.
+// High-gain antenna: dish on a conical skirt, feed on a tripod, which breaks the four-fold symmetry.
 TriangleMesh antenna() {
   const Outline dish = {{0.0F, 0.590F},   {0.106F, 0.590F}, {0.280F, 0.600F}, {0.453F, 0.630F},
                         {0.561F, 0.661F}, {0.659F, 0.707F}, {0.750F, 0.757F}, {0.750F, 0.720F},
@@ -209,7 +208,7 @@ TriangleMesh deck_boxes() {
   TriangleMesh mesh;
   for (const DeckBox& b : kDeckBoxes) {
     const Eigen::Isometry3f pose =
-        Eigen::Translation3f(b.x, b.y, (b.z_from + b.z_to) / 2.0F) * turned(b.yaw_deg * kPi / 180.0F);
+        Eigen::Translation3f(b.x, b.y, (b.z_from + b.z_to) / 2.0F) * turned(b.yaw_deg * kPi_f / 180.0F);
     append(mesh, placed(box({b.along, b.across, b.z_to - b.z_from}), pose));
   }
   return mesh;
@@ -249,7 +248,7 @@ TriangleMesh aft_instruments() {
   append(mesh, upright_prism({{0.629F, -0.973F}, {0.784F, -1.094F}, {0.880F, -0.973F}}, kDiagonal, -0.128F,
                              0.128F));
   // On -x: the camera, its optics towards the corner (-x,-y).
-  constexpr float kCameraHeading = 46.2F * kPi / 180.0F;
+  constexpr float kCameraHeading = 46.2F * kPi_f / 180.0F;
   append(mesh, upright_prism({{-0.376F, -0.973F},
                               {-0.368F, -1.065F},
                               {-0.282F, -1.104F},

@@ -1,9 +1,10 @@
-// Surfaces that a spacecraft is composed of: caps, bands, boxes, prisms, surfaces of revolution, tubes.
+// Primitives: the surfaces that a spacecraft is composed of: caps, bands, boxes, prisms, surfaces of
+// revolution, tubes.
 //
-// All lengths are in metres, all coordinates in the frame in which the part is built; `placed` moves a part
-// into another. Faces are one-sheeted and reflect on both sides, so the winding carries no meaning. Every
-// function but those that move or join parts throws std::invalid_argument when its loop has too few points or
-// its size is not positive.
+// Lengths are in metres, coordinates in the frame in which the part is built; `placed` moves a part into
+// another frame. Faces are single sheets that reflect on both sides, so that the winding has no meaning.
+// Every function that makes a surface throws std::invalid_argument if its loop has too few points or its size
+// is not positive.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,27 +17,27 @@ namespace tumblesight::sim {
 using Loop = std::vector<Eigen::Vector3f>;     // a closed polygon in space, first point not repeated
 using Outline = std::vector<Eigen::Vector2f>;  // a polygon in a plane
 
-// Adds the vertices and triangles of `part` to `whole`; the name of `whole` stays.
+// Adds the vertices and triangles of `part` to `whole`; the name of `whole` does not change.
 void append(TriangleMesh& whole, const TriangleMesh& part);
-// The part, each vertex p moved to pose * p.
+// The part with each vertex p moved to pose * p.
 TriangleMesh placed(TriangleMesh part, const Eigen::Isometry3f& pose);
-// The part, mirrored in the plane through the origin across the axis (0 = x, 1 = y, 2 = z).
+// The part, reflected in the plane through the origin across the axis (0 = x, 1 = y, 2 = z).
 TriangleMesh mirrored(TriangleMesh part, int axis);
 // The part and its mirror image.
 TriangleMesh with_mirror_image(const TriangleMesh& part, int axis);
 
-// The convex, plane polygon within a loop.
+// The polygon enclosed by a loop, which must be convex and planar.
 TriangleMesh cap(const Loop& loop);
 // The strip between two loops of equally many points, point i of one joined to point i of the other.
 TriangleMesh band(const Loop& from, const Loop& to);
 // The open strip between two chains of equally many points, at least two.
 TriangleMesh strip(const Loop& from, const Loop& to);
-// The closed solid between two such loops: two caps and a band.
+// The closed surface between two loops of equally many points: two caps and a band.
 TriangleMesh loft(const Loop& from, const Loop& to);
 
 // The outline, point by point, at height z.
 Loop loop_at(const Outline& outline, float z);
-// `sides` corners at `radius` round the z axis, the first at angle `first_corner_rad` from +x.
+// `sides` corners at `radius` around the z axis, the first at angle `first_corner_rad` from +x.
 Outline regular_polygon(int sides, float radius, float first_corner_rad);
 
 // A box centred at the origin with its edges along the axes.
@@ -52,8 +53,8 @@ TriangleMesh upright_prism(const Outline& profile_uz, float heading_rad, float v
 // A closed frustum of a regular pyramid on the z axis; radii are those of the corners.
 TriangleMesh frustum(int sides, float radius_from, float radius_to, float z_from, float z_to,
                      float first_corner_rad = 0.0F);
-// The surface that a profile of points (r, z), r >= 0, sweeps round the z axis in `sides` steps. Open where
-// the profile ends off the axis; a profile that ends at r = 0 closes it.
+// The surface of revolution of a profile of points (r, z), r >= 0, about the z axis in `sides` steps. Open
+// where the profile ends off the axis, closed where it ends at r = 0.
 TriangleMesh revolve(const Outline& profile_rz, int sides);
 // A closed cylinder (or cone frustum) between two points.
 TriangleMesh tube(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float radius_from, float radius_to,
@@ -62,7 +63,7 @@ TriangleMesh tube(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float 
 Eigen::Isometry3f frame_along(const Eigen::Vector3f& origin, const Eigen::Vector3f& axis);
 // Pose of a frame at `origin` whose x axis points along `x` and whose y axis is `y`, made perpendicular to x.
 Eigen::Isometry3f frame_at(const Eigen::Vector3f& origin, const Eigen::Vector3f& x, const Eigen::Vector3f& y);
-// Pose of a frame at the origin, turned about z.
+// Pose of a frame at the origin, rotated about z.
 Eigen::Isometry3f turned(float angle_rad);
 
 }  // namespace tumblesight::sim

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <iterator>
 
+#include "sim/world/math/angles.hpp"
 #include "sim/world/target/primitives.hpp"
 
 namespace tumblesight::sim {
 
 namespace {
 
-constexpr float kPi = 3.14159265359F;
 constexpr int kX = 0;
 constexpr int kY = 1;
 
@@ -19,7 +19,7 @@ constexpr float kBusTop_z = 0.885F;
 constexpr float kBusBottom_z = -1.136F;
 
 TriangleMesh bus() {
-  TriangleMesh mesh = prism(regular_polygon(8, kBusCorner, kPi / 8.0F), kBusBottom_z, kBusTop_z);
+  TriangleMesh mesh = prism(regular_polygon(8, kBusCorner, kPi_f / 8.0F), kBusBottom_z, kBusTop_z);
   append(mesh, revolve({{0.642F, -1.137F},
                         {0.721F, -1.273F},
                         {0.722F, -1.323F},
@@ -30,10 +30,12 @@ TriangleMesh bus() {
   return mesh;
 }
 
-// The faceted funnel that shades the bus: eight corners on the bus, eight on the rim, half a side further.
+// The faceted sunshield: eight corners on the bus and eight on the rim, rotated by half a side.
 TriangleMesh sunshield() {
   const auto rim = [](float radius, float z) { return loop_at(regular_polygon(8, radius, 0.0F), z); };
-  const auto foot = [](float radius, float z) { return loop_at(regular_polygon(8, radius, -kPi / 8.0F), z); };
+  const auto foot = [](float radius, float z) {
+    return loop_at(regular_polygon(8, radius, -kPi_f / 8.0F), z);
+  };
   const Loop loops[] = {rim(1.250F, 1.219F), rim(1.259F, 1.234F), rim(1.250F, 1.250F),
                         rim(1.234F, 1.250F), rim(1.225F, 1.234F), rim(1.234F, 1.219F)};
   TriangleMesh mesh = band(loops[0], foot(0.656F, 0.885F));
@@ -41,7 +43,7 @@ TriangleMesh sunshield() {
     append(mesh, band(loops[i - 1], loops[i]));
   }
   append(mesh, band(loops[5], foot(0.645F, 0.889F)));
-  // Spokes along the folds and rods round the foot.
+  // Spokes along the folds and rods around the foot.
   const Loop spoke_foot = foot(0.647F, 0.894F);
   const Loop spoke_end = rim(1.250F, 1.231F);
   for (std::size_t i = 0; i < spoke_foot.size(); ++i) {
@@ -145,8 +147,8 @@ constexpr float kRear_z = 0.035F;  // of the rim's rear edge
 
 // The round part of the rim beyond the bite, at a radius and a height.
 Loop beyond_bite(float radius, float z) {
-  constexpr float kFrom = 144.5F * kPi / 180.0F;
-  constexpr float kTo = 482.5F * kPi / 180.0F;
+  constexpr float kFrom = 144.5F * kPi_f / 180.0F;
+  constexpr float kTo = 482.5F * kPi_f / 180.0F;
   constexpr int kSteps = 46;
   Loop chain;
   for (int i = 0; i <= kSteps; ++i) {
@@ -276,7 +278,7 @@ TriangleMesh solar_panel(bool with_windows) {
   return mesh;
 }
 
-// The fitting on the bus that a panel turns about.
+// The hinge fitting of a panel on the bus.
 const Eigen::Vector3f kPanelHinge(0.0F, 0.676F, -1.084F);
 
 TriangleMesh panel_hinges() {
@@ -291,7 +293,7 @@ Eigen::Isometry3f turned_about(const Eigen::Vector3f& point, const Eigen::Vector
   return Eigen::Translation3f(point) * Eigen::AngleAxisf(angle_rad, axis) * Eigen::Translation3f(-point);
 }
 
-// Both panels, each moved from its stowed place by `pose` or its mirror image.
+// Both panels, each moved from its stowed position by `pose` or its mirror image.
 TriangleMesh panels(const Eigen::Isometry3f& pose) {
   TriangleMesh mesh = placed(solar_panel(false), pose);
   append(mesh, mirrored(placed(solar_panel(true), pose), kY));
@@ -320,9 +322,9 @@ TriangleMesh make_sacd_aquarius_stowed() {
 }
 
 TriangleMesh make_sacd_aquarius() {
-  constexpr float kQuarterTurn = kPi / 2.0F;
+  constexpr float kQuarterTurn = kPi_f / 2.0F;
   constexpr float kBoomSwing =
-      74.6F * kPi / 180.0F;  // brings the reflector's centre into the horns' middle axis
+      74.6F * kPi_f / 180.0F;  // moves the reflector's centre onto the horns' middle axis
   const Eigen::Isometry3f panel_pose = turned_about(kPanelHinge, Eigen::Vector3f::UnitX(), -kQuarterTurn);
   const Eigen::Isometry3f boom_pose = turned_about(kBoomFoot, Eigen::Vector3f::UnitY(), -kBoomSwing);
   // Rear side towards -x, the hinge at the boom's end.

@@ -1,22 +1,25 @@
-// SAC-D/Aquarius: the parametric targets that ship with Tumblesight, as launched (stowed) and as flown.
+// SAC-D/Aquarius: two parametric meshes that ship with Tumblesight, the launch configuration (stowed) and the
+// flight configuration.
 //
 // TRF: z along the bus from the launch adapter to the reflector's end, the solar panels on +-y, the feed
-// horns looking towards -x, metres; origin as in the stowed display model. Stowed: box x and y +-1.26, z
-// -1.32..2.95.
+// horns facing -x, metres. The origin is that of the stowed display model. Bounding box stowed: x and y
+// +-1.26, z -1.32..2.95.
 //
-// Measured, off the stowed display model of "NASA 3D Resources": every part and, stowed, its place. Parts
-// smaller than about 2 cm are left out. There is no display model of the flight configuration; these are our
-// assumptions for it, led by that model's hinges:
-// - Each panel has swung out by 90 deg about the hinge at the lower end of the bus (axis along x, y +-0.68,
-//   z -1.08), so that it lies across z; its cut-outs then clear the launch adapter. Wings are not turned to
-//   the Sun.
-// - The boom has swung about the axis of its foot (along y, x -0.72, z 1.21) towards -x, and the reflector
-//   about the axis at the boom's end until its rim stands along z, its hollow side towards the horns. The
-//   boom's swing is the one for which the middle of the three horns' axes meets the reflector's centre, 1.7 m
+// The parts and their stowed positions were measured on the stowed display model of "NASA 3D Resources".
+// Parts smaller than about 2 cm are left out. There is no display model of the flight configuration. It is
+// derived from the hinges of the stowed one with these assumptions:
+// - Each panel is rotated outwards by 90 deg about the hinge at the lower end of the bus (axis along x, y
+// +-0.68,
+//   z -1.08), so that it is perpendicular to z; its cut-outs then clear the launch adapter. The panels do not
+//   track the Sun.
+// - The boom is rotated towards -x about the axis of its foot (along y, x -0.72, z 1.21). The reflector is
+// rotated about
+//   the axis at the boom's end until its rim is parallel to z, with its concave side towards the horns. The
+//   boom's angle is the one at which the middle of the three horns' axes meets the reflector's centre, 1.7 m
 //   from their mouths.
-// - The launch struts on the feed structure have stayed where they were.
-// The result agrees with the inertia that the paper gives for the spacecraft as flown: x-z is the plane of
-// symmetry and the mass lies along the direction from +x, -z to -x, +z.
+// - The launch struts on the feed structure do not move.
+// The result agrees with the inertia that the paper gives for the flight configuration: x-z is the plane of
+// symmetry, and the mass extends from +x, -z to -x, +z.
 #pragma once
 
 #include "sim/world/target/triangle_mesh.hpp"
@@ -26,8 +29,8 @@ namespace tumblesight::sim {
 TriangleMesh make_sacd_aquarius();
 TriangleMesh make_sacd_aquarius_stowed();
 
-// Instruments, thrusters, wheels and radiators around the bus, the same in both configurations; a part of the
-// above.
+// Instruments, thrusters, wheels and radiators around the bus, the same in both configurations. Part of both
+// meshes.
 TriangleMesh make_sacd_aquarius_equipment();
 
 }  // namespace tumblesight::sim

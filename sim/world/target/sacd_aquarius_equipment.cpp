@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kY = 1;
 
-// A cylinder along x, between two places.
+// A cylinder along x between two positions.
 TriangleMesh rod_along_x(float x_from, float x_to, float y, float z, float radius) {
   return tube({x_from, y, z}, {x_to, y, z}, radius, radius, 12);
 }
@@ -130,7 +130,7 @@ TriangleMesh small_antennas() {
   return mesh;
 }
 
-// Round rods that stand out on +-x, each with what it carries at its end.
+// Round rods on +-x, each with the equipment at its end.
 TriangleMesh stand_offs() {
   TriangleMesh mesh;
   // +x: a pair of thrusters on a plate, and two single ones.

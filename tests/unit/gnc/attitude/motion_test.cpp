@@ -8,11 +8,11 @@
 #include <random>
 
 #include "gnc/attitude/rotation.hpp"
+#include "tests/support/angles.hpp"
 
 namespace tumblesight::gnc {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 

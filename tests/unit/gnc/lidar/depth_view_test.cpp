@@ -10,6 +10,7 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/numerics/conversion.hpp"
+#include "tests/support/angles.hpp"
 
 namespace tumblesight::gnc {
 namespace {
@@ -77,7 +78,6 @@ std::unique_ptr<DepthImage> image_of(const RangeImage& frame,
 }
 
 Eigen::Vector3d off_boresight(double right_deg, double up_deg) {
-  constexpr double kDegree = M_PI / 180.0;
   return kDistance_m *
          Eigen::Vector3d(std::tan(right_deg * kDegree), 1.0, std::tan(up_deg * kDegree)).normalized();
 }

@@ -7,10 +7,9 @@
 #include <initializer_list>
 
 #include "gnc/rcnn/attitude_track.hpp"
+#include "tests/support/angles.hpp"
 
 namespace tumblesight::gnc {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 // Indexes into the output of the recurrent head.
 inline constexpr int kPredicted = shape::kHypotheses;  // among the candidates

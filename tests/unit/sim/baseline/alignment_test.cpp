@@ -1,4 +1,4 @@
-// From some ten degrees and some ten centimetres beside the true pose the alignment ends at it.
+// From about ten degrees and some tens of centimetres off the true pose, the alignment converges to it.
 #include "sim/baseline/alignment.hpp"
 
 #include <gtest/gtest.h>
@@ -34,14 +34,14 @@ Aligned align(AlignmentPairs pairs, int iterations) {
           alignment.residual_m(*scan, end, 128), alignment.residual_m(*scan, start, 128)};
 }
 
-TEST(Alignment, EndsAtThePoseOfTheFrame) {
+TEST(Alignment, ConvergesToThePoseOfTheFrame) {
   const Aligned aligned = align(AlignmentPairs::kRangesAndOutline, 20);
   EXPECT_LT(aligned.error_deg, 0.5);
   EXPECT_LT(aligned.error_m, 0.02);
   EXPECT_LT(aligned.residual_m, 0.3 * aligned.residual_before_m);
 }
 
-TEST(Alignment, EndsThereWithRangesOnlyWhenThereIsNoNoise) {
+TEST(Alignment, ConvergesWithRangesOnlyIfThereIsNoNoise) {
   const Aligned aligned = align(AlignmentPairs::kRangesOnly, 30);
   EXPECT_LT(aligned.error_deg, 1.0);
   EXPECT_LT(aligned.error_m, 0.1);

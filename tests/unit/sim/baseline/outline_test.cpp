@@ -1,5 +1,5 @@
-// Distances to the outline are those to the drawn shape, dropouts within it do not count as
-// outline, and edges of the chaser's own parts are no outline at all.
+// Distances agree with the drawn shape. Dropouts inside it and edges of the chaser's own parts do not count
+// as outline.
 #include "sim/baseline/outline.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace tumblesight::sim {
 namespace {
 
-// A disc of returns at 40 m, of a radius of 20 rays about the middle of 101 x 101 rays.
+// A disc of returns at 40 m with a radius of 20 rays in the centre of 101 x 101 rays.
 std::unique_ptr<gnc::RangeImage> disc() {
   auto frame = std::make_unique<gnc::RangeImage>();
   frame->rays = 101;

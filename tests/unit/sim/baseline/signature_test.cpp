@@ -1,5 +1,5 @@
-// Signatures are centred on the returns, so that the place in the frame does not matter, and
-// turn as the target does.
+// Signatures are centred on the returns, so that the position in the frame does not matter, and rotate with
+// the target.
 #include "sim/baseline/signature.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ double nothing_in_common(const Signature& a) {
 
 const Eigen::Quaterniond kAttitude = Eigen::Quaterniond(0.7, -0.2, 0.3, 0.5).normalized();
 
-TEST(Signature, IsThatOfTheTargetTurnedAboutTheBoresight) {
+TEST(Signature, RotatesWithTheTargetAboutTheBoresight) {
   const Signature turned_by_hand = signature_at(kAttitude, 40.0, Eigen::Vector2d::Zero(), 0.5 * M_PI);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitY()));
   const Signature turned_target = signature_at(turn * kAttitude, 40.0, Eigen::Vector2d::Zero());
@@ -40,9 +40,10 @@ TEST(Signature, IsThatOfTheTargetTurnedAboutTheBoresight) {
   EXPECT_GT(difference(permuted, upright, 1.0), 0.3 * nothing_in_common(upright));
 }
 
-TEST(Signature, DoesNotDependOnThePlaceInTheFrameNorOnTheRange) {
+TEST(Signature, DependsNeitherOnThePositionInTheFrameNorOnTheRange) {
   const Signature centred = signature_at(kAttitude, 80.0, Eigen::Vector2d::Zero());
-  // Off the boresight by v = (right, 1, up) the target shows another side, unless it is turned along.
+  // Off the boresight by v = (right, 1, up) the target shows another side, unless it is rotated with the
+  // view.
   const double swath = swath_m(jointed_arm());
   const Eigen::Vector3d towards(0.1 * swath, 60.0, -0.08 * swath);
   const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), towards);
@@ -50,7 +51,7 @@ TEST(Signature, DoesNotDependOnThePlaceInTheFrameNorOnTheRange) {
   EXPECT_LT(difference(beside, centred, 1.0), 0.03 * nothing_in_common(centred));
 }
 
-TEST(Signature, ComparesOnlyWhatTheMeasuredOneKnows) {
+TEST(Signature, ComparesOnlyTheKnownCellsOfTheMeasuredOne) {
   const Signature rendered = signature_at(kAttitude, 40.0, Eigen::Vector2d::Zero());
   Signature measured = rendered;
   for (int i = 0; i < Signature::kCells / 2; ++i)

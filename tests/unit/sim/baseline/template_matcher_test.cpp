@@ -1,5 +1,5 @@
-// The baseline finds the attitude of a known target from one frame, wherever in the frame the
-// target is, and says when it cannot.
+// The baseline finds the attitude of a known target from one frame, wherever the target is in the frame, and
+// reports if it cannot.
 #include "sim/baseline/template_matcher.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "sim/world/math/random.hpp"
+#include "sim/world/scenario/sequence.hpp"
 #include "tests/unit/sim/baseline/jointed_arm.hpp"
 
 namespace tumblesight::sim {
@@ -60,7 +61,7 @@ TEST_F(TemplateMatcherTest, FindsANoiseFreeAttitudeWithinADegree) {
   const FrameTruth truth = truth_at({0.3, -0.5, 0.7, 0.4}, 40.0);
   const auto frame = expose(truth, false);
   EXPECT_LT(error_deg(truth, *frame), 1.0);
-  EXPECT_LT(matcher_->match(*frame).residual_m, 0.5);  // a fifth of the limit of 3 sigma at most
+  EXPECT_LT(matcher_->match(*frame).residual_m, 0.5);  // at most a fifth of the limit of 3 sigma
 }
 
 TEST_F(TemplateMatcherTest, FindsMostNoisyAttitudesAtAllRanges) {
@@ -80,7 +81,7 @@ TEST_F(TemplateMatcherTest, FindsTheSameAttitudeOffTheBoresight) {
   EXPECT_LT(error_deg(truth, *expose(truth, true)), 2.0);
 }
 
-TEST_F(TemplateMatcherTest, TakesThePartsOfTheChaserInViewForWhatTheyAre) {
+TEST_F(TemplateMatcherTest, IgnoresPartsOfTheChaserInView) {
   const FrameTruth truth = truth_at({0.6, 0.2, -0.3, 0.7}, 30.0);
   const auto frame = expose(truth, true);
   int hidden = 0;
@@ -120,7 +121,7 @@ TEST_F(TemplateMatcherTest, GivesTheSameBitsAgainAndFromSeveralThreads) {
   }
 }
 
-TEST(TemplateMatcherSettings, OutOfTheirLimitsAreNamed) {
+TEST(TemplateMatcherSettings, OutsideTheirLimitsAreNamed) {
   TemplateMatcherSettings settings;
   settings.rolls = 30;
   try {

@@ -7,14 +7,14 @@
 namespace tumblesight::sim {
 namespace {
 
-// The truth turned about the target's own z, then off by `blur_deg` about some axis.
+// The truth rotated about the target's z axis, then by `blur_deg` about some axis.
 FrameResult confused(double about_z_deg, double blur_deg) {
   FrameResult made = result_with(0, 9, 0.0, 0.0);
   made.rcnn = turned(blur_deg, {0.2, -0.9, 0.4}) * made.truth * turned(about_z_deg, {0.0, 0.0, 1.0});
   return made;
 }
 
-TEST(Confusion, TellsTheSymmetricAttitudesOfNearApart) {
+TEST(Confusion, DistinguishesTheSymmetricAttitudesOfNear) {
   const std::vector<FrameResult> results{confused(0.0, 1.0),   confused(0.0, 3.0),   confused(90.0, 2.0),
                                          confused(180.0, 4.0), confused(-90.0, 5.0), confused(45.0, 0.0)};
   const Confusion found = confusion(results, Estimator::kRcnn, near_symmetries("near_shoemaker"));
@@ -26,8 +26,8 @@ TEST(Confusion, TellsTheSymmetricAttitudesOfNearApart) {
   EXPECT_NEAR(found.blur_deg, (1.0 + 3.0 + 2.0 + 4.0 + 5.0 + 45.0) / 6.0, 1e-9);
 }
 
-// A turn about the LiDAR's z instead of the target's is no confusion of symmetric attitudes.
-TEST(Confusion, TurnsInTheTargetsFrame) {
+// A rotation about the LiDAR's z axis instead of the target's is not a confusion of symmetric attitudes.
+TEST(Confusion, RotatesInTheTargetsFrame) {
   FrameResult made = result_with(0, 9, 0.0, 0.0);
   made.rcnn = turned(90.0, {0.0, 0.0, 1.0}) * made.truth;
   const Confusion found = confusion({made}, Estimator::kRcnn, near_symmetries("near_shoemaker"));

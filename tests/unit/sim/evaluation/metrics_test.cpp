@@ -42,7 +42,7 @@ TEST(AngularError, StaysFiniteForQuaternionsOffUnitLength) {
   EXPECT_NEAR(angular_error_rad(a, scaled), 0.0, 1e-7);
 }
 
-TEST(ErrorSummary, MatchesFiguresWorkedOutByHand) {
+TEST(ErrorSummary, MatchesFiguresCalculatedByHand) {
   const ErrorSummary summary = summarise({30.0, 4.0, 5.0, 20.0, 1.0});
   EXPECT_EQ(summary.count, 5U);
   EXPECT_DOUBLE_EQ(summary.mean_deg, 12.0);
@@ -56,7 +56,7 @@ TEST(ErrorSummary, MedianOfAnEvenCountIsTheMiddle) {
   EXPECT_DOUBLE_EQ(median({}), 0.0);
 }
 
-TEST(ErrorSummary, OfNothingCountsNothing) {
+TEST(ErrorSummary, OfNoResultsIsZero) {
   EXPECT_EQ(summarise({}).count, 0U);
 }
 
@@ -80,7 +80,7 @@ TEST(LastFrame, OfTheBaselineCountsOnlyWhereItWasRun) {
   results[0].has_baseline = true;
   results[0].baseline_valid = true;
   results[0].baseline = turned(7.0, {0.0, 1.0, 0.0}) * results[0].truth;
-  results[1].has_baseline = true;  // and found nothing
+  results[1].has_baseline = true;  // without an attitude
   const std::vector<double> errors = last_frame_errors_deg(results, 1, Estimator::kBaseline);
   ASSERT_EQ(errors.size(), 2U);
   EXPECT_NEAR(errors[0], 7.0, 1e-9);

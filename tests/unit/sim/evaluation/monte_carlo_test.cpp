@@ -77,7 +77,7 @@ TEST_F(MonteCarlo, ResetsTheEstimatorBeforeEverySequence) {
   for (std::size_t i = 0; i < first.size(); ++i) EXPECT_TRUE(equal(first[i], results[i]));
 }
 
-// Training draws its frames from mix(seed, attempt).
+// Training draws its sequences from the seeds mix(seed, attempt).
 // Verifies TS-TRN-050.
 TEST_F(MonteCarlo, DrawsSequencesThatSimulationDrawsButTrainingDoesNot) {
   const std::vector<FrameResult> results = run(1, 5);

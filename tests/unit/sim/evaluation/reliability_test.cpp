@@ -13,7 +13,7 @@ FrameResult predicted(double predicted_deg, double real_deg) {
   return made;
 }
 
-TEST(Reliability, CutsByThePredictedErrorIntoTenthsOfEqualCount) {
+TEST(Reliability, DividesByThePredictedErrorIntoTenthsOfEqualCount) {
   std::vector<FrameResult> results;
   for (int i = 99; i >= 0; --i) results.push_back(predicted(0.5 * i, i));
   const std::vector<ReliabilityBin> bins = reliability(results);
@@ -30,7 +30,7 @@ TEST(Reliability, LeavesOutFramesWithoutEstimate) {
   EXPECT_EQ(reliability({predicted(1.0, 2.0), FrameResult{}}).size(), 1U);
 }
 
-TEST(Detection, CountsWhatAThresholdThrowsAway) {
+TEST(Detection, CountsWhatAThresholdRejects) {
   const std::vector<DetectionPoint> points =
       detection({predicted(25.0, 90.0), predicted(4.0, 100.0), predicted(6.0, 3.0), predicted(1.5, 2.0)});
   for (const DetectionPoint& point : points) {

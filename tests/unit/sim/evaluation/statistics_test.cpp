@@ -15,7 +15,7 @@ TEST(MeanStandardError, IsTheSamplesDeviationOverRootN) {
   EXPECT_DOUBLE_EQ(summarise({7.0, 1.0, 5.0, 3.0}).mean_standard_error_deg, std::sqrt(20.0 / 3.0 / 4.0));
 }
 
-TEST(MeanStandardError, IsZeroWhereItCannotBeKnown) {
+TEST(MeanStandardError, IsZeroForFewerThanTwoValues) {
   EXPECT_EQ(mean_standard_error({}), 0.0);
   EXPECT_EQ(mean_standard_error({4.0}), 0.0);
 }

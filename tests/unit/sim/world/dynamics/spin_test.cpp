@@ -16,7 +16,7 @@ TEST(Spin, NinetyDegreesAboutZTakesXToY) {
   EXPECT_LT((q * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-12);
 }
 
-TEST(Spin, TurnsAboutTheLidarFramesAxisWhateverTheAttitude) {
+TEST(Spin, TurnsAboutAnAxisOfTheLidarFrameAtAnyAttitude) {
   const Eigen::Quaterniond q0 = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
   const Eigen::Vector3d rate(0.1, -0.2, 0.15);
   const Eigen::Vector3d axis_trf = q0.conjugate() * rate.normalized();
@@ -25,7 +25,7 @@ TEST(Spin, TurnsAboutTheLidarFramesAxisWhateverTheAttitude) {
   EXPECT_NEAR(q.angularDistance(q0), std::remainder(rate.norm() * 7.3, 2.0 * M_PI), 1e-12);
 }
 
-TEST(Spin, AtRestTheAttitudeStays) {
+TEST(Spin, AtRestTheAttitudeDoesNotChange) {
   const Eigen::Quaterniond q0 = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
   EXPECT_EQ(spin(q0, Eigen::Vector3d::Zero(), 100.0).coeffs(), q0.coeffs());
 }

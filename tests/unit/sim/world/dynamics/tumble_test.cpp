@@ -1,5 +1,5 @@
 // Verifies TS-SIL-080. Without torque a rigid body keeps its angular momentum and its kinetic energy, and
-// moves as the closed forms say where there are any.
+// agrees with the closed-form solutions where they exist.
 #include "sim/world/dynamics/tumble.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TumbleState some_state() {
 }
 
 TEST(Tumble, KeepsMomentumAndEnergyOver200Seconds) {
-  // The intermediate axis too, near which the motion is least tame.
+  // Includes the intermediate axis, near which the motion is unstable.
   Eigen::Matrix3d uneven = Eigen::Vector3d(3266.61, 4772.03, 2897.59).asDiagonal();
   for (const Eigen::Matrix3d& inertia : {near_inertia(), uneven}) {
     const Tumble tumble(inertia);
@@ -50,7 +50,7 @@ TEST(Tumble, KeepsMomentumAndEnergyOver200Seconds) {
   }
 }
 
-TEST(Tumble, AnAxisymmetricBodyPrecessesAsTheClosedFormSays) {
+TEST(Tumble, AnAxisymmetricBodyPrecessesAsTheClosedForm) {
   // w = H / A - l e3 with l = (C - A) w3 / A: the body turns about H, fixed in the LRF, at |H| / A, and about
   // its own axis at -l.
   for (const double axial : {1.6, 0.5}) {
@@ -86,7 +86,7 @@ TEST(Tumble, ManySmallStepsEqualOneLargeStep) {
   EXPECT_LT((small.rate_trf_rad_s - large.rate_trf_rad_s).norm(), 1e-9);
 }
 
-TEST(Tumble, NoTimeNoMotionAndAtRestItStays) {
+TEST(Tumble, DoesNotMoveInZeroTimeOrAtRest) {
   const Tumble tumble(near_inertia());
   const TumbleState start = some_state();
   EXPECT_LT(tumble.after(start, 0.0).q_lrf_trf.angularDistance(start.q_lrf_trf), 1e-7);
@@ -95,7 +95,7 @@ TEST(Tumble, NoTimeNoMotionAndAtRestItStays) {
   EXPECT_EQ(rest.rate_trf_rad_s, Eigen::Vector3d(Eigen::Vector3d::Zero()));
 }
 
-TEST(Tumble, AnInertiaThatNoBodyHasIsRefused) {
+TEST(Tumble, AnImpossibleInertiaIsRefused) {
   Eigen::Matrix3d asymmetric = near_inertia();
   asymmetric(0, 1) += 1.0;
   Eigen::Matrix3d indefinite = near_inertia();

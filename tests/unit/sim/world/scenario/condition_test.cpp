@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <vector>
 
@@ -43,7 +44,30 @@ TEST(Condition, NamesRoundTripAndUnknownOnesListAllTheKnown) {
   }
 }
 
-TEST(Condition, LeavesAttitudeRangeRateAndNoiseAsTheyAre) {
+TEST(Condition, RowsAreInTheOrderOfTheEnumeratorsAndExplained) {
+  for (std::size_t i = 0; i < std::size(kConditions); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(kConditions[i].condition), i);
+    EXPECT_NE(condition_explanations().find(kConditions[i].explanation), std::string::npos);
+  }
+}
+
+// Shipped networks were trained in this order; it is part of their checkpoints' fingerprints.
+TEST(Condition, IsTrainedCalibratedAndEvaluatedAsItsRowSays) {
+  using C = Condition;
+  const std::vector<C> all{C::kNominal, C::kDegraded, C::kOccluded, C::kTumbling, C::kOffset,
+                           C::kNominal, C::kDegraded, C::kOccluded, C::kTumbling, C::kOutliers};
+  EXPECT_EQ(all_training_conditions(), all);
+  EXPECT_EQ(paper_training_conditions(), (std::vector<C>{C::kNominal, C::kDegraded}));
+  EXPECT_EQ(calibration_conditions(),
+            (std::vector<C>{C::kNominal, C::kDegraded, C::kOccluded, C::kOutliers}));
+  std::vector<C> evaluated{C::kNominal, C::kDegraded, C::kOccluded, C::kTumbling, C::kOffset, C::kOutliers};
+  EXPECT_EQ(evaluated_conditions("magellan"), evaluated);
+  EXPECT_EQ(evaluated_conditions("mine"), evaluated);
+  evaluated.insert(evaluated.begin() + 4, C::kStress);
+  EXPECT_EQ(evaluated_conditions("near_shoemaker"), evaluated);
+}
+
+TEST(Condition, ChangesNeitherAttitudeNorRangeNorRateNorNoise) {
   for (int index = 0; index < 50; ++index) {
     const Sequence nominal = make_sequence(settings_of(Condition::kNominal), 3, index);
     for (const std::string& name : condition_names()) {
@@ -106,7 +130,7 @@ TEST(Occluded, HidesSharesUniformOn5To30PercentBehindEveryShape) {
     const Occluder occluder = make_sequence(settings_of(Condition::kOccluded), 6, index).frames[0].occluder;
     shares.push_back((occluder.hidden_share - 0.05) / 0.25);
     ++shapes[static_cast<std::size_t>(occluder.shape)];
-    // Nearer than the estimator's least range, also at the corner of the widest field of view.
+    // Nearer than the estimator's minimum range, also at the corner of the widest field of view.
     EXPECT_GT(occluder.distance_m, 1.0);
     EXPECT_LT(occluder.distance_m * std::sqrt(1.0 + 2.0 * std::pow(std::tan(20.0 * kRadPerDeg), 2)), 10.0);
   }

@@ -72,8 +72,8 @@ TEST(Sequence, SameSeedSameSequenceAndAnotherSeedAnother) {
 }
 
 TEST(Sequence, IsTheSameWithEveryCompiler) {
-  // Golden values: of the first build of this code with GCC 12. The order of the draws is part of the
-  // interface, since seeds name sequences in every report.
+  // Golden values from the first build with GCC 12. The order of the draws is part of the interface, because
+  // seeds name sequences in every report.
   const FrameTruth truth = make_sequence({Condition::kNominal, 1}, 1, 0).frames[0];
   const Eigen::Quaterniond q(-0.742786412024, -0.293947363779, 0.077305679075, -0.596562758997);
   EXPECT_LT((truth.q_lrf_trf.coeffs() - q.coeffs()).norm(), 1e-9);
@@ -83,7 +83,7 @@ TEST(Sequence, IsTheSameWithEveryCompiler) {
   EXPECT_NEAR(truth.range_m, 59.252414092324, 1e-9);
 }
 
-// Norms over the largest.
+// Norms relative to the largest possible one.
 std::vector<double> relative_norms(RateLaw law) {
   std::vector<double> norms;
   for (int i = 0; i < kMany; ++i) {
@@ -119,7 +119,7 @@ TEST(RateLaw, ChangesTheNormOnly) {
   EXPECT_GT((norm.frames[0].rate_lrf_rad_s - components.frames[0].rate_lrf_rad_s).norm(), 1e-3);
 }
 
-TEST(Sequence, FixedValuesReplaceTheDrawnOnesAndMoveNoOtherDraw) {
+TEST(Sequence, FixedValuesReplaceTheDrawnOnesAndChangeNoOtherDraw) {
   ScenarioSettings settings;
   settings.condition = Condition::kOccluded;
   for (const RateLaw law : {RateLaw::kComponents, RateLaw::kNorm}) {

@@ -1,4 +1,4 @@
-// How far a sample is from a distribution, for tests of what is drawn at random.
+// Distance of a sample from a distribution, for tests of random draws.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,9 @@
 
 namespace tumblesight::sim {
 
-// Kolmogorov-Smirnov's statistic of values whose cumulative probabilities are given (uniform on 0..1 if the
-// values have the distribution), times sqrt(count): above 1.95 in one of a thousand honest samples.
+// Kolmogorov-Smirnov statistic times sqrt(count), from the cumulative probabilities of the values (uniform on
+// 0..1 if they have the distribution). It exceeds 1.95 in one of a thousand samples of the right
+// distribution.
 inline double unlikeliness(std::vector<double> cumulative_probabilities) {
   std::sort(cumulative_probabilities.begin(), cumulative_probabilities.end());
   const auto count = static_cast<double>(cumulative_probabilities.size());

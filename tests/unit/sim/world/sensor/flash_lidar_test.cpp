@@ -65,7 +65,7 @@ std::unique_ptr<gnc::RangeImage> expose(const TriangleMesh& mesh, const FrameTru
   return frame;
 }
 
-// Compares every ray with the closed form; infinity = no hit. Rays within `skip_m` of an edge decide nothing.
+// Compares every ray with the closed form; infinity: no hit. Rays that are kUndecided are skipped.
 void compare(const gnc::RangeImage& frame, double tolerance_m,
              const std::function<double(const Eigen::Vector3d&)>& range_along) {
   const double t = std::tan(frame.fov_urad * 0.5e-6);
@@ -112,7 +112,7 @@ TEST(FlashLidar, SeesASphereAtItsClosedFormRange) {
   compare(*frame, 0.02, [&](const Eigen::Vector3d& d) {
     const double b = 25.0 * d.y();
     const double discriminant = b * b - (25.0 * 25.0 - 4.0);
-    if (std::abs(discriminant) < 0.1) return kUndecided;  // grazing: facets and sphere part
+    if (std::abs(discriminant) < 0.1) return kUndecided;  // grazing: the facets differ from the sphere
     return discriminant < 0 ? kInfinity : b - std::sqrt(discriminant);
   });
 }
@@ -187,7 +187,7 @@ TEST(FlashLidar, AnOccluderWithoutAShapeChangesNoBit) {
   lidar.expose(open, {}, 4.0, 5, *a);
   lidar.expose(covered, {}, 4.0, 5, *b);
   EXPECT_EQ(a->ranges, b->ranges);
-  // Noise included, and a count of the returns that is the closed form's: 2 m of 4 m at 29 m, seen from 30 m.
+  // The number of returns agrees with the closed form: 2 m of 4 m at 29 m, seen from 30 m.
   const double side = 128.0 * 2.0 / 4.0 * 30.0 / 29.0;
   const auto returns =
       std::count_if(a->ranges.begin(), a->ranges.end(), [](std::uint16_t r) { return r != 0; });
@@ -241,7 +241,7 @@ TEST(FlashLidar, ATargetOffTheBoresightAppearsWhereItIs) {
   }
 }
 
-TEST(FlashLidar, OutliersAreOnePercentOfTheReturnsBeyondFiveSigmaAndTheOthersAreAsEver) {
+TEST(FlashLidar, OutliersAreOnePercentOfTheReturnsBeyondFiveSigmaAndTheOthersDoNotChange) {
   const FlashLidar lidar(square(20.0));
   auto frame = std::make_unique<gnc::RangeImage>();
   auto exact = std::make_unique<gnc::RangeImage>();

@@ -1,5 +1,5 @@
-// Verifies TS-SIL-070. An occluder of any shape stands in the frame as the part of the chaser that it is,
-// nearer than anything that the estimator looks at.
+// Verifies TS-SIL-070. An occluder of any shape covers the part of the frame that it should, nearer than the
+// range that the estimator uses.
 #include "sim/world/sensor/occlusion.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ Occluder occluder(OccluderShape shape, double hidden_share, double side_rad, dou
   return {shape, side_rad, across, hidden_share, 3.0};
 }
 
-// A ray by where it points: slopes to the right and up, in units of the half frame.
+// Whether a ray is blocked, given by its slopes to the right and up in units of the half frame.
 bool blocked(const RangeGrid& grid, double right, double up) {
   const auto index = [&](double at) {
     return std::min(kRays - 1, static_cast<int>((at + 1.0) / 2.0 * kRays));
@@ -87,8 +87,9 @@ TEST(Occlude, TheArmReachesInFromItsSideAndEndsOverTheTarget) {
   }
 }
 
-TEST(Occlude, TheArmComesInWhereItsPlaceAcrossTheTargetSays) {
-  // `across` of the returns lie to the left of the axis, looking in from the side: below it, from the right.
+TEST(Occlude, TheArmReachesInAtItsPositionAcrossTheTarget) {
+  // `across` is the share of the returns to the left of the axis, seen from the arm's side: below it, from
+  // the right.
   RangeGrid low = disc(), high = disc();
   occlude(occluder(OccluderShape::kArm, 0.05, 0.0, 0.2), low);
   occlude(occluder(OccluderShape::kArm, 0.05, 0.0, 0.8), high);
@@ -145,7 +146,7 @@ TEST(Occlude, LeavesAFrameWithoutReturnsAndOneWithoutOccluderUntouched) {
   }
 }
 
-TEST(Occlude, HidesTheOneReturnThereIsAndTheWholeTargetIfAsked) {
+TEST(Occlude, HidesASingleReturnAndTheWholeTargetIfRequested) {
   RangeGrid one = disc();
   one.range_m.assign(one.range_m.size(), std::numeric_limits<double>::infinity());
   one.range_m[40 * kRays + 70] = kTargetRange_m;

@@ -28,7 +28,7 @@ class GltfCheck : public ::testing::Test {
     return path_;
   }
 
-  // What is said of the triangle with one part of its text replaced; "" if nothing.
+  // The message for the triangle with one part of its text replaced; empty if it passes.
   std::string said_with(const std::string& part, const std::string& other) const {
     std::string text = kTriangle;
     EXPECT_NE(text.find(part), std::string::npos) << part;
@@ -85,11 +85,12 @@ TEST_F(GltfCheck, PrimitivesHaveCorners) {
   }
 }
 
-TEST_F(GltfCheck, NumbersOfThingsThatAreNotThereAreRefused) {
+TEST_F(GltfCheck, IndicesOutOfRangeAreRefused) {
   EXPECT_NE(said_with(R"("POSITION":0)", R"("POSITION":3)").find("POSITION is 3, not a whole number below 3"),
             std::string::npos);
   EXPECT_NE(said_with(R"("indices":2)", R"("indices":-1)").find("indices is -1"), std::string::npos);
-  EXPECT_NE(said_with(R"("NORMAL":1)", R"("NORMAL":2)").find("not as many of each"), std::string::npos);
+  EXPECT_NE(said_with(R"("NORMAL":1)", R"("NORMAL":2)").find("attributes of different counts"),
+            std::string::npos);
   EXPECT_NE(said_with(R"("mode":4)", R"("mode":7)").find("mode is 7"), std::string::npos);
   EXPECT_NE(said_with(R"("count":3)", R"("count":3.0)").find("accessor 0's count is 3.0"), std::string::npos);
   EXPECT_NE(said_with(R"("count":3)", R"("kount":3)").find("accessor 0 has no \"count\""), std::string::npos);
@@ -98,7 +99,7 @@ TEST_F(GltfCheck, NumbersOfThingsThatAreNotThereAreRefused) {
             std::string::npos);
 }
 
-TEST_F(GltfCheck, JsonThatReadersTakeDifferentlyIsRefused) {
+TEST_F(GltfCheck, AmbiguousJsonIsRefused) {
   EXPECT_NE(said_with(R"("mode":4)", R"("mode":4,"mode":5)").find("\"mode\" twice"), std::string::npos);
   EXPECT_NE(
       said_with(R"("mode":4)", R"("extras":)" + std::string(40, '[') + std::string(40, ']')).find("32 deep"),

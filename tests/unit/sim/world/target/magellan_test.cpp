@@ -24,7 +24,8 @@ TEST(Magellan, FillsItsBoundingBox) {
   EXPECT_LT((box.max() - Eigen::Vector3f(4.45F, 1.85F, 2.82F)).cwiseAbs().maxCoeff(), 0.02F);
 }
 
-// The figures are of the dish's back but for the second, of its front; its wall is 3 cm thick along z.
+// The figures are of the back of the dish, except the second one, which is of its front. Its wall is 3 cm
+// thick along z.
 TEST(Magellan, DishHasItsProfileAndRim) {
   const TriangleMesh mesh = make_magellan();
   const float profile_rz[][2] = {{0.89F, 1.38F}, {1.03F, 1.46F}, {1.30F, 1.56F},
@@ -52,7 +53,7 @@ TEST(Magellan, SubreflectorHangsAboveTheDish) {
   }
 }
 
-// Both panels lie in one plane at 45 deg between y and z, so that they tell +y from -y.
+// Both panels lie in one plane at 45 deg between y and z, so that they distinguish +y from -y.
 TEST(Magellan, PanelsLieInOnePlaneTiltedBy45Degrees) {
   const TriangleMesh mesh = make_magellan();
   const auto panel = [](const Eigen::Vector3f& v) { return std::abs(v.x()) > 2.30F; };
@@ -93,7 +94,7 @@ TEST(Magellan, BodyStandsOnItsBusAndAdapter) {
   }
 }
 
-// Only the equipment and the panels' tilt keep a half turn about z from being a symmetry.
+// Only the equipment and the tilt of the panels prevent a half turn about z from being a symmetry.
 TEST(Magellan, HalfATurnIsItsOnlyNearSymmetryAboutZ) {
   const TriangleMesh mesh = make_magellan();
   EXPECT_LT(moved_by_turn_m(mesh, 0.0F), 1e-5);

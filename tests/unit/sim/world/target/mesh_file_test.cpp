@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A wedge whose box differs along every axis, so that a swapped or mirrored axis shows: corners (0,0,0),
-// (1,0,0), (0,2,0), (0,0,3) of the file's axes.
+// A wedge whose bounding box differs along every axis, which reveals swapped or mirrored axes: corners
+// (0,0,0), (1,0,0), (0,2,0), (0,0,3) of the file's axes.
 constexpr float kWedge[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
 constexpr std::uint16_t kFaces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
 
@@ -142,13 +142,13 @@ TEST_F(MeshFile, BadScaleIsRefused) {
   expect_refused(path, {"scale", "nan"}, {MeshUp::kY, std::numeric_limits<double>::quiet_NaN()});
 }
 
-TEST_F(MeshFile, MissingEmptyOrNoFileIsRefused) {
+TEST_F(MeshFile, AMissingOrEmptyFileAndAFolderAreRefused) {
   expect_refused((folder_ / "missing.stl").string(), {"no such file"});
   expect_refused(folder_.string(), {"not a file"});
   expect_refused(write("empty.stl", ""), {"empty", "0 bytes"});
 }
 
-// Assimp reads PLY too, and ends the program on a damaged one.
+// Assimp reads PLY too, and crashes on a damaged one.
 TEST_F(MeshFile, OtherFormatsAreRefusedByName) {
   expect_refused(write("wedge.ply", "ply\n"), {".stl, .obj, .gltf or .glb"});
   expect_refused(write("wedge", "v 0 0 0\n"), {".stl, .obj, .gltf or .glb"});
@@ -163,7 +163,7 @@ TEST(MeshUpAxis, IsYOrZ) {
 #ifdef TUMBLESIGHT_HAS_ASSIMP
 
 // y up: TRF x = X, y = -Z, z = Y.
-TEST_F(MeshFile, StlComesInWithBothUpAxesJoined) {
+TEST_F(MeshFile, StlIsReadWithBothUpAxesAndJoined) {
   const std::string path = write("wedge.stl", stl(wedge_triangles()));
   const TriangleMesh y_up = load_mesh_file(path);
   EXPECT_EQ(y_up.name, path);
@@ -179,7 +179,7 @@ TEST_F(MeshFile, ScaleTurnsMillimetresIntoMetres) {
   expect_box(load_mesh_file(path, {MeshUp::kZ, 0.001}), {0.0F, 0.0F, 0.0F}, {1.0F, 2.0F, 3.0F});
 }
 
-TEST_F(MeshFile, ObjComesIn) {
+TEST_F(MeshFile, ObjIsRead) {
   const TriangleMesh mesh = load_mesh_file(write("wedge.OBJ", obj()));
   EXPECT_EQ(mesh.triangles.size(), 4U);
   expect_box(mesh, {0.0F, -3.0F, 0.0F}, {1.0F, 0.0F, 2.0F});
@@ -192,14 +192,14 @@ TEST_F(MeshFile, QuadsAreTriangulated) {
   EXPECT_NEAR(area_m2(mesh), 1.0, 1e-6);
 }
 
-TEST_F(MeshFile, GltfComesInWithItsNodeTransforms) {
+TEST_F(MeshFile, GltfIsReadWithItsNodeTransforms) {
   (void)write("wedge.bin", gltf_buffer());
   const TriangleMesh mesh = load_mesh_file(write("wedge.gltf", gltf("wedge.bin")));
   EXPECT_EQ(mesh.triangles.size(), 4U);
   expect_box(mesh, {0.5F, -6.0F, 0.0F}, {2.5F, 0.0F, 4.0F});
 }
 
-TEST_F(MeshFile, GlbComesIn) {
+TEST_F(MeshFile, GlbIsRead) {
   std::string json = gltf("");
   json.replace(json.find("\"uri\":\"\","), 9, "");
   json.append((4 - json.size() % 4) % 4, ' ');
@@ -214,8 +214,8 @@ TEST_F(MeshFile, GlbComesIn) {
   expect_box(load_mesh_file(write("wedge.glb", bytes)), {0.5F, -6.0F, 0.0F}, {2.5F, 0.0F, 4.0F});
 }
 
-// On which Assimp goes astray: it asks for gigabytes, or for hours.
-TEST_F(MeshFile, GltfThatIsNoneIsRefusedBeforeItIsRead) {
+// Files for which Assimp would need gigabytes or hours.
+TEST_F(MeshFile, InvalidGltfIsRefusedBeforeAssimpReadsIt) {
   std::string bytes = "glTF";
   for (const std::uint32_t number : {2U, 28U, 2'000'000'000U}) put(bytes, number);
   expect_refused(write("large.glb", bytes + "JSON{}  "), {"larger than the file"});

@@ -154,7 +154,7 @@ std::vector<Eigen::Vector3f> surface_points(const TriangleMesh& mesh, int count)
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Corners t = corners(mesh, i);
     for (passed += area(t); passed > spacing * static_cast<double>(points.size());) {
-      // The R2 low-discrepancy sequence, folded into the triangle.
+      // The R2 low-discrepancy sequence, mapped to the triangle.
       const double n = static_cast<double>(points.size()) + 1.0;
       double u = std::fmod(n * 0.7548776662466927, 1.0);
       double v = std::fmod(n * 0.5698402909980532, 1.0);

@@ -25,7 +25,7 @@ TEST(NearShoemaker, FillsItsBoundingBox) {
   }
 }
 
-// The dish, met by a line down between the tripod's legs.
+// The dish, measured along vertical lines between the tripod's legs.
 TEST(NearShoemaker, DishHasItsProfile) {
   const TriangleMesh mesh = make_near_shoemaker();
   const Eigen::Vector3f clear = heading(4.0F * kPi / 3.0F);
@@ -38,7 +38,7 @@ TEST(NearShoemaker, DishHasItsProfile) {
   EXPECT_NEAR(reach_m(mesh, heading(0.0F), rim), 0.75F, 0.01F);
 }
 
-TEST(NearShoemaker, FourPanelsStandOutAlongXAndY) {
+TEST(NearShoemaker, FourPanelsExtendAlongXAndY) {
   const TriangleMesh mesh = make_near_shoemaker();
   const auto outside_body = [](const Eigen::Vector3f& v) { return v.head<2>().norm() > 1.2F; };
   int panel_vertices = 0;
@@ -70,8 +70,8 @@ TEST(NearShoemaker, BodyIsAnOctagonOf1Point5MetresAcrossFlats) {
   }
 }
 
-// Turned by a quarter the surface nearly falls onto itself (8 mm between the two on average, of 5.3 m) but
-// not quite.
+// After a quarter turn the surface nearly coincides with itself: the mean distance is 8 mm, on a size of 5.3
+// m.
 TEST(NearShoemaker, IsNearlyButNotQuiteFourfoldSymmetric) {
   const TriangleMesh mesh = make_near_shoemaker();
   EXPECT_LT(moved_by_turn_m(mesh, 0.0F), 1e-5);
@@ -83,7 +83,7 @@ TEST(NearShoemaker, IsNearlyButNotQuiteFourfoldSymmetric) {
   EXPECT_GT(moved_by_turn_m(mesh, kPi / 4.0F), 0.1);
 }
 
-TEST(NearShoemaker, ThrusterStandsOutBetweenXAndYOnly) {
+TEST(NearShoemaker, ThrusterProtrudesBetweenXAndYOnly) {
   const TriangleMesh mesh = make_near_shoemaker();
   const auto at_thruster = [](const Eigen::Vector3f& v) { return std::abs(v.z() + 0.222F) < 0.2F; };
   EXPECT_NEAR(reach_m(mesh, heading(kPi / 4.0F), at_thruster), 1.0F, 0.02F);

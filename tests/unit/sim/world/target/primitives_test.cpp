@@ -97,7 +97,7 @@ TEST(Primitives, StripJoinsItsChainsAndStaysOpen) {
   EXPECT_NEAR(area_m2(strip(from, to)), 6.0, 1e-5);
 }
 
-TEST(Primitives, FrameIsRightHandedWithItsAxesWhereTold) {
+TEST(Primitives, FrameIsRightHandedWithTheGivenAxes) {
   const Eigen::Isometry3f pose = frame_at({1.0F, 2.0F, 3.0F}, {0.0F, 2.0F, 0.0F}, {0.0F, 1.0F, 4.0F});
   EXPECT_TRUE((pose * Eigen::Vector3f(1.0F, 0.0F, 0.0F)).isApprox(Eigen::Vector3f(1.0F, 3.0F, 3.0F), 1e-6F));
   EXPECT_TRUE((pose * Eigen::Vector3f(0.0F, 1.0F, 0.0F)).isApprox(Eigen::Vector3f(1.0F, 2.0F, 4.0F), 1e-6F));

@@ -77,7 +77,7 @@ TEST(AquariusStowed, ReflectorLiesTiltedOverTheFeeds) {
   EXPECT_GT(reach_m(mesh, kZ, boom_end), 2.75F);
 }
 
-// What the display model does not show rests on these: hinges stay where they are, the rest is as stowed.
+// The assumptions on which the flight configuration is based: hinges do not move, the rest is as stowed.
 TEST(Aquarius, DeployedDiffersFromStowedInPanelsBoomAndReflectorOnly) {
   const TriangleMesh stowed = make_sacd_aquarius_stowed();
   const TriangleMesh flown = make_sacd_aquarius();
@@ -95,7 +95,7 @@ TEST(Aquarius, DeployedDiffersFromStowedInPanelsBoomAndReflectorOnly) {
   EXPECT_LT(moved, stowed.vertices_trf_m.size() / 2);
 }
 
-TEST(Aquarius, PanelsStandOutAsWings) {
+TEST(Aquarius, PanelsAreDeployedAsWings) {
   const TriangleMesh mesh = make_sacd_aquarius();
   for (const float side : {-1.0F, 1.0F}) {
     const auto wing = [side](const Eigen::Vector3f& v) { return side * v.y() > 1.3F; };
@@ -108,7 +108,7 @@ TEST(Aquarius, PanelsStandOutAsWings) {
   }
 }
 
-// From the middle of the horns' mouths along the mean of their axes.
+// Measured from the centre of the horns' mouths along the mean of their axes.
 TEST(Aquarius, ReflectorFacesTheFeedHorns) {
   const TriangleMesh mesh = make_sacd_aquarius();
   const Eigen::Vector3f mouths =
@@ -126,7 +126,7 @@ TEST(Aquarius, ReflectorFacesTheFeedHorns) {
   const float distance = (-2.08F - mouths.x()) / axis.x();
   EXPECT_NEAR((mouths + distance * axis).z(), (top + bottom) / 2.0F, 0.05F);
   EXPECT_NEAR((mouths + distance * axis).y(), 0.0F, 0.1F);
-  // Hollow towards the horns: the bowl's rim lies nearer to them than its middle.
+  // Concave towards the horns: the rim of the bowl is nearer to them than its centre.
   const auto rim = [](const Eigen::Vector3f& v) { return v.x() < -1.9F && v.z() > 3.7F; };
   const auto middle = [](const Eigen::Vector3f& v) {
     return v.x() < -1.9F && std::abs(v.z() - 2.51F) < 0.1F && std::abs(v.y()) < 0.1F;
@@ -134,9 +134,9 @@ TEST(Aquarius, ReflectorFacesTheFeedHorns) {
   EXPECT_GT(reach_m(mesh, kX, rim), reach_m(mesh, kX, middle) + 0.05F);
 }
 
-// The paper's inertia and the mesh, taken as a shell of even thickness, agree in the plane of symmetry and in
-// the axis of least inertia.
-TEST(Aquarius, LiesInTheTrfAsItsInertiaSays) {
+// The paper's inertia and that of the mesh as a shell of uniform thickness agree in the plane of symmetry and
+// in the axis of least inertia.
+TEST(Aquarius, ItsAxesAgreeWithThoseOfItsInertia) {
   const TriangleMesh mesh = make_sacd_aquarius();
   const std::vector<Eigen::Vector3f> points = surface_points(mesh, 20'000);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();

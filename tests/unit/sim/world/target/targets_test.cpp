@@ -13,7 +13,7 @@
 namespace tumblesight::sim {
 namespace {
 
-TEST(Targets, AreFoundByNameSoundAndOfASizeForTheSensor) {
+TEST(Targets, AreFoundByNameValidAndFitTheSensor) {
   EXPECT_EQ(target_names(), (std::vector<std::string>{"near_shoemaker", "magellan", "sacd_aquarius",
                                                       "sacd_aquarius_stowed"}));
   for (const std::string& name : target_names()) {
@@ -39,6 +39,13 @@ TEST(Targets, UnknownNameIsRefusedWithTheKnownOnes) {
       EXPECT_NE(std::string(error.what()).find("sacd_aquarius_stowed"), std::string::npos);
     }
   }
+}
+
+TEST(Targets, HaveADisplayNameAndOthersKeepTheirKey) {
+  EXPECT_EQ(display_name("near_shoemaker"), "NEAR Shoemaker");
+  EXPECT_EQ(display_name("mine"), "mine");
+  EXPECT_EQ(find_target("mine"), nullptr);
+  EXPECT_EQ(find_target("magellan")->symmetry_about_z, 2);
 }
 
 // Symmetric, positive definite, and no principal moment exceeds the sum of the others.
