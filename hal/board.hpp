@@ -1,18 +1,18 @@
-// Board: what a flight program needs of the machine it runs on when there is no operating system to ask. One
-// implementation a board, chosen at link time.
+// Board: what a program needs from a machine without an operating system. One implementation per board,
+// chosen at link time.
 #pragma once
 
 #include <cstdint>
 
 namespace tumblesight::hal::board {
 
-// To the console; `text` ends with a NUL.
+// Writes NUL-terminated text to the console.
 void write(const char* text);
 
-// Monotonic, arbitrary origin.
+// Monotonic time with an arbitrary origin.
 std::uint64_t now_ns();
 
-// Ends the program and, where there is someone to tell, tells how: 0 is success.
+// Ends the program. `status` is passed on where the machine can return one; 0 is success.
 [[noreturn]] void end(int status);
 
 }  // namespace tumblesight::hal::board

@@ -1,4 +1,4 @@
-// The key of the telecommands' authentication code.
+// The key for the authentication code of telecommands (HMAC-SHA-256, hal/messages/command_packet.hpp).
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Lidar: where the frames come from.
+// Lidar: the source of frames.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 namespace tumblesight::hal {
 
 enum class LidarStatus : std::uint8_t {
-  kFrame = 0,  // a frame has been written
-  kNoFrame,    // nothing new since the last call
-  kWrongSize,  // something arrived that is no frame of this interface (length or ray count); it was dropped
+  kFrame = 0,      // `frame` has been written
+  kNoFrame = 1,    // nothing new since the last call
+  kWrongSize = 2,  // data with the wrong length or ray count arrived and was dropped
 };
 
 class Lidar {
  public:
-  // Never blocks. Writes the oldest frame not yet delivered.
+  // Never blocks. Writes the oldest frame not yet delivered. `frame` may be overwritten for any result.
   [[nodiscard]] virtual LidarStatus receive(gnc::RangeImage& frame) = 0;
 
  protected:

@@ -1,5 +1,5 @@
-// Platform: what the flight application uses of the machine beneath it. All of it must outlive the
-// application.
+// Platform: what the flight application uses from the machine that it runs on. All pointers must stay valid
+// as long as the application.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ namespace tumblesight::hal {
 struct Platform {
   Stopwatch* stopwatch = nullptr;
   ModelStore* models = nullptr;
-  const CommandKey* command_key =
-      nullptr;  // nullptr: the link beneath lets only authentic telecommands through
-  // Of the last telecommand before the start, from the housekeeping that the platform has kept; 0: none. What
-  // it does not keep can be replayed after a restart.
+  // nullptr: the link delivers authentic telecommands only, without a security trailer.
+  const CommandKey* command_key = nullptr;
+  // Telemetry::command_counter from before the restart; 0: none. If the platform does not keep it, old
+  // telecommands can be replayed after a restart.
   std::uint32_t last_command_counter = 0;
 };
 

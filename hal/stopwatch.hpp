@@ -1,4 +1,4 @@
-// Stopwatch: measures how long something took. Never used to decide anything about the attitude.
+// Stopwatch: measures durations. No attitude depends on it.
 #pragma once
 
 #include <cstdint>

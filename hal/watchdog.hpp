@@ -1,5 +1,5 @@
-// Watchdog: resets the processor unless it is kicked in time. It is kicked once a cycle, after every duty of
-// the cycle.
+// Watchdog: resets the processor unless it is kicked in time. The application kicks it once per cycle, after
+// all duties of the cycle are done.
 #pragma once
 
 namespace tumblesight::hal {

@@ -1,5 +1,5 @@
-// What the application knows from one cycle to the next, but for the estimator's state and the events on
-// their way. Kept three times (voted.hpp).
+// The state that the application keeps between cycles, without the estimator's state and the waiting events.
+// Three copies are kept (voted.hpp).
 #pragma once
 
 #include <array>
@@ -12,44 +12,47 @@
 #include "fsw/app/frame_gate.hpp"
 #include "fsw/app/model_banks.hpp"
 #include "fsw/app/modes.hpp"
-#include "hal/link.hpp"
+#include "fsw/config/numerics.hpp"
+#include "gnc/rcnn/attitude_estimator.hpp"
+#include "hal/messages/telemetry.hpp"
 #include "hal/platform.hpp"
 
 namespace tumblesight::fsw {
 
-// What protects the application from bit flips; all of it, but to measure what it buys
-// (tests/campaigns/fault).
+using Estimator = gnc::AttitudeEstimator<Numerics>;
+
+// The protections against bit flips. tests/campaigns/fault switches them off to measure their effect.
 struct Protections {
   bool memory = true;    // vote, guards and scrubbing
   bool attitude = true;  // checks of the attitude
 };
 
 struct alignas(8) AppState {
-  std::int64_t now_ns = 0;
+  std::int64_t now_ns = 0;  // time of the cycle
   hal::Platform platform;
   const char* expected_target = nullptr;
-  hal::Housekeeping counters;
+  hal::Telemetry counters;
   FrameGate gate;
   FaultMonitor faults;
   AttitudeCheck attitude_check;
   ModelBanksState banks;
   AssertionLog assertions;
   std::array<std::uint32_t, kLimits> limits{};
-  std::uint32_t faults_seen = 0;      // in this cycle, bits
-  std::uint32_t estimator_crc32 = 0;  // of its state as the last cycle left it
-  std::uint32_t constants_crc32 = 0;  // of what it keeps of the model
+  std::uint32_t faults_seen = 0;      // in this cycle; bit n: Fault n
+  std::uint32_t estimator_crc32 = 0;  // of the estimator's state at the end of the last cycle
+  std::uint32_t constants_crc32 = 0;  // of the estimator's copy of model data
   std::array<gnc::ModelStatus, hal::kModelBanks> boot_status{};
   Protections protections;
   Mode mode = Mode::kBoot;
-  bool boot_to_report = false;
-  bool has_cycle = false;
-  bool outage = false;  // the previous cycle had no frame
+  bool boot_to_report = false;  // the next step reports what init() found
+  bool has_cycle = false;       // now_ns is the time of a cycle
+  bool outage = false;          // the previous cycle had no frame
 
   std::uint32_t limit(Limit which) const { return limits[static_cast<std::size_t>(which)]; }
   bool has_model() const { return banks.status(banks.in_use) == BankStatus::kGood; }
 };
 
-// Raises events of the cycle that runs.
+// Raises events with the time of the present cycle.
 class Reporter {
  public:
   Reporter(AppState& state, EventLog& log) : state_(state), log_(log) {}

@@ -1,13 +1,13 @@
-// Assertions of the flight application: they stand for bugs in our code, never for bad input. A failed one is
-// recorded; the application sees the record and goes SAFE. Nothing is aborted.
+// Assertions of the flight application. They detect bugs in the flight software, never bad input. A failed
+// assertion is recorded, and the application goes SAFE at the next check of the log. Nothing is aborted.
 #pragma once
 
 #include <cstdint>
 
 namespace tumblesight::fsw {
 
-// FNV-1a of the file's name without its folders, so that an event names a source file in 32 bits and every
-// build agrees.
+// FNV-1a hash of the file name without its folders: 32 bits that name a source file in an event, the same in
+// every build.
 constexpr std::uint32_t file_id(const char* path) {
   const char* name = path;
   for (const char* c = path; *c != '\0'; ++c) {
@@ -20,7 +20,8 @@ constexpr std::uint32_t file_id(const char* path) {
 
 class AssertionLog {
  public:
-  // Keeps the first failure not yet taken: what follows it is mostly its consequence. Always returns false.
+  // Keeps the first failure since the last take(), because later ones are often its consequence. Always
+  // returns false.
   bool record(std::uint32_t file, std::int32_t line) {
     if (count_ < UINT32_MAX) ++count_;
     if (!pending_) {
@@ -30,7 +31,7 @@ class AssertionLog {
     pending_ = true;
     return false;
   }
-  // True once a failure: then file(), line() tell where.
+  // True once after a failure; file() and line() are its place.
   bool take() {
     const bool was_pending = pending_;
     pending_ = false;
@@ -50,6 +51,6 @@ class AssertionLog {
 
 }  // namespace tumblesight::fsw
 
-// An expression: false when the condition does not hold, so that the caller can leave instead of going on.
+// An expression with the value of `condition`, so that the caller can stop where it is false.
 #define TUMBLESIGHT_ASSERT(log, condition) \
   ((condition) ? true : (log).record(::tumblesight::fsw::file_id(__FILE__), __LINE__))

@@ -10,7 +10,7 @@ std::int64_t product(std::int64_t a, std::int64_t b) {
   return (a * b + kOne / 2) >> kBits;
 }
 
-// Hamilton's. Sums of four products stay below 4, hence 64 bits.
+// Hamilton product. 64 bits, because a sum of four products can reach 4.
 gnc::QuaternionQ30 product(const gnc::QuaternionQ30& a, const gnc::QuaternionQ30& b) {
   const auto part = [](std::int64_t sum) {
     const std::int64_t bounded = sum > INT32_MAX ? INT32_MAX : sum < -INT32_MAX ? -INT32_MAX : sum;
@@ -25,7 +25,7 @@ gnc::QuaternionQ30 product(const gnc::QuaternionQ30& a, const gnc::QuaternionQ30
 }  // namespace
 
 bool is_unit(const gnc::QuaternionQ30& q) {
-  std::int64_t square = 0;  // 28 bits behind the point
+  std::int64_t square = 0;  // Q28
   for (const std::int32_t part : q) square += (static_cast<std::int64_t>(part) * part) >> 32;
   constexpr std::int64_t kOne28 = std::int64_t{1} << 28;
   constexpr std::int64_t kTolerance = kOne28 / 500'000;
@@ -39,7 +39,7 @@ std::int32_t cos_half_angle(const gnc::QuaternionQ30& a, const gnc::QuaternionQ3
   return static_cast<std::int32_t>(dot < kOne ? dot : kOne);
 }
 
-// Taylor's series to the eighth power; the half is pi / 2 at most.
+// Taylor series up to the eighth power; half of the angle is at most pi / 2.
 std::int32_t cos_half_of(std::uint32_t angle_urad) {
   const std::int64_t half = static_cast<std::int64_t>(angle_urad) * kOne / 2'000'000;
   const std::int64_t square = product(half, half);

@@ -1,5 +1,6 @@
 #include "fsw/app/command_gate.hpp"
 
+#include "fsw/app/command_table.hpp"
 #include "fsw/app/hmac_sha256.hpp"
 #include "gnc/numerics/crc16.hpp"
 
@@ -7,7 +8,7 @@ namespace tumblesight::fsw {
 namespace {
 
 constexpr std::uint16_t kPacketIdentification =
-    0x1800 | kCommandApid;  // version 0, telecommand, secondary header
+    0x1800 | hal::kCommandApid;  // version 0, telecommand, secondary header
 constexpr int kLengthOffset = 4, kFunctionOffset = 6, kReservedOffset = 7, kChecksumOffset = 8;
 constexpr int kPrimaryHeaderBytes = 6;
 
@@ -20,10 +21,10 @@ std::uint32_t u32(const std::uint8_t* at) {
 
 bool is_authentic(const hal::CommandPacket& packet, const hal::CommandKey& key) {
   const std::size_t size = packet.size;
-  if (size < kCommandTrailerBytes || size > packet.bytes.size()) return false;
-  const std::size_t covered = size - kCommandMacBytes;
+  if (size < hal::kCommandTrailerBytes || size > packet.bytes.size()) return false;
+  const std::size_t covered = size - hal::kCommandMacBytes;
   const Sha256Digest code = hmac_sha256(key, packet.bytes.data(), covered);
-  return equal_in_constant_time(code.data(), packet.bytes.data() + covered, kCommandMacBytes);
+  return equal_in_constant_time(code.data(), packet.bytes.data() + covered, hal::kCommandMacBytes);
 }
 
 bool is_well_formed(const std::uint8_t* packet) {
@@ -33,39 +34,32 @@ bool is_well_formed(const std::uint8_t* packet) {
 }
 
 bool has_checksum(const std::uint8_t* packet, int size) {
-  // As if the field were zero: the bytes before it, two zeros, the bytes behind.
+  // The checksum is computed with 0 in its own field.
   std::uint16_t crc = gnc::crc16(packet, kChecksumOffset);
   crc = gnc::crc16_append(crc, 0);
   crc = gnc::crc16_append(crc, 0);
-  for (int i = kCommandHeaderBytes; i < size; ++i) crc = gnc::crc16_append(crc, packet[i]);
+  for (int i = hal::kCommandHeaderBytes; i < size; ++i) crc = gnc::crc16_append(crc, packet[i]);
   return crc == u16(packet + kChecksumOffset);
 }
 
-const CommandRule* rule_of(std::uint8_t function) {
-  for (const CommandRule& rule : kCommandRules) {
-    if (static_cast<std::uint8_t>(rule.function) == function) return &rule;
-  }
-  return nullptr;
-}
-
-// Of an authentic packet without its trailer.
+// The checks of an authentic packet. `size`: without the trailer.
 bool refuses(const std::uint8_t* packet, int size, Mode mode, Admission& admission) {
   const auto refused = [&admission](CommandRefusal why) {
     admission.why = why;
     return true;
   };
-  if (size < kCommandHeaderBytes || !is_well_formed(packet)) return refused(CommandRefusal::kMalformed);
+  if (size < hal::kCommandHeaderBytes || !is_well_formed(packet)) return refused(CommandRefusal::kMalformed);
   admission.function = packet[kFunctionOffset];
   if (u16(packet + kLengthOffset) != size - kPrimaryHeaderBytes - 1)
     return refused(CommandRefusal::kWrongLength);
   if (!has_checksum(packet, size)) return refused(CommandRefusal::kWrongChecksum);
-  const CommandRule* rule = rule_of(admission.function);
+  const CommandRule* rule = find_command(admission.function);
   if (rule == nullptr) return refused(CommandRefusal::kUnknownFunction);
-  const int arguments = size - kCommandHeaderBytes;
-  if (arguments < rule->least_bytes || arguments > rule->most_bytes)
+  const int arguments = size - hal::kCommandHeaderBytes;
+  if (arguments < rule->min_argument_bytes || arguments > rule->max_argument_bytes)
     return refused(CommandRefusal::kWrongLength);
-  if ((rule->modes >> static_cast<int>(mode) & 1) == 0) return refused(CommandRefusal::kWrongMode);
-  admission.command = {rule->function, packet + kCommandHeaderBytes, arguments};
+  if (!rule->allowed_in(mode)) return refused(CommandRefusal::kWrongMode);
+  admission.command = {rule->function, packet + hal::kCommandHeaderBytes, arguments};
   return false;
 }
 
@@ -77,7 +71,7 @@ Admission judge(const hal::CommandPacket& packet, const hal::CommandKey* key, st
   int size = packet.size;
   if (key != nullptr) {
     if (!is_authentic(packet, *key)) return admission;
-    size -= kCommandTrailerBytes;
+    size -= hal::kCommandTrailerBytes;
     admission.counter = u32(packet.bytes.data() + size);
     if (admission.counter <= last_counter) {
       admission.why = CommandRefusal::kReplayed;

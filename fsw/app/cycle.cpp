@@ -3,7 +3,7 @@
 namespace tumblesight::fsw {
 namespace {
 
-void gather_frames(hal::Lidar& lidar, CycleWorkspace& workspace) {
+void receive_frames(hal::Lidar& lidar, CycleWorkspace& workspace) {
   StepInputs& inputs = workspace.inputs;
   inputs.frame_count = 0;
   inputs.frame_wrong_size = 0;
@@ -17,7 +17,7 @@ void gather_frames(hal::Lidar& lidar, CycleWorkspace& workspace) {
   inputs.frame = inputs.frame_count > 0 ? workspace.frames.data() : nullptr;
 }
 
-void gather_commands(hal::Link& link, StepInputs& inputs) {
+void receive_commands(hal::Link& link, StepInputs& inputs) {
   inputs.command_count = 0;
   for (hal::CommandPacket& command : inputs.commands) {
     if (!link.receive(command)) break;
@@ -27,17 +27,17 @@ void gather_commands(hal::Link& link, StepInputs& inputs) {
 
 }  // namespace
 
-void run_cycle(App& app, const CycleInterfaces& interfaces, std::int64_t now_ns, std::uint32_t cycle_slips,
-               CycleWorkspace& workspace) {
-  gather_frames(interfaces.lidar, workspace);
-  gather_commands(interfaces.link, workspace.inputs);
+void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int64_t now_ns,
+               std::uint32_t cycle_slips, CycleWorkspace& workspace) {
+  receive_frames(interfaces.lidar, workspace);
+  receive_commands(interfaces.link, workspace.inputs);
   workspace.inputs.cycle_slips = cycle_slips;
   app.step(now_ns, workspace.inputs, workspace.outputs);
 
   const StepOutputs& outputs = workspace.outputs;
   hal::Link& link = interfaces.link;
   link.publish(outputs.attitude);
-  link.publish(outputs.housekeeping);
+  link.publish(outputs.telemetry);
   for (int i = 0; i < outputs.event_count; ++i) link.publish(outputs.events[static_cast<std::size_t>(i)]);
   if (outputs.has_dump) link.publish(outputs.dump);
   if (outputs.duties_done) interfaces.watchdog.kick();

@@ -1,5 +1,5 @@
-// One cycle of the flight task: gather what the HAL has, step the application, publish what it gives. The
-// same on every platform; a platform's main decides when it runs and what time it is.
+// One cycle of the flight task: receive from the HAL, step the application, publish its outputs. It is the
+// same on every platform; a platform's main decides when it runs and with which time.
 #pragma once
 
 #include <array>
@@ -12,50 +12,24 @@
 
 namespace tumblesight::fsw {
 
-// Memory of run_cycle(), about 80 kB: static, so that no frame lies on the stack.
+// Memory of run_cycle(), about 80 kB. To be allocated statically, so that no frame is on the stack.
 struct CycleWorkspace {
   std::array<gnc::RangeImage, config::kMaxFramesPerStep> frames;
   StepInputs inputs;
   StepOutputs outputs;
 };
 
-// What a cycle works with.
+// The interfaces of a cycle.
 struct CycleInterfaces {
   hal::Lidar& lidar;
   hal::Link& link;
   hal::Watchdog& watchdog;
 };
 
-// The application in either numerics.
-class App {
- public:
-  virtual void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) = 0;
-  virtual std::uint32_t state_crc32() const = 0;
-  virtual Mode mode() const = 0;
-
- protected:
-  ~App() = default;
-};
-
-// Lies beside the application, so that no bit flip in the application's memory can misdirect a call.
-template <class N>
-class AppOf final : public App {
- public:
-  explicit AppOf(AttitudeInitApp<N>& app) : app_(app) {}
-  void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) override {
-    app_.step(now_ns, inputs, outputs);
-  }
-  std::uint32_t state_crc32() const override { return app_.state_crc32(); }
-  Mode mode() const override { return app_.mode(); }
-
- private:
-  AttitudeInitApp<N>& app_;
-};
-
-// Takes at most kMaxFramesPerStep deliveries of the lidar and kMaxCommandsPerStep commands; what is left
-// waits for the next cycle. `cycle_slips`: releases of the task missed since the last cycle. The watchdog is
-// kicked once all has been done and published.
-void run_cycle(App& app, const CycleInterfaces& interfaces, std::int64_t now_ns, std::uint32_t cycle_slips,
-               CycleWorkspace& workspace);
+// Receives at most kMaxFramesPerStep deliveries of the lidar and kMaxCommandsPerStep commands; the others
+// wait for the next cycle. `now_ns`: time of the cycle. `cycle_slips`: releases of the task missed since the
+// last cycle. Kicks the watchdog after everything is published, if the step has done its duties.
+void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int64_t now_ns,
+               std::uint32_t cycle_slips, CycleWorkspace& workspace);
 
 }  // namespace tumblesight::fsw

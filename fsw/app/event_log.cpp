@@ -13,18 +13,19 @@ constexpr std::size_t index_of(EventId id) {
   }
   return kEventRules.size();
 }
-// The event that tells of suppressed ones of this kind.
+
+// The event that reports suppressed events of this kind.
 const EventRule& summary_of(EventId id) {
   constexpr std::size_t kOfTiming = index_of(EventId::kTimingEventsSuppressed);
   constexpr std::size_t kOfOthers = index_of(EventId::kEventsSuppressed);
   static_assert(kOfTiming < kEventRules.size() && kOfOthers < kEventRules.size());
-  return kEventRules[hal::tells_of_wall_clock(static_cast<std::uint16_t>(id)) ? kOfTiming : kOfOthers];
+  return kEventRules[hal::depends_on_wall_clock(id) ? kOfTiming : kOfOthers];
 }
 
 }  // namespace
 
 void EventLog::push(std::int64_t now_ns, const EventRule& rule, const std::array<std::int32_t, 3>& arguments,
-                    hal::Housekeeping& counters) {
+                    hal::Telemetry& counters) {
   count(counters.events);
   if (waiting() == config::kEventRing) {
     count(counters.events_lost);
@@ -32,17 +33,17 @@ void EventLog::push(std::int64_t now_ns, const EventRule& rule, const std::array
   }
   hal::Event& event = ring_[(first_ + count_++) & kMask];
   event.time_ns = now_ns;
-  event.id = static_cast<std::uint16_t>(rule.id);
-  event.severity = static_cast<std::uint8_t>(rule.severity);
+  event.id = rule.id;
+  event.severity = rule.severity;
   event.arguments = arguments;
 }
 
 void EventLog::raise(std::int64_t now_ns, EventId id, std::int32_t a, std::int32_t b, std::int32_t c,
-                     hal::Housekeeping& counters) {
+                     hal::Telemetry& counters) {
   const std::size_t index = index_of(id);
   Kind& kind = kinds_[index];
-  if (kind.told < config::kMaxEventsOfAKind) {
-    ++kind.told;
+  if (kind.raised < config::kMaxEventsOfAKind) {
+    ++kind.raised;
     push(now_ns, kEventRules[index], {a, b, c}, counters);
   } else {
     if (kind.suppressed < UINT16_MAX) ++kind.suppressed;
@@ -51,7 +52,7 @@ void EventLog::raise(std::int64_t now_ns, EventId id, std::int32_t a, std::int32
   }
 }
 
-void EventLog::end_cycle(std::int64_t now_ns, hal::Housekeeping& counters) {
+void EventLog::end_cycle(std::int64_t now_ns, hal::Telemetry& counters) {
   if (++cycle_ < config::kEventWindow_cycles) return;
   cycle_ = 0;
   for (std::size_t i = 0; i < kinds_.size(); ++i) {

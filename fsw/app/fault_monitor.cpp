@@ -9,7 +9,7 @@ constexpr bool is_in_order() {
   }
   return true;
 }
-static_assert(is_in_order(), "the table is looked up by the fault's number");
+static_assert(is_in_order(), "the table is indexed by the fault's number");
 
 const config::FaultRule& rule_of(Fault fault) {
   return config::kFaultRules[static_cast<std::size_t>(fault)];

@@ -5,7 +5,7 @@
 namespace tumblesight::fsw {
 namespace {
 
-// later - earlier, exact for every pair with later >= earlier: the signed difference could overflow.
+// later - earlier, for later >= earlier. Exact where the signed difference would overflow.
 std::uint64_t elapsed_ns(std::int64_t earlier_ns, std::int64_t later_ns) {
   return static_cast<std::uint64_t>(later_ns) - static_cast<std::uint64_t>(earlier_ns);
 }
@@ -26,7 +26,7 @@ std::uint32_t FrameGate::numbers_skipped(const gnc::RangeImage& frame) const {
   if (!has_last_) return 0;
   const std::uint32_t ahead = frame.sequence_number - last_sequence_number_;
   constexpr std::uint32_t kHalfCircle = 0x8000'0000U;
-  return ahead < kHalfCircle ? ahead - 1 : kWentBack;  // the same number again: 0 - 1, which is kWentBack
+  return ahead < kHalfCircle ? ahead - 1 : kWentBack;  // the same number: 0 - 1, which is kWentBack
 }
 
 bool FrameGate::one_period_after_last(const gnc::RangeImage& frame) const {

@@ -1,7 +1,7 @@
-// FrameGate: the rules of time and order that a frame must pass before the estimator sees it. Knows the last
-// accepted frame and nothing else; what a frame shows is the estimator's to judge.
+// FrameGate: the rules for time and order that a frame must pass before the estimator uses it. The gate knows
+// only the last accepted frame. The estimator checks the content of a frame.
 //
-//   first rule that applies                                              verdict
+//   the first rule that applies decides                                  verdict
 //   sequence number equal to the last accepted one                       kDuplicate
 //   exposure after the cycle time                                        kFromFuture
 //   exposure not after the last accepted one                             kExposureBackwards
@@ -21,11 +21,11 @@ class FrameGate {
  public:
   [[nodiscard]] FrameVerdict judge(const gnc::RangeImage& frame, std::int64_t now_ns) const;
 
-  // Sequence numbers between the last accepted frame and this one, modulo 2^32; kWentBack for a number that
-  // lies behind. 0 for the first frame.
+  // Number of sequence numbers between the last accepted frame and this one, modulo 2^32; kWentBack if this
+  // number is lower or equal. 0 for the first frame.
   static constexpr std::uint32_t kWentBack = UINT32_MAX;
   std::uint32_t numbers_skipped(const gnc::RangeImage& frame) const;
-  // Whether the frame lies one period +- 10 % after the last accepted one. False for the first frame.
+  // Whether the exposure is one period +- 10 % after the last accepted one. False for the first frame.
   bool one_period_after_last(const gnc::RangeImage& frame) const;
 
   void accept(const gnc::RangeImage& frame);

@@ -3,7 +3,7 @@
 namespace tumblesight::fsw {
 namespace {
 
-// FIPS 180-4, 4.2.2: of the cube roots of the first 64 primes.
+// FIPS 180-4, 4.2.2.
 constexpr std::array<std::uint32_t, 64> kRound{
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
     0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
@@ -27,7 +27,7 @@ std::uint32_t big_endian_word(const std::uint8_t* at) {
 
 }  // namespace
 
-// FIPS 180-4, 6.2.2. Of the message schedule only the last 16 words are kept.
+// FIPS 180-4, 6.2.2, with the last 16 words of the message schedule.
 void Sha256::take_block() {
   std::array<std::uint32_t, 16> w;
   for (std::size_t t = 0; t < 16; ++t) w[t] = big_endian_word(block_.data() + 4 * t);

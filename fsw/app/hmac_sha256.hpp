@@ -1,5 +1,5 @@
-// HMAC-SHA-256 (RFC 2104, FIPS 180-4): proves that a telecommand comes from who has the key. Its time depends
-// on the length of the message alone.
+// HMAC-SHA-256 (RFC 2104, FIPS 180-4): proves that the sender of a telecommand has the key. The run time
+// depends only on the length of the message.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ using Sha256Digest = std::array<std::uint8_t, 32>;
 class Sha256 {
  public:
   void add(const std::uint8_t* data, std::size_t size_bytes);
-  // Once; nothing may be added after it.
+  // Call once, after all add().
   Sha256Digest digest();
 
  private:
@@ -25,10 +25,11 @@ class Sha256 {
   std::uint64_t size_bytes_ = 0;
 };
 
+// `message`: `size_bytes` bytes; the key is padded with zeros to the block size.
 Sha256Digest hmac_sha256(const std::array<std::uint8_t, 32>& key, const std::uint8_t* message,
                          std::size_t size_bytes);
 
-// Looks at every byte, wherever the first difference is.
+// Compares every byte, so that the run time does not show where the first difference is.
 bool equal_in_constant_time(const std::uint8_t* a, const std::uint8_t* b, std::size_t size_bytes);
 
 }  // namespace tumblesight::fsw

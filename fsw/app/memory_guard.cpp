@@ -11,20 +11,17 @@ hal::ModelBank bank_in_use(const AppState& state) {
 
 }  // namespace
 
-template <class N>
-void MemoryGuard<N>::model_activated(const Estimator& estimator, AppState& state) {
+void MemoryGuard::model_activated(const Estimator& estimator, AppState& state) {
   banks_.make_table(*state.platform.models, state.banks);
   state.constants_crc32 = estimator.constants_crc32();
 }
 
-template <class N>
-void MemoryGuard<N>::keep(const Estimator& estimator, AppState& state) {
+void MemoryGuard::keep(const Estimator& estimator, AppState& state) {
   estimator.save(kept_);
   state.estimator_crc32 = estimator.state_crc32();
 }
 
-template <class N>
-void MemoryGuard<N>::check(Estimator& estimator, AppState& state, const Reporter& report) {
+void MemoryGuard::check(Estimator& estimator, AppState& state, const Reporter& report) {
   check_state(estimator, state, report);
   if (!state.has_model()) return;
   check_table(estimator, state, report);
@@ -33,8 +30,7 @@ void MemoryGuard<N>::check(Estimator& estimator, AppState& state, const Reporter
   if (state.has_model()) check_constants(estimator, state, report);
 }
 
-template <class N>
-void MemoryGuard<N>::check_state(Estimator& estimator, AppState& state, const Reporter& report) {
+void MemoryGuard::check_state(Estimator& estimator, AppState& state, const Reporter& report) {
   if (estimator.state_crc32() == state.estimator_crc32) return;
   if (Estimator::crc32_of(kept_) == state.estimator_crc32) {
     estimator.restore(kept_);
@@ -47,26 +43,24 @@ void MemoryGuard<N>::check_state(Estimator& estimator, AppState& state, const Re
   }
 }
 
-// Taken from the bank once more, every block of which is checked first.
-template <class N>
-void MemoryGuard<N>::check_constants(Estimator& estimator, AppState& state, const Reporter& report) {
+// Reloads the constants from the bank, after a check of all its blocks.
+void MemoryGuard::check_constants(Estimator& estimator, AppState& state, const Reporter& report) {
   if (estimator.constants_crc32() == state.constants_crc32) return;
-  for (std::uint32_t i = 0; i < ModelBanks<N>::kBlocks && state.has_model(); ++i) check_block(state, report);
+  for (std::uint32_t i = 0; i < ModelBanks::kBlocks && state.has_model(); ++i) check_block(state, report);
   if (!state.has_model()) return;
   estimator.reload(bank_in_use(state).data);
   if (estimator.constants_crc32() == state.constants_crc32) {
     count(state.counters.constants_reloaded);
     report(EventId::kConstantsReloaded, static_cast<std::int32_t>(state.banks.in_use));
   } else {
-    lose_model(state);  // not what was activated
+    lose_model(state);  // the image is not the one that was activated
   }
 }
 
-template <class N>
-void MemoryGuard<N>::check_table(const Estimator& estimator, AppState& state, const Reporter& report) {
+void MemoryGuard::check_table(const Estimator& estimator, AppState& state, const Reporter& report) {
   if (banks_.table_is_sound(state.banks)) return;
-  const ModelBankRecord& record = state.banks.record[state.banks.in_use];
-  if (estimator.check(bank_in_use(state).data, record.size_bytes, state.expected_target) !=
+  const BankDescriptor& descriptor = state.banks.descriptor[state.banks.in_use];
+  if (estimator.check(bank_in_use(state).data, descriptor.size_bytes, state.expected_target) !=
       gnc::ModelStatus::kOk) {
     lose_model(state);
     return;
@@ -76,8 +70,7 @@ void MemoryGuard<N>::check_table(const Estimator& estimator, AppState& state, co
   report(EventId::kModelTableRebuilt, static_cast<std::int32_t>(state.banks.in_use));
 }
 
-template <class N>
-void MemoryGuard<N>::check_block(AppState& state, const Reporter& report) {
+void MemoryGuard::check_block(AppState& state, const Reporter& report) {
   const BlockCheck checked = banks_.check_block(*state.platform.models, state.banks);
   if (state.banks.next_block == 0) count(state.counters.model_passes);
   const auto bank = static_cast<std::int32_t>(checked.bank), block = static_cast<std::int32_t>(checked.block);
@@ -96,15 +89,9 @@ void MemoryGuard<N>::check_block(AppState& state, const Reporter& report) {
   }
 }
 
-template <class N>
-void MemoryGuard<N>::lose_model(AppState& state) {
-  state.banks.record[state.banks.in_use].status = static_cast<std::uint32_t>(BankStatus::kEmpty);
+void MemoryGuard::lose_model(AppState& state) {
+  state.banks.descriptor[state.banks.in_use].set(BankStatus::kEmpty);
   state.faults_seen |= bit_of(Fault::kModelCorrupted);
 }
-
-template class MemoryGuard<gnc::FixedPoint>;
-#if TUMBLESIGHT_FLOAT32
-template class MemoryGuard<gnc::Float32>;
-#endif
 
 }  // namespace tumblesight::fsw

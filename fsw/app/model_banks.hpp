@@ -1,9 +1,9 @@
-// ModelBanks: the two places for model images. Loads one from the ground, keeps the one in use free of bit
-// flips.
+// ModelBanks: the two banks for model images. It loads an image from the ground and keeps the image in use
+// free of bit flips.
 //
-// The image in use is checked block by block, some blocks a cycle, against a table of checksums. Where the
-// other bank holds the same image it is the second copy: of a block that differs, the copy that agrees with
-// the table mends the other one.
+// The image in use is checked block by block, a few blocks per cycle, against a table of checksums. If the
+// other bank holds the same image, that is the second copy: a block that does not match the table is repaired
+// from the other bank's block, if that one matches.
 #pragma once
 
 #include <array>
@@ -11,67 +11,67 @@
 #include <cstdint>
 
 #include "fsw/config/limits.hpp"
+#include "fsw/config/numerics.hpp"
 #include "gnc/rcnn/model_image.hpp"
+#include "hal/messages/bank_status.hpp"
 #include "hal/model_store.hpp"
 
 namespace tumblesight::fsw {
 
-enum class BankStatus : std::uint8_t {
-  kEmpty = 0,    // nothing, or what was refused
-  kLoading = 1,  // an image is coming in segments
-  kGood = 2,     // a whole image that has passed every check
-};
+using hal::BankStatus;
 
-struct ModelBankRecord {
+struct BankDescriptor {
   std::uint32_t size_bytes = 0;
-  std::uint32_t crc32 = 0;   // in the image's header, which covers all of it
-  std::uint32_t status = 0;  // BankStatus
+  std::uint32_t crc32 = 0;   // in the image's header, which covers the whole image
+  std::uint32_t status = 0;  // BankStatus, as a whole word for the vote
+
+  void set(BankStatus value) { status = static_cast<std::uint32_t>(value); }
 };
 
-// What ModelBanks knows. Small, so that it can be kept three times (voted.hpp).
+// The state of ModelBanks that is kept in three copies (voted.hpp).
 struct ModelBanksState {
-  std::array<ModelBankRecord, hal::kModelBanks> record{};
+  std::array<BankDescriptor, hal::kModelBanks> descriptor{};
   std::uint32_t in_use = 0;        // bank
-  std::uint32_t loaded_bytes = 0;  // of the image that is coming in
+  std::uint32_t loaded_bytes = 0;  // of the image that is being loaded
   std::uint32_t next_block = 0;    // to be checked
   std::uint32_t table_crc32 = 0;
 
-  BankStatus status(std::uint32_t bank) const { return static_cast<BankStatus>(record[bank].status); }
+  BankStatus status(std::uint32_t bank) const { return static_cast<BankStatus>(descriptor[bank].status); }
   std::uint32_t other() const { return 1 - in_use; }
   bool has_second_copy() const {
     return status(0) == BankStatus::kGood && status(1) == BankStatus::kGood &&
-           record[0].crc32 == record[1].crc32;
+           descriptor[0].crc32 == descriptor[1].crc32;
   }
 };
 
-// One check of one block.
+// Result of the check of one block.
 struct BlockCheck {
   enum class Result : std::uint8_t {
     kGood,
-    kRepaired,  // `bank` had been hit
-    kLost,      // `bank`, the one in use, has been hit, and there is no good copy or no way to write
+    kRepaired,  // `bank` was corrupted
+    kLost,      // `bank`, the one in use, is corrupted, and there is no good copy or the bank is read-only
   };
   Result result = Result::kGood;
   std::uint32_t bank = 0;
   std::uint32_t block = 0;
 };
 
-template <class N>
 class ModelBanks {
  public:
-  // Whatever passes the checks has the size of the network's image.
+  // Every image that passes the checks has the size of the network's image.
   static constexpr std::uint32_t kBlocks =
-      (gnc::kModelImageSize<N> + config::kModelBlockBytes - 1) / config::kModelBlockBytes;
+      (gnc::kModelImageSize<Numerics> + config::kModelBlockBytes - 1) / config::kModelBlockBytes;
 
-  // A segment for the bank that is not in use. Segments come in order; one at offset 0 begins a new image.
-  // False: out of order, beyond the bank, or no bank that could be written.
+  // Writes a segment of `count` bytes to the bank that is not in use. Segments must come in order; a segment
+  // with offset 0 begins a new image. False: out of order, beyond the end of the bank, or the bank is
+  // read-only.
   [[nodiscard]] static bool load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
                                  const std::uint8_t* bytes, std::uint32_t count);
 
-  // From now on the blocks of the bank in use are held to what they are now.
+  // Computes the table of checksums from the present content of the bank in use.
   void make_table(hal::ModelStore& store, ModelBanksState& state);
   bool table_is_sound(const ModelBanksState& state) const;
-  // The next block of the bank in use, and of its second copy. Requires a sound table.
+  // Checks the next block of the bank in use and of its second copy. Requires a sound table.
   BlockCheck check_block(hal::ModelStore& store, ModelBanksState& state);
 
  private:

@@ -1,28 +1,15 @@
-// Modes and the one table of what leads from each to which.
-//
-//   BOOT     init() is looking for a model
-//   STANDBY  waits for commands; no attitude
-//   RUN      every good frame gives an attitude
-//   SAFE     a fault, or no model: no attitude; commands and telemetry go on, and the housekeeping says why
+// The table of mode transitions. A transition that is not in the table does not happen, and a command that
+// asks for it is refused.
 #pragma once
 
 #include <array>
-#include <cstdint>
+
+#include "hal/messages/mode.hpp"
 
 namespace tumblesight::fsw {
 
-enum class Mode : std::uint8_t { kBoot = 0, kStandby = 1, kRun = 2, kSafe = 3 };
-
-enum class Cause : std::uint8_t {
-  kNone = 0,
-  kModelFound,
-  kNoModel,
-  kCommandStandby,
-  kCommandRun,
-  kCommandSafe,
-  kFault,      // a response of the fault table
-  kAssertion,  // a bug in our code
-};
+using hal::Cause;
+using hal::Mode;
 
 struct Transition {
   Mode from;
@@ -30,7 +17,6 @@ struct Transition {
   Mode to;
 };
 
-// What is not here does not happen: a command that asks for it is refused.
 inline constexpr std::array<Transition, 16> kTransitions{{
     {Mode::kBoot, Cause::kModelFound, Mode::kRun},
     {Mode::kBoot, Cause::kNoModel, Mode::kSafe},
@@ -50,7 +36,7 @@ inline constexpr std::array<Transition, 16> kTransitions{{
     {Mode::kSafe, Cause::kAssertion, Mode::kSafe},
 }};
 
-// False, and `to` untouched: the table has no such transition.
+// Writes the next mode to `to`. False: the table has no such transition and `to` is unchanged.
 constexpr bool next_mode(Mode from, Cause cause, Mode& to) {
   for (const Transition& transition : kTransitions) {
     if (transition.from == from && transition.cause == cause) {

@@ -1,5 +1,5 @@
-// Voted: what must survive a bit flip, three times. Between two cycles the copies are equal; at the start of
-// a cycle the majority of every bit counts. Within a cycle only the first copy is worked on.
+// Voted: three copies of a state that must survive a bit flip. Between two cycles the copies are equal. At
+// the start of a cycle a vote sets every bit to its majority. Within a cycle only the first copy changes.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ class Voted {
   State* operator->() { return copies_.data(); }
   const State* operator->() const { return copies_.data(); }
 
-  // Words that were not alike in all three; now they are.
+  // Sets all copies to the majority of every bit. Returns the number of 32-bit words that differed.
   std::uint32_t vote() {
     std::uint32_t corrected = 0;
     for (std::size_t at = 0; at < sizeof(State); at += 4) {
@@ -31,11 +31,11 @@ class Voted {
     }
     return corrected;
   }
-  // At the end of a cycle.
+  // Copies the first copy to the others, at the end of a cycle.
   void commit() {
     for (std::size_t copy = 1; copy < 3; ++copy) {
       std::memcpy(static_cast<void*>(&copies_[copy]), copies_.data(),
-                  sizeof(State));  // what lies between the members too
+                  sizeof(State));  // including the padding
     }
   }
 

@@ -3,15 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "hal/dds/idl/telemetry_fields.hpp"
+#include "hal/dds/idl/sample_fields.hpp"
 
 namespace tumblesight::hal::dds {
-
-static_assert(tumblesight_icd_COMMAND_BYTES == CommandPacket::kMaxBytes, "the ICD's command is the link's");
-static_assert(tumblesight_icd_DUMP_BYTES == ModelDump::kMaxBytes, "the ICD's dump is the link's");
-static_assert(tumblesight_icd_REFUSALS == Housekeeping::kRefusals);
-static_assert(tumblesight_icd_STEP_TIME_BINS == Housekeeping::kStepTimeBins);
-static_assert(tumblesight_icd_BANKS == Housekeeping::kBanks);
 
 void DdsLink::put(const CommandSample& sample) {
   const MailboxLock lock(mutex_);
@@ -53,24 +47,15 @@ void DdsLink::publish(const AttitudeReport& report) {
   AttitudeSample& sample = output_.attitude;
   sample.run_id = output_.done.run_id;
   sample.k = output_.done.k;
-  sample.time_ns = report.time_ns;
-  sample.exposure_time_ns = report.exposure_time_ns;
-  sample.sequence_number = report.sequence_number;
-  sample.validity = report.validity;
-  sample.frames_since_reset = report.frames_since_reset;
-  std::copy(report.q_lrf_trf.begin(), report.q_lrf_trf.end(), sample.q_lrf_trf);
-  sample.predicted_error_urad = report.predicted_error_urad;
-  std::copy(report.q_lrf_trf_single_frame.begin(), report.q_lrf_trf_single_frame.end(),
-            sample.q_lrf_trf_single_frame);
-  sample.predicted_error_single_frame_urad = report.predicted_error_single_frame_urad;
+  copy_attitude_fields(report, sample);
   output_.done.attitudes = 1;
 }
 
-void DdsLink::publish(const Housekeeping& housekeeping) {
+void DdsLink::publish(const Telemetry& telemetry) {
   TelemetrySample& sample = output_.telemetry;
   sample.run_id = output_.done.run_id;
   sample.k = output_.done.k;
-  copy_telemetry(housekeeping, sample);
+  copy_telemetry_fields(telemetry, sample);
   sample.heap_allocations = gauges_.heap_allocations();
   sample.stack_left_min_bytes = gauges_.stack_left_min_bytes();
   output_.done.telemetries = 1;
@@ -81,10 +66,7 @@ void DdsLink::publish(const Event& event) {
   EventSample& sample = output_.events[output_.done.events];
   sample.run_id = output_.done.run_id;
   sample.k = output_.done.k;
-  sample.time_ns = event.time_ns;
-  sample.id = event.id;
-  sample.severity = event.severity;
-  std::copy(event.arguments.begin(), event.arguments.end(), sample.arguments);
+  copy_event_fields(event, sample);
   ++output_.done.events;
 }
 
@@ -92,11 +74,7 @@ void DdsLink::publish(const ModelDump& dump) {
   ModelDumpSample& sample = output_.dump;
   sample.run_id = output_.done.run_id;
   sample.k = output_.done.k;
-  sample.time_ns = dump.time_ns;
-  sample.bank = dump.bank;
-  sample.offset = dump.offset;
-  sample.size = dump.size;
-  std::copy(dump.bytes.begin(), dump.bytes.end(), sample.bytes);
+  copy_model_dump_fields(dump, sample);
   output_.done.dumps = 1;
 }
 

@@ -1,4 +1,4 @@
-// DdsLink: commands of topic sil/command in; attitude, housekeeping, events and dumps out to sil/attitude,
+// DdsLink: commands of topic sil/command in; attitude, telemetry, events and dumps out to sil/attitude,
 // sil/telemetry, sil/event and sil/model_dump. The flight task is on one side of it, the bus thread, which
 // speaks DDS, on the other.
 #pragma once
@@ -24,7 +24,7 @@ struct CycleOutput {
 
 class DdsLink final : public Link {
  public:
-  // What only the platform can tell of the flight task goes into the housekeeping.
+  // What only the platform can tell of the flight task goes into the telemetry.
   struct Gauges {
     std::uint32_t (*heap_allocations)();
     std::uint32_t (*stack_left_min_bytes)();
@@ -42,7 +42,7 @@ class DdsLink final : public Link {
   void end_cycle(std::uint32_t state_crc32);
   [[nodiscard]] bool receive(CommandPacket& command) override;
   void publish(const AttitudeReport& report) override;
-  void publish(const Housekeeping& housekeeping) override;
+  void publish(const Telemetry& telemetry) override;
   void publish(const Event& event) override;
   void publish(const ModelDump& dump) override;
 

@@ -20,12 +20,12 @@ class FakeLink final : public Link {
     return true;
   }
   void publish(const AttitudeReport& report) override { attitudes.push_back(report); }
-  void publish(const Housekeeping& housekeeping) override { telemetry.push_back(housekeeping); }
+  void publish(const Telemetry& sample) override { telemetry.push_back(sample); }
   void publish(const Event& event) override { events.push_back(event); }
   void publish(const ModelDump& dump) override { dumps.push_back(dump); }
 
   std::vector<AttitudeReport> attitudes;
-  std::vector<Housekeeping> telemetry;
+  std::vector<Telemetry> telemetry;
   std::vector<Event> events;
   std::vector<ModelDump> dumps;
 

@@ -28,7 +28,7 @@ void ConsoleLink::publish(const AttitudeReport& report) {
   digest_time(report.time_ns);
   digest_time(report.exposure_time_ns);
   crc_.add_u32(report.sequence_number);
-  crc_.add_u32(report.validity);
+  crc_.add_u32(static_cast<std::uint32_t>(report.validity));
   crc_.add_u32(report.frames_since_reset);
   for (const std::int32_t part : report.q_lrf_trf) crc_.add_u32(static_cast<std::uint32_t>(part));
   crc_.add_u32(report.predicted_error_urad);
@@ -37,26 +37,26 @@ void ConsoleLink::publish(const AttitudeReport& report) {
   crc_.add_u32(report.predicted_error_single_frame_urad);
 }
 
-void ConsoleLink::publish(const Housekeeping& housekeeping) {
-  housekeeping_ = housekeeping;
+void ConsoleLink::publish(const Telemetry& telemetry) {
+  telemetry_ = telemetry;
   TextLine line;
   line.number(report_.sequence_number, 6).number(report_.frames_since_reset, 5);
   for (const std::int32_t part : report_.q_lrf_trf) line.decimal(millionths(part), 6, 11);
   line.decimal(hundredths_of_degree(report_.predicted_error_urad), 2, 9);
-  line.decimal(housekeeping.inference_us, 3, 12);
-  line.text(report_.validity == 0 ? "\n" : "  not valid\n");
+  line.decimal(telemetry.inference_us, 3, 12);
+  line.text(report_.validity == Validity::kValid ? "\n" : "  not valid\n");
   board::write(line.c_str());
 }
 
 void ConsoleLink::publish(const Event& event) {
   TextLine line;
-  line.text("        event ").number(event.id);
+  line.text("        event ").number(static_cast<std::int64_t>(event.id));
   for (const std::int32_t argument : event.arguments) line.text(" ").number(argument);
   board::write(line.text("\n").c_str());
-  if (tells_of_wall_clock(event.id)) return;
+  if (depends_on_wall_clock(event.id)) return;
   digest_time(event.time_ns);
-  crc_.add_u32(event.id);
-  crc_.add_u32(event.severity);
+  crc_.add_u32(static_cast<std::uint32_t>(event.id));
+  crc_.add_u32(static_cast<std::uint32_t>(event.severity));
   for (const std::int32_t argument : event.arguments) crc_.add_u32(static_cast<std::uint32_t>(argument));
 }
 

@@ -13,21 +13,21 @@ class ConsoleLink final : public Link {
  public:
   bool receive(CommandPacket&) override { return false; }
   void publish(const AttitudeReport& report) override;
-  void publish(const Housekeeping& housekeeping) override;
+  void publish(const Telemetry& telemetry) override;
   void publish(const Event& event) override;
   void publish(const ModelDump&) override {}  // nobody asks for one
 
   // Of every report and event so far, without what the stopwatch measured; `state_crc32` joins it.
   void digest(std::uint32_t state_crc32) { crc_.add_u32(state_crc32); }
   std::uint32_t digest() const { return crc_.value(); }
-  const Housekeeping& housekeeping() const { return housekeeping_; }
+  const Telemetry& telemetry() const { return telemetry_; }
 
  private:
   void digest_time(std::int64_t time_ns);
 
   gnc::Crc32 crc_;
   AttitudeReport report_;
-  Housekeeping housekeeping_;
+  Telemetry telemetry_;
 };
 
 }  // namespace tumblesight::hal::replay

@@ -75,7 +75,7 @@ FactList counter_facts(const SilRecording& recording) {
   FactList list{"Counters at the end", {}};
   const StepRecord* last = last_answered(recording);
   if (last == nullptr) return list;
-  const hal::Housekeeping& h = last->housekeeping;
+  const hal::Telemetry& h = last->telemetry;
   const std::pair<const char*, std::uint32_t> counters[] = {
       {"cycles", h.cycles},
       {"frames used", h.frames_used},
@@ -101,14 +101,14 @@ FactList counter_facts(const SilRecording& recording) {
 // Warnings and errors by number, in the order in which they first came up.
 FactList event_facts(const SilRecording& recording) {
   struct Kind {
-    std::uint16_t id;
+    hal::EventId id;
     std::uint32_t count;
     std::size_t first_step;
   };
   std::vector<Kind> kinds;
   for (std::size_t i = 0; i < recording.steps.size(); ++i) {
     for (const hal::Event& event : recording.steps[i].events) {
-      if (event.severity == 0) continue;
+      if (event.severity == hal::Severity::kInformation) continue;
       const auto known =
           std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return k.id == event.id; });
       if (known != kinds.end()) {
@@ -120,7 +120,7 @@ FactList event_facts(const SilRecording& recording) {
   }
   FactList list{"Warnings and errors", {}};
   for (const Kind& kind : kinds) {
-    list.facts.emplace_back(fmt::format("event {}", kind.id),
+    list.facts.emplace_back(fmt::format("event {}", static_cast<int>(kind.id)),
                             fmt::format("{} times, first in step {}", kind.count, kind.first_step));
   }
   return list;
@@ -149,7 +149,7 @@ std::vector<FrameResult> frame_results(const SilRecording& recording) {
 InferenceTime inference_time(const SilRecording& recording) {
   std::vector<double> times_us;
   for (const StepRecord& step : recording.steps) {
-    if (gave_attitude(step)) times_us.push_back(step.housekeeping.inference_us);
+    if (gave_attitude(step)) times_us.push_back(step.telemetry.inference_us);
   }
   if (times_us.empty()) return {};
   return {median(times_us), *std::max_element(times_us.begin(), times_us.end())};
@@ -166,10 +166,10 @@ std::vector<std::string> shortcomings(const SilRecording& recording) {
   const auto invalid = std::count_if(recording.steps.begin(), recording.steps.end(),
                                      [](const StepRecord& s) { return s.answered && !gave_attitude(s); });
   if (invalid > 0) {
-    found.push_back(fmt::format(
-        "{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
-        recording.steps_planned - recording.steps_missed,
-        last->housekeeping.mode != tumblesight_icd_MODE_RUN ? ": the flight program is not in RUN" : ""));
+    found.push_back(
+        fmt::format("{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
+                    recording.steps_planned - recording.steps_missed,
+                    last->telemetry.mode != hal::Mode::kRun ? ": the flight program is not in RUN" : ""));
   }
   if (recording.flight_heap_allocations > 0) {
     found.push_back(fmt::format("The flight task allocated heap memory {} times after its start.",

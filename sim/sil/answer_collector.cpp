@@ -4,38 +4,26 @@
 #include <iterator>
 #include <utility>
 
-#include "hal/dds/idl/telemetry_fields.hpp"
+#include "hal/dds/idl/sample_fields.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 hal::AttitudeReport from_sample(const hal::dds::AttitudeSample& sample) {
   hal::AttitudeReport report;
-  report.time_ns = sample.time_ns;
-  report.exposure_time_ns = sample.exposure_time_ns;
-  report.sequence_number = sample.sequence_number;
-  report.validity = sample.validity;
-  report.frames_since_reset = sample.frames_since_reset;
-  std::copy(std::begin(sample.q_lrf_trf), std::end(sample.q_lrf_trf), report.q_lrf_trf.begin());
-  report.predicted_error_urad = sample.predicted_error_urad;
-  std::copy(std::begin(sample.q_lrf_trf_single_frame), std::end(sample.q_lrf_trf_single_frame),
-            report.q_lrf_trf_single_frame.begin());
-  report.predicted_error_single_frame_urad = sample.predicted_error_single_frame_urad;
+  hal::dds::copy_attitude_fields(sample, report);
   return report;
 }
 
-hal::Housekeeping from_sample(const hal::dds::TelemetrySample& sample) {
-  hal::Housekeeping housekeeping;
-  hal::dds::copy_telemetry(sample, housekeeping);
-  return housekeeping;
+hal::Telemetry from_sample(const hal::dds::TelemetrySample& sample) {
+  hal::Telemetry telemetry;
+  hal::dds::copy_telemetry_fields(sample, telemetry);
+  return telemetry;
 }
 
 hal::Event from_sample(const hal::dds::EventSample& sample) {
   hal::Event event;
-  event.time_ns = sample.time_ns;
-  event.id = sample.id;
-  event.severity = sample.severity;
-  std::copy(std::begin(sample.arguments), std::end(sample.arguments), event.arguments.begin());
+  hal::dds::copy_event_fields(sample, event);
   return event;
 }
 
@@ -71,7 +59,7 @@ void AnswerCollector::collect() {
   while (endpoints_.telemetries.take(telemetry)) {
     Partial* partial = partial_of(telemetry);
     if (partial == nullptr) continue;
-    partial->answer.housekeeping = from_sample(telemetry);
+    partial->answer.telemetry = from_sample(telemetry);
     ++partial->telemetries;
   }
   hal::dds::EventSample event;

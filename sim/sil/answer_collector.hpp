@@ -15,7 +15,7 @@ namespace tumblesight::sim {
 struct StepAnswer {
   std::uint32_t k = 0;
   hal::AttitudeReport attitude;
-  hal::Housekeeping housekeeping;
+  hal::Telemetry telemetry;
   std::vector<hal::Event> events;
   std::vector<std::uint8_t> dump;  // of a model bank; empty: none
   std::uint32_t state_crc32 = 0;

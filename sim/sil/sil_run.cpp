@@ -51,7 +51,7 @@ class SilRun {
       if (settings_.speed > 0.0) session.sleep_until(begin + wall_time_of(k));
       session.publish_truth(plan_[k].sequence, plan_[k].frame, recording_.steps[k].truth, plan_[k].time_ns);
       record(k, session.step(input));
-      if (k == 0) require_running(recording_.steps[0].housekeeping);
+      if (k == 0) require_running(recording_.steps[0].telemetry);
     }
   }
 
@@ -73,8 +73,8 @@ class SilRun {
     while (Clock::now() < deadline && !last_answered()) {
       const std::optional<StepAnswer> answer = session.next_answer(deadline);
       if (!answer) return;
-      require_running(answer->housekeeping);
-      recording_.flight_heap_allocations = answer->housekeeping.heap_allocations;
+      require_running(answer->telemetry);
+      recording_.flight_heap_allocations = answer->telemetry.heap_allocations;
       // Only attitudes name the frame that they belong to.
       const bool has_frame = gives_attitude(answer->attitude);
       const std::uint32_t k = answer->attitude.sequence_number;
@@ -108,8 +108,8 @@ class SilRun {
     StepInput input;
     input.time_ns = plan.time_ns;
     input.frames = {&frame};
-    if (k == 0 && session.flight_mode() == tumblesight_icd_MODE_STANDBY) {
-      input.commands.push_back(set_mode(tumblesight_icd_MODE_RUN));
+    if (k == 0 && session.flight_mode() == hal::Mode::kStandby) {
+      input.commands.push_back(set_mode(hal::Mode::kRun));
     }
     if (plan.frame == 0) input.commands.push_back(reset_sequence());
     input.last = k + 1 == plan_.size();
@@ -120,16 +120,16 @@ class SilRun {
     StepRecord& step = recording_.steps[k];
     step.answered = true;
     step.attitude = answer.attitude;
-    step.housekeeping = answer.housekeeping;
+    step.telemetry = answer.telemetry;
     step.events = answer.events;
     step.state_crc32 = answer.state_crc32;
-    recording_.flight_heap_allocations = answer.housekeeping.heap_allocations;
+    recording_.flight_heap_allocations = answer.telemetry.heap_allocations;
     ++answered_;
     if (progress_) progress_(answered_, recording_.steps_planned);
   }
 
-  void require_running(const hal::Housekeeping& housekeeping) const {
-    if (housekeeping.mode != tumblesight_icd_MODE_SAFE) return;
+  void require_running(const hal::Telemetry& telemetry) const {
+    if (telemetry.mode != hal::Mode::kSafe) return;
     throw SilFailure("flight is in SAFE: it has no usable model image for target " + settings_.target +
                      (settings_.model_path.empty() ? "" : " in " + settings_.model_path) +
                      "; its message says what is wrong with it");
@@ -160,8 +160,7 @@ void conclude(SilRecording& recording) {
 }  // namespace
 
 bool gives_attitude(const hal::AttitudeReport& report) {
-  return report.validity == tumblesight_icd_VALIDITY_VALID ||
-         report.validity == tumblesight_icd_VALIDITY_DOUBTFUL;
+  return report.validity == hal::Validity::kValid || report.validity == hal::Validity::kDoubtful;
 }
 
 SilRecording run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,

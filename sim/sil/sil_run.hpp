@@ -38,7 +38,7 @@ struct StepRecord {
   FrameTruth truth;
   bool answered = false;
   hal::AttitudeReport attitude;
-  hal::Housekeeping housekeeping;
+  hal::Telemetry telemetry;
   std::vector<hal::Event> events;
   std::uint32_t state_crc32 = 0;
 };
@@ -51,7 +51,7 @@ struct SilRecording {
   std::vector<std::pair<std::size_t, gnc::RangeImage>> pictures;  // (index into steps, frame)
   std::uint32_t steps_planned = 0;
   std::uint32_t steps_missed = 0;             // planned but never answered
-  std::uint32_t flight_heap_allocations = 0;  // from the last housekeeping
+  std::uint32_t flight_heap_allocations = 0;  // from the last telemetry
   std::uint32_t trace_crc32 = 0;              // over every answered step's bits, wall-clock times left out
   std::string failure;  // empty, or why the run ended early (flight gone, ICD unequal, ...)
 };

@@ -100,7 +100,7 @@ bool SilSession::read_hello() {
       throw SilFailure("interface hash " + hex(hal::dds::icd_hash()) + ", flight's " + hex(hello.icd_hash) +
                        ": build both from the same tumblesight.idl");
     }
-    flight_mode_ = hello.flight_mode;
+    flight_mode_ = static_cast<hal::Mode>(hello.flight_mode);
     ready = hello.run_id == run_id_;
   }
   return ready;

@@ -55,7 +55,7 @@ class SilSession {
 
   void publish_truth(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth,
                      std::int64_t time_ns);
-  std::uint8_t flight_mode() const { return flight_mode_; }  // fsw::Mode that flight announced
+  hal::Mode flight_mode() const { return flight_mode_; }  // that flight announced
   pid_t flight_pid() const { return process_ ? process_->pid() : 0; }
   std::uint32_t run_id() const { return run_id_; }
   std::uint32_t domain() const { return lease_.domain(); }
@@ -81,7 +81,7 @@ class SilSession {
   hal::dds::LidarFrameSample frame_sample_{};
   std::uint32_t next_k_ = 0;
   bool last_sent_ = false;
-  std::uint8_t flight_mode_ = 0;
+  hal::Mode flight_mode_ = hal::Mode::kBoot;
 };
 
 }  // namespace tumblesight::sim

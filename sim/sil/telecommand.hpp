@@ -1,5 +1,6 @@
-// Telecommands as the ground makes them: CCSDS space packets with a checksum, signed with HMAC-SHA-256
-// (OpenSSL's, so that flight's own is held against another implementation). Bit by bit: docs/icd.md.
+// Telecommands as the ground makes them: CCSDS space packets with a checksum, signed with HMAC-SHA-256. The
+// ground uses OpenSSL's HMAC, so that each run compares the flight side's own with another implementation.
+// Format: hal/messages/command_packet.hpp, docs/icd.md.
 #pragma once
 
 #include <array>
@@ -7,31 +8,34 @@
 #include <string>
 #include <vector>
 
-#include "hal/link.hpp"
+#include "hal/command_key.hpp"
+#include "hal/messages/command_packet.hpp"
+#include "hal/messages/function_code.hpp"
+#include "hal/messages/mode.hpp"
 
 namespace tumblesight::sim {
 
 struct Telecommand {
-  std::uint8_t function = 0;
+  hal::FunctionCode function = hal::FunctionCode::kNoop;
   std::vector<std::uint8_t> arguments;  // big-endian
 };
 
-Telecommand set_mode(std::uint8_t mode);
+Telecommand set_mode(hal::Mode mode);
 Telecommand reset_sequence();
 
-// The key in a file: 64 hexadecimal digits and white space. Throws std::runtime_error that names the file
-// otherwise.
-std::array<std::uint8_t, 32> read_command_key(const std::string& path);
+// Reads a key file: 64 hexadecimal digits, with any white space. Throws std::runtime_error with the file name
+// for any other content.
+hal::CommandKey read_command_key(const std::string& path);
 
-// Signs what it makes with a counter that rises from command to command.
+// Makes signed packets. The counter of the trailer and the sequence count increase with each packet.
 class TelecommandEncoder {
  public:
-  explicit TelecommandEncoder(const std::array<std::uint8_t, 32>& key) : key_(key) {}
-  // Throws std::invalid_argument if the arguments do not fit a packet.
+  explicit TelecommandEncoder(const hal::CommandKey& key) : key_(key) {}
+  // Throws std::invalid_argument if the arguments do not fit into a packet.
   hal::CommandPacket packet(const Telecommand& command);
 
  private:
-  std::array<std::uint8_t, 32> key_;
+  hal::CommandKey key_;
   std::uint32_t counter_ = 0;
   std::uint16_t sequence_count_ = 0;  // 14 bits
 };

@@ -6,9 +6,9 @@ void TraceDigest::add(std::uint32_t k, const StepRecord& record) {
   crc_.add_u32(k);
   add_time(record.time_ns);
   add_report(record.attitude);
-  add_housekeeping(record.housekeeping);
+  add_telemetry(record.telemetry);
   for (const hal::Event& event : record.events) {
-    if (!hal::tells_of_wall_clock(event.id)) add_event(event);
+    if (!hal::depends_on_wall_clock(event.id)) add_event(event);
   }
   crc_.add_u32(record.state_crc32);
 }
@@ -23,7 +23,7 @@ void TraceDigest::add_report(const hal::AttitudeReport& report) {
   add_time(report.time_ns);
   add_time(report.exposure_time_ns);
   crc_.add_u32(report.sequence_number);
-  crc_.add_u32(report.validity);
+  crc_.add_u32(static_cast<std::uint32_t>(report.validity));
   crc_.add_u32(report.frames_since_reset);
   for (const std::int32_t part : report.q_lrf_trf) crc_.add_u32(static_cast<std::uint32_t>(part));
   crc_.add_u32(report.predicted_error_urad);
@@ -32,22 +32,21 @@ void TraceDigest::add_report(const hal::AttitudeReport& report) {
   crc_.add_u32(report.predicted_error_single_frame_urad);
 }
 
-void TraceDigest::add_housekeeping(const hal::Housekeeping& housekeeping) {
-  add_time(housekeeping.time_ns);
+void TraceDigest::add_telemetry(const hal::Telemetry& telemetry) {
+  add_time(telemetry.time_ns);
   for (const std::uint32_t value :
-       {std::uint32_t{housekeeping.mode}, housekeeping.cycles, housekeeping.commands_accepted,
-        housekeeping.commands_refused, housekeeping.frames_used, housekeeping.frames_missing,
-        housekeeping.frames_refused, housekeeping.frames_duplicate, housekeeping.frames_stale,
-        housekeeping.frames_bad, housekeeping.sequence_gaps, housekeeping.estimator_resets,
-        housekeeping.attitudes_doubtful, housekeeping.model_passes}) {
+       {static_cast<std::uint32_t>(telemetry.mode), telemetry.cycles, telemetry.commands_accepted,
+        telemetry.commands_refused, telemetry.frames_used, telemetry.frames_missing, telemetry.frames_refused,
+        telemetry.frames_duplicate, telemetry.frames_stale, telemetry.frames_bad, telemetry.sequence_gaps,
+        telemetry.estimator_resets, telemetry.attitudes_doubtful, telemetry.model_passes}) {
     crc_.add_u32(value);
   }
 }
 
 void TraceDigest::add_event(const hal::Event& event) {
   add_time(event.time_ns);
-  crc_.add_u32(event.id);
-  crc_.add_u32(event.severity);
+  crc_.add_u32(static_cast<std::uint32_t>(event.id));
+  crc_.add_u32(static_cast<std::uint32_t>(event.severity));
   for (const std::int32_t argument : event.arguments) crc_.add_u32(static_cast<std::uint32_t>(argument));
 }
 

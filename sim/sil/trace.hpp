@@ -11,14 +11,14 @@ namespace tumblesight::sim {
 
 class TraceDigest {
  public:
-  // Little-endian: k, time, report, housekeeping without timing and heap counters, events, state CRC.
+  // Little-endian: k, time, report, telemetry without timing and heap counters, events, state CRC.
   void add(std::uint32_t k, const StepRecord& record);
   std::uint32_t value() const { return crc_.value(); }
 
  private:
   void add_time(std::int64_t time_ns);
   void add_report(const hal::AttitudeReport& report);
-  void add_housekeeping(const hal::Housekeeping& housekeeping);
+  void add_telemetry(const hal::Telemetry& telemetry);
   void add_event(const hal::Event& event);
 
   gnc::Crc32 crc_;

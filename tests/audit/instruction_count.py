@@ -6,7 +6,7 @@ import subprocess
 # The stages in the order of execution, each with the function that begins it. The first one begins a step, the second one ends
 # it. Code between two stages counts for the earlier one.
 STAGES = (
-    ("application", r"fsw::AttitudeInitApp<.*>::step\("),
+    ("application", r"fsw::AttitudeInitApp::step\("),
     ("(end)", r"replay::ConsoleLink::publish\(tumblesight::hal::AttitudeReport"),
     ("depth image", r"gnc::make_depth_image\(.*DepthLoops const&\)"),
     ("space to depth", r"gnc::space_to_depth<"),

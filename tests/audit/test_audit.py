@@ -46,7 +46,7 @@ class Failures(unittest.TestCase):
 
 # Verifies TS-MEM-030.
 class WorstCaseStack(unittest.TestCase):
-    STEP = "void fsw::AttitudeInitApp<N>::step(int64_t) [with N = FixedPoint]"
+    STEP = "void fsw::AttitudeInitApp::step(int64_t, const StepInputs&, StepOutputs&)"
 
     def of(self, edges, nodes):
         with tempfile.TemporaryDirectory() as folder:

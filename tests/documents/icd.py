@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""The tables of docs/icd.md, out of the code that they describe.
+"""Generates the tables of docs/icd.md from the code, and compares the messages with the interface definition.
 
-  tests/documents/icd.py           fails where the document and the code differ
-  tests/documents/icd.py --write   writes the tables into the document
+  tests/documents/icd.py             fails if a table differs from the code
+  tests/documents/icd.py --messages  fails if a message in hal/messages and its topic in the IDL have different fields
+  tests/documents/icd.py --write     writes the tables to docs/icd.md
 """
 import pathlib
 import re
@@ -10,6 +11,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT = ROOT / "docs/icd.md"
+MESSAGES = "hal/messages/"
+IDL = "hal/dds/idl/tumblesight.idl"
 BYTES = {"octet": 1, "unsigned short": 2, "long": 4, "unsigned long": 4, "float": 4, "long long": 8}
 
 
@@ -27,13 +30,40 @@ def upper(name):
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name.removeprefix("k")).upper()
 
 
+_COMMENT = re.compile(r"//\s?(.*)$")
+
+
+def documented(body):
+    """[(statement, comment)] of a struct or enumeration. A comment stands above its statement or behind it, on as many lines as
+    clang-format makes of it; an empty line ends a comment that belongs to no statement."""
+    found, statement, above, column = [], "", [], None
+    for line in body.splitlines():
+        code, comment = line.split("//", 1)[0].strip(), _COMMENT.search(line)
+        if not code and comment and column == line.index("//"):  # goes on behind the statement before
+            found[-1][1].append(comment[1])
+            continue
+        column = None
+        if not code:
+            above = above + [comment[1]] if comment else []
+            continue
+        statement = f"{statement} {code}".strip()
+        behind = [comment[1]] if comment else []
+        if statement.endswith((",", ";")):
+            found.append((statement, above + behind))
+            statement, above, column = "", [], line.index("//") if comment else None
+        else:
+            above = above + behind
+    return [(statement, " ".join(comment).strip()) for statement, comment in found]
+
+
 def enum(path, name):
     """[(enumerator, value, comment)]"""
     body = re.search(rf"enum class {name} [^{{]*\{{(.*?)\}};", source(path), re.S)[1]
     values, value = [], -1
-    for entry, number, comment in re.findall(r"^\s*(k\w+)(?: = (\d+))?,?[ \t]*(?://[ \t]*(.*))?$", body, re.M):
+    for statement, comment in documented(body if "\n" in body else body.replace(", ", ",\n") + ","):
+        entry, number = re.fullmatch(r"(k\w+)(?: = (\d+))?,", statement).groups()
         value = int(number) if number else value + 1
-        values.append((entry, value, comment.strip()))
+        values.append((entry, value, comment))
     return values
 
 
@@ -53,37 +83,45 @@ def transitions():
 
 
 def causes():
-    return table(["number", "cause", ""], [[value, upper(name), comment] for name, value, comment in enum("fsw/app/modes.hpp", "Cause")])
+    return table(["number", "cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "mode.hpp", "Cause")])
 
 
 def functions():
-    codes = {name: (value, comment) for name, value, comment in enum("fsw/app/telecommand.hpp", "FunctionCode")}
-    limits = {"kMaxCommandArgumentBytes": "1028"}
+    codes = {name: value for name, value, _ in enum(MESSAGES + "function_code.hpp", "FunctionCode")}
+    body = re.search(r"kCommands\{\n(.*?)\n\};", source("fsw/app/commands.cpp"), re.S)[1]
+    limits = {"hal::kMaxCommandArgumentBytes": "1028"}
     rows = []
-    for function, least, most, modes in array_rows("fsw/app/command_gate.hpp", "kCommandRules"):
-        value, comment = codes[last(function)]
+    for statement, comment in documented(body):
+        function, least, most, modes = re.fullmatch(r"CommandRow\{\{([\w:]+), (\d+), ([\w:]+), ([\w |]+)\}, \w+\},", statement).groups()
         most = limits.get(most, most)
-        rows.append([value, upper(last(function)), least if least == most else f"{least}…{most}", comment or "-",
+        rows.append([codes[last(function)], upper(last(function)), least if least == most else f"{least}…{most}", comment or "-",
                      "any" if modes == "kAlways" else ", ".join(m.strip().removeprefix("kIn").upper() for m in modes.split("|"))])
+    missing = set(codes.values()) - {row[0] for row in rows}
+    if missing:
+        raise SystemExit(f"fsw/app/commands.cpp has no row for function codes {sorted(missing)} of {MESSAGES}function_code.hpp")
     return table(["code", "function", "argument bytes", "arguments", "modes"], rows)
 
 
 def refusals():
-    events = {value: name for name, value, _ in enum("fsw/app/events.hpp", "EventId")}
+    events = {value: name for name, value, _ in enum(MESSAGES + "event_id.hpp", "EventId")}
     return table(["number", "event", "refused because"],
                  [[value, 60 + value, f"{upper(name)}{': ' + comment if comment else ''}"]
-                  for name, value, comment in enum("fsw/app/telecommand.hpp", "CommandRefusal") if 60 + value in events])
+                  for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal") if 60 + value in events])
+
+
+def validity():
+    return table(["number", "validity", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "attitude_report.hpp", "Validity")])
 
 
 def limits():
-    meaning = {name: (value, comment) for name, value, comment in enum("fsw/config/limits.hpp", "Limit")}
+    meaning = {name: (value, comment) for name, value, comment in enum(MESSAGES + "limit.hpp", "Limit")}
     return table(["number", "limit", "lowest", "highest", "at start", "meaning"],
                  [[meaning[last(name)][0], last(name)[1:], *(number.replace("'", " ") for number in numbers), meaning[last(name)][1]]
                   for name, *numbers in array_rows("fsw/config/limits.hpp", "kLimitRules")])
 
 
 def faults():
-    meaning = {name: (value, comment) for name, value, comment in enum("fsw/config/fault_rules.hpp", "Fault")}
+    meaning = {name: (value, comment) for name, value, comment in enum(MESSAGES + "fault.hpp", "Fault")}
     return table(["number", "fault", "is", "cycles", "response", "can be disabled"],
                  [[meaning[last(name)][0], upper(last(name)), meaning[last(name)][1], cycles, upper(last(response)),
                    "yes" if disabled == "true" else "no"]
@@ -92,13 +130,13 @@ def faults():
 
 def responses():
     return table(["number", "response", "what is done"],
-                 [[value, upper(name), comment] for name, value, comment in enum("fsw/config/fault_rules.hpp", "Response")])
+                 [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "fault.hpp", "Response")])
 
 
 def events():
-    ids = {name: (value, comment) for name, value, comment in enum("fsw/app/events.hpp", "EventId")}
+    ids = {name: (value, comment) for name, value, comment in enum(MESSAGES + "event_id.hpp", "EventId")}
     rows = []
-    for name, severity in array_rows("fsw/app/events.hpp", "kEventRules"):
+    for name, severity in array_rows(MESSAGES + "event_id.hpp", "kEventRules"):
         value, comment = ids[last(name)]
         arguments = re.search(r"\[(.*?)\]", comment)
         rows.append([value, last(severity)[1:].lower(), upper(last(name)), arguments[1] if arguments else "as 60"])
@@ -106,20 +144,49 @@ def events():
 
 
 def constants():
-    return {name: int(value) for name, value in re.findall(r"const [\w ]+ (\w+) = (\d+);", source("hal/dds/idl/tumblesight.idl"))}
+    return {name: int(value) for name, value in re.findall(r"const [\w ]+ (\w+) = (\d+);", source(IDL))}
 
 
-def housekeeping_comments():
-    return dict(re.findall(r"^  std::\S+ (\w+)(?: = 0|\{\});\s*// (.*)$", source("hal/link.hpp"), re.M))
+# Topic: the message that its sample carries, besides run_id and k.
+CARRIED = {"Attitude": ("attitude_report.hpp", "AttitudeReport"), "Telemetry": ("telemetry.hpp", "Telemetry"), "Event": ("event.hpp", "Event"),
+           "ModelDump": ("model_dump.hpp", "ModelDump")}
+
+
+def message_fields(topic):
+    """{field: comment} of the message that a topic carries, in its order."""
+    path, name = CARRIED[topic]
+    body = re.search(rf"struct {name} \{{\n(.*?)\n\}};", source(MESSAGES + path), re.S)[1]
+    fields = {}
+    for statement, comment in documented(body):
+        if statement.startswith("static "):
+            continue
+        kind, field = re.fullmatch(r"([\w:<>, ]+) (\w+)(?: = .*|\{.*\})?;", statement).groups()
+        named = re.search(r"\b([A-Z]\w+)", kind)  # an enumeration, whose table stands in this document
+        fields[field] = " ".join(filter(None, (named and named[1], comment.removesuffix("."))))
+    return fields
+
+
+def sample_fields(topic):
+    """[(type, field, count, comment)] of a topic's sample."""
+    body = re.search(rf"@final struct {topic} \{{(.*?)\}};", source(IDL), re.S)[1]
+    return [re.match(r"\s*(?:@key )?([\w ]+?) (\w+)(?:\[(\w+)\])?;\s*(?://\s*(.*))?", line).groups() for line in body.strip().splitlines()]
+
+
+def check_messages():
+    """The messages have the fields of their samples, in the same order."""
+    for topic, (path, name) in CARRIED.items():
+        sample = [field for _, field, _, _ in sample_fields(topic) if field not in ("run_id", "k")]
+        message = list(message_fields(topic))
+        if message != sample:
+            at = next(i for i, pair in enumerate(zip(message + ["(end)"], sample + ["(end)"])) if pair[0] != pair[1])
+            raise SystemExit(f"{MESSAGES}{path}: {name} has '{(message + ['(end)'])[at]}' where {topic} of {IDL} has "
+                             f"'{(sample + ['(end)'])[at]}': both need the same fields in the same order")
 
 
 def struct(name):
     """The fields of a topic with their places in the serialised sample (XCDR1, final)."""
-    body = re.search(rf"@final struct {name} \{{(.*?)\}};", source("hal/dds/idl/tumblesight.idl"), re.S)[1]
-    about, rows, offset = housekeeping_comments() if name == "Telemetry" else {}, [], 0
-    for line in body.strip().splitlines():
-        field = re.match(r"\s*(?:@key )?([\w ]+?) (\w+)(?:\[(\w+)\])?;\s*(?://\s*(.*))?", line)
-        kind, label, count, comment = field.groups()
+    about, rows, offset = message_fields(name) if name in CARRIED else {}, [], 0
+    for kind, label, count, comment in sample_fields(name):
         offset += -offset % BYTES[kind]
         items = constants().get(count) or int(count or 1)
         rows.append([offset, f"{kind}{f' × {items}' if items > 1 else ''}", f"`{label}`", comment or about.get(label, "")])
@@ -127,7 +194,7 @@ def struct(name):
     return table(["offset", "type", "field", ""], rows) + f"\n\n{offset} bytes."
 
 
-TABLES = {"transitions": transitions, "causes": causes, "functions": functions, "refusals": refusals, "limits": limits, "faults": faults,
+TABLES = {"transitions": transitions, "causes": causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
           "responses": responses, "events": events,
           **{f"topic {name}": (lambda name=name: struct(name))
              for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Step", "Hello")}}
@@ -143,6 +210,9 @@ def with_tables(text):
 
 
 def main():
+    check_messages()
+    if sys.argv[1:] == ["--messages"]:
+        return 0
     text = DOCUMENT.read_text()
     wanted = with_tables(text)
     if sys.argv[1:] == ["--write"]:
@@ -150,7 +220,7 @@ def main():
         return 0
     for line, (is_now, should_be) in enumerate(zip(text.splitlines(), wanted.splitlines()), 1):
         if is_now != should_be:
-            print(f"docs/icd.md:{line}: '{is_now}' should be '{should_be}' as the code has it; tests/documents/icd.py --write")
+            print(f"docs/icd.md:{line}: is '{is_now}', but the code gives '{should_be}'; run tests/documents/icd.py --write")
             return 1
     return 0 if text == wanted else 1
 

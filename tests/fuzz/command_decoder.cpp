@@ -15,7 +15,7 @@
 namespace tumblesight::fuzz {
 namespace {
 
-using App = fsw::AttitudeInitApp<gnc::FixedPoint>;
+using App = fsw::AttitudeInitApp;
 
 struct Flown {
   hal::fake::FakeStopwatch stopwatch;
@@ -59,14 +59,14 @@ hal::CommandPacket next_packet(Input& input, std::uint32_t& counter) {
 }
 
 void check(const fsw::StepOutputs& outputs, std::uint32_t sent, std::uint32_t told) {
-  const hal::Housekeeping& h = outputs.housekeeping;
+  const hal::Telemetry& h = outputs.telemetry;
   require(h.commands_accepted + h.commands_refused == sent, "every command is accepted or refused");
   std::uint32_t by_reason = 0;
   for (const std::uint32_t count : h.commands_refused_by) by_reason += count;
   require(by_reason == h.commands_refused, "every refusal has its reason");
   require(h.events == told + h.events_waiting + h.events_suppressed + h.events_lost,
           "every event is accounted for");
-  require(h.mode >= 1 && h.mode <= 3, "the mode is one of the table's");
+  require(h.mode >= hal::Mode::kStandby && h.mode <= hal::Mode::kSafe, "the mode is one of the table's");
   require(!outputs.has_dump || outputs.dump.size <= hal::ModelDump::kMaxBytes, "a dump fits");
 }
 

@@ -7,8 +7,8 @@ namespace {
 
 using test::Conversation;
 
-constexpr std::uint8_t kNoFrame = 2;
-constexpr std::uint8_t kFrameRefused = 3;
+constexpr hal::Validity kNoFrame = hal::Validity::kNoFrame;
+constexpr hal::Validity kFrameRefused = hal::Validity::kFrameRefused;
 
 class BadFrames : public ::testing::Test {
  protected:
@@ -19,9 +19,9 @@ class BadFrames : public ::testing::Test {
   void expect_recovery(std::uint32_t refused) {
     const StepAnswer after = conversation_.finish();
     EXPECT_TRUE(gives_attitude(after.attitude));
-    EXPECT_EQ(after.housekeeping.frames_refused, refused);
-    EXPECT_EQ(after.housekeeping.frames_used, before_.housekeeping.frames_used + 1);
-    EXPECT_EQ(after.housekeeping.heap_allocations, 0U);
+    EXPECT_EQ(after.telemetry.frames_refused, refused);
+    EXPECT_EQ(after.telemetry.frames_used, before_.telemetry.frames_used + 1);
+    EXPECT_EQ(after.telemetry.heap_allocations, 0U);
   }
 
   Conversation conversation_;
@@ -34,7 +34,7 @@ TEST_F(BadFrames, RepeatedSequenceNumberIsADuplicate) {
   --frame.sequence_number;
   const StepAnswer answer = conversation_.step({frame});
   EXPECT_EQ(answer.attitude.validity, kFrameRefused);
-  EXPECT_EQ(answer.housekeeping.frames_duplicate, 1U);
+  EXPECT_EQ(answer.telemetry.frames_duplicate, 1U);
   expect_recovery(1);
 }
 
@@ -44,8 +44,8 @@ TEST_F(BadFrames, SkippedSequenceNumberIsCountedAndTheFrameUsed) {
   frame.sequence_number += 5;
   const StepAnswer answer = conversation_.step({frame});
   EXPECT_TRUE(gives_attitude(answer.attitude));
-  EXPECT_EQ(answer.housekeeping.sequence_gaps, 5U);
-  EXPECT_EQ(answer.housekeeping.frames_refused, 0U);
+  EXPECT_EQ(answer.telemetry.sequence_gaps, 5U);
+  EXPECT_EQ(answer.telemetry.frames_refused, 0U);
 }
 
 // Verifies TS-LID-050.
@@ -54,7 +54,7 @@ TEST_F(BadFrames, FrameOlderThanThePreviousOneIsRefused) {
   frame.exposure_time_ns -= 2 * kFramePeriod_ns;
   const StepAnswer answer = conversation_.step({frame});
   EXPECT_EQ(answer.attitude.validity, kFrameRefused);
-  EXPECT_EQ(answer.housekeeping.frames_stale, 1U);
+  EXPECT_EQ(answer.telemetry.frames_stale, 1U);
   expect_recovery(1);
 }
 
@@ -64,7 +64,7 @@ TEST_F(BadFrames, EmptyFrameIsRefused) {
   frame.ranges.fill(0);
   const StepAnswer answer = conversation_.step({frame});
   EXPECT_EQ(answer.attitude.validity, kFrameRefused);
-  EXPECT_EQ(answer.housekeeping.frames_bad, 1U);
+  EXPECT_EQ(answer.telemetry.frames_bad, 1U);
   expect_recovery(1);
 }
 
@@ -74,7 +74,7 @@ TEST_F(BadFrames, FrameWithAllReturnsAtOneRangeIsRefused) {
   frame.ranges.fill(6400);
   const StepAnswer answer = conversation_.step({frame});
   EXPECT_EQ(answer.attitude.validity, kFrameRefused);
-  EXPECT_EQ(answer.housekeeping.frames_bad, 1U);
+  EXPECT_EQ(answer.telemetry.frames_bad, 1U);
   expect_recovery(1);
 }
 
@@ -86,7 +86,7 @@ TEST_F(BadFrames, ImpossibleRayCountsAreRefused) {
     frame.rays = static_cast<std::uint16_t>(rays);
     const StepAnswer answer = conversation_.step({frame});
     EXPECT_EQ(answer.attitude.validity, kFrameRefused) << rays;
-    EXPECT_EQ(answer.housekeeping.frames_bad, ++bad) << rays;
+    EXPECT_EQ(answer.telemetry.frames_bad, ++bad) << rays;
     EXPECT_FALSE(answer.events.empty()) << rays;
   }
   expect_recovery(4);
@@ -96,15 +96,15 @@ TEST_F(BadFrames, ImpossibleRayCountsAreRefused) {
 TEST_F(BadFrames, MissingFrameIsCounted) {
   const StepAnswer answer = conversation_.step({});
   EXPECT_EQ(answer.attitude.validity, kNoFrame);
-  EXPECT_EQ(answer.housekeeping.frames_missing, 1U);
+  EXPECT_EQ(answer.telemetry.frames_missing, 1U);
   expect_recovery(0);
 }
 
 TEST_F(BadFrames, MalformedCommandIsRefusedAndTheFrameUsed) {
   const StepAnswer answer =
-      conversation_.step({conversation_.good_frame()}, {{tumblesight_icd_FUNCTION_NOOP, {1}}});
+      conversation_.step({conversation_.good_frame()}, {{hal::FunctionCode::kNoop, {1}}});
   EXPECT_TRUE(gives_attitude(answer.attitude));
-  EXPECT_EQ(answer.housekeeping.commands_refused, 1U);
+  EXPECT_EQ(answer.telemetry.commands_refused, 1U);
 }
 
 }  // namespace

@@ -11,7 +11,8 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::size_t kForged = 0, kReplayed = 1;  // fsw::CommandRefusal
+constexpr auto kForged = static_cast<std::size_t>(hal::CommandRefusal::kForged);
+constexpr auto kReplayed = static_cast<std::size_t>(hal::CommandRefusal::kReplayed);
 
 void append_u32(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
@@ -34,33 +35,30 @@ class Commands : public ::testing::Test {
 TEST_F(Commands, ForgedAndReplayedCommandsAreRefusedAndCounted) {
   SilSettings settings = test::settings();
   TelecommandEncoder ground(settings.command_key);
-  const hal::CommandPacket noop = ground.packet({tumblesight_icd_FUNCTION_NOOP, {}});
-  hal::CommandPacket spoilt = ground.packet({tumblesight_icd_FUNCTION_NOOP, {}});
-  spoilt.bytes[6] = tumblesight_icd_FUNCTION_RESET_COUNTERS;
+  const hal::CommandPacket noop = ground.packet({hal::FunctionCode::kNoop, {}});
+  hal::CommandPacket spoilt = ground.packet({hal::FunctionCode::kNoop, {}});
+  spoilt.bytes[6] = static_cast<std::uint8_t>(hal::FunctionCode::kResetCounters);
   settings.command_key[0] ^= 1;
   const hal::CommandPacket stranger =
-      TelecommandEncoder(settings.command_key).packet(set_mode(tumblesight_icd_MODE_SAFE));
+      TelecommandEncoder(settings.command_key).packet(set_mode(hal::Mode::kSafe));
   const StepAnswer answer = step_packets({noop, noop, spoilt, stranger});
-  EXPECT_EQ(answer.housekeeping.commands_accepted, 1U);
-  EXPECT_EQ(answer.housekeeping.commands_refused_by[kReplayed], 1U);
-  EXPECT_EQ(answer.housekeeping.commands_refused_by[kForged], 2U);
-  EXPECT_EQ(answer.housekeeping.mode, tumblesight_icd_MODE_RUN);
+  EXPECT_EQ(answer.telemetry.commands_accepted, 1U);
+  EXPECT_EQ(answer.telemetry.commands_refused_by[kReplayed], 1U);
+  EXPECT_EQ(answer.telemetry.commands_refused_by[kForged], 2U);
+  EXPECT_EQ(answer.telemetry.mode, hal::Mode::kRun);
   EXPECT_TRUE(gives_attitude(answer.attitude));
   conversation_.finish();
 }
 
 // Verifies TS-MODE-040, TS-MODE-050.
 TEST_F(Commands, ModesFollowTheCommands) {
-  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_SAFE)})
-                .housekeeping.mode,
-            tumblesight_icd_MODE_SAFE);
-  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(tumblesight_icd_MODE_RUN)})
-                .housekeeping.mode,
-            tumblesight_icd_MODE_SAFE);
-  const StepAnswer answer =
-      conversation_.step({conversation_.good_frame()},
-                         {set_mode(tumblesight_icd_MODE_STANDBY), set_mode(tumblesight_icd_MODE_RUN)});
-  EXPECT_EQ(answer.housekeeping.mode, tumblesight_icd_MODE_RUN);
+  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(hal::Mode::kSafe)}).telemetry.mode,
+            hal::Mode::kSafe);
+  EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(hal::Mode::kRun)}).telemetry.mode,
+            hal::Mode::kSafe);
+  const StepAnswer answer = conversation_.step({conversation_.good_frame()},
+                                               {set_mode(hal::Mode::kStandby), set_mode(hal::Mode::kRun)});
+  EXPECT_EQ(answer.telemetry.mode, hal::Mode::kRun);
   EXPECT_EQ(answer.attitude.frames_since_reset, 1U);
   conversation_.finish();
 }
@@ -73,7 +71,7 @@ TEST_F(Commands, ModelIsLoadedDumpedBackValidatedAndActivatedInFlight) {
   for (std::size_t offset = 0; offset < image.size();) {
     std::vector<Telecommand> commands;
     for (; commands.size() < kPerStep && offset < image.size(); offset += kSegment) {
-      Telecommand load{tumblesight_icd_FUNCTION_MODEL_LOAD, {}};
+      Telecommand load{hal::FunctionCode::kModelLoad, {}};
       append_u32(load.arguments, static_cast<std::uint32_t>(offset));
       const std::size_t size = std::min(kSegment, image.size() - offset);
       load.arguments.insert(load.arguments.end(), image.begin() + static_cast<std::ptrdiff_t>(offset),
@@ -81,26 +79,26 @@ TEST_F(Commands, ModelIsLoadedDumpedBackValidatedAndActivatedInFlight) {
       commands.push_back(load);
     }
     answer = conversation_.step({conversation_.good_frame()}, commands);
-    ASSERT_EQ(answer.housekeeping.commands_refused, 0U);
+    ASSERT_EQ(answer.telemetry.commands_refused, 0U);
   }
-  EXPECT_EQ(answer.housekeeping.model_bytes_loaded, image.size());
+  EXPECT_EQ(answer.telemetry.model_bytes_loaded, image.size());
 
-  answer = conversation_.step({}, {{tumblesight_icd_FUNCTION_MODEL_DUMP, {1, 0, 0, 0x40, 0, 4, 0}}});
+  answer = conversation_.step({}, {{hal::FunctionCode::kModelDump, {1, 0, 0, 0x40, 0, 4, 0}}});
   ASSERT_EQ(answer.dump.size(), kSegment);
   EXPECT_TRUE(std::equal(answer.dump.begin(), answer.dump.end(), image.begin() + 0x4000));
 
   const std::uint32_t crc32 = gnc::model_image_crc32(image.data());
-  Telecommand validate{tumblesight_icd_FUNCTION_MODEL_VALIDATE, {}},
-      activate{tumblesight_icd_FUNCTION_MODEL_ACTIVATE, {}};
+  Telecommand validate{hal::FunctionCode::kModelValidate, {}},
+      activate{hal::FunctionCode::kModelActivate, {}};
   append_u32(validate.arguments, static_cast<std::uint32_t>(image.size()));
   append_u32(validate.arguments, crc32);
   append_u32(activate.arguments, crc32);
-  answer = conversation_.step(
-      {}, {set_mode(tumblesight_icd_MODE_STANDBY), validate, activate, set_mode(tumblesight_icd_MODE_RUN)});
-  EXPECT_EQ(answer.housekeeping.commands_refused, 0U);
-  EXPECT_EQ(answer.housekeeping.bank_in_use, 1);
-  EXPECT_EQ(answer.housekeeping.bank_crc32[1], crc32);
-  EXPECT_EQ(answer.housekeeping.second_copy, 1) << "it is the same image";
+  answer =
+      conversation_.step({}, {set_mode(hal::Mode::kStandby), validate, activate, set_mode(hal::Mode::kRun)});
+  EXPECT_EQ(answer.telemetry.commands_refused, 0U);
+  EXPECT_EQ(answer.telemetry.bank_in_use, 1);
+  EXPECT_EQ(answer.telemetry.bank_crc32[1], crc32);
+  EXPECT_EQ(answer.telemetry.second_copy, 1) << "it is the same image";
   conversation_.finish();
 }
 
@@ -113,13 +111,13 @@ TEST(CommandKey, FromAFileReplacesTheDevelopmentKey) {
   {
     test::Conversation conversation(settings);
     const StepAnswer answer = conversation.step({conversation.good_frame()}, {reset_sequence()});
-    EXPECT_EQ(answer.housekeeping.commands_refused_by[kForged], 1U);
+    EXPECT_EQ(answer.telemetry.commands_refused_by[kForged], 1U);
     conversation.finish();
   }
   settings.command_key.fill(0xAA);
   test::Conversation conversation(settings);
   const StepAnswer answer = conversation.step({conversation.good_frame()}, {reset_sequence()});
-  EXPECT_EQ(answer.housekeeping.commands_accepted, 1U);
+  EXPECT_EQ(answer.telemetry.commands_accepted, 1U);
   conversation.finish();
 }
 

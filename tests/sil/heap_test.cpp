@@ -16,17 +16,17 @@ TEST(Heap, TenThousandStepsWithoutAnAllocationOfTheFlightTask) {
     gnc::RangeImage frame = conversation.good_frame();
     if (k % 97 == 0) frame.ranges.fill(0);
     std::vector<Telecommand> commands;
-    if (k % 10 == 0) commands = {reset_sequence(), {199, {}}};
+    if (k % 10 == 0) commands = {reset_sequence(), {hal::FunctionCode{199}, {}}};
     answer = conversation.step({frame}, commands);
-    ASSERT_EQ(answer.housekeeping.heap_allocations, 0U) << "step " << k;
+    ASSERT_EQ(answer.telemetry.heap_allocations, 0U) << "step " << k;
   }
   answer = conversation.finish();
-  EXPECT_EQ(answer.housekeeping.cycles, kSteps);
-  EXPECT_EQ(answer.housekeeping.heap_allocations, 0U);
-  EXPECT_GT(answer.housekeeping.stack_left_min_bytes, hal::posix::PaintedStack::kBytes / 4);
-  EXPECT_LT(answer.housekeeping.stack_left_min_bytes, hal::posix::PaintedStack::kBytes);
-  EXPECT_EQ(answer.housekeeping.frames_bad, (kSteps - 2) / 97 + 1);
-  EXPECT_EQ(answer.housekeeping.frames_used, kSteps - answer.housekeeping.frames_bad);
+  EXPECT_EQ(answer.telemetry.cycles, kSteps);
+  EXPECT_EQ(answer.telemetry.heap_allocations, 0U);
+  EXPECT_GT(answer.telemetry.stack_left_min_bytes, hal::posix::PaintedStack::kBytes / 4);
+  EXPECT_LT(answer.telemetry.stack_left_min_bytes, hal::posix::PaintedStack::kBytes);
+  EXPECT_EQ(answer.telemetry.frames_bad, (kSteps - 2) / 97 + 1);
+  EXPECT_EQ(answer.telemetry.frames_used, kSteps - answer.telemetry.frames_bad);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
     EXPECT_EQ(step.attitude.frames_since_reset, k % 10 + 1)
         << "the estimator is reset at the start of every sequence";
     EXPECT_NEAR(gnc::to_double(step.attitude.q_lrf_trf).norm(), 1.0, 1e-6);
-    EXPECT_EQ(step.housekeeping.frames_used, k + 1);
+    EXPECT_EQ(step.telemetry.frames_used, k + 1);
   }
   EXPECT_EQ(recording.pictures.size(), 30U);
 }
@@ -59,12 +59,12 @@ TEST(Lockstep, FlightEndsWithTheLastStepAndLeavesNoProcess) {
 TEST(Lockstep, StepWaitsForAllSamplesItAnnounces) {
   Conversation conversation(test::settings());
   // Commands and frames of one step: four commands, then the frame is used by the same cycle.
-  const StepAnswer answer = conversation.step(
-      {conversation.good_frame()}, std::vector<Telecommand>(4, {tumblesight_icd_FUNCTION_NOOP, {}}));
-  EXPECT_EQ(answer.housekeeping.commands_accepted, 4U);
-  EXPECT_EQ(answer.housekeeping.frames_used, 1U);
+  const StepAnswer answer = conversation.step({conversation.good_frame()},
+                                              std::vector<Telecommand>(4, {hal::FunctionCode::kNoop, {}}));
+  EXPECT_EQ(answer.telemetry.commands_accepted, 4U);
+  EXPECT_EQ(answer.telemetry.frames_used, 1U);
   EXPECT_GE(answer.events.size(), 4U);
-  EXPECT_EQ(conversation.finish().housekeeping.cycles, 2U);
+  EXPECT_EQ(conversation.finish().telemetry.cycles, 2U);
 }
 
 // Checks only that no step is early: how late a step is depends on the machine.
@@ -163,7 +163,7 @@ TEST(Lockstep, RoundTripWithoutInference) {
   for (int i = 0; i < kSteps; ++i) conversation.step();
   const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - begin;
   const StepAnswer last = conversation.finish();
-  EXPECT_EQ(last.housekeeping.heap_allocations, 0U);
+  EXPECT_EQ(last.telemetry.heap_allocations, 0U);
   std::printf("round trip without inference: %.0f us a step\n", elapsed.count() / kSteps);
 }
 

@@ -12,7 +12,7 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::uint8_t kValidityStandby = 1;
+constexpr hal::Validity kValidityStandby = hal::Validity::kStandby;
 
 // Verifies TS-IFC-060.
 TEST(Refusal, UnequalInterfaceHashIsRefusedByBothSides) {
@@ -75,12 +75,12 @@ TEST_P(RefusedModel, FlightNamesItAndAnswersInSafe) {
   test::write_file(settings.model_path, bytes);
 
   test::Conversation conversation(settings);
-  EXPECT_EQ(conversation.session.flight_mode(), tumblesight_icd_MODE_SAFE);
+  EXPECT_EQ(conversation.session.flight_mode(), hal::Mode::kSafe);
   const StepAnswer first = conversation.step();
-  EXPECT_EQ(first.housekeeping.mode, tumblesight_icd_MODE_SAFE);
+  EXPECT_EQ(first.telemetry.mode, hal::Mode::kSafe);
   EXPECT_EQ(first.attitude.validity, kValidityStandby);
   ASSERT_FALSE(first.events.empty());
-  EXPECT_EQ(first.events[0].id, tumblesight_icd_EVENT_MODEL_REFUSED);
+  EXPECT_EQ(first.events[0].id, hal::EventId::kModelRefused);
   EXPECT_EQ(conversation.finish().attitude.validity, kValidityStandby);
   const std::string message = test::read_file(settings.flight_log_path);
   EXPECT_NE(message.find(GetParam().message), std::string::npos) << message;

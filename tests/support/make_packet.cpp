@@ -44,7 +44,7 @@ hal::CommandPacket signed_with(const hal::CommandKey& key, std::uint32_t counter
                                std::vector<std::uint8_t> packet) {
   append_u32(packet, counter);
   const Sha256Digest code = hmac_sha256(key, packet.data(), packet.size());
-  packet.insert(packet.end(), code.begin(), code.begin() + kCommandMacBytes);
+  packet.insert(packet.end(), code.begin(), code.begin() + hal::kCommandMacBytes);
   return unsigned_packet(packet);
 }
 

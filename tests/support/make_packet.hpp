@@ -1,4 +1,4 @@
-// Telecommands for the tests: right ones, to be spoilt.
+// Makes valid telecommand packets, which tests then damage.
 #pragma once
 
 #include <cstdint>
@@ -6,15 +6,17 @@
 
 #include "fsw/app/telecommand.hpp"
 #include "hal/command_key.hpp"
+#include "hal/messages/command_packet.hpp"
 
 namespace tumblesight::fsw {
 
 inline constexpr hal::CommandKey kTestKey{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
 
-// Without trailer.
+// A packet with header, checksum and arguments, without a security trailer.
 std::vector<std::uint8_t> packet_of(std::uint8_t function, const std::vector<std::uint8_t>& arguments = {});
-// Checksum as it should be, whatever else the packet holds.
+// Sets the checksum to match the present content.
 void set_checksum(std::vector<std::uint8_t>& packet);
+// Adds the security trailer.
 hal::CommandPacket signed_with(const hal::CommandKey& key, std::uint32_t counter,
                                std::vector<std::uint8_t> packet);
 hal::CommandPacket unsigned_packet(const std::vector<std::uint8_t>& packet);

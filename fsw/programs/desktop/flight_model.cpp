@@ -2,10 +2,13 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <type_traits>
 
 #include "fsw/config/limits.hpp"
+#include "fsw/config/numerics.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "hal/posix/file_model_store.hpp"
 
@@ -44,28 +47,31 @@ void find_shipped_model(FlightOptions& options) {
                 TUMBLESIGHT_SOURCE_DIR, options.target, kind);
 }
 
+// Returns only if the program cannot be started.
+void become_float32_program(char** argv) {
+  char folder[FlightOptions::kMaxPath];
+  char path[FlightOptions::kMaxPath + 16];
+  if (!program_folder(folder)) return;
+  std::snprintf(path, sizeof path, "%s/flight_float32", folder);
+  execv(path, argv);
+  std::fprintf(stderr, "flight: %s: %s\n", path, strerrordesc_np(errno));
+}
+
 }  // namespace
 
-fsw::App& boot(FlightOptions& options, FlightApps& apps, hal::Stopwatch& stopwatch,
-               const hal::CommandKey& command_key) {
+void boot(FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
+          const hal::CommandKey& command_key, char** argv) {
   if (options.model_path[0] == '\0') find_shipped_model(options);
   static hal::posix::FileModelStore store(options.model_path, fsw::config::kMaxModelImageBytes);
-  const hal::Platform platform{&stopwatch, &store, &command_key};
   const hal::ModelBank image = store.bank(0);
   const bool float32 = options.numerics_given ? options.float32 : gnc::is_float32(image.data, image.size);
-  const auto boot_one = [&](auto& app) {
-    app.init(platform, options.target);
-    if (app.mode() == fsw::Mode::kRun) return;
-    const bool unread = store.status() != hal::posix::FileStatus::kOk;
-    std::fprintf(stderr, "flight: model image %s: %s; the mode is SAFE\n", options.model_path,
-                 unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)));
-  };
-  if (float32) {
-    boot_one(apps.float32);
-    return apps.float32_interface;
-  }
-  boot_one(apps.fixed_point);
-  return apps.fixed_point_interface;
+  constexpr bool kFlyFloat32 = std::is_same_v<fsw::Numerics, gnc::Float32>;
+  if (float32 && !kFlyFloat32) become_float32_program(argv);
+  app.init({&stopwatch, &store, &command_key}, options.target);
+  if (app.mode() == fsw::Mode::kRun) return;
+  const bool unread = store.status() != hal::posix::FileStatus::kOk;
+  std::fprintf(stderr, "flight: model image %s: %s; the mode is SAFE\n", options.model_path,
+               unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)));
 }
 
 }  // namespace tumblesight::fsw::desktop

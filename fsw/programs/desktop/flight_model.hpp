@@ -8,18 +8,10 @@
 
 namespace tumblesight::fsw::desktop {
 
-// The application in either numerics.
-struct FlightApps {
-  fsw::AttitudeInitApp<gnc::FixedPoint> fixed_point;
-  fsw::AttitudeInitApp<gnc::Float32> float32;
-  fsw::AppOf<gnc::FixedPoint> fixed_point_interface{fixed_point};
-  fsw::AppOf<gnc::Float32> float32_interface{float32};
-};
-
-// Boots the application of the requested numerics, or of the image's numerics if none are requested, and
-// returns it. Without a usable image its mode is SAFE, and the reason is written to the standard error
-// stream. Call it once.
-fsw::App& boot(FlightOptions& options, FlightApps& apps, hal::Stopwatch& stopwatch,
-               const hal::CommandKey& command_key);
+// Boots `app`. Without a usable image its mode is SAFE, and the reason is written to the standard error
+// stream. If the options or the image ask for float32, the fixed-point program replaces itself by
+// flight_float32 from its own folder, with the same arguments `argv`. Call it once.
+void boot(FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
+          const hal::CommandKey& command_key, char** argv);
 
 }  // namespace tumblesight::fsw::desktop

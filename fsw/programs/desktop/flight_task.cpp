@@ -11,27 +11,6 @@
 namespace tumblesight::fsw::desktop {
 namespace {
 
-// The wire definition and the application use the same values.
-static_assert(tumblesight_icd_MODE_STANDBY == static_cast<int>(fsw::Mode::kStandby));
-static_assert(tumblesight_icd_VALIDITY_VALID == static_cast<int>(fsw::Validity::kValid));
-static_assert(tumblesight_icd_MODE_RUN == static_cast<int>(fsw::Mode::kRun));
-static_assert(tumblesight_icd_MODE_SAFE == static_cast<int>(fsw::Mode::kSafe));
-static_assert(tumblesight_icd_VALIDITY_DOUBTFUL == static_cast<int>(fsw::Validity::kDoubtful));
-static_assert(tumblesight_icd_COMMAND_APID == fsw::kCommandApid);
-static_assert(tumblesight_icd_FUNCTION_NOOP == static_cast<int>(fsw::FunctionCode::kNoop));
-static_assert(tumblesight_icd_FUNCTION_RESET_COUNTERS == static_cast<int>(fsw::FunctionCode::kResetCounters));
-static_assert(tumblesight_icd_FUNCTION_SET_MODE == static_cast<int>(fsw::FunctionCode::kSetMode));
-static_assert(tumblesight_icd_FUNCTION_RESET_SEQUENCE == static_cast<int>(fsw::FunctionCode::kResetSequence));
-static_assert(tumblesight_icd_FUNCTION_MODEL_LOAD == static_cast<int>(fsw::FunctionCode::kModelLoad));
-static_assert(tumblesight_icd_FUNCTION_MODEL_VALIDATE == static_cast<int>(fsw::FunctionCode::kModelValidate));
-static_assert(tumblesight_icd_FUNCTION_MODEL_ACTIVATE == static_cast<int>(fsw::FunctionCode::kModelActivate));
-static_assert(tumblesight_icd_FUNCTION_MODEL_DUMP == static_cast<int>(fsw::FunctionCode::kModelDump));
-static_assert(tumblesight_icd_FUNCTION_SET_LIMIT == static_cast<int>(fsw::FunctionCode::kSetLimit));
-static_assert(tumblesight_icd_FUNCTION_ENABLE_RESPONSE ==
-              static_cast<int>(fsw::FunctionCode::kEnableResponse));
-static_assert(tumblesight_icd_FUNCTION_DISABLE_RESPONSE ==
-              static_cast<int>(fsw::FunctionCode::kDisableResponse));
-static_assert(tumblesight_icd_EVENT_MODEL_REFUSED == static_cast<int>(fsw::EventId::kModelRefused));
 static_assert(hal::dds::kMaxEventsPerStep >= fsw::config::kMaxEventsPerStep);
 
 void wait(sem_t& semaphore) {
@@ -67,7 +46,7 @@ FlightTask::FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsLink& link, Cycle
   sem_init(&done_, 0, 0);
 }
 
-bool FlightTask::start(App& app, bool free_running) {
+bool FlightTask::start(AttitudeInitApp& app, bool free_running) {
   app_ = &app;
   free_running_ = free_running;
   started_ = stack_.start(thread_, thread_main, this);

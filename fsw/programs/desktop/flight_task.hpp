@@ -37,7 +37,7 @@ class FlightTask {
   // Starts the thread and returns when it is ready; false if the system provides no thread. A free-running
   // task requests a fixed priority and locked memory, which takes longer than a cycle: start it before the
   // run.
-  [[nodiscard]] bool start(App& app, bool free_running);
+  [[nodiscard]] bool start(AttitudeInitApp& app, bool free_running);
   // Call it before the first cycle: telemetry carries the run id.
   void set_run_id(std::uint32_t run_id) { run_id_ = run_id; }
   // Free-running: cycles start with the timer's next release.
@@ -67,7 +67,7 @@ class FlightTask {
     void kick() override {}
   };
 
-  App* app_ = nullptr;
+  AttitudeInitApp* app_ = nullptr;
   NoWatchdog watchdog_;
   hal::dds::DdsLidar& lidar_;
   hal::dds::DdsLink& link_;

@@ -28,7 +28,7 @@ hal::dds::DdsLidar lidar;
 hal::posix::PaintedStack stack;
 hal::dds::DdsLink link{{heap_allocations, [] { return stack.least_left_bytes(); }}};
 hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
-FlightApps apps;
+fsw::AttitudeInitApp app;
 hal::CommandKey command_key;
 fsw::CycleWorkspace workspace;
 FlightTask task{lidar, link, workspace, stack};
@@ -41,8 +41,7 @@ FlightEnd connect(const FlightOptions& options) {
   return FlightEnd::kTransport;
 }
 
-hal::dds::HandshakeResult meet_simulator(const FlightOptions& options, const fsw::App& app,
-                                         std::int64_t timeout_ns) {
+hal::dds::HandshakeResult meet_simulator(const FlightOptions& options, std::int64_t timeout_ns) {
   hal::dds::HandshakeSettings settings;
   settings.icd_hash = options.icd_hash;
   settings.run_id = options.run_id;
@@ -58,12 +57,12 @@ hal::dds::HandshakeResult meet_simulator(const FlightOptions& options, const fsw
   return met;
 }
 
-FlightEnd fly(const FlightOptions& options, fsw::App& app) {
+FlightEnd fly(const FlightOptions& options) {
   if (!task.start(app, options.free_running)) return FlightEnd::kNoThread;
   const FlightEnd connected = connect(options);
   if (connected != FlightEnd::kComplete) return connected;
   const auto timeout_ns = static_cast<std::int64_t>(options.timeout_s * 1e9);
-  const hal::dds::HandshakeResult met = meet_simulator(options, app, timeout_ns);
+  const hal::dds::HandshakeResult met = meet_simulator(options, timeout_ns);
   if (met.end != FlightEnd::kComplete || met.stopped) return met.end;
 
   bus.join_run(met.run_id, timeout_ns);
@@ -90,9 +89,9 @@ int main(int argc, char** argv) {
   hal::dds::accept_stop_requests();
   if (!read_command_key(options.command_key_path, command_key))
     return static_cast<int>(FlightEnd::kBadArguments);
-  fsw::App& app = boot(options, apps, stopwatch, command_key);
+  boot(options, app, stopwatch, command_key, argv);
 
-  const FlightEnd end = fly(options, app);
+  const FlightEnd end = fly(options);
   task.join();  // no effect after a run
   if (end != FlightEnd::kComplete) std::fprintf(stderr, "flight: %s\n", hal::dds::to_string(end));
   domain.close();

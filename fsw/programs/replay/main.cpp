@@ -21,12 +21,6 @@ extern const std::uint8_t tumblesight_recording[], tumblesight_recording_end[];
 namespace tumblesight::hal::replay {
 namespace {
 
-#if TUMBLESIGHT_REPLAY_FLOAT32
-using Numerics = gnc::Float32;
-#else
-using Numerics = gnc::FixedPoint;
-#endif
-
 class BoardStopwatch final : public Stopwatch {
  public:
   std::uint64_t now_ns() override { return board::now_ns(); }
@@ -46,8 +40,7 @@ class NoWatchdog final : public Watchdog {
   void kick() override {}
 };
 
-fsw::AttitudeInitApp<Numerics> app;
-fsw::AppOf<Numerics> app_interface{app};
+fsw::AttitudeInitApp app;
 ProgramModelStore model_store;
 NoWatchdog watchdog;
 fsw::CycleWorkspace workspace;
@@ -71,9 +64,9 @@ int run() {
                    .text("tumblesight, ")
                    .text(app.estimator().model().target.data())
                    .text(", ")
-                   .text(Numerics::kName)
+                   .text(fsw::Numerics::kName)
                    .text(", ")
-                   .text(gnc::to_string(gnc::fastest_kernels<Numerics>().set))
+                   .text(gnc::to_string(gnc::fastest_kernels<fsw::Numerics>().set))
                    .text(", ")
                    .number(recording.frames())
                    .text(" frames\n")
@@ -83,11 +76,11 @@ int run() {
   while (recording.has_next()) {
     const std::int64_t now_ns = recording.next_exposure_time_ns();
     lidar.advance_to(now_ns);
-    fsw::run_cycle(app_interface, {lidar, link, watchdog}, now_ns, 0, workspace);
+    fsw::run_cycle(app, {lidar, link, watchdog}, now_ns, 0, workspace);
     link.digest(app.state_crc32());
   }
-  const Housekeeping& housekeeping = link.housekeeping();
-  if (housekeeping.frames_used != recording.frames()) return fail("recording", "not every frame was used");
+  if (link.telemetry().frames_used != recording.frames())
+    return fail("recording", "not every frame was used");
   board::write(TextLine().text("digest ").hexadecimal(link.digest()).text("\n").c_str());
   return 0;
 }

@@ -84,7 +84,7 @@ void TrialRunner::fly_undisturbed() {
     before_.push_back(std::make_unique<App>(*app_));
     prepare(cycle);
     clean_.push_back(fly(cycle));
-    resets_.push_back(outputs_->housekeeping.estimator_resets);
+    resets_.push_back(outputs_->telemetry.estimator_resets);
   }
 }
 
@@ -106,7 +106,8 @@ CycleResult TrialRunner::fly(std::size_t cycle) {
   CycleResult result;
   result.q_lrf_trf = outputs_->attitude.q_lrf_trf;
   result.validity = outputs_->attitude.validity;
-  const bool has_attitude = result.validity == 0 || result.validity == 4;
+  const bool has_attitude =
+      result.validity == hal::Validity::kValid || result.validity == hal::Validity::kDoubtful;
   if (has_attitude) result.error_deg = angle_deg(result.q_lrf_trf, flight_.truth[cycle].q_lrf_trf);
   return result;
 }
@@ -183,17 +184,17 @@ Trial TrialRunner::run(Place place, std::uint64_t seed, std::uint32_t number) {
 }
 
 bool TrialRunner::noticed() const {
-  const hal::Housekeeping& h = outputs_->housekeeping;
+  const hal::Telemetry& h = outputs_->telemetry;
   return h.memory_corrections + h.states_restored + h.states_lost + h.constants_reloaded +
                  h.model_blocks_repaired + h.model_blocks_lost + h.model_tables_rebuilt + h.bank_switches +
                  h.commands_refused + h.frames_refused + h.sequence_gaps >
              0 ||
          h.estimator_resets != resets_[cycles_flown_ - 1] ||
-         h.mode != static_cast<std::uint8_t>(fsw::Mode::kRun);
+         h.mode != fsw::Mode::kRun;
 }
 
 bool TrialRunner::counts_every_command(std::size_t cycles) const {
-  const hal::Housekeeping& h = outputs_->housekeeping;
+  const hal::Telemetry& h = outputs_->telemetry;
   return std::size_t{h.commands_accepted} + h.commands_refused == cycles;
 }
 
@@ -207,7 +208,7 @@ Trial TrialRunner::judged(std::size_t first, const std::vector<CycleResult>& res
     const CycleResult& hit = results[i];
     trial.changed = trial.changed || hit.q_lrf_trf != clean.q_lrf_trf;
     const bool suffers = clean.right() && !hit.right();
-    silent_wrong = silent_wrong || (suffers && hit.validity == 0);
+    silent_wrong = silent_wrong || (suffers && hit.validity == hal::Validity::kValid);
     since = suffers ? since + 1 : 0;
     if (since > trial.cycles_to_recover) trial.cycles_to_recover = static_cast<std::uint8_t>(since);
     suffered_in_the_end = suffers;
@@ -216,7 +217,7 @@ Trial TrialRunner::judged(std::size_t first, const std::vector<CycleResult>& res
     trial.outcome = Outcome::kSilentWrong;
   } else if (!counts_every_command(cycles_flown_)) {
     trial.outcome = Outcome::kLostCount;
-  } else if (outputs_->housekeeping.mode == static_cast<std::uint8_t>(fsw::Mode::kSafe)) {
+  } else if (outputs_->telemetry.mode == hal::Mode::kSafe) {
     trial.outcome = Outcome::kSafe;
   } else if (suffered_in_the_end) {
     trial.outcome = Outcome::kFlaggedWrong;

@@ -15,10 +15,10 @@ namespace tumblesight::fault {
 // What a cycle gave, as far as an outcome depends on it.
 struct CycleResult {
   gnc::QuaternionQ30 q_lrf_trf{};
-  std::uint8_t validity = 0;
+  hal::Validity validity = hal::Validity::kValid;
   double error_deg = 180.0;
 
-  bool right() const { return validity == 0 && error_deg <= 20.0; }
+  bool right() const { return validity == hal::Validity::kValid && error_deg <= 20.0; }
 };
 
 class TrialRunner {
@@ -28,7 +28,7 @@ class TrialRunner {
   Trial run(Place place, std::uint64_t seed, std::uint32_t number);
 
  private:
-  using App = fsw::AttitudeInitApp<gnc::FixedPoint>;
+  using App = fsw::AttitudeInitApp;
 
   // What an undisturbed flight leaves before each of its cycles, and gives in it.
   void fly_undisturbed();

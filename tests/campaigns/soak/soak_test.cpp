@@ -140,7 +140,7 @@ class Soak : public ::testing::Test {
 
   // What this cycle adds to every counter, one by one.
   void expect_all_accounted_for() {
-    const hal::Housekeeping& h = outputs_->housekeeping;
+    const hal::Telemetry& h = outputs_->telemetry;
     std::uint32_t by_reason = 0;
     for (const std::uint32_t count : h.commands_refused_by) by_reason += count;
     ASSERT_EQ(h.commands_refused, by_reason);
@@ -162,13 +162,12 @@ class Soak : public ::testing::Test {
   std::mt19937 engine_{20'260'101};
   hal::posix::MonotonicStopwatch stopwatch_;
   hal::fake::FakeModelStore store_;
-  std::unique_ptr<AttitudeInitApp<gnc::FixedPoint>> app_ =
-      std::make_unique<AttitudeInitApp<gnc::FixedPoint>>();
+  std::unique_ptr<AttitudeInitApp> app_ = std::make_unique<AttitudeInitApp>();
   std::unique_ptr<StepInputs> inputs_ = std::make_unique<StepInputs>();
   std::unique_ptr<StepOutputs> outputs_ = std::make_unique<StepOutputs>();
   std::vector<gnc::RangeImage> pictures_;
   std::array<gnc::RangeImage, 2> images_;
-  hal::Housekeeping last_;  // of the cycle before
+  hal::Telemetry last_;  // of the cycle before
   std::int64_t now_ns_ = kStart_ns;
   std::uint64_t longest_ns_ = 0;
   std::uint32_t number_ = 0, counter_ = 0;

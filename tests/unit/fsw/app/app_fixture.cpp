@@ -89,7 +89,7 @@ gnc::RangeImage AppFixture::next_frame() const {
 int AppFixture::events(EventId id) const {
   int count = 0;
   for (int i = 0; i < out->event_count; ++i) {
-    count += out->events[static_cast<std::size_t>(i)].id == static_cast<std::uint16_t>(id) ? 1 : 0;
+    count += out->events[static_cast<std::size_t>(i)].id == id ? 1 : 0;
   }
   return count;
 }
@@ -97,7 +97,7 @@ int AppFixture::events(EventId id) const {
 const hal::Event* AppFixture::event(EventId id) const {
   for (int i = 0; i < out->event_count; ++i) {
     const hal::Event& candidate = out->events[static_cast<std::size_t>(i)];
-    if (candidate.id == static_cast<std::uint16_t>(id)) return &candidate;
+    if (candidate.id == id) return &candidate;
   }
   return nullptr;
 }

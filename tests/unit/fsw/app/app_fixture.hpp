@@ -14,8 +14,6 @@
 
 namespace tumblesight::fsw {
 
-using FixedPointApp = AttitudeInitApp<gnc::FixedPoint>;
-
 inline constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 
 // Weights of no use for attitudes, in an image that loads.
@@ -27,7 +25,7 @@ gnc::RangeImage good_frame(std::uint32_t sequence_number, std::int64_t exposure_
 
 class AppFixture : public ::testing::Test {
  protected:
-  AppFixture() : app(std::make_unique<FixedPointApp>()), out(std::make_unique<StepOutputs>()) {}
+  AppFixture() : app(std::make_unique<AttitudeInitApp>()), out(std::make_unique<StepOutputs>()) {}
 
   // Both banks hold the test's model.
   void init_with_model();
@@ -47,13 +45,13 @@ class AppFixture : public ::testing::Test {
   gnc::RangeImage next_frame() const;  // as the sensor would deliver it for the coming cycle
   std::int64_t next_time_ns() const { return now_ns + config::kFramePeriod_ns; }
 
-  Validity validity() const { return static_cast<Validity>(out->attitude.validity); }
+  Validity validity() const { return out->attitude.validity; }
   int events(EventId id) const;
   const hal::Event* event(EventId id) const;                   // nullptr: not raised in this cycle
   std::int32_t argument(EventId id, std::size_t index) const;  // of an event that must have been raised
   std::uint32_t estimator_crc() const { return app->estimator().state_crc32(); }
 
-  std::unique_ptr<FixedPointApp> app;
+  std::unique_ptr<AttitudeInitApp> app;
   std::unique_ptr<StepOutputs> out;
   hal::fake::FakeStopwatch stopwatch;
   hal::fake::FakeModelStore store;

@@ -26,9 +26,9 @@ TEST_F(Boot, GoodBanksLeadToRunWithASecondCopy) {
   EXPECT_EQ(argument(EventId::kModelActivated, 0),
             static_cast<std::int32_t>(gnc::kModelImageSize<gnc::FixedPoint>));
   EXPECT_EQ(argument(EventId::kModelActivated, 1), 0);
-  EXPECT_EQ(out->housekeeping.second_copy, 1U);
-  EXPECT_EQ(out->housekeeping.bank_crc32[0], app->estimator().model().crc32);
-  EXPECT_EQ(out->housekeeping.bank_crc32[1], app->estimator().model().crc32);
+  EXPECT_EQ(out->telemetry.second_copy, 1U);
+  EXPECT_EQ(out->telemetry.bank_crc32[0], app->estimator().model().crc32);
+  EXPECT_EQ(out->telemetry.bank_crc32[1], app->estimator().model().crc32);
   step_good();
   EXPECT_EQ(events(EventId::kModelActivated), 0) << "once only";
 }
@@ -43,8 +43,8 @@ TEST_F(Boot, DamagedFirstBankLeadsToTheSecondOne) {
   EXPECT_EQ(argument(EventId::kModelRefused, 0), static_cast<int>(gnc::ModelStatus::kBadMagic));
   EXPECT_EQ(argument(EventId::kModelRefused, 2), 0);
   EXPECT_EQ(argument(EventId::kModelActivated, 1), 1);
-  EXPECT_EQ(out->housekeeping.bank_in_use, 1);
-  EXPECT_EQ(out->housekeeping.second_copy, 0);
+  EXPECT_EQ(out->telemetry.bank_in_use, 1);
+  EXPECT_EQ(out->telemetry.second_copy, 0);
 }
 
 TEST_F(Boot, DamagedSecondBankIsToldAndIsNoSecondCopy) {
@@ -53,16 +53,16 @@ TEST_F(Boot, DamagedSecondBankIsToldAndIsNoSecondCopy) {
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(argument(EventId::kModelRefused, 2), 1);
-  EXPECT_EQ(out->housekeeping.second_copy, 0);
-  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kEmpty));
+  EXPECT_EQ(out->telemetry.second_copy, 0);
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kEmpty);
 }
 
 TEST_F(Boot, AnotherModelInTheSecondBankIsKeptToFallBackOn) {
   store.banks[1].memory = gnc::lasting_model_image<gnc::FixedPoint>(8);
   init(store);
   step_good();
-  EXPECT_EQ(out->housekeeping.second_copy, 0);
-  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kGood));
+  EXPECT_EQ(out->telemetry.second_copy, 0);
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood);
   EXPECT_EQ(events(EventId::kModelRefused), 0);
 }
 
@@ -104,8 +104,8 @@ TEST_F(Boot, WithoutAnyModelTheModeIsSafeAndSaysWhy) {
   EXPECT_EQ(events(EventId::kModelRefused), 2);
   EXPECT_EQ(events(EventId::kModelActivated), 0);
   EXPECT_EQ(argument(EventId::kSafeEntered, 0), static_cast<int>(Cause::kNoModel));
-  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kNoModel));
-  EXPECT_EQ(event(EventId::kModelRefused)->severity, static_cast<int>(Severity::kError));
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kNoModel);
+  EXPECT_EQ(event(EventId::kModelRefused)->severity, Severity::kError);
   step_commands({set_mode(Mode::kRun)});
   EXPECT_EQ(events(EventId::kCommandWrongMode), 1) << "that comes before the model";
   step_commands({set_mode(Mode::kStandby), set_mode(Mode::kRun)});
@@ -142,7 +142,7 @@ TEST_F(Boot, StepBeforeInitIsABugOfTheCaller) {
   EXPECT_EQ(app->mode(), Mode::kSafe);
   EXPECT_EQ(events(EventId::kAssertion), 1);
   EXPECT_EQ(validity(), Validity::kStandby);
-  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kAssertion));
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kAssertion);
 }
 
 }  // namespace

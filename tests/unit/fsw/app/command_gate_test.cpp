@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fsw/app/command_table.hpp"
 #include "tests/support/make_packet.hpp"
 
 namespace tumblesight::fsw {
@@ -114,22 +115,26 @@ TEST(CommandGate, ChecksumMustBeThatOfThePacket) {
 
 TEST(CommandGate, OnlyTheFunctionsOfTheTableAreKnown) {
   for (int function = 0; function < 256; ++function) {
-    const bool known = function >= 1 && function <= 11;
+    const bool known = find_command(static_cast<std::uint8_t>(function)) != nullptr;
     const Admission admission = judged(packet_of(static_cast<std::uint8_t>(function), {0, 0, 0, 0, 0}));
     EXPECT_EQ(!admission.admitted && admission.why == CommandRefusal::kUnknownFunction, !known) << function;
   }
 }
 
 TEST(CommandGate, ArgumentsMustHaveTheLengthOfTheTableAndTheModeMustAllowTheFunction) {
-  for (const CommandRule& rule : kCommandRules) {
-    for (const int bytes : {rule.least_bytes - 1, rule.least_bytes, rule.most_bytes, rule.most_bytes + 1}) {
-      if (bytes < 0 || kCommandHeaderBytes + bytes + kCommandTrailerBytes > hal::CommandPacket::kMaxBytes)
+  for (int function = 0; function < 256; ++function) {
+    if (find_command(static_cast<std::uint8_t>(function)) == nullptr) continue;
+    const CommandRule& rule = *find_command(static_cast<std::uint8_t>(function));
+    for (const int bytes : {rule.min_argument_bytes - 1, rule.min_argument_bytes, rule.max_argument_bytes,
+                            rule.max_argument_bytes + 1}) {
+      if (bytes < 0 ||
+          hal::kCommandHeaderBytes + bytes + hal::kCommandTrailerBytes > hal::CommandPacket::kMaxBytes)
         continue;
       const std::vector<std::uint8_t> arguments(static_cast<std::size_t>(bytes), 0);
       const std::vector<std::uint8_t> packet = packet_of(static_cast<std::uint8_t>(rule.function), arguments);
-      const bool fits = bytes >= rule.least_bytes && bytes <= rule.most_bytes;
+      const bool fits = bytes >= rule.min_argument_bytes && bytes <= rule.max_argument_bytes;
       for (const Mode mode : {Mode::kStandby, Mode::kRun, Mode::kSafe}) {
-        const bool allowed = (rule.modes >> static_cast<int>(mode) & 1) != 0;
+        const bool allowed = rule.allowed_in(mode);
         const Admission admission = judged(packet, mode);
         EXPECT_EQ(admission.admitted, fits && allowed);
         if (admission.admitted) continue;

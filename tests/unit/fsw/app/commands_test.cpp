@@ -16,7 +16,7 @@ class Commands : public AppFixture {
     return step(inputs);
   }
   std::uint32_t refused_by(CommandRefusal why) const {
-    return out->housekeeping.commands_refused_by[static_cast<std::size_t>(why)];
+    return out->telemetry.commands_refused_by[static_cast<std::size_t>(why)];
   }
 };
 
@@ -25,7 +25,7 @@ TEST_F(Commands, NoopIsAcceptedAndChangesNothing) {
   step_good();
   const std::uint32_t crc = estimator_crc();
   step_commands({command(FunctionCode::kNoop)});
-  EXPECT_EQ(out->housekeeping.commands_accepted, 1U);
+  EXPECT_EQ(out->telemetry.commands_accepted, 1U);
   EXPECT_EQ(events(EventId::kCommandAccepted), 1);
   EXPECT_EQ(app->mode(), Mode::kRun);
   EXPECT_EQ(estimator_crc(), crc);
@@ -54,9 +54,9 @@ TEST_F(Commands, EveryRefusalHasItsOwnEventAndCounter) {
     EXPECT_EQ(refused_by(why), 1U) << static_cast<int>(why);
     EXPECT_EQ(events(event_of(why)), 1) << static_cast<int>(why);
   }
-  EXPECT_EQ(out->housekeeping.commands_refused, 8U);
-  EXPECT_EQ(out->housekeeping.commands_accepted, 0U);
-  EXPECT_EQ(out->housekeeping.command_counter, command_counter);
+  EXPECT_EQ(out->telemetry.commands_refused, 8U);
+  EXPECT_EQ(out->telemetry.commands_accepted, 0U);
+  EXPECT_EQ(out->telemetry.command_counter, command_counter);
   EXPECT_EQ(argument(EventId::kCommandUnknown, 0), 99);
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
@@ -75,7 +75,7 @@ TEST_F(Commands, RecordedCommandSentAgainIsRefused) {
 TEST_F(Commands, RecordedCommandIsRefusedAfterARestartTooWhereThePlatformKeepsTheCounter) {
   const hal::CommandPacket standby = set_mode(Mode::kStandby);
   step_commands({standby});
-  app->init({&stopwatch, &store, &kTestKey, out->housekeeping.command_counter}, kTestTarget, protections);
+  app->init({&stopwatch, &store, &kTestKey, out->telemetry.command_counter}, kTestTarget, protections);
   step_commands({standby});
   EXPECT_EQ(app->mode(), Mode::kRun);
   EXPECT_EQ(refused_by(CommandRefusal::kReplayed), 1U);
@@ -96,10 +96,10 @@ TEST_F(Commands, StandbyGivesNoAttitudeAndRunStartsAnew) {
   step_good();
   step_commands({set_mode(Mode::kStandby)});
   EXPECT_EQ(app->mode(), Mode::kStandby);
-  EXPECT_EQ(out->housekeeping.frames_missing, 0U) << "nobody waits for frames in STANDBY";
+  EXPECT_EQ(out->telemetry.frames_missing, 0U) << "nobody waits for frames in STANDBY";
   step_good();
   EXPECT_EQ(validity(), Validity::kStandby);
-  EXPECT_EQ(out->housekeeping.frames_used, 2U);
+  EXPECT_EQ(out->telemetry.frames_used, 2U);
 
   // A new session of the sensor may number from anywhere, even the number last used.
   StepInputs inputs;
@@ -112,7 +112,7 @@ TEST_F(Commands, StandbyGivesNoAttitudeAndRunStartsAnew) {
   EXPECT_EQ(argument(EventId::kCommandAccepted, 2), static_cast<int>(Mode::kRun));
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
-  EXPECT_EQ(out->housekeeping.sequence_gaps, 0U);
+  EXPECT_EQ(out->telemetry.sequence_gaps, 0U);
 }
 
 // Verifies TS-CMD-120.
@@ -120,9 +120,9 @@ TEST_F(Commands, RunInRunHasNoEffect) {
   step_good();
   const std::uint32_t crc = estimator_crc();
   step_commands({set_mode(Mode::kRun)});
-  EXPECT_EQ(out->housekeeping.commands_accepted, 1U);
+  EXPECT_EQ(out->telemetry.commands_accepted, 1U);
   EXPECT_EQ(estimator_crc(), crc);
-  EXPECT_EQ(out->housekeeping.estimator_resets, 1U) << "only the one of init()";
+  EXPECT_EQ(out->telemetry.estimator_resets, 1U) << "only the one of init()";
 }
 
 // Verifies TS-MODE-040, TS-MODE-050.
@@ -130,15 +130,15 @@ TEST_F(Commands, OnlyEnteringRunStartsAnewAndOnlyEnteringSafeSaysWhy) {
   step_good();
   const std::uint32_t crc = estimator_crc();
   step_commands({set_mode(Mode::kStandby), set_mode(Mode::kStandby)});
-  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kNone));
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kNone);
   step_with_bug();
   step_commands({set_mode(Mode::kSafe)});
-  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kAssertion)) << "what led there first";
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kAssertion) << "what led there first";
   step_commands({set_mode(Mode::kStandby)});
-  EXPECT_EQ(out->housekeeping.estimator_resets, 1U) << "only the one of init()";
+  EXPECT_EQ(out->telemetry.estimator_resets, 1U) << "only the one of init()";
   EXPECT_EQ(estimator_crc(), crc);
   step_commands({set_mode(Mode::kRun)});
-  EXPECT_EQ(out->housekeeping.estimator_resets, 2U);
+  EXPECT_EQ(out->telemetry.estimator_resets, 2U);
 }
 
 // Verifies TS-CMD-120.
@@ -154,10 +154,10 @@ TEST_F(Commands, BootAndUnknownModesCannotBeCommanded) {
 TEST_F(Commands, SafeIsLeftForStandbyOnly) {
   step_commands({set_mode(Mode::kSafe)});
   EXPECT_EQ(app->mode(), Mode::kSafe);
-  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kCommandSafe));
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kCommandSafe);
   step_good();
   EXPECT_EQ(validity(), Validity::kStandby);
-  EXPECT_EQ(out->housekeeping.mode, static_cast<int>(Mode::kSafe)) << "telemetry goes on";
+  EXPECT_EQ(out->telemetry.mode, Mode::kSafe) << "telemetry goes on";
   step_commands({set_mode(Mode::kRun)});
   EXPECT_EQ(refused_by(CommandRefusal::kWrongMode), 1U);
   EXPECT_EQ(app->mode(), Mode::kSafe);
@@ -180,8 +180,8 @@ TEST_F(Commands, ResetSequenceStartsASequenceYetRemembersTheLastFrame) {
   inputs.frame = &used;
   step(inputs);
   EXPECT_EQ(validity(), Validity::kFrameRefused) << "the frame has been used before the reset";
-  EXPECT_EQ(out->housekeeping.frames_duplicate, 1U);
-  EXPECT_EQ(out->housekeeping.estimator_resets, 2U);
+  EXPECT_EQ(out->telemetry.frames_duplicate, 1U);
+  EXPECT_EQ(out->telemetry.estimator_resets, 2U);
   step_good();
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
   EXPECT_EQ(events(EventId::kEstimatorResetByGap), 0) << "a new sequence has no gap behind it";
@@ -206,7 +206,7 @@ TEST_F(Commands, SequenceAfterResetEqualsTheFirstSequenceBitForBit) {
   }
   EXPECT_EQ(last[0], last[1]);
   EXPECT_EQ(crc[0], crc[1]);
-  EXPECT_EQ(out->housekeeping.sequence_gaps, 0U);
+  EXPECT_EQ(out->telemetry.sequence_gaps, 0U);
 }
 
 // Verifies TS-CMD-110.
@@ -215,13 +215,13 @@ TEST_F(Commands, ResetCountersZeroesAllButItselfAndTheCounterThatStopsReplays) {
   step_good();
   const hal::CommandPacket noop = command(FunctionCode::kNoop);
   step_commands({noop});
-  EXPECT_GT(out->housekeeping.inference_max_us, 0U);
+  EXPECT_GT(out->telemetry.inference_max_us, 0U);
   step_commands({command(FunctionCode::kResetCounters)});
-  EXPECT_EQ(out->housekeeping.commands_accepted, 1U);
-  EXPECT_EQ(out->housekeeping.frames_used, 0U);
-  EXPECT_EQ(out->housekeeping.inference_max_us, 0U);
-  EXPECT_EQ(out->housekeeping.estimator_resets, 0U);
-  EXPECT_EQ(out->housekeeping.command_counter, command_counter);
+  EXPECT_EQ(out->telemetry.commands_accepted, 1U);
+  EXPECT_EQ(out->telemetry.frames_used, 0U);
+  EXPECT_EQ(out->telemetry.inference_max_us, 0U);
+  EXPECT_EQ(out->telemetry.estimator_resets, 0U);
+  EXPECT_EQ(out->telemetry.command_counter, command_counter);
   EXPECT_EQ(app->mode(), Mode::kRun);
   step_commands({noop});
   EXPECT_EQ(refused_by(CommandRefusal::kReplayed), 1U);
@@ -236,7 +236,7 @@ TEST_F(Commands, EventsThatWaitWhenTheCountersAreResetAreCountedAnew) {
   inputs.commands.back() = command(FunctionCode::kResetCounters);
   step(inputs);
   EXPECT_GE(out->event_count, config::kMaxCommandsPerStep);
-  EXPECT_EQ(out->housekeeping.events, static_cast<std::uint32_t>(out->event_count))
+  EXPECT_EQ(out->telemetry.events, static_cast<std::uint32_t>(out->event_count))
       << "all of them are told only now";
 }
 
@@ -251,7 +251,7 @@ TEST_F(Commands, CommandsAreCarriedOutInOrderBeforeTheFrame) {
   inputs.frame = &frame;
   step(inputs);
   EXPECT_EQ(validity(), Validity::kStandby);
-  EXPECT_EQ(out->housekeeping.frames_used, 1U);
+  EXPECT_EQ(out->telemetry.frames_used, 1U);
 }
 
 // Verifies TS-CMD-140.
@@ -277,9 +277,9 @@ TEST_F(Commands, LimitsAreTakenWithinTheirRangeAndRefusedBeyond) {
 TEST_F(Commands, ResponsesAreDisabledAndEnabledButForThoseThatMustNot) {
   const auto fault = static_cast<std::uint8_t>(Fault::kAttitudeJump);
   step_commands({command(FunctionCode::kDisableResponse, {fault})});
-  EXPECT_EQ(out->housekeeping.responses_disabled, bit_of(Fault::kAttitudeJump));
+  EXPECT_EQ(out->telemetry.responses_disabled, bit_of(Fault::kAttitudeJump));
   step_commands({command(FunctionCode::kEnableResponse, {fault})});
-  EXPECT_EQ(out->housekeeping.responses_disabled, 0U);
+  EXPECT_EQ(out->telemetry.responses_disabled, 0U);
   step_commands(
       {command(FunctionCode::kDisableResponse, {static_cast<std::uint8_t>(Fault::kModelCorrupted)})});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);

@@ -24,7 +24,7 @@ class EventLogTest : public ::testing::Test {
   }
 
   EventLog log;
-  hal::Housekeeping counters;
+  hal::Telemetry counters;
 };
 
 TEST_F(EventLogTest, HandsOutWhatWasRaisedInOrder) {
@@ -32,9 +32,9 @@ TEST_F(EventLogTest, HandsOutWhatWasRaisedInOrder) {
   raise(EventId::kFrameBad);
   const std::vector<hal::Event> events = take_all();
   ASSERT_EQ(events.size(), 2U);
-  EXPECT_EQ(events[0].id, static_cast<int>(EventId::kFrameStale));
-  EXPECT_EQ(events[0].severity, static_cast<int>(Severity::kWarning));
-  EXPECT_EQ(events[1].id, static_cast<int>(EventId::kFrameBad));
+  EXPECT_EQ(events[0].id, EventId::kFrameStale);
+  EXPECT_EQ(events[0].severity, Severity::kWarning);
+  EXPECT_EQ(events[1].id, EventId::kFrameBad);
   EXPECT_EQ(log.waiting(), 0U);
 }
 
@@ -46,7 +46,7 @@ TEST_F(EventLogTest, TooManyOfAKindAreCountedAndToldAtTheEndOfTheWindow) {
   end_window();
   const std::vector<hal::Event> summary = take_all();
   ASSERT_EQ(summary.size(), 1U);
-  EXPECT_EQ(summary[0].id, static_cast<int>(EventId::kEventsSuppressed));
+  EXPECT_EQ(summary[0].id, EventId::kEventsSuppressed);
   EXPECT_EQ(summary[0].arguments,
             (std::array<std::int32_t, 3>{static_cast<int>(EventId::kFrameStale), 5, 0}));
   raise(EventId::kFrameStale);
@@ -59,8 +59,8 @@ TEST_F(EventLogTest, SuppressedEventsOfTheWallClockAreToldApart) {
   end_window();
   const std::vector<hal::Event> summary = take_all();
   ASSERT_EQ(summary.size(), 1U);
-  EXPECT_EQ(summary[0].id, static_cast<int>(EventId::kTimingEventsSuppressed));
-  EXPECT_TRUE(hal::tells_of_wall_clock(summary[0].id));
+  EXPECT_EQ(summary[0].id, EventId::kTimingEventsSuppressed);
+  EXPECT_TRUE(hal::depends_on_wall_clock(summary[0].id));
 }
 
 TEST_F(EventLogTest, FullRingLosesTheNewestAndCountsThem) {
@@ -86,7 +86,7 @@ TEST_F(EventLogTest, StaysInItsMemoryWhateverABitFlipMakesOfIt) {
   for (std::size_t bit = 0; bit < 8 * sizeof(EventLog); ++bit) {
     EventLog hit = log;
     reinterpret_cast<std::uint8_t*>(&hit)[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
-    hal::Housekeeping of_hit;
+    hal::Telemetry of_hit;
     hit.raise(1, EventId::kFrameBad, 0, 0, 0, of_hit);
     hit.end_cycle(1, of_hit);
     int taken = 0;

@@ -9,31 +9,29 @@ class FrameRules : public AppFixture {
     init_with_model();
     step_good();
     step_good();
-    before_ = out->housekeeping;
+    before_ = out->telemetry;
     crc_ = estimator_crc();
   }
 
   // The frame is refused for `id`; nothing but the counters moved. Returns what was counted.
-  const hal::Housekeeping& expect_refused(const gnc::RangeImage& frame, EventId id) {
+  const hal::Telemetry& expect_refused(const gnc::RangeImage& frame, EventId id) {
     step_frame(frame);
     expect_refusal(id);
-    return out->housekeeping;
+    return out->telemetry;
   }
   void expect_refusal(EventId id) {
     EXPECT_EQ(validity(), Validity::kFrameRefused);
     EXPECT_EQ(out->event_count, 1);
     ASSERT_NE(event(id), nullptr);
-    EXPECT_NE(event(id)->severity, static_cast<int>(Severity::kInformation));
-    EXPECT_EQ(out->housekeeping.frames_refused, before_.frames_refused + 1);
-    EXPECT_EQ(out->housekeeping.frames_used, before_.frames_used);
-    EXPECT_EQ(out->housekeeping.estimator_resets, before_.estimator_resets);
-    EXPECT_EQ(
-        out->housekeeping.frames_duplicate + out->housekeeping.frames_stale + out->housekeeping.frames_bad,
-        1U);
+    EXPECT_NE(event(id)->severity, Severity::kInformation);
+    EXPECT_EQ(out->telemetry.frames_refused, before_.frames_refused + 1);
+    EXPECT_EQ(out->telemetry.frames_used, before_.frames_used);
+    EXPECT_EQ(out->telemetry.estimator_resets, before_.estimator_resets);
+    EXPECT_EQ(out->telemetry.frames_duplicate + out->telemetry.frames_stale + out->telemetry.frames_bad, 1U);
     EXPECT_EQ(estimator_crc(), crc_);
   }
 
-  hal::Housekeeping before_;
+  hal::Telemetry before_;
   std::uint32_t crc_ = 0;
 };
 
@@ -44,8 +42,8 @@ TEST_F(FrameRules, GoodFramesOnePeriodApartBuildASequence) {
   EXPECT_EQ(out->attitude.sequence_number, sequence_number);
   EXPECT_EQ(out->attitude.exposure_time_ns, now_ns);
   EXPECT_EQ(out->event_count, 0);
-  EXPECT_EQ(out->housekeeping.frames_used, 3U);
-  EXPECT_EQ(out->housekeeping.frames_refused + out->housekeeping.frames_missing, 0U);
+  EXPECT_EQ(out->telemetry.frames_used, 3U);
+  EXPECT_EQ(out->telemetry.frames_refused + out->telemetry.frames_missing, 0U);
   EXPECT_NE(estimator_crc(), crc_);
 }
 
@@ -55,12 +53,12 @@ TEST_F(FrameRules, MissingFramesAreCountedAndReportedOnceAnOutage) {
   EXPECT_EQ(events(EventId::kFrameMissing), 1);
   EXPECT_EQ(estimator_crc(), crc_);
   step(StepInputs{});
-  EXPECT_EQ(out->housekeeping.frames_missing, 2U);
+  EXPECT_EQ(out->telemetry.frames_missing, 2U);
   EXPECT_EQ(events(EventId::kFrameMissing), 0);
   step_good();
   step(StepInputs{});
   EXPECT_EQ(events(EventId::kFrameMissing), 1);
-  EXPECT_EQ(out->housekeeping.frames_refused, 0U);
+  EXPECT_EQ(out->telemetry.frames_refused, 0U);
 }
 
 TEST_F(FrameRules, RepeatedSequenceNumberIsRefused) {
@@ -124,8 +122,8 @@ TEST_F(FrameRules, FrameOfWrongSizeIsRefused) {
   inputs.frame_wrong_size = 1;
   step(inputs);
   expect_refusal(EventId::kFrameWrongSize);
-  EXPECT_EQ(out->housekeeping.frames_bad, 1U);
-  EXPECT_EQ(out->housekeeping.frames_missing, 0U);
+  EXPECT_EQ(out->telemetry.frames_bad, 1U);
+  EXPECT_EQ(out->telemetry.frames_missing, 0U);
 }
 
 TEST_F(FrameRules, BadFrameAfterAGapLeavesTheStateEvenThoughAGoodOneWouldResetIt) {
@@ -144,7 +142,7 @@ TEST_F(FrameRules, SequenceContinuesAfterARefusedFrameThatTookNoTime) {
   step(inputs);
   EXPECT_EQ(validity(), Validity::kValid) << "the second of the two is good";
   EXPECT_EQ(out->attitude.frames_since_reset, 3U);
-  EXPECT_EQ(out->housekeeping.frames_duplicate, 1U);
+  EXPECT_EQ(out->telemetry.frames_duplicate, 1U);
 }
 
 TEST_F(FrameRules, RefusedSecondFrameLeavesTheReportOfTheFirst) {
@@ -155,7 +153,7 @@ TEST_F(FrameRules, RefusedSecondFrameLeavesTheReportOfTheFirst) {
   step(inputs);
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.sequence_number, frames[0].sequence_number);
-  EXPECT_EQ(out->housekeeping.frames_duplicate, 1U);
+  EXPECT_EQ(out->telemetry.frames_duplicate, 1U);
 }
 
 TEST_F(FrameRules, FrameOneCycleLateIsCaughtUpWith) {
@@ -177,7 +175,7 @@ TEST_F(FrameRules, SkippedNumbersAreCountedAndTheFrameUsedWithoutReset) {
   sequence_number += 3;
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
-  EXPECT_EQ(out->housekeeping.sequence_gaps, 3U);
+  EXPECT_EQ(out->telemetry.sequence_gaps, 3U);
   ASSERT_NE(event(EventId::kSequenceSkipped), nullptr);
   EXPECT_EQ(event(EventId::kSequenceSkipped)->arguments, (std::array<std::int32_t, 3>{103, 106, 3}));
   EXPECT_EQ(out->attitude.frames_since_reset, 3U);
@@ -187,7 +185,7 @@ TEST_F(FrameRules, NumbersGoingBackAreOneGapAndTheFrameUsed) {
   sequence_number = 0;
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
-  EXPECT_EQ(out->housekeeping.sequence_gaps, 1U);
+  EXPECT_EQ(out->telemetry.sequence_gaps, 1U);
   ASSERT_NE(event(EventId::kSequenceSkipped), nullptr);
   EXPECT_EQ(argument(EventId::kSequenceSkipped, 2), -1);
 }
@@ -197,7 +195,7 @@ TEST_F(FrameRules, ExposureGapOffThePeriodResetsTheEstimatorWithAnEvent) {
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
-  EXPECT_EQ(out->housekeeping.estimator_resets, before_.estimator_resets + 1);
+  EXPECT_EQ(out->telemetry.estimator_resets, before_.estimator_resets + 1);
   ASSERT_NE(event(EventId::kEstimatorResetByGap), nullptr);
   EXPECT_EQ(event(EventId::kEstimatorResetByGap)->arguments, (std::array<std::int32_t, 3>{2971, 2, 0}));
 }
@@ -224,9 +222,9 @@ TEST_F(FrameRules, CycleTimeNotAdvancingRefusesTheFrameButNotTheCommand) {
   EXPECT_EQ(validity(), Validity::kFrameRefused);
   ASSERT_NE(event(EventId::kCycleTimeNotAdvancing), nullptr);
   EXPECT_EQ(event(EventId::kCycleTimeNotAdvancing)->arguments, (std::array<std::int32_t, 3>{0, 1, 0}));
-  EXPECT_EQ(out->housekeeping.frames_stale, 1U);
-  EXPECT_EQ(out->housekeeping.frames_refused, 1U);
-  EXPECT_EQ(out->housekeeping.commands_accepted, 1U);
+  EXPECT_EQ(out->telemetry.frames_stale, 1U);
+  EXPECT_EQ(out->telemetry.frames_refused, 1U);
+  EXPECT_EQ(out->telemetry.commands_accepted, 1U);
   EXPECT_EQ(estimator_crc(), crc_);
   ASSERT_EQ(next_time_ns(), next);
   step_good();
@@ -240,7 +238,7 @@ TEST_F(FrameRules, CycleTimeGoingBackWithoutFrameIsReportedAndCountsMissing) {
   EXPECT_EQ(validity(), Validity::kNoFrame);
   ASSERT_NE(event(EventId::kCycleTimeNotAdvancing), nullptr);
   EXPECT_EQ(argument(EventId::kCycleTimeNotAdvancing, 0), -5400);
-  EXPECT_EQ(out->housekeeping.frames_missing, 1U);
+  EXPECT_EQ(out->telemetry.frames_missing, 1U);
 }
 
 TEST_F(FrameRules, CycleTimeJumpingFarBackCostsOneCycle) {
@@ -249,7 +247,7 @@ TEST_F(FrameRules, CycleTimeJumpingFarBackCostsOneCycle) {
   EXPECT_EQ(validity(), Validity::kFrameRefused);
   EXPECT_EQ(out->event_count, 1);
   EXPECT_EQ(events(EventId::kCycleTimeNotAdvancing), 1);
-  EXPECT_EQ(out->housekeeping.estimator_resets, before_.estimator_resets + 1);
+  EXPECT_EQ(out->telemetry.estimator_resets, before_.estimator_resets + 1);
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.frames_since_reset, 1U) << "frames of another time are no part of this motion";

@@ -17,7 +17,7 @@ class MemoryGuardTest : public AppFixture {
   }
   // What an application that was never hit gives for the frames so far and the next one.
   gnc::QuaternionQ30 undisturbed_next() {
-    auto twin = std::make_unique<FixedPointApp>();
+    auto twin = std::make_unique<AttitudeInitApp>();
     hal::fake::FakeModelStore models;
     models.fill(test_model_image());
     twin->init({&stopwatch, &models, &kTestKey}, kTestTarget, protections);
@@ -39,7 +39,7 @@ class MemoryGuardTest : public AppFixture {
   }
   // Until every block has been checked once.
   void steps_of_a_pass() {
-    constexpr std::uint32_t kBlocks = ModelBanks<gnc::FixedPoint>::kBlocks;
+    constexpr std::uint32_t kBlocks = ModelBanks::kBlocks;
     for (std::uint32_t block = 0; block <= kBlocks;
          block += AppMemory::state(*app).limit(Limit::kScrubBlocks))
       step_good();
@@ -66,11 +66,11 @@ TEST_F(MemoryGuardTest, FlippedBitsOfTheVotedStateAreOutvotedAndCounted) {
   for (int i = 0; i < 30; ++i) {
     region.flip(engine() % (8 * region.size));
     expect_undisturbed_step();
-    EXPECT_TRUE(events(EventId::kMemoryCorrected) == 1 || out->housekeeping.events_suppressed > 0);
-    EXPECT_EQ(out->housekeeping.memory_corrections, ++corrections);
+    EXPECT_TRUE(events(EventId::kMemoryCorrected) == 1 || out->telemetry.events_suppressed > 0);
+    EXPECT_EQ(out->telemetry.memory_corrections, ++corrections);
     EXPECT_EQ(app->mode(), Mode::kRun);
   }
-  EXPECT_EQ(out->housekeeping.frames_used, 32U) << "no counter is lost";
+  EXPECT_EQ(out->telemetry.frames_used, 32U) << "no counter is lost";
 }
 
 // Verifies TS-FDIR-020.
@@ -82,10 +82,10 @@ TEST_F(MemoryGuardTest, FlippedBitsOfTheEstimatorsStateAreRestoredFromTheCopy) {
     const bool seen = estimator_crc() != AppMemory::state(*app).estimator_crc32;  // padding does not count
     expect_undisturbed_step();
     restored += seen ? 1U : 0U;
-    EXPECT_EQ(out->housekeeping.states_restored, restored);
+    EXPECT_EQ(out->telemetry.states_restored, restored);
   }
   EXPECT_GT(restored, 10U);
-  EXPECT_EQ(out->housekeeping.states_lost, 0U);
+  EXPECT_EQ(out->telemetry.states_lost, 0U);
 }
 
 // Verifies TS-FDIR-020.
@@ -95,7 +95,7 @@ TEST_F(MemoryGuardTest, StateAndCopyHitTogetherStartTheSequenceAnew) {
   constexpr std::size_t kStateBytes = AppMemory::kStateBits / 8;
   guard.flip(8 * (guard.size - kStateBytes) + 5);  // the copy is its last member
   step_good();
-  EXPECT_EQ(out->housekeeping.states_lost, 1U);
+  EXPECT_EQ(out->telemetry.states_lost, 1U);
   EXPECT_EQ(argument(EventId::kEstimatorResetByFault, 0), static_cast<int>(Fault::kStateLost));
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kResetSequence));
   step_good();
@@ -115,7 +115,7 @@ TEST_F(MemoryGuardTest, FlippedBitsOfBiasesShiftsAndPointersAreReloadedFromTheBa
         app->estimator().constants_crc32() != AppMemory::state(*app).constants_crc32;  // no padding
     expect_undisturbed_step();
     reloaded += seen ? 1U : 0U;
-    EXPECT_EQ(out->housekeeping.constants_reloaded, reloaded);
+    EXPECT_EQ(out->telemetry.constants_reloaded, reloaded);
   }
   EXPECT_GT(reloaded, 15U);
 }
@@ -124,18 +124,18 @@ TEST_F(MemoryGuardTest, FlippedBitsOfBiasesShiftsAndPointersAreReloadedFromTheBa
 TEST_F(MemoryGuardTest, FlippedWeightIsRepairedFromTheSecondCopyWithinAPass) {
   bank(0)[700'000] ^= 0x10;
   steps_of_a_pass();
-  EXPECT_EQ(out->housekeeping.model_blocks_repaired, 1U);
+  EXPECT_EQ(out->telemetry.model_blocks_repaired, 1U);
   EXPECT_EQ(bank(0), bank(1));
   EXPECT_EQ(bank(0), test_model_image());
   EXPECT_EQ(app->mode(), Mode::kRun);
-  EXPECT_GE(out->housekeeping.model_passes, 1U);
+  EXPECT_GE(out->telemetry.model_passes, 1U);
 }
 
 // Verifies TS-FDIR-040.
 TEST_F(MemoryGuardTest, FlippedBitOfTheSecondCopyIsRepairedFromTheBankInUse) {
   bank(1).back() ^= 0x80;
   steps_of_a_pass();
-  EXPECT_EQ(out->housekeeping.model_blocks_repaired, 1U);
+  EXPECT_EQ(out->telemetry.model_blocks_repaired, 1U);
   EXPECT_EQ(bank(1), test_model_image());
 }
 
@@ -144,7 +144,7 @@ TEST_F(MemoryGuardTest, SecondCopyThatCannotBeWrittenIsLeftAsItIs) {
   store.banks[1].writable = false;
   bank(1)[0] ^= 1;
   steps_of_a_pass();
-  EXPECT_EQ(out->housekeeping.model_blocks_repaired, 0U);
+  EXPECT_EQ(out->telemetry.model_blocks_repaired, 0U);
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
@@ -153,10 +153,10 @@ TEST_F(MemoryGuardTest, FlippedBitsOfTheTableAreMended) {
   const Region guard = AppMemory::guard(*app);
   guard.flip(8 * 40 + 3);
   expect_undisturbed_step();
-  EXPECT_EQ(out->housekeeping.model_tables_rebuilt, 1U);
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 1U);
   EXPECT_EQ(events(EventId::kModelTableRebuilt), 1);
   steps_of_a_pass();
-  EXPECT_EQ(out->housekeeping.model_blocks_repaired, 0U);
+  EXPECT_EQ(out->telemetry.model_blocks_repaired, 0U);
   EXPECT_EQ(bank(0), test_model_image());
 }
 
@@ -167,8 +167,8 @@ TEST_F(MemoryGuardTest, SameBlockHitInBothBanksSwitchesOrGoesSafe) {
   for (int i = 0; i < 30 && app->mode() == Mode::kRun; ++i) step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
   EXPECT_EQ(validity(), Validity::kStandby);
-  EXPECT_EQ(out->housekeeping.safe_cause, static_cast<int>(Cause::kFault));
-  EXPECT_EQ(out->housekeeping.safe_fault, static_cast<int>(Fault::kModelCorrupted));
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kFault);
+  EXPECT_EQ(out->telemetry.safe_fault, Fault::kModelCorrupted);
   EXPECT_EQ(events(EventId::kModelBlockLost), 1);
   EXPECT_EQ(events(EventId::kSafeEntered), 1);
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kSafe));
@@ -183,7 +183,7 @@ TEST_F(MemoryGuardTest, DamagedModelWithoutSecondCopyFallsBackOnAnotherGoodOne) 
   init(store);
   step_good();
   bank(0)[5'000] ^= 1;
-  for (int i = 0; i < 30 && out->housekeeping.bank_switches == 0; ++i) step_good();
+  for (int i = 0; i < 30 && out->telemetry.bank_switches == 0; ++i) step_good();
   EXPECT_EQ(argument(EventId::kBankSwitched, 0), 0);
   EXPECT_EQ(argument(EventId::kBankSwitched, 1), 1);
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kSwitchBank));
@@ -213,7 +213,7 @@ TEST_F(MemoryGuardTest, TableAndModelHitTogetherGoSafeWithoutASecondCopy) {
   AppMemory::guard(*app).flip(8 * 40);
   step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
-  EXPECT_EQ(out->housekeeping.model_tables_rebuilt, 0U);
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 0U);
 }
 
 // Verifies TS-FDIR-030.
@@ -221,7 +221,7 @@ TEST_F(MemoryGuardTest, ConstantsHitTogetherWithTheirImageAreMendedFirstInTheIma
   flip_a_constant();
   for (std::size_t at = 0; at < bank(0).size(); at += config::kModelBlockBytes) bank(0)[at + 64] ^= 1;
   expect_undisturbed_step();
-  EXPECT_EQ(out->housekeeping.constants_reloaded, 1U);
+  EXPECT_EQ(out->telemetry.constants_reloaded, 1U);
   EXPECT_EQ(bank(0), test_model_image());
 }
 
@@ -248,15 +248,15 @@ TEST_F(MemoryGuardTest, BankInRomThatIsHitMakesWayForItsSecondCopyAndIsNoneItsel
       append_u32(arguments, gnc::model_image_crc32(test_model_image().data()));
       step_commands(
           {set_mode(Mode::kStandby), command(FunctionCode::kModelActivate, arguments), set_mode(Mode::kRun)});
-      ASSERT_EQ(out->housekeeping.bank_in_use, 1U);
-      ASSERT_EQ(out->housekeeping.second_copy, 1U);
+      ASSERT_EQ(out->telemetry.bank_in_use, 1U);
+      ASSERT_EQ(out->telemetry.second_copy, 1U);
     }
     hit_block(used, 20);
     steps_of_a_pass();
-    EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
-    EXPECT_EQ(out->housekeeping.model_blocks_repaired, 0U);
-    EXPECT_EQ(out->housekeeping.bank_in_use, 1 - used);
-    EXPECT_EQ(out->housekeeping.second_copy, 0U) << "the same CRC in its header, but no good image";
+    EXPECT_EQ(out->telemetry.model_blocks_lost, 1U);
+    EXPECT_EQ(out->telemetry.model_blocks_repaired, 0U);
+    EXPECT_EQ(out->telemetry.bank_in_use, 1 - used);
+    EXPECT_EQ(out->telemetry.second_copy, 0U) << "the same CRC in its header, but no good image";
     EXPECT_EQ(app->mode(), Mode::kRun);
   }
 }
@@ -266,8 +266,8 @@ TEST_F(MemoryGuardTest, SameHitInBothBanksIsNotTakenForTheTruth) {
   hit_block(0, 100);
   hit_block(1, 100);
   steps_of_a_pass();
-  EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
-  EXPECT_EQ(out->housekeeping.model_tables_rebuilt, 0U);
+  EXPECT_EQ(out->telemetry.model_blocks_lost, 1U);
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 0U);
   EXPECT_EQ(app->mode(), Mode::kSafe);
 }
 
@@ -278,7 +278,7 @@ TEST_F(MemoryGuardTest, ScrubbingEndsWithTheFirstBlockThatIsLost) {
   step_good();
   for (const std::size_t block : {15U, 16U, 17U}) hit_block(0, block);  // all of the next cycle's share
   step_good();
-  EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+  EXPECT_EQ(out->telemetry.model_blocks_lost, 1U);
   EXPECT_EQ(argument(EventId::kModelBlockLost, 1), 15);
 }
 
@@ -290,9 +290,9 @@ TEST_F(MemoryGuardTest, ConstantsAreNotReloadedFromAnImageWithALostBlock) {
   flip_a_constant();
   for (const std::size_t block : {100U, 101U}) hit_block(0, block);  // not of the next cycle's share
   step_good();
-  EXPECT_EQ(out->housekeeping.model_blocks_lost, 1U);
+  EXPECT_EQ(out->telemetry.model_blocks_lost, 1U);
   EXPECT_EQ(argument(EventId::kModelBlockLost, 1), 100);
-  EXPECT_EQ(out->housekeeping.constants_reloaded, 0U);
+  EXPECT_EQ(out->telemetry.constants_reloaded, 0U);
   EXPECT_EQ(app->mode(), Mode::kSafe);
 }
 
@@ -304,11 +304,11 @@ TEST_F(MemoryGuardTest, FrameOfTheCycleThatLosesTheModelIsRefusedAndCounted) {
   hit_block(0, 200);
   hit_table();
   step_good();
-  EXPECT_EQ(out->housekeeping.bank_switches, 1U);
+  EXPECT_EQ(out->telemetry.bank_switches, 1U);
   EXPECT_EQ(app->mode(), Mode::kRun);
   EXPECT_EQ(validity(), Validity::kFrameRefused);
-  EXPECT_EQ(out->housekeeping.frames_refused, 1U);
-  EXPECT_EQ(out->housekeeping.frames_used, 1U);
+  EXPECT_EQ(out->telemetry.frames_refused, 1U);
+  EXPECT_EQ(out->telemetry.frames_used, 1U);
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
 }
@@ -324,7 +324,7 @@ TEST_F(MemoryGuardTest, ModelActivatedInTheCycleThatLosesTheOtherStays) {
   std::vector<std::uint8_t> arguments;
   append_u32(arguments, gnc::model_image_crc32(other.data()));
   step_commands({command(FunctionCode::kModelActivate, arguments), set_mode(Mode::kRun)});
-  EXPECT_EQ(out->housekeeping.bank_in_use, 1U);
+  EXPECT_EQ(out->telemetry.bank_in_use, 1U);
   EXPECT_EQ(app->mode(), Mode::kRun);
   EXPECT_EQ(events(EventId::kSafeEntered), 0);
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
@@ -343,9 +343,9 @@ TEST_F(MemoryGuardTest, UploadGoesOnWhenTheModelInUseIsLost) {
   hit_table();
   step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
-  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kLoading));
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kLoading);
   load(4);
-  EXPECT_EQ(out->housekeeping.model_bytes_loaded, 8U);
+  EXPECT_EQ(out->telemetry.model_bytes_loaded, 8U);
 }
 
 // Verifies TS-FDIR-030.
@@ -358,7 +358,7 @@ TEST_F(MemoryGuardTest, ConstantsThatAreNotThoseOfTheActivationGoSafe) {
     voted.data[copy + offset] ^= 1;  // the same hit in two copies
   step_good();
   EXPECT_EQ(app->mode(), Mode::kRun) << "the other bank is activated";
-  EXPECT_EQ(out->housekeeping.bank_switches, 1U);
+  EXPECT_EQ(out->telemetry.bank_switches, 1U);
 }
 
 // Verifies TS-FDIR-080.
@@ -378,7 +378,7 @@ TEST_F(MemoryGuardTest, WithoutProtectionsAFlipStays) {
   AppMemory::state(*app).mode = Mode::kSafe;
   step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
-  EXPECT_EQ(out->housekeeping.memory_corrections, 0U);
+  EXPECT_EQ(out->telemetry.memory_corrections, 0U);
 }
 
 }  // namespace

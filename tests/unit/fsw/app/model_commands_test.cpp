@@ -26,7 +26,7 @@ class ModelCommands : public AppFixture {
       StepInputs inputs;
       for (; inputs.command_count < config::kMaxCommandsPerStep && offset < other.size();
            ++inputs.command_count) {
-        const std::size_t size = std::min<std::size_t>(kMaxModelSegmentBytes, other.size() - offset);
+        const std::size_t size = std::min<std::size_t>(hal::kMaxModelSegmentBytes, other.size() - offset);
         inputs.commands[static_cast<std::size_t>(inputs.command_count)] = segment(offset, size);
         offset += static_cast<std::uint32_t>(size);
       }
@@ -36,7 +36,7 @@ class ModelCommands : public AppFixture {
       step(inputs);
       ASSERT_EQ(events(EventId::kCommandWrongArgument), 0);
     }
-    ASSERT_EQ(out->housekeeping.model_bytes_loaded, other.size());
+    ASSERT_EQ(out->telemetry.model_bytes_loaded, other.size());
   }
   hal::CommandPacket validate(std::uint32_t size, std::uint32_t crc32) {
     std::vector<std::uint8_t> arguments;
@@ -78,30 +78,30 @@ class HollowStore final : public hal::ModelStore {
 TEST_F(ModelCommands, NewModelIsLoadedInFlightValidatedActivatedAndRun) {
   load_all();
   EXPECT_EQ(validity(), Validity::kValid) << "the old one goes on while the new one comes in";
-  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kLoading));
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kLoading);
   step_commands({set_mode(Mode::kStandby), validate()});
-  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kGood));
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood);
   step_commands({activate(), set_mode(Mode::kRun)});
   EXPECT_EQ(argument(EventId::kModelActivated, 1), 1);
-  EXPECT_EQ(out->housekeeping.bank_in_use, 1);
+  EXPECT_EQ(out->telemetry.bank_in_use, 1);
   EXPECT_EQ(app->estimator().model().crc32, gnc::model_image_crc32(other.data()));
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
-  EXPECT_EQ(out->housekeeping.second_copy, 0);
+  EXPECT_EQ(out->telemetry.second_copy, 0);
   // And back: the old one is still there.
   step_commands({set_mode(Mode::kStandby), activate(gnc::model_image_crc32(test_model_image().data()))});
-  EXPECT_EQ(out->housekeeping.bank_in_use, 0);
+  EXPECT_EQ(out->telemetry.bank_in_use, 0);
 }
 
 TEST_F(ModelCommands, SegmentsOutOfOrderOrBeyondTheBankAreRefusedAndSayWhereToGoOn) {
   step_commands({segment(0, 1000), segment(2000, 10)});
   EXPECT_EQ(argument(EventId::kCommandWrongArgument, 2), 1000);
-  EXPECT_EQ(out->housekeeping.model_bytes_loaded, 1000U);
+  EXPECT_EQ(out->telemetry.model_bytes_loaded, 1000U);
   step_commands({segment(1000, 24)});
-  EXPECT_EQ(out->housekeeping.model_bytes_loaded, 1024U);
+  EXPECT_EQ(out->telemetry.model_bytes_loaded, 1024U);
   step_commands({segment(0, 5)});
-  EXPECT_EQ(out->housekeeping.model_bytes_loaded, 5U) << "offset 0 begins anew";
+  EXPECT_EQ(out->telemetry.model_bytes_loaded, 5U) << "offset 0 begins anew";
   std::vector<std::uint8_t> far{0xFF, 0xFF, 0xFF, 0xFF, 1};
   step_commands({command(FunctionCode::kModelLoad, far)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
@@ -111,7 +111,7 @@ TEST_F(ModelCommands, SegmentThatWouldLeaveTheBankIsRefused) {
   store.banks[1] = {std::vector<std::uint8_t>(1500), 0, true};
   init(store);
   step_commands({segment(0, 1024), segment(1024, 476), segment(1500, 1)});
-  EXPECT_EQ(out->housekeeping.commands_accepted, 2U);
+  EXPECT_EQ(out->telemetry.commands_accepted, 2U);
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
 }
 
@@ -134,7 +134,7 @@ TEST_F(ModelCommands, ValidatedImageIsNotContinuedNorValidatedAgain) {
                                                     static_cast<std::uint8_t>(other.size() >> 8),
                                                     static_cast<std::uint8_t>(other.size()), 1})});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
-  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kGood));
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood);
 }
 
 TEST_F(ModelCommands, BankThatCannotBeWrittenRefusesSegments) {
@@ -142,8 +142,7 @@ TEST_F(ModelCommands, BankThatCannotBeWrittenRefusesSegments) {
   init(store);
   step_commands({segment(0, 10)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
-  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kGood))
-      << "it still holds the second copy";
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood) << "it still holds the second copy";
 }
 
 TEST_F(ModelCommands, DamagedWrongOrUnfinishedImagesAreNotValidated) {
@@ -158,7 +157,7 @@ TEST_F(ModelCommands, DamagedWrongOrUnfinishedImagesAreNotValidated) {
   EXPECT_EQ(argument(EventId::kCommandNoModel, 2), static_cast<int>(gnc::ModelStatus::kBadHeaderCrc));
   step_commands({activate(0)});
   EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "an image that is coming in has no CRC yet";
-  EXPECT_EQ(out->housekeeping.bank_status[1], static_cast<int>(BankStatus::kLoading));
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kLoading);
   store.banks[1].memory[500'000] ^= 4;
   step_commands({validate(static_cast<std::uint32_t>(other.size()), 1)});
   EXPECT_EQ(argument(EventId::kCommandNoModel, 2), static_cast<int>(gnc::ModelStatus::kBadSectionCrc))
@@ -168,7 +167,7 @@ TEST_F(ModelCommands, DamagedWrongOrUnfinishedImagesAreNotValidated) {
   EXPECT_EQ(argument(EventId::kModelRefused, 2), 1);
   step_commands({activate()});
   EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "what is not validated is not activated";
-  EXPECT_EQ(out->housekeeping.bank_in_use, 0);
+  EXPECT_EQ(out->telemetry.bank_in_use, 0);
 }
 
 TEST_F(ModelCommands, ImageDamagedAfterItsValidationIsNotActivated) {
@@ -178,7 +177,7 @@ TEST_F(ModelCommands, ImageDamagedAfterItsValidationIsNotActivated) {
   step_commands({activate()});
   EXPECT_EQ(argument(EventId::kCommandNoModel, 2), static_cast<int>(gnc::ModelStatus::kBadSectionCrc));
   EXPECT_EQ(events(EventId::kModelRefused), 1);
-  EXPECT_EQ(out->housekeeping.bank_in_use, 0);
+  EXPECT_EQ(out->telemetry.bank_in_use, 0);
   step_commands({set_mode(Mode::kRun)});
   step_good();
   EXPECT_EQ(validity(), Validity::kValid) << "the old one is still there";
@@ -188,7 +187,7 @@ TEST_F(ModelCommands, ActivationNamesTheImage) {
   load_all();
   step_commands({set_mode(Mode::kStandby), validate(), activate(42)});
   EXPECT_EQ(events(EventId::kCommandNoModel), 1);
-  EXPECT_EQ(out->housekeeping.bank_in_use, 0);
+  EXPECT_EQ(out->telemetry.bank_in_use, 0);
 }
 
 TEST_F(ModelCommands, DumpGivesTheBytesOfTheBank) {

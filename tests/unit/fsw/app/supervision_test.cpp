@@ -17,7 +17,7 @@ class Supervision : public AppFixture {
     step_commands({command(FunctionCode::kSetLimit, arguments)});
     ASSERT_EQ(events(EventId::kCommandAccepted), 1);
   }
-  bool persists(Fault fault) const { return (out->housekeeping.faults_persisting & bit_of(fault)) != 0; }
+  bool persists(Fault fault) const { return (out->telemetry.faults_persisting & bit_of(fault)) != 0; }
 };
 
 // Verifies TS-FDIR-110.
@@ -43,7 +43,7 @@ TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndOverWithAGoodFrame) {
 TEST_F(Supervision, NobodyMissesFramesInStandby) {
   step_commands({set_mode(Mode::kStandby)});
   for (int cycle = 0; cycle < 10; ++cycle) step(StepInputs{});
-  EXPECT_EQ(out->housekeeping.faults_persisting, 0U);
+  EXPECT_EQ(out->telemetry.faults_persisting, 0U);
 }
 
 // Verifies TS-FDIR-120.
@@ -54,10 +54,10 @@ TEST_F(Supervision, SlipsAreCountedToldAndFlaggedWhenTheyGoOn) {
     step(inputs);
     EXPECT_EQ(argument(EventId::kCycleSlipped, 0), 2);
   }
-  EXPECT_EQ(out->housekeeping.cycle_slips, 6U);
+  EXPECT_EQ(out->telemetry.cycle_slips, 6U);
   EXPECT_TRUE(persists(Fault::kSlip));
   EXPECT_EQ(argument(EventId::kTimingFaultPersists, 0), static_cast<int>(Fault::kSlip));
-  EXPECT_TRUE(hal::tells_of_wall_clock(event(EventId::kTimingFaultPersists)->id));
+  EXPECT_TRUE(hal::depends_on_wall_clock(event(EventId::kTimingFaultPersists)->id));
   step(StepInputs{});
   EXPECT_EQ(argument(EventId::kTimingFaultOver, 0), static_cast<int>(Fault::kSlip));
 }
@@ -66,14 +66,14 @@ TEST_F(Supervision, SlipsAreCountedToldAndFlaggedWhenTheyGoOn) {
 TEST_F(Supervision, StepsBeyondTheirBudgetAreCountedToldAndFlaggedWhenTheyGoOn) {
   stopwatch.tick_ns = 300'000'000;
   step_good();
-  EXPECT_EQ(out->housekeeping.deadline_overruns, 0U) << "900 ms";
+  EXPECT_EQ(out->telemetry.deadline_overruns, 0U) << "900 ms";
   set_limit(Limit::kStepBudget_us, 1'000);
   step_good();
   EXPECT_EQ(events(EventId::kDeadlineOverrun), 1);
   step_good();
   EXPECT_TRUE(persists(Fault::kDeadline));
   EXPECT_EQ(argument(EventId::kTimingFaultPersists, 0), static_cast<int>(Fault::kDeadline));
-  EXPECT_EQ(out->housekeeping.deadline_overruns, 3U) << "the limit counted in its own cycle too";
+  EXPECT_EQ(out->telemetry.deadline_overruns, 3U) << "the limit counted in its own cycle too";
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
@@ -84,21 +84,21 @@ TEST_F(Supervision, StepTimesFillTheHistogram) {
     stopwatch.tick_ns = tick * 1'000'000;
     step(StepInputs{});  // two looks at the stopwatch: one tick
   }
-  for (const std::uint32_t count : out->housekeeping.steps_by_time) EXPECT_EQ(count, 1U);
-  EXPECT_EQ(out->housekeeping.step_max_us, 1'000'000U);
+  for (const std::uint32_t count : out->telemetry.steps_by_time) EXPECT_EQ(count, 1U);
+  EXPECT_EQ(out->telemetry.step_max_us, 1'000'000U);
   stopwatch.tick_ns = 0;
   step(StepInputs{});
-  EXPECT_EQ(out->housekeeping.step_us, 0U);
-  EXPECT_EQ(out->housekeeping.step_max_us, 1'000'000U);
+  EXPECT_EQ(out->telemetry.step_us, 0U);
+  EXPECT_EQ(out->telemetry.step_max_us, 1'000'000U);
 }
 
-TEST_F(Supervision, InferenceTimeGoesToHousekeepingAndNowhereElse) {
+TEST_F(Supervision, InferenceTimeGoesToTelemetryAndNowhereElse) {
   stopwatch.tick_ns = 4'000;
   step_good();
-  EXPECT_EQ(out->housekeeping.inference_us, 4U);
+  EXPECT_EQ(out->telemetry.inference_us, 4U);
   const std::uint32_t crc_fast = app->state_crc32();
 
-  auto slow = std::make_unique<FixedPointApp>();
+  auto slow = std::make_unique<AttitudeInitApp>();
   hal::fake::FakeStopwatch slow_stopwatch;
   slow_stopwatch.tick_ns = 400'000'000;
   slow->init({&slow_stopwatch, &store, &kTestKey}, kTestTarget, protections);
@@ -106,7 +106,7 @@ TEST_F(Supervision, InferenceTimeGoesToHousekeepingAndNowhereElse) {
   StepInputs inputs;
   inputs.frame = &frame;
   slow->step(now_ns, inputs, *out);
-  EXPECT_EQ(out->housekeeping.inference_max_us, 400'000U);
+  EXPECT_EQ(out->telemetry.inference_max_us, 400'000U);
   EXPECT_EQ(slow->state_crc32(), crc_fast) << "time within the budget is not in the digest";
 }
 
@@ -114,14 +114,14 @@ TEST_F(Supervision, StopwatchRunningBackwardsMeasuresNothing) {
   stopwatch.time_ns = 1'000'000'000;
   stopwatch.tick_ns = std::uint64_t{0} - 1'000'000;
   step_good();
-  EXPECT_EQ(out->housekeeping.inference_us, 0U);
-  EXPECT_EQ(out->housekeeping.deadline_overruns, 0U);
+  EXPECT_EQ(out->telemetry.inference_us, 0U);
+  EXPECT_EQ(out->telemetry.deadline_overruns, 0U);
 }
 
 TEST_F(Supervision, StopwatchLeapingFarAheadSaturates) {
   stopwatch.tick_ns = std::uint64_t{1} << 60;
   step(StepInputs{});
-  EXPECT_EQ(out->housekeeping.step_us, UINT32_MAX);
+  EXPECT_EQ(out->telemetry.step_us, UINT32_MAX);
 }
 
 class DoubtfulAttitudes : public Supervision {
@@ -149,7 +149,7 @@ TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillGiven) {
     EXPECT_EQ(persists(Fault::kErrorLarge), cycle == 10);
     EXPECT_FALSE(persists(Fault::kOutage)) << "there is an attitude";
   }
-  EXPECT_EQ(out->housekeeping.attitudes_doubtful, 10U);
+  EXPECT_EQ(out->telemetry.attitudes_doubtful, 10U);
   set_limit(Limit::kPredictedError_urad, 3'141'593);
   step_scene(11);
   EXPECT_EQ(validity(), Validity::kValid);
@@ -160,7 +160,7 @@ TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceWhenTheyGoOn) {
   set_limit(Limit::kPredictedError_urad, 3'141'593);
   set_limit(Limit::kAttitudeJump_urad, 87'266);
   int doubtful = 0;
-  for (unsigned i = 0; i < 40 && out->housekeeping.estimator_resets < 2; ++i) {
+  for (unsigned i = 0; i < 40 && out->telemetry.estimator_resets < 2; ++i) {
     step_scene(1000 + 7 * i);
     if (validity() == Validity::kDoubtful) ++doubtful;
   }
@@ -186,7 +186,7 @@ TEST_F(DoubtfulAttitudes, FramesThatRepeatTheLastOneAreFlaggedAndToldWhenTheyGoO
   }
   step_frame(good_frame(frame.sequence_number + 1, next_time_ns(), 2));
   EXPECT_EQ(validity(), Validity::kValid) << "the sensor looks again";
-  EXPECT_EQ(out->housekeeping.attitudes_doubtful, 3U);
+  EXPECT_EQ(out->telemetry.attitudes_doubtful, 3U);
 }
 
 // Radiation strikes between the estimator and the check of what it gave: at the look at the stopwatch that
@@ -286,7 +286,7 @@ TEST_F(DoubtfulAttitudes, DisabledResponseTellsButDoesNotReset) {
     told = persists(Fault::kAttitudeJump);
   }
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
-  EXPECT_EQ(out->housekeeping.estimator_resets, 1U);
+  EXPECT_EQ(out->telemetry.estimator_resets, 1U);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The digest of the state, and what the housekeeping tells.
+// The digest of the state, and what the telemetry tells.
 // Verifies TS-TLM-010, TS-TLM-020.
 #include "tests/support/test_models.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
@@ -8,11 +8,11 @@ namespace {
 
 class Telemetry : public AppFixture {
  protected:
-  Telemetry() : twin(std::make_unique<FixedPointApp>()), twin_out(std::make_unique<StepOutputs>()) {
+  Telemetry() : twin(std::make_unique<AttitudeInitApp>()), twin_out(std::make_unique<StepOutputs>()) {
     init_with_model();
     twin->init({&stopwatch, &store, &kTestKey}, kTestTarget, protections);
   }
-  std::unique_ptr<FixedPointApp> twin;
+  std::unique_ptr<AttitudeInitApp> twin;
   std::unique_ptr<StepOutputs> twin_out;
 };
 
@@ -48,12 +48,11 @@ TEST_F(Telemetry, EventsBeyondAStepsShareWaitForTheNextOne) {
   inputs.cycle_slips = 1;
   step(inputs);
   EXPECT_EQ(out->event_count, config::kMaxEventsPerStep);
-  EXPECT_EQ(out->housekeeping.events_waiting, 3U)
-      << "activated, 8 repaired, 8 accepted, slipped, no frame: 19";
+  EXPECT_EQ(out->telemetry.events_waiting, 3U) << "activated, 8 repaired, 8 accepted, slipped, no frame: 19";
   now_ns = next_time_ns();
   app->step(now_ns, StepInputs{}, *out);
   EXPECT_EQ(out->event_count, 3);
-  EXPECT_EQ(out->housekeeping.events_waiting, 0U);
+  EXPECT_EQ(out->telemetry.events_waiting, 0U);
 }
 
 // Verifies TS-TLM-040.
@@ -70,13 +69,13 @@ TEST_F(Telemetry, EventsAreToldWaitingSuppressedOrLost) {
     step(inputs);
     told += out->event_count;
     EXPECT_LE(out->event_count, config::kMaxEventsPerStep);
-    const hal::Housekeeping& h = out->housekeeping;
+    const hal::Telemetry& h = out->telemetry;
     EXPECT_EQ(h.events,
               static_cast<std::uint32_t>(told) + h.events_waiting + h.events_suppressed + h.events_lost);
     EXPECT_GE(h.events_waiting_max, h.events_waiting);
   }
-  EXPECT_GT(out->housekeeping.events_suppressed, 0U);
-  EXPECT_EQ(out->housekeeping.commands_refused, 40U * config::kMaxCommandsPerStep);
+  EXPECT_GT(out->telemetry.events_suppressed, 0U);
+  EXPECT_EQ(out->telemetry.commands_refused, 40U * config::kMaxCommandsPerStep);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ SilRecording recording() {
     step.answered = true;
     step.attitude.q_lrf_trf = {1072399895, 53664725, 0, 0};
     step.attitude.q_lrf_trf_single_frame = {1040361791, 0, 265647978, 0};
-    step.housekeeping.mode = 1;
-    step.housekeeping.inference_us = 1000 + 100 * i;
+    step.telemetry.mode = hal::Mode::kStandby;
+    step.telemetry.inference_us = 1000 + 100 * i;
     made.steps.push_back(step);
   }
   made.steps_planned = 4;
@@ -77,8 +77,8 @@ TEST(Shortcomings, NameAnEarlyEndAndTheStepsMissed) {
 TEST(Shortcomings, NameAFlightProgramWithoutAModel) {
   SilRecording safe = recording();
   for (StepRecord& step : safe.steps) {
-    step.attitude.validity = 1;
-    step.housekeeping.mode = 3;
+    step.attitude.validity = hal::Validity::kStandby;
+    step.telemetry.mode = hal::Mode::kSafe;
   }
   const std::vector<std::string> found = shortcomings(safe);
   ASSERT_EQ(found.size(), 1U);

@@ -1,51 +1,53 @@
-// The events of the flight application. Numbers are part of the interface (docs/icd.md): never reused, never
-// changed. Retired: 11.
+// The events of the flight application and their severity. The numbers are part of the interface
+// (docs/icd.md): never changed, never reused. Retired: 11.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-#include "fsw/app/telecommand.hpp"
+#include "hal/messages/command_refusal.hpp"
 
-namespace tumblesight::fsw {
+namespace tumblesight::hal {
 
 enum class Severity : std::uint8_t { kInformation = 0, kWarning = 1, kError = 2 };
 
-// Arguments in brackets. Sequence numbers are given as the bits of the unsigned number; times in
-// milliseconds, clamped to 32 bits.
+// The three arguments are in brackets. A sequence number is given as the bits of the unsigned number. Times
+// are in milliseconds, clamped to 32 bits.
 enum class EventId : std::uint16_t {
-  kModelActivated = 1,  // [image size in bytes, bank, -]; the estimator starts anew
+  kModelActivated = 1,  // [image size in bytes, bank, -]; the estimator is reset
   kModelRefused = 2,    // [gnc::ModelStatus, image size in bytes, bank]
 
   kCommandAccepted = 10,  // [function code, Mode before, Mode after]
 
   kCycleTimeNotAdvancing = 20,  // [this cycle minus the previous one, frames refused with it, -]
-  // 21 to 29 tell of the wall clock, so that no digest of a deterministic run may cover them.
+
+  // Events 21 to 29 depend on the wall clock, so no digest of a deterministic run may include them.
   kCycleSlipped = 21,            // [releases missed, -, -]
   kDeadlineOverrun = 22,         // [time of this step, -, -]
-  kTimingFaultPersists = 23,     // [Fault, Response taken, cycles of its rule]
+  kTimingFaultPersists = 23,     // [Fault, Response taken, persistence of its rule in cycles]
   kTimingFaultOver = 24,         // [Fault, -, -]
-  kTimingEventsSuppressed = 25,  // [EventId of these, how many, -]
+  kTimingEventsSuppressed = 25,  // [EventId of the suppressed events, their number, -]
 
   kFrameMissing = 30,            // first cycle of an outage only [last accepted number, -, -]
   kFrameDuplicate = 31,          // [sequence number, -, -]
   kFrameExposureBackwards = 32,  // [sequence number, exposure minus last accepted exposure, -]
   kFrameStale = 33,              // [sequence number, age, -]
   kFrameFromFuture = 34,         // [sequence number, exposure minus cycle time, -]
-  kFrameBad = 35,                // [sequence number, gnc::FrameStatus, rays to a side]
-  kFrameWrongSize = 36,          // [-, -, -]; the sensor interface dropped what was no frame
+  kFrameBad = 35,                // [sequence number, gnc::FrameStatus, rays per side]
+  kFrameWrongSize = 36,          // [-, -, -]; the sensor interface dropped data that is not a frame
   kSequenceSkipped = 37,         // [number expected, number received, numbers skipped; -1: it went back]
 
   kEstimatorResetByGap = 40,    // [exposure gap, frames since the last reset, -]
   kEstimatorResetByFault = 41,  // [Fault, -, -]
-  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: it jumped + 2: a frozen frame]
+  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump + 2: frozen frame]
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now
-  kFaultPersists = 51,  // [Fault, Response taken, cycles of its rule]
+  kFaultPersists = 51,  // [Fault, Response taken, persistence of its rule in cycles]
   kFaultOver = 52,      // [Fault, -, -]
   kSafeEntered = 53,    // [Cause, Fault or -1, -]
 
-  kCommandForged = 60,  // 60 + CommandRefusal: [function code or 0, bytes, detail]
+  // 60 + CommandRefusal
+  kCommandForged = 60,  // [function code or 0, packet size in bytes, detail]
   kCommandReplayed = 61,
   kCommandMalformed = 62,
   kCommandWrongLength = 63,
@@ -56,15 +58,15 @@ enum class EventId : std::uint16_t {
   kCommandNoModel = 68,
   kCommandBusy = 69,
 
-  kMemoryCorrected = 70,    // [words that the vote corrected, -, -]
+  kMemoryCorrected = 70,    // [words corrected by the vote, -, -]
   kStateRestored = 71,      // [-, -, -]; the estimator's state, from its copy
-  kConstantsReloaded = 72,  // [bank, -, -]; what the application keeps of the model, from the bank
+  kConstantsReloaded = 72,  // [bank, -, -]; the estimator's copy of model data, from the bank
   kModelRepaired = 73,      // [bank, block, -]; from the other bank
-  kModelBlockLost = 74,     // [bank, block, -]; no bank has it
-  kModelTableRebuilt = 75,  // [bank, -, -]; the blocks' checksums
+  kModelBlockLost = 74,     // [bank, block, -]; no bank has a good copy
+  kModelTableRebuilt = 75,  // [bank, -, -]; the checksums of the blocks
   kBankSwitched = 76,       // [bank before, bank after, -]
 
-  kEventsSuppressed = 90,  // [EventId of the others, how many, -]
+  kEventsSuppressed = 90,  // [EventId of the suppressed events, their number, -]
 };
 
 struct EventRule {
@@ -116,8 +118,14 @@ inline constexpr std::array<EventRule, 42> kEventRules{{
     {EventId::kEventsSuppressed, Severity::kInformation},
 }};
 
+// The event that reports a refusal.
 constexpr EventId event_of(CommandRefusal why) {
   return static_cast<EventId>(static_cast<int>(EventId::kCommandForged) + static_cast<int>(why));
 }
 
-}  // namespace tumblesight::fsw
+// Whether the event differs between two runs with the same inputs.
+constexpr bool depends_on_wall_clock(EventId id) {
+  return static_cast<int>(id) > 20 && static_cast<int>(id) < 30;
+}
+
+}  // namespace tumblesight::hal

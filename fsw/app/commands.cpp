@@ -1,0 +1,204 @@
+// The telecommands: what each of them does, and the table of all of them at the end.
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "fsw/app/command_table.hpp"
+#include "fsw/app/counter.hpp"
+
+namespace tumblesight::fsw {
+namespace {
+
+constexpr std::uint8_t kInStandby = 1U << static_cast<int>(Mode::kStandby);
+constexpr std::uint8_t kInRun = 1U << static_cast<int>(Mode::kRun);
+constexpr std::uint8_t kInSafe = 1U << static_cast<int>(Mode::kSafe);
+constexpr std::uint8_t kAlways = kInStandby | kInRun | kInSafe;
+
+bool refuse(Refusal& refusal, CommandRefusal why, std::int32_t detail = 0) {
+  refusal = {why, detail};
+  return false;
+}
+
+bool noop(const Telecommand&, const CommandContext&, Refusal&) {
+  return true;
+}
+
+// Keeps what is not a counter: the command counter and the cause of the last SAFE. Waiting events are sent
+// later and are counted again.
+bool reset_counters(const Telecommand&, const CommandContext& context, Refusal&) {
+  hal::Telemetry& counters = context.state.counters;
+  const hal::Telemetry before = counters;
+  counters = hal::Telemetry{};
+  counters.command_counter = before.command_counter;
+  counters.safe_cause = before.safe_cause;
+  counters.safe_fault = before.safe_fault;
+  counters.events = context.events.waiting();
+  return true;
+}
+
+bool set_mode(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const std::uint8_t mode = command.u8_at(0);
+  Cause cause = Cause::kNone;
+  if (mode == static_cast<std::uint8_t>(Mode::kStandby)) cause = Cause::kCommandStandby;
+  if (mode == static_cast<std::uint8_t>(Mode::kRun)) cause = Cause::kCommandRun;
+  if (mode == static_cast<std::uint8_t>(Mode::kSafe)) cause = Cause::kCommandSafe;
+  if (cause == Cause::kNone) return refuse(refusal, CommandRefusal::kWrongArgument);
+  Mode to = context.state.mode;
+  if (!next_mode(context.state.mode, cause, to)) return refuse(refusal, CommandRefusal::kWrongMode);
+  if (cause == Cause::kCommandRun && !context.state.has_model())
+    return refuse(refusal, CommandRefusal::kNoModel);
+  return context.modes.enter(cause);
+}
+
+bool reset_sequence(const Telecommand&, const CommandContext& context, Refusal&) {
+  context.modes.reset_estimator();
+  return true;
+}
+
+bool load_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  constexpr int kOffsetBytes = 4;
+  ModelBanksState& banks = context.state.banks;
+  const std::int32_t next_offset = clamp_to_int32(banks.loaded_bytes);
+  const bool loaded = ModelBanks::load(*context.state.platform.models, banks, command.u32_at(0),
+                                       command.arguments + kOffsetBytes,
+                                       static_cast<std::uint32_t>(command.argument_bytes - kOffsetBytes));
+  return loaded ? true : refuse(refusal, CommandRefusal::kWrongArgument, next_offset);
+}
+
+bool refuse_model(const CommandContext& context, gnc::ModelStatus status, std::uint32_t size_bytes,
+                  std::uint32_t bank, Refusal& refusal) {
+  const auto reason = static_cast<std::int32_t>(status);
+  context.report(EventId::kModelRefused, reason, clamp_to_int32(size_bytes), static_cast<std::int32_t>(bank));
+  return refuse(refusal, CommandRefusal::kNoModel, reason);
+}
+
+bool validate_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const ModelBanksState& banks = context.state.banks;
+  const std::uint32_t bank = banks.other(), size_bytes = command.u32_at(0);
+  if (banks.status(bank) != BankStatus::kLoading || size_bytes != banks.loaded_bytes)
+    return refuse(refusal, CommandRefusal::kNoModel);
+  const gnc::ModelStatus status = context.models.validate(size_bytes, command.u32_at(4));
+  if (status != gnc::ModelStatus::kOk) return refuse_model(context, status, size_bytes, bank, refusal);
+  return true;
+}
+
+bool activate_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const ModelBanksState& banks = context.state.banks;
+  const std::uint32_t bank = banks.other(), size_bytes = banks.descriptor[bank].size_bytes;
+  if (banks.status(bank) != BankStatus::kGood || banks.descriptor[bank].crc32 != command.u32_at(0))
+    return refuse(refusal, CommandRefusal::kNoModel);
+  const gnc::ModelStatus status = context.models.activate(bank);
+  if (status != gnc::ModelStatus::kOk) return refuse_model(context, status, size_bytes, bank, refusal);
+  context.report(EventId::kModelActivated, clamp_to_int32(size_bytes), static_cast<std::int32_t>(bank));
+  return true;
+}
+
+bool dump_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const std::uint8_t bank = command.u8_at(0);
+  const std::uint32_t offset = command.u32_at(1), size = command.u16_at(5);
+  if (bank >= hal::kModelBanks || size < 1 || size > hal::ModelDump::kMaxBytes)
+    return refuse(refusal, CommandRefusal::kWrongArgument);
+  const hal::ModelBank memory = context.state.platform.models->bank(bank);
+  if (memory.data == nullptr || size > memory.capacity || offset > memory.capacity - size)
+    return refuse(refusal, CommandRefusal::kWrongArgument);
+  if (context.outputs.has_dump) return refuse(refusal, CommandRefusal::kBusy);
+  context.outputs.has_dump = true;
+  hal::ModelDump& dump = context.outputs.dump;
+  dump.time_ns = context.state.now_ns;
+  dump.bank = bank;
+  dump.offset = offset;
+  dump.size = static_cast<std::uint16_t>(size);
+  dump.bytes = {};
+  std::memcpy(dump.bytes.data(), memory.data + offset, size);
+  return true;
+}
+
+bool set_limit(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const std::uint8_t limit = command.u8_at(0);
+  const std::uint32_t value = command.u32_at(1);
+  if (limit >= kLimits) return refuse(refusal, CommandRefusal::kWrongArgument, limit);
+  const config::LimitRule& rule = config::kLimitRules[limit];
+  if (value < rule.lowest || value > rule.highest)
+    return refuse(refusal, CommandRefusal::kWrongArgument, limit);
+  context.state.limits[limit] = value;
+  return true;
+}
+
+bool set_response(const Telecommand& command, const CommandContext& context, bool enabled, Refusal& refusal) {
+  const std::uint8_t fault = command.u8_at(0);
+  const bool known = context.state.faults.enable(fault, enabled);
+  return known ? true : refuse(refusal, CommandRefusal::kWrongArgument, fault);
+}
+
+bool enable_response(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  return set_response(command, context, true, refusal);
+}
+
+bool disable_response(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  return set_response(command, context, false, refusal);
+}
+
+struct CommandRow {
+  CommandRule rule;
+  bool (*handler)(const Telecommand&, const CommandContext&, Refusal&);
+};
+
+// One row per telecommand: function, least and most bytes of arguments, modes, handler. The comment above a
+// row describes its arguments in docs/icd.md. A check of a whole image does not fit into a cycle with an
+// estimate, so MODEL_VALIDATE and MODEL_ACTIVATE are not allowed in RUN.
+constexpr std::array kCommands{
+    CommandRow{{FunctionCode::kNoop, 0, 0, kAlways}, noop},
+    CommandRow{{FunctionCode::kResetCounters, 0, 0, kAlways}, reset_counters},
+    // mode u8: 1 STANDBY, 2 RUN, 3 SAFE
+    CommandRow{{FunctionCode::kSetMode, 1, 1, kAlways}, set_mode},
+    CommandRow{{FunctionCode::kResetSequence, 0, 0, kInStandby | kInRun}, reset_sequence},
+    // offset u32, 1...1024 bytes for the bank that is not in use
+    CommandRow{{FunctionCode::kModelLoad, 5, hal::kMaxCommandArgumentBytes, kAlways}, load_model},
+    // size u32, CRC-32 u32 in the header of the loaded image
+    CommandRow{{FunctionCode::kModelValidate, 8, 8, kInStandby | kInSafe}, validate_model},
+    // CRC-32 u32 in the header of the validated image
+    CommandRow{{FunctionCode::kModelActivate, 4, 4, kInStandby | kInSafe}, activate_model},
+    // bank u8, offset u32, size u16
+    CommandRow{{FunctionCode::kModelDump, 7, 7, kAlways}, dump_model},
+    // Limit u8, value u32
+    CommandRow{{FunctionCode::kSetLimit, 5, 5, kAlways}, set_limit},
+    // Fault u8
+    CommandRow{{FunctionCode::kEnableResponse, 1, 1, kAlways}, enable_response},
+    // Fault u8
+    CommandRow{{FunctionCode::kDisableResponse, 1, 1, kAlways}, disable_response},
+};
+
+// The handler is a constant, so this is a direct call: the analysis of the worst-case stack follows no
+// pointers.
+template <std::size_t kRow>
+bool call(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  constexpr auto kHandler = kCommands[kRow].handler;
+  return kHandler(command, context, refusal);
+}
+
+// One comparison per row.
+template <std::size_t... kRow>
+bool dispatch(std::index_sequence<kRow...>, const Telecommand& command, const CommandContext& context,
+              Refusal& refusal) {
+  bool done = false;
+  ((kCommands[kRow].rule.function == command.function
+        ? static_cast<void>(done = call<kRow>(command, context, refusal))
+        : static_cast<void>(0)),
+   ...);
+  return done;
+}
+
+}  // namespace
+
+const CommandRule* find_command(std::uint8_t function) {
+  for (const CommandRow& row : kCommands) {
+    if (static_cast<std::uint8_t>(row.rule.function) == function) return &row.rule;
+  }
+  return nullptr;
+}
+
+bool carry_out(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  return dispatch(std::make_index_sequence<kCommands.size()>{}, command, context, refusal);
+}
+
+}  // namespace tumblesight::fsw

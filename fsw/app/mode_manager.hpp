@@ -1,0 +1,33 @@
+// ModeManager: changes the mode by the transition table, and resets the estimator where a new sequence
+// begins. It lives for one step; everything that it keeps is in AppState.
+#pragma once
+
+#include "fsw/app/app_state.hpp"
+
+namespace tumblesight::fsw {
+
+class ModeManager {
+ public:
+  ModeManager(AppState& state, Estimator& estimator, const Reporter& report)
+      : state_(state), estimator_(estimator), report_(report) {}
+
+  // Takes the transition. On entering RUN the estimator is reset and the last frame forgotten. On entering
+  // SAFE the telemetry records cause and fault. False: the table has no such transition.
+  bool enter(Cause cause, Fault fault = Fault::kStateLost);
+  // SAFE because of a fault, with an event. No effect in a mode that has no such transition.
+  void go_safe(Fault fault);
+  // SAFE if an assertion has failed since the last call, with an event.
+  void go_safe_on_assertion();
+  // The next frame is the first of a new sequence. Counted.
+  void reset_estimator();
+  // After the cycle time has gone back: the last frame lies in the future and would make every frame until
+  // then go backwards. It is forgotten and the estimator reset.
+  void restart_sequence_after_time_jump();
+
+ private:
+  AppState& state_;
+  Estimator& estimator_;
+  const Reporter& report_;
+};
+
+}  // namespace tumblesight::fsw

@@ -1,0 +1,43 @@
+// ModelManager: finds a model at boot, and validates, activates and switches models. It lives for one step;
+// everything that it keeps is in AppState.
+#pragma once
+
+#include <cstdint>
+
+#include "fsw/app/app_state.hpp"
+#include "fsw/app/memory_guard.hpp"
+#include "fsw/app/mode_manager.hpp"
+
+namespace tumblesight::fsw {
+
+class ModelManager {
+ public:
+  ModelManager(AppState& state, Estimator& estimator, MemoryGuard& guard, const Reporter& report)
+      : state_(state), estimator_(estimator), guard_(guard), report_(report) {}
+
+  // Activates the image of the first bank that passes every check. A good image in another bank is kept as
+  // second copy or to fall back on. The result of each bank: AppState::boot_status.
+  void boot();
+  // Reports the result of boot() once, in the first step after it.
+  void report_boot();
+
+  // Checks the whole loaded image of the bank that is not in use. `crc32`: as in the image's header. With kOk
+  // the bank becomes kGood.
+  gnc::ModelStatus validate(std::uint32_t size_bytes, std::uint32_t crc32);
+  // Checks the whole image of `bank` again and uses it. With another status than kOk the present model stays
+  // in use.
+  gnc::ModelStatus activate(std::uint32_t bank);
+  // Response to a corrupted model. Returns the response taken: kSwitchBank, kFlag if a command of this cycle
+  // has already activated a good model, or kSafe if the other bank holds no good model.
+  Response switch_bank(Fault fault, ModeManager& modes);
+
+ private:
+  void boot_bank(std::uint32_t bank);
+
+  AppState& state_;
+  Estimator& estimator_;
+  MemoryGuard& guard_;
+  const Reporter& report_;
+};
+
+}  // namespace tumblesight::fsw

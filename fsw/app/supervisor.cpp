@@ -1,0 +1,66 @@
+#include "fsw/app/supervisor.hpp"
+
+#include "fsw/app/counter.hpp"
+
+namespace tumblesight::fsw {
+
+void Supervisor::supervise(Validity validity, std::uint32_t cycle_slips, std::uint64_t start_ns) {
+  const bool has_attitude = validity == Validity::kValid || validity == Validity::kDoubtful;
+  if (state_.mode == Mode::kRun && !has_attitude) state_.faults_seen |= bit_of(Fault::kOutage);
+  if (cycle_slips > 0) {
+    count(state_.counters.cycle_slips, cycle_slips);
+    state_.faults_seen |= bit_of(Fault::kSlip);
+    report_(EventId::kCycleSlipped, clamp_to_int32(cycle_slips));
+  }
+  measure(start_ns);
+  for (int i = 0; i < kFaults; ++i) {
+    const auto fault = static_cast<Fault>(i);
+    const FaultMonitor::Change change =
+        state_.faults.observe(fault, (state_.faults_seen & bit_of(fault)) != 0);
+    if (change == FaultMonitor::Change::kPersists) respond(fault);
+    if (change == FaultMonitor::Change::kOver) {
+      report_(is_of_timing(fault) ? EventId::kTimingFaultOver : EventId::kFaultOver, i);
+    }
+  }
+}
+
+void Supervisor::measure(std::uint64_t start_ns) {
+  constexpr std::array<std::uint32_t, hal::Telemetry::kStepTimeBins - 1> kEdges_us{
+      1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000};
+  hal::Telemetry& counters = state_.counters;
+  counters.step_us = elapsed_us(start_ns, state_.platform.stopwatch->now_ns());
+  if (counters.step_us > counters.step_max_us) counters.step_max_us = counters.step_us;
+  std::size_t bin = 0;
+  for (const std::uint32_t edge_us : kEdges_us) bin += counters.step_us >= edge_us ? 1 : 0;
+  count(counters.steps_by_time[bin]);
+  if (counters.step_us <= state_.limit(Limit::kStepBudget_us)) return;
+  count(counters.deadline_overruns);
+  state_.faults_seen |= bit_of(Fault::kDeadline);
+  report_(EventId::kDeadlineOverrun, static_cast<std::int32_t>(counters.step_us / 1000U));
+}
+
+void Supervisor::respond(Fault fault) {
+  const Response response = state_.faults.response_to(fault);
+  Response taken = response;
+  switch (response) {
+    case Response::kIgnore:
+      return;
+    case Response::kFlag:
+      break;
+    case Response::kResetSequence:
+      report_(EventId::kEstimatorResetByFault, static_cast<std::int32_t>(fault));
+      modes_.reset_estimator();
+      break;
+    case Response::kSwitchBank:
+      taken = models_.switch_bank(fault, modes_);
+      break;
+    case Response::kSafe:
+      modes_.go_safe(fault);
+      break;
+  }
+  const EventId id = is_of_timing(fault) ? EventId::kTimingFaultPersists : EventId::kFaultPersists;
+  const config::FaultRule& rule = config::kFaultRules[static_cast<std::size_t>(fault)];
+  report_(id, static_cast<std::int32_t>(fault), static_cast<std::int32_t>(taken), rule.persistence_cycles);
+}
+
+}  // namespace tumblesight::fsw

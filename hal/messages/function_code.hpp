@@ -1,0 +1,23 @@
+// Function codes of the telecommands. The numbers are part of the interface (docs/icd.md);
+// fsw/app/commands.cpp has each function's arguments, modes and handler.
+#pragma once
+
+#include <cstdint>
+
+namespace tumblesight::hal {
+
+enum class FunctionCode : std::uint8_t {
+  kNoop = 1,
+  kResetCounters = 2,
+  kSetMode = 3,
+  kResetSequence = 4,
+  kModelLoad = 5,
+  kModelValidate = 6,
+  kModelActivate = 7,
+  kModelDump = 8,
+  kSetLimit = 9,
+  kEnableResponse = 10,
+  kDisableResponse = 11,
+};
+
+}  // namespace tumblesight::hal
