@@ -1,4 +1,4 @@
-// The key of telecommands where none is given: for a desktop, since everybody knows it.
+// The key for telecommands if no key file is given. It is public, so it is for use on a desktop only.
 #pragma once
 
 #include <array>

@@ -3,9 +3,9 @@
 namespace tumblesight::hal::dds {
 namespace {
 
-// One LiDAR frame (33 KB) fits one datagram. Without multicast, peers are found at the ports of participant
-// indices 0..32 on 127.0.0.1. A writer whose reader was killed does not linger: who needs the last samples
-// delivered waits for their acknowledgment.
+// One LiDAR frame (33 KB) fits into one datagram. Without multicast, peers are found at the ports of the
+// participant indices 0 to 32 on 127.0.0.1. A writer does not linger for a killed reader; callers that need
+// the last samples delivered wait for their acknowledgment.
 constexpr const char* kConfiguration = R"(
 <CycloneDDS><Domain id="any">
   <General>

@@ -1,6 +1,6 @@
-// Domain: a process's place on the bus. Loopback only, so that nothing leaves the machine, with discovery by
-// unicast (works where multicast does not) and a short lease, so that a killed peer is noticed within a few
-// seconds.
+// Domain: the connection of a process to the bus. It uses loopback only, so that nothing leaves the machine,
+// unicast discovery, which also works without multicast, and a short lease, so that a killed peer is detected
+// within a few seconds.
 #pragma once
 
 #include <dds/dds.h>
@@ -9,7 +9,7 @@
 
 namespace tumblesight::hal::dds {
 
-inline constexpr std::uint32_t kMaxDomain = 230;  // above it the UDP ports of DDS end
+inline constexpr std::uint32_t kMaxDomain = 230;  // the highest one with valid UDP ports
 
 class Domain {
  public:
@@ -18,9 +18,9 @@ class Domain {
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
-  // 0, or a negative DDS return code (dds_strretcode() says it in words).
+  // Creates domain and participant. Returns 0 or a negative DDS return code; dds_strretcode() gives its text.
   [[nodiscard]] dds_return_t open(std::uint32_t id);
-  // Ends every reader and writer in it.
+  // Deletes the domain with all its readers and writers.
   void close();
   dds_entity_t participant() const { return participant_; }
 

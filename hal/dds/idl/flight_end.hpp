@@ -1,4 +1,4 @@
-// Why the flight program ends; the numbers are its exit statuses.
+// Why the flight program ended. The numbers are its exit statuses.
 #pragma once
 
 namespace tumblesight::hal::dds {
@@ -7,12 +7,12 @@ enum class FlightEnd : int {
   kComplete = 0,  // the last step is done, or SIGTERM/SIGINT asked to stop
   kBadArguments = 2,
   kIcdUnequal = 3,     // simulator and flight were built from different interface definitions
-  kSimulatorGone = 4,  // killed, or its connection lost
-  kSilence = 5,        // no simulator, or no step from it, for longer than the timeout
-  kTransport = 6,      // DDS could not be set up, or refused a sample
+  kSimulatorGone = 4,  // killed, or the connection was lost
+  kSilence = 5,        // no simulator, or no step from it, within the timeout
+  kTransport = 6,      // DDS could not be set up or refused a sample
   kStepOutOfOrder = 7,
-  kHeapUsed = 8,  // the run is complete, but the flight task took memory from the heap
-  kNoThread = 9,  // the system gave no thread for the flight task
+  kHeapUsed = 8,  // the run is complete, but the flight task used the heap
+  kNoThread = 9,  // the flight task's thread could not be created
 };
 
 const char* to_string(FlightEnd end);

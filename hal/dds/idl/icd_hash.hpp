@@ -1,4 +1,5 @@
-// The version of the interface: CRC-32 of tumblesight.idl. Programs with unequal hashes refuse each other.
+// The ICD hash: CRC-32 of tumblesight.idl, the version of the interface. Programs with different hashes
+// refuse each other.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 namespace tumblesight::hal::dds {
 namespace {
 
-// What a writer waits at most for a reader that cannot take more; with KEEP_LAST it is never reached.
+// Maximum time that a writer waits for a full reader; not reached with KEEP_LAST.
 constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);
 
 constexpr Topic kHello{"sil/hello", &tumblesight_icd_Hello_desc, 4, true};

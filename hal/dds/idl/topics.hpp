@@ -1,8 +1,8 @@
-// The topics of the SIL interface: name, type and quality of service of each, and typed readers and writers.
+// The topics of the SIL interface with name, type and quality of service, and typed readers and writers.
 //
-// All topics are reliable with a bounded history: KEEP_ALL would let a slow reader block the flight task.
-// Histories hold what one lockstep step may carry, twice over. Endpoints do not see their own participant's
-// samples.
+// All topics are reliable with a bounded history, because with KEEP_ALL a slow reader could block a writer. A
+// history holds twice the samples of one lockstep step. Endpoints do not receive samples of their own
+// participant.
 #pragma once
 
 #include <dds/dds.h>
@@ -60,15 +60,16 @@ const Topic& topic_of<StepDoneSample>();
 template <>
 const Topic& topic_of<TruthSample>();
 
-// The untyped half: entity handles are positive, DDS return codes negative.
+// Untyped functions. They return a positive entity handle or a negative DDS return code.
 dds_entity_t create_writer(dds_entity_t participant, const Topic& topic);
 dds_entity_t create_reader(dds_entity_t participant, const Topic& topic);
-// False: nothing there. Skips notices that carry no data.
+// Takes the oldest sample; skips notices without data. False: there is none.
 bool take_one(dds_entity_t reader, void* sample);
 int matched_readers(dds_entity_t writer);
 int matched_writers(dds_entity_t reader);
-// A peer has the topic but with another type or quality of service; such endpoints never match.
+// Whether a peer has the topic with another type or quality of service; such endpoints never match.
 bool saw_incompatible_writer(dds_entity_t reader);
+// Waits until all readers have acknowledged all samples. False: timeout.
 bool wait_for_acknowledgment(dds_entity_t writer, std::int64_t timeout_ns);
 
 template <class Sample>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds docs/mcdc.md to the decisions of fsw/app and fsw/config and to the tests of tests/unit/fsw/app. Run by ctest."""
+"""Compares docs/mcdc.md with the decisions in fsw/app and fsw/config and with the tests in tests/unit/fsw/app. Run by ctest."""
 import argparse
 import collections
 import pathlib
@@ -14,7 +14,7 @@ TESTS = "tests/unit/fsw/app"
 _TEST = re.compile(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.M)
 _CASE = re.compile(r"(\w+\.\w+)(?: \([^()]+\))?")
 
-# In one row of the page; `true`, `false`: the tests in which the condition, being so, decides.
+# A row of the page. `true`, `false`: the tests in which the condition has this value and determines the decision.
 Row = collections.namedtuple("Row", "line path function decision condition true false")
 
 
@@ -32,7 +32,7 @@ def rows_of(root, wrong):
         cells = [cell.strip().strip("`").replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
         cases = [_CASE.fullmatch(cell) for cell in cells[3:]]
         if len(cells) != 5 or not all(cases):
-            wrong.append(f"docs/mcdc.md:{number}: five cells, the last two a test each: Suite.Name or Suite.Name (row)")
+            wrong.append(f"docs/mcdc.md:{number}: a row needs five cells, and the last two a test each: Suite.Name or Suite.Name (row)")
             continue
         function, decision = cells[0] or function, cells[1] or decision
         rows.append(Row(number, path, function, decision, cells[2], cases[0][1], cases[1][1]))
@@ -40,7 +40,7 @@ def rows_of(root, wrong):
 
 
 def check(root):
-    """What is wrong, a line each."""
+    """Returns the problems, one line each."""
     wrong = []
     rows = rows_of(root, wrong)
     tests = {".".join(names) for path in (root / TESTS).glob("*.cpp") for names in _TEST.findall(path.read_text(encoding="utf-8"))}
@@ -64,7 +64,7 @@ def check(root):
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--root", type=pathlib.Path, default=ROOT, help="another tree than this one")
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT, help="root of the source tree to check [this one]")
     wrong = check(parser.parse_args(arguments).root)
     for line in wrong:
         print(line)

@@ -1,9 +1,9 @@
-"""Finds the decisions with two or more conditions in C++ sources, which && or || join."""
+"""Finds the decisions with two or more conditions, joined by && or ||, in C++ sources."""
 import collections
 import re
 
 Decision = collections.namedtuple("Decision", "function text conditions")
-Condition = collections.namedtuple("Condition", "text begin end")  # where it stands in the source
+Condition = collections.namedtuple("Condition", "text begin end")  # begin, end: its position in the source
 
 _QUIET = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
 _OPERATOR = re.compile(r"&&|\|\|")
@@ -13,7 +13,7 @@ _KEYWORDS = {"if", "for", "while", "switch", "return", "static_assert", "sizeof"
 
 
 def quiet(source):
-    """The source with comments and literals blanked, every character where it was."""
+    """The source with comments and literals replaced by blanks; all positions stay the same."""
     return _QUIET.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), source)
 
 
@@ -22,7 +22,7 @@ def squeezed(text):
 
 
 def _begin(code, at):
-    """Where the expression begins that reaches to `at`: behind what opens around it, or behind ; , = ? : or return."""
+    """Start of the expression that extends to `at`: after the enclosing bracket, or after ; , = ? : or return."""
     depth, i = 0, at
     while i > 0:
         one = code[i - 1]
@@ -59,7 +59,7 @@ def _end(code, at):
 
 
 def _is_grouping(code, begin):
-    """Whether the parenthesis before `begin` only groups: no keyword and no name stands before it."""
+    """Whether the parenthesis before `begin` only groups: it follows neither a keyword nor a name."""
     before = code[:begin - 1].rstrip()
     return code[begin - 1] == "(" and (before[-1:] in _OPENS + "&|!=?:," or before.endswith("return"))
 
@@ -72,7 +72,7 @@ def _span(code, at):
 
 
 def _conditions(code, begin, end):
-    """[(begin, end)] of what && and || join, through parentheses that only group."""
+    """[(begin, end)] of the operands of && and ||, including those inside grouping parentheses."""
     while code[begin].isspace():
         begin += 1
     while code[end - 1].isspace():
@@ -103,7 +103,7 @@ def _behind_parenthesis(code, at):
 
 
 def _function(code, at):
-    """The function in whose body `at` lies."""
+    """Name of the function whose body contains `at`."""
     for match in reversed(list(_DEFINITION.finditer(code, 0, at))):
         behind = code[_behind_parenthesis(code, match.end()):]
         if match[1] not in _KEYWORDS and re.match(r"(?:\s|const|override|noexcept)*\{", behind):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Holds each condition of docs/mcdc.md at its other value: the case in which it decides has to fail. Needs CMake and Ninja.
+"""Forces each condition of docs/mcdc.md to its other value and checks that the tests in which it decides fail.
 
-  tests/analysis/mcdc/hold.py [--build FOLDER]     some minutes
+  tests/analysis/mcdc/hold.py [--build FOLDER]     takes some minutes; needs CMake and Ninja
 """
 import argparse
 import concurrent.futures
@@ -27,14 +27,14 @@ inline bool held(int condition, bool value) {
 
 
 def write(path, data):
-    """Only what has changed, so that only that is built again."""
+    """Writes changed files only, so that only these are rebuilt."""
     if not path.exists() or path.read_bytes() != data:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
 
 
 def copy_with_handles(folder):
-    """The tree with a handle around each condition. {(path, function, decision, condition): its number}"""
+    """Copies the tree and wraps each condition in held(). Returns {(path, function, decision, condition): its number}."""
     numbers = {}
     write(folder / "held.hpp", HELD.encode())
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
@@ -63,7 +63,7 @@ def passes(program, test, number=-1, value=False, timeout_s=120):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/mcdc", help="where to build")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/mcdc", help="build folder")
     folder = parser.parse_args().build.resolve()
     numbers = copy_with_handles(folder / "tree")
     subprocess.run(["cmake", "-S", folder / "tree", "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug",
@@ -72,15 +72,15 @@ def main():
     subprocess.run(["ninja", "-C", folder, "test_fsw_app"], check=True)
     program = folder / "bin/test_fsw_app"
     if not passes(program, "*", timeout_s=1200):
-        sys.exit("the tests fail with nothing held")
+        sys.exit("the tests fail with no condition forced")
     rows = rows_of(ROOT, [])
     cases = [(row, test, value) for row in rows for test, value in ((row.true, False), (row.false, True))]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         passed = list(pool.map(lambda case: passes(program, case[1], numbers[case[0][1:5]], case[2]), cases))
     blind = [case for case, one in zip(cases, passed) if one]
     for row, test, value in blind:
-        print(f"docs/mcdc.md:{row.line}: {test} passes although `{row.condition}` is held {str(value).lower()}")
-    print(f"{len(cases)} cases, {len(blind)} of which do not depend on their condition")
+        print(f"docs/mcdc.md:{row.line}: {test} passes although `{row.condition}` is forced to {str(value).lower()}")
+    print(f"{len(cases)} cases, {len(blind)} of them independent of their condition")
     return 1 if blind else 0
 
 

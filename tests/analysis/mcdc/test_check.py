@@ -82,11 +82,11 @@ class Check(unittest.TestCase):
         self.write("fsw/app/one.cpp", "bool g(bool a, bool b) {\n  return a || b;\n}\n")
         self.expect("g(): docs/mcdc.md lacks")
 
-    def test_a_wrong_number_is_told(self):
+    def test_a_wrong_number_is_reported(self):
         self.write("docs/mcdc.md", PAGE.replace("2 conditions", "3 conditions"))
         self.expect("1 decisions with 2 conditions")
 
-    def test_a_row_without_a_test_is_told(self):
+    def test_a_row_without_a_test_is_reported(self):
         self.write("docs/mcdc.md", PAGE.replace("| One.Is |", "| nobody knows |"))
         self.expect("docs/mcdc.md:7", "lacks `b`")
 

@@ -24,10 +24,10 @@ struct AppMemory {
   }
 
   static AppState& state(App& app) { return *app.state_; }
-  // All three copies.
+  // All three copies of the state.
   static Region voted_state(App& app) { return region_of(app.state_); }
   static Region events(App& app) { return region_of(app.events_); }
-  // The copy of the estimator's state and the table of the blocks' checksums.
+  // The copy of the estimator's state and the table of block checksums.
   static Region guard(App& app) { return region_of(app.guard_); }
   static Estimator& estimator(App& app) { return app.estimator_; }
   // The estimate of the last frame, before it is reported.

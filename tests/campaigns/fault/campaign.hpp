@@ -1,4 +1,4 @@
-// Campaign: flips single bits in a flying application and says what came of each.
+// Campaign: flips single bits in a running application and classifies the outcome of each flip.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace tumblesight::fault {
 
-// Where the bit lies.
+// The memory or data that contains the bit.
 enum class Place {
   kWeights,
   kActivations,
@@ -25,13 +25,13 @@ inline constexpr int kPlaces = 7;
 const char* to_string(Place place);
 
 enum class Outcome : std::uint8_t {
-  kMasked,        // no attitude suffered, and nobody noticed
-  kRecovered,     // noticed; the mode is RUN, and the attitudes are right again
-  kSafe,          // noticed; the mode is SAFE
-  kFlaggedWrong,  // noticed, and at the end still without right attitudes
-  kSilentWrong,   // an attitude more than 20 degrees off was flagged valid, where without the flip it was
-                  // right
-  kLostCount,     // a command was neither counted as accepted nor as refused
+  kMasked,        // no attitude was affected, and the flip was not detected
+  kRecovered,     // detected; the mode is RUN, and the attitudes are correct again
+  kSafe,          // detected; the mode is SAFE
+  kFlaggedWrong,  // detected, but the attitudes are still wrong at the end
+  kSilentWrong,   // an attitude with an error above 20 degrees was flagged valid and was correct without the
+                  // flip
+  kLostCount,     // a command was counted neither as accepted nor as refused
   kCrash,         // the process died
   kHang,          // a trial did not end
 };
@@ -40,12 +40,11 @@ const char* to_string(Outcome outcome);
 
 struct Trial {
   Outcome outcome = Outcome::kMasked;
-  bool changed = false;  // an attitude, by a bit or more
-  std::uint8_t cycles_to_recover =
-      0;  // from the first cycle that suffered to the first right attitude after it
+  bool changed = false;                // at least one bit of an attitude
+  std::uint8_t cycles_to_recover = 0;  // from the first affected cycle to the next correct attitude
 };
 
-// Frames of a few sequences one after the other, with their truth. Rendered once.
+// Frames of a few consecutive sequences with their truth. Rendered once.
 struct Flight {
   std::vector<gnc::RangeImage> frames;
   std::vector<sim::FrameTruth> truth;
@@ -55,8 +54,8 @@ struct Flight {
 Flight make_flight(const std::string& target, const std::string& model_path, int sequences,
                    std::uint64_t seed);
 
-// Trials first ... first + count - 1 of a place; a trial depends on its number and the seed alone. Each runs
-// in a child process, which may die.
+// Trials first ... first + count - 1 of a place. A trial depends only on its number and the seed. The trials
+// run in child processes, which may crash.
 std::vector<Trial> run_trials(const Flight& flight, Place place, bool protected_, std::uint64_t seed,
                               std::uint32_t first, std::uint32_t count);
 

@@ -13,14 +13,14 @@ namespace {
 using fsw::AppMemory;
 using fsw::Region;
 
-// A pass over the model takes 24.
+// A complete check of the model takes 24 cycles.
 constexpr std::size_t cycles_per_trial(Place place) {
   return place == Place::kWeights ? 30 : 15;
 }
 constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 constexpr const char* kNoTarget = nullptr;
 
-// Between two sequences lies a pause, so that the estimator starts anew by itself.
+// A pause between two sequences, so that the estimator resets itself.
 std::int64_t time_of(std::size_t cycle) {
   const std::size_t pauses = cycle / sim::kFramesPerSequence;
   return kStart_ns + static_cast<std::int64_t>(cycle + pauses) * sim::kFramePeriod_ns;
@@ -33,7 +33,7 @@ std::uint64_t mixed(std::uint64_t x) {  // splitmix64
   return x ^ (x >> 31);
 }
 
-// Flips a bit of the activations in the middle of a step: before the n-th product of the network.
+// Flips a bit of the activations within a step, before the n-th product of the network.
 struct {
   const gnc::Kernels<gnc::FixedPoint>* real = nullptr;
   Region region;
@@ -88,7 +88,7 @@ void TrialRunner::fly_undisturbed() {
   }
 }
 
-// A frame and a command that does nothing but count.
+// A frame and a NOOP command, which is only counted.
 void TrialRunner::prepare(std::size_t cycle) {
   inputs_->commands[0] =
       fsw::signed_with(fsw::kTestKey, static_cast<std::uint32_t>(cycle + 1),
@@ -168,7 +168,7 @@ Trial TrialRunner::run(Place place, std::uint64_t seed, std::uint32_t number) {
   std::mt19937 engine(
       static_cast<std::uint32_t>(mixed(seed * 1000003 + static_cast<std::uint64_t>(place)) + mixed(number)));
   const std::size_t first = engine() % (flight_.frames.size() - cycles_per_trial(place));
-  // In place: the application holds pointers into the banks.
+  // Written in place, because the application has pointers into the banks.
   for (auto& bank : store_.banks) std::copy(flight_.model.begin(), flight_.model.end(), bank.memory.begin());
   hook.countdown = -1;
   *app_ = *before_[first];
@@ -189,8 +189,7 @@ bool TrialRunner::noticed() const {
                  h.model_blocks_repaired + h.model_blocks_lost + h.model_tables_rebuilt + h.bank_switches +
                  h.commands_refused + h.frames_refused + h.sequence_gaps >
              0 ||
-         h.estimator_resets != resets_[cycles_flown_ - 1] ||
-         h.mode != fsw::Mode::kRun;
+         h.estimator_resets != resets_[cycles_flown_ - 1] || h.mode != fsw::Mode::kRun;
 }
 
 bool TrialRunner::counts_every_command(std::size_t cycles) const {
@@ -201,17 +200,17 @@ bool TrialRunner::counts_every_command(std::size_t cycles) const {
 Trial TrialRunner::judged(std::size_t first, const std::vector<CycleResult>& results) const {
   Trial trial;
   bool silent_wrong = false;
-  bool suffered_in_the_end = false;
-  std::size_t since = 0;  // cycles that suffered, on end
+  bool affected_at_the_end = false;
+  std::size_t since = 0;  // consecutive affected cycles
   for (std::size_t i = 0; i < results.size(); ++i) {
     const CycleResult& clean = clean_[first + i];
     const CycleResult& hit = results[i];
     trial.changed = trial.changed || hit.q_lrf_trf != clean.q_lrf_trf;
-    const bool suffers = clean.right() && !hit.right();
-    silent_wrong = silent_wrong || (suffers && hit.validity == hal::Validity::kValid);
-    since = suffers ? since + 1 : 0;
+    const bool affected = clean.right() && !hit.right();
+    silent_wrong = silent_wrong || (affected && hit.validity == hal::Validity::kValid);
+    since = affected ? since + 1 : 0;
     if (since > trial.cycles_to_recover) trial.cycles_to_recover = static_cast<std::uint8_t>(since);
-    suffered_in_the_end = suffers;
+    affected_at_the_end = affected;
   }
   if (silent_wrong) {
     trial.outcome = Outcome::kSilentWrong;
@@ -219,7 +218,7 @@ Trial TrialRunner::judged(std::size_t first, const std::vector<CycleResult>& res
     trial.outcome = Outcome::kLostCount;
   } else if (outputs_->telemetry.mode == hal::Mode::kSafe) {
     trial.outcome = Outcome::kSafe;
-  } else if (suffered_in_the_end) {
+  } else if (affected_at_the_end) {
     trial.outcome = Outcome::kFlaggedWrong;
   } else {
     trial.outcome = noticed() || trial.cycles_to_recover > 0 ? Outcome::kRecovered : Outcome::kMasked;

@@ -1,4 +1,4 @@
-// TrialRunner: one bit, one flight.
+// TrialRunner: runs trials. A trial flips one bit and runs the following cycles.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace tumblesight::fault {
 
-// What a cycle gave, as far as an outcome depends on it.
+// The result of a cycle, as far as the outcome of a trial depends on it.
 struct CycleResult {
   gnc::QuaternionQ30 q_lrf_trf{};
   hal::Validity validity = hal::Validity::kValid;
@@ -23,14 +23,14 @@ struct CycleResult {
 
 class TrialRunner {
  public:
-  // `hooked`: for flips in the middle of a step.
+  // `hooked`: with kernels that can flip a bit within a step.
   TrialRunner(const Flight& flight, bool with_protections, bool hooked);
   Trial run(Place place, std::uint64_t seed, std::uint32_t number);
 
  private:
   using App = fsw::AttitudeInitApp;
 
-  // What an undisturbed flight leaves before each of its cycles, and gives in it.
+  // Keeps the application before each cycle of an undisturbed run, and the cycle's result.
   void fly_undisturbed();
   void prepare(std::size_t cycle);
   CycleResult fly(std::size_t cycle);
@@ -46,9 +46,9 @@ class TrialRunner {
   std::unique_ptr<App> app_ = std::make_unique<App>();
   std::unique_ptr<fsw::StepInputs> inputs_ = std::make_unique<fsw::StepInputs>();
   std::unique_ptr<fsw::StepOutputs> outputs_ = std::make_unique<fsw::StepOutputs>();
-  std::vector<std::unique_ptr<App>> before_;  // each cycle
+  std::vector<std::unique_ptr<App>> before_;  // each cycle of the undisturbed run
   std::vector<CycleResult> clean_;
-  std::vector<std::uint32_t> resets_;  // of the undisturbed flight, after each cycle
+  std::vector<std::uint32_t> resets_;  // in the undisturbed run, after each cycle
   std::size_t cycles_flown_ = 0;
 };
 

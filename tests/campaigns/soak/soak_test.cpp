@@ -1,5 +1,5 @@
-// A hundred thousand cycles of everything at once: good and bad frames, command storms, clock jumps, slips,
-// bit flips, restarts. Nothing drifts, nothing is lost, nothing takes heap.
+// A hundred thousand cycles with good and bad frames, command bursts, clock jumps, slips, bit flips and
+// restarts. All counters stay consistent, and nothing uses the heap.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ class Soak : public ::testing::Test {
 
   bool one_in(unsigned n) { return engine_() % n == 0; }
 
-  // A loss of power: what was in memory is gone, the banks are as they were loaded.
+  // A power cycle: the memory is cleared and the banks hold their original images.
   void restart() {
     store_.fill(gnc::lasting_model_image<gnc::FixedPoint>(7));
     app_->init({&stopwatch_, &store_, &kTestKey}, nullptr);
@@ -89,7 +89,7 @@ class Soak : public ::testing::Test {
     inputs_->command_count = one_in(10) ? config::kMaxCommandsPerStep : one_in(5) ? 1 : 0;
     for (int i = 0; i < inputs_->command_count; ++i)
       inputs_->commands[static_cast<std::size_t>(i)] = any_command();
-    // Whoever flies wants attitudes.
+    // Returns to RUN, so that most cycles give attitudes.
     if (app_->mode() != Mode::kRun && one_in(10)) {
       inputs_->command_count = 2;
       inputs_->commands[0] =
@@ -97,7 +97,7 @@ class Soak : public ::testing::Test {
       inputs_->commands[1] =
           signed_with(kTestKey, ++counter_, packet_of(3, {static_cast<std::uint8_t>(Mode::kRun)}));
     }
-    if (one_in(20'000)) {  // an upload begins, and the second copy is gone
+    if (one_in(20'000)) {  // begins an upload, which removes the second copy
       inputs_->command_count = 1;
       inputs_->commands[0] = signed_with(kTestKey, ++counter_, packet_of(5, {0, 0, 0, 0, 1, 2, 3}));
     }
@@ -122,7 +122,7 @@ class Soak : public ::testing::Test {
                               {store_.banks[0].memory.data(), store_.banks[0].memory.size()},
                               {store_.banks[1].memory.data(), store_.banks[1].memory.size()}};
     const std::size_t which = engine_() % 7;
-    if ((which == 4 || which == 5) && last_.second_copy == 0) return;  // nobody could repair it
+    if ((which == 4 || which == 5) && last_.second_copy == 0) return;  // it could not be repaired
     if (which == 6) {
       AppMemory::flip_state_bit(*app_, engine_() % AppMemory::kStateBits);
     } else {
@@ -138,14 +138,14 @@ class Soak : public ::testing::Test {
     longest_ns_ = std::max(longest_ns_, stopwatch_.now_ns() - begin_ns);
   }
 
-  // What this cycle adds to every counter, one by one.
+  // Checks what this cycle has added to each counter.
   void expect_all_accounted_for() {
     const hal::Telemetry& h = outputs_->telemetry;
     std::uint32_t by_reason = 0;
     for (const std::uint32_t count : h.commands_refused_by) by_reason += count;
     ASSERT_EQ(h.commands_refused, by_reason);
     ASSERT_GE(h.frames_refused, h.frames_duplicate + h.frames_stale + h.frames_bad);
-    ASSERT_EQ(h.events_lost, 0U) << "ring and throttle are made for this";
+    ASSERT_EQ(h.events_lost, 0U) << "the ring and the suppression are sized for this load";
     if (!resets_counters_) {
       ASSERT_EQ(h.cycles, last_.cycles + 1);
       ASSERT_EQ(h.commands_accepted + h.commands_refused,
@@ -167,7 +167,7 @@ class Soak : public ::testing::Test {
   std::unique_ptr<StepOutputs> outputs_ = std::make_unique<StepOutputs>();
   std::vector<gnc::RangeImage> pictures_;
   std::array<gnc::RangeImage, 2> images_;
-  hal::Telemetry last_;  // of the cycle before
+  hal::Telemetry last_;  // of the previous cycle
   std::int64_t now_ns_ = kStart_ns;
   std::uint64_t longest_ns_ = 0;
   std::uint32_t number_ = 0, counter_ = 0;

@@ -49,7 +49,7 @@ hal::CommandPacket AppFixture::command(FunctionCode function, const std::vector<
 const StepOutputs& AppFixture::step(const StepInputs& inputs) {
   now_ns = next_time_ns();
   app->step(now_ns, inputs, *out);
-  // What every report keeps, whatever came in.
+  // Properties of every report, for any input.
   EXPECT_EQ(out->attitude.time_ns, now_ns);
   EXPECT_TRUE(has_unit_norm(out->attitude.q_lrf_trf));
   EXPECT_TRUE(has_unit_norm(out->attitude.q_lrf_trf_single_frame));

@@ -1,4 +1,4 @@
-// The application with a random network and a clock that the test turns.
+// The application with a random network and a clock that the test sets.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,28 +16,29 @@ namespace tumblesight::fsw {
 
 inline constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 
-// Weights of no use for attitudes, in an image that loads.
+// A valid image with random weights.
 const std::vector<std::uint8_t>& test_model_image();
 inline constexpr const char* kTestTarget = "test_craft";
 
-// A frame that the estimator accepts; `scene` varies what it shows.
+// A frame that the estimator accepts; `scene` varies its content.
 gnc::RangeImage good_frame(std::uint32_t sequence_number, std::int64_t exposure_time_ns, unsigned scene = 0);
 
 class AppFixture : public ::testing::Test {
  protected:
   AppFixture() : app(std::make_unique<AttitudeInitApp>()), out(std::make_unique<StepOutputs>()) {}
 
-  // Both banks hold the test's model.
+  // Boots with the test's model in both banks.
   void init_with_model();
   void init(hal::fake::FakeModelStore& models, const char* expected_target = kTestTarget);
 
-  // Signed, with the next counter.
+  // A signed packet with the next counter.
   hal::CommandPacket command(FunctionCode function, const std::vector<std::uint8_t>& arguments = {});
   hal::CommandPacket set_mode(Mode mode) {
     return command(FunctionCode::kSetMode, {static_cast<std::uint8_t>(mode)});
   }
 
-  // One cycle, a period after the one before. Without frame, or with the next one in time and order.
+  // Runs one cycle, one period after the previous one: with these inputs, without a frame, with this frame,
+  // or with the next good frame.
   const StepOutputs& step(const StepInputs& inputs);
   const StepOutputs& step_commands(std::initializer_list<hal::CommandPacket> commands);
   const StepOutputs& step_frame(const gnc::RangeImage& frame);
@@ -56,7 +57,7 @@ class AppFixture : public ::testing::Test {
   hal::fake::FakeStopwatch stopwatch;
   hal::fake::FakeModelStore store;
   std::uint32_t command_counter = 0;  // of the last command
-  // The attitudes of a random network jump as they like.
+  // Without attitude checks, because the attitudes of a random network jump.
   Protections protections{true, false};
   std::int64_t now_ns = kStart_ns;
   std::uint32_t sequence_number = 100;  // of the last good frame

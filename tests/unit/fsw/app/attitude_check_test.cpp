@@ -26,13 +26,13 @@ Eigen::Quaterniond random_attitude(std::mt19937& engine) {
   return Eigen::Quaterniond(normal(engine), normal(engine), normal(engine), normal(engine)).normalized();
 }
 
-TEST(AttitudeCheck, CosineOfHalfAnAngleIsTheLibrarys) {
+TEST(AttitudeCheck, CosineOfHalfAnAngleMatchesTheLibrary) {
   for (std::uint32_t angle_urad = 0; angle_urad <= 3'141'593; angle_urad += 31'415) {
     EXPECT_NEAR(std::ldexp(cos_half_of(angle_urad), -30), std::cos(0.5e-6 * angle_urad), 3e-5) << angle_urad;
   }
 }
 
-TEST(AttitudeCheck, CosineBetweenAttitudesIsEigens) {
+TEST(AttitudeCheck, CosineBetweenAttitudesMatchesEigen) {
   std::mt19937 engine(1);
   for (int i = 0; i < 200; ++i) {
     const Eigen::Quaterniond a = random_attitude(engine), b = random_attitude(engine);
@@ -40,7 +40,7 @@ TEST(AttitudeCheck, CosineBetweenAttitudesIsEigens) {
   }
 }
 
-TEST(AttitudeCheck, PropagationTurnsOnAsBefore) {
+TEST(AttitudeCheck, ExtrapolationContinuesTheRotation) {
   std::mt19937 engine(2);
   for (int i = 0; i < 200; ++i) {
     const Eigen::Quaterniond first = random_attitude(engine), turn = turned(0.9, Eigen::Vector3d(1, -2, i));
@@ -49,7 +49,7 @@ TEST(AttitudeCheck, PropagationTurnsOnAsBefore) {
   }
 }
 
-TEST(AttitudeCheck, AConstantSpinNeverJumps) {
+TEST(AttitudeCheck, AConstantRateNeverJumps) {
   AttitudeCheck check;
   Eigen::Quaterniond q = turned(1.0, {1, 1, 0});
   for (int i = 0; i < 50; ++i, q = turned(20.0 * 2.7 * kPi / 180.0, {0.3, 1, -2}) * q) {
@@ -57,7 +57,7 @@ TEST(AttitudeCheck, AConstantSpinNeverJumps) {
   }
 }
 
-TEST(AttitudeCheck, JumpsBeyondTheLimitAreSeenAndOthersNot) {
+TEST(AttitudeCheck, OnlyJumpsBeyondTheLimitAreDetected) {
   for (const double factor : {0.95, 1.05}) {
     AttitudeCheck check;
     const Eigen::Quaterniond q = turned(1.0, {1, 1, 0});
@@ -68,7 +68,7 @@ TEST(AttitudeCheck, JumpsBeyondTheLimitAreSeenAndOthersNot) {
   }
 }
 
-TEST(AttitudeCheck, NothingIsSaidBeforeThereAreTwoAttitudesOrAfterForgetting) {
+TEST(AttitudeCheck, NoJumpIsDetectedWithFewerThanTwoAttitudesOrAfterForgetting) {
   AttitudeCheck check;
   std::mt19937 engine(3);
   EXPECT_FALSE(check.jumps(q30(turned(0, {1, 0, 0})), kLimit_urad));
@@ -79,27 +79,27 @@ TEST(AttitudeCheck, NothingIsSaidBeforeThereAreTwoAttitudesOrAfterForgetting) {
   EXPECT_TRUE(check.jumps(q30(turned(3, {0, 1, 0})), kLimit_urad));
 }
 
-TEST(AttitudeCheck, LimitOfAHalfTurnSeesNoJump) {
+TEST(AttitudeCheck, LimitOfAHalfTurnDetectsNoJump) {
   AttitudeCheck check;
   std::mt19937 engine(4);
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(check.jumps(q30(random_attitude(engine)), 3'141'593));
 }
 
-TEST(AttitudeCheck, TheSameBitsTwiceAreARepetition) {
+TEST(AttitudeCheck, EqualBitsAreARepetition) {
   AttitudeCheck check;
-  EXPECT_FALSE(check.repeats(gnc::kIdentityQ30)) << "the first has none before it";
+  EXPECT_FALSE(check.repeats(gnc::kIdentityQ30)) << "nothing precedes the first one";
   EXPECT_TRUE(check.repeats(gnc::kIdentityQ30));
   for (std::size_t i = 0; i < 4; ++i) {
     gnc::QuaternionQ30 other = gnc::kIdentityQ30;
     --other[i];
-    EXPECT_FALSE(check.repeats(other)) << "one bit";
+    EXPECT_FALSE(check.repeats(other)) << "differs in one bit";
     EXPECT_TRUE(check.repeats(other));
   }
   check.forget();
   EXPECT_FALSE(check.repeats(gnc::kIdentityQ30));
 }
 
-TEST(IsUnit, OfUnitQuaternionsAndNothingElse) {
+TEST(IsUnit, AcceptsUnitQuaternionsOnly) {
   EXPECT_TRUE(is_unit(gnc::kIdentityQ30));
   EXPECT_TRUE(is_unit(q30(turned(1.0, {1, 2, 3}))));
   EXPECT_FALSE(is_unit({0, 0, 0, 0}));

@@ -1,4 +1,4 @@
-// What init() makes of the banks, and how the first step tells it.
+// What init() finds in the banks, and what the first step reports.
 // Verifies TS-MODE-020, TS-MODE-030, TS-MDL-010.
 #include <string>
 
@@ -30,10 +30,10 @@ TEST_F(Boot, GoodBanksLeadToRunWithASecondCopy) {
   EXPECT_EQ(out->telemetry.bank_crc32[0], app->estimator().model().crc32);
   EXPECT_EQ(out->telemetry.bank_crc32[1], app->estimator().model().crc32);
   step_good();
-  EXPECT_EQ(events(EventId::kModelActivated), 0) << "once only";
+  EXPECT_EQ(events(EventId::kModelActivated), 0) << "reported once only";
 }
 
-TEST_F(Boot, DamagedFirstBankLeadsToTheSecondOne) {
+TEST_F(Boot, DamagedFirstBankFallsBackToTheSecondOne) {
   spoil(0);
   init(store);
   EXPECT_EQ(app->mode(), Mode::kRun);
@@ -47,7 +47,7 @@ TEST_F(Boot, DamagedFirstBankLeadsToTheSecondOne) {
   EXPECT_EQ(out->telemetry.second_copy, 0);
 }
 
-TEST_F(Boot, DamagedSecondBankIsToldAndIsNoSecondCopy) {
+TEST_F(Boot, DamagedSecondBankIsReportedAndIsNoSecondCopy) {
   spoil(1);
   init(store);
   step_good();
@@ -57,7 +57,7 @@ TEST_F(Boot, DamagedSecondBankIsToldAndIsNoSecondCopy) {
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kEmpty);
 }
 
-TEST_F(Boot, AnotherModelInTheSecondBankIsKeptToFallBackOn) {
+TEST_F(Boot, AnotherModelInTheSecondBankIsKeptAsFallback) {
   store.banks[1].memory = gnc::lasting_model_image<gnc::FixedPoint>(8);
   init(store);
   step_good();
@@ -74,7 +74,7 @@ TEST_F(Boot, NoSecondBankIsNoError) {
   EXPECT_EQ(events(EventId::kModelRefused), 0);
 }
 
-TEST_F(Boot, EmptyFirstBankIsToldEvenThoughTheSecondOneIsGood) {
+TEST_F(Boot, EmptyFirstBankIsReportedEvenIfTheSecondOneIsGood) {
   store.banks[0] = {};
   init(store);
   step_good();
@@ -94,7 +94,7 @@ TEST_F(Boot, FirstCycleMayHaveAnyTime) {
   }
 }
 
-TEST_F(Boot, WithoutAnyModelTheModeIsSafeAndSaysWhy) {
+TEST_F(Boot, WithoutAModelTheModeIsSafeWithItsCause) {
   spoil(0);
   spoil(1);
   init(store);
@@ -107,7 +107,7 @@ TEST_F(Boot, WithoutAnyModelTheModeIsSafeAndSaysWhy) {
   EXPECT_EQ(out->telemetry.safe_cause, Cause::kNoModel);
   EXPECT_EQ(event(EventId::kModelRefused)->severity, Severity::kError);
   step_commands({set_mode(Mode::kRun)});
-  EXPECT_EQ(events(EventId::kCommandWrongMode), 1) << "that comes before the model";
+  EXPECT_EQ(events(EventId::kCommandWrongMode), 1) << "the mode is checked before the model";
   step_commands({set_mode(Mode::kStandby), set_mode(Mode::kRun)});
   EXPECT_EQ(app->mode(), Mode::kStandby);
   EXPECT_EQ(events(EventId::kCommandNoModel), 1);
@@ -122,7 +122,7 @@ TEST_F(Boot, EmptyBanksOrAnotherTargetLeadToSafe) {
   EXPECT_EQ(app->mode(), Mode::kSafe);
   EXPECT_EQ(app->boot_status(0), gnc::ModelStatus::kBadTarget);
   init(store);
-  EXPECT_EQ(app->mode(), Mode::kRun) << "every init() boots anew";
+  EXPECT_EQ(app->mode(), Mode::kRun) << "every init() boots again";
 }
 
 TEST_F(Boot, PlatformWithoutStopwatchOrBanksIsABugOfTheCaller) {

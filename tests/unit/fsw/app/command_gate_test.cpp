@@ -1,4 +1,4 @@
-// Each rule of the command packet, violated alone.
+// Violates each rule of the command packet alone.
 // Verifies TS-CMD-010, TS-CMD-020, TS-SEC-020, TS-SEC-030.
 #include "fsw/app/command_gate.hpp"
 
@@ -24,7 +24,7 @@ void expect_refused(const std::vector<std::uint8_t>& packet, CommandRefusal why)
   EXPECT_TRUE(admission.authentic) << "its counter is spent";
 }
 
-TEST(CommandGate, AdmitsAGoodPacketAndHandsOutItsArguments) {
+TEST(CommandGate, AdmitsAGoodPacketWithItsArguments) {
   const Admission admission = judged(packet_of(kSetLimit, {3, 0x01, 0x02, 0x03, 0x04}));
   ASSERT_TRUE(admission.admitted);
   EXPECT_EQ(admission.command.function, FunctionCode::kSetLimit);
@@ -35,7 +35,7 @@ TEST(CommandGate, AdmitsAGoodPacketAndHandsOutItsArguments) {
   EXPECT_EQ(admission.counter, 5U);
 }
 
-TEST(CommandGate, EveryFlippedBitOfAPacketMakesItAForgery) {
+TEST(CommandGate, AnyFlippedBitMakesThePacketAForgery) {
   const hal::CommandPacket good = signed_with(kTestKey, 5, packet_of(kSetLimit, {3, 0, 0, 0, 1}));
   for (int bit = 0; bit < 8 * good.size; ++bit) {
     hal::CommandPacket forged = good;
@@ -44,11 +44,11 @@ TEST(CommandGate, EveryFlippedBitOfAPacketMakesItAForgery) {
     ASSERT_FALSE(admission.admitted) << bit;
     ASSERT_EQ(admission.why, CommandRefusal::kForged) << bit;
     ASSERT_FALSE(admission.authentic);
-    ASSERT_EQ(admission.function, 0) << "nothing of it is believed";
+    ASSERT_EQ(admission.function, 0) << "nothing in the packet is trusted";
   }
 }
 
-TEST(CommandGate, AnotherKeyOrNoTrailerOrAnImpossibleSizeIsAForgery) {
+TEST(CommandGate, WrongKeyMissingTrailerOrImpossibleSizeIsAForgery) {
   hal::CommandKey other = kTestKey;
   other[31] ^= 1;
   hal::CommandPacket packet = signed_with(other, 5, packet_of(kNoop));
@@ -61,7 +61,7 @@ TEST(CommandGate, AnotherKeyOrNoTrailerOrAnImpossibleSizeIsAForgery) {
   EXPECT_EQ(judge(unsigned_packet(packet_of(kNoop)), &kTestKey, 4, Mode::kRun).why, CommandRefusal::kForged);
 }
 
-TEST(CommandGate, CounterMustRise) {
+TEST(CommandGate, CounterMustIncrease) {
   const hal::CommandPacket packet = signed_with(kTestKey, 5, packet_of(kNoop));
   EXPECT_TRUE(judge(packet, &kTestKey, 4, Mode::kRun).admitted);
   for (const std::uint32_t last : {5U, 6U, 0xFFFFFFFFU}) {
@@ -71,7 +71,7 @@ TEST(CommandGate, CounterMustRise) {
   }
 }
 
-TEST(CommandGate, PrimaryHeaderMustBeThatOfATelecommandToThisApplication) {
+TEST(CommandGate, PrimaryHeaderMustBeOfATelecommandToThisApplication) {
   const std::vector<std::uint8_t> good = packet_of(kNoop);
   for (const auto& [offset, value] : {std::pair<std::size_t, int>{0, 0x39},  // version
                                       {0, 0x09},                             // type: telemetry
@@ -96,7 +96,7 @@ TEST(CommandGate, SequenceCountMayBeAny) {
   EXPECT_TRUE(judged(packet).admitted);
 }
 
-TEST(CommandGate, LengthFieldMustBeThatOfThePacket) {
+TEST(CommandGate, LengthFieldMustMatchThePacket) {
   for (const int by : {-1, 1}) {
     std::vector<std::uint8_t> packet = packet_of(kNoop);
     packet[5] = static_cast<std::uint8_t>(packet[5] + by);
@@ -105,7 +105,7 @@ TEST(CommandGate, LengthFieldMustBeThatOfThePacket) {
   }
 }
 
-TEST(CommandGate, ChecksumMustBeThatOfThePacket) {
+TEST(CommandGate, ChecksumMustMatchThePacket) {
   for (const std::size_t offset : {8U, 9U}) {
     std::vector<std::uint8_t> packet = packet_of(kNoop);
     packet[offset] ^= 1;
@@ -121,7 +121,7 @@ TEST(CommandGate, OnlyTheFunctionsOfTheTableAreKnown) {
   }
 }
 
-TEST(CommandGate, ArgumentsMustHaveTheLengthOfTheTableAndTheModeMustAllowTheFunction) {
+TEST(CommandGate, ArgumentLengthAndModeMustMatchTheTable) {
   for (int function = 0; function < 256; ++function) {
     if (find_command(static_cast<std::uint8_t>(function)) == nullptr) continue;
     const CommandRule& rule = *find_command(static_cast<std::uint8_t>(function));

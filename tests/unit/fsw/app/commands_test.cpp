@@ -1,4 +1,4 @@
-// What the commands do, and what each refusal leaves. Those of the model: model_commands_test.cpp.
+// The effect of each command and of each refusal. Commands for models: model_commands_test.cpp.
 #include <string>
 
 #include "tests/unit/fsw/app/app_fixture.hpp"
@@ -9,7 +9,7 @@ namespace {
 class Commands : public AppFixture {
  protected:
   Commands() { init_with_model(); }
-  // A platform that breaks the limits of StepInputs: a bug, hence an assertion.
+  // Inputs beyond the limits of StepInputs, which are a bug of the platform and fail an assertion.
   const StepOutputs& step_with_bug() {
     StepInputs inputs;
     inputs.command_count = config::kMaxCommandsPerStep + 1;
@@ -72,7 +72,7 @@ TEST_F(Commands, RecordedCommandSentAgainIsRefused) {
 }
 
 // Verifies TS-SEC-030.
-TEST_F(Commands, RecordedCommandIsRefusedAfterARestartTooWhereThePlatformKeepsTheCounter) {
+TEST_F(Commands, RecordedCommandIsRefusedAfterARestartIfThePlatformKeepsTheCounter) {
   const hal::CommandPacket standby = set_mode(Mode::kStandby);
   step_commands({standby});
   app->init({&stopwatch, &store, &kTestKey, out->telemetry.command_counter}, kTestTarget, protections);
@@ -91,17 +91,17 @@ TEST_F(Commands, RefusedAuthenticCommandCannotBeReplayedInAnotherMode) {
 }
 
 // Verifies TS-CMD-120, TS-MODE-040.
-TEST_F(Commands, StandbyGivesNoAttitudeAndRunStartsAnew) {
+TEST_F(Commands, StandbyGivesNoAttitudeAndRunStartsANewSequence) {
   step_good();
   step_good();
   step_commands({set_mode(Mode::kStandby)});
   EXPECT_EQ(app->mode(), Mode::kStandby);
-  EXPECT_EQ(out->telemetry.frames_missing, 0U) << "nobody waits for frames in STANDBY";
+  EXPECT_EQ(out->telemetry.frames_missing, 0U) << "no frames are expected in STANDBY";
   step_good();
   EXPECT_EQ(validity(), Validity::kStandby);
   EXPECT_EQ(out->telemetry.frames_used, 2U);
 
-  // A new session of the sensor may number from anywhere, even the number last used.
+  // A restarted sensor may begin with any sequence number, even the last used one.
   StepInputs inputs;
   inputs.commands[0] = set_mode(Mode::kRun);
   inputs.command_count = 1;
@@ -122,20 +122,20 @@ TEST_F(Commands, RunInRunHasNoEffect) {
   step_commands({set_mode(Mode::kRun)});
   EXPECT_EQ(out->telemetry.commands_accepted, 1U);
   EXPECT_EQ(estimator_crc(), crc);
-  EXPECT_EQ(out->telemetry.estimator_resets, 1U) << "only the one of init()";
+  EXPECT_EQ(out->telemetry.estimator_resets, 1U) << "only the reset by init()";
 }
 
 // Verifies TS-MODE-040, TS-MODE-050.
-TEST_F(Commands, OnlyEnteringRunStartsAnewAndOnlyEnteringSafeSaysWhy) {
+TEST_F(Commands, OnlyEnteringRunResetsAndOnlyEnteringSafeSetsTheCause) {
   step_good();
   const std::uint32_t crc = estimator_crc();
   step_commands({set_mode(Mode::kStandby), set_mode(Mode::kStandby)});
   EXPECT_EQ(out->telemetry.safe_cause, Cause::kNone);
   step_with_bug();
   step_commands({set_mode(Mode::kSafe)});
-  EXPECT_EQ(out->telemetry.safe_cause, Cause::kAssertion) << "what led there first";
+  EXPECT_EQ(out->telemetry.safe_cause, Cause::kAssertion) << "the cause of the first change to SAFE";
   step_commands({set_mode(Mode::kStandby)});
-  EXPECT_EQ(out->telemetry.estimator_resets, 1U) << "only the one of init()";
+  EXPECT_EQ(out->telemetry.estimator_resets, 1U) << "only the reset by init()";
   EXPECT_EQ(estimator_crc(), crc);
   step_commands({set_mode(Mode::kRun)});
   EXPECT_EQ(out->telemetry.estimator_resets, 2U);
@@ -157,7 +157,7 @@ TEST_F(Commands, SafeIsLeftForStandbyOnly) {
   EXPECT_EQ(out->telemetry.safe_cause, Cause::kCommandSafe);
   step_good();
   EXPECT_EQ(validity(), Validity::kStandby);
-  EXPECT_EQ(out->telemetry.mode, Mode::kSafe) << "telemetry goes on";
+  EXPECT_EQ(out->telemetry.mode, Mode::kSafe) << "telemetry continues";
   step_commands({set_mode(Mode::kRun)});
   EXPECT_EQ(refused_by(CommandRefusal::kWrongMode), 1U);
   EXPECT_EQ(app->mode(), Mode::kSafe);
@@ -168,7 +168,7 @@ TEST_F(Commands, SafeIsLeftForStandbyOnly) {
 }
 
 // Verifies TS-CMD-130.
-TEST_F(Commands, ResetSequenceStartsASequenceYetRemembersTheLastFrame) {
+TEST_F(Commands, ResetSequenceStartsASequenceButKeepsTheLastFrame) {
   step_good();
   const gnc::RangeImage used = next_frame();
   step_good();
@@ -179,12 +179,12 @@ TEST_F(Commands, ResetSequenceStartsASequenceYetRemembersTheLastFrame) {
   inputs.command_count = 1;
   inputs.frame = &used;
   step(inputs);
-  EXPECT_EQ(validity(), Validity::kFrameRefused) << "the frame has been used before the reset";
+  EXPECT_EQ(validity(), Validity::kFrameRefused) << "the frame was used before the reset";
   EXPECT_EQ(out->telemetry.frames_duplicate, 1U);
   EXPECT_EQ(out->telemetry.estimator_resets, 2U);
   step_good();
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
-  EXPECT_EQ(events(EventId::kEstimatorResetByGap), 0) << "a new sequence has no gap behind it";
+  EXPECT_EQ(events(EventId::kEstimatorResetByGap), 0) << "a new sequence has no gap before it";
 }
 
 // Verifies TS-CMD-130.
@@ -210,7 +210,7 @@ TEST_F(Commands, SequenceAfterResetEqualsTheFirstSequenceBitForBit) {
 }
 
 // Verifies TS-CMD-110.
-TEST_F(Commands, ResetCountersZeroesAllButItselfAndTheCounterThatStopsReplays) {
+TEST_F(Commands, ResetCountersKeepsOnlyItselfAndTheCommandCounter) {
   stopwatch.tick_ns = 5'000;
   step_good();
   const hal::CommandPacket noop = command(FunctionCode::kNoop);
@@ -228,7 +228,7 @@ TEST_F(Commands, ResetCountersZeroesAllButItselfAndTheCounterThatStopsReplays) {
 }
 
 // Verifies TS-TLM-040.
-TEST_F(Commands, EventsThatWaitWhenTheCountersAreResetAreCountedAnew) {
+TEST_F(Commands, WaitingEventsAreCountedAgainAfterACounterReset) {
   step_good();
   StepInputs inputs;
   inputs.command_count = config::kMaxCommandsPerStep;
@@ -237,7 +237,7 @@ TEST_F(Commands, EventsThatWaitWhenTheCountersAreResetAreCountedAnew) {
   step(inputs);
   EXPECT_GE(out->event_count, config::kMaxCommandsPerStep);
   EXPECT_EQ(out->telemetry.events, static_cast<std::uint32_t>(out->event_count))
-      << "all of them are told only now";
+      << "all of them are sent after the reset";
 }
 
 // Verifies TS-CMD-040.
@@ -255,7 +255,7 @@ TEST_F(Commands, CommandsAreCarriedOutInOrderBeforeTheFrame) {
 }
 
 // Verifies TS-CMD-140.
-TEST_F(Commands, LimitsAreTakenWithinTheirRangeAndRefusedBeyond) {
+TEST_F(Commands, LimitsAreAcceptedWithinTheirRangeOnly) {
   const auto set_limit = [this](int which, std::uint32_t value) {
     std::vector<std::uint8_t> arguments{static_cast<std::uint8_t>(which)};
     append_u32(arguments, value);
@@ -274,7 +274,7 @@ TEST_F(Commands, LimitsAreTakenWithinTheirRangeAndRefusedBeyond) {
 }
 
 // Verifies TS-CMD-150.
-TEST_F(Commands, ResponsesAreDisabledAndEnabledButForThoseThatMustNot) {
+TEST_F(Commands, ResponsesAreDisabledAndEnabledExceptMandatoryOnes) {
   const auto fault = static_cast<std::uint8_t>(Fault::kAttitudeJump);
   step_commands({command(FunctionCode::kDisableResponse, {fault})});
   EXPECT_EQ(out->telemetry.responses_disabled, bit_of(Fault::kAttitudeJump));
@@ -287,7 +287,7 @@ TEST_F(Commands, ResponsesAreDisabledAndEnabledButForThoseThatMustNot) {
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
 }
 
-TEST_F(Commands, InputsBeyondAnyLimitOfAStepAreABugOfTheCaller) {
+TEST_F(Commands, InputsBeyondALimitAreABugOfTheCaller) {
   struct Row {
     int commands, frames, wrong_size;
     bool bug;
@@ -310,7 +310,7 @@ TEST_F(Commands, InputsBeyondAnyLimitOfAStepAreABugOfTheCaller) {
 }
 
 // Verifies TS-MODE-060.
-TEST_F(Commands, AssertionGoesSafeUntilStandbyIsCommanded) {
+TEST_F(Commands, AssertionLeadsToSafeUntilStandbyIsCommanded) {
   step_good();
   step_with_bug();
   EXPECT_EQ(app->mode(), Mode::kSafe);

@@ -37,7 +37,7 @@ TEST_F(Cycle, PublishesOneAttitudeOneTelemetryAndEveryEvent) {
 }
 
 // Verifies TS-FDIR-160.
-TEST_F(Cycle, WatchdogIsKickedOnceEveryDutyIsDone) {
+TEST_F(Cycle, WatchdogIsKickedAfterAllDutiesAreDone) {
   run();
   EXPECT_EQ(watchdog.kicks, 1);
   run();
@@ -45,14 +45,14 @@ TEST_F(Cycle, WatchdogIsKickedOnceEveryDutyIsDone) {
 }
 
 // Verifies TS-FDIR-160.
-TEST_F(Cycle, WatchdogIsNotKickedByAStepThatCouldNotDoItsDuties) {
+TEST_F(Cycle, WatchdogIsNotKickedIfDutiesAreNotDone) {
   app = std::make_unique<AttitudeInitApp>();  // never booted
   run();
   EXPECT_EQ(watchdog.kicks, 0);
-  EXPECT_EQ(link.telemetry.back().mode, Mode::kSafe) << "telemetry goes on";
+  EXPECT_EQ(link.telemetry.back().mode, Mode::kSafe) << "telemetry continues";
 }
 
-TEST_F(Cycle, MissedReleasesAreCountedAndToldOn) {
+TEST_F(Cycle, MissedReleasesAreCountedAndReported) {
   run(3);
   EXPECT_EQ(link.telemetry.back().cycle_slips, 3U);
   EXPECT_EQ(link.events.back().id, EventId::kCycleSlipped);
@@ -68,7 +68,7 @@ TEST_F(Cycle, PublishesADumpInTheCycleThatAskedForIt) {
   EXPECT_EQ(link.dumps.size(), 1U);
 }
 
-TEST_F(Cycle, NothingOfTheLastCycleIsLeftOver) {
+TEST_F(Cycle, NothingIsLeftFromTheLastCycle) {
   lidar.add(next_frame());
   link.add(command(FunctionCode::kNoop));
   run();
@@ -87,7 +87,7 @@ TEST_F(Cycle, CommandsBeyondTheLimitWaitForTheNextCycle) {
   EXPECT_EQ(link.telemetry.back().commands_accepted, static_cast<unsigned>(config::kMaxCommandsPerStep + 3));
 }
 
-TEST_F(Cycle, BacklogOfFramesDrainsInsteadOfStaying) {
+TEST_F(Cycle, BacklogOfFramesDrains) {
   for (std::uint32_t number = 1; number <= 4; ++number) lidar.add(good_frame(number, now_ns));
   for (std::uint32_t number = 5; !link.attitudes.size() || lidar.waiting() > 0; ++number) {
     ASSERT_LT(number, 12U);

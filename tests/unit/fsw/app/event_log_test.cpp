@@ -27,7 +27,7 @@ class EventLogTest : public ::testing::Test {
   hal::Telemetry counters;
 };
 
-TEST_F(EventLogTest, HandsOutWhatWasRaisedInOrder) {
+TEST_F(EventLogTest, ReturnsEventsInOrder) {
   raise(EventId::kFrameStale);
   raise(EventId::kFrameBad);
   const std::vector<hal::Event> events = take_all();
@@ -38,7 +38,7 @@ TEST_F(EventLogTest, HandsOutWhatWasRaisedInOrder) {
   EXPECT_EQ(log.waiting(), 0U);
 }
 
-TEST_F(EventLogTest, TooManyOfAKindAreCountedAndToldAtTheEndOfTheWindow) {
+TEST_F(EventLogTest, TooManyOfAKindAreCountedAndReportedAtTheEndOfTheWindow) {
   raise(EventId::kFrameStale, config::kMaxEventsOfAKind + 5);
   raise(EventId::kFrameBad);
   EXPECT_EQ(counters.events_suppressed, 5U);
@@ -53,7 +53,7 @@ TEST_F(EventLogTest, TooManyOfAKindAreCountedAndToldAtTheEndOfTheWindow) {
   EXPECT_EQ(take_all().size(), 1U) << "a new window";
 }
 
-TEST_F(EventLogTest, SuppressedEventsOfTheWallClockAreToldApart) {
+TEST_F(EventLogTest, SuppressedWallClockEventsAreReportedSeparately) {
   raise(EventId::kDeadlineOverrun, config::kMaxEventsOfAKind + 2);
   take_all();
   end_window();
@@ -82,7 +82,7 @@ TEST_F(EventLogTest, EveryEventIsAccountedFor) {
   EXPECT_EQ(counters.events, taken + log.waiting() + counters.events_suppressed + counters.events_lost);
 }
 
-TEST_F(EventLogTest, StaysInItsMemoryWhateverABitFlipMakesOfIt) {
+TEST_F(EventLogTest, StaysWithinItsMemoryAfterAnyBitFlip) {
   for (std::size_t bit = 0; bit < 8 * sizeof(EventLog); ++bit) {
     EventLog hit = log;
     reinterpret_cast<std::uint8_t*>(&hit)[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);

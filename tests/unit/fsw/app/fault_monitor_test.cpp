@@ -8,7 +8,7 @@ namespace {
 
 using Change = FaultMonitor::Change;
 
-TEST(FaultMonitor, EveryFaultPersistsAfterTheCyclesOfItsRuleAndIsOverWhenItIsGone) {
+TEST(FaultMonitor, EveryFaultPersistsAfterTheCyclesOfItsRuleAndEndsWhenItIsGone) {
   for (const config::FaultRule& rule : config::kFaultRules) {
     FaultMonitor monitor;
     for (int cycle = 1; cycle < rule.persistence_cycles; ++cycle)
@@ -22,7 +22,7 @@ TEST(FaultMonitor, EveryFaultPersistsAfterTheCyclesOfItsRuleAndIsOverWhenItIsGon
   }
 }
 
-TEST(FaultMonitor, RespondsAgainAfterAsManyCyclesMore) {
+TEST(FaultMonitor, RespondsAgainAfterTheSameNumberOfCycles) {
   FaultMonitor monitor;
   int responses = 0;
   for (int cycle = 0; cycle < 9; ++cycle)
@@ -30,7 +30,7 @@ TEST(FaultMonitor, RespondsAgainAfterAsManyCyclesMore) {
   EXPECT_EQ(responses, 3);
 }
 
-TEST(FaultMonitor, AGoodCycleBetweenStartsTheCountAnew) {
+TEST(FaultMonitor, AGoodCycleRestartsTheCount) {
   FaultMonitor monitor;
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(monitor.observe(Fault::kAttitudeJump, true), Change::kNone);
@@ -39,14 +39,14 @@ TEST(FaultMonitor, AGoodCycleBetweenStartsTheCountAnew) {
   }
 }
 
-TEST(FaultMonitor, FaultsAreCountedApart) {
+TEST(FaultMonitor, FaultsAreCountedSeparately) {
   FaultMonitor monitor;
   for (int i = 0; i < 2; ++i) EXPECT_EQ(monitor.observe(Fault::kAttitudeJump, true), Change::kNone);
   EXPECT_EQ(monitor.observe(Fault::kSlip, true), Change::kNone);
   EXPECT_EQ(monitor.observe(Fault::kAttitudeJump, true), Change::kPersists);
 }
 
-TEST(FaultMonitor, DisabledResponsesAreStillTold) {
+TEST(FaultMonitor, DisabledResponsesAreStillReported) {
   for (const config::FaultRule& rule : config::kFaultRules) {
     FaultMonitor monitor;
     const auto number = static_cast<std::uint8_t>(rule.fault);

@@ -30,10 +30,10 @@ TEST(FrameGate, FirstFrameNeedsOnlyARecentExposure) {
   EXPECT_EQ(gate.numbers_skipped(frame(77, kNow_ns)), 0U);
   EXPECT_FALSE(gate.one_period_after_last(frame(0, kNow_ns)));
   EXPECT_FALSE(gate.one_period_after_last(frame(0, config::kFramePeriod_ns)))
-      << "time 0 is none that was seen";
+      << "there is no last frame at time 0";
 }
 
-TEST(FrameGate, LaterFramesMustDifferInNumberAndRiseInExposure) {
+TEST(FrameGate, LaterFramesNeedAnotherNumberAndALaterExposure) {
   FrameGate gate;
   gate.accept(frame(5, kNow_ns));
   EXPECT_EQ(gate.judge(frame(5, kNow_ns + 10), kNow_ns + 10), FrameVerdict::kDuplicate);
@@ -53,7 +53,7 @@ TEST(FrameGate, ExtremeTimesDoNotOverflow) {
   EXPECT_FALSE(gate.one_period_after_last(frame(2, kHighest_ns)));
   gate.accept(frame(1, kHighest_ns));
   EXPECT_FALSE(gate.one_period_after_last(frame(2, kLowest_ns + (config::kFramePeriod_ns - 1))))
-      << "modulo 2^64 it is one";
+      << "modulo 2^64 it would be one period";
   EXPECT_EQ(elapsed_ms(kLowest_ns, kHighest_ns), std::numeric_limits<std::int32_t>::max());
   EXPECT_EQ(elapsed_ms(kHighest_ns, kLowest_ns), std::numeric_limits<std::int32_t>::min());
   EXPECT_EQ(elapsed_ms(kNow_ns, kNow_ns - 3'000'000), -3);
@@ -67,11 +67,12 @@ TEST(FrameGate, SkippedNumbersAreCountedAcrossTheWrap) {
   EXPECT_EQ(gate.numbers_skipped(frame(4, kNow_ns)), 5U);
   EXPECT_EQ(gate.numbers_skipped(frame(UINT32_MAX - 2, kNow_ns)), FrameGate::kWentBack);
   EXPECT_EQ(gate.numbers_skipped(frame(UINT32_MAX - 1, kNow_ns)), FrameGate::kWentBack);
-  EXPECT_EQ(gate.numbers_skipped(frame(0x7FFF'FFFDU, kNow_ns)), 0x7FFF'FFFEU) << "half the circle, less one";
+  EXPECT_EQ(gate.numbers_skipped(frame(0x7FFF'FFFDU, kNow_ns)), 0x7FFF'FFFEU)
+      << "the largest number that counts as ahead";
   EXPECT_EQ(gate.numbers_skipped(frame(0x7FFF'FFFEU, kNow_ns)), FrameGate::kWentBack);
 }
 
-TEST(FrameGate, OnePeriodMeansWithinTenPerCent) {
+TEST(FrameGate, OnePeriodIsWithinTenPercent) {
   FrameGate gate;
   gate.accept(frame(1, kNow_ns));
   const auto after = [&](std::int64_t gap_ns) {

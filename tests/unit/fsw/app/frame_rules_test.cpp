@@ -13,7 +13,7 @@ class FrameRules : public AppFixture {
     crc_ = estimator_crc();
   }
 
-  // The frame is refused for `id`; nothing but the counters moved. Returns what was counted.
+  // Expects the frame to be refused with `id` and only counters to change. Returns the telemetry.
   const hal::Telemetry& expect_refused(const gnc::RangeImage& frame, EventId id) {
     step_frame(frame);
     expect_refusal(id);
@@ -47,7 +47,7 @@ TEST_F(FrameRules, GoodFramesOnePeriodApartBuildASequence) {
   EXPECT_NE(estimator_crc(), crc_);
 }
 
-TEST_F(FrameRules, MissingFramesAreCountedAndReportedOnceAnOutage) {
+TEST_F(FrameRules, MissingFramesAreCountedAndReportedOncePerOutage) {
   step(StepInputs{});
   EXPECT_EQ(validity(), Validity::kNoFrame);
   EXPECT_EQ(events(EventId::kFrameMissing), 1);
@@ -126,7 +126,7 @@ TEST_F(FrameRules, FrameOfWrongSizeIsRefused) {
   EXPECT_EQ(out->telemetry.frames_missing, 0U);
 }
 
-TEST_F(FrameRules, BadFrameAfterAGapLeavesTheStateEvenThoughAGoodOneWouldResetIt) {
+TEST_F(FrameRules, BadFrameAfterAGapDoesNotResetTheEstimator) {
   now_ns += 5 * config::kFramePeriod_ns;
   gnc::RangeImage frame = next_frame();
   frame.ranges.fill(0);
@@ -140,7 +140,7 @@ TEST_F(FrameRules, SequenceContinuesAfterARefusedFrameThatTookNoTime) {
   inputs.frame = frames.data();
   inputs.frame_count = 2;
   step(inputs);
-  EXPECT_EQ(validity(), Validity::kValid) << "the second of the two is good";
+  EXPECT_EQ(validity(), Validity::kValid) << "the second of the two frames is good";
   EXPECT_EQ(out->attitude.frames_since_reset, 3U);
   EXPECT_EQ(out->telemetry.frames_duplicate, 1U);
 }
@@ -156,7 +156,7 @@ TEST_F(FrameRules, RefusedSecondFrameLeavesTheReportOfTheFirst) {
   EXPECT_EQ(out->telemetry.frames_duplicate, 1U);
 }
 
-TEST_F(FrameRules, FrameOneCycleLateIsCaughtUpWith) {
+TEST_F(FrameRules, FrameOneCycleLateIsUsed) {
   const gnc::RangeImage late = next_frame();
   step(StepInputs{});
   StepInputs inputs;
@@ -166,7 +166,7 @@ TEST_F(FrameRules, FrameOneCycleLateIsCaughtUpWith) {
   inputs.frame_count = 2;
   step(inputs);
   EXPECT_EQ(validity(), Validity::kValid);
-  EXPECT_EQ(out->attitude.frames_since_reset, 4U) << "the sequence is whole again";
+  EXPECT_EQ(out->attitude.frames_since_reset, 4U) << "the sequence is complete again";
   EXPECT_EQ(out->attitude.exposure_time_ns, now_ns);
   EXPECT_EQ(events(EventId::kEstimatorResetByGap), 0);
 }
@@ -250,17 +250,17 @@ TEST_F(FrameRules, CycleTimeJumpingFarBackCostsOneCycle) {
   EXPECT_EQ(out->telemetry.estimator_resets, before_.estimator_resets + 1);
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
-  EXPECT_EQ(out->attitude.frames_since_reset, 1U) << "frames of another time are no part of this motion";
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U) << "earlier frames do not belong to this sequence";
   EXPECT_EQ(out->event_count, 0);
   step_good();
   EXPECT_EQ(out->attitude.frames_since_reset, 2U);
 }
 
-TEST_F(FrameRules, CycleTimeGlitchingForwardForACycleCostsTheCycleBack) {
+TEST_F(FrameRules, CycleTimeGlitchForwardCostsOneCycle) {
   const std::int64_t before_glitch_ns = now_ns;
   now_ns += 100 * config::kFramePeriod_ns;
   step_good();
-  EXPECT_EQ(validity(), Validity::kValid) << "nothing tells a glitch from a pause yet";
+  EXPECT_EQ(validity(), Validity::kValid) << "a glitch cannot be distinguished from a pause yet";
   now_ns = before_glitch_ns + config::kFramePeriod_ns;
   step_good();
   EXPECT_EQ(validity(), Validity::kFrameRefused);
@@ -270,7 +270,7 @@ TEST_F(FrameRules, CycleTimeGlitchingForwardForACycleCostsTheCycleBack) {
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
 }
 
-TEST_F(FrameRules, FullestCycleFitsTheEvents) {
+TEST_F(FrameRules, EventsOfTheBusiestCycleFit) {
   init_with_model();  // its event comes with the next cycle
   step_good();
   init_with_model();
@@ -286,7 +286,7 @@ TEST_F(FrameRules, FullestCycleFitsTheEvents) {
   for (hal::CommandPacket& one : inputs.commands) one = command(FunctionCode::kNoop);
   step(inputs);
   EXPECT_EQ(out->event_count, 1 + config::kMaxCommandsPerStep + 2)
-      << "model, commands, gap and reset of the second";
+      << "events of model, commands, gap and reset by the second frame";
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
 

@@ -1,4 +1,4 @@
-// The vectors of FIPS 180-4's and RFC 4231's authors.
+// Test vectors of FIPS 180-4 and RFC 4231.
 // Verifies TS-SEC-010.
 #include "fsw/app/hmac_sha256.hpp"
 
@@ -45,7 +45,7 @@ TEST(Sha256, OfAMillionBytesInPieces) {
 }
 
 TEST(HmacSha256, OfRfc4231) {
-  // Cases 1 and 2; shorter keys are filled up with zeros by definition.
+  // Test cases 1 and 2; HMAC pads shorter keys with zeros.
   std::array<std::uint8_t, 32> key{};
   std::fill(key.begin(), key.begin() + 20, std::uint8_t{0x0b});
   const std::string hi = "Hi There";
@@ -57,7 +57,7 @@ TEST(HmacSha256, OfRfc4231) {
             "5bdcc146bf60754e6a042426089575c75a003f089d2739839dec58b964ec3843");
 }
 
-TEST(EqualInConstantTime, SeesADifferenceInAnyByte) {
+TEST(EqualInConstantTime, DetectsADifferenceInAnyByte) {
   const std::array<std::uint8_t, 4> a{1, 2, 3, 4};
   EXPECT_TRUE(equal_in_constant_time(a.data(), a.data(), a.size()));
   for (std::size_t i = 0; i < a.size(); ++i) {

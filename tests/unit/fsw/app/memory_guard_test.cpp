@@ -1,4 +1,4 @@
-// Bit flips between two cycles, in every part of memory that outlives a cycle.
+// Bit flips between two cycles, in all memory that is kept from cycle to cycle.
 #include <random>
 
 #include "tests/campaigns/fault/app_memory.hpp"
@@ -15,7 +15,7 @@ class MemoryGuardTest : public AppFixture {
     step_good();
     step_good();
   }
-  // What an application that was never hit gives for the frames so far and the next one.
+  // The attitude of an undisturbed application after the frames so far and the next one.
   gnc::QuaternionQ30 undisturbed_next() {
     auto twin = std::make_unique<AttitudeInitApp>();
     hal::fake::FakeModelStore models;
@@ -37,14 +37,14 @@ class MemoryGuardTest : public AppFixture {
     EXPECT_EQ(validity(), Validity::kValid);
     EXPECT_EQ(out->attitude.q_lrf_trf, expected);
   }
-  // Until every block has been checked once.
+  // Steps until every block has been checked once.
   void steps_of_a_pass() {
     constexpr std::uint32_t kBlocks = ModelBanks::kBlocks;
     for (std::uint32_t block = 0; block <= kBlocks;
          block += AppMemory::state(*app).limit(Limit::kScrubBlocks))
       step_good();
   }
-  // A bit that means something.
+  // Flips a bit that is not padding.
   void flip_a_constant() {
     const std::uint32_t before = app->estimator().constants_crc32();
     const Region region = AppMemory::constants(*app);
@@ -54,7 +54,7 @@ class MemoryGuardTest : public AppFixture {
   void hit_block(std::size_t index, std::size_t block) {
     bank(index)[block * config::kModelBlockBytes + 9] ^= 1;
   }
-  // Found in the very next cycle.
+  // Detected in the next cycle.
   void hit_table() { AppMemory::guard(*app).flip(8 * 40); }
 };
 
@@ -89,7 +89,7 @@ TEST_F(MemoryGuardTest, FlippedBitsOfTheEstimatorsStateAreRestoredFromTheCopy) {
 }
 
 // Verifies TS-FDIR-020.
-TEST_F(MemoryGuardTest, StateAndCopyHitTogetherStartTheSequenceAnew) {
+TEST_F(MemoryGuardTest, StateAndCopyHitTogetherStartANewSequence) {
   AppMemory::flip_state_bit(*app, 5);
   const Region guard = AppMemory::guard(*app);
   constexpr std::size_t kStateBytes = AppMemory::kStateBits / 8;
@@ -140,7 +140,7 @@ TEST_F(MemoryGuardTest, FlippedBitOfTheSecondCopyIsRepairedFromTheBankInUse) {
 }
 
 // Verifies TS-FDIR-040.
-TEST_F(MemoryGuardTest, SecondCopyThatCannotBeWrittenIsLeftAsItIs) {
+TEST_F(MemoryGuardTest, ReadOnlySecondCopyIsNotRepaired) {
   store.banks[1].writable = false;
   bank(1)[0] ^= 1;
   steps_of_a_pass();
@@ -149,7 +149,7 @@ TEST_F(MemoryGuardTest, SecondCopyThatCannotBeWrittenIsLeftAsItIs) {
 }
 
 // Verifies TS-FDIR-040.
-TEST_F(MemoryGuardTest, FlippedBitsOfTheTableAreMended) {
+TEST_F(MemoryGuardTest, FlippedBitsOfTheTableAreRepaired) {
   const Region guard = AppMemory::guard(*app);
   guard.flip(8 * 40 + 3);
   expect_undisturbed_step();
@@ -173,7 +173,7 @@ TEST_F(MemoryGuardTest, SameBlockHitInBothBanksSwitchesOrGoesSafe) {
   EXPECT_EQ(events(EventId::kSafeEntered), 1);
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kSafe));
   step_commands({set_mode(Mode::kStandby), set_mode(Mode::kRun)});
-  EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "what is damaged does not run again";
+  EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "a damaged model does not run again";
 }
 
 // Verifies TS-FDIR-045.
@@ -194,7 +194,7 @@ TEST_F(MemoryGuardTest, DamagedModelWithoutSecondCopyFallsBackOnAnotherGoodOne) 
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, BankInRomThatIsHitCannotBeRepaired) {
+TEST_F(MemoryGuardTest, HitReadOnlyBankWithoutSecondCopyLeadsToSafe) {
   store.banks[0].writable = false;
   store.banks[1] = {};
   init(store);
@@ -205,7 +205,7 @@ TEST_F(MemoryGuardTest, BankInRomThatIsHitCannotBeRepaired) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, TableAndModelHitTogetherGoSafeWithoutASecondCopy) {
+TEST_F(MemoryGuardTest, TableAndModelHitTogetherLeadToSafeWithoutASecondCopy) {
   store.banks[1] = {};
   init(store);
   step_good();
@@ -217,7 +217,7 @@ TEST_F(MemoryGuardTest, TableAndModelHitTogetherGoSafeWithoutASecondCopy) {
 }
 
 // Verifies TS-FDIR-030.
-TEST_F(MemoryGuardTest, ConstantsHitTogetherWithTheirImageAreMendedFirstInTheImage) {
+TEST_F(MemoryGuardTest, ConstantsHitTogetherWithTheirImageAreReloadedAfterItsRepair) {
   flip_a_constant();
   for (std::size_t at = 0; at < bank(0).size(); at += config::kModelBlockBytes) bank(0)[at + 64] ^= 1;
   expect_undisturbed_step();
@@ -226,7 +226,7 @@ TEST_F(MemoryGuardTest, ConstantsHitTogetherWithTheirImageAreMendedFirstInTheIma
 }
 
 // Verifies TS-FDIR-030.
-TEST_F(MemoryGuardTest, ConstantsThatNoBankHasAnyMoreGoSafe) {
+TEST_F(MemoryGuardTest, ConstantsThatNoBankHoldsLeadToSafe) {
   store.banks[1] = {};
   init(store);
   step_good();
@@ -237,7 +237,7 @@ TEST_F(MemoryGuardTest, ConstantsThatNoBankHasAnyMoreGoSafe) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, BankInRomThatIsHitMakesWayForItsSecondCopyAndIsNoneItself) {
+TEST_F(MemoryGuardTest, HitReadOnlyBankIsReplacedByItsSecondCopy) {
   for (const std::uint32_t used : {0U, 1U}) {
     store.fill(test_model_image());
     store.banks[used].writable = false;
@@ -256,13 +256,13 @@ TEST_F(MemoryGuardTest, BankInRomThatIsHitMakesWayForItsSecondCopyAndIsNoneItsel
     EXPECT_EQ(out->telemetry.model_blocks_lost, 1U);
     EXPECT_EQ(out->telemetry.model_blocks_repaired, 0U);
     EXPECT_EQ(out->telemetry.bank_in_use, 1 - used);
-    EXPECT_EQ(out->telemetry.second_copy, 0U) << "the same CRC in its header, but no good image";
+    EXPECT_EQ(out->telemetry.second_copy, 0U) << "the header has the same CRC, but the image is not good";
     EXPECT_EQ(app->mode(), Mode::kRun);
   }
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, SameHitInBothBanksIsNotTakenForTheTruth) {
+TEST_F(MemoryGuardTest, SameHitInBothBanksIsNotAccepted) {
   hit_block(0, 100);
   hit_block(1, 100);
   steps_of_a_pass();
@@ -272,7 +272,7 @@ TEST_F(MemoryGuardTest, SameHitInBothBanksIsNotTakenForTheTruth) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, ScrubbingEndsWithTheFirstBlockThatIsLost) {
+TEST_F(MemoryGuardTest, ScrubbingEndsAtTheFirstLostBlock) {
   store.banks[1] = {};
   init(store);
   step_good();
@@ -314,7 +314,7 @@ TEST_F(MemoryGuardTest, FrameOfTheCycleThatLosesTheModelIsRefusedAndCounted) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, ModelActivatedInTheCycleThatLosesTheOtherStays) {
+TEST_F(MemoryGuardTest, ModelActivatedInTheCycleThatLosesTheOtherStaysInUse) {
   const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
   bank(1) = other;
   init(store);
@@ -331,7 +331,7 @@ TEST_F(MemoryGuardTest, ModelActivatedInTheCycleThatLosesTheOtherStays) {
 }
 
 // Verifies TS-FDIR-045, TS-MDL-020.
-TEST_F(MemoryGuardTest, UploadGoesOnWhenTheModelInUseIsLost) {
+TEST_F(MemoryGuardTest, UploadContinuesWhenTheModelInUseIsLost) {
   const auto load = [this](std::uint32_t offset) {
     std::vector<std::uint8_t> arguments;
     append_u32(arguments, offset);
@@ -349,7 +349,7 @@ TEST_F(MemoryGuardTest, UploadGoesOnWhenTheModelInUseIsLost) {
 }
 
 // Verifies TS-FDIR-030.
-TEST_F(MemoryGuardTest, ConstantsThatAreNotThoseOfTheActivationGoSafe) {
+TEST_F(MemoryGuardTest, ConstantsThatDifferFromTheActivationSwitchBanks) {
   const Region voted = AppMemory::voted_state(*app);
   const std::size_t one = voted.size / 3;
   const auto offset = static_cast<std::size_t>(
@@ -362,7 +362,7 @@ TEST_F(MemoryGuardTest, ConstantsThatAreNotThoseOfTheActivationGoSafe) {
 }
 
 // Verifies TS-FDIR-080.
-TEST_F(MemoryGuardTest, ActivationsAreWrittenAnew) {
+TEST_F(MemoryGuardTest, ActivationsAreRewritten) {
   const Region region = AppMemory::activations(*app);
   std::mt19937 engine(5);
   for (int i = 0; i < 20; ++i) {
@@ -371,7 +371,7 @@ TEST_F(MemoryGuardTest, ActivationsAreWrittenAnew) {
   }
 }
 
-TEST_F(MemoryGuardTest, WithoutProtectionsAFlipStays) {
+TEST_F(MemoryGuardTest, WithoutProtectionsAFlipPersists) {
   protections = {false, false};
   init(store);
   step_good();

@@ -19,7 +19,7 @@ class ModelCommands : public AppFixture {
                      other.begin() + offset + static_cast<std::ptrdiff_t>(size));
     return command(FunctionCode::kModelLoad, arguments);
   }
-  // All of `other`, eight segments a cycle, with frames going on.
+  // Loads all of `other`, eight segments per cycle, while frames continue.
   void load_all() {
     std::uint32_t offset = 0;
     while (offset < other.size()) {
@@ -63,7 +63,7 @@ class ModelCommands : public AppFixture {
   const std::vector<std::uint8_t>& other;
 };
 
-// A bank of which a platform says how large it would be, were there one.
+// A platform that reports the capacity of a bank that does not exist.
 class HollowStore final : public hal::ModelStore {
  public:
   explicit HollowStore(hal::ModelStore& store) : store_(store) {}
@@ -77,7 +77,7 @@ class HollowStore final : public hal::ModelStore {
 
 TEST_F(ModelCommands, NewModelIsLoadedInFlightValidatedActivatedAndRun) {
   load_all();
-  EXPECT_EQ(validity(), Validity::kValid) << "the old one goes on while the new one comes in";
+  EXPECT_EQ(validity(), Validity::kValid) << "the old model runs while the new one is loaded";
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kLoading);
   step_commands({set_mode(Mode::kStandby), validate()});
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood);
@@ -89,25 +89,25 @@ TEST_F(ModelCommands, NewModelIsLoadedInFlightValidatedActivatedAndRun) {
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
   EXPECT_EQ(out->telemetry.second_copy, 0);
-  // And back: the old one is still there.
+  // Back to the old model, which is still in its bank.
   step_commands({set_mode(Mode::kStandby), activate(gnc::model_image_crc32(test_model_image().data()))});
   EXPECT_EQ(out->telemetry.bank_in_use, 0);
 }
 
-TEST_F(ModelCommands, SegmentsOutOfOrderOrBeyondTheBankAreRefusedAndSayWhereToGoOn) {
+TEST_F(ModelCommands, SegmentsOutOfOrderOrBeyondTheBankAreRefusedWithTheNextOffset) {
   step_commands({segment(0, 1000), segment(2000, 10)});
   EXPECT_EQ(argument(EventId::kCommandWrongArgument, 2), 1000);
   EXPECT_EQ(out->telemetry.model_bytes_loaded, 1000U);
   step_commands({segment(1000, 24)});
   EXPECT_EQ(out->telemetry.model_bytes_loaded, 1024U);
   step_commands({segment(0, 5)});
-  EXPECT_EQ(out->telemetry.model_bytes_loaded, 5U) << "offset 0 begins anew";
+  EXPECT_EQ(out->telemetry.model_bytes_loaded, 5U) << "offset 0 begins a new image";
   std::vector<std::uint8_t> far{0xFF, 0xFF, 0xFF, 0xFF, 1};
   step_commands({command(FunctionCode::kModelLoad, far)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
 }
 
-TEST_F(ModelCommands, SegmentThatWouldLeaveTheBankIsRefused) {
+TEST_F(ModelCommands, SegmentBeyondTheEndOfTheBankIsRefused) {
   store.banks[1] = {std::vector<std::uint8_t>(1500), 0, true};
   init(store);
   step_commands({segment(0, 1024), segment(1024, 476), segment(1500, 1)});
@@ -124,7 +124,7 @@ TEST_F(ModelCommands, SegmentLargerThanTheBankIsRefused) {
   EXPECT_EQ(events(EventId::kCommandAccepted), 1);
 }
 
-TEST_F(ModelCommands, ValidatedImageIsNotContinuedNorValidatedAgain) {
+TEST_F(ModelCommands, ValidatedImageIsNeitherContinuedNorValidatedAgain) {
   store.banks[1].memory.resize(other.size() + 10);
   load_all();
   step_commands({set_mode(Mode::kStandby), validate(), validate()});
@@ -137,12 +137,12 @@ TEST_F(ModelCommands, ValidatedImageIsNotContinuedNorValidatedAgain) {
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood);
 }
 
-TEST_F(ModelCommands, BankThatCannotBeWrittenRefusesSegments) {
+TEST_F(ModelCommands, ReadOnlyBankRefusesSegments) {
   store.banks[1].writable = false;
   init(store);
   step_commands({segment(0, 10)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
-  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood) << "it still holds the second copy";
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood) << "the bank still holds the second copy";
 }
 
 TEST_F(ModelCommands, DamagedWrongOrUnfinishedImagesAreNotValidated) {
@@ -152,21 +152,21 @@ TEST_F(ModelCommands, DamagedWrongOrUnfinishedImagesAreNotValidated) {
   step_commands(
       {validate(static_cast<std::uint32_t>(other.size()) - 1, gnc::model_image_crc32(other.data()))});
   EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "another size";
-  EXPECT_EQ(events(EventId::kModelRefused), 0) << "the image has not been looked at";
+  EXPECT_EQ(events(EventId::kModelRefused), 0) << "the image was not checked";
   step_commands({validate(static_cast<std::uint32_t>(other.size()), 1)});
   EXPECT_EQ(argument(EventId::kCommandNoModel, 2), static_cast<int>(gnc::ModelStatus::kBadHeaderCrc));
   step_commands({activate(0)});
-  EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "an image that is coming in has no CRC yet";
+  EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "an image that is being loaded has no CRC yet";
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kLoading);
   store.banks[1].memory[500'000] ^= 4;
   step_commands({validate(static_cast<std::uint32_t>(other.size()), 1)});
   EXPECT_EQ(argument(EventId::kCommandNoModel, 2), static_cast<int>(gnc::ModelStatus::kBadSectionCrc))
-      << "the image first";
+      << "the image is checked first";
   step_commands({validate()});
   EXPECT_EQ(argument(EventId::kModelRefused, 0), static_cast<int>(gnc::ModelStatus::kBadSectionCrc));
   EXPECT_EQ(argument(EventId::kModelRefused, 2), 1);
   step_commands({activate()});
-  EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "what is not validated is not activated";
+  EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "only a validated image is activated";
   EXPECT_EQ(out->telemetry.bank_in_use, 0);
 }
 
@@ -180,7 +180,7 @@ TEST_F(ModelCommands, ImageDamagedAfterItsValidationIsNotActivated) {
   EXPECT_EQ(out->telemetry.bank_in_use, 0);
   step_commands({set_mode(Mode::kRun)});
   step_good();
-  EXPECT_EQ(validity(), Validity::kValid) << "the old one is still there";
+  EXPECT_EQ(validity(), Validity::kValid) << "the old model is still in use";
 }
 
 TEST_F(ModelCommands, ActivationNamesTheImage) {
@@ -190,7 +190,7 @@ TEST_F(ModelCommands, ActivationNamesTheImage) {
   EXPECT_EQ(out->telemetry.bank_in_use, 0);
 }
 
-TEST_F(ModelCommands, DumpGivesTheBytesOfTheBank) {
+TEST_F(ModelCommands, DumpReturnsTheBytesOfTheBank) {
   step_commands({dump(0, 100'000, 1024)});
   ASSERT_TRUE(out->has_dump);
   EXPECT_EQ(out->dump.bank, 0);
@@ -208,7 +208,7 @@ TEST_F(ModelCommands, DumpBeyondTheBankOrASecondOneInACycleIsRefused) {
   step_commands({dump(1, size - 4, 4), dump(0, 0, 4)});
   EXPECT_EQ(events(EventId::kCommandBusy), 1);
   EXPECT_EQ(out->dump.bank, 1);
-  EXPECT_EQ(out->dump.bytes[4], 0) << "nothing of an earlier dump";
+  EXPECT_EQ(out->dump.bytes[4], 0) << "nothing is left from an earlier dump";
   step_commands(
       {dump(0, size - 3, 4), dump(2, 0, 4), dump(0, 0, 0), dump(0, 0, 1025), dump(0, 0xFFFFFFFF, 4)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 5);

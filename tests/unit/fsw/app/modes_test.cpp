@@ -1,4 +1,4 @@
-// Every pair of mode and cause, against the table as it was meant.
+// Every pair of mode and cause, compared with the intended transitions.
 // Verifies TS-MODE-010.
 #include "fsw/app/modes.hpp"
 
@@ -10,7 +10,7 @@
 namespace tumblesight::fsw {
 namespace {
 
-TEST(Modes, EveryCauseLeadsWhereItShouldAndNowhereElse) {
+TEST(Modes, EveryCauseLeadsToTheIntendedModeOnly) {
   const Mode kBoot = Mode::kBoot, kStandby = Mode::kStandby, kRun = Mode::kRun, kSafe = Mode::kSafe;
   const std::map<std::pair<Mode, Cause>, Mode> meant{
       {{kBoot, Cause::kModelFound}, kRun},        {{kBoot, Cause::kNoModel}, kSafe},
@@ -31,7 +31,7 @@ TEST(Modes, EveryCauseLeadsWhereItShouldAndNowhereElse) {
       EXPECT_EQ(to, found != meant.end() ? found->second : static_cast<Mode>(99)) << mode << ' ' << cause;
     }
   }
-  EXPECT_EQ(kTransitions.size(), meant.size()) << "a row twice, or one that nobody meant";
+  EXPECT_EQ(kTransitions.size(), meant.size()) << "a duplicate or unintended row";
 }
 
 // Verifies TS-MODE-050.
@@ -39,7 +39,7 @@ TEST(Modes, OnlyACommandEndsSafe) {
   for (const Transition& transition : kTransitions) {
     if (transition.from != Mode::kSafe || transition.to == Mode::kSafe) continue;
     EXPECT_EQ(transition.cause, Cause::kCommandStandby);
-    EXPECT_EQ(transition.to, Mode::kStandby) << "never straight to RUN";
+    EXPECT_EQ(transition.to, Mode::kStandby) << "never directly to RUN";
   }
 }
 

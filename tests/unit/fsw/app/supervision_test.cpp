@@ -1,4 +1,4 @@
-// Faults of the world: outages, slips, overruns, doubtful attitudes, and the responses to them.
+// Faults of inputs and timing: outages, slips, overruns, doubtful attitudes, and the responses to them.
 #include <functional>
 #include <utility>
 
@@ -21,7 +21,7 @@ class Supervision : public AppFixture {
 };
 
 // Verifies TS-FDIR-110.
-TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndOverWithAGoodFrame) {
+TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndEndsWithAGoodFrame) {
   for (int cycle = 1; cycle <= 4; ++cycle) step_good();
   EXPECT_FALSE(persists(Fault::kOutage));
   for (int cycle = 1; cycle <= 3; ++cycle) {
@@ -31,7 +31,7 @@ TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndOverWithAGoodFrame) {
   gnc::RangeImage bad = next_frame();
   bad.ranges.fill(0);
   step_frame(bad);
-  EXPECT_TRUE(persists(Fault::kOutage)) << "a refused frame is none";
+  EXPECT_TRUE(persists(Fault::kOutage)) << "a refused frame does not end the outage";
   EXPECT_EQ(argument(EventId::kFaultPersists, 0), static_cast<int>(Fault::kOutage));
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
   step_good();
@@ -40,14 +40,14 @@ TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndOverWithAGoodFrame) {
 }
 
 // Verifies TS-FDIR-110.
-TEST_F(Supervision, NobodyMissesFramesInStandby) {
+TEST_F(Supervision, MissingFramesAreNoFaultInStandby) {
   step_commands({set_mode(Mode::kStandby)});
   for (int cycle = 0; cycle < 10; ++cycle) step(StepInputs{});
   EXPECT_EQ(out->telemetry.faults_persisting, 0U);
 }
 
 // Verifies TS-FDIR-120.
-TEST_F(Supervision, SlipsAreCountedToldAndFlaggedWhenTheyGoOn) {
+TEST_F(Supervision, SlipsAreCountedReportedAndFlaggedIfTheyPersist) {
   StepInputs inputs;
   inputs.cycle_slips = 2;
   for (int cycle = 0; cycle < 3; ++cycle) {
@@ -63,7 +63,7 @@ TEST_F(Supervision, SlipsAreCountedToldAndFlaggedWhenTheyGoOn) {
 }
 
 // Verifies TS-FDIR-130, TS-TLM-050.
-TEST_F(Supervision, StepsBeyondTheirBudgetAreCountedToldAndFlaggedWhenTheyGoOn) {
+TEST_F(Supervision, StepsBeyondTheirBudgetAreCountedReportedAndFlaggedIfTheyPersist) {
   stopwatch.tick_ns = 300'000'000;
   step_good();
   EXPECT_EQ(out->telemetry.deadline_overruns, 0U) << "900 ms";
@@ -73,7 +73,7 @@ TEST_F(Supervision, StepsBeyondTheirBudgetAreCountedToldAndFlaggedWhenTheyGoOn) 
   step_good();
   EXPECT_TRUE(persists(Fault::kDeadline));
   EXPECT_EQ(argument(EventId::kTimingFaultPersists, 0), static_cast<int>(Fault::kDeadline));
-  EXPECT_EQ(out->telemetry.deadline_overruns, 3U) << "the limit counted in its own cycle too";
+  EXPECT_EQ(out->telemetry.deadline_overruns, 3U) << "the new limit applies in the cycle of its command";
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
@@ -92,7 +92,7 @@ TEST_F(Supervision, StepTimesFillTheHistogram) {
   EXPECT_EQ(out->telemetry.step_max_us, 1'000'000U);
 }
 
-TEST_F(Supervision, InferenceTimeGoesToTelemetryAndNowhereElse) {
+TEST_F(Supervision, InferenceTimeGoesToTelemetryOnly) {
   stopwatch.tick_ns = 4'000;
   step_good();
   EXPECT_EQ(out->telemetry.inference_us, 4U);
@@ -107,10 +107,10 @@ TEST_F(Supervision, InferenceTimeGoesToTelemetryAndNowhereElse) {
   inputs.frame = &frame;
   slow->step(now_ns, inputs, *out);
   EXPECT_EQ(out->telemetry.inference_max_us, 400'000U);
-  EXPECT_EQ(slow->state_crc32(), crc_fast) << "time within the budget is not in the digest";
+  EXPECT_EQ(slow->state_crc32(), crc_fast) << "times within the budget are not in the digest";
 }
 
-TEST_F(Supervision, StopwatchRunningBackwardsMeasuresNothing) {
+TEST_F(Supervision, StopwatchRunningBackwardsMeasuresZero) {
   stopwatch.time_ns = 1'000'000'000;
   stopwatch.tick_ns = std::uint64_t{0} - 1'000'000;
   step_good();
@@ -118,7 +118,7 @@ TEST_F(Supervision, StopwatchRunningBackwardsMeasuresNothing) {
   EXPECT_EQ(out->telemetry.deadline_overruns, 0U);
 }
 
-TEST_F(Supervision, StopwatchLeapingFarAheadSaturates) {
+TEST_F(Supervision, StopwatchJumpingFarAheadSaturates) {
   stopwatch.tick_ns = std::uint64_t{1} << 60;
   step(StepInputs{});
   EXPECT_EQ(out->telemetry.step_us, UINT32_MAX);
@@ -130,7 +130,7 @@ class DoubtfulAttitudes : public Supervision {
     protections.attitude = true;
     init_with_model();
   }
-  // By its content, a frame that has the random network say something else than the one before.
+  // A frame whose content makes the random network give another attitude than the previous frame.
   void step_scene(unsigned scene) {
     const gnc::RangeImage frame = good_frame(++sequence_number, next_time_ns(), scene);
     step_frame(frame);
@@ -138,12 +138,13 @@ class DoubtfulAttitudes : public Supervision {
 };
 
 // Verifies TS-FDIR-140.
-TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillGiven) {
+TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillReported) {
   set_limit(Limit::kAttitudeJump_urad, 3'141'593);
   set_limit(Limit::kPredictedError_urad, 17'453);
   for (unsigned cycle = 1; cycle <= 10; ++cycle) {
     step_scene(cycle);
-    ASSERT_GT(out->attitude.predicted_error_urad, 17'453U) << "the test needs a network that is in doubt";
+    ASSERT_GT(out->attitude.predicted_error_urad, 17'453U)
+        << "the test needs a network with a large expected error";
     EXPECT_EQ(validity(), Validity::kDoubtful);
     EXPECT_GT(out->attitude.sequence_number, 0U);
     EXPECT_EQ(persists(Fault::kErrorLarge), cycle == 10);
@@ -156,7 +157,7 @@ TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillGiven) {
 }
 
 // Verifies TS-FDIR-150.
-TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceWhenTheyGoOn) {
+TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceIfTheyPersist) {
   set_limit(Limit::kPredictedError_urad, 3'141'593);
   set_limit(Limit::kAttitudeJump_urad, 87'266);
   int doubtful = 0;
@@ -170,7 +171,7 @@ TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceWhenTheyGoOn) {
 }
 
 // Verifies TS-FDIR-170.
-TEST_F(DoubtfulAttitudes, FramesThatRepeatTheLastOneAreFlaggedAndToldWhenTheyGoOn) {
+TEST_F(DoubtfulAttitudes, RepeatedFramesAreFlaggedAndReportedIfTheyPersist) {
   set_limit(Limit::kPredictedError_urad, 3'141'593);
   set_limit(Limit::kAttitudeJump_urad, 3'141'593);
   gnc::RangeImage frame = next_frame();
@@ -185,12 +186,12 @@ TEST_F(DoubtfulAttitudes, FramesThatRepeatTheLastOneAreFlaggedAndToldWhenTheyGoO
     EXPECT_EQ(persists(Fault::kFrameFrozen), repetition == 3);
   }
   step_frame(good_frame(frame.sequence_number + 1, next_time_ns(), 2));
-  EXPECT_EQ(validity(), Validity::kValid) << "the sensor looks again";
+  EXPECT_EQ(validity(), Validity::kValid) << "the sensor works again";
   EXPECT_EQ(out->telemetry.attitudes_doubtful, 3U);
 }
 
-// Radiation strikes between the estimator and the check of what it gave: at the look at the stopwatch that
-// lies there.
+// Flips a bit of the estimate between the estimator and the checks of the attitude, in the call of the
+// stopwatch there.
 class UnsoundAttitudes : public DoubtfulAttitudes {
  protected:
   class Strike final : public hal::Stopwatch {
@@ -216,7 +217,7 @@ class UnsoundAttitudes : public DoubtfulAttitudes {
 };
 
 // Verifies TS-FDIR-090.
-TEST_F(UnsoundAttitudes, NoneLeavesWhicheverPartOfItWasHit) {
+TEST_F(UnsoundAttitudes, NoneIsReportedWhicheverPartIsHit) {
   const std::function<void()> hits[] = {
       [this] {
         estimate().q_lrf_trf = {0, 0, 0, 0};
@@ -240,7 +241,7 @@ TEST_F(UnsoundAttitudes, NoneLeavesWhicheverPartOfItWasHit) {
 }
 
 // Verifies TS-FDIR-090.
-TEST_F(UnsoundAttitudes, SecondOneLeavesTheReportOfTheFirst) {
+TEST_F(UnsoundAttitudes, SecondOneDoesNotChangeTheReportOfTheFirst) {
   set_limit(Limit::kPredictedError_urad, 3'141'593);
   strike_next_step(kBehindSecondFrame, [this] { estimate().q_lrf_trf = {0, 0, 0, 0}; });
   std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
@@ -256,7 +257,7 @@ TEST_F(UnsoundAttitudes, SecondOneLeavesTheReportOfTheFirst) {
 }
 
 // Verifies TS-FDIR-070.
-TEST_F(UnsoundAttitudes, NoneIsLeftOutOfWhatTheNextAreComparedWith) {
+TEST_F(UnsoundAttitudes, EachRestartsTheComparisonWithTheLastTwo) {
   set_limit(Limit::kPredictedError_urad, 3'141'593);
   step_commands(
       {command(FunctionCode::kDisableResponse, {static_cast<std::uint8_t>(Fault::kAttitudeUnsound)})});
@@ -271,19 +272,19 @@ TEST_F(UnsoundAttitudes, NoneIsLeftOutOfWhatTheNextAreComparedWith) {
   step_scene(2000);
   for (unsigned i = 0; i < 2; ++i) {
     step_scene(3000 + 7 * i);
-    EXPECT_EQ(validity(), Validity::kValid) << "there are not yet two before it, one period apart";
+    EXPECT_EQ(validity(), Validity::kValid) << "fewer than two attitudes one period apart precede it";
   }
 }
 
 // Verifies TS-FDIR-060.
-TEST_F(DoubtfulAttitudes, DisabledResponseTellsButDoesNotReset) {
+TEST_F(DoubtfulAttitudes, DisabledResponseReportsButDoesNotReset) {
   set_limit(Limit::kPredictedError_urad, 3'141'593);
   set_limit(Limit::kAttitudeJump_urad, 87'266);
   step_commands({command(FunctionCode::kDisableResponse, {static_cast<std::uint8_t>(Fault::kAttitudeJump)})});
-  bool told = false;
-  for (unsigned i = 0; i < 40 && !told; ++i) {
+  bool reported = false;
+  for (unsigned i = 0; i < 40 && !reported; ++i) {
     step_scene(1000 + 7 * i);
-    told = persists(Fault::kAttitudeJump);
+    reported = persists(Fault::kAttitudeJump);
   }
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
   EXPECT_EQ(out->telemetry.estimator_resets, 1U);

@@ -1,4 +1,4 @@
-// The digest of the state, and what the telemetry tells.
+// The digest of the state, and the content of the telemetry.
 // Verifies TS-TLM-010, TS-TLM-020.
 #include "tests/support/test_models.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
@@ -16,7 +16,7 @@ class Telemetry : public AppFixture {
   std::unique_ptr<StepOutputs> twin_out;
 };
 
-TEST_F(Telemetry, StateDigestTellsWhichModelIsActive) {
+TEST_F(Telemetry, StateDigestDependsOnTheActiveModel) {
   hal::fake::FakeModelStore other;
   other.fill(gnc::lasting_model_image<gnc::FixedPoint>(8));
   twin->init({&stopwatch, &other, &kTestKey}, kTestTarget, protections);
@@ -24,7 +24,7 @@ TEST_F(Telemetry, StateDigestTellsWhichModelIsActive) {
   EXPECT_NE(app->state_crc32(), twin->state_crc32());
 }
 
-TEST_F(Telemetry, StateDigestFollowsModeEstimatorAndCounters) {
+TEST_F(Telemetry, StateDigestDependsOnModeEstimatorAndCounters) {
   EXPECT_EQ(app->state_crc32(), twin->state_crc32());
   step_good();
   EXPECT_NE(app->state_crc32(), twin->state_crc32());
@@ -39,7 +39,7 @@ TEST_F(Telemetry, StateDigestFollowsModeEstimatorAndCounters) {
 }
 
 // Verifies TS-TLM-040.
-TEST_F(Telemetry, EventsBeyondAStepsShareWaitForTheNextOne) {
+TEST_F(Telemetry, EventsBeyondTheLimitOfAStepWaitForTheNextOne) {
   for (std::size_t block = 0; block < 8; ++block)
     store.banks[1].memory[block * config::kModelBlockBytes + 9] ^= 1;
   StepInputs inputs;
@@ -56,7 +56,7 @@ TEST_F(Telemetry, EventsBeyondAStepsShareWaitForTheNextOne) {
 }
 
 // Verifies TS-TLM-040.
-TEST_F(Telemetry, EventsAreToldWaitingSuppressedOrLost) {
+TEST_F(Telemetry, EventsAreSentWaitingSuppressedOrLost) {
   hal::CommandPacket forged = command(FunctionCode::kNoop);
   forged.bytes[0] ^= 1;
   StepInputs inputs;
@@ -64,14 +64,14 @@ TEST_F(Telemetry, EventsAreToldWaitingSuppressedOrLost) {
   for (hal::CommandPacket& packet : inputs.commands) packet = forged;
   inputs.cycle_slips = 1;
   inputs.frame_wrong_size = 2;
-  int told = 0;
+  int sent = 0;
   for (int cycle = 0; cycle < 40; ++cycle) {
     step(inputs);
-    told += out->event_count;
+    sent += out->event_count;
     EXPECT_LE(out->event_count, config::kMaxEventsPerStep);
     const hal::Telemetry& h = out->telemetry;
     EXPECT_EQ(h.events,
-              static_cast<std::uint32_t>(told) + h.events_waiting + h.events_suppressed + h.events_lost);
+              static_cast<std::uint32_t>(sent) + h.events_waiting + h.events_suppressed + h.events_lost);
     EXPECT_GE(h.events_waiting_max, h.events_waiting);
   }
   EXPECT_GT(out->telemetry.events_suppressed, 0U);

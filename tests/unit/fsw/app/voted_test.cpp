@@ -29,11 +29,11 @@ TEST(Voted, EverySingleBitFlipInAnyCopyIsCorrected) {
     EXPECT_EQ(hit->number, 0xDEADBEEF);
     EXPECT_EQ(hit->time, -5);
     EXPECT_EQ(hit->small, 7);
-    ASSERT_EQ(hit.vote(), 0U) << "all three are mended";
+    ASSERT_EQ(hit.vote(), 0U) << "all three copies are equal again";
   }
 }
 
-TEST(Voted, FlipsInTwoCopiesAreCorrectedWhereTheyAreOfDifferentBits) {
+TEST(Voted, FlipsOfDifferentBitsInTwoCopiesAreCorrected) {
   Voted<State> hit = with_content();
   auto* const bytes = reinterpret_cast<std::uint8_t*>(&hit);
   bytes[0] ^= 1;
@@ -42,7 +42,7 @@ TEST(Voted, FlipsInTwoCopiesAreCorrectedWhereTheyAreOfDifferentBits) {
   EXPECT_EQ(hit->number, 0xDEADBEEF);
 }
 
-TEST(Voted, WhatIsChangedInACycleCountsOnceItIsCommitted) {
+TEST(Voted, ChangesWithinACycleCountAfterCommit) {
   Voted<State> voted = with_content();
   voted->number = 1;
   voted.commit();
