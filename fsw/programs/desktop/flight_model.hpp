@@ -3,7 +3,7 @@
 
 #include "fsw/app/cycle.hpp"
 #include "fsw/programs/desktop/flight_options.hpp"
-#include "hal/command_key.hpp"
+#include "hal/messages/command_key.hpp"
 #include "hal/stopwatch.hpp"
 
 namespace tumblesight::fsw::desktop {
