@@ -8,6 +8,7 @@ fail() {
 
 # The Debian packages that the toolchain files name: require_program(VARIABLE PROGRAM PACKAGES).
 packages_of_toolchains() {
+  [ -d "${root-}/toolchains" ] || return 0
   sed -nE 's/^require_program\([^ ]+ [^ ]+ "?([^")]+)"?\)$/\1/p' "$root"/toolchains/*.cmake | tr ' ' '\n' | sort -u
 }
 

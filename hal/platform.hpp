@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "hal/command_key.hpp"
+#include "hal/messages/command_key.hpp"
 #include "hal/model_store.hpp"
 #include "hal/stopwatch.hpp"
 

@@ -64,7 +64,7 @@ class RadioLink final : public hal::Link {
     return command.size > 0;
   }
   void publish(const hal::AttitudeReport& report) override { board::send(&report, sizeof report); }
-  void publish(const hal::Housekeeping& telemetry) override { board::send(&telemetry, sizeof telemetry); }
+  void publish(const hal::Telemetry& telemetry) override { board::send(&telemetry, sizeof telemetry); }
   void publish(const hal::Event& event) override { board::send(&event, sizeof event); }
   void publish(const hal::ModelDump& dump) override { board::send(&dump, sizeof dump); }
 };
@@ -112,7 +112,7 @@ SensorLidar lidar;
 RadioLink link;
 BoardWatchdog watchdog;
 FrameTimer timer;
-fsw::AttitudeInitApp application;
+fsw::AttitudeInitApp app;
 fsw::CycleWorkspace workspace;
 
 }  // namespace
@@ -120,7 +120,7 @@ fsw::CycleWorkspace workspace;
 int main() {
   // No command key: this link delivers authentic telecommands only. "near_shoemaker": refuse the model of
   // another target. Without a usable model the application is in mode SAFE and still reports telemetry.
-  application.init({&stopwatch, &model_store, nullptr}, "near_shoemaker");
+  app.init({&stopwatch, &model_store, nullptr}, "near_shoemaker");
   for (;;) {
     std::uint32_t slips = 0;
     const std::int64_t now_ns = timer.wait_next_release_ns(slips);

@@ -6,7 +6,7 @@
 
 #include "fsw/app/modes.hpp"
 #include "fsw/app/telecommand.hpp"
-#include "hal/command_key.hpp"
+#include "hal/messages/command_key.hpp"
 
 namespace tumblesight::fsw {
 

@@ -7,7 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "hal/link.hpp"
+#include "hal/messages/attitude_report.hpp"
+#include "hal/messages/event.hpp"
+#include "hal/messages/telemetry.hpp"
 #include "sim/sil/simulator_endpoints.hpp"
 
 namespace tumblesight::sim {

@@ -10,7 +10,9 @@
 
 #include "gnc/lidar/range_image.hpp"
 #include "hal/dds/idl/development_key.hpp"
-#include "hal/link.hpp"
+#include "hal/messages/attitude_report.hpp"
+#include "hal/messages/event.hpp"
+#include "hal/messages/telemetry.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 

@@ -12,7 +12,8 @@
 
 #include "gnc/lidar/range_image.hpp"
 #include "hal/dds/idl/domain.hpp"
-#include "hal/link.hpp"
+#include "hal/messages/command_packet.hpp"
+#include "hal/messages/mode.hpp"
 #include "sim/sil/answer_collector.hpp"
 #include "sim/sil/domain_lease.hpp"
 #include "sim/sil/failure.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/command_key.hpp"
+#include "hal/messages/command_key.hpp"
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/function_code.hpp"
 #include "hal/messages/mode.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fsw/app/telecommand.hpp"
-#include "hal/command_key.hpp"
+#include "hal/messages/command_key.hpp"
 #include "hal/messages/command_packet.hpp"
 
 namespace tumblesight::fsw {

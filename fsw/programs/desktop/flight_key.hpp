@@ -1,7 +1,7 @@
 // Reads the key of the telecommands' authentication code from a file.
 #pragma once
 
-#include "hal/command_key.hpp"
+#include "hal/messages/command_key.hpp"
 
 namespace tumblesight::fsw::desktop {
 

@@ -11,7 +11,7 @@
 namespace tumblesight::fsw::desktop {
 namespace {
 
-static_assert(hal::dds::kMaxEventsPerStep >= config::kMaxEventsPerStep);
+static_assert(hal::dds::kMaxEventsPerStep >= fsw::config::kMaxEventsPerStep);
 
 void wait(sem_t& semaphore) {
   while (sem_wait(&semaphore) != 0 && errno == EINTR) {
