@@ -1,6 +1,6 @@
-// Prints digests over what the estimator makes of many frames, for every numerics and instruction set of this
-// build and this processor, a line each: numerics, set, frames, CRC-32 of every frame's quaternions, expected
-// errors and state.
+// Prints digests of the estimator's outputs over many frames, one line per numerics and instruction set of
+// this build and this processor: numerics, set, number of frames, CRC-32 over the quaternions, expected
+// errors and state of every frame.
 //   digest FRAMES        with each instruction set
 //   digest FRAMES SET    with one
 #include <cstdio>
@@ -16,7 +16,7 @@ namespace tumblesight::gnc {
 namespace {
 
 constexpr unsigned kSeed = 47;
-constexpr int kDifferentFrames = 37;  // no divisor of a sequence's length: no two sequences are alike
+constexpr int kDifferentFrames = 37;  // not a multiple of kSequence: successive sequences differ
 constexpr int kSequence = 10;
 
 template <class N>

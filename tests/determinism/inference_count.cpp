@@ -1,6 +1,6 @@
-// Counts the instructions of inferences under callgrind: one dump of its counters after each of ten frames,
-// for every instruction set that this processor (as callgrind shows it) has. Prints what each dump is, in
-// order.
+// Counts the instructions of inferences under callgrind: one dump of the counters after each of ten frames,
+// for every instruction set that the processor emulated by callgrind has. Prints the numerics and the set of
+// each dump, in order.
 #include <valgrind/callgrind.h>
 
 #include <cstdio>
@@ -30,7 +30,7 @@ RangeImage empty_frame() {
   return frame;
 }
 
-// Nothing but 16 returns, every ray the nearest or the farthest, noise, and what the sensor model renders.
+// Sixteen returns only, every ray at the nearest or farthest range, noise, and rendered frames.
 std::vector<RangeImage> frames() {
   std::vector<RangeImage> all(4, empty_frame());
   std::mt19937 engine(9);

@@ -1,4 +1,4 @@
-// AppMemory: where the parts of a flying application lie, for those who flip bits in them.
+// AppMemory: the memory regions of a running application, for tests that flip bits in them.
 #pragma once
 
 #include <cstddef>
@@ -31,18 +31,18 @@ struct AppMemory {
   // The copy of the estimator's state and the table of the blocks' checksums.
   static Region guard(App& app) { return region_of(app.guard_); }
   static Estimator& estimator(App& app) { return app.estimator_; }
-  // Of the last frame, between estimator and report.
+  // The last frame's estimate, between estimator and report.
   static gnc::AttitudeEstimate& estimate(App& app) { return app.estimate_; }
-  // Biases, shifts and where the weights lie.
+  // Biases, shifts and the addresses of the weights.
   static Region constants(App& app) { return region_of(app.estimator_.network().weights()); }
-  // Whatever a frame writes anew.
+  // Memory that every frame rewrites.
   static Region activations(App& app) {
     auto& network = app.estimator_.network();
     const Region whole = region_of(network), weights = region_of(network.weights());
     std::uint8_t* const end = whole.data + whole.size;
     return {weights.data + weights.size, static_cast<std::size_t>(end - (weights.data + weights.size))};
   }
-  // The estimator hands its state out by value only.
+  // The estimator returns its state by value only.
   static void flip_state_bit(App& app, std::size_t bit) {
     Estimator::State state;
     app.estimator_.save(state);

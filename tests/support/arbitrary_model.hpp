@@ -1,4 +1,4 @@
-// A model image with arbitrary weights: useless as a network, but a valid one that answers every frame.
+// A model image with arbitrary weights: valid, answers every frame, not trained.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Telecommands for the tests: right ones, to be spoilt.
+// Telecommands for the tests: valid ones, which a test may then corrupt.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@ namespace tumblesight::fsw {
 
 inline constexpr hal::CommandKey kTestKey{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
 
-// Without trailer.
+// Without a security trailer.
 std::vector<std::uint8_t> packet_of(std::uint8_t function, const std::vector<std::uint8_t>& arguments = {});
-// Checksum as it should be, whatever else the packet holds.
+// Sets the correct checksum, whatever the packet contains.
 void set_checksum(std::vector<std::uint8_t>& packet);
 hal::CommandPacket signed_with(const hal::CommandKey& key, std::uint32_t counter,
                                std::vector<std::uint8_t> packet);

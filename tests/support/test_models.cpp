@@ -17,8 +17,8 @@ void fill_random(NetworkWeights<Float32>& weights, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
   for_each_layer(weights, [&](const char* name, auto& layer) {
-    // Of what a weight is added up over: inputs of a convolution or a dense layer, hidden units of the
-    // others.
+    // The number of products in a sum: the inputs of a convolution or dense layer, the hidden units of the
+    // other layers.
     std::size_t fan_in = layer.weight.size() / layer.bias.size();
     if (std::strcmp(name, "lstm") == 0) fan_in = shape::kLstm;
     if (std::strncmp(name, "head", 4) == 0) fan_in = shape::kHead;
@@ -30,7 +30,7 @@ void fill_random(NetworkWeights<Float32>& weights, unsigned seed) {
   });
 }
 
-// Integers whose sums fill each layer's range: shifts by the sums' expected size.
+// Integers whose sums use each layer's whole range: the shifts follow the expected size of the sums.
 class RandomIntegers {
  public:
   explicit RandomIntegers(unsigned seed) : engine_(seed) {

@@ -1,4 +1,4 @@
-// Random networks and images for the RCNN's tests. Not for accuracy: nothing here was trained.
+// Random networks and images for the RCNN's tests. They are not trained and say nothing about accuracy.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ void fill_random(NetworkWeights<Float32>& weights, unsigned seed);
 ModelHeader test_header();
 template <class N>
 std::vector<std::uint8_t> random_model_image(unsigned seed, const ModelHeader& header = test_header());
-// The same, for the whole program: weights in fixed point are read where the image lies.
+// The same with static lifetime: fixed-point weights are read from the image in place.
 template <class N>
 const std::vector<std::uint8_t>& lasting_model_image(unsigned seed);
 
-// A blob of random depths in the middle, nothing around it; seen in the LRF.
+// Random depths in the middle, empty cells around them; seen in the LRF.
 DepthImage random_depth_image(unsigned seed);
 LstmInput<Float32> random_lstm_input(unsigned seed);
 // A frame that make_depth_image() accepts for test_header()'s projection.
