@@ -1,4 +1,4 @@
-// Results of two subjects as an experiment gives them, from made-up errors.
+// Results of two subjects in the form of an experiment's results, with chosen errors.
 #pragma once
 
 #include "sim/evaluation/results.hpp"
