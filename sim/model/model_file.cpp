@@ -28,10 +28,12 @@ std::uint32_t checked_crc32(const std::vector<std::uint8_t>& image, const std::s
 }  // namespace
 
 std::vector<std::uint8_t> read_model_bytes(const std::string& path) {
+  std::error_code error;
   std::ifstream file(path, std::ios::binary);
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file.is_open() || file.bad()) throw std::runtime_error("model image '" + path + "' cannot be read");
-  return bytes;
+  if (!file || std::filesystem::is_directory(path, error)) {
+    throw std::runtime_error("model image '" + path + "' cannot be read");
+  }
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
