@@ -56,8 +56,7 @@ enum class LayerKind : std::uint8_t {
 // What a layer gives.
 enum class LayerOutput : std::uint8_t {
   kMaxPooled,      // convolution: maximum of each 2x2 window, then ReLU
-  kAveragePooled,  // convolution: ReLU, then the mean of each 2x2 window; read as a flat vector, pixel by
-                   // pixel
+  kAveragePooled,  // convolution: ReLU, then the mean of each 2x2 window; flat, pixel by pixel
   kHidden,         // dense: ReLU; LSTM: hidden state
   kOutput,         // dense: values with a meaning, no activation
 };
@@ -69,8 +68,8 @@ struct LayerRow {
   int inputs;   // channels of the input image (convolution), else values
   int outputs;  // channels (convolution), hidden units (LSTM), else values
   int side;     // convolution: pixels along one side of the input image; else 0
-  std::array<const char*, 2>
-      reads;  // the layer or network input that it reads; a second one is appended to it
+  // The layer or network input that it reads. A second one is appended to the first.
+  std::array<const char*, 2> reads;
 };
 
 // The network's inputs: the depth image folded 2x2 into four channels, and the LSTM input.

@@ -40,12 +40,12 @@ std::string remedy_for_missing_image(const std::string& path) {
 }
 
 std::vector<std::uint8_t> read_model_bytes(const std::string& path) {
+  std::error_code error;
   std::ifstream file(path, std::ios::binary);
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file.is_open() || file.bad()) {
+  if (!file || std::filesystem::is_directory(path, error)) {
     throw std::runtime_error("model image '" + path + "' cannot be read" + remedy_for_missing_image(path));
   }
-  return bytes;
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
