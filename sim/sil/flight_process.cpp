@@ -82,7 +82,7 @@ bool FlightProcess::ended_well() const {
 }
 
 std::string FlightProcess::how_it_ended() const {
-  if (status_lost_) return "ended with an unknown exit status (is SIGCHLD ignored?)";
+  if (status_lost_) return "ended, but its exit status is lost (is SIGCHLD ignored?)";
   if (WIFSIGNALED(status_)) {
     const int signal = WTERMSIG(status_);
     return "was ended by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
