@@ -63,8 +63,8 @@ enum class ModelStatus : std::uint8_t {
   kBadTarget,        // of another spacecraft, or malformed target name
   kBadSection,       // section id, offset or size does not match the network
   kBadSectionCrc,    // weights damaged
-  kBadValue,  // impossible depth projection or inertia; a weight that is not finite; integers with which a
-              // sum could leave 32 bits; a shift out of range
+  kBadValue,     // impossible depth projection or inertia; a weight that is not finite; integers with which a
+                 // sum could leave 32 bits; a shift out of range
   kBadNumerics,  // intact, but fixed point where float32 is expected, or the reverse
 };
 const char* to_string(ModelStatus status);

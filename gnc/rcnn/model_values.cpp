@@ -21,7 +21,7 @@ constexpr std::uint32_t kLargestRealShift = 62;  // of sums that become real num
 
 constexpr LayerLimits limits_of(const LayerRow& row) {
   if (row.kind == LayerKind::kConvolution) {
-    return {Int8Product::kGroup, 255, kLargestActivationShift, kLargestConvolved};
+    return {Int8Product::kGroup, 255, kLargestActivationShift, kMaxConvSum};
   }
   const int before = layer_index(row.reads[0]);
   const bool reads_average = before < kLayerCount && kLayers[before].output == LayerOutput::kAveragePooled;

@@ -99,26 +99,26 @@ void add_figures(std::vector<ConditionColumn>& columns, const char* name, Estima
     const Mark mark = estimator == Estimator::kRcnn && figure.paper != nullptr ? Mark::kRcnn : Mark::kNone;
     columns.push_back({tables,
                        figure.in_degrees ? fmt::format("{} {}", name, figure.heading) : figure.heading,
-                       [&figure, estimator, mark](const ConditionRow& row) {
+                       [&figure, estimator, mark](const ResultRow& row) {
                          const ErrorSummary* summary = summary_of(row.cell, estimator);
                          return summary == nullptr ? TableCell{"-"} : figure_cell(figure, *summary, mark);
                        }});
   }
 }
 
-TableCell goal_cell(const ConditionRow& row) {
+TableCell goal_cell(const ResultRow& row) {
   if (!row.paper.goal) return {"-"};
   return {paper_text(row.paper.goal), meets(row.cell.rcnn, *row.paper.goal) ? Mark::kMet : Mark::kMissed};
 }
 
-TableCell goal_met_cell(const ConditionRow& row) {
+TableCell goal_met_cell(const ResultRow& row) {
   if (!row.paper.goal) return {""};
   const bool met = meets(row.cell.rcnn, *row.paper.goal);
   return {met ? "yes" : "no", met ? Mark::kMet : Mark::kMissed};
 }
 
 std::vector<ConditionColumn> make_condition_columns() {
-  using Row = ConditionRow;
+  using Row = ResultRow;
   constexpr ConditionTables kOthers = kOtherEstimatorsTable;
   std::vector<ConditionColumn> columns{
       {kOthers, "spacecraft, mesh", [](const Row& row) -> TableCell { return {title_of(row.subject)}; }},
@@ -212,8 +212,8 @@ const std::vector<CsvColumn>& csv_columns() {
   return columns;
 }
 
-std::vector<ConditionRow> condition_rows(const SubjectResult& subject) {
-  std::vector<ConditionRow> rows;
+std::vector<ResultRow> condition_rows(const SubjectResult& subject) {
+  std::vector<ResultRow> rows;
   for (const CellResult& cell : subject.cells) {
     rows.push_back({subject, cell, paper_figures(subject.target, cell.condition)});
   }

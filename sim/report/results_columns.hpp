@@ -56,12 +56,12 @@ struct CsvColumn {
 const std::vector<CsvColumn>& csv_columns();
 
 // One condition of one network on one mesh: a line of the tables. Holds references into the results.
-struct ConditionRow {
+struct ResultRow {
   const SubjectResult& subject;
   const CellResult& cell;
   PaperFigures paper;
 };
-std::vector<ConditionRow> condition_rows(const SubjectResult& subject);
+std::vector<ResultRow> condition_rows(const SubjectResult& subject);
 
 // The tables with a line per condition, as a set of bits.
 using ConditionTables = std::uint32_t;
@@ -74,7 +74,7 @@ inline constexpr ConditionTables kOverviews = kTerminalOverview | kPageOverview;
 struct ConditionColumn {
   ConditionTables tables;  // that show it
   std::string heading;
-  std::function<TableCell(const ConditionRow&)> cell;
+  std::function<TableCell(const ResultRow&)> cell;
 };
 // In their order from left to right.
 const std::vector<ConditionColumn>& condition_columns();

@@ -36,7 +36,7 @@ std::vector<std::string> condition_header(ConditionTables table) {
   return header;
 }
 
-Cells condition_cells(const ConditionRow& row, ConditionTables table) {
+Cells condition_cells(const ResultRow& row, ConditionTables table) {
   Cells cells;
   for (const ConditionColumn& column : condition_columns()) {
     if ((column.tables & table) != 0) cells.push_back(column.cell(row));
@@ -70,7 +70,7 @@ DataTable conditions_table(const std::vector<SubjectResult>& subjects, Condition
   DataTable made{condition_header(table), {}};
   for (const SubjectResult& subject : subjects) {
     if ((table & kOverviews) != 0) made.rows.push_back({{title_of(subject)}});
-    for (const ConditionRow& row : condition_rows(subject)) made.rows.push_back(condition_cells(row, table));
+    for (const ResultRow& row : condition_rows(subject)) made.rows.push_back(condition_cells(row, table));
   }
   return made;
 }

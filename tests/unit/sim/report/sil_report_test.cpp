@@ -103,8 +103,10 @@ TEST(FrameResults, LeaveOutStepsWithoutAnAnswer) {
 
 TEST(RunReport, CountsWarningsAndErrorsByEvent) {
   SilRunResult warned = run();
-  warned.steps[1].events = {{0, 34, 1, {}}, {0, 10, 0, {}}};
-  warned.steps[3].events = {{0, 34, 1, {}}};
+  const hal::Event from_future{0, hal::EventId::kFrameFromFuture, hal::Severity::kWarning, {}};
+  const hal::Event accepted{0, hal::EventId::kCommandAccepted, hal::Severity::kInformation, {}};
+  warned.steps[1].events = {from_future, accepted};
+  warned.steps[3].events = {from_future};
   const RunReport report = run_report(setup(), warned);
   const auto& facts = report.facts.back().facts;
   ASSERT_EQ(facts.size(), 1U);
