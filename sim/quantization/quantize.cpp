@@ -121,8 +121,8 @@ class Quantizer {
   void average_pooled_convolution(const gnc::LayerRow& row, const From& from, To& to) {
     const FloatLayer layer = layer_of(row, from);
     // The observed outputs are means of four: one of the four may be as large as their sum.
-    put<gnc::Int8Product::kGroup>(layer, scales_that_fit(layer, outputs_of(layer), gnc::kMaxAveragedActivation / 4.0),
-                                  to);
+    put<gnc::Int8Product::kGroup>(
+        layer, scales_that_fit(layer, outputs_of(layer), gnc::kMaxAveragedActivation / 4.0), to);
     for (double& scale : to_.scales.at(row.name)) scale /= 4.0;  // the sum of a window stands for its mean
   }
   template <class From, class To>

@@ -169,10 +169,10 @@ std::vector<std::string> run_faults(const SilRunResult& run) {
   const auto invalid = std::count_if(run.steps.begin(), run.steps.end(),
                                      [](const StepResult& s) { return s.answered && !gave_attitude(s); });
   if (invalid > 0) {
-    found.push_back(fmt::format(
-        "{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
-        run.steps_planned - run.steps_missed,
-        last->telemetry.mode != hal::Mode::kRun ? ": the flight program is not in RUN" : ""));
+    found.push_back(
+        fmt::format("{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
+                    run.steps_planned - run.steps_missed,
+                    last->telemetry.mode != hal::Mode::kRun ? ": the flight program is not in RUN" : ""));
   }
   if (run.flight_heap_allocations > 0) {
     found.push_back(fmt::format("The flight task allocated heap memory {} times after its start.",

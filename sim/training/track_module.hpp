@@ -41,8 +41,9 @@ class TrackModule {
   Fusion advance(const FrameHypotheses& frame, const torch::Tensor& head_output);
 
  private:
-  torch::Tensor standing() const;  // log-likelihood minus the evidence required (gnc::kRequiredEvidence) [B, 5]
-  torch::Tensor law() const;       // index of the law with the highest standing [B]
+  torch::Tensor standing()
+      const;                  // log-likelihood minus the evidence required (gnc::kRequiredEvidence) [B, 5]
+  torch::Tensor law() const;  // index of the law with the highest standing [B]
 
   gnc::MotionLaws<float> laws_;
   int frames_ = 0;
