@@ -1,7 +1,9 @@
 // The shipped model images are as accurate as the figures stored with them say.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -69,16 +71,27 @@ void check(const fs::path& model, const fs::path& figures_file) {
   EXPECT_GT(checked, 0) << "no row on the parametric mesh in " << figures_file;
 }
 
-// Every record is in the tree, not every image is: none may be left out unnoticed.
+// The figures of every image are in the tree, but some images are only in the history. None may be left out
+// unnoticed: in a clone without history this test is skipped with the list of the missing images.
 TEST(ShippedModels, AreThereForEveryRecord) {
+  constexpr int kNoHistory = 3;  // exit status of fetch_images
   int records = 0;
+  std::string not_in_clone;
   for (const auto& entry : fs::directory_iterator(TUMBLESIGHT_SOURCE_DIR "/fsw/models")) {
     if (entry.path().extension() != ".json") continue;
     ++records;
     const fs::path image = fs::path(entry.path()).replace_extension(".tsm");
-    EXPECT_TRUE(fs::exists(image)) << image << " is missing" << remedy_for_missing_image(image.string());
+    if (fs::exists(image)) continue;
+    const std::string remedy = remedy_for_missing_image(image.string());
+    ASSERT_FALSE(remedy.empty()) << image << " is missing";
+    const std::string command =
+        TUMBLESIGHT_SOURCE_DIR "/fsw/models/fetch_images '" + image.stem().string() + "'";
+    const int status = std::system(command.c_str());
+    ASSERT_EQ(WEXITSTATUS(status), kNoHistory) << image << " is missing" << remedy;
+    not_in_clone += " " + image.filename().string();
   }
   EXPECT_GT(records, 0) << "no record in fsw/models";
+  if (!not_in_clone.empty()) GTEST_SKIP() << "not in the history of this clone:" << not_in_clone;
 }
 
 // Verifies TS-EST-180.
