@@ -6,19 +6,9 @@
 
 #include "cmake/version.hpp"
 #include "gnc/rcnn/model_image.hpp"
-#include "sim/cli/bench_command.hpp"
-#include "sim/cli/evaluate_command.hpp"
-#include "sim/cli/quantize_command.hpp"
-#include "sim/cli/record_command.hpp"
-#ifdef TUMBLESIGHT_HAS_ONNX
-#include "sim/cli/export_command.hpp"
-#endif
+#include "sim/cli/verbs.hpp"
 #ifdef TUMBLESIGHT_HAS_SIL
 #include "hal/dds/idl/icd_hash.hpp"
-#include "sim/cli/simulate_command.hpp"
-#endif
-#ifdef TUMBLESIGHT_HAS_TRAINING
-#include "sim/cli/train_command.hpp"
 #endif
 
 namespace {
@@ -64,19 +54,7 @@ int main(int argc, char** argv) {
   try {
     std::string command_line = "tumblesight";
     for (int i = 1; i < argc; ++i) command_line += std::string(" ") + argv[i];
-#ifdef TUMBLESIGHT_HAS_SIL
-    sim::add_simulate_command(app, command_line);
-#endif
-    sim::add_evaluate_command(app, command_line);
-    sim::add_quantize_command(app);
-    sim::add_record_command(app);
-    sim::add_bench_command(app);
-#ifdef TUMBLESIGHT_HAS_ONNX
-    sim::add_export_command(app);
-#endif
-#ifdef TUMBLESIGHT_HAS_TRAINING
-    sim::add_train_command(app);
-#endif
+    sim::add_verbs(app, command_line);
     app.footer(
         "\nStart with\n  tumblesight simulate\n"
         "and see `tumblesight SUBCOMMAND --help` for the options of each.\n");

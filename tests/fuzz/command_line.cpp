@@ -3,11 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "sim/cli/bench_command.hpp"
-#include "sim/cli/evaluate_command.hpp"
-#include "sim/cli/quantize_command.hpp"
-#include "sim/cli/record_command.hpp"
-#include "sim/cli/simulate_command.hpp"
+#include "sim/cli/verbs.hpp"
 #include "tests/fuzz/arguments.hpp"
 
 namespace tumblesight::fuzz {
@@ -16,11 +12,7 @@ namespace {
 std::unique_ptr<CLI::App> make_tool() {
   auto tool = std::make_unique<CLI::App>("", "tumblesight");
   tool->require_subcommand(1);
-  sim::add_simulate_command(*tool, "");
-  sim::add_evaluate_command(*tool, "");
-  sim::add_quantize_command(*tool);
-  sim::add_record_command(*tool);
-  sim::add_bench_command(*tool);
+  sim::add_verbs(*tool, "");
   tool->parse_complete_callback([] { throw CLI::Success(); });  // before any subcommand does its work
   return tool;
 }

@@ -34,6 +34,7 @@ class RandomIntegers {
  public:
   explicit RandomIntegers(unsigned seed) : engine_(seed) {
     constexpr std::array<std::uint8_t, kLayerCount> kShifts{8, 9, 9, 7, 8, 8, 20, 22, 10, 21};
+    static_assert(kShifts.back() != 0, "one shift for each layer of kLayers");
     std::size_t index = 0;
     for_each_layer(weights, [&](const LayerRow&, auto& layer) {
       put(layer.weight);

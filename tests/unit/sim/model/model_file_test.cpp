@@ -44,7 +44,7 @@ TEST(ModelFile, IsReadBackAsWritten) {
 
 TEST(ModelFile, IsNotWrittenIfTheFolderIsMissingOrTheReaderWouldRefuseIt) {
   const auto model = random_model();
-  EXPECT_THROW(write_model_file<gnc::Float32>("/nonexistent/x.tsm", model->header, model->weights),
+  EXPECT_THROW(write_model_file<gnc::Float32>("/dev/null/x.tsm", model->header, model->weights),
                std::runtime_error);
   gnc::layer_weights<0>(model->weights).bias[0] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(write_model_file<gnc::Float32>(temporary("_nan.tsm"), model->header, model->weights),

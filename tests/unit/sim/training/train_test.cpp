@@ -149,7 +149,7 @@ TEST_F(TrainTest, WithoutCnnImagesTheRecurrentStageUsesTheGivenCnnAndWritesLogAn
 
 TEST_F(TrainTest, AFolderThatCannotBeWrittenIsAnError) {
   TrainingSettings here = settings;
-  here.folder = "/nonexistent/folder";
+  here.folder = "/dev/null/folder";
   Cnn cnn;
   EXPECT_THROW(train_cnn(targets, here, cnn, never), std::runtime_error);
 }

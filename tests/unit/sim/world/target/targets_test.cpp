@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <functional>
+#include <regex>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -14,9 +16,10 @@ namespace tumblesight::sim {
 namespace {
 
 TEST(Targets, AreFoundByNameValidAndFitTheSensor) {
-  EXPECT_EQ(target_names(), (std::vector<std::string>{"near_shoemaker", "magellan", "sacd_aquarius",
-                                                      "sacd_aquarius_stowed"}));
-  for (const std::string& name : target_names()) {
+  const std::vector<std::string> names = target_names();
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size()) << "a key stands twice";
+  for (const std::string& name : names) {
+    EXPECT_TRUE(std::regex_match(name, std::regex("[a-z0-9_]{1,31}"))) << name;
     const TriangleMesh mesh = target_by_name(name);
     EXPECT_EQ(mesh.name, name);
     EXPECT_GT(mesh.triangles.size(), 1000U) << name;
