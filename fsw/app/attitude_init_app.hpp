@@ -1,7 +1,7 @@
 // AttitudeInitApp: the flight application. It runs one step() per frame period. A step is a pure function of
 // its state and inputs.
 //
-// The steps of a step, in this order:
+// The stages of a step, in this order:
 //   1. memory       majority vote over the application's state; guards of estimator and model
 //                   (voted.hpp, memory_guard.hpp)
 //   2. commands     in the order in which they arrived (command_handler.hpp, commands.cpp)
@@ -53,7 +53,7 @@ class AttitudeInitApp final {
   void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
 
   // To compare runs: CRC-32 over the estimator's state, the active model's CRC, mode, times, last frame,
-  // limits, persisting faults and counters, without everything that depends on the wall clock.
+  // limits, persisting faults and counters. It excludes everything that depends on the wall clock.
   std::uint32_t state_crc32() const;
   Mode mode() const { return state_->mode; }
   // What init() found in a bank (0 or 1); kOk before the first init().

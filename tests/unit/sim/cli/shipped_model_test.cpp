@@ -69,7 +69,7 @@ void check(const fs::path& model, const fs::path& figures_file) {
   EXPECT_GT(checked, 0) << "no row on the parametric mesh in " << figures_file;
 }
 
-// Every record is in the tree, not every image is: none may be left out unnoticed.
+// Every figures file (.json) is in the tree, but not every image. A missing image must fail the test.
 TEST(ShippedModels, AreThereForEveryRecord) {
   int records = 0;
   for (const auto& entry : fs::directory_iterator(TUMBLESIGHT_SOURCE_DIR "/fsw/models")) {
@@ -78,7 +78,7 @@ TEST(ShippedModels, AreThereForEveryRecord) {
     const fs::path image = fs::path(entry.path()).replace_extension(".tsm");
     EXPECT_TRUE(fs::exists(image)) << image << " is missing" << remedy_for_missing_image(image.string());
   }
-  EXPECT_GT(records, 0) << "no record in fsw/models";
+  EXPECT_GT(records, 0) << "no figures in fsw/models";
 }
 
 // Verifies TS-EST-180.
