@@ -28,7 +28,7 @@ struct CycleInterfaces {
 
 // Receives at most kMaxFramesPerStep deliveries of the LiDAR and kMaxCommandsPerStep commands; the others
 // wait for the next cycle. `now_ns`: time of the cycle. `cycle_slips`: releases of the task missed since the
-// last cycle. Kicks the watchdog after everything is published, if the step has done its duties.
+// last cycle. Kicks the watchdog after everything is published, if the step reports duties_done.
 void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int64_t now_ns,
                std::uint32_t cycle_slips, CycleWorkspace& workspace);
 

@@ -103,8 +103,8 @@ bool is_float32(const std::uint8_t* image, std::size_t size_bytes);
 [[nodiscard]] bool set_target(ModelHeader& header, const char* name);
 
 // Writes an image and returns its size, kModelImageSize<N>. Returns 0 and writes nothing if `capacity` is
-// smaller. The values are not checked here but by the reader. Not part of a flight program: the linker leaves
-// it out.
+// smaller. The reader checks the values, not this function. Flight programs do not call it, so the linker
+// leaves it out.
 template <class N>
 [[nodiscard]] std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights,
                                             std::uint8_t* out, std::size_t capacity);

@@ -3,7 +3,7 @@
 
 namespace tumblesight::hal::posix {
 
-// 0: granted, otherwise the errno (EPERM without the privilege). The task also runs without the grants, with
+// 0: granted; otherwise the errno (EPERM without the privilege). The task also runs without the grants, with
 // more jitter, so the values are for the start-up message only.
 struct RealtimeGrant {
   int scheduler_error = 0;    // SCHED_FIFO for the calling thread
