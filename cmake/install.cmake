@@ -37,7 +37,7 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/tumblesight)
 set(package_models_dir ${CMAKE_INSTALL_DATADIR}/tumblesight/models)
 install(TARGETS ${package_libraries} EXPORT tumblesight ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT tumblesight NAMESPACE tumblesight:: FILE tumblesight_targets.cmake DESTINATION ${package_folder})
-# Includes are written from the project's root, so that the headers keep their folders.
+# Includes are written from the project's root, so the headers keep their folders.
 install(DIRECTORY gnc fsw hal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight FILES_MATCHING PATTERN "*.hpp"
   PATTERN programs EXCLUDE PATTERN models EXCLUDE PATTERN bare_metal EXCLUDE PATTERN dds EXCLUDE PATTERN fake EXCLUDE)
 install(DIRECTORY fsw/models/ DESTINATION ${package_models_dir} FILES_MATCHING PATTERN "*.tsm"

@@ -1,5 +1,5 @@
 # project_version: the header cmake/version.hpp with the project's version and commit, for the programs' --version.
-# Only files that include it are compiled again after a commit. Configuring is not needed for that: git appends to
+# Only files that include it are compiled again after a commit. This needs no new configuration: git appends to
 # logs/HEAD with every commit and checkout.
 if(CMAKE_SCRIPT_MODE_FILE)
   # cmake -DSOURCE=<folder> -DPROJECT_VERSION=<version> -DOUT=<file> -P version.cmake

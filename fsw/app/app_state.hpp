@@ -1,4 +1,4 @@
-// The state that the application keeps between cycles, without the estimator's state and the waiting events.
+// The state that the application keeps between cycles, except the estimator's state and the waiting events.
 // Three copies are kept (voted.hpp).
 #pragma once
 
@@ -52,7 +52,7 @@ struct alignas(8) AppState {
   bool has_model() const { return banks.status(banks.in_use) == BankStatus::kGood; }
 };
 
-// Raises events with the time of the present cycle.
+// Raises events with the time of the current cycle.
 class Reporter {
  public:
   Reporter(AppState& state, EventLog& log) : state_(state), log_(log) {}

@@ -35,7 +35,7 @@ class AttitudeCheck {
   gnc::QuaternionQ30 before_ = gnc::kIdentityQ30;
   gnc::QuaternionQ30 last_ = gnc::kIdentityQ30;
   std::uint32_t known_ = 0;                 // how many of the two are valid
-  gnc::QuaternionQ30 last_single_frame_{};  // initially zeros, which are no attitude
+  gnc::QuaternionQ30 last_single_frame_{};  // initially zeros, which are not an attitude
 };
 
 }  // namespace tumblesight::fsw

@@ -1,7 +1,7 @@
 // AttitudeInitApp: the flight application. It runs one step() per frame period. A step is a pure function of
 // its state and inputs.
 //
-// The steps of a step, in this order:
+// The stages of a step, in this order:
 //   1. memory       majority vote over the application's state; guards of estimator and model
 //                   (voted.hpp, memory_guard.hpp)
 //   2. commands     in the order in which they arrived (command_handler.hpp, commands.cpp)
@@ -15,13 +15,15 @@
 // event marks the start of an outage. Skipped sequence numbers are counted, with an event, and the frame is
 // used.
 //
-// The estimator is reset on entering RUN, by RESET_SEQUENCE, when cycle time goes back, by the response to a
-// fault, and, with an event, when a frame's exposure is not one period +- 10 % after the last accepted one,
-// because the network is trained on steps of one period.
+// The estimator is reset
+//   - on entering RUN, by RESET_SEQUENCE and by the response to a fault;
+//   - when the cycle time goes back;
+//   - with an event, when a frame's exposure is not one period +- 10 % after the last accepted one,
+//     because the network is trained on steps of one period.
 //
-// Cycle times must increase. If a cycle time does not, an event is raised, the frames of the cycle are
-// refused and its commands are carried out: they do not depend on the time, and the ground needs them to
-// recover. If the time went back, the last accepted frame is forgotten too, because its exposure may now lie
+// Cycle times must increase. Otherwise an event is raised, and the frames of the cycle are refused. Its
+// commands are still carried out: they do not depend on the time, and the ground needs them to recover. If
+// the time went back, the last accepted frame is forgotten too, because its exposure may now lie
 // in the future. The next cycle is compared with this one, so a jump costs one cycle.
 //
 // A cycle that does not end in RUN reports no attitude. A failed assertion ends the work on the frames of the
@@ -53,7 +55,7 @@ class AttitudeInitApp final {
   void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
 
   // To compare runs: CRC-32 over the estimator's state, the active model's CRC, mode, times, last frame,
-  // limits, persisting faults and counters, without everything that depends on the wall clock.
+  // limits, persisting faults and counters. It excludes everything that depends on the wall clock.
   std::uint32_t state_crc32() const;
   Mode mode() const { return state_->mode; }
   // What init() found in a bank (0 or 1); kOk before the first init().

@@ -14,7 +14,7 @@ struct Admission {
   bool admitted = false;
   CommandRefusal why = CommandRefusal::kForged;  // if not admitted
   std::uint8_t function = 0;                     // 0 if the packet's function code cannot be trusted
-  bool authentic = false;                        // then `counter` is spent, even if the packet is refused
+  bool authentic = false;                        // if true, `counter` is spent, even if the packet is refused
   std::uint32_t counter = 0;
   Telecommand command;  // if admitted; points into the packet
 };

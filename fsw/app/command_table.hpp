@@ -1,5 +1,5 @@
-// The table of telecommands. A telecommand is one row and one handler in commands.cpp, which docs/icd.md is
-// written from.
+// The table of telecommands. Each telecommand has one row and one handler in commands.cpp. The table
+// of commands in docs/icd.md is generated from the rows.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ struct CommandRule {
   bool allowed_in(Mode mode) const { return (modes >> static_cast<int>(mode) & 1) != 0; }
 };
 
-// nullptr: there is no such function.
+// nullptr: the table has no such function.
 const CommandRule* find_command(std::uint8_t function);
 
 // Carries out a command that has passed the gate. False: refused; `refusal` is set and nothing was changed.

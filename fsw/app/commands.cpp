@@ -23,8 +23,8 @@ bool noop(const Telecommand&, const CommandContext&, Refusal&) {
   return true;
 }
 
-// Keeps what is not a counter: the command counter and the cause of the last SAFE. Waiting events are sent
-// later and are counted again.
+// Keeps the fields that are not statistics: the authentication counter of the last command and the cause of
+// the last SAFE. Events that are still waiting count as raised after the reset.
 bool reset_counters(const Telecommand&, const CommandContext& context, Refusal&) {
   hal::Telemetry& counters = context.state.counters;
   const hal::Telemetry before = counters;

@@ -12,7 +12,7 @@
 
 namespace tumblesight::fsw {
 
-// Memory of run_cycle(), about 80 kB. To be allocated statically, so that no frame is on the stack.
+// Memory of run_cycle(), about 80 kB. Allocate it statically, so that no frame is on the stack.
 struct CycleWorkspace {
   std::array<gnc::RangeImage, config::kMaxFramesPerStep> frames;
   StepInputs inputs;
@@ -26,9 +26,9 @@ struct CycleInterfaces {
   hal::Watchdog& watchdog;
 };
 
-// Receives at most kMaxFramesPerStep deliveries of the lidar and kMaxCommandsPerStep commands; the others
+// Receives at most kMaxFramesPerStep deliveries of the LiDAR and kMaxCommandsPerStep commands; the others
 // wait for the next cycle. `now_ns`: time of the cycle. `cycle_slips`: releases of the task missed since the
-// last cycle. Kicks the watchdog after everything is published, if the step has done its duties.
+// last cycle. Kicks the watchdog after everything is published, if the step reports duties_done.
 void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int64_t now_ns,
                std::uint32_t cycle_slips, CycleWorkspace& workspace);
 

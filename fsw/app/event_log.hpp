@@ -1,4 +1,4 @@
-// EventLog: a bounded ring of events that wait to be sent. Events of one kind beyond
+// EventLog: a ring of fixed size for the events that wait to be sent. Events of one kind beyond
 // config::kMaxEventsOfAKind per window are only counted, and one event at the end of the window reports their
 // number. Accesses stay within the ring even if a bit flip changes an index.
 #pragma once

@@ -26,7 +26,7 @@ std::uint32_t FrameGate::numbers_skipped(const gnc::RangeImage& frame) const {
   if (!has_last_) return 0;
   const std::uint32_t ahead = frame.sequence_number - last_sequence_number_;
   constexpr std::uint32_t kHalfCircle = 0x8000'0000U;
-  return ahead < kHalfCircle ? ahead - 1 : kWentBack;  // the same number: 0 - 1, which is kWentBack
+  return ahead < kHalfCircle ? ahead - 1 : kWentBack;  // an equal number gives 0 - 1, which is kWentBack
 }
 
 bool FrameGate::one_period_after_last(const gnc::RangeImage& frame) const {

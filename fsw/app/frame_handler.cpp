@@ -55,8 +55,8 @@ void FrameHandler::note_missing() {
   state_.outage = true;
 }
 
-// False: refused. In a cycle that has lost the model there is none to use; the response to that fault follows
-// after the frames.
+// False: the frame was refused. If the model was lost in this cycle, no frame can be used; the response to
+// that fault follows after the frames.
 bool FrameHandler::use(const gnc::RangeImage& frame) {
   if (!state_.has_model()) return false;
   if (!passes_gate(frame)) return false;

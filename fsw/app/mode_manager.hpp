@@ -20,8 +20,8 @@ class ModeManager {
   void go_safe_on_assertion();
   // The next frame is the first of a new sequence. Counted.
   void reset_estimator();
-  // After the cycle time has gone back: the last frame lies in the future and would make every frame until
-  // then go backwards. It is forgotten and the estimator reset.
+  // Call after the cycle time has gone back. The last frame then lies in the future, and the gate would
+  // refuse every frame until that time. Forgets the last frame and resets the estimator.
   void restart_sequence_after_time_jump();
 
  private:

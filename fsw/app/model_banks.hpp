@@ -2,8 +2,8 @@
 // free of bit flips.
 //
 // The image in use is checked block by block, a few blocks per cycle, against a table of checksums. If the
-// other bank holds the same image, that is the second copy: a block that does not match the table is repaired
-// from the other bank's block, if that one matches.
+// other bank holds the same image, it is the second copy: a block that does not match the table is repaired
+// from the same block of the other bank, if that one matches.
 #pragma once
 
 #include <array>
@@ -68,7 +68,7 @@ class ModelBanks {
   [[nodiscard]] static bool load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
                                  const std::uint8_t* bytes, std::uint32_t count);
 
-  // Computes the table of checksums from the present content of the bank in use.
+  // Computes the table of checksums from the current content of the bank in use.
   void make_table(hal::ModelStore& store, ModelBanksState& state);
   bool table_is_sound(const ModelBanksState& state) const;
   // Checks the next block of the bank in use and of its second copy. Requires a sound table.

@@ -16,7 +16,7 @@ class ModelManager {
       : state_(state), estimator_(estimator), guard_(guard), report_(report) {}
 
   // Activates the image of the first bank that passes every check. A good image in another bank is kept as
-  // second copy or to fall back on. The result of each bank: AppState::boot_status.
+  // the second copy or as a fallback. The result of each bank: AppState::boot_status.
   void boot();
   // Reports the result of boot() once, in the first step after it.
   void report_boot();
@@ -24,7 +24,7 @@ class ModelManager {
   // Checks the whole loaded image of the bank that is not in use. `crc32`: as in the image's header. With kOk
   // the bank becomes kGood.
   gnc::ModelStatus validate(std::uint32_t size_bytes, std::uint32_t crc32);
-  // Checks the whole image of `bank` again and uses it. With another status than kOk the present model stays
+  // Checks the whole image of `bank` again and uses it. With any status except kOk the current model stays
   // in use.
   gnc::ModelStatus activate(std::uint32_t bank);
   // Response to a corrupted model. Returns the response taken: kSwitchBank, kFlag if a command of this cycle

@@ -54,7 +54,7 @@ inline constexpr std::int64_t kFramePeriodTolerance_ns = kFramePeriod_ns / 10;
 static_assert(kFramePeriodTolerance_ns > 0 && 2 * kFramePeriodTolerance_ns < kFramePeriod_ns,
               "a gap of two periods must not pass as one");
 
-// An older frame says nothing about the present attitude. A frame that is one cycle late is still accepted.
+// An older frame says nothing about the current attitude. A frame that is one cycle late is still accepted.
 inline constexpr std::int64_t kMaxFrameAge_ns = kFramePeriod_ns + kFramePeriodTolerance_ns;
 
 // Static memory of AttitudeInitApp in fixed point. It does not include the weights, which are read from the

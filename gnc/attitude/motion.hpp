@@ -55,13 +55,12 @@ Vector3<Real> small_rotation_vector(const Matrix3<Real>& rotation);
 template <class Real>
 Motion<Real> propagate(const Motion<Real>& motion, const Inertia<Real>& inertia);
 
-// The laws of motion that the track follows in parallel. Each is torque-free rotation with an inertia of its
-// own:
+// The laws of motion that the track follows in parallel. Each is torque-free rotation with its own inertia:
 //   0     that of a sphere: spin at a rate constant in the LRF
 //   1     that of the target
-//   2..4  that of the target with the moment about the TRF's x, y or z axis halved. They cover an inertia
-//   known only to
-//         a factor of two: fuel was spent, or an appendage broke off or did not deploy.
+//   2..4  that of the target with the moment about the TRF's x, y or z axis halved. They cover
+//         an inertia known only to a factor of two: fuel was spent, or an appendage broke off
+//         or did not deploy.
 inline constexpr int kLaws = 5;
 inline constexpr int kSpinLaw = 0;
 inline constexpr int kTumbleLaw = 1;

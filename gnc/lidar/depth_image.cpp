@@ -99,7 +99,7 @@ struct RayTerms {
 };
 static_assert(Fixed::kFractionBits == 24);
 
-// Largest absolute coordinate. The terms are monotonic, so that the first or the last is the largest.
+// Largest absolute coordinate. The terms are monotonic, so the first or the last is the largest.
 std::int64_t max_coordinate_q30(const RayTerms& terms, int count) {
   return max(abs(terms.column_term(0)), abs(terms.column_term(count - 1))) +
          max(abs(terms.row_term(0)), abs(terms.row_term(count - 1)));

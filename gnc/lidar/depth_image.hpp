@@ -48,8 +48,8 @@ enum class FrameStatus : std::uint8_t {
 
 // Working memory of the projection. The caller holds it, so that nothing large is on the stack.
 struct DepthImageScratch {
-  // Rays that fall into no cell are added to these extra cells in turn. With a single one each addition would
-  // wait for the one before it.
+  // Rays that fall into no cell are added to these extra cells in turn. With a single extra cell, each
+  // addition would wait for the previous one.
   static constexpr int kSpareCells = 16;
   std::array<std::uint32_t, DepthImage::kCells + kSpareCells> cells;
 

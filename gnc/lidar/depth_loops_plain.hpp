@@ -13,7 +13,7 @@ using Rays = DepthImageScratch::Rays;
 using View = DepthImageScratch::View;
 constexpr int kMaxRays = RangeImage::kMaxRays;
 
-// All bits one if from <= value < to, else 0.
+// All bits set if from <= value < to, else 0.
 TUMBLESIGHT_INLINE std::uint16_t within(std::uint16_t value, std::uint16_t from, std::uint16_t to) {
   return mask_if<std::uint16_t>(static_cast<std::uint16_t>(value - from) <
                                 static_cast<std::uint16_t>(to - from));
@@ -138,7 +138,7 @@ TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const
 void accumulate_returns(const RangeImage& frame, const Rays& rays, const View& view,
                         std::uint32_t* __restrict cells) {
   constexpr std::uint32_t kOneReturn = 1U << kValueBits;
-  // Neighbours often fall into the same cell, where each addition would wait for the one before it.
+  // Neighbours often fall into the same cell, where each addition would wait for the previous one.
   constexpr int kInterleave = 8;
   std::array<std::int16_t, kMaxRays> depths;
   Row projected;

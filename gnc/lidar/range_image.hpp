@@ -6,7 +6,7 @@
 
 namespace tumblesight::gnc {
 
-// An organised square frame of N x N ranges along rays through the field of view. Ray (row, column) points,
+// An organized square frame of N x N ranges along rays through the field of view. Ray (row, column) points,
 // in the LiDAR reference frame (LRF: +x right, +y boresight, +z up), along (u, 1, v) with
 //   u = tan(fov / 2) ((2 column + 1) / N - 1),   v = tan(fov / 2) (1 - (2 row + 1) / N).
 // Row 0 is the top and column 0 the left of the frame. A range is the distance along the ray.

@@ -9,16 +9,18 @@
 
 namespace tumblesight::gnc {
 
-// Bound on the cells. A cell changes by less than 1 per step, so that the bound takes effect only after 64
+// Bound on the cells. A cell changes by less than 1 per step, so the bound takes effect only after 64
 // steps of one sign, when tanh has long been flat, or after a bit flip has left a huge value or NaN.
 inline constexpr float kLstmCellBound = 64.0F;
 
 // Updates the state from the sums of the gates: c = forget * c + input * cell, h = output * tanh(c).
 // Afterwards |h| <= 1 and |c| <= kLstmCellBound, whatever the arguments.
 //
-// gates  4 * hidden sums before activation, in the order input, forget, cell, output; the float version
-// overwrites them shift  fixed point: 4 * hidden shifts of 1..62, a sum is worth sum / 2^shift; float: not
-// used h      hidden state, `hidden` values; int16 in Q0.15 c      cells, `hidden` values
+// gates  4 * hidden sums before activation, in the order input, forget, cell, output;
+//        the float version overwrites them
+// shift  fixed point: 4 * hidden shifts of 1..62, the value of a sum is sum / 2^shift; float: not used
+// h      hidden state, `hidden` values; int16 in Q0.15
+// c      cells, `hidden` values
 void lstm_update(float* gates, const std::uint8_t* shift, int hidden, float* h, float* c);
 void lstm_update(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h, Fixed* c);
 

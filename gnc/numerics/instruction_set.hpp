@@ -1,6 +1,6 @@
 // Instruction sets for which the library has optimized inner loops. All of them compute the same bits; only
 // the speed differs. On a target processor the compiler flags decide which ones exist; on a desktop the
-// processor is examined at start-up.
+// program detects at start-up which ones the processor has.
 #pragma once
 
 #include <array>

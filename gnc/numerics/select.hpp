@@ -1,4 +1,4 @@
-// Selection without branches: the executed instructions do not depend on the data, and so neither does the
+// Selection without branches: the executed instructions do not depend on the data, and neither does the
 // time of a step. Compilers may turn `condition ? yes : no` into a jump; they do not do that with masks.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace tumblesight::gnc {
 
-// All bits one if `condition`, else zero.
+// All bits set if `condition`, else 0.
 template <class Integer>
 constexpr Integer mask_if(bool condition) {
   return static_cast<Integer>(-static_cast<Integer>(condition));
@@ -33,7 +33,7 @@ inline float select(bool condition, float yes, float no) {
   return yes;
 }
 
-// All bits one if a < b, else zero. Avoids a comparison instruction, since some processors need a jump to use
+// All bits set if a < b, else 0. Avoids a comparison instruction, since some processors need a jump to use
 // its result.
 template <class Integer>
 constexpr Integer less_mask(Integer a, NonDeduced<Integer> b) {

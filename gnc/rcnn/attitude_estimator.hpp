@@ -32,7 +32,7 @@ class AttitudeEstimator {
  public:
   using Real = typename N::Real;
 
-  // Everything that one frame passes on to the next.
+  // Everything that is carried from one frame to the next.
   struct State {
     LstmState<N> lstm;
     AttitudeTrack<Real> track;

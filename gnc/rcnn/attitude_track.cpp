@@ -20,7 +20,7 @@ template <class Real>
 struct FilterGains {
   Real predicted_weight;  // of the predicted attitude relative to the hypotheses of a frame: (1 - a) / a
   Real rate_logit;        // logit of the ratio of the rate gain to the attitude gain
-  Real evidence;          // by which a law's log-likelihood falls per squared innovation: (1 - a) / (2 a^2)
+  Real evidence;          // decrease of a law's log-likelihood per squared innovation: (1 - a) / (2 a^2)
 };
 
 template <class Real>

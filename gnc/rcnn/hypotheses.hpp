@@ -31,9 +31,8 @@ bool same_attitude(const Matrix3<Real>& a, const Matrix3<Real>& b);
 // Weighted mean of the candidates that are the same attitude as the candidate `anchor`: their first two
 // columns are averaged and orthonormalized.
 //
-// candidates  `count` rotation matrices; non-finite ones are skipped, but if the anchor is not finite neither
-// is the
-//             result
+// candidates  `count` rotation matrices; non-finite ones are skipped, but a non-finite anchor
+//             gives a non-finite result
 // weights     `count` weights >= 0; only their ratios matter. If all are zero the result is the anchor
 template <class Real>
 Matrix3<Real> mean_attitude(const Matrix3<Real>* candidates, const Real* weights, int count, int anchor);

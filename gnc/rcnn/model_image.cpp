@@ -11,7 +11,7 @@ namespace {
 
 using namespace model_format;
 
-// Limit for the section table of another network, which is recognised as such if its header is intact.
+// Limit for the section table of another network, which is recognized as such if its header is intact.
 constexpr std::uint32_t kMaxSections = 256;
 
 constexpr std::uint32_t fnv1a(std::uint32_t hash, std::uint32_t value) {
@@ -27,7 +27,7 @@ constexpr std::uint32_t compute_architecture_hash() {
 
 constexpr std::uint32_t kArchitectureHash = compute_architecture_hash();
 
-// At least one printable character, and NULs from the first to the end of the field.
+// At least one printable character, and only NULs from the first NUL to the end of the field.
 bool is_well_formed_target(const char* field, std::size_t size) {
   std::size_t length = 0;
   while (length < size && field[length] >= ' ' && field[length] <= '~') ++length;
@@ -49,7 +49,7 @@ ModelStatus check_header_integrity(const std::uint8_t* image, std::size_t size_b
   return ModelStatus::kOk;
 }
 
-// False if the matrix is no inertia with a trace of 3, except for rounding.
+// False if the matrix is not an inertia with a trace of 3 (within rounding).
 bool read_inertia(const std::uint8_t* image, Inertia<Fixed>& inertia) {
   Matrix3<Fixed> tensor;
   for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {

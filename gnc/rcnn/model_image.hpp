@@ -1,7 +1,7 @@
-// The model image: a trained network in one file or memory region, with everything needed to recognise a
-// damaged or foreign one. The same layout, with the order of the tensors: docs/icd.md.
+// The model image: a trained network in one file or memory region, with everything needed to detect a
+// damaged image or one for another network or target. docs/icd.md lists the order of the tensors.
 //
-// All numbers are little-endian. Floats are IEEE 754 binary32 and occur only in float32's tensors.
+// All numbers are little-endian. Floats are IEEE 754 binary32 and occur only in float32 images.
 //   offset  size  field
 //        0     4  magic "TSRM"
 //        4     2  format version (3)
@@ -12,14 +12,16 @@
 //       48     4  depth projection: swath [mm]
 //       52     4  depth projection: target radius [mm]
 //       56     4  reserved, 0
-//       60    24  inertia of the target in the TRF, scaled to a trace of 3, signed Q7.24: xx, yy, zz, xy, xz,
-//       yz 84     4  numerics: 0 float32, 1 fixed point 88     4  number of sections: 21 or 31 92     4
-//       CRC-32 of bytes 0..91, the section table and the zeros behind it 96  16 n  section table: id (1, 2,
-//       ...), offset, size in bytes, CRC-32 of the section, 4 bytes each
+//       60    24  inertia of the target in the TRF, scaled to a trace of 3, signed Q7.24:
+//                 xx, yy, zz, xy, xz, yz
+//       84     4  numerics: 0 float32, 1 fixed point
+//       88     4  number of sections: 21 or 31
+//       92     4  CRC-32 of bytes 0..91, the section table and the zeros after it
+//       96  16 n  section table, 4 bytes per field: id (1, 2, ...), offset, size in bytes,
+//                 CRC-32 of the section
 //        -     -  zeros up to the next multiple of 64, where the first section begins
-//        -     -  sections without gaps: the tensors in the order of for_each_tensor(). Weights in fixed
-//        point take
-//                 one byte each, all other numbers four
+//        -     -  sections without gaps: the tensors in the order of for_each_tensor().
+//                 Fixed-point weights take one byte each, all other numbers four
 #pragma once
 
 #include <array>
@@ -65,7 +67,7 @@ enum class ModelStatus : std::uint8_t {
   kBadSectionCrc,    // weights damaged
   kBadValue,     // impossible depth projection or inertia; a weight that is not finite; integers with which a
                  // sum could leave 32 bits; a shift out of range
-  kBadNumerics,  // intact, but fixed point where float32 is expected, or the reverse
+  kBadNumerics,  // intact, but fixed point where float32 is expected, or vice versa
 };
 const char* to_string(ModelStatus status);
 
@@ -82,7 +84,7 @@ template <class N>
                                            const char* expected_target, ModelHeader& header,
                                            NetworkWeights<N>& weights);
 
-// The two halves of read_model_image(). The check uses only the sizes of the tensors in `weights`. The image
+// The two parts of read_model_image(). The check uses only the sizes of the tensors in `weights`. The image
 // given to take_model_image() must have passed the check.
 template <class N>
 [[nodiscard]] ModelStatus check_model_image(const std::uint8_t* image, std::size_t size_bytes,
@@ -93,7 +95,7 @@ void take_model_image(const std::uint8_t* image, ModelHeader& header, NetworkWei
 // The CRC-32 that identifies an image (ModelHeader::crc32), from an image that has passed the check.
 std::uint32_t model_image_crc32(const std::uint8_t* image);
 
-// Whether an image with an intact header is marked as float32. For choosing the estimator that reads it.
+// Whether an image with an intact header is marked as float32. For selecting the estimator that reads it.
 bool is_float32(const std::uint8_t* image, std::size_t size_bytes);
 
 // Sets the target's name. Returns false and changes nothing if the name is empty, longer than 31 characters
@@ -101,8 +103,8 @@ bool is_float32(const std::uint8_t* image, std::size_t size_bytes);
 [[nodiscard]] bool set_target(ModelHeader& header, const char* name);
 
 // Writes an image and returns its size, kModelImageSize<N>. Returns 0 and writes nothing if `capacity` is
-// smaller. The values are not checked here but by the reader. Not part of a flight program: the linker leaves
-// it out.
+// smaller. The reader checks the values, not this function. Flight programs do not call it, so the linker
+// leaves it out.
 template <class N>
 [[nodiscard]] std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights,
                                             std::uint8_t* out, std::size_t capacity);

@@ -10,7 +10,7 @@ using model_format::size_in_image;
 
 // Limits of one layer's integers.
 struct LayerLimits {
-  int group;                   // inputs whose weights lie side by side
+  int group;                   // inputs whose weights are adjacent
   std::int64_t largest_input;  // magnitude
   std::uint32_t largest_shift;
   std::int64_t largest_sum;  // magnitude, rounding included

@@ -188,7 +188,7 @@ class Arena {
   DepthImageScratch& projection_scratch() { return in_place<DepthImageScratch>(all_); }
 
  private:
-  // Every object is written before it is read: what a buffer held for another layer is never used.
+  // Every object is written before it is read, so the values of another layer in the buffer are never used.
   template <class Object, std::size_t kSize>
   static Object& in_place(std::array<std::byte, kSize>& buffer) {
     static_assert(sizeof(Object) <= kSize);

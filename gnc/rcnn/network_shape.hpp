@@ -20,7 +20,7 @@ inline constexpr int kFlat = 3 * 3 * kConv4;
 inline constexpr int kDense1 = 192;
 inline constexpr int kDense2 = 128;
 
-// Output of the single-frame head: kHypotheses attitudes as two unnormalised columns of R_view_trf (six
+// Output of the single-frame head: kHypotheses attitudes as two unnormalized columns of R_view_trf (six
 // numbers each), their logits, and the logit of the expected error over pi.
 inline constexpr int kHypotheses = 8;
 inline constexpr int kColumns = 6 * kHypotheses;
@@ -53,7 +53,7 @@ enum class LayerKind : std::uint8_t {
   kLstm,         // one step of a long short-term memory: gnc/nn/lstm.hpp
 };
 
-// What a layer gives.
+// The output of a layer.
 enum class LayerOutput : std::uint8_t {
   kMaxPooled,      // convolution: maximum of each 2x2 window, then ReLU
   kAveragePooled,  // convolution: ReLU, then the mean of each 2x2 window; flat, pixel by pixel
@@ -94,7 +94,7 @@ constexpr LayerRow lstm(const char* name, std::array<const char*, 2> reads, int 
   return {name, LayerKind::kLstm, LayerOutput::kHidden, inputs, hidden_units, 0, reads};
 }
 
-// The layers in the order in which a frame passes them: first the CNN, whose last layer is the single-frame
+// The layers in the order of execution: first the CNN, whose last layer is the single-frame
 // head, then the LSTM and the recurrent head. This is also the order of the tensors in a model image.
 inline constexpr LayerRow kLayers[] = {
     max_pooled_convolution("conv1", kDepthInput, 50, shape::kSpaceToDepthChannels, shape::kConv1),

@@ -24,7 +24,7 @@ struct CycleOutput {
 
 class DdsLink final : public Link {
  public:
-  // What only the platform can tell of the flight task goes into the telemetry.
+  // Measurements of the flight task that only the platform can make; they go into the telemetry.
   struct Gauges {
     std::uint32_t (*heap_allocations)();
     std::uint32_t (*stack_left_min_bytes)();
@@ -34,10 +34,10 @@ class DdsLink final : public Link {
 
   // Bus thread.
   void put(const CommandSample& sample);
-  // False: no cycle has ended that has not been taken.
+  // Takes the output of the oldest cycle that has ended. False: there is none.
   bool take_output(CycleOutput& output);
 
-  // Flight task. What is published between the two belongs to cycle `k`.
+  // Flight task. Everything published between begin_cycle() and end_cycle() belongs to cycle `k`.
   void begin_cycle(std::uint32_t run_id, std::uint32_t k);
   void end_cycle(std::uint32_t state_crc32);
   [[nodiscard]] bool receive(CommandPacket& command) override;
@@ -48,7 +48,7 @@ class DdsLink final : public Link {
 
  private:
   Gauges gauges_;
-  CycleOutput output_;  // of the cycle that runs
+  CycleOutput output_;  // of the current cycle
   MailboxMutex mutex_;
   FixedQueue<CommandPacket, 2 * kMaxCommandsPerStep> commands_;
   FixedQueue<CycleOutput, 4> outputs_;

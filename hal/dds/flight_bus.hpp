@@ -24,8 +24,8 @@ class FlightBus {
   // Takes the oldest step that has arrived. False: there is none.
   bool take_step(StepSample& step);
   // Lockstep: waits for step `k` and hands its frames and commands to the flight task. DDS does not keep the
-  // order across topics, so that the step is ready only when all the samples it announces have arrived.
-  // False: there will be no step `k`, and `end` gives the reason.
+  // order across topics, so the step is ready only when all the samples it announces have arrived.
+  // False: step `k` will not arrive; `end` gives the reason.
   [[nodiscard]] bool wait_for_step(std::uint32_t k, StepSample& step, FlightEnd& end);
 
   // Free-running: hands all samples that have arrived to the flight task, then waits for more, at most

@@ -1,4 +1,4 @@
-// The constants of the interface definition have the values of hal/messages.
+// Checks that the constants of the interface definition have the same values as those of hal/messages.
 #include "hal/dds/idl/tumblesight.h"
 #include "hal/messages/attitude_report.hpp"
 #include "hal/messages/command_packet.hpp"

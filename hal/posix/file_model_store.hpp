@@ -25,7 +25,7 @@ class FileModelStore final : public ModelStore {
   FileModelStore& operator=(const FileModelStore&) = delete;
 
   FileStatus status() const { return status_; }
-  // Without an image (size 0) unless status() is kOk. Without memory only if status() is kNoMemory.
+  // The bank has no image (size 0) unless status() is kOk, and no memory if status() is kNoMemory.
   ModelBank bank(int index) override;
 
  private:

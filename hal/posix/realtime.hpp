@@ -3,8 +3,8 @@
 
 namespace tumblesight::hal::posix {
 
-// 0: granted, otherwise the errno (EPERM without the privilege). The task also runs without the grants, with
-// more jitter, so that the values are for the start-up message only.
+// 0: granted; otherwise the errno (EPERM without the privilege). The task also runs without the grants, with
+// more jitter, so the values are for the start-up message only.
 struct RealtimeGrant {
   int scheduler_error = 0;    // SCHED_FIFO for the calling thread
   int memory_lock_error = 0;  // all current and future pages

@@ -6,7 +6,7 @@
 namespace tumblesight::hal::replay {
 namespace {
 
-// 30 bits behind the point to millionths.
+// Q30 to millionths.
 std::int64_t millionths(std::int32_t q30) {
   return (std::int64_t{q30} * 1'000'000 + (1 << 29)) >> 30;
 }

@@ -1,5 +1,5 @@
-// ConsoleLink: telemetry as lines of text on the board's console, and a digest over all that must be the same
-// on every processor. Nobody sends commands.
+// ConsoleLink: telemetry as lines of text on the board's console, and a digest of everything that must be the
+// same on every processor. It delivers no commands.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ class ConsoleLink final : public Link {
   void publish(const AttitudeReport& report) override;
   void publish(const Telemetry& telemetry) override;
   void publish(const Event& event) override;
-  void publish(const ModelDump&) override {}  // nobody asks for one
+  void publish(const ModelDump&) override {}  // only a command requests a dump
 
   // Of every report and event so far, without what the stopwatch measured; `state_crc32` joins it.
   void digest(std::uint32_t state_crc32) { crc_.add_u32(state_crc32); }

@@ -38,7 +38,7 @@ const char* to_string(RecordingStatus status) {
     case RecordingStatus::kBadCrc:
       return "a damaged recording";
     case RecordingStatus::kBadRays:
-      return "frames of an impossible number of rays";
+      return "impossible number of rays per side";
   }
   return "unknown";
 }

@@ -1,8 +1,8 @@
 /* A plugin for QEMU: counts the instructions that a program executes, stage by stage.
      qemu-… -plugin count_instructions.so,stages=FILE,out=FILE …
-   `stages`: lines "ADDRESS NAME", the address (hexadecimal) where the stage's function begins; a stage lasts
-   until the next one begins. The first stage begins a step, the second ends it. `out`: a line a step, the
-   stages' counts in that order. */
+   `stages`: lines "ADDRESS NAME" with the address (hexadecimal) where the stage's function begins. A stage
+   lasts until the next one begins. The first stage begins a step, the second ends it. `out`: one line per
+   step with the stages' counts in that order. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,8 +32,8 @@ static uint64_t address[kMaxStages];
 static int stages;
 static FILE* out;
 
-static uint64_t executed;          /* so far */
-static uint64_t at_last_change;    /* of stage */
+static uint64_t executed;          /* since the start */
+static uint64_t at_last_change;    /* value of `executed` at the last change of stage */
 static uint64_t count[kMaxStages]; /* of this step */
 static int current = kEnd;
 

@@ -1,4 +1,5 @@
-# cmake -DTOOLCHAIN=<file> -P read_toolchain.cmake: what the audit needs of a toolchain file, as lines NAME=VALUE.
+# Prints what the audit needs from a toolchain file, as lines NAME=VALUE.
+#   cmake -DTOOLCHAIN=<file> -P read_toolchain.cmake
 set(TUMBLESIGHT_BOARD "")
 include(${TOOLCHAIN})
 foreach(pair compiler=CMAKE_CXX_COMPILER emulator=CMAKE_CROSSCOMPILING_EMULATOR architecture=CMAKE_SYSTEM_PROCESSOR

@@ -1,4 +1,4 @@
-"""Worst-case stack of one step, from the call graph that the compiler writes beside each object file (-fcallgraph-info=su)."""
+"""The worst-case stack of one step, from the call graph that the compiler writes beside each object file (-fcallgraph-info=su)."""
 import re
 import sys
 

@@ -34,12 +34,12 @@ _COMMENT = re.compile(r"//\s?(.*)$")
 
 
 def documented(body):
-    """[(statement, comment)] of a struct or enumeration. A comment stands above its statement or behind it, on as many lines as
-    clang-format makes of it; an empty line ends a comment that belongs to no statement."""
+    """[(statement, comment)] of a struct or enumeration. A comment is above its statement or behind it, and may be wrapped by
+    clang-format; an empty line ends a comment that belongs to no statement."""
     found, statement, above, column = [], "", [], None
     for line in body.splitlines():
         code, comment = line.split("//", 1)[0].strip(), _COMMENT.search(line)
-        if not code and comment and column == line.index("//"):  # goes on behind the statement before
+        if not code and comment and column == line.index("//"):  # continues the comment behind the previous statement
             found[-1][1].append(comment[1])
             continue
         column = None
@@ -161,7 +161,7 @@ def message_fields(topic):
         if statement.startswith("static "):
             continue
         kind, field = re.fullmatch(r"([\w:<>, ]+) (\w+)(?: = .*|\{.*\})?;", statement).groups()
-        named = re.search(r"\b([A-Z]\w+)", kind)  # an enumeration, whose table stands in this document
+        named = re.search(r"\b([A-Z]\w+)", kind)  # an enumeration with a table in this document
         fields[field] = " ".join(filter(None, (named and named[1], comment.removesuffix("."))))
     return fields
 
@@ -184,7 +184,7 @@ def check_messages():
 
 
 def struct(name):
-    """The fields of a topic with their places in the serialised sample (XCDR1, final)."""
+    """The fields of a topic with their places in the serialized sample (XCDR1, final)."""
     about, rows, offset = message_fields(name) if name in CARRIED else {}, [], 0
     for kind, label, count, comment in sample_fields(name):
         offset += -offset % BYTES[kind]

@@ -1,4 +1,4 @@
-"""Tests of the requirements check: it fails when it has to. Run by ctest, or by hand: python3 -m unittest discover tests/documents"""
+"""Tests of the requirements check: it fails when it should. Run by ctest, or by hand: python3 -m unittest discover tests/documents"""
 import contextlib
 import io
 import pathlib

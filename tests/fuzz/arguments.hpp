@@ -1,4 +1,4 @@
-// Command lines made of inputs: one argument per line.
+// Command lines made from inputs: one argument per line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -38,8 +38,8 @@ class CommandLine {
   std::vector<char*> pointers_;
 };
 
-// A parser for many command lines. Making one takes longer than using it, but its memory grows with each use,
-// so it is replaced now and then.
+// A parser for many command lines. Constructing one takes longer than using it, but its memory grows with
+// each use, so it is replaced after kMostUses uses.
 class Reused {
  public:
   explicit Reused(std::function<std::unique_ptr<CLI::App>()> make) : make_(std::move(make)) {}

@@ -66,8 +66,9 @@ void check(const fsw::StepOutputs& outputs, std::uint32_t sent, std::uint32_t to
   require(by_reason == h.commands_refused, "every refusal has its reason");
   require(h.events == told + h.events_waiting + h.events_suppressed + h.events_lost,
           "every event is accounted for");
-  require(h.mode >= hal::Mode::kStandby && h.mode <= hal::Mode::kSafe, "the mode is one of the table's");
-  require(!outputs.has_dump || outputs.dump.size <= hal::ModelDump::kMaxBytes, "a dump fits");
+  require(h.mode >= hal::Mode::kStandby && h.mode <= hal::Mode::kSafe, "the mode is valid");
+  require(!outputs.has_dump || outputs.dump.size <= hal::ModelDump::kMaxBytes,
+          "a dump is within its maximum size");
 }
 
 }  // namespace
@@ -85,8 +86,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     flown.inputs->command_count = 1;
     hal::CommandPacket& packet = flown.inputs->commands[0];
     packet = fuzz::next_packet(input, counter);
-    resets =
-        packet.bytes[6] == static_cast<std::uint8_t>(fsw::FunctionCode::kResetCounters);  // ends the counting
+    resets = packet.bytes[6] ==
+             static_cast<std::uint8_t>(fsw::FunctionCode::kResetCounters);  // the counts start again
     flown.app->step(1'000'000'000 + std::int64_t{step} * 2'700'000'000, *flown.inputs, *flown.outputs);
     ++sent;
     told += static_cast<std::uint32_t>(flown.outputs->event_count);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Packs and unpacks the inputs of a fuzz target.
 
-  corpus.py unpack ARCHIVE FOLDER           writes every input of the archive into FOLDER, a file each
+  corpus.py unpack ARCHIVE FOLDER           writes every input of the archive into FOLDER, one file each
   corpus.py add ARCHIVE FOLDER [--known F]  adds the files of FOLDER that neither the archive nor the folder F has
 
 An archive (corpus/<target>.inputs) is a sequence of inputs, sorted by name. Each is a line "SIZE NAME", the SIZE bytes of

@@ -1,5 +1,5 @@
-// Samples of topic sil/lidar_frame with any content, put in and taken out in any order: what comes out is
-// what went in, oldest first, and a sample that is no frame is said to be none.
+// Samples of topic sil/lidar_frame with any content, put in and received in any order. Frames are delivered
+// unchanged, oldest first, and a sample that is not a frame is reported as such.
 #include "hal/dds/dds_lidar.hpp"
 
 #include <cstring>
@@ -19,7 +19,7 @@ constexpr std::size_t kQueue = 2 * dds::kMaxFramesPerStep;
 
 constexpr std::size_t kRanges = gnc::RangeImage::kMaxReturns;
 
-// What a sample has beside its ranges, and where these begin in some_ranges().
+// The fields of a sample; `ranges` is the offset of its ranges in the numbers of some_ranges().
 struct Sent {
   std::uint32_t sequence_number;
   std::int64_t exposure_time_ns;
@@ -56,13 +56,13 @@ bool is_as_sent(const gnc::RangeImage& frame, const Sent& sent) {
 void check_received(dds::DdsLidar& lidar, std::deque<Sent>& waiting) {
   static gnc::RangeImage frame;
   const hal::LidarStatus status = lidar.receive(frame);
-  if (waiting.empty()) return require(status == hal::LidarStatus::kNoFrame, "nothing comes from nothing");
+  if (waiting.empty()) return require(status == hal::LidarStatus::kNoFrame, "an empty queue gives no frame");
   const Sent sent = waiting.front();
   waiting.pop_front();
   const bool is_frame = sent.rays >= 1 && sent.rays <= gnc::RangeImage::kMaxRays;
   require(status == (is_frame ? hal::LidarStatus::kFrame : hal::LidarStatus::kWrongSize),
-          "frames are told from others");
-  if (is_frame) require(is_as_sent(frame, sent), "the oldest frame comes as it was sent");
+          "frames and other samples are distinguished");
+  if (is_frame) require(is_as_sent(frame, sent), "the oldest frame is delivered unchanged");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // A fuzz target is one file with LLVMFuzzerTestOneInput(). libFuzzer calls it with inputs that it generates,
-// replay.cpp with the inputs of the corpus. It must return whatever the input; require() checks what must
-// hold.
+// replay.cpp with the inputs of the corpus. It must return for every input; require() checks the conditions
+// that must hold.
 #pragma once
 
 #include <cstddef>

@@ -60,9 +60,10 @@ class ModelImageTarget {
   void check_model(const char* target) {
     const gnc::ModelHeader& header = estimator_->model();
     require(gnc::is_possible(header.projection), "an accepted depth projection is possible");
-    require(std::memchr(header.target.data(), '\0', header.target.size()) != nullptr, "a target's name ends");
+    require(std::memchr(header.target.data(), '\0', header.target.size()) != nullptr,
+            "a target's name is NUL-terminated");
     require(target == nullptr || std::strcmp(header.target.data(), target) == 0,
-            "the target is the one expected");
+            "the target is the expected one");
   }
 
   // The first frame of a track and, with two frames, one that continues it.

@@ -38,12 +38,11 @@ void check_written_again(const gnc::RangeImage& frame) {
   size += replay::write_recorded_frame(frame, bytes.data() + size);
   size += replay::write_recording_crc(bytes.data(), size, bytes.data() + size);
   replay::Recording recording;
-  require(recording.open(bytes.data(), size) == replay::RecordingStatus::kOk,
-          "what was written is a recording");
-  require(recording.has_next(), "it has the frame");
+  require(recording.open(bytes.data(), size) == replay::RecordingStatus::kOk, "a written recording is valid");
+  require(recording.has_next(), "the recording has the frame");
   recording.read_next(again);
-  require(equal(frame, again), "it is read as it was written");
-  require(!recording.has_next(), "it has no other");
+  require(equal(frame, again), "the frame is read as it was written");
+  require(!recording.has_next(), "the recording has no other frame");
 }
 
 void read_all(const std::uint8_t* bytes, std::size_t size) {

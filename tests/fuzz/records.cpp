@@ -1,4 +1,4 @@
-// Figures of shipped models: any JSON is read or refused with a message.
+// The figures of shipped models, the .json files in fsw/models: any JSON is read, or refused with a message.
 #include <stdexcept>
 
 #include "sim/evaluation/shipped_figures.hpp"

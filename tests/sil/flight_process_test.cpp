@@ -37,7 +37,7 @@ TEST(FlightProcess, HeapUsedAfterTheLastTelemetryIsAFailureOfTheRun) {
   const std::vector<Sequence> one_step{make_sequence({Condition::kNominal, 1}, 1, 0)};
   const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, one_step, {});
   EXPECT_EQ(recording.steps_missed, 0U);
-  EXPECT_EQ(recording.flight_heap_allocations, 0U) << "the telemetry came before it";
+  EXPECT_EQ(recording.flight_heap_allocations, 0U) << "the telemetry was sent before the allocation";
   EXPECT_NE(recording.failure.find("used the heap"), std::string::npos) << recording.failure;
   EXPECT_NE(test::read_file(settings.flight_log_path).find("used the heap 1 times, first for 77 bytes"),
             std::string::npos);

@@ -164,7 +164,7 @@ TEST(Lockstep, RoundTripWithoutInference) {
   const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - begin;
   const StepAnswer last = conversation.finish();
   EXPECT_EQ(last.telemetry.heap_allocations, 0U);
-  std::printf("round trip without inference: %.0f us a step\n", elapsed.count() / kSteps);
+  std::printf("round trip without inference: %.0f us per step\n", elapsed.count() / kSteps);
 }
 
 }  // namespace

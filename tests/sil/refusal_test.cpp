@@ -19,7 +19,7 @@ TEST(Refusal, UnequalInterfaceHashIsRefusedByBothSides) {
   SilSettings settings = test::settings();
   settings.flight_arguments = {"--icd-hash", "12345"};
   const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
-  // The first side to notice reports it: the simulator by the hash, or flight by the reason of its end.
+  // The side that notices first reports it: the simulator names the hash, flight the reason for its end.
   EXPECT_TRUE(recording.failure.find("interface hash") != std::string::npos ||
               recording.failure.find("another interface definition") != std::string::npos)
       << recording.failure;

@@ -1,4 +1,4 @@
-// --version of both programs: they come from one build and say so in the same lines.
+// --version of both programs: both report the same build, in the same format.
 #include <gtest/gtest.h>
 
 #include <array>

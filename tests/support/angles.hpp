@@ -1,4 +1,4 @@
-// Angles for tests that know no ground code; sim/world/math/angles.hpp is the one for the others.
+// Angles for tests that do not link ground code; the others use sim/world/math/angles.hpp.
 #pragma once
 
 namespace tumblesight {

@@ -14,7 +14,7 @@ inline constexpr hal::CommandKey kTestKey{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12,
 
 // A packet with header, checksum and arguments, without a security trailer.
 std::vector<std::uint8_t> packet_of(std::uint8_t function, const std::vector<std::uint8_t>& arguments = {});
-// Sets the checksum to match the present content.
+// Sets the checksum to match the current content.
 void set_checksum(std::vector<std::uint8_t>& packet);
 // Adds the security trailer.
 hal::CommandPacket signed_with(const hal::CommandKey& key, std::uint32_t counter,

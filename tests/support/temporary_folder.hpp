@@ -10,7 +10,7 @@
 
 namespace tumblesight {
 
-// Deleted with all it holds when this goes out of scope.
+// Deleted with its contents when the object goes out of scope.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -22,7 +22,7 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  // Writes a file and gives its path.
+  // Writes a file and returns its path.
   std::string put(const std::string& name, const std::vector<std::uint8_t>& bytes) const {
     std::ofstream file(path(name), std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

@@ -17,7 +17,8 @@ void fill_random(NetworkWeights<Float32>& weights, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
   for_each_layer(weights, [&](const LayerRow& row, auto& layer) {
-    // How many weights are added up: a channel's inputs in the CNN, hidden units behind it.
+    // Products per sum: all inputs of a channel in the CNN; for the LSTM and the recurrent head only the
+    // hidden units are counted.
     std::size_t fan_in = layer.weight.size() / layer.bias.size();
     if (row.kind == LayerKind::kLstm) fan_in = shape::kLstm;
     if (layer_index(row.name) > kLstmLayer) fan_in = shape::kHead;

@@ -24,7 +24,8 @@ FlightEnd exchange_steps(FlightBus& bus, FlightTask& task) {
   }
 }
 
-// The simulator's first step sets the mission time. False: there will be none, `end` gives the reason.
+// Waits for the simulator's first step, which sets the mission time. False: no step will arrive; `end` gives
+// the reason.
 bool wait_for_first_step(FlightBus& bus, StepSample& step, FlightEnd& end) {
   while (!bus.take_step(step)) {
     if (bus.must_end(end)) return false;

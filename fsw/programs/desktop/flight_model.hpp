@@ -9,7 +9,7 @@
 namespace tumblesight::fsw::desktop {
 
 // Boots `app`. Without a usable image its mode is SAFE, and the reason is written to the standard error
-// stream. If the options or the image ask for float32, the fixed-point program replaces itself by
+// stream. If the options or the image ask for float32, the fixed-point program replaces itself with
 // flight_float32 from its own folder, with the same arguments `argv`. Call it once.
 void boot(FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
           const hal::CommandKey& command_key, char** argv);

@@ -22,7 +22,7 @@ const char* granted(int error) {
   return error == 0 ? "granted" : strerrordesc_np(error);
 }
 
-// Without these grants the task runs as well, with more jitter.
+// The task also runs without these grants, with more jitter.
 void become_realtime() {
   // Above all tasks without a real-time priority, below tasks that were given a high one on purpose.
   constexpr int kPriority = 10;

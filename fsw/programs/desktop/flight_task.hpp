@@ -61,7 +61,7 @@ class FlightTask {
   void run_on_timer();
   void cycle(std::uint32_t k, std::int64_t now_ns, std::uint32_t slips);
 
-  // Nothing on a desktop resets the processor.
+  // A desktop has no watchdog.
   class NoWatchdog final : public hal::Watchdog {
    public:
     void kick() override {}

@@ -1,5 +1,5 @@
 // flight_replay: the flight application in its periodic loop with recorded frames, on any board. The model
-// image and the recording are part of the program (blobs.S). The recording gives the time, so that the
+// image and the recording are part of the program (blobs.S). The recording gives the time, so the
 // program never waits.
 #include <cstddef>
 #include <cstdint>

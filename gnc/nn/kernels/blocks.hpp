@@ -1,6 +1,6 @@
 // The loops around the innermost operations of an instruction set: blocks of pixels and channels whose sums
 // are all in registers. One source file per instruction set includes this file and is compiled for that set.
-// No code may be shared between the sets, so that everything here has internal linkage.
+// No code may be shared between the sets, so everything here has internal linkage.
 #pragma once
 
 #include "gnc/nn/kernels/numerics.hpp"
@@ -83,7 +83,7 @@ struct Blocks {
     }
   }
 
-  // Integer products have a multiple of kIntegerChannels channels, so that no single vectors remain.
+  // Integer products have a multiple of kIntegerChannels channels, so no single vectors remain.
   template <int kPacks>
   static constexpr bool kFillBlocks = kGroup > 1 && kIntegerChannels % (kPacks * kWidth) == 0;
 

@@ -1,4 +1,4 @@
-// SSE2 on x86-64, NEON on AArch64: part of the base instruction set.
+// SSE2 on x86-64, NEON on AArch64: both are part of the base instruction set.
 #include "gnc/nn/kernels/float_vectors.hpp"
 #include "gnc/nn/kernels/sets.hpp"
 

@@ -10,7 +10,7 @@ namespace tumblesight::gnc::kernels {
 namespace {
 
 // Convolution, with products of signed numbers only: x w = (x - 128) w + 128 w, where the last term is the
-// same for every pixel. No weight is -128, so that the sum of two products fits into 16 bits: two groups are
+// same for every pixel. No weight is -128, so the sum of two products fits into 16 bits: two groups are
 // multiplied before their products are added in pairs.
 constexpr int kQuad = 4;  // channels whose groups fill one vector
 

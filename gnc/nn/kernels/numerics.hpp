@@ -94,7 +94,7 @@ inline std::int32_t saturate(std::int32_t value, std::int32_t largest) {
 }
 
 // The larger of two sums of a convolution. The check of the model image ensures that their magnitude is below
-// kMaxConvSum, so that their difference does not overflow.
+// kMaxConvSum, so their difference does not overflow.
 inline constexpr std::int32_t kMaxConvSum = 1 << 30;
 inline float max_conv_sum(float a, float b) {
   return max(a, b);

@@ -32,7 +32,7 @@ struct Int16Product {
 //       in[y * row_step + x * column_step + t * strip_step + i]
 //       * weights[((t * strip_length + i) / kGroup * channels + c) * kGroup + i % kGroup]
 // Floats are added one at a time in that order, and each product is rounded before it is added
-// (-ffp-contract=off). Vectors run across output channels, so that the bits of an output do not depend on the
+// (-ffp-contract=off). Vectors run across output channels, so the bits of an output do not depend on the
 // vector width. Integers are exact in any order: the check of the model image ensures that no sum exceeds 32
 // bits.
 //

@@ -1,4 +1,4 @@
-// Division of 64 bits, which the compiler leaves to a library; Debian's is for SPARC V9.
+// 64-bit division. The compiler calls libgcc for it, but Debian's libgcc is for SPARC V9.
 #include "gnc/numerics/division.hpp"
 
 extern "C" {

@@ -1,5 +1,5 @@
 // APB UART 1 and GPTIMER 1. The program ends in the processor's error mode, where QEMU stops. QEMU reports no
-// status, so that end() writes it to the console.
+// status, so end() writes it to the console.
 #include "hal/board.hpp"
 
 namespace tumblesight::hal::board {

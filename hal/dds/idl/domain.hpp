@@ -1,6 +1,6 @@
-// Domain: the connection of a process to the bus. It uses loopback only, so that nothing leaves the machine,
-// unicast discovery, which also works without multicast, and a short lease, so that a killed peer is detected
-// within a few seconds.
+// Domain: the connection of a process to the bus. It uses loopback only, so nothing leaves the machine.
+// Discovery is unicast, so it also works without multicast. The lease is short, so that a killed peer is
+// detected within a few seconds.
 #pragma once
 
 #include <dds/dds.h>

@@ -13,7 +13,7 @@ const char* to_string(FlightEnd end) {
     case FlightEnd::kSimulatorGone:
       return "the simulator is gone";
     case FlightEnd::kSilence:
-      return "nothing came from a simulator for too long";
+      return "no message from a simulator within the timeout";
     case FlightEnd::kTransport:
       return "DDS failed";
     case FlightEnd::kStepOutOfOrder:
@@ -21,7 +21,7 @@ const char* to_string(FlightEnd end) {
     case FlightEnd::kHeapUsed:
       return "the flight task used the heap";
     case FlightEnd::kNoThread:
-      return "the system gave no thread for the flight task";
+      return "the system provided no thread for the flight task";
   }
   return "?";
 }

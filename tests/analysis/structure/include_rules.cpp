@@ -62,42 +62,43 @@ Verdict verdict_on_fsw(const std::string& file, const std::string& path) {
   if (starts_with(file, "fsw/programs/")) {
     const bool other_program =
         starts_with(path, "fsw/programs/") && !starts_with(path, first_folders(file, 3));
-    return {starts_with_any(path, {"fsw/", "gnc/", "hal/", "cmake/version.hpp"}) && !other_program &&
-                !starts_with(path, "hal/fake/"),
-            "a flight program knows fsw, gnc and platforms that fly; no other program and no ground code"};
+    return {
+        starts_with_any(path, {"fsw/", "gnc/", "hal/", "cmake/version.hpp"}) && !other_program &&
+            !starts_with(path, "hal/fake/"),
+        "a flight program may include fsw, gnc and platforms that fly; no other program and no ground code"};
   }
   return {(starts_with_any(path, {"fsw/", "gnc/", "hal/messages/"}) || is_interface(path)) &&
               !starts_with(path, "fsw/programs/"),
-          "the application knows itself, gnc, the hal interfaces and messages only"};
+          "the application may include only itself, gnc, the hal interfaces and messages"};
 }
 
 Verdict verdict_on_hal(const std::string& file, const std::string& path) {
   if (starts_with(file, "hal/messages/")) {
     return {starts_with(path, "hal/messages/") || is_value_type(path),
-            "messages know messages and gnc's value types only"};
+            "messages may include only messages and gnc's value types"};
   }
   if (starts_with(file, "hal/dds/idl/")) {
     return {starts_with_any(path, {"hal/dds/idl/", "hal/messages/"}) || is_value_type(path),
-            "the wire definition knows itself, messages and gnc's value types only"};
+            "the wire definition may include only itself, messages and gnc's value types"};
   }
   const bool common = is_interface(path) || starts_with(path, "hal/messages/") || is_value_type(path);
   if (is_interface(file)) {
-    return {common, "a hal interface knows interfaces, messages and gnc's value types only"};
+    return {common, "a hal interface may include only interfaces, messages and gnc's value types"};
   }
   return {common || starts_with(path, first_folders(file, 2)),
-          "a platform knows itself, the hal interfaces, messages and gnc's value types only"};
+          "a platform may include only itself, the hal interfaces, messages and gnc's value types"};
 }
 
 // Empty: the file may include this header of the project.
 std::string project_objection(const std::string& file, const std::string& path) {
   Verdict verdict{true, ""};
-  if (starts_with(file, "gnc/")) verdict = {starts_with(path, "gnc/"), "gnc knows gnc only"};
+  if (starts_with(file, "gnc/")) verdict = {starts_with(path, "gnc/"), "gnc may include only gnc"};
   if (starts_with(file, "fsw/")) verdict = verdict_on_fsw(file, path);
   if (starts_with(file, "hal/")) verdict = verdict_on_hal(file, path);
   if (starts_with(file, "sim/")) {
     verdict = {starts_with_any(path, {"sim/", "gnc/", "hal/messages/", "hal/dds/idl/", "hal/replay/",
                                       "cmake/version.hpp"}),
-               "sim knows sim, gnc, hal/messages, hal/dds/idl and hal/replay only"};
+               "sim may include only sim, gnc, hal/messages, hal/dds/idl and hal/replay"};
   }
   return verdict.allowed ? std::string() : verdict.rule;
 }
@@ -106,14 +107,16 @@ std::string library_objection(const std::string& file, const std::string& path) 
   if (is_instruction_header(path)) {
     const bool knows_processors =
         starts_with_any(file, {"gnc/nn/kernels/", "gnc/numerics/instruction_set", "sim/bench/peak/"});
-    return knows_processors ? "" : "only the kernels and the benchmark of their peak speed use intrinsics";
+    return knows_processors ? ""
+                            : "only the kernels and the benchmark of their peak speed may use intrinsics";
   }
   const bool is_flight = starts_with_any(file, {"gnc/", "fsw/"}) && !starts_with(file, "fsw/programs/");
   if ((is_flight || is_interface(file)) && !is_flight_header(path)) {
     return "not a header for the flight side";
   }
   const bool knows_dds = starts_with_any(file, {"hal/dds/", "sim/sil/", "tests/"});
-  if (starts_with_any(path, {"dds/", "ddsc/"}) && !knows_dds) return "only hal/dds and sim/sil know DDS";
+  if (starts_with_any(path, {"dds/", "ddsc/"}) && !knows_dds)
+    return "only hal/dds and sim/sil may include DDS";
   return {};
 }
 

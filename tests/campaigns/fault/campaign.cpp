@@ -17,17 +17,18 @@
 namespace tumblesight::fault {
 namespace {
 
-// Not the simulator's rule: the results in docs/faults.md were made with it.
+// Differs from the simulator's rule. It must not change, because the results in docs/faults.md were made with
+// it.
 std::uint64_t noise_seed_of_campaign(const sim::Sequence& sequence, std::uint32_t frame) {
   return sequence.noise_seed + frame;
 }
 
 constexpr unsigned kHang_s = 20;  // of one trial, which takes milliseconds
 
-// What a child process leaves, even if it dies.
+// The results of a child process, which remain even if it dies.
 struct Shared {
   std::uint32_t done = 0;
-  Trial trials[1];  // as many as asked for
+  Trial trials[1];  // as many as requested
 };
 
 class SharedTrials {

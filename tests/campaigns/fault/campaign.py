@@ -1,10 +1,11 @@
-"""The fault injection campaign: runs fault_campaign in parts, adds the parts up, holds them to the goals and writes docs/faults.md.
+"""The fault injection campaign: runs fault_campaign in parts, adds up the results, compares them with the goals and writes
+docs/faults.md.
 
-  --quick        a hundred flips a place, in under a minute; no document
-  --flips N      a place, with the protections and without [10000]
-  --seed N       of flips and scenario [1]
-  --jobs N       processes beside each other [2]
-  --program P    fault_campaign
+  --quick        a hundred flips per place, in under a minute; no document
+  --flips N      flips per place, with the protections and without [10000]
+  --seed N       seed of flips and scenario [1]
+  --jobs N       parallel processes [2]
+  --program P    path of fault_campaign
 """
 import argparse
 import concurrent.futures
@@ -20,13 +21,13 @@ DOCUMENT = ROOT / "docs/faults.md"
 PLACES = ("weights", "activations", "estimator state", "application state", "model descriptor", "command", "frame")
 OUTCOMES = ("masked", "recovered", "safe", "flagged wrong", "silent wrong", "lost count", "crash", "hang")
 PART = 500
-# Share of silently wrong trials that is granted with the protections on.
+# Allowed share of silent wrong trials with the protections on.
 SILENT_WRONG = {"weights": 0.0005}
 SILENT_WRONG_ELSEWHERE = 0.001
 
 
 def part(program, place, with_protections, seed, first, count, folder):
-    """One part, read from its file if this very program has run it before."""
+    """One part, read from its file if this program has run it before."""
     of_program = hashlib.sha256(pathlib.Path(program).read_bytes()).hexdigest()[:8]
     path = folder / f"{of_program}_{place.replace(' ', '_')}_{'on' if with_protections else 'off'}_{seed}_{first}_{count}.json"
     if not path.exists():
@@ -54,7 +55,7 @@ def added_up(parts):
 
 
 def failures(totals):
-    """What misses its goal, a line each; of trials with the protections on."""
+    """One line per missed goal; for trials with the protections on."""
     wrong = []
     for (place, with_protections), t in totals.items():
         if not with_protections:
@@ -105,11 +106,11 @@ are checked in both cases.
 
 | outcome | meaning |
 |---|---|
-| masked | no attitude suffered, and nothing was detected |
-| recovered | detected; the application is in RUN, and its attitudes are right again |
+| masked | no attitude was affected, and nothing was detected |
+| recovered | detected; the application is in RUN, and its attitudes are correct again |
 | safe | detected; the application is in SAFE |
-| flagged wrong | detected, but the attitudes are still not right at the end of the trial |
-| silent wrong | an attitude flagged valid is more than 20° off, where it was right without the flip |
+| flagged wrong | detected, but the attitudes are still wrong at the end of the trial |
+| silent wrong | an attitude flagged valid is more than 20° off, but was correct without the flip |
 | lost count | a command was counted neither as accepted nor as refused |
 
 Goals: no crash, no hang, no lost count, and no attitude that stays wrong. At most 0.05 % of the flips in
@@ -121,7 +122,7 @@ weights, and 0.1 % elsewhere, give a silent wrong attitude. The application reco
 | activations | all layers, in the middle of a step, before one of the network's products |
 | estimator state | LSTM and track, between two cycles; 15 cycles follow, as in the rows below |
 | application state | all three copies of the voted state, the waiting events, the copy of the estimator's state, the checksums of the blocks |
-| model descriptor | records of the banks; biases, shifts and pointers that were set when the model was loaded |
+| model descriptor | descriptors of the banks; biases, shifts and pointers that were set when the model was loaded |
 | command | the packet and its size |
 | frame | ranges, exposure time, sequence number, field of view, ray count |
 

@@ -1,4 +1,5 @@
-// fault_campaign: counts of outcomes, a line of JSON a place. Run it through tests/campaigns/fault/run.
+// fault_campaign: prints the counts of outcomes, one line of JSON per place. Run it through
+// tests/campaigns/fault/run.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
@@ -10,7 +11,7 @@ namespace {
 
 using namespace tumblesight::fault;
 
-// `slow`: trials that recovered, but after more than the two cycles that are granted.
+// `slow`: trials that recovered, but after more than the two cycles that are allowed.
 nlohmann::ordered_json summary(const std::string& place, bool with_protections, std::uint64_t seed,
                                std::uint32_t first, const std::vector<Trial>& trials) {
   std::map<std::string, std::uint32_t> outcomes;
@@ -30,7 +31,7 @@ nlohmann::ordered_json summary(const std::string& place, bool with_protections, 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App cli("Flips single bits in a flying application; prints what came of it, a line of JSON");
+  CLI::App cli("Flips single bits in a running application; prints the outcomes, one line of JSON per place");
   std::string model = TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.tsm", target = "near_shoemaker";
   std::uint32_t first = 0, count = 100;
   std::uint64_t seed = 1;
@@ -38,13 +39,14 @@ int main(int argc, char** argv) {
   std::map<std::string, Place> places;
   for (int i = 0; i < kPlaces; ++i) places[to_string(static_cast<Place>(i))] = static_cast<Place>(i);
   std::vector<std::string> wanted;
-  cli.add_option("--place", wanted, "where; all, unless some are named")->check(CLI::IsMember(places));
+  cli.add_option("--place", wanted, "memory or data to flip bits in; default: all")
+      ->check(CLI::IsMember(places));
   cli.add_option("--first", first, "number of the first trial")->capture_default_str();
-  cli.add_option("--count", count, "trials a place")->capture_default_str();
-  cli.add_option("--seed", seed, "of flips and scenario")->capture_default_str();
+  cli.add_option("--count", count, "trials per place")->capture_default_str();
+  cli.add_option("--seed", seed, "seed of flips and scenario")->capture_default_str();
   cli.add_option("--model", model, "model image")->capture_default_str();
-  cli.add_option("--target", target, "its target")->capture_default_str();
-  cli.add_flag("--unprotected", unprotected, "with the protections off");
+  cli.add_option("--target", target, "target of the model")->capture_default_str();
+  cli.add_flag("--unprotected", unprotected, "switch the protections off");
   CLI11_PARSE(cli, argc, argv);
   if (wanted.empty()) {
     for (int i = 0; i < kPlaces; ++i) wanted.emplace_back(to_string(static_cast<Place>(i)));

@@ -122,7 +122,7 @@ class Soak : public ::testing::Test {
                               {store_.banks[0].memory.data(), store_.banks[0].memory.size()},
                               {store_.banks[1].memory.data(), store_.banks[1].memory.size()}};
     const std::size_t which = engine_() % 7;
-    if ((which == 4 || which == 5) && last_.second_copy == 0) return;  // it could not be repaired
+    if ((which == 4 || which == 5) && last_.second_copy == 0) return;  // the flip could not be repaired
     if (which == 6) {
       AppMemory::flip_state_bit(*app_, engine_() % AppMemory::kStateBits);
     } else {

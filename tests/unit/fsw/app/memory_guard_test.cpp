@@ -276,7 +276,7 @@ TEST_F(MemoryGuardTest, ScrubbingEndsAtTheFirstLostBlock) {
   store.banks[1] = {};
   init(store);
   step_good();
-  for (const std::size_t block : {15U, 16U, 17U}) hit_block(0, block);  // all of the next cycle's share
+  for (const std::size_t block : {15U, 16U, 17U}) hit_block(0, block);  // all checked in the next cycle
   step_good();
   EXPECT_EQ(out->telemetry.model_blocks_lost, 1U);
   EXPECT_EQ(argument(EventId::kModelBlockLost, 1), 15);
@@ -288,7 +288,7 @@ TEST_F(MemoryGuardTest, ConstantsAreNotReloadedFromAnImageWithALostBlock) {
   init(store);
   step_good();
   flip_a_constant();
-  for (const std::size_t block : {100U, 101U}) hit_block(0, block);  // not of the next cycle's share
+  for (const std::size_t block : {100U, 101U}) hit_block(0, block);  // not checked in the next cycle
   step_good();
   EXPECT_EQ(out->telemetry.model_blocks_lost, 1U);
   EXPECT_EQ(argument(EventId::kModelBlockLost, 1), 100);

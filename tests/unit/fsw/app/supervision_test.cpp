@@ -82,7 +82,7 @@ TEST_F(Supervision, StepTimesFillTheHistogram) {
   const std::uint64_t ticks_ms[] = {0, 1, 3, 10, 30, 100, 300, 1'000};
   for (const std::uint64_t tick : ticks_ms) {
     stopwatch.tick_ns = tick * 1'000'000;
-    step(StepInputs{});  // two looks at the stopwatch: one tick
+    step(StepInputs{});  // two stopwatch readings, one tick apart
   }
   for (const std::uint32_t count : out->telemetry.steps_by_time) EXPECT_EQ(count, 1U);
   EXPECT_EQ(out->telemetry.step_max_us, 1'000'000U);
@@ -190,8 +190,8 @@ TEST_F(DoubtfulAttitudes, RepeatedFramesAreFlaggedAndReportedIfTheyPersist) {
   EXPECT_EQ(out->telemetry.attitudes_doubtful, 3U);
 }
 
-// Flips a bit of the estimate between the estimator and the checks of the attitude, in the call of the
-// stopwatch there.
+// Corrupts the estimate between the estimator and the checks of the attitude, during the stopwatch call
+// between them.
 class UnsoundAttitudes : public DoubtfulAttitudes {
  protected:
   class Strike final : public hal::Stopwatch {
@@ -204,7 +204,7 @@ class UnsoundAttitudes : public DoubtfulAttitudes {
     int at_look = 0, looks = 0;
   };
   static constexpr int kBehindFirstFrame = 3,
-                       kBehindSecondFrame = 5;  // one look begins the step, two are of a frame
+                       kBehindSecondFrame = 5;  // readings: one at the start of a step, two per frame
 
   UnsoundAttitudes() { app->init({&strike, &store, &kTestKey}, kTestTarget, protections); }
   gnc::AttitudeEstimate& estimate() { return AppMemory::estimate(*app); }

@@ -1,4 +1,4 @@
-// Signatures are centred on the returns, so that the position in the frame does not matter, and rotate with
+// Signatures are centred on the returns, so the position in the frame does not matter, and rotate with
 // the target.
 #include "sim/baseline/signature.hpp"
 

@@ -35,7 +35,7 @@ class Workplace : public TemporaryFolder {
     return put("model.tsm", arbitrary_model(target, swath_mm));
   }
 
-  // Writes a program that runs `lines` in a shell, and gives its path.
+  // Writes a program that runs `lines` in a shell, and returns its path.
   std::string script(const std::string& name, const std::string& lines) const {
     std::ofstream(path(name)) << "#!/bin/sh\n" << lines << "\n";
     std::filesystem::permissions(path(name), std::filesystem::perms::owner_all);

@@ -18,7 +18,7 @@ TEST_P(SetUpScript, EndsItsJobWhenInterrupted) {
   std::ofstream(set_up) << "set -euo pipefail\nroot=" << here.path("") << "\n. " << TUMBLESIGHT_SOURCE_DIR
                         << "/cmake/setup.sh\nquietly working " << here.path("log") << " " << job
                         << "\necho went on\n";
-  // A shell's background jobs ignore SIGINT, which a script cannot take back: `env` does.
+  // A shell's background jobs ignore SIGINT, and a script cannot undo that. `env` can.
   const Outcome outcome = here.run_command(
       "timeout 30 sh -c 'env --default-signal=INT bash " + set_up + " & n=0; while [ ! -e " +
           here.path("started") + " ] && [ $n -lt 100 ]; do sleep 0.1; n=$((n+1)); done; kill -" + GetParam() +

@@ -90,7 +90,7 @@ TEST(ShippedModels, AreThereForEveryRecord) {
     ASSERT_EQ(WEXITSTATUS(status), kNoHistory) << image << " is missing" << remedy;
     not_in_clone += " " + image.filename().string();
   }
-  EXPECT_GT(records, 0) << "no record in fsw/models";
+  EXPECT_GT(records, 0) << "no figures in fsw/models";
   if (!not_in_clone.empty()) GTEST_SKIP() << "not in the history of this clone:" << not_in_clone;
 }
 

@@ -87,7 +87,7 @@ TEST(Simulate, FailsWhenTheFlightProgramRefusesTheModel) {
   EXPECT_NE(content(here.path("r.html")).find("SAFE"), std::string::npos);
 }
 
-// Both programs use the default domain without --domain, and the command that is shown works.
+// Both programs use the default domain without --domain, and the command that the tool prints works.
 TEST(Simulate, ShowsTheFlightProgramThatItWaitsFor) {
   const Workplace here;
   auto simulation = std::async(std::launch::async, [&] {

@@ -79,7 +79,7 @@ TEST_F(Experiment, ReportsWhatToDoWhenTheInertiaIsUnknown) {
   settings_.conditions = {Condition::kStress};
   try {
     run_experiment(subject_, settings_, [](std::uint64_t) {});
-    FAIL() << "ran";
+    FAIL() << "no exception";
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("--inertia Ixx,Iyy,Izz"), std::string::npos) << error.what();
   }

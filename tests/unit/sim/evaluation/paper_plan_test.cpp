@@ -66,7 +66,7 @@ TEST_F(PaperPlanTest, AddsTheModelTrainedByThePapersRuleAsARowOfItsOwn) {
 TEST_F(PaperPlanTest, WithoutAnyModelSaysWhatToDo) {
   try {
     plan();
-    FAIL() << "planned";
+    FAIL() << "no exception";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("tumblesight train"), std::string::npos) << error.what();
   }

@@ -44,7 +44,7 @@ TEST(NetworkLayers, OnlyTheFirstDenseLayerReadsAnImage) {
   }
 }
 
-// A network input that nobody gives, or one of another width, does not compile: gnc::is_consistent().
+// A layer that reads an unknown layer, or one of another width, does not compile: gnc::is_consistent().
 TEST(NetworkLayers, ShowEveryParameterOnce) {
   const auto weights = std::make_unique<gnc::NetworkWeights<gnc::Float32>>();
   gnc::fill_random(*weights, 1);

@@ -1,4 +1,4 @@
-// Quantization of a network with random weights on rendered sequences, and of the shipped NEAR.
+// Quantization of a network with random weights on rendered sequences, and of the shipped NEAR model.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -32,7 +32,7 @@ TEST_F(ScalesTest, ThatFitHoldTheLargestObservedOutput) {
   EXPECT_LE(1000.0 / std::ldexp(scales.sum[0], scales.shift[0]), 16'383.5);
 }
 
-// Regression, found on the shipped NEAR: a few bright frames cost all others two of eight bits.
+// Regression, found on the shipped NEAR model: a few bright frames cost all others two of eight bits.
 TEST_F(ScalesTest, OfLeastLossLetARareLargeOutputSaturate) {
   Distribution outputs;
   for (int i = 0; i < 1'000'000; ++i) outputs.add(i * 1e-5);
@@ -44,7 +44,7 @@ TEST_F(ScalesTest, OfLeastLossLetARareLargeOutputSaturate) {
 }
 
 TEST_F(ScalesTest, OfLeastLossUseTheWholeRangeIfWeightsMayBeCoarse) {
-  inputs = InputStatistics(2);  // hardly any input, so that weights may be coarse
+  inputs = InputStatistics(2);  // hardly any input, so weights may be coarse
   for (int i = 0; i < 100; ++i) inputs.add({i % 2 == 0 ? 1e-6 : -1e-6, 0.0});
   for (const double largest : {10.0, 13.0, 16.0, 19.0}) {
     Distribution outputs;

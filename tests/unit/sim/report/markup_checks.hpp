@@ -24,7 +24,7 @@ inline std::string xml_fault(const std::string& xml) {
     }
   }
   const auto brackets = static_cast<std::size_t>(std::count(xml.begin(), xml.end(), '<'));
-  if (brackets != seen) return "something that is no well-formed tag";
+  if (brackets != seen) return "something that is not a well-formed tag";
   return open.empty() ? "" : "<" + open.back() + "> not closed";
 }
 

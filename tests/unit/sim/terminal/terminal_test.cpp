@@ -76,7 +76,7 @@ TEST(WriteTextFile, MakesFoldersAndLeavesNoPartialFile) {
 TEST(WriteTextFile, SaysWhichFileCannotBeWritten) {
   try {
     write_text_file("/proc/no/such/file", "content");
-    FAIL() << "was written";
+    FAIL() << "no exception";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("/proc/no/such"), std::string::npos);
   }

@@ -43,7 +43,7 @@ Eigen::Matrix3d near_inertia() {  // paper, spacecraft table
   return inertia;
 }
 
-// As sparse as a rendered one.
+// As sparse as a rendered depth image.
 torch::Tensor random_image() {
   return torch::rand({100, 100}) * (torch::rand({100, 100}) < 0.3).to(torch::kFloat);
 }

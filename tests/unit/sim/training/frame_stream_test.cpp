@@ -38,7 +38,7 @@ TEST(Turned, EqualsARenderingOfTheTurnedAttitude) {
     for (int i = 0; i < 9; ++i) labelled(i / 3, i % 3) = batch.r_view_trf[0][i / 3][i % 3].item<double>();
     const torch::Tensor difference = (batch.images - render(Eigen::Quaterniond(labelled))).abs();
     EXPECT_LT((difference > 0.05).to(torch::kFloat).mean().item<double>(), 0.01)
-        << turns;  // edges may fall either way
+        << turns;  // rounding at edges may differ
   }
 }
 

@@ -20,7 +20,7 @@ torch::Tensor matrix(const Eigen::Matrix3f& r) {
   return t;
 }
 
-// Sets hypothesis k to `r`, with scaled and sheared columns: only the orthonormalised columns may matter.
+// Sets hypothesis k to `r`, with scaled and sheared columns: only the orthonormalized columns may matter.
 void set_hypothesis(torch::Tensor& output, int k, const Eigen::Matrix3f& r) {
   const Eigen::Vector3f a = 2.0F * r.col(0), b = 0.5F * r.col(1) + 0.7F * r.col(0);
   for (int i = 0; i < 3; ++i) {

@@ -46,7 +46,7 @@ TEST(Tumble, KeepsMomentumAndEnergyOver200Seconds) {
       ASSERT_NEAR(state.q_lrf_trf.norm(), 1.0, 1e-12);
       wander = std::max(wander, (state.rate_trf_rad_s - first_rate).norm());
     }
-    EXPECT_GT(wander, 1.0 * kDegree) << "a body that only spins proves nothing";
+    EXPECT_GT(wander, 1.0 * kDegree) << "the test needs a body that tumbles";
   }
 }
 

@@ -63,7 +63,7 @@ TEST_F(GltfCheck, WholeFilesPass) {
   EXPECT_NO_THROW(check_gltf(write(kTriangle)));
   EXPECT_NO_THROW(check_gltf(write(" \n" + kTriangle + "\n")));
   EXPECT_NO_THROW(check_glb(write(glb("JSON", kTriangle + "  "))));
-  EXPECT_NO_THROW(check_glb(write(glb("JSON", kTriangle + std::string(2, '\0'))))) << "filled up with zeros";
+  EXPECT_NO_THROW(check_glb(write(glb("JSON", kTriangle + std::string(2, '\0'))))) << "padded with zeros";
   EXPECT_EQ(said_with(R"(,"indices":2,"mode":4)", ""), "") << "triangles without indices";
   EXPECT_EQ(said_with(R"("mode":4)", R"("mode":5)"), "") << "a strip";
 }

@@ -53,7 +53,7 @@ TEST(Magellan, SubreflectorHangsAboveTheDish) {
   }
 }
 
-// Both panels lie in one plane at 45 deg between y and z, so that they distinguish +y from -y.
+// Both panels lie in one plane at 45 deg between y and z, so they distinguish +y from -y.
 TEST(Magellan, PanelsLieInOnePlaneTiltedBy45Degrees) {
   const TriangleMesh mesh = make_magellan();
   const auto panel = [](const Eigen::Vector3f& v) { return std::abs(v.x()) > 2.30F; };
