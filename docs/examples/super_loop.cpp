@@ -17,7 +17,7 @@ namespace {
 using namespace tumblesight;
 
 namespace board {
-// Replace these by your drivers.
+// Replace these with your drivers.
 std::uint64_t timer_ns() {  // monotonic
   static std::uint64_t ticks = 0;
   return ++ticks * 1000;

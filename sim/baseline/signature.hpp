@@ -10,7 +10,7 @@
 namespace tumblesight::sim {
 
 // 24 x 24 cells across the line to the centroid of the returns, row 0 at the top. Integers, so that the
-// result of a sum over the cells does not depend on its order and the compiler can vectorise it.
+// result of a sum over the cells does not depend on its order and the compiler can vectorize it.
 struct Signature {
   static constexpr int kSide = 24;
   static constexpr int kCells = kSide * kSide;

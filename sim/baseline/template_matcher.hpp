@@ -19,7 +19,7 @@ struct TemplateMatcherSettings {
   int directions = 1000;   // of view, evenly distributed over the sphere (1000: 6.5 degrees apart)
   int rolls = 36;          // about the boresight, for each direction; a multiple of 4
   int candidates = 20;     // attitudes that are refined
-  int icp_iterations = 8;  // per candidate; the best few are refined with up to twice as many again
+  int icp_iterations = 8;  // per candidate; the best few are then refined with up to twice as many more
   AlignmentPairs pairs = AlignmentPairs::kRangesAndOutline;
 };
 

@@ -117,13 +117,11 @@ void add_bench_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("bench", "Measure the speed of the flight network, compared with other runtimes");
   command->footer(
-      "\nOne thread, the shipped model in both numerics, every instruction set of this processor. A step "
-      "goes\n"
-      "from ranges to quaternion. The other runtimes run the network alone. The peak is measured with the "
-      "same\n"
-      "multiply-accumulate instructions and no memory access.\n\n"
-      "ONNX Runtime is measured when its library is installed: npm install --prefix build "
-      "onnxruntime-node\n");
+      "\nUses one thread, the shipped model in both numerics and every instruction set of this processor. A\n"
+      "step goes from ranges to quaternion. The other runtimes run the network alone. The peak is measured\n"
+      "with the same multiply-accumulate instructions and no memory access.\n\n"
+      "ONNX Runtime is measured if its library is installed:\n"
+      "  npm install --prefix build --ignore-scripts onnxruntime-node\n");
   add_target_option(*command, arguments->target, TargetChoice::kShipped);
   command
       ->add_option(

@@ -244,7 +244,7 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       ->capture_default_str();
   command->add_flag(
       "--free-running", arguments->free_running,
-      "the flight program runs on its own timer, not in lockstep; needs --speed N; with 1 as in flight");
+      "the flight program runs on its own timer, not in lockstep; needs --speed N (1: as in flight)");
   command
       ->add_option(
           "--flight", arguments->flight,

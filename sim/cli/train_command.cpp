@@ -137,8 +137,8 @@ void add_train_command(CLI::App& app) {
   command
       ->add_option(
           "--condition,--conditions", options->conditions,
-          "conditions to train on in turn: all, paper (nominal and degraded), single ones, or several: "
-          "all,degraded has degraded frames more often")
+          "conditions to train on in turn: all, paper (nominal and degraded), names, or a list of these; "
+          "all,degraded has more degraded frames than all")
       ->delimiter(',')
       ->check(one_of(training_condition_words()))
       ->type_name("NAMES")

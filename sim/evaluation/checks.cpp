@@ -49,7 +49,7 @@ std::vector<Check> checks_of(const SubjectResult& subject) {
     add_drift(checks, subject.sweeps->long_run);
   }
   if (nominal != nullptr && offset != nullptr && nominal->rcnn.mean_deg > 0.0) {
-    checks.push_back({"a target off the boresight costs",
+    checks.push_back({"increase of the error off the boresight",
                       100.0 * (offset->rcnn.mean_deg / nominal->rcnn.mean_deg - 1.0), kMaxOffsetCost_percent,
                       " %"});
   }

@@ -20,8 +20,8 @@ struct Check {
 };
 
 // The checks that the runs of this subject allow: flatness over range and rate (largest over smallest bin),
-// cost of a target off the boresight, drift in a long run (mean of its second half over the mean of the tenth
-// frame).
+// increase of the error off the boresight, drift in a long run (mean of its second half over the mean of the
+// tenth frame).
 std::vector<Check> checks_of(const SubjectResult& subject);
 
 // "1.32×, at most 1.5×"

@@ -17,7 +17,7 @@ struct FrameResult {
   Eigen::Quaterniond truth{1.0, 0.0, 0.0, 0.0};
   Eigen::Quaterniond rcnn{1.0, 0.0, 0.0, 0.0};  // from all frames of the sequence so far
   Eigen::Quaterniond cnn{1.0, 0.0, 0.0, 0.0};   // from this frame alone
-  double rcnn_predicted_rad = 0.0;              // the errors that the network predicts for its estimates
+  double rcnn_predicted_rad = 0.0;              // the expected errors of both estimates
   double cnn_predicted_rad = 0.0;
   double range_m = 0.0;
   double rate_rad_s = 0.0;      // norm

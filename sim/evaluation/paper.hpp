@@ -1,5 +1,5 @@
-// The paper's results (DOI 10.1016/j.conengprac.2026.107134) and the goals of this project, to stand beside
-// measured figures.
+// The paper's results (DOI 10.1016/j.conengprac.2026.107134) and the goals of this project, for comparison
+// with measured figures.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Reliability: whether the error that the network predicts for its estimate is correct, and whether it
+// Reliability: whether the expected error that the network gives with its estimate is correct, and whether it
 // detects wrong attitudes.
 #pragma once
 
@@ -18,12 +18,12 @@ struct ReliabilityBin {
   ErrorSummary real;
 };
 
-// The RCNN's estimates in ascending order of their predicted error, divided into kReliabilityBins parts of
-// equal count (fewer if there are fewer estimates). Frames without an estimate are left out: no error was
-// predicted.
+// The RCNN's estimates in ascending order of their expected error, divided into kReliabilityBins parts of
+// equal count (fewer if there are fewer estimates). Frames without an estimate are left out: they have no
+// expected error.
 std::vector<ReliabilityBin> reliability(const std::vector<FrameResult>& results);
 
-// The effect of rejecting every estimate with a predicted error above a threshold.
+// The effect of rejecting every estimate with an expected error above a threshold.
 struct DetectionPoint {
   double threshold_deg = 0.0;
   std::size_t wrong = 0;          // wrong estimates

@@ -20,7 +20,7 @@ std::vector<DetectionPoint> detection_of(const SubjectResult& subject) {
 std::string title_of(const SubjectResult& subject) {
   const bool own_model = subject.model == subject.target;
   const std::string rule = subject.model == subject.target + "_paper_rule"
-                               ? ", trained by the paper's rule"
+                               ? ", trained as in the paper"
                                : fmt::format(", model {}", subject.model);
   const std::string mesh = subject.mesh == kParametricMesh ? "parametric mesh" : subject.mesh;
   return fmt::format("{}, {}{}", display_name(subject.target), mesh, own_model ? "" : rule);

@@ -10,17 +10,17 @@
 
 namespace tumblesight::sim {
 
-// The rows of one kind, in the table's order: of the CNN (depth image to single-frame output) and of the
-// recurrent head, behind the LSTM.
+// Rows in the table's order: those of one kind in the CNN (depth image to single-frame output), and those of
+// the recurrent head, behind the LSTM.
 std::vector<gnc::LayerRow> cnn_rows(gnc::LayerKind kind);
 std::vector<gnc::LayerRow> head_rows();
 
-// Channels of a network input or of a layer's output; values of one frame that have no channels count as one
-// channel each. Throws std::invalid_argument for an unknown name.
+// Channels of a network input or of a layer's output. In a vector every value is a channel. Throws
+// std::invalid_argument for an unknown name.
 int channels_of(const std::string& name);
 
-// Inputs of one sum of the layer: those of a 3x3 window for a convolution; the layer's inputs and its hidden
-// state for the LSTM.
+// Number of inputs of one sum of the layer: those of a 3x3 window for a convolution; the layer's inputs and
+// its hidden state for the LSTM.
 int inputs_per_sum(const gnc::LayerRow& row);
 
 // Whether the layer's output is an activation: what quantization observes and reports.

@@ -21,7 +21,7 @@ class LayerGraph {
  public:
   explicit LayerGraph(GraphBuilder& graph) : graph_(graph) {}
 
-  // `value` is what the layers read as `name`.
+  // The layers that read `name` get the ONNX value `value`.
   void set_input(const char* name, const std::string& value) { values_[name] = value; }
 
   void add(const Float32Layer& layer) {
@@ -89,7 +89,7 @@ class LayerGraph {
     const std::string step = graph_.reshape(values_.at(layer.row.reads[0]), {1, 1, in}, "step");
     const std::string h = graph_.reshape("h", {1, 1, hidden}, "h.before");
     const std::string c = graph_.reshape("c", {1, 1, hidden}, "c.before");
-    const std::string no_lengths;  // every sequence takes part in whole
+    const std::string no_lengths;  // every sequence has the full length
     onnx::NodeProto& node =
         graph_.node("LSTM", {step, "lstm.weight", "lstm.recurrent", "lstm.bias", no_lengths, h, c},
                     {"", "lstm", "cells"});
@@ -133,12 +133,12 @@ std::string text(const char* before, int number, const char* after) {
 }
 
 void describe_cnn_outputs(GraphBuilder& graph) {
-  graph.output("features", {1, shape::kDense2}, "What the recurrent model's input begins with.");
+  graph.output("features", {1, shape::kDense2}, "The first values of the recurrent model's input.");
   graph.output(
       "output", {1, shape::kOutput},
       text("For each of ", shape::kHypotheses,
            " hypotheses the first two columns of the attitude, the rotation from the target's frame to the "
-           "view (x right, y along the line of sight, z up), six numbers to be orthonormalised; then ") +
+           "view (x right, y along the line of sight, z up), six numbers to be orthonormalized; then ") +
           "the hypotheses' logits; last, the logit of the expected error over pi.");
 }
 
@@ -184,8 +184,8 @@ std::string cnn_as_onnx(const Float32Model& model) {
 }
 
 std::string recurrent_as_onnx(const Float32Model& model) {
-  onnx::ModelProto result = new_model(model.header, "recurrent",
-                                      "What to believe of one frame's hypotheses, from all frames so far.");
+  onnx::ModelProto result =
+      new_model(model.header, "recurrent", "Weights of one frame's hypotheses, from all frames so far.");
   GraphBuilder graph(*result.mutable_graph());
   describe_recurrent_inputs(graph);
   LayerGraph layers(graph);

@@ -20,8 +20,8 @@ using ImageSequence = std::vector<gnc::DepthImage>;
 ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
                                    const gnc::DepthProjection& projection, std::uint64_t number);
 
-// By layer: its outputs over a whole sequence. Channel c of pixel p of frame f is at [(f * pixels + p) *
-// channels + c]. Borders are left out.
+// For each layer, by name: its outputs over a whole sequence. Channel c of pixel p of frame f is at [(f *
+// pixels + p) * channels + c]. Borders are left out.
 using Observations = std::map<std::string, std::vector<double>>;
 
 // Runs one sequence through the steps of the estimator. Values are in the numerics of the network: integers

@@ -32,10 +32,10 @@ double largest_weight(const FloatLayer& layer, int channel);
 
 struct IntegerLayer {
   Eigen::MatrixXd weight;  // [input][channel]
-  // Per channel, in units of its sum: the mean that rounding the weights takes from the sum. The bias adds it
-  // back.
+  // Per channel, in units of its sum: by how much rounding the weights lowers the mean of the sum. To be
+  // added to the bias.
   Eigen::VectorXd mean_loss;
-  // Per channel, in real units: mean square of the rest of the sum's error.
+  // Per channel, in real units: mean square of the sum's remaining error.
   Eigen::VectorXd squared_loss;
 };
 // `scales`: per channel, real value of one unit of its sum. Weights beyond +-kLargestWeight

@@ -11,7 +11,7 @@ using gnc::FixedPoint;
 using gnc::Float32;
 namespace {
 
-// Where the layer's integers end. Network inputs are not reported: any number will do.
+// Largest integer of the layer's outputs. Network inputs are not reported, so their value has no effect.
 double largest_integer(const std::string& name) {
   const int index = gnc::layer_index(name.c_str());
   if (index == gnc::kLayerCount) return 32767.0;

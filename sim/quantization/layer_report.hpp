@@ -1,4 +1,4 @@
-// How much each layer loses by quantization.
+// The quantization error of each layer.
 #pragma once
 
 #include <string>

@@ -21,7 +21,7 @@ std::int32_t to_integer(double value) {
   return static_cast<std::int32_t>(std::lround(std::min(2147483647.0, std::max(-2147483647.0, value))));
 }
 
-// Weights of the inputs [first, first + count), in the kernels' layout (gnc/nn/product.hpp).
+// Weights of the inputs [first, first + count), in the kernels' layout (gnc/nn/kernels/product.hpp).
 template <std::size_t kCount>
 void put_weights(const IntegerLayer& layer, std::size_t first, std::size_t count, std::size_t padded_channels,
                  std::size_t group, QuantizedNetwork& network, FixedPoint::Weights<kCount>& weights) {
@@ -109,7 +109,7 @@ class Quantizer {
     return layer;
   }
 
-  // Outputs of 8 bits.
+  // Outputs have 8 bits.
   template <class From, class To>
   void max_pooled_convolution(const gnc::LayerRow& row, const From& from, To& to) {
     const FloatLayer layer = layer_of(row, from);

@@ -1,4 +1,5 @@
-// From the float32 network to the fixed-point one that flies. Specification of the result: docs/numerics.md.
+// Makes the fixed-point network that flies from the float32 network. Specification of the result:
+// docs/numerics.md.
 #pragma once
 
 #include <map>
@@ -23,9 +24,9 @@ struct QuantizedNetwork {
 
 // Weights become symmetric 8-bit integers with one scale per output channel (scales.hpp), after the inputs'
 // scales have been multiplied into them. The scale is a power of two where the output is a real number. The
-// bias compensates the mean error of the rounded weights. An activation's scale is its channel's sum's times
-// a power of two, so that a shift is the only operation between layers. Throws std::runtime_error that names
-// the layer and channel if the weights are outside the range of fixed point.
+// bias compensates the mean error of the rounded weights. The scale of an activation is that of its channel's
+// sum times a power of two, so that a shift is the only operation between layers. Throws std::runtime_error
+// that names the layer and channel if the weights are outside the range of fixed point.
 std::unique_ptr<QuantizedNetwork> quantize(const gnc::NetworkWeights<gnc::Float32>& weights,
                                            const Statistics& statistics);
 

@@ -19,7 +19,7 @@ struct OutputScales {
 OutputScales scales_that_fit(const FloatLayer& layer, const std::vector<Distribution>& outputs,
                              double largest_integer);
 
-// For outputs of 8 bits: minimises the loss of rounded weights, rounded outputs and saturated outputs
+// For outputs of 8 bits: minimizes the loss of rounded weights, rounded outputs and saturated outputs
 // together. Rare large outputs may saturate.
 OutputScales scales_of_least_loss(const FloatLayer& layer, const InputStatistics& inputs,
                                   const std::vector<Distribution>& outputs, double largest_integer);

@@ -19,7 +19,8 @@ std::vector<double> neighbourhood(const double* image, int side, int channels, i
   return sample;
 }
 
-// About this many pixels per image are sampled, at regular intervals; each frame starts at another one.
+// About this many pixels per image are sampled, at regular intervals. The first one differs from frame to
+// frame.
 constexpr int kPixelsPerImage = 36;
 
 std::vector<double> frame_of(const Observations& observations, const std::string& layer, std::size_t frame,

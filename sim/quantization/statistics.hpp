@@ -12,9 +12,9 @@
 namespace tumblesight::sim {
 
 struct Statistics {
-  // By name: per channel of every network input and hidden layer.
+  // By the name of a network input or hidden layer: one distribution per channel.
   std::map<std::string, std::vector<Distribution>> outputs;
-  // By layer: of the inputs of one sum (inputs_per_sum()).
+  // By the name of a layer: of the inputs of one sum (inputs_per_sum()).
   std::map<std::string, InputStatistics> inputs;
 };
 

@@ -16,7 +16,7 @@ struct RecordingSettings {
 };
 
 // Sequences 0 .. sequences-1 of the seed, one frame per frame period. Between two sequences two frames are
-// missing, so that the application recognises the second one as new. `progress`: frames done so far. Returns
+// missing, so that the application recognizes the second one as new. `progress`: frames done so far. Returns
 // the bytes of the file.
 std::vector<std::uint8_t> make_recording(const FrameRenderer& renderer, const RecordingSettings& settings,
                                          const std::function<void(std::uint32_t)>& progress);

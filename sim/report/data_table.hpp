@@ -14,7 +14,7 @@ enum class Mark {
   kCnn,
   kPaper,   // a published figure, below ours
   kMet,     // a goal or a limit that is met
-  kMissed,  // and one that is not
+  kMissed,  // a goal or a limit that is missed
 };
 
 struct TableCell {

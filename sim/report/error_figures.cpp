@@ -64,8 +64,8 @@ std::string confusion_figure(const std::vector<Named<Confusion>>& rows) {
 
 std::string reliability_figure(const std::vector<Named<std::vector<ReliabilityBin>>>& lines) {
   AgreementChart chart;
-  chart.description = "Mean actual error over the predicted error";
-  chart.x_label = "predicted error [deg]";
+  chart.description = "Mean actual error over the expected error";
+  chart.x_label = "expected error [deg]";
   chart.y_label = "actual error, mean [deg]";
   chart.low = 0.3;
   for (const auto& [name, colour, bins] : lines) {
@@ -86,7 +86,7 @@ std::string detection_figure(const std::vector<DetectionPoint>& points) {
   chart.x_high = 100.0;
   chart.y_high = 100.0;
   chart.x_ticks = round_ticks(0.0, 100.0, 10);
-  Series series{"RCNN, threshold on the predicted error", kRcnnColour, "", {{100.0, 100.0}}};
+  Series series{"RCNN, threshold on the expected error", kRcnnColour, "", {{100.0, 100.0}}};
   for (const DetectionPoint& point : points) {
     series.points.push_back({100.0 * point.false_alarms(), 100.0 * point.detected()});
   }

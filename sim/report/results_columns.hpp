@@ -28,7 +28,7 @@ struct SummaryFigure {
   std::string (*paper_text)(double paper);
 };
 const std::vector<SummaryFigure>& summary_figures();
-// The one whose value is this member. Throws std::out_of_range if there is none.
+// The figure whose value is this member. Throws std::out_of_range if there is none.
 const SummaryFigure& summary_figure(double ErrorSummary::*value);
 
 // In tables. "-" without a sequence.

@@ -25,9 +25,8 @@ constexpr const char* kReadingNotes = R"md(
 
 std::string introduction(const Results& results) {
   std::string text = fmt::format(
-      "# Results\n\nMade by\n\n```\n{}\n```\n\nwith seed {}. Every figure below comes from that run. Another "
-      "run gives "
-      "the same figures, except for the times.\n{}",
+      "# Results\n\nMade by\n\n```\n{}\n```\n\nwith seed {}. Every figure below comes from that run. "
+      "Another run gives the same figures, except for the times.\n{}",
       results.command, results.seed, kReadingNotes);
   for (const std::string& note : results.notes) text += "- Note: " + note + "\n";
   return text + "\n";
@@ -56,8 +55,7 @@ std::string accuracy_section(const Results& results) {
 
 std::string others_section(const Results& results) {
   return "## Other estimators in the same run\n\nTimes: milliseconds per frame on one thread, median. The "
-         "network's time "
-         "covers CNN and RCNN together.\n\n" +
+         "network's time covers CNN and RCNN together.\n\n" +
          markdown_text(conditions_table(results.subjects, kOtherEstimatorsTable));
 }
 
@@ -89,14 +87,13 @@ std::string sweeps_section(const Sweeps& sweeps) {
 
 std::string confusion_section(const SubjectResult& subject) {
   return "**Share of each nearly symmetric attitude** (the target turned about z; within 20° of it; blur: "
-         "mean error to "
-         "the nearest of them)\n\n" +
+         "mean error to the nearest of them)\n\n" +
          markdown_text(confusion_table(subject));
 }
 
 std::string reliability_section(const CellResult& cell) {
   return fmt::format(
-             "**Predicted and actual error of the RCNN, {}, every frame, in tenths sorted by the predicted "
+             "**Expected and actual error of the RCNN, {}, every frame, in tenths sorted by the expected "
              "error**\n\n",
              to_string(cell.condition)) +
          markdown_text(reliability_table(cell));
@@ -108,8 +105,7 @@ std::string detection_section(const SubjectResult& subject) {
   const DetectionPoint last = detection_of(subject).back();
   return fmt::format(
              "**Detection of wrong estimates.** All conditions, every frame: {} of {} estimates are more "
-             "than 20° off. An "
-             "estimate is rejected when its predicted error is above a threshold:\n\n",
+             "than 20° off. An estimate is rejected when its expected error is above a threshold:\n\n",
              last.wrong, last.wrong + last.right) +
          markdown_text(table);
 }

@@ -17,12 +17,10 @@ namespace {
 std::string overview_section(const Results& results) {
   return html_text(conditions_table(results.subjects, kPageOverview), "results") +
          "<p class=sub>Mean angular error of the last frame ± one standard error, and the share of the "
-         "sequences within "
-         "20°. RCNN: from all frames. CNN: from the last frame alone. Templates: classical template "
-         "matching, renderings of "
-         "the same mesh matched to the last frame and refined by iterated closest points, on the first "
-         "sequences of each "
-         "condition. Goals: <span class=met>met</span>, <span class=missed>missed</span>.</p>\n";
+         "sequences within 20°. RCNN: from all frames. CNN: from the last frame alone. Templates: classical "
+         "template matching of the last frame with renderings of the same mesh, refined by iterated closest "
+         "points, on the first sequences of each condition. Goals: <span class=met>met</span>, <span "
+         "class=missed>missed</span>.</p>\n";
 }
 
 // One network on one mesh: its error under each condition.
@@ -53,8 +51,7 @@ std::string lead_of(const std::vector<SubjectResult>& subjects) {
   }
   return fmt::format(
       "For {} lines of the table the paper published a figure. In {} of them the mean error here is smaller, "
-      "and {} meet "
-      "the goal that this project set itself.",
+      "and {} meet the goal that this project set itself.",
       published, better, met);
 }
 
@@ -78,14 +75,13 @@ std::string reliability_section(const SubjectResult& subject) {
   for (const CellResult& cell : subject.cells) {
     lines.push_back({to_string(cell.condition), colour_of(cell.condition), cell.reliability});
   }
-  return html_figure("Predicted and actual error", reliability_figure(lines),
-                     "RCNN, every frame, in tenths sorted by the predicted error. On the dashed line the "
-                     "prediction is right "
-                     "on average. Above it the network is overconfident.") +
+  return html_figure("Expected and actual error", reliability_figure(lines),
+                     "RCNN, every frame, in tenths sorted by the expected error. On the dashed line the "
+                     "expected error is right on average. Above it the network is overconfident.") +
          html_figure(
              "Detection of wrong estimates", detection_figure(detection_of(subject)),
              "RCNN, every frame of all conditions. Wrong: more than 20° off. Each mark is a threshold on the "
-             "predicted error, from 1° at the right to 90° at the left.");
+             "expected error, from 1° at the right to 90° at the left.");
 }
 
 std::string detection_section(const SubjectResult& subject) {
@@ -93,9 +89,9 @@ std::string detection_section(const SubjectResult& subject) {
   if (table.rows.empty()) return {};
   const DetectionPoint last = detection_of(subject).back();
   return html_figure(
-      "Thresholds on the predicted error", html_text(table, "results"),
+      "Thresholds on the expected error", html_text(table, "results"),
       fmt::format("RCNN, every frame of all conditions: {} estimates, {} of them wrong. An estimate is "
-                  "rejected when its predicted error is above the threshold.",
+                  "rejected when its expected error is above the threshold.",
                   last.wrong + last.right, last.wrong));
 }
 
@@ -162,7 +158,7 @@ std::string notes_section(const std::vector<std::string>& notes) {
 }  // namespace
 
 std::string results_page(const Results& results) {
-  std::string body = "<h1>Accuracy of attitude initialisation</h1>\n";
+  std::string body = "<h1>Accuracy of attitude initialization</h1>\n";
   body += fmt::format("<p class=sub>Tumblesight, Monte Carlo evaluation, seed {}</p>\n<p class=lead>{}</p>\n",
                       results.seed, lead_sentence(results));
   body += notes_section(results.notes);

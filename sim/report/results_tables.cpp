@@ -150,7 +150,7 @@ DataTable confusion_table(const SubjectResult& subject) {
 }
 
 DataTable reliability_table(const CellResult& cell) {
-  DataTable table{{"predicted", "actual, mean", "actual, median", "frames"}, {}};
+  DataTable table{{"expected", "actual, mean", "actual, median", "frames"}, {}};
   for (const ReliabilityBin& bin : cell.reliability) {
     table.rows.push_back({{degrees_text(bin.predicted_deg)},
                           {degrees_text(bin.real.mean_deg)},

@@ -22,7 +22,7 @@ DataTable estimators_table(const std::vector<EstimatorErrors>& estimators, std::
 // The same for one condition: RCNN, CNN and, where it was run, template matching.
 DataTable cell_table(const std::string& target, const CellResult& cell);
 
-// A line per condition, with the columns that belong into `table`; overviews have a title above each
+// A line per condition, with the columns that belong to `table`; overviews have a title above each
 // subject's lines.
 DataTable conditions_table(const std::vector<SubjectResult>& subjects, ConditionTables table);
 
@@ -36,7 +36,7 @@ DataTable curve_table(const std::string& at, const Curve& curve, double scale = 
 DataTable histogram_table(const CellResult& cell);
 DataTable confusion_table(const SubjectResult& subject);
 DataTable reliability_table(const CellResult& cell);
-// Rejection of estimates by a threshold on their predicted error.
+// Rejection of estimates by a threshold on their expected error.
 DataTable detection_table(const SubjectResult& subject);
 DataTable checks_table(const SubjectResult& subject);
 

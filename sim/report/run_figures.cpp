@@ -124,8 +124,8 @@ std::string error_histogram_figure(const RunReport& report) {
 
 std::string predicted_error_figure(const RunReport& report) {
   AgreementChart chart;
-  chart.description = "Actual angular error over the predicted one";
-  chart.x_label = "predicted error [deg]";
+  chart.description = "Actual angular error over the expected one";
+  chart.x_label = "expected error [deg]";
   chart.y_label = "actual error [deg]";
   Series rcnn{"RCNN, every frame", kRcnnColour, "", {}, true};
   Series cnn{"CNN, every frame", kCnnColour, "", {}, true};

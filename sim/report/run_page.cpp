@@ -42,8 +42,8 @@ std::string charts_section(const RunReport& report, std::uint32_t shown) {
          html_figure(
              "Distribution of the last frame's error", error_histogram_figure(report),
              "Errors near 90° and 180° are attitudes confused with nearly symmetric ones of the target.") +
-         html_figure("Predicted and actual error", predicted_error_figure(report),
-                     "Below the dashed line the error is smaller than predicted, above it larger.") +
+         html_figure("Expected and actual error", predicted_error_figure(report),
+                     "Below the dashed line the error is smaller than expected, above it larger.") +
          html_figure(
              fmt::format("Quaternion of sequence {}", shown + 1), quaternion_figure(report, shown),
              "Lines: true. Dots: RCNN. The sign is chosen for continuity. TRF to LRF, scalar w first.") +

@@ -1,6 +1,6 @@
-// DomainLease: a DDS domain for one run only, so that concurrent runs on a machine do not meet. It is held by
-// a lock on a file in the temporary folder. The flight program inherits the file, so that the domain stays
-// taken while either process lives. The system releases the lock however they end.
+// DomainLease: a DDS domain for one run only, so that concurrent runs on a machine do not interfere. It is
+// held by a lock on a file in the temporary folder. The flight program inherits the file, so that the domain
+// stays reserved while either process lives. The system releases the lock however they end.
 #pragma once
 
 #include <cstdint>

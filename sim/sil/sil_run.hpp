@@ -22,13 +22,14 @@ struct SilSettings {
   std::string target = "near_shoemaker";  // that the model image must be for
   std::string model_path;                 // passed to the flight program
   std::string flight_path;                // program to start; empty: the user starts it
-  int domain = -1;                        // DDS domain; -1: a free one, so that concurrent runs do not meet
-  double speed = 0.0;                     // times real time; 0: as fast as possible
-  bool free_running = false;              // flight on its own timer, 2.7 s divided by speed, not in lockstep
-  double step_timeout_s = 10.0;           // wall clock; a step without an answer by then ends the run
-  std::string flight_log_path;            // file for the messages of flight; empty: our own output
-  std::vector<std::string> flight_arguments;                             // additional ones
-  std::array<std::uint8_t, 32> command_key = hal::dds::kDevelopmentKey;  // flight must have the same
+  int domain = -1;               // DDS domain; -1: a free one, so that concurrent runs do not interfere
+  double speed = 0.0;            // times real time; 0: as fast as possible
+  bool free_running = false;     // flight on its own timer, 2.7 s divided by speed, not in lockstep
+  double step_timeout_s = 10.0;  // wall clock; a step without an answer by then ends the run
+  std::string flight_log_path;   // file for the flight program's messages; empty: our own output
+  std::vector<std::string> flight_arguments;  // additional ones
+  // The flight program must have the same key.
+  std::array<std::uint8_t, 32> command_key = hal::dds::kDevelopmentKey;
 };
 
 // One step: what was sent, and the answer of the flight program.
@@ -55,7 +56,8 @@ struct SilRunResult {
   std::uint32_t steps_missed = 0;             // without an answer
   std::uint32_t flight_heap_allocations = 0;  // from the last answer
   std::uint32_t trace_crc32 = 0;              // TraceDigest over all answered steps
-  std::string failure;  // empty, or why the run ended early (flight program gone, different ICD hash, ...)
+  // Empty, or why the run ended early (flight program gone, different interface hash, ...).
+  std::string failure;
 };
 
 // Runs `sequences` in order, with a reset command before each. `swath_m` is the width of the frames at the

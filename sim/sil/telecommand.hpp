@@ -1,5 +1,5 @@
 // Telecommands as the ground makes them: CCSDS space packets with a checksum, signed with HMAC-SHA-256. The
-// ground uses OpenSSL's HMAC, so that each run compares the flight side's own with another implementation.
+// ground uses OpenSSL's HMAC, so that each run compares the flight side's HMAC with another implementation.
 // Format: hal/messages/command_packet.hpp, docs/icd.md.
 #pragma once
 

@@ -42,8 +42,8 @@ class ProgressBar {
   std::chrono::steady_clock::time_point printed_;
 };
 
-// The text of the line for `done` of `total`, of which all but `done_before` took `elapsed_s`. With a bar of
-// `bar_columns` characters (0: none).
+// The text of the line for `done` of `total`. `elapsed_s`: time since the first `done_before` were done.
+// `bar_columns`: characters of the bar (0: no bar).
 std::string progress_line(const std::string& label, const std::string& unit, std::uint64_t done,
                           std::uint64_t total, double elapsed_s, int bar_columns,
                           std::uint64_t done_before = 0);

@@ -1,4 +1,4 @@
-// Checkpoint file of one stage: module, optimiser and position. Replaced atomically.
+// Checkpoint file of one stage: module, optimizer and position. Replaced atomically.
 #pragma once
 
 #include <torch/torch.h>

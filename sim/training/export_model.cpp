@@ -50,7 +50,7 @@ WeightAndBias with_batch_norm(const Backbone& backbone, int stage) {
           backbone->offset[stage] - backbone->mean[stage] * scale};
 }
 
-// The standardisation of the LSTM input becomes part of a layer that reads it from input `first` on:
+// The standardization of the LSTM input becomes part of a layer that reads it from input `first` on:
 // W (x - mean) / deviation + b = (W / deviation) x + (b - (W / deviation) mean)
 WeightAndBias with_standardisation(const Recurrent& recurrent, const torch::Tensor& weight,
                                    const torch::Tensor& bias, std::int64_t first) {

@@ -10,7 +10,7 @@
 namespace tumblesight::sim {
 
 // Copies the modules' weights into the flight network's layout. Batch norm is folded into the convolutions,
-// the standardisation of the LSTM input into the LSTM and the recurrent head. The modules may be on any
+// the standardization of the LSTM input into the LSTM and the recurrent head. The modules may be on any
 // device.
 void export_weights(const Cnn& cnn, const Recurrent& recurrent, gnc::NetworkWeights<gnc::Float32>& weights);
 

@@ -23,7 +23,7 @@ namespace tumblesight::sim {
 // The surfaces of the target that one network is trained for, and how it sees them.
 struct TrainingTargets {
   std::vector<std::unique_ptr<FlashLidar>> lidars;  // one per mesh
-  gnc::DepthProjection projection;                  // holds all meshes
+  gnc::DepthProjection projection;                  // fits all meshes
   std::uint32_t meshes_crc32 = 0;                   // identifies the surfaces
   std::vector<Condition> conditions;                // drawn in turn; may contain one more than once
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF
@@ -66,7 +66,7 @@ class FrameStream {
   std::vector<std::thread> workers_;
 };
 
-// Group `group` of the supply, without threads. Validation data uses another seed.
+// Group `group` of the same supply, rendered by the calling thread. Validation data uses another seed.
 FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch);
 // The same frames, turned about the view axis counter-clockwise in the image.
 FrameBatch turned(const FrameBatch& batch, std::int64_t quarter_turns);

@@ -8,8 +8,9 @@ namespace tumblesight::sim {
 namespace {
 
 // One convolution with the batch norm behind it. The norm divides by the deviation of its input, which the
-// image's weights do not contain; the next layer's weights make up for it. `deviation`: per channel of `x`;
-// on return of the layer's output, as is `x`.
+// image's weights do not contain; the next layer's weights compensate for this. On entry `x` is the layer's
+// input and `deviation` the deviation of each of its channels; on return both are those of the layer's
+// output.
 void import_stage(const Float32Layer& layer, int stage, bool pooled, Backbone& backbone, torch::Tensor& x,
                   torch::Tensor& deviation) {
   const torch::Tensor bias = tensor_of(layer.bias);
@@ -44,7 +45,7 @@ void import_cnn(const gnc::NetworkWeights<gnc::Float32>& weights, const torch::T
     }
     torch::nn::Linear& linear = cnn->dense[dense++];
     torch::Tensor weight = weight_from_flight(layer.row, tensor_of(layer.weight));
-    if (reads_flat_image(layer.row)) {  // makes up for the last norm, channel by channel
+    if (reads_flat_image(layer.row)) {  // compensates for the last norm, channel by channel
       weight =
           (weight.view({layer.row.outputs, deviation.size(0), -1}) * deviation.view({1, -1, 1})).flatten(1);
     }

@@ -1,5 +1,5 @@
-// Losses of both training stages. They ask for several attitude hypotheses with probabilities and for a
-// calibrated expected error.
+// Losses of both training stages. They train several attitude hypotheses with probabilities, and a calibrated
+// expected error.
 #pragma once
 
 #include <torch/torch.h>

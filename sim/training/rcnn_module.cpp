@@ -57,7 +57,7 @@ CnnImpl::CnnImpl() {
   backbone = register_module("backbone", Backbone());
   for (const gnc::LayerRow& row : cnn_rows(gnc::LayerKind::kDense))
     dense.push_back(register_module(module_name(row), linear_of(row)));
-  // Hypotheses that start apart specialise sooner.
+  // Hypotheses that start apart specialize sooner.
   torch::NoGradGuard guard;
   dense.back()->bias.slice(0, 0, shape::kColumns).normal_(0.0, 0.7);
 }

@@ -14,7 +14,7 @@
 
 namespace tumblesight::sim {
 
-// The convolutions, each without bias and followed by pooling, batch norm and ReLU. The norm has a learnt
+// The convolutions, each without bias and followed by pooling, batch norm and ReLU. The norm has a learned
 // offset but no gain, since the next layer's weights can take over a positive gain. Without a gain,
 // max-pooling before the norm equals max-pooling after it, on a quarter of the elements.
 class BackboneImpl : public torch::nn::Module {
@@ -55,7 +55,7 @@ class CnnImpl : public torch::nn::Module {
 };
 TORCH_MODULE(Cnn);
 
-// Hypotheses of an output [..., 57] as orthonormalised columns x1, x2 [..., 8, 2, 3].
+// Hypotheses of an output [..., 57] as orthonormalized columns x1, x2 [..., 8, 2, 3].
 torch::Tensor orthonormal_columns(const torch::Tensor& output);
 
 // The CNN's output for whole sequences, as in gnc::Hypotheses.
@@ -72,7 +72,7 @@ struct TrackedSequences {
   torch::Tensor cluster_means;  // [B, T, 9, 3, 3] the estimate if each candidate were chosen as the anchor
   torch::Tensor anchor_logits;  // [B, T, 9]
   torch::Tensor error_logits;   // [B, T]
-  torch::Tensor inputs;         // [B, T, 190] of the LSTM, not standardised, without gradient
+  torch::Tensor inputs;         // [B, T, 190] of the LSTM, not standardized, without gradient
 };
 
 // LSTM, recurrent head and attitude track (gnc/rcnn/attitude_track.hpp) over sequences of targets with the

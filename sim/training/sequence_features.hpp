@@ -17,7 +17,7 @@
 
 namespace tumblesight::sim {
 
-// Longer than the paper's sequences: in flight there is no last frame.
+// Longer than the paper's sequences, because flight does not end after ten frames.
 inline constexpr int kTrainingFrames = 12;
 
 struct FeatureSet {

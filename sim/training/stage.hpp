@@ -35,7 +35,7 @@ class Stage {
     position_.fingerprint = settings.fingerprint;
   }
 
-  // Restores module, optimiser and position from the checkpoint. Returns false if there is none.
+  // Restores module, optimizer and position from the checkpoint. Returns false if there is none.
   template <typename Module>
   bool resume(Module& module, torch::optim::Optimizer& optimizer) {
     const bool found = load_checkpoint(path(), module, optimizer, position_);

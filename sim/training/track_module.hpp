@@ -10,7 +10,7 @@
 
 namespace tumblesight::sim {
 
-// Gram-Schmidt orthonormalisation of two columns [..., 3] each; the third is their cross product: [..., 3,
+// Gram-Schmidt orthonormalization of two columns [..., 3] each; the third is their cross product: [..., 3,
 // 3].
 torch::Tensor rotation_from_columns(const torch::Tensor& a, const torch::Tensor& b);
 

@@ -27,7 +27,7 @@ class TrainingLog {
   // was killed after its last checkpoint repeats them. Throws std::runtime_error if the folder cannot be
   // written.
   TrainingLog(const std::string& folder, const std::string& stage, std::int64_t last_iteration);
-  void add(const TrainingPoint& point);  // appends to log.csv and renews curve.svg
+  void add(const TrainingPoint& point);  // appends to log.csv and rewrites curve.svg
 
  private:
   std::string folder_;

@@ -2,8 +2,8 @@
 // recordings, evaluation, training and calibration all use it, so that a sequence looks the same to all of
 // them.
 //
-// The ranges come from FlashLidar::expose with the sensor settings of the condition, the swath of the
-// renderer and a noise seed by its rule. The stamp adds sequence number and exposure time.
+// FlashLidar::expose makes the ranges, with the sensor settings of the condition, the swath of the renderer
+// and a noise seed by the renderer's rule. The stamp adds sequence number and exposure time.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace tumblesight::sim {
 
-// The seed of the sensor noise in frame `frame` of a sequence. Seeds name results, recordings and trained
-// networks: a rule must not change once something was made with it.
+// The seed of the sensor noise in frame `frame` of a sequence. Results, recordings and trained
+// networks are identified by their seeds, so a rule must not change once something has been made with it.
 using NoiseSeedRule = std::uint64_t (*)(const Sequence& sequence, std::uint32_t frame);
 
 // The rule: independent noise in every frame.
@@ -32,8 +32,8 @@ struct FrameStamp {
 
 class FrameRenderer {
  public:
-  // `lidar` must outlive the renderer. `swath_m`: side of the square that a frame covers at the target, that
-  // of the network that will see the frames, or swath_m(mesh).
+  // `lidar` must outlive the renderer. `swath_m`: side of the square that a frame covers at the target:
+  // the swath of the network that will see the frames, or swath_m(mesh).
   FrameRenderer(const FlashLidar& lidar, double swath_m, NoiseSeedRule noise_seed = noise_seed_per_frame)
       : lidar_(lidar), swath_m_(swath_m), noise_seed_(noise_seed) {}
 

@@ -86,8 +86,9 @@ SensorSettings sensor_settings(Condition condition);
 // Whether the target's inertia must be known.
 bool needs_inertia(Condition condition);
 
-// Training on everything that a network must handle: two rounds one after the other. Training draws the
-// conditions in turn, so that one of a single round is drawn half as often as one of both.
+// The conditions for training on everything that a network must handle: two rounds one after the other.
+// Training draws the conditions in turn, so that a condition in only one of the rounds is drawn half as often
+// as a condition in both.
 std::vector<Condition> all_training_conditions();
 // The paper's training conditions: nominal and degraded.
 std::vector<Condition> paper_training_conditions();

@@ -27,7 +27,7 @@ struct ScenarioSettings {
   int frames = kFramesPerSequence;
   RateLaw rate_law = RateLaw::kComponents;
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF; torque-free rotation only
-  // Fixed instead of drawn, for curves over them.
+  // Values that are fixed instead of drawn, for curves over them.
   std::optional<double> range_m{};
   std::optional<double> rate_rad_s{};
   std::optional<double> hidden_share{};

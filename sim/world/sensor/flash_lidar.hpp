@@ -20,7 +20,7 @@ namespace tumblesight::sim {
 // Side of the square across the boresight that holds the whole target at any attitude. It determines the
 // field of view (fov_urad).
 double swath_m(const TriangleMesh& mesh);
-// How a network for this mesh sees it: that swath, and the mesh's radius as the scale of depth.
+// The depth projection of a network for this mesh: that swath, and the mesh's radius as the scale of depth.
 gnc::DepthProjection projection_of(const TriangleMesh& mesh);
 // Field of view 2 atan(swath / (2 range)), clamped to 1..40 degrees (paper, sensor table).
 std::uint32_t fov_urad(double swath_m, double range_m);

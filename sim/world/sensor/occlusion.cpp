@@ -16,7 +16,8 @@ struct Axes {
   double along_y;
 };
 
-// The smallest of the values that at least `share` of them, and at least one, do not exceed. Reorders them.
+// The smallest of the values with at least this share of the values (and at least one) at or below it.
+// Reorders the values.
 double quantile(std::vector<double>& values, double share) {
   const auto count = static_cast<long>(values.size());
   const long wanted = std::clamp(std::lround(share * static_cast<double>(count)), 1L, count);

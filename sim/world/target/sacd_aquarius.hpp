@@ -6,17 +6,15 @@
 // +-1.26, z -1.32..2.95.
 //
 // The parts and their stowed positions were measured on the stowed display model of "NASA 3D Resources".
-// Parts smaller than about 2 cm are left out. There is no display model of the flight configuration. It is
-// derived from the hinges of the stowed one with these assumptions:
-// - Each panel is rotated outwards by 90 deg about the hinge at the lower end of the bus (axis along x, y
-// +-0.68,
-//   z -1.08), so that it is perpendicular to z; its cut-outs then clear the launch adapter. The panels do not
-//   track the Sun.
+// Parts smaller than about 2 cm are left out. There is no display model of the flight configuration. The
+// mesh of that configuration is derived from the hinges of the stowed one with these assumptions:
+// - Each panel is rotated outwards by 90 deg about the hinge at the lower end of the bus (axis along x,
+//   y +-0.68, z -1.08), so that it is perpendicular to z. Its cut-outs then clear the launch adapter. The
+//   panels do not track the Sun.
 // - The boom is rotated towards -x about the axis of its foot (along y, x -0.72, z 1.21). The reflector is
-// rotated about
-//   the axis at the boom's end until its rim is parallel to z, with its concave side towards the horns. The
-//   boom's angle is the one at which the middle of the three horns' axes meets the reflector's centre, 1.7 m
-//   from their mouths.
+//   rotated about the axis at the boom's end until its rim is parallel to z, with its concave side towards
+//   the horns. The boom's angle is the one at which the axis of the middle horn meets the reflector's centre,
+//   1.7 m from the horns' mouths.
 // - The launch struts on the feed structure do not move.
 // The result agrees with the inertia that the paper gives for the flight configuration: x-z is the plane of
 // symmetry, and the mass extends from +x, -z to -x, +z.

@@ -26,7 +26,7 @@ struct TargetRow {
   InertiaElements inertia;
   // The target looks nearly the same after 1/n of a turn about z; 1: no such symmetry.
   int symmetry_about_z;
-  // Key of the target in the paper whose figures stand beside this one's; nullptr: none.
+  // Key of the target in the paper whose figures this target is compared with; nullptr: none.
   const char* paper_key;
 };
 
