@@ -37,7 +37,6 @@ class AssertionLog {
     pending_ = false;
     return was_pending;
   }
-  bool pending() const { return pending_; }
   std::uint32_t file() const { return file_; }
   std::int32_t line() const { return line_; }
   std::uint32_t count() const { return count_; }  // since start

@@ -168,6 +168,16 @@ constexpr std::array kCommands{
     CommandRow{{FunctionCode::kDisableResponse, 1, 1, kAlways}, disable_response},
 };
 
+constexpr bool every_function_has_one_row() {
+  for (std::size_t i = 0; i < kCommands.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (kCommands[i].rule.function == kCommands[j].rule.function) return false;
+    }
+  }
+  return true;
+}
+static_assert(every_function_has_one_row(), "a function code stands in two rows: both handlers would run");
+
 // The handler is a constant, so this is a direct call: the analysis of the worst-case stack follows no
 // pointers.
 template <std::size_t kRow>

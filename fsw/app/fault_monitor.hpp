@@ -11,7 +11,6 @@ namespace tumblesight::fsw {
 constexpr std::uint32_t bit_of(Fault fault) {
   return 1U << static_cast<int>(fault);
 }
-inline constexpr std::uint32_t kAllFaults = (1U << kFaults) - 1;
 
 class FaultMonitor {
  public:

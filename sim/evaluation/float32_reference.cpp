@@ -1,18 +1,20 @@
 #include "sim/evaluation/float32_reference.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+
+#include "sim/model/model_file.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 
 Float32Reference::Float32Reference(const std::string& model_path, const std::vector<std::uint8_t>& model,
                                    const std::string& target) {
   if (gnc::is_float32(model.data(), model.size())) return;
-  std::ifstream file(std::filesystem::path(model_path).replace_extension(".float32.tsm"), std::ios::binary);
-  image_.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  const std::filesystem::path path = std::filesystem::path(model_path).replace_extension(".float32.tsm");
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return;
+  image_ = read_model_bytes(path.string());
   if (!gnc::is_float32(image_.data(), image_.size())) return;
   estimator_ = std::make_unique<HostEstimator>(image_, target.c_str());
   if (estimator_->status() != gnc::ModelStatus::kOk) estimator_.reset();
@@ -45,7 +47,7 @@ NumericsComparison Float32Reference::compare(const std::vector<FrameResult>& res
     reference = std::find_if(reference, results_.end(), same);
     if (reference == results_.end()) break;
     if (result.valid && reference->valid) {
-      differences.push_back(angular_error_rad(result.rcnn, reference->rcnn) * 180.0 / M_PI);
+      differences.push_back(kDegPerRad * angular_error_rad(result.rcnn, reference->rcnn));
     }
   }
   if (!differences.empty()) {

@@ -18,32 +18,35 @@ extern const std::uint8_t tumblesight_model_image[], tumblesight_model_image_end
 extern const std::uint8_t tumblesight_recording[], tumblesight_recording_end[];
 }
 
-namespace tumblesight::hal::replay {
+namespace tumblesight::fsw {
 namespace {
 
-class BoardStopwatch final : public Stopwatch {
+using namespace hal::replay;
+namespace board = hal::board;
+
+class BoardStopwatch final : public hal::Stopwatch {
  public:
   std::uint64_t now_ns() override { return board::now_ns(); }
 };
 
 // One read-only bank: the image in the program.
-class ProgramModelStore final : public ModelStore {
+class ProgramModelStore final : public hal::ModelStore {
  public:
-  ModelBank bank(int index) override {
+  hal::ModelBank bank(int index) override {
     const auto size = static_cast<std::size_t>(tumblesight_model_image_end - tumblesight_model_image);
-    return index == 0 ? ModelBank{tumblesight_model_image, nullptr, size, size} : ModelBank{};
+    return index == 0 ? hal::ModelBank{tumblesight_model_image, nullptr, size, size} : hal::ModelBank{};
   }
 };
 
-class NoWatchdog final : public Watchdog {
+class NoWatchdog final : public hal::Watchdog {
  public:
   void kick() override {}
 };
 
-fsw::AttitudeInitApp app;
+AttitudeInitApp app;
 ProgramModelStore model_store;
 NoWatchdog watchdog;
-fsw::CycleWorkspace workspace;
+CycleWorkspace workspace;
 BoardStopwatch stopwatch;
 Recording recording;
 ConsoleLink link;
@@ -55,7 +58,7 @@ int fail(const char* what, const char* why) {
 
 int run() {
   app.init({&stopwatch, &model_store, nullptr}, nullptr);
-  if (app.mode() != fsw::Mode::kRun) return fail("model image", gnc::to_string(app.boot_status(0)));
+  if (app.mode() != Mode::kRun) return fail("model image", gnc::to_string(app.boot_status(0)));
   const auto recording_size = static_cast<std::size_t>(tumblesight_recording_end - tumblesight_recording);
   const RecordingStatus status = recording.open(tumblesight_recording, recording_size);
   if (status != RecordingStatus::kOk) return fail("recording", to_string(status));
@@ -64,9 +67,9 @@ int run() {
                    .text("tumblesight, ")
                    .text(app.estimator().model().target.data())
                    .text(", ")
-                   .text(fsw::Numerics::kName)
+                   .text(Numerics::kName)
                    .text(", ")
-                   .text(gnc::to_string(gnc::fastest_kernels<fsw::Numerics>().set))
+                   .text(gnc::to_string(gnc::fastest_kernels<Numerics>().set))
                    .text(", ")
                    .number(recording.frames())
                    .text(" frames\n")
@@ -76,7 +79,7 @@ int run() {
   while (recording.has_next()) {
     const std::int64_t now_ns = recording.next_exposure_time_ns();
     lidar.advance_to(now_ns);
-    fsw::run_cycle(app, {lidar, link, watchdog}, now_ns, 0, workspace);
+    run_cycle(app, {lidar, link, watchdog}, now_ns, 0, workspace);
     link.digest(app.state_crc32());
   }
   if (link.telemetry().frames_used != recording.frames())
@@ -86,8 +89,8 @@ int run() {
 }
 
 }  // namespace
-}  // namespace tumblesight::hal::replay
+}  // namespace tumblesight::fsw
 
 int main() {
-  tumblesight::hal::board::end(tumblesight::hal::replay::run());
+  tumblesight::hal::board::end(tumblesight::fsw::run());
 }

@@ -96,9 +96,9 @@ std::string project_objection(const std::string& file, const std::string& path) 
   if (starts_with(file, "fsw/")) verdict = verdict_on_fsw(file, path);
   if (starts_with(file, "hal/")) verdict = verdict_on_hal(file, path);
   if (starts_with(file, "sim/")) {
-    verdict = {starts_with_any(path, {"sim/", "gnc/", "hal/messages/", "hal/dds/idl/", "hal/replay/",
-                                      "cmake/version.hpp"}),
-               "sim may include only sim, gnc, hal/messages, hal/dds/idl and hal/replay"};
+    verdict = {starts_with_any(path, {"sim/", "gnc/", "hal/messages/", "hal/dds/idl/",
+                                      "hal/replay/recording.hpp", "cmake/version.hpp"}),
+               "sim may include only sim, gnc, hal/messages, hal/dds/idl and the format of recordings"};
   }
   return verdict.allowed ? std::string() : verdict.rule;
 }
@@ -110,7 +110,8 @@ std::string library_objection(const std::string& file, const std::string& path) 
     return knows_processors ? ""
                             : "only the kernels and the benchmark of their peak speed may use intrinsics";
   }
-  const bool is_flight = starts_with_any(file, {"gnc/", "fsw/"}) && !starts_with(file, "fsw/programs/");
+  const bool is_flight =
+      starts_with_any(file, {"gnc/", "fsw/", "hal/messages/"}) && !starts_with(file, "fsw/programs/");
   if ((is_flight || is_interface(file)) && !is_flight_header(path)) {
     return "not a header for the flight side";
   }
