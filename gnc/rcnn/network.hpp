@@ -177,8 +177,10 @@ class Arena {
   template <int kIndex>
   typename Layer<N, kIndex>::Input& input() {
     using Input = typename Layer<N, kIndex>::Input;
-    if constexpr (kIndex % 2 == 0) return in_place<Input>(buffers_.even);
-    if constexpr (kIndex % 2 == 1) return in_place<Input>(buffers_.odd);
+    if constexpr (kIndex % 2 == 0)
+      return in_place<Input>(buffers_.even);
+    else
+      return in_place<Input>(buffers_.odd);
   }
   template <int kIndex>
   typename Layer<N, kIndex>::Sums& sums() {
