@@ -1,6 +1,7 @@
 // The smallest integration: LiDAR frames in, attitudes out. `tumblesight record` writes such frames.
 //   attitude_from_frames MODEL.tsm FRAMES.tslr
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <vector>
@@ -18,9 +19,13 @@ int main(int argc, char** argv) {
   if (argc != 3) return std::fprintf(stderr, "usage: attitude_from_frames MODEL.tsm FRAMES.tslr\n"), 2;
   hal::posix::FileModelStore store(argv[1], 2'000'000);
   const hal::ModelBank image = store.bank(0);
+  if (store.status() != hal::posix::FileStatus::kOk)
+    return std::fprintf(stderr, "%s: %s\n", argv[1], to_string(store.status())), 1;
   const gnc::ModelStatus loaded = estimator.load(image.data, image.size, nullptr);
   if (loaded != gnc::ModelStatus::kOk) return std::fprintf(stderr, "%s: %s\n", argv[1], to_string(loaded)), 1;
 
+  if (!std::filesystem::is_regular_file(argv[2]))
+    return std::fprintf(stderr, "%s: there is no such file\n", argv[2]), 1;
   std::ifstream file(argv[2], std::ios::binary);
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
   hal::replay::Recording recording;
