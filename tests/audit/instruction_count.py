@@ -35,12 +35,12 @@ def build_plugin(folder):
     return plugin
 
 
-def addresses(processor, program):
-    """The addresses of the stages' functions, in the order of STAGES."""
+def addresses(processor, program, stages):
+    """The addresses of the stages' functions, in the order of `stages`."""
     listing = subprocess.run([processor.tool("nm"), "-C", str(program)], check=True, capture_output=True, text=True).stdout
     symbols = [line.split(" ", 2) for line in listing.splitlines() if re.match(r"[0-9a-f]+ [tTwW] ", line)]
     found = []
-    for name, pattern in STAGES:
+    for name, pattern in stages:
         matches = [(int(address, 16), symbol) for address, _, symbol in symbols if re.search(pattern, symbol)]
         matches.sort(key=lambda match: "[clone" in match[1])  # the function itself before its clones
         if not matches:
@@ -49,20 +49,42 @@ def addresses(processor, program):
     return found
 
 
-# Verifies TS-NUM-070.
-def count(processor, program, plugin, folder):
-    """(names of the stages, [instructions per stage] of every step, lines of the console)"""
-    stages, out = folder / f"{program.name}.stages", folder / f"{program.name}.counts"
-    lines = (f"{address:x} {name}\n" for address, (name, _) in zip(addresses(processor, program), STAGES))
-    stages.write_text("".join(lines))
+def run_and_count(processor, program, plugin, folder, stages):
+    """([instructions per stage] of every step, lines of the console)"""
+    table, out = folder / f"{program.name}.stages", folder / f"{program.name}.counts"
+    lines = (f"{address:x} {name}\n" for address, (name, _) in zip(addresses(processor, program, stages), stages))
+    table.write_text("".join(lines))
     out.unlink(missing_ok=True)
     command = list(processor.emulator)
     at = -1 if command[-1] == "-kernel" else len(command)
-    command[at:at] = ["-plugin", f"{plugin},stages={stages},out={out}"]
+    command[at:at] = ["-plugin", f"{plugin},stages={table},out={out}"]
     run = subprocess.run(command + [str(program)], capture_output=True, text=True, timeout=TIME_LIMIT_S, stdin=subprocess.DEVNULL)
     console = (run.stdout + run.stderr).splitlines()
     if run.returncode != 0:
         raise SystemExit(f"audit: {program} on {processor.name} ended with status {run.returncode}:\n" + "\n".join(console[-5:]))
-    steps = [tuple(map(int, line.split())) for line in out.read_text().splitlines()]
-    names = [name for name, _ in STAGES if name != "(end)"]
-    return names, steps, console
+    return [tuple(map(int, line.split())) for line in out.read_text().splitlines()], console
+
+
+# Verifies TS-NUM-070.
+def count(processor, program, plugin, folder):
+    """(names of the stages, [instructions per stage] of every step, lines of the console)"""
+    steps, console = run_and_count(processor, program, plugin, folder, STAGES)
+    return [name for name, _ in STAGES if name != "(end)"], steps, console
+
+
+# A whole step of flight_worst_step.
+WHOLE_STEP = (("step", r"fsw::AttitudeInitApp::step\("), ("(end)", r"^tumblesight_step_ended"))
+
+
+# Verifies TS-TIM-100.
+def count_worst_steps(processor, program, plugin, folder):
+    """{name of a step: instructions, the most of all steps with this name}, without the quiet ones"""
+    steps, console = run_and_count(processor, program, plugin, folder, WHOLE_STEP)
+    names = [line.split(" ", 1)[1] for line in console if line.startswith("step ")]
+    if len(names) != len(steps) or "all steps done" not in console:
+        raise SystemExit(f"audit: {program} on {processor.name}: {len(names)} names for {len(steps)} steps:\n" + "\n".join(console[-5:]))
+    worst = {}
+    for name, (instructions,) in zip(names, steps):
+        if name != "quiet":
+            worst[name] = max(worst.get(name, 0), instructions)
+    return worst
