@@ -18,8 +18,8 @@ std::string overview_section(const Results& results) {
   return html_text(conditions_table(results.subjects, kPageOverview), "results") +
          "<p class=sub>Mean angular error of the last frame ± one standard error, and the share of the "
          "sequences within 20°. RCNN: from all frames. CNN: from the last frame alone. Templates: classical "
-         "template matching of the last frame with renderings of the same mesh, refined by iterated closest "
-         "points, on the first sequences of each condition. Goals: <span class=met>met</span>, <span "
+         "template matching of the last frame with renderings of the same mesh, refined by iterative closest "
+         "points (ICP), on the first sequences of each condition. Goals: <span class=met>met</span>, <span "
          "class=missed>missed</span>.</p>\n";
 }
 
