@@ -14,7 +14,7 @@
 #include "sim/cli/target_setup.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/terminal/table.hpp"
-#include "sim/terminal/text_file.hpp"
+#include "sim/terminal/write_file.hpp"
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -107,7 +107,7 @@ void bench(const BenchArguments& arguments) {
   }
   bench_peers(arguments, float32_path, frames, rows);
   fmt::print("\n{}\n", table_of(rows));
-  if (!arguments.json.empty()) write_text_file(arguments.json, json_of(rows).dump(2) + "\n");
+  if (!arguments.json.empty()) write_file(arguments.json, json_of(rows).dump(2) + "\n");
 }
 
 }  // namespace

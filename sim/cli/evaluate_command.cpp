@@ -16,7 +16,7 @@
 #include "sim/report/results_tables.hpp"
 #include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
-#include "sim/terminal/text_file.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -83,10 +83,10 @@ void print_results(const Results& results) {
 
 void write_files(const EvaluateArguments& arguments, const Results& results) {
   const std::string& json = arguments.scenario.json;
-  if (!json.empty()) write_text_file(json, results_json(results).dump(2) + "\n");
-  if (!arguments.csv.empty()) write_text_file(arguments.csv, results_csv(results));
+  if (!json.empty()) write_file(json, results_json(results).dump(2) + "\n");
+  if (!arguments.csv.empty()) write_file(arguments.csv, results_csv(results));
   if (arguments.report.empty()) return;
-  write_text_file(arguments.report, results_page(results));
+  write_file(arguments.report, results_page(results));
   fmt::print("  report               {}\n", full_path(arguments.report));
 }
 

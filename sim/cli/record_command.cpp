@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/recording/make_recording.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -19,12 +18,6 @@ struct RecordArguments {
   ScenarioArguments scenario;
   std::string out;
 };
-
-void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!file.flush()) throw std::runtime_error("--out " + path + ": cannot be written");
-}
 
 void record(const RecordArguments& arguments) {
   const ScenarioArguments& wanted = arguments.scenario;

@@ -19,10 +19,10 @@
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/sil_report.hpp"
-#include "sim/sil/telecommand.hpp"
+#include "sim/sil/signed_telecommand.hpp"
 #include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
-#include "sim/terminal/text_file.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -123,7 +123,7 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
 
 void print_results(const RunReport& report, const std::optional<NumericsComparison>& numerics) {
   fmt::print("\n{}\n{}\n", terminal_text(run_errors_table(report)),
-             terminal_text(by_frame_table(errors_by_frame(report.results, report.frames))));
+             terminal_text(by_frame_table(errors_by_frame(report.results, report.setup.frames))));
   fmt::print("  steps              {} of {} answered\n", report.steps_planned - report.steps_missed,
              report.steps_planned);
   fmt::print("  inference time     median {:.2f} ms, max {:.2f} ms\n", 1e-3 * report.inference_median_us,
@@ -180,12 +180,12 @@ std::vector<std::string> write_files(const SimulateArguments& arguments, const R
     }
   };
   attempt([&] {
-    write_text_file(arguments.report, run_page(report));
+    write_file(arguments.report, run_page(report));
     fmt::print("  report             {}\n", full_path(arguments.report));
   });
   const std::string& json = arguments.scenario.json;
   attempt([&] {
-    if (!json.empty()) write_text_file(json, figures.dump(2) + "\n");
+    if (!json.empty()) write_file(json, figures.dump(2) + "\n");
   });
   return failures;
 }

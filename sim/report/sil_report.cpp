@@ -205,10 +205,7 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
                      const std::optional<NumericsComparison>& numerics) {
   const InferenceTime time = inference_time(run);
   RunReport report;
-  report.target = setup.target;
-  report.condition = setup.condition;
-  report.sequences = setup.sequences;
-  report.frames = setup.frames;
+  report.setup = setup;
   report.frame_period_s = kFramePeriod_s;
   report.results = frame_results(run);
   report.pictures = pictures(run, setup.projection);
@@ -220,7 +217,6 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   report.inference_max_us = time.max_us;
   report.trace_crc32 = run.trace_crc32;
   report.notices = run_faults(run);
-  report.remarks = setup.remarks;
   report.facts = {settings_facts(setup), outcome_facts(run, setup), counter_facts(run)};
   if (numerics) report.facts.push_back(numerics_facts(*numerics));
   const FactList events = event_facts(run);
