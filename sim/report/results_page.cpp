@@ -10,6 +10,7 @@
 #include "sim/report/results_figures.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/svg.hpp"
+#include "sim/terminal/counted.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -138,9 +139,11 @@ std::string chapter(const Results& results, const SubjectResult& subject) {
   const CellResult& base = subject.cells.front();
   return fmt::format(
              "<h2 class=chapter>{}</h2>\n<p class=sub>model {}.tsm, CRC-32 <code>{:08x}</code>; seed {}; {} "
-             "sequences of {} frames ({}); {}</p>\n",
+             "of {} "
+             "({}); {}</p>\n",
              escape_markup(title_of(subject)), escape_markup(subject.model), subject.model_crc32,
-             results.seed, base.sequences, base.frames, to_string(base.condition), times_text(base)) +
+             results.seed, counted(base.sequences, "sequence"), counted(base.frames, "frame"),
+             to_string(base.condition), times_text(base)) +
          html_text(checks_table(subject), "results") + figures_of(subject);
 }
 

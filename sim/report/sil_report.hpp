@@ -21,6 +21,8 @@ struct InferenceTime {
 };
 // Over the steps that gave an attitude; zeros if none did.
 InferenceTime inference_time(const SilRunResult& run);
+// "1.25 ms"; "none" for 0.
+std::string time_text(double time_us);
 
 // The faults of the run, one sentence each. Empty: every step was answered with an attitude, and the flight
 // task allocated no heap memory.
