@@ -85,6 +85,7 @@ TYPED_TEST_SUITE(EstimatorOf, BothNumerics);
 
 // Verifies TS-NUM-090.
 TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
+  int means_taken = 0, rates_corrected = 0;
   for (const unsigned seed : {62U, 66U, 68U}) {
     auto weights = std::make_unique<NetworkWeights<Float32>>();
     fill_random(*weights, seed);
@@ -116,10 +117,13 @@ TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
       EXPECT_NEAR(1e-6 * estimate.predicted_error_single_frame_urad, track.single_frame_error_rad(), 5e-5);
       EXPECT_EQ(estimate.frames_since_reset, frame + 1);
     }
-    // The sequences exercise the track.
-    EXPECT_GT(track.means_taken, 5);
-    EXPECT_GT(track.rates_corrected, 5);
+    means_taken += track.means_taken;
+    rates_corrected += track.rates_corrected;
   }
+  // The sequences exercise the track. A single random network may not: one that always chooses an attitude of
+  // 60 degrees or more from the predicted one never corrects a rate.
+  EXPECT_GT(means_taken, 50);
+  EXPECT_GT(rates_corrected, 50);
 }
 
 // Verifies TS-IFC-090.
