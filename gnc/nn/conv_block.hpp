@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "gnc/nn/kernels/kernels.hpp"
 #include "gnc/nn/kernels/numerics.hpp"
@@ -33,6 +34,8 @@ struct PaddedImage {
 template <class N, int kSide, int kChannelsIn, int kChannelsOut>
 struct ConvBlock {
   static_assert(kSide > 1 && kChannelsOut % kIntegerChannels == 0);
+  using Product = typename N::ConvProduct;
+  static constexpr std::int64_t kLargestSum = kMaxConvSum;  // in fixed point: magnitude, rounding included
   static constexpr int kSideOut = kSide / 2;
   static constexpr int kColumns = 2 * kSideOut;
   static constexpr int kWeights = 3 * 3 * kChannelsIn * kChannelsOut;

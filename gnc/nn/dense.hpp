@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "gnc/nn/kernels/kernels.hpp"
 #include "gnc/nn/kernels/numerics.hpp"
@@ -14,6 +15,8 @@ namespace tumblesight::gnc {
 // kPaddedOut.
 template <class N, int kIn, int kOut>
 struct Dense {
+  using Product = typename N::DenseProduct;
+  static constexpr std::int64_t kLargestSum = INT32_MAX;  // in fixed point: magnitude, rounding included
   static constexpr int kPaddedOut = N::padded(kOut);
   static constexpr std::size_t kParameters = (kIn + 1) * kOut;
   static constexpr long kMacs = 1L * kIn * kOut;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "gnc/nn/kernels/kernels.hpp"
 #include "gnc/nn/kernels/numerics.hpp"
@@ -32,6 +33,8 @@ Fixed gate_tanh(Fixed x);
 // N: Float32 or FixedPoint; kIn inputs (int16 in fixed point), kHidden units.
 template <class N, int kIn, int kHidden>
 struct Lstm {
+  using Product = typename N::DenseProduct;
+  static constexpr std::int64_t kLargestSum = INT32_MAX;  // in fixed point: magnitude, rounding included
   static constexpr int kGates = 4 * kHidden;
   static_assert(N::padded(kGates) == kGates);
   static constexpr std::size_t kParameters = (kIn + kHidden + 1) * kGates;

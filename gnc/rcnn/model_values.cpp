@@ -1,5 +1,7 @@
 #include "gnc/rcnn/model_values.hpp"
 
+#include <limits>
+
 #include "gnc/rcnn/model_format.hpp"
 
 namespace tumblesight::gnc {
@@ -19,15 +21,17 @@ struct LayerLimits {
 constexpr std::uint32_t kLargestActivationShift = 30;
 constexpr std::uint32_t kLargestRealShift = 62;  // of sums that become real numbers: outputs and LSTM gates
 
-constexpr LayerLimits limits_of(const LayerRow& row) {
-  if (row.kind == LayerKind::kConvolution) {
-    return {Int8Product::kGroup, 255, kLargestActivationShift, kMaxConvSum};
-  }
+template <int kIndex>
+constexpr LayerLimits limits_of() {
+  using LayerType = Layer<FixedPoint, kIndex>;
+  const LayerRow& row = kLayers[kIndex];
   const int before = layer_index(row.reads[0]);
   const bool reads_average = before < kLayerCount && kLayers[before].output == LayerOutput::kAveragePooled;
-  const bool real = row.kind == LayerKind::kLstm || row.output == LayerOutput::kOutput;
-  return {Int16Product::kGroup, reads_average ? 4 * kMaxAveragedActivation : 32767,
-          real ? kLargestRealShift : kLargestActivationShift, INT32_MAX};
+  const bool real = sums_of(row.kind).become_real || row.output == LayerOutput::kOutput;
+  return {LayerType::Product::kGroup,
+          reads_average ? 4 * kMaxAveragedActivation
+                        : std::numeric_limits<typename LayerType::Product::Input>::max(),
+          real ? kLargestRealShift : kLargestActivationShift, LayerType::kLargestSum};
 }
 
 // The tensors of one layer in the image.
@@ -99,7 +103,7 @@ bool has_possible_values(const std::uint8_t* image, const NetworkWeights<FixedPo
   const std::uint8_t* next = image + kModelDataOffset<FixedPoint>;
   bool possible = true;
   for_each_index<0, kLayerCount>([&](auto index) {
-    constexpr LayerLimits kLimits = limits_of(kLayers[decltype(index)::value]);
+    constexpr LayerLimits kLimits = limits_of<decltype(index)::value>();
     const auto& layer = layer_weights<decltype(index)::value>(weights);
     LayerInImage in_image;
     for_each_tensor_of(layer, [&](const char* part, const auto& tensor) {

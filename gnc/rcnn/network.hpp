@@ -10,54 +10,14 @@
 #include <utility>
 
 #include "gnc/lidar/depth_image.hpp"
-#include "gnc/nn/conv_block.hpp"
-#include "gnc/nn/dense.hpp"
-#include "gnc/nn/lstm.hpp"
 #include "gnc/rcnn/network_shape.hpp"
 
 namespace tumblesight::gnc {
 
-// Per kind of layer: its type, and how a layer without state runs. `sums` is scratch.
-template <LayerKind kKind>
-struct LayerOfKind;
-
-template <>
-struct LayerOfKind<LayerKind::kConvolution> {
-  template <class N, int kIndex>
-  using Type = ConvBlock<N, kLayers[kIndex].side, kLayers[kIndex].inputs, kLayers[kIndex].outputs>;
-
-  // The type of `out` selects the pooling.
-  template <class Layer, LayerOutput, class N, class Out>
-  static void run(const Kernels<N>& kernels, const typename Layer::Weights& weights,
-                  const typename Layer::Input& in, typename Layer::Sums& sums, Out& out) {
-    Layer::forward(kernels, weights, in, sums, out);
-  }
-};
-
-template <>
-struct LayerOfKind<LayerKind::kDense> {
-  template <class N, int kIndex>
-  using Type = Dense<N, kLayers[kIndex].inputs, kLayers[kIndex].outputs>;
-
-  template <class Layer, LayerOutput kOutput, class N, class Out>
-  static void run(const Kernels<N>& kernels, const typename Layer::Weights& weights,
-                  const typename Layer::Input& in, typename Layer::Sums& sums, Out& out) {
-    if constexpr (kOutput == LayerOutput::kHidden) {
-      Layer::hidden(kernels, weights, in, sums, out);
-    } else {
-      Layer::output(kernels, weights, in, sums, out);
-    }
-  }
-};
-
-template <>
-struct LayerOfKind<LayerKind::kLstm> {
-  template <class N, int kIndex>
-  using Type = Lstm<N, kLayers[kIndex].inputs, kLayers[kIndex].outputs>;
-};
-
 template <class N, int kIndex>
-using Layer = typename LayerOfKind<kLayers[kIndex].kind>::template Type<N, kIndex>;
+using Layer =
+    typename LayerOfKind<kLayers[kIndex].kind>::template Type<N, kLayers[kIndex].side, kLayers[kIndex].inputs,
+                                                              kLayers[kIndex].outputs>;
 
 template <int kFirst, class Visitor, int... kOffset>
 [[gnu::always_inline]] inline void for_each_offset(Visitor& visit, std::integer_sequence<int, kOffset...>) {

@@ -3,8 +3,7 @@
 // ground training, quantization, ONNX export and bench.
 #pragma once
 
-#include <array>
-#include <cstdint>
+#include "gnc/rcnn/layer_kinds.hpp"
 
 namespace tumblesight::gnc {
 
@@ -46,53 +45,9 @@ inline constexpr int kHashed[] = {
 
 }  // namespace shape
 
-// To add a kind: docs/contributing.md.
-enum class LayerKind : std::uint8_t {
-  kConvolution,  // 3x3, zero padding 1, pooling 2x2 (floor), ReLU: gnc/nn/conv_block.hpp
-  kDense,        // fully connected: gnc/nn/dense.hpp
-  kLstm,         // one step of a long short-term memory: gnc/nn/lstm.hpp
-};
-
-// The output of a layer.
-enum class LayerOutput : std::uint8_t {
-  kMaxPooled,      // convolution: maximum of each 2x2 window, then ReLU
-  kAveragePooled,  // convolution: ReLU, then the mean of each 2x2 window; flat, pixel by pixel
-  kHidden,         // dense: ReLU; LSTM: hidden state
-  kOutput,         // dense: values with a meaning, no activation
-};
-
-struct LayerRow {
-  const char* name;  // of its tensors, in files and reports
-  LayerKind kind;
-  LayerOutput output;
-  int inputs;   // channels of the input image (convolution), else values
-  int outputs;  // channels (convolution), hidden units (LSTM), else values
-  int side;     // convolution: pixels along one side of the input image; else 0
-  // The layer or network input that it reads. A second one is appended to the first.
-  std::array<const char*, 2> reads;
-};
-
 // The network's inputs: the depth image folded 2x2 into four channels, and the LSTM input.
 inline constexpr const char* kDepthInput = "depth";
 inline constexpr const char* kLstmInput = "lstm_input";
-
-constexpr LayerRow max_pooled_convolution(const char* name, const char* reads, int side, int inputs,
-                                          int outputs) {
-  return {name, LayerKind::kConvolution, LayerOutput::kMaxPooled, inputs, outputs, side, {reads}};
-}
-constexpr LayerRow average_pooled_convolution(const char* name, const char* reads, int side, int inputs,
-                                              int outputs) {
-  return {name, LayerKind::kConvolution, LayerOutput::kAveragePooled, inputs, outputs, side, {reads}};
-}
-constexpr LayerRow hidden_dense(const char* name, std::array<const char*, 2> reads, int inputs, int outputs) {
-  return {name, LayerKind::kDense, LayerOutput::kHidden, inputs, outputs, 0, reads};
-}
-constexpr LayerRow output_dense(const char* name, std::array<const char*, 2> reads, int inputs, int outputs) {
-  return {name, LayerKind::kDense, LayerOutput::kOutput, inputs, outputs, 0, reads};
-}
-constexpr LayerRow lstm(const char* name, std::array<const char*, 2> reads, int inputs, int hidden_units) {
-  return {name, LayerKind::kLstm, LayerOutput::kHidden, inputs, hidden_units, 0, reads};
-}
 
 // The layers in the order of execution: first the CNN, whose last layer is the single-frame
 // head, then the LSTM and the recurrent head. This is also the order of the tensors in a model image.
@@ -131,14 +86,14 @@ inline constexpr int kCnnOutputLayer = kLstmLayer - 1;
 inline constexpr int kFeatureLayer = kLstmLayer - 2;  // its output, the features, begins the LSTM input
 inline constexpr int kHeadOutputLayer = kLayerCount - 1;
 
-// How many values of one frame have this name: a network input's or a layer's output.
+// How many values of one frame have this name: a network input's or a layer's output. 0: no such name.
 constexpr int values_per_frame(const char* name) {
   if (is_same_name(name, kDepthInput)) return shape::kImageSide * shape::kImageSide;
   // cppcheck takes shape::kLstmInput, a size, for the name gnc::kLstmInput.
   // cppcheck-suppress CastAddressToIntegerAtReturn
   if (is_same_name(name, kLstmInput)) return shape::kLstmInput;
-  const LayerRow& row = kLayers[layer_index(name)];
-  return row.kind == LayerKind::kConvolution ? (row.side / 2) * (row.side / 2) * row.outputs : row.outputs;
+  const int index = layer_index(name);
+  return index < kLayerCount ? output_values(kLayers[index]) : 0;
 }
 
 // Every layer is as wide as what it reads.
@@ -146,13 +101,37 @@ constexpr bool is_consistent() {
   for (const LayerRow& row : kLayers) {
     int values = 0;
     for (const char* name : row.reads) values += name != nullptr ? values_per_frame(name) : 0;
-    const int pixels = row.kind == LayerKind::kConvolution ? row.side * row.side : 1;
-    if (values != pixels * row.inputs) return false;
+    if (values != input_values(row)) return false;
   }
   return true;
 }
-static_assert(is_consistent(), "a layer's inputs do not match what it reads");
+static_assert(is_consistent(), "a layer's inputs do not match what it reads, or it reads an unknown layer");
 static_assert(kLayers[kFeatureLayer].outputs == shape::kDense2 &&
               kLayers[kHeadOutputLayer].outputs == shape::kHeadOutput);
+
+// The layers that read images, which come first in the table.
+constexpr int count_image_layers() {
+  int count = 0;
+  while (is_image_layer(kLayers[count])) ++count;
+  return count;
+}
+inline constexpr int kImageLayerCount = count_image_layers();
+constexpr bool all_images_come_first() {
+  for (int i = kImageLayerCount; i < kLayerCount; ++i) {
+    if (is_image_layer(kLayers[i])) return false;
+  }
+  return true;
+}
+static_assert(all_images_come_first(), "a layer that reads an image stands behind one that reads a vector");
+
+// Whether the outputs of all layers stand in shape::kHashed, in the table's order.
+constexpr bool all_layers_are_hashed() {
+  int layer = 0;
+  for (const int size : shape::kHashed) {
+    if (layer < kLayerCount && kLayers[layer].outputs == size) ++layer;
+  }
+  return layer == kLayerCount;
+}
+static_assert(all_layers_are_hashed(), "shape::kHashed lacks the outputs of a layer at its place");
 
 }  // namespace tumblesight::gnc

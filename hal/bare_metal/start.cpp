@@ -11,7 +11,7 @@ extern std::uint8_t data_start[], data_end[], data_load[], bss_start[], bss_end[
 using Constructor = void (*)();
 extern const Constructor init_array_start[], init_array_end[];
 
-int main();
+int main(int argc, char** argv);
 [[noreturn]] void start_program();
 [[noreturn]] void unexpected_trap();
 [[noreturn]] void __cxa_pure_virtual();
@@ -22,7 +22,7 @@ void start_program() {
   std::memset(bss_start, 0, static_cast<std::size_t>(bss_end - bss_start));
   for (const Constructor* constructor = init_array_start; constructor != init_array_end; ++constructor)
     (*constructor)();
-  tumblesight::hal::board::end(main());
+  tumblesight::hal::board::end(main(0, nullptr));  // no command line
 }
 
 // Any exception of the processor: none of them is expected.

@@ -54,14 +54,21 @@ std::string lstm_script(const gnc::LayerRow& row) {
          row.name + " = torch.sigmoid(show) * torch.tanh(c_next)\n";
 }
 
+std::string layer_script(const gnc::LayerRow& row) {
+  switch (row.kind) {
+    case gnc::LayerKind::kConvolution:
+      return convolution_script(row);
+    case gnc::LayerKind::kDense:
+      return dense_script(row);
+    case gnc::LayerKind::kLstm:
+      return lstm_script(row);
+  }
+  return {};
+}
+
 std::string script_of_layers(int first, int end) {
   std::string script;
-  for (int i = first; i < end; ++i) {
-    const gnc::LayerRow& row = gnc::kLayers[i];
-    script += row.kind == gnc::LayerKind::kConvolution ? convolution_script(row)
-              : row.kind == gnc::LayerKind::kDense     ? dense_script(row)
-                                                       : lstm_script(row);
-  }
+  for (int i = first; i < end; ++i) script += layer_script(gnc::kLayers[i]);
   return script;
 }
 
@@ -97,7 +104,7 @@ void register_weights(const gnc::NetworkWeights<gnc::Float32>& weights, torch::j
     const torch::Tensor weight = weight_from_flight(layer.row, tensor_of(layer.weight));
     add(name + "_weight", weight);
     add(name + "_bias", tensor_of(layer.bias));
-    if (layer.row.kind != gnc::LayerKind::kLstm) continue;
+    if (layer.recurrent.size == 0) continue;
     const torch::Tensor recurrent = weight_from_flight(layer.row, tensor_of(layer.recurrent));
     add(name + "_both", torch::cat({weight, recurrent}, 1));
   }

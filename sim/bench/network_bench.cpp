@@ -53,16 +53,10 @@ double timed(const Run& run) {
   return us_between(begin, Clock::now());
 }
 
-constexpr int kConvolutions = [] {
-  int count = 0;
-  while (gnc::kLayers[count].kind == gnc::LayerKind::kConvolution) ++count;
-  return count;
-}();
-
 template <class N>
 double convolution_macs(const gnc::Kernels<N>& kernels) {
   long macs = 0;
-  gnc::for_each_index<0, kConvolutions>(
+  gnc::for_each_index<0, gnc::kImageLayerCount>(
       [&](auto index) { macs += gnc::Layer<N, decltype(index)::value>::macs_done(kernels.pixels); });
   return static_cast<double>(macs);
 }
@@ -134,7 +128,7 @@ class Bench {
     gnc::run_frame<N>(kernels_, estimator_->network().weights(), *images_[i % images_.size()], *arena_,
                       features_, output, [&](std::string_view name, const auto&) {
                         if (name == gnc::kDepthInput) begin = Clock::now();
-                        if (name == gnc::kLayers[kConvolutions - 1].name) end = Clock::now();
+                        if (name == gnc::kLayers[gnc::kImageLayerCount - 1].name) end = Clock::now();
                       });
     return us_between(begin, end);
   }

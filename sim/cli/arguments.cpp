@@ -69,10 +69,7 @@ CLI::Validator target_name() {
 }
 
 CLI::Validator existing_model_image() {
-  const auto check = [](std::string& path) -> std::string {
-    const std::string refusal = CLI::ExistingFile(path);
-    return refusal.empty() ? refusal : refusal + remedy_for_missing_image(path);
-  };
+  const auto check = [](std::string& path) -> std::string { return fault_of_model_path(path); };
   return CLI::Validator(check, "", "model image");
 }
 
@@ -232,6 +229,18 @@ void require_different(const std::string& option, const std::string& path, const
   if (path.empty() || other_path.empty() || full_path(path) != full_path(other_path)) return;
   throw CLI::ValidationError(
       option, fmt::format("'{}' is also the file of {}; give two different files", path, other_option));
+}
+
+void require_folder(const std::string& option, const std::string& path) {
+  namespace fs = std::filesystem;
+  const auto refuse = [&](const std::string& reason) {
+    throw std::runtime_error(fmt::format("{} {}: {}", option, path, reason));
+  };
+  std::error_code error;
+  if (fs::exists(path, error) && !fs::is_directory(path, error)) refuse("is a file; give a folder");
+  fs::create_directories(path, error);
+  if (error) refuse("cannot be created: " + error.message());
+  if (access(path.c_str(), W_OK) != 0) refuse(std::string("cannot be written: ") + std::strerror(errno));
 }
 
 void require_writable(const std::string& option, const std::string& path) {

@@ -79,6 +79,10 @@ std::string full_path(const std::string& path);
 void require_different(const std::string& option, const std::string& path, const std::string& other_option,
                        const std::string& other_path);
 
+// Creates the folder if it does not exist. Throws std::runtime_error that names option, folder and reason if
+// that fails or no file can be written into it.
+void require_folder(const std::string& option, const std::string& path);
+
 // Throws std::runtime_error that names option, file and reason if `path` cannot be written. Leaves no file
 // behind.
 void require_writable(const std::string& option, const std::string& path);

@@ -14,7 +14,7 @@
 #include "sim/cli/target_setup.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/terminal/table.hpp"
-#include "sim/terminal/text_file.hpp"
+#include "sim/terminal/write_file.hpp"
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -50,16 +50,15 @@ void print_measuring(const std::string& what) {
 }
 
 // A peer that is not installed is reported and left out; one whose outputs differ ends the run.
-void bench_peers(const BenchArguments& arguments, const std::string& float32_path,
+void bench_peers(const BenchArguments& arguments, const Float32Model& model,
                  const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
-  const auto model = read_float32_model(float32_path);
   std::string reasons[2];
-  const std::unique_ptr<Peer> peers[2] = {make_onnx_runtime(*model, arguments.onnxruntime, reasons[0]),
-                                          make_libtorch(*model, reasons[1])};
+  const std::unique_ptr<Peer> peers[2] = {make_onnx_runtime(model, arguments.onnxruntime, reasons[0]),
+                                          make_libtorch(model, reasons[1])};
   for (int i = 0; i < 2; ++i) {
     if (peers[i]) {
       print_measuring(peers[i]->name());
-      rows.push_back(bench_peer(*peers[i], *model, frames));
+      rows.push_back(bench_peer(*peers[i], model, frames));
     } else {
       fmt::print(stderr, "  left out: {}\n", reasons[i]);
     }
@@ -94,32 +93,38 @@ nlohmann::ordered_json json_of(const std::vector<BenchRow>& rows) {
 
 void bench(const BenchArguments& arguments) {
   if (!arguments.json.empty()) require_writable("--json", arguments.json);
-  const std::string fixed_path = shipped_model_path(arguments.target);
-  const std::string float32_path = shipped_model_path(arguments.target + ".float32");
+  const std::string model_folder = fs::path(shipped_model_path("any")).parent_path().string();
+  const BenchImages images = read_bench_images(model_folder, arguments.target);
   const std::vector<gnc::RangeImage> frames = rendered_frames(arguments.target);
   fmt::print("\n  {}, {:.1f} M multiply-accumulates per frame, one thread\n\n", arguments.target,
              1e-6 * static_cast<double>(gnc::kMacCount));
   std::fflush(stdout);
   std::vector<BenchRow> rows;
-  for (const std::string& path : {fixed_path, float32_path}) {
-    for (BenchRow& row : bench_numerics({read_model_bytes(path), frames}, print_measuring))
-      rows.push_back(std::move(row));
+  for (const std::vector<std::uint8_t>& image : {images.fixed, images.float32}) {
+    for (BenchRow& row : bench_numerics({image, frames}, print_measuring)) rows.push_back(std::move(row));
   }
-  bench_peers(arguments, float32_path, frames, rows);
+  bench_peers(arguments, *images.model, frames, rows);
   fmt::print("\n{}\n", table_of(rows));
-  if (!arguments.json.empty()) write_text_file(arguments.json, json_of(rows).dump(2) + "\n");
+  if (!arguments.json.empty()) write_file(arguments.json, json_of(rows).dump(2) + "\n");
 }
 
 }  // namespace
+
+BenchImages read_bench_images(const std::string& folder, const std::string& target) {
+  const std::string float32_path = folder + "/" + target + ".float32.tsm";
+  return {read_model_bytes(folder + "/" + target + ".tsm"), read_model_bytes(float32_path),
+          read_float32_model(float32_path)};
+}
 
 void add_bench_command(CLI::App& app) {
   auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command =
       app.add_subcommand("bench", "Measure the speed of the flight network, compared with other runtimes");
   command->footer(
-      "\nUses one thread, the shipped model in both numerics and every instruction set of this processor. A\n"
-      "step goes from ranges to quaternion. The other runtimes run the network alone. The peak is measured\n"
-      "with the same multiply-accumulate instructions and no memory access.\n\n"
+      "\nUses one thread, the shipped model in both numerics and every instruction set of\n"
+      "this processor. A step goes from ranges to quaternion. The other runtimes run\n"
+      "the network alone. The peak is measured with the same multiply-accumulate\n"
+      "instructions and no memory access.\n\n"
       "ONNX Runtime is measured if its library is installed:\n"
       "  npm install --prefix build --ignore-scripts onnxruntime-node\n");
   add_target_option(*command, arguments->target, TargetChoice::kShipped);

@@ -65,21 +65,19 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
   add_run_options(command, arguments);
   add_output_options(command, arguments);
   add_paper_options(command, arguments);
-  command.footer(
-      "\nConditions\n" + condition_explanations() +
-      "\nThe error is the angle between true and estimated attitude in the last frame of a sequence; ± is "
-      "one\n"
-      "standard error. Template matching, the classical method, uses renderings of the same mesh as the "
-      "frames.\n\n"
-      "Example: two of the paper's tests, figures to a file, graphs to a page\n"
-      "  tumblesight evaluate --target near_shoemaker --condition nominal,occluded --json near.json --report "
-      "near.html\n\n"
-      "Example: a tumbling spacecraft of your own, with a network trained for it\n"
-      "  tumblesight evaluate --target mine --mesh mine.glb --model mine.tsm --condition tumbling \\\n"
-      "      --inertia 410,380,300,0,-2,5\n\n"
-      "Example: everything in the paper, for all targets; writes docs/results.md. For a quick look add\n"
-      "--sequences 20: then it writes to out/paper of the source tree.\n"
-      "  tumblesight evaluate --paper --mesh-folder meshes\n");
+  command.footer("\nConditions\n" + condition_explanations() +
+                 "\nThe error is the angle between true and estimated attitude in the last frame of\n"
+                 "a sequence; ± is one standard error. Template matching, the classical method,\n"
+                 "uses renderings of the same mesh as the frames.\n\n"
+                 "Example: two of the paper's tests, figures to a file, graphs to a page\n"
+                 "  tumblesight evaluate --target near_shoemaker --condition nominal,occluded \\\n"
+                 "      --json near.json --report near.html\n\n"
+                 "Example: a tumbling spacecraft of your own, with a network trained for it\n"
+                 "  tumblesight evaluate --target mine --mesh mine.glb --model mine.tsm \\\n"
+                 "      --condition tumbling --inertia 410,380,300,0,-2,5\n\n"
+                 "Example: everything in the paper, for all targets; writes docs/results.md. For a\n"
+                 "quick look add --sequences 20: then it writes to out/paper of the source tree.\n"
+                 "  tumblesight evaluate --paper --mesh-folder meshes\n");
 }
 
 void refuse_options_set_by_paper(const CLI::App& command) {

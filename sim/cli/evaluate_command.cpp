@@ -14,9 +14,10 @@
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_page.hpp"
 #include "sim/report/results_tables.hpp"
+#include "sim/terminal/counted.hpp"
 #include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
-#include "sim/terminal/text_file.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -47,9 +48,9 @@ void announce(const Subject& subject, const ExperimentSettings& settings) {
   for (const Condition condition : settings.conditions) {
     conditions += (conditions.empty() ? "" : ", ") + to_string(condition);
   }
-  fmt::print("\n  {}, {}, {} sequences of {} frames, seed {}\n  mesh {}, model {}, CRC-32 {:08x}\n\n",
-             subject.target, conditions, settings.sequences, settings.frames, settings.seed,
-             subject.mesh_name, subject.model_name, subject.model_crc32);
+  fmt::print("\n  {}, {}, {} of {}, seed {}\n  mesh {}, model {}, CRC-32 {:08x}\n\n", subject.target,
+             conditions, counted(settings.sequences, "sequence"), counted(settings.frames, "frame"),
+             settings.seed, subject.mesh_name, subject.model_name, subject.model_crc32);
   std::fflush(stdout);
 }
 
@@ -60,10 +61,10 @@ void print_cell(const SubjectResult& subject, const CellResult& cell) {
   fmt::print("  network              {:.2f} ms per frame (median, one thread)\n", cell.network_ms);
   if (cell.baseline) {
     fmt::print(
-        "  template matching    {:.0f} ms per frame; templates of the same mesh as the frames, last frames "
-        "of the first {} "
-        "sequences\n",
-        cell.baseline_ms, cell.baseline->count);
+        "  template matching    {:.0f} ms per frame; templates of the same mesh as the frames, last {} "
+        "of the first {}\n",
+        cell.baseline_ms, cell.baseline->count == 1 ? "frame" : "frames",
+        counted(cell.baseline->count, "sequence"));
   }
 }
 
@@ -83,10 +84,10 @@ void print_results(const Results& results) {
 
 void write_files(const EvaluateArguments& arguments, const Results& results) {
   const std::string& json = arguments.scenario.json;
-  if (!json.empty()) write_text_file(json, results_json(results).dump(2) + "\n");
-  if (!arguments.csv.empty()) write_text_file(arguments.csv, results_csv(results));
+  if (!json.empty()) write_file(json, results_json(results).dump(2) + "\n");
+  if (!arguments.csv.empty()) write_file(arguments.csv, results_csv(results));
   if (arguments.report.empty()) return;
-  write_text_file(arguments.report, results_page(results));
+  write_file(arguments.report, results_page(results));
   fmt::print("  report               {}\n", full_path(arguments.report));
 }
 

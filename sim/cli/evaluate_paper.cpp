@@ -74,7 +74,6 @@ void announce(const PaperPlan& plan, const EvaluateArguments& arguments, const s
 
 void evaluate_paper(const EvaluateArguments& arguments) {
   const std::string folder = folder_of(arguments);
-  require_writable("--out", folder + "/results.md");
   const PaperPlan plan =
       plan_paper(arguments.mesh_folder, fs::path(shipped_model_path("any")).parent_path().string());
   announce(plan, arguments, folder);
@@ -85,6 +84,7 @@ void evaluate_paper(const EvaluateArguments& arguments) {
     jobs.push_back(job_of(arguments, planned));
     steps += steps_of(jobs.back().settings);
   }
+  require_writable("--out", folder + "/results.md");
   Results results{arguments.scenario.seed, command_of(arguments), local_time_text(), plan.notes, {}};
   ProgressBar bar("evaluating", "steps", steps);
   std::uint64_t done = 0;

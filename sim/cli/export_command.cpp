@@ -19,9 +19,10 @@ struct ExportArguments {
 };
 
 constexpr const char* kUseOfTheModels =
-    "For every frame: run the CNN on its depth image, predict the attitude from the frames before, and give\n"
-    "both to the recurrent network. h_next and c_next are h and c of the next frame. The algebra between\n"
-    "the two models is in gnc/rcnn/hypotheses.hpp and gnc/rcnn/attitude_track.hpp. The doc strings of the\n"
+    "For every frame: run the CNN on its depth image, predict the attitude from the\n"
+    "frames before, and give both to the recurrent network. h_next and c_next are h\n"
+    "and c of the next frame. The algebra between the two models is in\n"
+    "gnc/rcnn/hypotheses.hpp and gnc/rcnn/attitude_track.hpp. The doc strings of the\n"
     "models describe every input and output.\n";
 
 void require_a_name(const std::string& prefix) {
@@ -32,6 +33,7 @@ void require_a_name(const std::string& prefix) {
 void export_model(const ExportArguments& arguments) {
   require_a_name(arguments.onnx);
   const auto model = read_float32_model(arguments.model);
+  require_writable("--onnx", arguments.onnx + ".cnn.onnx");
   const OnnxFiles files = write_onnx_files(*model, arguments.onnx);
   fmt::print("\n  ONNX models of {} in float32, image {:08x}\n", model->header.target.data(),
              model->header.crc32);
@@ -47,10 +49,11 @@ void export_model(const ExportArguments& arguments) {
 void add_export_command(CLI::App& app) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", "Write a float32 model image as ONNX models");
-  command->footer(
-      std::string("\nWrites PREFIX.cnn.onnx and PREFIX.recurrent.onnx (opset 13).\n") + kUseOfTheModels +
-      "\nExample\n"
-      "  tumblesight export --model out/near/near_shoemaker.float32.tsm --onnx out/near/near_shoemaker\n");
+  command->footer(std::string("\nWrites PREFIX.cnn.onnx and PREFIX.recurrent.onnx (opset 13).\n") +
+                  kUseOfTheModels +
+                  "\nExample\n"
+                  "  tumblesight export --model out/near/near_shoemaker.float32.tsm \\\n"
+                  "      --onnx out/near/near_shoemaker\n");
   add_float32_model_option(*command, arguments->model);
   command->add_option("--onnx", arguments->onnx, "first part of both file names")
       ->required()

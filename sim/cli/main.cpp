@@ -2,10 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <string>
 
 #include "cmake/version.hpp"
 #include "gnc/rcnn/model_image.hpp"
+#include "sim/cli/help_formatter.hpp"
 #include "sim/cli/verbs.hpp"
 #ifdef TUMBLESIGHT_HAS_SIL
 #include "hal/dds/idl/icd_hash.hpp"
@@ -50,7 +52,7 @@ int main(int argc, char** argv) {
   app.name("tumblesight");
   app.set_version_flag("--version", version_text(), "version, commit, model format and interface hash");
   app.require_subcommand(1);
-  app.get_formatter()->column_width(26);
+  app.formatter(std::make_shared<sim::HelpFormatter>());
   try {
     std::string command_line = "tumblesight";
     for (int i = 1; i < argc; ++i) command_line += std::string(" ") + argv[i];

@@ -64,11 +64,12 @@ void add_quantize_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("quantize", "Make the fixed-point model image that flies from a float32 one");
   command->footer(
-      "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits. The scales are chosen\n"
-      "on rendered sequences. The table shows the quantization error of each layer.\n\n"
+      "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits.\n"
+      "The scales are chosen on rendered sequences. The table shows the quantization\n"
+      "error of each layer.\n\n"
       "Example\n"
-      "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm --mesh parametric --mesh "
-      "near.stl\n");
+      "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
+      "      --mesh parametric --mesh near.stl\n");
   add_float32_model_option(*command, arguments->model);
   command->add_option("--out", arguments->out, "model image to write [--model without .float32]")
       ->type_name("FILE");

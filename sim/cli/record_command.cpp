@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/recording/make_recording.hpp"
+#include "sim/terminal/counted.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -20,16 +20,10 @@ struct RecordArguments {
   std::string out;
 };
 
-void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!file.flush()) throw std::runtime_error("--out " + path + ": cannot be written");
-}
-
 void record(const RecordArguments& arguments) {
   const ScenarioArguments& wanted = arguments.scenario;
   require_writable("--out", arguments.out);
-  const TargetSetup target = set_up_target(wanted);
+  const TargetSetup target = set_up_target_without_model(wanted);
   RecordingSettings settings;
   settings.scenario =
       scenario_settings(condition_from(wanted.condition), wanted.frames, wanted.target, target.inertia_kg_m2);
@@ -44,8 +38,8 @@ void record(const RecordArguments& arguments) {
       make_recording(renderer, settings, [&](std::uint32_t done) { bar.update(done); });
   bar.finish();
   write_file(arguments.out, bytes);
-  fmt::print("\n  {} {} frames of {}, {} bytes: {}\n\n", total, wanted.condition, wanted.target, bytes.size(),
-             full_path(arguments.out));
+  fmt::print("\n  {}, {}: {}, {} bytes: {}\n\n", wanted.target, wanted.condition, counted(total, "frame"),
+             bytes.size(), full_path(arguments.out));
 }
 
 }  // namespace
@@ -56,12 +50,13 @@ void add_record_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("record", "Render frames into a recording, for flight_replay on a board");
   command->footer(
-      "\nThe file holds the frames of the LiDAR, one every 2.7 s, with a pause between two sequences.\n"
-      "hal/replay/recording.hpp describes the format.\n\n"
+      "\nThe file holds the frames of the LiDAR, one every 2.7 s, with a pause between\n"
+      "two sequences. hal/replay/recording.hpp describes the format.\n\n"
       "Conditions\n" +
       condition_explanations() +
       "\nExample: a recording as the audit replays it on every processor\n"
-      "  tumblesight record --target near_shoemaker --condition degraded --out frames.tslr\n");
+      "  tumblesight record --target near_shoemaker --condition degraded \\\n"
+      "      --out frames.tslr\n");
   add_target_options(*command, arguments->scenario);
   add_condition_option(*command, arguments->scenario.condition);
   add_sequence_options(*command, arguments->scenario);

@@ -19,10 +19,11 @@
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/sil_report.hpp"
-#include "sim/sil/telecommand.hpp"
+#include "sim/sil/signed_telecommand.hpp"
+#include "sim/terminal/counted.hpp"
 #include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
-#include "sim/terminal/text_file.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -35,10 +36,11 @@ constexpr double kManualStart_s = 60.0;  // time for the user to start the fligh
 constexpr int kDefaultFlightDomain = 0;  // of a flight program without --domain
 constexpr int kRunFailed = 1;
 constexpr const char* kNoFlight = "none";
+constexpr const char* kFastestPossible = "max";
 
 CLI::Validator speed() {
   const auto check = [](std::string& text) -> std::string {
-    if (text == "max" || number(kSlowest, kFastest)(text).empty()) return {};
+    if (text == kFastestPossible || number(kSlowest, kFastest)(text).empty()) return {};
     return fmt::format("must be max or a number from {:g} to {:g}, not '{}'", kSlowest, kFastest, text);
   };
   return CLI::Validator(check, "", "speed");
@@ -88,7 +90,7 @@ SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& 
   settings.model_path = setup.model_path;
   settings.flight_path = flight_path(arguments.flight);
   settings.domain = arguments.domain;
-  settings.speed = arguments.speed == "max" ? 0.0 : std::stod(arguments.speed);
+  settings.speed = arguments.speed == kFastestPossible ? 0.0 : std::stod(arguments.speed);
   settings.free_running = arguments.free_running;
   if (!arguments.command_key.empty()) {
     settings.command_key = read_command_key(arguments.command_key);
@@ -111,9 +113,7 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
   setup.frames = scenario.frames;
   setup.seed = scenario.seed;
   setup.model_path = target.model_path;
-  setup.model_crc32 = target.model_status == gnc::ModelStatus::kOk
-                          ? fmt::format("{:08x}", target.header.crc32)
-                          : gnc::to_string(target.model_status);
+  setup.model_crc32 = fmt::format("{:08x}", target.header.crc32);
   setup.projection = target.projection;
   setup.speed = settings.speed;
   setup.free_running = settings.free_running;
@@ -122,12 +122,17 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
 }
 
 void print_results(const RunReport& report, const std::optional<NumericsComparison>& numerics) {
+  if (report.results.empty()) {
+    fmt::print("\n  None of the {} was answered, so there are no figures.\n",
+               counted(report.steps_planned, "step"));
+    return;
+  }
   fmt::print("\n{}\n{}\n", terminal_text(run_errors_table(report)),
-             terminal_text(by_frame_table(errors_by_frame(report.results, report.frames))));
+             terminal_text(by_frame_table(errors_by_frame(report.results, report.setup.frames))));
   fmt::print("  steps              {} of {} answered\n", report.steps_planned - report.steps_missed,
              report.steps_planned);
-  fmt::print("  inference time     median {:.2f} ms, max {:.2f} ms\n", 1e-3 * report.inference_median_us,
-             1e-3 * report.inference_max_us);
+  fmt::print("  inference time     median {}, max {}\n", time_text(report.inference_median_us),
+             time_text(report.inference_max_us));
   fmt::print("  flight heap        {} allocations after init\n", report.heap_allocations);
   fmt::print("  trace CRC-32       {:08x}\n", report.trace_crc32);
   if (!numerics) return;
@@ -155,9 +160,9 @@ SilRunResult run_sequences(const ScenarioArguments& scenario, const TargetSetup&
 }
 
 void announce(const ScenarioArguments& scenario, const TargetSetup& target, const SilSettings& settings) {
-  fmt::print("\n  {}, {}, {} sequences of {} frames, seed {}\n  mesh {}, model {}\n\n", scenario.target,
-             scenario.condition, scenario.sequences, scenario.frames, scenario.seed, target.mesh_name,
-             target.model_path);
+  fmt::print("\n  {}, {}, {} of {}, seed {}\n  mesh {}, model {}\n\n", scenario.target, scenario.condition,
+             counted(scenario.sequences, "sequence"), counted(scenario.frames, "frame"), scenario.seed,
+             target.mesh_name, target.model_path);
   if (settings.flight_path.empty()) {
     fmt::print(
         "  Waiting up to {:g} s for the flight program. Unless it is running already, start\n    {}\n\n",
@@ -180,12 +185,12 @@ std::vector<std::string> write_files(const SimulateArguments& arguments, const R
     }
   };
   attempt([&] {
-    write_text_file(arguments.report, run_page(report));
+    write_file(arguments.report, run_page(report));
     fmt::print("  report             {}\n", full_path(arguments.report));
   });
   const std::string& json = arguments.scenario.json;
   attempt([&] {
-    if (!json.empty()) write_text_file(json, figures.dump(2) + "\n");
+    if (!json.empty()) write_file(json, figures.dump(2) + "\n");
   });
   return failures;
 }
@@ -197,9 +202,16 @@ void require_usable_files(const SimulateArguments& arguments) {
   if (!json.empty()) require_writable("--json", json);
 }
 
+void require_a_speed(const SimulateArguments& arguments) {
+  if (!arguments.free_running || arguments.speed != kFastestPossible) return;
+  throw CLI::ValidationError("--free-running",
+                             "needs a speed: --speed 1 for real time, --speed N for N times real time");
+}
+
 void simulate(SimulateArguments arguments) {
   const ScenarioArguments& scenario = arguments.scenario;
   require_supported_length(scenario);
+  require_a_speed(arguments);
   if (arguments.report.empty()) arguments.report = default_report(arguments);
   require_usable_files(arguments);
   const TargetSetup target = set_up_target(scenario);
@@ -267,9 +279,10 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       " [out/<target>_<condition>_seed<seed>.html, plus every option that is not at its default]");
   command->footer(
       "\nExample: 100 sequences with a degraded sensor, figures to a file\n"
-      "  tumblesight simulate --condition degraded --sequences 100 --seed 7 --json figures.json\n\n"
-      "The exit status is 0 only if every step was answered with an attitude, the flight task allocated no\n"
-      "heap memory and the report was written.\n");
+      "  tumblesight simulate --condition degraded --sequences 100 --seed 7 \\\n"
+      "      --json figures.json\n\n"
+      "The exit status is 0 only if every step was answered with an attitude, the\n"
+      "flight task allocated no heap memory and the report was written.\n");
   command->callback([arguments] { simulate(*arguments); });
 }
 

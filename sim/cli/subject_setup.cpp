@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <stdexcept>
 
 #include "sim/cli/target_setup.hpp"
 
@@ -12,10 +11,6 @@ namespace tumblesight::sim {
 
 Subject set_up_subject(const ScenarioArguments& arguments) {
   TargetSetup setup = set_up_target(arguments);
-  if (setup.model_status != gnc::ModelStatus::kOk) {
-    throw std::runtime_error(
-        fmt::format("model image '{}' is refused: {}", setup.model_path, gnc::to_string(setup.model_status)));
-  }
   for (const std::string& warning : setup.warnings) fmt::print(stderr, "  note: {}\n", warning);
   Subject subject;
   subject.target = arguments.target;

@@ -67,25 +67,11 @@ std::optional<Eigen::Matrix3d> inertia_of(const ScenarioArguments& arguments) {
 }
 
 std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    const std::string remedy = remedy_for_missing_image(path);
-    if (!remedy.empty()) {
-      throw std::runtime_error(fmt::format("model image '{}' does not exist{}", path, remedy));
-    }
-    const bool shipped = arguments.model.empty();
-    throw std::runtime_error(
-        fmt::format("model image '{}' does not exist{}", path,
-                    shipped ? "; train one for this target, or give one with --model" : ""));
-  }
-  return read_model_bytes(path);
-}
-
-void frame_by_mesh(TargetSetup& setup) {
-  setup.projection = projection_of(setup.mesh);
-  setup.warnings.push_back(
-      fmt::format("Model image '{}' is refused: {}. The frames cover the mesh's own swath.", setup.model_path,
-                  gnc::to_string(setup.model_status)));
+  const std::string fault = fault_of_model_path(path);
+  if (fault.empty()) return read_model_bytes(path);
+  const bool trainable = arguments.model.empty() && remedy_for_missing_image(path).empty();
+  throw std::runtime_error(fault +
+                           (trainable ? "; train one for this target, or give one with --model" : ""));
 }
 
 void frame_by_model(TargetSetup& setup) {
@@ -101,6 +87,27 @@ void frame_by_model(TargetSetup& setup) {
                                      : "the target looks smaller than the network expects."));
 }
 
+TargetSetup set_up_body(const ScenarioArguments& arguments) {
+  TargetSetup setup;
+  setup.mesh = load_mesh(arguments);
+  setup.mesh_name =
+      arguments.mesh.empty() ? kParametricMesh : std::filesystem::path(arguments.mesh).filename().string();
+  setup.inertia_kg_m2 = inertia_of(arguments);
+  return setup;
+}
+
+void set_up_model(const ScenarioArguments& arguments, TargetSetup& setup) {
+  setup.model_path = model_path(arguments);
+  setup.model = read_model(arguments, setup.model_path);
+  const HostEstimator estimator(setup.model, arguments.target.c_str());
+  if (estimator.status() != gnc::ModelStatus::kOk) {
+    throw std::runtime_error(
+        fmt::format("model image '{}' is refused: {}", setup.model_path, gnc::to_string(estimator.status())));
+  }
+  setup.header = estimator.model();
+  frame_by_model(setup);
+}
+
 }  // namespace
 
 std::string shipped_model_path(const std::string& name) {
@@ -108,20 +115,17 @@ std::string shipped_model_path(const std::string& name) {
 }
 
 TargetSetup set_up_target(const ScenarioArguments& arguments) {
-  TargetSetup setup;
-  setup.mesh = load_mesh(arguments);
-  setup.mesh_name =
-      arguments.mesh.empty() ? kParametricMesh : std::filesystem::path(arguments.mesh).filename().string();
-  setup.inertia_kg_m2 = inertia_of(arguments);
-  setup.model_path = model_path(arguments);
-  setup.model = read_model(arguments, setup.model_path);
-  const HostEstimator estimator(setup.model, arguments.target.c_str());
-  setup.model_status = estimator.status();
-  if (setup.model_status == gnc::ModelStatus::kOk) {
-    setup.header = estimator.model();
-    frame_by_model(setup);
+  TargetSetup setup = set_up_body(arguments);
+  set_up_model(arguments, setup);
+  return setup;
+}
+
+TargetSetup set_up_target_without_model(const ScenarioArguments& arguments) {
+  TargetSetup setup = set_up_body(arguments);
+  if (find_target(arguments.target)) {
+    set_up_model(arguments, setup);
   } else {
-    frame_by_mesh(setup);
+    setup.projection = projection_of(setup.mesh);
   }
   return setup;
 }

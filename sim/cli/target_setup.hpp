@@ -19,9 +19,8 @@ struct TargetSetup {
   std::optional<Eigen::Matrix3d> inertia_kg_m2;  // in the TRF; empty if not known
   std::string model_path;
   std::vector<std::uint8_t> model;
-  gnc::ModelStatus model_status = gnc::ModelStatus::kTooShort;  // the host's own check of the image
-  gnc::ModelHeader header;                                      // if kOk
-  // The model's, so that the target fills the image as in training. The mesh's if the model is refused.
+  gnc::ModelHeader header;
+  // The model's, so that the target fills the image as in training. The mesh's without a model.
   gnc::DepthProjection projection;
   std::vector<std::string> warnings;
 };
@@ -30,8 +29,11 @@ struct TargetSetup {
 std::string shipped_model_path(const std::string& name);
 
 // Throws std::runtime_error or std::invalid_argument that names what is missing or wrong: target, mesh,
-// inertia, model file. A model file that exists but is refused is only a warning: the flight program has to
-// detect that.
+// inertia, model image. An image that the flight program would refuse is refused here as well.
 TargetSetup set_up_target(const ScenarioArguments& arguments);
+
+// The same for verbs that run no network. The model is the image that ships for the target. Of other targets
+// the fields of the model stay empty.
+TargetSetup set_up_target_without_model(const ScenarioArguments& arguments);
 
 }  // namespace tumblesight::sim

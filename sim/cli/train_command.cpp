@@ -4,7 +4,6 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
@@ -93,7 +92,7 @@ void write_images(const std::string& stem, const std::vector<TriangleMesh>& mesh
 int train(TrainOptions& options) {
   require_a_cnn(options.settings);
   choose_device(options);
-  std::filesystem::create_directories(options.settings.folder);
+  require_folder("--out", options.settings.folder);
   std::signal(SIGINT, [](int) { stop_requested = true; });
   std::signal(SIGTERM, [](int) { stop_requested = true; });
 
@@ -125,9 +124,11 @@ void add_train_command(CLI::App& app) {
   settings.workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
   CLI::App* command = app.add_subcommand("train", "Train a network for a target and write its model images");
   command->footer(
-      "\nA run may be interrupted at any time: the same command continues from the last checkpoint.\n\n"
+      "\nA run may be interrupted at any time: the same command continues from the last\n"
+      "checkpoint.\n\n"
       "Example: train for NEAR Shoemaker on the shipped mesh and on a CAD file\n"
-      "  tumblesight train --target near_shoemaker --mesh parametric --mesh near.stl --out out/near\n");
+      "  tumblesight train --target near_shoemaker --mesh parametric --mesh near.stl \\\n"
+      "      --out out/near\n");
   add_target_option(*command, options->target, TargetChoice::kAny);
   add_mesh_options(*command, options->meshes);
   add_seed_option(*command, settings.seed);

@@ -39,12 +39,19 @@ std::string remedy_for_missing_image(const std::string& path) {
   return is_in_history ? "; get it with: fsw/models/fetch_images " + name : "";
 }
 
-std::vector<std::uint8_t> read_model_bytes(const std::string& path) {
+std::string fault_of_model_path(const std::string& path) {
   std::error_code error;
+  const std::string image = "model image '" + path + "' ";
+  if (std::filesystem::is_directory(path, error)) return image + "is a folder; give a file";
+  if (!std::filesystem::exists(path, error)) return image + "does not exist" + remedy_for_missing_image(path);
+  return {};
+}
+
+std::vector<std::uint8_t> read_model_bytes(const std::string& path) {
+  const std::string fault = fault_of_model_path(path);
+  if (!fault.empty()) throw std::runtime_error(fault);
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path, error)) {
-    throw std::runtime_error("model image '" + path + "' cannot be read" + remedy_for_missing_image(path));
-  }
+  if (!file) throw std::runtime_error("model image '" + path + "' cannot be read");
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
@@ -53,7 +60,13 @@ std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
   auto model = std::make_unique<Float32Model>();
   const gnc::ModelStatus status =
       gnc::read_model_image<Float32>(bytes.data(), bytes.size(), nullptr, model->header, model->weights);
-  if (status != gnc::ModelStatus::kOk) throw std::runtime_error(path + ": " + gnc::to_string(status));
+  if (status == gnc::ModelStatus::kBadNumerics) {
+    throw std::runtime_error("model image '" + path +
+                             "' is in fixed point; give the one in float32, as `tumblesight train` writes it "
+                             "(<target>.float32.tsm)");
+  }
+  if (status != gnc::ModelStatus::kOk)
+    throw std::runtime_error("model image '" + path + "' is refused: " + gnc::to_string(status));
   return model;
 }
 

@@ -14,6 +14,9 @@ namespace tumblesight::sim {
 // fsw/models that are in the repository's history only, empty for other files.
 std::string remedy_for_missing_image(const std::string& path);
 
+// Empty for an existing file. Otherwise what is wrong, with that remedy: "model image 'PATH' is a folder".
+std::string fault_of_model_path(const std::string& path);
+
 // The bytes of a file, not checked: for the estimators, which check the image themselves and read fixed-point
 // weights in place. Throws std::runtime_error that names the file if it cannot be read.
 std::vector<std::uint8_t> read_model_bytes(const std::string& path);

@@ -7,10 +7,11 @@
 namespace tumblesight::sim {
 namespace {
 
-using gnc::LayerKind;
 using gnc::LayerRow;
 
-constexpr int kWindow = 3 * 3;  // pixels under a convolution's kernel
+std::vector<LayerRow> rows(int first, int end) {
+  return {std::begin(gnc::kLayers) + first, std::begin(gnc::kLayers) + end};
+}
 
 template <class Tensor>
 TensorView view_of(const Tensor& tensor) {
@@ -19,16 +20,16 @@ TensorView view_of(const Tensor& tensor) {
 
 }  // namespace
 
-std::vector<LayerRow> cnn_rows(LayerKind kind) {
-  std::vector<LayerRow> rows;
-  for (int i = 0; i < gnc::kLstmLayer; ++i) {
-    if (gnc::kLayers[i].kind == kind) rows.push_back(gnc::kLayers[i]);
-  }
-  return rows;
+std::vector<LayerRow> image_rows() {
+  return rows(0, gnc::kImageLayerCount);
+}
+
+std::vector<LayerRow> vector_rows() {
+  return rows(gnc::kImageLayerCount, gnc::kLstmLayer);
 }
 
 std::vector<LayerRow> head_rows() {
-  return {std::begin(gnc::kLayers) + gnc::kLstmLayer + 1, std::end(gnc::kLayers)};
+  return rows(gnc::kLstmLayer + 1, gnc::kLayerCount);
 }
 
 int channels_of(const std::string& name) {
@@ -39,19 +40,14 @@ int channels_of(const std::string& name) {
   return gnc::kLayers[index].outputs;
 }
 
-int inputs_per_sum(const LayerRow& row) {
-  if (row.kind == LayerKind::kConvolution) return kWindow * row.inputs;
-  return row.kind == LayerKind::kLstm ? row.inputs + row.outputs : row.inputs;
-}
-
 bool is_hidden(const LayerRow& row) {
   return row.output != gnc::LayerOutput::kOutput;
 }
 
 bool reads_flat_image(const LayerRow& row) {
-  if (row.kind == LayerKind::kConvolution) return false;
+  if (is_image_layer(row)) return false;
   const int before = gnc::layer_index(row.reads[0]);
-  return before < gnc::kLayerCount && gnc::kLayers[before].kind == LayerKind::kConvolution;
+  return before < gnc::kLayerCount && is_image_layer(gnc::kLayers[before]);
 }
 
 std::vector<std::string> reads_of(const LayerRow& row) {

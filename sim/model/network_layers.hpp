@@ -10,18 +10,15 @@
 
 namespace tumblesight::sim {
 
-// Rows in the table's order: those of one kind in the CNN (depth image to single-frame output), and those of
-// the recurrent head, behind the LSTM.
-std::vector<gnc::LayerRow> cnn_rows(gnc::LayerKind kind);
+// Rows in the table's order: those of the CNN that read images, those of the CNN behind them (up to the
+// single-frame output), and those of the recurrent head, behind the LSTM.
+std::vector<gnc::LayerRow> image_rows();
+std::vector<gnc::LayerRow> vector_rows();
 std::vector<gnc::LayerRow> head_rows();
 
 // Channels of a network input or of a layer's output. In a vector every value is a channel. Throws
 // std::invalid_argument for an unknown name.
 int channels_of(const std::string& name);
-
-// Number of inputs of one sum of the layer: those of a 3x3 window for a convolution; the layer's inputs and
-// its hidden state for the LSTM.
-int inputs_per_sum(const gnc::LayerRow& row);
 
 // Whether the layer's output is an activation: what quantization observes and reports.
 bool is_hidden(const gnc::LayerRow& row);
@@ -46,9 +43,9 @@ struct TensorView {
 // One layer of the float32 network. Layouts: docs/icd.md, model image.
 struct Float32Layer {
   gnc::LayerRow row;
-  TensorView weight;     // [3][3][in][out] (convolution), else [in][out]; out of an LSTM: [4 * hidden]
-  TensorView recurrent;  // LSTM: [hidden][4 * hidden]; else empty
-  TensorView bias;       // [out]
+  TensorView weight;     // [3][3][in][sums] (convolution), else [in][sums]; sums: gnc::sum_channels()
+  TensorView recurrent;  // LSTM: [hidden][sums]; else empty
+  TensorView bias;       // [sums]
 };
 // All layers in the table's order. `weights` must outlive them.
 std::vector<Float32Layer> layers_of(const gnc::NetworkWeights<gnc::Float32>& weights);

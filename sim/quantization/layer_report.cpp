@@ -20,9 +20,11 @@ double largest_integer(const std::string& name) {
       return kLargestUint8;
     case gnc::LayerOutput::kAveragePooled:
       return 4.0 * gnc::kMaxAveragedActivation;
-    default:
-      return 32767.0;
+    case gnc::LayerOutput::kHidden:
+    case gnc::LayerOutput::kOutput:
+      break;
   }
+  return 32767.0;
 }
 
 struct Tally {

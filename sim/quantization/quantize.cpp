@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "sim/model/network_layers.hpp"
 #include "sim/quantization/scales.hpp"
@@ -71,21 +72,36 @@ class Quantizer {
       constexpr gnc::LayerRow kRow = gnc::kLayers[kIndex];
       const auto& from = gnc::layer_weights<kIndex>(from_);
       auto& to = gnc::layer_weights<kIndex>(to_.weights);
-      if constexpr (kRow.kind == gnc::LayerKind::kLstm) {
-        lstm(kRow, from, to);
-      } else if constexpr (kRow.output == gnc::LayerOutput::kMaxPooled) {
-        max_pooled_convolution(kRow, from, to);
-      } else if constexpr (kRow.output == gnc::LayerOutput::kAveragePooled) {
-        average_pooled_convolution(kRow, from, to);
-      } else if constexpr (kRow.output == gnc::LayerOutput::kHidden) {
-        hidden_dense(kRow, from, to);
-      } else {
-        output_dense(kRow, from, to);
-      }
+      layer(Kind<kRow.kind>(), kRow, from, to);
     });
   }
 
  private:
+  // Per kind of layer. A kind without such a function does not compile.
+  template <gnc::LayerKind kKind>
+  using Kind = std::integral_constant<gnc::LayerKind, kKind>;
+
+  template <class From, class To>
+  void layer(Kind<gnc::LayerKind::kConvolution>, const gnc::LayerRow& row, const From& from, To& to) {
+    if (row.output == gnc::LayerOutput::kMaxPooled) {
+      max_pooled_convolution(row, from, to);
+    } else {
+      average_pooled_convolution(row, from, to);
+    }
+  }
+  template <class From, class To>
+  void layer(Kind<gnc::LayerKind::kDense>, const gnc::LayerRow& row, const From& from, To& to) {
+    if (is_hidden(row)) {
+      hidden_dense(row, from, to);
+    } else {
+      output_dense(row, from, to);
+    }
+  }
+  template <class From, class To>
+  void layer(Kind<gnc::LayerKind::kLstm>, const gnc::LayerRow& row, const From& from, To& to) {
+    lstm(row, from, to);
+  }
+
   // The unit of each input of the layer's sums.
   std::vector<double> input_units(const gnc::LayerRow& row) const {
     std::vector<double> units;
@@ -94,11 +110,10 @@ class Quantizer {
       for (int i = 0; i < times; ++i) units.insert(units.end(), scales.begin(), scales.end());
     };
     for (const std::string& name : reads_of(row)) {
-      const bool convolution = row.kind == gnc::LayerKind::kConvolution;
-      append(name, convolution ? inputs_per_sum(row) / row.inputs
-                               : gnc::values_per_frame(name.c_str()) / channels_of(name));
+      append(name, is_image_layer(row) ? pixels_per_sum(row)
+                                       : gnc::values_per_frame(name.c_str()) / channels_of(name));
     }
-    if (row.kind == gnc::LayerKind::kLstm) append(row.name, 1);
+    if (sums_of(row.kind).read_state) append(row.name, 1);
     return units;
   }
 

@@ -8,11 +8,12 @@ namespace tumblesight::sim {
 using gnc::Float32;
 namespace {
 
-// The 3x3 neighbourhood of a pixel, zeros outside the image.
-std::vector<double> neighbourhood(const double* image, int side, int channels, int y, int x) {
-  std::vector<double> sample(9U * static_cast<std::size_t>(channels), 0.0);
-  for (int tap = 0; tap < 9; ++tap) {
-    const int from_y = y + tap / 3 - 1, from_x = x + tap % 3 - 1;
+// The neighbourhood of a pixel that a sum reads, zeros outside the image.
+std::vector<double> neighbourhood(const gnc::LayerRow& row, const double* image, int y, int x) {
+  const int window = sums_of(row.kind).window, side = row.side, channels = row.inputs;
+  std::vector<double> sample(static_cast<std::size_t>(inputs_per_sum(row)), 0.0);
+  for (int tap = 0; tap < window * window; ++tap) {
+    const int from_y = y + tap / window - window / 2, from_x = x + tap % window - window / 2;
     if (from_y < 0 || from_y >= side || from_x < 0 || from_x >= side) continue;
     std::copy_n(image + (from_y * side + from_x) * channels, channels, sample.begin() + tap * channels);
   }
@@ -36,7 +37,7 @@ void add_windows(const gnc::LayerRow& row, const std::vector<double>& image, std
   const int pixels = row.side * row.side;
   const int step = std::max(1, pixels / kPixelsPerImage);
   for (int pixel = static_cast<int>(frame) % step; pixel < pixels; pixel += step) {
-    inputs.add(neighbourhood(image.data(), row.side, row.inputs, pixel / row.side, pixel % row.side));
+    inputs.add(neighbourhood(row, image.data(), pixel / row.side, pixel % row.side));
   }
 }
 
@@ -48,11 +49,11 @@ void add_samples(const gnc::LayerRow& row, const Observations& observations, std
       sample.insert(sample.end(), more.begin(), more.end());
     };
     for (const std::string& name : reads_of(row)) append(frame_of(observations, name, frame, frames));
-    if (row.kind == gnc::LayerKind::kConvolution) {
+    if (is_image_layer(row)) {
       add_windows(row, sample, frame, inputs);
       continue;
     }
-    if (row.kind == gnc::LayerKind::kLstm) {  // the hidden state of the frame before
+    if (sums_of(row.kind).read_state) {  // the outputs of the frame before
       append(frame > 0 ? frame_of(observations, row.name, frame - 1, frames)
                        : std::vector<double>(static_cast<std::size_t>(row.outputs), 0.0));
     }

@@ -7,7 +7,7 @@
 
 namespace tumblesight::sim {
 
-// Writes results.md, results.csv, results.json and report.html into `folder`. Throws as write_text_file does.
+// Writes results.md, results.csv, results.json and report.html into `folder`. Throws as write_file does.
 void write_results_files(const std::string& folder, const Results& results);
 
 }  // namespace tumblesight::sim

@@ -10,17 +10,19 @@ namespace tumblesight::sim {
 namespace {
 
 constexpr const char* kReadingNotes = R"md(
-- Error: the angle between true and estimated attitude in the last frame of a sequence. ± is one standard error: s/√n
-  for a mean, binomial for a share. The binomial one is taken at (k + ½)/(n + 1), so that 100 % is not quoted as certain.
-- `parametric` is the mesh that ships with this project. `<target>.stl` is a mesh from --mesh-folder: here NASA's display
-  model of the spacecraft, which is not part of this project.
-- RCNN: the recurrent network after all frames. CNN: the same network's estimate from the last frame alone. Templates:
-  classical template matching with renderings of the same mesh as the frames, refined by iterated closest points, also
-  from the last frame alone. It is slow and runs on the first sequences of each condition only.
+- Error: the angle between true and estimated attitude in the last frame of a sequence. ± is one standard
+  error: s/√n for a mean, binomial for a share. The binomial one is taken at (k + ½)/(n + 1), so that 100 % is
+  not quoted as certain.
+- `parametric` is the mesh that ships with this project. `<target>.stl` is a mesh from `--mesh-folder`: here
+  NASA's display model of the spacecraft, which is not part of this project.
+- RCNN: the recurrent network after all frames. CNN: the same network's estimate from the last frame alone.
+  Templates: classical template matching with renderings of the same mesh as the frames, refined by iterative
+  closest points (ICP), also from the last frame alone. It is slow and runs on the first sequences of each
+  condition only.
 - Training draws its frames from other seeds: no test sequence was seen in training or tuning.
 - Paper: DOI 10.1016/j.conengprac.2026.107134. Goal: the goals that this project set itself.
-- These figures show that the requirements TS-EST-010, TS-EST-020, TS-EST-030, TS-EST-040, TS-EST-050, TS-EST-060,
-  TS-EST-070, TS-EST-080 and TS-EST-090 are met ([requirements](requirements.csv)).
+- These figures show that the requirements TS-EST-010, TS-EST-020, TS-EST-030, TS-EST-040, TS-EST-050,
+  TS-EST-060, TS-EST-070, TS-EST-080 and TS-EST-090 are met ([requirements](requirements.csv)).
 )md";
 
 std::string introduction(const Results& results) {

@@ -10,6 +10,7 @@
 #include "sim/report/results_figures.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/svg.hpp"
+#include "sim/terminal/counted.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -18,8 +19,8 @@ std::string overview_section(const Results& results) {
   return html_text(conditions_table(results.subjects, kPageOverview), "results") +
          "<p class=sub>Mean angular error of the last frame ± one standard error, and the share of the "
          "sequences within 20°. RCNN: from all frames. CNN: from the last frame alone. Templates: classical "
-         "template matching of the last frame with renderings of the same mesh, refined by iterated closest "
-         "points, on the first sequences of each condition. Goals: <span class=met>met</span>, <span "
+         "template matching of the last frame with renderings of the same mesh, refined by iterative closest "
+         "points (ICP), on the first sequences of each condition. Goals: <span class=met>met</span>, <span "
          "class=missed>missed</span>.</p>\n";
 }
 
@@ -138,9 +139,11 @@ std::string chapter(const Results& results, const SubjectResult& subject) {
   const CellResult& base = subject.cells.front();
   return fmt::format(
              "<h2 class=chapter>{}</h2>\n<p class=sub>model {}.tsm, CRC-32 <code>{:08x}</code>; seed {}; {} "
-             "sequences of {} frames ({}); {}</p>\n",
+             "of {} "
+             "({}); {}</p>\n",
              escape_markup(title_of(subject)), escape_markup(subject.model), subject.model_crc32,
-             results.seed, base.sequences, base.frames, to_string(base.condition), times_text(base)) +
+             results.seed, counted(base.sequences, "sequence"), counted(base.frames, "frame"),
+             to_string(base.condition), times_text(base)) +
          html_text(checks_table(subject), "results") + figures_of(subject);
 }
 

@@ -6,6 +6,7 @@
 
 #include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/statistics.hpp"
+#include "sim/terminal/counted.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -60,7 +61,7 @@ DataTable estimators_table(const std::vector<EstimatorErrors>& estimators, std::
 DataTable cell_table(const std::string& target, const CellResult& cell) {
   const PaperFigures paper = paper_figures(target, cell.condition);
   std::vector<EstimatorErrors> estimators{
-      {fmt::format("RCNN, {} frames", cell.frames), Mark::kRcnn, cell.rcnn, paper.rcnn},
+      {"RCNN, " + counted(cell.frames, "frame"), Mark::kRcnn, cell.rcnn, paper.rcnn},
       {"CNN, last frame alone", Mark::kCnn, cell.cnn, paper.cnn}};
   if (cell.baseline) estimators.push_back({"template matching", Mark::kNone, *cell.baseline, std::nullopt});
   return estimators_table(estimators, paper.sequences);

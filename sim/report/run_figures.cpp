@@ -94,7 +94,7 @@ std::string error_over_frames_figure(const RunReport& report) {
   Series rcnn_median{"median", kRcnnColour, "2 4", {}};
   Series cnn_mean{"CNN mean", kCnnColour, "", {}};
   Series cnn_median{"median", kCnnColour, "2 4", {}};
-  for (const CurvePoint& errors : errors_by_frame(report.results, report.frames)) {
+  for (const CurvePoint& errors : errors_by_frame(report.results, report.setup.frames)) {
     if (errors.rcnn.count == 0) continue;
     rcnn_mean.points.push_back({errors.at, errors.rcnn.mean_deg});
     rcnn_median.points.push_back({errors.at, errors.rcnn.median_deg});
@@ -106,7 +106,7 @@ std::string error_over_frames_figure(const RunReport& report) {
   chart.x_label = fmt::format("frame (one every {:.1f} s)", report.frame_period_s);
   chart.y_label = "angular error [deg]";
   chart.x_low = 1.0;
-  chart.x_high = std::max(2.0, static_cast<double>(report.frames));
+  chart.x_high = std::max(2.0, static_cast<double>(report.setup.frames));
   chart.series = {rcnn_mean, rcnn_median, cnn_mean, cnn_median};
   if (report.paper.rcnn) {
     chart.series.push_back({"paper", kRcnnColour, "", {{chart.x_high, report.paper.rcnn->mean_deg}}});
@@ -117,9 +117,9 @@ std::string error_over_frames_figure(const RunReport& report) {
 }
 
 std::string error_histogram_figure(const RunReport& report) {
-  return histogram_figure(histogram(last_frame_errors_deg(report.results, report.frames, Estimator::kRcnn)),
-                          histogram(last_frame_errors_deg(report.results, report.frames, Estimator::kCnn)),
-                          {});
+  return histogram_figure(
+      histogram(last_frame_errors_deg(report.results, report.setup.frames, Estimator::kRcnn)),
+      histogram(last_frame_errors_deg(report.results, report.setup.frames, Estimator::kCnn)), {});
 }
 
 std::string predicted_error_figure(const RunReport& report) {
@@ -174,7 +174,7 @@ std::string quaternion_figure(const RunReport& report, std::uint32_t sequence) {
   chart.x_label = "frame";
   chart.y_label = "quaternion component";
   chart.x_low = 1.0;
-  chart.x_high = std::max(2.0, static_cast<double>(report.frames));
+  chart.x_high = std::max(2.0, static_cast<double>(report.setup.frames));
   chart.y_low = -1.0;
   chart.y_high = 1.0;
   for (int component = 0; component < 4; ++component) {

@@ -10,6 +10,7 @@
 #include "sim/report/results_tables.hpp"
 #include "sim/report/run_figures.hpp"
 #include "sim/report/svg.hpp"
+#include "sim/terminal/counted.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 constexpr std::size_t kMaxGalleryPictures = 8;
 
 ErrorSummary last_frame_errors(const RunReport& report, Estimator estimator) {
-  return summarise(last_frame_errors_deg(report.results, report.frames, estimator));
+  return summarise(last_frame_errors_deg(report.results, report.setup.frames, estimator));
 }
 
 std::string lead_sentence(const RunReport& report) {
@@ -25,10 +26,10 @@ std::string lead_sentence(const RunReport& report) {
   if (rcnn.count == 0) return "No sequence was answered completely, so there is no error to report.";
   const auto within = static_cast<std::size_t>(rcnn.within_20deg * static_cast<double>(rcnn.count) + 0.5);
   return fmt::format(
-      "After {} frames the mean attitude error is {:.1f}° (median {:.1f}°). It is within 20° in {} of {} "
+      "After {} the mean attitude error is {:.1f}° (median {:.1f}°). It is within 20° in {} of {} "
       "sequences. {} of "
       "{} steps were answered. The flight task allocated {} after its start.",
-      report.frames, rcnn.mean_deg, rcnn.median_deg, within, rcnn.count,
+      counted(report.setup.frames, "frame"), rcnn.mean_deg, rcnn.median_deg, within, rcnn.count,
       report.steps_planned - report.steps_missed, report.steps_planned,
       report.heap_allocations == 0 ? "no heap memory"
                                    : fmt::format("heap memory {} times", report.heap_allocations));
@@ -82,13 +83,13 @@ std::string body(const RunReport& report) {
   const std::uint32_t shown = report.results.empty() ? 0 : report.results.front().sequence;
   std::string html = fmt::format("<h1>Attitude of {}, {} condition</h1>\n",
                                  escape_markup(display_name(report.target)), escape_markup(report.condition));
-  html += fmt::format(
-      "<p class=sub>Software-in-the-loop run of Tumblesight: {} sequences of {} frames, {:.1f} s apart</p>\n",
-      report.sequences, report.frames, report.frame_period_s);
+  html += fmt::format("<p class=sub>Software-in-the-loop run of Tumblesight: {} of {}, {:.1f} s apart</p>\n",
+                      counted(report.sequences, "sequence"), counted(report.setup.frames, "frame"),
+                      report.frame_period_s);
   for (const std::string& notice : report.notices) {
     html += fmt::format("<div class=notice>{}</div>\n", escape_markup(notice));
   }
-  for (const std::string& remark : report.remarks) {
+  for (const std::string& remark : report.setup.remarks) {
     html += fmt::format("<div class=\"notice remark\">{}</div>\n", escape_markup(remark));
   }
   html += fmt::format("<p class=lead>{}</p>\n", lead_sentence(report)) +
@@ -112,14 +113,14 @@ std::string body(const RunReport& report) {
 
 DataTable run_errors_table(const RunReport& report) {
   return estimators_table(
-      {{fmt::format("RCNN, {} frames", report.frames), Mark::kRcnn,
-        last_frame_errors(report, Estimator::kRcnn), report.paper.rcnn},
+      {{"RCNN, " + counted(report.setup.frames, "frame"), Mark::kRcnn, last_frame_errors(report, Estimator::kRcnn),
+        report.paper.rcnn},
        {"CNN, last frame alone", Mark::kCnn, last_frame_errors(report, Estimator::kCnn), report.paper.cnn}},
       report.paper.sequences);
 }
 
 std::string run_page(const RunReport& report) {
-  return html_page(fmt::format("{}, {}", report.target, report.condition), body(report));
+  return html_page(fmt::format("{}, {}", report.setup.target, report.setup.condition), body(report));
 }
 
 }  // namespace tumblesight::sim

@@ -26,13 +26,26 @@ struct FactList {
   std::vector<std::pair<std::string, std::string>> facts;  // name, value
 };
 
-struct RunReport {
+// The settings of the run.
+struct SilRunSetup {
   std::string target;
+  std::string mesh_name;
   std::string condition;
-  std::string command;    // that was run
-  std::string generated;  // date and time, as text
   std::uint32_t sequences = 0;
   std::uint32_t frames = 0;  // per sequence
+  std::uint64_t seed = 0;
+  std::string model_path;
+  std::string model_crc32;  // or why the host's own check refuses the image
+  gnc::DepthProjection projection;
+  double speed = 0.0;  // times real time; 0: as fast as the machine goes
+  bool free_running = false;
+  std::vector<std::string> remarks;  // shown at the top of the report, below the faults
+};
+
+struct RunReport {
+  SilRunSetup setup;
+  std::string command;    // that was run
+  std::string generated;  // date and time, as text
   double frame_period_s = 0.0;
   std::vector<FrameResult> results;  // answered steps only
   std::vector<ReportPicture> pictures;
@@ -44,7 +57,6 @@ struct RunReport {
   double inference_max_us = 0.0;
   std::uint32_t trace_crc32 = 0;
   std::vector<std::string> notices;  // faults of the run; shown at the top
-  std::vector<std::string> remarks;  // further remarks; shown below them
   std::vector<FactList> facts;       // settings, counters
 };
 

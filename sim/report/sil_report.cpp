@@ -65,8 +65,8 @@ FactList outcome_facts(const SilRunResult& run, const SilRunSetup& setup) {
   FactList list{"Flight program", {}};
   list.facts = {
       {"steps answered", fmt::format("{} of {}", run.steps_planned - run.steps_missed, run.steps_planned)},
-      {"inference time, median", fmt::format("{:.2f} ms", 1e-3 * time.median_us)},
-      {"inference time, max", fmt::format("{:.2f} ms", 1e-3 * time.max_us)},
+      {"inference time, median", time_text(time.median_us)},
+      {"inference time, max", time_text(time.max_us)},
       {"heap allocations", fmt::format("{}", run.flight_heap_allocations)},
       {"trace CRC-32", fmt::format("{:08x}", run.trace_crc32)},
       {"model", file_name(setup.model_path)},
@@ -131,6 +131,10 @@ FactList event_facts(const SilRunResult& run) {
 
 }  // namespace
 
+std::string time_text(double time_us) {
+  return time_us > 0.0 ? fmt::format("{:.2f} ms", 1e-3 * time_us) : "none";
+}
+
 std::vector<FrameResult> frame_results(const SilRunResult& run) {
   std::vector<FrameResult> results;
   for (const StepResult& step : run.steps) {
@@ -194,7 +198,9 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
     json["difference_to_float32"] = {{"mean_deg", numerics->difference.mean_deg},
                                      {"max_deg", numerics->largest_difference_deg}};
   }
-  json["inference_us"] = {{"median", time.median_us}, {"max", time.max_us}};
+  const bool timed = time.max_us > 0.0;
+  json["inference_us"] = {{"median", timed ? nlohmann::ordered_json(time.median_us) : nullptr},
+                          {"max", timed ? nlohmann::ordered_json(time.max_us) : nullptr}};
   json["flight_heap_allocations"] = run.flight_heap_allocations;
   json["steps_missed"] = run.steps_missed;
   json["trace_crc32"] = run.trace_crc32;
@@ -205,10 +211,7 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
                      const std::optional<NumericsComparison>& numerics) {
   const InferenceTime time = inference_time(run);
   RunReport report;
-  report.target = setup.target;
-  report.condition = setup.condition;
-  report.sequences = setup.sequences;
-  report.frames = setup.frames;
+  report.setup = setup;
   report.frame_period_s = kFramePeriod_s;
   report.results = frame_results(run);
   report.pictures = pictures(run, setup.projection);
@@ -220,7 +223,6 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   report.inference_max_us = time.max_us;
   report.trace_crc32 = run.trace_crc32;
   report.notices = run_faults(run);
-  report.remarks = setup.remarks;
   report.facts = {settings_facts(setup), outcome_facts(run, setup), counter_facts(run)};
   if (numerics) report.facts.push_back(numerics_facts(*numerics));
   const FactList events = event_facts(run);

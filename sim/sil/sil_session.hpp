@@ -18,9 +18,9 @@
 #include "sim/sil/domain_lease.hpp"
 #include "sim/sil/failure.hpp"
 #include "sim/sil/flight_process.hpp"
+#include "sim/sil/signed_telecommand.hpp"
 #include "sim/sil/sil_run.hpp"
 #include "sim/sil/simulator_endpoints.hpp"
-#include "sim/sil/telecommand.hpp"
 
 namespace tumblesight::sim {
 

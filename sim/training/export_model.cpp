@@ -61,12 +61,12 @@ WeightAndBias with_standardisation(const Recurrent& recurrent, const torch::Tens
 
 void add_cnn(FlightTensors& tensors, const Cnn& cnn) {
   int index = 0;
-  for (const gnc::LayerRow& row : cnn_rows(gnc::LayerKind::kConvolution)) {
+  for (const gnc::LayerRow& row : image_rows()) {
     const WeightAndBias layer = with_batch_norm(cnn->backbone, index++);
     tensors.add_layer(row, layer.weight, layer.bias);
   }
   index = 0;
-  for (const gnc::LayerRow& row : cnn_rows(gnc::LayerKind::kDense)) {
+  for (const gnc::LayerRow& row : vector_rows()) {
     const torch::nn::Linear& layer = cnn->dense[index++];
     tensors.add_layer(row, layer->weight, layer->bias);
   }

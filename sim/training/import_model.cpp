@@ -38,7 +38,7 @@ void import_cnn(const gnc::NetworkWeights<gnc::Float32>& weights, const torch::T
   const std::vector<Float32Layer> layers = layers_of(weights);
   for (int i = 0; i < gnc::kLstmLayer; ++i) {
     const Float32Layer& layer = layers[i];
-    if (layer.row.kind == gnc::LayerKind::kConvolution) {
+    if (is_image_layer(layer.row)) {
       const bool pooled = layer.row.output == gnc::LayerOutput::kMaxPooled;
       import_stage(layer, stage++, pooled, cnn->backbone, x, deviation);
       continue;
@@ -46,8 +46,8 @@ void import_cnn(const gnc::NetworkWeights<gnc::Float32>& weights, const torch::T
     torch::nn::Linear& linear = cnn->dense[dense++];
     torch::Tensor weight = weight_from_flight(layer.row, tensor_of(layer.weight));
     if (reads_flat_image(layer.row)) {  // compensates for the last norm, channel by channel
-      weight =
-          (weight.view({layer.row.outputs, deviation.size(0), -1}) * deviation.view({1, -1, 1})).flatten(1);
+      weight = (weight.view({sum_channels(layer.row), deviation.size(0), -1}) * deviation.view({1, -1, 1}))
+                   .flatten(1);
     }
     linear->weight.copy_(weight);
     linear->bias.copy_(tensor_of(layer.bias));

@@ -1,6 +1,7 @@
 #include "sim/training/rcnn_module.hpp"
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,29 @@ namespace {
 
 constexpr double kMomentum = 0.05;
 
+constexpr bool has_only_convolutions() {
+  for (int i = 0; i < BackboneImpl::kStages; ++i) {
+    if (gnc::kLayers[i].kind != gnc::LayerKind::kConvolution) return false;
+  }
+  return true;
+}
+static_assert(has_only_convolutions(), "the backbone consists of convolutions");
+
+// The sums of a layer of the CNN or of the head that reads vectors.
 torch::nn::Linear linear_of(const gnc::LayerRow& row) {
-  return torch::nn::Linear(row.inputs, row.outputs);
+  return torch::nn::Linear(row.inputs, sum_channels(row));
+}
+
+// The layer's output from its sums.
+torch::Tensor output_of(const gnc::LayerRow& row, const torch::Tensor& sums) {
+  switch (row.kind) {
+    case gnc::LayerKind::kDense:
+      return is_hidden(row) ? torch::relu(sums) : sums;
+    case gnc::LayerKind::kConvolution:
+    case gnc::LayerKind::kLstm:
+      break;  // modules of their own
+  }
+  throw std::logic_error(std::string("layer ") + row.name + " does not stand in the backbone or as the LSTM");
 }
 
 // In the checkpoints the single-frame head has a name of its own.
@@ -27,7 +49,7 @@ std::string module_name(const gnc::LayerRow& row) {
 
 BackboneImpl::BackboneImpl() {
   int i = 0;
-  for (const gnc::LayerRow& row : cnn_rows(gnc::LayerKind::kConvolution)) {
+  for (const gnc::LayerRow& row : image_rows()) {
     const std::string stage = std::to_string(i + 1);
     const double he = std::sqrt(2.0 / (9.0 * row.inputs));
     weight[i] = register_parameter("weight" + stage, torch::randn({row.outputs, row.inputs, 3, 3}) * he);
@@ -55,7 +77,7 @@ torch::Tensor BackboneImpl::forward(const torch::Tensor& images, bool fast) {
 
 CnnImpl::CnnImpl() {
   backbone = register_module("backbone", Backbone());
-  for (const gnc::LayerRow& row : cnn_rows(gnc::LayerKind::kDense))
+  for (const gnc::LayerRow& row : vector_rows())
     dense.push_back(register_module(module_name(row), linear_of(row)));
   // Hypotheses that start apart specialize sooner.
   torch::NoGradGuard guard;
@@ -63,11 +85,12 @@ CnnImpl::CnnImpl() {
 }
 
 CnnOutput CnnImpl::forward(const torch::Tensor& images, bool fast) {
-  torch::Tensor x = backbone(images, fast);
-  for (std::size_t i = 0; i + 1 < dense.size(); ++i) x = torch::relu(dense[i](x));
   CnnOutput result;
-  result.features = x;
-  result.output = dense.back()(x);
+  result.output = backbone(images, fast);
+  for (int i = gnc::kImageLayerCount; i < gnc::kLstmLayer; ++i) {
+    result.output = output_of(gnc::kLayers[i], dense[i - gnc::kImageLayerCount](result.output));
+    if (i == gnc::kFeatureLayer) result.features = result.output;
+  }
   return result;
 }
 
@@ -96,8 +119,10 @@ void RecurrentImpl::set_standardisation(const torch::Tensor& mean, const torch::
 }
 
 torch::Tensor RecurrentImpl::head_output(torch::Tensor x) {
-  for (std::size_t i = 0; i + 1 < head.size(); ++i) x = torch::relu(head[i](x));
-  return head.back()(x);
+  for (std::size_t i = 0; i < head.size(); ++i) {
+    x = output_of(gnc::kLayers[gnc::kLstmLayer + 1 + static_cast<int>(i)], head[i](x));
+  }
+  return x;
 }
 
 TrackedSequences RecurrentImpl::forward(const SequenceHypotheses& sequences) {

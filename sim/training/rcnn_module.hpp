@@ -24,11 +24,7 @@ class BackboneImpl : public torch::nn::Module {
   // the result.
   torch::Tensor forward(const torch::Tensor& images, bool fast);
 
-  static constexpr int kStages = [] {  // the convolutions come first in the table
-    int stages = 0;
-    while (gnc::kLayers[stages].kind == gnc::LayerKind::kConvolution) ++stages;
-    return stages;
-  }();
+  static constexpr int kStages = gnc::kImageLayerCount;
   std::array<torch::Tensor, kStages> weight;  // [out, in, 3, 3]
   std::array<torch::Tensor, kStages> offset;  // batch norm's beta
   std::array<torch::Tensor, kStages> mean;    // running statistics

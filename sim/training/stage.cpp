@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "gnc/numerics/crc32.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 
@@ -34,7 +35,6 @@ void Stage::start() {
 
 void Stage::set_rate(torch::optim::Optimizer& optimizer) {
   constexpr double kWarmUp = 200.0;  // iterations
-  constexpr double kPi = 3.14159265358979;
   const double fraction =
       static_cast<double>(position_.iteration) / static_cast<double>(settings_.iterations);
   const double warm = std::min(1.0, static_cast<double>(position_.iteration + 1) / kWarmUp);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gnc/rcnn/network_shape.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;
@@ -20,7 +21,6 @@ constexpr double kMemory = 0.9;
 constexpr double kMissOfLostTarget = static_cast<double>(2.0F * (1.0F - 0.93969262F));
 constexpr double kLeastSeen = 0.1;
 constexpr int kGains = 10;
-constexpr double kPi = 3.14159265358979;
 
 struct FilterGains {
   double predicted_weight, rate_logit, evidence;

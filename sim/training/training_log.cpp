@@ -9,7 +9,7 @@
 
 #include "sim/report/charts.hpp"
 #include "sim/report/palette.hpp"
-#include "sim/terminal/text_file.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -92,7 +92,7 @@ TrainingLog::TrainingLog(const std::string& folder, const std::string& stage, st
 void TrainingLog::add(const TrainingPoint& point) {
   points_.push_back(point);
   std::ofstream(folder_ + "/log.csv", std::ios::app) << to_csv(point) << '\n';
-  write_text_file(folder_ + "/curve.svg", error_curve(points_));
+  write_file(folder_ + "/curve.svg", error_curve(points_));
 }
 
 }  // namespace tumblesight::sim

@@ -3,29 +3,32 @@ import pathlib
 import re
 import subprocess
 
+from network_layers import function, layers
+
 # The stages in the order of execution, each with the function that begins it. The first one begins a step, the second one ends
-# it. Code between two stages counts for the earlier one.
-STAGES = (
+# it. Code between two stages counts for the earlier one. Every layer of the CNN is a stage, and so are the LSTM and the head.
+_BEFORE_CNN = (
     ("application", r"fsw::AttitudeInitApp::step\("),
     ("(end)", r"replay::ConsoleLink::publish\(tumblesight::hal::AttitudeReport"),
     ("depth image", r"gnc::make_depth_image\(.*DepthLoops const&\)"),
     ("space to depth", r"gnc::space_to_depth<"),
-    ("conv1", r"ConvBlock<.*, 50, \d+, \d+>::forward\("),
-    ("conv2", r"ConvBlock<.*, 25, \d+, \d+>::forward\("),
-    ("conv3", r"ConvBlock<.*, 12, \d+, \d+>::forward\("),
-    ("conv4", r"ConvBlock<.*, 6, \d+, \d+>::forward\("),
-    ("dense1", r"Dense<.*, 2160, \d+>::hidden\("),
-    ("dense2", r"Dense<.*, 192, 128>::hidden\("),
-    ("single-frame head", r"Dense<.*, 128, 57>::output\("),
+)
+_BEFORE_LSTM = (
     ("hypotheses", r"gnc::decode_hypotheses<"),
     ("prediction", r"gnc::predict<"),
     ("LSTM input", r"gnc::fill_lstm_input<"),
-    ("LSTM", r"Lstm<.*>::forward\("),
-    ("recurrent head", r"Dense<.*, 382, 128>::hidden\("),
+)
+_AFTER_HEAD = (
     ("fusion", r"gnc::advance<"),
     ("telemetry", r"BoardStopwatch::now_ns\("),
 )
 TIME_LIMIT_S = 1200
+
+
+def stages():
+    cnn, lstm, head = ([layer for layer in layers() if layer.part == part] for part in ("cnn", "lstm", "head"))
+    return (*_BEFORE_CNN, *((layer.name, function(layer)) for layer in cnn[:-1]), ("single-frame head", function(cnn[-1])),
+            *_BEFORE_LSTM, ("LSTM", function(lstm[0])), ("recurrent head", function(head[0])), *_AFTER_HEAD)
 
 
 def build_plugin(folder):
@@ -35,12 +38,12 @@ def build_plugin(folder):
     return plugin
 
 
-def addresses(processor, program, stages):
-    """The addresses of the stages' functions, in the order of `stages`."""
+def addresses(processor, program, wanted):
+    """The addresses of the stages' functions, in the order of `wanted`."""
     listing = subprocess.run([processor.tool("nm"), "-C", str(program)], check=True, capture_output=True, text=True).stdout
     symbols = [line.split(" ", 2) for line in listing.splitlines() if re.match(r"[0-9a-f]+ [tTwW] ", line)]
     found = []
-    for name, pattern in stages:
+    for name, pattern in wanted:
         matches = [(int(address, 16), symbol) for address, _, symbol in symbols if re.search(pattern, symbol)]
         matches.sort(key=lambda match: "[clone" in match[1])  # the function itself before its clones
         if not matches:
@@ -49,10 +52,10 @@ def addresses(processor, program, stages):
     return found
 
 
-def run_and_count(processor, program, plugin, folder, stages):
+def run_and_count(processor, program, plugin, folder, wanted):
     """([instructions per stage] of every step, lines of the console)"""
     table, out = folder / f"{program.name}.stages", folder / f"{program.name}.counts"
-    lines = (f"{address:x} {name}\n" for address, (name, _) in zip(addresses(processor, program, stages), stages))
+    lines = (f"{address:x} {name}\n" for address, (name, _) in zip(addresses(processor, program, wanted), wanted))
     table.write_text("".join(lines))
     out.unlink(missing_ok=True)
     command = list(processor.emulator)
@@ -68,8 +71,8 @@ def run_and_count(processor, program, plugin, folder, stages):
 # Verifies TS-NUM-070.
 def count(processor, program, plugin, folder):
     """(names of the stages, [instructions per stage] of every step, lines of the console)"""
-    steps, console = run_and_count(processor, program, plugin, folder, STAGES)
-    return [name for name, _ in STAGES if name != "(end)"], steps, console
+    steps, console = run_and_count(processor, program, plugin, folder, stages())
+    return [name for name, _ in stages() if name != "(end)"], steps, console
 
 
 # A whole step of flight_worst_step.

@@ -5,6 +5,7 @@ import tempfile
 import unittest
 
 import instruction_count
+import network_layers
 import processors
 import report
 import stack
@@ -79,7 +80,19 @@ class WorstCaseStack(unittest.TestCase):
 
 class Stages(unittest.TestCase):
     def test_first_two_begin_and_end_a_step(self):
-        self.assertEqual([name for name, _ in instruction_count.STAGES[:2]], ["application", "(end)"])
+        self.assertEqual([name for name, _ in instruction_count.stages()[:2]], ["application", "(end)"])
+
+    def test_every_layer_of_the_cnn_is_one(self):
+        cnn = [layer for layer in network_layers.layers() if layer.part == "cnn"]
+        names = [name for name, _ in instruction_count.stages()]
+        first = names.index("space to depth") + 1
+        self.assertEqual(names[first:first + len(cnn)], [layer.name for layer in cnn[:-1]] + ["single-frame head"])
+
+    def test_a_layer_is_recognized_in_either_numerics(self):
+        layer = network_layers.Layer("cnn", "x", 1, "a::Dense<a::FixedPoint, 3, 4>")
+        for symbol in ("a::Dense<a::FixedPoint, 3, 4>::hidden(", "a::Dense<a::Float32, 3, 4>::output("):
+            self.assertRegex(symbol, network_layers.function(layer))
+        self.assertNotRegex("a::Dense<a::Float32, 3, 40>::output(", network_layers.function(layer))
 
 
 class Processors(unittest.TestCase):

@@ -1,10 +1,12 @@
 // A library that tests preload into the flight program to cause a fault that no input can cause.
 // TUMBLESIGHT_FAULT selects it. "heap": the flight task allocates each time that it reports the end of a
 // cycle, which is after the cycle's telemetry. "thread": the program itself gets no thread; its libraries do.
+// "stop at exec": SIGTERM just before the program replaces itself with another one.
 #include <dlfcn.h>
 #include <errno.h>
 #include <pthread.h>
 #include <semaphore.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,6 +49,12 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
   static const auto create = original<Create>("pthread_create");
   if (fault_is("thread") && is_of_flight(reinterpret_cast<const void*>(run))) return EAGAIN;
   return create(thread, attributes, run, argument);
+}
+
+int execv(const char* path, char* const arguments[]) noexcept {
+  static const auto replace = original<int (*)(const char*, char* const[])>("execv");
+  if (fault_is("stop at exec") && is_of_flight(__builtin_return_address(0))) raise(SIGTERM);
+  return replace(path, arguments);
 }
 
 }  // extern "C"

@@ -20,7 +20,7 @@ void fill_random(NetworkWeights<Float32>& weights, unsigned seed) {
     // Products per sum: all inputs of a channel in the CNN; for the LSTM and the recurrent head only the
     // hidden units are counted.
     std::size_t fan_in = layer.weight.size() / layer.bias.size();
-    if (row.kind == LayerKind::kLstm) fan_in = shape::kLstm;
+    if (sums_of(row.kind).read_state) fan_in = shape::kLstm;
     if (layer_index(row.name) > kLstmLayer) fan_in = shape::kHead;
     for_each_tensor_of(layer, [&](const char* part, auto& tensor) {
       const float bound =
@@ -34,8 +34,8 @@ void fill_random(NetworkWeights<Float32>& weights, unsigned seed) {
 class RandomIntegers {
  public:
   explicit RandomIntegers(unsigned seed) : engine_(seed) {
-    constexpr std::array<std::uint8_t, kLayerCount> kShifts{8, 9, 9, 7, 8, 8, 20, 22, 10, 21};
-    static_assert(kShifts.back() != 0, "one shift for each layer of kLayers");
+    constexpr std::array<std::uint8_t, 10> kShifts{8, 9, 9, 7, 8, 8, 20, 22, 10, 21};
+    static_assert(kShifts.size() == kLayerCount, "one shift for each layer of kLayers, at its place");
     std::size_t index = 0;
     for_each_layer(weights, [&](const LayerRow&, auto& layer) {
       put(layer.weight);

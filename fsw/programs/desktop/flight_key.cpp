@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "fsw/programs/desktop/flight_program.hpp"
 #include "hal/dds/idl/development_key.hpp"
 
 namespace tumblesight::fsw::desktop {
@@ -42,7 +43,7 @@ bool read_command_key(const char* path, hal::CommandKey& key) {
   }
   std::FILE* const file = std::fopen(path, "r");
   if (file == nullptr) {
-    std::fprintf(stderr, "flight: --command-key %s: %s\n", path, strerrordesc_np(errno));
+    std::fprintf(stderr, "%s: --command-key %s: %s\n", kProgramName, path, strerrordesc_np(errno));
     return false;
   }
   hal::CommandKey read{};
@@ -51,8 +52,8 @@ bool read_command_key(const char* path, hal::CommandKey& key) {
   if (complete) {
     key = read;
   } else {
-    std::fprintf(stderr, "flight: --command-key %s: expected %zu hexadecimal digits and nothing else\n", path,
-                 kDigits);
+    std::fprintf(stderr, "%s: --command-key %s: expected %zu hexadecimal digits and nothing else\n",
+                 kProgramName, path, kDigits);
   }
   return complete;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "fsw/programs/desktop/flight_program.hpp"
 #include "hal/posix/periodic_task.hpp"
 
 namespace tumblesight::fsw::desktop {
@@ -51,9 +52,9 @@ FlightEnd carry_until_last(FlightBus& bus) {
 // Reports slips and heap use after the task has ended: too late for telemetry.
 FlightEnd report_end(const FlightTask& task, FlightEnd end) {
   if (task.slips() > 0)
-    std::fprintf(stderr, "flight: %u releases of the flight task slipped\n", task.slips());
+    std::fprintf(stderr, "%s: %u releases of the flight task slipped\n", kProgramName, task.slips());
   if (task.heap_allocations() > 0) {
-    std::fprintf(stderr, "flight: the flight task used the heap %u times, first for %zu bytes\n",
+    std::fprintf(stderr, "%s: the flight task used the heap %u times, first for %zu bytes\n", kProgramName,
                  task.heap_allocations(), task.first_heap_allocation_bytes());
     if (end == FlightEnd::kComplete) return FlightEnd::kHeapUsed;
   }

@@ -2,15 +2,12 @@
 
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <type_traits>
 
 #include "fsw/config/limits.hpp"
-#include "fsw/config/numerics.hpp"
+#include "fsw/programs/desktop/flight_program.hpp"
 #include "gnc/rcnn/model_image.hpp"
-#include "hal/posix/file_model_store.hpp"
 
 namespace tumblesight::fsw::desktop {
 namespace {
@@ -18,24 +15,13 @@ namespace {
 static_assert(gnc::kModelImageSize<gnc::Float32> <= fsw::config::kMaxModelImageBytes,
               "the limit would refuse every image");
 
-// The folder of this program, without a slash at its end.
-bool program_folder(char (&folder)[FlightOptions::kMaxPath]) {
-  const ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1);
-  if (length <= 0) return false;
-  folder[length] = '\0';
-  char* slash = std::strrchr(folder, '/');
-  if (slash == nullptr) return false;
-  *slash = '\0';
-  return true;
-}
-
 // Looks in the source tree around the build folder that this program is in, then in the source tree it was
 // built from.
 void find_shipped_model(FlightOptions& options) {
   char folder[FlightOptions::kMaxPath];
   char path[FlightOptions::kMaxPath + 128];
   const char* const kind = options.float32 ? ".float32" : "";
-  if (program_folder(folder)) {
+  if (program_folder(folder, sizeof folder)) {
     const int length =
         std::snprintf(path, sizeof path, "%s/../../../fsw/models/%s%s.tsm", folder, options.target, kind);
     if (length > 0 && length < FlightOptions::kMaxPath && access(path, R_OK) == 0) {
@@ -47,31 +33,46 @@ void find_shipped_model(FlightOptions& options) {
                 TUMBLESIGHT_SOURCE_DIR, options.target, kind);
 }
 
-// Returns only if the program cannot be started.
-void become_float32_program(char** argv) {
-  char folder[FlightOptions::kMaxPath];
-  char path[FlightOptions::kMaxPath + 16];
-  if (!program_folder(folder)) return;
-  std::snprintf(path, sizeof path, "%s/flight_float32", folder);
-  execv(path, argv);
-  std::fprintf(stderr, "flight: %s: %s\n", path, strerrordesc_np(errno));
+// Writes the end of the message about a missing image into `text`. The images that only the repository's
+// history has are in the folder of the script that gets them. Empty for other files.
+void remedy_for_missing_image(const char* path, char* text, std::size_t size) {
+  constexpr char kEnd[] = ".float32.tsm";
+  const char* const slash = std::strrchr(path, '/');
+  const char* const name = slash == nullptr ? path : slash + 1;
+  const std::size_t length = std::strlen(name);
+  text[0] = '\0';
+  if (length < sizeof kEnd || std::strcmp(name + length - (sizeof kEnd - 1), kEnd) != 0) return;
+  char script[FlightOptions::kMaxPath + 16];
+  std::snprintf(script, sizeof script, "%.*sfetch_images", static_cast<int>(name - path), path);
+  if (access(script, F_OK) != 0) return;
+  const int stem_length = static_cast<int>(length - std::strlen(".tsm"));
+  std::snprintf(text, size, "; get it with: fsw/models/fetch_images %.*s", stem_length, name);
 }
 
 }  // namespace
 
-void boot(FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
-          const hal::CommandKey& command_key, char** argv) {
+hal::posix::FileModelStore& open_model(FlightOptions& options) {
   if (options.model_path[0] == '\0') find_shipped_model(options);
   static hal::posix::FileModelStore store(options.model_path, fsw::config::kMaxModelImageBytes);
+  return store;
+}
+
+bool wants_float32(const FlightOptions& options, hal::ModelStore& store) {
+  if (options.numerics_given) return options.float32;
   const hal::ModelBank image = store.bank(0);
-  const bool float32 = options.numerics_given ? options.float32 : gnc::is_float32(image.data, image.size);
-  constexpr bool kFlyFloat32 = std::is_same_v<fsw::Numerics, gnc::Float32>;
-  if (float32 && !kFlyFloat32) become_float32_program(argv);
+  return gnc::is_float32(image.data, image.size);
+}
+
+void boot(const FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
+          hal::posix::FileModelStore& store, const hal::CommandKey& command_key) {
   app.init({&stopwatch, &store, &command_key}, options.target);
   if (app.mode() == fsw::Mode::kRun) return;
   const bool unread = store.status() != hal::posix::FileStatus::kOk;
-  std::fprintf(stderr, "flight: model image %s: %s; the mode is SAFE\n", options.model_path,
-               unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)));
+  char remedy[FlightOptions::kMaxPath + 64] = {};
+  if (store.status() == hal::posix::FileStatus::kMissing)
+    remedy_for_missing_image(options.model_path, remedy, sizeof remedy);
+  std::fprintf(stderr, "%s: model image %s: %s%s; the mode is SAFE\n", kProgramName, options.model_path,
+               unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)), remedy);
 }
 
 }  // namespace tumblesight::fsw::desktop

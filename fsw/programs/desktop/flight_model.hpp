@@ -1,17 +1,24 @@
-// Boots the flight application with the model image selected on the command line.
+// The model image selected on the command line, and the boot of the flight application with it.
 #pragma once
 
 #include "fsw/app/cycle.hpp"
 #include "fsw/programs/desktop/flight_options.hpp"
 #include "hal/messages/command_key.hpp"
+#include "hal/posix/file_model_store.hpp"
 #include "hal/stopwatch.hpp"
 
 namespace tumblesight::fsw::desktop {
 
+// Reads the image of options.model_path. If that is empty, it becomes the path of the shipped image. Call it
+// once.
+hal::posix::FileModelStore& open_model(FlightOptions& options);
+
+// Whether the options or, without --numerics, the image ask for float32.
+bool wants_float32(const FlightOptions& options, hal::ModelStore& store);
+
 // Boots `app`. Without a usable image its mode is SAFE, and the reason is written to the standard error
-// stream. If the options or the image ask for float32, the fixed-point program replaces itself with
-// flight_float32 from its own folder, with the same arguments `argv`. Call it once.
-void boot(FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
-          const hal::CommandKey& command_key, char** argv);
+// stream.
+void boot(const FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
+          hal::posix::FileModelStore& store, const hal::CommandKey& command_key);
 
 }  // namespace tumblesight::fsw::desktop

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "cmake/version.hpp"
+#include "fsw/programs/desktop/flight_program.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
@@ -15,7 +16,7 @@ namespace tumblesight::fsw::desktop {
 namespace {
 
 bool fail(const char* option, const char* value, const char* expected) {
-  std::fprintf(stderr, "flight: %s %s: expected %s\n", option, value, expected);
+  std::fprintf(stderr, "%s: %s %s: expected %s\n", kProgramName, option, value, expected);
   return false;
 }
 
@@ -52,6 +53,7 @@ bool parse_mode(const char* option, const char* value, bool& free_running) {
 bool parse_numerics(const char* option, const char* value, FlightOptions& options) {
   options.numerics_given = true;
   options.float32 = std::strcmp(value, "float32") == 0;
+  if (kFlyFloat32) return options.float32 || fail(option, value, "float32; for fixed point start flight");
   return options.float32 || std::strcmp(value, "fixed") == 0 || fail(option, value, "fixed or float32");
 }
 
@@ -81,7 +83,7 @@ bool parse_one(const char* option, const char* value, FlightOptions& options) {
   // For the test of the refusal; not in the help.
   if (std::strcmp(option, "--icd-hash") == 0)
     return parse_integer(option, value, UINT32_MAX, options.icd_hash);
-  std::fprintf(stderr, "flight: unknown option %s\n", option);
+  std::fprintf(stderr, "%s: unknown option %s\n", kProgramName, option);
   return false;
 }
 
@@ -89,29 +91,36 @@ bool parse_one(const char* option, const char* value, FlightOptions& options) {
 
 void print_flight_help() {
   std::printf(
-      "flight: the Tumblesight flight application on a desktop, connected to a simulator over DDS "
-      "(loopback)\n\n"
+      "%s: the Tumblesight flight application on a desktop, connected to a\n"
+      "simulator over DDS (loopback)%s\n\n"
       "  --model FILE       model image [the one shipped for the target]\n"
       "  --target NAME      target that the model image must be for [near_shoemaker]\n"
-      "  --numerics N       fixed: fixed point, as flown; float32: the reference [fixed; with --model: as "
-      "the image]\n"
-      "  --command-key FILE key that signs telecommands, 64 hexadecimal digits [the public development key]\n"
+      "  --numerics N       fixed: fixed point, as flown; float32: the reference\n"
+      "                     [%s]\n"
+      "  --command-key FILE key that signs telecommands, 64 hexadecimal digits\n"
+      "                     [the public development key]\n"
       "  --domain N         DDS domain [0]\n"
       "  --run-id N         simulator run to join; 0: the first one found [0]\n"
-      "  --mode MODE        lockstep: the simulator sets the time; free-running: cycles on a timer "
-      "[lockstep]\n"
+      "  --mode MODE        lockstep: the simulator sets the time;\n"
+      "                     free-running: cycles on a timer [lockstep]\n"
       "  --period-ms N      free-running: wall-clock period of a cycle [2700]\n"
-      "  --timeout-s N      end after this long without a simulator or a step from it [60]\n"
+      "  --timeout-s N      end after this long without a simulator or a step from it\n"
+      "                     [60]\n"
       "  --version          version, commit, model format and interface hash\n"
       "  --help             this text\n\n"
-      "Exit status: 0 complete, 2 bad arguments, 3 interface definitions differ, 4 simulator gone, 5 "
-      "timeout,\n"
-      "6 DDS failed, 7 step out of order, 8 the flight task used the heap, 9 no thread for the flight "
-      "task.\n");
+      "Exit status: 0 complete, 2 bad arguments, 3 interface definitions differ,\n"
+      "4 simulator gone, 5 timeout, 6 DDS failed, 7 step out of order, 8 the flight\n"
+      "task used the heap, 9 no thread for the flight task, 10 flight_float32 cannot\n"
+      "be started.\n",
+      kProgramName,
+      kFlyFloat32 ? ".\nThis is its variant in float32, for comparisons. Start `flight`: for a float32\n"
+                    "image it starts this one"
+                  : "",
+      kFlyFloat32 ? "float32, nothing else" : "fixed; with --model: as the image");
 }
 
 void print_flight_version() {
-  std::printf("flight %s\ncommit %s\nmodel format %d\ninterface %08x\n", kVersion, kCommit,
+  std::printf("%s %s\ncommit %s\nmodel format %d\ninterface %08x\n", kProgramName, kVersion, kCommit,
               int{gnc::kModelFormatVersion}, static_cast<unsigned>(hal::dds::icd_hash()));
 }
 
@@ -121,7 +130,7 @@ ParseResult parse_flight_options(int argc, char** argv, FlightOptions& options) 
     if (std::strcmp(argv[i], "--version") == 0) return ParseResult::kVersion;
     if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) return ParseResult::kHelp;
     if (i + 1 == argc) {
-      std::fprintf(stderr, "flight: %s: unknown option, or its value is missing\n", argv[i]);
+      std::fprintf(stderr, "%s: %s: unknown option, or its value is missing\n", kProgramName, argv[i]);
       return ParseResult::kError;
     }
     if (!parse_one(argv[i], argv[i + 1], options)) return ParseResult::kError;

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "fsw/programs/desktop/flight_program.hpp"
+
 namespace tumblesight::fsw::desktop {
 
 struct FlightOptions {
@@ -11,7 +13,7 @@ struct FlightOptions {
   char command_key_path[kMaxPath] = {};  // empty: the development key
   char model_path[kMaxPath] = {};        // empty: the shipped model of the target
   const char* target = "near_shoemaker";
-  bool float32 = false;  // without numerics_given and with a model_path: decided by the model image
+  bool float32 = kFlyFloat32;  // without numerics_given and with a model_path: decided by the model image
   bool numerics_given = false;
   std::uint32_t domain = 0;
   std::uint32_t run_id = 0;  // 0: that of the first simulator found

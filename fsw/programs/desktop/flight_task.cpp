@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "fsw/config/limits.hpp"
+#include "fsw/programs/desktop/flight_program.hpp"
 #include "fsw/programs/desktop/heap_trap.hpp"
 #include "hal/posix/realtime.hpp"
 
@@ -27,7 +28,8 @@ void become_realtime() {
   // Above all tasks without a real-time priority, below tasks that were given a high one on purpose.
   constexpr int kPriority = 10;
   const hal::posix::RealtimeGrant grant = hal::posix::request_realtime(kPriority);
-  std::fprintf(stderr, "flight: fixed priority %d: %s; ", kPriority, granted(grant.scheduler_error));
+  std::fprintf(stderr, "%s: fixed priority %d: %s; ", kProgramName, kPriority,
+               granted(grant.scheduler_error));
   std::fprintf(stderr, "memory locked: %s\n", granted(grant.memory_lock_error));
 }
 

@@ -7,6 +7,7 @@
 #include "fsw/programs/desktop/flight_loop.hpp"
 #include "fsw/programs/desktop/flight_model.hpp"
 #include "fsw/programs/desktop/flight_options.hpp"
+#include "fsw/programs/desktop/flight_program.hpp"
 #include "fsw/programs/desktop/heap_trap.hpp"
 #include "hal/dds/handshake.hpp"
 #include "hal/dds/idl/domain.hpp"
@@ -37,7 +38,7 @@ FlightEnd connect(const FlightOptions& options) {
   dds_return_t result = domain.open(options.domain);
   if (result == 0) result = endpoints.open(domain.participant());
   if (result == 0) return FlightEnd::kComplete;
-  std::fprintf(stderr, "flight: DDS domain %u: %s\n", options.domain, dds_strretcode(result));
+  std::fprintf(stderr, "%s: DDS domain %u: %s\n", kProgramName, options.domain, dds_strretcode(result));
   return FlightEnd::kTransport;
 }
 
@@ -50,9 +51,9 @@ hal::dds::HandshakeResult meet_simulator(const FlightOptions& options, std::int6
   const hal::dds::HandshakeResult met = hal::dds::shake_hands(endpoints, settings, stopwatch);
   if (met.end == FlightEnd::kIcdUnequal) {
     std::fprintf(stderr,
-                 "flight: interface hash %08x differs from the simulator's %08x: build both from the same "
+                 "%s: interface hash %08x differs from the simulator's %08x: build both from the same "
                  "tumblesight.idl\n",
-                 options.icd_hash, met.simulator_icd_hash);
+                 kProgramName, options.icd_hash, met.simulator_icd_hash);
   }
   return met;
 }
@@ -86,14 +87,16 @@ int main(int argc, char** argv) {
     case ParseResult::kRun:
       break;
   }
+  hal::posix::FileModelStore& model = open_model(options);
+  if (!kFlyFloat32 && wants_float32(options, model)) return static_cast<int>(become_float32_program(argv));
   hal::dds::accept_stop_requests();
   if (!read_command_key(options.command_key_path, command_key))
     return static_cast<int>(FlightEnd::kBadArguments);
-  boot(options, app, stopwatch, command_key, argv);
+  boot(options, app, stopwatch, model, command_key);
 
   const FlightEnd end = fly(options);
   task.join();  // no effect after a run
-  if (end != FlightEnd::kComplete) std::fprintf(stderr, "flight: %s\n", hal::dds::to_string(end));
+  if (end != FlightEnd::kComplete) std::fprintf(stderr, "%s: %s\n", kProgramName, hal::dds::to_string(end));
   domain.close();
   return static_cast<int>(end);
 }

@@ -56,6 +56,13 @@ int fail(const char* what, const char* why) {
   return 1;
 }
 
+int refuse(const char* argument) {
+  board::write("flight_replay: ");
+  board::write(argument);
+  board::write(": takes no arguments; model image and recording are part of the program\n");
+  return 2;
+}
+
 int run() {
   app.init({&stopwatch, &model_store, nullptr}, nullptr);
   if (app.mode() != Mode::kRun) return fail("model image", gnc::to_string(app.boot_status(0)));
@@ -91,6 +98,8 @@ int run() {
 }  // namespace
 }  // namespace tumblesight::fsw
 
-int main() {
+// A machine with an operating system passes arguments; there are none that the program takes.
+int main(int argc, char** argv) {
+  if (argc > 1) tumblesight::hal::board::end(tumblesight::fsw::refuse(argv[1]));
   tumblesight::hal::board::end(tumblesight::fsw::run());
 }

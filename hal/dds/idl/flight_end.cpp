@@ -22,6 +22,8 @@ const char* to_string(FlightEnd end) {
       return "the flight task used the heap";
     case FlightEnd::kNoThread:
       return "the system provided no thread for the flight task";
+    case FlightEnd::kNoFloat32Program:
+      return "flight_float32 cannot be started";
   }
   return "?";
 }

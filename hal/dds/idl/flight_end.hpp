@@ -11,8 +11,9 @@ enum class FlightEnd : int {
   kSilence = 5,        // no simulator, or no step from it, within the timeout
   kTransport = 6,      // DDS could not be set up or refused a sample
   kStepOutOfOrder = 7,
-  kHeapUsed = 8,  // the run is complete, but the flight task used the heap
-  kNoThread = 9,  // the flight task's thread could not be created
+  kHeapUsed = 8,           // the run is complete, but the flight task used the heap
+  kNoThread = 9,           // the flight task's thread could not be created
+  kNoFloat32Program = 10,  // flight_float32 is missing or cannot be executed
 };
 
 const char* to_string(FlightEnd end);

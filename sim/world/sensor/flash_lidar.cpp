@@ -29,17 +29,6 @@ SensorPose pose_of(const FrameTruth& truth, double swath_m) {
   return {r_trf_lrf.cast<float>(), (r_trf_lrf * -target_lrf_m).cast<float>()};
 }
 
-// Rounded to the sensor's Q9.7 counts; 0 (no return) outside (0, gnc::kMaxRange_m].
-std::uint16_t to_counts(double range_m) {
-  if (!(range_m > 0.0) || range_m > gnc::kMaxRange_m) return 0;
-  return static_cast<std::uint16_t>(std::max(1L, std::lround(range_m / gnc::RangeImage::kMetresPerCount)));
-}
-
-// Every ray draws from a stream of its own, so that order and threads do not matter.
-Random stream_of_ray(std::uint64_t noise_seed, int ray) {
-  return Random(mix(noise_seed, static_cast<std::uint64_t>(ray)));
-}
-
 }  // namespace
 
 double swath_m(const TriangleMesh& mesh) {
@@ -167,13 +156,7 @@ void FlashLidar::expose(const FrameTruth& truth, const SensorSettings& settings,
   occlude(truth.occluder, grid);
   frame.rays = static_cast<std::uint16_t>(settings.rays);
   frame.fov_urad = fov_urad(swath_m, truth.range_m);
-  frame.ranges.fill(0);
-  for (int ray = 0; ray < settings.rays * settings.rays; ++ray) {
-    if (std::isfinite(grid.range_m[ray])) {
-      frame.ranges[ray] =
-          to_counts(measured_range_m(grid.range_m[ray], settings, stream_of_ray(noise_seed, ray)));
-    }
-  }
+  measure_ranges(grid, ray_effects(), settings, noise_seed, frame);
 }
 
 }  // namespace tumblesight::sim

@@ -54,6 +54,18 @@ TEST_P(IncludeRules, HoldForEverySource) {
 INSTANTIATE_TEST_SUITE_P(Tree, IncludeRules, ::testing::Values("gnc", "fsw", "hal", "sim"),
                          [](const auto& folder) { return std::string(folder.param); });
 
+TEST(Folders, EveryOneSaysInItsFirstLineWhatItIsFor) {
+  int folders = 0;
+  for (const char* part : {"gnc", "fsw", "hal", "sim", "tests"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(TUMBLESIGHT_SOURCE_DIR) / part)) {
+      if (entry.path().filename() != "CMakeLists.txt") continue;
+      ++folders;
+      EXPECT_EQ(text_of(entry.path()).rfind("# ", 0), 0U) << entry.path();
+    }
+  }
+  EXPECT_GT(folders, 60);
+}
+
 TEST(FolderGraph, NoTwoFoldersOfTheProjectIncludeEachOther) {
   FolderGraph graph;
   for (const char* folder : {"gnc", "fsw", "hal", "sim"}) {

@@ -113,6 +113,21 @@ TEST(CommandGate, ChecksumMustMatchThePacket) {
   }
 }
 
+// The numbers are part of the interface. They start at 1 and leave no gap: none is removed or used again.
+TEST(CommandGate, KnowsEveryFunctionCodeUpToTheLast) {
+  constexpr auto kLastOfToday = static_cast<int>(FunctionCode::kDisableResponse);
+  static_assert(kNoop == 1 && kSetLimit == 9 && kLastOfToday == 11);
+  int last = 0;
+  for (int function = 0; function < 256; ++function) {
+    const CommandRule* rule = find_command(static_cast<std::uint8_t>(function));
+    if (rule == nullptr) continue;
+    EXPECT_EQ(function, last + 1);
+    EXPECT_EQ(static_cast<int>(rule->function), function);
+    last = function;
+  }
+  EXPECT_GE(last, kLastOfToday);
+}
+
 TEST(CommandGate, OnlyTheFunctionsOfTheTableAreKnown) {
   for (int function = 0; function < 256; ++function) {
     const bool known = find_command(static_cast<std::uint8_t>(function)) != nullptr;

@@ -26,6 +26,14 @@ std::unique_ptr<AttitudeEstimator<N>> loaded(unsigned seed) {
   return estimator;
 }
 
+std::unique_ptr<AttitudeEstimator<Float32>> loaded_with(const NetworkWeights<Float32>& weights) {
+  std::vector<std::uint8_t> image(kModelImageSize<Float32>);
+  EXPECT_EQ(write_model_image<Float32>(test_header(), weights, image.data(), image.size()), image.size());
+  auto estimator = std::make_unique<AttitudeEstimator<Float32>>();
+  EXPECT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+  return estimator;
+}
+
 // Bit for bit.
 void expect_same(const AttitudeEstimate& a, const AttitudeEstimate& b) {
   EXPECT_EQ(a.q_lrf_trf, b.q_lrf_trf);
@@ -77,6 +85,7 @@ TYPED_TEST_SUITE(EstimatorOf, BothNumerics);
 
 // Verifies TS-NUM-090.
 TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
+  int means_taken = 0, rates_corrected = 0;
   for (const unsigned seed : {62U, 66U, 68U}) {
     auto weights = std::make_unique<NetworkWeights<Float32>>();
     fill_random(*weights, seed);
@@ -108,10 +117,13 @@ TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
       EXPECT_NEAR(1e-6 * estimate.predicted_error_single_frame_urad, track.single_frame_error_rad(), 5e-5);
       EXPECT_EQ(estimate.frames_since_reset, frame + 1);
     }
-    // The sequences exercise the track.
-    EXPECT_GT(track.means_taken, 5);
-    EXPECT_GT(track.rates_corrected, 5);
+    means_taken += track.means_taken;
+    rates_corrected += track.rates_corrected;
   }
+  // The sequences exercise the track. A single random network may not: one that always chooses an attitude of
+  // 60 degrees or more from the predicted one never corrects a rate.
+  EXPECT_GT(means_taken, 50);
+  EXPECT_GT(rates_corrected, 50);
 }
 
 // Verifies TS-IFC-090.
@@ -153,10 +165,7 @@ TEST(AttitudeEstimator, ExpectsAnErrorOfPiForANonFiniteAttitude) {
   layer_weights<kCnnOutputLayer>(*weights).weight.fill(3e38F);
   layer_weights<kCnnOutputLayer>(*weights).bias[shape::kOutput - 1] = -1e38F;
   layer_weights<kHeadOutputLayer>(*weights).bias[shape::kHeadOutput - 1] = -30.0F;
-  std::vector<std::uint8_t> image(kModelImageSize<Float32>);
-  ASSERT_EQ(write_model_image<Float32>(test_header(), *weights, image.data(), image.size()), image.size());
-  auto estimator = std::make_unique<AttitudeEstimator<Float32>>();
-  ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+  const auto estimator = loaded_with(*weights);
   AttitudeEstimate estimate;
   for (unsigned k = 0; k < 3; ++k) {
     estimator->step(random_depth_image(k), estimate);
@@ -278,10 +287,7 @@ TEST(AttitudeEstimator, GivesUnitQuaternionsForZeroAndForOverflowingWeights) {
     for_each_tensor(*weights, [value](const char*, const char*, auto& tensor) {
       for (std::size_t i = 0; i < tensor.size(); ++i) tensor[i] = i % 3 == 0 ? value : -0.5F * value;
     });
-    std::vector<std::uint8_t> image(kModelImageSize<Float32>);
-    ASSERT_EQ(write_model_image<Float32>(test_header(), *weights, image.data(), image.size()), image.size());
-    auto estimator = std::make_unique<AttitudeEstimator<Float32>>();
-    ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+    const auto estimator = loaded_with(*weights);
     AttitudeEstimate estimate;
     for (unsigned k = 0; k < 3; ++k) {
       estimator->step(random_depth_image(k), estimate);

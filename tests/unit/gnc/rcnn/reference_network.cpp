@@ -1,5 +1,7 @@
 #include "tests/unit/gnc/rcnn/reference_network.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -82,6 +84,24 @@ Numbers ReferenceNetwork::dense(const std::string& name, const Numbers& in) cons
   return sum;
 }
 
+Numbers ReferenceNetwork::layer(const LayerRow& row, const Numbers& in) const {
+  Numbers out;
+  switch (row.kind) {
+    case LayerKind::kConvolution:
+      out = conv(row.name, in, row.side);
+      relu(out);
+      return pool(out, row.side, row.output == LayerOutput::kMaxPooled ? largest : mean);
+    case LayerKind::kDense:
+      out = dense(row.name, in);
+      if (row.output == LayerOutput::kHidden) relu(out);
+      return out;
+    case LayerKind::kLstm:
+      break;  // infer_sequence()
+  }
+  ADD_FAILURE() << "layer " << row.name << " keeps a state";
+  return out;
+}
+
 ReferenceNetwork::Frame ReferenceNetwork::infer_frame(const DepthImage& image) const {
   Numbers map(50 * 50 * 4);
   for (int row = 0; row < 100; ++row) {
@@ -93,14 +113,7 @@ ReferenceNetwork::Frame ReferenceNetwork::infer_frame(const DepthImage& image) c
   Frame frame;
   for (int i = 0; i < kLstmLayer; ++i) {
     const LayerRow& row = kLayers[i];
-    if (row.kind == LayerKind::kConvolution) {
-      map = conv(row.name, map, row.side);
-      relu(map);
-      map = pool(map, row.side, row.output == LayerOutput::kMaxPooled ? largest : mean);
-    } else {
-      map = dense(row.name, map);
-      if (row.output == LayerOutput::kHidden) relu(map);
-    }
+    map = layer(row, map);
     if (i == kFeatureLayer) frame.features = map;
   }
   frame.output = map;
@@ -124,8 +137,7 @@ Numbers ReferenceNetwork::infer_sequence(const Numbers& lstm_input) {
   Numbers values = h;
   values.insert(values.end(), lstm_input.begin(), lstm_input.end());
   for (int i = kLstmLayer + 1; i < kLayerCount; ++i) {
-    values = dense(kLayers[i].name, values);
-    if (kLayers[i].output == LayerOutput::kHidden) relu(values);
+    values = layer(kLayers[i], values);
   }
   return values;
 }

@@ -27,6 +27,7 @@ class ReferenceNetwork {
  private:
   Numbers conv(const std::string& name, const Numbers& in, int side) const;
   Numbers dense(const std::string& name, const Numbers& in) const;
+  Numbers layer(const LayerRow& row, const Numbers& in) const;  // without state
   std::map<std::string, Numbers> tensors_;
 };
 

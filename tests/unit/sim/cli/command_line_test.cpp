@@ -5,6 +5,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "sim/cli/bench_command.hpp"
+#include "sim/cli/help_formatter.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -68,7 +70,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --target sputnik", 1, "near_shoemaker"},
         Refusal{"evaluate --mesh /no/such.stl", 1, "/no/such.stl"},
         Refusal{"evaluate --model /no/such.tsm", 1, "'/no/such.tsm' does not exist"},
-        Refusal{"evaluate --model /dev", 1, "'/dev' does not exist"},
+        Refusal{"evaluate --model /dev", 1, "'/dev' is a folder; give a file"},
+        Refusal{"quantize --model /dev", 2, "'/dev' is a folder; give a file"},
+        Refusal{"quantize --model /no/such.tsm", 2, "'/no/such.tsm' does not exist"},
+        Refusal{"evaluate --model /dev/null", 1, "'/dev/null' is refused: too short"},
         Refusal{"evaluate --json /proc/none/x.json", 1, "--json /proc/none/x.json"}));
 
 TEST(Help, TeachesWithAnExample) {
@@ -79,6 +84,34 @@ TEST(Help, TeachesWithAnExample) {
                            "--paper", "Example:"}) {
     EXPECT_NE(outcome.output.find(part), std::string::npos) << part;
   }
+}
+
+// Columns, not bytes: the texts are in UTF-8.
+std::size_t widest_line(const std::string& text) {
+  std::size_t widest = 0;
+  std::size_t columns = 0;
+  for (const char c : text) {
+    if (c == '\n') columns = 0;
+    if (c != '\n' && (static_cast<unsigned char>(c) & 0xC0) != 0x80) ++columns;
+    widest = std::max(widest, columns);
+  }
+  return widest;
+}
+
+TEST(Help, FitsATerminal) {
+  const Workplace here;
+  for (const std::string verb :
+       {"", "simulate", "evaluate", "quantize", "record", "bench", "export", "train"}) {
+    const Outcome outcome = here.run(verb + " --help");
+    EXPECT_LE(widest_line(outcome.output), 80U) << outcome.output;
+  }
+}
+
+TEST(Help, WrapsTextAtSpaces) {
+  EXPECT_EQ(wrapped("", 8), "");
+  EXPECT_EQ(wrapped("one two three", 7), "one two\nthree");
+  EXPECT_EQ(wrapped("a muchlongerword b", 4), "a\nmuchlongerword\nb");
+  EXPECT_EQ(wrapped("±1° ±2°", 7), "±1° ±2°");
 }
 
 // Verifies TS-SIL-060.
@@ -99,8 +132,10 @@ TEST(Evaluate, WritesARowWithAllEstimatorsForEachCondition) {
       "evaluate --sequences 2 --frames 2 --baseline-sequences 1 --condition degraded,offset --model " +
       here.model() + " --json " + here.path("rows.json"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_NE(outcome.output.find("RCNN, 2 frames"), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("first 1 sequences"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("near_shoemaker, degraded, offset, 2 sequences of 2 frames, seed 1"),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("last frame of the first 1 sequence\n"), std::string::npos) << outcome.output;
   const auto rows = nlohmann::json::parse(content(here.path("rows.json"))).at("rows");
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0].at("target"), "near_shoemaker");
@@ -157,6 +192,52 @@ TEST(Evaluate, WarnsWhenTheNetworkWasTrainedForAnotherSwath) {
                                    here.model("near_shoemaker", 11000));
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_NE(outcome.errors.find("trained for 11.00 m"), std::string::npos) << outcome.errors;
+}
+
+TEST(EvaluatePaper, LeavesNoFolderWhenItFails) {
+  const Workplace here;
+  EXPECT_EQ(here.run("evaluate --paper --out figures --mesh-folder /no/such").exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(here.path("figures")));
+}
+
+TEST(Quantize, SaysThatAnImageIsInFixedPointAlready) {
+  const Workplace here;
+  const Outcome outcome = here.run("quantize --model " + here.model());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("model.tsm' is in fixed point; give the one in float32"), std::string::npos)
+      << outcome.errors;
+}
+
+TEST(Record, NeedsNoModelForAMeshOfTheUsersOwn) {
+  const Workplace here;
+  const Outcome outcome =
+      here.run("record --target mine --mesh " + own_mesh(here) + " --sequences 1 --frames 1 --out mine.tslr");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("mine, nominal: 1 frame, "), std::string::npos) << outcome.output;
+  EXPECT_GT(content(here.path("mine.tslr")).size(), 1000U);
+}
+
+TEST(Train, RefusesAFileAsItsFolder) {
+  const Workplace here;
+  if (here.run("--help").output.find("train") == std::string::npos) GTEST_SKIP() << "built without training";
+  const Outcome outcome = here.run("train --out " + here.model());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("model.tsm: is a file; give a folder"), std::string::npos) << outcome.errors;
+}
+
+TEST(Bench, ReadsBothImagesBeforeItMeasures) {
+  const Workplace here;
+  here.put("x.tsm", arbitrary_model("x", 7000));
+  std::ofstream(here.path("fetch_images")) << "";
+  try {
+    (void)read_bench_images(here.path(""), "x");
+    FAIL() << "the float32 image is missing";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("x.float32.tsm' does not exist; get it with: fsw/models/fetch_images x.float32"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(ModelImage, ThatIsInTheHistoryOnlyIsRefusedWithTheCommandThatGetsIt) {

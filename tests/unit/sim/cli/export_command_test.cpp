@@ -24,18 +24,28 @@ TEST(Export, WritesBothModelsAndNamesThem) {
   }
 }
 
-TEST(Export, RefusesFixedPointAFolderAndAMissingFolder) {
+TEST(Export, CreatesTheFolder) {
+  const Workplace here;
+  const Outcome outcome = here.run("export --model " + float32_model(here) + " --onnx new/folder/net");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_FALSE(content(here.path("new/folder/net.cnn.onnx")).empty());
+}
+
+TEST(Export, RefusesFixedPointAFolderAndAnImpossibleFolder) {
   const Workplace here;
   const std::string model = float32_model(here);
   const Outcome fixed = here.run("export --model " + here.model() + " --onnx net");
   EXPECT_EQ(fixed.exit_code, 1);
-  EXPECT_NE(fixed.errors.find("model.tsm: "), std::string::npos) << fixed.errors;
+  EXPECT_NE(fixed.errors.find("model.tsm' is in fixed point; give the one in float32"), std::string::npos)
+      << fixed.errors;
   const Outcome folder = here.run("export --model " + model + " --onnx ./");
   EXPECT_EQ(folder.exit_code, 2);
   EXPECT_NE(folder.errors.find("--onnx: './' is a folder"), std::string::npos) << folder.errors;
-  const Outcome nowhere = here.run("export --model " + model + " --onnx /no/such/net");
+  const Outcome nowhere = here.run("export --model " + model + " --onnx /proc/none/net");
   EXPECT_EQ(nowhere.exit_code, 1);
-  EXPECT_NE(nowhere.errors.find("/no/such/net.cnn.onnx"), std::string::npos) << nowhere.errors;
+  EXPECT_NE(nowhere.errors.find("--onnx /proc/none/net.cnn.onnx: cannot create its folder"),
+            std::string::npos)
+      << nowhere.errors;
 }
 
 }  // namespace

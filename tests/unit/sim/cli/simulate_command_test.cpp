@@ -27,6 +27,7 @@ TEST(Simulate, RefusesArgumentsOutOfRange) {
   const std::pair<const char*, const char*> refusals[] = {
       {"--speed fast", "must be max or a number from 0.1 to 1000, not 'fast'"},
       {"--speed 0", "not '0'"},
+      {"--free-running", "--free-running: needs a speed: --speed 1 for real time"},
       {"--domain 231", "from 0 to 230"},
       {"--domain 010", "without leading zeros, not '010'"},
       {"--sequences 100000 --frames 1000", "100000000 frames in all; a run has at most 1000000"},
@@ -80,11 +81,43 @@ TEST(Simulate, AgreesWithEvaluateOnTheSameSeed) {
 
 TEST(Simulate, FailsWhenTheFlightProgramRefusesTheModel) {
   const Workplace here;
-  const Outcome outcome = here.run("simulate --sequences 1 --frames 2 --model " + here.model("magellan") +
-                                   " --report " + here.path("r.html"));
+  const std::string other = here.put("other.tsm", arbitrary_model("magellan", 7000));
+  const std::string flight =
+      here.script("flight.sh", std::string("exec ") + FLIGHT_BINARY + " \"$@\" --model " + other);
+  const Outcome outcome = here.run("simulate --sequences 1 --frames 2 --model " + here.model() +
+                                   " --flight " + flight + " --report " + here.path("r.html"));
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.errors.find("SAFE"), std::string::npos) << outcome.errors;
   EXPECT_NE(content(here.path("r.html")).find("SAFE"), std::string::npos);
+}
+
+TEST(Simulate, RefusesAModelImageAsEvaluateDoes) {
+  const Workplace here;
+  const std::string damaged = here.path("damaged.tsm");
+  std::string bytes = content(here.model());
+  bytes[bytes.size() / 2] ^= 1;
+  std::ofstream(damaged, std::ios::binary) << bytes;
+  const std::string foreign = here.put("foreign.tsm", arbitrary_model("magellan", 7000));
+  for (const std::string& image : {damaged, foreign}) {
+    const Outcome simulated = here.run("simulate --sequences 1 --frames 2 --report r.html --model " + image);
+    const Outcome evaluated = here.run("evaluate --sequences 1 --frames 2 --model " + image);
+    EXPECT_EQ(simulated.exit_code, 1);
+    EXPECT_NE(simulated.errors.find("is refused: "), std::string::npos) << simulated.errors;
+    EXPECT_EQ(simulated.errors, evaluated.errors);
+  }
+}
+
+TEST(Simulate, SaysThatNoStepWasAnsweredAndGivesNoFigures) {
+  const Workplace here;
+  const Outcome outcome = here.run(
+      "simulate --sequences 1 --frames 2 --report r.html --json r.json --flight /bin/false --model " +
+      here.model());
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.output.find("1 sequence of 2 frames"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("None of the 2 steps was answered"), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.output.find("0.00"), std::string::npos) << outcome.output;
+  EXPECT_EQ(content(here.path("r.html")).find("0.00 ms"), std::string::npos);
+  EXPECT_TRUE(nlohmann::json::parse(content(here.path("r.json"))).at("inference_us").at("max").is_null());
 }
 
 // Both programs use the default domain without --domain, and the command that the tool prints works.

@@ -1,27 +1,15 @@
 #include "sim/model/model_file.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <limits>
 #include <stdexcept>
 
-#include "tests/support/test_models.hpp"
+#include "tests/support/random_float32_model.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {
 namespace {
-
-std::string temporary(const char* name) {
-  return (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + name)).string();
-}
-
-std::unique_ptr<Float32Model> random_model() {
-  auto model = std::make_unique<Float32Model>();
-  model->header = gnc::test_header();
-  gnc::fill_random(model->weights, 77);
-  return model;
-}
 
 TEST(ModelFile, ThatIsNoModelImageIsRefusedByName) {
   try {
@@ -33,21 +21,22 @@ TEST(ModelFile, ThatIsNoModelImageIsRefusedByName) {
 }
 
 TEST(ModelFile, IsReadBackAsWritten) {
-  const std::string path = temporary("_float32.tsm");
-  const auto model = random_model();
+  const TemporaryFolder folder;
+  const std::string path = folder.path("float32.tsm");
+  const auto model = random_float32_model(77);
   const std::uint32_t crc32 = write_model_file<gnc::Float32>(path, model->header, model->weights);
   const auto read_back = read_float32_model(path);
-  std::filesystem::remove(path);
   EXPECT_EQ(read_back->header.crc32, crc32);
   EXPECT_EQ(gnc::layer_weights<0>(read_back->weights).weight, gnc::layer_weights<0>(model->weights).weight);
 }
 
 TEST(ModelFile, IsNotWrittenIfTheFolderIsMissingOrTheReaderWouldRefuseIt) {
-  const auto model = random_model();
+  const TemporaryFolder folder;
+  const auto model = random_float32_model(77);
   EXPECT_THROW(write_model_file<gnc::Float32>("/dev/null/x.tsm", model->header, model->weights),
                std::runtime_error);
   gnc::layer_weights<0>(model->weights).bias[0] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW(write_model_file<gnc::Float32>(temporary("_nan.tsm"), model->header, model->weights),
+  EXPECT_THROW(write_model_file<gnc::Float32>(folder.path("nan.tsm"), model->header, model->weights),
                std::runtime_error);
 }
 

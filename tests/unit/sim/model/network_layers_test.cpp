@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <numeric>
 #include <stdexcept>
@@ -17,11 +19,24 @@ std::vector<std::string> names_of(const std::vector<gnc::LayerRow>& rows) {
   return names;
 }
 
-TEST(NetworkLayers, AreGroupedByPartAndKind) {
-  using Names = std::vector<std::string>;
-  EXPECT_EQ(names_of(cnn_rows(gnc::LayerKind::kConvolution)), (Names{"conv1", "conv2", "conv3", "conv4"}));
-  EXPECT_EQ(names_of(cnn_rows(gnc::LayerKind::kDense)), (Names{"dense1", "dense2", "cnn_out"}));
-  EXPECT_EQ(names_of(head_rows()), (Names{"head1", "head2"}));
+// The parts in turn, with the LSTM between the CNN and the head, are the whole table.
+TEST(NetworkLayers, AreGroupedByPart) {
+  std::vector<gnc::LayerRow> rows = image_rows();
+  EXPECT_TRUE(std::all_of(rows.begin(), rows.end(), gnc::is_image_layer));
+  const auto append = [&rows](const std::vector<gnc::LayerRow>& more) {
+    EXPECT_FALSE(more.empty());
+    rows.insert(rows.end(), more.begin(), more.end());
+  };
+  append(vector_rows());
+  EXPECT_STREQ(rows.back().name, gnc::kLayers[gnc::kCnnOutputLayer].name);
+  append({gnc::kLayers[gnc::kLstmLayer]});
+  append(head_rows());
+  EXPECT_EQ(names_of(rows), names_of({std::begin(gnc::kLayers), std::end(gnc::kLayers)}));
+}
+
+TEST(NetworkLayers, AnUnknownNameHasNoValues) {
+  EXPECT_EQ(gnc::values_per_frame("conv5"), 0);
+  EXPECT_EQ(gnc::values_per_frame("conv4"), gnc::shape::kFlat);
 }
 
 TEST(NetworkLayers, HaveTheChannelsOfTheirOutputs) {
@@ -38,9 +53,9 @@ TEST(NetworkLayers, CountTheInputsOfASum) {
   EXPECT_EQ(inputs("lstm"), gnc::shape::kLstmInput + gnc::shape::kLstm);
 }
 
-TEST(NetworkLayers, OnlyTheFirstDenseLayerReadsAnImage) {
+TEST(NetworkLayers, OnlyTheFirstLayerBehindTheImagesReadsOneFlat) {
   for (const gnc::LayerRow& row : gnc::kLayers) {
-    EXPECT_EQ(reads_flat_image(row), std::string(row.name) == "dense1") << row.name;
+    EXPECT_EQ(reads_flat_image(row), row.name == std::string(vector_rows().front().name)) << row.name;
   }
 }
 
@@ -51,9 +66,8 @@ TEST(NetworkLayers, ShowEveryParameterOnce) {
   std::size_t count = 0;
   for (const Float32Layer& layer : layers_of(*weights)) {
     count += layer.weight.size + layer.recurrent.size + layer.bias.size;
-    EXPECT_EQ(layer.recurrent.size > 0, layer.row.kind == gnc::LayerKind::kLstm) << layer.row.name;
-    const int sums = layer.row.kind == gnc::LayerKind::kLstm ? 4 * layer.row.outputs : layer.row.outputs;
-    EXPECT_EQ(layer.bias.size, static_cast<std::size_t>(sums)) << layer.row.name;
+    EXPECT_EQ(layer.recurrent.size > 0, sums_of(layer.row.kind).read_state) << layer.row.name;
+    EXPECT_EQ(layer.bias.size, static_cast<std::size_t>(sum_channels(layer.row))) << layer.row.name;
     EXPECT_EQ(layer.weight.size + layer.recurrent.size,
               static_cast<std::size_t>(inputs_per_sum(layer.row)) * layer.bias.size)
         << layer.row.name;

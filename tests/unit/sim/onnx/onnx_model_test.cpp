@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "sim/onnx/onnx_file.hpp"
-#include "tests/support/test_models.hpp"
+#include "tests/support/random_float32_model.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -23,10 +23,8 @@ namespace shape = gnc::shape;
 using Sizes = std::map<std::string, std::vector<std::int64_t>>;
 
 std::unique_ptr<Float32Model> random_model() {
-  auto model = std::make_unique<Float32Model>();
-  model->header = gnc::test_header();
+  auto model = random_float32_model(5);
   model->header.crc32 = 0x00abcdef;
-  gnc::fill_random(model->weights, 5);
   return model;
 }
 

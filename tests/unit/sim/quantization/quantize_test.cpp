@@ -1,46 +1,37 @@
 // Quantization of a network with random weights on rendered sequences, and of the shipped NEAR model.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "sim/quantization/quantize_file.hpp"
 #include "sim/world/target/near_shoemaker.hpp"
-#include "tests/support/test_models.hpp"
+#include "tests/support/random_float32_model.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr int kSequences = 12;
 
-std::string temporary(const char* name) {
-  return (std::filesystem::temp_directory_path() / (std::to_string(getpid()) + name)).string();
-}
-
-std::unique_ptr<Float32Model> random_model() {
-  auto model = std::make_unique<Float32Model>();
-  model->header = gnc::test_header();
-  gnc::fill_random(model->weights, 77);
-  return model;
-}
-
 class QuantizeTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    path = new std::string(temporary("_quantized.tsm"));
-    report = new QuantizationReport(quantize_to_file(*random_model(), {make_near_shoemaker()}, kSequences,
-                                                     *path, [](std::uint64_t) { ++steps; }));
+    folder = new TemporaryFolder;
+    path = new std::string(folder->path("quantized.tsm"));
+    report = new QuantizationReport(quantize_to_file(*random_float32_model(77), {make_near_shoemaker()},
+                                                     kSequences, *path, [](std::uint64_t) { ++steps; }));
   }
   static void TearDownTestSuite() {
-    std::filesystem::remove(*path);
+    delete folder;
     delete path;
     delete report;
   }
+  static TemporaryFolder* folder;
   static std::string* path;
   static QuantizationReport* report;
   static inline int steps = 0;
 };
+TemporaryFolder* QuantizeTest::folder = nullptr;
 std::string* QuantizeTest::path = nullptr;
 QuantizationReport* QuantizeTest::report = nullptr;
 
@@ -69,10 +60,9 @@ TEST_F(QuantizeTest, KeepsTheSignalOfEveryLayer) {
 // to hold the largest of them, the shipped NEAR's convolutions had a signal-to-noise ratio of only 19 dB.
 TEST(QuantizeShipped, NearKeepsTheSignalOfEveryLayerBeforeTheHypotheses) {
   const auto model = read_float32_model(TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.float32.tsm");
-  const std::string path = temporary("_near.tsm");
+  const TemporaryFolder folder;
   const QuantizationReport report =
-      quantize_to_file(*model, {make_near_shoemaker()}, 20, path, [](std::uint64_t) {});
-  std::filesystem::remove(path);
+      quantize_to_file(*model, {make_near_shoemaker()}, 20, folder.path("near.tsm"), [](std::uint64_t) {});
   for (const LayerReport& layer : report.layers) {
     // The layers after the choice of a hypothesis are left out: that choice may differ between the numerics.
     if (gnc::layer_index(layer.layer.c_str()) >= gnc::kLstmLayer) continue;

@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <set>
 #include <sstream>
 
 #include "sim/report/results_csv.hpp"
@@ -92,6 +95,36 @@ TEST(ResultsMarkdown, ShowsOursThePapersAndTheGoalWithCrcAndSeed) {
         "tumblesight evaluate --paper", "magellan is left out", "| occluded | 40 |"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part;
   }
+}
+
+// The lines of a results document that do not depend on the run: text and table headings, with every number
+// as #. The table of frames has a column per condition.
+std::set<std::string> wording(const std::string& document) {
+  std::set<std::string> lines;
+  std::string before;
+  for (const std::string& line : lines_of(document)) {
+    const bool table = line.rfind("|", 0) == 0;
+    if (line.rfind("|---", 0) == 0 && before.rfind("| frame | ", 0) != 0) lines.insert(before);
+    before.clear();
+    for (const char c : line) {
+      const bool digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+      if (!digit || before.empty() || before.back() != '#') before += digit ? '#' : c;
+    }
+    const bool of_the_run = line.rfind("### ", 0) == 0 || line.rfind("- Note: ", 0) == 0 ||
+                            line.rfind("`", 0) == 0 || line.rfind("tumblesight ", 0) == 0;
+    if (!table && !of_the_run) lines.insert(before);
+  }
+  return lines;
+}
+
+// docs/results.md takes hours to make, so its wording is edited together with the generator's.
+TEST(ResultsMarkdown, WordsAreThoseOfTheStoredDocument) {
+  std::ostringstream stored;
+  stored << std::ifstream(TUMBLESIGHT_SOURCE_DIR "/docs/results.md").rdbuf();
+  const std::set<std::string> expected = wording(stored.str());
+  const std::set<std::string> generated = wording(results_markdown(sample_results()));
+  EXPECT_GT(generated.size(), 30U);
+  for (const std::string& line : generated) EXPECT_EQ(expected.count(line), 1U) << line;
 }
 
 TEST(ResultsMarkdown, HoldsTablesWithAsManyCellsAsTheirHeader) {

@@ -14,14 +14,14 @@ namespace {
 
 RunReport small_report() {
   RunReport report;
-  report.target = "near_shoemaker";
-  report.condition = "nominal";
-  report.sequences = 3;
-  report.frames = 4;
+  report.setup.target = "near_shoemaker";
+  report.setup.condition = "nominal";
+  report.setup.sequences = 3;
+  report.setup.frames = 4;
   report.frame_period_s = 2.7;
   report.steps_planned = 12;
   report.trace_crc32 = 0xDEADBEEF;
-  report.paper = paper_figures(report.target, Condition::kNominal);
+  report.paper = paper_figures(report.setup.target, Condition::kNominal);
   for (std::uint32_t i = 0; i < 12; ++i) {
     FrameResult result;
     result.sequence = i / 4;

@@ -128,7 +128,7 @@ TEST(RunReport, CarriesPicturesAndSettings) {
   const RunReport report = run_report(described, recorded);
   ASSERT_EQ(report.pictures.size(), 1U);
   EXPECT_EQ(report.pictures[0].frame, 1U);
-  EXPECT_EQ(report.remarks, std::vector<std::string>{"another swath"});
+  EXPECT_EQ(report.setup.remarks, std::vector<std::string>{"another swath"});
   EXPECT_NE(run_page(report).find("some.tsm"), std::string::npos);
 }
 

@@ -1,16 +1,20 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/table.hpp"
-#include "sim/terminal/text_file.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -62,10 +66,10 @@ TEST(Progress, PrintsFewLinesIntoAFileTheLastOfThemWhenDone) {
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 10);
 }
 
-TEST(WriteTextFile, MakesFoldersAndLeavesNoPartialFile) {
+TEST(WriteFile, MakesFoldersAndLeavesNoPartialFile) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumblesight_report_test";
   std::filesystem::remove_all(folder);
-  write_text_file((folder / "deep" / "file.html").string(), "content");
+  write_file((folder / "deep" / "file.html").string(), "content");
   std::ifstream file(folder / "deep" / "file.html");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "content");
   const auto files = std::distance(std::filesystem::directory_iterator(folder / "deep"), {});
@@ -73,9 +77,41 @@ TEST(WriteTextFile, MakesFoldersAndLeavesNoPartialFile) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(WriteTextFile, SaysWhichFileCannotBeWritten) {
+TEST(WriteFile, LeavesTheOldFileIfTheNewOneCannotBeWritten) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumblesight_limited_file";
+  std::filesystem::remove_all(folder);
+  const std::string path = (folder / "recording.tslr").string();
+  write_file(path, "old");
+  // Larger than a file of this process may be: the write fails in the middle, as on a full disk.
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit small{4096, limit.rlim_max};
+  const auto previous = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(write_file(path, std::vector<std::uint8_t>(100000, 1)), std::runtime_error);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  std::signal(SIGXFSZ, previous);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+  std::ifstream file(path);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "old");
+  std::filesystem::remove_all(folder);
+}
+
+TEST(WriteFile, WritesThroughALinkAndKeepsIt) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tumblesight_linked_file";
+  std::filesystem::remove_all(folder);
+  write_file((folder / "file").string(), "old");
+  std::filesystem::create_symlink("file", folder / "link");
+  write_file((folder / "link").string(), "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  std::ifstream file(folder / "file");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "new");
+  std::filesystem::remove_all(folder);
+}
+
+TEST(WriteFile, SaysWhichFileCannotBeWritten) {
   try {
-    write_text_file("/proc/no/such/file", "content");
+    write_file("/proc/no/such/file", "content");
     FAIL() << "no exception";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("/proc/no/such"), std::string::npos);

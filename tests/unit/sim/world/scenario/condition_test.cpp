@@ -67,21 +67,23 @@ TEST(Condition, IsTrainedCalibratedAndEvaluatedAsItsRowSays) {
   EXPECT_EQ(evaluated_conditions("near_shoemaker"), evaluated);
 }
 
-TEST(Condition, ChangesNeitherAttitudeNorRangeNorRateNorNoise) {
+TEST(Condition, ChangesWhatItsRowSaysAndNeitherAttitudeNorRangeNorRateNorNoise) {
   for (int index = 0; index < 50; ++index) {
     const Sequence nominal = make_sequence(settings_of(Condition::kNominal), 3, index);
     for (const std::string& name : condition_names()) {
       const Condition condition = condition_from(name);
+      const ConditionRow& row = row_of(condition);
       const Sequence other = make_sequence(settings_of(condition), 3, index);
       EXPECT_EQ(other.condition, condition);
       EXPECT_EQ(other.noise_seed, nominal.noise_seed) << name;
       ASSERT_EQ(other.frames.size(), nominal.frames.size());
-      const bool free = condition == Condition::kTumbling || condition == Condition::kStress;
+      const bool free = row.rotation == RotationLaw::kTorqueFree;
       for (std::size_t k = 0; k < nominal.frames.size(); ++k) {
         EXPECT_EQ(other.frames[k].range_m, nominal.frames[k].range_m) << name;
         const bool hidden = other.frames[k].occluder.shape != OccluderShape::kNone;
-        EXPECT_EQ(hidden, condition == Condition::kOccluded) << name;
-        EXPECT_EQ(other.frames[k].offset_swaths.norm() > 0.0, condition == Condition::kOffset) << name;
+        EXPECT_EQ(hidden, row.occluded) << name;
+        EXPECT_EQ(other.frames[k].offset_swaths.norm() > 0.0, row.max_offset_swaths > 0.0) << name;
+        EXPECT_LE(other.frames[k].offset_swaths.norm(), row.max_offset_swaths) << name;
         if (free && k > 0) continue;
         EXPECT_EQ(other.frames[k].q_lrf_trf.coeffs(), nominal.frames[k].q_lrf_trf.coeffs()) << name;
         EXPECT_LT((other.frames[k].rate_lrf_rad_s - nominal.frames[k].rate_lrf_rad_s).norm(), 1e-12) << name;

@@ -16,7 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kTriangle =
-    R"({"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1},"indices":2,"mode":4}]}],)"
+    R"({"asset":{"version":"2.0"},)"
+    R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1},"indices":2,"mode":4}]}],)"
     R"("accessors":[{"count":3},{"count":3},{"count":6}]})";
 
 class GltfCheck : public ::testing::Test {

@@ -1,4 +1,4 @@
-#include "sim/sil/telecommand.hpp"
+#include "sim/sil/signed_telecommand.hpp"
 
 #include <openssl/evp.h>
 #include <openssl/hmac.h>

@@ -1,0 +1,17 @@
+// Writing of files as a whole: reports, tables, figures, recordings.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tumblesight::sim {
+
+// Replaces the file as a whole: a reader never finds a part of it, and a failure leaves the old file. A path
+// that is neither missing nor a plain file, such as /dev/stdout or a link, is written to directly. Creates
+// missing folders. Throws std::runtime_error that names the file and the reason.
+void write_file(const std::string& path, std::string_view content);
+void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes);
+
+}  // namespace tumblesight::sim

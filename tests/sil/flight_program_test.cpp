@@ -1,0 +1,144 @@
+// Start of the flight program: the choice between fixed point and float32, and what the two programs say of
+// themselves.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include "hal/dds/idl/flight_end.hpp"
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+using hal::dds::FlightEnd;
+
+struct Ended {
+  int status = -1;  // exit status, or 128 and the signal
+  std::string text;
+};
+
+// Runs a command in bash until it ends.
+Ended run(const std::string& command) {
+  const std::string log = test::temporary_path("output");
+  const std::string script = test::temporary_path("script");
+  const std::string line = "exec timeout 30 " + command + "\n";
+  test::write_file(script, {line.begin(), line.end()});
+  const int status = std::system(("bash " + script + " >" + log + " 2>&1").c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), test::read_file(log)};
+}
+
+// A run without a simulator: it ends after the shortest wait.
+Ended run_alone(const std::string& program, const std::string& arguments) {
+  return run(program + " --timeout-s 0.1 --domain " + std::to_string(test::spare_domain()) + " " + arguments);
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+const std::string kFlight = TUMBLESIGHT_FLIGHT;
+const std::string kFlightFloat32 = kFlight + "_float32";
+
+// The flight program in a folder of its own.
+std::string lonely_flight() {
+  const std::string folder = test::temporary_path("lonely");
+  fs::create_directory(folder);
+  fs::copy_file(kFlight, folder + "/flight");
+  return folder + "/flight";
+}
+
+bool widest_line_fits(const std::string& text, std::size_t columns) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.size() > columns) return false;
+  }
+  return true;
+}
+
+class FlightProgram : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(kFlightFloat32)) GTEST_SKIP() << "built without TUMBLESIGHT_FLOAT32";
+  }
+};
+
+// A pipe gives its content once.
+TEST_F(FlightProgram, TakesItsKeyFromAPipeInBothNumerics) {
+  for (const char* const numerics : {"fixed", "float32"}) {
+    const Ended ended = run_alone(
+        kFlight, std::string("--command-key <(printf %064d 7) --model none.tsm --numerics ") + numerics);
+    EXPECT_EQ(ended.status, static_cast<int>(FlightEnd::kSilence)) << ended.text;
+    EXPECT_FALSE(has(ended.text, "hexadecimal")) << ended.text;
+  }
+}
+
+TEST_F(FlightProgram, IsStoppedByARequestDuringTheChangeToFloat32) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer must be loaded before any other library";
+#endif
+  const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
+  const test::Environment fault("TUMBLESIGHT_FAULT", "stop at exec");
+  const Ended ended = run_alone(kFlight, "--numerics float32");
+  EXPECT_EQ(ended.status, 128 + SIGTERM) << ended.text;
+}
+
+TEST_F(FlightProgram, EndsWhenTheFloat32ProgramCannotBeStarted) {
+  const std::string lonely = lonely_flight();
+  for (const bool not_executable : {false, true}) {
+    if (not_executable) test::write_file(lonely + "_float32", {'x'});
+    const Ended ended = run_alone(lonely, "--numerics float32");
+    EXPECT_EQ(ended.status, static_cast<int>(FlightEnd::kNoFloat32Program)) << ended.text;
+    EXPECT_TRUE(has(ended.text, lonely + "_float32")) << ended.text;
+    EXPECT_TRUE(has(ended.text, "build its target: flight_float32")) << ended.text;
+    EXPECT_TRUE(has(ended.text, not_executable ? "Permission denied" : "No such file")) << ended.text;
+    EXPECT_FALSE(has(ended.text, "SAFE")) << ended.text;
+  }
+}
+
+TEST_F(FlightProgram, InFloat32SaysWhatItIs) {
+  const Ended help = run(kFlightFloat32 + " --help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_EQ(help.text.find("flight_float32: "), 0U) << help.text;
+  EXPECT_TRUE(has(help.text, "Start `flight`")) << help.text;
+  EXPECT_TRUE(widest_line_fits(help.text, 80)) << help.text;
+  EXPECT_EQ(run(kFlightFloat32 + " --version").text.find("flight_float32 "), 0U);
+  for (const char* const arguments : {"--colour red", "--numerics fixed", "--domain x"}) {
+    const Ended ended = run(kFlightFloat32 + " " + arguments);
+    EXPECT_EQ(ended.status, static_cast<int>(FlightEnd::kBadArguments)) << ended.text;
+    EXPECT_EQ(ended.text.find("flight_float32: "), 0U) << ended.text;
+  }
+  EXPECT_TRUE(has(run(kFlightFloat32 + " --numerics fixed").text, "start flight"));
+}
+
+TEST_F(FlightProgram, InFloat32TakesTheShippedFloat32Image) {
+  const Ended ended = run_alone(kFlightFloat32, "");
+  EXPECT_EQ(ended.status, static_cast<int>(FlightEnd::kSilence)) << ended.text;
+  EXPECT_FALSE(has(ended.text, "SAFE")) << ended.text;
+}
+
+TEST_F(FlightProgram, NamesTheCommandThatGetsAMissingImage) {
+  const std::string folder = test::temporary_path("models");
+  fs::create_directory(folder);
+  const std::string arguments = "--numerics float32 --model " + folder + "/x.float32.tsm";
+  EXPECT_FALSE(has(run_alone(kFlight, arguments).text, "fetch_images"));
+  test::write_file(folder + "/fetch_images", {});
+  const Ended ended = run_alone(kFlight, arguments);
+  EXPECT_TRUE(
+      has(ended.text, "no such file; get it with: fsw/models/fetch_images x.float32; the mode is SAFE"))
+      << ended.text;
+}
+
+TEST(FlightHelp, FitsATerminal) {
+  const Ended help = run(kFlight + " --help");
+  EXPECT_EQ(help.text.find("flight: "), 0U);
+  EXPECT_TRUE(widest_line_fits(help.text, 80)) << help.text;
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
