@@ -29,7 +29,9 @@ class ExpectedTarget {
  public:
   void set(const char* name) {
     has_name_ = name != nullptr;
-    for (std::size_t i = 0; has_name_ && i + 1 < name_.size() && name[i] != '\0'; ++i) name_[i] = name[i];
+    name_ = {};
+    if (!has_name_) return;
+    for (std::size_t i = 0; i + 1 < name_.size() && name[i] != 0; ++i) name_[i] = name[i];
   }
   const char* name() const { return has_name_ ? name_.data() : nullptr; }  // nullptr: any
 

@@ -13,7 +13,9 @@ static_assert(is_in_order(), "the table is indexed by the fault's number");
 
 constexpr bool is_possible() {
   for (const config::FaultRule& rule : config::kFaultRules) {
-    if (rule.cycles < 1 || rule.cycles > rule.window_cycles || rule.good_cycles < 1) return false;
+    if (rule.cycles < 1) return false;
+    if (rule.good_cycles < 1) return false;
+    if (rule.cycles > rule.window_cycles) return false;
     if (rule.window_cycles > config::kMaxFaultWindow_cycles) return false;
   }
   return true;
