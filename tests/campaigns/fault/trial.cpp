@@ -76,7 +76,8 @@ TrialRunner::TrialRunner(const Flight& flight, bool with_protections, bool hooke
     : flight_(flight), protected_(with_protections) {
   store_.fill(flight.model);
   if (hooked) AppMemory::estimator(*app_).network().use(hooked_kernels());
-  app_->init({&stopwatch_, &store_, &fsw::kTestKey}, kNoTarget, {protected_, protected_});
+  app_->init({&stopwatch_, &store_, &fsw::kTestKey}, kNoTarget);
+  if (!protected_) AppMemory::widen_attitude_limits(*app_);
   fly_undisturbed();
 }
 
@@ -102,8 +103,16 @@ void TrialRunner::prepare(std::size_t cycle) {
   inputs_->frame = &frame;
 }
 
+void TrialRunner::step(std::size_t cycle) {
+  if (protected_) {
+    app_->step(time_of(cycle), *inputs_, *outputs_);
+  } else {
+    AppMemory::step_unprotected(*app_, time_of(cycle), *inputs_, *outputs_);
+  }
+}
+
 CycleResult TrialRunner::fly(std::size_t cycle) {
-  app_->step(time_of(cycle), *inputs_, *outputs_);
+  step(cycle);
   CycleResult result;
   result.q_lrf_trf = outputs_->attitude.q_lrf_trf;
   result.validity = outputs_->attitude.validity;
@@ -128,9 +137,8 @@ void TrialRunner::flip_one(Place place, std::mt19937& engine) {
       AppMemory::flip_state_bit(*app_, engine() % AppMemory::kStateBits);
       break;
     case Place::kApplicationState: {
-      const Region regions[] = {AppMemory::voted_state(*app_), AppMemory::events(*app_),
-                                AppMemory::guard(*app_)};
-      std::size_t bit = engine() % (8 * (regions[0].size + regions[1].size + regions[2].size));
+      const Region regions[] = {AppMemory::voted_state(*app_), AppMemory::guard(*app_)};
+      std::size_t bit = engine() % (8 * (regions[0].size + regions[1].size));
       for (const Region& region : regions) {
         if (bit < 8 * region.size) {
           region.flip(bit);

@@ -33,6 +33,7 @@ class TrialRunner {
   // Keeps the application before each cycle of an undisturbed run, and the cycle's result.
   void fly_undisturbed();
   void prepare(std::size_t cycle);
+  void step(std::size_t cycle);
   CycleResult fly(std::size_t cycle);
   void flip_one(Place place, std::mt19937& engine);
   Trial judged(std::size_t first, const std::vector<CycleResult>& results) const;
