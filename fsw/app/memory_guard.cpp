@@ -75,11 +75,7 @@ void MemoryGuard::check_constants(Estimator& estimator, AppState& state, const R
 void MemoryGuard::check_table(std::uint32_t bank, const Estimator& estimator, AppState& state,
                               const Reporter& report) {
   if (banks_.table_is_sound(bank, state.banks)) return;
-  const std::uint32_t size_bytes = state.banks.descriptor[bank].size_bytes;
-  const gnc::ModelStatus status =
-      estimator.check(memory_of(bank, state).data, size_bytes, state.expected_target.name());
-  if (status == gnc::ModelStatus::kOk) {
-    banks_.make_table(bank, *state.platform.models, state.banks);
+  if (banks_.restore_table(bank, state.banks) || rebuild_table(bank, estimator, state)) {
     count(state.counters.model_tables_rebuilt);
     report(EventId::kModelTableRebuilt, static_cast<std::int32_t>(bank));
   } else if (bank == state.banks.in_use) {
@@ -87,6 +83,15 @@ void MemoryGuard::check_table(std::uint32_t bank, const Estimator& estimator, Ap
   } else {
     lose_fallback(state, report);
   }
+}
+
+bool MemoryGuard::rebuild_table(std::uint32_t bank, const Estimator& estimator, AppState& state) {
+  const std::uint32_t size_bytes = state.banks.descriptor[bank].size_bytes;
+  const gnc::ModelStatus status =
+      estimator.check(memory_of(bank, state).data, size_bytes, state.expected_target.name());
+  if (status != gnc::ModelStatus::kOk) return false;
+  bank_is_good(bank, state);
+  return true;
 }
 
 void MemoryGuard::check_block(AppState& state, const Reporter& report) {

@@ -9,7 +9,9 @@
 //   weights in the bank in use     checksum of each block          second copy in the other bank, if any
 //   a different good image in      checksum of each block          nothing; the bank is EMPTY from then on
 //   the other bank
-//   checksums of the blocks        CRC over each bank's table      image, if its own CRCs are correct
+//   checksums of the blocks        CRC over each bank's table      table of the second copy; image, if its
+//   own CRCs are
+//                                                                  correct
 //   activations                    not checked                     rewritten in every frame
 #pragma once
 
@@ -36,6 +38,8 @@ class MemoryGuard {
   void check_state(Estimator& estimator, AppState& state, const Reporter& report);
   void check_constants(Estimator& estimator, AppState& state, const Reporter& report);
   void check_table(std::uint32_t bank, const Estimator& estimator, AppState& state, const Reporter& report);
+  // False: the image of the bank does not pass every check.
+  [[nodiscard]] bool rebuild_table(std::uint32_t bank, const Estimator& estimator, AppState& state);
   void check_block(AppState& state, const Reporter& report);
   void lose_model(AppState& state);
   void lose_fallback(AppState& state, const Reporter& report);

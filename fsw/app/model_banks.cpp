@@ -50,6 +50,12 @@ void ModelBanks::make_table(std::uint32_t bank, hal::ModelStore& store, ModelBan
   state.table_crc32[bank] = crc32_of(table);
 }
 
+bool ModelBanks::restore_table(std::uint32_t bank, const ModelBanksState& state) {
+  if (!state.has_second_copy()) return false;
+  block_crc32_[bank] = block_crc32_[1 - bank];
+  return table_is_sound(bank, state);
+}
+
 bool ModelBanks::table_is_sound(std::uint32_t bank, const ModelBanksState& state) const {
   return crc32_of(block_crc32_[bank]) == state.table_crc32[bank];
 }

@@ -73,6 +73,9 @@ class ModelBanks {
   // Computes the table of checksums from the current content of `bank`. Call when its image has passed every
   // check.
   void make_table(std::uint32_t bank, hal::ModelStore& store, ModelBanksState& state);
+  // Takes the table of the other bank for `bank`, if both banks hold the same image. False: they do not, or
+  // the table is not the one that make_table() made.
+  [[nodiscard]] bool restore_table(std::uint32_t bank, const ModelBanksState& state);
   bool table_is_sound(std::uint32_t bank, const ModelBanksState& state) const;
   // Checks the next block of the bank in use and of the other bank, if that one is good. Requires sound
   // tables of the good banks.

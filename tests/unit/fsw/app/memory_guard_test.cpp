@@ -312,6 +312,28 @@ TEST_F(MemoryGuardTest, HitReadOnlyBankWithoutSecondCopyLeadsToSafe) {
   EXPECT_EQ(app->mode(), Mode::kSafe);
 }
 
+// Verifies TS-FDIR-040.
+TEST_F(MemoryGuardTest, TableAndModelHitTogetherAreRepairedFromTheSecondCopy) {
+  hit_block(0, 200);
+  hit_table();
+  expect_undisturbed_step();
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 1U);
+  steps_of_a_pass();
+  EXPECT_EQ(out->telemetry.model_blocks_repaired, 1U);
+  EXPECT_EQ(out->telemetry.bank_switches, 0U);
+  EXPECT_EQ(bank(0), test_model_image());
+}
+
+// Verifies TS-FDIR-040.
+TEST_F(MemoryGuardTest, TablesHitTogetherAreRebuiltFromTheirImages) {
+  hit_table();
+  AppMemory::guard(*app).flip(8 * (sizeof(ModelBanks) / 2 + 40));
+  expect_undisturbed_step();
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 2U);
+  steps_of_a_pass();
+  EXPECT_EQ(out->telemetry.model_blocks_repaired + out->telemetry.model_blocks_lost, 0U);
+}
+
 // Verifies TS-FDIR-045.
 TEST_F(MemoryGuardTest, TableAndModelHitTogetherLeadToSafeWithoutASecondCopy) {
   store.banks[1] = {};
