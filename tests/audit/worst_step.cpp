@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "fsw/app/attitude_init_app.hpp"
+#include "fsw/app/telecommand.hpp"
 #include "fsw/app/hmac_sha256.hpp"
 #include "gnc/numerics/crc16.hpp"
 #include "hal/board.hpp"
@@ -36,12 +37,12 @@ class BoardStopwatch final : public hal::Stopwatch {
   std::uint64_t now_ns() override { return board::now_ns(); }
 };
 
-// Two writable banks with the same image.
+// Two banks with the same image. Both can be written unless `read_only` is set.
 class TwoBanks final : public hal::ModelStore {
  public:
   hal::ModelBank bank(int index) override {
     std::uint8_t* const bytes = banks[static_cast<std::size_t>(index)].data();
-    return {bytes, bytes, kImageBytes, kImageBytes};
+    return {bytes, read_only ? nullptr : bytes, kImageBytes, kImageBytes};
   }
   void fill() {
     for (auto& bytes : banks) std::memcpy(bytes.data(), tumblesight_model_image, kImageBytes);
@@ -50,7 +51,10 @@ class TwoBanks final : public hal::ModelStore {
     banks[bank][block * config::kModelBlockBytes + 9] ^= 1;
   }
 
-  alignas(64) std::array<std::array<std::uint8_t, kImageBytes>, hal::kModelBanks> banks;
+  bool read_only = false;
+  // Their addresses are aligned as the application requires it.
+  static constexpr std::size_t kBankBytes = (kImageBytes + 63) / 64 * 64;
+  alignas(64) std::array<std::array<std::uint8_t, kBankBytes>, hal::kModelBanks> banks;
 };
 
 AttitudeInitApp app;
@@ -93,6 +97,12 @@ void set_mode(Mode mode) {
   command(FunctionCode::kSetMode, &argument, 1);
 }
 
+void set_limit(Limit limit, std::uint32_t value) {
+  std::array<std::uint8_t, 5> arguments{static_cast<std::uint8_t>(limit)};
+  add_u32(arguments.data() + 1, value);
+  command(FunctionCode::kSetLimit, arguments.data(), static_cast<int>(arguments.size()));
+}
+
 // The largest commands, as many as a step takes.
 void load_commands() {
   static std::array<std::uint8_t, hal::kMaxCommandArgumentBytes> arguments{};
@@ -119,4 +129,128 @@ void step(const char* name) {
 
 void expect(bool condition, const char* what) {
   if (!condition && failure == nullptr) failure = what;
+}
+
+// After a command load has begun a new image in the other bank: the second copy again.
+void load_as_second_copy() {
+  store.fill();
+  ModelBanksState& banks = AppMemory::state(app).banks;
+  banks.descriptor[banks.other()] = banks.descriptor[banks.in_use];
+  AppMemory::commit(app);
+}
+
+// The frame alone; with it a full command load, and the largest scrubbing of which every block needs a repair.
+void steps_with_a_frame() {
+  step("frame");
+  load_commands();
+  step("frame and full command load");
+  load_as_second_copy();
+  const std::uint32_t most = config::kLimitRules[static_cast<std::size_t>(Limit::kScrubBlocks)].highest;
+  set_limit(Limit::kScrubBlocks, most);
+  step("quiet");
+  for (std::size_t block = 0; block < ModelBanks::kBlocks; ++block) store.damage(1, block);
+  AppMemory::flip_state_bit(app, 5);
+  step("frame, largest scrub with repairs, state restored");
+  expect(outputs.telemetry.model_blocks_repaired >= most, "no block was repaired");
+  expect(outputs.telemetry.states_restored == 1, "the state was not restored");
+  store.fill();
+  set_limit(Limit::kScrubBlocks, config::kLimitRules[static_cast<std::size_t>(Limit::kScrubBlocks)].initial);
+  step("quiet");
+}
+
+// Damage that needs a long recovery, each kind alone and then all at once, with a full command load.
+void flip_a_constant() {
+  const std::uint32_t before = app.estimator().constants_crc32();
+  const Region region = AppMemory::constants(app);
+  for (std::size_t bit = 8 * 300; app.estimator().constants_crc32() == before; ++bit) region.flip(bit);
+}
+void damage_tables() {
+  AppMemory::guard(app).flip(8 * 40);
+  AppMemory::guard(app).flip(8 * (40 + 4 * ModelBanks::kBlocks));
+}
+
+void recoveries() {
+  flip_a_constant();
+  step("constants reloaded");
+  step("constants reloaded");
+  expect(outputs.telemetry.constants_reloaded == 1, "the constants were not reloaded");
+  damage_tables();
+  step("tables rebuilt");
+  step("tables rebuilt");
+  step("tables rebuilt");
+  expect(outputs.telemetry.model_tables_rebuilt == 2, "the tables were not rebuilt");
+  flip_a_constant();
+  damage_tables();
+  load_commands();
+  for (int i = 0; i < 4; ++i) step("constants and tables, full command load");
+  expect(outputs.telemetry.constants_reloaded == 2, "the constants were not reloaded again");
+}
+
+// In STANDBY: a model is loaded, validated and activated.
+void model_commands() {
+  set_mode(Mode::kStandby);
+  step("quiet");
+  load_commands();  // the first bytes of an image, which make the bank a new one
+  step("quiet");
+  std::memcpy(store.banks[1].data(), tumblesight_model_image, kImageBytes);
+  AppMemory::state(app).banks.loaded_bytes = static_cast<std::uint32_t>(kImageBytes);
+  AppMemory::commit(app);
+  std::array<std::uint8_t, 8> arguments{};
+  add_u32(arguments.data(), static_cast<std::uint32_t>(kImageBytes));
+  add_u32(arguments.data() + 4, gnc::model_image_crc32(tumblesight_model_image));
+  for (int i = 0; i < config::kMaxCommandsPerStep; ++i)
+    command(FunctionCode::kModelValidate, arguments.data(), 8);
+  step("model validated");
+  for (int i = 0; i < 1; ++i)
+    command(FunctionCode::kModelActivate, arguments.data() + 4, 4);
+  step("model activated");
+  expect(outputs.telemetry.bank_in_use == 1, "the model was not activated");
+  set_mode(Mode::kRun);
+  step("quiet");
+}
+
+// The model in use is lost and cannot be repaired: the other bank takes over.
+void bank_switch() {
+  const std::size_t used = outputs.telemetry.bank_in_use;
+  store.read_only = true;
+  for (std::size_t block = 0; block < ModelBanks::kBlocks; ++block) store.damage(used, block);
+  damage_tables();
+  load_commands();
+  step("bank switched");
+  step("bank switched");
+  step("bank switched");
+  expect(outputs.telemetry.bank_switches == 1, "the bank was not switched");
+  expect(outputs.telemetry.bank_in_use == 1 - used, "the other bank is not in use");
+}
+
+int run() {
+  store.fill();
+  hal::replay::Recording recording;
+  const auto bytes = static_cast<std::size_t>(tumblesight_recording_end - tumblesight_recording);
+  if (recording.open(tumblesight_recording, bytes) != hal::replay::RecordingStatus::kOk) return 1;
+  recording.read_next(frame);
+  hal::Platform platform;
+  platform.stopwatch = &stopwatch;
+  platform.models = &store;
+  platform.command_key = &kKey;
+  app.init(platform, nullptr);
+  step("quiet");
+  step("quiet");
+  expect(app.mode() == Mode::kRun, "the model was refused");
+  steps_with_a_frame();
+  recoveries();
+  model_commands();
+  bank_switch();
+  board::write(hal::replay::TextLine()
+                   .text(failure == nullptr ? "all steps done" : failure)
+                   .text("\n")
+                   .c_str());
+  return failure == nullptr ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace tumblesight::fsw
+
+int main() {
+  tumblesight::hal::board::end(tumblesight::fsw::run());
 }
