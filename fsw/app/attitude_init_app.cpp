@@ -55,13 +55,13 @@ void report_corrections(std::uint32_t corrected_words, AppState& state, const Re
 }
 
 // The telemetry that is not a counter.
-void fill_telemetry(AppState& state, const EventLog& events) {
+void fill_telemetry(AppState& state) {
   hal::Telemetry& telemetry = state.counters;
   telemetry.time_ns = state.now_ns;
   telemetry.mode = state.mode;
   telemetry.faults_persisting = state.faults.persisting();
   telemetry.responses_disabled = state.faults.disabled();
-  telemetry.events_waiting = events.waiting();
+  telemetry.events_waiting = state.events.waiting();
   if (telemetry.events_waiting > telemetry.events_waiting_max)
     telemetry.events_waiting_max = telemetry.events_waiting;
   telemetry.bank_in_use = static_cast<std::uint8_t>(state.banks.in_use);
@@ -75,17 +75,16 @@ void fill_telemetry(AppState& state, const EventLog& events) {
 
 }  // namespace
 
-void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_target,
-                           Protections protections) {
-  *state_ = AppState{};
-  events_ = EventLog{};
+void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_target) {
+  state_.restart();
   AppState& state = *state_;
-  const Reporter report(state, events_);
+  const Reporter report(state, state.events);
   ModeManager modes(state, estimator_, report);
   state.platform = platform;
   state.counters.command_counter = platform.last_command_counter;
-  state.expected_target = expected_target;
-  state.protections = protections;
+  state.platform.command_key = nullptr;
+  state.command_key.set(platform.command_key);
+  state.expected_target.set(expected_target);
   for (std::size_t i = 0; i < config::kLimitRules.size(); ++i)
     state.limits[i] = config::kLimitRules[i].initial;
   estimator_.reset();
@@ -99,9 +98,15 @@ void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_t
 }
 
 void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) {
-  const std::uint32_t corrected_words = state_->protections.memory ? state_.vote() : 0;
+  run_cycle(now_ns, inputs, outputs, Protections::kOn);
+}
+
+void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs,
+                                Protections protections) {
+  const bool with_protections = protections == Protections::kOn;
+  const std::uint32_t corrected_words = with_protections ? state_.vote() : 0;
   AppState& state = *state_;
-  const Reporter report(state, events_);
+  const Reporter report(state, state.events);
   ModeManager modes(state, estimator_, report);
   ModelManager models(state, estimator_, guard_, report);
   const bool usable =
@@ -115,12 +120,16 @@ void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOu
   models.report_boot();
   modes.go_safe_on_assertion();
   if (usable) {
-    if (state.protections.memory) guard_.check(estimator_, state, report);
+    if (with_protections) {
+      if (!MemoryGuard::bound_indices(estimator_, state)) modes.go_safe_after_corruption();
+      guard_.check(estimator_, state, report);
+    }
     if (now_ns < previous_ns) modes.restart_sequence_after_time_jump();
-    CommandHandler({state, events_, modes, models, outputs, report}).run(inputs);
+    CommandHandler({state, state.events, modes, models, outputs, report}).run(inputs);
+    const std::uint32_t resets_before = state.counters.estimator_resets;
     take_frames(inputs, previous_ns, time_advances, outputs, report);
     Supervisor(state, modes, models, report)
-        .supervise(outputs.attitude.validity, inputs.cycle_slips, start_ns);
+        .supervise(outputs.attitude.validity, inputs.cycle_slips, start_ns, resets_before);
   }
   modes.go_safe_on_assertion();
   report_telemetry(outputs);
@@ -145,12 +154,13 @@ void AttitudeInitApp::report_telemetry(StepOutputs& outputs) {
   if (state.mode != Mode::kRun) outputs.attitude = without_attitude(Validity::kStandby);
   outputs.attitude.time_ns = state.now_ns;
 
-  events_.end_cycle(state.now_ns, state.counters);
+  EventLog& events = state.events;
+  events.end_cycle(state.now_ns, state.counters);
   while (outputs.event_count < config::kMaxEventsPerStep &&
-         events_.take(outputs.events[static_cast<std::size_t>(outputs.event_count)])) {
+         events.take(outputs.events[static_cast<std::size_t>(outputs.event_count)])) {
     ++outputs.event_count;
   }
-  fill_telemetry(state, events_);
+  fill_telemetry(state);
   outputs.telemetry = state.counters;
 }
 

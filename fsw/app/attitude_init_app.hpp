@@ -49,7 +49,7 @@ class AttitudeInitApp final {
   // without a good image; events of the next step report the result. Can be called again.
   // `platform`: stopwatch and models must not be nullptr. `expected_target`: NUL-terminated name of the
   // model's target, or nullptr to accept any.
-  void init(const hal::Platform& platform, const char* expected_target, Protections protections = {});
+  void init(const hal::Platform& platform, const char* expected_target);
   // One cycle. `now_ns`: time of this cycle, which must be later than that of the previous one. All of
   // `outputs` is overwritten, except the content of `dump` where has_dump is false.
   void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
@@ -63,8 +63,14 @@ class AttitudeInitApp final {
   const Estimator& estimator() const { return estimator_; }
 
  private:
-  friend struct AppMemory;  // tests/campaigns/fault: the places where it flips bits
+  friend struct AppMemory;  // tests: the places where they flip bits, and a cycle without protections
 
+  // The vote and the guards against bit flips. An argument, because a flip in memory could switch off a
+  // setting that is kept there. Flight has only kOn.
+  enum class Protections : std::uint8_t { kOn, kOff };
+
+  void run_cycle(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs,
+                 Protections protections);
   void take_frames(const StepInputs& inputs, std::int64_t previous_ns, bool time_advances,
                    StepOutputs& outputs, const Reporter& report);
   void report_telemetry(StepOutputs& outputs);
@@ -73,7 +79,6 @@ class AttitudeInitApp final {
   MemoryGuard guard_;
   FrameWorkspace frame_workspace_;
   Voted<AppState> state_;
-  EventLog events_;
 };
 #if !TUMBLESIGHT_APP_FLOAT32
 static_assert(sizeof(AttitudeInitApp) <= config::kMaxAppBytes,

@@ -13,7 +13,7 @@ void CommandHandler::run(const hal::CommandPacket& packet) {
   AppState& state = context_.state;
   hal::Telemetry& counters = state.counters;
   const Mode before = state.mode;
-  const Admission admission = judge(packet, state.platform.command_key, counters.command_counter, before);
+  const Admission admission = judge(packet, state.command_key.key(), counters.command_counter, before);
   if (admission.authentic) counters.command_counter = admission.counter;
   Refusal refusal{admission.why, 0};
   if (admission.admitted && carry_out(admission.command, context_, refusal)) {

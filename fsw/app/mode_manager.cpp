@@ -24,6 +24,15 @@ void ModeManager::go_safe(Fault fault) {
   report_(EventId::kSafeEntered, static_cast<std::int32_t>(Cause::kFault), static_cast<std::int32_t>(fault));
 }
 
+void ModeManager::go_safe_after_corruption() {
+  state_.mode = Mode::kSafe;
+  state_.counters.safe_cause = Cause::kFault;
+  state_.counters.safe_fault = Fault::kStateLost;
+  state_.faults_seen |= bit_of(Fault::kStateLost);
+  report_(EventId::kSafeEntered, static_cast<std::int32_t>(Cause::kFault),
+          static_cast<std::int32_t>(Fault::kStateLost));
+}
+
 void ModeManager::go_safe_on_assertion() {
   AssertionLog& assertions = state_.assertions;
   if (!assertions.take()) return;
@@ -41,6 +50,7 @@ void ModeManager::reset_estimator() {
 void ModeManager::restart_sequence_after_time_jump() {
   if (state_.mode != Mode::kRun) return;
   reset_estimator();
+  state_.faults_seen |= bit_of(Fault::kTrackRestarts);
   state_.gate.forget();
 }
 

@@ -16,6 +16,8 @@ class ModeManager {
   bool enter(Cause cause, Fault fault = Fault::kStateLost);
   // SAFE because of a fault, with an event. No effect in a mode that has no such transition.
   void go_safe(Fault fault);
+  // SAFE from any mode, also from a number that is none, because the state is corrupted beyond the vote.
+  void go_safe_after_corruption();
   // SAFE if an assertion has failed since the last call, with an event.
   void go_safe_on_assertion();
   // The next frame is the first of a new sequence. Counted.

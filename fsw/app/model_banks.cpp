@@ -34,23 +34,30 @@ bool ModelBanks::load(hal::ModelStore& store, ModelBanksState& state, std::uint3
   return true;
 }
 
-std::uint32_t ModelBanks::table_crc32() const {
+std::uint32_t ModelBanks::crc32_of(const Table& table) {
   gnc::Crc32 crc;
-  for (const std::uint32_t block : block_crc32_) crc.add_u32(block);
+  for (const std::uint32_t block : table) crc.add_u32(block);
   return crc.value();
 }
 
-void ModelBanks::make_table(hal::ModelStore& store, ModelBanksState& state) {
-  const std::uint8_t* const data = store.bank(static_cast<int>(state.in_use)).data;
+void ModelBanks::make_table(std::uint32_t bank, hal::ModelStore& store, ModelBanksState& state) {
+  const std::uint8_t* const data = store.bank(static_cast<int>(bank)).data;
+  Table& table = block_crc32_[bank];
   for (std::uint32_t block = 0; block < kBlocks; ++block) {
-    block_crc32_[block] = gnc::crc32(data + block * kBlockBytes, bytes_of_block(block));
+    table[block] = gnc::crc32(data + block * kBlockBytes, bytes_of_block(block));
   }
   state.next_block = 0;
-  state.table_crc32 = table_crc32();
+  state.table_crc32[bank] = crc32_of(table);
 }
 
-bool ModelBanks::table_is_sound(const ModelBanksState& state) const {
-  return table_crc32() == state.table_crc32;
+bool ModelBanks::restore_table(std::uint32_t bank, const ModelBanksState& state) {
+  if (!state.has_second_copy()) return false;
+  block_crc32_[bank] = block_crc32_[1 - bank];
+  return table_is_sound(bank, state);
+}
+
+bool ModelBanks::table_is_sound(std::uint32_t bank, const ModelBanksState& state) const {
+  return crc32_of(block_crc32_[bank]) == state.table_crc32[bank];
 }
 
 BlockCheck ModelBanks::check_block(hal::ModelStore& store, ModelBanksState& state) {
@@ -58,22 +65,24 @@ BlockCheck ModelBanks::check_block(hal::ModelStore& store, ModelBanksState& stat
   const std::uint32_t block = state.next_block;
   state.next_block = block + 1 < kBlocks ? block + 1 : 0;
 
-  const hal::ModelBank used = store.bank(static_cast<int>(state.in_use));
-  const hal::ModelBank copy = store.bank(static_cast<int>(state.other()));
+  const std::uint32_t in_use = state.in_use, other = state.other();
+  const hal::ModelBank used = store.bank(static_cast<int>(in_use));
+  const hal::ModelBank spare = store.bank(static_cast<int>(other));
   const std::uint32_t offset = block * kBlockBytes, bytes = bytes_of_block(block);
-  const std::uint32_t expected = block_crc32_[block];
-  const bool good = gnc::crc32(used.data + offset, bytes) == expected;
-  if (!state.has_second_copy()) return {good ? Result::kGood : Result::kLost, state.in_use, block};
-  const bool copy_good = gnc::crc32(copy.data + offset, bytes) == expected;
+  const bool good = gnc::crc32(used.data + offset, bytes) == block_crc32_[in_use][block];
+  if (state.status(other) != BankStatus::kGood) return {good ? Result::kGood : Result::kLost, in_use, block};
+  const bool spare_good = gnc::crc32(spare.data + offset, bytes) == block_crc32_[other][block];
+  if (good && spare_good) return {Result::kGood, in_use, block};
 
+  const bool can_copy = state.has_second_copy();
   if (good) {
-    if (copy_good || copy.writable == nullptr) return {Result::kGood, state.in_use, block};
-    std::memcpy(copy.writable + offset, used.data + offset, bytes);
-    return {Result::kRepaired, state.other(), block};
+    if (!can_copy || spare.writable == nullptr) return {Result::kFallbackLost, other, block};
+    std::memcpy(spare.writable + offset, used.data + offset, bytes);
+    return {Result::kRepaired, other, block};
   }
-  if (!copy_good || used.writable == nullptr) return {Result::kLost, state.in_use, block};
-  std::memcpy(used.writable + offset, copy.data + offset, bytes);
-  return {Result::kRepaired, state.in_use, block};
+  if (!can_copy || !spare_good || used.writable == nullptr) return {Result::kLost, in_use, block};
+  std::memcpy(used.writable + offset, spare.data + offset, bytes);
+  return {Result::kRepaired, in_use, block};
 }
 
 }  // namespace tumblesight::fsw

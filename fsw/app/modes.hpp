@@ -11,6 +11,11 @@ namespace tumblesight::fsw {
 using hal::Cause;
 using hal::Mode;
 
+// Whether `mode` is one of the enumerators. A flip of the same bit in two copies can make it another number.
+constexpr bool is_mode(Mode mode) {
+  return static_cast<std::uint8_t>(mode) <= static_cast<std::uint8_t>(Mode::kSafe);
+}
+
 struct Transition {
   Mode from;
   Cause cause;

@@ -24,7 +24,7 @@ enum class EventId : std::uint16_t {
   // Events 21 to 29 depend on the wall clock, so no digest of a deterministic run may include them.
   kCycleSlipped = 21,            // [releases missed, -, -]
   kDeadlineOverrun = 22,         // [time of this step, -, -]
-  kTimingFaultPersists = 23,     // [Fault, Response taken, persistence of its rule in cycles]
+  kTimingFaultPersists = 23,     // [Fault, Response taken, cycles with the fault that its rule requires]
   kTimingFaultOver = 24,         // [Fault, -, -]
   kTimingEventsSuppressed = 25,  // [EventId of the suppressed events, their number, -]
 
@@ -42,7 +42,7 @@ enum class EventId : std::uint16_t {
   kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump + 2: frozen frame]
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now
-  kFaultPersists = 51,  // [Fault, Response taken, persistence of its rule in cycles]
+  kFaultPersists = 51,  // [Fault, Response taken, cycles with the fault that its rule requires]
   kFaultOver = 52,      // [Fault, -, -]
   kSafeEntered = 53,    // [Cause, Fault or -1, -]
 
@@ -62,9 +62,10 @@ enum class EventId : std::uint16_t {
   kStateRestored = 71,      // [-, -, -]; the estimator's state, from its copy
   kConstantsReloaded = 72,  // [bank, -, -]; the estimator's copy of model data, from the bank
   kModelRepaired = 73,      // [bank, block, -]; from the other bank
-  kModelBlockLost = 74,     // [bank, block, -]; no bank has a good copy
+  kModelBlockLost = 74,     // [bank, block, -]; it cannot be repaired
   kModelTableRebuilt = 75,  // [bank, -, -]; the checksums of the blocks
   kBankSwitched = 76,       // [bank before, bank after, -]
+  kFallbackLost = 77,       // [bank, -, -]; the image of the bank that is not in use is no longer good
 
   kEventsSuppressed = 90,  // [EventId of the suppressed events, their number, -]
 };
@@ -73,7 +74,7 @@ struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 42> kEventRules{{
+inline constexpr std::array<EventRule, 43> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kCommandAccepted, Severity::kInformation},
@@ -115,6 +116,7 @@ inline constexpr std::array<EventRule, 42> kEventRules{{
     {EventId::kModelBlockLost, Severity::kError},
     {EventId::kModelTableRebuilt, Severity::kWarning},
     {EventId::kBankSwitched, Severity::kWarning},
+    {EventId::kFallbackLost, Severity::kError},
     {EventId::kEventsSuppressed, Severity::kInformation},
 }};
 

@@ -122,10 +122,11 @@ def limits():
 
 def faults():
     meaning = {name: (value, comment) for name, value, comment in enum(MESSAGES + "fault.hpp", "Fault")}
-    return table(["number", "fault", "is", "cycles", "response", "can be disabled"],
-                 [[meaning[last(name)][0], upper(last(name)), meaning[last(name)][1], cycles, upper(last(response)),
+    return table(["number", "fault", "is", "persists after cycles with it", "within", "over after cycles without it", "response",
+                  "can be disabled"],
+                 [[meaning[last(name)][0], upper(last(name)), meaning[last(name)][1], cycles, window, good, upper(last(response)),
                    "yes" if disabled == "true" else "no"]
-                  for name, cycles, response, disabled in array_rows("fsw/config/fault_rules.hpp", "kFaultRules")])
+                  for name, cycles, window, good, response, disabled in array_rows("fsw/config/fault_rules.hpp", "kFaultRules")])
 
 
 def responses():

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/app_memory.hpp"
 #include "tests/support/test_models.hpp"
 
 namespace tumblesight::fsw {
@@ -39,7 +40,12 @@ void AppFixture::init_with_model() {
 }
 
 void AppFixture::init(hal::fake::FakeModelStore& models, const char* expected_target) {
-  app->init({&stopwatch, &models, &kTestKey}, expected_target, protections);
+  boot(*app, {&stopwatch, &models, &kTestKey}, expected_target);
+}
+
+void AppFixture::boot(AttitudeInitApp& which, const hal::Platform& platform, const char* expected_target) {
+  which.init(platform, expected_target);
+  if (!checks_attitudes) AppMemory::widen_attitude_limits(which);
 }
 
 hal::CommandPacket AppFixture::command(FunctionCode function, const std::vector<std::uint8_t>& arguments) {

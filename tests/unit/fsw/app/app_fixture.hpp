@@ -31,6 +31,9 @@ class AppFixture : public ::testing::Test {
   void init_with_model();
   void init(hal::fake::FakeModelStore& models, const char* expected_target = kTestTarget);
 
+  // `which` with the limits that the fixture asks for.
+  void boot(AttitudeInitApp& which, const hal::Platform& platform, const char* expected_target = kTestTarget);
+
   // A signed packet with the next counter.
   hal::CommandPacket command(FunctionCode function, const std::vector<std::uint8_t>& arguments = {});
   hal::CommandPacket set_mode(Mode mode) {
@@ -57,8 +60,9 @@ class AppFixture : public ::testing::Test {
   hal::fake::FakeStopwatch stopwatch;
   hal::fake::FakeModelStore store;
   std::uint32_t command_counter = 0;  // of the last command
-  // Without attitude checks, because the attitudes of a random network jump.
-  Protections protections{true, false};
+  // init() widens the limits of the attitude checks otherwise, because the attitudes of a random network
+  // jump.
+  bool checks_attitudes = false;
   std::int64_t now_ns = kStart_ns;
   std::uint32_t sequence_number = 100;  // of the last good frame
 };

@@ -75,7 +75,7 @@ TEST_F(Commands, RecordedCommandSentAgainIsRefused) {
 TEST_F(Commands, RecordedCommandIsRefusedAfterARestartIfThePlatformKeepsTheCounter) {
   const hal::CommandPacket standby = set_mode(Mode::kStandby);
   step_commands({standby});
-  app->init({&stopwatch, &store, &kTestKey, out->telemetry.command_counter}, kTestTarget, protections);
+  boot(*app, {&stopwatch, &store, &kTestKey, out->telemetry.command_counter});
   step_commands({standby});
   EXPECT_EQ(app->mode(), Mode::kRun);
   EXPECT_EQ(refused_by(CommandRefusal::kReplayed), 1U);

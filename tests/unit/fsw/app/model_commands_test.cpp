@@ -222,7 +222,7 @@ TEST_F(ModelCommands, DumpBeyondTheBankOrASecondOneInACycleIsRefused) {
   step_commands({dump(1, 0, 4)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
   HollowStore hollow(store);
-  app->init({&stopwatch, &hollow, &kTestKey}, kTestTarget, protections);
+  boot(*app, {&stopwatch, &hollow, &kTestKey});
   step_commands({dump(1, 0, 4), dump(0, 0, 4)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
   EXPECT_EQ(events(EventId::kCommandAccepted), 1);

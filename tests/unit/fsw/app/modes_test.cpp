@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "fsw/app/command_table.hpp"
+
 namespace tumblesight::fsw {
 namespace {
 
@@ -32,6 +34,16 @@ TEST(Modes, EveryCauseLeadsToTheIntendedModeOnly) {
     }
   }
   EXPECT_EQ(kTransitions.size(), meant.size()) << "a duplicate or unintended row";
+}
+
+// Verifies TS-FDIR-015.
+TEST(Modes, NumberThatIsNoModeAllowsNoCommand) {
+  const CommandRule rule{FunctionCode::kNoop, 0, 0, 0xFF}, never{FunctionCode::kNoop, 0, 0, 0};
+  for (int mode = 0; mode < 256; ++mode) {
+    EXPECT_EQ(is_mode(static_cast<Mode>(mode)), mode <= 3) << mode;
+    EXPECT_EQ(rule.allowed_in(static_cast<Mode>(mode)), mode <= 3) << mode;
+    EXPECT_FALSE(never.allowed_in(static_cast<Mode>(mode))) << mode;
+  }
 }
 
 // Verifies TS-MODE-050.
