@@ -7,11 +7,13 @@
 
 #include "fsw/app/assertion.hpp"
 #include "fsw/app/attitude_check.hpp"
+#include "fsw/app/command_authority.hpp"
 #include "fsw/app/event_log.hpp"
 #include "fsw/app/fault_monitor.hpp"
 #include "fsw/app/frame_gate.hpp"
 #include "fsw/app/model_banks.hpp"
 #include "fsw/app/modes.hpp"
+#include "fsw/app/stored_state.hpp"
 #include "fsw/config/numerics.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
 #include "hal/messages/telemetry.hpp"
@@ -27,9 +29,28 @@ struct Protections {
   bool attitude = true;  // checks of the attitude
 };
 
+// What the persistent store holds (state_keeper.hpp).
+struct StoredRecord {
+  StoredState last;  // as written
+  std::uint32_t generation = 0;
+  bool failing = false;  // the last write did not reach both copies
+};
+
+// What init() found in the persistent store.
+struct Resumption {
+  StoredState stored;  // if found
+  std::array<StoreStatus, hal::kStoredCopies> copies{};
+  bool found = false;
+  bool lost = false;       // there was a record, and no good copy is left
+  bool to_report = false;  // by the next step
+};
+
 struct alignas(8) AppState {
   std::int64_t now_ns = 0;  // time of the cycle
   hal::Platform platform;
+  CommandAuthority authority;
+  StoredRecord stored;
+  Resumption resumption;
   const char* expected_target = nullptr;
   hal::Telemetry counters;
   FrameGate gate;

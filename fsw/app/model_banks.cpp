@@ -1,7 +1,5 @@
 #include "fsw/app/model_banks.hpp"
 
-#include <cstring>
-
 #include "gnc/numerics/crc32.hpp"
 
 namespace tumblesight::fsw {
@@ -14,24 +12,37 @@ std::uint32_t bytes_of_block(std::uint32_t block) {
   return rest < kBlockBytes ? rest : kBlockBytes;
 }
 
+// Copies a block of `image` into a bank. True: accepted.
+bool writes(hal::ModelStore& store, std::uint32_t bank, std::uint32_t offset, const std::uint8_t* image,
+            std::uint32_t bytes) {
+  return store.write(static_cast<int>(bank), offset, image + offset, bytes) == hal::WriteStatus::kAccepted;
+}
+static_assert(kBlockBytes <= hal::kMaxModelWriteBytes);
+
 }  // namespace
 
-bool ModelBanks::load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
-                      const std::uint8_t* bytes, std::uint32_t count) {
+hal::WriteStatus ModelBanks::load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
+                                  const std::uint8_t* bytes, std::uint32_t count) {
   const std::uint32_t bank = state.other();
-  const hal::ModelBank memory = store.bank(static_cast<int>(bank));
   BankDescriptor& descriptor = state.descriptor[bank];
   const bool in_order =
       offset == 0 || (state.status(bank) == BankStatus::kLoading && offset == state.loaded_bytes);
-  if (!in_order || memory.writable == nullptr || count > memory.capacity || offset > memory.capacity - count)
-    return false;
+  if (!in_order) return hal::WriteStatus::kRefused;
+  const auto index = static_cast<int>(bank);
+  const bool spoilt = offset > 0 && store.activity(index) == hal::BankActivity::kFailed;
+  const hal::WriteStatus written =
+      spoilt ? hal::WriteStatus::kFailed : store.write(index, offset, bytes, count);
+  if (written == hal::WriteStatus::kFailed) {
+    descriptor = {};
+    state.loaded_bytes = 0;
+  }
+  if (written != hal::WriteStatus::kAccepted) return written;
   if (offset == 0) {
     descriptor = {};
     descriptor.set(BankStatus::kLoading);
   }
-  std::memcpy(memory.writable + offset, bytes, count);
   state.loaded_bytes = offset + count;
-  return true;
+  return written;
 }
 
 std::uint32_t ModelBanks::table_crc32() const {
@@ -64,15 +75,20 @@ BlockCheck ModelBanks::check_block(hal::ModelStore& store, ModelBanksState& stat
   const std::uint32_t expected = block_crc32_[block];
   const bool good = gnc::crc32(used.data + offset, bytes) == expected;
   if (!state.has_second_copy()) return {good ? Result::kGood : Result::kLost, state.in_use, block};
+  // A bank that is being written cannot be read; it is checked in the next pass.
+  if (store.activity(static_cast<int>(state.other())) != hal::BankActivity::kReady)
+    return {good ? Result::kGood : Result::kLost, state.in_use, block};
   const bool copy_good = gnc::crc32(copy.data + offset, bytes) == expected;
 
   if (good) {
-    if (copy_good || copy.writable == nullptr) return {Result::kGood, state.in_use, block};
-    std::memcpy(copy.writable + offset, used.data + offset, bytes);
+    if (copy_good || !writes(store, state.other(), offset, used.data, bytes))
+      return {Result::kGood, state.in_use, block};
     return {Result::kRepaired, state.other(), block};
   }
-  if (!copy_good || used.writable == nullptr) return {Result::kLost, state.in_use, block};
-  std::memcpy(used.writable + offset, copy.data + offset, bytes);
+  // The image in use must stay readable, so only a bank that is written at once can be repaired.
+  const bool repaired = copy_good && used.writing == hal::BankWriting::kAtOnce &&
+                        writes(store, state.in_use, offset, copy.data, bytes);
+  if (!repaired) return {Result::kLost, state.in_use, block};
   return {Result::kRepaired, state.in_use, block};
 }
 

@@ -38,12 +38,12 @@ void AppFixture::init_with_model() {
   init(store);
 }
 
-void AppFixture::init(hal::fake::FakeModelStore& models, const char* expected_target) {
-  app->init({&stopwatch, &models, &kTestKey}, expected_target, protections);
+void AppFixture::init(hal::ModelStore& models, const char* expected_target) {
+  app->init({&stopwatch, &models, &kTestKeys, persistent, reset_cause}, expected_target, protections);
 }
 
 hal::CommandPacket AppFixture::command(FunctionCode function, const std::vector<std::uint8_t>& arguments) {
-  return signed_with(kTestKey, ++command_counter, packet_of(static_cast<std::uint8_t>(function), arguments));
+  return signed_as(signature, ++command_counter, packet_of(static_cast<std::uint8_t>(function), arguments));
 }
 
 const StepOutputs& AppFixture::step(const StepInputs& inputs) {
