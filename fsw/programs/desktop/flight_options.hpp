@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "fsw/programs/desktop/flight_program.hpp"
+#include "hal/messages/reset_cause.hpp"
 
 namespace tumblesight::fsw::desktop {
 
@@ -12,6 +13,8 @@ struct FlightOptions {
 
   char command_key_path[kMaxPath] = {};  // empty: the development key
   char model_path[kMaxPath] = {};        // empty: the shipped model of the target
+  char state_path[kMaxPath] = {};        // empty: nothing is kept
+  hal::ResetCause reset_cause = hal::ResetCause::kPowerOn;
   const char* target = "near_shoemaker";
   bool float32 = kFlyFloat32;  // without numerics_given and with a model_path: decided by the model image
   bool numerics_given = false;
