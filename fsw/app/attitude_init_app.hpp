@@ -45,8 +45,10 @@ namespace tumblesight::fsw {
 
 class AttitudeInitApp final {
  public:
-  // Boots: activates the image of the first bank that passes every check. The mode becomes RUN, or SAFE
-  // without a good image; events of the next step report the result. Can be called again.
+  // Boots: resumes from the platform's persistent store (state_keeper.hpp) and activates the image of the
+  // bank that was in use, or else of the other bank, if it passes every check. The mode becomes RUN, STANDBY
+  // or SAFE by the table in state_keeper.hpp, and SAFE without a good image; events of the next step report
+  // the result. Can be called again.
   // `platform`: stopwatch and models must not be nullptr. `expected_target`: NUL-terminated name of the
   // model's target, or nullptr to accept any.
   void init(const hal::Platform& platform, const char* expected_target);
@@ -58,6 +60,10 @@ class AttitudeInitApp final {
   // limits, persisting faults and counters. It excludes everything that depends on the wall clock.
   std::uint32_t state_crc32() const;
   Mode mode() const { return state_->mode; }
+  // For a link that authenticates commands before it queues them: the key slot in use, and the counter of the
+  // last authentic command.
+  std::uint32_t key_slot() const { return state_->authority.slot(); }
+  std::uint32_t command_counter() const { return state_->counters.command_counter; }
   // What init() found in a bank (0 or 1); kOk before the first init().
   gnc::ModelStatus boot_status(int bank) const { return state_->boot_status[static_cast<std::size_t>(bank)]; }
   const Estimator& estimator() const { return estimator_; }

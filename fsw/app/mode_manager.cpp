@@ -19,6 +19,13 @@ bool ModeManager::enter(Cause cause, Fault fault) {
   return true;
 }
 
+void ModeManager::resume(Cause cause, const StoredState& stored) {
+  enter(cause);
+  if (cause != Cause::kResumedSafe) return;
+  state_.counters.safe_cause = stored.safe_cause;
+  state_.counters.safe_fault = stored.safe_fault;
+}
+
 void ModeManager::go_safe(Fault fault) {
   if (!enter(Cause::kFault, fault)) return;
   report_(EventId::kSafeEntered, static_cast<std::int32_t>(Cause::kFault), static_cast<std::int32_t>(fault));

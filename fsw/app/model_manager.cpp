@@ -4,8 +4,9 @@
 
 namespace tumblesight::fsw {
 
-void ModelManager::boot() {
-  for (std::uint32_t bank = 0; bank < hal::kModelBanks; ++bank) boot_bank(bank);
+void ModelManager::boot(std::uint32_t preferred) {
+  boot_bank(preferred);
+  boot_bank(1 - preferred);
 }
 
 void ModelManager::boot_bank(std::uint32_t bank) {

@@ -46,8 +46,8 @@ enum class EventId : std::uint16_t {
   kFaultOver = 52,      // [Fault, -, -]
   kSafeEntered = 53,    // [Cause, Fault or -1, -]
 
-  // 60 + CommandRefusal
-  kCommandForged = 60,  // [function code or 0, packet size in bytes, detail]
+  // 60 + CommandRefusal; from refusal 10 on, 90 + CommandRefusal
+  kCommandForged = 60,  // [function code or 0, packet size in bytes or 0, detail]
   kCommandReplayed = 61,
   kCommandMalformed = 62,
   kCommandWrongLength = 63,
@@ -67,14 +67,26 @@ enum class EventId : std::uint16_t {
   kBankSwitched = 76,       // [bank before, bank after, -]
   kFallbackLost = 77,       // [bank, -, -]; the image of the bank that is not in use is no longer good
 
+  kStateResumed = 80,  // [ResetCause, stored Mode, stored bank]; the stored state of before the reset is used
+  kStoredStateLost = 81,  // [StoreStatus of copy 0, StoreStatus of copy 1, -]; cold boot
+  kStateNotStored = 82,   // [copies written, -, -]; first cycle of a failure only
+
   kEventsSuppressed = 90,  // [EventId of the suppressed events, their number, -]
+
+  kCommandOutOfWindow = 100,
+  kCommandOtherKey = 101,
+  kCommandOtherSpacecraft = 102,
+  kCommandNotStored = 103,
+  kCommandStoreFailed = 104,
+  kCommandNoRoom = 105,
+  kKeyActivated = 110,  // [key slot before, key slot after, -]
 };
 
 struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 43> kEventRules{{
+inline constexpr std::array<EventRule, 53> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kCommandAccepted, Severity::kInformation},
@@ -117,12 +129,23 @@ inline constexpr std::array<EventRule, 43> kEventRules{{
     {EventId::kModelTableRebuilt, Severity::kWarning},
     {EventId::kBankSwitched, Severity::kWarning},
     {EventId::kFallbackLost, Severity::kError},
+    {EventId::kStateResumed, Severity::kWarning},
+    {EventId::kStoredStateLost, Severity::kError},
+    {EventId::kStateNotStored, Severity::kError},
     {EventId::kEventsSuppressed, Severity::kInformation},
+    {EventId::kCommandOutOfWindow, Severity::kWarning},
+    {EventId::kCommandOtherKey, Severity::kWarning},
+    {EventId::kCommandOtherSpacecraft, Severity::kWarning},
+    {EventId::kCommandNotStored, Severity::kError},
+    {EventId::kCommandStoreFailed, Severity::kError},
+    {EventId::kCommandNoRoom, Severity::kWarning},
+    {EventId::kKeyActivated, Severity::kWarning},
 }};
 
 // The event that reports a refusal.
 constexpr EventId event_of(CommandRefusal why) {
-  return static_cast<EventId>(static_cast<int>(EventId::kCommandForged) + static_cast<int>(why));
+  const int first = static_cast<int>(why) < 10 ? 60 : 90;
+  return static_cast<EventId>(first + static_cast<int>(why));
 }
 
 // Whether the event differs between two runs with the same inputs.

@@ -105,8 +105,9 @@ def functions():
 def refusals():
     events = {value: name for name, value, _ in enum(MESSAGES + "event_id.hpp", "EventId")}
     return table(["number", "event", "refused because"],
-                 [[value, 60 + value, f"{upper(name)}{': ' + comment if comment else ''}"]
-                  for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal") if 60 + value in events])
+                 [[value, event, f"{upper(name)}{': ' + comment if comment else ''}"]
+                  for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal")
+                  for event in [value + (60 if value < 10 else 90)] if event in events])
 
 
 def validity():

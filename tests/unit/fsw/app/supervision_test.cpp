@@ -157,7 +157,7 @@ TEST_F(Supervision, InferenceTimeGoesToTelemetryOnly) {
   auto slow = std::make_unique<AttitudeInitApp>();
   hal::fake::FakeStopwatch slow_stopwatch;
   slow_stopwatch.tick_ns = 400'000'000;
-  boot(*slow, {&slow_stopwatch, &store, &kTestKey});
+  boot(*slow, {&slow_stopwatch, &store, &kTestKeys});
   const gnc::RangeImage frame = good_frame(sequence_number, now_ns, sequence_number - 1);
   StepInputs inputs;
   inputs.frame = &frame;
@@ -262,7 +262,7 @@ class UnsoundAttitudes : public DoubtfulAttitudes {
   static constexpr int kBehindFirstFrame = 3,
                        kBehindSecondFrame = 5;  // readings: one at the start of a step, two per frame
 
-  UnsoundAttitudes() { app->init({&strike, &store, &kTestKey}, kTestTarget); }
+  UnsoundAttitudes() { app->init({&strike, &store, &kTestKeys}, kTestTarget); }
   gnc::AttitudeEstimate& estimate() { return AppMemory::estimate(*app); }
   void strike_next_step(int at_look, std::function<void()> what) {
     strike.strike = std::move(what);
