@@ -60,12 +60,12 @@ struct Resumption {
 
 struct alignas(8) AppState {
   std::int64_t now_ns = 0;  // time of the cycle
-  hal::Platform platform;   // without the keys, which are in authority
+  hal::Platform platform;   // without the keys, which are in the authority
   CommandAuthority authority;
-  StoredRecord stored;
-  Resumption resumption;
   ExpectedTarget expected_target;
   EventLog events;
+  StoredRecord stored;
+  Resumption resumption;
   hal::Telemetry counters;
   FrameGate gate;
   FaultMonitor faults;

@@ -130,7 +130,7 @@ void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, S
   modes.go_safe_on_assertion();
   if (usable) {
     if (with_protections) {
-      if (!MemoryGuard::bound_indices(estimator_, state)) modes.go_safe_after_corruption();
+      if (!MemoryGuard::bound(estimator_, state)) modes.go_safe_after_corruption();
       guard_.check(estimator_, state, report);
     }
     if (now_ns < previous_ns) modes.restart_sequence_after_time_jump();

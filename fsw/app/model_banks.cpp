@@ -81,19 +81,19 @@ BlockCheck ModelBanks::check_block(hal::ModelStore& store, ModelBanksState& stat
   const hal::ModelBank spare = store.bank(static_cast<int>(other));
   const std::uint32_t offset = block * kBlockBytes, bytes = bytes_of_block(block);
   const bool good = gnc::crc32(used.data + offset, bytes) == block_crc32_[in_use][block];
-  const BlockCheck of_used{good ? Result::kGood : Result::kLost, in_use, block};
+  const hal::BankActivity activity = store.activity(static_cast<int>(other));
+  if (state.status(other) != BankStatus::kGood) return {good ? Result::kGood : Result::kLost, in_use, block};
   // A bank that is being written cannot be read; it is checked in the next pass.
-  if (state.status(other) != BankStatus::kGood ||
-      store.activity(static_cast<int>(other)) != hal::BankActivity::kReady)
-    return of_used;
-  const bool spare_good = gnc::crc32(spare.data + offset, bytes) == block_crc32_[other][block];
-  if (good && spare_good) return of_used;
+  if (activity == hal::BankActivity::kErasing || activity == hal::BankActivity::kWriting)
+    return {good ? Result::kGood : Result::kLost, in_use, block};
+  const bool spare_good = activity == hal::BankActivity::kReady &&
+                          gnc::crc32(spare.data + offset, bytes) == block_crc32_[other][block];
+  if (good && spare_good) return {Result::kGood, in_use, block};
 
   const bool can_copy = state.has_second_copy();
   if (good) {
-    if (!can_copy || !writes(store, other, offset, used.data, bytes))
-      return {Result::kFallbackLost, other, block};
-    return {Result::kRepaired, other, block};
+    const bool repaired = can_copy && writes(store, other, offset, used.data, bytes);
+    return {repaired ? Result::kRepaired : Result::kFallbackLost, other, block};
   }
   // The image in use must stay readable, so only a bank that is written at once can be repaired.
   const bool repaired = can_copy && spare_good && used.writing == hal::BankWriting::kAtOnce &&

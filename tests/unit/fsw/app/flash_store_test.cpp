@@ -147,6 +147,36 @@ TEST_F(FlashStore, DamagedSecondCopyIsRepairedInTheBackground) {
   EXPECT_EQ(out->telemetry.model_blocks_lost, 0U);
 }
 
+// Verifies TS-FDIR-047.
+TEST_F(FlashStore, DamagedSecondCopyThatCannotBeWrittenIsReportedAsLost) {
+  step_good();
+  flash.dead = true;
+  flash.banks[1].visible[9] ^= 1;
+  int lost = 0;
+  for (int i = 0; i < 30; ++i) {
+    step_good();
+    lost += events(EventId::kFallbackLost);
+  }
+  EXPECT_EQ(lost, 1);
+  EXPECT_EQ(out->telemetry.bank_status[1], hal::BankStatus::kEmpty);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Verifies TS-FDIR-040.
+TEST_F(FlashStore, RepairThatFailsIsRepeated) {
+  step_good();
+  flash.fail_next = true;
+  flash.banks[1].cells[9] ^= 1;
+  flash.banks[1].visible[9] ^= 1;
+  for (int i = 0; i < 60; ++i) {
+    step_good();
+    flash.tick();
+  }
+  EXPECT_EQ(flash.banks[1].visible, test_model_image());
+  EXPECT_GE(out->telemetry.model_blocks_repaired, 2U);
+  EXPECT_EQ(out->telemetry.second_copy, 1U);
+}
+
 TEST_F(FlashStore, DamagedImageInUseIsReplacedByTheSecondCopyBecauseItMustStayReadable) {
   flash.banks[0].cells[5000] ^= 1;
   flash.banks[0].visible = flash.banks[0].cells;

@@ -250,6 +250,22 @@ TEST_F(MemoryGuardTest, IndicesOutOfRangeAreBoundedAndGoSafe) {
   EXPECT_EQ(out->telemetry.model_blocks_lost, 0U);
 }
 
+// Verifies TS-FDIR-015.
+TEST_F(MemoryGuardTest, LimitsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
+  for (const config::LimitRule& rule : config::kLimitRules) {
+    for (const std::uint32_t value : {rule.lowest - 1, rule.highest + 1, UINT32_MAX}) {
+      init(store);
+      step_good();
+      std::uint32_t& limit = AppMemory::state(*app).limits[static_cast<std::size_t>(rule.limit)];
+      limit = value;
+      AppMemory::commit(*app);
+      step_good();
+      EXPECT_EQ(app->mode(), Mode::kSafe);
+      EXPECT_EQ(limit, rule.initial);
+    }
+  }
+}
+
 // Verifies TS-FDIR-040.
 TEST_F(MemoryGuardTest, FlippedBitsOfTheTableAreRepaired) {
   const Region guard = AppMemory::guard(*app);
@@ -389,6 +405,28 @@ TEST_F(MemoryGuardTest, HitReadOnlyBankIsReplacedByItsSecondCopy) {
     EXPECT_EQ(out->telemetry.second_copy, 0U) << "the header has the same CRC, but the image is not good";
     EXPECT_EQ(app->mode(), Mode::kRun);
   }
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, BankInUseWhoseMemoryIsWornOutIsReplacedByItsSecondCopy) {
+  class WornStore final : public hal::ModelStore {
+   public:
+    explicit WornStore(hal::fake::FakeModelStore& store) : store_(store) {}
+    hal::ModelBank bank(int index) override { return store_.bank(index); }
+    hal::WriteStatus write(int, std::uint32_t, const std::uint8_t*, std::uint32_t) override {
+      return hal::WriteStatus::kFailed;
+    }
+
+   private:
+    hal::fake::FakeModelStore& store_;
+  } worn(store);
+  init(worn);
+  step_good();
+  hit_block(0, 20);
+  steps_of_a_pass();
+  EXPECT_EQ(out->telemetry.model_blocks_repaired, 0U);
+  EXPECT_EQ(out->telemetry.bank_in_use, 1U);
+  EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
 // Verifies TS-FDIR-045.
