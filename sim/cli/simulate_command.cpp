@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "hal/dds/idl/development_key.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/simulate_arguments.hpp"
@@ -118,6 +119,8 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
   setup.speed = settings.speed;
   setup.free_running = settings.free_running;
   setup.remarks = target.warnings;
+  if (settings.command_key == hal::dds::kDevelopmentKey)
+    setup.remarks.emplace_back("telecommands are signed with the public development key; give --command-key");
   return setup;
 }
 

@@ -32,10 +32,11 @@ fsw::AttitudeInitApp app;
 hal::CommandKey command_key;
 fsw::CycleWorkspace workspace;
 FlightTask task{lidar, link, workspace, stack};
+hal::dds::Foreigner foreigner;  // who ended the run
 
 FlightEnd connect(const FlightOptions& options) {
-  dds_return_t result = domain.open(options.domain);
-  if (result == 0) result = endpoints.open(domain.participant());
+  dds_return_t result = domain.open(options.domain, options.partition);
+  if (result == 0) result = endpoints.open(domain);
   if (result == 0) return FlightEnd::kComplete;
   std::fprintf(stderr, "flight: DDS domain %u: %s\n", options.domain, dds_strretcode(result));
   return FlightEnd::kTransport;
@@ -63,11 +64,16 @@ FlightEnd fly(const FlightOptions& options) {
   if (connected != FlightEnd::kComplete) return connected;
   const auto timeout_ns = static_cast<std::int64_t>(options.timeout_s * 1e9);
   const hal::dds::HandshakeResult met = meet_simulator(options, timeout_ns);
+  foreigner = met.foreigner;
   if (met.end != FlightEnd::kComplete || met.stopped) return met.end;
 
   bus.join_run(met.run_id, timeout_ns);
-  if (!options.free_running) return exchange_in_lockstep(bus, task);
-  return exchange_free_running(bus, task, stopwatch, static_cast<std::int64_t>(options.period_ms * 1e6));
+  const FlightEnd end =
+      options.free_running
+          ? exchange_free_running(bus, task, stopwatch, static_cast<std::int64_t>(options.period_ms * 1e6))
+          : exchange_in_lockstep(bus, task);
+  foreigner = bus.foreigner();
+  return end;
 }
 
 }  // namespace
@@ -93,7 +99,11 @@ int main(int argc, char** argv) {
 
   const FlightEnd end = fly(options);
   task.join();  // no effect after a run
-  if (end != FlightEnd::kComplete) std::fprintf(stderr, "flight: %s\n", hal::dds::to_string(end));
+  if (end == FlightEnd::kForeign) {
+    std::fprintf(stderr, "flight: %s: %s\n", hal::dds::to_string(end), to_text(foreigner).text);
+  } else if (end != FlightEnd::kComplete) {
+    std::fprintf(stderr, "flight: %s\n", hal::dds::to_string(end));
+  }
   domain.close();
   return static_cast<int>(end);
 }
