@@ -43,6 +43,7 @@ FrameResult frame_result(const FrameTruth& truth, const gnc::AttitudeEstimate& e
   result.range_m = truth.range_m;
   result.rate_rad_s = truth.rate_lrf_rad_s.norm();
   result.valid = valid;
+  result.trusted = valid;
   if (!valid) return result;
   result.rcnn = gnc::to_double(estimate.q_lrf_trf);
   result.cnn = gnc::to_double(estimate.q_lrf_trf_single_frame);
@@ -65,6 +66,7 @@ void run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::
   estimator.reset();
   for (std::uint32_t k = 0; k < job.frames; ++k) {
     const FrameTruth& truth = sequence.frames[k];
+    if (truth.lost) continue;
     job.renderer.render(sequence, k, frame);
     gnc::AttitudeEstimate estimate;
     const std::size_t place = std::size_t{index} * job.frames + k;

@@ -29,6 +29,26 @@ Json baseline_json(const CellResult& cell) {
   return json;
 }
 
+// Empty for an undisturbed run.
+Json disturbances_json(const Disturbances& disturbances) {
+  Json json = Json::object();
+  for (const DisturbanceRow* row : given_disturbances(disturbances)) {
+    const double value = row->get(disturbances);
+    switch (row->kind) {
+      case DisturbanceKind::kFlag:
+        json[row->name] = value != 0.0;
+        break;
+      case DisturbanceKind::kWholeNumber:
+        json[row->name] = static_cast<std::uint32_t>(value);
+        break;
+      case DisturbanceKind::kNumber:
+        json[row->name] = value;
+        break;
+    }
+  }
+  return json;
+}
+
 Json row_json(const Results& results, const SubjectResult& subject, const CellResult& cell) {
   const PaperFigures paper = paper_figures(subject.target, cell.condition);
   return {{"target", subject.target},
@@ -39,6 +59,7 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
           {"cnn", summary_json(cell.cnn)},
           {"baseline", baseline_json(cell)},
           {"frames", cell.frames},
+          {"disturbances", disturbances_json(cell.disturbances)},
           {"seed", results.seed},
           {"model", subject.model},
           {"model_crc32", fmt::format("{:08x}", subject.model_crc32)},

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMaxGalleryPictures = 8;
 
 ErrorSummary last_frame_errors(const RunReport& report, Estimator estimator) {
-  return summarise(last_frame_errors_deg(report.results, report.frames, estimator));
+  return last_frame_summary(report.results, report.frames, estimator);
 }
 
 std::string lead_sentence(const RunReport& report) {

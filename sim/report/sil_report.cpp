@@ -139,6 +139,7 @@ std::vector<FrameResult> frame_results(const SilRunResult& run) {
     result.sequence = step.sequence;
     result.frame = step.frame_index;
     result.valid = gave_attitude(step);
+    result.trusted = step.attitude.validity == hal::Validity::kValid;
     result.truth = step.truth.q_lrf_trf;
     result.rcnn = gnc::to_double(step.attitude.q_lrf_trf);
     result.cnn = gnc::to_double(step.attitude.q_lrf_trf_single_frame);
@@ -187,8 +188,8 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
   const InferenceTime time = inference_time(run);
   nlohmann::ordered_json json{
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
-  json["rcnn"] = summary_json(summarise(last_frame_errors_deg(results, setup.frames, Estimator::kRcnn)));
-  json["cnn"] = summary_json(summarise(last_frame_errors_deg(results, setup.frames, Estimator::kCnn)));
+  json["rcnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
+  json["cnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
   if (numerics) {
     json["float32"] = summary_json(numerics->float32);
     json["difference_to_float32"] = {{"mean_deg", numerics->difference.mean_deg},
