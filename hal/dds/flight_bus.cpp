@@ -34,8 +34,10 @@ bool FlightBus::wait_for_step(std::uint32_t k, StepSample& step, FlightEnd& end)
   for (;;) {
     if (!announced && take_step(step)) {
       announced = true;
-      out_of_order_ |= step.k != k || step.frames > kMaxFramesPerStep || step.commands > kMaxCommandsPerStep;
+      out_of_order_ |= step.k != k || step.frames > kMaxFramesPerStep ||
+                       step.navigations > kMaxFramesPerStep || step.commands > kMaxCommandsPerStep;
     }
+    carry_navigations(k, &content);
     carry_frames(k, &content);
     carry_commands(k, &content);
     const bool complete = announced && content.has_all_of(step);
@@ -48,6 +50,7 @@ bool FlightBus::wait_for_step(std::uint32_t k, StepSample& step, FlightEnd& end)
 }
 
 void FlightBus::carry_in(std::int64_t timeout_ns) {
+  carry_navigations(0, nullptr);
   carry_frames(0, nullptr);
   carry_commands(0, nullptr);
   endpoints_.wait_for_data(timeout_ns);
@@ -67,6 +70,15 @@ void FlightBus::carry_frames(std::uint32_t k, StepContent* content) {
     latest_frame_k_ = frame_.k;
     has_frame_ = true;
     if (content != nullptr) content->add(frame_);
+  }
+}
+
+void FlightBus::carry_navigations(std::uint32_t k, StepContent* content) {
+  NavigationSample sample;
+  for (int count = 0; count < kMaxFramesPerStep && endpoints_.navigations.take(sample); ++count) {
+    if (!belongs(sample.run_id, sample.k, k, content)) continue;
+    navigation_.put(sample);
+    if (content != nullptr) content->add(sample);
   }
 }
 

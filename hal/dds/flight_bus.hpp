@@ -6,6 +6,7 @@
 
 #include "hal/dds/dds_lidar.hpp"
 #include "hal/dds/dds_link.hpp"
+#include "hal/dds/dds_navigation.hpp"
 #include "hal/dds/flight_endpoints.hpp"
 #include "hal/dds/idl/flight_end.hpp"
 #include "hal/dds/idl/step_content.hpp"
@@ -15,8 +16,9 @@ namespace tumblesight::hal::dds {
 
 class FlightBus {
  public:
-  FlightBus(FlightEndpoints& endpoints, DdsLidar& lidar, DdsLink& link, Stopwatch& stopwatch)
-      : endpoints_(endpoints), lidar_(lidar), link_(link), stopwatch_(stopwatch) {}
+  FlightBus(FlightEndpoints& endpoints, DdsLidar& lidar, DdsNavigation& navigation, DdsLink& link,
+            Stopwatch& stopwatch)
+      : endpoints_(endpoints), lidar_(lidar), navigation_(navigation), link_(link), stopwatch_(stopwatch) {}
 
   // From now on a sample of another run ends this one, and so does a `timeout_ns` without a step.
   void join_run(std::uint32_t run_id, std::int64_t timeout_ns);
@@ -24,7 +26,7 @@ class FlightBus {
 
   // Takes the oldest step that has arrived. False: there is none.
   bool take_step(StepSample& step);
-  // Lockstep: waits for step `k` and hands its frames and commands to the flight task. DDS does not keep the
+  // Lockstep: waits for step `k` and hands its samples to the flight task. DDS does not keep the
   // order across topics, so the step is ready only when all the samples it announces have arrived. They must
   // be those that it announces (StepContent), and no other program may write to the topics. False: step `k`
   // will not arrive; `end` gives the reason.
@@ -49,6 +51,7 @@ class FlightBus {
  private:
   // Samples of step `k`, or of any step if `content` is nullptr.
   void carry_frames(std::uint32_t k, StepContent* content);
+  void carry_navigations(std::uint32_t k, StepContent* content);
   void carry_commands(std::uint32_t k, StepContent* content);
   bool belongs(std::uint32_t run_id, std::uint32_t sample_k, std::uint32_t k, const StepContent* content);
   [[nodiscard]] bool check_writers(FlightEnd& end);
@@ -56,6 +59,7 @@ class FlightBus {
 
   FlightEndpoints& endpoints_;
   DdsLidar& lidar_;
+  DdsNavigation& navigation_;
   DdsLink& link_;
   Stopwatch& stopwatch_;
   LidarFrameSample frame_{};

@@ -9,6 +9,7 @@ dds_return_t FlightEndpoints::open(const Domain& domain) {
   if (waitset_ < 0) return waitset_;
   dds_return_t result = hello_in.open(domain);
   if (result == 0) result = frames.open(domain);
+  if (result == 0) result = navigations.open(domain);
   if (result == 0) result = commands.open(domain);
   if (result == 0) result = steps.open(domain);
   if (result == 0) result = hello_out.open(domain);
@@ -17,7 +18,8 @@ dds_return_t FlightEndpoints::open(const Domain& domain) {
   if (result == 0) result = events.open(domain);
   if (result == 0) result = dumps.open(domain);
   if (result == 0) result = steps_done.open(domain);
-  for (const dds_entity_t reader : {frames.entity(), commands.entity(), steps.entity()}) {
+  for (const dds_entity_t reader :
+       {frames.entity(), navigations.entity(), commands.entity(), steps.entity()}) {
     if (result == 0) result = wake_on(reader);
   }
   return result;
@@ -29,8 +31,8 @@ dds_return_t FlightEndpoints::wake_on(dds_entity_t reader) const {
 }
 
 bool FlightEndpoints::bind(const PeerKey& simulator) {
-  const bool readers =
-      hello_in.bind(simulator) && frames.bind(simulator) && commands.bind(simulator) && steps.bind(simulator);
+  const bool readers = hello_in.bind(simulator) && frames.bind(simulator) && navigations.bind(simulator) &&
+                       commands.bind(simulator) && steps.bind(simulator);
   return readers && hello_out.has_reader_of(simulator) && attitudes.has_reader_of(simulator) &&
          telemetries.has_reader_of(simulator) && events.has_reader_of(simulator) &&
          dumps.has_reader_of(simulator) && steps_done.has_reader_of(simulator);
@@ -38,7 +40,7 @@ bool FlightEndpoints::bind(const PeerKey& simulator) {
 
 Foreigner FlightEndpoints::foreigner() const {
   for (const BoundReader* reader :
-       std::initializer_list<const BoundReader*>{&steps, &frames, &commands, &hello_in}) {
+       std::initializer_list<const BoundReader*>{&steps, &frames, &navigations, &commands, &hello_in}) {
     const Foreigner foreigner = reader->foreigner();
     if (foreigner) return foreigner;
   }

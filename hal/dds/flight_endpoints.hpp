@@ -10,6 +10,7 @@ namespace tumblesight::hal::dds {
 struct FlightEndpoints {
   Reader<HelloSample> hello_in;
   Reader<LidarFrameSample> frames;
+  Reader<NavigationSample> navigations;
   Reader<CommandSample> commands;
   Reader<StepSample> steps;
   Writer<HelloSample> hello_out;

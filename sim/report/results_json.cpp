@@ -29,26 +29,6 @@ Json baseline_json(const CellResult& cell) {
   return json;
 }
 
-// Empty for an undisturbed run.
-Json disturbances_json(const Disturbances& disturbances) {
-  Json json = Json::object();
-  for (const DisturbanceRow* row : given_disturbances(disturbances)) {
-    const double value = row->get(disturbances);
-    switch (row->kind) {
-      case DisturbanceKind::kFlag:
-        json[row->name] = value != 0.0;
-        break;
-      case DisturbanceKind::kWholeNumber:
-        json[row->name] = static_cast<std::uint32_t>(value);
-        break;
-      case DisturbanceKind::kNumber:
-        json[row->name] = value;
-        break;
-    }
-  }
-  return json;
-}
-
 Json row_json(const Results& results, const SubjectResult& subject, const CellResult& cell) {
   const PaperFigures paper = paper_figures(subject.target, cell.condition);
   return {{"target", subject.target},
@@ -121,6 +101,25 @@ Json curves_json(const SubjectResult& subject) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json disturbances_json(const Disturbances& disturbances) {
+  Json json = Json::object();
+  for (const DisturbanceRow* row : given_disturbances(disturbances)) {
+    const double value = row->get(disturbances);
+    switch (row->kind) {
+      case DisturbanceKind::kFlag:
+        json[row->name] = value != 0.0;
+        break;
+      case DisturbanceKind::kWholeNumber:
+        json[row->name] = static_cast<std::uint32_t>(value);
+        break;
+      case DisturbanceKind::kNumber:
+        json[row->name] = value;
+        break;
+    }
+  }
+  return json;
+}
 
 Json summary_json(const ErrorSummary& summary) {
   const auto figure_or_null = [&](double value) { return summary.count == 0 ? Json(nullptr) : Json(value); };

@@ -27,6 +27,7 @@ struct SilRunSetup {
   gnc::DepthProjection projection;
   double speed = 0.0;  // times real time; 0: as fast as the machine goes
   bool free_running = false;
+  Disturbances disturbances;
   std::vector<std::string> remarks;
 };
 
@@ -40,8 +41,8 @@ struct InferenceTime {
 // Over the steps that gave an attitude; zeros if none did.
 InferenceTime inference_time(const SilRunResult& run);
 
-// The faults of the run, one sentence each. Empty: every step was answered with an attitude, and the flight
-// task allocated no heap memory.
+// The faults of the run, one sentence each. Empty: every step was answered, with an attitude if the sensor
+// delivered a genuine frame, and the flight task allocated no heap memory.
 std::vector<std::string> run_faults(const SilRunResult& run);
 
 nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& run,

@@ -200,6 +200,16 @@ void SilSession::send(const StepInput& input) {
     write(endpoints_->frames, frame_sample_);
     content.add(frame_sample_);
   }
+  for (const gnc::ChaserAttitude& attitude : input.navigations) {
+    hal::dds::NavigationSample sample{};
+    sample.run_id = secret_.run_id;
+    sample.k = k;
+    sample.time_ns = attitude.time_ns;
+    std::copy(attitude.q_inertial_lrf.begin(), attitude.q_inertial_lrf.end(), sample.q_inertial_lrf);
+    sample.valid = attitude.valid ? 1 : 0;
+    write(endpoints_->navigations, sample);
+    content.add(sample);
+  }
   std::vector<hal::CommandPacket> packets;
   for (const Telecommand& command : input.commands) packets.push_back(encoder_.packet(command));
   packets.insert(packets.end(), input.packets.begin(), input.packets.end());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
+#include "gnc/tracking/chaser_attitude.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/run_secret.hpp"
 #include "hal/messages/command_packet.hpp"
@@ -30,6 +31,7 @@ namespace tumblesight::sim {
 struct StepInput {
   std::int64_t time_ns = 0;
   std::vector<const gnc::RangeImage*> frames;
+  std::vector<gnc::ChaserAttitude> navigations;  // of the chaser, at the exposures of the frames
   std::vector<Telecommand> commands;
   std::vector<hal::CommandPacket> packets;  // sent after `commands`, unchanged: for tests of invalid packets
   bool last = false;

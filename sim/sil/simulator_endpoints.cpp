@@ -17,6 +17,7 @@ void check(dds_return_t result) {
 SimulatorEndpoints::SimulatorEndpoints(const hal::dds::Domain& domain) {
   check(hello_out.open(domain));
   check(frames.open(domain));
+  check(navigations.open(domain));
   check(commands.open(domain));
   check(steps.open(domain));
   check(truth.open(domain));
@@ -40,7 +41,7 @@ bool SimulatorEndpoints::bind(const hal::dds::PeerKey& flight) {
   const bool readers = hello_in.bind(flight) && attitudes.bind(flight) && telemetries.bind(flight) &&
                        events.bind(flight) && dumps.bind(flight) && steps_done.bind(flight);
   return readers && hello_out.has_reader_of(flight) && frames.has_reader_of(flight) &&
-         commands.has_reader_of(flight) && steps.has_reader_of(flight);
+         navigations.has_reader_of(flight) && commands.has_reader_of(flight) && steps.has_reader_of(flight);
 }
 
 hal::dds::Foreigner SimulatorEndpoints::foreigner() const {

@@ -10,6 +10,7 @@ namespace tumblesight::sim {
 struct SimulatorEndpoints {
   hal::dds::Writer<hal::dds::HelloSample> hello_out;
   hal::dds::Writer<hal::dds::LidarFrameSample> frames;
+  hal::dds::Writer<hal::dds::NavigationSample> navigations;
   hal::dds::Writer<hal::dds::CommandSample> commands;
   hal::dds::Writer<hal::dds::StepSample> steps;
   hal::dds::Writer<hal::dds::TruthSample> truth;  // for displays; not read by flight

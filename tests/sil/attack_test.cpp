@@ -99,22 +99,21 @@ TEST_P(Attack, EndsTheRunWithWhatWasSeenOrLeavesItUndisturbed) {
   EXPECT_EQ(ended > 0, forgery.topic != nullptr);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sil, Attack,
-                         ::testing::Values(Forgery{"hello-of-simulator", "sil/hello", false},
-                                           Forgery{"hello-of-flight", ""},
-                                           Forgery{"frame", "sil/lidar_frame"},
-                                           Forgery{"command", "sil/command"}, Forgery{"step", "sil/step"},
-                                           Forgery{"attitude", "sil/attitude"},
-                                           Forgery{"telemetry", "sil/telemetry"},
-                                           Forgery{"event", "sil/event"}, Forgery{"dump", "sil/model_dump"},
-                                           Forgery{"step-done", "sil/step_done"}, Forgery{"truth", nullptr}),
-                         [](const auto& test) {
-                           std::string name;
-                           for (const char* c = test.param.target; *c != '\0'; ++c) {
-                             if (*c != '-') name += *c;
-                           }
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Sil, Attack,
+    ::testing::Values(Forgery{"hello-of-simulator", "sil/hello", false}, Forgery{"hello-of-flight", ""},
+                      Forgery{"frame", "sil/lidar_frame"}, Forgery{"navigation", "sil/navigation"},
+                      Forgery{"command", "sil/command"}, Forgery{"step", "sil/step"},
+                      Forgery{"attitude", "sil/attitude"}, Forgery{"telemetry", "sil/telemetry"},
+                      Forgery{"event", "sil/event"}, Forgery{"dump", "sil/model_dump"},
+                      Forgery{"step-done", "sil/step_done"}, Forgery{"truth", nullptr}),
+    [](const auto& test) {
+      std::string name;
+      for (const char* c = test.param.target; *c != '\0'; ++c) {
+        if (*c != '-') name += *c;
+      }
+      return name;
+    });
 
 // Verifies TS-SIL-090.
 TEST(Attack, SimulateEndsWithAFailureThatNamesTheTopic) {

@@ -94,6 +94,7 @@ class Forger {
     if (target == "hello-of-simulator") forge_hello(Role::kSimulator);
     if (target == "hello-of-flight") forge_hello(Role::kFlight);
     if (target == "frame") forge_frame();
+    if (target == "navigation") forge_navigation();
     if (target == "command") forge_command();
     if (target == "step") forge_step();
     if (target == "attitude") forge_attitude();
@@ -127,6 +128,13 @@ class Forger {
     frame.sequence_number = k_;
     frame.exposure_time_ns = time_ns();
     write(frames_, frame);
+  }
+  void forge_navigation() {
+    NavigationSample navigation{};
+    navigation.time_ns = time_ns();
+    navigation.q_inertial_lrf[1] = 1 << 30;
+    navigation.valid = 1;
+    write(navigations_, navigation);
   }
   void forge_command() {
     const hal::CommandPacket packet = ground_.packet(sim::set_mode(hal::Mode::kSafe));
@@ -193,6 +201,7 @@ class Forger {
   std::uint32_t guess_ = 0;
   Writer<HelloSample> hellos_;
   Writer<LidarFrameSample> frames_;
+  Writer<NavigationSample> navigations_;
   Writer<CommandSample> commands_;
   Writer<StepSample> steps_;
   Writer<AttitudeSample> attitudes_;

@@ -23,6 +23,16 @@ void StepContent::add(const LidarFrameSample& frame) {
   frame_bytes_.add(reinterpret_cast<const unsigned char*>(frame.ranges), sizeof frame.ranges);
 }
 
+void StepContent::add(const NavigationSample& navigation) {
+  ++navigations_;
+  navigation_bytes_.add_u32(navigation.run_id);
+  navigation_bytes_.add_u32(navigation.k);
+  add_time(navigation_bytes_, navigation.time_ns);
+  for (const std::int32_t part : navigation.q_inertial_lrf)
+    navigation_bytes_.add_u32(static_cast<std::uint32_t>(part));
+  navigation_bytes_.add_u32(navigation.valid);
+}
+
 void StepContent::add(const CommandSample& command) {
   ++commands_;
   command_bytes_.add_u32(command.run_id);
@@ -33,21 +43,24 @@ void StepContent::add(const CommandSample& command) {
 
 void StepContent::announce_in(StepSample& step) const {
   step.frames = static_cast<std::uint8_t>(frames_);
+  step.navigations = static_cast<std::uint8_t>(navigations_);
   step.commands = static_cast<std::uint8_t>(commands_);
   step.content_crc32 = crc32();
 }
 
 bool StepContent::has_all_of(const StepSample& step) const {
-  return frames_ >= step.frames && commands_ >= step.commands;
+  return frames_ >= step.frames && navigations_ >= step.navigations && commands_ >= step.commands;
 }
 
 bool StepContent::is_that_of(const StepSample& step) const {
-  return frames_ == step.frames && commands_ == step.commands && crc32() == step.content_crc32;
+  return frames_ == step.frames && navigations_ == step.navigations && commands_ == step.commands &&
+         crc32() == step.content_crc32;
 }
 
 std::uint32_t StepContent::crc32() const {
   gnc::Crc32 crc;
   crc.add_u32(frame_bytes_.value());
+  crc.add_u32(navigation_bytes_.value());
   crc.add_u32(command_bytes_.value());
   return crc.value();
 }

@@ -1,5 +1,5 @@
 // StepContent: the number and the CRC-32 of the samples that belong to one lockstep step. Both sides compute
-// them, so that a step is carried out only with the frames and commands that the simulator sent with it:
+// them, so that a step is carried out only with the samples that the simulator sent with it:
 // their sequence numbers, exposure times, run id, k and data.
 #pragma once
 
@@ -14,6 +14,7 @@ class StepContent {
  public:
   // In the order of their topic. Topics may be mixed, because DDS keeps no order across them.
   void add(const LidarFrameSample& frame);
+  void add(const NavigationSample& navigation);
   void add(const CommandSample& command);
 
   // Writes the numbers and the CRC to the step.
@@ -27,8 +28,10 @@ class StepContent {
   std::uint32_t crc32() const;
 
   int frames_ = 0;
+  int navigations_ = 0;
   int commands_ = 0;
   gnc::Crc32 frame_bytes_;
+  gnc::Crc32 navigation_bytes_;
   gnc::Crc32 command_bytes_;
 };
 

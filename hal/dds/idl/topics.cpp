@@ -9,6 +9,7 @@ constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);
 constexpr Topic kHello{"sil/hello", &tumblesight_icd_Hello_desc, 4, true};
 constexpr Topic kLidarFrame{"sil/lidar_frame", &tumblesight_icd_LidarFrame_desc, 2 * kMaxFramesPerStep,
                             false};
+constexpr Topic kNavigation{"sil/navigation", &tumblesight_icd_Navigation_desc, 2 * kMaxFramesPerStep, false};
 constexpr Topic kCommand{"sil/command", &tumblesight_icd_Command_desc, 2 * kMaxCommandsPerStep, false};
 constexpr Topic kStep{"sil/step", &tumblesight_icd_Step_desc, 4, false};
 constexpr Topic kAttitude{"sil/attitude", &tumblesight_icd_Attitude_desc, 8, false};
@@ -50,6 +51,10 @@ const Topic& topic_of<HelloSample>() {
 template <>
 const Topic& topic_of<LidarFrameSample>() {
   return kLidarFrame;
+}
+template <>
+const Topic& topic_of<NavigationSample>() {
+  return kNavigation;
 }
 template <>
 const Topic& topic_of<CommandSample>() {

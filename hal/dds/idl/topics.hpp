@@ -15,12 +15,13 @@
 
 namespace tumblesight::hal::dds {
 
-inline constexpr int kMaxFramesPerStep = 8;
+inline constexpr int kMaxFramesPerStep = 8;  // and attitudes of the chaser
 inline constexpr int kMaxCommandsPerStep = 32;
 inline constexpr int kMaxEventsPerStep = 32;
 
 using HelloSample = tumblesight_icd_Hello;
 using LidarFrameSample = tumblesight_icd_LidarFrame;
+using NavigationSample = tumblesight_icd_Navigation;
 using CommandSample = tumblesight_icd_Command;
 using StepSample = tumblesight_icd_Step;
 using AttitudeSample = tumblesight_icd_Attitude;
@@ -45,6 +46,8 @@ template <>
 const Topic& topic_of<HelloSample>();
 template <>
 const Topic& topic_of<LidarFrameSample>();
+template <>
+const Topic& topic_of<NavigationSample>();
 template <>
 const Topic& topic_of<CommandSample>();
 template <>
