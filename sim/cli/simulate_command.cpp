@@ -25,6 +25,7 @@
 #include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text_file.hpp"
+#include "sim/world/chaser_navigation.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -157,7 +158,9 @@ SilRunResult run_sequences(const ScenarioArguments& scenario, const TargetSetup&
       settings, lidar, 1e-3 * target.projection.swath_mm, sequences,
       [&](std::uint32_t done, std::uint32_t) { bar.update(done); },
       [&](const StepResult& step, const gnc::RangeImage& frame) {
-        float32.add(step.sequence, step.frame_index, step.truth, frame);
+        float32.add(
+            step.sequence, step.frame_index, step.truth, frame,
+            chaser_attitude(step.truth, frame.exposure_time_ns, !scenario.disturbances.no_ego_motion));
       });
 }
 
