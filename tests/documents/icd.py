@@ -199,7 +199,7 @@ def struct(name):
 TABLES = {"transitions": transitions, "causes": causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
           "responses": responses, "events": events,
           **{f"topic {name}": (lambda name=name: struct(name))
-             for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Step", "Hello")}}
+             for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Navigation", "Step", "Hello")}}
 
 
 def with_tables(text):

@@ -27,14 +27,16 @@ hal::posix::MonotonicStopwatch stopwatch;
 hal::dds::Domain domain;
 hal::dds::FlightEndpoints endpoints;
 hal::dds::DdsLidar lidar;
+hal::dds::DdsNavigation navigation;
 hal::posix::PaintedStack stack;
 hal::dds::DdsLink link{{heap_allocations, [] { return stack.least_left_bytes(); }}};
-hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
+hal::dds::FlightBus bus{endpoints, lidar, navigation, link, stopwatch};
 fsw::AttitudeInitApp app;
 hal::CommandKeys command_keys;
 hal::posix::FilePersistentStore stored_state;
 fsw::CycleWorkspace workspace;
 FlightTask task{lidar, link, workspace, stack};
+hal::dds::Foreigner foreigner;  // who ended the run
 
 hal::Platform platform_of(const FlightOptions& options, hal::ModelStore& models) {
   hal::Platform platform;
@@ -54,8 +56,8 @@ void authenticate_commands() {
 }
 
 FlightEnd connect(const FlightOptions& options) {
-  dds_return_t result = domain.open(options.domain);
-  if (result == 0) result = endpoints.open(domain.participant());
+  dds_return_t result = domain.open(options.domain, options.partition);
+  if (result == 0) result = endpoints.open(domain);
   if (result == 0) return FlightEnd::kComplete;
   std::fprintf(stderr, "%s: DDS domain %u: %s\n", kProgramName, options.domain, dds_strretcode(result));
   return FlightEnd::kTransport;
@@ -83,11 +85,16 @@ FlightEnd fly(const FlightOptions& options) {
   if (connected != FlightEnd::kComplete) return connected;
   const auto timeout_ns = static_cast<std::int64_t>(options.timeout_s * 1e9);
   const hal::dds::HandshakeResult met = meet_simulator(options, timeout_ns);
+  foreigner = met.foreigner;
   if (met.end != FlightEnd::kComplete || met.stopped) return met.end;
 
   bus.join_run(met.run_id, timeout_ns);
-  if (!options.free_running) return exchange_in_lockstep(bus, task);
-  return exchange_free_running(bus, task, stopwatch, static_cast<std::int64_t>(options.period_ms * 1e6));
+  const FlightEnd end =
+      options.free_running
+          ? exchange_free_running(bus, task, stopwatch, static_cast<std::int64_t>(options.period_ms * 1e6))
+          : exchange_in_lockstep(bus, task);
+  foreigner = bus.foreigner();
+  return end;
 }
 
 }  // namespace
@@ -116,7 +123,11 @@ int main(int argc, char** argv) {
 
   const FlightEnd end = fly(options);
   task.join();  // no effect after a run
-  if (end != FlightEnd::kComplete) std::fprintf(stderr, "%s: %s\n", kProgramName, hal::dds::to_string(end));
+  if (end == FlightEnd::kForeign) {
+    std::fprintf(stderr, "%s: %s: %s\n", kProgramName, hal::dds::to_string(end), to_text(foreigner).text);
+  } else if (end != FlightEnd::kComplete) {
+    std::fprintf(stderr, "%s: %s\n", kProgramName, hal::dds::to_string(end));
+  }
   domain.close();
   return static_cast<int>(end);
 }
