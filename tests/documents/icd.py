@@ -86,6 +86,10 @@ def causes():
     return table(["number", "cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "mode.hpp", "Cause")])
 
 
+def reset_causes():
+    return table(["number", "reset cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "reset_cause.hpp", "ResetCause")])
+
+
 def functions():
     codes = {name: value for name, value, _ in enum(MESSAGES + "function_code.hpp", "FunctionCode")}
     body = re.search(r"kCommands\{\n(.*?)\n\};", source("fsw/app/commands.cpp"), re.S)[1]
@@ -196,7 +200,7 @@ def struct(name):
     return table(["offset", "type", "field", ""], rows) + f"\n\n{offset} bytes."
 
 
-TABLES = {"transitions": transitions, "causes": causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
+TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
           "responses": responses, "events": events,
           **{f"topic {name}": (lambda name=name: struct(name))
              for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Step", "Hello")}}

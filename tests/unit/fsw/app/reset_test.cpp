@@ -186,7 +186,9 @@ TEST_F(Reset, CommandWhoseCounterCannotBeStoredIsRefused) {
   EXPECT_EQ(events(EventId::kStateNotStored), 0) << "reported at the start of the failure only";
   kept.broken = {};
   step_good();
+  EXPECT_EQ(kept.copies[0], kept.copies[1]);
   step_commands({set_mode(Mode::kSafe)});
+  EXPECT_EQ(events(EventId::kStateNotStored), 0);
   EXPECT_EQ(app->mode(), Mode::kSafe);
 }
 
@@ -201,6 +203,16 @@ TEST_F(Reset, OneBrokenCopyIsReportedAndCommandsContinue) {
   kept.broken[1] = false;
   step_good();
   EXPECT_EQ(kept.copies[0], kept.copies[1]) << "both are written again";
+}
+
+TEST_F(Reset, CopyThatCouldNotBeWrittenIsWrittenAgainWithoutAChange) {
+  step_good();
+  kept.broken[1] = true;
+  step_commands({set_mode(Mode::kStandby)});
+  kept.broken[1] = false;
+  EXPECT_NE(kept.copies[0], kept.copies[1]);
+  step_good();
+  EXPECT_EQ(kept.copies[0], kept.copies[1]);
 }
 
 TEST_F(Reset, FailedWriteAtTheEndOfAStepIsRepeated) {
