@@ -8,6 +8,7 @@
 #include "fsw/app/attitude_init_app.hpp"
 #include "hal/lidar.hpp"
 #include "hal/link.hpp"
+#include "hal/navigation.hpp"
 #include "hal/watchdog.hpp"
 
 namespace tumblesight::fsw {
@@ -24,6 +25,7 @@ struct CycleInterfaces {
   hal::Lidar& lidar;
   hal::Link& link;
   hal::Watchdog& watchdog;
+  hal::Navigation* navigation = nullptr;  // nullptr: the chaser's attitude is not known
 };
 
 // Receives at most kMaxFramesPerStep deliveries of the LiDAR and kMaxCommandsPerStep commands; the others

@@ -32,7 +32,7 @@ hal::dds::FlightBus bus{endpoints, lidar, navigation, link, stopwatch};
 fsw::AttitudeInitApp app;
 hal::CommandKey command_key;
 fsw::CycleWorkspace workspace;
-FlightTask task{lidar, link, workspace, stack};
+FlightTask task{lidar, navigation, link, workspace, stack};
 hal::dds::Foreigner foreigner;  // who ended the run
 
 FlightEnd connect(const FlightOptions& options) {
