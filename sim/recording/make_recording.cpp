@@ -8,7 +8,8 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::int64_t kPause_frames = 2;  // between two sequences
+// Between two sequences: longer than the application's track coasts, since they show different motions.
+constexpr std::int64_t kPause_frames = 10;
 
 std::uint32_t delivered_frames(const std::vector<Sequence>& sequences) {
   std::uint32_t count = 0;
