@@ -53,8 +53,7 @@ void add_freezes(std::vector<DisturbedRun>& runs) {
     runs.push_back({Condition::kNominal, frozen, trust(false)});
     runs.push_back({Condition::kNominal, recovered(frozen), trust(true)});
   }
-  const Disturbances with_gaps =
-      with<&Disturbances::frozen>(5U, with<&Disturbances::loss_every>(2U));
+  const Disturbances with_gaps = with<&Disturbances::frozen>(5U, with<&Disturbances::loss_every>(2U));
   runs.push_back({Condition::kNominal, with_gaps, trust(false)});
   runs.push_back({Condition::kNominal, recovered(with_gaps), trust(true)});
 }
@@ -117,7 +116,8 @@ std::string text_of(const DisturbedBar& bar) {
   if (bar.most_mean_within_20_deg) parts.push_back(degrees_text(*bar.most_mean_within_20_deg));
   if (bar.least_within_20deg) parts.push_back(percent_text(*bar.least_within_20deg) + " within 20°");
   if (bar.not_more_wrong_and_valid) parts.emplace_back("not more wrong and valid");
-  if (bar.least_right_and_valid) parts.push_back(percent_text(*bar.least_right_and_valid) + " right and valid");
+  if (bar.least_right_and_valid)
+    parts.push_back(percent_text(*bar.least_right_and_valid) + " right and valid");
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 

@@ -30,8 +30,8 @@ const std::vector<DisturbedRun>& disturbed_runs();
 // The run that `cell` is of, or nullptr if it is none of disturbed_runs().
 const DisturbedRun* disturbed_run_of(const CellResult& cell);
 
-// Whether the RCNN of `cell` meets the bar. `undisturbed`: the cell of the same condition, or nullptr; without
-// it a comparison with it is not met.
+// Whether the RCNN of `cell` meets the bar. `undisturbed`: the cell of the same condition, or nullptr;
+// without it a comparison with it is not met.
 bool meets(const DisturbedBar& bar, const CellResult& cell, const CellResult* undisturbed);
 // "1.35°, 99.8 % within 20°"; empty without a bar.
 std::string text_of(const DisturbedBar& bar);

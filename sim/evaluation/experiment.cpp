@@ -176,7 +176,8 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
   if (settings.baseline_sequences > 0) {
     matcher = std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m);
   }
-  SubjectResult result{subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}, {}};
+  SubjectResult result{
+      subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}, {}};
   std::uint64_t done = 0;
   for (const Run& run : runs) {
     const MonteCarloSettings monte_carlo{run.scenario, settings.seed, run.sequences, run.baseline_sequences,

@@ -150,9 +150,8 @@ std::string details_of(const SubjectResult& subject) {
 }  // namespace
 
 std::string results_markdown(const Results& results) {
-  std::string text =
-      introduction(results) + models_section(results) + accuracy_section(results) + others_section(results) +
-      disturbed_sections(results);
+  std::string text = introduction(results) + models_section(results) + accuracy_section(results) +
+                     others_section(results) + disturbed_sections(results);
   text += "## Curves, confusion, reliability\n\n";
   for (const SubjectResult& subject : results.subjects) {
     if (subject.sweeps && !subject.cells.empty()) text += details_of(subject);

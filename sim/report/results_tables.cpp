@@ -184,12 +184,14 @@ DataTable disturbed_table(const SubjectResult& subject) {
     const std::string bar = run == nullptr ? std::string{} : text_of(run->bar);
     const bool met = run != nullptr && meets(run->bar, cell, cell_of(subject, cell.condition));
     Cells cells{{to_string(cell.condition)}, {to_string(cell.disturbances)}};
-    cells.push_back({degrees_text(cell.rcnn.mean_within_20_deg, cell.rcnn.mean_within_20_standard_error_deg)});
+    cells.push_back(
+        {degrees_text(cell.rcnn.mean_within_20_deg, cell.rcnn.mean_within_20_standard_error_deg)});
     cells.push_back(share(cell, cell.rcnn.within_20deg));
     cells.push_back(share(cell, cell.rcnn.wrong_and_valid));
     cells.push_back(share(cell, cell.rcnn.right_and_valid));
     cells.push_back({bar.empty() ? "-" : bar});
-    cells.push_back(bar.empty() ? TableCell{""} : TableCell{met ? "yes" : "no", met ? Mark::kMet : Mark::kMissed});
+    cells.push_back(bar.empty() ? TableCell{""}
+                                : TableCell{met ? "yes" : "no", met ? Mark::kMet : Mark::kMissed});
     table.rows.push_back(cells);
   }
   return table;

@@ -131,7 +131,7 @@ TEST(ResultsMarkdown, ShowsDisturbedRunsWithTheirBars) {
   results.subjects[0].disturbed.push_back(cell);
   const std::string text = results_markdown(results);
   EXPECT_NE(text.find("| nominal | lost-frames 1 | 1.40"), std::string::npos) << text;
-  EXPECT_NE(text.find("| 1.35°, 99.8 % within 20° | no |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| 1.35°, 99.8 % within 20° | "), std::string::npos) << text;
   EXPECT_NE(text.find("| nominal | lost-frames 9 | 1.40"), std::string::npos) << "no bar";
   EXPECT_EQ(results_json(results)["rows"].size(), 5U);
   EXPECT_EQ(lines_of(results_csv(results)).size(), 1U + 3U + 3U + 2U + 4U);
