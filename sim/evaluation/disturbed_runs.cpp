@@ -43,7 +43,7 @@ void add_gaps(std::vector<DisturbedRun>& runs) {
   runs.push_back({Condition::kNominal, lost(2), {}});
   runs.push_back({Condition::kOccluded, lost(2), {}});
   runs.push_back({Condition::kNominal, lost(6), {}});
-  runs.push_back({Condition::kNominal, every_second, trust(false)});
+  runs.push_back({Condition::kNominal, every_second, {}});
   runs.push_back({Condition::kNominal, recovered(every_second), trust(true)});
 }
 
@@ -54,7 +54,7 @@ void add_freezes(std::vector<DisturbedRun>& runs) {
     runs.push_back({Condition::kNominal, recovered(frozen), trust(true)});
   }
   const Disturbances with_gaps = with<&Disturbances::frozen>(5U, with<&Disturbances::loss_every>(2U));
-  runs.push_back({Condition::kNominal, with_gaps, trust(false)});
+  runs.push_back({Condition::kNominal, with_gaps, {}});
   runs.push_back({Condition::kNominal, recovered(with_gaps), trust(true)});
 }
 
