@@ -35,6 +35,7 @@ struct ExperimentSettings {
   Disturbances disturbances;               // of every run, those of the curves too
   std::uint32_t baseline_sequences = 100;  // per cell; 0: no baseline
   bool curves = false;                     // run the sweeps too
+  bool disturbed_runs = false;             // run disturbed_runs() too
   int threads = 1;
 };
 

@@ -1,11 +1,9 @@
 #include "sim/evaluation/host_estimator.hpp"
 
+#include "sim/evaluation/flight_limits.hpp"
+
 namespace tumblesight::sim {
 namespace {
-
-// tests/unit/sim/evaluation compares them with those of fsw/config.
-constexpr gnc::FrameTrackerLimits kFlightLimits{
-    {100'000'000, 2'970'000'000}, 60'000'000'000, 1'000'000, 523'599, 1'047'198, true};
 
 template <class N>
 gnc::FrameOutcome step_of(gnc::AttitudeEstimator<N>& estimator, const gnc::RangeImage& frame,

@@ -58,6 +58,7 @@ struct SubjectResult {
   std::uint32_t model_crc32 = 0;
   std::vector<CellResult> cells;
   std::optional<Sweeps> sweeps;
+  std::vector<CellResult> disturbed;  // disturbed_runs(), or none
 };
 
 struct Results {

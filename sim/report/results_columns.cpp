@@ -231,6 +231,10 @@ std::vector<EstimatorRow> estimator_rows(const Results& results) {
       rows.push_back({results, subject, cell, "cnn", cell.cnn, paper.cnn});
       if (cell.baseline) rows.push_back({results, subject, cell, "baseline", *cell.baseline, std::nullopt});
     }
+    for (const CellResult& cell : subject.disturbed) {
+      rows.push_back({results, subject, cell, "rcnn", cell.rcnn, std::nullopt});
+      rows.push_back({results, subject, cell, "cnn", cell.cnn, std::nullopt});
+    }
   }
   return rows;
 }

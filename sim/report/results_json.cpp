@@ -138,6 +138,7 @@ Json results_json(const Results& results) {
   Json curves = Json::array();
   for (const SubjectResult& subject : results.subjects) {
     for (const CellResult& cell : subject.cells) rows.push_back(row_json(results, subject, cell));
+    for (const CellResult& cell : subject.disturbed) rows.push_back(row_json(results, subject, cell));
     if (subject.sweeps && !subject.cells.empty()) curves.push_back(curves_json(subject));
   }
   Json json{{"rows", rows}};

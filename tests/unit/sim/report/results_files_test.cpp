@@ -153,6 +153,23 @@ TEST(ResultsMarkdown, WordsAreThoseOfTheStoredDocument) {
   for (const std::string& line : generated) EXPECT_EQ(expected.count(line), 1U) << line;
 }
 
+TEST(ResultsMarkdown, ShowsDisturbedRunsWithTheirBars) {
+  Results results = sample_results();
+  EXPECT_EQ(results_markdown(results).find("Disturbed sequences"), std::string::npos);
+  CellResult cell = results.subjects[0].cells[0];
+  cell.disturbances.lost_frames = 1;
+  cell.rcnn.mean_within_20_deg = 1.4;
+  results.subjects[0].disturbed = {cell};
+  cell.disturbances.lost_frames = 9;
+  results.subjects[0].disturbed.push_back(cell);
+  const std::string text = results_markdown(results);
+  EXPECT_NE(text.find("| nominal | lost-frames 1 | 1.40"), std::string::npos) << text;
+  EXPECT_NE(text.find("| 1.35°, 99.8 % within 20° | "), std::string::npos) << text;
+  EXPECT_NE(text.find("| nominal | lost-frames 9 | 1.40"), std::string::npos) << "no bar";
+  EXPECT_EQ(results_json(results)["rows"].size(), 5U);
+  EXPECT_EQ(lines_of(results_csv(results)).size(), 1U + 3U + 3U + 2U + 4U);
+}
+
 TEST(ResultsMarkdown, HoldsTablesWithAsManyCellsAsTheirHeader) {
   std::ptrdiff_t columns = 0;
   for (const std::string& line : lines_of(results_markdown(sample_results()))) {
