@@ -52,6 +52,7 @@ void receive_chaser(hal::Navigation* navigation, std::int64_t now_ns, StepInputs
 }
 
 void receive_commands(hal::Link& link, StepInputs& inputs) {
+  inputs.commands_dropped = link.take_dropped();
   inputs.command_count = 0;
   for (hal::CommandPacket& command : inputs.commands) {
     if (!link.receive(command)) break;

@@ -8,6 +8,7 @@
 #include "gnc/lidar/range_image.hpp"
 #include "gnc/tracking/chaser_attitude.hpp"
 #include "gnc/tracking/frame_gate.hpp"
+#include "hal/link.hpp"
 #include "hal/messages/attitude_report.hpp"
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/event.hpp"
@@ -37,7 +38,8 @@ struct StepInputs {
                              // at most kMaxDeliveriesPerCycle
   std::array<hal::CommandPacket, config::kMaxCommandsPerStep> commands{};
   int command_count = 0;
-  std::uint32_t cycle_slips = 0;  // releases of the task missed since the last step
+  hal::DroppedCommands commands_dropped;  // by the link, since the last step
+  std::uint32_t cycle_slips = 0;          // releases of the task missed since the last step
 
   int deliveries() const { return (frame != nullptr ? 1 : 0) + dropped_count + frame_wrong_size; }
 };

@@ -86,6 +86,10 @@ def causes():
     return table(["number", "cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "mode.hpp", "Cause")])
 
 
+def reset_causes():
+    return table(["number", "reset cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "reset_cause.hpp", "ResetCause")])
+
+
 def functions():
     codes = {name: value for name, value, _ in enum(MESSAGES + "function_code.hpp", "FunctionCode")}
     body = re.search(r"kCommands\{\n(.*?)\n\};", source("fsw/app/commands.cpp"), re.S)[1]
@@ -105,8 +109,9 @@ def functions():
 def refusals():
     events = {value: name for name, value, _ in enum(MESSAGES + "event_id.hpp", "EventId")}
     return table(["number", "event", "refused because"],
-                 [[value, 60 + value, f"{upper(name)}{': ' + comment if comment else ''}"]
-                  for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal") if 60 + value in events])
+                 [[value, event, f"{upper(name)}{': ' + comment if comment else ''}"]
+                  for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal")
+                  for event in [value + (60 if value < 10 else 90)] if event in events])
 
 
 def validity():
@@ -122,10 +127,11 @@ def limits():
 
 def faults():
     meaning = {name: (value, comment) for name, value, comment in enum(MESSAGES + "fault.hpp", "Fault")}
-    return table(["number", "fault", "is", "cycles", "response", "can be disabled"],
-                 [[meaning[last(name)][0], upper(last(name)), meaning[last(name)][1], cycles, upper(last(response)),
+    return table(["number", "fault", "is", "persists after cycles with it", "within", "over after cycles without it", "response",
+                  "can be disabled"],
+                 [[meaning[last(name)][0], upper(last(name)), meaning[last(name)][1], cycles, window, good, upper(last(response)),
                    "yes" if disabled == "true" else "no"]
-                  for name, cycles, response, disabled in array_rows("fsw/config/fault_rules.hpp", "kFaultRules")])
+                  for name, cycles, window, good, response, disabled in array_rows("fsw/config/fault_rules.hpp", "kFaultRules")])
 
 
 def responses():
@@ -194,7 +200,7 @@ def struct(name):
     return table(["offset", "type", "field", ""], rows) + f"\n\n{offset} bytes."
 
 
-TABLES = {"transitions": transitions, "causes": causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
+TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
           "responses": responses, "events": events,
           **{f"topic {name}": (lambda name=name: struct(name))
              for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Step", "Hello")}}

@@ -59,16 +59,17 @@ void become_float32_program(char** argv) {
 
 }  // namespace
 
-void boot(FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
-          const hal::CommandKey& command_key, char** argv) {
+void boot(FlightOptions& options, AttitudeInitApp& app, const hal::Platform& platform, char** argv) {
   if (options.model_path[0] == '\0') find_shipped_model(options);
   static hal::posix::FileModelStore store(options.model_path, fsw::config::kMaxModelImageBytes);
   const hal::ModelBank image = store.bank(0);
   const bool float32 = options.numerics_given ? options.float32 : gnc::is_float32(image.data, image.size);
   constexpr bool kFlyFloat32 = std::is_same_v<fsw::Numerics, gnc::Float32>;
   if (float32 && !kFlyFloat32) become_float32_program(argv);
-  app.init({&stopwatch, &store, &command_key}, options.target);
-  if (app.mode() == fsw::Mode::kRun) return;
+  hal::Platform complete = platform;
+  complete.models = &store;
+  app.init(complete, options.target);
+  if (app.boot_status(0) == gnc::ModelStatus::kOk) return;
   const bool unread = store.status() != hal::posix::FileStatus::kOk;
   std::fprintf(stderr, "flight: model image %s: %s; the mode is SAFE\n", options.model_path,
                unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)));

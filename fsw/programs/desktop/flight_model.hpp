@@ -3,15 +3,14 @@
 
 #include "fsw/app/cycle.hpp"
 #include "fsw/programs/desktop/flight_options.hpp"
-#include "hal/messages/command_key.hpp"
-#include "hal/stopwatch.hpp"
+#include "hal/platform.hpp"
 
 namespace tumblesight::fsw::desktop {
 
-// Boots `app`. Without a usable image its mode is SAFE, and the reason is written to the standard error
-// stream. If the options or the image ask for float32, the fixed-point program replaces itself with
-// flight_float32 from its own folder, with the same arguments `argv`. Call it once.
-void boot(FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
-          const hal::CommandKey& command_key, char** argv);
+// Boots `app` with this platform and the banks of the model image. Without a usable image its mode is SAFE,
+// and the reason is written to the standard error stream. If the options or the image ask for float32, the
+// fixed-point program replaces itself with flight_float32 from its own folder, with the same arguments
+// `argv`. Call it once.
+void boot(FlightOptions& options, AttitudeInitApp& app, const hal::Platform& platform, char** argv);
 
 }  // namespace tumblesight::fsw::desktop

@@ -62,9 +62,17 @@ bool parse_path(const char* option, const char* value, char* path) {
   return true;
 }
 
+bool parse_reset(const char* option, const char* value, hal::ResetCause& cause) {
+  const bool watchdog = std::strcmp(value, "watchdog") == 0;
+  cause = watchdog ? hal::ResetCause::kWatchdog : hal::ResetCause::kPowerOn;
+  return watchdog || std::strcmp(value, "power-on") == 0 || fail(option, value, "power-on or watchdog");
+}
+
 bool parse_one(const char* option, const char* value, FlightOptions& options) {
   if (std::strcmp(option, "--model") == 0) return parse_path(option, value, options.model_path);
   if (std::strcmp(option, "--command-key") == 0) return parse_path(option, value, options.command_key_path);
+  if (std::strcmp(option, "--state") == 0) return parse_path(option, value, options.state_path);
+  if (std::strcmp(option, "--reset") == 0) return parse_reset(option, value, options.reset_cause);
   if (std::strcmp(option, "--target") == 0) {
     options.target = value;
     return value[0] != '\0' || fail(option, value, "a target's name");
@@ -96,6 +104,8 @@ void print_flight_help() {
       "  --numerics N       fixed: fixed point, as flown; float32: the reference [fixed; with --model: as "
       "the image]\n"
       "  --command-key FILE key that signs telecommands, 64 hexadecimal digits [the public development key]\n"
+      "  --state FILE       keep mode, bank, limits and command counter in FILE and FILE.copy [not kept]\n"
+      "  --reset CAUSE      with --state: power-on or watchdog, why flight was started [power-on]\n"
       "  --domain N         DDS domain [0]\n"
       "  --run-id N         simulator run to join; 0: the first one found [0]\n"
       "  --mode MODE        lockstep: the simulator sets the time; free-running: cycles on a timer "

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "hal/messages/reset_cause.hpp"
+
 namespace tumblesight::fsw::desktop {
 
 struct FlightOptions {
@@ -10,6 +12,8 @@ struct FlightOptions {
 
   char command_key_path[kMaxPath] = {};  // empty: the development key
   char model_path[kMaxPath] = {};        // empty: the shipped model of the target
+  char state_path[kMaxPath] = {};        // empty: nothing is kept
+  hal::ResetCause reset_cause = hal::ResetCause::kPowerOn;
   const char* target = "near_shoemaker";
   bool float32 = false;  // without numerics_given and with a model_path: decided by the model image
   bool numerics_given = false;

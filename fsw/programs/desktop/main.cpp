@@ -11,6 +11,7 @@
 #include "hal/dds/handshake.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/stop_request.hpp"
+#include "hal/posix/file_persistent_store.hpp"
 #include "hal/posix/monotonic_stopwatch.hpp"
 #include "hal/posix/painted_stack.hpp"
 
@@ -29,9 +30,26 @@ hal::posix::PaintedStack stack;
 hal::dds::DdsLink link{{heap_allocations, [] { return stack.least_left_bytes(); }}};
 hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
 fsw::AttitudeInitApp app;
-hal::CommandKey command_key;
+hal::CommandKeys command_keys;
+hal::posix::FilePersistentStore stored_state;
 fsw::CycleWorkspace workspace;
 FlightTask task{lidar, link, workspace, stack};
+
+hal::Platform platform_of(const FlightOptions& options) {
+  hal::Platform platform;
+  platform.stopwatch = &stopwatch;
+  platform.command_keys = &command_keys;
+  if (options.state_path[0] == '\0') return platform;
+  stored_state.use(options.state_path);
+  platform.persistent = &stored_state;
+  platform.reset_cause = options.reset_cause;
+  return platform;
+}
+
+// From now on the bus thread queues authentic commands only.
+void authenticate_commands() {
+  link.authenticate_with(command_keys, app.key_slot(), app.command_counter());
+}
 
 FlightEnd connect(const FlightOptions& options) {
   dds_return_t result = domain.open(options.domain);
@@ -87,9 +105,10 @@ int main(int argc, char** argv) {
       break;
   }
   hal::dds::accept_stop_requests();
-  if (!read_command_key(options.command_key_path, command_key))
+  if (!read_command_key(options.command_key_path, command_keys.slots[0]))
     return static_cast<int>(FlightEnd::kBadArguments);
-  boot(options, app, stopwatch, command_key, argv);
+  boot(options, app, platform_of(options), argv);
+  authenticate_commands();
 
   const FlightEnd end = fly(options);
   task.join();  // no effect after a run
