@@ -67,6 +67,7 @@ bool parse_path(const char* option, const char* value, char* path) {
 bool parse_one(const char* option, const char* value, FlightOptions& options) {
   if (std::strcmp(option, "--model") == 0) return parse_path(option, value, options.model_path);
   if (std::strcmp(option, "--command-key") == 0) return parse_path(option, value, options.command_key_path);
+  if (std::strcmp(option, "--packets") == 0) return parse_path(option, value, options.packets_path);
   if (std::strcmp(option, "--target") == 0) {
     options.target = value;
     return value[0] != '\0' || fail(option, value, "a target's name");
@@ -99,6 +100,7 @@ void print_flight_help() {
       "                     [%s]\n"
       "  --command-key FILE key that signs telecommands, 64 hexadecimal digits\n"
       "                     [the public development key]\n"
+      "  --packets FILE     also write the telemetry to FILE as CCSDS space packets\n"
       "  --domain N         DDS domain [0]\n"
       "  --run-id N         simulator run to join; 0: the first one found [0]\n"
       "  --mode MODE        lockstep: the simulator sets the time;\n"

@@ -12,6 +12,7 @@ struct FlightOptions {
 
   char command_key_path[kMaxPath] = {};  // empty: the development key
   char model_path[kMaxPath] = {};        // empty: the shipped model of the target
+  char packets_path[kMaxPath] = {};      // empty: no packets are written
   const char* target = "near_shoemaker";
   bool float32 = kFlyFloat32;  // without numerics_given and with a model_path: decided by the model image
   bool numerics_given = false;

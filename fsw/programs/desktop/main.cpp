@@ -2,6 +2,7 @@
 // link.
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "fsw/programs/desktop/flight_key.hpp"
 #include "fsw/programs/desktop/flight_loop.hpp"
@@ -11,8 +12,10 @@
 #include "fsw/programs/desktop/heap_trap.hpp"
 #include "hal/dds/handshake.hpp"
 #include "hal/dds/idl/domain.hpp"
+#include "hal/dds/packet_output.hpp"
 #include "hal/dds/stop_request.hpp"
 #include "hal/posix/monotonic_stopwatch.hpp"
+#include "hal/posix/packet_file.hpp"
 #include "hal/posix/painted_stack.hpp"
 
 namespace {
@@ -29,10 +32,33 @@ hal::dds::DdsLidar lidar;
 hal::posix::PaintedStack stack;
 hal::dds::DdsLink link{{heap_allocations, [] { return stack.least_left_bytes(); }}};
 hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
+hal::posix::PacketFile packet_file;
+hal::dds::PacketOutput packet_output{packet_file};
 fsw::AttitudeInitApp app;
 hal::CommandKey command_key;
 fsw::CycleWorkspace workspace;
 FlightTask task{lidar, link, workspace, stack};
+
+// False: the file for the packets cannot be written.
+bool open_packets(const char* path) {
+  if (path[0] == '\0') return true;
+  const int error = packet_file.open(path);
+  if (error != 0) {
+    std::fprintf(stderr, "%s: --packets %s: %s\n", kProgramName, path, strerrordesc_np(error));
+    return false;
+  }
+  bus.copy_to(packet_output);
+  return true;
+}
+
+// A run whose packets are not all in the file is not complete.
+FlightEnd report_packets(const FlightOptions& options, FlightEnd end) {
+  packet_file.close();
+  if (packet_file.lost() == 0) return end;
+  std::fprintf(stderr, "%s: %u packets could not be written to %s: %s\n", kProgramName, packet_file.lost(),
+               options.packets_path, strerrordesc_np(packet_file.error()));
+  return end == FlightEnd::kComplete ? FlightEnd::kTransport : end;
+}
 
 FlightEnd connect(const FlightOptions& options) {
   dds_return_t result = domain.open(options.domain);
@@ -92,10 +118,12 @@ int main(int argc, char** argv) {
   hal::dds::accept_stop_requests();
   if (!read_command_key(options.command_key_path, command_key))
     return static_cast<int>(FlightEnd::kBadArguments);
+  if (!open_packets(options.packets_path)) return static_cast<int>(FlightEnd::kBadArguments);
   boot(options, app, stopwatch, model, command_key);
 
-  const FlightEnd end = fly(options);
+  FlightEnd end = fly(options);
   task.join();  // no effect after a run
+  end = report_packets(options, end);
   if (end != FlightEnd::kComplete) std::fprintf(stderr, "%s: %s\n", kProgramName, hal::dds::to_string(end));
   domain.close();
   return static_cast<int>(end);
