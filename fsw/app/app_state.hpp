@@ -1,17 +1,22 @@
-// The state that the application keeps between cycles, except the estimator's state and the waiting events.
-// Three copies are kept (voted.hpp).
+// The state that the application keeps between cycles, except the estimator and the tables and copies of
+// MemoryGuard. Three copies are kept (voted.hpp). What the platform hands over by pointer to data is copied
+// into it.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 #include "fsw/app/assertion.hpp"
 #include "fsw/app/attitude_check.hpp"
+#include "fsw/app/command_authority.hpp"
 #include "fsw/app/event_log.hpp"
 #include "fsw/app/fault_monitor.hpp"
 #include "fsw/app/frame_gate.hpp"
 #include "fsw/app/model_banks.hpp"
 #include "fsw/app/modes.hpp"
+#include "fsw/app/stored_state.hpp"
 #include "fsw/config/numerics.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
 #include "hal/messages/telemetry.hpp"
@@ -21,16 +26,46 @@ namespace tumblesight::fsw {
 
 using Estimator = gnc::AttitudeEstimator<Numerics>;
 
-// The protections against bit flips. tests/campaigns/fault switches them off to measure their effect.
-struct Protections {
-  bool memory = true;    // vote, guards and scrubbing
-  bool attitude = true;  // checks of the attitude
+// The target whose models are accepted. A longer name than an image can hold matches none.
+class ExpectedTarget {
+ public:
+  void set(const char* name) {
+    has_name_ = name != nullptr;
+    name_ = {};
+    if (!has_name_) return;
+    for (std::size_t i = 0; i + 1 < name_.size() && name[i] != 0; ++i) name_[i] = name[i];
+  }
+  const char* name() const { return has_name_ ? name_.data() : nullptr; }  // nullptr: any
+
+ private:
+  std::array<char, std::tuple_size_v<decltype(gnc::ModelHeader::target)> + 1> name_{};
+  bool has_name_ = false;
+};
+
+// What the persistent store holds (state_keeper.hpp).
+struct StoredRecord {
+  StoredState last;  // as written
+  std::uint32_t generation = 0;
+  bool failing = false;  // the last write did not reach both copies
+};
+
+// What init() found in the persistent store.
+struct Resumption {
+  StoredState stored;  // if found
+  std::array<StoreStatus, hal::kStoredCopies> copies{};
+  bool found = false;
+  bool lost = false;       // there was a record, and no good copy is left
+  bool to_report = false;  // by the next step
 };
 
 struct alignas(8) AppState {
   std::int64_t now_ns = 0;  // time of the cycle
-  hal::Platform platform;
-  const char* expected_target = nullptr;
+  hal::Platform platform;   // without the keys, which are in the authority
+  CommandAuthority authority;
+  ExpectedTarget expected_target;
+  EventLog events;
+  StoredRecord stored;
+  Resumption resumption;
   hal::Telemetry counters;
   FrameGate gate;
   FaultMonitor faults;
@@ -42,7 +77,6 @@ struct alignas(8) AppState {
   std::uint32_t estimator_crc32 = 0;  // of the estimator's state at the end of the last cycle
   std::uint32_t constants_crc32 = 0;  // of the estimator's copy of model data
   std::array<gnc::ModelStatus, hal::kModelBanks> boot_status{};
-  Protections protections;
   Mode mode = Mode::kBoot;
   bool boot_to_report = false;  // the next step reports what init() found
   bool has_cycle = false;       // now_ns is the time of a cycle

@@ -2,6 +2,7 @@
 
 #include "fsw/app/command_handler.hpp"
 #include "fsw/app/counter.hpp"
+#include "fsw/app/state_keeper.hpp"
 #include "fsw/app/supervisor.hpp"
 #include "gnc/numerics/crc32.hpp"
 
@@ -55,53 +56,64 @@ void report_corrections(std::uint32_t corrected_words, AppState& state, const Re
 }
 
 // The telemetry that is not a counter.
-void fill_telemetry(AppState& state, const EventLog& events) {
+void fill_telemetry(AppState& state) {
   hal::Telemetry& telemetry = state.counters;
   telemetry.time_ns = state.now_ns;
   telemetry.mode = state.mode;
   telemetry.faults_persisting = state.faults.persisting();
   telemetry.responses_disabled = state.faults.disabled();
-  telemetry.events_waiting = events.waiting();
+  telemetry.events_waiting = state.events.waiting();
   if (telemetry.events_waiting > telemetry.events_waiting_max)
     telemetry.events_waiting_max = telemetry.events_waiting;
   telemetry.bank_in_use = static_cast<std::uint8_t>(state.banks.in_use);
+  telemetry.key_slot = static_cast<std::uint8_t>(state.authority.slot());
   telemetry.second_copy = state.banks.has_second_copy() ? 1 : 0;
   telemetry.model_bytes_loaded = state.banks.loaded_bytes;
   for (std::uint32_t bank = 0; bank < hal::kModelBanks; ++bank) {
     telemetry.bank_status[bank] = state.banks.status(bank);
     telemetry.bank_crc32[bank] = state.banks.descriptor[bank].crc32;
   }
+  if (state.platform.models == nullptr) return;
+  for (int bank = 0; bank < hal::kModelBanks; ++bank)
+    telemetry.bank_activity[static_cast<std::size_t>(bank)] = state.platform.models->activity(bank);
 }
 
 }  // namespace
 
-void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_target,
-                           Protections protections) {
-  *state_ = AppState{};
-  events_ = EventLog{};
+void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_target) {
+  state_.restart();
   AppState& state = *state_;
-  const Reporter report(state, events_);
+  const Reporter report(state, state.events);
   ModeManager modes(state, estimator_, report);
   state.platform = platform;
-  state.counters.command_counter = platform.last_command_counter;
-  state.expected_target = expected_target;
-  state.protections = protections;
+  state.platform.command_keys = nullptr;
+  state.authority.set(platform.command_keys);
+  state.expected_target.set(expected_target);
   for (std::size_t i = 0; i < config::kLimitRules.size(); ++i)
     state.limits[i] = config::kLimitRules[i].initial;
   estimator_.reset();
   if (TUMBLESIGHT_ASSERT(state.assertions, is_complete(platform))) {
-    ModelManager(state, estimator_, guard_, report).boot();
-    modes.enter(state.has_model() ? Cause::kModelFound : Cause::kNoModel);
+    StateKeeper keeper(state, report);
+    keeper.resume();
+    ModelManager(state, estimator_, guard_, report).boot(state.resumption.stored.bank);
+    modes.resume(state.has_model() ? keeper.boot_cause() : Cause::kNoModel, state.resumption.stored);
     state.boot_to_report = true;
+    state.resumption.to_report = true;
   }
   guard_.keep(estimator_, state);
   state_.commit();
 }
 
 void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) {
-  const std::uint32_t corrected_words = state_->protections.memory ? state_.vote() : 0;
+  run_cycle(now_ns, inputs, outputs, Protections::kOn);
+}
+
+void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs,
+                                Protections protections) {
+  const bool with_protections = protections == Protections::kOn;
+  const std::uint32_t corrected_words = with_protections ? state_.vote() : 0;
   AppState& state = *state_;
-  const Reporter report(state, events_);
+  const Reporter report(state, state.events);
   ModeManager modes(state, estimator_, report);
   ModelManager models(state, estimator_, guard_, report);
   const bool usable =
@@ -112,17 +124,24 @@ void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOu
   clear(outputs);
 
   report_corrections(corrected_words, state, report);
+  StateKeeper keeper(state, report);
+  keeper.report_resumption();
   models.report_boot();
   modes.go_safe_on_assertion();
   if (usable) {
-    if (state.protections.memory) guard_.check(estimator_, state, report);
+    if (with_protections) {
+      if (!MemoryGuard::bound(estimator_, state)) modes.go_safe_after_corruption();
+      guard_.check(estimator_, state, report);
+    }
     if (now_ns < previous_ns) modes.restart_sequence_after_time_jump();
-    CommandHandler({state, events_, modes, models, outputs, report}).run(inputs);
+    CommandHandler({state, state.events, modes, models, outputs, report}, keeper).run(inputs);
+    const std::uint32_t resets_before = state.counters.estimator_resets;
     take_frames(inputs, previous_ns, time_advances, outputs, report);
     Supervisor(state, modes, models, report)
-        .supervise(outputs.attitude.validity, inputs.cycle_slips, start_ns);
+        .supervise(outputs.attitude.validity, inputs.cycle_slips, start_ns, resets_before);
   }
   modes.go_safe_on_assertion();
+  if (usable) keeper.store_changes();
   report_telemetry(outputs);
   guard_.keep(estimator_, state);
   state_.commit();
@@ -145,12 +164,13 @@ void AttitudeInitApp::report_telemetry(StepOutputs& outputs) {
   if (state.mode != Mode::kRun) outputs.attitude = without_attitude(Validity::kStandby);
   outputs.attitude.time_ns = state.now_ns;
 
-  events_.end_cycle(state.now_ns, state.counters);
+  EventLog& events = state.events;
+  events.end_cycle(state.now_ns, state.counters);
   while (outputs.event_count < config::kMaxEventsPerStep &&
-         events_.take(outputs.events[static_cast<std::size_t>(outputs.event_count)])) {
+         events.take(outputs.events[static_cast<std::size_t>(outputs.event_count)])) {
     ++outputs.event_count;
   }
-  fill_telemetry(state, events_);
+  fill_telemetry(state);
   outputs.telemetry = state.counters;
 }
 

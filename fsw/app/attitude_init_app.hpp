@@ -45,11 +45,13 @@ namespace tumblesight::fsw {
 
 class AttitudeInitApp final {
  public:
-  // Boots: activates the image of the first bank that passes every check. The mode becomes RUN, or SAFE
-  // without a good image; events of the next step report the result. Can be called again.
+  // Boots: resumes from the platform's persistent store (state_keeper.hpp) and activates the image of the
+  // bank that was in use, or else of the other bank, if it passes every check. The mode becomes RUN, STANDBY
+  // or SAFE by the table in state_keeper.hpp, and SAFE without a good image; events of the next step report
+  // the result. Can be called again.
   // `platform`: stopwatch and models must not be nullptr. `expected_target`: NUL-terminated name of the
   // model's target, or nullptr to accept any.
-  void init(const hal::Platform& platform, const char* expected_target, Protections protections = {});
+  void init(const hal::Platform& platform, const char* expected_target);
   // One cycle. `now_ns`: time of this cycle, which must be later than that of the previous one. All of
   // `outputs` is overwritten, except the content of `dump` where has_dump is false.
   void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
@@ -58,13 +60,23 @@ class AttitudeInitApp final {
   // limits, persisting faults and counters. It excludes everything that depends on the wall clock.
   std::uint32_t state_crc32() const;
   Mode mode() const { return state_->mode; }
+  // For a link that authenticates commands before it queues them: the key slot in use, and the counter of the
+  // last authentic command.
+  std::uint32_t key_slot() const { return state_->authority.slot(); }
+  std::uint32_t command_counter() const { return state_->counters.command_counter; }
   // What init() found in a bank (0 or 1); kOk before the first init().
   gnc::ModelStatus boot_status(int bank) const { return state_->boot_status[static_cast<std::size_t>(bank)]; }
   const Estimator& estimator() const { return estimator_; }
 
  private:
-  friend struct AppMemory;  // tests/campaigns/fault: the places where it flips bits
+  friend struct AppMemory;  // tests: the places where they flip bits, and a cycle without protections
 
+  // The vote and the guards against bit flips. An argument, because a flip in memory could switch off a
+  // setting that is kept there. Flight has only kOn.
+  enum class Protections : std::uint8_t { kOn, kOff };
+
+  void run_cycle(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs,
+                 Protections protections);
   void take_frames(const StepInputs& inputs, std::int64_t previous_ns, bool time_advances,
                    StepOutputs& outputs, const Reporter& report);
   void report_telemetry(StepOutputs& outputs);
@@ -73,7 +85,6 @@ class AttitudeInitApp final {
   MemoryGuard guard_;
   FrameWorkspace frame_workspace_;
   Voted<AppState> state_;
-  EventLog events_;
 };
 #if !TUMBLESIGHT_APP_FLOAT32
 static_assert(sizeof(AttitudeInitApp) <= config::kMaxAppBytes,

@@ -35,7 +35,7 @@ struct CommandRule {
   int max_argument_bytes;
   std::uint8_t modes;  // bit n: allowed in Mode n
 
-  bool allowed_in(Mode mode) const { return (modes >> static_cast<int>(mode) & 1) != 0; }
+  bool allowed_in(Mode mode) const { return is_mode(mode) && (modes >> static_cast<int>(mode) & 1) != 0; }
 };
 
 // nullptr: the table has no such function.

@@ -18,6 +18,7 @@ void receive_frames(hal::Lidar& lidar, CycleWorkspace& workspace) {
 }
 
 void receive_commands(hal::Link& link, StepInputs& inputs) {
+  inputs.commands_dropped = link.take_dropped();
   inputs.command_count = 0;
   for (hal::CommandPacket& command : inputs.commands) {
     if (!link.receive(command)) break;

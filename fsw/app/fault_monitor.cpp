@@ -11,6 +11,29 @@ constexpr bool is_in_order() {
 }
 static_assert(is_in_order(), "the table is indexed by the fault's number");
 
+constexpr bool is_possible() {
+  for (const config::FaultRule& rule : config::kFaultRules) {
+    if (rule.cycles < 1) return false;
+    if (rule.good_cycles < 1) return false;
+    if (rule.cycles > rule.window_cycles) return false;
+    if (rule.window_cycles > config::kMaxFaultWindow_cycles) return false;
+  }
+  return true;
+}
+static_assert(is_possible(), "a fault cannot be present in more cycles than the window has");
+static_assert(kFaults <= 32, "the telemetry has one bit per fault");
+
+// The bits of the history that a rule looks at.
+constexpr std::uint32_t window_of(const config::FaultRule& rule) {
+  return UINT32_MAX >> (config::kMaxFaultWindow_cycles - rule.window_cycles);
+}
+
+constexpr std::uint32_t count_of_bits(std::uint32_t word) {
+  std::uint32_t count = 0;
+  for (int bit = 0; bit < 32; ++bit) count += word >> bit & 1U;
+  return count;
+}
+
 const config::FaultRule& rule_of(Fault fault) {
   return config::kFaultRules[static_cast<std::size_t>(fault)];
 }
@@ -18,18 +41,26 @@ const config::FaultRule& rule_of(Fault fault) {
 }  // namespace
 
 FaultMonitor::Change FaultMonitor::observe(Fault fault, bool present) {
-  std::uint16_t& cycles = cycles_[static_cast<std::size_t>(fault)];
-  if (!present) {
-    const bool persisted = (persisting_ & bit_of(fault)) != 0;
-    persisting_ &= ~bit_of(fault);
-    cycles = 0;
-    return persisted ? Change::kOver : Change::kNone;
+  const config::FaultRule& rule = rule_of(fault);
+  std::uint32_t& history = history_[static_cast<std::size_t>(fault)];
+  std::uint8_t& good_cycles = good_cycles_[static_cast<std::size_t>(fault)];
+  history = (history << 1 | (present ? 1U : 0U)) & window_of(rule);
+  if (present) {
+    good_cycles = 0;
+    if (count_of_bits(history) < rule.cycles) return Change::kNone;
+    history = 0;
+    persisting_ |= bit_of(fault);
+    return Change::kPersists;
   }
-  ++cycles;
-  if (cycles < rule_of(fault).persistence_cycles) return Change::kNone;
-  cycles = 0;
-  persisting_ |= bit_of(fault);
-  return Change::kPersists;
+  if (good_cycles < UINT8_MAX) ++good_cycles;
+  if ((persisting_ & bit_of(fault)) == 0 || good_cycles < rule.good_cycles) return Change::kNone;
+  history = 0;
+  persisting_ &= ~bit_of(fault);
+  return Change::kOver;
+}
+
+void FaultMonitor::hold(Fault fault) {
+  good_cycles_[static_cast<std::size_t>(fault)] = 0;
 }
 
 Response FaultMonitor::response_to(Fault fault) const {

@@ -1,4 +1,5 @@
-// FaultMonitor: counts the consecutive cycles of each fault and says when to respond.
+// FaultMonitor: keeps the last cycles of each fault and says when to respond. An intermittent fault counts as
+// well as a lasting one.
 #pragma once
 
 #include <array>
@@ -16,9 +17,13 @@ class FaultMonitor {
  public:
   enum class Change : std::uint8_t { kNone, kPersists, kOver };
 
-  // Once per cycle and fault. kPersists: the fault has been present for the number of consecutive cycles of
-  // its rule; returned again each time that number is reached again. kOver: a persisting fault has ended.
+  // Once per cycle and fault. kPersists: the fault is present, and was in as many cycles of the window as its
+  // rule requires; then the window starts empty, so that the next kPersists needs as many again. kOver: a
+  // persisting fault has been absent for the good cycles of its rule.
   Change observe(Fault fault, bool present);
+  // Instead of observe(), in a cycle in which the consequence of a fault remains: a persisting fault is not
+  // over, and there is no new response.
+  void hold(Fault fault);
 
   // The response to a persisting fault by its rule; kFlag where the response is disabled.
   Response response_to(Fault fault) const;
@@ -29,9 +34,10 @@ class FaultMonitor {
   std::uint32_t disabled() const { return disabled_; }
 
  private:
-  std::array<std::uint16_t, kFaults> cycles_{};  // consecutive, since the last response
-  std::uint32_t persisting_ = 0;                 // bit n: Fault n
-  std::uint32_t disabled_ = 0;                   // bit n: Fault n
+  std::array<std::uint32_t, kFaults> history_{};     // since the last response; bit n: present n cycles ago
+  std::array<std::uint8_t, kFaults> good_cycles_{};  // consecutive, up to now; saturates
+  std::uint32_t persisting_ = 0;                     // bit n: Fault n
+  std::uint32_t disabled_ = 0;                       // bit n: Fault n
 };
 
 }  // namespace tumblesight::fsw

@@ -137,7 +137,6 @@ void FrameHandler::count_skipped(const gnc::RangeImage& frame) {
 
 // kFrameRefused: the attitude is unsound and must not be reported.
 Validity FrameHandler::check_attitude(const gnc::RangeImage& frame) {
-  if (!state_.protections.attitude) return Validity::kValid;
   const gnc::AttitudeEstimate& estimate = workspace_.estimate;
   // The estimator returns sound attitudes for any frame and any model. Corrupted memory can break this.
   if (!is_sound(estimate)) {

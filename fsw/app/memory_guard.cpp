@@ -5,15 +5,39 @@
 namespace tumblesight::fsw {
 namespace {
 
-hal::ModelBank bank_in_use(const AppState& state) {
-  return state.platform.models->bank(static_cast<int>(state.banks.in_use));
+hal::ModelBank memory_of(std::uint32_t bank, const AppState& state) {
+  return state.platform.models->bank(static_cast<int>(bank));
 }
 
 }  // namespace
 
+void MemoryGuard::bank_is_good(std::uint32_t bank, AppState& state) {
+  banks_.make_table(bank, *state.platform.models, state.banks);
+}
+
 void MemoryGuard::model_activated(const Estimator& estimator, AppState& state) {
-  banks_.make_table(*state.platform.models, state.banks);
+  bank_is_good(state.banks.in_use, state);
   state.constants_crc32 = estimator.constants_crc32();
+}
+
+bool MemoryGuard::bound(const Estimator& estimator, AppState& state) {
+  ModelBanksState& banks = state.banks;
+  bool sound = is_mode(state.mode);
+  if (banks.in_use >= hal::kModelBanks) {
+    banks.in_use = banks.descriptor[0].crc32 == estimator.model().crc32 ? 0 : 1;
+    sound = false;
+  }
+  if (banks.next_block >= ModelBanks::kBlocks) {
+    banks.next_block = 0;
+    sound = false;
+  }
+  for (std::size_t i = 0; i < config::kLimitRules.size(); ++i) {
+    const config::LimitRule& rule = config::kLimitRules[i];
+    if (state.limits[i] >= rule.lowest && state.limits[i] <= rule.highest) continue;
+    state.limits[i] = rule.initial;
+    sound = false;
+  }
+  return sound;
 }
 
 void MemoryGuard::keep(const Estimator& estimator, AppState& state) {
@@ -24,7 +48,9 @@ void MemoryGuard::keep(const Estimator& estimator, AppState& state) {
 void MemoryGuard::check(Estimator& estimator, AppState& state, const Reporter& report) {
   check_state(estimator, state, report);
   if (!state.has_model()) return;
-  check_table(estimator, state, report);
+  check_table(state.banks.in_use, estimator, state, report);
+  if (state.banks.status(state.banks.other()) == BankStatus::kGood)
+    check_table(state.banks.other(), estimator, state, report);
   for (std::uint32_t i = 0; i < state.limit(Limit::kScrubBlocks) && state.has_model(); ++i)
     check_block(state, report);
   if (state.has_model()) check_constants(estimator, state, report);
@@ -48,7 +74,7 @@ void MemoryGuard::check_constants(Estimator& estimator, AppState& state, const R
   if (estimator.constants_crc32() == state.constants_crc32) return;
   for (std::uint32_t i = 0; i < ModelBanks::kBlocks && state.has_model(); ++i) check_block(state, report);
   if (!state.has_model()) return;
-  estimator.reload(bank_in_use(state).data);
+  estimator.reload(memory_of(state.banks.in_use, state).data);
   if (estimator.constants_crc32() == state.constants_crc32) {
     count(state.counters.constants_reloaded);
     report(EventId::kConstantsReloaded, static_cast<std::int32_t>(state.banks.in_use));
@@ -57,17 +83,26 @@ void MemoryGuard::check_constants(Estimator& estimator, AppState& state, const R
   }
 }
 
-void MemoryGuard::check_table(const Estimator& estimator, AppState& state, const Reporter& report) {
-  if (banks_.table_is_sound(state.banks)) return;
-  const BankDescriptor& descriptor = state.banks.descriptor[state.banks.in_use];
-  if (estimator.check(bank_in_use(state).data, descriptor.size_bytes, state.expected_target) !=
-      gnc::ModelStatus::kOk) {
+void MemoryGuard::check_table(std::uint32_t bank, const Estimator& estimator, AppState& state,
+                              const Reporter& report) {
+  if (banks_.table_is_sound(bank, state.banks)) return;
+  if (banks_.restore_table(bank, state.banks) || rebuild_table(bank, estimator, state)) {
+    count(state.counters.model_tables_rebuilt);
+    report(EventId::kModelTableRebuilt, static_cast<std::int32_t>(bank));
+  } else if (bank == state.banks.in_use) {
     lose_model(state);
-    return;
+  } else {
+    lose_fallback(state, report);
   }
-  banks_.make_table(*state.platform.models, state.banks);
-  count(state.counters.model_tables_rebuilt);
-  report(EventId::kModelTableRebuilt, static_cast<std::int32_t>(state.banks.in_use));
+}
+
+bool MemoryGuard::rebuild_table(std::uint32_t bank, const Estimator& estimator, AppState& state) {
+  const std::uint32_t size_bytes = state.banks.descriptor[bank].size_bytes;
+  const gnc::ModelStatus status =
+      estimator.check(memory_of(bank, state).data, size_bytes, state.expected_target.name());
+  if (status != gnc::ModelStatus::kOk) return false;
+  bank_is_good(bank, state);
+  return true;
 }
 
 void MemoryGuard::check_block(AppState& state, const Reporter& report) {
@@ -86,12 +121,23 @@ void MemoryGuard::check_block(AppState& state, const Reporter& report) {
       report(EventId::kModelBlockLost, bank, block);
       lose_model(state);
       break;
+    case BlockCheck::Result::kFallbackLost:
+      count(state.counters.model_blocks_lost);
+      report(EventId::kModelBlockLost, bank, block);
+      lose_fallback(state, report);
+      break;
   }
 }
 
 void MemoryGuard::lose_model(AppState& state) {
   state.banks.descriptor[state.banks.in_use].set(BankStatus::kEmpty);
   state.faults_seen |= bit_of(Fault::kModelCorrupted);
+}
+
+void MemoryGuard::lose_fallback(AppState& state, const Reporter& report) {
+  const std::uint32_t bank = state.banks.other();
+  state.banks.descriptor[bank].set(BankStatus::kEmpty);
+  report(EventId::kFallbackLost, static_cast<std::int32_t>(bank));
 }
 
 }  // namespace tumblesight::fsw

@@ -7,7 +7,11 @@
 //   biases, shifts, everything     CRC at activation               model image
 //   that load() sets
 //   weights in the bank in use     checksum of each block          second copy in the other bank, if any
-//   checksums of the blocks        CRC over the table              image, if its own CRCs are correct
+//   a different good image in      checksum of each block          nothing; the bank is EMPTY from then on
+//   the other bank
+//   checksums of the blocks        CRC over each bank's table      table of the second copy; image, if its
+//   own CRCs are
+//                                                                  correct
 //   activations                    not checked                     rewritten in every frame
 #pragma once
 
@@ -18,8 +22,13 @@ namespace tumblesight::fsw {
 
 class MemoryGuard {
  public:
+  // Call after the image of a bank has passed every check.
+  void bank_is_good(std::uint32_t bank, AppState& state);
   // Call after a model has been activated.
   void model_activated(const Estimator& estimator, AppState& state);
+  // Majority voting cannot correct the same bit in two copies. Bounds everything in the state that indexes an
+  // array or limits a loop. False: something, or the mode, was out of range.
+  [[nodiscard]] static bool bound(const Estimator& estimator, AppState& state);
   // At the start of a cycle. Damage that cannot be repaired is set in state.faults_seen.
   void check(Estimator& estimator, AppState& state, const Reporter& report);
   // At the end of a cycle: keeps a copy of the estimator's state and its CRC.
@@ -28,9 +37,12 @@ class MemoryGuard {
  private:
   void check_state(Estimator& estimator, AppState& state, const Reporter& report);
   void check_constants(Estimator& estimator, AppState& state, const Reporter& report);
-  void check_table(const Estimator& estimator, AppState& state, const Reporter& report);
+  void check_table(std::uint32_t bank, const Estimator& estimator, AppState& state, const Reporter& report);
+  // False: the image of the bank does not pass every check.
+  [[nodiscard]] bool rebuild_table(std::uint32_t bank, const Estimator& estimator, AppState& state);
   void check_block(AppState& state, const Reporter& report);
   void lose_model(AppState& state);
+  void lose_fallback(AppState& state, const Reporter& report);
 
   ModelBanks banks_;
   Estimator::State kept_;

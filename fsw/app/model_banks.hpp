@@ -1,9 +1,10 @@
-// ModelBanks: the two banks for model images. It loads an image from the ground and keeps the image in use
+// ModelBanks: the two banks for model images. It loads an image from the ground and keeps the good images
 // free of bit flips.
 //
-// The image in use is checked block by block, a few blocks per cycle, against a table of checksums. If the
-// other bank holds the same image, it is the second copy: a block that does not match the table is repaired
-// from the same block of the other bank, if that one matches.
+// The good image of each bank is checked block by block, a few blocks per cycle, against the bank's own table
+// of checksums. If both banks hold the same image, a block that does not match is repaired from the same
+// block of the other bank, if that one matches. A different good image is a fallback: nothing can repair it,
+// but its loss is known before it is needed.
 #pragma once
 
 #include <array>
@@ -34,7 +35,7 @@ struct ModelBanksState {
   std::uint32_t in_use = 0;        // bank
   std::uint32_t loaded_bytes = 0;  // of the image that is being loaded
   std::uint32_t next_block = 0;    // to be checked
-  std::uint32_t table_crc32 = 0;
+  std::array<std::uint32_t, hal::kModelBanks> table_crc32{};
 
   BankStatus status(std::uint32_t bank) const { return static_cast<BankStatus>(descriptor[bank].status); }
   std::uint32_t other() const { return 1 - in_use; }
@@ -50,6 +51,7 @@ struct BlockCheck {
     kGood,
     kRepaired,  // `bank` was corrupted
     kLost,      // `bank`, the one in use, is corrupted, and there is no good copy or the bank is read-only
+    kFallbackLost,  // the same of the other bank
   };
   Result result = Result::kGood;
   std::uint32_t bank = 0;
@@ -63,21 +65,29 @@ class ModelBanks {
       (gnc::kModelImageSize<Numerics> + config::kModelBlockBytes - 1) / config::kModelBlockBytes;
 
   // Writes a segment of `count` bytes to the bank that is not in use. Segments must come in order; a segment
-  // with offset 0 begins a new image. False: out of order, beyond the end of the bank, or the bank is
-  // read-only.
-  [[nodiscard]] static bool load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
-                                 const std::uint8_t* bytes, std::uint32_t count);
+  // with offset 0 begins a new image. kRefused: out of order, beyond the end of the bank, or the bank is
+  // read-only. kBusy: send the segment again later. kFailed: the image is void, now or because an earlier
+  // segment could not be written.
+  [[nodiscard]] static hal::WriteStatus load(hal::ModelStore& store, ModelBanksState& state,
+                                             std::uint32_t offset, const std::uint8_t* bytes,
+                                             std::uint32_t count);
 
-  // Computes the table of checksums from the current content of the bank in use.
-  void make_table(hal::ModelStore& store, ModelBanksState& state);
-  bool table_is_sound(const ModelBanksState& state) const;
-  // Checks the next block of the bank in use and of its second copy. Requires a sound table.
+  // Computes the table of checksums from the current content of `bank`. Call when its image has passed every
+  // check.
+  void make_table(std::uint32_t bank, hal::ModelStore& store, ModelBanksState& state);
+  // Takes the table of the other bank for `bank`, if both banks hold the same image. False: they do not, or
+  // the table is not the one that make_table() made.
+  [[nodiscard]] bool restore_table(std::uint32_t bank, const ModelBanksState& state);
+  bool table_is_sound(std::uint32_t bank, const ModelBanksState& state) const;
+  // Checks the next block of the bank in use and of the other bank, if that one is good. Requires sound
+  // tables of the good banks.
   BlockCheck check_block(hal::ModelStore& store, ModelBanksState& state);
 
  private:
-  std::uint32_t table_crc32() const;
+  using Table = std::array<std::uint32_t, kBlocks>;
+  static std::uint32_t crc32_of(const Table& table);
 
-  std::array<std::uint32_t, kBlocks> block_crc32_{};
+  std::array<Table, hal::kModelBanks> block_crc32_{};  // of each bank
 };
 
 }  // namespace tumblesight::fsw

@@ -4,8 +4,9 @@
 
 namespace tumblesight::fsw {
 
-void ModelManager::boot() {
-  for (std::uint32_t bank = 0; bank < hal::kModelBanks; ++bank) boot_bank(bank);
+void ModelManager::boot(std::uint32_t preferred) {
+  boot_bank(preferred);
+  boot_bank(1 - preferred);
 }
 
 void ModelManager::boot_bank(std::uint32_t bank) {
@@ -17,10 +18,11 @@ void ModelManager::boot_bank(std::uint32_t bank) {
     status = activate(bank);
     return;
   }
-  status = estimator_.check(memory.data, memory.size, state_.expected_target);
+  status = estimator_.check(memory.data, memory.size, state_.expected_target.name());
   if (status != gnc::ModelStatus::kOk) return;
   descriptor.set(BankStatus::kGood);
   descriptor.crc32 = gnc::model_image_crc32(memory.data);
+  guard_.bank_is_good(bank, state_);
 }
 
 void ModelManager::report_boot() {
@@ -46,11 +48,12 @@ void ModelManager::report_boot() {
 gnc::ModelStatus ModelManager::validate(std::uint32_t size_bytes, std::uint32_t crc32) {
   const std::uint32_t bank = state_.banks.other();
   const std::uint8_t* const image = state_.platform.models->bank(static_cast<int>(bank)).data;
-  gnc::ModelStatus status = estimator_.check(image, size_bytes, state_.expected_target);
+  gnc::ModelStatus status = estimator_.check(image, size_bytes, state_.expected_target.name());
   if (status == gnc::ModelStatus::kOk && gnc::model_image_crc32(image) != crc32)
     status = gnc::ModelStatus::kBadHeaderCrc;
   if (status == gnc::ModelStatus::kOk) {
     state_.banks.descriptor[bank] = {size_bytes, crc32, static_cast<std::uint32_t>(BankStatus::kGood)};
+    guard_.bank_is_good(bank, state_);
   }
   return status;
 }
@@ -58,7 +61,8 @@ gnc::ModelStatus ModelManager::validate(std::uint32_t size_bytes, std::uint32_t 
 gnc::ModelStatus ModelManager::activate(std::uint32_t bank) {
   BankDescriptor& descriptor = state_.banks.descriptor[bank];
   const std::uint8_t* const image = state_.platform.models->bank(static_cast<int>(bank)).data;
-  const gnc::ModelStatus status = estimator_.load(image, descriptor.size_bytes, state_.expected_target);
+  const gnc::ModelStatus status =
+      estimator_.load(image, descriptor.size_bytes, state_.expected_target.name());
   if (status != gnc::ModelStatus::kOk) {
     descriptor.set(BankStatus::kEmpty);
     return status;

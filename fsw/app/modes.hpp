@@ -11,16 +11,24 @@ namespace tumblesight::fsw {
 using hal::Cause;
 using hal::Mode;
 
+// Whether `mode` is one of the enumerators. A flip of the same bit in two copies can make it another number.
+constexpr bool is_mode(Mode mode) {
+  return static_cast<std::uint8_t>(mode) <= static_cast<std::uint8_t>(Mode::kSafe);
+}
+
 struct Transition {
   Mode from;
   Cause cause;
   Mode to;
 };
 
-inline constexpr std::array<Transition, 16> kTransitions{{
+inline constexpr std::array<Transition, 19> kTransitions{{
     {Mode::kBoot, Cause::kModelFound, Mode::kRun},
     {Mode::kBoot, Cause::kNoModel, Mode::kSafe},
     {Mode::kBoot, Cause::kAssertion, Mode::kSafe},
+    {Mode::kBoot, Cause::kResumedStandby, Mode::kStandby},
+    {Mode::kBoot, Cause::kResumedSafe, Mode::kSafe},
+    {Mode::kBoot, Cause::kStoredStateLost, Mode::kSafe},
     {Mode::kStandby, Cause::kCommandStandby, Mode::kStandby},
     {Mode::kStandby, Cause::kCommandRun, Mode::kRun},
     {Mode::kStandby, Cause::kCommandSafe, Mode::kSafe},

@@ -6,6 +6,7 @@
 
 #include "fsw/config/limits.hpp"
 #include "gnc/lidar/range_image.hpp"
+#include "hal/link.hpp"
 #include "hal/messages/attitude_report.hpp"
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/event.hpp"
@@ -24,7 +25,8 @@ struct StepInputs {
                                            // at most kMaxFramesPerStep
   std::array<hal::CommandPacket, config::kMaxCommandsPerStep> commands{};
   int command_count = 0;
-  std::uint32_t cycle_slips = 0;  // releases of the task missed since the last step
+  hal::DroppedCommands commands_dropped;  // by the link, since the last step
+  std::uint32_t cycle_slips = 0;          // releases of the task missed since the last step
 
   int frames() const { return frame != nullptr ? frame_count : 0; }
 };

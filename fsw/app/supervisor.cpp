@@ -4,7 +4,8 @@
 
 namespace tumblesight::fsw {
 
-void Supervisor::supervise(Validity validity, std::uint32_t cycle_slips, std::uint64_t start_ns) {
+void Supervisor::supervise(Validity validity, std::uint32_t cycle_slips, std::uint64_t start_ns,
+                           std::uint32_t resets_before) {
   const bool has_attitude = validity == Validity::kValid || validity == Validity::kDoubtful;
   if (state_.mode == Mode::kRun && !has_attitude) state_.faults_seen |= bit_of(Fault::kOutage);
   if (cycle_slips > 0) {
@@ -13,14 +14,25 @@ void Supervisor::supervise(Validity validity, std::uint32_t cycle_slips, std::ui
     report_(EventId::kCycleSlipped, clamp_to_int32(cycle_slips));
   }
   measure(start_ns);
-  for (int i = 0; i < kFaults; ++i) {
-    const auto fault = static_cast<Fault>(i);
-    const FaultMonitor::Change change =
-        state_.faults.observe(fault, (state_.faults_seen & bit_of(fault)) != 0);
-    if (change == FaultMonitor::Change::kPersists) respond(fault);
-    if (change == FaultMonitor::Change::kOver) {
-      report_(is_of_timing(fault) ? EventId::kTimingFaultOver : EventId::kFaultOver, i);
-    }
+  constexpr int kLast = static_cast<int>(Fault::kTrackRestarts);
+  static_assert(kLast == kFaults - 1, "behind the faults whose responses reset the estimator");
+  for (int i = 0; i < kLast; ++i) observe(static_cast<Fault>(i));
+  if (state_.counters.estimator_resets != resets_before) state_.faults_seen |= bit_of(Fault::kTrackRestarts);
+  observe(Fault::kTrackRestarts);
+}
+
+void Supervisor::observe(Fault fault) {
+  const bool present = (state_.faults_seen & bit_of(fault)) != 0;
+  // A model is lost in one cycle and stays lost until a good one is activated.
+  if (!present && fault == Fault::kModelCorrupted && !state_.has_model()) {
+    state_.faults.hold(fault);
+    return;
+  }
+  const FaultMonitor::Change change = state_.faults.observe(fault, present);
+  if (change == FaultMonitor::Change::kPersists) respond(fault);
+  if (change == FaultMonitor::Change::kOver) {
+    report_(is_of_timing(fault) ? EventId::kTimingFaultOver : EventId::kFaultOver,
+            static_cast<std::int32_t>(fault));
   }
 }
 
@@ -60,7 +72,7 @@ void Supervisor::respond(Fault fault) {
   }
   const EventId id = is_of_timing(fault) ? EventId::kTimingFaultPersists : EventId::kFaultPersists;
   const config::FaultRule& rule = config::kFaultRules[static_cast<std::size_t>(fault)];
-  report_(id, static_cast<std::int32_t>(fault), static_cast<std::int32_t>(taken), rule.persistence_cycles);
+  report_(id, static_cast<std::int32_t>(fault), static_cast<std::int32_t>(taken), rule.cycles);
 }
 
 }  // namespace tumblesight::fsw

@@ -16,11 +16,13 @@ class Supervisor {
       : state_(state), modes_(modes), models_(models), report_(report) {}
 
   // After the frames. `validity`: of this cycle's attitude; `start_ns`: when the step began, by the
-  // stopwatch.
-  void supervise(Validity validity, std::uint32_t cycle_slips, std::uint64_t start_ns);
+  // stopwatch; `resets_before`: the count of estimator resets after the commands.
+  void supervise(Validity validity, std::uint32_t cycle_slips, std::uint64_t start_ns,
+                 std::uint32_t resets_before);
 
  private:
   void measure(std::uint64_t start_ns);
+  void observe(Fault fault);
   void respond(Fault fault);
 
   AppState& state_;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <new>
 #include <type_traits>
 
 namespace tumblesight::fsw {
@@ -18,6 +19,9 @@ class Voted {
   State& operator*() { return copies_[0]; }
   State* operator->() { return copies_.data(); }
   const State* operator->() const { return copies_.data(); }
+
+  // Sets the first copy to its initial state, in place: a temporary would be on the stack.
+  void restart() { ::new (static_cast<void*>(copies_.data())) State; }
 
   // Sets all copies to the majority of every bit. Returns the number of 32-bit words that differed.
   std::uint32_t vote() {

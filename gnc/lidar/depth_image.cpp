@@ -110,10 +110,11 @@ std::int16_t saturate16(std::int64_t value) {
 }
 
 void make_coordinate(const RayTerms& terms, int count, std::int64_t factor_q8, int shift,
-                     DepthImageScratch::Coordinate& coordinate) {
+                     DepthImageScratch::Coordinate<std::int32_t>& coordinate) {
   for (int i = 0; i < count; ++i) {
-    coordinate.column[i] = saturate16(rounding_shift_right(terms.column_term(i) * factor_q8, shift));
-    coordinate.row[i] = saturate16(rounding_shift_right(terms.row_term(i) * factor_q8, shift));
+    coordinate.column[i] =
+        static_cast<std::int32_t>(rounding_shift_right(terms.column_term(i) * factor_q8, shift));
+    coordinate.row[i] = static_cast<std::int32_t>(rounding_shift_right(terms.row_term(i) * factor_q8, shift));
   }
 }
 
@@ -133,7 +134,7 @@ void make_cells(const RayTerms& x, const RayTerms& down, int count, std::uint32_
   make_coordinate(down, count, factor_q8, 38 - bits, view.down);
 }
 
-void make_depth(const RayTerms& depth, int count, DepthImageScratch::Coordinate& coordinate) {
+void make_depth(const RayTerms& depth, int count, DepthImageScratch::Coordinate<std::int16_t>& coordinate) {
   for (int i = 0; i < count; ++i) {
     coordinate.column[i] = saturate16(rounding_shift_right(depth.column_term(i), 15));
     coordinate.row[i] = saturate16(rounding_shift_right(depth.row_term(i) - kOneQ30, 15));

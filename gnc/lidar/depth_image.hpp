@@ -64,16 +64,19 @@ struct DepthImageScratch {
 
   // The view frame. A coordinate of the point at depth 1 on a ray is the sum of a term of the ray's column
   // and a term of its row.
+  template <class Number>
   struct Coordinate {
-    std::array<std::int16_t, RangeImage::kMaxRays> column, row;
+    std::array<Number, RangeImage::kMaxRays> column, row;
   };
   struct View {
-    Coordinate x, down;     // in cells; the high half of the product with a depth has 2 to 6 fraction bits
-    Coordinate depth;       // minus 1, Q0.15
-    std::int16_t cells;     // the high half of the product with a coordinate is a whole number of cells
-    std::int16_t middle;    // of the image, as a coordinate
-    std::int16_t centroid;  // its depth in the view
-    std::int16_t radius;    // of the target, in the unit of depth
+    // In cells; the high half of the product with a depth has 2 to 6 fraction bits. Near the edge of a wide
+    // field of view, only the sum of the terms fits into 16 bits, and only where the ray meets the image.
+    Coordinate<std::int32_t> x, down;
+    Coordinate<std::int16_t> depth;  // minus 1, Q0.15
+    std::int16_t cells;           // the high half of the product with a coordinate is a whole number of cells
+    std::int16_t middle;          // of the image, as a coordinate
+    std::int16_t centroid;        // its depth in the view
+    std::int16_t radius;          // of the target, in the unit of depth
     std::int16_t radius_scale;    // power of two that scales the radius to 15 bits
     std::int16_t inverse_radius;  // 0.25 / scaled radius, Q0.15
   } view;

@@ -32,6 +32,10 @@ TUMBLESIGHT_INLINE std::uint16_t multiply_high(std::uint16_t a, std::uint16_t b)
 TUMBLESIGHT_INLINE std::int16_t multiply_q15(std::int16_t a, std::int16_t b) {
   return static_cast<std::int16_t>((((std::int32_t{a} * b) >> 14) + 1) >> 1);
 }
+// a + b, limited to 16 bits, so that a ray far outside the image is not folded into it.
+TUMBLESIGHT_INLINE std::int16_t saturating_sum(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int16_t>(clamp<std::int32_t>(a + b, -32768, 32767));
+}
 // a + b modulo 2^16.
 TUMBLESIGHT_INLINE std::int16_t add_int16(std::int16_t a, std::int16_t b) {
   return static_cast<std::int16_t>(a + b);
@@ -107,7 +111,7 @@ struct Row {
 TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const View& view, int row,
                                     int count, Row& __restrict out) {
   constexpr std::int16_t kSide = DepthImage::kSide;
-  const std::int16_t row_x = view.x.row[row], row_down = view.down.row[row];
+  const std::int32_t row_x = view.x.row[row], row_down = view.down.row[row];
   const std::int16_t row_depth = view.depth.row[row];
   const std::int16_t cells = view.cells;
   const std::int16_t middle = view.middle, centroid = view.centroid;
@@ -115,8 +119,8 @@ TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const
                      inverse_radius = view.inverse_radius;
   for (int column = 0; column < count; ++column) {
     const std::int16_t depth = depths[column];
-    const std::int16_t along_x = multiply_high(depth, add_int16(view.x.column[column], row_x));
-    const std::int16_t along_down = multiply_high(depth, add_int16(view.down.column[column], row_down));
+    const std::int16_t along_x = multiply_high(depth, saturating_sum(view.x.column[column], row_x));
+    const std::int16_t along_down = multiply_high(depth, saturating_sum(view.down.column[column], row_down));
     const std::int16_t x = multiply_high(add_int16(along_x, middle), cells);
     const std::int16_t down = multiply_high(add_int16(along_down, middle), cells);
     const auto inside = static_cast<std::uint16_t>(within(static_cast<std::uint16_t>(depth), 1, 32768) &
@@ -126,7 +130,7 @@ TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const
     out.cell[column] = static_cast<std::uint16_t>((cell & inside) | (kSpareCell[column] & ~inside));
 
     const std::int16_t view_depth =
-        add_int16(depth, multiply_q15(depth, add_int16(view.depth.column[column], row_depth)));
+        saturating_sum(depth, multiply_q15(depth, add_int16(view.depth.column[column], row_depth)));
     const auto before = static_cast<std::int16_t>(centroid - view_depth);
     const std::int16_t bounded = clamp<std::int16_t>(before, static_cast<std::int16_t>(-radius), radius);
     const std::int16_t value =

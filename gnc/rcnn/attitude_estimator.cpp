@@ -5,6 +5,7 @@
 #include "gnc/lidar/depth_loops.hpp"
 #include "gnc/numerics/conversion.hpp"
 #include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/division.hpp"
 
 namespace tumblesight::gnc {
 
@@ -21,6 +22,21 @@ std::uint32_t error_urad(const Matrix3<Fixed>& attitude, Fixed predicted_rad) {
   const std::int64_t scaled = std::int64_t{predicted_rad.raw()} * 1'000'000;
   const std::int64_t urad = (scaled + (1 << (Fixed::kFractionBits - 1))) >> Fixed::kFractionBits;
   return select(is_rotation, static_cast<std::uint32_t>(min<std::int64_t>(kPi_urad, urad)), kPi_urad);
+}
+
+// From radians per nominal period, rounded to the nearest.
+std::int32_t urad_s(Fixed rate) {
+  constexpr std::int64_t kNumerator = 1'000'000 * (1'000'000'000 / 100'000'000);
+  constexpr std::int64_t kDenominator = kNominalPeriod_ns / 100'000'000;
+  const std::int64_t doubled =
+      divide(std::int64_t{rate.raw()} * kNumerator, kDenominator) >> (Fixed::kFractionBits - 1);
+  return static_cast<std::int32_t>((doubled + 1) >> 1);
+}
+
+// Whether this rate turns the target by more than kLargestTurn_rad in this time.
+bool turns_too_far(const Vector3<Fixed>& rate, Fixed periods) {
+  const Vector3<Fixed> turn = scaled<Fixed>(rate, periods);
+  return dot(turn, turn) > constant<Fixed>(kLargestTurn_rad * kLargestTurn_rad);
 }
 
 [[maybe_unused]] void add_to(Crc32& crc, const float* values, std::size_t count) {
@@ -68,20 +84,23 @@ void AttitudeEstimator<N>::reset() {
 }
 
 template <class N>
-FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, AttitudeEstimate& estimate) {
+FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, const FrameInterval& interval,
+                                       AttitudeEstimate& estimate) {
   const DepthLoops& loops = fastest_depth_loops(network_.kernels().set);
   const FrameStatus status =
       make_depth_image(frame, model_.projection, network_.projection_scratch(), image_, loops);
-  if (status == FrameStatus::kOk) step(image_, estimate);
+  if (status == FrameStatus::kOk) step(image_, interval, estimate);
   return status;
 }
 
 template <class N>
-void AttitudeEstimator<N>::step(const DepthImage& image, AttitudeEstimate& estimate) {
+void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& interval,
+                                AttitudeEstimate& estimate) {
   auto& [output, hypotheses, prediction, input, head] = intermediates_;
+  if (interval.gives_up_track) reset();
   network_.infer_frame(image, output);
   hypotheses = decode_hypotheses<Real>(output, converted<Real>(image.r_lrf_view));
-  prediction = predict<Real>(state_.track, laws_, hypotheses);
+  prediction = predict<Real>(state_.track, laws_, hypotheses, interval);
   fill_lstm_input<N>(network_.features(), hypotheses, prediction.r_lrf_trf(), input);
   network_.infer_sequence(input, state_.lstm, head);
   const TrackedAttitude<Real> tracked = advance<Real>(hypotheses, prediction, head, state_.track);
@@ -95,6 +114,15 @@ void AttitudeEstimator<N>::step(const DepthImage& image, AttitudeEstimate& estim
   estimate.predicted_error_single_frame_urad =
       error_urad(single_frame, converted<Fixed>(hypotheses.predicted_error_rad));
   estimate.frames_since_reset = state_.track.frames;
+  const Motion<Real>& motion = state_.track.motion[state_.track.law()];
+  const Vector3<Fixed> rate = converted<Fixed>(motion.rate_lrf);
+  const QuaternionQ30 predicted = quaternion_from_rotation(converted<Fixed>(prediction.r_lrf_trf()));
+  for (std::size_t i = 0; i < 4; ++i)
+    estimate.q_lrf_trf_predicted[i] = select(prediction.has_track, predicted[i], kIdentityQ30[i]);
+  estimate.has_prediction = prediction.has_track;
+  for (int i = 0; i < 3; ++i) estimate.rate_lrf_urad_s[static_cast<std::size_t>(i)] = urad_s(rate[i]);
+  estimate.rate_is_ambiguous = prediction.has_track & turns_too_far(rate, prediction.elapsed_periods);
+  estimate.law = state_.track.law();
 }
 
 template <class N>

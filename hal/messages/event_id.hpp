@@ -24,7 +24,7 @@ enum class EventId : std::uint16_t {
   // Events 21 to 29 depend on the wall clock, so no digest of a deterministic run may include them.
   kCycleSlipped = 21,            // [releases missed, -, -]
   kDeadlineOverrun = 22,         // [time of this step, -, -]
-  kTimingFaultPersists = 23,     // [Fault, Response taken, persistence of its rule in cycles]
+  kTimingFaultPersists = 23,     // [Fault, Response taken, cycles with the fault that its rule requires]
   kTimingFaultOver = 24,         // [Fault, -, -]
   kTimingEventsSuppressed = 25,  // [EventId of the suppressed events, their number, -]
 
@@ -42,12 +42,12 @@ enum class EventId : std::uint16_t {
   kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump + 2: frozen frame]
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now
-  kFaultPersists = 51,  // [Fault, Response taken, persistence of its rule in cycles]
+  kFaultPersists = 51,  // [Fault, Response taken, cycles with the fault that its rule requires]
   kFaultOver = 52,      // [Fault, -, -]
   kSafeEntered = 53,    // [Cause, Fault or -1, -]
 
-  // 60 + CommandRefusal
-  kCommandForged = 60,  // [function code or 0, packet size in bytes, detail]
+  // 60 + CommandRefusal; from refusal 10 on, 90 + CommandRefusal
+  kCommandForged = 60,  // [function code or 0, packet size in bytes or 0, detail]
   kCommandReplayed = 61,
   kCommandMalformed = 62,
   kCommandWrongLength = 63,
@@ -62,18 +62,31 @@ enum class EventId : std::uint16_t {
   kStateRestored = 71,      // [-, -, -]; the estimator's state, from its copy
   kConstantsReloaded = 72,  // [bank, -, -]; the estimator's copy of model data, from the bank
   kModelRepaired = 73,      // [bank, block, -]; from the other bank
-  kModelBlockLost = 74,     // [bank, block, -]; no bank has a good copy
+  kModelBlockLost = 74,     // [bank, block, -]; it cannot be repaired
   kModelTableRebuilt = 75,  // [bank, -, -]; the checksums of the blocks
   kBankSwitched = 76,       // [bank before, bank after, -]
+  kFallbackLost = 77,       // [bank, -, -]; the image of the bank that is not in use is no longer good
+
+  kStateResumed = 80,  // [ResetCause, stored Mode, stored bank]; the stored state of before the reset is used
+  kStoredStateLost = 81,  // [StoreStatus of copy 0, StoreStatus of copy 1, -]; cold boot
+  kStateNotStored = 82,   // [copies written, -, -]; first cycle of a failure only
 
   kEventsSuppressed = 90,  // [EventId of the suppressed events, their number, -]
+
+  kCommandOutOfWindow = 100,
+  kCommandOtherKey = 101,
+  kCommandOtherSpacecraft = 102,
+  kCommandNotStored = 103,
+  kCommandStoreFailed = 104,
+  kCommandNoRoom = 105,
+  kKeyActivated = 110,  // [key slot before, key slot after, -]
 };
 
 struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 42> kEventRules{{
+inline constexpr std::array<EventRule, 53> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kCommandAccepted, Severity::kInformation},
@@ -115,12 +128,24 @@ inline constexpr std::array<EventRule, 42> kEventRules{{
     {EventId::kModelBlockLost, Severity::kError},
     {EventId::kModelTableRebuilt, Severity::kWarning},
     {EventId::kBankSwitched, Severity::kWarning},
+    {EventId::kFallbackLost, Severity::kError},
+    {EventId::kStateResumed, Severity::kWarning},
+    {EventId::kStoredStateLost, Severity::kError},
+    {EventId::kStateNotStored, Severity::kError},
     {EventId::kEventsSuppressed, Severity::kInformation},
+    {EventId::kCommandOutOfWindow, Severity::kWarning},
+    {EventId::kCommandOtherKey, Severity::kWarning},
+    {EventId::kCommandOtherSpacecraft, Severity::kWarning},
+    {EventId::kCommandNotStored, Severity::kError},
+    {EventId::kCommandStoreFailed, Severity::kError},
+    {EventId::kCommandNoRoom, Severity::kWarning},
+    {EventId::kKeyActivated, Severity::kWarning},
 }};
 
 // The event that reports a refusal.
 constexpr EventId event_of(CommandRefusal why) {
-  return static_cast<EventId>(static_cast<int>(EventId::kCommandForged) + static_cast<int>(why));
+  const int first = static_cast<int>(why) < 10 ? 60 : 90;
+  return static_cast<EventId>(first + static_cast<int>(why));
 }
 
 // Whether the event differs between two runs with the same inputs.

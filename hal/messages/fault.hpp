@@ -7,7 +7,8 @@
 namespace tumblesight::hal {
 
 enum class Fault : std::uint8_t {
-  kStateLost = 0,        // the estimator's state and its copy are both corrupted
+  kStateLost = 0,        // the estimator's state and its copy, or two copies of the application's state, are
+                         // corrupted
   kModelCorrupted = 1,   // the model in use is corrupted and cannot be repaired
   kAttitudeUnsound = 2,  // not a unit quaternion, or an expected error above pi
   kErrorLarge = 3,       // expected error above its limit
@@ -16,8 +17,9 @@ enum class Fault : std::uint8_t {
   kDeadline = 6,         // a step that took longer than its budget
   kSlip = 7,             // the task missed one or more releases
   kFrameFrozen = 8,      // the same ranges as the previous frame, with a new sequence number
+  kTrackRestarts = 9,    // the estimator was reset in this cycle, and not by command
 };
-inline constexpr int kFaults = 9;
+inline constexpr int kFaults = 10;
 
 enum class Response : std::uint8_t {
   kIgnore = 0,         // none; the fault is only shown in the telemetry

@@ -35,6 +35,7 @@ std::vector<Run> cells_of(const ExperimentSettings& settings) {
     Run run;
     run.scenario.condition = condition;
     run.scenario.frames = static_cast<int>(settings.frames);
+    run.scenario.disturbances = settings.disturbances;
     run.sequences = condition == Condition::kTumbling ? settings.tumbling_sequences : settings.sequences;
     run.baseline_sequences = std::min(settings.baseline_sequences, run.sequences);
     runs.push_back(run);
@@ -46,6 +47,7 @@ std::vector<Run> sweeps_of(const ExperimentSettings& settings) {
   Run base;
   base.scenario.condition = settings.conditions.front();
   base.scenario.frames = static_cast<int>(settings.frames);
+  base.scenario.disturbances = settings.disturbances;
   base.sequences = settings.sequences;
 
   std::vector<Run> runs{base};
@@ -85,12 +87,13 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   cell.condition = run.scenario.condition;
   cell.sequences = run.sequences;
   cell.frames = frames;
-  cell.rcnn = summarise(errors(Estimator::kRcnn));
-  cell.cnn = summarise(errors(Estimator::kCnn));
+  cell.disturbances = run.scenario.disturbances;
+  cell.rcnn = last_frame_summary(result.frames, frames, Estimator::kRcnn);
+  cell.cnn = last_frame_summary(result.frames, frames, Estimator::kCnn);
   cell.rcnn_histogram = histogram(errors(Estimator::kRcnn));
   cell.cnn_histogram = histogram(errors(Estimator::kCnn));
   if (run.baseline_sequences > 0) {
-    cell.baseline = summarise(errors(Estimator::kBaseline));
+    cell.baseline = last_frame_summary(result.frames, frames, Estimator::kBaseline);
     cell.baseline_histogram = histogram(errors(Estimator::kBaseline));
   }
   cell.network_ms = result.network_ms;

@@ -22,6 +22,7 @@ struct CellResult {
   Condition condition = Condition::kNominal;
   std::uint32_t sequences = 0;
   std::uint32_t frames = 0;  // per sequence
+  Disturbances disturbances;
   ErrorSummary rcnn;
   ErrorSummary cnn;
   std::optional<ErrorSummary> baseline;  // over the first sequences only, see its count

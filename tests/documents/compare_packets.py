@@ -79,12 +79,12 @@ def compare_commands(database, data, lines):
         packet, data = data[:line["size"]], data[line["size"]:]
         name, values = database.command(packet)
         code = database.commands[name].find(f".//{xtce_decoder.XTCE}FixedValueEntry[@name='command_function_code']").get("binaryValue")
-        read = 0  # the arguments as one number
+        read = b""
         for argument in database.commands[name].iter(xtce_decoder.XTCE + "Argument"):
-            encoding = next(database.types[argument.get("argumentTypeRef")].iter(xtce_decoder.XTCE + "IntegerDataEncoding"))
-            read = read << int(encoding.get("sizeInBits")) | values[argument.get("name")]
-        written = int.from_bytes(bytes(line["arguments"]), "big")
-        if (int(code, 16), values["command_counter"], read) != (line["function"], line["counter"], written):
+            value = values[argument.get("name")]
+            encoding = database.types[argument.get("argumentTypeRef")].find(xtce_decoder.XTCE + "IntegerDataEncoding")
+            read += bytes.fromhex(value) if isinstance(value, str) else value.to_bytes(int(encoding.get("sizeInBits")) // 8, "big")
+        if (int(code, 16), values["command_counter"], list(read)) != (line["function"], line["counter"], line["arguments"]):
             fail(f"{name}: {values} instead of {line}")
     if data:
         fail(f"{len(data)} bytes behind the last telecommand")

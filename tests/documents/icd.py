@@ -113,8 +113,9 @@ def functions():
 def refusals():
     events = {value: name for name, value, _ in enum(MESSAGES + "event_id.hpp", "EventId")}
     return table(["number", "event", "refused because"],
-                 [[value, 60 + value, f"{upper(name)}{': ' + comment if comment else ''}"]
-                  for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal") if 60 + value in events])
+                 [[value, event, f"{upper(name)}{': ' + comment if comment else ''}"]
+                  for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal")
+                  for event in [value + (60 if value < 10 else 90)] if event in events])
 
 
 def validity():
@@ -130,10 +131,11 @@ def limits():
 
 def faults():
     meaning = {name: (value, comment) for name, value, comment in enum(MESSAGES + "fault.hpp", "Fault")}
-    return table(["number", "fault", "is", "cycles", "response", "can be disabled"],
-                 [[meaning[last(name)][0], upper(last(name)), meaning[last(name)][1], cycles, upper(last(response)),
+    return table(["number", "fault", "is", "persists after cycles with it", "within", "over after cycles without it", "response",
+                  "can be disabled"],
+                 [[meaning[last(name)][0], upper(last(name)), meaning[last(name)][1], cycles, window, good, upper(last(response)),
                    "yes" if disabled == "true" else "no"]
-                  for name, cycles, response, disabled in array_rows("fsw/config/fault_rules.hpp", "kFaultRules")])
+                  for name, cycles, window, good, response, disabled in array_rows("fsw/config/fault_rules.hpp", "kFaultRules")])
 
 
 def responses():
@@ -299,7 +301,7 @@ TABLES = {"transitions": transitions, "causes": causes, "functions": functions, 
           "responses": responses, "events": events,
           "packets": packets, **{f"packet {CARRIED[topic][1]}": (lambda topic=topic: packet(topic)) for topic in CARRIED},
           **{f"topic {name}": (lambda name=name: struct(name))
-             for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Step", "Hello")}}
+             for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Navigation", "Step", "Hello")}}
 
 
 def with_tables(text):

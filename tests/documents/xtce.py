@@ -162,8 +162,8 @@ def telemetry(system):
 
 
 def command_arguments(comment, least, most):
-    """[(name, bits, enumeration or None)] of a telecommand; bits: None for bytes up to the end. `comment` is its row's: 'bank u8,
-    offset u32, 16 bytes: the proof'."""
+    """[(name, bits, enumeration or None, whether it is data)] of a telecommand; bits: None for data up to the trailer. `comment` is
+    its row's: 'bank u8, offset u32, 16 bytes: the proof'."""
     arguments, left = [], 8 * most
     for text in re.split(r", ", comment) if most else []:
         number = re.match(r"([A-Za-z][\w-]*) u(\d+)\b", text)

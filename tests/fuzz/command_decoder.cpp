@@ -28,7 +28,7 @@ struct Flown {
   Flown() {
     store.fill(gnc::lasting_model_image<gnc::FixedPoint>(7));
     // Without scrubbing, which is slow and not under test here.
-    booted->init({&stopwatch, &store, &fsw::kTestKey}, nullptr, {false, true});
+    booted->init({&stopwatch, &store, &fsw::kTestKeys}, nullptr, {false, true});
   }
 };
 

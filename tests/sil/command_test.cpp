@@ -121,6 +121,23 @@ TEST(CommandKey, FromAFileReplacesTheDevelopmentKey) {
   conversation.finish();
 }
 
+// Verifies TS-SEC-090.
+TEST(CommandKey, TheDevelopmentKeyIsNotedOnce) {
+  const std::string note = "signed with the public development key";
+  SilSettings settings = test::settings();
+  test::Conversation(settings).finish();
+  const std::string log = test::read_file(settings.flight_log_path);
+  EXPECT_NE(log.find(note), std::string::npos) << log;
+  EXPECT_EQ(log.find(note), log.rfind(note)) << log;
+  settings = test::settings();
+  const std::string path = test::temporary_path("command.key");
+  std::ofstream(path) << std::string(64, 'a') << '\n';
+  settings.flight_arguments = {"--command-key", path};
+  settings.command_key.fill(0xAA);
+  test::Conversation(settings).finish();
+  EXPECT_EQ(test::read_file(settings.flight_log_path).find(note), std::string::npos);
+}
+
 // Verifies TS-SEC-040.
 TEST(CommandKey, InvalidFileEndsFlightWithTheReason) {
   for (const std::string& content :

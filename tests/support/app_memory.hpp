@@ -26,9 +26,14 @@ struct AppMemory {
   static AppState& state(App& app) { return *app.state_; }
   // All three copies of the state.
   static Region voted_state(App& app) { return region_of(app.state_); }
-  static Region events(App& app) { return region_of(app.events_); }
-  // The copy of the estimator's state and the table of block checksums.
+  // The tables of block checksums and the copy of the estimator's state.
   static Region guard(App& app) { return region_of(app.guard_); }
+  // The copy of the estimator's state alone, which is the last member of the guard.
+  static Region kept_state(App& app) {
+    const Region whole = guard(app);
+    return {whole.data + whole.size - sizeof(Estimator::State), sizeof(Estimator::State)};
+  }
+  static Region workspace(App& app) { return region_of(app.frame_workspace_); }
   static Estimator& estimator(App& app) { return app.estimator_; }
   // The estimate of the last frame, before it is reported.
   static gnc::AttitudeEstimate& estimate(App& app) { return app.frame_workspace_.estimate; }
@@ -48,6 +53,18 @@ struct AppMemory {
     region_of(state).flip(bit);
     app.estimator_.restore(state);
   }
+  // A cycle without the vote and the guards.
+  static void step_unprotected(App& app, std::int64_t now_ns, const StepInputs& inputs,
+                               StepOutputs& outputs) {
+    app.run_cycle(now_ns, inputs, outputs, App::Protections::kOff);
+  }
+  // Every attitude with a sound quaternion passes: no expected error and no jump is beyond its limit.
+  static void widen_attitude_limits(App& app) {
+    for (const Limit limit : {Limit::kPredictedError_urad, Limit::kAttitudeJump_urad})
+      app.state_->limits[static_cast<std::size_t>(limit)] = gnc::kPi_urad;
+    app.state_.commit();
+  }
+  static void commit(App& app) { app.state_.commit(); }
   static constexpr std::size_t kStateBits = 8 * sizeof(Estimator::State);
 };
 

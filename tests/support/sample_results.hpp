@@ -19,8 +19,8 @@ inline CellResult sample_cell(Condition condition, double rcnn_deg, bool baselin
   cell.condition = condition;
   cell.sequences = 40;
   cell.frames = 2;
-  cell.rcnn = summarise(last_frame_errors_deg(frames, 2, Estimator::kRcnn));
-  cell.cnn = summarise(last_frame_errors_deg(frames, 2, Estimator::kCnn));
+  cell.rcnn = last_frame_summary(frames, 2, Estimator::kRcnn);
+  cell.cnn = last_frame_summary(frames, 2, Estimator::kCnn);
   if (baseline) {
     cell.baseline = summarise({1.0, 2.0, 90.0});
     cell.baseline_histogram = histogram({1.0, 2.0, 90.0});

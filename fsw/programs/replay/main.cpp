@@ -34,7 +34,8 @@ class ProgramModelStore final : public hal::ModelStore {
  public:
   hal::ModelBank bank(int index) override {
     const auto size = static_cast<std::size_t>(tumblesight_model_image_end - tumblesight_model_image);
-    return index == 0 ? hal::ModelBank{tumblesight_model_image, nullptr, size, size} : hal::ModelBank{};
+    return index == 0 ? hal::ModelBank{tumblesight_model_image, hal::BankWriting::kReadOnly, size, size}
+                      : hal::ModelBank{};
   }
 };
 

@@ -26,7 +26,8 @@ constexpr const char* kConfiguration = R"(
 
 }  // namespace
 
-dds_return_t Domain::open(std::uint32_t id) {
+dds_return_t Domain::open(std::uint32_t id, const char* partition) {
+  partition_ = partition;
   domain_ = dds_create_domain(id, kConfiguration);
   if (domain_ < 0) return domain_;
   participant_ = dds_create_participant(id, nullptr, nullptr);

@@ -18,15 +18,19 @@ class Domain {
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
-  // Creates domain and participant. Returns 0 or a negative DDS return code; dds_strretcode() gives its text.
-  [[nodiscard]] dds_return_t open(std::uint32_t id);
+  // Creates domain and participant. Endpoints meet those of the same `partition` only; empty: the default
+  // one; it must outlive the domain. Returns 0 or a negative DDS return code; dds_strretcode() gives its
+  // text.
+  [[nodiscard]] dds_return_t open(std::uint32_t id, const char* partition = "");
   // Deletes the domain with all its readers and writers.
   void close();
   dds_entity_t participant() const { return participant_; }
+  const char* partition() const { return partition_; }
 
  private:
   dds_entity_t domain_ = 0;
   dds_entity_t participant_ = 0;
+  const char* partition_ = "";
 };
 
 }  // namespace tumblesight::hal::dds

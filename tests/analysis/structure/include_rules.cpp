@@ -50,7 +50,8 @@ bool is_instruction_header(const std::string& path) {
 
 // The value types and checksums of gnc that the interfaces and platforms use.
 bool is_value_type(const std::string& path) {
-  return starts_with_any(path, {"gnc/numerics/", "gnc/attitude/"}) || path == "gnc/lidar/range_image.hpp";
+  return starts_with_any(path, {"gnc/numerics/", "gnc/attitude/"}) || path == "gnc/lidar/range_image.hpp" ||
+         path == "gnc/tracking/chaser_attitude.hpp";
 }
 
 struct Verdict {

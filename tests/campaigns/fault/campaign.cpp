@@ -51,15 +51,14 @@ class SharedTrials {
 }  // namespace
 
 const char* to_string(Place place) {
-  constexpr const char* kNames[] = {
-      "weights", "activations", "estimator state", "application state", "model descriptor",
-      "command", "frame"};
+  constexpr const char* kNames[] = {"weights",          "activations", "estimator state", "application state",
+                                    "model descriptor", "command",     "frame",           "two at a time"};
   return kNames[static_cast<int>(place)];
 }
 
 const char* to_string(Outcome outcome) {
-  constexpr const char* kNames[] = {"masked",       "recovered",  "safe",  "flagged wrong",
-                                    "silent wrong", "lost count", "crash", "hang"};
+  constexpr const char* kNames[] = {"masked",     "recovered", "safe", "flagged wrong", "silent wrong",
+                                    "lost count", "crash",     "hang", "unprotected"};
   return kNames[static_cast<int>(outcome)];
 }
 

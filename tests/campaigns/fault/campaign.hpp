@@ -1,4 +1,4 @@
-// Campaign: flips single bits in a running application and classifies the outcome of each flip.
+// Campaign: flips one or two bits in a running application and classifies the outcome.
 #pragma once
 
 #include <array>
@@ -19,9 +19,11 @@ enum class Place {
   kApplicationState,
   kModelDescriptor,
   kCommand,
-  kFrame
+  kFrame,
+  kTwo,  // two bits at a time, each in the weights, the estimator's or the application's state or the
+         // descriptor
 };
-inline constexpr int kPlaces = 7;
+inline constexpr int kPlaces = 8;
 const char* to_string(Place place);
 
 enum class Outcome : std::uint8_t {
@@ -34,8 +36,9 @@ enum class Outcome : std::uint8_t {
   kLostCount,     // a command was counted neither as accepted nor as refused
   kCrash,         // the process died
   kHang,          // a trial did not end
+  kUnprotected,   // afterwards a further flip is not corrected
 };
-inline constexpr int kOutcomes = 8;
+inline constexpr int kOutcomes = 9;
 const char* to_string(Outcome outcome);
 
 struct Trial {

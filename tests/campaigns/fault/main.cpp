@@ -31,7 +31,7 @@ nlohmann::ordered_json summary(const std::string& place, bool with_protections, 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App cli("Flips single bits in a running application; prints the outcomes, one line of JSON per place");
+  CLI::App cli("Flips bits in a running application; prints the outcomes, one line of JSON per place");
   std::string model = TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.tsm", target = "near_shoemaker";
   std::uint32_t first = 0, count = 100;
   std::uint64_t seed = 1;

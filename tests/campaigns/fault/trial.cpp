@@ -1,6 +1,7 @@
 #include "tests/campaigns/fault/trial.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -16,7 +17,7 @@ using fsw::Region;
 
 // A complete check of the model takes 24 cycles.
 constexpr std::size_t cycles_per_trial(Place place) {
-  return place == Place::kWeights ? 30 : 15;
+  return place == Place::kWeights || place == Place::kTwo ? 30 : 15;
 }
 constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 constexpr const char* kNoTarget = nullptr;
@@ -76,7 +77,8 @@ TrialRunner::TrialRunner(const Flight& flight, bool with_protections, bool hooke
     : flight_(flight), protected_(with_protections) {
   store_.fill(flight.model);
   if (hooked) AppMemory::estimator(*app_).network().use(hooked_kernels());
-  app_->init({&stopwatch_, &store_, &fsw::kTestKey}, kNoTarget, {protected_, protected_});
+  app_->init({&stopwatch_, &store_, &fsw::kTestKeys}, kNoTarget);
+  if (!protected_) AppMemory::widen_attitude_limits(*app_);
   fly_undisturbed();
 }
 
@@ -102,8 +104,16 @@ void TrialRunner::prepare(std::size_t cycle) {
   inputs_->frame = &frame;
 }
 
+void TrialRunner::step(std::size_t cycle) {
+  if (protected_) {
+    app_->step(time_of(cycle), *inputs_, *outputs_);
+  } else {
+    AppMemory::step_unprotected(*app_, time_of(cycle), *inputs_, *outputs_);
+  }
+}
+
 CycleResult TrialRunner::fly(std::size_t cycle) {
-  app_->step(time_of(cycle), *inputs_, *outputs_);
+  step(cycle);
   CycleResult result;
   result.q_lrf_trf = outputs_->attitude.q_lrf_trf;
   result.validity = outputs_->attitude.validity;
@@ -128,9 +138,8 @@ void TrialRunner::flip_one(Place place, std::mt19937& engine) {
       AppMemory::flip_state_bit(*app_, engine() % AppMemory::kStateBits);
       break;
     case Place::kApplicationState: {
-      const Region regions[] = {AppMemory::voted_state(*app_), AppMemory::events(*app_),
-                                AppMemory::guard(*app_)};
-      std::size_t bit = engine() % (8 * (regions[0].size + regions[1].size + regions[2].size));
+      const Region regions[] = {AppMemory::voted_state(*app_), AppMemory::guard(*app_)};
+      std::size_t bit = engine() % (8 * (regions[0].size + regions[1].size));
       for (const Region& region : regions) {
         if (bit < 8 * region.size) {
           region.flip(bit);
@@ -162,13 +171,44 @@ void TrialRunner::flip_one(Place place, std::mt19937& engine) {
       flip_any(AppMemory::region_of(frame));
       break;
     }
+    case Place::kTwo:
+      flip_two(engine);
+      break;
   }
+}
+
+void TrialRunner::flip_two(std::mt19937& engine) {
+  constexpr std::array kMemory{Place::kWeights, Place::kEstimatorState, Place::kApplicationState,
+                               Place::kModelDescriptor};
+  const Place one = kMemory[engine() % kMemory.size()];
+  const Place other = kMemory[engine() % kMemory.size()];
+  for (const Place place : {one, other}) {
+    if (place == Place::kWeights) {
+      std::vector<std::uint8_t>& memory = store_.banks[engine() % store_.banks.size()].memory;
+      Region{memory.data(), memory.size()}.flip(engine() % (8 * memory.size()));
+    } else {
+      flip_one(place, engine);
+    }
+  }
+}
+
+bool TrialRunner::corrects_further_flips(std::mt19937& engine) {
+  constexpr std::size_t kBitOfLstm = 5;
+  const hal::Telemetry before = outputs_->telemetry;
+  const Region voted = AppMemory::voted_state(*app_);
+  voted.flip(engine() % (8 * voted.size));
+  AppMemory::flip_state_bit(*app_, kBitOfLstm);
+  prepare(cycles_flown_);
+  step(cycles_flown_);
+  const hal::Telemetry& after = outputs_->telemetry;
+  return after.memory_corrections == before.memory_corrections + 1 &&
+         after.states_restored == before.states_restored + 1;
 }
 
 Trial TrialRunner::run(Place place, std::uint64_t seed, std::uint32_t number) {
   std::mt19937 engine(
       static_cast<std::uint32_t>(mixed(seed * 1000003 + static_cast<std::uint64_t>(place)) + mixed(number)));
-  const std::size_t first = engine() % (flight_.frames.size() - cycles_per_trial(place));
+  const std::size_t first = engine() % (flight_.frames.size() - cycles_per_trial(place) - 1);
   // Written in place, because the application has pointers into the banks.
   for (auto& bank : store_.banks) std::copy(flight_.model.begin(), flight_.model.end(), bank.memory.begin());
   hook.countdown = -1;
@@ -181,7 +221,10 @@ Trial TrialRunner::run(Place place, std::uint64_t seed, std::uint32_t number) {
     results.push_back(fly(cycle));
   }
   cycles_flown_ = first + cycles_per_trial(place);
-  return judged(first, results);
+  Trial trial = judged(first, results);
+  const bool ended_well = trial.outcome != Outcome::kSilentWrong && trial.outcome != Outcome::kLostCount;
+  if (protected_ && !corrects_further_flips(engine) && ended_well) trial.outcome = Outcome::kUnprotected;
+  return trial;
 }
 
 bool TrialRunner::noticed() const {

@@ -1,4 +1,5 @@
-// TrialRunner: runs trials. A trial flips one bit and runs the following cycles.
+// TrialRunner: runs trials. A trial flips one or two bits and runs the following cycles. One more cycle shows
+// whether the protections still work.
 #pragma once
 
 #include <memory>
@@ -33,9 +34,13 @@ class TrialRunner {
   // Keeps the application before each cycle of an undisturbed run, and the cycle's result.
   void fly_undisturbed();
   void prepare(std::size_t cycle);
+  void step(std::size_t cycle);
   CycleResult fly(std::size_t cycle);
   void flip_one(Place place, std::mt19937& engine);
-  Trial judged(std::size_t first, const std::vector<CycleResult>& results) const;
+  void flip_two(std::mt19937& engine);
+  // Whether flips in the voted state and in the estimator's state are corrected in the next cycle.
+  bool corrects_further_flips(std::mt19937& engine);
+  Trial judged(std::size_t first, const std::vector<CycleResult>& results) const;  // without the last cycle
   bool noticed() const;
   bool counts_every_command(std::size_t cycles) const;
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/app_memory.hpp"
 #include "tests/support/test_models.hpp"
 
 namespace tumblesight::fsw {
@@ -38,12 +39,17 @@ void AppFixture::init_with_model() {
   init(store);
 }
 
-void AppFixture::init(hal::fake::FakeModelStore& models, const char* expected_target) {
-  app->init({&stopwatch, &models, &kTestKey}, expected_target, protections);
+void AppFixture::init(hal::ModelStore& models, const char* expected_target) {
+  boot(*app, {&stopwatch, &models, &kTestKeys, persistent, reset_cause}, expected_target);
+}
+
+void AppFixture::boot(AttitudeInitApp& which, const hal::Platform& platform, const char* expected_target) {
+  which.init(platform, expected_target);
+  if (!checks_attitudes) AppMemory::widen_attitude_limits(which);
 }
 
 hal::CommandPacket AppFixture::command(FunctionCode function, const std::vector<std::uint8_t>& arguments) {
-  return signed_with(kTestKey, ++command_counter, packet_of(static_cast<std::uint8_t>(function), arguments));
+  return signed_as(signature, ++command_counter, packet_of(static_cast<std::uint8_t>(function), arguments));
 }
 
 const StepOutputs& AppFixture::step(const StepInputs& inputs) {

@@ -29,7 +29,10 @@ class AppFixture : public ::testing::Test {
 
   // Boots with the test's model in both banks.
   void init_with_model();
-  void init(hal::fake::FakeModelStore& models, const char* expected_target = kTestTarget);
+  void init(hal::ModelStore& models, const char* expected_target = kTestTarget);
+
+  // `which` with the limits that the fixture asks for.
+  void boot(AttitudeInitApp& which, const hal::Platform& platform, const char* expected_target = kTestTarget);
 
   // A signed packet with the next counter.
   hal::CommandPacket command(FunctionCode function, const std::vector<std::uint8_t>& arguments = {});
@@ -57,8 +60,12 @@ class AppFixture : public ::testing::Test {
   hal::fake::FakeStopwatch stopwatch;
   hal::fake::FakeModelStore store;
   std::uint32_t command_counter = 0;  // of the last command
-  // Without attitude checks, because the attitudes of a random network jump.
-  Protections protections{true, false};
+  Signature signature;                // of all commands
+  hal::PersistentStore* persistent = nullptr;
+  hal::ResetCause reset_cause = hal::ResetCause::kPowerOn;
+  // init() widens the limits of the attitude checks otherwise, because the attitudes of a random network
+  // jump.
+  bool checks_attitudes = false;
   std::int64_t now_ns = kStart_ns;
   std::uint32_t sequence_number = 100;  // of the last good frame
 };

@@ -113,6 +113,18 @@ TEST_F(Boot, WithoutAModelTheModeIsSafeWithItsCause) {
   EXPECT_EQ(events(EventId::kCommandNoModel), 1);
 }
 
+TEST_F(Boot, WithoutAModelFaultsStillEnd) {
+  spoil(0);
+  spoil(1);
+  init(store);
+  StepInputs late;
+  late.cycle_slips = 1;
+  for (int cycle = 0; cycle < 3; ++cycle) step(late);
+  EXPECT_EQ(out->telemetry.faults_persisting, bit_of(Fault::kSlip)) << "no model was lost";
+  for (int cycle = 0; cycle < 3; ++cycle) step(StepInputs{});
+  EXPECT_EQ(out->telemetry.faults_persisting, 0U);
+}
+
 TEST_F(Boot, EmptyBanksOrAnotherTargetLeadToSafe) {
   hal::fake::FakeModelStore empty;
   init(empty);
@@ -123,6 +135,31 @@ TEST_F(Boot, EmptyBanksOrAnotherTargetLeadToSafe) {
   EXPECT_EQ(app->boot_status(0), gnc::ModelStatus::kBadTarget);
   init(store);
   EXPECT_EQ(app->mode(), Mode::kRun) << "every init() boots again";
+}
+
+TEST_F(Boot, TargetIsComparedToTheEndOfItsName) {
+  init(store, "test_craft_2");
+  EXPECT_EQ(app->boot_status(0), gnc::ModelStatus::kBadTarget);
+  init(store, std::string(100, 'x').c_str());
+  EXPECT_EQ(app->boot_status(0), gnc::ModelStatus::kBadTarget);
+  std::vector<std::uint8_t> image(gnc::kModelImageSize<gnc::FixedPoint>);
+  gnc::NetworkWeights<gnc::FixedPoint> weights;
+  gnc::ModelHeader header;
+  ASSERT_EQ(gnc::read_model_image<gnc::FixedPoint>(test_model_image().data(), test_model_image().size(),
+                                                   nullptr, header, weights),
+            gnc::ModelStatus::kOk);
+  const std::string longest(header.target.size() - 1, 'x');
+  ASSERT_TRUE(gnc::set_target(header, longest.c_str()));
+  ASSERT_EQ(gnc::write_model_image(header, weights, image.data(), image.size()), image.size());
+  store.fill(image);
+  init(store, longest.c_str());
+  EXPECT_EQ(app->boot_status(0), gnc::ModelStatus::kOk);
+  for (const std::size_t more : {1U, 2U, 70U}) {
+    init(store, (longest + std::string(more, 'x')).c_str());
+    EXPECT_EQ(app->boot_status(0), gnc::ModelStatus::kBadTarget) << "the name goes on by " << more;
+  }
+  init(store, nullptr);
+  EXPECT_EQ(app->boot_status(0), gnc::ModelStatus::kOk) << "any target";
 }
 
 TEST_F(Boot, PlatformWithoutStopwatchOrBanksIsABugOfTheCaller) {

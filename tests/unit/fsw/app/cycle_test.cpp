@@ -88,10 +88,10 @@ TEST_F(Cycle, CommandsBeyondTheLimitWaitForTheNextCycle) {
 }
 
 TEST_F(Cycle, BacklogOfFramesDrains) {
-  for (std::uint32_t number = 1; number <= 4; ++number) lidar.add(good_frame(number, now_ns));
+  for (std::uint32_t number = 1; number <= 4; ++number) lidar.add(good_frame(number, now_ns, number));
   for (std::uint32_t number = 5; !link.attitudes.size() || lidar.waiting() > 0; ++number) {
     ASSERT_LT(number, 12U);
-    lidar.add(good_frame(number, next_time_ns()));
+    lidar.add(good_frame(number, next_time_ns(), number));
     run();
   }
   EXPECT_EQ(last_validity(), Validity::kValid);

@@ -3,47 +3,98 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace tumblesight::fsw {
 namespace {
 
 using Change = FaultMonitor::Change;
 
-TEST(FaultMonitor, EveryFaultPersistsAfterTheCyclesOfItsRuleAndEndsWhenItIsGone) {
+// The change of each cycle: '.' none, 'P' persists, 'o' over. `cycles`: 'x' with the fault, '-' without.
+std::string changes(FaultMonitor& monitor, Fault fault, const std::string& cycles) {
+  std::string changes;
+  for (const char cycle : cycles) {
+    const Change change = monitor.observe(fault, cycle == 'x');
+    changes += change == Change::kNone ? '.' : change == Change::kPersists ? 'P' : 'o';
+  }
+  return changes;
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+TEST(FaultMonitor, EveryFaultPersistsByItsRuleAndEndsAfterItsGoodCycles) {
   for (const config::FaultRule& rule : config::kFaultRules) {
     FaultMonitor monitor;
-    for (int cycle = 1; cycle < rule.persistence_cycles; ++cycle)
-      ASSERT_EQ(monitor.observe(rule.fault, true), Change::kNone);
+    EXPECT_EQ(changes(monitor, rule.fault, std::string(rule.cycles - 1U, 'x')),
+              std::string(rule.cycles - 1U, '.'));
     EXPECT_EQ(monitor.persisting(), 0U);
-    EXPECT_EQ(monitor.observe(rule.fault, true), Change::kPersists);
+    EXPECT_EQ(changes(monitor, rule.fault, "x"), "P");
     EXPECT_EQ(monitor.persisting(), bit_of(rule.fault));
-    EXPECT_EQ(monitor.observe(rule.fault, false), Change::kOver);
+    EXPECT_EQ(changes(monitor, rule.fault, std::string(rule.good_cycles - 1U, '-')),
+              std::string(rule.good_cycles - 1U, '.'));
+    EXPECT_EQ(monitor.persisting(), bit_of(rule.fault));
+    EXPECT_EQ(changes(monitor, rule.fault, "-"), "o");
     EXPECT_EQ(monitor.persisting(), 0U);
-    EXPECT_EQ(monitor.observe(rule.fault, false), Change::kNone);
+    EXPECT_EQ(changes(monitor, rule.fault, "-"), ".");
+  }
+}
+
+// The fault in the first cycle of the window still counts in the last one, and no longer in the next.
+TEST(FaultMonitor, EveryRuleLooksBackOverItsWindow) {
+  for (const config::FaultRule& rule : config::kFaultRules) {
+    if (rule.cycles == 1) continue;
+    const auto between = static_cast<std::size_t>(rule.window_cycles - rule.cycles);
+    const std::string rest(rule.cycles - 1U, 'x'), quiet(rule.cycles - 1U, '.');
+    FaultMonitor within, beyond;
+    EXPECT_EQ(changes(within, rule.fault, 'x' + std::string(between, '-') + rest).back(), 'P');
+    EXPECT_EQ(changes(beyond, rule.fault, 'x' + std::string(between + 1, '-') + rest).substr(between + 2),
+              quiet);
+    EXPECT_EQ(changes(beyond, rule.fault, "x"), "P");
   }
 }
 
 TEST(FaultMonitor, RespondsAgainAfterTheSameNumberOfCycles) {
   FaultMonitor monitor;
-  int responses = 0;
-  for (int cycle = 0; cycle < 9; ++cycle)
-    responses += monitor.observe(Fault::kAttitudeJump, true) == Change::kPersists;
-  EXPECT_EQ(responses, 3);
+  EXPECT_EQ(changes(monitor, Fault::kAttitudeJump, "xxxxxxxxx"), "..P..P..P");
 }
 
-TEST(FaultMonitor, AGoodCycleRestartsTheCount) {
+TEST(FaultMonitor, IntermittentFaultsPersistAsLongAsTheyRecur) {
+  FaultMonitor every_second, three_of_four, every_third;
+  EXPECT_EQ(changes(every_second, Fault::kOutage, repeated("x-", 8)), "......P.......P.");
+  EXPECT_NE(every_second.persisting(), 0U);
+  EXPECT_EQ(changes(every_second, Fault::kOutage, "--"), "..");
+  EXPECT_EQ(changes(every_second, Fault::kOutage, "--"), "o.") << "four good cycles, with the one before";
+  EXPECT_EQ(changes(three_of_four, Fault::kOutage, repeated("xxx-", 2)), "....P...");
+  EXPECT_EQ(changes(every_third, Fault::kOutage, repeated("x--", 20)), std::string(60, '.'));
+}
+
+TEST(FaultMonitor, TrackThatRestartsAgainAndAgainIsAFault) {
   FaultMonitor monitor;
-  for (int i = 0; i < 20; ++i) {
-    EXPECT_EQ(monitor.observe(Fault::kAttitudeJump, true), Change::kNone);
-    EXPECT_EQ(monitor.observe(Fault::kAttitudeJump, true), Change::kNone);
-    EXPECT_EQ(monitor.observe(Fault::kAttitudeJump, false), Change::kNone);
-  }
+  EXPECT_EQ(changes(monitor, Fault::kTrackRestarts, "x-----x-----x"), "............P");
+  EXPECT_EQ(changes(monitor, Fault::kTrackRestarts, std::string(15, '-') + "x"), std::string(16, '.'));
+  EXPECT_EQ(changes(monitor, Fault::kTrackRestarts, std::string(16, '-')), std::string(15, '.') + "o");
+}
+
+TEST(FaultMonitor, HeldFaultIsNeitherOverNorRespondedToAgain) {
+  FaultMonitor monitor;
+  monitor.hold(Fault::kModelCorrupted);
+  EXPECT_EQ(monitor.persisting(), 0U) << "only what has persisted is held";
+  EXPECT_EQ(changes(monitor, Fault::kOutage, "xxxx---"), "...P...");
+  monitor.hold(Fault::kOutage);
+  EXPECT_EQ(changes(monitor, Fault::kOutage, "---"), "...");
+  EXPECT_NE(monitor.persisting(), 0U);
+  EXPECT_EQ(changes(monitor, Fault::kOutage, "-"), "o");
 }
 
 TEST(FaultMonitor, FaultsAreCountedSeparately) {
   FaultMonitor monitor;
-  for (int i = 0; i < 2; ++i) EXPECT_EQ(monitor.observe(Fault::kAttitudeJump, true), Change::kNone);
-  EXPECT_EQ(monitor.observe(Fault::kSlip, true), Change::kNone);
-  EXPECT_EQ(monitor.observe(Fault::kAttitudeJump, true), Change::kPersists);
+  EXPECT_EQ(changes(monitor, Fault::kAttitudeJump, "xx"), "..");
+  EXPECT_EQ(changes(monitor, Fault::kSlip, "x"), ".");
+  EXPECT_EQ(changes(monitor, Fault::kAttitudeJump, "x"), "P");
 }
 
 TEST(FaultMonitor, DisabledResponsesAreStillReported) {

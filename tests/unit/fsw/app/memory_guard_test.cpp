@@ -20,7 +20,7 @@ class MemoryGuardTest : public AppFixture {
     auto twin = std::make_unique<AttitudeInitApp>();
     hal::fake::FakeModelStore models;
     models.fill(test_model_image());
-    twin->init({&stopwatch, &models, &kTestKey}, kTestTarget, protections);
+    boot(*twin, {&stopwatch, &models, &kTestKeys});
     auto twin_out = std::make_unique<StepOutputs>();
     for (std::uint32_t number = 101; number <= sequence_number + 1; ++number) {
       StepInputs inputs;
@@ -139,13 +139,131 @@ TEST_F(MemoryGuardTest, FlippedBitOfTheSecondCopyIsRepairedFromTheBankInUse) {
   EXPECT_EQ(bank(1), test_model_image());
 }
 
-// Verifies TS-FDIR-040.
-TEST_F(MemoryGuardTest, ReadOnlySecondCopyIsNotRepaired) {
+// Verifies TS-FDIR-047.
+TEST_F(MemoryGuardTest, CorruptedReadOnlySecondCopyIsReportedAsLost) {
   store.banks[1].writable = false;
   bank(1)[0] ^= 1;
   steps_of_a_pass();
   EXPECT_EQ(out->telemetry.model_blocks_repaired, 0U);
+  EXPECT_EQ(out->telemetry.model_blocks_lost, 1U);
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kEmpty);
+  EXPECT_EQ(out->telemetry.second_copy, 0U);
   EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Verifies TS-FDIR-047.
+TEST_F(MemoryGuardTest, CorruptedFallbackIsReportedWithinAPassAndNotUsed) {
+  bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  init(store);
+  step_good();
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood);
+  steps_of_a_pass();
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood) << "checked against its own table";
+  hit_block(1, 150);
+  int reports = 0;
+  for (std::uint32_t block = 0; block <= ModelBanks::kBlocks;
+       block += AppMemory::state(*app).limit(Limit::kScrubBlocks)) {
+    step_good();
+    reports += events(EventId::kFallbackLost);
+    if (events(EventId::kFallbackLost) == 0) continue;
+    EXPECT_EQ(argument(EventId::kFallbackLost, 0), 1);
+    EXPECT_EQ(argument(EventId::kModelBlockLost, 1), 150);
+  }
+  EXPECT_EQ(reports, 1);
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kEmpty);
+  EXPECT_EQ(out->telemetry.faults_persisting, 0U) << "the model in use is good";
+  EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Verifies TS-FDIR-047.
+TEST_F(MemoryGuardTest, ModelThatIsNoLongerInUseStaysAFallbackThatIsChecked) {
+  const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  bank(1) = other;
+  init(store);
+  std::vector<std::uint8_t> arguments;
+  append_u32(arguments, gnc::model_image_crc32(other.data()));
+  step_commands(
+      {set_mode(Mode::kStandby), command(FunctionCode::kModelActivate, arguments), set_mode(Mode::kRun)});
+  ASSERT_EQ(out->telemetry.bank_in_use, 1U);
+  steps_of_a_pass();
+  EXPECT_EQ(out->telemetry.bank_status[0], BankStatus::kGood);
+  hit_block(0, 7);
+  steps_of_a_pass();
+  EXPECT_EQ(out->telemetry.bank_status[0], BankStatus::kEmpty);
+}
+
+// Verifies TS-FDIR-040, TS-FDIR-047.
+TEST_F(MemoryGuardTest, FlippedBitOfTheFallbacksTableIsRepairedUnlessTheFallbackIsLostToo) {
+  bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  init(store);
+  step_good();
+  constexpr std::size_t kBitOfItsTable = 8 * (sizeof(ModelBanks) / 2 + 40);
+  AppMemory::guard(*app).flip(kBitOfItsTable);
+  step_good();
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 1U);
+  EXPECT_EQ(argument(EventId::kModelTableRebuilt, 0), 1);
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood);
+  hit_block(1, 200);
+  AppMemory::guard(*app).flip(kBitOfItsTable);
+  step_good();
+  EXPECT_EQ(argument(EventId::kFallbackLost, 0), 1);
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 1U);
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kEmpty);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Verifies TS-FDIR-015. The vote cannot correct the same bit in two copies.
+TEST_F(MemoryGuardTest, ModeThatIsNoneGoesSafe) {
+  for (const int number : {4, 32, 255}) {
+    init(store);
+    step_good();
+    AppMemory::state(*app).mode = static_cast<Mode>(number);
+    AppMemory::commit(*app);
+    command_counter = 0;
+    step_commands({command(FunctionCode::kNoop)});
+    EXPECT_EQ(app->mode(), Mode::kSafe) << number;
+    EXPECT_EQ(out->telemetry.safe_cause, Cause::kFault);
+    EXPECT_EQ(out->telemetry.safe_fault, Fault::kStateLost);
+    EXPECT_EQ(events(EventId::kSafeEntered), 1);
+    EXPECT_EQ(events(EventId::kCommandAccepted), 1) << "SAFE accepts commands";
+  }
+}
+
+// Verifies TS-FDIR-015.
+TEST_F(MemoryGuardTest, IndicesOutOfRangeAreBoundedAndGoSafe) {
+  for (const std::uint32_t bank : {2U, 0x8000'0000U}) {
+    init(store);
+    step_good();
+    AppMemory::state(*app).banks.in_use = bank;
+    AppMemory::commit(*app);
+    step_good();
+    EXPECT_EQ(app->mode(), Mode::kSafe);
+    EXPECT_EQ(out->telemetry.bank_in_use, 0U) << "the image that the estimator has loaded";
+    EXPECT_EQ(out->telemetry.bank_status[0], BankStatus::kGood);
+  }
+  init(store);
+  step_good();
+  AppMemory::state(*app).banks.next_block = ModelBanks::kBlocks;
+  AppMemory::commit(*app);
+  step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(out->telemetry.model_blocks_lost, 0U);
+}
+
+// Verifies TS-FDIR-015.
+TEST_F(MemoryGuardTest, LimitsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
+  for (const config::LimitRule& rule : config::kLimitRules) {
+    for (const std::uint32_t value : {rule.lowest - 1, rule.highest + 1, UINT32_MAX}) {
+      init(store);
+      step_good();
+      std::uint32_t& limit = AppMemory::state(*app).limits[static_cast<std::size_t>(rule.limit)];
+      limit = value;
+      AppMemory::commit(*app);
+      step_good();
+      EXPECT_EQ(app->mode(), Mode::kSafe);
+      EXPECT_EQ(limit, rule.initial);
+    }
+  }
 }
 
 // Verifies TS-FDIR-040.
@@ -174,6 +292,12 @@ TEST_F(MemoryGuardTest, SameBlockHitInBothBanksSwitchesOrGoesSafe) {
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kSafe));
   step_commands({set_mode(Mode::kStandby), set_mode(Mode::kRun)});
   EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "a damaged model does not run again";
+  for (int i = 0; i < 5; ++i) {
+    step(StepInputs{});
+    EXPECT_EQ(events(EventId::kFaultOver), 0) << "the model is still lost";
+    EXPECT_EQ(events(EventId::kFaultPersists), 0) << "one response";
+    EXPECT_TRUE(out->telemetry.faults_persisting & bit_of(Fault::kModelCorrupted));
+  }
 }
 
 // Verifies TS-FDIR-045.
@@ -202,6 +326,28 @@ TEST_F(MemoryGuardTest, HitReadOnlyBankWithoutSecondCopyLeadsToSafe) {
   bank(0)[5'000] ^= 1;
   for (int i = 0; i < 30 && app->mode() == Mode::kRun; ++i) step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
+}
+
+// Verifies TS-FDIR-040.
+TEST_F(MemoryGuardTest, TableAndModelHitTogetherAreRepairedFromTheSecondCopy) {
+  hit_block(0, 200);
+  hit_table();
+  expect_undisturbed_step();
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 1U);
+  steps_of_a_pass();
+  EXPECT_EQ(out->telemetry.model_blocks_repaired, 1U);
+  EXPECT_EQ(out->telemetry.bank_switches, 0U);
+  EXPECT_EQ(bank(0), test_model_image());
+}
+
+// Verifies TS-FDIR-040.
+TEST_F(MemoryGuardTest, TablesHitTogetherAreRebuiltFromTheirImages) {
+  hit_table();
+  AppMemory::guard(*app).flip(8 * (sizeof(ModelBanks) / 2 + 40));
+  expect_undisturbed_step();
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 2U);
+  steps_of_a_pass();
+  EXPECT_EQ(out->telemetry.model_blocks_repaired + out->telemetry.model_blocks_lost, 0U);
 }
 
 // Verifies TS-FDIR-045.
@@ -259,6 +405,28 @@ TEST_F(MemoryGuardTest, HitReadOnlyBankIsReplacedByItsSecondCopy) {
     EXPECT_EQ(out->telemetry.second_copy, 0U) << "the header has the same CRC, but the image is not good";
     EXPECT_EQ(app->mode(), Mode::kRun);
   }
+}
+
+// Verifies TS-FDIR-045.
+TEST_F(MemoryGuardTest, BankInUseWhoseMemoryIsWornOutIsReplacedByItsSecondCopy) {
+  class WornStore final : public hal::ModelStore {
+   public:
+    explicit WornStore(hal::fake::FakeModelStore& store) : store_(store) {}
+    hal::ModelBank bank(int index) override { return store_.bank(index); }
+    hal::WriteStatus write(int, std::uint32_t, const std::uint8_t*, std::uint32_t) override {
+      return hal::WriteStatus::kFailed;
+    }
+
+   private:
+    hal::fake::FakeModelStore& store_;
+  } worn(store);
+  init(worn);
+  step_good();
+  hit_block(0, 20);
+  steps_of_a_pass();
+  EXPECT_EQ(out->telemetry.model_blocks_repaired, 0U);
+  EXPECT_EQ(out->telemetry.bank_in_use, 1U);
+  EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
 // Verifies TS-FDIR-045.
@@ -371,12 +539,11 @@ TEST_F(MemoryGuardTest, ActivationsAreRewritten) {
   }
 }
 
+// What tests/campaigns/fault compares with.
 TEST_F(MemoryGuardTest, WithoutProtectionsAFlipPersists) {
-  protections = {false, false};
-  init(store);
-  step_good();
   AppMemory::state(*app).mode = Mode::kSafe;
-  step_good();
+  now_ns = next_time_ns();
+  AppMemory::step_unprotected(*app, now_ns, StepInputs{}, *out);
   EXPECT_EQ(app->mode(), Mode::kSafe);
   EXPECT_EQ(out->telemetry.memory_corrections, 0U);
 }

@@ -21,7 +21,7 @@ class Supervision : public AppFixture {
 };
 
 // Verifies TS-FDIR-110.
-TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndEndsWithAGoodFrame) {
+TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndEndsAfterFourGoodFrames) {
   for (int cycle = 1; cycle <= 4; ++cycle) step_good();
   EXPECT_FALSE(persists(Fault::kOutage));
   for (int cycle = 1; cycle <= 3; ++cycle) {
@@ -34,9 +34,62 @@ TEST_F(Supervision, OutageIsAFaultAfterFourCyclesAndEndsWithAGoodFrame) {
   EXPECT_TRUE(persists(Fault::kOutage)) << "a refused frame does not end the outage";
   EXPECT_EQ(argument(EventId::kFaultPersists, 0), static_cast<int>(Fault::kOutage));
   EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
+  for (int good = 1; good <= 3; ++good) {
+    step_good();
+    EXPECT_TRUE(persists(Fault::kOutage)) << good;
+  }
   step_good();
   EXPECT_FALSE(persists(Fault::kOutage));
   EXPECT_EQ(argument(EventId::kFaultOver, 0), static_cast<int>(Fault::kOutage));
+}
+
+// Verifies TS-FDIR-050, TS-FDIR-110.
+TEST_F(Supervision, EverySecondFrameLostIsAnOutage) {
+  int cycles = 0;
+  while (!persists(Fault::kOutage) && cycles < 8) {
+    step(StepInputs{});
+    if (!persists(Fault::kOutage)) step_good();
+    cycles += 2;
+  }
+  EXPECT_EQ(cycles, 8);
+  for (int i = 0; i < 20; ++i) {
+    step_good();
+    EXPECT_TRUE(persists(Fault::kOutage));
+    step(StepInputs{});
+    EXPECT_TRUE(persists(Fault::kOutage));
+  }
+}
+
+// Verifies TS-FDIR-050, TS-FDIR-110.
+TEST_F(Supervision, ThreeOfFourFramesLostIsAnOutage) {
+  for (int lost = 0; lost < 3; ++lost) step(StepInputs{});
+  step_good();
+  EXPECT_FALSE(persists(Fault::kOutage));
+  step(StepInputs{});
+  EXPECT_TRUE(persists(Fault::kOutage));
+}
+
+// Verifies TS-FDIR-180.
+TEST_F(Supervision, TrackThatRestartsAgainAndAgainIsAFault) {
+  for (int restart = 1; restart <= 3; ++restart) {
+    for (int cycle = 0; cycle < 4; ++cycle) step_good();
+    EXPECT_FALSE(persists(Fault::kTrackRestarts));
+    now_ns -= 3 * config::kFramePeriod_ns;  // a cycle time that goes back restarts the track
+    step(StepInputs{});
+    EXPECT_EQ(persists(Fault::kTrackRestarts), restart == 3);
+  }
+  EXPECT_EQ(argument(EventId::kFaultPersists, 0), static_cast<int>(Fault::kTrackRestarts));
+  for (int cycle = 0; cycle < 15; ++cycle) step_good();
+  EXPECT_TRUE(persists(Fault::kTrackRestarts));
+  step_good();
+  EXPECT_FALSE(persists(Fault::kTrackRestarts));
+}
+
+// Verifies TS-FDIR-180.
+TEST_F(Supervision, RestartsByCommandAreNoFault) {
+  for (int cycle = 0; cycle < 8; ++cycle) step_commands({command(FunctionCode::kResetSequence)});
+  EXPECT_GE(out->telemetry.estimator_resets, 8U);
+  EXPECT_FALSE(persists(Fault::kTrackRestarts));
 }
 
 // Verifies TS-FDIR-110.
@@ -58,7 +111,10 @@ TEST_F(Supervision, SlipsAreCountedReportedAndFlaggedIfTheyPersist) {
   EXPECT_TRUE(persists(Fault::kSlip));
   EXPECT_EQ(argument(EventId::kTimingFaultPersists, 0), static_cast<int>(Fault::kSlip));
   EXPECT_TRUE(hal::depends_on_wall_clock(event(EventId::kTimingFaultPersists)->id));
-  step(StepInputs{});
+  for (int good = 1; good <= 3; ++good) {
+    EXPECT_TRUE(persists(Fault::kSlip));
+    step(StepInputs{});
+  }
   EXPECT_EQ(argument(EventId::kTimingFaultOver, 0), static_cast<int>(Fault::kSlip));
 }
 
@@ -101,7 +157,7 @@ TEST_F(Supervision, InferenceTimeGoesToTelemetryOnly) {
   auto slow = std::make_unique<AttitudeInitApp>();
   hal::fake::FakeStopwatch slow_stopwatch;
   slow_stopwatch.tick_ns = 400'000'000;
-  slow->init({&slow_stopwatch, &store, &kTestKey}, kTestTarget, protections);
+  boot(*slow, {&slow_stopwatch, &store, &kTestKeys});
   const gnc::RangeImage frame = good_frame(sequence_number, now_ns, sequence_number - 1);
   StepInputs inputs;
   inputs.frame = &frame;
@@ -127,7 +183,7 @@ TEST_F(Supervision, StopwatchJumpingFarAheadSaturates) {
 class DoubtfulAttitudes : public Supervision {
  protected:
   DoubtfulAttitudes() {
-    protections.attitude = true;
+    checks_attitudes = true;
     init_with_model();
   }
   // A frame whose content makes the random network give another attitude than the previous frame.
@@ -206,7 +262,7 @@ class UnsoundAttitudes : public DoubtfulAttitudes {
   static constexpr int kBehindFirstFrame = 3,
                        kBehindSecondFrame = 5;  // readings: one at the start of a step, two per frame
 
-  UnsoundAttitudes() { app->init({&strike, &store, &kTestKey}, kTestTarget, protections); }
+  UnsoundAttitudes() { app->init({&strike, &store, &kTestKeys}, kTestTarget); }
   gnc::AttitudeEstimate& estimate() { return AppMemory::estimate(*app); }
   void strike_next_step(int at_look, std::function<void()> what) {
     strike.strike = std::move(what);

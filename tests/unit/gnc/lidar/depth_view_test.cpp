@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "gnc/lidar/depth_image.hpp"
@@ -160,6 +161,112 @@ TEST(DepthView, IsTheSameWithPartsOfTheChaserInTheFieldOfView) {
   const auto image = image_of(occluded);
   EXPECT_EQ(image->depth, expected->depth);
   EXPECT_TRUE(image->r_lrf_view == expected->r_lrf_view);
+}
+
+// Position of a return in the image, in cells.
+Eigen::Vector2d in_cells(const RangeImage& frame, int ray, const DepthImage& image,
+                         const DepthProjection& projection) {
+  const Eigen::Vector3d point_m =
+      frame.ranges[ray] / 128.0 * ray_of(frame.fov_urad, ray / kRays, ray % kRays).normalized();
+  const Eigen::Vector3d in_view_m = converted<float>(image.r_lrf_view).cast<double>().transpose() * point_m;
+  constexpr double kMiddle = DepthImage::kSide / 2;
+  const double cells_per_m = DepthImage::kSide / (1e-3 * projection.swath_mm);
+  return {kMiddle + in_view_m.x() * cells_per_m, kMiddle - in_view_m.z() * cells_per_m};
+}
+
+// Every filled cell is within `kTolerance` cells of a return, and every return that lies in the image by more
+// than that has a filled cell as close. Returns the number of those.
+int expect_returns_where_they_are(const RangeImage& frame, const DepthProjection& projection) {
+  constexpr double kTolerance = 1.0;
+  constexpr int kSide = DepthImage::kSide;
+  const std::unique_ptr<DepthImage> image = image_of(frame, projection);
+  std::vector<bool> explained(DepthImage::kCells, false);
+  int inside = 0;
+  for (int ray = 0; ray < kRays * kRays; ++ray) {
+    if (frame.ranges[ray] == 0) continue;
+    const Eigen::Vector2d at = in_cells(frame, ray, *image, projection);
+    if ((at.array() < -kTolerance).any() || (at.array() >= kSide + kTolerance).any()) continue;
+    bool filled = false;
+    for (int row = 0; row < kSide; ++row) {
+      for (int column = 0; column < kSide; ++column) {
+        const Eigen::Vector2d from_middle = at - Eigen::Vector2d(column + 0.5, row + 0.5);
+        if (from_middle.cwiseAbs().maxCoeff() > 0.5 + kTolerance) continue;
+        const auto cell = static_cast<std::size_t>(row * kSide + column);
+        explained[cell] = true;
+        filled = filled || image->depth[cell] > 0;
+      }
+    }
+    const bool well_inside = (at.array() > kTolerance).all() && (at.array() < kSide - kTolerance).all();
+    if (!well_inside) continue;
+    ++inside;
+    EXPECT_TRUE(filled) << "ray " << ray << " at " << at.transpose();
+  }
+  for (std::size_t cell = 0; cell < DepthImage::kCells; ++cell) {
+    EXPECT_TRUE(explained[cell] || image->depth[cell] == 0)
+        << "nothing is at row " << cell / kSide << ", column " << cell % kSide;
+  }
+  return inside;
+}
+
+// Verifies TS-LID-095.
+// A small target far away: the whole field of view is a hundred times wider than the image, so the
+// coordinates of stray returns need more than 16 bits.
+TEST(DepthView, StrayReturnsFarOutsideTheImageDoNotAppearInIt) {
+  for (const std::uint32_t swath_mm : {500U, 1'250U, 5'000U}) {
+    for (const int column : {64, 100, 112}) {
+      for (const int row : {64, 20, 108}) {
+        SCOPED_TRACE(std::to_string(swath_mm) + ' ' + std::to_string(column) + ' ' + std::to_string(row));
+        RangeImage frame;
+        frame.rays = kRays;
+        frame.fov_urad = kMaxFov_urad;
+        for (int i = -1; i < 1; ++i) {
+          for (int j = -1; j < 1; ++j)
+            frame.ranges[(row + i) * kRays + column + j] = static_cast<std::uint16_t>(110 * 128 + j);
+        }
+        // Around the target, so that they leave the centroid near it, and out to the edges.
+        const int reach = std::min({column, row, kRays - 1 - column, kRays - 1 - row});
+        for (int step = 5; step <= reach; step += 5) {
+          for (const int sign : {-1, 1}) {
+            frame.ranges[(row + sign * step) * kRays + column + step] = 110 * 128 + 3;
+            frame.ranges[(row + sign * step) * kRays + column - step] = 110 * 128 + 3;
+          }
+        }
+        EXPECT_GT(expect_returns_where_they_are(frame, {swath_mm, swath_mm / 5}), 0);
+      }
+    }
+  }
+}
+
+// Verifies TS-LID-095.
+// The strays move the centroid, and with it the view, so not every image shows the target.
+TEST(DepthView, StrayReturnsAtTheEdgesOfTheFieldOfViewDoNotAppearInTheImage) {
+  int inside = 0;
+  for (const double right_deg : {0.0, 12.0, -16.0}) {
+    for (const double up_deg : {0.0, -14.0}) {
+      RangeImage frame;
+      frame.rays = kRays;
+      frame.fov_urad = kMaxFov_urad;
+      const double t = std::tan(20.0 * kDegree);
+      const auto index_of = [t](double deg) {
+        return static_cast<int>(std::lround((std::tan(deg * kDegree) / t + 1.0) * kRays / 2));
+      };
+      const int column = index_of(right_deg), row = index_of(-up_deg);
+      for (int i = -3; i <= 3; ++i) {
+        for (int j = -3; j <= 3; ++j)
+          frame.ranges[(row + i) * kRays + column + j] = static_cast<std::uint16_t>(110 * 128 + j);
+      }
+      for (int along = 0; along < kRays; along += 31) {
+        for (const int edge : {0, kRays - 1}) {
+          frame.ranges[edge * kRays + along] = 110 * 128;
+          frame.ranges[along * kRays + edge] = 110 * 128;
+        }
+      }
+      SCOPED_TRACE(std::to_string(right_deg) + ' ' + std::to_string(up_deg));
+      for (const std::uint32_t swath_mm : {6'000U, 12'000U, 30'000U})
+        inside += expect_returns_where_they_are(frame, {swath_mm, swath_mm / 5});
+    }
+  }
+  EXPECT_GT(inside, 100);
 }
 
 }  // namespace
