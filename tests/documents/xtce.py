@@ -4,6 +4,8 @@
   tests/documents/xtce.py          fails if the file differs from the code
   tests/documents/xtce.py --write  writes it
 
+It is valid by the schema of the OMG (SpaceSystem.xsd of XTCE 1.2): xmllint --noout --schema SpaceSystem.xsd docs/tumblesight.xtce.xml
+
 The fields come from where docs/icd.md has them (icd.py): the messages' structures, the headers' tables of bytes, the table of
 telecommands. Values are raw, except that quaternions are calibrated.
 """
