@@ -1,4 +1,4 @@
-// Navigation: the source of the chaser's own attitude.
+// Navigation: the chaser's own attitude, from its attitude determination.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,9 @@ namespace tumblesight::hal {
 
 class Navigation {
  public:
-  // Never blocks. The attitude whose time is nearest to `time_ns`, the exposure of a frame; its time tells
-  // whether it is near enough. Not valid: there is none.
+  // The attitude at `time_ns` or at the nearest time for which it is known; ChaserAttitude::time_ns says
+  // which. An attitude whose time is off by more than config::kChaserTimeTolerance_ns is not used. Never
+  // blocks.
   [[nodiscard]] virtual gnc::ChaserAttitude attitude_at(std::int64_t time_ns) = 0;
 
  protected:

@@ -9,16 +9,15 @@
 #include <tuple>
 
 #include "fsw/app/assertion.hpp"
-#include "fsw/app/attitude_check.hpp"
 #include "fsw/app/command_authority.hpp"
 #include "fsw/app/event_log.hpp"
 #include "fsw/app/fault_monitor.hpp"
-#include "fsw/app/frame_gate.hpp"
 #include "fsw/app/model_banks.hpp"
 #include "fsw/app/modes.hpp"
 #include "fsw/app/stored_state.hpp"
 #include "fsw/config/numerics.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/tracking/frame_tracker.hpp"
 #include "hal/messages/telemetry.hpp"
 #include "hal/platform.hpp"
 
@@ -67,9 +66,8 @@ struct alignas(8) AppState {
   StoredRecord stored;
   Resumption resumption;
   hal::Telemetry counters;
-  FrameGate gate;
+  gnc::FrameTrackerState tracking;
   FaultMonitor faults;
-  AttitudeCheck attitude_check;
   ModelBanksState banks;
   AssertionLog assertions;
   std::array<std::uint32_t, kLimits> limits{};
@@ -82,6 +80,10 @@ struct alignas(8) AppState {
   bool has_cycle = false;       // now_ns is the time of a cycle
   bool outage = false;          // the previous cycle had no frame
 
+  gnc::FrameTrackerLimits tracker_limits() const {
+    return {config::kFrameTimeLimits, config::kLongestCoast_ns, config::kChaserTimeTolerance_ns,
+            limit(Limit::kPredictedError_urad), limit(Limit::kAttitudeJump_urad)};
+  }
   std::uint32_t limit(Limit which) const { return limits[static_cast<std::size_t>(which)]; }
   bool has_model() const { return banks.status(banks.in_use) == BankStatus::kGood; }
 };

@@ -24,8 +24,9 @@ bool is_within(int count, int most) {
 // The limits that the caller promises to keep.
 bool keeps_limits(const StepInputs& inputs) {
   return is_within(inputs.command_count, config::kMaxCommandsPerStep) &&
-         is_within(inputs.frames(), config::kMaxFramesPerStep) &&
-         is_within(inputs.frame_wrong_size, config::kMaxFramesPerStep - inputs.frames());
+         is_within(inputs.dropped_count, config::kMaxDeliveriesPerCycle) &&
+         is_within(inputs.frame_wrong_size, config::kMaxDeliveriesPerCycle) &&
+         is_within(inputs.deliveries(), config::kMaxDeliveriesPerCycle);
 }
 
 bool is_complete(const hal::Platform& platform) {
@@ -174,6 +175,10 @@ void AttitudeInitApp::report_telemetry(StepOutputs& outputs) {
   outputs.telemetry = state.counters;
 }
 
+gnc::FrameVerdict AttitudeInitApp::judge(const gnc::RangeImage& frame, std::int64_t now_ns) const {
+  return state_->tracking.gate.judge(frame, now_ns, config::kFrameTimeLimits);
+}
+
 std::uint32_t AttitudeInitApp::state_crc32() const {
   const AppState& state = *state_.operator->();
   gnc::Crc32 crc;
@@ -184,16 +189,16 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
   crc.add_u32(estimator_.state_crc32());
   crc.add_u32(estimator_.model().crc32);
   crc.add_u32(static_cast<std::uint32_t>(state.mode));
-  for (const bool flag :
-       {state.has_model(), state.has_cycle, state.gate.has_last(), state.outage, state.boot_to_report}) {
+  for (const bool flag : {state.has_model(), state.has_cycle, state.tracking.gate.has_last(), state.outage,
+                          state.boot_to_report}) {
     crc.add_u32(flag ? 1U : 0U);
   }
   add_time(state.now_ns);
-  add_time(state.gate.last_exposure_time_ns());
+  add_time(state.tracking.gate.last_exposure_time_ns());
   for (const std::uint32_t limit : state.limits) crc.add_u32(limit);
   const hal::Telemetry& c = state.counters;
   for (const std::uint32_t number :
-       {state.gate.last_sequence_number(),
+       {state.tracking.gate.last_sequence_number(),
         state.assertions.count(),
         c.command_counter,
         state.faults.persisting() & ~(bit_of(Fault::kDeadline) | bit_of(Fault::kSlip)),

@@ -16,10 +16,12 @@ class CommandAuthority {
     if (has_keys_) keys_ = *keys;
   }
   const hal::CommandKeys* keys() const { return has_keys_ ? &keys_ : nullptr; }
+  // Whether there is a key in the slot.
+  bool has_key(std::uint32_t slot) const { return keys_.has_key(slot); }
   std::uint32_t slot() const { return slot_; }  // of the key in use
-  // False: the slot is empty or does not exist, or there are no keys.
+  // False: the slot is empty or does not exist.
   [[nodiscard]] bool use(std::uint32_t slot) {
-    if (!has_keys_ || !keys_.has_key(slot)) return false;
+    if (!has_key(slot)) return false;
     slot_ = slot;
     return true;
   }

@@ -165,9 +165,9 @@ bool disable_response(const Telecommand& command, const CommandContext& context,
 bool activate_key(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
   CommandAuthority& authority = context.state.authority;
   const std::uint8_t slot = command.u8_at(0);
-  const hal::CommandKeys* const keys = authority.keys();
-  if (keys == nullptr || !keys->has_key(slot)) return refuse(refusal, CommandRefusal::kWrongArgument, slot);
-  const gnc::Sha256Digest proof = hal::proof_of_key(*keys, slot, context.state.counters.command_counter);
+  if (!authority.has_key(slot)) return refuse(refusal, CommandRefusal::kWrongArgument, slot);
+  const gnc::Sha256Digest proof =
+      hal::proof_of_key(*authority.keys(), slot, context.state.counters.command_counter);
   if (!gnc::equal_in_constant_time(proof.data(), command.arguments + 1, hal::kCommandMacBytes))
     return refuse(refusal, CommandRefusal::kWrongArgument, slot);
   const std::uint32_t before = authority.slot();

@@ -9,7 +9,7 @@ bool ModeManager::enter(Cause cause, Fault fault) {
   if (!next_mode(before, cause, state_.mode)) return false;
   if (state_.mode == Mode::kRun && before != Mode::kRun) {
     reset_estimator();
-    state_.gate.forget();
+    state_.tracking.forget_times();
     state_.outage = false;
   }
   if (state_.mode == Mode::kSafe && before != Mode::kSafe) {
@@ -50,7 +50,7 @@ void ModeManager::go_safe_on_assertion() {
 
 void ModeManager::reset_estimator() {
   estimator_.reset();
-  state_.attitude_check.forget();
+  state_.tracking.forget_track();
   count(state_.counters.estimator_resets);
 }
 
@@ -58,7 +58,7 @@ void ModeManager::restart_sequence_after_time_jump() {
   if (state_.mode != Mode::kRun) return;
   reset_estimator();
   state_.faults_seen |= bit_of(Fault::kTrackRestarts);
-  state_.gate.forget();
+  state_.tracking.forget_times();
 }
 
 }  // namespace tumblesight::fsw

@@ -70,7 +70,7 @@ gnc::ModelStatus ModelManager::activate(std::uint32_t bank) {
   descriptor.set(BankStatus::kGood);
   descriptor.crc32 = estimator_.model().crc32;
   state_.banks.in_use = bank;
-  state_.attitude_check.forget();
+  state_.tracking.forget_track();
   guard_.model_activated(estimator_, state_);
   return status;
 }

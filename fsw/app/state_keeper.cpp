@@ -35,7 +35,7 @@ void StateKeeper::resume() {
     const StoreStatus status = read_copy(*state_.platform.persistent, copy, stored, generation);
     resumption.copies[static_cast<std::size_t>(copy)] = status;
     if (status != StoreStatus::kOk) continue;
-    if (resumption.found && generation <= state_.stored.generation) continue;
+    if (generation <= state_.stored.generation) continue;  // the first record has generation 1
     resumption.found = true;
     state_.stored.generation = generation;
     resumption.stored = stored;

@@ -32,6 +32,17 @@ struct AttitudeEstimate {
   // one that leads to the same attitude.
   bool rate_is_ambiguous = false;
   int law = kSpinLaw;  // of motion, that gives the attitude and the rate
+  // The likeliest hypothesis of this frame that is another attitude than q_lrf_trf, and its probability over
+  // that of the hypotheses that are the same attitude. Odds of 0: there is none.
+  QuaternionQ30 q_lrf_trf_second = kIdentityQ30;
+  std::uint32_t second_odds_ppm = 0;
+  std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
+};
+
+// The motion of the target in the LRF, in integers.
+struct PropagatedMotion {
+  QuaternionQ30 q_lrf_trf = kIdentityQ30;
+  std::array<std::int32_t, 3> rate_lrf_urad_s{};
 };
 
 // Owns the activations, the state and float32 weights. Fixed-point weights are read in place from the model
@@ -75,6 +86,9 @@ class AttitudeEstimator {
     return step(frame, {}, estimate);
   }
   void step(const DepthImage& image, AttitudeEstimate& estimate) { step(image, {}, estimate); }
+
+  // The motion of the track `interval` after the last frame; changes nothing. Requires frames() > 0.
+  PropagatedMotion propagated(const FrameInterval& interval) const;
 
   void save(State& state) const { state = state_; }
   void restore(const State& state) { state_ = state; }

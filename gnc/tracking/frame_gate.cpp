@@ -16,6 +16,12 @@ bool is_later_by_more_than(std::int64_t limit_ns, std::int64_t earlier_ns, std::
 
 }  // namespace
 
+std::int64_t time_after(std::int64_t earlier_ns, std::int64_t later_ns) {
+  if (later_ns <= earlier_ns) return 0;
+  const std::uint64_t after_ns = difference_ns(earlier_ns, later_ns);
+  return after_ns < INT64_MAX ? static_cast<std::int64_t>(after_ns) : INT64_MAX;
+}
+
 FrameVerdict FrameGate::judge(const RangeImage& frame, std::int64_t now_ns,
                               const FrameTimeLimits& limits) const {
   const std::int64_t exposure_ns = frame.exposure_time_ns;
@@ -36,9 +42,7 @@ std::uint32_t FrameGate::numbers_skipped(const RangeImage& frame) const {
 }
 
 std::int64_t FrameGate::elapsed_ns(const RangeImage& frame) const {
-  if (!has_last_ || frame.exposure_time_ns <= last_exposure_time_ns_) return 0;
-  const std::uint64_t elapsed_ns = difference_ns(last_exposure_time_ns_, frame.exposure_time_ns);
-  return elapsed_ns < INT64_MAX ? static_cast<std::int64_t>(elapsed_ns) : INT64_MAX;
+  return has_last_ ? time_after(last_exposure_time_ns_, frame.exposure_time_ns) : 0;
 }
 
 void FrameGate::accept(const RangeImage& frame) {

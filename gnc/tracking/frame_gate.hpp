@@ -33,6 +33,9 @@ struct FrameTimeLimits {
   std::int64_t max_age_ns;           // an older frame says nothing about the current attitude
 };
 
+// later_ns - earlier_ns: 0 if the later time is not later; saturates.
+std::int64_t time_after(std::int64_t earlier_ns, std::int64_t later_ns);
+
 class FrameGate {
  public:
   [[nodiscard]] FrameVerdict judge(const RangeImage& frame, std::int64_t now_ns,

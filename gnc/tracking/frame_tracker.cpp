@@ -40,9 +40,8 @@ std::uint32_t crc32_of_ranges(const RangeImage& frame) {
 }
 
 template <class N>
-void FrameTracker<N>::step(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
-                           const FrameTrackerLimits& limits, FrameTrackerState& state,
-                           FrameOutcome& outcome) {
+void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
+                          const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) {
   outcome.verdict = state.gate.judge(frame, now_ns, limits.time);
   if (!outcome.used()) return;
   const std::uint32_t ranges_crc32 = crc32_of_ranges(frame);
@@ -68,7 +67,7 @@ void FrameTracker<N>::step(const RangeImage& frame, const ChaserAttitude& chaser
   outcome.numbers_skipped = state.gate.numbers_skipped(frame);
   outcome.frames_given_up = interval.gives_up_track ? frames_before : 0;
   if (outcome.frames_given_up > 0) state.forget_track();
-  outcome.doubts = doubts(outcome.estimate, limits, state);
+  outcome.doubts = outcome.estimate.rate_is_ambiguous ? kRateAmbiguous : 0;
   const bool starts_track = outcome.estimate.frames_since_reset == 1;
   if (!knows_chaser || !(state.has_chaser_attitude || starts_track)) outcome.doubts |= kChaserUnknown;
   state.gate.accept(frame);
@@ -79,23 +78,34 @@ void FrameTracker<N>::step(const RangeImage& frame, const ChaserAttitude& chaser
 }
 
 template <class N>
-Doubts FrameTracker<N>::doubts(const AttitudeEstimate& estimate, const FrameTrackerLimits& limits,
-                               FrameTrackerState& state) const {
-  Doubts doubts = estimate.rate_is_ambiguous ? kRateAmbiguous : 0;
-  if (!limits.check_attitude) return doubts;
+void FrameTracker<N>::check(const FrameTrackerLimits& limits, FrameTrackerState& state,
+                            FrameOutcome& outcome) const {
+  const AttitudeEstimate& estimate = outcome.estimate;
+  if (!limits.check_attitude) return;
   // The estimator returns sound attitudes for any frame and any model. Corrupted memory can break this.
   if (!is_sound(estimate)) {
     state.forget_track();
-    return doubts | kAttitudeUnsound;
+    outcome.doubts |= kAttitudeUnsound;
+    return;
   }
-  if (estimate.predicted_error_urad > limits.predicted_error_urad) doubts |= kErrorLarge;
+  if (estimate.predicted_error_urad > limits.predicted_error_urad) outcome.doubts |= kErrorLarge;
   const bool jumps = estimate.frames_since_reset >= kFirstCheckedFrame &&
                      cos_half_angle(estimate.q_lrf_trf_predicted, estimate.q_lrf_trf) <
                          cos_half_of(limits.attitude_jump_urad);
   // After a jump the rate is uncertain for one more frame.
-  if (jumps || state.has_jumped) doubts |= kAttitudeJump;
+  if (jumps || state.has_jumped) outcome.doubts |= kAttitudeJump;
   state.has_jumped = jumps;
-  return doubts;
+}
+
+template <class N>
+PropagatedMotion FrameTracker<N>::motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
+                                            const FrameTrackerLimits& limits,
+                                            const FrameTrackerState& state) const {
+  FrameInterval interval;
+  interval.elapsed_ns = time_after(state.gate.last_exposure_time_ns(), time_ns);
+  if (state.has_chaser_attitude && holds_at(chaser, time_ns, limits.chaser_time_tolerance_ns))
+    interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
+  return estimator_.propagated(interval);
 }
 
 template class FrameTracker<FixedPoint>;

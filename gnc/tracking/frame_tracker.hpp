@@ -80,15 +80,23 @@ class FrameTracker {
   // `estimator` must have a model.
   explicit FrameTracker(AttitudeEstimator<N>& estimator) : estimator_(estimator) {}
 
-  // Uses or refuses one frame. A refused frame changes neither `state` nor the estimator. `chaser`: at the
-  // exposure. `now_ns`: time of the cycle.
+  // Uses or refuses one frame, then checks its attitude. A refused frame changes neither `state` nor the
+  // estimator. `chaser`: at the exposure. `now_ns`: time of the cycle.
   void step(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
-            const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome);
+            const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) {
+    use(frame, chaser, now_ns, limits, state, outcome);
+    if (outcome.used()) check(limits, state, outcome);
+  }
+  // The two halves of step(), for a caller that measures the time of the first. check() requires a frame that
+  // was used.
+  void use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
+           const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome);
+  void check(const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) const;
+  // The motion of the target at another time than that of the last used frame. `chaser`: at that time.
+  PropagatedMotion motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
+                             const FrameTrackerLimits& limits, const FrameTrackerState& state) const;
 
  private:
-  Doubts doubts(const AttitudeEstimate& estimate, const FrameTrackerLimits& limits,
-                FrameTrackerState& state) const;
-
   AttitudeEstimator<N>& estimator_;
 };
 

@@ -21,6 +21,7 @@ class FakeModelStore final : public ModelStore {
                     std::uint32_t count) override {
     Bank& bank = banks[static_cast<std::size_t>(index)];
     if (!bank.writable) return WriteStatus::kRefused;
+    if (bank.dead) return WriteStatus::kFailed;
     return write_at_once(bank.memory.data(), bank.memory.size(), offset, bytes, count);
   }
   // Puts `image` into both banks. Their capacity is its size.
@@ -32,6 +33,7 @@ class FakeModelStore final : public ModelStore {
     std::vector<std::uint8_t> memory;  // empty: the bank does not exist
     std::size_t size = 0;              // of the image at start-up, bytes
     bool writable = true;
+    bool dead = false;  // it cannot be written, although it should
   };
   std::array<Bank, kModelBanks> banks;
 };

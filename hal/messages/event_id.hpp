@@ -36,10 +36,12 @@ enum class EventId : std::uint16_t {
   kFrameBad = 35,                // [sequence number, gnc::FrameStatus, rays per side]
   kFrameWrongSize = 36,          // [-, -, -]; the sensor interface dropped data that is not a frame
   kSequenceSkipped = 37,         // [number expected, number received, numbers skipped; -1: it went back]
+  kFrameTooSoon = 38,            // [sequence number, exposure minus last accepted exposure, -]
+  kFrameRepeated = 39,           // [sequence number, -, -]; the ranges of the last used frame
 
   kEstimatorResetByGap = 40,    // [exposure gap, frames since the last reset, -]
   kEstimatorResetByFault = 41,  // [Fault, -, -]
-  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump + 2: frozen frame]
+  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump]
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now
   kFaultPersists = 51,  // [Fault, Response taken, cycles with the fault that its rule requires]
@@ -86,7 +88,7 @@ struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 53> kEventRules{{
+inline constexpr std::array<EventRule, 55> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kCommandAccepted, Severity::kInformation},
@@ -104,6 +106,8 @@ inline constexpr std::array<EventRule, 53> kEventRules{{
     {EventId::kFrameBad, Severity::kWarning},
     {EventId::kFrameWrongSize, Severity::kWarning},
     {EventId::kSequenceSkipped, Severity::kWarning},
+    {EventId::kFrameTooSoon, Severity::kWarning},
+    {EventId::kFrameRepeated, Severity::kWarning},
     {EventId::kEstimatorResetByGap, Severity::kWarning},
     {EventId::kEstimatorResetByFault, Severity::kWarning},
     {EventId::kAttitudeDoubtful, Severity::kInformation},

@@ -7,7 +7,8 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::int64_t kPause_frames = 2;  // between two sequences
+// Between two sequences: longer than the application's track coasts, since they show different motions.
+constexpr std::int64_t kPause_frames = 10;
 
 }  // namespace
 

@@ -87,6 +87,10 @@ def causes():
     return table(["number", "cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "mode.hpp", "Cause")])
 
 
+def reset_causes():
+    return table(["number", "reset cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "reset_cause.hpp", "ResetCause")])
+
+
 def function_rows():
     """[(code, name, least argument bytes, most, comment, modes)] of the telecommands."""
     codes = {name: value for name, value, _ in enum(MESSAGES + "function_code.hpp", "FunctionCode")}
@@ -297,7 +301,7 @@ def packet(topic):
     return table(["offset", "bits", "field", ""], [*rows, [offset, "unsigned 16", "error control", ""]])
 
 
-TABLES = {"transitions": transitions, "causes": causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
+TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
           "responses": responses, "events": events,
           "packets": packets, **{f"packet {CARRIED[topic][1]}": (lambda topic=topic: packet(topic)) for topic in CARRIED},
           **{f"topic {name}": (lambda name=name: struct(name))

@@ -177,6 +177,15 @@ TEST_F(FlashStore, RepairThatFailsIsRepeated) {
   EXPECT_EQ(out->telemetry.second_copy, 1U);
 }
 
+// In memory that should be written at once.
+TEST_F(FlashStore, ImageInUseThatCannotBeRepairedIsReplacedByTheSecondCopy) {
+  init_with_model();
+  store.banks[0].memory[5000] ^= 1;
+  store.banks[0].dead = true;
+  for (int i = 0; i < 30 && out->telemetry.bank_switches == 0; ++i) step_good();
+  EXPECT_EQ(out->telemetry.bank_in_use, 1);
+}
+
 TEST_F(FlashStore, DamagedImageInUseIsReplacedByTheSecondCopyBecauseItMustStayReadable) {
   flash.banks[0].cells[5000] ^= 1;
   flash.banks[0].visible = flash.banks[0].cells;

@@ -186,7 +186,9 @@ TEST_F(Reset, CommandWhoseCounterCannotBeStoredIsRefused) {
   EXPECT_EQ(events(EventId::kStateNotStored), 0) << "reported at the start of the failure only";
   kept.broken = {};
   step_good();
+  EXPECT_EQ(kept.copies[0], kept.copies[1]);
   step_commands({set_mode(Mode::kSafe)});
+  EXPECT_EQ(events(EventId::kStateNotStored), 0);
   EXPECT_EQ(app->mode(), Mode::kSafe);
 }
 
@@ -201,6 +203,16 @@ TEST_F(Reset, OneBrokenCopyIsReportedAndCommandsContinue) {
   kept.broken[1] = false;
   step_good();
   EXPECT_EQ(kept.copies[0], kept.copies[1]) << "both are written again";
+}
+
+TEST_F(Reset, CopyThatCouldNotBeWrittenIsWrittenAgainWithoutAChange) {
+  step_good();
+  kept.broken[1] = true;
+  step_commands({set_mode(Mode::kStandby)});
+  kept.broken[1] = false;
+  EXPECT_NE(kept.copies[0], kept.copies[1]);
+  step_good();
+  EXPECT_EQ(kept.copies[0], kept.copies[1]);
 }
 
 TEST_F(Reset, FailedWriteAtTheEndOfAStepIsRepeated) {
@@ -338,7 +350,7 @@ class KeyRollOver : public Reset {
   Signature second;
 };
 
-// Verifies TS-SEC-090.
+// Verifies TS-SEC-100.
 TEST_F(KeyRollOver, AuthenticCommandActivatesAnotherSlotForGood) {
   const hal::CommandPacket with_old_key = set_mode(Mode::kSafe);
   step_commands({activate(1, 1)});
@@ -354,7 +366,7 @@ TEST_F(KeyRollOver, AuthenticCommandActivatesAnotherSlotForGood) {
   EXPECT_EQ(out->telemetry.key_slot, 1);
 }
 
-// Verifies TS-SEC-090.
+// Verifies TS-SEC-100.
 TEST_F(KeyRollOver, WithoutProofOfTheNewKeyNothingChanges) {
   step_commands({activate(1, 0), activate(1, 1, 1), activate(1, 1, 16), activate(2, 1), activate(7, 1)});
   EXPECT_EQ(refused_by(CommandRefusal::kWrongArgument), 5U);
