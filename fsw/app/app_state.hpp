@@ -81,9 +81,8 @@ struct alignas(8) AppState {
   bool outage = false;          // the previous cycle had no frame
 
   gnc::FrameTrackerLimits tracker_limits() const {
-    return {config::kFrameTimeLimits,         config::kLongestCoast_ns,
-            config::kChaserTimeTolerance_ns,  limit(Limit::kPredictedError_urad),
-            limit(Limit::kAttitudeJump_urad)};
+    return {config::kFrameTimeLimits, config::kLongestCoast_ns, config::kChaserTimeTolerance_ns,
+            limit(Limit::kPredictedError_urad), limit(Limit::kAttitudeJump_urad)};
   }
   std::uint32_t limit(Limit which) const { return limits[static_cast<std::size_t>(which)]; }
   bool has_model() const { return banks.status(banks.in_use) == BankStatus::kGood; }

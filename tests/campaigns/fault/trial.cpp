@@ -22,10 +22,11 @@ constexpr std::size_t cycles_per_trial(Place place) {
 constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 constexpr const char* kNoTarget = nullptr;
 
-// A pause between two sequences, so that the estimator resets itself.
+// A pause between two sequences that is longer than any coasting, so that the estimator resets itself.
 std::int64_t time_of(std::size_t cycle) {
-  const std::size_t pauses = cycle / sim::kFramesPerSequence;
-  return kStart_ns + static_cast<std::int64_t>(cycle + pauses) * sim::kFramePeriod_ns;
+  const auto pauses = static_cast<std::int64_t>(cycle / sim::kFramesPerSequence);
+  return kStart_ns + static_cast<std::int64_t>(cycle) * sim::kFramePeriod_ns +
+         pauses * fsw::config::kLongestCoast_ns;
 }
 
 std::uint64_t mixed(std::uint64_t x) {  // splitmix64

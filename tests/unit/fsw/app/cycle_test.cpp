@@ -89,6 +89,7 @@ TEST_F(Cycle, CommandsBeyondTheLimitWaitForTheNextCycle) {
   EXPECT_EQ(link.telemetry.back().commands_accepted, static_cast<unsigned>(config::kMaxCommandsPerStep + 3));
 }
 
+// Verifies TS-LID-052.
 TEST_F(Cycle, NewestFrameOfABacklogIsUsedAndTheOthersAreCounted) {
   now_ns += 10 * config::kFramePeriod_ns;
   const std::int64_t cycle_ns = next_time_ns();
@@ -118,7 +119,7 @@ TEST_F(Cycle, LargestBacklogIsReceivedInOneCycle) {
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
-// Sensors whose period is not that of the cycle.
+// Verifies TS-LID-052.
 TEST_F(Cycle, SensorsFasterThanTheCycleGiveAnAttitudeInEveryCycle) {
   for (const std::int64_t period_ns : {std::int64_t{200'000'000}, std::int64_t{1'000'000'000},
                                        std::int64_t{1'351'351'351}, std::int64_t{2'700'000'001}}) {
@@ -156,6 +157,7 @@ TEST_F(Cycle, SensorSlowerThanTheCycleKeepsItsTrack) {
   EXPECT_GE(link.attitudes.back().frames_since_reset + link.attitudes[38].frames_since_reset, number);
 }
 
+// Verifies TS-LID-054.
 TEST_F(Cycle, SensorClockOneNanosecondAheadIsUsed) {
   for (std::uint32_t number = 1; number <= 30; ++number) {
     lidar.add(good_frame(number, next_time_ns() + 1, number));
@@ -184,6 +186,14 @@ TEST_F(Cycle, ChasersAttitudeIsAskedForAtTheExposureAndAtTheCycle) {
   run();
   EXPECT_NE(link.attitudes.back().doubts & hal::kDoubtChaserUnknown, 0);
   EXPECT_EQ(last_validity(), Validity::kValid);
+}
+
+TEST_F(Cycle, WorksWithoutNavigation) {
+  now_ns = next_time_ns();
+  lidar.add(good_frame(1, now_ns, 1));
+  run_cycle(*app, {lidar, link, watchdog}, now_ns, 0, *workspace);
+  EXPECT_EQ(last_validity(), Validity::kValid);
+  EXPECT_NE(link.attitudes.back().doubts & hal::kDoubtChaserUnknown, 0);
 }
 
 TEST_F(Cycle, WrongSizeBesideAGoodFrameIsCountedAndTheFrameUsed) {

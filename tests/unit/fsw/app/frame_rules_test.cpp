@@ -206,6 +206,7 @@ TEST_F(FrameRules, RepeatedRangesAreRefusedAcrossGapsAndResets) {
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
 }
 
+// Verifies TS-EST-184.
 TEST_F(FrameRules, WithoutTheChasersAttitudeTheReportSaysSo) {
   gnc::RangeImage frame = next_frame();
   StepInputs inputs;
@@ -252,6 +253,7 @@ TEST_F(FrameRules, NumbersGoingBackAreOneGapAndTheFrameUsed) {
   EXPECT_EQ(argument(EventId::kSequenceSkipped, 2), -1);
 }
 
+// Verifies TS-EST-182.
 TEST_F(FrameRules, TrackIsKeptOverAnyTimeUpToTheLongestCoast) {
   std::uint32_t frames = 2;
   for (const std::int64_t gap_ns : {std::int64_t{200'000'000}, std::int64_t{1'000'000'000},
@@ -265,6 +267,7 @@ TEST_F(FrameRules, TrackIsKeptOverAnyTimeUpToTheLongestCoast) {
   EXPECT_EQ(out->telemetry.estimator_resets, before_.estimator_resets);
 }
 
+// Verifies TS-EST-182.
 TEST_F(FrameRules, TrackIsGivenUpAfterTheLongestCoastWithAnEvent) {
   now_ns += config::kLongestCoast_ns - config::kFramePeriod_ns + 1'000'000;
   step_good();

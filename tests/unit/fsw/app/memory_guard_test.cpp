@@ -408,28 +408,6 @@ TEST_F(MemoryGuardTest, HitReadOnlyBankIsReplacedByItsSecondCopy) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, BankInUseWhoseMemoryIsWornOutIsReplacedByItsSecondCopy) {
-  class WornStore final : public hal::ModelStore {
-   public:
-    explicit WornStore(hal::fake::FakeModelStore& store) : store_(store) {}
-    hal::ModelBank bank(int index) override { return store_.bank(index); }
-    hal::WriteStatus write(int, std::uint32_t, const std::uint8_t*, std::uint32_t) override {
-      return hal::WriteStatus::kFailed;
-    }
-
-   private:
-    hal::fake::FakeModelStore& store_;
-  } worn(store);
-  init(worn);
-  step_good();
-  hit_block(0, 20);
-  steps_of_a_pass();
-  EXPECT_EQ(out->telemetry.model_blocks_repaired, 0U);
-  EXPECT_EQ(out->telemetry.bank_in_use, 1U);
-  EXPECT_EQ(app->mode(), Mode::kRun);
-}
-
-// Verifies TS-FDIR-045.
 TEST_F(MemoryGuardTest, SameHitInBothBanksIsNotAccepted) {
   hit_block(0, 100);
   hit_block(1, 100);

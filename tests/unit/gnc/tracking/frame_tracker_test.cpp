@@ -128,6 +128,7 @@ TEST_F(Tracking, AJumpIsADistanceFromThePrediction) {
   EXPECT_TRUE(step(next()).valid());
 }
 
+// Verifies TS-EST-184.
 TEST_F(Tracking, PredictionTurnsWithTheChaser) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
   RangeImage frame = next();
@@ -147,6 +148,48 @@ TEST_F(Tracking, PredictionTurnsWithTheChaser) {
   EXPECT_NEAR(std::abs(to_double(motion.q_lrf_trf).dot(turn.conjugate() * second)), 1.0, 1e-6);
   step(next());
   EXPECT_NE(outcome.doubts & kChaserUnknown, 0U);
+}
+
+// Verifies TS-EST-184.
+TEST_F(Tracking, AnUnknownAttitudeOfTheChaserIsNoTurn) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
+  const auto predicted_as_before = [&](const ChaserAttitude& last, const ChaserAttitude& now) {
+    estimator->reset();
+    state = {};
+    RangeImage frame = next();
+    step(frame, {now_ns, last.q_inertial_lrf, last.valid});
+    const QuaternionQ30 before = outcome.estimate.q_lrf_trf;
+    const PropagatedMotion motion =
+        FrameTracker<FixedPoint>(*estimator)
+            .motion_at(now_ns, {now_ns, now.q_inertial_lrf, now.valid}, limits, state);
+    EXPECT_EQ(motion.q_lrf_trf, before);
+    frame = next();
+    step(frame, {now_ns, now.q_inertial_lrf, now.valid});
+    EXPECT_NE(outcome.doubts & kChaserUnknown, 0U);
+    return outcome.estimate.q_lrf_trf_predicted == before;
+  };
+  EXPECT_TRUE(predicted_as_before({0, kIdentityQ30, false}, {0, q30(turn), true}));
+  EXPECT_TRUE(predicted_as_before({0, kIdentityQ30, true}, {0, q30(turn), false}));
+}
+
+TEST_F(Tracking, AFirstFrameIsNoRepetition) {
+  const RangeImage frame = next();
+  state.ranges_crc32 = crc32_of_ranges(frame);
+  EXPECT_TRUE(step(frame).used());
+}
+
+TEST_F(Tracking, ALimitOfAHalfTurnDetectsNoJump) {
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(step(next()).valid());
+}
+
+TEST_F(Tracking, AJumpIsADoubtForOneMoreFrame) {
+  for (int i = 0; i < 3; ++i) step(next());
+  state.has_jumped = true;
+  EXPECT_EQ(step(next()).doubts & kAttitudeJump, kAttitudeJump);
+  EXPECT_EQ(step(next()).doubts & kAttitudeJump, 0U);
+  state.has_jumped = true;
+  state.forget_track();
+  EXPECT_TRUE(step(next()).valid());
 }
 
 TEST(TurnOfLrf, TakesTheLastLrfToTheOneNow) {
