@@ -107,6 +107,7 @@ bool FlightBus::carry_out() {
       written &= endpoints_.events.write(output_.events[i]) == 0;
     }
     if (output_.done.dumps > 0) written &= endpoints_.dumps.write(output_.dump) == 0;
+    if (packets_ != nullptr) packets_->put(output_);
     written &= endpoints_.steps_done.write(output_.done) == 0;
   }
   return written;

@@ -10,6 +10,7 @@
 #include "hal/dds/flight_endpoints.hpp"
 #include "hal/dds/idl/flight_end.hpp"
 #include "hal/dds/idl/step_content.hpp"
+#include "hal/dds/packet_output.hpp"
 #include "hal/stopwatch.hpp"
 
 namespace tumblesight::hal::dds {
@@ -23,6 +24,9 @@ class FlightBus {
   // From now on a sample of another run ends this one, and so does a `timeout_ns` without a step.
   void join_run(std::uint32_t run_id, std::int64_t timeout_ns);
   std::uint32_t run_id() const { return run_id_; }
+
+  // From now on carry_out() also gives everything that it publishes to `packets`.
+  void copy_to(PacketOutput& packets) { packets_ = &packets; }
 
   // Takes the oldest step that has arrived. False: there is none.
   bool take_step(StepSample& step);
@@ -62,6 +66,7 @@ class FlightBus {
   DdsNavigation& navigation_;
   DdsLink& link_;
   Stopwatch& stopwatch_;
+  PacketOutput* packets_ = nullptr;
   LidarFrameSample frame_{};
   CycleOutput output_{};
   std::uint64_t last_heard_ns_ = 0;

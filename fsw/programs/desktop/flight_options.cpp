@@ -89,6 +89,7 @@ bool read_environment(FlightOptions& options) {
 bool parse_one(const char* option, const char* value, FlightOptions& options) {
   if (std::strcmp(option, "--model") == 0) return parse_path(option, value, options.model_path);
   if (std::strcmp(option, "--command-key") == 0) return parse_path(option, value, options.command_key_path);
+  if (std::strcmp(option, "--packets") == 0) return parse_path(option, value, options.packets_path);
   if (std::strcmp(option, "--state") == 0) return parse_path(option, value, options.state_path);
   if (std::strcmp(option, "--reset") == 0) return parse_reset(option, value, options.reset_cause);
   if (std::strcmp(option, "--target") == 0) {
@@ -123,6 +124,7 @@ void print_flight_help() {
       "                     [%s]\n"
       "  --command-key FILE key that signs telecommands, 64 hexadecimal digits\n"
       "                     [the public development key]\n"
+      "  --packets FILE     also write the telemetry to FILE as CCSDS space packets\n"
       "  --state FILE       keep mode, bank, limits and command counter in FILE and\n"
       "                     FILE.copy [not kept]\n"
       "  --reset CAUSE      with --state: power-on or watchdog, why flight was started\n"

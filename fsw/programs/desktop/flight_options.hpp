@@ -14,6 +14,7 @@ struct FlightOptions {
 
   char command_key_path[kMaxPath] = {};  // empty: the development key
   char model_path[kMaxPath] = {};        // empty: the shipped model of the target
+  char packets_path[kMaxPath] = {};      // empty: no packets are written
   char state_path[kMaxPath] = {};        // empty: nothing is kept
   hal::ResetCause reset_cause = hal::ResetCause::kPowerOn;
   const char* target = "near_shoemaker";

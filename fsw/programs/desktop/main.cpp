@@ -2,6 +2,7 @@
 // link.
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "fsw/programs/desktop/flight_key.hpp"
 #include "fsw/programs/desktop/flight_loop.hpp"
@@ -11,9 +12,11 @@
 #include "fsw/programs/desktop/heap_trap.hpp"
 #include "hal/dds/handshake.hpp"
 #include "hal/dds/idl/domain.hpp"
+#include "hal/dds/packet_output.hpp"
 #include "hal/dds/stop_request.hpp"
 #include "hal/posix/file_persistent_store.hpp"
 #include "hal/posix/monotonic_stopwatch.hpp"
+#include "hal/posix/packet_file.hpp"
 #include "hal/posix/painted_stack.hpp"
 
 namespace {
@@ -31,6 +34,8 @@ hal::dds::DdsNavigation navigation;
 hal::posix::PaintedStack stack;
 hal::dds::DdsLink link{{heap_allocations, [] { return stack.least_left_bytes(); }}};
 hal::dds::FlightBus bus{endpoints, lidar, navigation, link, stopwatch};
+hal::posix::PacketFile packet_file;
+hal::dds::PacketOutput packet_output{packet_file};
 fsw::AttitudeInitApp app;
 hal::CommandKeys command_keys;
 hal::posix::FilePersistentStore stored_state;
@@ -53,6 +58,27 @@ hal::Platform platform_of(const FlightOptions& options, hal::ModelStore& models)
 // From now on the bus thread queues authentic commands only.
 void authenticate_commands() {
   link.authenticate_with(command_keys, app.key_slot(), app.command_counter());
+}
+
+// False: the file for the packets cannot be written.
+bool open_packets(const char* path) {
+  if (path[0] == '\0') return true;
+  const int error = packet_file.open(path);
+  if (error != 0) {
+    std::fprintf(stderr, "%s: --packets %s: %s\n", kProgramName, path, strerrordesc_np(error));
+    return false;
+  }
+  bus.copy_to(packet_output);
+  return true;
+}
+
+// A run whose packets are not all in the file is not complete.
+FlightEnd report_packets(const FlightOptions& options, FlightEnd end) {
+  packet_file.close();
+  if (packet_file.lost() == 0) return end;
+  std::fprintf(stderr, "%s: %u packets could not be written to %s: %s\n", kProgramName, packet_file.lost(),
+               options.packets_path, strerrordesc_np(packet_file.error()));
+  return end == FlightEnd::kComplete ? FlightEnd::kTransport : end;
 }
 
 FlightEnd connect(const FlightOptions& options) {
@@ -118,11 +144,13 @@ int main(int argc, char** argv) {
   hal::dds::accept_stop_requests();
   if (!read_command_key(options.command_key_path, command_keys.slots[0]))
     return static_cast<int>(FlightEnd::kBadArguments);
+  if (!open_packets(options.packets_path)) return static_cast<int>(FlightEnd::kBadArguments);
   boot(options, app, platform_of(options, model), model);
   authenticate_commands();
 
-  const FlightEnd end = fly(options);
+  FlightEnd end = fly(options);
   task.join();  // no effect after a run
+  end = report_packets(options, end);
   if (end == FlightEnd::kForeign) {
     std::fprintf(stderr, "%s: %s: %s\n", kProgramName, hal::dds::to_string(end), to_text(foreigner).text);
   } else if (end != FlightEnd::kComplete) {
