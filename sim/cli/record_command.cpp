@@ -47,8 +47,7 @@ void record(const RecordArguments& arguments) {
   if (recording.open(bytes.data(), bytes.size()) != hal::replay::RecordingStatus::kOk)
     throw std::logic_error("the recording that was made is not valid");
   fmt::print("\n  {}, {}: {}, {} bytes: {}\n\n", wanted.target, wanted.condition,
-             counted(recording.frames(), "frame"),
-             bytes.size(), full_path(arguments.out));
+             counted(recording.frames(), "frame"), bytes.size(), full_path(arguments.out));
 }
 
 }  // namespace
