@@ -81,6 +81,7 @@ bool read_environment(FlightOptions& options) {
 bool parse_one(const char* option, const char* value, FlightOptions& options) {
   if (std::strcmp(option, "--model") == 0) return parse_path(option, value, options.model_path);
   if (std::strcmp(option, "--command-key") == 0) return parse_path(option, value, options.command_key_path);
+  if (std::strcmp(option, "--dds-security") == 0) return parse_path(option, value, options.security_path);
   if (std::strcmp(option, "--target") == 0) {
     options.target = value;
     return value[0] != '\0' || fail(option, value, "a target's name");
@@ -114,6 +115,7 @@ void print_flight_help() {
       "  --command-key FILE key that signs telecommands, 64 hexadecimal digits [the public development key]\n"
       "  --domain N         DDS domain [0]\n"
       "  --run-id N         simulator run to join; 0: the first one found [0]\n"
+      "  --dds-security FILE  secures the bus; hal/dds/make_security writes the file [not secured]\n"
       "  --mode MODE        lockstep: the simulator sets the time; free-running: cycles on a timer "
       "[lockstep]\n"
       "  --period-ms N      free-running: wall-clock period of a cycle [2700]\n"
