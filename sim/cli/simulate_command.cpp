@@ -80,6 +80,7 @@ std::string flight_command_line(const SilSettings& settings) {
   std::string line =
       fmt::format("{} --domain {} --target {} --model {}", shell_quoted(shipped_flight().string()),
                   settings.domain, settings.target, shell_quoted(full_path(settings.model_path)));
+  if (!settings.security_path.empty()) line += " --dds-security " + shell_quoted(settings.security_path);
   for (const std::string& argument : settings.flight_arguments) line += " " + shell_quoted(argument);
   if (settings.free_running && settings.speed > 0.0) {
     line += fmt::format(" --mode free-running --period-ms {:g}", 1e3 * kFramePeriod_s / settings.speed);
@@ -100,6 +101,7 @@ SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& 
     settings.command_key = read_command_key(arguments.command_key);
     settings.flight_arguments = {"--command-key", full_path(arguments.command_key)};
   }
+  if (!arguments.security.empty()) settings.security_path = full_path(arguments.security);
   if (arguments.flight == kNoFlight) {
     if (settings.domain < 0) settings.domain = kDefaultFlightDomain;
     settings.step_timeout_s = kManualStart_s;
@@ -280,6 +282,11 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       ->add_option(
           "--command-key", arguments->command_key,
           "file with the key that signs telecommands, 64 hexadecimal digits [the public development key]")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+  command
+      ->add_option("--dds-security", arguments->security,
+                   "secures the bus with certificates; hal/dds/make_security writes the file")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
   command

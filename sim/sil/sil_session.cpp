@@ -65,7 +65,11 @@ SilSession::SilSession(const SilSettings& settings)
       secret_(make_secret(!settings.flight_path.empty())),
       check_(settings.free_running),
       encoder_(settings.command_key) {
-  const dds_return_t result = domain_.open(lease_.domain(), secret_.partition);
+  const auto security = std::make_unique<hal::dds::SecurityElement>();
+  if (!settings_.security_path.empty() &&
+      !hal::dds::read_security(settings_.security_path.c_str(), *security))
+    throw SilFailure("--dds-security " + settings_.security_path + ": cannot be read, or is too large");
+  const dds_return_t result = domain_.open(lease_.domain(), secret_.partition, security->text);
   if (result != 0) {
     throw SilFailure("DDS domain " + std::to_string(lease_.domain()) +
                      " could not be opened: " + dds_strretcode(result));
@@ -86,6 +90,8 @@ std::vector<std::string> SilSession::flight_command_line() const {
   std::vector<std::string> arguments{"--target", settings_.target, "--domain",
                                      std::to_string(lease_.domain())};
   if (!settings_.model_path.empty()) arguments.insert(arguments.end(), {"--model", settings_.model_path});
+  if (!settings_.security_path.empty())
+    arguments.insert(arguments.end(), {"--dds-security", settings_.security_path});
   if (settings_.free_running) {
     const double period_ms = kFramePeriod_s * 1e3 / settings_.speed;
     arguments.insert(arguments.end(), {"--mode", "free-running", "--period-ms", std::to_string(period_ms)});

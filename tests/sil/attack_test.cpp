@@ -1,8 +1,10 @@
 // A foreign program on the bus forges samples of a topic. The run is undisturbed, or it ends with a failure
 // that names what was seen; it never ends well with other results.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <ostream>
 #include <thread>
 
@@ -50,9 +52,10 @@ class Attacker {
 };
 
 // Lasts about a second, so that an attacker that begins in it is found before the end.
-SilRunResult short_run(int domain) {
+SilRunResult short_run(int domain, const std::string& security_path = {}) {
   SilSettings settings = test::settings();
   settings.domain = domain;
+  settings.security_path = security_path;
   settings.speed = 54.0;
   settings.step_timeout_s = 5.0;
   static const std::vector<Sequence> sequences{make_sequence({Condition::kNominal, 20}, 31, 0)};
@@ -114,6 +117,26 @@ INSTANTIATE_TEST_SUITE_P(
       }
       return name;
     });
+
+// Verifies TS-SIL-097.
+TEST(Attack, ASecuredBusIsUndisturbed) {
+  const std::string folder = test::temporary_path("security");
+  const std::string command =
+      std::string("'" TUMBLESIGHT_MAKE_SECURITY "' '") + folder + "' > /dev/null 2>&1";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "openssl or the plug-ins of Cyclone DDS are not installed";
+  ASSERT_EQ(WEXITSTATUS(status), 0);
+  const std::uint32_t undisturbed = undisturbed_trace();
+  const int domain = test::spare_domain();
+  for (const char* const target : {"step", "hello-of-simulator", "step-done"}) {
+    Attacker attacker(domain, target, {"observed", "observed", "0"});
+    const SilRunResult run = short_run(domain, folder + "/security.xml");
+    EXPECT_EQ(run.failure, "") << target;
+    EXPECT_EQ(run.trace_crc32, undisturbed) << target;
+    EXPECT_TRUE(attacker.running());
+  }
+}
 
 // Verifies TS-SIL-090.
 TEST(Attack, SimulateEndsWithAFailureThatNamesTheTopic) {

@@ -29,7 +29,7 @@ TEST(Disturbance, LostFramesAreNotSentAndOweNoAttitude) {
   for (const StepResult& step : run.steps) {
     const bool lost = step.frame_index == kFrames - 3 || step.frame_index == kFrames - 2;
     EXPECT_EQ(gives_attitude(step.attitude), !lost) << "frame " << step.frame_index;
-    if (lost) EXPECT_EQ(step.attitude.validity, hal::Validity::kNoFrame);
+    EXPECT_EQ(step.attitude.validity == hal::Validity::kNoFrame, lost);
   }
   EXPECT_EQ(run.steps.back().telemetry.frames_missing, 4U);
   EXPECT_EQ(run.pictures.size(), 2 * (kFrames - 2));
@@ -51,6 +51,19 @@ TEST(Disturbance, StepsFollowTheExposuresOfTheSensor) {
     EXPECT_LE(interval_s, 1.5 * 1.2);
   }
   EXPECT_EQ(run.steps[kFrames].time_ns - run.steps[kFrames - 1].time_ns, kFramePeriod_ns);
+}
+
+// Verifies TS-SIL-100.
+TEST(Disturbance, TheChasersAttitudeReachesTheFlightProgramUnlessItIsWithheld) {
+  for (const bool withheld : {false, true}) {
+    Disturbances disturbances;
+    disturbances.chaser_rate_deg_s = 5.0;
+    disturbances.no_ego_motion = withheld;
+    for (const StepResult& step : run_with(disturbances).steps) {
+      if (step.frame_index == 0) continue;
+      EXPECT_EQ((step.attitude.doubts & hal::kDoubtChaserUnknown) != 0, withheld) << step.frame_index;
+    }
+  }
 }
 
 // Verifies TS-SIL-100, TS-SIL-020.

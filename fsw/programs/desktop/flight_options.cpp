@@ -92,6 +92,7 @@ bool parse_one(const char* option, const char* value, FlightOptions& options) {
   if (std::strcmp(option, "--packets") == 0) return parse_path(option, value, options.packets_path);
   if (std::strcmp(option, "--state") == 0) return parse_path(option, value, options.state_path);
   if (std::strcmp(option, "--reset") == 0) return parse_reset(option, value, options.reset_cause);
+  if (std::strcmp(option, "--dds-security") == 0) return parse_path(option, value, options.security_path);
   if (std::strcmp(option, "--target") == 0) {
     options.target = value;
     return value[0] != '\0' || fail(option, value, "a target's name");
@@ -131,6 +132,9 @@ void print_flight_help() {
       "                     [power-on]\n"
       "  --domain N         DDS domain [0]\n"
       "  --run-id N         simulator run to join; 0: the first one found [0]\n"
+      "  --dds-security FILE\n"
+      "                     secures the bus; hal/dds/make_security writes the file\n"
+      "                     [not secured]\n"
       "  --mode MODE        lockstep: the simulator sets the time;\n"
       "                     free-running: cycles on a timer [lockstep]\n"
       "  --period-ms N      free-running: wall-clock period of a cycle [2700]\n"

@@ -23,6 +23,7 @@ struct FlightOptions {
   std::uint32_t domain = 0;
   std::uint32_t run_id = 0;                                        // 0: that of the first simulator found
   char partition[hal::dds::RunSecret::kPartitionDigits + 1] = {};  // empty: the default one
+  char security_path[kMaxPath] = {};                               // empty: the bus is not secured
   bool free_running = false;
   double period_ms = 2700.0;  // free-running: wall-clock period of the flight task
   double timeout_s = 60.0;    // the run ends after this long without a simulator or a step

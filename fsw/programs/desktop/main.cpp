@@ -27,6 +27,7 @@ using hal::dds::FlightEnd;
 
 // All of the flight side's memory.
 hal::posix::MonotonicStopwatch stopwatch;
+hal::dds::SecurityElement security;
 hal::dds::Domain domain;
 hal::dds::FlightEndpoints endpoints;
 hal::dds::DdsLidar lidar;
@@ -82,7 +83,12 @@ FlightEnd report_packets(const FlightOptions& options, FlightEnd end) {
 }
 
 FlightEnd connect(const FlightOptions& options) {
-  dds_return_t result = domain.open(options.domain, options.partition);
+  if (options.security_path[0] != '\0' && !hal::dds::read_security(options.security_path, security)) {
+    std::fprintf(stderr, "flight: --dds-security %s: cannot be read, or is too large\n",
+                 options.security_path);
+    return FlightEnd::kBadArguments;
+  }
+  dds_return_t result = domain.open(options.domain, options.partition, security.text);
   if (result == 0) result = endpoints.open(domain);
   if (result == 0) return FlightEnd::kComplete;
   std::fprintf(stderr, "%s: DDS domain %u: %s\n", kProgramName, options.domain, dds_strretcode(result));
