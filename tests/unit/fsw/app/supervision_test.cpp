@@ -247,6 +247,28 @@ TEST_F(DoubtfulAttitudes, RepeatedFramesAreRefusedAndReportedIfTheyPersist) {
   EXPECT_EQ(out->telemetry.attitudes_doubtful, 0U);
 }
 
+// Verifies TS-FDIR-170.
+TEST_F(DoubtfulAttitudes, ASensorThatIsFrozenIsSeenWithin6CyclesAlsoIfEverySecondFrameIsLost) {
+  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  set_limit(Limit::kAttitudeJump_urad, 3'141'593);
+  for (const bool starts_with_loss : {false, true}) {
+    const gnc::RangeImage genuine = good_frame(200, next_time_ns(), starts_with_loss ? 5 : 6);
+    step_frame(genuine);
+    gnc::RangeImage frame = genuine;
+    bool stands = false;
+    for (int cycle = 1; cycle <= 6; ++cycle) {
+      ++frame.sequence_number;
+      frame.exposure_time_ns = next_time_ns();
+      const bool lost = (cycle % 2 == 1) == starts_with_loss;
+      lost ? step(StepInputs{}) : step_frame(frame);
+      EXPECT_NE(validity(), Validity::kValid) << cycle;
+      stands = stands || persists(Fault::kFrameFrozen);
+    }
+    EXPECT_TRUE(stands) << starts_with_loss;
+    for (int cycle = 0; cycle < 20; ++cycle) step_good();
+  }
+}
+
 // Corrupts the estimate between the estimator and the checks of the attitude, during the stopwatch call
 // between them.
 class UnsoundAttitudes : public DoubtfulAttitudes {
