@@ -1,5 +1,5 @@
 # cmake --install: the flight side as static libraries, headers and shipped models, for find_package(tumblesight).
-# The package holds gnc, fsw/app, the HAL interfaces and messages, and the platforms hal/replay and hal/posix. Each
+# The package holds gnc, fsw/app, the HAL interfaces, messages and packets, and the platforms hal/replay and hal/posix. Each
 # library has the name that it has here, with the prefix tumblesight::. Programs are not installed.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -24,7 +24,7 @@ function(collect_project_libraries library result)
 endfunction()
 
 set(package_libraries "")
-foreach(library fsw_app hal_interfaces hal_replay hal_posix)
+foreach(library fsw_app hal_interfaces hal_packets hal_replay hal_posix)
   if(TARGET ${library})
     collect_project_libraries(${library} package_libraries)
   endif()
@@ -40,6 +40,8 @@ install(EXPORT tumblesight NAMESPACE tumblesight:: FILE tumblesight_targets.cmak
 # Includes are written from the project's root, so the headers keep their folders.
 install(DIRECTORY gnc fsw hal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight FILES_MATCHING PATTERN "*.hpp"
   PATTERN programs EXCLUDE PATTERN models EXCLUDE PATTERN bare_metal EXCLUDE PATTERN dds EXCLUDE PATTERN fake EXCLUDE)
+install(FILES ${PROJECT_BINARY_DIR}/hal/messages/message_fields.inc
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight/hal/messages)
 install(DIRECTORY fsw/models/ DESTINATION ${package_models_dir} FILES_MATCHING PATTERN "*.tsm"
   PATTERN "*.float32.tsm" EXCLUDE)
 configure_package_config_file(cmake/tumblesight-config.cmake.in ${PROJECT_BINARY_DIR}/cmake/tumblesight-config.cmake

@@ -2,10 +2,10 @@
 // as long as the application.
 #pragma once
 
-#include <cstdint>
-
 #include "hal/messages/command_key.hpp"
+#include "hal/messages/reset_cause.hpp"
 #include "hal/model_store.hpp"
+#include "hal/persistent_store.hpp"
 #include "hal/stopwatch.hpp"
 
 namespace tumblesight::hal {
@@ -13,11 +13,12 @@ namespace tumblesight::hal {
 struct Platform {
   Stopwatch* stopwatch = nullptr;
   ModelStore* models = nullptr;
-  // nullptr: the link delivers authentic telecommands only, without a security trailer.
-  const CommandKey* command_key = nullptr;
-  // Telemetry::command_counter from before the restart; 0: none. If the platform does not keep it, old
-  // telecommands can be replayed after a restart.
-  std::uint32_t last_command_counter = 0;
+  // Copied by init(). nullptr: the link delivers authentic telecommands only, without a security trailer.
+  const CommandKeys* command_keys = nullptr;
+  // nullptr: nothing is kept. After a reset old telecommands can then be replayed, and the mode, the bank,
+  // the limits and the responses are those of a first start.
+  PersistentStore* persistent = nullptr;
+  ResetCause reset_cause = ResetCause::kPowerOn;
 };
 
 }  // namespace tumblesight::hal

@@ -75,7 +75,8 @@ class RomModelStore final : public hal::ModelStore {
  public:
   hal::ModelBank bank(int index) override {
     const auto size = static_cast<std::size_t>(model_image_end - model_image);
-    return index == 0 ? hal::ModelBank{model_image, nullptr, size, size} : hal::ModelBank{};
+    return index == 0 ? hal::ModelBank{model_image, hal::BankWriting::kReadOnly, size, size}
+                      : hal::ModelBank{};
   }
 };
 

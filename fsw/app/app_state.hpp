@@ -9,14 +9,15 @@
 #include <tuple>
 
 #include "fsw/app/assertion.hpp"
-#include "fsw/app/attitude_check.hpp"
+#include "fsw/app/command_authority.hpp"
 #include "fsw/app/event_log.hpp"
 #include "fsw/app/fault_monitor.hpp"
-#include "fsw/app/frame_gate.hpp"
 #include "fsw/app/model_banks.hpp"
 #include "fsw/app/modes.hpp"
+#include "fsw/app/stored_state.hpp"
 #include "fsw/config/numerics.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/tracking/frame_tracker.hpp"
 #include "hal/messages/telemetry.hpp"
 #include "hal/platform.hpp"
 
@@ -40,30 +41,33 @@ class ExpectedTarget {
   bool has_name_ = false;
 };
 
-// The key of the telecommands. Without one they carry no security trailer.
-class KeptCommandKey {
- public:
-  void set(const hal::CommandKey* key) {
-    has_key_ = key != nullptr;
-    if (has_key_) key_ = *key;
-  }
-  const hal::CommandKey* key() const { return has_key_ ? &key_ : nullptr; }
+// What the persistent store holds (state_keeper.hpp).
+struct StoredRecord {
+  StoredState last;  // as written
+  std::uint32_t generation = 0;
+  bool failing = false;  // the last write did not reach both copies
+};
 
- private:
-  hal::CommandKey key_{};
-  bool has_key_ = false;
+// What init() found in the persistent store.
+struct Resumption {
+  StoredState stored;  // if found
+  std::array<StoreStatus, hal::kStoredCopies> copies{};
+  bool found = false;
+  bool lost = false;       // there was a record, and no good copy is left
+  bool to_report = false;  // by the next step
 };
 
 struct alignas(8) AppState {
   std::int64_t now_ns = 0;  // time of the cycle
-  hal::Platform platform;   // without the key, which is in command_key
-  KeptCommandKey command_key;
+  hal::Platform platform;   // without the keys, which are in the authority
+  CommandAuthority authority;
   ExpectedTarget expected_target;
   EventLog events;
+  StoredRecord stored;
+  Resumption resumption;
   hal::Telemetry counters;
-  FrameGate gate;
+  gnc::FrameTrackerState tracking;
   FaultMonitor faults;
-  AttitudeCheck attitude_check;
   ModelBanksState banks;
   AssertionLog assertions;
   std::array<std::uint32_t, kLimits> limits{};
@@ -76,6 +80,10 @@ struct alignas(8) AppState {
   bool has_cycle = false;       // now_ns is the time of a cycle
   bool outage = false;          // the previous cycle had no frame
 
+  gnc::FrameTrackerLimits tracker_limits() const {
+    return {config::kFrameTimeLimits, config::kLongestCoast_ns, config::kChaserTimeTolerance_ns,
+            limit(Limit::kPredictedError_urad), limit(Limit::kAttitudeJump_urad)};
+  }
   std::uint32_t limit(Limit which) const { return limits[static_cast<std::size_t>(which)]; }
   bool has_model() const { return banks.status(banks.in_use) == BankStatus::kGood; }
 };

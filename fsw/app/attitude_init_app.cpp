@@ -2,6 +2,7 @@
 
 #include "fsw/app/command_handler.hpp"
 #include "fsw/app/counter.hpp"
+#include "fsw/app/state_keeper.hpp"
 #include "fsw/app/supervisor.hpp"
 #include "gnc/numerics/crc32.hpp"
 
@@ -23,8 +24,9 @@ bool is_within(int count, int most) {
 // The limits that the caller promises to keep.
 bool keeps_limits(const StepInputs& inputs) {
   return is_within(inputs.command_count, config::kMaxCommandsPerStep) &&
-         is_within(inputs.frames(), config::kMaxFramesPerStep) &&
-         is_within(inputs.frame_wrong_size, config::kMaxFramesPerStep - inputs.frames());
+         is_within(inputs.dropped_count, config::kMaxDeliveriesPerCycle) &&
+         is_within(inputs.frame_wrong_size, config::kMaxDeliveriesPerCycle) &&
+         is_within(inputs.deliveries(), config::kMaxDeliveriesPerCycle);
 }
 
 bool is_complete(const hal::Platform& platform) {
@@ -65,12 +67,16 @@ void fill_telemetry(AppState& state) {
   if (telemetry.events_waiting > telemetry.events_waiting_max)
     telemetry.events_waiting_max = telemetry.events_waiting;
   telemetry.bank_in_use = static_cast<std::uint8_t>(state.banks.in_use);
+  telemetry.key_slot = static_cast<std::uint8_t>(state.authority.slot());
   telemetry.second_copy = state.banks.has_second_copy() ? 1 : 0;
   telemetry.model_bytes_loaded = state.banks.loaded_bytes;
   for (std::uint32_t bank = 0; bank < hal::kModelBanks; ++bank) {
     telemetry.bank_status[bank] = state.banks.status(bank);
     telemetry.bank_crc32[bank] = state.banks.descriptor[bank].crc32;
   }
+  if (state.platform.models == nullptr) return;
+  for (int bank = 0; bank < hal::kModelBanks; ++bank)
+    telemetry.bank_activity[static_cast<std::size_t>(bank)] = state.platform.models->activity(bank);
 }
 
 }  // namespace
@@ -81,17 +87,19 @@ void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_t
   const Reporter report(state, state.events);
   ModeManager modes(state, estimator_, report);
   state.platform = platform;
-  state.counters.command_counter = platform.last_command_counter;
-  state.platform.command_key = nullptr;
-  state.command_key.set(platform.command_key);
+  state.platform.command_keys = nullptr;
+  state.authority.set(platform.command_keys);
   state.expected_target.set(expected_target);
   for (std::size_t i = 0; i < config::kLimitRules.size(); ++i)
     state.limits[i] = config::kLimitRules[i].initial;
   estimator_.reset();
   if (TUMBLESIGHT_ASSERT(state.assertions, is_complete(platform))) {
-    ModelManager(state, estimator_, guard_, report).boot();
-    modes.enter(state.has_model() ? Cause::kModelFound : Cause::kNoModel);
+    StateKeeper keeper(state, report);
+    keeper.resume();
+    ModelManager(state, estimator_, guard_, report).boot(state.resumption.stored.bank);
+    modes.resume(state.has_model() ? keeper.boot_cause() : Cause::kNoModel, state.resumption.stored);
     state.boot_to_report = true;
+    state.resumption.to_report = true;
   }
   guard_.keep(estimator_, state);
   state_.commit();
@@ -117,21 +125,24 @@ void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, S
   clear(outputs);
 
   report_corrections(corrected_words, state, report);
+  StateKeeper keeper(state, report);
+  keeper.report_resumption();
   models.report_boot();
   modes.go_safe_on_assertion();
   if (usable) {
     if (with_protections) {
-      if (!MemoryGuard::bound_indices(estimator_, state)) modes.go_safe_after_corruption();
+      if (!MemoryGuard::bound(estimator_, state)) modes.go_safe_after_corruption();
       guard_.check(estimator_, state, report);
     }
     if (now_ns < previous_ns) modes.restart_sequence_after_time_jump();
-    CommandHandler({state, state.events, modes, models, outputs, report}).run(inputs);
+    CommandHandler({state, state.events, modes, models, outputs, report}, keeper).run(inputs);
     const std::uint32_t resets_before = state.counters.estimator_resets;
     take_frames(inputs, previous_ns, time_advances, outputs, report);
     Supervisor(state, modes, models, report)
         .supervise(outputs.attitude.validity, inputs.cycle_slips, start_ns, resets_before);
   }
   modes.go_safe_on_assertion();
+  if (usable) keeper.store_changes();
   report_telemetry(outputs);
   guard_.keep(estimator_, state);
   state_.commit();
@@ -164,6 +175,10 @@ void AttitudeInitApp::report_telemetry(StepOutputs& outputs) {
   outputs.telemetry = state.counters;
 }
 
+gnc::FrameVerdict AttitudeInitApp::judge(const gnc::RangeImage& frame, std::int64_t now_ns) const {
+  return state_->tracking.gate.judge(frame, now_ns, config::kFrameTimeLimits);
+}
+
 std::uint32_t AttitudeInitApp::state_crc32() const {
   const AppState& state = *state_.operator->();
   gnc::Crc32 crc;
@@ -174,16 +189,16 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
   crc.add_u32(estimator_.state_crc32());
   crc.add_u32(estimator_.model().crc32);
   crc.add_u32(static_cast<std::uint32_t>(state.mode));
-  for (const bool flag :
-       {state.has_model(), state.has_cycle, state.gate.has_last(), state.outage, state.boot_to_report}) {
+  for (const bool flag : {state.has_model(), state.has_cycle, state.tracking.gate.has_last(), state.outage,
+                          state.boot_to_report}) {
     crc.add_u32(flag ? 1U : 0U);
   }
   add_time(state.now_ns);
-  add_time(state.gate.last_exposure_time_ns());
+  add_time(state.tracking.gate.last_exposure_time_ns());
   for (const std::uint32_t limit : state.limits) crc.add_u32(limit);
   const hal::Telemetry& c = state.counters;
   for (const std::uint32_t number :
-       {state.gate.last_sequence_number(),
+       {state.tracking.gate.last_sequence_number(),
         state.assertions.count(),
         c.command_counter,
         state.faults.persisting() & ~(bit_of(Fault::kDeadline) | bit_of(Fault::kSlip)),

@@ -5,21 +5,22 @@
 //   1. memory       majority vote over the application's state; guards of estimator and model
 //                   (voted.hpp, memory_guard.hpp)
 //   2. commands     in the order in which they arrived (command_handler.hpp, commands.cpp)
-//   3. frames       gate, estimator, checks of the attitude (frame_handler.hpp); only in RUN
+//   3. frame        gnc::FrameTracker: admission, estimator, checks (frame_handler.hpp); only in RUN
 //   4. supervision  persistence of faults and the responses to them (supervisor.hpp, fault_rules.hpp)
 //   5. telemetry    attitude, telemetry, events
 // Modes: mode_manager.hpp and modes.hpp. Rules for frames and commands, events and all fields: docs/icd.md.
 //
-// A refused frame is counted, raises an event and leaves the estimator unchanged. FrameGate has the rules for
-// time and order, gnc::FrameStatus those for the content. A cycle without a frame is counted as missing; an
-// event marks the start of an outage. Skipped sequence numbers are counted, with an event, and the frame is
-// used.
+// A refused frame is counted, raises an event and leaves the estimator unchanged. gnc::FrameGate has the
+// rules for time and order, gnc::FrameStatus those for the content. Of several frames that wait for a cycle
+// the newest one that passes the gate is used; the older ones are superseded, which is counted. A cycle
+// without a frame is counted as missing; an event marks the start of an outage. Skipped sequence numbers are
+// counted, with an event, and the frame is used.
 //
 // The estimator is reset
 //   - on entering RUN, by RESET_SEQUENCE and by the response to a fault;
 //   - when the cycle time goes back;
-//   - with an event, when a frame's exposure is not one period +- 10 % after the last accepted one,
-//     because the network is trained on steps of one period.
+//   - with an event, when a frame's exposure is more than config::kLongestCoast_ns after the last used one.
+//     Over shorter times, of any length, the track coasts.
 //
 // Cycle times must increase. Otherwise an event is raised, and the frames of the cycle are refused. Its
 // commands are still carried out: they do not depend on the time, and the ground needs them to recover. If
@@ -45,8 +46,10 @@ namespace tumblesight::fsw {
 
 class AttitudeInitApp final {
  public:
-  // Boots: activates the image of the first bank that passes every check. The mode becomes RUN, or SAFE
-  // without a good image; events of the next step report the result. Can be called again.
+  // Boots: resumes from the platform's persistent store (state_keeper.hpp) and activates the image of the
+  // bank that was in use, or else of the other bank, if it passes every check. The mode becomes RUN, STANDBY
+  // or SAFE by the table in state_keeper.hpp, and SAFE without a good image; events of the next step report
+  // the result. Can be called again.
   // `platform`: stopwatch and models must not be nullptr. `expected_target`: NUL-terminated name of the
   // model's target, or nullptr to accept any.
   void init(const hal::Platform& platform, const char* expected_target);
@@ -54,10 +57,17 @@ class AttitudeInitApp final {
   // `outputs` is overwritten, except the content of `dump` where has_dump is false.
   void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
 
+  // Whether a frame passes the rules for time and order in a cycle at `now_ns`. For the choice of the frame
+  // that a step gets; the step judges it again.
+  [[nodiscard]] gnc::FrameVerdict judge(const gnc::RangeImage& frame, std::int64_t now_ns) const;
   // To compare runs: CRC-32 over the estimator's state, the active model's CRC, mode, times, last frame,
   // limits, persisting faults and counters. It excludes everything that depends on the wall clock.
   std::uint32_t state_crc32() const;
   Mode mode() const { return state_->mode; }
+  // For a link that authenticates commands before it queues them: the key slot in use, and the counter of the
+  // last authentic command.
+  std::uint32_t key_slot() const { return state_->authority.slot(); }
+  std::uint32_t command_counter() const { return state_->counters.command_counter; }
   // What init() found in a bank (0 or 1); kOk before the first init().
   gnc::ModelStatus boot_status(int bank) const { return state_->boot_status[static_cast<std::size_t>(bank)]; }
   const Estimator& estimator() const { return estimator_; }

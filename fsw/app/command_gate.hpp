@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
+#include "fsw/app/command_authority.hpp"
 #include "fsw/app/modes.hpp"
 #include "fsw/app/telecommand.hpp"
-#include "hal/messages/command_key.hpp"
 
 namespace tumblesight::fsw {
 
@@ -19,9 +19,9 @@ struct Admission {
   Telecommand command;  // if admitted; points into the packet
 };
 
-// `key`: nullptr where the link authenticates commands; then there is no trailer. `last_counter`: counter of
-// the last authentic command.
-Admission judge(const hal::CommandPacket& packet, const hal::CommandKey* key, std::uint32_t last_counter,
-                Mode mode);
+// Where the authority has no keys, the link authenticates commands and there is no trailer. `last_counter`:
+// counter of the last authentic command.
+Admission judge(const hal::CommandPacket& packet, const CommandAuthority& authority,
+                std::uint32_t last_counter, Mode mode);
 
 }  // namespace tumblesight::fsw

@@ -6,6 +6,7 @@
 namespace tumblesight::fsw {
 
 void CommandHandler::run(const StepInputs& inputs) {
+  count_dropped(inputs.commands_dropped);
   for (int i = 0; i < inputs.command_count; ++i) run(inputs.commands[static_cast<std::size_t>(i)]);
 }
 
@@ -13,8 +14,13 @@ void CommandHandler::run(const hal::CommandPacket& packet) {
   AppState& state = context_.state;
   hal::Telemetry& counters = state.counters;
   const Mode before = state.mode;
-  const Admission admission = judge(packet, state.command_key.key(), counters.command_counter, before);
-  if (admission.authentic) counters.command_counter = admission.counter;
+  Admission admission = judge(packet, state.authority, counters.command_counter, before);
+  if (admission.authentic) {
+    counters.command_counter = admission.counter;
+    const bool stored = keeper_.store_counter();
+    if (!stored) admission.why = CommandRefusal::kNotStored;
+    admission.admitted &= stored;
+  }
   Refusal refusal{admission.why, 0};
   if (admission.admitted && carry_out(admission.command, context_, refusal)) {
     count(counters.commands_accepted);
@@ -22,9 +28,23 @@ void CommandHandler::run(const hal::CommandPacket& packet) {
                     static_cast<std::int32_t>(state.mode));
     return;
   }
-  count(counters.commands_refused);
-  count(counters.commands_refused_by[static_cast<std::size_t>(refusal.why)]);
+  count_refused(refusal.why, 1);
   context_.report(event_of(refusal.why), admission.function, packet.size, refusal.detail);
+}
+
+void CommandHandler::count_dropped(const hal::DroppedCommands& dropped) {
+  for (std::size_t why = 0; why < dropped.by.size(); ++why) {
+    if (dropped.by[why] == 0) continue;
+    const auto reason = static_cast<CommandRefusal>(why);
+    count_refused(reason, dropped.by[why]);
+    context_.report(event_of(reason), 0, 0, clamp_to_int32(dropped.by[why]));
+  }
+}
+
+void CommandHandler::count_refused(CommandRefusal why, std::uint32_t commands) {
+  hal::Telemetry& counters = context_.state.counters;
+  count(counters.commands_refused, commands);
+  count(counters.commands_refused_by[static_cast<std::size_t>(why)], commands);
 }
 
 }  // namespace tumblesight::fsw

@@ -2,21 +2,26 @@
 #pragma once
 
 #include "fsw/app/command_table.hpp"
+#include "fsw/app/state_keeper.hpp"
 
 namespace tumblesight::fsw {
 
 class CommandHandler {
  public:
-  explicit CommandHandler(const CommandContext& context) : context_(context) {}
+  CommandHandler(const CommandContext& context, StateKeeper& keeper) : context_(context), keeper_(keeper) {}
 
   // All commands, in the order in which they arrived. Each one is counted as accepted or refused, with an
-  // event.
+  // event. The counter of an authentic command is stored before the command is carried out. Commands that the
+  // link has dropped are counted as refused, with one event per reason.
   void run(const StepInputs& inputs);
 
  private:
   void run(const hal::CommandPacket& packet);
+  void count_dropped(const hal::DroppedCommands& dropped);
+  void count_refused(CommandRefusal why, std::uint32_t commands);
 
   const CommandContext context_;
+  StateKeeper& keeper_;
 };
 
 }  // namespace tumblesight::fsw

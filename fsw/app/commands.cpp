@@ -5,6 +5,7 @@
 
 #include "fsw/app/command_table.hpp"
 #include "fsw/app/counter.hpp"
+#include "hal/command_authentication.hpp"
 
 namespace tumblesight::fsw {
 namespace {
@@ -59,10 +60,29 @@ bool load_model(const Telecommand& command, const CommandContext& context, Refus
   constexpr int kOffsetBytes = 4;
   ModelBanksState& banks = context.state.banks;
   const std::int32_t next_offset = clamp_to_int32(banks.loaded_bytes);
-  const bool loaded = ModelBanks::load(*context.state.platform.models, banks, command.u32_at(0),
-                                       command.arguments + kOffsetBytes,
-                                       static_cast<std::uint32_t>(command.argument_bytes - kOffsetBytes));
-  return loaded ? true : refuse(refusal, CommandRefusal::kWrongArgument, next_offset);
+  const hal::WriteStatus written = ModelBanks::load(
+      *context.state.platform.models, banks, command.u32_at(0), command.arguments + kOffsetBytes,
+      static_cast<std::uint32_t>(command.argument_bytes - kOffsetBytes));
+  switch (written) {
+    case hal::WriteStatus::kAccepted:
+      return true;
+    case hal::WriteStatus::kBusy:
+      return refuse(refusal, CommandRefusal::kBusy, next_offset);
+    case hal::WriteStatus::kFailed:
+      return refuse(refusal, CommandRefusal::kStoreFailed, next_offset);
+    case hal::WriteStatus::kRefused:
+      break;
+  }
+  return refuse(refusal, CommandRefusal::kWrongArgument, next_offset);
+}
+
+// False: the bank cannot be read now, and the command is refused.
+bool is_readable(std::uint32_t bank, const CommandContext& context, Refusal& refusal) {
+  const auto index = static_cast<int>(bank);
+  const hal::BankActivity activity = context.state.platform.models->activity(index);
+  if (activity == hal::BankActivity::kReady) return true;
+  const bool failed = activity == hal::BankActivity::kFailed;
+  return refuse(refusal, failed ? CommandRefusal::kStoreFailed : CommandRefusal::kBusy, index);
 }
 
 bool refuse_model(const CommandContext& context, gnc::ModelStatus status, std::uint32_t size_bytes,
@@ -77,6 +97,7 @@ bool validate_model(const Telecommand& command, const CommandContext& context, R
   const std::uint32_t bank = banks.other(), size_bytes = command.u32_at(0);
   if (banks.status(bank) != BankStatus::kLoading || size_bytes != banks.loaded_bytes)
     return refuse(refusal, CommandRefusal::kNoModel);
+  if (!is_readable(bank, context, refusal)) return false;
   const gnc::ModelStatus status = context.models.validate(size_bytes, command.u32_at(4));
   if (status != gnc::ModelStatus::kOk) return refuse_model(context, status, size_bytes, bank, refusal);
   return true;
@@ -87,6 +108,7 @@ bool activate_model(const Telecommand& command, const CommandContext& context, R
   const std::uint32_t bank = banks.other(), size_bytes = banks.descriptor[bank].size_bytes;
   if (banks.status(bank) != BankStatus::kGood || banks.descriptor[bank].crc32 != command.u32_at(0))
     return refuse(refusal, CommandRefusal::kNoModel);
+  if (!is_readable(bank, context, refusal)) return false;
   const gnc::ModelStatus status = context.models.activate(bank);
   if (status != gnc::ModelStatus::kOk) return refuse_model(context, status, size_bytes, bank, refusal);
   context.report(EventId::kModelActivated, clamp_to_int32(size_bytes), static_cast<std::int32_t>(bank));
@@ -101,6 +123,7 @@ bool dump_model(const Telecommand& command, const CommandContext& context, Refus
   const hal::ModelBank memory = context.state.platform.models->bank(bank);
   if (memory.data == nullptr || size > memory.capacity || offset > memory.capacity - size)
     return refuse(refusal, CommandRefusal::kWrongArgument);
+  if (!is_readable(bank, context, refusal)) return false;
   if (context.outputs.has_dump) return refuse(refusal, CommandRefusal::kBusy);
   context.outputs.has_dump = true;
   hal::ModelDump& dump = context.outputs.dump;
@@ -138,6 +161,21 @@ bool disable_response(const Telecommand& command, const CommandContext& context,
   return set_response(command, context, false, refusal);
 }
 
+// The proof shows that the ground holds the key of the new slot before the old one becomes invalid.
+bool activate_key(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  CommandAuthority& authority = context.state.authority;
+  const std::uint8_t slot = command.u8_at(0);
+  if (!authority.has_key(slot)) return refuse(refusal, CommandRefusal::kWrongArgument, slot);
+  const gnc::Sha256Digest proof =
+      hal::proof_of_key(*authority.keys(), slot, context.state.counters.command_counter);
+  if (!gnc::equal_in_constant_time(proof.data(), command.arguments + 1, hal::kCommandMacBytes))
+    return refuse(refusal, CommandRefusal::kWrongArgument, slot);
+  const std::uint32_t before = authority.slot();
+  (void)authority.use(slot);
+  context.report(EventId::kKeyActivated, static_cast<std::int32_t>(before), slot);
+  return true;
+}
+
 struct CommandRow {
   CommandRule rule;
   bool (*handler)(const Telecommand&, const CommandContext&, Refusal&);
@@ -166,6 +204,8 @@ constexpr std::array kCommands{
     CommandRow{{FunctionCode::kEnableResponse, 1, 1, kAlways}, enable_response},
     // Fault u8
     CommandRow{{FunctionCode::kDisableResponse, 1, 1, kAlways}, disable_response},
+    // slot u8, 16 bytes: proof that the sender holds the key of the slot
+    CommandRow{{FunctionCode::kKeyActivate, 17, 17, kAlways}, activate_key},
 };
 
 constexpr bool every_function_has_one_row() {

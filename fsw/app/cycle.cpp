@@ -3,21 +3,56 @@
 namespace tumblesight::fsw {
 namespace {
 
-void receive_frames(hal::Lidar& lidar, CycleWorkspace& workspace) {
+void drop(const gnc::RangeImage& frame, gnc::FrameVerdict why, StepInputs& inputs) {
+  inputs.dropped[static_cast<std::size_t>(inputs.dropped_count++)] = {why, frame.sequence_number,
+                                                                      frame.exposure_time_ns};
+}
+
+// Why `later`, which passes the gate, is not taken although `kept` does too; kPass: it is taken instead.
+gnc::FrameVerdict compare(const gnc::RangeImage& kept, const gnc::RangeImage& later) {
+  if (later.sequence_number == kept.sequence_number) return gnc::FrameVerdict::kDuplicate;
+  return later.exposure_time_ns > kept.exposure_time_ns ? gnc::FrameVerdict::kPass
+                                                        : gnc::FrameVerdict::kSuperseded;
+}
+
+void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t now_ns,
+                    CycleWorkspace& workspace) {
   StepInputs& inputs = workspace.inputs;
-  inputs.frame_count = 0;
+  inputs.frame = nullptr;
+  inputs.dropped_count = 0;
   inputs.frame_wrong_size = 0;
-  for (int i = 0; i < config::kMaxFramesPerStep; ++i) {
-    const hal::LidarStatus status =
-        lidar.receive(workspace.frames[static_cast<std::size_t>(inputs.frame_count)]);
+  std::size_t next = 0;  // of the two buffers, the one that does not hold inputs.frame
+  for (int i = 0; i < config::kMaxDeliveriesPerCycle; ++i) {
+    gnc::RangeImage& frame = workspace.frames[next];
+    const hal::LidarStatus status = lidar.receive(frame);
     if (status == hal::LidarStatus::kNoFrame) break;
-    if (status == hal::LidarStatus::kFrame) ++inputs.frame_count;
-    if (status == hal::LidarStatus::kWrongSize) ++inputs.frame_wrong_size;
+    if (status == hal::LidarStatus::kWrongSize) {
+      ++inputs.frame_wrong_size;
+      continue;
+    }
+    gnc::FrameVerdict verdict = app.judge(frame, now_ns);
+    if (verdict == gnc::FrameVerdict::kPass && inputs.frame != nullptr)
+      verdict = compare(*inputs.frame, frame);
+    if (verdict != gnc::FrameVerdict::kPass) {
+      drop(frame, verdict, inputs);
+      continue;
+    }
+    if (inputs.frame != nullptr) drop(*inputs.frame, gnc::FrameVerdict::kSuperseded, inputs);
+    inputs.frame = &frame;
+    next = 1 - next;
   }
-  inputs.frame = inputs.frame_count > 0 ? workspace.frames.data() : nullptr;
+}
+
+void receive_chaser(hal::Navigation* navigation, std::int64_t now_ns, StepInputs& inputs) {
+  inputs.chaser = {};
+  inputs.chaser_now = {};
+  if (navigation == nullptr || inputs.frame == nullptr) return;
+  inputs.chaser = navigation->attitude_at(inputs.frame->exposure_time_ns);
+  inputs.chaser_now = navigation->attitude_at(now_ns);
 }
 
 void receive_commands(hal::Link& link, StepInputs& inputs) {
+  inputs.commands_dropped = link.take_dropped();
   inputs.command_count = 0;
   for (hal::CommandPacket& command : inputs.commands) {
     if (!link.receive(command)) break;
@@ -29,7 +64,8 @@ void receive_commands(hal::Link& link, StepInputs& inputs) {
 
 void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int64_t now_ns,
                std::uint32_t cycle_slips, CycleWorkspace& workspace) {
-  receive_frames(interfaces.lidar, workspace);
+  receive_frames(app, interfaces.lidar, now_ns, workspace);
+  receive_chaser(interfaces.navigation, now_ns, workspace.inputs);
   receive_commands(interfaces.link, workspace.inputs);
   workspace.inputs.cycle_slips = cycle_slips;
   app.step(now_ns, workspace.inputs, workspace.outputs);

@@ -8,13 +8,14 @@
 #include "fsw/app/attitude_init_app.hpp"
 #include "hal/lidar.hpp"
 #include "hal/link.hpp"
+#include "hal/navigation.hpp"
 #include "hal/watchdog.hpp"
 
 namespace tumblesight::fsw {
 
 // Memory of run_cycle(), about 80 kB. Allocate it statically, so that no frame is on the stack.
 struct CycleWorkspace {
-  std::array<gnc::RangeImage, config::kMaxFramesPerStep> frames;
+  std::array<gnc::RangeImage, 2> frames;  // the newest usable one so far, and the one that is being received
   StepInputs inputs;
   StepOutputs outputs;
 };
@@ -24,11 +25,13 @@ struct CycleInterfaces {
   hal::Lidar& lidar;
   hal::Link& link;
   hal::Watchdog& watchdog;
+  hal::Navigation* navigation = nullptr;  // nullptr: the chaser's attitude is not known
 };
 
-// Receives at most kMaxFramesPerStep deliveries of the LiDAR and kMaxCommandsPerStep commands; the others
-// wait for the next cycle. `now_ns`: time of the cycle. `cycle_slips`: releases of the task missed since the
-// last cycle. Kicks the watchdog after everything is published, if the step reports duties_done.
+// Receives at most kMaxDeliveriesPerCycle deliveries of the LiDAR and kMaxCommandsPerStep commands; the
+// others wait for the next cycle. The step gets the newest usable frame. `now_ns`: time of the cycle.
+// `cycle_slips`: releases of the task missed since the last cycle. Kicks the watchdog after everything is
+// published, if the step reports duties_done.
 void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int64_t now_ns,
                std::uint32_t cycle_slips, CycleWorkspace& workspace);
 

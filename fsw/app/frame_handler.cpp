@@ -1,18 +1,22 @@
 #include "fsw/app/frame_handler.hpp"
 
 #include "fsw/app/counter.hpp"
+#include "gnc/tracking/covariance.hpp"
 
 namespace tumblesight::fsw {
 namespace {
+
+using gnc::FrameVerdict;
 
 std::int32_t bits_of(std::uint32_t sequence_number) {
   return static_cast<std::int32_t>(sequence_number);
 }
 
-bool is_sound(const gnc::AttitudeEstimate& estimate) {
-  return is_unit(estimate.q_lrf_trf) && is_unit(estimate.q_lrf_trf_single_frame) &&
-         estimate.predicted_error_urad <= gnc::kPi_urad &&
-         estimate.predicted_error_single_frame_urad <= gnc::kPi_urad;
+std::uint32_t superseded_of(const StepInputs& inputs) {
+  std::uint32_t superseded = 0;
+  for (int i = 0; i < inputs.dropped_count; ++i)
+    superseded += inputs.dropped[static_cast<std::size_t>(i)].why == FrameVerdict::kSuperseded ? 1U : 0U;
+  return superseded;
 }
 
 }  // namespace
@@ -21,9 +25,10 @@ void FrameHandler::refuse_all(const StepInputs& inputs, std::int32_t time_step_m
   std::uint32_t refused = 0;
   if (state_.mode == Mode::kRun) {
     hal::Telemetry& counters = state_.counters;
-    count(counters.frames_stale, static_cast<std::uint32_t>(inputs.frames()));
-    count(counters.frames_bad, static_cast<std::uint32_t>(inputs.frame_wrong_size));
-    refused = static_cast<std::uint32_t>(inputs.frames() + inputs.frame_wrong_size);
+    refused = static_cast<std::uint32_t>(inputs.deliveries());
+    const auto wrong_size = static_cast<std::uint32_t>(inputs.frame_wrong_size);
+    count(counters.frames_stale, refused - wrong_size);
+    count(counters.frames_bad, wrong_size);
     count(counters.frames_refused, refused);
     if (refused == 0) count(counters.frames_missing);
     outputs_.attitude.validity = refused > 0 ? Validity::kFrameRefused : Validity::kNoFrame;
@@ -32,136 +37,163 @@ void FrameHandler::refuse_all(const StepInputs& inputs, std::int32_t time_step_m
 }
 
 void FrameHandler::take(const StepInputs& inputs) {
-  if (inputs.frames() + inputs.frame_wrong_size == 0) {
+  if (inputs.deliveries() == 0) {
     note_missing();
     return;
   }
   state_.outage = false;
   outputs_.attitude.validity = Validity::kFrameRefused;
-  for (int i = 0; i < inputs.frame_wrong_size; ++i) {
-    count(state_.counters.frames_refused);
-    count(state_.counters.frames_bad);
-    report_(EventId::kFrameWrongSize);
-  }
-  for (int i = 0; i < inputs.frames(); ++i) {
-    if (!use(inputs.frame[i])) count(state_.counters.frames_refused);
-  }
+  note_dropped(inputs);
+  if (inputs.frame != nullptr) use(inputs);
 }
 
 void FrameHandler::note_missing() {
   outputs_.attitude.validity = Validity::kNoFrame;
   count(state_.counters.frames_missing);
-  if (!state_.outage) report_(EventId::kFrameMissing, bits_of(state_.gate.last_sequence_number()));
+  if (!state_.outage) report_(EventId::kFrameMissing, bits_of(state_.tracking.gate.last_sequence_number()));
   state_.outage = true;
 }
 
-// False: the frame was refused. If the model was lost in this cycle, no frame can be used; the response to
-// that fault follows after the frames.
-bool FrameHandler::use(const gnc::RangeImage& frame) {
-  if (!state_.has_model()) return false;
-  if (!passes_gate(frame)) return false;
-  if (!estimate(frame)) return false;
-  report_attitude(frame, check_attitude(frame));
-  return true;
-}
-
-bool FrameHandler::passes_gate(const gnc::RangeImage& frame) {
-  hal::Telemetry& counters = state_.counters;
-  const std::int32_t number = bits_of(frame.sequence_number);
-  switch (state_.gate.judge(frame, state_.now_ns)) {
-    case FrameVerdict::kPass:
-      return true;
-    case FrameVerdict::kDuplicate:
-      count(counters.frames_duplicate);
-      report_(EventId::kFrameDuplicate, number);
-      return false;
-    case FrameVerdict::kFromFuture:
-      count(counters.frames_stale);
-      report_(EventId::kFrameFromFuture, number, elapsed_ms(state_.now_ns, frame.exposure_time_ns));
-      return false;
-    case FrameVerdict::kExposureBackwards:
-      count(counters.frames_stale);
-      report_(EventId::kFrameExposureBackwards, number,
-              elapsed_ms(state_.gate.last_exposure_time_ns(), frame.exposure_time_ns));
-      return false;
-    case FrameVerdict::kStale:
-      count(counters.frames_stale);
-      report_(EventId::kFrameStale, number, elapsed_ms(frame.exposure_time_ns, state_.now_ns));
-      return false;
+void FrameHandler::note_dropped(const StepInputs& inputs) {
+  for (int i = 0; i < inputs.frame_wrong_size; ++i) {
+    count(state_.counters.frames_refused);
+    count(state_.counters.frames_bad);
+    report_(EventId::kFrameWrongSize);
   }
-  return false;
+  for (int i = 0; i < inputs.dropped_count; ++i) {
+    const DroppedFrame& dropped = inputs.dropped[static_cast<std::size_t>(i)];
+    note_refusal(dropped.why, dropped.sequence_number, dropped.exposure_time_ns);
+  }
 }
 
-// Runs the estimator. False: it has refused the content of the frame, and its state is unchanged.
-bool FrameHandler::estimate(const gnc::RangeImage& frame) {
-  // The reset precedes the step, but a refused frame must leave the state unchanged.
-  estimator_.save(workspace_.state_before);
-  const std::uint32_t frames_before = workspace_.state_before.track.frames;
-  const bool reset_by_gap = frames_before > 0 && !state_.gate.one_period_after_last(frame);
-  if (reset_by_gap) estimator_.reset();
-
+// If the model was lost in this cycle, no frame can be used; the response to that fault follows after the
+// frames.
+void FrameHandler::use(const StepInputs& inputs) {
+  const gnc::RangeImage& frame = *inputs.frame;
+  if (!state_.has_model()) {
+    count(state_.counters.frames_refused);
+    return;
+  }
+  const gnc::FrameTrackerLimits limits = state_.tracker_limits();
+  const std::int64_t last_exposure_time_ns = state_.tracking.gate.last_exposure_time_ns();
+  const std::uint32_t expected_number = state_.tracking.gate.last_sequence_number() + 1U;
+  gnc::FrameOutcome& outcome = workspace_.outcome;
   hal::Telemetry& counters = state_.counters;
   hal::Stopwatch& stopwatch = *state_.platform.stopwatch;
   const std::uint64_t start_ns = stopwatch.now_ns();
-  const gnc::FrameStatus status = estimator_.step(frame, workspace_.estimate);
-  if (status != gnc::FrameStatus::kOk) {
-    estimator_.restore(workspace_.state_before);
-    count(counters.frames_bad);
-    report_(EventId::kFrameBad, bits_of(frame.sequence_number), static_cast<std::int32_t>(status),
-            frame.rays);
-    return false;
+  tracker_.use(frame, inputs.chaser, state_.now_ns, limits, state_.tracking, outcome);
+  const std::uint64_t end_ns = stopwatch.now_ns();
+  if (outcome.verdict == FrameVerdict::kBadContent) {
+    note_bad_content(frame);
+    return;
   }
-  counters.inference_us = elapsed_us(start_ns, stopwatch.now_ns());
+  if (!outcome.used()) {
+    note_refusal(outcome.verdict, frame.sequence_number, frame.exposure_time_ns);
+    return;
+  }
+  counters.inference_us = elapsed_us(start_ns, end_ns);
   if (counters.inference_us > counters.inference_max_us) counters.inference_max_us = counters.inference_us;
-
-  count_skipped(frame);
-  if (reset_by_gap) {
-    count(counters.estimator_resets);
-    state_.attitude_check.forget();
-    report_(EventId::kEstimatorResetByGap,
-            elapsed_ms(state_.gate.last_exposure_time_ns(), frame.exposure_time_ns),
-            clamp_to_int32(frames_before));
-  }
-  state_.gate.accept(frame);
-  count(counters.frames_used);
-  return true;
+  note_use(inputs, last_exposure_time_ns, expected_number);
+  tracker_.check(limits, state_.tracking, outcome);
+  report_attitude(inputs, note_doubts(frame));
 }
 
-void FrameHandler::count_skipped(const gnc::RangeImage& frame) {
-  const std::uint32_t skipped = state_.gate.numbers_skipped(frame);
-  if (skipped == 0) return;
-  count(state_.counters.sequence_gaps, skipped == FrameGate::kWentBack ? 1U : skipped);
-  report_(EventId::kSequenceSkipped, bits_of(state_.gate.last_sequence_number() + 1U),
-          bits_of(frame.sequence_number), bits_of(skipped));
+void FrameHandler::note_refusal(FrameVerdict verdict, std::uint32_t sequence_number,
+                                std::int64_t exposure_time_ns) {
+  hal::Telemetry& counters = state_.counters;
+  const std::int32_t number = bits_of(sequence_number);
+  if (verdict == FrameVerdict::kSuperseded) {
+    count(counters.frames_superseded);
+    return;
+  }
+  count(counters.frames_refused);
+  const std::int32_t since_last_ms =
+      elapsed_ms(state_.tracking.gate.last_exposure_time_ns(), exposure_time_ns);
+  switch (verdict) {
+    case FrameVerdict::kDuplicate:
+      count(counters.frames_duplicate);
+      report_(EventId::kFrameDuplicate, number);
+      return;
+    case FrameVerdict::kFromFuture:
+      count(counters.frames_stale);
+      report_(EventId::kFrameFromFuture, number, elapsed_ms(state_.now_ns, exposure_time_ns));
+      return;
+    case FrameVerdict::kExposureBackwards:
+      count(counters.frames_stale);
+      report_(EventId::kFrameExposureBackwards, number, since_last_ms);
+      return;
+    case FrameVerdict::kStale:
+      count(counters.frames_stale);
+      report_(EventId::kFrameStale, number, elapsed_ms(exposure_time_ns, state_.now_ns));
+      return;
+    case FrameVerdict::kTooSoon:
+      count(counters.frames_stale);
+      report_(EventId::kFrameTooSoon, number, since_last_ms);
+      return;
+    case FrameVerdict::kRepeated:
+      count(counters.frames_repeated);
+      state_.faults_seen |= bit_of(Fault::kFrameFrozen);
+      report_(EventId::kFrameRepeated, number);
+      return;
+    case FrameVerdict::kPass:
+    case FrameVerdict::kBadContent:
+    case FrameVerdict::kSuperseded:
+      return;
+  }
+}
+
+void FrameHandler::note_bad_content(const gnc::RangeImage& frame) {
+  count(state_.counters.frames_refused);
+  count(state_.counters.frames_bad);
+  report_(EventId::kFrameBad, bits_of(frame.sequence_number),
+          static_cast<std::int32_t>(workspace_.outcome.content), frame.rays);
+}
+
+void FrameHandler::note_use(const StepInputs& inputs, std::int64_t last_exposure_time_ns,
+                            std::uint32_t expected_number) {
+  const gnc::RangeImage& frame = *inputs.frame;
+  const gnc::FrameOutcome& outcome = workspace_.outcome;
+  hal::Telemetry& counters = state_.counters;
+  // A superseded frame did arrive.
+  const std::uint32_t superseded = superseded_of(inputs);
+  const bool went_back = outcome.numbers_skipped == gnc::FrameGate::kWentBack;
+  if (went_back || outcome.numbers_skipped > superseded) {
+    const std::uint32_t skipped = went_back ? 1U : outcome.numbers_skipped - superseded;
+    count(counters.sequence_gaps, skipped);
+    report_(EventId::kSequenceSkipped, bits_of(expected_number), bits_of(frame.sequence_number),
+            went_back ? -1 : bits_of(skipped));
+  }
+  if (outcome.frames_given_up > 0) {
+    count(counters.estimator_resets);
+    report_(EventId::kEstimatorResetByGap, elapsed_ms(last_exposure_time_ns, frame.exposure_time_ns),
+            clamp_to_int32(outcome.frames_given_up));
+  }
+  count(counters.frames_used);
 }
 
 // kFrameRefused: the attitude is unsound and must not be reported.
-Validity FrameHandler::check_attitude(const gnc::RangeImage& frame) {
-  const gnc::AttitudeEstimate& estimate = workspace_.estimate;
-  // The estimator returns sound attitudes for any frame and any model. Corrupted memory can break this.
-  if (!is_sound(estimate)) {
+Validity FrameHandler::note_doubts(const gnc::RangeImage& frame) {
+  const gnc::FrameOutcome& outcome = workspace_.outcome;
+  const auto has = [&outcome](gnc::Doubts doubt) { return (outcome.doubts & doubt) != 0; };
+  if (has(gnc::kAttitudeUnsound)) {
     state_.faults_seen |= bit_of(Fault::kAttitudeUnsound);
-    state_.attitude_check.forget();  // the next attitude is not one period after the last known one
     return Validity::kFrameRefused;
   }
-  const bool large = estimate.predicted_error_urad > state_.limit(Limit::kPredictedError_urad);
-  const bool jumps = state_.attitude_check.jumps(estimate.q_lrf_trf, state_.limit(Limit::kAttitudeJump_urad));
-  const bool repeats = state_.attitude_check.repeats(estimate.q_lrf_trf_single_frame);
-  if (large) state_.faults_seen |= bit_of(Fault::kErrorLarge);
-  if (jumps) state_.faults_seen |= bit_of(Fault::kAttitudeJump);
-  if (repeats) state_.faults_seen |= bit_of(Fault::kFrameFrozen);
-  const bool doubtful = large || jumps || repeats;
-  if (!doubtful) return Validity::kValid;
+  if (has(gnc::kErrorLarge)) state_.faults_seen |= bit_of(Fault::kErrorLarge);
+  if (has(gnc::kAttitudeJump)) state_.faults_seen |= bit_of(Fault::kAttitudeJump);
+  if (outcome.valid()) return Validity::kValid;
   count(state_.counters.attitudes_doubtful);
   report_(EventId::kAttitudeDoubtful, bits_of(frame.sequence_number),
-          static_cast<std::int32_t>(estimate.predicted_error_urad / 1000U),
-          (jumps ? 1 : 0) + (repeats ? 2 : 0));
+          static_cast<std::int32_t>(outcome.estimate.predicted_error_urad / 1000U),
+          has(gnc::kAttitudeJump) ? 1 : 0);
   return Validity::kDoubtful;
 }
 
-void FrameHandler::report_attitude(const gnc::RangeImage& frame, Validity validity) {
+void FrameHandler::report_attitude(const StepInputs& inputs, Validity validity) {
   if (validity == Validity::kFrameRefused) return;
-  const gnc::AttitudeEstimate& estimate = workspace_.estimate;
+  const gnc::RangeImage& frame = *inputs.frame;
+  const gnc::FrameOutcome& outcome = workspace_.outcome;
+  const gnc::AttitudeEstimate& estimate = outcome.estimate;
   hal::AttitudeReport& attitude = outputs_.attitude;
   attitude.exposure_time_ns = frame.exposure_time_ns;
   attitude.sequence_number = frame.sequence_number;
@@ -171,6 +203,19 @@ void FrameHandler::report_attitude(const gnc::RangeImage& frame, Validity validi
   attitude.q_lrf_trf_single_frame = estimate.q_lrf_trf_single_frame;
   attitude.predicted_error_urad = estimate.predicted_error_urad;
   attitude.predicted_error_single_frame_urad = estimate.predicted_error_single_frame_urad;
+  attitude.doubts = static_cast<std::uint8_t>(outcome.doubts);
+  attitude.law = static_cast<std::uint8_t>(estimate.law);
+  attitude.rate_lrf_urad_s = estimate.rate_lrf_urad_s;
+  attitude.attitude_covariance_e8 = gnc::attitude_covariance(estimate.predicted_error_urad);
+  attitude.rate_covariance_e8 =
+      gnc::rate_covariance(estimate.predicted_error_urad, estimate.frames_since_reset, outcome.elapsed_ns);
+  const gnc::PropagatedMotion now =
+      tracker_.motion_at(state_.now_ns, inputs.chaser_now, state_.tracker_limits(), state_.tracking);
+  attitude.q_lrf_trf_now = now.q_lrf_trf;
+  attitude.rate_lrf_now_urad_s = now.rate_lrf_urad_s;
+  attitude.q_lrf_trf_second = estimate.q_lrf_trf_second;
+  attitude.second_odds_ppm = estimate.second_odds_ppm;
+  attitude.centroid_lrf_mm = estimate.centroid_lrf_mm;
 }
 
 }  // namespace tumblesight::fsw

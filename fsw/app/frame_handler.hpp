@@ -1,4 +1,5 @@
-// FrameHandler: the path of a frame through gate, estimator and attitude checks to the attitude report.
+// FrameHandler: the path of a frame through gnc::FrameTracker to the attitude report. It counts, raises
+// events and sets faults; what happens to a frame is decided by the tracker.
 #pragma once
 
 #include "fsw/app/app_state.hpp"
@@ -8,17 +9,16 @@ namespace tumblesight::fsw {
 
 // Memory of FrameHandler that is too large for the stack.
 struct FrameWorkspace {
-  Estimator::State state_before;
-  gnc::AttitudeEstimate estimate;
+  gnc::FrameOutcome outcome;
 };
 
 class FrameHandler {
  public:
   FrameHandler(AppState& state, Estimator& estimator, FrameWorkspace& workspace, StepOutputs& outputs,
                const Reporter& report)
-      : state_(state), estimator_(estimator), workspace_(workspace), outputs_(outputs), report_(report) {}
+      : state_(state), tracker_(estimator), workspace_(workspace), outputs_(outputs), report_(report) {}
 
-  // In RUN: all frames of the step, oldest first. Each one is used or refused.
+  // In RUN: the frame of the step is used or refused, the dropped ones are counted.
   void take(const StepInputs& inputs);
   // In a cycle whose time does not advance: refuses all frames, with one event. `time_step_ms`: this cycle
   // minus the previous one.
@@ -26,15 +26,16 @@ class FrameHandler {
 
  private:
   void note_missing();
-  bool use(const gnc::RangeImage& frame);
-  bool passes_gate(const gnc::RangeImage& frame);
-  bool estimate(const gnc::RangeImage& frame);
-  void count_skipped(const gnc::RangeImage& frame);
-  Validity check_attitude(const gnc::RangeImage& frame);
-  void report_attitude(const gnc::RangeImage& frame, Validity validity);
+  void note_dropped(const StepInputs& inputs);
+  void use(const StepInputs& inputs);
+  void note_refusal(gnc::FrameVerdict verdict, std::uint32_t sequence_number, std::int64_t exposure_time_ns);
+  void note_bad_content(const gnc::RangeImage& frame);
+  void note_use(const StepInputs& inputs, std::int64_t last_exposure_time_ns, std::uint32_t expected_number);
+  Validity note_doubts(const gnc::RangeImage& frame);
+  void report_attitude(const StepInputs& inputs, Validity validity);
 
   AppState& state_;
-  Estimator& estimator_;
+  gnc::FrameTracker<Numerics> tracker_;
   FrameWorkspace& workspace_;
   StepOutputs& outputs_;
   const Reporter& report_;

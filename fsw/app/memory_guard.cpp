@@ -20,13 +20,24 @@ void MemoryGuard::model_activated(const Estimator& estimator, AppState& state) {
   state.constants_crc32 = estimator.constants_crc32();
 }
 
-bool MemoryGuard::bound_indices(const Estimator& estimator, AppState& state) {
+bool MemoryGuard::bound(const Estimator& estimator, AppState& state) {
   ModelBanksState& banks = state.banks;
-  const bool bank_known = banks.in_use < hal::kModelBanks,
-             block_known = banks.next_block < ModelBanks::kBlocks;
-  if (!bank_known) banks.in_use = banks.descriptor[0].crc32 == estimator.model().crc32 ? 0 : 1;
-  if (!block_known) banks.next_block = 0;
-  return bank_known && block_known && is_mode(state.mode);
+  bool sound = is_mode(state.mode);
+  if (banks.in_use >= hal::kModelBanks) {
+    banks.in_use = banks.descriptor[0].crc32 == estimator.model().crc32 ? 0 : 1;
+    sound = false;
+  }
+  if (banks.next_block >= ModelBanks::kBlocks) {
+    banks.next_block = 0;
+    sound = false;
+  }
+  for (std::size_t i = 0; i < config::kLimitRules.size(); ++i) {
+    const config::LimitRule& rule = config::kLimitRules[i];
+    if (state.limits[i] >= rule.lowest && state.limits[i] <= rule.highest) continue;
+    state.limits[i] = rule.initial;
+    sound = false;
+  }
+  return sound;
 }
 
 void MemoryGuard::keep(const Estimator& estimator, AppState& state) {

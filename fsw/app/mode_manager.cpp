@@ -9,7 +9,7 @@ bool ModeManager::enter(Cause cause, Fault fault) {
   if (!next_mode(before, cause, state_.mode)) return false;
   if (state_.mode == Mode::kRun && before != Mode::kRun) {
     reset_estimator();
-    state_.gate.forget();
+    state_.tracking.forget_times();
     state_.outage = false;
   }
   if (state_.mode == Mode::kSafe && before != Mode::kSafe) {
@@ -17,6 +17,13 @@ bool ModeManager::enter(Cause cause, Fault fault) {
     state_.counters.safe_fault = fault;
   }
   return true;
+}
+
+void ModeManager::resume(Cause cause, const StoredState& stored) {
+  enter(cause);
+  if (cause != Cause::kResumedSafe) return;
+  state_.counters.safe_cause = stored.safe_cause;
+  state_.counters.safe_fault = stored.safe_fault;
 }
 
 void ModeManager::go_safe(Fault fault) {
@@ -43,7 +50,7 @@ void ModeManager::go_safe_on_assertion() {
 
 void ModeManager::reset_estimator() {
   estimator_.reset();
-  state_.attitude_check.forget();
+  state_.tracking.forget_track();
   count(state_.counters.estimator_resets);
 }
 
@@ -51,7 +58,7 @@ void ModeManager::restart_sequence_after_time_jump() {
   if (state_.mode != Mode::kRun) return;
   reset_estimator();
   state_.faults_seen |= bit_of(Fault::kTrackRestarts);
-  state_.gate.forget();
+  state_.tracking.forget_times();
 }
 
 }  // namespace tumblesight::fsw

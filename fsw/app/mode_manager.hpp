@@ -14,6 +14,8 @@ class ModeManager {
   // Takes the transition. On entering RUN the estimator is reset and the last frame forgotten. On entering
   // SAFE the telemetry records cause and fault. False: the table has no such transition.
   bool enter(Cause cause, Fault fault = Fault::kStateLost);
+  // At boot: enters the first mode. A mode SAFE that was stored keeps its cause and fault in the telemetry.
+  void resume(Cause cause, const StoredState& stored);
   // SAFE because of a fault, with an event. No effect in a mode that has no such transition.
   void go_safe(Fault fault);
   // SAFE from any mode, also from a number that is none, because the state is corrupted beyond the vote.

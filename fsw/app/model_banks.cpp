@@ -1,7 +1,5 @@
 #include "fsw/app/model_banks.hpp"
 
-#include <cstring>
-
 #include "gnc/numerics/crc32.hpp"
 
 namespace tumblesight::fsw {
@@ -14,24 +12,37 @@ std::uint32_t bytes_of_block(std::uint32_t block) {
   return rest < kBlockBytes ? rest : kBlockBytes;
 }
 
+// Copies a block of `image` into a bank. True: accepted.
+bool writes(hal::ModelStore& store, std::uint32_t bank, std::uint32_t offset, const std::uint8_t* image,
+            std::uint32_t bytes) {
+  return store.write(static_cast<int>(bank), offset, image + offset, bytes) == hal::WriteStatus::kAccepted;
+}
+static_assert(kBlockBytes <= hal::kMaxModelWriteBytes);
+
 }  // namespace
 
-bool ModelBanks::load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
-                      const std::uint8_t* bytes, std::uint32_t count) {
+hal::WriteStatus ModelBanks::load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
+                                  const std::uint8_t* bytes, std::uint32_t count) {
   const std::uint32_t bank = state.other();
-  const hal::ModelBank memory = store.bank(static_cast<int>(bank));
   BankDescriptor& descriptor = state.descriptor[bank];
   const bool in_order =
       offset == 0 || (state.status(bank) == BankStatus::kLoading && offset == state.loaded_bytes);
-  if (!in_order || memory.writable == nullptr || count > memory.capacity || offset > memory.capacity - count)
-    return false;
+  if (!in_order) return hal::WriteStatus::kRefused;
+  const auto index = static_cast<int>(bank);
+  const bool spoilt = offset > 0 && store.activity(index) == hal::BankActivity::kFailed;
+  const hal::WriteStatus written =
+      spoilt ? hal::WriteStatus::kFailed : store.write(index, offset, bytes, count);
+  if (written == hal::WriteStatus::kFailed) {
+    descriptor = {};
+    state.loaded_bytes = 0;
+  }
+  if (written != hal::WriteStatus::kAccepted) return written;
   if (offset == 0) {
     descriptor = {};
     descriptor.set(BankStatus::kLoading);
   }
-  std::memcpy(memory.writable + offset, bytes, count);
   state.loaded_bytes = offset + count;
-  return true;
+  return written;
 }
 
 std::uint32_t ModelBanks::crc32_of(const Table& table) {
@@ -70,19 +81,24 @@ BlockCheck ModelBanks::check_block(hal::ModelStore& store, ModelBanksState& stat
   const hal::ModelBank spare = store.bank(static_cast<int>(other));
   const std::uint32_t offset = block * kBlockBytes, bytes = bytes_of_block(block);
   const bool good = gnc::crc32(used.data + offset, bytes) == block_crc32_[in_use][block];
+  const hal::BankActivity activity = store.activity(static_cast<int>(other));
   if (state.status(other) != BankStatus::kGood) return {good ? Result::kGood : Result::kLost, in_use, block};
-  const bool spare_good = gnc::crc32(spare.data + offset, bytes) == block_crc32_[other][block];
+  // A bank that is being written cannot be read; it is checked in the next pass.
+  if (activity == hal::BankActivity::kErasing || activity == hal::BankActivity::kWriting)
+    return {good ? Result::kGood : Result::kLost, in_use, block};
+  const bool spare_good = activity == hal::BankActivity::kReady &&
+                          gnc::crc32(spare.data + offset, bytes) == block_crc32_[other][block];
   if (good && spare_good) return {Result::kGood, in_use, block};
 
   const bool can_copy = state.has_second_copy();
   if (good) {
-    if (!can_copy || spare.writable == nullptr) return {Result::kFallbackLost, other, block};
-    std::memcpy(spare.writable + offset, used.data + offset, bytes);
-    return {Result::kRepaired, other, block};
+    const bool repaired = can_copy && writes(store, other, offset, used.data, bytes);
+    return {repaired ? Result::kRepaired : Result::kFallbackLost, other, block};
   }
-  if (!can_copy || !spare_good || used.writable == nullptr) return {Result::kLost, in_use, block};
-  std::memcpy(used.writable + offset, spare.data + offset, bytes);
-  return {Result::kRepaired, in_use, block};
+  // The image in use must stay readable, so only a bank that is written at once can be repaired.
+  const bool repaired = can_copy && spare_good && used.writing == hal::BankWriting::kAtOnce &&
+                        writes(store, in_use, offset, spare.data, bytes);
+  return {repaired ? Result::kRepaired : Result::kLost, in_use, block};
 }
 
 }  // namespace tumblesight::fsw

@@ -65,10 +65,12 @@ class ModelBanks {
       (gnc::kModelImageSize<Numerics> + config::kModelBlockBytes - 1) / config::kModelBlockBytes;
 
   // Writes a segment of `count` bytes to the bank that is not in use. Segments must come in order; a segment
-  // with offset 0 begins a new image. False: out of order, beyond the end of the bank, or the bank is
-  // read-only.
-  [[nodiscard]] static bool load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
-                                 const std::uint8_t* bytes, std::uint32_t count);
+  // with offset 0 begins a new image. kRefused: out of order, beyond the end of the bank, or the bank is
+  // read-only. kBusy: send the segment again later. kFailed: the image is void, now or because an earlier
+  // segment could not be written.
+  [[nodiscard]] static hal::WriteStatus load(hal::ModelStore& store, ModelBanksState& state,
+                                             std::uint32_t offset, const std::uint8_t* bytes,
+                                             std::uint32_t count);
 
   // Computes the table of checksums from the current content of `bank`. Call when its image has passed every
   // check.

@@ -4,8 +4,9 @@
 
 namespace tumblesight::fsw {
 
-void ModelManager::boot() {
-  for (std::uint32_t bank = 0; bank < hal::kModelBanks; ++bank) boot_bank(bank);
+void ModelManager::boot(std::uint32_t preferred) {
+  boot_bank(preferred);
+  boot_bank(1 - preferred);
 }
 
 void ModelManager::boot_bank(std::uint32_t bank) {
@@ -69,7 +70,7 @@ gnc::ModelStatus ModelManager::activate(std::uint32_t bank) {
   descriptor.set(BankStatus::kGood);
   descriptor.crc32 = estimator_.model().crc32;
   state_.banks.in_use = bank;
-  state_.attitude_check.forget();
+  state_.tracking.forget_track();
   guard_.model_activated(estimator_, state_);
   return status;
 }

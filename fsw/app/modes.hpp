@@ -22,10 +22,13 @@ struct Transition {
   Mode to;
 };
 
-inline constexpr std::array<Transition, 16> kTransitions{{
+inline constexpr std::array<Transition, 19> kTransitions{{
     {Mode::kBoot, Cause::kModelFound, Mode::kRun},
     {Mode::kBoot, Cause::kNoModel, Mode::kSafe},
     {Mode::kBoot, Cause::kAssertion, Mode::kSafe},
+    {Mode::kBoot, Cause::kResumedStandby, Mode::kStandby},
+    {Mode::kBoot, Cause::kResumedSafe, Mode::kSafe},
+    {Mode::kBoot, Cause::kStoredStateLost, Mode::kSafe},
     {Mode::kStandby, Cause::kCommandStandby, Mode::kStandby},
     {Mode::kStandby, Cause::kCommandRun, Mode::kRun},
     {Mode::kStandby, Cause::kCommandSafe, Mode::kSafe},

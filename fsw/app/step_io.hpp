@@ -6,6 +6,9 @@
 
 #include "fsw/config/limits.hpp"
 #include "gnc/lidar/range_image.hpp"
+#include "gnc/tracking/chaser_attitude.hpp"
+#include "gnc/tracking/frame_gate.hpp"
+#include "hal/link.hpp"
 #include "hal/messages/attitude_report.hpp"
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/event.hpp"
@@ -16,21 +19,33 @@ namespace tumblesight::fsw {
 
 using hal::Validity;
 
+// A frame that arrived and does not reach the estimator.
+struct DroppedFrame {
+  gnc::FrameVerdict why = gnc::FrameVerdict::kSuperseded;
+  std::uint32_t sequence_number = 0;
+  std::int64_t exposure_time_ns = 0;
+};
+
 // Counts outside their range are a bug of the caller: the step raises an assertion and goes SAFE.
 struct StepInputs {
-  const gnc::RangeImage* frame = nullptr;  // nullptr: no frame in this cycle
-  int frame_count = 1;                     // frames at `frame`, oldest first: 0 ... kMaxFramesPerStep
-  int frame_wrong_size = 0;                // deliveries that the sensor interface dropped; with frame_count
-                                           // at most kMaxFramesPerStep
+  const gnc::RangeImage* frame = nullptr;  // the newest usable one; nullptr: no frame in this cycle
+  gnc::ChaserAttitude chaser;              // at the exposure of `frame`
+  gnc::ChaserAttitude chaser_now;          // at the cycle time
+  // The other frames of this cycle, as AttitudeInitApp::judge() or the choice between them decided.
+  std::array<DroppedFrame, config::kMaxDeliveriesPerCycle> dropped{};
+  int dropped_count = 0;
+  int frame_wrong_size = 0;  // deliveries that the sensor interface dropped; with dropped_count and `frame`
+                             // at most kMaxDeliveriesPerCycle
   std::array<hal::CommandPacket, config::kMaxCommandsPerStep> commands{};
   int command_count = 0;
-  std::uint32_t cycle_slips = 0;  // releases of the task missed since the last step
+  hal::DroppedCommands commands_dropped;  // by the link, since the last step
+  std::uint32_t cycle_slips = 0;          // releases of the task missed since the last step
 
-  int frames() const { return frame != nullptr ? frame_count : 0; }
+  int deliveries() const { return (frame != nullptr ? 1 : 0) + dropped_count + frame_wrong_size; }
 };
 
 struct StepOutputs {
-  hal::AttitudeReport attitude;  // of the last frame accepted in this cycle
+  hal::AttitudeReport attitude;  // of the frame used in this cycle
   hal::Telemetry telemetry;
   std::array<hal::Event, config::kMaxEventsPerStep> events{};
   int event_count = 0;

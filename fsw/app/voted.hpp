@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <new>
 #include <type_traits>
 
 namespace tumblesight::fsw {
@@ -20,8 +19,11 @@ class Voted {
   State* operator->() { return copies_.data(); }
   const State* operator->() const { return copies_.data(); }
 
-  // Sets the first copy to its initial state, in place: a temporary would be on the stack.
-  void restart() { ::new (static_cast<void*>(copies_.data())) State; }
+  // Sets the first copy to its initial state, from a constant: a temporary would be on the stack.
+  void restart() {
+    static constexpr State kInitial{};
+    copies_[0] = kInitial;
+  }
 
   // Sets all copies to the majority of every bit. Returns the number of 32-bit words that differed.
   std::uint32_t vote() {

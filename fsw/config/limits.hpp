@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "gnc/tracking/frame_gate.hpp"
 #include "hal/messages/limit.hpp"
 
 namespace tumblesight::fsw {
@@ -34,8 +35,10 @@ inline constexpr std::array<LimitRule, kLimits> kLimitRules{{
 
 // Inputs of one step. Everything beyond these limits waits in the HAL for the next cycle.
 inline constexpr int kMaxCommandsPerStep = 8;
-// Two, so that the task catches up after a frame that arrived one cycle late.
-inline constexpr int kMaxFramesPerStep = 2;
+// Deliveries of the LiDAR that one cycle receives: frames, and data that is not a frame. The estimator gets
+// one frame, the newest usable one, so that a sensor that is faster than the cycle neither fills the queue
+// nor lengthens the step.
+inline constexpr int kMaxDeliveriesPerCycle = 32;
 
 // Events that one step returns. Further events wait in the ring for the next step; events that do not fit
 // into the ring are counted as lost.
@@ -47,15 +50,21 @@ static_assert((kEventRing & (kEventRing - 1)) == 0, "the ring's indices are mask
 inline constexpr int kMaxEventsOfAKind = 8;
 inline constexpr std::uint32_t kEventWindow_cycles = 16;
 
-// The network is trained on motion in steps of one frame period. For a step outside the tolerance it would
-// estimate a wrong rate.
+// The period of the cycle.
 inline constexpr std::int64_t kFramePeriod_ns = 2'700'000'000;
-inline constexpr std::int64_t kFramePeriodTolerance_ns = kFramePeriod_ns / 10;
-static_assert(kFramePeriodTolerance_ns > 0 && 2 * kFramePeriodTolerance_ns < kFramePeriod_ns,
-              "a gap of two periods must not pass as one");
 
-// An older frame says nothing about the current attitude. A frame that is one cycle late is still accepted.
-inline constexpr std::int64_t kMaxFrameAge_ns = kFramePeriod_ns + kFramePeriodTolerance_ns;
+// An older frame says little about the current attitude. A frame that is one cycle late is still accepted.
+// The clocks of sensor and cycle differ by less than the tolerance.
+inline constexpr std::int64_t kMaxFrameAge_ns = kFramePeriod_ns + kFramePeriod_ns / 10;
+inline constexpr std::int64_t kFutureTolerance_ns = 1'000'000;
+inline constexpr gnc::FrameTimeLimits kFrameTimeLimits{kFutureTolerance_ns, kMaxFrameAge_ns};
+
+// After a longer time without a used frame the track is given up. After 8 periods the first frame is within
+// 20 degrees in 100 % of 300 sequences of NEAR Shoemaker (occluded: 91 %) with the track that coasted, and in
+// 98 % (87 %) without it.
+inline constexpr std::int64_t kLongestCoast_ns = 8 * kFramePeriod_ns;
+// At 5 degrees/s of the chaser an attitude that is 10 ms off is wrong by 0.05 degrees.
+inline constexpr std::int64_t kChaserTimeTolerance_ns = 10'000'000;
 
 // Static memory of AttitudeInitApp in fixed point. It does not include the weights, which are read from the
 // model image in place.

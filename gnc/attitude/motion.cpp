@@ -1,9 +1,25 @@
 #include "gnc/attitude/motion.hpp"
 
+#include "gnc/numerics/division.hpp"
+
 namespace tumblesight::gnc {
 namespace {
 
-constexpr int kSteps = 4;  // of the midpoint method per frame
+constexpr int kSteps = 4;  // of the midpoint method per nominal period or part of it
+
+// A time as a number of equal parts, none longer than a nominal period.
+struct TimeSplit {
+  int parts;
+  Fixed part;  // [nominal periods]
+};
+
+TimeSplit split(std::int64_t elapsed_ns) {
+  const std::int64_t time_ns = clamp<std::int64_t>(elapsed_ns, 0, kLongestPropagation_ns);
+  const std::int64_t parts = max<std::int64_t>(1, divide(time_ns + kNominalPeriod_ns - 1, kNominalPeriod_ns));
+  const std::int64_t divisor = parts * kNominalPeriod_ns;
+  const std::int64_t raw = divide(time_ns * (std::int64_t{1} << Fixed::kFractionBits) + divisor / 2, divisor);
+  return {static_cast<int>(parts), Fixed::from_raw(raw)};
+}
 
 // The rate limited to kLargestRate. Float: a vector whose squared length overflows becomes zero.
 template <class Real>
@@ -52,6 +68,26 @@ Matrix3<Real> adjugate(const Matrix3<Real>& j) {
     }
   }
   return result;
+}
+
+// 1 - cos(angle) of a rotation.
+template <class Real>
+Real versine_of(const Matrix3<Real>& r) {
+  const Real trace = (r(0, 0) + r(1, 1)) + r(2, 2);
+  return constant<Real>(0.5) * (constant<Real>(3.0) - trace);
+}
+
+// angle / sin(angle) as a power series in y = 1 - cos(angle); the ratio of consecutive coefficients is
+// n / (2n + 1).
+template <class Real>
+Real angle_over_sine(Real y) {
+  Real f = constant<Real>(1.0);
+  constexpr std::array<Real, 8> kRatio{constant<Real>(1.0 / 3.0),  constant<Real>(2.0 / 5.0),
+                                       constant<Real>(3.0 / 7.0),  constant<Real>(4.0 / 9.0),
+                                       constant<Real>(5.0 / 11.0), constant<Real>(6.0 / 13.0),
+                                       constant<Real>(7.0 / 15.0), constant<Real>(8.0 / 17.0)};
+  for (std::size_t k = kRatio.size(); k-- > 0;) f = constant<Real>(1.0) + y * kRatio[k] * f;
+  return f;
 }
 
 }  // namespace
@@ -103,37 +139,63 @@ Matrix3<Real> rotation_from_vector(const Vector3<Real>& turn) {
 template <class Real>
 Vector3<Real> small_rotation_vector(const Matrix3<Real>& r) {
   constexpr Real kHalf = constant<Real>(0.5);
-  const Real trace = (r(0, 0) + r(1, 1)) + r(2, 2);
-  const Real y = kHalf * (constant<Real>(3.0) - trace);  // 1 - cos(angle)
-  // angle / sin(angle) as a power series in y; the ratio of consecutive coefficients is n / (2n + 1).
-  Real f = constant<Real>(1.0);
-  constexpr std::array<Real, 8> kRatio{constant<Real>(1.0 / 3.0),  constant<Real>(2.0 / 5.0),
-                                       constant<Real>(3.0 / 7.0),  constant<Real>(4.0 / 9.0),
-                                       constant<Real>(5.0 / 11.0), constant<Real>(6.0 / 13.0),
-                                       constant<Real>(7.0 / 15.0), constant<Real>(8.0 / 17.0)};
-  for (std::size_t k = kRatio.size(); k-- > 0;) f = constant<Real>(1.0) + y * kRatio[k] * f;
-  const Real half = select(y < kHalf, kHalf * f, Real{});  // y < 1/2: below 60 degrees
+  const Real y = versine_of<Real>(r);
+  const Real half = select(y < kHalf, kHalf * angle_over_sine<Real>(y), Real{});  // below 60 degrees
   return {half * (r(2, 1) - r(1, 2)), half * (r(0, 2) - r(2, 0)), half * (r(1, 0) - r(0, 1))};
 }
 
 template <class Real>
-Motion<Real> propagate(const Motion<Real>& motion, const Inertia<Real>& inertia) {
-  constexpr Real kStep = constant<Real>(1.0 / kSteps);
-  constexpr Real kHalfStep = constant<Real>(0.5 / kSteps);
+Vector3<Real> rotation_vector(const Matrix3<Real>& r, Real largest_versine) {
+  constexpr Real kOne = constant<Real>(1.0);
+  const Vector3<Real> small = small_rotation_vector<Real>(r);
+  // (angle / 2) / sin(angle / 2) as the same power series, in 1 - cos(angle / 2).
+  const QuaternionQ30 q = quaternion_from_rotation(converted<Fixed>(r));
+  std::array<Real, 4> half;
+  for (std::size_t i = 0; i < 4; ++i)
+    half[i] = converted<Real>(Fixed::from_raw((std::int64_t{q[i]} + (1 << 5)) >> 6));
+  const Real factor = constant<Real>(2.0) * angle_over_sine<Real>(kOne - half[0]);
+  const Real versine = versine_of<Real>(r);
+  const bool is_small = versine < constant<Real>(kVersineOf60Degrees);
+  const bool is_large = !is_small & (versine < constant<Real>(kVersineOf150Degrees));
+  const bool is_accepted = versine < largest_versine;
+  Vector3<Real> turn;
+  for (int i = 0; i < 3; ++i) {
+    const Real large = select(is_large, factor * half[static_cast<std::size_t>(i) + 1], Real{});
+    turn[i] = select(is_accepted, select(is_small, small[i], large), Real{});
+  }
+  return turn;
+}
+
+Fixed in_periods(std::int64_t elapsed_ns) {
+  const TimeSplit time = split(elapsed_ns);
+  return Fixed::from_raw(std::int64_t{time.part.raw()} * time.parts);
+}
+
+template <class Real>
+Motion<Real> propagate(const Motion<Real>& motion, const Inertia<Real>& inertia, std::int64_t elapsed_ns) {
+  const TimeSplit time = split(elapsed_ns);
+  const Real step = constant<Real>(1.0 / kSteps) * converted<Real>(time.part);
+  const Real half_step = constant<Real>(0.5 / kSteps) * converted<Real>(time.part);
   const Vector3<Real> rate = clamp_length<Real>(motion.rate_lrf);
   const Vector3<Real> rate_trf = transpose_product<Real>(motion.r_lrf_trf, rate);
   const Vector3<Real> momentum_lrf =
       product<Real>(motion.r_lrf_trf, product<Real>(inertia.tensor_trf, rate_trf));
   Matrix3<Real> r = motion.r_lrf_trf;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kSteps * kMaxPeriods; ++i) {
+    if (i == kSteps * time.parts) break;
     const Vector3<Real> half_turn =
-        gnc::scaled<Real>(rate_from_momentum<Real>(r, momentum_lrf, inertia), kHalfStep);
+        gnc::scaled<Real>(rate_from_momentum<Real>(r, momentum_lrf, inertia), half_step);
     const Matrix3<Real> middle = product<Real>(rotation_from_vector<Real>(half_turn), r);
     const Vector3<Real> turn =
-        gnc::scaled<Real>(rate_from_momentum<Real>(middle, momentum_lrf, inertia), kStep);
+        gnc::scaled<Real>(rate_from_momentum<Real>(middle, momentum_lrf, inertia), step);
     r = product<Real>(rotation_from_vector<Real>(turn), r);
   }
   return {r, rate_from_momentum<Real>(r, momentum_lrf, inertia)};
+}
+
+template <class Real>
+Motion<Real> turned(const Motion<Real>& motion, const Matrix3<Real>& r_now_last) {
+  return {product<Real>(r_now_last, motion.r_lrf_trf), product<Real>(r_now_last, motion.rate_lrf)};
 }
 
 template <class Real>
@@ -155,11 +217,13 @@ MotionLaws<Real> motion_laws(const Inertia<Real>& inertia) {
   return laws;
 }
 
-#define TUMBLESIGHT_INSTANTIATE(Real)                                         \
-  template bool make_inertia(const Matrix3<Real>&, Inertia<Real>&);           \
-  template Matrix3<Real> rotation_from_vector(const Vector3<Real>&);          \
-  template Vector3<Real> small_rotation_vector(const Matrix3<Real>&);         \
-  template Motion<Real> propagate(const Motion<Real>&, const Inertia<Real>&); \
+#define TUMBLESIGHT_INSTANTIATE(Real)                                                       \
+  template bool make_inertia(const Matrix3<Real>&, Inertia<Real>&);                         \
+  template Matrix3<Real> rotation_from_vector(const Vector3<Real>&);                        \
+  template Vector3<Real> small_rotation_vector(const Matrix3<Real>&);                       \
+  template Vector3<Real> rotation_vector(const Matrix3<Real>&, Real);                       \
+  template Motion<Real> propagate(const Motion<Real>&, const Inertia<Real>&, std::int64_t); \
+  template Motion<Real> turned(const Motion<Real>&, const Matrix3<Real>&);                  \
   template MotionLaws<Real> motion_laws(const Inertia<Real>&)
 
 TUMBLESIGHT_INSTANTIATE(Fixed);

@@ -187,6 +187,8 @@ FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& pro
   loops.sum_depths(frame, scratch.rays);
   const Centroid centroid = find_centroid(scratch.rays, frame.rays, summary.returns);
   image.r_lrf_view = rotation_of_y_to(centroid.direction);
+  image.centroid_distance_mm = static_cast<std::int32_t>(
+      rounding_divide(centroid.distance * 1000, std::int64_t{kMetre} << scratch.rays.range_shift));
 
   const Vector3<Fixed> right = image.r_lrf_view.col(0);
   const Vector3<Fixed> down = -image.r_lrf_view.col(2);

@@ -26,6 +26,7 @@ struct DepthImage {
   static constexpr int kSmallest = 256;  // of a cell with returns, so that it differs from an empty one
   std::array<std::uint16_t, kCells> depth{};
   Matrix3<Fixed> r_lrf_view = Matrix3<Fixed>::Identity();  // v_lrf = r_lrf_view v_view
+  std::int32_t centroid_distance_mm = 0;                   // along the +y axis of the view frame
 };
 
 // How a frame is projected. Part of the model image, since the network is trained for it.

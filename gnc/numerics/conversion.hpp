@@ -34,6 +34,10 @@ To converted(From from) {
   return to;
 }
 template <class To, class From>
+Vector3<To> converted(const Vector3<From>& from) {
+  return {converted<To>(from.x()), converted<To>(from.y()), converted<To>(from.z())};
+}
+template <class To, class From>
 Matrix3<To> converted(const Matrix3<From>& from) {
   Matrix3<To> to;
   for (int i = 0; i < 9; ++i) convert(from(i), to(i));

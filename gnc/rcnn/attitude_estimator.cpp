@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "gnc/attitude/quaternion.hpp"
 #include "gnc/lidar/depth_loops.hpp"
 #include "gnc/numerics/conversion.hpp"
 #include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/division.hpp"
 
 namespace tumblesight::gnc {
 
@@ -21,6 +23,68 @@ std::uint32_t error_urad(const Matrix3<Fixed>& attitude, Fixed predicted_rad) {
   const std::int64_t scaled = std::int64_t{predicted_rad.raw()} * 1'000'000;
   const std::int64_t urad = (scaled + (1 << (Fixed::kFractionBits - 1))) >> Fixed::kFractionBits;
   return select(is_rotation, static_cast<std::uint32_t>(min<std::int64_t>(kPi_urad, urad)), kPi_urad);
+}
+
+// From radians per nominal period, rounded to the nearest.
+std::int32_t urad_s(Fixed rate) {
+  constexpr std::int64_t kNumerator = 1'000'000 * (1'000'000'000 / 100'000'000);
+  constexpr std::int64_t kDenominator = kNominalPeriod_ns / 100'000'000;
+  const std::int64_t doubled =
+      divide(std::int64_t{rate.raw()} * kNumerator, kDenominator) >> (Fixed::kFractionBits - 1);
+  return static_cast<std::int32_t>((doubled + 1) >> 1);
+}
+
+std::array<std::int32_t, 3> urad_s(const Vector3<Fixed>& rate) {
+  return {urad_s(rate.x()), urad_s(rate.y()), urad_s(rate.z())};
+}
+
+QuaternionQ30 select(bool condition, const QuaternionQ30& yes, const QuaternionQ30& no) {
+  QuaternionQ30 result;
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = gnc::select(condition, yes[i], no[i]);
+  return result;
+}
+
+// A position on the +y axis of the view frame.
+std::array<std::int32_t, 3> position_lrf_mm(const DepthImage& image) {
+  std::array<std::int32_t, 3> position;
+  for (int i = 0; i < 3; ++i) {
+    const std::int64_t scaled = std::int64_t{image.r_lrf_view(i, 1).raw()} * image.centroid_distance_mm;
+    position[static_cast<std::size_t>(i)] =
+        static_cast<std::int32_t>((scaled + (1 << (Fixed::kFractionBits - 1))) >> Fixed::kFractionBits);
+  }
+  return position;
+}
+
+// The alternative to `attitude` among the hypotheses of a frame.
+struct Alternative {
+  QuaternionQ30 q_lrf_trf;
+  std::uint32_t odds_ppm;
+};
+template <class Real>
+Alternative second_of(const Hypotheses<Real>& hypotheses, const Matrix3<Real>& attitude) {
+  Fixed same{}, largest{};
+  int second = 0;
+  for (int i = 0; i < shape::kHypotheses; ++i) {
+    const bool is_same = same_attitude<Real>(hypotheses.r_lrf_trf[i], attitude);
+    const Fixed probability = converted<Fixed>(hypotheses.probability[i]);
+    same += gnc::select(is_same, probability, Fixed{});
+    const bool is_second = !is_same & (probability > largest);
+    second = gnc::select(is_second, i, second);
+    largest = gnc::select(is_second, probability, largest);
+  }
+  constexpr std::int64_t kMostOdds_ppm = 1'000'000'000;
+  const std::int64_t divisor = max<std::int64_t>(same.raw(), 1);
+  const std::int64_t odds_ppm = min(kMostOdds_ppm, divide(std::int64_t{largest.raw()} * 1'000'000, divisor));
+  const bool exists = largest > Fixed{};
+  const QuaternionQ30 q_lrf_trf =
+      quaternion_from_rotation(converted<Fixed>(hypotheses.r_lrf_trf[static_cast<std::size_t>(second)]));
+  return {select(exists, q_lrf_trf, kIdentityQ30), static_cast<std::uint32_t>(odds_ppm)};
+}
+
+// Whether this rate turns the target by more than kLargestTurn_rad in this time.
+bool turns_too_far(const Vector3<Fixed>& rate, Fixed periods) {
+  const Vector3<Fixed> turn = scaled<Fixed>(rate, periods);
+  return dot(turn, turn) > constant<Fixed>(kLargestTurn_rad * kLargestTurn_rad);
 }
 
 [[maybe_unused]] void add_to(Crc32& crc, const float* values, std::size_t count) {
@@ -68,20 +132,23 @@ void AttitudeEstimator<N>::reset() {
 }
 
 template <class N>
-FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, AttitudeEstimate& estimate) {
+FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, const FrameInterval& interval,
+                                       AttitudeEstimate& estimate) {
   const DepthLoops& loops = fastest_depth_loops(network_.kernels().set);
   const FrameStatus status =
       make_depth_image(frame, model_.projection, network_.projection_scratch(), image_, loops);
-  if (status == FrameStatus::kOk) step(image_, estimate);
+  if (status == FrameStatus::kOk) step(image_, interval, estimate);
   return status;
 }
 
 template <class N>
-void AttitudeEstimator<N>::step(const DepthImage& image, AttitudeEstimate& estimate) {
+void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& interval,
+                                AttitudeEstimate& estimate) {
   auto& [output, hypotheses, prediction, input, head] = intermediates_;
+  if (interval.gives_up_track) reset();
   network_.infer_frame(image, output);
   hypotheses = decode_hypotheses<Real>(output, converted<Real>(image.r_lrf_view));
-  prediction = predict<Real>(state_.track, laws_, hypotheses);
+  prediction = predict<Real>(state_.track, laws_, hypotheses, interval);
   fill_lstm_input<N>(network_.features(), hypotheses, prediction.r_lrf_trf(), input);
   network_.infer_sequence(input, state_.lstm, head);
   const TrackedAttitude<Real> tracked = advance<Real>(hypotheses, prediction, head, state_.track);
@@ -95,6 +162,28 @@ void AttitudeEstimator<N>::step(const DepthImage& image, AttitudeEstimate& estim
   estimate.predicted_error_single_frame_urad =
       error_urad(single_frame, converted<Fixed>(hypotheses.predicted_error_rad));
   estimate.frames_since_reset = state_.track.frames;
+  const Motion<Real>& motion = state_.track.motion[state_.track.law()];
+  const Vector3<Fixed> rate = converted<Fixed>(motion.rate_lrf);
+  const QuaternionQ30 predicted = quaternion_from_rotation(converted<Fixed>(prediction.r_lrf_trf()));
+  estimate.q_lrf_trf_predicted = select(prediction.has_track, predicted, kIdentityQ30);
+  estimate.has_prediction = prediction.has_track;
+  estimate.rate_lrf_urad_s = urad_s(rate);
+  estimate.rate_is_ambiguous = prediction.has_track & turns_too_far(rate, prediction.elapsed_periods);
+  estimate.law = state_.track.law();
+  const Alternative second = second_of<Real>(hypotheses, tracked.r_lrf_trf);
+  estimate.q_lrf_trf_second = second.q_lrf_trf;
+  estimate.second_odds_ppm = second.odds_ppm;
+  estimate.centroid_lrf_mm = position_lrf_mm(image);
+}
+
+template <class N>
+PropagatedMotion AttitudeEstimator<N>::propagated(const FrameInterval& interval) const {
+  const int law = state_.track.law();
+  const Motion<Real> later =
+      turned<Real>(propagate<Real>(state_.track.motion[law], laws_[law], interval.elapsed_ns),
+                   converted<Real>(rotation_from_quaternion(interval.q_now_last)));
+  return {quaternion_from_rotation(converted<Fixed>(later.r_lrf_trf)),
+          urad_s(converted<Fixed>(later.rate_lrf))};
 }
 
 template <class N>

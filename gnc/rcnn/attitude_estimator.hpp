@@ -2,6 +2,7 @@
 // FixedPoint.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -22,6 +23,26 @@ struct AttitudeEstimate {
   QuaternionQ30 q_lrf_trf_single_frame = kIdentityQ30;  // from this frame alone (CNN)
   std::uint32_t predicted_error_single_frame_urad = kPi_urad;
   std::uint32_t frames_since_reset = 0;  // 1 for the first frame of a track
+  // The attitude that the track predicted for this frame, before it was seen; the identity and false for the
+  // first frame of a track.
+  QuaternionQ30 q_lrf_trf_predicted = kIdentityQ30;
+  bool has_prediction = false;
+  std::array<std::int32_t, 3> rate_lrf_urad_s{};  // angular rate of the target relative to the inertial frame
+  // The target has turned by more than kLargestTurn_rad since the last frame, so that the rate may be another
+  // one that leads to the same attitude.
+  bool rate_is_ambiguous = false;
+  int law = kSpinLaw;  // of motion, that gives the attitude and the rate
+  // The likeliest hypothesis of this frame that is another attitude than q_lrf_trf, and its probability over
+  // that of the hypotheses that are the same attitude. Odds of 0: there is none.
+  QuaternionQ30 q_lrf_trf_second = kIdentityQ30;
+  std::uint32_t second_odds_ppm = 0;
+  std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
+};
+
+// The motion of the target in the LRF, in integers.
+struct PropagatedMotion {
+  QuaternionQ30 q_lrf_trf = kIdentityQ30;
+  std::array<std::int32_t, 3> rate_lrf_urad_s{};
 };
 
 // Owns the activations, the state and float32 weights. Fixed-point weights are read in place from the model
@@ -53,11 +74,21 @@ class AttitudeEstimator {
 
   // Forgets all frames seen so far.
   void reset();
-  // Processes one frame. On any status except kOk the frame is refused; `estimate` and the state are
-  // unchanged. Requires has_model().
-  [[nodiscard]] FrameStatus step(const RangeImage& frame, AttitudeEstimate& estimate);
+  std::uint32_t frames() const { return state_.track.frames; }  // since reset
+  // Processes one frame, `interval` after the last one. On any status except kOk the frame is refused;
+  // `estimate` and the state are unchanged. Requires has_model().
+  [[nodiscard]] FrameStatus step(const RangeImage& frame, const FrameInterval& interval,
+                                 AttitudeEstimate& estimate);
   // The same from a depth image (tests, training, evaluation).
-  void step(const DepthImage& image, AttitudeEstimate& estimate);
+  void step(const DepthImage& image, const FrameInterval& interval, AttitudeEstimate& estimate);
+  // One nominal period after the last frame, without a turn of the chaser.
+  [[nodiscard]] FrameStatus step(const RangeImage& frame, AttitudeEstimate& estimate) {
+    return step(frame, {}, estimate);
+  }
+  void step(const DepthImage& image, AttitudeEstimate& estimate) { step(image, {}, estimate); }
+
+  // The motion of the track `interval` after the last frame; changes nothing. Requires frames() > 0.
+  PropagatedMotion propagated(const FrameInterval& interval) const;
 
   void save(State& state) const { state = state_; }
   void restore(const State& state) { state_ = state; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gnc/attitude/quaternion.hpp"
 #include "gnc/nn/activation.hpp"
 
 namespace tumblesight::gnc {
@@ -118,12 +119,39 @@ Real squared_innovation(const Hypotheses<Real>& hypotheses, const Motion<Real>& 
                 min(innovation_squared, kLost));
 }
 
-// The motion after the measurement `r_lrf_trf`. Innovations of 60 degrees or more leave the rate as it is.
+// The largest innovation that corrects the rate, as a versine. Larger ones are a change to another attitude
+// of a symmetric target: 60 degrees after one nominal period. While the rate is being found, the limit grows
+// with the turn that is possible in the time, from 10 degrees after none to 150 degrees after 2.5 periods.
+Fixed largest_versine(Fixed periods, bool finds_rate) {
+  constexpr auto kOne = constant<Fixed>(1.0);
+  constexpr auto kNominal = constant<Fixed>(kVersineOf60Degrees);
+  constexpr auto kPerPeriod = constant<Fixed>((kVersineOf150Degrees - kVersineOf60Degrees) / 1.5);
+  const Fixed grown =
+      min(constant<Fixed>(kVersineOf150Degrees), kNominal + (max(periods, kOne) - kOne) * kPerPeriod);
+  const Fixed angle = constant<Fixed>(0.17453293) + constant<Fixed>(0.87266463) * periods;
+  const Fixed half_square = constant<Fixed>(0.5) * angle * angle;
+  const Fixed reduced = half_square - constant<Fixed>(1.0 / 6.0) * half_square * half_square;
+  return select(periods < kOne, reduced, select(finds_rate, grown, kNominal));
+}
+
+// How an innovation changes the rate.
 template <class Real>
-Motion<Real> corrected(const Motion<Real>& predicted, const Matrix3<Real>& r_lrf_trf, Real rate_gain) {
+struct RateCorrection {
+  Real gain;             // on the innovation per nominal period
+  Real periods;          // since the last frame
+  Real largest_versine;  // of an innovation that counts
+};
+
+// The motion after the measurement `r_lrf_trf`.
+template <class Real>
+Motion<Real> corrected(const Motion<Real>& predicted, const Matrix3<Real>& r_lrf_trf,
+                       const RateCorrection<Real>& correction) {
   const Matrix3<Real> lrf_predicted = predicted.r_lrf_trf.transpose();
-  const Vector3<Real> innovation = small_rotation_vector<Real>(product<Real>(r_lrf_trf, lrf_predicted));
-  return {r_lrf_trf, predicted.rate_lrf + scaled<Real>(innovation, rate_gain)};
+  const Vector3<Real> innovation =
+      rotation_vector<Real>(product<Real>(r_lrf_trf, lrf_predicted), correction.largest_versine);
+  Vector3<Real> change;
+  for (int i = 0; i < 3; ++i) change[i] = correction.gain * innovation[i] / correction.periods;
+  return {r_lrf_trf, predicted.rate_lrf + change};
 }
 
 // The value by which the laws are compared: log-likelihood minus required evidence.
@@ -179,17 +207,22 @@ int AttitudeTrack<Real>::law() const {
 
 template <class Real>
 Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
-                         const Hypotheses<Real>& hypotheses) {
+                         const Hypotheses<Real>& hypotheses, const FrameInterval& interval) {
+  const std::int64_t elapsed_ns =
+      clamp<std::int64_t>(interval.elapsed_ns, kShortestInterval_ns, kLongestInterval_ns);
+  const Matrix3<Real> r_now_last = converted<Real>(rotation_from_quaternion(interval.q_now_last));
   // Both alternatives are computed in every frame, so that the time does not depend on the state.
   const bool has_track = (track.frames > 0) & is_valid(track);
   std::array<Motion<Real>, 2> choice{};  // [0] without a track, [1] with a track
   choice[0] = {hypotheses.r_lrf_trf[hypotheses.likeliest], Vector3<Real>::Zero()};
   Prediction<Real> prediction;
   for (int law = 0; law < kLaws; ++law) {
-    choice[1] = propagate<Real>(track.motion[law], laws[law]);
+    choice[1] = turned<Real>(propagate<Real>(track.motion[law], laws[law], elapsed_ns), r_now_last);
     prediction.motion[law] = choice[has_track];
   }
   prediction.law = select(has_track, track.law(), kSpinLaw);
+  prediction.elapsed_periods = in_periods(elapsed_ns);
+  prediction.has_track = has_track;
   return prediction;
 }
 
@@ -221,7 +254,9 @@ TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Predicti
   const auto weights =
       candidate_weights<Real>(hypotheses, corrections + kCandidates, filter.predicted_weight);
   const Real learned_gain = sigmoid(filter.rate_logit + corrections[2 * kCandidates]);
-  const Real rate_gain = select(track.frames > 0, learned_gain, Real{});
+  const RateCorrection<Real> rate_correction{
+      select(track.frames > 0, learned_gain, Real{}), converted<Real>(prediction.elapsed_periods),
+      converted<Real>(largest_versine(prediction.elapsed_periods, track.frames < kGains))};
 
   std::array<Matrix3<Real>, kCandidates> candidates;
   std::copy(hypotheses.r_lrf_trf.begin(), hypotheses.r_lrf_trf.end(), candidates.begin());
@@ -231,7 +266,7 @@ TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Predicti
     const Matrix3<Real> r_lrf_trf =
         mean_attitude<Real>(candidates.data(), weights.data(), kCandidates, anchor);
     innovation_squared[law] = squared_innovation<Real>(hypotheses, prediction.motion[law], r_lrf_trf);
-    track.motion[law] = corrected<Real>(prediction.motion[law], r_lrf_trf, rate_gain);
+    track.motion[law] = corrected<Real>(prediction.motion[law], r_lrf_trf, rate_correction);
   }
   const Real predicted_error_rad = constant<Real>(kPi) * sigmoid(corrections[2 * kCandidates + 1]);
   const Real variance_rad2 =
@@ -244,7 +279,7 @@ TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Predicti
 #define TUMBLESIGHT_INSTANTIATE(N)                                                                          \
   template struct AttitudeTrack<N::Real>;                                                                   \
   template Prediction<N::Real> predict(const AttitudeTrack<N::Real>&, const MotionLaws<N::Real>&,           \
-                                       const Hypotheses<N::Real>&);                                         \
+                                       const Hypotheses<N::Real>&, const FrameInterval&);                   \
   template void fill_lstm_input<N>(const Features<N>&, const Hypotheses<N::Real>&, const Matrix3<N::Real>&, \
                                    LstmInput<N>&);                                                          \
   template TrackedAttitude<N::Real> advance(const Hypotheses<N::Real>&, const Prediction<N::Real>&,         \

@@ -18,20 +18,36 @@ namespace tumblesight::gnc {
 // predict the same.
 inline constexpr std::array<double, kLaws> kRequiredEvidence{0.0, 0.5, 2.0, 2.0, 2.0};
 
+// From one frame to the next. Default: one nominal period of a chaser that does not turn.
+struct FrameInterval {
+  std::int64_t elapsed_ns = kNominalPeriod_ns;  // between the exposures
+  QuaternionQ30 q_now_last = kIdentityQ30;      // turn of the chaser: v_lrf now = q_now_last v_lrf last
+  bool gives_up_track = false;                  // the frame starts a new track
+};
+// The track takes times outside these two for the nearer one. Between frames that are closer in time the
+// noise of the attitudes says more than their difference.
+inline constexpr std::int64_t kShortestInterval_ns = 100'000'000;
+inline constexpr std::int64_t kLongestInterval_ns = kLongestPropagation_ns;
+
+// The track follows the target while it turns by less than 150 degrees from frame to frame.
+inline constexpr double kLargestTurn_rad = 2.6179938779914944;
+
 template <class Real>
 struct AttitudeTrack {
-  std::array<Motion<Real>, kLaws> motion;    // at the last frame, for each law
+  std::array<Motion<Real>, kLaws> motion;    // at the last frame, for each law; in the LRF of that frame
   std::array<Real, kLaws> log_likelihood{};  // of each law: 0 for the likeliest, negative for the others
   std::uint32_t frames = 0;                  // since reset
 
   int law() const;  // index of the law that gives the result
 };
 
-// The motion of each law, propagated to the current frame.
+// The motion of each law, propagated to the current frame, in the LRF of that frame.
 template <class Real>
 struct Prediction {
   std::array<Motion<Real>, kLaws> motion;
   int law = kSpinLaw;
+  Fixed elapsed_periods = constant<Fixed>(1.0);  // since the last frame
+  bool has_track = false;                        // false: the prediction says nothing about this frame
   const Matrix3<Real>& r_lrf_trf() const { return motion[law].r_lrf_trf; }
 };
 
@@ -41,12 +57,12 @@ struct TrackedAttitude {
   Real predicted_error_rad;  // 0..pi
 };
 
-// Predicts the motion at the frame that `hypotheses` belong to. Without a valid track (before the first
-// frame, or if the state is damaged: not finite, or not a rotation) the prediction is the likeliest
-// hypothesis, at rest.
+// Predicts the motion at the frame that `hypotheses` belong to, `interval` after the last one. Without a
+// valid track (before the first frame, or if the state is damaged: not finite, or not a rotation) the
+// prediction is the likeliest hypothesis, at rest.
 template <class Real>
 Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
-                         const Hypotheses<Real>& hypotheses);
+                         const Hypotheses<Real>& hypotheses, const FrameInterval& interval = {});
 
 // Fills the input of the LSTM: the output of dense2; for each hypothesis the first two columns of its
 // rotation relative to the predicted attitude, expressed in the TRF, where the alternatives of a symmetric

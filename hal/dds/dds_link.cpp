@@ -7,12 +7,31 @@
 
 namespace tumblesight::hal::dds {
 
+void DdsLink::authenticate_with(const CommandKeys& keys, std::uint32_t slot, std::uint32_t last_counter) {
+  key_slot_ = slot;
+  command_counter_ = last_counter;
+  filter_.authenticate_with(keys, slot, last_counter);
+}
+
 void DdsLink::put(const CommandSample& sample) {
-  const MailboxLock lock(mutex_);
-  CommandPacket& command = commands_.push();
   // A size beyond the bytes stays visible to the application, which refuses it.
-  command.size = sample.size;
-  std::copy(std::begin(sample.bytes), std::end(sample.bytes), command.bytes.begin());
+  incoming_.size = sample.size;
+  std::copy(std::begin(sample.bytes), std::end(sample.bytes), incoming_.bytes.begin());
+  std::uint32_t slot = 0, last_counter = 0;
+  std::size_t room = 0;
+  {
+    const MailboxLock lock(mutex_);
+    slot = key_slot_;
+    last_counter = command_counter_;
+    room = commands_.room();
+  }
+  // Without the lock: the authentication code takes longer than a copy. Meanwhile the room can only grow.
+  filter_.follow(slot, last_counter);
+  const bool passes = filter_.passes(incoming_, room);
+  const DroppedCommands dropped = filter_.take_dropped();
+  const MailboxLock lock(mutex_);
+  if (passes) commands_.push() = incoming_;
+  for (std::size_t why = 0; why < dropped.by.size(); ++why) dropped_.by[why] += dropped.by[why];
 }
 
 bool DdsLink::take_output(CycleOutput& output) {
@@ -43,6 +62,13 @@ bool DdsLink::receive(CommandPacket& command) {
   return true;
 }
 
+DroppedCommands DdsLink::take_dropped() {
+  const MailboxLock lock(mutex_);
+  const DroppedCommands dropped = dropped_;
+  dropped_ = {};
+  return dropped;
+}
+
 void DdsLink::publish(const AttitudeReport& report) {
   AttitudeSample& sample = output_.attitude;
   sample.run_id = output_.done.run_id;
@@ -59,6 +85,9 @@ void DdsLink::publish(const Telemetry& telemetry) {
   sample.heap_allocations = gauges_.heap_allocations();
   sample.stack_left_min_bytes = gauges_.stack_left_min_bytes();
   output_.done.telemetries = 1;
+  const MailboxLock lock(mutex_);
+  key_slot_ = telemetry.key_slot;
+  command_counter_ = telemetry.command_counter;
 }
 
 void DdsLink::publish(const Event& event) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hal/command_filter.hpp"
 #include "hal/dds/fixed_queue.hpp"
 #include "hal/dds/idl/topics.hpp"
 #include "hal/dds/mailbox_lock.hpp"
@@ -32,7 +33,11 @@ class DdsLink final : public Link {
 
   explicit DdsLink(const Gauges& gauges) : gauges_(gauges) {}
 
-  // Bus thread.
+  // Before the threads start. From now on only authentic commands are queued. `slot`, `last_counter`: those
+  // of the application after its boot.
+  void authenticate_with(const CommandKeys& keys, std::uint32_t slot, std::uint32_t last_counter);
+
+  // Bus thread. Queues the command, or drops and counts it.
   void put(const CommandSample& sample);
   // Takes the output of the oldest cycle that has ended. False: there is none.
   bool take_output(CycleOutput& output);
@@ -41,6 +46,7 @@ class DdsLink final : public Link {
   void begin_cycle(std::uint32_t run_id, std::uint32_t k);
   void end_cycle(std::uint32_t state_crc32);
   [[nodiscard]] bool receive(CommandPacket& command) override;
+  DroppedCommands take_dropped() override;
   void publish(const AttitudeReport& report) override;
   void publish(const Telemetry& telemetry) override;
   void publish(const Event& event) override;
@@ -48,8 +54,14 @@ class DdsLink final : public Link {
 
  private:
   Gauges gauges_;
-  CycleOutput output_;  // of the current cycle
+  CommandFilter filter_;    // bus thread
+  CommandPacket incoming_;  // bus thread
+  CycleOutput output_;      // of the current cycle
   MailboxMutex mutex_;
+  // What the application accepts, by its last telemetry.
+  std::uint32_t key_slot_ = 0;
+  std::uint32_t command_counter_ = 0;
+  DroppedCommands dropped_;
   FixedQueue<CommandPacket, 2 * kMaxCommandsPerStep> commands_;
   FixedQueue<CycleOutput, 4> outputs_;
 };

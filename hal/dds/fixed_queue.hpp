@@ -1,9 +1,10 @@
 // FixedQueue: a first-in first-out queue of at most N entries, without heap. A full queue drops its oldest
-// entry.
+// entry and counts it; a user that must not lose an entry asks for room() first.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace tumblesight::hal::dds {
 
@@ -12,7 +13,10 @@ class FixedQueue {
  public:
   // The slot of the new entry, for the caller to fill. It still holds an earlier entry.
   T& push() {
-    if (size_ == N) pop();
+    if (size_ == N) {
+      pop();
+      ++dropped_;
+    }
     T& slot = entries_[(first_ + size_) % N];
     ++size_;
     return slot;
@@ -26,10 +30,19 @@ class FixedQueue {
     return &oldest;
   }
 
+  std::size_t room() const { return N - size_; }
+  // Entries dropped since the last call.
+  std::uint32_t take_dropped() {
+    const std::uint32_t dropped = dropped_;
+    dropped_ = 0;
+    return dropped;
+  }
+
  private:
   std::array<T, N> entries_{};
   std::size_t first_ = 0;
   std::size_t size_ = 0;
+  std::uint32_t dropped_ = 0;
 };
 
 }  // namespace tumblesight::hal::dds

@@ -21,7 +21,7 @@ void FlightBus::join_run(std::uint32_t run_id, std::int64_t timeout_ns) {
 
 bool FlightBus::take_step(StepSample& step) {
   while (endpoints_.steps.take(step)) {
-    if (step.run_id != run_id_) continue;
+    if (!belongs(step.run_id, step.k, step.k, nullptr)) continue;
     heard_something();
     return true;
   }
@@ -29,52 +29,73 @@ bool FlightBus::take_step(StepSample& step) {
 }
 
 bool FlightBus::wait_for_step(std::uint32_t k, StepSample& step, FlightEnd& end) {
+  StepContent content;
   bool announced = false;
-  int frames = 0;
-  int commands = 0;
   for (;;) {
     if (!announced && take_step(step)) {
       announced = true;
-      if (step.k != k || step.frames > kMaxFramesPerStep || step.commands > kMaxCommandsPerStep) {
-        end = FlightEnd::kStepOutOfOrder;
-        return false;
-      }
+      out_of_order_ |= step.k != k || step.frames > kMaxFramesPerStep ||
+                       step.navigations > kMaxFramesPerStep || step.commands > kMaxCommandsPerStep;
     }
-    frames += carry_frames(k, false);
-    commands += carry_commands(k, false);
-    if (announced && frames >= step.frames && commands >= step.commands) return true;
+    carry_navigations(k, &content);
+    carry_frames(k, &content);
+    carry_commands(k, &content);
+    const bool complete = announced && content.has_all_of(step);
+    if (complete) out_of_order_ |= !content.is_that_of(step);
+    if (!check_writers(end)) return false;
+    if (complete) return true;
     if (must_end(end)) return false;
     endpoints_.wait_for_data(kPoll_ns);
   }
 }
 
 void FlightBus::carry_in(std::int64_t timeout_ns) {
-  (void)carry_frames(0, true);
-  (void)carry_commands(0, true);
+  carry_navigations(0, nullptr);
+  carry_frames(0, nullptr);
+  carry_commands(0, nullptr);
   endpoints_.wait_for_data(timeout_ns);
 }
 
-int FlightBus::carry_frames(std::uint32_t k, bool any_step) {
-  int count = 0;
-  while (count < kMaxFramesPerStep && endpoints_.frames.take(frame_)) {
-    if (frame_.run_id != run_id_ || (!any_step && frame_.k != k)) continue;
+bool FlightBus::belongs(std::uint32_t run_id, std::uint32_t sample_k, std::uint32_t k,
+                        const StepContent* content) {
+  const bool ours = run_id == run_id_ && (content == nullptr || sample_k == k);
+  out_of_order_ |= !ours;
+  return ours;
+}
+
+void FlightBus::carry_frames(std::uint32_t k, StepContent* content) {
+  for (int count = 0; count < kMaxFramesPerStep && endpoints_.frames.take(frame_); ++count) {
+    if (!belongs(frame_.run_id, frame_.k, k, content)) continue;
     lidar_.put(frame_);
     latest_frame_k_ = frame_.k;
     has_frame_ = true;
-    ++count;
+    if (content != nullptr) content->add(frame_);
   }
-  return count;
 }
 
-int FlightBus::carry_commands(std::uint32_t k, bool any_step) {
-  int count = 0;
-  CommandSample sample;
-  while (count < kMaxCommandsPerStep && endpoints_.commands.take(sample)) {
-    if (sample.run_id != run_id_ || (!any_step && sample.k != k)) continue;
-    link_.put(sample);
-    ++count;
+void FlightBus::carry_navigations(std::uint32_t k, StepContent* content) {
+  NavigationSample sample;
+  for (int count = 0; count < kMaxFramesPerStep && endpoints_.navigations.take(sample); ++count) {
+    if (!belongs(sample.run_id, sample.k, k, content)) continue;
+    navigation_.put(sample);
+    if (content != nullptr) content->add(sample);
   }
-  return count;
+}
+
+void FlightBus::carry_commands(std::uint32_t k, StepContent* content) {
+  CommandSample sample;
+  for (int count = 0; count < kMaxCommandsPerStep && endpoints_.commands.take(sample); ++count) {
+    if (!belongs(sample.run_id, sample.k, k, content)) continue;
+    link_.put(sample);
+    if (content != nullptr) content->add(sample);
+  }
+}
+
+// False: the samples that have arrived must not be used.
+bool FlightBus::check_writers(FlightEnd& end) {
+  foreigner_ = endpoints_.foreigner();
+  end = foreigner_ ? FlightEnd::kForeign : FlightEnd::kStepOutOfOrder;
+  return !foreigner_ && !out_of_order_;
 }
 
 bool FlightBus::carry_out() {
@@ -86,6 +107,7 @@ bool FlightBus::carry_out() {
       written &= endpoints_.events.write(output_.events[i]) == 0;
     }
     if (output_.done.dumps > 0) written &= endpoints_.dumps.write(output_.dump) == 0;
+    if (packets_ != nullptr) packets_->put(output_);
     written &= endpoints_.steps_done.write(output_.done) == 0;
   }
   return written;
@@ -99,7 +121,8 @@ void FlightBus::flush() const {
   }
 }
 
-bool FlightBus::must_end(FlightEnd& end) const {
+bool FlightBus::must_end(FlightEnd& end) {
+  if (!check_writers(end)) return true;
   end = FlightEnd::kComplete;
   if (stop_requested()) return true;
   end = FlightEnd::kSilence;

@@ -6,26 +6,34 @@
 
 #include "hal/dds/dds_lidar.hpp"
 #include "hal/dds/dds_link.hpp"
+#include "hal/dds/dds_navigation.hpp"
 #include "hal/dds/flight_endpoints.hpp"
 #include "hal/dds/idl/flight_end.hpp"
+#include "hal/dds/idl/step_content.hpp"
+#include "hal/dds/packet_output.hpp"
 #include "hal/stopwatch.hpp"
 
 namespace tumblesight::hal::dds {
 
 class FlightBus {
  public:
-  FlightBus(FlightEndpoints& endpoints, DdsLidar& lidar, DdsLink& link, Stopwatch& stopwatch)
-      : endpoints_(endpoints), lidar_(lidar), link_(link), stopwatch_(stopwatch) {}
+  FlightBus(FlightEndpoints& endpoints, DdsLidar& lidar, DdsNavigation& navigation, DdsLink& link,
+            Stopwatch& stopwatch)
+      : endpoints_(endpoints), lidar_(lidar), navigation_(navigation), link_(link), stopwatch_(stopwatch) {}
 
-  // From now on samples of other runs are ignored, and the run ends if no step arrives for `timeout_ns`.
+  // From now on a sample of another run ends this one, and so does a `timeout_ns` without a step.
   void join_run(std::uint32_t run_id, std::int64_t timeout_ns);
   std::uint32_t run_id() const { return run_id_; }
 
+  // From now on carry_out() also gives everything that it publishes to `packets`.
+  void copy_to(PacketOutput& packets) { packets_ = &packets; }
+
   // Takes the oldest step that has arrived. False: there is none.
   bool take_step(StepSample& step);
-  // Lockstep: waits for step `k` and hands its frames and commands to the flight task. DDS does not keep the
-  // order across topics, so the step is ready only when all the samples it announces have arrived.
-  // False: step `k` will not arrive; `end` gives the reason.
+  // Lockstep: waits for step `k` and hands its samples to the flight task. DDS does not keep the
+  // order across topics, so the step is ready only when all the samples it announces have arrived. They must
+  // be those that it announces (StepContent), and no other program may write to the topics. False: step `k`
+  // will not arrive; `end` gives the reason.
   [[nodiscard]] bool wait_for_step(std::uint32_t k, StepSample& step, FlightEnd& end);
 
   // Free-running: hands all samples that have arrived to the flight task, then waits for more, at most
@@ -40,17 +48,25 @@ class FlightBus {
   void flush() const;
 
   // Whether the run must end: stop request, timeout or simulator gone. `end` gives the reason.
-  [[nodiscard]] bool must_end(FlightEnd& end) const;
+  [[nodiscard]] bool must_end(FlightEnd& end);
+  // After kForeign: who it is.
+  const Foreigner& foreigner() const { return foreigner_; }
 
  private:
-  int carry_frames(std::uint32_t k, bool any_step);
-  int carry_commands(std::uint32_t k, bool any_step);
+  // Samples of step `k`, or of any step if `content` is nullptr.
+  void carry_frames(std::uint32_t k, StepContent* content);
+  void carry_navigations(std::uint32_t k, StepContent* content);
+  void carry_commands(std::uint32_t k, StepContent* content);
+  bool belongs(std::uint32_t run_id, std::uint32_t sample_k, std::uint32_t k, const StepContent* content);
+  [[nodiscard]] bool check_writers(FlightEnd& end);
   void heard_something() { last_heard_ns_ = stopwatch_.now_ns(); }
 
   FlightEndpoints& endpoints_;
   DdsLidar& lidar_;
+  DdsNavigation& navigation_;
   DdsLink& link_;
   Stopwatch& stopwatch_;
+  PacketOutput* packets_ = nullptr;
   LidarFrameSample frame_{};
   CycleOutput output_{};
   std::uint64_t last_heard_ns_ = 0;
@@ -58,6 +74,8 @@ class FlightBus {
   std::uint32_t run_id_ = 0;
   std::uint32_t latest_frame_k_ = 0;
   bool has_frame_ = false;
+  bool out_of_order_ = false;  // a sample of another run or step has arrived
+  Foreigner foreigner_{};
 };
 
 }  // namespace tumblesight::hal::dds

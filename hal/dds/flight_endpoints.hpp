@@ -10,6 +10,7 @@ namespace tumblesight::hal::dds {
 struct FlightEndpoints {
   Reader<HelloSample> hello_in;
   Reader<LidarFrameSample> frames;
+  Reader<NavigationSample> navigations;
   Reader<CommandSample> commands;
   Reader<StepSample> steps;
   Writer<HelloSample> hello_out;
@@ -20,11 +21,14 @@ struct FlightEndpoints {
   Writer<StepDoneSample> steps_done;
 
   // Creates all endpoints. Returns 0 or a negative DDS return code.
-  [[nodiscard]] dds_return_t open(dds_entity_t participant);
-  // Whether every endpoint is matched with the simulator's: no sample is lost from then on.
-  bool all_matched() const;
+  [[nodiscard]] dds_return_t open(const Domain& domain);
+  // Binds every reader to the simulator. True once every endpoint is matched with the simulator's: no sample
+  // is lost from then on.
+  bool bind(const PeerKey& simulator);
   // The simulator has left, or its lease has expired.
-  bool simulator_gone() const { return steps.matched() == 0; }
+  bool simulator_gone() const { return !steps.has_peer(); }
+  // A program other than the simulator that writes to one of our topics.
+  Foreigner foreigner() const;
   // Waits until a frame, command or step is there to be taken, at most `timeout_ns`.
   void wait_for_data(std::int64_t timeout_ns) const;
 

@@ -22,15 +22,33 @@ bool announce(FlightEndpoints& endpoints, const HandshakeSettings& settings, std
 }
 
 // Waits until the simulator has received the unequal hash, so that it can report it too.
-void wait_until_hello_is_read(FlightEndpoints& endpoints, Stopwatch& stopwatch) {
+void wait_until_hello_is_read(FlightEndpoints& endpoints, const PeerKey& simulator, Stopwatch& stopwatch) {
   const std::uint64_t begin_ns = stopwatch.now_ns();
-  while (endpoints.hello_out.matched() == 0 && stopwatch.now_ns() - begin_ns < kRefusalTimeout_ns)
+  while (!endpoints.hello_out.has_reader_of(simulator) && stopwatch.now_ns() - begin_ns < kRefusalTimeout_ns)
     usleep(10'000);
   (void)wait_for_acknowledgment(endpoints.hello_out.entity(), kRefusalTimeout_ns);
 }
 
+// On a bus of our own there is one simulator and no other flight program.
 bool is_from_simulator_of(const HelloSample& hello, std::uint32_t run_id) {
   return hello.role == static_cast<std::uint8_t>(Role::kSimulator) && (run_id == 0 || hello.run_id == run_id);
+}
+
+// Takes the hellos that have arrived, up to the first one of the simulator.
+bool meet(FlightEndpoints& endpoints, std::uint32_t run_id, HandshakeResult& result) {
+  HelloSample hello;
+  PeerKey from;
+  while (!result.foreigner && endpoints.hello_in.take(hello, from)) {
+    if (!is_from_simulator_of(hello, run_id)) {
+      result.foreigner = endpoints.hello_in.describe(from);
+      continue;
+    }
+    result.simulator = from;
+    result.run_id = hello.run_id;
+    result.simulator_icd_hash = hello.icd_hash;
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -45,16 +63,10 @@ HandshakeResult shake_hands(FlightEndpoints& endpoints, const HandshakeSettings&
   }
   bool met = false;
   const std::uint64_t begin_ns = stopwatch.now_ns();
-  while (!met || !endpoints.all_matched()) {
-    HelloSample hello;
-    while (!met && endpoints.hello_in.take(hello)) {
-      if (!is_from_simulator_of(hello, settings.run_id)) continue;
-      met = true;
-      result.run_id = hello.run_id;
-      result.simulator_icd_hash = hello.icd_hash;
-    }
+  while (!met || !endpoints.bind(result.simulator)) {
+    if (!met) met = meet(endpoints, settings.run_id, result);
     if (met && result.simulator_icd_hash != settings.icd_hash) {
-      wait_until_hello_is_read(endpoints, stopwatch);
+      wait_until_hello_is_read(endpoints, result.simulator, stopwatch);
       result.end = FlightEnd::kIcdUnequal;
       return result;
     }
@@ -64,8 +76,13 @@ HandshakeResult shake_hands(FlightEndpoints& endpoints, const HandshakeSettings&
       result.end = FlightEnd::kIcdUnequal;
       return result;
     }
-    if (met && endpoints.hello_in.matched() == 0) {
+    if (met && !endpoints.hello_in.bind(result.simulator)) {
       result.end = FlightEnd::kSimulatorGone;
+      return result;
+    }
+    if (!result.foreigner) result.foreigner = endpoints.foreigner();
+    if (result.foreigner) {
+      result.end = FlightEnd::kForeign;
       return result;
     }
     if (stop_requested()) {

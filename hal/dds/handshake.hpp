@@ -1,5 +1,6 @@
 // The flight side's handshake on sil/hello. Both sides announce themselves with the hash of the interface
-// definition. Steps begin when the hashes are equal and every reader is matched with its writer.
+// definition. Steps begin when the hashes are equal and every endpoint is
+// matched with the simulator's.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,8 @@ struct HandshakeResult {
   bool stopped = false;                  // kComplete because of a stop request: there is no run
   std::uint32_t run_id = 0;              // the simulator's
   std::uint32_t simulator_icd_hash = 0;
+  PeerKey simulator{};    // all readers are bound to it
+  Foreigner foreigner{};  // kForeign: who else announced itself
 };
 
 // Blocks until the handshake is complete or has failed, at most `timeout_ns`.

@@ -37,6 +37,7 @@ static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_DUMP, FunctionCode::kMo
 static_assert(is_value_of(tumblesight_icd_FUNCTION_SET_LIMIT, FunctionCode::kSetLimit));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_ENABLE_RESPONSE, FunctionCode::kEnableResponse));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_DISABLE_RESPONSE, FunctionCode::kDisableResponse));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_KEY_ACTIVATE, FunctionCode::kKeyActivate));
 static_assert(is_value_of(tumblesight_icd_EVENT_MODEL_REFUSED, EventId::kModelRefused));
 
 }  // namespace

@@ -14,8 +14,14 @@ enum class Validity : std::uint8_t {
   kStandby = 1,       // the mode is not RUN
   kNoFrame = 2,       // no frame arrived in this cycle
   kFrameRefused = 3,  // a frame arrived and was refused; the event gives the reason
-  kDoubtful = 4,      // the expected error is too large, the attitude has jumped, or the frame is frozen
+  kDoubtful = 4,      // the expected error is too large, or the attitude has jumped
 };
+
+// Bits of AttitudeReport::doubts.
+inline constexpr std::uint8_t kDoubtErrorLarge = 1;      // kDoubtful: expected error above its limit
+inline constexpr std::uint8_t kDoubtAttitudeJump = 2;    // kDoubtful: in this frame or the one before
+inline constexpr std::uint8_t kDoubtRateAmbiguous = 8;   // the target turns too far between two frames
+inline constexpr std::uint8_t kDoubtChaserUnknown = 16;  // the chaser is taken not to have turned
 
 // Quaternions: Hamilton, scalar first (w, x, y, z), target frame (TRF) to LiDAR frame (LRF), unit norm, Q30.
 // Expected errors: 0 ... pi.
@@ -29,6 +35,21 @@ struct AttitudeReport {
   std::uint32_t predicted_error_urad = 0;
   std::array<std::int32_t, 4> q_lrf_trf_single_frame{1 << 30, 0, 0, 0};  // from the last frame alone
   std::uint32_t predicted_error_single_frame_urad = 0;
+  std::uint8_t doubts = 0;  // why the attitude is doubtful, or what is missing from it
+  std::uint8_t law = 0;     // of motion, in use: gnc/attitude/motion.hpp
+  // Angular rate of the target relative to the inertial frame, and the covariances of attitude and rate at
+  // the exposure: estimates from the expected error (gnc/tracking/covariance.hpp).
+  std::array<std::int32_t, 3> rate_lrf_urad_s{};
+  std::array<std::int32_t, 6> attitude_covariance_e8{};  // xx, xy, xz, yy, yz, zz [1e-8 rad^2]
+  std::array<std::int32_t, 6> rate_covariance_e8{};      // [1e-8 rad^2/s^2]
+  // Attitude and rate propagated to time_ns, in the LRF of that time. Without the chaser's attitude at both
+  // times: in the LRF of the exposure.
+  std::array<std::int32_t, 4> q_lrf_trf_now{1 << 30, 0, 0, 0};
+  std::array<std::int32_t, 3> rate_lrf_now_urad_s{};
+  // The likeliest other attitude that the frame alone allows, and its odds against the reported one; 0: none.
+  std::array<std::int32_t, 4> q_lrf_trf_second{1 << 30, 0, 0, 0};
+  std::uint32_t second_odds_ppm = 0;
+  std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
 };
 
 }  // namespace tumblesight::hal

@@ -36,18 +36,20 @@ enum class EventId : std::uint16_t {
   kFrameBad = 35,                // [sequence number, gnc::FrameStatus, rays per side]
   kFrameWrongSize = 36,          // [-, -, -]; the sensor interface dropped data that is not a frame
   kSequenceSkipped = 37,         // [number expected, number received, numbers skipped; -1: it went back]
+  kFrameTooSoon = 38,            // [sequence number, exposure minus last accepted exposure, -]
+  kFrameRepeated = 39,           // [sequence number, -, -]; the ranges of the last used frame
 
   kEstimatorResetByGap = 40,    // [exposure gap, frames since the last reset, -]
   kEstimatorResetByFault = 41,  // [Fault, -, -]
-  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump + 2: frozen frame]
+  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump]
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now
   kFaultPersists = 51,  // [Fault, Response taken, cycles with the fault that its rule requires]
   kFaultOver = 52,      // [Fault, -, -]
   kSafeEntered = 53,    // [Cause, Fault or -1, -]
 
-  // 60 + CommandRefusal
-  kCommandForged = 60,  // [function code or 0, packet size in bytes, detail]
+  // 60 + CommandRefusal; from refusal 10 on, 90 + CommandRefusal
+  kCommandForged = 60,  // [function code or 0, packet size in bytes or 0, detail]
   kCommandReplayed = 61,
   kCommandMalformed = 62,
   kCommandWrongLength = 63,
@@ -67,14 +69,26 @@ enum class EventId : std::uint16_t {
   kBankSwitched = 76,       // [bank before, bank after, -]
   kFallbackLost = 77,       // [bank, -, -]; the image of the bank that is not in use is no longer good
 
+  kStateResumed = 80,  // [ResetCause, stored Mode, stored bank]; the stored state of before the reset is used
+  kStoredStateLost = 81,  // [StoreStatus of copy 0, StoreStatus of copy 1, -]; cold boot
+  kStateNotStored = 82,   // [copies written, -, -]; first cycle of a failure only
+
   kEventsSuppressed = 90,  // [EventId of the suppressed events, their number, -]
+
+  kCommandOutOfWindow = 100,
+  kCommandOtherKey = 101,
+  kCommandOtherSpacecraft = 102,
+  kCommandNotStored = 103,
+  kCommandStoreFailed = 104,
+  kCommandNoRoom = 105,
+  kKeyActivated = 110,  // [key slot before, key slot after, -]
 };
 
 struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 43> kEventRules{{
+inline constexpr std::array<EventRule, 55> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kCommandAccepted, Severity::kInformation},
@@ -92,6 +106,8 @@ inline constexpr std::array<EventRule, 43> kEventRules{{
     {EventId::kFrameBad, Severity::kWarning},
     {EventId::kFrameWrongSize, Severity::kWarning},
     {EventId::kSequenceSkipped, Severity::kWarning},
+    {EventId::kFrameTooSoon, Severity::kWarning},
+    {EventId::kFrameRepeated, Severity::kWarning},
     {EventId::kEstimatorResetByGap, Severity::kWarning},
     {EventId::kEstimatorResetByFault, Severity::kWarning},
     {EventId::kAttitudeDoubtful, Severity::kInformation},
@@ -117,12 +133,23 @@ inline constexpr std::array<EventRule, 43> kEventRules{{
     {EventId::kModelTableRebuilt, Severity::kWarning},
     {EventId::kBankSwitched, Severity::kWarning},
     {EventId::kFallbackLost, Severity::kError},
+    {EventId::kStateResumed, Severity::kWarning},
+    {EventId::kStoredStateLost, Severity::kError},
+    {EventId::kStateNotStored, Severity::kError},
     {EventId::kEventsSuppressed, Severity::kInformation},
+    {EventId::kCommandOutOfWindow, Severity::kWarning},
+    {EventId::kCommandOtherKey, Severity::kWarning},
+    {EventId::kCommandOtherSpacecraft, Severity::kWarning},
+    {EventId::kCommandNotStored, Severity::kError},
+    {EventId::kCommandStoreFailed, Severity::kError},
+    {EventId::kCommandNoRoom, Severity::kWarning},
+    {EventId::kKeyActivated, Severity::kWarning},
 }};
 
 // The event that reports a refusal.
 constexpr EventId event_of(CommandRefusal why) {
-  return static_cast<EventId>(static_cast<int>(EventId::kCommandForged) + static_cast<int>(why));
+  const int first = static_cast<int>(why) < 10 ? 60 : 90;
+  return static_cast<EventId>(first + static_cast<int>(why));
 }
 
 // Whether the event differs between two runs with the same inputs.

@@ -12,11 +12,11 @@ enum class Fault : std::uint8_t {
   kModelCorrupted = 1,   // the model in use is corrupted and cannot be repaired
   kAttitudeUnsound = 2,  // not a unit quaternion, or an expected error above pi
   kErrorLarge = 3,       // expected error above its limit
-  kAttitudeJump = 4,     // too far from the attitude extrapolated from the last two
+  kAttitudeJump = 4,     // too far from the attitude that the track predicted
   kOutage = 5,           // no usable frame in RUN
   kDeadline = 6,         // a step that took longer than its budget
   kSlip = 7,             // the task missed one or more releases
-  kFrameFrozen = 8,      // the same ranges as the previous frame, with a new sequence number
+  kFrameFrozen = 8,      // the same ranges as the last used frame, with a new sequence number
   kTrackRestarts = 9,    // the estimator was reset in this cycle, and not by command
 };
 inline constexpr int kFaults = 10;

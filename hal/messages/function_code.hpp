@@ -1,4 +1,4 @@
-// Function codes of the telecommands. The numbers are part of the interface (docs/icd.md);
+// Function codes of the telecommands, 7 bits. The numbers are part of the interface (docs/icd.md);
 // fsw/app/commands.cpp has each function's arguments, modes and handler.
 #pragma once
 
@@ -18,6 +18,7 @@ enum class FunctionCode : std::uint8_t {
   kSetLimit = 9,
   kEnableResponse = 10,
   kDisableResponse = 11,
+  kKeyActivate = 12,
 };
 
 }  // namespace tumblesight::hal

@@ -20,8 +20,12 @@ enum class Cause : std::uint8_t {
   kCommandStandby = 3,
   kCommandRun = 4,
   kCommandSafe = 5,
-  kFault = 6,      // a response from the fault table
-  kAssertion = 7,  // a bug in the flight software
+  kFault = 6,             // a response from the fault table
+  kAssertion = 7,         // a bug in the flight software
+  kResumedStandby = 8,    // STANDBY before the reset, or an abnormal reset
+  kResumedSafe = 9,       // SAFE before the reset
+  kStoredStateLost = 10,  // a reset, and no good copy of the stored state
 };
+inline constexpr Cause kLastCause = Cause::kStoredStateLost;
 
 }  // namespace tumblesight::hal

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hal/messages/bank_activity.hpp"
 #include "hal/messages/bank_status.hpp"
 #include "hal/messages/command_refusal.hpp"
 #include "hal/messages/fault.hpp"
@@ -30,14 +31,18 @@ struct Telemetry {
   std::uint32_t commands_refused = 0;
   std::array<std::uint32_t, kCommandRefusals> commands_refused_by{};  // indexed by CommandRefusal
   std::uint32_t command_counter = 0;                                  // of the last authentic command
+  std::uint8_t key_slot = 0;                                          // that signs commands
+  std::uint32_t state_writes_failed = 0;  // writes of the stored state that did not reach both copies
 
   std::uint32_t frames_used = 0;
   std::uint32_t frames_missing = 0;
   std::uint32_t frames_refused = 0;    // all kinds below, and the frames of a cycle that lost the model
   std::uint32_t frames_duplicate = 0;  // sequence number repeated
-  std::uint32_t frames_stale = 0;      // exposure too old, in the future, or not after the previous one
-  std::uint32_t frames_bad = 0;        // empty, flat, or wrong ray count, field of view or size
-  std::uint32_t sequence_gaps = 0;     // sequence numbers skipped
+  std::uint32_t frames_stale = 0;     // exposure too old, in the future, or not far enough after the last one
+  std::uint32_t frames_bad = 0;       // empty, flat, or wrong ray count, field of view or size
+  std::uint32_t frames_repeated = 0;  // the ranges of the last used frame: a frozen sensor
+  std::uint32_t frames_superseded = 0;  // not refused: a newer frame of the same cycle was taken
+  std::uint32_t sequence_gaps = 0;      // sequence numbers skipped
   std::uint32_t estimator_resets = 0;
   std::uint32_t attitudes_doubtful = 0;
 
@@ -58,10 +63,11 @@ struct Telemetry {
   std::uint32_t bank_switches = 0;
 
   std::uint8_t bank_in_use = 0;
-  std::uint8_t second_copy = 0;                    // 1: the other bank holds the same image
-  std::array<BankStatus, kBanks> bank_status{};    // per bank
-  std::array<std::uint32_t, kBanks> bank_crc32{};  // CRC-32 in the header of the bank's image
-  std::uint32_t model_bytes_loaded = 0;            // of the image that is being loaded
+  std::uint8_t second_copy = 0;                      // 1: the other bank holds the same image
+  std::array<BankStatus, kBanks> bank_status{};      // per bank
+  std::array<BankActivity, kBanks> bank_activity{};  // per bank
+  std::array<std::uint32_t, kBanks> bank_crc32{};    // CRC-32 in the header of the bank's image
+  std::uint32_t model_bytes_loaded = 0;              // of the image that is being loaded
 
   std::uint32_t inference_us = 0;  // last step of the estimator, by the stopwatch; not in any digest
   std::uint32_t inference_max_us = 0;

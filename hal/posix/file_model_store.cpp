@@ -82,8 +82,13 @@ FileStatus FileModelStore::load(int file, std::size_t max_bytes) {
 
 ModelBank FileModelStore::bank(int index) {
   if (data_ == nullptr) return {};
-  std::uint8_t* const memory = data_ + static_cast<std::size_t>(index) * capacity_;
-  return {memory, memory, size_, capacity_};
+  return {memory_of(index), BankWriting::kAtOnce, size_, capacity_};
+}
+
+WriteStatus FileModelStore::write(int index, std::uint32_t offset, const std::uint8_t* bytes,
+                                  std::uint32_t count) {
+  if (data_ == nullptr) return WriteStatus::kRefused;
+  return write_at_once(memory_of(index), capacity_, offset, bytes, count);
 }
 
 }  // namespace tumblesight::hal::posix

@@ -27,8 +27,11 @@ class FileModelStore final : public ModelStore {
   FileStatus status() const { return status_; }
   // The bank has no image (size 0) unless status() is kOk, and no memory if status() is kNoMemory.
   ModelBank bank(int index) override;
+  [[nodiscard]] WriteStatus write(int index, std::uint32_t offset, const std::uint8_t* bytes,
+                                  std::uint32_t count) override;
 
  private:
+  std::uint8_t* memory_of(int index) const { return data_ + static_cast<std::size_t>(index) * capacity_; }
   FileStatus load(int file, std::size_t max_bytes);
 
   std::uint8_t* data_ = nullptr;  // of the first bank; the second follows it

@@ -8,8 +8,10 @@ namespace tumblesight::hal::replay {
 namespace {
 
 constexpr char kMagic[4] = {'T', 'S', 'L', 'R'};
-constexpr std::uint16_t kVersion = 1;
+constexpr std::uint16_t kVersion = 2;
+constexpr std::uint16_t kVersionWithoutAttitudes = 1;
 constexpr std::size_t kFrameHeaderSize = 16;
+constexpr std::size_t kAttitudeSize = 25;
 constexpr std::size_t kRowHeaderSize = 2;
 
 std::uint64_t get(const std::uint8_t* from, int bytes) {
@@ -46,7 +48,8 @@ const char* to_string(RecordingStatus status) {
 RecordingStatus Recording::open(const std::uint8_t* bytes, std::size_t size) {
   if (size < kRecordingHeaderSize + kRecordingCrcSize) return RecordingStatus::kTooShort;
   if (std::memcmp(bytes, kMagic, sizeof kMagic) != 0) return RecordingStatus::kBadMagic;
-  if (get(bytes + 4, 2) != kVersion) return RecordingStatus::kBadVersion;
+  const std::uint64_t version = get(bytes + 4, 2);
+  if (version != kVersion && version != kVersionWithoutAttitudes) return RecordingStatus::kBadVersion;
   const std::size_t end = size - kRecordingCrcSize;
   if (gnc::crc32(bytes, end) != get(bytes + end, 4)) return RecordingStatus::kBadCrc;
   const std::uint64_t rays = get(bytes + 6, 2);
@@ -57,12 +60,18 @@ RecordingStatus Recording::open(const std::uint8_t* bytes, std::size_t size) {
   rays_ = static_cast<std::uint16_t>(rays);
   frames_ = static_cast<std::uint32_t>(get(bytes + 8, 4));
   read_ = 0;
+  has_attitudes_ = version == kVersion;
+  chaser_ = {};
   return RecordingStatus::kOk;
+}
+
+std::size_t Recording::frame_header_size() const {
+  return has_attitudes_ ? kFrameHeaderSize + kAttitudeSize : kFrameHeaderSize;
 }
 
 // Bytes of the next frame. 0 if it exceeds the recording, or one of its rows the frame.
 std::size_t Recording::next_size() const {
-  std::size_t at = at_ + kFrameHeaderSize;
+  std::size_t at = at_ + frame_header_size();
   for (int row = 0; row < rays_; ++row) {
     if (at + kRowHeaderSize > end_ || bytes_[at] + bytes_[at + 1] > rays_) return 0;
     at += kRowHeaderSize + 2U * bytes_[at + 1];
@@ -74,13 +83,23 @@ std::int64_t Recording::next_exposure_time_ns() const {
   return static_cast<std::int64_t>(get(bytes_ + at_, 8));
 }
 
+void Recording::read_chaser_attitude() {
+  const std::uint8_t* from = bytes_ + at_ + kFrameHeaderSize;
+  chaser_.valid = from[0] == 1;
+  chaser_.time_ns = static_cast<std::int64_t>(get(from + 1, 8));
+  for (std::size_t i = 0; i < chaser_.q_inertial_lrf.size(); ++i)
+    chaser_.q_inertial_lrf[i] =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(get(from + 9 + 4 * i, 4)));
+}
+
 void Recording::read_next(gnc::RangeImage& frame) {
   frame.exposure_time_ns = next_exposure_time_ns();
   frame.sequence_number = static_cast<std::uint32_t>(get(bytes_ + at_ + 8, 4));
   frame.fov_urad = static_cast<std::uint32_t>(get(bytes_ + at_ + 12, 4));
   frame.rays = rays_;
   frame.ranges.fill(0);
-  at_ += kFrameHeaderSize;
+  if (has_attitudes_) read_chaser_attitude();
+  at_ += frame_header_size();
   for (int row = 0; row < rays_; ++row) {
     std::uint16_t* const first = frame.ranges.data() + row * rays_ + bytes_[at_];
     const int count = bytes_[at_ + 1];
@@ -99,11 +118,15 @@ std::size_t write_recording_header(std::uint16_t rays, std::uint32_t frames, std
   return kRecordingHeaderSize;
 }
 
-std::size_t write_recorded_frame(const gnc::RangeImage& frame, std::uint8_t* out) {
+std::size_t write_recorded_frame(const gnc::RangeImage& frame, const gnc::ChaserAttitude& chaser,
+                                 std::uint8_t* out) {
   std::uint8_t* to = out;
   to += put(static_cast<std::uint64_t>(frame.exposure_time_ns), 8, to);
   to += put(frame.sequence_number, 4, to);
   to += put(frame.fov_urad, 4, to);
+  to += put(chaser.valid ? 1 : 0, 1, to);
+  to += put(static_cast<std::uint64_t>(chaser.time_ns), 8, to);
+  for (const std::int32_t part : chaser.q_inertial_lrf) to += put(static_cast<std::uint32_t>(part), 4, to);
   for (int row = 0; row < frame.rays; ++row) {
     const std::uint16_t* const ranges = frame.ranges.data() + row * frame.rays;
     int first = 0;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/scenario/disturbance.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
@@ -22,6 +23,7 @@ struct ScenarioArguments {
   std::uint32_t sequences = 30;
   std::uint32_t frames = 10;  // per sequence
   std::uint64_t seed = 1;
+  Disturbances disturbances;
   std::string numerics = "fixed";  // or "float32": which of the shipped models
   std::string model;  // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
   std::string json;   // empty: none

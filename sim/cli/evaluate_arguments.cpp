@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <thread>
 
+#include "sim/cli/disturbance_arguments.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -65,10 +67,12 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
   add_run_options(command, arguments);
   add_output_options(command, arguments);
   add_paper_options(command, arguments);
+  add_disturbance_options(command, arguments.scenario.disturbances);
   command.footer("\nConditions\n" + condition_explanations() +
                  "\nThe error is the angle between true and estimated attitude in the last frame of\n"
                  "a sequence; ± is one standard error. Template matching, the classical method,\n"
-                 "uses renderings of the same mesh as the frames.\n\n"
+                 "uses renderings of the same mesh as the frames. A frame counts as valid if the\n"
+                 "attitude passes the checks of the flight program; wrong: more than 20° off.\n\n"
                  "Example: two of the paper's tests, figures to a file, graphs to a page\n"
                  "  tumblesight evaluate --target near_shoemaker --condition nominal,occluded \\\n"
                  "      --json near.json --report near.html\n\n"
@@ -77,14 +81,17 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
                  "      --condition tumbling --inertia 410,380,300,0,-2,5\n\n"
                  "Example: everything in the paper, for all targets; writes docs/results.md. For a\n"
                  "quick look add --sequences 20: then it writes to out/paper of the source tree.\n"
-                 "  tumblesight evaluate --paper --mesh-folder meshes\n");
+                 "  tumblesight evaluate --paper --mesh-folder meshes\n" +
+                 disturbance_examples("evaluate"));
 }
 
 void refuse_options_set_by_paper(const CLI::App& command) {
-  for (const char* own : {"--target", "--mesh", "--inertia", "--condition", "--frames", "--model", "--json",
-                          "--csv", "--report", "--curves"}) {
+  std::vector<std::string> own_options{"--target", "--mesh", "--inertia", "--condition", "--frames",
+                                       "--model",  "--json", "--csv",     "--report",    "--curves"};
+  for (const DisturbanceRow& row : kDisturbances) own_options.push_back(std::string("--") + row.name);
+  for (const std::string& own : own_options) {
     if (command.get_option(own)->count() == 0) continue;
-    throw CLI::ValidationError("--paper", std::string("sets ") + own + " itself; leave " + own + " out");
+    throw CLI::ValidationError("--paper", "sets " + own + " itself; leave " + own + " out");
   }
 }
 
@@ -94,6 +101,7 @@ ExperimentSettings experiment_settings(const EvaluateArguments& arguments) {
   settings.sequences = arguments.scenario.sequences;
   settings.tumbling_sequences = arguments.scenario.sequences;
   settings.frames = arguments.scenario.frames;
+  settings.disturbances = arguments.scenario.disturbances;
   settings.baseline_sequences = arguments.no_baseline ? 0 : arguments.baseline_sequences;
   settings.curves = arguments.curves;
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/evaluate_arguments.hpp"
 #include "sim/cli/evaluate_paper.hpp"
 #include "sim/cli/subject_setup.hpp"
@@ -51,6 +52,8 @@ void announce(const Subject& subject, const ExperimentSettings& settings) {
   fmt::print("\n  {}, {}, {} of {}, seed {}\n  mesh {}, model {}, CRC-32 {:08x}\n\n", subject.target,
              conditions, counted(settings.sequences, "sequence"), counted(settings.frames, "frame"),
              settings.seed, subject.mesh_name, subject.model_name, subject.model_crc32);
+  const std::string disturbances = to_string(settings.disturbances);
+  if (!disturbances.empty()) fmt::print("  disturbed: {}\n\n", disturbances);
   std::fflush(stdout);
 }
 
@@ -95,6 +98,7 @@ void evaluate(const EvaluateArguments& arguments) {
   ExperimentSettings settings = experiment_settings(arguments);
   settings.conditions = conditions_of(arguments);
   require_supported_length(arguments.scenario);
+  require_possible_disturbances(settings.disturbances, settings.frames);
   require_usable_files(arguments);
   const Subject subject = set_up_subject(arguments.scenario);
   for (const Condition condition : settings.conditions) {

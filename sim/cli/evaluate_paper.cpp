@@ -33,6 +33,7 @@ Job job_of(const EvaluateArguments& arguments, const PlannedSubject& planned) {
   Job job{set_up_subject(scenario), experiment_settings(arguments)};
   job.settings.conditions = evaluated_conditions(planned.target);
   job.settings.curves = planned.curves;
+  job.settings.disturbed_runs = planned.disturbed_runs;
   if (!planned.baseline) job.settings.baseline_sequences = 0;
   if (!arguments.sequences_given) job.settings.tumbling_sequences = kPaperTumblingSequences;
   return job;

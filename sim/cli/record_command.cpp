@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
+#include "hal/replay/recording.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/recording/make_recording.hpp"
 #include "sim/terminal/counted.hpp"
@@ -22,11 +25,13 @@ struct RecordArguments {
 
 void record(const RecordArguments& arguments) {
   const ScenarioArguments& wanted = arguments.scenario;
+  require_possible_disturbances(wanted.disturbances, wanted.frames);
   require_writable("--out", arguments.out);
   const TargetSetup target = set_up_target_without_model(wanted);
   RecordingSettings settings;
   settings.scenario =
       scenario_settings(condition_from(wanted.condition), wanted.frames, wanted.target, target.inertia_kg_m2);
+  settings.scenario.disturbances = wanted.disturbances;
   settings.seed = wanted.seed;
   settings.sequences = wanted.sequences;
   const FlashLidar lidar(target.mesh);
@@ -38,8 +43,11 @@ void record(const RecordArguments& arguments) {
       make_recording(renderer, settings, [&](std::uint32_t done) { bar.update(done); });
   bar.finish();
   write_file(arguments.out, bytes);
-  fmt::print("\n  {}, {}: {}, {} bytes: {}\n\n", wanted.target, wanted.condition, counted(total, "frame"),
-             bytes.size(), full_path(arguments.out));
+  hal::replay::Recording recording;
+  if (recording.open(bytes.data(), bytes.size()) != hal::replay::RecordingStatus::kOk)
+    throw std::logic_error("the recording that was made is not valid");
+  fmt::print("\n  {}, {}: {}, {} bytes: {}\n\n", wanted.target, wanted.condition,
+             counted(recording.frames(), "frame"), bytes.size(), full_path(arguments.out));
 }
 
 }  // namespace
@@ -50,8 +58,9 @@ void add_record_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("record", "Render frames into a recording, for flight_replay on a board");
   command->footer(
-      "\nThe file holds the frames of the LiDAR, one every 2.7 s, with a pause between\n"
-      "two sequences. hal/replay/recording.hpp describes the format.\n\n"
+      "\nThe file holds the frames of the LiDAR, one every 2.7 s unless --period says\n"
+      "otherwise, the chaser's attitude at each, and a pause between two sequences.\n"
+      "hal/replay/recording.hpp describes the format.\n\n"
       "Conditions\n" +
       condition_explanations() +
       "\nExample: a recording as the audit replays it on every processor\n"
@@ -60,6 +69,7 @@ void add_record_command(CLI::App& app) {
   add_target_options(*command, arguments->scenario);
   add_condition_option(*command, arguments->scenario.condition);
   add_sequence_options(*command, arguments->scenario);
+  add_disturbance_options(*command, arguments->scenario.disturbances);
   command->add_option("--out", arguments->out, "recording to write")->required()->type_name("FILE");
   command->callback([arguments] { record(*arguments); });
 }

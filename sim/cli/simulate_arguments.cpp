@@ -23,6 +23,15 @@ std::string plain_stem(const std::string& path) {
   return stem;
 }
 
+// "lost-frames 1, period 1.5" -> "lost-frames1-period1.5"
+std::string plain_words(const std::string& text) {
+  std::string words;
+  for (const char c : text) {
+    if (c != ' ') words += c == ',' ? '-' : c;
+  }
+  return words;
+}
+
 std::uint32_t crc32_of(const std::string& text) {
   return gnc::crc32(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
 }
@@ -62,6 +71,8 @@ std::string default_report_name(const SimulateArguments& arguments) {
   if (scenario.mesh_up != usual.scenario.mesh_up) name += "_up-" + scenario.mesh_up;
   if (scenario.mesh_scale != usual.scenario.mesh_scale) name += fmt::format("_scale{}", scenario.mesh_scale);
   if (!scenario.inertia.empty()) name += fmt::format("_inertia{}", fmt::join(scenario.inertia, "-"));
+  const std::string disturbances = to_string(scenario.disturbances);
+  if (!disturbances.empty()) name += "_" + plain_words(disturbances);
   if (arguments.speed != usual.speed) name += "_speed" + arguments.speed;
   if (arguments.free_running) name += "_free-running";
   return with_limited_length(name) + ".html";

@@ -9,8 +9,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "hal/dds/idl/development_key.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/simulate_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/evaluation/curves.hpp"
@@ -24,6 +26,7 @@
 #include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/write_file.hpp"
+#include "sim/world/chaser_navigation.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -77,6 +80,7 @@ std::string flight_command_line(const SilSettings& settings) {
   std::string line =
       fmt::format("{} --domain {} --target {} --model {}", shell_quoted(shipped_flight().string()),
                   settings.domain, settings.target, shell_quoted(full_path(settings.model_path)));
+  if (!settings.security_path.empty()) line += " --dds-security " + shell_quoted(settings.security_path);
   for (const std::string& argument : settings.flight_arguments) line += " " + shell_quoted(argument);
   if (settings.free_running && settings.speed > 0.0) {
     line += fmt::format(" --mode free-running --period-ms {:g}", 1e3 * kFramePeriod_s / settings.speed);
@@ -92,10 +96,12 @@ SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& 
   settings.domain = arguments.domain;
   settings.speed = arguments.speed == kFastestPossible ? 0.0 : std::stod(arguments.speed);
   settings.free_running = arguments.free_running;
+  settings.ego_motion = !arguments.scenario.disturbances.no_ego_motion;
   if (!arguments.command_key.empty()) {
     settings.command_key = read_command_key(arguments.command_key);
     settings.flight_arguments = {"--command-key", full_path(arguments.command_key)};
   }
+  if (!arguments.security.empty()) settings.security_path = full_path(arguments.security);
   if (arguments.flight == kNoFlight) {
     if (settings.domain < 0) settings.domain = kDefaultFlightDomain;
     settings.step_timeout_s = kManualStart_s;
@@ -111,6 +117,7 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
   setup.condition = scenario.condition;
   setup.sequences = scenario.sequences;
   setup.frames = scenario.frames;
+  setup.disturbances = scenario.disturbances;
   setup.seed = scenario.seed;
   setup.model_path = target.model_path;
   setup.model_crc32 = fmt::format("{:08x}", target.header.crc32);
@@ -118,6 +125,8 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
   setup.speed = settings.speed;
   setup.free_running = settings.free_running;
   setup.remarks = target.warnings;
+  if (settings.command_key == hal::dds::kDevelopmentKey)
+    setup.remarks.emplace_back("telecommands are signed with the public development key; give --command-key");
   return setup;
 }
 
@@ -143,8 +152,9 @@ void print_results(const RunReport& report, const std::optional<NumericsComparis
 
 SilRunResult run_sequences(const ScenarioArguments& scenario, const TargetSetup& target,
                            const SilSettings& settings, Float32Reference& float32) {
-  const ScenarioSettings sequence_settings = scenario_settings(
-      condition_from(scenario.condition), scenario.frames, scenario.target, target.inertia_kg_m2);
+  ScenarioSettings sequence_settings = scenario_settings(condition_from(scenario.condition), scenario.frames,
+                                                         scenario.target, target.inertia_kg_m2);
+  sequence_settings.disturbances = scenario.disturbances;
   std::vector<Sequence> sequences;
   for (std::uint32_t i = 0; i < scenario.sequences; ++i) {
     sequences.push_back(make_sequence(sequence_settings, scenario.seed, i));
@@ -155,7 +165,9 @@ SilRunResult run_sequences(const ScenarioArguments& scenario, const TargetSetup&
       settings, lidar, 1e-3 * target.projection.swath_mm, sequences,
       [&](std::uint32_t done, std::uint32_t) { bar.update(done); },
       [&](const StepResult& step, const gnc::RangeImage& frame) {
-        float32.add(step.sequence, step.frame_index, step.truth, frame);
+        float32.add(
+            step.sequence, step.frame_index, step.truth, frame,
+            chaser_attitude(step.truth, frame.exposure_time_ns, !scenario.disturbances.no_ego_motion));
       });
 }
 
@@ -163,6 +175,8 @@ void announce(const ScenarioArguments& scenario, const TargetSetup& target, cons
   fmt::print("\n  {}, {}, {} of {}, seed {}\n  mesh {}, model {}\n\n", scenario.target, scenario.condition,
              counted(scenario.sequences, "sequence"), counted(scenario.frames, "frame"), scenario.seed,
              target.mesh_name, target.model_path);
+  const std::string disturbances = to_string(scenario.disturbances);
+  if (!disturbances.empty()) fmt::print("  disturbed: {}\n\n", disturbances);
   if (settings.flight_path.empty()) {
     fmt::print(
         "  Waiting up to {:g} s for the flight program. Unless it is running already, start\n    {}\n\n",
@@ -212,6 +226,7 @@ void simulate(SimulateArguments arguments) {
   const ScenarioArguments& scenario = arguments.scenario;
   require_supported_length(scenario);
   require_a_speed(arguments);
+  require_possible_disturbances(scenario.disturbances, scenario.frames);
   if (arguments.report.empty()) arguments.report = default_report(arguments);
   require_usable_files(arguments);
   const TargetSetup target = set_up_target(scenario);
@@ -249,6 +264,7 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   add_sequence_options(*command, arguments->scenario);
   add_model_options(*command, arguments->scenario);
   add_json_option(*command, arguments->scenario.json);
+  add_disturbance_options(*command, arguments->scenario.disturbances);
   command
       ->add_option("--speed", arguments->speed, "max: as fast as possible; or N times real time, 0.1 to 1000")
       ->check(speed())
@@ -269,6 +285,11 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
   command
+      ->add_option("--dds-security", arguments->security,
+                   "secures the bus with certificates; hal/dds/make_security writes the file")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+  command
       ->add_option(
           "--domain", arguments->domain,
           fmt::format("DDS domain, 0 to {} [a free one, or 0 with --flight none]", hal::dds::kMaxDomain))
@@ -281,8 +302,10 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "\nExample: 100 sequences with a degraded sensor, figures to a file\n"
       "  tumblesight simulate --condition degraded --sequences 100 --seed 7 \\\n"
       "      --json figures.json\n\n"
-      "The exit status is 0 only if every step was answered with an attitude, the\n"
-      "flight task allocated no heap memory and the report was written.\n");
+      "The exit status is 0 only if every step was answered, with an attitude where the\n"
+      "sensor delivered a frame of its own, the flight task allocated no heap memory, no\n"
+      "other program wrote to the topics of the run and the report was written.\n" +
+      disturbance_examples("simulate"));
   command->callback([arguments] { simulate(*arguments); });
 }
 

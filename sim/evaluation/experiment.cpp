@@ -4,6 +4,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "sim/evaluation/disturbed_runs.hpp"
 #include "sim/evaluation/monte_carlo.hpp"
 
 namespace tumblesight::sim {
@@ -17,7 +18,7 @@ constexpr std::uint32_t kLongFrames = 200;
 constexpr std::uint32_t kMaxLongSequences = 1000;  // limited by the memory for their frames
 
 struct Run {
-  enum class Kind { kCell, kRateNorm, kHiddenShare, kLong };
+  enum class Kind { kCell, kRateNorm, kHiddenShare, kLong, kDisturbed };
   Kind kind = Kind::kCell;
   ScenarioSettings scenario;
   std::uint32_t sequences = 0;
@@ -35,6 +36,7 @@ std::vector<Run> cells_of(const ExperimentSettings& settings) {
     Run run;
     run.scenario.condition = condition;
     run.scenario.frames = static_cast<int>(settings.frames);
+    run.scenario.disturbances = settings.disturbances;
     run.sequences = condition == Condition::kTumbling ? settings.tumbling_sequences : settings.sequences;
     run.baseline_sequences = std::min(settings.baseline_sequences, run.sequences);
     runs.push_back(run);
@@ -46,6 +48,7 @@ std::vector<Run> sweeps_of(const ExperimentSettings& settings) {
   Run base;
   base.scenario.condition = settings.conditions.front();
   base.scenario.frames = static_cast<int>(settings.frames);
+  base.scenario.disturbances = settings.disturbances;
   base.sequences = settings.sequences;
 
   std::vector<Run> runs{base};
@@ -65,12 +68,29 @@ std::vector<Run> sweeps_of(const ExperimentSettings& settings) {
   return runs;
 }
 
+std::vector<Run> disturbed_runs_of(const ExperimentSettings& settings) {
+  std::vector<Run> runs;
+  for (const DisturbedRun& disturbed : disturbed_runs()) {
+    Run run;
+    run.kind = Run::Kind::kDisturbed;
+    run.scenario.condition = disturbed.condition;
+    run.scenario.frames = static_cast<int>(settings.frames);
+    run.scenario.disturbances = disturbed.disturbances;
+    run.sequences = settings.sequences;
+    runs.push_back(run);
+  }
+  return runs;
+}
+
+void append(std::vector<Run>& runs, const std::vector<Run>& more) {
+  runs.insert(runs.end(), more.begin(), more.end());
+}
+
 std::vector<Run> runs_of(const ExperimentSettings& settings) {
   if (settings.conditions.empty()) throw std::invalid_argument("an experiment needs at least one condition");
   std::vector<Run> runs = cells_of(settings);
-  if (!settings.curves) return runs;
-  const std::vector<Run> sweeps = sweeps_of(settings);
-  runs.insert(runs.end(), sweeps.begin(), sweeps.end());
+  if (settings.curves) append(runs, sweeps_of(settings));
+  if (settings.disturbed_runs) append(runs, disturbed_runs_of(settings));
   return runs;
 }
 
@@ -85,12 +105,13 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   cell.condition = run.scenario.condition;
   cell.sequences = run.sequences;
   cell.frames = frames;
-  cell.rcnn = summarise(errors(Estimator::kRcnn));
-  cell.cnn = summarise(errors(Estimator::kCnn));
+  cell.disturbances = run.scenario.disturbances;
+  cell.rcnn = last_frame_summary(result.frames, frames, Estimator::kRcnn);
+  cell.cnn = last_frame_summary(result.frames, frames, Estimator::kCnn);
   cell.rcnn_histogram = histogram(errors(Estimator::kRcnn));
   cell.cnn_histogram = histogram(errors(Estimator::kCnn));
   if (run.baseline_sequences > 0) {
-    cell.baseline = summarise(errors(Estimator::kBaseline));
+    cell.baseline = last_frame_summary(result.frames, frames, Estimator::kBaseline);
     cell.baseline_histogram = histogram(errors(Estimator::kBaseline));
   }
   cell.network_ms = result.network_ms;
@@ -125,6 +146,10 @@ void take(const Run& run, const MonteCarloResult& result, SubjectResult& into) {
     into.cells.push_back(cell_result(run, into.target, result));
     return;
   }
+  if (run.kind == Run::Kind::kDisturbed) {
+    into.disturbed.push_back(cell_result(run, into.target, result));
+    return;
+  }
   if (!into.sweeps) into.sweeps.emplace();
   take_sweep(run, result, *into.sweeps);
 }
@@ -151,7 +176,8 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
   if (settings.baseline_sequences > 0) {
     matcher = std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m);
   }
-  SubjectResult result{subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}};
+  SubjectResult result{
+      subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}, {}};
   std::uint64_t done = 0;
   for (const Run& run : runs) {
     const MonteCarloSettings monte_carlo{run.scenario, settings.seed, run.sequences, run.baseline_sequences,

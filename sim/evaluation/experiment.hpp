@@ -32,8 +32,10 @@ struct ExperimentSettings {
   std::uint32_t sequences = 900;
   std::uint32_t tumbling_sequences = 900;
   std::uint32_t frames = kFramesPerSequence;
+  Disturbances disturbances;               // of every run, those of the curves too
   std::uint32_t baseline_sequences = 100;  // per cell; 0: no baseline
   bool curves = false;                     // run the sweeps too
+  bool disturbed_runs = false;             // run disturbed_runs() too
   int threads = 1;
 };
 
@@ -44,7 +46,7 @@ std::uint64_t steps_of(const ExperimentSettings& settings);
 
 // Runs cell after cell. `progress`: steps done so far, out of steps_of(settings); called on the calling
 // thread. Throws std::invalid_argument if the model is refused, an inertia is missing or there are no
-// conditions.
+// conditions, or as require_possible() does.
 SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& settings,
                              const std::function<void(std::uint64_t)>& progress);
 

@@ -21,16 +21,16 @@ Float32Reference::Float32Reference(const std::string& model_path, const std::vec
 }
 
 void Float32Reference::add(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth,
-                           const gnc::RangeImage& image) {
+                           const gnc::RangeImage& image, const gnc::ChaserAttitude& chaser) {
   if (!estimator_) return;
-  if (frame == 0) estimator_->reset();
-  gnc::AttitudeEstimate estimate;
+  if (results_.empty() || results_.back().sequence != sequence) estimator_->reset();
+  const gnc::FrameOutcome outcome = estimator_->step(image, chaser);
   FrameResult result;
   result.sequence = sequence;
   result.frame = frame;
   result.truth = truth.q_lrf_trf;
-  result.valid = estimator_->step(image, estimate) == gnc::FrameStatus::kOk;
-  result.rcnn = gnc::to_double(estimate.q_lrf_trf);
+  result.valid = outcome.used();
+  result.rcnn = gnc::to_double(outcome.estimate.q_lrf_trf);
   results_.push_back(result);
 }
 

@@ -29,9 +29,9 @@ class Float32Reference {
 
   // Whether there is a reference. Without one, add() does nothing.
   explicit operator bool() const { return estimator_ != nullptr; }
-  // The next frame of `sequence`; frame 0 starts a new sequence.
-  void add(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth,
-           const gnc::RangeImage& image);
+  // The next frame that was delivered. `chaser`: as the estimator under test was told it.
+  void add(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth, const gnc::RangeImage& image,
+           const gnc::ChaserAttitude& chaser);
   // Over the frames that have a result both here and in `results`, which are in the order of add().
   NumericsComparison compare(const std::vector<FrameResult>& results, std::uint32_t frames) const;
 

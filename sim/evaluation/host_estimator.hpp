@@ -1,5 +1,5 @@
-// HostEstimator: the flight estimator on the ground, in the numerics of the given model image (fixed point or
-// float32).
+// HostEstimator: the way of a frame in flight, on the ground: gnc::FrameTracker with its estimator, in the
+// numerics of the given model image (fixed point or float32).
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/tracking/frame_tracker.hpp"
 
 namespace tumblesight::sim {
 
@@ -16,14 +17,18 @@ class HostEstimator {
   explicit HostEstimator(const std::vector<std::uint8_t>& image, const char* expected_target = nullptr);
 
   gnc::ModelStatus status() const { return status_; }
-  // The functions below require status() to be kOk. They are those of gnc::AttitudeEstimator.
+  // The functions below require status() to be kOk.
   const gnc::ModelHeader& model() const;
+  // As at the start of the flight program.
   void reset();
-  [[nodiscard]] gnc::FrameStatus step(const gnc::RangeImage& frame, gnc::AttitudeEstimate& estimate);
+  // One frame in a cycle at the time of its exposure, with the limits of the flight program.
+  // `chaser`: its attitude at the exposure.
+  gnc::FrameOutcome step(const gnc::RangeImage& frame, const gnc::ChaserAttitude& chaser);
 
  private:
   std::unique_ptr<gnc::AttitudeEstimator<gnc::FixedPoint>> fixed_point_;  // one of the two
   std::unique_ptr<gnc::AttitudeEstimator<gnc::Float32>> float32_;
+  gnc::FrameTrackerState state_;
   gnc::ModelStatus status_;
 };
 

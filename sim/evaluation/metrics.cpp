@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "sim/evaluation/statistics.hpp"
@@ -10,10 +11,31 @@
 namespace tumblesight::sim {
 namespace {
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 double share_within(const std::vector<double>& errors_deg, double limit_deg) {
   const auto inside =
       std::count_if(errors_deg.begin(), errors_deg.end(), [=](double e) { return e <= limit_deg; });
   return static_cast<double>(inside) / static_cast<double>(errors_deg.size());
+}
+
+// The last frames in which `estimator` was run.
+std::vector<FrameResult> last_frames_of(const std::vector<FrameResult>& results, std::uint32_t frames,
+                                        Estimator estimator) {
+  std::vector<FrameResult> last = last_frames(results, frames);
+  const auto was_not_run = [=](const FrameResult& result) {
+    return estimator == Estimator::kBaseline && !result.has_baseline;
+  };
+  last.erase(std::remove_if(last.begin(), last.end(), was_not_run), last.end());
+  return last;
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+bool is_trusted(const FrameResult& result, Estimator estimator) {
+  return estimator == Estimator::kBaseline ? result.baseline_valid : result.trusted;
 }
 
 }  // namespace
@@ -50,11 +72,16 @@ ErrorSummary summarise(std::vector<double> errors_deg) {
   // The sum of sorted values does not depend on the order of the results.
   std::sort(errors_deg.begin(), errors_deg.end());
   summary.count = errors_deg.size();
-  summary.mean_deg =
-      std::accumulate(errors_deg.begin(), errors_deg.end(), 0.0) / static_cast<double>(errors_deg.size());
+  summary.mean_deg = mean(errors_deg);
   summary.mean_standard_error_deg = mean_standard_error(errors_deg);
-  summary.within_20deg = share_within(errors_deg, 20.0);
+  summary.within_20deg = share_within(errors_deg, kWrong_deg);
   summary.within_5deg = share_within(errors_deg, 5.0);
+  const std::vector<double> right(errors_deg.begin(),
+                                  std::upper_bound(errors_deg.begin(), errors_deg.end(), kWrong_deg));
+  summary.mean_within_20_deg = right.empty() ? kUnknown : mean(right);
+  summary.mean_within_20_standard_error_deg = mean_standard_error(right);
+  summary.wrong_and_valid = kUnknown;
+  summary.right_and_valid = kUnknown;
   summary.median_deg = median(std::move(errors_deg));
   return summary;
 }
@@ -70,12 +97,24 @@ std::vector<FrameResult> last_frames(const std::vector<FrameResult>& results, st
 std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& results, std::uint32_t frames,
                                           Estimator estimator) {
   std::vector<double> errors;
-  for (const FrameResult& result : results) {
-    if (result.frame + 1 != frames) continue;
-    if (estimator == Estimator::kBaseline && !result.has_baseline) continue;
+  for (const FrameResult& result : last_frames_of(results, frames, estimator)) {
     errors.push_back(error_deg(result, estimator));
   }
   return errors;
+}
+
+ErrorSummary last_frame_summary(const std::vector<FrameResult>& results, std::uint32_t frames,
+                                Estimator estimator) {
+  ErrorSummary summary = summarise(last_frame_errors_deg(results, frames, estimator));
+  if (summary.count == 0) return summary;
+  std::size_t wrong = 0;
+  std::size_t right = 0;
+  for (const FrameResult& result : last_frames_of(results, frames, estimator)) {
+    if (is_trusted(result, estimator)) ++(error_deg(result, estimator) > kWrong_deg ? wrong : right);
+  }
+  summary.wrong_and_valid = static_cast<double>(wrong) / static_cast<double>(summary.count);
+  summary.right_and_valid = static_cast<double>(right) / static_cast<double>(summary.count);
+  return summary;
 }
 
 }  // namespace tumblesight::sim

@@ -14,6 +14,7 @@ struct FrameResult {
   std::uint32_t sequence = 0;
   std::uint32_t frame = 0;  // index in the sequence
   bool valid = false;       // an estimate was given; otherwise the error counts as 180 degrees
+  bool trusted = false;     // and it passed every check: the report calls it valid, not doubtful
   Eigen::Quaterniond truth{1.0, 0.0, 0.0, 0.0};
   Eigen::Quaterniond rcnn{1.0, 0.0, 0.0, 0.0};  // from all frames of the sequence so far
   Eigen::Quaterniond cnn{1.0, 0.0, 0.0, 0.0};   // from this frame alone
@@ -26,6 +27,9 @@ struct FrameResult {
   Eigen::Quaterniond baseline{1.0, 0.0, 0.0, 0.0};
 };
 
+// An estimate that is further off is wrong: the paper's limit.
+inline constexpr double kWrong_deg = 20.0;
+
 enum class Estimator { kRcnn, kCnn, kBaseline };
 
 // theta = 2 acos|q . q_hat| (paper, loss), in [0, pi]. Computed with atan2, which is accurate for small
@@ -35,7 +39,7 @@ bool has_estimate(const FrameResult& result, Estimator estimator);
 const Eigen::Quaterniond& estimate(const FrameResult& result, Estimator estimator);
 double error_deg(const FrameResult& result, Estimator estimator);  // 0..180; 180 without an estimate
 
-// Shares are 0..1 and include the limit. All zero if count is zero.
+// Shares are 0..1 and include the limit. All zero if count is zero. NaN: the figure does not exist.
 struct ErrorSummary {
   std::size_t count = 0;
   double mean_deg = 0.0;
@@ -43,6 +47,12 @@ struct ErrorSummary {
   double median_deg = 0.0;
   double within_20deg = 0.0;
   double within_5deg = 0.0;
+  double mean_within_20_deg = 0.0;  // over those within 20 degrees; NaN if there are none
+  double mean_within_20_standard_error_deg = 0.0;
+  // Shares of all that are more than 20 degrees off, or within 20 degrees, and trusted. NaN where it is not
+  // known which estimates are trusted.
+  double wrong_and_valid = 0.0;
+  double right_and_valid = 0.0;
 };
 
 ErrorSummary summarise(std::vector<double> errors_deg);
@@ -53,5 +63,8 @@ std::vector<FrameResult> last_frames(const std::vector<FrameResult>& results, st
 // Errors of one estimator in the last frames; for the baseline only where it was run.
 std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& results, std::uint32_t frames,
                                           Estimator estimator);
+// The summary of these errors, with the shares of trusted estimates.
+ErrorSummary last_frame_summary(const std::vector<FrameResult>& results, std::uint32_t frames,
+                                Estimator estimator);
 
 }  // namespace tumblesight::sim

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "sim/evaluation/host_estimator.hpp"
+#include "sim/world/chaser_navigation.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -23,8 +24,9 @@ struct Job {
   std::atomic<std::uint32_t> next{0};
   std::atomic<std::uint32_t> done{0};
   std::vector<FrameResult> results;
-  std::vector<double> network_ms;   // per frame
-  std::vector<double> baseline_ms;  // per sequence
+  std::vector<std::uint8_t> delivered;  // per frame: 0 if it was lost
+  std::vector<double> network_ms;       // per frame
+  std::vector<double> baseline_ms;      // per sequence
 };
 
 class Stopwatch {
@@ -37,13 +39,15 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-FrameResult frame_result(const FrameTruth& truth, const gnc::AttitudeEstimate& estimate, bool valid) {
+FrameResult frame_result(const FrameTruth& truth, const gnc::FrameOutcome& outcome) {
   FrameResult result;
   result.truth = truth.q_lrf_trf;
   result.range_m = truth.range_m;
   result.rate_rad_s = truth.rate_lrf_rad_s.norm();
-  result.valid = valid;
-  if (!valid) return result;
+  result.valid = outcome.used();
+  result.trusted = outcome.valid();
+  if (!result.valid) return result;
+  const gnc::AttitudeEstimate& estimate = outcome.estimate;
   result.rcnn = gnc::to_double(estimate.q_lrf_trf);
   result.cnn = gnc::to_double(estimate.q_lrf_trf_single_frame);
   result.rcnn_predicted_rad = 1e-6 * estimate.predicted_error_urad;
@@ -65,19 +69,34 @@ void run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::
   estimator.reset();
   for (std::uint32_t k = 0; k < job.frames; ++k) {
     const FrameTruth& truth = sequence.frames[k];
+    if (truth.lost) continue;
     job.renderer.render(sequence, k, frame);
-    gnc::AttitudeEstimate estimate;
+    const gnc::ChaserAttitude chaser =
+        chaser_attitude(truth, frame.exposure_time_ns, !job.settings.scenario.disturbances.no_ego_motion);
     const std::size_t place = std::size_t{index} * job.frames + k;
     const Stopwatch stopwatch;
-    const bool valid = estimator.step(frame, estimate) == gnc::FrameStatus::kOk;
+    const gnc::FrameOutcome outcome = estimator.step(frame, chaser);
     job.network_ms[place] = stopwatch.ms();
     FrameResult& result = job.results[place];
-    result = frame_result(truth, estimate, valid);
+    result = frame_result(truth, outcome);
     result.sequence = index;
     result.frame = k;
+    job.delivered[place] = 1;
   }
   if (index < job.baseline_ms.size())
     run_baseline(job, frame, job.results[(std::size_t{index} + 1) * job.frames - 1]);
+}
+
+void remove_lost(Job& job) {
+  std::size_t kept = 0;
+  for (std::size_t place = 0; place < job.results.size(); ++place) {
+    if (job.delivered[place] == 0) continue;
+    job.results[kept] = job.results[place];
+    job.network_ms[kept] = job.network_ms[place];
+    ++kept;
+  }
+  job.results.resize(kept);
+  job.network_ms.resize(kept);
 }
 
 void work(Job& job) {
@@ -99,8 +118,9 @@ MonteCarloResult run_monte_carlo(const FrameRenderer& renderer, const std::vecto
                                  const std::function<void(std::uint32_t)>& progress) {
   if (settings.scenario.frames < 1) throw std::invalid_argument("a sequence needs at least one frame");
   const auto frames = static_cast<std::uint32_t>(settings.scenario.frames);
-  Job job{renderer, model, matcher, settings, frames, {}, {}, {}, {}, {}};
+  Job job{renderer, model, matcher, settings, frames, {}, {}, {}, {}, {}, {}};
   job.results.resize(std::size_t{settings.sequences} * frames);
+  job.delivered.resize(job.results.size());
   job.network_ms.resize(job.results.size());
   if (matcher != nullptr) job.baseline_ms.resize(std::min(settings.baseline_sequences, settings.sequences));
   std::vector<std::future<void>> workers;
@@ -112,6 +132,7 @@ MonteCarloResult run_monte_carlo(const FrameRenderer& renderer, const std::vecto
     worker.get();
   }
   progress(job.done);
+  remove_lost(job);
   return {std::move(job.results), median(std::move(job.network_ms)), median(std::move(job.baseline_ms))};
 }
 

@@ -21,14 +21,15 @@ struct MonteCarloSettings {
 };
 
 struct MonteCarloResult {
-  std::vector<FrameResult> frames;  // ordered by sequence and frame
+  std::vector<FrameResult> frames;  // ordered by sequence and frame; lost frames have none
   double network_ms = 0.0;          // median time per frame from ranges to attitude, one thread
   double baseline_ms = 0.0;         // the same for the baseline; 0 if it was not run
 };
 
-// `renderer`: renders the frames. `model`: a model image that AttitudeEstimator::load accepts; otherwise
-// throws std::invalid_argument. `matcher`: the baseline, or nullptr. `progress`: sequences done so far;
-// called on the calling thread. The results except the times do not depend on the number of threads.
+// Every frame goes through the same gnc::FrameTracker as in flight. `renderer`: renders the frames. `model`:
+// a model image that AttitudeEstimator::load accepts; otherwise throws std::invalid_argument. `matcher`: the
+// baseline, or nullptr. `progress`: sequences done so far; called on the calling thread. The results except
+// the times do not depend on the number of threads.
 //
 // Sequence i is make_sequence(scenario, seed, i), as in `simulate`, so that a run over DDS can be compared
 // with one without. No network was trained on it: training draws its sequences from 64-bit hashes of its

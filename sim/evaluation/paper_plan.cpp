@@ -13,6 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The hardest target: four of its attitudes look nearly alike.
+constexpr const char* kDisturbedTarget = "near_shoemaker";
+
 // Empty when there is no such file.
 std::string file_in(const std::string& folder, const std::string& name) {
   if (folder.empty()) return {};
@@ -41,6 +44,7 @@ std::vector<PlannedSubject> on_each_mesh(const std::string& target, const std::s
   if (!mesh.empty()) subjects.push_back({target, model, mesh});
   subjects.push_back({target, model, {}});
   subjects.front().curves = true;
+  subjects.front().disturbed_runs = target == kDisturbedTarget;
   return subjects;
 }
 
@@ -67,6 +71,7 @@ PaperPlan plan_paper(const std::string& mesh_folder, const std::string& model_fo
     for (const PlannedSubject& planned : on_each_mesh(target, model, mesh)) plan.subjects.push_back(planned);
     for (PlannedSubject planned : on_each_mesh(target, rule_model, mesh)) {
       planned.curves = false;
+      planned.disturbed_runs = false;
       planned.baseline = model.empty();
       by_paper_rule.push_back(planned);
     }

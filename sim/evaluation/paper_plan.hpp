@@ -13,6 +13,7 @@ struct PlannedSubject {
   std::string mesh;      // path of a mesh file; empty: the mesh that ships for the target
   bool curves = false;   // once per target: on its mesh file if there is one, otherwise on the shipped mesh
   bool baseline = true;  // once per mesh, not for every network
+  bool disturbed_runs = false;  // where the curves are, for the target of the disturbed runs
 };
 
 struct PaperPlan {

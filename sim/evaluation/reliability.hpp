@@ -9,8 +9,6 @@
 
 namespace tumblesight::sim {
 
-inline constexpr double kWrong_deg =
-    20.0;  // a larger error is a wrong attitude (the paper's limit of success)
 inline constexpr std::size_t kReliabilityBins = 10;
 
 struct ReliabilityBin {

@@ -22,6 +22,7 @@ struct CellResult {
   Condition condition = Condition::kNominal;
   std::uint32_t sequences = 0;
   std::uint32_t frames = 0;  // per sequence
+  Disturbances disturbances;
   ErrorSummary rcnn;
   ErrorSummary cnn;
   std::optional<ErrorSummary> baseline;  // over the first sequences only, see its count
@@ -57,6 +58,7 @@ struct SubjectResult {
   std::uint32_t model_crc32 = 0;
   std::vector<CellResult> cells;
   std::optional<Sweeps> sweeps;
+  std::vector<CellResult> disturbed;  // disturbed_runs(), or none
 };
 
 struct Results {

@@ -3,28 +3,46 @@
 #include <memory>
 
 #include "sim/recording/recording_writer.hpp"
+#include "sim/world/chaser_navigation.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::int64_t kPause_frames = 2;  // between two sequences
+// Between two sequences: longer than the application's track coasts, since they show different motions.
+constexpr std::int64_t kPause_frames = 10;
+
+std::uint32_t delivered_frames(const std::vector<Sequence>& sequences) {
+  std::uint32_t count = 0;
+  for (const Sequence& sequence : sequences) {
+    for (const FrameTruth& frame : sequence.frames) count += frame.lost ? 0 : 1;
+  }
+  return count;
+}
 
 }  // namespace
 
 std::vector<std::uint8_t> make_recording(const FrameRenderer& renderer, const RecordingSettings& settings,
                                          const std::function<void(std::uint32_t)>& progress) {
-  const auto frames = static_cast<std::uint32_t>(settings.scenario.frames);
+  std::vector<Sequence> sequences;
+  for (std::uint32_t i = 0; i < settings.sequences; ++i)
+    sequences.push_back(make_sequence(settings.scenario, settings.seed, i));
   const int rays = sensor_settings(settings.scenario.condition).rays;
-  RecordingWriter writer(static_cast<std::uint16_t>(rays), settings.sequences * frames);
+  const bool ego_motion = !settings.scenario.disturbances.no_ego_motion;
+  RecordingWriter writer(static_cast<std::uint16_t>(rays), delivered_frames(sequences));
   const auto image = std::make_unique<gnc::RangeImage>();
-  for (std::uint32_t i = 0; i < settings.sequences; ++i) {
-    const Sequence sequence = make_sequence(settings.scenario, settings.seed, i);
-    for (std::uint32_t k = 0; k < frames; ++k) {
-      const std::uint32_t number = i * frames + k;
-      renderer.render(sequence, k, {number, kFramePeriod_ns * (number + kPause_frames * i)}, *image);
-      writer.add(*image);
+  std::int64_t start_ns = 0;
+  std::uint32_t number = 0;
+  for (const Sequence& sequence : sequences) {
+    for (std::uint32_t k = 0; k < sequence.frames.size(); ++k, ++number) {
+      const FrameTruth& truth = sequence.frames[k];
+      const std::int64_t time_ns = start_ns + truth.time_ns;
+      if (!truth.lost) {
+        renderer.render(sequence, k, {number, time_ns}, *image);
+        writer.add(*image, chaser_attitude(truth, time_ns, ego_motion));
+      }
       progress(number + 1);
     }
+    start_ns += sequence.frames.back().time_ns + (1 + kPause_frames) * kFramePeriod_ns;
   }
   return writer.finish();
 }

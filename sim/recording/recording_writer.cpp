@@ -11,10 +11,10 @@ RecordingWriter::RecordingWriter(std::uint16_t rays, std::uint32_t frames)
   hal::replay::write_recording_header(rays, frames, bytes_.data());
 }
 
-void RecordingWriter::add(const gnc::RangeImage& frame) {
+void RecordingWriter::add(const gnc::RangeImage& frame, const gnc::ChaserAttitude& chaser) {
   const std::size_t size = bytes_.size();
   bytes_.resize(size + hal::replay::kRecordedFrameSize);
-  bytes_.resize(size + hal::replay::write_recorded_frame(frame, bytes_.data() + size));
+  bytes_.resize(size + hal::replay::write_recorded_frame(frame, chaser, bytes_.data() + size));
 }
 
 std::vector<std::uint8_t> RecordingWriter::finish() {

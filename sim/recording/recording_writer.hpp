@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
+#include "gnc/tracking/chaser_attitude.hpp"
 
 namespace tumblesight::sim {
 
@@ -13,7 +14,7 @@ class RecordingWriter {
   // `rays` per side of every frame, `frames` in all.
   RecordingWriter(std::uint16_t rays, std::uint32_t frames);
 
-  void add(const gnc::RangeImage& frame);
+  void add(const gnc::RangeImage& frame, const gnc::ChaserAttitude& chaser);
   // The whole recording, with its CRC. To be called once, after the last frame.
   std::vector<std::uint8_t> finish();
 

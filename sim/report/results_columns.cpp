@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "sim/evaluation/checks.hpp"
@@ -18,6 +19,21 @@ double mean_error(const ErrorSummary& summary) {
 std::string mean_text(const ErrorSummary& summary) {
   if (summary.count == 1) return degrees_text(summary.mean_deg);
   return degrees_text(summary.mean_deg, summary.mean_standard_error_deg);
+}
+
+// In tables the mean of all and the two shares of the same count carry the standard errors.
+template <double ErrorSummary::*value>
+std::string short_degrees_text(const ErrorSummary& summary) {
+  return degrees_text(summary.*value);
+}
+
+template <double ErrorSummary::*share>
+std::string short_share_text(const ErrorSummary& summary) {
+  return percent_text(summary.*share);
+}
+
+double mean_within_20_error(const ErrorSummary& summary) {
+  return summary.mean_within_20_standard_error_deg;
 }
 
 std::string median_text(const ErrorSummary& summary) {
@@ -63,7 +79,8 @@ std::vector<CsvColumn> make_csv_columns() {
       {"estimator", [](const Row& row) { return std::string(row.estimator); }},
       {"sequences", [](const Row& row) { return std::to_string(row.summary.count); }}};
   const auto number = [](const Row& row, double value, int decimals) {
-    return row.summary.count == 0 ? std::string{} : fmt::format("{:.{}f}", value, decimals);
+    return row.summary.count == 0 || std::isnan(value) ? std::string{}
+                                                       : fmt::format("{:.{}f}", value, decimals);
   };
   for (const SummaryFigure& figure : summary_figures()) {
     columns.push_back({figure.key, [&figure, number](const Row& row) {
@@ -80,6 +97,8 @@ std::vector<CsvColumn> make_csv_columns() {
                          return row.paper ? fmt::format("{}", (*row.paper).*figure.paper) : std::string{};
                        }});
   }
+  columns.push_back(
+      {"disturbances", [](const Row& row) { return csv_text(to_string(row.cell.disturbances)); }});
   return columns;
 }
 
@@ -164,7 +183,16 @@ const std::vector<SummaryFigure>& summary_figures() {
        share_error<&ErrorSummary::within_20deg>, share_text<&ErrorSummary::within_20deg>,
        &PaperFigure::within_20deg, paper_percent},
       {"within_5deg", "within_5deg_standard_error", false, "within 5°", 5, &ErrorSummary::within_5deg,
-       share_error<&ErrorSummary::within_5deg>, share_text<&ErrorSummary::within_5deg>, nullptr, nullptr}};
+       share_error<&ErrorSummary::within_5deg>, share_text<&ErrorSummary::within_5deg>, nullptr, nullptr},
+      {"mean_within_20_deg", "mean_within_20_standard_error_deg", true, "mean within 20°", 4,
+       &ErrorSummary::mean_within_20_deg, mean_within_20_error,
+       short_degrees_text<&ErrorSummary::mean_within_20_deg>, nullptr, nullptr},
+      {"wrong_and_valid", "wrong_and_valid_standard_error", false, "wrong, valid", 5,
+       &ErrorSummary::wrong_and_valid, share_error<&ErrorSummary::wrong_and_valid>,
+       short_share_text<&ErrorSummary::wrong_and_valid>, nullptr, nullptr},
+      {"right_and_valid", "right_and_valid_standard_error", false, "right, valid", 5,
+       &ErrorSummary::right_and_valid, share_error<&ErrorSummary::right_and_valid>,
+       short_share_text<&ErrorSummary::right_and_valid>, nullptr, nullptr}};
   return figures;
 }
 
@@ -176,7 +204,7 @@ const SummaryFigure& summary_figure(double ErrorSummary::*value) {
 }
 
 TableCell figure_cell(const SummaryFigure& figure, const ErrorSummary& summary, Mark mark) {
-  if (summary.count == 0) return {"-"};
+  if (summary.count == 0 || std::isnan(summary.*figure.value)) return {"-"};
   return {figure.text(summary), mark};
 }
 
@@ -202,6 +230,10 @@ std::vector<EstimatorRow> estimator_rows(const Results& results) {
       rows.push_back({results, subject, cell, "rcnn", cell.rcnn, paper.rcnn});
       rows.push_back({results, subject, cell, "cnn", cell.cnn, paper.cnn});
       if (cell.baseline) rows.push_back({results, subject, cell, "baseline", *cell.baseline, std::nullopt});
+    }
+    for (const CellResult& cell : subject.disturbed) {
+      rows.push_back({results, subject, cell, "rcnn", cell.rcnn, std::nullopt});
+      rows.push_back({results, subject, cell, "cnn", cell.cnn, std::nullopt});
     }
   }
   return rows;

@@ -39,6 +39,7 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
           {"cnn", summary_json(cell.cnn)},
           {"baseline", baseline_json(cell)},
           {"frames", cell.frames},
+          {"disturbances", disturbances_json(cell.disturbances)},
           {"seed", results.seed},
           {"model", subject.model},
           {"model_crc32", fmt::format("{:08x}", subject.model_crc32)},
@@ -101,6 +102,25 @@ Json curves_json(const SubjectResult& subject) {
 
 }  // namespace
 
+nlohmann::ordered_json disturbances_json(const Disturbances& disturbances) {
+  Json json = Json::object();
+  for (const DisturbanceRow* row : given_disturbances(disturbances)) {
+    const double value = row->get(disturbances);
+    switch (row->kind) {
+      case DisturbanceKind::kFlag:
+        json[row->name] = value != 0.0;
+        break;
+      case DisturbanceKind::kWholeNumber:
+        json[row->name] = static_cast<std::uint32_t>(value);
+        break;
+      case DisturbanceKind::kNumber:
+        json[row->name] = value;
+        break;
+    }
+  }
+  return json;
+}
+
 Json summary_json(const ErrorSummary& summary) {
   const auto figure_or_null = [&](double value) { return summary.count == 0 ? Json(nullptr) : Json(value); };
   Json json = Json::object();
@@ -118,6 +138,7 @@ Json results_json(const Results& results) {
   Json curves = Json::array();
   for (const SubjectResult& subject : results.subjects) {
     for (const CellResult& cell : subject.cells) rows.push_back(row_json(results, subject, cell));
+    for (const CellResult& cell : subject.disturbed) rows.push_back(row_json(results, subject, cell));
     if (subject.sweeps && !subject.cells.empty()) curves.push_back(curves_json(subject));
   }
   Json json{{"rows", rows}};

@@ -12,6 +12,9 @@ namespace tumblesight::sim {
 // without a sequence.
 nlohmann::ordered_json summary_json(const ErrorSummary& summary);
 
+// What was given, by the names of the table; empty for an undisturbed run.
+nlohmann::ordered_json disturbances_json(const Disturbances& disturbances);
+
 // {"rows": [one per subject and condition], "curves": [one per subject with sweeps]}; no "curves" without
 // sweeps.
 nlohmann::ordered_json results_json(const Results& results);

@@ -61,6 +61,30 @@ std::string others_section(const Results& results) {
          markdown_text(conditions_table(results.subjects, kOtherEstimatorsTable));
 }
 
+constexpr const char* kDisturbedNotes = R"md(## Disturbed sequences
+
+The options of `tumblesight evaluate --help` under the same names. Seed and sequences are those of the tables above, so
+that a run with a disturbance and the run without it show the same targets, motions and noise. Valid: the attitude
+passes the checks of the flight program; wrong: more than 20° off. Shares are of all sequences. These figures show that
+the requirements TS-EST-300, TS-EST-310, TS-EST-320 and TS-EST-330 are met.
+
+)md";
+
+std::string disturbed_section(const SubjectResult& subject) {
+  return fmt::format("### {}\n\n`{}.tsm`, CRC-32 `{:08x}`\n\n", title_of(subject), subject.model,
+                     subject.model_crc32) +
+         markdown_text(disturbed_table(subject));
+}
+
+// Nothing without disturbed runs.
+std::string disturbed_sections(const Results& results) {
+  std::string text;
+  for (const SubjectResult& subject : results.subjects) {
+    if (!subject.disturbed.empty()) text += disturbed_section(subject);
+  }
+  return text.empty() ? text : kDisturbedNotes + text;
+}
+
 // With its heading; nothing without points.
 std::string curve_section(const std::string& heading, const std::string& at, const Curve& curve,
                           double scale = 1.0) {
@@ -128,8 +152,8 @@ std::string details_of(const SubjectResult& subject) {
 }  // namespace
 
 std::string results_markdown(const Results& results) {
-  std::string text =
-      introduction(results) + models_section(results) + accuracy_section(results) + others_section(results);
+  std::string text = introduction(results) + models_section(results) + accuracy_section(results) +
+                     others_section(results) + disturbed_sections(results);
   text += "## Curves, confusion, reliability\n\n";
   for (const SubjectResult& subject : results.subjects) {
     if (subject.sweeps && !subject.cells.empty()) text += details_of(subject);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sim/evaluation/checks.hpp"
+#include "sim/evaluation/disturbed_runs.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/terminal/counted.hpp"
 
@@ -168,6 +169,31 @@ DataTable detection_table(const SubjectResult& subject) {
                           {percent_text(point.detected())},
                           {percent_text(point.false_alarms())},
                           {fmt::format("{:.2f} %", 100.0 * point.wrong_among_kept())}});
+  }
+  return table;
+}
+
+DataTable disturbed_table(const SubjectResult& subject) {
+  DataTable table{{"condition", "disturbed by", "mean within 20°", "within 20°", "wrong and valid",
+                   "right and valid", "bar", "met"},
+                  {}};
+  const auto share = [](const CellResult& cell, double value) {
+    return TableCell{percent_text(value, cell.rcnn.count)};
+  };
+  for (const CellResult& cell : subject.disturbed) {
+    const DisturbedRun* run = disturbed_run_of(cell);
+    const std::string bar = run == nullptr ? std::string{} : text_of(run->bar);
+    const bool met = run != nullptr && meets(run->bar, cell, cell_of(subject, cell.condition));
+    Cells cells{{to_string(cell.condition)}, {to_string(cell.disturbances)}};
+    cells.push_back(
+        {degrees_text(cell.rcnn.mean_within_20_deg, cell.rcnn.mean_within_20_standard_error_deg)});
+    cells.push_back(share(cell, cell.rcnn.within_20deg));
+    cells.push_back(share(cell, cell.rcnn.wrong_and_valid));
+    cells.push_back(share(cell, cell.rcnn.right_and_valid));
+    cells.push_back({bar.empty() ? "-" : bar});
+    cells.push_back(bar.empty() ? TableCell{""}
+                                : TableCell{met ? "yes" : "no", met ? Mark::kMet : Mark::kMissed});
+    table.rows.push_back(cells);
   }
   return table;
 }

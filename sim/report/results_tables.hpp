@@ -38,6 +38,8 @@ DataTable confusion_table(const SubjectResult& subject);
 DataTable reliability_table(const CellResult& cell);
 // Rejection of estimates by a threshold on their expected error.
 DataTable detection_table(const SubjectResult& subject);
+// A line per disturbed run, with its bar.
+DataTable disturbed_table(const SubjectResult& subject);
 DataTable checks_table(const SubjectResult& subject);
 
 }  // namespace tumblesight::sim

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMaxGalleryPictures = 8;
 
 ErrorSummary last_frame_errors(const RunReport& report, Estimator estimator) {
-  return summarise(last_frame_errors_deg(report.results, report.setup.frames, estimator));
+  return last_frame_summary(report.results, report.setup.frames, estimator);
 }
 
 std::string lead_sentence(const RunReport& report) {
@@ -81,10 +81,11 @@ std::string facts_section(const RunReport& report) {
 
 std::string body(const RunReport& report) {
   const std::uint32_t shown = report.results.empty() ? 0 : report.results.front().sequence;
-  std::string html = fmt::format("<h1>Attitude of {}, {} condition</h1>\n",
-                                 escape_markup(display_name(report.target)), escape_markup(report.condition));
+  std::string html =
+      fmt::format("<h1>Attitude of {}, {} condition</h1>\n", escape_markup(display_name(report.setup.target)),
+                  escape_markup(report.setup.condition));
   html += fmt::format("<p class=sub>Software-in-the-loop run of Tumblesight: {} of {}, {:.1f} s apart</p>\n",
-                      counted(report.sequences, "sequence"), counted(report.setup.frames, "frame"),
+                      counted(report.setup.sequences, "sequence"), counted(report.setup.frames, "frame"),
                       report.frame_period_s);
   for (const std::string& notice : report.notices) {
     html += fmt::format("<div class=notice>{}</div>\n", escape_markup(notice));
@@ -113,8 +114,8 @@ std::string body(const RunReport& report) {
 
 DataTable run_errors_table(const RunReport& report) {
   return estimators_table(
-      {{"RCNN, " + counted(report.setup.frames, "frame"), Mark::kRcnn, last_frame_errors(report, Estimator::kRcnn),
-        report.paper.rcnn},
+      {{"RCNN, " + counted(report.setup.frames, "frame"), Mark::kRcnn,
+        last_frame_errors(report, Estimator::kRcnn), report.paper.rcnn},
        {"CNN, last frame alone", Mark::kCnn, last_frame_errors(report, Estimator::kCnn), report.paper.cnn}},
       report.paper.sequences);
 }

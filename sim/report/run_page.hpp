@@ -11,6 +11,7 @@
 #include "sim/evaluation/metrics.hpp"
 #include "sim/evaluation/paper.hpp"
 #include "sim/report/data_table.hpp"
+#include "sim/world/scenario/disturbance.hpp"
 
 namespace tumblesight::sim {
 
@@ -39,6 +40,7 @@ struct SilRunSetup {
   gnc::DepthProjection projection;
   double speed = 0.0;  // times real time; 0: as fast as the machine goes
   bool free_running = false;
+  Disturbances disturbances;
   std::vector<std::string> remarks;  // shown at the top of the report, below the faults
 };
 

@@ -16,6 +16,11 @@ bool gave_attitude(const StepResult& step) {
   return step.answered && gives_attitude(step.attitude);
 }
 
+// A lost frame gives no attitude, and the frame of a frozen sensor need not.
+bool owes_attitude(const StepResult& step) {
+  return !step.truth.lost && step.truth.frozen_for == 0;
+}
+
 std::string file_name(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }
@@ -41,11 +46,13 @@ std::vector<ReportPicture> pictures(const SilRunResult& run, const gnc::DepthPro
 }
 
 FactList settings_facts(const SilRunSetup& setup) {
+  const std::string disturbed = to_string(setup.disturbances);
   FactList list{"Settings", {}};
   list.facts = {{"target", setup.target},
                 {"mesh", file_name(setup.mesh_name)},
                 {"condition", setup.condition},
                 {"sequences × frames", fmt::format("{} × {}", setup.sequences, setup.frames)},
+                {"disturbances", disturbed.empty() ? "none" : disturbed},
                 {"seed", fmt::format("{}", setup.seed)},
                 {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
                 {"time", setup.free_running ? "free-running" : "lockstep"},
@@ -143,6 +150,7 @@ std::vector<FrameResult> frame_results(const SilRunResult& run) {
     result.sequence = step.sequence;
     result.frame = step.frame_index;
     result.valid = gave_attitude(step);
+    result.trusted = step.attitude.validity == hal::Validity::kValid;
     result.truth = step.truth.q_lrf_trf;
     result.rcnn = gnc::to_double(step.attitude.q_lrf_trf);
     result.cnn = gnc::to_double(step.attitude.q_lrf_trf_single_frame);
@@ -170,8 +178,9 @@ std::vector<std::string> run_faults(const SilRunResult& run) {
                                 run.steps_missed, run.steps_planned));
   }
   const StepResult* last = last_answered(run);
-  const auto invalid = std::count_if(run.steps.begin(), run.steps.end(),
-                                     [](const StepResult& s) { return s.answered && !gave_attitude(s); });
+  const auto invalid = std::count_if(run.steps.begin(), run.steps.end(), [](const StepResult& s) {
+    return s.answered && owes_attitude(s) && !gave_attitude(s);
+  });
   if (invalid > 0) {
     found.push_back(
         fmt::format("{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
@@ -191,8 +200,9 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
   const InferenceTime time = inference_time(run);
   nlohmann::ordered_json json{
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
-  json["rcnn"] = summary_json(summarise(last_frame_errors_deg(results, setup.frames, Estimator::kRcnn)));
-  json["cnn"] = summary_json(summarise(last_frame_errors_deg(results, setup.frames, Estimator::kCnn)));
+  json["disturbances"] = disturbances_json(setup.disturbances);
+  json["rcnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
+  json["cnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
   if (numerics) {
     json["float32"] = summary_json(numerics->float32);
     json["difference_to_float32"] = {{"mean_deg", numerics->difference.mean_deg},
@@ -212,7 +222,7 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   const InferenceTime time = inference_time(run);
   RunReport report;
   report.setup = setup;
-  report.frame_period_s = kFramePeriod_s;
+  report.frame_period_s = setup.disturbances.period_s;
   report.results = frame_results(run);
   report.pictures = pictures(run, setup.projection);
   report.paper = paper_figures(setup.target, condition_from(setup.condition));

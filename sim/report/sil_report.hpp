@@ -24,8 +24,8 @@ InferenceTime inference_time(const SilRunResult& run);
 // "1.25 ms"; "none" for 0.
 std::string time_text(double time_us);
 
-// The faults of the run, one sentence each. Empty: every step was answered with an attitude, and the flight
-// task allocated no heap memory.
+// The faults of the run, one sentence each. Empty: every step was answered, with an attitude if the sensor
+// delivered a genuine frame, and the flight task allocated no heap memory.
 std::vector<std::string> run_faults(const SilRunResult& run);
 
 nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& run,

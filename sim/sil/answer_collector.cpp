@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 #include <utility>
 
 #include "hal/dds/idl/sample_fields.hpp"
+#include "sim/sil/failure.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -39,46 +41,51 @@ bool AnswerCollector::Partial::complete() const {
          answer.events.size() >= done->events && dumps >= done->dumps;
 }
 
+bool AnswerCollector::Partial::has_too_many() const {
+  return attitudes > done->attitudes || telemetries > done->telemetries ||
+         answer.events.size() > done->events || dumps > done->dumps || dones > 1;
+}
+
 template <class Sample>
-AnswerCollector::Partial* AnswerCollector::partial_of(const Sample& sample) {
-  if (sample.run_id != run_id_) return nullptr;
+AnswerCollector::Partial& AnswerCollector::partial_of(const Sample& sample) {
+  if (sample.run_id != run_id_) {
+    throw SilFailure(std::string("a sample of another run on ") + hal::dds::topic_of<Sample>().name +
+                     ": run id " + std::to_string(sample.run_id));
+  }
   Partial& partial = partials_[sample.k];
   partial.answer.k = sample.k;
-  return &partial;
+  return partial;
 }
 
 void AnswerCollector::collect() {
   hal::dds::AttitudeSample attitude;
   while (endpoints_.attitudes.take(attitude)) {
-    Partial* partial = partial_of(attitude);
-    if (partial == nullptr) continue;
-    partial->answer.attitude = from_sample(attitude);
-    ++partial->attitudes;
+    Partial& partial = partial_of(attitude);
+    partial.answer.attitude = from_sample(attitude);
+    ++partial.attitudes;
   }
   hal::dds::TelemetrySample telemetry;
   while (endpoints_.telemetries.take(telemetry)) {
-    Partial* partial = partial_of(telemetry);
-    if (partial == nullptr) continue;
-    partial->answer.telemetry = from_sample(telemetry);
-    ++partial->telemetries;
+    Partial& partial = partial_of(telemetry);
+    partial.answer.telemetry = from_sample(telemetry);
+    ++partial.telemetries;
   }
   hal::dds::EventSample event;
   while (endpoints_.events.take(event)) {
-    if (Partial* partial = partial_of(event)) partial->answer.events.push_back(from_sample(event));
+    partial_of(event).answer.events.push_back(from_sample(event));
   }
   hal::dds::ModelDumpSample dump;
   while (endpoints_.dumps.take(dump)) {
-    Partial* partial = partial_of(dump);
-    if (partial == nullptr) continue;
-    partial->answer.dump = from_sample(dump);
-    ++partial->dumps;
+    Partial& partial = partial_of(dump);
+    partial.answer.dump = from_sample(dump);
+    ++partial.dumps;
   }
   hal::dds::StepDoneSample done;
   while (endpoints_.steps_done.take(done)) {
-    Partial* partial = partial_of(done);
-    if (partial == nullptr) continue;
-    partial->answer.state_crc32 = done.state_crc32;
-    partial->done = done;
+    Partial& partial = partial_of(done);
+    partial.answer.state_crc32 = done.state_crc32;
+    partial.done = done;
+    ++partial.dones;
   }
 }
 
@@ -86,6 +93,8 @@ std::optional<StepAnswer> AnswerCollector::next() {
   const auto found = std::find_if(partials_.begin(), partials_.end(),
                                   [](const auto& entry) { return entry.second.complete(); });
   if (found == partials_.end()) return std::nullopt;
+  if (found->second.has_too_many())
+    throw SilFailure("more samples than announced for step " + std::to_string(found->first));
   StepAnswer answer = std::move(found->second.answer);
   partials_.erase(found);
   return answer;

@@ -28,9 +28,10 @@ class AnswerCollector {
   AnswerCollector(SimulatorEndpoints& endpoints, std::uint32_t run_id)
       : endpoints_(endpoints), run_id_(run_id) {}
 
-  // Takes all samples that have arrived. Those of other runs are discarded.
+  // Takes all samples that have arrived. Throws SilFailure for a sample of another run.
   void collect();
-  // The oldest complete answer, if there is one.
+  // The oldest complete answer, if there is one. Throws SilFailure if more samples than announced have
+  // arrived.
   std::optional<StepAnswer> next();
 
  private:
@@ -39,12 +40,14 @@ class AnswerCollector {
     std::uint32_t attitudes = 0;
     std::uint32_t telemetries = 0;
     std::uint32_t dumps = 0;
+    std::uint32_t dones = 0;
     std::optional<hal::dds::StepDoneSample> done;
     bool complete() const;
+    bool has_too_many() const;
   };
-  // The step of a sample, or nullptr if it belongs to another run.
+  // The step of a sample.
   template <class Sample>
-  Partial* partial_of(const Sample& sample);
+  Partial& partial_of(const Sample& sample);
 
   SimulatorEndpoints& endpoints_;
   std::uint32_t run_id_;

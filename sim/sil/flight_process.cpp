@@ -40,15 +40,26 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_;
 };
 
+// The additional entries come first: of two entries with one name the first one counts.
+std::vector<char*> with_our_environment(const std::vector<std::string>& additional) {
+  std::vector<char*> entries;
+  for (const std::string& entry : additional) entries.push_back(const_cast<char*>(entry.c_str()));
+  for (char** entry = environ; *entry != nullptr; ++entry) entries.push_back(*entry);
+  entries.push_back(nullptr);
+  return entries;
+}
+
 }  // namespace
 
 FlightProcess::FlightProcess(const std::string& program, const std::vector<std::string>& arguments,
-                             const std::string& log_path, int inherited_file) {
+                             const std::string& log_path, int inherited_file,
+                             const std::vector<std::string>& environment) {
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const SpawnActions actions(log_path, inherited_file);
-  const int error = posix_spawn(&pid_, program.c_str(), actions.get(), nullptr, argv.data(), environ);
+  const int error = posix_spawn(&pid_, program.c_str(), actions.get(), nullptr, argv.data(),
+                                with_our_environment(environment).data());
   if (error != 0)
     throw SilFailure("the flight program " + program + " cannot be started: " + strerror(error));
 }

@@ -11,9 +11,11 @@ namespace tumblesight::sim {
 class FlightProcess {
  public:
   // `log_path`: file for its messages; empty: our own output. `inherited_file`: descriptor that the child
-  // inherits under the same number; -1: none. Throws SilFailure if the program cannot be started.
+  // inherits under the same number; -1: none. `environment`: "NAME=value" entries added to ours. Throws
+  // SilFailure if the program cannot be started.
   FlightProcess(const std::string& program, const std::vector<std::string>& arguments,
-                const std::string& log_path, int inherited_file = -1);
+                const std::string& log_path, int inherited_file = -1,
+                const std::vector<std::string>& environment = {});
   // Sends SIGTERM, and after two seconds SIGKILL.
   ~FlightProcess();
   FlightProcess(const FlightProcess&) = delete;

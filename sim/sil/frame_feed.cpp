@@ -10,10 +10,9 @@ constexpr std::int64_t kFirstStep_ns = kFramePeriod_ns;  // mission time of step
 std::vector<PlannedStep> plan_steps(const std::vector<Sequence>& sequences) {
   std::vector<PlannedStep> steps;
   for (std::uint32_t s = 0; s < sequences.size(); ++s) {
-    for (std::uint32_t f = 0; f < sequences[s].frames.size(); ++f) {
-      const auto k = static_cast<std::int64_t>(steps.size());
-      steps.push_back({s, f, kFirstStep_ns + k * kFramePeriod_ns});
-    }
+    const std::int64_t start_ns = steps.empty() ? kFirstStep_ns : steps.back().time_ns + kFramePeriod_ns;
+    for (std::uint32_t f = 0; f < sequences[s].frames.size(); ++f)
+      steps.push_back({s, f, start_ns + sequences[s].frames[f].time_ns});
   }
   return steps;
 }
@@ -38,6 +37,7 @@ void FrameFeed::start_rendering(std::size_t step) {
 
 void FrameFeed::render(std::size_t step, gnc::RangeImage& frame) const {
   const PlannedStep& plan = steps_[step];
+  if (sequences_[plan.sequence].frames[plan.frame].lost) return;
   renderer_.render(sequences_[plan.sequence], plan.frame, {static_cast<std::uint32_t>(step), plan.time_ns},
                    frame);
 }

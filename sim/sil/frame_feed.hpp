@@ -18,7 +18,8 @@ struct PlannedStep {
   std::int64_t time_ns = 0;    // mission time
 };
 
-// All sequences one after the other, one step per frame period, without a pause between sequences.
+// All sequences one after the other, one step at each exposure, and one nominal frame period from a sequence
+// to the next.
 std::vector<PlannedStep> plan_steps(const std::vector<Sequence>& sequences);
 
 class FrameFeed {
@@ -27,8 +28,8 @@ class FrameFeed {
   FrameFeed(const FlashLidar& lidar, double swath_m, const std::vector<Sequence>& sequences,
             const std::vector<PlannedStep>& steps);
 
-  // The frame of the next step; valid until the next call. Its sequence number is the index of the step. Must
-  // be called at most once per step.
+  // The frame of the next step; valid until the next call. Its sequence number is the index of the step. Of a
+  // lost frame the content is undefined. Must be called at most once per step.
   const gnc::RangeImage& next();
 
  private:

@@ -9,13 +9,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "gnc/numerics/crc16.hpp"
-
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::size_t kPrimaryHeaderBytes = 6;
-constexpr std::size_t kChecksumOffset = 8;
 constexpr std::uint32_t kTelecommandWithSecondaryHeader = 0x1800;
 constexpr std::uint32_t kUnsegmented = 0xC000;
 
@@ -54,21 +50,21 @@ hal::CommandKey read_command_key(const std::string& path) {
 }
 
 hal::CommandPacket TelecommandEncoder::packet(const Telecommand& command) {
-  const std::size_t size = hal::kCommandHeaderBytes + command.arguments.size();
-  if (size + hal::kCommandTrailerBytes > hal::CommandPacket::kMaxBytes) {
-    throw std::invalid_argument("a telecommand of " + std::to_string(size + hal::kCommandTrailerBytes) +
-                                " bytes; at most " + std::to_string(hal::CommandPacket::kMaxBytes));
+  const std::size_t size = hal::kCommandHeaderBytes + command.arguments.size() + hal::kCommandTrailerBytes;
+  if (size > hal::CommandPacket::kMaxBytes) {
+    throw std::invalid_argument("a telecommand of " + std::to_string(size) + " bytes; at most " +
+                                std::to_string(hal::CommandPacket::kMaxBytes));
   }
   std::vector<std::uint8_t> bytes;
   append(bytes, kTelecommandWithSecondaryHeader | hal::kCommandApid, 2);
   append(bytes, kUnsegmented | sequence_count_, 2);
-  append(bytes, static_cast<std::uint32_t>(size - kPrimaryHeaderBytes - 1), 2);
+  append(bytes, static_cast<std::uint32_t>(size - hal::kCommandPrimaryHeaderBytes - 1), 2);
   append(bytes, static_cast<std::uint32_t>(command.function), 1);
-  append(bytes, 0, 3);
+  append(bytes, 0, 1);  // the checksum, which the authentication code leaves out
   bytes.insert(bytes.end(), command.arguments.begin(), command.arguments.end());
-  const std::uint16_t crc = gnc::crc16(bytes.data(), bytes.size());
-  bytes[kChecksumOffset] = static_cast<std::uint8_t>(crc >> 8);
-  bytes[kChecksumOffset + 1] = static_cast<std::uint8_t>(crc);
+  append(bytes, spacecraft_id_, 2);
+  append(bytes, key_slot_, 1);
+  append(bytes, 0, 1);
   append(bytes, ++counter_, 4);
   sequence_count_ = static_cast<std::uint16_t>((sequence_count_ + 1) & 0x3FFF);
 
@@ -76,6 +72,7 @@ hal::CommandPacket TelecommandEncoder::packet(const Telecommand& command) {
   HMAC(EVP_sha256(), key_.data(), static_cast<int>(key_.size()), bytes.data(), bytes.size(), code.data(),
        nullptr);
   bytes.insert(bytes.end(), code.begin(), code.begin() + hal::kCommandMacBytes);
+  bytes[hal::kCommandChecksumOffset] = hal::command_checksum(bytes.data(), bytes.size());
 
   hal::CommandPacket packet;
   packet.size = static_cast<std::uint16_t>(bytes.size());

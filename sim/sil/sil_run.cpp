@@ -8,6 +8,7 @@
 #include "sim/sil/frame_feed.hpp"
 #include "sim/sil/sil_session.hpp"
 #include "sim/sil/trace.hpp"
+#include "sim/world/chaser_navigation.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -66,8 +67,7 @@ class SilRun {
       session.send(input);
     }
     // The answer to the last frame comes with the next cycle, or never.
-    const auto grace = wall_time_of(2);
-    receive_until(session, begin + wall_time_of(static_cast<std::uint32_t>(plan_.size())) + grace);
+    receive_until(session, begin + wall_time_of(static_cast<std::uint32_t>(plan_.size() + 2)));
   }
 
   void receive_until(SilSession& session, Clock::time_point deadline) {
@@ -85,10 +85,17 @@ class SilRun {
 
   bool last_answered() const { return result_.steps.size() == plan_.size() && result_.steps.back().answered; }
 
+  // Mission time since step 0. Nominal periods follow the last step.
+  std::int64_t mission_time_of(std::uint32_t k) const {
+    if (k < plan_.size()) return plan_[k].time_ns - plan_.front().time_ns;
+    const auto periods = static_cast<std::int64_t>(k - plan_.size() + 1);
+    return plan_.back().time_ns - plan_.front().time_ns + periods * kFramePeriod_ns;
+  }
+
   // Mission time as wall time, from the start of the run.
   Clock::duration wall_time_of(std::uint32_t k) const {
     return std::chrono::duration_cast<Clock::duration>(
-        std::chrono::duration<double>(kFramePeriod_s * k / settings_.speed));
+        std::chrono::duration<double>(1e-9 * static_cast<double>(mission_time_of(k)) / settings_.speed));
   }
 
   StepInput prepare(const SilSession& session, std::uint32_t k) {
@@ -101,12 +108,15 @@ class SilRun {
     result_.steps.push_back(step);
 
     const gnc::RangeImage& frame = feed_.next();
-    if (frame_sent_) frame_sent_(step, frame);
-    if (plan.sequence < kPictureSequences) result_.pictures.emplace_back(k, frame);
-
     StepInput input;
     input.time_ns = plan.time_ns;
-    input.frames = {&frame};
+    if (!step.truth.lost) {
+      if (frame_sent_) frame_sent_(step, frame);
+      if (plan.sequence < kPictureSequences) result_.pictures.emplace_back(k, frame);
+      input.frames = {&frame};
+      if (settings_.ego_motion)
+        input.navigations = {chaser_attitude(step.truth, frame.exposure_time_ns, true)};
+    }
     if (k == 0 && session.flight_mode() == hal::Mode::kStandby) {
       input.commands.push_back(set_mode(hal::Mode::kRun));
     }
@@ -144,12 +154,17 @@ class SilRun {
   std::uint32_t answered_ = 0;
 };
 
-void conclude(SilRunResult& result) {
+// Free-running, an answer names its frame, so a frame that was lost or repeated need not have one.
+bool needs_no_answer(const StepResult& step, bool free_running) {
+  return free_running && (step.truth.lost || step.truth.frozen_for > 0);
+}
+
+void conclude(bool free_running, SilRunResult& result) {
   std::uint32_t answered = 0;
   TraceDigest digest;
   for (std::uint32_t k = 0; k < result.steps.size(); ++k) {
+    if (result.steps[k].answered || needs_no_answer(result.steps[k], free_running)) ++answered;
     if (!result.steps[k].answered) continue;
-    ++answered;
     digest.add(k, result.steps[k]);
   }
   result.steps_missed = result.steps_planned - answered;
@@ -171,7 +186,7 @@ SilRunResult run_sil(const SilSettings& settings, const FlashLidar& lidar, doubl
   } catch (const std::exception& error) {
     result.failure = error.what();
   }
-  conclude(result);
+  conclude(settings.free_running, result);
   return result;
 }
 

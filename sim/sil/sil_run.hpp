@@ -25,8 +25,10 @@ struct SilSettings {
   int domain = -1;               // DDS domain; -1: a free one, so that concurrent runs do not interfere
   double speed = 0.0;            // times real time; 0: as fast as possible
   bool free_running = false;     // flight on its own timer, 2.7 s divided by speed, not in lockstep
+  bool ego_motion = true;        // the flight program is told the chaser's attitude at each exposure
   double step_timeout_s = 10.0;  // wall clock; a step without an answer by then ends the run
   std::string flight_log_path;   // file for the flight program's messages; empty: our own output
+  std::string security_path;  // file that secures the bus, passed to the flight program; empty: not secured
   std::vector<std::string> flight_arguments;  // additional ones
   // The flight program must have the same key.
   std::array<std::uint8_t, 32> command_key = hal::dds::kDevelopmentKey;

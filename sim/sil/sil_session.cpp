@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <random>
 #include <thread>
 
 #include "hal/dds/idl/icd_hash.hpp"
+#include "hal/dds/idl/step_content.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -19,9 +19,12 @@ using hal::dds::Role;
 constexpr auto kPoll = 20ms;
 constexpr double kEndGrace_s = 3.0;
 
-// Not 0, which means "any" and "not ready".
-std::uint32_t make_run_id() {
-  return std::max(1U, static_cast<std::uint32_t>(std::random_device{}()));
+// A flight program that the user starts does not know a secret, so it meets us in the default partition.
+hal::dds::RunSecret make_secret(bool with_partition) {
+  hal::dds::RunSecret secret;
+  if (!hal::dds::make_run_secret(secret)) throw SilFailure("the system provides no random numbers");
+  if (!with_partition) secret.partition[0] = '\0';
+  return secret;
 }
 
 std::string hex(std::uint32_t value) {
@@ -34,9 +37,15 @@ std::string last_line_of(const std::string& path) {
   std::ifstream file(path);
   std::string last;
   for (std::string line; std::getline(file, line);) {
-    if (!line.empty()) last = line;
+    const bool is_note = line.find(": note: ") != std::string::npos;
+    if (!line.empty() && !is_note) last = line;
   }
   return last;
+}
+
+[[noreturn]] void fail_foreign(const hal::dds::Foreigner& foreigner) {
+  throw SilFailure(std::string("a program other than the flight program is on the bus: ") +
+                   to_text(foreigner).text);
 }
 
 template <class Sample>
@@ -51,18 +60,26 @@ void write(hal::dds::Writer<Sample>& writer, const Sample& sample) {
 }  // namespace
 
 SilSession::SilSession(const SilSettings& settings)
-    : settings_(settings), lease_(settings.domain), run_id_(make_run_id()), encoder_(settings.command_key) {
-  const dds_return_t result = domain_.open(lease_.domain());
+    : settings_(settings),
+      lease_(settings.domain),
+      secret_(make_secret(!settings.flight_path.empty())),
+      check_(settings.free_running),
+      encoder_(settings.command_key) {
+  const auto security = std::make_unique<hal::dds::SecurityElement>();
+  if (!settings_.security_path.empty() &&
+      !hal::dds::read_security(settings_.security_path.c_str(), *security))
+    throw SilFailure("--dds-security " + settings_.security_path + ": cannot be read, or is too large");
+  const dds_return_t result = domain_.open(lease_.domain(), secret_.partition, security->text);
   if (result != 0) {
     throw SilFailure("DDS domain " + std::to_string(lease_.domain()) +
                      " could not be opened: " + dds_strretcode(result));
   }
-  endpoints_ = std::make_unique<SimulatorEndpoints>(domain_.participant());
-  answers_ = std::make_unique<AnswerCollector>(*endpoints_, run_id_);
+  endpoints_ = std::make_unique<SimulatorEndpoints>(domain_);
+  answers_ = std::make_unique<AnswerCollector>(*endpoints_, secret_.run_id);
   hal::dds::HelloSample hello{};
   hello.role = static_cast<std::uint8_t>(Role::kSimulator);
   hello.icd_hash = hal::dds::icd_hash();
-  hello.run_id = run_id_;
+  hello.run_id = secret_.run_id;
   hello.process_id = static_cast<std::uint32_t>(getpid());
   write(endpoints_->hello_out, hello);
   if (!settings_.flight_path.empty()) start_flight();
@@ -70,10 +87,11 @@ SilSession::SilSession(const SilSettings& settings)
 }
 
 std::vector<std::string> SilSession::flight_command_line() const {
-  std::vector<std::string> arguments{"--target", settings_.target,
-                                     "--domain", std::to_string(lease_.domain()),
-                                     "--run-id", std::to_string(run_id_)};
+  std::vector<std::string> arguments{"--target", settings_.target, "--domain",
+                                     std::to_string(lease_.domain())};
   if (!settings_.model_path.empty()) arguments.insert(arguments.end(), {"--model", settings_.model_path});
+  if (!settings_.security_path.empty())
+    arguments.insert(arguments.end(), {"--dds-security", settings_.security_path});
   if (settings_.free_running) {
     const double period_ms = kFramePeriod_s * 1e3 / settings_.speed;
     arguments.insert(arguments.end(), {"--mode", "free-running", "--period-ms", std::to_string(period_ms)});
@@ -83,34 +101,47 @@ std::vector<std::string> SilSession::flight_command_line() const {
 }
 
 void SilSession::start_flight() {
-  process_ = std::make_unique<FlightProcess>(settings_.flight_path, flight_command_line(),
-                                             settings_.flight_log_path, lease_.file());
+  process_ = std::make_unique<FlightProcess>(
+      settings_.flight_path, flight_command_line(), settings_.flight_log_path, lease_.file(),
+      std::vector<std::string>{std::string(hal::dds::kRunSecretVariable) + "=" + to_text(secret_).text});
 }
 
-// Reads the hellos of flight. True once the flight program of this run is ready.
-bool SilSession::read_hello() {
-  bool ready = false;
+// Reads the hellos of flight. The first one decides which program it is.
+void SilSession::read_hello() {
   hal::dds::HelloSample hello;
-  while (endpoints_->hello_in.take(hello)) {
-    const bool ours = hello.run_id == run_id_ || hello.run_id == 0;
-    if (hello.role != static_cast<std::uint8_t>(Role::kFlight) || !ours) continue;
+  hal::dds::PeerKey from;
+  while (endpoints_->hello_in.take(hello, from)) {
+    const bool ours = hello.run_id == secret_.run_id || hello.run_id == 0;
+    if (hello.role != static_cast<std::uint8_t>(Role::kFlight) || !ours)
+      fail_foreign(endpoints_->hello_in.describe(from));
     if (hello.icd_hash != hal::dds::icd_hash()) {
       // Flight refuses as well; wait for its own message.
       if (process_) (void)process_->wait_for_end(kEndGrace_s);
       throw SilFailure("interface hash " + hex(hal::dds::icd_hash()) + ", but " + hex(hello.icd_hash) +
                        " in the flight program: build both from the same tumblesight.idl");
     }
+    bind(hello, from);
     flight_mode_ = static_cast<hal::Mode>(hello.flight_mode);
-    ready = hello.run_id == run_id_;
+    flight_ready_ |= hello.run_id == secret_.run_id;
   }
-  return ready;
+}
+
+void SilSession::bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKey& from) {
+  if (process_ && hello.process_id != static_cast<std::uint32_t>(process_->pid())) {
+    throw SilFailure("process " + std::to_string(hello.process_id) +
+                     " announced itself as the flight program, which is process " +
+                     std::to_string(process_->pid()));
+  }
+  if (flight_ && !hal::dds::same_peer(*flight_, from))
+    throw SilFailure("two programs announced themselves as the flight program");
+  flight_ = from;
 }
 
 void SilSession::shake_hands() {
   const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.step_timeout_s);
-  bool ready = false;
-  while (!ready || !endpoints_->all_matched()) {
-    ready = read_hello() || ready;
+  while (!flight_ready_ || !endpoints_->bind(*flight_)) {
+    read_hello();
+    require_no_foreigner();
     if (endpoints_->hello_in.saw_incompatible()) {
       throw SilFailure(
           "the hello of the flight program has another type: build both from the same tumblesight.idl");
@@ -123,6 +154,12 @@ void SilSession::shake_hands() {
     }
     endpoints_->wait_for_data(1'000'000);
   }
+}
+
+// The run must not go on: who writes to our topics could also delay or suppress what flight writes.
+void SilSession::require_no_foreigner() {
+  const hal::dds::Foreigner foreigner = endpoints_->foreigner();
+  if (foreigner) fail_foreign(foreigner);
 }
 
 void SilSession::fail(const std::string& what) const {
@@ -156,8 +193,10 @@ StepAnswer SilSession::step(const StepInput& input) {
 
 void SilSession::send(const StepInput& input) {
   const std::uint32_t k = next_k_++;
+  check_.sent(k, input.time_ns, input.frames);
+  hal::dds::StepContent content;
   for (const gnc::RangeImage* frame : input.frames) {
-    frame_sample_.run_id = run_id_;
+    frame_sample_.run_id = secret_.run_id;
     frame_sample_.k = k;
     frame_sample_.sequence_number = frame->sequence_number;
     frame_sample_.exposure_time_ns = frame->exposure_time_ns;
@@ -165,25 +204,36 @@ void SilSession::send(const StepInput& input) {
     frame_sample_.rays = frame->rays;
     std::copy(frame->ranges.begin(), frame->ranges.end(), frame_sample_.ranges);
     write(endpoints_->frames, frame_sample_);
+    content.add(frame_sample_);
+  }
+  for (const gnc::ChaserAttitude& attitude : input.navigations) {
+    hal::dds::NavigationSample sample{};
+    sample.run_id = secret_.run_id;
+    sample.k = k;
+    sample.time_ns = attitude.time_ns;
+    std::copy(attitude.q_inertial_lrf.begin(), attitude.q_inertial_lrf.end(), sample.q_inertial_lrf);
+    sample.valid = attitude.valid ? 1 : 0;
+    write(endpoints_->navigations, sample);
+    content.add(sample);
   }
   std::vector<hal::CommandPacket> packets;
   for (const Telecommand& command : input.commands) packets.push_back(encoder_.packet(command));
   packets.insert(packets.end(), input.packets.begin(), input.packets.end());
   for (const hal::CommandPacket& packet : packets) {
     hal::dds::CommandSample sample{};
-    sample.run_id = run_id_;
+    sample.run_id = secret_.run_id;
     sample.k = k;
     sample.size = packet.size;
     std::copy(packet.bytes.begin(), packet.bytes.end(), sample.bytes);
     write(endpoints_->commands, sample);
+    content.add(sample);
   }
   hal::dds::StepSample step{};
-  step.run_id = run_id_;
+  step.run_id = secret_.run_id;
   step.k = k;
   step.time_ns = input.time_ns;
-  step.frames = static_cast<std::uint8_t>(input.frames.size());
-  step.commands = static_cast<std::uint8_t>(packets.size());
   step.last = input.last ? 1 : 0;
+  content.announce_in(step);
   write(endpoints_->steps, step);
   last_sent_ = input.last;
 }
@@ -191,24 +241,30 @@ void SilSession::send(const StepInput& input) {
 StepAnswer SilSession::wait_for_answer(std::uint32_t k) {
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(settings_.step_timeout_s));
-  while (const std::optional<StepAnswer> answer = next_answer(deadline)) {
-    if (answer->k == k) return *answer;
-  }
+  if (const std::optional<StepAnswer> answer = next_answer(deadline)) return *answer;
   if (flight_ended()) fail_flight_ended();
   fail("the flight program did not answer step " + std::to_string(k) + " within " +
        std::to_string(settings_.step_timeout_s) + " s of wall-clock time");
 }
 
+std::optional<StepAnswer> SilSession::collect_answer() {
+  answers_->collect();
+  require_no_foreigner();
+  std::optional<StepAnswer> answer = answers_->next();
+  if (!answer) return answer;
+  const std::string fault = check_.fault_of(*answer);
+  if (!fault.empty()) throw SilFailure(fault);
+  return answer;
+}
+
 std::optional<StepAnswer> SilSession::next_answer(Clock::time_point deadline) {
   for (;;) {
-    answers_->collect();
-    if (auto answer = answers_->next()) return answer;
+    if (auto answer = collect_answer()) return answer;
     const auto left = deadline - Clock::now();
     if (left <= Clock::duration::zero()) return std::nullopt;
     const bool arrived = endpoints_->wait_for_data(std::min<Clock::duration>(left, kPoll).count());
     if (!arrived && flight_ended()) {
-      answers_->collect();  // the last samples may have arrived in between
-      if (auto answer = answers_->next()) return answer;
+      if (auto answer = collect_answer()) return answer;  // the last samples may have arrived in between
       if (flight_ended_after_last_step()) return std::nullopt;
       fail_flight_ended();
     }
@@ -233,7 +289,7 @@ void SilSession::finish() {
 void SilSession::publish_truth(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth,
                                std::int64_t time_ns) {
   hal::dds::TruthSample sample{};
-  sample.run_id = run_id_;
+  sample.run_id = secret_.run_id;
   sample.k = next_k_;
   sample.time_ns = time_ns;
   sample.sequence_index = sequence;

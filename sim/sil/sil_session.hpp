@@ -11,9 +11,12 @@
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
+#include "gnc/tracking/chaser_attitude.hpp"
 #include "hal/dds/idl/domain.hpp"
+#include "hal/dds/idl/run_secret.hpp"
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/mode.hpp"
+#include "sim/sil/answer_check.hpp"
 #include "sim/sil/answer_collector.hpp"
 #include "sim/sil/domain_lease.hpp"
 #include "sim/sil/failure.hpp"
@@ -28,6 +31,7 @@ namespace tumblesight::sim {
 struct StepInput {
   std::int64_t time_ns = 0;
   std::vector<const gnc::RangeImage*> frames;
+  std::vector<gnc::ChaserAttitude> navigations;  // of the chaser, at the exposures of the frames
   std::vector<Telecommand> commands;
   std::vector<hal::CommandPacket> packets;  // sent after `commands`, unchanged: for tests of invalid packets
   bool last = false;
@@ -58,13 +62,16 @@ class SilSession {
                      std::int64_t time_ns);
   hal::Mode flight_mode() const { return flight_mode_; }  // in the hello of flight
   pid_t flight_pid() const { return process_ ? process_->pid() : 0; }
-  std::uint32_t run_id() const { return run_id_; }
+  std::uint32_t run_id() const { return secret_.run_id; }
   std::uint32_t domain() const { return lease_.domain(); }
 
  private:
   void start_flight();
   void shake_hands();
-  bool read_hello();
+  void read_hello();
+  void bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKey& from);
+  void require_no_foreigner();
+  std::optional<StepAnswer> collect_answer();
   bool flight_ended();
   bool flight_ended_after_last_step();
   [[noreturn]] void fail_flight_ended() const;
@@ -73,15 +80,18 @@ class SilSession {
 
   SilSettings settings_;
   DomainLease lease_;
-  std::uint32_t run_id_;
+  hal::dds::RunSecret secret_;
   hal::dds::Domain domain_;
   std::unique_ptr<SimulatorEndpoints> endpoints_;
   std::unique_ptr<AnswerCollector> answers_;
+  AnswerCheck check_;
   std::unique_ptr<FlightProcess> process_;  // destroyed before the domain is released
   TelecommandEncoder encoder_;
   hal::dds::LidarFrameSample frame_sample_{};
   std::uint32_t next_k_ = 0;
   bool last_sent_ = false;
+  std::optional<hal::dds::PeerKey> flight_;  // of the first hello
+  bool flight_ready_ = false;                // it has found this run
   hal::Mode flight_mode_ = hal::Mode::kBoot;
 };
 

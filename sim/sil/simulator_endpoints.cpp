@@ -1,5 +1,6 @@
 #include "sim/sil/simulator_endpoints.hpp"
 
+#include <initializer_list>
 #include <string>
 
 #include "sim/sil/failure.hpp"
@@ -13,19 +14,20 @@ void check(dds_return_t result) {
 
 }  // namespace
 
-SimulatorEndpoints::SimulatorEndpoints(dds_entity_t participant) {
-  check(hello_out.open(participant));
-  check(frames.open(participant));
-  check(commands.open(participant));
-  check(steps.open(participant));
-  check(truth.open(participant));
-  check(hello_in.open(participant));
-  check(attitudes.open(participant));
-  check(telemetries.open(participant));
-  check(events.open(participant));
-  check(dumps.open(participant));
-  check(steps_done.open(participant));
-  waitset_ = dds_create_waitset(participant);
+SimulatorEndpoints::SimulatorEndpoints(const hal::dds::Domain& domain) {
+  check(hello_out.open(domain));
+  check(frames.open(domain));
+  check(navigations.open(domain));
+  check(commands.open(domain));
+  check(steps.open(domain));
+  check(truth.open(domain));
+  check(hello_in.open(domain));
+  check(attitudes.open(domain));
+  check(telemetries.open(domain));
+  check(events.open(domain));
+  check(dumps.open(domain));
+  check(steps_done.open(domain));
+  waitset_ = dds_create_waitset(domain.participant());
   check(waitset_);
   for (const dds_entity_t reader :
        {attitudes.entity(), telemetries.entity(), events.entity(), dumps.entity(), steps_done.entity()}) {
@@ -35,10 +37,20 @@ SimulatorEndpoints::SimulatorEndpoints(dds_entity_t participant) {
   }
 }
 
-bool SimulatorEndpoints::all_matched() const {
-  return hello_out.matched() > 0 && frames.matched() > 0 && commands.matched() > 0 && steps.matched() > 0 &&
-         hello_in.matched() > 0 && attitudes.matched() > 0 && telemetries.matched() > 0 &&
-         events.matched() > 0 && dumps.matched() > 0 && steps_done.matched() > 0;
+bool SimulatorEndpoints::bind(const hal::dds::PeerKey& flight) {
+  const bool readers = hello_in.bind(flight) && attitudes.bind(flight) && telemetries.bind(flight) &&
+                       events.bind(flight) && dumps.bind(flight) && steps_done.bind(flight);
+  return readers && hello_out.has_reader_of(flight) && frames.has_reader_of(flight) &&
+         navigations.has_reader_of(flight) && commands.has_reader_of(flight) && steps.has_reader_of(flight);
+}
+
+hal::dds::Foreigner SimulatorEndpoints::foreigner() const {
+  for (const hal::dds::BoundReader* reader : std::initializer_list<const hal::dds::BoundReader*>{
+           &steps_done, &attitudes, &telemetries, &events, &dumps, &hello_in}) {
+    const hal::dds::Foreigner foreigner = reader->foreigner();
+    if (foreigner) return foreigner;
+  }
+  return {};
 }
 
 bool SimulatorEndpoints::wait_for_data(std::int64_t timeout_ns) {

@@ -10,6 +10,7 @@ namespace tumblesight::sim {
 struct SimulatorEndpoints {
   hal::dds::Writer<hal::dds::HelloSample> hello_out;
   hal::dds::Writer<hal::dds::LidarFrameSample> frames;
+  hal::dds::Writer<hal::dds::NavigationSample> navigations;
   hal::dds::Writer<hal::dds::CommandSample> commands;
   hal::dds::Writer<hal::dds::StepSample> steps;
   hal::dds::Writer<hal::dds::TruthSample> truth;  // for displays; not read by flight
@@ -20,10 +21,13 @@ struct SimulatorEndpoints {
   hal::dds::Reader<hal::dds::ModelDumpSample> dumps;
   hal::dds::Reader<hal::dds::StepDoneSample> steps_done;
 
-  explicit SimulatorEndpoints(dds_entity_t participant);  // throws SilFailure
-  // Every endpoint is matched with its counterpart in flight, so that no sample is lost from now on.
-  bool all_matched() const;
-  bool flight_gone() const { return steps_done.matched() == 0; }
+  explicit SimulatorEndpoints(const hal::dds::Domain& domain);  // throws SilFailure
+  // Binds every reader to the flight program. True once every endpoint is matched with its counterpart there,
+  // so that no sample is lost from now on.
+  bool bind(const hal::dds::PeerKey& flight);
+  bool flight_gone() const { return !steps_done.has_peer(); }
+  // A program other than the flight program that writes to one of our topics.
+  hal::dds::Foreigner foreigner() const;
   // Waits until there is an answer that was not taken yet (true), or the time is over (false).
   bool wait_for_data(std::int64_t timeout_ns);
 

@@ -25,11 +25,20 @@ void TraceDigest::add_report(const hal::AttitudeReport& report) {
   crc_.add_u32(report.sequence_number);
   crc_.add_u32(static_cast<std::uint32_t>(report.validity));
   crc_.add_u32(report.frames_since_reset);
-  for (const std::int32_t part : report.q_lrf_trf) crc_.add_u32(static_cast<std::uint32_t>(part));
+  add_all(report.q_lrf_trf);
   crc_.add_u32(report.predicted_error_urad);
-  for (const std::int32_t part : report.q_lrf_trf_single_frame)
-    crc_.add_u32(static_cast<std::uint32_t>(part));
+  add_all(report.q_lrf_trf_single_frame);
   crc_.add_u32(report.predicted_error_single_frame_urad);
+  crc_.add_u32(report.doubts);
+  crc_.add_u32(report.law);
+  add_all(report.rate_lrf_urad_s);
+  add_all(report.attitude_covariance_e8);
+  add_all(report.rate_covariance_e8);
+  add_all(report.q_lrf_trf_now);
+  add_all(report.rate_lrf_now_urad_s);
+  add_all(report.q_lrf_trf_second);
+  crc_.add_u32(report.second_odds_ppm);
+  add_all(report.centroid_lrf_mm);
 }
 
 void TraceDigest::add_telemetry(const hal::Telemetry& telemetry) {
@@ -37,8 +46,9 @@ void TraceDigest::add_telemetry(const hal::Telemetry& telemetry) {
   for (const std::uint32_t value :
        {static_cast<std::uint32_t>(telemetry.mode), telemetry.cycles, telemetry.commands_accepted,
         telemetry.commands_refused, telemetry.frames_used, telemetry.frames_missing, telemetry.frames_refused,
-        telemetry.frames_duplicate, telemetry.frames_stale, telemetry.frames_bad, telemetry.sequence_gaps,
-        telemetry.estimator_resets, telemetry.attitudes_doubtful, telemetry.model_passes}) {
+        telemetry.frames_duplicate, telemetry.frames_stale, telemetry.frames_bad, telemetry.frames_repeated,
+        telemetry.frames_superseded, telemetry.sequence_gaps, telemetry.estimator_resets,
+        telemetry.attitudes_doubtful, telemetry.model_passes}) {
     crc_.add_u32(value);
   }
 }

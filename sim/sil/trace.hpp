@@ -17,6 +17,10 @@ class TraceDigest {
 
  private:
   void add_time(std::int64_t time_ns);
+  template <class Numbers>
+  void add_all(const Numbers& numbers) {
+    for (const std::int32_t number : numbers) crc_.add_u32(static_cast<std::uint32_t>(number));
+  }
   void add_report(const hal::AttitudeReport& report);
   void add_telemetry(const hal::Telemetry& telemetry);
   void add_event(const hal::Event& event);

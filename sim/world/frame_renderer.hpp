@@ -3,7 +3,8 @@
 // them.
 //
 // FlashLidar::expose makes the ranges, with the sensor settings of the condition, the swath of the renderer
-// and a noise seed by the renderer's rule. The stamp adds sequence number and exposure time.
+// and a noise seed by the renderer's rule. The stamp adds sequence number and exposure time. A frozen sensor
+// shows the frame that it repeats under the stamp of its own.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +42,7 @@ class FrameRenderer {
   // give the same frame.
   void render(const Sequence& sequence, std::uint32_t frame, const FrameStamp& stamp,
               gnc::RangeImage& image) const;
-  // Stamped as the first sequence of a run: number `frame`, at `frame` frame periods.
+  // Stamped as the first sequence of a run: number `frame`, at the frame's time in the sequence.
   void render(const Sequence& sequence, std::uint32_t frame, gnc::RangeImage& image) const;
 
  private:

@@ -18,7 +18,7 @@ METHODS = {"T": "test", "A": "analysis", "I": "inspection"}
 GROUPS = {
     "EST": "Attitude estimation", "LID": "LiDAR frames and depth image", "NUM": "Numerics", "TIM": "Time", "MEM": "Memory",
     "IFC": "Interfaces", "MODE": "Modes", "CMD": "Commands", "TLM": "Telemetry", "FDIR": "Faults", "MDL": "Model banks",
-    "SEC": "Security", "SIL": "Software in the loop", "TRN": "Training and quantization",
+    "SEC": "Security", "RST": "Resets", "SIL": "Software in the loop", "TRN": "Training and quantization",
 }
 _ID = re.compile(r"TS-(?:%s)-\d{3}" % "|".join(GROUPS))
 _DOCUMENT = re.compile(r"(?<![\w/])(?:docs|fsw|gnc|hal|sim|tests)/[\w./-]*\w")

@@ -5,6 +5,7 @@
   tests/documents/icd.py --messages  fails if a message in hal/messages and its topic in the IDL have different fields
   tests/documents/icd.py --write     writes the tables to docs/icd.md
 """
+import collections
 import pathlib
 import re
 import sys
@@ -60,7 +61,7 @@ def enum(path, name):
     """[(enumerator, value, comment)]"""
     body = re.search(rf"enum class {name} [^{{]*\{{(.*?)\}};", source(path), re.S)[1]
     values, value = [], -1
-    for statement, comment in documented(body if "\n" in body else body.replace(", ", ",\n") + ","):
+    for statement, comment in documented(body if "\n" in body else body.strip().replace(", ", ",\n") + ","):
         entry, number = re.fullmatch(r"(k\w+)(?: = (\d+))?,", statement).groups()
         value = int(number) if number else value + 1
         values.append((entry, value, comment))
@@ -86,7 +87,12 @@ def causes():
     return table(["number", "cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "mode.hpp", "Cause")])
 
 
-def functions():
+def reset_causes():
+    return table(["number", "reset cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "reset_cause.hpp", "ResetCause")])
+
+
+def function_rows():
+    """[(code, name, least argument bytes, most, comment, modes)] of the telecommands."""
     codes = {name: value for name, value, _ in enum(MESSAGES + "function_code.hpp", "FunctionCode")}
     body = re.search(r"kCommands\{\n(.*?)\n\};", source("fsw/app/commands.cpp"), re.S)[1]
     limits = {"hal::kMaxCommandArgumentBytes": "1028"}
@@ -94,19 +100,26 @@ def functions():
     for statement, comment in documented(body):
         function, least, most, modes = re.fullmatch(r"CommandRow\{\{([\w:]+), (\d+), ([\w:]+), ([\w |]+)\}, \w+\},", statement).groups()
         most = limits.get(most, most)
-        rows.append([codes[last(function)], upper(last(function)), least if least == most else f"{least}…{most}", comment or "-",
-                     "any" if modes == "kAlways" else ", ".join(m.strip().removeprefix("kIn").upper() for m in modes.split("|"))])
+        rows.append((codes[last(function)], upper(last(function)), int(least), int(most), comment,
+                     "any" if modes == "kAlways" else ", ".join(m.strip().removeprefix("kIn").upper() for m in modes.split("|"))))
     missing = set(codes.values()) - {row[0] for row in rows}
     if missing:
         raise SystemExit(f"fsw/app/commands.cpp has no row for function codes {sorted(missing)} of {MESSAGES}function_code.hpp")
-    return table(["code", "function", "argument bytes", "arguments", "modes"], rows)
+    return rows
+
+
+def functions():
+    return table(["code", "function", "argument bytes", "arguments", "modes"],
+                 [[code, name, least if least == most else f"{least}…{most}", comment or "-", modes]
+                  for code, name, least, most, comment, modes in function_rows()])
 
 
 def refusals():
     events = {value: name for name, value, _ in enum(MESSAGES + "event_id.hpp", "EventId")}
     return table(["number", "event", "refused because"],
-                 [[value, 60 + value, f"{upper(name)}{': ' + comment if comment else ''}"]
-                  for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal") if 60 + value in events])
+                 [[value, event, f"{upper(name)}{': ' + comment if comment else ''}"]
+                  for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal")
+                  for event in [value + (60 if value < 10 else 90)] if event in events])
 
 
 def validity():
@@ -153,18 +166,54 @@ CARRIED = {"Attitude": ("attitude_report.hpp", "AttitudeReport"), "Telemetry": (
            "ModelDump": ("model_dump.hpp", "ModelDump")}
 
 
-def message_fields(topic):
-    """{field: comment} of the message that a topic carries, in its order."""
+Field = collections.namedtuple("Field", "name bits signed count enum comment")  # count: None: not an array
+
+
+def message_constant(text, scope=""):
+    """The value of a number or of a constant of the messages, which `scope` or a header of theirs defines."""
+    if text.isdigit():
+        return int(text)
+    for place in (scope, *(path.read_text() for path in sorted((ROOT / MESSAGES).glob("*.hpp")))):
+        found = re.search(rf"constexpr [\w:]+ {text} = (\w+);", place)
+        if found:
+            return message_constant(found[1], place)
+    raise SystemExit(f"{MESSAGES} has no constant {text}")
+
+
+def message_layout(topic):
+    """[Field] of the message that a topic carries, in its order."""
     path, name = CARRIED[topic]
     body = re.search(rf"struct {name} \{{\n(.*?)\n\}};", source(MESSAGES + path), re.S)[1]
-    fields = {}
+    fields = []
     for statement, comment in documented(body):
         if statement.startswith("static "):
             continue
         kind, field = re.fullmatch(r"([\w:<>, ]+) (\w+)(?: = .*|\{.*\})?;", statement).groups()
-        named = re.search(r"\b([A-Z]\w+)", kind)  # an enumeration with a table in this document
-        fields[field] = " ".join(filter(None, (named and named[1], comment.removesuffix("."))))
+        array = re.fullmatch(r"std::array<([\w:]+), (\w+)>", kind)
+        element, count = (array[1], message_constant(array[2], body)) if array else (kind, None)
+        is_enum = element[0].isupper()  # an enumeration with a table in this document
+        number = underlying_type(element) if is_enum else element
+        sign, bits = re.fullmatch(r"std::(u?)int(\d+)_t", number).groups()
+        fields.append(Field(field, int(bits), not sign, count, element if is_enum else None,
+                            " ".join(filter(None, (is_enum and element, comment.removesuffix("."))))))
     return fields
+
+
+def enum_path(name):
+    """The header of the messages that defines an enumeration."""
+    for path in sorted((ROOT / MESSAGES).glob("*.hpp")):
+        if f"enum class {name} :" in path.read_text():
+            return MESSAGES + path.name
+    raise SystemExit(f"{MESSAGES} has no enumeration {name}")
+
+
+def underlying_type(name):
+    return re.search(rf"enum class {name} : ([\w:]+) ", source(enum_path(name)))[1]
+
+
+def message_fields(topic):
+    """{field: comment} of the message that a topic carries, in its order."""
+    return {field.name: field.comment for field in message_layout(topic)}
 
 
 def sample_fields(topic):
@@ -195,10 +244,68 @@ def struct(name):
     return table(["offset", "type", "field", ""], rows) + f"\n\n{offset} bytes."
 
 
-TABLES = {"transitions": transitions, "causes": causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
+# Packet field: bits is None for the part of variable size; value: None, or the only value it may have.
+PacketField = collections.namedtuple("PacketField", "name bits value")
+
+
+def packet_fields(path):
+    """[PacketField] of the table `offset bytes field` in the comment at the head of a source file. A row is one field, or fields
+    of a number of bits; 'name 5' and 'name, 5' have the value 5."""
+    fields = []
+    for size, text in re.findall(r"^//  +(?:\d+|\d+ \+ n)  +(\d+|n)  (.*)$", source(path), re.M):
+        parts = re.findall(r"(?:, )?(.+?) \((\d+)(?: bits?)?\)", text)
+        if not parts:
+            text = text.removeprefix("trailer: ")
+            name = re.fullmatch(r"[\w ]+, \d+", text) or re.split(r"[:,]| that ", text)
+            parts = [(name[0] if not text.startswith("first ") else "authentication code", 8 * int(size) if size != "n" else None)]
+        for name, bits in parts:
+            name, value = re.fullmatch(r"(.+?)(?:,? (0x[0-9A-F]+|\d+))?", name).groups()
+            fields.append(PacketField(name.strip().replace(" ", "_"), bits and int(bits), value and int(value, 0)))
+    return fields
+
+
+ENCODER = "hal/packets/telemetry_encoder.hpp"
+COMMAND_PACKET = MESSAGES + "command_packet.hpp"
+
+
+def packet_header_bits():
+    fields = packet_fields(ENCODER)
+    return sum(field.bits for field in fields[:[field.bits for field in fields].index(None)])
+
+
+def apids():
+    """{topic: default APID of its packet}"""
+    body = re.search(r"struct PacketApids \{(.*?)\};", source(ENCODER), re.S)[1]
+    numbers = {name: int(value, 16) for name, value in re.findall(r"(\w+) = (0x[0-9A-F]+);", body)}
+    return {topic: numbers[upper(name).lower()] for topic, (_, name) in CARRIED.items()}
+
+
+def packet_bytes(topic):
+    fixed = sum(field.bits or 0 for field in packet_fields(ENCODER))
+    return (fixed + sum(field.bits * (field.count or 1) for field in message_layout(topic))) // 8
+
+
+def packets():
+    return table(["packet", "APID", "bytes", "sent"],
+                 [[CARRIED[topic][1], f"0x{apid:03X}", packet_bytes(topic),
+                   {"Attitude": "each cycle", "Telemetry": "each cycle", "Event": "with each event", "ModelDump": "after MODEL_DUMP"}[topic]]
+                  for topic, apid in apids().items()])
+
+
+def packet(topic):
+    rows, offset = [], packet_header_bits() // 8
+    for field in message_layout(topic):
+        kind = f"{'signed' if field.signed else 'unsigned'} {field.bits}{f' × {field.count}' if field.count else ''}"
+        rows.append([offset, kind, f"`{field.name}`", field.comment])
+        offset += field.bits * (field.count or 1) // 8
+    return table(["offset", "bits", "field", ""], [*rows, [offset, "unsigned 16", "error control", ""]])
+
+
+TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
           "responses": responses, "events": events,
+          "packets": packets, **{f"packet {CARRIED[topic][1]}": (lambda topic=topic: packet(topic)) for topic in CARRIED},
           **{f"topic {name}": (lambda name=name: struct(name))
-             for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Step", "Hello")}}
+             for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Navigation", "Step", "Hello")}}
 
 
 def with_tables(text):

@@ -30,18 +30,22 @@ bool equal(const gnc::RangeImage& a, const gnc::RangeImage& b) {
          a.fov_urad == b.fov_urad && a.rays == b.rays && a.ranges == b.ranges;
 }
 
-void check_written_again(const gnc::RangeImage& frame) {
+void check_written_again(const gnc::RangeImage& frame, const gnc::ChaserAttitude& chaser) {
   static gnc::RangeImage again;
   std::vector<std::uint8_t> bytes(replay::kRecordingHeaderSize + replay::kRecordedFrameSize +
                                   replay::kRecordingCrcSize);
   std::size_t size = replay::write_recording_header(frame.rays, 1, bytes.data());
-  size += replay::write_recorded_frame(frame, bytes.data() + size);
+  size += replay::write_recorded_frame(frame, chaser, bytes.data() + size);
   size += replay::write_recording_crc(bytes.data(), size, bytes.data() + size);
   replay::Recording recording;
   require(recording.open(bytes.data(), size) == replay::RecordingStatus::kOk, "a written recording is valid");
   require(recording.has_next(), "the recording has the frame");
   recording.read_next(again);
   require(equal(frame, again), "the frame is read as it was written");
+  const gnc::ChaserAttitude& read = recording.chaser_attitude();
+  require(read.valid == chaser.valid && read.time_ns == chaser.time_ns &&
+              read.q_inertial_lrf == chaser.q_inertial_lrf,
+          "the attitude of the chaser is read as it was written");
   require(!recording.has_next(), "the recording has no other frame");
 }
 
@@ -56,7 +60,7 @@ void read_all(const std::uint8_t* bytes, std::size_t size) {
   std::uint32_t frames = 0;
   while (lidar.receive(frame) == hal::LidarStatus::kFrame) {
     require(++frames <= recording.frames(), "there are no more frames than announced");
-    if (frames <= 2) check_written_again(frame);
+    if (frames <= 2) check_written_again(frame, recording.chaser_attitude());
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "gnc/rcnn/model_image.hpp"
 #include "tests/sil/sil_test_support.hpp"
+#include "tests/support/depacketizer.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -48,6 +49,55 @@ TEST_F(Commands, ForgedAndReplayedCommandsAreRefusedAndCounted) {
   EXPECT_EQ(answer.telemetry.mode, hal::Mode::kRun);
   EXPECT_TRUE(gives_attitude(answer.attitude));
   conversation_.finish();
+}
+
+// Verifies TS-CMD-160.
+TEST(GroundPackets, StandardReceiverGetsThemOutOfAStream) {
+  TelecommandEncoder ground(test::settings().command_key);
+  std::vector<std::uint8_t> stream;
+  for (int i = 0; i < 5; ++i) {
+    const hal::CommandPacket packet =
+        ground.packet({hal::FunctionCode::kModelLoad,
+                       std::vector<std::uint8_t>(static_cast<std::size_t>(5 + 200 * i), 0xC3)});
+    stream.insert(stream.end(), packet.bytes.begin(), packet.bytes.begin() + packet.size);
+  }
+  const std::vector<standard::SpacePacket> received = standard::depacketize(stream);
+  ASSERT_EQ(received.size(), 5U);
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < received.size(); ++i) {
+    bytes += received[i].whole.size();
+    EXPECT_EQ(received[i].sequence_count, static_cast<int>(i));
+    EXPECT_EQ(received[i].cfs_function(), 5);
+    EXPECT_TRUE(received[i].cfs_checksum_is_valid());
+  }
+  EXPECT_EQ(bytes, stream.size()) << "nothing lies between two packets";
+}
+
+// Verifies TS-RST-010, TS-RST-020, TS-SEC-030.
+TEST(StoredState, OutlivesTheFlightProgram) {
+  SilSettings settings = test::settings();
+  const std::string path = test::temporary_path("state");
+  settings.flight_arguments = {"--state", path};
+  TelecommandEncoder ground(settings.command_key);
+  const hal::CommandPacket safe = ground.packet(set_mode(hal::Mode::kSafe));
+  const auto answer_to = [&settings](const std::vector<hal::CommandPacket>& packets) {
+    test::Conversation conversation(settings);
+    StepInput input;
+    input.time_ns = test::Conversation::time_ns(conversation.k++);
+    input.packets = packets;
+    const StepAnswer answer = conversation.session.step(input);
+    conversation.finish();
+    return answer.telemetry;
+  };
+  EXPECT_EQ(answer_to({safe}).mode, hal::Mode::kSafe);
+  settings.flight_arguments = {"--state", path, "--reset", "watchdog"};
+  const hal::Telemetry telemetry = answer_to({safe});
+  EXPECT_EQ(telemetry.mode, hal::Mode::kSafe);
+  EXPECT_EQ(telemetry.safe_cause, hal::Cause::kCommandSafe);
+  EXPECT_EQ(telemetry.commands_refused_by[kReplayed], 1U);
+  const hal::Telemetry after = answer_to({ground.packet(set_mode(hal::Mode::kStandby))});
+  EXPECT_EQ(after.mode, hal::Mode::kStandby);
+  EXPECT_EQ(after.command_counter, 2U);
 }
 
 // Verifies TS-MODE-040, TS-MODE-050.
@@ -119,6 +169,23 @@ TEST(CommandKey, FromAFileReplacesTheDevelopmentKey) {
   const StepAnswer answer = conversation.step({conversation.good_frame()}, {reset_sequence()});
   EXPECT_EQ(answer.telemetry.commands_accepted, 1U);
   conversation.finish();
+}
+
+// Verifies TS-SEC-090.
+TEST(CommandKey, TheDevelopmentKeyIsNotedOnce) {
+  const std::string note = "signed with the public development key";
+  SilSettings settings = test::settings();
+  test::Conversation(settings).finish();
+  const std::string log = test::read_file(settings.flight_log_path);
+  EXPECT_NE(log.find(note), std::string::npos) << log;
+  EXPECT_EQ(log.find(note), log.rfind(note)) << log;
+  settings = test::settings();
+  const std::string path = test::temporary_path("command.key");
+  std::ofstream(path) << std::string(64, 'a') << '\n';
+  settings.flight_arguments = {"--command-key", path};
+  settings.command_key.fill(0xAA);
+  test::Conversation(settings).finish();
+  EXPECT_EQ(test::read_file(settings.flight_log_path).find(note), std::string::npos);
 }
 
 // Verifies TS-SEC-040.

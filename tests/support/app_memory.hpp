@@ -36,7 +36,7 @@ struct AppMemory {
   static Region workspace(App& app) { return region_of(app.frame_workspace_); }
   static Estimator& estimator(App& app) { return app.estimator_; }
   // The estimate of the last frame, before it is reported.
-  static gnc::AttitudeEstimate& estimate(App& app) { return app.frame_workspace_.estimate; }
+  static gnc::AttitudeEstimate& estimate(App& app) { return app.frame_workspace_.outcome.estimate; }
   // Biases, shifts and pointers to the weights.
   static Region constants(App& app) { return region_of(app.estimator_.network().weights()); }
   // Memory that every frame rewrites.

@@ -19,8 +19,8 @@ inline CellResult sample_cell(Condition condition, double rcnn_deg, bool baselin
   cell.condition = condition;
   cell.sequences = 40;
   cell.frames = 2;
-  cell.rcnn = summarise(last_frame_errors_deg(frames, 2, Estimator::kRcnn));
-  cell.cnn = summarise(last_frame_errors_deg(frames, 2, Estimator::kCnn));
+  cell.rcnn = last_frame_summary(frames, 2, Estimator::kRcnn);
+  cell.cnn = last_frame_summary(frames, 2, Estimator::kCnn);
   if (baseline) {
     cell.baseline = summarise({1.0, 2.0, 90.0});
     cell.baseline_histogram = histogram({1.0, 2.0, 90.0});
@@ -40,7 +40,7 @@ inline CellResult sample_cell(Condition condition, double rcnn_deg, bool baselin
 }
 
 inline Results sample_results() {
-  SubjectResult near{"near_shoemaker", "near, \"odd\".stl", "near_shoemaker", 0x00C0FFEE, {}, {}};
+  SubjectResult near{"near_shoemaker", "near, \"odd\".stl", "near_shoemaker", 0x00C0FFEE, {}, {}, {}};
   near.cells = {sample_cell(Condition::kNominal, 1.0, true), sample_cell(Condition::kOccluded, 15.0, true)};
   Sweeps sweeps;
   sweeps.by_rate_norm = near.cells.front().by_rate;
@@ -51,7 +51,7 @@ inline Results sample_results() {
   }
   near.sweeps = sweeps;
   SubjectResult mine{
-      "mine", kParametricMesh, "other", 0x12345678, {sample_cell(Condition::kOffset, 3.0, false)}, {}};
+      "mine", kParametricMesh, "other", 0x12345678, {sample_cell(Condition::kOffset, 3.0, false)}, {}, {}};
   Results results;
   results.seed = 7;
   results.command = "tumblesight evaluate --paper";

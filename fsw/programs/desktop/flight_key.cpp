@@ -39,6 +39,9 @@ bool read_digits(std::FILE* file, hal::CommandKey& key) {
 bool read_command_key(const char* path, hal::CommandKey& key) {
   if (path[0] == '\0') {
     key = hal::dds::kDevelopmentKey;
+    std::fprintf(stderr,
+                 "flight: note: telecommands are signed with the public development key; anyone can command; "
+                 "give --command-key\n");
     return true;
   }
   std::FILE* const file = std::fopen(path, "r");

@@ -63,10 +63,10 @@ bool wants_float32(const FlightOptions& options, hal::ModelStore& store) {
   return gnc::is_float32(image.data, image.size);
 }
 
-void boot(const FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
-          hal::posix::FileModelStore& store, const hal::CommandKey& command_key) {
-  app.init({&stopwatch, &store, &command_key}, options.target);
-  if (app.mode() == fsw::Mode::kRun) return;
+void boot(const FlightOptions& options, AttitudeInitApp& app, const hal::Platform& platform,
+          hal::posix::FileModelStore& store) {
+  app.init(platform, options.target);
+  if (app.boot_status(0) == gnc::ModelStatus::kOk) return;
   const bool unread = store.status() != hal::posix::FileStatus::kOk;
   char remedy[FlightOptions::kMaxPath + 64] = {};
   if (store.status() == hal::posix::FileStatus::kMissing)

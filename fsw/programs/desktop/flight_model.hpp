@@ -3,9 +3,8 @@
 
 #include "fsw/app/cycle.hpp"
 #include "fsw/programs/desktop/flight_options.hpp"
-#include "hal/messages/command_key.hpp"
+#include "hal/platform.hpp"
 #include "hal/posix/file_model_store.hpp"
-#include "hal/stopwatch.hpp"
 
 namespace tumblesight::fsw::desktop {
 
@@ -16,9 +15,9 @@ hal::posix::FileModelStore& open_model(FlightOptions& options);
 // Whether the options or, without --numerics, the image ask for float32.
 bool wants_float32(const FlightOptions& options, hal::ModelStore& store);
 
-// Boots `app`. Without a usable image its mode is SAFE, and the reason is written to the standard error
-// stream.
-void boot(const FlightOptions& options, AttitudeInitApp& app, hal::Stopwatch& stopwatch,
-          hal::posix::FileModelStore& store, const hal::CommandKey& command_key);
+// Boots `app` on this platform, whose models are `store`. Without a usable image its mode is SAFE, and the
+// reason is written to the standard error stream.
+void boot(const FlightOptions& options, AttitudeInitApp& app, const hal::Platform& platform,
+          hal::posix::FileModelStore& store);
 
 }  // namespace tumblesight::fsw::desktop

@@ -11,6 +11,7 @@
 #include "gnc/rcnn/model_image.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
+#include "hal/dds/idl/run_secret.hpp"
 
 namespace tumblesight::fsw::desktop {
 namespace {
@@ -64,9 +65,34 @@ bool parse_path(const char* option, const char* value, char* path) {
   return true;
 }
 
+bool parse_reset(const char* option, const char* value, hal::ResetCause& cause) {
+  const bool watchdog = std::strcmp(value, "watchdog") == 0;
+  cause = watchdog ? hal::ResetCause::kWatchdog : hal::ResetCause::kPowerOn;
+  return watchdog || std::strcmp(value, "power-on") == 0 || fail(option, value, "power-on or watchdog");
+}
+
+// A simulator that starts this program passes run id and partition in the environment.
+bool read_environment(FlightOptions& options) {
+  const char* const text = std::getenv(hal::dds::kRunSecretVariable);
+  if (text == nullptr) return true;
+  hal::dds::RunSecret secret;
+  if (!hal::dds::read_run_secret(text, secret)) {
+    std::fprintf(stderr, "%s: %s: expected a run id, a colon and 32 hexadecimal digits\n", kProgramName,
+                 hal::dds::kRunSecretVariable);
+    return false;
+  }
+  options.run_id = secret.run_id;
+  std::memcpy(options.partition, secret.partition, sizeof options.partition);
+  return true;
+}
+
 bool parse_one(const char* option, const char* value, FlightOptions& options) {
   if (std::strcmp(option, "--model") == 0) return parse_path(option, value, options.model_path);
   if (std::strcmp(option, "--command-key") == 0) return parse_path(option, value, options.command_key_path);
+  if (std::strcmp(option, "--packets") == 0) return parse_path(option, value, options.packets_path);
+  if (std::strcmp(option, "--state") == 0) return parse_path(option, value, options.state_path);
+  if (std::strcmp(option, "--reset") == 0) return parse_reset(option, value, options.reset_cause);
+  if (std::strcmp(option, "--dds-security") == 0) return parse_path(option, value, options.security_path);
   if (std::strcmp(option, "--target") == 0) {
     options.target = value;
     return value[0] != '\0' || fail(option, value, "a target's name");
@@ -99,8 +125,16 @@ void print_flight_help() {
       "                     [%s]\n"
       "  --command-key FILE key that signs telecommands, 64 hexadecimal digits\n"
       "                     [the public development key]\n"
+      "  --packets FILE     also write the telemetry to FILE as CCSDS space packets\n"
+      "  --state FILE       keep mode, bank, limits and command counter in FILE and\n"
+      "                     FILE.copy [not kept]\n"
+      "  --reset CAUSE      with --state: power-on or watchdog, why flight was started\n"
+      "                     [power-on]\n"
       "  --domain N         DDS domain [0]\n"
       "  --run-id N         simulator run to join; 0: the first one found [0]\n"
+      "  --dds-security FILE\n"
+      "                     secures the bus; hal/dds/make_security writes the file\n"
+      "                     [not secured]\n"
       "  --mode MODE        lockstep: the simulator sets the time;\n"
       "                     free-running: cycles on a timer [lockstep]\n"
       "  --period-ms N      free-running: wall-clock period of a cycle [2700]\n"
@@ -111,7 +145,7 @@ void print_flight_help() {
       "Exit status: 0 complete, 2 bad arguments, 3 interface definitions differ,\n"
       "4 simulator gone, 5 timeout, 6 DDS failed, 7 step out of order, 8 the flight\n"
       "task used the heap, 9 no thread for the flight task, 10 flight_float32 cannot\n"
-      "be started.\n",
+      "be started, 11 another program writes to the topics of the run.\n",
       kProgramName,
       kFlyFloat32 ? ".\nThis is its variant in float32, for comparisons. Start `flight`: for a float32\n"
                     "image it starts this one"
@@ -126,6 +160,7 @@ void print_flight_version() {
 
 ParseResult parse_flight_options(int argc, char** argv, FlightOptions& options) {
   options.icd_hash = hal::dds::icd_hash();
+  if (!read_environment(options)) return ParseResult::kError;
   for (int i = 1; i < argc; i += 2) {
     if (std::strcmp(argv[i], "--version") == 0) return ParseResult::kVersion;
     if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) return ParseResult::kHelp;

@@ -4,6 +4,8 @@
 #include <cstdint>
 
 #include "fsw/programs/desktop/flight_program.hpp"
+#include "hal/dds/idl/run_secret.hpp"
+#include "hal/messages/reset_cause.hpp"
 
 namespace tumblesight::fsw::desktop {
 
@@ -12,11 +14,16 @@ struct FlightOptions {
 
   char command_key_path[kMaxPath] = {};  // empty: the development key
   char model_path[kMaxPath] = {};        // empty: the shipped model of the target
+  char packets_path[kMaxPath] = {};      // empty: no packets are written
+  char state_path[kMaxPath] = {};        // empty: nothing is kept
+  hal::ResetCause reset_cause = hal::ResetCause::kPowerOn;
   const char* target = "near_shoemaker";
   bool float32 = kFlyFloat32;  // without numerics_given and with a model_path: decided by the model image
   bool numerics_given = false;
   std::uint32_t domain = 0;
-  std::uint32_t run_id = 0;  // 0: that of the first simulator found
+  std::uint32_t run_id = 0;                                        // 0: that of the first simulator found
+  char partition[hal::dds::RunSecret::kPartitionDigits + 1] = {};  // empty: the default one
+  char security_path[kMaxPath] = {};                               // empty: the bus is not secured
   bool free_running = false;
   double period_ms = 2700.0;  // free-running: wall-clock period of the flight task
   double timeout_s = 60.0;    // the run ends after this long without a simulator or a step

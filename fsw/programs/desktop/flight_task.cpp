@@ -41,9 +41,9 @@ std::int64_t MissionClock::at(std::int64_t release_ns) const {
          static_cast<std::int64_t>(periods * static_cast<double>(fsw::config::kFramePeriod_ns));
 }
 
-FlightTask::FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsLink& link, CycleWorkspace& workspace,
-                       hal::posix::PaintedStack& stack)
-    : lidar_(lidar), link_(link), workspace_(workspace), stack_(stack) {
+FlightTask::FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsNavigation& navigation,
+                       hal::dds::DdsLink& link, CycleWorkspace& workspace, hal::posix::PaintedStack& stack)
+    : lidar_(lidar), navigation_(navigation), link_(link), workspace_(workspace), stack_(stack) {
   sem_init(&go_, 0, 0);
   sem_init(&done_, 0, 0);
 }
@@ -115,7 +115,7 @@ void FlightTask::run_on_timer() {
 
 void FlightTask::cycle(std::uint32_t k, std::int64_t now_ns, std::uint32_t slips) {
   link_.begin_cycle(run_id_, k);
-  fsw::run_cycle(*app_, {lidar_, link_, watchdog_}, now_ns, slips, workspace_);
+  fsw::run_cycle(*app_, {lidar_, link_, watchdog_, &navigation_}, now_ns, slips, workspace_);
   link_.end_cycle(app_->state_crc32());
 }
 

@@ -13,6 +13,7 @@
 #include "fsw/app/cycle.hpp"
 #include "hal/dds/dds_lidar.hpp"
 #include "hal/dds/dds_link.hpp"
+#include "hal/dds/dds_navigation.hpp"
 #include "hal/posix/painted_stack.hpp"
 #include "hal/task.hpp"
 
@@ -31,8 +32,8 @@ struct MissionClock {
 
 class FlightTask {
  public:
-  FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsLink& link, CycleWorkspace& workspace,
-             hal::posix::PaintedStack& stack);
+  FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsNavigation& navigation, hal::dds::DdsLink& link,
+             CycleWorkspace& workspace, hal::posix::PaintedStack& stack);
 
   // Starts the thread and returns when it is ready; false if the system provides no thread. A free-running
   // task requests a fixed priority and locked memory, which takes longer than a cycle: start it before the
@@ -70,6 +71,7 @@ class FlightTask {
   AttitudeInitApp* app_ = nullptr;
   NoWatchdog watchdog_;
   hal::dds::DdsLidar& lidar_;
+  hal::dds::DdsNavigation& navigation_;
   hal::dds::DdsLink& link_;
   CycleWorkspace& workspace_;
   hal::posix::PaintedStack& stack_;

@@ -2,6 +2,7 @@
 // link.
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "fsw/programs/desktop/flight_key.hpp"
 #include "fsw/programs/desktop/flight_loop.hpp"
@@ -11,8 +12,11 @@
 #include "fsw/programs/desktop/heap_trap.hpp"
 #include "hal/dds/handshake.hpp"
 #include "hal/dds/idl/domain.hpp"
+#include "hal/dds/packet_output.hpp"
 #include "hal/dds/stop_request.hpp"
+#include "hal/posix/file_persistent_store.hpp"
 #include "hal/posix/monotonic_stopwatch.hpp"
+#include "hal/posix/packet_file.hpp"
 #include "hal/posix/painted_stack.hpp"
 
 namespace {
@@ -23,20 +27,69 @@ using hal::dds::FlightEnd;
 
 // All of the flight side's memory.
 hal::posix::MonotonicStopwatch stopwatch;
+hal::dds::SecurityElement security;
 hal::dds::Domain domain;
 hal::dds::FlightEndpoints endpoints;
 hal::dds::DdsLidar lidar;
+hal::dds::DdsNavigation navigation;
 hal::posix::PaintedStack stack;
 hal::dds::DdsLink link{{heap_allocations, [] { return stack.least_left_bytes(); }}};
-hal::dds::FlightBus bus{endpoints, lidar, link, stopwatch};
+hal::dds::FlightBus bus{endpoints, lidar, navigation, link, stopwatch};
+hal::posix::PacketFile packet_file;
+hal::dds::PacketOutput packet_output{packet_file};
 fsw::AttitudeInitApp app;
-hal::CommandKey command_key;
+hal::CommandKeys command_keys;
+hal::posix::FilePersistentStore stored_state;
 fsw::CycleWorkspace workspace;
-FlightTask task{lidar, link, workspace, stack};
+FlightTask task{lidar, navigation, link, workspace, stack};
+hal::dds::Foreigner foreigner;  // who ended the run
+
+hal::Platform platform_of(const FlightOptions& options, hal::ModelStore& models) {
+  hal::Platform platform;
+  platform.stopwatch = &stopwatch;
+  platform.models = &models;
+  platform.command_keys = &command_keys;
+  if (options.state_path[0] == '\0') return platform;
+  stored_state.use(options.state_path);
+  platform.persistent = &stored_state;
+  platform.reset_cause = options.reset_cause;
+  return platform;
+}
+
+// From now on the bus thread queues authentic commands only.
+void authenticate_commands() {
+  link.authenticate_with(command_keys, app.key_slot(), app.command_counter());
+}
+
+// False: the file for the packets cannot be written.
+bool open_packets(const char* path) {
+  if (path[0] == '\0') return true;
+  const int error = packet_file.open(path);
+  if (error != 0) {
+    std::fprintf(stderr, "%s: --packets %s: %s\n", kProgramName, path, strerrordesc_np(error));
+    return false;
+  }
+  bus.copy_to(packet_output);
+  return true;
+}
+
+// A run whose packets are not all in the file is not complete.
+FlightEnd report_packets(const FlightOptions& options, FlightEnd end) {
+  packet_file.close();
+  if (packet_file.lost() == 0) return end;
+  std::fprintf(stderr, "%s: %u packets could not be written to %s: %s\n", kProgramName, packet_file.lost(),
+               options.packets_path, strerrordesc_np(packet_file.error()));
+  return end == FlightEnd::kComplete ? FlightEnd::kTransport : end;
+}
 
 FlightEnd connect(const FlightOptions& options) {
-  dds_return_t result = domain.open(options.domain);
-  if (result == 0) result = endpoints.open(domain.participant());
+  if (options.security_path[0] != '\0' && !hal::dds::read_security(options.security_path, security)) {
+    std::fprintf(stderr, "flight: --dds-security %s: cannot be read, or is too large\n",
+                 options.security_path);
+    return FlightEnd::kBadArguments;
+  }
+  dds_return_t result = domain.open(options.domain, options.partition, security.text);
+  if (result == 0) result = endpoints.open(domain);
   if (result == 0) return FlightEnd::kComplete;
   std::fprintf(stderr, "%s: DDS domain %u: %s\n", kProgramName, options.domain, dds_strretcode(result));
   return FlightEnd::kTransport;
@@ -64,11 +117,16 @@ FlightEnd fly(const FlightOptions& options) {
   if (connected != FlightEnd::kComplete) return connected;
   const auto timeout_ns = static_cast<std::int64_t>(options.timeout_s * 1e9);
   const hal::dds::HandshakeResult met = meet_simulator(options, timeout_ns);
+  foreigner = met.foreigner;
   if (met.end != FlightEnd::kComplete || met.stopped) return met.end;
 
   bus.join_run(met.run_id, timeout_ns);
-  if (!options.free_running) return exchange_in_lockstep(bus, task);
-  return exchange_free_running(bus, task, stopwatch, static_cast<std::int64_t>(options.period_ms * 1e6));
+  const FlightEnd end =
+      options.free_running
+          ? exchange_free_running(bus, task, stopwatch, static_cast<std::int64_t>(options.period_ms * 1e6))
+          : exchange_in_lockstep(bus, task);
+  foreigner = bus.foreigner();
+  return end;
 }
 
 }  // namespace
@@ -90,13 +148,20 @@ int main(int argc, char** argv) {
   hal::posix::FileModelStore& model = open_model(options);
   if (!kFlyFloat32 && wants_float32(options, model)) return static_cast<int>(become_float32_program(argv));
   hal::dds::accept_stop_requests();
-  if (!read_command_key(options.command_key_path, command_key))
+  if (!read_command_key(options.command_key_path, command_keys.slots[0]))
     return static_cast<int>(FlightEnd::kBadArguments);
-  boot(options, app, stopwatch, model, command_key);
+  if (!open_packets(options.packets_path)) return static_cast<int>(FlightEnd::kBadArguments);
+  boot(options, app, platform_of(options, model), model);
+  authenticate_commands();
 
-  const FlightEnd end = fly(options);
+  FlightEnd end = fly(options);
   task.join();  // no effect after a run
-  if (end != FlightEnd::kComplete) std::fprintf(stderr, "%s: %s\n", kProgramName, hal::dds::to_string(end));
+  end = report_packets(options, end);
+  if (end == FlightEnd::kForeign) {
+    std::fprintf(stderr, "%s: %s: %s\n", kProgramName, hal::dds::to_string(end), to_text(foreigner).text);
+  } else if (end != FlightEnd::kComplete) {
+    std::fprintf(stderr, "%s: %s\n", kProgramName, hal::dds::to_string(end));
+  }
   domain.close();
   return static_cast<int>(end);
 }

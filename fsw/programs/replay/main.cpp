@@ -11,6 +11,7 @@
 #include "hal/replay/console_link.hpp"
 #include "hal/replay/recording.hpp"
 #include "hal/replay/replay_lidar.hpp"
+#include "hal/replay/replay_navigation.hpp"
 #include "hal/replay/text_line.hpp"
 
 extern "C" {
@@ -34,7 +35,8 @@ class ProgramModelStore final : public hal::ModelStore {
  public:
   hal::ModelBank bank(int index) override {
     const auto size = static_cast<std::size_t>(tumblesight_model_image_end - tumblesight_model_image);
-    return index == 0 ? hal::ModelBank{tumblesight_model_image, nullptr, size, size} : hal::ModelBank{};
+    return index == 0 ? hal::ModelBank{tumblesight_model_image, hal::BankWriting::kReadOnly, size, size}
+                      : hal::ModelBank{};
   }
 };
 
@@ -83,10 +85,11 @@ int run() {
                    .c_str());
   board::write(" frame  run          w          x          y          z    ± deg          ms\n");
   ReplayLidar lidar(recording);
+  ReplayNavigation navigation(recording);
   while (recording.has_next()) {
     const std::int64_t now_ns = recording.next_exposure_time_ns();
     lidar.advance_to(now_ns);
-    run_cycle(app, {lidar, link, watchdog}, now_ns, 0, workspace);
+    run_cycle(app, {lidar, link, watchdog, &navigation}, now_ns, 0, workspace);
     link.digest(app.state_crc32());
   }
   if (link.telemetry().frames_used != recording.frames())

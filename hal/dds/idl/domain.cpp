@@ -1,5 +1,7 @@
 #include "hal/dds/idl/domain.hpp"
 
+#include <cstdio>
+
 namespace tumblesight::hal::dds {
 namespace {
 
@@ -22,12 +24,30 @@ constexpr const char* kConfiguration = R"(
     <SPDPInterval>500ms</SPDPInterval>
   </Discovery>
   <Internal><WriterLingerDuration>100ms</WriterLingerDuration></Internal>
-</Domain></CycloneDDS>)";
+)";
+constexpr const char* kConfigurationEnd = "</Domain></CycloneDDS>";
+constexpr std::size_t kMaxConfiguration = 2048;  // without the security
 
 }  // namespace
 
-dds_return_t Domain::open(std::uint32_t id) {
-  domain_ = dds_create_domain(id, kConfiguration);
+bool read_security(const char* path, SecurityElement& security) {
+  std::FILE* const file = std::fopen(path, "r");
+  if (file == nullptr) return false;
+  const std::size_t size = std::fread(security.text, 1, sizeof security.text, file);
+  const bool complete = std::ferror(file) == 0 && size > 0 && size < sizeof security.text;
+  std::fclose(file);
+  if (complete) security.text[size] = '\0';
+  return complete;
+}
+
+dds_return_t Domain::open(std::uint32_t id, const char* partition, const char* security) {
+  partition_ = partition;
+  char configuration[kMaxConfiguration + sizeof(SecurityElement)];
+  const int length = std::snprintf(configuration, sizeof configuration, "%s%s%s", kConfiguration, security,
+                                   kConfigurationEnd);
+  if (length < 0 || static_cast<std::size_t>(length) >= sizeof configuration)
+    return DDS_RETCODE_BAD_PARAMETER;
+  domain_ = dds_create_domain(id, configuration);
   if (domain_ < 0) return domain_;
   participant_ = dds_create_participant(id, nullptr, nullptr);
   return participant_ < 0 ? participant_ : 0;

@@ -11,6 +11,13 @@ namespace tumblesight::hal::dds {
 
 inline constexpr std::uint32_t kMaxDomain = 230;  // the highest one with valid UDP ports
 
+// The element <Security> of Cyclone's configuration, as hal/dds/make_security writes it.
+struct SecurityElement {
+  char text[8192] = {};
+};
+// False: the file cannot be read or is too large.
+[[nodiscard]] bool read_security(const char* path, SecurityElement& security);
+
 class Domain {
  public:
   Domain() = default;
@@ -18,15 +25,19 @@ class Domain {
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
-  // Creates domain and participant. Returns 0 or a negative DDS return code; dds_strretcode() gives its text.
-  [[nodiscard]] dds_return_t open(std::uint32_t id);
+  // Creates domain and participant. Endpoints meet those of the same `partition` only; empty: the default
+  // one; it must outlive the domain. `security`: the element <Security> of Cyclone's configuration; empty:
+  // the bus is not secured. Returns 0 or a negative DDS return code; dds_strretcode() gives its text.
+  [[nodiscard]] dds_return_t open(std::uint32_t id, const char* partition = "", const char* security = "");
   // Deletes the domain with all its readers and writers.
   void close();
   dds_entity_t participant() const { return participant_; }
+  const char* partition() const { return partition_; }
 
  private:
   dds_entity_t domain_ = 0;
   dds_entity_t participant_ = 0;
+  const char* partition_ = "";
 };
 
 }  // namespace tumblesight::hal::dds

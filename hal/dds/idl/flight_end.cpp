@@ -17,13 +17,15 @@ const char* to_string(FlightEnd end) {
     case FlightEnd::kTransport:
       return "DDS failed";
     case FlightEnd::kStepOutOfOrder:
-      return "the simulator skipped a step";
+      return "a step is out of order, or its samples are not those that it announces";
     case FlightEnd::kHeapUsed:
       return "the flight task used the heap";
     case FlightEnd::kNoThread:
       return "the system provided no thread for the flight task";
     case FlightEnd::kNoFloat32Program:
       return "flight_float32 cannot be started";
+    case FlightEnd::kForeign:
+      return "a program other than the simulator writes to the topics of this run";
   }
   return "?";
 }

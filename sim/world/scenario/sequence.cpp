@@ -9,6 +9,7 @@
 #include "sim/world/dynamics/tumble.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/math/random.hpp"
+#include "sim/world/scenario/draws.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -18,15 +19,7 @@ constexpr double kMaxRange_m = 100.0;
 constexpr double kMaxRate_rad_s = 20.0 * kRadPerDeg;
 constexpr double kMinHiddenShare = 0.05;
 constexpr double kMaxHiddenShare = 0.30;
-
-Eigen::Quaterniond uniform_attitude(Random& random) {
-  // One draw per statement: the evaluation order of arguments is unspecified.
-  const double z = random.normal();
-  const double y = random.normal();
-  const double x = random.normal();
-  const double w = random.normal();
-  return Eigen::Quaterniond(w, x, y, z).normalized();
-}
+constexpr double kNsPerS = 1e9;
 
 // Uniform components, drawn until the norm is within the limit.
 Eigen::Vector3d uniform_rate(Random& random) {
@@ -48,16 +41,24 @@ Eigen::Vector3d apply_rate_settings(const ScenarioSettings& settings, Eigen::Vec
   return rate;
 }
 
-void rotate_freely(const ScenarioSettings& settings, std::vector<FrameTruth>& frames) {
+// The time from a frame to the next. Without jitter it is the period itself, not a difference of rounded
+// times.
+double interval_s(const Disturbances& disturbances, const std::vector<double>& times_s, std::size_t frame) {
+  if (disturbances.period_jitter == 0.0 || frame + 1 >= times_s.size()) return disturbances.period_s;
+  return times_s[frame + 1] - times_s[frame];
+}
+
+void rotate_freely(const ScenarioSettings& settings, const std::vector<double>& times_s,
+                   std::vector<FrameTruth>& frames) {
   Eigen::Matrix3d inertia = settings.inertia_kg_m2;
   inertia(2, 2) *= row_of(settings.condition).inertia_zz_factor;
   const Tumble tumble(inertia);
   TumbleState state{frames.front().q_lrf_trf,
                     frames.front().q_lrf_trf.conjugate() * frames.front().rate_lrf_rad_s};
-  for (FrameTruth& frame : frames) {
-    frame.q_lrf_trf = state.q_lrf_trf;
-    frame.rate_lrf_rad_s = state.q_lrf_trf * state.rate_trf_rad_s;
-    state = tumble.after(state, kFramePeriod_s);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    frames[k].q_lrf_trf = state.q_lrf_trf;
+    frames[k].rate_lrf_rad_s = state.q_lrf_trf * state.rate_trf_rad_s;
+    state = tumble.after(state, interval_s(settings.disturbances, times_s, k));
   }
 }
 
@@ -107,6 +108,8 @@ ScenarioSettings scenario_settings(Condition condition, std::uint32_t frames, co
 }
 
 Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std::uint64_t index) {
+  const Disturbances& disturbances = settings.disturbances;
+  require_possible(disturbances, static_cast<std::uint32_t>(settings.frames));
   Random random(mix(seed, index));
   const Eigen::Quaterniond q0 = uniform_attitude(random);
   const Eigen::Vector3d drawn_rate = uniform_rate(random);
@@ -117,15 +120,23 @@ Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std
   Sequence sequence;
   sequence.condition = settings.condition;
   sequence.noise_seed = random.next();
-  sequence.frames.reserve(static_cast<std::size_t>(settings.frames));
-  for (int k = 0; k < settings.frames; ++k) {
-    sequence.frames.push_back({spin(q0, rate, kFramePeriod_s * k), rate, range_m});
+  const std::vector<double> times_s =
+      exposure_times_s(disturbances, static_cast<std::size_t>(settings.frames), stream_for(seed, index, 4));
+  sequence.frames.reserve(times_s.size());
+  for (const double time_s : times_s) {
+    sequence.frames.push_back({spin(q0, rate, time_s), rate, range_m});
+    sequence.frames.back().time_ns = std::llround(kNsPerS * time_s);
   }
   const ConditionRow& condition = row_of(settings.condition);
-  if (condition.rotation == RotationLaw::kTorqueFree) rotate_freely(settings, sequence.frames);
+  if (condition.rotation == RotationLaw::kTorqueFree) rotate_freely(settings, times_s, sequence.frames);
   if (condition.occluded) add_occluder(settings, stream_for(seed, index, 2), sequence.frames);
   if (condition.max_offset_swaths > 0.0) {
     move_off_boresight(condition.max_offset_swaths, stream_for(seed, index, 3), sequence.frames);
+  }
+  mark_frames(disturbances, stream_for(seed, index, 5), sequence.frames);
+  if (disturbances.chaser_rate_deg_s > 0.0) {
+    turn_chaser(kRadPerDeg * disturbances.chaser_rate_deg_s, stream_for(seed, index, 6), times_s,
+                sequence.frames);
   }
   return sequence;
 }

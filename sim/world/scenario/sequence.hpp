@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "sim/world/scenario/condition.hpp"
+#include "sim/world/scenario/disturbance.hpp"
 #include "sim/world/sensor/frame_truth.hpp"
 
 namespace tumblesight::sim {
 
-inline constexpr double kFramePeriod_s = 2.7;  // paper, sampling
-inline constexpr std::int64_t kFramePeriod_ns = 2'700'000'000;
 inline constexpr int kFramesPerSequence = 10;
 
 // How the rate is drawn (paper, both strategies).
@@ -31,6 +30,7 @@ struct ScenarioSettings {
   std::optional<double> range_m{};
   std::optional<double> rate_rad_s{};
   std::optional<double> hidden_share{};
+  Disturbances disturbances{};
 };
 
 // Settings for `target` under a condition. Throws std::invalid_argument that says what to do if the condition
@@ -47,7 +47,7 @@ struct Sequence {
 // Draws sequence `index` of `seed` (paper, sampling): attitude uniform on SO(3); range uniform on 20..100 m,
 // constant within the sequence; rate at most 20 deg/s, constant in the LRF or torque-free as the condition
 // says. The same (seed, index) gives the same sequence on every machine, and the same initial attitude, range
-// and rate under every condition.
+// and rate under every condition and disturbance. Throws std::invalid_argument as require_possible() does.
 Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std::uint64_t index);
 
 }  // namespace tumblesight::sim

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 
 #include "sim/world/sensor/occlusion.hpp"
 
@@ -10,11 +11,17 @@ namespace tumblesight::sim {
 
 struct FrameTruth {
   Eigen::Quaterniond q_lrf_trf;    // unit, target frame to LiDAR frame
-  Eigen::Vector3d rate_lrf_rad_s;  // of the target, in the LiDAR frame
+  Eigen::Vector3d rate_lrf_rad_s;  // of the target relative to inertial space, in the axes of the LiDAR frame
   double range_m;                  // from the sensor to the TRF's origin, along the boresight
   // Displacement of the TRF's origin from the boresight, in swaths: right (+x), up (+z).
   Eigen::Vector2d offset_swaths = Eigen::Vector2d::Zero();
   Occluder occluder{};
+  std::int64_t time_ns = 0;  // of the exposure, since that of the sequence's first frame
+  // The chaser's attitude: v_inertial = q_inertial_lrf v_lrf.
+  Eigen::Quaterniond q_inertial_lrf = Eigen::Quaterniond::Identity();
+  bool lost = false;  // the frame is not delivered
+  std::uint32_t frozen_for =
+      0;  // the sensor repeats the image that it took this many frames before; 0: it works
 };
 
 }  // namespace tumblesight::sim

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares docs/mcdc.md with the decisions in fsw/app and fsw/config and with the tests in tests/unit/fsw/app. Run by ctest."""
+"""Compares docs/mcdc.md with the decisions in fsw/app, fsw/config and gnc/tracking and with their unit tests. Run by ctest."""
 import argparse
 import collections
 import pathlib
@@ -9,8 +9,8 @@ import sys
 from decisions import decisions_in
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-FOLDERS = ("fsw/app", "fsw/config")
-TESTS = "tests/unit/fsw/app"
+FOLDERS = ("fsw/app", "fsw/config", "gnc/tracking")
+TESTS = ("tests/unit/fsw/app", "tests/unit/gnc/tracking")
 _TEST = re.compile(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.M)
 _CASE = re.compile(r"(\w+\.\w+)(?: \([^()]+\))?")
 
@@ -43,7 +43,8 @@ def check(root):
     """Returns the problems, one line each."""
     wrong = []
     rows = rows_of(root, wrong)
-    tests = {".".join(names) for path in (root / TESTS).glob("*.cpp") for names in _TEST.findall(path.read_text(encoding="utf-8"))}
+    paths = [path for folder in TESTS for path in (root / folder).glob("*.cpp")]
+    tests = {".".join(names) for path in paths for names in _TEST.findall(path.read_text(encoding="utf-8"))}
     for row in rows:
         wrong += [f"docs/mcdc.md:{row.line}: there is no test {test}" for test in {row.true, row.false} - tests]
     wanted = [(path.relative_to(root).as_posix(), one.function, one.text, condition.text) for path in sources(root)

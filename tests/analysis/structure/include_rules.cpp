@@ -50,7 +50,8 @@ bool is_instruction_header(const std::string& path) {
 
 // The value types and checksums of gnc that the interfaces and platforms use.
 bool is_value_type(const std::string& path) {
-  return starts_with_any(path, {"gnc/numerics/", "gnc/attitude/"}) || path == "gnc/lidar/range_image.hpp";
+  return starts_with_any(path, {"gnc/numerics/", "gnc/attitude/"}) || path == "gnc/lidar/range_image.hpp" ||
+         path == "gnc/tracking/chaser_attitude.hpp";
 }
 
 struct Verdict {
@@ -77,6 +78,10 @@ Verdict verdict_on_hal(const std::string& file, const std::string& path) {
     return {starts_with(path, "hal/messages/") || is_value_type(path),
             "messages may include only messages and gnc's value types"};
   }
+  if (starts_with(file, "hal/packets/")) {
+    return {starts_with_any(path, {"hal/packets/", "hal/messages/", "gnc/numerics/"}),
+            "packets may include only packets, messages and gnc's checksums"};
+  }
   if (starts_with(file, "hal/dds/idl/")) {
     return {starts_with_any(path, {"hal/dds/idl/", "hal/messages/"}) || is_value_type(path),
             "the wire definition may include only itself, messages and gnc's value types"};
@@ -85,8 +90,8 @@ Verdict verdict_on_hal(const std::string& file, const std::string& path) {
   if (is_interface(file)) {
     return {common, "a hal interface may include only interfaces, messages and gnc's value types"};
   }
-  return {common || starts_with(path, first_folders(file, 2)),
-          "a platform may include only itself, the hal interfaces, messages and gnc's value types"};
+  return {common || starts_with(path, "hal/packets/") || starts_with(path, first_folders(file, 2)),
+          "a platform may include only itself, the hal interfaces, messages, packets and gnc's value types"};
 }
 
 // Empty: the file may include this header of the project.
@@ -110,8 +115,8 @@ std::string library_objection(const std::string& file, const std::string& path) 
     return knows_processors ? ""
                             : "only the kernels and the benchmark of their peak speed may use intrinsics";
   }
-  const bool is_flight =
-      starts_with_any(file, {"gnc/", "fsw/", "hal/messages/"}) && !starts_with(file, "fsw/programs/");
+  const bool is_flight = starts_with_any(file, {"gnc/", "fsw/", "hal/messages/", "hal/packets/"}) &&
+                         !starts_with(file, "fsw/programs/");
   if ((is_flight || is_interface(file)) && !is_flight_header(path)) {
     return "not a header for the flight side";
   }

@@ -22,10 +22,11 @@ constexpr std::size_t cycles_per_trial(Place place) {
 constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 constexpr const char* kNoTarget = nullptr;
 
-// A pause between two sequences, so that the estimator resets itself.
+// A pause between two sequences that is longer than any coasting, so that the estimator resets itself.
 std::int64_t time_of(std::size_t cycle) {
-  const std::size_t pauses = cycle / sim::kFramesPerSequence;
-  return kStart_ns + static_cast<std::int64_t>(cycle + pauses) * sim::kFramePeriod_ns;
+  const auto pauses = static_cast<std::int64_t>(cycle / sim::kFramesPerSequence);
+  return kStart_ns + static_cast<std::int64_t>(cycle) * sim::kFramePeriod_ns +
+         pauses * fsw::config::kLongestCoast_ns;
 }
 
 std::uint64_t mixed(std::uint64_t x) {  // splitmix64
@@ -77,7 +78,7 @@ TrialRunner::TrialRunner(const Flight& flight, bool with_protections, bool hooke
     : flight_(flight), protected_(with_protections) {
   store_.fill(flight.model);
   if (hooked) AppMemory::estimator(*app_).network().use(hooked_kernels());
-  app_->init({&stopwatch_, &store_, &fsw::kTestKey}, kNoTarget);
+  app_->init({&stopwatch_, &store_, &fsw::kTestKeys}, kNoTarget);
   if (!protected_) AppMemory::widen_attitude_limits(*app_);
   fly_undisturbed();
 }

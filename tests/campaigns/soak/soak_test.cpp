@@ -46,26 +46,25 @@ class Soak : public ::testing::Test {
   // A power cycle: the memory is cleared and the banks hold their original images.
   void restart() {
     store_.fill(gnc::lasting_model_image<gnc::FixedPoint>(7));
-    app_->init({&stopwatch_, &store_, &kTestKey}, nullptr);
+    app_->init({&stopwatch_, &store_, &kTestKeys}, nullptr);
     counter_ = 0;
     last_ = {};
   }
 
   void add_frames() {
-    inputs_->frame_count = 0;
     inputs_->frame_wrong_size = one_in(50) ? 1 : 0;
-    const int frames = one_in(20) ? 0 : one_in(20) && inputs_->frame_wrong_size == 0 ? 2 : 1;
-    for (int i = 0; i < frames; ++i) {
-      gnc::RangeImage& frame = images_[static_cast<std::size_t>(i)];
-      frame = pictures_[engine_() % pictures_.size()];
-      frame.sequence_number = one_in(30) ? number_ : ++number_;
-      frame.exposure_time_ns = now_ns_ - (one_in(30) ? std::int64_t{4'000'000'000} : frames - 1 - i);
-      if (one_in(40)) frame.ranges.fill(0);
-      if (one_in(100)) frame.rays = static_cast<std::uint16_t>(engine_());
-      if (one_in(100)) frame.fov_urad = static_cast<std::uint32_t>(engine_());
-    }
-    inputs_->frame_count = frames;
-    inputs_->frame = frames > 0 ? images_.data() : nullptr;
+    inputs_->dropped_count = one_in(20) ? 1 : 0;
+    inputs_->dropped[0] = {static_cast<gnc::FrameVerdict>(engine_() % 9), number_, now_ns_};
+    inputs_->frame = nullptr;
+    if (one_in(20)) return;
+    gnc::RangeImage& frame = image_;
+    frame = pictures_[engine_() % pictures_.size()];
+    frame.sequence_number = one_in(30) ? number_ : ++number_;
+    frame.exposure_time_ns = now_ns_ - (one_in(30) ? std::int64_t{4'000'000'000} : 0);
+    if (one_in(40)) frame.ranges.fill(0);
+    if (one_in(100)) frame.rays = static_cast<std::uint16_t>(engine_());
+    if (one_in(100)) frame.fov_urad = static_cast<std::uint32_t>(engine_());
+    inputs_->frame = &frame;
   }
 
   hal::CommandPacket any_command() {
@@ -166,7 +165,7 @@ class Soak : public ::testing::Test {
   std::unique_ptr<StepInputs> inputs_ = std::make_unique<StepInputs>();
   std::unique_ptr<StepOutputs> outputs_ = std::make_unique<StepOutputs>();
   std::vector<gnc::RangeImage> pictures_;
-  std::array<gnc::RangeImage, 2> images_;
+  gnc::RangeImage image_;
   hal::Telemetry last_;  // of the previous cycle
   std::int64_t now_ns_ = kStart_ns;
   std::uint64_t longest_ns_ = 0;

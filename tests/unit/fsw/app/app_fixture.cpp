@@ -39,8 +39,8 @@ void AppFixture::init_with_model() {
   init(store);
 }
 
-void AppFixture::init(hal::fake::FakeModelStore& models, const char* expected_target) {
-  boot(*app, {&stopwatch, &models, &kTestKey}, expected_target);
+void AppFixture::init(hal::ModelStore& models, const char* expected_target) {
+  boot(*app, {&stopwatch, &models, &kTestKeys, persistent, reset_cause}, expected_target);
 }
 
 void AppFixture::boot(AttitudeInitApp& which, const hal::Platform& platform, const char* expected_target) {
@@ -49,7 +49,7 @@ void AppFixture::boot(AttitudeInitApp& which, const hal::Platform& platform, con
 }
 
 hal::CommandPacket AppFixture::command(FunctionCode function, const std::vector<std::uint8_t>& arguments) {
-  return signed_with(kTestKey, ++command_counter, packet_of(static_cast<std::uint8_t>(function), arguments));
+  return signed_as(signature, ++command_counter, packet_of(static_cast<std::uint8_t>(function), arguments));
 }
 
 const StepOutputs& AppFixture::step(const StepInputs& inputs) {

@@ -29,7 +29,7 @@ class AppFixture : public ::testing::Test {
 
   // Boots with the test's model in both banks.
   void init_with_model();
-  void init(hal::fake::FakeModelStore& models, const char* expected_target = kTestTarget);
+  void init(hal::ModelStore& models, const char* expected_target = kTestTarget);
 
   // `which` with the limits that the fixture asks for.
   void boot(AttitudeInitApp& which, const hal::Platform& platform, const char* expected_target = kTestTarget);
@@ -60,6 +60,9 @@ class AppFixture : public ::testing::Test {
   hal::fake::FakeStopwatch stopwatch;
   hal::fake::FakeModelStore store;
   std::uint32_t command_counter = 0;  // of the last command
+  Signature signature;                // of all commands
+  hal::PersistentStore* persistent = nullptr;
+  hal::ResetCause reset_cause = hal::ResetCause::kPowerOn;
   // init() widens the limits of the attitude checks otherwise, because the attitudes of a random network
   // jump.
   bool checks_attitudes = false;

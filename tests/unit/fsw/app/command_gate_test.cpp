@@ -13,8 +13,18 @@ namespace {
 constexpr std::uint8_t kNoop = static_cast<std::uint8_t>(FunctionCode::kNoop);
 constexpr std::uint8_t kSetLimit = static_cast<std::uint8_t>(FunctionCode::kSetLimit);
 
+CommandAuthority test_authority() {
+  CommandAuthority authority;
+  authority.set(&kTestKeys);
+  return authority;
+}
+
+Admission judge_in_run(const hal::CommandPacket& packet, std::uint32_t last_counter = 4) {
+  return judge(packet, test_authority(), last_counter, Mode::kRun);
+}
+
 Admission judged(const std::vector<std::uint8_t>& packet, Mode mode = Mode::kRun) {
-  return judge(signed_with(kTestKey, 5, packet), &kTestKey, 4, mode);
+  return judge(signed_with(kTestKey, 5, packet), test_authority(), 4, mode);
 }
 
 void expect_refused(const std::vector<std::uint8_t>& packet, CommandRefusal why) {
@@ -35,14 +45,20 @@ TEST(CommandGate, AdmitsAGoodPacketWithItsArguments) {
   EXPECT_EQ(admission.counter, 5U);
 }
 
-TEST(CommandGate, AnyFlippedBitMakesThePacketAForgery) {
+TEST(CommandGate, AnyFlippedBitMakesThePacketUseless) {
   const hal::CommandPacket good = signed_with(kTestKey, 5, packet_of(kSetLimit, {3, 0, 0, 0, 1}));
+  const int key_slot = good.size - 22;
   for (int bit = 0; bit < 8 * good.size; ++bit) {
     hal::CommandPacket forged = good;
     forged.bytes[static_cast<std::size_t>(bit) / 8] ^= static_cast<std::uint8_t>(1 << bit % 8);
-    const Admission admission = judge(forged, &kTestKey, 4, Mode::kRun);
+    const Admission admission = judge_in_run(forged);
     ASSERT_FALSE(admission.admitted) << bit;
-    ASSERT_EQ(admission.why, CommandRefusal::kForged) << bit;
+    if (bit / 8 == hal::kCommandChecksumOffset) {
+      ASSERT_EQ(admission.why, CommandRefusal::kWrongChecksum) << "the only byte that the code leaves out";
+      continue;
+    }
+    ASSERT_EQ(admission.why, bit / 8 == key_slot ? CommandRefusal::kOtherKey : CommandRefusal::kForged)
+        << bit;
     ASSERT_FALSE(admission.authentic);
     ASSERT_EQ(admission.function, 0) << "nothing in the packet is trusted";
   }
@@ -52,23 +68,84 @@ TEST(CommandGate, WrongKeyMissingTrailerOrImpossibleSizeIsAForgery) {
   hal::CommandKey other = kTestKey;
   other[31] ^= 1;
   hal::CommandPacket packet = signed_with(other, 5, packet_of(kNoop));
-  EXPECT_EQ(judge(packet, &kTestKey, 4, Mode::kRun).why, CommandRefusal::kForged);
+  EXPECT_EQ(judge_in_run(packet).why, CommandRefusal::kForged);
   for (const std::uint16_t size :
-       {std::uint16_t{0}, std::uint16_t{19}, std::uint16_t{1061}, std::uint16_t{65535}}) {
+       {std::uint16_t{0}, std::uint16_t{31}, std::uint16_t{1061}, std::uint16_t{65535}}) {
     packet.size = size;
-    EXPECT_EQ(judge(packet, &kTestKey, 4, Mode::kRun).why, CommandRefusal::kForged) << size;
+    EXPECT_EQ(judge_in_run(packet).why, CommandRefusal::kForged) << size;
   }
-  EXPECT_EQ(judge(unsigned_packet(packet_of(kNoop)), &kTestKey, 4, Mode::kRun).why, CommandRefusal::kForged);
+  EXPECT_EQ(judge_in_run(unsigned_packet(packet_of(kNoop))).why, CommandRefusal::kForged);
 }
 
 TEST(CommandGate, CounterMustIncrease) {
   const hal::CommandPacket packet = signed_with(kTestKey, 5, packet_of(kNoop));
-  EXPECT_TRUE(judge(packet, &kTestKey, 4, Mode::kRun).admitted);
+  EXPECT_TRUE(judge_in_run(packet, 4).admitted);
   for (const std::uint32_t last : {5U, 6U, 0xFFFFFFFFU}) {
-    const Admission admission = judge(packet, &kTestKey, last, Mode::kRun);
+    const Admission admission = judge_in_run(packet, last);
     EXPECT_EQ(admission.why, CommandRefusal::kReplayed);
     EXPECT_FALSE(admission.authentic);
   }
+}
+
+// Verifies TS-SEC-050.
+TEST(CommandGate, CounterFarAheadIsOutOfTheWindowAndNotSpent) {
+  for (const std::uint32_t last : {0U, 4U, 0xFFFE'0000U, 0xFFFF'0000U}) {
+    const std::uint64_t farthest = std::uint64_t{last} + hal::kCommandWindow;
+    for (const std::uint64_t counter : {farthest, farthest + 1, std::uint64_t{0xFFFFFFFF}}) {
+      if (counter > 0xFFFFFFFF) continue;
+      const bool inside = counter <= farthest;
+      const Admission admission =
+          judge_in_run(signed_with(kTestKey, static_cast<std::uint32_t>(counter), packet_of(kNoop)), last);
+      EXPECT_EQ(admission.admitted, inside) << last << ' ' << counter;
+      EXPECT_EQ(admission.authentic, inside);
+      if (!inside) {
+        EXPECT_EQ(admission.why, CommandRefusal::kOutOfWindow);
+      }
+    }
+  }
+}
+
+// Verifies TS-SEC-060.
+TEST(CommandGate, KeySlotAndSpacecraftMustBeThoseOfThisApplication) {
+  Signature second;
+  second.key = kSecondTestKey;
+  second.slot = 1;
+  EXPECT_EQ(judge_in_run(signed_as(second, 5, packet_of(kNoop))).why, CommandRefusal::kOtherKey);
+  CommandAuthority authority = test_authority();
+  ASSERT_TRUE(authority.use(1));
+  EXPECT_TRUE(judge(signed_as(second, 5, packet_of(kNoop)), authority, 4, Mode::kRun).admitted);
+  EXPECT_EQ(judge(signed_with(kTestKey, 5, packet_of(kNoop)), authority, 4, Mode::kRun).why,
+            CommandRefusal::kOtherKey);
+  Signature other_craft;
+  other_craft.spacecraft_id ^= 1;
+  const Admission admission = judge_in_run(signed_as(other_craft, 5, packet_of(kNoop)));
+  EXPECT_EQ(admission.why, CommandRefusal::kOtherSpacecraft);
+  EXPECT_FALSE(admission.authentic) << "its counter is not spent";
+}
+
+TEST(CommandGate, EmptyOrUnknownKeySlotAuthenticatesNothing) {
+  CommandAuthority authority = test_authority();
+  EXPECT_FALSE(authority.use(2));
+  EXPECT_FALSE(authority.use(hal::kCommandKeySlots));
+  EXPECT_EQ(authority.slot(), 0U);
+  CommandAuthority without;
+  EXPECT_FALSE(without.use(0));
+  const hal::CommandKeys none{};
+  without.set(&none);
+  Signature zeros;
+  zeros.key = {};
+  zeros.spacecraft_id = 0;
+  EXPECT_EQ(judge(signed_as(zeros, 5, packet_of(kNoop)), without, 4, Mode::kRun).why, CommandRefusal::kForged)
+      << "a key of zeros is no key";
+}
+
+TEST(CommandGate, ReservedByteOfTheTrailerMustBeZero) {
+  Signature signature;
+  signature.reserved = 1;
+  const Admission admission = judge_in_run(signed_as(signature, 5, packet_of(kNoop)));
+  EXPECT_EQ(admission.why, CommandRefusal::kMalformed);
+  EXPECT_FALSE(admission.admitted);
+  EXPECT_TRUE(admission.authentic) << "its counter is spent";
 }
 
 TEST(CommandGate, PrimaryHeaderMustBeOfATelecommandToThisApplication) {
@@ -79,13 +156,14 @@ TEST(CommandGate, PrimaryHeaderMustBeOfATelecommandToThisApplication) {
                                       {0, 0x1A},                             // APID, upper bits
                                       {1, 0xF1},                             // APID, lower bits
                                       {2, 0x40},                             // first segment
-                                      {7, 0x01}}) {                          // reserved
+                                      {6, 0x81}}) {                          // reserved bit
     std::vector<std::uint8_t> packet = good;
     packet[offset] = static_cast<std::uint8_t>(value);
     set_checksum(packet);
     expect_refused(packet, CommandRefusal::kMalformed);
   }
-  expect_refused({good.begin(), good.begin() + 9}, CommandRefusal::kMalformed);
+  const hal::CommandPacket cut = unsigned_packet({good.begin(), good.begin() + 7});
+  EXPECT_EQ(judge(cut, CommandAuthority{}, 0, Mode::kRun).why, CommandRefusal::kMalformed);
 }
 
 TEST(CommandGate, SequenceCountMayBeAny) {
@@ -106,9 +184,9 @@ TEST(CommandGate, LengthFieldMustMatchThePacket) {
 }
 
 TEST(CommandGate, ChecksumMustMatchThePacket) {
-  for (const std::size_t offset : {8U, 9U}) {
+  for (int bit = 0; bit < 8; ++bit) {
     std::vector<std::uint8_t> packet = packet_of(kNoop);
-    packet[offset] ^= 1;
+    packet[7] ^= static_cast<std::uint8_t>(1 << bit);
     expect_refused(packet, CommandRefusal::kWrongChecksum);
   }
 }
@@ -132,6 +210,10 @@ TEST(CommandGate, OnlyTheFunctionsOfTheTableAreKnown) {
   for (int function = 0; function < 256; ++function) {
     const bool known = find_command(static_cast<std::uint8_t>(function)) != nullptr;
     const Admission admission = judged(packet_of(static_cast<std::uint8_t>(function), {0, 0, 0, 0, 0}));
+    if (function > 127) {
+      EXPECT_EQ(admission.why, CommandRefusal::kMalformed) << "a function code has 7 bits";
+      continue;
+    }
     EXPECT_EQ(!admission.admitted && admission.why == CommandRefusal::kUnknownFunction, !known) << function;
   }
 }
@@ -161,11 +243,11 @@ TEST(CommandGate, ArgumentLengthAndModeMustMatchTheTable) {
 
 TEST(CommandGate, WithoutAKeyTheLinkIsTrustedAndThereIsNoTrailer) {
   hal::CommandPacket packet = unsigned_packet(packet_of(kNoop));
-  Admission admission = judge(packet, nullptr, 100, Mode::kRun);
+  Admission admission = judge(packet, CommandAuthority{}, 100, Mode::kRun);
   EXPECT_TRUE(admission.admitted);
   EXPECT_FALSE(admission.authentic);
   packet.size = 1061;
-  admission = judge(packet, nullptr, 100, Mode::kRun);
+  admission = judge(packet, CommandAuthority{}, 100, Mode::kRun);
   EXPECT_EQ(admission.why, CommandRefusal::kWrongLength);
 }
 

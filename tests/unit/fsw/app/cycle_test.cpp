@@ -2,6 +2,7 @@
 
 #include "hal/fake/fake_lidar.hpp"
 #include "hal/fake/fake_link.hpp"
+#include "hal/fake/fake_navigation.hpp"
 #include "hal/fake/fake_watchdog.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
@@ -13,7 +14,7 @@ class Cycle : public AppFixture {
   Cycle() : workspace(std::make_unique<CycleWorkspace>()) { init_with_model(); }
   void run(std::uint32_t slips = 0) {
     now_ns = next_time_ns();
-    run_cycle(*app, {lidar, link, watchdog}, now_ns, slips, *workspace);
+    run_cycle(*app, {lidar, link, watchdog, &navigation}, now_ns, slips, *workspace);
   }
   Validity last_validity() const { return link.attitudes.back().validity; }
 
@@ -21,6 +22,7 @@ class Cycle : public AppFixture {
   hal::fake::FakeLidar lidar;
   hal::fake::FakeLink link;
   hal::fake::FakeWatchdog watchdog;
+  hal::fake::FakeNavigation navigation;
 };
 
 // Verifies TS-TLM-010.
@@ -87,15 +89,111 @@ TEST_F(Cycle, CommandsBeyondTheLimitWaitForTheNextCycle) {
   EXPECT_EQ(link.telemetry.back().commands_accepted, static_cast<unsigned>(config::kMaxCommandsPerStep + 3));
 }
 
-TEST_F(Cycle, BacklogOfFramesDrains) {
-  for (std::uint32_t number = 1; number <= 4; ++number) lidar.add(good_frame(number, now_ns, number));
-  for (std::uint32_t number = 5; !link.attitudes.size() || lidar.waiting() > 0; ++number) {
-    ASSERT_LT(number, 12U);
-    lidar.add(good_frame(number, next_time_ns(), number));
+// Verifies TS-LID-052.
+TEST_F(Cycle, NewestFrameOfABacklogIsUsedAndTheOthersAreCounted) {
+  now_ns += 10 * config::kFramePeriod_ns;
+  const std::int64_t cycle_ns = next_time_ns();
+  lidar.add(good_frame(1, cycle_ns - 2 * config::kFramePeriod_ns, 1));  // stale
+  lidar.add(good_frame(2, cycle_ns - 2'000'000'000, 2));
+  lidar.add(good_frame(4, cycle_ns - 500'000'000, 4));
+  lidar.add(good_frame(4, cycle_ns - 500'000'000, 4));    // twice
+  lidar.add(good_frame(3, cycle_ns - 1'000'000'000, 3));  // out of order
+  lidar.add(good_frame(5, cycle_ns + config::kFutureTolerance_ns + 1, 5));
+  run();
+  EXPECT_EQ(lidar.waiting(), 0U);
+  EXPECT_EQ(last_validity(), Validity::kValid);
+  EXPECT_EQ(link.attitudes.back().sequence_number, 4U);
+  const hal::Telemetry& counters = link.telemetry.back();
+  EXPECT_EQ(counters.frames_used, 1U);
+  EXPECT_EQ(counters.frames_superseded, 2U);
+  EXPECT_EQ(counters.frames_duplicate, 1U);
+  EXPECT_EQ(counters.frames_stale, 2U) << "too old and in the future";
+  EXPECT_EQ(counters.frames_refused, 3U);
+}
+
+TEST_F(Cycle, LargestBacklogIsReceivedInOneCycle) {
+  for (int i = 0; i < config::kMaxDeliveriesPerCycle + 2; ++i) lidar.add_wrong_size();
+  run();
+  EXPECT_EQ(lidar.waiting(), 2U);
+  EXPECT_EQ(link.telemetry.back().frames_bad, static_cast<unsigned>(config::kMaxDeliveriesPerCycle));
+  EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+// Verifies TS-LID-052.
+TEST_F(Cycle, SensorsFasterThanTheCycleGiveAnAttitudeInEveryCycle) {
+  for (const std::int64_t period_ns : {std::int64_t{200'000'000}, std::int64_t{1'000'000'000},
+                                       std::int64_t{1'351'351'351}, std::int64_t{2'700'000'001}}) {
+    init_with_model();
+    std::uint32_t number = 0;
+    std::int64_t exposure_ns = now_ns + 123'456'789;
+    int attitudes = 0;
+    constexpr int kCycles = 60;
+    for (int cycle = 0; cycle < kCycles; ++cycle) {
+      for (; exposure_ns <= next_time_ns(); exposure_ns += period_ns, ++number)
+        lidar.add(good_frame(number, exposure_ns, 7 * number + 1));
+      run();
+      EXPECT_EQ(lidar.waiting(), 0U);
+      attitudes += last_validity() == Validity::kValid ? 1 : 0;
+    }
+    EXPECT_GE(attitudes, kCycles - 1) << period_ns;
+    const hal::Telemetry& counters = link.telemetry.back();
+    EXPECT_EQ(counters.frames_used + counters.frames_superseded, number) << "every frame is accounted for";
+    EXPECT_EQ(counters.sequence_gaps, 0U);
+    EXPECT_LE(counters.estimator_resets, 1U);
+    EXPECT_EQ(link.attitudes.back().frames_since_reset, static_cast<unsigned>(attitudes));
+  }
+}
+
+TEST_F(Cycle, SensorSlowerThanTheCycleKeepsItsTrack) {
+  std::uint32_t number = 0;
+  std::int64_t exposure_ns = now_ns;
+  for (int cycle = 0; cycle < 40; ++cycle) {
+    for (; exposure_ns <= next_time_ns(); exposure_ns += 5'400'000'000, ++number)
+      lidar.add(good_frame(number, exposure_ns, 7 * number + 1));
     run();
   }
+  EXPECT_EQ(link.telemetry.back().frames_used, number);
+  EXPECT_EQ(link.telemetry.back().frames_refused, 0U);
+  EXPECT_GE(link.attitudes.back().frames_since_reset + link.attitudes[38].frames_since_reset, number);
+}
+
+// Verifies TS-LID-054.
+TEST_F(Cycle, SensorClockOneNanosecondAheadIsUsed) {
+  for (std::uint32_t number = 1; number <= 30; ++number) {
+    lidar.add(good_frame(number, next_time_ns() + 1, number));
+    run();
+    EXPECT_EQ(last_validity(), Validity::kValid);
+  }
+  EXPECT_EQ(link.telemetry.back().frames_used, 30U);
+}
+
+TEST_F(Cycle, ChasersAttitudeIsAskedForAtTheExposureAndAtTheCycle) {
+  std::vector<std::int64_t> asked;
+  navigation.attitude = [&](std::int64_t time_ns) {
+    asked.push_back(time_ns);
+    return gnc::ChaserAttitude{time_ns, gnc::kIdentityQ30, true};
+  };
+  run();
+  EXPECT_TRUE(asked.empty()) << "no frame";
+  gnc::RangeImage frame = next_frame();
+  frame.exposure_time_ns -= 1'000'000;
+  lidar.add(frame);
+  run();
+  EXPECT_EQ(asked, (std::vector<std::int64_t>{now_ns - 1'000'000, now_ns}));
+  EXPECT_EQ(link.attitudes.back().doubts & hal::kDoubtChaserUnknown, 0);
+  navigation.attitude = nullptr;
+  lidar.add(good_frame(200, next_time_ns(), 9));
+  run();
+  EXPECT_NE(link.attitudes.back().doubts & hal::kDoubtChaserUnknown, 0);
   EXPECT_EQ(last_validity(), Validity::kValid);
-  EXPECT_EQ(link.attitudes.back().exposure_time_ns, now_ns);
+}
+
+TEST_F(Cycle, WorksWithoutNavigation) {
+  now_ns = next_time_ns();
+  lidar.add(good_frame(1, now_ns, 1));
+  run_cycle(*app, {lidar, link, watchdog}, now_ns, 0, *workspace);
+  EXPECT_EQ(last_validity(), Validity::kValid);
+  EXPECT_NE(link.attitudes.back().doubts & hal::kDoubtChaserUnknown, 0);
 }
 
 TEST_F(Cycle, WrongSizeBesideAGoodFrameIsCountedAndTheFrameUsed) {

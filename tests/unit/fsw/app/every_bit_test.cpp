@@ -142,10 +142,10 @@ TEST_F(EveryBit, OfTheEstimatorIsReloadedRestoredOrRewritten) {
 
 // Verifies TS-FDIR-010. The platform may reuse the memory of what it hands over.
 TEST_F(EveryBit, OfKeyAndTargetNameIsInTheVotedState) {
-  hal::CommandKey key = kTestKey;
+  hal::CommandKeys keys = kTestKeys;
   std::string target = kTestTarget;
-  boot(*app, {&stopwatch, &store, &key}, target.c_str());
-  key.fill(0);
+  boot(*app, {&stopwatch, &store, &keys}, target.c_str());
+  keys = {};
   target.assign(target.size(), '?');
   step_commands({set_mode(Mode::kStandby)});
   EXPECT_EQ(app->mode(), Mode::kStandby) << "the command is authentic by the key of init()";

@@ -83,9 +83,9 @@ TEST_F(FrameRules, OldExposureIsRefused) {
 
 TEST_F(FrameRules, ExposureInTheFutureIsRefused) {
   gnc::RangeImage frame = next_frame();
-  frame.exposure_time_ns += 1'000'000;
+  frame.exposure_time_ns += 2'000'000;
   EXPECT_EQ(expect_refused(frame, EventId::kFrameFromFuture).frames_stale, 1U);
-  EXPECT_EQ(argument(EventId::kFrameFromFuture, 1), 1);
+  EXPECT_EQ(argument(EventId::kFrameFromFuture, 1), 2);
 }
 
 TEST_F(FrameRules, EmptyFrameIsRefused) {
@@ -133,42 +133,105 @@ TEST_F(FrameRules, BadFrameAfterAGapDoesNotResetTheEstimator) {
   expect_refused(frame, EventId::kFrameBad);
 }
 
-TEST_F(FrameRules, SequenceContinuesAfterARefusedFrameThatTookNoTime) {
+TEST_F(FrameRules, RefusedFrameBesideAGoodOneIsCountedAndTheGoodOneUsed) {
+  const gnc::RangeImage frame = next_frame();
   StepInputs inputs;
-  std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
-  frames[0].sequence_number = sequence_number;
-  inputs.frame = frames.data();
-  inputs.frame_count = 2;
+  inputs.frame = &frame;
+  inputs.dropped[0] = {gnc::FrameVerdict::kDuplicate, sequence_number, frame.exposure_time_ns};
+  inputs.dropped_count = 1;
   step(inputs);
-  EXPECT_EQ(validity(), Validity::kValid) << "the second of the two frames is good";
+  EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.frames_since_reset, 3U);
   EXPECT_EQ(out->telemetry.frames_duplicate, 1U);
+  EXPECT_EQ(out->telemetry.frames_refused, before_.frames_refused + 1);
 }
 
-TEST_F(FrameRules, RefusedSecondFrameLeavesTheReportOfTheFirst) {
-  StepInputs inputs;
-  std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
-  inputs.frame = frames.data();
-  inputs.frame_count = 2;
-  step(inputs);
-  EXPECT_EQ(validity(), Validity::kValid);
-  EXPECT_EQ(out->attitude.sequence_number, frames[0].sequence_number);
-  EXPECT_EQ(out->telemetry.frames_duplicate, 1U);
-}
-
-TEST_F(FrameRules, FrameOneCycleLateIsUsed) {
-  const gnc::RangeImage late = next_frame();
-  step(StepInputs{});
-  StepInputs inputs;
+TEST_F(FrameRules, SupersededFrameIsCountedAndNeitherRefusedNorSkipped) {
   ++sequence_number;
-  std::array<gnc::RangeImage, 2> frames{late, next_frame()};
-  inputs.frame = frames.data();
-  inputs.frame_count = 2;
+  const gnc::RangeImage frame = next_frame();
+  StepInputs inputs;
+  inputs.frame = &frame;
+  inputs.dropped[0] = {gnc::FrameVerdict::kSuperseded, sequence_number, frame.exposure_time_ns - 1};
+  inputs.dropped_count = 1;
   step(inputs);
   EXPECT_EQ(validity(), Validity::kValid);
-  EXPECT_EQ(out->attitude.frames_since_reset, 4U) << "the sequence is complete again";
-  EXPECT_EQ(out->attitude.exposure_time_ns, now_ns);
-  EXPECT_EQ(events(EventId::kEstimatorResetByGap), 0);
+  EXPECT_EQ(out->telemetry.frames_superseded, 1U);
+  EXPECT_EQ(out->telemetry.frames_refused, before_.frames_refused);
+  EXPECT_EQ(out->telemetry.sequence_gaps, 0U) << "it has arrived";
+  EXPECT_EQ(out->event_count, 0);
+}
+
+TEST_F(FrameRules, ExposureWithinTheToleranceAheadOfTheCycleIsUsed) {
+  for (const std::int64_t ahead_ns : {std::int64_t{1}, config::kFutureTolerance_ns}) {
+    gnc::RangeImage frame = next_frame();
+    frame.exposure_time_ns += ahead_ns;
+    sequence_number = frame.sequence_number;
+    step_frame(frame);
+    EXPECT_EQ(validity(), Validity::kValid) << ahead_ns;
+  }
+}
+
+TEST_F(FrameRules, ExposureTooSoonAfterTheLastOneIsRefused) {
+  const std::int64_t last_ns = now_ns;
+  gnc::RangeImage frame = next_frame();
+  frame.exposure_time_ns = last_ns + gnc::kShortestInterval_ns - 1;
+  EXPECT_EQ(expect_refused(frame, EventId::kFrameTooSoon).frames_stale, 1U);
+  EXPECT_EQ(argument(EventId::kFrameTooSoon, 1), 99);
+}
+
+// Verifies TS-FDIR-170.
+TEST_F(FrameRules, RepeatedRangesAreRefusedAcrossGapsAndResets) {
+  const gnc::RangeImage last = good_frame(sequence_number, now_ns, sequence_number - 1);
+  const auto repeat = [&] {
+    gnc::RangeImage frame = last;
+    frame.sequence_number = ++sequence_number;
+    frame.exposure_time_ns = next_time_ns();
+    step_frame(frame);
+    EXPECT_EQ(validity(), Validity::kFrameRefused);
+    EXPECT_EQ(events(EventId::kFrameRepeated), 1);
+    EXPECT_EQ(argument(EventId::kFrameRepeated, 0), static_cast<std::int32_t>(sequence_number));
+  };
+  repeat();
+  EXPECT_EQ(estimator_crc(), crc_);
+  step(StepInputs{});
+  repeat();
+  EXPECT_EQ(estimator_crc(), crc_);
+  step_commands({command(FunctionCode::kResetSequence)});
+  repeat();
+  step_commands({set_mode(Mode::kStandby), set_mode(Mode::kRun)});
+  repeat();
+  EXPECT_EQ(out->telemetry.frames_repeated, 4U);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U);
+}
+
+// Verifies TS-EST-184.
+TEST_F(FrameRules, WithoutTheChasersAttitudeTheReportSaysSo) {
+  gnc::RangeImage frame = next_frame();
+  StepInputs inputs;
+  const auto step_with = [&](const gnc::ChaserAttitude& chaser) {
+    frame = next_frame();
+    sequence_number = frame.sequence_number;
+    inputs.frame = &frame;
+    inputs.chaser = chaser;
+    step(inputs);
+    return (out->attitude.doubts & hal::kDoubtChaserUnknown) != 0;
+  };
+  const auto known = [&](std::int64_t off_ns) {
+    return gnc::ChaserAttitude{next_time_ns() + off_ns, gnc::kIdentityQ30, true};
+  };
+  EXPECT_TRUE(step_with({}));
+  EXPECT_TRUE(step_with(known(0))) << "the turn since the last frame is not known";
+  EXPECT_FALSE(step_with(known(config::kChaserTimeTolerance_ns)));
+  EXPECT_FALSE(step_with(known(-config::kChaserTimeTolerance_ns)));
+  EXPECT_TRUE(step_with(known(config::kChaserTimeTolerance_ns + 1)));
+  EXPECT_TRUE(step_with(known(0)));
+  EXPECT_FALSE(step_with(known(0)));
+  gnc::ChaserAttitude unsound = known(0);
+  unsound.q_inertial_lrf[1] = 1 << 29;
+  EXPECT_TRUE(step_with(unsound));
+  EXPECT_EQ(validity(), Validity::kValid);
 }
 
 TEST_F(FrameRules, SkippedNumbersAreCountedAndTheFrameUsedWithoutReset) {
@@ -190,24 +253,29 @@ TEST_F(FrameRules, NumbersGoingBackAreOneGapAndTheFrameUsed) {
   EXPECT_EQ(argument(EventId::kSequenceSkipped, 2), -1);
 }
 
-TEST_F(FrameRules, ExposureGapOffThePeriodResetsTheEstimatorWithAnEvent) {
-  now_ns += config::kFramePeriodTolerance_ns + 1'000'000;
+// Verifies TS-EST-182.
+TEST_F(FrameRules, TrackIsKeptOverAnyTimeUpToTheLongestCoast) {
+  std::uint32_t frames = 2;
+  for (const std::int64_t gap_ns : {std::int64_t{200'000'000}, std::int64_t{1'000'000'000},
+                                    std::int64_t{5'400'000'000}, config::kLongestCoast_ns}) {
+    now_ns += gap_ns - config::kFramePeriod_ns;
+    step_good();
+    EXPECT_EQ(validity(), Validity::kValid);
+    EXPECT_EQ(out->attitude.frames_since_reset, ++frames) << gap_ns;
+    EXPECT_EQ(out->event_count, 0);
+  }
+  EXPECT_EQ(out->telemetry.estimator_resets, before_.estimator_resets);
+}
+
+// Verifies TS-EST-182.
+TEST_F(FrameRules, TrackIsGivenUpAfterTheLongestCoastWithAnEvent) {
+  now_ns += config::kLongestCoast_ns - config::kFramePeriod_ns + 1'000'000;
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);
   EXPECT_EQ(out->telemetry.estimator_resets, before_.estimator_resets + 1);
   ASSERT_NE(event(EventId::kEstimatorResetByGap), nullptr);
-  EXPECT_EQ(event(EventId::kEstimatorResetByGap)->arguments, (std::array<std::int32_t, 3>{2971, 2, 0}));
-}
-
-TEST_F(FrameRules, ExposureGapWithinTheToleranceKeepsTheSequence) {
-  now_ns += config::kFramePeriodTolerance_ns;
-  step_good();
-  EXPECT_EQ(out->attitude.frames_since_reset, 3U);
-  now_ns -= config::kFramePeriodTolerance_ns;
-  step_good();
-  EXPECT_EQ(out->attitude.frames_since_reset, 4U);
-  EXPECT_EQ(out->event_count, 0);
+  EXPECT_EQ(event(EventId::kEstimatorResetByGap)->arguments, (std::array<std::int32_t, 3>{21601, 2, 0}));
 }
 
 TEST_F(FrameRules, CycleTimeNotAdvancingRefusesTheFrameButNotTheCommand) {
@@ -276,17 +344,16 @@ TEST_F(FrameRules, EventsOfTheBusiestCycleFit) {
   init_with_model();
   sequence_number += 5;
   now_ns += 10 * config::kFramePeriod_ns;
-  std::array<gnc::RangeImage, 2> frames{next_frame(), next_frame()};
-  frames[0].exposure_time_ns -= 1'000'000'000;
-  frames[1].sequence_number += 5;
+  const gnc::RangeImage frame = next_frame();
   StepInputs inputs;
-  inputs.frame = frames.data();
-  inputs.frame_count = 2;
+  inputs.frame = &frame;
+  inputs.dropped[0] = {gnc::FrameVerdict::kStale, sequence_number - 1, 0};
+  inputs.dropped_count = 1;
   inputs.command_count = config::kMaxCommandsPerStep;
   for (hal::CommandPacket& one : inputs.commands) one = command(FunctionCode::kNoop);
   step(inputs);
-  EXPECT_EQ(out->event_count, 1 + config::kMaxCommandsPerStep + 2)
-      << "events of model, commands, gap and reset by the second frame";
+  EXPECT_EQ(out->event_count, 1 + config::kMaxCommandsPerStep + 1)
+      << "events of model, commands and stale frame";
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
 

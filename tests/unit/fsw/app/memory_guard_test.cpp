@@ -20,7 +20,7 @@ class MemoryGuardTest : public AppFixture {
     auto twin = std::make_unique<AttitudeInitApp>();
     hal::fake::FakeModelStore models;
     models.fill(test_model_image());
-    boot(*twin, {&stopwatch, &models, &kTestKey});
+    boot(*twin, {&stopwatch, &models, &kTestKeys});
     auto twin_out = std::make_unique<StepOutputs>();
     for (std::uint32_t number = 101; number <= sequence_number + 1; ++number) {
       StepInputs inputs;
@@ -248,6 +248,22 @@ TEST_F(MemoryGuardTest, IndicesOutOfRangeAreBoundedAndGoSafe) {
   step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
   EXPECT_EQ(out->telemetry.model_blocks_lost, 0U);
+}
+
+// Verifies TS-FDIR-015.
+TEST_F(MemoryGuardTest, LimitsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
+  for (const config::LimitRule& rule : config::kLimitRules) {
+    for (const std::uint32_t value : {rule.lowest - 1, rule.highest + 1, UINT32_MAX}) {
+      init(store);
+      step_good();
+      std::uint32_t& limit = AppMemory::state(*app).limits[static_cast<std::size_t>(rule.limit)];
+      limit = value;
+      AppMemory::commit(*app);
+      step_good();
+      EXPECT_EQ(app->mode(), Mode::kSafe);
+      EXPECT_EQ(limit, rule.initial);
+    }
+  }
 }
 
 // Verifies TS-FDIR-040.

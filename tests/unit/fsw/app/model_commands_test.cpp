@@ -68,7 +68,7 @@ class HollowStore final : public hal::ModelStore {
  public:
   explicit HollowStore(hal::ModelStore& store) : store_(store) {}
   hal::ModelBank bank(int index) override {
-    return index == 0 ? store_.bank(0) : hal::ModelBank{nullptr, nullptr, 0, 4096};
+    return index == 0 ? store_.bank(0) : hal::ModelBank{nullptr, hal::BankWriting::kReadOnly, 0, 4096};
   }
 
  private:
@@ -222,7 +222,7 @@ TEST_F(ModelCommands, DumpBeyondTheBankOrASecondOneInACycleIsRefused) {
   step_commands({dump(1, 0, 4)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
   HollowStore hollow(store);
-  boot(*app, {&stopwatch, &hollow, &kTestKey});
+  boot(*app, {&stopwatch, &hollow, &kTestKeys});
   step_commands({dump(1, 0, 4), dump(0, 0, 4)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
   EXPECT_EQ(events(EventId::kCommandAccepted), 1);

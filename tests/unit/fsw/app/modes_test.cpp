@@ -15,17 +15,19 @@ namespace {
 TEST(Modes, EveryCauseLeadsToTheIntendedModeOnly) {
   const Mode kBoot = Mode::kBoot, kStandby = Mode::kStandby, kRun = Mode::kRun, kSafe = Mode::kSafe;
   const std::map<std::pair<Mode, Cause>, Mode> meant{
-      {{kBoot, Cause::kModelFound}, kRun},        {{kBoot, Cause::kNoModel}, kSafe},
-      {{kBoot, Cause::kAssertion}, kSafe},        {{kStandby, Cause::kCommandStandby}, kStandby},
-      {{kStandby, Cause::kCommandRun}, kRun},     {{kStandby, Cause::kCommandSafe}, kSafe},
-      {{kStandby, Cause::kFault}, kSafe},         {{kStandby, Cause::kAssertion}, kSafe},
-      {{kRun, Cause::kCommandStandby}, kStandby}, {{kRun, Cause::kCommandRun}, kRun},
-      {{kRun, Cause::kCommandSafe}, kSafe},       {{kRun, Cause::kFault}, kSafe},
-      {{kRun, Cause::kAssertion}, kSafe},         {{kSafe, Cause::kCommandStandby}, kStandby},
-      {{kSafe, Cause::kCommandSafe}, kSafe},      {{kSafe, Cause::kAssertion}, kSafe},
+      {{kBoot, Cause::kModelFound}, kRun},         {{kBoot, Cause::kNoModel}, kSafe},
+      {{kBoot, Cause::kAssertion}, kSafe},         {{kStandby, Cause::kCommandStandby}, kStandby},
+      {{kStandby, Cause::kCommandRun}, kRun},      {{kStandby, Cause::kCommandSafe}, kSafe},
+      {{kStandby, Cause::kFault}, kSafe},          {{kStandby, Cause::kAssertion}, kSafe},
+      {{kRun, Cause::kCommandStandby}, kStandby},  {{kRun, Cause::kCommandRun}, kRun},
+      {{kRun, Cause::kCommandSafe}, kSafe},        {{kRun, Cause::kFault}, kSafe},
+      {{kRun, Cause::kAssertion}, kSafe},          {{kSafe, Cause::kCommandStandby}, kStandby},
+      {{kSafe, Cause::kCommandSafe}, kSafe},       {{kSafe, Cause::kAssertion}, kSafe},
+      {{kBoot, Cause::kResumedStandby}, kStandby}, {{kBoot, Cause::kResumedSafe}, kSafe},
+      {{kBoot, Cause::kStoredStateLost}, kSafe},
   };
   for (int mode = 0; mode <= 3; ++mode) {
-    for (int cause = 0; cause <= static_cast<int>(Cause::kAssertion); ++cause) {
+    for (int cause = 0; cause <= static_cast<int>(hal::kLastCause); ++cause) {
       const std::pair<Mode, Cause> at{static_cast<Mode>(mode), static_cast<Cause>(cause)};
       Mode to = static_cast<Mode>(99);
       const auto found = meant.find(at);

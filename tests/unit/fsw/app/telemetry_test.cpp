@@ -10,7 +10,7 @@ class Telemetry : public AppFixture {
  protected:
   Telemetry() : twin(std::make_unique<AttitudeInitApp>()), twin_out(std::make_unique<StepOutputs>()) {
     init_with_model();
-    boot(*twin, {&stopwatch, &store, &kTestKey});
+    boot(*twin, {&stopwatch, &store, &kTestKeys});
   }
   std::unique_ptr<AttitudeInitApp> twin;
   std::unique_ptr<StepOutputs> twin_out;
@@ -19,7 +19,7 @@ class Telemetry : public AppFixture {
 TEST_F(Telemetry, StateDigestDependsOnTheActiveModel) {
   hal::fake::FakeModelStore other;
   other.fill(gnc::lasting_model_image<gnc::FixedPoint>(8));
-  boot(*twin, {&stopwatch, &other, &kTestKey});
+  boot(*twin, {&stopwatch, &other, &kTestKeys});
   ASSERT_EQ(twin->mode(), Mode::kRun);
   EXPECT_NE(app->state_crc32(), twin->state_crc32());
 }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "gnc/attitude/rotation.hpp"
+#include "gnc/numerics/conversion.hpp"
 #include "tests/support/angles.hpp"
 
 namespace tumblesight::gnc {
@@ -114,6 +115,79 @@ TEST(Propagate, FollowsTorqueFreeRotation) {
       }
     }
   }
+}
+
+TEST(Propagate, OnePeriodIsTheDefault) {
+  Motion<Fixed> motion;
+  motion.rate_lrf = {Fixed(0.3), Fixed(-0.5), Fixed(0.4)};
+  const Motion<Fixed> a = propagate<Fixed>(motion, Inertia<Fixed>{});
+  const Motion<Fixed> b = propagate<Fixed>(motion, Inertia<Fixed>{}, kNominalPeriod_ns);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(a.r_lrf_trf(i).raw(), b.r_lrf_trf(i).raw());
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(a.rate_lrf[i].raw(), b.rate_lrf[i].raw());
+  EXPECT_EQ(in_periods(kNominalPeriod_ns).raw(), Fixed(1.0).raw());
+}
+
+TEST(Propagate, SpinTurnsInProportionToTheTime) {
+  std::mt19937 engine(12);
+  for (const double periods : {0.0, 0.037, 0.37, 1.0, 1.7, 2.0, 5.5, 8.0, 16.0, 40.0}) {
+    const Eigen::Vector3d rate = 0.9 * random_axis(engine);
+    Motion<Fixed> motion;
+    for (int i = 0; i < 3; ++i) motion.rate_lrf[i] = Fixed(rate[i]);
+    const auto elapsed_ns = static_cast<std::int64_t>(periods * kNominalPeriod_ns);
+    const Motion<Fixed> later = propagate<Fixed>(motion, Inertia<Fixed>{}, elapsed_ns);
+    const double counted = std::min(periods, 16.0);
+    EXPECT_NEAR(std::ldexp(in_periods(elapsed_ns).raw(), -24), counted, 2e-6);
+    const Eigen::Matrix3f r = converted<float>(later.r_lrf_trf);
+    EXPECT_LT(angle_between(r, exact_rotation(rate * std::max(counted, 1e-9))), 2e-5 * (1.0 + counted))
+        << periods;
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(std::ldexp(later.rate_lrf[i].raw(), -24), rate[i], 1e-5);
+  }
+}
+
+TEST(Propagate, TimeCanBeSplit) {
+  std::mt19937 engine(13);
+  Inertia<float> inertia;
+  ASSERT_TRUE(make_inertia<float>(tensor(1.0F, 1.7F, 2.1F, 0.1F), inertia));
+  for (const double first : {0.3, 1.0, 2.6}) {
+    for (const double second : {0.2, 1.0, 3.3}) {
+      Motion<float> motion;
+      motion.rate_lrf = (0.6 * random_axis(engine)).cast<float>();
+      const auto ns = [](double periods) { return static_cast<std::int64_t>(periods * kNominalPeriod_ns); };
+      const Motion<float> whole = propagate<float>(motion, inertia, ns(first) + ns(second));
+      const Motion<float> parts =
+          propagate<float>(propagate<float>(motion, inertia, ns(first)), inertia, ns(second));
+      EXPECT_LT(angle_between(whole.r_lrf_trf, parts.r_lrf_trf.cast<double>()), 0.02) << first << second;
+      EXPECT_LT((whole.rate_lrf - parts.rate_lrf).norm(), 0.01);
+    }
+  }
+}
+
+TEST(Turned, TurnsAttitudeAndRate) {
+  std::mt19937 engine(14);
+  const Eigen::Matrix3d turn = exact_rotation(0.8 * random_axis(engine));
+  Motion<float> motion;
+  motion.r_lrf_trf = exact_rotation(2.0 * random_axis(engine)).cast<float>();
+  motion.rate_lrf = {0.1F, 0.2F, -0.3F};
+  const Motion<float> after = turned<float>(motion, turn.cast<float>());
+  EXPECT_LT(angle_between(after.r_lrf_trf, turn * motion.r_lrf_trf.cast<double>()), 1e-5);
+  EXPECT_LT((after.rate_lrf.cast<double>() - turn * motion.rate_lrf.cast<double>()).norm(), 1e-6);
+}
+
+TEST(RotationVector, InvertsRotationsUpToItsLimit) {
+  std::mt19937 engine(15);
+  for (double degrees = 5.0; degrees < 150.0; degrees += 9.0) {
+    const Eigen::Vector3d turn = degrees * kDegree * random_axis(engine);
+    const Eigen::Matrix3f r = exact_rotation(turn).cast<float>();
+    const Vector3<float> all = rotation_vector<float>(r, static_cast<float>(kVersineOf150Degrees));
+    EXPECT_LT((all.cast<double>() - turn).norm(), 1e-3) << degrees;
+    const Vector3<float> small = rotation_vector<float>(r, static_cast<float>(kVersineOf60Degrees));
+    EXPECT_EQ(small, small_rotation_vector<float>(r)) << degrees;
+    const Matrix3<Fixed> fixed = converted<Fixed>(Matrix3<float>(r));
+    const Vector3<Fixed> same = rotation_vector<Fixed>(fixed, Fixed(kVersineOf150Degrees));
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(std::ldexp(same[i].raw(), -24), turn[i], 1e-3) << degrees;
+  }
+  const Eigen::Matrix3f beyond = exact_rotation(155.0 * kDegree * random_axis(engine)).cast<float>();
+  EXPECT_EQ(rotation_vector<float>(beyond, static_cast<float>(kVersineOf150Degrees)).norm(), 0.0F);
 }
 
 TEST(Propagate, RotationAboutAPrincipalAxisIsASpin) {

@@ -224,6 +224,81 @@ TEST(AttitudeTrack, StaysOnItsBranchIfTheHeadSelectsThePrediction) {
   EXPECT_LT(rate_error(track), 1e-3);
 }
 
+QuaternionQ30 q30(const Eigen::Quaterniond& q) {
+  const auto part = [](double x) { return static_cast<std::int32_t>(std::lround(std::ldexp(x, 30))); };
+  return {part(q.w()), part(q.x()), part(q.y()), part(q.z())};
+}
+
+FrameInterval interval_of(double periods) {
+  FrameInterval interval;
+  interval.elapsed_ns = std::llround(periods * kNominalPeriod_ns);
+  return interval;
+}
+
+// Verifies TS-EST-182. The target turns by up to 140 degrees from frame to frame.
+TEST(AttitudeTrack, FindsTheRateAtAnyTimeBetweenFrames) {
+  for (const double periods : {0.074, 0.37, 0.5, 1.0, 1.7, 2.0, 2.59}) {
+    for (const double rate_deg : {0.0, 9.0, 54.0}) {
+      const Eigen::Vector3d rate = rate_deg * kDegree * kRate.normalized();
+      AttitudeTrack<float> track;
+      Eigen::Matrix3d truth = kStart;
+      for (int k = 0; k < 12; ++k, truth = turn(periods * rate) * truth)
+        follow(make_frame({{truth, 1.0F}}), kNoCorrection, track, {}, interval_of(periods));
+      EXPECT_LT(rate_error(track, rate), 0.2 * kDegree) << periods << ' ' << rate_deg;
+    }
+  }
+}
+
+// Verifies TS-EST-182.
+TEST(AttitudeTrack, CoastsOverGapsOfAnyLength) {
+  for (const double gap : {0.3, 1.5, 2.0, 3.0, 7.0, 8.0}) {
+    AttitudeTrack<float> track = converged_track(12);
+    const Eigen::Matrix3d truth = turn((11.0 + gap) * kRate) * kStart;
+    const Prediction<float> prediction = predict<float>(track, motion_laws<float>(Inertia<float>{}),
+                                                        make_frame({{kStart, 1.0F}}), interval_of(gap));
+    EXPECT_LT(angle_between(prediction.r_lrf_trf(), truth), 1e-3) << gap;
+    follow(make_frame({{truth, 1.0F}}), kNoCorrection, track, {}, interval_of(gap));
+    EXPECT_LT(rate_error(track), 1e-3) << gap;
+  }
+}
+
+// Verifies TS-EST-182.
+TEST(AttitudeTrack, FollowsIrregularFrames) {
+  std::mt19937 engine(8);
+  std::uniform_real_distribution<double> any(0.1, 2.2);
+  AttitudeTrack<float> track;
+  Eigen::Matrix3d truth = kStart;
+  follow(make_frame({{truth, 1.0F}}), kNoCorrection, track);
+  for (int k = 0; k < 40; ++k) {
+    const double periods = any(engine);
+    truth = turn(periods * 4.0 * kRate) * truth;
+    follow(make_frame({{truth, 1.0F}}), kNoCorrection, track, {}, interval_of(periods));
+    if (k > 10) {
+      EXPECT_LT(rate_error(track, 4.0 * kRate), 0.1 * kDegree) << k;
+    }
+  }
+}
+
+// Verifies TS-EST-184. The LRF turns at 13 degrees per period about another axis than the target.
+TEST(AttitudeTrack, FollowsASpinFromATurningChaser) {
+  const Eigen::Vector3d chaser_rate = 13.0 * kDegree * Eigen::Vector3d(0.1, 0.9, -0.4).normalized();
+  AttitudeTrack<float> track;
+  double time = 0.0;
+  const auto lrf = [&] { return turn(time * chaser_rate); };  // v_inertial = lrf v_lrf
+  for (int k = 0; k < 20; ++k) {
+    const double periods = 0.4 + 0.1 * (k % 9);
+    const Eigen::Matrix3d before = lrf();
+    time += periods;
+    FrameInterval interval = interval_of(periods);
+    interval.q_now_last = q30(Eigen::Quaterniond(lrf().transpose() * before));
+    const Eigen::Matrix3d truth = lrf().transpose() * turn(time * kRate) * kStart;
+    follow(make_frame({{truth, 1.0F}}), kNoCorrection, track, {}, interval);
+    if (k > 3) {
+      EXPECT_LT(rate_error(track, lrf().transpose() * kRate), 0.1 * kDegree) << k;
+    }
+  }
+}
+
 // Verifies TS-EST-140.
 TEST(AttitudeTrack, FindsTheLawOfMotion) {
   const MotionLaws<float> laws = motion_laws<float>(slender_body());

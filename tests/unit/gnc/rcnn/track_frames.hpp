@@ -59,8 +59,10 @@ inline Hypotheses<float> make_frame(std::initializer_list<Alternative> alternati
 
 // One frame of the estimator, with `head` as the output of the recurrent head.
 inline TrackedAttitude<float> follow(const Hypotheses<float>& frame, const HeadOutput<float>& head,
-                                     AttitudeTrack<float>& track, const Inertia<float>& inertia = {}) {
-  return advance<float>(frame, predict<float>(track, motion_laws<float>(inertia), frame), head, track);
+                                     AttitudeTrack<float>& track, const Inertia<float>& inertia = {},
+                                     const FrameInterval& interval = {}) {
+  return advance<float>(frame, predict<float>(track, motion_laws<float>(inertia), frame, interval), head,
+                        track);
 }
 
 }  // namespace tumblesight::gnc

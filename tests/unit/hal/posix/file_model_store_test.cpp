@@ -54,9 +54,22 @@ TEST_F(FileModelStoreTest, HoldsTheWholeFileAndKeepsItWhenTheFileChanges) {
 
 TEST_F(FileModelStoreTest, BanksAreIndependent) {
   FileModelStore store(write("model.tsm", 4096).c_str(), 4096);
-  store.bank(1).writable[4095] ^= 1;
+  const std::uint8_t byte = store.bank(1).data[4095] ^ 1;
+  EXPECT_EQ(store.write(1, 4095, &byte, 1), WriteStatus::kAccepted);
+  EXPECT_EQ(store.bank(1).data[4095], byte);
+  EXPECT_EQ(store.activity(1), BankActivity::kReady);
   EXPECT_NE(store.bank(0).data[4095], store.bank(1).data[4095]);
   EXPECT_NE(store.bank(0).data, store.bank(1).data);
+}
+
+TEST_F(FileModelStoreTest, BytesBeyondTheBankAreRefused) {
+  FileModelStore store(write("model.tsm", 10).c_str(), 10);
+  const std::uint8_t bytes[11] = {};
+  EXPECT_EQ(store.write(0, 0, bytes, 11), WriteStatus::kRefused);
+  EXPECT_EQ(store.write(0, 8, bytes, 3), WriteStatus::kRefused);
+  EXPECT_EQ(store.write(0, 0xFFFFFFFF, bytes, 3), WriteStatus::kRefused);
+  EXPECT_EQ(store.write(0, 8, bytes, 2), WriteStatus::kAccepted);
+  EXPECT_EQ(write_at_once(nullptr, 10, 0, bytes, 1), WriteStatus::kRefused);
 }
 
 TEST_F(FileModelStoreTest, MissingFileIsReported) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hal/replay/replay_lidar.hpp"
+#include "hal/replay/replay_navigation.hpp"
 
 namespace tumblesight::hal::replay {
 namespace {
@@ -27,11 +28,16 @@ gnc::RangeImage frame_number(std::uint32_t k) {
   return frame;
 }
 
+gnc::ChaserAttitude attitude_number(std::uint32_t k) {
+  const auto part = static_cast<std::int32_t>(k);
+  return {std::int64_t{2'700'000'000} * k - 3, {1 << 30, -part, part, -(1 << 30)}, k != 1};
+}
+
 std::vector<std::uint8_t> recorded(std::uint32_t frames) {
   std::vector<std::uint8_t> bytes(kRecordingHeaderSize + frames * kRecordedFrameSize + kRecordingCrcSize);
   std::size_t size = write_recording_header(kRays, frames, bytes.data());
   for (std::uint32_t k = 0; k < frames; ++k)
-    size += write_recorded_frame(frame_number(k), bytes.data() + size);
+    size += write_recorded_frame(frame_number(k), attitude_number(k), bytes.data() + size);
   size += write_recording_crc(bytes.data(), size, bytes.data() + size);
   bytes.resize(size);
   return bytes;
@@ -60,6 +66,36 @@ TEST(RecordingTest, ReturnsTheFramesBitForBit) {
     EXPECT_EQ(frame.fov_urad, expected.fov_urad);
     EXPECT_EQ(frame.rays, expected.rays);
     EXPECT_EQ(frame.ranges, expected.ranges);
+    const gnc::ChaserAttitude chaser = ReplayNavigation(recording).attitude_at(0);
+    EXPECT_EQ(chaser.time_ns, attitude_number(k).time_ns);
+    EXPECT_EQ(chaser.q_inertial_lrf, attitude_number(k).q_inertial_lrf);
+    EXPECT_EQ(chaser.valid, attitude_number(k).valid);
+  }
+  EXPECT_FALSE(recording.has_next());
+}
+
+TEST(RecordingTest, VersionOneHasNoAttitudesOfTheChaser) {
+  const auto with = recorded(2);
+  constexpr std::size_t kAttitudeSize = 25;
+  Recording recording;
+  ASSERT_EQ(recording.open(with.data(), with.size()), RecordingStatus::kOk);
+  gnc::RangeImage frame;
+  recording.read_next(frame);
+  ASSERT_TRUE(recording.chaser_attitude().valid);
+  const std::size_t frame_size = (with.size() - kRecordingHeaderSize - kRecordingCrcSize) / 2;
+  std::vector<std::uint8_t> without = with;
+  for (const std::size_t k : {std::size_t{1}, std::size_t{0}}) {
+    const auto at = static_cast<std::ptrdiff_t>(kRecordingHeaderSize + k * frame_size + 16);
+    without.erase(without.begin() + at, without.begin() + at + kAttitudeSize);
+  }
+  without[4] = 1;
+  renew_crc(without);
+  ASSERT_EQ(recording.open(without.data(), without.size()), RecordingStatus::kOk);
+  for (std::uint32_t k = 0; k < 2; ++k) {
+    ASSERT_TRUE(recording.has_next());
+    recording.read_next(frame);
+    EXPECT_EQ(frame.ranges, frame_number(k).ranges);
+    EXPECT_FALSE(ReplayNavigation(recording).attitude_at(frame.exposure_time_ns).valid);
   }
   EXPECT_FALSE(recording.has_next());
 }
@@ -75,7 +111,7 @@ TEST(RecordingTest, RefusesInvalidFiles) {
   bad[0] = 'X';
   EXPECT_EQ(status_of(bad), RecordingStatus::kBadMagic);
   bad = good;
-  bad[4] = 2;
+  bad[4] = 3;
   EXPECT_EQ(status_of(bad), RecordingStatus::kBadVersion);
   bad = good;
   bad[40] ^= 1;
@@ -100,7 +136,7 @@ TEST(RecordingTest, EndsBeforeAnIncompleteOrInvalidFrame) {
   EXPECT_FALSE(recording.has_next());
 
   bytes = recorded(1);
-  bytes[kRecordingHeaderSize + 16 + 1] = 200;  // the first row's number of ranges
+  bytes[kRecordingHeaderSize + 16 + 25 + 1] = 200;  // the first row's number of ranges
   renew_crc(bytes);
   ASSERT_EQ(recording.open(bytes.data(), bytes.size()), RecordingStatus::kOk);
   EXPECT_FALSE(recording.has_next());

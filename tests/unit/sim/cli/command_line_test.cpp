@@ -55,6 +55,19 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --inertia 1e-300,1e-300,1e-300,0,0,0", 1, "must be 1e-06 to 1e+12 kg m2"},
         Refusal{"evaluate --inertia 1e300,1e300,1e300,0,0,0", 1, "must be 1e-06 to 1e+12 kg m2"},
         Refusal{"evaluate --inertia 0.001,1,1,0,0,0", 1, "none below 0.01 of their mean"},
+        Refusal{"evaluate --lost-frames 1000", 2,
+                "--lost-frames: must be a whole number from 0 to 999, not '1000'"},
+        Refusal{"evaluate --lost-frames 10", 2,
+                "--lost-frames 10 is too many for --frames 10 with --well-frames 1: give at most 9, or more "
+                "--frames"},
+        Refusal{"evaluate --frozen 8 --well-frames 2", 2, "give at most 7, or more --frames"},
+        Refusal{"evaluate --well-frames 11", 2, "--well-frames 11 is too many for --frames 10"},
+        Refusal{"evaluate --loss-every 1", 2, "from 2 to 999, not '1'"},
+        Refusal{"evaluate --loss-share 1.5", 2, "--loss-share: must be a number from 0 to 1, not '1.5'"},
+        Refusal{"evaluate --period 0", 2, "--period: must be a number from 0.1 to 60, not '0'"},
+        Refusal{"evaluate --period-jitter 1", 2, "from 0 to 0.9, not '1'"},
+        Refusal{"evaluate --chaser-rate nan", 2, "from 0 to 20, not 'nan'"},
+        Refusal{"evaluate --paper --frozen 1", 2, "--paper: sets --frozen itself"},
         Refusal{"evaluate --paper --target magellan", 2, "--paper: sets --target itself"},
         Refusal{"evaluate --paper --frames 5", 2, "sets --frames itself"},
         Refusal{"evaluate --mesh-folder meshes", 2, "requires --paper"},
@@ -81,7 +94,7 @@ TEST(Help, TeachesWithAnExample) {
   const Outcome outcome = here.run("evaluate --help");
   EXPECT_EQ(outcome.exit_code, 0);
   for (const char* part : {"--target", "--mesh", "--condition", "--sequences", "--seed", "--json", "--report",
-                           "--paper", "Example:"}) {
+                           "--paper", "--lost-frames", "--chaser-rate", "--well-frames", "Example:"}) {
     EXPECT_NE(outcome.output.find(part), std::string::npos) << part;
   }
 }

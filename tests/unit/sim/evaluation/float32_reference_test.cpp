@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/world/chaser_navigation.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_models.hpp"
 
@@ -42,17 +43,20 @@ TEST_F(Float32ReferenceTest, ComparesTheFramesThatBothHave) {
   HostEstimator estimator(float32);
   std::vector<FrameResult> results;
   for (std::uint32_t k = 0; k < 2 * kFrames; ++k) {
-    const gnc::RangeImage frame = gnc::random_frame(k);
-    reference.add(k / kFrames, k % kFrames, {}, frame);
+    gnc::RangeImage frame = gnc::random_frame(k);
+    frame.sequence_number = k;
+    frame.exposure_time_ns = k * kFramePeriod_ns;
+    const gnc::ChaserAttitude chaser = chaser_attitude({}, frame.exposure_time_ns, true);
+    reference.add(k / kFrames, k % kFrames, {}, frame, chaser);
     if (k % kFrames == 0) estimator.reset();
-    gnc::AttitudeEstimate estimate;
-    ASSERT_EQ(estimator.step(frame, estimate), gnc::FrameStatus::kOk);
+    const gnc::FrameOutcome outcome = estimator.step(frame, chaser);
+    ASSERT_TRUE(outcome.used());
     FrameResult result;
     result.sequence = k / kFrames;
     result.frame = k % kFrames;
     result.valid = true;
-    result.rcnn =
-        gnc::to_double(estimate.q_lrf_trf) * Eigen::AngleAxisd(2.0 * M_PI / 180.0, Eigen::Vector3d::UnitX());
+    result.rcnn = gnc::to_double(outcome.estimate.q_lrf_trf) *
+                  Eigen::AngleAxisd(2.0 * M_PI / 180.0, Eigen::Vector3d::UnitX());
     if (k != 1) results.push_back(result);  // one is missing
   }
   const NumericsComparison comparison = reference.compare(results, kFrames);

@@ -49,6 +49,30 @@ TEST(ErrorSummary, MatchesFiguresCalculatedByHand) {
   EXPECT_DOUBLE_EQ(summary.median_deg, 5.0);
   EXPECT_DOUBLE_EQ(summary.within_20deg, 0.8);
   EXPECT_DOUBLE_EQ(summary.within_5deg, 0.6);
+  EXPECT_DOUBLE_EQ(summary.mean_within_20_deg, 7.5);
+  EXPECT_DOUBLE_EQ(summary.mean_within_20_standard_error_deg, std::sqrt(217.0 / 3.0 / 4.0));
+  EXPECT_TRUE(std::isnan(summary.wrong_and_valid)) << "validity is not known";
+}
+
+TEST(ErrorSummary, HasNoMeanWithin20DegreesIfAllAreWrong) {
+  EXPECT_TRUE(std::isnan(summarise({21.0, 90.0}).mean_within_20_deg));
+}
+
+TEST(LastFrame, SharesOfTrustedEstimatesCountRightAndWrongOnes) {
+  std::vector<FrameResult> results{result_with(0, 0, 3.0, 40.0), result_with(1, 0, 30.0, 3.0),
+                                   result_with(2, 0, 19.0, 3.0), result_with(3, 0, 25.0, 3.0),
+                                   result_with(4, 0, 1.0, 3.0)};
+  for (const std::size_t trusted : {0, 1, 4}) results[trusted].trusted = true;
+  results.push_back(results.front());
+  results.back().frame = 7;  // not a last frame
+  const ErrorSummary rcnn = last_frame_summary(results, 1, Estimator::kRcnn);
+  EXPECT_EQ(rcnn.count, 5U);
+  EXPECT_DOUBLE_EQ(rcnn.right_and_valid, 0.4);
+  EXPECT_DOUBLE_EQ(rcnn.wrong_and_valid, 0.2);
+  const ErrorSummary cnn = last_frame_summary(results, 1, Estimator::kCnn);
+  EXPECT_DOUBLE_EQ(cnn.right_and_valid, 0.4);
+  EXPECT_DOUBLE_EQ(cnn.wrong_and_valid, 0.2);
+  EXPECT_EQ(last_frame_summary({}, 1, Estimator::kRcnn).count, 0U);
 }
 
 TEST(ErrorSummary, MedianOfAnEvenCountIsTheMiddle) {

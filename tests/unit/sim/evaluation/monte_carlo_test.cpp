@@ -127,6 +127,43 @@ TEST_F(MonteCarlo, GivesTheBaselineTheLastFramesOfTheFirstSequences) {
   for (std::size_t i = 0; i < again.size(); ++i) EXPECT_TRUE(equal(result.frames[i], again[i])) << i;
 }
 
+// Verifies TS-SIL-200.
+TEST_F(MonteCarlo, HasNoResultForALostFrameAndNoAttitudeForARepeatedOne) {
+  MonteCarloSettings disturbed = settings(2, 5);
+  disturbed.scenario.frames = 5;
+  const std::vector<FrameResult> plain = run(disturbed).frames;
+  disturbed.scenario.disturbances.lost_frames = 1;
+  disturbed.scenario.disturbances.frozen = 2;
+  const std::vector<FrameResult> results = run(disturbed).frames;
+  ASSERT_EQ(results.size(), 16U);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    EXPECT_EQ(results[i].frame, i % 4 + (i % 4 == 3 ? 1 : 0));
+    EXPECT_EQ(results[i].valid, i % 4 != 2) << "the third frame repeats the second";
+    const FrameResult& same = plain[5 * (i / 4) + results[i].frame];
+    EXPECT_EQ(results[i].truth.coeffs(), same.truth.coeffs());
+    if (results[i].frame < 2) EXPECT_TRUE(equal(results[i], same)) << i;
+  }
+}
+
+// Verifies TS-SIL-200.
+TEST_F(MonteCarlo, TellsTheEstimatorTheTurnOfTheChaserUnlessAskedNotTo) {
+  MonteCarloSettings turning = settings(1, 5);
+  turning.sequences = 20;
+  turning.scenario.frames = 6;
+  turning.scenario.disturbances.chaser_rate_deg_s = 20.0;
+  const std::vector<FrameResult> told = run(turning).frames;
+  turning.scenario.disturbances.no_ego_motion = true;
+  const std::vector<FrameResult> untold = run(turning).frames;
+  ASSERT_EQ(told.size(), untold.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    EXPECT_EQ(told[i].truth.coeffs(), untold[i].truth.coeffs());
+    EXPECT_EQ(told[i].cnn.coeffs(), untold[i].cnn.coeffs());
+    if (!equal(told[i], untold[i]) || told[i].trusted != untold[i].trusted) ++different;
+  }
+  EXPECT_GT(different, 0U);
+}
+
 TEST_F(MonteCarlo, RefusesADamagedModel) {
   model_.back() ^= 1U;
   EXPECT_THROW(run(2), std::invalid_argument);

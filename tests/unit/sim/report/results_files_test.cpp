@@ -38,15 +38,26 @@ std::vector<std::string> fields_of(const std::string& line) {
   return fields;
 }
 
-TEST(SummaryJson, HoldsTheFourFiguresAndTheStandardError) {
+TEST(SummaryJson, HoldsTheFiguresThenTheStandardErrors) {
+  const nlohmann::ordered_json json = summary_json(summarise({10.0, 30.0, 2.0, 2.0}));
   EXPECT_EQ(
-      summary_json(summarise({10.0, 30.0, 2.0, 2.0})).dump().substr(0, 94),
-      R"({"mean_deg":11.0,"median_deg":6.0,"within_20deg":0.75,"within_5deg":0.5,"mean_standard_error_d)");
+      json.dump().substr(0, 94),
+      R"({"mean_deg":11.0,"median_deg":6.0,"within_20deg":0.75,"within_5deg":0.5,"mean_within_20_deg":4)");
+  EXPECT_NEAR(json["mean_within_20_deg"].get<double>(), 14.0 / 3.0, 1e-12);
+  EXPECT_TRUE(nlohmann::json::parse(json.dump())["wrong_and_valid"].is_null()) << "validity is not known";
+}
+
+TEST(SummaryJson, HasTheSharesThatTheFlightProgramCallsValid) {
+  std::vector<FrameResult> results{result_with(0, 0, 3.0, 3.0), result_with(1, 0, 30.0, 3.0)};
+  for (FrameResult& result : results) result.trusted = true;
+  const nlohmann::ordered_json json = summary_json(last_frame_summary(results, 1, Estimator::kRcnn));
+  EXPECT_EQ(json["wrong_and_valid"], 0.5);
+  EXPECT_EQ(json["right_and_valid"], 0.5);
 }
 
 TEST(SummaryJson, IsNullWithoutASequence) {
   const nlohmann::ordered_json json = summary_json({});
-  EXPECT_EQ(json.size(), 5U);
+  EXPECT_EQ(json.size(), 9U);
   for (const auto& [key, value] : json.items()) EXPECT_TRUE(value.is_null()) << key;
 }
 
@@ -88,6 +99,21 @@ TEST(ResultsCsv, HasALinePerEstimatorWithAsManyFieldsAsTheHeader) {
   EXPECT_EQ(fields[9], "31.0000");
 }
 
+// Verifies TS-SIL-200.
+TEST(Disturbances, OfARunAreInItsJsonAndCsv) {
+  Results results = sample_results();
+  results.subjects[0].cells[0].disturbances.lost_frames = 2;
+  results.subjects[0].cells[0].disturbances.period_s = 1.5;
+  results.subjects[0].cells[0].disturbances.no_ego_motion = true;
+  const nlohmann::ordered_json rows = results_json(results)["rows"];
+  EXPECT_EQ(rows[0]["disturbances"].dump(), R"({"lost-frames":2,"period":1.5,"no-ego-motion":true})");
+  EXPECT_EQ(rows[1]["disturbances"].dump(), "{}");
+  const std::vector<std::string> lines = lines_of(results_csv(results));
+  EXPECT_EQ(fields_of(lines[0]).back(), "disturbances");
+  EXPECT_EQ(fields_of(lines[1]).back(), "lost-frames 2, period 1.5, no-ego-motion");
+  EXPECT_EQ(fields_of(lines[4]).back(), "");
+}
+
 TEST(ResultsMarkdown, ShowsOursThePapersAndTheGoalWithCrcAndSeed) {
   const std::string text = results_markdown(sample_results());
   for (const char* part :
@@ -125,6 +151,23 @@ TEST(ResultsMarkdown, WordsAreThoseOfTheStoredDocument) {
   const std::set<std::string> generated = wording(results_markdown(sample_results()));
   EXPECT_GT(generated.size(), 30U);
   for (const std::string& line : generated) EXPECT_EQ(expected.count(line), 1U) << line;
+}
+
+TEST(ResultsMarkdown, ShowsDisturbedRunsWithTheirBars) {
+  Results results = sample_results();
+  EXPECT_EQ(results_markdown(results).find("Disturbed sequences"), std::string::npos);
+  CellResult cell = results.subjects[0].cells[0];
+  cell.disturbances.lost_frames = 1;
+  cell.rcnn.mean_within_20_deg = 1.4;
+  results.subjects[0].disturbed = {cell};
+  cell.disturbances.lost_frames = 9;
+  results.subjects[0].disturbed.push_back(cell);
+  const std::string text = results_markdown(results);
+  EXPECT_NE(text.find("| nominal | lost-frames 1 | 1.40"), std::string::npos) << text;
+  EXPECT_NE(text.find("| 1.35°, 99.8 % within 20° | "), std::string::npos) << text;
+  EXPECT_NE(text.find("| nominal | lost-frames 9 | 1.40"), std::string::npos) << "no bar";
+  EXPECT_EQ(results_json(results)["rows"].size(), 5U);
+  EXPECT_EQ(lines_of(results_csv(results)).size(), 1U + 3U + 3U + 2U + 4U);
 }
 
 TEST(ResultsMarkdown, HoldsTablesWithAsManyCellsAsTheirHeader) {

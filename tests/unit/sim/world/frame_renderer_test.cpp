@@ -58,5 +58,17 @@ TEST_F(Rendering, StampsTheFrameAsTheFirstSequenceOfARunUnlessAStampIsGiven) {
   EXPECT_EQ(image->ranges, ranges);
 }
 
+// Verifies TS-SIL-200.
+TEST_F(Rendering, ShowsTheSameImageUnderNewStampsWhileTheSensorIsFrozen) {
+  sequence_.frames[2].frozen_for = 1;
+  const FrameRenderer renderer(lidar_, swath_m_);
+  const auto genuine = rendered(renderer, 1);
+  const auto frozen = rendered(renderer, 2);
+  EXPECT_EQ(frozen->ranges, genuine->ranges);
+  EXPECT_EQ(frozen->fov_urad, genuine->fov_urad);
+  EXPECT_EQ(frozen->sequence_number, 2U);
+  EXPECT_EQ(frozen->exposure_time_ns, 2 * kFramePeriod_ns);
+}
+
 }  // namespace
 }  // namespace tumblesight::sim

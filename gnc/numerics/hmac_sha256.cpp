@@ -1,6 +1,6 @@
-#include "fsw/app/hmac_sha256.hpp"
+#include "gnc/numerics/hmac_sha256.hpp"
 
-namespace tumblesight::fsw {
+namespace tumblesight::gnc {
 namespace {
 
 // FIPS 180-4, 4.2.2.
@@ -77,19 +77,25 @@ Sha256Digest Sha256::digest() {
   return digest;
 }
 
-Sha256Digest hmac_sha256(const std::array<std::uint8_t, 32>& key, const std::uint8_t* message,
-                         std::size_t size_bytes) {
-  std::array<std::uint8_t, kBlock> pad{};
-  for (std::size_t i = 0; i < pad.size(); ++i) pad[i] = (i < key.size() ? key[i] : 0) ^ 0x36;
-  Sha256 inner;
-  inner.add(pad.data(), pad.size());
-  inner.add(message, size_bytes);
-  const Sha256Digest of_message = inner.digest();
-  for (std::uint8_t& byte : pad) byte ^= 0x36 ^ 0x5c;
+HmacSha256::HmacSha256(const std::array<std::uint8_t, 32>& key) {
+  for (std::size_t i = 0; i < pad_.size(); ++i) pad_[i] = (i < key.size() ? key[i] : 0) ^ 0x36;
+  inner_.add(pad_.data(), pad_.size());
+}
+
+Sha256Digest HmacSha256::digest() {
+  const Sha256Digest of_message = inner_.digest();
+  for (std::uint8_t& byte : pad_) byte ^= 0x36 ^ 0x5c;
   Sha256 outer;
-  outer.add(pad.data(), pad.size());
+  outer.add(pad_.data(), pad_.size());
   outer.add(of_message.data(), of_message.size());
   return outer.digest();
+}
+
+Sha256Digest hmac_sha256(const std::array<std::uint8_t, 32>& key, const std::uint8_t* message,
+                         std::size_t size_bytes) {
+  HmacSha256 code(key);
+  code.add(message, size_bytes);
+  return code.digest();
 }
 
 bool equal_in_constant_time(const std::uint8_t* a, const std::uint8_t* b, std::size_t size_bytes) {
@@ -99,4 +105,4 @@ bool equal_in_constant_time(const std::uint8_t* a, const std::uint8_t* b, std::s
   return difference == 0;
 }
 
-}  // namespace tumblesight::fsw
+}  // namespace tumblesight::gnc

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tumblesight::fsw {
+namespace tumblesight::gnc {
 
 using Sha256Digest = std::array<std::uint8_t, 32>;
 
@@ -25,11 +25,24 @@ class Sha256 {
   std::uint64_t size_bytes_ = 0;
 };
 
-// `message`: `size_bytes` bytes; the key is padded with zeros to the block size.
+// For a message in parts. The key is padded with zeros to the block size.
+class HmacSha256 {
+ public:
+  explicit HmacSha256(const std::array<std::uint8_t, 32>& key);
+  void add(const std::uint8_t* data, std::size_t size_bytes) { inner_.add(data, size_bytes); }
+  // Call once, after all add().
+  Sha256Digest digest();
+
+ private:
+  std::array<std::uint8_t, 64> pad_{};
+  Sha256 inner_;
+};
+
+// `message`: `size_bytes` bytes.
 Sha256Digest hmac_sha256(const std::array<std::uint8_t, 32>& key, const std::uint8_t* message,
                          std::size_t size_bytes);
 
 // Compares every byte, so that the run time does not show where the first difference is.
 bool equal_in_constant_time(const std::uint8_t* a, const std::uint8_t* b, std::size_t size_bytes);
 
-}  // namespace tumblesight::fsw
+}  // namespace tumblesight::gnc

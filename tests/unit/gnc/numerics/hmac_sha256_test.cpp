@@ -1,6 +1,6 @@
 // Test vectors of FIPS 180-4 and RFC 4231.
 // Verifies TS-SEC-010.
-#include "fsw/app/hmac_sha256.hpp"
+#include "gnc/numerics/hmac_sha256.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace tumblesight::fsw {
+namespace tumblesight::gnc {
 namespace {
 
 std::string hex(const Sha256Digest& digest) {
@@ -68,4 +68,4 @@ TEST(EqualInConstantTime, DetectsADifferenceInAnyByte) {
 }
 
 }  // namespace
-}  // namespace tumblesight::fsw
+}  // namespace tumblesight::gnc

@@ -1,0 +1,35 @@
+// CommandAuthority: who may command the application. It is a part of the voted state, so that a bit flip in a
+// key cannot make every command a forgery.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/messages/command_key.hpp"
+
+namespace tumblesight::fsw {
+
+class CommandAuthority {
+ public:
+  // Copies the keys. nullptr: the link delivers authentic commands only, without a security trailer.
+  void set(const hal::CommandKeys* keys) {
+    has_keys_ = keys != nullptr;
+    if (has_keys_) keys_ = *keys;
+  }
+  const hal::CommandKeys* keys() const { return has_keys_ ? &keys_ : nullptr; }
+  // Whether there is a key in the slot.
+  bool has_key(std::uint32_t slot) const { return keys_.has_key(slot); }
+  std::uint32_t slot() const { return slot_; }  // of the key in use
+  // False: the slot is empty or does not exist.
+  [[nodiscard]] bool use(std::uint32_t slot) {
+    if (!has_key(slot)) return false;
+    slot_ = slot;
+    return true;
+  }
+
+ private:
+  hal::CommandKeys keys_;
+  std::uint32_t slot_ = 0;
+  bool has_keys_ = false;
+};
+
+}  // namespace tumblesight::fsw

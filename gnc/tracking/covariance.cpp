@@ -1,0 +1,38 @@
+#include "gnc/tracking/covariance.hpp"
+
+#include "gnc/numerics/division.hpp"
+#include "gnc/rcnn/attitude_track.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+CovarianceE8 isotropic(std::int32_t variance) {
+  return {variance, 0, 0, variance, 0, variance};
+}
+
+std::int64_t attitude_variance(std::uint32_t predicted_error_urad) {
+  constexpr std::int64_t kPiOver8_e6 = 392'699;
+  const std::int64_t error_urad = predicted_error_urad;
+  return divide(divide(error_urad * error_urad, 10'000) * kPiOver8_e6, 1'000'000);
+}
+
+}  // namespace
+
+CovarianceE8 attitude_covariance(std::uint32_t predicted_error_urad) {
+  return isotropic(
+      static_cast<std::int32_t>(min<std::int64_t>(attitude_variance(predicted_error_urad), INT32_MAX)));
+}
+
+CovarianceE8 rate_covariance(std::uint32_t predicted_error_urad, std::uint32_t frames_since_reset,
+                             std::int64_t elapsed_ns) {
+  if (frames_since_reset < 2) return isotropic(kUnknownRateVarianceE8);
+  constexpr std::int64_t kMostFrames = 10;
+  const std::int64_t frames = min<std::int64_t>(frames_since_reset, kMostFrames);
+  const std::int64_t interval_ms =
+      clamp<std::int64_t>(elapsed_ns, kShortestInterval_ns, kLongestInterval_ns) / 1'000'000;
+  const std::int64_t divisor = (frames - 1) * (2 * frames - 1) * interval_ms * interval_ms;
+  const std::int64_t variance = divide(attitude_variance(predicted_error_urad) * 6'000'000, divisor);
+  return isotropic(static_cast<std::int32_t>(min<std::int64_t>(variance, kUnknownRateVarianceE8)));
+}
+
+}  // namespace tumblesight::gnc

@@ -1,0 +1,116 @@
+#include "gnc/tracking/frame_tracker.hpp"
+
+#include "gnc/attitude/quaternion.hpp"
+#include "gnc/numerics/crc32.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+// The first frame of a track has no prediction, and the second one is predicted without a rate.
+constexpr std::uint32_t kFirstCheckedFrame = 3;
+
+bool is_sound(const AttitudeEstimate& estimate) {
+  return is_unit(estimate.q_lrf_trf) && is_unit(estimate.q_lrf_trf_single_frame) &&
+         estimate.predicted_error_urad <= kPi_urad && estimate.predicted_error_single_frame_urad <= kPi_urad;
+}
+
+bool holds_at(const ChaserAttitude& chaser, std::int64_t time_ns, std::int64_t tolerance_ns) {
+  if (!chaser.valid || !is_unit(chaser.q_inertial_lrf)) return false;
+  const auto later = static_cast<std::uint64_t>(max(chaser.time_ns, time_ns));
+  const auto earlier = static_cast<std::uint64_t>(min(chaser.time_ns, time_ns));
+  return later - earlier <= static_cast<std::uint64_t>(tolerance_ns);
+}
+
+}  // namespace
+
+QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const QuaternionQ30& q_inertial_lrf_now) {
+  return product(conjugate(q_inertial_lrf_now), q_inertial_lrf_last);
+}
+
+std::uint32_t crc32_of_ranges(const RangeImage& frame) {
+  const int rays = min<int>(frame.rays, RangeImage::kMaxRays);
+  Crc32 crc;
+  crc.add_u32(frame.rays);
+  for (int i = 0; i < rays * rays; i += 2) {
+    const auto at = static_cast<std::size_t>(i);
+    const std::uint32_t second = i + 1 < rays * rays ? frame.ranges[at + 1] : 0U;
+    crc.add_u32(frame.ranges[at] | second << 16);
+  }
+  return crc.value();
+}
+
+template <class N>
+void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
+                          const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) {
+  outcome.verdict = state.gate.judge(frame, now_ns, limits.time);
+  if (!outcome.used()) return;
+  const std::uint32_t ranges_crc32 = crc32_of_ranges(frame);
+  if (state.has_ranges && ranges_crc32 == state.ranges_crc32) {
+    outcome.verdict = FrameVerdict::kRepeated;
+    return;
+  }
+
+  FrameInterval interval;
+  outcome.elapsed_ns = state.gate.elapsed_ns(frame);
+  interval.elapsed_ns = outcome.elapsed_ns;
+  const bool knows_chaser = holds_at(chaser, frame.exposure_time_ns, limits.chaser_time_tolerance_ns);
+  if (knows_chaser && state.has_chaser_attitude)
+    interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
+  const std::uint32_t frames_before = estimator_.frames();
+  interval.gives_up_track = outcome.elapsed_ns > limits.longest_coast_ns;
+  outcome.content = estimator_.step(frame, interval, outcome.estimate);
+  if (outcome.content != FrameStatus::kOk) {
+    outcome.verdict = FrameVerdict::kBadContent;
+    return;
+  }
+
+  outcome.numbers_skipped = state.gate.numbers_skipped(frame);
+  outcome.frames_given_up = interval.gives_up_track ? frames_before : 0;
+  if (outcome.frames_given_up > 0) state.forget_track();
+  outcome.doubts = outcome.estimate.rate_is_ambiguous ? kRateAmbiguous : 0;
+  const bool starts_track = outcome.estimate.frames_since_reset == 1;
+  if (!knows_chaser || !(state.has_chaser_attitude || starts_track)) outcome.doubts |= kChaserUnknown;
+  state.gate.accept(frame);
+  state.q_inertial_lrf = chaser.q_inertial_lrf;
+  state.has_chaser_attitude = knows_chaser;
+  state.ranges_crc32 = ranges_crc32;
+  state.has_ranges = true;
+}
+
+template <class N>
+void FrameTracker<N>::check(const FrameTrackerLimits& limits, FrameTrackerState& state,
+                            FrameOutcome& outcome) const {
+  const AttitudeEstimate& estimate = outcome.estimate;
+  if (!limits.check_attitude) return;
+  // The estimator returns sound attitudes for any frame and any model. Corrupted memory can break this.
+  if (!is_sound(estimate)) {
+    state.forget_track();
+    outcome.doubts |= kAttitudeUnsound;
+    return;
+  }
+  if (estimate.predicted_error_urad > limits.predicted_error_urad) outcome.doubts |= kErrorLarge;
+  const bool jumps = estimate.frames_since_reset >= kFirstCheckedFrame &&
+                     cos_half_angle(estimate.q_lrf_trf_predicted, estimate.q_lrf_trf) <
+                         cos_half_of(limits.attitude_jump_urad);
+  // After a jump the rate is uncertain for one more frame.
+  if (jumps || state.has_jumped) outcome.doubts |= kAttitudeJump;
+  state.has_jumped = jumps;
+}
+
+template <class N>
+PropagatedMotion FrameTracker<N>::motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
+                                            const FrameTrackerLimits& limits,
+                                            const FrameTrackerState& state) const {
+  FrameInterval interval;
+  interval.elapsed_ns = time_after(state.gate.last_exposure_time_ns(), time_ns);
+  if (state.has_chaser_attitude && holds_at(chaser, time_ns, limits.chaser_time_tolerance_ns))
+    interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
+  return estimator_.propagated(interval);
+}
+
+template class FrameTracker<FixedPoint>;
+#if TUMBLESIGHT_FLOAT32
+template class FrameTracker<Float32>;
+#endif
+
+}  // namespace tumblesight::gnc

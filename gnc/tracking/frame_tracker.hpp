@@ -1,0 +1,103 @@
+// FrameTracker: the way of a frame through admission, estimator and attitude checks to an attitude and its
+// validity. Pure: the flight application and the evaluation on the ground call the same function.
+//
+//   admission   time and order (frame_gate.hpp); ranges that repeat those of the last used frame are refused
+//               before the estimator sees them, across gaps and resets
+//   gap         the track coasts over the time since the last used frame; after more than longest_coast_ns it
+//               is given up, and the frame starts a new one
+//   chaser      the turn of the LRF since the last used frame, from the attitudes of the chaser at both
+//               exposures. Without one of them the chaser is taken not to have turned, and the outcome says
+//               so
+//   checks      expected error, and distance from the attitude that the track predicted
+#pragma once
+
+#include <cstdint>
+
+#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/tracking/chaser_attitude.hpp"
+#include "gnc/tracking/frame_gate.hpp"
+
+namespace tumblesight::gnc {
+
+struct FrameTrackerLimits {
+  FrameTimeLimits time;
+  std::int64_t longest_coast_ns;          // between the exposures of two used frames
+  std::int64_t chaser_time_tolerance_ns;  // between the chaser's attitude and the exposure
+  std::uint32_t predicted_error_urad;     // a larger expected error is a doubt
+  std::uint32_t attitude_jump_urad;       // a larger distance from the predicted attitude is a doubt
+  bool check_attitude = true;
+};
+
+// What is kept from frame to frame, beside the estimator's state.
+struct FrameTrackerState {
+  FrameGate gate;
+  QuaternionQ30 q_inertial_lrf = kIdentityQ30;  // at the last used frame
+  bool has_chaser_attitude = false;             // q_inertial_lrf is valid
+  bool has_jumped = false;                      // the attitude of the last used frame
+  bool has_ranges = false;                      // ranges_crc32 is valid
+  std::uint32_t ranges_crc32 = 0;               // of the last used frame
+
+  // The estimator was reset: its next attitude is not compared with the last one.
+  void forget_track() { has_jumped = false; }
+  // The times and numbers of earlier frames say nothing about the next one. The ranges still do.
+  void forget_times() {
+    gate.forget();
+    has_chaser_attitude = false;
+  }
+};
+
+// Bit mask: why an attitude is not valid, or what is missing from it.
+using Doubts = std::uint32_t;
+inline constexpr Doubts kErrorLarge = 1;    // expected error above its limit
+inline constexpr Doubts kAttitudeJump = 2;  // too far from the predicted one, in this frame or the one before
+inline constexpr Doubts kAttitudeUnsound = 4;  // not a unit quaternion, or an expected error above pi
+inline constexpr Doubts kRateAmbiguous = 8;    // AttitudeEstimate::rate_is_ambiguous; the attitude is valid
+inline constexpr Doubts kChaserUnknown = 16;   // no attitude of the chaser; the attitude is valid
+inline constexpr Doubts kAgainstAttitude = kErrorLarge | kAttitudeJump | kAttitudeUnsound;
+
+struct FrameOutcome {
+  FrameVerdict verdict = FrameVerdict::kPass;
+  FrameStatus content = FrameStatus::kOk;  // if the verdict is kBadContent
+  // The following are valid if the frame was used.
+  Doubts doubts = 0;
+  std::int64_t elapsed_ns = 0;        // since the last used frame; 0: there is none
+  std::uint32_t numbers_skipped = 0;  // FrameGate::numbers_skipped()
+  std::uint32_t frames_given_up = 0;  // frames of the track that was given up after a gap; 0: none was
+  AttitudeEstimate estimate;
+
+  bool used() const { return verdict == FrameVerdict::kPass; }
+  bool valid() const { return used() && (doubts & kAgainstAttitude) == 0; }
+};
+
+// Turn of the LRF from `last` to `now`: v_lrf now = q v_lrf last.
+QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const QuaternionQ30& q_inertial_lrf_now);
+// CRC-32 over the ranges of a frame and their number.
+std::uint32_t crc32_of_ranges(const RangeImage& frame);
+
+template <class N>
+class FrameTracker {
+ public:
+  // `estimator` must have a model.
+  explicit FrameTracker(AttitudeEstimator<N>& estimator) : estimator_(estimator) {}
+
+  // Uses or refuses one frame, then checks its attitude. A refused frame changes neither `state` nor the
+  // estimator. `chaser`: at the exposure. `now_ns`: time of the cycle.
+  void step(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
+            const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) {
+    use(frame, chaser, now_ns, limits, state, outcome);
+    if (outcome.used()) check(limits, state, outcome);
+  }
+  // The two halves of step(), for a caller that measures the time of the first. check() requires a frame that
+  // was used.
+  void use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
+           const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome);
+  void check(const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) const;
+  // The motion of the target at another time than that of the last used frame. `chaser`: at that time.
+  PropagatedMotion motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
+                             const FrameTrackerLimits& limits, const FrameTrackerState& state) const;
+
+ private:
+  AttitudeEstimator<N>& estimator_;
+};
+
+}  // namespace tumblesight::gnc

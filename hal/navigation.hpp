@@ -1,0 +1,21 @@
+// Navigation: the chaser's own attitude, from its attitude determination.
+#pragma once
+
+#include <cstdint>
+
+#include "gnc/tracking/chaser_attitude.hpp"
+
+namespace tumblesight::hal {
+
+class Navigation {
+ public:
+  // The attitude at `time_ns` or at the nearest time for which it is known; ChaserAttitude::time_ns says
+  // which. An attitude whose time is off by more than config::kChaserTimeTolerance_ns is not used. Never
+  // blocks.
+  [[nodiscard]] virtual gnc::ChaserAttitude attitude_at(std::int64_t time_ns) = 0;
+
+ protected:
+  ~Navigation() = default;
+};
+
+}  // namespace tumblesight::hal

@@ -1,0 +1,73 @@
+#include "sim/cli/disturbance_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "sim/cli/arguments.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr const char* kGroup = "Disturbances";
+
+void add_flag(CLI::App& command, const DisturbanceRow& row, Disturbances& disturbances) {
+  command
+      .add_flag_function(
+          std::string("--") + row.name,
+          [&row, &disturbances](std::int64_t times) { row.set(disturbances, times > 0 ? 1.0 : 0.0); },
+          row.explanation)
+      ->group(kGroup);
+}
+
+void add_value(CLI::App& command, const DisturbanceRow& row, Disturbances& disturbances) {
+  const bool whole = row.kind == DisturbanceKind::kWholeNumber;
+  CLI::Option* option = command.add_option_function<std::string>(
+      std::string("--") + row.name,
+      [&row, &disturbances](const std::string& text) {
+        row.set(disturbances, std::strtod(text.c_str(), nullptr));
+      },
+      row.explanation);
+  option
+      ->check(whole ? whole_number(static_cast<std::uint64_t>(row.lowest),
+                                   static_cast<std::uint64_t>(row.highest))
+                    : number(row.lowest, row.highest))
+      ->type_name(row.type_name)
+      ->group(kGroup);
+  // A default outside the limits means that the disturbance is off.
+  const double value = row.get(disturbances);
+  if (value >= row.lowest && value != 0.0) option->default_str(fmt::format("{:g}", value));
+}
+
+}  // namespace
+
+void add_disturbance_options(CLI::App& command, Disturbances& disturbances) {
+  for (const DisturbanceRow& row : kDisturbances) {
+    row.kind == DisturbanceKind::kFlag ? add_flag(command, row, disturbances)
+                                       : add_value(command, row, disturbances);
+  }
+}
+
+std::string disturbance_examples(const std::string& verb) {
+  return fmt::format(
+      "\nDisturbances keep attitude, rate, range and noise of every sequence: a run with one and a run "
+      "without\n"
+      "it show the same sequences. Several may be combined. A frame that is both lost and frozen is lost.\n\n"
+      "Example: the sensor repeats an image three times and is well again for two frames\n"
+      "  tumblesight {0} --frozen 3 --well-frames 2\n\n"
+      "Example: a chaser that turns at 5 deg/s, and what becomes of it when nobody tells the estimator\n"
+      "  tumblesight {0} --chaser-rate 5\n"
+      "  tumblesight {0} --chaser-rate 5 --no-ego-motion\n",
+      verb);
+}
+
+void require_possible_disturbances(const Disturbances& disturbances, std::uint32_t frames) {
+  try {
+    require_possible(disturbances, frames);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(error.what());
+  }
+}
+
+}  // namespace tumblesight::sim

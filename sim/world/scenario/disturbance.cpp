@@ -1,0 +1,97 @@
+#include "sim/world/scenario/disturbance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "sim/world/dynamics/spin.hpp"
+#include "sim/world/scenario/draws.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+[[noreturn]] void refuse(const char* option, std::uint32_t value, std::uint32_t frames,
+                         const Disturbances& disturbances, std::uint32_t most) {
+  throw std::invalid_argument(fmt::format(
+      "--{} {} is too many for --frames {} with --well-frames {}: give at most {}, or more --frames", option,
+      value, frames, disturbances.well_frames, most));
+}
+
+}  // namespace
+
+std::vector<const DisturbanceRow*> given_disturbances(const Disturbances& disturbances) {
+  std::vector<const DisturbanceRow*> given;
+  for (const DisturbanceRow& row : kDisturbances) {
+    if (row.get(disturbances) != row.get(Disturbances{})) given.push_back(&row);
+  }
+  return given;
+}
+
+std::string to_string(const Disturbances& disturbances) {
+  std::string text;
+  for (const DisturbanceRow* row : given_disturbances(disturbances)) {
+    text += (text.empty() ? "" : ", ") + std::string(row->name);
+    if (row->kind != DisturbanceKind::kFlag) text += fmt::format(" {:g}", row->get(disturbances));
+  }
+  return text;
+}
+
+void require_possible(const Disturbances& disturbances, std::uint32_t frames) {
+  const std::uint32_t well = disturbances.well_frames;
+  if (well > frames) {
+    throw std::invalid_argument(
+        fmt::format("--well-frames {} is too many for --frames {}: give at most {}, or more --frames", well,
+                    frames, frames));
+  }
+  const std::uint32_t before = frames - well;
+  if (disturbances.lost_frames > before) {
+    refuse("lost-frames", disturbances.lost_frames, frames, disturbances, before);
+  }
+  // One frame before them, which they repeat.
+  const std::uint32_t most_frozen = before > 0 ? before - 1 : 0;
+  if (disturbances.frozen > most_frozen) {
+    refuse("frozen", disturbances.frozen, frames, disturbances, most_frozen);
+  }
+}
+
+std::vector<double> exposure_times_s(const Disturbances& disturbances, std::size_t frames, Random random) {
+  std::vector<double> times_s(frames, 0.0);
+  double late_s = 0.0;  // sum of the jitter so far
+  for (std::size_t k = 1; k < frames; ++k) {
+    const double share = random.uniform(-disturbances.period_jitter, disturbances.period_jitter);
+    late_s += share * disturbances.period_s;
+    times_s[k] = disturbances.period_s * static_cast<double>(k) + late_s;
+  }
+  return times_s;
+}
+
+void mark_frames(const Disturbances& disturbances, Random random, std::vector<FrameTruth>& frames) {
+  if (disturbances.well_frames >= frames.size()) return;
+  const std::size_t end = frames.size() - disturbances.well_frames;  // of the frames that can be hit
+  for (std::size_t k = 0; k < end; ++k) {
+    FrameTruth& frame = frames[k];
+    const std::size_t back = end - k;  // 1: the last that can be hit
+    frame.lost = random.uniform() < disturbances.loss_share || back <= disturbances.lost_frames ||
+                 (disturbances.loss_every > 0 && (back - 1) % disturbances.loss_every == 0);
+    if (back <= disturbances.frozen) {
+      frame.frozen_for = static_cast<std::uint32_t>(disturbances.frozen - back + 1);
+    }
+  }
+}
+
+void turn_chaser(double rate_rad_s, Random random, const std::vector<double>& times_s,
+                 std::vector<FrameTruth>& frames) {
+  const Eigen::Quaterniond q_inertial_start = uniform_attitude(random);
+  const Eigen::Vector3d rate_inertial_rad_s =
+      rate_rad_s * (uniform_attitude(random) * Eigen::Vector3d::UnitX());
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    FrameTruth& frame = frames[k];
+    frame.q_inertial_lrf = spin(q_inertial_start, rate_inertial_rad_s, times_s[k]);
+    const Eigen::Quaterniond q_lrf_start = frame.q_inertial_lrf.conjugate() * q_inertial_start;
+    frame.q_lrf_trf = (q_lrf_start * frame.q_lrf_trf).normalized();
+    frame.rate_lrf_rad_s = q_lrf_start * frame.rate_lrf_rad_s;
+  }
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,219 @@
+// Verifies TS-FDIR-070 and TS-FDIR-170.
+#include "gnc/tracking/frame_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <memory>
+
+#include "tests/support/test_models.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr std::int64_t kStart_ns = 1'000'000'000'000;
+constexpr FrameTrackerLimits kLimits{
+    {1'000'000, 2'970'000'000}, 21'600'000'000, 10'000'000, kPi_urad, kPi_urad};
+
+QuaternionQ30 q30(const Eigen::Quaterniond& q) {
+  const auto part = [](double x) { return static_cast<std::int32_t>(std::lround(std::ldexp(x, 30))); };
+  return {part(q.w()), part(q.x()), part(q.y()), part(q.z())};
+}
+
+class Tracking : public ::testing::Test {
+ protected:
+  Tracking() {
+    const auto& image = lasting_model_image<FixedPoint>(7);
+    EXPECT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+  }
+  RangeImage next(std::int64_t elapsed_ns = kNominalPeriod_ns) {
+    RangeImage frame = random_frame(++number);
+    frame.sequence_number = number;
+    frame.exposure_time_ns = now_ns += elapsed_ns;
+    return frame;
+  }
+  const FrameOutcome& step(const RangeImage& frame, const ChaserAttitude& chaser = {}) {
+    outcome = {};
+    FrameTracker<FixedPoint>(*estimator).step(frame, chaser, now_ns, limits, state, outcome);
+    return outcome;
+  }
+  ChaserAttitude chaser(const Eigen::Quaterniond& q) const { return {now_ns, q30(q), true}; }
+
+  std::unique_ptr<AttitudeEstimator<FixedPoint>> estimator =
+      std::make_unique<AttitudeEstimator<FixedPoint>>();
+  FrameTrackerLimits limits = kLimits;
+  FrameTrackerState state;
+  FrameOutcome outcome;
+  std::int64_t now_ns = kStart_ns;
+  std::uint32_t number = 0;
+};
+
+TEST_F(Tracking, OnePeriodWithoutATurnGivesTheBitsOfTheEstimatorAlone) {
+  const auto alone = std::make_unique<AttitudeEstimator<FixedPoint>>();
+  const auto& image = lasting_model_image<FixedPoint>(7);
+  ASSERT_EQ(alone->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+  for (int i = 0; i < 5; ++i) {
+    const RangeImage frame = next();
+    AttitudeEstimate estimate;
+    ASSERT_EQ(alone->step(frame, estimate), FrameStatus::kOk);
+    ASSERT_TRUE(step(frame, i < 3 ? ChaserAttitude{} : ChaserAttitude{now_ns, kIdentityQ30, true}).used());
+    EXPECT_EQ(outcome.estimate.q_lrf_trf, estimate.q_lrf_trf);
+    EXPECT_EQ(estimator->state_crc32(), alone->state_crc32());
+  }
+}
+
+TEST_F(Tracking, RefusedFrameChangesNothing) {
+  step(next());
+  step(next());
+  const std::uint32_t crc = estimator->state_crc32();
+  RangeImage frame = next(100 * kNominalPeriod_ns);
+  frame.ranges.fill(0);
+  EXPECT_EQ(step(frame).verdict, FrameVerdict::kBadContent);
+  EXPECT_EQ(outcome.content, FrameStatus::kEmpty);
+  frame = next();
+  frame.exposure_time_ns += 2'000'000;
+  EXPECT_EQ(step(frame).verdict, FrameVerdict::kFromFuture);
+  EXPECT_EQ(estimator->state_crc32(), crc);
+  EXPECT_EQ(estimator->frames(), 2U);
+  EXPECT_EQ(state.gate.last_sequence_number(), 2U);
+}
+
+TEST_F(Tracking, RepeatedRangesAreRefusedUntilTheyChange) {
+  RangeImage frame = next();
+  step(frame);
+  const std::uint32_t crc = estimator->state_crc32();
+  for (int i = 0; i < 4; ++i) {
+    frame.sequence_number = ++number;
+    frame.exposure_time_ns = now_ns += (i + 1) * kNominalPeriod_ns;
+    EXPECT_EQ(step(frame).verdict, FrameVerdict::kRepeated);
+    EXPECT_EQ(estimator->state_crc32(), crc);
+    if (i == 1) state.forget_times();
+    if (i == 2) state.forget_track();
+  }
+  frame.ranges[frame.rays * (frame.rays / 2) + frame.rays / 2] += 1;
+  frame.sequence_number = ++number;
+  EXPECT_TRUE(step(frame).used());
+}
+
+TEST_F(Tracking, GivesUpAfterTheLongestCoastOnly) {
+  step(next());
+  step(next(limits.longest_coast_ns));
+  EXPECT_EQ(outcome.estimate.frames_since_reset, 2U);
+  EXPECT_EQ(outcome.frames_given_up, 0U);
+  step(next(limits.longest_coast_ns + 1));
+  EXPECT_EQ(outcome.estimate.frames_since_reset, 1U);
+  EXPECT_EQ(outcome.frames_given_up, 2U);
+}
+
+TEST_F(Tracking, AJumpIsADistanceFromThePrediction) {
+  limits.attitude_jump_urad = 87'266;
+  limits.predicted_error_urad = kPi_urad;
+  bool jumped_before = false;
+  int jumps = 0;
+  for (int i = 0; i < 20; ++i) {
+    step(next(1'000'000'000 + std::int64_t{700'000'000} * (i % 5)));
+    ASSERT_EQ(static_cast<int>(outcome.verdict), 0) << i;
+    const double cosine =
+        std::abs(to_double(outcome.estimate.q_lrf_trf_predicted).dot(to_double(outcome.estimate.q_lrf_trf)));
+    const bool jumps_now = i >= 2 && 2 * std::acos(std::min(1.0, cosine)) > 87'266e-6;
+    EXPECT_EQ((outcome.doubts & kAttitudeJump) != 0, jumps_now || jumped_before)
+        << i << ' ' << outcome.doubts;
+    EXPECT_EQ(outcome.valid(), !(jumps_now || jumped_before)) << i << ' ' << outcome.doubts;
+    jumped_before = jumps_now;
+    jumps += jumps_now ? 1 : 0;
+  }
+  EXPECT_GT(jumps, 0) << "the test needs a network that jumps";
+  limits.check_attitude = false;
+  EXPECT_TRUE(step(next()).valid());
+}
+
+// Verifies TS-EST-184.
+TEST_F(Tracking, PredictionTurnsWithTheChaser) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
+  RangeImage frame = next();
+  step(frame, chaser(Eigen::Quaterniond::Identity()));
+  EXPECT_EQ(outcome.doubts & kChaserUnknown, 0U);
+  const Eigen::Quaterniond first = to_double(outcome.estimate.q_lrf_trf);
+  // The LRF turns by `turn`: a target at rest turns the other way in it.
+  frame = next();
+  step(frame, chaser(turn));
+  EXPECT_EQ(outcome.doubts & kChaserUnknown, 0U);
+  EXPECT_NEAR(std::abs(to_double(outcome.estimate.q_lrf_trf_predicted).dot(turn.conjugate() * first)), 1.0,
+              1e-6);
+  const Eigen::Quaterniond second = to_double(outcome.estimate.q_lrf_trf);
+  const ChaserAttitude later{now_ns, q30(turn * turn), true};
+  const PropagatedMotion motion =
+      FrameTracker<FixedPoint>(*estimator).motion_at(now_ns, later, limits, state);
+  EXPECT_NEAR(std::abs(to_double(motion.q_lrf_trf).dot(turn.conjugate() * second)), 1.0, 1e-6);
+  step(next());
+  EXPECT_NE(outcome.doubts & kChaserUnknown, 0U);
+}
+
+// Verifies TS-EST-184.
+TEST_F(Tracking, AnUnknownAttitudeOfTheChaserIsNoTurn) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
+  const auto predicted_as_before = [&](const ChaserAttitude& last, const ChaserAttitude& now) {
+    estimator->reset();
+    state = {};
+    RangeImage frame = next();
+    step(frame, {now_ns, last.q_inertial_lrf, last.valid});
+    const QuaternionQ30 before = outcome.estimate.q_lrf_trf;
+    const PropagatedMotion motion =
+        FrameTracker<FixedPoint>(*estimator)
+            .motion_at(now_ns, {now_ns, now.q_inertial_lrf, now.valid}, limits, state);
+    EXPECT_EQ(motion.q_lrf_trf, before);
+    frame = next();
+    step(frame, {now_ns, now.q_inertial_lrf, now.valid});
+    EXPECT_NE(outcome.doubts & kChaserUnknown, 0U);
+    return outcome.estimate.q_lrf_trf_predicted == before;
+  };
+  EXPECT_TRUE(predicted_as_before({0, kIdentityQ30, false}, {0, q30(turn), true}));
+  EXPECT_TRUE(predicted_as_before({0, kIdentityQ30, true}, {0, q30(turn), false}));
+}
+
+TEST_F(Tracking, AFirstFrameIsNoRepetition) {
+  const RangeImage frame = next();
+  state.ranges_crc32 = crc32_of_ranges(frame);
+  EXPECT_TRUE(step(frame).used());
+}
+
+TEST_F(Tracking, ALimitOfAHalfTurnDetectsNoJump) {
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(step(next()).valid());
+}
+
+TEST_F(Tracking, AJumpIsADoubtForOneMoreFrame) {
+  for (int i = 0; i < 3; ++i) step(next());
+  state.has_jumped = true;
+  EXPECT_EQ(step(next()).doubts & kAttitudeJump, kAttitudeJump);
+  EXPECT_EQ(step(next()).doubts & kAttitudeJump, 0U);
+  state.has_jumped = true;
+  state.forget_track();
+  EXPECT_TRUE(step(next()).valid());
+}
+
+TEST(TurnOfLrf, TakesTheLastLrfToTheOneNow) {
+  const Eigen::Quaterniond last(Eigen::AngleAxisd(1.0, Eigen::Vector3d(1, 2, 2) / 3));
+  const Eigen::Quaterniond now(Eigen::AngleAxisd(-0.4, Eigen::Vector3d(2, -1, 2) / 3));
+  const Eigen::Vector3d v(1, 2, 3);
+  EXPECT_TRUE((to_double(turn_of_lrf(q30(last), q30(now))) * v).isApprox(now.conjugate() * (last * v), 1e-7));
+}
+
+TEST(Crc32OfRanges, CoversEveryRangeAndNoMore) {
+  RangeImage frame = random_frame(1);
+  const std::uint32_t crc = crc32_of_ranges(frame);
+  frame.sequence_number += 1;
+  frame.exposure_time_ns += 1;
+  EXPECT_EQ(crc32_of_ranges(frame), crc);
+  frame.ranges[static_cast<std::size_t>(frame.rays) * frame.rays - 1] ^= 1;
+  EXPECT_NE(crc32_of_ranges(frame), crc);
+  frame.rays = UINT16_MAX;
+  EXPECT_NE(crc32_of_ranges(frame), crc) << "and does not read beyond the frame";
+  frame.rays = 17;
+  const std::uint32_t odd = crc32_of_ranges(frame);
+  frame.ranges[17 * 17 - 1] ^= 1;
+  EXPECT_NE(crc32_of_ranges(frame), odd);
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

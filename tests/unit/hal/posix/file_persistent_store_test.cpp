@@ -1,0 +1,88 @@
+// Verifies TS-RST-050.
+#include "hal/posix/file_persistent_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace tumblesight::hal::posix {
+namespace {
+
+StoredBytes record(std::uint8_t seed) {
+  StoredBytes bytes{};
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(seed + 7 * i);
+  return bytes;
+}
+
+class FilePersistentStoreTest : public ::testing::Test {
+ protected:
+  TemporaryFolder folder;
+  std::string path = folder.path("state");
+};
+
+TEST_F(FilePersistentStoreTest, KeepsBothCopiesForALaterProcess) {
+  {
+    FilePersistentStore store;
+    ASSERT_TRUE(store.use(path.c_str()));
+    StoredBytes bytes{};
+    EXPECT_EQ(store.read(0, bytes), StoreStatus::kBlank);
+    EXPECT_EQ(store.read(1, bytes), StoreStatus::kBlank);
+    ASSERT_EQ(store.write(0, record(9)), StoreStatus::kOk);
+    ASSERT_EQ(store.write(0, record(1)), StoreStatus::kOk);
+    ASSERT_EQ(store.write(1, record(2)), StoreStatus::kOk);
+  }
+  FilePersistentStore store;
+  ASSERT_TRUE(store.use(path.c_str()));
+  for (const int copy : {0, 1}) {
+    StoredBytes bytes{};
+    ASSERT_EQ(store.read(copy, bytes), StoreStatus::kOk);
+    EXPECT_EQ(bytes, record(static_cast<std::uint8_t>(copy + 1)));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path + ".new"));
+}
+
+TEST_F(FilePersistentStoreTest, FileInTheCurrentFolderIsWritten) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path(""));
+  FilePersistentStore store;
+  ASSERT_TRUE(store.use("state"));
+  EXPECT_EQ(store.write(0, record(1)), StoreStatus::kOk);
+  std::filesystem::current_path(before);
+  EXPECT_TRUE(std::filesystem::exists(path));
+}
+
+TEST_F(FilePersistentStoreTest, FileOfAnotherSizeCannotBeRead) {
+  FilePersistentStore store;
+  ASSERT_TRUE(store.use(path.c_str()));
+  StoredBytes bytes{};
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{kStoredBytes - 1}, std::size_t{kStoredBytes + 1}}) {
+    std::ofstream(path, std::ios::binary | std::ios::trunc) << std::string(size, 'x');
+    EXPECT_EQ(store.read(0, bytes), StoreStatus::kFailed) << size;
+  }
+}
+
+TEST_F(FilePersistentStoreTest, FolderThatDoesNotExistFailsTheWrite) {
+  FilePersistentStore store;
+  ASSERT_TRUE(store.use(folder.path("none/state").c_str()));
+  EXPECT_EQ(store.write(0, record(1)), StoreStatus::kFailed);
+  EXPECT_FALSE(store.use(std::string(FilePersistentStore::kMaxPath, 'a').c_str()));
+}
+
+TEST_F(FilePersistentStoreTest, FailedWriteLeavesTheOldRecord) {
+  FilePersistentStore store;
+  ASSERT_TRUE(store.use(path.c_str()));
+  ASSERT_EQ(store.write(0, record(1)), StoreStatus::kOk);
+  std::filesystem::create_directory(path + ".new");  // the temporary file cannot be created
+  EXPECT_EQ(store.write(0, record(2)), StoreStatus::kFailed);
+  StoredBytes bytes{};
+  ASSERT_EQ(store.read(0, bytes), StoreStatus::kOk);
+  EXPECT_EQ(bytes, record(1));
+}
+
+}  // namespace
+}  // namespace tumblesight::hal::posix

@@ -1,0 +1,55 @@
+// Verifies TS-TLM-090.
+#include "hal/posix/packet_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace tumblesight::hal::posix {
+namespace {
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(PacketFile, HoldsThePacketsOneAfterTheOther) {
+  const std::string path = ::testing::TempDir() + "packets_" + std::to_string(getpid());
+  std::ofstream(path) << "something from before";
+  packets::TelemetryEncoder encoder;
+  PacketFile file;
+  ASSERT_EQ(file.open(path.c_str()), 0);
+  std::string expected;
+  for (int i = 0; i < 3; ++i) {
+    const packets::TelemetryPacket& packet = encoder.encode(Event{});
+    EXPECT_TRUE(file.put(packet));
+    expected.append(reinterpret_cast<const char*>(packet.bytes.data()), packet.size);
+  }
+  EXPECT_EQ(content_of(path), expected);
+  EXPECT_EQ(file.lost(), 0U);
+  std::filesystem::remove(path);
+}
+
+TEST(PacketFile, ReportsAFileThatCannotBeCreated) {
+  PacketFile file;
+  EXPECT_EQ(file.open("/no/such/folder/packets"), ENOENT);
+}
+
+TEST(PacketFile, CountsLostPacketsAndNamesTheReason) {
+  packets::TelemetryEncoder encoder;
+  PacketFile file;
+  EXPECT_FALSE(file.put(encoder.encode(Event{})));  // not open
+  EXPECT_EQ(file.error(), EBADF);
+  ASSERT_EQ(file.open("/dev/full"), 0);
+  EXPECT_FALSE(file.put(encoder.encode(Event{})));
+  EXPECT_EQ(file.lost(), 2U);
+  EXPECT_EQ(file.error(), ENOSPC);
+}
+
+}  // namespace
+}  // namespace tumblesight::hal::posix
