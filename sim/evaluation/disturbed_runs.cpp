@@ -55,7 +55,7 @@ void add_freezes(std::vector<DisturbedRun>& runs) {
   }
   const Disturbances with_gaps = with<&Disturbances::frozen>(5U, with<&Disturbances::loss_every>(2U));
   runs.push_back({Condition::kNominal, with_gaps, {}});
-  runs.push_back({Condition::kNominal, recovered(with_gaps), trust(true)});
+  runs.push_back({Condition::kNominal, recovered(with_gaps), {}});
 }
 
 void add_clocks(std::vector<DisturbedRun>& runs) {
