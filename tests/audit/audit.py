@@ -15,6 +15,7 @@ from network_layers import macs
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT, DATA, README = ROOT / "docs/audit.md", ROOT / "docs/audit.json", ROOT / "README.md"
 PROGRAMS = (("fixed", "flight_replay"), ("float32", "flight_replay_float32"))
+LONGEST_STEPS = "flight_worst_step"  # in fixed point
 # Verifies TS-MEM-030, TS-MEM-060.
 BUDGETS = {"ram": 192 * 1024, "stack": 6 * 1024, "text": 128 * 1024, "read_only": 24 * 1024}
 
@@ -24,7 +25,7 @@ def programs(processor):
 
 
 def build(processor):
-    targets = [name for _, name in programs(processor)]
+    targets = [name for _, name in programs(processor)] + [LONGEST_STEPS]
     for command in (["cmake", "--preset", processor.name],
                     ["cmake", "--build", f"build/{processor.name}", "--target", *targets]):
         run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
@@ -47,10 +48,12 @@ def measure(processor, numerics, program, plugin, folder):
                if name not in ("application", "telemetry") and len({step[i] for step in steps}) > 1}
     stages = {name: max(step[i] for step in steps) for i, name in enumerate(names)}
     stages["application"] += stages.pop("telemetry")
+    longest = (instruction_count.count_longest_steps(processor, program.with_name(LONGEST_STEPS), plugin, folder)
+               if numerics == "fixed" else {})
     sizes = image.sizes(processor, program)
     stack_bytes, path = stack.worst_case(program.parents[1], numerics)
     return {"digest": digest, "digest_is_golden": digest == golden()[numerics], "set": heading[3], "frames": heading[4],
-            "target": heading[1], "steps": len(steps), "stages": stages, "instructions": sum(stages.values()),
+            "target": heading[1], "steps": len(steps), "stages": stages, "instructions": sum(stages.values()), "longest_steps": longest,
             # Float32 arithmetic may branch on the data on some processors.
             "equal_counts": not unequal or numerics == "float32", "unequal": unequal,
             "text": sizes["text"], "read_only": sizes["read_only"], "ram": sizes["data"] + sizes["bss"] + stack_bytes,

@@ -80,7 +80,7 @@ WHOLE_STEP = (("step", r"fsw::AttitudeInitApp::step\("), ("(end)", r"^tumblesigh
 
 
 # Verifies TS-TIM-100.
-def count_worst_steps(processor, program, plugin, folder):
+def count_longest_steps(processor, program, plugin, folder):
     """{name of a step: instructions, the most of all steps with this name}, without the quiet ones"""
     steps, console = run_and_count(processor, program, plugin, folder, WHOLE_STEP)
     names = [line.split(" ", 1)[1] for line in console if line.startswith("step ")]

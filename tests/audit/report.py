@@ -3,6 +3,9 @@ from processors import CYCLES_PER_INSTRUCTION
 
 PERIOD_S = 2.7
 GROWTH = 0.02
+# Limit of a step with a frame, whatever else happens in it. The names of these steps begin with WITH_FRAME.
+SHARE_OF_LONGEST_STEP = 0.5
+WITH_FRAME = "frame"
 
 
 def _estimate_ms(processor, instructions):
@@ -30,9 +33,18 @@ def failures(results, committed, budgets, macs):
             share = _estimate_ms(processor, r["instructions"]) / 1e3 / PERIOD_S
             if share > processor.share_of_period:
                 wrong.append(f"{at}: {100 * share:.1f} % of the period, limit {100 * processor.share_of_period:.0f} %")
+            for name, instructions in r["longest_steps"].items():
+                share = _estimate_ms(processor, instructions) / 1e3 / PERIOD_S
+                if name.startswith(WITH_FRAME) and share > SHARE_OF_LONGEST_STEP:
+                    wrong.append(f"{at}: step '{name}': {100 * share:.1f} % of the period, limit {100 * SHARE_OF_LONGEST_STEP:.0f} %")
             for name, limit in budgets.items():
                 if r[name] > limit:
                     wrong.append(f"{at}: {name} {r[name]} bytes, limit {limit}")
+        for name, instructions in committed.get(processor.name, {}).get(numerics, {}).get("longest_steps", {}).items():
+            now = r["longest_steps"].get(name, 0)
+            if now > instructions * (1 + GROWTH):
+                wrong.append(f"{at}: step '{name}' has grown from {instructions} to {now} instructions, by more than "
+                             f"{100 * GROWTH:.0f} % (tests/audit/run --write accepts it)")
         before = committed.get(processor.name, {}).get(numerics)
         if before:
             for name in ("instructions", "text", "read_only", "ram", "stack"):
@@ -45,7 +57,7 @@ def failures(results, committed, budgets, macs):
 def as_data(results, macs):
     data = {"macs": macs, "processors": {}}
     for processor, numerics, r in results:
-        keep = {k: r[k] for k in ("digest", "instructions", "stages", "text", "read_only", "ram", "stack")}
+        keep = {k: r[k] for k in ("digest", "instructions", "stages", "longest_steps", "text", "read_only", "ram", "stack")}
         data["processors"].setdefault(processor.name, {})[numerics] = keep
     return data
 
@@ -81,7 +93,7 @@ def as_summary(results, macs):
 def as_document(results, macs, budgets, model, frames):
     fixed = [(p, r) for p, numerics, r in results if numerics == "fixed"]
     floats = [(p, r) for p, numerics, r in results if numerics == "float32"]
-    return "\n".join(_introduction(model, frames) + _steps(fixed, macs) + _stages(fixed) + _memory(fixed, budgets)
+    return "\n".join(_introduction(model, frames) + _steps(fixed, macs) + _longest_steps(fixed) + _stages(fixed) + _memory(fixed, budgets)
                      + _float32(floats, macs)) + "\n"
 
 
@@ -124,6 +136,19 @@ def _steps(fixed, macs):
         lines += ["", "For comparison: CMSIS-NN's 8-bit convolutions are published at about 1.7 cycles per MAC on a Cortex-M7. This component takes",
                   f"{per_mac:.2f} instructions per MAC there for a whole step; the core starts up to two instructions per cycle. Cycles and",
                   "instructions are different quantities, so that only their order of magnitude can be compared."]
+    return lines + [""]
+
+
+def _longest_steps(fixed):
+    lines = ["## Longest steps", "",
+             "Estimated time in ms of whole steps in which more happens than a frame (`flight_worst_step`): the most expensive commands, as many",
+             "as a step takes; the largest scrubbing that SET_LIMIT allows, with a repair of every block; and memory damaged so that a long",
+             f"recovery is needed. A step with a frame alone or with commands and scrubbing stays within {100 * SHARE_OF_LONGEST_STEP:.0f} % of the period "
+             f"({1e3 * SHARE_OF_LONGEST_STEP * PERIOD_S:.0f} ms), which the",
+             "audit checks. A recovery is not spread over several steps: on the slowest processors its step takes longer than that, and a",
+             "watchdog's time-out must allow for it.", ""]
+    lines += _table(["step", *(p.name for p, _ in fixed)],
+                    [[name, *(f"{_estimate_ms(p, r['longest_steps'][name]):.0f}" for p, r in fixed)] for name in fixed[0][1]["longest_steps"]])
     return lines + [""]
 
 

@@ -17,7 +17,7 @@ PROCESSOR = processors.by_name("cortex-m7")
 
 def result(**changes):
     good = {"digest": "0", "digest_is_golden": True, "equal_counts": True, "unequal": {}, "forbidden": {}, "floating_point": [],
-            "instructions": 1000, "text": 50, "read_only": 50, "ram": 50, "stack": 5}
+            "instructions": 1000, "longest_steps": {}, "text": 50, "read_only": 50, "ram": 50, "stack": 5}
     return [(PROCESSOR, "fixed", {**good, **changes})]
 
 
@@ -37,6 +37,14 @@ class Failures(unittest.TestCase):
                 wrong = self.of(**changes)
                 self.assertEqual(len(wrong), 1)
                 self.assertIn(words, wrong[0])
+
+    # Half of the period: 90 M instructions at 100 MHz. Only steps with a frame have the limit.
+    def test_longest_step_with_a_frame_is_limited(self):
+        self.assertEqual(self.of(longest_steps={"frame, commands": 90_000_000, "tables rebuilt": 91_000_000}), [])
+        self.assertIn("'frame, commands': 50.6 %", self.of(longest_steps={"frame, commands": 91_000_000})[0])
+        before = {"cortex-m7": {"fixed": {"longest_steps": {"tables rebuilt": 1000}, "instructions": 1000, "text": 50, "read_only": 50,
+                                          "ram": 50, "stack": 5}}}
+        self.assertIn("'tables rebuilt' has grown", self.of(before, longest_steps={"tables rebuilt": 1021})[0])
 
     def test_growth_of_more_than_two_percent_is_reported(self):
         before = {"cortex-m7": {"fixed": {"instructions": 1000, "text": 50, "read_only": 50, "ram": 50, "stack": 5}}}

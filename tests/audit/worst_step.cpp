@@ -6,8 +6,7 @@
 
 #include "fsw/app/attitude_init_app.hpp"
 #include "fsw/app/telecommand.hpp"
-#include "fsw/app/hmac_sha256.hpp"
-#include "gnc/numerics/crc16.hpp"
+#include "gnc/numerics/hmac_sha256.hpp"
 #include "hal/board.hpp"
 #include "hal/replay/recording.hpp"
 #include "hal/replay/text_line.hpp"
@@ -29,7 +28,7 @@ namespace {
 
 namespace board = hal::board;
 
-constexpr hal::CommandKey kKey{1, 2, 3, 4, 5, 6, 7, 8};
+constexpr hal::CommandKeys kKeys{{hal::CommandKey{1, 2, 3, 4, 5, 6, 7, 8}}, 0x2A5C};
 constexpr std::size_t kImageBytes = gnc::kModelImageSize<Numerics>;
 
 class BoardStopwatch final : public hal::Stopwatch {
@@ -41,8 +40,13 @@ class BoardStopwatch final : public hal::Stopwatch {
 class TwoBanks final : public hal::ModelStore {
  public:
   hal::ModelBank bank(int index) override {
-    std::uint8_t* const bytes = banks[static_cast<std::size_t>(index)].data();
-    return {bytes, read_only ? nullptr : bytes, kImageBytes, kImageBytes};
+    const auto writing = read_only ? hal::BankWriting::kReadOnly : hal::BankWriting::kAtOnce;
+    return {banks[static_cast<std::size_t>(index)].data(), writing, kImageBytes, kImageBytes};
+  }
+  hal::WriteStatus write(int index, std::uint32_t offset, const std::uint8_t* bytes,
+                         std::uint32_t count) override {
+    std::uint8_t* const memory = read_only ? nullptr : banks[static_cast<std::size_t>(index)].data();
+    return hal::write_at_once(memory, kImageBytes, offset, bytes, count);
   }
   void fill() {
     for (auto& bytes : banks) std::memcpy(bytes.data(), tumblesight_model_image, kImageBytes);
@@ -71,25 +75,28 @@ void add_u32(std::uint8_t* at, std::uint32_t value) {
   for (int i = 0; i < 4; ++i) at[i] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
 }
 
-// Adds a command for the next step, with its security trailer.
+// Adds a command for the next step, with its security trailer (hal/messages/command_packet.hpp).
 void command(FunctionCode function, const std::uint8_t* arguments, int argument_bytes) {
   hal::CommandPacket& packet = inputs.commands[static_cast<std::size_t>(inputs.command_count++)];
   std::uint8_t* const bytes = packet.bytes.data();
-  const int size = hal::kCommandHeaderBytes + argument_bytes, length = size - 7;
+  const int size = hal::kCommandHeaderBytes + argument_bytes + hal::kCommandTrailerBytes;
+  const int length = size - hal::kCommandPrimaryHeaderBytes - 1;
   const std::array<std::uint8_t, hal::kCommandHeaderBytes> header{
-      0x18 | hal::kCommandApid >> 8,           hal::kCommandApid & 0xFF, 0xC0, 0,
-      static_cast<std::uint8_t>(length >> 8),  static_cast<std::uint8_t>(length),
-      static_cast<std::uint8_t>(function),     0,
-      0,                                       0};
+      0x18 | hal::kCommandApid >> 8,          hal::kCommandApid & 0xFF,          0xC0, 0,
+      static_cast<std::uint8_t>(length >> 8), static_cast<std::uint8_t>(length), 0,    0};
   std::memcpy(bytes, header.data(), header.size());
+  bytes[hal::kCommandFunctionOffset] = static_cast<std::uint8_t>(function);
   std::memcpy(bytes + hal::kCommandHeaderBytes, arguments, static_cast<std::size_t>(argument_bytes));
-  const std::uint16_t crc = gnc::crc16(bytes, static_cast<std::size_t>(size));
-  bytes[8] = static_cast<std::uint8_t>(crc >> 8);
-  bytes[9] = static_cast<std::uint8_t>(crc);
-  add_u32(bytes + size, ++counter);
-  const Sha256Digest code = hmac_sha256(kKey, bytes, static_cast<std::size_t>(size) + 4);
-  std::memcpy(bytes + size + 4, code.data(), hal::kCommandMacBytes);
-  packet.size = static_cast<std::uint16_t>(size + hal::kCommandTrailerBytes);
+  std::uint8_t* const trailer = bytes + hal::kCommandHeaderBytes + argument_bytes;
+  trailer[0] = kKeys.spacecraft_id >> 8;
+  trailer[1] = kKeys.spacecraft_id & 0xFF;
+  trailer[2] = trailer[3] = 0;  // key slot, reserved
+  add_u32(trailer + 4, ++counter);
+  const auto covered = static_cast<std::size_t>(size - hal::kCommandMacBytes);
+  const gnc::Sha256Digest code = gnc::hmac_sha256(kKeys.slots[0], bytes, covered);
+  std::memcpy(bytes + covered, code.data(), hal::kCommandMacBytes);
+  bytes[hal::kCommandChecksumOffset] = hal::command_checksum(bytes, static_cast<std::size_t>(size));
+  packet.size = static_cast<std::uint16_t>(size);
 }
 
 void set_mode(Mode mode) {
@@ -232,7 +239,7 @@ int run() {
   hal::Platform platform;
   platform.stopwatch = &stopwatch;
   platform.models = &store;
-  platform.command_key = &kKey;
+  platform.command_keys = &kKeys;
   app.init(platform, nullptr);
   step("quiet");
   step("quiet");
