@@ -51,9 +51,7 @@ class TwoBanks final : public hal::ModelStore {
   void fill() {
     for (auto& bytes : banks) std::memcpy(bytes.data(), tumblesight_model_image, kImageBytes);
   }
-  void damage(std::size_t bank, std::size_t block) {
-    banks[bank][block * config::kModelBlockBytes + 9] ^= 1;
-  }
+  void damage(std::size_t bank, std::size_t block) { banks[bank][block * config::kModelBlockBytes + 9] ^= 1; }
 
   bool read_only = false;
   // Their addresses are aligned as the application requires it.
@@ -146,7 +144,8 @@ void load_as_second_copy() {
   AppMemory::commit(app);
 }
 
-// The frame alone; with it a full command load, and the largest scrubbing of which every block needs a repair.
+// The frame alone; with it a full command load, and the largest scrubbing of which every block needs a
+// repair.
 void steps_with_a_frame() {
   step("frame");
   load_commands();
@@ -208,8 +207,7 @@ void model_commands() {
   for (int i = 0; i < config::kMaxCommandsPerStep; ++i)
     command(FunctionCode::kModelValidate, arguments.data(), 8);
   step("model validated");
-  for (int i = 0; i < 1; ++i)
-    command(FunctionCode::kModelActivate, arguments.data() + 4, 4);
+  for (int i = 0; i < 1; ++i) command(FunctionCode::kModelActivate, arguments.data() + 4, 4);
   step("model activated");
   expect(outputs.telemetry.bank_in_use == 1, "the model was not activated");
   set_mode(Mode::kRun);
@@ -248,10 +246,8 @@ int run() {
   recoveries();
   model_commands();
   bank_switch();
-  board::write(hal::replay::TextLine()
-                   .text(failure == nullptr ? "all steps done" : failure)
-                   .text("\n")
-                   .c_str());
+  board::write(
+      hal::replay::TextLine().text(failure == nullptr ? "all steps done" : failure).text("\n").c_str());
   return failure == nullptr ? 0 : 1;
 }
 
