@@ -208,11 +208,13 @@ int AttitudeTrack<Real>::law() const {
 template <class Real>
 Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
                          const Hypotheses<Real>& hypotheses, const FrameInterval& interval) {
-  const std::int64_t elapsed_ns =
-      clamp<std::int64_t>(interval.elapsed_ns, kShortestInterval_ns, kLongestInterval_ns);
-  const Matrix3<Real> r_now_last = converted<Real>(rotation_from_quaternion(interval.q_now_last));
-  // Both alternatives are computed in every frame, so that the time does not depend on the state.
   const bool has_track = (track.frames > 0) & is_valid(track);
+  // Without a track the motion is not used, and the time of one period is spent.
+  const std::int64_t elapsed_ns =
+      select(has_track, clamp<std::int64_t>(interval.elapsed_ns, kShortestInterval_ns, kLongestInterval_ns),
+             kNominalPeriod_ns);
+  const Matrix3<Real> r_now_last = converted<Real>(rotation_from_quaternion(interval.q_now_last));
+  // Both alternatives are computed in every frame, so that the time depends on the interval only.
   std::array<Motion<Real>, 2> choice{};  // [0] without a track, [1] with a track
   choice[0] = {hypotheses.r_lrf_trf[hypotheses.likeliest], Vector3<Real>::Zero()};
   Prediction<Real> prediction;

@@ -1,6 +1,7 @@
 #include "hal/replay/console_link.hpp"
 
 #include "hal/board.hpp"
+#include "hal/messages/message_fields.hpp"
 #include "hal/replay/text_line.hpp"
 
 namespace tumblesight::hal::replay {
@@ -17,24 +18,15 @@ std::int64_t hundredths_of_degree(std::uint32_t urad) {
 
 }  // namespace
 
-void ConsoleLink::digest_time(std::int64_t time_ns) {
-  const auto bits = static_cast<std::uint64_t>(time_ns);
+void ConsoleLink::digest_number(std::int64_t number) {
+  const auto bits = static_cast<std::uint64_t>(number);
   crc_.add_u32(static_cast<std::uint32_t>(bits));
   crc_.add_u32(static_cast<std::uint32_t>(bits >> 32));
 }
 
 void ConsoleLink::publish(const AttitudeReport& report) {
   report_ = report;
-  digest_time(report.time_ns);
-  digest_time(report.exposure_time_ns);
-  crc_.add_u32(report.sequence_number);
-  crc_.add_u32(static_cast<std::uint32_t>(report.validity));
-  crc_.add_u32(report.frames_since_reset);
-  for (const std::int32_t part : report.q_lrf_trf) crc_.add_u32(static_cast<std::uint32_t>(part));
-  crc_.add_u32(report.predicted_error_urad);
-  for (const std::int32_t part : report.q_lrf_trf_single_frame)
-    crc_.add_u32(static_cast<std::uint32_t>(part));
-  crc_.add_u32(report.predicted_error_single_frame_urad);
+  MessageFields<AttitudeReport>::visit([this](const auto& field) { digest_field(field); }, report);
 }
 
 void ConsoleLink::publish(const Telemetry& telemetry) {
@@ -54,7 +46,7 @@ void ConsoleLink::publish(const Event& event) {
   for (const std::int32_t argument : event.arguments) line.text(" ").number(argument);
   board::write(line.text("\n").c_str());
   if (depends_on_wall_clock(event.id)) return;
-  digest_time(event.time_ns);
+  digest_number(event.time_ns);
   crc_.add_u32(static_cast<std::uint32_t>(event.id));
   crc_.add_u32(static_cast<std::uint32_t>(event.severity));
   for (const std::int32_t argument : event.arguments) crc_.add_u32(static_cast<std::uint32_t>(argument));

@@ -2,6 +2,8 @@
 // same on every processor. It delivers no commands.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "gnc/numerics/crc32.hpp"
@@ -23,7 +25,15 @@ class ConsoleLink final : public Link {
   const Telemetry& telemetry() const { return telemetry_; }
 
  private:
-  void digest_time(std::int64_t time_ns);
+  void digest_number(std::int64_t number);
+  template <class Field>
+  void digest_field(const Field& field) {
+    digest_number(static_cast<std::int64_t>(field));
+  }
+  template <class Element, std::size_t kSize>
+  void digest_field(const std::array<Element, kSize>& field) {
+    for (const Element& element : field) digest_field(element);
+  }
 
   gnc::Crc32 crc_;
   AttitudeReport report_;

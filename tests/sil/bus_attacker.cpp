@@ -20,7 +20,7 @@
 #include "hal/dds/idl/icd_hash.hpp"
 #include "hal/dds/idl/step_content.hpp"
 #include "hal/dds/idl/topics.hpp"
-#include "sim/sil/telecommand.hpp"
+#include "sim/sil/signed_telecommand.hpp"
 
 namespace {
 

@@ -31,6 +31,29 @@ TEST(Crc32, DoesNotDependOnHowTheDataIsSplit) {
   }
 }
 
+// The definition, bit by bit.
+std::uint32_t crc32_by_bits(const std::uint8_t* data, std::size_t size) {
+  std::uint32_t remainder = 0xFFFFFFFFU;
+  for (std::size_t i = 0; i < size; ++i) {
+    remainder ^= data[i];
+    for (int bit = 0; bit < 8; ++bit)
+      remainder = (remainder >> 1) ^ ((remainder & 1U) != 0 ? 0xEDB88320U : 0U);
+  }
+  return ~remainder;
+}
+
+TEST(Crc32, IsThatOfTheDefinitionForAnyLengthAndAlignment) {
+  std::array<std::uint8_t, 80> bytes{};
+  std::uint32_t value = 1;
+  for (std::uint8_t& byte : bytes)
+    byte = static_cast<std::uint8_t>((value = value * 1'664'525U + 1'013'904'223U) >> 24);
+  for (std::size_t begin = 0; begin < 8; ++begin) {
+    for (std::size_t size = 0; size <= 64; ++size)
+      EXPECT_EQ(crc32(bytes.data() + begin, size), crc32_by_bits(bytes.data() + begin, size))
+          << begin << ' ' << size;
+  }
+}
+
 TEST(Crc32, AddsNumbersAsLittleEndianBytes) {
   Crc32 number_crc, float_crc, bytes_crc;
   number_crc.add_u32(0x3F800001U);
