@@ -20,7 +20,7 @@ _BEFORE_LSTM = (
 )
 _AFTER_HEAD = (
     ("fusion", r"gnc::advance<"),
-    ("telemetry", r"BoardStopwatch::now_ns\("),
+    ("telemetry", r"gnc::FrameGate::numbers_skipped\("),  # the first function after the estimator
 )
 TIME_LIMIT_S = 1200
 
