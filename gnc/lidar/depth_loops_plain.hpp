@@ -2,10 +2,6 @@
 // file. All of it has internal linkage, so that no two instruction sets share code.
 #pragma once
 
-#if defined(__ARM_FEATURE_SAT) && !defined(__ARM_NEON)
-#include <arm_acle.h>
-#endif
-
 #include "gnc/lidar/depth_loops.hpp"
 
 #define TUMBLESIGHT_INLINE [[gnu::always_inline]] static inline
@@ -39,7 +35,8 @@ TUMBLESIGHT_INLINE std::int16_t multiply_q15(std::int16_t a, std::int16_t b) {
 // a + b, limited to 16 bits, so that a ray far outside the image is not folded into it.
 TUMBLESIGHT_INLINE std::int16_t saturating_sum(std::int32_t a, std::int32_t b) {
 #if defined(__ARM_FEATURE_SAT) && !defined(__ARM_NEON)
-  return static_cast<std::int16_t>(__ssat(a + b, 16));  // one instruction, which the compiler does not find
+  return static_cast<std::int16_t>(
+      __builtin_arm_ssat(a + b, 16));  // one instruction, which the compiler does not find
 #else
   return static_cast<std::int16_t>(clamp<std::int32_t>(a + b, -32768, 32767));
 #endif

@@ -51,12 +51,12 @@ void add_disturbance_options(CLI::App& command, Disturbances& disturbances) {
 
 std::string disturbance_examples(const std::string& verb) {
   return fmt::format(
-      "\nDisturbances keep attitude, rate, range and noise of every sequence: a run with one and a run "
-      "without\n"
-      "it show the same sequences. Several may be combined. A frame that is both lost and frozen is lost.\n\n"
-      "Example: the sensor repeats an image three times and is well again for two frames\n"
+      "\nDisturbances keep attitude, rate, range and noise of every sequence: a run with\n"
+      "one and a run without it show the same sequences. Several may be combined. A\n"
+      "frame that is both lost and frozen is lost.\n\n"
+      "Example: the sensor repeats an image three times, then works for two frames\n"
       "  tumblesight {0} --frozen 3 --well-frames 2\n\n"
-      "Example: a chaser that turns at 5 deg/s, and what becomes of it when nobody tells the estimator\n"
+      "Example: a chaser that turns at 5 deg/s, with and without its attitude as input\n"
       "  tumblesight {0} --chaser-rate 5\n"
       "  tumblesight {0} --chaser-rate 5 --no-ego-motion\n",
       verb);

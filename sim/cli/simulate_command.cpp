@@ -303,8 +303,8 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "  tumblesight simulate --condition degraded --sequences 100 --seed 7 \\\n"
       "      --json figures.json\n\n"
       "The exit status is 0 only if every step was answered, with an attitude where the\n"
-      "sensor delivered a frame of its own, the flight task allocated no heap memory, no\n"
-      "other program wrote to the topics of the run and the report was written.\n" +
+      "sensor delivered a new frame, the flight task allocated no heap memory, no other\n"
+      "program wrote to the topics of the run and the report was written.\n" +
       disturbance_examples("simulate"));
   command->callback([arguments] { simulate(*arguments); });
 }

@@ -38,9 +38,9 @@ TEST(RunJson, HasExactlyTheAgreedKeys) {
   const nlohmann::ordered_json json = run_json(setup(), run());
   std::string keys;
   for (const auto& [key, value] : json.items()) keys += key + " ";
-  EXPECT_EQ(
-      keys,
-      "target condition sequences rcnn cnn inference_us flight_heap_allocations steps_missed trace_crc32 ");
+  EXPECT_EQ(keys,
+            "target condition sequences disturbances rcnn cnn inference_us flight_heap_allocations "
+            "steps_missed trace_crc32 ");
   EXPECT_NEAR(json["rcnn"]["mean_deg"].get<double>(), 5.7296, 1e-3);
   EXPECT_NEAR(json["cnn"]["mean_deg"].get<double>(), 28.648, 1e-3);
   EXPECT_EQ(json["rcnn"]["within_20deg"], 1.0);
