@@ -62,23 +62,27 @@ struct Alternative {
 };
 template <class Real>
 Alternative second_of(const Hypotheses<Real>& hypotheses, const Matrix3<Real>& attitude) {
-  Fixed same{}, largest{};
-  int second = 0;
+  // Masks instead of an index: the time of a copy can depend on the alignment of what it copies.
+  std::int32_t same = 0, largest = 0;
+  std::array<std::int32_t, 9> second{};
   for (int i = 0; i < shape::kHypotheses; ++i) {
-    const bool is_same = same_attitude<Real>(hypotheses.r_lrf_trf[i], attitude);
-    const Fixed probability = converted<Fixed>(hypotheses.probability[i]);
-    same += gnc::select(is_same, probability, Fixed{});
-    const bool is_second = !is_same & (probability > largest);
-    second = gnc::select(is_second, i, second);
-    largest = gnc::select(is_second, probability, largest);
+    const auto is_same = mask_if<std::int32_t>(same_attitude<Real>(hypotheses.r_lrf_trf[i], attitude));
+    const std::int32_t probability = converted<Fixed>(hypotheses.probability[i]).raw();
+    same += probability & is_same;
+    const std::int32_t is_second = ~is_same & less_mask(largest, probability);
+    largest ^= (largest ^ probability) & is_second;
+    for (int k = 0; k < 9; ++k) {
+      std::int32_t& element = second[static_cast<std::size_t>(k)];
+      element ^= (element ^ converted<Fixed>(hypotheses.r_lrf_trf[i](k)).raw()) & is_second;
+    }
   }
   constexpr std::int64_t kMostOdds_ppm = 1'000'000'000;
-  const std::int64_t divisor = max<std::int64_t>(same.raw(), 1);
-  const std::int64_t odds_ppm = min(kMostOdds_ppm, divide(std::int64_t{largest.raw()} * 1'000'000, divisor));
-  const bool exists = largest > Fixed{};
-  const QuaternionQ30 q_lrf_trf =
-      quaternion_from_rotation(converted<Fixed>(hypotheses.r_lrf_trf[static_cast<std::size_t>(second)]));
-  return {select(exists, q_lrf_trf, kIdentityQ30), static_cast<std::uint32_t>(odds_ppm)};
+  const std::int64_t divisor = max<std::int64_t>(same, 1);
+  const std::int64_t odds_ppm = min(kMostOdds_ppm, divide(std::int64_t{largest} * 1'000'000, divisor));
+  Matrix3<Fixed> r_lrf_trf;
+  for (int k = 0; k < 9; ++k) r_lrf_trf(k) = Fixed::from_raw(second[static_cast<std::size_t>(k)]);
+  const QuaternionQ30 q_lrf_trf = quaternion_from_rotation(r_lrf_trf);
+  return {select(is_less(0, largest), q_lrf_trf, kIdentityQ30), static_cast<std::uint32_t>(odds_ppm)};
 }
 
 // Whether this rate turns the target by more than kLargestTurn_rad in this time.

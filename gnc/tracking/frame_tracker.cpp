@@ -31,11 +31,7 @@ std::uint32_t crc32_of_ranges(const RangeImage& frame) {
   const int rays = min<int>(frame.rays, RangeImage::kMaxRays);
   Crc32 crc;
   crc.add_u32(frame.rays);
-  for (int i = 0; i < rays * rays; i += 2) {
-    const auto at = static_cast<std::size_t>(i);
-    const std::uint32_t second = i + 1 < rays * rays ? frame.ranges[at + 1] : 0U;
-    crc.add_u32(frame.ranges[at] | second << 16);
-  }
+  crc.add_u16(frame.ranges.data(), static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays));
   return crc.value();
 }
 
