@@ -44,9 +44,9 @@ bool refuses(const hal::CommandPacket& packet, int trailer_bytes, Mode mode, Adm
 }
 
 // The checks of the trailer. True: the packet is authentic and its counter is spent.
-bool takes_trailer(const hal::CommandPacket& packet, const CommandAuthority& authority,
+bool takes_trailer(const hal::CommandPacket& packet, const hal::CommandKeys& keys, std::uint32_t slot,
                    std::uint32_t last_counter, Admission& admission) {
-  const hal::CommandOrigin origin = hal::origin_of(packet, *authority.keys(), authority.slot(), last_counter);
+  const hal::CommandOrigin origin = hal::origin_of(packet, keys, slot, last_counter);
   admission.why = origin.why;
   admission.authentic = origin.authentic;
   admission.counter = origin.counter;
@@ -61,8 +61,9 @@ bool takes_trailer(const hal::CommandPacket& packet, const CommandAuthority& aut
 Admission judge(const hal::CommandPacket& packet, const CommandAuthority& authority,
                 std::uint32_t last_counter, Mode mode) {
   Admission admission;
-  if (authority.keys() != nullptr) {
-    if (!takes_trailer(packet, authority, last_counter, admission)) return admission;
+  const hal::CommandKeys* const keys = authority.keys();
+  if (keys != nullptr) {
+    if (!takes_trailer(packet, *keys, authority.slot(), last_counter, admission)) return admission;
     admission.admitted = !refuses(packet, hal::kCommandTrailerBytes, mode, admission);
   } else if (packet.size > packet.bytes.size()) {
     admission.why = CommandRefusal::kWrongLength;

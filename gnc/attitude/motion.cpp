@@ -152,7 +152,7 @@ Vector3<Real> rotation_vector(const Matrix3<Real>& r, Real largest_versine) {
   const QuaternionQ30 q = quaternion_from_rotation(converted<Fixed>(r));
   std::array<Real, 4> half;
   for (std::size_t i = 0; i < 4; ++i)
-    half[i] = converted<Real>(Fixed::from_raw((std::int64_t{q[i]} + (1 << 5)) >> 6));
+    half[i] = converted<Real>(Fixed::from_raw((static_cast<std::int64_t>(q[i]) + (1 << 5)) >> 6));
   const Real factor = constant<Real>(2.0) * angle_over_sine<Real>(kOne - half[0]);
   const Real versine = versine_of<Real>(r);
   const bool is_small = versine < constant<Real>(kVersineOf60Degrees);

@@ -73,6 +73,7 @@ bool parse_reset(const char* option, const char* value, hal::ResetCause& cause) 
 
 // A simulator that starts this program passes run id and partition in the environment.
 bool read_environment(FlightOptions& options) {
+  // No other thread runs yet. NOLINTNEXTLINE(concurrency-mt-unsafe)
   const char* const text = std::getenv(hal::dds::kRunSecretVariable);
   if (text == nullptr) return true;
   hal::dds::RunSecret secret;
