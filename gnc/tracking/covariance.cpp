@@ -1,6 +1,7 @@
 #include "gnc/tracking/covariance.hpp"
 
 #include "gnc/numerics/division.hpp"
+#include "gnc/rcnn/attitude_estimator.hpp"
 #include "gnc/rcnn/attitude_track.hpp"
 
 namespace tumblesight::gnc {
@@ -12,15 +13,14 @@ CovarianceE8 isotropic(std::int32_t variance) {
 
 std::int64_t attitude_variance(std::uint32_t predicted_error_urad) {
   constexpr std::int64_t kPiOver8_e6 = 392'699;
-  const std::int64_t error_urad = predicted_error_urad;
+  const std::int64_t error_urad = min<std::int64_t>(predicted_error_urad, kPi_urad);
   return divide(divide(error_urad * error_urad, 10'000) * kPiOver8_e6, 1'000'000);
 }
 
 }  // namespace
 
 CovarianceE8 attitude_covariance(std::uint32_t predicted_error_urad) {
-  return isotropic(
-      static_cast<std::int32_t>(min<std::int64_t>(attitude_variance(predicted_error_urad), INT32_MAX)));
+  return isotropic(static_cast<std::int32_t>(attitude_variance(predicted_error_urad)));
 }
 
 CovarianceE8 rate_covariance(std::uint32_t predicted_error_urad, std::uint32_t frames_since_reset,

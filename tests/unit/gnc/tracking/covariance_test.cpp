@@ -16,7 +16,8 @@ TEST(AttitudeCovariance, IsThatOfThreeEqualNormalErrors) {
     EXPECT_NEAR(1e-8 * covariance[0], variance, 1e-3 * variance + 2e-8);
     EXPECT_EQ(covariance, (CovarianceE8{covariance[0], 0, 0, covariance[0], 0, covariance[0]}));
   }
-  EXPECT_GT(attitude_covariance(UINT32_MAX)[0], 0) << "saturates";
+  EXPECT_EQ(attitude_covariance(UINT32_MAX), attitude_covariance(kPi_urad)) << "limited to a half turn";
+  EXPECT_EQ(rate_covariance(UINT32_MAX, 2, 2'700'000'000), rate_covariance(kPi_urad, 2, 2'700'000'000));
 }
 
 TEST(RateCovariance, IsThatOfALineThroughTheFrames) {
