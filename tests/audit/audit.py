@@ -1,6 +1,8 @@
 """tests/audit/run: builds, runs and measures flight_replay on every processor. Options: --help."""
 import argparse
+import concurrent.futures
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -100,16 +102,21 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     plugin = instruction_count.build_plugin(folder)
 
-    results = []
     for processor in wanted:
         if sys.stdout.isatty():
             print(f"  {processor.name:<11} building", end="\r", flush=True)
         build(processor)
-        place = folder / processor.name
-        place.mkdir(exist_ok=True)
-        for numerics, name in programs(processor):
-            program = ROOT / "build" / processor.name / "bin" / name
-            results.append((processor, numerics, measure(processor, numerics, program, plugin, place)))
+        (folder / processor.name).mkdir(exist_ok=True)
+
+    # An emulator uses one core.
+    runs = [(processor, numerics, ROOT / "build" / processor.name / "bin" / name)
+            for processor in wanted for numerics, name in programs(processor)]
+    results = []
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        jobs = [pool.submit(measure, processor, numerics, program, plugin, folder / processor.name)
+                for processor, numerics, program in runs]
+        for (processor, numerics, _), job in zip(runs, jobs):
+            results.append((processor, numerics, job.result()))
             print_result(*results[-1])
 
     # Renewed documents become the new reference, so that growth is not a failure then. All other limits hold.
