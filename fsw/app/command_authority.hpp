@@ -17,7 +17,7 @@ class CommandAuthority {
   }
   const hal::CommandKeys* keys() const { return has_keys_ ? &keys_ : nullptr; }
   // Whether there is a key in the slot.
-  bool has_key(std::uint32_t slot) const { return keys_.has_key(slot); }
+  bool has_key(std::uint32_t slot) const { return has_keys_ && keys_.has_key(slot); }
   std::uint32_t slot() const { return slot_; }  // of the key in use
   // False: the slot is empty or does not exist.
   [[nodiscard]] bool use(std::uint32_t slot) {

@@ -77,7 +77,6 @@ template <class N>
 void FrameTracker<N>::check(const FrameTrackerLimits& limits, FrameTrackerState& state,
                             FrameOutcome& outcome) const {
   const AttitudeEstimate& estimate = outcome.estimate;
-  if (!limits.check_attitude) return;
   // The estimator returns sound attitudes for any frame and any model. Corrupted memory can break this.
   if (!is_sound(estimate)) {
     state.forget_track();

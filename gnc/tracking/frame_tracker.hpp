@@ -25,7 +25,6 @@ struct FrameTrackerLimits {
   std::int64_t chaser_time_tolerance_ns;  // between the chaser's attitude and the exposure
   std::uint32_t predicted_error_urad;     // a larger expected error is a doubt
   std::uint32_t attitude_jump_urad;       // a larger distance from the predicted attitude is a doubt
-  bool check_attitude = true;
 };
 
 // What is kept from frame to frame, beside the estimator's state.

@@ -109,7 +109,7 @@ def _introduction(model, frames):
         "",
         f"**Estimated**: time = instructions × {CYCLES_PER_INSTRUCTION:g} cycles / clock. The number of cycles per instruction is an assumption, the same for",
         "all parts. It is neither measured nor from a data sheet: QEMU does not model caches, buses or pipelines. An estimate is not",
-        "a worst-case execution time. The instruction count is the same for every frame, so that one measurement on the part",
+        "a worst-case execution time. The instruction count is the same for every frame without a gap before it, so that one measurement on the part",
         "gives the time of every frame.",
         "",
         "MACs are those of the network, including padding. The kernels skip the padding of the first and last rows where that costs",
@@ -155,7 +155,7 @@ def _longest_steps(fixed):
 def _stages(fixed):
     names = list(fixed[0][1]["stages"])
     lines = ["## Instructions per stage", "",
-             "In thousands, for a step in fixed point, in the order of execution. The counts are the same for every frame.", ""]
+             "In thousands, for a step in fixed point, in the order of execution. The counts do not depend on what a frame shows.", ""]
     lines += _table(["stage", *(p.name for p, _ in fixed)],
                     [[name, *(f"{r['stages'][name] / 1e3:.0f}" for _, r in fixed)] for name in names[1:] + names[:1]])
     return lines + ["", "*application*: checks of frames, events, telemetry. Its work depends on what happens in the step; the table shows the",

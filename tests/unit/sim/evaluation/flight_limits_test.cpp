@@ -19,7 +19,6 @@ TEST(FlightLimits, AreThoseOfTheFlightProgramAfterInit) {
   EXPECT_EQ(kFlightLimits.chaser_time_tolerance_ns, fsw::config::kChaserTimeTolerance_ns);
   EXPECT_EQ(kFlightLimits.predicted_error_urad, initial(fsw::Limit::kPredictedError_urad));
   EXPECT_EQ(kFlightLimits.attitude_jump_urad, initial(fsw::Limit::kAttitudeJump_urad));
-  EXPECT_TRUE(kFlightLimits.check_attitude);
 }
 
 }  // namespace
