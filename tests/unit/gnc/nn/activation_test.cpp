@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/trials.hpp"
+
 namespace tumblesight::gnc {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 // 4 million arguments over +-bound, and every power of two with both signs.
 std::vector<float> dense_sweep(float bound) {
   std::vector<float> x;
-  constexpr int kSteps = 2'000'000;
+  constexpr int kSteps = trials(2'000'000);
   x.reserve(2 * kSteps + 1000);
   for (int i = -kSteps; i <= kSteps; ++i) x.push_back(bound * static_cast<float>(i) / kSteps);
   for (int e = -148; e <= 127; ++e) {
