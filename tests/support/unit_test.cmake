@@ -4,7 +4,7 @@ target_link_libraries(test_precompiled PRIVATE project_rules GTest::gtest)
 # The tests' own code is optimized less than what they test: it compiles in two thirds of the time.
 option(TUMBLESIGHT_FEW_TRIALS "Fewer trials with random numbers in the tests: tests/support/trials.hpp" ${CMAKE_CROSSCOMPILING})
 add_library(test_rules INTERFACE)
-target_compile_options(test_rules INTERFACE $<$<CONFIG:Release>:-O1>)
+target_compile_options(test_rules INTERFACE $<$<CONFIG:Release>:-O1> $<$<CONFIG:RelWithDebInfo>:-O0>)
 target_compile_definitions(test_rules INTERFACE TUMBLESIGHT_FEW_TRIALS=$<BOOL:${TUMBLESIGHT_FEW_TRIALS}>)
 target_link_libraries(test_precompiled PRIVATE test_rules)
 target_precompile_headers(test_precompiled PRIVATE <gtest/gtest.h> <Eigen/Geometry>)
