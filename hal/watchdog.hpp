@@ -1,5 +1,5 @@
 // Watchdog: resets the processor unless it is kicked in time. The application kicks it once per cycle, after
-// all duties of the cycle are done.
+// all duties of the cycle are done. docs/porting.md derives the time-out from the longest step.
 #pragma once
 
 namespace tumblesight::hal {

@@ -74,17 +74,27 @@ struct alignas(8) AppState {
   std::uint32_t faults_seen = 0;      // in this cycle; bit n: Fault n
   std::uint32_t estimator_crc32 = 0;  // of the estimator's state at the end of the last cycle
   std::uint32_t constants_crc32 = 0;  // of the estimator's copy of model data
+  std::uint32_t frames_unused = 0;    // superseded or passed over since the last used one
   std::array<gnc::ModelStatus, hal::kModelBanks> boot_status{};
   Mode mode = Mode::kBoot;
   bool boot_to_report = false;  // the next step reports what init() found
   bool has_cycle = false;       // now_ns is the time of a cycle
   bool outage = false;          // the previous cycle had no frame
+  bool long_task = false;       // this cycle has one: begin_long_task()
 
   gnc::FrameTrackerLimits tracker_limits() const {
     return {config::kFrameTimeLimits, config::kLongestCoast_ns, config::kChaserTimeTolerance_ns,
             limit(Limit::kPredictedError_urad), limit(Limit::kAttitudeJump_urad)};
   }
   std::uint32_t limit(Limit which) const { return limits[static_cast<std::size_t>(which)]; }
+  // A cycle has at most one long task: the repair of a table or of the constants, or the check of an image
+  // for a command or a switch of banks. Such a cycle estimates no frame, so every step stays within half the
+  // period. False: the cycle has had one; a repair waits for the next cycle, a command is refused.
+  [[nodiscard]] bool begin_long_task() {
+    const bool begins = !long_task;
+    long_task = true;
+    return begins;
+  }
   bool has_model() const { return banks.status(banks.in_use) == BankStatus::kGood; }
 };
 

@@ -46,6 +46,7 @@ bool begin_cycle(AppState& state, std::int64_t now_ns) {
   state.has_cycle = true;
   state.now_ns = now_ns;
   state.faults_seen = 0;
+  state.long_task = false;
   count(state.counters.cycles);
   return time_advances;
 }
@@ -69,6 +70,7 @@ void fill_telemetry(AppState& state) {
   telemetry.bank_in_use = static_cast<std::uint8_t>(state.banks.in_use);
   telemetry.key_slot = static_cast<std::uint8_t>(state.authority.slot());
   telemetry.second_copy = state.banks.has_second_copy() ? 1 : 0;
+  telemetry.long_task = state.long_task ? 1 : 0;
   telemetry.model_bytes_loaded = state.banks.loaded_bytes;
   for (std::uint32_t bank = 0; bank < hal::kModelBanks; ++bank) {
     telemetry.bank_status[bank] = state.banks.status(bank);

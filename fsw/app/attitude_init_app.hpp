@@ -14,7 +14,8 @@
 // rules for time and order, gnc::FrameStatus those for the content. Of several frames that wait for a cycle
 // the newest one that passes the gate is used; the older ones are superseded, which is counted. A cycle
 // without a frame is counted as missing; an event marks the start of an outage. Skipped sequence numbers are
-// counted, with an event, and the frame is used.
+// counted, with an event, and the frame is used. A cycle with a long task, AppState::begin_long_task(),
+// passes its frame over, which is counted; the track coasts.
 //
 // The estimator is reset
 //   - on entering RUN, by RESET_SEQUENCE and by the response to a fault;

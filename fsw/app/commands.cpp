@@ -85,6 +85,13 @@ bool is_readable(std::uint32_t bank, const CommandContext& context, Refusal& ref
   return refuse(refusal, failed ? CommandRefusal::kStoreFailed : CommandRefusal::kBusy, index);
 }
 
+// False: the bank cannot be read now, or the cycle has had its long task, and the command is refused.
+bool begins_check(std::uint32_t bank, const CommandContext& context, Refusal& refusal) {
+  if (!is_readable(bank, context, refusal)) return false;
+  if (context.state.begin_long_task()) return true;
+  return refuse(refusal, CommandRefusal::kBusy, static_cast<std::int32_t>(bank));
+}
+
 bool refuse_model(const CommandContext& context, gnc::ModelStatus status, std::uint32_t size_bytes,
                   std::uint32_t bank, Refusal& refusal) {
   const auto reason = static_cast<std::int32_t>(status);
@@ -97,7 +104,7 @@ bool validate_model(const Telecommand& command, const CommandContext& context, R
   const std::uint32_t bank = banks.other(), size_bytes = command.u32_at(0);
   if (banks.status(bank) != BankStatus::kLoading || size_bytes != banks.loaded_bytes)
     return refuse(refusal, CommandRefusal::kNoModel);
-  if (!is_readable(bank, context, refusal)) return false;
+  if (!begins_check(bank, context, refusal)) return false;
   const gnc::ModelStatus status = context.models.validate(size_bytes, command.u32_at(4));
   if (status != gnc::ModelStatus::kOk) return refuse_model(context, status, size_bytes, bank, refusal);
   return true;
@@ -108,7 +115,7 @@ bool activate_model(const Telecommand& command, const CommandContext& context, R
   const std::uint32_t bank = banks.other(), size_bytes = banks.descriptor[bank].size_bytes;
   if (banks.status(bank) != BankStatus::kGood || banks.descriptor[bank].crc32 != command.u32_at(0))
     return refuse(refusal, CommandRefusal::kNoModel);
-  if (!is_readable(bank, context, refusal)) return false;
+  if (!begins_check(bank, context, refusal)) return false;
   const gnc::ModelStatus status = context.models.activate(bank);
   if (status != gnc::ModelStatus::kOk) return refuse_model(context, status, size_bytes, bank, refusal);
   context.report(EventId::kModelActivated, clamp_to_int32(size_bytes), static_cast<std::int32_t>(bank));
@@ -182,8 +189,8 @@ struct CommandRow {
 };
 
 // One row per telecommand: function, least and most bytes of arguments, modes, handler. The comment above a
-// row describes its arguments in docs/icd.md. A check of a whole image does not fit into a cycle with an
-// estimate, so MODEL_VALIDATE and MODEL_ACTIVATE are not allowed in RUN.
+// row describes its arguments in docs/icd.md. MODEL_VALIDATE and MODEL_ACTIVATE check a whole image and take
+// the time of an estimate, so they are not allowed in RUN.
 constexpr std::array kCommands{
     CommandRow{{FunctionCode::kNoop, 0, 0, kAlways}, noop},
     CommandRow{{FunctionCode::kResetCounters, 0, 0, kAlways}, reset_counters},

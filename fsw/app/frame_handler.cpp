@@ -12,13 +12,6 @@ std::int32_t bits_of(std::uint32_t sequence_number) {
   return static_cast<std::int32_t>(sequence_number);
 }
 
-std::uint32_t superseded_of(const StepInputs& inputs) {
-  std::uint32_t superseded = 0;
-  for (int i = 0; i < inputs.dropped_count; ++i)
-    superseded += inputs.dropped[static_cast<std::size_t>(i)].why == FrameVerdict::kSuperseded ? 1U : 0U;
-  return superseded;
-}
-
 }  // namespace
 
 void FrameHandler::refuse_all(const StepInputs& inputs, std::int32_t time_step_ms) {
@@ -44,7 +37,12 @@ void FrameHandler::take(const StepInputs& inputs) {
   state_.outage = false;
   outputs_.attitude.validity = Validity::kFrameRefused;
   note_dropped(inputs);
-  if (inputs.frame != nullptr) use(inputs);
+  if (inputs.frame == nullptr) return;
+  if (state_.long_task || !state_.has_model()) {
+    pass_over();
+  } else {
+    use(inputs);
+  }
 }
 
 void FrameHandler::note_missing() {
@@ -66,14 +64,14 @@ void FrameHandler::note_dropped(const StepInputs& inputs) {
   }
 }
 
-// If the model was lost in this cycle, no frame can be used; the response to that fault follows after the
-// frames.
+void FrameHandler::pass_over() {
+  outputs_.attitude.validity = Validity::kPassedOver;
+  count(state_.counters.frames_passed_over);
+  count(state_.frames_unused);
+}
+
 void FrameHandler::use(const StepInputs& inputs) {
   const gnc::RangeImage& frame = *inputs.frame;
-  if (!state_.has_model()) {
-    count(state_.counters.frames_refused);
-    return;
-  }
   const gnc::FrameTrackerLimits limits = state_.tracker_limits();
   const std::int64_t last_exposure_time_ns = state_.tracking.gate.last_exposure_time_ns();
   const std::uint32_t expected_number = state_.tracking.gate.last_sequence_number() + 1U;
@@ -93,7 +91,7 @@ void FrameHandler::use(const StepInputs& inputs) {
   }
   counters.inference_us = elapsed_us(start_ns, end_ns);
   if (counters.inference_us > counters.inference_max_us) counters.inference_max_us = counters.inference_us;
-  note_use(inputs, last_exposure_time_ns, expected_number);
+  note_use(frame, last_exposure_time_ns, expected_number);
   tracker_.check(limits, state_.tracking, outcome);
   report_attitude(inputs, note_doubts(frame));
 }
@@ -104,6 +102,7 @@ void FrameHandler::note_refusal(FrameVerdict verdict, std::uint32_t sequence_num
   const std::int32_t number = bits_of(sequence_number);
   if (verdict == FrameVerdict::kSuperseded) {
     count(counters.frames_superseded);
+    count(state_.frames_unused);
     return;
   }
   count(counters.frames_refused);
@@ -149,16 +148,14 @@ void FrameHandler::note_bad_content(const gnc::RangeImage& frame) {
           static_cast<std::int32_t>(workspace_.outcome.content), frame.rays);
 }
 
-void FrameHandler::note_use(const StepInputs& inputs, std::int64_t last_exposure_time_ns,
+void FrameHandler::note_use(const gnc::RangeImage& frame, std::int64_t last_exposure_time_ns,
                             std::uint32_t expected_number) {
-  const gnc::RangeImage& frame = *inputs.frame;
   const gnc::FrameOutcome& outcome = workspace_.outcome;
   hal::Telemetry& counters = state_.counters;
-  // A superseded frame did arrive.
-  const std::uint32_t superseded = superseded_of(inputs);
+  // A frame that was superseded or passed over did arrive.
   const bool went_back = outcome.numbers_skipped == gnc::FrameGate::kWentBack;
-  if (went_back || outcome.numbers_skipped > superseded) {
-    const std::uint32_t skipped = went_back ? 1U : outcome.numbers_skipped - superseded;
+  if (went_back || outcome.numbers_skipped > state_.frames_unused) {
+    const std::uint32_t skipped = went_back ? 1U : outcome.numbers_skipped - state_.frames_unused;
     count(counters.sequence_gaps, skipped);
     report_(EventId::kSequenceSkipped, bits_of(expected_number), bits_of(frame.sequence_number),
             went_back ? -1 : bits_of(skipped));
@@ -169,6 +166,7 @@ void FrameHandler::note_use(const StepInputs& inputs, std::int64_t last_exposure
             clamp_to_int32(outcome.frames_given_up));
   }
   count(counters.frames_used);
+  state_.frames_unused = 0;
 }
 
 // kFrameRefused: the attitude is unsound and must not be reported.

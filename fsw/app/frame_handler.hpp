@@ -18,7 +18,7 @@ class FrameHandler {
                const Reporter& report)
       : state_(state), tracker_(estimator), workspace_(workspace), outputs_(outputs), report_(report) {}
 
-  // In RUN: the frame of the step is used or refused, the dropped ones are counted.
+  // In RUN: the frame of the step is used, refused or passed over; the dropped ones are counted.
   void take(const StepInputs& inputs);
   // In a cycle whose time does not advance: refuses all frames, with one event. `time_step_ms`: this cycle
   // minus the previous one.
@@ -27,10 +27,12 @@ class FrameHandler {
  private:
   void note_missing();
   void note_dropped(const StepInputs& inputs);
+  void pass_over();
   void use(const StepInputs& inputs);
   void note_refusal(gnc::FrameVerdict verdict, std::uint32_t sequence_number, std::int64_t exposure_time_ns);
   void note_bad_content(const gnc::RangeImage& frame);
-  void note_use(const StepInputs& inputs, std::int64_t last_exposure_time_ns, std::uint32_t expected_number);
+  void note_use(const gnc::RangeImage& frame, std::int64_t last_exposure_time_ns,
+                std::uint32_t expected_number);
   Validity note_doubts(const gnc::RangeImage& frame);
   void report_attitude(const StepInputs& inputs, Validity validity);
 

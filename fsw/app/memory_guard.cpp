@@ -48,9 +48,10 @@ void MemoryGuard::keep(const Estimator& estimator, AppState& state) {
 void MemoryGuard::check(Estimator& estimator, AppState& state, const Reporter& report) {
   check_state(estimator, state, report);
   if (!state.has_model()) return;
-  check_table(state.banks.in_use, estimator, state, report);
-  if (state.banks.status(state.banks.other()) == BankStatus::kGood)
-    check_table(state.banks.other(), estimator, state, report);
+  if (!has_sound_table(state.banks.in_use, estimator, state, report)) return;
+  const std::uint32_t other = state.banks.other();
+  if (state.banks.status(other) == BankStatus::kGood && !has_sound_table(other, estimator, state, report))
+    return;
   for (std::uint32_t i = 0; i < state.limit(Limit::kScrubBlocks) && state.has_model(); ++i)
     check_block(state, report);
   if (state.has_model()) check_constants(estimator, state, report);
@@ -72,6 +73,7 @@ void MemoryGuard::check_state(Estimator& estimator, AppState& state, const Repor
 // Reloads the constants from the bank, after a check of all its blocks.
 void MemoryGuard::check_constants(Estimator& estimator, AppState& state, const Reporter& report) {
   if (estimator.constants_crc32() == state.constants_crc32) return;
+  if (!state.begin_long_task()) return;
   for (std::uint32_t i = 0; i < ModelBanks::kBlocks && state.has_model(); ++i) check_block(state, report);
   if (!state.has_model()) return;
   estimator.reload(memory_of(state.banks.in_use, state).data);
@@ -83,17 +85,22 @@ void MemoryGuard::check_constants(Estimator& estimator, AppState& state, const R
   }
 }
 
-void MemoryGuard::check_table(std::uint32_t bank, const Estimator& estimator, AppState& state,
-                              const Reporter& report) {
-  if (banks_.table_is_sound(bank, state.banks)) return;
-  if (banks_.restore_table(bank, state.banks) || rebuild_table(bank, estimator, state)) {
+bool MemoryGuard::has_sound_table(std::uint32_t bank, const Estimator& estimator, AppState& state,
+                                  const Reporter& report) {
+  if (banks_.table_is_sound(bank, state.banks)) return true;
+  const bool restored = banks_.restore_table(bank, state.banks);
+  if (!restored && !state.begin_long_task()) return false;
+  if (restored || rebuild_table(bank, estimator, state)) {
     count(state.counters.model_tables_rebuilt);
     report(EventId::kModelTableRebuilt, static_cast<std::int32_t>(bank));
-  } else if (bank == state.banks.in_use) {
+    return true;
+  }
+  if (bank == state.banks.in_use) {
     lose_model(state);
   } else {
     lose_fallback(state, report);
   }
+  return false;
 }
 
 bool MemoryGuard::rebuild_table(std::uint32_t bank, const Estimator& estimator, AppState& state) {
@@ -129,7 +136,10 @@ void MemoryGuard::check_block(AppState& state, const Reporter& report) {
   }
 }
 
+// The switch to the other bank is the long task of this cycle, whether or not an attempt of a repair was made
+// before: both fit into half a period.
 void MemoryGuard::lose_model(AppState& state) {
+  state.long_task = true;
   state.banks.descriptor[state.banks.in_use].set(BankStatus::kEmpty);
   state.faults_seen |= bit_of(Fault::kModelCorrupted);
 }

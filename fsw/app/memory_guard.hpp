@@ -1,17 +1,18 @@
 // MemoryGuard: finds bit flips in the estimator's memory since the last cycle and repairs them. Its time is
-// bounded: config::kLimitRules limits the model blocks checked per cycle.
+// bounded: config::kLimitRules limits the model blocks checked per cycle, and a cycle has at most one of the
+// repairs marked *, AppState::begin_long_task(). What is still corrupted is found again and repaired in the
+// next cycle, and no frame is estimated meanwhile. Everything is repaired within kMostRepairCycles.
 //
 //   corrupted                      found by                        repaired from
 //   state of LSTM and track        CRC of the last cycle           copy of the last cycle; reset if the copy
 //                                                                  is corrupted too
-//   biases, shifts, everything     CRC at activation               model image
+//   biases, shifts, everything     CRC at activation               model image *
 //   that load() sets
 //   weights in the bank in use     checksum of each block          second copy in the other bank, if any
 //   a different good image in      checksum of each block          nothing; the bank is EMPTY from then on
 //   the other bank
 //   checksums of the blocks        CRC over each bank's table      table of the second copy; image, if its
-//   own CRCs are
-//                                                                  correct
+//                                                                  own CRCs are correct *
 //   activations                    not checked                     rewritten in every frame
 #pragma once
 
@@ -22,6 +23,9 @@ namespace tumblesight::fsw {
 
 class MemoryGuard {
  public:
+  // The tables of both banks and the constants, one in each cycle.
+  static constexpr int kMostRepairCycles = 3;
+
   // Call after the image of a bank has passed every check.
   void bank_is_good(std::uint32_t bank, AppState& state);
   // Call after a model has been activated.
@@ -37,7 +41,9 @@ class MemoryGuard {
  private:
   void check_state(Estimator& estimator, AppState& state, const Reporter& report);
   void check_constants(Estimator& estimator, AppState& state, const Reporter& report);
-  void check_table(std::uint32_t bank, const Estimator& estimator, AppState& state, const Reporter& report);
+  // False: the bank is lost, or its table is repaired in a later cycle; long_task is set.
+  [[nodiscard]] bool has_sound_table(std::uint32_t bank, const Estimator& estimator, AppState& state,
+                                     const Reporter& report);
   // False: the image of the bank does not pass every check.
   [[nodiscard]] bool rebuild_table(std::uint32_t bank, const Estimator& estimator, AppState& state);
   void check_block(AppState& state, const Reporter& report);

@@ -76,7 +76,6 @@ gnc::ModelStatus ModelManager::activate(std::uint32_t bank) {
 }
 
 Response ModelManager::switch_bank(Fault fault, ModeManager& modes) {
-  if (state_.has_model()) return Response::kFlag;
   const std::uint32_t before = state_.banks.in_use, other = state_.banks.other();
   if (state_.banks.status(other) == BankStatus::kGood && activate(other) == gnc::ModelStatus::kOk) {
     count(state_.counters.bank_switches);

@@ -22,14 +22,16 @@ class ModelManager {
   // Reports the result of boot() once, in the first step after it.
   void report_boot();
 
-  // Checks the whole loaded image of the bank that is not in use. `crc32`: as in the image's header. With kOk
+  // The following check a whole image, which is a long task.
+
+  // Checks the loaded image of the bank that is not in use. `crc32`: as in the image's header. With kOk
   // the bank becomes kGood.
   gnc::ModelStatus validate(std::uint32_t size_bytes, std::uint32_t crc32);
-  // Checks the whole image of `bank` again and uses it. With any status except kOk the current model stays
+  // Checks the image of `bank` again and uses it. With any status except kOk the current model stays
   // in use.
   gnc::ModelStatus activate(std::uint32_t bank);
-  // Response to a corrupted model. Returns the response taken: kSwitchBank, kFlag if a command of this cycle
-  // has already activated a good model, or kSafe if the other bank holds no good model.
+  // Response to the loss of the model in this cycle. Returns the response taken: kSwitchBank, or kSafe if the
+  // other bank holds no good model.
   Response switch_bank(Fault fault, ModeManager& modes);
 
  private:

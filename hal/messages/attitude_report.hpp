@@ -15,6 +15,7 @@ enum class Validity : std::uint8_t {
   kNoFrame = 2,       // no frame arrived in this cycle
   kFrameRefused = 3,  // a frame arrived and was refused; the event gives the reason
   kDoubtful = 4,      // the expected error is too large, or the attitude has jumped
+  kPassedOver = 5,    // a frame arrived in a cycle with a long task, for example a repair
 };
 
 // Bits of AttitudeReport::doubts.

@@ -36,13 +36,14 @@ struct Telemetry {
 
   std::uint32_t frames_used = 0;
   std::uint32_t frames_missing = 0;
-  std::uint32_t frames_refused = 0;    // all kinds below, and the frames of a cycle that lost the model
+  std::uint32_t frames_refused = 0;    // all kinds below
   std::uint32_t frames_duplicate = 0;  // sequence number repeated
   std::uint32_t frames_stale = 0;     // exposure too old, in the future, or not far enough after the last one
   std::uint32_t frames_bad = 0;       // empty, flat, or wrong ray count, field of view or size
   std::uint32_t frames_repeated = 0;  // the ranges of the last used frame: a frozen sensor
-  std::uint32_t frames_superseded = 0;  // not refused: a newer frame of the same cycle was taken
-  std::uint32_t sequence_gaps = 0;      // sequence numbers skipped
+  std::uint32_t frames_superseded = 0;   // not refused: a newer frame of the same cycle was taken
+  std::uint32_t frames_passed_over = 0;  // not refused: the cycle had a long task or no good model
+  std::uint32_t sequence_gaps = 0;       // sequence numbers skipped
   std::uint32_t estimator_resets = 0;
   std::uint32_t attitudes_doubtful = 0;
 
@@ -63,7 +64,8 @@ struct Telemetry {
   std::uint32_t bank_switches = 0;
 
   std::uint8_t bank_in_use = 0;
-  std::uint8_t second_copy = 0;                      // 1: the other bank holds the same image
+  std::uint8_t second_copy = 0;  // 1: the other bank holds the same image
+  std::uint8_t long_task = 0;    // 1: this cycle repaired or lost the model, or checked an image
   std::array<BankStatus, kBanks> bank_status{};      // per bank
   std::array<BankActivity, kBanks> bank_activity{};  // per bank
   std::array<std::uint32_t, kBanks> bank_crc32{};    // CRC-32 in the header of the bank's image

@@ -76,7 +76,7 @@ def count(processor, program, plugin, folder):
 
 
 # A whole step of flight_worst_step.
-WHOLE_STEP = (("step", r"fsw::AttitudeInitApp::step\("), ("(end)", r"^tumblesight_step_ended"))
+WHOLE_STEP = (("step", r"^tumblesight_step_begins"), ("(end)", r"^tumblesight_step_ended"))
 
 
 # Verifies TS-TIM-100.

@@ -1,6 +1,7 @@
 // flight_worst_step: the longest steps of the flight application, each with a name, for the audit's count of
-// instructions. The memory is damaged as bit flips would damage it, and the commands are the most expensive
-// ones. The program prints one line per step, "step NAME"; steps that only prepare the next one are "quiet".
+// instructions. The memory is damaged as bit flips would damage it, the commands are the most expensive ones,
+// and the scrubbing is the largest that SET_LIMIT allows. The program prints one line per step, "step NAME";
+// steps that only prepare the next one are "quiet".
 #include <array>
 #include <cstring>
 
@@ -16,8 +17,10 @@ extern "C" {
 extern const std::uint8_t tumblesight_model_image[], tumblesight_model_image_end[];
 extern const std::uint8_t tumblesight_recording[], tumblesight_recording_end[];
 
-// The audit counts the instructions of a step from the call of AttitudeInitApp::step() to the call of this
-// function.
+// The audit counts the instructions between these two calls.
+[[gnu::noinline, gnu::used]] void tumblesight_step_begins() {
+  asm volatile("");
+}
 [[gnu::noinline, gnu::used]] void tumblesight_step_ended() {
   asm volatile("");
 }
@@ -108,10 +111,10 @@ void set_limit(Limit limit, std::uint32_t value) {
   command(FunctionCode::kSetLimit, arguments.data(), static_cast<int>(arguments.size()));
 }
 
-// The largest commands, as many as a step takes.
-void load_commands() {
+// The largest commands, as many as a step takes. With an offset of 0 they begin a new image in the other
+// bank; with another one they are refused, after all checks, and the bank keeps its image.
+void load_commands(std::uint32_t offset = 0) {
   static std::array<std::uint8_t, hal::kMaxCommandArgumentBytes> arguments{};
-  std::uint32_t offset = 0;
   while (inputs.command_count < config::kMaxCommandsPerStep) {
     add_u32(arguments.data(), offset);
     std::memcpy(arguments.data() + 4, tumblesight_model_image + offset, hal::kMaxModelSegmentBytes);
@@ -119,14 +122,20 @@ void load_commands() {
     offset += hal::kMaxModelSegmentBytes;
   }
 }
+constexpr std::uint32_t kOutOfOrder = hal::kMaxModelSegmentBytes;
+
+void begin(const char* name) {
+  board::write(hal::replay::TextLine().text("step ").text(name).text("\n").c_str());
+}
 
 void step(const char* name) {
-  board::write(hal::replay::TextLine().text("step ").text(name).text("\n").c_str());
+  begin(name);
   now_ns += config::kFramePeriod_ns;
   frame.exposure_time_ns = now_ns;
   ++frame.sequence_number;
   frame.ranges[frame.sequence_number % frame.ranges.size()] ^= 1;  // a sensor never repeats its noise
   inputs.frame = &frame;
+  tumblesight_step_begins();
   app.step(now_ns, inputs, outputs);
   tumblesight_step_ended();
   inputs.command_count = 0;
@@ -136,35 +145,27 @@ void expect(bool condition, const char* what) {
   if (!condition && failure == nullptr) failure = what;
 }
 
+ModelBanksState& banks() {
+  return AppMemory::state(app).banks;
+}
+
 // After a command load has begun a new image in the other bank: the second copy again.
 void load_as_second_copy() {
   store.fill();
-  ModelBanksState& banks = AppMemory::state(app).banks;
-  banks.descriptor[banks.other()] = banks.descriptor[banks.in_use];
+  banks().descriptor[banks().other()] = banks().descriptor[banks().in_use];
   AppMemory::commit(app);
 }
 
-// The frame alone; with it a full command load, and the largest scrubbing of which every block needs a
-// repair.
-void steps_with_a_frame() {
-  step("frame");
-  load_commands();
-  step("frame and full command load");
-  load_as_second_copy();
-  const std::uint32_t most = config::kLimitRules[static_cast<std::size_t>(Limit::kScrubBlocks)].highest;
-  set_limit(Limit::kScrubBlocks, most);
-  step("quiet");
-  for (std::size_t block = 0; block < ModelBanks::kBlocks; ++block) store.damage(1, block);
-  AppMemory::flip_state_bit(app, 5);
-  step("frame, largest scrub with repairs, state restored");
-  expect(outputs.telemetry.model_blocks_repaired >= most, "no block was repaired");
-  expect(outputs.telemetry.states_restored == 1, "the state was not restored");
-  store.fill();
-  set_limit(Limit::kScrubBlocks, config::kLimitRules[static_cast<std::size_t>(Limit::kScrubBlocks)].initial);
-  step("quiet");
-}
+constexpr std::uint32_t kMostScrubbed =
+    config::kLimitRules[static_cast<std::size_t>(Limit::kScrubBlocks)].highest;
 
-// Damage that needs a long recovery, each kind alone and then all at once, with a full command load.
+// What any of the following steps can have to do as well: repairs of the next `blocks` blocks of the second
+// copy, and of the estimator's state.
+void damage_more(std::uint32_t blocks = kMostScrubbed) {
+  for (std::uint32_t i = 0; i < blocks; ++i)
+    store.damage(banks().other(), (banks().next_block + i) % ModelBanks::kBlocks);
+  AppMemory::flip_state_bit(app, 5);
+}
 void flip_a_constant() {
   const std::uint32_t before = app.estimator().constants_crc32();
   const Region region = AppMemory::constants(app);
@@ -175,57 +176,87 @@ void damage_tables() {
   AppMemory::guard(app).flip(8 * (40 + 4 * ModelBanks::kBlocks));
 }
 
-void recoveries() {
-  flip_a_constant();
-  step("constants reloaded");
-  step("constants reloaded");
-  expect(outputs.telemetry.constants_reloaded == 1, "the constants were not reloaded");
-  damage_tables();
-  step("tables rebuilt");
-  step("tables rebuilt");
-  step("tables rebuilt");
-  expect(outputs.telemetry.model_tables_rebuilt == 2, "the tables were not rebuilt");
-  flip_a_constant();
-  damage_tables();
+void steps_with_a_frame() {
+  step("frame");
   load_commands();
-  for (int i = 0; i < 4; ++i) step("constants and tables, full command load");
-  expect(outputs.telemetry.constants_reloaded == 2, "the constants were not reloaded again");
+  step("frame and full command load");
+  load_as_second_copy();
+  set_limit(Limit::kScrubBlocks, kMostScrubbed);
+  step("quiet");
+  damage_more();
+  load_commands();
+  step("frame, full command load, largest scrub with repairs, state restored");
+  expect(outputs.telemetry.model_blocks_repaired == kMostScrubbed, "the blocks were not repaired");
+  expect(outputs.telemetry.states_restored == 1, "the state was not restored");
+  expect(outputs.attitude.validity == hal::Validity::kValid ||
+             outputs.attitude.validity == hal::Validity::kDoubtful,
+         "the frame was not used");
+  load_as_second_copy();
 }
 
-// In STANDBY: a model is loaded, validated and activated.
+// Both tables and the constants at once are repaired in consecutive steps. The image gives one table, and
+// that one the other.
+void repairs() {
+  flip_a_constant();
+  damage_tables();
+  damage_more();
+  load_commands(kOutOfOrder);
+  step("table rebuilt");
+  expect(outputs.telemetry.model_tables_rebuilt == 2, "the tables were not rebuilt");
+  expect(outputs.telemetry.constants_reloaded == 0, "two long tasks in a step");
+  damage_more(ModelBanks::kBlocks);
+  load_commands();
+  step("constants reloaded");
+  expect(outputs.telemetry.constants_reloaded == 1, "the constants were not reloaded");
+  expect(outputs.telemetry.frames_passed_over == 2, "a frame was used during the repair");
+  load_as_second_copy();
+}
+
+// In STANDBY: a loaded model is validated and activated.
 void model_commands() {
-  set_mode(Mode::kStandby);
-  step("quiet");
-  load_commands();  // the first bytes of an image, which make the bank a new one
-  step("quiet");
-  std::memcpy(store.banks[1].data(), tumblesight_model_image, kImageBytes);
-  AppMemory::state(app).banks.loaded_bytes = static_cast<std::uint32_t>(kImageBytes);
-  AppMemory::commit(app);
   std::array<std::uint8_t, 8> arguments{};
   add_u32(arguments.data(), static_cast<std::uint32_t>(kImageBytes));
   add_u32(arguments.data() + 4, gnc::model_image_crc32(tumblesight_model_image));
-  for (int i = 0; i < config::kMaxCommandsPerStep; ++i)
-    command(FunctionCode::kModelValidate, arguments.data(), 8);
+  set_mode(Mode::kStandby);
+  step("quiet");
+  banks().descriptor[1].set(BankStatus::kLoading);
+  banks().loaded_bytes = static_cast<std::uint32_t>(kImageBytes);
+  AppMemory::commit(app);
+  damage_more(0);
+  command(FunctionCode::kModelValidate, arguments.data(), 8);
+  load_commands(kOutOfOrder);
   step("model validated");
-  for (int i = 0; i < 1; ++i) command(FunctionCode::kModelActivate, arguments.data() + 4, 4);
+  expect(outputs.telemetry.bank_status[1] == BankStatus::kGood, "the model was not validated");
+  damage_more();
+  command(FunctionCode::kModelActivate, arguments.data() + 4, 4);
+  load_commands();
   step("model activated");
   expect(outputs.telemetry.bank_in_use == 1, "the model was not activated");
+  load_as_second_copy();
   set_mode(Mode::kRun);
   step("quiet");
 }
 
 // The model in use is lost and cannot be repaired: the other bank takes over.
-void bank_switch() {
-  const std::size_t used = outputs.telemetry.bank_in_use;
-  store.read_only = true;
-  for (std::size_t block = 0; block < ModelBanks::kBlocks; ++block) store.damage(used, block);
-  damage_tables();
-  load_commands();
-  step("bank switched");
-  step("bank switched");
-  step("bank switched");
+void bank_switches() {
+  // The constants are not those that were activated.
+  flip_a_constant();
+  AppMemory::state(app).constants_crc32 ^= 1;
+  AppMemory::commit(app);
+  damage_more(ModelBanks::kBlocks);
+  load_commands(kOutOfOrder);
+  step("constants not reloaded, bank switched");
   expect(outputs.telemetry.bank_switches == 1, "the bank was not switched");
-  expect(outputs.telemetry.bank_in_use == 1 - used, "the other bank is not in use");
+  load_as_second_copy();
+  step("quiet");
+
+  store.read_only = true;
+  store.damage(outputs.telemetry.bank_in_use, ModelBanks::kBlocks - 1);
+  damage_tables();
+  damage_more(0);
+  load_commands(kOutOfOrder);
+  step("table not rebuilt, bank switched");
+  expect(outputs.telemetry.bank_switches == 2, "the bank was not switched again");
 }
 
 int run() {
@@ -238,14 +269,17 @@ int run() {
   platform.stopwatch = &stopwatch;
   platform.models = &store;
   platform.command_keys = &kKeys;
+  begin("boot");
+  tumblesight_step_begins();
   app.init(platform, nullptr);
+  tumblesight_step_ended();
   step("quiet");
   step("quiet");
   expect(app.mode() == Mode::kRun, "the model was refused");
   steps_with_a_frame();
-  recoveries();
+  repairs();
   model_commands();
-  bank_switch();
+  bank_switches();
   board::write(
       hal::replay::TextLine().text(failure == nullptr ? "all steps done" : failure).text("\n").c_str());
   return failure == nullptr ? 0 : 1;

@@ -143,8 +143,8 @@ TEST_F(Commands, ModelIsLoadedDumpedBackValidatedAndActivatedInFlight) {
   append_u32(validate.arguments, static_cast<std::uint32_t>(image.size()));
   append_u32(validate.arguments, crc32);
   append_u32(activate.arguments, crc32);
-  answer =
-      conversation_.step({}, {set_mode(hal::Mode::kStandby), validate, activate, set_mode(hal::Mode::kRun)});
+  answer = conversation_.step({}, {set_mode(hal::Mode::kStandby), validate});
+  answer = conversation_.step({}, {activate, set_mode(hal::Mode::kRun)});
   EXPECT_EQ(answer.telemetry.commands_refused, 0U);
   EXPECT_EQ(answer.telemetry.bank_in_use, 1);
   EXPECT_EQ(answer.telemetry.bank_crc32[1], crc32);

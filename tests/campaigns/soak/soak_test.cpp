@@ -144,6 +144,8 @@ class Soak : public ::testing::Test {
     for (const std::uint32_t count : h.commands_refused_by) by_reason += count;
     ASSERT_EQ(h.commands_refused, by_reason);
     ASSERT_GE(h.frames_refused, h.frames_duplicate + h.frames_stale + h.frames_bad);
+    const Validity validity = outputs_->attitude.validity;
+    ASSERT_TRUE(h.long_task == 0 || (validity != Validity::kValid && validity != Validity::kDoubtful));
     ASSERT_EQ(h.events_lost, 0U) << "the ring and the suppression are sized for this load";
     if (!resets_counters_) {
       ASSERT_EQ(h.cycles, last_.cycles + 1);

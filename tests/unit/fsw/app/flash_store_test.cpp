@@ -58,7 +58,8 @@ TEST_F(FlashStore, ModelIsLoadedSegmentBySegmentWhileTheGroundWaitsForEach) {
   }
   EXPECT_GT(waits, 0U);
   finish();
-  step_commands({set_mode(Mode::kStandby), validate(), activate()});
+  step_commands({set_mode(Mode::kStandby), validate()});
+  step_commands({activate()});
   EXPECT_EQ(out->telemetry.bank_in_use, 1);
   EXPECT_EQ(app->estimator().model().crc32, gnc::model_image_crc32(other.data()));
 }

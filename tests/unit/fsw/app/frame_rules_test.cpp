@@ -161,6 +161,25 @@ TEST_F(FrameRules, SupersededFrameIsCountedAndNeitherRefusedNorSkipped) {
   EXPECT_EQ(out->event_count, 0);
 }
 
+TEST_F(FrameRules, SupersededFrameOfACycleThatUsesNoneIsNotSkippedLater) {
+  gnc::RangeImage frame = next_frame();
+  frame.ranges.fill(0);
+  StepInputs inputs;
+  inputs.frame = &frame;
+  inputs.dropped[0] = {gnc::FrameVerdict::kSuperseded, ++sequence_number, frame.exposure_time_ns - 1};
+  inputs.dropped_count = 1;
+  frame.sequence_number = ++sequence_number;
+  step(inputs);
+  EXPECT_EQ(validity(), Validity::kFrameRefused);
+  step_good();
+  EXPECT_EQ(out->telemetry.sequence_gaps, 1U) << "the refused frame alone";
+  step_good();
+  EXPECT_EQ(out->telemetry.sequence_gaps, 1U);
+  sequence_number += 1;
+  step_good();
+  EXPECT_EQ(out->telemetry.sequence_gaps, 2U) << "nothing is left over";
+}
+
 TEST_F(FrameRules, ExposureWithinTheToleranceAheadOfTheCycleIsUsed) {
   for (const std::int64_t ahead_ns : {std::int64_t{1}, config::kFutureTolerance_ns}) {
     gnc::RangeImage frame = next_frame();

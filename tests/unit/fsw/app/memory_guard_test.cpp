@@ -1,4 +1,6 @@
 // Bit flips between two cycles, in all memory that is kept from cycle to cycle.
+#include <algorithm>
+#include <cstddef>
 #include <random>
 
 #include "tests/support/app_memory.hpp"
@@ -15,7 +17,8 @@ class MemoryGuardTest : public AppFixture {
     step_good();
     step_good();
   }
-  // The attitude of an undisturbed application after the frames so far and the next one.
+  // The attitude of an undisturbed application after the frames so far and the next one. It never gets the
+  // frames that were passed over.
   gnc::QuaternionQ30 undisturbed_next() {
     auto twin = std::make_unique<AttitudeInitApp>();
     hal::fake::FakeModelStore models;
@@ -26,7 +29,8 @@ class MemoryGuardTest : public AppFixture {
       StepInputs inputs;
       const std::int64_t time_ns = kStart_ns + (number - 100) * config::kFramePeriod_ns;
       const gnc::RangeImage frame = good_frame(number, time_ns, number - 1);
-      inputs.frame = &frame;
+      if (std::find(passed_over.begin(), passed_over.end(), number) == passed_over.end())
+        inputs.frame = &frame;
       twin->step(time_ns, inputs, *twin_out);
     }
     return twin_out->attitude.q_lrf_trf;
@@ -36,6 +40,28 @@ class MemoryGuardTest : public AppFixture {
     step_good();
     EXPECT_EQ(validity(), Validity::kValid);
     EXPECT_EQ(out->attitude.q_lrf_trf, expected);
+  }
+  // No attitude in `cycles` cycles, in each of which one repair is made; then the attitudes of an application
+  // that has only lost the frames of these cycles.
+  void expect_repaired_after(int cycles) {
+    const hal::Telemetry before = AppMemory::state(*app).counters;
+    const auto repairs = [](const hal::Telemetry& h) {
+      return h.constants_reloaded + h.model_tables_rebuilt;
+    };
+    for (int i = 1; i <= cycles; ++i) {
+      const std::uint32_t repairs_before = repairs(AppMemory::state(*app).counters);
+      step_good();
+      passed_over.push_back(sequence_number);
+      EXPECT_EQ(validity(), Validity::kPassedOver);
+      EXPECT_EQ(out->telemetry.long_task, 1);
+      EXPECT_GT(repairs(out->telemetry), repairs_before);
+      EXPECT_EQ(out->telemetry.frames_passed_over, before.frames_passed_over + static_cast<std::uint32_t>(i));
+    }
+    expect_undisturbed_step();
+    EXPECT_EQ(out->telemetry.long_task, 0);
+    EXPECT_EQ(out->telemetry.frames_refused, before.frames_refused);
+    EXPECT_EQ(out->telemetry.sequence_gaps, before.sequence_gaps) << "the frames did arrive";
+    EXPECT_EQ(app->mode(), Mode::kRun);
   }
   // Steps until every block has been checked once.
   void steps_of_a_pass() {
@@ -55,7 +81,11 @@ class MemoryGuardTest : public AppFixture {
     bank(index)[block * config::kModelBlockBytes + 9] ^= 1;
   }
   // Detected in the next cycle.
-  void hit_table() { AppMemory::guard(*app).flip(8 * 40); }
+  void hit_table(std::size_t index = 0) {
+    AppMemory::guard(*app).flip(8 * (index * sizeof(ModelBanks) / 2 + 40));
+  }
+
+  std::vector<std::uint32_t> passed_over;  // sequence numbers
 };
 
 // Verifies TS-FDIR-010.
@@ -104,7 +134,7 @@ TEST_F(MemoryGuardTest, StateAndCopyHitTogetherStartANewSequence) {
   EXPECT_EQ(events(EventId::kFaultOver), 1);
 }
 
-// Verifies TS-FDIR-030.
+// Verifies TS-FDIR-030, TS-FDIR-190.
 TEST_F(MemoryGuardTest, FlippedBitsOfBiasesShiftsAndPointersAreReloadedFromTheBank) {
   const Region region = AppMemory::constants(*app);
   std::mt19937 engine(3);
@@ -113,7 +143,7 @@ TEST_F(MemoryGuardTest, FlippedBitsOfBiasesShiftsAndPointersAreReloadedFromTheBa
     region.flip(engine() % (8 * region.size));
     const bool seen =
         app->estimator().constants_crc32() != AppMemory::state(*app).constants_crc32;  // no padding
-    expect_undisturbed_step();
+    expect_repaired_after(seen ? 1 : 0);
     reloaded += seen ? 1U : 0U;
     EXPECT_EQ(out->telemetry.constants_reloaded, reloaded);
   }
@@ -197,14 +227,13 @@ TEST_F(MemoryGuardTest, FlippedBitOfTheFallbacksTableIsRepairedUnlessTheFallback
   bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
   init(store);
   step_good();
-  constexpr std::size_t kBitOfItsTable = 8 * (sizeof(ModelBanks) / 2 + 40);
-  AppMemory::guard(*app).flip(kBitOfItsTable);
+  hit_table(1);
   step_good();
   EXPECT_EQ(out->telemetry.model_tables_rebuilt, 1U);
   EXPECT_EQ(argument(EventId::kModelTableRebuilt, 0), 1);
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood);
   hit_block(1, 200);
-  AppMemory::guard(*app).flip(kBitOfItsTable);
+  hit_table(1);
   step_good();
   EXPECT_EQ(argument(EventId::kFallbackLost, 0), 1);
   EXPECT_EQ(out->telemetry.model_tables_rebuilt, 1U);
@@ -340,14 +369,78 @@ TEST_F(MemoryGuardTest, TableAndModelHitTogetherAreRepairedFromTheSecondCopy) {
   EXPECT_EQ(bank(0), test_model_image());
 }
 
-// Verifies TS-FDIR-040.
-TEST_F(MemoryGuardTest, TablesHitTogetherAreRebuiltFromTheirImages) {
-  hit_table();
-  AppMemory::guard(*app).flip(8 * (sizeof(ModelBanks) / 2 + 40));
-  expect_undisturbed_step();
+// Verifies TS-FDIR-040, TS-FDIR-190. One repair in each cycle, whatever is hit.
+TEST_F(MemoryGuardTest, EveryCombinationOfTablesAndConstantsIsRepairedWithinTheMostRepairCycles) {
+  int longest = 0;
+  for (const bool has_fallback : {false, true}) {
+    if (has_fallback) bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
+    for (unsigned hit = 0; hit < 8; ++hit) {
+      const bool first = (hit & 1) != 0, second = (hit & 2) != 0, constants = (hit & 4) != 0;
+      init(store);
+      sequence_number = 100;
+      now_ns = kStart_ns;
+      passed_over.clear();
+      step_good();
+      if (first) hit_table(0);
+      if (second) hit_table(1);
+      if (constants) flip_a_constant();
+      // A second copy's table is copied in no time, and each of two is once one of them is sound.
+      const int tables = has_fallback ? (first ? 1 : 0) + (second ? 1 : 0) : first && second ? 1 : 0;
+      const int cycles = tables + (constants ? 1 : 0);
+      expect_repaired_after(cycles);
+      EXPECT_EQ(out->telemetry.model_tables_rebuilt, (first ? 1U : 0U) + (second ? 1U : 0U)) << hit;
+      EXPECT_EQ(out->telemetry.constants_reloaded, constants ? 1U : 0U) << hit;
+      longest = std::max(longest, cycles);
+      steps_of_a_pass();
+      EXPECT_EQ(out->telemetry.model_blocks_repaired + out->telemetry.model_blocks_lost, 0U) << hit;
+    }
+  }
+  EXPECT_EQ(longest, MemoryGuard::kMostRepairCycles);
+}
+
+// Verifies TS-FDIR-190. The other flips of the vote and of the estimator's state are still corrected at once.
+TEST_F(MemoryGuardTest, WhatIsHitWhileARepairWaitsIsCorrectedToo) {
+  bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  init(store);
+  sequence_number = 100;
+  now_ns = kStart_ns;
+  step_good();
+  hit_table(0);
+  flip_a_constant();
+  step_good();
+  EXPECT_EQ(out->telemetry.constants_reloaded, 0U) << "it waits";
+  passed_over.push_back(sequence_number);
+  AppMemory::flip_state_bit(*app, 5);
+  AppMemory::voted_state(*app).flip(8 * offsetof(AppState, long_task));
+  hit_table(1);
+  expect_repaired_after(2);
   EXPECT_EQ(out->telemetry.model_tables_rebuilt, 2U);
-  steps_of_a_pass();
-  EXPECT_EQ(out->telemetry.model_blocks_repaired + out->telemetry.model_blocks_lost, 0U);
+  EXPECT_EQ(out->telemetry.constants_reloaded, 1U);
+  EXPECT_EQ(out->telemetry.states_restored, 1U);
+  EXPECT_EQ(out->telemetry.memory_corrections, 1U);
+}
+
+// Verifies TS-FDIR-190.
+TEST_F(MemoryGuardTest, RepairsInStandbyAreSpreadTooAndRunWaitsForTheLast) {
+  step_commands({set_mode(Mode::kStandby)});
+  hit_table(0);
+  hit_table(1);
+  flip_a_constant();
+  step(StepInputs{});
+  EXPECT_EQ(out->telemetry.model_tables_rebuilt, 2U);
+  StepInputs inputs;
+  const gnc::RangeImage frame = next_frame();
+  sequence_number = frame.sequence_number;
+  inputs.frame = &frame;
+  inputs.commands[0] = set_mode(Mode::kRun);
+  inputs.command_count = 1;
+  step(inputs);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+  EXPECT_EQ(out->telemetry.constants_reloaded, 1U);
+  EXPECT_EQ(validity(), Validity::kPassedOver);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->telemetry.sequence_gaps, 0U);
 }
 
 // Verifies TS-FDIR-045.
@@ -366,7 +459,7 @@ TEST_F(MemoryGuardTest, TableAndModelHitTogetherLeadToSafeWithoutASecondCopy) {
 TEST_F(MemoryGuardTest, ConstantsHitTogetherWithTheirImageAreReloadedAfterItsRepair) {
   flip_a_constant();
   for (std::size_t at = 0; at < bank(0).size(); at += config::kModelBlockBytes) bank(0)[at + 64] ^= 1;
-  expect_undisturbed_step();
+  expect_repaired_after(1);
   EXPECT_EQ(out->telemetry.constants_reloaded, 1U);
   EXPECT_EQ(bank(0), test_model_image());
 }
@@ -442,8 +535,8 @@ TEST_F(MemoryGuardTest, ConstantsAreNotReloadedFromAnImageWithALostBlock) {
   EXPECT_EQ(app->mode(), Mode::kSafe);
 }
 
-// Verifies TS-FDIR-045, TS-FDIR-090.
-TEST_F(MemoryGuardTest, FrameOfTheCycleThatLosesTheModelIsRefusedAndCounted) {
+// Verifies TS-FDIR-045, TS-FDIR-090, TS-FDIR-190.
+TEST_F(MemoryGuardTest, FrameOfTheCycleThatLosesTheModelIsPassedOverAndCounted) {
   bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
   init(store);
   step_good();
@@ -452,28 +545,46 @@ TEST_F(MemoryGuardTest, FrameOfTheCycleThatLosesTheModelIsRefusedAndCounted) {
   step_good();
   EXPECT_EQ(out->telemetry.bank_switches, 1U);
   EXPECT_EQ(app->mode(), Mode::kRun);
-  EXPECT_EQ(validity(), Validity::kFrameRefused);
-  EXPECT_EQ(out->telemetry.frames_refused, 1U);
+  EXPECT_EQ(validity(), Validity::kPassedOver);
+  EXPECT_EQ(out->telemetry.frames_passed_over, 1U);
+  EXPECT_EQ(out->telemetry.frames_refused, 0U);
   EXPECT_EQ(out->telemetry.frames_used, 1U);
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->telemetry.sequence_gaps, 0U);
 }
 
-// Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, ModelActivatedInTheCycleThatLosesTheOtherStaysInUse) {
+// Verifies TS-FDIR-045. The vote cannot correct the same bits in two copies.
+TEST_F(MemoryGuardTest, WithoutAGoodModelNoFrameIsUsed) {
+  AppMemory::state(*app).banks.descriptor[0].set(BankStatus::kEmpty);
+  AppMemory::commit(*app);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kPassedOver);
+  EXPECT_EQ(out->telemetry.long_task, 0);
+}
+
+// Verifies TS-FDIR-045, TS-FDIR-190.
+TEST_F(MemoryGuardTest, CommandsOfTheCycleThatLosesTheModelDoNotLengthenTheSwitch) {
   const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
-  bank(1) = other;
-  init(store);
-  step_commands({set_mode(Mode::kStandby)});
-  hit_block(0, 200);
-  hit_table();
   std::vector<std::uint8_t> arguments;
   append_u32(arguments, gnc::model_image_crc32(other.data()));
-  step_commands({command(FunctionCode::kModelActivate, arguments), set_mode(Mode::kRun)});
-  EXPECT_EQ(out->telemetry.bank_in_use, 1U);
-  EXPECT_EQ(app->mode(), Mode::kRun);
-  EXPECT_EQ(events(EventId::kSafeEntered), 0);
-  EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kFlag));
+  for (const bool by_table : {true, false}) {
+    bank(0) = test_model_image();
+    bank(1) = other;
+    init(store);
+    command_counter = 0;
+    step_commands({set_mode(Mode::kStandby)});
+    const std::uint32_t next = AppMemory::state(*app).banks.next_block;
+    hit_block(0, by_table ? 200 : next);
+    if (by_table) hit_table();
+    step_commands({command(FunctionCode::kModelActivate, arguments), set_mode(Mode::kRun)});
+    EXPECT_EQ(argument(EventId::kCommandBusy, 2), 1) << "the bank";
+    EXPECT_EQ(out->telemetry.bank_in_use, 1U);
+    EXPECT_EQ(out->telemetry.bank_switches, 1U);
+    EXPECT_EQ(events(EventId::kCommandNoModel), 1) << "at that time there was no model to run";
+    EXPECT_EQ(app->mode(), Mode::kStandby);
+    EXPECT_EQ(argument(EventId::kFaultPersists, 1), static_cast<int>(Response::kSwitchBank));
+  }
 }
 
 // Verifies TS-FDIR-045, TS-MDL-020.

@@ -190,6 +190,48 @@ TEST_F(ModelCommands, ActivationNamesTheImage) {
   EXPECT_EQ(out->telemetry.bank_in_use, 0);
 }
 
+// Verifies TS-MDL-035, TS-FDIR-190.
+TEST_F(ModelCommands, OneImageIsCheckedInACycleAndFurtherChecksAreBusy) {
+  const auto size = static_cast<std::uint32_t>(other.size());
+  const auto refused_as_busy = [this] {
+    return out->telemetry.commands_refused_by[static_cast<std::size_t>(CommandRefusal::kBusy)];
+  };
+  load_all();
+  step_commands({set_mode(Mode::kStandby), validate(size, 1), validate(size, 1), validate()});
+  EXPECT_EQ(out->telemetry.long_task, 1);
+  EXPECT_EQ(events(EventId::kModelRefused), 1) << "one check, which fails";
+  EXPECT_EQ(argument(EventId::kCommandBusy, 2), 1) << "the bank";
+  EXPECT_EQ(refused_as_busy(), 2U);
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kLoading);
+  step_commands({validate(), activate()});
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kGood);
+  EXPECT_EQ(out->telemetry.bank_in_use, 0);
+  EXPECT_EQ(refused_as_busy(), 3U);
+  step_commands({activate(), activate(gnc::model_image_crc32(test_model_image().data()))});
+  EXPECT_EQ(out->telemetry.bank_in_use, 1) << "not back at once";
+  EXPECT_EQ(refused_as_busy(), 4U);
+  step_commands({command(FunctionCode::kNoop)});
+  EXPECT_EQ(out->telemetry.long_task, 0);
+}
+
+// Verifies TS-MDL-035, TS-FDIR-190.
+TEST_F(ModelCommands, FrameOfTheCycleOfAnActivationIsPassedOver) {
+  step_commands({set_mode(Mode::kStandby)});
+  const gnc::RangeImage frame = next_frame();
+  StepInputs inputs;
+  inputs.frame = &frame;
+  inputs.commands[0] = activate(gnc::model_image_crc32(test_model_image().data()));
+  inputs.commands[1] = set_mode(Mode::kRun);
+  inputs.command_count = 2;
+  step(inputs);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+  EXPECT_EQ(validity(), Validity::kPassedOver);
+  EXPECT_EQ(out->telemetry.frames_passed_over, 1U);
+  step_good();
+  EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U);
+}
+
 TEST_F(ModelCommands, DumpReturnsTheBytesOfTheBank) {
   step_commands({dump(0, 100'000, 1024)});
   ASSERT_TRUE(out->has_dump);
