@@ -69,7 +69,7 @@ void fill_telemetry(AppState& state) {
   telemetry.bank_in_use = static_cast<std::uint8_t>(state.banks.in_use);
   telemetry.key_slot = static_cast<std::uint8_t>(state.authority.slot());
   telemetry.second_copy = state.banks.has_second_copy() ? 1 : 0;
-  telemetry.model_bytes_loaded = state.banks.loaded_bytes;
+  telemetry.model_segments_missing = state.banks.segments_missing;
   for (std::uint32_t bank = 0; bank < hal::kModelBanks; ++bank) {
     telemetry.bank_status[bank] = state.banks.status(bank);
     telemetry.bank_crc32[bank] = state.banks.descriptor[bank].crc32;
@@ -138,6 +138,7 @@ void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, S
     CommandHandler({state, state.events, modes, models, outputs, report}, keeper).run(inputs);
     const std::uint32_t resets_before = state.counters.estimator_resets;
     take_frames(inputs, previous_ns, time_advances, outputs, report);
+    models.continue_copy();
     Supervisor(state, modes, models, report)
         .supervise(outputs.attitude.validity, inputs.cycle_slips, start_ns, resets_before);
   }
@@ -204,7 +205,7 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
         state.faults.persisting() & ~(bit_of(Fault::kDeadline) | bit_of(Fault::kSlip)),
         state.faults.disabled(),
         state.banks.in_use,
-        state.banks.loaded_bytes,
+        state.banks.segments_missing,
         c.cycles,
         c.commands_accepted,
         c.commands_refused,

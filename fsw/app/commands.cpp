@@ -56,24 +56,35 @@ bool reset_sequence(const Telecommand&, const CommandContext& context, Refusal&)
   return true;
 }
 
+bool begin_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const std::uint8_t base = command.u8_at(0);
+  if (base > static_cast<std::uint8_t>(UploadBase::kSameBank))
+    return refuse(refusal, CommandRefusal::kWrongArgument, base);
+  AppState& state = context.state;
+  const auto known = static_cast<UploadBase>(base);
+  if (known == UploadBase::kBankInUse && !state.has_model()) return refuse(refusal, CommandRefusal::kNoModel);
+  const bool begun = ModelBanks::begin(*state.platform.models, state.banks, known);
+  return begun ? true : refuse(refusal, CommandRefusal::kWrongArgument, base);
+}
+
 bool load_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
   constexpr int kOffsetBytes = 4;
   ModelBanksState& banks = context.state.banks;
-  const std::int32_t next_offset = clamp_to_int32(banks.loaded_bytes);
-  const hal::WriteStatus written = ModelBanks::load(
-      *context.state.platform.models, banks, command.u32_at(0), command.arguments + kOffsetBytes,
-      static_cast<std::uint32_t>(command.argument_bytes - kOffsetBytes));
-  switch (written) {
+  if (!banks.is_loading()) return refuse(refusal, CommandRefusal::kNoModel);
+  const std::uint32_t offset = command.u32_at(0);
+  const auto bytes = static_cast<std::uint32_t>(command.argument_bytes - kOffsetBytes);
+  switch (ModelBanks::load(*context.state.platform.models, banks, offset, command.arguments + kOffsetBytes,
+                           bytes)) {
     case hal::WriteStatus::kAccepted:
       return true;
     case hal::WriteStatus::kBusy:
-      return refuse(refusal, CommandRefusal::kBusy, next_offset);
+      return refuse(refusal, CommandRefusal::kBusy, clamp_to_int32(offset));
     case hal::WriteStatus::kFailed:
-      return refuse(refusal, CommandRefusal::kStoreFailed, next_offset);
+      return refuse(refusal, CommandRefusal::kStoreFailed, clamp_to_int32(offset));
     case hal::WriteStatus::kRefused:
       break;
   }
-  return refuse(refusal, CommandRefusal::kWrongArgument, next_offset);
+  return refuse(refusal, CommandRefusal::kWrongArgument, clamp_to_int32(offset));
 }
 
 // False: the bank cannot be read now, and the command is refused.
@@ -95,8 +106,9 @@ bool refuse_model(const CommandContext& context, gnc::ModelStatus status, std::u
 bool validate_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
   const ModelBanksState& banks = context.state.banks;
   const std::uint32_t bank = banks.other(), size_bytes = command.u32_at(0);
-  if (banks.status(bank) != BankStatus::kLoading || size_bytes != banks.loaded_bytes)
-    return refuse(refusal, CommandRefusal::kNoModel);
+  if (!banks.is_loading() || size_bytes != kModelImageBytes) return refuse(refusal, CommandRefusal::kNoModel);
+  if (banks.segments_missing > 0)
+    return refuse(refusal, CommandRefusal::kIncomplete, clamp_to_int32(banks.segments_missing));
   if (!is_readable(bank, context, refusal)) return false;
   const gnc::ModelStatus status = context.models.validate(size_bytes, command.u32_at(4));
   if (status != gnc::ModelStatus::kOk) return refuse_model(context, status, size_bytes, bank, refusal);
@@ -115,24 +127,38 @@ bool activate_model(const Telecommand& command, const CommandContext& context, R
   return true;
 }
 
-bool dump_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
-  const std::uint8_t bank = command.u8_at(0);
+// Memory that MEMORY_DUMP reads.
+struct DumpedRegion {
+  const std::uint8_t* data = nullptr;
+  std::size_t bytes = 0;
+};
+
+DumpedRegion region_of(hal::DumpedMemory memory, const AppState& state) {
+  if (memory == hal::DumpedMemory::kMissingSegments)
+    return {state.banks.missing.data(), state.banks.missing.size()};
+  const hal::ModelBank bank = state.platform.models->bank(static_cast<int>(memory));
+  return {bank.data, bank.data == nullptr ? 0 : bank.capacity};
+}
+
+bool dump_memory(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const auto memory = static_cast<hal::DumpedMemory>(command.u8_at(0));
   const std::uint32_t offset = command.u32_at(1), size = command.u16_at(5);
-  if (bank >= hal::kModelBanks || size < 1 || size > hal::ModelDump::kMaxBytes)
+  if (memory > hal::DumpedMemory::kMissingSegments || size < 1 || size > hal::MemoryDump::kMaxBytes)
     return refuse(refusal, CommandRefusal::kWrongArgument);
-  const hal::ModelBank memory = context.state.platform.models->bank(bank);
-  if (memory.data == nullptr || size > memory.capacity || offset > memory.capacity - size)
+  const DumpedRegion region = region_of(memory, context.state);
+  if (size > region.bytes || offset > region.bytes - size)
     return refuse(refusal, CommandRefusal::kWrongArgument);
-  if (!is_readable(bank, context, refusal)) return false;
+  const bool is_bank = memory <= hal::DumpedMemory::kBank1;
+  if (is_bank && !is_readable(command.u8_at(0), context, refusal)) return false;
   if (context.outputs.has_dump) return refuse(refusal, CommandRefusal::kBusy);
   context.outputs.has_dump = true;
-  hal::ModelDump& dump = context.outputs.dump;
+  hal::MemoryDump& dump = context.outputs.dump;
   dump.time_ns = context.state.now_ns;
-  dump.bank = bank;
+  dump.memory = memory;
   dump.offset = offset;
   dump.size = static_cast<std::uint16_t>(size);
   dump.bytes = {};
-  std::memcpy(dump.bytes.data(), memory.data + offset, size);
+  std::memcpy(dump.bytes.data(), region.data + offset, size);
   return true;
 }
 
@@ -190,14 +216,16 @@ constexpr std::array kCommands{
     // mode u8: 1 STANDBY, 2 RUN, 3 SAFE
     CommandRow{{FunctionCode::kSetMode, 1, 1, kAlways}, set_mode},
     CommandRow{{FunctionCode::kResetSequence, 0, 0, kInStandby | kInRun}, reset_sequence},
-    // offset u32, 1...1024 bytes for the bank that is not in use
+    // base u8: 0 nothing, 1 the bank in use, 2 what the bank to be loaded holds
+    CommandRow{{FunctionCode::kModelBegin, 1, 1, kAlways}, begin_model},
+    // offset u32, 1...1024 bytes: a segment of the image that was begun
     CommandRow{{FunctionCode::kModelLoad, 5, hal::kMaxCommandArgumentBytes, kAlways}, load_model},
     // size u32, CRC-32 u32 in the header of the loaded image
     CommandRow{{FunctionCode::kModelValidate, 8, 8, kInStandby | kInSafe}, validate_model},
     // CRC-32 u32 in the header of the validated image
     CommandRow{{FunctionCode::kModelActivate, 4, 4, kInStandby | kInSafe}, activate_model},
-    // bank u8, offset u32, size u16
-    CommandRow{{FunctionCode::kModelDump, 7, 7, kAlways}, dump_model},
+    // DumpedMemory u8, offset u32, size u16
+    CommandRow{{FunctionCode::kMemoryDump, 7, 7, kAlways}, dump_memory},
     // Limit u8, value u32
     CommandRow{{FunctionCode::kSetLimit, 5, 5, kAlways}, set_limit},
     // Fault u8

@@ -28,6 +28,8 @@ class ModelManager {
   // Checks the whole image of `bank` again and uses it. With any status except kOk the current model stays
   // in use.
   gnc::ModelStatus activate(std::uint32_t bank);
+  // Once per cycle: continues the copy of the image in use, where an upload has it as its base.
+  void continue_copy();
   // Response to a corrupted model. Returns the response taken: kSwitchBank, kFlag if a command of this cycle
   // has already activated a good model, or kSafe if the other bank holds no good model.
   Response switch_bank(Fault fault, ModeManager& modes);

@@ -24,6 +24,9 @@ struct LimitRule {
 };
 
 inline constexpr std::size_t kModelBlockBytes = 4096;
+// Segments of an upload that one cycle copies from the bank in use, or up to three more where segments are
+// written together. A whole image takes about 40 cycles.
+inline constexpr std::uint32_t kCopiedSegmentsPerCycle = 32;
 
 // A step may take half the frame period; the other half is for the users of the attitude.
 inline constexpr std::array<LimitRule, kLimits> kLimitRules{{

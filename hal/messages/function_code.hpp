@@ -14,11 +14,12 @@ enum class FunctionCode : std::uint8_t {
   kModelLoad = 5,
   kModelValidate = 6,
   kModelActivate = 7,
-  kModelDump = 8,
+  kMemoryDump = 8,
   kSetLimit = 9,
   kEnableResponse = 10,
   kDisableResponse = 11,
   kKeyActivate = 12,
+  kModelBegin = 13,
 };
 
 }  // namespace tumblesight::hal

@@ -67,7 +67,7 @@ struct Telemetry {
   std::array<BankStatus, kBanks> bank_status{};      // per bank
   std::array<BankActivity, kBanks> bank_activity{};  // per bank
   std::array<std::uint32_t, kBanks> bank_crc32{};    // CRC-32 in the header of the bank's image
-  std::uint32_t model_bytes_loaded = 0;              // of the image that is being loaded
+  std::uint32_t model_segments_missing = 0;          // of the image that is being loaded
 
   std::uint32_t inference_us = 0;  // last step of the estimator, by the stopwatch; not in any digest
   std::uint32_t inference_max_us = 0;

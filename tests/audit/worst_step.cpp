@@ -108,9 +108,12 @@ void set_limit(Limit limit, std::uint32_t value) {
   command(FunctionCode::kSetLimit, arguments.data(), static_cast<int>(arguments.size()));
 }
 
-// The largest commands, as many as a step takes.
+// As many commands as a step takes: an upload begins, the image in use is copied meanwhile, and all others
+// are as large as a command can be.
 void load_commands() {
   static std::array<std::uint8_t, hal::kMaxCommandArgumentBytes> arguments{};
+  const auto base = static_cast<std::uint8_t>(UploadBase::kBankInUse);
+  command(FunctionCode::kModelBegin, &base, 1);
   std::uint32_t offset = 0;
   while (inputs.command_count < config::kMaxCommandsPerStep) {
     add_u32(arguments.data(), offset);
@@ -140,6 +143,7 @@ void expect(bool condition, const char* what) {
 void load_as_second_copy() {
   store.fill();
   ModelBanksState& banks = AppMemory::state(app).banks;
+  banks.void_upload();
   banks.descriptor[banks.other()] = banks.descriptor[banks.in_use];
   AppMemory::commit(app);
 }
@@ -196,10 +200,11 @@ void recoveries() {
 void model_commands() {
   set_mode(Mode::kStandby);
   step("quiet");
-  load_commands();  // the first bytes of an image, which make the bank a new one
+  load_commands();  // which make the bank a new one
   step("quiet");
   std::memcpy(store.banks[1].data(), tumblesight_model_image, kImageBytes);
-  AppMemory::state(app).banks.loaded_bytes = static_cast<std::uint32_t>(kImageBytes);
+  AppMemory::state(app).banks.missing = {};
+  AppMemory::state(app).banks.segments_missing = 0;
   AppMemory::commit(app);
   std::array<std::uint8_t, 8> arguments{};
   add_u32(arguments.data(), static_cast<std::uint32_t>(kImageBytes));

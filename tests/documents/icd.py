@@ -133,6 +133,11 @@ def limits():
                   for name, *numbers in array_rows("fsw/config/limits.hpp", "kLimitRules")])
 
 
+def dumped_memory():
+    return table(["number", "memory of MEMORY_DUMP", ""],
+                 [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "memory_dump.hpp", "DumpedMemory")])
+
+
 def faults():
     meaning = {name: (value, comment) for name, value, comment in enum(MESSAGES + "fault.hpp", "Fault")}
     return table(["number", "fault", "is", "persists after cycles with it", "within", "over after cycles without it", "response",
@@ -163,7 +168,7 @@ def constants():
 
 # Topic: the message that its sample carries, besides run_id and k.
 CARRIED = {"Attitude": ("attitude_report.hpp", "AttitudeReport"), "Telemetry": ("telemetry.hpp", "Telemetry"), "Event": ("event.hpp", "Event"),
-           "ModelDump": ("model_dump.hpp", "ModelDump")}
+           "MemoryDump": ("memory_dump.hpp", "MemoryDump")}
 
 
 Field = collections.namedtuple("Field", "name bits signed count enum comment")  # count: None: not an array
@@ -288,7 +293,7 @@ def packet_bytes(topic):
 def packets():
     return table(["packet", "APID", "bytes", "sent"],
                  [[CARRIED[topic][1], f"0x{apid:03X}", packet_bytes(topic),
-                   {"Attitude": "each cycle", "Telemetry": "each cycle", "Event": "with each event", "ModelDump": "after MODEL_DUMP"}[topic]]
+                   {"Attitude": "each cycle", "Telemetry": "each cycle", "Event": "with each event", "MemoryDump": "after MEMORY_DUMP"}[topic]]
                   for topic, apid in apids().items()])
 
 
@@ -302,10 +307,10 @@ def packet(topic):
 
 
 TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
-          "responses": responses, "events": events,
+          "responses": responses, "dumped memory": dumped_memory, "events": events,
           "packets": packets, **{f"packet {CARRIED[topic][1]}": (lambda topic=topic: packet(topic)) for topic in CARRIED},
           **{f"topic {name}": (lambda name=name: struct(name))
-             for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Navigation", "Step", "Hello")}}
+             for name in ("Command", "Attitude", "Telemetry", "Event", "MemoryDump", "StepDone", "LidarFrame", "Navigation", "Step", "Hello")}}
 
 
 def with_tables(text):

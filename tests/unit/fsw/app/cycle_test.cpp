@@ -62,7 +62,7 @@ TEST_F(Cycle, MissedReleasesAreCountedAndReported) {
 }
 
 TEST_F(Cycle, PublishesADumpInTheCycleThatAskedForIt) {
-  link.add(command(FunctionCode::kModelDump, {0, 0, 0, 0, 0, 0, 4}));
+  link.add(command(FunctionCode::kMemoryDump, {0, 0, 0, 0, 0, 0, 4}));
   run();
   ASSERT_EQ(link.dumps.size(), 1U);
   EXPECT_EQ(link.dumps[0].bytes[0], 'T');

@@ -481,17 +481,18 @@ TEST_F(MemoryGuardTest, UploadContinuesWhenTheModelInUseIsLost) {
   const auto load = [this](std::uint32_t offset) {
     std::vector<std::uint8_t> arguments;
     append_u32(arguments, offset);
-    arguments.insert(arguments.end(), {1, 2, 3, 4});
+    arguments.resize(4 + kSegmentBytes);
     step_commands({command(FunctionCode::kModelLoad, arguments)});
   };
+  step_commands({command(FunctionCode::kModelBegin, {0})});
   load(0);
   hit_block(0, 200);
   hit_table();
   step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kLoading);
-  load(4);
-  EXPECT_EQ(out->telemetry.model_bytes_loaded, 8U);
+  load(kSegmentBytes);
+  EXPECT_EQ(out->telemetry.model_segments_missing, kModelSegments - 2);
 }
 
 // Verifies TS-FDIR-030.
