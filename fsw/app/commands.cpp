@@ -73,18 +73,13 @@ bool load_model(const Telecommand& command, const CommandContext& context, Refus
   if (!banks.is_loading()) return refuse(refusal, CommandRefusal::kNoModel);
   const std::uint32_t offset = command.u32_at(0);
   const auto bytes = static_cast<std::uint32_t>(command.argument_bytes - kOffsetBytes);
-  switch (ModelBanks::load(*context.state.platform.models, banks, offset, command.arguments + kOffsetBytes,
-                           bytes)) {
-    case hal::WriteStatus::kAccepted:
-      return true;
-    case hal::WriteStatus::kBusy:
-      return refuse(refusal, CommandRefusal::kBusy, clamp_to_int32(offset));
-    case hal::WriteStatus::kFailed:
-      return refuse(refusal, CommandRefusal::kStoreFailed, clamp_to_int32(offset));
-    case hal::WriteStatus::kRefused:
-      break;
-  }
-  return refuse(refusal, CommandRefusal::kWrongArgument, clamp_to_int32(offset));
+  const hal::WriteStatus written = ModelBanks::load(*context.state.platform.models, banks, offset,
+                                                    command.arguments + kOffsetBytes, bytes);
+  if (written == hal::WriteStatus::kAccepted) return true;
+  CommandRefusal why = CommandRefusal::kWrongArgument;
+  if (written == hal::WriteStatus::kBusy) why = CommandRefusal::kBusy;
+  if (written == hal::WriteStatus::kFailed) why = CommandRefusal::kStoreFailed;
+  return refuse(refusal, why, clamp_to_int32(offset));
 }
 
 // False: the bank cannot be read now, and the command is refused.
@@ -133,19 +128,32 @@ struct DumpedRegion {
   std::size_t bytes = 0;
 };
 
-DumpedRegion region_of(hal::DumpedMemory memory, const AppState& state) {
-  if (memory == hal::DumpedMemory::kMissingSegments)
-    return {state.banks.missing.data(), state.banks.missing.size()};
-  const hal::ModelBank bank = state.platform.models->bank(static_cast<int>(memory));
-  return {bank.data, bank.data == nullptr ? 0 : bank.capacity};
+// `table`: room for a table as it is dumped.
+DumpedRegion region_of(hal::DumpedMemory memory, const AppState& state, TableBytes& table) {
+  switch (memory) {
+    case hal::DumpedMemory::kBank0:
+    case hal::DumpedMemory::kBank1: {
+      const hal::ModelBank bank = state.platform.models->bank(static_cast<int>(memory));
+      return {bank.data, bank.data == nullptr ? 0 : bank.capacity};
+    }
+    case hal::DumpedMemory::kMissingSegments:
+      return {state.banks.missing.data(), state.banks.missing.size()};
+    case hal::DumpedMemory::kActiveTable:
+    case hal::DumpedMemory::kLoadedTable:
+      break;
+  }
+  const bool is_active = memory == hal::DumpedMemory::kActiveTable;
+  table = to_bytes(is_active ? state.table : state.loaded_table.table);
+  return {table.data(), table.size()};
 }
 
 bool dump_memory(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
   const auto memory = static_cast<hal::DumpedMemory>(command.u8_at(0));
   const std::uint32_t offset = command.u32_at(1), size = command.u16_at(5);
-  if (memory > hal::DumpedMemory::kMissingSegments || size < 1 || size > hal::MemoryDump::kMaxBytes)
+  if (memory > hal::DumpedMemory::kLoadedTable || size < 1 || size > hal::MemoryDump::kMaxBytes)
     return refuse(refusal, CommandRefusal::kWrongArgument);
-  const DumpedRegion region = region_of(memory, context.state);
+  TableBytes table;
+  const DumpedRegion region = region_of(memory, context.state, table);
   if (size > region.bytes || offset > region.bytes - size)
     return refuse(refusal, CommandRefusal::kWrongArgument);
   const bool is_bank = memory <= hal::DumpedMemory::kBank1;
@@ -162,14 +170,54 @@ bool dump_memory(const Telecommand& command, const CommandContext& context, Refu
   return true;
 }
 
-bool set_limit(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
-  const std::uint8_t limit = command.u8_at(0);
+bool set_parameter(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const std::uint8_t field = command.u8_at(0);
   const std::uint32_t value = command.u32_at(1);
-  if (limit >= kLimits) return refuse(refusal, CommandRefusal::kWrongArgument, limit);
-  const config::LimitRule& rule = config::kLimitRules[limit];
-  if (value < rule.lowest || value > rule.highest)
-    return refuse(refusal, CommandRefusal::kWrongArgument, limit);
-  context.state.limits[limit] = value;
+  if (field >= kTableFields) return refuse(refusal, CommandRefusal::kWrongArgument, field);
+  ParameterTable table = context.state.table;
+  table.fields[field] = value;
+  if (first_wrong_field(table) < kTableFields) return refuse(refusal, CommandRefusal::kWrongArgument, field);
+  context.state.table = table;
+  return true;
+}
+
+// Details of a refused table. A field that is not allowed is named by its number.
+constexpr std::int32_t kOtherTableFormat = -1, kWrongTableCrc = -2, kNoSuchTable = -3;
+
+bool load_table(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  LoadedTable& loaded = context.state.loaded_table;
+  const auto bytes = static_cast<std::size_t>(command.argument_bytes);
+  const TableFormat format = from_bytes(command.arguments, bytes, loaded.table);
+  if (format != TableFormat::kOk) {
+    const std::int32_t detail = format == TableFormat::kOther ? kOtherTableFormat : kWrongTableCrc;
+    return refuse(refusal, CommandRefusal::kWrongArgument, detail);
+  }
+  loaded.status = TableStatus::kLoaded;
+  return true;
+}
+
+// Whether the command names the table that was uplinked, and it has come as far as `least`.
+bool is_named(const Telecommand& command, const LoadedTable& loaded, TableStatus least) {
+  return loaded.status >= least && crc32_of(loaded.table) == command.u32_at(0);
+}
+
+bool validate_table(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  LoadedTable& loaded = context.state.loaded_table;
+  if (!is_named(command, loaded, TableStatus::kLoaded))
+    return refuse(refusal, CommandRefusal::kWrongArgument, kNoSuchTable);
+  const std::size_t wrong = first_wrong_field(loaded.table);
+  if (wrong < kTableFields)
+    return refuse(refusal, CommandRefusal::kWrongArgument, static_cast<std::int32_t>(wrong));
+  loaded.status = TableStatus::kValidated;
+  return true;
+}
+
+bool activate_table(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  LoadedTable& loaded = context.state.loaded_table;
+  if (!is_named(command, loaded, TableStatus::kValidated))
+    return refuse(refusal, CommandRefusal::kWrongArgument, kNoSuchTable);
+  context.state.table = loaded.table;
+  loaded.status = TableStatus::kEmpty;
   return true;
 }
 
@@ -226,8 +274,14 @@ constexpr std::array kCommands{
     CommandRow{{FunctionCode::kModelActivate, 4, 4, kInStandby | kInSafe}, activate_model},
     // DumpedMemory u8, offset u32, size u16
     CommandRow{{FunctionCode::kMemoryDump, 7, 7, kAlways}, dump_memory},
-    // Limit u8, value u32
-    CommandRow{{FunctionCode::kSetLimit, 5, 5, kAlways}, set_limit},
+    // field u8, value u32: of the active table
+    CommandRow{{FunctionCode::kSetParameter, 5, 5, kAlways}, set_parameter},
+    // 1...1028 bytes: a whole table
+    CommandRow{{FunctionCode::kTableLoad, 1, hal::kMaxCommandArgumentBytes, kAlways}, load_table},
+    // CRC-32 u32 at the end of the table that was loaded
+    CommandRow{{FunctionCode::kTableValidate, 4, 4, kAlways}, validate_table},
+    // CRC-32 u32 at the end of the table that was validated
+    CommandRow{{FunctionCode::kTableActivate, 4, 4, kAlways}, activate_table},
     // Fault u8
     CommandRow{{FunctionCode::kEnableResponse, 1, 1, kAlways}, enable_response},
     // Fault u8

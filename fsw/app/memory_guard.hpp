@@ -1,5 +1,5 @@
 // MemoryGuard: finds bit flips in the estimator's memory since the last cycle and repairs them. Its time is
-// bounded: config::kLimitRules limits the model blocks checked per cycle.
+// bounded: the parameter ScrubBlocks limits the model blocks checked per cycle.
 //
 //   corrupted                      found by                        repaired from
 //   state of LSTM and track        CRC of the last cycle           copy of the last cycle; reset if the copy

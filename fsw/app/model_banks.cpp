@@ -56,6 +56,13 @@ static_assert(kBlockBytes <= hal::kMaxModelWriteBytes);
 
 }  // namespace
 
+void ModelBanksState::void_upload() {
+  descriptor[other()] = {};
+  next_copied = kModelSegments;
+  segments_missing = 0;
+  missing = {};
+}
+
 bool ModelBanks::begin(hal::ModelStore& store, ModelBanksState& state, UploadBase base) {
   const std::uint32_t bank = state.other();
   const hal::ModelBank memory = store.bank(static_cast<int>(bank));

@@ -54,12 +54,7 @@ struct ModelBanksState {
   std::uint32_t other() const { return 1 - in_use; }
   bool is_loading() const { return status(other()) == BankStatus::kLoading; }
   // The bank that is not in use is empty, and nothing is being loaded.
-  void void_upload() {
-    descriptor[other()] = {};
-    next_copied = kModelSegments;
-    segments_missing = 0;
-    missing = {};
-  }
+  void void_upload();
   bool has_second_copy() const {
     return status(0) == BankStatus::kGood && status(1) == BankStatus::kGood &&
            descriptor[0].crc32 == descriptor[1].crc32;

@@ -34,11 +34,14 @@ static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_LOAD, FunctionCode::kMo
 static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_VALIDATE, FunctionCode::kModelValidate));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_ACTIVATE, FunctionCode::kModelActivate));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_MEMORY_DUMP, FunctionCode::kMemoryDump));
-static_assert(is_value_of(tumblesight_icd_FUNCTION_SET_LIMIT, FunctionCode::kSetLimit));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_SET_PARAMETER, FunctionCode::kSetParameter));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_ENABLE_RESPONSE, FunctionCode::kEnableResponse));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_DISABLE_RESPONSE, FunctionCode::kDisableResponse));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_KEY_ACTIVATE, FunctionCode::kKeyActivate));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_BEGIN, FunctionCode::kModelBegin));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_TABLE_LOAD, FunctionCode::kTableLoad));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_TABLE_VALIDATE, FunctionCode::kTableValidate));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_TABLE_ACTIVATE, FunctionCode::kTableActivate));
 static_assert(is_value_of(tumblesight_icd_EVENT_MODEL_REFUSED, EventId::kModelRefused));
 
 }  // namespace

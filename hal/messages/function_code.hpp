@@ -15,11 +15,14 @@ enum class FunctionCode : std::uint8_t {
   kModelValidate = 6,
   kModelActivate = 7,
   kMemoryDump = 8,
-  kSetLimit = 9,
+  kSetParameter = 9,
   kEnableResponse = 10,
   kDisableResponse = 11,
   kKeyActivate = 12,
   kModelBegin = 13,
+  kTableLoad = 14,
+  kTableValidate = 15,
+  kTableActivate = 16,
 };
 
 }  // namespace tumblesight::hal

@@ -13,6 +13,8 @@ enum class DumpedMemory : std::uint8_t {
   kBank0 = 0,            // a model bank
   kBank1 = 1,            // a model bank
   kMissingSegments = 2,  // of the upload: bit 7 of byte 0 is segment 0; 1: missing
+  kActiveTable = 3,      // the parameter table
+  kLoadedTable = 4,      // the one that was uplinked
 };
 
 struct MemoryDump {

@@ -102,10 +102,10 @@ void set_mode(Mode mode) {
   command(FunctionCode::kSetMode, &argument, 1);
 }
 
-void set_limit(Limit limit, std::uint32_t value) {
-  std::array<std::uint8_t, 5> arguments{static_cast<std::uint8_t>(limit)};
+void set_parameter(Parameter parameter, std::uint32_t value) {
+  std::array<std::uint8_t, 5> arguments{static_cast<std::uint8_t>(parameter)};
   add_u32(arguments.data() + 1, value);
-  command(FunctionCode::kSetLimit, arguments.data(), static_cast<int>(arguments.size()));
+  command(FunctionCode::kSetParameter, arguments.data(), static_cast<int>(arguments.size()));
 }
 
 // As many commands as a step takes: an upload begins, the image in use is copied meanwhile, and all others
@@ -155,16 +155,16 @@ void steps_with_a_frame() {
   load_commands();
   step("frame and full command load");
   load_as_second_copy();
-  const std::uint32_t most = config::kLimitRules[static_cast<std::size_t>(Limit::kScrubBlocks)].highest;
-  set_limit(Limit::kScrubBlocks, most);
+  const config::ParameterRule& scrub = config::rule_of(Parameter::kScrubBlocks);
+  set_parameter(Parameter::kScrubBlocks, scrub.highest);
   step("quiet");
   for (std::size_t block = 0; block < ModelBanks::kBlocks; ++block) store.damage(1, block);
   AppMemory::flip_state_bit(app, 5);
   step("frame, largest scrub with repairs, state restored");
-  expect(outputs.telemetry.model_blocks_repaired >= most, "no block was repaired");
+  expect(outputs.telemetry.model_blocks_repaired >= scrub.highest, "no block was repaired");
   expect(outputs.telemetry.states_restored == 1, "the state was not restored");
   store.fill();
-  set_limit(Limit::kScrubBlocks, config::kLimitRules[static_cast<std::size_t>(Limit::kScrubBlocks)].initial);
+  set_parameter(Parameter::kScrubBlocks, scrub.initial);
   step("quiet");
 }
 

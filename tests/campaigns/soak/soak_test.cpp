@@ -70,7 +70,7 @@ class Soak : public ::testing::Test {
   hal::CommandPacket any_command() {
     constexpr FunctionCode kFunctions[] = {FunctionCode::kNoop,           FunctionCode::kSetMode,
                                            FunctionCode::kResetSequence,  FunctionCode::kMemoryDump,
-                                           FunctionCode::kSetLimit,       FunctionCode::kResetSequence,
+                                           FunctionCode::kSetParameter,   FunctionCode::kResetSequence,
                                            FunctionCode::kModelValidate,  FunctionCode::kDisableResponse,
                                            FunctionCode::kEnableResponse, FunctionCode::kModelActivate};
     std::vector<std::uint8_t> arguments(engine_() % 10);

@@ -8,6 +8,12 @@
 namespace tumblesight::fsw {
 namespace {
 
+bool is_allowed(std::size_t field, std::uint32_t value) {
+  ParameterTable table = initial_table();
+  table.fields[field] = value;
+  return first_wrong_field(table) == kTableFields;
+}
+
 class MemoryGuardTest : public AppFixture {
  protected:
   MemoryGuardTest() {
@@ -41,7 +47,7 @@ class MemoryGuardTest : public AppFixture {
   void steps_of_a_pass() {
     constexpr std::uint32_t kBlocks = ModelBanks::kBlocks;
     for (std::uint32_t block = 0; block <= kBlocks;
-         block += AppMemory::state(*app).limit(Limit::kScrubBlocks))
+         block += AppMemory::state(*app).table[Parameter::kScrubBlocks])
       step_good();
   }
   // Flips a bit that is not padding.
@@ -162,7 +168,7 @@ TEST_F(MemoryGuardTest, CorruptedFallbackIsReportedWithinAPassAndNotUsed) {
   hit_block(1, 150);
   int reports = 0;
   for (std::uint32_t block = 0; block <= ModelBanks::kBlocks;
-       block += AppMemory::state(*app).limit(Limit::kScrubBlocks)) {
+       block += AppMemory::state(*app).table[Parameter::kScrubBlocks]) {
     step_good();
     reports += events(EventId::kFallbackLost);
     if (events(EventId::kFallbackLost) == 0) continue;
@@ -251,17 +257,21 @@ TEST_F(MemoryGuardTest, IndicesOutOfRangeAreBoundedAndGoSafe) {
 }
 
 // Verifies TS-FDIR-015.
-TEST_F(MemoryGuardTest, LimitsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
-  for (const config::LimitRule& rule : config::kLimitRules) {
-    for (const std::uint32_t value : {rule.lowest - 1, rule.highest + 1, UINT32_MAX}) {
+TEST_F(MemoryGuardTest, FieldsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
+  for (std::size_t field = 0; field < kTableFields; ++field) {
+    std::vector<std::uint32_t> wrong{UINT32_MAX};
+    if (field < kParameters)
+      wrong = {config::kParameterRules[field].lowest - 1, config::kParameterRules[field].highest + 1};
+    for (const std::uint32_t value : wrong) {
+      ASSERT_FALSE(is_allowed(field, value)) << field;
       init(store);
       step_good();
-      std::uint32_t& limit = AppMemory::state(*app).limits[static_cast<std::size_t>(rule.limit)];
-      limit = value;
+      std::uint32_t& now = AppMemory::state(*app).table.fields[field];
+      now = value;
       AppMemory::commit(*app);
       step_good();
       EXPECT_EQ(app->mode(), Mode::kSafe);
-      EXPECT_EQ(limit, rule.initial);
+      EXPECT_EQ(now, initial_table().fields[field]);
     }
   }
 }

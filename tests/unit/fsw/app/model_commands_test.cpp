@@ -380,7 +380,7 @@ TEST_F(ModelCommands, DumpBeyondTheBankOrASecondOneInACycleIsRefused) {
   EXPECT_EQ(out->dump.memory, hal::DumpedMemory::kBank1);
   EXPECT_EQ(out->dump.bytes[4], 0) << "nothing is left from an earlier dump";
   step_commands(
-      {dump(0, size - 3, 4), dump(3, 0, 4), dump(0, 0, 0), dump(0, 0, 1025), dump(0, 0xFFFFFFFF, 4)});
+      {dump(0, size - 3, 4), dump(5, 0, 4), dump(0, 0, 0), dump(0, 0, 1025), dump(0, 0xFFFFFFFF, 4)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 5);
   EXPECT_FALSE(out->has_dump);
   store.banks[1] = {};
