@@ -142,7 +142,7 @@ def _steps(fixed, macs):
 def _longest_steps(fixed):
     lines = ["## Longest steps", "",
              "Estimated time in ms of whole steps in which more happens than a frame (`flight_worst_step`): the most expensive commands, as many",
-             "as a step takes; the largest scrubbing that SET_LIMIT allows, with a repair of every block; and memory damaged so that a long",
+             "as a step takes; the largest scrubbing that SET_PARAMETER allows, with a repair of every block; and memory damaged so that a long",
              f"recovery is needed. A step with a frame alone or with commands and scrubbing stays within {100 * SHARE_OF_LONGEST_STEP:.0f} % of the period "
              f"({1e3 * SHARE_OF_LONGEST_STEP * PERIOD_S:.0f} ms), which the",
              "audit checks. A recovery is not spread over several steps: on the slowest processors its step takes longer than that, and a",
