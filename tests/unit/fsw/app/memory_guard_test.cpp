@@ -276,6 +276,15 @@ TEST_F(MemoryGuardTest, FieldsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
   }
 }
 
+// Verifies TS-FDIR-015.
+TEST_F(MemoryGuardTest, TableWithEveryFieldOutOfRangeBecomesTheInitialOne) {
+  AppMemory::state(*app).table.fields.fill(UINT32_MAX);
+  AppMemory::commit(*app);
+  step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(AppMemory::state(*app).table.fields, initial_table().fields);
+}
+
 // Verifies TS-FDIR-040.
 TEST_F(MemoryGuardTest, FlippedBitsOfTheTableAreRepaired) {
   const Region guard = AppMemory::guard(*app);
