@@ -8,7 +8,7 @@
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/command_refusal.hpp"
 #include "hal/messages/event.hpp"
-#include "hal/messages/model_dump.hpp"
+#include "hal/messages/memory_dump.hpp"
 #include "hal/messages/telemetry.hpp"
 
 namespace tumblesight::hal {
@@ -31,7 +31,7 @@ class Link {
   virtual void publish(const AttitudeReport& report) = 0;
   virtual void publish(const Telemetry& telemetry) = 0;
   virtual void publish(const Event& event) = 0;
-  virtual void publish(const ModelDump& dump) = 0;
+  virtual void publish(const MemoryDump& dump) = 0;
 
  protected:
   ~Link() = default;

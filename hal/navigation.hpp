@@ -10,7 +10,7 @@ namespace tumblesight::hal {
 class Navigation {
  public:
   // The attitude at `time_ns` or at the nearest time for which it is known; ChaserAttitude::time_ns says
-  // which. An attitude whose time is off by more than config::kChaserTimeTolerance_ns is not used. Never
+  // which. An attitude whose time is off by more than the parameter ChaserTimeTolerance_us is not used. Never
   // blocks.
   [[nodiscard]] virtual gnc::ChaserAttitude attitude_at(std::int64_t time_ns) = 0;
 

@@ -66,7 +66,7 @@ class RadioLink final : public hal::Link {
   void publish(const hal::AttitudeReport& report) override { board::send(&report, sizeof report); }
   void publish(const hal::Telemetry& telemetry) override { board::send(&telemetry, sizeof telemetry); }
   void publish(const hal::Event& event) override { board::send(&event, sizeof event); }
-  void publish(const hal::ModelDump& dump) override { board::send(&dump, sizeof dump); }
+  void publish(const hal::MemoryDump& dump) override { board::send(&dump, sizeof dump); }
 };
 
 // One bank in read-only memory. With a second, writable bank a damaged model can be repaired or replaced in

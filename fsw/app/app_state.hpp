@@ -14,6 +14,7 @@
 #include "fsw/app/fault_monitor.hpp"
 #include "fsw/app/model_banks.hpp"
 #include "fsw/app/modes.hpp"
+#include "fsw/app/parameter_table.hpp"
 #include "fsw/app/stored_state.hpp"
 #include "fsw/config/numerics.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
@@ -70,7 +71,8 @@ struct alignas(8) AppState {
   FaultMonitor faults;
   ModelBanksState banks;
   AssertionLog assertions;
-  std::array<std::uint32_t, kLimits> limits{};
+  ParameterTable table = initial_table();  // the active one
+  LoadedTable loaded_table;
   std::uint32_t faults_seen = 0;      // in this cycle; bit n: Fault n
   std::uint32_t estimator_crc32 = 0;  // of the estimator's state at the end of the last cycle
   std::uint32_t constants_crc32 = 0;  // of the estimator's copy of model data
@@ -82,11 +84,11 @@ struct alignas(8) AppState {
   bool outage = false;          // the previous cycle had no frame
   bool long_task = false;       // this cycle has one: begin_long_task()
 
-  gnc::FrameTrackerLimits tracker_limits() const {
-    return {config::kFrameTimeLimits, config::kLongestCoast_ns, config::kChaserTimeTolerance_ns,
-            limit(Limit::kPredictedError_urad), limit(Limit::kAttitudeJump_urad)};
+  gnc::FrameTimeLimits time_limits() const;
+  gnc::FrameTrackerLimits tracker_limits() const;
+  EventLimits event_limits() const {
+    return {table[Parameter::kEventsOfAKind], table[Parameter::kEventWindow_cycles]};
   }
-  std::uint32_t limit(Limit which) const { return limits[static_cast<std::size_t>(which)]; }
   // A cycle has at most one long task: the repair of a table or of the constants, or the check of an image
   // for a command or a switch of banks. Such a cycle estimates no frame, so every step stays within half the
   // period. False: the cycle has had one; a repair waits for the next cycle, a command is refused.
@@ -102,9 +104,7 @@ struct alignas(8) AppState {
 class Reporter {
  public:
   Reporter(AppState& state, EventLog& log) : state_(state), log_(log) {}
-  void operator()(EventId id, std::int32_t a = 0, std::int32_t b = 0, std::int32_t c = 0) const {
-    log_.raise(state_.now_ns, id, a, b, c, state_.counters);
-  }
+  void operator()(EventId id, std::int32_t a = 0, std::int32_t b = 0, std::int32_t c = 0) const;
 
  private:
   AppState& state_;

@@ -71,7 +71,9 @@ void fill_telemetry(AppState& state) {
   telemetry.key_slot = static_cast<std::uint8_t>(state.authority.slot());
   telemetry.second_copy = state.banks.has_second_copy() ? 1 : 0;
   telemetry.long_task = state.long_task ? 1 : 0;
-  telemetry.model_bytes_loaded = state.banks.loaded_bytes;
+  telemetry.model_segments_missing = state.banks.segments_missing;
+  telemetry.table_status = state.loaded_table.status;
+  telemetry.table_crc32 = crc32_of(state.table);
   for (std::uint32_t bank = 0; bank < hal::kModelBanks; ++bank) {
     telemetry.bank_status[bank] = state.banks.status(bank);
     telemetry.bank_crc32[bank] = state.banks.descriptor[bank].crc32;
@@ -92,8 +94,6 @@ void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_t
   state.platform.command_keys = nullptr;
   state.authority.set(platform.command_keys);
   state.expected_target.set(expected_target);
-  for (std::size_t i = 0; i < config::kLimitRules.size(); ++i)
-    state.limits[i] = config::kLimitRules[i].initial;
   estimator_.reset();
   if (TUMBLESIGHT_ASSERT(state.assertions, is_complete(platform))) {
     StateKeeper keeper(state, report);
@@ -140,6 +140,7 @@ void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, S
     CommandHandler({state, state.events, modes, models, outputs, report}, keeper).run(inputs);
     const std::uint32_t resets_before = state.counters.estimator_resets;
     take_frames(inputs, previous_ns, time_advances, outputs, report);
+    if (!state.long_task) models.continue_copy();
     Supervisor(state, modes, models, report)
         .supervise(outputs.attitude.validity, inputs.cycle_slips, start_ns, resets_before);
   }
@@ -168,7 +169,7 @@ void AttitudeInitApp::report_telemetry(StepOutputs& outputs) {
   outputs.attitude.time_ns = state.now_ns;
 
   EventLog& events = state.events;
-  events.end_cycle(state.now_ns, state.counters);
+  events.end_cycle(state.now_ns, state.event_limits(), state.counters);
   while (outputs.event_count < config::kMaxEventsPerStep &&
          events.take(outputs.events[static_cast<std::size_t>(outputs.event_count)])) {
     ++outputs.event_count;
@@ -178,7 +179,7 @@ void AttitudeInitApp::report_telemetry(StepOutputs& outputs) {
 }
 
 gnc::FrameVerdict AttitudeInitApp::judge(const gnc::RangeImage& frame, std::int64_t now_ns) const {
-  return state_->tracking.gate.judge(frame, now_ns, config::kFrameTimeLimits);
+  return state_->tracking.gate.judge(frame, now_ns, state_->time_limits());
 }
 
 std::uint32_t AttitudeInitApp::state_crc32() const {
@@ -197,7 +198,6 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
   }
   add_time(state.now_ns);
   add_time(state.tracking.gate.last_exposure_time_ns());
-  for (const std::uint32_t limit : state.limits) crc.add_u32(limit);
   const hal::Telemetry& c = state.counters;
   for (const std::uint32_t number :
        {state.tracking.gate.last_sequence_number(),
@@ -206,7 +206,8 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
         state.faults.persisting() & ~(bit_of(Fault::kDeadline) | bit_of(Fault::kSlip)),
         state.faults.disabled(),
         state.banks.in_use,
-        state.banks.loaded_bytes,
+        state.banks.segments_missing,
+        crc32_of(state.table),
         c.cycles,
         c.commands_accepted,
         c.commands_refused,

@@ -20,7 +20,7 @@
 // The estimator is reset
 //   - on entering RUN, by RESET_SEQUENCE and by the response to a fault;
 //   - when the cycle time goes back;
-//   - with an event, when a frame's exposure is more than config::kLongestCoast_ns after the last used one.
+//   - with an event, when a frame's exposure is more than LongestCoast_ms after the last used one.
 //     Over shorter times, of any length, the track coasts.
 //
 // Cycle times must increase. Otherwise an event is raised, and the frames of the cycle are refused. Its

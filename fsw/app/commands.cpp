@@ -56,24 +56,30 @@ bool reset_sequence(const Telecommand&, const CommandContext& context, Refusal&)
   return true;
 }
 
+bool begin_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const std::uint8_t base = command.u8_at(0);
+  if (base > static_cast<std::uint8_t>(UploadBase::kSameBank))
+    return refuse(refusal, CommandRefusal::kWrongArgument, base);
+  AppState& state = context.state;
+  const auto known = static_cast<UploadBase>(base);
+  if (known == UploadBase::kBankInUse && !state.has_model()) return refuse(refusal, CommandRefusal::kNoModel);
+  const bool begun = ModelBanks::begin(*state.platform.models, state.banks, known);
+  return begun ? true : refuse(refusal, CommandRefusal::kWrongArgument, base);
+}
+
 bool load_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
   constexpr int kOffsetBytes = 4;
   ModelBanksState& banks = context.state.banks;
-  const std::int32_t next_offset = clamp_to_int32(banks.loaded_bytes);
-  const hal::WriteStatus written = ModelBanks::load(
-      *context.state.platform.models, banks, command.u32_at(0), command.arguments + kOffsetBytes,
-      static_cast<std::uint32_t>(command.argument_bytes - kOffsetBytes));
-  switch (written) {
-    case hal::WriteStatus::kAccepted:
-      return true;
-    case hal::WriteStatus::kBusy:
-      return refuse(refusal, CommandRefusal::kBusy, next_offset);
-    case hal::WriteStatus::kFailed:
-      return refuse(refusal, CommandRefusal::kStoreFailed, next_offset);
-    case hal::WriteStatus::kRefused:
-      break;
-  }
-  return refuse(refusal, CommandRefusal::kWrongArgument, next_offset);
+  if (!banks.is_loading()) return refuse(refusal, CommandRefusal::kNoModel);
+  const std::uint32_t offset = command.u32_at(0);
+  const auto bytes = static_cast<std::uint32_t>(command.argument_bytes - kOffsetBytes);
+  const hal::WriteStatus written = ModelBanks::load(*context.state.platform.models, banks, offset,
+                                                    command.arguments + kOffsetBytes, bytes);
+  if (written == hal::WriteStatus::kAccepted) return true;
+  CommandRefusal why = CommandRefusal::kWrongArgument;
+  if (written == hal::WriteStatus::kBusy) why = CommandRefusal::kBusy;
+  if (written == hal::WriteStatus::kFailed) why = CommandRefusal::kStoreFailed;
+  return refuse(refusal, why, clamp_to_int32(offset));
 }
 
 // False: the bank cannot be read now, and the command is refused.
@@ -102,8 +108,9 @@ bool refuse_model(const CommandContext& context, gnc::ModelStatus status, std::u
 bool validate_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
   const ModelBanksState& banks = context.state.banks;
   const std::uint32_t bank = banks.other(), size_bytes = command.u32_at(0);
-  if (banks.status(bank) != BankStatus::kLoading || size_bytes != banks.loaded_bytes)
-    return refuse(refusal, CommandRefusal::kNoModel);
+  if (!banks.is_loading() || size_bytes != kModelImageBytes) return refuse(refusal, CommandRefusal::kNoModel);
+  if (banks.segments_missing > 0)
+    return refuse(refusal, CommandRefusal::kIncomplete, clamp_to_int32(banks.segments_missing));
   if (!begins_check(bank, context, refusal)) return false;
   const gnc::ModelStatus status = context.models.validate(size_bytes, command.u32_at(4));
   if (status != gnc::ModelStatus::kOk) return refuse_model(context, status, size_bytes, bank, refusal);
@@ -122,35 +129,102 @@ bool activate_model(const Telecommand& command, const CommandContext& context, R
   return true;
 }
 
-bool dump_model(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
-  const std::uint8_t bank = command.u8_at(0);
+// Memory that MEMORY_DUMP reads.
+struct DumpedRegion {
+  const std::uint8_t* data = nullptr;
+  std::size_t bytes = 0;
+};
+
+// `table`: room for a table as it is dumped.
+DumpedRegion region_of(hal::DumpedMemory memory, const AppState& state, TableBytes& table) {
+  switch (memory) {
+    case hal::DumpedMemory::kBank0:
+    case hal::DumpedMemory::kBank1: {
+      const hal::ModelBank bank = state.platform.models->bank(static_cast<int>(memory));
+      return {bank.data, bank.data == nullptr ? 0 : bank.capacity};
+    }
+    case hal::DumpedMemory::kMissingSegments:
+      return {state.banks.missing.data(), state.banks.missing.size()};
+    case hal::DumpedMemory::kActiveTable:
+    case hal::DumpedMemory::kLoadedTable:
+      break;
+  }
+  const bool is_active = memory == hal::DumpedMemory::kActiveTable;
+  table = to_bytes(is_active ? state.table : state.loaded_table.table);
+  return {table.data(), table.size()};
+}
+
+bool dump_memory(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const auto memory = static_cast<hal::DumpedMemory>(command.u8_at(0));
   const std::uint32_t offset = command.u32_at(1), size = command.u16_at(5);
-  if (bank >= hal::kModelBanks || size < 1 || size > hal::ModelDump::kMaxBytes)
+  if (memory > hal::DumpedMemory::kLoadedTable || size < 1 || size > hal::MemoryDump::kMaxBytes)
     return refuse(refusal, CommandRefusal::kWrongArgument);
-  const hal::ModelBank memory = context.state.platform.models->bank(bank);
-  if (memory.data == nullptr || size > memory.capacity || offset > memory.capacity - size)
+  TableBytes table;
+  const DumpedRegion region = region_of(memory, context.state, table);
+  if (size > region.bytes || offset > region.bytes - size)
     return refuse(refusal, CommandRefusal::kWrongArgument);
-  if (!is_readable(bank, context, refusal)) return false;
+  const bool is_bank = memory <= hal::DumpedMemory::kBank1;
+  if (is_bank && !is_readable(command.u8_at(0), context, refusal)) return false;
   if (context.outputs.has_dump) return refuse(refusal, CommandRefusal::kBusy);
   context.outputs.has_dump = true;
-  hal::ModelDump& dump = context.outputs.dump;
+  hal::MemoryDump& dump = context.outputs.dump;
   dump.time_ns = context.state.now_ns;
-  dump.bank = bank;
+  dump.memory = memory;
   dump.offset = offset;
   dump.size = static_cast<std::uint16_t>(size);
   dump.bytes = {};
-  std::memcpy(dump.bytes.data(), memory.data + offset, size);
+  std::memcpy(dump.bytes.data(), region.data + offset, size);
   return true;
 }
 
-bool set_limit(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
-  const std::uint8_t limit = command.u8_at(0);
+bool set_parameter(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  const std::uint8_t field = command.u8_at(0);
   const std::uint32_t value = command.u32_at(1);
-  if (limit >= kLimits) return refuse(refusal, CommandRefusal::kWrongArgument, limit);
-  const config::LimitRule& rule = config::kLimitRules[limit];
-  if (value < rule.lowest || value > rule.highest)
-    return refuse(refusal, CommandRefusal::kWrongArgument, limit);
-  context.state.limits[limit] = value;
+  if (field >= kTableFields) return refuse(refusal, CommandRefusal::kWrongArgument, field);
+  ParameterTable table = context.state.table;
+  table.fields[field] = value;
+  if (first_wrong_field(table) < kTableFields) return refuse(refusal, CommandRefusal::kWrongArgument, field);
+  context.state.table = table;
+  return true;
+}
+
+// Details of a refused table. A field that is not allowed is named by its number.
+constexpr std::int32_t kOtherTableFormat = -1, kWrongTableCrc = -2, kNoSuchTable = -3;
+
+bool load_table(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  LoadedTable& loaded = context.state.loaded_table;
+  const auto bytes = static_cast<std::size_t>(command.argument_bytes);
+  const TableFormat format = from_bytes(command.arguments, bytes, loaded.table);
+  if (format != TableFormat::kOk) {
+    const std::int32_t detail = format == TableFormat::kOther ? kOtherTableFormat : kWrongTableCrc;
+    return refuse(refusal, CommandRefusal::kWrongArgument, detail);
+  }
+  loaded.status = TableStatus::kLoaded;
+  return true;
+}
+
+// Whether the command names the table that was uplinked, and it has come as far as `least`.
+bool is_named(const Telecommand& command, const LoadedTable& loaded, TableStatus least) {
+  return loaded.status >= least && crc32_of(loaded.table) == command.u32_at(0);
+}
+
+bool validate_table(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  LoadedTable& loaded = context.state.loaded_table;
+  if (!is_named(command, loaded, TableStatus::kLoaded))
+    return refuse(refusal, CommandRefusal::kWrongArgument, kNoSuchTable);
+  const std::size_t wrong = first_wrong_field(loaded.table);
+  if (wrong < kTableFields)
+    return refuse(refusal, CommandRefusal::kWrongArgument, static_cast<std::int32_t>(wrong));
+  loaded.status = TableStatus::kValidated;
+  return true;
+}
+
+bool activate_table(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
+  LoadedTable& loaded = context.state.loaded_table;
+  if (!is_named(command, loaded, TableStatus::kValidated))
+    return refuse(refusal, CommandRefusal::kWrongArgument, kNoSuchTable);
+  context.state.table = loaded.table;
+  loaded.status = TableStatus::kEmpty;
   return true;
 }
 
@@ -197,16 +271,24 @@ constexpr std::array kCommands{
     // mode u8: 1 STANDBY, 2 RUN, 3 SAFE
     CommandRow{{FunctionCode::kSetMode, 1, 1, kAlways}, set_mode},
     CommandRow{{FunctionCode::kResetSequence, 0, 0, kInStandby | kInRun}, reset_sequence},
-    // offset u32, 1...1024 bytes for the bank that is not in use
+    // base u8: 0 nothing, 1 the bank in use, 2 what the bank to be loaded holds
+    CommandRow{{FunctionCode::kModelBegin, 1, 1, kAlways}, begin_model},
+    // offset u32, 1...1024 bytes: a segment of the image that was begun
     CommandRow{{FunctionCode::kModelLoad, 5, hal::kMaxCommandArgumentBytes, kAlways}, load_model},
     // size u32, CRC-32 u32 in the header of the loaded image
     CommandRow{{FunctionCode::kModelValidate, 8, 8, kInStandby | kInSafe}, validate_model},
     // CRC-32 u32 in the header of the validated image
     CommandRow{{FunctionCode::kModelActivate, 4, 4, kInStandby | kInSafe}, activate_model},
-    // bank u8, offset u32, size u16
-    CommandRow{{FunctionCode::kModelDump, 7, 7, kAlways}, dump_model},
-    // Limit u8, value u32
-    CommandRow{{FunctionCode::kSetLimit, 5, 5, kAlways}, set_limit},
+    // DumpedMemory u8, offset u32, size u16
+    CommandRow{{FunctionCode::kMemoryDump, 7, 7, kAlways}, dump_memory},
+    // field u8, value u32: of the active table
+    CommandRow{{FunctionCode::kSetParameter, 5, 5, kAlways}, set_parameter},
+    // 1...1028 bytes: a whole table
+    CommandRow{{FunctionCode::kTableLoad, 1, hal::kMaxCommandArgumentBytes, kAlways}, load_table},
+    // CRC-32 u32 at the end of the table that was loaded
+    CommandRow{{FunctionCode::kTableValidate, 4, 4, kAlways}, validate_table},
+    // CRC-32 u32 at the end of the table that was validated
+    CommandRow{{FunctionCode::kTableActivate, 4, 4, kAlways}, activate_table},
     // Fault u8
     CommandRow{{FunctionCode::kEnableResponse, 1, 1, kAlways}, enable_response},
     // Fault u8

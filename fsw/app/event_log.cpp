@@ -38,13 +38,13 @@ void EventLog::push(std::int64_t now_ns, const EventRule& rule, const std::array
   event.arguments = arguments;
 }
 
-void EventLog::raise(std::int64_t now_ns, EventId id, std::int32_t a, std::int32_t b, std::int32_t c,
-                     hal::Telemetry& counters) {
+void EventLog::raise(std::int64_t now_ns, EventId id, const std::array<std::int32_t, 3>& arguments,
+                     const EventLimits& limits, hal::Telemetry& counters) {
   const std::size_t index = index_of(id);
   Kind& kind = kinds_[index];
-  if (kind.raised < config::kMaxEventsOfAKind) {
+  if (kind.raised < limits.events_of_a_kind) {
     ++kind.raised;
-    push(now_ns, kEventRules[index], {a, b, c}, counters);
+    push(now_ns, kEventRules[index], arguments, counters);
   } else {
     if (kind.suppressed < UINT16_MAX) ++kind.suppressed;
     count(counters.events);
@@ -52,8 +52,8 @@ void EventLog::raise(std::int64_t now_ns, EventId id, std::int32_t a, std::int32
   }
 }
 
-void EventLog::end_cycle(std::int64_t now_ns, hal::Telemetry& counters) {
-  if (++cycle_ < config::kEventWindow_cycles) return;
+void EventLog::end_cycle(std::int64_t now_ns, const EventLimits& limits, hal::Telemetry& counters) {
+  if (++cycle_ < limits.window_cycles) return;
   cycle_ = 0;
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const Kind kind = kinds_[i];

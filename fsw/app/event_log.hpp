@@ -1,6 +1,6 @@
 // EventLog: a ring of fixed size for the events that wait to be sent. Events of one kind beyond
-// config::kMaxEventsOfAKind per window are only counted, and one event at the end of the window reports their
-// number. Accesses stay within the ring even if a bit flip changes an index.
+// EventLimits::events_of_a_kind per window are only counted, and one event at the end of the window reports
+// their number. Accesses stay within the ring even if a bit flip changes an index.
 #pragma once
 
 #include <array>
@@ -18,14 +18,19 @@ using hal::EventRule;
 using hal::kEventRules;
 using hal::Severity;
 
+struct EventLimits {
+  std::uint32_t events_of_a_kind;  // per window
+  std::uint32_t window_cycles;
+};
+
 class EventLog {
  public:
   // Adds an event, or suppresses it, or loses it if the ring is full. Counts in `counters`: events (every
   // call), events_suppressed, events_lost.
-  void raise(std::int64_t now_ns, EventId id, std::int32_t a, std::int32_t b, std::int32_t c,
-             hal::Telemetry& counters);
+  void raise(std::int64_t now_ns, EventId id, const std::array<std::int32_t, 3>& arguments,
+             const EventLimits& limits, hal::Telemetry& counters);
   // At the end of every cycle; at the end of a window adds the events that report suppressed ones.
-  void end_cycle(std::int64_t now_ns, hal::Telemetry& counters);
+  void end_cycle(std::int64_t now_ns, const EventLimits& limits, hal::Telemetry& counters);
   // Removes the oldest event. False: there is none.
   bool take(hal::Event& event);
   std::uint32_t waiting() const { return count_ < config::kEventRing ? count_ : config::kEventRing; }

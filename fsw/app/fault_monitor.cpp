@@ -11,16 +11,6 @@ constexpr bool is_in_order() {
 }
 static_assert(is_in_order(), "the table is indexed by the fault's number");
 
-constexpr bool is_possible() {
-  for (const config::FaultRule& rule : config::kFaultRules) {
-    if (rule.cycles < 1) return false;
-    if (rule.good_cycles < 1) return false;
-    if (rule.cycles > rule.window_cycles) return false;
-    if (rule.window_cycles > config::kMaxFaultWindow_cycles) return false;
-  }
-  return true;
-}
-static_assert(is_possible(), "a fault cannot be present in more cycles than the window has");
 static_assert(kFaults <= 32, "the telemetry has one bit per fault");
 
 // The bits of the history that a rule looks at.
@@ -34,14 +24,10 @@ constexpr std::uint32_t count_of_bits(std::uint32_t word) {
   return count;
 }
 
-const config::FaultRule& rule_of(Fault fault) {
-  return config::kFaultRules[static_cast<std::size_t>(fault)];
-}
-
 }  // namespace
 
-FaultMonitor::Change FaultMonitor::observe(Fault fault, bool present) {
-  const config::FaultRule& rule = rule_of(fault);
+FaultMonitor::Change FaultMonitor::observe(const config::FaultRule& rule, bool present) {
+  const Fault fault = rule.fault;
   std::uint32_t& history = history_[static_cast<std::size_t>(fault)];
   std::uint8_t& good_cycles = good_cycles_[static_cast<std::size_t>(fault)];
   history = (history << 1 | (present ? 1U : 0U)) & window_of(rule);
@@ -63,8 +49,8 @@ void FaultMonitor::hold(Fault fault) {
   good_cycles_[static_cast<std::size_t>(fault)] = 0;
 }
 
-Response FaultMonitor::response_to(Fault fault) const {
-  return (disabled_ & bit_of(fault)) != 0 ? Response::kFlag : rule_of(fault).response;
+Response FaultMonitor::response_to(const config::FaultRule& rule) const {
+  return (disabled_ & bit_of(rule.fault)) != 0 ? Response::kFlag : rule.response;
 }
 
 bool FaultMonitor::enable(std::uint8_t fault, bool enabled) {
@@ -74,7 +60,7 @@ bool FaultMonitor::enable(std::uint8_t fault, bool enabled) {
     disabled_ &= ~bit_of(known);
     return true;
   }
-  if (!rule_of(known).can_be_disabled) return false;
+  if (!config::kFaultRules[fault].can_be_disabled) return false;
   disabled_ |= bit_of(known);
   return true;
 }

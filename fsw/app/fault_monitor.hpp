@@ -20,13 +20,13 @@ class FaultMonitor {
   // Once per cycle and fault. kPersists: the fault is present, and was in as many cycles of the window as its
   // rule requires; then the window starts empty, so that the next kPersists needs as many again. kOver: a
   // persisting fault has been absent for the good cycles of its rule.
-  Change observe(Fault fault, bool present);
+  Change observe(const config::FaultRule& rule, bool present);
   // Instead of observe(), in a cycle in which the consequence of a fault remains: a persisting fault is not
   // over, and there is no new response.
   void hold(Fault fault);
 
-  // The response to a persisting fault by its rule; kFlag where the response is disabled.
-  Response response_to(Fault fault) const;
+  // The response to a persisting fault; kFlag where it is disabled.
+  Response response_to(const config::FaultRule& rule) const;
   // Enables or disables a response. False: there is no such fault, or its response cannot be disabled.
   [[nodiscard]] bool enable(std::uint8_t fault, bool enabled);
 

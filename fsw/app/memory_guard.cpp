@@ -31,10 +31,11 @@ bool MemoryGuard::bound(const Estimator& estimator, AppState& state) {
     banks.next_block = 0;
     sound = false;
   }
-  for (std::size_t i = 0; i < config::kLimitRules.size(); ++i) {
-    const config::LimitRule& rule = config::kLimitRules[i];
-    if (state.limits[i] >= rule.lowest && state.limits[i] <= rule.highest) continue;
-    state.limits[i] = rule.initial;
+  static constexpr ParameterTable kInitial = initial_table();
+  for (std::size_t i = 0; i < kTableFields; ++i) {
+    const std::size_t wrong = first_wrong_field(state.table);
+    if (wrong == kTableFields) break;
+    state.table.fields[wrong] = kInitial.fields[wrong];
     sound = false;
   }
   return sound;
@@ -52,7 +53,7 @@ void MemoryGuard::check(Estimator& estimator, AppState& state, const Reporter& r
   const std::uint32_t other = state.banks.other();
   if (state.banks.status(other) == BankStatus::kGood && !has_sound_table(other, estimator, state, report))
     return;
-  for (std::uint32_t i = 0; i < state.limit(Limit::kScrubBlocks) && state.has_model(); ++i)
+  for (std::uint32_t i = 0; i < state.table[Parameter::kScrubBlocks] && state.has_model(); ++i)
     check_block(state, report);
   if (state.has_model()) check_constants(estimator, state, report);
 }

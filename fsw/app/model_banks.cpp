@@ -1,15 +1,50 @@
 #include "fsw/app/model_banks.hpp"
 
 #include "gnc/numerics/crc32.hpp"
+#include "hal/messages/memory_dump.hpp"
 
 namespace tumblesight::fsw {
 namespace {
 
 constexpr std::uint32_t kBlockBytes = config::kModelBlockBytes;
+constexpr std::uint32_t kSegmentsPerWrite = hal::kMaxModelWriteBytes / kSegmentBytes;
+static_assert(sizeof(ModelBanksState::missing) <= hal::MemoryDump::kMaxBytes, "one dump shows all of it");
 
 std::uint32_t bytes_of_block(std::uint32_t block) {
-  const std::uint32_t rest = static_cast<std::uint32_t>(gnc::kModelImageSize<Numerics>) - block * kBlockBytes;
+  const std::uint32_t rest = kModelImageBytes - block * kBlockBytes;
   return rest < kBlockBytes ? rest : kBlockBytes;
+}
+
+std::uint32_t bytes_of_segment(std::uint32_t segment) {
+  const std::uint32_t rest = kModelImageBytes - segment * kSegmentBytes;
+  return rest < kSegmentBytes ? rest : kSegmentBytes;
+}
+
+constexpr std::uint8_t mask_of(std::uint32_t segment) {
+  return static_cast<std::uint8_t>(0x80U >> segment % 8);
+}
+
+bool is_missing(const ModelBanksState& state, std::uint32_t segment) {
+  return (state.missing[segment / 8] & mask_of(segment)) != 0;
+}
+
+// Writes `count` bytes from the beginning of segment `first` on. The segments are no longer missing.
+hal::WriteStatus write_segments(hal::ModelStore& store, ModelBanksState& state, std::uint32_t first,
+                                const std::uint8_t* bytes, std::uint32_t count) {
+  const std::uint32_t bank = state.other();
+  const auto index = static_cast<int>(bank);
+  const bool spoilt =
+      state.segments_missing < kModelSegments && store.activity(index) == hal::BankActivity::kFailed;
+  const hal::WriteStatus written =
+      spoilt ? hal::WriteStatus::kFailed : store.write(index, first * kSegmentBytes, bytes, count);
+  if (written == hal::WriteStatus::kFailed) state.void_upload();
+  if (written != hal::WriteStatus::kAccepted) return written;
+  for (std::uint32_t segment = first; segment * kSegmentBytes < first * kSegmentBytes + count; ++segment) {
+    if (!is_missing(state, segment)) continue;
+    state.missing[segment / 8] ^= mask_of(segment);
+    --state.segments_missing;
+  }
+  return written;
 }
 
 // Copies a block of `image` into a bank. True: accepted.
@@ -21,28 +56,57 @@ static_assert(kBlockBytes <= hal::kMaxModelWriteBytes);
 
 }  // namespace
 
+void ModelBanksState::void_upload() {
+  descriptor[other()] = {};
+  next_copied = kModelSegments;
+  segments_missing = 0;
+  missing = {};
+}
+
+bool ModelBanks::begin(hal::ModelStore& store, ModelBanksState& state, UploadBase base) {
+  const std::uint32_t bank = state.other();
+  const hal::ModelBank memory = store.bank(static_cast<int>(bank));
+  if (memory.writing == hal::BankWriting::kReadOnly) return false;
+  if (memory.capacity < kModelImageBytes) return false;
+  state.void_upload();
+  state.descriptor[bank].set(BankStatus::kLoading);
+  if (base == UploadBase::kSameBank) return true;
+  for (std::uint32_t segment = 0; segment < kModelSegments; ++segment)
+    state.missing[segment / 8] |= mask_of(segment);
+  state.segments_missing = kModelSegments;
+  if (base == UploadBase::kBankInUse) state.next_copied = 0;
+  return true;
+}
+
 hal::WriteStatus ModelBanks::load(hal::ModelStore& store, ModelBanksState& state, std::uint32_t offset,
                                   const std::uint8_t* bytes, std::uint32_t count) {
-  const std::uint32_t bank = state.other();
-  BankDescriptor& descriptor = state.descriptor[bank];
-  const bool in_order =
-      offset == 0 || (state.status(bank) == BankStatus::kLoading && offset == state.loaded_bytes);
-  if (!in_order) return hal::WriteStatus::kRefused;
-  const auto index = static_cast<int>(bank);
-  const bool spoilt = offset > 0 && store.activity(index) == hal::BankActivity::kFailed;
-  const hal::WriteStatus written =
-      spoilt ? hal::WriteStatus::kFailed : store.write(index, offset, bytes, count);
-  if (written == hal::WriteStatus::kFailed) {
-    descriptor = {};
-    state.loaded_bytes = 0;
+  if (offset % kSegmentBytes != 0 || offset >= kModelImageBytes) return hal::WriteStatus::kRefused;
+  const std::uint32_t segment = offset / kSegmentBytes;
+  if (count != bytes_of_segment(segment)) return hal::WriteStatus::kRefused;
+  return write_segments(store, state, segment, bytes, count);
+}
+
+hal::WriteStatus ModelBanks::continue_copy(hal::ModelStore& store, ModelBanksState& state) {
+  const std::uint8_t* const image = store.bank(static_cast<int>(state.in_use)).data;
+  std::uint32_t copied = 0;
+  while (copied < config::kCopiedSegmentsPerCycle && state.next_copied < kModelSegments) {
+    const std::uint32_t first = state.next_copied;
+    if (!is_missing(state, first)) {
+      ++state.next_copied;
+      continue;
+    }
+    // Flash erases a whole sector for each write, so segments that lie together are written together.
+    std::uint32_t count = 0, end = first;
+    do {
+      count += bytes_of_segment(end++);
+    } while (end % kSegmentsPerWrite != 0 && end < kModelSegments && is_missing(state, end));
+    const hal::WriteStatus written =
+        write_segments(store, state, first, image + first * kSegmentBytes, count);
+    if (written != hal::WriteStatus::kAccepted) return written;
+    state.next_copied = end;
+    copied += end - first;
   }
-  if (written != hal::WriteStatus::kAccepted) return written;
-  if (offset == 0) {
-    descriptor = {};
-    descriptor.set(BankStatus::kLoading);
-  }
-  state.loaded_bytes = offset + count;
-  return written;
+  return hal::WriteStatus::kAccepted;
 }
 
 std::uint32_t ModelBanks::crc32_of(const Table& table) {

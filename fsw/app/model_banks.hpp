@@ -1,6 +1,10 @@
 // ModelBanks: the two banks for model images. It loads an image from the ground and keeps the good images
 // free of bit flips.
 //
+// An image is loaded in segments, in any order, into the bank that is not in use. A bitmap tells which
+// segments are missing. A segment that the ground does not send can be copied from the bank in use, so that
+// an image that differs little needs few segments.
+//
 // The good image of each bank is checked block by block, a few blocks per cycle, against the bank's own table
 // of checksums. If both banks hold the same image, a block that does not match is repaired from the same
 // block of the other bank, if that one matches. A different good image is a fallback: nothing can repair it,
@@ -15,11 +19,17 @@
 #include "fsw/config/numerics.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "hal/messages/bank_status.hpp"
+#include "hal/messages/command_packet.hpp"
 #include "hal/model_store.hpp"
 
 namespace tumblesight::fsw {
 
 using hal::BankStatus;
+
+// Every image that passes the checks has the size of the network's image.
+inline constexpr std::uint32_t kModelImageBytes = gnc::kModelImageSize<Numerics>;
+inline constexpr std::uint32_t kSegmentBytes = hal::kMaxModelSegmentBytes;
+inline constexpr std::uint32_t kModelSegments = (kModelImageBytes + kSegmentBytes - 1) / kSegmentBytes;
 
 struct BankDescriptor {
   std::uint32_t size_bytes = 0;
@@ -32,17 +42,30 @@ struct BankDescriptor {
 // The state of ModelBanks that is kept in three copies (voted.hpp).
 struct ModelBanksState {
   std::array<BankDescriptor, hal::kModelBanks> descriptor{};
-  std::uint32_t in_use = 0;        // bank
-  std::uint32_t loaded_bytes = 0;  // of the image that is being loaded
-  std::uint32_t next_block = 0;    // to be checked
+  std::uint32_t in_use = 0;      // bank
+  std::uint32_t next_block = 0;  // to be checked
+  std::uint32_t next_copied =
+      kModelSegments;  // first segment that is not copied yet; no copy: the number of all
+  std::uint32_t segments_missing = 0;
+  std::array<std::uint8_t, (kModelSegments + 7) / 8> missing{};  // bit 7 of byte 0 is segment 0; 1: missing
   std::array<std::uint32_t, hal::kModelBanks> table_crc32{};
 
   BankStatus status(std::uint32_t bank) const { return static_cast<BankStatus>(descriptor[bank].status); }
   std::uint32_t other() const { return 1 - in_use; }
+  bool is_loading() const { return status(other()) == BankStatus::kLoading; }
+  // The bank that is not in use is empty, and nothing is being loaded.
+  void void_upload();
   bool has_second_copy() const {
     return status(0) == BankStatus::kGood && status(1) == BankStatus::kGood &&
            descriptor[0].crc32 == descriptor[1].crc32;
   }
+};
+
+// What the segments that the ground does not send hold.
+enum class UploadBase : std::uint8_t {
+  kNothing = 0,    // all are missing
+  kBankInUse = 1,  // they are copied from the image in use
+  kSameBank = 2,   // what the bank holds now, such as an image whose upload a reset interrupted
 };
 
 // Result of the check of one block.
@@ -60,17 +83,22 @@ struct BlockCheck {
 
 class ModelBanks {
  public:
-  // Every image that passes the checks has the size of the network's image.
   static constexpr std::uint32_t kBlocks =
-      (gnc::kModelImageSize<Numerics> + config::kModelBlockBytes - 1) / config::kModelBlockBytes;
+      (kModelImageBytes + config::kModelBlockBytes - 1) / config::kModelBlockBytes;
 
-  // Writes a segment of `count` bytes to the bank that is not in use. Segments must come in order; a segment
-  // with offset 0 begins a new image. kRefused: out of order, beyond the end of the bank, or the bank is
-  // read-only. kBusy: send the segment again later. kFailed: the image is void, now or because an earlier
-  // segment could not be written.
+  // Begins an image in the bank that is not in use, whose content is void from then on. False: the bank is
+  // read-only or too small.
+  [[nodiscard]] static bool begin(hal::ModelStore& store, ModelBanksState& state, UploadBase base);
+  // Writes a segment of `count` bytes of the image that was begun. `offset` is a multiple of kSegmentBytes,
+  // and only the last segment of the image is shorter. A segment may come again. kRefused: it is none of the
+  // image. kBusy: send it again later. kFailed: the image is void, now or because an earlier segment could
+  // not be written.
   [[nodiscard]] static hal::WriteStatus load(hal::ModelStore& store, ModelBanksState& state,
                                              std::uint32_t offset, const std::uint8_t* bytes,
                                              std::uint32_t count);
+  // Once per cycle: copies the next missing segments, at most config::kCopiedSegmentsPerCycle. kFailed: the
+  // image is void.
+  [[nodiscard]] static hal::WriteStatus continue_copy(hal::ModelStore& store, ModelBanksState& state);
 
   // Computes the table of checksums from the current content of `bank`. Call when its image has passed every
   // check.

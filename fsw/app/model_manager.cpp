@@ -75,6 +75,14 @@ gnc::ModelStatus ModelManager::activate(std::uint32_t bank) {
   return status;
 }
 
+void ModelManager::continue_copy() {
+  ModelBanksState& banks = state_.banks;
+  if (!banks.is_loading() || !state_.has_model()) return;
+  const std::int32_t missing = clamp_to_int32(banks.segments_missing);
+  if (ModelBanks::continue_copy(*state_.platform.models, banks) != hal::WriteStatus::kFailed) return;
+  report_(EventId::kUploadFailed, static_cast<std::int32_t>(banks.other()), missing);
+}
+
 Response ModelManager::switch_bank(Fault fault, ModeManager& modes) {
   const std::uint32_t before = state_.banks.in_use, other = state_.banks.other();
   if (state_.banks.status(other) == BankStatus::kGood && activate(other) == gnc::ModelStatus::kOk) {

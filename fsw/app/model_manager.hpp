@@ -30,6 +30,8 @@ class ModelManager {
   // Checks the image of `bank` again and uses it. With any status except kOk the current model stays
   // in use.
   gnc::ModelStatus activate(std::uint32_t bank);
+  // Once per cycle: continues the copy of the image in use, where an upload has it as its base.
+  void continue_copy();
   // Response to the loss of the model in this cycle. Returns the response taken: kSwitchBank, or kSafe if the
   // other bank holds no good model.
   Response switch_bank(Fault fault, ModeManager& modes);

@@ -13,7 +13,7 @@ StoredState state_to_store(const AppState& state) {
   wanted.mode = state.mode;
   wanted.safe_cause = state.counters.safe_cause;
   wanted.safe_fault = state.counters.safe_fault;
-  wanted.limits = state.limits;
+  wanted.table = state.table;
   wanted.responses_disabled = state.faults.disabled();
   return wanted;
 }
@@ -48,7 +48,7 @@ void StateKeeper::resume() {
 
 void StateKeeper::take(const StoredState& stored) {
   state_.counters.command_counter = stored.command_counter;
-  state_.limits = stored.limits;
+  state_.table = stored.table;
   for (std::uint8_t fault = 0; fault < kFaults; ++fault) {
     if ((stored.responses_disabled & bit_of(static_cast<Fault>(fault))) != 0)
       (void)state_.faults.enable(fault, false);

@@ -11,7 +11,7 @@
 //   RUN               RUN             STANDBY
 //   STANDBY           STANDBY         STANDBY
 //   SAFE              SAFE            SAFE
-//   both copies bad   SAFE            SAFE        cold boot: counter 0, key slot 0, initial limits, bank 0
+//   both copies bad   SAFE            SAFE        cold boot: counter 0, key slot 0, initial table, bank 0
 // Without a good model it is SAFE.
 #pragma once
 
@@ -25,7 +25,7 @@ class StateKeeper {
  public:
   StateKeeper(AppState& state, const Reporter& report) : state_(state), report_(report) {}
 
-  // At boot: takes counter, key slot, limits and disabled responses from the newest good copy. The result is
+  // At boot: takes counter, key slot, table and disabled responses from the newest good copy. The result is
   // kept in AppState::resumption.
   void resume();
   // The cause of the first mode, if a good model was found.

@@ -12,7 +12,7 @@
 #include "hal/messages/attitude_report.hpp"
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/event.hpp"
-#include "hal/messages/model_dump.hpp"
+#include "hal/messages/memory_dump.hpp"
 #include "hal/messages/telemetry.hpp"
 
 namespace tumblesight::fsw {
@@ -49,7 +49,7 @@ struct StepOutputs {
   hal::Telemetry telemetry;
   std::array<hal::Event, config::kMaxEventsPerStep> events{};
   int event_count = 0;
-  hal::ModelDump dump;
+  hal::MemoryDump dump;
   bool has_dump = false;
   bool duties_done = false;  // the watchdog may be kicked
 };

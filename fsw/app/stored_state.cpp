@@ -1,5 +1,7 @@
 #include "fsw/app/stored_state.hpp"
 
+#include <cstring>
+
 #include "gnc/numerics/crc32.hpp"
 #include "hal/messages/command_key.hpp"
 #include "hal/model_store.hpp"
@@ -8,9 +10,10 @@ namespace tumblesight::fsw {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x54535354;  // TSST
-constexpr std::uint8_t kVersion = 1;
+constexpr std::uint8_t kVersion = 2;
 constexpr std::size_t kCrcOffset = hal::kStoredBytes - 4;
-static_assert(23 + 4 * kLimits <= kCrcOffset, "the limits do not fit into the record");
+constexpr std::size_t kTableOffset = 22;
+static_assert(kTableOffset + kTableBytes <= kCrcOffset, "the table does not fit into the record");
 
 class RecordWriter {
  public:
@@ -52,16 +55,6 @@ bool has_known_places(const StoredState& state) {
   return state.key_slot < hal::kCommandKeySlots && state.bank < hal::kModelBanks;
 }
 
-bool has_allowed_limits(const StoredState& state) {
-  bool allowed = true;
-  for (std::size_t i = 0; i < config::kLimitRules.size(); ++i) {
-    const config::LimitRule& rule = config::kLimitRules[i];
-    allowed &= state.limits[i] >= rule.lowest;
-    allowed &= state.limits[i] <= rule.highest;
-  }
-  return allowed;
-}
-
 }  // namespace
 
 // The records of equal states with equal generations are equal.
@@ -74,7 +67,6 @@ hal::StoredBytes to_record(const StoredState& state, std::uint32_t generation) {
   RecordWriter writer(bytes);
   writer.u32(kMagic);
   writer.u8(kVersion);
-  writer.u8(kLimits);
   writer.u32(generation);
   writer.u32(state.command_counter);
   writer.u8(state.key_slot);
@@ -83,7 +75,8 @@ hal::StoredBytes to_record(const StoredState& state, std::uint32_t generation) {
   writer.u8(static_cast<std::uint32_t>(state.safe_cause));
   writer.u8(static_cast<std::uint32_t>(state.safe_fault));
   writer.u32(state.responses_disabled);
-  for (const std::uint32_t limit : state.limits) writer.u32(limit);
+  const TableBytes table = to_bytes(state.table);
+  std::memcpy(bytes.data() + kTableOffset, table.data(), table.size());
   const std::uint32_t crc = gnc::crc32(bytes.data(), kCrcOffset);
   for (std::size_t i = 0; i < 4; ++i) bytes[kCrcOffset + i] = static_cast<std::uint8_t>(crc >> (24 - 8 * i));
   return bytes;
@@ -93,9 +86,8 @@ StoreStatus from_record(const hal::StoredBytes& bytes, StoredState& state, std::
   if (RecordReader(bytes, kCrcOffset).u32() != gnc::crc32(bytes.data(), kCrcOffset))
     return StoreStatus::kDamaged;
   RecordReader reader(bytes);
-  const bool known_magic = reader.u32() == kMagic, known_version = reader.u8() == kVersion,
-             known_limits = reader.u8() == kLimits;
-  if (!known_magic || !known_version || !known_limits) return StoreStatus::kDamaged;
+  const bool known_magic = reader.u32() == kMagic, known_version = reader.u8() == kVersion;
+  if (!known_magic || !known_version) return StoreStatus::kDamaged;
   const std::uint32_t read_generation = reader.u32();
   StoredState read;
   read.command_counter = reader.u32();
@@ -105,9 +97,10 @@ StoreStatus from_record(const hal::StoredBytes& bytes, StoredState& state, std::
   read.safe_cause = static_cast<Cause>(reader.u8());
   read.safe_fault = static_cast<Fault>(reader.u8());
   read.responses_disabled = reader.u32();
-  for (std::uint32_t& limit : read.limits) limit = reader.u32();
-  if (!has_known_mode(read) || !has_known_places(read) || !has_allowed_limits(read))
-    return StoreStatus::kDamaged;
+  const TableFormat format = from_bytes(bytes.data() + kTableOffset, kTableBytes, read.table);
+  if (format != TableFormat::kOk) return StoreStatus::kDamaged;
+  const bool allowed_fields = first_wrong_field(read.table) == kTableFields;
+  if (!has_known_mode(read) || !has_known_places(read) || !allowed_fields) return StoreStatus::kDamaged;
   state = read;
   generation = read_generation;
   return StoreStatus::kOk;

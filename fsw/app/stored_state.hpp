@@ -2,12 +2,10 @@
 // persistent store (hal/persistent_store.hpp).
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "fsw/app/modes.hpp"
-#include "fsw/config/fault_rules.hpp"
-#include "fsw/config/limits.hpp"
+#include "fsw/app/parameter_table.hpp"
 #include "hal/persistent_store.hpp"
 
 namespace tumblesight::fsw {
@@ -21,7 +19,7 @@ struct StoredState {
   Mode mode = Mode::kBoot;  // kBoot: none is stored
   Cause safe_cause = Cause::kNone;
   Fault safe_fault = Fault::kStateLost;
-  std::array<std::uint32_t, kLimits> limits{};
+  ParameterTable table;
   std::uint32_t responses_disabled = 0;  // bit n: Fault n
 
   bool operator==(const StoredState& other) const;
@@ -32,17 +30,16 @@ struct StoredState {
 //
 //   offset  bytes  field
 //        0      4  magic TSST
-//        4      1  format version, 1
-//        5      1  number of limits
-//        6      4  generation: higher in a later record
-//       10      4  command counter
-//       14      1  key slot
-//       15      1  bank in use
-//       16      1  Mode
-//       17      1  Cause of the last change to SAFE
-//       18      1  Fault, valid if the cause is FAULT
-//       19      4  responses disabled
-//       23    4 n  limits
+//        4      1  format version, 2
+//        5      4  generation: higher in a later record
+//        9      4  command counter
+//       13      1  key slot
+//       14      1  bank in use
+//       15      1  Mode
+//       16      1  Cause of the last change to SAFE
+//       17      1  Fault, valid if the cause is FAULT
+//       18      4  responses disabled
+//       22      n  active table, as on the link (parameter_table.hpp)
 //           ...    zeros
 //      124      4  CRC-32 of everything before it
 hal::StoredBytes to_record(const StoredState& state, std::uint32_t generation);

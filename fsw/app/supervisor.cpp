@@ -28,8 +28,9 @@ void Supervisor::observe(Fault fault) {
     state_.faults.hold(fault);
     return;
   }
-  const FaultMonitor::Change change = state_.faults.observe(fault, present);
-  if (change == FaultMonitor::Change::kPersists) respond(fault);
+  const config::FaultRule rule = state_.table.rule_of(fault);
+  const FaultMonitor::Change change = state_.faults.observe(rule, present);
+  if (change == FaultMonitor::Change::kPersists) respond(rule);
   if (change == FaultMonitor::Change::kOver) {
     report_(is_of_timing(fault) ? EventId::kTimingFaultOver : EventId::kFaultOver,
             static_cast<std::int32_t>(fault));
@@ -45,14 +46,15 @@ void Supervisor::measure(std::uint64_t start_ns) {
   std::size_t bin = 0;
   for (const std::uint32_t edge_us : kEdges_us) bin += counters.step_us >= edge_us ? 1 : 0;
   count(counters.steps_by_time[bin]);
-  if (counters.step_us <= state_.limit(Limit::kStepBudget_us)) return;
+  if (counters.step_us <= state_.table[Parameter::kStepBudget_us]) return;
   count(counters.deadline_overruns);
   state_.faults_seen |= bit_of(Fault::kDeadline);
   report_(EventId::kDeadlineOverrun, static_cast<std::int32_t>(counters.step_us / 1000U));
 }
 
-void Supervisor::respond(Fault fault) {
-  const Response response = state_.faults.response_to(fault);
+void Supervisor::respond(const config::FaultRule& rule) {
+  const Fault fault = rule.fault;
+  const Response response = state_.faults.response_to(rule);
   Response taken = response;
   switch (response) {
     case Response::kIgnore:
@@ -71,7 +73,6 @@ void Supervisor::respond(Fault fault) {
       break;
   }
   const EventId id = is_of_timing(fault) ? EventId::kTimingFaultPersists : EventId::kFaultPersists;
-  const config::FaultRule& rule = config::kFaultRules[static_cast<std::size_t>(fault)];
   report_(id, static_cast<std::int32_t>(fault), static_cast<std::int32_t>(taken), rule.cycles);
 }
 

@@ -23,7 +23,7 @@ class Supervisor {
  private:
   void measure(std::uint64_t start_ns);
   void observe(Fault fault);
-  void respond(Fault fault);
+  void respond(const config::FaultRule& rule);
 
   AppState& state_;
   ModeManager& modes_;

@@ -99,11 +99,11 @@ void DdsLink::publish(const Event& event) {
   ++output_.done.events;
 }
 
-void DdsLink::publish(const ModelDump& dump) {
-  ModelDumpSample& sample = output_.dump;
+void DdsLink::publish(const MemoryDump& dump) {
+  MemoryDumpSample& sample = output_.dump;
   sample.run_id = output_.done.run_id;
   sample.k = output_.done.k;
-  copy_model_dump_fields(dump, sample);
+  copy_memory_dump_fields(dump, sample);
   output_.done.dumps = 1;
 }
 

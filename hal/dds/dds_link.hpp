@@ -1,5 +1,5 @@
 // DdsLink: commands of topic sil/command in; attitude, telemetry, events and dumps out to sil/attitude,
-// sil/telemetry, sil/event and sil/model_dump. The flight task is on one side of it, the bus thread, which
+// sil/telemetry, sil/event and sil/memory_dump. The flight task is on one side of it, the bus thread, which
 // speaks DDS, on the other.
 #pragma once
 
@@ -20,7 +20,7 @@ struct CycleOutput {
   AttitudeSample attitude{};
   TelemetrySample telemetry{};
   std::array<EventSample, kMaxEventsPerStep> events{};
-  ModelDumpSample dump{};
+  MemoryDumpSample dump{};
 };
 
 class DdsLink final : public Link {
@@ -50,7 +50,7 @@ class DdsLink final : public Link {
   void publish(const AttitudeReport& report) override;
   void publish(const Telemetry& telemetry) override;
   void publish(const Event& event) override;
-  void publish(const ModelDump& dump) override;
+  void publish(const MemoryDump& dump) override;
 
  private:
   Gauges gauges_;

@@ -17,7 +17,7 @@ struct FlightEndpoints {
   Writer<AttitudeSample> attitudes;
   Writer<TelemetrySample> telemetries;
   Writer<EventSample> events;
-  Writer<ModelDumpSample> dumps;
+  Writer<MemoryDumpSample> dumps;
   Writer<StepDoneSample> steps_done;
 
   // Creates all endpoints. Returns 0 or a negative DDS return code.

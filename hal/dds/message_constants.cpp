@@ -4,7 +4,7 @@
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/event_id.hpp"
 #include "hal/messages/function_code.hpp"
-#include "hal/messages/model_dump.hpp"
+#include "hal/messages/memory_dump.hpp"
 #include "hal/messages/telemetry.hpp"
 
 namespace tumblesight::hal::dds {
@@ -16,7 +16,7 @@ constexpr bool is_value_of(int constant, Enum value) {
 }
 
 static_assert(tumblesight_icd_COMMAND_BYTES == CommandPacket::kMaxBytes);
-static_assert(tumblesight_icd_DUMP_BYTES == ModelDump::kMaxBytes);
+static_assert(tumblesight_icd_DUMP_BYTES == MemoryDump::kMaxBytes);
 static_assert(tumblesight_icd_REFUSALS == kCommandRefusals);
 static_assert(tumblesight_icd_STEP_TIME_BINS == Telemetry::kStepTimeBins);
 static_assert(tumblesight_icd_BANKS == Telemetry::kBanks);
@@ -33,11 +33,15 @@ static_assert(is_value_of(tumblesight_icd_FUNCTION_RESET_SEQUENCE, FunctionCode:
 static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_LOAD, FunctionCode::kModelLoad));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_VALIDATE, FunctionCode::kModelValidate));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_ACTIVATE, FunctionCode::kModelActivate));
-static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_DUMP, FunctionCode::kModelDump));
-static_assert(is_value_of(tumblesight_icd_FUNCTION_SET_LIMIT, FunctionCode::kSetLimit));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_MEMORY_DUMP, FunctionCode::kMemoryDump));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_SET_PARAMETER, FunctionCode::kSetParameter));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_ENABLE_RESPONSE, FunctionCode::kEnableResponse));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_DISABLE_RESPONSE, FunctionCode::kDisableResponse));
 static_assert(is_value_of(tumblesight_icd_FUNCTION_KEY_ACTIVATE, FunctionCode::kKeyActivate));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_MODEL_BEGIN, FunctionCode::kModelBegin));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_TABLE_LOAD, FunctionCode::kTableLoad));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_TABLE_VALIDATE, FunctionCode::kTableValidate));
+static_assert(is_value_of(tumblesight_icd_FUNCTION_TABLE_ACTIVATE, FunctionCode::kTableActivate));
 static_assert(is_value_of(tumblesight_icd_EVENT_MODEL_REFUSED, EventId::kModelRefused));
 
 }  // namespace

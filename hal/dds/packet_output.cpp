@@ -21,8 +21,8 @@ void PacketOutput::put(const CycleOutput& output) {
     sink_.put(encoder_.encode(event));
   }
   if (output.done.dumps > 0) {
-    ModelDump dump;
-    copy_model_dump_fields(output.dump, dump);
+    MemoryDump dump;
+    copy_memory_dump_fields(output.dump, dump);
     sink_.put(encoder_.encode(dump));
   }
 }

@@ -22,12 +22,12 @@ class FakeLink final : public Link {
   void publish(const AttitudeReport& report) override { attitudes.push_back(report); }
   void publish(const Telemetry& sample) override { telemetry.push_back(sample); }
   void publish(const Event& event) override { events.push_back(event); }
-  void publish(const ModelDump& dump) override { dumps.push_back(dump); }
+  void publish(const MemoryDump& dump) override { dumps.push_back(dump); }
 
   std::vector<AttitudeReport> attitudes;
   std::vector<Telemetry> telemetry;
   std::vector<Event> events;
-  std::vector<ModelDump> dumps;
+  std::vector<MemoryDump> dumps;
 
  private:
   std::deque<CommandPacket> commands_;

@@ -15,7 +15,7 @@ enum class CommandRefusal : std::uint8_t {
   kUnknownFunction = 5,
   kWrongMode = 6,         // the function is not allowed in this mode
   kWrongArgument = 7,     // an argument is out of range
-  kNoModel = 8,           // no model to run, validate or activate; the event gives the gnc::ModelStatus
+  kNoModel = 8,  // no model to run, copy, load, validate or activate; the event gives the gnc::ModelStatus
   kBusy = 9,              // this cycle already has a dump, or a long task; or the bank is still being written
   kOutOfWindow = 10,      // counter more than 65,536 ahead of the last authentic command
   kOtherKey = 11,         // signed by a key slot that is not in use
@@ -23,7 +23,8 @@ enum class CommandRefusal : std::uint8_t {
   kNotStored = 13,        // the counter could not be stored, so a reset would make a replay possible
   kStoreFailed = 14,      // the model store could not erase or write the bank
   kNoRoom = 15,           // the link's queue was full
+  kIncomplete = 16,       // segments of the image are missing; the event gives their number
 };
-inline constexpr int kCommandRefusals = 16;
+inline constexpr int kCommandRefusals = 17;
 
 }  // namespace tumblesight::hal

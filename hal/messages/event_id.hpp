@@ -16,6 +16,7 @@ enum class Severity : std::uint8_t { kInformation = 0, kWarning = 1, kError = 2 
 enum class EventId : std::uint16_t {
   kModelActivated = 1,  // [image size in bytes, bank, -]; the estimator is reset
   kModelRefused = 2,    // [gnc::ModelStatus, image size in bytes, bank]
+  kUploadFailed = 3,    // [bank, segments missing, -]; the store could not write the copy of the image in use
 
   kCommandAccepted = 10,  // [function code, Mode before, Mode after]
 
@@ -81,6 +82,7 @@ enum class EventId : std::uint16_t {
   kCommandNotStored = 103,
   kCommandStoreFailed = 104,
   kCommandNoRoom = 105,
+  kCommandIncomplete = 106,
   kKeyActivated = 110,  // [key slot before, key slot after, -]
 };
 
@@ -88,9 +90,10 @@ struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 55> kEventRules{{
+inline constexpr std::array<EventRule, 57> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
+    {EventId::kUploadFailed, Severity::kError},
     {EventId::kCommandAccepted, Severity::kInformation},
     {EventId::kCycleTimeNotAdvancing, Severity::kError},
     {EventId::kCycleSlipped, Severity::kWarning},
@@ -143,6 +146,7 @@ inline constexpr std::array<EventRule, 55> kEventRules{{
     {EventId::kCommandNotStored, Severity::kError},
     {EventId::kCommandStoreFailed, Severity::kError},
     {EventId::kCommandNoRoom, Severity::kWarning},
+    {EventId::kCommandIncomplete, Severity::kWarning},
     {EventId::kKeyActivated, Severity::kWarning},
 }};
 

@@ -14,11 +14,15 @@ enum class FunctionCode : std::uint8_t {
   kModelLoad = 5,
   kModelValidate = 6,
   kModelActivate = 7,
-  kModelDump = 8,
-  kSetLimit = 9,
+  kMemoryDump = 8,
+  kSetParameter = 9,
   kEnableResponse = 10,
   kDisableResponse = 11,
   kKeyActivate = 12,
+  kModelBegin = 13,
+  kTableLoad = 14,
+  kTableValidate = 15,
+  kTableActivate = 16,
 };
 
 }  // namespace tumblesight::hal

@@ -6,12 +6,12 @@
 //                                                      or types with fields of the same names.
 //   MessageFields<Message>::kNames                     the names, in the same order
 //
-// Message: AttitudeReport, Telemetry, Event, ModelDump.
+// Message: AttitudeReport, Telemetry, Event, MemoryDump.
 #pragma once
 
 #include "hal/messages/attitude_report.hpp"
 #include "hal/messages/event.hpp"
-#include "hal/messages/model_dump.hpp"
+#include "hal/messages/memory_dump.hpp"
 #include "hal/messages/telemetry.hpp"
 
 namespace tumblesight::hal {

@@ -10,6 +10,7 @@
 #include "hal/messages/command_refusal.hpp"
 #include "hal/messages/fault.hpp"
 #include "hal/messages/mode.hpp"
+#include "hal/messages/table_status.hpp"
 
 namespace tumblesight::hal {
 
@@ -69,7 +70,9 @@ struct Telemetry {
   std::array<BankStatus, kBanks> bank_status{};      // per bank
   std::array<BankActivity, kBanks> bank_activity{};  // per bank
   std::array<std::uint32_t, kBanks> bank_crc32{};    // CRC-32 in the header of the bank's image
-  std::uint32_t model_bytes_loaded = 0;              // of the image that is being loaded
+  std::uint32_t model_segments_missing = 0;          // of the image that is being loaded
+  TableStatus table_status = TableStatus::kEmpty;    // of the table that was uplinked
+  std::uint32_t table_crc32 = 0;                     // CRC-32 of the active table
 
   std::uint32_t inference_us = 0;  // last step of the estimator, by the stopwatch; not in any digest
   std::uint32_t inference_max_us = 0;

@@ -84,7 +84,7 @@ void write_packet(const Message& message, std::uint16_t apid, std::uint16_t& cou
 
 bool are_valid(const PacketApids& apids) {
   const std::array<std::uint16_t, 4> all{apids.attitude_report, apids.telemetry, apids.event,
-                                         apids.model_dump};
+                                         apids.memory_dump};
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i] > kMaxApid) return false;
     for (std::size_t k = 0; k < i; ++k) {
@@ -109,8 +109,8 @@ const TelemetryPacket& TelemetryEncoder::encode(const Event& event) {
   return packet_;
 }
 
-const TelemetryPacket& TelemetryEncoder::encode(const ModelDump& dump) {
-  write_packet(dump, apids_.model_dump, counts_.model_dump, packet_);
+const TelemetryPacket& TelemetryEncoder::encode(const MemoryDump& dump) {
+  write_packet(dump, apids_.memory_dump, counts_.memory_dump, packet_);
   return packet_;
 }
 

@@ -29,7 +29,7 @@ struct PacketApids {
   std::uint16_t attitude_report = 0x1F1;
   std::uint16_t telemetry = 0x1F2;
   std::uint16_t event = 0x1F3;
-  std::uint16_t model_dump = 0x1F4;
+  std::uint16_t memory_dump = 0x1F4;
 };
 
 inline constexpr std::uint16_t kMaxApid = 0x7FE;  // 0x7FF: idle packets
@@ -64,7 +64,7 @@ constexpr std::size_t packet_bytes() {
 }
 
 struct TelemetryPacket {
-  static constexpr std::size_t kMaxBytes = packet_bytes<ModelDump>();
+  static constexpr std::size_t kMaxBytes = packet_bytes<MemoryDump>();
   std::uint16_t size = 0;
   std::array<std::uint8_t, kMaxBytes> bytes{};
 };
@@ -78,14 +78,14 @@ class TelemetryEncoder {
   const TelemetryPacket& encode(const AttitudeReport& report);
   const TelemetryPacket& encode(const Telemetry& telemetry);
   const TelemetryPacket& encode(const Event& event);
-  const TelemetryPacket& encode(const ModelDump& dump);
+  const TelemetryPacket& encode(const MemoryDump& dump);
 
  private:
   struct SequenceCounts {
     std::uint16_t attitude_report = 0;
     std::uint16_t telemetry = 0;
     std::uint16_t event = 0;
-    std::uint16_t model_dump = 0;
+    std::uint16_t memory_dump = 0;
   };
 
   PacketApids apids_;

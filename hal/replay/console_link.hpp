@@ -17,7 +17,7 @@ class ConsoleLink final : public Link {
   void publish(const AttitudeReport& report) override;
   void publish(const Telemetry& telemetry) override;
   void publish(const Event& event) override;
-  void publish(const ModelDump&) override {}  // only a command requests a dump
+  void publish(const MemoryDump&) override {}  // only a command requests a dump
 
   // Of every report and event so far, without what the stopwatch measured; `state_crc32` joins it.
   void digest(std::uint32_t state_crc32) { crc_.add_u32(state_crc32); }

@@ -29,7 +29,7 @@ hal::Event from_sample(const hal::dds::EventSample& sample) {
   return event;
 }
 
-std::vector<std::uint8_t> from_sample(const hal::dds::ModelDumpSample& sample) {
+std::vector<std::uint8_t> from_sample(const hal::dds::MemoryDumpSample& sample) {
   const std::size_t size = std::min<std::size_t>(sample.size, std::size(sample.bytes));
   return {sample.bytes, sample.bytes + size};
 }
@@ -74,7 +74,7 @@ void AnswerCollector::collect() {
   while (endpoints_.events.take(event)) {
     partial_of(event).answer.events.push_back(from_sample(event));
   }
-  hal::dds::ModelDumpSample dump;
+  hal::dds::MemoryDumpSample dump;
   while (endpoints_.dumps.take(dump)) {
     Partial& partial = partial_of(dump);
     partial.answer.dump = from_sample(dump);

@@ -18,7 +18,7 @@ struct SimulatorEndpoints {
   hal::dds::Reader<hal::dds::AttitudeSample> attitudes;
   hal::dds::Reader<hal::dds::TelemetrySample> telemetries;
   hal::dds::Reader<hal::dds::EventSample> events;
-  hal::dds::Reader<hal::dds::ModelDumpSample> dumps;
+  hal::dds::Reader<hal::dds::MemoryDumpSample> dumps;
   hal::dds::Reader<hal::dds::StepDoneSample> steps_done;
 
   explicit SimulatorEndpoints(const hal::dds::Domain& domain);  // throws SilFailure

@@ -1,6 +1,6 @@
 // flight_worst_step: the longest steps of the flight application, each with a name, for the audit's count of
 // instructions. The memory is damaged as bit flips would damage it, the commands are the most expensive ones,
-// and the scrubbing is the largest that SET_LIMIT allows. The program prints one line per step, "step NAME";
+// and the scrubbing is the largest that SET_PARAMETER allows. The program prints one line per step, "step NAME";
 // steps that only prepare the next one are "quiet".
 #include <array>
 #include <cstring>
@@ -105,16 +105,20 @@ void set_mode(Mode mode) {
   command(FunctionCode::kSetMode, &argument, 1);
 }
 
-void set_limit(Limit limit, std::uint32_t value) {
-  std::array<std::uint8_t, 5> arguments{static_cast<std::uint8_t>(limit)};
+void set_parameter(Parameter parameter, std::uint32_t value) {
+  std::array<std::uint8_t, 5> arguments{static_cast<std::uint8_t>(parameter)};
   add_u32(arguments.data() + 1, value);
-  command(FunctionCode::kSetLimit, arguments.data(), static_cast<int>(arguments.size()));
+  command(FunctionCode::kSetParameter, arguments.data(), static_cast<int>(arguments.size()));
 }
 
-// The largest commands, as many as a step takes. With an offset of 0 they begin a new image in the other
-// bank; with another one they are refused, after all checks, and the bank keeps its image.
-void load_commands(std::uint32_t offset = 0) {
+// As many commands as a step takes: an upload begins, the image in use is copied meanwhile, and all others are
+// as large as a command can be. Without the beginning they are refused, and the bank keeps its image.
+enum class Upload { kBegins, kRefused };
+void load_commands(Upload upload = Upload::kBegins) {
   static std::array<std::uint8_t, hal::kMaxCommandArgumentBytes> arguments{};
+  const auto base = static_cast<std::uint8_t>(UploadBase::kBankInUse);
+  if (upload == Upload::kBegins) command(FunctionCode::kModelBegin, &base, 1);
+  std::uint32_t offset = 0;
   while (inputs.command_count < config::kMaxCommandsPerStep) {
     add_u32(arguments.data(), offset);
     std::memcpy(arguments.data() + 4, tumblesight_model_image + offset, hal::kMaxModelSegmentBytes);
@@ -122,7 +126,6 @@ void load_commands(std::uint32_t offset = 0) {
     offset += hal::kMaxModelSegmentBytes;
   }
 }
-constexpr std::uint32_t kOutOfOrder = hal::kMaxModelSegmentBytes;
 
 void begin(const char* name) {
   board::write(hal::replay::TextLine().text("step ").text(name).text("\n").c_str());
@@ -152,12 +155,12 @@ ModelBanksState& banks() {
 // After a command load has begun a new image in the other bank: the second copy again.
 void load_as_second_copy() {
   store.fill();
+  banks().void_upload();
   banks().descriptor[banks().other()] = banks().descriptor[banks().in_use];
   AppMemory::commit(app);
 }
 
-constexpr std::uint32_t kMostScrubbed =
-    config::kLimitRules[static_cast<std::size_t>(Limit::kScrubBlocks)].highest;
+constexpr std::uint32_t kMostScrubbed = config::rule_of(Parameter::kScrubBlocks).highest;
 
 // What any of the following steps can have to do as well: repairs of the next `blocks` blocks of the second
 // copy, and of the estimator's state.
@@ -181,7 +184,7 @@ void steps_with_a_frame() {
   load_commands();
   step("frame and full command load");
   load_as_second_copy();
-  set_limit(Limit::kScrubBlocks, kMostScrubbed);
+  set_parameter(Parameter::kScrubBlocks, kMostScrubbed);
   step("quiet");
   damage_more();
   load_commands();
@@ -200,7 +203,7 @@ void repairs() {
   flip_a_constant();
   damage_tables();
   damage_more();
-  load_commands(kOutOfOrder);
+  load_commands(Upload::kRefused);
   step("table rebuilt");
   expect(outputs.telemetry.model_tables_rebuilt == 2, "the tables were not rebuilt");
   expect(outputs.telemetry.constants_reloaded == 0, "two long tasks in a step");
@@ -220,11 +223,12 @@ void model_commands() {
   set_mode(Mode::kStandby);
   step("quiet");
   banks().descriptor[1].set(BankStatus::kLoading);
-  banks().loaded_bytes = static_cast<std::uint32_t>(kImageBytes);
+  banks().missing = {};
+  banks().segments_missing = 0;
   AppMemory::commit(app);
   damage_more(0);
   command(FunctionCode::kModelValidate, arguments.data(), 8);
-  load_commands(kOutOfOrder);
+  load_commands(Upload::kRefused);
   step("model validated");
   expect(outputs.telemetry.bank_status[1] == BankStatus::kGood, "the model was not validated");
   damage_more();
@@ -244,7 +248,7 @@ void bank_switches() {
   AppMemory::state(app).constants_crc32 ^= 1;
   AppMemory::commit(app);
   damage_more(ModelBanks::kBlocks);
-  load_commands(kOutOfOrder);
+  load_commands(Upload::kRefused);
   step("constants not reloaded, bank switched");
   expect(outputs.telemetry.bank_switches == 1, "the bank was not switched");
   load_as_second_copy();
@@ -254,7 +258,7 @@ void bank_switches() {
   store.damage(outputs.telemetry.bank_in_use, ModelBanks::kBlocks - 1);
   damage_tables();
   damage_more(0);
-  load_commands(kOutOfOrder);
+  load_commands(Upload::kRefused);
   step("table not rebuilt, bank switched");
   expect(outputs.telemetry.bank_switches == 2, "the bank was not switched again");
 }

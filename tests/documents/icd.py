@@ -126,17 +126,50 @@ def validity():
     return table(["number", "validity", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "attitude_report.hpp", "Validity")])
 
 
-def limits():
-    meaning = {name: (value, comment) for name, value, comment in enum(MESSAGES + "limit.hpp", "Limit")}
-    return table(["number", "limit", "lowest", "highest", "at start", "meaning"],
-                 [[meaning[last(name)][0], last(name)[1:], *(number.replace("'", " ") for number in numbers), meaning[last(name)][1]]
-                  for name, *numbers in array_rows("fsw/config/limits.hpp", "kLimitRules")])
+PARAMETER = re.compile(r"TUMBLESIGHT_PARAMETER\((\w+?)(?:_([a-z]+))?, ([\d']+), ([\d']+), ([\d']+)\)  // (.+)")
+
+
+def parameters():
+    """[(field, name, unit, lowest, highest, initial, meaning)] of the rows."""
+    rows = [line for line in source("fsw/config/parameters.inc").splitlines() if line.startswith("TUMBLESIGHT_PARAMETER")]
+    wrong = [line for line in rows if not PARAMETER.fullmatch(line)]
+    if wrong:
+        raise SystemExit(f"fsw/config/parameters.inc: '{wrong[0]}' is not NAME, LOWEST, HIGHEST, INITIAL and a comment in the same line")
+    return [(field, match[1] + (f"_{match[2]}" if match[2] else ""), match[2] or "-",
+             *(match[i].replace("'", " ") for i in (3, 4, 5)), match[6])
+            for field, match in enumerate(map(PARAMETER.fullmatch, rows))]
+
+
+def parameter_rows():
+    return table(["field", "parameter", "unit", "lowest", "highest", "at start", "meaning"], parameters())
+
+
+def table_layout():
+    """The table as it is uplinked."""
+    first, rules = len(parameters()), len(array_rows("fsw/config/fault_rules.hpp", "kFaultRules"))
+    fields = first + rules
+    return table(["offset", "bits", "content"],
+                 [[0, "unsigned 16", "format version, 1"], [2, "unsigned 16", f"number of fields, {fields}"],
+                  [4, f"unsigned 32 × {first}", f"fields 0 to {first - 1}: the parameters, in the order of their table"],
+                  [4 + 4 * first, f"unsigned 32 × {rules}", f"fields {first} to {fields - 1}: the rules of the faults (2.5), in their order: "
+                   "cycles, window, good cycles, Response, one byte each"],
+                  [4 + 4 * fields, "unsigned 32", "CRC-32 of everything before it"]]) + f"\n\n{8 + 4 * fields} bytes."
+
+
+def table_status():
+    return table(["number", "table_status", ""],
+                 [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "table_status.hpp", "TableStatus")])
+
+
+def dumped_memory():
+    return table(["number", "memory of MEMORY_DUMP", ""],
+                 [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "memory_dump.hpp", "DumpedMemory")])
 
 
 def faults():
     meaning = {name: (value, comment) for name, value, comment in enum(MESSAGES + "fault.hpp", "Fault")}
     return table(["number", "fault", "is", "persists after cycles with it", "within", "over after cycles without it", "response",
-                  "can be disabled"],
+                  "can be changed"],
                  [[meaning[last(name)][0], upper(last(name)), meaning[last(name)][1], cycles, window, good, upper(last(response)),
                    "yes" if disabled == "true" else "no"]
                   for name, cycles, window, good, response, disabled in array_rows("fsw/config/fault_rules.hpp", "kFaultRules")])
@@ -163,7 +196,7 @@ def constants():
 
 # Topic: the message that its sample carries, besides run_id and k.
 CARRIED = {"Attitude": ("attitude_report.hpp", "AttitudeReport"), "Telemetry": ("telemetry.hpp", "Telemetry"), "Event": ("event.hpp", "Event"),
-           "ModelDump": ("model_dump.hpp", "ModelDump")}
+           "MemoryDump": ("memory_dump.hpp", "MemoryDump")}
 
 
 Field = collections.namedtuple("Field", "name bits signed count enum comment")  # count: None: not an array
@@ -288,7 +321,7 @@ def packet_bytes(topic):
 def packets():
     return table(["packet", "APID", "bytes", "sent"],
                  [[CARRIED[topic][1], f"0x{apid:03X}", packet_bytes(topic),
-                   {"Attitude": "each cycle", "Telemetry": "each cycle", "Event": "with each event", "ModelDump": "after MODEL_DUMP"}[topic]]
+                   {"Attitude": "each cycle", "Telemetry": "each cycle", "Event": "with each event", "MemoryDump": "after MEMORY_DUMP"}[topic]]
                   for topic, apid in apids().items()])
 
 
@@ -301,11 +334,11 @@ def packet(topic):
     return table(["offset", "bits", "field", ""], [*rows, [offset, "unsigned 16", "error control", ""]])
 
 
-TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "functions": functions, "refusals": refusals, "validity": validity, "limits": limits, "faults": faults,
-          "responses": responses, "events": events,
+TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "functions": functions, "refusals": refusals, "validity": validity, "parameters": parameter_rows, "parameter table": table_layout, "table status": table_status, "faults": faults,
+          "responses": responses, "dumped memory": dumped_memory, "events": events,
           "packets": packets, **{f"packet {CARRIED[topic][1]}": (lambda topic=topic: packet(topic)) for topic in CARRIED},
           **{f"topic {name}": (lambda name=name: struct(name))
-             for name in ("Command", "Attitude", "Telemetry", "Event", "ModelDump", "StepDone", "LidarFrame", "Navigation", "Step", "Hello")}}
+             for name in ("Command", "Attitude", "Telemetry", "Event", "MemoryDump", "StepDone", "LidarFrame", "Navigation", "Step", "Hello")}}
 
 
 def with_tables(text):

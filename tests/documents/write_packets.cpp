@@ -92,8 +92,10 @@ void write_commands(const std::string& folder) {
   for (int i = 1; i < hal::kMaxModelSegmentBytes; ++i) segment.push_back(static_cast<std::uint8_t>(i));
   put(hal::FunctionCode::kModelLoad, segment);
   put(hal::FunctionCode::kModelValidate, {0x00, 0x12, 0x34, 0x56, 0x89, 0xAB, 0xCD, 0xEF});
-  put(hal::FunctionCode::kModelDump, {1, 0xFF, 0xFF, 0xFF, 0xFE, 0x04, 0x00});
-  put(hal::FunctionCode::kSetLimit, {2, 0x80, 0x00, 0x00, 0x01});
+  put(hal::FunctionCode::kModelBegin, {2});
+  put(hal::FunctionCode::kMemoryDump, {1, 0xFF, 0xFF, 0xFF, 0xFE, 0x04, 0x00});
+  put(hal::FunctionCode::kTableLoad, {0, 1, 0, 20, 0xFF});
+  put(hal::FunctionCode::kSetParameter, {2, 0x80, 0x00, 0x00, 0x01});
   put(hal::FunctionCode::kDisableResponse, {8});
   put(hal::FunctionCode::kKeyActivate, {1, 16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 0xFF});
 }
@@ -107,7 +109,7 @@ int main(int argc, char** argv) {
     output.put_extremes<hal::AttitudeReport>();
     output.put_extremes<hal::Telemetry>();
     output.put_extremes<hal::Event>();
-    output.put_extremes<hal::ModelDump>();
+    output.put_extremes<hal::MemoryDump>();
   }
   write_commands(argv[1]);
   return 0;

@@ -67,7 +67,7 @@ void check(const fsw::StepOutputs& outputs, std::uint32_t sent, std::uint32_t to
   require(h.events == told + h.events_waiting + h.events_suppressed + h.events_lost,
           "every event is accounted for");
   require(h.mode >= hal::Mode::kStandby && h.mode <= hal::Mode::kSafe, "the mode is valid");
-  require(!outputs.has_dump || outputs.dump.size <= hal::ModelDump::kMaxBytes,
+  require(!outputs.has_dump || outputs.dump.size <= hal::MemoryDump::kMaxBytes,
           "a dump is within its maximum size");
 }
 

@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Forgery{"frame", "sil/lidar_frame"}, Forgery{"navigation", "sil/navigation"},
                       Forgery{"command", "sil/command"}, Forgery{"step", "sil/step"},
                       Forgery{"attitude", "sil/attitude"}, Forgery{"telemetry", "sil/telemetry"},
-                      Forgery{"event", "sil/event"}, Forgery{"dump", "sil/model_dump"},
+                      Forgery{"event", "sil/event"}, Forgery{"dump", "sil/memory_dump"},
                       Forgery{"step-done", "sil/step_done"}, Forgery{"truth", nullptr}),
     [](const auto& test) {
       std::string name;

@@ -170,7 +170,7 @@ class Forger {
     write(events_, event);
   }
   void forge_dump() {
-    ModelDumpSample dump{};
+    MemoryDumpSample dump{};
     dump.time_ns = time_ns();
     dump.size = 16;
     write(dumps_, dump);
@@ -207,7 +207,7 @@ class Forger {
   Writer<AttitudeSample> attitudes_;
   Writer<TelemetrySample> telemetries_;
   Writer<EventSample> events_;
-  Writer<ModelDumpSample> dumps_;
+  Writer<MemoryDumpSample> dumps_;
   Writer<StepDoneSample> steps_done_;
   Writer<TruthSample> truths_;
 };

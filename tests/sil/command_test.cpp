@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <fstream>
 
-#include "gnc/rcnn/model_image.hpp"
+#include "sim/sil/model_upload.hpp"
 #include "tests/sil/sil_test_support.hpp"
 #include "tests/support/depacketizer.hpp"
+#include "tests/support/test_models.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -113,42 +114,82 @@ TEST_F(Commands, ModesFollowTheCommands) {
   conversation_.finish();
 }
 
-// Verifies TS-MDL-020, TS-MDL-030, TS-MDL-040, TS-MDL-050.
-TEST_F(Commands, ModelIsLoadedDumpedBackValidatedAndActivatedInFlight) {
-  constexpr std::size_t kSegment = 1024, kPerStep = 8;
-  const std::vector<std::uint8_t>& image = test::model_bytes();
-  StepAnswer answer;
-  for (std::size_t offset = 0; offset < image.size();) {
+class Upload : public Commands {
+ protected:
+  // Sends segments, eight per step, except every `lost`-th one; 0: none is lost.
+  StepAnswer send(const ModelUpload& upload, const std::vector<std::uint32_t>& segments,
+                  std::size_t lost = 0) {
+    StepAnswer answer;
     std::vector<Telecommand> commands;
-    for (; commands.size() < kPerStep && offset < image.size(); offset += kSegment) {
-      Telecommand load{hal::FunctionCode::kModelLoad, {}};
-      append_u32(load.arguments, static_cast<std::uint32_t>(offset));
-      const std::size_t size = std::min(kSegment, image.size() - offset);
-      load.arguments.insert(load.arguments.end(), image.begin() + static_cast<std::ptrdiff_t>(offset),
-                            image.begin() + static_cast<std::ptrdiff_t>(offset + size));
-      commands.push_back(load);
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      if (lost == 0 || i % lost != lost - 1) commands.push_back(upload.segment(segments[i]));
+      if (commands.size() < 8 && i + 1 < segments.size()) continue;
+      answer = conversation_.step({conversation_.good_frame()}, commands);
+      EXPECT_EQ(answer.telemetry.commands_refused, 0U);
+      EXPECT_TRUE(gives_attitude(answer.attitude));
+      commands.clear();
     }
-    answer = conversation_.step({conversation_.good_frame()}, commands);
-    ASSERT_EQ(answer.telemetry.commands_refused, 0U);
+    return answer;
   }
-  EXPECT_EQ(answer.telemetry.model_bytes_loaded, image.size());
+  std::vector<std::uint32_t> missing(const ModelUpload& upload) {
+    const StepAnswer answer = conversation_.step({conversation_.good_frame()}, {upload.missing_request()});
+    std::vector<std::uint32_t> segments = upload.missing(answer.dump);
+    EXPECT_GE(segments.size(), answer.telemetry.model_segments_missing) << "the copy goes on after the dump";
+    return segments;
+  }
+  // The image in the bank is `image`, it is activated, and it runs.
+  void expect_it_runs(const ModelUpload& upload, const std::vector<std::uint8_t>& image, std::uint8_t bank) {
+    constexpr std::uint32_t kPart = 1024;
+    for (std::uint32_t offset = 0; offset < image.size(); offset += 97 * kPart) {
+      Telecommand dump{hal::FunctionCode::kMemoryDump, {bank}};
+      append_u32(dump.arguments, offset);
+      const auto size = std::min<std::size_t>(kPart, image.size() - offset);
+      dump.arguments.insert(dump.arguments.end(),
+                            {static_cast<std::uint8_t>(size >> 8), static_cast<std::uint8_t>(size)});
+      const StepAnswer answer = conversation_.step({}, {dump});
+      ASSERT_EQ(answer.dump.size(), size);
+      EXPECT_TRUE(std::equal(answer.dump.begin(), answer.dump.end(), image.begin() + offset)) << offset;
+    }
+    conversation_.step({}, {set_mode(hal::Mode::kStandby), upload.validate()});
+    StepAnswer answer = conversation_.step({}, {upload.activate(), set_mode(hal::Mode::kRun)});
+    EXPECT_EQ(answer.telemetry.commands_refused, 0U);
+    EXPECT_EQ(answer.telemetry.bank_in_use, bank);
+    EXPECT_EQ(answer.telemetry.bank_crc32[bank], upload.crc32());
+    answer = conversation_.step();
+    EXPECT_TRUE(gives_attitude(answer.attitude));
+  }
+};
 
-  answer = conversation_.step({}, {{hal::FunctionCode::kModelDump, {1, 0, 0, 0x40, 0, 4, 0}}});
-  ASSERT_EQ(answer.dump.size(), kSegment);
-  EXPECT_TRUE(std::equal(answer.dump.begin(), answer.dump.end(), image.begin() + 0x4000));
+// Verifies TS-MDL-020, TS-MDL-030, TS-MDL-040, TS-MDL-050, TS-MDL-070.
+TEST_F(Upload, WithEveryThirdSegmentLostIsCompletedByTheMissingOnesAndRuns) {
+  const ModelUpload upload(test::model_bytes());
+  conversation_.step({}, {upload.begin()});
+  send(upload, upload.to_send(), 3);
+  const std::vector<std::uint32_t> lost = missing(upload);
+  EXPECT_EQ(lost.size(), upload.to_send().size() / 3);
+  send(upload, lost, 10);
+  send(upload, missing(upload));
+  EXPECT_TRUE(missing(upload).empty());
+  expect_it_runs(upload, test::model_bytes(), 1);
+  conversation_.finish();
+}
 
-  const std::uint32_t crc32 = gnc::model_image_crc32(image.data());
-  Telecommand validate{hal::FunctionCode::kModelValidate, {}},
-      activate{hal::FunctionCode::kModelActivate, {}};
-  append_u32(validate.arguments, static_cast<std::uint32_t>(image.size()));
-  append_u32(validate.arguments, crc32);
-  append_u32(activate.arguments, crc32);
-  answer = conversation_.step({}, {set_mode(hal::Mode::kStandby), validate});
-  answer = conversation_.step({}, {activate, set_mode(hal::Mode::kRun)});
-  EXPECT_EQ(answer.telemetry.commands_refused, 0U);
-  EXPECT_EQ(answer.telemetry.bank_in_use, 1);
-  EXPECT_EQ(answer.telemetry.bank_crc32[1], crc32);
-  EXPECT_EQ(answer.telemetry.second_copy, 1) << "it is the same image";
+// Verifies TS-MDL-080.
+TEST_F(Upload, OfTheDifferencesGivesTheSameImageAsAFullOne) {
+  const std::vector<std::uint8_t>& first = test::model_bytes();
+  const std::vector<std::uint8_t> second = gnc::with_changed_weights(first, {300'000, 700'123});
+  const ModelUpload there(second, first), back(first, second);
+  EXPECT_LE(there.to_send().size(), 4U) << "two weights and the header with its CRCs";
+  conversation_.step({}, {there.begin()});
+  send(there, there.to_send());
+  while (!missing(there).empty()) {
+  }
+  expect_it_runs(there, second, 1);
+  conversation_.step({}, {back.begin()});
+  send(back, back.to_send());
+  while (!missing(back).empty()) {
+  }
+  expect_it_runs(back, first, 0);
   conversation_.finish();
 }
 

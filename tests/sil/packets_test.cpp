@@ -21,10 +21,10 @@ SilSettings settings_with_packets(const std::string& path) {
 
 // The part of the model bank that the telecommand below asks for.
 constexpr std::uint16_t kDumpBytes = 600;
-const Telecommand kDump{hal::FunctionCode::kModelDump, {0, 0, 0, 0, 16, kDumpBytes >> 8, kDumpBytes & 0xFF}};
+const Telecommand kDump{hal::FunctionCode::kMemoryDump, {0, 0, 0, 0, 16, kDumpBytes >> 8, kDumpBytes & 0xFF}};
 
-hal::ModelDump dump_of(const StepAnswer& answer) {
-  hal::ModelDump dump;
+hal::MemoryDump dump_of(const StepAnswer& answer) {
+  hal::MemoryDump dump;
   dump.time_ns = answer.telemetry.time_ns;
   dump.offset = 16;
   dump.size = kDumpBytes;

@@ -60,8 +60,8 @@ struct AppMemory {
   }
   // Every attitude with a sound quaternion passes: no expected error and no jump is beyond its limit.
   static void widen_attitude_limits(App& app) {
-    for (const Limit limit : {Limit::kPredictedError_urad, Limit::kAttitudeJump_urad})
-      app.state_->limits[static_cast<std::size_t>(limit)] = gnc::kPi_urad;
+    for (const Parameter limit : {Parameter::kPredictedError_urad, Parameter::kAttitudeJump_urad})
+      app.state_->table[limit] = gnc::kPi_urad;
     app.state_.commit();
   }
   static void commit(App& app) { app.state_.commit(); }

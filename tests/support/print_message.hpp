@@ -54,8 +54,8 @@ inline void print(std::ostream& out, const hal::Telemetry& message) {
 inline void print(std::ostream& out, const hal::Event& message) {
   print_message(out, "Event", message);
 }
-inline void print(std::ostream& out, const hal::ModelDump& message) {
-  print_message(out, "ModelDump", message);
+inline void print(std::ostream& out, const hal::MemoryDump& message) {
+  print_message(out, "MemoryDump", message);
 }
 
 }  // namespace tumblesight::test

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "gnc/numerics/conversion.hpp"
+#include "gnc/rcnn/model_format.hpp"
 
 namespace tumblesight::gnc {
 
@@ -97,6 +98,19 @@ const std::vector<std::uint8_t>& lasting_model_image(unsigned seed) {
 }
 template const std::vector<std::uint8_t>& lasting_model_image<Float32>(unsigned);
 template const std::vector<std::uint8_t>& lasting_model_image<FixedPoint>(unsigned);
+
+std::vector<std::uint8_t> with_changed_weights(std::vector<std::uint8_t> image,
+                                               std::initializer_list<std::size_t> offsets) {
+  using namespace model_format;
+  for (const std::size_t offset : offsets) image[offset] ^= 1;
+  const std::uint32_t sections = get_u32(image.data() + kOffsetSectionCount);
+  for (std::size_t i = 0; i < sections; ++i) {
+    std::uint8_t* const entry = image.data() + kModelHeaderSize + i * kModelSectionEntrySize;
+    put_u32(entry + 12, crc32(image.data() + get_u32(entry + 4), get_u32(entry + 8)));
+  }
+  put_u32(image.data() + kOffsetHeaderCrc, header_crc(image.data(), sections));
+  return image;
+}
 
 DepthImage random_depth_image(unsigned seed) {
   std::mt19937 engine(seed);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <vector>
 
 #include "gnc/lidar/depth_image.hpp"
@@ -19,6 +20,10 @@ std::vector<std::uint8_t> random_model_image(unsigned seed, const ModelHeader& h
 // The same, kept until the program ends: fixed-point weights are read from the image.
 template <class N>
 const std::vector<std::uint8_t>& lasting_model_image(unsigned seed);
+
+// The image with the lowest bit of the weights at these offsets changed, and correct CRCs.
+std::vector<std::uint8_t> with_changed_weights(std::vector<std::uint8_t> image,
+                                               std::initializer_list<std::size_t> offsets);
 
 // Random depths in the middle, nothing around them; the view is the LRF.
 DepthImage random_depth_image(unsigned seed);

@@ -5,7 +5,7 @@
 //   copy_attitude_fields(from, to)    hal::AttitudeReport, AttitudeSample
 //   copy_telemetry_fields(from, to)   hal::Telemetry, TelemetrySample
 //   copy_event_fields(from, to)       hal::Event, EventSample
-//   copy_model_dump_fields(from, to)  hal::ModelDump, ModelDumpSample
+//   copy_memory_dump_fields(from, to)  hal::MemoryDump, MemoryDumpSample
 //
 // Each works in both directions. run_id and k, which only the samples have, are left to the caller.
 #pragma once
@@ -45,8 +45,8 @@ void copy_event_fields(const From& from, To& to) {
   MessageFields<Event>::visit(CopyField{}, from, to);
 }
 template <class From, class To>
-void copy_model_dump_fields(const From& from, To& to) {
-  MessageFields<ModelDump>::visit(CopyField{}, from, to);
+void copy_memory_dump_fields(const From& from, To& to) {
+  MessageFields<MemoryDump>::visit(CopyField{}, from, to);
 }
 
 }  // namespace tumblesight::hal::dds

@@ -15,7 +15,7 @@ constexpr Topic kStep{"sil/step", &tumblesight_icd_Step_desc, 4, false};
 constexpr Topic kAttitude{"sil/attitude", &tumblesight_icd_Attitude_desc, 8, false};
 constexpr Topic kTelemetry{"sil/telemetry", &tumblesight_icd_Telemetry_desc, 8, false};
 constexpr Topic kEvent{"sil/event", &tumblesight_icd_Event_desc, 2 * kMaxEventsPerStep, false};
-constexpr Topic kModelDump{"sil/model_dump", &tumblesight_icd_ModelDump_desc, 8, false};
+constexpr Topic kMemoryDump{"sil/memory_dump", &tumblesight_icd_MemoryDump_desc, 8, false};
 constexpr Topic kStepDone{"sil/step_done", &tumblesight_icd_StepDone_desc, 8, false};
 constexpr Topic kTruth{"sil/truth", &tumblesight_icd_Truth_desc, 8, false};
 
@@ -77,8 +77,8 @@ const Topic& topic_of<EventSample>() {
   return kEvent;
 }
 template <>
-const Topic& topic_of<ModelDumpSample>() {
-  return kModelDump;
+const Topic& topic_of<MemoryDumpSample>() {
+  return kMemoryDump;
 }
 template <>
 const Topic& topic_of<StepDoneSample>() {

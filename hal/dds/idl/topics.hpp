@@ -27,7 +27,7 @@ using StepSample = tumblesight_icd_Step;
 using AttitudeSample = tumblesight_icd_Attitude;
 using TelemetrySample = tumblesight_icd_Telemetry;
 using EventSample = tumblesight_icd_Event;
-using ModelDumpSample = tumblesight_icd_ModelDump;
+using MemoryDumpSample = tumblesight_icd_MemoryDump;
 using StepDoneSample = tumblesight_icd_StepDone;
 using TruthSample = tumblesight_icd_Truth;
 
@@ -59,7 +59,7 @@ const Topic& topic_of<TelemetrySample>();
 template <>
 const Topic& topic_of<EventSample>();
 template <>
-const Topic& topic_of<ModelDumpSample>();
+const Topic& topic_of<MemoryDumpSample>();
 template <>
 const Topic& topic_of<StepDoneSample>();
 template <>

@@ -26,7 +26,7 @@ constexpr const char* kNoTarget = nullptr;
 std::int64_t time_of(std::size_t cycle) {
   const auto pauses = static_cast<std::int64_t>(cycle / sim::kFramesPerSequence);
   return kStart_ns + static_cast<std::int64_t>(cycle) * sim::kFramePeriod_ns +
-         pauses * fsw::config::kLongestCoast_ns;
+         pauses * 1'000'000LL * fsw::config::rule_of(fsw::Parameter::kLongestCoast_ms).initial;
 }
 
 std::uint64_t mixed(std::uint64_t x) {  // splitmix64

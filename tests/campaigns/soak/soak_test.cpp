@@ -69,8 +69,8 @@ class Soak : public ::testing::Test {
 
   hal::CommandPacket any_command() {
     constexpr FunctionCode kFunctions[] = {FunctionCode::kNoop,           FunctionCode::kSetMode,
-                                           FunctionCode::kResetSequence,  FunctionCode::kModelDump,
-                                           FunctionCode::kSetLimit,       FunctionCode::kResetSequence,
+                                           FunctionCode::kResetSequence,  FunctionCode::kMemoryDump,
+                                           FunctionCode::kSetParameter,   FunctionCode::kResetSequence,
                                            FunctionCode::kModelValidate,  FunctionCode::kDisableResponse,
                                            FunctionCode::kEnableResponse, FunctionCode::kModelActivate};
     std::vector<std::uint8_t> arguments(engine_() % 10);
@@ -98,7 +98,7 @@ class Soak : public ::testing::Test {
     }
     if (one_in(20'000)) {  // begins an upload, which removes the second copy
       inputs_->command_count = 1;
-      inputs_->commands[0] = signed_with(kTestKey, ++counter_, packet_of(5, {0, 0, 0, 0, 1, 2, 3}));
+      inputs_->commands[0] = signed_with(kTestKey, ++counter_, packet_of(13, {1}));
     }
     if (!one_in(2000)) return;
     inputs_->command_count = 1;

@@ -16,6 +16,14 @@ namespace tumblesight::fsw {
 
 inline constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 
+inline constexpr std::int64_t initial(Parameter parameter) {
+  return config::rule_of(parameter).initial;
+}
+inline constexpr std::int64_t kMaxFrameAge_ns = initial(Parameter::kMaxFrameAge_ms) * 1'000'000;
+inline constexpr std::int64_t kFutureTolerance_ns = initial(Parameter::kFutureTolerance_us) * 1'000;
+inline constexpr std::int64_t kLongestCoast_ns = initial(Parameter::kLongestCoast_ms) * 1'000'000;
+inline constexpr std::int64_t kChaserTimeTolerance_ns = initial(Parameter::kChaserTimeTolerance_us) * 1'000;
+
 // A valid image with random weights.
 const std::vector<std::uint8_t>& test_model_image();
 inline constexpr const char* kTestTarget = "test_craft";

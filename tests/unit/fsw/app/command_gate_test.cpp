@@ -11,7 +11,7 @@ namespace tumblesight::fsw {
 namespace {
 
 constexpr std::uint8_t kNoop = static_cast<std::uint8_t>(FunctionCode::kNoop);
-constexpr std::uint8_t kSetLimit = static_cast<std::uint8_t>(FunctionCode::kSetLimit);
+constexpr std::uint8_t kSetParameter = static_cast<std::uint8_t>(FunctionCode::kSetParameter);
 
 CommandAuthority test_authority() {
   CommandAuthority authority;
@@ -35,9 +35,9 @@ void expect_refused(const std::vector<std::uint8_t>& packet, CommandRefusal why)
 }
 
 TEST(CommandGate, AdmitsAGoodPacketWithItsArguments) {
-  const Admission admission = judged(packet_of(kSetLimit, {3, 0x01, 0x02, 0x03, 0x04}));
+  const Admission admission = judged(packet_of(kSetParameter, {3, 0x01, 0x02, 0x03, 0x04}));
   ASSERT_TRUE(admission.admitted);
-  EXPECT_EQ(admission.command.function, FunctionCode::kSetLimit);
+  EXPECT_EQ(admission.command.function, FunctionCode::kSetParameter);
   EXPECT_EQ(admission.command.argument_bytes, 5);
   EXPECT_EQ(admission.command.u8_at(0), 3);
   EXPECT_EQ(admission.command.u32_at(1), 0x01020304U);
@@ -46,7 +46,7 @@ TEST(CommandGate, AdmitsAGoodPacketWithItsArguments) {
 }
 
 TEST(CommandGate, AnyFlippedBitMakesThePacketUseless) {
-  const hal::CommandPacket good = signed_with(kTestKey, 5, packet_of(kSetLimit, {3, 0, 0, 0, 1}));
+  const hal::CommandPacket good = signed_with(kTestKey, 5, packet_of(kSetParameter, {3, 0, 0, 0, 1}));
   const int key_slot = good.size - 22;
   for (int bit = 0; bit < 8 * good.size; ++bit) {
     hal::CommandPacket forged = good;
@@ -194,7 +194,7 @@ TEST(CommandGate, ChecksumMustMatchThePacket) {
 // The numbers are part of the interface. They start at 1 and leave no gap: none is removed or used again.
 TEST(CommandGate, KnowsEveryFunctionCodeUpToTheLast) {
   constexpr auto kLastOfToday = static_cast<int>(FunctionCode::kDisableResponse);
-  static_assert(kNoop == 1 && kSetLimit == 9 && kLastOfToday == 11);
+  static_assert(kNoop == 1 && kSetParameter == 9 && kLastOfToday == 11);
   int last = 0;
   for (int function = 0; function < 256; ++function) {
     const CommandRule* rule = find_command(static_cast<std::uint8_t>(function));

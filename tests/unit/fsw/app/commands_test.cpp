@@ -244,25 +244,6 @@ TEST_F(Commands, CommandsAreCarriedOutInOrderBeforeTheFrame) {
   EXPECT_EQ(out->telemetry.frames_used, 1U);
 }
 
-// Verifies TS-CMD-140.
-TEST_F(Commands, LimitsAreAcceptedWithinTheirRangeOnly) {
-  const auto set_limit = [this](int which, std::uint32_t value) {
-    std::vector<std::uint8_t> arguments{static_cast<std::uint8_t>(which)};
-    append_u32(arguments, value);
-    step_commands({command(FunctionCode::kSetLimit, arguments)});
-    return events(EventId::kCommandAccepted) == 1;
-  };
-  for (const config::LimitRule& rule : config::kLimitRules) {
-    const int which = static_cast<int>(rule.limit);
-    EXPECT_TRUE(set_limit(which, rule.lowest));
-    EXPECT_TRUE(set_limit(which, rule.highest));
-    EXPECT_FALSE(set_limit(which, rule.lowest - 1));
-    EXPECT_FALSE(set_limit(which, rule.highest + 1));
-    EXPECT_EQ(argument(EventId::kCommandWrongArgument, 2), which);
-  }
-  EXPECT_FALSE(set_limit(kLimits, 1000));
-}
-
 // Verifies TS-CMD-150.
 TEST_F(Commands, ResponsesAreDisabledAndEnabledExceptMandatoryOnes) {
   const auto fault = static_cast<std::uint8_t>(Fault::kAttitudeJump);

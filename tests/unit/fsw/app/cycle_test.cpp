@@ -62,7 +62,7 @@ TEST_F(Cycle, MissedReleasesAreCountedAndReported) {
 }
 
 TEST_F(Cycle, PublishesADumpInTheCycleThatAskedForIt) {
-  link.add(command(FunctionCode::kModelDump, {0, 0, 0, 0, 0, 0, 4}));
+  link.add(command(FunctionCode::kMemoryDump, {0, 0, 0, 0, 0, 0, 4}));
   run();
   ASSERT_EQ(link.dumps.size(), 1U);
   EXPECT_EQ(link.dumps[0].bytes[0], 'T');
@@ -98,7 +98,7 @@ TEST_F(Cycle, NewestFrameOfABacklogIsUsedAndTheOthersAreCounted) {
   lidar.add(good_frame(4, cycle_ns - 500'000'000, 4));
   lidar.add(good_frame(4, cycle_ns - 500'000'000, 4));    // twice
   lidar.add(good_frame(3, cycle_ns - 1'000'000'000, 3));  // out of order
-  lidar.add(good_frame(5, cycle_ns + config::kFutureTolerance_ns + 1, 5));
+  lidar.add(good_frame(5, cycle_ns + kFutureTolerance_ns + 1, 5));
   run();
   EXPECT_EQ(lidar.waiting(), 0U);
   EXPECT_EQ(last_validity(), Validity::kValid);

@@ -9,10 +9,13 @@
 namespace tumblesight::fsw {
 namespace {
 
+constexpr int kMost = 8;
+constexpr EventLimits kLimits{kMost, 16};
+
 class EventLogTest : public ::testing::Test {
  protected:
   void raise(EventId id, int times = 1) {
-    for (int i = 0; i < times; ++i) log.raise(1, id, i, 0, 0, counters);
+    for (int i = 0; i < times; ++i) log.raise(1, id, {i, 0, 0}, kLimits, counters);
   }
   std::vector<hal::Event> take_all() {
     std::vector<hal::Event> events;
@@ -20,7 +23,7 @@ class EventLogTest : public ::testing::Test {
     return events;
   }
   void end_window() {
-    for (std::uint32_t i = 0; i < config::kEventWindow_cycles; ++i) log.end_cycle(2, counters);
+    for (std::uint32_t i = 0; i < kLimits.window_cycles; ++i) log.end_cycle(2, kLimits, counters);
   }
 
   EventLog log;
@@ -39,10 +42,10 @@ TEST_F(EventLogTest, ReturnsEventsInOrder) {
 }
 
 TEST_F(EventLogTest, TooManyOfAKindAreCountedAndReportedAtTheEndOfTheWindow) {
-  raise(EventId::kFrameStale, config::kMaxEventsOfAKind + 5);
+  raise(EventId::kFrameStale, kMost + 5);
   raise(EventId::kFrameBad);
   EXPECT_EQ(counters.events_suppressed, 5U);
-  EXPECT_EQ(take_all().size(), config::kMaxEventsOfAKind + 1U);
+  EXPECT_EQ(take_all().size(), kMost + 1U);
   end_window();
   const std::vector<hal::Event> summary = take_all();
   ASSERT_EQ(summary.size(), 1U);
@@ -54,7 +57,7 @@ TEST_F(EventLogTest, TooManyOfAKindAreCountedAndReportedAtTheEndOfTheWindow) {
 }
 
 TEST_F(EventLogTest, SuppressedWallClockEventsAreReportedSeparately) {
-  raise(EventId::kDeadlineOverrun, config::kMaxEventsOfAKind + 2);
+  raise(EventId::kDeadlineOverrun, kMost + 2);
   take_all();
   end_window();
   const std::vector<hal::Event> summary = take_all();
@@ -64,9 +67,8 @@ TEST_F(EventLogTest, SuppressedWallClockEventsAreReportedSeparately) {
 }
 
 TEST_F(EventLogTest, FullRingLosesTheNewestAndCountsThem) {
-  for (int kind = 0; kind < 5; ++kind)
-    raise(kEventRules[static_cast<std::size_t>(kind)].id, config::kMaxEventsOfAKind);
-  EXPECT_EQ(counters.events_lost, 5U * config::kMaxEventsOfAKind - config::kEventRing);
+  for (int kind = 0; kind < 5; ++kind) raise(kEventRules[static_cast<std::size_t>(kind)].id, kMost);
+  EXPECT_EQ(counters.events_lost, 5U * kMost - config::kEventRing);
   EXPECT_EQ(log.waiting(), static_cast<std::uint32_t>(config::kEventRing));
   EXPECT_EQ(take_all().size(), static_cast<std::size_t>(config::kEventRing));
 }
@@ -77,7 +79,7 @@ TEST_F(EventLogTest, EveryEventIsAccountedFor) {
     for (const EventRule& rule : kEventRules) raise(rule.id, cycle % 4);
     hal::Event event;
     for (int i = 0; i < 11 && log.take(event); ++i) ++taken;
-    log.end_cycle(2, counters);
+    log.end_cycle(2, kLimits, counters);
   }
   EXPECT_EQ(counters.events, taken + log.waiting() + counters.events_suppressed + counters.events_lost);
 }
@@ -87,8 +89,8 @@ TEST_F(EventLogTest, StaysWithinItsMemoryAfterAnyBitFlip) {
     EventLog hit = log;
     reinterpret_cast<std::uint8_t*>(&hit)[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
     hal::Telemetry of_hit;
-    hit.raise(1, EventId::kFrameBad, 0, 0, 0, of_hit);
-    hit.end_cycle(1, of_hit);
+    hit.raise(1, EventId::kFrameBad, {0, 0, 0}, kLimits, of_hit);
+    hit.end_cycle(1, kLimits, of_hit);
     int taken = 0;
     for (hal::Event event; hit.take(event);) ++taken;
     ASSERT_LE(taken, config::kEventRing);

@@ -16,7 +16,7 @@ class EveryBit : public AppFixture {
     init_with_model();
     step_good();
     step_good();
-    AppMemory::state(*app).limits[static_cast<std::size_t>(Limit::kScrubBlocks)] = 1;  // a fast step
+    AppMemory::state(*app).table[Parameter::kScrubBlocks] = 1;  // a fast step
     AppMemory::commit(*app);
     keep();
   }

@@ -10,11 +10,15 @@ namespace {
 
 using Change = FaultMonitor::Change;
 
+const config::FaultRule& rule_of(Fault fault) {
+  return config::kFaultRules[static_cast<std::size_t>(fault)];
+}
+
 // The change of each cycle: '.' none, 'P' persists, 'o' over. `cycles`: 'x' with the fault, '-' without.
 std::string changes(FaultMonitor& monitor, Fault fault, const std::string& cycles) {
   std::string changes;
   for (const char cycle : cycles) {
-    const Change change = monitor.observe(fault, cycle == 'x');
+    const Change change = monitor.observe(rule_of(fault), cycle == 'x');
     changes += change == Change::kNone ? '.' : change == Change::kPersists ? 'P' : 'o';
   }
   return changes;
@@ -103,9 +107,9 @@ TEST(FaultMonitor, DisabledResponsesAreStillReported) {
     const auto number = static_cast<std::uint8_t>(rule.fault);
     EXPECT_EQ(monitor.enable(number, false), rule.can_be_disabled);
     const bool quiet = rule.can_be_disabled && rule.response > Response::kFlag;
-    EXPECT_EQ(monitor.response_to(rule.fault), quiet ? Response::kFlag : rule.response);
+    EXPECT_EQ(monitor.response_to(rule), quiet ? Response::kFlag : rule.response);
     EXPECT_TRUE(monitor.enable(number, true));
-    EXPECT_EQ(monitor.response_to(rule.fault), rule.response);
+    EXPECT_EQ(monitor.response_to(rule), rule.response);
     EXPECT_EQ(monitor.disabled(), 0U);
   }
 }

@@ -11,13 +11,16 @@ class FlashStore : public AppFixture {
  protected:
   FlashStore() { init(flash); }
 
-  hal::CommandPacket segment(std::uint32_t offset, std::uint32_t size = hal::kMaxModelSegmentBytes) {
+  hal::CommandPacket segment(std::uint32_t offset) {
     std::vector<std::uint8_t> arguments;
     append_u32(arguments, offset);
-    const auto end = std::min<std::size_t>(other.size(), offset + std::size_t{size});
+    const auto end = std::min<std::size_t>(other.size(), offset + std::size_t{kSegmentBytes});
     arguments.insert(arguments.end(), other.begin() + offset,
                      other.begin() + static_cast<std::ptrdiff_t>(end));
     return command(FunctionCode::kModelLoad, arguments);
+  }
+  hal::CommandPacket begin(UploadBase base = UploadBase::kNothing) {
+    return command(FunctionCode::kModelBegin, {static_cast<std::uint8_t>(base)});
   }
   hal::CommandPacket validate() {
     std::vector<std::uint8_t> arguments;
@@ -37,7 +40,7 @@ class FlashStore : public AppFixture {
     return out->telemetry.commands_refused_by[static_cast<std::size_t>(why)];
   }
 
-  const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
+  std::vector<std::uint8_t> other = gnc::lasting_model_image<gnc::FixedPoint>(8);
   hal::fake::FakeFlashStore flash{test_model_image()};
 };
 
@@ -45,14 +48,15 @@ TEST_F(FlashStore, ModelIsLoadedSegmentBySegmentWhileTheGroundWaitsForEach) {
   flash.erase_ticks = 1;
   std::uint32_t offset = 0;
   std::uint32_t waits = 0;
+  step_commands({begin()});
   while (offset < other.size()) {
     step_commands({segment(offset)});
     if (refused_by(CommandRefusal::kBusy) > waits) {
       waits = refused_by(CommandRefusal::kBusy);
-      ASSERT_EQ(argument(EventId::kCommandBusy, 2), static_cast<std::int32_t>(offset)) << "the next offset";
+      ASSERT_EQ(argument(EventId::kCommandBusy, 2), static_cast<std::int32_t>(offset)) << "to send again";
     } else {
       ASSERT_EQ(out->telemetry.commands_refused, waits);
-      offset = out->telemetry.model_bytes_loaded;
+      offset += kSegmentBytes;
     }
     flash.tick();
   }
@@ -65,11 +69,13 @@ TEST_F(FlashStore, ModelIsLoadedSegmentBySegmentWhileTheGroundWaitsForEach) {
 }
 
 TEST_F(FlashStore, BankThatIsBeingWrittenIsNotReadButFramesContinue) {
-  step_commands({set_mode(Mode::kStandby), segment(0)});
+  step_commands({set_mode(Mode::kStandby), begin(), segment(0)});
   EXPECT_EQ(out->telemetry.bank_activity[1], hal::BankActivity::kErasing);
-  step_commands({command(FunctionCode::kModelDump, {1, 0, 0, 0, 0, 0, 4}), set_mode(Mode::kRun)});
+  step_commands({command(FunctionCode::kMemoryDump, {1, 0, 0, 0, 0, 0, 4}), set_mode(Mode::kRun)});
   EXPECT_EQ(refused_by(CommandRefusal::kBusy), 1U);
   EXPECT_FALSE(out->has_dump);
+  step_commands({command(FunctionCode::kMemoryDump, {2, 0, 0, 0, 0, 0, 4})});
+  EXPECT_TRUE(out->has_dump) << "the bitmap of the missing segments is not in the bank";
   flash.tick();
   flash.tick();
   step_good();
@@ -77,7 +83,7 @@ TEST_F(FlashStore, BankThatIsBeingWrittenIsNotReadButFramesContinue) {
   EXPECT_EQ(out->telemetry.bank_activity[1], hal::BankActivity::kWriting);
   EXPECT_EQ(out->telemetry.model_blocks_lost, 0U);
   flash.tick();
-  step_commands({command(FunctionCode::kModelDump, {1, 0, 0, 0, 0, 0, 4})});
+  step_commands({command(FunctionCode::kMemoryDump, {1, 0, 0, 0, 0, 0, 4})});
   EXPECT_TRUE(out->has_dump);
   EXPECT_EQ(out->telemetry.bank_activity[1], hal::BankActivity::kReady);
 }
@@ -85,6 +91,7 @@ TEST_F(FlashStore, BankThatIsBeingWrittenIsNotReadButFramesContinue) {
 TEST_F(FlashStore, ValidateAndActivateWaitForTheLastWrite) {
   flash.erase_ticks = flash.write_ticks = 0;
   std::uint32_t offset = 0;
+  step_commands({begin()});
   for (; offset + hal::kMaxModelSegmentBytes < other.size(); offset += hal::kMaxModelSegmentBytes)
     step_commands({segment(offset)});
   flash.write_ticks = 1;
@@ -105,7 +112,7 @@ TEST_F(FlashStore, ValidateAndActivateWaitForTheLastWrite) {
 
 TEST_F(FlashStore, FailedWriteMakesTheImageVoidAndANewOneBegins) {
   flash.erase_ticks = flash.write_ticks = 0;
-  step_commands({segment(0)});
+  step_commands({begin(), segment(0)});
   flash.fail_next = true;
   step_commands({segment(1024)});
   EXPECT_EQ(out->telemetry.commands_refused, 0U) << "flash finds the failure later";
@@ -114,19 +121,65 @@ TEST_F(FlashStore, FailedWriteMakesTheImageVoidAndANewOneBegins) {
   EXPECT_EQ(refused_by(CommandRefusal::kStoreFailed), 1U);
   EXPECT_EQ(events(EventId::kCommandStoreFailed), 1);
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kEmpty);
-  EXPECT_EQ(out->telemetry.model_bytes_loaded, 0U);
-  step_commands({command(FunctionCode::kModelDump, {1, 0, 0, 0, 0, 0, 4})});
+  EXPECT_EQ(out->telemetry.model_segments_missing, 0U) << "nothing is being loaded";
+  step_commands({command(FunctionCode::kMemoryDump, {1, 0, 0, 0, 0, 0, 4})});
   EXPECT_EQ(refused_by(CommandRefusal::kStoreFailed), 2U);
-  step_commands({segment(0), segment(1024)});
-  EXPECT_EQ(out->telemetry.model_bytes_loaded, 2048U);
+  step_commands({segment(0), begin(), segment(1024), segment(0)});
+  EXPECT_EQ(events(EventId::kCommandNoModel), 1);
+  EXPECT_EQ(out->telemetry.model_segments_missing, kModelSegments - 2);
   EXPECT_EQ(out->telemetry.bank_in_use, 0);
   step_good();
   EXPECT_EQ(validity(), Validity::kValid) << "the model in use is not concerned";
 }
 
+// Verifies TS-MDL-080.
+TEST_F(FlashStore, ImageInUseIsCopiedSectorBySectorWhileTheGroundSendsTheChanges) {
+  flash.banks[1].cells.assign(other.size(), 0x55);
+  flash.banks[1].visible = flash.banks[1].cells;
+  flash.erase_ticks = 1;
+  const std::vector<std::uint8_t> changed = gnc::with_changed_weights(test_model_image(), {300'000});
+  std::vector<std::uint32_t> to_send;
+  for (std::uint32_t offset = 0; offset < changed.size(); offset += kSegmentBytes) {
+    const auto end = changed.begin() + std::min<std::ptrdiff_t>(offset + kSegmentBytes, other.size());
+    if (!std::equal(changed.begin() + offset, end, test_model_image().begin() + offset))
+      to_send.push_back(offset);
+  }
+  other = changed;
+  step_commands({set_mode(Mode::kStandby), begin(UploadBase::kBankInUse)});
+  int cycles = 0;
+  for (; out->telemetry.model_segments_missing > 0; ++cycles) {
+    flash.tick();
+    const std::uint32_t refused = out->telemetry.commands_refused;
+    if (to_send.empty()) {
+      step(StepInputs{});
+    } else {
+      step_commands({segment(to_send.back())});
+      if (out->telemetry.commands_refused == refused) to_send.pop_back();
+    }
+    ASSERT_EQ(out->telemetry.commands_refused_by[static_cast<std::size_t>(CommandRefusal::kStoreFailed)], 0U);
+  }
+  EXPECT_TRUE(to_send.empty()) << "commands go before the copy";
+  EXPECT_LT(cycles, 2 * 300) << "four segments are written together";
+  finish();
+  step_commands({validate()});
+  step_commands({activate()});
+  EXPECT_EQ(out->telemetry.bank_in_use, 1);
+  EXPECT_EQ(flash.banks[1].cells, changed);
+}
+
+// Verifies TS-MDL-080.
+TEST_F(FlashStore, FailedWriteOfACopyMakesTheImageVoid) {
+  flash.erase_ticks = flash.write_ticks = 0;
+  flash.fail_next = true;
+  step_commands({begin(UploadBase::kBankInUse)});
+  step(StepInputs{});
+  EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kEmpty);
+  EXPECT_EQ(out->telemetry.model_segments_missing, 0U);
+}
+
 TEST_F(FlashStore, DeadFlashRefusesAtOnce) {
   flash.dead = true;
-  step_commands({segment(0)});
+  step_commands({begin(), segment(0)});
   EXPECT_EQ(refused_by(CommandRefusal::kStoreFailed), 1U);
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kEmpty);
   step_good();

@@ -76,7 +76,7 @@ TEST_F(FrameRules, ExposureNotAfterTheLastOneIsRefused) {
 TEST_F(FrameRules, OldExposureIsRefused) {
   now_ns += 10 * config::kFramePeriod_ns;
   gnc::RangeImage frame = next_frame();
-  frame.exposure_time_ns = next_time_ns() - config::kMaxFrameAge_ns - 1;
+  frame.exposure_time_ns = next_time_ns() - kMaxFrameAge_ns - 1;
   EXPECT_EQ(expect_refused(frame, EventId::kFrameStale).frames_stale, 1U);
   EXPECT_EQ(argument(EventId::kFrameStale, 1), 2970);
 }
@@ -181,7 +181,7 @@ TEST_F(FrameRules, SupersededFrameOfACycleThatUsesNoneIsNotSkippedLater) {
 }
 
 TEST_F(FrameRules, ExposureWithinTheToleranceAheadOfTheCycleIsUsed) {
-  for (const std::int64_t ahead_ns : {std::int64_t{1}, config::kFutureTolerance_ns}) {
+  for (const std::int64_t ahead_ns : {std::int64_t{1}, kFutureTolerance_ns}) {
     gnc::RangeImage frame = next_frame();
     frame.exposure_time_ns += ahead_ns;
     sequence_number = frame.sequence_number;
@@ -242,9 +242,9 @@ TEST_F(FrameRules, WithoutTheChasersAttitudeTheReportSaysSo) {
   };
   EXPECT_TRUE(step_with({}));
   EXPECT_TRUE(step_with(known(0))) << "the turn since the last frame is not known";
-  EXPECT_FALSE(step_with(known(config::kChaserTimeTolerance_ns)));
-  EXPECT_FALSE(step_with(known(-config::kChaserTimeTolerance_ns)));
-  EXPECT_TRUE(step_with(known(config::kChaserTimeTolerance_ns + 1)));
+  EXPECT_FALSE(step_with(known(kChaserTimeTolerance_ns)));
+  EXPECT_FALSE(step_with(known(-kChaserTimeTolerance_ns)));
+  EXPECT_TRUE(step_with(known(kChaserTimeTolerance_ns + 1)));
   EXPECT_TRUE(step_with(known(0)));
   EXPECT_FALSE(step_with(known(0)));
   gnc::ChaserAttitude unsound = known(0);
@@ -276,7 +276,7 @@ TEST_F(FrameRules, NumbersGoingBackAreOneGapAndTheFrameUsed) {
 TEST_F(FrameRules, TrackIsKeptOverAnyTimeUpToTheLongestCoast) {
   std::uint32_t frames = 2;
   for (const std::int64_t gap_ns : {std::int64_t{200'000'000}, std::int64_t{1'000'000'000},
-                                    std::int64_t{5'400'000'000}, config::kLongestCoast_ns}) {
+                                    std::int64_t{5'400'000'000}, kLongestCoast_ns}) {
     now_ns += gap_ns - config::kFramePeriod_ns;
     step_good();
     EXPECT_EQ(validity(), Validity::kValid);
@@ -288,7 +288,7 @@ TEST_F(FrameRules, TrackIsKeptOverAnyTimeUpToTheLongestCoast) {
 
 // Verifies TS-EST-182.
 TEST_F(FrameRules, TrackIsGivenUpAfterTheLongestCoastWithAnEvent) {
-  now_ns += config::kLongestCoast_ns - config::kFramePeriod_ns + 1'000'000;
+  now_ns += kLongestCoast_ns - config::kFramePeriod_ns + 1'000'000;
   step_good();
   EXPECT_EQ(validity(), Validity::kValid);
   EXPECT_EQ(out->attitude.frames_since_reset, 1U);

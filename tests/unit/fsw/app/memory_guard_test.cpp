@@ -10,6 +10,12 @@
 namespace tumblesight::fsw {
 namespace {
 
+bool is_allowed(std::size_t field, std::uint32_t value) {
+  ParameterTable table = initial_table();
+  table.fields[field] = value;
+  return first_wrong_field(table) == kTableFields;
+}
+
 class MemoryGuardTest : public AppFixture {
  protected:
   MemoryGuardTest() {
@@ -67,7 +73,7 @@ class MemoryGuardTest : public AppFixture {
   void steps_of_a_pass() {
     constexpr std::uint32_t kBlocks = ModelBanks::kBlocks;
     for (std::uint32_t block = 0; block <= kBlocks;
-         block += AppMemory::state(*app).limit(Limit::kScrubBlocks))
+         block += AppMemory::state(*app).table[Parameter::kScrubBlocks])
       step_good();
   }
   // Flips a bit that is not padding.
@@ -192,7 +198,7 @@ TEST_F(MemoryGuardTest, CorruptedFallbackIsReportedWithinAPassAndNotUsed) {
   hit_block(1, 150);
   int reports = 0;
   for (std::uint32_t block = 0; block <= ModelBanks::kBlocks;
-       block += AppMemory::state(*app).limit(Limit::kScrubBlocks)) {
+       block += AppMemory::state(*app).table[Parameter::kScrubBlocks]) {
     step_good();
     reports += events(EventId::kFallbackLost);
     if (events(EventId::kFallbackLost) == 0) continue;
@@ -280,19 +286,32 @@ TEST_F(MemoryGuardTest, IndicesOutOfRangeAreBoundedAndGoSafe) {
 }
 
 // Verifies TS-FDIR-015.
-TEST_F(MemoryGuardTest, LimitsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
-  for (const config::LimitRule& rule : config::kLimitRules) {
-    for (const std::uint32_t value : {rule.lowest - 1, rule.highest + 1, UINT32_MAX}) {
+TEST_F(MemoryGuardTest, FieldsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
+  for (std::size_t field = 0; field < kTableFields; ++field) {
+    std::vector<std::uint32_t> wrong{UINT32_MAX};
+    if (field < kParameters)
+      wrong = {config::kParameterRules[field].lowest - 1, config::kParameterRules[field].highest + 1};
+    for (const std::uint32_t value : wrong) {
+      ASSERT_FALSE(is_allowed(field, value)) << field;
       init(store);
       step_good();
-      std::uint32_t& limit = AppMemory::state(*app).limits[static_cast<std::size_t>(rule.limit)];
-      limit = value;
+      std::uint32_t& now = AppMemory::state(*app).table.fields[field];
+      now = value;
       AppMemory::commit(*app);
       step_good();
       EXPECT_EQ(app->mode(), Mode::kSafe);
-      EXPECT_EQ(limit, rule.initial);
+      EXPECT_EQ(now, initial_table().fields[field]);
     }
   }
+}
+
+// Verifies TS-FDIR-015.
+TEST_F(MemoryGuardTest, TableWithEveryFieldOutOfRangeBecomesTheInitialOne) {
+  AppMemory::state(*app).table.fields.fill(UINT32_MAX);
+  AppMemory::commit(*app);
+  step_good();
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(AppMemory::state(*app).table.fields, initial_table().fields);
 }
 
 // Verifies TS-FDIR-040.
@@ -592,17 +611,18 @@ TEST_F(MemoryGuardTest, UploadContinuesWhenTheModelInUseIsLost) {
   const auto load = [this](std::uint32_t offset) {
     std::vector<std::uint8_t> arguments;
     append_u32(arguments, offset);
-    arguments.insert(arguments.end(), {1, 2, 3, 4});
+    arguments.resize(4 + kSegmentBytes);
     step_commands({command(FunctionCode::kModelLoad, arguments)});
   };
+  step_commands({command(FunctionCode::kModelBegin, {0})});
   load(0);
   hit_block(0, 200);
   hit_table();
   step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
   EXPECT_EQ(out->telemetry.bank_status[1], BankStatus::kLoading);
-  load(4);
-  EXPECT_EQ(out->telemetry.model_bytes_loaded, 8U);
+  load(kSegmentBytes);
+  EXPECT_EQ(out->telemetry.model_segments_missing, kModelSegments - 2);
 }
 
 // Verifies TS-FDIR-030.

@@ -123,14 +123,15 @@ TEST_F(Reset, BadStoredBankFallsBackToTheOther) {
 
 TEST_F(Reset, LimitsAndDisabledResponsesStay) {
   const auto fault = static_cast<std::uint8_t>(Fault::kAttitudeJump);
-  step_commands(
-      {command(FunctionCode::kSetLimit, {3, 0, 0, 0, 5}), command(FunctionCode::kDisableResponse, {fault})});
+  step_commands({command(FunctionCode::kSetParameter, {3, 0, 0, 0, 5}),
+                 command(FunctionCode::kDisableResponse, {fault})});
   reset(ResetCause::kWatchdog);
   step_good();
   EXPECT_EQ(out->telemetry.responses_disabled, bit_of(Fault::kAttitudeJump));
-  EXPECT_EQ(stored().limits[3], 5U);
+  EXPECT_EQ(stored().table[Parameter::kScrubBlocks], 5U);
   step_good();
-  EXPECT_EQ(stored().limits[3], 5U) << "the limit in use, which is stored again in every change";
+  EXPECT_EQ(stored().table[Parameter::kScrubBlocks], 5U)
+      << "the limit in use, which is stored again in every change";
 }
 
 // Verifies TS-SEC-030.
@@ -255,7 +256,7 @@ TEST_F(Reset, EitherCopyAloneIsEnough) {
 
 TEST_F(Reset, LossOfBothCopiesIsAColdBootInSafeWithAnEvent) {
   use_bank_1();
-  step_commands({command(FunctionCode::kSetLimit, {3, 0, 0, 0, 5})});
+  step_commands({command(FunctionCode::kSetParameter, {3, 0, 0, 0, 5})});
   damage(0);
   kept.unreadable[1] = true;
   reset(ResetCause::kPowerOn);
@@ -267,7 +268,7 @@ TEST_F(Reset, LossOfBothCopiesIsAColdBootInSafeWithAnEvent) {
   EXPECT_EQ(argument(EventId::kStoredStateLost, 1), static_cast<int>(StoreStatus::kFailed));
   EXPECT_EQ(out->telemetry.bank_in_use, 0);
   EXPECT_EQ(out->telemetry.command_counter, 0U);
-  EXPECT_EQ(stored().limits[3], config::kLimitRules[3].initial);
+  EXPECT_EQ(stored().table[Parameter::kScrubBlocks], initial(Parameter::kScrubBlocks));
   reset(ResetCause::kPowerOn);
   step_good();
   EXPECT_EQ(events(EventId::kStoredStateLost), 0) << "the store is in order again";
@@ -287,7 +288,7 @@ TEST_F(Reset, OneBlankAndOneDamagedCopyIsALoss) {
 
 TEST(StoredStateRecord, ValueOutOfItsRangeIsDamage) {
   StoredState good;
-  for (std::size_t i = 0; i < good.limits.size(); ++i) good.limits[i] = config::kLimitRules[i].initial;
+  good.table = initial_table();
   const auto is_damaged = [](const StoredState& state) {
     StoredState read;
     std::uint32_t generation = 0;
@@ -309,19 +310,17 @@ TEST(StoredStateRecord, ValueOutOfItsRangeIsDamage) {
   bad = good;
   bad.bank = hal::kModelBanks;
   EXPECT_TRUE(is_damaged(bad));
-  for (std::size_t i = 0; i < good.limits.size(); ++i) {
+  for (std::size_t i = 0; i < kTableFields; ++i) {
     bad = good;
-    bad.limits[i] = config::kLimitRules[i].lowest - 1;
-    EXPECT_TRUE(is_damaged(bad)) << i;
-    bad.limits[i] = config::kLimitRules[i].highest + 1;
+    bad.table.fields[i] = UINT32_MAX;
     EXPECT_TRUE(is_damaged(bad)) << i;
   }
 }
 
 TEST(StoredStateRecord, OtherFormatIsDamage) {
   StoredState good;
-  for (std::size_t i = 0; i < good.limits.size(); ++i) good.limits[i] = config::kLimitRules[i].initial;
-  for (const std::size_t byte : {0U, 4U, 5U}) {
+  good.table = initial_table();
+  for (const std::size_t byte : {0U, 4U, 23U, 25U, 109U}) {
     hal::StoredBytes bytes = to_record(good, 1);
     bytes[byte] ^= 1;
     const std::uint32_t crc = gnc::crc32(bytes.data(), bytes.size() - 4);

@@ -11,10 +11,10 @@ namespace {
 class Supervision : public AppFixture {
  protected:
   Supervision() { init_with_model(); }
-  void set_limit(Limit which, std::uint32_t value) {
+  void set_limit(Parameter which, std::uint32_t value) {
     std::vector<std::uint8_t> arguments{static_cast<std::uint8_t>(which)};
     append_u32(arguments, value);
-    step_commands({command(FunctionCode::kSetLimit, arguments)});
+    step_commands({command(FunctionCode::kSetParameter, arguments)});
     ASSERT_EQ(events(EventId::kCommandAccepted), 1);
   }
   bool persists(Fault fault) const { return (out->telemetry.faults_persisting & bit_of(fault)) != 0; }
@@ -123,7 +123,7 @@ TEST_F(Supervision, StepsBeyondTheirBudgetAreCountedReportedAndFlaggedIfTheyPers
   stopwatch.tick_ns = 300'000'000;
   step_good();
   EXPECT_EQ(out->telemetry.deadline_overruns, 0U) << "900 ms";
-  set_limit(Limit::kStepBudget_us, 1'000);
+  set_limit(Parameter::kStepBudget_us, 1'000);
   step_good();
   EXPECT_EQ(events(EventId::kDeadlineOverrun), 1);
   step_good();
@@ -195,8 +195,8 @@ class DoubtfulAttitudes : public Supervision {
 
 // Verifies TS-FDIR-140.
 TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillReported) {
-  set_limit(Limit::kAttitudeJump_urad, 3'141'593);
-  set_limit(Limit::kPredictedError_urad, 17'453);
+  set_limit(Parameter::kAttitudeJump_urad, 3'141'593);
+  set_limit(Parameter::kPredictedError_urad, 17'453);
   for (unsigned cycle = 1; cycle <= 10; ++cycle) {
     step_scene(cycle);
     ASSERT_GT(out->attitude.predicted_error_urad, 17'453U)
@@ -207,15 +207,15 @@ TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillReported
     EXPECT_FALSE(persists(Fault::kOutage)) << "there is an attitude";
   }
   EXPECT_EQ(out->telemetry.attitudes_doubtful, 10U);
-  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  set_limit(Parameter::kPredictedError_urad, 3'141'593);
   step_scene(11);
   EXPECT_EQ(validity(), Validity::kValid);
 }
 
 // Verifies TS-FDIR-150.
 TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceIfTheyPersist) {
-  set_limit(Limit::kPredictedError_urad, 3'141'593);
-  set_limit(Limit::kAttitudeJump_urad, 87'266);
+  set_limit(Parameter::kPredictedError_urad, 3'141'593);
+  set_limit(Parameter::kAttitudeJump_urad, 87'266);
   int doubtful = 0;
   for (unsigned i = 0; i < 40 && out->telemetry.estimator_resets < 2; ++i) {
     step_scene(1000 + 7 * i);
@@ -228,8 +228,8 @@ TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceIfTheyPersist) {
 
 // Verifies TS-FDIR-170.
 TEST_F(DoubtfulAttitudes, RepeatedFramesAreRefusedAndReportedIfTheyPersist) {
-  set_limit(Limit::kPredictedError_urad, 3'141'593);
-  set_limit(Limit::kAttitudeJump_urad, 3'141'593);
+  set_limit(Parameter::kPredictedError_urad, 3'141'593);
+  set_limit(Parameter::kAttitudeJump_urad, 3'141'593);
   gnc::RangeImage frame = next_frame();
   step_frame(frame);
   EXPECT_EQ(validity(), Validity::kValid);
@@ -249,8 +249,8 @@ TEST_F(DoubtfulAttitudes, RepeatedFramesAreRefusedAndReportedIfTheyPersist) {
 
 // Verifies TS-FDIR-170.
 TEST_F(DoubtfulAttitudes, ASensorThatIsFrozenIsSeenWithin6CyclesAlsoIfEverySecondFrameIsLost) {
-  set_limit(Limit::kPredictedError_urad, 3'141'593);
-  set_limit(Limit::kAttitudeJump_urad, 3'141'593);
+  set_limit(Parameter::kPredictedError_urad, 3'141'593);
+  set_limit(Parameter::kAttitudeJump_urad, 3'141'593);
   for (const bool starts_with_loss : {false, true}) {
     const gnc::RangeImage genuine = good_frame(200, next_time_ns(), starts_with_loss ? 5 : 6);
     step_frame(genuine);
@@ -305,7 +305,7 @@ TEST_F(UnsoundAttitudes, NoneIsReportedWhicheverPartIsHit) {
       },
       [this] { estimate().predicted_error_urad = gnc::kPi_urad + 1; },
       [this] { estimate().predicted_error_single_frame_urad = UINT32_MAX; }};
-  set_limit(Limit::kPredictedError_urad, 3'141'593);
+  set_limit(Parameter::kPredictedError_urad, 3'141'593);
   unsigned scene = 1;
   for (const std::function<void()>& hit : hits) {
     strike_next_step(kBehindFrame, hit);
@@ -321,8 +321,8 @@ TEST_F(UnsoundAttitudes, NoneIsReportedWhicheverPartIsHit) {
 
 // Verifies TS-FDIR-060.
 TEST_F(DoubtfulAttitudes, DisabledResponseReportsButDoesNotReset) {
-  set_limit(Limit::kPredictedError_urad, 3'141'593);
-  set_limit(Limit::kAttitudeJump_urad, 87'266);
+  set_limit(Parameter::kPredictedError_urad, 3'141'593);
+  set_limit(Parameter::kAttitudeJump_urad, 87'266);
   step_commands({command(FunctionCode::kDisableResponse, {static_cast<std::uint8_t>(Fault::kAttitudeJump)})});
   bool reported = false;
   for (unsigned i = 0; i < 40 && !reported; ++i) {

@@ -57,7 +57,7 @@ class CommandFlood : public ::testing::Test {
   std::uint32_t k_ = 0, counter_ = 0;
 };
 
-constexpr std::uint8_t kNoop = 1, kSetMode = 3, kModelLoad = 5;
+constexpr std::uint8_t kNoop = 1, kSetMode = 3, kModelLoad = 5, kModelBegin = 13;
 
 TEST_F(CommandFlood, SeventyForgedPacketsACycleKeepNoGenuineCommandOut) {
   fsw::Signature thief;
@@ -89,12 +89,15 @@ TEST_F(CommandFlood, ReplayedPacketsKeepNoGenuineCommandOut) {
 
 TEST_F(CommandFlood, ALoadOfAModelKeepsNoOtherCommandOut) {
   constexpr std::uint32_t kSegments = 100;
-  for (std::uint32_t i = 0; i < kSegments; ++i) put(genuine(fsw::packet_of(kModelLoad, {0, 0, 0, 0, 1})));
+  put(genuine(fsw::packet_of(kModelBegin, {0})));
+  cycle();
+  const std::vector<std::uint8_t> segment(4 + fsw::kSegmentBytes);
+  for (std::uint32_t i = 0; i < kSegments; ++i) put(genuine(fsw::packet_of(kModelLoad, segment)));
   put(genuine(fsw::packet_of(kSetMode, {3})));
   Telemetry telemetry;
   for (int i = 0; i < 10; ++i) telemetry = cycle();
   EXPECT_EQ(telemetry.mode, Mode::kSafe);
-  EXPECT_EQ(telemetry.commands_accepted + by(telemetry, CommandRefusal::kNoRoom), kSegments + 1);
+  EXPECT_EQ(telemetry.commands_accepted + by(telemetry, CommandRefusal::kNoRoom), kSegments + 2);
   EXPECT_GT(by(telemetry, CommandRefusal::kNoRoom), 0U);
 }
 

@@ -76,14 +76,14 @@ TEST(TelemetryEncoder, AllPacketsHaveHeaderTimeAndErrorControl) {
   expect_sound<AttitudeReport>(0x1F1);
   expect_sound<Telemetry>(0x1F2);
   expect_sound<Event>(0x1F3);
-  expect_sound<ModelDump>(0x1F4);
+  expect_sound<MemoryDump>(0x1F4);
 }
 
 TEST(TelemetryEncoder, CountsEachApidByItselfModulo16384) {
   TelemetryEncoder encoder;
   for (int i = 0; i < 3; ++i) EXPECT_EQ(count_of(encoder.encode(Telemetry{})), i);
   EXPECT_EQ(count_of(encoder.encode(AttitudeReport{})), 0);
-  EXPECT_EQ(count_of(encoder.encode(ModelDump{})), 0);
+  EXPECT_EQ(count_of(encoder.encode(MemoryDump{})), 0);
   for (int i = 0; i < 16'384; ++i) EXPECT_EQ(count_of(encoder.encode(Event{})), i);
   EXPECT_EQ(count_of(encoder.encode(Event{})), 0);
   EXPECT_EQ(count_of(encoder.encode(Telemetry{})), 3);
@@ -94,7 +94,7 @@ TEST(TelemetryEncoder, UsesTheApidsOfTheMission) {
   EXPECT_EQ(apid_of(encoder.encode(AttitudeReport{})), 0);
   EXPECT_EQ(apid_of(encoder.encode(Telemetry{})), kMaxApid);
   EXPECT_EQ(apid_of(encoder.encode(Event{})), 0x123);
-  EXPECT_EQ(apid_of(encoder.encode(ModelDump{})), 0x400);
+  EXPECT_EQ(apid_of(encoder.encode(MemoryDump{})), 0x400);
 }
 
 TEST(TelemetryEncoder, ApidsMustDifferAndMustNotBeThatOfIdlePackets) {

@@ -3,22 +3,22 @@
 
 #include <gtest/gtest.h>
 
-#include "fsw/config/limits.hpp"
+#include "fsw/config/parameters.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-std::uint32_t initial(fsw::Limit limit) {
-  return fsw::config::kLimitRules[static_cast<std::size_t>(limit)].initial;
+std::int64_t initial(fsw::Parameter parameter) {
+  return fsw::config::rule_of(parameter).initial;
 }
 
 TEST(FlightLimits, AreThoseOfTheFlightProgramAfterInit) {
-  EXPECT_EQ(kFlightLimits.time.future_tolerance_ns, fsw::config::kFrameTimeLimits.future_tolerance_ns);
-  EXPECT_EQ(kFlightLimits.time.max_age_ns, fsw::config::kFrameTimeLimits.max_age_ns);
-  EXPECT_EQ(kFlightLimits.longest_coast_ns, fsw::config::kLongestCoast_ns);
-  EXPECT_EQ(kFlightLimits.chaser_time_tolerance_ns, fsw::config::kChaserTimeTolerance_ns);
-  EXPECT_EQ(kFlightLimits.predicted_error_urad, initial(fsw::Limit::kPredictedError_urad));
-  EXPECT_EQ(kFlightLimits.attitude_jump_urad, initial(fsw::Limit::kAttitudeJump_urad));
+  EXPECT_EQ(kFlightLimits.time.future_tolerance_ns, 1'000 * initial(fsw::Parameter::kFutureTolerance_us));
+  EXPECT_EQ(kFlightLimits.time.max_age_ns, 1'000'000 * initial(fsw::Parameter::kMaxFrameAge_ms));
+  EXPECT_EQ(kFlightLimits.longest_coast_ns, 1'000'000 * initial(fsw::Parameter::kLongestCoast_ms));
+  EXPECT_EQ(kFlightLimits.chaser_time_tolerance_ns, 1'000 * initial(fsw::Parameter::kChaserTimeTolerance_us));
+  EXPECT_EQ(kFlightLimits.predicted_error_urad, initial(fsw::Parameter::kPredictedError_urad));
+  EXPECT_EQ(kFlightLimits.attitude_jump_urad, initial(fsw::Parameter::kAttitudeJump_urad));
 }
 
 }  // namespace
