@@ -71,7 +71,7 @@ struct alignas(8) AppState {
   FaultMonitor faults;
   ModelBanksState banks;
   AssertionLog assertions;
-  ParameterTable table = initial_table();  // the active one
+  ParameterTable table = kInitialTable;  // the active one
   LoadedTable loaded_table;
   std::uint32_t faults_seen = 0;      // in this cycle; bit n: Fault n
   std::uint32_t estimator_crc32 = 0;  // of the estimator's state at the end of the last cycle

@@ -31,11 +31,10 @@ bool MemoryGuard::bound(const Estimator& estimator, AppState& state) {
     banks.next_block = 0;
     sound = false;
   }
-  static constexpr ParameterTable kInitial = initial_table();
   for (std::size_t i = 0; i < kTableFields; ++i) {
     const std::size_t wrong = first_wrong_field(state.table);
     if (wrong == kTableFields) break;
-    state.table.fields[wrong] = kInitial.fields[wrong];
+    state.table.fields[wrong] = kInitialTable.fields[wrong];
     sound = false;
   }
   return sound;

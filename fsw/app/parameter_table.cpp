@@ -38,8 +38,6 @@ constexpr bool are_initial_values_possible() {
 }
 static_assert(are_initial_values_possible());
 
-constexpr ParameterTable kInitial = initial_table();
-
 void put_u32(std::uint32_t value, std::uint8_t* at) {
   for (int i = 0; i < 4; ++i) at[i] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
 }
@@ -58,7 +56,7 @@ bool is_allowed(std::size_t field, std::uint32_t value) {
   }
   // No attitude can be trusted without the response to such a fault.
   const bool can_be_changed = config::kFaultRules[field - kParameters].can_be_disabled;
-  if (!can_be_changed) return value == kInitial.fields[field];
+  if (!can_be_changed) return value == kInitialTable.fields[field];
   return is_possible_rule(value);
 }
 

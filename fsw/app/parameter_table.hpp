@@ -32,14 +32,15 @@ constexpr std::uint32_t to_field(const config::FaultRule& rule) {
          std::uint32_t{rule.good_cycles} << 8 | static_cast<std::uint32_t>(rule.response);
 }
 
-// The table after init().
-constexpr ParameterTable initial_table() {
+constexpr ParameterTable make_initial_table() {
   ParameterTable table;
   for (std::size_t i = 0; i < kParameters; ++i) table.fields[i] = config::kParameterRules[i].initial;
   for (std::size_t i = 0; i < config::kFaultRules.size(); ++i)
     table.fields[kParameters + i] = to_field(config::kFaultRules[i]);
   return table;
 }
+// The table after init().
+inline constexpr ParameterTable kInitialTable = make_initial_table();
 
 // The first field that has a value which is not allowed; kTableFields: none.
 std::size_t first_wrong_field(const ParameterTable& table);

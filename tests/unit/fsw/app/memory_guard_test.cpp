@@ -11,7 +11,7 @@ namespace tumblesight::fsw {
 namespace {
 
 bool is_allowed(std::size_t field, std::uint32_t value) {
-  ParameterTable table = initial_table();
+  ParameterTable table = kInitialTable;
   table.fields[field] = value;
   return first_wrong_field(table) == kTableFields;
 }
@@ -300,7 +300,7 @@ TEST_F(MemoryGuardTest, FieldsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
       AppMemory::commit(*app);
       step_good();
       EXPECT_EQ(app->mode(), Mode::kSafe);
-      EXPECT_EQ(now, initial_table().fields[field]);
+      EXPECT_EQ(now, kInitialTable.fields[field]);
     }
   }
 }
@@ -311,7 +311,7 @@ TEST_F(MemoryGuardTest, TableWithEveryFieldOutOfRangeBecomesTheInitialOne) {
   AppMemory::commit(*app);
   step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
-  EXPECT_EQ(AppMemory::state(*app).table.fields, initial_table().fields);
+  EXPECT_EQ(AppMemory::state(*app).table.fields, kInitialTable.fields);
 }
 
 // Verifies TS-FDIR-040.

@@ -11,7 +11,7 @@ namespace tumblesight::fsw {
 namespace {
 
 bool is_allowed(std::size_t field, std::uint32_t value) {
-  ParameterTable table = initial_table();
+  ParameterTable table = kInitialTable;
   table.fields[field] = value;
   return first_wrong_field(table) == kTableFields;
 }
@@ -24,7 +24,7 @@ constexpr std::size_t field_of(Fault fault) {
 }
 
 TEST(ParameterTable, FieldsAreBigEndianBehindVersionAndNumberAndBeforeTheCrc) {
-  ParameterTable table = initial_table();
+  ParameterTable table = kInitialTable;
   table[Parameter::kPredictedError_urad] = 0x01020304;
   const TableBytes bytes = to_bytes(table);
   const std::vector<std::uint8_t> head(bytes.begin(), bytes.begin() + 8);
@@ -37,7 +37,7 @@ TEST(ParameterTable, FieldsAreBigEndianBehindVersionAndNumberAndBeforeTheCrc) {
 }
 
 TEST(ParameterTable, EveryFlippedBitIsRefusedAndChangesNothing) {
-  TableBytes bytes = to_bytes(initial_table());
+  TableBytes bytes = to_bytes(kInitialTable);
   for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
     bytes[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
     ParameterTable read;
@@ -56,13 +56,13 @@ TEST(ParameterTable, EveryParameterHasItsRangeAndStartsWithinIt) {
     EXPECT_FALSE(is_allowed(field, rule.lowest - 1)) << field;
     EXPECT_FALSE(is_allowed(field, rule.highest + 1)) << field;
   }
-  EXPECT_EQ(first_wrong_field(initial_table()), kTableFields);
+  EXPECT_EQ(first_wrong_field(kInitialTable), kTableFields);
 }
 
 TEST(ParameterTable, FaultRulesThatAreImpossibleOrProtectTheModelAreNotTaken) {
   for (const config::FaultRule& rule : config::kFaultRules) {
     const std::size_t field = field_of(rule.fault);
-    EXPECT_TRUE(is_allowed(field, initial_table().fields[field]));
+    EXPECT_TRUE(is_allowed(field, kInitialTable.fields[field]));
     EXPECT_EQ(is_allowed(field, rule_field(2, 5, 7, Response::kSafe)), rule.can_be_disabled);
     EXPECT_EQ(is_allowed(field, rule_field(32, 32, 255, Response::kIgnore)), rule.can_be_disabled);
     EXPECT_FALSE(is_allowed(field, rule_field(0, 5, 7, Response::kFlag))) << "no cycles";
@@ -76,7 +76,7 @@ TEST(ParameterTable, FaultRulesThatAreImpossibleOrProtectTheModelAreNotTaken) {
 
 TEST(ParameterTable, FirstWrongFieldIsNamed) {
   for (std::size_t field = 0; field < kTableFields; ++field) {
-    ParameterTable table = initial_table();
+    ParameterTable table = kInitialTable;
     table.fields[field] = UINT32_MAX;
     EXPECT_EQ(first_wrong_field(table), field);
     table.fields[kTableFields - 1] = UINT32_MAX;
@@ -126,7 +126,7 @@ class Tables : public AppFixture {
 
 // Every field has another value than after init().
 ParameterTable another_table() {
-  ParameterTable table = initial_table();
+  ParameterTable table = kInitialTable;
   for (std::size_t field = 0; field < kParameters; ++field) table.fields[field] += 1;
   for (const config::FaultRule& rule : config::kFaultRules) {
     if (rule.can_be_disabled) table.fields[field_of(rule.fault)] += 1U << 8;
@@ -137,7 +137,7 @@ ParameterTable another_table() {
 TEST_F(Tables, LoadedValidatedAndActivatedItIsInUseAndCanBeDumped) {
   const ParameterTable table = another_table();
   ASSERT_EQ(first_wrong_field(table), kTableFields);
-  const TableBytes before = to_bytes(initial_table()), bytes = to_bytes(table);
+  const TableBytes before = to_bytes(kInitialTable), bytes = to_bytes(table);
   step_commands({load(table)});
   EXPECT_EQ(out->telemetry.table_status, TableStatus::kLoaded);
   EXPECT_EQ(out->telemetry.table_crc32, crc32_of(active())) << "of the table in use";
@@ -183,7 +183,7 @@ TEST_F(Tables, OtherFormatWrongCrcOrAnotherNameIsRefused) {
 TEST_F(Tables, FieldThatIsNotAllowedIsNamedAndTheTableNotActivated) {
   for (std::size_t field = 0; field < kTableFields; ++field) {
     init_with_model();
-    ParameterTable table = initial_table();
+    ParameterTable table = kInitialTable;
     table.fields[field] = UINT32_MAX;
     step_commands({load(table), validate(table)});
     EXPECT_EQ(refused(), static_cast<std::int32_t>(field));

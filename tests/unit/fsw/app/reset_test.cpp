@@ -288,7 +288,7 @@ TEST_F(Reset, OneBlankAndOneDamagedCopyIsALoss) {
 
 TEST(StoredStateRecord, ValueOutOfItsRangeIsDamage) {
   StoredState good;
-  good.table = initial_table();
+  good.table = kInitialTable;
   const auto is_damaged = [](const StoredState& state) {
     StoredState read;
     std::uint32_t generation = 0;
@@ -319,7 +319,7 @@ TEST(StoredStateRecord, ValueOutOfItsRangeIsDamage) {
 
 TEST(StoredStateRecord, OtherFormatIsDamage) {
   StoredState good;
-  good.table = initial_table();
+  good.table = kInitialTable;
   for (const std::size_t byte : {0U, 4U, 23U, 25U, 109U}) {
     hal::StoredBytes bytes = to_record(good, 1);
     bytes[byte] ^= 1;
