@@ -18,6 +18,7 @@ bool announce(FlightEndpoints& endpoints, const HandshakeSettings& settings, std
   hello.run_id = run_id;
   hello.process_id = static_cast<std::uint32_t>(getpid());
   hello.flight_mode = settings.mode;
+  hello.command_counter = settings.command_counter;
   return endpoints.hello_out.write(hello) == 0;
 }
 

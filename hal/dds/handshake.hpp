@@ -13,8 +13,9 @@ namespace tumblesight::hal::dds {
 
 struct HandshakeSettings {
   std::uint32_t icd_hash = 0;
-  std::uint32_t run_id = 0;  // 0: that of the first simulator found
-  std::uint8_t mode = 0;     // hal::Mode, reported to the simulator
+  std::uint32_t run_id = 0;           // 0: that of the first simulator found
+  std::uint8_t mode = 0;              // hal::Mode, reported to the simulator
+  std::uint32_t command_counter = 0;  // of the last authentic command, reported to the simulator
   std::int64_t timeout_ns = 0;
 };
 

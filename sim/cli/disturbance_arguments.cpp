@@ -53,7 +53,8 @@ std::string disturbance_examples(const std::string& verb) {
   return fmt::format(
       "\nDisturbances keep attitude, rate, range and noise of every sequence: a run with\n"
       "one and a run without it show the same sequences. Several may be combined. A\n"
-      "frame that is both lost and frozen is lost.\n\n"
+      "frame that is both lost and frozen is lost. If the image that a frozen sensor\n"
+      "repeats was lost, it arrives late, and only the next one is a repeat.\n\n"
       "Example: the sensor repeats an image three times, then works for two frames\n"
       "  tumblesight {0} --frozen 3 --well-frames 2\n\n"
       "Example: a chaser that turns at 5 deg/s, with and without its attitude as input\n"

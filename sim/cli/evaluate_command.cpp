@@ -59,7 +59,7 @@ void announce(const Subject& subject, const ExperimentSettings& settings) {
 
 void print_cell(const SubjectResult& subject, const CellResult& cell) {
   if (subject.cells.size() > 1) fmt::print("\n  {}\n", to_string(cell.condition));
-  fmt::print("\n{}\n{}\n", terminal_text(cell_table(subject.target, cell)),
+  fmt::print("\n{}\n{}\n", terminal_text(transposed(cell_table(subject.target, cell))),
              terminal_text(by_frame_table(cell.by_frame)));
   fmt::print("  network              {:.2f} ms per frame (median, one thread)\n", cell.network_ms);
   if (cell.baseline) {

@@ -9,9 +9,6 @@ namespace tumblesight::sim {
 
 inline constexpr std::size_t kHelpWidth = 80;  // columns
 
-// Breaks lines at spaces, so that none has more columns unless one word does. The text is in UTF-8.
-std::string wrapped(const std::string& text, std::size_t columns);
-
 class HelpFormatter final : public CLI::Formatter {
  public:
   HelpFormatter() { column_width(26); }

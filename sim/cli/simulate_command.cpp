@@ -130,19 +130,21 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
   return setup;
 }
 
-void print_results(const RunReport& report, const std::optional<NumericsComparison>& numerics) {
+void print_results(const RunReport& report, const SilRunResult& run,
+                   const std::optional<NumericsComparison>& numerics) {
   if (report.results.empty()) {
     fmt::print("\n  None of the {} was answered, so there are no figures.\n",
                counted(report.steps_planned, "step"));
     return;
   }
-  fmt::print("\n{}\n{}\n", terminal_text(run_errors_table(report)),
+  fmt::print("\n{}\n{}\n", terminal_text(transposed(run_errors_table(report))),
              terminal_text(by_frame_table(errors_by_frame(report.results, report.setup.frames))));
   fmt::print("  steps              {} of {} answered\n", report.steps_planned - report.steps_missed,
              report.steps_planned);
   fmt::print("  inference time     median {}, max {}\n", time_text(report.inference_median_us),
              time_text(report.inference_max_us));
   fmt::print("  flight heap        {} allocations after init\n", report.heap_allocations);
+  fmt::print("  faults that stood  {}\n", text_of(standing_faults(run)));
   fmt::print("  trace CRC-32       {:08x}\n", report.trace_crc32);
   if (!numerics) return;
   fmt::print("  float32 reference  mean error {}; difference of the attitudes: mean {}, max {}\n",
@@ -222,10 +224,23 @@ void require_a_speed(const SimulateArguments& arguments) {
                              "needs a speed: --speed 1 for real time, --speed N for N times real time");
 }
 
+// Of two frames in one cycle the flight program uses the newer one, and the other gets no answer.
+void require_a_cycle_per_frame(const SimulateArguments& arguments) {
+  const Disturbances& disturbances = arguments.scenario.disturbances;
+  const double shortest_s = disturbances.period_s * (1.0 - disturbances.period_jitter);
+  if (!arguments.free_running || shortest_s >= kFramePeriod_s) return;
+  throw CLI::ValidationError(
+      "--free-running",
+      fmt::format("the flight program then runs a cycle every {:g} s, and --period {:g} with --period-jitter "
+                  "{:g} has frames {:g} s apart; leave out --free-running, or give a longer period",
+                  kFramePeriod_s, disturbances.period_s, disturbances.period_jitter, shortest_s));
+}
+
 void simulate(SimulateArguments arguments) {
   const ScenarioArguments& scenario = arguments.scenario;
   require_supported_length(scenario);
   require_a_speed(arguments);
+  require_a_cycle_per_frame(arguments);
   require_possible_disturbances(scenario.disturbances, scenario.frames);
   if (arguments.report.empty()) arguments.report = default_report(arguments);
   require_usable_files(arguments);
@@ -241,7 +256,7 @@ void simulate(SimulateArguments arguments) {
   RunReport report = run_report(setup, run, numerics);
   report.command = arguments.command_line;
   report.generated = local_time_text();
-  print_results(report, numerics);
+  print_results(report, run, numerics);
   std::vector<std::string> faults = run_faults(run);
   for (const std::string& failure : write_files(arguments, report, run_json(setup, run, numerics)))
     faults.push_back(failure);
@@ -303,8 +318,9 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "  tumblesight simulate --condition degraded --sequences 100 --seed 7 \\\n"
       "      --json figures.json\n\n"
       "The exit status is 0 only if every step was answered, with an attitude where the\n"
-      "sensor delivered a new frame, the flight task allocated no heap memory, no other\n"
-      "program wrote to the topics of the run and the report was written.\n" +
+      "sensor delivered a new frame, no telecommand was refused, the flight task\n"
+      "allocated no heap memory, no other program wrote to the topics of the run and\n"
+      "the report was written. Faults that the flight program reports do not count.\n" +
       disturbance_examples("simulate"));
   command->callback([arguments] { simulate(*arguments); });
 }

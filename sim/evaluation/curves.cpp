@@ -28,7 +28,8 @@ CurvePoint curve_point(double at, const std::vector<FrameResult>& results) {
 Curve errors_by_frame(const std::vector<FrameResult>& results, std::uint32_t frames) {
   std::vector<std::vector<FrameResult>> of_frame(frames);
   for (const FrameResult& result : results) {
-    if (result.frame < frames) of_frame[result.frame].push_back(result);
+    const bool counts = result.valid || result.owed;
+    if (result.frame < frames && counts) of_frame[result.frame].push_back(result);
   }
   Curve curve;
   for (std::uint32_t frame = 0; frame < frames; ++frame) {

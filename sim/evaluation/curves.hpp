@@ -18,7 +18,7 @@ using Curve = std::vector<CurvePoint>;
 
 CurvePoint curve_point(double at, const std::vector<FrameResult>& results);
 
-// One point per frame number 1 .. frames.
+// One point per frame number 1 .. frames, of the estimates that were given or owed.
 Curve errors_by_frame(const std::vector<FrameResult>& results, std::uint32_t frames);
 
 // One point per bin between two neighbouring `edges` (ascending). A bin includes its lower edge; the last bin

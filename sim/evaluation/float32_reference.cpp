@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "sim/model/model_file.hpp"
 #include "sim/world/math/angles.hpp"
@@ -39,14 +40,12 @@ NumericsComparison Float32Reference::compare(const std::vector<FrameResult>& res
   NumericsComparison comparison;
   comparison.float32 = summarise(last_frame_errors_deg(results_, frames, Estimator::kRcnn));
   std::vector<double> differences;
-  auto reference = results_.begin();  // both are in the order of the frames; `results` may lack some
+  auto reference = results_.begin();  // both are in the order of the frames; each may lack some
+  const auto place = [](const FrameResult& a) { return std::make_pair(a.sequence, a.frame); };
   for (const FrameResult& result : results) {
-    const auto same = [&](const FrameResult& a) {
-      return a.sequence == result.sequence && a.frame == result.frame;
-    };
-    reference = std::find_if(reference, results_.end(), same);
+    while (reference != results_.end() && place(*reference) < place(result)) ++reference;
     if (reference == results_.end()) break;
-    if (result.valid && reference->valid) {
+    if (place(*reference) == place(result) && result.valid && reference->valid) {
       differences.push_back(kDegPerRad * angular_error_rad(result.rcnn, reference->rcnn));
     }
   }

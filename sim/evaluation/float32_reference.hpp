@@ -32,7 +32,8 @@ class Float32Reference {
   // The next frame that was delivered. `chaser`: as the estimator under test was told it.
   void add(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth, const gnc::RangeImage& image,
            const gnc::ChaserAttitude& chaser);
-  // Over the frames that have a result both here and in `results`, which are in the order of add().
+  // Over the frames that have a result both here and in `results`, which are in the order of add(). A frame
+  // that was not delivered has none here.
   NumericsComparison compare(const std::vector<FrameResult>& results, std::uint32_t frames) const;
 
  private:

@@ -14,6 +14,7 @@ struct FrameResult {
   std::uint32_t sequence = 0;
   std::uint32_t frame = 0;  // index in the sequence
   bool valid = false;       // an estimate was given; otherwise the error counts as 180 degrees
+  bool owed = true;         // the sensor delivered a genuine image; otherwise there need be no estimate
   bool trusted = false;     // and it passed every check: the report calls it valid, not doubtful
   Eigen::Quaterniond truth{1.0, 0.0, 0.0, 0.0};
   Eigen::Quaterniond rcnn{1.0, 0.0, 0.0, 0.0};  // from all frames of the sequence so far

@@ -45,6 +45,7 @@ FrameResult frame_result(const FrameTruth& truth, const gnc::FrameOutcome& outco
   result.range_m = truth.range_m;
   result.rate_rad_s = truth.rate_lrf_rad_s.norm();
   result.valid = outcome.used();
+  result.owed = truth.is_genuine();
   result.trusted = outcome.valid();
   if (!result.valid) return result;
   const gnc::AttitudeEstimate& estimate = outcome.estimate;

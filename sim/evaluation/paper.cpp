@@ -37,7 +37,8 @@ constexpr Row kRows[] = {
 
 }  // namespace
 
-PaperFigures paper_figures(const std::string& target, Condition condition) {
+PaperFigures paper_figures(const std::string& target, Condition condition, const Disturbances& disturbances) {
+  if (!given_disturbances(disturbances).empty()) return {};
   const TargetRow* shipped = find_target(target);
   if (shipped == nullptr || shipped->paper_key == nullptr) return {};
   const auto* row = std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sim/world/scenario/condition.hpp"
+#include "sim/world/scenario/disturbance.hpp"
 
 namespace tumblesight::sim {
 
@@ -26,7 +27,9 @@ struct PaperFigures {
   std::uint32_t sequences = kPaperSequences;
 };
 
-// Empty if the paper has no figures for this target (TargetRow::paper_key) and condition.
-PaperFigures paper_figures(const std::string& target, Condition condition);
+// Empty if the paper has no figures for this target (TargetRow::paper_key) and condition. It has none for a
+// disturbed run.
+PaperFigures paper_figures(const std::string& target, Condition condition,
+                           const Disturbances& disturbances = {});
 
 }  // namespace tumblesight::sim

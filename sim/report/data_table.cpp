@@ -55,6 +55,17 @@ std::string html_row(const std::vector<std::string>& cells, const char* tag) {
 
 }  // namespace
 
+DataTable transposed(const DataTable& table) {
+  DataTable turned{{table.header.front()}, {}};
+  for (const std::vector<TableCell>& row : table.rows) turned.header.push_back(row.front().text);
+  for (std::size_t column = 1; column < table.header.size(); ++column) {
+    std::vector<TableCell> cells{{table.header[column]}};
+    for (const std::vector<TableCell>& row : table.rows) cells.push_back(row[column]);
+    turned.rows.push_back(cells);
+  }
+  return turned;
+}
+
 std::string terminal_text(const DataTable& table) {
   if (table.rows.empty()) return {};
   Table text(table.header);

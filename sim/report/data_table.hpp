@@ -28,6 +28,9 @@ struct DataTable {
   std::vector<std::vector<TableCell>> rows;
 };
 
+// A column per row and a row per column, for a table without titles.
+DataTable transposed(const DataTable& table);
+
 // The first column is left-aligned, the others are right-aligned. A table without rows gives an empty text.
 std::string terminal_text(const DataTable& table);
 std::string markdown_text(const DataTable& table);  // ends in an empty line

@@ -226,7 +226,7 @@ std::vector<EstimatorRow> estimator_rows(const Results& results) {
   std::vector<EstimatorRow> rows;
   for (const SubjectResult& subject : results.subjects) {
     for (const CellResult& cell : subject.cells) {
-      const PaperFigures paper = paper_figures(subject.target, cell.condition);
+      const PaperFigures paper = paper_figures(subject.target, cell.condition, cell.disturbances);
       rows.push_back({results, subject, cell, "rcnn", cell.rcnn, paper.rcnn});
       rows.push_back({results, subject, cell, "cnn", cell.cnn, paper.cnn});
       if (cell.baseline) rows.push_back({results, subject, cell, "baseline", *cell.baseline, std::nullopt});
@@ -247,7 +247,7 @@ const std::vector<CsvColumn>& csv_columns() {
 std::vector<ResultRow> condition_rows(const SubjectResult& subject) {
   std::vector<ResultRow> rows;
   for (const CellResult& cell : subject.cells) {
-    rows.push_back({subject, cell, paper_figures(subject.target, cell.condition)});
+    rows.push_back({subject, cell, paper_figures(subject.target, cell.condition, cell.disturbances)});
   }
   return rows;
 }

@@ -30,7 +30,7 @@ Json baseline_json(const CellResult& cell) {
 }
 
 Json row_json(const Results& results, const SubjectResult& subject, const CellResult& cell) {
-  const PaperFigures paper = paper_figures(subject.target, cell.condition);
+  const PaperFigures paper = paper_figures(subject.target, cell.condition, cell.disturbances);
   return {{"target", subject.target},
           {"mesh", subject.mesh},
           {"condition", to_string(cell.condition)},

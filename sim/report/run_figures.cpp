@@ -103,7 +103,7 @@ std::string error_over_frames_figure(const RunReport& report) {
   }
   LineChart chart;
   chart.description = "Angular error of RCNN and single-frame CNN over the frame number";
-  chart.x_label = fmt::format("frame (one every {:.1f} s)", report.frame_period_s);
+  chart.x_label = fmt::format("frame (one every {:g} s)", report.frame_period_s);
   chart.y_label = "angular error [deg]";
   chart.x_low = 1.0;
   chart.x_high = std::max(2.0, static_cast<double>(report.setup.frames));

@@ -84,7 +84,7 @@ std::string body(const RunReport& report) {
   std::string html =
       fmt::format("<h1>Attitude of {}, {} condition</h1>\n", escape_markup(display_name(report.setup.target)),
                   escape_markup(report.setup.condition));
-  html += fmt::format("<p class=sub>Software-in-the-loop run of Tumblesight: {} of {}, {:.1f} s apart</p>\n",
+  html += fmt::format("<p class=sub>Software-in-the-loop run of Tumblesight: {} of {}, {:g} s apart</p>\n",
                       counted(report.setup.sequences, "sequence"), counted(report.setup.frames, "frame"),
                       report.frame_period_s);
   for (const std::string& notice : report.notices) {

@@ -8,17 +8,14 @@
 #include "hal/dds/idl/topics.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_json.hpp"
+#include "sim/sil/fault_names.hpp"
+#include "sim/terminal/counted.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 bool gave_attitude(const StepResult& step) {
   return step.answered && gives_attitude(step.attitude);
-}
-
-// A lost frame gives no attitude, and the frame of a frozen sensor need not.
-bool owes_attitude(const StepResult& step) {
-  return !step.truth.lost && step.truth.frozen_for == 0;
 }
 
 std::string file_name(const std::string& path) {
@@ -75,6 +72,7 @@ FactList outcome_facts(const SilRunResult& run, const SilRunSetup& setup) {
       {"inference time, median", time_text(time.median_us)},
       {"inference time, max", time_text(time.max_us)},
       {"heap allocations", fmt::format("{}", run.flight_heap_allocations)},
+      {"faults that stood", text_of(standing_faults(run))},
       {"trace CRC-32", fmt::format("{:08x}", run.trace_crc32)},
       {"model", file_name(setup.model_path)},
       {"model CRC-32", setup.model_crc32}};
@@ -108,6 +106,29 @@ FactList counter_facts(const SilRunResult& run) {
   return list;
 }
 
+nlohmann::ordered_json faults_json(const std::vector<StandingFault>& faults) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const StandingFault& one : faults) {
+    json[name_of(one.fault)] = {
+        {"steps", one.steps}, {"sequences", one.sequences}, {"first_step", one.first_step}};
+  }
+  return json;
+}
+
+StandingFault standing_fault(const SilRunResult& run, hal::Fault fault) {
+  StandingFault found{fault};
+  std::optional<std::uint32_t> last_sequence;
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
+    const StepResult& step = run.steps[i];
+    const bool stands = (step.telemetry.faults_persisting >> static_cast<unsigned>(fault) & 1U) != 0;
+    if (!step.answered || !stands) continue;
+    if (found.steps++ == 0) found.first_step = static_cast<std::uint32_t>(i);
+    if (last_sequence != step.sequence) ++found.sequences;
+    last_sequence = step.sequence;
+  }
+  return found;
+}
+
 // Warnings and errors by event id, in the order in which they first occurred.
 FactList event_facts(const SilRunResult& run) {
   struct Kind {
@@ -138,6 +159,24 @@ FactList event_facts(const SilRunResult& run) {
 
 }  // namespace
 
+std::vector<StandingFault> standing_faults(const SilRunResult& run) {
+  std::vector<StandingFault> faults;
+  for (int i = 0; i < hal::kFaults; ++i) {
+    const StandingFault fault = standing_fault(run, static_cast<hal::Fault>(i));
+    if (fault.steps > 0) faults.push_back(fault);
+  }
+  return faults;
+}
+
+std::string text_of(const std::vector<StandingFault>& faults) {
+  std::string text;
+  for (const StandingFault& one : faults) {
+    text += fmt::format("{}{} in {} of {}", text.empty() ? "" : ", ", name_of(one.fault),
+                        counted(one.steps, "step"), counted(one.sequences, "sequence"));
+  }
+  return text.empty() ? "none" : text;
+}
+
 std::string time_text(double time_us) {
   return time_us > 0.0 ? fmt::format("{:.2f} ms", 1e-3 * time_us) : "none";
 }
@@ -150,6 +189,7 @@ std::vector<FrameResult> frame_results(const SilRunResult& run) {
     result.sequence = step.sequence;
     result.frame = step.frame_index;
     result.valid = gave_attitude(step);
+    result.owed = step.truth.is_genuine();
     result.trusted = step.attitude.validity == hal::Validity::kValid;
     result.truth = step.truth.q_lrf_trf;
     result.rcnn = gnc::to_double(step.attitude.q_lrf_trf);
@@ -179,13 +219,17 @@ std::vector<std::string> run_faults(const SilRunResult& run) {
   }
   const StepResult* last = last_answered(run);
   const auto invalid = std::count_if(run.steps.begin(), run.steps.end(), [](const StepResult& s) {
-    return s.answered && owes_attitude(s) && !gave_attitude(s);
+    return s.answered && s.truth.is_genuine() && !gave_attitude(s);
   });
   if (invalid > 0) {
     found.push_back(
         fmt::format("{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
                     run.steps_planned - run.steps_missed,
                     last->telemetry.mode != hal::Mode::kRun ? ": the flight program is not in RUN" : ""));
+  }
+  if (last != nullptr && last->telemetry.commands_refused > 0) {
+    found.push_back(fmt::format("The flight program refused {}; see its command counter and key.",
+                                counted(last->telemetry.commands_refused, "telecommand")));
   }
   if (run.flight_heap_allocations > 0) {
     found.push_back(fmt::format("The flight task allocated heap memory {} times after its start.",
@@ -214,6 +258,7 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
   json["flight_heap_allocations"] = run.flight_heap_allocations;
   json["steps_missed"] = run.steps_missed;
   json["trace_crc32"] = run.trace_crc32;
+  json["faults"] = faults_json(standing_faults(run));
   return json;
 }
 
@@ -225,7 +270,7 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   report.frame_period_s = setup.disturbances.period_s;
   report.results = frame_results(run);
   report.pictures = pictures(run, setup.projection);
-  report.paper = paper_figures(setup.target, condition_from(setup.condition));
+  report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
   report.steps_planned = run.steps_planned;
   report.steps_missed = run.steps_missed;
   report.heap_allocations = run.flight_heap_allocations;

@@ -1,11 +1,13 @@
 // The report of a software-in-the-loop run: its figures, JSON, page and faults.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "hal/messages/fault.hpp"
 #include "sim/evaluation/float32_reference.hpp"
 #include "sim/report/run_page.hpp"
 #include "sim/sil/sil_run.hpp"
@@ -25,8 +27,20 @@ InferenceTime inference_time(const SilRunResult& run);
 std::string time_text(double time_us);
 
 // The faults of the run, one sentence each. Empty: every step was answered, with an attitude if the sensor
-// delivered a genuine frame, and the flight task allocated no heap memory.
+// delivered a genuine frame, no telecommand was refused, and the flight task allocated no heap memory.
 std::vector<std::string> run_faults(const SilRunResult& run);
+
+// A fault that the flight program's telemetry showed as persisting.
+struct StandingFault {
+  hal::Fault fault = hal::Fault::kStateLost;
+  std::uint32_t steps = 0;       // in which it stood
+  std::uint32_t sequences = 0;   // that have such a step
+  std::uint32_t first_step = 0;  // the first of these steps, from 0
+};
+// In the order of their numbers.
+std::vector<StandingFault> standing_faults(const SilRunResult& run);
+// "FRAME_FROZEN in 12 steps of 4 sequences, OUTAGE in 1 step of 1 sequence"; "none" without one.
+std::string text_of(const std::vector<StandingFault>& faults);
 
 nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& run,
                                 const std::optional<NumericsComparison>& numerics = {});

@@ -5,6 +5,7 @@
 #include <exception>
 #include <optional>
 
+#include "sim/sil/fault_names.hpp"
 #include "sim/sil/frame_feed.hpp"
 #include "sim/sil/sil_session.hpp"
 #include "sim/sil/trace.hpp"
@@ -53,7 +54,7 @@ class SilRun {
       if (settings_.speed > 0.0) session.sleep_until(begin + wall_time_of(k));
       session.publish_truth(plan_[k].sequence, plan_[k].frame, result_.steps[k].truth, plan_[k].time_ns);
       store_answer(k, session.step(input));
-      if (k == 0) require_running(result_.steps[0].telemetry);
+      if (k == 0) require_running(session, result_.steps[0].telemetry);
     }
   }
 
@@ -74,7 +75,7 @@ class SilRun {
     while (Clock::now() < deadline && !last_answered()) {
       const std::optional<StepAnswer> answer = session.next_answer(deadline);
       if (!answer) return;
-      require_running(answer->telemetry);
+      require_running(session, answer->telemetry);
       result_.flight_heap_allocations = answer->telemetry.heap_allocations;
       // Only a report with an attitude names its frame.
       const bool has_frame = gives_attitude(answer->attitude);
@@ -137,11 +138,27 @@ class SilRun {
     if (progress_) progress_(answered_, result_.steps_planned);
   }
 
-  void require_running(const hal::Telemetry& telemetry) const {
+  void require_running(const SilSession& session, const hal::Telemetry& telemetry) const {
     if (telemetry.mode != hal::Mode::kSafe) return;
-    throw SilFailure("the flight program is in SAFE mode: it has no usable model image for target " +
-                     settings_.target + (settings_.model_path.empty() ? "" : " in " + settings_.model_path) +
-                     "; see its message for the reason");
+    const bool from_start = session.flight_mode() == hal::Mode::kSafe;
+    throw SilFailure("the flight program is in SAFE mode: " + reason_for_safe(telemetry, from_start));
+  }
+
+  // The stored state keeps the cause of its SAFE.
+  std::string reason_for_safe(const hal::Telemetry& telemetry, bool from_start) const {
+    if (telemetry.safe_cause == hal::Cause::kNoModel) {
+      return "it has no usable model image for target " + settings_.target +
+             (settings_.model_path.empty() ? "" : " in " + settings_.model_path) +
+             "; see its message for the reason";
+    }
+    if (from_start) {
+      return "its file of --state says so, or cannot be read; send SET_MODE STANDBY, or delete the file and "
+             "the "
+             "one beside it with .copy";
+    }
+    if (telemetry.safe_cause == hal::Cause::kFault)
+      return "its response to the fault " + name_of(telemetry.safe_fault);
+    return "cause " + std::to_string(static_cast<int>(telemetry.safe_cause)) + " in docs/icd.md";
   }
 
   const SilSettings& settings_;
@@ -156,7 +173,7 @@ class SilRun {
 
 // Free-running, an answer names its frame, so a frame that was lost or repeated need not have one.
 bool needs_no_answer(const StepResult& step, bool free_running) {
-  return free_running && (step.truth.lost || step.truth.frozen_for > 0);
+  return free_running && !step.truth.is_genuine();
 }
 
 void conclude(bool free_running, SilRunResult& result) {

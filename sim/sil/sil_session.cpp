@@ -122,6 +122,7 @@ void SilSession::read_hello() {
     }
     bind(hello, from);
     flight_mode_ = static_cast<hal::Mode>(hello.flight_mode);
+    encoder_.continue_after(hello.command_counter);
     flight_ready_ |= hello.run_id == secret_.run_id;
   }
 }

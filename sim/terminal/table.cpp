@@ -1,16 +1,13 @@
 #include "sim/terminal/table.hpp"
 
 #include <algorithm>
-#include <cstddef>
+#include <sstream>
 #include <stdexcept>
+
+#include "sim/terminal/wrapped.hpp"
 
 namespace tumblesight::sim {
 namespace {
-
-std::size_t columns_of(const std::string& utf8) {
-  return static_cast<std::size_t>(std::count_if(
-      utf8.begin(), utf8.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
 
 std::string repeated(const std::string& piece, std::size_t times) {
   std::string text;
@@ -18,10 +15,27 @@ std::string repeated(const std::string& piece, std::size_t times) {
   return text;
 }
 
+std::size_t total(const std::vector<std::size_t>& widths) {
+  std::size_t columns = 0;
+  for (const std::size_t width : widths) columns += width + 3;
+  return columns;
+}
+
 std::string rule_line(const std::vector<std::size_t>& widths) {
-  std::size_t total = 0;
-  for (const std::size_t width : widths) total += width + 3;
-  return " " + repeated("─", total - 1) + "\n";
+  return " " + repeated("─", total(widths) - 1) + "\n";
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::size_t widest_line(const std::string& text) {
+  std::size_t widest = 0;
+  for (const std::string& line : lines_of(text)) widest = std::max(widest, columns_of(line));
+  return widest;
 }
 
 std::string cells_line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) {
@@ -32,6 +46,30 @@ std::string cells_line(const std::vector<std::string>& cells, const std::vector<
   }
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
+}
+
+// In more columns than given where two lines need them.
+std::string in_two_lines(const std::string& heading, std::size_t columns) {
+  std::string broken = wrapped(heading, columns);
+  while (lines_of(broken).size() > 2) broken = wrapped(heading, ++columns);
+  return broken;
+}
+
+// Headings of fewer lines than others stand at the bottom.
+std::string heading_lines(const std::vector<std::string>& headings, const std::vector<std::size_t>& widths) {
+  std::size_t height = 0;
+  for (const std::string& heading : headings) height = std::max(height, lines_of(heading).size());
+  std::string text;
+  for (std::size_t line = 0; line < height; ++line) {
+    std::vector<std::string> cells;
+    for (const std::string& heading : headings) {
+      const std::vector<std::string> own = lines_of(heading);
+      const std::size_t above = height - own.size();
+      cells.push_back(line < above ? std::string{} : own[line - above]);
+    }
+    text += cells_line(cells, widths);
+  }
+  return text;
 }
 
 }  // namespace
@@ -51,16 +89,29 @@ void Table::rule() {
   rows_.emplace_back();
 }
 
-std::string Table::text() const {
-  std::vector<std::size_t> widths(header_.size(), 0);
+Table::Widths Table::widths(const std::vector<std::string>& headings) const {
+  Widths widths(header_.size(), 0);
   const auto widen = [&](const std::vector<std::string>& cells) {
-    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], columns_of(cells[i]));
+    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], widest_line(cells[i]));
   };
-  widen(header_);
+  widen(headings);
   for (const auto& cells : rows_) widen(cells);
+  return widths;
+}
 
-  std::string text = cells_line(header_, widths) + rule_line(widths);
-  for (const auto& cells : rows_) text += cells.empty() ? rule_line(widths) : cells_line(cells, widths);
+std::vector<std::string> Table::narrow_headings() const {
+  std::vector<std::string> headings = header_;
+  const Widths of_cells = widths(std::vector<std::string>(header_.size()));
+  for (std::size_t i = 0; i < headings.size(); ++i) headings[i] = in_two_lines(headings[i], of_cells[i]);
+  return headings;
+}
+
+std::string Table::text() const {
+  std::vector<std::string> headings = header_;
+  if (total(widths(headings)) > kTableWidth) headings = narrow_headings();
+  const Widths columns = widths(headings);
+  std::string text = heading_lines(headings, columns) + rule_line(columns);
+  for (const auto& cells : rows_) text += cells.empty() ? rule_line(columns) : cells_line(cells, columns);
   return text;
 }
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <thread>
 
@@ -23,6 +24,15 @@ struct Forgery {
 // The name of a case in messages: GoogleTest would print addresses.
 void PrintTo(const Forgery& forgery, std::ostream* out) {
   *out << forgery.target;
+}
+
+// Of a test case: letters only.
+std::string name_of(const Forgery& forgery) {
+  std::string name;
+  for (const char* c = forgery.target; *c != '\0'; ++c) {
+    if (*c != '-') name += *c;
+  }
+  return name;
 }
 
 struct Knowledge {
@@ -110,13 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Forgery{"attitude", "sil/attitude"}, Forgery{"telemetry", "sil/telemetry"},
                       Forgery{"event", "sil/event"}, Forgery{"dump", "sil/memory_dump"},
                       Forgery{"step-done", "sil/step_done"}, Forgery{"truth", nullptr}),
-    [](const auto& test) {
-      std::string name;
-      for (const char* c = test.param.target; *c != '\0'; ++c) {
-        if (*c != '-') name += *c;
-      }
-      return name;
-    });
+    [](const auto& test) { return name_of(test.param); });
 
 // Verifies TS-SIL-097.
 TEST(Attack, ASecuredBusIsUndisturbed) {
@@ -138,21 +142,51 @@ TEST(Attack, ASecuredBusIsUndisturbed) {
   }
 }
 
+// The program that a user runs, with the network that ships.
+class AttackOnSimulate : public ::testing::TestWithParam<Forgery> {
+ protected:
+  static constexpr int kSuccess = 0, kFailure = 1;
+  struct Ended {
+    int status = -1;
+    std::string message;
+    nlohmann::json figures;
+  };
+
+  static Ended simulate(int domain) {
+    const std::string log = test::temporary_path("simulate.log"), json = test::temporary_path("run.json");
+    FlightProcess program(
+        TUMBLESIGHT_PROGRAM,
+        {"simulate", "--sequences", "2", "--speed", "54", "--domain", std::to_string(domain), "--json", json,
+         "--report", test::temporary_path("report.html")},
+        log);
+    EXPECT_TRUE(program.wait_for_end(60.0));
+    const bool failed = program.how_it_ended().find("exit status 1:") != std::string::npos;
+    return {program.ended_well() ? kSuccess
+            : failed             ? kFailure
+                                 : -1,
+            test::read_file(log), nlohmann::json::parse(test::read_file(json), nullptr, false)};
+  }
+};
+
 // Verifies TS-SIL-090.
-TEST(Attack, SimulateEndsWithAFailureThatNamesTheTopic) {
+TEST_P(AttackOnSimulate, EndsWithAFailureThatNamesTheTopicAndTheProcess) {
   const int domain = test::spare_domain();
-  Attacker attacker(domain, "step", {"observed", "observed", "0"});
-  const std::string log = test::temporary_path("simulate.log");
-  FlightProcess simulate(TUMBLESIGHT_PROGRAM,
-                         {"simulate", "--sequences", "1", "--domain", std::to_string(domain), "--report",
-                          test::temporary_path("report.html")},
-                         log);
-  ASSERT_TRUE(simulate.wait_for_end(60.0));
-  EXPECT_NE(simulate.how_it_ended().find("exit status 1:"), std::string::npos) << simulate.how_it_ended();
-  const std::string message = test::read_file(log);
-  EXPECT_NE(message.find("sil/step is also written by"), std::string::npos) << message;
-  EXPECT_NE(message.find(attacker.process()), std::string::npos) << message;
+  static const nlohmann::json undisturbed = simulate(domain).figures;
+  EXPECT_EQ(undisturbed.at("rcnn").at("within_20deg"), 1.0);
+  Attacker attacker(domain, GetParam().target, {"observed", "observed", "3"});
+  const Ended ended = simulate(domain);
+  EXPECT_EQ(ended.status, kFailure) << ended.message;
+  EXPECT_NE(ended.message.find(GetParam().topic), std::string::npos) << ended.message;
+  EXPECT_NE(ended.message.find(attacker.process()), std::string::npos) << ended.message;
+  EXPECT_TRUE(attacker.running());
 }
+
+INSTANTIATE_TEST_SUITE_P(Sil, AttackOnSimulate,
+                         ::testing::Values(Forgery{"step", "sil/step is also written by"},
+                                           Forgery{"frame", "sil/lidar_frame is also written by"},
+                                           Forgery{"attitude", "sil/attitude is also written by"},
+                                           Forgery{"step-done", "sil/step_done is also written by"}),
+                         [](const auto& test) { return name_of(test.param); });
 
 }  // namespace
 }  // namespace tumblesight::sim

@@ -101,6 +101,38 @@ TEST(StoredState, OutlivesTheFlightProgram) {
   EXPECT_EQ(after.command_counter, 2U);
 }
 
+// Verifies TS-SIL-110.
+TEST(StoredState, ALaterRunCarriesOnWithItsCounter) {
+  SilSettings settings = test::settings();
+  settings.flight_arguments = {"--state", test::temporary_path("state")};
+  for (std::uint32_t runs = 1; runs <= 3; ++runs) {
+    const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(2, 3), {});
+    EXPECT_EQ(run.failure, "");
+    const hal::Telemetry& telemetry = run.steps.back().telemetry;
+    EXPECT_EQ(telemetry.commands_accepted, 2U) << "RESET_SEQUENCE, once per sequence";
+    EXPECT_EQ(telemetry.commands_refused, 0U);
+    EXPECT_EQ(telemetry.command_counter, 2 * runs);
+  }
+}
+
+// Verifies TS-SIL-040.
+TEST(StoredState, OfSafeEndsARunWithTheReason) {
+  SilSettings settings = test::settings();
+  settings.flight_arguments = {"--state", test::temporary_path("state")};
+  {
+    test::Conversation conversation(settings);
+    conversation.step({}, {set_mode(hal::Mode::kSafe)});
+    conversation.finish();
+  }
+  const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 3), {});
+  EXPECT_NE(run.failure.find("is in SAFE mode: its file of --state says so"), std::string::npos)
+      << run.failure;
+  settings.flight_arguments = {"--state", test::temporary_path("another"), "--model", "/nonexistent"};
+  const SilRunResult other = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 3), {});
+  EXPECT_NE(other.failure.find("is in SAFE mode: it has no usable model image"), std::string::npos)
+      << other.failure;
+}
+
 // Verifies TS-MODE-040, TS-MODE-050.
 TEST_F(Commands, ModesFollowTheCommands) {
   EXPECT_EQ(conversation_.step({conversation_.good_frame()}, {set_mode(hal::Mode::kSafe)}).telemetry.mode,

@@ -100,6 +100,7 @@ hal::dds::HandshakeResult meet_simulator(const FlightOptions& options, std::int6
   settings.icd_hash = options.icd_hash;
   settings.run_id = options.run_id;
   settings.mode = static_cast<std::uint8_t>(app.mode());
+  settings.command_counter = app.command_counter();
   settings.timeout_ns = timeout_ns;
   const hal::dds::HandshakeResult met = hal::dds::shake_hands(endpoints, settings, stopwatch);
   if (met.end == FlightEnd::kIcdUnequal) {

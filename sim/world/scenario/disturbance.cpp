@@ -18,6 +18,31 @@ namespace {
       value, frames, disturbances.well_frames, most));
 }
 
+// A number of frames is refused by its limit.
+void require_frame_to_lose(const Disturbances& disturbances, std::uint32_t frames) {
+  const bool loses = disturbances.loss_every > 0 || disturbances.loss_share > 0.0;
+  if (!loses || disturbances.well_frames < frames) return;
+  throw std::invalid_argument(fmt::format(
+      "--{} has no effect: with --frames {} and --well-frames {} no frame can be lost; give more "
+      "--frames, or fewer --well-frames",
+      disturbances.loss_every > 0 ? "loss-every" : "loss-share", frames, disturbances.well_frames));
+}
+
+void require_frozen_frame(const Disturbances& disturbances, std::uint32_t frames) {
+  if (disturbances.frozen == 0) return;
+  Disturbances certain = disturbances;
+  if (certain.loss_share < 1.0) certain.loss_share = 0.0;
+  std::vector<FrameTruth> marked(frames);
+  mark_frames(certain, Random(0), marked);
+  const bool delivered = std::any_of(marked.begin(), marked.end(), [](const FrameTruth& frame) {
+    return frame.frozen_for > 0 && !frame.lost;
+  });
+  if (delivered) return;
+  throw std::invalid_argument(
+      fmt::format("--frozen {} has no effect: every frozen frame is lost; freeze more frames, or lose fewer",
+                  disturbances.frozen));
+}
+
 }  // namespace
 
 std::vector<const DisturbanceRow*> given_disturbances(const Disturbances& disturbances) {
@@ -53,6 +78,8 @@ void require_possible(const Disturbances& disturbances, std::uint32_t frames) {
   if (disturbances.frozen > most_frozen) {
     refuse("frozen", disturbances.frozen, frames, disturbances, most_frozen);
   }
+  require_frame_to_lose(disturbances, frames);
+  require_frozen_frame(disturbances, frames);
 }
 
 std::vector<double> exposure_times_s(const Disturbances& disturbances, std::size_t frames, Random random) {

@@ -104,8 +104,8 @@ std::vector<const DisturbanceRow*> given_disturbances(const Disturbances& distur
 // "lost-frames 1, period 1.5"; empty for an undisturbed run.
 std::string to_string(const Disturbances& disturbances);
 
-// Throws std::invalid_argument that names option, value, limit and remedy if a sequence of `frames` frames is
-// too short for the disturbances.
+// Throws std::invalid_argument that names option, value and remedy if a sequence of `frames` frames is too
+// short for the disturbances, or if one of them hits no frame.
 void require_possible(const Disturbances& disturbances, std::uint32_t frames);
 
 // The times of the exposures in seconds since the first.

@@ -2,6 +2,9 @@
 docs/faults.md.
 
   --quick        a hundred flips per place, in under a minute; no document
+  --place P      only the rows of this place, named as in the document; repeatable; no document
+  --protections on|off
+                 only these rows; no document
   --flips N      flips per place, with the protections and without, and pairs of flips with them [10000]
   --seed N       seed of flips and scenario [1]
   --jobs N       parallel processes [2]
@@ -15,6 +18,7 @@ import math
 import pathlib
 import subprocess
 import sys
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 DOCUMENT = ROOT / "docs/faults.md"
@@ -22,6 +26,7 @@ PLACES = ("weights", "activations", "estimator state", "application state", "mod
 TWO = "two at a time"
 OUTCOMES = ("masked", "recovered", "safe", "flagged wrong", "silent wrong", "lost count", "crash", "hang", "unprotected")
 PART = 500
+LINE_S = 30  # seconds between two lines of progress where there is no terminal
 # Allowed share of silent wrong trials with the protections on.
 SILENT_WRONG = {"weights": 0.0005, TWO: 0.005}
 SILENT_WRONG_ELSEWHERE = 0.001
@@ -140,9 +145,41 @@ platform's memory, and more than two flips at a time.
 """
 
 
+class Progress:
+    """On a terminal one line that is written again, elsewhere a line every LINE_S seconds and at the end."""
+
+    def __init__(self, parts):
+        self.parts, self.done = parts, 0
+        self.begin = self.shown = time.monotonic()
+        self.terminal = sys.stdout.isatty()
+
+    def part_done(self):
+        self.done += 1
+        now = time.monotonic()
+        if not self.terminal and self.done < self.parts and now - self.shown < LINE_S:
+            return
+        self.shown = now
+        left_s = (now - self.begin) * (self.parts - self.done) / self.done
+        text = f"  {100 * self.done // self.parts} %  {self.done} of {self.parts} parts, {now - self.begin:.0f} s, {left_s:.0f} s left"
+        print(f"\r{text} " if self.terminal else text, end="" if self.terminal else "\n", flush=True)
+
+    def end(self):
+        if self.terminal:
+            print("\r" + 60 * " " + "\r", end="")
+
+
+def rows_of(arguments):
+    """[(place, with protections)] in the order of the table."""
+    places = arguments.place or (*PLACES, TWO)
+    on_and_off = {"on": (True,), "off": (False,), None: (True, False)}[arguments.protections]
+    return [(place, on) for place in (*PLACES, TWO) if place in places for on in on_and_off if on or place != TWO]
+
+
 def main():
     parser = argparse.ArgumentParser(prog="tests/campaigns/fault/run", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--place", action="append", choices=(*PLACES, TWO), metavar="P")
+    parser.add_argument("--protections", choices=("on", "off"))
     parser.add_argument("--flips", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
@@ -151,21 +188,26 @@ def main():
     flips = 100 if arguments.quick else arguments.flips
     folder = ROOT / "build/fault"
     folder.mkdir(parents=True, exist_ok=True)
-    wanted = [(place, on, first) for first in range(0, flips, PART) for place in (*PLACES, TWO) for on in ((True, False) if place in PLACES else (True,))]
+    rows = rows_of(arguments)
+    if not rows:
+        parser.error(f"'{TWO}' has no row without the protections")
+    wanted = [(place, on, first) for first in range(0, flips, PART) for place, on in rows]
     parts = []
+    progress = Progress(len(wanted))
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         running = [pool.submit(part, arguments.program, place, on, arguments.seed, first, min(PART, flips - first), folder)
                    for place, on, first in wanted]
         for done in concurrent.futures.as_completed(running):
             parts.append(done.result())
-            if sys.stdout.isatty():
-                print(f"\r  {100 * len(parts) // len(running)} %  {len(parts)} of {len(running)} parts ", end="", flush=True)
+            progress.part_done()
+    progress.end()
     totals = added_up(parts)
-    print(f"\r{as_table(totals)}\n")
+    print(f"{as_table(totals)}\n")
     wrong = failures(totals)
     for line in wrong:
         print(f"  FAILED {line}")
-    if not arguments.quick:
+    complete = not arguments.quick and not arguments.place and not arguments.protections
+    if complete:
         DOCUMENT.write_text(document(totals, arguments.seed))
         print(f"  written: {DOCUMENT.relative_to(ROOT)}")
     return 1 if wrong else 0

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/cli/bench_command.hpp"
-#include "sim/cli/help_formatter.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -118,13 +117,6 @@ TEST(Help, FitsATerminal) {
     const Outcome outcome = here.run(verb + " --help");
     EXPECT_LE(widest_line(outcome.output), 80U) << outcome.output;
   }
-}
-
-TEST(Help, WrapsTextAtSpaces) {
-  EXPECT_EQ(wrapped("", 8), "");
-  EXPECT_EQ(wrapped("one two three", 7), "one two\nthree");
-  EXPECT_EQ(wrapped("a muchlongerword b", 4), "a\nmuchlongerword\nb");
-  EXPECT_EQ(wrapped("±1° ±2°", 7), "±1° ±2°");
 }
 
 // Verifies TS-SIL-060.

@@ -28,6 +28,10 @@ TEST(Simulate, RefusesArgumentsOutOfRange) {
       {"--speed fast", "must be max or a number from 0.1 to 1000, not 'fast'"},
       {"--speed 0", "not '0'"},
       {"--free-running", "--free-running: needs a speed: --speed 1 for real time"},
+      {"--free-running --speed 20 --period 1",
+       "--free-running: the flight program then runs a cycle every 2.7 s, and --period 1"},
+      {"--free-running --speed 20 --period 3 --period-jitter 0.2", "has frames 2.4 s apart"},
+      {"--frozen 2 --lost-frames 2", "--frozen 2 has no effect: every frozen frame is lost"},
       {"--domain 231", "from 0 to 230"},
       {"--domain 010", "without leading zeros, not '010'"},
       {"--sequences 100000 --frames 1000", "100000000 frames in all; a run has at most 1000000"},
@@ -105,6 +109,22 @@ TEST(Simulate, RefusesAModelImageAsEvaluateDoes) {
     EXPECT_NE(simulated.errors.find("is refused: "), std::string::npos) << simulated.errors;
     EXPECT_EQ(simulated.errors, evaluated.errors);
   }
+}
+
+// Verifies TS-SIL-110.
+TEST(Simulate, CarriesOnWithAFlightProgramThatKeepsItsState) {
+  const Workplace here;
+  const std::string flight = here.script(
+      "flight.sh", std::string("exec ") + FLIGHT_BINARY + " \"$@\" --state " + here.path("state"));
+  const std::string arguments = "simulate --sequences 3 --frames 2 --model " + here.model() + " --flight " +
+                                flight + " --report r.html --json ";
+  for (const char* const figures : {"first.json", "second.json"}) {
+    const Outcome outcome = here.run(arguments + figures);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  }
+  const auto first = nlohmann::json::parse(content(here.path("first.json")));
+  const auto second = nlohmann::json::parse(content(here.path("second.json")));
+  EXPECT_EQ(first.at("rcnn"), second.at("rcnn")) << "every sequence was reset in both runs";
 }
 
 TEST(Simulate, SaysThatNoStepWasAnsweredAndGivesNoFigures) {

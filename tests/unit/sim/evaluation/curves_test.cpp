@@ -27,6 +27,18 @@ TEST(ErrorsByFrame, KeepFramesApart) {
   EXPECT_EQ(by_frame[2].rcnn.count, 0U);
 }
 
+// A frozen sensor owes no attitude, so the lack of one is no error.
+TEST(ErrorsByFrame, LeaveOutWhatWasNeitherOwedNorGiven) {
+  std::vector<FrameResult> results(4, result_with(0, 0, 4.0, 8.0));
+  results[1].valid = false;  // owed: counts as 180 degrees
+  results[2].owed = false;   // given nevertheless
+  results[3].valid = false;
+  results[3].owed = false;
+  const Curve by_frame = errors_by_frame(results, 1);
+  EXPECT_EQ(by_frame[0].rcnn.count, 3U);
+  EXPECT_NEAR(by_frame[0].rcnn.mean_deg, (4.0 + 180.0 + 4.0) / 3.0, 1e-9);
+}
+
 TEST(Binned, GivesALowerEdgeToTheBinAboveItAndTheLastEdgeToTheLastBin) {
   const std::vector<FrameResult> results{at_range(20.0, 1.0), at_range(29.999, 3.0), at_range(30.0, 5.0),
                                          at_range(100.0, 7.0)};

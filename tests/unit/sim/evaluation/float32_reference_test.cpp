@@ -59,6 +59,13 @@ TEST_F(Float32ReferenceTest, ComparesTheFramesThatBothHave) {
                   Eigen::AngleAxisd(2.0 * M_PI / 180.0, Eigen::Vector3d::UnitX());
     if (k != 1) results.push_back(result);  // one is missing
   }
+  // Frames that were not delivered have a result in `results` only.
+  for (std::size_t at : {std::size_t{0}, results.size() / 2, results.size()}) {
+    FrameResult lost;
+    lost.sequence = at == 0 ? 0 : at == results.size() ? 1 : results[at].sequence;
+    lost.frame = at < results.size() ? results[at].frame : kFrames;
+    results.insert(results.begin() + static_cast<std::ptrdiff_t>(at), lost);
+  }
   const NumericsComparison comparison = reference.compare(results, kFrames);
   EXPECT_EQ(comparison.difference.count, 2 * kFrames - 1);
   EXPECT_NEAR(comparison.difference.mean_deg, 2.0, 1e-5);

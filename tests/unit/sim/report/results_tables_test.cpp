@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <sstream>
 
+#include "sim/terminal/wrapped.hpp"
 #include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {
@@ -30,6 +32,16 @@ TEST(DataTable, IsWrittenForTerminalMarkdownAndHtml) {
 TEST(DataTable, WithoutRowsIsEmpty) {
   const DataTable table{{"what", "error"}, {}};
   EXPECT_EQ(terminal_text(table) + markdown_text(table) + html_text(table, "results"), "");
+}
+
+TEST(DataTable, IsTransposed) {
+  const DataTable table{{"what", "error", "share"},
+                        {{{"RCNN", Mark::kRcnn}, {"1.0°"}, {"99 %"}}, {{"CNN"}, {"-"}, {"88 %"}}}};
+  EXPECT_EQ(terminal_text(transposed(table)),
+            "  what    RCNN    CNN\n"
+            " ─────────────────────\n"
+            "  error   1.0°      -\n"
+            "  share   99 %   88 %\n");
 }
 
 TEST(CsvColumns, HaveDifferentNames) {
@@ -80,6 +92,26 @@ TEST(CellTable, ShowsEveryEstimatorWithItsErrorAndThePapersFigures) {
     EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
   }
   EXPECT_EQ(table.find("50.00 ±"), std::string::npos) << "the error of a single sequence cannot be known";
+}
+
+TEST(CellTable, FitsATerminalOfAHundredColumns) {
+  CellResult cell;
+  cell.frames = 1000;
+  cell.rcnn = summarise({100.0, 30.0});
+  cell.cnn = cell.rcnn;
+  cell.baseline = cell.rcnn;
+  std::istringstream lines(terminal_text(transposed(cell_table("near_shoemaker", cell))));
+  int read = 0;
+  for (std::string line; std::getline(lines, line); ++read) EXPECT_LE(columns_of(line), 100U) << line;
+  EXPECT_GE(read, 8);
+}
+
+// Verifies TS-SIL-200.
+TEST(CellTable, OfADisturbedRunHasNoFiguresOfThePaper) {
+  CellResult cell;
+  cell.rcnn = summarise({1.0, 3.0});
+  cell.disturbances.lost_frames = 1;
+  EXPECT_EQ(terminal_text(cell_table("near_shoemaker", cell)).find("in the paper"), std::string::npos);
 }
 
 }  // namespace

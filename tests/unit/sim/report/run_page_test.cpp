@@ -48,6 +48,14 @@ TEST(RunPage, ShowsTheFiguresBesideThePapers) {
   EXPECT_NE(html.find("&lt;odd&gt; &amp; &quot;name&quot;"), std::string::npos);
 }
 
+TEST(RunPage, ShowsThePeriodOfTheSensorAsItWasGiven) {
+  RunReport report = small_report();
+  report.frame_period_s = 0.25;
+  const std::string html = run_page(report);
+  EXPECT_NE(html.find("4 frames, 0.25 s apart"), std::string::npos);
+  EXPECT_NE(html.find("one every 0.25 s"), std::string::npos);
+}
+
 TEST(RunPage, HoldsWellFormedFigures) {
   const std::vector<std::string> svgs = svgs_of(run_page(small_report()));
   EXPECT_EQ(svgs.size(), 6U);

@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+
+#include "sim/evaluation/curves.hpp"
+#include "sim/sil/fault_names.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -40,7 +46,7 @@ TEST(RunJson, HasExactlyTheAgreedKeys) {
   for (const auto& [key, value] : json.items()) keys += key + " ";
   EXPECT_EQ(keys,
             "target condition sequences disturbances rcnn cnn inference_us flight_heap_allocations "
-            "steps_missed trace_crc32 ");
+            "steps_missed trace_crc32 faults ");
   EXPECT_NEAR(json["rcnn"]["mean_deg"].get<double>(), 5.7296, 1e-3);
   EXPECT_NEAR(json["cnn"]["mean_deg"].get<double>(), 28.648, 1e-3);
   EXPECT_EQ(json["rcnn"]["within_20deg"], 1.0);
@@ -86,6 +92,51 @@ TEST(RunFaults, NameAFlightProgramWithoutAModel) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NE(found[0].find("not in RUN"), std::string::npos);
   EXPECT_EQ(run_json(setup(), safe)["rcnn"]["mean_deg"], 180.0);
+}
+
+// Verifies TS-SIL-110.
+TEST(RunFaults, NameRefusedTelecommands) {
+  SilRunResult refusing = run();
+  refusing.steps.back().telemetry.commands_refused = 1;
+  const std::vector<std::string> found = run_faults(refusing);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NE(found[0].find("refused 1 telecommand;"), std::string::npos) << found[0];
+}
+
+TEST(RunFaults, DoNotNameAFrameThatOwesNoAttitude) {
+  SilRunResult disturbed = run();
+  disturbed.steps[0].truth.lost = true;
+  disturbed.steps[0].attitude.validity = hal::Validity::kNoFrame;
+  disturbed.steps[2].truth.frozen_for = 1;
+  disturbed.steps[2].attitude.validity = hal::Validity::kNoFrame;
+  EXPECT_TRUE(run_faults(disturbed).empty());
+  EXPECT_EQ(errors_by_frame(frame_results(disturbed), 2)[0].rcnn.count, 0U);
+}
+
+TEST(StandingFaults, AreCountedByStepAndSequence) {
+  SilRunResult faulty = run();
+  const auto bit = [](hal::Fault fault) { return 1U << static_cast<unsigned>(fault); };
+  faulty.steps[1].telemetry.faults_persisting = bit(hal::Fault::kFrameFrozen);
+  faulty.steps[2].telemetry.faults_persisting = bit(hal::Fault::kFrameFrozen) | bit(hal::Fault::kOutage);
+  faulty.steps[3].telemetry.faults_persisting = bit(hal::Fault::kFrameFrozen);
+  EXPECT_EQ(text_of(standing_faults(run())), "none");
+  EXPECT_EQ(text_of(standing_faults(faulty)),
+            "OUTAGE in 1 step of 1 sequence, FRAME_FROZEN in 3 steps of 2 sequences");
+  EXPECT_EQ(run_json(setup(), faulty)["faults"].dump(),
+            R"({"OUTAGE":{"steps":1,"sequences":1,"first_step":2},)"
+            R"("FRAME_FROZEN":{"steps":3,"sequences":2,"first_step":1}})");
+  faulty.steps[2].answered = false;
+  EXPECT_EQ(text_of(standing_faults(faulty)), "FRAME_FROZEN in 2 steps of 2 sequences");
+}
+
+TEST(StandingFaults, HaveTheNamesOfTheInterfaceDocument) {
+  std::ostringstream document;
+  document << std::ifstream(TUMBLESIGHT_SOURCE_DIR "/docs/icd.md").rdbuf();
+  for (int i = 0; i < hal::kFaults; ++i) {
+    const std::string row = "\n| " + std::to_string(i) + " | " + name_of(static_cast<hal::Fault>(i)) + " | ";
+    EXPECT_NE(document.str().find(row), std::string::npos) << row;
+  }
+  EXPECT_EQ(name_of(hal::Fault{99}), "FAULT 99");
 }
 
 // Verifies TS-MEM-020.

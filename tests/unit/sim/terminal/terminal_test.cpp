@@ -14,6 +14,7 @@
 
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/table.hpp"
+#include "sim/terminal/wrapped.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
@@ -28,6 +29,20 @@ TEST(Table, AlignsColumnsOfUtf8Text) {
             " ─────────────────────────────────\n"
             "  RCNN              4.1°   99.8 %\n"
             "  a longer name   12.69°\n");
+}
+
+TEST(Table, BreaksItsHeadingsInTwoWhenItIsTooWide) {
+  const std::string wide(36, 'c');
+  const std::vector<std::string> header{"error of the last frame", "mean within 20°", "right"};
+  Table fits(header);
+  fits.row({"RCNN", wide, "1"});
+  EXPECT_EQ(fits.text().find("  error of the last frame   "), 0U) << fits.text();
+  Table table(header);
+  table.row({"RCNN", "1.00°", wide + wide});
+  EXPECT_EQ(table.text().substr(0, table.text().find(" ─")),
+            "  error of the         mean\n"
+            "  last frame     within 20°" +
+                std::string(70, ' ') + "right\n");
 }
 
 TEST(Table, RefusesSurplusCells) {
@@ -64,6 +79,13 @@ TEST(Progress, PrintsFewLinesIntoAFileTheLastOfThemWhenDone) {
   EXPECT_NE(text.find("100 %  1000/1000 steps"), std::string::npos) << text;
   EXPECT_NE(text.find("loss 0.5\n"), std::string::npos) << text;
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 10);
+}
+
+TEST(Wrapped, BreaksTextAtSpaces) {
+  EXPECT_EQ(wrapped("", 8), "");
+  EXPECT_EQ(wrapped("one two three", 7), "one two\nthree");
+  EXPECT_EQ(wrapped("a muchlongerword b", 4), "a\nmuchlongerword\nb");
+  EXPECT_EQ(wrapped("±1° ±2°", 7), "±1° ±2°");
 }
 
 TEST(WriteFile, MakesFoldersAndLeavesNoPartialFile) {

@@ -243,6 +243,36 @@ TEST(Disturbances, ThatASequenceIsTooShortForAreRefusedWithTheLimit) {
             "--well-frames 11 is too many for --frames 10: give at most 10, or more --frames");
 }
 
+TEST(Disturbances, ThatHitNoFrameAreRefused) {
+  Disturbances given;
+  given.loss_every = 2;
+  EXPECT_EQ(refusal(given, 2), "");
+  EXPECT_EQ(refusal(given, 1),
+            "--loss-every has no effect: with --frames 1 and --well-frames 1 no frame can be lost; give more "
+            "--frames, or fewer --well-frames");
+  given = {};
+  given.loss_share = 0.5;
+  given.well_frames = 10;
+  EXPECT_EQ(refusal(given, 11), "");
+  EXPECT_NE(refusal(given, 10).find("--loss-share has no effect"), std::string::npos);
+  given = {};
+  given.frozen = 3;
+  given.lost_frames = 2;
+  EXPECT_EQ(refusal(given, 10), "");
+  given.lost_frames = 3;
+  EXPECT_EQ(refusal(given, 10),
+            "--frozen 3 has no effect: every frozen frame is lost; freeze more frames, or lose fewer");
+  given = {};
+  given.frozen = 1;
+  given.loss_every = 2;
+  EXPECT_NE(refusal(given, 10).find("--frozen 1 has no effect"), std::string::npos);
+  given.loss_every = 0;
+  given.loss_share = 0.9;
+  EXPECT_EQ(refusal(given, 10), "") << "it may have one";
+  given.loss_share = 1.0;
+  EXPECT_NE(refusal(given, 10).find("--frozen 1 has no effect"), std::string::npos);
+}
+
 TEST(Disturbances, AreNamedByTheirOptions) {
   Disturbances given;
   EXPECT_EQ(to_string(given), "");

@@ -1,0 +1,152 @@
+// The network that ships, on the mesh that ships, through the flight program over DDS: what it reports while
+// the sensor loses and repeats frames, and while the chaser turns.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "sim/evaluation/host_estimator.hpp"
+#include "sim/model/model_file.hpp"
+#include "sim/report/sil_report.hpp"
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::uint32_t kSequences = 40;
+constexpr std::uint32_t kFrames = 10;
+constexpr std::uint32_t kLongFrames = 16;
+constexpr double kMostlyRight = 0.97;
+
+double shipped_swath_m() {
+  const std::vector<std::uint8_t> image = read_model_bytes(TUMBLESIGHT_SHIPPED_MODEL);
+  return 1e-3 * HostEstimator(image).model().projection.swath_mm;
+}
+
+SilRunResult run_with(const Disturbances& disturbances, std::uint32_t frames = kFrames) {
+  ScenarioSettings scenario{Condition::kNominal, static_cast<int>(frames)};
+  scenario.disturbances = disturbances;
+  std::vector<Sequence> sequences;
+  for (std::uint32_t i = 0; i < kSequences; ++i) sequences.push_back(make_sequence(scenario, 1, i));
+  SilSettings settings = test::settings();
+  settings.target = "near_shoemaker";
+  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
+  SilRunResult run = run_sil(settings, test::lidar(), shipped_swath_m(), sequences, {});
+  EXPECT_EQ(run.steps.size(), kSequences * frames);
+  EXPECT_EQ(run_faults(run), std::vector<std::string>{});
+  return run;
+}
+
+ErrorSummary expect_right_and_valid(const SilRunResult& run, std::uint32_t frames = kFrames) {
+  const ErrorSummary errors = last_frame_summary(frame_results(run), frames, Estimator::kRcnn);
+  EXPECT_EQ(errors.count, kSequences);
+  EXPECT_EQ(errors.wrong_and_valid, 0.0);
+  EXPECT_GE(errors.right_and_valid, kMostlyRight);
+  return errors;
+}
+
+bool stands(const StepResult& step, hal::Fault fault) {
+  return (step.telemetry.faults_persisting >> static_cast<unsigned>(fault) & 1U) != 0;
+}
+
+// In every sequence the fault stands from frame `first` to frame `last`.
+void expect_stands(const SilRunResult& run, hal::Fault fault, std::uint32_t first, std::uint32_t last) {
+  for (const StepResult& step : run.steps) {
+    if (step.frame_index < first || step.frame_index > last) continue;
+    EXPECT_TRUE(stands(step, fault)) << "sequence " << step.sequence << ", frame " << step.frame_index;
+  }
+}
+
+// No frame of a frozen sensor gives an attitude.
+void expect_no_attitude_from_repeats(const SilRunResult& run) {
+  for (const StepResult& step : run.steps) {
+    if (step.truth.is_genuine()) continue;
+    EXPECT_FALSE(gives_attitude(step.attitude))
+        << "sequence " << step.sequence << ", frame " << step.frame_index;
+  }
+}
+
+// Verifies TS-SIL-100, TS-EST-330.
+TEST(ShippedNetwork, IsNotMisledByAFrozenSensor) {
+  Disturbances frozen;
+  frozen.frozen = 3;
+  frozen.well_frames = 2;
+  const SilRunResult run = run_with(frozen);
+  expect_right_and_valid(run);
+  expect_no_attitude_from_repeats(run);
+  expect_stands(run, hal::Fault::kFrameFrozen, kFrames - 3, kFrames - 1);  // from the third repeat
+}
+
+// Verifies TS-SIL-100, TS-EST-330.
+TEST(ShippedNetwork, KeepsItsTrackWhenEverySecondFrameIsLost) {
+  Disturbances lossy;
+  lossy.loss_every = 2;
+  const SilRunResult run = run_with(lossy);
+  expect_right_and_valid(run);
+  expect_stands(run, hal::Fault::kOutage, 6, kFrames - 1);  // from the fourth lost frame
+}
+
+// Verifies TS-SIL-100, TS-EST-330.
+TEST(ShippedNetwork, IsNotMisledByAFrozenSensorThatLosesEverySecondFrame) {
+  Disturbances both;
+  both.frozen = 7;  // of these four are lost, the first among them
+  both.loss_every = 2;
+  both.well_frames = 2;
+  const SilRunResult run = run_with(both, kLongFrames);
+  expect_right_and_valid(run, kLongFrames);
+  expect_no_attitude_from_repeats(run);
+  const std::uint32_t first_frozen = kLongFrames - both.well_frames - both.frozen;
+  // Within six cycles of the freeze, and until three cycles after the last repeat.
+  expect_stands(run, hal::Fault::kFrameFrozen, first_frozen + 5, first_frozen + 7);
+}
+
+// Verifies TS-SIL-100, TS-EST-310.
+TEST(ShippedNetwork, FollowsTheTargetFromATurningChaser) {
+  Disturbances turning;
+  turning.chaser_rate_deg_s = 5.0;
+  const SilRunResult run = run_with(turning);
+  const ErrorSummary errors = expect_right_and_valid(run);
+  EXPECT_LE(errors.mean_within_20_deg, 1.6);
+  EXPECT_TRUE(standing_faults(run).empty()) << text_of(standing_faults(run));
+}
+
+struct ProgramRun {
+  const char* name;
+  std::vector<std::string> options;
+  const char* fault;  // that stands in every sequence; nullptr: none
+};
+
+class ShippedSimulation : public ::testing::TestWithParam<ProgramRun> {};
+
+// Verifies TS-SIL-100.
+TEST_P(ShippedSimulation, EndsWellWithFiguresAndFaults) {
+  constexpr int kProgramSequences = 20;
+  const std::string log = test::temporary_path("simulate.log"), json_path = test::temporary_path("run.json");
+  std::vector<std::string> arguments{"simulate", "--sequences", std::to_string(kProgramSequences), "--json",
+                                     json_path,  "--report",    test::temporary_path("run.html")};
+  arguments.insert(arguments.end(), GetParam().options.begin(), GetParam().options.end());
+  FlightProcess simulate(TUMBLESIGHT_PROGRAM, arguments, log);
+  ASSERT_TRUE(simulate.wait_for_end(60.0));
+  ASSERT_TRUE(simulate.ended_well()) << simulate.how_it_ended() << "\n" << test::read_file(log);
+  const auto json = nlohmann::json::parse(test::read_file(json_path));
+  EXPECT_EQ(json.at("steps_missed"), 0);
+  EXPECT_EQ(json.at("rcnn").at("wrong_and_valid"), 0.0);
+  EXPECT_GE(json.at("rcnn").at("right_and_valid"), 0.95);
+  if (GetParam().fault == nullptr) return;
+  EXPECT_EQ(json.at("faults").at(GetParam().fault).at("sequences"), kProgramSequences);
+  EXPECT_NE(test::read_file(log).find(GetParam().fault), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sil, ShippedSimulation,
+    ::testing::Values(ProgramRun{"Undisturbed", {}, nullptr},
+                      ProgramRun{"Frozen", {"--frozen", "3", "--well-frames", "2"}, "FRAME_FROZEN"},
+                      ProgramRun{"Lossy", {"--loss-every", "2"}, "OUTAGE"},
+                      ProgramRun{
+                          "FrozenAndLossy",
+                          {"--loss-every", "2", "--frozen", "7", "--well-frames", "2", "--frames", "16"},
+                          "FRAME_FROZEN"},
+                      ProgramRun{"Turning", {"--chaser-rate", "5"}, nullptr}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace tumblesight::sim
