@@ -48,7 +48,9 @@ def copy_with_handles(folder):
             number = numbers[name, one.function, one.text, condition.text] = len(numbers)
             original = text[condition.begin:condition.end]
             text = f"{text[:condition.begin]}::tumblesight::held({number}, ({original})){text[condition.end:]}"
-        write(folder / name, (text.replace("constexpr bool", "inline bool") if found else text).encode())
+        for function in {one.function for _, one in found}:
+            text = text.replace(f"constexpr bool {function}(", f"inline bool {function}(")
+        write(folder / name, text.encode())
     return numbers
 
 
