@@ -154,7 +154,7 @@ void FrameHandler::note_use(const gnc::RangeImage& frame, std::int64_t last_expo
   hal::Telemetry& counters = state_.counters;
   // A frame that was superseded or passed over did arrive.
   const bool went_back = outcome.numbers_skipped == gnc::FrameGate::kWentBack;
-  if (went_back || outcome.numbers_skipped > state_.frames_unused) {
+  if (outcome.numbers_skipped > state_.frames_unused) {
     const std::uint32_t skipped = went_back ? 1U : outcome.numbers_skipped - state_.frames_unused;
     count(counters.sequence_gaps, skipped);
     report_(EventId::kSequenceSkipped, bits_of(expected_number), bits_of(frame.sequence_number),
