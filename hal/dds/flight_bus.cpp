@@ -123,7 +123,7 @@ void FlightBus::flush() const {
 
 bool FlightBus::must_end(FlightEnd& end) {
   if (!check_writers(end)) return true;
-  end = FlightEnd::kComplete;
+  end = stop_reason();
   if (stop_requested()) return true;
   end = FlightEnd::kSilence;
   if (stopwatch_.now_ns() - last_heard_ns_ > timeout_ns_) return true;

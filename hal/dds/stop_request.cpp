@@ -7,11 +7,11 @@ namespace tumblesight::hal::dds {
 namespace {
 
 // Written by whichever thread receives the signal, read by the bus thread.
-std::atomic<bool> requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
+std::atomic<int> requested{0};  // the signal
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not lock");
 
-void request_stop(int) {
-  requested = true;
+void request_stop(int signal) {
+  requested = signal;
 }
 
 }  // namespace
@@ -25,7 +25,11 @@ void accept_stop_requests() {
 }
 
 bool stop_requested() {
-  return requested;
+  return requested != 0;
+}
+
+FlightEnd stop_reason() {
+  return requested == SIGINT ? FlightEnd::kInterrupted : FlightEnd::kTerminated;
 }
 
 }  // namespace tumblesight::hal::dds

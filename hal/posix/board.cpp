@@ -16,7 +16,10 @@ std::uint64_t now_ns() {
 }
 
 void end(int status) {
-  std::fflush(stdout);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    std::perror("standard output");
+    if (status == 0) status = EXIT_FAILURE;
+  }
   std::_Exit(status);
 }
 

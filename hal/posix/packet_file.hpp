@@ -15,7 +15,8 @@ class PacketFile final : public packets::PacketSink {
   PacketFile(const PacketFile&) = delete;
   PacketFile& operator=(const PacketFile&) = delete;
 
-  // Creates the file, or empties it. Returns 0 or the error number.
+  // Creates the file, or empties it. Returns 0 or the error number. EEXIST: the file exists and does not
+  // begin with one of our packets; it stays unchanged. Devices and pipes are written as they are.
   [[nodiscard]] int open(const char* path);
   bool put(const packets::TelemetryPacket& packet) override;
   void close();

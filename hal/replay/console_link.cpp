@@ -30,13 +30,13 @@ void ConsoleLink::publish(const AttitudeReport& report) {
 }
 
 void ConsoleLink::publish(const Telemetry& telemetry) {
-  telemetry_ = telemetry;
+  const bool refused = report_.validity == Validity::kFrameRefused;
   TextLine line;
-  line.number(report_.sequence_number, 6).number(report_.frames_since_reset, 5);
+  line.number(refused ? announced_ : report_.sequence_number, 6).number(report_.frames_since_reset, 5);
   for (const std::int32_t part : report_.q_lrf_trf) line.decimal(millionths(part), 6, 11);
   line.decimal(hundredths_of_degree(report_.predicted_error_urad), 2, 9);
   line.decimal(telemetry.inference_us, 3, 12);
-  line.text(report_.validity == Validity::kValid ? "\n" : "  not valid\n");
+  line.text(report_.validity == Validity::kValid ? "\n" : refused ? "  refused\n" : "  not valid\n");
   board::write(line.c_str());
 }
 

@@ -22,7 +22,8 @@ class ConsoleLink final : public Link {
   // Of every report and event so far, without what the stopwatch measured; `state_crc32` joins it.
   void digest(std::uint32_t state_crc32) { crc_.add_u32(state_crc32); }
   std::uint32_t digest() const { return crc_.value(); }
-  const Telemetry& telemetry() const { return telemetry_; }
+  // The next report belongs to this frame. The report of a refused frame does not tell which one it is.
+  void announce(std::uint32_t sequence_number) { announced_ = sequence_number; }
 
  private:
   void digest_number(std::int64_t number);
@@ -37,7 +38,7 @@ class ConsoleLink final : public Link {
 
   gnc::Crc32 crc_;
   AttitudeReport report_;
-  Telemetry telemetry_;
+  std::uint32_t announced_ = 0;
 };
 
 }  // namespace tumblesight::hal::replay

@@ -83,6 +83,10 @@ std::int64_t Recording::next_exposure_time_ns() const {
   return static_cast<std::int64_t>(get(bytes_ + at_, 8));
 }
 
+std::uint32_t Recording::next_sequence_number() const {
+  return static_cast<std::uint32_t>(get(bytes_ + at_ + 8, 4));
+}
+
 void Recording::read_chaser_attitude() {
   const std::uint8_t* from = bytes_ + at_ + kFrameHeaderSize;
   chaser_.valid = from[0] == 1;
@@ -94,7 +98,7 @@ void Recording::read_chaser_attitude() {
 
 void Recording::read_next(gnc::RangeImage& frame) {
   frame.exposure_time_ns = next_exposure_time_ns();
-  frame.sequence_number = static_cast<std::uint32_t>(get(bytes_ + at_ + 8, 4));
+  frame.sequence_number = next_sequence_number();
   frame.fov_urad = static_cast<std::uint32_t>(get(bytes_ + at_ + 12, 4));
   frame.rays = rays_;
   frame.ranges.fill(0);

@@ -50,8 +50,10 @@ class Recording {
 
   // Whether there is another complete and valid frame.
   bool has_next() const { return read_ < frames_ && next_size() > 0; }
-  std::int64_t next_exposure_time_ns() const;  // requires has_next()
-  void read_next(gnc::RangeImage& frame);      // requires has_next()
+  bool was_read() const { return read_ == frames_; }  // all of it
+  std::int64_t next_exposure_time_ns() const;         // requires has_next()
+  std::uint32_t next_sequence_number() const;         // requires has_next()
+  void read_next(gnc::RangeImage& frame);             // requires has_next()
   // At the exposure of the frame that was read last.
   const gnc::ChaserAttitude& chaser_attitude() const { return chaser_; }
 

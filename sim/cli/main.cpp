@@ -1,7 +1,10 @@
 // tumblesight: the ground tool, with one subcommand per job.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <string>
 
@@ -29,6 +32,14 @@ int report(const CLI::App& app, const CLI::ParseError& error, int argc, char** a
   for (const CLI::App* command : app.get_subcommands()) help += " " + command->get_name();
   std::fprintf(stderr, "tumblesight: %s (see %s --help)\n", error.what(), help.c_str());
   return kBadArguments;
+}
+
+// A failure of the output makes a success a failure.
+int finish_output(int status) {
+  const bool written = std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written) return status;
+  std::fprintf(stderr, "tumblesight: standard output: %s\n", std::strerror(errno));
+  return status == 0 ? kFailed : status;
 }
 
 // Program version, commit, format version of model images, hash of the interface definition: one per line.
@@ -62,10 +73,10 @@ int main(int argc, char** argv) {
         "and see `tumblesight SUBCOMMAND --help` for the options of each.\n");
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return report(app, error, argc, argv);
+    return finish_output(report(app, error, argc, argv));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tumblesight: %s\n", error.what());
     return kFailed;
   }
-  return 0;
+  return finish_output(0);
 }

@@ -93,6 +93,10 @@ TEST(StoredState, OutlivesTheFlightProgram) {
   EXPECT_EQ(answer_to({safe}).mode, hal::Mode::kSafe);
   settings.flight_arguments = {"--state", path, "--reset", "watchdog"};
   const hal::Telemetry telemetry = answer_to({safe});
+  const std::string log = test::read_file(settings.flight_log_path);
+  EXPECT_NE(log.find("the mode is SAFE; send SET_MODE STANDBY, then SET_MODE RUN, or delete " + path),
+            std::string::npos)
+      << log;
   EXPECT_EQ(telemetry.mode, hal::Mode::kSafe);
   EXPECT_EQ(telemetry.safe_cause, hal::Cause::kCommandSafe);
   EXPECT_EQ(telemetry.commands_refused_by[kReplayed], 1U);

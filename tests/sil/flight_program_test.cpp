@@ -134,6 +134,62 @@ TEST_F(FlightProgram, NamesTheCommandThatGetsAMissingImage) {
       << ended.text;
 }
 
+// A run with the text as the content of the file `path`, unless it is empty.
+Ended run_with_file(const std::string& path, const std::string& text, const std::string& arguments) {
+  if (!text.empty()) test::write_file(path, {text.begin(), text.end()});
+  return run_alone(kFlight, arguments);
+}
+
+void expect_refused(const Ended& ended, const std::string& reason) {
+  EXPECT_EQ(ended.status, static_cast<int>(FlightEnd::kBadArguments)) << ended.text;
+  EXPECT_TRUE(has(ended.text, reason)) << ended.text;
+}
+
+// Verifies TS-RST-060.
+TEST(FlightState, FileThatIsNoStateFileIsRefusedAndKept) {
+  const std::string path = test::temporary_path("notes");
+  const std::string text(128, 'a');
+  for (const std::string& option : {"--state " + path, "--packets " + path}) {
+    expect_refused(run_with_file(path, text, option), path);
+    EXPECT_EQ(test::read_file(path), text);
+  }
+  expect_refused(run_alone(kFlight, "--state /dev/full"), "/dev/full: is not a regular file");
+  expect_refused(run_alone(kFlight, "--state /no/such/state"), "/no/such/state: No such file");
+}
+
+// Verifies TS-RST-060.
+TEST(FlightState, FileOfThePacketsIsRefused) {
+  const std::string path = test::temporary_path("both");
+  for (const char* const end : {"", ".copy", ".new"}) {
+    expect_refused(run_alone(kFlight, "--state " + path + " --packets " + path + end), "--packets");
+    EXPECT_FALSE(fs::exists(path + end));
+  }
+}
+
+// The beginning of a record, and a wrong checksum.
+std::string damaged_record() {
+  std::string record("TSST");
+  record.resize(128);
+  return record;
+}
+
+// Verifies TS-RST-060.
+TEST(FlightState, DamagedStateIsReportedWithTheRemedy) {
+  const std::string path = test::temporary_path("damaged");
+  const Ended ended = run_with_file(path, damaged_record(), "--state " + path);
+  EXPECT_TRUE(has(ended.text, "the stored state is damaged; the mode is SAFE; delete " + path)) << ended.text;
+}
+
+TEST(FlightHelp, OutputThatCannotBeWrittenIsAFailure) {
+  for (const std::string& program : {kFlight, std::string(TUMBLESIGHT_PROGRAM)}) {
+    for (const char* const option : {" --help", " --version"}) {
+      const Ended ended = run(program + option + " >/dev/full");
+      EXPECT_EQ(ended.status, 1) << program << option;
+      EXPECT_TRUE(has(ended.text, "standard output: No space left")) << ended.text;
+    }
+  }
+}
+
 TEST(FlightHelp, FitsATerminal) {
   const Ended help = run(kFlight + " --help");
   EXPECT_EQ(help.text.find("flight: "), 0U);

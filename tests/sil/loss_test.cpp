@@ -16,7 +16,8 @@ extern char** environ;
 namespace tumblesight::sim {
 namespace {
 
-constexpr int kSimulatorGone = 4;  // exit status of flight
+constexpr int kSimulatorGone = 4;  // exit statuses of flight
+constexpr int kInterrupted = 130, kTerminated = 143;
 
 // Runs five sequences and sends `signal` to flight after the seventh step.
 SilRunResult run_with_signal(const SilSettings& settings, int signal) {
@@ -53,13 +54,19 @@ TEST(Loss, FlightThatStopsAnsweringIsEnded) {
 
 // Verifies TS-SIL-030.
 TEST(Loss, FlightEndsCleanlyOnAStopRequest) {
-  test::Conversation conversation(test::settings());
-  conversation.step();
-  const pid_t pid = conversation.session.flight_pid();
-  kill(pid, SIGTERM);
-  int status = -1;
-  EXPECT_EQ(waitpid(pid, &status, 0), pid);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const SilSettings settings = test::settings();
+    test::Conversation conversation(settings);
+    conversation.step();
+    const pid_t pid = conversation.session.flight_pid();
+    kill(pid, signal);
+    int status = -1;
+    EXPECT_EQ(waitpid(pid, &status, 0), pid);
+    const int expected = signal == SIGINT ? kInterrupted : kTerminated;
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == expected) << status;
+    const char* const message = signal == SIGINT ? "flight: interrupted" : "flight: asked to stop";
+    EXPECT_NE(test::read_file(settings.flight_log_path).find(message), std::string::npos);
+  }
 }
 
 // Starts the simulator that will be killed, and returns when its flight program answers steps.

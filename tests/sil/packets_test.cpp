@@ -78,6 +78,7 @@ TEST(Packets, PacketsThatCannotBeWrittenAreReported) {
       SilFailure);
   const std::string log = test::read_file(settings.flight_log_path);
   EXPECT_NE(log.find("packets could not be written to /dev/full: No space left"), std::string::npos) << log;
+  EXPECT_EQ(log.find("DDS"), std::string::npos) << log;
 }
 
 }  // namespace

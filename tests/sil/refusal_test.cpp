@@ -123,9 +123,9 @@ TEST(Refusal, MissingFilesAreNamed) {
 
 // Verifies TS-SIL-040.
 TEST(Refusal, BadArgumentsOfFlightAreNamed) {
-  const std::vector<std::vector<std::string>> cases{{"--domain", "231"},    {"--domain", "-1"},
-                                                    {"--period-ms", "nan"}, {"--mode", "fast"},
-                                                    {"--colour", "red"},    {"--run-id"}};
+  const std::vector<std::vector<std::string>> cases{
+      {"--domain", "231"}, {"--domain", "-1"}, {"--period-ms", "nan"}, {"--mode", "fast"},
+      {"--colour", "red"}, {"--run-id"},       {"--period-ms", "10"},  {"--reset", "watchdog"}};
   for (const std::vector<std::string>& arguments : cases) {
     SilSettings settings = test::settings();
     settings.flight_arguments = arguments;

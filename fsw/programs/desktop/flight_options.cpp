@@ -92,7 +92,10 @@ bool parse_one(const char* option, const char* value, FlightOptions& options) {
   if (std::strcmp(option, "--command-key") == 0) return parse_path(option, value, options.command_key_path);
   if (std::strcmp(option, "--packets") == 0) return parse_path(option, value, options.packets_path);
   if (std::strcmp(option, "--state") == 0) return parse_path(option, value, options.state_path);
-  if (std::strcmp(option, "--reset") == 0) return parse_reset(option, value, options.reset_cause);
+  if (std::strcmp(option, "--reset") == 0) {
+    options.reset_given = true;
+    return parse_reset(option, value, options.reset_cause);
+  }
   if (std::strcmp(option, "--dds-security") == 0) return parse_path(option, value, options.security_path);
   if (std::strcmp(option, "--target") == 0) {
     options.target = value;
@@ -103,8 +106,10 @@ bool parse_one(const char* option, const char* value, FlightOptions& options) {
     return parse_integer(option, value, hal::dds::kMaxDomain, options.domain);
   if (std::strcmp(option, "--run-id") == 0) return parse_integer(option, value, UINT32_MAX, options.run_id);
   if (std::strcmp(option, "--mode") == 0) return parse_mode(option, value, options.free_running);
-  if (std::strcmp(option, "--period-ms") == 0)
+  if (std::strcmp(option, "--period-ms") == 0) {
+    options.period_given = true;
     return parse_number(option, value, 1.0, 60'000.0, options.period_ms);
+  }
   if (std::strcmp(option, "--timeout-s") == 0)
     return parse_number(option, value, 0.1, 86'400.0, options.timeout_s);
   // For the test of the refusal; not in the help.
@@ -114,9 +119,25 @@ bool parse_one(const char* option, const char* value, FlightOptions& options) {
   return false;
 }
 
+// An option that depends on another one.
+bool check_needed_options(const FlightOptions& options) {
+  const char* problem = nullptr;
+  if (options.reset_given && options.state_path[0] == '\0') problem = "--reset has no effect without --state";
+  if (options.period_given && !options.free_running)
+    problem = "--period-ms has no effect without --mode free-running";
+  if (problem != nullptr) std::fprintf(stderr, "%s: %s\n", kProgramName, problem);
+  return problem == nullptr;
+}
+
+bool finish_output() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  std::fprintf(stderr, "%s: standard output: %s\n", kProgramName, strerrordesc_np(errno));
+  return false;
+}
+
 }  // namespace
 
-void print_flight_help() {
+bool print_flight_help() {
   std::printf(
       "%s: the Tumblesight flight application on a desktop, connected to a\n"
       "simulator over DDS (loopback)%s\n\n"
@@ -126,7 +147,8 @@ void print_flight_help() {
       "                     [%s]\n"
       "  --command-key FILE key that signs telecommands, 64 hexadecimal digits\n"
       "                     [the public development key]\n"
-      "  --packets FILE     also write the telemetry to FILE as CCSDS space packets\n"
+      "  --packets FILE     also write the telemetry to FILE as CCSDS space packets;\n"
+      "                     replaces a file of such packets, no other file\n"
       "  --state FILE       keep mode, bank, limits and command counter in FILE and\n"
       "                     FILE.copy [not kept]\n"
       "  --reset CAUSE      with --state: power-on or watchdog, why flight was started\n"
@@ -143,20 +165,24 @@ void print_flight_help() {
       "                     [60]\n"
       "  --version          version, commit, model format and interface hash\n"
       "  --help             this text\n\n"
-      "Exit status: 0 complete, 2 bad arguments, 3 interface definitions differ,\n"
-      "4 simulator gone, 5 timeout, 6 DDS failed, 7 step out of order, 8 the flight\n"
-      "task used the heap, 9 no thread for the flight task, 10 flight_float32 cannot\n"
-      "be started, 11 another program writes to the topics of the run.\n",
+      "Exit status: 0 complete, 1 standard output cannot be written, 2 bad arguments\n"
+      "or files, 3 interface definitions differ, 4 simulator gone, 5 timeout, 6 DDS\n"
+      "failed, 7 step out of order, 8 the flight task used the heap, 9 no thread for\n"
+      "the flight task, 10 flight_float32 cannot be started, 11 another program writes\n"
+      "to the topics of the run, 12 telemetry packets could not be written, 130\n"
+      "interrupted (SIGINT), 143 asked to stop (SIGTERM).\n",
       kProgramName,
       kFlyFloat32 ? ".\nThis is its variant in float32, for comparisons. Start `flight`: for a float32\n"
                     "image it starts this one"
                   : "",
       kFlyFloat32 ? "float32, nothing else" : "fixed; with --model: as the image");
+  return finish_output();
 }
 
-void print_flight_version() {
+bool print_flight_version() {
   std::printf("%s %s\ncommit %s\nmodel format %d\ninterface %08x\n", kProgramName, kVersion, kCommit,
               int{gnc::kModelFormatVersion}, static_cast<unsigned>(hal::dds::icd_hash()));
+  return finish_output();
 }
 
 ParseResult parse_flight_options(int argc, char** argv, FlightOptions& options) {
@@ -171,7 +197,7 @@ ParseResult parse_flight_options(int argc, char** argv, FlightOptions& options) 
     }
     if (!parse_one(argv[i], argv[i + 1], options)) return ParseResult::kError;
   }
-  return ParseResult::kRun;
+  return check_needed_options(options) ? ParseResult::kRun : ParseResult::kError;
 }
 
 }  // namespace tumblesight::fsw::desktop

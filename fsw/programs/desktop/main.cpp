@@ -1,5 +1,6 @@
 // The desktop flight program: the flight application on a Linux machine, with DDS as its sensor and radio
 // link.
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -9,6 +10,7 @@
 #include "fsw/programs/desktop/flight_model.hpp"
 #include "fsw/programs/desktop/flight_options.hpp"
 #include "fsw/programs/desktop/flight_program.hpp"
+#include "fsw/programs/desktop/flight_state.hpp"
 #include "fsw/programs/desktop/heap_trap.hpp"
 #include "hal/dds/handshake.hpp"
 #include "hal/dds/idl/domain.hpp"
@@ -50,7 +52,6 @@ hal::Platform platform_of(const FlightOptions& options, hal::ModelStore& models)
   platform.models = &models;
   platform.command_keys = &command_keys;
   if (options.state_path[0] == '\0') return platform;
-  stored_state.use(options.state_path);
   platform.persistent = &stored_state;
   platform.reset_cause = options.reset_cause;
   return platform;
@@ -66,7 +67,11 @@ bool open_packets(const char* path) {
   if (path[0] == '\0') return true;
   const int error = packet_file.open(path);
   if (error != 0) {
-    std::fprintf(stderr, "%s: --packets %s: %s\n", kProgramName, path, strerrordesc_np(error));
+    const char* const reason =
+        error == EEXIST
+            ? "the file holds something other than telemetry packets; give another path, or delete it"
+            : strerrordesc_np(error);
+    std::fprintf(stderr, "%s: --packets %s: %s\n", kProgramName, path, reason);
     return false;
   }
   bus.copy_to(packet_output);
@@ -79,7 +84,7 @@ FlightEnd report_packets(const FlightOptions& options, FlightEnd end) {
   if (packet_file.lost() == 0) return end;
   std::fprintf(stderr, "%s: %u packets could not be written to %s: %s\n", kProgramName, packet_file.lost(),
                options.packets_path, strerrordesc_np(packet_file.error()));
-  return end == FlightEnd::kComplete ? FlightEnd::kTransport : end;
+  return end == FlightEnd::kComplete ? FlightEnd::kPacketsLost : end;
 }
 
 FlightEnd connect(const FlightOptions& options) {
@@ -119,7 +124,8 @@ FlightEnd fly(const FlightOptions& options) {
   const auto timeout_ns = static_cast<std::int64_t>(options.timeout_s * 1e9);
   const hal::dds::HandshakeResult met = meet_simulator(options, timeout_ns);
   foreigner = met.foreigner;
-  if (met.end != FlightEnd::kComplete || met.stopped) return met.end;
+  if (met.stopped) return hal::dds::stop_reason();
+  if (met.end != FlightEnd::kComplete) return met.end;
 
   bus.join_run(met.run_id, timeout_ns);
   const FlightEnd end =
@@ -136,11 +142,9 @@ int main(int argc, char** argv) {
   FlightOptions options;
   switch (parse_flight_options(argc, argv, options)) {
     case ParseResult::kHelp:
-      print_flight_help();
-      return EXIT_SUCCESS;
+      return print_flight_help() ? EXIT_SUCCESS : EXIT_FAILURE;
     case ParseResult::kVersion:
-      print_flight_version();
-      return EXIT_SUCCESS;
+      return print_flight_version() ? EXIT_SUCCESS : EXIT_FAILURE;
     case ParseResult::kError:
       return static_cast<int>(FlightEnd::kBadArguments);
     case ParseResult::kRun:
@@ -151,8 +155,11 @@ int main(int argc, char** argv) {
   hal::dds::accept_stop_requests();
   if (!read_command_key(options.command_key_path, command_keys.slots[0]))
     return static_cast<int>(FlightEnd::kBadArguments);
+  const bool with_state = options.state_path[0] != '\0';
+  if (with_state && !open_state(options, stored_state)) return static_cast<int>(FlightEnd::kBadArguments);
   if (!open_packets(options.packets_path)) return static_cast<int>(FlightEnd::kBadArguments);
   boot(options, app, platform_of(options, model), model);
+  if (with_state) report_state(options, app, stored_state);
   authenticate_commands();
 
   FlightEnd end = fly(options);
@@ -160,7 +167,7 @@ int main(int argc, char** argv) {
   end = report_packets(options, end);
   if (end == FlightEnd::kForeign) {
     std::fprintf(stderr, "%s: %s: %s\n", kProgramName, hal::dds::to_string(end), to_text(foreigner).text);
-  } else if (end != FlightEnd::kComplete) {
+  } else if (end != FlightEnd::kComplete && end != FlightEnd::kPacketsLost) {
     std::fprintf(stderr, "%s: %s\n", kProgramName, hal::dds::to_string(end));
   }
   domain.close();

@@ -26,6 +26,12 @@ const char* to_string(FlightEnd end) {
       return "flight_float32 cannot be started";
     case FlightEnd::kForeign:
       return "a program other than the simulator writes to the topics of this run";
+    case FlightEnd::kPacketsLost:
+      return "not all telemetry packets could be written";
+    case FlightEnd::kInterrupted:
+      return "interrupted";
+    case FlightEnd::kTerminated:
+      return "asked to stop";
   }
   return "?";
 }

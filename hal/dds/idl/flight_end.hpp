@@ -4,7 +4,7 @@
 namespace tumblesight::hal::dds {
 
 enum class FlightEnd : int {
-  kComplete = 0,  // the last step is done, or SIGTERM/SIGINT asked to stop
+  kComplete = 0,  // the last step is done
   kBadArguments = 2,
   kIcdUnequal = 3,         // simulator and flight were built from different interface definitions
   kSimulatorGone = 4,      // killed, or the connection was lost
@@ -15,6 +15,9 @@ enum class FlightEnd : int {
   kNoThread = 9,           // the flight task's thread could not be created
   kNoFloat32Program = 10,  // flight_float32 is missing or cannot be executed
   kForeign = 11,           // a program other than the simulator writes to the topics of the run
+  kPacketsLost = 12,       // the run is complete, but not all telemetry packets could be written
+  kInterrupted = 130,      // by SIGINT; as a shell reports a program that a signal ends
+  kTerminated = 143,       // by SIGTERM; same
 };
 
 const char* to_string(FlightEnd end);

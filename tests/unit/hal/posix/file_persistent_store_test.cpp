@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -82,6 +85,58 @@ TEST_F(FilePersistentStoreTest, FailedWriteLeavesTheOldRecord) {
   StoredBytes bytes{};
   ASSERT_EQ(store.read(0, bytes), StoreStatus::kOk);
   EXPECT_EQ(bytes, record(1));
+}
+
+constexpr std::array<std::uint8_t, FilePersistentStore::kMagicBytes> kMagic{'T', 'S', 'S', 'T'};
+
+// Verifies TS-RST-060.
+TEST_F(FilePersistentStoreTest, OnlyRecordsAndNewFilesAreUsable) {
+  FilePersistentStore store;
+  ASSERT_TRUE(store.use(path.c_str()));
+  EXPECT_EQ(store.check(kMagic).status, StoreFileStatus::kUsable);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path("")));
+  StoredBytes good = record(1);
+  std::copy(kMagic.begin(), kMagic.end(), good.begin());
+  for (const char* const end : {"", ".copy"}) {
+    for (const int copy : {0, 1}) ASSERT_EQ(store.write(copy, good), StoreStatus::kOk);
+    EXPECT_EQ(store.check(kMagic).status, StoreFileStatus::kUsable);
+    for (const std::size_t size : {0, 1, 127, 128, 129}) {
+      std::ofstream(path + end, std::ios::trunc) << std::string(size, 'x');
+      const StoreFileCheck result = store.check(kMagic);
+      EXPECT_EQ(result.status, StoreFileStatus::kNotARecord) << size;
+      EXPECT_EQ(result.path, path + end);
+    }
+  }
+}
+
+// Verifies TS-RST-060.
+TEST_F(FilePersistentStoreTest, LinksFoldersAndMissingFoldersAreNotUsable) {
+  FilePersistentStore store;
+  for (const char* const end : {"", ".copy", ".new", ".copy.new"}) {
+    ASSERT_TRUE(store.use(path.c_str()));
+    std::filesystem::create_symlink(folder.path("target"), path + end);
+    EXPECT_EQ(store.check(kMagic).status, StoreFileStatus::kNotARegularFile) << end;
+    std::filesystem::remove(path + end);
+    std::filesystem::create_directory(path + end);
+    EXPECT_EQ(store.check(kMagic).status, StoreFileStatus::kNotARegularFile) << end;
+    std::filesystem::remove(path + end);
+  }
+  ASSERT_TRUE(store.use(folder.path("none/state").c_str()));
+  EXPECT_EQ(store.check(kMagic).status, StoreFileStatus::kFailed);
+  EXPECT_EQ(store.check(kMagic).error, ENOENT);
+}
+
+// Verifies TS-RST-060.
+TEST_F(FilePersistentStoreTest, KnowsItsOwnFiles) {
+  FilePersistentStore store;
+  ASSERT_TRUE(store.use(path.c_str()));
+  for (const char* const end : {"", ".copy", ".new", ".copy.new"})
+    EXPECT_TRUE(store.uses((path + end).c_str()));
+  EXPECT_TRUE(store.uses(folder.path("./state").c_str()));
+  EXPECT_FALSE(store.uses((path + ".bin").c_str()));
+  ASSERT_EQ(store.write(0, record(1)), StoreStatus::kOk);
+  std::filesystem::create_hard_link(path, folder.path("other"));
+  EXPECT_TRUE(store.uses(folder.path("other").c_str()));
 }
 
 }  // namespace

@@ -20,9 +20,10 @@ std::string content_of(const std::string& path) {
 
 TEST(PacketFile, HoldsThePacketsOneAfterTheOther) {
   const std::string path = ::testing::TempDir() + "packets_" + std::to_string(getpid());
-  std::ofstream(path) << "something from before";
   packets::TelemetryEncoder encoder;
   PacketFile file;
+  ASSERT_EQ(file.open(path.c_str()), 0);
+  EXPECT_TRUE(file.put(encoder.encode(ModelDump{})));  // replaced below
   ASSERT_EQ(file.open(path.c_str()), 0);
   std::string expected;
   for (int i = 0; i < 3; ++i) {
@@ -32,6 +33,20 @@ TEST(PacketFile, HoldsThePacketsOneAfterTheOther) {
   }
   EXPECT_EQ(content_of(path), expected);
   EXPECT_EQ(file.lost(), 0U);
+  std::filesystem::remove(path);
+}
+
+TEST(PacketFile, KeepsAFileWithAnythingElse) {
+  const std::string path = ::testing::TempDir() + "notes_" + std::to_string(getpid());
+  for (const std::string& content : {std::string("x"), std::string("something from before")}) {
+    std::ofstream(path, std::ios::trunc) << content;
+    PacketFile file;
+    EXPECT_EQ(file.open(path.c_str()), EEXIST);
+    EXPECT_EQ(content_of(path), content);
+  }
+  std::ofstream(path, std::ios::trunc).close();
+  PacketFile file;
+  EXPECT_EQ(file.open(path.c_str()), 0) << "an empty file";
   std::filesystem::remove(path);
 }
 

@@ -56,6 +56,8 @@ TEST(RecordingTest, ReturnsTheFramesBitForBit) {
   EXPECT_EQ(recording.frames(), 3U);
   for (std::uint32_t k = 0; k < 3; ++k) {
     ASSERT_TRUE(recording.has_next());
+    EXPECT_FALSE(recording.was_read());
+    EXPECT_EQ(recording.next_sequence_number(), k);
     const gnc::RangeImage expected = frame_number(k);
     EXPECT_EQ(recording.next_exposure_time_ns(), expected.exposure_time_ns);
     gnc::RangeImage frame;
@@ -72,6 +74,7 @@ TEST(RecordingTest, ReturnsTheFramesBitForBit) {
     EXPECT_EQ(chaser.valid, attitude_number(k).valid);
   }
   EXPECT_FALSE(recording.has_next());
+  EXPECT_TRUE(recording.was_read());
 }
 
 TEST(RecordingTest, VersionOneHasNoAttitudesOfTheChaser) {
@@ -134,12 +137,14 @@ TEST(RecordingTest, EndsBeforeAnIncompleteOrInvalidFrame) {
   recording.read_next(frame);
   recording.read_next(frame);
   EXPECT_FALSE(recording.has_next());
+  EXPECT_FALSE(recording.was_read());
 
   bytes = recorded(1);
   bytes[kRecordingHeaderSize + 16 + 25 + 1] = 200;  // the first row's number of ranges
   renew_crc(bytes);
   ASSERT_EQ(recording.open(bytes.data(), bytes.size()), RecordingStatus::kOk);
   EXPECT_FALSE(recording.has_next());
+  EXPECT_FALSE(recording.was_read());
 }
 
 TEST(ReplayLidarTest, DeliversAFrameAtItsExposureTime) {
