@@ -1,7 +1,6 @@
 #include "gnc/tracking/frame_tracker.hpp"
 
 #include "gnc/attitude/quaternion.hpp"
-#include "gnc/numerics/crc32.hpp"
 
 namespace tumblesight::gnc {
 namespace {
@@ -27,24 +26,16 @@ QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const Quater
   return product(conjugate(q_inertial_lrf_now), q_inertial_lrf_last);
 }
 
-std::uint32_t crc32_of_ranges(const RangeImage& frame) {
-  const int rays = min<int>(frame.rays, RangeImage::kMaxRays);
-  Crc32 crc;
-  crc.add_u32(frame.rays);
-  crc.add_u16(frame.ranges.data(), static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays));
-  return crc.value();
-}
-
 template <class N>
 void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
                           const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) {
   outcome.verdict = state.gate.judge(frame, now_ns, limits.time);
   if (!outcome.used()) return;
-  const std::uint32_t ranges_crc32 = crc32_of_ranges(frame);
-  if (state.has_ranges && ranges_crc32 == state.ranges_crc32) {
-    outcome.verdict = FrameVerdict::kRepeated;
-    return;
+  const FrameSignature signature = signature_of(frame);
+  for (const FrameSignature& used : state.signatures) {
+    if (is_repetition(used, signature)) outcome.verdict = FrameVerdict::kRepeated;
   }
+  if (!outcome.used()) return;
 
   FrameInterval interval;
   outcome.elapsed_ns = state.gate.elapsed_ns(frame);
@@ -69,8 +60,7 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   state.gate.accept(frame);
   state.q_inertial_lrf = chaser.q_inertial_lrf;
   state.has_chaser_attitude = knows_chaser;
-  state.ranges_crc32 = ranges_crc32;
-  state.has_ranges = true;
+  state.signatures = {signature, state.signatures[0]};
 }
 
 template <class N>

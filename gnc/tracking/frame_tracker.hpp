@@ -1,8 +1,8 @@
 // FrameTracker: the way of a frame through admission, estimator and attitude checks to an attitude and its
 // validity. Pure: the flight application and the evaluation on the ground call the same function.
 //
-//   admission   time and order (frame_gate.hpp); ranges that repeat those of the last used frame are refused
-//               before the estimator sees them, across gaps and resets
+//   admission   time and order (frame_gate.hpp); a frame that repeats one of the last two used ones
+//               (frame_signature.hpp) is refused before the estimator sees it, across gaps and resets
 //   gap         the track coasts over the time since the last used frame; after more than longest_coast_ns it
 //               is given up, and the frame starts a new one
 //   chaser      the turn of the LRF since the last used frame, from the attitudes of the chaser at both
@@ -11,11 +11,13 @@
 //   checks      expected error, and distance from the attitude that the track predicted
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "gnc/rcnn/attitude_estimator.hpp"
 #include "gnc/tracking/chaser_attitude.hpp"
 #include "gnc/tracking/frame_gate.hpp"
+#include "gnc/tracking/frame_signature.hpp"
 
 namespace tumblesight::gnc {
 
@@ -33,12 +35,11 @@ struct FrameTrackerState {
   QuaternionQ30 q_inertial_lrf = kIdentityQ30;  // at the last used frame
   bool has_chaser_attitude = false;             // q_inertial_lrf is valid
   bool has_jumped = false;                      // the attitude of the last used frame
-  bool has_ranges = false;                      // ranges_crc32 is valid
-  std::uint32_t ranges_crc32 = 0;               // of the last used frame
+  std::array<FrameSignature, 2> signatures{};   // of the last two used frames; the last one is first
 
   // The estimator was reset: its next attitude is not compared with the last one.
   void forget_track() { has_jumped = false; }
-  // The times and numbers of earlier frames say nothing about the next one. The ranges still do.
+  // The times and numbers of earlier frames say nothing about the next one. The signatures still do.
   void forget_times() {
     gate.forget();
     has_chaser_attitude = false;
@@ -70,8 +71,6 @@ struct FrameOutcome {
 
 // Turn of the LRF from `last` to `now`: v_lrf now = q v_lrf last.
 QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const QuaternionQ30& q_inertial_lrf_now);
-// CRC-32 over the ranges of a frame and their number.
-std::uint32_t crc32_of_ranges(const RangeImage& frame);
 
 template <class N>
 class FrameTracker {
