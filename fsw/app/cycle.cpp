@@ -8,11 +8,13 @@ void drop(const gnc::RangeImage& frame, gnc::FrameVerdict why, StepInputs& input
                                                                       frame.exposure_time_ns};
 }
 
-// Why `later`, which passes the gate, is not taken although `kept` does too; kPass: it is taken instead.
+// Why `later`, which passes the gate, is not taken although `kept` does too; kPass: it is taken instead. The
+// time of a repetition is not that of its content.
 gnc::FrameVerdict compare(const gnc::RangeImage& kept, const gnc::RangeImage& later) {
   if (later.sequence_number == kept.sequence_number) return gnc::FrameVerdict::kDuplicate;
-  return later.exposure_time_ns > kept.exposure_time_ns ? gnc::FrameVerdict::kPass
-                                                        : gnc::FrameVerdict::kSuperseded;
+  if (later.exposure_time_ns <= kept.exposure_time_ns) return gnc::FrameVerdict::kSuperseded;
+  return gnc::is_repetition(gnc::signature_of(kept), gnc::signature_of(later)) ? gnc::FrameVerdict::kRepeated
+                                                                               : gnc::FrameVerdict::kPass;
 }
 
 void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t now_ns,

@@ -111,6 +111,23 @@ TEST_F(Cycle, NewestFrameOfABacklogIsUsedAndTheOthersAreCounted) {
   EXPECT_EQ(counters.frames_refused, 3U);
 }
 
+// Verifies TS-LID-052.
+TEST_F(Cycle, NewestFrameOfABacklogIsNotUsedIfItRepeatsTheOneBefore) {
+  std::uint32_t number = 0;
+  for (unsigned cycle = 0; cycle < 20; ++cycle) {
+    const std::int64_t exposure_ns = next_time_ns() - 1'400'000'000;
+    lidar.add(good_frame(number++, exposure_ns, cycle));
+    lidar.add(good_frame(number++, next_time_ns() - 50'000'000, cycle));
+    run();
+    EXPECT_EQ(last_validity(), Validity::kValid);
+    EXPECT_EQ(link.attitudes.back().exposure_time_ns, exposure_ns) << "that of the content";
+  }
+  const hal::Telemetry& counters = link.telemetry.back();
+  EXPECT_EQ(counters.frames_repeated, 20U);
+  EXPECT_EQ(counters.frames_superseded, 0U);
+  EXPECT_NE(counters.faults_persisting & bit_of(Fault::kFrameFrozen), 0U);
+}
+
 TEST_F(Cycle, LargestBacklogIsReceivedInOneCycle) {
   for (int i = 0; i < config::kMaxDeliveriesPerCycle + 2; ++i) lidar.add_wrong_size();
   run();
