@@ -83,7 +83,8 @@ struct alignas(8) AppState {
   bool long_task = false;       // this cycle has one: begin_long_task()
 
   gnc::FrameTrackerLimits tracker_limits() const {
-    return {config::kFrameTimeLimits, config::kLongestCoast_ns, config::kChaserTimeTolerance_ns,
+    return {config::kFrameTimeLimits,           config::kLongestCoast_ns,
+            config::kLongestWithoutChaser_ns,   config::kChaserTimeTolerance_ns,
             limit(Limit::kPredictedError_urad), limit(Limit::kAttitudeJump_urad)};
   }
   std::uint32_t limit(Limit which) const { return limits[static_cast<std::size_t>(which)]; }

@@ -134,6 +134,10 @@ void FrameHandler::note_refusal(FrameVerdict verdict, std::uint32_t sequence_num
       state_.faults_seen |= bit_of(Fault::kFrameFrozen);
       report_(EventId::kFrameRepeated, number);
       return;
+    case FrameVerdict::kWithoutChaser:
+      count(counters.frames_without_chaser);
+      report_(EventId::kFrameWithoutChaser, number, since_last_ms);
+      return;
     case FrameVerdict::kPass:
     case FrameVerdict::kBadContent:
     case FrameVerdict::kSuperseded:
@@ -163,7 +167,7 @@ void FrameHandler::note_use(const gnc::RangeImage& frame, std::int64_t last_expo
   if (outcome.frames_given_up > 0) {
     count(counters.estimator_resets);
     report_(EventId::kEstimatorResetByGap, elapsed_ms(last_exposure_time_ns, frame.exposure_time_ns),
-            clamp_to_int32(outcome.frames_given_up));
+            clamp_to_int32(outcome.frames_given_up), outcome.chaser_changed ? 1 : 0);
   }
   count(counters.frames_used);
   state_.frames_unused = 0;

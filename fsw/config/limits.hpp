@@ -64,6 +64,8 @@ inline constexpr gnc::FrameTimeLimits kFrameTimeLimits{kFutureTolerance_ns, kMax
 // 20 degrees in 100 % of 300 sequences of NEAR Shoemaker (occluded: 91 %) with the track that coasted, and in
 // 98 % (87 %) without it.
 inline constexpr std::int64_t kLongestCoast_ns = 8 * kFramePeriod_ns;
+// While the chaser's attitude fails for at most this time, its frames are not used and the track coasts.
+inline constexpr std::int64_t kLongestWithoutChaser_ns = 3 * kFramePeriod_ns;
 // At 5 degrees/s of the chaser an attitude that is 10 ms off is wrong by 0.05 degrees.
 inline constexpr std::int64_t kChaserTimeTolerance_ns = 10'000'000;
 

@@ -41,10 +41,16 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   outcome.elapsed_ns = state.gate.elapsed_ns(frame);
   interval.elapsed_ns = outcome.elapsed_ns;
   const bool knows_chaser = holds_at(chaser, frame.exposure_time_ns, limits.chaser_time_tolerance_ns);
-  if (knows_chaser && state.has_chaser_attitude)
+  const bool track_knows_chaser = state.has_chaser_attitude;
+  if (track_knows_chaser && !knows_chaser && outcome.elapsed_ns <= limits.longest_without_chaser_ns) {
+    outcome.verdict = FrameVerdict::kWithoutChaser;
+    return;
+  }
+  if (knows_chaser && track_knows_chaser)
     interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
   const std::uint32_t frames_before = estimator_.frames();
-  interval.gives_up_track = outcome.elapsed_ns > limits.longest_coast_ns;
+  const bool is_gap = outcome.elapsed_ns > limits.longest_coast_ns;
+  interval.gives_up_track = is_gap || knows_chaser != track_knows_chaser;
   outcome.content = estimator_.step(frame, interval, outcome.estimate);
   if (outcome.content != FrameStatus::kOk) {
     outcome.verdict = FrameVerdict::kBadContent;
@@ -55,8 +61,8 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   outcome.frames_given_up = interval.gives_up_track ? frames_before : 0;
   if (outcome.frames_given_up > 0) state.forget_track();
   outcome.doubts = outcome.estimate.rate_is_ambiguous ? kRateAmbiguous : 0;
-  const bool starts_track = outcome.estimate.frames_since_reset == 1;
-  if (!knows_chaser || !(state.has_chaser_attitude || starts_track)) outcome.doubts |= kChaserUnknown;
+  outcome.chaser_changed = interval.gives_up_track && !is_gap;
+  if (!knows_chaser) outcome.doubts |= kChaserUnknown;
   state.gate.accept(frame);
   state.q_inertial_lrf = chaser.q_inertial_lrf;
   state.has_chaser_attitude = knows_chaser;

@@ -19,10 +19,11 @@ enum class Validity : std::uint8_t {
 };
 
 // Bits of AttitudeReport::doubts.
-inline constexpr std::uint8_t kDoubtErrorLarge = 1;      // kDoubtful: expected error above its limit
-inline constexpr std::uint8_t kDoubtAttitudeJump = 2;    // kDoubtful: in this frame or the one before
-inline constexpr std::uint8_t kDoubtRateAmbiguous = 8;   // the target turns too far between two frames
-inline constexpr std::uint8_t kDoubtChaserUnknown = 16;  // the chaser is taken not to have turned
+inline constexpr std::uint8_t kDoubtErrorLarge = 1;     // kDoubtful: expected error above its limit
+inline constexpr std::uint8_t kDoubtAttitudeJump = 2;   // kDoubtful: in this frame or the one before
+inline constexpr std::uint8_t kDoubtRateAmbiguous = 8;  // the target turns too far between two frames
+inline constexpr std::uint8_t kDoubtChaserUnknown =
+    16;  // in the whole track, in which it is taken not to turn
 
 // Quaternions: Hamilton, scalar first (w, x, y, z), target frame (TRF) to LiDAR frame (LRF), unit norm, Q30.
 // Expected errors: 0 ... pi.

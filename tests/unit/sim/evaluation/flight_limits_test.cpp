@@ -16,6 +16,7 @@ TEST(FlightLimits, AreThoseOfTheFlightProgramAfterInit) {
   EXPECT_EQ(kFlightLimits.time.future_tolerance_ns, fsw::config::kFrameTimeLimits.future_tolerance_ns);
   EXPECT_EQ(kFlightLimits.time.max_age_ns, fsw::config::kFrameTimeLimits.max_age_ns);
   EXPECT_EQ(kFlightLimits.longest_coast_ns, fsw::config::kLongestCoast_ns);
+  EXPECT_EQ(kFlightLimits.longest_without_chaser_ns, fsw::config::kLongestWithoutChaser_ns);
   EXPECT_EQ(kFlightLimits.chaser_time_tolerance_ns, fsw::config::kChaserTimeTolerance_ns);
   EXPECT_EQ(kFlightLimits.predicted_error_urad, initial(fsw::Limit::kPredictedError_urad));
   EXPECT_EQ(kFlightLimits.attitude_jump_urad, initial(fsw::Limit::kAttitudeJump_urad));
