@@ -205,14 +205,15 @@ void FrameHandler::report_attitude(const StepInputs& inputs, Validity validity) 
   attitude.q_lrf_trf_single_frame = estimate.q_lrf_trf_single_frame;
   attitude.predicted_error_urad = estimate.predicted_error_urad;
   attitude.predicted_error_single_frame_urad = estimate.predicted_error_single_frame_urad;
-  attitude.doubts = static_cast<std::uint8_t>(outcome.doubts);
   attitude.law = static_cast<std::uint8_t>(estimate.law);
   attitude.rate_lrf_urad_s = estimate.rate_lrf_urad_s;
   attitude.attitude_covariance_e8 = gnc::attitude_covariance(estimate.predicted_error_urad);
   attitude.rate_covariance_e8 =
       gnc::rate_covariance(estimate.predicted_error_urad, estimate.frames_since_reset, outcome.elapsed_ns);
+  gnc::Doubts doubts = outcome.doubts;
   const gnc::PropagatedMotion now =
-      tracker_.motion_at(state_.now_ns, inputs.chaser_now, state_.tracker_limits(), state_.tracking);
+      tracker_.motion_at(state_.now_ns, inputs.chaser_now, state_.tracker_limits(), state_.tracking, doubts);
+  attitude.doubts = static_cast<std::uint8_t>(doubts);
   attitude.q_lrf_trf_now = now.q_lrf_trf;
   attitude.rate_lrf_now_urad_s = now.rate_lrf_urad_s;
   attitude.q_lrf_trf_second = estimate.q_lrf_trf_second;

@@ -90,12 +90,15 @@ void FrameTracker<N>::check(const FrameTrackerLimits& limits, FrameTrackerState&
 
 template <class N>
 PropagatedMotion FrameTracker<N>::motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
-                                            const FrameTrackerLimits& limits,
-                                            const FrameTrackerState& state) const {
+                                            const FrameTrackerLimits& limits, const FrameTrackerState& state,
+                                            Doubts& doubts) const {
   FrameInterval interval;
   interval.elapsed_ns = time_after(state.gate.last_exposure_time_ns(), time_ns);
-  if (state.has_chaser_attitude && holds_at(chaser, time_ns, limits.chaser_time_tolerance_ns))
+  if (state.has_chaser_attitude && holds_at(chaser, time_ns, limits.chaser_time_tolerance_ns)) {
     interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
+  } else {
+    doubts |= kChaserNowUnknown;
+  }
   return estimator_.propagated(interval);
 }
 

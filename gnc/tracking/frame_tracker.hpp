@@ -54,9 +54,10 @@ struct FrameTrackerState {
 using Doubts = std::uint32_t;
 inline constexpr Doubts kErrorLarge = 1;    // expected error above its limit
 inline constexpr Doubts kAttitudeJump = 2;  // too far from the predicted one, in this frame or the one before
-inline constexpr Doubts kAttitudeUnsound = 4;  // not a unit quaternion, or an expected error above pi
-inline constexpr Doubts kRateAmbiguous = 8;    // AttitudeEstimate::rate_is_ambiguous; the attitude is valid
-inline constexpr Doubts kChaserUnknown = 16;   // in the whole track; the attitude is valid
+inline constexpr Doubts kAttitudeUnsound = 4;    // not a unit quaternion, or an expected error above pi
+inline constexpr Doubts kRateAmbiguous = 8;      // AttitudeEstimate::rate_is_ambiguous; the attitude is valid
+inline constexpr Doubts kChaserUnknown = 16;     // in the whole track; the attitude is valid
+inline constexpr Doubts kChaserNowUnknown = 32;  // motion_at() is in the LRF of the exposure
 inline constexpr Doubts kAgainstAttitude = kErrorLarge | kAttitudeJump | kAttitudeUnsound;
 
 struct FrameOutcome {
@@ -95,9 +96,12 @@ class FrameTracker {
   void use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
            const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome);
   void check(const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) const;
-  // The motion of the target at another time than that of the last used frame. `chaser`: at that time.
+  // The motion of the target at another time than that of the last used frame, in the LRF of that time.
+  // `chaser`: at that time. Without it or without that of the last used frame the motion is in the LRF of the
+  // exposure, and kChaserNowUnknown is added to `doubts`.
   PropagatedMotion motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
-                             const FrameTrackerLimits& limits, const FrameTrackerState& state) const;
+                             const FrameTrackerLimits& limits, const FrameTrackerState& state,
+                             Doubts& doubts) const;
 
  private:
   AttitudeEstimator<N>& estimator_;

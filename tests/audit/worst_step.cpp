@@ -276,6 +276,7 @@ int run() {
   platform.stopwatch = &stopwatch;
   platform.models = &store;
   platform.command_keys = &kKeys;
+  platform.reset_cause = hal::ResetCause::kPowerOn;
   begin("boot");
   tumblesight_step_begins();
   app.init(platform, nullptr);

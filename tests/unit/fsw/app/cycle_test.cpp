@@ -207,6 +207,25 @@ TEST_F(Cycle, ChasersAttitudeIsAskedForAtTheExposureAndAtTheCycle) {
   EXPECT_NE(link.attitudes.back().doubts & hal::kDoubtChaserUnknown, 0);
 }
 
+TEST_F(Cycle, AMotionNowThatIsNotInTheLrfOfNowIsMarked) {
+  // The navigation knows the past up to the exposure only.
+  std::int64_t known_ns = 0;
+  navigation.attitude = [&](std::int64_t time_ns) {
+    return gnc::ChaserAttitude{std::min(time_ns, known_ns), gnc::kIdentityQ30, true};
+  };
+  for (const bool late : {true, false, true}) {
+    gnc::RangeImage frame = next_frame();
+    sequence_number = frame.sequence_number;
+    frame.exposure_time_ns -= 1'350'000'000;
+    known_ns = late ? frame.exposure_time_ns : next_time_ns();
+    lidar.add(frame);
+    run();
+    EXPECT_EQ(last_validity(), Validity::kValid);
+    EXPECT_EQ(link.attitudes.back().doubts & ~hal::kDoubtRateAmbiguous,
+              late ? hal::kDoubtChaserNowUnknown : 0);
+  }
+}
+
 TEST_F(Cycle, WorksWithoutNavigation) {
   now_ns = next_time_ns();
   lidar.add(good_frame(1, now_ns, 1));

@@ -146,8 +146,10 @@ TEST_F(Tracking, PredictionTurnsWithTheChaser) {
               1e-6);
   const Eigen::Quaterniond second = to_double(outcome.estimate.q_lrf_trf);
   const ChaserAttitude later{now_ns, q30(turn * turn), true};
+  Doubts doubts = 0;
   const PropagatedMotion motion =
-      FrameTracker<FixedPoint>(*estimator).motion_at(now_ns, later, limits, state);
+      FrameTracker<FixedPoint>(*estimator).motion_at(now_ns, later, limits, state, doubts);
+  EXPECT_EQ(doubts, 0U);
   EXPECT_NEAR(std::abs(to_double(motion.q_lrf_trf).dot(turn.conjugate() * second)), 1.0, 1e-6);
 }
 
@@ -175,14 +177,19 @@ TEST_F(Tracking, TheChasersAttitudeHoldsForAWholeTrackOrForNone) {
   EXPECT_EQ(outcome.doubts & kChaserUnknown, kChaserUnknown);
   // The LRF is taken not to turn, also to the time of the cycle.
   const FrameTracker<FixedPoint> tracker(*estimator);
-  EXPECT_EQ(tracker.motion_at(now_ns, chaser(turn), limits, state).q_lrf_trf, outcome.estimate.q_lrf_trf);
+  Doubts doubts = 1;
+  EXPECT_EQ(tracker.motion_at(now_ns, chaser(turn), limits, state, doubts).q_lrf_trf,
+            outcome.estimate.q_lrf_trf);
+  EXPECT_EQ(doubts, 1U | kChaserNowUnknown);
   const RangeImage frame = next();
   step(frame, chaser(turn));
   EXPECT_EQ(outcome.estimate.frames_since_reset, 1U);
   EXPECT_EQ(outcome.frames_given_up, 2U);
   EXPECT_TRUE(outcome.chaser_changed);
   EXPECT_EQ(outcome.doubts & kChaserUnknown, 0U);
-  EXPECT_EQ(tracker.motion_at(now_ns, {}, limits, state).q_lrf_trf, outcome.estimate.q_lrf_trf);
+  doubts = 1;
+  EXPECT_EQ(tracker.motion_at(now_ns, {}, limits, state, doubts).q_lrf_trf, outcome.estimate.q_lrf_trf);
+  EXPECT_EQ(doubts, 1U | kChaserNowUnknown);
 }
 
 // Verifies TS-EST-184.
