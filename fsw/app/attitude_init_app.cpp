@@ -225,6 +225,7 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
         c.frames_repeated,
         c.frames_without_chaser,
         c.frames_superseded,
+        c.frames_overflowed,
         c.frames_passed_over,
         c.sequence_gaps,
         c.estimator_resets,

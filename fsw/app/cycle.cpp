@@ -17,12 +17,15 @@ gnc::FrameVerdict compare(const gnc::RangeImage& kept, const gnc::RangeImage& la
                                                                                : gnc::FrameVerdict::kPass;
 }
 
+static_assert(hal::Lidar::kMaxWaiting <= config::kMaxDeliveriesPerCycle, "a cycle receives all that wait");
+
 void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t now_ns,
                     CycleWorkspace& workspace) {
   StepInputs& inputs = workspace.inputs;
   inputs.frame = nullptr;
   inputs.dropped_count = 0;
   inputs.frame_wrong_size = 0;
+  inputs.frames_overflowed = lidar.take_dropped();
   std::size_t next = 0;  // of the two buffers, the one that does not hold inputs.frame
   for (int i = 0; i < config::kMaxDeliveriesPerCycle; ++i) {
     gnc::RangeImage& frame = workspace.frames[next];

@@ -23,6 +23,7 @@ void FrameHandler::refuse_all(const StepInputs& inputs, std::int32_t time_step_m
     count(counters.frames_stale, refused - wrong_size);
     count(counters.frames_bad, wrong_size);
     count(counters.frames_refused, refused);
+    count(counters.frames_overflowed, inputs.frames_overflowed);
     if (refused == 0) count(counters.frames_missing);
     outputs_.attitude.validity = refused > 0 ? Validity::kFrameRefused : Validity::kNoFrame;
   }
@@ -30,6 +31,8 @@ void FrameHandler::refuse_all(const StepInputs& inputs, std::int32_t time_step_m
 }
 
 void FrameHandler::take(const StepInputs& inputs) {
+  count(state_.counters.frames_overflowed, inputs.frames_overflowed);
+  count(state_.frames_unused, inputs.frames_overflowed);
   if (inputs.deliveries() == 0) {
     note_missing();
     return;
@@ -156,7 +159,7 @@ void FrameHandler::note_use(const gnc::RangeImage& frame, std::int64_t last_expo
                             std::uint32_t expected_number) {
   const gnc::FrameOutcome& outcome = workspace_.outcome;
   hal::Telemetry& counters = state_.counters;
-  // A frame that was superseded or passed over did arrive.
+  // A frame that was superseded, passed over or dropped for lack of room did arrive.
   const bool went_back = outcome.numbers_skipped == gnc::FrameGate::kWentBack;
   if (went_back || outcome.numbers_skipped > state_.frames_unused) {
     const std::uint32_t skipped = went_back ? 1U : outcome.numbers_skipped - state_.frames_unused;

@@ -131,15 +131,17 @@ TEST_F(Cycle, NewestFrameOfABacklogIsNotUsedIfItRepeatsTheOneBefore) {
 TEST_F(Cycle, LargestBacklogIsReceivedInOneCycle) {
   for (int i = 0; i < config::kMaxDeliveriesPerCycle + 2; ++i) lidar.add_wrong_size();
   run();
-  EXPECT_EQ(lidar.waiting(), 2U);
+  EXPECT_EQ(lidar.waiting(), 0U);
+  EXPECT_EQ(link.telemetry.back().frames_overflowed, 2U);
   EXPECT_EQ(link.telemetry.back().frames_bad, static_cast<unsigned>(config::kMaxDeliveriesPerCycle));
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
 // Verifies TS-LID-052.
 TEST_F(Cycle, SensorsFasterThanTheCycleGiveAnAttitudeInEveryCycle) {
-  for (const std::int64_t period_ns : {std::int64_t{200'000'000}, std::int64_t{1'000'000'000},
-                                       std::int64_t{1'351'351'351}, std::int64_t{2'700'000'001}}) {
+  for (const std::int64_t period_ns :
+       {std::int64_t{33'333'333}, std::int64_t{80'000'000}, std::int64_t{200'000'000},
+        std::int64_t{1'000'000'000}, std::int64_t{1'351'351'351}, std::int64_t{2'700'000'001}}) {
     init_with_model();
     std::uint32_t number = 0;
     std::int64_t exposure_ns = now_ns + 123'456'789;
@@ -154,11 +156,30 @@ TEST_F(Cycle, SensorsFasterThanTheCycleGiveAnAttitudeInEveryCycle) {
     }
     EXPECT_GE(attitudes, kCycles - 1) << period_ns;
     const hal::Telemetry& counters = link.telemetry.back();
-    EXPECT_EQ(counters.frames_used + counters.frames_superseded, number) << "every frame is accounted for";
+    EXPECT_EQ(counters.frames_used + counters.frames_superseded + counters.frames_overflowed, number)
+        << "every frame is accounted for";
+    EXPECT_EQ(counters.frames_overflowed > 0, period_ns < config::kFramePeriod_ns / 32);
     EXPECT_EQ(counters.sequence_gaps, 0U);
     EXPECT_LE(counters.estimator_resets, 1U);
     EXPECT_EQ(link.attitudes.back().frames_since_reset, static_cast<unsigned>(attitudes));
   }
+}
+
+TEST_F(Cycle, OverflowIsCountedWithoutAGoodFrameTooAndInRunOnly) {
+  class Overflowing final : public hal::Lidar {
+   public:
+    hal::LidarStatus receive(gnc::RangeImage&) override { return hal::LidarStatus::kNoFrame; }
+    std::uint32_t take_dropped() override { return 3; }
+  } overflowing;
+  const auto overflowed = [&](std::int64_t time_ns) {
+    now_ns = time_ns;
+    run_cycle(*app, {overflowing, link, watchdog}, now_ns, 0, *workspace);
+    return link.telemetry.back().frames_overflowed;
+  };
+  EXPECT_EQ(overflowed(next_time_ns()), 3U);
+  EXPECT_EQ(overflowed(now_ns), 6U) << "the time does not advance";
+  link.add(set_mode(Mode::kStandby));
+  EXPECT_EQ(overflowed(next_time_ns()), 6U);
 }
 
 TEST_F(Cycle, SensorSlowerThanTheCycleKeepsItsTrack) {

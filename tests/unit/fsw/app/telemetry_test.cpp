@@ -37,6 +37,7 @@ TEST_F(Telemetry, StateDigestDependsOnWhatIsKeptBetweenFrames) {
            Change([](AppState& state) { state.counters.frames_repeated = 1; }),
            Change([](AppState& state) { state.counters.frames_without_chaser = 1; }),
            Change([](AppState& state) { state.counters.frames_superseded = 1; }),
+           Change([](AppState& state) { state.counters.frames_overflowed = 1; }),
            Change([](AppState& state) { state.counters.frames_passed_over = 1; }),
        }) {
     hal::CommandKeys keys = kTestKeys;
