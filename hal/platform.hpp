@@ -18,7 +18,8 @@ struct Platform {
   // nullptr: nothing is kept. After a reset old telecommands can then be replayed, and the mode, the bank,
   // the limits and the responses are those of a first start.
   PersistentStore* persistent = nullptr;
-  ResetCause reset_cause = ResetCause::kPowerOn;
+  // Unknown is abnormal: the application then starts in STANDBY.
+  ResetCause reset_cause = ResetCause::kOther;
 };
 
 }  // namespace tumblesight::hal

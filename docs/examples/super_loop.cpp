@@ -121,7 +121,9 @@ fsw::CycleWorkspace workspace;
 int main() {
   // No command key: this link delivers authentic telecommands only. "near_shoemaker": refuse the model of
   // another target. Without a usable model the application is in mode SAFE and still reports telemetry.
-  app.init({&stopwatch, &model_store, nullptr}, "near_shoemaker");
+  // This board has no persistent store, and says that it was powered on after every reset: the application
+  // starts in RUN. After a cause that is abnormal or unknown it would start in STANDBY.
+  app.init({&stopwatch, &model_store, nullptr, nullptr, hal::ResetCause::kPowerOn}, "near_shoemaker");
   for (;;) {
     std::uint32_t slips = 0;
     const std::int64_t now_ns = timer.wait_next_release_ns(slips);

@@ -9,6 +9,7 @@ gnc::FrameTimeLimits AppState::time_limits() const {
 
 gnc::FrameTrackerLimits AppState::tracker_limits() const {
   return {time_limits(), std::int64_t{table[Parameter::kLongestCoast_ms]} * 1'000'000,
+          std::int64_t{table[Parameter::kLongestWithoutChaser_ms]} * 1'000'000,
           std::int64_t{table[Parameter::kChaserTimeTolerance_us]} * 1'000,
           table[Parameter::kPredictedError_urad], table[Parameter::kAttitudeJump_urad]};
 }

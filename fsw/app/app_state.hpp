@@ -76,7 +76,7 @@ struct alignas(8) AppState {
   std::uint32_t faults_seen = 0;      // in this cycle; bit n: Fault n
   std::uint32_t estimator_crc32 = 0;  // of the estimator's state at the end of the last cycle
   std::uint32_t constants_crc32 = 0;  // of the estimator's copy of model data
-  std::uint32_t frames_unused = 0;    // superseded or passed over since the last used one
+  std::uint32_t frames_unused = 0;    // superseded, passed over or overflowed since the last used one
   std::array<gnc::ModelStatus, hal::kModelBanks> boot_status{};
   Mode mode = Mode::kBoot;
   bool boot_to_report = false;  // the next step reports what init() found

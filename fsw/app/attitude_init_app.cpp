@@ -192,15 +192,21 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
   crc.add_u32(estimator_.state_crc32());
   crc.add_u32(estimator_.model().crc32);
   crc.add_u32(static_cast<std::uint32_t>(state.mode));
-  for (const bool flag : {state.has_model(), state.has_cycle, state.tracking.gate.has_last(), state.outage,
-                          state.boot_to_report}) {
+  const gnc::FrameTrackerState& tracking = state.tracking;
+  for (const bool flag : {state.has_model(), state.has_cycle, tracking.gate.has_last(), state.outage,
+                          state.boot_to_report, tracking.has_jumped, tracking.has_chaser_attitude}) {
     crc.add_u32(flag ? 1U : 0U);
   }
   add_time(state.now_ns);
-  add_time(state.tracking.gate.last_exposure_time_ns());
+  add_time(tracking.gate.last_exposure_time_ns());
+  for (const std::int32_t part : tracking.q_inertial_lrf) crc.add_u32(static_cast<std::uint32_t>(part));
+  for (const gnc::FrameSignature& signature : tracking.signatures)
+    crc.add(signature.data(), signature.size());
   const hal::Telemetry& c = state.counters;
   for (const std::uint32_t number :
-       {state.tracking.gate.last_sequence_number(),
+       {tracking.gate.last_sequence_number(),
+        state.authority.slot(),
+        state.frames_unused,
         state.assertions.count(),
         c.command_counter,
         state.faults.persisting() & ~(bit_of(Fault::kDeadline) | bit_of(Fault::kSlip)),
@@ -217,6 +223,11 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
         c.frames_duplicate,
         c.frames_stale,
         c.frames_bad,
+        c.frames_repeated,
+        c.frames_without_chaser,
+        c.frames_superseded,
+        c.frames_overflowed,
+        c.frames_passed_over,
         c.sequence_gaps,
         c.estimator_resets,
         c.attitudes_doubtful,

@@ -61,8 +61,8 @@ class AttitudeInitApp final {
   // Whether a frame passes the rules for time and order in a cycle at `now_ns`. For the choice of the frame
   // that a step gets; the step judges it again.
   [[nodiscard]] gnc::FrameVerdict judge(const gnc::RangeImage& frame, std::int64_t now_ns) const;
-  // To compare runs: CRC-32 over the estimator's state, the active model's CRC, mode, times, last frame,
-  // limits, persisting faults and counters. It excludes everything that depends on the wall clock.
+  // To compare runs: CRC-32 over the estimator's state, the active model's CRC, mode, key slot, times, last
+  // frames, limits, persisting faults and counters. It excludes everything that depends on the wall clock.
   std::uint32_t state_crc32() const;
   Mode mode() const { return state_->mode; }
   // For a link that authenticates commands before it queues them: the key slot in use, and the counter of the

@@ -8,12 +8,16 @@ void drop(const gnc::RangeImage& frame, gnc::FrameVerdict why, StepInputs& input
                                                                       frame.exposure_time_ns};
 }
 
-// Why `later`, which passes the gate, is not taken although `kept` does too; kPass: it is taken instead.
+// Why `later`, which passes the gate, is not taken although `kept` does too; kPass: it is taken instead. The
+// time of a repetition is not that of its content.
 gnc::FrameVerdict compare(const gnc::RangeImage& kept, const gnc::RangeImage& later) {
   if (later.sequence_number == kept.sequence_number) return gnc::FrameVerdict::kDuplicate;
-  return later.exposure_time_ns > kept.exposure_time_ns ? gnc::FrameVerdict::kPass
-                                                        : gnc::FrameVerdict::kSuperseded;
+  if (later.exposure_time_ns <= kept.exposure_time_ns) return gnc::FrameVerdict::kSuperseded;
+  return gnc::is_repetition(gnc::signature_of(kept), gnc::signature_of(later)) ? gnc::FrameVerdict::kRepeated
+                                                                               : gnc::FrameVerdict::kPass;
 }
+
+static_assert(hal::Lidar::kMaxWaiting <= config::kMaxDeliveriesPerCycle, "a cycle receives all that wait");
 
 void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t now_ns,
                     CycleWorkspace& workspace) {
@@ -21,6 +25,7 @@ void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t 
   inputs.frame = nullptr;
   inputs.dropped_count = 0;
   inputs.frame_wrong_size = 0;
+  inputs.frames_overflowed = lidar.take_dropped();
   std::size_t next = 0;  // of the two buffers, the one that does not hold inputs.frame
   for (int i = 0; i < config::kMaxDeliveriesPerCycle; ++i) {
     gnc::RangeImage& frame = workspace.frames[next];

@@ -23,6 +23,7 @@ void FrameHandler::refuse_all(const StepInputs& inputs, std::int32_t time_step_m
     count(counters.frames_stale, refused - wrong_size);
     count(counters.frames_bad, wrong_size);
     count(counters.frames_refused, refused);
+    count(counters.frames_overflowed, inputs.frames_overflowed);
     if (refused == 0) count(counters.frames_missing);
     outputs_.attitude.validity = refused > 0 ? Validity::kFrameRefused : Validity::kNoFrame;
   }
@@ -30,6 +31,8 @@ void FrameHandler::refuse_all(const StepInputs& inputs, std::int32_t time_step_m
 }
 
 void FrameHandler::take(const StepInputs& inputs) {
+  count(state_.counters.frames_overflowed, inputs.frames_overflowed);
+  count(state_.frames_unused, inputs.frames_overflowed);
   if (inputs.deliveries() == 0) {
     note_missing();
     return;
@@ -134,6 +137,10 @@ void FrameHandler::note_refusal(FrameVerdict verdict, std::uint32_t sequence_num
       state_.faults_seen |= bit_of(Fault::kFrameFrozen);
       report_(EventId::kFrameRepeated, number);
       return;
+    case FrameVerdict::kWithoutChaser:
+      count(counters.frames_without_chaser);
+      report_(EventId::kFrameWithoutChaser, number, since_last_ms);
+      return;
     case FrameVerdict::kPass:
     case FrameVerdict::kBadContent:
     case FrameVerdict::kSuperseded:
@@ -152,7 +159,7 @@ void FrameHandler::note_use(const gnc::RangeImage& frame, std::int64_t last_expo
                             std::uint32_t expected_number) {
   const gnc::FrameOutcome& outcome = workspace_.outcome;
   hal::Telemetry& counters = state_.counters;
-  // A frame that was superseded or passed over did arrive.
+  // A frame that was superseded, passed over or dropped for lack of room did arrive.
   const bool went_back = outcome.numbers_skipped == gnc::FrameGate::kWentBack;
   if (outcome.numbers_skipped > state_.frames_unused) {
     const std::uint32_t skipped = went_back ? 1U : outcome.numbers_skipped - state_.frames_unused;
@@ -163,7 +170,7 @@ void FrameHandler::note_use(const gnc::RangeImage& frame, std::int64_t last_expo
   if (outcome.frames_given_up > 0) {
     count(counters.estimator_resets);
     report_(EventId::kEstimatorResetByGap, elapsed_ms(last_exposure_time_ns, frame.exposure_time_ns),
-            clamp_to_int32(outcome.frames_given_up));
+            clamp_to_int32(outcome.frames_given_up), outcome.chaser_changed ? 1 : 0);
   }
   count(counters.frames_used);
   state_.frames_unused = 0;
@@ -201,14 +208,15 @@ void FrameHandler::report_attitude(const StepInputs& inputs, Validity validity) 
   attitude.q_lrf_trf_single_frame = estimate.q_lrf_trf_single_frame;
   attitude.predicted_error_urad = estimate.predicted_error_urad;
   attitude.predicted_error_single_frame_urad = estimate.predicted_error_single_frame_urad;
-  attitude.doubts = static_cast<std::uint8_t>(outcome.doubts);
   attitude.law = static_cast<std::uint8_t>(estimate.law);
   attitude.rate_lrf_urad_s = estimate.rate_lrf_urad_s;
   attitude.attitude_covariance_e8 = gnc::attitude_covariance(estimate.predicted_error_urad);
   attitude.rate_covariance_e8 =
       gnc::rate_covariance(estimate.predicted_error_urad, estimate.frames_since_reset, outcome.elapsed_ns);
+  gnc::Doubts doubts = outcome.doubts;
   const gnc::PropagatedMotion now =
-      tracker_.motion_at(state_.now_ns, inputs.chaser_now, state_.tracker_limits(), state_.tracking);
+      tracker_.motion_at(state_.now_ns, inputs.chaser_now, state_.tracker_limits(), state_.tracking, doubts);
+  attitude.doubts = static_cast<std::uint8_t>(doubts);
   attitude.q_lrf_trf_now = now.q_lrf_trf;
   attitude.rate_lrf_now_urad_s = now.rate_lrf_urad_s;
   attitude.q_lrf_trf_second = estimate.q_lrf_trf_second;

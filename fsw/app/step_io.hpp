@@ -36,6 +36,8 @@ struct StepInputs {
   int dropped_count = 0;
   int frame_wrong_size = 0;  // deliveries that the sensor interface dropped; with dropped_count and `frame`
                              // at most kMaxDeliveriesPerCycle
+  std::uint32_t frames_overflowed =
+      0;  // dropped by the sensor interface for lack of room, since the last step
   std::array<hal::CommandPacket, config::kMaxCommandsPerStep> commands{};
   int command_count = 0;
   hal::DroppedCommands commands_dropped;  // by the link, since the last step

@@ -20,7 +20,7 @@ Matrix3<Fixed> rotation_from_quaternion(const QuaternionQ30& q);
 
 // Cosine of half the angle between two unit quaternions, |a . b|, in Q30.
 std::int32_t cos_half_angle(const QuaternionQ30& a, const QuaternionQ30& b);
-// Cosine of half of an angle in 0 ... pi, in Q30, with an error below 1e-5.
+// Cosine of half of an angle in 0 ... pi, in Q30, with an error below 2.5e-5, the largest at pi.
 std::int32_t cos_half_of(std::uint32_t angle_urad);
 
 }  // namespace tumblesight::gnc

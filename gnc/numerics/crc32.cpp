@@ -55,18 +55,6 @@ void Crc32::add_u32(std::uint32_t value) {
   remainder_ = after_word(remainder_, value);
 }
 
-void Crc32::add_u16(const std::uint16_t* values, std::size_t count) {
-  std::uint32_t remainder = remainder_;
-  std::size_t at = 0;
-  for (; at + 2 <= count; at += 2)
-    remainder = after_word(remainder, values[at] | std::uint32_t{values[at + 1]} << 16);
-  remainder_ = remainder;
-  if (at == count) return;
-  const std::array<std::uint8_t, 2> last{static_cast<std::uint8_t>(values[at]),
-                                         static_cast<std::uint8_t>(values[at] >> 8)};
-  add(last.data(), last.size());
-}
-
 void Crc32::add_f32(const float* values, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     std::uint32_t bits = 0;

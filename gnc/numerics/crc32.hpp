@@ -15,7 +15,6 @@ class Crc32 {
  public:
   void add(const std::uint8_t* data, std::size_t size_bytes);
   void add_u32(std::uint32_t value);
-  void add_u16(const std::uint16_t* values, std::size_t count);
   void add_f32(const float* values, std::size_t count);  // the bits of `count` IEEE 754 floats
   std::uint32_t value() const { return ~remainder_; }    // of everything added so far; more may be added
 

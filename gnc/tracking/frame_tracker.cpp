@@ -1,7 +1,6 @@
 #include "gnc/tracking/frame_tracker.hpp"
 
 #include "gnc/attitude/quaternion.hpp"
-#include "gnc/numerics/crc32.hpp"
 
 namespace tumblesight::gnc {
 namespace {
@@ -27,33 +26,31 @@ QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const Quater
   return product(conjugate(q_inertial_lrf_now), q_inertial_lrf_last);
 }
 
-std::uint32_t crc32_of_ranges(const RangeImage& frame) {
-  const int rays = min<int>(frame.rays, RangeImage::kMaxRays);
-  Crc32 crc;
-  crc.add_u32(frame.rays);
-  crc.add_u16(frame.ranges.data(), static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays));
-  return crc.value();
-}
-
 template <class N>
 void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
                           const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) {
   outcome.verdict = state.gate.judge(frame, now_ns, limits.time);
   if (!outcome.used()) return;
-  const std::uint32_t ranges_crc32 = crc32_of_ranges(frame);
-  if (state.has_ranges && ranges_crc32 == state.ranges_crc32) {
-    outcome.verdict = FrameVerdict::kRepeated;
-    return;
+  const FrameSignature signature = signature_of(frame);
+  for (const FrameSignature& used : state.signatures) {
+    if (is_repetition(used, signature)) outcome.verdict = FrameVerdict::kRepeated;
   }
+  if (!outcome.used()) return;
 
   FrameInterval interval;
   outcome.elapsed_ns = state.gate.elapsed_ns(frame);
   interval.elapsed_ns = outcome.elapsed_ns;
   const bool knows_chaser = holds_at(chaser, frame.exposure_time_ns, limits.chaser_time_tolerance_ns);
-  if (knows_chaser && state.has_chaser_attitude)
+  const bool track_knows_chaser = state.has_chaser_attitude;
+  if (track_knows_chaser && !knows_chaser && outcome.elapsed_ns <= limits.longest_without_chaser_ns) {
+    outcome.verdict = FrameVerdict::kWithoutChaser;
+    return;
+  }
+  if (knows_chaser && track_knows_chaser)
     interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
   const std::uint32_t frames_before = estimator_.frames();
-  interval.gives_up_track = outcome.elapsed_ns > limits.longest_coast_ns;
+  const bool is_gap = outcome.elapsed_ns > limits.longest_coast_ns;
+  interval.gives_up_track = is_gap || knows_chaser != track_knows_chaser;
   outcome.content = estimator_.step(frame, interval, outcome.estimate);
   if (outcome.content != FrameStatus::kOk) {
     outcome.verdict = FrameVerdict::kBadContent;
@@ -64,13 +61,12 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   outcome.frames_given_up = interval.gives_up_track ? frames_before : 0;
   if (outcome.frames_given_up > 0) state.forget_track();
   outcome.doubts = outcome.estimate.rate_is_ambiguous ? kRateAmbiguous : 0;
-  const bool starts_track = outcome.estimate.frames_since_reset == 1;
-  if (!knows_chaser || !(state.has_chaser_attitude || starts_track)) outcome.doubts |= kChaserUnknown;
+  outcome.chaser_changed = interval.gives_up_track && !is_gap;
+  if (!knows_chaser) outcome.doubts |= kChaserUnknown;
   state.gate.accept(frame);
   state.q_inertial_lrf = chaser.q_inertial_lrf;
   state.has_chaser_attitude = knows_chaser;
-  state.ranges_crc32 = ranges_crc32;
-  state.has_ranges = true;
+  state.signatures = {signature, state.signatures[0]};
 }
 
 template <class N>
@@ -94,12 +90,15 @@ void FrameTracker<N>::check(const FrameTrackerLimits& limits, FrameTrackerState&
 
 template <class N>
 PropagatedMotion FrameTracker<N>::motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
-                                            const FrameTrackerLimits& limits,
-                                            const FrameTrackerState& state) const {
+                                            const FrameTrackerLimits& limits, const FrameTrackerState& state,
+                                            Doubts& doubts) const {
   FrameInterval interval;
   interval.elapsed_ns = time_after(state.gate.last_exposure_time_ns(), time_ns);
-  if (state.has_chaser_attitude && holds_at(chaser, time_ns, limits.chaser_time_tolerance_ns))
+  if (state.has_chaser_attitude && holds_at(chaser, time_ns, limits.chaser_time_tolerance_ns)) {
     interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
+  } else {
+    doubts |= kChaserNowUnknown;
+  }
   return estimator_.propagated(interval);
 }
 

@@ -1,30 +1,36 @@
 // FrameTracker: the way of a frame through admission, estimator and attitude checks to an attitude and its
 // validity. Pure: the flight application and the evaluation on the ground call the same function.
 //
-//   admission   time and order (frame_gate.hpp); ranges that repeat those of the last used frame are refused
-//               before the estimator sees them, across gaps and resets
+//   admission   time and order (frame_gate.hpp); a frame that repeats one of the last two used ones
+//               (frame_signature.hpp) is refused before the estimator sees it, across gaps and resets
 //   gap         the track coasts over the time since the last used frame; after more than longest_coast_ns it
 //               is given up, and the frame starts a new one
-//   chaser      the turn of the LRF since the last used frame, from the attitudes of the chaser at both
-//               exposures. Without one of them the chaser is taken not to have turned, and the outcome says
-//               so
+//   chaser      a track turns with the LRF, by the attitudes of the chaser at both exposures, or the chaser
+//   is
+//               taken not to turn in all of it, which each outcome says. In a track of the first kind a frame
+//               without the attitude is refused; after more than longest_without_chaser_ns it starts a track
+//               of the second kind. In that one a frame with the attitude starts a track of the first kind. A
+//               single unknown turn of 13 degrees in a track would spoil its rate for the next ten frames
 //   checks      expected error, and distance from the attitude that the track predicted
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "gnc/rcnn/attitude_estimator.hpp"
 #include "gnc/tracking/chaser_attitude.hpp"
 #include "gnc/tracking/frame_gate.hpp"
+#include "gnc/tracking/frame_signature.hpp"
 
 namespace tumblesight::gnc {
 
 struct FrameTrackerLimits {
   FrameTimeLimits time;
-  std::int64_t longest_coast_ns;          // between the exposures of two used frames
-  std::int64_t chaser_time_tolerance_ns;  // between the chaser's attitude and the exposure
-  std::uint32_t predicted_error_urad;     // a larger expected error is a doubt
-  std::uint32_t attitude_jump_urad;       // a larger distance from the predicted attitude is a doubt
+  std::int64_t longest_coast_ns;           // between the exposures of two used frames
+  std::int64_t longest_without_chaser_ns;  // since the last used frame, in a track with its attitude
+  std::int64_t chaser_time_tolerance_ns;   // between the chaser's attitude and the exposure
+  std::uint32_t predicted_error_urad;      // a larger expected error is a doubt
+  std::uint32_t attitude_jump_urad;        // a larger distance from the predicted attitude is a doubt
 };
 
 // What is kept from frame to frame, beside the estimator's state.
@@ -33,12 +39,11 @@ struct FrameTrackerState {
   QuaternionQ30 q_inertial_lrf = kIdentityQ30;  // at the last used frame
   bool has_chaser_attitude = false;             // q_inertial_lrf is valid
   bool has_jumped = false;                      // the attitude of the last used frame
-  bool has_ranges = false;                      // ranges_crc32 is valid
-  std::uint32_t ranges_crc32 = 0;               // of the last used frame
+  std::array<FrameSignature, 2> signatures{};   // of the last two used frames; the last one is first
 
-  // The estimator was reset: its next attitude is not compared with the last one.
-  void forget_track() { has_jumped = false; }
-  // The times and numbers of earlier frames say nothing about the next one. The ranges still do.
+  // The estimator was reset: its next attitude has no last one, to be compared with or to turn from.
+  void forget_track() { has_jumped = has_chaser_attitude = false; }
+  // The times and numbers of earlier frames say nothing about the next one. The signatures still do.
   void forget_times() {
     gate.forget();
     has_chaser_attitude = false;
@@ -49,9 +54,10 @@ struct FrameTrackerState {
 using Doubts = std::uint32_t;
 inline constexpr Doubts kErrorLarge = 1;    // expected error above its limit
 inline constexpr Doubts kAttitudeJump = 2;  // too far from the predicted one, in this frame or the one before
-inline constexpr Doubts kAttitudeUnsound = 4;  // not a unit quaternion, or an expected error above pi
-inline constexpr Doubts kRateAmbiguous = 8;    // AttitudeEstimate::rate_is_ambiguous; the attitude is valid
-inline constexpr Doubts kChaserUnknown = 16;   // no attitude of the chaser; the attitude is valid
+inline constexpr Doubts kAttitudeUnsound = 4;    // not a unit quaternion, or an expected error above pi
+inline constexpr Doubts kRateAmbiguous = 8;      // AttitudeEstimate::rate_is_ambiguous; the attitude is valid
+inline constexpr Doubts kChaserUnknown = 16;     // in the whole track; the attitude is valid
+inline constexpr Doubts kChaserNowUnknown = 32;  // motion_at() is in the LRF of the exposure
 inline constexpr Doubts kAgainstAttitude = kErrorLarge | kAttitudeJump | kAttitudeUnsound;
 
 struct FrameOutcome {
@@ -61,7 +67,8 @@ struct FrameOutcome {
   Doubts doubts = 0;
   std::int64_t elapsed_ns = 0;        // since the last used frame; 0: there is none
   std::uint32_t numbers_skipped = 0;  // FrameGate::numbers_skipped()
-  std::uint32_t frames_given_up = 0;  // frames of the track that was given up after a gap; 0: none was
+  std::uint32_t frames_given_up = 0;  // of the track that ends before this frame; 0: none does
+  bool chaser_changed = false;  // it ends because the chaser's attitude is known from now on, or no more
   AttitudeEstimate estimate;
 
   bool used() const { return verdict == FrameVerdict::kPass; }
@@ -70,8 +77,6 @@ struct FrameOutcome {
 
 // Turn of the LRF from `last` to `now`: v_lrf now = q v_lrf last.
 QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const QuaternionQ30& q_inertial_lrf_now);
-// CRC-32 over the ranges of a frame and their number.
-std::uint32_t crc32_of_ranges(const RangeImage& frame);
 
 template <class N>
 class FrameTracker {
@@ -91,9 +96,12 @@ class FrameTracker {
   void use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
            const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome);
   void check(const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) const;
-  // The motion of the target at another time than that of the last used frame. `chaser`: at that time.
+  // The motion of the target at another time than that of the last used frame, in the LRF of that time.
+  // `chaser`: at that time. Without it or without that of the last used frame the motion is in the LRF of the
+  // exposure, and kChaserNowUnknown is added to `doubts`.
   PropagatedMotion motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
-                             const FrameTrackerLimits& limits, const FrameTrackerState& state) const;
+                             const FrameTrackerLimits& limits, const FrameTrackerState& state,
+                             Doubts& doubts) const;
 
  private:
   AttitudeEstimator<N>& estimator_;

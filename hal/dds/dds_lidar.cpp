@@ -28,4 +28,9 @@ LidarStatus DdsLidar::receive(gnc::RangeImage& frame) {
   return LidarStatus::kFrame;
 }
 
+std::uint32_t DdsLidar::take_dropped() {
+  const MailboxLock lock(mutex_);
+  return waiting_.take_dropped();
+}
+
 }  // namespace tumblesight::hal::dds

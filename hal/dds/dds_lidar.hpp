@@ -19,12 +19,15 @@ class DdsLidar final : public Lidar {
 
   // kWrongSize: the ray count is 0 or above RangeImage::kMaxRays. Other faults are left to the application.
   [[nodiscard]] LidarStatus receive(gnc::RangeImage& frame) override;
+  std::uint32_t take_dropped() override;
 
  private:
   struct Entry {
     bool wrong_size = false;
     gnc::RangeImage frame;
   };
+
+  static_assert(2 * kMaxFramesPerStep <= kMaxWaiting, "a cycle receives everything that waits");
 
   MailboxMutex mutex_;
   FixedQueue<Entry, 2 * kMaxFramesPerStep> waiting_;

@@ -19,10 +19,12 @@ enum class Validity : std::uint8_t {
 };
 
 // Bits of AttitudeReport::doubts.
-inline constexpr std::uint8_t kDoubtErrorLarge = 1;      // kDoubtful: expected error above its limit
-inline constexpr std::uint8_t kDoubtAttitudeJump = 2;    // kDoubtful: in this frame or the one before
-inline constexpr std::uint8_t kDoubtRateAmbiguous = 8;   // the target turns too far between two frames
-inline constexpr std::uint8_t kDoubtChaserUnknown = 16;  // the chaser is taken not to have turned
+inline constexpr std::uint8_t kDoubtErrorLarge = 1;     // kDoubtful: expected error above its limit
+inline constexpr std::uint8_t kDoubtAttitudeJump = 2;   // kDoubtful: in this frame or the one before
+inline constexpr std::uint8_t kDoubtRateAmbiguous = 8;  // the target turns too far between two frames
+inline constexpr std::uint8_t kDoubtChaserUnknown =
+    16;  // in the whole track, in which it is taken not to turn
+inline constexpr std::uint8_t kDoubtChaserNowUnknown = 32;  // q_lrf_trf_now is in the LRF of the exposure
 
 // Quaternions: Hamilton, scalar first (w, x, y, z), target frame (TRF) to LiDAR frame (LRF), unit norm, Q30.
 // Expected errors: 0 ... pi.
@@ -44,7 +46,7 @@ struct AttitudeReport {
   std::array<std::int32_t, 6> attitude_covariance_e8{};  // xx, xy, xz, yy, yz, zz [1e-8 rad^2]
   std::array<std::int32_t, 6> rate_covariance_e8{};      // [1e-8 rad^2/s^2]
   // Attitude and rate propagated to time_ns, in the LRF of that time. Without the chaser's attitude at both
-  // times: in the LRF of the exposure.
+  // times: in the LRF of the exposure, which kDoubtChaserNowUnknown says.
   std::array<std::int32_t, 4> q_lrf_trf_now{1 << 30, 0, 0, 0};
   std::array<std::int32_t, 3> rate_lrf_now_urad_s{};
   // The likeliest other attitude that the frame alone allows, and its odds against the reported one; 0: none.

@@ -38,11 +38,13 @@ enum class EventId : std::uint16_t {
   kFrameWrongSize = 36,          // [-, -, -]; the sensor interface dropped data that is not a frame
   kSequenceSkipped = 37,         // [number expected, number received, numbers skipped; -1: it went back]
   kFrameTooSoon = 38,            // [sequence number, exposure minus last accepted exposure, -]
-  kFrameRepeated = 39,           // [sequence number, -, -]; the ranges of the last used frame
+  kFrameRepeated = 39,           // [sequence number, -, -]; a frozen sensor
 
-  kEstimatorResetByGap = 40,    // [exposure gap, frames since the last reset, -]
+  kEstimatorResetByGap = 40,  // [exposure gap, frames since the last reset, 1: the chaser's attitude is known
+                              // from now on, or no more]
   kEstimatorResetByFault = 41,  // [Fault, -, -]
   kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump]
+  kFrameWithoutChaser = 43,     // [sequence number, exposure minus last accepted exposure, -]
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now
   kFaultPersists = 51,  // [Fault, Response taken, cycles with the fault that its rule requires]
@@ -90,7 +92,7 @@ struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 57> kEventRules{{
+inline constexpr std::array<EventRule, 58> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kUploadFailed, Severity::kError},
@@ -114,6 +116,7 @@ inline constexpr std::array<EventRule, 57> kEventRules{{
     {EventId::kEstimatorResetByGap, Severity::kWarning},
     {EventId::kEstimatorResetByFault, Severity::kWarning},
     {EventId::kAttitudeDoubtful, Severity::kInformation},
+    {EventId::kFrameWithoutChaser, Severity::kWarning},
     {EventId::kAssertion, Severity::kError},
     {EventId::kFaultPersists, Severity::kWarning},
     {EventId::kFaultOver, Severity::kInformation},

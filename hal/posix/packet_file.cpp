@@ -20,7 +20,7 @@ bool is_first_header(const std::uint8_t* bytes) {
     return std::memcmp(bytes, packet.bytes.data(), kHeaderBytes) == 0;
   };
   return matches(encoder.encode(AttitudeReport{})) || matches(encoder.encode(Telemetry{})) ||
-         matches(encoder.encode(Event{})) || matches(encoder.encode(ModelDump{}));
+         matches(encoder.encode(Event{})) || matches(encoder.encode(MemoryDump{}));
 }
 
 // 0: it does not exist, is empty or holds packets, or it is no regular file.

@@ -7,6 +7,6 @@
 namespace tumblesight::sim {
 
 inline constexpr gnc::FrameTrackerLimits kFlightLimits{
-    {1'000'000, 2'970'000'000}, 21'600'000'000, 10'000'000, 523'599, 1'047'198};
+    {1'000'000, 2'970'000'000}, 21'600'000'000, 8'100'000'000, 10'000'000, 523'599, 1'047'198};
 
 }  // namespace tumblesight::sim

@@ -47,8 +47,8 @@ void TraceDigest::add_telemetry(const hal::Telemetry& telemetry) {
        {static_cast<std::uint32_t>(telemetry.mode), telemetry.cycles, telemetry.commands_accepted,
         telemetry.commands_refused, telemetry.frames_used, telemetry.frames_missing, telemetry.frames_refused,
         telemetry.frames_duplicate, telemetry.frames_stale, telemetry.frames_bad, telemetry.frames_repeated,
-        telemetry.frames_superseded, telemetry.sequence_gaps, telemetry.estimator_resets,
-        telemetry.attitudes_doubtful, telemetry.model_passes}) {
+        telemetry.frames_without_chaser, telemetry.frames_superseded, telemetry.sequence_gaps,
+        telemetry.estimator_resets, telemetry.attitudes_doubtful, telemetry.model_passes}) {
     crc_.add_u32(value);
   }
 }

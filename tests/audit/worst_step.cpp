@@ -127,6 +127,13 @@ void load_commands(Upload upload = Upload::kBegins) {
   }
 }
 
+// A sensor never repeats its noise: `frame` differs from the three before it in every range.
+void vary_noise() {
+  const std::uint32_t before = frame.sequence_number - 1, changed = (before ^ frame.sequence_number) % 4;
+  for (std::uint16_t& range : frame.ranges)
+    if (range != 0) range = static_cast<std::uint16_t>(range ^ changed);
+}
+
 void begin(const char* name) {
   board::write(hal::replay::TextLine().text("step ").text(name).text("\n").c_str());
 }
@@ -136,7 +143,7 @@ void step(const char* name) {
   now_ns += config::kFramePeriod_ns;
   frame.exposure_time_ns = now_ns;
   ++frame.sequence_number;
-  frame.ranges[frame.sequence_number % frame.ranges.size()] ^= 1;  // a sensor never repeats its noise
+  vary_noise();
   inputs.frame = &frame;
   tumblesight_step_begins();
   app.step(now_ns, inputs, outputs);
@@ -273,6 +280,7 @@ int run() {
   platform.stopwatch = &stopwatch;
   platform.models = &store;
   platform.command_keys = &kKeys;
+  platform.reset_cause = hal::ResetCause::kPowerOn;
   begin("boot");
   tumblesight_step_begins();
   app.init(platform, nullptr);

@@ -28,7 +28,7 @@ struct Flown {
 
   Flown() {
     store.fill(gnc::lasting_model_image<gnc::FixedPoint>(7));
-    booted->init({&stopwatch, &store, &fsw::kTestKeys}, nullptr);
+    booted->init({&stopwatch, &store, &fsw::kTestKeys, nullptr, hal::ResetCause::kPowerOn}, nullptr);
   }
 };
 

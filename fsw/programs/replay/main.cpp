@@ -79,7 +79,7 @@ int answer(const char* argument) {
 #endif
 
 int run() {
-  app.init({&stopwatch, &model_store, nullptr}, nullptr);
+  app.init({&stopwatch, &model_store, nullptr, nullptr, hal::ResetCause::kPowerOn}, nullptr);
   if (app.mode() != Mode::kRun) return fail("model image", gnc::to_string(app.boot_status(0)));
   const auto recording_size = static_cast<std::size_t>(tumblesight_recording_end - tumblesight_recording);
   const RecordingStatus status = recording.open(tumblesight_recording, recording_size);

@@ -78,7 +78,7 @@ TrialRunner::TrialRunner(const Flight& flight, bool with_protections, bool hooke
     : flight_(flight), protected_(with_protections) {
   store_.fill(flight.model);
   if (hooked) AppMemory::estimator(*app_).network().use(hooked_kernels());
-  app_->init({&stopwatch_, &store_, &fsw::kTestKeys}, kNoTarget);
+  app_->init({&stopwatch_, &store_, &fsw::kTestKeys, nullptr, hal::ResetCause::kPowerOn}, kNoTarget);
   if (!protected_) AppMemory::widen_attitude_limits(*app_);
   fly_undisturbed();
 }

@@ -46,7 +46,7 @@ class Soak : public ::testing::Test {
   // A power cycle: the memory is cleared and the banks hold their original images.
   void restart() {
     store_.fill(gnc::lasting_model_image<gnc::FixedPoint>(7));
-    app_->init({&stopwatch_, &store_, &kTestKeys}, nullptr);
+    app_->init({&stopwatch_, &store_, &kTestKeys, nullptr, hal::ResetCause::kPowerOn}, nullptr);
     counter_ = 0;
     last_ = {};
   }

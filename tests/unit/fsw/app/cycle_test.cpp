@@ -111,18 +111,37 @@ TEST_F(Cycle, NewestFrameOfABacklogIsUsedAndTheOthersAreCounted) {
   EXPECT_EQ(counters.frames_refused, 3U);
 }
 
+// Verifies TS-LID-052.
+TEST_F(Cycle, NewestFrameOfABacklogIsNotUsedIfItRepeatsTheOneBefore) {
+  std::uint32_t number = 0;
+  for (unsigned cycle = 0; cycle < 20; ++cycle) {
+    const std::int64_t exposure_ns = next_time_ns() - 1'400'000'000;
+    lidar.add(good_frame(number++, exposure_ns, cycle));
+    lidar.add(good_frame(number++, next_time_ns() - 50'000'000, cycle));
+    run();
+    EXPECT_EQ(last_validity(), Validity::kValid);
+    EXPECT_EQ(link.attitudes.back().exposure_time_ns, exposure_ns) << "that of the content";
+  }
+  const hal::Telemetry& counters = link.telemetry.back();
+  EXPECT_EQ(counters.frames_repeated, 20U);
+  EXPECT_EQ(counters.frames_superseded, 0U);
+  EXPECT_NE(counters.faults_persisting & bit_of(Fault::kFrameFrozen), 0U);
+}
+
 TEST_F(Cycle, LargestBacklogIsReceivedInOneCycle) {
   for (int i = 0; i < config::kMaxDeliveriesPerCycle + 2; ++i) lidar.add_wrong_size();
   run();
-  EXPECT_EQ(lidar.waiting(), 2U);
+  EXPECT_EQ(lidar.waiting(), 0U);
+  EXPECT_EQ(link.telemetry.back().frames_overflowed, 2U);
   EXPECT_EQ(link.telemetry.back().frames_bad, static_cast<unsigned>(config::kMaxDeliveriesPerCycle));
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
 // Verifies TS-LID-052.
 TEST_F(Cycle, SensorsFasterThanTheCycleGiveAnAttitudeInEveryCycle) {
-  for (const std::int64_t period_ns : {std::int64_t{200'000'000}, std::int64_t{1'000'000'000},
-                                       std::int64_t{1'351'351'351}, std::int64_t{2'700'000'001}}) {
+  for (const std::int64_t period_ns :
+       {std::int64_t{33'333'333}, std::int64_t{80'000'000}, std::int64_t{200'000'000},
+        std::int64_t{1'000'000'000}, std::int64_t{1'351'351'351}, std::int64_t{2'700'000'001}}) {
     init_with_model();
     std::uint32_t number = 0;
     std::int64_t exposure_ns = now_ns + 123'456'789;
@@ -137,11 +156,30 @@ TEST_F(Cycle, SensorsFasterThanTheCycleGiveAnAttitudeInEveryCycle) {
     }
     EXPECT_GE(attitudes, kCycles - 1) << period_ns;
     const hal::Telemetry& counters = link.telemetry.back();
-    EXPECT_EQ(counters.frames_used + counters.frames_superseded, number) << "every frame is accounted for";
+    EXPECT_EQ(counters.frames_used + counters.frames_superseded + counters.frames_overflowed, number)
+        << "every frame is accounted for";
+    EXPECT_EQ(counters.frames_overflowed > 0, period_ns < config::kFramePeriod_ns / 32);
     EXPECT_EQ(counters.sequence_gaps, 0U);
     EXPECT_LE(counters.estimator_resets, 1U);
     EXPECT_EQ(link.attitudes.back().frames_since_reset, static_cast<unsigned>(attitudes));
   }
+}
+
+TEST_F(Cycle, OverflowIsCountedWithoutAGoodFrameTooAndInRunOnly) {
+  class Overflowing final : public hal::Lidar {
+   public:
+    hal::LidarStatus receive(gnc::RangeImage&) override { return hal::LidarStatus::kNoFrame; }
+    std::uint32_t take_dropped() override { return 3; }
+  } overflowing;
+  const auto overflowed = [&](std::int64_t time_ns) {
+    now_ns = time_ns;
+    run_cycle(*app, {overflowing, link, watchdog}, now_ns, 0, *workspace);
+    return link.telemetry.back().frames_overflowed;
+  };
+  EXPECT_EQ(overflowed(next_time_ns()), 3U);
+  EXPECT_EQ(overflowed(now_ns), 6U) << "the time does not advance";
+  link.add(set_mode(Mode::kStandby));
+  EXPECT_EQ(overflowed(next_time_ns()), 6U);
 }
 
 TEST_F(Cycle, SensorSlowerThanTheCycleKeepsItsTrack) {
@@ -182,10 +220,31 @@ TEST_F(Cycle, ChasersAttitudeIsAskedForAtTheExposureAndAtTheCycle) {
   EXPECT_EQ(asked, (std::vector<std::int64_t>{now_ns - 1'000'000, now_ns}));
   EXPECT_EQ(link.attitudes.back().doubts & hal::kDoubtChaserUnknown, 0);
   navigation.attitude = nullptr;
-  lidar.add(good_frame(200, next_time_ns(), 9));
-  run();
+  for (unsigned i = 0; i < 4; ++i) {
+    lidar.add(good_frame(200 + i, next_time_ns(), 9 + i));
+    run();
+    EXPECT_EQ(last_validity(), i < 2 ? Validity::kFrameRefused : Validity::kValid);
+  }
   EXPECT_NE(link.attitudes.back().doubts & hal::kDoubtChaserUnknown, 0);
-  EXPECT_EQ(last_validity(), Validity::kValid);
+}
+
+TEST_F(Cycle, AMotionNowThatIsNotInTheLrfOfNowIsMarked) {
+  // The navigation knows the past up to the exposure only.
+  std::int64_t known_ns = 0;
+  navigation.attitude = [&](std::int64_t time_ns) {
+    return gnc::ChaserAttitude{std::min(time_ns, known_ns), gnc::kIdentityQ30, true};
+  };
+  for (const bool late : {true, false, true}) {
+    gnc::RangeImage frame = next_frame();
+    sequence_number = frame.sequence_number;
+    frame.exposure_time_ns -= 1'350'000'000;
+    known_ns = late ? frame.exposure_time_ns : next_time_ns();
+    lidar.add(frame);
+    run();
+    EXPECT_EQ(last_validity(), Validity::kValid);
+    EXPECT_EQ(link.attitudes.back().doubts & ~hal::kDoubtRateAmbiguous,
+              late ? hal::kDoubtChaserNowUnknown : 0);
+  }
 }
 
 TEST_F(Cycle, WorksWithoutNavigation) {

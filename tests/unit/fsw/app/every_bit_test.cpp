@@ -144,7 +144,7 @@ TEST_F(EveryBit, OfTheEstimatorIsReloadedRestoredOrRewritten) {
 TEST_F(EveryBit, OfKeyAndTargetNameIsInTheVotedState) {
   hal::CommandKeys keys = kTestKeys;
   std::string target = kTestTarget;
-  boot(*app, {&stopwatch, &store, &keys}, target.c_str());
+  boot(*app, {&stopwatch, &store, &keys, nullptr, hal::ResetCause::kPowerOn}, target.c_str());
   keys = {};
   target.assign(target.size(), '?');
   step_commands({set_mode(Mode::kStandby)});

@@ -241,16 +241,29 @@ TEST_F(FrameRules, WithoutTheChasersAttitudeTheReportSaysSo) {
     return gnc::ChaserAttitude{next_time_ns() + off_ns, gnc::kIdentityQ30, true};
   };
   EXPECT_TRUE(step_with({}));
-  EXPECT_TRUE(step_with(known(0))) << "the turn since the last frame is not known";
+  EXPECT_FALSE(step_with(known(0)));
+  EXPECT_EQ(event(EventId::kEstimatorResetByGap)->arguments, (std::array<std::int32_t, 3>{2700, 3, 1}));
+  EXPECT_EQ(out->attitude.frames_since_reset, 1U) << "no turn is known in the track before";
   EXPECT_FALSE(step_with(known(kChaserTimeTolerance_ns)));
   EXPECT_FALSE(step_with(known(-kChaserTimeTolerance_ns)));
-  EXPECT_TRUE(step_with(known(kChaserTimeTolerance_ns + 1)));
-  EXPECT_TRUE(step_with(known(0)));
-  EXPECT_FALSE(step_with(known(0)));
+  EXPECT_EQ(out->attitude.frames_since_reset, 3U);
+  const std::uint32_t crc = estimator_crc();
   gnc::ChaserAttitude unsound = known(0);
   unsound.q_inertial_lrf[1] = 1 << 29;
-  EXPECT_TRUE(step_with(unsound));
+  unsound.time_ns += config::kFramePeriod_ns;
+  std::uint32_t refused = 0;
+  for (const gnc::ChaserAttitude& chaser : {known(kChaserTimeTolerance_ns + 1), unsound}) {
+    step_with(chaser);
+    EXPECT_EQ(validity(), Validity::kFrameRefused);
+    EXPECT_EQ(argument(EventId::kFrameWithoutChaser, 0), static_cast<std::int32_t>(sequence_number));
+    EXPECT_EQ(argument(EventId::kFrameWithoutChaser, 1), static_cast<std::int32_t>(2700 * ++refused));
+    EXPECT_EQ(out->telemetry.frames_without_chaser, refused);
+    EXPECT_EQ(out->telemetry.frames_refused, before_.frames_refused + refused);
+    EXPECT_EQ(estimator_crc(), crc);
+  }
+  EXPECT_FALSE(step_with(known(0)));
   EXPECT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->attitude.frames_since_reset, 4U) << "the track has coasted";
 }
 
 TEST_F(FrameRules, SkippedNumbersAreCountedAndTheFrameUsedWithoutReset) {

@@ -29,7 +29,7 @@ class MemoryGuardTest : public AppFixture {
     auto twin = std::make_unique<AttitudeInitApp>();
     hal::fake::FakeModelStore models;
     models.fill(test_model_image());
-    boot(*twin, {&stopwatch, &models, &kTestKeys});
+    boot(*twin, {&stopwatch, &models, &kTestKeys, nullptr, hal::ResetCause::kPowerOn});
     auto twin_out = std::make_unique<StepOutputs>();
     for (std::uint32_t number = 101; number <= sequence_number + 1; ++number) {
       StepInputs inputs;

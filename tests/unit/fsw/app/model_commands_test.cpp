@@ -435,7 +435,7 @@ TEST_F(ModelCommands, DumpBeyondTheBankOrASecondOneInACycleIsRefused) {
   step_commands({dump(1, 0, 4)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
   HollowStore hollow(store);
-  boot(*app, {&stopwatch, &hollow, &kTestKeys});
+  boot(*app, {&stopwatch, &hollow, &kTestKeys, nullptr, hal::ResetCause::kPowerOn});
   step_commands({dump(1, 0, 4), dump(0, 0, 4)});
   EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
   EXPECT_EQ(events(EventId::kCommandAccepted), 1);

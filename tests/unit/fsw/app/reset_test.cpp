@@ -375,7 +375,7 @@ TEST_F(KeyRollOver, WithoutProofOfTheNewKeyNothingChanges) {
 }
 
 TEST_F(KeyRollOver, LinkThatAuthenticatesHasNoKeys) {
-  boot(*app, {&stopwatch, &store});
+  boot(*app, {&stopwatch, &store, nullptr, nullptr, hal::ResetCause::kPowerOn});
   step_commands({unsigned_packet(
       packet_of(static_cast<std::uint8_t>(FunctionCode::kKeyActivate), std::vector<std::uint8_t>(17, 0)))});
   EXPECT_EQ(refused_by(CommandRefusal::kWrongArgument), 1U);
@@ -385,7 +385,7 @@ TEST_F(KeyRollOver, StoredSlotThatIsEmptyIsNotUsed) {
   step_commands({activate(1, 1)});
   hal::CommandKeys others = kTestKeys;
   others.slots[1] = {};
-  boot(*app, {&stopwatch, &store, &others, persistent});
+  boot(*app, {&stopwatch, &store, &others, persistent, hal::ResetCause::kPowerOn});
   step_good();
   EXPECT_EQ(out->telemetry.key_slot, 0);
 }
@@ -397,6 +397,10 @@ TEST_F(KeyRollOver, CounterOfTheEndLocksNothingOut) {
   EXPECT_EQ(refused_by(CommandRefusal::kOutOfWindow), 1U);
   step_commands({set_mode(Mode::kSafe)});
   EXPECT_EQ(app->mode(), Mode::kSafe);
+}
+
+TEST(Platform, AnUnknownResetCauseIsAbnormal) {
+  EXPECT_TRUE(hal::is_abnormal(hal::Platform{}.reset_cause));
 }
 
 }  // namespace

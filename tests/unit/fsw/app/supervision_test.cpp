@@ -157,7 +157,7 @@ TEST_F(Supervision, InferenceTimeGoesToTelemetryOnly) {
   auto slow = std::make_unique<AttitudeInitApp>();
   hal::fake::FakeStopwatch slow_stopwatch;
   slow_stopwatch.tick_ns = 400'000'000;
-  boot(*slow, {&slow_stopwatch, &store, &kTestKeys});
+  boot(*slow, {&slow_stopwatch, &store, &kTestKeys, nullptr, hal::ResetCause::kPowerOn});
   const gnc::RangeImage frame = good_frame(sequence_number, now_ns, sequence_number - 1);
   StepInputs inputs;
   inputs.frame = &frame;
@@ -284,7 +284,9 @@ class UnsoundAttitudes : public DoubtfulAttitudes {
   };
   static constexpr int kBehindFrame = 3;  // readings: one at the start of a step, two around the estimator
 
-  UnsoundAttitudes() { app->init({&strike, &store, &kTestKeys}, kTestTarget); }
+  UnsoundAttitudes() {
+    app->init({&strike, &store, &kTestKeys, nullptr, hal::ResetCause::kPowerOn}, kTestTarget);
+  }
   gnc::AttitudeEstimate& estimate() { return AppMemory::estimate(*app); }
   void strike_next_step(int at_look, std::function<void()> what) {
     strike.strike = std::move(what);

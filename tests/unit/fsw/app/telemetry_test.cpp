@@ -1,5 +1,6 @@
 // The digest of the state, and the content of the telemetry.
 // Verifies TS-TLM-010, TS-TLM-020.
+#include "tests/support/app_memory.hpp"
 #include "tests/support/test_models.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
@@ -10,7 +11,7 @@ class Telemetry : public AppFixture {
  protected:
   Telemetry() : twin(std::make_unique<AttitudeInitApp>()), twin_out(std::make_unique<StepOutputs>()) {
     init_with_model();
-    boot(*twin, {&stopwatch, &store, &kTestKeys});
+    boot(*twin, {&stopwatch, &store, &kTestKeys, nullptr, hal::ResetCause::kPowerOn});
   }
   std::unique_ptr<AttitudeInitApp> twin;
   std::unique_ptr<StepOutputs> twin_out;
@@ -19,9 +20,34 @@ class Telemetry : public AppFixture {
 TEST_F(Telemetry, StateDigestDependsOnTheActiveModel) {
   hal::fake::FakeModelStore other;
   other.fill(gnc::lasting_model_image<gnc::FixedPoint>(8));
-  boot(*twin, {&stopwatch, &other, &kTestKeys});
+  boot(*twin, {&stopwatch, &other, &kTestKeys, nullptr, hal::ResetCause::kPowerOn});
   ASSERT_EQ(twin->mode(), Mode::kRun);
   EXPECT_NE(app->state_crc32(), twin->state_crc32());
+}
+
+TEST_F(Telemetry, StateDigestDependsOnWhatIsKeptBetweenFrames) {
+  using Change = void (*)(AppState&);
+  for (const Change change : {
+           Change([](AppState& state) { (void)state.authority.use(1); }),
+           Change([](AppState& state) { state.tracking.has_jumped = true; }),
+           Change([](AppState& state) { state.tracking.has_chaser_attitude = true; }),
+           Change([](AppState& state) { state.tracking.q_inertial_lrf[3] = 1; }),
+           Change([](AppState& state) { state.tracking.signatures[1][255] ^= 1; }),
+           Change([](AppState& state) { state.frames_unused = 1; }),
+           Change([](AppState& state) { state.counters.frames_repeated = 1; }),
+           Change([](AppState& state) { state.counters.frames_without_chaser = 1; }),
+           Change([](AppState& state) { state.counters.frames_superseded = 1; }),
+           Change([](AppState& state) { state.counters.frames_overflowed = 1; }),
+           Change([](AppState& state) { state.counters.frames_passed_over = 1; }),
+       }) {
+    hal::CommandKeys keys = kTestKeys;
+    keys.slots[1] = keys.slots[0];
+    for (AttitudeInitApp* which : {app.get(), twin.get()})
+      boot(*which, {&stopwatch, &store, &keys, nullptr, hal::ResetCause::kPowerOn});
+    EXPECT_EQ(app->state_crc32(), twin->state_crc32());
+    change(AppMemory::state(*twin));
+    EXPECT_NE(app->state_crc32(), twin->state_crc32());
+  }
 }
 
 TEST_F(Telemetry, StateDigestDependsOnModeEstimatorAndCounters) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 constexpr FrameTrackerLimits kLimits{
-    {1'000'000, 2'970'000'000}, 21'600'000'000, 10'000'000, kPi_urad, kPi_urad};
+    {1'000'000, 2'970'000'000}, 21'600'000'000, 8'100'000'000, 10'000'000, kPi_urad, kPi_urad};
 
 QuaternionQ30 q30(const Eigen::Quaterniond& q) {
   const auto part = [](double x) { return static_cast<std::int32_t>(std::lround(std::ldexp(x, 30))); };
@@ -53,11 +53,13 @@ TEST_F(Tracking, OnePeriodWithoutATurnGivesTheBitsOfTheEstimatorAlone) {
   const auto alone = std::make_unique<AttitudeEstimator<FixedPoint>>();
   const auto& image = lasting_model_image<FixedPoint>(7);
   ASSERT_EQ(alone->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 10; ++i) {
+    const bool turning = i >= 5;
+    if (i == 5) alone->reset();
     const RangeImage frame = next();
     AttitudeEstimate estimate;
     ASSERT_EQ(alone->step(frame, estimate), FrameStatus::kOk);
-    ASSERT_TRUE(step(frame, i < 3 ? ChaserAttitude{} : ChaserAttitude{now_ns, kIdentityQ30, true}).used());
+    ASSERT_TRUE(step(frame, turning ? ChaserAttitude{now_ns, kIdentityQ30, true} : ChaserAttitude{}).used());
     EXPECT_EQ(outcome.estimate.q_lrf_trf, estimate.q_lrf_trf);
     EXPECT_EQ(estimator->state_crc32(), alone->state_crc32());
   }
@@ -92,6 +94,9 @@ TEST_F(Tracking, RepeatedRangesAreRefusedUntilTheyChange) {
     if (i == 2) state.forget_track();
   }
   frame.ranges[frame.rays * (frame.rays / 2) + frame.rays / 2] += 1;
+  EXPECT_EQ(step(frame).verdict, FrameVerdict::kRepeated) << "one range alone";
+  frame.ranges = next().ranges;
+  frame.exposure_time_ns = now_ns;
   frame.sequence_number = ++number;
   EXPECT_TRUE(step(frame).used());
 }
@@ -141,39 +146,98 @@ TEST_F(Tracking, PredictionTurnsWithTheChaser) {
               1e-6);
   const Eigen::Quaterniond second = to_double(outcome.estimate.q_lrf_trf);
   const ChaserAttitude later{now_ns, q30(turn * turn), true};
+  Doubts doubts = 0;
   const PropagatedMotion motion =
-      FrameTracker<FixedPoint>(*estimator).motion_at(now_ns, later, limits, state);
+      FrameTracker<FixedPoint>(*estimator).motion_at(now_ns, later, limits, state, doubts);
+  EXPECT_EQ(doubts, 0U);
   EXPECT_NEAR(std::abs(to_double(motion.q_lrf_trf).dot(turn.conjugate() * second)), 1.0, 1e-6);
-  step(next());
-  EXPECT_NE(outcome.doubts & kChaserUnknown, 0U);
 }
 
 // Verifies TS-EST-184.
-TEST_F(Tracking, AnUnknownAttitudeOfTheChaserIsNoTurn) {
+TEST_F(Tracking, TheChasersAttitudeHoldsForAWholeTrackOrForNone) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
-  const auto predicted_as_before = [&](const ChaserAttitude& last, const ChaserAttitude& now) {
-    estimator->reset();
-    state = {};
-    RangeImage frame = next();
-    step(frame, {now_ns, last.q_inertial_lrf, last.valid});
-    const QuaternionQ30 before = outcome.estimate.q_lrf_trf;
-    const PropagatedMotion motion =
-        FrameTracker<FixedPoint>(*estimator)
-            .motion_at(now_ns, {now_ns, now.q_inertial_lrf, now.valid}, limits, state);
-    EXPECT_EQ(motion.q_lrf_trf, before);
-    frame = next();
-    step(frame, {now_ns, now.q_inertial_lrf, now.valid});
-    EXPECT_NE(outcome.doubts & kChaserUnknown, 0U);
-    return outcome.estimate.q_lrf_trf_predicted == before;
-  };
-  EXPECT_TRUE(predicted_as_before({0, kIdentityQ30, false}, {0, q30(turn), true}));
-  EXPECT_TRUE(predicted_as_before({0, kIdentityQ30, true}, {0, q30(turn), false}));
+  for (int i = 0; i < 3; ++i) {
+    const RangeImage frame = next();
+    step(frame, chaser(turn));
+  }
+  const std::uint32_t crc = estimator->state_crc32();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(step(next()).verdict, FrameVerdict::kWithoutChaser);
+    EXPECT_EQ(estimator->state_crc32(), crc);
+    EXPECT_EQ(state.gate.last_sequence_number(), 3U);
+  }
+  EXPECT_TRUE(step(next()).used()) << "more than three periods after the last used frame";
+  EXPECT_EQ(outcome.estimate.frames_since_reset, 1U);
+  EXPECT_EQ(outcome.frames_given_up, 3U);
+  EXPECT_TRUE(outcome.chaser_changed);
+  EXPECT_EQ(outcome.doubts & kChaserUnknown, kChaserUnknown);
+  step(next());
+  EXPECT_EQ(outcome.estimate.frames_since_reset, 2U);
+  EXPECT_FALSE(outcome.chaser_changed);
+  EXPECT_EQ(outcome.doubts & kChaserUnknown, kChaserUnknown);
+  // The LRF is taken not to turn, also to the time of the cycle.
+  const FrameTracker<FixedPoint> tracker(*estimator);
+  Doubts doubts = 1;
+  EXPECT_EQ(tracker.motion_at(now_ns, chaser(turn), limits, state, doubts).q_lrf_trf,
+            outcome.estimate.q_lrf_trf);
+  EXPECT_EQ(doubts, 1U | kChaserNowUnknown);
+  const RangeImage frame = next();
+  step(frame, chaser(turn));
+  EXPECT_EQ(outcome.estimate.frames_since_reset, 1U);
+  EXPECT_EQ(outcome.frames_given_up, 2U);
+  EXPECT_TRUE(outcome.chaser_changed);
+  EXPECT_EQ(outcome.doubts & kChaserUnknown, 0U);
+  doubts = 1;
+  EXPECT_EQ(tracker.motion_at(now_ns, {}, limits, state, doubts).q_lrf_trf, outcome.estimate.q_lrf_trf);
+  EXPECT_EQ(doubts, 1U | kChaserNowUnknown);
 }
 
-TEST_F(Tracking, AFirstFrameIsNoRepetition) {
+// Verifies TS-EST-184.
+TEST_F(Tracking, AfterAShortLossOfTheChasersAttitudeTheTrackTurnsByAllOfIt) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()));
+  RangeImage frame = next();
+  step(frame, chaser(Eigen::Quaterniond::Identity()));
+  const Eigen::Quaterniond first = to_double(outcome.estimate.q_lrf_trf);
+  step(next());
+  frame = next();
+  step(frame, chaser(turn * turn));
+  EXPECT_EQ(outcome.estimate.frames_since_reset, 2U);
+  EXPECT_EQ(outcome.doubts & kChaserUnknown, 0U);
+  EXPECT_NEAR(
+      std::abs(to_double(outcome.estimate.q_lrf_trf_predicted).dot((turn * turn).conjugate() * first)), 1.0,
+      1e-6);
+}
+
+// Verifies TS-EST-184.
+TEST_F(Tracking, AfterAGapTheGapIsTheReason) {
+  RangeImage frame = next();
+  step(frame, chaser(Eigen::Quaterniond::Identity()));
+  step(next(limits.longest_coast_ns + 1));
+  EXPECT_EQ(outcome.frames_given_up, 1U);
+  EXPECT_FALSE(outcome.chaser_changed);
+}
+
+// Verifies TS-EST-184.
+TEST_F(Tracking, AfterAResetNoAttitudeOfTheChaserIsNeeded) {
   const RangeImage frame = next();
-  state.ranges_crc32 = crc32_of_ranges(frame);
-  EXPECT_TRUE(step(frame).used());
+  step(frame, chaser(Eigen::Quaterniond::Identity()));
+  estimator->reset();
+  state.forget_track();
+  EXPECT_TRUE(step(next()).used());
+  EXPECT_EQ(outcome.frames_given_up, 0U);
+}
+
+TEST_F(Tracking, FramesThatAlternateAreRefused) {
+  std::array<RangeImage, 3> used;
+  for (RangeImage& frame : used) EXPECT_TRUE(step(frame = next()).used());
+  for (const std::size_t which : {1U, 2U, 1U, 2U}) {
+    RangeImage frame = next();
+    frame.ranges = used[which].ranges;
+    EXPECT_EQ(step(frame).verdict, FrameVerdict::kRepeated);
+  }
+  RangeImage frame = next();
+  frame.ranges = used[0].ranges;
+  EXPECT_TRUE(step(frame).used()) << "only two are kept";
 }
 
 TEST_F(Tracking, ALimitOfAHalfTurnDetectsNoJump) {
@@ -195,22 +259,6 @@ TEST(TurnOfLrf, TakesTheLastLrfToTheOneNow) {
   const Eigen::Quaterniond now(Eigen::AngleAxisd(-0.4, Eigen::Vector3d(2, -1, 2) / 3));
   const Eigen::Vector3d v(1, 2, 3);
   EXPECT_TRUE((to_double(turn_of_lrf(q30(last), q30(now))) * v).isApprox(now.conjugate() * (last * v), 1e-7));
-}
-
-TEST(Crc32OfRanges, CoversEveryRangeAndNoMore) {
-  RangeImage frame = random_frame(1);
-  const std::uint32_t crc = crc32_of_ranges(frame);
-  frame.sequence_number += 1;
-  frame.exposure_time_ns += 1;
-  EXPECT_EQ(crc32_of_ranges(frame), crc);
-  frame.ranges[static_cast<std::size_t>(frame.rays) * frame.rays - 1] ^= 1;
-  EXPECT_NE(crc32_of_ranges(frame), crc);
-  frame.rays = UINT16_MAX;
-  EXPECT_NE(crc32_of_ranges(frame), crc) << "and does not read beyond the frame";
-  frame.rays = 17;
-  const std::uint32_t odd = crc32_of_ranges(frame);
-  frame.ranges[17 * 17 - 1] ^= 1;
-  EXPECT_NE(crc32_of_ranges(frame), odd);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ TEST(PacketFile, HoldsThePacketsOneAfterTheOther) {
   packets::TelemetryEncoder encoder;
   PacketFile file;
   ASSERT_EQ(file.open(path.c_str()), 0);
-  EXPECT_TRUE(file.put(encoder.encode(ModelDump{})));  // replaced below
+  EXPECT_TRUE(file.put(encoder.encode(MemoryDump{})));  // replaced below
   ASSERT_EQ(file.open(path.c_str()), 0);
   std::string expected;
   for (int i = 0; i < 3; ++i) {
