@@ -49,7 +49,7 @@ class FrozenSensor : public AppFixture {
       freeze(i, frame);
       take(frame);
       EXPECT_EQ(validity(), Validity::kFrameRefused) << i;
-      EXPECT_EQ(events(EventId::kFrameRepeated) > 0 || i >= config::kMaxEventsOfAKind, true) << i;
+      EXPECT_EQ(events(EventId::kFrameRepeated) > 0 || i >= initial(Parameter::kEventsOfAKind), true) << i;
       EXPECT_EQ((out->telemetry.faults_persisting & bit_of(Fault::kFrameFrozen)) != 0, i >= 2) << i;
     }
     EXPECT_EQ(out->telemetry.frames_repeated, 30U);
