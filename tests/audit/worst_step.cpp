@@ -62,7 +62,26 @@ class TwoBanks final : public hal::ModelStore {
   alignas(64) std::array<std::array<std::uint8_t, kBankBytes>, hal::kModelBanks> banks;
 };
 
+// Every command of a step is stored before it is carried out.
+class KeptState final : public hal::PersistentStore {
+ public:
+  hal::StoreStatus read(int copy, hal::StoredBytes& bytes) override {
+    bytes = copies_[static_cast<std::size_t>(copy)];
+    return written_ ? hal::StoreStatus::kOk : hal::StoreStatus::kBlank;
+  }
+  hal::StoreStatus write(int copy, const hal::StoredBytes& bytes) override {
+    copies_[static_cast<std::size_t>(copy)] = bytes;
+    written_ = true;
+    return hal::StoreStatus::kOk;
+  }
+
+ private:
+  std::array<hal::StoredBytes, hal::kStoredCopies> copies_{};
+  bool written_ = false;
+};
+
 AttitudeInitApp app;
+KeptState kept_state;
 TwoBanks store;
 BoardStopwatch stopwatch;
 StepInputs inputs;
@@ -138,10 +157,14 @@ void begin(const char* name) {
   board::write(hal::replay::TextLine().text("step ").text(name).text("\n").c_str());
 }
 
-void step(const char* name) {
+constexpr std::int32_t kTurned = 759'250'125;  // sqrt(1/2), Q30: the chaser's attitude is no identity
+
+// `periods`: since the step before.
+void step(const char* name, int periods = 1) {
   begin(name);
-  now_ns += config::kFramePeriod_ns;
+  now_ns += periods * config::kFramePeriod_ns;
   frame.exposure_time_ns = now_ns;
+  inputs.chaser = inputs.chaser_now = {now_ns, {kTurned, 0, 0, -kTurned}, true};
   ++frame.sequence_number;
   vary_noise();
   inputs.frame = &frame;
@@ -201,6 +224,26 @@ void steps_with_a_frame() {
   expect(outputs.attitude.validity == hal::Validity::kValid ||
              outputs.attitude.validity == hal::Validity::kDoubtful,
          "the frame was not used");
+  load_as_second_copy();
+}
+
+// The most rays, after the longest coast, which the track propagates in steps.
+void step_after_the_longest_coast() {
+  static gnc::RangeImage recorded;
+  recorded = frame;
+  frame.rays = gnc::RangeImage::kMaxRays;
+  for (std::size_t i = 0; i < frame.ranges.size(); ++i) {
+    const std::size_t row = i / frame.rays * recorded.rays / frame.rays;
+    const std::size_t column = i % frame.rays * recorded.rays / frame.rays;
+    frame.ranges[i] = recorded.ranges[row * recorded.rays + column];
+  }
+  damage_more();
+  load_commands();
+  step("frame of the most rays after the longest coast, full command load, largest scrub with repairs",
+       static_cast<int>(config::kLongestCoast_ns / config::kFramePeriod_ns));
+  expect(outputs.attitude.frames_since_reset > 1, "the track was given up");
+  recorded.sequence_number = frame.sequence_number;
+  frame = recorded;
   load_as_second_copy();
 }
 
@@ -280,6 +323,7 @@ int run() {
   platform.stopwatch = &stopwatch;
   platform.models = &store;
   platform.command_keys = &kKeys;
+  platform.persistent = &kept_state;
   platform.reset_cause = hal::ResetCause::kPowerOn;
   begin("boot");
   tumblesight_step_begins();
@@ -289,6 +333,7 @@ int run() {
   step("quiet");
   expect(app.mode() == Mode::kRun, "the model was refused");
   steps_with_a_frame();
+  step_after_the_longest_coast();
   repairs();
   model_commands();
   bank_switches();
