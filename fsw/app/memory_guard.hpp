@@ -1,7 +1,7 @@
 // MemoryGuard: finds bit flips in the estimator's memory since the last cycle and repairs them. Its time is
-// bounded: the parameter ScrubBlocks limits the model blocks checked per cycle, and a cycle has at most one of the
-// repairs marked *, AppState::begin_long_task(). What is still corrupted is found again and repaired in the
-// next cycle, and no frame is estimated meanwhile. Everything is repaired within kMostRepairCycles.
+// bounded: the parameter ScrubBlocks limits the model blocks checked per cycle, and a cycle has at most one
+// of the repairs marked *, AppState::begin_long_task(). What is still corrupted is found again and repaired
+// in the next cycle, and no frame is estimated meanwhile. Everything is repaired within kMostRepairCycles.
 //
 //   corrupted                      found by                        repaired from
 //   state of LSTM and track        CRC of the last cycle           copy of the last cycle; reset if the copy

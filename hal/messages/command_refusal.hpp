@@ -13,10 +13,10 @@ enum class CommandRefusal : std::uint8_t {
   kWrongLength = 3,    // the length field does not match the packet, or the arguments the function
   kWrongChecksum = 4,  // checksum of the secondary header
   kUnknownFunction = 5,
-  kWrongMode = 6,         // the function is not allowed in this mode
-  kWrongArgument = 7,     // an argument is out of range
+  kWrongMode = 6,      // the function is not allowed in this mode
+  kWrongArgument = 7,  // an argument is out of range
   kNoModel = 8,  // no model to run, copy, load, validate or activate; the event gives the gnc::ModelStatus
-  kBusy = 9,              // this cycle already has a dump, or a long task; or the bank is still being written
+  kBusy = 9,     // this cycle already has a dump, or a long task; or the bank is still being written
   kOutOfWindow = 10,      // counter more than 65,536 ahead of the last authentic command
   kOtherKey = 11,         // signed by a key slot that is not in use
   kOtherSpacecraft = 12,  // authentic, but for another spacecraft

@@ -1,7 +1,7 @@
 // flight_worst_step: the longest steps of the flight application, each with a name, for the audit's count of
 // instructions. The memory is damaged as bit flips would damage it, the commands are the most expensive ones,
-// and the scrubbing is the largest that SET_PARAMETER allows. The program prints one line per step, "step NAME";
-// steps that only prepare the next one are "quiet".
+// and the scrubbing is the largest that SET_PARAMETER allows. The program prints one line per step, "step
+// NAME"; steps that only prepare the next one are "quiet".
 #include <array>
 #include <cstring>
 
@@ -130,8 +130,8 @@ void set_parameter(Parameter parameter, std::uint32_t value) {
   command(FunctionCode::kSetParameter, arguments.data(), static_cast<int>(arguments.size()));
 }
 
-// As many commands as a step takes: an upload begins, the image in use is copied meanwhile, and all others are
-// as large as a command can be. Without the beginning they are refused, and the bank keeps its image.
+// As many commands as a step takes: an upload begins, the image in use is copied meanwhile, and all others
+// are as large as a command can be. Without the beginning they are refused, and the bank keeps its image.
 enum class Upload { kBegins, kRefused };
 void load_commands(Upload upload = Upload::kBegins) {
   static std::array<std::uint8_t, hal::kMaxCommandArgumentBytes> arguments{};
