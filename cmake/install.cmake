@@ -38,7 +38,7 @@ set(package_models_dir ${CMAKE_INSTALL_DATADIR}/tumblesight/models)
 install(TARGETS ${package_libraries} EXPORT tumblesight ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT tumblesight NAMESPACE tumblesight:: FILE tumblesight_targets.cmake DESTINATION ${package_folder})
 # Includes are written from the project's root, so the headers keep their folders.
-install(DIRECTORY gnc fsw hal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight FILES_MATCHING PATTERN "*.hpp"
+install(DIRECTORY gnc fsw hal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight FILES_MATCHING PATTERN "*.hpp" PATTERN "*.inc"
   PATTERN programs EXCLUDE PATTERN models EXCLUDE PATTERN bare_metal EXCLUDE PATTERN dds EXCLUDE PATTERN fake EXCLUDE)
 install(FILES ${PROJECT_BINARY_DIR}/hal/messages/message_fields.inc
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight/hal/messages)

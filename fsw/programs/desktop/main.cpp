@@ -51,9 +51,8 @@ hal::Platform platform_of(const FlightOptions& options, hal::ModelStore& models)
   platform.stopwatch = &stopwatch;
   platform.models = &models;
   platform.command_keys = &command_keys;
-  if (options.state_path[0] == '\0') return platform;
-  platform.persistent = &stored_state;
   platform.reset_cause = options.reset_cause;
+  if (options.state_path[0] != '\0') platform.persistent = &stored_state;
   return platform;
 }
 
