@@ -237,14 +237,19 @@ void step_after_the_longest_coast() {
     const std::size_t column = i % frame.rays * recorded.rays / frame.rays;
     frame.ranges[i] = recorded.ranges[row * recorded.rays + column];
   }
+  constexpr config::ParameterRule kCoast = config::rule_of(Parameter::kLongestCoast_ms);
+  set_parameter(Parameter::kLongestCoast_ms, kCoast.highest);
+  step("quiet");
   damage_more();
   load_commands();
   step("frame of the most rays after the longest coast, full command load, largest scrub with repairs",
-       static_cast<int>(config::kLongestCoast_ns / config::kFramePeriod_ns));
+       static_cast<int>(std::int64_t{kCoast.highest} * 1'000'000 / config::kFramePeriod_ns));
   expect(outputs.attitude.frames_since_reset > 1, "the track was given up");
   recorded.sequence_number = frame.sequence_number;
   frame = recorded;
   load_as_second_copy();
+  set_parameter(Parameter::kLongestCoast_ms, kCoast.initial);
+  step("quiet");
 }
 
 // Both tables and the constants at once are repaired in consecutive steps. The image gives one table, and
