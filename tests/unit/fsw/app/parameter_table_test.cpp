@@ -127,7 +127,7 @@ class Tables : public AppFixture {
 // Every field has another value than after init().
 ParameterTable another_table() {
   ParameterTable table = kInitialTable;
-  for (std::size_t field = 0; field < kParameters; ++field) table.fields[field] += 1;
+  for (std::size_t field = 0; field < kParameters; ++field) table.fields[field] -= 1;
   for (const config::FaultRule& rule : config::kFaultRules) {
     if (rule.can_be_disabled) table.fields[field_of(rule.fault)] += 1U << 8;
   }
