@@ -21,8 +21,10 @@ class ModelCommands : public AppFixture {
   hal::CommandPacket load(std::uint32_t offset, std::size_t size) {
     std::vector<std::uint8_t> arguments;
     append_u32(arguments, offset);
-    for (std::size_t i = offset; i < offset + size; ++i)
-      arguments.push_back(i < other.size() ? other[i] : std::uint8_t{0});
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::uint64_t at = std::uint64_t{offset} + i;
+      arguments.push_back(at < other.size() ? other[static_cast<std::size_t>(at)] : std::uint8_t{0});
+    }
     return command(FunctionCode::kModelLoad, arguments);
   }
   static std::uint32_t offset_of(std::uint32_t segment) { return segment * kSegmentBytes; }
