@@ -5,12 +5,12 @@
 //               (frame_signature.hpp) is refused before the estimator sees it, across gaps and resets
 //   gap         the track coasts over the time since the last used frame; after more than longest_coast_ns it
 //               is given up, and the frame starts a new one
-//   chaser      a track turns with the LRF, by the attitudes of the chaser at both exposures, or the chaser
-//   is
-//               taken not to turn in all of it, which each outcome says. In a track of the first kind a frame
-//               without the attitude is refused; after more than longest_without_chaser_ns it starts a track
-//               of the second kind. In that one a frame with the attitude starts a track of the first kind. A
-//               single unknown turn of 13 degrees in a track would spoil its rate for the next ten frames
+//   chaser      a track of the first kind turns with the LRF, by the attitudes of the chaser at both
+//               exposures. In a track of the second kind the chaser is taken not to turn, and each outcome
+//               says so. In a track of the first kind a frame without the attitude is refused; after more
+//               than longest_without_chaser_ns it starts a track of the second kind. There a frame with the
+//               attitude starts a track of the first kind. A single unknown turn of 13 degrees in a track
+//               would spoil its rate for the next ten frames
 //   checks      expected error, and distance from the attitude that the track predicted
 #pragma once
 
