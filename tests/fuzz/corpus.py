@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""Packs and unpacks the inputs of a fuzz target.
+"""Lists, unpacks and extends the inputs of a fuzz target.
 
-  corpus.py unpack ARCHIVE FOLDER           writes every input of the archive into FOLDER, one file each
-  corpus.py add ARCHIVE FOLDER [--known F]  adds the files of FOLDER that neither the archive nor the folder F has
+  corpus.py list ARCHIVE                  prints the inputs that have a meaningful name, with their sizes in bytes
+  corpus.py unpack ARCHIVE FOLDER         writes every input of the archive into FOLDER, one file each
+  corpus.py add ARCHIVE FOLDER            adds the files of FOLDER whose contents the archive does not have
+  corpus.py add ARCHIVE FILE --name NAME  adds an input written by hand, or replaces the input of that name
 
 An archive (corpus/<target>.inputs) is a sequence of inputs, sorted by name. Each is a line "SIZE NAME", the SIZE bytes of
-the input, and a line feed. tests/fuzz/replay.cpp reads the same format.
+the input, and a line feed. tests/fuzz/replay.cpp reads the same format. An input that was not named by hand is named by the
+SHA-1 of its content, as libFuzzer names it.
 """
 import argparse
 import hashlib
@@ -14,6 +17,7 @@ import re
 import sys
 
 _NAME = re.compile(r"[A-Za-z0-9_.-]{1,64}")
+_SHA1 = re.compile(r"[0-9a-f]{40}")
 
 
 def read_archive(path):
@@ -48,12 +52,21 @@ def unpack(archive, folder):
         (folder / name).write_bytes(content)
 
 
-def add(archive, folder, known):
-    """Number of inputs added. A new input is named by the SHA-1 of its content, as libFuzzer names it."""
+def named(archive):
+    """{name: bytes} of the inputs that were named by hand."""
+    return {name: content for name, content in read_archive(archive).items() if not _SHA1.fullmatch(name)}
+
+
+def add_named(archive, file, name):
+    inputs = read_archive(archive) if archive.exists() else {}
+    inputs[name] = file.read_bytes()
+    write_archive(archive, inputs)
+
+
+def add(archive, folder):
+    """Number of inputs added."""
     inputs = read_archive(archive) if archive.exists() else {}
     contents = set(inputs.values())
-    if known is not None and known.is_dir():
-        contents |= {path.read_bytes() for path in known.iterdir()}
     before = len(inputs)
     for path in sorted(folder.iterdir()):
         content = path.read_bytes()
@@ -67,16 +80,23 @@ def add(archive, folder, known):
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("action", choices=("unpack", "add"))
-    parser.add_argument("archive", type=pathlib.Path)
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--known", type=pathlib.Path)
+    actions = parser.add_subparsers(dest="action", required=True)
+    for action in ("list", "unpack", "add"):
+        actions.add_parser(action).add_argument("archive", type=pathlib.Path)
+    actions.choices["unpack"].add_argument("folder", type=pathlib.Path)
+    actions.choices["add"].add_argument("path", type=pathlib.Path)
+    actions.choices["add"].add_argument("--name")
     options = parser.parse_args(arguments)
     try:
-        if options.action == "unpack":
+        if options.action == "list":
+            for name, content in named(options.archive).items():
+                print(f"{len(content):8} {name}")
+        elif options.action == "unpack":
             unpack(options.archive, options.folder)
+        elif options.name is not None:
+            add_named(options.archive, options.path, options.name)
         else:
-            print(f"{add(options.archive, options.folder, options.known)} inputs added to {options.archive.name}")
+            print(f"{add(options.archive, options.path)} inputs added to {options.archive.name}")
     except (OSError, ValueError) as error:
         print(f"corpus.py: {error}", file=sys.stderr)
         return 1

@@ -1,6 +1,6 @@
 // Runs a fuzz target once on every input of its corpus, without libFuzzer. Every ordinary build does this as
 // a test, so that a defect which fuzzing has found cannot come back.
-//   replay_<target> PATH...    each an archive of inputs (*.inputs), a folder of inputs or a single input
+//   replay_<target> PATH...    each an archive of inputs (*.inputs) or a single input
 // The format of an archive: tests/fuzz/corpus.py.
 #include <algorithm>
 #include <cctype>
@@ -63,16 +63,7 @@ int run_archive(const fs::path& path) {
   return count;
 }
 
-int run_folder(const fs::path& folder) {
-  std::vector<fs::path> paths;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) paths.push_back(entry.path());
-  std::sort(paths.begin(), paths.end());
-  for (const fs::path& path : paths) run(path.filename().string(), content_of(path));
-  return static_cast<int>(paths.size());
-}
-
 int run_path(const fs::path& path) {
-  if (fs::is_directory(path)) return run_folder(path);
   if (path.extension() == ".inputs") return run_archive(path);
   run(path.string(), content_of(path));
   return 1;

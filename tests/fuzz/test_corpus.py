@@ -1,4 +1,6 @@
 """The archives of fuzz inputs: written, read, extended and refused."""
+import contextlib
+import io
 import pathlib
 import tempfile
 import unittest
@@ -32,13 +34,28 @@ class Archive(unittest.TestCase):
 
     def test_only_new_contents_are_added(self):
         corpus.write_archive(self.archive, {"a": b"1"})
-        new, known = self.folder / "new", self.folder / "known"
-        for path, content in ((new / "x", b"1"), (new / "y", b"2"), (new / "z", b"3"), (known / "seed", b"3")):
-            path.parent.mkdir(exist_ok=True)
-            path.write_bytes(content)
-        self.assertEqual(corpus.add(self.archive, new, known), 1)
+        new = self.folder / "new"
+        new.mkdir()
+        for name, content in (("x", b"1"), ("y", b"2"), ("z", b"2")):
+            (new / name).write_bytes(content)
+        self.assertEqual(corpus.add(self.archive, new), 1)
         self.assertEqual(set(corpus.read_archive(self.archive).values()), {b"1", b"2"})
-        self.assertEqual(corpus.add(self.archive, new, known), 0)
+        self.assertEqual(corpus.add(self.archive, new), 0)
+
+    def test_an_input_added_by_name_is_listed_and_replaced(self):
+        found, by_hand = self.folder / "found", self.folder / "by_hand"
+        found.mkdir()
+        (found / "x").write_bytes(b"1")
+        corpus.add(self.archive, found)
+        for content in (b"2", b"3"):
+            by_hand.write_bytes(content)
+            self.assertEqual(corpus.main(["add", str(self.archive), str(by_hand), "--name", "flipped"]), 0)
+        self.assertEqual(corpus.named(self.archive), {"flipped": b"3"})
+        self.assertEqual(set(corpus.read_archive(self.archive).values()), {b"1", b"3"})
+        output = io.StringIO()
+        with contextlib.redirect_stdout(output):
+            self.assertEqual(corpus.main(["list", str(self.archive)]), 0)
+        self.assertEqual(output.getvalue().split(), ["1", "flipped"])
 
     def test_a_malformed_archive_is_refused_with_the_place(self):
         self.assertIn("byte 0: expected a line", self.refused(b"no size\n"))
