@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "hal/messages/bank_activity.hpp"
+#include "hal/messages/bank_status.hpp"
 
 namespace tumblesight::hal {
 

@@ -4,7 +4,7 @@
 #include "fsw/app/counter.hpp"
 #include "fsw/app/state_keeper.hpp"
 #include "fsw/app/supervisor.hpp"
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 
 namespace tumblesight::fsw {
 namespace {

@@ -1,6 +1,6 @@
 #include "fsw/app/model_banks.hpp"
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "hal/messages/memory_dump.hpp"
 
 namespace tumblesight::fsw {

@@ -1,6 +1,6 @@
 #include "fsw/app/parameter_table.hpp"
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 
 namespace tumblesight::fsw {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "hal/messages/command_key.hpp"
 #include "hal/model_store.hpp"
 

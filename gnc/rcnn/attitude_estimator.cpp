@@ -5,7 +5,7 @@
 #include "gnc/attitude/quaternion.hpp"
 #include "gnc/lidar/depth_loops.hpp"
 #include "gnc/numerics/conversion.hpp"
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "gnc/numerics/division.hpp"
 
 namespace tumblesight::gnc {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "gnc/rcnn/model_image.hpp"
 
 namespace tumblesight::gnc::model_format {

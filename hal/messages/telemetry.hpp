@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 
-#include "hal/messages/bank_activity.hpp"
 #include "hal/messages/bank_status.hpp"
 #include "hal/messages/command_refusal.hpp"
 #include "hal/messages/fault.hpp"

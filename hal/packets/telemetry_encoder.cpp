@@ -1,6 +1,6 @@
 #include "hal/packets/telemetry_encoder.hpp"
 
-#include "gnc/numerics/crc16.hpp"
+#include "gnc/numerics/crc.hpp"
 
 namespace tumblesight::hal::packets {
 namespace {

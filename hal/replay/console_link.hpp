@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "hal/link.hpp"
 
 namespace tumblesight::hal::replay {

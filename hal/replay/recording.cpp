@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 
 namespace tumblesight::hal::replay {
 namespace {

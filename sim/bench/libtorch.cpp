@@ -10,8 +10,8 @@
 
 #include "sim/bench/peer.hpp"
 #include "sim/model/network_layers.hpp"
-#include "sim/training/flight_layout.hpp"
-#include "sim/training/one_thread.hpp"
+#include "sim/training/export_model.hpp"
+#include "sim/training/stage.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;

@@ -13,7 +13,6 @@
 
 #include "sim/model/model_file.hpp"
 #include "sim/world/scenario/sequence.hpp"
-#include "sim/world/target/target_mesh.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {

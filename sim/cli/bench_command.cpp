@@ -12,6 +12,7 @@
 #include "sim/bench/network_bench.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/target_setup.hpp"
+#include "sim/cli/verbs.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/terminal/table.hpp"
 #include "sim/terminal/write_file.hpp"

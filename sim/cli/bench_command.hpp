@@ -2,7 +2,6 @@
 // with other runtimes.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -20,7 +19,5 @@ struct BenchImages {
 };
 // Reads both before anything is measured. Throws as read_model_bytes and read_float32_model do.
 BenchImages read_bench_images(const std::string& folder, const std::string& target);
-
-void add_bench_command(CLI::App& app);
 
 }  // namespace tumblesight::sim

@@ -1,5 +1,3 @@
-#include "sim/cli/evaluate_command.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,15 +7,14 @@
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/evaluate_arguments.hpp"
 #include "sim/cli/evaluate_paper.hpp"
-#include "sim/cli/subject_setup.hpp"
+#include "sim/cli/target_setup.hpp"
+#include "sim/cli/verbs.hpp"
 #include "sim/evaluation/checks.hpp"
-#include "sim/report/results_csv.hpp"
+#include "sim/report/results_files.hpp"
 #include "sim/report/results_json.hpp"
-#include "sim/report/results_page.hpp"
 #include "sim/report/results_tables.hpp"
-#include "sim/terminal/counted.hpp"
-#include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {

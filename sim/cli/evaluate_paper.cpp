@@ -7,13 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "sim/cli/subject_setup.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/evaluation/paper_plan.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
-#include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

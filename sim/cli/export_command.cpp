@@ -1,5 +1,3 @@
-#include "sim/cli/export_command.hpp"
-
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -7,8 +5,9 @@
 #include <string>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/verbs.hpp"
 #include "sim/model/model_file.hpp"
-#include "sim/onnx/onnx_file.hpp"
+#include "sim/onnx/onnx_model.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "sim/terminal/wrapped.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/verbs.hpp"
 #include "sim/quantization/quantize_file.hpp"
 #include "sim/terminal/progress.hpp"
 

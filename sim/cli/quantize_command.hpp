@@ -1,7 +1,6 @@
 // `tumblesight quantize`: makes the fixed-point model image that flies from a float32 one.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -11,8 +10,6 @@
 namespace tumblesight::sim {
 
 inline constexpr int kCalibrationSequences = 200;
-
-void add_quantize_command(CLI::App& app);
 
 // Shows its progress and prints the quantization error of each layer. Throws as quantize_to_file does.
 void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,

@@ -1,5 +1,3 @@
-#include "sim/cli/record_command.hpp"
-
 #include <fmt/format.h>
 
 #include <memory>
@@ -10,9 +8,10 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
+#include "sim/cli/verbs.hpp"
 #include "sim/recording/make_recording.hpp"
-#include "sim/terminal/counted.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -1,5 +1,3 @@
-#include "sim/cli/simulate_command.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -15,6 +13,7 @@
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/simulate_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
+#include "sim/cli/verbs.hpp"
 #include "sim/evaluation/curves.hpp"
 #include "sim/evaluation/experiment.hpp"
 #include "sim/evaluation/float32_reference.hpp"
@@ -22,9 +21,8 @@
 #include "sim/report/results_tables.hpp"
 #include "sim/report/sil_report.hpp"
 #include "sim/sil/signed_telecommand.hpp"
-#include "sim/terminal/counted.hpp"
-#include "sim/terminal/local_time.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 #include "sim/world/chaser_navigation.hpp"
 

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -15,7 +16,6 @@
 #include "sim/evaluation/results.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
-#include "sim/world/target/target_mesh.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
@@ -128,6 +128,21 @@ TargetSetup set_up_target_without_model(const ScenarioArguments& arguments) {
     setup.projection = projection_of(setup.mesh);
   }
   return setup;
+}
+
+Subject set_up_subject(const ScenarioArguments& arguments) {
+  TargetSetup setup = set_up_target(arguments);
+  for (const std::string& warning : setup.warnings) fmt::print(stderr, "  note: {}\n", warning);
+  Subject subject;
+  subject.target = arguments.target;
+  subject.mesh_name = setup.mesh_name;
+  subject.mesh = std::move(setup.mesh);
+  subject.swath_m = 1e-3 * setup.projection.swath_mm;
+  subject.model_name = std::filesystem::path(setup.model_path).stem().string();
+  subject.model_crc32 = setup.header.crc32;
+  subject.model = std::move(setup.model);
+  subject.inertia_kg_m2 = setup.inertia_kg_m2;
+  return subject;
 }
 
 }  // namespace tumblesight::sim

@@ -9,6 +9,7 @@
 
 #include "gnc/rcnn/model_image.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/evaluation/experiment.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
@@ -35,5 +36,9 @@ TargetSetup set_up_target(const ScenarioArguments& arguments);
 // The same for verbs that run no network. The model is the image that ships for the target. Of other targets
 // the fields of the model stay empty.
 TargetSetup set_up_target_without_model(const ScenarioArguments& arguments);
+
+// The subject of an experiment. Prints the warnings of set_up_target on the standard error stream. Throws as
+// set_up_target does, and std::runtime_error that names the fault of a model image that is refused.
+Subject set_up_subject(const ScenarioArguments& arguments);
 
 }  // namespace tumblesight::sim

@@ -1,5 +1,3 @@
-#include "sim/cli/train_command.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -13,8 +11,9 @@
 
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/quantize_command.hpp"
+#include "sim/cli/verbs.hpp"
 #include "sim/training/export_model.hpp"
-#include "sim/training/one_thread.hpp"
+#include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
 #include "sim/world/target/targets.hpp"
 

@@ -1,4 +1,4 @@
-// The verbs of `tumblesight` that this build has, in the order in which --help lists them.
+// The verbs of `tumblesight`. This build has those whose libraries it has.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,7 +6,32 @@
 
 namespace tumblesight::sim {
 
-// Adds every verb to `app`. `command_line`: what the user typed, for reports that name it.
+// Adds every verb to `app`, in the order in which --help lists them. `command_line`: what the user typed, for
+// reports that name it.
 void add_verbs(CLI::App& app, const std::string& command_line);
+
+// `tumblesight simulate`: a software-in-the-loop run with the flight program, with figures and a report.
+void add_simulate_command(CLI::App& app, const std::string& command_line);
+
+// `tumblesight evaluate`: accuracy of a model over many sequences, from the renderer directly to the
+// estimator.
+void add_evaluate_command(CLI::App& app, const std::string& command_line);
+
+// `tumblesight record`: renders frames into a recording, for the flight application on boards without a
+// simulator.
+void add_record_command(CLI::App& app);
+
+// `tumblesight export`: a float32 model image as ONNX models, for other runtimes.
+void add_export_command(CLI::App& app);
+
+// `tumblesight train`: trains a network for a target and writes its model images.
+void add_train_command(CLI::App& app);
+
+// `tumblesight quantize`: makes the fixed-point model image that flies from a float32 one.
+void add_quantize_command(CLI::App& app);
+
+// `tumblesight bench`: speed of the flight network in both numerics and with every instruction set, compared
+// with other runtimes.
+void add_bench_command(CLI::App& app);
 
 }  // namespace tumblesight::sim

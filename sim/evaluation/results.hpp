@@ -12,7 +12,6 @@
 #include "sim/evaluation/paper.hpp"
 #include "sim/evaluation/reliability.hpp"
 #include "sim/world/scenario/sequence.hpp"
-#include "sim/world/target/target_mesh.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {

@@ -2,6 +2,7 @@
 // between the two is not part of them: gnc/rcnn/hypotheses.hpp and attitude_track.hpp.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "sim/model/model_file.hpp"
@@ -19,5 +20,17 @@ std::string cnn_as_onnx(const Float32Model& model);
 // Outputs: output [1, kHeadOutput]; h_next, c_next [1, kLstm]
 // The bound on the cells (kLstmCellBound) is left out: no sequence of frames reaches it.
 std::string recurrent_as_onnx(const Float32Model& model);
+
+struct OnnxFile {
+  std::string path;
+  std::uint64_t size_bytes;
+};
+struct OnnxFiles {
+  OnnxFile cnn, recurrent;
+};
+
+// Writes <prefix>.cnn.onnx and <prefix>.recurrent.onnx under temporary names and renames them when both are
+// complete. Throws std::runtime_error that names the file if one cannot be written.
+OnnxFiles write_onnx_files(const Float32Model& model, const std::string& prefix);
 
 }  // namespace tumblesight::sim

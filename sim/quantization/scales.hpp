@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "sim/quantization/distribution.hpp"
 #include "sim/quantization/layer.hpp"
+#include "sim/quantization/statistics.hpp"
 
 namespace tumblesight::sim {
 

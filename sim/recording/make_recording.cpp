@@ -1,11 +1,31 @@
 #include "sim/recording/make_recording.hpp"
 
 #include <memory>
+#include <utility>
 
-#include "sim/recording/recording_writer.hpp"
+#include "hal/replay/recording.hpp"
 #include "sim/world/chaser_navigation.hpp"
 
 namespace tumblesight::sim {
+
+RecordingWriter::RecordingWriter(std::uint16_t rays, std::uint32_t frames)
+    : bytes_(hal::replay::kRecordingHeaderSize) {
+  hal::replay::write_recording_header(rays, frames, bytes_.data());
+}
+
+void RecordingWriter::add(const gnc::RangeImage& frame, const gnc::ChaserAttitude& chaser) {
+  const std::size_t size = bytes_.size();
+  bytes_.resize(size + hal::replay::kRecordedFrameSize);
+  bytes_.resize(size + hal::replay::write_recorded_frame(frame, chaser, bytes_.data() + size));
+}
+
+std::vector<std::uint8_t> RecordingWriter::finish() {
+  const std::size_t size = bytes_.size();
+  bytes_.resize(size + hal::replay::kRecordingCrcSize);
+  hal::replay::write_recording_crc(bytes_.data(), size, bytes_.data() + size);
+  return std::move(bytes_);
+}
+
 namespace {
 
 // Between two sequences: longer than the application's track coasts, since they show different motions.

@@ -1,14 +1,31 @@
-// Renders the sequences of a scenario into a recording.
+// Frames as a recording: written one after the other, or rendered from the sequences of a scenario.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <vector>
 
+#include "gnc/lidar/range_image.hpp"
+#include "gnc/tracking/chaser_attitude.hpp"
 #include "sim/world/frame_renderer.hpp"
 
 namespace tumblesight::sim {
 
+// RecordingWriter: frames as the bytes of a recording. hal/replay/recording.hpp has the format.
+class RecordingWriter {
+ public:
+  // `rays` per side of every frame, `frames` in all.
+  RecordingWriter(std::uint16_t rays, std::uint32_t frames);
+
+  void add(const gnc::RangeImage& frame, const gnc::ChaserAttitude& chaser);
+  // The whole recording, with its CRC. To be called once, after the last frame.
+  std::vector<std::uint8_t> finish();
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+};
+
+// Renders the sequences of a scenario into a recording.
 struct RecordingSettings {
   ScenarioSettings scenario;  // with the number of frames per sequence
   std::uint64_t seed = 1;

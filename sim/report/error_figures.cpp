@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "sim/evaluation/statistics.hpp"
-#include "sim/report/palette.hpp"
+#include "sim/report/colours.hpp"
 
 namespace tumblesight::sim {
 

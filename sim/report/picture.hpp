@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gnc/lidar/depth_image.hpp"
-#include "sim/report/colour_map.hpp"
+#include "sim/report/colours.hpp"
 
 namespace tumblesight::sim {
 
@@ -16,7 +16,7 @@ struct Picture {
   std::vector<Rgb> pixels;  // row-major, top row first
 };
 
-// Depth in colours of colour_map.hpp, scaled to the depths that occur in the image. Empty cells are light
+// Depth in colours of colours.hpp, scaled to the depths that occur in the image. Empty cells are light
 // grey.
 Picture depth_picture(const gnc::DepthImage& image);
 

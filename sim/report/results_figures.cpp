@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "sim/report/colours.hpp"
 #include "sim/report/error_figures.hpp"
-#include "sim/report/palette.hpp"
 
 namespace tumblesight::sim {
 namespace {

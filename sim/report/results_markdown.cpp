@@ -1,9 +1,8 @@
-#include "sim/report/results_markdown.hpp"
-
 #include <fmt/format.h>
 
 #include <set>
 
+#include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
 
 namespace tumblesight::sim {

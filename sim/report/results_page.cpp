@@ -1,16 +1,15 @@
-#include "sim/report/results_page.hpp"
-
 #include <fmt/format.h>
 
 #include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/statistics.hpp"
+#include "sim/report/colours.hpp"
 #include "sim/report/error_figures.hpp"
 #include "sim/report/page.hpp"
-#include "sim/report/palette.hpp"
 #include "sim/report/results_figures.hpp"
+#include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/terminal/counted.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

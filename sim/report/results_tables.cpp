@@ -7,7 +7,7 @@
 #include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/disturbed_runs.hpp"
 #include "sim/evaluation/statistics.hpp"
-#include "sim/terminal/counted.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "sim/evaluation/curves.hpp"
 #include "sim/report/charts.hpp"
+#include "sim/report/colours.hpp"
 #include "sim/report/error_figures.hpp"
-#include "sim/report/palette.hpp"
 #include "sim/report/picture.hpp"
 #include "sim/world/math/angles.hpp"
 

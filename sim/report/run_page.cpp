@@ -10,7 +10,7 @@
 #include "sim/report/results_tables.hpp"
 #include "sim/report/run_figures.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/terminal/counted.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -9,7 +9,7 @@
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/sil/fault_names.hpp"
-#include "sim/terminal/counted.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

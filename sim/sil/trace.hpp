@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "sim/sil/sil_run.hpp"
 
 namespace tumblesight::sim {

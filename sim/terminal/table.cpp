@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sim/terminal/wrapped.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

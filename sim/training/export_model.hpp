@@ -1,13 +1,25 @@
 // From LibTorch modules to the model image that flies.
 #pragma once
 
+#include <torch/torch.h>
+
 #include <string>
 
 #include "gnc/rcnn/model_image.hpp"
+#include "sim/model/network_layers.hpp"
 #include "sim/training/frame_stream.hpp"
 #include "sim/training/rcnn_module.hpp"
 
 namespace tumblesight::sim {
+
+// Weights between LibTorch's layout and the flight network's (docs/icd.md, model image).
+// A flat tensor over the same memory.
+torch::Tensor tensor_of(const TensorView& values);
+
+// Flight layout, flat -> [sums, in, 3, 3] (convolution), else [sums, in]. sums: gnc::sum_channels().
+torch::Tensor weight_from_flight(const gnc::LayerRow& row, const torch::Tensor& flat);
+// [sums, in, 3, 3] or [sums, in] -> flight layout. The result is a view; contiguous() puts it in order.
+torch::Tensor weight_to_flight(const gnc::LayerRow& row, const torch::Tensor& weight);
 
 // Copies the modules' weights into the flight network's layout. Batch norm is folded into the convolutions,
 // the standardization of the LSTM input into the LSTM and the recurrent head. The modules may be on any

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/math/random.hpp"
 #include "sim/world/scenario/sequence.hpp"

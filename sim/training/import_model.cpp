@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "sim/training/flight_layout.hpp"
+#include "sim/training/export_model.hpp"
 
 namespace tumblesight::sim {
 namespace {

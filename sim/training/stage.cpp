@@ -1,15 +1,24 @@
 #include "sim/training/stage.hpp"
 
+#include <ATen/Parallel.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
+
+void keep_to_one_thread() {
+  at::set_num_threads(1);
+  if (void* set_threads = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) {
+    reinterpret_cast<void (*)(int)>(set_threads)(1);
+  }
+}
 
 std::int64_t fingerprint(std::initializer_list<std::uint64_t> settings) {
   gnc::Crc32 crc;

@@ -13,6 +13,11 @@
 
 namespace tumblesight::sim {
 
+// Applies to everything that the calling thread computes from now on. While other threads render, LibTorch's
+// own threads mostly wait for each other. OpenBLAS's threads wait by spinning, which costs a quarter of the
+// training's time.
+void keep_to_one_thread();
+
 struct StageSettings {
   std::string name;  // "cnn" or "rcnn": in the checkpoint's file name and in the log
   std::string folder;

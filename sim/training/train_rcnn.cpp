@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/loss.hpp"
 #include "sim/training/sequence_features.hpp"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "sim/report/charts.hpp"
-#include "sim/report/palette.hpp"
+#include "sim/report/colours.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {

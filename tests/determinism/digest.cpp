@@ -8,7 +8,7 @@
 #include <cstring>
 #include <memory>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
 #include "tests/support/test_models.hpp"
 

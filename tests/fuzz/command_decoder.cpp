@@ -7,7 +7,7 @@
 
 #include "fsw/app/attitude_init_app.hpp"
 #include "hal/fake/fake_model_store.hpp"
-#include "hal/fake/fake_stopwatch.hpp"
+#include "hal/fake/fake_platform.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/support/app_memory.hpp"
 #include "tests/support/make_packet.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "gnc/rcnn/model_image.hpp"
 
 #if defined(__has_feature)
@@ -51,7 +51,7 @@ PatchedImage::PatchedImage(std::vector<std::uint8_t> image) : original_(std::mov
   with_values_ = false;
   const Section& last = sections_.back();
   require(gnc::crc32(bytes_.data() + last.offset, last.size) != last.crc32,
-          "known_crc32.cpp replaces gnc::crc32()");
+          "the linker replaces gnc::crc32()");
   with_values_ = true;
 }
 
@@ -136,3 +136,15 @@ void PatchedImage::undo() {
 }
 
 }  // namespace tumblesight::fuzz
+
+// Replaces gnc::crc32() in programs linked with --wrap: for the sections of a patched image, the CRC is the
+// one that the image gives. The linker's names of the original gnc::crc32() and of its replacement.
+extern "C" std::uint32_t __real__ZN11tumblesight3gnc5crc32EPKhm(const std::uint8_t* data,
+                                                                std::size_t size_bytes);
+extern "C" std::uint32_t __wrap__ZN11tumblesight3gnc5crc32EPKhm(const std::uint8_t* data,
+                                                                std::size_t size_bytes) {
+  std::uint32_t known;
+  const tumblesight::fuzz::PatchedImage* const image = tumblesight::fuzz::the_image;
+  const bool is_known = image != nullptr && image->knows_crc32(data, size_bytes, known);
+  return is_known ? known : __real__ZN11tumblesight3gnc5crc32EPKhm(data, size_bytes);
+}

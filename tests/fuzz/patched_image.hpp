@@ -52,7 +52,7 @@ class PatchedImage {
   std::size_t size_ = 0;  // given to the reader
 };
 
-// The image that known_crc32.cpp asks; it exists until the program ends.
+// The image that the replacement of gnc::crc32() asks; it exists until the program ends.
 inline const PatchedImage* the_image = nullptr;
 
 }  // namespace tumblesight::fuzz

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "hal/replay/replay_lidar.hpp"
+#include "hal/replay/replay_inputs.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace tumblesight::fuzz {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <ostream>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
 #include "tests/sil/sil_test_support.hpp"

@@ -13,7 +13,7 @@
 
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/math/random.hpp"
-#include "sim/world/target/near_shoemaker.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 #include "tests/support/test_models.hpp"
 
 namespace tumblesight::sim::test {

@@ -1,11 +1,33 @@
-// Results of two subjects in the form of an experiment's results, with chosen errors.
+// Made-up results: of single frames, and of two subjects in the form of an experiment's results, with chosen
+// errors.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstdint>
+
+#include "sim/evaluation/metrics.hpp"
 #include "sim/evaluation/results.hpp"
-#include "tests/support/made_up_results.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 
+// Results with chosen errors.
+inline Eigen::Quaterniond turned(double angle_deg, const Eigen::Vector3d& axis) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * kRadPerDeg, axis.normalized()));
+}
+
+inline FrameResult result_with(std::uint32_t sequence, std::uint32_t frame, double rcnn_deg, double cnn_deg) {
+  FrameResult made;
+  made.sequence = sequence;
+  made.frame = frame;
+  made.valid = true;
+  made.truth = turned(70.0, {1.0, -2.0, 0.5});
+  made.rcnn = turned(rcnn_deg, {0.3, 0.1, 1.0}) * made.truth;
+  made.cnn = turned(cnn_deg, {-1.0, 0.4, 0.2}) * made.truth;
+  return made;
+}
+
+// Results of two subjects in the form of an experiment's results, with chosen errors.
 inline CellResult sample_cell(Condition condition, double rcnn_deg, bool baseline) {
   std::vector<FrameResult> frames;
   for (std::uint32_t i = 0; i < 80; ++i) {

@@ -1,5 +1,6 @@
 # GoogleTest and Eigen's geometry take longer to read than most tests take to compile: they are compiled once for all tests.
-add_library(test_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+file(CONFIGURE OUTPUT precompiled.cpp CONTENT "// Only its precompiled headers are used.\n")
+add_library(test_precompiled OBJECT ${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp)
 target_link_libraries(test_precompiled PRIVATE project_rules GTest::gtest)
 # The tests' own code is optimized less than what they test: it compiles in two thirds of the time.
 option(TUMBLESIGHT_FEW_TRIALS "Fewer trials with random numbers in the tests: tests/support/trials.hpp" ${CMAKE_CROSSCOMPILING})

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "fsw/programs/desktop/flight_program.hpp"
-#include "hal/posix/periodic_task.hpp"
+#include "hal/posix/realtime.hpp"
 
 namespace tumblesight::fsw::desktop {
 namespace {

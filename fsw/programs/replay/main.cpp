@@ -11,8 +11,7 @@
 #include "hal/board.hpp"
 #include "hal/replay/console_link.hpp"
 #include "hal/replay/recording.hpp"
-#include "hal/replay/replay_lidar.hpp"
-#include "hal/replay/replay_navigation.hpp"
+#include "hal/replay/replay_inputs.hpp"
 #include "hal/replay/text_line.hpp"
 
 extern "C" {

@@ -1,6 +1,6 @@
 #include "hal/dds/idl/icd_hash.hpp"
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 
 namespace tumblesight::hal::dds {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "hal/dds/idl/topics.hpp"
 
 namespace tumblesight::hal::dds {

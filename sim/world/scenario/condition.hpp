@@ -18,8 +18,8 @@ namespace tumblesight::sim {
 enum class Condition { kNominal, kDegraded, kOccluded, kTumbling, kStress, kOffset, kOutliers };
 
 enum class RotationLaw {
-  kConstantRate,  // rate constant in the LiDAR frame (spin.hpp)
-  kTorqueFree,    // rigid body with the target's inertia (tumble.hpp)
+  kConstantRate,  // rate constant in the LiDAR frame (spin())
+  kTorqueFree,    // rigid body with the target's inertia (Tumble)
 };
 
 // The rounds of training in which a condition takes its turn, see all_training_conditions().

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "sim/world/dynamics/spin.hpp"
+#include "sim/world/dynamics/motion.hpp"
 #include "sim/world/scenario/draws.hpp"
 
 namespace tumblesight::sim {

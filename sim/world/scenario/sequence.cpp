@@ -5,8 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/world/dynamics/spin.hpp"
-#include "sim/world/dynamics/tumble.hpp"
+#include "sim/world/dynamics/motion.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/math/random.hpp"
 #include "sim/world/scenario/draws.hpp"

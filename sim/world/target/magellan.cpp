@@ -1,10 +1,9 @@
-#include "sim/world/target/magellan.hpp"
-
 #include <iterator>
 #include <vector>
 
 #include "sim/world/math/angles.hpp"
 #include "sim/world/target/primitives.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 

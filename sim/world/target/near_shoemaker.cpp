@@ -1,10 +1,9 @@
-#include "sim/world/target/near_shoemaker.hpp"
-
 #include <cmath>
 #include <iterator>
 
 #include "sim/world/math/angles.hpp"
 #include "sim/world/target/primitives.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 

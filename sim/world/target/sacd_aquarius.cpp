@@ -1,10 +1,9 @@
-#include "sim/world/target/sacd_aquarius.hpp"
-
 #include <cmath>
 #include <iterator>
 
 #include "sim/world/math/angles.hpp"
 #include "sim/world/target/primitives.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 

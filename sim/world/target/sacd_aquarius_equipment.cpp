@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "sim/world/target/primitives.hpp"
-#include "sim/world/target/sacd_aquarius.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 

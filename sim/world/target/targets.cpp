@@ -4,12 +4,9 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "sim/world/target/magellan.hpp"
-#include "sim/world/target/near_shoemaker.hpp"
-#include "sim/world/target/sacd_aquarius.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
-
 namespace {
 
 // The paper gives Aquarius in y-up axes, as the display model is: only then do its plane of symmetry and its
@@ -65,6 +62,11 @@ Eigen::Matrix3d inertia_kg_m2(const std::string& target) {
   Eigen::Matrix3d tensor;
   tensor << i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz;
   return tensor;
+}
+
+TriangleMesh target_mesh(const std::string& target, const std::string& source,
+                         const MeshFileOptions& options) {
+  return source == kParametricMesh ? target_by_name(target) : load_mesh_file(source, options);
 }
 
 }  // namespace tumblesight::sim

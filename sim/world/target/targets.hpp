@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/target/mesh_file.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
@@ -42,5 +43,13 @@ TriangleMesh target_by_name(const std::string& name);
 // Inertia tensor of a shipped target (paper, spacecraft table), see TargetRow::inertia. Throws as
 // target_by_name does.
 Eigen::Matrix3d inertia_kg_m2(const std::string& target);
+
+// Stands for the mesh that ships for a target, wherever a mesh file may be named.
+inline constexpr const char* kParametricMesh = "parametric";
+
+// The surface of a target as the user names it. `source`: kParametricMesh, or a file that is read with
+// `options`. Throws as target_by_name and load_mesh_file do.
+TriangleMesh target_mesh(const std::string& target, const std::string& source,
+                         const MeshFileOptions& options = {});
 
 }  // namespace tumblesight::sim

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -14,7 +15,12 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices_trf_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // vertex indices; both sides reflect
 
-  float radius_m() const;  // largest distance of a vertex from the TRF's origin
+  // Largest distance of a vertex from the TRF's origin.
+  float radius_m() const {
+    float radius = 0.0F;
+    for (const Eigen::Vector3f& vertex : vertices_trf_m) radius = std::max(radius, vertex.norm());
+    return radius;
+  }
 };
 
 }  // namespace tumblesight::sim

@@ -2,8 +2,7 @@
 
 #include "hal/fake/fake_lidar.hpp"
 #include "hal/fake/fake_link.hpp"
-#include "hal/fake/fake_navigation.hpp"
-#include "hal/fake/fake_watchdog.hpp"
+#include "hal/fake/fake_platform.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
 namespace tumblesight::fsw {

@@ -2,7 +2,7 @@
 // Verifies TS-CMD-170, TS-CMD-180.
 #include "fsw/app/parameter_table.hpp"
 
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "hal/fake/fake_persistent_store.hpp"
 #include "tests/support/app_memory.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"

@@ -1,7 +1,7 @@
 // What survives a reset, and the mode after it.
 // Verifies TS-RST-010, TS-RST-020, TS-RST-030, TS-RST-040.
 #include "fsw/app/state_keeper.hpp"
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "hal/command_authentication.hpp"
 #include "hal/fake/fake_persistent_store.hpp"
 #include "tests/support/test_models.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gnc/numerics/conversion.hpp"
-#include "gnc/numerics/crc32.hpp"
+#include "gnc/numerics/crc.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
 #include "tests/support/test_models.hpp"
 

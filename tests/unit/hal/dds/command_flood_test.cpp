@@ -10,8 +10,7 @@
 #include "hal/dds/dds_link.hpp"
 #include "hal/fake/fake_lidar.hpp"
 #include "hal/fake/fake_model_store.hpp"
-#include "hal/fake/fake_stopwatch.hpp"
-#include "hal/fake/fake_watchdog.hpp"
+#include "hal/fake/fake_platform.hpp"
 #include "tests/support/make_packet.hpp"
 #include "tests/support/test_models.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "gnc/numerics/crc16.hpp"
+#include "gnc/numerics/crc.hpp"
 
 namespace tumblesight::hal::packets {
 namespace {

@@ -5,8 +5,7 @@
 
 #include <vector>
 
-#include "hal/replay/replay_lidar.hpp"
-#include "hal/replay/replay_navigation.hpp"
+#include "hal/replay/replay_inputs.hpp"
 
 namespace tumblesight::hal::replay {
 namespace {

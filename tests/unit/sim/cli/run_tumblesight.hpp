@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/arbitrary_model.hpp"
+#include "tests/support/sim_models.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {

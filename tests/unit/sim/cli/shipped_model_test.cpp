@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "sim/cli/subject_setup.hpp"
+#include "sim/cli/target_setup.hpp"
 #include "sim/evaluation/monte_carlo.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/evaluation/shipped_figures.hpp"

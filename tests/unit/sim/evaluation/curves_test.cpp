@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "tests/support/made_up_results.hpp"
+#include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -7,7 +7,7 @@
 #include "sim/report/results_json.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/targets.hpp"
-#include "tests/support/arbitrary_model.hpp"
+#include "tests/support/sim_models.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/support/made_up_results.hpp"
+#include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "sim/world/math/random.hpp"
 #include "sim/world/target/targets.hpp"
-#include "tests/support/arbitrary_model.hpp"
+#include "tests/support/sim_models.hpp"
 
 namespace tumblesight::sim {
 namespace {

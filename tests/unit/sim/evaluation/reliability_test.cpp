@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/made_up_results.hpp"
+#include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "tests/support/random_float32_model.hpp"
+#include "tests/support/sim_models.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {

@@ -13,8 +13,7 @@
 #include <map>
 #include <vector>
 
-#include "sim/onnx/onnx_file.hpp"
-#include "tests/support/random_float32_model.hpp"
+#include "tests/support/sim_models.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "sim/quantization/quantize_file.hpp"
-#include "sim/world/target/near_shoemaker.hpp"
-#include "tests/support/random_float32_model.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
+#include "tests/support/sim_models.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {

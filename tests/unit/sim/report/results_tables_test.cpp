@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "sim/terminal/wrapped.hpp"
+#include "sim/terminal/text.hpp"
 #include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {

@@ -14,7 +14,7 @@
 
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/table.hpp"
-#include "sim/terminal/wrapped.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {

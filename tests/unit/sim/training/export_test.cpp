@@ -14,7 +14,7 @@
 #include "sim/model/model_file.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/world/scenario/sequence.hpp"
-#include "sim/world/target/near_shoemaker.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 namespace {

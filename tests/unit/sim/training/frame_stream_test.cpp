@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/world/target/near_shoemaker.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 namespace {

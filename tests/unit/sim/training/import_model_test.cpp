@@ -9,7 +9,7 @@
 #include "sim/training/export_model.hpp"
 #include "sim/training/frame_stream.hpp"
 #include "sim/training/train.hpp"
-#include "sim/world/target/near_shoemaker.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 namespace {

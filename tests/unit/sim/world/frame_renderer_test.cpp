@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "sim/world/math/random.hpp"
-#include "sim/world/target/near_shoemaker.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 namespace {

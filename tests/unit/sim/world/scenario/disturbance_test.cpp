@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/world/dynamics/spin.hpp"
+#include "sim/world/dynamics/motion.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/scenario/sequence.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
-#include "sim/world/target/near_shoemaker.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 namespace {

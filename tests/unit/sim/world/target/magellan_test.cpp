@@ -1,9 +1,8 @@
-#include "sim/world/target/magellan.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "sim/world/target/shipped_meshes.hpp"
 #include "tests/unit/sim/world/target/mesh_measures.hpp"
 
 namespace tumblesight::sim {

@@ -1,10 +1,9 @@
-#include "sim/world/target/near_shoemaker.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "sim/world/target/shipped_meshes.hpp"
 #include "tests/unit/sim/world/target/mesh_measures.hpp"
 
 namespace tumblesight::sim {

@@ -1,5 +1,3 @@
-#include "sim/world/target/sacd_aquarius.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -8,6 +6,7 @@
 
 #include "sim/world/math/angles.hpp"
 #include "sim/world/target/primitives.hpp"
+#include "sim/world/target/shipped_meshes.hpp"
 #include "sim/world/target/targets.hpp"
 #include "tests/unit/sim/world/target/mesh_measures.hpp"
 

@@ -1,0 +1,20 @@
+// The peers that this build does not have.
+#include "sim/bench/peer.hpp"
+
+namespace tumblesight::sim {
+
+#if !TUMBLESIGHT_HAS_ONNX
+std::unique_ptr<Peer> make_onnx_runtime(const Float32Model&, const std::string&, std::string& reason) {
+  reason = "built without ONNX: install libonnx-dev and libprotobuf-dev and configure again";
+  return nullptr;
+}
+#endif
+
+#if !TUMBLESIGHT_HAS_TRAINING
+std::unique_ptr<Peer> make_libtorch(const Float32Model&, std::string& reason) {
+  reason = "built without LibTorch: cmake --preset test builds with it";
+  return nullptr;
+}
+#endif
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,27 @@
+// Text for a terminal and for reports.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace tumblesight::sim {
+
+// Text in columns: its width, and its division into lines. Text is UTF-8; every code point counts as one
+// column.
+std::size_t columns_of(const std::string& text);
+
+// Breaks lines at spaces, so that none has more columns unless one word does.
+std::string wrapped(const std::string& text, std::size_t columns);
+
+// A number with its noun.
+// "1 frame", "2 frames".
+inline std::string counted(std::uint64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+// The time of day, for reports.
+// Now, in the local time zone: "2026-03-14 09:26 CET".
+std::string local_time_text();
+
+}  // namespace tumblesight::sim
