@@ -3,6 +3,7 @@
 #include "hal/fake/fake_lidar.hpp"
 #include "hal/fake/fake_link.hpp"
 #include "hal/fake/fake_platform.hpp"
+#include "tests/support/trials.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
 namespace tumblesight::fsw {
@@ -145,7 +146,7 @@ TEST_F(Cycle, SensorsFasterThanTheCycleGiveAnAttitudeInEveryCycle) {
     std::uint32_t number = 0;
     std::int64_t exposure_ns = now_ns + 123'456'789;
     int attitudes = 0;
-    constexpr int kCycles = 60;
+    constexpr int kCycles = trials(120);
     for (int cycle = 0; cycle < kCycles; ++cycle) {
       for (; exposure_ns <= next_time_ns(); exposure_ns += period_ns, ++number)
         lidar.add(good_frame(number, exposure_ns, 7 * number + 1));

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "gnc/rcnn/attitude_estimator.hpp"
+#include "tests/support/trials.hpp"
 #include "tests/unit/gnc/rcnn/track_frames.hpp"
 
 namespace tumblesight::gnc {
@@ -45,13 +46,13 @@ TEST(Covariances, AreNeverSingular) {
   }
 }
 
-// The variance per axis of the rate of 400 tracks of a target that turns at 9 degrees per period,
+// The variance per axis of the rate of many tracks of a target that turns at 9 degrees per period,
 // [rad^2/s^2]. The last of the intervals is `last_periods`, the others are nominal.
 double true_rate_variance(int frames, double last_periods, double sigma_rad) {
   std::mt19937 engine(5);
   std::normal_distribution<double> normal(0, sigma_rad);
   const Eigen::Vector3d rate = 9.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized();
-  constexpr int kTracks = 400;
+  constexpr int kTracks = trials(800);
   double sum = 0.0;
   for (int i = 0; i < kTracks; ++i) {
     AttitudeTrack<float> track;
