@@ -180,6 +180,9 @@ def as_document(requirements, verified):
         "",
         f"{len(requirements)} requirements. **T** is a test ({counts['T']}) that ctest runs. **A** is an analysis ({counts['A']}): the audit of the onboard",
         f"processors (`tests/audit/run`) measures it, or a document shows it. **I** is an inspection ({counts['I']}) of the file.",
+        "",
+        "All tests run in full on the desktop. In the emulators of the onboard processors the tests of the algorithms and of the",
+        "application run with fewer random trials, and flip every seventh bit of the voted state (`tests/support/trials.hpp`).",
     ]
     for group, title in GROUPS.items():
         rows = sorted(one for one in requirements.values() if one.id.split("-")[1] == group)
