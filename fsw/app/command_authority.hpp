@@ -10,10 +10,13 @@ namespace tumblesight::fsw {
 
 class CommandAuthority {
  public:
-  // Copies the keys. nullptr: the link delivers authentic commands only, without a security trailer.
+  // Copies the keys, and uses the lowest slot that holds one. nullptr: the link delivers authentic commands
+  // only, without a security trailer.
   void set(const hal::CommandKeys* keys) {
     has_keys_ = keys != nullptr;
-    if (has_keys_) keys_ = *keys;
+    if (!has_keys_) return;
+    keys_ = *keys;
+    for (std::uint32_t slot = hal::kCommandKeySlots; slot > 0; --slot) (void)use(slot - 1);
   }
   const hal::CommandKeys* keys() const { return has_keys_ ? &keys_ : nullptr; }
   // Whether there is a key in the slot.

@@ -5,6 +5,7 @@
 namespace tumblesight::fsw {
 
 void ModelManager::boot(std::uint32_t preferred) {
+  state_.banks.in_use = preferred;
   boot_bank(preferred);
   boot_bank(1 - preferred);
 }
