@@ -19,7 +19,8 @@ class PersistentStore {
  public:
   // `copy`: 0 or 1. Each call blocks for at most a few milliseconds. The application writes both copies and
   // reads them back, before each command and at most once at the end of a step; the telemetry's store_us
-  // shows the time at the end of the step. At boot it reads each copy at most three times.
+  // shows the time at the end of the step. At boot it reads each copy at most three times, and again in the
+  // first step if nothing could be read.
   //
   // kOk: all bytes were read. kBlank: nothing has ever been written. kFailed: the memory cannot be read now.
   // kDamaged: the memory knows that its content is wrong, for example by its own error detection.
