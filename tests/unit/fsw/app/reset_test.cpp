@@ -299,8 +299,10 @@ TEST_F(Reset, StoreThatWasGivenUpIsTriedAgainAtEachCheck) {
   };
   cycles_to_a_try();
   EXPECT_EQ(cycles_to_a_try(), config::kStoreCheck_cycles);
+  const std::uint32_t failed = out->telemetry.state_writes_failed;
   step_commands({set_mode(Mode::kSafe)});
-  EXPECT_EQ(cycles_to_a_try(), config::kStoreCheck_cycles - 1) << "commands do not try";
+  EXPECT_EQ(out->telemetry.state_writes_failed, failed) << "commands and changes do not try";
+  EXPECT_EQ(cycles_to_a_try(), config::kStoreCheck_cycles - 1);
   EXPECT_EQ(out->telemetry.store_given_up, 1U);
   kept.broken = {};
   for (std::uint32_t i = 1; i < config::kStoreCheck_cycles; ++i) {
