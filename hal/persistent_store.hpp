@@ -6,26 +6,27 @@
 #include <array>
 #include <cstdint>
 
+#include "hal/messages/store_status.hpp"
+
 namespace tumblesight::hal {
 
 inline constexpr int kStoredCopies = 2;
-inline constexpr int kStoredBytes = 128;
+// Every version of the software uses this size, so that each can read the records of the others.
+inline constexpr int kStoredBytes = 256;
 using StoredBytes = std::array<std::uint8_t, kStoredBytes>;
-
-enum class StoreStatus : std::uint8_t {
-  kOk = 0,
-  kBlank = 1,    // read: nothing has ever been written
-  kFailed = 2,   // the memory could not be read or written
-  kDamaged = 3,  // read, but its checksum is wrong; only the application finds this
-};
 
 class PersistentStore {
  public:
-  // `copy`: 0 or 1. Blocks for at most a few milliseconds, which belong to the budget of a step: one write
-  // of both copies per command and one at the end of a step.
+  // `copy`: 0 or 1. Each call blocks for at most a few milliseconds. The application writes both copies and
+  // reads them back, before each command and at most once at the end of a step; the telemetry's store_us
+  // shows the time at the end of the step. At boot it reads each copy at most three times, and again in the
+  // first step if nothing could be read.
+  //
+  // kOk: all bytes were read. kBlank: nothing has ever been written. kFailed: the memory cannot be read now.
+  // kDamaged: the memory knows that its content is wrong, for example by its own error detection.
   [[nodiscard]] virtual StoreStatus read(int copy, StoredBytes& bytes) = 0;
-  // kOk: the bytes are in the memory, and a reset from now on leaves them there. A write that a reset
-  // interrupts must not change the other copy.
+  // kOk: the bytes are in the memory, and a reset from now on leaves them there. Otherwise kFailed. A write
+  // that fails or that a reset interrupts must not change the other copy.
   [[nodiscard]] virtual StoreStatus write(int copy, const StoredBytes& bytes) = 0;
 
  protected:

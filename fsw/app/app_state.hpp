@@ -42,19 +42,39 @@ class ExpectedTarget {
   bool has_name_ = false;
 };
 
+// The copies that hold the newest record.
+class StoredCopies {
+ public:
+  static constexpr StoredCopies all() {
+    StoredCopies copies;
+    for (int copy = 0; copy < hal::kStoredCopies; ++copy) copies.set(copy, true);
+    return copies;
+  }
+  constexpr void set(int copy, bool good) { bits_ = (bits_ & ~(1U << copy)) | (good ? 1U : 0U) << copy; }
+  bool has(int copy) const { return (bits_ >> copy & 1U) != 0; }
+  std::uint32_t number() const { return (bits_ & 1U) + (bits_ >> 1 & 1U); }
+
+ private:
+  std::uint32_t bits_ = 0;
+};
+static_assert(hal::kStoredCopies == 2);
+
 // What the persistent store holds (state_keeper.hpp).
 struct StoredRecord {
-  StoredState last;  // as written
+  StoredState last;  // the newest record, whether it could be written or not
   std::uint32_t generation = 0;
-  bool failing = false;  // the last write did not reach both copies
+  StoredCopies good = StoredCopies::all();
+  std::uint32_t failing_cycles = 0;  // consecutive ones that ended with less than all copies
+  std::uint32_t cycles_since_check = 0;
+  bool given_up = false;
 };
 
 // What init() found in the persistent store.
 struct Resumption {
-  StoredState stored;  // if found
+  StoredState stored;  // initial values where nothing is found
   std::array<StoreStatus, hal::kStoredCopies> copies{};
-  bool found = false;
-  bool lost = false;       // there was a record, and no good copy is left
+  std::uint32_t lost = 0;  // sum of hal::StateLoss
+  bool found = false;      // mode and bank, too
   bool to_report = false;  // by the next step
 };
 

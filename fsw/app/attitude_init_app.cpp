@@ -137,7 +137,7 @@ void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, S
       guard_.check(estimator_, state, report);
     }
     if (now_ns < previous_ns) modes.restart_sequence_after_time_jump();
-    CommandHandler({state, state.events, modes, models, outputs, report}, keeper).run(inputs);
+    CommandHandler({state, state.events, modes, models, keeper, outputs, report}).run(inputs);
     const std::uint32_t resets_before = state.counters.estimator_resets;
     take_frames(inputs, previous_ns, time_advances, outputs, report);
     if (!state.long_task) models.continue_copy();
@@ -145,7 +145,9 @@ void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, S
         .supervise(outputs.attitude.validity, inputs.cycle_slips, start_ns, resets_before);
   }
   modes.go_safe_on_assertion();
-  if (usable) keeper.store_changes();
+  // Also if the inputs were refused: a reset must not undo the SAFE that follows.
+  if (is_complete(state.platform)) keeper.end_step();
+  state.counters.store_health = keeper.health();
   report_telemetry(outputs);
   guard_.keep(estimator_, state);
   state_.commit();

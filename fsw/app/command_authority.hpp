@@ -10,14 +10,16 @@ namespace tumblesight::fsw {
 
 class CommandAuthority {
  public:
-  // Copies the keys. nullptr: the link delivers authentic commands only, without a security trailer.
+  // Copies the keys, and uses the lowest slot that holds one. nullptr: the link delivers authentic commands
+  // only, without a security trailer.
   void set(const hal::CommandKeys* keys) {
     has_keys_ = keys != nullptr;
-    if (has_keys_) keys_ = *keys;
+    keys_ = has_keys_ ? *keys : hal::CommandKeys{};
+    for (std::uint32_t slot = hal::kCommandKeySlots; slot > 0; --slot) (void)use(slot - 1);
   }
   const hal::CommandKeys* keys() const { return has_keys_ ? &keys_ : nullptr; }
   // Whether there is a key in the slot.
-  bool has_key(std::uint32_t slot) const { return has_keys_ && keys_.has_key(slot); }
+  bool has_key(std::uint32_t slot) const { return keys_.has_key(slot); }
   std::uint32_t slot() const { return slot_; }  // of the key in use
   // False: the slot is empty or does not exist.
   [[nodiscard]] bool use(std::uint32_t slot) {

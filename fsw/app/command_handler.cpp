@@ -4,6 +4,14 @@
 #include "fsw/app/counter.hpp"
 
 namespace tumblesight::fsw {
+namespace {
+
+bool is_set_mode_safe(const Telecommand& command) {
+  return command.function == FunctionCode::kSetMode &&
+         command.u8_at(0) == static_cast<std::uint8_t>(Mode::kSafe);
+}
+
+}  // namespace
 
 void CommandHandler::run(const StepInputs& inputs) {
   count_dropped(inputs.commands_dropped);
@@ -17,9 +25,11 @@ void CommandHandler::run(const hal::CommandPacket& packet) {
   Admission admission = judge(packet, state.authority, counters.command_counter, before);
   if (admission.authentic) {
     counters.command_counter = admission.counter;
-    const bool stored = keeper_.store_counter();
-    if (!stored) admission.why = CommandRefusal::kNotStored;
-    admission.admitted &= stored;
+    const bool stored = context_.keeper.store_now();
+    if (!stored && admission.admitted && !is_set_mode_safe(admission.command)) {
+      admission.why = CommandRefusal::kNotStored;
+      admission.admitted = false;
+    }
   }
   Refusal refusal{admission.why, 0};
   if (admission.admitted && carry_out(admission.command, context_, refusal)) {

@@ -2,16 +2,16 @@
 #pragma once
 
 #include "fsw/app/command_table.hpp"
-#include "fsw/app/state_keeper.hpp"
 
 namespace tumblesight::fsw {
 
 class CommandHandler {
  public:
-  CommandHandler(const CommandContext& context, StateKeeper& keeper) : context_(context), keeper_(keeper) {}
+  explicit CommandHandler(const CommandContext& context) : context_(context) {}
 
   // All commands, in the order in which they arrived. Each one is counted as accepted or refused, with an
-  // event. The counter of an authentic command is stored before the command is carried out. Commands that the
+  // event. The counter of an authentic command is stored before the command is carried out. If it cannot be
+  // stored, only SET_MODE SAFE is carried out: a replay of it after a reset does no harm. Commands that the
   // link has dropped are counted as refused, with one event per reason.
   void run(const StepInputs& inputs);
 
@@ -21,7 +21,6 @@ class CommandHandler {
   void count_refused(CommandRefusal why, std::uint32_t commands);
 
   const CommandContext context_;
-  StateKeeper& keeper_;
 };
 
 }  // namespace tumblesight::fsw

@@ -1,5 +1,5 @@
-// The table of telecommands. Each telecommand has one row and one handler in commands.cpp. The table
-// of commands in docs/icd.md is generated from the rows.
+// The table of telecommands. Each telecommand has one row in commands.cpp, and one handler there or in
+// model_commands.cpp. The table of commands in docs/icd.md is generated from the rows.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include "fsw/app/app_state.hpp"
 #include "fsw/app/mode_manager.hpp"
 #include "fsw/app/model_manager.hpp"
+#include "fsw/app/state_keeper.hpp"
 #include "fsw/app/step_io.hpp"
 #include "fsw/app/telecommand.hpp"
 
@@ -18,6 +19,7 @@ struct CommandContext {
   EventLog& events;
   ModeManager& modes;
   ModelManager& models;
+  StateKeeper& keeper;
   StepOutputs& outputs;
   const Reporter& report;
 };
@@ -27,6 +29,19 @@ struct Refusal {
   CommandRefusal why = CommandRefusal::kForged;
   std::int32_t detail = 0;
 };
+
+inline bool refuse(Refusal& refusal, CommandRefusal why, std::int32_t detail = 0) {
+  refusal = {why, detail};
+  return false;
+}
+
+// The handlers of model_commands.cpp. False: the command is refused.
+bool begin_model(const Telecommand& command, const CommandContext& context, Refusal& refusal);
+bool load_model(const Telecommand& command, const CommandContext& context, Refusal& refusal);
+bool validate_model(const Telecommand& command, const CommandContext& context, Refusal& refusal);
+bool activate_model(const Telecommand& command, const CommandContext& context, Refusal& refusal);
+// False: the bank cannot be read now, and the command is refused.
+bool is_readable(std::uint32_t bank, const CommandContext& context, Refusal& refusal);
 
 // What the command gate checks before a command is carried out.
 struct CommandRule {

@@ -47,7 +47,8 @@ struct ModelBanksState {
   std::uint32_t next_copied =
       kModelSegments;  // first segment that is not copied yet; no copy: the number of all
   std::uint32_t segments_missing = 0;
-  std::array<std::uint8_t, (kModelSegments + 7) / 8> missing{};  // bit 7 of byte 0 is segment 0; 1: missing
+  // Bit 7 of byte 0 is segment 0; 1: missing. There is at least one bit behind the last segment, always 0.
+  std::array<std::uint8_t, kModelSegments / 8 + 1> missing{};
   std::array<std::uint32_t, hal::kModelBanks> table_crc32{};
 
   BankStatus status(std::uint32_t bank) const { return static_cast<BankStatus>(descriptor[bank].status); }

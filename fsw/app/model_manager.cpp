@@ -5,6 +5,7 @@
 namespace tumblesight::fsw {
 
 void ModelManager::boot(std::uint32_t preferred) {
+  state_.banks.in_use = preferred;
   boot_bank(preferred);
   boot_bank(1 - preferred);
 }
@@ -77,7 +78,7 @@ gnc::ModelStatus ModelManager::activate(std::uint32_t bank) {
 
 void ModelManager::continue_copy() {
   ModelBanksState& banks = state_.banks;
-  if (!banks.is_loading() || !state_.has_model()) return;
+  if (!state_.has_model()) return;
   const std::int32_t missing = clamp_to_int32(banks.segments_missing);
   if (ModelBanks::continue_copy(*state_.platform.models, banks) != hal::WriteStatus::kFailed) return;
   report_(EventId::kUploadFailed, static_cast<std::int32_t>(banks.other()), missing);

@@ -16,8 +16,8 @@ class ModelManager {
       : state_(state), estimator_(estimator), guard_(guard), report_(report) {}
 
   // Activates the image of the first bank that passes every check, beginning with `preferred`. A good image
-  // in the other bank is kept as the second copy or as a fallback. The result of each bank:
-  // AppState::boot_status.
+  // in the other bank is kept as the second copy or as a fallback. Without a good image `preferred` stays the
+  // bank in use. The result of each bank: AppState::boot_status.
   void boot(std::uint32_t preferred);
   // Reports the result of boot() once, in the first step after it.
   void report_boot();

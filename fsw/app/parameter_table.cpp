@@ -77,9 +77,10 @@ config::FaultRule ParameterTable::rule_of(Fault fault) const {
 }
 
 std::size_t first_wrong_field(const ParameterTable& table) {
-  std::size_t field = 0;
-  while (field < kTableFields && is_allowed(field, table.fields[field])) ++field;
-  return field;
+  for (std::size_t field = 0; field < kTableFields; ++field) {
+    if (!is_allowed(field, table.fields[field])) return field;
+  }
+  return kTableFields;
 }
 
 TableBytes to_bytes(const ParameterTable& table) {

@@ -5,6 +5,13 @@
 namespace tumblesight::fsw {
 namespace {
 
+using hal::kStoredCopies;
+using hal::StateLoss;
+
+constexpr std::uint32_t bit_of(StateLoss loss) {
+  return static_cast<std::uint32_t>(loss);
+}
+
 StoredState state_to_store(const AppState& state) {
   StoredState wanted;
   wanted.command_counter = state.counters.command_counter;
@@ -18,32 +25,80 @@ StoredState state_to_store(const AppState& state) {
   return wanted;
 }
 
+// A read can be disturbed, so it is repeated until the record is good. `generation` is 0 without a good head.
 StoreStatus read_copy(hal::PersistentStore& store, int copy, StoredState& stored, std::uint32_t& generation) {
-  hal::StoredBytes bytes{};
-  const StoreStatus status = store.read(copy, bytes);
-  return status == StoreStatus::kOk ? from_record(bytes, stored, generation) : status;
+  StoreStatus status = StoreStatus::kFailed;
+  for (int i = 0; i < config::kStoreReads; ++i) {
+    hal::StoredBytes bytes{};
+    stored = {};
+    generation = 0;
+    status = store.read(copy, bytes);
+    if (status == StoreStatus::kOk) status = from_record(bytes, stored, generation);
+    if (status == StoreStatus::kOk || status == StoreStatus::kBlank) break;
+  }
+  return status;
 }
+
+// What the copies hold together.
+class Survey {
+ public:
+  void add(StoreStatus status, const StoredState& stored, std::uint32_t generation) {
+    if (status == StoreStatus::kBlank) ++blank_;
+    if (stored.command_counter > head_.command_counter) head_.command_counter = stored.command_counter;
+    if (generation > newest_) {
+      newest_ = generation;
+      head_.key_slot = stored.key_slot;
+    }
+    if (!has_body(status) || generation <= newest_body_) return;  // the first record has generation 1
+    newest_body_ = generation;
+    body_ = stored;
+    table_known_ = status == StoreStatus::kOk;
+  }
+
+  // Counter and slot of the heads, all else of the newest body.
+  StoredState state() const {
+    StoredState result = body_;
+    result.command_counter = head_.command_counter;
+    result.key_slot = head_.key_slot;
+    return result;
+  }
+  std::uint32_t newest() const { return newest_; }
+  bool found() const { return newest_body_ > 0; }
+  // A sum of StateLoss. A torn write leaves a body that is one generation old.
+  std::uint32_t lost() const {
+    if (blank_ == kStoredCopies) return 0;
+    if (newest_ == 0) return bit_of(StateLoss::kHead) | bit_of(StateLoss::kBody);
+    if (newest_body_ == 0) return bit_of(StateLoss::kBody);
+    return (table_known_ ? 0 : bit_of(StateLoss::kTable)) |
+           (newest_ - newest_body_ <= 1 ? 0 : bit_of(StateLoss::kStale));
+  }
+
+ private:
+  StoredState head_, body_;
+  std::uint32_t newest_ = 0;       // generation of the heads
+  std::uint32_t newest_body_ = 0;  // generation
+  int blank_ = 0;
+  bool table_known_ = true;
+};
 
 }  // namespace
 
 void StateKeeper::resume() {
   Resumption& resumption = state_.resumption;
   if (state_.platform.persistent == nullptr) return;
-  for (int copy = 0; copy < hal::kStoredCopies; ++copy) {
+  Survey survey;
+  for (int copy = 0; copy < kStoredCopies; ++copy) {
     StoredState stored;
     std::uint32_t generation = 0;
     const StoreStatus status = read_copy(*state_.platform.persistent, copy, stored, generation);
     resumption.copies[static_cast<std::size_t>(copy)] = status;
-    if (status != StoreStatus::kOk) continue;
-    if (generation <= state_.stored.generation) continue;  // the first record has generation 1
-    resumption.found = true;
-    state_.stored.generation = generation;
-    resumption.stored = stored;
+    survey.add(status, stored, generation);
   }
-  const bool blank =
-      resumption.copies[0] == StoreStatus::kBlank && resumption.copies[1] == StoreStatus::kBlank;
-  resumption.lost = !resumption.found && !blank;
-  if (resumption.found) take(resumption.stored);
+  state_.stored.generation = survey.newest();
+  resumption.found = survey.found();
+  resumption.lost = survey.lost();
+  resumption.stored = survey.state();
+  if (survey.newest() > 0) take(resumption.stored);
 }
 
 void StateKeeper::take(const StoredState& stored) {
@@ -53,59 +108,146 @@ void StateKeeper::take(const StoredState& stored) {
     if ((stored.responses_disabled & bit_of(static_cast<Fault>(fault))) != 0)
       (void)state_.faults.enable(fault, false);
   }
-  // An empty slot: the platform has other keys than before the reset, and keeps its first one.
-  (void)state_.authority.use(stored.key_slot);
+  if (state_.authority.keys() == nullptr || state_.authority.use(stored.key_slot)) return;
+  state_.resumption.lost |= bit_of(StateLoss::kKeySlot);
 }
 
 Cause StateKeeper::boot_cause() const {
   const Resumption& resumption = state_.resumption;
-  if (resumption.lost) return Cause::kStoredStateLost;
+  if (resumption.lost != 0) return Cause::kStoredStateLost;
   if (resumption.stored.mode == Mode::kSafe) return Cause::kResumedSafe;
   const bool abnormal = hal::is_abnormal(state_.platform.reset_cause);
   if (abnormal || resumption.stored.mode == Mode::kStandby) return Cause::kResumedStandby;
   return Cause::kModelFound;
 }
 
+// Memory may need some time after power-on. Mode and bank are decided at boot and stay.
+void StateKeeper::resume_late() {
+  Resumption& resumption = state_.resumption;
+  if ((resumption.lost & bit_of(StateLoss::kHead)) == 0) return;
+  resume();
+  resumption.found = false;
+  resumption.lost |= bit_of(StateLoss::kBody);
+}
+
 void StateKeeper::report_resumption() {
   Resumption& resumption = state_.resumption;
   if (!resumption.to_report) return;
   resumption.to_report = false;
+  resume_late();
   if (resumption.found) {
     report_(EventId::kStateResumed, static_cast<std::int32_t>(state_.platform.reset_cause),
             static_cast<std::int32_t>(resumption.stored.mode),
             static_cast<std::int32_t>(resumption.stored.bank));
   }
-  if (resumption.lost) {
-    report_(EventId::kStoredStateLost, static_cast<std::int32_t>(resumption.copies[0]),
-            static_cast<std::int32_t>(resumption.copies[1]));
+  const auto first = static_cast<std::int32_t>(resumption.copies[0]);
+  const auto second = static_cast<std::int32_t>(resumption.copies[1]);
+  if (resumption.lost != 0) {
+    report_(EventId::kStoredStateLost, first, second, static_cast<std::int32_t>(resumption.lost));
+  } else if (resumption.copies != decltype(resumption.copies){}) {
+    report_(EventId::kStoredCopyUnusable, first, second);
   }
 }
 
-int StateKeeper::write_copies(const StoredState& wanted) {
+bool StateKeeper::holds(int copy, const hal::StoredBytes& bytes) {
+  hal::StoredBytes read{};
+  if (state_.platform.persistent->read(copy, read) != StoreStatus::kOk) return false;
+  return read == bytes;
+}
+
+bool StateKeeper::put(int copy, const hal::StoredBytes& bytes) {
+  return state_.platform.persistent->write(copy, bytes) == StoreStatus::kOk && holds(copy, bytes);
+}
+
+void StateKeeper::write_record(const StoredState& wanted) {
   StoredRecord& record = state_.stored;
   ++record.generation;
+  record.last = wanted;
   const hal::StoredBytes bytes = to_record(wanted, record.generation);
-  int written = 0;
-  for (int copy = 0; copy < hal::kStoredCopies; ++copy) {
-    if (state_.platform.persistent->write(copy, bytes) == StoreStatus::kOk) ++written;
-  }
-  if (written > 0) record.last = wanted;
-  const bool fails = written < hal::kStoredCopies;
-  if (fails) count(state_.counters.state_writes_failed);
-  if (fails && !record.failing) report_(EventId::kStateNotStored, written);
-  record.failing = fails;
-  return written;
+  StoredCopies good;
+  for (int copy = 0; copy < kStoredCopies; ++copy) good.set(copy, put(copy, bytes));
+  settle(good);
 }
 
-bool StateKeeper::store_counter() {
-  if (state_.platform.persistent == nullptr) return true;
-  return write_copies(state_to_store(state_)) > 0;
+// A good copy is not written, which would wear it out.
+void StateKeeper::renew_copies() {
+  const StoredRecord& record = state_.stored;
+  const hal::StoredBytes bytes = to_record(record.last, record.generation);
+  StoredCopies good = record.good;
+  for (int copy = 0; copy < kStoredCopies; ++copy) {
+    if (good.has(copy)) good.set(copy, holds(copy, bytes));
+  }
+  if (good.number() < record.good.number()) settle(good);
+  for (int copy = 0; copy < kStoredCopies; ++copy) {
+    if (!good.has(copy)) good.set(copy, put(copy, bytes));
+  }
+  settle(good);
+}
+
+void StateKeeper::settle(StoredCopies good) {
+  StoredRecord& record = state_.stored;
+  const std::uint32_t before = record.good.number(), now = good.number();
+  if (now < kStoredCopies) count(state_.counters.state_writes_failed);
+  if (now < before) report_(EventId::kStateNotStored, static_cast<std::int32_t>(now));
+  if (now != before) record.failing_cycles = 0;
+  record.good = good;
+}
+
+bool StateKeeper::store_now() {
+  if (state_.platform.persistent == nullptr || state_.stored.given_up) return true;
+  write_record(state_to_store(state_));
+  return state_.stored.good.number() > 0;
+}
+
+bool StateKeeper::is_check_due() {
+  std::uint32_t& cycles = state_.stored.cycles_since_check;
+  if (++cycles < config::kStoreCheck_cycles) return false;
+  cycles = 0;
+  return true;
 }
 
 void StateKeeper::store_changes() {
-  if (state_.platform.persistent == nullptr) return;
+  const StoredRecord& record = state_.stored;
+  const bool due = is_check_due();
+  if (record.given_up && !due) return;
   const StoredState wanted = state_to_store(state_);
-  if (state_.stored.failing || wanted != state_.stored.last) (void)write_copies(wanted);
+  if (wanted != record.last) {
+    write_record(wanted);
+  } else if (due ||
+             (record.good.number() < kStoredCopies && record.failing_cycles < config::kMostFailingCycles)) {
+    renew_copies();
+  }
+  judge_store();
+}
+
+void StateKeeper::judge_store() {
+  StoredRecord& record = state_.stored;
+  record.failing_cycles = record.good.number() < kStoredCopies ? record.failing_cycles + 1 : 0;
+  if (record.good.number() > 0) {
+    if (record.given_up) report_(EventId::kStoreUsable, static_cast<std::int32_t>(record.good.number()));
+    record.given_up = false;
+  } else if (record.failing_cycles == config::kMostFailingCycles) {
+    record.given_up = true;
+    count(state_.counters.store_given_up);
+    report_(EventId::kStoreGivenUp, static_cast<std::int32_t>(record.failing_cycles));
+  }
+}
+
+void StateKeeper::end_step() {
+  if (state_.platform.persistent == nullptr) return;
+  hal::Telemetry& counters = state_.counters;
+  const std::uint64_t start_ns = state_.platform.stopwatch->now_ns();
+  store_changes();
+  counters.store_us = elapsed_us(start_ns, state_.platform.stopwatch->now_ns());
+  if (counters.store_us > counters.store_max_us) counters.store_max_us = counters.store_us;
+}
+
+StoreHealth StateKeeper::health() const {
+  const StoredRecord& record = state_.stored;
+  if (state_.platform.persistent == nullptr) return StoreHealth::kNone;
+  if (record.given_up) return StoreHealth::kGivenUp;
+  if (record.good.number() == 0) return StoreHealth::kFailing;
+  return record.good.number() < kStoredCopies ? StoreHealth::kOneCopy : StoreHealth::kGood;
 }
 
 }  // namespace tumblesight::fsw

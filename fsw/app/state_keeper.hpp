@@ -2,16 +2,24 @@
 // everything that it keeps is in AppState.
 //
 // Both copies of the store hold the newest record, one written after the other, so that a reset during a
-// write leaves a whole record and a later bit flip in one copy costs nothing. A failed copy is written again
-// in every cycle until it succeeds.
+// write leaves a whole record and a later bit flip in one copy costs nothing. A write is read back. Every
+// kStoreCheck_cycles both copies are read again. A copy that does not hold the newest record is written
+// again: in each of the first kMostFailingCycles cycles, with each new record, and at each check.
+//
+// The store is given up when no copy could be written in kMostFailingCycles consecutive cycles. The
+// application then works as without a store, so that the ground can command it, and tries again at each
+// check.
+//
+// At boot the counter is the highest one of all good heads, and the key slot that of the newest good head.
+// Everything else is that of the newest good body.
 //
 // The mode after a reset:
-//   stored            normal reset    abnormal reset (hal::is_abnormal)
-//   nothing           RUN             STANDBY
-//   RUN               RUN             STANDBY
-//   STANDBY           STANDBY         STANDBY
-//   SAFE              SAFE            SAFE
-//   both copies bad   SAFE            SAFE        cold boot: counter 0, key slot 0, initial table, bank 0
+//   stored                 normal reset    abnormal reset (hal::is_abnormal)
+//   nothing                RUN             STANDBY
+//   RUN                    RUN             STANDBY
+//   STANDBY                STANDBY         STANDBY
+//   SAFE                   SAFE            SAFE
+//   lost, even in part     SAFE            SAFE
 // Without a good model it is SAFE.
 #pragma once
 
@@ -25,22 +33,35 @@ class StateKeeper {
  public:
   StateKeeper(AppState& state, const Reporter& report) : state_(state), report_(report) {}
 
-  // At boot: takes counter, key slot, table and disabled responses from the newest good copy. The result is
-  // kept in AppState::resumption.
+  // At boot: takes counter, key slot, table and disabled responses from the good copies. What is lost has
+  // its initial value; the key slot is then the lowest one with a key. The result is kept in
+  // AppState::resumption.
   void resume();
   // The cause of the first mode, if a good model was found.
   Cause boot_cause() const;
-  // Reports the result of resume() once, in the first step after it.
+  // In the first step after it: reports the result of resume(). If no copy had a good head, it reads again
+  // and resumes what can be read by now, except for mode and bank.
   void report_resumption();
 
-  // Before a command is carried out. False: no copy could be written.
-  [[nodiscard]] bool store_counter();
-  // At the end of a step: stores what has changed.
-  void store_changes();
+  // Writes a new record now. False: no copy could be written. True without a store, or with one that was
+  // given up.
+  [[nodiscard]] bool store_now();
+  // At the end of a step: stores what has changed, and writes again what could not be written or has
+  // changed in the store. Measures its time.
+  void end_step();
+  StoreHealth health() const;
 
  private:
   void take(const StoredState& stored);
-  int write_copies(const StoredState& wanted);
+  void resume_late();
+  bool is_check_due();
+  void store_changes();
+  bool holds(int copy, const hal::StoredBytes& bytes);
+  bool put(int copy, const hal::StoredBytes& bytes);
+  void write_record(const StoredState& wanted);
+  void renew_copies();
+  void settle(StoredCopies good);
+  void judge_store();
 
   AppState& state_;
   const Reporter& report_;

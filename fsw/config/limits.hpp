@@ -26,6 +26,12 @@ inline constexpr int kMaxEventsPerStep = 16;
 inline constexpr int kEventRing = 32;
 static_assert((kEventRing & (kEventRing - 1)) == 0, "the ring's indices are masked");
 
+// The persistent store (fsw/app/state_keeper.hpp).
+inline constexpr int kStoreReads = 3;                    // of a copy at boot, until one succeeds
+inline constexpr std::uint32_t kMostFailingCycles = 10;  // then failing copies are written at the checks only
+inline constexpr std::uint32_t kStoreCheck_cycles =
+    64;  // both copies are read, and written if they have changed
+
 // The period of the cycle.
 inline constexpr std::int64_t kFramePeriod_ns = 2'700'000'000;
 

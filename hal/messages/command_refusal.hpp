@@ -20,7 +20,7 @@ enum class CommandRefusal : std::uint8_t {
   kOutOfWindow = 10,      // counter more than 65,536 ahead of the last authentic command
   kOtherKey = 11,         // signed by a key slot that is not in use
   kOtherSpacecraft = 12,  // authentic, but for another spacecraft
-  kNotStored = 13,        // the counter could not be stored, so a reset would make a replay possible
+  kNotStored = 13,        // counter or key slot could not be stored, so a reset would make a replay possible
   kStoreFailed = 14,      // the model store could not erase or write the bank
   kNoRoom = 15,           // the link's queue was full
   kIncomplete = 16,       // segments of the image are missing; the event gives their number

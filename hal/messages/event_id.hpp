@@ -73,8 +73,12 @@ enum class EventId : std::uint16_t {
   kFallbackLost = 77,       // [bank, -, -]; the image of the bank that is not in use is no longer good
 
   kStateResumed = 80,  // [ResetCause, stored Mode, stored bank]; the stored state of before the reset is used
-  kStoredStateLost = 81,  // [StoreStatus of copy 0, StoreStatus of copy 1, -]; cold boot
-  kStateNotStored = 82,   // [copies written, -, -]; first cycle of a failure only
+  kStoredStateLost =
+      81,                // [StoreStatus of copy 0, StoreStatus of copy 1, sum of StateLoss]; the mode is SAFE
+  kStateNotStored = 82,  // [copies that hold the newest record, -, -]; when they become fewer
+  kStoredCopyUnusable = 83,  // [StoreStatus of copy 0, StoreStatus of copy 1, -]; at boot; nothing is lost
+  kStoreGivenUp = 84,        // [cycles without a copy, -, -]; commands are carried out as without a store
+  kStoreUsable = 85,         // [copies that hold the newest record, -, -]; after the store was given up
 
   kEventsSuppressed = 90,  // [EventId of the suppressed events, their number, -]
 
@@ -92,7 +96,7 @@ struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 58> kEventRules{{
+inline constexpr std::array<EventRule, 61> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kUploadFailed, Severity::kError},
@@ -142,6 +146,9 @@ inline constexpr std::array<EventRule, 58> kEventRules{{
     {EventId::kStateResumed, Severity::kWarning},
     {EventId::kStoredStateLost, Severity::kError},
     {EventId::kStateNotStored, Severity::kError},
+    {EventId::kStoredCopyUnusable, Severity::kWarning},
+    {EventId::kStoreGivenUp, Severity::kError},
+    {EventId::kStoreUsable, Severity::kInformation},
     {EventId::kEventsSuppressed, Severity::kInformation},
     {EventId::kCommandOutOfWindow, Severity::kWarning},
     {EventId::kCommandOtherKey, Severity::kWarning},

@@ -24,7 +24,7 @@ enum class Cause : std::uint8_t {
   kAssertion = 7,         // a bug in the flight software
   kResumedStandby = 8,    // STANDBY before the reset, or an abnormal reset
   kResumedSafe = 9,       // SAFE before the reset
-  kStoredStateLost = 10,  // a reset, and no good copy of the stored state
+  kStoredStateLost = 10,  // a reset, and the stored state is lost, at least in part
 };
 inline constexpr Cause kLastCause = Cause::kStoredStateLost;
 

@@ -9,6 +9,7 @@
 #include "hal/messages/command_refusal.hpp"
 #include "hal/messages/fault.hpp"
 #include "hal/messages/mode.hpp"
+#include "hal/messages/store_status.hpp"
 #include "hal/messages/table_status.hpp"
 
 namespace tumblesight::hal {
@@ -32,7 +33,10 @@ struct Telemetry {
   std::array<std::uint32_t, kCommandRefusals> commands_refused_by{};  // indexed by CommandRefusal
   std::uint32_t command_counter = 0;                                  // of the last authentic command
   std::uint8_t key_slot = 0;                                          // that signs commands
-  std::uint32_t state_writes_failed = 0;  // writes of the stored state that did not reach both copies
+  StoreHealth store_health = StoreHealth::kNone;
+  std::uint32_t state_writes_failed = 0;  // writes of the stored state that did not reach both copies, and
+                                          // checks that found a copy changed
+  std::uint32_t store_given_up = 0;       // times that no copy could be written in ten consecutive cycles
 
   std::uint32_t frames_used = 0;
   std::uint32_t frames_missing = 0;
@@ -77,8 +81,11 @@ struct Telemetry {
 
   std::uint32_t inference_us = 0;  // last step of the estimator, by the stopwatch; not in any digest
   std::uint32_t inference_max_us = 0;
-  std::uint32_t step_us = 0;  // this step, without the vote before it and the telemetry at its end
+  // this step, without the vote before it, the store's time at its end and the telemetry
+  std::uint32_t step_us = 0;
   std::uint32_t step_max_us = 0;
+  std::uint32_t store_us = 0;  // checks and writes of the stored state at the end of this step
+  std::uint32_t store_max_us = 0;
   // steps shorter than 1, 3, 10, 30, 100, 300 and 1000 ms, and all longer ones
   std::array<std::uint32_t, kStepTimeBins> steps_by_time{};
   std::uint32_t deadline_overruns = 0;

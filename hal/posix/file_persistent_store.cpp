@@ -35,11 +35,15 @@ bool sync_folder(const char* folder) {
 StoreStatus read_record(const char* path, StoredBytes& bytes) {
   const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) return errno == ENOENT ? StoreStatus::kBlank : StoreStatus::kFailed;
-  std::uint8_t beyond = 0;
-  bool whole = transfer_whole(file, bytes.data(), bytes.size(), ::read);
-  whole = whole && ::read(file, &beyond, 1) == 0;
+  struct stat found {};
+  StoreStatus status = StoreStatus::kFailed;
+  if (fstat(file, &found) == 0 && S_ISREG(found.st_mode)) {
+    const bool whole = transfer_whole(file, bytes.data(), bytes.size(), ::read);
+    if (whole) status = StoreStatus::kOk;
+    if (found.st_size != kStoredBytes) status = StoreStatus::kDamaged;
+  }
   (void)close(file);
-  return whole ? StoreStatus::kOk : StoreStatus::kFailed;
+  return status;
 }
 
 // kUsable also if it does not exist.

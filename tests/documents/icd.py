@@ -91,6 +91,21 @@ def reset_causes():
     return table(["number", "reset cause", ""], [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "reset_cause.hpp", "ResetCause")])
 
 
+def store_statuses():
+    return table(["number", "StoreStatus", ""],
+                 [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "store_status.hpp", "StoreStatus")])
+
+
+def store_health():
+    return table(["number", "store_health", ""],
+                 [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "store_status.hpp", "StoreHealth")])
+
+
+def state_losses():
+    return table(["bit's value", "StateLoss", "lost"],
+                 [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "store_status.hpp", "StateLoss")])
+
+
 def function_rows():
     """[(code, name, least argument bytes, most, comment, modes)] of the telecommands."""
     codes = {name: value for name, value, _ in enum(MESSAGES + "function_code.hpp", "FunctionCode")}
@@ -334,7 +349,7 @@ def packet(topic):
     return table(["offset", "bits", "field", ""], [*rows, [offset, "unsigned 16", "error control", ""]])
 
 
-TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "functions": functions, "refusals": refusals, "validity": validity, "parameters": parameter_rows, "parameter table": table_layout, "table status": table_status, "faults": faults,
+TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "store statuses": store_statuses, "store health": store_health, "state losses": state_losses, "functions": functions, "refusals": refusals, "validity": validity, "parameters": parameter_rows, "parameter table": table_layout, "table status": table_status, "faults": faults,
           "responses": responses, "dumped memory": dumped_memory, "events": events,
           "packets": packets, **{f"packet {CARRIED[topic][1]}": (lambda topic=topic: packet(topic)) for topic in CARRIED},
           **{f"topic {name}": (lambda name=name: struct(name))

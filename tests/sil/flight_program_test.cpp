@@ -10,6 +10,7 @@
 #include <string>
 
 #include "hal/dds/idl/flight_end.hpp"
+#include "hal/persistent_store.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -148,7 +149,7 @@ void expect_refused(const Ended& ended, const std::string& reason) {
 // Verifies TS-RST-060.
 TEST(FlightState, FileThatIsNoStateFileIsRefusedAndKept) {
   const std::string path = test::temporary_path("notes");
-  const std::string text(128, 'a');
+  const std::string text(hal::kStoredBytes, 'a');
   for (const std::string& option : {"--state " + path, "--packets " + path}) {
     expect_refused(run_with_file(path, text, option), path);
     EXPECT_EQ(test::read_file(path), text);
@@ -169,7 +170,7 @@ TEST(FlightState, FileOfThePacketsIsRefused) {
 // The beginning of a record, and a wrong checksum.
 std::string damaged_record() {
   std::string record("TSST");
-  record.resize(128);
+  record.resize(hal::kStoredBytes);
   return record;
 }
 
@@ -177,7 +178,9 @@ std::string damaged_record() {
 TEST(FlightState, DamagedStateIsReportedWithTheRemedy) {
   const std::string path = test::temporary_path("damaged");
   const Ended ended = run_with_file(path, damaged_record(), "--state " + path);
-  EXPECT_TRUE(has(ended.text, "the stored state is damaged; the mode is SAFE; delete " + path)) << ended.text;
+  EXPECT_TRUE(
+      has(ended.text, "the stored state is damaged or of other software; the mode is SAFE; delete " + path))
+      << ended.text;
 }
 
 TEST(FlightHelp, OutputThatCannotBeWrittenIsAFailure) {

@@ -35,7 +35,7 @@ const char* reason_of(const StoreFileCheck& result) {
   return "ok";
 }
 
-// Neither copy is good, and something was stored.
+// Something was stored, and neither copy has more than a head.
 bool is_lost(FilePersistentStore& store) {
   int blank = 0;
   for (int copy = 0; copy < hal::kStoredCopies; ++copy) {
@@ -44,7 +44,7 @@ bool is_lost(FilePersistentStore& store) {
     std::uint32_t generation = 0;
     const StoreStatus status = store.read(copy, bytes);
     if (status == StoreStatus::kBlank) ++blank;
-    if (status == StoreStatus::kOk && from_record(bytes, state, generation) == StoreStatus::kOk) return false;
+    if (status == StoreStatus::kOk && has_body(from_record(bytes, state, generation))) return false;
   }
   return blank < hal::kStoredCopies;
 }
@@ -72,8 +72,8 @@ void report_state(const FlightOptions& options, const AttitudeInitApp& app, File
   const bool safe = app.mode() == Mode::kSafe;
   if (is_lost(store)) {
     std::fprintf(stderr,
-                 "%s: --state %s: the stored state is damaged; the mode is SAFE; delete %s and %s.copy to "
-                 "start afresh\n",
+                 "%s: --state %s: the stored state is damaged or of other software; the mode is SAFE; "
+                 "delete %s and %s.copy to start afresh\n",
                  kProgramName, path, path, path);
   } else if ((safe || app.mode() == Mode::kStandby) && app.boot_status(0) == gnc::ModelStatus::kOk) {
     std::fprintf(

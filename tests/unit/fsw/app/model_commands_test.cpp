@@ -218,6 +218,8 @@ TEST_F(ModelCommands, DifferenceUploadGivesTheSameBitsAsAFullOne) {
   }
   EXPECT_LT(cycles, 40);
   EXPECT_GT(cycles, 10) << "the copy is spread over cycles";
+  step(StepInputs{});
+  EXPECT_EQ(AppMemory::state(*app).banks.next_copied, kModelSegments) << "it ends with the image";
   expect_it_runs();
 }
 
@@ -291,6 +293,14 @@ TEST_F(ModelCommands, OnlyWholeSegmentsOfAnImageThatWasBegunAreTaken) {
   EXPECT_EQ(out->telemetry.model_segments_missing, kModelSegments - 1);
   step_commands({begin()});
   EXPECT_EQ(out->telemetry.model_segments_missing, kModelSegments) << "a new image";
+}
+
+TEST_F(ModelCommands, RoomBehindTheImageIsNotLoaded) {
+  store.banks[1].memory.resize(store.banks[1].memory.size() + 8 * kSegmentBytes);
+  init(store);
+  step_commands({begin(), load(offset_of(kModelSegments), kSegmentBytes)});
+  EXPECT_EQ(events(EventId::kCommandWrongArgument), 1);
+  EXPECT_EQ(out->telemetry.model_segments_missing, kModelSegments);
 }
 
 TEST_F(ModelCommands, BankThatTheImageDoesNotFitIntoIsNotLoaded) {

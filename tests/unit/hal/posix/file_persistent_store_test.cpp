@@ -58,15 +58,18 @@ TEST_F(FilePersistentStoreTest, FileInTheCurrentFolderIsWritten) {
   EXPECT_TRUE(std::filesystem::exists(path));
 }
 
-TEST_F(FilePersistentStoreTest, FileOfAnotherSizeCannotBeRead) {
+// Verifies TS-RST-080.
+TEST_F(FilePersistentStoreTest, FileOfAnotherSizeIsDamagedAndAnUnreadableOneIsNot) {
   FilePersistentStore store;
   ASSERT_TRUE(store.use(path.c_str()));
   StoredBytes bytes{};
   for (const std::size_t size :
        {std::size_t{0}, std::size_t{kStoredBytes - 1}, std::size_t{kStoredBytes + 1}}) {
     std::ofstream(path, std::ios::binary | std::ios::trunc) << std::string(size, 'x');
-    EXPECT_EQ(store.read(0, bytes), StoreStatus::kFailed) << size;
+    EXPECT_EQ(store.read(0, bytes), StoreStatus::kDamaged) << size;
   }
+  std::filesystem::create_directory(path + ".copy");
+  EXPECT_EQ(store.read(1, bytes), StoreStatus::kFailed);
 }
 
 TEST_F(FilePersistentStoreTest, FolderThatDoesNotExistFailsTheWrite) {
@@ -100,8 +103,8 @@ TEST_F(FilePersistentStoreTest, OnlyRecordsAndNewFilesAreUsable) {
   for (const char* const end : {"", ".copy"}) {
     for (const int copy : {0, 1}) ASSERT_EQ(store.write(copy, good), StoreStatus::kOk);
     EXPECT_EQ(store.check(kMagic).status, StoreFileStatus::kUsable);
-    for (const std::size_t size : {0, 1, 127, 128, 129}) {
-      std::ofstream(path + end, std::ios::trunc) << std::string(size, 'x');
+    for (const int size : {0, 1, kStoredBytes - 1, kStoredBytes, kStoredBytes + 1}) {
+      std::ofstream(path + end, std::ios::trunc) << std::string(static_cast<std::size_t>(size), 'x');
       const StoreFileCheck result = store.check(kMagic);
       EXPECT_EQ(result.status, StoreFileStatus::kNotARecord) << size;
       EXPECT_EQ(result.path, path + end);
