@@ -195,18 +195,20 @@ std::uint32_t AttitudeInitApp::state_crc32() const {
   crc.add_u32(estimator_.model().crc32);
   crc.add_u32(static_cast<std::uint32_t>(state.mode));
   const gnc::FrameTrackerState& tracking = state.tracking;
-  for (const bool flag : {state.has_model(), state.has_cycle, tracking.gate.has_last(), state.outage,
-                          state.boot_to_report, tracking.has_jumped, tracking.has_chaser_attitude}) {
+  for (const bool flag :
+       {state.has_model(), state.has_cycle, tracking.gate.has_last(), state.outage, state.boot_to_report,
+        tracking.has_jumped, tracking.has_found_rate, tracking.has_chaser_attitude}) {
     crc.add_u32(flag ? 1U : 0U);
   }
   add_time(state.now_ns);
   add_time(tracking.gate.last_exposure_time_ns());
   for (const std::int32_t part : tracking.q_inertial_lrf) crc.add_u32(static_cast<std::uint32_t>(part));
-  for (const gnc::FrameSignature& signature : tracking.signatures)
+  for (const gnc::FrameSignature& signature : tracking.history.signatures())
     crc.add(signature.data(), signature.size());
   const hal::Telemetry& c = state.counters;
   for (const std::uint32_t number :
        {tracking.gate.last_sequence_number(),
+        tracking.history.next(),
         state.authority.slot(),
         state.frames_unused,
         state.assertions.count(),

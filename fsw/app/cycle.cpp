@@ -3,9 +3,10 @@
 namespace tumblesight::fsw {
 namespace {
 
-void drop(const gnc::RangeImage& frame, gnc::FrameVerdict why, StepInputs& inputs) {
-  inputs.dropped[static_cast<std::size_t>(inputs.dropped_count++)] = {why, frame.sequence_number,
-                                                                      frame.exposure_time_ns};
+void drop(const gnc::RangeImage& frame, gnc::FrameVerdict why, StepInputs& inputs,
+          gnc::FrameStatus content = gnc::FrameStatus::kOk) {
+  inputs.dropped[static_cast<std::size_t>(inputs.dropped_count++)] = {
+      why, frame.sequence_number, frame.exposure_time_ns, content, frame.rays};
 }
 
 // Why `later`, which passes the gate, is not taken although `kept` does too; kPass: it is taken instead. The
@@ -13,8 +14,7 @@ void drop(const gnc::RangeImage& frame, gnc::FrameVerdict why, StepInputs& input
 gnc::FrameVerdict compare(const gnc::RangeImage& kept, const gnc::RangeImage& later) {
   if (later.sequence_number == kept.sequence_number) return gnc::FrameVerdict::kDuplicate;
   if (later.exposure_time_ns <= kept.exposure_time_ns) return gnc::FrameVerdict::kSuperseded;
-  return gnc::is_repetition(gnc::signature_of(kept), gnc::signature_of(later)) ? gnc::FrameVerdict::kRepeated
-                                                                               : gnc::FrameVerdict::kPass;
+  return gnc::is_repetition(kept, later) ? gnc::FrameVerdict::kRepeated : gnc::FrameVerdict::kPass;
 }
 
 static_assert(hal::Lidar::kMaxWaiting <= config::kMaxDeliveriesPerCycle, "a cycle receives all that wait");
@@ -38,8 +38,12 @@ void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t 
     gnc::FrameVerdict verdict = app.judge(frame, now_ns);
     if (verdict == gnc::FrameVerdict::kPass && inputs.frame != nullptr)
       verdict = compare(*inputs.frame, frame);
+    // A frame with bad content does not take the place of a good one.
+    gnc::FrameStatus content = gnc::FrameStatus::kOk;
+    if (verdict == gnc::FrameVerdict::kPass) content = gnc::content_of(frame);
+    if (content != gnc::FrameStatus::kOk) verdict = gnc::FrameVerdict::kBadContent;
     if (verdict != gnc::FrameVerdict::kPass) {
-      drop(frame, verdict, inputs);
+      drop(frame, verdict, inputs, content);
       continue;
     }
     if (inputs.frame != nullptr) drop(*inputs.frame, gnc::FrameVerdict::kSuperseded, inputs);

@@ -63,7 +63,11 @@ void FrameHandler::note_dropped(const StepInputs& inputs) {
   }
   for (int i = 0; i < inputs.dropped_count; ++i) {
     const DroppedFrame& dropped = inputs.dropped[static_cast<std::size_t>(i)];
-    note_refusal(dropped.why, dropped.sequence_number, dropped.exposure_time_ns);
+    if (dropped.why == FrameVerdict::kBadContent) {
+      note_bad_content(dropped.content, dropped.sequence_number, dropped.rays);
+    } else {
+      note_refusal(dropped.why, dropped.sequence_number, dropped.exposure_time_ns);
+    }
   }
 }
 
@@ -85,7 +89,7 @@ void FrameHandler::use(const StepInputs& inputs) {
   tracker_.use(frame, inputs.chaser, state_.now_ns, limits, state_.tracking, outcome);
   const std::uint64_t end_ns = stopwatch.now_ns();
   if (outcome.verdict == FrameVerdict::kBadContent) {
-    note_bad_content(frame);
+    note_bad_content(outcome.content, frame.sequence_number, frame.rays);
     return;
   }
   if (!outcome.used()) {
@@ -148,11 +152,11 @@ void FrameHandler::note_refusal(FrameVerdict verdict, std::uint32_t sequence_num
   }
 }
 
-void FrameHandler::note_bad_content(const gnc::RangeImage& frame) {
+void FrameHandler::note_bad_content(gnc::FrameStatus content, std::uint32_t sequence_number,
+                                    std::int32_t rays) {
   count(state_.counters.frames_refused);
   count(state_.counters.frames_bad);
-  report_(EventId::kFrameBad, bits_of(frame.sequence_number),
-          static_cast<std::int32_t>(workspace_.outcome.content), frame.rays);
+  report_(EventId::kFrameBad, bits_of(sequence_number), static_cast<std::int32_t>(content), rays);
 }
 
 void FrameHandler::note_use(const gnc::RangeImage& frame, std::int64_t last_exposure_time_ns,
@@ -211,8 +215,9 @@ void FrameHandler::report_attitude(const StepInputs& inputs, Validity validity) 
   attitude.law = static_cast<std::uint8_t>(estimate.law);
   attitude.rate_lrf_urad_s = estimate.rate_lrf_urad_s;
   attitude.attitude_covariance_e8 = gnc::attitude_covariance(estimate.predicted_error_urad);
-  attitude.rate_covariance_e8 =
-      gnc::rate_covariance(estimate.predicted_error_urad, estimate.frames_since_reset, outcome.elapsed_ns);
+  attitude.rate_covariance_e8 = gnc::rate_covariance(
+      estimate.predicted_error_urad,
+      (outcome.doubts & gnc::kRateAmbiguous) != 0 ? 1 : estimate.frames_since_reset, outcome.elapsed_ns);
   gnc::Doubts doubts = outcome.doubts;
   const gnc::PropagatedMotion now =
       tracker_.motion_at(state_.now_ns, inputs.chaser_now, state_.tracker_limits(), state_.tracking, doubts);

@@ -30,7 +30,7 @@ class FrameHandler {
   void pass_over();
   void use(const StepInputs& inputs);
   void note_refusal(gnc::FrameVerdict verdict, std::uint32_t sequence_number, std::int64_t exposure_time_ns);
-  void note_bad_content(const gnc::RangeImage& frame);
+  void note_bad_content(gnc::FrameStatus content, std::uint32_t sequence_number, std::int32_t rays);
   void note_use(const gnc::RangeImage& frame, std::int64_t last_exposure_time_ns,
                 std::uint32_t expected_number);
   Validity note_doubts(const gnc::RangeImage& frame);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "fsw/config/limits.hpp"
+#include "gnc/lidar/depth_image.hpp"
 #include "gnc/lidar/range_image.hpp"
 #include "gnc/tracking/chaser_attitude.hpp"
 #include "gnc/tracking/frame_gate.hpp"
@@ -24,6 +25,8 @@ struct DroppedFrame {
   gnc::FrameVerdict why = gnc::FrameVerdict::kSuperseded;
   std::uint32_t sequence_number = 0;
   std::int64_t exposure_time_ns = 0;
+  gnc::FrameStatus content = gnc::FrameStatus::kOk;  // if its content is bad
+  std::uint16_t rays = 0;
 };
 
 // Counts outside their range are a bug of the caller: the step raises an assertion and goes SAFE.

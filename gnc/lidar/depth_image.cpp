@@ -157,6 +157,12 @@ FrameStatus status_of(const ReturnSummary& summary) {
   return summary.nearest == summary.farthest ? FrameStatus::kFlat : FrameStatus::kOk;
 }
 
+// The first place from `next` on with a return among it and the three after it, or one of the last places.
+int skip_no_returns(const RangeImage& frame, int next, int rays) {
+  while (next + 4 <= rays && (pair_at(frame, next) | pair_at(frame, next + 2)) == 0) next += 4;
+  return next;
+}
+
 FrameStatus status_of(const RangeImage& frame) {
   if (frame.rays < kMinRays || frame.rays > RangeImage::kMaxRays) return FrameStatus::kBadRayCount;
   const bool possible = frame.fov_urad >= kMinFov_urad && frame.fov_urad <= kMaxFov_urad;
@@ -168,6 +174,26 @@ FrameStatus status_of(const RangeImage& frame) {
 bool is_possible(const DepthProjection& projection) {
   const auto is_length = [](std::uint32_t mm) { return mm >= kMinProjection_mm && mm <= kMaxProjection_mm; };
   return is_length(projection.swath_mm) && is_length(projection.target_radius_mm);
+}
+
+FrameStatus content_of(const RangeImage& frame) {
+  const FrameStatus status = status_of(frame);
+  if (status != FrameStatus::kOk) return status;
+  ReturnSummary summary;
+  const int rays = frame.rays * frame.rays;
+  int next = 0, last = kFirstOfPair;
+  while (next < rays && status_of(summary) != FrameStatus::kOk) {
+    for (; next < last; ++next) {
+      const std::uint16_t range = frame.ranges[static_cast<std::size_t>(next)];
+      if (range < kMinRange_counts || range > kMaxRange_counts) continue;
+      ++summary.returns;
+      summary.nearest = min(summary.nearest, range);
+      summary.farthest = max(summary.farthest, range);
+    }
+    next = skip_no_returns(frame, next, rays);
+    last = min(next + 4, rays);
+  }
+  return status_of(summary);
 }
 
 FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& projection,

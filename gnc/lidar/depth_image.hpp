@@ -89,6 +89,9 @@ inline constexpr int kMaxRange_m = 500;  // longer ranges count as no return (pa
 inline constexpr std::uint32_t kMinFov_urad = 17'453;   // 1 degree
 inline constexpr std::uint32_t kMaxFov_urad = 698'132;  // 40 degrees
 
+// The status that make_depth_image() returns for this frame. Reads no more of the frame than it must.
+[[nodiscard]] FrameStatus content_of(const RangeImage& frame);
+
 // Projects the returns onto the plane across the view axis (x right, z up, axis in the middle) and averages
 // the depths within each cell, of at most 255 returns. A depth is limited to one target radius from the
 // centroid. Returns nearer than kMinRange_m, farther than kMaxRange_m or outside the swath are ignored. The

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/numerics/instruction_set.hpp"
@@ -13,6 +15,16 @@ namespace tumblesight::gnc {
 
 inline constexpr int kMinRange_counts = kMinRange_m * 128;
 inline constexpr int kMaxRange_counts = kMaxRange_m * 128;
+
+// The ranges `first` and `first` + 1 in one word, to compare them at once. `first`: kFirstOfPair plus an even
+// number, where the words are aligned.
+inline constexpr int kFirstOfPair = offsetof(RangeImage, ranges) % 4 / 2;
+inline std::uint32_t pair_at(const RangeImage& frame, int first) {
+  std::uint32_t pair = 0;
+  std::memcpy(&pair, __builtin_assume_aligned(&frame.ranges[static_cast<std::size_t>(first)], sizeof pair),
+              sizeof pair);
+  return pair;
+}
 
 // The usable returns of a frame; ranges in counts (Q9.7 m).
 struct ReturnSummary {

@@ -91,6 +91,12 @@ bool turns_too_far(const Vector3<Fixed>& rate, Fixed periods) {
   return dot(turn, turn) > constant<Fixed>(kLargestTurn_rad * kLargestTurn_rad);
 }
 
+template <class N>
+void reset_unless(bool kept, LstmState<N>& lstm) {
+  for (auto& value : lstm.h) value = gnc::select(kept, value, {});
+  for (auto& value : lstm.c) value = gnc::select(kept, value, {});
+}
+
 [[maybe_unused]] void add_to(Crc32& crc, const float* values, std::size_t count) {
   crc.add_f32(values, count);
 }
@@ -150,9 +156,12 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
                                 AttitudeEstimate& estimate) {
   auto& [output, hypotheses, prediction, input, head] = intermediates_;
   if (interval.gives_up_track) reset();
+  state_.track.forget_rate(interval.rate_is_unknown & !finds_no_rate(interval));
   network_.infer_frame(image, output);
   hypotheses = decode_hypotheses<Real>(output, converted<Real>(image.r_lrf_view));
   prediction = predict<Real>(state_.track, laws_, hypotheses, interval);
+  if (finds_no_rate(interval))
+    reset_unless<N>(keep_confirmed<Real>(hypotheses, interval, prediction, state_.track), state_.lstm);
   fill_lstm_input<N>(network_.features(), hypotheses, prediction.r_lrf_trf(), input);
   network_.infer_sequence(input, state_.lstm, head);
   const TrackedAttitude<Real> tracked = advance<Real>(hypotheses, prediction, head, state_.track);

@@ -101,6 +101,17 @@ int choose_anchor(const Hypotheses<Real>& hypotheses, const Real* corrections) {
   return anchor;
 }
 
+// Sum over the hypotheses that are this attitude.
+template <class Real>
+Real probability_of(const Hypotheses<Real>& hypotheses, const Matrix3<Real>& r_lrf_trf) {
+  Real probability{};
+  for (int i = 0; i < shape::kHypotheses; ++i) {
+    const bool is_near = same_attitude<Real>(hypotheses.r_lrf_trf[i], r_lrf_trf);
+    probability += select(is_near, hypotheses.probability[i], Real{});
+  }
+  return probability;
+}
+
 // Squared angle between the attitude that a law predicted and the result, at most kLostTargetInnovation: the
 // law has lost the target. That is also the value if the hypotheses show nothing near the prediction, since
 // the result may then be the prediction itself.
@@ -108,11 +119,7 @@ template <class Real>
 Real squared_innovation(const Hypotheses<Real>& hypotheses, const Motion<Real>& predicted,
                         const Matrix3<Real>& r_lrf_trf) {
   constexpr Real kLost = constant<Real>(kLostTargetInnovation);
-  Real probability_near{};
-  for (int i = 0; i < shape::kHypotheses; ++i) {
-    const bool is_near = same_attitude<Real>(hypotheses.r_lrf_trf[i], predicted.r_lrf_trf);
-    probability_near += select(is_near, hypotheses.probability[i], Real{});
-  }
+  const Real probability_near = probability_of<Real>(hypotheses, predicted.r_lrf_trf);
   const Real innovation_squared =
       constant<Real>(3.0) - trace_of_transpose_product<Real>(predicted.r_lrf_trf, r_lrf_trf);
   return select(probability_near < constant<Real>(kMinProbabilityNearPrediction), kLost,
@@ -206,6 +213,17 @@ int AttitudeTrack<Real>::law() const {
 }
 
 template <class Real>
+void AttitudeTrack<Real>::forget_rate(bool forgets) {
+  const Motion<Real> at_rest{motion[this->law()].r_lrf_trf, Vector3<Real>::Zero()};
+  for (int law = 0; law < kLaws; ++law) {
+    const std::array<Motion<Real>, 2> choice{motion[law], at_rest};
+    motion[law] = choice[forgets];
+    log_likelihood[law] = select(forgets, Real{}, log_likelihood[law]);
+  }
+  frames = select(forgets, min<std::uint32_t>(frames, 1), frames);
+}
+
+template <class Real>
 Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
                          const Hypotheses<Real>& hypotheses, const FrameInterval& interval) {
   const bool has_track = (track.frames > 0) & is_valid(track);
@@ -226,6 +244,30 @@ Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real
   prediction.elapsed_periods = in_periods(elapsed_ns);
   prediction.has_track = has_track;
   return prediction;
+}
+
+template <class Real>
+bool keep_confirmed(const Hypotheses<Real>& hypotheses, const FrameInterval& interval,
+                    Prediction<Real>& prediction, AttitudeTrack<Real>& track) {
+  const bool confirmed = probability_of<Real>(hypotheses, prediction.r_lrf_trf()) >
+                         constant<Real>(kMinProbabilityNearPrediction);
+  const Matrix3<Real> r_now_last = converted<Real>(rotation_from_quaternion(interval.q_now_last));
+  const std::array<Motion<Real>, 2> last{prediction.motion[0],
+                                         turned<Real>(track.motion[track.law()], r_now_last)};
+  const Motion<Real> at_rest{last[prediction.has_track].r_lrf_trf, Vector3<Real>::Zero()};
+  const Motion<Real> first =
+      corrected<Real>(at_rest, hypotheses.r_lrf_trf[hypotheses.likeliest],
+                      {constant<Real>(1.0), converted<Real>(prediction.elapsed_periods),
+                       constant<Real>(kVersineOf150Degrees)});
+  for (Motion<Real>& motion : prediction.motion) {
+    const std::array<Motion<Real>, 2> choice{first, motion};
+    motion = choice[confirmed];
+  }
+  const std::array<AttitudeTrack<Real>, 2> choice{AttitudeTrack<Real>{}, track};
+  track = choice[confirmed];
+  prediction.law = select(confirmed, prediction.law, kSpinLaw);
+  prediction.has_track &= confirmed;
+  return confirmed;
 }
 
 template <class N>
@@ -280,6 +322,8 @@ TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Predicti
 
 #define TUMBLESIGHT_INSTANTIATE(N)                                                                          \
   template struct AttitudeTrack<N::Real>;                                                                   \
+  template bool keep_confirmed(const Hypotheses<N::Real>&, const FrameInterval&, Prediction<N::Real>&,      \
+                               AttitudeTrack<N::Real>&);                                                    \
   template Prediction<N::Real> predict(const AttitudeTrack<N::Real>&, const MotionLaws<N::Real>&,           \
                                        const Hypotheses<N::Real>&, const FrameInterval&);                   \
   template void fill_lstm_input<N>(const Features<N>&, const Hypotheses<N::Real>&, const Matrix3<N::Real>&, \

@@ -23,6 +23,7 @@ struct FrameInterval {
   std::int64_t elapsed_ns = kNominalPeriod_ns;  // between the exposures
   QuaternionQ30 q_now_last = kIdentityQ30;      // turn of the chaser: v_lrf now = q_now_last v_lrf last
   bool gives_up_track = false;                  // the frame starts a new track
+  bool rate_is_unknown = false;  // no frame of the track came within kLongestToFindRate_ns of the one before
 };
 // The track takes times outside these two for the nearer one. Between frames that are closer in time the
 // noise of the attitudes says more than their difference.
@@ -31,6 +32,13 @@ inline constexpr std::int64_t kLongestInterval_ns = kLongestPropagation_ns;
 
 // The track follows the target while it turns by less than 150 degrees from frame to frame.
 inline constexpr double kLargestTurn_rad = 2.6179938779914944;
+// In this time the fastest target of the training data (20 degrees/s) turns by kLargestTurn_rad. Two
+// attitudes that are farther apart in time do not tell its rate: it may have turned the other way or once
+// more.
+inline constexpr std::int64_t kLongestToFindRate_ns = 7'500'000'000;
+inline bool finds_no_rate(const FrameInterval& interval) {
+  return interval.rate_is_unknown & (interval.elapsed_ns > kLongestToFindRate_ns);
+}
 
 template <class Real>
 struct AttitudeTrack {
@@ -39,6 +47,8 @@ struct AttitudeTrack {
   std::uint32_t frames = 0;                  // since reset
 
   int law() const;  // index of the law that gives the result
+  // If `forgets`, begins again at the last attitude, as after the first frame.
+  void forget_rate(bool forgets);
 };
 
 // The motion of each law, propagated to the current frame, in the LRF of that frame.
@@ -63,6 +73,14 @@ struct TrackedAttitude {
 template <class Real>
 Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
                          const Hypotheses<Real>& hypotheses, const FrameInterval& interval = {});
+
+// For a frame that finds_no_rate(). If the hypotheses do not confirm the prediction, the track starts anew:
+// the frame is its first one, with the slowest rate that leads from the last attitude to this frame's
+// likeliest. So a prediction with a wrong rate cannot spoil the attitude, and a slow target is followed.
+// False: the track was started anew, and the state of the LSTM must be reset.
+template <class Real>
+bool keep_confirmed(const Hypotheses<Real>& hypotheses, const FrameInterval& interval,
+                    Prediction<Real>& prediction, AttitudeTrack<Real>& track);
 
 // Fills the input of the LSTM: the output of dense2; for each hypothesis the first two columns of its
 // rotation relative to the predicted attitude, expressed in the TRF, where the alternatives of a symmetric

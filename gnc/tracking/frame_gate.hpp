@@ -23,7 +23,7 @@ enum class FrameVerdict : std::uint8_t {
   kExposureBackwards,
   kStale,
   kTooSoon,
-  kRepeated,       // of one of the last two used frames: a frozen sensor
+  kRepeated,       // of one of the last used frames: a frozen sensor
   kBadContent,     // the estimator refuses it: FrameStatus
   kSuperseded,     // a newer frame of the same cycle is used instead
   kWithoutChaser,  // the track needs the chaser's attitude, and it is not known at this exposure

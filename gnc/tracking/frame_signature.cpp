@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "gnc/lidar/depth_loops.hpp"
 #include "gnc/numerics/real.hpp"
 
 namespace tumblesight::gnc {
@@ -26,6 +27,17 @@ FrameSignature signature_of(const RangeImage& frame) {
   return signature;
 }
 
+bool FrameHistory::contains(const FrameSignature& signature) const {
+  bool found = false;
+  for (const FrameSignature& used : signatures_) found |= is_repetition(used, signature);
+  return found;
+}
+
+void FrameHistory::add(const FrameSignature& signature) {
+  signatures_[next_ % kFrames] = signature;
+  next_ = (next_ + 1) % kFrames;
+}
+
 bool is_repetition(const FrameSignature& a, const FrameSignature& b) {
   std::uint32_t returns = 0, equal = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -35,6 +47,20 @@ bool is_repetition(const FrameSignature& a, const FrameSignature& b) {
     equal += is_return & ((difference - 1U) >> 31);
   }
   return returns > 0 && 4 * equal >= 3 * returns;
+}
+
+bool is_repetition(const RangeImage& a, const RangeImage& b) {
+  if (a.rays != b.rays || a.rays > RangeImage::kMaxRays) return false;
+  constexpr std::uint32_t kMostPairs = 512;
+  const int rays = a.rays * a.rays;
+  std::uint32_t returns = 0, equal = 0;
+  for (int i = kFirstOfPair; i + 1 < rays && returns < kMostPairs; i += 2) {
+    const std::uint32_t pair_a = pair_at(a, i), pair_b = pair_at(b, i);
+    if ((pair_a | pair_b) == 0) continue;
+    ++returns;
+    if (pair_a == pair_b) ++equal;
+  }
+  return returns > 0 && 2 * equal >= returns;
 }
 
 }  // namespace tumblesight::gnc

@@ -19,9 +19,27 @@ using FrameSignature = std::array<std::uint8_t, kSignatureSide * kSignatureSide>
 // The instruction count depends on the number of rays only.
 FrameSignature signature_of(const RangeImage& frame);
 
+// The last frames that were used. Buffers of a frozen sensor that are delivered in turn are seen as long as
+// all of them are here: drivers have two to four, frame grabbers up to eight.
+class FrameHistory {
+ public:
+  static constexpr std::size_t kFrames = 8;
+  bool contains(const FrameSignature& signature) const;  // is_repetition() of one of them
+  void add(const FrameSignature& signature);             // replaces the oldest
+  const std::array<FrameSignature, kFrames>& signatures() const { return signatures_; }
+  std::uint32_t next() const { return next_; }
+
+ private:
+  std::array<FrameSignature, kFrames> signatures_{};
+  std::uint32_t next_ = 0;  // the place of the oldest
+};
+
 // Whether at least three quarters of the cells in which one of both frames has a return are equal. Of two
 // different frames of one scene fewer than a half are equal if the noise is at least half a count of the
 // range (4 mm). False if no cell has a return.
 bool is_repetition(const FrameSignature& a, const FrameSignature& b);
+// The same question for two frames at hand, at a fraction of the cost of two signatures: whether at least
+// half of the first 512 pairs of neighbouring rays in which one of both frames has a return are equal.
+bool is_repetition(const RangeImage& a, const RangeImage& b);
 
 }  // namespace tumblesight::gnc

@@ -32,10 +32,10 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   outcome.verdict = state.gate.judge(frame, now_ns, limits.time);
   if (!outcome.used()) return;
   const FrameSignature signature = signature_of(frame);
-  for (const FrameSignature& used : state.signatures) {
-    if (is_repetition(used, signature)) outcome.verdict = FrameVerdict::kRepeated;
+  if (state.history.contains(signature)) {
+    outcome.verdict = FrameVerdict::kRepeated;
+    return;
   }
-  if (!outcome.used()) return;
 
   FrameInterval interval;
   outcome.elapsed_ns = state.gate.elapsed_ns(frame);
@@ -51,6 +51,8 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   const std::uint32_t frames_before = estimator_.frames();
   const bool is_gap = outcome.elapsed_ns > limits.longest_coast_ns;
   interval.gives_up_track = is_gap || knows_chaser != track_knows_chaser;
+  const bool continues_track = frames_before > 0 && !interval.gives_up_track;
+  interval.rate_is_unknown = continues_track && !state.has_found_rate;
   outcome.content = estimator_.step(frame, interval, outcome.estimate);
   if (outcome.content != FrameStatus::kOk) {
     outcome.verdict = FrameVerdict::kBadContent;
@@ -60,13 +62,15 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   outcome.numbers_skipped = state.gate.numbers_skipped(frame);
   outcome.frames_given_up = interval.gives_up_track ? frames_before : 0;
   if (outcome.frames_given_up > 0) state.forget_track();
-  outcome.doubts = outcome.estimate.rate_is_ambiguous ? kRateAmbiguous : 0;
+  outcome.finds_no_rate = finds_no_rate(interval);
+  state.has_found_rate = continues_track && !outcome.finds_no_rate;
+  outcome.doubts = (outcome.finds_no_rate | outcome.estimate.rate_is_ambiguous) ? kRateAmbiguous : 0;
   outcome.chaser_changed = interval.gives_up_track && !is_gap;
   if (!knows_chaser) outcome.doubts |= kChaserUnknown;
   state.gate.accept(frame);
   state.q_inertial_lrf = chaser.q_inertial_lrf;
   state.has_chaser_attitude = knows_chaser;
-  state.signatures = {signature, state.signatures[0]};
+  state.history.add(signature);
 }
 
 template <class N>
@@ -80,7 +84,7 @@ void FrameTracker<N>::check(const FrameTrackerLimits& limits, FrameTrackerState&
     return;
   }
   if (estimate.predicted_error_urad > limits.predicted_error_urad) outcome.doubts |= kErrorLarge;
-  const bool jumps = estimate.frames_since_reset >= kFirstCheckedFrame &&
+  const bool jumps = !outcome.finds_no_rate && estimate.frames_since_reset >= kFirstCheckedFrame &&
                      cos_half_angle(estimate.q_lrf_trf_predicted, estimate.q_lrf_trf) <
                          cos_half_of(limits.attitude_jump_urad);
   // After a jump the rate is uncertain for one more frame.

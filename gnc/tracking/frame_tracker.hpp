@@ -1,8 +1,8 @@
 // FrameTracker: the way of a frame through admission, estimator and attitude checks to an attitude and its
 // validity. Pure: the flight application and the evaluation on the ground call the same function.
 //
-//   admission   time and order (frame_gate.hpp); a frame that repeats one of the last two used ones
-//               (frame_signature.hpp) is refused before the estimator sees it, across gaps and resets
+//   admission   time and order (frame_gate.hpp); a frame that repeats one of the last eight used
+//               ones (frame_signature.hpp) is refused before the estimator sees it, across gaps and resets
 //   gap         the track coasts over the time since the last used frame; after more than longest_coast_ns it
 //               is given up, and the frame starts a new one
 //   chaser      a track of the first kind turns with the LRF, by the attitudes of the chaser at both
@@ -39,11 +39,12 @@ struct FrameTrackerState {
   QuaternionQ30 q_inertial_lrf = kIdentityQ30;  // at the last used frame
   bool has_chaser_attitude = false;             // q_inertial_lrf is valid
   bool has_jumped = false;                      // the attitude of the last used frame
-  std::array<FrameSignature, 2> signatures{};   // of the last two used frames; the last one is first
+  bool has_found_rate = false;                  // of the track: two frames were close enough in time
+  FrameHistory history;                         // of the used frames
 
   // The estimator was reset: its next attitude has no last one, to be compared with or to turn from.
   void forget_track() { has_jumped = has_chaser_attitude = false; }
-  // The times and numbers of earlier frames say nothing about the next one. The signatures still do.
+  // The times and numbers of earlier frames say nothing about the next one. The history still does.
   void forget_times() {
     gate.forget();
     has_chaser_attitude = false;
@@ -68,6 +69,7 @@ struct FrameOutcome {
   std::int64_t elapsed_ns = 0;        // since the last used frame; 0: there is none
   std::uint32_t numbers_skipped = 0;  // FrameGate::numbers_skipped()
   std::uint32_t frames_given_up = 0;  // of the track that ends before this frame; 0: none does
+  bool finds_no_rate = false;         // finds_no_rate(): no jump check
   bool chaser_changed = false;  // it ends because the chaser's attitude is known from now on, or no more
   AttitudeEstimate estimate;
 

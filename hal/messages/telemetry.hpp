@@ -44,7 +44,7 @@ struct Telemetry {
   std::uint32_t frames_duplicate = 0;  // sequence number repeated
   std::uint32_t frames_stale = 0;     // exposure too old, in the future, or not far enough after the last one
   std::uint32_t frames_bad = 0;       // empty, flat, or wrong ray count, field of view or size
-  std::uint32_t frames_repeated = 0;  // like one of the last two used frames: a frozen sensor
+  std::uint32_t frames_repeated = 0;  // like one of the last eight used frames: a frozen sensor
   std::uint32_t frames_without_chaser = 0;  // the chaser's attitude is missing at the exposure
   std::uint32_t frames_superseded = 0;      // not refused: a newer frame of the same cycle was taken
   std::uint32_t frames_overflowed = 0;      // not refused: the sensor interface dropped them for lack of room

@@ -147,7 +147,8 @@ def _steps(fixed, macs):
 
 def _longest_steps(fixed):
     lines = ["## Longest steps", "",
-             "Estimated time in ms of whole steps (`flight_worst_step`). From the third row on each has a full load of the most expensive",
+             "Estimated time in ms of whole steps (`flight_worst_step`), each with the receipt of the most deliveries that a cycle",
+             "takes: 32 good frames, copied by the sensor interface, of which the newest is used. From the third row on each has a full load of the most expensive",
              "commands, the largest scrubbing that SET_PARAMETER allows with a repair of every block, and a restored state, as far as its kind of",
              "step can have them. A step has a frame or one long task (docs/icd.md, 2.5), never both: recovery is spread over several steps.",
              f"The audit fails when a step takes more than {100 * SHARE_OF_LONGEST_STEP:.0f} % of the period "

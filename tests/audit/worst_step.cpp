@@ -1,11 +1,12 @@
 // flight_worst_step: the longest steps of the flight application, each with a name, for the audit's count of
-// instructions. The memory is damaged as bit flips would damage it, the commands are the most expensive ones,
-// and the scrubbing is the largest that SET_PARAMETER allows. The program prints one line per step, "step
-// NAME"; steps that only prepare the next one are "quiet".
+// instructions. A step is counted with the receipt of as many frames as a cycle can receive. The memory is
+// damaged as bit flips would damage it, the commands are the most expensive ones, and the scrubbing is the
+// largest that SET_PARAMETER allows. The program prints one line per step, "step NAME"; steps that only
+// prepare the next one are "quiet".
 #include <array>
 #include <cstring>
 
-#include "fsw/app/attitude_init_app.hpp"
+#include "fsw/app/cycle.hpp"
 #include "fsw/app/telecommand.hpp"
 #include "gnc/numerics/hmac_sha256.hpp"
 #include "hal/board.hpp"
@@ -80,13 +81,86 @@ class KeptState final : public hal::PersistentStore {
   bool written_ = false;
 };
 
+constexpr std::int32_t kTurned = 759'250'125;  // sqrt(1/2), Q30: the chaser's attitude is no identity
+
+// Each delivery is a frame of `scene`, later than the one before and with other noise. A sensor never repeats
+// its noise: the last one differs in every range from those of the ten steps before.
+class FastLidar final : public hal::Lidar {
+ public:
+  void prepare(std::int64_t now_ns) {
+    noise_ = (noise_ + 1) % kNoises;
+    scene.exposure_time_ns = now_ns;
+    scene.sequence_number += config::kMaxDeliveriesPerCycle;
+    for (std::uint32_t i = 0; i < frames_.size(); ++i) {
+      frames_[i] = scene;
+      const std::uint32_t noise = i == 0 ? noise_ : kNoises + i;
+      for (std::uint16_t& range : frames_[i].ranges)
+        if (range != 0) range = static_cast<std::uint16_t>(range ^ noise);
+    }
+    waiting_ = config::kMaxDeliveriesPerCycle;
+  }
+  hal::LidarStatus receive(gnc::RangeImage& frame) override {
+    if (waiting_ == 0) return hal::LidarStatus::kNoFrame;
+    const int later = --waiting_;
+    frame = frames_[later == 0 ? 0 : static_cast<std::size_t>(1 + later % 2)];
+    frame.exposure_time_ns -= later * std::int64_t{50'000'000};
+    frame.sequence_number -= static_cast<std::uint32_t>(later);
+    return hal::LidarStatus::kFrame;
+  }
+
+  gnc::RangeImage scene;
+
+ private:
+  static constexpr std::uint32_t kNoises = 10;
+  std::array<gnc::RangeImage, 3> frames_;
+  std::uint32_t noise_ = 0;
+  int waiting_ = 0;
+};
+
+// Delivers the commands of a step.
+class CommandLink final : public hal::Link {
+ public:
+  bool receive(hal::CommandPacket& command) override {
+    if (delivered_ == count) return false;
+    command = commands[static_cast<std::size_t>(delivered_++)];
+    return true;
+  }
+  void publish(const hal::AttitudeReport&) override {}
+  void publish(const hal::Telemetry&) override {}
+  void publish(const hal::Event&) override {}
+  void publish(const hal::MemoryDump&) override {}
+  void clear() { count = delivered_ = 0; }
+
+  std::array<hal::CommandPacket, config::kMaxCommandsPerStep> commands;
+  int count = 0;
+
+ private:
+  int delivered_ = 0;
+};
+
+class TurnedChaser final : public hal::Navigation {
+ public:
+  gnc::ChaserAttitude attitude_at(std::int64_t time_ns) override {
+    return {time_ns, {kTurned, 0, 0, -kTurned}, true};
+  }
+};
+
+class NoWatchdog final : public hal::Watchdog {
+ public:
+  void kick() override {}
+};
+
 AttitudeInitApp app;
 KeptState kept_state;
 TwoBanks store;
 BoardStopwatch stopwatch;
-StepInputs inputs;
-StepOutputs outputs;
-gnc::RangeImage frame;
+FastLidar lidar;
+CommandLink command_link;
+TurnedChaser navigation;
+NoWatchdog watchdog;
+CycleWorkspace workspace;
+const StepOutputs& outputs = workspace.outputs;
+gnc::RangeImage& frame = lidar.scene;
 std::uint32_t counter = 0;
 std::int64_t now_ns = 1'000'000'000'000;
 const char* failure = nullptr;
@@ -97,7 +171,7 @@ void add_u32(std::uint8_t* at, std::uint32_t value) {
 
 // Adds a command for the next step, with its security trailer (hal/messages/command_packet.hpp).
 void command(FunctionCode function, const std::uint8_t* arguments, int argument_bytes) {
-  hal::CommandPacket& packet = inputs.commands[static_cast<std::size_t>(inputs.command_count++)];
+  hal::CommandPacket& packet = command_link.commands[static_cast<std::size_t>(command_link.count++)];
   std::uint8_t* const bytes = packet.bytes.data();
   const int size = hal::kCommandHeaderBytes + argument_bytes + hal::kCommandTrailerBytes;
   const int length = size - hal::kCommandPrimaryHeaderBytes - 1;
@@ -138,7 +212,7 @@ void load_commands(Upload upload = Upload::kBegins) {
   const auto base = static_cast<std::uint8_t>(UploadBase::kBankInUse);
   if (upload == Upload::kBegins) command(FunctionCode::kModelBegin, &base, 1);
   std::uint32_t offset = 0;
-  while (inputs.command_count < config::kMaxCommandsPerStep) {
+  while (command_link.count < config::kMaxCommandsPerStep) {
     add_u32(arguments.data(), offset);
     std::memcpy(arguments.data() + 4, tumblesight_model_image + offset, hal::kMaxModelSegmentBytes);
     command(FunctionCode::kModelLoad, arguments.data(), hal::kMaxCommandArgumentBytes);
@@ -146,32 +220,19 @@ void load_commands(Upload upload = Upload::kBegins) {
   }
 }
 
-// A sensor never repeats its noise: `frame` differs from the three before it in every range.
-void vary_noise() {
-  const std::uint32_t before = frame.sequence_number - 1, changed = (before ^ frame.sequence_number) % 4;
-  for (std::uint16_t& range : frame.ranges)
-    if (range != 0) range = static_cast<std::uint16_t>(range ^ changed);
-}
-
 void begin(const char* name) {
   board::write(hal::replay::TextLine().text("step ").text(name).text("\n").c_str());
 }
-
-constexpr std::int32_t kTurned = 759'250'125;  // sqrt(1/2), Q30: the chaser's attitude is no identity
 
 // `periods`: since the step before.
 void step(const char* name, int periods = 1) {
   begin(name);
   now_ns += periods * config::kFramePeriod_ns;
-  frame.exposure_time_ns = now_ns;
-  inputs.chaser = inputs.chaser_now = {now_ns, {kTurned, 0, 0, -kTurned}, true};
-  ++frame.sequence_number;
-  vary_noise();
-  inputs.frame = &frame;
+  lidar.prepare(now_ns);
   tumblesight_step_begins();
-  app.step(now_ns, inputs, outputs);
+  run_cycle(app, {lidar, command_link, watchdog, &navigation}, now_ns, 0, workspace);
   tumblesight_step_ended();
-  inputs.command_count = 0;
+  command_link.clear();
 }
 
 void expect(bool condition, const char* what) {

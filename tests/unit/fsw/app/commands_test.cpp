@@ -181,8 +181,10 @@ TEST_F(Commands, ResetSequenceStartsASequenceButKeepsTheLastFrame) {
 TEST_F(Commands, SequenceAfterResetEqualsTheFirstSequenceBitForBit) {
   std::array<gnc::QuaternionQ30, 2> last{};
   std::array<std::uint32_t, 2> crc{};
+  constexpr unsigned kFrames =
+      gnc::FrameHistory::kFrames + 1;  // otherwise the second sequence is a repetition
   for (std::size_t run = 0; run < 2; ++run) {
-    for (unsigned i = 0; i < 3; ++i) {
+    for (unsigned i = 0; i < kFrames; ++i) {
       StepInputs inputs;
       inputs.command_count = i == 0 ? 1 : 0;
       if (i == 0) inputs.commands[0] = command(FunctionCode::kResetSequence);

@@ -128,6 +128,37 @@ TEST_F(Cycle, NewestFrameOfABacklogIsNotUsedIfItRepeatsTheOneBefore) {
   EXPECT_NE(counters.faults_persisting & bit_of(Fault::kFrameFrozen), 0U);
 }
 
+// Verifies TS-LID-052.
+TEST_F(Cycle, NewestFrameWithGoodContentIsUsed) {
+  const std::int64_t cycle_ns = next_time_ns();
+  lidar.add(good_frame(1, cycle_ns - 900'000'000, 1));
+  lidar.add(good_frame(2, cycle_ns - 800'000'000, 2));
+  for (std::uint32_t number = 3; number < 6; ++number) {
+    gnc::RangeImage bad = good_frame(number, cycle_ns - 800'000'000 + 100'000'000 * (number - 2), number);
+    if (number == 3) bad.ranges.fill(0);
+    if (number == 4) bad.rays = 200;
+    if (number == 5) bad.ranges.fill(6400);
+    lidar.add(bad);
+  }
+  run();
+  EXPECT_EQ(last_validity(), Validity::kValid);
+  EXPECT_EQ(link.attitudes.back().sequence_number, 2U);
+  const hal::Telemetry& counters = link.telemetry.back();
+  EXPECT_EQ(counters.frames_used, 1U);
+  EXPECT_EQ(counters.frames_superseded, 1U);
+  EXPECT_EQ(counters.frames_bad, 3U);
+  EXPECT_EQ(counters.frames_refused, 3U);
+  std::vector<std::array<std::int32_t, 3>> reasons;
+  for (const hal::Event& event : link.events)
+    if (event.id == EventId::kFrameBad) reasons.push_back(event.arguments);
+  using gnc::FrameStatus;
+  const std::vector<std::array<std::int32_t, 3>> expected{
+      {3, static_cast<std::int32_t>(FrameStatus::kEmpty), 32},
+      {4, static_cast<std::int32_t>(FrameStatus::kBadRayCount), 200},
+      {5, static_cast<std::int32_t>(FrameStatus::kFlat), 32}};
+  EXPECT_EQ(reasons, expected);
+}
+
 TEST_F(Cycle, LargestBacklogIsReceivedInOneCycle) {
   for (int i = 0; i < config::kMaxDeliveriesPerCycle + 2; ++i) lidar.add_wrong_size();
   run();

@@ -97,6 +97,17 @@ TEST_F(FrozenSensor, TwoBuffersThatAlternateDoNotHideIt) {
 }
 
 // Verifies TS-FDIR-170.
+TEST_F(FrozenSensor, UpToEightBuffersInTurnDoNotHideIt) {
+  for (const std::size_t buffers : {3U, 4U, 8U}) {
+    init(store, nullptr);
+    for (std::size_t i = 0; i < kGood; ++i) take(frames[i]);
+    expect_seen([this, buffers](int i, gnc::RangeImage& frame) {
+      frame.ranges = frames[kGood - buffers + std::size_t(i) % buffers].ranges;
+    });
+  }
+}
+
+// Verifies TS-FDIR-170.
 TEST_F(FrozenSensor, FramesOfAWorkingSensorDifferInNineTenthsOfTheCells) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     for (std::size_t k = i + 1; k < frames.size(); ++k) {

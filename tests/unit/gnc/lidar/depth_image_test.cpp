@@ -35,7 +35,9 @@ struct Projection {
     frame.ranges[row * frame.rays + column] = counts(row, column, depth_m);
   }
   FrameStatus make(const DepthProjection& projection = kProjection) {
-    return make_depth_image(frame, projection, scratch, image);
+    const FrameStatus status = make_depth_image(frame, projection, scratch, image);
+    EXPECT_EQ(content_of(frame), status);
+    return status;
   }
   double at(int row, int column) const { return image.depth[row * DepthImage::kSide + column] / 65536.0; }
 };

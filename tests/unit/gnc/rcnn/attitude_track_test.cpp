@@ -249,6 +249,70 @@ TEST(AttitudeTrack, FindsTheRateAtAnyTimeBetweenFrames) {
   }
 }
 
+// A frame of the estimator when the rate of the track is not known, without the network.
+bool follow_without_rate(const Hypotheses<float>& frame, const FrameInterval& interval,
+                         AttitudeTrack<float>& track) {
+  Prediction<float> prediction = predict<float>(track, motion_laws<float>(Inertia<float>{}), frame, interval);
+  const bool confirmed = keep_confirmed<float>(frame, interval, prediction, track);
+  EXPECT_TRUE(confirmed || !prediction.has_track);
+  advance<float>(frame, prediction, kNoCorrection, track);
+  return confirmed;
+}
+
+// Verifies TS-EST-182. 10 s between frames. The rate is the slowest one that explains the attitudes: the true
+// one up to 15 degrees/s, and beyond it one that leads to the same attitudes.
+TEST(AttitudeTrack, FollowsASpinWithoutKnowingItsRate) {
+  const double periods = 10.0 / 2.7;
+  for (const double rate_deg_s : {0.0, 1.0, 6.0, 14.5, 22.0, 35.0}) {
+    const Eigen::Vector3d rate = 2.7 * rate_deg_s * kDegree * kRate.normalized();
+    const double others = rate_deg_s > 15.0 ? 2.7 * 36.0 * kDegree : 0.0;
+    AttitudeTrack<float> track;
+    Eigen::Matrix3d truth = kStart;
+    for (int k = 0; k < 12; ++k, truth = turn(periods * rate) * truth) {
+      const bool confirmed = follow_without_rate(make_frame({{truth, 1.0F}}), interval_of(periods), track);
+      EXPECT_LT(angle_between(current_motion(track).r_lrf_trf, truth), 0.5 * kDegree) << rate_deg_s << k;
+      EXPECT_TRUE(confirmed || k < 2) << rate_deg_s << ' ' << k;
+    }
+    EXPECT_LT(rate_error(track, rate - others * kRate.normalized()), 0.2 * kDegree) << rate_deg_s;
+  }
+}
+
+// Verifies TS-EST-182, TS-EST-184. A prediction that the hypotheses do not confirm has no effect.
+TEST(AttitudeTrack, AWrongRateDoesNotSpoilTheAttitude) {
+  const Eigen::Matrix3d other = kStart * turn(std::acos(-1.0), {0.0, 0.0, 1.0});
+  const Hypotheses<float> frame = make_frame({{kStart, 0.6F}, {other, 0.4F}});
+  AttitudeTrack<float> alone, track = converged_track(12);
+  FrameInterval interval = interval_of(4.0);
+  interval.q_now_last = q30(Eigen::Quaterniond(turn(0.4, {0.0, 0.0, 1.0})));
+  const Eigen::Matrix3d last =
+      turn(0.4, {0.0, 0.0, 1.0}) * Eigen::Matrix3d(current_motion(track).r_lrf_trf.cast<double>());
+  EXPECT_FALSE(follow_without_rate(frame, interval, track));
+  advance<float>(frame, predict<float>(alone, motion_laws<float>(Inertia<float>{}), frame, {}), kNoCorrection,
+                 alone);
+  EXPECT_EQ(current_motion(track).r_lrf_trf, current_motion(alone).r_lrf_trf);
+  EXPECT_EQ(track.frames, 1U);
+  const Eigen::Vector3d rate = current_motion(track).rate_lrf.cast<double>();
+  EXPECT_LT(angle_between(Eigen::Matrix3d(turn(4.0 * rate) * last), kStart), 0.5 * kDegree)
+      << "the rate from the last attitude";
+}
+
+TEST(AttitudeTrack, BeginsAgainAtItsLastAttitude) {
+  AttitudeTrack<float> track;
+  track.forget_rate(true);
+  EXPECT_EQ(track.frames, 0U) << "before the first frame there is nothing to forget";
+  track = converged_track(12);
+  const Eigen::Matrix3f last = current_motion(track).r_lrf_trf;
+  track.forget_rate(false);
+  EXPECT_EQ(track.frames, 12U);
+  EXPECT_LT(rate_error(track), 1e-3);
+  track.forget_rate(true);
+  EXPECT_EQ(track.frames, 1U);
+  for (const Motion<float>& motion : track.motion) {
+    EXPECT_EQ(motion.r_lrf_trf, last);
+    EXPECT_EQ(motion.rate_lrf.norm(), 0.0F);
+  }
+}
+
 // Verifies TS-EST-182.
 TEST(AttitudeTrack, CoastsOverGapsOfAnyLength) {
   for (const double gap : {0.3, 1.5, 2.0, 3.0, 7.0, 8.0}) {

@@ -87,5 +87,38 @@ TEST(FrameSignature, NoiseOfACountMakesFramesOfOneSceneDifferent) {
   }
 }
 
+TEST(FrameRepetition, ComparesPairsOfNeighbouringRays) {
+  for (const int rays : {16, 17, 33, 128}) {
+    for (const int side : {4, 12, 16}) {
+      const RangeImage a = square(rays, side, 0, 1);
+      EXPECT_TRUE(is_repetition(a, a));
+      EXPECT_FALSE(is_repetition(a, square(rays, side, 0, 2)));
+      RangeImage b = a;
+      for (int row = 0; row < side / 2 - 1; ++row) b.ranges[static_cast<std::size_t>(row * rays)] ^= 1;
+      EXPECT_TRUE(is_repetition(a, b)) << "a few flicker";
+      b.rays = static_cast<std::uint16_t>(rays - 1);
+      EXPECT_FALSE(is_repetition(a, b));
+    }
+  }
+  EXPECT_FALSE(is_repetition(square(128, 128, 0, 1), square(128, 128, 0, 2))) << "more than 512 pairs";
+  RangeImage none;
+  none.rays = 32;
+  EXPECT_FALSE(is_repetition(none, none)) << "no return";
+  none.rays = UINT16_MAX;
+  EXPECT_FALSE(is_repetition(none, none)) << "and does not read beyond the frame";
+}
+
+TEST(FrameRepetition, NoiseOfACountMakesFramesOfOneSceneDifferent) {
+  std::mt19937 engine(3);
+  std::normal_distribution<double> noise(0.0, 0.5);
+  for (int pair = 0; pair < 200; ++pair) {
+    RangeImage a = square(100, 16, 40, 1), b = a;
+    for (RangeImage* frame : {&a, &b})
+      for (std::uint16_t& range : frame->ranges)
+        if (range != 0) range = static_cast<std::uint16_t>(std::lround(range + noise(engine)));
+    EXPECT_FALSE(is_repetition(a, b));
+  }
+}
+
 }  // namespace
 }  // namespace tumblesight::gnc

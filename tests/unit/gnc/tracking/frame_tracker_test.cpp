@@ -228,16 +228,43 @@ TEST_F(Tracking, AfterAResetNoAttitudeOfTheChaserIsNeeded) {
 }
 
 TEST_F(Tracking, FramesThatAlternateAreRefused) {
-  std::array<RangeImage, 3> used;
+  std::array<RangeImage, FrameHistory::kFrames + 1> used;
   for (RangeImage& frame : used) EXPECT_TRUE(step(frame = next()).used());
-  for (const std::size_t which : {1U, 2U, 1U, 2U}) {
-    RangeImage frame = next();
-    frame.ranges = used[which].ranges;
-    EXPECT_EQ(step(frame).verdict, FrameVerdict::kRepeated);
+  for (int round = 0; round < 2; ++round) {
+    for (std::size_t which = 1; which < used.size(); ++which) {
+      RangeImage frame = next();
+      frame.ranges = used[which].ranges;
+      EXPECT_EQ(step(frame).verdict, FrameVerdict::kRepeated) << which;
+    }
   }
   RangeImage frame = next();
   frame.ranges = used[0].ranges;
-  EXPECT_TRUE(step(frame).used()) << "only two are kept";
+  EXPECT_TRUE(step(frame).used()) << "only eight are kept";
+}
+
+// Verifies TS-EST-182.
+TEST_F(Tracking, FramesTooFarApartForTheRateAreNoJumps) {
+  limits.attitude_jump_urad = 1;
+  for (int i = 0; i < 12; ++i) {
+    step(next(kLongestToFindRate_ns + 1));
+    EXPECT_TRUE(outcome.valid()) << i;
+    EXPECT_EQ(outcome.doubts & kRateAmbiguous, i > 0 ? kRateAmbiguous : 0) << i;
+    EXPECT_EQ(outcome.frames_given_up, 0U);
+  }
+  // As soon as two frames are close enough, the rate is found, and the track can coast with it.
+  step(next(kLongestToFindRate_ns));
+  EXPECT_EQ(outcome.doubts & kRateAmbiguous, 0U);
+  EXPECT_EQ(outcome.estimate.frames_since_reset, 2U);
+  step(next(kLongestToFindRate_ns + 1));
+  EXPECT_EQ(outcome.estimate.frames_since_reset, 3U);
+  EXPECT_NE(outcome.doubts & kAttitudeJump, 0U);
+  // A new track has to find it anew.
+  estimator->reset();
+  state.forget_track();
+  step(next(kLongestToFindRate_ns + 1));
+  EXPECT_EQ(outcome.doubts & kRateAmbiguous, 0U) << "the first frame";
+  step(next(kLongestToFindRate_ns + 1));
+  EXPECT_NE(outcome.doubts & kRateAmbiguous, 0U);
 }
 
 TEST_F(Tracking, ALimitOfAHalfTurnDetectsNoJump) {
