@@ -76,14 +76,20 @@ SilSession::SilSession(const SilSettings& settings)
   }
   endpoints_ = std::make_unique<SimulatorEndpoints>(domain_);
   answers_ = std::make_unique<AnswerCollector>(*endpoints_, secret_.run_id);
+  write(endpoints_->hello_out, hello());
+  if (!settings_.flight_path.empty()) start_flight();
+  shake_hands();
+}
+
+hal::dds::HelloSample SilSession::hello() const {
   hal::dds::HelloSample hello{};
   hello.role = static_cast<std::uint8_t>(Role::kSimulator);
   hello.icd_hash = hal::dds::icd_hash();
   hello.run_id = secret_.run_id;
   hello.process_id = static_cast<std::uint32_t>(getpid());
-  write(endpoints_->hello_out, hello);
-  if (!settings_.flight_path.empty()) start_flight();
-  shake_hands();
+  hello.model_crc32 = settings_.model_crc32;
+  hal::dds::set_target(hello, settings_.target.c_str());
+  return hello;
 }
 
 std::vector<std::string> SilSession::flight_command_line() const {
@@ -106,7 +112,7 @@ void SilSession::start_flight() {
       std::vector<std::string>{std::string(hal::dds::kRunSecretVariable) + "=" + to_text(secret_).text});
 }
 
-// Reads the hellos of flight. The first one decides which program it is.
+// Reads the hellos of flight. The first one decides which program it is; a difference ends the run.
 void SilSession::read_hello() {
   hal::dds::HelloSample hello;
   hal::dds::PeerKey from;
@@ -114,17 +120,47 @@ void SilSession::read_hello() {
     const bool ours = hello.run_id == secret_.run_id || hello.run_id == 0;
     if (hello.role != static_cast<std::uint8_t>(Role::kFlight) || !ours)
       fail_foreign(endpoints_->hello_in.describe(from));
-    if (hello.icd_hash != hal::dds::icd_hash()) {
-      // Flight refuses as well; wait for its own message.
-      if (process_) (void)process_->wait_for_end(kEndGrace_s);
-      throw SilFailure("interface hash " + hex(hal::dds::icd_hash()) + ", but " + hex(hello.icd_hash) +
-                       " in the flight program: build both from the same tumblesight.idl");
-    }
     bind(hello, from);
+    const std::string difference = difference_to(hello);
+    if (!difference.empty()) {
+      wait_for_refusal_of(from);
+      throw SilFailure(difference);
+    }
     flight_mode_ = static_cast<hal::Mode>(hello.flight_mode);
     encoder_.continue_after(hello.command_counter);
     flight_ready_ |= hello.run_id == secret_.run_id;
   }
+}
+
+// Empty, or what the flight program has and this run has not.
+std::string SilSession::difference_to(const hal::dds::HelloSample& flight) const {
+  switch (hal::dds::fit(hello(), flight)) {
+    case hal::dds::HelloFit::kFits:
+      return {};
+    case hal::dds::HelloFit::kOtherInterface:
+      return "interface hash " + hex(hal::dds::icd_hash()) + ", but " + hex(flight.icd_hash) +
+             " in the flight program: build both from the same tumblesight.idl";
+    case hal::dds::HelloFit::kOtherTarget:
+      return "target " + settings_.target + ", but " + hal::dds::target_of(flight).text +
+             " in the flight program: give both the same --target";
+    case hal::dds::HelloFit::kOtherModel:
+      return "model image " + settings_.model_path + " (CRC-32 " + hex(settings_.model_crc32) +
+             "), but CRC-32 " + hex(flight.model_crc32) +
+             " in the flight program: give both the same --model; without it each takes the image that ships "
+             "for the target";
+  }
+  return {};
+}
+
+// Flight refuses as well, with a message of its own. It must read our hello before we leave.
+void SilSession::wait_for_refusal_of(const hal::dds::PeerKey& flight) {
+  if (process_) {
+    (void)process_->wait_for_end(kEndGrace_s);
+    return;
+  }
+  const auto deadline = Clock::now() + std::chrono::duration<double>(kEndGrace_s);
+  while (hal::dds::writer_of(flight, endpoints_->hello_in.entity()) != 0 && Clock::now() < deadline)
+    std::this_thread::sleep_for(kPoll);
 }
 
 void SilSession::bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKey& from) {
@@ -134,7 +170,8 @@ void SilSession::bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKe
                      std::to_string(process_->pid()));
   }
   if (flight_ && !hal::dds::same_peer(*flight_, from))
-    throw SilFailure("two programs announced themselves as the flight program");
+    throw SilFailure("two flight programs are on DDS domain " + std::to_string(lease_.domain()) +
+                     ": end one of them, or give this run and its flight program another --domain");
   flight_ = from;
 }
 
@@ -147,7 +184,10 @@ void SilSession::shake_hands() {
       throw SilFailure(
           "the hello of the flight program has another type: build both from the same tumblesight.idl");
     }
-    if (process_ && !process_->running()) fail("the flight program " + process_->how_it_ended());
+    if (process_ && !process_->running()) {
+      read_hello();  // the last one may have arrived in between
+      fail("the flight program " + process_->how_it_ended());
+    }
     if (Clock::now() > deadline) {
       fail(process_ ? "the flight program was started but did not announce itself"
                     : "no flight program announced itself in DDS domain " + std::to_string(lease_.domain()) +

@@ -169,8 +169,9 @@ bool print_flight_help() {
       "or files, 3 interface definitions differ, 4 simulator gone, 5 timeout, 6 DDS\n"
       "failed, 7 step out of order, 8 the flight task used the heap, 9 no thread for\n"
       "the flight task, 10 flight_float32 cannot be started, 11 another program writes\n"
-      "to the topics of the run, 12 telemetry packets could not be written, 130\n"
-      "interrupted (SIGINT), 143 asked to stop (SIGTERM).\n",
+      "to the topics of the run, 12 telemetry packets could not be written, 13 the\n"
+      "simulator expects another target or model image, 14 another flight program is on\n"
+      "the DDS domain, 130 interrupted (SIGINT), 143 asked to stop (SIGTERM).\n",
       kProgramName,
       kFlyFloat32 ? ".\nThis is its variant in float32, for comparisons. Start `flight`: for a float32\n"
                     "image it starts this one"
