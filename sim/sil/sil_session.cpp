@@ -68,11 +68,15 @@ SilSession::SilSession(const SilSettings& settings)
   const auto security = std::make_unique<hal::dds::SecurityElement>();
   if (!settings_.security_path.empty() &&
       !hal::dds::read_security(settings_.security_path.c_str(), *security))
-    throw SilFailure("--dds-security " + settings_.security_path + ": cannot be read, or is too large");
+    throw SilFailure("--dds-security " + settings_.security_path + ": cannot be read, is empty, or has " +
+                     std::to_string(sizeof security->text) + " bytes or more");
   const dds_return_t result = domain_.open(lease_.domain(), secret_.partition, security->text);
   if (result != 0) {
-    throw SilFailure("DDS domain " + std::to_string(lease_.domain()) +
-                     " could not be opened: " + dds_strretcode(result));
+    throw SilFailure(
+        "DDS domain " + std::to_string(lease_.domain()) + " could not be opened: " + dds_strretcode(result) +
+        (settings_.security_path.empty()
+             ? ""
+             : "; is --dds-security " + settings_.security_path + " a file of hal/dds/make_security?"));
   }
   endpoints_ = std::make_unique<SimulatorEndpoints>(domain_);
   answers_ = std::make_unique<AnswerCollector>(*endpoints_, secret_.run_id);

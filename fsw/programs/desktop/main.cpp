@@ -88,8 +88,8 @@ FlightEnd report_packets(const FlightOptions& options, FlightEnd end) {
 
 FlightEnd connect(const FlightOptions& options) {
   if (options.security_path[0] != '\0' && !hal::dds::read_security(options.security_path, security)) {
-    std::fprintf(stderr, "flight: --dds-security %s: cannot be read, or is too large\n",
-                 options.security_path);
+    std::fprintf(stderr, "%s: --dds-security %s: cannot be read, is empty, or has %zu bytes or more\n",
+                 kProgramName, options.security_path, sizeof security.text);
     return FlightEnd::kBadArguments;
   }
   dds_return_t result = domain.open(options.domain, options.partition, security.text);
@@ -188,7 +188,8 @@ int main(int argc, char** argv) {
   if (end == FlightEnd::kForeign || end == FlightEnd::kSecondFlight) {
     std::fprintf(stderr, "%s: %s: %s; give each run a DDS domain of its own with --domain (here %u)\n",
                  kProgramName, hal::dds::to_string(end), to_text(foreigner).text, options.domain);
-  } else if (end != FlightEnd::kComplete && end != FlightEnd::kPacketsLost) {
+  } else if (end != FlightEnd::kComplete && end != FlightEnd::kPacketsLost &&
+             end != FlightEnd::kBadArguments) {
     std::fprintf(stderr, "%s: %s\n", kProgramName, hal::dds::to_string(end));
   }
   domain.close();
