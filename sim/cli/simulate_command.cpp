@@ -22,6 +22,7 @@
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/sil_report.hpp"
+#include "sim/sil/interruption.hpp"
 #include "sim/sil/signed_telecommand.hpp"
 #include "sim/terminal/counted.hpp"
 #include "sim/terminal/local_time.hpp"
@@ -39,6 +40,7 @@ constexpr double kFastest = 1000.0;
 constexpr double kManualStart_s = 60.0;  // time for the user to start the flight program
 constexpr int kDefaultFlightDomain = 0;  // of a flight program without --domain
 constexpr int kRunFailed = 1;
+constexpr int kInterrupted = 128;  // and the number of the signal, as a shell reports it
 constexpr const char* kNoFlight = "none";
 constexpr const char* kFastestPossible = "max";
 
@@ -247,7 +249,9 @@ void simulate(SimulateArguments arguments) {
   announce(scenario, target, settings);
 
   Float32Reference float32(target.model_path, target.model, scenario.target);
+  std::optional<Interruption> interruption(std::in_place);
   const SilRunResult run = run_sequences(scenario, target, settings, float32);
+  interruption.reset();
   std::optional<NumericsComparison> numerics;
   if (float32) numerics = float32.compare(frame_results(run), scenario.frames);
   RunReport report = run_report(setup, run, numerics);
@@ -262,6 +266,7 @@ void simulate(SimulateArguments arguments) {
   std::fflush(stdout);
 
   for (const std::string& fault : faults) fmt::print(stderr, "tumblesight: {}\n", fault);
+  if (Interruption::signal() != 0) throw CLI::RuntimeError(kInterrupted + Interruption::signal());
   if (!faults.empty()) throw CLI::RuntimeError(kRunFailed);
 }
 
@@ -319,6 +324,7 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "sensor delivered a new frame, no telecommand was refused, the flight task\n"
       "allocated no heap memory, no other program wrote to the topics of the run and\n"
       "the report was written. Faults that the flight program reports do not count.\n"
+      "Ctrl-C ends the run, and the report covers what was done.\n"
       "With --free-running and a sensor that is faster than the cycle, the newest frame\n"
       "of each cycle is used. The frames that it supersedes are counted.\n" +
       disturbance_examples("simulate"));

@@ -9,6 +9,7 @@
 
 #include "hal/dds/idl/icd_hash.hpp"
 #include "hal/dds/idl/step_content.hpp"
+#include "sim/sil/interruption.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -182,6 +183,7 @@ void SilSession::bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKe
 void SilSession::shake_hands() {
   const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.step_timeout_s);
   while (!flight_ready_ || !endpoints_->bind(*flight_)) {
+    require_not_interrupted();
     read_hello();
     require_no_foreigner();
     if (endpoints_->hello_in.saw_incompatible()) {
@@ -224,6 +226,7 @@ bool SilSession::flight_ended_after_last_step() {
 }
 
 void SilSession::fail_flight_ended() const {
+  require_not_interrupted();  // a terminal sends the signal to both programs
   const std::string step = next_k_ == 0 ? "before step 0" : "at step " + std::to_string(next_k_ - 1);
   if (!process_ || !process_->ended())
     fail("the connection to the flight program was lost " + step + "; start both again");
@@ -237,6 +240,7 @@ StepAnswer SilSession::step(const StepInput& input) {
 }
 
 void SilSession::send(const StepInput& input) {
+  require_not_interrupted();
   const std::uint32_t k = next_k_++;
   check_.sent(k, input.time_ns, input.frames);
   hal::dds::StepContent content;
@@ -304,6 +308,7 @@ std::optional<StepAnswer> SilSession::collect_answer() {
 
 std::optional<StepAnswer> SilSession::next_answer(Clock::time_point deadline) {
   for (;;) {
+    require_not_interrupted();
     if (auto answer = collect_answer()) return answer;
     const auto left = deadline - Clock::now();
     if (left <= Clock::duration::zero()) return std::nullopt;
@@ -319,6 +324,7 @@ std::optional<StepAnswer> SilSession::next_answer(Clock::time_point deadline) {
 void SilSession::sleep_until(Clock::time_point time) {
   while (Clock::now() < time) {
     std::this_thread::sleep_until(std::min(time, Clock::now() + 200ms));
+    require_not_interrupted();
     if (flight_ended()) fail_flight_ended();
   }
 }

@@ -267,5 +267,29 @@ TEST(Simulate, ReportsWhatWasDoneWhenTheFlightProgramIsKilled) {
   EXPECT_NE(html.find("<svg"), std::string::npos);
 }
 
+// Verifies TS-SIL-040.
+TEST(Simulate, ReportsWhatWasDoneWhenItIsInterrupted) {
+  const Workplace here;
+  const std::string tool =
+      here.script("tool.sh", "echo $$ >" + here.path("id") + "\nexec " + TUMBLESIGHT_BINARY + " \"$@\"");
+  auto simulation = std::async(std::launch::async, [&] {
+    return here.run_command(tool +
+                                " simulate --sequences 100 --frames 2 --speed 27 --json run.json --report "
+                                "run.html --model " +
+                                here.model(),
+                            "run");
+  });
+  EXPECT_TRUE(
+      wait_for([&] { return content(here.path("run.err")).find("simulating") != std::string::npos; }));
+  ASSERT_EQ(kill(std::stoi(content(here.path("id"))), SIGTERM), 0);
+  const Outcome outcome = simulation.get();
+  EXPECT_EQ(outcome.exit_code, 128 + SIGTERM);
+  EXPECT_NE(outcome.errors.find("interrupted by signal 15"), std::string::npos) << outcome.errors;
+  const auto json = nlohmann::json::parse(content(here.path("run.json")));
+  EXPECT_GT(json.at("steps_missed"), 0);
+  EXPECT_LT(json.at("steps_missed"), 200);
+  EXPECT_NE(content(here.path("run.html")).find("The run ended early"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tumblesight::sim
