@@ -31,15 +31,14 @@ TEST(FreeRunning, FlightAnswersOnItsOwnTimer) {
 TEST(FreeRunning, FramesThatANewerOneSupersedesAreCountedAndNotMissed) {
   SilSettings settings = test::settings();
   settings.free_running = true;
-  settings.speed = 13.5;  // a cycle every 200 ms
-  ScenarioSettings fast{Condition::kNominal, 20};
+  settings.speed = 5.4;  // a cycle every 500 ms
+  ScenarioSettings fast{Condition::kNominal, 12};
   fast.disturbances.period_s = 1.35;
   const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, {make_sequence(fast, 1, 0)}, {});
   EXPECT_EQ(run.failure, "");
-  EXPECT_GE(run.frames_superseded, 8U);
-  EXPECT_LE(run.frames_superseded, 12U);
+  EXPECT_GE(run.frames_superseded, 4U);
+  EXPECT_LE(run.frames_superseded, 7U);
   EXPECT_LE(run.steps_missed, 2U) << "a busy machine may lose a cycle or two";
-  EXPECT_TRUE(run.steps.back().answered);
 }
 
 TEST(FreeRunning, MissingAttitudeOfTheLastFrameIsCountedAsMissed) {
