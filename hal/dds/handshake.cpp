@@ -10,8 +10,13 @@ namespace {
 constexpr std::int64_t kPoll_ns = 5'000'000;
 constexpr std::int64_t kRefusalTimeout_ns = 2'000'000'000;
 
-// Run id 0 means "present, not ready". The sample carries the hash, so that the simulator can refuse too.
-bool announce(FlightEndpoints& endpoints, const HandshakeSettings& settings, std::uint32_t run_id) {
+// Time for the simulator to take a hello that it has received: it does not see those of programs that have
+// left.
+constexpr unsigned kRefusalPause_us = 100'000;
+
+// Run id 0 means "present, not ready". The hello names everything that must agree, so that the simulator can
+// refuse too.
+HelloSample hello_of(const HandshakeSettings& settings, std::uint32_t run_id) {
   HelloSample hello{};
   hello.role = static_cast<std::uint8_t>(Role::kFlight);
   hello.icd_hash = settings.icd_hash;
@@ -19,15 +24,27 @@ bool announce(FlightEndpoints& endpoints, const HandshakeSettings& settings, std
   hello.process_id = static_cast<std::uint32_t>(getpid());
   hello.flight_mode = settings.mode;
   hello.command_counter = settings.command_counter;
-  return endpoints.hello_out.write(hello) == 0;
+  hello.model_crc32 = settings.model_crc32;
+  set_target(hello, settings.target);
+  return hello;
 }
 
-// Waits until the simulator has received the unequal hash, so that it can report it too.
+bool announce(FlightEndpoints& endpoints, const HandshakeSettings& settings, std::uint32_t run_id) {
+  return endpoints.hello_out.write(hello_of(settings, run_id)) == 0;
+}
+
+// Waits until the simulator has received our hello, so that it can report the difference too.
 void wait_until_hello_is_read(FlightEndpoints& endpoints, const PeerKey& simulator, Stopwatch& stopwatch) {
   const std::uint64_t begin_ns = stopwatch.now_ns();
   while (!endpoints.hello_out.has_reader_of(simulator) && stopwatch.now_ns() - begin_ns < kRefusalTimeout_ns)
     usleep(10'000);
   (void)wait_for_acknowledgment(endpoints.hello_out.entity(), kRefusalTimeout_ns);
+  usleep(kRefusalPause_us);
+}
+
+FlightEnd end_of(HelloFit fit) {
+  if (fit == HelloFit::kFits) return FlightEnd::kComplete;
+  return fit == HelloFit::kOtherInterface ? FlightEnd::kIcdUnequal : FlightEnd::kOtherSubject;
 }
 
 // On a bus of our own there is one simulator and no other flight program.
@@ -41,12 +58,14 @@ bool meet(FlightEndpoints& endpoints, std::uint32_t run_id, HandshakeResult& res
   PeerKey from;
   while (!result.foreigner && endpoints.hello_in.take(hello, from)) {
     if (!is_from_simulator_of(hello, run_id)) {
+      const bool second = hello.role == static_cast<std::uint8_t>(Role::kFlight);
+      result.end = second ? FlightEnd::kSecondFlight : FlightEnd::kForeign;
       result.foreigner = endpoints.hello_in.describe(from);
       continue;
     }
     result.simulator = from;
     result.run_id = hello.run_id;
-    result.simulator_icd_hash = hello.icd_hash;
+    result.hello = hello;
     return true;
   }
   return false;
@@ -66,9 +85,10 @@ HandshakeResult shake_hands(FlightEndpoints& endpoints, const HandshakeSettings&
   const std::uint64_t begin_ns = stopwatch.now_ns();
   while (!met || !endpoints.bind(result.simulator)) {
     if (!met) met = meet(endpoints, settings.run_id, result);
-    if (met && result.simulator_icd_hash != settings.icd_hash) {
+    if (met) result.fit = fit(hello_of(settings, 0), result.hello);
+    if (result.fit != HelloFit::kFits) {
       wait_until_hello_is_read(endpoints, result.simulator, stopwatch);
-      result.end = FlightEnd::kIcdUnequal;
+      result.end = end_of(result.fit);
       return result;
     }
     // The hello of another release can be of another type. It never arrives then, but DDS reports the
@@ -81,11 +101,11 @@ HandshakeResult shake_hands(FlightEndpoints& endpoints, const HandshakeSettings&
       result.end = FlightEnd::kSimulatorGone;
       return result;
     }
-    if (!result.foreigner) result.foreigner = endpoints.foreigner();
-    if (result.foreigner) {
-      result.end = FlightEnd::kForeign;
-      return result;
+    if (!result.foreigner) {
+      result.foreigner = endpoints.foreigner();
+      if (result.foreigner) result.end = FlightEnd::kForeign;
     }
+    if (result.foreigner) return result;
     if (stop_requested()) {
       result.stopped = true;
       return result;

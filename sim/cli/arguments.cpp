@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdlib>
@@ -36,17 +37,23 @@ template <class Mesh>
 void add_mesh_file_options(CLI::App& command, Mesh& mesh, std::string& up, double& scale,
                            const std::string& help) {
   CLI::Option* option = command.add_option("--mesh", mesh, help);
-  option->type_name("FILE");
+  option->check(file_path())->type_name("FILE");
   command.add_option("--mesh-up", up, "axis of the mesh file that points along the target frame's z")
       ->check(one_of({"y", "z"}))
       ->type_name("y|z")
       ->capture_default_str()
       ->needs(option);
-  command.add_option("--mesh-scale", scale, "metres per unit of the mesh file")
-      ->check(number(1e-6, 1e6))
+  limit_number(command.add_option("--mesh-scale", scale, "metres per unit of the mesh file"), 1e-6, 1e6)
       ->type_name("X")
       ->capture_default_str()
       ->needs(option);
+}
+
+// Before the default that stands in brackets at the end.
+void describe_limits(CLI::Option& option, const std::string& limits) {
+  std::string description = option.get_description();
+  const std::size_t bracket = description.rfind(" [");
+  option.description(description.insert(std::min(bracket, description.size()), limits));
 }
 
 MeshFileOptions mesh_file_options(const MeshArguments& arguments) {
@@ -70,6 +77,24 @@ CLI::Validator target_name() {
 CLI::Validator existing_model_image() {
   const auto check = [](std::string& path) -> std::string { return fault_of_model_path(path); };
   return CLI::Validator(check, "", "model image");
+}
+
+CLI::Validator file_path() {
+  const auto check = [](std::string& text) -> std::string {
+    return text.empty() ? "must be a path, not ''; leave the option out for its default" : "";
+  };
+  return CLI::Validator(check, "", "path");
+}
+
+CLI::Validator existing_file() {
+  const auto check = [](std::string& text) -> std::string {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(text, error)) return {};
+    const bool exists = std::filesystem::exists(text, error);
+    return fmt::format("'{}' {}", text,
+                       exists ? "is not a regular file; a pipe cannot be read twice" : "does not exist");
+  };
+  return CLI::Validator(check, "", "existing file");
 }
 
 CLI::Validator one_of(const std::vector<std::string>& names) {
@@ -105,6 +130,16 @@ CLI::Validator number(double low, double high) {
   return CLI::Validator(check, "", "number");
 }
 
+CLI::Option* limit_whole_number(CLI::Option* option, std::uint64_t low, std::uint64_t high) {
+  describe_limits(*option, fmt::format(" ({} to {})", low, high));
+  return option->check(whole_number(low, high));
+}
+
+CLI::Option* limit_number(CLI::Option* option, double low, double high) {
+  describe_limits(*option, fmt::format(" ({:g} to {:g})", low, high));
+  return option->check(number(low, high));
+}
+
 void add_target_option(CLI::App& command, std::string& target, TargetChoice choice) {
   const std::string shipped = "spacecraft: " + joined(target_names());
   const bool any = choice == TargetChoice::kAny;
@@ -130,8 +165,9 @@ void add_condition_option(CLI::App& command, std::vector<std::string>& condition
 }
 
 void add_seed_option(CLI::App& command, std::uint64_t& seed) {
-  command.add_option("--seed", seed, "seed of all random numbers; the same seed gives the same run")
-      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+  limit_whole_number(
+      command.add_option("--seed", seed, "seed of all random numbers; the same seed gives the same run"), 0,
+      std::numeric_limits<std::uint64_t>::max())
       ->type_name("N")
       ->capture_default_str();
 }
@@ -144,13 +180,14 @@ void add_float32_model_option(CLI::App& command, std::string& model) {
 }
 
 void add_json_option(CLI::App& command, std::string& json) {
-  command.add_option("--json", json, "write the figures to this file")->type_name("FILE");
+  command.add_option("--json", json, "write the figures to this file")->check(file_path())->type_name("FILE");
 }
 
 void add_report_option(CLI::App& command, std::string& report, const std::string& default_text) {
   command
       .add_option("--report", report,
                   "write an HTML page with figures and tables to this file" + default_text)
+      ->check(file_path())
       ->type_name("FILE");
 }
 
@@ -175,12 +212,10 @@ void add_mesh_options(CLI::App& command, MeshArguments& arguments) {
 }
 
 void add_sequence_options(CLI::App& command, ScenarioArguments& arguments) {
-  command.add_option("--sequences", arguments.sequences, "sequences to run, 1 to 100000")
-      ->check(whole_number(1, 100'000))
+  limit_whole_number(command.add_option("--sequences", arguments.sequences, "sequences to run"), 1, 100'000)
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("--frames", arguments.frames, "frames per sequence, 1 to 1000")
-      ->check(whole_number(1, 1000))
+  limit_whole_number(command.add_option("--frames", arguments.frames, "frames per sequence"), 1, 1000)
       ->type_name("N")
       ->capture_default_str();
   add_seed_option(command, arguments.seed);
@@ -189,7 +224,7 @@ void add_sequence_options(CLI::App& command, ScenarioArguments& arguments) {
 void add_model_options(CLI::App& command, ScenarioArguments& arguments) {
   CLI::Option* model =
       command.add_option("--model", arguments.model, "model image [the one that ships for the target]");
-  model->type_name("FILE");
+  model->check(file_path())->type_name("FILE");
   command
       .add_option("--numerics", arguments.numerics,
                   "which of the shipped models: fixed point, as it flies, or float32")

@@ -68,8 +68,14 @@ void require_supported_length(const ScenarioArguments& arguments);
 // 'many'". Leading zeros are refused, because CLI11 would read an octal number.
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 CLI::Validator number(double low, double high);
+// The same for an option, whose help then ends with the limits.
+CLI::Option* limit_whole_number(CLI::Option* option, std::uint64_t low, std::uint64_t high);
+CLI::Option* limit_number(CLI::Option* option, double low, double high);
 // An existing file. The message about a missing image of fsw/models names the command that gets it.
 CLI::Validator existing_model_image();
+CLI::Validator file_path();  // not empty
+CLI::Validator
+existing_file();  // a regular one: a pipe gives its content once, and both programs read the file
 CLI::Validator one_of(const std::vector<std::string>& names);
 // 1 to 31 characters of a-z, 0-9 and _: the name becomes part of a file name and of the model image.
 CLI::Validator target_name();

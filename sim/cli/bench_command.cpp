@@ -133,7 +133,7 @@ void add_bench_command(CLI::App& app) {
       ->add_option(
           "--onnxruntime", arguments->onnxruntime,
           "libonnxruntime.so [that of onnxruntime-node in build/node_modules, otherwise the system's]")
-      ->check(CLI::ExistingFile)
+      ->check(existing_file())
       ->type_name("FILE");
   add_json_option(*command, arguments->json);
   command->callback([arguments] { bench(*arguments); });

@@ -29,12 +29,13 @@ void add_value(CLI::App& command, const DisturbanceRow& row, Disturbances& distu
         row.set(disturbances, std::strtod(text.c_str(), nullptr));
       },
       row.explanation);
-  option
-      ->check(whole ? whole_number(static_cast<std::uint64_t>(row.lowest),
-                                   static_cast<std::uint64_t>(row.highest))
-                    : number(row.lowest, row.highest))
-      ->type_name(row.type_name)
-      ->group(kGroup);
+  if (whole) {
+    limit_whole_number(option, static_cast<std::uint64_t>(row.lowest),
+                       static_cast<std::uint64_t>(row.highest));
+  } else {
+    limit_number(option, row.lowest, row.highest);
+  }
+  option->type_name(row.type_name)->group(kGroup);
   // A default outside the limits means that the disturbance is off.
   const double value = row.get(disturbances);
   if (value >= row.lowest && value != 0.0) option->default_str(fmt::format("{:g}", value));

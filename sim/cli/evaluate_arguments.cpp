@@ -15,17 +15,17 @@ void add_run_options(CLI::App& command, EvaluateArguments& arguments) {
       "--curves", arguments.curves,
       "also run sweeps: rate drawn by its norm, hidden share, runs of 200 frames; takes seven times as long");
   CLI::Option* none = command.add_flag("--no-baseline", arguments.no_baseline, "without template matching");
-  command
-      .add_option("--baseline-sequences", arguments.baseline_sequences,
-                  "number of sequences whose last frame also goes to template matching")
-      ->check(whole_number(1, 100'000))
+  limit_whole_number(
+      command.add_option("--baseline-sequences", arguments.baseline_sequences,
+                         "number of sequences whose last frame also goes to template matching"),
+      1, 100'000)
       ->type_name("N")
       ->capture_default_str()
       ->excludes(none);
-  command
-      .add_option("--threads", arguments.threads,
-                  "worker threads, 0: one per core; the figures do not depend on their number")
-      ->check(whole_number(0, kMaxThreads))
+  limit_whole_number(
+      command.add_option("--threads", arguments.threads,
+                         "worker threads, 0: one per core; the figures do not depend on their number"),
+      0, kMaxThreads)
       ->type_name("N")
       ->capture_default_str();
 }
@@ -34,6 +34,7 @@ void add_output_options(CLI::App& command, EvaluateArguments& arguments) {
   command
       .add_option("--csv", arguments.csv,
                   "write the figures to this file, one line per estimator and condition")
+      ->check(file_path())
       ->type_name("FILE");
   add_json_option(command, arguments.scenario.json);
   add_report_option(command, arguments.report, "");
@@ -46,12 +47,14 @@ void add_paper_options(CLI::App& command, EvaluateArguments& arguments) {
   command
       .add_option("--mesh-folder", arguments.mesh_folder,
                   "folder with <target>.stl, y up: meshes to measure in addition to the shipped ones")
+      ->check(file_path())
       ->type_name("DIR")
       ->needs(paper);
   command
       .add_option(
           "--out", arguments.out,
           "folder for results.md, .csv, .json and report.html [docs, or out/paper if --sequences is given]")
+      ->check(file_path())
       ->type_name("DIR")
       ->needs(paper);
 }

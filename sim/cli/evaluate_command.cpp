@@ -7,6 +7,7 @@
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/evaluate_arguments.hpp"
 #include "sim/cli/evaluate_paper.hpp"
+#include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/evaluation/checks.hpp"
@@ -16,6 +17,7 @@
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -91,6 +93,16 @@ void write_files(const EvaluateArguments& arguments, const Results& results) {
   fmt::print("  report               {}\n", full_path(arguments.report));
 }
 
+void print_advice(const EvaluateArguments& arguments, const Subject& subject, const SubjectResult& result) {
+  const Swaths swaths{swath_m(subject.mesh), subject.swath_m};
+  for (const CellResult& cell : result.cells) {
+    const std::string advice = mesh_advice(arguments.scenario, swaths, cell.rcnn, cell.common_turn);
+    if (advice.empty()) continue;
+    fmt::print("\n{}", advice);
+    return;
+  }
+}
+
 void evaluate(const EvaluateArguments& arguments) {
   ExperimentSettings settings = experiment_settings(arguments);
   settings.conditions = conditions_of(arguments);
@@ -112,6 +124,7 @@ void evaluate(const EvaluateArguments& arguments) {
       run_experiment(subject, settings, [&](std::uint64_t done) { bar.update(done); }));
   bar.finish();
   print_results(results);
+  print_advice(arguments, subject, results.subjects.front());
   write_files(arguments, results);
   fmt::print("\n");
 }

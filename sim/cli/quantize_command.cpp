@@ -73,12 +73,12 @@ void add_quantize_command(CLI::App& app) {
       "      --mesh parametric --mesh near.stl\n");
   add_float32_model_option(*command, arguments->model);
   command->add_option("--out", arguments->out, "model image to write [--model without .float32]")
+      ->check(file_path())
       ->type_name("FILE");
   add_mesh_options(*command, arguments->meshes);
-  command
-      ->add_option("--sequences", arguments->sequences,
-                   "sequences of ten frames to render for calibration, 10 to 10000")
-      ->check(whole_number(10, 10'000))
+  limit_whole_number(command->add_option("--sequences", arguments->sequences,
+                                         "sequences of ten frames to render for calibration"),
+                     10, 10'000)
       ->type_name("N")
       ->capture_default_str();
   command->callback([arguments] { quantize_file(*arguments); });

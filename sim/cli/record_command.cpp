@@ -27,6 +27,7 @@ void record(const RecordArguments& arguments) {
   require_possible_disturbances(wanted.disturbances, wanted.frames);
   require_writable("--out", arguments.out);
   const TargetSetup target = set_up_target_without_model(wanted);
+  for (const std::string& warning : target.warnings) fmt::print(stderr, "  note: {}\n", warning);
   RecordingSettings settings;
   settings.scenario =
       scenario_settings(condition_from(wanted.condition), wanted.frames, wanted.target, target.inertia_kg_m2);
@@ -69,7 +70,10 @@ void add_record_command(CLI::App& app) {
   add_condition_option(*command, arguments->scenario.condition);
   add_sequence_options(*command, arguments->scenario);
   add_disturbance_options(*command, arguments->scenario.disturbances);
-  command->add_option("--out", arguments->out, "recording to write")->required()->type_name("FILE");
+  command->add_option("--out", arguments->out, "recording to write")
+      ->required()
+      ->check(file_path())
+      ->type_name("FILE");
   command->callback([arguments] { record(*arguments); });
 }
 

@@ -11,6 +11,7 @@
 #include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/disturbance_arguments.hpp"
+#include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/simulate_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
@@ -20,6 +21,7 @@
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/sil_report.hpp"
+#include "sim/sil/interruption.hpp"
 #include "sim/sil/signed_telecommand.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"
@@ -36,6 +38,7 @@ constexpr double kFastest = 1000.0;
 constexpr double kManualStart_s = 60.0;  // time for the user to start the flight program
 constexpr int kDefaultFlightDomain = 0;  // of a flight program without --domain
 constexpr int kRunFailed = 1;
+constexpr int kInterrupted = 128;  // and the number of the signal, as a shell reports it
 constexpr const char* kNoFlight = "none";
 constexpr const char* kFastestPossible = "max";
 
@@ -60,8 +63,8 @@ std::string flight_path(const std::string& given) {
   const fs::path path = given.empty() ? shipped_flight() : fs::path(given);
   std::error_code error;
   if (!fs::is_regular_file(path, error)) {
-    throw std::runtime_error(
-        fmt::format("flight program '{}' does not exist; give its path with --flight", path.string()));
+    throw std::runtime_error(fmt::format("flight program '{}' {}; give its path with --flight", path.string(),
+                                         fs::exists(path, error) ? "is not a file" : "does not exist"));
   }
   return path.string();
 }
@@ -90,6 +93,7 @@ SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& 
   SilSettings settings;
   settings.target = arguments.scenario.target;
   settings.model_path = setup.model_path;
+  settings.model_crc32 = setup.header.crc32;
   settings.flight_path = flight_path(arguments.flight);
   settings.domain = arguments.domain;
   settings.speed = arguments.speed == kFastestPossible ? 0.0 : std::stod(arguments.speed);
@@ -137,8 +141,7 @@ void print_results(const RunReport& report, const SilRunResult& run,
   }
   fmt::print("\n{}\n{}\n", terminal_text(transposed(run_errors_table(report))),
              terminal_text(by_frame_table(errors_by_frame(report.results, report.setup.frames))));
-  fmt::print("  steps              {} of {} answered\n", report.steps_planned - report.steps_missed,
-             report.steps_planned);
+  fmt::print("  steps              {}\n", steps_text(run));
   fmt::print("  inference time     median {}, max {}\n", time_text(report.inference_median_us),
              time_text(report.inference_max_us));
   fmt::print("  flight heap        {} allocations after init\n", report.heap_allocations);
@@ -186,6 +189,15 @@ void announce(const ScenarioArguments& scenario, const TargetSetup& target, cons
   for (const std::string& warning : target.warnings) fmt::print(stderr, "  note: {}\n", warning);
 }
 
+void print_advice(const ScenarioArguments& scenario, const TargetSetup& target, const RunReport& report) {
+  const std::vector<FrameResult> last = last_frames(report.results, scenario.frames);
+  const std::string advice =
+      mesh_advice(scenario, {swath_m(target.mesh), 1e-3 * target.projection.swath_mm},
+                  last_frame_summary(report.results, scenario.frames, Estimator::kRcnn),
+                  common_turn(last, Estimator::kRcnn));
+  if (!advice.empty()) fmt::print("\n{}\n", advice);
+}
+
 // Writes the report, then the figures, even if one of them cannot be written. Returns the messages of the
 // failures.
 std::vector<std::string> write_files(const SimulateArguments& arguments, const RunReport& report,
@@ -222,23 +234,10 @@ void require_a_speed(const SimulateArguments& arguments) {
                              "needs a speed: --speed 1 for real time, --speed N for N times real time");
 }
 
-// Of two frames in one cycle the flight program uses the newer one, and the other gets no answer.
-void require_a_cycle_per_frame(const SimulateArguments& arguments) {
-  const Disturbances& disturbances = arguments.scenario.disturbances;
-  const double shortest_s = disturbances.period_s * (1.0 - disturbances.period_jitter);
-  if (!arguments.free_running || shortest_s >= kFramePeriod_s) return;
-  throw CLI::ValidationError(
-      "--free-running",
-      fmt::format("the flight program then runs a cycle every {:g} s, and --period {:g} with --period-jitter "
-                  "{:g} has frames {:g} s apart; leave out --free-running, or give a longer period",
-                  kFramePeriod_s, disturbances.period_s, disturbances.period_jitter, shortest_s));
-}
-
 void simulate(SimulateArguments arguments) {
   const ScenarioArguments& scenario = arguments.scenario;
   require_supported_length(scenario);
   require_a_speed(arguments);
-  require_a_cycle_per_frame(arguments);
   require_possible_disturbances(scenario.disturbances, scenario.frames);
   if (arguments.report.empty()) arguments.report = default_report(arguments);
   require_usable_files(arguments);
@@ -248,13 +247,16 @@ void simulate(SimulateArguments arguments) {
   announce(scenario, target, settings);
 
   Float32Reference float32(target.model_path, target.model, scenario.target);
+  std::optional<Interruption> interruption(std::in_place);
   const SilRunResult run = run_sequences(scenario, target, settings, float32);
+  interruption.reset();
   std::optional<NumericsComparison> numerics;
   if (float32) numerics = float32.compare(frame_results(run), scenario.frames);
   RunReport report = run_report(setup, run, numerics);
   report.command = arguments.command_line;
   report.generated = local_time_text();
   print_results(report, run, numerics);
+  print_advice(scenario, target, report);
   std::vector<std::string> faults = run_faults(run);
   for (const std::string& failure : write_files(arguments, report, run_json(setup, run, numerics)))
     faults.push_back(failure);
@@ -262,6 +264,7 @@ void simulate(SimulateArguments arguments) {
   std::fflush(stdout);
 
   for (const std::string& fault : faults) fmt::print(stderr, "tumblesight: {}\n", fault);
+  if (Interruption::signal() != 0) throw CLI::RuntimeError(kInterrupted + Interruption::signal());
   if (!faults.empty()) throw CLI::RuntimeError(kRunFailed);
 }
 
@@ -279,7 +282,8 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   add_json_option(*command, arguments->scenario.json);
   add_disturbance_options(*command, arguments->scenario.disturbances);
   command
-      ->add_option("--speed", arguments->speed, "max: as fast as possible; or N times real time, 0.1 to 1000")
+      ->add_option("--speed", arguments->speed,
+                   "max: as fast as possible; or N times real time (0.1 to 1000)")
       ->check(speed())
       ->type_name("max|N")
       ->capture_default_str();
@@ -290,23 +294,22 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       ->add_option(
           "--flight", arguments->flight,
           "flight program to start [in the folder of tumblesight]; none: you start it, the command is shown")
+      ->check(file_path())
       ->type_name("FILE");
   command
       ->add_option(
           "--command-key", arguments->command_key,
           "file with the key that signs telecommands, 64 hexadecimal digits [the public development key]")
-      ->check(CLI::ExistingFile)
+      ->check(existing_file())
       ->type_name("FILE");
   command
       ->add_option("--dds-security", arguments->security,
                    "secures the bus with certificates; hal/dds/make_security writes the file")
-      ->check(CLI::ExistingFile)
+      ->check(existing_file())
       ->type_name("FILE");
-  command
-      ->add_option(
-          "--domain", arguments->domain,
-          fmt::format("DDS domain, 0 to {} [a free one, or 0 with --flight none]", hal::dds::kMaxDomain))
-      ->check(whole_number(0, hal::dds::kMaxDomain))
+  limit_whole_number(
+      command->add_option("--domain", arguments->domain, "DDS domain [a free one, or 0 with --flight none]"),
+      0, hal::dds::kMaxDomain)
       ->type_name("N");
   add_report_option(
       *command, arguments->report,
@@ -318,7 +321,10 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "The exit status is 0 only if every step was answered, with an attitude where the\n"
       "sensor delivered a new frame, no telecommand was refused, the flight task\n"
       "allocated no heap memory, no other program wrote to the topics of the run and\n"
-      "the report was written. Faults that the flight program reports do not count.\n" +
+      "the report was written. Faults that the flight program reports do not count.\n"
+      "Ctrl-C ends the run, and the report covers what was done.\n"
+      "With --free-running and a sensor that is faster than the cycle, the newest frame\n"
+      "of each cycle is used. The frames that it supersedes are counted.\n" +
       disturbance_examples("simulate"));
   command->callback([arguments] { simulate(*arguments); });
 }

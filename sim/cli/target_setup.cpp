@@ -70,8 +70,8 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
   const std::string fault = fault_of_model_path(path);
   if (fault.empty()) return read_model_bytes(path);
   const bool trainable = arguments.model.empty() && remedy_for_missing_image(path).empty();
-  throw std::runtime_error(fault +
-                           (trainable ? "; train one for this target, or give one with --model" : ""));
+  throw std::runtime_error(
+      fault + (trainable ? "; train one for this target (docs/training.md), or give one with --model" : ""));
 }
 
 void frame_by_model(TargetSetup& setup) {
@@ -122,7 +122,8 @@ TargetSetup set_up_target(const ScenarioArguments& arguments) {
 
 TargetSetup set_up_target_without_model(const ScenarioArguments& arguments) {
   TargetSetup setup = set_up_body(arguments);
-  if (find_target(arguments.target)) {
+  const bool ships = find_target(arguments.target) && fault_of_model_path(model_path(arguments)).empty();
+  if (ships) {
     set_up_model(arguments, setup);
   } else {
     setup.projection = projection_of(setup.mesh);

@@ -33,8 +33,8 @@ std::string shipped_model_path(const std::string& name);
 // inertia, model image. An image that the flight program would refuse is refused here as well.
 TargetSetup set_up_target(const ScenarioArguments& arguments);
 
-// The same for verbs that run no network. The model is the image that ships for the target. Of other targets
-// the fields of the model stay empty.
+// The same for verbs that run no network. The model is the image that ships for the target. Without one
+// the fields of the model stay empty, and the swath is that of the mesh.
 TargetSetup set_up_target_without_model(const ScenarioArguments& arguments);
 
 // The subject of an experiment. Prints the warnings of set_up_target on the standard error stream. Throws as

@@ -133,6 +133,7 @@ void add_train_command(CLI::App& app) {
   add_seed_option(*command, settings.seed);
   command->add_option("--out", settings.folder, "folder for checkpoints, log, error curve and model images")
       ->required()
+      ->check(file_path())
       ->type_name("DIR");
   command
       ->add_option(
@@ -148,29 +149,32 @@ void add_train_command(CLI::App& app) {
                    "model image whose CNN to start from; that of another target saves most of the time")
       ->check(existing_model_image())
       ->type_name("FILE");
-  command->add_option("--cnn-rate", settings.cnn_learning_rate, "highest learning rate of the CNN")
-      ->check(number(1e-6, 1e-1))
+  limit_number(
+      command->add_option("--cnn-rate", settings.cnn_learning_rate, "highest learning rate of the CNN"), 1e-6,
+      1e-1)
       ->type_name("X")
       ->capture_default_str();
-  command->add_option("--cnn-images", settings.cnn_images, "new images to train the CNN on")
-      ->check(whole_number(0, 1'000'000'000))
+  limit_whole_number(
+      command->add_option("--cnn-images", settings.cnn_images, "new images to train the CNN on"), 0,
+      1'000'000'000)
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--rcnn-sequences", settings.rcnn_sequences, "different sequences to train the LSTM on")
-      ->check(whole_number(16, 1'000'000))
+  limit_whole_number(command->add_option("--rcnn-sequences", settings.rcnn_sequences,
+                                         "different sequences to train the LSTM on"),
+                     16, 1'000'000)
       ->type_name("N")
       ->capture_default_str();
-  command
-      ->add_option("--rcnn-iterations", settings.rcnn_iterations, "batches of sequences to train the LSTM on")
-      ->check(whole_number(1, 10'000'000))
+  limit_whole_number(command->add_option("--rcnn-iterations", settings.rcnn_iterations,
+                                         "batches of sequences to train the LSTM on"),
+                     1, 10'000'000)
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--checkpoint-seconds", settings.checkpoint_s, "wall-clock seconds between checkpoints")
-      ->check(number(0.0, 3600.0))
+  limit_number(command->add_option("--checkpoint-seconds", settings.checkpoint_s,
+                                   "wall-clock seconds between checkpoints"),
+               0.0, 3600.0)
       ->type_name("X")
       ->capture_default_str();
-  command->add_option("--workers", settings.workers, "rendering threads")
-      ->check(whole_number(1, 256))
+  limit_whole_number(command->add_option("--workers", settings.workers, "rendering threads"), 1, 256)
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--device", options->device, "device to train on")

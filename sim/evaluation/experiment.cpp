@@ -108,6 +108,7 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   cell.disturbances = run.scenario.disturbances;
   cell.rcnn = last_frame_summary(result.frames, frames, Estimator::kRcnn);
   cell.cnn = last_frame_summary(result.frames, frames, Estimator::kCnn);
+  cell.common_turn = common_turn(last, Estimator::kRcnn);
   cell.rcnn_histogram = histogram(errors(Estimator::kRcnn));
   cell.cnn_histogram = histogram(errors(Estimator::kCnn));
   if (run.baseline_sequences > 0) {

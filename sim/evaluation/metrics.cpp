@@ -117,4 +117,27 @@ ErrorSummary last_frame_summary(const std::vector<FrameResult>& results, std::ui
   return summary;
 }
 
+CommonTurn common_turn(const std::vector<FrameResult>& results, Estimator estimator) {
+  constexpr std::size_t kMost = 300;  // every turn is compared with every other one
+  const std::size_t count = std::min(results.size(), kMost);
+  std::vector<Eigen::Quaterniond> turns;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (has_estimate(results[i], estimator))
+      turns.push_back((results[i].truth.conjugate() * estimate(results[i], estimator)).normalized());
+  }
+  std::size_t most = 0;
+  CommonTurn common;
+  for (const Eigen::Quaterniond& turn : turns) {
+    const auto alike =
+        static_cast<std::size_t>(std::count_if(turns.begin(), turns.end(), [&](const auto& other) {
+          return angular_error_rad(turn, other) <= kRadPerDeg * kWrong_deg;
+        }));
+    if (alike <= most) continue;
+    most = alike;
+    common = {static_cast<double>(alike) / static_cast<double>(count),
+              Eigen::AngleAxisd(turn.w() < 0.0 ? Eigen::Quaterniond(-turn.coeffs()) : turn)};
+  }
+  return common;
+}
+
 }  // namespace tumblesight::sim

@@ -68,4 +68,13 @@ std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& result
 ErrorSummary last_frame_summary(const std::vector<FrameResult>& results, std::uint32_t frames,
                                 Estimator estimator);
 
+// The turn that most estimates are off by, in the axes of the target: estimate = truth * turn. A target whose
+// axes differ from those of the training gives such a turn, and another spacecraft does not.
+struct CommonTurn {
+  double share = 0.0;  // of the results that are off by it, to within 20 degrees
+  Eigen::AngleAxisd turn{0.0, Eigen::Vector3d::UnitX()};
+};
+// Of the first few hundred results.
+CommonTurn common_turn(const std::vector<FrameResult>& results, Estimator estimator);
+
 }  // namespace tumblesight::sim

@@ -24,6 +24,7 @@ struct CellResult {
   Disturbances disturbances;
   ErrorSummary rcnn;
   ErrorSummary cnn;
+  CommonTurn common_turn;                // of the RCNN
   std::optional<ErrorSummary> baseline;  // over the first sequences only, see its count
   double network_ms = 0.0;               // per frame, one thread
   double baseline_ms = 0.0;

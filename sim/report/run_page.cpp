@@ -30,7 +30,7 @@ std::string lead_sentence(const RunReport& report) {
       "sequences. {} of "
       "{} steps were answered. The flight task allocated {} after its start.",
       counted(report.setup.frames, "frame"), rcnn.mean_deg, rcnn.median_deg, within, rcnn.count,
-      report.steps_planned - report.steps_missed, report.steps_planned,
+      report.steps_planned - report.steps_missed - report.frames_superseded, report.steps_planned,
       report.heap_allocations == 0 ? "no heap memory"
                                    : fmt::format("heap memory {} times", report.heap_allocations));
 }

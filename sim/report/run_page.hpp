@@ -54,6 +54,7 @@ struct RunReport {
   PaperFigures paper;
   std::uint32_t steps_planned = 0;
   std::uint32_t steps_missed = 0;
+  std::uint32_t frames_superseded = 0;  // steps without an answer of their own that are not missed
   std::uint32_t heap_allocations = 0;
   double inference_median_us = 0.0;
   double inference_max_us = 0.0;

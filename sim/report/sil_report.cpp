@@ -42,6 +42,10 @@ std::vector<ReportPicture> pictures(const SilRunResult& run, const gnc::DepthPro
   return pictures;
 }
 
+std::uint32_t steps_answered(const SilRunResult& run) {
+  return run.steps_planned - run.steps_missed - run.frames_superseded;
+}
+
 FactList settings_facts(const SilRunSetup& setup) {
   const std::string disturbed = to_string(setup.disturbances);
   FactList list{"Settings", {}};
@@ -67,15 +71,14 @@ FactList numerics_facts(const NumericsComparison& numerics) {
 FactList outcome_facts(const SilRunResult& run, const SilRunSetup& setup) {
   const InferenceTime time = inference_time(run);
   FactList list{"Flight program", {}};
-  list.facts = {
-      {"steps answered", fmt::format("{} of {}", run.steps_planned - run.steps_missed, run.steps_planned)},
-      {"inference time, median", time_text(time.median_us)},
-      {"inference time, max", time_text(time.max_us)},
-      {"heap allocations", fmt::format("{}", run.flight_heap_allocations)},
-      {"faults that stood", text_of(standing_faults(run))},
-      {"trace CRC-32", fmt::format("{:08x}", run.trace_crc32)},
-      {"model", file_name(setup.model_path)},
-      {"model CRC-32", setup.model_crc32}};
+  list.facts = {{"steps", steps_text(run)},
+                {"inference time, median", time_text(time.median_us)},
+                {"inference time, max", time_text(time.max_us)},
+                {"heap allocations", fmt::format("{}", run.flight_heap_allocations)},
+                {"faults that stood", text_of(standing_faults(run))},
+                {"trace CRC-32", fmt::format("{:08x}", run.trace_crc32)},
+                {"model", file_name(setup.model_path)},
+                {"model CRC-32", setup.model_crc32}};
   return list;
 }
 
@@ -177,6 +180,13 @@ std::string text_of(const std::vector<StandingFault>& faults) {
   return text.empty() ? "none" : text;
 }
 
+std::string steps_text(const SilRunResult& run) {
+  std::string text = fmt::format("{} of {} answered", steps_answered(run), run.steps_planned);
+  if (run.frames_superseded > 0)
+    text += fmt::format(", {} superseded by a newer frame of the same cycle", run.frames_superseded);
+  return text;
+}
+
 std::string time_text(double time_us) {
   return time_us > 0.0 ? fmt::format("{:.2f} ms", 1e-3 * time_us) : "none";
 }
@@ -213,7 +223,8 @@ InferenceTime inference_time(const SilRunResult& run) {
 std::vector<std::string> run_faults(const SilRunResult& run) {
   std::vector<std::string> found;
   if (!run.failure.empty()) found.push_back("The run ended early: " + run.failure + ".");
-  if (run.steps_missed > 0) {
+  const bool ended_before_the_first = !run.failure.empty() && run.steps_missed == run.steps_planned;
+  if (run.steps_missed > 0 && !ended_before_the_first) {
     found.push_back(fmt::format("{} of {} steps were not answered; the figures cover the others.",
                                 run.steps_missed, run.steps_planned));
   }
@@ -222,10 +233,9 @@ std::vector<std::string> run_faults(const SilRunResult& run) {
     return s.answered && s.truth.is_genuine() && !gave_attitude(s);
   });
   if (invalid > 0) {
-    found.push_back(
-        fmt::format("{} of {} answers held no valid attitude{}; they count as 180° off.", invalid,
-                    run.steps_planned - run.steps_missed,
-                    last->telemetry.mode != hal::Mode::kRun ? ": the flight program is not in RUN" : ""));
+    found.push_back(fmt::format(
+        "{} of {} answers held no valid attitude{}; they count as 180° off.", invalid, steps_answered(run),
+        last->telemetry.mode != hal::Mode::kRun ? ": the flight program is not in RUN" : ""));
   }
   if (last != nullptr && last->telemetry.commands_refused > 0) {
     found.push_back(fmt::format("The flight program refused {}; see its command counter and key.",
@@ -257,6 +267,7 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
                           {"max", timed ? nlohmann::ordered_json(time.max_us) : nullptr}};
   json["flight_heap_allocations"] = run.flight_heap_allocations;
   json["steps_missed"] = run.steps_missed;
+  json["frames_superseded"] = run.frames_superseded;
   json["trace_crc32"] = run.trace_crc32;
   json["faults"] = faults_json(standing_faults(run));
   return json;
@@ -273,6 +284,7 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
   report.steps_planned = run.steps_planned;
   report.steps_missed = run.steps_missed;
+  report.frames_superseded = run.frames_superseded;
   report.heap_allocations = run.flight_heap_allocations;
   report.inference_median_us = time.median_us;
   report.inference_max_us = time.max_us;

@@ -23,6 +23,8 @@ struct InferenceTime {
 };
 // Over the steps that gave an attitude; zeros if none did.
 InferenceTime inference_time(const SilRunResult& run);
+// "30 of 30 answered"; "12 of 30 answered, 18 superseded by a newer frame of the same cycle".
+std::string steps_text(const SilRunResult& run);
 // "1.25 ms"; "none" for 0.
 std::string time_text(double time_us);
 

@@ -76,7 +76,7 @@ class SilRun {
       const std::optional<StepAnswer> answer = session.next_answer(deadline);
       if (!answer) return;
       require_running(session, answer->telemetry);
-      result_.flight_heap_allocations = answer->telemetry.heap_allocations;
+      store_counters(answer->telemetry);
       // Only a report with an attitude names its frame.
       const bool has_frame = gives_attitude(answer->attitude);
       const std::uint32_t k = answer->attitude.sequence_number;
@@ -133,9 +133,14 @@ class SilRun {
     step.telemetry = answer.telemetry;
     step.events = answer.events;
     step.state_crc32 = answer.state_crc32;
-    result_.flight_heap_allocations = answer.telemetry.heap_allocations;
+    store_counters(answer.telemetry);
     ++answered_;
     if (progress_) progress_(answered_, result_.steps_planned);
+  }
+
+  void store_counters(const hal::Telemetry& telemetry) {
+    result_.flight_heap_allocations = telemetry.heap_allocations;
+    result_.flight_frames_dropped = telemetry.frames_superseded + telemetry.frames_overflowed;
   }
 
   void require_running(const SilSession& session, const hal::Telemetry& telemetry) const {
@@ -176,6 +181,25 @@ bool needs_no_answer(const StepResult& step, bool free_running) {
   return free_running && !step.truth.is_genuine();
 }
 
+// Whether the next frame that the sensor delivered came less than a cycle later.
+bool has_successor_in_its_cycle(const std::vector<StepResult>& steps, std::size_t k) {
+  const auto next = std::find_if(steps.begin() + static_cast<std::ptrdiff_t>(k) + 1, steps.end(),
+                                 [](const StepResult& step) { return !step.truth.lost; });
+  return next != steps.end() && next->time_ns - steps[k].time_ns < kFramePeriod_ns;
+}
+
+// Of a sensor that is faster than the cycle, the flight program uses the newest frame of each cycle and
+// counts the others.
+std::uint32_t superseded_frames(const SilRunResult& result) {
+  std::uint32_t without_answer = 0;
+  for (std::size_t k = 0; k < result.steps.size(); ++k) {
+    const StepResult& step = result.steps[k];
+    if (!step.answered && step.truth.is_genuine() && has_successor_in_its_cycle(result.steps, k))
+      ++without_answer;
+  }
+  return std::min(without_answer, result.flight_frames_dropped);
+}
+
 void conclude(bool free_running, SilRunResult& result) {
   std::uint32_t answered = 0;
   TraceDigest digest;
@@ -184,7 +208,8 @@ void conclude(bool free_running, SilRunResult& result) {
     if (!result.steps[k].answered) continue;
     digest.add(k, result.steps[k]);
   }
-  result.steps_missed = result.steps_planned - answered;
+  if (free_running) result.frames_superseded = superseded_frames(result);
+  result.steps_missed = result.steps_planned - answered - result.frames_superseded;
   result.trace_crc32 = digest.value();
 }
 

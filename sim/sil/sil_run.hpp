@@ -21,6 +21,7 @@ namespace tumblesight::sim {
 struct SilSettings {
   std::string target = "near_shoemaker";  // that the model image must be for
   std::string model_path;                 // passed to the flight program
+  std::uint32_t model_crc32 = 0;          // that the flight program's image must have; 0: any
   std::string flight_path;                // program to start; empty: the user starts it
   int domain = -1;               // DDS domain; -1: a free one, so that concurrent runs do not interfere
   double speed = 0.0;            // times real time; 0: as fast as possible
@@ -55,8 +56,10 @@ struct SilRunResult {
   std::vector<std::pair<std::size_t, gnc::RangeImage>>
       pictures;  // index into steps, frame; of the first sequences only
   std::uint32_t steps_planned = 0;
-  std::uint32_t steps_missed = 0;             // without an answer
+  std::uint32_t steps_missed = 0;             // without an answer, and not superseded
+  std::uint32_t frames_superseded = 0;        // free-running: a newer frame of the same cycle was used
   std::uint32_t flight_heap_allocations = 0;  // from the last answer
+  std::uint32_t flight_frames_dropped = 0;    // from the last answer: superseded, or without room to wait
   std::uint32_t trace_crc32 = 0;              // TraceDigest over all answered steps
   // Empty, or why the run ended early (flight program gone, different interface hash, ...).
   std::string failure;

@@ -9,6 +9,7 @@
 
 #include "hal/dds/idl/icd_hash.hpp"
 #include "hal/dds/idl/step_content.hpp"
+#include "sim/sil/interruption.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -68,22 +69,32 @@ SilSession::SilSession(const SilSettings& settings)
   const auto security = std::make_unique<hal::dds::SecurityElement>();
   if (!settings_.security_path.empty() &&
       !hal::dds::read_security(settings_.security_path.c_str(), *security))
-    throw SilFailure("--dds-security " + settings_.security_path + ": cannot be read, or is too large");
+    throw SilFailure("--dds-security " + settings_.security_path + ": cannot be read, is empty, or has " +
+                     std::to_string(sizeof security->text) + " bytes or more");
   const dds_return_t result = domain_.open(lease_.domain(), secret_.partition, security->text);
   if (result != 0) {
-    throw SilFailure("DDS domain " + std::to_string(lease_.domain()) +
-                     " could not be opened: " + dds_strretcode(result));
+    throw SilFailure(
+        "DDS domain " + std::to_string(lease_.domain()) + " could not be opened: " + dds_strretcode(result) +
+        (settings_.security_path.empty()
+             ? ""
+             : "; is --dds-security " + settings_.security_path + " a file of hal/dds/make_security?"));
   }
   endpoints_ = std::make_unique<SimulatorEndpoints>(domain_);
   answers_ = std::make_unique<AnswerCollector>(*endpoints_, secret_.run_id);
+  write(endpoints_->hello_out, hello());
+  if (!settings_.flight_path.empty()) start_flight();
+  shake_hands();
+}
+
+hal::dds::HelloSample SilSession::hello() const {
   hal::dds::HelloSample hello{};
   hello.role = static_cast<std::uint8_t>(Role::kSimulator);
   hello.icd_hash = hal::dds::icd_hash();
   hello.run_id = secret_.run_id;
   hello.process_id = static_cast<std::uint32_t>(getpid());
-  write(endpoints_->hello_out, hello);
-  if (!settings_.flight_path.empty()) start_flight();
-  shake_hands();
+  hello.model_crc32 = settings_.model_crc32;
+  hal::dds::set_target(hello, settings_.target.c_str());
+  return hello;
 }
 
 std::vector<std::string> SilSession::flight_command_line() const {
@@ -106,7 +117,7 @@ void SilSession::start_flight() {
       std::vector<std::string>{std::string(hal::dds::kRunSecretVariable) + "=" + to_text(secret_).text});
 }
 
-// Reads the hellos of flight. The first one decides which program it is.
+// Reads the hellos of flight. The first one decides which program it is; a difference ends the run.
 void SilSession::read_hello() {
   hal::dds::HelloSample hello;
   hal::dds::PeerKey from;
@@ -114,17 +125,47 @@ void SilSession::read_hello() {
     const bool ours = hello.run_id == secret_.run_id || hello.run_id == 0;
     if (hello.role != static_cast<std::uint8_t>(Role::kFlight) || !ours)
       fail_foreign(endpoints_->hello_in.describe(from));
-    if (hello.icd_hash != hal::dds::icd_hash()) {
-      // Flight refuses as well; wait for its own message.
-      if (process_) (void)process_->wait_for_end(kEndGrace_s);
-      throw SilFailure("interface hash " + hex(hal::dds::icd_hash()) + ", but " + hex(hello.icd_hash) +
-                       " in the flight program: build both from the same tumblesight.idl");
-    }
     bind(hello, from);
+    const std::string difference = difference_to(hello);
+    if (!difference.empty()) {
+      wait_for_refusal_of(from);
+      throw SilFailure(difference);
+    }
     flight_mode_ = static_cast<hal::Mode>(hello.flight_mode);
     encoder_.continue_after(hello.command_counter);
     flight_ready_ |= hello.run_id == secret_.run_id;
   }
+}
+
+// Empty, or what the flight program has and this run has not.
+std::string SilSession::difference_to(const hal::dds::HelloSample& flight) const {
+  switch (hal::dds::fit(hello(), flight)) {
+    case hal::dds::HelloFit::kFits:
+      return {};
+    case hal::dds::HelloFit::kOtherInterface:
+      return "interface hash " + hex(hal::dds::icd_hash()) + ", but " + hex(flight.icd_hash) +
+             " in the flight program: build both from the same tumblesight.idl";
+    case hal::dds::HelloFit::kOtherTarget:
+      return "target " + settings_.target + ", but " + hal::dds::target_of(flight).text +
+             " in the flight program: give both the same --target";
+    case hal::dds::HelloFit::kOtherModel:
+      return "model image " + settings_.model_path + " (CRC-32 " + hex(settings_.model_crc32) +
+             "), but CRC-32 " + hex(flight.model_crc32) +
+             " in the flight program: give both the same --model; without it each takes the image that ships "
+             "for the target";
+  }
+  return {};
+}
+
+// Flight refuses as well, with a message of its own. It must read our hello before we leave.
+void SilSession::wait_for_refusal_of(const hal::dds::PeerKey& flight) {
+  if (process_) {
+    (void)process_->wait_for_end(kEndGrace_s);
+    return;
+  }
+  const auto deadline = Clock::now() + std::chrono::duration<double>(kEndGrace_s);
+  while (hal::dds::writer_of(flight, endpoints_->hello_in.entity()) != 0 && Clock::now() < deadline)
+    std::this_thread::sleep_for(kPoll);
 }
 
 void SilSession::bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKey& from) {
@@ -134,20 +175,25 @@ void SilSession::bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKe
                      std::to_string(process_->pid()));
   }
   if (flight_ && !hal::dds::same_peer(*flight_, from))
-    throw SilFailure("two programs announced themselves as the flight program");
+    throw SilFailure("two flight programs are on DDS domain " + std::to_string(lease_.domain()) +
+                     ": end one of them, or give this run and its flight program another --domain");
   flight_ = from;
 }
 
 void SilSession::shake_hands() {
   const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.step_timeout_s);
   while (!flight_ready_ || !endpoints_->bind(*flight_)) {
+    require_not_interrupted();
     read_hello();
     require_no_foreigner();
     if (endpoints_->hello_in.saw_incompatible()) {
       throw SilFailure(
           "the hello of the flight program has another type: build both from the same tumblesight.idl");
     }
-    if (process_ && !process_->running()) fail("the flight program " + process_->how_it_ended());
+    if (process_ && !process_->running()) {
+      read_hello();  // the last one may have arrived in between
+      fail("the flight program " + process_->how_it_ended());
+    }
     if (Clock::now() > deadline) {
       fail(process_ ? "the flight program was started but did not announce itself"
                     : "no flight program announced itself in DDS domain " + std::to_string(lease_.domain()) +
@@ -180,6 +226,7 @@ bool SilSession::flight_ended_after_last_step() {
 }
 
 void SilSession::fail_flight_ended() const {
+  require_not_interrupted();  // a terminal sends the signal to both programs
   const std::string step = next_k_ == 0 ? "before step 0" : "at step " + std::to_string(next_k_ - 1);
   if (!process_ || !process_->ended())
     fail("the connection to the flight program was lost " + step + "; start both again");
@@ -193,6 +240,7 @@ StepAnswer SilSession::step(const StepInput& input) {
 }
 
 void SilSession::send(const StepInput& input) {
+  require_not_interrupted();
   const std::uint32_t k = next_k_++;
   check_.sent(k, input.time_ns, input.frames);
   hal::dds::StepContent content;
@@ -260,6 +308,7 @@ std::optional<StepAnswer> SilSession::collect_answer() {
 
 std::optional<StepAnswer> SilSession::next_answer(Clock::time_point deadline) {
   for (;;) {
+    require_not_interrupted();
     if (auto answer = collect_answer()) return answer;
     const auto left = deadline - Clock::now();
     if (left <= Clock::duration::zero()) return std::nullopt;
@@ -275,6 +324,7 @@ std::optional<StepAnswer> SilSession::next_answer(Clock::time_point deadline) {
 void SilSession::sleep_until(Clock::time_point time) {
   while (Clock::now() < time) {
     std::this_thread::sleep_until(std::min(time, Clock::now() + 200ms));
+    require_not_interrupted();
     if (flight_ended()) fail_flight_ended();
   }
 }

@@ -13,6 +13,7 @@
 #include "gnc/lidar/range_image.hpp"
 #include "gnc/tracking/chaser_attitude.hpp"
 #include "hal/dds/idl/domain.hpp"
+#include "hal/dds/idl/hello.hpp"
 #include "hal/dds/idl/run_secret.hpp"
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/mode.hpp"
@@ -66,9 +67,12 @@ class SilSession {
   std::uint32_t domain() const { return lease_.domain(); }
 
  private:
+  hal::dds::HelloSample hello() const;
   void start_flight();
   void shake_hands();
   void read_hello();
+  std::string difference_to(const hal::dds::HelloSample& flight) const;
+  void wait_for_refusal_of(const hal::dds::PeerKey& flight);
   void bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKey& from);
   void require_no_foreigner();
   std::optional<StepAnswer> collect_answer();

@@ -49,6 +49,7 @@ class Observer {
     HelloSample hello;
     while (hellos_.take(hello)) {
       if (hello.run_id != 0) run_id = hello.run_id;
+      subject = hello;
     }
     while (frames_.take(frame)) run_id = frame.run_id;
     while (attitudes_.take(attitude)) {
@@ -60,6 +61,7 @@ class Observer {
   }
 
   std::uint32_t run_id = kGuess;
+  HelloSample subject{};  // of any program: target and model image
   LidarFrameSample frame{};
   std::optional<StepSample> step;
   AttitudeSample attitude{};
@@ -114,7 +116,7 @@ class Forger {
   }
 
   void forge_hello(Role role) {
-    HelloSample hello{};
+    HelloSample hello = seen_.subject;
     hello.role = static_cast<std::uint8_t>(role);
     hello.icd_hash = icd_hash();
     hello.process_id = static_cast<std::uint32_t>(getpid());

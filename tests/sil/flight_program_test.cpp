@@ -183,6 +183,31 @@ TEST(FlightState, DamagedStateIsReportedWithTheRemedy) {
       << ended.text;
 }
 
+TEST(FlightModel, OfATargetThatDoesNotShipIsMissedWithTheRemedy) {
+  const Ended ended = run_alone(kFlight, "--target sputnik");
+  EXPECT_TRUE(
+      has(ended.text, "fsw/models/sputnik.tsm: no such file; give --model, or the --target of an image"))
+      << ended.text;
+  expect_refused(run_alone(kFlight, "--target ../x"), "--target '../x': expected 1 to 31 characters");
+  expect_refused(run_alone(kFlight, "--model ''"), "--model '': expected a file's path");
+}
+
+TEST(FlightOptions, SecurityThatCannotBeReadIsReportedOnceWithTheLimit) {
+  const Ended ended = run_alone(kFlight, "--dds-security /no/such");
+  expect_refused(ended, "--dds-security /no/such: cannot be read, is empty, or has ");
+  EXPECT_FALSE(has(ended.text, "bad arguments")) << ended.text;
+}
+
+TEST(Security, FileThatIsNoneIsNamed) {
+  SilSettings settings = test::settings();
+  settings.security_path = test::temporary_path("no.xml");
+  test::write_file(settings.security_path, {'h', 'e', 'l', 'l', 'o'});
+  const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  EXPECT_TRUE(
+      has(run.failure, "is --dds-security " + settings.security_path + " a file of hal/dds/make_security"))
+      << run.failure;
+}
+
 TEST(FlightHelp, OutputThatCannotBeWrittenIsAFailure) {
   for (const std::string& program : {kFlight, std::string(TUMBLESIGHT_PROGRAM)}) {
     for (const char* const option : {" --help", " --version"}) {

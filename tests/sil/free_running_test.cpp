@@ -27,6 +27,20 @@ TEST(FreeRunning, FlightAnswersOnItsOwnTimer) {
   EXPECT_NE(log.find("memory locked"), std::string::npos) << log;
 }
 
+// Verifies TS-TIM-080. A sensor at twice the rate of the cycle.
+TEST(FreeRunning, FramesThatANewerOneSupersedesAreCountedAndNotMissed) {
+  SilSettings settings = test::settings();
+  settings.free_running = true;
+  settings.speed = 5.4;  // a cycle every 500 ms
+  ScenarioSettings fast{Condition::kNominal, 12};
+  fast.disturbances.period_s = 1.35;
+  const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, {make_sequence(fast, 1, 0)}, {});
+  EXPECT_EQ(run.failure, "");
+  EXPECT_GE(run.frames_superseded, 4U);
+  EXPECT_LE(run.frames_superseded, 7U);
+  EXPECT_LE(run.steps_missed, 2U) << "a busy machine may lose a cycle or two";
+}
+
 TEST(FreeRunning, MissingAttitudeOfTheLastFrameIsCountedAsMissed) {
   SilSettings settings = test::settings();
   settings.free_running = true;

@@ -156,7 +156,7 @@ TEST(Lockstep, FlightStartedByHandJoinsTheFirstRunItFinds) {
 // on the machine.
 TEST(Lockstep, RoundTripWithoutInference) {
   SilSettings settings = test::settings();
-  settings.flight_arguments = {"--target", "another_target"};
+  settings.target = "another_target";
   Conversation conversation(settings);
   constexpr int kSteps = 2000;
   const auto begin = std::chrono::steady_clock::now();

@@ -1,11 +1,17 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <array>
+#include <chrono>
+#include <cstdio>
 #include <functional>
+#include <memory>
 #include <ostream>
+#include <thread>
 
 #include "gnc/numerics/crc.hpp"
 #include "gnc/rcnn/model_image.hpp"
+#include "hal/dds/idl/flight_end.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
@@ -39,6 +45,103 @@ TEST(Refusal, InterfaceHashIsTheCrc32OfTheIdl) {
     for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? (crc >> 1) ^ 0xEDB88320U : crc >> 1;
   }
   EXPECT_EQ(hal::dds::icd_hash(), ~crc);
+}
+
+// A flight program that the user starts, in a domain of its own.
+class OwnFlight {
+ public:
+  explicit OwnFlight(std::vector<std::string> arguments, int domain = test::spare_domain())
+      : domain_(domain), log_(test::temporary_path("own.log")) {
+    const std::vector<std::string> common{"--domain", std::to_string(domain), "--model", test::model_path(),
+                                          "--target", test::kTarget};
+    arguments.insert(arguments.begin(), common.begin(), common.end());
+    process_ = std::make_unique<FlightProcess>(TUMBLESIGHT_FLIGHT, arguments, log_);
+  }
+  // Settings of a simulator that meets it.
+  SilSettings settings() const {
+    SilSettings result = test::settings();
+    result.flight_path.clear();
+    result.flight_log_path.clear();
+    result.domain = domain_;
+    return result;
+  }
+  FlightProcess& process() { return *process_; }
+  int domain() const { return domain_; }
+  std::string pid() const { return std::to_string(process_->pid()); }
+  std::string messages() const { return test::read_file(log_); }
+  bool has_started() const {
+    for (int i = 0; i < 1000 && messages().empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return !messages().empty();
+  }
+
+ private:
+  int domain_;
+  std::string log_;
+  std::unique_ptr<FlightProcess> process_;
+};
+
+void expect_all_in(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+}
+
+std::string hex(std::uint32_t value) {
+  std::array<char, 9> text;
+  std::snprintf(text.data(), text.size(), "%08x", static_cast<unsigned>(value));
+  return text.data();
+}
+
+void expect_ended(OwnFlight& flight, hal::dds::FlightEnd end) {
+  EXPECT_TRUE(flight.process().wait_for_end(10.0));
+  expect_all_in(flight.process().how_it_ended(),
+                {"exit status " + std::to_string(static_cast<int>(end)) + ":"});
+}
+
+// Verifies TS-IFC-065.
+TEST(Refusal, AnotherTargetIsRefusedByBothSides) {
+  OwnFlight flight({"--target", "other_target"});
+  const SilRunResult run =
+      run_sil(flight.settings(), test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  expect_all_in(run.failure, {test::kTarget, "other_target", "--target"});
+  expect_ended(flight, hal::dds::FlightEnd::kOtherSubject);
+  expect_all_in(flight.messages(), {test::kTarget, "other_target", "--target"});
+}
+
+// Verifies TS-IFC-065.
+TEST(Refusal, AnotherModelImageIsRefusedByBothSides) {
+  OwnFlight flight({});
+  SilSettings settings = flight.settings();
+  const std::uint32_t flown = gnc::model_image_crc32(test::model_bytes().data());
+  settings.model_crc32 = flown + 1;
+  const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  expect_all_in(run.failure, {hex(flown), hex(flown + 1), settings.model_path, "--model"});
+  expect_ended(flight, hal::dds::FlightEnd::kOtherSubject);
+  expect_all_in(flight.messages(), {hex(flown), hex(flown + 1), test::model_path(), "--model"});
+}
+
+// Verifies TS-IFC-065. Also of a flight program that the simulator starts.
+TEST(Refusal, TheSameModelImageIsFlown) {
+  SilSettings settings = test::settings();
+  settings.model_crc32 = gnc::model_image_crc32(test::model_bytes().data());
+  EXPECT_EQ(run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {}).failure, "");
+  ++settings.model_crc32;
+  const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  expect_all_in(run.failure, {"model image"});
+  EXPECT_EQ(test::flight_child(), 0);
+}
+
+// Verifies TS-IFC-065.
+TEST(Refusal, ASecondFlightProgramOnTheDomainIsNamedWithTheRemedy) {
+  OwnFlight first({});
+  ASSERT_TRUE(first.has_started());
+  OwnFlight second({}, first.domain());
+  for (const auto& [flight, other] : {std::pair(&first, &second), std::pair(&second, &first)}) {
+    expect_ended(*flight, hal::dds::FlightEnd::kSecondFlight);
+    expect_all_in(flight->messages(), {"another flight program", "process " + other->pid(),
+                                       "--domain (here " + std::to_string(first.domain()) + ")"});
+    EXPECT_EQ(flight->messages().find("interface"), std::string::npos) << flight->messages();
+  }
 }
 
 struct BadModel {

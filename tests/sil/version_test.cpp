@@ -8,6 +8,7 @@
 
 #include "gnc/rcnn/model_image.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
+#include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight {
 namespace {
@@ -34,9 +35,10 @@ TEST_P(ProgramVersion, IsReportedWithCommitModelFormatAndInterfaceHash) {
   EXPECT_EQ(output.status, 0);
   std::array<char, 16> hash;
   std::snprintf(hash.data(), hash.size(), "%08x", static_cast<unsigned>(hal::dds::icd_hash()));
-  const std::regex expected("(flight|tumblesight) " TUMBLESIGHT_VERSION
-                            "\ncommit ([0-9a-f]{7,40}|[^\n]+-g[0-9a-f]{7,40}|unknown)\nmodel format " +
-                            std::to_string(gnc::kModelFormatVersion) + "\ninterface " + hash.data() + "\n");
+  const std::regex expected(
+      "(flight|tumblesight) " TUMBLESIGHT_VERSION
+      "\ncommit (([0-9a-f]{7,40}|[^\n]+-g[0-9a-f]{7,40})(-dirty)?|unknown)\nmodel format " +
+      std::to_string(gnc::kModelFormatVersion) + "\ninterface " + hash.data() + "\n");
   EXPECT_TRUE(std::regex_match(output.text, expected)) << output.text;
 }
 
@@ -49,6 +51,26 @@ TEST(ProgramVersions, NameTheSameCommit) {
   ASSERT_NE(flight.find('\n'), std::string::npos) << flight;
   ASSERT_NE(ground.find('\n'), std::string::npos) << ground;
   EXPECT_EQ(flight.substr(flight.find(' ')), ground.substr(ground.find(' ')));
+}
+
+// The header that the script writes for a repository.
+std::string version_header(const std::string& repository) {
+  const std::string out = repository + "/version.hpp";
+  const std::string script = "cmake -DSOURCE=" + repository + " -DPROJECT_VERSION=1 -DOUT=" + out +
+                             " -P " TUMBLESIGHT_VERSION_SCRIPT;
+  EXPECT_EQ(output_of(script).status, 0);
+  return sim::test::read_file(out);
+}
+
+TEST(ProgramVersions, SayThatTheTreeWasChanged) {
+  const std::string repository = sim::test::temporary_path("repository");
+  const std::string git = "git -C " + repository + " -c user.name=x -c user.email=x@y ";
+  const Output made = output_of("git init -q " + repository + " && echo a > " + repository + "/file && " +
+                                git + "add file && " + git + "commit -q -m first");
+  if (made.status != 0) GTEST_SKIP() << "git is not installed";
+  EXPECT_EQ(version_header(repository).find("-dirty\";"), std::string::npos);
+  sim::test::write_file(repository + "/file", {'b'});
+  EXPECT_NE(version_header(repository).find("-dirty\";"), std::string::npos);
 }
 
 }  // namespace

@@ -40,8 +40,9 @@ bool read_command_key(const char* path, hal::CommandKey& key) {
   if (path[0] == '\0') {
     key = hal::dds::kDevelopmentKey;
     std::fprintf(stderr,
-                 "flight: note: telecommands are signed with the public development key; anyone can command; "
-                 "give --command-key\n");
+                 "%s: note: telecommands are signed with the public development key; anyone can command; "
+                 "give --command-key\n",
+                 kProgramName);
     return true;
   }
   std::FILE* const file = std::fopen(path, "r");

@@ -69,8 +69,11 @@ void boot(const FlightOptions& options, AttitudeInitApp& app, const hal::Platfor
   if (app.boot_status(0) == gnc::ModelStatus::kOk) return;
   const bool unread = store.status() != hal::posix::FileStatus::kOk;
   char remedy[FlightOptions::kMaxPath + 64] = {};
-  if (store.status() == hal::posix::FileStatus::kMissing)
+  if (store.status() == hal::posix::FileStatus::kMissing) {
     remedy_for_missing_image(options.model_path, remedy, sizeof remedy);
+    if (remedy[0] == '\0' && !options.model_given)
+      std::snprintf(remedy, sizeof remedy, "; give --model, or the --target of an image in that folder");
+  }
   std::fprintf(stderr, "%s: model image %s: %s%s; the mode is SAFE\n", kProgramName, options.model_path,
                unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)), remedy);
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <tuple>
 
 #include "cmake/version.hpp"
 #include "fsw/programs/desktop/flight_program.hpp"
@@ -17,7 +18,7 @@ namespace tumblesight::fsw::desktop {
 namespace {
 
 bool fail(const char* option, const char* value, const char* expected) {
-  std::fprintf(stderr, "%s: %s %s: expected %s\n", kProgramName, option, value, expected);
+  std::fprintf(stderr, "%s: %s '%s': expected %s\n", kProgramName, option, value, expected);
   return false;
 }
 
@@ -65,6 +66,13 @@ bool parse_path(const char* option, const char* value, char* path) {
   return true;
 }
 
+// As in the header of a model image.
+bool is_target_name(const char* value) {
+  const std::size_t length = std::strlen(value);
+  return length > 0 && length < std::tuple_size_v<decltype(gnc::ModelHeader::target)> &&
+         std::strspn(value, "abcdefghijklmnopqrstuvwxyz0123456789_") == length;
+}
+
 bool parse_reset(const char* option, const char* value, hal::ResetCause& cause) {
   const bool watchdog = std::strcmp(value, "watchdog") == 0;
   cause = watchdog ? hal::ResetCause::kWatchdog : hal::ResetCause::kPowerOn;
@@ -88,7 +96,10 @@ bool read_environment(FlightOptions& options) {
 }
 
 bool parse_one(const char* option, const char* value, FlightOptions& options) {
-  if (std::strcmp(option, "--model") == 0) return parse_path(option, value, options.model_path);
+  if (std::strcmp(option, "--model") == 0) {
+    options.model_given = true;
+    return parse_path(option, value, options.model_path);
+  }
   if (std::strcmp(option, "--command-key") == 0) return parse_path(option, value, options.command_key_path);
   if (std::strcmp(option, "--packets") == 0) return parse_path(option, value, options.packets_path);
   if (std::strcmp(option, "--state") == 0) return parse_path(option, value, options.state_path);
@@ -99,7 +110,7 @@ bool parse_one(const char* option, const char* value, FlightOptions& options) {
   if (std::strcmp(option, "--dds-security") == 0) return parse_path(option, value, options.security_path);
   if (std::strcmp(option, "--target") == 0) {
     options.target = value;
-    return value[0] != '\0' || fail(option, value, "a target's name");
+    return is_target_name(value) || fail(option, value, "1 to 31 characters of a-z, 0-9 and _");
   }
   if (std::strcmp(option, "--numerics") == 0) return parse_numerics(option, value, options);
   if (std::strcmp(option, "--domain") == 0)
@@ -169,8 +180,9 @@ bool print_flight_help() {
       "or files, 3 interface definitions differ, 4 simulator gone, 5 timeout, 6 DDS\n"
       "failed, 7 step out of order, 8 the flight task used the heap, 9 no thread for\n"
       "the flight task, 10 flight_float32 cannot be started, 11 another program writes\n"
-      "to the topics of the run, 12 telemetry packets could not be written, 130\n"
-      "interrupted (SIGINT), 143 asked to stop (SIGTERM).\n",
+      "to the topics of the run, 12 telemetry packets could not be written, 13 the\n"
+      "simulator expects another target or model image, 14 another flight program is on\n"
+      "the DDS domain, 130 interrupted (SIGINT), 143 asked to stop (SIGTERM).\n",
       kProgramName,
       kFlyFloat32 ? ".\nThis is its variant in float32, for comparisons. Start `flight`: for a float32\n"
                     "image it starts this one"

@@ -16,6 +16,7 @@ struct FlightOptions {
   char model_path[kMaxPath] = {};        // empty: the shipped model of the target
   char packets_path[kMaxPath] = {};      // empty: no packets are written
   char state_path[kMaxPath] = {};        // empty: nothing is kept
+  bool model_given = false;
   bool reset_given = false;
   hal::ResetCause reset_cause = hal::ResetCause::kPowerOn;
   const char* target = "near_shoemaker";

@@ -88,8 +88,8 @@ FlightEnd report_packets(const FlightOptions& options, FlightEnd end) {
 
 FlightEnd connect(const FlightOptions& options) {
   if (options.security_path[0] != '\0' && !hal::dds::read_security(options.security_path, security)) {
-    std::fprintf(stderr, "flight: --dds-security %s: cannot be read, or is too large\n",
-                 options.security_path);
+    std::fprintf(stderr, "%s: --dds-security %s: cannot be read, is empty, or has %zu bytes or more\n",
+                 kProgramName, options.security_path, sizeof security.text);
     return FlightEnd::kBadArguments;
   }
   dds_return_t result = domain.open(options.domain, options.partition, security.text);
@@ -99,20 +99,41 @@ FlightEnd connect(const FlightOptions& options) {
   return FlightEnd::kTransport;
 }
 
+void report_difference(const FlightOptions& options, const hal::dds::HandshakeResult& met) {
+  const std::uint32_t model_crc32 = app.estimator().model().crc32;
+  switch (met.fit) {
+    case hal::dds::HelloFit::kFits:
+      break;
+    case hal::dds::HelloFit::kOtherInterface:
+      std::fprintf(stderr,
+                   "%s: interface hash %08x differs from the simulator's %08x: build both from the same "
+                   "tumblesight.idl\n",
+                   kProgramName, options.icd_hash, met.hello.icd_hash);
+      break;
+    case hal::dds::HelloFit::kOtherTarget:
+      std::fprintf(stderr, "%s: target %s differs from the simulator's %s: give both the same --target\n",
+                   kProgramName, options.target, hal::dds::target_of(met.hello).text);
+      break;
+    case hal::dds::HelloFit::kOtherModel:
+      std::fprintf(stderr,
+                   "%s: model image %s (CRC-32 %08x) differs from the simulator's (CRC-32 %08x): give both "
+                   "the same --model; without it each takes the image that ships for the target\n",
+                   kProgramName, options.model_path, model_crc32, met.hello.model_crc32);
+      break;
+  }
+}
+
 hal::dds::HandshakeResult meet_simulator(const FlightOptions& options, std::int64_t timeout_ns) {
   hal::dds::HandshakeSettings settings;
   settings.icd_hash = options.icd_hash;
   settings.run_id = options.run_id;
   settings.mode = static_cast<std::uint8_t>(app.mode());
   settings.command_counter = app.command_counter();
+  settings.target = options.target;
+  settings.model_crc32 = app.estimator().model().crc32;
   settings.timeout_ns = timeout_ns;
   const hal::dds::HandshakeResult met = hal::dds::shake_hands(endpoints, settings, stopwatch);
-  if (met.end == FlightEnd::kIcdUnequal) {
-    std::fprintf(stderr,
-                 "%s: interface hash %08x differs from the simulator's %08x: build both from the same "
-                 "tumblesight.idl\n",
-                 kProgramName, options.icd_hash, met.simulator_icd_hash);
-  }
+  report_difference(options, met);
   return met;
 }
 
@@ -164,9 +185,11 @@ int main(int argc, char** argv) {
   FlightEnd end = fly(options);
   task.join();  // no effect after a run
   end = report_packets(options, end);
-  if (end == FlightEnd::kForeign) {
-    std::fprintf(stderr, "%s: %s: %s\n", kProgramName, hal::dds::to_string(end), to_text(foreigner).text);
-  } else if (end != FlightEnd::kComplete && end != FlightEnd::kPacketsLost) {
+  if (end == FlightEnd::kForeign || end == FlightEnd::kSecondFlight) {
+    std::fprintf(stderr, "%s: %s: %s; give each run a DDS domain of its own with --domain (here %u)\n",
+                 kProgramName, hal::dds::to_string(end), to_text(foreigner).text, options.domain);
+  } else if (end != FlightEnd::kComplete && end != FlightEnd::kPacketsLost &&
+             end != FlightEnd::kBadArguments) {
     std::fprintf(stderr, "%s: %s\n", kProgramName, hal::dds::to_string(end));
   }
   domain.close();

@@ -28,6 +28,10 @@ const char* to_string(FlightEnd end) {
       return "a program other than the simulator writes to the topics of this run";
     case FlightEnd::kPacketsLost:
       return "not all telemetry packets could be written";
+    case FlightEnd::kOtherSubject:
+      return "the simulator expects another target or model image";
+    case FlightEnd::kSecondFlight:
+      return "another flight program is on the DDS domain";
     case FlightEnd::kInterrupted:
       return "interrupted";
     case FlightEnd::kTerminated:

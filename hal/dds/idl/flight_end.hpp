@@ -16,6 +16,8 @@ enum class FlightEnd : int {
   kNoFloat32Program = 10,  // flight_float32 is missing or cannot be executed
   kForeign = 11,           // a program other than the simulator writes to the topics of the run
   kPacketsLost = 12,       // the run is complete, but not all telemetry packets could be written
+  kOtherSubject = 13,      // the simulator expects another target or model image
+  kSecondFlight = 14,      // another flight program is on the DDS domain
   kInterrupted = 130,      // by SIGINT; as a shell reports a program that a signal ends
   kTerminated = 143,       // by SIGTERM; same
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "gnc/rcnn/attitude_track.hpp"
 #include "sim/world/dynamics/motion.hpp"
 #include "sim/world/scenario/draws.hpp"
 
@@ -41,6 +42,21 @@ void require_frozen_frame(const Disturbances& disturbances, std::uint32_t frames
   throw std::invalid_argument(
       fmt::format("--frozen {} has no effect: every frozen frame is lost; freeze more frames, or lose fewer",
                   disturbances.frozen));
+}
+
+// The flight program refuses a frame that comes sooner.
+constexpr double kShortestInterval_s = 1e-9 * static_cast<double>(gnc::kShortestInterval_ns);
+constexpr double kRounding = 1e-9;
+
+void require_frames_far_enough_apart(const Disturbances& disturbances) {
+  const double share = 1.0 - disturbances.period_jitter;
+  const double shortest_s = disturbances.period_s * share;
+  if (shortest_s >= kShortestInterval_s * (1.0 - kRounding)) return;
+  throw std::invalid_argument(fmt::format(
+      "--period {:g} with --period-jitter {:g} has frames {:.3g} s apart; the flight program refuses frames "
+      "less than {:g} s apart: give at least --period {:.3g}, or a smaller --period-jitter",
+      disturbances.period_s, disturbances.period_jitter, shortest_s, kShortestInterval_s,
+      kShortestInterval_s / share));
 }
 
 }  // namespace
@@ -80,6 +96,7 @@ void require_possible(const Disturbances& disturbances, std::uint32_t frames) {
   }
   require_frame_to_lose(disturbances, frames);
   require_frozen_frame(disturbances, frames);
+  require_frames_far_enough_apart(disturbances);
 }
 
 std::vector<double> exposure_times_s(const Disturbances& disturbances, std::size_t frames, Random random) {

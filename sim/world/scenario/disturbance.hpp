@@ -105,7 +105,8 @@ std::vector<const DisturbanceRow*> given_disturbances(const Disturbances& distur
 std::string to_string(const Disturbances& disturbances);
 
 // Throws std::invalid_argument that names option, value and remedy if a sequence of `frames` frames is too
-// short for the disturbances, or if one of them hits no frame.
+// short for the disturbances, if one of them hits no frame, or if frames can be too close to each other for
+// the flight program.
 void require_possible(const Disturbances& disturbances, std::uint32_t frames);
 
 // The times of the exposures in seconds since the first.

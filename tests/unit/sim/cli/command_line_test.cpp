@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/cli/bench_command.hpp"
+#include "sim/cli/mesh_advice.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -66,6 +67,14 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --period 0", 2, "--period: must be a number from 0.1 to 60, not '0'"},
         Refusal{"evaluate --period-jitter 1", 2, "from 0 to 0.9, not '1'"},
         Refusal{"evaluate --chaser-rate nan", 2, "from 0 to 20, not 'nan'"},
+        Refusal{"evaluate --period 0.1 --period-jitter 0.9", 2,
+                "--period 0.1 with --period-jitter 0.9 has frames"},
+        Refusal{"record --out x --period 0.15 --period-jitter 0.5", 2, "give at least --period 0.2"},
+        Refusal{"evaluate --json ''", 2, "--json: must be a path, not ''"},
+        Refusal{"evaluate --mesh ''", 2, "--mesh: must be a path, not ''"},
+        Refusal{"evaluate --model ''", 2, "--model: must be a path, not ''"},
+        Refusal{"record --out ''", 2, "--out: must be a path, not ''"},
+        Refusal{"bench --onnxruntime /dev", 2, "--onnxruntime: '/dev' is not a regular file"},
         Refusal{"evaluate --paper --frozen 1", 2, "--paper: sets --frozen itself"},
         Refusal{"evaluate --paper --target magellan", 2, "--paper: sets --target itself"},
         Refusal{"evaluate --paper --frames 5", 2, "sets --frames itself"},
@@ -95,6 +104,29 @@ TEST(Help, TeachesWithAnExample) {
   for (const char* part : {"--target", "--mesh", "--condition", "--sequences", "--seed", "--json", "--report",
                            "--paper", "--lost-frames", "--chaser-rate", "--well-frames", "Example:"}) {
     EXPECT_NE(outcome.output.find(part), std::string::npos) << part;
+  }
+}
+
+// In one line, whatever the line breaks.
+std::string words_of(const std::string& text) {
+  std::string words;
+  for (const char c : text) {
+    const bool space = c == ' ' || c == '\n';
+    if (!space || words.empty() || words.back() != ' ') words += space ? ' ' : c;
+  }
+  return words;
+}
+
+TEST(Help, NamesTheLimitsOfTheDisturbances) {
+  const Workplace here;
+  for (const char* verb : {"evaluate", "record"}) {
+    const std::string help = words_of(here.run(std::string(verb) + " --help").output);
+    for (const char* part :
+         {"are lost (0 to 999)", "before the last (2 to 999)", "probability X (0 to 1)", "times (0 to 998)",
+          "means these (1 to 1000)", "in seconds (0.1 to 60)", "uniformly (0 to 0.9)", "around it (0 to 20)",
+          "sequences to run (1 to 100000)"}) {
+      EXPECT_NE(help.find(part), std::string::npos) << part << " in: " << help;
+    }
   }
 }
 
@@ -169,6 +201,37 @@ std::string own_mesh(const Workplace& here) {
   std::ofstream(here.path("mine.obj"))
       << "v -1 -1 0\nv 1 -1 0.5\nv 0 1.5 0\nv 0 0 2\nf 1 2 3\nf 1 2 4\nf 2 3 4\n";
   return here.path("mine.obj");
+}
+
+// Verifies TS-SIL-120.
+TEST(Evaluate, SaysWhatWrongAttitudesOfAMeshOfTheUsersOwnCanMean) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --sequences 6 --frames 1 --no-baseline --mesh " +
+                                   own_mesh(here) + " --model " + here.model());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  for (const char* part :
+       {"more than 20° off", "another spacecraft", "docs/training.md", "--mesh-up y", "--mesh-scale 1"})
+    EXPECT_NE(words_of(outcome.output).find(part), std::string::npos) << part << " in: " << outcome.output;
+  const Outcome shipped = here.run("evaluate --sequences 6 --frames 1 --no-baseline --model " + here.model());
+  EXPECT_EQ(shipped.output.find("another spacecraft"), std::string::npos) << shipped.output;
+}
+
+TEST(MeshAdvice, NamesTheOtherAxisOrTheTurn) {
+  ScenarioArguments arguments;
+  arguments.mesh = "near.stl";
+  ErrorSummary wrong;
+  wrong.count = 10;
+  CommonTurn common{0.9, Eigen::AngleAxisd(1.6, -Eigen::Vector3d::UnitX())};
+  const std::string up = words_of(mesh_advice(arguments, {5.9, 5.9}, wrong, common));
+  EXPECT_NE(up.find("about the axis -x"), std::string::npos) << up;
+  EXPECT_NE(up.find("Try --mesh-up z."), std::string::npos) << up;
+  EXPECT_EQ(up.find("another spacecraft"), std::string::npos) << up;
+  common.turn.axis() = Eigen::Vector3d::UnitZ();
+  const std::string turn = words_of(mesh_advice(arguments, {5.9, 5.9}, wrong, common));
+  EXPECT_NE(turn.find("about the axis z"), std::string::npos) << turn;
+  EXPECT_NE(turn.find("modelling tool"), std::string::npos) << turn;
+  wrong.within_20deg = 0.6;
+  EXPECT_EQ(mesh_advice(arguments, {5.9, 5.9}, wrong, common), "");
 }
 
 TEST(Evaluate, NeedsTheInertiaOfATumblingTargetOfTheUsersOwn) {

@@ -28,9 +28,10 @@ TEST(Simulate, RefusesArgumentsOutOfRange) {
       {"--speed fast", "must be max or a number from 0.1 to 1000, not 'fast'"},
       {"--speed 0", "not '0'"},
       {"--free-running", "--free-running: needs a speed: --speed 1 for real time"},
-      {"--free-running --speed 20 --period 1",
-       "--free-running: the flight program then runs a cycle every 2.7 s, and --period 1"},
-      {"--free-running --speed 20 --period 3 --period-jitter 0.2", "has frames 2.4 s apart"},
+      {"--period 0.1 --period-jitter 0.9",
+       "--period 0.1 with --period-jitter 0.9 has frames 0.01 s apart; the flight program refuses frames "
+       "less "
+       "than 0.1 s apart: give at least --period 1, or a smaller --period-jitter"},
       {"--frozen 2 --lost-frames 2", "--frozen 2 has no effect: every frozen frame is lost"},
       {"--domain 231", "from 0 to 230"},
       {"--domain 010", "without leading zeros, not '010'"},
@@ -125,6 +126,31 @@ TEST(Simulate, CarriesOnWithAFlightProgramThatKeepsItsState) {
   const auto first = nlohmann::json::parse(content(here.path("first.json")));
   const auto second = nlohmann::json::parse(content(here.path("second.json")));
   EXPECT_EQ(first.at("rcnn"), second.at("rcnn")) << "every sequence was reset in both runs";
+}
+
+// Verifies TS-IFC-065.
+TEST(Simulate, RefusesAFlightProgramWithAnotherImageOrTarget) {
+  const Workplace here;
+  const std::string other = here.put("other.tsm", arbitrary_model("near_shoemaker", 7100));
+  for (const std::string& change : {"--model " + other, std::string("--target magellan")}) {
+    const std::string flight =
+        here.script("flight.sh", std::string("exec ") + FLIGHT_BINARY + " \"$@\" " + change);
+    const Outcome outcome = here.run("simulate --sequences 1 --frames 2 --model " + here.model() +
+                                     " --flight " + flight + " --report r.html");
+    EXPECT_EQ(outcome.exit_code, 1);
+    const std::string option = change.substr(0, change.find(' '));
+    EXPECT_NE(outcome.errors.find("give both the same " + option), std::string::npos) << outcome.errors;
+    EXPECT_EQ(outcome.errors.find("the figures cover the others"), std::string::npos) << outcome.errors;
+  }
+}
+
+// Verifies TS-SEC-040.
+TEST(Simulate, RefusesAPipeAsTheKeyThatBothProgramsRead) {
+  const Workplace here;
+  const Outcome outcome =
+      here.run("simulate --command-key /dev/stdin --model " + here.model() + " </dev/null");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.errors.find("is not a regular file"), std::string::npos) << outcome.errors;
 }
 
 TEST(Simulate, SaysThatNoStepWasAnsweredAndGivesNoFigures) {
@@ -239,6 +265,30 @@ TEST(Simulate, ReportsWhatWasDoneWhenTheFlightProgramIsKilled) {
   EXPECT_NE(html.find("The run ended early"), std::string::npos);
   EXPECT_NE(html.find(std::to_string(answered) + " of " + std::to_string(kPlanned)), std::string::npos);
   EXPECT_NE(html.find("<svg"), std::string::npos);
+}
+
+// Verifies TS-SIL-040.
+TEST(Simulate, ReportsWhatWasDoneWhenItIsInterrupted) {
+  const Workplace here;
+  const std::string tool =
+      here.script("tool.sh", "echo $$ >" + here.path("id") + "\nexec " + TUMBLESIGHT_BINARY + " \"$@\"");
+  auto simulation = std::async(std::launch::async, [&] {
+    return here.run_command(tool +
+                                " simulate --sequences 100 --frames 2 --speed 27 --json run.json --report "
+                                "run.html --model " +
+                                here.model(),
+                            "run");
+  });
+  EXPECT_TRUE(
+      wait_for([&] { return content(here.path("run.err")).find("simulating") != std::string::npos; }));
+  ASSERT_EQ(kill(std::stoi(content(here.path("id"))), SIGTERM), 0);
+  const Outcome outcome = simulation.get();
+  EXPECT_EQ(outcome.exit_code, 128 + SIGTERM);
+  EXPECT_NE(outcome.errors.find("interrupted by signal 15"), std::string::npos) << outcome.errors;
+  const auto json = nlohmann::json::parse(content(here.path("run.json")));
+  EXPECT_GT(json.at("steps_missed"), 0);
+  EXPECT_LT(json.at("steps_missed"), 200);
+  EXPECT_NE(content(here.path("run.html")).find("The run ended early"), std::string::npos);
 }
 
 }  // namespace

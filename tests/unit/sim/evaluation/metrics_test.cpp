@@ -98,6 +98,36 @@ TEST(LastFrame, CountsAMissingAttitudeAsTheWorstOne) {
   EXPECT_DOUBLE_EQ(last_frame_errors_deg(results, 1, Estimator::kRcnn)[0], 180.0);
 }
 
+// Results that are off by the given turns in the axes of the target, at different true attitudes.
+std::vector<FrameResult> turned_results(const std::vector<Eigen::AngleAxisd>& turns) {
+  std::vector<FrameResult> results(turns.size());
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    results[i].valid = true;
+    results[i].truth =
+        Eigen::AngleAxisd(0.7 * static_cast<double>(i), Eigen::Vector3d(1.0, 2.0, -1.0).normalized());
+    results[i].rcnn = results[i].truth * turns[i];
+  }
+  return results;
+}
+
+TEST(CommonTurn, IsThatOfAMeshWithOtherAxes) {
+  const Eigen::AngleAxisd quarter(1.6, Eigen::Vector3d::UnitX());
+  const Eigen::AngleAxisd other(2.0, Eigen::Vector3d::UnitY());
+  std::vector<FrameResult> results = turned_results({other, quarter, quarter, quarter});
+  results.push_back(FrameResult{});  // without an attitude
+  results[2].rcnn.coeffs() *= -1.0;
+  const CommonTurn common = common_turn(results, Estimator::kRcnn);
+  EXPECT_DOUBLE_EQ(common.share, 0.6);
+  EXPECT_NEAR(common.turn.angle(), 1.6, 1e-9);
+  EXPECT_NEAR(common.turn.axis().x(), 1.0, 1e-9);
+}
+
+TEST(CommonTurn, IsNoneOfNoResultsAndSmallOfGoodOnes) {
+  EXPECT_EQ(common_turn({}, Estimator::kRcnn).share, 0.0);
+  const Eigen::AngleAxisd none(0.0, Eigen::Vector3d::UnitX());
+  EXPECT_NEAR(common_turn(turned_results({none, none}), Estimator::kRcnn).turn.angle(), 0.0, 1e-9);
+}
+
 TEST(LastFrame, OfTheBaselineCountsOnlyWhereItWasRun) {
   std::vector<FrameResult> results{result_with(0, 0, 3.0, 3.0), result_with(1, 0, 3.0, 3.0),
                                    result_with(2, 0, 3.0, 3.0)};

@@ -46,7 +46,7 @@ TEST(RunJson, HasExactlyTheAgreedKeys) {
   for (const auto& [key, value] : json.items()) keys += key + " ";
   EXPECT_EQ(keys,
             "target condition sequences disturbances rcnn cnn inference_us flight_heap_allocations "
-            "steps_missed trace_crc32 faults ");
+            "steps_missed frames_superseded trace_crc32 faults ");
   EXPECT_NEAR(json["rcnn"]["mean_deg"].get<double>(), 5.7296, 1e-3);
   EXPECT_NEAR(json["cnn"]["mean_deg"].get<double>(), 28.648, 1e-3);
   EXPECT_EQ(json["rcnn"]["within_20deg"], 1.0);
@@ -80,6 +80,15 @@ TEST(RunFaults, NameAnEarlyEndAndTheStepsMissed) {
   ASSERT_EQ(found.size(), 2U);
   EXPECT_NE(found[0].find("the flight program has ended"), std::string::npos);
   EXPECT_NE(found[1].find("1 of 4 steps"), std::string::npos);
+}
+
+TEST(RunFaults, AreNoneWhereANewerFrameOfTheSameCycleWasUsed) {
+  SilRunResult fast = run();
+  fast.steps[1].answered = false;
+  fast.frames_superseded = 1;
+  EXPECT_TRUE(run_faults(fast).empty());
+  EXPECT_EQ(steps_text(fast), "3 of 4 answered, 1 superseded by a newer frame of the same cycle");
+  EXPECT_EQ(run_json(setup(), fast).at("frames_superseded"), 1);
 }
 
 TEST(RunFaults, NameAFlightProgramWithoutAModel) {

@@ -243,6 +243,20 @@ TEST(Disturbances, ThatASequenceIsTooShortForAreRefusedWithTheLimit) {
             "--well-frames 11 is too many for --frames 10: give at most 10, or more --frames");
 }
 
+TEST(Disturbances, ThatBringFramesTooCloseTogetherAreRefused) {
+  Disturbances given;
+  given.period_s = 0.1;
+  EXPECT_EQ(refusal(given, 10), "");
+  given.period_jitter = 0.01;
+  EXPECT_EQ(
+      refusal(given, 10),
+      "--period 0.1 with --period-jitter 0.01 has frames 0.099 s apart; the flight program refuses frames "
+      "less than 0.1 s apart: give at least --period 0.101, or a smaller --period-jitter");
+  given.period_s = 1.0;
+  given.period_jitter = 0.9;
+  EXPECT_EQ(refusal(given, 10), "") << "exactly at the limit";
+}
+
 TEST(Disturbances, ThatHitNoFrameAreRefused) {
   Disturbances given;
   given.loss_every = 2;

@@ -1,0 +1,58 @@
+#include "sim/sil/interruption.hpp"
+
+#include <signal.h>
+#include <string.h>
+
+#include <string>
+
+#include "sim/sil/failure.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+volatile sig_atomic_t arrived = 0;
+
+void note(int signal) {
+  arrived = signal;
+}
+
+void note_once(int signal) {
+  struct sigaction before {};
+  struct sigaction action {};
+  action.sa_handler = note;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+    sigaction(signal, &action, nullptr);
+}
+
+void restore(int signal) {
+  struct sigaction now {};
+  if (sigaction(signal, nullptr, &now) != 0 || now.sa_handler != note) return;
+  now.sa_handler = SIG_DFL;
+  sigaction(signal, &now, nullptr);
+}
+
+}  // namespace
+
+Interruption::Interruption() {
+  arrived = 0;
+  note_once(SIGINT);
+  note_once(SIGTERM);
+}
+
+Interruption::~Interruption() {
+  restore(SIGINT);
+  restore(SIGTERM);
+}
+
+int Interruption::signal() {
+  return arrived;
+}
+
+void require_not_interrupted() {
+  if (arrived == 0) return;
+  throw SilFailure(std::string("it was interrupted by signal ") + std::to_string(arrived) + " (" +
+                   strsignal(arrived) + ")");
+}
+
+}  // namespace tumblesight::sim
