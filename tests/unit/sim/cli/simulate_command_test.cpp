@@ -128,6 +128,18 @@ TEST(Simulate, CarriesOnWithAFlightProgramThatKeepsItsState) {
   EXPECT_EQ(first.at("rcnn"), second.at("rcnn")) << "every sequence was reset in both runs";
 }
 
+// Verifies TS-TIM-080.
+TEST(Simulate, SaysHowManyFramesOfAFastSensorWereSuperseded) {
+  const Workplace here;
+  const Outcome outcome = here.run(
+      "simulate --free-running --speed 5.4 --period 1 --sequences 1 --frames 12 --json "
+      "run.json --report r.html");
+  EXPECT_NE(outcome.output.find("superseded by a newer frame of the same cycle"), std::string::npos)
+      << outcome.output << outcome.errors;
+  EXPECT_EQ(outcome.output.find("float32 reference"), std::string::npos) << "it would have seen other frames";
+  EXPECT_GE(nlohmann::json::parse(content(here.path("run.json"))).at("frames_superseded"), 4);
+}
+
 // Verifies TS-IFC-065.
 TEST(Simulate, RefusesAFlightProgramWithAnotherImageOrTarget) {
   const Workplace here;
