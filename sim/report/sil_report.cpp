@@ -44,12 +44,14 @@ std::vector<ReportPicture> pictures(const SilRunResult& run, const gnc::DepthPro
 
 FactList settings_facts(const SilRunSetup& setup) {
   const std::string disturbed = to_string(setup.disturbances);
+  const std::string effects = to_string(setup.effects);
   FactList list{"Settings", {}};
   list.facts = {{"target", setup.target},
                 {"mesh", file_name(setup.mesh_name)},
                 {"condition", setup.condition},
                 {"sequences × frames", fmt::format("{} × {}", setup.sequences, setup.frames)},
                 {"disturbances", disturbed.empty() ? "none" : disturbed},
+                {"effects", effects.empty() ? "none" : effects},
                 {"seed", fmt::format("{}", setup.seed)},
                 {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
                 {"time", setup.free_running ? "free-running" : "lockstep"},
@@ -245,6 +247,7 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
   nlohmann::ordered_json json{
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
   json["disturbances"] = disturbances_json(setup.disturbances);
+  json["effect"] = effect_json(setup.effects);
   json["rcnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
   json["cnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
   if (numerics) {
@@ -270,7 +273,8 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   report.frame_period_s = setup.disturbances.period_s;
   report.results = frame_results(run);
   report.pictures = pictures(run, setup.projection);
-  report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
+  if (to_string(setup.effects).empty())
+    report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
   report.steps_planned = run.steps_planned;
   report.steps_missed = run.steps_missed;
   report.heap_allocations = run.flight_heap_allocations;
