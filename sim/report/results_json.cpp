@@ -31,17 +31,6 @@ Json baseline_json(const CellResult& cell) {
   return json;
 }
 
-// The summary with the figures of the expected errors.
-Json estimator_json(const ErrorSummary& summary) {
-  const auto figure_or_null = [&](double value) {
-    return summary.count == 0 || std::isnan(value) ? Json(nullptr) : Json(value);
-  };
-  Json json = summary_json(summary);
-  json["error_below_3_expected"] = figure_or_null(summary.error_below_3_expected);
-  json["expected_over_real"] = figure_or_null(summary.expected_over_real);
-  return json;
-}
-
 Json curve_json(const Curve& curve) {
   Json json = Json::array();
   for (const CurvePoint& point : curve) {
@@ -152,6 +141,16 @@ Json summary_json(const ErrorSummary& summary) {
     if (figure.in_degrees && figure.error_key != nullptr)
       json[figure.error_key] = figure_or_null(figure.error(summary));
   }
+  return json;
+}
+
+nlohmann::ordered_json estimator_json(const ErrorSummary& summary) {
+  const auto figure_or_null = [&](double value) {
+    return summary.count == 0 || std::isnan(value) ? Json(nullptr) : Json(value);
+  };
+  Json json = summary_json(summary);
+  json["error_below_3_expected"] = figure_or_null(summary.error_below_3_expected);
+  json["expected_over_real"] = figure_or_null(summary.expected_over_real);
   return json;
 }
 

@@ -248,8 +248,8 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
   json["disturbances"] = disturbances_json(setup.disturbances);
   json["effect"] = effect_json(setup.effects);
-  json["rcnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
-  json["cnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
+  json["rcnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
+  json["cnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
   if (numerics) {
     json["float32"] = summary_json(numerics->float32);
     json["difference_to_float32"] = {{"mean_deg", numerics->difference.mean_deg},

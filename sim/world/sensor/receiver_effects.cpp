@@ -1,4 +1,5 @@
 // Effects of the receiver: errors of the range that repeat, and pixels that do not do what they should.
+#include <algorithm>
 #include <cmath>
 
 #include "gnc/lidar/depth_image.hpp"
@@ -7,6 +8,8 @@
 
 namespace tumblesight::sim {
 namespace {
+
+constexpr double kHotPixelMean_m = 100.0;
 
 // Calls change(index) for every ray with a return.
 template <typename Change>
@@ -54,11 +57,14 @@ void add_false_returns(double strength, int, EffectRandom& random, std::vector<d
   }
 }
 
-// The given share of the pixels always reports the same place in the range gate, drawn once per pixel and
-// sequence.
+// The given share of the pixels, drawn once per sequence, has so many dark counts that the first one often
+// comes before the return: the pixel reports whichever is nearer. The place of the first dark count is
+// exponentially distributed with a mean of 100 m, and new in every frame.
 void add_hot_pixels(double strength, int, EffectRandom& random, std::vector<double>& range_m) {
   for (double& reported_m : range_m) {
-    if (random.sequence.uniform() < strength) reported_m = anywhere_m(random.sequence);
+    const double first_count_m = -kHotPixelMean_m * std::log(random.frame.uniform());
+    if (random.sequence.uniform() >= strength) continue;
+    reported_m = reported_m == kNoReturn_m ? first_count_m : std::min(reported_m, first_count_m);
   }
 }
 

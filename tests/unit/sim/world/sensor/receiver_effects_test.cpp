@@ -101,19 +101,34 @@ TEST(ReceiverEffects, FalseReturnsAreUniformOverTheGateAndNewInEveryFrame) {
   EXPECT_NEAR(squares / count, 500.0 * 500.0 / 3.0, 10'000.0);
 }
 
-TEST(ReceiverEffects, HotPixelsReportTheSameInEveryFrame) {
+TEST(ReceiverEffects, HotPixelsStayAndReportTheFirstDarkCount) {
   std::vector<double> first(kRays * kRays, kNoReturn_m), second = first;
   EffectRandom one = random_of(1), two = random_of(2);
   add_hot_pixels(0.05, kRays, one, first);
   add_hot_pixels(0.05, kRays, two, second);
-  EXPECT_EQ(first, second);
+  EXPECT_NE(first, second);
   double hot = 0.0, sum = 0.0;
-  for (const double range_m : first) {
-    hot += range_m > 0.0 ? 1.0 : 0.0;
-    sum += range_m;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(first[i] > 0.0, second[i] > 0.0) << i;
+    hot += first[i] > 0.0 ? 1.0 : 0.0;
+    sum += first[i];
   }
   EXPECT_NEAR(share(hot), 0.05, tolerance(0.05));
-  EXPECT_NEAR(sum / hot, 250.0, 6.0 * 144.0 / std::sqrt(hot));
+  EXPECT_NEAR(sum / hot, 100.0, 6.0 * 100.0 / std::sqrt(hot));
+}
+
+// The first of an exponential count with a mean of 100 m and of the return at 40 m.
+TEST(ReceiverEffects, HotPixelsReportANearerReturn) {
+  std::vector<double> ranges_m(kRays * kRays, kReturn_m);
+  EffectRandom random = random_of(1);
+  add_hot_pixels(0.5, kRays, random, ranges_m);
+  double nearer = 0.0;
+  for (const double range_m : ranges_m) {
+    EXPECT_LE(range_m, kReturn_m);
+    nearer += range_m < kReturn_m ? 1.0 : 0.0;
+  }
+  const double expected = 0.5 * (1.0 - std::exp(-kReturn_m / 100.0));
+  EXPECT_NEAR(share(nearer), expected, tolerance(expected));
 }
 
 TEST(ReceiverEffects, DeadPixelsAndLinesReportNothing) {
