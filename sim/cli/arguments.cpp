@@ -179,6 +179,25 @@ void add_float32_model_option(CLI::App& command, std::string& model) {
       ->type_name("FILE");
 }
 
+void add_effect_option(CLI::App& command, Effects& effects) {
+  const auto take = [&effects](const std::vector<std::string>& texts) {
+    if (texts == std::vector<std::string>{"list"}) {
+      fmt::print("Effects, each as NAME=STRENGTH\n\n{}", effect_explanations());
+      throw CLI::Success();
+    }
+    try {
+      effects = effects_from(texts);
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError("--effect", error.what());
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--effect", take, "what a real sensor and scene add, all at once; --effect list explains each")
+      ->delimiter(',')
+      ->type_name("NAME=STRENGTH,...");
+}
+
 void add_json_option(CLI::App& command, std::string& json) {
   command.add_option("--json", json, "write the figures to this file")->check(file_path())->type_name("FILE");
 }

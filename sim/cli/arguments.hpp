@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/world/scenario/disturbance.hpp"
+#include "sim/world/sensor/effects.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
@@ -24,6 +25,7 @@ struct ScenarioArguments {
   std::uint32_t frames = 10;  // per sequence
   std::uint64_t seed = 1;
   Disturbances disturbances;
+  Effects effects;
   std::string numerics = "fixed";  // or "float32": which of the shipped models
   std::string model;  // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
   std::string json;   // empty: none
@@ -48,6 +50,8 @@ void add_condition_option(CLI::App& command,
                           std::vector<std::string>& conditions);  // --condition, one or more
 void add_seed_option(CLI::App& command, std::uint64_t& seed);
 void add_float32_model_option(CLI::App& command, std::string& model);  // --model, required
+// --effect; `--effect list` prints the effects and ends the program. `effects` must outlive the parsing.
+void add_effect_option(CLI::App& command, Effects& effects);
 void add_json_option(CLI::App& command, std::string& json);
 void add_report_option(CLI::App& command, std::string& report, const std::string& default_text);
 

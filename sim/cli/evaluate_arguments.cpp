@@ -70,6 +70,7 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
   add_run_options(command, arguments);
   add_output_options(command, arguments);
   add_paper_options(command, arguments);
+  add_effect_option(command, arguments.scenario.effects);
   add_disturbance_options(command, arguments.scenario.disturbances);
   command.footer("\nConditions\n" + condition_explanations() +
                  "\nThe error is the angle between true and estimated attitude in the last frame of\n"
@@ -89,8 +90,9 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
 }
 
 void refuse_options_set_by_paper(const CLI::App& command) {
-  std::vector<std::string> own_options{"--target", "--mesh", "--inertia", "--condition", "--frames",
-                                       "--model",  "--json", "--csv",     "--report",    "--curves"};
+  std::vector<std::string> own_options{"--target", "--mesh",   "--inertia", "--condition",
+                                       "--frames", "--model",  "--json",    "--csv",
+                                       "--report", "--curves", "--effect"};
   for (const DisturbanceRow& row : kDisturbances) own_options.push_back(std::string("--") + row.name);
   for (const std::string& own : own_options) {
     if (command.get_option(own)->count() == 0) continue;
@@ -105,6 +107,7 @@ ExperimentSettings experiment_settings(const EvaluateArguments& arguments) {
   settings.tumbling_sequences = arguments.scenario.sequences;
   settings.frames = arguments.scenario.frames;
   settings.disturbances = arguments.scenario.disturbances;
+  settings.effects = arguments.scenario.effects;
   settings.baseline_sequences = arguments.no_baseline ? 0 : arguments.baseline_sequences;
   settings.curves = arguments.curves;
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

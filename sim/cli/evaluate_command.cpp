@@ -53,6 +53,8 @@ void announce(const Subject& subject, const ExperimentSettings& settings) {
              settings.seed, subject.mesh_name, subject.model_name, subject.model_crc32);
   const std::string disturbances = to_string(settings.disturbances);
   if (!disturbances.empty()) fmt::print("  disturbed: {}\n\n", disturbances);
+  const std::string effects = to_string(settings.effects);
+  if (!effects.empty()) fmt::print("  effect: {}\n\n", effects);
   std::fflush(stdout);
 }
 

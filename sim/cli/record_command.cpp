@@ -32,9 +32,10 @@ void record(const RecordArguments& arguments) {
   settings.scenario =
       scenario_settings(condition_from(wanted.condition), wanted.frames, wanted.target, target.inertia_kg_m2);
   settings.scenario.disturbances = wanted.disturbances;
+  settings.scenario.effects = wanted.effects;
   settings.seed = wanted.seed;
   settings.sequences = wanted.sequences;
-  const FlashLidar lidar(target.mesh);
+  const FlashLidar lidar(observed_bodies(wanted.effects, wanted.target, target.mesh));
   const FrameRenderer renderer(lidar, 1e-3 * target.projection.swath_mm);
 
   const std::uint32_t total = wanted.sequences * wanted.frames;
@@ -69,6 +70,7 @@ void add_record_command(CLI::App& app) {
   add_target_options(*command, arguments->scenario);
   add_condition_option(*command, arguments->scenario.condition);
   add_sequence_options(*command, arguments->scenario);
+  add_effect_option(*command, arguments->scenario.effects);
   add_disturbance_options(*command, arguments->scenario.disturbances);
   command->add_option("--out", arguments->out, "recording to write")
       ->required()

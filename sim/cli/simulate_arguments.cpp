@@ -73,6 +73,8 @@ std::string default_report_name(const SimulateArguments& arguments) {
   if (!scenario.inertia.empty()) name += fmt::format("_inertia{}", fmt::join(scenario.inertia, "-"));
   const std::string disturbances = to_string(scenario.disturbances);
   if (!disturbances.empty()) name += "_" + plain_words(disturbances);
+  const std::string effects = to_string(scenario.effects);
+  if (!effects.empty()) name += "_" + plain_words(effects);
   if (arguments.speed != usual.speed) name += "_speed" + arguments.speed;
   if (arguments.free_running) name += "_free-running";
   return with_limited_length(name) + ".html";

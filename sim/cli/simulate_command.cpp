@@ -120,6 +120,7 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
   setup.sequences = scenario.sequences;
   setup.frames = scenario.frames;
   setup.disturbances = scenario.disturbances;
+  setup.effects = scenario.effects;
   setup.seed = scenario.seed;
   setup.model_path = target.model_path;
   setup.model_crc32 = fmt::format("{:08x}", target.header.crc32);
@@ -158,11 +159,12 @@ SilRunResult run_sequences(const ScenarioArguments& scenario, const TargetSetup&
   ScenarioSettings sequence_settings = scenario_settings(condition_from(scenario.condition), scenario.frames,
                                                          scenario.target, target.inertia_kg_m2);
   sequence_settings.disturbances = scenario.disturbances;
+  sequence_settings.effects = scenario.effects;
   std::vector<Sequence> sequences;
   for (std::uint32_t i = 0; i < scenario.sequences; ++i) {
     sequences.push_back(make_sequence(sequence_settings, scenario.seed, i));
   }
-  const FlashLidar lidar(target.mesh);
+  const FlashLidar lidar(observed_bodies(scenario.effects, scenario.target, target.mesh));
   ProgressBar bar("simulating", "frames", std::uint64_t{scenario.sequences} * scenario.frames);
   return run_sil(
       settings, lidar, 1e-3 * target.projection.swath_mm, sequences,
@@ -180,6 +182,8 @@ void announce(const ScenarioArguments& scenario, const TargetSetup& target, cons
              target.mesh_name, target.model_path);
   const std::string disturbances = to_string(scenario.disturbances);
   if (!disturbances.empty()) fmt::print("  disturbed: {}\n\n", disturbances);
+  const std::string effects = to_string(scenario.effects);
+  if (!effects.empty()) fmt::print("  effect: {}\n\n", effects);
   if (settings.flight_path.empty()) {
     fmt::print(
         "  Waiting up to {:g} s for the flight program. Unless it is running already, start\n    {}\n\n",
@@ -281,6 +285,7 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   add_sequence_options(*command, arguments->scenario);
   add_model_options(*command, arguments->scenario);
   add_json_option(*command, arguments->scenario.json);
+  add_effect_option(*command, arguments->scenario.effects);
   add_disturbance_options(*command, arguments->scenario.disturbances);
   command
       ->add_option("--speed", arguments->speed,

@@ -37,6 +37,7 @@ std::vector<Run> cells_of(const ExperimentSettings& settings) {
     run.scenario.condition = condition;
     run.scenario.frames = static_cast<int>(settings.frames);
     run.scenario.disturbances = settings.disturbances;
+    run.scenario.effects = settings.effects;
     run.sequences = condition == Condition::kTumbling ? settings.tumbling_sequences : settings.sequences;
     run.baseline_sequences = std::min(settings.baseline_sequences, run.sequences);
     runs.push_back(run);
@@ -49,6 +50,7 @@ std::vector<Run> sweeps_of(const ExperimentSettings& settings) {
   base.scenario.condition = settings.conditions.front();
   base.scenario.frames = static_cast<int>(settings.frames);
   base.scenario.disturbances = settings.disturbances;
+  base.scenario.effects = settings.effects;
   base.sequences = settings.sequences;
 
   std::vector<Run> runs{base};
@@ -76,6 +78,7 @@ std::vector<Run> disturbed_runs_of(const ExperimentSettings& settings) {
     run.scenario.condition = disturbed.condition;
     run.scenario.frames = static_cast<int>(settings.frames);
     run.scenario.disturbances = disturbed.disturbances;
+    run.scenario.effects = settings.effects;
     run.sequences = settings.sequences;
     runs.push_back(run);
   }
@@ -106,6 +109,7 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   cell.sequences = run.sequences;
   cell.frames = frames;
   cell.disturbances = run.scenario.disturbances;
+  cell.effects = run.scenario.effects;
   cell.rcnn = last_frame_summary(result.frames, frames, Estimator::kRcnn);
   cell.cnn = last_frame_summary(result.frames, frames, Estimator::kCnn);
   cell.common_turn = common_turn(last, Estimator::kRcnn);
@@ -171,7 +175,7 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
         scenario_settings(run.scenario.condition, settings.frames, subject.target, subject.inertia_kg_m2)
             .inertia_kg_m2;
   }
-  const FlashLidar lidar(subject.mesh);
+  const FlashLidar lidar(observed_bodies(settings.effects, subject.target, subject.mesh));
   const FrameRenderer renderer(lidar, subject.swath_m);
   std::unique_ptr<TemplateMatcher> matcher;
   if (settings.baseline_sequences > 0) {

@@ -33,6 +33,7 @@ struct ExperimentSettings {
   std::uint32_t tumbling_sequences = 900;
   std::uint32_t frames = kFramesPerSequence;
   Disturbances disturbances;               // of every run, those of the curves too
+  Effects effects;                         // likewise
   std::uint32_t baseline_sequences = 100;  // per cell; 0: no baseline
   bool curves = false;                     // run the sweeps too
   bool disturbed_runs = false;             // run disturbed_runs() too
@@ -46,7 +47,7 @@ std::uint64_t steps_of(const ExperimentSettings& settings);
 
 // Runs cell after cell. `progress`: steps done so far, out of steps_of(settings); called on the calling
 // thread. Throws std::invalid_argument if the model is refused, an inertia is missing or there are no
-// conditions, or as require_possible() does.
+// conditions, or as require_possible() and observed_bodies() do.
 SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& settings,
                              const std::function<void(std::uint64_t)>& progress);
 

@@ -11,6 +11,7 @@
 namespace tumblesight::sim {
 namespace {
 
+constexpr double kExpectedErrors = 3.0;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 double share_within(const std::vector<double>& errors_deg, double limit_deg) {
@@ -32,6 +33,26 @@ std::vector<FrameResult> last_frames_of(const std::vector<FrameResult>& results,
 
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// The expected errors of one estimator against the real ones.
+void compare_expected(const std::vector<FrameResult>& results, Estimator estimator, ErrorSummary& summary) {
+  double expected_deg = 0.0;
+  double real_deg = 0.0;
+  std::size_t below = 0;
+  std::size_t count = 0;
+  for (const FrameResult& result : results) {
+    if (!has_estimate(result, estimator)) continue;
+    const bool rcnn = estimator == Estimator::kRcnn;
+    const double one_deg = kDegPerRad * (rcnn ? result.rcnn_predicted_rad : result.cnn_predicted_rad);
+    expected_deg += one_deg;
+    real_deg += error_deg(result, estimator);
+    below += error_deg(result, estimator) < kExpectedErrors * one_deg ? 1 : 0;
+    ++count;
+  }
+  if (count == 0) return;
+  summary.error_below_3_expected = static_cast<double>(below) / static_cast<double>(count);
+  if (real_deg > 0.0) summary.expected_over_real = expected_deg / real_deg;
 }
 
 bool is_trusted(const FrameResult& result, Estimator estimator) {
@@ -82,6 +103,8 @@ ErrorSummary summarise(std::vector<double> errors_deg) {
   summary.mean_within_20_standard_error_deg = mean_standard_error(right);
   summary.wrong_and_valid = kUnknown;
   summary.right_and_valid = kUnknown;
+  summary.error_below_3_expected = kUnknown;
+  summary.expected_over_real = kUnknown;
   summary.median_deg = median(std::move(errors_deg));
   return summary;
 }
@@ -114,6 +137,8 @@ ErrorSummary last_frame_summary(const std::vector<FrameResult>& results, std::ui
   }
   summary.wrong_and_valid = static_cast<double>(wrong) / static_cast<double>(summary.count);
   summary.right_and_valid = static_cast<double>(right) / static_cast<double>(summary.count);
+  if (estimator != Estimator::kBaseline)
+    compare_expected(last_frames_of(results, frames, estimator), estimator, summary);
   return summary;
 }
 

@@ -54,6 +54,10 @@ struct ErrorSummary {
   // known which estimates are trusted.
   double wrong_and_valid = 0.0;
   double right_and_valid = 0.0;
+  // Of those with an estimate: the share whose error is below three times its expected error, and the mean
+  // expected error over the mean error. NaN without any, and where no error is expected.
+  double error_below_3_expected = 0.0;
+  double expected_over_real = 0.0;
 };
 
 ErrorSummary summarise(std::vector<double> errors_deg);

@@ -4,6 +4,11 @@
 
 namespace tumblesight::sim {
 
+PaperFigures paper_figures(const std::string& target, const CellResult& cell) {
+  if (!to_string(cell.effects).empty()) return {};
+  return paper_figures(target, cell.condition, cell.disturbances);
+}
+
 const CellResult* cell_of(const SubjectResult& subject, Condition condition) {
   for (const CellResult& cell : subject.cells) {
     if (cell.condition == condition) return &cell;

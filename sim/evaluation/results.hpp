@@ -22,6 +22,7 @@ struct CellResult {
   std::uint32_t sequences = 0;
   std::uint32_t frames = 0;  // per sequence
   Disturbances disturbances;
+  Effects effects;
   ErrorSummary rcnn;
   ErrorSummary cnn;
   CommonTurn common_turn;                // of the RCNN
@@ -69,6 +70,8 @@ struct Results {
   std::vector<SubjectResult> subjects;
 };
 
+// The paper's figures for a cell, see paper_figures(). None for one with effects.
+PaperFigures paper_figures(const std::string& target, const CellResult& cell);
 // The figures of one condition, or nullptr if it was not run.
 const CellResult* cell_of(const SubjectResult& subject, Condition condition);
 // Detection, summed over all conditions of a subject.

@@ -46,7 +46,7 @@ std::vector<std::uint8_t> make_recording(const FrameRenderer& renderer, const Re
   std::vector<Sequence> sequences;
   for (std::uint32_t i = 0; i < settings.sequences; ++i)
     sequences.push_back(make_sequence(settings.scenario, settings.seed, i));
-  const int rays = sensor_settings(settings.scenario.condition).rays;
+  const int rays = sensor_settings(settings.scenario.condition, settings.scenario.effects).rays;
   const bool ego_motion = !settings.scenario.disturbances.no_ego_motion;
   RecordingWriter writer(static_cast<std::uint16_t>(rays), delivered_frames(sequences));
   const auto image = std::make_unique<gnc::RangeImage>();

@@ -99,6 +99,7 @@ std::vector<CsvColumn> make_csv_columns() {
   }
   columns.push_back(
       {"disturbances", [](const Row& row) { return csv_text(to_string(row.cell.disturbances)); }});
+  columns.push_back({"effect", [](const Row& row) { return csv_text(to_string(row.cell.effects)); }, true});
   return columns;
 }
 
@@ -141,7 +142,11 @@ std::vector<ConditionColumn> make_condition_columns() {
   constexpr ConditionTables kOthers = kOtherEstimatorsTable;
   std::vector<ConditionColumn> columns{
       {kOthers, "spacecraft, mesh", [](const Row& row) -> TableCell { return {title_of(row.subject)}; }},
-      {~0U, "condition", [](const Row& row) -> TableCell { return {to_string(row.cell.condition)}; }},
+      {~0U, "condition",
+       [](const Row& row) -> TableCell {
+         const std::string effects = to_string(row.cell.effects);
+         return {to_string(row.cell.condition) + (effects.empty() ? "" : ", ") + effects};
+       }},
       {kAccuracyTable, "sequences",
        [](const Row& row) -> TableCell { return {std::to_string(row.cell.sequences)}; }}};
   add_figures(columns, "RCNN", Estimator::kRcnn, [](const SummaryFigure& figure) {
@@ -226,7 +231,7 @@ std::vector<EstimatorRow> estimator_rows(const Results& results) {
   std::vector<EstimatorRow> rows;
   for (const SubjectResult& subject : results.subjects) {
     for (const CellResult& cell : subject.cells) {
-      const PaperFigures paper = paper_figures(subject.target, cell.condition, cell.disturbances);
+      const PaperFigures paper = paper_figures(subject.target, cell);
       rows.push_back({results, subject, cell, "rcnn", cell.rcnn, paper.rcnn});
       rows.push_back({results, subject, cell, "cnn", cell.cnn, paper.cnn});
       if (cell.baseline) rows.push_back({results, subject, cell, "baseline", *cell.baseline, std::nullopt});
@@ -247,7 +252,7 @@ const std::vector<CsvColumn>& csv_columns() {
 std::vector<ResultRow> condition_rows(const SubjectResult& subject) {
   std::vector<ResultRow> rows;
   for (const CellResult& cell : subject.cells) {
-    rows.push_back({subject, cell, paper_figures(subject.target, cell.condition, cell.disturbances)});
+    rows.push_back({subject, cell, paper_figures(subject.target, cell)});
   }
   return rows;
 }

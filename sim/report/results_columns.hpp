@@ -52,6 +52,7 @@ std::vector<EstimatorRow> estimator_rows(const Results& results);
 struct CsvColumn {
   std::string name;
   std::function<std::string(const EstimatorRow&)> field;  // empty text: there is no such figure
+  bool only_with_effects = false;                         // left out of files without an effect
 };
 const std::vector<CsvColumn>& csv_columns();
 

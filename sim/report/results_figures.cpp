@@ -29,8 +29,7 @@ std::string conditions_figure(const SubjectResult& subject) {
   bool with_paper = false;
   for (const CellResult& cell : subject.cells) {
     with_baseline = with_baseline || cell.baseline.has_value();
-    with_paper =
-        with_paper || paper_figures(subject.target, cell.condition, cell.disturbances).rcnn.has_value();
+    with_paper = with_paper || paper_figures(subject.target, cell).rcnn.has_value();
   }
   BarChart chart;
   chart.description = "Mean error of the last frame by condition and estimator";
@@ -47,7 +46,7 @@ std::string conditions_figure(const SubjectResult& subject) {
     chart.series_colours.emplace_back(kPaperColour);
   }
   for (const CellResult& cell : subject.cells) {
-    const PaperFigures paper = paper_figures(subject.target, cell.condition, cell.disturbances);
+    const PaperFigures paper = paper_figures(subject.target, cell);
     BarGroup group{to_string(cell.condition), {cell.rcnn.mean_deg, cell.cnn.mean_deg}};
     if (with_baseline) group.values.push_back(cell.baseline ? cell.baseline->mean_deg : 0.0);
     if (with_paper) group.values.push_back(paper.rcnn ? paper.rcnn->mean_deg : 0.0);

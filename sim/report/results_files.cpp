@@ -1,21 +1,37 @@
 #include "sim/report/results_files.hpp"
 
+#include <algorithm>
+
 #include "sim/report/results_columns.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
+namespace {
+
+std::vector<CsvColumn> columns_of(const std::vector<EstimatorRow>& rows) {
+  std::vector<CsvColumn> columns = csv_columns();
+  const bool with_effects = std::any_of(
+      rows.begin(), rows.end(), [](const EstimatorRow& row) { return !to_string(row.cell.effects).empty(); });
+  const auto unused = [=](const CsvColumn& column) { return column.only_with_effects && !with_effects; };
+  columns.erase(std::remove_if(columns.begin(), columns.end(), unused), columns.end());
+  return columns;
+}
+
+}  // namespace
 
 std::string results_csv(const Results& results) {
+  const std::vector<EstimatorRow> rows = estimator_rows(results);
+  const std::vector<CsvColumn> columns = columns_of(rows);
   std::string csv;
   const char* separator = "";
-  for (const CsvColumn& column : csv_columns()) {
+  for (const CsvColumn& column : columns) {
     csv += separator + column.name;
     separator = ",";
   }
-  for (const EstimatorRow& row : estimator_rows(results)) {
+  for (const EstimatorRow& row : rows) {
     separator = "\n";
-    for (const CsvColumn& column : csv_columns()) {
+    for (const CsvColumn& column : columns) {
       csv += separator + column.field(row);
       separator = ",";
     }

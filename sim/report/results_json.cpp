@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "sim/report/results_columns.hpp"
 
 namespace tumblesight::sim {
@@ -29,26 +31,6 @@ Json baseline_json(const CellResult& cell) {
   return json;
 }
 
-Json row_json(const Results& results, const SubjectResult& subject, const CellResult& cell) {
-  const PaperFigures paper = paper_figures(subject.target, cell.condition, cell.disturbances);
-  return {{"target", subject.target},
-          {"mesh", subject.mesh},
-          {"condition", to_string(cell.condition)},
-          {"sequences", cell.sequences},
-          {"rcnn", summary_json(cell.rcnn)},
-          {"cnn", summary_json(cell.cnn)},
-          {"baseline", baseline_json(cell)},
-          {"frames", cell.frames},
-          {"disturbances", disturbances_json(cell.disturbances)},
-          {"seed", results.seed},
-          {"model", subject.model},
-          {"model_crc32", fmt::format("{:08x}", subject.model_crc32)},
-          {"paper_rcnn", figure_json(paper.rcnn)},
-          {"paper_cnn", figure_json(paper.cnn)},
-          {"goal", figure_json(paper.goal)},
-          {"confusion", confusion_json(cell.rcnn_confusion)}};
-}
-
 Json curve_json(const Curve& curve) {
   Json json = Json::array();
   for (const CurvePoint& point : curve) {
@@ -57,6 +39,30 @@ Json curve_json(const Curve& curve) {
                     {"rcnn", summary_json(point.rcnn)},
                     {"cnn", summary_json(point.cnn)}});
   }
+  return json;
+}
+
+Json row_json(const Results& results, const SubjectResult& subject, const CellResult& cell) {
+  const PaperFigures paper = paper_figures(subject.target, cell);
+  Json json{{"target", subject.target},
+            {"mesh", subject.mesh},
+            {"condition", to_string(cell.condition)},
+            {"sequences", cell.sequences},
+            {"rcnn", estimator_json(cell.rcnn)},
+            {"cnn", estimator_json(cell.cnn)},
+            {"baseline", baseline_json(cell)},
+            {"frames", cell.frames},
+            {"disturbances", disturbances_json(cell.disturbances)},
+            {"effect", effect_json(cell.effects)},
+            {"seed", results.seed},
+            {"model", subject.model},
+            {"model_crc32", fmt::format("{:08x}", subject.model_crc32)},
+            {"paper_rcnn", figure_json(paper.rcnn)},
+            {"paper_cnn", figure_json(paper.cnn)},
+            {"goal", figure_json(paper.goal)},
+            {"confusion", confusion_json(cell.rcnn_confusion)}};
+  // What an effect costs depends on the range.
+  if (!to_string(cell.effects).empty()) json["by_range_m"] = curve_json(cell.by_range);
   return json;
 }
 
@@ -121,6 +127,11 @@ nlohmann::ordered_json disturbances_json(const Disturbances& disturbances) {
   return json;
 }
 
+nlohmann::ordered_json effect_json(const Effects& effects) {
+  const std::string text = to_string(effects);
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
 Json summary_json(const ErrorSummary& summary) {
   const auto figure_or_null = [&](double value) { return summary.count == 0 ? Json(nullptr) : Json(value); };
   Json json = Json::object();
@@ -130,6 +141,16 @@ Json summary_json(const ErrorSummary& summary) {
     if (figure.in_degrees && figure.error_key != nullptr)
       json[figure.error_key] = figure_or_null(figure.error(summary));
   }
+  return json;
+}
+
+nlohmann::ordered_json estimator_json(const ErrorSummary& summary) {
+  const auto figure_or_null = [&](double value) {
+    return summary.count == 0 || std::isnan(value) ? Json(nullptr) : Json(value);
+  };
+  Json json = summary_json(summary);
+  json["error_below_3_expected"] = figure_or_null(summary.error_below_3_expected);
+  json["expected_over_real"] = figure_or_null(summary.expected_over_real);
   return json;
 }
 

@@ -12,8 +12,14 @@ namespace tumblesight::sim {
 // without a sequence.
 nlohmann::ordered_json summary_json(const ErrorSummary& summary);
 
+// The same with error_below_3_expected and expected_over_real.
+nlohmann::ordered_json estimator_json(const ErrorSummary& summary);
+
 // What was given, by the names of the table; empty for an undisturbed run.
 nlohmann::ordered_json disturbances_json(const Disturbances& disturbances);
+
+// "noise=5", or null without an effect.
+nlohmann::ordered_json effect_json(const Effects& effects);
 
 // {"rows": [one per subject and condition], "curves": [one per subject with sweeps]}; no "curves" without
 // sweeps.

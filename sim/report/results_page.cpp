@@ -42,7 +42,7 @@ std::string lead_of(const std::vector<SubjectResult>& subjects) {
   std::size_t met = 0;
   for (const SubjectResult& subject : subjects) {
     for (const CellResult& cell : subject.cells) {
-      const PaperFigures paper = paper_figures(subject.target, cell.condition, cell.disturbances);
+      const PaperFigures paper = paper_figures(subject.target, cell);
       if (!paper.rcnn || !paper.goal) continue;
       ++published;
       if (cell.rcnn.mean_deg < paper.rcnn->mean_deg) ++better;

@@ -60,7 +60,7 @@ DataTable estimators_table(const std::vector<EstimatorErrors>& estimators, std::
 }
 
 DataTable cell_table(const std::string& target, const CellResult& cell) {
-  const PaperFigures paper = paper_figures(target, cell.condition, cell.disturbances);
+  const PaperFigures paper = paper_figures(target, cell);
   std::vector<EstimatorErrors> estimators{
       {"RCNN, " + counted(cell.frames, "frame"), Mark::kRcnn, cell.rcnn, paper.rcnn},
       {"CNN, last frame alone", Mark::kCnn, cell.cnn, paper.cnn}};

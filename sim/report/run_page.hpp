@@ -41,6 +41,7 @@ struct SilRunSetup {
   double speed = 0.0;  // times real time; 0: as fast as the machine goes
   bool free_running = false;
   Disturbances disturbances;
+  Effects effects;
   std::vector<std::string> remarks;  // shown at the top of the report, below the faults
 };
 

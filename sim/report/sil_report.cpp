@@ -48,12 +48,14 @@ std::uint32_t steps_answered(const SilRunResult& run) {
 
 FactList settings_facts(const SilRunSetup& setup) {
   const std::string disturbed = to_string(setup.disturbances);
+  const std::string effects = to_string(setup.effects);
   FactList list{"Settings", {}};
   list.facts = {{"target", setup.target},
                 {"mesh", file_name(setup.mesh_name)},
                 {"condition", setup.condition},
                 {"sequences × frames", fmt::format("{} × {}", setup.sequences, setup.frames)},
                 {"disturbances", disturbed.empty() ? "none" : disturbed},
+                {"effects", effects.empty() ? "none" : effects},
                 {"seed", fmt::format("{}", setup.seed)},
                 {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
                 {"time", setup.free_running ? "free-running" : "lockstep"},
@@ -255,8 +257,9 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
   nlohmann::ordered_json json{
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
   json["disturbances"] = disturbances_json(setup.disturbances);
-  json["rcnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
-  json["cnn"] = summary_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
+  json["effect"] = effect_json(setup.effects);
+  json["rcnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
+  json["cnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
   if (numerics) {
     json["float32"] = summary_json(numerics->float32);
     json["difference_to_float32"] = {{"mean_deg", numerics->difference.mean_deg},
@@ -281,7 +284,8 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   report.frame_period_s = setup.disturbances.period_s;
   report.results = frame_results(run);
   report.pictures = pictures(run, setup.projection);
-  report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
+  if (to_string(setup.effects).empty())
+    report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
   report.steps_planned = run.steps_planned;
   report.steps_missed = run.steps_missed;
   report.frames_superseded = run.frames_superseded;

@@ -55,8 +55,8 @@ Condition condition_from(const std::string& name) {
   throw std::invalid_argument("condition '" + name + "' is unknown; the conditions are: " + known);
 }
 
-SensorSettings sensor_settings(Condition condition) {
-  return row_of(condition).sensor;
+SensorSettings sensor_settings(Condition condition, const Effects& effects) {
+  return with_effects(row_of(condition).sensor, effects);
 }
 
 bool needs_inertia(Condition condition) {

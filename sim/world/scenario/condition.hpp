@@ -2,7 +2,7 @@
 // conditions: command line, training, calibration, evaluation, reports and colours all follow it.
 //
 // To add a condition: an enumerator and its row here, and its test in tests/unit/sim/world/scenario. If it
-// needs a sensor effect that does not exist yet, see sim/world/sensor/ray_effects.hpp.
+// needs a sensor effect that does not exist yet, see sim/world/sensor/effects.hpp.
 #pragma once
 
 #include <array>
@@ -82,7 +82,7 @@ std::string condition_explanations();
 // Throws std::invalid_argument that lists the known conditions if `name` is not one of them.
 Condition condition_from(const std::string& name);
 
-SensorSettings sensor_settings(Condition condition);
+SensorSettings sensor_settings(Condition condition, const Effects& effects = {});
 // Whether the target's inertia must be known.
 bool needs_inertia(Condition condition);
 

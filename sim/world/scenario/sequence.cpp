@@ -118,6 +118,7 @@ Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std
 
   Sequence sequence;
   sequence.condition = settings.condition;
+  sequence.effects = settings.effects;
   sequence.noise_seed = random.next();
   const std::vector<double> times_s =
       exposure_times_s(disturbances, static_cast<std::size_t>(settings.frames), stream_for(seed, index, 4));
@@ -125,6 +126,7 @@ Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std
   for (const double time_s : times_s) {
     sequence.frames.push_back({spin(q0, rate, time_s), rate, range_m});
     sequence.frames.back().time_ns = std::llround(kNsPerS * time_s);
+    sequence.frames.back().scene_seed = mix(sequence.noise_seed);
   }
   const ConditionRow& condition = row_of(settings.condition);
   if (condition.rotation == RotationLaw::kTorqueFree) rotate_freely(settings, times_s, sequence.frames);

@@ -31,6 +31,7 @@ struct ScenarioSettings {
   std::optional<double> rate_rad_s{};
   std::optional<double> hidden_share{};
   Disturbances disturbances{};
+  Effects effects{};
 };
 
 // Settings for `target` under a condition. Throws std::invalid_argument that says what to do if the condition
@@ -42,12 +43,14 @@ struct Sequence {
   Condition condition = Condition::kNominal;
   std::uint64_t noise_seed = 0;  // of the sensor noise, see NoiseSeedRule
   std::vector<FrameTruth> frames;
+  Effects effects{};  // with which the sensor sees it
 };
 
 // Draws sequence `index` of `seed` (paper, sampling): attitude uniform on SO(3); range uniform on 20..100 m,
 // constant within the sequence; rate at most 20 deg/s, constant in the LRF or torque-free as the condition
 // says. The same (seed, index) gives the same sequence on every machine, and the same initial attitude, range
-// and rate under every condition and disturbance. Throws std::invalid_argument as require_possible() does.
+// rate and noise under every condition, disturbance and
+// effect. Throws std::invalid_argument as require_possible() does.
 Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std::uint64_t index);
 
 }  // namespace tumblesight::sim

@@ -22,6 +22,8 @@ struct FrameTruth {
   bool lost = false;  // the frame is not delivered
   std::uint32_t frozen_for =
       0;  // the sensor repeats the image that it took this many frames before; 0: it works
+  // Of what stays the same in a sequence: the pixels that are hot, the place of debris.
+  std::uint64_t scene_seed = 0;
 
   // Whether the sensor delivers an image, and took it at this exposure.
   bool is_genuine() const { return !lost && frozen_for == 0; }

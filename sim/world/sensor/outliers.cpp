@@ -17,7 +17,7 @@ AfterEffect add_outlier(const SensorSettings& settings, Random& random, double& 
   if (!(settings.outlier_share > 0.0) || random.uniform() >= settings.outlier_share) {
     return AfterEffect::kContinue;
   }
-  const double sigma_m = settings.noise ? range_sigma_m(range_m) : 0.0;
+  const double sigma_m = settings.noise ? settings.noise_factor * range_sigma_m(range_m) : 0.0;
   const double error_m = random.uniform(std::min(kMinError_sigma * sigma_m, kMaxError_m), kMaxError_m);
   range_m += random.uniform() < 0.5 ? -error_m : error_m;
   return AfterEffect::kFinal;

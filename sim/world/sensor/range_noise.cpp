@@ -9,7 +9,7 @@ double range_sigma_m(double range_m) {
 }
 
 AfterEffect add_range_noise(const SensorSettings& settings, Random& random, double& range_m) {
-  if (settings.noise) range_m += range_sigma_m(range_m) * random.normal();
+  if (settings.noise) range_m += settings.noise_factor * range_sigma_m(range_m) * random.normal();
   return AfterEffect::kContinue;
 }
 

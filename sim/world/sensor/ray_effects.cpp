@@ -39,13 +39,19 @@ const std::vector<RayEffect>& ray_effects() {
   return kEffects;
 }
 
-void measure_ranges(const RangeGrid& grid, const std::vector<RayEffect>& effects,
-                    const SensorSettings& settings, std::uint64_t noise_seed, gnc::RangeImage& frame) {
-  frame.ranges.fill(0);
+std::vector<double> measured_ranges_m(const RangeGrid& grid, const std::vector<RayEffect>& effects,
+                                      const SensorSettings& settings, std::uint64_t noise_seed) {
+  std::vector<double> ranges_m(grid.range_m.size());
   for (std::size_t ray = 0; ray < grid.range_m.size(); ++ray) {
     const Random random = stream_of_ray(noise_seed, ray);
-    frame.ranges[ray] = to_counts(measured_range_m(grid.range_m[ray], effects, settings, random));
+    ranges_m[ray] = measured_range_m(grid.range_m[ray], effects, settings, random);
   }
+  return ranges_m;
+}
+
+void report_ranges(const std::vector<double>& ranges_m, gnc::RangeImage& frame) {
+  frame.ranges.fill(0);
+  std::transform(ranges_m.begin(), ranges_m.end(), frame.ranges.begin(), to_counts);
 }
 
 }  // namespace tumblesight::sim

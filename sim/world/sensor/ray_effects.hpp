@@ -1,10 +1,8 @@
-// Ray effects: how the range that the sensor reports for one ray differs from the true range.
+// Ray effects: the losses and the noise of the paper's sensor and of the conditions, ray by ray. Everything
+// else that a real sensor adds is in effects.hpp.
 //
-// To add an effect: its parameters in sensor_settings.hpp, its function here and in a file of its own, its
-// row in the table of ray_effects.cpp, which also says on which rays it acts. With its parameters at their
-// defaults an effect must not draw from `random`: recordings, traces and results would change for every
-// existing seed. What stands in front of the target is not a ray effect: it changes the true ranges before
-// (occlusion.hpp).
+// Each ray draws from a stream of its own. With its parameters at their defaults a ray effect must not draw
+// from `random`: recordings, traces and results would change for every existing seed.
 #pragma once
 
 #include <cstdint>
@@ -46,9 +44,12 @@ AfterEffect add_range_noise(const SensorSettings& settings, Random& random, doub
 // The effects of the sensor, in the order in which they apply.
 const std::vector<RayEffect>& ray_effects();
 
-// Fills the ranges of `frame` with those of `grid` after the effects: in counts, and 0 (no return) outside
-// (0, gnc::kMaxRange_m]. The same arguments give the same ranges.
-void measure_ranges(const RangeGrid& grid, const std::vector<RayEffect>& effects,
-                    const SensorSettings& settings, std::uint64_t noise_seed, gnc::RangeImage& frame);
+// The ranges of `grid` after the effects; kNoReturn_m where a ray has no return. The same arguments give the
+// same ranges.
+std::vector<double> measured_ranges_m(const RangeGrid& grid, const std::vector<RayEffect>& effects,
+                                      const SensorSettings& settings, std::uint64_t noise_seed);
+
+// Fills the ranges of `frame`: in counts, and 0 (no return) outside (0, gnc::kMaxRange_m].
+void report_ranges(const std::vector<double>& ranges_m, gnc::RangeImage& frame);
 
 }  // namespace tumblesight::sim

@@ -132,7 +132,7 @@ TriangleMesh panels() {
   // Frame of the panel: x along the boom, y up the panel, z along the normal of its cells.
   const Eigen::Isometry3f panel =
       frame_at({3.3105F, 0.032F, -0.517F}, Eigen::Vector3f::UnitX(), {0.0F, 1.0F, 1.0F});
-  TriangleMesh one = placed(box({2.277F, 2.711F, 0.022F}), panel);
+  TriangleMesh one = as_panel(placed(box({2.277F, 2.711F, 0.022F}), panel));
   append(one, placed(box({2.168F, 0.109F, 0.054F}),
                      frame_at({3.311F, 0.0105F, -0.4965F}, Eigen::Vector3f::UnitX(), {0.0F, 1.0F, 1.0F})));
   const Outline drive = {{0.062F, 0.461F}, {0.062F, 0.644F}, {0.072F, 1.040F}, {0.091F, 1.345F},

@@ -174,6 +174,13 @@ Eigen::Matrix3d axes_trf_file(MeshUp up) {
   return axes;
 }
 
+// Whether the name of its material says so. The names of nodes are lost when their transforms are applied.
+bool is_named_panel(const aiMaterial& material) {
+  std::string name = material.GetName().C_Str();
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name.find("panel") != std::string::npos || name.find("solar") != std::string::npos;
+}
+
 void append_faces(const aiMesh& part, const MeshFileOptions& options, TriangleMesh& mesh) {
   const Eigen::Matrix3d to_trf_m = options.scale * axes_trf_file(options.up);
   const auto offset = static_cast<std::uint32_t>(mesh.vertices_trf_m.size());
@@ -212,11 +219,16 @@ TriangleMesh import(const std::string& path, const MeshFileOptions& options) {
   }
   TriangleMesh mesh;
   mesh.name = path;
+  bool named = false;  // a part is named as a panel
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
     if ((scene->mMeshes[i]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0U) {
       append_faces(*scene->mMeshes[i], options, mesh);
+      const bool panel = is_named_panel(*scene->mMaterials[scene->mMeshes[i]->mMaterialIndex]);
+      named = named || panel;
+      mesh.is_panel.resize(mesh.triangles.size(), panel ? 1 : 0);
     }
   }
+  if (!named) mesh.is_panel.clear();
   return mesh;
 }
 

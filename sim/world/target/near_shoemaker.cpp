@@ -110,8 +110,8 @@ TriangleMesh gussets() {
 // One solar panel on +x with its two brackets and their feet on the forward deck. The others are rotated
 // copies.
 TriangleMesh panels() {
-  TriangleMesh one =
-      placed(box({1.827F, 1.219F, 0.019F}), Eigen::Isometry3f(Eigen::Translation3f(1.7335F, 0.0F, 0.7485F)));
+  TriangleMesh one = as_panel(
+      placed(box({1.827F, 1.219F, 0.019F}), Eigen::Isometry3f(Eigen::Translation3f(1.7335F, 0.0F, 0.7485F))));
   for (const float side : {-1.0F, 1.0F}) {
     // The arm rises from its foot and ends in a tongue under the panel; a window leaves two rails in its
     // middle.

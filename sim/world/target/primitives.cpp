@@ -29,6 +29,15 @@ void append(TriangleMesh& whole, const TriangleMesh& part) {
   for (const auto& t : part.triangles) {
     whole.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   }
+  if (whole.is_panel.empty() && part.is_panel.empty()) return;
+  whole.is_panel.resize(whole.triangles.size() - part.triangles.size());
+  whole.is_panel.insert(whole.is_panel.end(), part.is_panel.begin(), part.is_panel.end());
+  whole.is_panel.resize(whole.triangles.size());
+}
+
+TriangleMesh as_panel(TriangleMesh part) {
+  part.is_panel.assign(part.triangles.size(), 1);
+  return part;
 }
 
 TriangleMesh placed(TriangleMesh part, const Eigen::Isometry3f& pose) {

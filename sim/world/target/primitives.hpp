@@ -19,6 +19,8 @@ using Outline = std::vector<Eigen::Vector2f>;  // a polygon in a plane
 
 // Adds the vertices and triangles of `part` to `whole`; the name of `whole` does not change.
 void append(TriangleMesh& whole, const TriangleMesh& part);
+// The part, marked as a solar panel.
+TriangleMesh as_panel(TriangleMesh part);
 // The part with each vertex p moved to pose * p.
 TriangleMesh placed(TriangleMesh part, const Eigen::Isometry3f& pose);
 // The part, reflected in the plane through the origin across the axis (0 = x, 1 = y, 2 = z).

@@ -265,6 +265,7 @@ TriangleMesh solar_panel(bool with_windows) {
   } else {
     append(mesh, part(-0.297F, 0.297F, -1.038F, 0.597F));
   }
+  mesh = as_panel(mesh);
   append(mesh, box_between({-0.085F, 0.691F, -1.041F}, {0.085F, 0.756F, -0.885F}));
   // Hold-down studs.
   const Eigen::Vector2f studs_xz[] = {

@@ -14,6 +14,8 @@ struct TriangleMesh {
   std::string name;  // for messages: the target, or the file
   std::vector<Eigen::Vector3f> vertices_trf_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // vertex indices; both sides reflect
+  // Per triangle: 1 if it belongs to a solar panel. Empty: not known, see panels.hpp.
+  std::vector<std::uint8_t> is_panel{};
 
   // Largest distance of a vertex from the TRF's origin.
   float radius_m() const {

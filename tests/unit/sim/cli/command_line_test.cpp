@@ -7,6 +7,7 @@
 
 #include "sim/cli/bench_command.hpp"
 #include "sim/cli/mesh_advice.hpp"
+#include "sim/world/sensor/effects.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -75,6 +76,12 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --model ''", 2, "--model: must be a path, not ''"},
         Refusal{"record --out ''", 2, "--out: must be a path, not ''"},
         Refusal{"bench --onnxruntime /dev", 2, "--onnxruntime: '/dev' is not a regular file"},
+        Refusal{"evaluate --effect fog=1", 2,
+                "--effect: effect 'fog' is unknown; the effects are: wrong_object, "},
+        Refusal{"evaluate --effect noise=50", 2, "must be a number from 0.01 to 20 times, not '50'"},
+        Refusal{"record --out x.tslr --effect plume", 2, "from 0.0001 to 0.5 of the rays, not ''"},
+        Refusal{"evaluate --effect noise=5,noise=4", 2, "effect noise is given twice"},
+        Refusal{"evaluate --paper --effect noise=5", 2, "--paper: sets --effect itself"},
         Refusal{"evaluate --paper --frozen 1", 2, "--paper: sets --frozen itself"},
         Refusal{"evaluate --paper --target magellan", 2, "--paper: sets --target itself"},
         Refusal{"evaluate --paper --frames 5", 2, "sets --frames itself"},
@@ -187,6 +194,32 @@ TEST(Evaluate, WritesARowWithAllEstimatorsForEachCondition) {
   }
 }
 
+// Verifies TS-SIL-300.
+TEST(Evaluate, TakesEffectsTogetherAndNamesThem) {
+  const Workplace here;
+  const std::string common = "evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model();
+  const Outcome outcome =
+      here.run(common + " --condition occluded --effect noise=5,rays=64 --json " + here.path("rows.json"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("effect: rays=64,noise=5\n"), std::string::npos) << outcome.output;
+  const auto rows = nlohmann::json::parse(content(here.path("rows.json"))).at("rows");
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].at("effect"), "rays=64,noise=5");
+  EXPECT_TRUE(rows[0].at("rcnn").at("error_below_3_expected").is_number());
+  EXPECT_TRUE(rows[0].at("rcnn").at("expected_over_real").is_number());
+}
+
+TEST(Effects, AreListedWithTheirRangesAndModels) {
+  const Workplace here;
+  for (const char* verb : {"evaluate", "record"}) {
+    const Outcome outcome = here.run(std::string(verb) + " --effect list");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_EQ(outcome.errors, "");
+    for (const EffectRow& row : effect_table())
+      EXPECT_NE(outcome.output.find(row.explanation), std::string::npos) << verb << " " << row.name;
+  }
+}
+
 TEST(Evaluate, WritesACsvFileAndAPage) {
   const Workplace here;
   const Outcome outcome = here.run("evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model() +
@@ -283,6 +316,22 @@ TEST(Record, NeedsNoModelForAMeshOfTheUsersOwn) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_NE(outcome.output.find("mine, nominal: 1 frame, "), std::string::npos) << outcome.output;
   EXPECT_GT(content(here.path("mine.tslr")).size(), 1000U);
+}
+
+// Verifies TS-SIL-300, TS-SIL-310.
+TEST(Record, ShowsWhatTheEffectsAdd) {
+  const Workplace here;
+  const std::string common = "record --target mine --mesh " + own_mesh(here) + " --sequences 1 --frames 2";
+  ASSERT_EQ(here.run(common + " --out plain.tslr").exit_code, 0);
+  ASSERT_EQ(here.run(common + " --effect rays=32 --out small.tslr").exit_code, 0);
+  ASSERT_EQ(here.run(common + " --effect false_returns=0.1 --out false.tslr").exit_code, 0);
+  const std::string plain = content(here.path("plain.tslr"));
+  EXPECT_LT(content(here.path("small.tslr")).size(), plain.size() / 8);
+  EXPECT_GT(content(here.path("false.tslr")).size(), 2 * plain.size()) << "a recording leaves out empty rays";
+  const Outcome refused = here.run(common + " --effect panel_turn=10 --out turned.tslr");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.errors.find("effect panel_turn: no solar panels are found on "), std::string::npos)
+      << refused.errors;
 }
 
 TEST(Train, RefusesAFileAsItsFolder) {

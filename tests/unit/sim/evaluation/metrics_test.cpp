@@ -75,6 +75,25 @@ TEST(LastFrame, SharesOfTrustedEstimatesCountRightAndWrongOnes) {
   EXPECT_EQ(last_frame_summary({}, 1, Estimator::kRcnn).count, 0U);
 }
 
+TEST(LastFrame, ExpectedErrorsAreComparedWithRealOnesWhereThereIsAnEstimate) {
+  std::vector<FrameResult> results{result_with(0, 0, 2.0, 40.0), result_with(1, 0, 4.0, 3.0),
+                                   result_with(2, 0, 30.0, 3.0), result_with(3, 0, 1.0, 3.0)};
+  const double expected_deg[] = {1.0, 1.0, 12.0, 5.0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    results[i].rcnn_predicted_rad = kRadPerDeg * expected_deg[i];
+    results[i].cnn_predicted_rad = kRadPerDeg * 7.0;
+  }
+  results[3].valid = false;
+  const ErrorSummary rcnn = last_frame_summary(results, 1, Estimator::kRcnn);
+  EXPECT_DOUBLE_EQ(rcnn.error_below_3_expected, 2.0 / 3.0);
+  EXPECT_NEAR(rcnn.expected_over_real, 14.0 / 36.0, 1e-12);
+  const ErrorSummary cnn = last_frame_summary(results, 1, Estimator::kCnn);
+  EXPECT_DOUBLE_EQ(cnn.error_below_3_expected, 2.0 / 3.0);
+  EXPECT_NEAR(cnn.expected_over_real, 21.0 / 46.0, 1e-12);
+  for (FrameResult& result : results) result.valid = false;
+  EXPECT_TRUE(std::isnan(last_frame_summary(results, 1, Estimator::kRcnn).error_below_3_expected));
+}
+
 TEST(ErrorSummary, MedianOfAnEvenCountIsTheMiddle) {
   EXPECT_DOUBLE_EQ(median({4.0, 1.0, 3.0, 100.0}), 3.5);
   EXPECT_DOUBLE_EQ(median({}), 0.0);

@@ -127,6 +127,19 @@ TEST_F(MonteCarlo, GivesTheBaselineTheLastFramesOfTheFirstSequences) {
   for (std::size_t i = 0; i < again.size(); ++i) EXPECT_TRUE(equal(result.frames[i], again[i])) << i;
 }
 
+// Verifies TS-SIL-310.
+TEST_F(MonteCarlo, WithAnEffectSeesTheSameMotionInOtherFrames) {
+  MonteCarloSettings with_effect = settings(2, 5);
+  const std::vector<FrameResult> plain = run(with_effect).frames;
+  with_effect.scenario.effects.dead_pixels = 0.5;
+  const std::vector<FrameResult> results = run(with_effect).frames;
+  ASSERT_EQ(results.size(), plain.size());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    EXPECT_EQ(results[i].truth.coeffs(), plain[i].truth.coeffs());
+    EXPECT_FALSE(equal(results[i], plain[i])) << i;
+  }
+}
+
 // Verifies TS-SIL-200.
 TEST_F(MonteCarlo, HasNoResultForALostFrameAndNoAttitudeForARepeatedOne) {
   MonteCarloSettings disturbed = settings(2, 5);

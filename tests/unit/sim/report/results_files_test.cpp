@@ -116,6 +116,29 @@ TEST(Disturbances, OfARunAreInItsJsonAndCsv) {
   EXPECT_EQ(fields_of(lines[4]).back(), "");
 }
 
+// Verifies TS-SIL-300, TS-SIL-310.
+TEST(Effects, OfARunAreInItsJsonAndCsv) {
+  Results results = sample_results();
+  const nlohmann::ordered_json plain = results_json(results)["rows"];
+  const std::string plain_csv = results_csv(results);
+  results.subjects[0].cells[0].effects = effects_from({"noise=5", "plume=0.01"});
+  results.subjects[0].cells[0].rcnn.error_below_3_expected = 0.75;
+  results.subjects[0].cells[0].rcnn.expected_over_real = 0.5;
+  const nlohmann::ordered_json rows = results_json(results)["rows"];
+  EXPECT_EQ(rows[0]["effect"], "plume=0.01,noise=5");
+  EXPECT_EQ(rows[0]["rcnn"]["error_below_3_expected"], 0.75);
+  EXPECT_EQ(rows[0]["rcnn"]["expected_over_real"], 0.5);
+  EXPECT_EQ(rows[0]["by_range_m"].size(), 8U);
+  EXPECT_TRUE(rows[0]["goal"].is_null()) << "the paper has no effects";
+  EXPECT_TRUE(rows[1]["effect"].is_null());
+  EXPECT_EQ(rows[1].dump(), plain[1].dump());
+  EXPECT_EQ(plain[1].count("by_range_m"), 0U);
+  const std::vector<std::string> lines = lines_of(results_csv(results));
+  EXPECT_EQ(fields_of(lines[0]).back(), "effect");
+  EXPECT_EQ(fields_of(lines[1]).back(), "plume=0.01,noise=5");
+  EXPECT_EQ(lines[4], lines_of(plain_csv)[4] + ",");
+}
+
 TEST(ResultsMarkdown, ShowsOursThePapersAndTheGoalWithCrcAndSeed) {
   const std::string text = results_markdown(sample_results());
   for (const char* part :

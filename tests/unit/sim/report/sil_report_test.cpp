@@ -45,7 +45,7 @@ TEST(RunJson, HasExactlyTheAgreedKeys) {
   std::string keys;
   for (const auto& [key, value] : json.items()) keys += key + " ";
   EXPECT_EQ(keys,
-            "target condition sequences disturbances rcnn cnn inference_us flight_heap_allocations "
+            "target condition sequences disturbances effect rcnn cnn inference_us flight_heap_allocations "
             "steps_missed frames_superseded trace_crc32 faults ");
   EXPECT_NEAR(json["rcnn"]["mean_deg"].get<double>(), 5.7296, 1e-3);
   EXPECT_NEAR(json["cnn"]["mean_deg"].get<double>(), 28.648, 1e-3);

@@ -294,5 +294,85 @@ TEST(FlashLidar, TheFieldOfViewHoldsTheWholeTargetAndStaysWithinTheSensorsLimits
   EXPECT_EQ(fov_urad(1000.0, 20.0), gnc::kMaxFov_urad);
 }
 
+// Two plates side by side, the right one `step_m` farther away. The plane between them contains the
+// boresight.
+std::unique_ptr<gnc::RangeImage> exposed_step(float step_m, double footprint_rays) {
+  TriangleMesh mesh = {
+      "step", {{-9, 0, -9}, {0, 0, -9}, {0, 0, 9}, {-9, 0, 9}}, {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
+  for (const Eigen::Vector3f& v : {Eigen::Vector3f(0, step_m, -9), Eigen::Vector3f(9, step_m, -9),
+                                   Eigen::Vector3f(9, step_m, 9), Eigen::Vector3f(0, step_m, 9)}) {
+    mesh.vertices_trf_m.push_back(v);
+  }
+  SensorSettings settings;
+  settings.noise = false;
+  settings.footprint_rays = footprint_rays;
+  auto frame = std::make_unique<gnc::RangeImage>();
+  FlashLidar(mesh).expose(truth(50.0), settings, 1.0, 1, *frame);
+  return frame;
+}
+
+// Verifies TS-SIL-300. Of the three casts across a footprint of three rays, none, one, two or three meet the
+// farther plate.
+TEST(FlashLidar, AFootprintMixesTheRangesOfTwoSurfaces) {
+  const auto mixed = exposed_step(0.9F, 3.0);
+  const int row = 64 * 128;
+  EXPECT_NEAR(mixed->ranges[row + 62] * kCount_m, 50.0, 0.005);
+  EXPECT_NEAR(mixed->ranges[row + 63] * kCount_m, 50.3, 0.005);
+  EXPECT_NEAR(mixed->ranges[row + 64] * kCount_m, 50.6, 0.005);
+  EXPECT_NEAR(mixed->ranges[row + 65] * kCount_m, 50.9, 0.005);
+  const auto sharp = exposed_step(0.9F, 0.0);
+  EXPECT_NEAR(sharp->ranges[row + 63] * kCount_m, 50.0, 0.005);
+  EXPECT_NEAR(sharp->ranges[row + 64] * kCount_m, 50.9, 0.005);
+  // Farther apart than the pulse is long: the first return.
+  const auto apart = exposed_step(4.0F, 3.0);
+  EXPECT_NEAR(apart->ranges[row + 63] * kCount_m, 50.0, 0.005);
+  EXPECT_NEAR(apart->ranges[row + 64] * kCount_m, 50.0, 0.005);
+  EXPECT_NEAR(apart->ranges[row + 65] * kCount_m, 54.0, 0.005);
+}
+
+// Verifies TS-SIL-300. A square whose edge runs between two rays keeps its rays; where its corner or less
+// than half of the footprint meets it, the return is lost.
+TEST(FlashLidar, AFootprintThatMeetsTooLittleIsLost) {
+  SensorSettings settings;
+  settings.noise = false;
+  settings.footprint_rays = 3.0;
+  auto frame = std::make_unique<gnc::RangeImage>();
+  // A swath of 1.28 m: rays 1 cm apart at the square, which covers 60 x 60 of them.
+  FlashLidar(square(0.3)).expose(truth(50.0), settings, 1.28, 1, *frame);
+  const auto has_return = [&](int row, int column) { return frame->ranges[row * 128 + column] != 0; };
+  EXPECT_TRUE(has_return(64, 64));
+  EXPECT_TRUE(has_return(64, 34));   // six of nine casts meet the square
+  EXPECT_FALSE(has_return(64, 33));  // three of nine
+  EXPECT_FALSE(has_return(34, 34));  // four of nine
+  EXPECT_TRUE(has_return(35, 34));
+}
+
+// Verifies TS-SIL-300.
+TEST(FlashLidar, RowsOneAfterTheOtherSeeTheTargetAsItTurns) {
+  const FlashLidar lidar(box(1.0F));
+  SensorSettings settings;
+  settings.noise = false;
+  settings.scan_time_s = 0.5;
+  FrameTruth turning = truth(30.0, Eigen::Quaterniond(0.9, 0.1, 0.3, -0.2).normalized());
+  turning.rate_lrf_rad_s = {0.2, -0.1, 0.25};
+  auto scanned = std::make_unique<gnc::RangeImage>();
+  auto flash = std::make_unique<gnc::RangeImage>();
+  lidar.expose(turning, settings, 4.0, 1, *scanned);
+  settings.scan_time_s = 0.0;
+  for (const int row : {40, 63, 64, 90}) {
+    FrameTruth then = turning;
+    const double later_s = 0.5 * ((row + 0.5) / 128.0 - 0.5);
+    const double angle_rad = turning.rate_lrf_rad_s.norm() * later_s;
+    then.q_lrf_trf = Eigen::AngleAxisd(angle_rad, turning.rate_lrf_rad_s.normalized()) * turning.q_lrf_trf;
+    lidar.expose(then, settings, 4.0, 1, *flash);
+    int returns = 0;
+    for (int i = row * 128; i < (row + 1) * 128; ++i) {
+      EXPECT_NEAR(scanned->ranges[i], flash->ranges[i], 1.0) << row << ' ' << i;
+      returns += flash->ranges[i] != 0;
+    }
+    EXPECT_GT(returns, 20) << row;
+  }
+}
+
 }  // namespace
 }  // namespace tumblesight::sim

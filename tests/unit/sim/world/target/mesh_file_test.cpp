@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -96,6 +97,12 @@ std::vector<std::vector<float>> wedge_triangles(float scale = 1.0F) {
          buffer_uri + R"(","byteLength":72}]})";
 }
 
+// Two triangles, the second one of another material.
+[[maybe_unused]] std::string obj_with_materials(const std::string& second) {
+  return "mtllib file.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl bus\nf 1 2 3\nusemtl " + second +
+         "\nf 1 2 4\n";
+}
+
 class MeshFile : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -177,6 +184,20 @@ TEST_F(MeshFile, StlIsReadWithBothUpAxesAndJoined) {
 TEST_F(MeshFile, ScaleTurnsMillimetresIntoMetres) {
   const std::string path = write("mm.stl", stl(wedge_triangles(1000.0F)));
   expect_box(load_mesh_file(path, {MeshUp::kZ, 0.001}), {0.0F, 0.0F, 0.0F}, {1.0F, 2.0F, 3.0F});
+}
+
+// Verifies TS-SIL-300.
+TEST_F(MeshFile, MarksThePartsWhoseMaterialIsNamedAPanel) {
+  (void)write("file.mtl", "newmtl bus\nnewmtl Solar_Cells\nnewmtl gold\n");
+  const TriangleMesh named = load_mesh_file(write("named.obj", obj_with_materials("Solar_Cells")));
+  ASSERT_EQ(named.is_panel.size(), 2U);
+  EXPECT_EQ(named.is_panel[0] + named.is_panel[1], 1);
+  const std::size_t panel = named.is_panel[0] != 0 ? 0 : 1;
+  float highest = 0.0F;  // the file's z is the TRF's -y
+  for (const std::uint32_t corner : named.triangles[panel])
+    highest = std::max(highest, -named.vertices_trf_m[corner].y());
+  EXPECT_EQ(highest, 1.0F);
+  EXPECT_TRUE(load_mesh_file(write("plain.obj", obj_with_materials("gold"))).is_panel.empty());
 }
 
 TEST_F(MeshFile, ObjIsRead) {

@@ -1,0 +1,249 @@
+#include "sim/world/sensor/effects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/world/sensor/effect_functions.hpp"
+#include "sim/world/sensor/frame_truth.hpp"
+#include "sim/world/sensor/sensor_settings.hpp"
+#include "sim/world/target/panels.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+// A parameter of the sensor takes the strength as it is.
+template <auto member>
+void set(double strength, SensorSettings& settings) {
+  settings.*member = static_cast<std::remove_reference_t<decltype(settings.*member)>>(strength);
+}
+
+// A seed that belongs to the effect, whatever its place in the table (FNV-1a).
+std::uint64_t seed_of(const EffectRow& row) {
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  for (const char* c = row.name; *c != '\0'; ++c) {
+    hash = (hash ^ static_cast<unsigned char>(*c)) * 0x100000001B3ULL;
+  }
+  return hash;
+}
+
+EffectRandom random_of(const EffectRow& row, std::uint64_t noise_seed, const FrameTruth& truth) {
+  const std::uint64_t seed = seed_of(row);
+  return {Random(mix(noise_seed, seed)), Random(mix(truth.scene_seed, seed))};
+}
+
+// Calls visit(row, function, strength) for every effect that is given and acts through a `Function`.
+template <class Function, class Visitor>
+void for_each_given(const Effects& effects, Visitor&& visit) {
+  for (const EffectRow& row : effect_table()) {
+    const auto* function = std::get_if<Function>(&row.apply);
+    if (function != nullptr && effects.*row.strength != 0.0) visit(row, *function, effects.*row.strength);
+  }
+}
+
+const EffectRow& row_named(const std::string& name) {
+  std::string known;
+  for (const EffectRow& row : effect_table()) {
+    if (name == row.name) return row;
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+  }
+  throw std::invalid_argument("effect '" + name + "' is unknown; the effects are: " + known);
+}
+
+std::string range_text(const EffectRow& row) {
+  const std::string range = fmt::format("{:g} to {:g}", row.lowest, row.highest);
+  return *row.unit == '\0' ? range : range + " " + row.unit;
+}
+
+bool must_be_whole(const EffectRow& row) {
+  return row.strength == &Effects::rays || row.strength == &Effects::part_missing ||
+         row.strength == &Effects::wrong_object;
+}
+
+double strength_from(const EffectRow& row, const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool number = error == std::errc{} && end == text.data() + text.size();
+  const bool whole = !must_be_whole(row) || value == std::floor(value);
+  if (number && whole && value != 0.0 && value >= row.lowest && value <= row.highest) return value;
+  throw std::invalid_argument(fmt::format("effect {}: the strength must be a {} from {}{}, not '{}'",
+                                          row.name, must_be_whole(row) ? "whole number" : "number",
+                                          range_text(row), row.lowest < 0.0 ? ", and not 0" : "", text));
+}
+
+}  // namespace
+
+// clang-format off
+const std::vector<EffectRow>& effect_table() {
+  static const std::vector<EffectRow> kTable{
+      {"wrong_object", &Effects::wrong_object, "", 1, 1,
+       "another spacecraft: each sequence shows one of the other shipped targets",
+       "the shipped meshes", other_targets},
+      {"sphere", &Effects::sphere, "target radii", 0.1, 1,
+       "a sphere of this radius in place of the target",
+       "the body without any attitude", a_sphere},
+      {"part_missing", &Effects::part_missing, "parts", 1, 20,
+       "the outermost parts of a sixth to a quarter of the target's radius across are missing",
+       "a change that the model does not know", without_parts},
+      {"panel_turn", &Effects::panel_turn, "deg", -90, 90,
+       "the solar panels are turned from the model about their hinges",
+       "drives that follow the Sun", with_turned_panels},
+      {"rays", &Effects::rays, "a side", 16, 128,
+       "a sensor of so many rays over the same field of view",
+       "frame format", set<&SensorSettings::rays>},
+      {"fixed_fov", &Effects::fixed_fov, "times", 0.2, 2,
+       "a fixed field of view, this many times the one that fits the target at 20 m, up to 40 deg",
+       "a sensor without zoom optics", set<&SensorSettings::fixed_fov>},
+      {"footprint", &Effects::footprint, "rays", 0.1, 4,
+       "a beam this wide: mixed ranges where it meets two surfaces within 1.5 m, lost ones at edges",
+       "Tuley, Vandapel, Hebert, ICRA 2005 (mixed pixels)", set<&SensorSettings::footprint_rays>},
+      {"scan_time", &Effects::scan_time, "s", 0.01, 2,
+       "the rows are exposed one after the other over this time, the middle one at the frame's time",
+       "scanning LiDAR", set<&SensorSettings::scan_time_s>},
+      {"background", &Effects::background, "of the view", 0.01, 1,
+       "a surface 30 m behind the target fills one side of the view: the Earth, a large craft",
+       "geometry", add_background},
+      {"debris", &Effects::debris, "m", 0.1, 10,
+       "a sphere of this diameter near the target",
+       "geometry", add_debris},
+      {"plume", &Effects::plume, "of the rays", 0.0001, 0.5,
+       "particles within 1.5 radii around the target return these rays",
+       "thin uniform scatterers, first return", add_plume},
+      {"panel_lobe", &Effects::panel_lobe, "deg", 1, 90,
+       "solar panels return light only within this angle of their normal",
+       "specular part alone (Phong, CACM 1975)", limit_panel_lobe},
+      {"lobe", &Effects::lobe, "deg", 1, 90,
+       "every surface returns light only within this angle of its normal",
+       "specular part alone (Phong, CACM 1975)", limit_lobe},
+      {"cosine", &Effects::cosine, "", 0.1, 20,
+       "a return is detected with this power of the cosine of the incidence",
+       "Lambert 1, glossier above (Phong, CACM 1975)", thin_by_cosine},
+      {"link_budget", &Effects::link_budget, "photoelectrons", 0.01, 1000,
+       "mean signal of a diffuse surface facing the sensor at 100 m; less light, fewer detections",
+       "LiDAR equation, Poisson detection (Degnan, J. Geodyn. 34, 2002)", detect_photons},
+      {"retroreflectors", &Effects::retroreflectors, "rays", 0.5, 20,
+       "reflectors at the target's six extreme corners bloom over this radius",
+       "saturated detector, crosstalk to its neighbours", add_retroreflectors},
+      {"range_walk", &Effects::range_walk, "m", -2, 2,
+       "weak returns are late by up to this, with 1 - cosine of the incidence",
+       "leading-edge threshold", add_range_walk},
+      {"range_bias", &Effects::range_bias, "m", -5, 5,
+       "every range is wrong by this", "constant delay", add_range_bias},
+      {"range_scale", &Effects::range_scale, "of the range", -0.1, 0.1,
+       "every range is wrong by this share of itself", "clock rate", scale_ranges},
+      {"fixed_pattern", &Effects::fixed_pattern, "m", 0.001, 2,
+       "every pixel has a constant error of its own with this standard deviation",
+       "delays of the pixels' timers", add_fixed_pattern},
+      {"dropout", &Effects::dropout, "of the returns", 0.0001, 0.99,
+       "these returns are missed at random", "paper, degraded sensor", set<&SensorSettings::dropout_share>},
+      {"outliers", &Effects::outliers, "of the returns", 0.0001, 0.99,
+       "these returns are wrong by 5 sigma to 20 m", "multipath", set<&SensorSettings::outlier_share>},
+      {"noise", &Effects::noise, "times", 0.01, 20,
+       "the range noise is this many times the paper's", "paper, sensor table", set<&SensorSettings::noise_factor>},
+      {"false_returns", &Effects::false_returns, "of the rays", 0.0001, 0.5,
+       "these rays report a place anywhere in the range gate, new in every frame",
+       "dark counts and sunlight at a constant rate", add_false_returns},
+      {"hot_pixels", &Effects::hot_pixels, "of the pixels", 0.0001, 0.5,
+       "these pixels report dark counts, 100 m away on average, unless the return is nearer",
+       "first count of a constant rate", add_hot_pixels},
+      {"dead_pixels", &Effects::dead_pixels, "of the pixels", 0.0001, 0.9,
+       "these pixels never report anything", "detector defects", add_dead_pixels},
+      {"dead_lines", &Effects::dead_lines, "of the lines", 0.001, 0.9,
+       "these rows and columns never report anything", "defects of the read-out", add_dead_lines},
+  };
+  return kTable;
+}
+// clang-format on
+
+Effects effects_from(const std::vector<std::string>& texts) {
+  Effects effects;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    const EffectRow& row = row_named(text.substr(0, equals));
+    if (effects.*row.strength != 0.0)
+      throw std::invalid_argument(fmt::format("effect {} is given twice", row.name));
+    effects.*row.strength = strength_from(row, equals == std::string::npos ? "" : text.substr(equals + 1));
+  }
+  return effects;
+}
+
+std::string to_string(const Effects& effects) {
+  std::string text;
+  for (const EffectRow& row : effect_table()) {
+    if (effects.*row.strength == 0.0) continue;
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", row.name, effects.*row.strength);
+  }
+  return text;
+}
+
+std::string effect_explanations() {
+  std::string text;
+  for (const EffectRow& row : effect_table()) {
+    text += fmt::format("  {:<16} {}\n  {:<16} {}\n  {:<16} model: {}\n", row.name, range_text(row), "",
+                        row.explanation, "", row.source);
+  }
+  return text;
+}
+
+std::vector<Panel> panels_for_effect(const char* effect, const TriangleMesh& mesh) {
+  std::vector<Panel> panels = find_panels(mesh);
+  if (!panels.empty()) return panels;
+  throw std::invalid_argument(
+      fmt::format("effect {}: no solar panels are found on {}; in an OBJ, glTF or GLB file, give their "
+                  "material a name with \"panel\" in it",
+                  effect, mesh.name));
+}
+
+std::vector<TriangleMesh> observed_bodies(const Effects& effects, const std::string& target,
+                                          const TriangleMesh& mesh) {
+  std::vector<TriangleMesh> bodies{mesh};
+  for_each_given<BodyEffect>(effects, [&](const EffectRow&, BodyEffect apply, double strength) {
+    std::vector<TriangleMesh> changed;
+    for (const TriangleMesh& body : bodies) {
+      const std::vector<TriangleMesh> more = apply(strength, target, body);
+      changed.insert(changed.end(), more.begin(), more.end());
+    }
+    bodies = std::move(changed);
+  });
+  if (effects.panel_lobe == 0.0) return bodies;
+  for (TriangleMesh& body : bodies) {
+    const std::vector<Panel> panels = panels_for_effect("panel_lobe", body);
+    body.is_panel.assign(body.triangles.size(), 0);
+    for (const Panel& panel : panels) {
+      for (const std::size_t triangle : panel.triangles) body.is_panel[triangle] = 1;
+    }
+  }
+  return bodies;
+}
+
+SensorSettings with_effects(SensorSettings settings, const Effects& effects) {
+  settings.effects = effects;
+  for_each_given<SensorEffect>(
+      effects, [&](const EffectRow&, SensorEffect apply, double strength) { apply(strength, settings); });
+  return settings;
+}
+
+bool need_surfaces(const Effects& effects) {
+  return effects.panel_lobe != 0.0 || effects.lobe != 0.0 || effects.cosine != 0.0 ||
+         effects.link_budget != 0.0 || effects.range_walk != 0.0;
+}
+
+void apply_to_returns(const Effects& effects, const Flash& flash, std::uint64_t noise_seed, RangeGrid& grid) {
+  for_each_given<ReturnEffect>(effects, [&](const EffectRow& row, ReturnEffect apply, double strength) {
+    EffectRandom random = random_of(row, noise_seed, flash.truth);
+    apply(strength, flash, random, grid);
+  });
+}
+
+void apply_to_readings(const Effects& effects, const FrameTruth& truth, int rays, std::uint64_t noise_seed,
+                       std::vector<double>& range_m) {
+  for_each_given<ReadingEffect>(effects, [&](const EffectRow& row, ReadingEffect apply, double strength) {
+    EffectRandom random = random_of(row, noise_seed, truth);
+    apply(strength, rays, random, range_m);
+  });
+}
+
+}  // namespace tumblesight::sim

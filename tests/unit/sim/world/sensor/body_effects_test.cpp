@@ -1,0 +1,136 @@
+// Verifies TS-SIL-300. The bodies that are observed in place of the model.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "sim/world/math/angles.hpp"
+#include "sim/world/scenario/condition.hpp"
+#include "sim/world/sensor/effects.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
+#include "sim/world/target/panels.hpp"
+#include "sim/world/target/primitives.hpp"
+#include "sim/world/target/targets.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr const char* kNear = "near_shoemaker";
+
+std::vector<TriangleMesh> bodies(const char* effect, const std::string& target = kNear) {
+  return observed_bodies(effects_from({effect}), target, target_by_name(target));
+}
+
+std::string refusal(const char* effect, const TriangleMesh& mesh) {
+  try {
+    (void)observed_bodies(effects_from({effect}), "mine", mesh);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(BodyEffects, WithoutThemTheBodyIsTheMesh) {
+  const TriangleMesh mesh = target_by_name(kNear);
+  const std::vector<TriangleMesh> same = observed_bodies({}, kNear, mesh);
+  ASSERT_EQ(same.size(), 1U);
+  EXPECT_EQ(same.front().triangles, mesh.triangles);
+  EXPECT_EQ(same.front().vertices_trf_m, mesh.vertices_trf_m);
+}
+
+TEST(BodyEffects, PanelsTurnAboutTheirHingesAndNothingElseMoves) {
+  const TriangleMesh before = target_by_name(kNear);
+  const TriangleMesh after = bodies("panel_turn=10").front();
+  ASSERT_EQ(after.triangles.size(), before.triangles.size());
+  for (std::size_t i = 0; i < before.triangles.size(); ++i) {
+    if (before.is_panel[i] != 0) continue;
+    EXPECT_EQ(after.triangles[i], before.triangles[i]);
+  }
+  const std::vector<Panel> flat = find_panels(before), turned = find_panels(after);
+  ASSERT_EQ(flat.size(), 4U);
+  ASSERT_EQ(turned.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_LT((flat[i].centre_trf_m - turned[i].centre_trf_m).norm(), 1e-5);
+    EXPECT_LT((flat[i].hinge_trf - turned[i].hinge_trf).norm(), 1e-5);
+    const double cosine = std::abs(flat[i].normal_trf.dot(turned[i].normal_trf));
+    EXPECT_NEAR(kDegPerRad * std::acos(cosine), 10.0, 1e-3);
+  }
+}
+
+// A bus of radius 2 m with instruments: the parts that can be missing are 0.33 to 0.5 m across.
+TEST(BodyEffects, TheOutermostPartsAreMissing) {
+  const auto cube = [](float edge, float x, float y) {
+    return placed(box({edge, edge, edge}), Eigen::Isometry3f(Eigen::Translation3f(x, y, 0.0F)));
+  };
+  const TriangleMesh bus = box({2.3F, 2.3F, 2.3F});
+  ASSERT_NEAR(bus.radius_m(), 2.0F, 0.01F);
+  const TriangleMesh parts[] = {bus, cube(0.25F, 1.3F, 0.0F), cube(0.25F, 0.0F, 1.4F),  // 0.43 m across
+                                cube(0.15F, 0.0F, -1.4F), cube(0.35F, -1.4F, 0.0F)};    // 0.26 m, 0.61 m
+  TriangleMesh whole;
+  for (const TriangleMesh& part : parts) append(whole, part);
+  const auto missing_parts = [&](const char* effect) {
+    const TriangleMesh left = observed_bodies(effects_from({effect}), "mine", whole).front();
+    const std::set<std::array<std::uint32_t, 3>> kept(left.triangles.begin(), left.triangles.end());
+    std::set<std::size_t> missing;
+    for (std::size_t i = 0; i < whole.triangles.size(); ++i) {
+      if (kept.count(whole.triangles[i]) == 0) missing.insert(i / 12);
+    }
+    return missing;
+  };
+  EXPECT_EQ(missing_parts("part_missing=1"), std::set<std::size_t>{2});
+  EXPECT_EQ(missing_parts("part_missing=2"), (std::set<std::size_t>{1, 2}));
+  EXPECT_NE(refusal("part_missing=3", whole).find("only 2 separate parts"), std::string::npos);
+  const TriangleMesh without = bodies("part_missing=1").front();
+  EXPECT_LT(without.triangles.size(), target_by_name(kNear).triangles.size());
+  EXPECT_EQ(find_panels(without).size(), 4U);
+}
+
+TEST(BodyEffects, TheWrongObjectIsEachOtherSpacecraft) {
+  const auto names = [](const std::string& target) {
+    std::set<std::string> found;
+    for (const TriangleMesh& body : bodies("wrong_object=1", target)) found.insert(body.name);
+    return found;
+  };
+  EXPECT_EQ(names(kNear), (std::set<std::string>{"magellan", "sacd_aquarius", "sacd_aquarius_stowed"}));
+  EXPECT_EQ(names("sacd_aquarius"), (std::set<std::string>{"near_shoemaker", "magellan"}));
+}
+
+TEST(BodyEffects, SequencesShowEachOfTheBodies) {
+  const FlashLidar both(std::vector<TriangleMesh>{box({1.0F, 1.0F, 1.0F}), box({3.0F, 3.0F, 3.0F})});
+  std::set<double> nearest_m;
+  for (std::uint64_t sequence = 0; sequence < 20; ++sequence) {
+    FrameTruth truth{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), 30.0};
+    truth.scene_seed = sequence;
+    const RangeGrid grid = both.true_ranges(truth, 32, 4.0);
+    const double range_m = *std::min_element(grid.range_m.begin(), grid.range_m.end());
+    nearest_m.insert(std::round(10.0 * range_m) / 10.0);
+    EXPECT_EQ(both.true_ranges(truth, 32, 4.0).range_m, grid.range_m);
+  }
+  EXPECT_EQ(nearest_m, (std::set<double>{28.5, 29.5}));
+}
+
+TEST(BodyEffects, ASphereHasItsRadiusEverywhere) {
+  const float radius_m = target_by_name(kNear).radius_m();
+  for (const auto& [effect, factor] : {std::pair{"sphere=1", 1.0F}, std::pair{"sphere=0.5", 0.5F}}) {
+    const TriangleMesh sphere = bodies(effect).front();
+    for (const Eigen::Vector3f& v : sphere.vertices_trf_m) EXPECT_NEAR(v.norm(), factor * radius_m, 1e-4F);
+    // A closed surface of 48 rings is at most 0.2 % smaller than the sphere.
+    std::vector<std::size_t> all(sphere.triangles.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    EXPECT_NEAR(area_m2(sphere, all) / (4.0 * kPi * factor * radius_m * factor * radius_m), 1.0, 0.003);
+  }
+}
+
+TEST(BodyEffects, APanelEffectNeedsPanels) {
+  for (const char* effect : {"panel_turn=10", "panel_lobe=40"}) {
+    EXPECT_NE(refusal(effect, box({1.0F, 1.0F, 1.0F})).find("no solar panels are found"), std::string::npos);
+  }
+  EXPECT_EQ(bodies("panel_lobe=40").front().is_panel, target_by_name(kNear).is_panel);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
