@@ -1,7 +1,5 @@
 #include "gnc/lidar/depth_loops.hpp"
 
-#include "gnc/lidar/depth_loops_sets.hpp"
-
 namespace tumblesight::gnc {
 
 const DepthLoops& fastest_depth_loops(InstructionSet set) {

@@ -56,4 +56,10 @@ struct DepthLoops {
 // instruction set before it in kInstructionSets.
 const DepthLoops& fastest_depth_loops(InstructionSet set);
 
+// The tables, one source file per instruction set. The CMakeLists.txt of this folder decides which of them a
+// build contains.
+namespace depth_loops {
+extern const DepthLoops kPortable, kAvx2, kAvx512;
+}  // namespace depth_loops
+
 }  // namespace tumblesight::gnc

@@ -1,5 +1,4 @@
 #include "gnc/lidar/depth_loops_plain.hpp"
-#include "gnc/lidar/depth_loops_sets.hpp"
 
 namespace tumblesight::gnc::depth_loops {
 

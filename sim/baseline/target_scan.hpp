@@ -8,7 +8,7 @@
 
 #include "gnc/lidar/range_image.hpp"
 #include "sim/world/sensor/range_grid.hpp"
-#include "sim/world/sensor/range_noise.hpp"
+#include "sim/world/sensor/ray_effects.hpp"
 
 namespace tumblesight::sim {
 

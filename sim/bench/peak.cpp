@@ -4,8 +4,6 @@
 #include <chrono>
 #include <cstdint>
 
-#include "sim/bench/peak/sets.hpp"
-
 namespace tumblesight::sim {
 namespace {
 

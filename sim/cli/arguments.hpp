@@ -99,4 +99,14 @@ void require_folder(const std::string& option, const std::string& path);
 // behind.
 void require_writable(const std::string& option, const std::string& path);
 
+// The layout of help texts (help_formatter.cpp): descriptions are wrapped to a terminal of 80 columns.
+inline constexpr std::size_t kHelpWidth = 80;  // columns
+
+class HelpFormatter final : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(26); }
+  std::string make_option_desc(const CLI::Option* option) const override;
+  std::string make_subcommand(const CLI::App* command) const override;
+};
+
 }  // namespace tumblesight::sim

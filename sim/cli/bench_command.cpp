@@ -1,4 +1,3 @@
-#include "sim/cli/bench_command.hpp"
 
 #include <fmt/format.h>
 

@@ -34,4 +34,9 @@ void refuse_options_set_by_paper(const CLI::App& command);
 // All settings except the conditions.
 ExperimentSettings experiment_settings(const EvaluateArguments& arguments);
 
+// --paper: every table and figure of the paper, for every target that has a model. Writes results.md,
+// results.csv, results.json and report.html after every subject, so that an interrupted run keeps what it has
+// measured.
+void evaluate_paper(const EvaluateArguments& arguments);
+
 }  // namespace tumblesight::sim

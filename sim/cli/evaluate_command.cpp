@@ -6,7 +6,6 @@
 
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/evaluate_arguments.hpp"
-#include "sim/cli/evaluate_paper.hpp"
 #include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"

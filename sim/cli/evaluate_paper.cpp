@@ -1,5 +1,3 @@
-#include "sim/cli/evaluate_paper.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -7,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/cli/evaluate_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/evaluation/paper_plan.hpp"
 #include "sim/report/results_files.hpp"

@@ -1,7 +1,6 @@
-#include "sim/cli/help_formatter.hpp"
-
 #include <sstream>
 
+#include "sim/cli/arguments.hpp"
 #include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {

@@ -10,7 +10,7 @@
 
 #include "cmake/version.hpp"
 #include "gnc/rcnn/model_image.hpp"
-#include "sim/cli/help_formatter.hpp"
+#include "sim/cli/arguments.hpp"
 #include "sim/cli/verbs.hpp"
 #ifdef TUMBLESIGHT_HAS_SIL
 #include "hal/dds/idl/icd_hash.hpp"

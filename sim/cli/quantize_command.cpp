@@ -1,4 +1,3 @@
-#include "sim/cli/quantize_command.hpp"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "sim/cli/arguments.hpp"
-#include "sim/cli/quantize_command.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/stage.hpp"

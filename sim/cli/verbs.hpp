@@ -2,7 +2,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
+
+#include "sim/model/model_file.hpp"
+#include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
 
@@ -30,8 +36,23 @@ void add_train_command(CLI::App& app);
 // `tumblesight quantize`: makes the fixed-point model image that flies from a float32 one.
 void add_quantize_command(CLI::App& app);
 
+inline constexpr int kCalibrationSequences = 200;
+
+// Shows its progress and prints the quantization error of each layer. Throws as quantize_to_file does.
+void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
+                         const std::string& out);
+
 // `tumblesight bench`: speed of the flight network in both numerics and with every instruction set, compared
 // with other runtimes.
 void add_bench_command(CLI::App& app);
+
+// The images of a target that are measured. `float32` and `model` hold the same one.
+struct BenchImages {
+  std::vector<std::uint8_t> fixed;
+  std::vector<std::uint8_t> float32;
+  std::unique_ptr<Float32Model> model;
+};
+// Reads both before anything is measured. Throws as read_model_bytes and read_float32_model do.
+BenchImages read_bench_images(const std::string& folder, const std::string& target);
 
 }  // namespace tumblesight::sim

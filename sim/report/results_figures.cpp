@@ -1,11 +1,10 @@
-#include "sim/report/results_figures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "sim/report/colours.hpp"
 #include "sim/report/error_figures.hpp"
+#include "sim/report/page.hpp"
 
 namespace tumblesight::sim {
 namespace {

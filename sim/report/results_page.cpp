@@ -5,7 +5,6 @@
 #include "sim/report/colours.hpp"
 #include "sim/report/error_figures.hpp"
 #include "sim/report/page.hpp"
-#include "sim/report/results_figures.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/svg.hpp"

@@ -1,5 +1,3 @@
-#include "sim/report/run_figures.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "sim/report/charts.hpp"
 #include "sim/report/colours.hpp"
 #include "sim/report/error_figures.hpp"
+#include "sim/report/page.hpp"
 #include "sim/report/picture.hpp"
 #include "sim/world/math/angles.hpp"
 

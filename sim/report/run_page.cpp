@@ -8,7 +8,6 @@
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/page.hpp"
 #include "sim/report/results_tables.hpp"
-#include "sim/report/run_figures.hpp"
 #include "sim/report/svg.hpp"
 #include "sim/terminal/text.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <immintrin.h>
 
-#include "sim/bench/peak/sets.hpp"
+#include "sim/bench/peak.hpp"
 
 namespace tumblesight::sim::peak {
 namespace {

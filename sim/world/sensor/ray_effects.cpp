@@ -8,6 +8,9 @@
 namespace tumblesight::sim {
 namespace {
 
+constexpr double kMinError_sigma = 5.0;
+constexpr double kMaxError_m = 20.0;
+
 // Rounded to the sensor's Q9.7 counts; 0 (no return) outside (0, gnc::kMaxRange_m].
 std::uint16_t to_counts(double range_m) {
   if (!(range_m > 0.0) || range_m > gnc::kMaxRange_m) return 0;
@@ -32,6 +35,36 @@ double measured_range_m(double true_range_m, const std::vector<RayEffect>& effec
 }
 
 }  // namespace
+
+// A return that the receiver misses, at random and independent from ray to ray.
+AfterEffect drop_out(const SensorSettings& settings, Random& random, double& range_m) {
+  if (!(settings.dropout_share > 0.0) || random.uniform() >= settings.dropout_share) {
+    return AfterEffect::kContinue;
+  }
+  range_m = kNoReturn_m;
+  return AfterEffect::kFinal;
+}
+
+// A return whose range is wrong by 5 sigma to 20 m (uniform), nearer or farther with equal probability. It
+// replaces the range noise of its ray.
+AfterEffect add_outlier(const SensorSettings& settings, Random& random, double& range_m) {
+  if (!(settings.outlier_share > 0.0) || random.uniform() >= settings.outlier_share) {
+    return AfterEffect::kContinue;
+  }
+  const double sigma_m = settings.noise ? settings.noise_factor * range_sigma_m(range_m) : 0.0;
+  const double error_m = random.uniform(std::min(kMinError_sigma * sigma_m, kMaxError_m), kMaxError_m);
+  range_m += random.uniform() < 0.5 ? -error_m : error_m;
+  return AfterEffect::kFinal;
+}
+
+double range_sigma_m(double range_m) {
+  return 0.1 + 0.01 * range_m;
+}
+
+AfterEffect add_range_noise(const SensorSettings& settings, Random& random, double& range_m) {
+  if (settings.noise) range_m += settings.noise_factor * range_sigma_m(range_m) * random.normal();
+  return AfterEffect::kContinue;
+}
 
 const std::vector<RayEffect>& ray_effects() {
   static const std::vector<RayEffect> kEffects{

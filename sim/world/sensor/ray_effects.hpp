@@ -37,6 +37,10 @@ struct RayEffect {
   ActsOn acts_on;
 };
 
+// One standard deviation of a measured range: 0.1 m + 0.01 range, Gaussian along the ray, independent from
+// ray to ray (paper, sensor table).
+double range_sigma_m(double range_m);
+
 AfterEffect drop_out(const SensorSettings& settings, Random& random, double& range_m);
 AfterEffect add_outlier(const SensorSettings& settings, Random& random, double& range_m);
 AfterEffect add_range_noise(const SensorSettings& settings, Random& random, double& range_m);

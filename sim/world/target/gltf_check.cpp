@@ -1,5 +1,3 @@
-#include "sim/world/target/gltf_check.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -10,6 +8,8 @@
 #include <set>
 #include <stdexcept>
 #include <vector>
+
+#include "sim/world/target/mesh_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

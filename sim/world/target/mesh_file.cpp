@@ -20,8 +20,6 @@
 #include <assimp/Importer.hpp>
 #endif
 
-#include "sim/world/target/gltf_check.hpp"
-
 namespace tumblesight::sim {
 
 namespace {

@@ -38,4 +38,11 @@ TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& opti
 // "y" or "z"; throws std::invalid_argument otherwise.
 MeshUp mesh_up_from(const std::string& name);
 
+// Checks of glTF 2.0 files before Assimp reads them (gltf_check.cpp). Assimp trusts their counts: it turns a
+// strip without points into four billion triangles and reserves as much memory as a header claims. They check
+// the JSON of the file (in a GLB file: its first chunk) and throw std::runtime_error that says what is wrong,
+// without the name of the file.
+void check_gltf(const std::string& path);
+void check_glb(const std::string& path);
+
 }  // namespace tumblesight::sim

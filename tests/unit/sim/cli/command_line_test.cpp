@@ -5,8 +5,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "sim/cli/bench_command.hpp"
 #include "sim/cli/mesh_advice.hpp"
+#include "sim/cli/verbs.hpp"
 #include "sim/world/sensor/effects.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 

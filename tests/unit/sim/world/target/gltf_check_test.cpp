@@ -1,5 +1,3 @@
-#include "sim/world/target/gltf_check.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -9,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "sim/world/target/mesh_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
