@@ -27,6 +27,7 @@ struct TrainOptions {
   std::string target = "near_shoemaker";
   MeshArguments meshes;
   std::vector<std::string> conditions = {"all"};
+  Effects effects;
   std::string device = "auto";
   std::string precision = "auto";
   TrainingSettings settings;
@@ -87,7 +88,16 @@ void write_images(const std::string& stem, const std::vector<TriangleMesh>& mesh
   quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm");
 }
 
+// The network would learn another body under the target's name.
+void require_the_target(const Effects& effects) {
+  if (effects.wrong_object == 0.0 && effects.sphere == 0.0) return;
+  throw CLI::ValidationError("--effect",
+                             "wrong_object and sphere are for tests only: a network cannot learn "
+                             "the target's attitude from another body");
+}
+
 int train(TrainOptions& options) {
+  require_the_target(options.effects);
   require_a_cnn(options.settings);
   choose_device(options);
   require_folder("--out", options.settings.folder);
@@ -95,8 +105,8 @@ int train(TrainOptions& options) {
   std::signal(SIGTERM, [](int) { stop_requested = true; });
 
   const std::vector<TriangleMesh> meshes = load_meshes(options.meshes, options.target);
-  const TrainingTargets targets =
-      make_training_targets(meshes, training_conditions(options.conditions), inertia_of(options));
+  const TrainingTargets targets = make_training_targets(meshes, training_conditions(options.conditions),
+                                                        inertia_of(options), options.effects, options.target);
 
   torch::manual_seed(options.settings.seed);
   Cnn cnn;
@@ -143,6 +153,7 @@ void add_train_command(CLI::App& app) {
       ->check(one_of(training_condition_words()))
       ->type_name("NAMES")
       ->capture_default_str();
+  add_effect_option(*command, options->effects);
   command
       ->add_option("--start-from", settings.start_from,
                    "model image whose CNN to start from; that of another target saves most of the time")

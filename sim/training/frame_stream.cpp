@@ -27,7 +27,9 @@ bool try_render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_
                 FrameTruth& truth) {
   const auto& lidar = *targets.lidars[index % targets.lidars.size()];
   const Condition condition = targets.conditions[(index / targets.lidars.size()) % targets.conditions.size()];
-  const Sequence sequence = make_sequence({condition, 1}, seed, index);
+  ScenarioSettings scenario{condition, 1};
+  scenario.effects = targets.effects;
+  const Sequence sequence = make_sequence(scenario, seed, index);
   truth = sequence.frames.front();
   FrameRenderer(lidar, 1e-3 * targets.projection.swath_mm, noise_seed_per_sequence)
       .render(sequence, 0, work.frame);
@@ -94,15 +96,17 @@ torch::Tensor rotation_tensor(const FrameTruth& truth, const Eigen::Matrix3f& r_
 
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,
-                                      const Eigen::Matrix3d& inertia_kg_m2) {
+                                      const Eigen::Matrix3d& inertia_kg_m2, const Effects& effects,
+                                      const std::string& target) {
   TrainingTargets targets;
   targets.inertia_kg_m2 = inertia_kg_m2;
   if (!gnc::make_inertia<float>(inertia_kg_m2.cast<float>(), targets.inertia)) {
     throw std::invalid_argument("the target's inertia is not symmetric and positive definite");
   }
   targets.conditions = conditions;
+  targets.effects = effects;
   for (const TriangleMesh& mesh : meshes) {
-    targets.lidars.push_back(std::make_unique<FlashLidar>(mesh));
+    targets.lidars.push_back(std::make_unique<FlashLidar>(observed_bodies(effects, target, mesh)));
     const gnc::DepthProjection of_mesh = projection_of(mesh);
     targets.projection.swath_mm = std::max(targets.projection.swath_mm, of_mesh.swath_mm);
     targets.projection.target_radius_mm =

@@ -26,15 +26,19 @@ struct TrainingTargets {
   gnc::DepthProjection projection;                  // fits all meshes
   std::uint32_t meshes_crc32 = 0;                   // identifies the surfaces
   std::vector<Condition> conditions;                // drawn in turn; may contain one more than once
+  Effects effects{};                                // in every frame
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF
   gnc::Inertia<float> inertia;                                  // the same, as the flight code takes it
 };
 
 // Throws std::runtime_error that names a mesh of which the sensor sees too little in most frames, and
-// std::invalid_argument for an inertia that is not symmetric and positive definite.
+// std::invalid_argument for an inertia that is not symmetric and positive definite, or as observed_bodies()
+// does. `effects` change what the sensor sees, not the projection. `target`: key, for the effects on the
+// body.
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,
-                                      const Eigen::Matrix3d& inertia_kg_m2 = Eigen::Matrix3d::Identity());
+                                      const Eigen::Matrix3d& inertia_kg_m2 = Eigen::Matrix3d::Identity(),
+                                      const Effects& effects = {}, const std::string& target = {});
 
 struct FrameBatch {
   torch::Tensor images;      // [B, 1, 100, 100], depth 0..1

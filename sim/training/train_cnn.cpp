@@ -73,7 +73,7 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.checkpoint_s = settings.checkpoint_s;
   stage.fingerprint = fingerprint({settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
                                    static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32,
-                                   conditions_hash(targets.conditions), start_crc32,
+                                   conditions_hash(targets.conditions, targets.effects), start_crc32,
                                    bits_of(settings.cnn_learning_rate), settings.bfloat16});
   return stage;
 }

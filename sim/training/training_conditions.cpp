@@ -30,9 +30,10 @@ std::vector<Condition> training_conditions(const std::vector<std::string>& words
   return conditions;
 }
 
-std::uint64_t conditions_hash(const std::vector<Condition>& conditions) {
+std::uint64_t conditions_hash(const std::vector<Condition>& conditions, const Effects& effects) {
   std::uint64_t hash = 0;
   for (const Condition condition : conditions) hash = mix(hash, static_cast<std::uint64_t>(condition));
+  for (const char c : to_string(effects)) hash = mix(hash, static_cast<std::uint64_t>(c));
   return hash;
 }
 

@@ -15,7 +15,7 @@ std::vector<std::string> training_condition_words();
 // The conditions of the words, one after the other: "all" is all_training_conditions(), "paper" is
 // paper_training_conditions(). Throws std::invalid_argument for an unknown word.
 std::vector<Condition> training_conditions(const std::vector<std::string>& words);
-// Hash of the conditions and their order, for a checkpoint's fingerprint.
-std::uint64_t conditions_hash(const std::vector<Condition>& conditions);
+// Hash of the conditions and their order, and of the effects, for a checkpoint's fingerprint.
+std::uint64_t conditions_hash(const std::vector<Condition>& conditions, const Effects& effects = {});
 
 }  // namespace tumblesight::sim

@@ -172,20 +172,26 @@ bool are_parallel(const Plate& a, const Plate& b) {
 }  // namespace
 
 std::vector<std::vector<std::size_t>> connected_parts(const TriangleMesh& mesh) {
-  Groups groups(mesh.vertices_trf_m.size());
-  std::map<std::array<float, 3>, std::size_t> vertex_at;
-  for (std::size_t i = 0; i < mesh.vertices_trf_m.size(); ++i) {
+  // One node per place and mark.
+  std::map<std::array<float, 3>, std::size_t> place_of;
+  std::vector<std::size_t> place(mesh.vertices_trf_m.size());
+  for (std::size_t i = 0; i < place.size(); ++i) {
     const Eigen::Vector3f& v = mesh.vertices_trf_m[i];
-    groups.join(vertex_at.try_emplace({v.x(), v.y(), v.z()}, i).first->second, i);
+    place[i] = place_of.try_emplace({v.x(), v.y(), v.z()}, place_of.size()).first->second;
   }
-  for (const auto& t : mesh.triangles) {
-    groups.join(t[0], t[1]);
-    groups.join(t[0], t[2]);
+  const auto node = [&](std::size_t triangle, int corner) {
+    const bool marked = !mesh.is_panel.empty() && mesh.is_panel[triangle] != 0;
+    return 2 * place[mesh.triangles[triangle][corner]] + (marked ? 1 : 0);
+  };
+  Groups groups(2 * place_of.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    groups.join(node(i, 0), node(i, 1));
+    groups.join(node(i, 0), node(i, 2));
   }
   std::map<std::size_t, std::size_t> part_of_group;
   std::vector<std::vector<std::size_t>> parts;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto [entry, is_new] = part_of_group.try_emplace(groups.of(mesh.triangles[i][0]), parts.size());
+    const auto [entry, is_new] = part_of_group.try_emplace(groups.of(node(i, 0)), parts.size());
     if (is_new) parts.emplace_back();
     parts[entry->second].push_back(i);
   }

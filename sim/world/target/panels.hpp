@@ -4,8 +4,8 @@
 // In a file, the parts whose material has "solar" or "panel" in its name are panels. Without such names, a
 // part counts as one if it is flat, at least a tenth of the target's radius wide, has its centre well outside
 // the origin and reaches out nearly as far as the target does. Marked parts, or parallel plates, that touch
-// or nearly touch, such as a panel and its cells, are one panel. Limit: a panel that shares corners with
-// other parts is not found.
+// or nearly touch, such as a panel and its cells, are one panel. Limit: a panel that shares corners
+// with other parts is not found by its shape.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@
 namespace tumblesight::sim {
 
 // The triangles of each connected part, as indices into mesh.triangles; the parts in the order of their first
-// triangles. Corners at exactly the same place are one.
+// triangles. Corners at exactly the same place are one, except between marked triangles and others.
 std::vector<std::vector<std::size_t>> connected_parts(const TriangleMesh& mesh);
 // In square metres, both sides of a closed part.
 double area_m2(const TriangleMesh& mesh, const std::vector<std::size_t>& triangles);

@@ -85,6 +85,18 @@ TEST(FrameStream, ConditionsTakeTurns) {
   for (const int i : {1, 3}) EXPECT_LT(filled(both.images[i]), filled(nominal.images[i])) << i;
 }
 
+// Verifies TS-SIL-300.
+TEST(FrameStream, FramesHaveTheEffects) {
+  const TriangleMesh mesh = make_near_shoemaker();
+  const TrainingTargets plain = make_training_targets({mesh}, {Condition::kNominal});
+  const TrainingTargets thin = make_training_targets(
+      {mesh}, {Condition::kNominal}, Eigen::Matrix3d::Identity(), effects_from({"dropout=0.6"}));
+  EXPECT_EQ(thin.projection.swath_mm, plain.projection.swath_mm);
+  const auto filled = [](const FrameBatch& batch) { return (batch.images > 0.0).sum().item<std::int64_t>(); };
+  EXPECT_LT(filled(render_frames(thin, 5, 0, 4)), filled(render_frames(plain, 5, 0, 4)));
+  EXPECT_GT(filled(render_frames(thin, 5, 0, 4)), 0);
+}
+
 // Verifies TS-TRN-050.
 TEST(FrameStream, ListsOfConditionsHaveDifferentHashes) {
   const std::vector<Condition> nominal{Condition::kNominal}, twice{Condition::kNominal, Condition::kNominal},
@@ -94,6 +106,9 @@ TEST(FrameStream, ListsOfConditionsHaveDifferentHashes) {
   EXPECT_NE(conditions_hash(paper_training_conditions()), conditions_hash(swapped));
   EXPECT_NE(conditions_hash(nominal), conditions_hash(twice));
   EXPECT_NE(conditions_hash(paper_training_conditions()), conditions_hash(all_training_conditions()));
+  EXPECT_NE(conditions_hash(nominal, effects_from({"noise=5"})), conditions_hash(nominal));
+  EXPECT_NE(conditions_hash(nominal, effects_from({"noise=5"})),
+            conditions_hash(nominal, effects_from({"noise=4"})));
   const std::vector<Condition> all = all_training_conditions();
   EXPECT_EQ(std::count(all.begin(), all.end(), Condition::kStress), 0) << "the stress test is for tests only";
 }

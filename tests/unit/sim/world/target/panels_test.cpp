@@ -79,6 +79,18 @@ TEST(Panels, TakePlatesThatTouchAsOne) {
   EXPECT_EQ(std::min(panels[0].triangles.size(), panels[1].triangles.size()), 12U);
 }
 
+// A marked plate that shares two corners with the body.
+TEST(Panels, EndWhereTheirMarkEnds) {
+  TriangleMesh mesh = box({2.0F, 2.0F, 2.0F});
+  append(mesh,
+         as_panel(cap({{1.0F, -1.0F, 1.0F}, {1.0F, 1.0F, 1.0F}, {3.0F, 1.0F, 1.0F}, {3.0F, -1.0F, 1.0F}})));
+  const std::vector<Panel> panels = find_panels(mesh);
+  ASSERT_EQ(panels.size(), 1U);
+  EXPECT_EQ(panels[0].triangles, (std::vector<std::size_t>{12, 13}));
+  EXPECT_LT((panels[0].centre_trf_m - Eigen::Vector3d(2.0, 0.0, 1.0)).norm(), 1e-6);
+  EXPECT_LT((panels[0].hinge_trf - Eigen::Vector3d(1.0, 0.0, 0.0)).norm(), 1e-6);
+}
+
 TEST(ConnectedParts, ShareCornersAtTheSamePlace) {
   TriangleMesh mesh = box({1.0F, 1.0F, 1.0F});
   append(mesh, cap({{0.5F, 0.5F, 0.5F}, {2.0F, 0.0F, 0.0F}, {2.0F, 1.0F, 0.0F}}));  // at a corner of the box
