@@ -105,12 +105,16 @@ std::vector<Sequence> sequences(int count, std::uint64_t seed) {
   return result;
 }
 
+// So many that a frame is not taken for one of the last eight used ones, also after some steps without a
+// frame.
 const std::vector<gnc::RangeImage>& frames() {
   static const std::vector<gnc::RangeImage> instance = [] {
-    const Sequence sequence = make_sequence({Condition::kNominal}, 5, 0);
-    std::vector<gnc::RangeImage> images(sequence.frames.size());
-    for (std::size_t i = 0; i < images.size(); ++i) {
-      FrameRenderer(lidar(), kSwath_m).render(sequence, static_cast<std::uint32_t>(i), images[i]);
+    constexpr unsigned kSequences = 4;
+    std::vector<gnc::RangeImage> images;
+    for (unsigned n = 0; n < kSequences; ++n) {
+      const Sequence sequence = make_sequence({Condition::kNominal}, 5, n);
+      for (std::uint32_t i = 0; i < sequence.frames.size(); ++i)
+        FrameRenderer(lidar(), kSwath_m).render(sequence, i, images.emplace_back());
     }
     return images;
   }();
