@@ -73,9 +73,10 @@ struct StoredRecord {
 struct Resumption {
   StoredState stored;  // initial values where nothing is found
   std::array<StoreStatus, hal::kStoredCopies> copies{};
-  std::uint32_t lost = 0;  // sum of hal::StateLoss
-  bool found = false;      // mode and bank, too
-  bool to_report = false;  // by the next step
+  std::uint32_t lost = 0;       // sum of hal::StateLoss
+  bool found = false;           // mode and bank, too
+  bool to_report = false;       // by the next step
+  std::uint8_t first_copy = 0;  // to be written first, since the other one holds the newest record
 };
 
 struct alignas(8) AppState {

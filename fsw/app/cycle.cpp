@@ -17,6 +17,25 @@ gnc::FrameVerdict compare(const gnc::RangeImage& kept, const gnc::RangeImage& la
   return gnc::is_repetition(kept, later) ? gnc::FrameVerdict::kRepeated : gnc::FrameVerdict::kPass;
 }
 
+// Bad content has to be looked at in full, so after a number of bad frames the rest of the cycle's counts as
+// bad too, without a look. This bounds the time of a cycle with a failing sensor.
+class Contents {
+ public:
+  gnc::FrameStatus look_at(const gnc::RangeImage& frame) {
+    if (bad_ >= config::kMaxBadContentsPerCycle) return last_bad_;
+    const gnc::FrameStatus status = gnc::content_of(frame);
+    if (status != gnc::FrameStatus::kOk) {
+      ++bad_;
+      last_bad_ = status;
+    }
+    return status;
+  }
+
+ private:
+  int bad_ = 0;
+  gnc::FrameStatus last_bad_ = gnc::FrameStatus::kOk;
+};
+
 static_assert(hal::Lidar::kMaxWaiting <= config::kMaxDeliveriesPerCycle, "a cycle receives all that wait");
 
 void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t now_ns,
@@ -26,6 +45,7 @@ void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t 
   inputs.dropped_count = 0;
   inputs.frame_wrong_size = 0;
   inputs.frames_overflowed = lidar.take_dropped();
+  Contents contents;
   std::size_t next = 0;  // of the two buffers, the one that does not hold inputs.frame
   for (int i = 0; i < config::kMaxDeliveriesPerCycle; ++i) {
     gnc::RangeImage& frame = workspace.frames[next];
@@ -40,7 +60,7 @@ void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t 
       verdict = compare(*inputs.frame, frame);
     // A frame with bad content does not take the place of a good one.
     gnc::FrameStatus content = gnc::FrameStatus::kOk;
-    if (verdict == gnc::FrameVerdict::kPass) content = gnc::content_of(frame);
+    if (verdict == gnc::FrameVerdict::kPass) content = contents.look_at(frame);
     if (content != gnc::FrameStatus::kOk) verdict = gnc::FrameVerdict::kBadContent;
     if (verdict != gnc::FrameVerdict::kPass) {
       drop(frame, verdict, inputs, content);

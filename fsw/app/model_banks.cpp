@@ -99,7 +99,7 @@ hal::WriteStatus ModelBanks::continue_copy(hal::ModelStore& store, ModelBanksSta
     std::uint32_t count = 0, end = first;
     do {
       count += bytes_of_segment(end++);
-    } while (end % kSegmentsPerWrite != 0 && is_missing(state, end));
+    } while (end % kSegmentsPerWrite != 0 && end < kModelSegments && is_missing(state, end));
     const hal::WriteStatus written =
         write_segments(store, state, first, image + first * kSegmentBytes, count);
     if (written != hal::WriteStatus::kAccepted) return written;

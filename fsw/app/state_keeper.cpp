@@ -42,15 +42,17 @@ StoreStatus read_copy(hal::PersistentStore& store, int copy, StoredState& stored
 // What the copies hold together.
 class Survey {
  public:
-  void add(StoreStatus status, const StoredState& stored, std::uint32_t generation) {
+  void add(int copy, StoreStatus status, const StoredState& stored, std::uint32_t generation) {
     if (status == StoreStatus::kBlank) ++blank_;
     if (stored.command_counter > head_.command_counter) head_.command_counter = stored.command_counter;
     if (generation > newest_) {
       newest_ = generation;
+      newest_head_copy_ = copy;
       head_.key_slot = stored.key_slot;
     }
     if (!has_body(status) || generation <= newest_body_) return;  // the first record has generation 1
     newest_body_ = generation;
+    newest_body_copy_ = copy;
     body_ = stored;
     table_known_ = status == StoreStatus::kOk;
   }
@@ -64,6 +66,8 @@ class Survey {
   }
   std::uint32_t newest() const { return newest_; }
   bool found() const { return newest_body_ > 0; }
+  // The copy that can be overwritten first: a reset during that write then loses nothing.
+  int first_copy() const { return kStoredCopies - 1 - (found() ? newest_body_copy_ : newest_head_copy_); }
   // A sum of StateLoss. A torn write leaves a body that is one generation old.
   std::uint32_t lost() const {
     if (blank_ == kStoredCopies) return 0;
@@ -77,6 +81,8 @@ class Survey {
   StoredState head_, body_;
   std::uint32_t newest_ = 0;       // generation of the heads
   std::uint32_t newest_body_ = 0;  // generation
+  int newest_head_copy_ = kStoredCopies - 1;
+  int newest_body_copy_ = kStoredCopies - 1;
   int blank_ = 0;
   bool table_known_ = true;
 };
@@ -92,9 +98,10 @@ void StateKeeper::resume() {
     std::uint32_t generation = 0;
     const StoreStatus status = read_copy(*state_.platform.persistent, copy, stored, generation);
     resumption.copies[static_cast<std::size_t>(copy)] = status;
-    survey.add(status, stored, generation);
+    survey.add(copy, status, stored, generation);
   }
   state_.stored.generation = survey.newest();
+  resumption.first_copy = static_cast<std::uint8_t>(survey.first_copy());
   resumption.found = survey.found();
   resumption.lost = survey.lost();
   resumption.stored = survey.state();
@@ -159,13 +166,21 @@ bool StateKeeper::put(int copy, const hal::StoredBytes& bytes) {
   return state_.platform.persistent->write(copy, bytes) == StoreStatus::kOk && holds(copy, bytes);
 }
 
+// The copy to write first: one that does not hold the newest record, if there is such a copy.
+int StateKeeper::first_to_write() const {
+  const StoredCopies good = state_.stored.good;
+  if (good.number() == 1) return good.has(0) ? 1 : 0;
+  return state_.resumption.first_copy;
+}
+
 void StateKeeper::write_record(const StoredState& wanted) {
   StoredRecord& record = state_.stored;
   ++record.generation;
   record.last = wanted;
   const hal::StoredBytes bytes = to_record(wanted, record.generation);
+  const int first = first_to_write();
   StoredCopies good;
-  for (int copy = 0; copy < kStoredCopies; ++copy) good.set(copy, put(copy, bytes));
+  for (const int copy : {first, kStoredCopies - 1 - first}) good.set(copy, put(copy, bytes));
   settle(good);
 }
 
@@ -178,7 +193,8 @@ void StateKeeper::renew_copies() {
     if (good.has(copy)) good.set(copy, holds(copy, bytes));
   }
   if (good.number() < record.good.number()) settle(good);
-  for (int copy = 0; copy < kStoredCopies; ++copy) {
+  const int first = first_to_write();
+  for (const int copy : {first, kStoredCopies - 1 - first}) {
     if (!good.has(copy)) good.set(copy, put(copy, bytes));
   }
   settle(good);

@@ -2,7 +2,8 @@
 // everything that it keeps is in AppState.
 //
 // Both copies of the store hold the newest record, one written after the other, so that a reset during a
-// write leaves a whole record and a later bit flip in one copy costs nothing. A write is read back. Every
+// write leaves a whole record and a later bit flip in one copy costs nothing. The copy that holds the newest
+// record is written last, also after several resets in a row. A write is read back. Every
 // kStoreCheck_cycles both copies are read again. A copy that does not hold the newest record is written
 // again: in each of the first kMostFailingCycles cycles, with each new record, and at each check.
 //
@@ -58,6 +59,7 @@ class StateKeeper {
   void store_changes();
   bool holds(int copy, const hal::StoredBytes& bytes);
   bool put(int copy, const hal::StoredBytes& bytes);
+  int first_to_write() const;
   void write_record(const StoredState& wanted);
   void renew_copies();
   void settle(StoredCopies good);

@@ -19,6 +19,8 @@ inline constexpr int kMaxCommandsPerStep = 8;
 // one frame, the newest usable one, so that a sensor that is faster than the cycle neither fills the queue
 // nor lengthens the step.
 inline constexpr int kMaxDeliveriesPerCycle = 32;
+// Frames with bad content after which the rest of a cycle's deliveries counts as bad without a look.
+inline constexpr int kMaxBadContentsPerCycle = 3;
 
 // Events that one step returns. Further events wait in the ring for the next step; events that do not fit
 // into the ring are counted as lost.

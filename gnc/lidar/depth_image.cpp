@@ -157,9 +157,11 @@ FrameStatus status_of(const ReturnSummary& summary) {
   return summary.nearest == summary.farthest ? FrameStatus::kFlat : FrameStatus::kOk;
 }
 
-// The first place from `next` on with a return among it and the three after it, or one of the last places.
-int skip_no_returns(const RangeImage& frame, int next, int rays) {
-  while (next + 4 <= rays && (pair_at(frame, next) | pair_at(frame, next + 2)) == 0) next += 4;
+// The first place from `next` on with another pair than no returns and `known` in it or the three after it,
+// or one of the last places.
+int skip_known(const RangeImage& frame, int next, int rays, std::uint32_t known) {
+  const auto is_known = [known](std::uint32_t pair) { return pair == 0 || pair == known; };
+  while (next + 4 <= rays && is_known(pair_at(frame, next)) && is_known(pair_at(frame, next + 2))) next += 4;
   return next;
 }
 
@@ -179,21 +181,23 @@ bool is_possible(const DepthProjection& projection) {
 FrameStatus content_of(const RangeImage& frame) {
   const FrameStatus status = status_of(frame);
   if (status != FrameStatus::kOk) return status;
-  ReturnSummary summary;
   const int rays = frame.rays * frame.rays;
-  int next = 0, last = kFirstOfPair;
-  while (next < rays && status_of(summary) != FrameStatus::kOk) {
+  int returns = 0, next = 0, last = kFirstOfPair;
+  std::uint16_t first = 0;  // range of the first return
+  bool differ = false;
+  while (next < rays && (returns < kMinReturns || !differ)) {
     for (; next < last; ++next) {
       const std::uint16_t range = frame.ranges[static_cast<std::size_t>(next)];
       if (range < kMinRange_counts || range > kMaxRange_counts) continue;
-      ++summary.returns;
-      summary.nearest = min(summary.nearest, range);
-      summary.farthest = max(summary.farthest, range);
+      if (returns == 0) first = range;
+      if (range != first) differ = true;
+      ++returns;
     }
-    next = skip_no_returns(frame, next, rays);
+    next = skip_known(frame, next, rays, returns < kMinReturns ? 0U : first * 0x10001U);
     last = min(next + 4, rays);
   }
-  return status_of(summary);
+  if (returns < kMinReturns) return FrameStatus::kEmpty;
+  return differ ? FrameStatus::kOk : FrameStatus::kFlat;
 }
 
 FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& projection,

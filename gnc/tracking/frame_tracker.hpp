@@ -55,8 +55,9 @@ struct FrameTrackerState {
 using Doubts = std::uint32_t;
 inline constexpr Doubts kErrorLarge = 1;    // expected error above its limit
 inline constexpr Doubts kAttitudeJump = 2;  // too far from the predicted one, in this frame or the one before
-inline constexpr Doubts kAttitudeUnsound = 4;    // not a unit quaternion, or an expected error above pi
-inline constexpr Doubts kRateAmbiguous = 8;      // AttitudeEstimate::rate_is_ambiguous; the attitude is valid
+inline constexpr Doubts kAttitudeUnsound = 4;  // not a unit quaternion, or an expected error above pi
+inline constexpr Doubts kRateAmbiguous =
+    8;  // AttitudeEstimate::rate_is_ambiguous, or a track that cannot know its rate; the attitude is valid
 inline constexpr Doubts kChaserUnknown = 16;     // in the whole track; the attitude is valid
 inline constexpr Doubts kChaserNowUnknown = 32;  // motion_at() is in the LRF of the exposure
 inline constexpr Doubts kAgainstAttitude = kErrorLarge | kAttitudeJump | kAttitudeUnsound;

@@ -76,9 +76,10 @@ enum class EventId : std::uint16_t {
   kStoredStateLost =
       81,                // [StoreStatus of copy 0, StoreStatus of copy 1, sum of StateLoss]; the mode is SAFE
   kStateNotStored = 82,  // [copies that hold the newest record, -, -]; when they become fewer
-  kStoredCopyUnusable = 83,  // [StoreStatus of copy 0, StoreStatus of copy 1, -]; at boot; nothing is lost
-  kStoreGivenUp = 84,        // [cycles without a copy, -, -]; commands are carried out as without a store
-  kStoreUsable = 85,         // [copies that hold the newest record, -, -]; after the store was given up
+  kStoredCopyUnusable =
+      83,  // [StoreStatus of copy 0, StoreStatus of copy 1, -]; at boot; the state is that of the other copy
+  kStoreGivenUp = 84,  // [cycles without a copy, -, -]; commands are carried out as without a store
+  kStoreUsable = 85,   // [copies that hold the newest record, -, -]; after the store was given up
 
   kEventsSuppressed = 90,  // [EventId of the suppressed events, their number, -]
 

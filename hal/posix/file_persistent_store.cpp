@@ -60,9 +60,11 @@ StoreFileCheck check_kind(const char* path) {
 StoreFileCheck check_record(const char* path, const std::uint8_t* magic, std::size_t size) {
   const StoreFileCheck kind = check_kind(path);
   if (kind.status != StoreFileStatus::kUsable) return kind;
+  // A torn or older record begins as every record does; the application finds what is wrong with it.
   StoredBytes bytes{};
   const StoreStatus status = read_record(path, bytes);
-  const bool record = status == StoreStatus::kOk && std::memcmp(bytes.data(), magic, size) == 0;
+  const bool readable = status == StoreStatus::kOk || status == StoreStatus::kDamaged;
+  const bool record = readable && std::memcmp(bytes.data(), magic, size) == 0;
   return record || status == StoreStatus::kBlank ? StoreFileCheck{}
                                                  : StoreFileCheck{StoreFileStatus::kNotARecord, path, 0};
 }

@@ -83,8 +83,9 @@ class KeptState final : public hal::PersistentStore {
 
 constexpr std::int32_t kTurned = 759'250'125;  // sqrt(1/2), Q30: the chaser's attitude is no identity
 
-// Each delivery is a frame of `scene`, later than the one before and with other noise. A sensor never repeats
-// its noise: the last one differs in every range from those of the ten steps before.
+// Each delivery is a frame of `scene`, later than the one before and with other noise. The newest ones have
+// bad content, which takes the longest to see. A sensor never repeats its noise: the last one differs in
+// every range from those of the ten steps before.
 class FastLidar final : public hal::Lidar {
  public:
   void prepare(std::int64_t now_ns) {
@@ -102,7 +103,9 @@ class FastLidar final : public hal::Lidar {
   hal::LidarStatus receive(gnc::RangeImage& frame) override {
     if (waiting_ == 0) return hal::LidarStatus::kNoFrame;
     const int later = --waiting_;
-    frame = frames_[later == 0 ? 0 : static_cast<std::size_t>(1 + later % 2)];
+    const int used = config::kMaxBadContentsPerCycle;  // the newer ones have no range within the gate
+    frame = frames_[later == used ? 0 : static_cast<std::size_t>(1 + later % 2)];
+    if (later < used) frame.ranges.fill(kBeforeTheGate);
     frame.exposure_time_ns -= later * std::int64_t{50'000'000};
     frame.sequence_number -= static_cast<std::uint32_t>(later);
     return hal::LidarStatus::kFrame;
@@ -112,6 +115,7 @@ class FastLidar final : public hal::Lidar {
 
  private:
   static constexpr std::uint32_t kNoises = 10;
+  static constexpr std::uint16_t kBeforeTheGate = 640;  // counts: 5 m
   std::array<gnc::RangeImage, 3> frames_;
   std::uint32_t noise_ = 0;
   int waiting_ = 0;

@@ -40,11 +40,15 @@ SensorPose pose_of(const FrameTruth& truth, double swath_m, double later_s = 0.0
 // The corners farthest along +x, -x, +y, -y, +z, -z.
 std::array<Eigen::Vector3f, 6> extreme_corners(const TriangleMesh& mesh) {
   std::array<Eigen::Vector3f, 6> corners;
-  corners.fill(mesh.vertices_trf_m.front());
-  for (const Eigen::Vector3f& vertex : mesh.vertices_trf_m) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (vertex[axis] > corners[2 * axis][axis]) corners[2 * axis] = vertex;
-      if (vertex[axis] < corners[2 * axis + 1][axis]) corners[2 * axis + 1] = vertex;
+  corners.fill(mesh.vertices_trf_m[mesh.triangles.front().front()]);
+  // Not of all vertices: those of a part that is missing or turned away belong to no triangle.
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      const Eigen::Vector3f& vertex = mesh.vertices_trf_m[corner];
+      for (int axis = 0; axis < 3; ++axis) {
+        if (vertex[axis] > corners[2 * axis][axis]) corners[2 * axis] = vertex;
+        if (vertex[axis] < corners[2 * axis + 1][axis]) corners[2 * axis + 1] = vertex;
+      }
     }
   }
   return corners;

@@ -159,6 +159,22 @@ TEST_F(Cycle, NewestFrameWithGoodContentIsUsed) {
   EXPECT_EQ(reasons, expected);
 }
 
+// Verifies TS-LID-052. Bad content takes long to see, and the cycle's time is bounded.
+TEST_F(Cycle, AfterThreeBadFramesTheRestOfTheCyclesFramesCountsAsBad) {
+  const std::int64_t cycle_ns = next_time_ns();
+  for (std::uint32_t number = 1; number <= 6; ++number) {
+    gnc::RangeImage frame = good_frame(number, cycle_ns - 100'000'000 * (7 - number), number);
+    if (number >= 2 && number <= 4) frame.ranges.fill(0);
+    lidar.add(frame);
+  }
+  run();
+  EXPECT_EQ(link.attitudes.back().sequence_number, 1U);
+  EXPECT_EQ(link.telemetry.back().frames_bad, 5U);
+  lidar.add(good_frame(7, next_time_ns(), 7));
+  run();
+  EXPECT_EQ(link.attitudes.back().sequence_number, 7U) << "the next cycle looks again";
+}
+
 TEST_F(Cycle, LargestBacklogIsReceivedInOneCycle) {
   for (int i = 0; i < config::kMaxDeliveriesPerCycle + 2; ++i) lidar.add_wrong_size();
   run();

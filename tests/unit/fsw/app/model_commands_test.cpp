@@ -183,6 +183,20 @@ TEST_F(ModelCommands, LostSegmentsAreReportedSentAgainAndTheImageRuns) {
   expect_it_runs();
 }
 
+// Verifies TS-FDIR-095. Also if flips say that a segment behind the last one is missing.
+TEST_F(ModelCommands, NothingBehindTheLastSegmentIsCopied) {
+  step_commands({begin(UploadBase::kBankInUse)});
+  AppMemory::state(*app).banks.missing[kModelSegments / 8] |=
+      static_cast<std::uint8_t>(0x80U >> kModelSegments % 8);
+  AppMemory::commit(*app);
+  for (int cycle = 0; cycle < 60 && out->telemetry.model_segments_missing > 0; ++cycle) {
+    step({});
+    ASSERT_LE(out->telemetry.model_segments_missing, kModelSegments);
+  }
+  EXPECT_EQ(out->telemetry.model_segments_missing, 0U);
+  EXPECT_EQ(AppMemory::state(*app).banks.next_copied, kModelSegments);
+}
+
 // Verifies TS-MDL-070.
 TEST_F(ModelCommands, EachMissingSegmentAloneIsNamedAndRefusesTheImage) {
   load_all();

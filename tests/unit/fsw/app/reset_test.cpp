@@ -673,6 +673,36 @@ TEST_F(Reset, TornWriteLosesNothing) {
   EXPECT_EQ(old.table[Parameter::kScrubBlocks], 5U);
 }
 
+// Verifies TS-RST-030. A second reset, during the first write after the first one, for every byte of it.
+TEST_F(Reset, TwoResetsInARowLoseNothing) {
+  step_good();
+  hal::fake::FakePersistentStore before = kept;
+  kept.log.clear();
+  step_commands({set_mode(Mode::kSafe)});
+  auto writes = kept.log;
+  ASSERT_EQ(writes.size(), 4U) << "the counter before the command, and the mode at the end of the step";
+  for (const std::size_t i : {0U, 1U})
+    before.copies[static_cast<std::size_t>(writes[i].copy)] = writes[i].bytes;
+  const StoredState next = stored_in(writes[2].bytes);
+  for (const bool second_is_torn : {false, true}) {
+    kept = before;
+    kept.copies[static_cast<std::size_t>(writes[2].copy)] = writes[2].bytes;
+    auto& second = kept.copies[static_cast<std::size_t>(writes[3].copy)];
+    if (second_is_torn) std::copy_n(writes[3].bytes.begin(), 10, second.begin());
+    kept.log.clear();
+    const hal::fake::FakePersistentStore after_first_reset = kept;
+    reset(ResetCause::kWatchdog);
+    step_good();
+    ASSERT_FALSE(kept.log.empty());
+    const hal::fake::FakePersistentStore::Write write = kept.log.front();
+    for_each_tear(after_first_reset, write, [&](const Resumption& found, std::size_t written) {
+      ASSERT_EQ(found.lost, 0U) << second_is_torn << ' ' << written;
+      ASSERT_EQ(found.stored.mode, Mode::kSafe) << second_is_torn << ' ' << written;
+      ASSERT_GE(found.stored.command_counter, next.command_counter) << second_is_torn << ' ' << written;
+    });
+  }
+}
+
 // Verifies TS-RST-030. Every single byte of either copy.
 TEST_F(Reset, EveryDamagedByteOfOneCopyLosesNothing) {
   step_commands({set_mode(Mode::kSafe), command(FunctionCode::kSetParameter, {3, 0, 0, 0, 5})});

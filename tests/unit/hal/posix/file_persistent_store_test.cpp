@@ -112,6 +112,21 @@ TEST_F(FilePersistentStoreTest, OnlyRecordsAndNewFilesAreUsable) {
   }
 }
 
+// Verifies TS-RST-060. The application reads what it can, and the other copy.
+TEST_F(FilePersistentStoreTest, ShortRecordsAreUsable) {
+  FilePersistentStore store;
+  ASSERT_TRUE(store.use(path.c_str()));
+  StoredBytes good = record(1);
+  std::copy(kMagic.begin(), kMagic.end(), good.begin());
+  for (const int copy : {0, 1}) ASSERT_EQ(store.write(copy, good), StoreStatus::kOk);
+  for (const int size : {static_cast<int>(kMagic.size()), 128, kStoredBytes - 1}) {
+    std::filesystem::resize_file(path, static_cast<std::uintmax_t>(size));
+    EXPECT_EQ(store.check(kMagic).status, StoreFileStatus::kUsable) << size;
+    StoredBytes bytes{};
+    EXPECT_EQ(store.read(0, bytes), StoreStatus::kDamaged) << size;
+  }
+}
+
 // Verifies TS-RST-060.
 TEST_F(FilePersistentStoreTest, LinksFoldersAndMissingFoldersAreNotUsable) {
   FilePersistentStore store;
