@@ -44,11 +44,11 @@ figure { margin: 0; break-inside: avoid; }
 figcaption { font-size: 13px; color: #5a6069; margin-top: 4px; max-width: 60em; }
 .pair h2 { margin-top: 32px; }
 svg { display: block; width: 100%; height: auto; font-family: inherit; }
-.facts { display: grid; grid-template-columns: repeat(3, 1fr); gap: 0 40px; align-items: start; }
+.facts { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0 40px; align-items: start; }
 .facts table { width: 100%; font-size: 13px; }
 .facts td { padding: 4px 0; vertical-align: top; }
 .facts td:last-child { text-align: right; padding-left: 14px; }
-.facts td { white-space: nowrap; }
+.facts td:first-child { white-space: nowrap; } .facts td:last-child { overflow-wrap: anywhere; }
 footer { margin-top: 40px; color: #6b7280; font-size: 13px; border-top: 1px solid #e4e6ea; padding-top: 12px; }
 code { font-family: "SF Mono", Consolas, "DejaVu Sans Mono", monospace; font-size: 12px; overflow-wrap: anywhere; }
 @media (max-width: 760px) { .pair, .facts { grid-template-columns: 1fr; } main { padding: 24px 16px; } }
