@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "hal/command_authentication.hpp"
 #include "hal/messages/command_key.hpp"
 
 namespace tumblesight::fsw {
@@ -20,6 +21,10 @@ class CommandAuthority {
   const hal::CommandKeys* keys() const { return has_keys_ ? &keys_ : nullptr; }
   // Whether there is a key in the slot.
   bool has_key(std::uint32_t slot) const { return keys_.has_key(slot); }
+  // What proves possession of the key in the slot (hal::proof_of_key). Requires has_key(slot).
+  gnc::Sha256Digest proof_of_key(std::uint8_t slot, std::uint32_t counter) const {
+    return hal::proof_of_key(keys_, slot, counter);
+  }
   std::uint32_t slot() const { return slot_; }  // of the key in use
   // False: the slot is empty or does not exist.
   [[nodiscard]] bool use(std::uint32_t slot) {

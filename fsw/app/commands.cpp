@@ -6,7 +6,6 @@
 
 #include "fsw/app/command_table.hpp"
 #include "fsw/app/counter.hpp"
-#include "hal/command_authentication.hpp"
 
 namespace tumblesight::fsw {
 namespace {
@@ -170,8 +169,7 @@ bool activate_key(const Telecommand& command, const CommandContext& context, Ref
   CommandAuthority& authority = context.state.authority;
   const std::uint8_t slot = command.u8_at(0);
   if (!authority.has_key(slot)) return refuse(refusal, CommandRefusal::kWrongArgument, slot);
-  const gnc::Sha256Digest proof =
-      hal::proof_of_key(*authority.keys(), slot, context.state.counters.command_counter);
+  const gnc::Sha256Digest proof = authority.proof_of_key(slot, context.state.counters.command_counter);
   if (!gnc::equal_in_constant_time(proof.data(), command.arguments + 1, hal::kCommandMacBytes))
     return refuse(refusal, CommandRefusal::kWrongArgument, slot);
   const std::uint32_t before = authority.slot();

@@ -156,7 +156,7 @@ void StateKeeper::report_resumption() {
   }
 }
 
-bool StateKeeper::holds(int copy, const hal::StoredBytes& bytes) {
+bool StateKeeper::holds(int copy, const hal::StoredBytes& bytes) const {
   hal::StoredBytes read{};
   if (state_.platform.persistent->read(copy, read) != StoreStatus::kOk) return false;
   return read == bytes;

@@ -57,7 +57,7 @@ class StateKeeper {
   void resume_late();
   bool is_check_due();
   void store_changes();
-  bool holds(int copy, const hal::StoredBytes& bytes);
+  bool holds(int copy, const hal::StoredBytes& bytes) const;
   bool put(int copy, const hal::StoredBytes& bytes);
   int first_to_write() const;
   void write_record(const StoredState& wanted);

@@ -71,6 +71,27 @@ bool meet(FlightEndpoints& endpoints, std::uint32_t run_id, HandshakeResult& res
   return false;
 }
 
+// Whether the wait for the simulator's hello is over for another reason; the result names it.
+bool ends_without_hello(const FlightEndpoints& endpoints, bool late, HandshakeResult& result) {
+  // The hello of another release can be of another type. It never arrives then, but DDS reports the
+  // mismatch.
+  if (endpoints.hello_in.saw_incompatible()) {
+    result.end = FlightEnd::kIcdUnequal;
+    return true;
+  }
+  if (!result.foreigner) {
+    result.foreigner = endpoints.foreigner();
+    if (result.foreigner) result.end = FlightEnd::kForeign;
+  }
+  if (result.foreigner) return true;
+  if (stop_requested()) {
+    result.stopped = true;
+    return true;
+  }
+  if (late) result.end = FlightEnd::kSilence;
+  return late;
+}
+
 }  // namespace
 
 HandshakeResult shake_hands(FlightEndpoints& endpoints, const HandshakeSettings& settings,
@@ -91,29 +112,12 @@ HandshakeResult shake_hands(FlightEndpoints& endpoints, const HandshakeSettings&
       result.end = end_of(result.fit);
       return result;
     }
-    // The hello of another release can be of another type. It never arrives then, but DDS reports the
-    // mismatch.
-    if (endpoints.hello_in.saw_incompatible()) {
-      result.end = FlightEnd::kIcdUnequal;
-      return result;
-    }
     if (met && !endpoints.hello_in.bind(result.simulator)) {
       result.end = FlightEnd::kSimulatorGone;
       return result;
     }
-    if (!result.foreigner) {
-      result.foreigner = endpoints.foreigner();
-      if (result.foreigner) result.end = FlightEnd::kForeign;
-    }
-    if (result.foreigner) return result;
-    if (stop_requested()) {
-      result.stopped = true;
-      return result;
-    }
-    if (stopwatch.now_ns() - begin_ns > static_cast<std::uint64_t>(settings.timeout_ns)) {
-      result.end = FlightEnd::kSilence;
-      return result;
-    }
+    const bool late = stopwatch.now_ns() - begin_ns > static_cast<std::uint64_t>(settings.timeout_ns);
+    if (ends_without_hello(endpoints, late, result)) return result;
     usleep(kPoll_ns / 1000);
   }
   if (!announce(endpoints, settings, result.run_id)) result.end = FlightEnd::kTransport;
