@@ -108,5 +108,18 @@ TEST(SurfaceEffects, RetroreflectorsBloomOverTheirRadius) {
   EXPECT_GE(changed, at_tip - 10);
 }
 
+TEST(SurfaceEffects, RetroreflectorsAreNotOnMissingParts) {
+  TriangleMesh body = box({2.0F, 2.0F, 2.0F});
+  body.vertices_trf_m.emplace_back(0.0F, -1.5F, 0.0F);  // of a part whose triangles are gone
+  SensorSettings settings;
+  settings.noise = false;
+  settings.effects.retroreflectors = 5.0;
+  const FrameTruth truth{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), kRange_m};
+  auto frame = std::make_unique<gnc::RangeImage>();
+  FlashLidar(body).expose(truth, settings, 4.0, 1, *frame);
+  const auto part_counts = static_cast<std::uint16_t>(std::lround(48.5 * 128.0));
+  EXPECT_EQ(std::count(frame->ranges.begin(), frame->ranges.end(), part_counts), 0);
+}
+
 }  // namespace
 }  // namespace tumblesight::sim
