@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include "gnc/lidar/range_image.hpp"
+#include "gnc/lidar/target_selection.hpp"
+#include "gnc/lidar/target_window.hpp"
 #include "gnc/numerics/real.hpp"
 
 namespace tumblesight::gnc {
@@ -52,15 +54,22 @@ struct DepthImageScratch {
   // Rays that fall into no cell are added to these extra cells in turn. With a single extra cell, each
   // addition would wait for the previous one.
   static constexpr int kSpareCells = 16;
-  std::array<std::uint32_t, DepthImage::kCells + kSpareCells> cells;
+  using Cells = std::array<std::uint32_t, DepthImage::kCells + kSpareCells>;
+  union {  // the target is selected before the first return is added to a cell
+    TargetSelectionScratch selection;
+    Cells cells;
+  };
+  RayMask mask;
+  TargetWindow window;
 
-  // The rays of a frame. Depths are counted in 2^-(6 + range_shift) m, so that the farthest one fills 15
-  // bits.
+  // The rays of the frame, then those of the window. Depths are counted in 2^-(6 + range_shift) m, so that
+  // the farthest one fills 15 bits.
   struct Rays {
+    int count;  // per side
     int range_shift;
-    std::array<std::int32_t, RangeImage::kMaxRays> slope_q30;             // u of a column; -v of a row
-    std::array<std::int16_t, RangeImage::kMaxRays> square_q16;            // square of the slope
-    std::array<std::uint32_t, RangeImage::kMaxRays> row_sum, column_sum;  // of the depths
+    std::array<std::int32_t, RangeImage::kMaxRays> right_q30, down_q30;  // slopes: u of a column, -v of a row
+    std::array<std::int16_t, RangeImage::kMaxRays> right_square_q16, down_square_q16;  // of the slopes
+    std::array<std::uint32_t, RangeImage::kMaxRays> row_sum, column_sum;               // of the depths
   } rays;
 
   // The view frame. A coordinate of the point at depth 1 on a ray is the sum of a term of the ray's column
@@ -83,19 +92,18 @@ struct DepthImageScratch {
   } view;
 };
 
-inline constexpr int kMinReturns = 16;
-inline constexpr int kMinRange_m = 10;  // nearer returns come from the chaser itself: an arm, a mast, a panel
-inline constexpr int kMaxRange_m = 500;  // longer ranges count as no return (paper, sensor table)
 inline constexpr std::uint32_t kMinFov_urad = 17'453;   // 1 degree
 inline constexpr std::uint32_t kMaxFov_urad = 698'132;  // 40 degrees
 
-// The status that make_depth_image() returns for this frame. Reads no more of the frame than it must.
+// The status that make_depth_image() returns for this frame if all its returns are the target's. (It also
+// refuses a frame in which too few are.) Reads no more of the frame than it must.
 [[nodiscard]] FrameStatus content_of(const RangeImage& frame);
 
-// Projects the returns onto the plane across the view axis (x right, z up, axis in the middle) and averages
-// the depths within each cell, of at most 255 returns. A depth is limited to one target radius from the
-// centroid. Returns nearer than kMinRange_m, farther than kMaxRange_m or outside the swath are ignored. The
-// instruction count is the same for every frame with the same ray count.
+// Selects the target's returns (target_selection.hpp), resamples them if the target covers few rays
+// (target_window.hpp), projects them onto the plane across the view axis (x right, z up, axis in the middle)
+// and averages the depths within each cell, of at most 255 returns. A depth is limited to one target radius
+// from the centroid. Returns outside the swath are ignored. The instruction count is the same for every frame
+// with the same ray count that is resampled, and for every one that is not.
 //
 // frame       any content; it is checked here
 // projection  must satisfy is_possible()

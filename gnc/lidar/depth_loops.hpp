@@ -13,9 +13,6 @@
 
 namespace tumblesight::gnc {
 
-inline constexpr int kMinRange_counts = kMinRange_m * 128;
-inline constexpr int kMaxRange_counts = kMaxRange_m * 128;
-
 // The ranges `first` and `first` + 1 in one word, to compare them at once. `first`: kFirstOfPair plus an even
 // number, where the words are aligned.
 inline constexpr int kFirstOfPair = offsetof(RangeImage, ranges) % 4 / 2;
@@ -26,7 +23,7 @@ inline std::uint32_t pair_at(const RangeImage& frame, int first) {
   return pair;
 }
 
-// The usable returns of a frame; ranges in counts (Q9.7 m).
+// The target's returns of a frame; ranges in counts (Q9.7 m).
 struct ReturnSummary {
   int returns = 0;
   std::uint16_t nearest = 0xFFFF;
@@ -41,13 +38,12 @@ inline constexpr int kCentroidValue =
 
 struct DepthLoops {
   InstructionSet set;
-  ReturnSummary (*summarize_returns)(const RangeImage& frame);
-  // Sums the depths along the boresight over each row and each column; writes rays.row_sum and
+  ReturnSummary (*summarize_returns)(const RangeImage& frame, const RayMask& mask);
+  // Sums the depths along the boresight over each row and each column of the frame; writes rays.row_sum and
   // rays.column_sum.
-  void (*sum_depths)(const RangeImage& frame, DepthImageScratch::Rays& rays);
-  // Clears the cells and adds every usable return to its cell. `cells`: DepthImage::kCells + kSpareCells.
-  void (*accumulate)(const RangeImage& frame, const DepthImageScratch::Rays& rays,
-                     const DepthImageScratch::View& view, std::uint32_t* cells);
+  void (*sum_depths)(const RangeImage& frame, const RayMask& mask, DepthImageScratch::Rays& rays);
+  // Clears scratch.cells and adds every return of the window to its cell.
+  void (*accumulate)(const RangeImage& frame, DepthImageScratch& scratch);
   // Mean value of each cell, as a depth in unsigned Q0.16; 0 for an empty cell. `depth`: DepthImage::kCells.
   void (*encode)(const std::uint32_t* cells, std::uint16_t* depth);
 };

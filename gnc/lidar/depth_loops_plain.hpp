@@ -18,9 +18,6 @@ TUMBLESIGHT_INLINE std::uint16_t within(std::uint16_t value, std::uint16_t from,
   return mask_if<std::uint16_t>(static_cast<std::uint16_t>(value - from) <
                                 static_cast<std::uint16_t>(to - from));
 }
-TUMBLESIGHT_INLINE std::uint16_t usable(std::uint16_t range) {
-  return within(range, kMinRange_counts, kMaxRange_counts + 1);
-}
 // High half of the product: (a b) >> 16.
 TUMBLESIGHT_INLINE std::int16_t multiply_high(std::int16_t a, std::int16_t b) {
   return static_cast<std::int16_t>((std::int32_t{a} * b) >> 16);
@@ -38,7 +35,12 @@ TUMBLESIGHT_INLINE std::int16_t saturating_sum(std::int32_t a, std::int32_t b) {
   return static_cast<std::int16_t>(
       __builtin_arm_ssat(a + b, 16));  // one instruction, which the compiler does not find
 #else
-  return static_cast<std::int16_t>(clamp<std::int32_t>(a + b, -32768, 32767));
+  const std::int32_t sum = a + b;
+  if constexpr (kHasConditionalMoves)
+    return static_cast<std::int16_t>(clamp<std::int32_t>(sum, -32768, 32767));
+  const std::int32_t above = (sum + 32768) >> 16;  // 0 if the sum fits
+  const std::int32_t is_limited = (above | -above) >> 31;
+  return static_cast<std::int16_t>(sum ^ ((sum ^ (sum >> 31) ^ 32767) & is_limited));
 #endif
 }
 // a + b modulo 2^16.
@@ -46,15 +48,18 @@ TUMBLESIGHT_INLINE std::int16_t add_int16(std::int16_t a, std::int16_t b) {
   return static_cast<std::int16_t>(a + b);
 }
 
-ReturnSummary summarize_returns(const RangeImage& frame) {
-  const int rays = frame.rays * frame.rays;
+ReturnSummary summarize_returns(const RangeImage& frame, const RayMask& mask) {
+  std::array<std::uint16_t, kMaxRays> ranges;
   std::uint16_t returns = 0, nearest = 0xFFFF, farthest = 0;
-  for (int ray = 0; ray < rays; ++ray) {
-    const std::uint16_t range = frame.ranges[ray];
-    const std::uint16_t good = usable(range);
-    returns = static_cast<std::uint16_t>(returns - good);
-    nearest = min(nearest, static_cast<std::uint16_t>(range | static_cast<std::uint16_t>(~good)));
-    farthest = max(farthest, static_cast<std::uint16_t>(range & good));
+  for (int row = 0; row < frame.rays; ++row) {
+    masked_row(frame, mask.rows[row], row, ranges.data());
+    for (int column = 0; column < frame.rays; ++column) {
+      const std::uint16_t range = ranges[column];
+      const auto good = mask_if<std::uint16_t>(range != 0);
+      returns = static_cast<std::uint16_t>(returns - good);
+      nearest = min(nearest, static_cast<std::uint16_t>(range | static_cast<std::uint16_t>(~good)));
+      farthest = max(farthest, range);
+    }
   }
   ReturnSummary summary;
   summary.returns = returns;
@@ -63,32 +68,32 @@ ReturnSummary summarize_returns(const RangeImage& frame) {
   return summary;
 }
 
-// Depths along the boresight of one row of rays, in the frame's unit; 0 without a usable return. A depth is
-// the range over sqrt(1 + s) with s = u^2 + v^2 < 0.2662, as a polynomial with an error of at most 2e-5.
+// Depths along the boresight of one row of rays, in the frame's unit; 0 without a return. A depth is the
+// range over sqrt(1 + s) with s = u^2 + v^2 < 0.2662, as a polynomial with an error of at most 2e-5.
 TUMBLESIGHT_INLINE void row_depths(const std::uint16_t* __restrict ranges, const Rays& rays, int row,
-                                   int count, std::int16_t* __restrict depths) {
-  const std::int16_t v_square = rays.square_q16[row];
+                                   std::int16_t* __restrict depths) {
+  const std::int16_t down_square = rays.down_square_q16[row];
   const auto scale = static_cast<std::uint16_t>(1 << rays.range_shift);
-  for (int column = 0; column < count; ++column) {
-    const std::int16_t s = add_int16(rays.square_q16[column], v_square);  // Q0.16
-    const std::int16_t p3 = add_int16(-9761, multiply_high(s, 5777));     // Q0.15
+  for (int column = 0; column < rays.count; ++column) {
+    const std::int16_t s = add_int16(rays.right_square_q16[column], down_square);  // Q0.16
+    const std::int16_t p3 = add_int16(-9761, multiply_high(s, 5777));              // Q0.15
     const std::int16_t p2 = add_int16(12263, multiply_high(s, p3));
     const std::int16_t p1 = add_int16(-16384, multiply_high(s, p2));
     const auto inverse = static_cast<std::uint16_t>(65535 + multiply_q15(s, p1));
-    const auto range = static_cast<std::uint16_t>(ranges[column] & usable(ranges[column]));
-    const std::uint16_t twice = multiply_high(static_cast<std::uint16_t>(range * scale), inverse);
+    const std::uint16_t twice = multiply_high(static_cast<std::uint16_t>(ranges[column] * scale), inverse);
     depths[column] = static_cast<std::int16_t>(twice >> 1);
   }
 }
 
-void sum_frame_depths(const RangeImage& frame, Rays& rays) {
+void sum_frame_depths(const RangeImage& frame, const RayMask& mask, Rays& rays) {
+  std::array<std::uint16_t, kMaxRays> ranges;
   std::array<std::int16_t, kMaxRays> depths;
-  const int count = frame.rays;
   rays.column_sum.fill(0);
-  for (int row = 0; row < count; ++row) {
-    row_depths(frame.ranges.data() + row * count, rays, row, count, depths.data());
+  for (int row = 0; row < rays.count; ++row) {
+    masked_row(frame, mask.rows[row], row, ranges.data());
+    row_depths(ranges.data(), rays, row, depths.data());
     std::uint32_t sum = 0;
-    for (int column = 0; column < count; ++column) {
+    for (int column = 0; column < rays.count; ++column) {
       const auto depth = static_cast<std::uint32_t>(depths[column]);
       sum += depth;
       rays.column_sum[column] += depth;
@@ -144,18 +149,23 @@ TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const
   }
 }
 
-void accumulate_returns(const RangeImage& frame, const Rays& rays, const View& view,
-                        std::uint32_t* __restrict cells) {
+void accumulate_returns(const RangeImage& frame, DepthImageScratch& scratch) {
   constexpr std::uint32_t kOneReturn = 1U << kValueBits;
   // Neighbours often fall into the same cell, where each addition would wait for the previous one.
   constexpr int kInterleave = 8;
+  std::array<std::uint16_t, kMaxRays> ranges;
   std::array<std::int16_t, kMaxRays> depths;
   Row projected;
-  const int count = frame.rays;
+  const int count = scratch.rays.count;
+  std::uint32_t* __restrict const cells = scratch.cells.data();
   for (int i = 0; i < DepthImage::kCells; ++i) cells[i] = 0;
   for (int row = 0; row < count; ++row) {
-    row_depths(frame.ranges.data() + row * count, rays, row, count, depths.data());
-    project_row(depths.data(), view, row, count, projected);
+    if (scratch.window.is_resampled)
+      sample_row(frame, scratch.mask, scratch.window, row, ranges.data());
+    else
+      masked_row(frame, scratch.mask.rows[row], row, ranges.data());
+    row_depths(ranges.data(), scratch.rays, row, depths.data());
+    project_row(depths.data(), scratch.view, row, count, projected);
     for (int first = 0; first < kInterleave; ++first) {
       for (int column = first; column < count; column += kInterleave) {
         std::uint32_t& cell = cells[projected.cell[column]];
@@ -180,9 +190,9 @@ void encode_cells(const std::uint32_t* __restrict cells, std::uint16_t* __restri
     const std::uint32_t sum = cells[i] & ((1U << kValueBits) - 1);
     const std::uint32_t count = cells[i] >> kValueBits;
     // From a mean of 14 bits with 16 fraction bits to a depth of 16 bits.
-    const std::uint32_t mean = (sum * kReciprocals16[count] + (1U << 13)) >> 14;
-    const auto bounded = clamp<std::uint32_t>(mean, DepthImage::kSmallest, DepthImage::kLargest);
-    depth[i] = static_cast<std::uint16_t>(bounded & mask_if<std::uint32_t>(count > 0));
+    const auto mean = static_cast<std::int32_t>((sum * kReciprocals16[count] + (1U << 13)) >> 14);
+    const std::int32_t bounded = min_small(DepthImage::kLargest, max_small(DepthImage::kSmallest, mean));
+    depth[i] = static_cast<std::uint16_t>(bounded & mask_if<std::int32_t>(count > 0));
   }
 }
 

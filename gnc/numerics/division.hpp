@@ -8,8 +8,9 @@
 
 namespace tumblesight::gnc {
 
-// dividend / divisor by restoring division, 64 iterations. Requires divisor > 0.
-constexpr std::uint64_t divide_bit_by_bit(std::uint64_t dividend, std::uint64_t divisor) {
+// dividend / divisor by restoring division, 64 iterations. Requires divisor > 0. Not inlined: a copy at every
+// division would cost 4 KiB.
+[[gnu::noinline]] constexpr std::uint64_t divide_bit_by_bit(std::uint64_t dividend, std::uint64_t divisor) {
   std::uint64_t quotient = 0;
   std::uint64_t remaining = 0;
   for (int bit = 63; bit >= 0; --bit) {

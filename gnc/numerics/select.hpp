@@ -38,7 +38,9 @@ inline float select(bool condition, float yes, float no) {
 template <class Integer>
 constexpr Integer less_mask(Integer a, NonDeduced<Integer> b) {
   static_assert(std::is_integral_v<Integer>);
-  if constexpr (sizeof(Integer) < 8) {
+  if constexpr (sizeof(Integer) < 4) {
+    return static_cast<Integer>((static_cast<std::int32_t>(a) - static_cast<std::int32_t>(b)) >> 31);
+  } else if constexpr (sizeof(Integer) < 8) {
     return static_cast<Integer>((static_cast<std::int64_t>(a) - static_cast<std::int64_t>(b)) >> 63);
   } else {
     // The borrow of a - b: decided by the top bits of the operands if they differ, else by that of the
@@ -48,6 +50,12 @@ constexpr Integer less_mask(Integer a, NonDeduced<Integer> b) {
     const std::uint64_t borrow = first | (~(x ^ y) & (x - y));
     return static_cast<Integer>(static_cast<std::int64_t>(borrow) >> 63);
   }
+}
+
+// All bits set if value < 0, else 0. sign_mask(a - b) is less_mask(a, b) where the difference fits, in fewer
+// instructions.
+constexpr std::int32_t sign_mask(std::int32_t value) {
+  return value >> 31;
 }
 
 // With conditional moves the compiler implements a comparison without a jump, and masks are not needed.
@@ -84,6 +92,14 @@ constexpr Number max(Number a, NonDeduced<Number> b) {
     return a < b ? b : a;
   else
     return static_cast<Number>(a ^ ((a ^ b) & less_mask<Number>(a, b)));
+}
+// min() and max() of numbers whose difference fits into 31 bits, in fewer instructions where there are no
+// conditional moves.
+constexpr std::int32_t min_small(std::int32_t a, std::int32_t b) {
+  return kHasConditionalMoves ? min(a, b) : b + ((a - b) & sign_mask(a - b));
+}
+constexpr std::int32_t max_small(std::int32_t a, std::int32_t b) {
+  return kHasConditionalMoves ? max(a, b) : a + ((b - a) & sign_mask(a - b));
 }
 // Absolute value; the most negative integer stays as it is.
 template <class Integer>

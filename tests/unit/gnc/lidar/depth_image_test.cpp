@@ -96,7 +96,7 @@ TEST_F(DepthImageTest, ReturnsInOneCellAreAveraged) {
 TEST_F(DepthImageTest, NearerIsBrighterAndAReturnIsNeverZero) {
   for (int row = 0; row < 64; ++row) {
     for (int column = 0; column < 128; ++column)
-      s->set(row, column, row < 32 ? kRange_m - 20.0 : kRange_m + 20.0);
+      s->set(row, column, row < 32 ? kRange_m - 4.0 : kRange_m + 4.0);
   }
   ASSERT_EQ(s->make({20000, 3000}), FrameStatus::kOk);
   int smallest = DepthImage::kLargest;
@@ -111,15 +111,17 @@ TEST_F(DepthImageTest, NearerIsBrighterAndAReturnIsNeverZero) {
 
 // Verifies TS-LID-080.
 TEST_F(DepthImageTest, DepthIsLimitedToARadiusFromTheCentroid) {
-  // One return in 16 lies 30 m behind the others, which puts the centroid 1.9 m behind them: they are at
-  // 0.81. With its full distance it would lower the mean of a cell to 0.5.
+  // One return in 16 lies 7 m behind the others, which puts the centroid 0.44 m behind them: they are at
+  // 0.573. Limited to 0, it lowers the mean of a cell to 0.537, with its full distance to 0.5.
   s->frame.fov_urad = fov_urad(2.0, kRange_m);
   for (int i = 0; i < 128 * 128; ++i) {
     const bool far = i / 128 % 4 == 0 && i % 4 == 0;
-    s->set(i / 128, i % 128, far ? kRange_m + 30.0 : kRange_m);
+    s->set(i / 128, i % 128, far ? kRange_m + 7.0 : kRange_m);
   }
   ASSERT_EQ(s->make(), FrameStatus::kOk);
-  for (int column = 40; column < 60; ++column) EXPECT_NEAR(s->at(50, column), 0.77, 0.06);
+  double sum = 0.0;
+  for (int column = 40; column < 60; ++column) sum += s->at(50, column) / 20;
+  EXPECT_NEAR(sum, 0.537, 0.01);
 }
 
 // Verifies TS-LID-080.
@@ -156,7 +158,7 @@ TEST_F(DepthImageTest, ReturnsFromTheChaserItselfAreIgnored) {
 // Verifies TS-LID-010, TS-LID-020.
 TEST_F(DepthImageTest, UnusableFramesAreRefusedWithTheReason) {
   EXPECT_EQ(s->make(), FrameStatus::kEmpty);
-  for (int i = 0; i < kMinReturns - 1; ++i) s->set(60, i, kRange_m + i);
+  for (int i = 0; i < kMinReturns - 1; ++i) s->set(60, i, kRange_m + 0.1 * i);
   EXPECT_EQ(s->make(), FrameStatus::kEmpty);
   s->set(61, 0, kRange_m);
   EXPECT_EQ(s->make(), FrameStatus::kOk);
