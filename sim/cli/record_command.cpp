@@ -79,11 +79,11 @@ void add_record_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("record", "Render frames into a recording, with their truth beside it");
   command->footer(
-      "\nThe recording holds the frames of the LiDAR, one every 2.7 s unless --period says\n"
-      "otherwise, the chaser's attitude at each, and a pause between two sequences. The\n"
-      "truth is a text file with the true attitude, rate and position of each frame.\n"
-      "docs/icd.md describes both formats. `tumblesight replay` runs the flight program\n"
-      "over a recording; flight_replay on a board has one inside.\n\n"
+      "\nThe recording holds the frames of the LiDAR, one every 2.7 s unless --period\n"
+      "says otherwise, the chaser's attitude at each, and a pause between two\n"
+      "sequences. The truth is a text file with the true attitude, rate and position\n"
+      "of each frame. docs/icd.md describes both formats. `tumblesight replay` runs\n"
+      "the flight program over a recording; flight_replay on a board has one inside.\n\n"
       "Conditions\n" +
       condition_explanations() +
       "\nExample: a recording as the audit replays it on every processor\n"
