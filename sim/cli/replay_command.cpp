@@ -24,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kNoTruth = "none";
+constexpr std::size_t kMaxLines = 200;  // of the table on the terminal; report and figures have all cycles
 
 struct ReplayArguments : FlightArguments {
   ScenarioArguments scenario;  // of which only target, model, numerics and figures have options
@@ -64,7 +65,12 @@ void announce(const ReplayArguments& arguments, const ReplaySetup& setup, std::s
 }
 
 void print_results(const ReplayReport& report, const SilRunResult& run) {
-  fmt::print("{}\n", terminal_text(replay_table(report)));
+  DataTable cycles = replay_table(report);
+  const std::size_t lines = cycles.rows.size();
+  cycles.rows.resize(std::min(lines, kMaxLines));
+  fmt::print("{}\n", terminal_text(cycles));
+  if (lines > kMaxLines)
+    fmt::print("  … and {} more lines, which the report and --json have\n\n", lines - kMaxLines);
   const DataTable errors = replay_errors_table(report);
   if (!errors.rows.empty()) fmt::print("{}\n", terminal_text(errors));
   FactList facts = replay_facts(report);

@@ -59,15 +59,15 @@ std::string reason(const StepResult& step, Refusal refusal) {
   for (const hal::Event& event : step.events) {
     switch (event.id) {
       case hal::EventId::kFrameExposureBackwards:
-        return "exposure not after the last";
+        return "exposure backwards";
       case hal::EventId::kFrameStale:
         return "too old";
       case hal::EventId::kFrameFromFuture:
         return "from the future";
       case hal::EventId::kFrameTooSoon:
-        return "too soon after the last";
+        return "too soon";
       case hal::EventId::kFrameWithoutChaser:
-        return "chaser's attitude unknown";
+        return "chaser unknown";
       case hal::EventId::kFrameBad:
         return bad_content(event.arguments[1]);
       default:
@@ -145,10 +145,16 @@ double range_m(const hal::AttitudeReport& report) {
   return 1e-3 * Eigen::Vector3d(mm[0], mm[1], mm[2]).norm();
 }
 
-// The steps as those of a run with simulated sequences, to have its figures: a sequence is a track, and only
-// attitudes whose truth is known are answers.
+// The steps as those of a run with simulated sequences, to have its figures: a sequence is a track, only
+// attitudes whose truth is known are answers, and only frames with an attitude are pictured.
 SilRunResult by_track(const SilRunResult& run) {
   SilRunResult tracks = run;
+  const auto has_no_attitude = [&](const auto& picture) {
+    const StepResult& step = run.steps[picture.first];
+    return !step.answered || !gives_attitude(step.attitude);
+  };
+  tracks.pictures.erase(std::remove_if(tracks.pictures.begin(), tracks.pictures.end(), has_no_attitude),
+                        tracks.pictures.end());
   std::uint32_t track = 0;
   std::uint32_t last_frame = 0;
   for (StepResult& step : tracks.steps) {
@@ -340,6 +346,9 @@ DataTable replay_table(const ReplayReport& report) {
     while (is_gap(report.rows[first]) && i + 1 < report.rows.size() && is_gap(report.rows[i + 1])) ++i;
     table.rows.push_back(gap_row(report.rows[first], report.rows[i], start_ns));
   }
+  if (!report.setup.truth.empty()) return table;
+  table.header.pop_back();
+  for (std::vector<TableCell>& row : table.rows) row.pop_back();
   return table;
 }
 

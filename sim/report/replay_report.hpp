@@ -60,7 +60,8 @@ struct ReplayReport {
 ReplayReport replay_report(const ReplaySetup& setup, const SilRunResult& run,
                            const std::vector<ReplayedFrame>& frames);
 
-// A line per cycle; consecutive cycles without a frame have one line.
+// A line per cycle; consecutive cycles without a frame have one line. Without truth there is no last column,
+// the error.
 DataTable replay_table(const ReplayReport& report);
 // Cycles, frames, attitudes and refusals, and the expected errors.
 FactList replay_facts(const ReplayReport& report);

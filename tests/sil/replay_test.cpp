@@ -164,11 +164,11 @@ TEST(Replay, SaysWhyEachFrameWasRefusedAndWhichAreMissing) {
   const Replayed replay = replayed(writer.finish(), test::settings());
   std::vector<std::string> found;
   for (const ReplayRow& row : replay.report.rows) found.push_back(row.has_attitude ? "attitude" : row.status);
-  EXPECT_EQ(found, (std::vector<std::string>{"attitude", "attitude", "refused: duplicate",
-                                             "refused: exposure not after the last", "no frame", "no frame",
-                                             "attitude", "refused: too soon after the last", "attitude",
-                                             "refused: chaser's attitude unknown", "refused: repeated",
-                                             "refused: too few returns", "refused: bad field of view"}));
+  EXPECT_EQ(found,
+            (std::vector<std::string>{
+                "attitude", "attitude", "refused: duplicate", "refused: exposure backwards", "no frame",
+                "no frame", "attitude", "refused: too soon", "attitude", "refused: chaser unknown",
+                "refused: repeated", "refused: too few returns", "refused: bad field of view"}));
   const nlohmann::ordered_json json = replay_json(replay.report, replay.run);
   EXPECT_EQ(json.at("refused").dump(),
             R"({"duplicate":1,"stale":2,"bad":2,"repeated":1,"without_chaser":1})");

@@ -68,6 +68,7 @@ TEST(ReplayReport, HasARowPerCycleAndOneForAGapInTheTable) {
   EXPECT_EQ(table.rows[0][5].text, "50.0 m");
   EXPECT_EQ(table.rows[0][7].text, "1.00°");
   EXPECT_EQ(table.rows[0][8].text, "5.73°");
+  EXPECT_EQ(replay_table(report_of(made, "")).rows[0].size(), 8U) << "no error without truth";
 }
 
 TEST(ReplayReport, TakesTracksAsSequencesAndScoresAttitudesOnly) {
@@ -82,6 +83,20 @@ TEST(ReplayReport, TakesTracksAsSequencesAndScoresAttitudesOnly) {
   EXPECT_EQ(errors.rows[0].back().text, "2");
   EXPECT_EQ(errors.rows[1].back().text, "3");
   EXPECT_EQ(errors.rows[1][1].text, "5.73°");
+}
+
+TEST(ReplayReport, PicturesFramesWithAnAttitudeByTheirTrack) {
+  SilRunResult made = run();
+  gnc::RangeImage frame;
+  frame.rays = 128;
+  frame.fov_urad = 140'000;
+  for (int i = 0; i < 400; ++i) frame.ranges[8000 + i] = static_cast<std::uint16_t>(6400 + i % 7);
+  made.pictures = {{4, frame}, {6, frame}};
+  const ReplayReport report = report_of(made, "");
+  ASSERT_EQ(report.run.pictures.size(), 1U) << "the other was refused";
+  EXPECT_EQ(report.run.pictures[0].sequence, 1U);
+  EXPECT_EQ(report.run.pictures[0].frame, 1U);
+  EXPECT_EQ(report.run.pictures[0].range_m, 50.0);
 }
 
 TEST(ReplayReport, NamesTheKindOfARefusalWhoseEventWasSuppressed) {
