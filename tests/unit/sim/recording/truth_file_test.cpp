@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 namespace tumblesight::sim {
@@ -92,6 +94,16 @@ TEST(TruthFile, IsRefusedWithFileLineColumnValueLimitAndRemedy) {
   };
   for (const auto& [text, message] : refusals)
     EXPECT_NE(refusal_of(text).find(message), std::string::npos) << refusal_of(text) << "\n" << message;
+}
+
+TEST(TruthFile, HasTheColumnsOfTheInterfaceDocument) {
+  std::ostringstream document;
+  document << std::ifstream(TUMBLESIGHT_SOURCE_DIR "/docs/icd.md").rdbuf();
+  std::istringstream header(truth_csv({}));
+  for (std::string column; std::getline(header >> std::ws, column, ',');) {
+    if (column.back() == '\n') column.pop_back();
+    EXPECT_NE(document.str().find("`" + column + "`"), std::string::npos) << column;
+  }
 }
 
 TEST(TruthFile, HasThePathOfItsRecording) {
