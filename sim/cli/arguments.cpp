@@ -142,8 +142,10 @@ CLI::Option* limit_number(CLI::Option* option, double low, double high) {
 
 void add_target_option(CLI::App& command, std::string& target, TargetChoice choice) {
   const std::string shipped = "spacecraft: " + joined(target_names());
-  const bool any = choice == TargetChoice::kAny;
-  command.add_option("--target", target, any ? shipped + ", or with --mesh a name of your own" : shipped)
+  const bool any = choice != TargetChoice::kShipped;
+  const std::string own = std::string(", or with ") + (choice == TargetChoice::kAny ? "--mesh" : "--model") +
+                          " a name of your own";
+  command.add_option("--target", target, any ? shipped + own : shipped)
       ->check(any ? target_name() : one_of(target_names()))
       ->type_name("NAME")
       ->capture_default_str();

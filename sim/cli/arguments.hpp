@@ -39,8 +39,9 @@ struct MeshArguments {
 };
 
 enum class TargetChoice {
-  kShipped,  // only targets that ship
-  kAny,      // with --mesh, targets of the user's own as well
+  kShipped,    // only targets that ship
+  kAny,        // with --mesh, targets of the user's own as well
+  kWithModel,  // with --model, targets of the user's own as well
 };
 
 // One option each. The default shown in the help is the value of the variable at the time of the call.

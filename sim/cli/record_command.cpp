@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/recording/make_recording.hpp"
+#include "sim/recording/truth_file.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
@@ -17,15 +19,31 @@
 namespace tumblesight::sim {
 namespace {
 
+constexpr const char* kNoTruth = "none";
+
 struct RecordArguments {
   ScenarioArguments scenario;
   std::string out;
+  std::string truth;  // empty: beside the recording
 };
+
+// Empty: none is written. A device has nothing beside it.
+std::string truth_path(const RecordArguments& arguments) {
+  if (arguments.truth == kNoTruth) return {};
+  if (!arguments.truth.empty()) return arguments.truth;
+  std::error_code error;
+  const std::filesystem::path out(arguments.out);
+  const bool device = std::filesystem::is_other(out, error) || out.parent_path() == "/dev";
+  return device ? std::string() : truth_path_of(arguments.out);
+}
 
 void record(const RecordArguments& arguments) {
   const ScenarioArguments& wanted = arguments.scenario;
   require_possible_disturbances(wanted.disturbances, wanted.frames);
+  const std::string truth = truth_path(arguments);
+  require_different("--truth", truth, "--out", arguments.out);
   require_writable("--out", arguments.out);
+  if (!truth.empty()) require_writable("--truth", truth);
   const TargetSetup target = set_up_target_without_model(wanted);
   for (const std::string& warning : target.warnings) fmt::print(stderr, "  note: {}\n", warning);
   RecordingSettings settings;
@@ -40,15 +58,17 @@ void record(const RecordArguments& arguments) {
 
   const std::uint32_t total = wanted.sequences * wanted.frames;
   ProgressBar bar("recording", "frames", total);
-  const std::vector<std::uint8_t> bytes =
+  const auto [bytes, rows] =
       make_recording(renderer, settings, [&](std::uint32_t done) { bar.update(done); });
   bar.finish();
   write_file(arguments.out, bytes);
+  if (!truth.empty()) write_file(truth, truth_csv(rows));
   hal::replay::Recording recording;
   if (recording.open(bytes.data(), bytes.size()) != hal::replay::RecordingStatus::kOk)
     throw std::logic_error("the recording that was made is not valid");
-  fmt::print("\n  {}, {}: {}, {} bytes: {}\n\n", wanted.target, wanted.condition,
+  fmt::print("\n  {}, {}: {}, {} bytes: {}\n", wanted.target, wanted.condition,
              counted(recording.frames(), "frame"), bytes.size(), full_path(arguments.out));
+  fmt::print("  truth: {}\n\n", truth.empty() ? kNoTruth : full_path(truth));
 }
 
 }  // namespace
@@ -57,11 +77,13 @@ void add_record_command(CLI::App& app) {
   auto arguments = std::make_shared<RecordArguments>();
   arguments->scenario.sequences = 2;
   CLI::App* command =
-      app.add_subcommand("record", "Render frames into a recording, for flight_replay on a board");
+      app.add_subcommand("record", "Render frames into a recording, with their truth beside it");
   command->footer(
-      "\nThe file holds the frames of the LiDAR, one every 2.7 s unless --period says\n"
-      "otherwise, the chaser's attitude at each, and a pause between two sequences.\n"
-      "hal/replay/recording.hpp describes the format.\n\n"
+      "\nThe recording holds the frames of the LiDAR, one every 2.7 s unless --period\n"
+      "says otherwise, the chaser's attitude at each, and a pause between two\n"
+      "sequences. The truth is a text file with the true attitude, rate and position\n"
+      "of each frame. docs/icd.md describes both formats. `tumblesight replay` runs\n"
+      "the flight program over a recording; flight_replay on a board has one inside.\n\n"
       "Conditions\n" +
       condition_explanations() +
       "\nExample: a recording as the audit replays it on every processor\n"
@@ -74,6 +96,11 @@ void add_record_command(CLI::App& app) {
   add_disturbance_options(*command, arguments->scenario.disturbances);
   command->add_option("--out", arguments->out, "recording to write")
       ->required()
+      ->check(file_path())
+      ->type_name("FILE");
+  command
+      ->add_option("--truth", arguments->truth,
+                   "truth to write [beside the recording: FRAMES.truth.csv]; none: no truth")
       ->check(file_path())
       ->type_name("FILE");
   command->callback([arguments] { record(*arguments); });

@@ -4,19 +4,12 @@
 #include <string>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/flight_arguments.hpp"
 
 namespace tumblesight::sim {
 
-struct SimulateArguments {
+struct SimulateArguments : FlightArguments {
   ScenarioArguments scenario;
-  std::string speed = "max";
-  bool free_running = false;
-  std::string flight;       // empty: in the folder of this program; "none": started by the user
-  std::string command_key;  // file; empty: the public development key
-  std::string security;     // file; empty: the bus is not secured
-  int domain = -1;          // -1: none given
-  std::string report;       // empty: default_report_name() in out/ of the source tree
-  std::string command_line;
 };
 
 // A file name that differs between different runs: target, condition and seed, then every option that is not

@@ -1,14 +1,11 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
-#include "hal/dds/idl/development_key.hpp"
-#include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/mesh_advice.hpp"
@@ -22,99 +19,17 @@
 #include "sim/report/results_tables.hpp"
 #include "sim/report/sil_report.hpp"
 #include "sim/sil/interruption.hpp"
-#include "sim/sil/signed_telecommand.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
 #include "sim/world/chaser_navigation.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr double kSlowest = 0.1;
-constexpr double kFastest = 1000.0;
-constexpr double kManualStart_s = 60.0;  // time for the user to start the flight program
-constexpr int kDefaultFlightDomain = 0;  // of a flight program without --domain
-constexpr int kRunFailed = 1;
-constexpr int kInterrupted = 128;  // and the number of the signal, as a shell reports it
-constexpr const char* kNoFlight = "none";
-constexpr const char* kFastestPossible = "max";
-
-CLI::Validator speed() {
-  const auto check = [](std::string& text) -> std::string {
-    if (text == kFastestPossible || number(kSlowest, kFastest)(text).empty()) return {};
-    return fmt::format("must be max or a number from {:g} to {:g}, not '{}'", kSlowest, kFastest, text);
-  };
-  return CLI::Validator(check, "", "speed");
-}
-
-std::string default_report(const SimulateArguments& arguments) {
-  return fmt::format("{}/out/{}", TUMBLESIGHT_SOURCE_DIR, default_report_name(arguments));
-}
-
-fs::path shipped_flight() {
-  return fs::read_symlink("/proc/self/exe").parent_path() / "flight";
-}
-
-std::string flight_path(const std::string& given) {
-  if (given == kNoFlight) return {};
-  const fs::path path = given.empty() ? shipped_flight() : fs::path(given);
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) {
-    throw std::runtime_error(fmt::format("flight program '{}' {}; give its path with --flight", path.string(),
-                                         fs::exists(path, error) ? "is not a file" : "does not exist"));
-  }
-  return path.string();
-}
-
-// One word for a shell, whatever it contains.
-std::string shell_quoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-// The command that the user has to run, for a shell.
-std::string flight_command_line(const SilSettings& settings) {
-  std::string line =
-      fmt::format("{} --domain {} --target {} --model {}", shell_quoted(shipped_flight().string()),
-                  settings.domain, settings.target, shell_quoted(full_path(settings.model_path)));
-  if (!settings.security_path.empty()) line += " --dds-security " + shell_quoted(settings.security_path);
-  for (const std::string& argument : settings.flight_arguments) line += " " + shell_quoted(argument);
-  if (settings.free_running && settings.speed > 0.0) {
-    line += fmt::format(" --mode free-running --period-ms {:g}", 1e3 * kFramePeriod_s / settings.speed);
-  }
-  return line;
-}
-
-SilSettings sil_settings(const SimulateArguments& arguments, const TargetSetup& setup) {
-  SilSettings settings;
-  settings.target = arguments.scenario.target;
-  settings.model_path = setup.model_path;
-  settings.model_crc32 = setup.header.crc32;
-  settings.flight_path = flight_path(arguments.flight);
-  settings.domain = arguments.domain;
-  settings.speed = arguments.speed == kFastestPossible ? 0.0 : std::stod(arguments.speed);
-  settings.free_running = arguments.free_running;
-  settings.ego_motion = !arguments.scenario.disturbances.no_ego_motion;
-  if (!arguments.command_key.empty()) {
-    settings.command_key = read_command_key(arguments.command_key);
-    settings.flight_arguments = {"--command-key", full_path(arguments.command_key)};
-  }
-  if (!arguments.security.empty()) settings.security_path = full_path(arguments.security);
-  if (arguments.flight == kNoFlight) {
-    if (settings.domain < 0) settings.domain = kDefaultFlightDomain;
-    settings.step_timeout_s = kManualStart_s;
-  }
-  return settings;
-}
-
 SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& target,
                       const SilSettings& settings) {
   SilRunSetup setup;
-  setup.target = scenario.target;
+  static_cast<FlightSetup&>(setup) = flight_setup(scenario.target, target, settings);
   setup.mesh_name = target.mesh_name;
   setup.condition = scenario.condition;
   setup.sequences = scenario.sequences;
@@ -122,14 +37,6 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
   setup.disturbances = scenario.disturbances;
   setup.effects = scenario.effects;
   setup.seed = scenario.seed;
-  setup.model_path = target.model_path;
-  setup.model_crc32 = fmt::format("{:08x}", target.header.crc32);
-  setup.projection = target.projection;
-  setup.speed = settings.speed;
-  setup.free_running = settings.free_running;
-  setup.remarks = target.warnings;
-  if (settings.command_key == hal::dds::kDevelopmentKey)
-    setup.remarks.emplace_back("telecommands are signed with the public development key; give --command-key");
   return setup;
 }
 
@@ -184,13 +91,7 @@ void announce(const ScenarioArguments& scenario, const TargetSetup& target, cons
   if (!disturbances.empty()) fmt::print("  disturbed: {}\n\n", disturbances);
   const std::string effects = to_string(scenario.effects);
   if (!effects.empty()) fmt::print("  effect: {}\n\n", effects);
-  if (settings.flight_path.empty()) {
-    fmt::print(
-        "  Waiting up to {:g} s for the flight program. Unless it is running already, start\n    {}\n\n",
-        settings.step_timeout_s, flight_command_line(settings));
-  }
-  std::fflush(stdout);
-  for (const std::string& warning : target.warnings) fmt::print(stderr, "  note: {}\n", warning);
+  announce_flight(settings, target);
 }
 
 void print_advice(const ScenarioArguments& scenario, const TargetSetup& target, const RunReport& report) {
@@ -200,36 +101,6 @@ void print_advice(const ScenarioArguments& scenario, const TargetSetup& target, 
                   last_frame_summary(report.results, scenario.frames, Estimator::kRcnn),
                   common_turn(last, Estimator::kRcnn));
   if (!advice.empty()) fmt::print("\n{}\n", advice);
-}
-
-// Writes the report, then the figures, even if one of them cannot be written. Returns the messages of the
-// failures.
-std::vector<std::string> write_files(const SimulateArguments& arguments, const RunReport& report,
-                                     const nlohmann::ordered_json& figures) {
-  std::vector<std::string> failures;
-  const auto attempt = [&](const auto& write) {
-    try {
-      write();
-    } catch (const std::exception& error) {
-      failures.emplace_back(error.what());
-    }
-  };
-  attempt([&] {
-    write_file(arguments.report, run_page(report));
-    fmt::print("  report             {}\n", full_path(arguments.report));
-  });
-  const std::string& json = arguments.scenario.json;
-  attempt([&] {
-    if (!json.empty()) write_file(json, figures.dump(2) + "\n");
-  });
-  return failures;
-}
-
-void require_usable_files(const SimulateArguments& arguments) {
-  const std::string& json = arguments.scenario.json;
-  require_different("--json", json, "--report", arguments.report);
-  require_writable("--report", arguments.report);
-  if (!json.empty()) require_writable("--json", json);
 }
 
 void require_a_speed(const SimulateArguments& arguments) {
@@ -243,10 +114,11 @@ void simulate(SimulateArguments arguments) {
   require_supported_length(scenario);
   require_a_speed(arguments);
   require_possible_disturbances(scenario.disturbances, scenario.frames);
-  if (arguments.report.empty()) arguments.report = default_report(arguments);
-  require_usable_files(arguments);
+  if (arguments.report.empty()) arguments.report = default_report_path(default_report_name(arguments));
+  require_usable_outputs(arguments, scenario.json);
   const TargetSetup target = set_up_target(scenario);
-  const SilSettings settings = sil_settings(arguments, target);
+  SilSettings settings = sil_settings(arguments, scenario.target, target);
+  settings.ego_motion = !scenario.disturbances.no_ego_motion;
   const SilRunSetup setup = run_setup(scenario, target, settings);
   announce(scenario, target, settings);
 
@@ -263,15 +135,7 @@ void simulate(SimulateArguments arguments) {
   report.generated = local_time_text();
   print_results(report, run, numerics);
   print_advice(scenario, target, report);
-  std::vector<std::string> faults = run_faults(run);
-  for (const std::string& failure : write_files(arguments, report, run_json(setup, run, numerics)))
-    faults.push_back(failure);
-  fmt::print("\n");
-  std::fflush(stdout);
-
-  for (const std::string& fault : faults) fmt::print(stderr, "tumblesight: {}\n", fault);
-  if (Interruption::signal() != 0) throw CLI::RuntimeError(kInterrupted + Interruption::signal());
-  if (!faults.empty()) throw CLI::RuntimeError(kRunFailed);
+  finish_flight(arguments, run_page(report), scenario.json, run_json(setup, run, numerics), run_faults(run));
 }
 
 }  // namespace
@@ -288,36 +152,10 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   add_json_option(*command, arguments->scenario.json);
   add_effect_option(*command, arguments->scenario.effects);
   add_disturbance_options(*command, arguments->scenario.disturbances);
-  command
-      ->add_option("--speed", arguments->speed,
-                   "max: as fast as possible; or N times real time (0.1 to 1000)")
-      ->check(speed())
-      ->type_name("max|N")
-      ->capture_default_str();
+  add_flight_options(*command, *arguments);
   command->add_flag(
       "--free-running", arguments->free_running,
       "the flight program runs on its own timer, not in lockstep; needs --speed N (1: as in flight)");
-  command
-      ->add_option(
-          "--flight", arguments->flight,
-          "flight program to start [in the folder of tumblesight]; none: you start it, the command is shown")
-      ->check(file_path())
-      ->type_name("FILE");
-  command
-      ->add_option(
-          "--command-key", arguments->command_key,
-          "file with the key that signs telecommands, 64 hexadecimal digits [the public development key]")
-      ->check(existing_file())
-      ->type_name("FILE");
-  command
-      ->add_option("--dds-security", arguments->security,
-                   "secures the bus with certificates; hal/dds/make_security writes the file")
-      ->check(existing_file())
-      ->type_name("FILE");
-  limit_whole_number(
-      command->add_option("--domain", arguments->domain, "DDS domain [a free one, or 0 with --flight none]"),
-      0, hal::dds::kMaxDomain)
-      ->type_name("N");
   add_report_option(
       *command, arguments->report,
       " [out/<target>_<condition>_seed<seed>.html, plus every option that is not at its default]");

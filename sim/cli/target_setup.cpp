@@ -74,8 +74,7 @@ std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const s
       fault + (trainable ? "; train one for this target (docs/training.md), or give one with --model" : ""));
 }
 
-void frame_by_model(TargetSetup& setup) {
-  setup.projection = setup.header.projection;
+void compare_swaths(TargetSetup& setup) {
   const double of_model = 1e-3 * setup.projection.swath_mm;
   const double of_mesh = swath_m(setup.mesh);
   if (std::abs(of_mesh - of_model) <= kSwathTolerance * of_model) return;
@@ -96,7 +95,7 @@ TargetSetup set_up_body(const ScenarioArguments& arguments) {
   return setup;
 }
 
-void set_up_model(const ScenarioArguments& arguments, TargetSetup& setup) {
+void load_model(const ScenarioArguments& arguments, TargetSetup& setup) {
   setup.model_path = model_path(arguments);
   setup.model = read_model(arguments, setup.model_path);
   const HostEstimator estimator(setup.model, arguments.target.c_str());
@@ -105,7 +104,12 @@ void set_up_model(const ScenarioArguments& arguments, TargetSetup& setup) {
         fmt::format("model image '{}' is refused: {}", setup.model_path, gnc::to_string(estimator.status())));
   }
   setup.header = estimator.model();
-  frame_by_model(setup);
+  setup.projection = setup.header.projection;
+}
+
+void set_up_model(const ScenarioArguments& arguments, TargetSetup& setup) {
+  load_model(arguments, setup);
+  compare_swaths(setup);
 }
 
 }  // namespace
@@ -117,6 +121,12 @@ std::string shipped_model_path(const std::string& name) {
 TargetSetup set_up_target(const ScenarioArguments& arguments) {
   TargetSetup setup = set_up_body(arguments);
   set_up_model(arguments, setup);
+  return setup;
+}
+
+TargetSetup set_up_model_alone(const ScenarioArguments& arguments) {
+  TargetSetup setup;
+  load_model(arguments, setup);
   return setup;
 }
 

@@ -33,6 +33,9 @@ std::string shipped_model_path(const std::string& name);
 // inertia, model image. An image that the flight program would refuse is refused here as well.
 TargetSetup set_up_target(const ScenarioArguments& arguments);
 
+// The same without a body, for verbs that see frames of others: mesh and inertia stay empty.
+TargetSetup set_up_model_alone(const ScenarioArguments& arguments);
+
 // The same for verbs that run no network. The model is the image that ships for the target. Without one
 // the fields of the model stay empty, and the swath is that of the mesh.
 TargetSetup set_up_target_without_model(const ScenarioArguments& arguments);

@@ -5,6 +5,7 @@ namespace tumblesight::sim {
 void add_verbs(CLI::App& app, const std::string& command_line) {
 #ifdef TUMBLESIGHT_HAS_SIL
   add_simulate_command(app, command_line);
+  add_replay_command(app, command_line);
 #endif
   add_evaluate_command(app, command_line);
   add_quantize_command(app);

@@ -19,12 +19,14 @@ void add_verbs(CLI::App& app, const std::string& command_line);
 // `tumblesight simulate`: a software-in-the-loop run with the flight program, with figures and a report.
 void add_simulate_command(CLI::App& app, const std::string& command_line);
 
+// `tumblesight replay`: the flight program over a recording, with its attitudes compared with the truth.
+void add_replay_command(CLI::App& app, const std::string& command_line);
+
 // `tumblesight evaluate`: accuracy of a model over many sequences, from the renderer directly to the
 // estimator.
 void add_evaluate_command(CLI::App& app, const std::string& command_line);
 
-// `tumblesight record`: renders frames into a recording, for the flight application on boards without a
-// simulator.
+// `tumblesight record`: renders frames into a recording, with their truth beside it.
 void add_record_command(CLI::App& app);
 
 // `tumblesight export`: a float32 model image as ONNX models, for other runtimes.

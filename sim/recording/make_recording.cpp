@@ -39,32 +39,46 @@ std::uint32_t delivered_frames(const std::vector<Sequence>& sequences) {
   return count;
 }
 
+RecordedTruth recorded_truth(const FrameTruth& truth, const FrameStamp& stamp, double swath_m) {
+  RecordedTruth row;
+  row.sequence_number = stamp.sequence_number;
+  row.exposure_time_ns = stamp.exposure_time_ns;
+  row.q_lrf_trf = truth.q_lrf_trf;
+  row.rate_lrf_rad_s = truth.rate_lrf_rad_s;
+  const Eigen::Vector2d offset_m = swath_m * truth.offset_swaths;
+  row.trf_origin_lrf_m = {offset_m.x(), truth.range_m, offset_m.y()};
+  return row;
+}
+
 }  // namespace
 
-std::vector<std::uint8_t> make_recording(const FrameRenderer& renderer, const RecordingSettings& settings,
-                                         const std::function<void(std::uint32_t)>& progress) {
+MadeRecording make_recording(const FrameRenderer& renderer, const RecordingSettings& settings,
+                             const std::function<void(std::uint32_t)>& progress) {
   std::vector<Sequence> sequences;
   for (std::uint32_t i = 0; i < settings.sequences; ++i)
     sequences.push_back(make_sequence(settings.scenario, settings.seed, i));
   const int rays = sensor_settings(settings.scenario.condition, settings.scenario.effects).rays;
   const bool ego_motion = !settings.scenario.disturbances.no_ego_motion;
   RecordingWriter writer(static_cast<std::uint16_t>(rays), delivered_frames(sequences));
+  MadeRecording made;
   const auto image = std::make_unique<gnc::RangeImage>();
   std::int64_t start_ns = 0;
   std::uint32_t number = 0;
   for (const Sequence& sequence : sequences) {
     for (std::uint32_t k = 0; k < sequence.frames.size(); ++k, ++number) {
       const FrameTruth& truth = sequence.frames[k];
-      const std::int64_t time_ns = start_ns + truth.time_ns;
+      const FrameStamp stamp{number, start_ns + truth.time_ns};
       if (!truth.lost) {
-        renderer.render(sequence, k, {number, time_ns}, *image);
-        writer.add(*image, chaser_attitude(truth, time_ns, ego_motion));
+        renderer.render(sequence, k, stamp, *image);
+        writer.add(*image, chaser_attitude(truth, stamp.exposure_time_ns, ego_motion));
+        made.truth.push_back(recorded_truth(truth, stamp, renderer.swath_m()));
       }
       progress(number + 1);
     }
     start_ns += sequence.frames.back().time_ns + (1 + kPause_frames) * kFramePeriod_ns;
   }
-  return writer.finish();
+  made.bytes = writer.finish();
+  return made;
 }
 
 }  // namespace tumblesight::sim

@@ -7,6 +7,7 @@
 
 #include "gnc/lidar/range_image.hpp"
 #include "gnc/tracking/chaser_attitude.hpp"
+#include "sim/recording/truth_file.hpp"
 #include "sim/world/frame_renderer.hpp"
 
 namespace tumblesight::sim {
@@ -32,10 +33,15 @@ struct RecordingSettings {
   std::uint32_t sequences = 1;
 };
 
+struct MadeRecording {
+  std::vector<std::uint8_t> bytes;   // of the file
+  std::vector<RecordedTruth> truth;  // of each frame
+};
+
 // Sequences 0 .. sequences-1 of the seed, with the chaser's attitude at each exposure. Lost frames are not in
-// it. Between two sequences two frames are missing, so that the application recognizes the second one as new.
-// `progress`: frames done so far. Returns the bytes of the file.
-std::vector<std::uint8_t> make_recording(const FrameRenderer& renderer, const RecordingSettings& settings,
-                                         const std::function<void(std::uint32_t)>& progress);
+// it. Between two sequences ten frames are missing, so that the application recognizes the second one as new.
+// `progress`: frames done so far.
+MadeRecording make_recording(const FrameRenderer& renderer, const RecordingSettings& settings,
+                             const std::function<void(std::uint32_t)>& progress);
 
 }  // namespace tumblesight::sim

@@ -72,4 +72,32 @@ std::string html_figure(const std::string& heading, const std::string& svg, cons
   return fmt::format("<figure><h2>{}</h2>\n{}<figcaption>{}</figcaption></figure>\n", heading, svg, caption);
 }
 
+std::string html_notices(const std::vector<std::string>& notices, const std::vector<std::string>& remarks) {
+  std::string html;
+  for (const std::string& notice : notices) {
+    html += fmt::format("<div class=notice>{}</div>\n", escape_markup(notice));
+  }
+  for (const std::string& remark : remarks) {
+    html += fmt::format("<div class=\"notice remark\">{}</div>\n", escape_markup(remark));
+  }
+  return html;
+}
+
+std::string html_facts(const std::vector<FactList>& lists) {
+  std::string html = "<div class=facts>\n";
+  for (const FactList& list : lists) {
+    html += fmt::format("<section><h2>{}</h2><table>", escape_markup(list.title));
+    for (const auto& [name, value] : list.facts) {
+      html += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escape_markup(name), escape_markup(value));
+    }
+    html += "</table></section>\n";
+  }
+  return html + "</div>\n";
+}
+
+std::string html_footer(const std::string& generated, const std::string& command) {
+  return fmt::format("<footer>{}<br><code>{}</code></footer>\n", escape_markup(generated),
+                     escape_markup(command));
+}
+
 }  // namespace tumblesight::sim

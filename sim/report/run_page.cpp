@@ -66,18 +66,6 @@ std::string gallery_section(const RunReport& report, std::uint32_t shown) {
                      "brighter. Below each: sequence / frame, range.");
 }
 
-std::string facts_section(const RunReport& report) {
-  std::string html = "<div class=facts>\n";
-  for (const FactList& list : report.facts) {
-    html += fmt::format("<section><h2>{}</h2><table>", escape_markup(list.title));
-    for (const auto& [name, value] : list.facts) {
-      html += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escape_markup(name), escape_markup(value));
-    }
-    html += "</table></section>\n";
-  }
-  return html + "</div>\n";
-}
-
 std::string body(const RunReport& report) {
   const std::uint32_t shown = report.results.empty() ? 0 : report.results.front().sequence;
   std::string html =
@@ -86,12 +74,7 @@ std::string body(const RunReport& report) {
   html += fmt::format("<p class=sub>Software-in-the-loop run of Tumblesight: {} of {}, {:g} s apart</p>\n",
                       counted(report.setup.sequences, "sequence"), counted(report.setup.frames, "frame"),
                       report.frame_period_s);
-  for (const std::string& notice : report.notices) {
-    html += fmt::format("<div class=notice>{}</div>\n", escape_markup(notice));
-  }
-  for (const std::string& remark : report.setup.remarks) {
-    html += fmt::format("<div class=\"notice remark\">{}</div>\n", escape_markup(remark));
-  }
+  html += html_notices(report.notices, report.setup.remarks);
   html += fmt::format("<p class=lead>{}</p>\n", lead_sentence(report)) +
           html_text(run_errors_table(report), "headline");
   if (!report.results.empty()) {
@@ -103,10 +86,7 @@ std::string body(const RunReport& report) {
                         "angular errors.") +
             charts_section(report, shown) + gallery_section(report, shown);
   }
-  html += facts_section(report);
-  html += fmt::format("<footer>{}<br><code>{}</code></footer>\n", escape_markup(report.generated),
-                      escape_markup(report.command));
-  return html;
+  return html + html_facts(report.facts) + html_footer(report.generated, report.command);
 }
 
 }  // namespace

@@ -27,22 +27,26 @@ struct FactList {
   std::vector<std::pair<std::string, std::string>> facts;  // name, value
 };
 
-// The settings of the run.
-struct SilRunSetup {
+// The settings of a run of the flight program, whatever it sees.
+struct FlightSetup {
   std::string target;
+  std::string model_path;
+  std::string model_crc32;
+  gnc::DepthProjection projection;
+  double speed = 0.0;  // times real time; 0: as fast as the machine goes
+  bool free_running = false;
+  std::vector<std::string> remarks;  // shown at the top of the report, below the faults
+};
+
+// The settings of a run with simulated sequences.
+struct SilRunSetup : FlightSetup {
   std::string mesh_name;
   std::string condition;
   std::uint32_t sequences = 0;
   std::uint32_t frames = 0;  // per sequence
   std::uint64_t seed = 0;
-  std::string model_path;
-  std::string model_crc32;  // or why the host's own check refuses the image
-  gnc::DepthProjection projection;
-  double speed = 0.0;  // times real time; 0: as fast as the machine goes
-  bool free_running = false;
   Disturbances disturbances;
   Effects effects;
-  std::vector<std::string> remarks;  // shown at the top of the report, below the faults
 };
 
 struct RunReport {

@@ -28,20 +28,6 @@ const StepResult* last_answered(const SilRunResult& run) {
   return found == run.steps.rend() ? nullptr : &*found;
 }
 
-std::vector<ReportPicture> pictures(const SilRunResult& run, const gnc::DepthProjection& projection) {
-  const auto scratch = std::make_unique<gnc::DepthImageScratch>();
-  std::vector<ReportPicture> pictures;
-  for (const auto& [index, frame] : run.pictures) {
-    if (index >= run.steps.size()) continue;
-    const StepResult& step = run.steps[index];
-    ReportPicture picture{step.sequence, step.frame_index, step.truth.range_m, {}};
-    if (gnc::make_depth_image(frame, projection, *scratch, picture.image) == gnc::FrameStatus::kOk) {
-      pictures.push_back(picture);
-    }
-  }
-  return pictures;
-}
-
 std::uint32_t steps_answered(const SilRunResult& run) {
   return run.steps_planned - run.steps_missed - run.frames_superseded;
 }
@@ -70,7 +56,46 @@ FactList numerics_facts(const NumericsComparison& numerics) {
            {"difference of the attitudes, max", degrees_text(numerics.largest_difference_deg)}}};
 }
 
-FactList outcome_facts(const SilRunResult& run, const SilRunSetup& setup) {
+nlohmann::ordered_json faults_json(const std::vector<StandingFault>& faults) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const StandingFault& one : faults) {
+    json[name_of(one.fault)] = {
+        {"steps", one.steps}, {"sequences", one.sequences}, {"first_step", one.first_step}};
+  }
+  return json;
+}
+
+StandingFault standing_fault(const SilRunResult& run, hal::Fault fault) {
+  StandingFault found{fault};
+  std::optional<std::uint32_t> last_sequence;
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
+    const StepResult& step = run.steps[i];
+    const bool stands = (step.telemetry.faults_persisting >> static_cast<unsigned>(fault) & 1U) != 0;
+    if (!step.answered || !stands) continue;
+    if (found.steps++ == 0) found.first_step = static_cast<std::uint32_t>(i);
+    if (last_sequence != step.sequence) ++found.sequences;
+    last_sequence = step.sequence;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<ReportPicture> depth_pictures(const SilRunResult& run, const gnc::DepthProjection& projection) {
+  const auto scratch = std::make_unique<gnc::DepthImageScratch>();
+  std::vector<ReportPicture> pictures;
+  for (const auto& [index, frame] : run.pictures) {
+    if (index >= run.steps.size()) continue;
+    const StepResult& step = run.steps[index];
+    ReportPicture picture{step.sequence, step.frame_index, step.truth.range_m, {}};
+    if (gnc::make_depth_image(frame, projection, *scratch, picture.image) == gnc::FrameStatus::kOk) {
+      pictures.push_back(picture);
+    }
+  }
+  return pictures;
+}
+
+FactList outcome_facts(const SilRunResult& run, const FlightSetup& setup) {
   const InferenceTime time = inference_time(run);
   FactList list{"Flight program", {}};
   list.facts = {{"steps", steps_text(run)},
@@ -111,30 +136,6 @@ FactList counter_facts(const SilRunResult& run) {
   return list;
 }
 
-nlohmann::ordered_json faults_json(const std::vector<StandingFault>& faults) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (const StandingFault& one : faults) {
-    json[name_of(one.fault)] = {
-        {"steps", one.steps}, {"sequences", one.sequences}, {"first_step", one.first_step}};
-  }
-  return json;
-}
-
-StandingFault standing_fault(const SilRunResult& run, hal::Fault fault) {
-  StandingFault found{fault};
-  std::optional<std::uint32_t> last_sequence;
-  for (std::size_t i = 0; i < run.steps.size(); ++i) {
-    const StepResult& step = run.steps[i];
-    const bool stands = (step.telemetry.faults_persisting >> static_cast<unsigned>(fault) & 1U) != 0;
-    if (!step.answered || !stands) continue;
-    if (found.steps++ == 0) found.first_step = static_cast<std::uint32_t>(i);
-    if (last_sequence != step.sequence) ++found.sequences;
-    last_sequence = step.sequence;
-  }
-  return found;
-}
-
-// Warnings and errors by event id, in the order in which they first occurred.
 FactList event_facts(const SilRunResult& run) {
   struct Kind {
     hal::EventId id;
@@ -161,8 +162,6 @@ FactList event_facts(const SilRunResult& run) {
   }
   return list;
 }
-
-}  // namespace
 
 std::vector<StandingFault> standing_faults(const SilRunResult& run) {
   std::vector<StandingFault> faults;
@@ -222,7 +221,7 @@ InferenceTime inference_time(const SilRunResult& run) {
   return {median(times_us), *std::max_element(times_us.begin(), times_us.end())};
 }
 
-std::vector<std::string> run_faults(const SilRunResult& run) {
+std::vector<std::string> flight_faults(const SilRunResult& run) {
   std::vector<std::string> found;
   if (!run.failure.empty()) found.push_back("The run ended early: " + run.failure + ".");
   const bool ended_before_the_first = !run.failure.empty() && run.steps_missed == run.steps_planned;
@@ -231,14 +230,6 @@ std::vector<std::string> run_faults(const SilRunResult& run) {
                                 run.steps_missed, run.steps_planned));
   }
   const StepResult* last = last_answered(run);
-  const auto invalid = std::count_if(run.steps.begin(), run.steps.end(), [](const StepResult& s) {
-    return s.answered && s.truth.is_genuine() && !gave_attitude(s);
-  });
-  if (invalid > 0) {
-    found.push_back(fmt::format(
-        "{} of {} answers held no valid attitude{}; they count as 180° off.", invalid, steps_answered(run),
-        last->telemetry.mode != hal::Mode::kRun ? ": the flight program is not in RUN" : ""));
-  }
   if (last != nullptr && last->telemetry.commands_refused > 0) {
     found.push_back(fmt::format("The flight program refused {}; see its command counter and key.",
                                 counted(last->telemetry.commands_refused, "telecommand")));
@@ -250,10 +241,37 @@ std::vector<std::string> run_faults(const SilRunResult& run) {
   return found;
 }
 
+std::vector<std::string> run_faults(const SilRunResult& run) {
+  std::vector<std::string> found = flight_faults(run);
+  const StepResult* last = last_answered(run);
+  const auto invalid = std::count_if(run.steps.begin(), run.steps.end(), [](const StepResult& s) {
+    return s.answered && s.truth.is_genuine() && !gave_attitude(s);
+  });
+  if (invalid > 0) {
+    found.push_back(fmt::format(
+        "{} of {} answers held no valid attitude{}; they count as 180° off.", invalid, steps_answered(run),
+        last->telemetry.mode != hal::Mode::kRun ? ": the flight program is not in RUN" : ""));
+  }
+  return found;
+}
+
+nlohmann::ordered_json outcome_json(const SilRunResult& run) {
+  const InferenceTime time = inference_time(run);
+  const bool timed = time.max_us > 0.0;
+  nlohmann::ordered_json json;
+  json["inference_us"] = {{"median", timed ? nlohmann::ordered_json(time.median_us) : nullptr},
+                          {"max", timed ? nlohmann::ordered_json(time.max_us) : nullptr}};
+  json["flight_heap_allocations"] = run.flight_heap_allocations;
+  json["steps_missed"] = run.steps_missed;
+  json["frames_superseded"] = run.frames_superseded;
+  json["trace_crc32"] = run.trace_crc32;
+  json["faults"] = faults_json(standing_faults(run));
+  return json;
+}
+
 nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& run,
                                 const std::optional<NumericsComparison>& numerics) {
   const std::vector<FrameResult> results = frame_results(run);
-  const InferenceTime time = inference_time(run);
   nlohmann::ordered_json json{
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
   json["disturbances"] = disturbances_json(setup.disturbances);
@@ -265,14 +283,7 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
     json["difference_to_float32"] = {{"mean_deg", numerics->difference.mean_deg},
                                      {"max_deg", numerics->largest_difference_deg}};
   }
-  const bool timed = time.max_us > 0.0;
-  json["inference_us"] = {{"median", timed ? nlohmann::ordered_json(time.median_us) : nullptr},
-                          {"max", timed ? nlohmann::ordered_json(time.max_us) : nullptr}};
-  json["flight_heap_allocations"] = run.flight_heap_allocations;
-  json["steps_missed"] = run.steps_missed;
-  json["frames_superseded"] = run.frames_superseded;
-  json["trace_crc32"] = run.trace_crc32;
-  json["faults"] = faults_json(standing_faults(run));
+  json.update(outcome_json(run));
   return json;
 }
 
@@ -283,7 +294,7 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   report.setup = setup;
   report.frame_period_s = setup.disturbances.period_s;
   report.results = frame_results(run);
-  report.pictures = pictures(run, setup.projection);
+  report.pictures = depth_pictures(run, setup.projection);
   if (to_string(setup.effects).empty())
     report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
   report.steps_planned = run.steps_planned;

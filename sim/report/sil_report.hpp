@@ -28,9 +28,20 @@ std::string steps_text(const SilRunResult& run);
 // "1.25 ms"; "none" for 0.
 std::string time_text(double time_us);
 
-// The faults of the run, one sentence each. Empty: every step was answered, with an attitude if the sensor
-// delivered a genuine frame, no telecommand was refused, and the flight task allocated no heap memory.
+// The faults of the run, one sentence each. Empty: every step was answered, no telecommand was refused, and
+// the flight task allocated no heap memory.
+std::vector<std::string> flight_faults(const SilRunResult& run);
+// Also those of a run that owes an attitude for every genuine frame.
 std::vector<std::string> run_faults(const SilRunResult& run);
+
+// What reports of all runs have: figures of the flight program, its counters at the end, and its warnings and
+// errors by event, in the order in which they first occurred.
+FactList outcome_facts(const SilRunResult& run, const FlightSetup& setup);
+FactList counter_facts(const SilRunResult& run);
+FactList event_facts(const SilRunResult& run);
+nlohmann::ordered_json outcome_json(const SilRunResult& run);
+// The pictures of the run as the network sees them.
+std::vector<ReportPicture> depth_pictures(const SilRunResult& run, const gnc::DepthProjection& projection);
 
 // A fault that the flight program's telemetry showed as persisting.
 struct StandingFault {

@@ -6,37 +6,32 @@
 #include <optional>
 
 #include "sim/sil/fault_names.hpp"
-#include "sim/sil/frame_feed.hpp"
 #include "sim/sil/sil_session.hpp"
+#include "sim/sil/simulated_steps.hpp"
 #include "sim/sil/trace.hpp"
-#include "sim/world/chaser_navigation.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 using Clock = SilSession::Clock;
 
-constexpr std::uint32_t kPictureSequences = 3;  // the frames of these are kept
-
-// One run: its plan, its frames, and its result so far.
+// One run: its steps, and its result so far.
 class SilRun {
  public:
-  SilRun(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
-         const std::vector<Sequence>& sequences, const SilProgress& progress, const FrameObserver& frame_sent,
-         SilRunResult& result)
+  SilRun(const SilSettings& settings, StepSource& source, const SilProgress& progress,
+         const FrameObserver& frame_sent, SilRunResult& result)
       : settings_(settings),
-        sequences_(sequences),
+        source_(source),
         progress_(progress),
         frame_sent_(frame_sent),
         result_(result),
-        plan_(plan_steps(sequences)),
-        feed_(lidar, swath_m, sequences, plan_) {
-    result_.steps_planned = static_cast<std::uint32_t>(plan_.size());
-    result_.steps.reserve(plan_.size());
+        steps_(source.steps()) {
+    result_.steps_planned = steps_;
+    result_.steps.reserve(steps_);
   }
 
   void run() {
-    if (plan_.empty()) return;
+    if (steps_ == 0) return;
     if (settings_.free_running && !(settings_.speed > 0.0)) {
       throw SilFailure(
           "a free-running flight program needs a speed: --speed 1 for real time, N for N times real time");
@@ -49,10 +44,10 @@ class SilRun {
  private:
   void simulate_in_lockstep(SilSession& session) {
     const auto begin = Clock::now();
-    for (std::uint32_t k = 0; k < plan_.size(); ++k) {
+    for (std::uint32_t k = 0; k < steps_; ++k) {
       const StepInput input = prepare(session, k);
       if (settings_.speed > 0.0) session.sleep_until(begin + wall_time_of(k));
-      session.publish_truth(plan_[k].sequence, plan_[k].frame, result_.steps[k].truth, plan_[k].time_ns);
+      publish_truth(session, result_.steps[k]);
       store_answer(k, session.step(input));
       if (k == 0) require_running(session, result_.steps[0].telemetry);
     }
@@ -61,14 +56,18 @@ class SilRun {
   // Frames are sent by the wall clock. Answers are matched to them by sequence number.
   void simulate_free_running(SilSession& session) {
     const auto begin = Clock::now();
-    for (std::uint32_t k = 0; k < plan_.size(); ++k) {
+    for (std::uint32_t k = 0; k < steps_; ++k) {
       const StepInput input = prepare(session, k);
       receive_until(session, begin + wall_time_of(k));
-      session.publish_truth(plan_[k].sequence, plan_[k].frame, result_.steps[k].truth, plan_[k].time_ns);
+      publish_truth(session, result_.steps[k]);
       session.send(input);
     }
     // The answer to the last frame comes with the next cycle, or never.
-    receive_until(session, begin + wall_time_of(static_cast<std::uint32_t>(plan_.size() + 2)));
+    receive_until(session, begin + wall_time_of(steps_ + 2));
+  }
+
+  static void publish_truth(SilSession& session, const StepResult& step) {
+    if (step.truth_known) session.publish_truth(step.sequence, step.frame_index, step.truth, step.time_ns);
   }
 
   void receive_until(SilSession& session, Clock::time_point deadline) {
@@ -84,13 +83,12 @@ class SilRun {
     }
   }
 
-  bool last_answered() const { return result_.steps.size() == plan_.size() && result_.steps.back().answered; }
+  bool last_answered() const { return result_.steps.size() == steps_ && result_.steps.back().answered; }
 
   // Mission time since step 0. Nominal periods follow the last step.
   std::int64_t mission_time_of(std::uint32_t k) const {
-    if (k < plan_.size()) return plan_[k].time_ns - plan_.front().time_ns;
-    const auto periods = static_cast<std::int64_t>(k - plan_.size() + 1);
-    return plan_.back().time_ns - plan_.front().time_ns + periods * kFramePeriod_ns;
+    const std::uint32_t last = std::min(k, steps_ - 1);
+    return source_.time_ns(last) - source_.time_ns(0) + std::int64_t{k - last} * kFramePeriod_ns;
   }
 
   // Mission time as wall time, from the start of the run.
@@ -100,30 +98,17 @@ class SilRun {
   }
 
   StepInput prepare(const SilSession& session, std::uint32_t k) {
-    const PlannedStep& plan = plan_[k];
-    StepResult step;
-    step.sequence = plan.sequence;
-    step.frame_index = plan.frame;
-    step.time_ns = plan.time_ns;
-    step.truth = sequences_[plan.sequence].frames[plan.frame];
-    result_.steps.push_back(step);
-
-    const gnc::RangeImage& frame = feed_.next();
-    StepInput input;
-    input.time_ns = plan.time_ns;
-    if (!step.truth.lost) {
-      if (frame_sent_) frame_sent_(step, frame);
-      if (plan.sequence < kPictureSequences) result_.pictures.emplace_back(k, frame);
-      input.frames = {&frame};
-      if (settings_.ego_motion)
-        input.navigations = {chaser_attitude(step.truth, frame.exposure_time_ns, true)};
+    SourcedStep sourced = source_.next();
+    result_.steps.push_back(sourced.step);
+    StepInput& input = sourced.input;
+    for (const gnc::RangeImage* frame : input.frames) {
+      if (frame_sent_) frame_sent_(sourced.step, *frame);
+      if (sourced.keep_picture) result_.pictures.emplace_back(k, *frame);
     }
-    if (k == 0 && session.flight_mode() == hal::Mode::kStandby) {
-      input.commands.push_back(set_mode(hal::Mode::kRun));
-    }
-    if (plan.frame == 0) input.commands.push_back(reset_sequence());
-    input.last = k + 1 == plan_.size();
-    return input;
+    if (k == 0 && session.flight_mode() == hal::Mode::kStandby)
+      input.commands.insert(input.commands.begin(), set_mode(hal::Mode::kRun));
+    input.last = k + 1 == steps_;
+    return std::move(input);
   }
 
   void store_answer(std::uint32_t k, const StepAnswer& answer) {
@@ -167,12 +152,11 @@ class SilRun {
   }
 
   const SilSettings& settings_;
-  const std::vector<Sequence>& sequences_;
+  StepSource& source_;
   const SilProgress& progress_;
   const FrameObserver& frame_sent_;
   SilRunResult& result_;
-  std::vector<PlannedStep> plan_;
-  FrameFeed feed_;
+  std::uint32_t steps_;
   std::uint32_t answered_ = 0;
 };
 
@@ -219,17 +203,23 @@ bool gives_attitude(const hal::AttitudeReport& report) {
   return report.validity == hal::Validity::kValid || report.validity == hal::Validity::kDoubtful;
 }
 
-SilRunResult run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
-                     const std::vector<Sequence>& sequences, const SilProgress& progress,
+SilRunResult run_sil(const SilSettings& settings, StepSource& source, const SilProgress& progress,
                      const FrameObserver& frame_sent) {
   SilRunResult result;
   try {
-    SilRun(settings, lidar, swath_m, sequences, progress, frame_sent, result).run();
+    SilRun(settings, source, progress, frame_sent, result).run();
   } catch (const std::exception& error) {
     result.failure = error.what();
   }
   conclude(settings.free_running, result);
   return result;
+}
+
+SilRunResult run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
+                     const std::vector<Sequence>& sequences, const SilProgress& progress,
+                     const FrameObserver& frame_sent) {
+  SimulatedSteps steps(lidar, swath_m, sequences, settings.ego_motion);
+  return run_sil(settings, steps, progress, frame_sent);
 }
 
 }  // namespace tumblesight::sim

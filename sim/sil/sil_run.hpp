@@ -1,5 +1,5 @@
 // A software-in-the-loop (SIL) run: the simulator is the time master, the flight program is a second process,
-// and they communicate over DDS.
+// and they communicate over DDS. What the flight program sees is simulated or recorded (StepSource).
 #pragma once
 
 #include <array>
@@ -41,6 +41,7 @@ struct StepResult {
   std::uint32_t frame_index = 0;
   std::int64_t time_ns = 0;
   FrameTruth truth;
+  bool truth_known = true;  // otherwise the truth says only whether a frame was delivered
   bool answered = false;
   hal::AttitudeReport attitude;
   hal::Telemetry telemetry;
@@ -53,8 +54,7 @@ bool gives_attitude(const hal::AttitudeReport& report);
 
 struct SilRunResult {
   std::vector<StepResult> steps;
-  std::vector<std::pair<std::size_t, gnc::RangeImage>>
-      pictures;  // index into steps, frame; of the first sequences only
+  std::vector<std::pair<std::size_t, gnc::RangeImage>> pictures;  // index into steps, frame; a selection
   std::uint32_t steps_planned = 0;
   std::uint32_t steps_missed = 0;             // without an answer, and not superseded
   std::uint32_t frames_superseded = 0;        // free-running: a newer frame of the same cycle was used
@@ -65,11 +65,17 @@ struct SilRunResult {
   std::string failure;
 };
 
-// Runs `sequences` in order, with a reset command before each. `swath_m` is the width of the frames at the
-// target's range. `progress(done, planned)` is called after every step, `frame_sent` with every frame, in
-// order. Does not throw: a run that ends early returns the steps up to then, with `failure` set.
+class StepSource;
+
+// Runs the steps of `source` in order. `progress(done, planned)` is called after every step, `frame_sent`
+// with every frame, in order. Does not throw: a run that ends early returns the steps up to then, with
+// `failure` set. A free-running flight program needs frames whose sequence number is the index of their step.
 using SilProgress = std::function<void(std::uint32_t done, std::uint32_t planned)>;
 using FrameObserver = std::function<void(const StepResult& step, const gnc::RangeImage& frame)>;
+SilRunResult run_sil(const SilSettings& settings, StepSource& source, const SilProgress& progress,
+                     const FrameObserver& frame_sent = {});
+
+// The same with simulated sequences (SimulatedSteps).
 SilRunResult run_sil(const SilSettings& settings, const FlashLidar& lidar, double swath_m,
                      const std::vector<Sequence>& sequences, const SilProgress& progress,
                      const FrameObserver& frame_sent = {});

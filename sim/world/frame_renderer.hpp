@@ -45,6 +45,8 @@ class FrameRenderer {
   // Stamped as the first sequence of a run: number `frame`, at the frame's time in the sequence.
   void render(const Sequence& sequence, std::uint32_t frame, gnc::RangeImage& image) const;
 
+  double swath_m() const { return swath_m_; }
+
  private:
   const FlashLidar& lidar_;
   double swath_m_;

@@ -318,6 +318,27 @@ TEST(Record, NeedsNoModelForAMeshOfTheUsersOwn) {
   EXPECT_GT(content(here.path("mine.tslr")).size(), 1000U);
 }
 
+// Verifies TS-SIL-130.
+TEST(Record, WritesTheTruthBesideTheFramesUnlessToldOtherwise) {
+  const Workplace here;
+  const std::string common = "record --target mine --mesh " + own_mesh(here) + " --sequences 1 --frames 2";
+  const Outcome outcome = here.run(common + " --out mine.tslr");
+  EXPECT_NE(outcome.output.find("/mine.truth.csv\n"), std::string::npos) << outcome.output << outcome.errors;
+  const std::string truth = content(here.path("mine.truth.csv"));
+  EXPECT_EQ(truth.find("sequence_number,exposure_time_ns,q_lrf_trf_w,"), 0U) << truth;
+  EXPECT_EQ(std::count(truth.begin(), truth.end(), '\n'), 3);
+  ASSERT_EQ(here.run(common + " --out other.tslr --truth elsewhere.csv").exit_code, 0);
+  EXPECT_EQ(content(here.path("elsewhere.csv")), truth);
+  ASSERT_EQ(here.run(common + " --out other.tslr --truth none").exit_code, 0);
+  ASSERT_EQ(here.run(common + " --out /dev/null").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(here.path("other.truth.csv")));
+  EXPECT_FALSE(std::filesystem::exists("/dev/null.truth.csv"));
+  const Outcome refused = here.run(common + " --out same --truth ./same");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.errors.find("--truth: './same' is also the file of --out"), std::string::npos)
+      << refused.errors;
+}
+
 // Verifies TS-SIL-300, TS-SIL-310.
 TEST(Record, ShowsWhatTheEffectsAdd) {
   const Workplace here;

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <fstream>
 #include <functional>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +16,13 @@
 
 namespace tumblesight::sim {
 namespace {
+
+TEST(Targets, HaveTheirAxesAndOriginInTheInterfaceDocument) {
+  std::ostringstream document;
+  document << std::ifstream(TUMBLESIGHT_SOURCE_DIR "/docs/icd.md").rdbuf();
+  for (const std::string& name : target_names())
+    EXPECT_NE(document.str().find("\n| " + name + " | "), std::string::npos) << name;
+}
 
 TEST(Targets, AreFoundByNameValidAndFitTheSensor) {
   const std::vector<std::string> names = target_names();

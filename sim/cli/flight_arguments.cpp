@@ -1,0 +1,184 @@
+#include "sim/cli/flight_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "hal/dds/idl/development_key.hpp"
+#include "hal/dds/idl/domain.hpp"
+#include "sim/cli/arguments.hpp"
+#include "sim/sil/interruption.hpp"
+#include "sim/sil/signed_telecommand.hpp"
+#include "sim/terminal/write_file.hpp"
+#include "sim/world/scenario/disturbance.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSlowest = 0.1;
+constexpr double kFastest = 1000.0;
+constexpr double kManualStart_s = 60.0;  // time for the user to start the flight program
+constexpr int kDefaultFlightDomain = 0;  // of a flight program without --domain
+constexpr int kRunFailed = 1;
+constexpr int kInterrupted = 128;  // and the number of the signal, as a shell reports it
+constexpr const char* kNoFlight = "none";
+
+CLI::Validator speed() {
+  const auto check = [](std::string& text) -> std::string {
+    if (text == kFastestPossible || number(kSlowest, kFastest)(text).empty()) return {};
+    return fmt::format("must be max or a number from {:g} to {:g}, not '{}'", kSlowest, kFastest, text);
+  };
+  return CLI::Validator(check, "", "speed");
+}
+
+fs::path shipped_flight() {
+  return fs::read_symlink("/proc/self/exe").parent_path() / "flight";
+}
+
+std::string flight_path(const std::string& given) {
+  if (given == kNoFlight) return {};
+  const fs::path path = given.empty() ? shipped_flight() : fs::path(given);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) {
+    throw std::runtime_error(fmt::format("flight program '{}' {}; give its path with --flight", path.string(),
+                                         fs::exists(path, error) ? "is not a file" : "does not exist"));
+  }
+  return path.string();
+}
+
+// One word for a shell, whatever it contains.
+std::string shell_quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+// The command that the user has to run, for a shell.
+std::string flight_command_line(const SilSettings& settings) {
+  std::string line =
+      fmt::format("{} --domain {} --target {} --model {}", shell_quoted(shipped_flight().string()),
+                  settings.domain, settings.target, shell_quoted(full_path(settings.model_path)));
+  if (!settings.security_path.empty()) line += " --dds-security " + shell_quoted(settings.security_path);
+  for (const std::string& argument : settings.flight_arguments) line += " " + shell_quoted(argument);
+  if (settings.free_running && settings.speed > 0.0) {
+    line += fmt::format(" --mode free-running --period-ms {:g}", 1e3 * kFramePeriod_s / settings.speed);
+  }
+  return line;
+}
+
+}  // namespace
+
+void add_flight_options(CLI::App& command, FlightArguments& arguments) {
+  command
+      .add_option("--speed", arguments.speed, "max: as fast as possible; or N times real time (0.1 to 1000)")
+      ->check(speed())
+      ->type_name("max|N")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--flight", arguments.flight,
+          "flight program to start [in the folder of tumblesight]; none: you start it, the command is shown")
+      ->check(file_path())
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--command-key", arguments.command_key,
+          "file with the key that signs telecommands, 64 hexadecimal digits [the public development key]")
+      ->check(existing_file())
+      ->type_name("FILE");
+  command
+      .add_option("--dds-security", arguments.security,
+                  "secures the bus with certificates; hal/dds/make_security writes the file")
+      ->check(existing_file())
+      ->type_name("FILE");
+  limit_whole_number(
+      command.add_option("--domain", arguments.domain, "DDS domain [a free one, or 0 with --flight none]"), 0,
+      hal::dds::kMaxDomain)
+      ->type_name("N");
+}
+
+SilSettings sil_settings(const FlightArguments& arguments, const std::string& target,
+                         const TargetSetup& setup) {
+  SilSettings settings;
+  settings.target = target;
+  settings.model_path = setup.model_path;
+  settings.model_crc32 = setup.header.crc32;
+  settings.flight_path = flight_path(arguments.flight);
+  settings.domain = arguments.domain;
+  settings.speed = arguments.speed == kFastestPossible ? 0.0 : std::stod(arguments.speed);
+  settings.free_running = arguments.free_running;
+  if (!arguments.command_key.empty()) {
+    settings.command_key = read_command_key(arguments.command_key);
+    settings.flight_arguments = {"--command-key", full_path(arguments.command_key)};
+  }
+  if (!arguments.security.empty()) settings.security_path = full_path(arguments.security);
+  if (arguments.flight == kNoFlight) {
+    if (settings.domain < 0) settings.domain = kDefaultFlightDomain;
+    settings.step_timeout_s = kManualStart_s;
+  }
+  return settings;
+}
+
+FlightSetup flight_setup(const std::string& target, const TargetSetup& setup, const SilSettings& settings) {
+  FlightSetup described;
+  described.target = target;
+  described.model_path = setup.model_path;
+  described.model_crc32 = fmt::format("{:08x}", setup.header.crc32);
+  described.projection = setup.projection;
+  described.speed = settings.speed;
+  described.free_running = settings.free_running;
+  described.remarks = setup.warnings;
+  if (settings.command_key == hal::dds::kDevelopmentKey)
+    described.remarks.emplace_back(
+        "telecommands are signed with the public development key; give --command-key");
+  return described;
+}
+
+void require_usable_outputs(const FlightArguments& arguments, const std::string& json) {
+  require_different("--json", json, "--report", arguments.report);
+  require_writable("--report", arguments.report);
+  if (!json.empty()) require_writable("--json", json);
+}
+
+std::string default_report_path(const std::string& name) {
+  return fmt::format("{}/out/{}", TUMBLESIGHT_SOURCE_DIR, name);
+}
+
+void announce_flight(const SilSettings& settings, const TargetSetup& setup) {
+  if (settings.flight_path.empty()) {
+    fmt::print(
+        "  Waiting up to {:g} s for the flight program. Unless it is running already, start\n    {}\n\n",
+        settings.step_timeout_s, flight_command_line(settings));
+  }
+  std::fflush(stdout);
+  for (const std::string& warning : setup.warnings) fmt::print(stderr, "  note: {}\n", warning);
+}
+
+void finish_flight(const FlightArguments& arguments, const std::string& page, const std::string& json,
+                   const nlohmann::ordered_json& figures, std::vector<std::string> faults) {
+  const auto attempt = [&](const auto& write) {
+    try {
+      write();
+    } catch (const std::exception& error) {
+      faults.emplace_back(error.what());
+    }
+  };
+  attempt([&] {
+    write_file(arguments.report, page);
+    fmt::print("  report             {}\n", full_path(arguments.report));
+  });
+  attempt([&] {
+    if (!json.empty()) write_file(json, figures.dump(2) + "\n");
+  });
+  fmt::print("\n");
+  std::fflush(stdout);
+  for (const std::string& fault : faults) fmt::print(stderr, "tumblesight: {}\n", fault);
+  if (Interruption::signal() != 0) throw CLI::RuntimeError(kInterrupted + Interruption::signal());
+  if (!faults.empty()) throw CLI::RuntimeError(kRunFailed);
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,52 @@
+// The options of the verbs that run the flight program, and what these verbs do with them: simulate, replay.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sim/cli/target_setup.hpp"
+#include "sim/report/run_page.hpp"
+#include "sim/sil/sil_run.hpp"
+
+namespace tumblesight::sim {
+
+inline constexpr const char* kFastestPossible = "max";  // as a speed
+
+struct FlightArguments {
+  std::string speed = kFastestPossible;
+  bool free_running = false;
+  std::string flight;       // empty: in the folder of this program; "none": started by the user
+  std::string command_key;  // file; empty: the public development key
+  std::string security;     // file; empty: the bus is not secured
+  int domain = -1;          // -1: none given
+  std::string report;       // file
+  std::string command_line;
+};
+
+// --speed, --flight, --command-key, --dds-security, --domain.
+void add_flight_options(CLI::App& command, FlightArguments& arguments);
+
+// Throws std::runtime_error that names the flight program or the key if it cannot be used.
+SilSettings sil_settings(const FlightArguments& arguments, const std::string& target,
+                         const TargetSetup& setup);
+// What the report says about the run's settings.
+FlightSetup flight_setup(const std::string& target, const TargetSetup& setup, const SilSettings& settings);
+
+// Throws if the report or the figures cannot be written, or are the same file. `json` empty: no figures.
+void require_usable_outputs(const FlightArguments& arguments, const std::string& json);
+// <folder of the source tree>/out/<name>.
+std::string default_report_path(const std::string& name);
+
+// Prints what the user has to start (--flight none), and the remarks of the setup on the standard error
+// stream.
+void announce_flight(const SilSettings& settings, const TargetSetup& setup);
+
+// Writes report and figures, even if one of them cannot be written, and prints the faults of the run and of
+// the files. Throws CLI::RuntimeError with the exit status unless all went well: 1, or 128 and the signal
+// that ended the run.
+void finish_flight(const FlightArguments& arguments, const std::string& page, const std::string& json,
+                   const nlohmann::ordered_json& figures, std::vector<std::string> faults);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,169 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "sim/cli/arguments.hpp"
+#include "sim/cli/flight_arguments.hpp"
+#include "sim/cli/target_setup.hpp"
+#include "sim/cli/verbs.hpp"
+#include "sim/recording/recording_file.hpp"
+#include "sim/report/replay_report.hpp"
+#include "sim/report/sil_report.hpp"
+#include "sim/sil/interruption.hpp"
+#include "sim/sil/recorded_steps.hpp"
+#include "sim/terminal/progress.hpp"
+#include "sim/terminal/text.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNoTruth = "none";
+constexpr std::size_t kMaxLines = 200;  // of the table on the terminal; report and figures have all cycles
+
+struct ReplayArguments : FlightArguments {
+  ScenarioArguments scenario;  // of which only target, model, numerics and figures have options
+  std::string recording;
+  std::string truth;  // empty: the one beside the recording, if there is one
+};
+
+// Empty: there is none.
+std::string truth_path(const ReplayArguments& arguments) {
+  if (arguments.truth == kNoTruth) return {};
+  if (!arguments.truth.empty()) return arguments.truth;
+  const std::string beside = truth_path_of(arguments.recording);
+  std::error_code error;
+  return fs::is_regular_file(beside, error) ? beside : std::string();
+}
+
+void require_inputs_kept(const ReplayArguments& arguments, const std::string& truth) {
+  for (const auto& [option, path] : {std::pair<const char*, const std::string&>{"--report", arguments.report},
+                                     {"--json", arguments.scenario.json}}) {
+    require_different(option, path, "RECORDING", arguments.recording);
+    require_different(option, path, "--truth", truth);
+  }
+}
+
+void announce(const ReplayArguments& arguments, const ReplaySetup& setup, std::size_t known) {
+  fmt::print("\n  {}: {} as {}, model {}\n", setup.recording, counted(setup.frames, "frame"), setup.target,
+             setup.model_path);
+  if (setup.truth.empty()) {
+    fmt::print("  truth: {}\n\n", arguments.truth == kNoTruth
+                                      ? kNoTruth
+                                      : "none beside the recording (" + truth_path_of(setup.recording) +
+                                            "); --truth names another");
+  } else {
+    fmt::print("  truth: {}{}, of {} of the {}\n\n", setup.truth,
+               arguments.truth.empty() ? " (beside the recording)" : "", known,
+               counted(setup.frames, "frame"));
+  }
+}
+
+void print_results(const ReplayReport& report, const SilRunResult& run) {
+  DataTable cycles = replay_table(report);
+  const std::size_t lines = cycles.rows.size();
+  cycles.rows.resize(std::min(lines, kMaxLines));
+  fmt::print("{}\n", terminal_text(cycles));
+  if (lines > kMaxLines)
+    fmt::print("  … and {} more lines, which the report and --json have\n\n", lines - kMaxLines);
+  const DataTable errors = replay_errors_table(report);
+  if (!errors.rows.empty()) fmt::print("{}\n", terminal_text(errors));
+  FactList facts = replay_facts(report);
+  facts.facts.emplace_back("steps", steps_text(run));
+  facts.facts.emplace_back("inference time",
+                           fmt::format("median {}, max {}", time_text(report.run.inference_median_us),
+                                       time_text(report.run.inference_max_us)));
+  facts.facts.emplace_back("flight heap",
+                           fmt::format("{} allocations after init", report.run.heap_allocations));
+  facts.facts.emplace_back("faults that stood", text_of(standing_faults(run)));
+  facts.facts.emplace_back("trace CRC-32", fmt::format("{:08x}", report.run.trace_crc32));
+  for (const auto& [name, value] : facts.facts)
+    fmt::print("  {}{}{}\n", name, std::string(19 - std::min<std::size_t>(18, columns_of(name)), ' '), value);
+}
+
+void replay(ReplayArguments arguments) {
+  if (arguments.report.empty())
+    arguments.report = default_report_path(fs::path(arguments.recording).stem().string() + "_replay.html");
+  const std::string truth_file = truth_path(arguments);
+  require_usable_outputs(arguments, arguments.scenario.json);
+  require_inputs_kept(arguments, truth_file);
+  const RecordingFile recording = read_recording(arguments.recording);
+  std::vector<std::optional<RecordedTruth>> truth;
+  if (!truth_file.empty()) truth = truth_by_frame(recording, read_truth(truth_file), truth_file);
+  RecordedSteps steps(recording, truth);
+  const TargetSetup target = set_up_model_alone(arguments.scenario);
+  const SilSettings settings = sil_settings(arguments, arguments.scenario.target, target);
+
+  ReplaySetup setup;
+  static_cast<FlightSetup&>(setup) = flight_setup(arguments.scenario.target, target, settings);
+  setup.recording = arguments.recording;
+  setup.truth = truth_file;
+  setup.frames = static_cast<std::uint32_t>(recording.frames.size());
+  const auto known =
+      std::count_if(truth.begin(), truth.end(), [](const auto& row) { return row.has_value(); });
+  announce(arguments, setup, static_cast<std::size_t>(known));
+  announce_flight(settings, target);
+
+  std::vector<ReplayedFrame> frames;
+  ProgressBar bar("replaying", "cycles", steps.steps());
+  std::optional<Interruption> interruption(std::in_place);
+  const SilRunResult run = run_sil(
+      settings, steps, [&](std::uint32_t done, std::uint32_t) { bar.update(done); },
+      [&](const StepResult& step, const gnc::RangeImage& frame) {
+        frames.push_back(replayed_frame(step, frame));
+      });
+  interruption.reset();
+  bar.finish();
+  ReplayReport report = replay_report(setup, run, frames);
+  report.run.command = arguments.command_line;
+  report.run.generated = local_time_text();
+  print_results(report, run);
+  finish_flight(arguments, replay_page(report), arguments.scenario.json, replay_json(report, run),
+                flight_faults(run));
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, const std::string& command_line) {
+  CLI::App* command = app.add_subcommand(
+      "replay", "Run the flight program over a recording and compare its attitudes with the truth");
+  auto arguments = std::make_shared<ReplayArguments>();
+  arguments->command_line = command_line;
+  command
+      ->add_option("RECORDING", arguments->recording,
+                   "frames, as `tumblesight record` or a program of your own writes them")
+      ->required()
+      ->check(existing_file())
+      ->type_name("FILE");
+  command
+      ->add_option("--truth", arguments->truth,
+                   "true attitudes of the frames; none: not known [FRAMES.truth.csv beside the recording, if "
+                   "there is one]")
+      ->check(file_path())
+      ->type_name("FILE");
+  add_target_option(*command, arguments->scenario.target, TargetChoice::kWithModel);
+  add_model_options(*command, arguments->scenario);
+  add_json_option(*command, arguments->scenario.json);
+  add_flight_options(*command, *arguments);
+  add_report_option(*command, arguments->report, " [out/<recording>_replay.html]");
+  command->footer(
+      "\nThe flight program gets one cycle per frame, at its exposure time, and a cycle\n"
+      "without a frame wherever one is missing for 2.7 s. It sees nothing of the truth.\n"
+      "docs/icd.md describes recording, truth, and what a frame must be like;\n"
+      "docs/examples/write_recording.py writes one from data of your own.\n\n"
+      "Example: frames of your own, as those of a target with a network of your own\n"
+      "  tumblesight replay frames.tslr --truth truth.csv --target mine --model mine.tsm\n\n"
+      "The exit status is 0 if every cycle was answered, the flight task allocated no\n"
+      "heap memory and the files were written, whatever the attitudes are: refused\n"
+      "frames, doubtful attitudes and errors are results. It is 1 if the run or a file\n"
+      "failed, 2 for wrong arguments, and 130 or 143 after Ctrl-C or SIGTERM; then the\n"
+      "report covers what was done.\n");
+  command->callback([arguments] { replay(*arguments); });
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,146 @@
+// `tumblesight replay` as a user runs it, flight program and DDS included.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <future>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/unit/sim/cli/run_tumblesight.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+class Replay : public ::testing::Test {
+ protected:
+  // Four frames of one sequence with their truth beside them. Another one was lost before the last.
+  void SetUp() override {
+    const Outcome recorded =
+        here.run("record --sequences 1 --frames 6 --loss-every 4 --seed 4 --out frames.tslr");
+    ASSERT_EQ(recorded.exit_code, 0) << recorded.errors;
+  }
+  Outcome replay(const std::string& arguments) const {
+    return here.run("replay frames.tslr --model " + here.model() + " --report r.html " + arguments);
+  }
+  void expect_refused(const Outcome& outcome, int exit_code, const std::string& message) const {
+    EXPECT_EQ(outcome.exit_code, exit_code) << outcome.errors;
+    EXPECT_NE(outcome.errors.find(message), std::string::npos) << outcome.errors;
+  }
+
+  const Workplace here;
+};
+
+// Verifies TS-SIL-140.
+TEST_F(Replay, TakesTheTruthBesideTheRecordingAndSaysSo) {
+  const Outcome outcome = replay("--json r.json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("truth: frames.truth.csv (beside the recording), of 4 of the 4 frames"),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_NE(outcome.output.find("no frame"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("5 of 5 answered"), std::string::npos) << outcome.output;
+  const auto json = nlohmann::json::parse(content(here.path("r.json")));
+  EXPECT_EQ(json.at("cycles"), 5);
+  EXPECT_EQ(json.at("cycles_without_frame"), 1);
+  EXPECT_EQ(json.at("frames_scored"), 4);
+  EXPECT_TRUE(json.at("error_all").at("mean_deg").is_number());
+  EXPECT_NE(content(here.path("r.html")).find("</html>"), std::string::npos);
+}
+
+// Verifies TS-SIL-140.
+TEST_F(Replay, ReportsValidityAndExpectedErrorsWithoutTruth) {
+  const Outcome outcome = replay("--truth none --json r.json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("truth: none"), std::string::npos) << outcome.output;
+  const auto json = nlohmann::json::parse(content(here.path("r.json")));
+  EXPECT_EQ(json.count("error_all"), 0U);
+  EXPECT_TRUE(json.at("rows").at(0).at("error_deg").is_null());
+  EXPECT_TRUE(json.at("rows").at(0).at("expected_error_deg").is_number());
+  std::filesystem::remove(here.path("frames.truth.csv"));
+  EXPECT_NE(
+      replay("").output.find("truth: none beside the recording (frames.truth.csv); --truth names another"),
+      std::string::npos);
+}
+
+TEST_F(Replay, CountsFramesThatTheTruthLeavesOut) {
+  std::string truth = content(here.path("frames.truth.csv"));
+  truth.erase(truth.rfind('\n', truth.size() - 2) + 1);
+  std::ofstream(here.path("part.csv")) << truth;
+  const Outcome outcome = replay("--truth part.csv --json r.json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("truth: part.csv, of 3 of the 4 frames"), std::string::npos)
+      << outcome.output;
+  const auto json = nlohmann::json::parse(content(here.path("r.json")));
+  EXPECT_EQ(json.at("frames_scored"), 3);
+  EXPECT_TRUE(json.at("rows").at(4).at("error_deg").is_null());
+}
+
+// Verifies TS-SIL-130.
+TEST_F(Replay, RefusesFilesThatAreWrongOrOfAnotherRecording) {
+  std::ofstream(here.path("other.csv"))
+      << content(here.path("frames.truth.csv")) << "77,1,1,0,0,0,0,0,0,0,9,0\n";
+  expect_refused(replay("--truth other.csv"), 1,
+                 "other.csv, line 6: the recording has no frame with sequence_number 77");
+  expect_refused(replay("--truth frames.tslr"), 1, "frames.tslr, line 1: there is no column 'TSLR");
+  expect_refused(replay("--truth missing.csv"), 1, "'missing.csv' cannot be read");
+  expect_refused(here.run("replay frames.truth.csv"), 1,
+                 "recording 'frames.truth.csv': not a recording; write it with");
+  expect_refused(here.run("replay nothing.tslr"), 2, "'nothing.tslr' does not exist");
+  expect_refused(replay("--json frames.tslr"), 2, "--json: 'frames.tslr' is also the file of RECORDING");
+  expect_refused(replay("--json frames.truth.csv"), 2, "is also the file of --truth");
+  expect_refused(replay("--target magellan"), 1, "is refused: ");
+  EXPECT_NE(content(here.path("frames.tslr")), "") << "the recording is kept";
+}
+
+// Verifies TS-IFC-065.
+TEST_F(Replay, FailsWithAFlightProgramForAnotherTarget) {
+  const std::string flight =
+      here.script("flight.sh", std::string("exec ") + FLIGHT_BINARY + " \"$@\" --target magellan");
+  expect_refused(replay("--flight " + flight), 1, "give both the same --target");
+  EXPECT_NE(content(here.path("r.html")).find("The run ended early"), std::string::npos);
+}
+
+// Verifies TS-SIL-040.
+TEST_F(Replay, ReportsWhatWasDoneWhenItIsInterrupted) {
+  const std::string tool =
+      here.script("tool.sh", "echo $$ >" + here.path("id") + "\nexec " + TUMBLESIGHT_BINARY + " \"$@\"");
+  const std::string arguments =
+      tool + " replay frames.tslr --speed 1 --json r.json --report r.html --model " + here.model();
+  auto replay = std::async(std::launch::async, [&] { return here.run_command(arguments, "run"); });
+  for (int i = 0; i < 600 && content(here.path("run.err")).find("replaying") == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_EQ(kill(std::stoi(content(here.path("id"))), SIGINT), 0);
+  expect_refused(replay.get(), 128 + SIGINT, "interrupted by signal 2");
+  const auto json = nlohmann::json::parse(content(here.path("r.json")));
+  EXPECT_GT(json.at("steps_missed"), 0);
+  EXPECT_LT(json.at("steps_missed"), 5);
+  EXPECT_NE(content(here.path("r.html")).find("The run ended early"), std::string::npos);
+}
+
+// Verifies TS-SIL-140.
+TEST(WriteRecording, WritesWhatReplayReads) {
+  const Workplace here;
+  const Outcome written = here.run_command(
+      PYTHON " -B " TUMBLESIGHT_SOURCE_DIR "/docs/examples/write_recording.py box.tslr", "script");
+  ASSERT_EQ(written.exit_code, 0) << written.errors;
+  const Outcome outcome = here.run("replay box.tslr --report r.html --json r.json --model " + here.model());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const auto json = nlohmann::json::parse(content(here.path("r.json")));
+  EXPECT_EQ(json.at("cycles"), 10);
+  EXPECT_EQ(json.at("cycles_without_frame"), 1);
+  EXPECT_EQ(json.at("frames_scored"), 9);
+  EXPECT_GT(json.at("rows").at(0).at("returns"), 1000);
+  const Outcome corners = here.run_command(
+      "PYTHONPATH=" TUMBLESIGHT_SOURCE_DIR "/docs/examples " PYTHON
+      " -B -c '"
+      "import write_recording as w\n"
+      "r = w.ranges_of_points([(1.9, 20, 1.9), (-1.9, 30, -1.9), (0.5, -20, 0.5)], 16, 0.2)\n"
+      "print([(row, column) for row in range(16) for column in range(16) if r[row][column]])'",
+      "corners");
+  EXPECT_EQ(corners.output, "[(0, 15), (13, 2)]\n") << corners.errors;
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
