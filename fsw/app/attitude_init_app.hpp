@@ -75,6 +75,8 @@ class AttitudeInitApp final {
   std::uint32_t command_counter() const { return state_->counters.command_counter; }
   // What init() found in a bank (0 or 1); kOk before the first init().
   gnc::ModelStatus boot_status(int bank) const { return state_->boot_status[static_cast<std::size_t>(bank)]; }
+  // What init() could not resume of the stored state: a sum of hal::StateLoss.
+  std::uint32_t state_lost() const { return state_->resumption.lost; }
   const Estimator& estimator() const { return estimator_; }
 
  private:
