@@ -61,6 +61,10 @@ class AttitudeInitApp final {
   // Whether a frame passes the rules for time and order in a cycle at `now_ns`. For the choice of the frame
   // that a step gets; the step judges it again.
   [[nodiscard]] gnc::FrameVerdict judge(const gnc::RangeImage& frame, std::int64_t now_ns) const;
+  // Whether a frame repeats one of the last used ones. For the same choice.
+  [[nodiscard]] bool has_used(const gnc::SignatureStart& start) const {
+    return state_->tracking.history.contains(start);
+  }
   // To compare runs: CRC-32 over the estimator's state, the active model's CRC, mode, key slot, times, last
   // frames, limits, persisting faults and counters. It excludes everything that depends on the wall clock.
   std::uint32_t state_crc32() const;
@@ -71,6 +75,8 @@ class AttitudeInitApp final {
   std::uint32_t command_counter() const { return state_->counters.command_counter; }
   // What init() found in a bank (0 or 1); kOk before the first init().
   gnc::ModelStatus boot_status(int bank) const { return state_->boot_status[static_cast<std::size_t>(bank)]; }
+  // What init() could not resume of the stored state: a sum of hal::StateLoss.
+  std::uint32_t state_lost() const { return state_->resumption.lost; }
   const Estimator& estimator() const { return estimator_; }
 
  private:

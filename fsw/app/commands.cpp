@@ -174,7 +174,8 @@ bool activate_key(const Telecommand& command, const CommandContext& context, Ref
     return refuse(refusal, CommandRefusal::kWrongArgument, slot);
   const std::uint32_t before = authority.slot();
   (void)authority.use(slot);
-  // Otherwise the old key would be valid again after a reset.
+  // Otherwise the old key would be valid again after a reset. So it is if the store was given up, which
+  // StateKeeper reports: after the loss of the stored counter too, only another key ends replays.
   if (!context.keeper.store_now()) {
     (void)authority.use(before);
     return refuse(refusal, CommandRefusal::kNotStored, slot);

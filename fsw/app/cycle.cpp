@@ -9,12 +9,12 @@ void drop(const gnc::RangeImage& frame, gnc::FrameVerdict why, StepInputs& input
       why, frame.sequence_number, frame.exposure_time_ns, content, frame.rays};
 }
 
-// Why `later`, which passes the gate, is not taken although `kept` does too; kPass: it is taken instead. The
-// time of a repetition is not that of its content.
+// Why `later`, which passes the gate, is not taken by its number and time although `kept` does too; kPass: it
+// may be taken instead.
 gnc::FrameVerdict compare(const gnc::RangeImage& kept, const gnc::RangeImage& later) {
   if (later.sequence_number == kept.sequence_number) return gnc::FrameVerdict::kDuplicate;
   if (later.exposure_time_ns <= kept.exposure_time_ns) return gnc::FrameVerdict::kSuperseded;
-  return gnc::is_repetition(kept, later) ? gnc::FrameVerdict::kRepeated : gnc::FrameVerdict::kPass;
+  return gnc::FrameVerdict::kPass;
 }
 
 // Bad content has to be looked at in full, so after a number of bad frames the rest of the cycle's counts as
@@ -38,6 +38,14 @@ class Contents {
 
 static_assert(hal::Lidar::kMaxWaiting <= config::kMaxDeliveriesPerCycle, "a cycle receives all that wait");
 
+// Whether the frame in the buffer `next` repeats one that was used, or the one of this cycle that is kept.
+bool repeats(const AttitudeInitApp& app, std::size_t next, CycleWorkspace& workspace) {
+  gnc::SignatureStart& start = workspace.starts[next];
+  start = gnc::start_of(workspace.frames[next]);
+  if (app.has_used(start)) return true;
+  return workspace.inputs.frame != nullptr && gnc::is_repetition(workspace.starts[1 - next].cells, start);
+}
+
 void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t now_ns,
                     CycleWorkspace& workspace) {
   StepInputs& inputs = workspace.inputs;
@@ -58,10 +66,13 @@ void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t 
     gnc::FrameVerdict verdict = app.judge(frame, now_ns);
     if (verdict == gnc::FrameVerdict::kPass && inputs.frame != nullptr)
       verdict = compare(*inputs.frame, frame);
-    // A frame with bad content does not take the place of a good one.
+    // A frame with bad content, or with a number and a time that are not those of its content, does not take
+    // the place of a good one.
     gnc::FrameStatus content = gnc::FrameStatus::kOk;
     if (verdict == gnc::FrameVerdict::kPass) content = contents.look_at(frame);
     if (content != gnc::FrameStatus::kOk) verdict = gnc::FrameVerdict::kBadContent;
+    if (verdict == gnc::FrameVerdict::kPass && repeats(app, next, workspace))
+      verdict = gnc::FrameVerdict::kRepeated;
     if (verdict != gnc::FrameVerdict::kPass) {
       drop(frame, verdict, inputs, content);
       continue;

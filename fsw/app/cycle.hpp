@@ -16,6 +16,7 @@ namespace tumblesight::fsw {
 // Memory of run_cycle(), about 80 kB. Allocate it statically, so that no frame is on the stack.
 struct CycleWorkspace {
   std::array<gnc::RangeImage, 2> frames;  // the newest usable one so far, and the one that is being received
+  std::array<gnc::SignatureStart, 2> starts;  // of the frames
   StepInputs inputs;
   StepOutputs outputs;
 };

@@ -89,6 +89,9 @@ class Survey {
 
 }  // namespace
 
+StateKeeper::StateKeeper(AppState& state, const Reporter& report)
+    : state_(state), report_(report), before_(state_to_store(state)) {}
+
 void StateKeeper::resume() {
   Resumption& resumption = state_.resumption;
   if (state_.platform.persistent == nullptr) return;
@@ -134,7 +137,7 @@ void StateKeeper::resume_late() {
   if ((resumption.lost & bit_of(StateLoss::kHead)) == 0) return;
   resume();
   resumption.found = false;
-  resumption.lost |= bit_of(StateLoss::kBody);
+  if ((resumption.lost & bit_of(StateLoss::kBody)) == 0) resumption.lost |= bit_of(StateLoss::kModeAndBank);
 }
 
 void StateKeeper::report_resumption() {
@@ -249,11 +252,21 @@ void StateKeeper::judge_store() {
   }
 }
 
+void StateKeeper::report_unstored_change() {
+  if (!state_.stored.given_up) return;
+  StoredState now = state_to_store(state_);
+  now.command_counter = before_.command_counter;  // each command changes it
+  if (now == before_) return;
+  report_(EventId::kChangeNotStored, static_cast<std::int32_t>(now.key_slot),
+          static_cast<std::int32_t>(now.mode), static_cast<std::int32_t>(now.bank));
+}
+
 void StateKeeper::end_step() {
   if (state_.platform.persistent == nullptr) return;
   hal::Telemetry& counters = state_.counters;
   const std::uint64_t start_ns = state_.platform.stopwatch->now_ns();
   store_changes();
+  report_unstored_change();
   counters.store_us = elapsed_us(start_ns, state_.platform.stopwatch->now_ns());
   if (counters.store_us > counters.store_max_us) counters.store_max_us = counters.store_us;
 }

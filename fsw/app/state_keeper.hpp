@@ -9,7 +9,7 @@
 //
 // The store is given up when no copy could be written in kMostFailingCycles consecutive cycles. The
 // application then works as without a store, so that the ground can command it, and tries again at each
-// check.
+// check. A change that a reset would undo meanwhile is reported.
 //
 // At boot the counter is the highest one of all good heads, and the key slot that of the newest good head.
 // Everything else is that of the newest good body.
@@ -32,7 +32,7 @@ namespace tumblesight::fsw {
 
 class StateKeeper {
  public:
-  StateKeeper(AppState& state, const Reporter& report) : state_(state), report_(report) {}
+  StateKeeper(AppState& state, const Reporter& report);
 
   // At boot: takes counter, key slot, table and disabled responses from the good copies. What is lost has
   // its initial value; the key slot is then the lowest one with a key. The result is kept in
@@ -64,9 +64,11 @@ class StateKeeper {
   void renew_copies();
   void settle(StoredCopies good);
   void judge_store();
+  void report_unstored_change();
 
   AppState& state_;
   const Reporter& report_;
+  const StoredState before_;  // at the beginning of the step
 };
 
 }  // namespace tumblesight::fsw

@@ -7,11 +7,36 @@
 
 namespace tumblesight::gnc {
 
+namespace {
+
+constexpr std::uint32_t kIsReturn = 0x80;
+constexpr std::size_t kMask = kSignatureSide - 1;
+
+std::size_t rays_of(const RangeImage& frame) {
+  return static_cast<std::size_t>(min<int>(frame.rays, RangeImage::kMaxRays));
+}
+
+// Most rays meet nothing.
+constexpr std::size_t kRaysAtOnce = 8;
+bool has_no_return(const RangeImage& frame, int first) {
+  const std::uint32_t half = pair_at(frame, first) | pair_at(frame, first + 2);
+  return (half | pair_at(frame, first + 4) | pair_at(frame, first + 6)) == 0;
+}
+
+void add_ray(const RangeImage& frame, std::size_t ray, std::size_t rays, SignatureStart& start) {
+  const std::uint32_t range = frame.ranges[ray];
+  if (range == 0) return;
+  const std::size_t place = (ray / rays & kMask) * kSignatureSide + (ray % rays & kMask);
+  if (start.cells[place] != 0) return;
+  start.cells[place] = static_cast<std::uint8_t>((range | kIsReturn) & 0xFFU);
+  start.places[start.filled++] = static_cast<std::uint8_t>(place);
+}
+
+}  // namespace
+
 FrameSignature signature_of(const RangeImage& frame) {
-  constexpr std::uint32_t kIsReturn = 0x80;
-  constexpr std::size_t kMask = kSignatureSide - 1;
   FrameSignature signature{};
-  const auto rays = static_cast<std::size_t>(min<int>(frame.rays, RangeImage::kMaxRays));
+  const std::size_t rays = rays_of(frame);
   for (std::size_t row = 0; row < rays; ++row) {
     const std::uint16_t* const ranges = &frame.ranges[row * rays];
     std::uint8_t* const cells = &signature[(row & kMask) * kSignatureSide];
@@ -27,9 +52,30 @@ FrameSignature signature_of(const RangeImage& frame) {
   return signature;
 }
 
+SignatureStart start_of(const RangeImage& frame) {
+  SignatureStart start;
+  const std::size_t rays = rays_of(frame);
+  const std::size_t count = rays * rays;
+  std::size_t ray = 0;
+  for (; ray < min<std::size_t>(kFirstOfPair, count); ++ray) add_ray(frame, ray, rays, start);
+  for (; ray + kRaysAtOnce <= count; ray += kRaysAtOnce) {
+    if (has_no_return(frame, static_cast<int>(ray))) continue;
+    for (std::size_t i = 0; i < kRaysAtOnce; ++i) add_ray(frame, ray + i, rays, start);
+    if (start.filled >= SignatureStart::kMost) return start;
+  }
+  for (; ray < count; ++ray) add_ray(frame, ray, rays, start);
+  return start;
+}
+
 bool FrameHistory::contains(const FrameSignature& signature) const {
   bool found = false;
   for (const FrameSignature& used : signatures_) found |= is_repetition(used, signature);
+  return found;
+}
+
+bool FrameHistory::contains(const SignatureStart& start) const {
+  bool found = false;
+  for (const FrameSignature& used : signatures_) found |= is_repetition(used, start);
   return found;
 }
 
@@ -49,18 +95,15 @@ bool is_repetition(const FrameSignature& a, const FrameSignature& b) {
   return returns > 0 && 4 * equal >= 3 * returns;
 }
 
-bool is_repetition(const RangeImage& a, const RangeImage& b) {
-  if (a.rays != b.rays || a.rays > RangeImage::kMaxRays) return false;
-  constexpr std::uint32_t kMostPairs = 512;
-  const int rays = a.rays * a.rays;
-  std::uint32_t returns = 0, equal = 0;
-  for (int i = kFirstOfPair; i + 1 < rays && returns < kMostPairs; i += 2) {
-    const std::uint32_t pair_a = pair_at(a, i), pair_b = pair_at(b, i);
-    if ((pair_a | pair_b) == 0) continue;
-    ++returns;
-    if (pair_a == pair_b) ++equal;
+bool is_repetition(const FrameSignature& earlier, const SignatureStart& later) {
+  const std::uint32_t compared = min(later.filled, SignatureStart::kCompared);
+  std::uint32_t equal = 0;
+  for (std::uint32_t i = 0; i < compared; ++i) {
+    const std::size_t place = later.places[i];
+    const auto difference = static_cast<std::uint32_t>(earlier[place] ^ later.cells[place]);
+    equal += (difference - 1U) >> 31;
   }
-  return returns > 0 && 2 * equal >= returns;
+  return compared > 0 && 4 * equal >= 3 * compared;
 }
 
 }  // namespace tumblesight::gnc

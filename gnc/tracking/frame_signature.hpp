@@ -19,12 +19,26 @@ using FrameSignature = std::array<std::uint8_t, kSignatureSide * kSignatureSide>
 // The instruction count depends on the number of rays only.
 FrameSignature signature_of(const RangeImage& frame);
 
+// The first cells of a frame's signature that its rays fill, in their order: enough to compare it with frames
+// of the same cycle and with signatures, at a fraction of the cost of a signature. The instruction count
+// depends on the ranges.
+struct SignatureStart {
+  static constexpr std::uint32_t kCompared = 64;
+  // Where one of two frames lacks some returns, the start of the other one reaches farther.
+  static constexpr std::uint32_t kMost = 96;
+  FrameSignature cells{};
+  std::array<std::uint8_t, kMost + 7> places{};  // of the filled cells; eight rays are added at once
+  std::uint32_t filled = 0;
+};
+SignatureStart start_of(const RangeImage& frame);
+
 // The last frames that were used. Buffers of a frozen sensor that are delivered in turn are seen as long as
 // all of them are here: drivers have two to four, frame grabbers up to eight.
 class FrameHistory {
  public:
   static constexpr std::size_t kFrames = 8;
   bool contains(const FrameSignature& signature) const;  // is_repetition() of one of them
+  bool contains(const SignatureStart& start) const;      // the same
   void add(const FrameSignature& signature);             // replaces the oldest
   const std::array<FrameSignature, kFrames>& signatures() const { return signatures_; }
   std::uint32_t next() const { return next_; }
@@ -38,8 +52,8 @@ class FrameHistory {
 // different frames of one scene fewer than a half are equal if the noise is at least half a count of the
 // range (4 mm). False if no cell has a return.
 bool is_repetition(const FrameSignature& a, const FrameSignature& b);
-// The same question for two frames at hand, at a fraction of the cost of two signatures: whether at least
-// half of the first 512 pairs of neighbouring rays in which one of both frames has a return are equal.
-bool is_repetition(const RangeImage& a, const RangeImage& b);
+// The same question for the first kCompared cells of `later`: whether at least three quarters of them are
+// equal to those of `earlier`.
+bool is_repetition(const FrameSignature& earlier, const SignatureStart& later);
 
 }  // namespace tumblesight::gnc

@@ -46,8 +46,8 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
     outcome.verdict = FrameVerdict::kWithoutChaser;
     return;
   }
-  if (knows_chaser && track_knows_chaser)
-    interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
+  // Not used by the first frame of a track.
+  if (knows_chaser) interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
   const std::uint32_t frames_before = estimator_.frames();
   const bool is_gap = outcome.elapsed_ns > limits.longest_coast_ns;
   interval.gives_up_track = is_gap || knows_chaser != track_knows_chaser;
@@ -68,7 +68,7 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   outcome.chaser_changed = interval.gives_up_track && !is_gap;
   if (!knows_chaser) outcome.doubts |= kChaserUnknown;
   state.gate.accept(frame);
-  state.q_inertial_lrf = chaser.q_inertial_lrf;
+  if (knows_chaser) state.q_inertial_lrf = chaser.q_inertial_lrf;
   state.has_chaser_attitude = knows_chaser;
   state.history.add(signature);
 }

@@ -36,8 +36,8 @@ struct FrameTrackerLimits {
 // What is kept from frame to frame, beside the estimator's state.
 struct FrameTrackerState {
   FrameGate gate;
-  QuaternionQ30 q_inertial_lrf = kIdentityQ30;  // at the last used frame
-  bool has_chaser_attitude = false;             // q_inertial_lrf is valid
+  QuaternionQ30 q_inertial_lrf = kIdentityQ30;  // at the last used frame with the chaser's attitude
+  bool has_chaser_attitude = false;             // q_inertial_lrf is that of the last used frame
   bool has_jumped = false;                      // the attitude of the last used frame
   bool has_found_rate = false;                  // of the track: two frames were close enough in time
   FrameHistory history;                         // of the used frames

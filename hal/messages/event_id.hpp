@@ -78,8 +78,10 @@ enum class EventId : std::uint16_t {
   kStateNotStored = 82,  // [copies that hold the newest record, -, -]; when they become fewer
   kStoredCopyUnusable =
       83,  // [StoreStatus of copy 0, StoreStatus of copy 1, -]; at boot; the state is that of the other copy
-  kStoreGivenUp = 84,  // [cycles without a copy, -, -]; commands are carried out as without a store
-  kStoreUsable = 85,   // [copies that hold the newest record, -, -]; after the store was given up
+  kStoreGivenUp = 84,     // [cycles without a copy, -, -]; commands are carried out as without a store
+  kStoreUsable = 85,      // [copies that hold the newest record, -, -]; after the store was given up
+  kChangeNotStored = 86,  // [key slot, Mode, bank in use]; one of these, the table or the disabled responses
+                          // changed while the store was given up: a reset brings the old ones back
 
   kEventsSuppressed = 90,  // [EventId of the suppressed events, their number, -]
 
@@ -97,7 +99,7 @@ struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 61> kEventRules{{
+inline constexpr std::array<EventRule, 62> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kUploadFailed, Severity::kError},
@@ -150,6 +152,7 @@ inline constexpr std::array<EventRule, 61> kEventRules{{
     {EventId::kStoredCopyUnusable, Severity::kWarning},
     {EventId::kStoreGivenUp, Severity::kError},
     {EventId::kStoreUsable, Severity::kInformation},
+    {EventId::kChangeNotStored, Severity::kError},
     {EventId::kEventsSuppressed, Severity::kInformation},
     {EventId::kCommandOutOfWindow, Severity::kWarning},
     {EventId::kCommandOtherKey, Severity::kWarning},

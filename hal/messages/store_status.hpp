@@ -23,16 +23,17 @@ enum class StoreHealth : std::uint8_t {
   kGood = 1,     // both copies hold the newest record
   kOneCopy = 2,  // one does
   kFailing = 3,  // none does; telecommands except SET_MODE SAFE are refused
-  kGivenUp = 4,  // none has for ten cycles; telecommands are carried out as without a store
+  kGivenUp = 4,  // none has for ten cycles; telecommands are carried out as without a store, until a reset
 };
 
 // What was lost at boot: bits, the third argument of the event STORED_STATE_LOST.
 enum class StateLoss : std::uint8_t {
-  kHead = 1,      // command counter and key slot
-  kBody = 2,      // mode, bank in use, disabled responses, table
-  kTable = 4,     // the table only
-  kStale = 8,     // what was resumed is older than the newest record
-  kKeySlot = 16,  // the stored key slot holds no key now
+  kHead = 1,          // command counter and key slot
+  kBody = 2,          // mode, bank in use, disabled responses, table
+  kTable = 4,         // the table only
+  kStale = 8,         // what was resumed is older than the newest record
+  kKeySlot = 16,      // the stored key slot holds no key now
+  kModeAndBank = 32,  // mode and bank in use; nothing could be read before the first cycle
 };
 
 }  // namespace tumblesight::hal

@@ -200,6 +200,13 @@ void add_effect_option(CLI::App& command, Effects& effects) {
       ->type_name("NAME=STRENGTH,...");
 }
 
+void require_the_target(const Effects& effects) {
+  if (effects.wrong_object == 0.0 && effects.sphere == 0.0) return;
+  throw CLI::ValidationError("--effect",
+                             "wrong_object and sphere are for tests only: a network cannot learn "
+                             "the target's attitude from another body");
+}
+
 void add_json_option(CLI::App& command, std::string& json) {
   command.add_option("--json", json, "write the figures to this file")->check(file_path())->type_name("FILE");
 }

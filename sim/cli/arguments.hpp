@@ -53,6 +53,9 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed);
 void add_float32_model_option(CLI::App& command, std::string& model);  // --model, required
 // --effect; `--effect list` prints the effects and ends the program. `effects` must outlive the parsing.
 void add_effect_option(CLI::App& command, Effects& effects);
+// For verbs that make a network. Throws CLI::ValidationError if the effects put another body in the target's
+// place: the network would learn that body under the target's name.
+void require_the_target(const Effects& effects);
 void add_json_option(CLI::App& command, std::string& json);
 void add_report_option(CLI::App& command, std::string& report, const std::string& default_text);
 

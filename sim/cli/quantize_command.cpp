@@ -17,6 +17,7 @@ struct QuantizeArguments {
   std::string model;
   std::string out;
   MeshArguments meshes;
+  Effects effects;
   int sequences = kCalibrationSequences;
 };
 
@@ -40,21 +41,22 @@ void print_report(const QuantizationReport& report, const std::string& path) {
 }
 
 void quantize_file(QuantizeArguments arguments) {
+  require_the_target(arguments.effects);
   if (arguments.out.empty()) arguments.out = default_out(arguments.model);
   require_different("--model", arguments.model, "--out", arguments.out);
   require_writable("--out", arguments.out);
   const auto model = read_float32_model(arguments.model);
-  quantize_and_report(*model, load_meshes(arguments.meshes, model->header.target.data()), arguments.sequences,
-                      arguments.out);
+  quantize_and_report(*model, load_meshes(arguments.meshes, model->header.target.data()), arguments.effects,
+                      arguments.sequences, arguments.out);
 }
 
 }  // namespace
 
-void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
-                         const std::string& out) {
+void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
+                         const Effects& effects, int sequences, const std::string& out) {
   ProgressBar bar("calibrating", "sequences", static_cast<std::uint64_t>(sequences));
-  const QuantizationReport report =
-      quantize_to_file(model, meshes, sequences, out, [&bar](std::uint64_t done) { bar.update(done); });
+  const QuantizationReport report = quantize_to_file(model, meshes, effects, sequences, out,
+                                                     [&bar](std::uint64_t done) { bar.update(done); });
   bar.finish();
   print_report(report, out);
 }
@@ -65,8 +67,8 @@ void add_quantize_command(CLI::App& app) {
       app.add_subcommand("quantize", "Make the fixed-point model image that flies from a float32 one");
   command->footer(
       "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits.\n"
-      "The scales are chosen on rendered sequences. The table shows the quantization\n"
-      "error of each layer.\n\n"
+      "The scales are chosen on rendered sequences. --effect: those that the network\n"
+      "was trained with. The table shows the quantization error of each layer.\n\n"
       "Example\n"
       "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
       "      --mesh parametric --mesh near.stl\n");
@@ -75,6 +77,7 @@ void add_quantize_command(CLI::App& app) {
       ->check(file_path())
       ->type_name("FILE");
   add_mesh_options(*command, arguments->meshes);
+  add_effect_option(*command, arguments->effects);
   limit_whole_number(command->add_option("--sequences", arguments->sequences,
                                          "sequences of ten frames to render for calibration"),
                      10, 10'000)

@@ -81,19 +81,11 @@ std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurren
 }
 
 // The reference, and the image that flies.
-void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes,
+void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes, const Effects& effects,
                   const std::unique_ptr<Float32Model>& model) {
   write_model_file<gnc::Float32>(stem + ".float32.tsm", model->header, model->weights);
   std::printf("Reference in float32: %s.float32.tsm\nFixed point, as it flies:\n", stem.c_str());
-  quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm");
-}
-
-// The network would learn another body under the target's name.
-void require_the_target(const Effects& effects) {
-  if (effects.wrong_object == 0.0 && effects.sphere == 0.0) return;
-  throw CLI::ValidationError("--effect",
-                             "wrong_object and sphere are for tests only: a network cannot learn "
-                             "the target's attitude from another body");
+  quantize_and_report(*model, meshes, effects, kCalibrationSequences, stem + ".tsm");
 }
 
 int train(TrainOptions& options) {
@@ -120,7 +112,8 @@ int train(TrainOptions& options) {
     return kStopped;
   }
   std::printf("Training finished. Log: %s/log.csv, error curve: curve.svg.\n", folder.c_str());
-  write_images(folder + "/" + options.target, meshes, model_of(cnn, recurrent, options.target, targets));
+  write_images(folder + "/" + options.target, meshes, options.effects,
+               model_of(cnn, recurrent, options.target, targets));
   return 0;
 }
 

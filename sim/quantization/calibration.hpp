@@ -14,11 +14,12 @@ namespace tumblesight::sim {
 
 using ImageSequence = std::vector<gnc::DepthImage>;
 
-// Calibration sequence `number`: ten frames; meshes and calibration_conditions() take turns. Neither training
-// nor evaluation uses its seed. The sequence ends before a frame in which the sensor sees too little of the
-// target.
+// Calibration sequence `number`: ten frames with the `effects`; meshes and calibration_conditions() take
+// turns. Neither training nor evaluation uses its seed. The sequence ends before a frame in which the sensor
+// sees too little of the target. `lidars`: of the bodies that are observed (observed_bodies()).
 ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
-                                   const gnc::DepthProjection& projection, std::uint64_t number);
+                                   const gnc::DepthProjection& projection, const Effects& effects,
+                                   std::uint64_t number);
 
 // For each layer, by name: its outputs over a whole sequence. Channel c of pixel p of frame f is at [(f *
 // pixels + p) * channels + c]. Borders are left out.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "sim/model/network_layers.hpp"
 #include "sim/quantization/scales.hpp"
@@ -97,34 +98,46 @@ std::vector<double> differences_deg(const Float32Model& model, const gnc::Networ
 struct Rendered {
   std::vector<std::unique_ptr<FlashLidar>> lidars;
   std::vector<const FlashLidar*> each;
-  explicit Rendered(const std::vector<TriangleMesh>& meshes) {
+  Rendered(const std::vector<TriangleMesh>& meshes, const Effects& effects, const std::string& target) {
     for (const TriangleMesh& mesh : meshes) {
-      lidars.push_back(std::make_unique<FlashLidar>(mesh));
+      lidars.push_back(std::make_unique<FlashLidar>(observed_bodies(effects, target, mesh)));
       each.push_back(lidars.back().get());
     }
   }
 };
 
+// Scales of no frame at all would saturate everything.
+void require_frames(std::size_t calibrating, std::size_t reported) {
+  if (calibrating > 0 && reported > 0) return;
+  throw std::runtime_error(
+      "calibration: the sensor sees too little of the target in every frame; is the surface complete and in "
+      "metres, and are the effects those of the training?");
+}
+
 }  // namespace
 
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
-                                    int sequences, const std::string& path,
+                                    const Effects& effects, int sequences, const std::string& path,
                                     const std::function<void(std::uint64_t)>& progress) {
-  const Rendered rendered(meshes);
+  const Rendered rendered(meshes, effects, model.header.target.data());
   const int held_back = sequences / kReportShare;
   Calibration calibration(model.weights,
                           gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia)));
   std::vector<ImageSequence> kept;
+  std::size_t calibrating = 0, reported = 0;  // frames
   for (int i = 0; i < sequences; ++i) {
     ImageSequence sequence =
-        calibration_sequence(rendered.each, model.header.projection, static_cast<std::uint64_t>(i));
+        calibration_sequence(rendered.each, model.header.projection, effects, static_cast<std::uint64_t>(i));
     if (i < sequences - held_back) {
+      calibrating += sequence.size();
       calibration.add(sequence);
     } else {
+      reported += sequence.size();
       kept.push_back(std::move(sequence));
     }
     progress(static_cast<std::uint64_t>(i) + 1);
   }
+  require_frames(calibrating, reported);
   const std::unique_ptr<QuantizedNetwork> network = quantize(model.weights, calibration.statistics());
 
   QuantizationReport report;

@@ -202,6 +202,11 @@ void set_mode(Mode mode) {
   command(FunctionCode::kSetMode, &argument, 1);
 }
 
+void reset_sequence() {
+  const std::uint8_t none = 0;
+  command(FunctionCode::kResetSequence, &none, 0);
+}
+
 void set_parameter(Parameter parameter, std::uint32_t value) {
   std::array<std::uint8_t, 5> arguments{static_cast<std::uint8_t>(parameter)};
   add_u32(arguments.data() + 1, value);
@@ -292,8 +297,10 @@ void steps_with_a_frame() {
   load_as_second_copy();
 }
 
-// The most rays, after the longest coast, which the track propagates in steps.
-void step_after_the_longest_coast() {
+// The most rays, after the longest coast, which the track propagates in steps. A track of a single frame
+// knows no rate, and has its prediction confirmed or starts anew.
+enum class Rate { kKnown, kUnknown };
+void step_after_the_longest_coast(Rate rate) {
   static gnc::RangeImage recorded;
   recorded = frame;
   frame.rays = gnc::RangeImage::kMaxRays;
@@ -304,12 +311,15 @@ void step_after_the_longest_coast() {
   }
   constexpr config::ParameterRule kCoast = config::rule_of(Parameter::kLongestCoast_ms);
   set_parameter(Parameter::kLongestCoast_ms, kCoast.highest);
+  if (rate == Rate::kUnknown) reset_sequence();
   step("quiet");
   damage_more();
   load_commands();
   step("frame of the most rays after the longest coast, full command load, largest scrub with repairs",
        static_cast<int>(std::int64_t{kCoast.highest} * 1'000'000 / config::kFramePeriod_ns));
-  expect(outputs.attitude.frames_since_reset > 1, "the track was given up");
+  const bool is_ambiguous = (outputs.attitude.doubts & hal::kDoubtRateAmbiguous) != 0;
+  if (rate == Rate::kUnknown) expect(is_ambiguous, "the rate was known");
+  if (rate == Rate::kKnown) expect(outputs.attitude.frames_since_reset > 2, "the track was given up");
   recorded.sequence_number = frame.sequence_number;
   frame = recorded;
   load_as_second_copy();
@@ -403,7 +413,8 @@ int run() {
   step("quiet");
   expect(app.mode() == Mode::kRun, "the model was refused");
   steps_with_a_frame();
-  step_after_the_longest_coast();
+  step_after_the_longest_coast(Rate::kKnown);
+  step_after_the_longest_coast(Rate::kUnknown);
   repairs();
   model_commands();
   bank_switches();

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "gnc/numerics/crc.hpp"
 #include "hal/dds/idl/flight_end.hpp"
 #include "hal/persistent_store.hpp"
 #include "tests/sil/sil_test_support.hpp"
@@ -179,7 +180,38 @@ TEST(FlightState, DamagedStateIsReportedWithTheRemedy) {
   const std::string path = test::temporary_path("damaged");
   const Ended ended = run_with_file(path, damaged_record(), "--state " + path);
   EXPECT_TRUE(
-      has(ended.text, "the stored state is damaged or of other software; the mode is SAFE; delete " + path))
+      has(ended.text,
+          "--state " + path +
+              ": not all of the stored state could be used; lost: command counter and key slot, mode, bank, "
+              "disabled responses and parameter table; load it again; the mode is SAFE; send SET_MODE "
+              "STANDBY, then SET_MODE RUN, or delete " +
+              path))
+      << ended.text;
+}
+
+// A record as docs/icd.md, 2.8, describes it, of key slot 1, mode RUN and counter 5, with a table of other
+// software.
+std::string record_of_other_software() {
+  std::string record("TSST\x03\x01\0\0\0\0\0\x01\0\0\0\x05", 16);
+  const auto close = [&record](std::size_t size) {
+    record.resize(size - 4);
+    const std::uint32_t crc = gnc::crc32(reinterpret_cast<const std::uint8_t*>(record.data()), record.size());
+    for (int shift = 24; shift >= 0; shift -= 8) record += static_cast<char>(crc >> shift);
+  };
+  close(20);
+  record += std::string("\0\x02\0\0\0\0\0\0", 8);
+  close(hal::kStoredBytes);
+  return record;
+}
+
+// Verifies TS-RST-060. `flight` has a key in slot 0 only.
+TEST(FlightState, PartOfTheStateThatIsLostIsNamed) {
+  const std::string path = test::temporary_path("other");
+  const Ended ended = run_with_file(path, record_of_other_software(), "--state " + path);
+  EXPECT_TRUE(has(ended.text,
+                  "lost: parameter table, key slot (the stored one has no key); load it again; the "
+                  "mode is SAFE; send SET_MODE STANDBY, then SET_MODE RUN, or delete " +
+                      path))
       << ended.text;
 }
 

@@ -35,18 +35,26 @@ const char* reason_of(const StoreFileCheck& result) {
   return "ok";
 }
 
-// Something was stored, and neither copy has more than a head.
-bool is_lost(FilePersistentStore& store) {
-  int blank = 0;
-  for (int copy = 0; copy < hal::kStoredCopies; ++copy) {
-    hal::StoredBytes bytes{};
-    StoredState state;
-    std::uint32_t generation = 0;
-    const StoreStatus status = store.read(copy, bytes);
-    if (status == StoreStatus::kBlank) ++blank;
-    if (status == StoreStatus::kOk && has_body(from_record(bytes, state, generation))) return false;
+struct LostPart {
+  hal::StateLoss loss;
+  const char* name;
+};
+constexpr LostPart kLostParts[] = {
+    {hal::StateLoss::kHead, "command counter and key slot"},
+    {hal::StateLoss::kBody, "mode, bank, disabled responses and parameter table"},
+    {hal::StateLoss::kTable, "parameter table"},
+    {hal::StateLoss::kStale, "the newest changes"},
+    {hal::StateLoss::kKeySlot, "key slot (the stored one has no key)"},
+    {hal::StateLoss::kModeAndBank, "mode and bank"},
+};
+
+void print_lost_parts(std::uint32_t lost) {
+  const char* separator = "";
+  for (const LostPart& part : kLostParts) {
+    if ((lost & static_cast<std::uint32_t>(part.loss)) == 0) continue;
+    std::fprintf(stderr, "%s%s", separator, part.name);
+    separator = ", ";
   }
-  return blank < hal::kStoredCopies;
 }
 
 }  // namespace
@@ -67,21 +75,20 @@ bool open_state(const FlightOptions& options, FilePersistentStore& store) {
   return false;
 }
 
-void report_state(const FlightOptions& options, const AttitudeInitApp& app, FilePersistentStore& store) {
+void report_state(const FlightOptions& options, const AttitudeInitApp& app) {
   const char* const path = options.state_path;
   const bool safe = app.mode() == Mode::kSafe;
-  if (is_lost(store)) {
-    std::fprintf(stderr,
-                 "%s: --state %s: the stored state is damaged or of other software; the mode is SAFE; "
-                 "delete %s and %s.copy to start afresh\n",
-                 kProgramName, path, path, path);
-  } else if ((safe || app.mode() == Mode::kStandby) && app.boot_status(0) == gnc::ModelStatus::kOk) {
-    std::fprintf(
-        stderr,
-        "%s: --state %s: the mode is %s; send SET_MODE %s, or delete %s and %s.copy to start afresh\n",
-        kProgramName, path, safe ? "SAFE" : "STANDBY", safe ? "STANDBY, then SET_MODE RUN" : "RUN", path,
-        path);
+  const std::uint32_t lost = app.state_lost();
+  const bool kept_out = safe || app.mode() == Mode::kStandby;
+  if (lost == 0 && !(kept_out && app.boot_status(0) == gnc::ModelStatus::kOk)) return;
+  std::fprintf(stderr, "%s: --state %s: ", kProgramName, path);
+  if (lost != 0) {
+    std::fprintf(stderr, "not all of the stored state could be used; lost: ");
+    print_lost_parts(lost);
+    std::fprintf(stderr, "; load it again; ");
   }
+  std::fprintf(stderr, "the mode is %s; send SET_MODE %s, or delete %s and %s.copy to start afresh\n",
+               safe ? "SAFE" : "STANDBY", safe ? "STANDBY, then SET_MODE RUN" : "RUN", path, path);
 }
 
 }  // namespace tumblesight::fsw::desktop

@@ -12,9 +12,8 @@ namespace tumblesight::fsw::desktop {
 // stream, and no file has changed.
 [[nodiscard]] bool open_state(const FlightOptions& options, hal::posix::FilePersistentStore& store);
 
-// After the boot: writes to the standard error stream if the state is lost or keeps the application out of
-// RUN, and the remedy.
-void report_state(const FlightOptions& options, const AttitudeInitApp& app,
-                  hal::posix::FilePersistentStore& store);
+// After the boot: writes to the standard error stream what of the state is lost, or that the state keeps the
+// application out of RUN, and the remedy.
+void report_state(const FlightOptions& options, const AttitudeInitApp& app);
 
 }  // namespace tumblesight::fsw::desktop

@@ -179,7 +179,7 @@ int main(int argc, char** argv) {
   if (with_state && !open_state(options, stored_state)) return static_cast<int>(FlightEnd::kBadArguments);
   if (!open_packets(options.packets_path)) return static_cast<int>(FlightEnd::kBadArguments);
   boot(options, app, platform_of(options, model), model);
-  if (with_state) report_state(options, app, stored_state);
+  if (with_state) report_state(options, app);
   authenticate_commands();
 
   FlightEnd end = fly(options);

@@ -255,7 +255,9 @@ RangeGrid FlashLidar::cast_footprints(const FrameTruth& truth, const View& view,
   std::array<double, kFootprintSide * kFootprintSide> of_ray_m;
   for (std::size_t ray = 0; ray < grid.range_m.size(); ++ray) {
     for (std::size_t i = 0; i < casts.size(); ++i) of_ray_m[i] = casts[i].range_m[ray];
+    const double middle_m = grid.range_m[ray];
     grid.range_m[ray] = range_of_footprint(of_ray_m);
+    if (std::isfinite(middle_m) && !std::isfinite(grid.range_m[ray])) lose_return(grid, ray, middle_m);
     if (view.surfaces) grid.surfaces[ray].range_m = grid.range_m[ray];
   }
   return grid;

@@ -1,7 +1,9 @@
 // RangeGrid: the exact ranges of one flash, before the sensor measures them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace tumblesight::sim {
@@ -21,6 +23,9 @@ struct RangeGrid {
   // One per ray, or empty if it is not asked for. Holds for a ray only while the target is what it sees: if
   // the surface's range is the ray's.
   std::vector<SurfaceHit> surfaces{};
+  // Range of the nearest surface whose return a ray has lost, infinity without one: it still hides what is
+  // behind it. Empty: no ray has lost a return.
+  std::vector<double> lost_m{};
 
   // Slope of the rays of a column (to the right) or of a row (downwards): offset from the boresight per unit
   // of distance along it.
@@ -32,6 +37,19 @@ struct RangeGrid {
 inline SurfaceHit surface_of(const RangeGrid& grid, std::size_t index) {
   const bool target = !grid.surfaces.empty() && grid.surfaces[index].range_m == grid.range_m[index];
   return target ? grid.surfaces[index] : SurfaceHit{grid.range_m[index], 1.0, false};
+}
+
+// The ray `index` gets no light back from the surface at `range_m` that it meets.
+inline void lose_return(RangeGrid& grid, std::size_t index, double range_m) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (grid.lost_m.empty()) grid.lost_m.assign(grid.range_m.size(), kNone);
+  grid.lost_m[index] = std::min(grid.lost_m[index], range_m);
+  grid.range_m[index] = kNone;
+}
+
+// What is farther away along the ray `index` is hidden.
+inline double sight_m(const RangeGrid& grid, std::size_t index) {
+  return grid.lost_m.empty() ? grid.range_m[index] : std::min(grid.range_m[index], grid.lost_m[index]);
 }
 
 }  // namespace tumblesight::sim

@@ -2,7 +2,6 @@
 // surface's normal, on either side. Surfaces other than the target's count as facing the sensor.
 #include <Eigen/Core>
 #include <cmath>
-#include <limits>
 
 #include "sim/world/math/angles.hpp"
 #include "sim/world/sensor/effect_functions.hpp"
@@ -11,7 +10,6 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kReferenceRange_m = 100.0;
 constexpr double kVisible_m = 0.25;  // a reflector farther than this behind the surface of its ray is hidden
 
@@ -19,7 +17,7 @@ constexpr double kVisible_m = 0.25;  // a reflector farther than this behind the
 template <typename Predicate>
 void keep_returns(RangeGrid& grid, Predicate&& keeps) {
   for (std::size_t i = 0; i < grid.range_m.size(); ++i) {
-    if (std::isfinite(grid.range_m[i]) && !keeps(surface_of(grid, i))) grid.range_m[i] = kNone;
+    if (std::isfinite(grid.range_m[i]) && !keeps(surface_of(grid, i))) lose_return(grid, i, grid.range_m[i]);
   }
 }
 
@@ -57,8 +55,8 @@ void detect_photons(double strength, const Flash&, EffectRandom& random, RangeGr
 }
 
 // Retroreflectors at the target's six extreme corners, along +-x, +-y and +-z of the TRF. Each one in view
-// saturates the receiver: the rays within `strength` rays of it report its range. Limit: it returns light at
-// every incidence.
+// saturates the receiver: the rays within `strength` rays of it report its range. A surface hides what is
+// behind it, whether its own light comes back or not. Limit: a reflector returns light at every incidence.
 void add_retroreflectors(double strength, const Flash& flash, EffectRandom&, RangeGrid& grid) {
   const Eigen::Vector2d offset_m = flash.truth.offset_swaths * flash.swath_m;
   const Eigen::Vector3d target_m(offset_m.x(), flash.truth.range_m, offset_m.y());
@@ -71,7 +69,7 @@ void add_retroreflectors(double strength, const Flash& flash, EffectRandom&, Ran
     const long at = std::lround(row) * grid.rays + std::lround(column);
     const bool inside = column > -0.5 && row > -0.5 && column < grid.rays - 0.5 && row < grid.rays - 0.5;
     const double range_m = place_m.norm();
-    if (!inside || seen.range_m[static_cast<std::size_t>(at)] < range_m - kVisible_m) continue;
+    if (!inside || sight_m(seen, static_cast<std::size_t>(at)) < range_m - kVisible_m) continue;
     for (int i = 0; i < grid.rays * grid.rays; ++i) {
       const double right = i % grid.rays - column;
       const double down = i / grid.rays - row;

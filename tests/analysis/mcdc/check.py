@@ -39,12 +39,15 @@ def rows_of(root, wrong):
     return rows
 
 
+def tests_in(folder):
+    return {".".join(names) for path in folder.glob("*.cpp") for names in _TEST.findall(path.read_text(encoding="utf-8"))}
+
+
 def check(root):
     """Returns the problems, one line each."""
     wrong = []
     rows = rows_of(root, wrong)
-    paths = [path for folder in TESTS for path in (root / folder).glob("*.cpp")]
-    tests = {".".join(names) for path in paths for names in _TEST.findall(path.read_text(encoding="utf-8"))}
+    tests = set().union(*(tests_in(root / folder) for folder in TESTS))
     for row in rows:
         wrong += [f"docs/mcdc.md:{row.line}: there is no test {test}" for test in {row.true, row.false} - tests]
     wanted = [(path.relative_to(root).as_posix(), one.function, one.text, condition.text) for path in sources(root)

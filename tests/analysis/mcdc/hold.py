@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Forces each condition of docs/mcdc.md to its other value and checks that the tests in which it decides fail.
 
-  tests/analysis/mcdc/hold.py [--build FOLDER]     takes some minutes; needs CMake and Ninja
+  tests/analysis/mcdc/hold.py [--build FOLDER] [--rows gnc/tracking]     takes some minutes; needs CMake and Ninja
 """
 import argparse
 import concurrent.futures
@@ -10,7 +10,7 @@ import pathlib
 import subprocess
 import sys
 
-from check import ROOT, rows_of, sources
+from check import ROOT, TESTS, rows_of, sources, tests_in
 from decisions import decisions_in
 
 HELD = """#pragma once
@@ -54,6 +54,10 @@ def copy_with_handles(folder):
     return numbers
 
 
+# The program of each folder of tests.
+PROGRAMS = dict(zip(TESTS, ("test_fsw_app", "test_gnc_tracking")))
+
+
 def passes(program, test, number=-1, value=False, timeout_s=120):
     environment = {**os.environ, "MCDC_CONDITION": str(number), "MCDC_VALUE": "1" if value else "0"}
     try:
@@ -66,19 +70,22 @@ def passes(program, test, number=-1, value=False, timeout_s=120):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/mcdc", help="build folder")
-    folder = parser.parse_args().build.resolve()
+    parser.add_argument("--rows", default="", metavar="PATH", help="only rows of files whose path begins so [all]")
+    arguments = parser.parse_args()
+    folder = arguments.build.resolve()
     numbers = copy_with_handles(folder / "tree")
     subprocess.run(["cmake", "-S", folder / "tree", "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug",
                     "-DTUMBLESIGHT_SIL=OFF", "-DTUMBLESIGHT_TESTS=ON",
                     f"-DCMAKE_CXX_FLAGS=-include {folder}/tree/held.hpp"], check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["ninja", "-C", folder, "test_fsw_app"], check=True)
-    program = folder / "bin/test_fsw_app"
-    if not passes(program, "*", timeout_s=1200):
+    subprocess.run(["ninja", "-C", folder, *PROGRAMS.values()], check=True)
+    # A filter that names no test of a program would pass.
+    program_of = {test: folder / "bin" / program for tests, program in PROGRAMS.items() for test in tests_in(ROOT / tests)}
+    if not all(passes(program, "*", timeout_s=1200) for program in sorted(set(program_of.values()))):
         sys.exit("the tests fail with no condition forced")
-    rows = rows_of(ROOT, [])
+    rows = [row for row in rows_of(ROOT, []) if row.path.startswith(arguments.rows)]
     cases = [(row, test, value) for row in rows for test, value in ((row.true, False), (row.false, True))]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        passed = list(pool.map(lambda case: passes(program, case[1], numbers[case[0][1:5]], case[2]), cases))
+        passed = list(pool.map(lambda case: passes(program_of[case[1]], case[1], numbers[case[0][1:5]], case[2]), cases))
     blind = [case for case, one in zip(cases, passed) if one]
     for row, test, value in blind:
         print(f"docs/mcdc.md:{row.line}: {test} passes although `{row.condition}` is forced to {str(value).lower()}")

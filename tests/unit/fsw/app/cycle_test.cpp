@@ -128,6 +128,61 @@ TEST_F(Cycle, NewestFrameOfABacklogIsNotUsedIfItRepeatsTheOneBefore) {
   EXPECT_NE(counters.faults_persisting & bit_of(Fault::kFrameFrozen), 0U);
 }
 
+// Verifies TS-LID-052, TS-FDIR-170. A driver that hands out one of its used buffers again, behind the fresh
+// frame or before it, and in both cases under the next number and time.
+TEST_F(Cycle, UsedBufferUnderANewNumberDoesNotTakeThePlaceOfTheFreshFrame) {
+  constexpr unsigned kBefore = 10;
+  for (unsigned age = 1; age <= gnc::FrameHistory::kFrames; ++age) {
+    for (const bool fresh_is_first : {true, false}) {
+      init_with_model();
+      std::uint32_t number = 0;
+      const unsigned cycles = kBefore + trials(20);
+      for (unsigned cycle = 0; cycle < cycles; ++cycle) {
+        const std::int64_t first_ns = next_time_ns() - 1'400'000'000, second_ns = next_time_ns() - 50'000'000;
+        const bool with_old = cycle >= kBefore;
+        if (with_old && !fresh_is_first) lidar.add(good_frame(number++, first_ns, cycle - age));
+        const std::int64_t fresh_ns = fresh_is_first ? first_ns : second_ns;
+        lidar.add(good_frame(number++, fresh_ns, cycle));
+        if (with_old && fresh_is_first) lidar.add(good_frame(number++, second_ns, cycle - age));
+        run();
+        ASSERT_EQ(last_validity(), Validity::kValid) << age << ' ' << cycle;
+        EXPECT_EQ(link.attitudes.back().exposure_time_ns, fresh_ns);
+      }
+      const hal::Telemetry& counters = link.telemetry.back();
+      EXPECT_EQ(counters.frames_used, cycles);
+      EXPECT_EQ(counters.frames_repeated, cycles - kBefore);
+      EXPECT_EQ(counters.frames_superseded, 0U);
+      EXPECT_NE(counters.faults_persisting & bit_of(Fault::kFrameFrozen), 0U) << "the ground is told";
+    }
+  }
+}
+
+// Verifies TS-LID-052, TS-FDIR-170. A used buffer whose time is that of the cycle, before a fresh frame with
+// its own.
+TEST_F(Cycle, UsedBufferDoesNotSupersedeAFreshFrameOfAnEarlierTime) {
+  for (unsigned cycle = 0; cycle < 10; ++cycle) {
+    if (cycle > 0) lidar.add(good_frame(2 * cycle, next_time_ns(), cycle - 1));
+    lidar.add(good_frame(2 * cycle + 1, next_time_ns() - 50'000'000, cycle));
+    run();
+    EXPECT_EQ(last_validity(), Validity::kValid);
+    EXPECT_EQ(link.attitudes.back().sequence_number, 2 * cycle + 1);
+  }
+  EXPECT_EQ(link.telemetry.back().frames_repeated, 9U);
+}
+
+// What a cycle in STANDBY has received was not used.
+TEST_F(Cycle, FrameIsNotComparedWithThoseOfTheCycleBefore) {
+  link.add(set_mode(Mode::kStandby));
+  for (const std::uint32_t number : {1U, 2U})
+    lidar.add(good_frame(number, next_time_ns() - 1'000'000'000 + 400'000'000 * number, number));
+  run();
+  link.add(set_mode(Mode::kRun));
+  lidar.add(good_frame(3, next_time_ns(), 2));
+  run();
+  EXPECT_EQ(last_validity(), Validity::kValid);
+  EXPECT_EQ(link.telemetry.back().frames_repeated, 0U);
+}
+
 // Verifies TS-LID-052.
 TEST_F(Cycle, NewestFrameWithGoodContentIsUsed) {
   const std::int64_t cycle_ns = next_time_ns();

@@ -240,7 +240,7 @@ TEST_F(FrameRules, WithoutTheChasersAttitudeTheReportSaysSo) {
   const auto known = [&](std::int64_t off_ns) {
     return gnc::ChaserAttitude{next_time_ns() + off_ns, gnc::kIdentityQ30, true};
   };
-  EXPECT_TRUE(step_with({}));
+  EXPECT_TRUE(step_with({next_time_ns(), gnc::kIdentityQ30, false}));
   EXPECT_FALSE(step_with(known(0)));
   EXPECT_EQ(event(EventId::kEstimatorResetByGap)->arguments, (std::array<std::int32_t, 3>{2700, 3, 1}));
   EXPECT_EQ(out->attitude.frames_since_reset, 1U) << "no turn is known in the track before";

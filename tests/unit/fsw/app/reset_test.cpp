@@ -97,7 +97,8 @@ class Reset : public AppFixture {
       }
     }
   }
-  static constexpr int kHeadLost = 1, kBodyLost = 2, kTableLost = 4, kStale = 8, kKeySlotLost = 16;
+  static constexpr int kHeadLost = 1, kBodyLost = 2, kTableLost = 4, kStale = 8, kKeySlotLost = 16,
+                       kModeAndBankLost = 32;
 
   hal::fake::FakePersistentStore kept;
 };
@@ -317,6 +318,38 @@ TEST_F(Reset, StoreThatWasGivenUpIsTriedAgainAtEachCheck) {
   EXPECT_EQ(events(EventId::kStoreUsable), 0) << "once only";
   step_until_given_up();
   EXPECT_EQ(out->telemetry.store_given_up, 2U);
+}
+
+// Verifies TS-SEC-075.
+TEST_F(Reset, ChangeWhileTheStoreIsGivenUpIsReportedSinceAResetUndoesIt) {
+  step_until_given_up();
+  step_commands({command(FunctionCode::kNoop)});
+  EXPECT_EQ(events(EventId::kChangeNotStored), 0) << "nothing but the counter changes";
+  for (const Mode mode : {Mode::kStandby, Mode::kSafe}) {
+    step_commands({set_mode(mode)});
+    EXPECT_EQ(app->mode(), mode);
+    EXPECT_EQ(argument(EventId::kChangeNotStored, 1), static_cast<int>(mode));
+    EXPECT_EQ(event(EventId::kChangeNotStored)->severity, Severity::kError);
+    step_good();
+    EXPECT_EQ(events(EventId::kChangeNotStored), 0) << "once only";
+  }
+  const auto fault = static_cast<std::uint8_t>(Fault::kAttitudeJump);
+  step_commands({command(FunctionCode::kSetParameter, {3, 0, 0, 0, 5})});
+  EXPECT_EQ(events(EventId::kChangeNotStored), 1);
+  step_commands({command(FunctionCode::kDisableResponse, {fault})});
+  EXPECT_EQ(events(EventId::kChangeNotStored), 1);
+  StepInputs bug_of_the_caller;
+  step_commands({set_mode(Mode::kStandby), set_mode(Mode::kRun)});
+  bug_of_the_caller.command_count = -1;
+  step(bug_of_the_caller);
+  EXPECT_EQ(argument(EventId::kChangeNotStored, 1), static_cast<int>(Mode::kSafe)) << "not commanded";
+  kept.broken = {};
+  reset(ResetCause::kPowerOn);
+  EXPECT_EQ(app->mode(), Mode::kRun) << "the stored mode";
+  step_good();
+  EXPECT_EQ(stored().table[Parameter::kScrubBlocks], initial(Parameter::kScrubBlocks));
+  step_commands({set_mode(Mode::kSafe)});
+  EXPECT_EQ(events(EventId::kChangeNotStored), 0) << "it is stored";
 }
 
 // A copy that fails for long, and then the other one too: the ten cycles begin with the second one.
@@ -583,11 +616,36 @@ TEST_F(Reset, CounterIsResumedInTheFirstStepIfNothingCouldBeReadAtBoot) {
   EXPECT_EQ(app->command_counter(), counter);
   EXPECT_EQ(refused_by(CommandRefusal::kReplayed), 1U);
   EXPECT_EQ(argument(EventId::kStoredStateLost, 0), static_cast<int>(StoreStatus::kOk));
-  EXPECT_EQ(argument(EventId::kStoredStateLost, 2), kBodyLost) << "mode and bank were decided at boot";
+  EXPECT_EQ(argument(EventId::kStoredStateLost, 2), kModeAndBankLost) << "they were decided at boot";
   EXPECT_EQ(events(EventId::kStateResumed), 0);
   EXPECT_EQ(app->mode(), Mode::kSafe);
   EXPECT_EQ(stored().table[Parameter::kScrubBlocks], 5U);
   EXPECT_EQ(stored().responses_disabled, bit_of(Fault::kAttitudeJump));
+}
+
+// Verifies TS-RST-080. What is lost by then is named, and nothing else.
+TEST_F(Reset, LateResumptionNamesWhatIsLostThen) {
+  step_commands({command(FunctionCode::kSetParameter, {3, 0, 0, 0, 5})});
+  const hal::fake::FakePersistentStore good = kept;
+  const auto lost_with = [&](const auto& change_store) {
+    kept = good;
+    change_store();
+    kept.failing_reads = {3, 3};
+    reset(ResetCause::kPowerOn);
+    step_good();
+    EXPECT_EQ(app->mode(), Mode::kSafe);
+    EXPECT_EQ(app->state_lost(), static_cast<std::uint32_t>(argument(EventId::kStoredStateLost, 2)));
+    return argument(EventId::kStoredStateLost, 2);
+  };
+  const auto change_both = [this](std::size_t byte) {
+    for (const std::size_t copy : {0U, 1U}) change(copy, byte);
+  };
+  EXPECT_EQ(lost_with([&] {}), kModeAndBankLost);
+  EXPECT_EQ(stored().table[Parameter::kScrubBlocks], 5U);
+  EXPECT_EQ(lost_with([&] { change_both(kTableVersion); }), kTableLost + kModeAndBankLost);
+  EXPECT_EQ(lost_with([&] { change_both(kVersion); }), kBodyLost);
+  EXPECT_EQ(lost_with([&] { kept.copies = {}; }), kHeadLost + kBodyLost);
+  EXPECT_EQ(lost_with([&] { kept.blank = {true, true}; }), kModeAndBankLost);
 }
 
 // Verifies TS-RST-090. Other software, or damage behind the heads.
@@ -949,6 +1007,33 @@ TEST_F(KeyRollOver, SlotThatCannotBeStoredIsNotActivated) {
   step_commands({activate(1, 1)});
   EXPECT_EQ(out->telemetry.key_slot, 1);
   kept.last_write = -1;
+  reset(ResetCause::kPowerOn);
+  EXPECT_EQ(app->key_slot(), 1U);
+}
+
+// Verifies TS-SEC-075, TS-SEC-100. After the loss of the stored counter only another key ends replays, so the
+// change is not refused.
+TEST_F(KeyRollOver, SlotActivatedWhileTheStoreIsGivenUpHoldsUntilAResetAndIsReportedSo) {
+  step_until_given_up();
+  step_commands({activate(1, 1)});
+  EXPECT_EQ(out->telemetry.key_slot, 1);
+  EXPECT_EQ(events(EventId::kKeyActivated), 1);
+  EXPECT_EQ(argument(EventId::kChangeNotStored, 0), 1);
+  EXPECT_EQ(argument(EventId::kChangeNotStored, 1), static_cast<int>(Mode::kRun));
+  EXPECT_EQ(argument(EventId::kChangeNotStored, 2), 0);
+  const hal::fake::FakePersistentStore dead = kept;
+  reset(ResetCause::kPowerOn);
+  EXPECT_EQ(app->key_slot(), 0U) << "the old key again";
+  // With a store that recovers before the reset the slot is kept.
+  kept = dead;
+  kept.broken = {};
+  reset(ResetCause::kPowerOn);
+  step_until_given_up();
+  step_commands({activate(1, 1)});
+  EXPECT_EQ(events(EventId::kChangeNotStored), 1);
+  kept.broken = {};
+  for (std::uint32_t i = 0; i < config::kStoreCheck_cycles; ++i) step(StepInputs{});
+  EXPECT_EQ(health(), StoreHealth::kGood);
   reset(ResetCause::kPowerOn);
   EXPECT_EQ(app->key_slot(), 1U);
 }

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 
 namespace tumblesight::gnc {
 namespace {
@@ -87,28 +89,71 @@ TEST(FrameSignature, NoiseOfACountMakesFramesOfOneSceneDifferent) {
   }
 }
 
-TEST(FrameRepetition, ComparesPairsOfNeighbouringRays) {
-  for (const int rays : {16, 17, 33, 128}) {
-    for (const int side : {4, 12, 16}) {
-      const RangeImage a = square(rays, side, 0, 1);
-      EXPECT_TRUE(is_repetition(a, a));
-      EXPECT_FALSE(is_repetition(a, square(rays, side, 0, 2)));
-      RangeImage b = a;
-      for (int row = 0; row < side / 2 - 1; ++row) b.ranges[static_cast<std::size_t>(row * rays)] ^= 1;
-      EXPECT_TRUE(is_repetition(a, b)) << "a few flicker";
-      b.rays = static_cast<std::uint16_t>(rays - 1);
-      EXPECT_FALSE(is_repetition(a, b));
+// Cells that are filled by rays of the start have the value of the whole signature.
+TEST(SignatureStart, IsTheFirstCellsOfTheSignature) {
+  for (const int rays : {16, 17, 33, 100, 127, 128}) {
+    for (const int side : {1, 4, 12, 16}) {
+      for (const int at : {0, 1, rays - side}) {
+        if (at + side > rays) continue;
+        const RangeImage frame = square(rays, side, at, 1);
+        const FrameSignature whole = signature_of(frame);
+        const SignatureStart start = start_of(frame);
+        const auto cells = static_cast<std::uint32_t>(side * side);
+        EXPECT_GE(start.filled, std::min(cells, SignatureStart::kMost)) << rays << ' ' << side << ' ' << at;
+        EXPECT_LE(start.filled, std::min(cells, SignatureStart::kMost + 7))
+            << rays << ' ' << side << ' ' << at;
+        std::set<int> places;
+        for (std::uint32_t i = 0; i < start.filled; ++i) {
+          EXPECT_EQ(start.cells[start.places[i]], whole[start.places[i]]);
+          EXPECT_NE(start.cells[start.places[i]], 0);
+          places.insert(start.places[i]);
+        }
+        EXPECT_EQ(places.size(), start.filled) << "each once";
+      }
     }
   }
-  EXPECT_FALSE(is_repetition(square(128, 128, 0, 1), square(128, 128, 0, 2))) << "more than 512 pairs";
-  RangeImage none;
-  none.rays = 32;
-  EXPECT_FALSE(is_repetition(none, none)) << "no return";
-  none.rays = UINT16_MAX;
-  EXPECT_FALSE(is_repetition(none, none)) << "and does not read beyond the frame";
+  RangeImage frame = square(128, 128, 0, 1);
+  EXPECT_GE(start_of(frame).filled, SignatureStart::kMost);
+  frame.rays = UINT16_MAX;
+  EXPECT_GE(start_of(frame).filled, SignatureStart::kMost) << "and does not read beyond the frame";
+  frame.rays = 0;
+  EXPECT_EQ(start_of(frame).filled, 0U);
 }
 
-TEST(FrameRepetition, NoiseOfACountMakesFramesOfOneSceneDifferent) {
+TEST(SignatureStart, RepeatsIfThreeQuartersOfTheComparedCellsAreEqual) {
+  EXPECT_FALSE(is_repetition(FrameSignature{}, SignatureStart{})) << "no return";
+  for (const std::uint32_t returns : {1U, 2U, 3U, 4U, 63U, 64U, 96U}) {
+    RangeImage frame;
+    frame.rays = 128;
+    for (std::uint32_t i = 0; i < returns; ++i) frame.ranges[128 * (i / 16) + i % 16] = 6400;
+    const SignatureStart start = start_of(frame);
+    const std::uint32_t compared = std::min(returns, SignatureStart::kCompared);
+    for (std::uint32_t different = 0; different <= returns; ++different) {
+      for (const bool lost : {false, true}) {
+        FrameSignature earlier = signature_of(frame);
+        for (std::uint32_t i = 0; i < different; ++i) {
+          std::uint8_t& cell = earlier[start.places[i]];
+          cell = static_cast<std::uint8_t>(lost ? 0 : cell ^ 1);
+        }
+        EXPECT_EQ(is_repetition(earlier, start), 4 * different <= compared) << returns << ' ' << different;
+      }
+    }
+  }
+}
+
+TEST(SignatureStart, ATenthOfTheReturnsThatIsLostDoesNotHideARepetition) {
+  std::mt19937 engine(5);
+  for (int pair = 0; pair < 200; ++pair) {
+    RangeImage a = square(128, 40, 31, 1), b = a;
+    for (RangeImage* frame : {&a, &b})
+      for (std::uint16_t& range : frame->ranges)
+        if (engine() % 20 == 0) range = 0;
+    EXPECT_TRUE(is_repetition(start_of(a).cells, start_of(b))) << pair;
+    EXPECT_TRUE(is_repetition(signature_of(a), start_of(b))) << pair;
+  }
+}
+
+TEST(SignatureStart, NoiseOfACountMakesFramesOfOneSceneDifferent) {
   std::mt19937 engine(3);
   std::normal_distribution<double> noise(0.0, 0.5);
   for (int pair = 0; pair < 200; ++pair) {
@@ -116,7 +161,23 @@ TEST(FrameRepetition, NoiseOfACountMakesFramesOfOneSceneDifferent) {
     for (RangeImage* frame : {&a, &b})
       for (std::uint16_t& range : frame->ranges)
         if (range != 0) range = static_cast<std::uint16_t>(std::lround(range + noise(engine)));
-    EXPECT_FALSE(is_repetition(a, b));
+    EXPECT_FALSE(is_repetition(start_of(a).cells, start_of(b)));
+    EXPECT_FALSE(is_repetition(signature_of(a), start_of(b)));
+  }
+}
+
+TEST(FrameHistory, KnowsTheLastEightByTheirStartsToo) {
+  FrameHistory history;
+  EXPECT_FALSE(history.contains(start_of(square(128, 40, 31, 1))));
+  EXPECT_FALSE(history.contains(SignatureStart{})) << "no return";
+  for (unsigned scene = 0; scene < 20; ++scene) {
+    for (unsigned k = 0; k <= scene; ++k) {
+      const RangeImage frame = square(128, 40, 31, k);
+      const bool known = k < scene && k + FrameHistory::kFrames >= scene;
+      EXPECT_EQ(history.contains(start_of(frame)), known) << scene << ' ' << k;
+      EXPECT_EQ(history.contains(signature_of(frame)), known) << scene << ' ' << k;
+    }
+    history.add(signature_of(square(128, 40, 31, scene)));
   }
 }
 

@@ -76,6 +76,7 @@ TEST_F(Tracking, RefusedFrameChangesNothing) {
   frame = next();
   frame.exposure_time_ns += 2'000'000;
   EXPECT_EQ(step(frame).verdict, FrameVerdict::kFromFuture);
+  EXPECT_FALSE(outcome.valid());
   EXPECT_EQ(estimator->state_crc32(), crc);
   EXPECT_EQ(estimator->frames(), 2U);
   EXPECT_EQ(state.gate.last_sequence_number(), 2U);
@@ -265,6 +266,22 @@ TEST_F(Tracking, FramesTooFarApartForTheRateAreNoJumps) {
   EXPECT_EQ(outcome.doubts & kRateAmbiguous, 0U) << "the first frame";
   step(next(kLongestToFindRate_ns + 1));
   EXPECT_NE(outcome.doubts & kRateAmbiguous, 0U);
+}
+
+// Verifies TS-EST-182.
+TEST_F(Tracking, TrackThatIsGivenUpTellsTheNextOneNothingOfItsRate) {
+  step(next());
+  step(next());
+  EXPECT_TRUE(state.has_found_rate);
+  step(next(limits.longest_coast_ns + 1));
+  EXPECT_EQ(outcome.frames_given_up, 2U);
+  EXPECT_FALSE(outcome.finds_no_rate) << "the first frame of a track has none to find";
+  step(next(kLongestToFindRate_ns + 1));
+  EXPECT_TRUE(outcome.finds_no_rate) << "the rate of the track before is not that of this one";
+  EXPECT_NE(outcome.doubts & kRateAmbiguous, 0U);
+  step(next(limits.longest_coast_ns + 1));
+  EXPECT_GT(outcome.frames_given_up, 0U);
+  EXPECT_FALSE(outcome.finds_no_rate) << "the first frame";
 }
 
 TEST_F(Tracking, ALimitOfAHalfTurnDetectsNoJump) {

@@ -101,6 +101,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --model /dev", 1, "'/dev' is a folder; give a file"},
         Refusal{"quantize --model /dev", 2, "'/dev' is a folder; give a file"},
         Refusal{"quantize --model /no/such.tsm", 2, "'/no/such.tsm' does not exist"},
+        Refusal{"quantize --model /dev/null --effect noise=50", 2, "from 0.01 to 20 times, not '50'"},
+        Refusal{"quantize --model /dev/null --effect sphere=1", 2,
+                "--effect: wrong_object and sphere are for tests only"},
         Refusal{"evaluate --model /dev/null", 1, "'/dev/null' is refused: too short"},
         Refusal{"evaluate --json /proc/none/x.json", 1, "--json /proc/none/x.json"}));
 
@@ -211,7 +214,7 @@ TEST(Evaluate, TakesEffectsTogetherAndNamesThem) {
 
 TEST(Effects, AreListedWithTheirRangesAndModels) {
   const Workplace here;
-  for (const char* verb : {"evaluate", "record"}) {
+  for (const char* verb : {"evaluate", "record", "quantize"}) {
     const Outcome outcome = here.run(std::string(verb) + " --effect list");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
     EXPECT_EQ(outcome.errors, "");

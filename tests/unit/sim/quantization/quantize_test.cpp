@@ -1,7 +1,9 @@
 // Quantization of a network with random weights on rendered sequences, and of the shipped NEAR model.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <stdexcept>
 
 #include "sim/quantization/quantize_file.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
@@ -18,7 +20,7 @@ class QuantizeTest : public ::testing::Test {
   static void SetUpTestSuite() {
     folder = new TemporaryFolder;
     path = new std::string(folder->path("quantized.tsm"));
-    report = new QuantizationReport(quantize_to_file(*random_float32_model(77), {make_near_shoemaker()},
+    report = new QuantizationReport(quantize_to_file(*random_float32_model(77), {make_near_shoemaker()}, {},
                                                      kSequences, *path, [](std::uint64_t) { ++steps; }));
   }
   static void TearDownTestSuite() {
@@ -61,14 +63,58 @@ TEST_F(QuantizeTest, KeepsTheSignalOfEveryLayer) {
 TEST(QuantizeShipped, NearKeepsTheSignalOfEveryLayerBeforeTheHypotheses) {
   const auto model = read_float32_model(TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.float32.tsm");
   const TemporaryFolder folder;
-  const QuantizationReport report =
-      quantize_to_file(*model, {make_near_shoemaker()}, 20, folder.path("near.tsm"), [](std::uint64_t) {});
+  const QuantizationReport report = quantize_to_file(*model, {make_near_shoemaker()}, {}, 20,
+                                                     folder.path("near.tsm"), [](std::uint64_t) {});
   for (const LayerReport& layer : report.layers) {
     // The layers after the choice of a hypothesis are left out: that choice may differ between the numerics.
     if (gnc::layer_index(layer.layer.c_str()) >= gnc::kLstmLayer) continue;
     EXPECT_GT(layer.snr_db, 27.0) << layer.layer;
   }
   EXPECT_LT(report.difference.median_deg, 0.5);
+}
+
+// Depths of a calibration sequence, all frames.
+std::vector<std::uint16_t> calibration_depths(const std::string& effect, std::uint64_t number) {
+  const TriangleMesh mesh = make_near_shoemaker();
+  const Effects effects = effect.empty() ? Effects{} : effects_from({effect});
+  const FlashLidar lidar(observed_bodies(effects, mesh.name, mesh));
+  std::vector<std::uint16_t> depths;
+  for (const gnc::DepthImage& image : calibration_sequence({&lidar}, projection_of(mesh), effects, number))
+    depths.insert(depths.end(), image.depth.begin(), image.depth.end());
+  return depths;
+}
+
+// Verifies TS-TRN-020, TS-SIL-300. Effects on the sensor, on the body, on returns and on readings.
+TEST(Calibration, FramesHaveTheEffects) {
+  const auto filled = [](const std::vector<std::uint16_t>& depths) {
+    return std::count_if(depths.begin(), depths.end(), [](std::uint16_t depth) { return depth != 0; });
+  };
+  const std::vector<std::uint16_t> plain = calibration_depths("", 0);
+  EXPECT_LT(filled(calibration_depths("dropout=0.6", 0)), filled(plain));
+  EXPECT_LT(filled(calibration_depths("lobe=60", 0)), filled(plain));
+  EXPECT_LT(filled(calibration_depths("dead_pixels=0.5", 0)), filled(plain));
+  EXPECT_NE(calibration_depths("panel_turn=30", 0), plain);
+  EXPECT_EQ(calibration_depths("", 0), plain);
+}
+
+// Verifies TS-SIL-300.
+TEST(Calibration, EffectsChangeTheImageAndOneThatHidesTheTargetIsRefused) {
+  const TemporaryFolder folder;
+  const auto model = random_float32_model(77);
+  const auto crc32_with = [&](const std::string& effect) {
+    return quantize_to_file(*model, {make_near_shoemaker()}, effects_from({effect}), 10,
+                            folder.path("near.tsm"), [](std::uint64_t) {})
+        .crc32;
+  };
+  EXPECT_NE(crc32_with("dropout=0.6"), crc32_with("noise=1"));
+  EXPECT_NE(crc32_with("panel_turn=30"), crc32_with("noise=1")) << "the body";
+  try {
+    crc32_with("lobe=1");
+    FAIL() << "calibrated without a frame";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("the sensor sees too little"), std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(QuantizeTest, ReportsProgressAndTheDifferenceOfAQuarterOfTheFrames) {

@@ -22,9 +22,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-pid_t start_training(const fs::path& folder, const char* cnn_images = "384") {
-  std::vector<std::string> words{TUMBLESIGHT_PROGRAM,
-                                 "train",
+pid_t start_tool(std::vector<std::string> words) {
+  words.insert(words.begin(), TUMBLESIGHT_PROGRAM);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = -1;
+  EXPECT_EQ(posix_spawn(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environ), 0);
+  posix_spawn_file_actions_destroy(&actions);
+  return child;
+}
+
+pid_t start_training(const fs::path& folder, const char* cnn_images = "384",
+                     const std::vector<std::string>& more = {}) {
+  std::vector<std::string> words{"train",
                                  "--cnn-images",
                                  cnn_images,
                                  "--rcnn-sequences",
@@ -37,16 +51,8 @@ pid_t start_training(const fs::path& folder, const char* cnn_images = "384") {
                                  "1",
                                  "--out",
                                  folder.string()};
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t child = -1;
-  EXPECT_EQ(posix_spawn(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environ), 0);
-  posix_spawn_file_actions_destroy(&actions);
-  return child;
+  words.insert(words.end(), more.begin(), more.end());
+  return start_tool(words);
 }
 
 int wait_for(pid_t child) {
@@ -80,6 +86,20 @@ TEST(TrainingKilled, ResumesToTheSameModelImage) {
   const std::string image = contents(root / "through" / "near_shoemaker.tsm");
   EXPECT_GT(image.size(), 1'000'000U);
   EXPECT_TRUE(image == contents(root / "killed" / "near_shoemaker.tsm"));
+  fs::remove_all(root);
+}
+
+// The scales of the image that flies are those of frames with the effects.
+TEST(TrainingWithEffects, CalibratesWithThemAndQuantizeRepeatsIt) {
+  const fs::path root = fs::temp_directory_path() / ("effects_test_" + std::to_string(getpid()));
+  const std::string effects = "dropout=0.6";
+  ASSERT_EQ(wait_for(start_training(root, "64", {"--effect", effects})), 0);
+  const std::string model = (root / "near_shoemaker.float32.tsm").string();
+  const fs::path again = root / "again.tsm";
+  ASSERT_EQ(
+      wait_for(start_tool({"quantize", "--model", model, "--effect", effects, "--out", again.string()})), 0);
+  EXPECT_GT(contents(again).size(), 1'000'000U);
+  EXPECT_TRUE(contents(root / "near_shoemaker.tsm") == contents(again));
   fs::remove_all(root);
 }
 

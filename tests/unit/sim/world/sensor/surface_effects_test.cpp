@@ -121,5 +121,55 @@ TEST(SurfaceEffects, RetroreflectorsAreNotOnMissingParts) {
   EXPECT_EQ(std::count(frame->ranges.begin(), frame->ranges.end(), part_counts), 0);
 }
 
+// A double pyramid with a corner at each end of the three axes, all faces 55 degrees from the boresight: each
+// of the effects takes nearly all of its returns away, and what is seen are the reflectors. The one on the
+// far side is hidden behind the faces.
+TEST(SurfaceEffects, SurfaceThatReturnsNoLightHidesTheRetroreflectorBehindIt) {
+  TriangleMesh body;
+  body.vertices_trf_m = {{1, 0, 0}, {-1, 0, 0}, {0.4F, 1, 0.4F}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  for (const std::uint32_t x : {0U, 1U})
+    for (const std::uint32_t y : {2U, 3U})
+      for (const std::uint32_t z : {4U, 5U}) body.triangles.push_back({x, y, z});
+  body = as_panel(body);
+  const auto counts_at = [](const gnc::RangeImage& frame, const Eigen::Vector3d& place_m) {
+    const auto counts = static_cast<std::uint16_t>(std::lround(place_m.norm() * 128.0));
+    return static_cast<double>(std::count(frame.ranges.begin(), frame.ranges.end(), counts));
+  };
+  for (const char* effect : {"lobe=40", "panel_lobe=40", "cosine=20", "link_budget=0.01"}) {
+    SensorSettings settings =
+        sensor_settings(Condition::kNominal, effects_from({effect, "retroreflectors=5"}));
+    settings.noise = false;
+    FrameTruth truth{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), kRange_m};
+    auto frame = std::make_unique<gnc::RangeImage>();
+    FlashLidar(body).expose(truth, settings, 4.0, 1, *frame);
+    EXPECT_NEAR(counts_at(*frame, {0.0, kRange_m - 1.0, 0.0}), kPi * 25.0, 6.0) << effect;
+    EXPECT_LE(counts_at(*frame, {0.4, kRange_m + 1.0, 0.4}), 3.0) << effect << ": behind a face";
+    EXPECT_NEAR(share_of_returns(*frame), 5.0 * kPi * 25.0 / (128.0 * 128.0), 0.01) << effect;
+    truth.q_lrf_trf = Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitZ());
+    FlashLidar(body).expose(truth, settings, 4.0, 1, *frame);
+    EXPECT_NEAR(counts_at(*frame, {-0.4, kRange_m - 1.0, 0.4}), kPi * 25.0, 6.0) << effect << ": in front";
+  }
+}
+
+// A bar of a third of a ray's width, in the middle of a column of rays, gives none of them enough light.
+TEST(SurfaceEffects, BarThatIsLostInTheFootprintHidesTheRetroreflectorBehindIt) {
+  constexpr float kMiddle_m = 4.0F / 128.0F / 2.0F;
+  for (const bool covered : {true, false}) {
+    const float left_m = covered ? kMiddle_m - 0.006F : 0.5F;
+    TriangleMesh body =
+        cap({{left_m, -1, -1}, {left_m + 0.012F, -1, -1}, {left_m + 0.012F, -1, 1}, {left_m, -1, 1}});
+    append(body, cap({{kMiddle_m, 1, kMiddle_m}, {kMiddle_m, 0.9F, 0}, {kMiddle_m + 0.01F, 0.9F, 0}}));
+    SensorSettings settings =
+        sensor_settings(Condition::kNominal, effects_from({"footprint=1", "retroreflectors=5"}));
+    settings.noise = false;
+    const FrameTruth truth{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), kRange_m};
+    auto frame = std::make_unique<gnc::RangeImage>();
+    FlashLidar(body).expose(truth, settings, 4.0, 1, *frame);
+    const auto tip_counts = static_cast<std::uint16_t>(std::lround((kRange_m + 1.0) * 128.0));
+    const auto at_tip = std::count(frame->ranges.begin(), frame->ranges.end(), tip_counts);
+    EXPECT_NEAR(static_cast<double>(at_tip), covered ? 0.0 : kPi * 25.0, 6.0) << covered;
+  }
+}
+
 }  // namespace
 }  // namespace tumblesight::sim
