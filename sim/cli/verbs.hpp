@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/model/model_file.hpp"
+#include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
@@ -39,8 +40,9 @@ void add_quantize_command(CLI::App& app);
 inline constexpr int kCalibrationSequences = 200;
 
 // Shows its progress and prints the quantization error of each layer. Throws as quantize_to_file does.
+// `seen`: sensor, ranges and period of the sequences.
 void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
-                         const std::string& out);
+                         const std::string& out, const ScenarioSettings& seen);
 
 // `tumblesight bench`: speed of the flight network in both numerics and with every instruction set, compared
 // with other runtimes.

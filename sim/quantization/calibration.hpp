@@ -8,6 +8,7 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
+#include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
@@ -16,9 +17,10 @@ using ImageSequence = std::vector<gnc::DepthImage>;
 
 // Calibration sequence `number`: ten frames; meshes and calibration_conditions() take turns. Neither training
 // nor evaluation uses its seed. The sequence ends before a frame in which the sensor sees too little of the
-// target.
+// target. `seen`: its sensor, ranges and period.
 ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
-                                   const gnc::DepthProjection& projection, std::uint64_t number);
+                                   const gnc::DepthProjection& projection, std::uint64_t number,
+                                   const ScenarioSettings& seen = {});
 
 // For each layer, by name: its outputs over a whole sequence. Channel c of pixel p of frame f is at [(f *
 // pixels + p) * channels + c]. Borders are left out.

@@ -109,7 +109,8 @@ struct Rendered {
 
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
                                     int sequences, const std::string& path,
-                                    const std::function<void(std::uint64_t)>& progress) {
+                                    const std::function<void(std::uint64_t)>& progress,
+                                    const ScenarioSettings& seen) {
   const Rendered rendered(meshes);
   const int held_back = sequences / kReportShare;
   Calibration calibration(model.weights,
@@ -117,7 +118,7 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
   std::vector<ImageSequence> kept;
   for (int i = 0; i < sequences; ++i) {
     ImageSequence sequence =
-        calibration_sequence(rendered.each, model.header.projection, static_cast<std::uint64_t>(i));
+        calibration_sequence(rendered.each, model.header.projection, static_cast<std::uint64_t>(i), seen);
     if (i < sequences - held_back) {
       calibration.add(sequence);
     } else {

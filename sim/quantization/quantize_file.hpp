@@ -32,9 +32,10 @@ struct QuantizationReport {
 };
 // Renders `sequences` sequences: three quarters calibrate, the last quarter is for the report. Calls
 // `progress` with the number of sequences done. Deterministic. Throws std::runtime_error that names the file
-// if it cannot be written.
+// if it cannot be written. `seen`: sensor, ranges and period of the sequences.
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
                                     int sequences, const std::string& path,
-                                    const std::function<void(std::uint64_t)>& progress);
+                                    const std::function<void(std::uint64_t)>& progress,
+                                    const ScenarioSettings& seen = {});
 
 }  // namespace tumblesight::sim

@@ -11,7 +11,8 @@
 #include "sim/evaluation/metrics.hpp"
 #include "sim/evaluation/paper.hpp"
 #include "sim/report/data_table.hpp"
-#include "sim/world/scenario/disturbance.hpp"
+#include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/sensor_description.hpp"
 
 namespace tumblesight::sim {
 
@@ -42,6 +43,8 @@ struct SilRunSetup {
   bool free_running = false;
   Disturbances disturbances;
   Effects effects;
+  SensorDescription sensor;
+  RangeLimits ranges;
   std::vector<std::string> remarks;  // shown at the top of the report, below the faults
 };
 
