@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/cli/sensor_arguments.hpp"
 #include "sim/world/scenario/disturbance.hpp"
 #include "sim/world/sensor/effects.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
@@ -26,6 +27,7 @@ struct ScenarioArguments {
   std::uint64_t seed = 1;
   Disturbances disturbances;
   Effects effects;
+  SensorArguments sensor;
   std::string numerics = "fixed";  // or "float32": which of the shipped models
   std::string model;  // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
   std::string json;   // empty: none

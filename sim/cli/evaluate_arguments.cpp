@@ -70,6 +70,7 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
   add_run_options(command, arguments);
   add_output_options(command, arguments);
   add_paper_options(command, arguments);
+  add_sensor_options(command, arguments.scenario.sensor);
   add_effect_option(command, arguments.scenario.effects);
   add_disturbance_options(command, arguments.scenario.disturbances);
   command.footer("\nConditions\n" + condition_explanations() +
@@ -90,9 +91,9 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
 }
 
 void refuse_options_set_by_paper(const CLI::App& command) {
-  std::vector<std::string> own_options{"--target", "--mesh",   "--inertia", "--condition",
-                                       "--frames", "--model",  "--json",    "--csv",
-                                       "--report", "--curves", "--effect"};
+  std::vector<std::string> own_options{"--target", "--mesh",   "--inertia", "--condition", "--frames",
+                                       "--model",  "--json",   "--csv",     "--report",    "--curves",
+                                       "--effect", "--sensor", "--range"};
   for (const DisturbanceRow& row : kDisturbances) own_options.push_back(std::string("--") + row.name);
   for (const std::string& own : own_options) {
     if (command.get_option(own)->count() == 0) continue;

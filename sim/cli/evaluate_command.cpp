@@ -50,6 +50,7 @@ void announce(const Subject& subject, const ExperimentSettings& settings) {
   fmt::print("\n  {}, {}, {} of {}, seed {}\n  mesh {}, model {}, CRC-32 {:08x}\n\n", subject.target,
              conditions, counted(settings.sequences, "sequence"), counted(settings.frames, "frame"),
              settings.seed, subject.mesh_name, subject.model_name, subject.model_crc32);
+  print_sensor(subject.sensor, subject.ranges);
   const std::string disturbances = to_string(settings.disturbances);
   if (!disturbances.empty()) fmt::print("  disturbed: {}\n\n", disturbances);
   const std::string effects = to_string(settings.effects);
@@ -139,6 +140,7 @@ void add_evaluate_command(CLI::App& app, const std::string& command_line) {
   arguments->command_line = command_line;
   add_evaluate_options(*command, *arguments);
   command->callback([arguments, command] {
+    take_period_of_sensor(*command, arguments->scenario);
     arguments->sequences_given = command->get_option("--sequences")->count() > 0;
     if (arguments->paper) {
       refuse_options_set_by_paper(*command);

@@ -19,6 +19,7 @@ struct QuantizeArguments {
   MeshArguments meshes;
   Effects effects;
   int sequences = kCalibrationSequences;
+  SensorArguments sensor;
 };
 
 // near.float32.tsm -> near.tsm; anything else.tsm -> else.fixed.tsm
@@ -46,17 +47,25 @@ void quantize_file(QuantizeArguments arguments) {
   require_different("--model", arguments.model, "--out", arguments.out);
   require_writable("--out", arguments.out);
   const auto model = read_float32_model(arguments.model);
-  quantize_and_report(*model, load_meshes(arguments.meshes, model->header.target.data()), arguments.effects,
-                      arguments.sequences, arguments.out);
+  std::vector<std::string> notes{check_sensor_of_model(arguments.model, arguments.sensor.sensor)};
+  ScenarioSettings seen = seen_by(arguments.sensor, 1e-3 * model->header.projection.swath_mm, notes);
+  seen.effects = arguments.effects;
+  for (const std::string& note : notes) {
+    if (!note.empty()) fmt::print(stderr, "  note: {}\n", note);
+  }
+  quantize_and_report(*model, load_meshes(arguments.meshes, model->header.target.data()), arguments.sequences,
+                      arguments.out, seen);
+  const bool known = std::filesystem::exists(sensor_file_of(arguments.model));
+  if (known) write_sensor_file(arguments.out, arguments.sensor.sensor);
 }
 
 }  // namespace
 
-void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
-                         const Effects& effects, int sequences, const std::string& out) {
+void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
+                         const std::string& out, const ScenarioSettings& seen) {
   ProgressBar bar("calibrating", "sequences", static_cast<std::uint64_t>(sequences));
-  const QuantizationReport report = quantize_to_file(model, meshes, effects, sequences, out,
-                                                     [&bar](std::uint64_t done) { bar.update(done); });
+  const QuantizationReport report = quantize_to_file(
+      model, meshes, sequences, out, [&bar](std::uint64_t done) { bar.update(done); }, seen);
   bar.finish();
   print_report(report, out);
 }
@@ -78,6 +87,7 @@ void add_quantize_command(CLI::App& app) {
       ->type_name("FILE");
   add_mesh_options(*command, arguments->meshes);
   add_effect_option(*command, arguments->effects);
+  add_sensor_options(*command, arguments->sensor);
   limit_whole_number(command->add_option("--sequences", arguments->sequences,
                                          "sequences of ten frames to render for calibration"),
                      10, 10'000)

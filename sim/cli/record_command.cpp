@@ -51,6 +51,8 @@ void record(const RecordArguments& arguments) {
       scenario_settings(condition_from(wanted.condition), wanted.frames, wanted.target, target.inertia_kg_m2);
   settings.scenario.disturbances = wanted.disturbances;
   settings.scenario.effects = wanted.effects;
+  settings.scenario.sensor = wanted.sensor.sensor.settings;
+  settings.scenario.ranges = target.ranges;
   settings.seed = wanted.seed;
   settings.sequences = wanted.sequences;
   const FlashLidar lidar(observed_bodies(wanted.effects, wanted.target, target.mesh));
@@ -92,6 +94,7 @@ void add_record_command(CLI::App& app) {
   add_target_options(*command, arguments->scenario);
   add_condition_option(*command, arguments->scenario.condition);
   add_sequence_options(*command, arguments->scenario);
+  add_sensor_options(*command, arguments->scenario.sensor);
   add_effect_option(*command, arguments->scenario.effects);
   add_disturbance_options(*command, arguments->scenario.disturbances);
   command->add_option("--out", arguments->out, "recording to write")
@@ -103,7 +106,10 @@ void add_record_command(CLI::App& app) {
                    "truth to write [beside the recording: FRAMES.truth.csv]; none: no truth")
       ->check(file_path())
       ->type_name("FILE");
-  command->callback([arguments] { record(*arguments); });
+  command->callback([arguments, command] {
+    take_period_of_sensor(*command, arguments->scenario);
+    record(*arguments);
+  });
 }
 
 }  // namespace tumblesight::sim

@@ -75,6 +75,11 @@ std::string default_report_name(const SimulateArguments& arguments) {
   if (!disturbances.empty()) name += "_" + plain_words(disturbances);
   const std::string effects = to_string(scenario.effects);
   if (!effects.empty()) name += "_" + plain_words(effects);
+  const SensorDescription& sensor = scenario.sensor.sensor;
+  if (!sensor.is_the_papers()) name += fmt::format("_{}-{:08x}", sensor.name, crc32_of(sensor));
+  if (scenario.sensor.ranges) {
+    name += fmt::format("_{}-{}m", scenario.sensor.ranges->nearest_m, scenario.sensor.ranges->farthest_m);
+  }
   if (arguments.speed != usual.speed) name += "_speed" + arguments.speed;
   if (arguments.free_running) name += "_free-running";
   return with_limited_length(name) + ".html";

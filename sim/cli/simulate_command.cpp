@@ -36,6 +36,8 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
   setup.frames = scenario.frames;
   setup.disturbances = scenario.disturbances;
   setup.effects = scenario.effects;
+  setup.sensor = scenario.sensor.sensor;
+  setup.ranges = target.ranges;
   setup.seed = scenario.seed;
   return setup;
 }
@@ -67,6 +69,8 @@ SilRunResult run_sequences(const ScenarioArguments& scenario, const TargetSetup&
                                                          scenario.target, target.inertia_kg_m2);
   sequence_settings.disturbances = scenario.disturbances;
   sequence_settings.effects = scenario.effects;
+  sequence_settings.sensor = scenario.sensor.sensor.settings;
+  sequence_settings.ranges = target.ranges;
   std::vector<Sequence> sequences;
   for (std::uint32_t i = 0; i < scenario.sequences; ++i) {
     sequences.push_back(make_sequence(sequence_settings, scenario.seed, i));
@@ -87,6 +91,7 @@ void announce(const ScenarioArguments& scenario, const TargetSetup& target, cons
   fmt::print("\n  {}, {}, {} of {}, seed {}\n  mesh {}, model {}\n\n", scenario.target, scenario.condition,
              counted(scenario.sequences, "sequence"), counted(scenario.frames, "frame"), scenario.seed,
              target.mesh_name, target.model_path);
+  print_sensor(scenario.sensor.sensor, target.ranges);
   const std::string disturbances = to_string(scenario.disturbances);
   if (!disturbances.empty()) fmt::print("  disturbed: {}\n\n", disturbances);
   const std::string effects = to_string(scenario.effects);
@@ -150,6 +155,7 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   add_sequence_options(*command, arguments->scenario);
   add_model_options(*command, arguments->scenario);
   add_json_option(*command, arguments->scenario.json);
+  add_sensor_options(*command, arguments->scenario.sensor);
   add_effect_option(*command, arguments->scenario.effects);
   add_disturbance_options(*command, arguments->scenario.disturbances);
   add_flight_options(*command, *arguments);

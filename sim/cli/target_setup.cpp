@@ -95,6 +95,10 @@ TargetSetup set_up_body(const ScenarioArguments& arguments) {
   return setup;
 }
 
+void set_up_ranges(const ScenarioArguments& arguments, TargetSetup& setup) {
+  setup.ranges = ranges_of(arguments.sensor, 1e-3 * setup.projection.swath_mm, setup.warnings);
+}
+
 void load_model(const ScenarioArguments& arguments, TargetSetup& setup) {
   setup.model_path = model_path(arguments);
   setup.model = read_model(arguments, setup.model_path);
@@ -121,6 +125,9 @@ std::string shipped_model_path(const std::string& name) {
 TargetSetup set_up_target(const ScenarioArguments& arguments) {
   TargetSetup setup = set_up_body(arguments);
   set_up_model(arguments, setup);
+  const std::string warning = check_sensor_of_model(setup.model_path, arguments.sensor.sensor);
+  if (!warning.empty()) setup.warnings.push_back(warning);
+  set_up_ranges(arguments, setup);
   return setup;
 }
 
@@ -138,6 +145,7 @@ TargetSetup set_up_target_without_model(const ScenarioArguments& arguments) {
   } else {
     setup.projection = projection_of(setup.mesh);
   }
+  set_up_ranges(arguments, setup);
   return setup;
 }
 
@@ -153,6 +161,8 @@ Subject set_up_subject(const ScenarioArguments& arguments) {
   subject.model_crc32 = setup.header.crc32;
   subject.model = std::move(setup.model);
   subject.inertia_kg_m2 = setup.inertia_kg_m2;
+  subject.sensor = arguments.sensor.sensor;
+  subject.ranges = setup.ranges;
   return subject;
 }
 

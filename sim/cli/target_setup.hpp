@@ -23,6 +23,7 @@ struct TargetSetup {
   gnc::ModelHeader header;
   // The model's, so that the target fills the image as in training. The mesh's without a model.
   gnc::DepthProjection projection;
+  RangeLimits ranges;  // to draw from
   std::vector<std::string> warnings;
 };
 

@@ -28,6 +28,7 @@ struct TrainOptions {
   MeshArguments meshes;
   std::vector<std::string> conditions = {"all"};
   Effects effects;
+  SensorArguments sensor;
   std::string device = "auto";
   std::string precision = "auto";
   TrainingSettings settings;
@@ -81,11 +82,23 @@ std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurren
 }
 
 // The reference, and the image that flies.
-void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes, const Effects& effects,
-                  const std::unique_ptr<Float32Model>& model) {
+void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes,
+                  const TrainingTargets& targets, const std::unique_ptr<Float32Model>& model) {
+  const ScenarioSettings seen = scenario_of(targets, Condition::kNominal, 1);
   write_model_file<gnc::Float32>(stem + ".float32.tsm", model->header, model->weights);
   std::printf("Reference in float32: %s.float32.tsm\nFixed point, as it flies:\n", stem.c_str());
-  quantize_and_report(*model, meshes, effects, kCalibrationSequences, stem + ".tsm");
+  quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm", seen);
+}
+
+TrainingTargets targets_of(const TrainOptions& options, const std::vector<TriangleMesh>& meshes) {
+  const auto ranges = [&options](double swath_m) {
+    std::vector<std::string> warnings;
+    const RangeLimits limits = ranges_of(options.sensor, swath_m, warnings);
+    for (const std::string& warning : warnings) std::printf("note: %s\n", warning.c_str());
+    return limits;
+  };
+  return make_training_targets(meshes, training_conditions(options.conditions), inertia_of(options),
+                               options.effects, options.target, options.sensor.sensor, ranges);
 }
 
 int train(TrainOptions& options) {
@@ -96,9 +109,12 @@ int train(TrainOptions& options) {
   std::signal(SIGINT, [](int) { stop_requested = true; });
   std::signal(SIGTERM, [](int) { stop_requested = true; });
 
+  // Beside the checkpoints and the images that follow.
+  const std::string stem = options.settings.folder + "/" + options.target;
+  (void)check_sensor_of_model(stem + ".tsm", options.sensor.sensor);
   const std::vector<TriangleMesh> meshes = load_meshes(options.meshes, options.target);
-  const TrainingTargets targets = make_training_targets(meshes, training_conditions(options.conditions),
-                                                        inertia_of(options), options.effects, options.target);
+  const TrainingTargets targets = targets_of(options, meshes);
+  write_sensor_file(stem + ".tsm", options.sensor.sensor);
 
   torch::manual_seed(options.settings.seed);
   Cnn cnn;
@@ -112,8 +128,7 @@ int train(TrainOptions& options) {
     return kStopped;
   }
   std::printf("Training finished. Log: %s/log.csv, error curve: curve.svg.\n", folder.c_str());
-  write_images(folder + "/" + options.target, meshes, options.effects,
-               model_of(cnn, recurrent, options.target, targets));
+  write_images(stem, meshes, targets, model_of(cnn, recurrent, options.target, targets));
   return 0;
 }
 
@@ -146,6 +161,7 @@ void add_train_command(CLI::App& app) {
       ->check(one_of(training_condition_words()))
       ->type_name("NAMES")
       ->capture_default_str();
+  add_sensor_options(*command, options->sensor);
   add_effect_option(*command, options->effects);
   command
       ->add_option("--start-from", settings.start_from,

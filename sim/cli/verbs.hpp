@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/model/model_file.hpp"
-#include "sim/world/sensor/effects.hpp"
+#include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
@@ -42,8 +42,9 @@ void add_quantize_command(CLI::App& app);
 inline constexpr int kCalibrationSequences = 200;
 
 // Shows its progress and prints the quantization error of each layer. Throws as quantize_to_file does.
-void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
-                         const Effects& effects, int sequences, const std::string& out);
+// `seen`: sensor, ranges, period and effects of the sequences.
+void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
+                         const std::string& out, const ScenarioSettings& seen);
 
 // `tumblesight bench`: speed of the flight network in both numerics and with every instruction set, compared
 // with other runtimes.

@@ -55,9 +55,10 @@ Curve binned(const std::vector<FrameResult>& results,
   return curve;
 }
 
-Curve errors_by_range(const std::vector<FrameResult>& last) {
+Curve errors_by_range(const std::vector<FrameResult>& last, const RangeLimits& ranges) {
   return binned(
-      last, [](const FrameResult& result) { return result.range_m; }, even_edges(20.0, 100.0, 8));
+      last, [](const FrameResult& result) { return result.range_m; },
+      even_edges(ranges.nearest_m, ranges.farthest_m, 8));
 }
 
 Curve errors_by_rate(const std::vector<FrameResult>& last) {

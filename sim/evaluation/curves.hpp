@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/evaluation/metrics.hpp"
+#include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
 
@@ -26,8 +27,9 @@ Curve errors_by_frame(const std::vector<FrameResult>& results, std::uint32_t fra
 Curve binned(const std::vector<FrameResult>& results,
              const std::function<double(const FrameResult&)>& value_of, const std::vector<double>& edges);
 
-// The paper's bins: 20..100 m in steps of 10 m, 0..20 deg/s in steps of 2.5 deg/s. `last`: last frames.
-Curve errors_by_range(const std::vector<FrameResult>& last);
+// Eight bins of equal width: over the ranges (the paper's: 20..100 m in steps of 10 m), and over 0..20 deg/s.
+// `last`: last frames.
+Curve errors_by_range(const std::vector<FrameResult>& last, const RangeLimits& ranges = {});
 Curve errors_by_rate(const std::vector<FrameResult>& last);
 
 // Largest over smallest mean error of the RCNN among bins with at least `min_count` sequences; 0 if there are

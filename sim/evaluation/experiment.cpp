@@ -110,6 +110,7 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   cell.frames = frames;
   cell.disturbances = run.scenario.disturbances;
   cell.effects = run.scenario.effects;
+  cell.ranges = run.scenario.ranges;
   cell.rcnn = last_frame_summary(result.frames, frames, Estimator::kRcnn);
   cell.cnn = last_frame_summary(result.frames, frames, Estimator::kCnn);
   cell.common_turn = common_turn(last, Estimator::kRcnn);
@@ -122,7 +123,7 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   cell.network_ms = result.network_ms;
   cell.baseline_ms = result.baseline_ms;
   cell.by_frame = errors_by_frame(result.frames, frames);
-  cell.by_range = errors_by_range(last);
+  cell.by_range = errors_by_range(last, run.scenario.ranges);
   cell.by_rate = errors_by_rate(last);
   cell.rcnn_confusion = confusion(last, Estimator::kRcnn, symmetries);
   cell.cnn_confusion = confusion(last, Estimator::kCnn, symmetries);
@@ -174,6 +175,8 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
     run.scenario.inertia_kg_m2 =
         scenario_settings(run.scenario.condition, settings.frames, subject.target, subject.inertia_kg_m2)
             .inertia_kg_m2;
+    run.scenario.sensor = subject.sensor.settings;
+    run.scenario.ranges = subject.ranges;
   }
   const FlashLidar lidar(observed_bodies(settings.effects, subject.target, subject.mesh));
   const FrameRenderer renderer(lidar, subject.swath_m);
@@ -193,6 +196,8 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
          result);
     done += steps_of(run, run.sequences);
   }
+  for (CellResult& cell : result.cells) cell.sensor = subject.sensor;
+  for (CellResult& cell : result.disturbed) cell.sensor = subject.sensor;
   return result;
 }
 

@@ -23,6 +23,8 @@ struct Subject {
   std::uint32_t model_crc32 = 0;
   std::vector<std::uint8_t> model;               // an image that AttitudeEstimator::load accepts
   std::optional<Eigen::Matrix3d> inertia_kg_m2;  // in the TRF
+  SensorDescription sensor{};                    // that sees it
+  RangeLimits ranges{};                          // at which it is seen
 };
 
 struct ExperimentSettings {

@@ -4,8 +4,22 @@
 
 namespace tumblesight::sim {
 
+bool differs_from_paper(const CellResult& cell) {
+  return !differences_from_paper(cell).empty();
+}
+
+std::string differences_from_paper(const CellResult& cell) {
+  std::string text;
+  if (!cell.sensor.is_the_papers()) text += ", sensor " + cell.sensor.name;
+  if (!cell.ranges.are_the_papers())
+    text += fmt::format(", {:.0f} to {:.0f} m", cell.ranges.nearest_m, cell.ranges.farthest_m);
+  const std::string effects = to_string(cell.effects);
+  if (!effects.empty()) text += ", " + effects;
+  return text.empty() ? text : text.substr(2);
+}
+
 PaperFigures paper_figures(const std::string& target, const CellResult& cell) {
-  if (!to_string(cell.effects).empty()) return {};
+  if (differs_from_paper(cell)) return {};
   return paper_figures(target, cell.condition, cell.disturbances);
 }
 

@@ -12,6 +12,7 @@
 #include "sim/evaluation/paper.hpp"
 #include "sim/evaluation/reliability.hpp"
 #include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/sensor_description.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
@@ -23,6 +24,8 @@ struct CellResult {
   std::uint32_t frames = 0;  // per sequence
   Disturbances disturbances;
   Effects effects;
+  SensorDescription sensor;
+  RangeLimits ranges;
   ErrorSummary rcnn;
   ErrorSummary cnn;
   CommonTurn common_turn;                // of the RCNN
@@ -70,7 +73,11 @@ struct Results {
   std::vector<SubjectResult> subjects;
 };
 
-// The paper's figures for a cell, see paper_figures(). None for one with effects.
+// Whether effects, another sensor or other ranges than the paper's make the frames of a cell.
+bool differs_from_paper(const CellResult& cell);
+// What makes them, "sensor flash_256, 50 to 200 m, noise=2"; empty for the paper's.
+std::string differences_from_paper(const CellResult& cell);
+// The paper's figures for a cell, see paper_figures(). None for one that differs from it in this way.
 PaperFigures paper_figures(const std::string& target, const CellResult& cell);
 // The figures of one condition, or nullptr if it was not run.
 const CellResult* cell_of(const SubjectResult& subject, Condition condition);

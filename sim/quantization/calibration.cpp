@@ -28,16 +28,15 @@ void append(const std::array<Number, kCount>& numbers, std::vector<double>& to) 
 }  // namespace
 
 ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
-                                   const gnc::DepthProjection& projection, const Effects& effects,
-                                   std::uint64_t number) {
+                                   const gnc::DepthProjection& projection, std::uint64_t number,
+                                   const ScenarioSettings& seen) {
   const std::vector<Condition> conditions = calibration_conditions();
   auto frame = std::make_unique<gnc::RangeImage>();
   auto scratch = std::make_unique<gnc::DepthImageScratch>();
   const FrameRenderer renderer(*lidars[number % lidars.size()], 1e-3 * projection.swath_mm);
-  ScenarioSettings scenario;
+  ScenarioSettings scenario = seen;
   scenario.condition = conditions[number / lidars.size() % conditions.size()];
   scenario.frames = kFrames;
-  scenario.effects = effects;
   const Sequence truth = make_sequence(scenario, mix(kSeed, number), number);
   ImageSequence images;
   for (int k = 0; k < kFrames; ++k) {

@@ -8,18 +8,20 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/attitude_estimator.hpp"
+#include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 
 using ImageSequence = std::vector<gnc::DepthImage>;
 
-// Calibration sequence `number`: ten frames with the `effects`; meshes and calibration_conditions() take
-// turns. Neither training nor evaluation uses its seed. The sequence ends before a frame in which the sensor
-// sees too little of the target. `lidars`: of the bodies that are observed (observed_bodies()).
+// Calibration sequence `number`: ten frames; meshes and calibration_conditions() take turns. Neither training
+// nor evaluation uses its seed. The sequence ends before a frame in which the sensor sees too little of the
+// target. `lidars`: of the bodies that are observed (observed_bodies()). `seen`: its sensor, ranges, period and
+// effects.
 ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
-                                   const gnc::DepthProjection& projection, const Effects& effects,
-                                   std::uint64_t number);
+                                   const gnc::DepthProjection& projection, std::uint64_t number,
+                                   const ScenarioSettings& seen = {});
 
 // For each layer, by name: its outputs over a whole sequence. Channel c of pixel p of frame f is at [(f *
 // pixels + p) * channels + c]. Borders are left out.

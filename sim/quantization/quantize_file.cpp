@@ -117,9 +117,10 @@ void require_frames(std::size_t calibrating, std::size_t reported) {
 }  // namespace
 
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
-                                    const Effects& effects, int sequences, const std::string& path,
-                                    const std::function<void(std::uint64_t)>& progress) {
-  const Rendered rendered(meshes, effects, model.header.target.data());
+                                    int sequences, const std::string& path,
+                                    const std::function<void(std::uint64_t)>& progress,
+                                    const ScenarioSettings& seen) {
+  const Rendered rendered(meshes, seen.effects, model.header.target.data());
   const int held_back = sequences / kReportShare;
   Calibration calibration(model.weights,
                           gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia)));
@@ -127,7 +128,7 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
   std::size_t calibrating = 0, reported = 0;  // frames
   for (int i = 0; i < sequences; ++i) {
     ImageSequence sequence =
-        calibration_sequence(rendered.each, model.header.projection, effects, static_cast<std::uint64_t>(i));
+        calibration_sequence(rendered.each, model.header.projection, static_cast<std::uint64_t>(i), seen);
     if (i < sequences - held_back) {
       calibrating += sequence.size();
       calibration.add(sequence);

@@ -5,6 +5,7 @@
 
 #include "hal/replay/recording.hpp"
 #include "sim/world/chaser_navigation.hpp"
+#include "sim/world/sensor/ray_effects.hpp"
 
 namespace tumblesight::sim {
 
@@ -57,7 +58,8 @@ MadeRecording make_recording(const FrameRenderer& renderer, const RecordingSetti
   std::vector<Sequence> sequences;
   for (std::uint32_t i = 0; i < settings.sequences; ++i)
     sequences.push_back(make_sequence(settings.scenario, settings.seed, i));
-  const int rays = sensor_settings(settings.scenario.condition, settings.scenario.effects).rays;
+  const ScenarioSettings& scenario = settings.scenario;
+  const int rays = frame_rays(sensor_settings(scenario.condition, scenario.effects, scenario.sensor));
   const bool ego_motion = !settings.scenario.disturbances.no_ego_motion;
   RecordingWriter writer(static_cast<std::uint16_t>(rays), delivered_frames(sequences));
   MadeRecording made;

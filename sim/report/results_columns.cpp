@@ -99,7 +99,16 @@ std::vector<CsvColumn> make_csv_columns() {
   }
   columns.push_back(
       {"disturbances", [](const Row& row) { return csv_text(to_string(row.cell.disturbances)); }});
-  columns.push_back({"effect", [](const Row& row) { return csv_text(to_string(row.cell.effects)); }, true});
+  columns.push_back({"effect", [](const Row& row) { return csv_text(to_string(row.cell.effects)); },
+                     [](const CellResult& cell) { return !to_string(cell.effects).empty(); }});
+  columns.push_back({"sensor", [](const Row& row) { return csv_text(to_string(row.cell.sensor)); },
+                     [](const CellResult& cell) { return !cell.sensor.is_the_papers(); }});
+  columns.push_back({"ranges_m",
+                     [](const Row& row) {
+                       const RangeLimits& ranges = row.cell.ranges;
+                       return fmt::format("{} to {}", ranges.nearest_m, ranges.farthest_m);
+                     },
+                     [](const CellResult& cell) { return !cell.ranges.are_the_papers(); }});
   return columns;
 }
 
@@ -144,8 +153,8 @@ std::vector<ConditionColumn> make_condition_columns() {
       {kOthers, "spacecraft, mesh", [](const Row& row) -> TableCell { return {title_of(row.subject)}; }},
       {~0U, "condition",
        [](const Row& row) -> TableCell {
-         const std::string effects = to_string(row.cell.effects);
-         return {to_string(row.cell.condition) + (effects.empty() ? "" : ", ") + effects};
+         const std::string other = differences_from_paper(row.cell);
+         return {to_string(row.cell.condition) + (other.empty() ? "" : ", ") + other};
        }},
       {kAccuracyTable, "sequences",
        [](const Row& row) -> TableCell { return {std::to_string(row.cell.sequences)}; }}};

@@ -52,7 +52,9 @@ std::vector<EstimatorRow> estimator_rows(const Results& results);
 struct CsvColumn {
   std::string name;
   std::function<std::string(const EstimatorRow&)> field;  // empty text: there is no such figure
-  bool only_with_effects = false;                         // left out of files without an effect
+  // Whether a line has something in it; a file without such a line leaves the column out. nullptr: every file
+  // has it.
+  bool (*used)(const CellResult&) = nullptr;
 };
 const std::vector<CsvColumn>& csv_columns();
 

@@ -11,9 +11,11 @@ namespace {
 
 std::vector<CsvColumn> columns_of(const std::vector<EstimatorRow>& rows) {
   std::vector<CsvColumn> columns = csv_columns();
-  const bool with_effects = std::any_of(
-      rows.begin(), rows.end(), [](const EstimatorRow& row) { return !to_string(row.cell.effects).empty(); });
-  const auto unused = [=](const CsvColumn& column) { return column.only_with_effects && !with_effects; };
+  const auto unused = [&](const CsvColumn& column) {
+    return column.used != nullptr && std::none_of(rows.begin(), rows.end(), [&](const EstimatorRow& row) {
+             return column.used(row.cell);
+           });
+  };
   columns.erase(std::remove_if(columns.begin(), columns.end(), unused), columns.end());
   return columns;
 }

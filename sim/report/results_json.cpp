@@ -61,8 +61,10 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
             {"paper_cnn", figure_json(paper.cnn)},
             {"goal", figure_json(paper.goal)},
             {"confusion", confusion_json(cell.rcnn_confusion)}};
-  // What an effect costs depends on the range.
-  if (!to_string(cell.effects).empty()) json["by_range_m"] = curve_json(cell.by_range);
+  if (!cell.sensor.is_the_papers()) json["sensor"] = sensor_json(cell.sensor);
+  if (!cell.ranges.are_the_papers()) json["ranges_m"] = {cell.ranges.nearest_m, cell.ranges.farthest_m};
+  // What an effect or a sensor costs depends on the range.
+  if (differs_from_paper(cell)) json["by_range_m"] = curve_json(cell.by_range);
   return json;
 }
 
@@ -130,6 +132,10 @@ nlohmann::ordered_json disturbances_json(const Disturbances& disturbances) {
 nlohmann::ordered_json effect_json(const Effects& effects) {
   const std::string text = to_string(effects);
   return text.empty() ? Json(nullptr) : Json(text);
+}
+
+nlohmann::ordered_json sensor_json(const SensorDescription& sensor) {
+  return {{"name", sensor.name}, {"crc32", fmt::format("{:08x}", crc32_of(sensor))}};
 }
 
 Json summary_json(const ErrorSummary& summary) {

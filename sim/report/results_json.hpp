@@ -20,6 +20,8 @@ nlohmann::ordered_json disturbances_json(const Disturbances& disturbances);
 
 // "noise=5", or null without an effect.
 nlohmann::ordered_json effect_json(const Effects& effects);
+// Its name and what identifies it.
+nlohmann::ordered_json sensor_json(const SensorDescription& sensor);
 
 // {"rows": [one per subject and condition], "curves": [one per subject with sweeps]}; no "curves" without
 // sweeps.

@@ -11,7 +11,8 @@
 #include "sim/evaluation/metrics.hpp"
 #include "sim/evaluation/paper.hpp"
 #include "sim/report/data_table.hpp"
-#include "sim/world/scenario/disturbance.hpp"
+#include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/sensor_description.hpp"
 
 namespace tumblesight::sim {
 
@@ -47,6 +48,8 @@ struct SilRunSetup : FlightSetup {
   std::uint64_t seed = 0;
   Disturbances disturbances;
   Effects effects;
+  SensorDescription sensor;
+  RangeLimits ranges;
 };
 
 struct RunReport {

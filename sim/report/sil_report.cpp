@@ -36,16 +36,19 @@ FactList settings_facts(const SilRunSetup& setup) {
   const std::string disturbed = to_string(setup.disturbances);
   const std::string effects = to_string(setup.effects);
   FactList list{"Settings", {}};
-  list.facts = {{"target", setup.target},
-                {"mesh", file_name(setup.mesh_name)},
-                {"condition", setup.condition},
-                {"sequences × frames", fmt::format("{} × {}", setup.sequences, setup.frames)},
-                {"disturbances", disturbed.empty() ? "none" : disturbed},
-                {"effects", effects.empty() ? "none" : effects},
-                {"seed", fmt::format("{}", setup.seed)},
-                {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
-                {"time", setup.free_running ? "free-running" : "lockstep"},
-                {"swath", fmt::format("{:.2f} m", 1e-3 * setup.projection.swath_mm)}};
+  list.facts = {
+      {"target", setup.target},
+      {"mesh", file_name(setup.mesh_name)},
+      {"condition", setup.condition},
+      {"sequences × frames", fmt::format("{} × {}", setup.sequences, setup.frames)},
+      {"disturbances", disturbed.empty() ? "none" : disturbed},
+      {"effects", effects.empty() ? "none" : effects},
+      {"sensor", setup.sensor.name},
+      {"ranges", fmt::format("{:.0f} to {:.0f} m", setup.ranges.nearest_m, setup.ranges.farthest_m)},
+      {"seed", fmt::format("{}", setup.seed)},
+      {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
+      {"time", setup.free_running ? "free-running" : "lockstep"},
+      {"swath", fmt::format("{:.2f} m", 1e-3 * setup.projection.swath_mm)}};
   return list;
 }
 
@@ -276,6 +279,8 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
   json["disturbances"] = disturbances_json(setup.disturbances);
   json["effect"] = effect_json(setup.effects);
+  if (!setup.sensor.is_the_papers()) json["sensor"] = sensor_json(setup.sensor);
+  if (!setup.ranges.are_the_papers()) json["ranges_m"] = {setup.ranges.nearest_m, setup.ranges.farthest_m};
   json["rcnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
   json["cnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
   if (numerics) {
@@ -295,7 +300,7 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   report.frame_period_s = setup.disturbances.period_s;
   report.results = frame_results(run);
   report.pictures = depth_pictures(run, setup.projection);
-  if (to_string(setup.effects).empty())
+  if (to_string(setup.effects).empty() && setup.sensor.is_the_papers() && setup.ranges.are_the_papers())
     report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
   report.steps_planned = run.steps_planned;
   report.steps_missed = run.steps_missed;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "gnc/numerics/crc.hpp"
+#include "sim/training/stage.hpp"
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/math/random.hpp"
 #include "sim/world/scenario/sequence.hpp"
@@ -27,9 +28,7 @@ bool try_render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_
                 FrameTruth& truth) {
   const auto& lidar = *targets.lidars[index % targets.lidars.size()];
   const Condition condition = targets.conditions[(index / targets.lidars.size()) % targets.conditions.size()];
-  ScenarioSettings scenario{condition, 1};
-  scenario.effects = targets.effects;
-  const Sequence sequence = make_sequence(scenario, seed, index);
+  const Sequence sequence = make_sequence(scenario_of(targets, condition, 1), seed, index);
   truth = sequence.frames.front();
   FrameRenderer(lidar, 1e-3 * targets.projection.swath_mm, noise_seed_per_sequence)
       .render(sequence, 0, work.frame);
@@ -97,7 +96,8 @@ torch::Tensor rotation_tensor(const FrameTruth& truth, const Eigen::Matrix3f& r_
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,
                                       const Eigen::Matrix3d& inertia_kg_m2, const Effects& effects,
-                                      const std::string& target) {
+                                      const std::string& target, const SensorDescription& sensor,
+                                      const std::function<RangeLimits(double)>& ranges_of) {
   TrainingTargets targets;
   targets.inertia_kg_m2 = inertia_kg_m2;
   if (!gnc::make_inertia<float>(inertia_kg_m2.cast<float>(), targets.inertia)) {
@@ -105,6 +105,7 @@ TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
   }
   targets.conditions = conditions;
   targets.effects = effects;
+  targets.sensor = sensor;
   for (const TriangleMesh& mesh : meshes) {
     targets.lidars.push_back(std::make_unique<FlashLidar>(observed_bodies(effects, target, mesh)));
     const gnc::DepthProjection of_mesh = projection_of(mesh);
@@ -112,9 +113,27 @@ TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
     targets.projection.target_radius_mm =
         std::max(targets.projection.target_radius_mm, of_mesh.target_radius_mm);
   }
+  if (ranges_of) targets.ranges = ranges_of(1e-3 * targets.projection.swath_mm);
   targets.meshes_crc32 = crc32_of(meshes);
   require_visible(targets, meshes);
   return targets;
+}
+
+// The paper's sensor and ranges add nothing, so that checkpoints from before other ones existed stay valid.
+std::uint64_t view_hash(const TrainingTargets& targets) {
+  std::uint64_t hash = conditions_hash(targets.conditions, targets.effects);
+  if (!targets.sensor.is_the_papers()) hash = mix(hash, crc32_of(targets.sensor));
+  if (targets.ranges.are_the_papers()) return hash;
+  return mix(mix(hash, bits_of(targets.ranges.nearest_m)), bits_of(targets.ranges.farthest_m));
+}
+
+ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, int frames) {
+  ScenarioSettings scenario{condition, frames};
+  scenario.effects = targets.effects;
+  scenario.sensor = targets.sensor.settings;
+  scenario.ranges = targets.ranges;
+  scenario.disturbances.period_s = targets.sensor.period_s;
+  return scenario;
 }
 
 FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch) {

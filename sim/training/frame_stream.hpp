@@ -6,6 +6,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -16,7 +17,9 @@
 #include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
 #include "sim/training/training_conditions.hpp"
+#include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
+#include "sim/world/sensor/sensor_description.hpp"
 
 namespace tumblesight::sim {
 
@@ -27,6 +30,8 @@ struct TrainingTargets {
   std::uint32_t meshes_crc32 = 0;                   // identifies the surfaces
   std::vector<Condition> conditions;                // drawn in turn; may contain one more than once
   Effects effects{};                                // in every frame
+  SensorDescription sensor{};                       // that sees them
+  RangeLimits ranges{};                             // at which it sees them
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF
   gnc::Inertia<float> inertia;                                  // the same, as the flight code takes it
 };
@@ -34,11 +39,17 @@ struct TrainingTargets {
 // Throws std::runtime_error that names a mesh of which the sensor sees too little in most frames, and
 // std::invalid_argument for an inertia that is not symmetric and positive definite, or as observed_bodies()
 // does. `effects` change what the sensor sees, not the projection. `target`: key, for the effects on the
-// body.
+// body. `ranges_of`: the ranges for a swath in metres; none: the paper's.
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,
                                       const Eigen::Matrix3d& inertia_kg_m2 = Eigen::Matrix3d::Identity(),
-                                      const Effects& effects = {}, const std::string& target = {});
+                                      const Effects& effects = {}, const std::string& target = {},
+                                      const SensorDescription& sensor = {},
+                                      const std::function<RangeLimits(double)>& ranges_of = {});
+// Hash of conditions, effects, sensor and ranges, for a checkpoint's fingerprint.
+std::uint64_t view_hash(const TrainingTargets& targets);
+// A scenario of so many frames, as the targets are seen.
+ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, int frames);
 
 struct FrameBatch {
   torch::Tensor images;      // [B, 1, 100, 100], depth 0..1

@@ -40,8 +40,8 @@ Eigen::Matrix3d random_inertia(Random random) {
 
 ScenarioSettings scenario_of(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t number) {
   const std::uint64_t turn = number / targets.lidars.size();
-  ScenarioSettings settings{targets.conditions[turn % targets.conditions.size()], kFrames};
-  settings.effects = targets.effects;
+  ScenarioSettings settings =
+      scenario_of(targets, targets.conditions[turn % targets.conditions.size()], kFrames);
   settings.rate_law = (turn / targets.conditions.size()) % 2 == 0 ? RateLaw::kComponents : RateLaw::kNorm;
   Random random(mix(mix(seed, number), 4));
   settings.inertia_kg_m2 = random.uniform() < 0.5 ? targets.inertia_kg_m2 : random_inertia(random);

@@ -71,10 +71,10 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.learning_rate = settings.cnn_learning_rate;
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;
-  stage.fingerprint = fingerprint({settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
-                                   static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32,
-                                   conditions_hash(targets.conditions, targets.effects), start_crc32,
-                                   bits_of(settings.cnn_learning_rate), settings.bfloat16});
+  stage.fingerprint =
+      fingerprint({settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
+                   static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32, view_hash(targets),
+                   start_crc32, bits_of(settings.cnn_learning_rate), settings.bfloat16});
   return stage;
 }
 

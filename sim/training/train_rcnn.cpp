@@ -90,11 +90,11 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.learning_rate = settings.rcnn_learning_rate;
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;
-  stage.fingerprint = fingerprint(
-      {settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
-       static_cast<std::uint64_t>(settings.rcnn_iterations), static_cast<std::uint64_t>(settings.rcnn_batch),
-       targets.meshes_crc32, conditions_hash(targets.conditions, targets.effects), crc32_of_cnn(weights),
-       bits_of(settings.rcnn_learning_rate), crc32_of(targets.inertia)});
+  stage.fingerprint =
+      fingerprint({settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
+                   static_cast<std::uint64_t>(settings.rcnn_iterations),
+                   static_cast<std::uint64_t>(settings.rcnn_batch), targets.meshes_crc32, view_hash(targets),
+                   crc32_of_cnn(weights), bits_of(settings.rcnn_learning_rate), crc32_of(targets.inertia)});
   return stage;
 }
 

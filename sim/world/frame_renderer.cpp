@@ -15,7 +15,8 @@ std::uint64_t noise_seed_per_sequence(const Sequence& sequence, std::uint32_t) {
 void FrameRenderer::render(const Sequence& sequence, std::uint32_t frame, const FrameStamp& stamp,
                            gnc::RangeImage& image) const {
   const std::uint32_t shown = frame - sequence.frames[frame].frozen_for;
-  lidar_.expose(sequence.frames[shown], sensor_settings(sequence.condition, sequence.effects), swath_m_,
+  lidar_.expose(sequence.frames[shown],
+                sensor_settings(sequence.condition, sequence.effects, sequence.sensor), swath_m_,
                 noise_seed_(sequence, shown), image);
   image.sequence_number = stamp.sequence_number;
   image.exposure_time_ns = stamp.exposure_time_ns;

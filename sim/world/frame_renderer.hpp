@@ -2,9 +2,9 @@
 // recordings, evaluation, training and calibration all use it, so that a sequence looks the same to all of
 // them.
 //
-// FlashLidar::expose makes the ranges, with the sensor settings of the condition and the effects, the swath
-// of the renderer and a noise seed by the renderer's rule. The stamp adds sequence number and exposure time.
-// A frozen sensor shows the frame that it repeats under the stamp of its own.
+// FlashLidar::expose makes the ranges, with the settings of the sensor, the condition and the effects, the
+// swath of the renderer and a noise seed by the renderer's rule. The stamp adds sequence number and exposure
+// time. A frozen sensor shows the frame that it repeats under the stamp of its own.
 #pragma once
 
 #include <cstdint>

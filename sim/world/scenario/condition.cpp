@@ -1,11 +1,14 @@
 #include "sim/world/scenario/condition.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <stdexcept>
 
 namespace tumblesight::sim {
 namespace {
+
+constexpr int kFewestRays = 16;  // of a frame
 
 template <typename Predicate>
 std::vector<Condition> conditions_where(Predicate&& holds) {
@@ -55,8 +58,16 @@ Condition condition_from(const std::string& name) {
   throw std::invalid_argument("condition '" + name + "' is unknown; the conditions are: " + known);
 }
 
-SensorSettings sensor_settings(Condition condition, const Effects& effects) {
-  return with_effects(row_of(condition).sensor, effects);
+SensorSettings sensor_settings(Condition condition, const Effects& effects, const SensorSettings& base) {
+  const SensorSettings& of_paper = row_of(condition).sensor;
+  SensorSettings settings = base;
+  const double rays = static_cast<double>(of_paper.rays) / kPaperSensor.rays * base.rays;
+  settings.rays = std::max(kFewestRays, static_cast<int>(std::lround(rays)));
+  settings.dropout_share = of_paper.dropout_share;
+  settings.outlier_share = of_paper.outlier_share;
+  Effects all = effects;
+  if (all.link_budget == 0.0) all.link_budget = base.photoelectrons;
+  return with_effects(settings, all);
 }
 
 bool needs_inertia(Condition condition) {

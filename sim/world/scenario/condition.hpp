@@ -35,7 +35,7 @@ struct ConditionRow {
   Condition condition;
   const char* name;         // on the command line, in files and tables
   const char* explanation;  // one line, for help texts
-  SensorSettings sensor;
+  SensorSettings sensor;    // the paper's under it
   RotationLaw rotation;
   double inertia_zz_factor;  // kTorqueFree: applied to the target's inertia about z
   bool occluded;             // a part of the chaser moves through the view
@@ -82,7 +82,10 @@ std::string condition_explanations();
 // Throws std::invalid_argument that lists the known conditions if `name` is not one of them.
 Condition condition_from(const std::string& name);
 
-SensorSettings sensor_settings(Condition condition, const Effects& effects = {});
+// The sensor under a condition, with effects. `base`: a sensor in place of the paper's; rays that a condition
+// takes away are a share of its rays.
+SensorSettings sensor_settings(Condition condition, const Effects& effects = {},
+                               const SensorSettings& base = {});
 // Whether the target's inertia must be known.
 bool needs_inertia(Condition condition);
 

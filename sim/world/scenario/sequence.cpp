@@ -13,8 +13,6 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kMinRange_m = 20.0;
-constexpr double kMaxRange_m = 100.0;
 constexpr double kMaxRate_rad_s = 20.0 * kRadPerDeg;
 constexpr double kMinHiddenShare = 0.05;
 constexpr double kMaxHiddenShare = 0.30;
@@ -113,12 +111,13 @@ Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std
   const Eigen::Quaterniond q0 = uniform_attitude(random);
   const Eigen::Vector3d drawn_rate = uniform_rate(random);
   const Eigen::Vector3d rate = apply_rate_settings(settings, drawn_rate, stream_for(seed, index, 1));
-  const double drawn_range_m = random.uniform(kMinRange_m, kMaxRange_m);
+  const double drawn_range_m = random.uniform(settings.ranges.nearest_m, settings.ranges.farthest_m);
   const double range_m = settings.range_m.value_or(drawn_range_m);
 
   Sequence sequence;
   sequence.condition = settings.condition;
   sequence.effects = settings.effects;
+  sequence.sensor = settings.sensor;
   sequence.noise_seed = random.next();
   const std::vector<double> times_s =
       exposure_times_s(disturbances, static_cast<std::size_t>(settings.frames), stream_for(seed, index, 4));

@@ -21,6 +21,13 @@ enum class RateLaw {
   kNorm,        // norm uniform on 0..20 deg/s, direction uniform
 };
 
+// The interval from which the range of a sequence is drawn (paper, sampling).
+struct RangeLimits {
+  double nearest_m = 20.0;
+  double farthest_m = 100.0;
+  bool are_the_papers() const { return nearest_m == 20.0 && farthest_m == 100.0; }
+};
+
 struct ScenarioSettings {
   Condition condition = Condition::kNominal;
   int frames = kFramesPerSequence;
@@ -32,6 +39,8 @@ struct ScenarioSettings {
   std::optional<double> hidden_share{};
   Disturbances disturbances{};
   Effects effects{};
+  SensorSettings sensor{};  // on which condition and effects act
+  RangeLimits ranges{};
 };
 
 // Settings for `target` under a condition. Throws std::invalid_argument that says what to do if the condition
@@ -43,14 +52,15 @@ struct Sequence {
   Condition condition = Condition::kNominal;
   std::uint64_t noise_seed = 0;  // of the sensor noise, see NoiseSeedRule
   std::vector<FrameTruth> frames;
-  Effects effects{};  // with which the sensor sees it
+  Effects effects{};        // with which the sensor sees it
+  SensorSettings sensor{};  // on which condition and effects act
 };
 
-// Draws sequence `index` of `seed` (paper, sampling): attitude uniform on SO(3); range uniform on 20..100 m,
-// constant within the sequence; rate at most 20 deg/s, constant in the LRF or torque-free as the condition
-// says. The same (seed, index) gives the same sequence on every machine, and the same initial attitude, range
-// rate and noise under every condition, disturbance and
-// effect. Throws std::invalid_argument as require_possible() does.
+// Draws sequence `index` of `seed` (paper, sampling): attitude uniform on SO(3); range uniform on the
+// settings' limits, constant within the sequence; rate at most 20 deg/s, constant in the LRF or torque-free
+// as the condition says. The same (seed, index) gives the same sequence on every machine, and the same
+// initial attitude, range rate and noise under every condition, disturbance and effect. Throws
+// std::invalid_argument as require_possible() does.
 Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std::uint64_t index);
 
 }  // namespace tumblesight::sim

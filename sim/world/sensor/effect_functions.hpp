@@ -33,9 +33,13 @@ void add_range_bias(double strength, const Flash& flash, EffectRandom& random, R
 void scale_ranges(double strength, const Flash& flash, EffectRandom& random, RangeGrid& grid);
 void add_range_walk(double strength, const Flash& flash, EffectRandom& random, RangeGrid& grid);
 void add_fixed_pattern(double strength, const Flash& flash, EffectRandom& random, RangeGrid& grid);
-void add_false_returns(double strength, int rays, EffectRandom& random, std::vector<double>& range_m);
-void add_hot_pixels(double strength, int rays, EffectRandom& random, std::vector<double>& range_m);
-void add_dead_pixels(double strength, int rays, EffectRandom& random, std::vector<double>& range_m);
-void add_dead_lines(double strength, int rays, EffectRandom& random, std::vector<double>& range_m);
+void add_false_returns(double strength, const SensorSettings& settings, EffectRandom& random,
+                       std::vector<double>& range_m);
+void add_hot_pixels(double strength, const SensorSettings& settings, EffectRandom& random,
+                    std::vector<double>& range_m);
+void add_dead_pixels(double strength, const SensorSettings& settings, EffectRandom& random,
+                     std::vector<double>& range_m);
+void add_dead_lines(double strength, const SensorSettings& settings, EffectRandom& random,
+                    std::vector<double>& range_m);
 
 }  // namespace tumblesight::sim

@@ -238,12 +238,13 @@ void apply_to_returns(const Effects& effects, const Flash& flash, std::uint64_t 
   });
 }
 
-void apply_to_readings(const Effects& effects, const FrameTruth& truth, int rays, std::uint64_t noise_seed,
+void apply_to_readings(const SensorSettings& settings, const FrameTruth& truth, std::uint64_t noise_seed,
                        std::vector<double>& range_m) {
-  for_each_given<ReadingEffect>(effects, [&](const EffectRow& row, ReadingEffect apply, double strength) {
-    EffectRandom random = random_of(row, noise_seed, truth);
-    apply(strength, rays, random, range_m);
-  });
+  for_each_given<ReadingEffect>(settings.effects,
+                                [&](const EffectRow& row, ReadingEffect apply, double strength) {
+                                  EffectRandom random = random_of(row, noise_seed, truth);
+                                  apply(strength, settings, random, range_m);
+                                });
 }
 
 }  // namespace tumblesight::sim

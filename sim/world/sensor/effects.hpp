@@ -79,8 +79,8 @@ using SensorEffect = void (*)(double strength, SensorSettings& settings);
 // return.
 using ReturnEffect = void (*)(double strength, const Flash& flash, EffectRandom& random, RangeGrid& grid);
 // Changes what the receiver reports, after noise and losses: metres, kNoReturn_m without a return.
-// `rays`: per side.
-using ReadingEffect = void (*)(double strength, int rays, EffectRandom& random, std::vector<double>& range_m);
+using ReadingEffect = void (*)(double strength, const SensorSettings& settings, EffectRandom& random,
+                               std::vector<double>& range_m);
 
 struct EffectRow {
   const char* name;
@@ -114,7 +114,7 @@ SensorSettings with_effects(SensorSettings settings, const Effects& effects);
 // Whether a return depends on the direction or the kind of the surface, so that the grid has to know them.
 bool need_surfaces(const Effects& effects);
 void apply_to_returns(const Effects& effects, const Flash& flash, std::uint64_t noise_seed, RangeGrid& grid);
-void apply_to_readings(const Effects& effects, const FrameTruth& truth, int rays, std::uint64_t noise_seed,
+void apply_to_readings(const SensorSettings& settings, const FrameTruth& truth, std::uint64_t noise_seed,
                        std::vector<double>& range_m);
 
 }  // namespace tumblesight::sim

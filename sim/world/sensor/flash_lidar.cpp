@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sim/world/dynamics/motion.hpp"
+#include "sim/world/math/angles.hpp"
 #include "sim/world/sensor/ray_effects.hpp"
 
 namespace tumblesight::sim {
@@ -70,6 +71,11 @@ double range_of_footprint(const std::array<double, kFootprintSide * kFootprintSi
   return sum_m / count;
 }
 
+std::uint32_t possible_fov_urad(double fov_urad) {
+  return static_cast<std::uint32_t>(
+      std::clamp<long>(std::lround(fov_urad), gnc::kMinFov_urad, gnc::kMaxFov_urad));
+}
+
 }  // namespace
 
 double swath_m(const TriangleMesh& mesh) {
@@ -84,15 +90,11 @@ gnc::DepthProjection projection_of(const TriangleMesh& mesh) {
 }
 
 std::uint32_t fov_urad(double swath_m, double range_m) {
-  const double fov_rad = 2.0 * std::atan(swath_m / (2.0 * range_m));
-  return static_cast<std::uint32_t>(
-      std::clamp<long>(std::lround(fov_rad * 1e6), gnc::kMinFov_urad, gnc::kMaxFov_urad));
+  return possible_fov_urad(2.0 * std::atan(swath_m / (2.0 * range_m)) * 1e6);
 }
 
 std::uint32_t fixed_fov_urad(double factor, double swath_m) {
-  const double fov_urad = factor * 2.0e6 * std::atan(swath_m / (2.0 * kFixedFovRange_m));
-  return static_cast<std::uint32_t>(
-      std::clamp<long>(std::lround(fov_urad), gnc::kMinFov_urad, gnc::kMaxFov_urad));
+  return possible_fov_urad(factor * 2.0e6 * std::atan(swath_m / (2.0 * kFixedFovRange_m)));
 }
 
 // What a packet of rays hits: infinite range where nothing.
@@ -215,8 +217,8 @@ RangeGrid FlashLidar::cast(const FrameTruth& truth, const View& view) const {
   grid.rays = rays;
   grid.tan_half_fov = std::tan(view.fov_urad * 0.5e-6);
   grid.range_m.resize(static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays));
+  grid.spacing = view.spacing;
   if (view.surfaces) grid.surfaces.resize(grid.range_m.size());
-  const Eigen::Vector2d shift = 2.0 * grid.tan_half_fov / rays * view.shift_rays;
 
   // Packets of neighbours in a row: Embree is fastest with coherent rays.
   std::array<Eigen::Vector3f, kPacket> directions;
@@ -225,11 +227,11 @@ RangeGrid FlashLidar::cast(const FrameTruth& truth, const View& view) const {
   for (int row = 0; row < rays; ++row) {
     const double later_s = view.scan_time_s * ((row + 0.5) / rays - 0.5);
     if (later_s != 0.0) pose = pose_of(truth, view.swath_m, later_s);
-    const auto up = static_cast<float>(shift.y() - grid.slope(row));
+    const auto up = static_cast<float>(-grid.slope(row, -view.shift_rays.y()));
     for (int first = 0; first < rays; first += kPacket) {
       const int count = std::min(kPacket, rays - first);
       for (int i = 0; i < count; ++i) {
-        const auto right = static_cast<float>(grid.slope(first + i) + shift.x());
+        const auto right = static_cast<float>(grid.slope(first + i, view.shift_rays.x()));
         directions[i] = pose.r_trf_lrf * Eigen::Vector3f(right, 1.0F, up).normalized();
       }
       const Hits hits = scene.cast(pose.origin_trf_m, directions, count);
@@ -263,12 +265,22 @@ RangeGrid FlashLidar::cast_footprints(const FrameTruth& truth, const View& view,
   return grid;
 }
 
+namespace {
+
+std::uint32_t fov_urad_of(const SensorSettings& settings, double swath_m, double range_m) {
+  if (settings.fixed_fov > 0.0) return fixed_fov_urad(settings.fixed_fov, swath_m);
+  if (settings.fov_deg > 0.0) return possible_fov_urad(1e6 * kRadPerDeg * settings.fov_deg);
+  return fov_urad(swath_m, range_m);
+}
+
+}  // namespace
+
 void FlashLidar::expose(const FrameTruth& truth, const SensorSettings& settings, double swath_m,
                         std::uint64_t noise_seed, gnc::RangeImage& frame) const {
   View view;
   view.rays = settings.rays;
-  view.fov_urad = fov_urad(swath_m, truth.range_m);
-  if (settings.fixed_fov > 0.0) view.fov_urad = fixed_fov_urad(settings.fixed_fov, swath_m);
+  view.fov_urad = fov_urad_of(settings, swath_m, truth.range_m);
+  view.spacing = settings.spacing;
   view.swath_m = swath_m;
   view.scan_time_s = settings.scan_time_s;
   view.surfaces = need_surfaces(settings.effects);
@@ -278,10 +290,8 @@ void FlashLidar::expose(const FrameTruth& truth, const SensorSettings& settings,
   const Flash flash{truth, swath_m, scene_of(truth).corners_trf_m};
   apply_to_returns(settings.effects, flash, noise_seed, grid);
   std::vector<double> ranges_m = measured_ranges_m(grid, ray_effects(), settings, noise_seed);
-  apply_to_readings(settings.effects, truth, settings.rays, noise_seed, ranges_m);
-  frame.rays = static_cast<std::uint16_t>(settings.rays);
-  frame.fov_urad = view.fov_urad;
-  report_ranges(ranges_m, frame);
+  apply_to_readings(settings, truth, noise_seed, ranges_m);
+  report_ranges(ranges_m, settings, view.fov_urad, frame);
 }
 
 }  // namespace tumblesight::sim

@@ -1,7 +1,8 @@
 // FlashLidar: the sensor model. One exposure casts a square grid of rays (Embree, both sides of every face
 // reflect), puts the occluder in front, and applies effects (effects.hpp) and ray effects (ray_effects.hpp):
 //
-//   cast, occlude -> effects on returns -> losses and noise -> effects on readings -> counts
+//   cast, occlude -> effects on returns -> losses and noise -> effects on readings -> counts -> rays of the
+//   frame
 //
 // Assumptions and limits without effects: a static scene during the exposure; one return per ray at its
 // centre, no beam divergence; every surface reflects at every angle; no multipath and no crosstalk; ranges
@@ -58,6 +59,7 @@ class FlashLidar {
     double swath_m = 0.0;
     Eigen::Vector2d shift_rays = Eigen::Vector2d::Zero();  // of every ray: right, up
     double scan_time_s = 0.0;
+    RaySpacing spacing = RaySpacing::kTangent;
     bool surfaces = false;  // fill RangeGrid::surfaces
   };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -15,6 +16,12 @@ struct SurfaceHit {
   bool is_panel = false;       // of the target's solar panels
 };
 
+// How the rays of a sensor divide its field of view, in each axis.
+enum class RaySpacing {
+  kTangent,  // equal steps of the tangent, as in gnc::RangeImage
+  kAngle,    // equal steps of the angle
+};
+
 // Square, row by row from the top left, as in gnc::RangeImage.
 struct RangeGrid {
   int rays = 0;                 // per side
@@ -23,13 +30,28 @@ struct RangeGrid {
   // One per ray, or empty if it is not asked for. Holds for a ray only while the target is what it sees: if
   // the surface's range is the ray's.
   std::vector<SurfaceHit> surfaces{};
+  RaySpacing spacing = RaySpacing::kTangent;
   // Range of the nearest surface whose return a ray has lost, infinity without one: it still hides what is
   // behind it. Empty: no ray has lost a return.
   std::vector<double> lost_m{};
 
   // Slope of the rays of a column (to the right) or of a row (downwards): offset from the boresight per unit
-  // of distance along it.
-  double slope(int index) const { return tan_half_fov * ((2.0 * index + 1.0) / rays - 1.0); }
+  // of distance along it. `shift`: of the rays, in rays.
+  double slope(int index, double shift = 0.0) const {
+    const double share = (2.0 * index + 1.0) / rays - 1.0;
+    if (spacing == RaySpacing::kAngle) return slope_at(share + 2.0 / rays * shift);
+    return tan_half_fov * share + 2.0 * tan_half_fov / rays * shift;
+  }
+  // Slope at a share of half the field of view, -1 to 1.
+  double slope_at(double share) const {
+    return spacing == RaySpacing::kAngle ? std::tan(std::atan(tan_half_fov) * share) : tan_half_fov * share;
+  }
+  // The column or row of a slope, between two rays as a fraction.
+  double index_of(double slope) const {
+    const double share =
+        spacing == RaySpacing::kAngle ? std::atan(slope) / std::atan(tan_half_fov) : slope / tan_half_fov;
+    return 0.5 * rays * (1.0 + share) - 0.5;
+  }
 };
 
 // What the ray `index` sees: the target's surface, or one that faces the sensor where something else is in

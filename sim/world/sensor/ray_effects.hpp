@@ -40,6 +40,7 @@ struct RayEffect {
 // One standard deviation of a measured range: 0.1 m + 0.01 range, Gaussian along the ray, independent from
 // ray to ray (paper, sensor table).
 double range_sigma_m(double range_m);
+double range_sigma_m(double range_m, const SensorSettings& settings);  // of another sensor
 
 AfterEffect drop_out(const SensorSettings& settings, Random& random, double& range_m);
 AfterEffect add_outlier(const SensorSettings& settings, Random& random, double& range_m);
@@ -53,7 +54,15 @@ const std::vector<RayEffect>& ray_effects();
 std::vector<double> measured_ranges_m(const RangeGrid& grid, const std::vector<RayEffect>& effects,
                                       const SensorSettings& settings, std::uint64_t noise_seed);
 
-// Fills the ranges of `frame`: in counts, and 0 (no return) outside (0, gnc::kMaxRange_m].
-void report_ranges(const std::vector<double>& ranges_m, gnc::RangeImage& frame);
+// Rays per side of the frames of a sensor.
+int frame_rays(const SensorSettings& settings);
+
+// Fills rays, field of view and ranges of `frame` with what the sensor measured over its field of view
+// `fov_urad`: in counts, and 0 (no return) outside (0, gnc::kMaxRange_m] and the range gate. A sensor with
+// more rays than a frame, or with rays uniform in angle, goes through gnc::make_frame, as its driver would:
+// the smallest window in the middle of the view that holds all returns and at least as many rays as the
+// frame.
+void report_ranges(const std::vector<double>& ranges_m, const SensorSettings& settings,
+                   std::uint32_t fov_urad, gnc::RangeImage& frame);
 
 }  // namespace tumblesight::sim

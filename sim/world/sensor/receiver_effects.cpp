@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gnc/lidar/depth_image.hpp"
 #include "sim/world/sensor/effect_functions.hpp"
 #include "sim/world/sensor/ray_effects.hpp"
 
@@ -17,11 +16,6 @@ void for_each_return(RangeGrid& grid, Change&& change) {
   for (std::size_t i = 0; i < grid.range_m.size(); ++i) {
     if (std::isfinite(grid.range_m[i])) change(i);
   }
-}
-
-// A place in the range gate: 0 to gnc::kMaxRange_m.
-double anywhere_m(Random& random) {
-  return random.uniform(0.0, gnc::kMaxRange_m);
 }
 
 }  // namespace
@@ -51,16 +45,19 @@ void add_fixed_pattern(double strength, const Flash&, EffectRandom& random, Rang
 // Dark counts and sunlight: with probability `strength` a ray reports a place drawn uniformly over the range
 // gate, whether it has a return or not. New in every frame. Limit: the place does not depend on the return,
 // as if the gate closed after one false count.
-void add_false_returns(double strength, int, EffectRandom& random, std::vector<double>& range_m) {
+void add_false_returns(double strength, const SensorSettings& settings, EffectRandom& random,
+                       std::vector<double>& range_m) {
   for (double& reported_m : range_m) {
-    if (random.frame.uniform() < strength) reported_m = anywhere_m(random.frame);
+    if (random.frame.uniform() < strength)
+      reported_m = random.frame.uniform(settings.nearest_m, settings.farthest_m);
   }
 }
 
 // The given share of the pixels, drawn once per sequence, has so many dark counts that the first one often
 // comes before the return: the pixel reports whichever is nearer. The place of the first dark count is
 // exponentially distributed with a mean of 100 m, and new in every frame.
-void add_hot_pixels(double strength, int, EffectRandom& random, std::vector<double>& range_m) {
+void add_hot_pixels(double strength, const SensorSettings&, EffectRandom& random,
+                    std::vector<double>& range_m) {
   for (double& reported_m : range_m) {
     const double first_count_m = -kHotPixelMean_m * std::log(random.frame.uniform());
     if (random.sequence.uniform() >= strength) continue;
@@ -69,15 +66,17 @@ void add_hot_pixels(double strength, int, EffectRandom& random, std::vector<doub
 }
 
 // The given share of the pixels never reports anything.
-void add_dead_pixels(double strength, int, EffectRandom& random, std::vector<double>& range_m) {
+void add_dead_pixels(double strength, const SensorSettings&, EffectRandom& random,
+                     std::vector<double>& range_m) {
   for (double& reported_m : range_m) {
     if (random.sequence.uniform() < strength) reported_m = kNoReturn_m;
   }
 }
 
 // The given share of the rows and of the columns never reports anything.
-void add_dead_lines(double strength, int rays, EffectRandom& random, std::vector<double>& range_m) {
-  const auto side = static_cast<std::size_t>(rays);
+void add_dead_lines(double strength, const SensorSettings& settings, EffectRandom& random,
+                    std::vector<double>& range_m) {
+  const auto side = static_cast<std::size_t>(settings.rays);
   for (std::size_t line = 0; line < side; ++line) {
     const bool row_is_dead = random.sequence.uniform() < strength;
     const bool column_is_dead = random.sequence.uniform() < strength;

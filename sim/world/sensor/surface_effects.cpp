@@ -63,9 +63,8 @@ void add_retroreflectors(double strength, const Flash& flash, EffectRandom&, Ran
   const RangeGrid seen = grid;
   for (const Eigen::Vector3f& corner : flash.corners_trf_m) {
     const Eigen::Vector3d place_m = flash.truth.q_lrf_trf * corner.cast<double>() + target_m;
-    const double half = 0.5 * grid.rays;
-    const double column = half * (1.0 + place_m.x() / place_m.y() / grid.tan_half_fov) - 0.5;
-    const double row = half * (1.0 - place_m.z() / place_m.y() / grid.tan_half_fov) - 0.5;
+    const double column = grid.index_of(place_m.x() / place_m.y());
+    const double row = grid.index_of(-place_m.z() / place_m.y());
     const long at = std::lround(row) * grid.rays + std::lround(column);
     const bool inside = column > -0.5 && row > -0.5 && column < grid.rays - 0.5 && row < grid.rays - 0.5;
     const double range_m = place_m.norm();

@@ -151,8 +151,7 @@ void check_radius(const std::string& path, const TriangleMesh& mesh, double scal
       " (now " +
       number(scale) + ", 0.001 for millimetres)";
   if (radius > kMaxMeshRadius_m) {
-    refuse(path, measured + ", at most " + number(kMaxMeshRadius_m) +
-                     " m fit into the sensor's 40 degrees at a range of 20 m" + advice +
+    refuse(path, measured + ", at most " + number(kMaxMeshRadius_m) + " m are supported" + advice +
                      ", or the mesh is not centred on its origin");
   }
   if (radius < kMinMeshRadius_m) {

@@ -19,10 +19,9 @@ struct MeshFileOptions {
   double scale = 1.0;  // metres per unit of the file, positive
 };
 
-// A mesh must fit into the sensor's field of view at the shortest range of the scenarios: at 20 m, 40 degrees
-// cover a swath of 14.5 m, from which a margin is subtracted. A target smaller than a hand indicates a wrong
-// unit.
-inline constexpr double kMaxMeshRadius_m = 6.9;
+// A target of this radius is 40 m across and fits into a field of view of 40 degrees from 58 m. A larger one,
+// or one smaller than a hand, indicates a wrong unit.
+inline constexpr double kMaxMeshRadius_m = 20.0;
 inline constexpr double kMinMeshRadius_m = 0.1;
 
 // The triangles of the file in the TRF, in metres, with node transforms applied and equal vertices joined.

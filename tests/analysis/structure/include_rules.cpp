@@ -48,10 +48,11 @@ bool is_instruction_header(const std::string& path) {
   return is_one_of(path, {"immintrin.h", "cpuid.h", "arm_neon.h", "arm_acle.h"});
 }
 
-// The value types and checksums of gnc that the interfaces and platforms use.
+// The value types and checksums of gnc that the interfaces and platforms use, and what turns a sensor's rays
+// into those of a frame.
 bool is_value_type(const std::string& path) {
   return starts_with_any(path, {"gnc/numerics/", "gnc/attitude/"}) || path == "gnc/lidar/range_image.hpp" ||
-         path == "gnc/tracking/chaser_attitude.hpp";
+         path == "gnc/lidar/frame_rays.hpp" || path == "gnc/tracking/chaser_attitude.hpp";
 }
 
 struct Verdict {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/cli/mesh_advice.hpp"
+#include "sim/cli/sensor_arguments.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/world/sensor/effects.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
@@ -82,6 +83,16 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"record --out x.tslr --effect plume", 2, "from 0.0001 to 0.5 of the rays, not ''"},
         Refusal{"evaluate --effect noise=5,noise=4", 2, "effect noise is given twice"},
         Refusal{"evaluate --paper --effect noise=5", 2, "--paper: sets --effect itself"},
+        Refusal{"evaluate --sensor sonar", 2,
+                "--sensor: 'sonar' is neither a file nor a sensor that ships; those are: paper, flash_256, "},
+        Refusal{"record --out x.tslr --sensor /dev", 2, "--sensor: '/dev' is neither a file nor "},
+        Refusal{"evaluate --range 20", 2,
+                "--range: must be NEAREST,FARTHEST, two ascending ranges from 10 to "},
+        Refusal{"evaluate --range 100,20", 2, "not '100,20'"},
+        Refusal{"simulate --range 9,20", 2, "from 10 to 500 m, not '9,20'"},
+        Refusal{"quantize --model x --range 20,nan", 2, ""},
+        Refusal{"evaluate --paper --sensor flash_256", 2, "--paper: sets --sensor itself"},
+        Refusal{"evaluate --paper --range 20,50", 2, "--paper: sets --range itself"},
         Refusal{"evaluate --paper --frozen 1", 2, "--paper: sets --frozen itself"},
         Refusal{"evaluate --paper --target magellan", 2, "--paper: sets --target itself"},
         Refusal{"evaluate --paper --frames 5", 2, "sets --frames itself"},
@@ -223,6 +234,66 @@ TEST(Effects, AreListedWithTheirRangesAndModels) {
   }
 }
 
+TEST(Sensors, AreListedWithTheFieldsOfADescription) {
+  const Workplace here;
+  const Outcome outcome = here.run("record --sensor list");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  for (const char* what :
+       {"paper ", "flash_256 ", "scan_128 ", "footprint_rays ", "/descriptions/scan_128.json"})
+    EXPECT_NE(outcome.output.find(what), std::string::npos) << what;
+}
+
+// Verifies TS-SIL-320.
+TEST(Evaluate, TakesAnotherSensorAndNamesItAndItsPeriod) {
+  const Workplace here;
+  SensorDescription own = sensor_named("flash_256");
+  own.name = "own";
+  own.period_s = 1.5;
+  std::ofstream(here.path("own.json")) << to_json(own);
+  const std::string common = "evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model();
+  const Outcome outcome =
+      here.run(common + " --sensor own.json --range 30,60 --json rows.json --csv rows.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("sensor: own (CRC-32 "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("ranges: 30.0 to 60.0 m"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.errors.find("No model.sensor.json says for which sensor"), std::string::npos)
+      << outcome.errors;
+  const auto row = nlohmann::json::parse(content(here.path("rows.json"))).at("rows")[0];
+  EXPECT_EQ(row.at("sensor").at("name"), "own");
+  EXPECT_EQ(row.at("ranges_m"), nlohmann::json::parse("[30.0, 60.0]"));
+  EXPECT_EQ(row.at("disturbances").at("period"), 1.5);
+  EXPECT_EQ(row.at("by_range_m").size(), 8U);
+  EXPECT_NE(content(here.path("rows.csv")).find("sensor,ranges_m\n"), std::string::npos);
+  const Outcome slower = here.run(common + " --sensor own.json --period 2 --json slower.json");
+  EXPECT_EQ(
+      nlohmann::json::parse(content(here.path("slower.json"))).at("rows")[0].at("disturbances").at("period"),
+      2.0);
+  ASSERT_EQ(here.run(common + " --json plain.json").exit_code, 0);
+  const std::string plain = content(here.path("plain.json"));
+  for (const char* word : {"\"sensor\"", "ranges_m", "by_range_m"})
+    EXPECT_EQ(plain.find(word), std::string::npos) << word;
+}
+
+// Verifies TS-SIL-320.
+TEST(Evaluate, RefusesANetworkThatWasTrainedForAnotherSensor) {
+  const Workplace here;
+  const std::string common = "evaluate --sequences 1 --frames 1 --no-baseline --model " + here.model();
+  const SensorDescription scan = sensor_named("scan_128");
+  write_sensor_file(here.path("model.tsm"), scan);
+  EXPECT_EQ(here.run(common + " --sensor scan_128").exit_code, 0);
+  const Outcome other = here.run(common + " --sensor flash_256");
+  EXPECT_EQ(other.exit_code, 1);
+  for (const std::string& what :
+       {to_string(scan), to_string(sensor_named("flash_256")), std::string("--sensor ")})
+    EXPECT_NE(other.errors.find(what), std::string::npos) << other.errors;
+  EXPECT_EQ(here.run(common).exit_code, 1) << "the paper's is another one too";
+}
+
+TEST(SensorFile, BelongsToBothImagesOfATarget) {
+  EXPECT_EQ(sensor_file_of("out/near.tsm"), "out/near.sensor.json");
+  EXPECT_EQ(sensor_file_of("out/near.float32.tsm"), "out/near.sensor.json");
+}
+
 TEST(Evaluate, WritesACsvFileAndAPage) {
   const Workplace here;
   const Outcome outcome = here.run("evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model() +
@@ -342,7 +413,35 @@ TEST(Record, WritesTheTruthBesideTheFramesUnlessToldOtherwise) {
       << refused.errors;
 }
 
-// Verifies TS-SIL-300, TS-SIL-310.
+// Verifies TS-SIL-330. A target of 40 m across.
+TEST(Record, SeesALargeTargetFromWhereItFitsIntoTheViewTo500m) {
+  const Workplace here;
+  const std::string large = " --target mine --mesh " + own_mesh(here);
+  const std::string common = "record --sequences 3 --frames 1 --out x.tslr" + large;
+  const std::string record = common + " --mesh-scale 9.9";
+  const Outcome near = here.run(record);
+  EXPECT_EQ(near.exit_code, 0) << near.errors;
+  const Outcome inside = here.run(record + " --range 20,30");
+  EXPECT_EQ(inside.exit_code, 0) << inside.errors;
+  EXPECT_NE(inside.errors.find("The target fills the view of sensor paper at "), std::string::npos)
+      << inside.errors;
+  const Outcome far = here.run(record + " --range 400,470");
+  EXPECT_EQ(far.exit_code, 0) << far.errors;
+  EXPECT_GT(content(here.path("x.tslr")).size(), 10'000U);
+  const Outcome larger = here.run(common + " --mesh-scale 10.1");
+  EXPECT_NE(larger.errors.find("20.2 m from the origin, at most 20 m are supported"), std::string::npos)
+      << larger.errors;
+  SensorDescription narrow;
+  narrow.name = "narrow";
+  narrow.settings.fov_deg = 5.0;
+  std::ofstream(here.path("narrow.json")) << to_json(narrow);
+  const Outcome refused = here.run(record + " --sensor narrow.json");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.errors.find("give the ranges, for example --range "), std::string::npos)
+      << refused.errors;
+}
+
+// Verifies TS-SIL-300, TS-SIL-310, TS-SIL-320.
 TEST(Record, ShowsWhatTheEffectsAdd) {
   const Workplace here;
   const std::string common = "record --target mine --mesh " + own_mesh(here) + " --sequences 1 --frames 2";
@@ -352,6 +451,11 @@ TEST(Record, ShowsWhatTheEffectsAdd) {
   const std::string plain = content(here.path("plain.tslr"));
   EXPECT_LT(content(here.path("small.tslr")).size(), plain.size() / 8);
   EXPECT_GT(content(here.path("false.tslr")).size(), 2 * plain.size()) << "a recording leaves out empty rays";
+  ASSERT_EQ(here.run(common + " --sensor flash_256 --out flash.tslr").exit_code, 0);
+  EXPECT_NE(content(here.path("flash.tslr")), plain);
+  EXPECT_EQ(content(here.path("flash.tslr"))[6], plain[6]) << "frames have 128 rays";
+  ASSERT_EQ(here.run(common + " --sensor paper --out paper.tslr").exit_code, 0);
+  EXPECT_EQ(content(here.path("paper.tslr")), plain);
   const Outcome refused = here.run(common + " --effect panel_turn=10 --out turned.tslr");
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_NE(refused.errors.find("effect panel_turn: no solar panels are found on "), std::string::npos)
@@ -364,6 +468,18 @@ TEST(Train, RefusesAFileAsItsFolder) {
   const Outcome outcome = here.run("train --out " + here.model());
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.errors.find("model.tsm: is a file; give a folder"), std::string::npos) << outcome.errors;
+}
+
+// Verifies TS-SIL-320.
+TEST(Train, RefusesToContinueWithAnotherSensor) {
+  const Workplace here;
+  if (here.run("--help").output.find("train") == std::string::npos) GTEST_SKIP() << "built without training";
+  write_sensor_file(here.path("near_shoemaker.tsm"), sensor_named("scan_128"));
+  const Outcome outcome = here.run("train --out .");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("is for sensor " + to_string(sensor_named("scan_128"))), std::string::npos)
+      << outcome.errors;
+  EXPECT_NE(outcome.errors.find("with sensor paper (CRC-32 "), std::string::npos) << outcome.errors;
 }
 
 TEST(Bench, ReadsBothImagesBeforeItMeasures) {

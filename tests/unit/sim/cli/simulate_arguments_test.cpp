@@ -32,6 +32,11 @@ TEST(DefaultReportName, TellsDifferentRunsApart) {
       [](SimulateArguments& a) { a.scenario.sequences = 31; },
       [](SimulateArguments& a) { a.scenario.frames = 11; },
       [](SimulateArguments& a) { a.scenario.mesh = "a/near.stl"; },
+      [](SimulateArguments& a) { a.scenario.sensor.sensor.settings.rays = 64; },
+      [](SimulateArguments& a) { a.scenario.sensor.sensor.settings.rays = 32; },
+      [](SimulateArguments& a) {
+        a.scenario.sensor.ranges = {30.0, 60.0};
+      },
       [](SimulateArguments& a) { a.scenario.mesh = "b/near.stl"; },
       [](SimulateArguments& a) { a.scenario.mesh_up = "z"; },
       [](SimulateArguments& a) { a.scenario.mesh_scale = 0.001; },

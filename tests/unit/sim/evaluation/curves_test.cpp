@@ -15,6 +15,14 @@ FrameResult at_range(double range_m, double rcnn_deg) {
   return made;
 }
 
+TEST(ErrorsByRange, CoverTheRangesOfTheRun) {
+  const Curve curve = errors_by_range({at_range(60.0, 1.0), at_range(499.0, 3.0)}, {60.0, 500.0});
+  ASSERT_EQ(curve.size(), 8U);
+  EXPECT_EQ(curve.front().at, 87.5);
+  EXPECT_EQ(curve.front().rcnn.count, 1U);
+  EXPECT_EQ(curve.back().rcnn.count, 1U);
+}
+
 TEST(ErrorsByFrame, KeepFramesApart) {
   const std::vector<FrameResult> results{result_with(0, 0, 40.0, 50.0), result_with(0, 1, 4.0, 60.0),
                                          result_with(1, 0, 20.0, 70.0)};

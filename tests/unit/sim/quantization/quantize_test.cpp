@@ -20,7 +20,7 @@ class QuantizeTest : public ::testing::Test {
   static void SetUpTestSuite() {
     folder = new TemporaryFolder;
     path = new std::string(folder->path("quantized.tsm"));
-    report = new QuantizationReport(quantize_to_file(*random_float32_model(77), {make_near_shoemaker()}, {},
+    report = new QuantizationReport(quantize_to_file(*random_float32_model(77), {make_near_shoemaker()},
                                                      kSequences, *path, [](std::uint64_t) { ++steps; }));
   }
   static void TearDownTestSuite() {
@@ -63,7 +63,7 @@ TEST_F(QuantizeTest, KeepsTheSignalOfEveryLayer) {
 TEST(QuantizeShipped, NearKeepsTheSignalOfEveryLayerBeforeTheHypotheses) {
   const auto model = read_float32_model(TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.float32.tsm");
   const TemporaryFolder folder;
-  const QuantizationReport report = quantize_to_file(*model, {make_near_shoemaker()}, {}, 20,
+  const QuantizationReport report = quantize_to_file(*model, {make_near_shoemaker()}, 20,
                                                      folder.path("near.tsm"), [](std::uint64_t) {});
   for (const LayerReport& layer : report.layers) {
     // The layers after the choice of a hypothesis are left out: that choice may differ between the numerics.
@@ -73,13 +73,19 @@ TEST(QuantizeShipped, NearKeepsTheSignalOfEveryLayerBeforeTheHypotheses) {
   EXPECT_LT(report.difference.median_deg, 0.5);
 }
 
+ScenarioSettings with_effect(const std::string& effect) {
+  ScenarioSettings seen;
+  if (!effect.empty()) seen.effects = effects_from({effect});
+  return seen;
+}
+
 // Depths of a calibration sequence, all frames.
 std::vector<std::uint16_t> calibration_depths(const std::string& effect, std::uint64_t number) {
   const TriangleMesh mesh = make_near_shoemaker();
-  const Effects effects = effect.empty() ? Effects{} : effects_from({effect});
-  const FlashLidar lidar(observed_bodies(effects, mesh.name, mesh));
+  const ScenarioSettings seen = with_effect(effect);
+  const FlashLidar lidar(observed_bodies(seen.effects, mesh.name, mesh));
   std::vector<std::uint16_t> depths;
-  for (const gnc::DepthImage& image : calibration_sequence({&lidar}, projection_of(mesh), effects, number))
+  for (const gnc::DepthImage& image : calibration_sequence({&lidar}, projection_of(mesh), number, seen))
     depths.insert(depths.end(), image.depth.begin(), image.depth.end());
   return depths;
 }
@@ -102,8 +108,9 @@ TEST(Calibration, EffectsChangeTheImageAndOneThatHidesTheTargetIsRefused) {
   const TemporaryFolder folder;
   const auto model = random_float32_model(77);
   const auto crc32_with = [&](const std::string& effect) {
-    return quantize_to_file(*model, {make_near_shoemaker()}, effects_from({effect}), 10,
-                            folder.path("near.tsm"), [](std::uint64_t) {})
+    return quantize_to_file(
+               *model, {make_near_shoemaker()}, 10, folder.path("near.tsm"), [](std::uint64_t) {},
+               with_effect(effect))
         .crc32;
   };
   EXPECT_NE(crc32_with("dropout=0.6"), crc32_with("noise=1"));

@@ -116,6 +116,22 @@ TEST(Disturbances, OfARunAreInItsJsonAndCsv) {
   EXPECT_EQ(fields_of(lines[4]).back(), "");
 }
 
+// Verifies TS-SIL-320.
+TEST(Sensor, OtherThanThePapersIsInJsonAndCsvAndHasNoFiguresOfThePaper) {
+  Results results = sample_results();
+  CellResult& cell = results.subjects[0].cells[0];
+  cell.sensor = sensor_named("flash_256");
+  cell.ranges = {50.0, 200.0};
+  const nlohmann::ordered_json row = results_json(results)["rows"][0];
+  EXPECT_EQ(row["sensor"]["name"], "flash_256");
+  EXPECT_EQ(row["ranges_m"], nlohmann::ordered_json::parse("[50.0, 200.0]"));
+  EXPECT_TRUE(row["paper_rcnn"].is_null());
+  EXPECT_EQ(differences_from_paper(cell), "sensor flash_256, 50 to 200 m");
+  const std::vector<std::string> lines = lines_of(results_csv(results));
+  EXPECT_NE(lines[0].find(",sensor,ranges_m"), std::string::npos);
+  EXPECT_NE(lines[1].find("flash_256 (CRC-32 "), std::string::npos);
+}
+
 // Verifies TS-SIL-300, TS-SIL-310.
 TEST(Effects, OfARunAreInItsJsonAndCsv) {
   Results results = sample_results();

@@ -97,6 +97,25 @@ TEST(FrameStream, FramesHaveTheEffects) {
   EXPECT_GT(filled(render_frames(thin, 5, 0, 4)), 0);
 }
 
+// Verifies TS-SIL-320, TS-SIL-330.
+TEST(FrameStream, FramesAreThoseOfTheSensorAtItsRanges) {
+  const TriangleMesh mesh = make_near_shoemaker();
+  const TrainingTargets plain = make_training_targets({mesh}, {Condition::kNominal});
+  const auto seen_by = [&](const char* name, const std::function<RangeLimits(double)>& ranges = {}) {
+    return make_training_targets({mesh}, {Condition::kNominal}, Eigen::Matrix3d::Identity(), {}, {},
+                                 sensor_named(name), ranges);
+  };
+  const TrainingTargets paper = seen_by("paper"), flash = seen_by("flash_256");
+  const TrainingTargets far = seen_by("paper", [](double) { return RangeLimits{100.0, 200.0}; });
+  EXPECT_EQ(view_hash(paper), view_hash(plain));
+  EXPECT_NE(view_hash(flash), view_hash(plain));
+  EXPECT_NE(view_hash(far), view_hash(plain));
+  const torch::Tensor images = render_frames(plain, 5, 0, 4).images;
+  EXPECT_TRUE(torch::equal(render_frames(paper, 5, 0, 4).images, images));
+  EXPECT_FALSE(torch::equal(render_frames(flash, 5, 0, 4).images, images));
+  EXPECT_FALSE(torch::equal(render_frames(far, 5, 0, 4).images, images));
+}
+
 // Verifies TS-TRN-050.
 TEST(FrameStream, ListsOfConditionsHaveDifferentHashes) {
   const std::vector<Condition> nominal{Condition::kNominal}, twice{Condition::kNominal, Condition::kNominal},

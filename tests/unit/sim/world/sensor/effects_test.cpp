@@ -92,7 +92,7 @@ TEST_F(Exposure, WithoutEffectsIsThatOfTheConditionAlone) {
     occlude(truth.occluder, grid);
     auto expected = std::make_unique<gnc::RangeImage>();
     report_ranges(measured_ranges_m(grid, ray_effects(), row.sensor, noise_seed_per_frame(sequence, 1)),
-                  *expected);
+                  row.sensor, fov_urad(swath_m_, truth.range_m), *expected);
     const auto image = rendered(row.condition, {});
     EXPECT_EQ(image->ranges, expected->ranges) << row.name;
     EXPECT_EQ(image->rays, row.sensor.rays) << row.name;

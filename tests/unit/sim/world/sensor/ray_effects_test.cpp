@@ -21,7 +21,7 @@ RangeGrid hits_and_misses() {
 
 std::vector<double> measured_m(const std::vector<RayEffect>& effects, const SensorSettings& settings = {}) {
   gnc::RangeImage frame{};
-  report_ranges(measured_ranges_m(hits_and_misses(), effects, settings, 1), frame);
+  report_ranges(measured_ranges_m(hits_and_misses(), effects, settings, 1), settings, 200'000, frame);
   std::vector<double> ranges_m;
   for (int ray = 0; ray < 4; ++ray)
     ranges_m.push_back(frame.ranges[ray] * double{gnc::RangeImage::kMetresPerCount});

@@ -30,6 +30,9 @@ RangeGrid grid_of_returns() {
   return grid;
 }
 
+const SensorSettings kPaperSettings{};
+static_assert(SensorSettings{}.rays == kRays);
+
 EffectRandom random_of(std::uint64_t frame, std::uint64_t sequence = 7) {
   return {Random(frame), Random(sequence)};
 }
@@ -81,8 +84,8 @@ TEST(ReceiverEffects, FalseReturnsAreUniformOverTheGateAndNewInEveryFrame) {
   std::fill_n(first.begin(), kRays * kRays / 2, kReturn_m);
   const std::vector<double> before = first;
   EffectRandom one = random_of(1), two = random_of(2);
-  add_false_returns(0.1, kRays, one, first);
-  add_false_returns(0.1, kRays, two, second);
+  add_false_returns(0.1, kPaperSettings, one, first);
+  add_false_returns(0.1, kPaperSettings, two, second);
   double sum = 0.0, squares = 0.0, count = 0.0, on_returns = 0.0, in_both = 0.0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (first[i] == before[i]) continue;
@@ -104,8 +107,8 @@ TEST(ReceiverEffects, FalseReturnsAreUniformOverTheGateAndNewInEveryFrame) {
 TEST(ReceiverEffects, HotPixelsStayAndReportTheFirstDarkCount) {
   std::vector<double> first(kRays * kRays, kNoReturn_m), second = first;
   EffectRandom one = random_of(1), two = random_of(2);
-  add_hot_pixels(0.05, kRays, one, first);
-  add_hot_pixels(0.05, kRays, two, second);
+  add_hot_pixels(0.05, kPaperSettings, one, first);
+  add_hot_pixels(0.05, kPaperSettings, two, second);
   EXPECT_NE(first, second);
   double hot = 0.0, sum = 0.0;
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -121,7 +124,7 @@ TEST(ReceiverEffects, HotPixelsStayAndReportTheFirstDarkCount) {
 TEST(ReceiverEffects, HotPixelsReportANearerReturn) {
   std::vector<double> ranges_m(kRays * kRays, kReturn_m);
   EffectRandom random = random_of(1);
-  add_hot_pixels(0.5, kRays, random, ranges_m);
+  add_hot_pixels(0.5, kPaperSettings, random, ranges_m);
   double nearer = 0.0;
   for (const double range_m : ranges_m) {
     EXPECT_LE(range_m, kReturn_m);
@@ -134,14 +137,14 @@ TEST(ReceiverEffects, HotPixelsReportANearerReturn) {
 TEST(ReceiverEffects, DeadPixelsAndLinesReportNothing) {
   std::vector<double> pixels(kRays * kRays, kReturn_m), lines = pixels;
   EffectRandom one = random_of(1), two = random_of(1);
-  add_dead_pixels(0.2, kRays, one, pixels);
+  add_dead_pixels(0.2, kPaperSettings, one, pixels);
   const auto dead = [](const std::vector<double>& range_m) {
     double count = 0.0;
     for (const double r : range_m) count += r == kNoReturn_m ? 1.0 : 0.0;
     return count;
   };
   EXPECT_NEAR(share(dead(pixels)), 0.2, tolerance(0.2));
-  add_dead_lines(0.1, kRays, two, lines);
+  add_dead_lines(0.1, kPaperSettings, two, lines);
   int rows = 0, columns = 0;
   for (int i = 0; i < kRays; ++i) {
     bool row = true, column = true;

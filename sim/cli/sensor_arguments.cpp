@@ -1,0 +1,145 @@
+#include "sim/cli/sensor_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "gnc/lidar/depth_image.hpp"
+#include "sim/cli/arguments.hpp"
+#include "sim/terminal/write_file.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr double kNearest_m = gnc::kMinRange_m;
+constexpr double kFarthest_m = gnc::kMaxRange_m;
+
+std::optional<double> range_from(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool number = error == std::errc{} && end == text.data() + text.size();
+  if (!number || !(value >= kNearest_m && value <= kFarthest_m)) return std::nullopt;
+  return value;
+}
+
+RangeLimits ranges_from(const std::vector<std::string>& texts) {
+  std::string text;
+  for (const std::string& one : texts) text += (text.empty() ? "" : ",") + one;
+  const auto nearest = texts.size() == 2 ? range_from(texts[0]) : std::nullopt;
+  const auto farthest = texts.size() == 2 ? range_from(texts[1]) : std::nullopt;
+  if (nearest && farthest && *nearest <= *farthest) return {*nearest, *farthest};
+  throw CLI::ValidationError("--range",
+                             fmt::format("must be NEAREST,FARTHEST, two ascending ranges from {:g} to {:g} "
+                                         "m, not '{}'",
+                                         kNearest_m, kFarthest_m, text));
+}
+
+SensorDescription sensor_from_option(const std::string& text) {
+  if (text == "list") {
+    fmt::print("Sensors that ship\n\n{}", sensor_explanations());
+    throw CLI::Success();
+  }
+  try {
+    return sensor_named(text);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--sensor", error.what());
+  }
+}
+
+}  // namespace
+
+void add_sensor_options(CLI::App& command, SensorArguments& arguments) {
+  command
+      .add_option_function<std::string>(
+          "--sensor", [&arguments](const std::string& text) { arguments.sensor = sensor_from_option(text); },
+          "sensor: the name of one that ships, or a file that describes one; --sensor list explains both "
+          "[paper]")
+      ->type_name("NAME|FILE");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--range",
+          [&arguments](const std::vector<std::string>& texts) { arguments.ranges = ranges_from(texts); },
+          fmt::format("ranges to draw from in metres ({:g} to {:g}) [20,100, from where the target fits into "
+                      "the view]",
+                      kNearest_m, kFarthest_m))
+      ->delimiter(',')
+      ->type_name("NEAREST,FARTHEST");
+}
+
+void take_period_of_sensor(const CLI::App& command, ScenarioArguments& arguments) {
+  if (command.get_option("--period")->count() > 0) return;
+  arguments.disturbances.period_s = arguments.sensor.sensor.period_s;
+}
+
+RangeLimits ranges_of(const SensorArguments& arguments, double swath_m, std::vector<std::string>& warnings) {
+  const RangeLimits paper;
+  // Up to 0.1 m, as the messages name it.
+  const double filling_m = std::ceil(10.0 * filling_range_m(arguments.sensor.settings, swath_m)) / 10.0;
+  if (!arguments.ranges && filling_m <= paper.nearest_m) return paper;
+  if (!arguments.ranges && filling_m >= paper.farthest_m) {
+    throw std::invalid_argument(
+        fmt::format("sensor {}: the target fills its view at {:.1f} m, farther than {:g} m; give the ranges, "
+                    "for example --range {:.0f},{:g}",
+                    arguments.sensor.name, filling_m, paper.farthest_m,
+                    std::min(kFarthest_m, std::ceil(filling_m)), kFarthest_m));
+  }
+  const RangeLimits ranges = arguments.ranges.value_or(RangeLimits{filling_m, paper.farthest_m});
+  if (ranges.nearest_m < filling_m) {
+    warnings.push_back(
+        fmt::format("The target fills the view of sensor {} at {:.1f} m. Nearer than that, "
+                    "parts of it are not seen.",
+                    arguments.sensor.name, filling_m));
+  }
+  return ranges;
+}
+
+ScenarioSettings seen_by(const SensorArguments& arguments, double swath_m,
+                         std::vector<std::string>& warnings) {
+  ScenarioSettings seen;
+  seen.sensor = arguments.sensor.settings;
+  seen.ranges = ranges_of(arguments, swath_m, warnings);
+  seen.disturbances.period_s = arguments.sensor.period_s;
+  return seen;
+}
+
+void print_sensor(const SensorDescription& sensor, const RangeLimits& ranges) {
+  if (!sensor.is_the_papers()) fmt::print("  sensor: {}\n\n", to_string(sensor));
+  if (!ranges.are_the_papers())
+    fmt::print("  ranges: {:.1f} to {:.1f} m\n\n", ranges.nearest_m, ranges.farthest_m);
+}
+
+std::string sensor_file_of(const std::string& model_path) {
+  std::filesystem::path path(model_path);
+  path.replace_extension();
+  if (path.extension() == ".float32") path.replace_extension();
+  return path.string() + ".sensor.json";
+}
+
+void write_sensor_file(const std::string& model_path, const SensorDescription& sensor) {
+  write_file(sensor_file_of(model_path), to_json(sensor));
+}
+
+std::string check_sensor_of_model(const std::string& model_path, const SensorDescription& sensor) {
+  const std::string file = sensor_file_of(model_path);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    if (sensor.is_the_papers()) return {};
+    return fmt::format(
+        "No {} says for which sensor the network was trained. The shipped ones were trained "
+        "for the paper's sensor.",
+        std::filesystem::path(file).filename().string());
+  }
+  const SensorDescription trained = sensor_named(file);
+  if (crc32_of(trained) == crc32_of(sensor)) return {};
+  throw std::invalid_argument(
+      fmt::format("the network of '{}' is for sensor {}, and the run is with sensor {}; give --sensor {}, or "
+                  "train a network for {} into another folder",
+                  model_path, to_string(trained), to_string(sensor), file, sensor.name));
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,49 @@
+// The options that choose the sensor and the ranges of a run, and the sensor for which a network was trained.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/sensor_description.hpp"
+
+namespace tumblesight::sim {
+
+struct ScenarioArguments;
+
+struct SensorArguments {
+  SensorDescription sensor;
+  std::optional<RangeLimits> ranges{};  // those of --range
+};
+
+// --sensor and --range. `--sensor list` prints the descriptions that ship and ends the program. `arguments`
+// must outlive the parsing.
+void add_sensor_options(CLI::App& command, SensorArguments& arguments);
+// Frames come with the period of the sensor unless --period was given.
+void take_period_of_sensor(const CLI::App& command, ScenarioArguments& arguments);
+
+// The ranges to draw for a target that needs this swath: those of --range, else the paper's from where the
+// target fits into the view. Adds a warning if it does not fit at the nearest range. Throws
+// std::invalid_argument that names a range if it does not fit at any of the paper's.
+RangeLimits ranges_of(const SensorArguments& arguments, double swath_m, std::vector<std::string>& warnings);
+
+// A scenario with the sensor, its period, and ranges_of().
+ScenarioSettings seen_by(const SensorArguments& arguments, double swath_m,
+                         std::vector<std::string>& warnings);
+
+// A line each for a sensor and for ranges other than the paper's.
+void print_sensor(const SensorDescription& sensor, const RangeLimits& ranges);
+
+// The file beside a model image that describes the sensor for which its network was trained:
+// "near.sensor.json" for near.tsm and near.float32.tsm.
+std::string sensor_file_of(const std::string& model_path);
+// Writes it. Throws std::runtime_error if that fails.
+void write_sensor_file(const std::string& model_path, const SensorDescription& sensor);
+// Throws std::invalid_argument that names both sensors and what to do if the file is there and describes
+// another sensor, or as sensor_from_json() does. Without the file, returns a warning for a sensor other than
+// the paper's, and nothing for the paper's.
+std::string check_sensor_of_model(const std::string& model_path, const SensorDescription& sensor);
+
+}  // namespace tumblesight::sim
