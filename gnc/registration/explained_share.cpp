@@ -310,7 +310,7 @@ ExplainedShare explained_share(const DepthImage& image, const DepthProjection& p
   take_centred(middle_of(scratch), scratch);
   make_rows(scratch.seen, scratch.seen_rows, scratch.near_seen_rows);
   make_rows(scratch.expected, scratch.expected_rows, scratch.near_expected_rows);
-  constexpr Scratch::Rows kNone{};
+  static constexpr Scratch::Rows kNone{};
   const std::int32_t seen = count_without(scratch.seen_rows, 0, kNone, 0);
   const std::int32_t expected = count_without(scratch.expected_rows, 0, kNone, 0);
   const Fit fit = find_fit(seen, expected, scratch);

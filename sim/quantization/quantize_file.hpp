@@ -30,7 +30,8 @@ struct QuantizationReport {
   std::size_t size_bytes = 0;
   std::uint32_t crc32 = 0;
 };
-// Renders `sequences` sequences: three quarters calibrate, the last quarter is for the report. Calls
+// Renders `sequences` sequences: three quarters calibrate, the last quarter is for the report. The first mesh
+// gives the image's surface. Calls
 // `progress` with the number of sequences done. Deterministic. Throws std::runtime_error that names the file
 // if it cannot be written.
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,

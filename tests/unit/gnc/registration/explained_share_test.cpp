@@ -1,3 +1,4 @@
+// Verifies TS-EST-190.
 #include "gnc/registration/explained_share.hpp"
 
 #include <gtest/gtest.h>
