@@ -194,7 +194,7 @@ Validity FrameHandler::note_doubts(const gnc::RangeImage& frame) {
   count(state_.counters.attitudes_doubtful);
   report_(EventId::kAttitudeDoubtful, bits_of(frame.sequence_number),
           static_cast<std::int32_t>(outcome.estimate.predicted_error_urad / 1000U),
-          has(gnc::kAttitudeJump) ? 1 : 0);
+          (has(gnc::kAttitudeJump) ? 1 : 0) + (has(gnc::kUnexplained) ? 2 : 0));
   return Validity::kDoubtful;
 }
 

@@ -116,6 +116,7 @@ ModelStatus AttitudeEstimator<N>::load(const std::uint8_t* image, std::size_t si
       read_model_image<N>(image, size_bytes, expected_target, model_, network_.weights());
   if (status == ModelStatus::kOk) {
     laws_ = motion_laws<Real>(converted<Real>(model_.inertia));
+    surface_ = surface_of<N>(image);
     has_model_ = true;
     reset();
   }
@@ -132,6 +133,7 @@ template <class N>
 void AttitudeEstimator<N>::reload(const std::uint8_t* image) {
   take_model_image<N>(image, model_, network_.weights());
   laws_ = motion_laws<Real>(converted<Real>(model_.inertia));
+  surface_ = surface_of<N>(image);
   network_.use(fastest_kernels<N>());
   has_model_ = true;
 }
@@ -187,6 +189,8 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
   estimate.q_lrf_trf_second = second.q_lrf_trf;
   estimate.second_odds_ppm = second.odds_ppm;
   estimate.centroid_lrf_mm = position_lrf_mm(image);
+  estimate.explained =
+      explained_share(image, model_.projection, attitude, surface_, network_.explained_share_scratch());
 }
 
 template <class N>
@@ -226,6 +230,7 @@ std::uint32_t AttitudeEstimator<N>::constants_crc32() const {
   add(reinterpret_cast<std::uintptr_t>(&network_.kernels()));
   add(model_);
   add(laws_);
+  add(surface_);
   add(has_model_);
   return crc.value();
 }

@@ -10,6 +10,7 @@
 #include "gnc/rcnn/attitude_track.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "gnc/rcnn/network.hpp"
+#include "gnc/registration/explained_share.hpp"
 
 namespace tumblesight::gnc {
 
@@ -37,6 +38,7 @@ struct AttitudeEstimate {
   QuaternionQ30 q_lrf_trf_second = kIdentityQ30;
   std::uint32_t second_odds_ppm = 0;
   std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
+  ExplainedShare explained;  // of this frame, by the target at q_lrf_trf; not known in float32
 };
 
 // The motion of the target in the LRF, in integers.
@@ -116,6 +118,7 @@ class AttitudeEstimator {
   Intermediates intermediates_;
   ModelHeader model_;
   MotionLaws<Real> laws_;
+  SurfaceModel surface_;  // in the model image
   DepthImage image_;
   bool has_model_ = false;
 };

@@ -39,7 +39,9 @@ bool is_well_formed_target(const char* field, std::size_t size) {
 ModelStatus check_header_integrity(const std::uint8_t* image, std::size_t size_bytes) {
   if (image == nullptr || size_bytes < kModelHeaderSize) return ModelStatus::kTooShort;
   if (std::memcmp(image, kMagic.data(), kMagic.size()) != 0) return ModelStatus::kBadMagic;
-  if (get_u16(image + kOffsetVersion) != kModelFormatVersion) return ModelStatus::kBadVersion;
+  const std::uint16_t version = get_u16(image + kOffsetVersion);
+  if (version != kModelFormatVersion<FixedPoint> && version != kModelFormatVersion<Float32>)
+    return ModelStatus::kBadVersion;
   if (get_u16(image + kOffsetHeaderSize) != kModelHeaderSize) return ModelStatus::kBadSize;
   const std::uint32_t sections = get_u32(image + kOffsetSectionCount);
   if (sections < 1 || sections > kMaxSections) return ModelStatus::kBadSize;
@@ -65,9 +67,10 @@ DepthProjection read_projection(const std::uint8_t* image) {
   return {get_u32(image + kOffsetSwath), get_u32(image + kOffsetRadius)};
 }
 
-ModelStatus check_header_values(const std::uint8_t* image, std::uint32_t numerics,
-                                const char* expected_target) {
-  if (get_u32(image + kOffsetNumerics) != numerics) return ModelStatus::kBadNumerics;
+template <class N>
+ModelStatus check_header_values(const std::uint8_t* image, const char* expected_target) {
+  if (get_u32(image + kOffsetNumerics) != numerics_of<N>()) return ModelStatus::kBadNumerics;
+  if (get_u16(image + kOffsetVersion) != kModelFormatVersion<N>) return ModelStatus::kBadVersion;
   if (get_u32(image + kOffsetArchitecture) != kArchitectureHash) return ModelStatus::kBadArchitecture;
   ModelHeader header;
   std::memcpy(header.target.data(), image + kOffsetTarget, header.target.size());
@@ -128,14 +131,17 @@ struct SectionCheck {
 template <class N>
 ModelStatus check_sections(const std::uint8_t* image, std::size_t size_bytes,
                            const NetworkWeights<N>& weights) {
-  if (get_u32(image + kOffsetSectionCount) != kTensorCount<N> || size_bytes != kModelImageSize<N>) {
+  if (get_u32(image + kOffsetSectionCount) != kModelSections<N> || size_bytes != kModelImageSize<N>) {
     return ModelStatus::kBadSection;
   }
   SectionCheck check{image, kModelDataOffset<N>};
   for_each_tensor(
       weights, [&check](const char*, const char*, const auto& tensor) { check.next(size_in_image(tensor)); });
+  if (kSurfaceBytes < N >> 0) check.next(kSurfaceBytes<N>);
   if (check.status != ModelStatus::kOk) return check.status;
-  return has_possible_values(image, weights) ? ModelStatus::kOk : ModelStatus::kBadValue;
+  const bool possible =
+      surface_of<N>(image).points() <= SurfaceModel::kMaxPoints && has_possible_values(image, weights);
+  return possible ? ModelStatus::kOk : ModelStatus::kBadValue;
 }
 
 }  // namespace
@@ -178,7 +184,7 @@ template <class N>
 ModelStatus check_model_image(const std::uint8_t* image, std::size_t size_bytes, const char* expected_target,
                               const NetworkWeights<N>& weights) {
   ModelStatus status = check_header_integrity(image, size_bytes);
-  if (status == ModelStatus::kOk) status = check_header_values(image, numerics_of<N>(), expected_target);
+  if (status == ModelStatus::kOk) status = check_header_values<N>(image, expected_target);
   if (status == ModelStatus::kOk) status = check_sections<N>(image, size_bytes, weights);
   return status;
 }

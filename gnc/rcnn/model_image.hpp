@@ -4,7 +4,7 @@
 // All numbers are little-endian. Floats are IEEE 754 binary32 and occur only in float32 images.
 //   offset  size  field
 //        0     4  magic "TSRM"
-//        4     2  format version (3)
+//        4     2  format version: 3 in float32, 4 in fixed point
 //        6     2  header size (96)
 //        8     4  total size of the image in bytes
 //       12     4  architecture hash: network_shape.hpp
@@ -15,13 +15,14 @@
 //       60    24  inertia of the target in the TRF, scaled to a trace of 3, signed Q7.24:
 //                 xx, yy, zz, xy, xz, yz
 //       84     4  numerics: 0 float32, 1 fixed point
-//       88     4  number of sections: 21 or 31
+//       88     4  number of sections: 21 in float32, 32 in fixed point
 //       92     4  CRC-32 of bytes 0..91, the section table and the zeros after it
 //       96  16 n  section table, 4 bytes per field: id (1, 2, ...), offset, size in bytes,
 //                 CRC-32 of the section
 //        -     -  zeros up to the next multiple of 64, where the first section begins
 //        -     -  sections without gaps: the tensors in the order of for_each_tensor().
-//                 Fixed-point weights take one byte each, all other numbers four
+//                 Fixed-point weights take one byte each, all other numbers four. In fixed point the last
+//                 section is the target's surface (gnc/registration/surface_model.hpp)
 #pragma once
 
 #include <array>
@@ -31,18 +32,25 @@
 #include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network.hpp"
+#include "gnc/registration/surface_model.hpp"
 
 namespace tumblesight::gnc {
 
-inline constexpr std::uint16_t kModelFormatVersion = 3;
+template <class N>
+inline constexpr std::uint16_t kModelFormatVersion = N::kIsInteger ? 4 : 3;
 inline constexpr std::size_t kModelHeaderSize = 96;
 inline constexpr std::size_t kModelSectionEntrySize = 16;
+// Only the image that flies has a surface. In float32 attitudes are compared, not judged.
 template <class N>
-inline constexpr std::size_t kModelDataOffset = (kModelHeaderSize + kTensorCount<N> * kModelSectionEntrySize +
-                                                 63) /
+inline constexpr std::size_t kSurfaceBytes = N::kIsInteger ? SurfaceModel::kBytes : 0;
+template <class N>
+inline constexpr std::size_t kModelSections = kTensorCount<N> + (kSurfaceBytes<N> > 0 ? 1 : 0);
+template <class N>
+inline constexpr std::size_t kModelDataOffset = (kModelHeaderSize +
+                                                 kModelSections<N> * kModelSectionEntrySize + 63) /
                                                 64 * 64;
 template <class N>
-inline constexpr std::size_t kModelImageSize = kModelDataOffset<N> + kWeightBytes<N>;
+inline constexpr std::size_t kModelImageSize = kModelDataOffset<N> + kWeightBytes<N> + kSurfaceBytes<N>;
 
 struct ModelHeader {
   std::array<char, 32> target{};  // NUL-terminated name of the spacecraft the network was trained for
@@ -66,7 +74,7 @@ enum class ModelStatus : std::uint8_t {
   kBadSection,       // section id, offset or size does not match the network
   kBadSectionCrc,    // weights damaged
   kBadValue,     // impossible depth projection or inertia; a weight that is not finite; integers with which a
-                 // sum could leave 32 bits; a shift out of range
+                 // sum could leave 32 bits; a shift out of range; too many points on the surface
   kBadNumerics,  // intact, but fixed point where float32 is expected, or vice versa
 };
 const char* to_string(ModelStatus status);
@@ -92,6 +100,14 @@ template <class N>
 template <class N>
 void take_model_image(const std::uint8_t* image, ModelHeader& header, NetworkWeights<N>& weights);
 
+// The target's surface in an image that has passed the check; without points in float32. The image must stay
+// in place.
+template <class N>
+SurfaceModel surface_of(const std::uint8_t* image) {
+  return kSurfaceBytes<N> > 0 ? SurfaceModel(image + (kModelImageSize<N> - kSurfaceBytes<N>))
+                              : SurfaceModel();
+}
+
 // The CRC-32 that identifies an image (ModelHeader::crc32), from an image that has passed the check.
 std::uint32_t model_image_crc32(const std::uint8_t* image);
 
@@ -104,9 +120,11 @@ bool is_float32(const std::uint8_t* image, std::size_t size_bytes);
 
 // Writes an image and returns its size, kModelImageSize<N>. Returns 0 and writes nothing if `capacity` is
 // smaller. The reader checks the values, not this function. Flight programs do not call it, so the linker
-// leaves it out.
+// leaves it out. `surface`: the section, SurfaceModel::kBytes, which float32 images do not have; nullptr: it
+// has no points.
 template <class N>
 [[nodiscard]] std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights,
-                                            std::uint8_t* out, std::size_t capacity);
+                                            std::uint8_t* out, std::size_t capacity,
+                                            const std::uint8_t* surface = nullptr);
 
 }  // namespace tumblesight::gnc

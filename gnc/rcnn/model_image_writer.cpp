@@ -24,12 +24,12 @@ void write(const std::array<Integer, kCount>& tensor, std::uint8_t* to) {
 
 template <class N>
 std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights, std::uint8_t* out,
-                              std::size_t capacity) {
+                              std::size_t capacity, const std::uint8_t* surface) {
   const std::size_t total = kModelImageSize<N>;
   if (capacity < total) return 0;
   std::memset(out, 0, kModelDataOffset<N>);
   std::memcpy(out, kMagic.data(), kMagic.size());
-  put_u16(out + kOffsetVersion, kModelFormatVersion);
+  put_u16(out + kOffsetVersion, kModelFormatVersion<N>);
   put_u16(out + kOffsetHeaderSize, static_cast<std::uint16_t>(kModelHeaderSize));
   put_u32(out + kOffsetTotalSize, static_cast<std::uint32_t>(total));
   put_u32(out + kOffsetArchitecture, architecture_hash());
@@ -42,30 +42,40 @@ std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>
             static_cast<std::uint32_t>(header.inertia.tensor_trf(row, column).raw()));
   }
   put_u32(out + kOffsetNumerics, numerics_of<N>());
-  put_u32(out + kOffsetSectionCount, static_cast<std::uint32_t>(kTensorCount<N>));
+  put_u32(out + kOffsetSectionCount, static_cast<std::uint32_t>(kModelSections<N>));
 
   std::uint8_t* entry = out + kModelHeaderSize;
   std::uint32_t id = 1;
   std::size_t offset = kModelDataOffset<N>;
-  for_each_tensor(weights, [&](const char*, const char*, const auto& tensor) {
-    const std::size_t size = size_in_image(tensor);
-    write(tensor, out + offset);
+  const auto add_section = [&](std::size_t size) {
     put_u32(entry, id++);
     put_u32(entry + 4, static_cast<std::uint32_t>(offset));
     put_u32(entry + 8, static_cast<std::uint32_t>(size));
     put_u32(entry + 12, crc32(out + offset, size));
     entry += kModelSectionEntrySize;
     offset += size;
+  };
+  for_each_tensor(weights, [&](const char*, const char*, const auto& tensor) {
+    write(tensor, out + offset);
+    add_section(size_in_image(tensor));
   });
-  put_u32(out + kOffsetHeaderCrc, header_crc(out, kTensorCount<N>));
+  if (kSurfaceBytes < N >> 0) {
+    if (surface == nullptr) {
+      std::memset(out + offset, 0, kSurfaceBytes<N>);
+    } else {
+      std::memcpy(out + offset, surface, kSurfaceBytes<N>);
+    }
+    add_section(kSurfaceBytes<N>);
+  }
+  put_u32(out + kOffsetHeaderCrc, header_crc(out, kModelSections<N>));
   return total;
 }
 
 template std::size_t write_model_image<FixedPoint>(const ModelHeader&, const NetworkWeights<FixedPoint>&,
-                                                   std::uint8_t*, std::size_t);
+                                                   std::uint8_t*, std::size_t, const std::uint8_t*);
 #if TUMBLESIGHT_FLOAT32
 template std::size_t write_model_image<Float32>(const ModelHeader&, const NetworkWeights<Float32>&,
-                                                std::uint8_t*, std::size_t);
+                                                std::uint8_t*, std::size_t, const std::uint8_t*);
 #endif
 
 }  // namespace tumblesight::gnc

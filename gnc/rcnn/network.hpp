@@ -11,6 +11,7 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network_shape.hpp"
+#include "gnc/registration/explained_share.hpp"
 
 namespace tumblesight::gnc {
 
@@ -148,6 +149,7 @@ class Arena {
   }
   // Over all three buffers.
   DepthImageScratch& projection_scratch() { return in_place<DepthImageScratch>(all_); }
+  ExplainedShareScratch& explained_share_scratch() { return in_place<ExplainedShareScratch>(all_); }
 
  private:
   // Every object is written before it is read, so the values of another layer in the buffer are never used.
@@ -185,6 +187,8 @@ class Network {
   // Scratch for making the frame's depth image. It shares the memory of the activations: use it before
   // infer_frame() only.
   DepthImageScratch& projection_scratch() { return arena_.projection_scratch(); }
+  // The same for the check of the attitude: use it after infer_sequence() only.
+  ExplainedShareScratch& explained_share_scratch() { return arena_.explained_share_scratch(); }
 
   // Of the last infer_frame(): the output of layer kFeatureLayer, after ReLU.
   const Features<N>& features() const { return features_; }

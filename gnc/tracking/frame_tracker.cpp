@@ -84,6 +84,7 @@ void FrameTracker<N>::check(const FrameTrackerLimits& limits, FrameTrackerState&
     return;
   }
   if (estimate.predicted_error_urad > limits.predicted_error_urad) outcome.doubts |= kErrorLarge;
+  if (misfit_of(estimate.explained) > kLargestMisfit) outcome.doubts |= kUnexplained;
   const bool jumps = !outcome.finds_no_rate && estimate.frames_since_reset >= kFirstCheckedFrame &&
                      cos_half_angle(estimate.q_lrf_trf_predicted, estimate.q_lrf_trf) <
                          cos_half_of(limits.attitude_jump_urad);

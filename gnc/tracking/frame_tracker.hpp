@@ -11,7 +11,8 @@
 //               than longest_without_chaser_ns it starts a track of the second kind. There a frame with the
 //               attitude starts a track of the first kind. A single unknown turn of 13 degrees in a track
 //               would spoil its rate for the next ten frames
-//   checks      expected error, and distance from the attitude that the track predicted
+//   checks      expected error, distance from the attitude that the track predicted, and how much of the
+//               frame the target explains at the attitude
 #pragma once
 
 #include <array>
@@ -60,7 +61,12 @@ inline constexpr Doubts kRateAmbiguous =
     8;  // AttitudeEstimate::rate_is_ambiguous, or a track that cannot know its rate; the attitude is valid
 inline constexpr Doubts kChaserUnknown = 16;     // in the whole track; the attitude is valid
 inline constexpr Doubts kChaserNowUnknown = 32;  // motion_at() is in the LRF of the exposure
-inline constexpr Doubts kAgainstAttitude = kErrorLarge | kAttitudeJump | kAttitudeUnsound;
+inline constexpr Doubts kUnexplained =
+    64;  // the target at this attitude does not explain what the frame shows
+inline constexpr Doubts kAgainstAttitude = kErrorLarge | kAttitudeJump | kAttitudeUnsound | kUnexplained;
+
+// Largest misfit_of() of an attitude that the frame confirms: docs/numerics.md has the figures behind it.
+inline constexpr std::uint32_t kLargestMisfit = 53 * kWholeShare / 100;
 
 struct FrameOutcome {
   FrameVerdict verdict = FrameVerdict::kPass;

@@ -14,8 +14,9 @@ enum class Validity : std::uint8_t {
   kStandby = 1,       // the mode is not RUN
   kNoFrame = 2,       // no frame arrived in this cycle
   kFrameRefused = 3,  // a frame arrived and was refused; the event gives the reason
-  kDoubtful = 4,      // the expected error is too large, or the attitude has jumped
-  kPassedOver = 5,    // a frame arrived in a cycle with a long task, for example a repair
+  kDoubtful =
+      4,  // the expected error is too large, the attitude has jumped, or the frame shows something else
+  kPassedOver = 5,  // a frame arrived in a cycle with a long task, for example a repair
 };
 
 // Bits of AttitudeReport::doubts.
@@ -25,6 +26,8 @@ inline constexpr std::uint8_t kDoubtRateAmbiguous = 8;  // the target turns too 
 inline constexpr std::uint8_t kDoubtChaserUnknown =
     16;  // in the whole track, in which it is taken not to turn
 inline constexpr std::uint8_t kDoubtChaserNowUnknown = 32;  // q_lrf_trf_now is in the LRF of the exposure
+inline constexpr std::uint8_t kDoubtUnexplained =
+    64;  // kDoubtful: the target at this attitude does not explain the frame
 
 // Quaternions: Hamilton, scalar first (w, x, y, z), target frame (TRF) to LiDAR frame (LRF), unit norm, Q30.
 // Expected errors: 0 ... pi.

@@ -43,7 +43,7 @@ enum class EventId : std::uint16_t {
   kEstimatorResetByGap = 40,  // [exposure gap, frames since the last reset, 1: the chaser's attitude is known
                               // from now on, or no more]
   kEstimatorResetByFault = 41,  // [Fault, -, -]
-  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump]
+  kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump + 2: unexplained]
   kFrameWithoutChaser = 43,     // [sequence number, exposure minus last accepted exposure, -]
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now

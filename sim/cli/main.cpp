@@ -46,7 +46,7 @@ int finish_output(int status) {
 std::string version_text() {
   std::string text = std::string("tumblesight ") + tumblesight::kVersion + "\ncommit " +
                      tumblesight::kCommit + "\nmodel format " +
-                     std::to_string(tumblesight::gnc::kModelFormatVersion);
+                     std::to_string(tumblesight::gnc::kModelFormatVersion<tumblesight::gnc::FixedPoint>);
 #ifdef TUMBLESIGHT_HAS_SIL
   char hash[16];
   std::snprintf(hash, sizeof hash, "%08x", static_cast<unsigned>(tumblesight::hal::dds::icd_hash()));

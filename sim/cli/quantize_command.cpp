@@ -8,6 +8,7 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/quantize_file.hpp"
+#include "sim/quantization/surface_samples.hpp"
 #include "sim/terminal/progress.hpp"
 
 namespace tumblesight::sim {
@@ -20,6 +21,7 @@ struct QuantizeArguments {
   Effects effects;
   int sequences = kCalibrationSequences;
   SensorArguments sensor;
+  bool surface_only = false;
 };
 
 // near.float32.tsm -> near.tsm; anything else.tsm -> else.fixed.tsm
@@ -41,7 +43,26 @@ void print_report(const QuantizationReport& report, const std::string& path) {
   fmt::print("  {}, {} bytes, CRC-32 {:08x}\n\n", full_path(path), report.size_bytes, report.crc32);
 }
 
+// Writes the image `--model` with the surface of the first mesh.
+void replace_surface(const QuantizeArguments& arguments) {
+  if (arguments.out.empty()) throw CLI::ValidationError("--surface-only", "needs --out");
+  require_different("--model", arguments.model, "--out", arguments.out);
+  require_writable("--out", arguments.out);
+  const gnc::ModelHeader header = read_fixed_point_header(arguments.model);
+  const std::vector<TriangleMesh> meshes = load_meshes(arguments.meshes, header.target.data());
+  const std::vector<std::uint8_t> surface =
+      surface_section(meshes.front(), 1e-3 * header.projection.target_radius_mm);
+  const std::uint32_t crc32 = write_with_surface(arguments.model, surface, arguments.out);
+  const gnc::SurfaceModel points(surface.data());
+  fmt::print("  {}, CRC-32 {:08x}: {} points of the surface, {} mm apart\n", full_path(arguments.out), crc32,
+             points.points(), points.spacing_mm());
+}
+
 void quantize_file(QuantizeArguments arguments) {
+  if (arguments.surface_only) {
+    replace_surface(arguments);
+    return;
+  }
   require_the_target(arguments.effects);
   if (arguments.out.empty()) arguments.out = default_out(arguments.model);
   require_different("--model", arguments.model, "--out", arguments.out);
@@ -77,7 +98,8 @@ void add_quantize_command(CLI::App& app) {
   command->footer(
       "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits.\n"
       "The scales are chosen on rendered sequences. --effect: those that the network\n"
-      "was trained with. The table shows the quantization error of each layer.\n\n"
+      "was trained with. The table shows the quantization error of each layer. The first\n"
+      "mesh gives the surface by which the flight program checks what a frame shows.\n\n"
       "Example\n"
       "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
       "      --mesh parametric --mesh near.stl\n");
@@ -93,6 +115,8 @@ void add_quantize_command(CLI::App& app) {
                      10, 10'000)
       ->type_name("N")
       ->capture_default_str();
+  command->add_flag("--surface-only", arguments->surface_only,
+                    "--model is in fixed point: keep its weights, and replace its surface");
   command->callback([arguments] { quantize_file(*arguments); });
 }
 

@@ -1,9 +1,12 @@
 #include "sim/model/model_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+
+#include "gnc/rcnn/model_format.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -23,6 +26,48 @@ std::uint32_t checked_crc32(const std::vector<std::uint8_t>& image, const std::s
                              "' is not written, since it would be refused: " + gnc::to_string(status));
   }
   return header.crc32;
+}
+
+std::uint32_t write_checked(const std::vector<std::uint8_t>& image, std::uint32_t crc32,
+                            const std::string& path) {
+  std::ofstream out(path + ".new", std::ios::binary);
+  out.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
+  out.close();
+  if (!out) throw std::runtime_error("model image '" + path + "' cannot be written");
+  std::filesystem::rename(path + ".new", path);
+  return crc32;
+}
+
+// Format version 3 of an image in fixed point has one section less and is otherwise the same.
+bool is_without_surface(const std::vector<std::uint8_t>& image) {
+  using namespace gnc::model_format;
+  return image.size() == gnc::kModelImageSize<FixedPoint> - gnc::SurfaceModel::kBytes &&
+         std::equal(kMagic.begin(), kMagic.end(), image.begin()) &&
+         get_u16(image.data() + kOffsetVersion) == 3 &&
+         get_u32(image.data() + kOffsetNumerics) == numerics_of<FixedPoint>() &&
+         get_u32(image.data() + kOffsetSectionCount) == gnc::kTensorCount<FixedPoint> &&
+         get_u32(image.data() + kOffsetHeaderCrc) == header_crc(image.data(), gnc::kTensorCount<FixedPoint>);
+}
+static_assert(gnc::model_format::data_offset(gnc::kTensorCount<FixedPoint>) ==
+              gnc::kModelDataOffset<FixedPoint>);
+
+// `image`: in fixed point, with or without a surface.
+void set_surface(std::vector<std::uint8_t>& image, const std::vector<std::uint8_t>& surface) {
+  using namespace gnc::model_format;
+  constexpr std::size_t kOffset = gnc::kModelImageSize<FixedPoint> - gnc::SurfaceModel::kBytes;
+  constexpr auto kSections = static_cast<std::uint32_t>(gnc::kModelSections<FixedPoint>);
+  image.resize(kOffset);
+  image.insert(image.end(), surface.begin(), surface.end());
+  put_u16(image.data() + kOffsetVersion, gnc::kModelFormatVersion<FixedPoint>);
+  put_u32(image.data() + kOffsetTotalSize, static_cast<std::uint32_t>(image.size()));
+  put_u32(image.data() + kOffsetSectionCount, kSections);
+  std::uint8_t* const entry =
+      image.data() + gnc::kModelHeaderSize + (kSections - 1) * gnc::kModelSectionEntrySize;
+  put_u32(entry, kSections);
+  put_u32(entry + 4, static_cast<std::uint32_t>(kOffset));
+  put_u32(entry + 8, static_cast<std::uint32_t>(surface.size()));
+  put_u32(entry + 12, gnc::crc32(surface.data(), surface.size()));
+  put_u32(image.data() + kOffsetHeaderCrc, header_crc(image.data(), kSections));
 }
 
 }  // namespace
@@ -52,7 +97,9 @@ std::vector<std::uint8_t> read_model_bytes(const std::string& path) {
   if (!fault.empty()) throw std::runtime_error(fault);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error("model image '" + path + "' cannot be read");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::vector<std::uint8_t> image{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (is_without_surface(image)) set_surface(image, std::vector<std::uint8_t>(gnc::SurfaceModel::kBytes));
+  return image;
 }
 
 std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
@@ -70,22 +117,38 @@ std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
   return model;
 }
 
+gnc::ModelHeader read_fixed_point_header(const std::string& path) {
+  const std::vector<std::uint8_t> image = read_model_bytes(path);
+  gnc::ModelHeader header;
+  const auto weights = std::make_unique<gnc::NetworkWeights<FixedPoint>>();
+  const gnc::ModelStatus status =
+      gnc::read_model_image<FixedPoint>(image.data(), image.size(), nullptr, header, *weights);
+  if (status == gnc::ModelStatus::kOk) return header;
+  throw std::runtime_error("model image '" + path + "' is refused: " + gnc::to_string(status));
+}
+
 template <class N>
 std::uint32_t write_model_file(const std::string& path, const gnc::ModelHeader& header,
-                               const gnc::NetworkWeights<N>& weights) {
+                               const gnc::NetworkWeights<N>& weights,
+                               const std::vector<std::uint8_t>& surface) {
   std::vector<std::uint8_t> bytes(gnc::kModelImageSize<N>);
-  bytes.resize(gnc::write_model_image<N>(header, weights, bytes.data(), bytes.size()));
-  const std::uint32_t crc32 = checked_crc32<N>(bytes, path);
-  std::ofstream out(path + ".new", std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) throw std::runtime_error("model image '" + path + "' cannot be written");
-  std::filesystem::rename(path + ".new", path);
-  return crc32;
+  bytes.resize(gnc::write_model_image<N>(header, weights, bytes.data(), bytes.size(),
+                                         surface.empty() ? nullptr : surface.data()));
+  return write_checked(bytes, checked_crc32<N>(bytes, path), path);
 }
 template std::uint32_t write_model_file(const std::string&, const gnc::ModelHeader&,
-                                        const gnc::NetworkWeights<Float32>&);
+                                        const gnc::NetworkWeights<Float32>&,
+                                        const std::vector<std::uint8_t>&);
 template std::uint32_t write_model_file(const std::string&, const gnc::ModelHeader&,
-                                        const gnc::NetworkWeights<FixedPoint>&);
+                                        const gnc::NetworkWeights<FixedPoint>&,
+                                        const std::vector<std::uint8_t>&);
+
+std::uint32_t write_with_surface(const std::string& from, const std::vector<std::uint8_t>& surface,
+                                 const std::string& path) {
+  (void)read_fixed_point_header(from);
+  std::vector<std::uint8_t> image = read_model_bytes(from);
+  set_surface(image, surface);
+  return write_checked(image, checked_crc32<FixedPoint>(image, path), path);
+}
 
 }  // namespace tumblesight::sim

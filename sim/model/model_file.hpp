@@ -18,7 +18,8 @@ std::string remedy_for_missing_image(const std::string& path);
 std::string fault_of_model_path(const std::string& path);
 
 // The bytes of a file, not checked: for the estimators, which check the image themselves and read fixed-point
-// weights in place. Throws std::runtime_error that names the file if it cannot be read.
+// weights in place. An image in fixed point of format version 3, which had no surface, comes with one without
+// points. Throws std::runtime_error that names the file if it cannot be read.
 std::vector<std::uint8_t> read_model_bytes(const std::string& path);
 
 struct Float32Model {
@@ -29,10 +30,20 @@ struct Float32Model {
 // image.
 std::unique_ptr<Float32Model> read_float32_model(const std::string& path);
 
-// Writes the file under a temporary name, then renames it. Returns the image's CRC-32. Throws
-// std::runtime_error that names the file if it cannot be written, or if the reader would refuse the image.
+// The header of an image in fixed point. Throws as read_float32_model does.
+gnc::ModelHeader read_fixed_point_header(const std::string& path);
+
+// Writes the file under a temporary name, then renames it. Returns the image's CRC-32. `surface`: in fixed
+// point, the target's surface (gnc::SurfaceModel::kBytes); empty: without points. Throws std::runtime_error
+// that names the file if it cannot be written, or if the reader would refuse the image.
 template <class N>
 std::uint32_t write_model_file(const std::string& path, const gnc::ModelHeader& header,
-                               const gnc::NetworkWeights<N>& weights);
+                               const gnc::NetworkWeights<N>& weights,
+                               const std::vector<std::uint8_t>& surface = {});
+
+// Writes a copy of the fixed-point image `from` with another surface; all weights stay as they are, byte for
+// byte. Throws as write_model_file does, and if `from` is no image in fixed point.
+std::uint32_t write_with_surface(const std::string& from, const std::vector<std::uint8_t>& surface,
+                                 const std::string& path);
 
 }  // namespace tumblesight::sim

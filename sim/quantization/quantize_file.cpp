@@ -6,6 +6,7 @@
 
 #include "sim/model/network_layers.hpp"
 #include "sim/quantization/scales.hpp"
+#include "sim/quantization/surface_samples.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
@@ -142,7 +143,9 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
   const std::unique_ptr<QuantizedNetwork> network = quantize(model.weights, calibration.statistics());
 
   QuantizationReport report;
-  report.crc32 = write_model_file<FixedPoint>(path, model.header, network->weights);
+  const double radius_m = 1e-3 * model.header.projection.target_radius_mm;
+  report.crc32 = write_model_file<FixedPoint>(path, model.header, network->weights,
+                                              surface_section(meshes.front(), radius_m));
   report.size_bytes = gnc::kModelImageSize<FixedPoint>;
   report.layers = compare(model.weights, *network, model.header.inertia, kept);
   report.difference = summarise(differences_deg(model, network->weights, kept));

@@ -38,7 +38,7 @@ TEST_P(ProgramVersion, IsReportedWithCommitModelFormatAndInterfaceHash) {
   const std::regex expected(
       "(flight|tumblesight) " TUMBLESIGHT_VERSION
       "\ncommit (([0-9a-f]{7,40}|[^\n]+-g[0-9a-f]{7,40})(-dirty)?|unknown)\nmodel format " +
-      std::to_string(gnc::kModelFormatVersion) + "\ninterface " + hash.data() + "\n");
+      std::to_string(gnc::kModelFormatVersion<gnc::FixedPoint>) + "\ninterface " + hash.data() + "\n");
   EXPECT_TRUE(std::regex_match(output.text, expected)) << output.text;
 }
 

@@ -193,7 +193,7 @@ bool print_flight_help() {
 
 bool print_flight_version() {
   std::printf("%s %s\ncommit %s\nmodel format %d\ninterface %08x\n", kProgramName, kVersion, kCommit,
-              int{gnc::kModelFormatVersion}, static_cast<unsigned>(hal::dds::icd_hash()));
+              int{gnc::kModelFormatVersion<gnc::FixedPoint>}, static_cast<unsigned>(hal::dds::icd_hash()));
   return finish_output();
 }
 

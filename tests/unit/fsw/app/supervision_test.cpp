@@ -212,6 +212,27 @@ TEST_F(DoubtfulAttitudes, LargeExpectedErrorIsFlaggedAndTheAttitudeStillReported
   EXPECT_EQ(validity(), Validity::kValid);
 }
 
+// Verifies TS-EST-190.
+TEST_F(DoubtfulAttitudes, FrameThatTheTargetDoesNotExplainIsFlaggedAndTheAttitudeStillReported) {
+  gnc::ModelHeader header;
+  gnc::NetworkWeights<gnc::FixedPoint> weights;
+  const std::vector<std::uint8_t>& without = test_model_image();
+  ASSERT_EQ(gnc::read_model_image<gnc::FixedPoint>(without.data(), without.size(), nullptr, header, weights),
+            gnc::ModelStatus::kOk);
+  std::vector<std::uint8_t> surface(gnc::SurfaceModel::kBytes), image(without.size());
+  surface[0] = 1;  // a target of one point
+  ASSERT_EQ(gnc::write_model_image(header, weights, image.data(), image.size(), surface.data()),
+            image.size());
+  store.fill(image);
+  init(store);
+  step_scene(1);
+  EXPECT_EQ(validity(), Validity::kDoubtful);
+  EXPECT_EQ(out->attitude.doubts & hal::kDoubtUnexplained, hal::kDoubtUnexplained);
+  EXPECT_EQ(out->attitude.sequence_number, sequence_number);
+  EXPECT_EQ(argument(EventId::kAttitudeDoubtful, 2), 2);
+  EXPECT_EQ(out->telemetry.attitudes_doubtful, 1U);
+}
+
 // Verifies TS-FDIR-150.
 TEST_F(DoubtfulAttitudes, JumpsAreFlaggedAndResetTheSequenceIfTheyPersist) {
   set_limit(Parameter::kPredictedError_urad, 3'141'593);

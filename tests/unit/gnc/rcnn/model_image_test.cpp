@@ -32,7 +32,7 @@ constexpr std::size_t kSections = 88;
 constexpr std::size_t kHeaderCrc = 92;
 constexpr std::size_t kTable = 96;
 constexpr std::size_t kFloatData = 448;  // 96 + 16 * 21, to the next multiple of 64
-constexpr std::size_t kFixedData = 640;  // 96 + 16 * 31, to the next multiple of 64
+constexpr std::size_t kFixedData = 640;  // 96 + 16 * 32, to the next multiple of 64
 
 // Corrects the header's CRC after a change, so that a later check finds the error.
 void seal_header(Bytes& image) {
@@ -205,13 +205,18 @@ TEST(ModelImage, HasTheDocumentedLayout) {
 
   const Bytes& fixed = lasting_model_image<FixedPoint>(21);
   EXPECT_EQ(fixed.size(), kModelImageSize<FixedPoint>);
+  EXPECT_EQ(fixed[4] + 256 * fixed[5], 4);
   EXPECT_EQ(get_u32(fixed, 84), 1U);
-  EXPECT_EQ(get_u32(fixed, kSections), 31U);
+  EXPECT_EQ(get_u32(fixed, kSections), 32U);
   EXPECT_EQ(get_u32(fixed, kTable + 4), kFixedData);
   EXPECT_EQ(get_u32(fixed, kTable + 8), 9U * 4 * 32);                   // one byte per weight
   EXPECT_EQ(get_u32(fixed, kTable + 16 + 4), kFixedData + 9 * 4 * 32);  // bias
   EXPECT_EQ(get_u32(fixed, kTable + 16 + 8), 4U * 32);
   EXPECT_EQ(get_u32(fixed, kTable + 32 + 8), 4U * 32);  // shifts
+  const std::size_t surface = kTable + std::size_t{16} * 31;
+  EXPECT_EQ(get_u32(fixed, surface), 32U);
+  EXPECT_EQ(get_u32(fixed, surface + 8), 8U + 9 * 2048);
+  EXPECT_EQ(get_u32(fixed, surface + 4) + get_u32(fixed, surface + 8), fixed.size());
 }
 
 TEST(IsFloat32, NeedsAnIntactHeader) {
@@ -234,6 +239,48 @@ ModelStatus read_fixed(const Bytes& image) {
 // Section `index` of the fixed-point image. Each layer has three sections, the LSTM four.
 std::size_t offset_of(const Bytes& image, int index) {
   return get_u32(image, kTable + 16 * static_cast<std::size_t>(index) + 4);
+}
+
+constexpr int kSurface = 31;  // section
+
+// Verifies TS-IFC-010, TS-IFC-020, TS-IFC-030, TS-IFC-040.
+TEST(FixedPointImage, HoldsTheSurfaceOfTheTarget) {
+  const Bytes& without = lasting_model_image<FixedPoint>(30);
+  EXPECT_FALSE(surface_of<FixedPoint>(without.data()).is_known());
+  EXPECT_FALSE(surface_of<Float32>(good_image().data()).is_known()) << "has no such section";
+  ModelHeader header;
+  auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
+  ASSERT_EQ(read_model_image<FixedPoint>(without.data(), without.size(), nullptr, header, *weights),
+            ModelStatus::kOk);
+  Bytes section(SurfaceModel::kBytes), image(without.size());
+  put_u32(section, 0, 2);
+  put_u32(section, 4, 150);
+  const std::uint8_t second[] = {0x01, 0x80, 0xFF, 0x7F, 0xFE, 0xFF, 0x81, 0x7F, 0x00};
+  std::copy(std::begin(second), std::end(second), section.begin() + 8 + 9);
+  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, image.data(), image.size(), section.data()),
+            image.size());
+  ASSERT_EQ(read_fixed(image), ModelStatus::kOk);
+  EXPECT_TRUE(std::equal(image.begin() + kFixedData, image.end() - SurfaceModel::kBytes,
+                         without.begin() + kFixedData))
+      << "weights";
+  const SurfaceModel surface = surface_of<FixedPoint>(image.data());
+  EXPECT_EQ(surface.points(), 2U);
+  EXPECT_EQ(surface.spacing_mm(), 150U);
+  EXPECT_EQ(surface.point(1).position, (std::array<std::int16_t, 3>{-32767, 32767, -2}));
+  EXPECT_EQ(surface.point(1).normal, (std::array<std::int8_t, 3>{-127, 127, 0}));
+  EXPECT_EQ(surface.point(2047).normal, (std::array<std::int8_t, 3>{0, 0, 0}));
+
+  Bytes damaged = image;
+  damaged.back() ^= 1;
+  EXPECT_EQ(read_fixed(damaged), ModelStatus::kBadSectionCrc);
+  damaged = image;
+  put_u32(damaged, offset_of(damaged, kSurface), 2049);
+  seal_section(damaged, kSurface);
+  EXPECT_EQ(read_fixed(damaged), ModelStatus::kBadValue);
+  damaged = image;
+  damaged[4] = 3;
+  seal_header(damaged);
+  EXPECT_EQ(read_fixed(damaged), ModelStatus::kBadVersion);
 }
 
 // Verifies TS-IFC-010, TS-MEM-080.

@@ -132,6 +132,38 @@ TEST_F(Tracking, AJumpIsADistanceFromThePrediction) {
   EXPECT_GT(jumps, 0) << "the test needs a network that jumps";
 }
 
+// Verifies TS-EST-190.
+TEST_F(Tracking, AFrameThatTheTargetDoesNotExplainIsADoubt) {
+  EXPECT_FALSE(step(next()).estimate.explained.is_known) << "the image has no surface";
+  EXPECT_TRUE(outcome.valid());
+  // At the limit, and beyond it.
+  for (const std::uint32_t more : {0U, 1U}) {
+    outcome.doubts = 0;
+    outcome.estimate.explained = {true, kLargestMisfit + more, 0, 0};
+    FrameTracker<FixedPoint>(*estimator).check(limits, state, outcome);
+    EXPECT_EQ(outcome.doubts, more == 0 ? 0 : kUnexplained);
+    EXPECT_EQ(outcome.valid(), more == 0);
+  }
+  // A target of one point explains none of the returns.
+  const auto& without = lasting_model_image<FixedPoint>(7);
+  ModelHeader header;
+  const auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
+  ASSERT_EQ(read_model_image<FixedPoint>(without.data(), without.size(), nullptr, header, *weights),
+            ModelStatus::kOk);
+  std::vector<std::uint8_t> surface(SurfaceModel::kBytes), image(without.size());
+  surface[0] = 1;
+  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, image.data(), image.size(), surface.data()),
+            image.size());
+  ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
+  const std::uint32_t constants = estimator->constants_crc32();
+  EXPECT_TRUE(step(next()).estimate.explained.is_known);
+  EXPECT_EQ(outcome.estimate.explained.unexplained, kWholeShare);
+  EXPECT_EQ(outcome.doubts & kUnexplained, kUnexplained);
+  EXPECT_FALSE(outcome.valid());
+  estimator->reload(image.data());
+  EXPECT_EQ(estimator->constants_crc32(), constants);
+}
+
 // Verifies TS-EST-184.
 TEST_F(Tracking, PredictionTurnsWithTheChaser) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));

@@ -47,6 +47,7 @@ TEST_F(QuantizeTest, WritesAnImageThatTheFlightEstimatorLoads) {
   ASSERT_EQ(estimator->load(image.data(), image.size(), gnc::test_header().target.data()),
             gnc::ModelStatus::kOk);
   EXPECT_EQ(estimator->model().crc32, report->crc32);
+  EXPECT_GT(gnc::surface_of<gnc::FixedPoint>(image.data()).points(), 1900U);
 }
 
 // Verifies TS-TRN-020.

@@ -1,0 +1,333 @@
+#include "gnc/registration/explained_share.hpp"
+
+#include "gnc/numerics/division.hpp"
+#include "gnc/numerics/functions.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+using Scratch = ExplainedShareScratch;
+constexpr int kSide = Scratch::kSide;
+constexpr int kBorder = Scratch::kBorder;
+constexpr std::int16_t kEmpty = Scratch::kEmpty;
+static_assert(2 * kSide == DepthImage::kSide);
+
+// The attitude in the units of the drawing.
+struct Drawing {
+  std::array<std::int32_t, 3> right, down;  // row vectors: position to cells in Q8, after >> 16
+  std::array<std::int32_t, 3> away;         // position to depth and normal to Q8, Q1.14
+  std::int32_t distance_q4;                 // of the centroid, in radii
+};
+
+// Three products of a position with a row vector stay within 32 bits up to this element.
+constexpr std::int32_t kMostCellsPerRadius = 21'800;
+// Least cosine of the incidence at which a point is drawn, times 127 * 256.
+constexpr std::int32_t kLeastFacing = 3251;  // 0.1
+
+Drawing make_drawing(const DepthImage& image, const DepthProjection& projection,
+                     const Matrix3<Fixed>& r_lrf_trf) {
+  const Matrix3<Fixed> r_view_trf = transpose_product<Fixed>(image.r_lrf_view, r_lrf_trf);
+  // Cells per radius in Q24, over 32767.
+  const std::int64_t scale =
+      divide((std::int64_t{projection.target_radius_mm} * kSide) << 24,
+             std::int64_t{max<std::uint32_t>(projection.swath_mm, 1)} * SurfaceModel::kRadius);
+  const auto cells = [scale](Fixed element) {
+    const std::int64_t scaled = (std::int64_t{element.raw()} * scale) >> 24;
+    return static_cast<std::int32_t>(clamp<std::int64_t>(scaled, -kMostCellsPerRadius, kMostCellsPerRadius));
+  };
+  Drawing drawing;
+  for (int i = 0; i < 3; ++i) {
+    drawing.right[i] = cells(r_view_trf(0, i));
+    drawing.down[i] = cells(-r_view_trf(2, i));
+    drawing.away[i] = static_cast<std::int32_t>(
+        clamp<std::int64_t>((std::int64_t{r_view_trf(1, i).raw()} + 512) >> 10, -16384, 16384));
+  }
+  const std::int64_t distance = divide(std::int64_t{max(image.centroid_distance_mm, 0)} * 16,
+                                       max<std::uint32_t>(projection.target_radius_mm, 1));
+  drawing.distance_q4 = static_cast<std::int32_t>(clamp<std::int64_t>(distance, 1, 4095));
+  return drawing;
+}
+
+template <class Number>
+std::int32_t product(const std::array<Number, 3>& a, const std::array<std::int32_t, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// Whether the first of two rows or columns and the one after it are in the drawing.
+bool is_in_drawing(std::int32_t first) {
+  return is_less(-1, first) & is_less(first, kSide + 1);
+}
+bool is_in_image(std::int32_t index) {
+  return is_less(-1, index) & is_less(index, kSide);
+}
+
+// Draws the points that face the sensor, each into the 2 x 2 cells around it; the nearest one stays.
+void draw(const Drawing& drawing, const SurfaceModel& surface, Scratch& scratch) {
+  scratch.drawn.fill(kEmpty);
+  for (int i = 0; i < SurfaceModel::kMaxPoints; ++i) {
+    const SurfacePoint point = surface.point(i);
+    const auto& [x, y, z] = point.position;
+    // Cosine of the incidence times the distance, by the direction from the sensor to the point.
+    const std::int32_t from_origin = (x * point.normal[0] + y * point.normal[1] + z * point.normal[2]) >> 7;
+    const std::int32_t away = product(point.normal, drawing.away) >> 6;
+    const bool faces = is_less(16 * from_origin + drawing.distance_q4 * (away + kLeastFacing), 0);
+    const std::int32_t depth =
+        clamp<std::int32_t>(product(point.position, drawing.away) >> 14, -kEmpty, kEmpty - 1);
+    // The first of the two rows and columns, counted from the border.
+    const std::int32_t column =
+        ((product(point.position, drawing.right) >> 16) + 256 * (kSide / 2) + 128) >> 8;
+    const std::int32_t row = ((product(point.position, drawing.down) >> 16) + 256 * (kSide / 2) + 128) >> 8;
+    const auto shown =
+        static_cast<std::int16_t>(select(faces & is_in_drawing(row) & is_in_drawing(column), depth, kEmpty));
+    const std::int32_t first =
+        clamp<std::int32_t>(row, 0, kSide) * Scratch::kDrawnSide + clamp<std::int32_t>(column, 0, kSide);
+    for (const std::int32_t cell :
+         {first, first + 1, first + Scratch::kDrawnSide, first + Scratch::kDrawnSide + 1}) {
+      std::int16_t& there = scratch.drawn[static_cast<std::size_t>(cell)];
+      there = min(there, shown);
+    }
+  }
+}
+
+// Mean depth of the cells with returns in each 2 x 2 cells of the image.
+void reduce(const DepthImage& image, Scratch::Cells& seen) {
+  constexpr std::array<std::int32_t, 5> kInverse{0, 65536, 32768, 21845, 16384};
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      const std::uint16_t* at =
+          &image.depth[static_cast<std::size_t>(2 * row * DepthImage::kSide + 2 * column)];
+      std::int32_t sum = 0;
+      std::uint32_t count = 0;
+      for (const std::uint16_t value : {at[0], at[1], at[DepthImage::kSide], at[DepthImage::kSide + 1]}) {
+        const auto filled = less_mask<std::int32_t>(0, value);
+        sum += (32768 - value) & filled;
+        count += static_cast<std::uint32_t>(filled & 1);
+      }
+      const auto mean = static_cast<std::int32_t>((std::int64_t{sum} * kInverse[count]) >> 16);
+      seen[static_cast<std::size_t>(row * kSide + column)] = static_cast<std::int16_t>(
+          select(is_less<std::uint32_t>(0, count), clamp<std::int32_t>(mean, -kEmpty, kEmpty - 1), kEmpty));
+    }
+  }
+}
+
+// The middle of the drawn cells, as a number of cells from the middle of the image.
+struct Offset {
+  std::int32_t right, down;
+};
+Offset middle_of(const Scratch& scratch) {
+  std::int32_t count = 0, right = 0, down = 0;
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      const std::int16_t depth =
+          scratch.drawn[static_cast<std::size_t>((row + 1) * Scratch::kDrawnSide + column + 1)];
+      const std::int32_t filled = less_mask<std::int32_t>(depth, kEmpty);
+      count -= filled;
+      right += (2 * column + 1 - kSide) & filled;
+      down += (2 * row + 1 - kSide) & filled;
+    }
+  }
+  const std::int64_t divisor = 2 * max(count, 1);
+  // To the nearest, halves up.
+  const auto cells = [divisor](std::int32_t sum) {
+    const std::int64_t positive = std::int64_t{sum} + divisor / 2 + kSide * divisor;
+    return static_cast<std::int32_t>(divide(positive, divisor)) - kSide;
+  };
+  return {cells(right), cells(down)};
+}
+
+// The drawing with its middle in the middle of the image.
+void take_centred(const Offset& middle, Scratch& scratch) {
+  for (int row = 0; row < kSide; ++row) {
+    const std::int32_t from_row = clamp<std::int32_t>(row + middle.down, -1, kSide) + 1;
+    for (int column = 0; column < kSide; ++column) {
+      const std::int32_t from_column = clamp<std::int32_t>(column + middle.right, -1, kSide) + 1;
+      const std::int16_t depth =
+          scratch.drawn[static_cast<std::size_t>(from_row * Scratch::kDrawnSide + from_column)];
+      const bool inside = is_in_image(row + middle.down) & is_in_image(column + middle.right);
+      scratch.expected[static_cast<std::size_t>(row * kSide + column)] =
+          static_cast<std::int16_t>(select<std::int32_t>(inside, depth, kEmpty));
+    }
+  }
+}
+
+void make_rows(const Scratch::Cells& cells, Scratch::Rows& rows, Scratch::Rows& near_rows) {
+  rows.fill(0);
+  for (int row = 0; row < kSide; ++row) {
+    // In two halves, which fit into a register of 32 bits each.
+    std::array<std::uint32_t, 2> half{};
+    for (int column = 0; column < kSide; ++column) {
+      const std::uint32_t bit = static_cast<std::uint32_t>(
+          less_mask<std::int32_t>(cells[static_cast<std::size_t>(row * kSide + column)], kEmpty) & 1);
+      half[column / (kSide / 2)] |= bit << (column % (kSide / 2));
+    }
+    rows[static_cast<std::size_t>(row + kBorder)] =
+        (std::uint64_t{half[0]} << Scratch::kFirstBit) |
+        (std::uint64_t{half[1]} << (Scratch::kFirstBit + kSide / 2));
+  }
+  for (int row = 0; row < Scratch::kRows; ++row) {
+    const auto at = static_cast<std::size_t>(row);
+    const std::uint64_t above = row > 0 ? rows[at - 1] : 0,
+                        below = row + 1 < Scratch::kRows ? rows[at + 1] : 0;
+    near_rows[at] = rows[at] | (rows[at] << 1) | (rows[at] >> 1) | above | below;
+  }
+}
+
+// Counts the bits of many words: one number per byte, at most 31 words.
+class BitCounter {
+ public:
+  void add(std::uint64_t word) {
+    word -= (word >> 1) & 0x5555555555555555;
+    word = (word & 0x3333333333333333) + ((word >> 2) & 0x3333333333333333);
+    bytes_ += (word + (word >> 4)) & 0x0F0F0F0F0F0F0F0F;
+  }
+  std::int32_t value() const {
+    const std::uint64_t pairs = (bytes_ & 0x00FF00FF00FF00FF) + ((bytes_ >> 8) & 0x00FF00FF00FF00FF);
+    const auto low = static_cast<std::uint32_t>(pairs), high = static_cast<std::uint32_t>(pairs >> 32);
+    const std::uint32_t sums = low + high;
+    return static_cast<std::int32_t>((sums & 0xFFFF) + (sums >> 16));
+  }
+
+ private:
+  std::uint64_t bytes_ = 0;
+};
+
+constexpr std::uint64_t kImageBits = ((std::uint64_t{1} << kSide) - 1) << Scratch::kFirstBit;
+
+// Number of bits that are set in `a` and not in `b`, with `b` moved down by `down` rows, within the image.
+std::int32_t count_without(const Scratch::Rows& a, int a_down, const Scratch::Rows& b, int b_down) {
+  std::int32_t sum = 0;
+  for (int first = 0; first < kSide; first += kSide / 2) {
+    BitCounter counter;
+    for (int row = first; row < first + kSide / 2; ++row) {
+      counter.add(a[static_cast<std::size_t>(row + kBorder - a_down)] &
+                  ~b[static_cast<std::size_t>(row + kBorder - b_down)] & kImageBits);
+    }
+    sum += counter.value();
+  }
+  return sum;
+}
+
+void move_left(int columns, Scratch::Rows& rows) {
+  for (std::uint64_t& row : rows) row >>= columns;
+}
+void move_right_by_one(Scratch::Rows& rows) {
+  for (std::uint64_t& row : rows) row <<= 1;
+}
+
+// Where the drawing fits best, and the cells that do not fit there.
+struct Fit {
+  std::int32_t cost = 0x7FFFFFFF;
+  std::int32_t right = 0, down = 0;  // by which the drawing is moved
+  std::int32_t unexplained = 0, missing = 0;
+};
+
+// `seen`, `expected`: numbers of cells. Moves the expected rows by kBorder columns to the right.
+Fit find_fit(std::int32_t seen, std::int32_t expected, Scratch& scratch) {
+  Fit best;
+  move_left(kBorder, scratch.expected_rows);
+  move_left(kBorder, scratch.near_expected_rows);
+  for (int right = -kBorder; right <= kBorder; ++right) {
+    for (int down = -kBorder; down <= kBorder; ++down) {
+      const std::int32_t unexplained = count_without(scratch.seen_rows, 0, scratch.near_expected_rows, down);
+      const std::int32_t missing = count_without(scratch.expected_rows, down, scratch.near_seen_rows, 0);
+      const std::int32_t cost = 16 * unexplained * expected + 5 * missing * seen + abs(right) + abs(down);
+      const bool better = is_less(cost, best.cost);
+      best.cost = select(better, cost, best.cost);
+      best.right = select(better, static_cast<std::int32_t>(right), best.right);
+      best.down = select(better, static_cast<std::int32_t>(down), best.down);
+      best.unexplained = select(better, unexplained, best.unexplained);
+      best.missing = select(better, missing, best.missing);
+    }
+    move_right_by_one(scratch.expected_rows);
+    move_right_by_one(scratch.near_expected_rows);
+  }
+  return best;
+}
+
+// Calls visit(difference of the depths, whether both cells have one) for each cell.
+template <class Visitor>
+void for_each_cell(const Fit& fit, const Scratch& scratch, Visitor&& visit) {
+  for (int row = 0; row < kSide; ++row) {
+    const std::int32_t from_row = row - fit.down;
+    for (int column = 0; column < kSide; ++column) {
+      const std::int32_t from_column = column - fit.right;
+      const bool inside = is_in_image(from_row) & is_in_image(from_column);
+      const std::int32_t from = clamp<std::int32_t>(from_row, 0, kSide - 1) * kSide +
+                                clamp<std::int32_t>(from_column, 0, kSide - 1);
+      const std::int32_t seen = scratch.seen[static_cast<std::size_t>(row * kSide + column)];
+      const std::int32_t expected = scratch.expected[static_cast<std::size_t>(from)];
+      visit(seen - expected, inside & is_less(seen, kEmpty) & is_less(expected, kEmpty));
+    }
+  }
+}
+
+// Median of the differences, in steps of a 64th of the radius: the distance from the TRF's origin to the
+// centroid of the returns, along the view axis.
+std::int32_t median_difference(const Fit& fit, std::int32_t& count, Scratch& scratch) {
+  constexpr int kBinBits = 9;
+  scratch.histogram.fill(0);
+  count = 0;
+  for_each_cell(fit, scratch, [&](std::int32_t difference, bool both) {
+    const std::int32_t bin = clamp<std::int32_t>((difference + 65536) >> kBinBits, 0, 255);
+    scratch.histogram[static_cast<std::size_t>(bin)] =
+        static_cast<std::uint16_t>(scratch.histogram[static_cast<std::size_t>(bin)] + both);
+    count += both;
+  });
+  std::int32_t below = 0, median = 0;
+  for (int bin = 0; bin < 256; ++bin) {
+    below += scratch.histogram[static_cast<std::size_t>(bin)];
+    median += less_mask<std::int32_t>(2 * below, count) & 1;
+  }
+  return (median << kBinBits) + (1 << (kBinBits - 1)) - 65536;
+}
+
+// 2.5 standard deviations of the difference of two depths: the paper's noise of a range, over the mean of the
+// 6.5 rays of a cell, and 3 % of the radius for the sampled surface.
+std::int32_t depth_limit(const DepthImage& image, const DepthProjection& projection) {
+  const std::int64_t sigma_mm = 100 + image.centroid_distance_mm / 100;
+  const std::int64_t radius_mm = max<std::uint32_t>(projection.target_radius_mm, 1);
+  const std::int64_t of_mean_q8 = sigma_mm * 100, of_surface_q8 = radius_mm * 8;  // mm / 256
+  const std::uint32_t sigma_q8 =
+      integer_sqrt(static_cast<std::uint64_t>(of_mean_q8 * of_mean_q8 + of_surface_q8 * of_surface_q8));
+  const std::int64_t limit = divide(std::int64_t{sigma_q8} * 5 * SurfaceModel::kRadius, radius_mm * 512);
+  return static_cast<std::int32_t>(clamp<std::int64_t>(limit, 1, 65535));
+}
+
+std::uint32_t share_of(std::int64_t part, std::int32_t whole) {
+  return static_cast<std::uint32_t>(divide(part * kWholeShare, max(whole, 1)));
+}
+
+}  // namespace
+
+ExplainedShare explained_share(const DepthImage& image, const DepthProjection& projection,
+                               const Matrix3<Fixed>& r_lrf_trf, const SurfaceModel& surface,
+                               ExplainedShareScratch& scratch) {
+  ExplainedShare share;
+  share.is_known = surface.is_known();
+  if (!share.is_known) return share;
+  draw(make_drawing(image, projection, r_lrf_trf), surface, scratch);
+  reduce(image, scratch.seen);
+  take_centred(middle_of(scratch), scratch);
+  make_rows(scratch.seen, scratch.seen_rows, scratch.near_seen_rows);
+  make_rows(scratch.expected, scratch.expected_rows, scratch.near_expected_rows);
+  static constexpr Scratch::Rows kNone{};
+  const std::int32_t seen = count_without(scratch.seen_rows, 0, kNone, 0);
+  const std::int32_t expected = count_without(scratch.expected_rows, 0, kNone, 0);
+  const Fit fit = find_fit(seen, expected, scratch);
+
+  std::int32_t both = 0;
+  const std::int32_t median = median_difference(fit, both, scratch);
+  const std::int32_t limit = depth_limit(image, projection);
+  std::int64_t apart = 0;
+  for_each_cell(fit, scratch, [&](std::int32_t difference, bool counts) {
+    apart += select(counts, min(abs(difference - median), limit), 0);
+  });
+  share.unexplained = share_of(fit.unexplained, seen);
+  share.missing = share_of(fit.missing, expected);
+  // Without a cell in common nothing is explained.
+  share.depth_misfit =
+      select(is_less(0, both), share_of(divide(apart * 256, limit), both * 256), kWholeShare);
+  return share;
+}
+
+}  // namespace tumblesight::gnc

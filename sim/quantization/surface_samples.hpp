@@ -1,0 +1,21 @@
+// The target's surface for the model image (gnc/registration/surface_model.hpp), sampled from its mesh.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/world/target/triangle_mesh.hpp"
+
+namespace tumblesight::sim {
+
+// The section of a model image: SurfaceModel::kBytes. `radius_m`: the target radius of the image's header;
+// coordinates beyond it are limited to it.
+//
+// Random points on the triangles, uniform over the area, on both sides. Those that two of 150 directions see,
+// at an incidence below 60 degrees, stay: the mesh need not be watertight, and nothing inside it counts. Of
+// these, in random order, a point is taken if no other one taken is within the spacing on a surface within 60
+// degrees of its direction. The spacing is the smallest that leaves at most SurfaceModel::kMaxPoints.
+// Deterministic. Throws std::invalid_argument for a mesh without triangles.
+std::vector<std::uint8_t> surface_section(const TriangleMesh& mesh, double radius_m);
+
+}  // namespace tumblesight::sim
