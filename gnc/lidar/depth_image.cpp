@@ -194,6 +194,9 @@ FrameStatus status_of(const ReturnSummary& summary) {
 // or one of the last places.
 int skip_known(const RangeImage& frame, int next, int rays, std::uint32_t known) {
   const auto is_known = [known](std::uint32_t pair) { return pair == 0 || pair == known; };
+  while (next + 8 <= rays && (pair_at(frame, next) | pair_at(frame, next + 2) | pair_at(frame, next + 4) |
+                              pair_at(frame, next + 6)) == 0)
+    next += 8;
   while (next + 4 <= rays && is_known(pair_at(frame, next)) && is_known(pair_at(frame, next + 2))) next += 4;
   return next;
 }

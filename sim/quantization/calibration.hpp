@@ -17,8 +17,8 @@ using ImageSequence = std::vector<gnc::DepthImage>;
 
 // Calibration sequence `number`: ten frames; meshes and calibration_conditions() take turns. Neither training
 // nor evaluation uses its seed. The sequence ends before a frame in which the sensor sees too little of the
-// target. `lidars`: of the bodies that are observed (observed_bodies()). `seen`: its sensor, ranges, period and
-// effects.
+// target. `lidars`: of the bodies that are observed (observed_bodies()). `seen`: its sensor, ranges, period
+// and effects.
 ImageSequence calibration_sequence(const std::vector<const FlashLidar*>& lidars,
                                    const gnc::DepthProjection& projection, std::uint64_t number,
                                    const ScenarioSettings& seen = {});

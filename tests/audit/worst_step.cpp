@@ -300,14 +300,19 @@ void steps_with_a_frame() {
 // The most rays, after the longest coast, which the track propagates in steps. A track of a single frame
 // knows no rate, and has its prediction confirmed or starts anew.
 enum class Rate { kKnown, kUnknown };
-void step_after_the_longest_coast(Rate rate) {
+// A small target is resampled, and in the last corner its returns are found last.
+enum class Scene { kFillsTheView, kSmallInTheLastCorner };
+void step_after_the_longest_coast(Rate rate, Scene scene) {
   static gnc::RangeImage recorded;
   recorded = frame;
   frame.rays = gnc::RangeImage::kMaxRays;
+  const std::size_t side = scene == Scene::kFillsTheView ? frame.rays : frame.rays / 2;
+  const std::size_t first = frame.rays - side;
   for (std::size_t i = 0; i < frame.ranges.size(); ++i) {
-    const std::size_t row = i / frame.rays * recorded.rays / frame.rays;
-    const std::size_t column = i % frame.rays * recorded.rays / frame.rays;
-    frame.ranges[i] = recorded.ranges[row * recorded.rays + column];
+    const std::size_t row = i / frame.rays, column = i % frame.rays;
+    const std::size_t recorded_ray =
+        (row - first) * recorded.rays / side * recorded.rays + (column - first) * recorded.rays / side;
+    frame.ranges[i] = row < first || column < first ? 0 : recorded.ranges[recorded_ray];
   }
   constexpr config::ParameterRule kCoast = config::rule_of(Parameter::kLongestCoast_ms);
   set_parameter(Parameter::kLongestCoast_ms, kCoast.highest);
@@ -413,8 +418,8 @@ int run() {
   step("quiet");
   expect(app.mode() == Mode::kRun, "the model was refused");
   steps_with_a_frame();
-  step_after_the_longest_coast(Rate::kKnown);
-  step_after_the_longest_coast(Rate::kUnknown);
+  for (const Scene scene : {Scene::kFillsTheView, Scene::kSmallInTheLastCorner})
+    for (const Rate rate : {Rate::kKnown, Rate::kUnknown}) step_after_the_longest_coast(rate, scene);
   repairs();
   model_commands();
   bank_switches();

@@ -64,8 +64,8 @@ TEST_F(QuantizeTest, KeepsTheSignalOfEveryLayer) {
 TEST(QuantizeShipped, NearKeepsTheSignalOfEveryLayerBeforeTheHypotheses) {
   const auto model = read_float32_model(TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.float32.tsm");
   const TemporaryFolder folder;
-  const QuantizationReport report = quantize_to_file(*model, {make_near_shoemaker()}, 20,
-                                                     folder.path("near.tsm"), [](std::uint64_t) {});
+  const QuantizationReport report =
+      quantize_to_file(*model, {make_near_shoemaker()}, 20, folder.path("near.tsm"), [](std::uint64_t) {});
   for (const LayerReport& layer : report.layers) {
     // The layers after the choice of a hypothesis are left out: that choice may differ between the numerics.
     if (gnc::layer_index(layer.layer.c_str()) >= gnc::kLstmLayer) continue;
