@@ -12,6 +12,14 @@ constexpr int kBorder = Scratch::kBorder;
 constexpr std::int16_t kEmpty = Scratch::kEmpty;
 static_assert(2 * kSide == DepthImage::kSide);
 
+// is_less() and clamp() of numbers whose difference fits into 31 bits.
+constexpr bool is_below(std::int32_t a, std::int32_t b) {
+  return (sign_mask(a - b) & 1) != 0;
+}
+constexpr std::int32_t clamp_small(std::int32_t value, std::int32_t low, std::int32_t high) {
+  return min_small(high, max_small(low, value));
+}
+
 // The attitude in the units of the drawing.
 struct Drawing {
   std::array<std::int32_t, 3> right, down;  // row vectors: position to cells in Q8, after >> 16
@@ -55,10 +63,10 @@ std::int32_t product(const std::array<Number, 3>& a, const std::array<std::int32
 
 // Whether the first of two rows or columns and the one after it are in the drawing.
 bool is_in_drawing(std::int32_t first) {
-  return is_less(-1, first) & is_less(first, kSide + 1);
+  return is_below(-1, first) & is_below(first, kSide + 1);
 }
 bool is_in_image(std::int32_t index) {
-  return is_less(-1, index) & is_less(index, kSide);
+  return is_below(-1, index) & is_below(index, kSide);
 }
 
 // Draws the points that face the sensor, each into the 2 x 2 cells around it; the nearest one stays.
@@ -70,9 +78,9 @@ void draw(const Drawing& drawing, const SurfaceModel& surface, Scratch& scratch)
     // Cosine of the incidence times the distance, by the direction from the sensor to the point.
     const std::int32_t from_origin = (x * point.normal[0] + y * point.normal[1] + z * point.normal[2]) >> 7;
     const std::int32_t away = product(point.normal, drawing.away) >> 6;
-    const bool faces = is_less(16 * from_origin + drawing.distance_q4 * (away + kLeastFacing), 0);
+    const bool faces = is_below(16 * from_origin + drawing.distance_q4 * (away + kLeastFacing), 0);
     const std::int32_t depth =
-        clamp<std::int32_t>(product(point.position, drawing.away) >> 14, -kEmpty, kEmpty - 1);
+        clamp_small(product(point.position, drawing.away) >> 14, -kEmpty, kEmpty - 1);
     // The first of the two rows and columns, counted from the border.
     const std::int32_t column =
         ((product(point.position, drawing.right) >> 16) + 256 * (kSide / 2) + 128) >> 8;
@@ -80,7 +88,7 @@ void draw(const Drawing& drawing, const SurfaceModel& surface, Scratch& scratch)
     const auto shown =
         static_cast<std::int16_t>(select(faces & is_in_drawing(row) & is_in_drawing(column), depth, kEmpty));
     const std::int32_t first =
-        clamp<std::int32_t>(row, 0, kSide) * Scratch::kDrawnSide + clamp<std::int32_t>(column, 0, kSide);
+        clamp_small(row, 0, kSide) * Scratch::kDrawnSide + clamp_small(column, 0, kSide);
     for (const std::int32_t cell :
          {first, first + 1, first + Scratch::kDrawnSide, first + Scratch::kDrawnSide + 1}) {
       std::int16_t& there = scratch.drawn[static_cast<std::size_t>(cell)];
@@ -99,13 +107,13 @@ void reduce(const DepthImage& image, Scratch::Cells& seen) {
       std::int32_t sum = 0;
       std::uint32_t count = 0;
       for (const std::uint16_t value : {at[0], at[1], at[DepthImage::kSide], at[DepthImage::kSide + 1]}) {
-        const auto filled = less_mask<std::int32_t>(0, value);
+        const auto filled = sign_mask(-std::int32_t{value});
         sum += (32768 - value) & filled;
         count += static_cast<std::uint32_t>(filled & 1);
       }
       const auto mean = static_cast<std::int32_t>((std::int64_t{sum} * kInverse[count]) >> 16);
       seen[static_cast<std::size_t>(row * kSide + column)] = static_cast<std::int16_t>(
-          select(is_less<std::uint32_t>(0, count), clamp<std::int32_t>(mean, -kEmpty, kEmpty - 1), kEmpty));
+          select(is_less<std::uint32_t>(0, count), clamp_small(mean, -kEmpty, kEmpty - 1), kEmpty));
     }
   }
 }
@@ -120,7 +128,7 @@ Offset middle_of(const Scratch& scratch) {
     for (int column = 0; column < kSide; ++column) {
       const std::int16_t depth =
           scratch.drawn[static_cast<std::size_t>((row + 1) * Scratch::kDrawnSide + column + 1)];
-      const std::int32_t filled = less_mask<std::int32_t>(depth, kEmpty);
+      const std::int32_t filled = sign_mask(depth - kEmpty);
       count -= filled;
       right += (2 * column + 1 - kSide) & filled;
       down += (2 * row + 1 - kSide) & filled;
@@ -138,9 +146,9 @@ Offset middle_of(const Scratch& scratch) {
 // The drawing with its middle in the middle of the image.
 void take_centred(const Offset& middle, Scratch& scratch) {
   for (int row = 0; row < kSide; ++row) {
-    const std::int32_t from_row = clamp<std::int32_t>(row + middle.down, -1, kSide) + 1;
+    const std::int32_t from_row = clamp_small(row + middle.down, -1, kSide) + 1;
     for (int column = 0; column < kSide; ++column) {
-      const std::int32_t from_column = clamp<std::int32_t>(column + middle.right, -1, kSide) + 1;
+      const std::int32_t from_column = clamp_small(column + middle.right, -1, kSide) + 1;
       const std::int16_t depth =
           scratch.drawn[static_cast<std::size_t>(from_row * Scratch::kDrawnSide + from_column)];
       const bool inside = is_in_image(row + middle.down) & is_in_image(column + middle.right);
@@ -157,7 +165,7 @@ void make_rows(const Scratch::Cells& cells, Scratch::Rows& rows, Scratch::Rows& 
     std::array<std::uint32_t, 2> half{};
     for (int column = 0; column < kSide; ++column) {
       const std::uint32_t bit = static_cast<std::uint32_t>(
-          less_mask<std::int32_t>(cells[static_cast<std::size_t>(row * kSide + column)], kEmpty) & 1);
+          sign_mask(cells[static_cast<std::size_t>(row * kSide + column)] - kEmpty) & 1);
       half[column / (kSide / 2)] |= bit << (column % (kSide / 2));
     }
     rows[static_cast<std::size_t>(row + kBorder)] =
@@ -231,7 +239,7 @@ Fit find_fit(std::int32_t seen, std::int32_t expected, Scratch& scratch) {
       const std::int32_t unexplained = count_without(scratch.seen_rows, 0, scratch.near_expected_rows, down);
       const std::int32_t missing = count_without(scratch.expected_rows, down, scratch.near_seen_rows, 0);
       const std::int32_t cost = 16 * unexplained * expected + 5 * missing * seen + abs(right) + abs(down);
-      const bool better = is_less(cost, best.cost);
+      const bool better = is_below(cost, best.cost);
       best.cost = select(better, cost, best.cost);
       best.right = select(better, static_cast<std::int32_t>(right), best.right);
       best.down = select(better, static_cast<std::int32_t>(down), best.down);
@@ -252,11 +260,11 @@ void for_each_cell(const Fit& fit, const Scratch& scratch, Visitor&& visit) {
     for (int column = 0; column < kSide; ++column) {
       const std::int32_t from_column = column - fit.right;
       const bool inside = is_in_image(from_row) & is_in_image(from_column);
-      const std::int32_t from = clamp<std::int32_t>(from_row, 0, kSide - 1) * kSide +
-                                clamp<std::int32_t>(from_column, 0, kSide - 1);
+      const std::int32_t from = clamp_small(from_row, 0, kSide - 1) * kSide +
+                                clamp_small(from_column, 0, kSide - 1);
       const std::int32_t seen = scratch.seen[static_cast<std::size_t>(row * kSide + column)];
       const std::int32_t expected = scratch.expected[static_cast<std::size_t>(from)];
-      visit(seen - expected, inside & is_less(seen, kEmpty) & is_less(expected, kEmpty));
+      visit(seen - expected, inside & is_below(seen, kEmpty) & is_below(expected, kEmpty));
     }
   }
 }
@@ -268,7 +276,7 @@ std::int32_t median_difference(const Fit& fit, std::int32_t& count, Scratch& scr
   scratch.histogram.fill(0);
   count = 0;
   for_each_cell(fit, scratch, [&](std::int32_t difference, bool both) {
-    const std::int32_t bin = clamp<std::int32_t>((difference + 65536) >> kBinBits, 0, 255);
+    const std::int32_t bin = clamp_small((difference + 65536) >> kBinBits, 0, 255);
     scratch.histogram[static_cast<std::size_t>(bin)] =
         static_cast<std::uint16_t>(scratch.histogram[static_cast<std::size_t>(bin)] + both);
     count += both;
@@ -276,7 +284,7 @@ std::int32_t median_difference(const Fit& fit, std::int32_t& count, Scratch& scr
   std::int32_t below = 0, median = 0;
   for (int bin = 0; bin < 256; ++bin) {
     below += scratch.histogram[static_cast<std::size_t>(bin)];
-    median += less_mask<std::int32_t>(2 * below, count) & 1;
+    median += sign_mask(2 * below - count) & 1;
   }
   return (median << kBinBits) + (1 << (kBinBits - 1)) - 65536;
 }
@@ -320,7 +328,7 @@ ExplainedShare explained_share(const DepthImage& image, const DepthProjection& p
   const std::int32_t limit = depth_limit(image, projection);
   std::int64_t apart = 0;
   for_each_cell(fit, scratch, [&](std::int32_t difference, bool counts) {
-    apart += select(counts, min(abs(difference - median), limit), 0);
+    apart += select(counts, min_small(abs(difference - median), limit), 0);
   });
   share.unexplained = share_of(fit.unexplained, seen);
   share.missing = share_of(fit.missing, expected);

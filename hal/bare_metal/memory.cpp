@@ -12,17 +12,23 @@ bool both_aligned(const void* a, const void* b) {
   return ((reinterpret_cast<std::uintptr_t>(a) | reinterpret_cast<std::uintptr_t>(b)) % kWord) == 0;
 }
 
+template <int kWords>
+void copy_words(const std::uint8_t* in, std::uint8_t* out) {
+#pragma GCC unroll 8
+  for (int i = 0; i < kWords; ++i) reinterpret_cast<Word*>(out)[i] = reinterpret_cast<const Word*>(in)[i];
+}
+
 }  // namespace
 
 extern "C" {
 
-void* memcpy(void* __restrict to, const void* __restrict from, std::size_t size) {
+void* memcpy(void* to, const void* from, std::size_t size) {
   auto* out = static_cast<std::uint8_t*>(to);
   const auto* in = static_cast<const std::uint8_t*>(from);
   if (both_aligned(to, from)) {
-    for (; size >= kWord; size -= kWord, in += kWord, out += kWord) {
-      *reinterpret_cast<Word*>(out) = *reinterpret_cast<const Word*>(in);
-    }
+    constexpr std::size_t kBlock = 8 * kWord;
+    for (; size >= kBlock; size -= kBlock, in += kBlock, out += kBlock) copy_words<8>(in, out);
+    for (; size >= kWord; size -= kWord, in += kWord, out += kWord) copy_words<1>(in, out);
   }
   while (size-- > 0) *out++ = *in++;
   return to;

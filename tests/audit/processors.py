@@ -33,7 +33,7 @@ class Processor:
     name: str  # of the preset and the toolchain file
     clock_mhz: int
     part: str  # the part that has this clock
-    instructions_per_mac: float  # limit, of a whole step in fixed point
+    instructions_e6: float  # limit, of a whole step in fixed point [millions]
     share_of_period: float  # limit, same
 
     @property
@@ -65,15 +65,15 @@ class Processor:
 
 # Verifies TS-TIM-010, TS-TIM-020, TS-TIM-030, TS-TIM-040.
 ALL = (
-    Processor("cortex-a53", 1200, "Zynq UltraScale+; dual issue, in order", 0.36, 0.10),
-    Processor("cortex-a9", 667, "Zynq-7000; dual issue, NEON in order", 0.7, 0.10),
-    Processor("rv64gc", 600, "PolarFire SoC, U54; single issue, in order", 3.0, 0.50),
-    Processor("ppc750", 133, "RAD750; dual issue, out of order", 3.0, 0.50),
-    Processor("cortex-m7", 100, "SAMRH71; dual issue, in order", 1.2, 0.25),
-    Processor("cortex-r5f", 500, "Zynq UltraScale+; dual issue, in order", 1.25, 0.25),
-    Processor("rv64", 600, "PolarFire SoC, U54; single issue, in order", 3.0, 0.50),
+    Processor("cortex-a53", 1200, "Zynq UltraScale+; dual issue, in order", 13.6, 0.10),
+    Processor("cortex-a9", 667, "Zynq-7000; dual issue, NEON in order", 24.5, 0.10),
+    Processor("rv64gc", 600, "PolarFire SoC, U54; single issue, in order", 105, 0.50),
+    Processor("ppc750", 133, "RAD750; dual issue, out of order", 105, 0.50),
+    Processor("cortex-m7", 100, "SAMRH71; dual issue, in order", 44, 0.25),
+    Processor("cortex-r5f", 500, "Zynq UltraScale+; dual issue, in order", 44, 0.25),
+    Processor("rv64", 600, "PolarFire SoC, U54; single issue, in order", 105, 0.50),
     Processor("leon3", 100, "GR712RC class; single issue, in order, with the pipelined 32×32-bit multiplier (with the 16×16-bit one "
-              "a product takes four cycles, and a step about 70 % of the period)", 3.0, 0.50),
+              "a product takes four cycles, and a step about 70 % of the period)", 105, 0.50),
 )
 
 

@@ -32,7 +32,7 @@ class Failures(unittest.TestCase):
     def test_each_limit_is_reported(self):
         for changes, words in (({"digest_is_golden": False}, "digest"), ({"equal_counts": False}, "depends on the frame"),
                                ({"forbidden": {"heap": ["malloc"]}}, "malloc"), ({"floating_point": ["f()"]}, "floating point"),
-                               ({"instructions": 1201}, "per MAC"), ({"ram": 101}, "ram"), ({"stack": 11}, "stack")):
+                               ({"instructions": 44_000_001}, "per step"), ({"ram": 101}, "ram"), ({"stack": 11}, "stack")):
             with self.subTest(changes):
                 wrong = self.of(**changes)
                 self.assertEqual(len(wrong), 1)
