@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "gnc/numerics/select.hpp"
+
 namespace tumblesight::gnc {
 namespace {
 
@@ -60,7 +62,7 @@ std::uint16_t range_in(const std::uint16_t* ranges, const SensorRays& sensor, co
   }
   constexpr float kLargest = 65535.0F;
   if (nearest == 0.0F) return 0;
-  return static_cast<std::uint16_t>(nearest < 1.0F ? 1.0F : std::fmin(kLargest, nearest + 0.5F));
+  return static_cast<std::uint16_t>(nearest < 1.0F ? 1.0F : min(kLargest, nearest + 0.5F));
 }
 
 }  // namespace

@@ -79,8 +79,7 @@ void draw(const Drawing& drawing, const SurfaceModel& surface, Scratch& scratch)
     const std::int32_t from_origin = (x * point.normal[0] + y * point.normal[1] + z * point.normal[2]) >> 7;
     const std::int32_t away = product(point.normal, drawing.away) >> 6;
     const bool faces = is_below(16 * from_origin + drawing.distance_q4 * (away + kLeastFacing), 0);
-    const std::int32_t depth =
-        clamp_small(product(point.position, drawing.away) >> 14, -kEmpty, kEmpty - 1);
+    const std::int32_t depth = clamp_small(product(point.position, drawing.away) >> 14, -kEmpty, kEmpty - 1);
     // The first of the two rows and columns, counted from the border.
     const std::int32_t column =
         ((product(point.position, drawing.right) >> 16) + 256 * (kSide / 2) + 128) >> 8;
@@ -260,8 +259,8 @@ void for_each_cell(const Fit& fit, const Scratch& scratch, Visitor&& visit) {
     for (int column = 0; column < kSide; ++column) {
       const std::int32_t from_column = column - fit.right;
       const bool inside = is_in_image(from_row) & is_in_image(from_column);
-      const std::int32_t from = clamp_small(from_row, 0, kSide - 1) * kSide +
-                                clamp_small(from_column, 0, kSide - 1);
+      const std::int32_t from =
+          clamp_small(from_row, 0, kSide - 1) * kSide + clamp_small(from_column, 0, kSide - 1);
       const std::int32_t seen = scratch.seen[static_cast<std::size_t>(row * kSide + column)];
       const std::int32_t expected = scratch.expected[static_cast<std::size_t>(from)];
       visit(seen - expected, inside & is_below(seen, kEmpty) & is_below(expected, kEmpty));

@@ -98,8 +98,9 @@ void add_quantize_command(CLI::App& app) {
   command->footer(
       "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits.\n"
       "The scales are chosen on rendered sequences. --effect: those that the network\n"
-      "was trained with. The table shows the quantization error of each layer. The first\n"
-      "mesh gives the surface by which the flight program checks what a frame shows.\n\n"
+      "was trained with. The table shows the quantization error of each layer. The\n"
+      "first mesh gives the surface by which the flight program checks what a frame\n"
+      "shows.\n\n"
       "Example\n"
       "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
       "      --mesh parametric --mesh near.stl\n");

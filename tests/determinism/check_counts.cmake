@@ -1,4 +1,5 @@
-# Checks that every inference of one numerics and instruction set takes the same number of instructions, whatever the frame.
+# Checks that every step of one numerics, kind of frame (own rays or resampled) and instruction set takes the same number of
+# instructions, whatever the frame shows.
 #   cmake -DPROGRAM=<inference_count> -DFOLDER=<scratch> -P check_counts.cmake
 cmake_minimum_required(VERSION 3.25)
 

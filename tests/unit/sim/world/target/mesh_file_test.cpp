@@ -274,7 +274,7 @@ TEST_F(MeshFile, TrianglesWithoutAreaAreRefusedAndCounted) {
 }
 
 TEST_F(MeshFile, SizeBeyondTheSensorIsRefusedWithTheLimit) {
-  expect_refused(write("large.stl", stl(wedge_triangles(3.0F))), {"9 m", "6.9 m", "--mesh-scale"});
+  expect_refused(write("large.stl", stl(wedge_triangles(7.0F))), {"21 m", "20 m", "--mesh-scale"});
   expect_refused(write("small.stl", stl(wedge_triangles(0.001F))), {"0.003 m", "0.1 m", "--mesh-scale"});
 }
 
