@@ -90,8 +90,7 @@ void make_frame(const std::uint16_t* ranges, const SensorRays& sensor, const Fra
   frame.ranges.fill(0);
   for (int row = 0; row < window.rays; ++row) {
     for (int column = 0; column < window.rays; ++column) {
-      frame.ranges[static_cast<std::size_t>(row * window.rays + column)] =
-          range_in(ranges, sensor, window, cells, row, column);
+      frame.ranges[row * window.rays + column] = range_in(ranges, sensor, window, cells, row, column);
     }
   }
 }

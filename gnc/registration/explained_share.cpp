@@ -12,9 +12,9 @@ constexpr int kBorder = Scratch::kBorder;
 constexpr std::int16_t kEmpty = Scratch::kEmpty;
 static_assert(2 * kSide == DepthImage::kSide);
 
-// is_less() and clamp() of numbers whose difference fits into 31 bits.
-constexpr bool is_below(std::int32_t a, std::int32_t b) {
-  return (sign_mask(a - b) & 1) != 0;
+// less_mask() and clamp() of numbers whose difference fits into 31 bits.
+constexpr std::int32_t below_mask(std::int32_t a, std::int32_t b) {
+  return sign_mask(a - b);
 }
 constexpr std::int32_t clamp_small(std::int32_t value, std::int32_t low, std::int32_t high) {
   return min_small(high, max_small(low, value));
@@ -47,8 +47,8 @@ Drawing make_drawing(const DepthImage& image, const DepthProjection& projection,
   for (int i = 0; i < 3; ++i) {
     drawing.right[i] = cells(r_view_trf(0, i));
     drawing.down[i] = cells(-r_view_trf(2, i));
-    drawing.away[i] = static_cast<std::int32_t>(
-        clamp<std::int64_t>((std::int64_t{r_view_trf(1, i).raw()} + 512) >> 10, -16384, 16384));
+    const std::int64_t away = r_view_trf(1, i).raw();
+    drawing.away[i] = static_cast<std::int32_t>(clamp<std::int64_t>((away + 512) >> 10, -16384, 16384));
   }
   const std::int64_t distance = divide(std::int64_t{max(image.centroid_distance_mm, 0)} * 16,
                                        max<std::uint32_t>(projection.target_radius_mm, 1));
@@ -62,11 +62,11 @@ std::int32_t product(const std::array<Number, 3>& a, const std::array<std::int32
 }
 
 // Whether the first of two rows or columns and the one after it are in the drawing.
-bool is_in_drawing(std::int32_t first) {
-  return is_below(-1, first) & is_below(first, kSide + 1);
+std::int32_t in_drawing_mask(std::int32_t first) {
+  return below_mask(-1, first) & below_mask(first, kSide + 1);
 }
-bool is_in_image(std::int32_t index) {
-  return is_below(-1, index) & is_below(index, kSide);
+std::int32_t in_image_mask(std::int32_t index) {
+  return below_mask(-1, index) & below_mask(index, kSide);
 }
 
 // Draws the points that face the sensor, each into the 2 x 2 cells around it; the nearest one stays.
@@ -78,19 +78,19 @@ void draw(const Drawing& drawing, const SurfaceModel& surface, Scratch& scratch)
     // Cosine of the incidence times the distance, by the direction from the sensor to the point.
     const std::int32_t from_origin = (x * point.normal[0] + y * point.normal[1] + z * point.normal[2]) >> 7;
     const std::int32_t away = product(point.normal, drawing.away) >> 6;
-    const bool faces = is_below(16 * from_origin + drawing.distance_q4 * (away + kLeastFacing), 0);
+    const std::int32_t faces = below_mask(16 * from_origin + drawing.distance_q4 * (away + kLeastFacing), 0);
     const std::int32_t depth = clamp_small(product(point.position, drawing.away) >> 14, -kEmpty, kEmpty - 1);
     // The first of the two rows and columns, counted from the border.
     const std::int32_t column =
         ((product(point.position, drawing.right) >> 16) + 256 * (kSide / 2) + 128) >> 8;
     const std::int32_t row = ((product(point.position, drawing.down) >> 16) + 256 * (kSide / 2) + 128) >> 8;
-    const auto shown =
-        static_cast<std::int16_t>(select(faces & is_in_drawing(row) & is_in_drawing(column), depth, kEmpty));
+    const auto shown = static_cast<std::int16_t>(
+        kEmpty ^ ((kEmpty ^ depth) & faces & in_drawing_mask(row) & in_drawing_mask(column)));
     const std::int32_t first =
         clamp_small(row, 0, kSide) * Scratch::kDrawnSide + clamp_small(column, 0, kSide);
     for (const std::int32_t cell :
          {first, first + 1, first + Scratch::kDrawnSide, first + Scratch::kDrawnSide + 1}) {
-      std::int16_t& there = scratch.drawn[static_cast<std::size_t>(cell)];
+      std::int16_t& there = scratch.drawn[cell];
       there = min(there, shown);
     }
   }
@@ -101,8 +101,7 @@ void reduce(const DepthImage& image, Scratch::Cells& seen) {
   constexpr std::array<std::int32_t, 5> kInverse{0, 65536, 32768, 21845, 16384};
   for (int row = 0; row < kSide; ++row) {
     for (int column = 0; column < kSide; ++column) {
-      const std::uint16_t* at =
-          &image.depth[static_cast<std::size_t>(2 * row * DepthImage::kSide + 2 * column)];
+      const std::uint16_t* at = &image.depth[2 * row * DepthImage::kSide + 2 * column];
       std::int32_t sum = 0;
       std::uint32_t count = 0;
       for (const std::uint16_t value : {at[0], at[1], at[DepthImage::kSide], at[DepthImage::kSide + 1]}) {
@@ -111,7 +110,7 @@ void reduce(const DepthImage& image, Scratch::Cells& seen) {
         count += static_cast<std::uint32_t>(filled & 1);
       }
       const auto mean = static_cast<std::int32_t>((std::int64_t{sum} * kInverse[count]) >> 16);
-      seen[static_cast<std::size_t>(row * kSide + column)] = static_cast<std::int16_t>(
+      seen[row * kSide + column] = static_cast<std::int16_t>(
           select(is_less<std::uint32_t>(0, count), clamp_small(mean, -kEmpty, kEmpty - 1), kEmpty));
     }
   }
@@ -125,8 +124,7 @@ Offset middle_of(const Scratch& scratch) {
   std::int32_t count = 0, right = 0, down = 0;
   for (int row = 0; row < kSide; ++row) {
     for (int column = 0; column < kSide; ++column) {
-      const std::int16_t depth =
-          scratch.drawn[static_cast<std::size_t>((row + 1) * Scratch::kDrawnSide + column + 1)];
+      const std::int16_t depth = scratch.drawn[(row + 1) * Scratch::kDrawnSide + column + 1];
       const std::int32_t filled = sign_mask(depth - kEmpty);
       count -= filled;
       right += (2 * column + 1 - kSide) & filled;
@@ -148,11 +146,10 @@ void take_centred(const Offset& middle, Scratch& scratch) {
     const std::int32_t from_row = clamp_small(row + middle.down, -1, kSide) + 1;
     for (int column = 0; column < kSide; ++column) {
       const std::int32_t from_column = clamp_small(column + middle.right, -1, kSide) + 1;
-      const std::int16_t depth =
-          scratch.drawn[static_cast<std::size_t>(from_row * Scratch::kDrawnSide + from_column)];
-      const bool inside = is_in_image(row + middle.down) & is_in_image(column + middle.right);
-      scratch.expected[static_cast<std::size_t>(row * kSide + column)] =
-          static_cast<std::int16_t>(select<std::int32_t>(inside, depth, kEmpty));
+      const std::int16_t depth = scratch.drawn[from_row * Scratch::kDrawnSide + from_column];
+      const std::int32_t inside = in_image_mask(row + middle.down) & in_image_mask(column + middle.right);
+      scratch.expected[row * kSide + column] =
+          static_cast<std::int16_t>(kEmpty ^ ((kEmpty ^ depth) & inside));
     }
   }
 }
@@ -163,16 +160,15 @@ void make_rows(const Scratch::Cells& cells, Scratch::Rows& rows, Scratch::Rows& 
     // In two halves, which fit into a register of 32 bits each.
     std::array<std::uint32_t, 2> half{};
     for (int column = 0; column < kSide; ++column) {
-      const std::uint32_t bit = static_cast<std::uint32_t>(
-          sign_mask(cells[static_cast<std::size_t>(row * kSide + column)] - kEmpty) & 1);
+      const std::uint32_t bit =
+          static_cast<std::uint32_t>(sign_mask(cells[row * kSide + column] - kEmpty) & 1);
       half[column / (kSide / 2)] |= bit << (column % (kSide / 2));
     }
-    rows[static_cast<std::size_t>(row + kBorder)] =
-        (std::uint64_t{half[0]} << Scratch::kFirstBit) |
-        (std::uint64_t{half[1]} << (Scratch::kFirstBit + kSide / 2));
+    rows[row + kBorder] = (std::uint64_t{half[0]} << Scratch::kFirstBit) |
+                          (std::uint64_t{half[1]} << (Scratch::kFirstBit + kSide / 2));
   }
   for (int row = 0; row < Scratch::kRows; ++row) {
-    const auto at = static_cast<std::size_t>(row);
+    const auto at = row;
     const std::uint64_t above = row > 0 ? rows[at - 1] : 0,
                         below = row + 1 < Scratch::kRows ? rows[at + 1] : 0;
     near_rows[at] = rows[at] | (rows[at] << 1) | (rows[at] >> 1) | above | below;
@@ -206,8 +202,7 @@ std::int32_t count_without(const Scratch::Rows& a, int a_down, const Scratch::Ro
   for (int first = 0; first < kSide; first += kSide / 2) {
     BitCounter counter;
     for (int row = first; row < first + kSide / 2; ++row) {
-      counter.add(a[static_cast<std::size_t>(row + kBorder - a_down)] &
-                  ~b[static_cast<std::size_t>(row + kBorder - b_down)] & kImageBits);
+      counter.add(a[row + kBorder - a_down] & ~b[row + kBorder - b_down] & kImageBits);
     }
     sum += counter.value();
   }
@@ -238,7 +233,7 @@ Fit find_fit(std::int32_t seen, std::int32_t expected, Scratch& scratch) {
       const std::int32_t unexplained = count_without(scratch.seen_rows, 0, scratch.near_expected_rows, down);
       const std::int32_t missing = count_without(scratch.expected_rows, down, scratch.near_seen_rows, 0);
       const std::int32_t cost = 16 * unexplained * expected + 5 * missing * seen + abs(right) + abs(down);
-      const bool better = is_below(cost, best.cost);
+      const bool better = below_mask(cost, best.cost) != 0;
       best.cost = select(better, cost, best.cost);
       best.right = select(better, static_cast<std::int32_t>(right), best.right);
       best.down = select(better, static_cast<std::int32_t>(down), best.down);
@@ -251,19 +246,19 @@ Fit find_fit(std::int32_t seen, std::int32_t expected, Scratch& scratch) {
   return best;
 }
 
-// Calls visit(difference of the depths, whether both cells have one) for each cell.
+// Calls visit(difference of the depths, all bits set if both cells have one) for each cell.
 template <class Visitor>
 void for_each_cell(const Fit& fit, const Scratch& scratch, Visitor&& visit) {
   for (int row = 0; row < kSide; ++row) {
     const std::int32_t from_row = row - fit.down;
     for (int column = 0; column < kSide; ++column) {
       const std::int32_t from_column = column - fit.right;
-      const bool inside = is_in_image(from_row) & is_in_image(from_column);
+      const std::int32_t inside = in_image_mask(from_row) & in_image_mask(from_column);
       const std::int32_t from =
           clamp_small(from_row, 0, kSide - 1) * kSide + clamp_small(from_column, 0, kSide - 1);
-      const std::int32_t seen = scratch.seen[static_cast<std::size_t>(row * kSide + column)];
-      const std::int32_t expected = scratch.expected[static_cast<std::size_t>(from)];
-      visit(seen - expected, inside & is_below(seen, kEmpty) & is_below(expected, kEmpty));
+      const std::int32_t seen = scratch.seen[row * kSide + column];
+      const std::int32_t expected = scratch.expected[from];
+      visit(seen - expected, inside & below_mask(seen, kEmpty) & below_mask(expected, kEmpty));
     }
   }
 }
@@ -274,15 +269,14 @@ std::int32_t median_difference(const Fit& fit, std::int32_t& count, Scratch& scr
   constexpr int kBinBits = 9;
   scratch.histogram.fill(0);
   count = 0;
-  for_each_cell(fit, scratch, [&](std::int32_t difference, bool both) {
+  for_each_cell(fit, scratch, [&](std::int32_t difference, std::int32_t both) {
     const std::int32_t bin = clamp_small((difference + 65536) >> kBinBits, 0, 255);
-    scratch.histogram[static_cast<std::size_t>(bin)] =
-        static_cast<std::uint16_t>(scratch.histogram[static_cast<std::size_t>(bin)] + both);
-    count += both;
+    scratch.histogram[bin] = static_cast<std::uint16_t>(scratch.histogram[bin] - both);
+    count -= both;
   });
   std::int32_t below = 0, median = 0;
   for (int bin = 0; bin < 256; ++bin) {
-    below += scratch.histogram[static_cast<std::size_t>(bin)];
+    below += scratch.histogram[bin];
     median += sign_mask(2 * below - count) & 1;
   }
   return (median << kBinBits) + (1 << (kBinBits - 1)) - 65536;
@@ -326,8 +320,8 @@ ExplainedShare explained_share(const DepthImage& image, const DepthProjection& p
   const std::int32_t median = median_difference(fit, both, scratch);
   const std::int32_t limit = depth_limit(image, projection);
   std::int64_t apart = 0;
-  for_each_cell(fit, scratch, [&](std::int32_t difference, bool counts) {
-    apart += select(counts, min_small(abs(difference - median), limit), 0);
+  for_each_cell(fit, scratch, [&](std::int32_t difference, std::int32_t counts) {
+    apart += min_small(abs(difference - median), limit) & counts;
   });
   share.unexplained = share_of(fit.unexplained, seen);
   share.missing = share_of(fit.missing, expected);
