@@ -29,7 +29,7 @@ class Replay : public ::testing::Test {
     EXPECT_NE(outcome.errors.find(message), std::string::npos) << outcome.errors;
   }
 
-  const Workplace here;
+  const Workplace here{};
 };
 
 // Verifies TS-SIL-140.
@@ -121,7 +121,7 @@ TEST_F(Replay, ReportsWhatWasDoneWhenItIsInterrupted) {
 
 // Verifies TS-SIL-140.
 TEST(WriteRecording, WritesWhatReplayReads) {
-  const Workplace here;
+  const Workplace here{};
   const Outcome written = here.run_command(
       PYTHON " -B " TUMBLESIGHT_SOURCE_DIR "/docs/examples/write_recording.py box.tslr", "script");
   ASSERT_EQ(written.exit_code, 0) << written.errors;
