@@ -81,6 +81,7 @@ std::string doubts_text(std::uint8_t doubts) {
   std::string text;
   if ((doubts & hal::kDoubtErrorLarge) != 0) text += ", expected error";
   if ((doubts & hal::kDoubtAttitudeJump) != 0) text += ", jump";
+  if ((doubts & hal::kDoubtUnexplained) != 0) text += ", not explained by the target";
   return text.empty() ? text : ": " + text.substr(2);
 }
 

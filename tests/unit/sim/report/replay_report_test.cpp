@@ -30,7 +30,7 @@ SilRunResult run() {
   for (std::size_t k = 4; k < 7; ++k) made.steps[k].telemetry.frames_bad = 1;
   made.steps[4].events = {{0, hal::EventId::kFrameBad, hal::Severity::kWarning, {2, 3, 128}}};
   made.steps[6].attitude.validity = hal::Validity::kDoubtful;
-  made.steps[6].attitude.doubts = hal::kDoubtErrorLarge | hal::kDoubtAttitudeJump;
+  made.steps[6].attitude.doubts = hal::kDoubtErrorLarge | hal::kDoubtAttitudeJump | hal::kDoubtUnexplained;
   made.steps_planned = 7;
   return made;
 }
@@ -58,7 +58,7 @@ TEST(ReplayReport, HasARowPerCycleAndOneForAGapInTheTable) {
   const ReplayReport report = report_of(made, "a.csv");
   ASSERT_EQ(report.rows.size(), 7U);
   EXPECT_EQ(report.rows[4].status, "refused: too few returns");
-  EXPECT_EQ(report.rows[6].status, "doubtful: expected error, jump");
+  EXPECT_EQ(report.rows[6].status, "doubtful: expected error, jump, not explained by the target");
   EXPECT_EQ(report.rows[5].frame->stamp.sequence_number, 3U);
   EXPECT_FALSE(report.rows[3].frame.has_value());
   const DataTable table = replay_table(report);
