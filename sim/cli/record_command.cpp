@@ -42,6 +42,12 @@ void record(const RecordArguments& arguments) {
   require_possible_disturbances(wanted.disturbances, wanted.frames);
   const std::string truth = truth_path(arguments);
   require_different("--truth", truth, "--out", arguments.out);
+  // tumblesight replay would score these frames with the truth of others.
+  const std::string beside = truth_path_of(arguments.out);
+  if (beside != truth && std::filesystem::is_regular_file(beside)) {
+    throw std::runtime_error(fmt::format(
+        "'{}' is the truth of an earlier recording of this name; remove it, or give another --out", beside));
+  }
   require_writable("--out", arguments.out);
   if (!truth.empty()) require_writable("--truth", truth);
   const TargetSetup target = set_up_target_without_model(wanted);

@@ -407,6 +407,10 @@ TEST(Record, WritesTheTruthBesideTheFramesUnlessToldOtherwise) {
   ASSERT_EQ(here.run(common + " --out /dev/null").exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(here.path("other.truth.csv")));
   EXPECT_FALSE(std::filesystem::exists("/dev/null.truth.csv"));
+  const Outcome stale = here.run(common + " --out mine.tslr --truth none");
+  EXPECT_EQ(stale.exit_code, 1);
+  EXPECT_NE(stale.errors.find("mine.truth.csv' is the truth of an earlier recording"), std::string::npos)
+      << stale.errors;
   const Outcome refused = here.run(common + " --out same --truth ./same");
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.errors.find("--truth: './same' is also the file of --out"), std::string::npos)
