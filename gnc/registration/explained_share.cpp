@@ -233,12 +233,13 @@ Fit find_fit(std::int32_t seen, std::int32_t expected, Scratch& scratch) {
       const std::int32_t unexplained = count_without(scratch.seen_rows, 0, scratch.near_expected_rows, down);
       const std::int32_t missing = count_without(scratch.expected_rows, down, scratch.near_seen_rows, 0);
       const std::int32_t cost = 16 * unexplained * expected + 5 * missing * seen + abs(right) + abs(down);
-      const bool better = below_mask(cost, best.cost) != 0;
-      best.cost = select(better, cost, best.cost);
-      best.right = select(better, static_cast<std::int32_t>(right), best.right);
-      best.down = select(better, static_cast<std::int32_t>(down), best.down);
-      best.unexplained = select(better, unexplained, best.unexplained);
-      best.missing = select(better, missing, best.missing);
+      const std::int32_t better = below_mask(cost, best.cost);
+      const auto take = [better](std::int32_t now, std::int32_t& kept) { kept ^= (kept ^ now) & better; };
+      take(cost, best.cost);
+      take(right, best.right);
+      take(down, best.down);
+      take(unexplained, best.unexplained);
+      take(missing, best.missing);
     }
     move_right_by_one(scratch.expected_rows);
     move_right_by_one(scratch.near_expected_rows);
