@@ -67,6 +67,7 @@ struct StoredRecord {
   std::uint32_t failing_cycles = 0;  // consecutive ones that ended with less than all copies
   std::uint32_t cycles_since_check = 0;
   bool given_up = false;
+  bool has_unstored_change = false;  // since the last cycle with a good copy, and not reported
 };
 
 // What init() found in the persistent store.

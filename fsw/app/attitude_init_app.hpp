@@ -61,9 +61,12 @@ class AttitudeInitApp final {
   // Whether a frame passes the rules for time and order in a cycle at `now_ns`. For the choice of the frame
   // that a step gets; the step judges it again.
   [[nodiscard]] gnc::FrameVerdict judge(const gnc::RangeImage& frame, std::int64_t now_ns) const;
-  // Whether a frame repeats one of the last used ones. For the same choice.
-  [[nodiscard]] bool has_used(const gnc::SignatureStart& start) const {
-    return state_->tracking.history.contains(start);
+  // Whether a frame begins like one of the last used ones, and whether it repeats one. For the same choice.
+  [[nodiscard]] bool has_used_alike(const gnc::SignatureStart& start) const {
+    return state_->tracking.history.contains_alike(start);
+  }
+  [[nodiscard]] bool has_used(const gnc::FrameSignature& signature) const {
+    return state_->tracking.history.contains(signature);
   }
   // To compare runs: CRC-32 over the estimator's state, the active model's CRC, mode, key slot, times, last
   // frames, limits, persisting faults and counters. It excludes everything that depends on the wall clock.

@@ -38,13 +38,41 @@ class Contents {
 
 static_assert(hal::Lidar::kMaxWaiting <= config::kMaxDeliveriesPerCycle, "a cycle receives all that wait");
 
-// Whether the frame in the buffer `next` repeats one that was used, or the one of this cycle that is kept.
-bool repeats(const AttitudeInitApp& app, std::size_t next, CycleWorkspace& workspace) {
-  gnc::SignatureStart& start = workspace.starts[next];
-  start = gnc::start_of(workspace.frames[next]);
-  if (app.has_used(start)) return true;
-  return workspace.inputs.frame != nullptr && gnc::is_repetition(workspace.starts[1 - next].cells, start);
-}
+// Whether frames repeat one that was used, or the one of this cycle that is kept. Frames whose first rows are
+// alike have to be compared in full, so after a number of those the verdict of the last one stands for the
+// rest of the cycle. This bounds the time of a cycle.
+class Repetitions {
+ public:
+  Repetitions(const AttitudeInitApp& app, CycleWorkspace& workspace) : app_(app), workspace_(workspace) {}
+
+  // `next`: the frame's buffer.
+  bool look_at(std::size_t next) {
+    gnc::SignatureStart& start = workspace_.starts[next];
+    start = gnc::start_of(workspace_.frames[next]);
+    const bool has_kept = workspace_.inputs.frame != nullptr;
+    const bool is_like_used = app_.has_used_alike(start);
+    const bool is_like_kept = has_kept && gnc::is_alike(workspace_.starts[1 - next].cells, start);
+    if (!is_like_used && !is_like_kept) return false;
+    if (looks_ < config::kMaxFullComparisonsPerCycle) {
+      ++looks_;
+      last_ = repeats(workspace_.frames[next]);
+    }
+    return last_;
+  }
+
+ private:
+  bool repeats(const gnc::RangeImage& frame) const {
+    const gnc::FrameSignature signature = gnc::signature_of(frame);
+    if (app_.has_used(signature)) return true;
+    const gnc::RangeImage* const kept = workspace_.inputs.frame;
+    return kept != nullptr && gnc::is_repetition(gnc::signature_of(*kept), signature);
+  }
+
+  const AttitudeInitApp& app_;
+  CycleWorkspace& workspace_;
+  int looks_ = 0;
+  bool last_ = false;
+};
 
 void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t now_ns,
                     CycleWorkspace& workspace) {
@@ -54,6 +82,7 @@ void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t 
   inputs.frame_wrong_size = 0;
   inputs.frames_overflowed = lidar.take_dropped();
   Contents contents;
+  Repetitions repetitions(app, workspace);
   std::size_t next = 0;  // of the two buffers, the one that does not hold inputs.frame
   for (int i = 0; i < config::kMaxDeliveriesPerCycle; ++i) {
     gnc::RangeImage& frame = workspace.frames[next];
@@ -71,7 +100,7 @@ void receive_frames(const AttitudeInitApp& app, hal::Lidar& lidar, std::int64_t 
     gnc::FrameStatus content = gnc::FrameStatus::kOk;
     if (verdict == gnc::FrameVerdict::kPass) content = contents.look_at(frame);
     if (content != gnc::FrameStatus::kOk) verdict = gnc::FrameVerdict::kBadContent;
-    if (verdict == gnc::FrameVerdict::kPass && repeats(app, next, workspace))
+    if (verdict == gnc::FrameVerdict::kPass && repetitions.look_at(next))
       verdict = gnc::FrameVerdict::kRepeated;
     if (verdict != gnc::FrameVerdict::kPass) {
       drop(frame, verdict, inputs, content);

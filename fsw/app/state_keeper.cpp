@@ -253,10 +253,13 @@ void StateKeeper::judge_store() {
 }
 
 void StateKeeper::report_unstored_change() {
-  if (!state_.stored.given_up) return;
+  StoredRecord& record = state_.stored;
   StoredState now = state_to_store(state_);
   now.command_counter = before_.command_counter;  // each command changes it
-  if (now == before_) return;
+  if (now != before_) record.has_unstored_change = true;
+  if (record.good.number() > 0) record.has_unstored_change = false;
+  if (!record.given_up || !record.has_unstored_change) return;
+  record.has_unstored_change = false;
   report_(EventId::kChangeNotStored, static_cast<std::int32_t>(now.key_slot),
           static_cast<std::int32_t>(now.mode), static_cast<std::int32_t>(now.bank));
 }

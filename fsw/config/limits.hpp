@@ -21,6 +21,9 @@ inline constexpr int kMaxCommandsPerStep = 8;
 inline constexpr int kMaxDeliveriesPerCycle = 32;
 // Frames with bad content after which the rest of a cycle's deliveries counts as bad without a look.
 inline constexpr int kMaxBadContentsPerCycle = 3;
+// Frames compared in full with the used ones after which the last comparison's result stands for the rest of
+// a cycle's frames that begin like one of those.
+inline constexpr int kMaxFullComparisonsPerCycle = 2;
 
 // Events that one step returns. Further events wait in the ring for the next step; events that do not fit
 // into the ring are counted as lost.

@@ -37,14 +37,24 @@ std::int64_t tan_half_fov_q30(std::uint32_t fov_urad) {
   return x + multiply_q30(x, multiply_q30(s, sum));
 }
 
-// The rays of the frame.
+// The rays of the frame. Ray i of n has the slope tan (2i + 1 - n) / n, to the nearest, halves up: from one
+// to the next by the whole part of 2 tan / n, and by one more where the remainders have added up to a whole.
 void make_rays(const RangeImage& frame, std::int64_t tan_q30, DepthImageScratch::Rays& rays) {
   rays.count = frame.rays;
+  const std::int64_t divisor = 2 * frame.rays;
+  const std::int64_t first = tan_q30 * (1 - frame.rays);
+  const std::int64_t step = divide(4 * tan_q30, divisor);
+  const auto step_rest = static_cast<std::int32_t>(4 * tan_q30 - step * divisor);
+  std::int64_t slope = rounding_divide(first, frame.rays);
+  auto rest = static_cast<std::int32_t>(2 * first + frame.rays - slope * divisor);
   for (int i = 0; i < frame.rays; ++i) {
-    const std::int64_t slope = rounding_divide(tan_q30 * (2 * i + 1 - frame.rays), frame.rays);
     rays.right_q30[i] = rays.down_q30[i] = static_cast<std::int32_t>(slope);
     rays.right_square_q16[i] = rays.down_square_q16[i] =
         static_cast<std::int16_t>(rounding_shift_right(slope * slope, 44));
+    rest += step_rest - 2 * frame.rays;
+    const std::int32_t is_short = sign_mask(rest);
+    slope += step + 1 + is_short;
+    rest += 2 * frame.rays & is_short;
   }
 }
 
@@ -187,16 +197,14 @@ void make_scale(std::int64_t centroid, std::uint32_t target_radius_mm, int range
 
 FrameStatus status_of(const ReturnSummary& summary) {
   if (summary.returns < kMinReturns) return FrameStatus::kEmpty;
-  return summary.nearest == summary.farthest ? FrameStatus::kFlat : FrameStatus::kOk;
+  return summary.any_bits == summary.common_bits ? FrameStatus::kFlat : FrameStatus::kOk;
 }
 
 // The first place from `next` on with another pair than no returns and `known` in it or the three after it,
 // or one of the last places.
 int skip_known(const RangeImage& frame, int next, int rays, std::uint32_t known) {
   const auto is_known = [known](std::uint32_t pair) { return pair == 0 || pair == known; };
-  while (next + 8 <= rays && (pair_at(frame, next) | pair_at(frame, next + 2) | pair_at(frame, next + 4) |
-                              pair_at(frame, next + 6)) == 0)
-    next += 8;
+  next = skip_empty(frame, next, rays);
   while (next + 4 <= rays && is_known(pair_at(frame, next)) && is_known(pair_at(frame, next + 2))) next += 4;
   return next;
 }
@@ -210,8 +218,9 @@ FrameStatus status_of(const RangeImage& frame) {
 }  // namespace
 
 bool is_possible(const DepthProjection& projection) {
-  const auto is_length = [](std::uint32_t mm) { return mm >= kMinProjection_mm && mm <= kMaxProjection_mm; };
-  return is_length(projection.swath_mm) && is_length(projection.target_radius_mm);
+  return projection.swath_mm >= kMinProjection_mm && projection.swath_mm <= kMaxSwath_mm &&
+         projection.target_radius_mm >= kMinProjection_mm &&
+         projection.target_radius_mm <= kMaxTargetRadius_mm;
 }
 
 FrameStatus content_of(const RangeImage& frame) {
@@ -230,7 +239,7 @@ FrameStatus content_of(const RangeImage& frame) {
       ++returns;
     }
     next = skip_known(frame, next, rays, returns < kMinReturns ? 0U : first * 0x10001U);
-    last = min(next + 4, rays);
+    last = min(next + 2 * kRaysOfGroup, rays);
   }
   if (returns < kMinReturns) return FrameStatus::kEmpty;
   return differ ? FrameStatus::kOk : FrameStatus::kFlat;
@@ -253,7 +262,7 @@ FrameStatus make_depth_image(const RangeImage& frame, const DepthProjection& pro
 
   const std::int64_t tan_q30 = tan_half_fov_q30(frame.fov_urad);
   make_rays(frame, tan_q30, rays);
-  rays.range_shift = 15 - highest_bit(summary.farthest);
+  rays.range_shift = 15 - highest_bit(summary.any_bits);
   loops.sum_depths(frame, scratch.mask, rays);
   const Centroid centroid = find_centroid(rays, summary.returns);
   image.r_lrf_view = rotation_of_y_to(centroid.direction);

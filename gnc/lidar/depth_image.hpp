@@ -37,8 +37,10 @@ struct DepthProjection {
   std::uint32_t target_radius_mm = 0;  // scale of the depth
 };
 inline constexpr std::uint32_t kMinProjection_mm = 100;
-inline constexpr std::uint32_t kMaxProjection_mm = 100'000;
-// Whether both lengths are within kMinProjection_mm and kMaxProjection_mm.
+inline constexpr std::uint32_t kMaxSwath_mm = 100'000;
+// A deeper target would fill so many slices of the ranges that it passes for clutter (target_selection.hpp).
+inline constexpr std::uint32_t kMaxTargetRadius_mm = 50'000;
+// Whether both lengths are within these limits.
 bool is_possible(const DepthProjection& projection);
 
 enum class FrameStatus : std::uint8_t {

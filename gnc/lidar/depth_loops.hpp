@@ -23,11 +23,25 @@ inline std::uint32_t pair_at(const RangeImage& frame, int first) {
   return pair;
 }
 
-// The target's returns of a frame; ranges in counts (Q9.7 m).
+// Most rays meet nothing, and are passed in groups. The first place from `ray` on (as in pair_at()) whose
+// group has a return or reaches beyond `count` rays.
+inline constexpr int kRaysOfGroup = 8;
+inline int skip_empty(const RangeImage& frame, int ray, int count) {
+  const auto any_return = [&frame](int first) {
+    return pair_at(frame, first) | pair_at(frame, first + 2) | pair_at(frame, first + 4) |
+           pair_at(frame, first + 6);
+  };
+  while (ray + 2 * kRaysOfGroup <= count && (any_return(ray) | any_return(ray + kRaysOfGroup)) == 0)
+    ray += 2 * kRaysOfGroup;
+  if (ray + kRaysOfGroup <= count && any_return(ray) == 0) ray += kRaysOfGroup;
+  return ray;
+}
+
+// The target's returns of a frame.
 struct ReturnSummary {
   int returns = 0;
-  std::uint16_t nearest = 0xFFFF;
-  std::uint16_t farthest = 0;
+  std::uint16_t any_bits = 0;          // that are set in one of the ranges [counts]
+  std::uint16_t common_bits = 0xFFFF;  // that are set in all of them
 };
 
 // A cell accumulates the sum of its values in the low kValueBits and their number in the bits above.

@@ -13,58 +13,83 @@ using Rays = DepthImageScratch::Rays;
 using View = DepthImageScratch::View;
 constexpr int kMaxRays = RangeImage::kMaxRays;
 
-// All bits set if from <= value < to, else 0.
-TUMBLESIGHT_INLINE std::uint16_t within(std::uint16_t value, std::uint16_t from, std::uint16_t to) {
-  return mask_if<std::uint16_t>(static_cast<std::uint16_t>(value - from) <
-                                static_cast<std::uint16_t>(to - from));
+// The numbers of a row have 16 bits, so that a vector register holds many of them. Elsewhere each of them has
+// a register of its own, and cutting it to 16 bits after every operation would take an instruction. No
+// operation on a Lane leaves 16 bits, so that both give the same bits.
+#if defined(__x86_64__) || defined(__aarch64__) || defined(__ARM_NEON)
+using Lane = std::int16_t;
+using UnsignedLane = std::uint16_t;
+#else
+using Lane = std::int32_t;
+using UnsignedLane = std::uint32_t;
+#endif
+
+// All bits set if 0 <= value < end, else 0.
+TUMBLESIGHT_INLINE UnsignedLane below(Lane value, std::int16_t end) {
+  if constexpr (sizeof(Lane) == 2)
+    return mask_if<UnsignedLane>(static_cast<UnsignedLane>(value) < static_cast<UnsignedLane>(end));
+  else
+    return static_cast<UnsignedLane>(~sign_mask(value) & sign_mask(value - end));
+}
+TUMBLESIGHT_INLINE UnsignedLane above_zero(Lane value) {
+  if constexpr (sizeof(Lane) == 2)
+    return mask_if<UnsignedLane>(value > 0);
+  else
+    return static_cast<UnsignedLane>(sign_mask(-value));
+}
+TUMBLESIGHT_INLINE Lane clamp_lane(Lane value, Lane low, Lane high) {
+  if constexpr (sizeof(Lane) == 2)
+    return clamp<Lane>(value, low, high);
+  else
+    return static_cast<Lane>(min_small(high, max_small(low, value)));
 }
 // High half of the product: (a b) >> 16.
-TUMBLESIGHT_INLINE std::int16_t multiply_high(std::int16_t a, std::int16_t b) {
-  return static_cast<std::int16_t>((std::int32_t{a} * b) >> 16);
+TUMBLESIGHT_INLINE Lane multiply_high(Lane a, Lane b) {
+  return static_cast<Lane>((std::int32_t{a} * b) >> 16);
 }
-TUMBLESIGHT_INLINE std::uint16_t multiply_high(std::uint16_t a, std::uint16_t b) {
-  return static_cast<std::uint16_t>((std::uint32_t{a} * b) >> 16);
+TUMBLESIGHT_INLINE UnsignedLane unsigned_multiply_high(UnsignedLane a, UnsignedLane b) {
+  return static_cast<UnsignedLane>((std::uint32_t{a} * b) >> 16);
 }
 // (a b + 2^14) >> 15, in the form that compilers recognize as one instruction.
-TUMBLESIGHT_INLINE std::int16_t multiply_q15(std::int16_t a, std::int16_t b) {
-  return static_cast<std::int16_t>((((std::int32_t{a} * b) >> 14) + 1) >> 1);
+TUMBLESIGHT_INLINE Lane multiply_q15(Lane a, Lane b) {
+  return static_cast<Lane>((((std::int32_t{a} * b) >> 14) + 1) >> 1);
 }
 // a + b, limited to 16 bits, so that a ray far outside the image is not folded into it.
-TUMBLESIGHT_INLINE std::int16_t saturating_sum(std::int32_t a, std::int32_t b) {
+TUMBLESIGHT_INLINE Lane saturating_sum(std::int32_t a, std::int32_t b) {
 #if defined(__ARM_FEATURE_SAT) && !defined(__ARM_NEON)
-  return static_cast<std::int16_t>(
+  return static_cast<Lane>(
       __builtin_arm_ssat(a + b, 16));  // one instruction, which the compiler does not find
 #else
   const std::int32_t sum = a + b;
-  if constexpr (kHasConditionalMoves)
-    return static_cast<std::int16_t>(clamp<std::int32_t>(sum, -32768, 32767));
+  if constexpr (kHasConditionalMoves) return static_cast<Lane>(clamp<std::int32_t>(sum, -32768, 32767));
   const std::int32_t above = (sum + 32768) >> 16;  // 0 if the sum fits
   const std::int32_t is_limited = (above | -above) >> 31;
-  return static_cast<std::int16_t>(sum ^ ((sum ^ (sum >> 31) ^ 32767) & is_limited));
+  return static_cast<Lane>(sum ^ ((sum ^ (sum >> 31) ^ 32767) & is_limited));
 #endif
 }
-// a + b modulo 2^16.
-TUMBLESIGHT_INLINE std::int16_t add_int16(std::int16_t a, std::int16_t b) {
-  return static_cast<std::int16_t>(a + b);
+TUMBLESIGHT_INLINE Lane add(Lane a, Lane b) {
+  return static_cast<Lane>(a + b);
 }
 
 ReturnSummary summarize_returns(const RangeImage& frame, const RayMask& mask) {
-  std::array<std::uint16_t, kMaxRays> ranges;
-  std::uint16_t returns = 0, nearest = 0xFFFF, farthest = 0;
+  constexpr int kColumns = RayMask::kColumnsPerWord;
+  ReturnSummary summary;
+  std::uint16_t any = 0, common = 0xFFFF;
   for (int row = 0; row < frame.rays; ++row) {
-    masked_row(frame, mask.rows[row], row, ranges.data());
-    for (int column = 0; column < frame.rays; ++column) {
-      const std::uint16_t range = ranges[column];
-      const auto good = mask_if<std::uint16_t>(range != 0);
-      returns = static_cast<std::uint16_t>(returns - good);
-      nearest = min(nearest, static_cast<std::uint16_t>(range | static_cast<std::uint16_t>(~good)));
-      farthest = max(farthest, range);
+    const std::uint16_t* const ranges = frame.ranges.data() + row * frame.rays;
+    for (int first = 0; first < frame.rays; first += kColumns) {
+      const std::uint32_t word = mask.rows[row][first / kColumns];
+      summary.returns += count_ones(word);
+      const int columns = min_small(frame.rays - first, kColumns);
+      for (int i = 0; i < columns; ++i) {
+        const auto chosen = static_cast<std::uint16_t>(static_cast<std::int32_t>(word << i) >> 31);
+        any = static_cast<std::uint16_t>(any | (ranges[first + i] & chosen));
+        common = static_cast<std::uint16_t>(common & (ranges[first + i] | ~chosen));
+      }
     }
   }
-  ReturnSummary summary;
-  summary.returns = returns;
-  summary.nearest = nearest;
-  summary.farthest = farthest;
+  summary.any_bits = any;
+  summary.common_bits = common;
   return summary;
 }
 
@@ -72,15 +97,16 @@ ReturnSummary summarize_returns(const RangeImage& frame, const RayMask& mask) {
 // range over sqrt(1 + s) with s = u^2 + v^2 < 0.2662, as a polynomial with an error of at most 2e-5.
 TUMBLESIGHT_INLINE void row_depths(const std::uint16_t* __restrict ranges, const Rays& rays, int row,
                                    std::int16_t* __restrict depths) {
-  const std::int16_t down_square = rays.down_square_q16[row];
-  const auto scale = static_cast<std::uint16_t>(1 << rays.range_shift);
+  const Lane down_square = rays.down_square_q16[row];
+  const auto scale = static_cast<UnsignedLane>(1 << rays.range_shift);
   for (int column = 0; column < rays.count; ++column) {
-    const std::int16_t s = add_int16(rays.right_square_q16[column], down_square);  // Q0.16
-    const std::int16_t p3 = add_int16(-9761, multiply_high(s, 5777));              // Q0.15
-    const std::int16_t p2 = add_int16(12263, multiply_high(s, p3));
-    const std::int16_t p1 = add_int16(-16384, multiply_high(s, p2));
-    const auto inverse = static_cast<std::uint16_t>(65535 + multiply_q15(s, p1));
-    const std::uint16_t twice = multiply_high(static_cast<std::uint16_t>(ranges[column] * scale), inverse);
+    const Lane s = add(rays.right_square_q16[column], down_square);  // Q0.16
+    const Lane p3 = add(-9761, multiply_high(s, 5777));              // Q0.15
+    const Lane p2 = add(12263, multiply_high(s, p3));
+    const Lane p1 = add(-16384, multiply_high(s, p2));
+    const auto inverse = static_cast<UnsignedLane>(65535 + multiply_q15(s, p1));
+    const UnsignedLane twice =
+        unsigned_multiply_high(static_cast<UnsignedLane>(ranges[column] * scale), inverse);
     depths[column] = static_cast<std::int16_t>(twice >> 1);
   }
 }
@@ -122,29 +148,25 @@ TUMBLESIGHT_INLINE void project_row(const std::int16_t* __restrict depths, const
                                     int count, Row& __restrict out) {
   constexpr std::int16_t kSide = DepthImage::kSide;
   const std::int32_t row_x = view.x.row[row], row_down = view.down.row[row];
-  const std::int16_t row_depth = view.depth.row[row];
-  const std::int16_t cells = view.cells;
-  const std::int16_t middle = view.middle, centroid = view.centroid;
-  const std::int16_t radius = view.radius, radius_scale = view.radius_scale,
-                     inverse_radius = view.inverse_radius;
+  const Lane row_depth = view.depth.row[row];
+  const Lane cells = view.cells;
+  const Lane middle = view.middle, centroid = view.centroid;
+  const Lane radius = view.radius, radius_scale = view.radius_scale, inverse_radius = view.inverse_radius;
   for (int column = 0; column < count; ++column) {
-    const std::int16_t depth = depths[column];
-    const std::int16_t along_x = multiply_high(depth, saturating_sum(view.x.column[column], row_x));
-    const std::int16_t along_down = multiply_high(depth, saturating_sum(view.down.column[column], row_down));
-    const std::int16_t x = multiply_high(add_int16(along_x, middle), cells);
-    const std::int16_t down = multiply_high(add_int16(along_down, middle), cells);
-    const auto inside = static_cast<std::uint16_t>(within(static_cast<std::uint16_t>(depth), 1, 32768) &
-                                                   within(static_cast<std::uint16_t>(x), 0, kSide) &
-                                                   within(static_cast<std::uint16_t>(down), 0, kSide));
-    const auto cell = static_cast<std::uint16_t>(down * kSide + x);
+    const Lane depth = depths[column];
+    const Lane along_x = multiply_high(depth, saturating_sum(view.x.column[column], row_x));
+    const Lane along_down = multiply_high(depth, saturating_sum(view.down.column[column], row_down));
+    const Lane x = multiply_high(add(along_x, middle), cells);
+    const Lane down = multiply_high(add(along_down, middle), cells);
+    const auto inside = static_cast<UnsignedLane>(above_zero(depth) & below(x, kSide) & below(down, kSide));
+    const auto cell = static_cast<UnsignedLane>(down * kSide + x);
     out.cell[column] = static_cast<std::uint16_t>((cell & inside) | (kSpareCell[column] & ~inside));
 
-    const std::int16_t view_depth =
-        saturating_sum(depth, multiply_q15(depth, add_int16(view.depth.column[column], row_depth)));
-    const auto before = static_cast<std::int16_t>(centroid - view_depth);
-    const std::int16_t bounded = clamp<std::int16_t>(before, static_cast<std::int16_t>(-radius), radius);
-    const std::int16_t value =
-        multiply_q15(static_cast<std::int16_t>(bounded * radius_scale), inverse_radius);
+    const Lane view_depth =
+        saturating_sum(depth, multiply_q15(depth, add(view.depth.column[column], row_depth)));
+    const auto before = static_cast<Lane>(centroid - view_depth);
+    const Lane bounded = clamp_lane(before, static_cast<Lane>(-radius), radius);
+    const Lane value = multiply_q15(static_cast<Lane>(bounded * radius_scale), inverse_radius);
     out.value[column] = static_cast<std::uint16_t>(kCentroidValue + value);
   }
 }

@@ -30,15 +30,6 @@ constexpr int kSupportOverNeeded = 4;
 
 constexpr int kSweeps = 4;
 
-// The number of ones.
-int count_ones(Word word) {
-  word -= (word >> 1) & 0x5555'5555U;
-  word = (word & 0x3333'3333U) + ((word >> 2) & 0x3333'3333U);
-  word = (word + (word >> 4)) & 0x0F0F'0F0FU;
-  word += word >> 8;
-  return static_cast<int>((word + (word >> 16)) & 0x3FU);
-}
-
 // A range of bins: [first, first + count).
 struct Slice {
   int first;
@@ -53,10 +44,11 @@ int bins_of_slice(int first_bin, std::uint32_t target_radius_mm) {
   return static_cast<int>((depth_mm * 131) >> 17) + 2;  // 131 / 2^17 = 1 / 1000.5
 }
 
-// The sums of the bins before each bin. Leaves out the bins that are not used.
+// The sums of the bins before each bin. Leaves out the bins that are not used; the one of kMaxRange_m is
+// hardly in the range gate.
 void sum_up(Scratch::Counts& counts) {
   for (int bin = 0; bin < kMinRange_m; ++bin) counts[bin + 1] = 0;
-  for (int bin = kMaxRange_m + 1; bin < kBins; ++bin) counts[bin + 1] = 0;
+  for (int bin = kMaxRange_m; bin < kBins; ++bin) counts[bin + 1] = 0;
   for (int bin = 1; bin <= kBins; ++bin)
     counts[bin] = static_cast<std::uint16_t>(counts[bin] + counts[bin - 1]);
 }

@@ -33,6 +33,16 @@ struct RayMask {
   std::array<Row, RangeImage::kMaxRays> rows;
 };
 
+// The number of ones in a word of a mask. Internal linkage, since it is compiled for several instruction
+// sets.
+[[gnu::always_inline]] static inline int count_ones(std::uint32_t word) {
+  word -= (word >> 1) & 0x5555'5555U;
+  word = (word & 0x3333'3333U) + ((word >> 2) & 0x3333'3333U);
+  word = (word + (word >> 4)) & 0x0F0F'0F0FU;
+  word += word >> 8;
+  return static_cast<int>((word + (word >> 16)) & 0x3FU);
+}
+
 // Working memory of the selection. The caller holds it, so that nothing large is on the stack.
 struct TargetSelectionScratch {
   static constexpr int kBins = 512;  // of one metre
@@ -69,7 +79,7 @@ struct TargetSelectionScratch {
 // The instruction count is the same for every frame with the same ray count.
 //
 // frame             16 to 128 rays a side; any ranges
-// target_radius_mm  kMinProjection_mm to kMaxProjection_mm
+// target_radius_mm  kMinProjection_mm to kMaxTargetRadius_mm
 // scratch           need not be initialized
 // mask              the chosen rays; may be none
 void select_target(const RangeImage& frame, std::uint32_t target_radius_mm, TargetSelectionScratch& scratch,

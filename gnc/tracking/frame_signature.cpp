@@ -16,54 +16,75 @@ std::size_t rays_of(const RangeImage& frame) {
   return static_cast<std::size_t>(min<int>(frame.rays, RangeImage::kMaxRays));
 }
 
-// Most rays meet nothing.
-constexpr std::size_t kRaysAtOnce = 8;
-bool has_no_return(const RangeImage& frame, int first) {
-  const std::uint32_t half = pair_at(frame, first) | pair_at(frame, first + 2);
-  return (half | pair_at(frame, first + 4) | pair_at(frame, first + 6)) == 0;
+// The cells of two neighbouring columns: 16 bits each, of which the low eight are used.
+using CellPair = std::uint32_t;
+constexpr std::size_t kPairs = kSignatureSide / 2;
+// Adds a pair of ranges. Masks instead of branches, for both at once.
+void add_pair(CellPair ranges, CellPair& cells) {
+  constexpr CellPair kOne = 0x0001'0001;
+  const CellPair is_return = ((((ranges & 0x7FFF'7FFF) + 0x7FFF'7FFF) | ranges) >> 15) & kOne;
+  const CellPair is_new = (is_return & ~(cells >> 7)) * 0xFFU;
+  cells |= (ranges | kIsReturn * kOne) & is_new;
 }
 
-void add_ray(const RangeImage& frame, std::size_t ray, std::size_t rays, SignatureStart& start) {
-  const std::uint32_t range = frame.ranges[ray];
-  if (range == 0) return;
-  const std::size_t place = (ray / rays & kMask) * kSignatureSide + (ray % rays & kMask);
-  if (start.cells[place] != 0) return;
-  start.cells[place] = static_cast<std::uint8_t>((range | kIsReturn) & 0xFFU);
-  start.places[start.filled++] = static_cast<std::uint8_t>(place);
+// Groups with returns that are looked at. Enough for kMost cells of a frame in which every ray has a return.
+constexpr int kMostGroups = 100;
+void add_rays(const RangeImage& frame, int first, int end, SignatureStart& start) {
+  const int rays = static_cast<int>(rays_of(frame));
+  int row = first / rays, column = first - row * rays;
+  for (int ray = first; ray < end; ++ray) {
+    const std::uint32_t range = frame.ranges[static_cast<std::size_t>(ray)];
+    const std::size_t place = static_cast<std::size_t>(row) % kSignatureSide * kSignatureSide +
+                              static_cast<std::size_t>(column) % kSignatureSide;
+    if (range != 0 && start.cells[place] == 0) {
+      start.cells[place] = static_cast<std::uint8_t>((range | kIsReturn) & 0xFFU);
+      start.places[start.filled++] = static_cast<std::uint8_t>(place);
+    }
+    if (++column == rays) {
+      column = 0;
+      ++row;
+    }
+  }
 }
 
 }  // namespace
 
 FrameSignature signature_of(const RangeImage& frame) {
-  FrameSignature signature{};
+  std::array<std::array<CellPair, kPairs>, kSignatureSide> pairs{};
   const std::size_t rays = rays_of(frame);
   for (std::size_t row = 0; row < rays; ++row) {
     const std::uint16_t* const ranges = &frame.ranges[row * rays];
-    std::uint8_t* const cells = &signature[(row & kMask) * kSignatureSide];
-    for (std::size_t column = 0; column < rays; ++column) {
-      // Masks instead of branches: ~0 for a return, and for a cell without one.
-      const std::uint32_t range = ranges[column], cell = cells[column & kMask];
-      const std::uint32_t is_return = 0U - ((0U - range) >> 31);
-      const std::uint32_t is_free = (cell >> 7) - 1U;
-      cells[column & kMask] =
-          static_cast<std::uint8_t>(cell | ((range | kIsReturn) & is_return & is_free & 0xFFU));
+    auto& cells = pairs[row & kMask];
+    for (std::size_t first = 0; first < rays; first += kSignatureSide) {
+      const std::size_t left = rays - first;
+      const std::size_t columns = left < kSignatureSide ? left : kSignatureSide;
+      for (std::size_t i = 0; i < columns / 2; ++i)
+        add_pair(ranges[first + 2 * i] | CellPair{ranges[first + 2 * i + 1]} << 16, cells[i]);
+      if (columns % 2 != 0) add_pair(ranges[rays - 1], cells[columns / 2]);
     }
+  }
+  FrameSignature signature{};
+  for (std::size_t i = 0; i < signature.size(); ++i) {
+    const CellPair pair = pairs[i / kSignatureSide][i % kSignatureSide / 2];
+    signature[i] = static_cast<std::uint8_t>((pair >> (16 * (i % 2))) & 0xFFU);
   }
   return signature;
 }
 
 SignatureStart start_of(const RangeImage& frame) {
   SignatureStart start;
-  const std::size_t rays = rays_of(frame);
-  const std::size_t count = rays * rays;
-  std::size_t ray = 0;
-  for (; ray < min<std::size_t>(kFirstOfPair, count); ++ray) add_ray(frame, ray, rays, start);
-  for (; ray + kRaysAtOnce <= count; ray += kRaysAtOnce) {
-    if (has_no_return(frame, static_cast<int>(ray))) continue;
-    for (std::size_t i = 0; i < kRaysAtOnce; ++i) add_ray(frame, ray + i, rays, start);
-    if (start.filled >= SignatureStart::kMost) return start;
+  const auto rays = static_cast<int>(rays_of(frame));
+  const int count = rays * rays;
+  if (count == 0) return start;
+  int ray = min(kFirstOfPair, count);
+  add_rays(frame, 0, ray, start);
+  for (int groups = 0; groups < kMostGroups && start.filled < SignatureStart::kMost; ++groups) {
+    ray = skip_empty(frame, ray, count);
+    const int end = min(ray + kRaysOfGroup, count);
+    add_rays(frame, ray, end, start);
+    ray = end;
+    if (ray == count) break;
   }
-  for (; ray < count; ++ray) add_ray(frame, ray, rays, start);
   return start;
 }
 
@@ -73,9 +94,9 @@ bool FrameHistory::contains(const FrameSignature& signature) const {
   return found;
 }
 
-bool FrameHistory::contains(const SignatureStart& start) const {
+bool FrameHistory::contains_alike(const SignatureStart& start) const {
   bool found = false;
-  for (const FrameSignature& used : signatures_) found |= is_repetition(used, start);
+  for (const FrameSignature& used : signatures_) found |= is_alike(used, start);
   return found;
 }
 
@@ -95,7 +116,7 @@ bool is_repetition(const FrameSignature& a, const FrameSignature& b) {
   return returns > 0 && 4 * equal >= 3 * returns;
 }
 
-bool is_repetition(const FrameSignature& earlier, const SignatureStart& later) {
+bool is_alike(const FrameSignature& earlier, const SignatureStart& later) {
   const std::uint32_t compared = min(later.filled, SignatureStart::kCompared);
   std::uint32_t equal = 0;
   for (std::uint32_t i = 0; i < compared; ++i) {

@@ -19,9 +19,10 @@ using FrameSignature = std::array<std::uint8_t, kSignatureSide * kSignatureSide>
 // The instruction count depends on the number of rays only.
 FrameSignature signature_of(const RangeImage& frame);
 
-// The first cells of a frame's signature that its rays fill, in their order: enough to compare it with frames
-// of the same cycle and with signatures, at a fraction of the cost of a signature. The instruction count
-// depends on the ranges.
+// The first cells of a frame's signature that its rays fill, in their order: a fraction of the cost of a
+// signature. Frames whose starts differ are no repetitions. Frames whose starts are alike may still differ
+// below, where the first rows are stuck or show a part of the chaser without noise: there the signatures
+// decide. The instruction count depends on the ranges. It is bounded by that of a frame with few returns.
 struct SignatureStart {
   static constexpr std::uint32_t kCompared = 64;
   // Where one of two frames lacks some returns, the start of the other one reaches farther.
@@ -37,9 +38,9 @@ SignatureStart start_of(const RangeImage& frame);
 class FrameHistory {
  public:
   static constexpr std::size_t kFrames = 8;
-  bool contains(const FrameSignature& signature) const;  // is_repetition() of one of them
-  bool contains(const SignatureStart& start) const;      // the same
-  void add(const FrameSignature& signature);             // replaces the oldest
+  bool contains(const FrameSignature& signature) const;    // is_repetition() of one of them
+  bool contains_alike(const SignatureStart& start) const;  // is_alike() to one of them
+  void add(const FrameSignature& signature);               // replaces the oldest
   const std::array<FrameSignature, kFrames>& signatures() const { return signatures_; }
   std::uint32_t next() const { return next_; }
 
@@ -52,8 +53,8 @@ class FrameHistory {
 // different frames of one scene fewer than a half are equal if the noise is at least half a count of the
 // range (4 mm). False if no cell has a return.
 bool is_repetition(const FrameSignature& a, const FrameSignature& b);
-// The same question for the first kCompared cells of `later`: whether at least three quarters of them are
-// equal to those of `earlier`.
-bool is_repetition(const FrameSignature& earlier, const SignatureStart& later);
+// Whether at least three quarters of the first kCompared cells of `later` are equal to those of `earlier`.
+// False if no cell has a return.
+bool is_alike(const FrameSignature& earlier, const SignatureStart& later);
 
 }  // namespace tumblesight::gnc

@@ -17,6 +17,7 @@ from network_layers import macs
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT, DATA, README = ROOT / "docs/audit.md", ROOT / "docs/audit.json", ROOT / "README.md"
 PROGRAMS = (("fixed", "flight_replay"), ("float32", "flight_replay_float32"))
+IMAGE = ROOT / "fsw/models/near_shoemaker.tsm"
 LONGEST_STEPS = "flight_worst_step"  # in fixed point
 # Verifies TS-MEM-030, TS-MEM-060.
 BUDGETS = {"ram": 192 * 1024, "stack": 6656, "text": 152 * 1024, "read_only": 24 * 1024}
@@ -81,7 +82,7 @@ def print_result(processor, numerics, r):
 def write_documents(results):
     model = f"of {results[0][2]['target']}"
     DATA.write_text(json.dumps(report.as_data(results, macs()), indent=1) + "\n")
-    DOCUMENT.write_text(report.as_document(results, macs(), BUDGETS, model, results[0][2]["frames"]))
+    DOCUMENT.write_text(report.as_document(results, macs(), BUDGETS, model, IMAGE.stat().st_size, results[0][2]["frames"]))
     README.write_text(report.with_table(README.read_text(), report.as_summary(results, macs())))
     print("\n  written: " + ", ".join(str(path.relative_to(ROOT)) for path in (DOCUMENT, DATA, README)))
 

@@ -10,7 +10,8 @@ from network_layers import function, layers
 _BEFORE_CNN = (
     ("application", r"fsw::AttitudeInitApp::step\("),
     ("(end)", r"replay::ConsoleLink::publish\(tumblesight::hal::AttitudeReport"),
-    ("depth image", r"gnc::make_depth_image\(.*DepthLoops const&\)"),
+    ("target selection", r"gnc::select_target\("),
+    ("depth image", r"::summarize_returns\("),
     ("space to depth", r"gnc::space_to_depth<"),
 )
 _BEFORE_LSTM = (
@@ -20,6 +21,7 @@ _BEFORE_LSTM = (
 )
 _AFTER_HEAD = (
     ("fusion", r"gnc::advance<"),
+    ("explained share", r"gnc::explained_share\("),
     ("telemetry", r"gnc::FrameGate::numbers_skipped\("),  # the first function after the estimator
 )
 TIME_LIMIT_S = 1200

@@ -95,10 +95,10 @@ def as_summary(results, macs):
                              f"time at an assumed {CYCLES_PER_INSTRUCTION:g} cycles per instruction", "RAM without the model"], rows))
 
 
-def as_document(results, macs, budgets, model, frames):
+def as_document(results, macs, budgets, model, image_bytes, frames):
     fixed = [(p, r) for p, numerics, r in results if numerics == "fixed"]
     floats = [(p, r) for p, numerics, r in results if numerics == "float32"]
-    return "\n".join(_introduction(model, frames) + _steps(fixed, macs) + _longest_steps(fixed) + _stages(fixed) + _memory(fixed, budgets)
+    return "\n".join(_introduction(model, frames) + _steps(fixed, macs) + _longest_steps(fixed) + _stages(fixed) + _memory(fixed, budgets, image_bytes)
                      + _float32(floats, macs)) + "\n"
 
 
@@ -114,8 +114,8 @@ def _introduction(model, frames):
         "",
         f"**Estimated**: time = instructions × {CYCLES_PER_INSTRUCTION:g} cycles / clock. The number of cycles per instruction is an assumption, the same for",
         "all parts. It is neither measured nor from a data sheet: QEMU does not model caches, buses or pipelines. An estimate is not",
-        "a worst-case execution time. The instruction count is the same for every frame without a gap before it, so that one measurement on the part",
-        "gives the time of every frame.",
+        "a worst-case execution time. The instruction count is the same for every frame without a gap before it that is not resampled, and for",
+        "every one that is, so that one measurement of each on the part gives the time of every frame.",
         "",
         "MACs are those of the network, including padding. The kernels skip the padding of the first and last rows where that costs",
         "nothing (3 to 5 % of all MACs).",
@@ -147,9 +147,10 @@ def _steps(fixed, macs):
 def _longest_steps(fixed):
     lines = ["## Longest steps", "",
              "Estimated time in ms of whole steps (`flight_worst_step`), each with the receipt of the most deliveries that a cycle",
-             "takes: 32 good frames, copied by the sensor interface, of which the newest is used. From the third row on each has a full load of the most expensive",
-             "commands, the largest scrubbing that SET_PARAMETER allows with a repair of every block, and a restored state, as far as its kind of",
-             "step can have them. A step has a frame or one long task (docs/icd.md, 2.5), never both: recovery is spread over several steps.",
+             "takes: 32 frames, copied by the sensor interface. The newest three have bad content, the next one is used, two have stuck",
+             "rows and are compared in full, and the others show hardly anything, which takes the longest to see. From the third row on",
+             "each has a full load of the most expensive commands, the largest scrubbing that SET_PARAMETER allows with a repair of every",
+             "block, and a restored state, as far as its kind of step can have them. A step has a frame or one long task (docs/icd.md, 2.5), never both: recovery is spread over several steps.",
              f"The audit fails when a step takes more than {100 * SHARE_OF_LONGEST_STEP:.0f} % of the period "
              f"({1e3 * SHARE_OF_LONGEST_STEP * PERIOD_S:.0f} ms), or {100 * SHARE_AFTER_LONGEST_COAST:.0f} % after the longest coast. *boot* is the start, `init()`, before the first step.", "",
              "Two kicks of the watchdog are at most a period plus the longest step apart: its time-out is two periods (docs/porting.md).", ""]
@@ -161,16 +162,18 @@ def _longest_steps(fixed):
 def _stages(fixed):
     names = list(fixed[0][1]["stages"])
     lines = ["## Instructions per stage", "",
-             "In thousands, for a step in fixed point, in the order of execution. The counts do not depend on what a frame shows.", ""]
+             "In thousands, for a step in fixed point, in the order of execution. The counts do not depend on what a frame shows, except that",
+             "a target which covers few of the frame's rays is resampled (docs/numerics.md): its depth image has another count, which is",
+             "the same for every such frame and is part of the longest step after a coast. The recorded frames are not resampled.", ""]
     lines += _table(["stage", *(p.name for p, _ in fixed)],
                     [[name, *(f"{r['stages'][name] / 1e3:.0f}" for _, r in fixed)] for name in names[1:] + names[:1]])
     return lines + ["", "*application*: checks of frames, events, telemetry. Its work depends on what happens in the step; the table shows the",
                     "largest count.", ""]
 
 
-def _memory(fixed, budgets):
+def _memory(fixed, budgets, image_bytes):
     lines = ["## Memory", "",
-             "Bytes of the project's own code and data in the program. The model image (1 178 496 bytes, read in place) and the recording",
+             f"Bytes of the project's own code and data in the program. The model image ({_thousands(image_bytes)} bytes, read in place) and the recording",
              "are not included. RAM: the application with the network's working memory, two frames, telemetry, and the worst-case stack of",
              "a step from the compiler's call graph (a call through a pointer counts as the deepest function that it can reach).", ""]
     lines += _table(["processor", "text", "read-only", "data + bss", "stack of a step", "RAM", "≤"],

@@ -83,20 +83,28 @@ class KeptState final : public hal::PersistentStore {
 
 constexpr std::int32_t kTurned = 759'250'125;  // sqrt(1/2), Q30: the chaser's attitude is no identity
 
-// Each delivery is a frame of `scene`, later than the one before and with other noise. The newest ones have
-// bad content, which takes the longest to see. A sensor never repeats its noise: the last one differs in
-// every range from those of the ten steps before.
+// As many deliveries as a cycle receives, each later than the one before. From the oldest to the newest:
+//  - frames whose only returns are in the last rays, where they are found last;
+//  - frames of `scene` with stuck first rows, which have to be compared in full;
+//  - one frame of `scene`, which is used. A sensor never repeats its noise: it differs in every range from
+//    those of the ten steps before;
+//  - frames with bad content, which takes the longest to see.
 class FastLidar final : public hal::Lidar {
  public:
   void prepare(std::int64_t now_ns) {
     noise_ = (noise_ + 1) % kNoises;
     scene.exposure_time_ns = now_ns;
     scene.sequence_number += config::kMaxDeliveriesPerCycle;
-    for (std::uint32_t i = 0; i < frames_.size(); ++i) {
-      frames_[i] = scene;
-      const std::uint32_t noise = i == 0 ? noise_ : kNoises + i;
-      for (std::uint16_t& range : frames_[i].ranges)
-        if (range != 0) range = static_cast<std::uint16_t>(range ^ noise);
+    copy_with_noise(noise_, used_);
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      copy_with_noise(kNoises + 1 + i, stuck_[i]);
+      few_[i] = stuck_[i];
+      for (std::size_t ray = 0; ray < scene.ranges.size(); ++ray) {
+        const std::size_t row = ray / scene.rays, column = ray % scene.rays;
+        if (row < kStuckRows) stuck_[i].ranges[ray] = kStuckRange;
+        const bool is_last = row + kFewSide >= scene.rays && column + kFewSide >= scene.rays;
+        few_[i].ranges[ray] = is_last ? static_cast<std::uint16_t>(kStuckRange + 3 * ray + i) : 0;
+      }
     }
     waiting_ = config::kMaxDeliveriesPerCycle;
   }
@@ -104,7 +112,9 @@ class FastLidar final : public hal::Lidar {
     if (waiting_ == 0) return hal::LidarStatus::kNoFrame;
     const int later = --waiting_;
     const int used = config::kMaxBadContentsPerCycle;  // the newer ones have no range within the gate
-    frame = frames_[later == used ? 0 : static_cast<std::size_t>(1 + later % 2)];
+    const int first_stuck = used + 1 + config::kMaxFullComparisonsPerCycle;
+    const auto either = static_cast<std::size_t>(later % 2);
+    frame = later <= used ? used_ : later <= first_stuck ? stuck_[either] : few_[either];
     if (later < used) frame.ranges.fill(kBeforeTheGate);
     frame.exposure_time_ns -= later * std::int64_t{50'000'000};
     frame.sequence_number -= static_cast<std::uint32_t>(later);
@@ -116,7 +126,18 @@ class FastLidar final : public hal::Lidar {
  private:
   static constexpr std::uint32_t kNoises = 10;
   static constexpr std::uint16_t kBeforeTheGate = 640;  // counts: 5 m
-  std::array<gnc::RangeImage, 3> frames_;
+  static constexpr std::uint16_t kStuckRange = 6400;
+  static constexpr std::size_t kStuckRows = 8;
+  static constexpr std::size_t kFewSide = 9;
+
+  void copy_with_noise(std::uint32_t noise, gnc::RangeImage& frame) const {
+    frame = scene;
+    for (std::uint16_t& range : frame.ranges)
+      if (range != 0) range = static_cast<std::uint16_t>(range ^ noise);
+  }
+
+  gnc::RangeImage used_;
+  std::array<gnc::RangeImage, 2> few_, stuck_;
   std::uint32_t noise_ = 0;
   int waiting_ = 0;
 };
@@ -300,8 +321,15 @@ void steps_with_a_frame() {
 // The most rays, after the longest coast, which the track propagates in steps. A track of a single frame
 // knows no rate, and has its prediction confirmed or starts anew.
 enum class Rate { kKnown, kUnknown };
-// A small target is resampled, and in the last corner its returns are found last.
+// A target in half of a field of view of twice the size is resampled.
 enum class Scene { kFillsTheView, kSmallInTheLastCorner };
+bool is_resampled() {
+  static gnc::DepthImageScratch scratch;
+  static gnc::DepthImage image;
+  const auto status = gnc::make_depth_image(frame, app.estimator().model().projection, scratch, image);
+  return status == gnc::FrameStatus::kOk && scratch.window.is_resampled;
+}
+
 void step_after_the_longest_coast(Rate rate, Scene scene) {
   static gnc::RangeImage recorded;
   recorded = frame;
@@ -314,6 +342,8 @@ void step_after_the_longest_coast(Rate rate, Scene scene) {
         (row - first) * recorded.rays / side * recorded.rays + (column - first) * recorded.rays / side;
     frame.ranges[i] = row < first || column < first ? 0 : recorded.ranges[recorded_ray];
   }
+  if (scene == Scene::kSmallInTheLastCorner) frame.fov_urad *= 2;
+  expect(is_resampled() == (scene == Scene::kSmallInTheLastCorner), "the wrong scene is resampled");
   constexpr config::ParameterRule kCoast = config::rule_of(Parameter::kLongestCoast_ms);
   set_parameter(Parameter::kLongestCoast_ms, kCoast.highest);
   if (rate == Rate::kUnknown) reset_sequence();
@@ -325,6 +355,7 @@ void step_after_the_longest_coast(Rate rate, Scene scene) {
   const bool is_ambiguous = (outputs.attitude.doubts & hal::kDoubtRateAmbiguous) != 0;
   if (rate == Rate::kUnknown) expect(is_ambiguous, "the rate was known");
   if (rate == Rate::kKnown) expect(outputs.attitude.frames_since_reset > 2, "the track was given up");
+  expect(outputs.telemetry.frames_repeated == 0, "a frame counts as repeated");
   recorded.sequence_number = frame.sequence_number;
   frame = recorded;
   load_as_second_copy();

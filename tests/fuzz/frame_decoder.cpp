@@ -64,11 +64,11 @@ gnc::RangeImage frame_of(Input& input, std::uint8_t flags) {
 
 gnc::DepthProjection projection_of(Input& input, std::uint8_t flags) {
   if ((flags & kAnyProjection) == 0) return gnc::test_header().projection;
-  const auto length = [&input] {
-    return gnc::kMinProjection_mm + input.u24() % (gnc::kMaxProjection_mm - gnc::kMinProjection_mm + 1);
+  const auto length = [&input](std::uint32_t largest_mm) {
+    return gnc::kMinProjection_mm + input.u24() % (largest_mm - gnc::kMinProjection_mm + 1);
   };
-  const std::uint32_t swath_mm = length();
-  return {swath_mm, length()};
+  const std::uint32_t swath_mm = length(gnc::kMaxSwath_mm);
+  return {swath_mm, length(gnc::kMaxTargetRadius_mm)};
 }
 
 void check_image(const gnc::DepthImage& image) {

@@ -157,6 +157,33 @@ TEST_F(Cycle, UsedBufferUnderANewNumberDoesNotTakeThePlaceOfTheFreshFrame) {
   }
 }
 
+// Verifies TS-LID-052. Rows that are stuck, at the top of every frame, do not make it a repetition. Of the
+// deliveries of a cycle only the first are compared in full.
+TEST_F(Cycle, FramesWithStuckFirstRowsAreUsed) {
+  const auto stuck_frame = [this](std::uint32_t number, std::int64_t exposure_ns, unsigned noise) {
+    gnc::RangeImage frame = good_frame(number, exposure_ns, noise);
+    std::fill_n(frame.ranges.begin(), 8 * frame.rays, 640);
+    return frame;
+  };
+  for (const std::uint32_t deliveries : {1U, 2U, 5U}) {
+    init_with_model();
+    std::uint32_t number = 0;
+    for (int cycle = 0; cycle < 12; ++cycle) {
+      for (std::uint32_t i = deliveries; i-- > 0; ++number)
+        lidar.add(stuck_frame(number, next_time_ns() - 200'000'000 * i, number));
+      run();
+      EXPECT_EQ(last_validity(), Validity::kValid) << deliveries;
+      EXPECT_EQ(link.attitudes.back().sequence_number, number - 1) << "the newest";
+    }
+    EXPECT_EQ(link.telemetry.back().frames_repeated, 0U);
+    const unsigned last_noise = number - 1;
+    for (std::uint32_t i = deliveries; i-- > 0; ++number)
+      lidar.add(stuck_frame(number, next_time_ns() - 200'000'000 * i, last_noise));
+    run();
+    EXPECT_EQ(link.telemetry.back().frames_repeated, deliveries) << "repetitions are still seen";
+  }
+}
+
 // Verifies TS-LID-052, TS-FDIR-170. A used buffer whose time is that of the cycle, before a fresh frame with
 // its own.
 TEST_F(Cycle, UsedBufferDoesNotSupersedeAFreshFrameOfAnEarlierTime) {

@@ -352,6 +352,37 @@ TEST_F(Reset, ChangeWhileTheStoreIsGivenUpIsReportedSinceAResetUndoesIt) {
   EXPECT_EQ(events(EventId::kChangeNotStored), 0) << "it is stored";
 }
 
+// Verifies TS-SEC-075. It may still be stored until the store is given up.
+TEST_F(Reset, ChangeWhileTheStoreFailsIsReportedWhenItIsGivenUp) {
+  const auto reports_until_given_up = [this] {
+    int reports = 0;
+    for (std::uint32_t i = 0; health() != StoreHealth::kGivenUp && i < 2 * config::kStoreCheck_cycles; ++i) {
+      step(StepInputs{});
+      reports += events(EventId::kChangeNotStored);
+    }
+    EXPECT_EQ(health(), StoreHealth::kGivenUp);
+    return reports;
+  };
+  step_good();
+  break_store();
+  step_commands({set_mode(Mode::kSafe)});
+  EXPECT_EQ(app->mode(), Mode::kSafe);
+  EXPECT_EQ(events(EventId::kChangeNotStored), 0);
+  EXPECT_EQ(reports_until_given_up(), 1);
+
+  kept.broken = {};
+  reset(ResetCause::kPowerOn);
+  step_good();
+  break_store();
+  step_commands({set_mode(Mode::kSafe)});
+  kept.broken = {};
+  step(StepInputs{});
+  EXPECT_EQ(stored().mode, Mode::kSafe);
+  break_store();
+  step_commands({set_mode(Mode::kSafe)});
+  EXPECT_EQ(reports_until_given_up(), 0) << "the change was stored in between";
+}
+
 // A copy that fails for long, and then the other one too: the ten cycles begin with the second one.
 TEST_F(Reset, StoreIsGivenUpOnlyAfterTenCyclesWithoutACopy) {
   step_good();

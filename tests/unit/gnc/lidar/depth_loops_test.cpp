@@ -73,8 +73,8 @@ TEST_P(DepthLoopsOf, HaveTheBitsOfThePortableLoops) {
     for (const int rays : {16, 17, 31, 100, 127, 128}) {
       for (const std::uint32_t fov_urad : {kMinFov_urad, 140'000U, kMaxFov_urad}) {
         const auto frame = frame_of(kind.range, static_cast<std::uint16_t>(rays), fov_urad);
-        for (const std::uint32_t swath_mm : {kMinProjection_mm, 7'000U, kMaxProjection_mm}) {
-          for (const std::uint32_t radius_mm : {kMinProjection_mm, 3'800U, kMaxProjection_mm}) {
+        for (const std::uint32_t swath_mm : {kMinProjection_mm, 7'000U, kMaxSwath_mm}) {
+          for (const std::uint32_t radius_mm : {kMinProjection_mm, 3'800U, kMaxTargetRadius_mm}) {
             SCOPED_TRACE(std::string(kind.name) + ' ' + std::to_string(rays) + ' ' +
                          std::to_string(fov_urad) + ' ' + std::to_string(swath_mm) + ' ' +
                          std::to_string(radius_mm));

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "gnc/lidar/depth_image.hpp"
 #include "tests/support/trials.hpp"
 
 namespace tumblesight::gnc {
@@ -90,6 +91,32 @@ TEST_F(TargetSelection, KeepsMostReturnsOfATargetThatReflectsFewRays) {
     fill([&](int row, int column) { return random.happens(share) ? target(row, column) : 0; });
     select();
     EXPECT_GE(chosen(), returns() * 0.9);
+  }
+}
+
+// Verifies TS-LID-100. The range gate ends at 500 m, within a bin of the ranges.
+TEST_F(TargetSelection, ReturnsJustBeyondTheRangeGateDoNotHideTheTarget) {
+  for (const int beyond : {64'001, 64'050, 64'127, 64'128, 65'535}) {
+    fill([&](int row, int column) {
+      return abs(row - 60) < 6 && abs(column - 60) < 6 ? 60 * 128 + random.below(300) : beyond;
+    });
+    select();
+    EXPECT_EQ(chosen(), 11 * 11) << beyond;
+  }
+}
+
+// Verifies TS-LID-100. The largest target, seen from its end, fills slices over 100 m of ranges.
+TEST_F(TargetSelection, LargestTargetIsNotTakenForClutter) {
+  for (const std::uint32_t radius_mm : {kMinProjection_mm, kMaxTargetRadius_mm}) {
+    const int depth = static_cast<int>(2 * radius_mm * 128 / 1000);
+    for (const int nearest : {30, 100, 300}) {
+      fill([&](int row, int column) {
+        const bool hit = abs(row - 60) < 20 && abs(column - 60) < 20;
+        return hit ? nearest * 128 + (row - 40) * depth / 39 + random.below(13) : 0;
+      });
+      select_target(*frame, radius_mm, *scratch, *mask);
+      EXPECT_EQ(chosen(), 39 * 39) << radius_mm << ' ' << nearest;
+    }
   }
 }
 
@@ -232,7 +259,7 @@ class Definition {
       pairs_of_bin[bin] += std::abs(range(row, column) - next) <= radius_mm_ * 131 / 1024 ? 1 : 0;
     });
     for (int bin = 0; bin < 512; ++bin)
-      for (int i = std::max(bin, 10); i <= std::min(500, bin + slice_bins(bin) - 1); ++i) {
+      for (int i = std::max(bin, 10); i <= std::min(499, bin + slice_bins(bin) - 1); ++i) {
         of_slice[static_cast<std::size_t>(bin)] += of_bin[static_cast<std::size_t>(i)];
         pairs_of_slice[static_cast<std::size_t>(bin)] += pairs_of_bin[static_cast<std::size_t>(i)];
       }
