@@ -23,18 +23,18 @@ inline std::uint32_t pair_at(const RangeImage& frame, int first) {
   return pair;
 }
 
-// Most rays meet nothing, and are passed in groups. The first place from `ray` on (as in pair_at()) whose
-// group has a return or reaches beyond `count` rays.
+// Most rays meet nothing, and are passed in groups. The first place from `next` on (as in pair_at()) whose
+// group has a return or reaches beyond the frame's `end`.
 inline constexpr int kRaysOfGroup = 8;
-inline int skip_empty(const RangeImage& frame, int ray, int count) {
+inline int skip_empty(const RangeImage& frame, int next, int end) {
   const auto any_return = [&frame](int first) {
     return pair_at(frame, first) | pair_at(frame, first + 2) | pair_at(frame, first + 4) |
            pair_at(frame, first + 6);
   };
-  while (ray + 2 * kRaysOfGroup <= count && (any_return(ray) | any_return(ray + kRaysOfGroup)) == 0)
-    ray += 2 * kRaysOfGroup;
-  if (ray + kRaysOfGroup <= count && any_return(ray) == 0) ray += kRaysOfGroup;
-  return ray;
+  while (next + 2 * kRaysOfGroup <= end && (any_return(next) | any_return(next + kRaysOfGroup)) == 0)
+    next += 2 * kRaysOfGroup;
+  if (next + kRaysOfGroup <= end && any_return(next) == 0) next += kRaysOfGroup;
+  return next;
 }
 
 // The target's returns of a frame.
