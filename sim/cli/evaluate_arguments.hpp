@@ -17,6 +17,7 @@ struct EvaluateArguments {
   bool sequences_given = false;
   int threads = 0;  // 0: one per core
   bool curves = false;
+  std::string effect_limit;  // name of an effect; empty: none
   bool no_baseline = false;
   std::uint32_t baseline_sequences = 100;
   std::string csv;     // empty: none
