@@ -154,7 +154,7 @@ void add_quantize_command(CLI::App& app) {
       "was trained with. The table shows the quantization error of each layer. The\n"
       "first mesh gives the surface by which the flight program checks what a frame\n"
       "shows. --surface-only replaces that surface in an image that is in fixed point\n"
-      "already. The sensor's description beside --model, if any, is copied beside --out.\n\n"
+      "already. The sensor's description beside --model is copied beside --out.\n\n"
       "Example\n"
       "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
       "      --mesh parametric --mesh near.stl\n\n"

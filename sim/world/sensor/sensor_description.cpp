@@ -27,8 +27,9 @@ using Json = nlohmann::ordered_json;
 constexpr double kMinFov_deg = 1.0;
 constexpr double kMaxFov_deg = 40.0;
 
-constexpr std::size_t kMaxDepth = 4;   // of a description; a good one has 2
-constexpr std::size_t kMaxShown = 60;  // characters of a wrong value
+constexpr std::size_t kMaxDepth = 4;    // of a description; a good one has 2
+constexpr std::size_t kMaxShown = 60;   // characters of a wrong value
+constexpr std::size_t kMaxFault = 200;  // characters of a fault that the parser found
 
 constexpr const char* kFields =
     "  name             1 to 31 characters of a-z, 0-9 and _\n"
@@ -49,6 +50,10 @@ constexpr const char* kFields =
     "  period_s         0.1 to 60: between two frames, unless --period is given\n"
     "\nNothing says where the sensor is mounted: frames and attitudes are in its own frame,\n"
     "the LRF. docs/icd.md says what a driver makes of the attitude of the chaser's body.\n";
+
+std::string shortened(const std::string& text, std::size_t most) {
+  return text.size() <= most ? text : text.substr(0, most) + "...";
+}
 
 // One object of a description. Takes the fields one by one and refuses what is not as it must be.
 class Fields {
@@ -114,9 +119,7 @@ class Fields {
     return value.is_object() && value.contains("kind") && value.at("kind") == kind;
   }
   [[noreturn]] void refuse(const std::string& field, const Json& value, const std::string& limits) const {
-    std::string text = value.dump();
-    if (text.size() > kMaxShown) text = text.substr(0, kMaxShown) + "...";
-    fail(fmt::format("field '{}' is {}; it must be {}", field, text, limits));
+    fail(fmt::format("field '{}' is {}; it must be {}", field, shortened(value.dump(), kMaxShown), limits));
   }
 
  private:
@@ -242,9 +245,9 @@ SensorDescription sensor_from_json(const std::string& text, const std::string& f
   try {
     json = Json::parse(text, check);
   } catch (const Json::out_of_range& error) {
-    refuse(fmt::format("a number is too large: {}", error.what()));
+    refuse("a number is too large: " + shortened(error.what(), kMaxFault));
   } catch (const Json::exception& error) {
-    refuse(fmt::format("not JSON: {}", error.what()));
+    refuse("not JSON: " + shortened(error.what(), kMaxFault));
   }
   const Fields fields(json, file, "",
                       {"name", "source", "rays_per_side", "fov", "spacing", "range_gate_m", "noise",
