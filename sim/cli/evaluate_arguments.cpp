@@ -1,5 +1,7 @@
 #include "sim/cli/evaluate_arguments.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <thread>
 
@@ -47,15 +49,12 @@ void add_effect_limit_option(CLI::App& command, EvaluateArguments& arguments) {
     const bool shows_target = row.strength != &Effects::wrong_object && row.strength != &Effects::sphere;
     if (shows_target) names.emplace_back(row.name);
   }
-  CLI::Option* limit =
-      command
-          .add_option("--effect-limit", arguments.effect_limit,
-                      "search the strength of this effect up to which 95 % of the sequences are within 20°; "
-                      "one run per strength, without tables")
-          ->check(one_of(names))
-          ->type_name("NAME");
-  for (const char* other : {"--curves", "--csv", "--report", "--paper", "--baseline-sequences"})
-    limit->excludes(command.get_option(other));
+  command
+      .add_option("--effect-limit", arguments.effect_limit,
+                  "search the strength of this effect up to which 95 % of the sequences are within 20°; "
+                  "one run per strength, without tables")
+      ->check(one_of(names))
+      ->type_name("NAME");
 }
 
 void add_paper_options(CLI::App& command, EvaluateArguments& arguments) {
@@ -119,6 +118,13 @@ void refuse_options_set_by_paper(const CLI::App& command) {
   for (const std::string& own : own_options) {
     if (command.get_option(own)->count() == 0) continue;
     throw CLI::ValidationError("--paper", "sets " + own + " itself; leave " + own + " out");
+  }
+}
+
+void refuse_options_of_tables(const CLI::App& command) {
+  for (const char* other : {"--paper", "--curves", "--csv", "--report", "--baseline-sequences"}) {
+    if (command.get_option(other)->count() == 0) continue;
+    throw CLI::ValidationError("--effect-limit", fmt::format("makes no tables; leave {} out", other));
   }
 }
 

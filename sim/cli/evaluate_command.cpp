@@ -219,11 +219,12 @@ void add_evaluate_command(CLI::App& app, const std::string& command_line) {
   command->callback([arguments, command] {
     take_period_of_sensor(*command, arguments->scenario);
     arguments->sequences_given = command->get_option("--sequences")->count() > 0;
-    if (arguments->paper) {
+    if (!arguments->effect_limit.empty()) {
+      refuse_options_of_tables(*command);
+      evaluate_effect_limit(*arguments);
+    } else if (arguments->paper) {
       refuse_options_set_by_paper(*command);
       evaluate_paper(*arguments);
-    } else if (!arguments->effect_limit.empty()) {
-      evaluate_effect_limit(*arguments);
     } else {
       evaluate(*arguments);
     }

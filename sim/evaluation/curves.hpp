@@ -9,6 +9,7 @@
 
 #include "sim/evaluation/metrics.hpp"
 #include "sim/world/scenario/sequence.hpp"
+#include "sim/world/sensor/effects.hpp"
 
 namespace tumblesight::sim {
 

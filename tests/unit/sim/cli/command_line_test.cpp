@@ -253,9 +253,12 @@ TEST(Evaluate, SearchesTheStrengthOfAnEffect) {
   EXPECT_TRUE(json.at("limits")[0].at("holds_at").is_null());
   EXPECT_EQ(json.at("limits")[0].at("trials").size(), 2U);
   EXPECT_EQ(json.at("limits")[0].at("trials")[1].at("strength"), -5.0);
+  EXPECT_NE(
+      here.run(common + " --effect-limit noise --csv x.csv").errors.find("makes no tables; leave --csv out"),
+      std::string::npos);
   for (const char* refused :
-       {" --effect-limit sphere", " --effect-limit noise --effect noise=2", " --effect-limit noise --curves",
-        " --effect-limit noise --condition nominal,degraded"})
+       {" --effect-limit sphere", " --effect-limit noise --paper", " --effect-limit noise --effect noise=2",
+        " --effect-limit noise --curves", " --effect-limit noise --condition nominal,degraded"})
     EXPECT_EQ(here.run(common + refused).exit_code, 2) << refused;
 }
 
@@ -556,7 +559,7 @@ TEST(Quantize, RefusesOptionsOfTheCalibrationWithASurface) {
   for (const char* option : {"--effect noise=2", "--sensor paper", "--range 20,50", "--sequences 20"}) {
     const Outcome outcome = here.run(surface + " " + option);
     EXPECT_EQ(outcome.exit_code, 2) << option;
-    EXPECT_NE(outcome.errors.find("--surface-only excludes --"), std::string::npos) << outcome.errors;
+    EXPECT_NE(outcome.errors.find(" excludes --surface-only"), std::string::npos) << outcome.errors;
   }
   EXPECT_NE(here.run(surface + " --mesh a.stl --mesh b.stl").errors.find("give one --mesh"),
             std::string::npos);

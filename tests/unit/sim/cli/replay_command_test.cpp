@@ -106,7 +106,7 @@ TEST_F(Replay, NotesATruthOfAnotherTargetOrSensorWithBothNames) {
 // Verifies TS-SIL-130.
 TEST_F(Replay, RefusesFilesThatAreWrongOrOfAnotherRecording) {
   std::ofstream(here.path("other.csv"))
-      << content(here.path("frames.truth.csv")) << "77,1,1,0,0,0,0,0,0,0,9,0\n";
+      << content(here.path("frames.truth.csv")) << "77,1,1,0,0,0,0,0,0,0,9,0,near_shoemaker,paper,54057624\n";
   expect_refused(replay("--truth other.csv"), 1,
                  "other.csv, line 6: the recording has no frame with sequence_number 77");
   expect_refused(replay("--truth frames.tslr"), 1, "frames.tslr, line 1: there is no column 'TSLR");
