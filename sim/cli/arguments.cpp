@@ -262,6 +262,14 @@ void add_model_options(CLI::App& command, ScenarioArguments& arguments) {
       ->excludes(model);
 }
 
+OptionFiles files_read(const MeshArguments& meshes, const SensorArguments& sensor) {
+  OptionFiles files{{"--sensor", sensor.file}};
+  for (const std::string& mesh : meshes.meshes) {
+    if (mesh != kParametricMesh) files.push_back({"--mesh", mesh});
+  }
+  return files;
+}
+
 std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std::string& target) {
   std::vector<TriangleMesh> meshes;
   for (const std::string& mesh : arguments.meshes) {
@@ -286,11 +294,30 @@ std::string full_path(const std::string& path) {
   return (error ? absolute.lexically_normal() : full).string();
 }
 
-void require_different(const std::string& option, const std::string& path, const std::string& other_option,
-                       const std::string& other_path) {
-  if (path.empty() || other_path.empty() || full_path(path) != full_path(other_path)) return;
-  throw CLI::ValidationError(
-      option, fmt::format("'{}' is also the file of {}; give two different files", path, other_option));
+bool is_same_file(const std::string& path, const std::string& other) {
+  std::error_code error;
+  return !path.empty() && !other.empty() &&
+         (full_path(path) == full_path(other) || std::filesystem::equivalent(path, other, error));
+}
+
+void require_separate_files(const OptionFiles& read, const OptionFiles& written) {
+  OptionFiles others = read;
+  for (const OptionFile& file : written) {
+    for (const OptionFile& other : others) {
+      if (!is_same_file(file.path, other.path)) continue;
+      throw CLI::ValidationError(
+          file.option,
+          fmt::format("'{}' is also the file of {}; give two different files", file.path, other.option));
+    }
+    others.push_back(file);
+  }
+}
+
+void require_usable_files(const OptionFiles& read, const OptionFiles& written) {
+  require_separate_files(read, written);
+  for (const auto& [option, path] : written) {
+    if (!path.empty()) require_writable(option, path);
+  }
 }
 
 void require_folder(const std::string& option, const std::string& path) {

@@ -40,6 +40,13 @@ struct MeshArguments {
   double mesh_scale = 1.0;
 };
 
+// A file that a run reads or writes, and the option that names it. An empty path: none.
+struct OptionFile {
+  std::string option;
+  std::string path;
+};
+using OptionFiles = std::vector<OptionFile>;
+
 enum class TargetChoice {
   kShipped,    // only targets that ship
   kAny,        // with --mesh, targets of the user's own as well
@@ -68,6 +75,9 @@ void add_mesh_options(CLI::App& command,
 void add_sequence_options(CLI::App& command, ScenarioArguments& arguments);  // --sequences, --frames, --seed
 void add_model_options(CLI::App& command, ScenarioArguments& arguments);     // --model, --numerics
 
+// The mesh files and the description of the sensor.
+OptionFiles files_read(const MeshArguments& meshes, const SensorArguments& sensor);
+
 // Throws as target_mesh does.
 std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std::string& target);
 
@@ -93,9 +103,13 @@ CLI::Validator target_name();
 // Absolute; links, "." and ".." are resolved as far as the path exists.
 std::string full_path(const std::string& path);
 
-// Throws CLI::ValidationError if both options name the same file, however it is spelled.
-void require_different(const std::string& option, const std::string& path, const std::string& other_option,
-                       const std::string& other_path);
+// However the paths are spelled, and through links as well. False if one of them is empty.
+bool is_same_file(const std::string& path, const std::string& other);
+// Throws CLI::ValidationError that names both options if a file that is written is also read, or is written
+// twice.
+void require_separate_files(const OptionFiles& read, const OptionFiles& written);
+// Every verb calls it before it writes. The same, and throws as require_writable() does.
+void require_usable_files(const OptionFiles& read, const OptionFiles& written);
 
 // Creates the folder if it does not exist. Throws std::runtime_error that names option, folder and reason if
 // that fails or no file can be written into it.

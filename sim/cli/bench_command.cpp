@@ -92,8 +92,11 @@ nlohmann::ordered_json json_of(const std::vector<BenchRow>& rows) {
 }
 
 void bench(const BenchArguments& arguments) {
-  if (!arguments.json.empty()) require_writable("--json", arguments.json);
   const std::string model_folder = fs::path(shipped_model_path("any")).parent_path().string();
+  require_usable_files({{"--onnxruntime", arguments.onnxruntime},
+                        {"--target (its model)", shipped_model_path(arguments.target)},
+                        {"--target (its model)", shipped_model_path(arguments.target + ".float32")}},
+                       {{"--json", arguments.json}});
   const BenchImages images = read_bench_images(model_folder, arguments.target);
   const std::vector<gnc::RangeImage> frames = rendered_frames(arguments.target);
   fmt::print("\n  {}, {:.1f} M multiply-accumulates per frame, one thread\n\n", arguments.target,

@@ -17,6 +17,7 @@ struct EvaluateArguments {
   bool sequences_given = false;
   int threads = 0;  // 0: one per core
   bool curves = false;
+  std::string effect_limit;  // name of an effect; empty: none
   bool no_baseline = false;
   std::uint32_t baseline_sequences = 100;
   std::string csv;     // empty: none
@@ -30,6 +31,8 @@ struct EvaluateArguments {
 void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments);
 // Throws CLI::ValidationError if an option was given that --paper sets itself.
 void refuse_options_set_by_paper(const CLI::App& command);
+// Throws CLI::ValidationError if an option of the tables was given, which --effect-limit does not make.
+void refuse_options_of_tables(const CLI::App& command);
 
 // All settings except the conditions.
 ExperimentSettings experiment_settings(const EvaluateArguments& arguments);

@@ -83,7 +83,14 @@ void evaluate_paper(const EvaluateArguments& arguments) {
     jobs.push_back(job_of(arguments, planned));
     steps += steps_of(jobs.back().settings);
   }
-  require_writable("--out", folder + "/results.md");
+  OptionFiles read, written;
+  for (const PlannedSubject& planned : plan.subjects) {
+    read.push_back({"--mesh-folder", planned.mesh});
+    read.push_back({"the models", planned.model});
+  }
+  for (const char* name : {"/results.md", "/results.csv", "/results.json", "/report.html"})
+    written.push_back({"--out", folder + name});
+  require_usable_files(read, written);
   Results results{arguments.scenario.seed, command_of(arguments), local_time_text(), plan.notes, {}};
   ProgressBar bar("evaluating", "steps", steps);
   std::uint64_t done = 0;

@@ -31,8 +31,9 @@ void require_a_name(const std::string& prefix) {
 
 void export_model(const ExportArguments& arguments) {
   require_a_name(arguments.onnx);
+  require_usable_files({{"--model", arguments.model}}, {{"--onnx", arguments.onnx + ".cnn.onnx"},
+                                                        {"--onnx", arguments.onnx + ".recurrent.onnx"}});
   const auto model = read_float32_model(arguments.model);
-  require_writable("--onnx", arguments.onnx + ".cnn.onnx");
   const OnnxFiles files = write_onnx_files(*model, arguments.onnx);
   fmt::print("\n  ONNX models of {} in float32, image {:08x}\n", model->header.target.data(),
              model->header.crc32);

@@ -138,10 +138,11 @@ FlightSetup flight_setup(const std::string& target, const TargetSetup& setup, co
   return described;
 }
 
-void require_usable_outputs(const FlightArguments& arguments, const std::string& json) {
-  require_different("--json", json, "--report", arguments.report);
-  require_writable("--report", arguments.report);
-  if (!json.empty()) require_writable("--json", json);
+void require_usable_outputs(const FlightArguments& arguments, OptionFiles read, const std::string& json) {
+  if (arguments.flight != kNoFlight) read.push_back({"--flight", arguments.flight});
+  read.push_back({"--command-key", arguments.command_key});
+  read.push_back({"--dds-security", arguments.security});
+  require_usable_files(read, {{"--report", arguments.report}, {"--json", json}});
 }
 
 std::string default_report_path(const std::string& name) {

@@ -34,8 +34,9 @@ SilSettings sil_settings(const FlightArguments& arguments, const std::string& ta
 // What the report says about the run's settings.
 FlightSetup flight_setup(const std::string& target, const TargetSetup& setup, const SilSettings& settings);
 
-// Throws if the report or the figures cannot be written, or are the same file. `json` empty: no figures.
-void require_usable_outputs(const FlightArguments& arguments, const std::string& json);
+// Throws as require_usable_files() does for the report and the figures. `read`: the files that the verb reads
+// beside those of `arguments`. `json` empty: no figures.
+void require_usable_outputs(const FlightArguments& arguments, OptionFiles read, const std::string& json);
 // <folder of the source tree>/out/<name>.
 std::string default_report_path(const std::string& name);
 

@@ -1,6 +1,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -10,9 +11,13 @@
 #include "sim/quantization/quantize_file.hpp"
 #include "sim/quantization/surface_samples.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/write_file.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {
 namespace {
+
+constexpr double kSizeTolerance = 0.02;  // as for the swath of a mesh that is evaluated
 
 struct QuantizeArguments {
   std::string model;
@@ -26,10 +31,41 @@ struct QuantizeArguments {
 
 // near.float32.tsm -> near.tsm; anything else.tsm -> else.fixed.tsm
 std::string default_out(const std::string& model) {
-  std::filesystem::path path(model);
-  path.replace_extension();
-  if (path.extension() == ".float32") return path.replace_extension(".tsm").string();
-  return path.string() + ".fixed.tsm";
+  const std::string stem = model_stem(model);
+  return stem + (model == stem + ".float32.tsm" ? ".tsm" : ".fixed.tsm");
+}
+
+// The image that is written is for the sensor of the one that is read. `written` is empty if the description
+// of that sensor need not be written: there is none, or it is beside the new image already.
+struct SensorFiles {
+  std::string read;
+  std::string written;
+};
+
+// Throws std::runtime_error if the description of another image would stand beside the new one.
+SensorFiles sensor_files(const QuantizeArguments& arguments) {
+  const std::string read = sensor_file_of(arguments.model), beside = sensor_file_of(arguments.out);
+  std::error_code error;
+  if (is_same_file(read, beside)) return {read, {}};
+  if (std::filesystem::exists(read, error)) return {read, beside};
+  if (!std::filesystem::exists(beside, error)) return {};
+  throw std::runtime_error(fmt::format(
+      "'{}' says for which sensor an earlier image of this name was trained, and '{}' has no such "
+      "file; remove it, or give another --out",
+      beside, arguments.model));
+}
+
+SensorFiles require_usable_files(const QuantizeArguments& arguments) {
+  const SensorFiles sensor = sensor_files(arguments);
+  OptionFiles read = files_read(arguments.meshes, arguments.sensor);
+  read.push_back({"--model", arguments.model});
+  read.push_back({"--model (its sensor)", sensor.read});
+  require_usable_files(read, {{"--out", arguments.out}, {"--out (its sensor)", sensor.written}});
+  return sensor;
+}
+
+void copy_sensor_file(const SensorFiles& files) {
+  if (!files.written.empty()) write_file(files.written, to_json(sensor_named(files.read)));
 }
 
 void print_report(const QuantizationReport& report, const std::string& path) {
@@ -43,16 +79,34 @@ void print_report(const QuantizationReport& report, const std::string& path) {
   fmt::print("  {}, {} bytes, CRC-32 {:08x}\n\n", full_path(path), report.size_bytes, report.crc32);
 }
 
-// Writes the image `--model` with the surface of the first mesh.
+// The surface of another body, or in another unit, would refuse every attitude, or none.
+void require_size_of_network(const TriangleMesh& mesh, const gnc::DepthProjection& network) {
+  const gnc::DepthProjection found = projection_of(mesh);
+  const auto differs = [](std::uint32_t one, std::uint32_t other) {
+    return std::abs(static_cast<double>(one) - other) > kSizeTolerance * other;
+  };
+  if (!differs(found.target_radius_mm, network.target_radius_mm) &&
+      !differs(found.swath_mm, network.swath_mm))
+    return;
+  throw std::invalid_argument(
+      fmt::format("mesh {} has a radius of {:.3f} m and a swath of {:.3f} m, and the network was trained for "
+                  "{:.3f} m and "
+                  "{:.3f} m; give the mesh of its target, in metres (--mesh-scale)",
+                  mesh.name, 1e-3 * found.target_radius_mm, 1e-3 * found.swath_mm,
+                  1e-3 * network.target_radius_mm, 1e-3 * network.swath_mm));
+}
+
+// Writes the image `--model` with the surface of the mesh.
 void replace_surface(const QuantizeArguments& arguments) {
-  if (arguments.out.empty()) throw CLI::ValidationError("--surface-only", "needs --out");
-  require_different("--model", arguments.model, "--out", arguments.out);
-  require_writable("--out", arguments.out);
+  if (arguments.meshes.meshes.size() > 1)
+    throw CLI::ValidationError("--surface-only", "takes the surface of one mesh; give one --mesh");
+  const SensorFiles sensor = require_usable_files(arguments);
   const gnc::ModelHeader header = read_fixed_point_header(arguments.model);
-  const std::vector<TriangleMesh> meshes = load_meshes(arguments.meshes, header.target.data());
-  const std::vector<std::uint8_t> surface =
-      surface_section(meshes.front(), 1e-3 * header.projection.target_radius_mm);
+  const TriangleMesh mesh = load_meshes(arguments.meshes, header.target.data()).front();
+  require_size_of_network(mesh, header.projection);
+  const std::vector<std::uint8_t> surface = surface_section(mesh, 1e-3 * header.projection.target_radius_mm);
   const std::uint32_t crc32 = write_with_surface(arguments.model, surface, arguments.out);
+  copy_sensor_file(sensor);
   const gnc::SurfaceModel points(surface.data());
   fmt::print("  {}, CRC-32 {:08x}: {} points of the surface, {} mm apart\n", full_path(arguments.out), crc32,
              points.points(), points.spacing_mm());
@@ -65,8 +119,7 @@ void quantize_file(QuantizeArguments arguments) {
   }
   require_the_target(arguments.effects);
   if (arguments.out.empty()) arguments.out = default_out(arguments.model);
-  require_different("--model", arguments.model, "--out", arguments.out);
-  require_writable("--out", arguments.out);
+  const SensorFiles sensor = require_usable_files(arguments);
   const auto model = read_float32_model(arguments.model);
   std::vector<std::string> notes{check_sensor_of_model(arguments.model, arguments.sensor.sensor)};
   ScenarioSettings seen = seen_by(arguments.sensor, 1e-3 * model->header.projection.swath_mm, notes);
@@ -74,10 +127,10 @@ void quantize_file(QuantizeArguments arguments) {
   for (const std::string& note : notes) {
     if (!note.empty()) fmt::print(stderr, "  note: {}\n", note);
   }
+  print_sensor(arguments.sensor.sensor, seen.ranges);
   quantize_and_report(*model, load_meshes(arguments.meshes, model->header.target.data()), arguments.sequences,
                       arguments.out, seen);
-  const bool known = std::filesystem::exists(sensor_file_of(arguments.model));
-  if (known) write_sensor_file(arguments.out, arguments.sensor.sensor);
+  copy_sensor_file(sensor);
 }
 
 }  // namespace
@@ -100,12 +153,20 @@ void add_quantize_command(CLI::App& app) {
       "The scales are chosen on rendered sequences. --effect: those that the network\n"
       "was trained with. The table shows the quantization error of each layer. The\n"
       "first mesh gives the surface by which the flight program checks what a frame\n"
-      "shows.\n\n"
+      "shows. --surface-only replaces that surface in an image that is in fixed point\n"
+      "already. The sensor's description beside --model is copied beside --out.\n\n"
       "Example\n"
       "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
-      "      --mesh parametric --mesh near.stl\n");
+      "      --mesh parametric --mesh near.stl\n\n"
+      "Example: the surface of your CAD file for an image that ships\n"
+      "  tumblesight quantize --surface-only --model fsw/models/near_shoemaker.tsm \\\n"
+      "      --mesh near.stl --out near.tsm\n");
   add_float32_model_option(*command, arguments->model);
-  command->add_option("--out", arguments->out, "model image to write [--model without .float32]")
+  CLI::Option* model = command->get_option("--model");
+  model->description(model->get_description() + "; with --surface-only one in fixed point");
+  command
+      ->add_option("--out", arguments->out,
+                   "model image to write [--model without .float32; --surface-only has no default]")
       ->check(file_path())
       ->type_name("FILE");
   add_mesh_options(*command, arguments->meshes);
@@ -116,8 +177,13 @@ void add_quantize_command(CLI::App& app) {
                      10, 10'000)
       ->type_name("N")
       ->capture_default_str();
-  command->add_flag("--surface-only", arguments->surface_only,
-                    "--model is in fixed point: keep its weights, and replace its surface");
+  CLI::Option* surface =
+      command->add_flag("--surface-only", arguments->surface_only,
+                        "--model is in fixed point: keep its weights, and replace its surface by that of "
+                        "--mesh, which must have its size");
+  surface->needs("--out");
+  for (const char* of_calibration : {"--effect", "--sensor", "--range", "--sequences"})
+    surface->excludes(command->get_option(of_calibration));
   command->callback([arguments] { quantize_file(*arguments); });
 }
 

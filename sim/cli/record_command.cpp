@@ -41,15 +41,13 @@ void record(const RecordArguments& arguments) {
   const ScenarioArguments& wanted = arguments.scenario;
   require_possible_disturbances(wanted.disturbances, wanted.frames);
   const std::string truth = truth_path(arguments);
-  require_different("--truth", truth, "--out", arguments.out);
   // tumblesight replay would score these frames with the truth of others.
   const std::string beside = truth_path_of(arguments.out);
   if (beside != truth && std::filesystem::is_regular_file(beside)) {
     throw std::runtime_error(fmt::format(
         "'{}' is the truth of an earlier recording of this name; remove it, or give another --out", beside));
   }
-  require_writable("--out", arguments.out);
-  if (!truth.empty()) require_writable("--truth", truth);
+  require_usable_files(files_read(wanted), {{"--out", arguments.out}, {"--truth", truth}});
   const TargetSetup target = set_up_target_without_model(wanted);
   for (const std::string& warning : target.warnings) fmt::print(stderr, "  note: {}\n", warning);
   RecordingSettings settings;
@@ -66,9 +64,13 @@ void record(const RecordArguments& arguments) {
 
   const std::uint32_t total = wanted.sequences * wanted.frames;
   ProgressBar bar("recording", "frames", total);
-  const auto [bytes, rows] =
-      make_recording(renderer, settings, [&](std::uint32_t done) { bar.update(done); });
+  auto [bytes, rows] = make_recording(renderer, settings, [&](std::uint32_t done) { bar.update(done); });
   bar.finish();
+  const SensorDescription& sensor = wanted.sensor.sensor;
+  for (RecordedTruth& row : rows) {
+    row.target = wanted.target;
+    row.sensor = {sensor.name, crc32_of(sensor)};
+  }
   write_file(arguments.out, bytes);
   if (!truth.empty()) write_file(truth, truth_csv(rows));
   hal::replay::Recording recording;
@@ -76,6 +78,7 @@ void record(const RecordArguments& arguments) {
     throw std::logic_error("the recording that was made is not valid");
   fmt::print("\n  {}, {}: {}, {} bytes: {}\n", wanted.target, wanted.condition,
              counted(recording.frames(), "frame"), bytes.size(), full_path(arguments.out));
+  fmt::print("  sensor {}, {}\n", to_string(sensor), to_string(target.ranges));
   fmt::print("  truth: {}\n\n", truth.empty() ? kNoTruth : full_path(truth));
 }
 

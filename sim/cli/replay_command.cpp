@@ -41,12 +41,42 @@ std::string truth_path(const ReplayArguments& arguments) {
   return fs::is_regular_file(beside, error) ? beside : std::string();
 }
 
-void require_inputs_kept(const ReplayArguments& arguments, const std::string& truth) {
-  for (const auto& [option, path] : {std::pair<const char*, const std::string&>{"--report", arguments.report},
-                                     {"--json", arguments.scenario.json}}) {
-    require_different(option, path, "RECORDING", arguments.recording);
-    require_different(option, path, "--truth", truth);
-  }
+OptionFiles files_read(const ReplayArguments& arguments, const std::string& truth) {
+  OptionFiles files = files_read(arguments.scenario);
+  files.push_back({"RECORDING", arguments.recording});
+  files.push_back({"--truth", truth});
+  return files;
+}
+
+// What the file of truth says about the frames need not be what the flight program looks for.
+std::vector<std::string> remarks_on(const TruthTable& truth, const std::string& file,
+                                    const std::string& target, const std::string& model) {
+  std::vector<std::string> remarks;
+  const auto other = std::find_if(truth.begin(), truth.end(), [&](const auto& row) {
+    return !row.second.target.empty() && row.second.target != target;
+  });
+  if (other != truth.end())
+    remarks.push_back(fmt::format(
+        "The truth in '{}', line {}, is of target {}, and the flight program looks for {}. The errors mean "
+        "nothing unless both have the same axes.",
+        file, other->second.line, other->second.target, target));
+  const std::string sensor_file = sensor_file_of(model);
+  std::error_code error;
+  const bool known = fs::exists(sensor_file, error);
+  const SensorDescription trained = known ? sensor_named(sensor_file) : SensorDescription{};
+  const auto foreign = std::find_if(truth.begin(), truth.end(), [&](const auto& row) {
+    return row.second.sensor && row.second.sensor->crc32 != crc32_of(trained);
+  });
+  if (foreign != truth.end())
+    remarks.push_back(fmt::format(
+        "The frames are of sensor {} (CRC-32 {:08x}), and {}.", foreign->second.sensor->name,
+        foreign->second.sensor->crc32,
+        known ? "the network was trained for sensor " + to_string(trained)
+              : fmt::format(
+                    "no {} says for which sensor the network was trained; the shipped ones were trained "
+                    "for the paper's",
+                    fs::path(sensor_file).filename().string())));
+  return remarks;
 }
 
 void announce(const ReplayArguments& arguments, const ReplaySetup& setup, std::size_t known) {
@@ -88,15 +118,17 @@ void print_results(const ReplayReport& report, const SilRunResult& run) {
 
 void replay(ReplayArguments arguments) {
   if (arguments.report.empty())
-    arguments.report = default_report_path(fs::path(arguments.recording).stem().string() + "_replay.html");
+    arguments.report = default_report_path(recording_stem(fs::path(arguments.recording).filename().string()) +
+                                           "_replay.html");
   const std::string truth_file = truth_path(arguments);
-  require_usable_outputs(arguments, arguments.scenario.json);
-  require_inputs_kept(arguments, truth_file);
+  require_usable_outputs(arguments, files_read(arguments, truth_file), arguments.scenario.json);
   const RecordingFile recording = read_recording(arguments.recording);
+  const TruthTable rows = truth_file.empty() ? TruthTable{} : read_truth(truth_file);
   std::vector<std::optional<RecordedTruth>> truth;
-  if (!truth_file.empty()) truth = truth_by_frame(recording, read_truth(truth_file), truth_file);
+  if (!truth_file.empty()) truth = truth_by_frame(recording, rows, truth_file);
   RecordedSteps steps(recording, truth);
-  const TargetSetup target = set_up_model_alone(arguments.scenario);
+  TargetSetup target = set_up_model_alone(arguments.scenario);
+  target.warnings = remarks_on(rows, truth_file, arguments.scenario.target, target.model_path);
   const SilSettings settings = sil_settings(arguments, arguments.scenario.target, target);
 
   ReplaySetup setup;

@@ -11,6 +11,7 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
@@ -56,7 +57,11 @@ SensorDescription sensor_from_option(const std::string& text) {
 void add_sensor_options(CLI::App& command, SensorArguments& arguments) {
   command
       .add_option_function<std::string>(
-          "--sensor", [&arguments](const std::string& text) { arguments.sensor = sensor_from_option(text); },
+          "--sensor",
+          [&arguments](const std::string& text) {
+            arguments.sensor = sensor_from_option(text);
+            arguments.file = sensor_path(text);
+          },
           "sensor: the name of one that ships, or a file that describes one; --sensor list explains both "
           "[paper]")
       ->type_name("NAME|FILE");
@@ -72,11 +77,22 @@ void add_sensor_options(CLI::App& command, SensorArguments& arguments) {
 }
 
 void take_period_of_sensor(const CLI::App& command, ScenarioArguments& arguments) {
-  if (command.get_option("--period")->count() > 0) return;
-  arguments.disturbances.period_s = arguments.sensor.sensor.period_s;
+  Disturbances& disturbances = arguments.disturbances;
+  if (command.get_option("--period")->count() == 0) disturbances.period_s = arguments.sensor.sensor.period_s;
+  const double of_effect_s = arguments.effects.scan_time;
+  const double scan_s = of_effect_s != 0.0 ? of_effect_s : arguments.sensor.sensor.settings.scan_time_s;
+  if (scan_s <= disturbances.period_s) return;
+  throw CLI::ValidationError(
+      "--period", fmt::format("{:g} s is shorter than a scan of {:g} s ({}); give at least --period {:g}",
+                              disturbances.period_s, scan_s,
+                              of_effect_s != 0.0 ? "--effect scan_time" : "--sensor", scan_s));
 }
 
-RangeLimits ranges_of(const SensorArguments& arguments, double swath_m, std::vector<std::string>& warnings) {
+namespace {
+
+// Those of --range, else the paper's from where the target fits into the view.
+RangeLimits wanted_ranges(const SensorArguments& arguments, double swath_m,
+                          std::vector<std::string>& warnings) {
   const RangeLimits paper;
   // Up to 0.1 m, as the messages name it.
   const double filling_m = std::ceil(10.0 * filling_range_m(arguments.sensor.settings, swath_m)) / 10.0;
@@ -98,6 +114,22 @@ RangeLimits ranges_of(const SensorArguments& arguments, double swath_m, std::vec
   return ranges;
 }
 
+}  // namespace
+
+RangeLimits ranges_of(const SensorArguments& arguments, double swath_m, std::vector<std::string>& warnings) {
+  const RangeLimits ranges = wanted_ranges(arguments, swath_m, warnings);
+  const SensorSettings& sensor = arguments.sensor.settings;
+  if (ranges.nearest_m >= sensor.nearest_m && ranges.farthest_m <= sensor.farthest_m) return ranges;
+  const double nearest_m = std::max(ranges.nearest_m, sensor.nearest_m);
+  const double farthest_m = std::min(ranges.farthest_m, sensor.farthest_m);
+  throw std::invalid_argument(fmt::format(
+      "sensor {}: its range gate is {}, and the ranges to draw from are {}; {}", arguments.sensor.name,
+      to_string(RangeLimits{sensor.nearest_m, sensor.farthest_m}), to_string(ranges),
+      nearest_m <= farthest_m ? fmt::format("give ranges inside it, for example --range {:g},{:g}",
+                                            std::max(kNearest_m, nearest_m), farthest_m)
+                              : "give ranges inside it with --range"));
+}
+
 ScenarioSettings seen_by(const SensorArguments& arguments, double swath_m,
                          std::vector<std::string>& warnings) {
   ScenarioSettings seen;
@@ -109,15 +141,11 @@ ScenarioSettings seen_by(const SensorArguments& arguments, double swath_m,
 
 void print_sensor(const SensorDescription& sensor, const RangeLimits& ranges) {
   if (!sensor.is_the_papers()) fmt::print("  sensor: {}\n\n", to_string(sensor));
-  if (!ranges.are_the_papers())
-    fmt::print("  ranges: {:.1f} to {:.1f} m\n\n", ranges.nearest_m, ranges.farthest_m);
+  if (!ranges.are_the_papers()) fmt::print("  ranges: {}\n\n", to_string(ranges));
 }
 
 std::string sensor_file_of(const std::string& model_path) {
-  std::filesystem::path path(model_path);
-  path.replace_extension();
-  if (path.extension() == ".float32") path.replace_extension();
-  return path.string() + ".sensor.json";
+  return model_stem(model_path) + ".sensor.json";
 }
 
 void write_sensor_file(const std::string& model_path, const SensorDescription& sensor) {

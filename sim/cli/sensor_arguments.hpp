@@ -16,17 +16,20 @@ struct ScenarioArguments;
 struct SensorArguments {
   SensorDescription sensor;
   std::optional<RangeLimits> ranges{};  // those of --range
+  std::string file{};                   // that describes the sensor; empty: none was given
 };
 
 // --sensor and --range. `--sensor list` prints the descriptions that ship and ends the program. `arguments`
 // must outlive the parsing.
 void add_sensor_options(CLI::App& command, SensorArguments& arguments);
-// Frames come with the period of the sensor unless --period was given.
+// Frames come with the period of the sensor unless --period was given. Throws CLI::ValidationError if a scan
+// takes longer than that.
 void take_period_of_sensor(const CLI::App& command, ScenarioArguments& arguments);
 
 // The ranges to draw for a target that needs this swath: those of --range, else the paper's from where the
 // target fits into the view. Adds a warning if it does not fit at the nearest range. Throws
-// std::invalid_argument that names a range if it does not fit at any of the paper's.
+// std::invalid_argument that names a range if it does not fit at any of the paper's, or if the sensor's range
+// gate excludes some of the ranges.
 RangeLimits ranges_of(const SensorArguments& arguments, double swath_m, std::vector<std::string>& warnings);
 
 // A scenario with the sensor, its period, and ranges_of().

@@ -120,7 +120,7 @@ void simulate(SimulateArguments arguments) {
   require_a_speed(arguments);
   require_possible_disturbances(scenario.disturbances, scenario.frames);
   if (arguments.report.empty()) arguments.report = default_report_path(default_report_name(arguments));
-  require_usable_outputs(arguments, scenario.json);
+  require_usable_outputs(arguments, files_read(scenario), scenario.json);
   const TargetSetup target = set_up_target(scenario);
   SilSettings settings = sil_settings(arguments, scenario.target, target);
   settings.ego_motion = !scenario.disturbances.no_ego_motion;
@@ -177,7 +177,10 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "With --free-running and a sensor that is faster than the cycle, the newest frame\n"
       "of each cycle is used. The frames that it supersedes are counted.\n" +
       disturbance_examples("simulate"));
-  command->callback([arguments] { simulate(*arguments); });
+  command->callback([arguments, command] {
+    take_period_of_sensor(*command, arguments->scenario);
+    simulate(*arguments);
+  });
 }
 
 }  // namespace tumblesight::sim

@@ -122,6 +122,14 @@ std::string shipped_model_path(const std::string& name) {
   return std::string(TUMBLESIGHT_SOURCE_DIR) + "/fsw/models/" + name + ".tsm";
 }
 
+OptionFiles files_read(const ScenarioArguments& arguments) {
+  const std::string model = model_path(arguments);
+  return {{"--mesh", arguments.mesh == kParametricMesh ? "" : arguments.mesh},
+          {"--model", model},
+          {"--model (its sensor)", sensor_file_of(model)},
+          {"--sensor", arguments.sensor.file}};
+}
+
 TargetSetup set_up_target(const ScenarioArguments& arguments) {
   TargetSetup setup = set_up_body(arguments);
   set_up_model(arguments, setup);

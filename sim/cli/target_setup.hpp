@@ -30,6 +30,9 @@ struct TargetSetup {
 // fsw/models/<name>.tsm of the source tree.
 std::string shipped_model_path(const std::string& name);
 
+// Mesh, model image, the description of the sensor beside it, and that of --sensor.
+OptionFiles files_read(const ScenarioArguments& arguments);
+
 // Throws std::runtime_error or std::invalid_argument that names what is missing or wrong: target, mesh,
 // inertia, model image. An image that the flight program would refuse is refused here as well.
 TargetSetup set_up_target(const ScenarioArguments& arguments);

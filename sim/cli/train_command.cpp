@@ -101,20 +101,37 @@ TrainingTargets targets_of(const TrainOptions& options, const std::vector<Triang
                                options.effects, options.target, options.sensor.sensor, ranges);
 }
 
+// Of the sensor's file in the folder it is enough that it is the one of --sensor: it is then left as it is.
+void require_usable_folder(const TrainOptions& options, const std::string& stem) {
+  const std::string& folder = options.settings.folder;
+  require_folder("--out", folder);
+  OptionFiles read = files_read(options.meshes, options.sensor);
+  read.push_back({"--start-from", options.settings.start_from});
+  OptionFiles written;
+  for (const std::string& path : {stem + ".tsm", stem + ".float32.tsm", folder + "/log.csv",
+                                  folder + "/curve.svg", folder + "/cnn.ckpt", folder + "/rcnn.ckpt"})
+    written.push_back({"--out", path});
+  if (!is_same_file(sensor_file_of(stem + ".tsm"), options.sensor.file))
+    written.push_back({"--out", sensor_file_of(stem + ".tsm")});
+  require_usable_files(read, written);
+}
+
 int train(TrainOptions& options) {
   require_the_target(options.effects);
   require_a_cnn(options.settings);
   choose_device(options);
-  require_folder("--out", options.settings.folder);
+  // Beside the checkpoints and the images that follow.
+  const std::string stem = options.settings.folder + "/" + options.target;
+  require_usable_folder(options, stem);
   std::signal(SIGINT, [](int) { stop_requested = true; });
   std::signal(SIGTERM, [](int) { stop_requested = true; });
 
-  // Beside the checkpoints and the images that follow.
-  const std::string stem = options.settings.folder + "/" + options.target;
   (void)check_sensor_of_model(stem + ".tsm", options.sensor.sensor);
   const std::vector<TriangleMesh> meshes = load_meshes(options.meshes, options.target);
   const TrainingTargets targets = targets_of(options, meshes);
-  write_sensor_file(stem + ".tsm", options.sensor.sensor);
+  if (!is_same_file(sensor_file_of(stem + ".tsm"), options.sensor.file))
+    write_sensor_file(stem + ".tsm", options.sensor.sensor);
+  print_sensor(options.sensor.sensor, targets.ranges);
 
   torch::manual_seed(options.settings.seed);
   Cnn cnn;

@@ -1,6 +1,7 @@
 #include "sim/evaluation/curves.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/world/math/angles.hpp"
 
@@ -11,6 +12,60 @@ std::vector<double> even_edges(double low, double high, int bins) {
   std::vector<double> edges;
   for (int i = 0; i <= bins; ++i) edges.push_back(low + (high - low) * i / bins);
   return edges;
+}
+
+constexpr double kLogSpan = 20.0;  // from this ratio of the ends on, the steps are factors
+constexpr double kRatio = 1.05;
+constexpr double kShareOfRange = 0.01;
+
+double with_three_digits(double value) {
+  if (value == 0.0) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+  // A division by a power of ten is exact where the product with its inverse is not.
+  return unit < 1.0 ? std::round(value / unit) / std::round(1.0 / unit) : std::round(value / unit) * unit;
+}
+
+// Halves the distance of two strengths on the scale of one side.
+class Bisection {
+ public:
+  Bisection(double from, double to, bool whole) : range_(std::abs(to - from)), whole_(whole) {
+    factors_ = !whole && from > 0.0 && to / from > kLogSpan;
+  }
+
+  bool is_close(double a, double b) const {
+    if (whole_) return std::abs(a - b) <= 1.0;
+    return factors_ ? std::max(a, b) <= kRatio * std::min(a, b) : std::abs(a - b) <= kShareOfRange * range_;
+  }
+  double middle(double a, double b) const {
+    const double middle = factors_ ? std::sqrt(a * b) : 0.5 * (a + b);
+    return whole_ ? std::floor(middle) : with_three_digits(middle);
+  }
+
+ private:
+  double range_;
+  bool whole_;
+  bool factors_ = false;
+};
+
+EffectLimit effect_limit(double from, double to, bool whole,
+                         const std::function<double(double)>& within_20deg) {
+  EffectLimit limit;
+  limit.from = from;
+  limit.to = to;
+  const auto holds = [&](double strength) {
+    limit.trials.push_back({strength, within_20deg(strength)});
+    return limit.trials.back().within_20deg >= kEffectBar;
+  };
+  const bool from_holds = holds(from), to_holds = holds(to);
+  if (from_holds || to_holds) limit.holds_at = to_holds ? to : from;
+  if (!from_holds || !to_holds) limit.fails_at = from_holds ? to : from;
+  if (from_holds == to_holds) return limit;
+  const Bisection bisection(from, to, whole);
+  while (!bisection.is_close(*limit.holds_at, *limit.fails_at)) {
+    const double middle = bisection.middle(*limit.holds_at, *limit.fails_at);
+    (holds(middle) ? limit.holds_at : limit.fails_at) = middle;
+  }
+  return limit;
 }
 
 }  // namespace
@@ -93,6 +148,14 @@ std::vector<double> histogram(const std::vector<double>& errors_deg) {
     shares[static_cast<std::size_t>(bin)] += 1.0 / static_cast<double>(errors_deg.size());
   }
   return shares;
+}
+
+std::vector<EffectLimit> effect_limits(const EffectRow& row,
+                                       const std::function<double(double)>& within_20deg) {
+  const bool whole = must_be_whole(row);
+  if (row.lowest >= 0.0) return {effect_limit(row.lowest, row.highest, whole, within_20deg)};
+  return {effect_limit(0.0, row.lowest, whole, within_20deg),
+          effect_limit(0.0, row.highest, whole, within_20deg)};
 }
 
 }  // namespace tumblesight::sim

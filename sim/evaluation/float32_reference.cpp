@@ -12,10 +12,10 @@ namespace tumblesight::sim {
 Float32Reference::Float32Reference(const std::string& model_path, const std::vector<std::uint8_t>& model,
                                    const std::string& target) {
   if (gnc::is_float32(model.data(), model.size())) return;
-  const std::filesystem::path path = std::filesystem::path(model_path).replace_extension(".float32.tsm");
+  const std::string path = model_stem(model_path) + ".float32.tsm";
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return;
-  image_ = read_model_bytes(path.string());
+  image_ = read_model_bytes(path);
   if (!gnc::is_float32(image_.data(), image_.size())) return;
   estimator_ = std::make_unique<HostEstimator>(image_, target.c_str());
   if (estimator_->status() != gnc::ModelStatus::kOk) estimator_.reset();

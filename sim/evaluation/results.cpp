@@ -11,8 +11,7 @@ bool differs_from_paper(const CellResult& cell) {
 std::string differences_from_paper(const CellResult& cell) {
   std::string text;
   if (!cell.sensor.is_the_papers()) text += ", sensor " + cell.sensor.name;
-  if (!cell.ranges.are_the_papers())
-    text += fmt::format(", {:.0f} to {:.0f} m", cell.ranges.nearest_m, cell.ranges.farthest_m);
+  if (!cell.ranges.are_the_papers()) text += ", " + to_string(cell.ranges);
   const std::string effects = to_string(cell.effects);
   if (!effects.empty()) text += ", " + effects;
   return text.empty() ? text : text.substr(2);

@@ -84,6 +84,14 @@ std::string remedy_for_missing_image(const std::string& path) {
   return is_in_history ? "; get it with: fsw/models/fetch_images " + name : "";
 }
 
+std::string model_stem(std::string path) {
+  for (const std::string end : {".tsm", ".float32"}) {
+    const bool has = path.size() > end.size() && path.compare(path.size() - end.size(), end.size(), end) == 0;
+    if (has) path.resize(path.size() - end.size());
+  }
+  return path;
+}
+
 std::string fault_of_model_path(const std::string& path) {
   std::error_code error;
   const std::string image = "model image '" + path + "' ";

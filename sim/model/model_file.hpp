@@ -14,6 +14,10 @@ namespace tumblesight::sim {
 // fsw/models that are in the repository's history only, empty for other files.
 std::string remedy_for_missing_image(const std::string& path);
 
+// The path without ".tsm" and then ".float32": "near" for near.tsm and near.float32.tsm. Another ending
+// stays.
+std::string model_stem(std::string path);
+
 // Empty for an existing file. Otherwise what is wrong, with that remedy: "model image 'PATH' is a folder".
 std::string fault_of_model_path(const std::string& path);
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
+#include <cstdio>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -21,18 +21,23 @@ enum Column : std::size_t {
   kQuaternion,              // w, x, y, z
   kRate = kQuaternion + 4,  // x, y, z
   kOrigin = kRate + 3,      // x, y, z
-  kColumns = kOrigin + 3,
+  kTarget = kOrigin + 3,
+  kSensor,  // name, CRC-32
+  kSensorCrc,
+  kColumns,
 };
 
 struct ColumnRow {
   std::string_view name;
-  double lowest;  // of the numbers that are not whole
+  double lowest;  // of the numbers that are neither whole nor names
   double highest;
 };
 
 constexpr double kFastest_rad_s = 10.0;
 constexpr double kFarthest_m = 1e5;
 constexpr double kNormTolerance = 1e-3;
+constexpr std::size_t kMaxName = 31;  // characters
+constexpr std::size_t kCrcDigits = 8;
 
 constexpr std::array<ColumnRow, kColumns> kTable{{{"sequence_number", 0, 0},
                                                   {"exposure_time_ns", 0, 0},
@@ -45,7 +50,10 @@ constexpr std::array<ColumnRow, kColumns> kTable{{{"sequence_number", 0, 0},
                                                   {"rate_lrf_z_rad_s", -kFastest_rad_s, kFastest_rad_s},
                                                   {"trf_origin_lrf_x_m", -kFarthest_m, kFarthest_m},
                                                   {"trf_origin_lrf_y_m", -kFarthest_m, kFarthest_m},
-                                                  {"trf_origin_lrf_z_m", -kFarthest_m, kFarthest_m}}};
+                                                  {"trf_origin_lrf_z_m", -kFarthest_m, kFarthest_m},
+                                                  {"target", 0, 0},
+                                                  {"sensor", 0, 0},
+                                                  {"sensor_crc32", 0, 0}}};
 
 template <class Number>
 std::string shortest(Number number) {
@@ -114,7 +122,8 @@ class Parser {
     }
     require_group(kSequenceNumber, kRate, true);
     require_group(kRate, kOrigin, false);
-    require_group(kOrigin, kColumns, false);
+    require_group(kOrigin, kTarget, false);
+    require_group(kSensor, kColumns, false);
   }
 
   // All columns of the group, or none where they are optional.
@@ -146,6 +155,8 @@ class Parser {
     truth.q_lrf_trf.normalize();
     if (has(kRate)) truth.rate_lrf_rad_s = {real(kRate), real(kRate + 1), real(kRate + 2)};
     if (has(kOrigin)) truth.trf_origin_lrf_m = {real(kOrigin), real(kOrigin + 1), real(kOrigin + 2)};
+    if (has(kTarget)) truth.target = name(kTarget);
+    if (has(kSensor)) truth.sensor = {name(kSensor), crc32(kSensorCrc)};
     return truth;
   }
 
@@ -158,6 +169,26 @@ class Parser {
       refuse(column, text,
              "must be a whole number from " + shortest(std::numeric_limits<Number>::min()) + " to " +
                  shortest(std::numeric_limits<Number>::max()) + "; give that of the frame in the recording");
+    return value;
+  }
+
+  // Of a target or a sensor.
+  std::string name(Column column) const {
+    const std::string_view text = values_[column];
+    const bool plain =
+        text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string_view::npos;
+    if (!plain || text.empty() || text.size() > kMaxName)
+      refuse(column, text,
+             "must be 1 to 31 characters of a-z, 0-9 and _; leave the column out if it is not known");
+    return std::string(text);
+  }
+
+  std::uint32_t crc32(Column column) const {
+    const std::string_view text = values_[column];
+    std::uint32_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+    if (error != std::errc{} || end != text.data() + text.size() || text.size() != kCrcDigits)
+      refuse(column, text, "must be the 8 hexadecimal digits that `tumblesight record` shows for the sensor");
     return value;
   }
 
@@ -190,22 +221,41 @@ class Parser {
   std::array<std::string_view, kColumns> values_;
 };
 
+std::string hexadecimal(std::uint32_t crc32) {
+  std::array<char, kCrcDigits + 1> text;
+  std::snprintf(text.data(), text.size(), "%08x", static_cast<unsigned>(crc32));
+  return text.data();
+}
+
 void append(const Eigen::Vector3d& vector, std::string& line) {
   for (const double part : vector) line += ',' + shortest(part);
 }
 
 }  // namespace
 
+std::string recording_stem(std::string recording_path) {
+  constexpr std::string_view kEnd = ".tslr";
+  const std::size_t size = recording_path.size();
+  if (size >= kEnd.size() && recording_path.compare(size - kEnd.size(), kEnd.size(), kEnd) == 0)
+    recording_path.resize(size - kEnd.size());
+  return recording_path;
+}
+
 std::string truth_path_of(const std::string& recording_path) {
-  return std::filesystem::path(recording_path).replace_extension(".truth.csv").string();
+  return recording_stem(recording_path) + ".truth.csv";
 }
 
 std::string truth_csv(const std::vector<RecordedTruth>& rows) {
   const bool rates = rows.empty() || rows.front().rate_lrf_rad_s;
   const bool origins = rows.empty() || rows.front().trf_origin_lrf_m;
+  const bool targets = rows.empty() || !rows.front().target.empty();
+  const bool sensors = rows.empty() || rows.front().sensor;
   std::string text;
   for (std::size_t column = 0; column < kColumns; ++column) {
-    if ((column >= kRate && column < kOrigin && !rates) || (column >= kOrigin && !origins)) continue;
+    if (column >= kRate && column < kOrigin && !rates) continue;
+    if (column >= kOrigin && column < kTarget && !origins) continue;
+    if (column == kTarget && !targets) continue;
+    if (column >= kSensor && !sensors) continue;
     text += (column == 0 ? "" : ",") + std::string(kTable[column].name);
   }
   for (const RecordedTruth& row : rows) {
@@ -215,6 +265,8 @@ std::string truth_csv(const std::vector<RecordedTruth>& rows) {
     append(q.vec(), text);
     if (rates) append(row.rate_lrf_rad_s.value(), text);
     if (origins) append(row.trf_origin_lrf_m.value(), text);
+    if (targets) text += ',' + row.target;
+    if (sensors) text += ',' + row.sensor.value().name + ',' + hexadecimal(row.sensor.value().crc32);
   }
   return text + '\n';
 }

@@ -6,6 +6,9 @@
 //   q_lrf_trf_w, _x, _y, _z                    unit Hamilton quaternion, TRF to LRF
 //   rate_lrf_x_rad_s, _y_, _z_                 of the target relative to inertial space; all three or none
 //   trf_origin_lrf_x_m, _y_, _z_               position of the TRF's origin; all three or none
+//   target                                     name of what the frames show; optional
+//   sensor, sensor_crc32                       that took them, as to_string(SensorDescription) has them;
+//   optional
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,6 +22,12 @@
 
 namespace tumblesight::sim {
 
+// The sensor that took a frame: crc32_of(SensorDescription) identifies it.
+struct RecordedSensor {
+  std::string name;
+  std::uint32_t crc32 = 0;
+};
+
 // The truth of one frame.
 struct RecordedTruth {
   std::uint32_t sequence_number = 0;
@@ -26,13 +35,17 @@ struct RecordedTruth {
   Eigen::Quaterniond q_lrf_trf = Eigen::Quaterniond::Identity();  // unit
   std::optional<Eigen::Vector3d> rate_lrf_rad_s;
   std::optional<Eigen::Vector3d> trf_origin_lrf_m;
+  std::string target{};  // empty: not known
+  std::optional<RecordedSensor> sensor{};
   std::size_t line = 0;  // of the file, from 1
 };
 
 // By sequence number and exposure time.
 using TruthTable = std::map<std::pair<std::uint32_t, std::int64_t>, RecordedTruth>;
 
-// frames.tslr -> frames.truth.csv
+// The path without ".tslr"; any other ending stays, so that run.1 and run.2 stay apart.
+std::string recording_stem(std::string recording_path);
+// frames.tslr -> frames.truth.csv; run.1 -> run.1.truth.csv
 std::string truth_path_of(const std::string& recording_path);
 
 // The file's text: numbers that are read as exactly the same values. The optional columns are there if the

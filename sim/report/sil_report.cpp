@@ -36,19 +36,18 @@ FactList settings_facts(const SilRunSetup& setup) {
   const std::string disturbed = to_string(setup.disturbances);
   const std::string effects = to_string(setup.effects);
   FactList list{"Settings", {}};
-  list.facts = {
-      {"target", setup.target},
-      {"mesh", file_name(setup.mesh_name)},
-      {"condition", setup.condition},
-      {"sequences × frames", fmt::format("{} × {}", setup.sequences, setup.frames)},
-      {"disturbances", disturbed.empty() ? "none" : disturbed},
-      {"effects", effects.empty() ? "none" : effects},
-      {"sensor", setup.sensor.name},
-      {"ranges", fmt::format("{:.0f} to {:.0f} m", setup.ranges.nearest_m, setup.ranges.farthest_m)},
-      {"seed", fmt::format("{}", setup.seed)},
-      {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
-      {"time", setup.free_running ? "free-running" : "lockstep"},
-      {"swath", fmt::format("{:.2f} m", 1e-3 * setup.projection.swath_mm)}};
+  list.facts = {{"target", setup.target},
+                {"mesh", file_name(setup.mesh_name)},
+                {"condition", setup.condition},
+                {"sequences × frames", fmt::format("{} × {}", setup.sequences, setup.frames)},
+                {"disturbances", disturbed.empty() ? "none" : disturbed},
+                {"effects", effects.empty() ? "none" : effects},
+                {"sensor", setup.sensor.name},
+                {"ranges", to_string(setup.ranges)},
+                {"seed", fmt::format("{}", setup.seed)},
+                {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
+                {"time", setup.free_running ? "free-running" : "lockstep"},
+                {"swath", fmt::format("{:.2f} m", 1e-3 * setup.projection.swath_mm)}};
   return list;
 }
 

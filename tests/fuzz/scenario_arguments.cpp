@@ -32,7 +32,8 @@ bool parse(CommandLine& line, Given& given) {
   try {
     app.parse(line.argc(), line.argv());
     sim::require_supported_length(given.evaluate.scenario);
-    sim::require_different("--csv", given.evaluate.csv, "--json", given.evaluate.scenario.json);
+    sim::require_separate_files(sim::files_read(given.evaluate.scenario),
+                                {{"--csv", given.evaluate.csv}, {"--json", given.evaluate.scenario.json}});
     if (given.evaluate.paper) sim::refuse_options_set_by_paper(app);
     return true;
   } catch (const CLI::ParseError&) {

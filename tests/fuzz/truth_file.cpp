@@ -23,6 +23,9 @@ void check(const sim::TruthTable& table) {
     require((row.q_lrf_trf.coeffs() - before.q_lrf_trf.coeffs()).norm() < 1e-12, "the attitude is the same");
     require(row.rate_lrf_rad_s == before.rate_lrf_rad_s, "the rate is the same");
     require(row.trf_origin_lrf_m == before.trf_origin_lrf_m, "the position is the same");
+    require(row.target == before.target, "the target is the same");
+    require(row.sensor.has_value() == before.sensor.has_value(), "the sensor is there or not");
+    require(!row.sensor || row.sensor->crc32 == before.sensor->crc32, "the sensor is the same");
   }
 }
 

@@ -1,5 +1,7 @@
 #include "sim/world/scenario/sequence.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -90,6 +92,10 @@ void move_off_boresight(double max_offset_swaths, Random random, std::vector<Fra
 }
 
 }  // namespace
+
+std::string to_string(const RangeLimits& ranges) {
+  return fmt::format("{} to {} m", ranges.nearest_m, ranges.farthest_m);
+}
 
 ScenarioSettings scenario_settings(Condition condition, std::uint32_t frames, const std::string& target,
                                    const std::optional<Eigen::Matrix3d>& inertia_kg_m2) {

@@ -27,6 +27,8 @@ struct RangeLimits {
   double farthest_m = 100.0;
   bool are_the_papers() const { return nearest_m == 20.0 && farthest_m == 100.0; }
 };
+// "20 to 100 m", with all digits that were given.
+std::string to_string(const RangeLimits& ranges);
 
 struct ScenarioSettings {
   Condition condition = Condition::kNominal;

@@ -44,23 +44,9 @@ void for_each_given(const Effects& effects, Visitor&& visit) {
   }
 }
 
-const EffectRow& row_named(const std::string& name) {
-  std::string known;
-  for (const EffectRow& row : effect_table()) {
-    if (name == row.name) return row;
-    known += (known.empty() ? "" : ", ") + std::string(row.name);
-  }
-  throw std::invalid_argument("effect '" + name + "' is unknown; the effects are: " + known);
-}
-
 std::string range_text(const EffectRow& row) {
   const std::string range = fmt::format("{:g} to {:g}", row.lowest, row.highest);
   return *row.unit == '\0' ? range : range + " " + row.unit;
-}
-
-bool must_be_whole(const EffectRow& row) {
-  return row.strength == &Effects::rays || row.strength == &Effects::part_missing ||
-         row.strength == &Effects::wrong_object;
 }
 
 double strength_from(const EffectRow& row, const std::string& text) {
@@ -158,11 +144,25 @@ const std::vector<EffectRow>& effect_table() {
 }
 // clang-format on
 
+const EffectRow& effect_named(const std::string& name) {
+  std::string known;
+  for (const EffectRow& row : effect_table()) {
+    if (name == row.name) return row;
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+  }
+  throw std::invalid_argument("effect '" + name + "' is unknown; the effects are: " + known);
+}
+
+bool must_be_whole(const EffectRow& row) {
+  return row.strength == &Effects::rays || row.strength == &Effects::part_missing ||
+         row.strength == &Effects::wrong_object;
+}
+
 Effects effects_from(const std::vector<std::string>& texts) {
   Effects effects;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
-    const EffectRow& row = row_named(text.substr(0, equals));
+    const EffectRow& row = effect_named(text.substr(0, equals));
     if (effects.*row.strength != 0.0)
       throw std::invalid_argument(fmt::format("effect {} is given twice", row.name));
     effects.*row.strength = strength_from(row, equals == std::string::npos ? "" : text.substr(equals + 1));

@@ -95,6 +95,9 @@ struct EffectRow {
 
 // In the order in which they act.
 const std::vector<EffectRow>& effect_table();
+// Throws std::invalid_argument that lists the names if there is none of this name.
+const EffectRow& effect_named(const std::string& name);
+bool must_be_whole(const EffectRow& row);  // its strength
 
 // "false_returns=0.01,noise=5": strengths by name. Throws std::invalid_argument that lists the names, or
 // gives the range of the strength, if one is wrong or is given twice.

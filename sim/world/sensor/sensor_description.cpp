@@ -27,6 +27,10 @@ using Json = nlohmann::ordered_json;
 constexpr double kMinFov_deg = 1.0;
 constexpr double kMaxFov_deg = 40.0;
 
+constexpr std::size_t kMaxDepth = 4;    // of a description; a good one has 2
+constexpr std::size_t kMaxShown = 60;   // characters of a wrong value
+constexpr std::size_t kMaxFault = 200;  // characters of a fault that the parser found
+
 constexpr const char* kFields =
     "  name             1 to 31 characters of a-z, 0-9 and _\n"
     "  source           where the figures come from\n"
@@ -41,8 +45,15 @@ constexpr const char* kFields =
     "  detection        {\"kind\": \"every_return\"}, or {\"kind\": \"link_budget\",\n"
     "                   \"photoelectrons_at_100_m\": 0.01 to 1000}: mean signal of a diffuse\n"
     "                   surface that faces the sensor there; less light, fewer detections\n"
-    "  scan_time_s      0 to 2: from the first to the last row; 0: all at once\n"
-    "  period_s         0.1 to 60: between two frames, unless --period is given\n";
+    "  scan_time_s      0 to 2: from the first to the last row; 0: all at once; at most the\n"
+    "                   period\n"
+    "  period_s         0.1 to 60: between two frames, unless --period is given\n"
+    "\nNothing says where the sensor is mounted: frames and attitudes are in its own frame,\n"
+    "the LRF. docs/icd.md says what a driver makes of the attitude of the chaser's body.\n";
+
+std::string shortened(const std::string& text, std::size_t most) {
+  return text.size() <= most ? text : text.substr(0, most) + "...";
+}
 
 // One object of a description. Takes the fields one by one and refuses what is not as it must be.
 class Fields {
@@ -108,7 +119,7 @@ class Fields {
     return value.is_object() && value.contains("kind") && value.at("kind") == kind;
   }
   [[noreturn]] void refuse(const std::string& field, const Json& value, const std::string& limits) const {
-    fail(fmt::format("field '{}' is {}; it must be {}", field, value.dump(), limits));
+    fail(fmt::format("field '{}' is {}; it must be {}", field, shortened(value.dump(), kMaxShown), limits));
   }
 
  private:
@@ -213,24 +224,39 @@ bool SensorDescription::is_the_papers() const {
 }
 
 SensorDescription sensor_from_json(const std::string& text, const std::string& file) {
-  std::set<std::string> names;
-  const auto refuse_twice = [&](int depth, Json::parse_event_t event, Json& parsed) {
-    if (depth == 1 && event == Json::parse_event_t::key && !names.insert(parsed.get<std::string>()).second) {
-      throw std::invalid_argument(
-          fmt::format("sensor description {}: field {} is given twice", file, parsed.dump()));
+  const auto refuse = [&file](const std::string& what) {
+    throw std::invalid_argument(fmt::format("sensor description {}: {}", file, what));
+  };
+  // Names of the fields so far, of the object at each depth.
+  std::array<std::set<std::string>, kMaxDepth + 1> names;
+  const auto check = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    const auto level = static_cast<std::size_t>(depth);
+    using Event = Json::parse_event_t;
+    if (event == Event::object_start || event == Event::array_start) {
+      if (level >= kMaxDepth) refuse(fmt::format("objects or lists are nested more than {} deep", kMaxDepth));
+      names[level + 1].clear();
     }
+    if (event == Event::key && !names[level].insert(parsed.get<std::string>()).second)
+      refuse(fmt::format("field {} is given twice", parsed.dump()));
     return true;
   };
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) refuse("the file is empty");
   Json json;
   try {
-    json = Json::parse(text, refuse_twice);
+    json = Json::parse(text, check);
+  } catch (const Json::out_of_range& error) {
+    refuse("a number is too large: " + shortened(error.what(), kMaxFault));
   } catch (const Json::exception& error) {
-    throw std::invalid_argument(fmt::format("sensor description {}: not JSON: {}", file, error.what()));
+    refuse("not JSON: " + shortened(error.what(), kMaxFault));
   }
   const Fields fields(json, file, "",
                       {"name", "source", "rays_per_side", "fov", "spacing", "range_gate_m", "noise",
                        "footprint_rays", "detection", "scan_time_s", "period_s"});
-  return {name_of(fields), fields.text("source"), settings_of(fields), fields.number("period_s", 0.1, 60.0)};
+  const double period_s = fields.number("period_s", 0.1, 60.0);
+  const SensorDescription sensor{name_of(fields), fields.text("source"), settings_of(fields), period_s};
+  if (sensor.settings.scan_time_s > period_s)
+    fields.refuse("scan_time_s", json.at("scan_time_s"), fmt::format("at most period_s, {:g}", period_s));
+  return sensor;
 }
 
 std::string to_json(const SensorDescription& sensor) {
@@ -253,12 +279,16 @@ const std::vector<std::string>& sensor_names() {
   return kShipped;
 }
 
+std::string sensor_path(const std::string& name_or_file) {
+  const std::vector<std::string>& shipped = sensor_names();
+  const bool ships = std::find(shipped.begin(), shipped.end(), name_or_file) != shipped.end();
+  return ships ? path_of_shipped(name_or_file) : name_or_file;
+}
+
 SensorDescription sensor_named(const std::string& name_or_file) {
-  for (const std::string& name : sensor_names()) {
-    if (name_or_file == name) return read_sensor(path_of_shipped(name));
-  }
+  const std::string path = sensor_path(name_or_file);
   std::error_code error;
-  if (std::filesystem::is_regular_file(name_or_file, error)) return read_sensor(name_or_file);
+  if (std::filesystem::is_regular_file(path, error)) return read_sensor(path);
   throw std::invalid_argument(fmt::format("'{}' is neither a file nor a sensor that ships; those are: {}",
                                           name_or_file, fmt::join(sensor_names(), ", ")));
 }

@@ -33,6 +33,8 @@ std::string to_string(const SensorDescription& sensor);
 
 // The names of those that ship.
 const std::vector<std::string>& sensor_names();
+// The file of a description that ships, by its name; any other text is a file itself.
+std::string sensor_path(const std::string& name_or_file);
 // A description that ships, by its name, or a file. Throws std::invalid_argument as above, or that lists the
 // names if there is no such file.
 SensorDescription sensor_named(const std::string& name_or_file);

@@ -9,6 +9,8 @@
 #include "sim/cli/sensor_arguments.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/world/sensor/effects.hpp"
+#include "sim/world/sensor/flash_lidar.hpp"
+#include "sim/world/target/targets.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -27,6 +29,7 @@ std::ostream& operator<<(std::ostream& out, const Refusal& refusal) {
 class BadArguments : public ::testing::TestWithParam<Refusal> {};
 
 TEST_P(BadArguments, GiveOneClearLineAndAnExitCode) {
+  ASSERT_STRNE(GetParam().message, "") << "every message has an empty text in it";
   const Workplace here;
   const Outcome outcome = here.run(GetParam().arguments);
   EXPECT_EQ(outcome.exit_code, GetParam().exit_code);
@@ -90,7 +93,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "--range: must be NEAREST,FARTHEST, two ascending ranges from 10 to "},
         Refusal{"evaluate --range 100,20", 2, "not '100,20'"},
         Refusal{"simulate --range 9,20", 2, "from 10 to 500 m, not '9,20'"},
-        Refusal{"quantize --model x --range 20,nan", 2, ""},
+        Refusal{"quantize --model /dev/null --range 20,nan", 2,
+                "--range: must be NEAREST,FARTHEST, two ascending ranges from 10 to 500 m, not '20,nan'"},
         Refusal{"evaluate --paper --sensor flash_256", 2, "--paper: sets --sensor itself"},
         Refusal{"evaluate --paper --range 20,50", 2, "--paper: sets --range itself"},
         Refusal{"evaluate --paper --frozen 1", 2, "--paper: sets --frozen itself"},
@@ -149,6 +153,13 @@ TEST(Help, NamesTheLimitsOfTheDisturbances) {
       EXPECT_NE(help.find(part), std::string::npos) << part << " in: " << help;
     }
   }
+}
+
+// A small mesh that is not a shipped target.
+std::string own_mesh(const Workplace& here) {
+  std::ofstream(here.path("mine.obj"))
+      << "v -1 -1 0\nv 1 -1 0.5\nv 0 1.5 0\nv 0 0 2\nf 1 2 3\nf 1 2 4\nf 2 3 4\n";
+  return here.path("mine.obj");
 }
 
 // Columns, not bytes: the texts are in UTF-8.
@@ -223,6 +234,34 @@ TEST(Evaluate, TakesEffectsTogetherAndNamesThem) {
   EXPECT_TRUE(rows[0].at("rcnn").at("expected_over_real").is_number());
 }
 
+// Verifies TS-SIL-170.
+TEST(Evaluate, SearchesTheStrengthOfAnEffect) {
+  const Workplace here;
+  const std::string common = "evaluate --sequences 2 --frames 1 --model " + here.model();
+  const Outcome outcome = here.run(common + " --effect-limit range_bias --effect noise=2 --json limit.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("  range_bias=0: "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("  range_bias=-5: "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("from 0 to 5: at neither end"), std::string::npos)
+      << "the weights are random";
+  const auto json = nlohmann::json::parse(content(here.path("limit.json")));
+  EXPECT_EQ(json.at("effect"), "range_bias");
+  EXPECT_EQ(json.at("unit"), "m");
+  EXPECT_EQ(json.at("other_effects"), "noise=2");
+  EXPECT_EQ(json.at("sequences"), 2);
+  ASSERT_EQ(json.at("limits").size(), 2U);
+  EXPECT_TRUE(json.at("limits")[0].at("holds_at").is_null());
+  EXPECT_EQ(json.at("limits")[0].at("trials").size(), 2U);
+  EXPECT_EQ(json.at("limits")[0].at("trials")[1].at("strength"), -5.0);
+  EXPECT_NE(
+      here.run(common + " --effect-limit noise --csv x.csv").errors.find("makes no tables; leave --csv out"),
+      std::string::npos);
+  for (const char* refused :
+       {" --effect-limit sphere", " --effect-limit noise --paper", " --effect-limit noise --effect noise=2",
+        " --effect-limit noise --curves", " --effect-limit noise --condition nominal,degraded"})
+    EXPECT_EQ(here.run(common + refused).exit_code, 2) << refused;
+}
+
 TEST(Effects, AreListedWithTheirRangesAndModels) {
   const Workplace here;
   for (const char* verb : {"evaluate", "record", "quantize"}) {
@@ -255,7 +294,7 @@ TEST(Evaluate, TakesAnotherSensorAndNamesItAndItsPeriod) {
       here.run(common + " --sensor own.json --range 30,60 --json rows.json --csv rows.csv");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_NE(outcome.output.find("sensor: own (CRC-32 "), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("ranges: 30.0 to 60.0 m"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("ranges: 30 to 60 m"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.errors.find("No model.sensor.json says for which sensor"), std::string::npos)
       << outcome.errors;
   const auto row = nlohmann::json::parse(content(here.path("rows.json"))).at("rows")[0];
@@ -289,7 +328,49 @@ TEST(Evaluate, RefusesANetworkThatWasTrainedForAnotherSensor) {
   EXPECT_EQ(here.run(common).exit_code, 1) << "the paper's is another one too";
 }
 
+// Verifies TS-SIL-320.
+TEST(Ranges, OutsideTheGateOfTheSensorAreRefused) {
+  const Workplace here;
+  SensorDescription own;
+  own.name = "own";
+  own.settings.farthest_m = 60.0;
+  std::ofstream(here.path("own.json")) << to_json(own);
+  own.settings.nearest_m = 5.0;
+  own.settings.farthest_m = 15.0;
+  std::ofstream(here.path("near.json")) << to_json(own);
+  const std::string record =
+      "record --target mine --mesh " + own_mesh(here) + " --sequences 1 --frames 1 --out x.tslr --sensor ";
+  const Outcome outcome = here.run(record + "own.json");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(
+      outcome.errors.find("sensor own: its range gate is 0 to 60 m, and the ranges to draw from are 20 to "
+                          "100 m; give ranges inside it, for example --range 20,60"),
+      std::string::npos)
+      << outcome.errors;
+  EXPECT_EQ(here.run(record + "own.json --range 50,60.5").exit_code, 1);
+  EXPECT_NE(here.run(record + "near.json").errors.find("give ranges inside it with --range"),
+            std::string::npos);
+  EXPECT_EQ(here.run(record + "own.json --range 20,60").exit_code, 0);
+}
+
+// Verifies TS-SIL-320.
+TEST(Period, IsNotShorterThanAScan) {
+  const Workplace here;
+  SensorDescription own;
+  own.settings.scan_time_s = 1.5;
+  std::ofstream(here.path("own.json")) << to_json(own);
+  const std::string record = "record --out x.tslr --frames 1 --sequences 1 ";
+  for (const char* scan : {"--sensor own.json", "--effect scan_time=1.5"}) {
+    const Outcome outcome = here.run(record + "--period 1 " + scan);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.errors.find("--period: 1 s is shorter than a scan of 1.5 s"), std::string::npos)
+        << outcome.errors;
+  }
+  EXPECT_EQ(here.run(record + "--period 1.5 --sensor own.json").exit_code, 0);
+}
+
 TEST(SensorFile, BelongsToBothImagesOfATarget) {
+  EXPECT_EQ(sensor_file_of("out/near.v1"), "out/near.v1.sensor.json") << "near.v2 has another one";
   EXPECT_EQ(sensor_file_of("out/near.tsm"), "out/near.sensor.json");
   EXPECT_EQ(sensor_file_of("out/near.float32.tsm"), "out/near.sensor.json");
 }
@@ -303,11 +384,51 @@ TEST(Evaluate, WritesACsvFileAndAPage) {
   EXPECT_NE(content(here.path("page.html")).find("--sequences 2"), std::string::npos);
 }
 
-// A small mesh that is not a shipped target.
-std::string own_mesh(const Workplace& here) {
-  std::ofstream(here.path("mine.obj"))
-      << "v -1 -1 0\nv 1 -1 0.5\nv 0 1.5 0\nv 0 0 2\nf 1 2 3\nf 1 2 4\nf 2 3 4\n";
-  return here.path("mine.obj");
+// Verifies TS-SIL-160.
+TEST(Inputs, AreNeverOverwritten) {
+  const Workplace here;
+  const std::string mesh = " --target mine --mesh " + own_mesh(here), sensor = " --sensor own.json";
+  std::ofstream(here.path("own.json")) << to_json(SensorDescription{});
+  std::filesystem::create_symlink(here.path("own.json"), here.path("link.json"));
+  std::filesystem::create_hard_link(here.path("own.json"), here.path("name.json"));
+  here.model();
+  std::filesystem::copy(here.path("model.tsm"), here.path("net.cnn.onnx"));
+  std::filesystem::copy(here.path("model.tsm"), here.path("mine.tsm"));
+  const std::string help = here.run("--help").output;
+  const struct {
+    std::string arguments;
+    const char* message;
+  } kRefused[] = {
+      {"record --out own.json" + mesh + sensor, "--out: 'own.json' is also the file of --sensor"},
+      {"record --out link.json" + mesh + sensor, "is also the file of --sensor"},
+      {"record --out name.json" + mesh + sensor, "is also the file of --sensor"},
+      {"record --out x.tslr --truth ./mine.obj" + mesh, "--truth: './mine.obj' is also the file of --mesh"},
+      {"evaluate --json own.json" + sensor, "--json: 'own.json' is also the file of --sensor"},
+      {"evaluate --csv mine.obj" + mesh, "--csv: 'mine.obj' is also the file of --mesh"},
+      {"evaluate --report model.tsm --model model.tsm", "is also the file of --model"},
+      {"evaluate --json model.sensor.json --model model.tsm", "is also the file of --model (its sensor)"},
+      {"simulate --json own.json --report r.html" + sensor, "is also the file of --sensor"},
+      {"simulate --report mine.obj" + mesh, "is also the file of --mesh"},
+      {"simulate --report own.json --command-key own.json", "is also the file of --command-key"},
+      {"quantize --model model.tsm --out mine.obj --mesh mine.obj", "is also the file of --mesh"},
+      {"quantize --model model.tsm --out own.json" + sensor, "is also the file of --sensor"},
+      {"quantize --model model.tsm --out link.json" + sensor, "is also the file of --sensor"},
+      {"quantize --model model.tsm --out ./model.tsm", "--out: './model.tsm' is also the file of --model"},
+      {"bench --onnxruntime own.json --json own.json", "is also the file of --onnxruntime"},
+      {"export --model net.cnn.onnx --onnx net", "--onnx: 'net.cnn.onnx' is also the file of --model"},
+      {"train --target mine --out . --start-from mine.tsm", "is also the file of --start-from"},
+      {"train --target mine --out . --mesh mine.tsm", "is also the file of --mesh"},
+  };
+  const std::string json = content(here.path("own.json")), obj = content(here.path("mine.obj"));
+  for (const auto& [arguments, message] : kRefused) {
+    if (help.find("\n  " + arguments.substr(0, arguments.find(' '))) == std::string::npos)
+      continue;  // not built
+    const Outcome outcome = here.run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.errors.find(message), std::string::npos) << arguments << "\n" << outcome.errors;
+  }
+  EXPECT_EQ(content(here.path("own.json")), json);
+  EXPECT_EQ(content(here.path("mine.obj")), obj);
 }
 
 // Verifies TS-SIL-120.
@@ -383,6 +504,72 @@ TEST(Quantize, SaysThatAnImageIsInFixedPointAlready) {
       << outcome.errors;
 }
 
+std::string image_of_size(const Workplace& here, const gnc::DepthProjection& projection) {
+  gnc::ModelHeader header = gnc::test_header();
+  header.projection = projection;
+  EXPECT_TRUE(gnc::set_target(header, "near_shoemaker"));
+  return here.put("model.tsm", gnc::random_model_image<gnc::FixedPoint>(4711, header));
+}
+
+// Verifies TS-SIL-320.
+TEST(Quantize, KeepsTheSensorOfAnImageWhoseSurfaceItReplaces) {
+  const Workplace here;
+  const gnc::DepthProjection fitting = projection_of(target_by_name("near_shoemaker"));
+  const std::string surface = "quantize --surface-only --model " + image_of_size(here, fitting) + " --out ";
+  const SensorDescription scan = sensor_named("scan_128");
+  write_sensor_file(here.path("stale.tsm"), scan);
+  const Outcome stale = here.run(surface + "stale.tsm");
+  EXPECT_EQ(stale.exit_code, 1);
+  EXPECT_NE(
+      stale.errors.find("stale.sensor.json' says for which sensor an earlier image of this name was trained"),
+      std::string::npos)
+      << stale.errors;
+  EXPECT_FALSE(std::filesystem::exists(here.path("stale.tsm")));
+  write_sensor_file(here.path("model.tsm"), scan);
+  const Outcome outcome = here.run(surface + "stale.tsm");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(content(here.path("stale.sensor.json")), to_json(scan));
+}
+
+TEST(Quantize, RefusesASurfaceOfAnotherSizeWithBothSizes) {
+  const Workplace here;
+  gnc::DepthProjection other = projection_of(target_by_name("near_shoemaker"));
+  const auto changed = [](std::uint32_t size, double factor) {
+    return static_cast<std::uint32_t>(factor * size);
+  };
+  const gnc::DepthProjection fitting = other;
+  other.swath_mm = changed(fitting.swath_mm, 1.03);
+  const auto errors = [&] {
+    const Outcome outcome =
+        here.run("quantize --surface-only --out x.tsm --model " + image_of_size(here, other));
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_FALSE(std::filesystem::exists(here.path("x.tsm")));
+    return outcome.errors;
+  };
+  EXPECT_NE(errors().find("mesh near_shoemaker has a radius of 2."), std::string::npos) << errors();
+  EXPECT_NE(errors().find("the network was trained for 2."), std::string::npos) << errors();
+  other = fitting;
+  other.target_radius_mm = changed(fitting.target_radius_mm, 0.97);
+  EXPECT_NE(errors().find("has a radius of"), std::string::npos) << errors();
+}
+
+TEST(Quantize, RefusesOptionsOfTheCalibrationWithASurface) {
+  const Workplace here;
+  const std::string surface = "quantize --surface-only --out x.tsm --model " + here.model();
+  for (const char* option : {"--effect noise=2", "--sensor paper", "--range 20,50", "--sequences 20"}) {
+    const Outcome outcome = here.run(surface + " " + option);
+    EXPECT_EQ(outcome.exit_code, 2) << option;
+    EXPECT_NE(outcome.errors.find(" excludes --surface-only"), std::string::npos) << outcome.errors;
+  }
+  EXPECT_NE(here.run(surface + " --mesh a.stl --mesh b.stl").errors.find("give one --mesh"),
+            std::string::npos);
+  EXPECT_NE(here.run("quantize --surface-only --model model.tsm").errors.find("requires --out"),
+            std::string::npos);
+  const std::string help = words_of(here.run("quantize --help").output);
+  EXPECT_NE(help.find("with --surface-only one in fixed point"), std::string::npos) << help;
+  EXPECT_NE(help.find("--surface-only has no default"), std::string::npos) << help;
+}
+
 TEST(Record, NeedsNoModelForAMeshOfTheUsersOwn) {
   const Workplace here;
   const Outcome outcome =
@@ -398,7 +585,12 @@ TEST(Record, WritesTheTruthBesideTheFramesUnlessToldOtherwise) {
   const std::string common = "record --target mine --mesh " + own_mesh(here) + " --sequences 1 --frames 2";
   const Outcome outcome = here.run(common + " --out mine.tslr");
   EXPECT_NE(outcome.output.find("/mine.truth.csv\n"), std::string::npos) << outcome.output << outcome.errors;
+  const SensorDescription paper;
+  EXPECT_NE(outcome.output.find("sensor " + to_string(paper) + ", 20 to 100 m\n"), std::string::npos)
+      << outcome.output;
   const std::string truth = content(here.path("mine.truth.csv"));
+  EXPECT_NE(truth.find(",target,sensor,sensor_crc32\n"), std::string::npos) << truth;
+  EXPECT_NE(truth.find(",mine,paper,"), std::string::npos) << truth;
   EXPECT_EQ(truth.find("sequence_number,exposure_time_ns,q_lrf_trf_w,"), 0U) << truth;
   EXPECT_EQ(std::count(truth.begin(), truth.end(), '\n'), 3);
   ASSERT_EQ(here.run(common + " --out other.tslr --truth elsewhere.csv").exit_code, 0);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "sim/cli/sensor_arguments.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -77,10 +78,35 @@ TEST_F(Replay, CountsFramesThatTheTruthLeavesOut) {
   EXPECT_TRUE(json.at("rows").at(4).at("error_deg").is_null());
 }
 
+// Verifies TS-SIL-150.
+TEST_F(Replay, NotesATruthOfAnotherTargetOrSensorWithBothNames) {
+  EXPECT_EQ(replay("").errors.find("note: The"), std::string::npos) << "recorded for this target and sensor";
+  const SensorDescription scan = sensor_named("scan_128");
+  ASSERT_EQ(here.run("record --target magellan --sensor scan_128 --sequences 1 --frames 2 --out other.tslr")
+                .exit_code,
+            0);
+  const std::string common = "replay other.tslr --report r.html --model " + here.model();
+  const Outcome other = here.run(common);
+  EXPECT_EQ(other.exit_code, 0) << other.errors;
+  for (const std::string& part :
+       {std::string(
+            "The truth in 'other.truth.csv', line 2, is of target magellan, and the flight program looks "
+            "for near_shoemaker."),
+        "The frames are of sensor " + to_string(scan),
+        std::string("no model.sensor.json says for which sensor")})
+    EXPECT_NE(other.errors.find(part), std::string::npos) << other.errors;
+  EXPECT_NE(content(here.path("r.html")).find("is of target magellan"), std::string::npos);
+  write_sensor_file(here.path("model.tsm"), sensor_named("flash_256"));
+  EXPECT_NE(here.run(common).errors.find("the network was trained for sensor flash_256 (CRC-32 "),
+            std::string::npos);
+  write_sensor_file(here.path("model.tsm"), scan);
+  EXPECT_EQ(here.run(common).errors.find("The frames are of sensor"), std::string::npos);
+}
+
 // Verifies TS-SIL-130.
 TEST_F(Replay, RefusesFilesThatAreWrongOrOfAnotherRecording) {
   std::ofstream(here.path("other.csv"))
-      << content(here.path("frames.truth.csv")) << "77,1,1,0,0,0,0,0,0,0,9,0\n";
+      << content(here.path("frames.truth.csv")) << "77,1,1,0,0,0,0,0,0,0,9,0,near_shoemaker,paper,54057624\n";
   expect_refused(replay("--truth other.csv"), 1,
                  "other.csv, line 6: the recording has no frame with sequence_number 77");
   expect_refused(replay("--truth frames.tslr"), 1, "frames.tslr, line 1: there is no column 'TSLR");
@@ -132,6 +158,16 @@ TEST(WriteRecording, WritesWhatReplayReads) {
   EXPECT_EQ(json.at("cycles_without_frame"), 1);
   EXPECT_EQ(json.at("frames_scored"), 9);
   EXPECT_GT(json.at("rows").at(0).at("returns"), 1000);
+  for (const char* const name : {"run.1", "run.2"}) {
+    const Outcome one = here.run_command(
+        std::string(PYTHON " -B " TUMBLESIGHT_SOURCE_DIR "/docs/examples/write_recording.py ") + name,
+        "script");
+    ASSERT_EQ(one.exit_code, 0) << one.errors;
+    EXPECT_NE(here.run(std::string("replay ") + name + " --report r.html --model " + here.model())
+                  .output.find(std::string("truth: ") + name + ".truth.csv (beside the recording)"),
+              std::string::npos)
+        << name;
+  }
   const Outcome corners = here.run_command(
       "PYTHONPATH=" TUMBLESIGHT_SOURCE_DIR "/docs/examples " PYTHON
       " -B -c '"

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <set>
+
+#include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -66,10 +70,19 @@ TEST(DefaultReportName, StaysAPlainFileNameWhateverThePaths) {
   for (const char c : name) EXPECT_GT(c, 0) << name;
 }
 
-TEST(RequireDifferent, SeesThroughSpellings) {
-  EXPECT_THROW(require_different("--json", "x/../out.txt", "--report", "./out.txt"), CLI::ValidationError);
-  EXPECT_NO_THROW(require_different("--json", "out.json", "--report", "out.html"));
-  EXPECT_NO_THROW(require_different("--json", "", "--report", ""));
+TEST(RequireSeparateFiles, SeesThroughSpellingsAndLinks) {
+  const TemporaryFolder here;
+  const std::string file = here.path("in.json");
+  std::ofstream(file) << "input";
+  std::filesystem::create_symlink(file, here.path("link"));
+  std::filesystem::create_hard_link(file, here.path("name"));
+  for (const std::string& path : {file, here.path("no/../in.json"), here.path("link"), here.path("name")}) {
+    EXPECT_THROW(require_separate_files({{"--mesh", file}}, {{"--json", path}}), CLI::ValidationError)
+        << path;
+    EXPECT_THROW(require_separate_files({}, {{"--report", file}, {"--json", path}}), CLI::ValidationError);
+  }
+  EXPECT_NO_THROW(require_separate_files({{"--mesh", file}, {"--sensor", file}}, {{"--json", "out.json"}}));
+  EXPECT_NO_THROW(require_separate_files({{"--mesh", ""}}, {{"--json", ""}, {"--report", ""}}));
 }
 
 TEST(DefaultReportName, StaysShortEnoughForAFileAndTellsTheRunsApartStill) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "sim/world/sensor/sensor_description.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -69,12 +70,16 @@ TEST(Simulate, LeavesFiguresAndAReport) {
   EXPECT_NE(outcome.output.find("6 of 6 answered"), std::string::npos) << outcome.output;
 }
 
-// Tumbling, because both need the inertia of the target for it.
+// Tumbling, because both need the inertia of the target for it. A sensor with a period of its own.
 // Verifies TS-SIL-060.
 TEST(Simulate, AgreesWithEvaluateOnTheSameSeed) {
   const Workplace here;
+  SensorDescription own;
+  own.period_s = 1.5;
+  std::ofstream(here.path("own.json")) << to_json(own);
   const std::string common =
-      " --condition tumbling --sequences 2 --frames 3 --seed 4 --model " + here.model() + " --json ";
+      " --condition tumbling --sequences 2 --frames 3 --seed 4 --sensor own.json --model " + here.model() +
+      " --json ";
   ASSERT_EQ(here.run("simulate --report " + here.path("r.html") + common + here.path("sil.json")).exit_code,
             0);
   ASSERT_EQ(here.run("evaluate --no-baseline" + common + here.path("direct.json")).exit_code, 0);
@@ -82,6 +87,8 @@ TEST(Simulate, AgreesWithEvaluateOnTheSameSeed) {
   const auto direct = nlohmann::json::parse(content(here.path("direct.json"))).at("rows").at(0);
   EXPECT_EQ(sil.at("rcnn"), direct.at("rcnn"));
   EXPECT_EQ(sil.at("cnn"), direct.at("cnn"));
+  EXPECT_EQ(sil.at("disturbances").at("period"), 1.5);
+  EXPECT_EQ(sil.at("disturbances"), direct.at("disturbances"));
 }
 
 TEST(Simulate, FailsWhenTheFlightProgramRefusesTheModel) {

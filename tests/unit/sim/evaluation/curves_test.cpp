@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "sim/world/sensor/effects.hpp"
 #include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {
@@ -91,6 +94,55 @@ TEST(Histogram, CountsALimitInTheBinBelowIt) {
   EXPECT_DOUBLE_EQ(shares[1], 0.25);
   EXPECT_DOUBLE_EQ(shares.back(), 0.25);
   EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-12);
+}
+
+// Verifies TS-SIL-170. Every effect, with a limit anywhere between its ends, whether it becomes harder
+// upwards or downwards.
+TEST(EffectLimits, LieOnBothSidesOfTheStrengthAtWhichTheShareFallsBelowTheBar) {
+  for (const EffectRow& row : effect_table()) {
+    if (row.lowest == row.highest) continue;
+    for (const double place : {0.001, 0.3, 0.77, 0.999}) {
+      for (const bool upwards : {true, false}) {
+        const double wide = row.highest - std::max(0.0, row.lowest);
+        const double edge = std::max(0.0, row.lowest) + place * wide;
+        const auto share = [&](double strength) {
+          EXPECT_TRUE(strength == 0.0 || !must_be_whole(row) || strength == std::round(strength)) << strength;
+          return (std::abs(strength) <= edge) == upwards ? kEffectBar : kEffectBar - 1e-9;
+        };
+        const std::vector<EffectLimit> limits = effect_limits(row, share);
+        ASSERT_EQ(limits.size(), row.lowest < 0.0 ? 2U : 1U) << row.name;
+        for (const EffectLimit& limit : limits) {
+          ASSERT_TRUE(limit.holds_at && limit.fails_at) << row.name << " " << place;
+          const double holds = std::abs(*limit.holds_at), fails = std::abs(*limit.fails_at);
+          EXPECT_EQ(holds <= edge, upwards) << row.name;
+          EXPECT_NE(fails <= edge, upwards) << row.name;
+          const double apart = std::abs(holds - fails);
+          EXPECT_LE(apart, std::max(0.05 * std::max(holds, fails),
+                                    std::max(0.01 * wide, double(must_be_whole(row)))))
+              << row.name;
+          EXPECT_LT(limit.trials.size(), 20U) << row.name;
+        }
+      }
+    }
+  }
+}
+
+TEST(EffectLimits, SayWhetherNoneOrBothEndsMeetTheBar) {
+  const EffectRow& row = effect_named("noise");
+  const EffectLimit none = effect_limits(row, [](double) { return 0.9; }).front();
+  EXPECT_FALSE(none.holds_at);
+  EXPECT_EQ(none.fails_at, row.lowest);
+  const EffectLimit both = effect_limits(row, [](double) { return 0.95; }).front();
+  EXPECT_EQ(both.holds_at, row.highest);
+  EXPECT_FALSE(both.fails_at);
+  EXPECT_EQ(both.trials.size(), 2U);
+  const EffectLimit found = effect_limits(row, [](double x) { return x < 3.0 ? 1.0 : 0.0; }).front();
+  for (const EffectLimit::Trial& trial : found.trials) {
+    Effects effects;
+    effects.noise = trial.strength;
+    EXPECT_EQ(effects_from({to_string(effects)}).noise, trial.strength);
+    EXPECT_LE(to_string(effects).size(), 12U) << to_string(effects);
+  }
 }
 
 }  // namespace

@@ -29,6 +29,8 @@ RecordedTruth some_truth() {
   truth.q_lrf_trf = Eigen::Quaterniond(0.1, -0.7, 1.0 / 3.0, 0.6).normalized();
   truth.rate_lrf_rad_s = {0.1, -1.0 / 3.0, 1e-9};
   truth.trf_origin_lrf_m = {-0.25, 99.9, 1.0 / 7.0};
+  truth.target = "near_shoemaker";
+  truth.sensor = {"flash_256", 0x0000BEEFU};
   return truth;
 }
 
@@ -37,6 +39,8 @@ TEST(TruthFile, IsReadAsItWasWritten) {
   RecordedTruth bare = some_truth();
   bare.rate_lrf_rad_s.reset();
   bare.trf_origin_lrf_m.reset();
+  bare.target.clear();
+  bare.sensor.reset();
   for (const RecordedTruth& written : {some_truth(), bare}) {
     const TruthTable table = parse_truth(truth_csv({written}), "a.csv");
     ASSERT_EQ(table.size(), 1U);
@@ -46,6 +50,10 @@ TEST(TruthFile, IsReadAsItWasWritten) {
     EXPECT_LT((read.q_lrf_trf.coeffs() - written.q_lrf_trf.coeffs()).norm(), 1e-15);
     EXPECT_EQ(read.rate_lrf_rad_s, written.rate_lrf_rad_s);
     EXPECT_EQ(read.trf_origin_lrf_m, written.trf_origin_lrf_m);
+    EXPECT_EQ(read.target, written.target);
+    ASSERT_EQ(read.sensor.has_value(), written.sensor.has_value());
+    EXPECT_TRUE(!read.sensor || read.sensor->name == written.sensor->name);
+    EXPECT_TRUE(!read.sensor || read.sensor->crc32 == written.sensor->crc32);
     EXPECT_EQ(read.line, 2U);
   }
 }
@@ -89,6 +97,12 @@ TEST(TruthFile, IsRefusedWithFileLineColumnValueLimitAndRemedy) {
       {kHeader + "\n1,2,0.5,0.5,0,0\n",
        "line 2: q_lrf_trf: its norm is 0.7071067811865476, which must be within 0.001 of 1"},
       {kHeader + kRates + "\n1,2,1,0,0,0,0,11,0\n", "rate_lrf_y_rad_s: '11' must be a number from -10 to 10"},
+      {kHeader + ",target\n1,2,1,0,0,0,a b\n", "target: 'a b' must be 1 to 31 characters of a-z, 0-9 and _"},
+      {kHeader + ",target\n1,2,1,0,0,0,\n", "target: '' must be 1 to 31 characters"},
+      {kHeader + ",sensor\n", "line 1: the column sensor_crc32 is missing; give all of its kind or none"},
+      {kHeader + ",sensor,sensor_crc32\n1,2,1,0,0,0,paper,12g45678\n", "must be the 8 hexadecimal digits"},
+      {kHeader + ",sensor,sensor_crc32\n1,2,1,0,0,0,paper,1234567\n",
+       "sensor_crc32: '1234567' must be the 8"},
       {kHeader + "\n1,2,1,0,0,0\n1,2,1,0,0,0\n",
        "line 3: sequence_number 1 with this exposure_time_ns is in line 2 too; give one line"},
   };
@@ -109,6 +123,8 @@ TEST(TruthFile, HasTheColumnsOfTheInterfaceDocument) {
 TEST(TruthFile, HasThePathOfItsRecording) {
   EXPECT_EQ(truth_path_of("a.b/frames.tslr"), "a.b/frames.truth.csv");
   EXPECT_EQ(truth_path_of("a.b/frames"), "a.b/frames.truth.csv");
+  EXPECT_EQ(truth_path_of("run.1"), "run.1.truth.csv") << "run.2 has another truth";
+  EXPECT_EQ(truth_path_of("run.tslr.old"), "run.tslr.old.truth.csv");
 }
 
 }  // namespace

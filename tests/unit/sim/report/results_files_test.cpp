@@ -127,6 +127,8 @@ TEST(Sensor, OtherThanThePapersIsInJsonAndCsvAndHasNoFiguresOfThePaper) {
   EXPECT_EQ(row["ranges_m"], nlohmann::ordered_json::parse("[50.0, 200.0]"));
   EXPECT_TRUE(row["paper_rcnn"].is_null());
   EXPECT_EQ(differences_from_paper(cell), "sensor flash_256, 50 to 200 m");
+  cell.ranges = {57.7, 57.75};
+  EXPECT_EQ(differences_from_paper(cell), "sensor flash_256, 57.7 to 57.75 m");
   const std::vector<std::string> lines = lines_of(results_csv(results));
   EXPECT_NE(lines[0].find(",sensor,ranges_m"), std::string::npos);
   EXPECT_NE(lines[1].find("flash_256 (CRC-32 "), std::string::npos);

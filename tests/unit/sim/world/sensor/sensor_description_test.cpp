@@ -109,12 +109,25 @@ TEST(SensorDescription, RefusesWhatIsNotAsItMustBe) {
       {"\"name\": \"flash_256\"", "\"name\": \"Flash 256\"", "1 to 31 characters of a-z, 0-9 and _"},
       {"\"period_s\": 2.7", "\"period_s\": 0", "field 'period_s' is 0; it must be a number from 0.1 to 60"},
       {"\"link_budget\"", "\"threshold\"", "field 'detection.photoelectrons_at_100_m' is unknown"},
+      {"\"constant_m\": 0.05", "\"constant_m\": 0.05, \"constant_m\": 0.06", "\"constant_m\" is given twice"},
+      {"\"scan_time_s\": 0.0", "\"scan_time_s\": 1.5", "accepted"},
+      {"\"scan_time_s\": 0.0,\n  \"period_s\": 2.7", "\"scan_time_s\": 1.5, \"period_s\": 1",
+       "field 'scan_time_s' is 1.5; it must be at most period_s, 1"},
+      {"\"constant_m\": 0.05", "\"constant_m\": 1e999", "a number is too large: "},
       {"{", "", "not JSON"},
   };
   for (const auto& wrong : kWrong) {
     const std::string message = refusal(replaced(good, wrong.from, wrong.to));
     EXPECT_NE(message.find(wrong.message), std::string::npos) << message;
   }
+  const std::string deep(100'000, '[');
+  EXPECT_NE(refusal(replaced(good, "500.0", deep)).find("nested more than 4 deep"), std::string::npos);
+  EXPECT_NE(refusal(deep).find("nested more than 4 deep"), std::string::npos);
+  for (const std::string& part :
+       {std::string(10'000, '1'), "\"" + std::string(10'000, 'x') + "\"", std::string(10'000, 'x')})
+    EXPECT_LT(refusal(replaced(good, "500.0", part)).size(), 300U);
+  for (const char* const empty : {"", " \n"})
+    EXPECT_EQ(refusal(empty), "sensor description my.json: the file is empty");
   const std::string gate = replaced(good, "500.0", "0.5");
   EXPECT_NE(refusal(gate).find("'range_gate_m' is [1.0,0.5]; it must be two ascending numbers from 0 to 500"),
             std::string::npos)
