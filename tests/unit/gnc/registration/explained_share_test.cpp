@@ -130,12 +130,14 @@ TEST(ExplainedShare, FallsWithAnAttitudeThatIsWrong) {
 TEST(ExplainedShare, DoesNotDependOnWhereTheTargetIsUpToFourCells) {
   Surface surface;
   surface.add_plate(3.0, 2.0, 0.0);
-  for (const double offset_m : {-0.8, -0.4, 0.6, 0.8}) {
+  // Three cells wider or higher than the plate, which the drawing with a cell around it covers in one place.
+  for (int i = 0; i < 2 * 81; ++i) {
+    const int right = i % 9 - 4, down = i / 9 % 9 - 4;
     DepthImage image;
-    show(image, 3.0, 2.0, offset_m, -offset_m);
+    show(image, i < 81 ? 3.6 : 3.0, i < 81 ? 2.0 : 2.6, 0.2 * right, 0.2 * down);
     const ExplainedShare found = explain(image, surface.model());
-    EXPECT_EQ(found.unexplained, 0U) << offset_m;
-    EXPECT_EQ(found.missing, 0U) << offset_m;
+    EXPECT_EQ(found.unexplained, 0U) << right << ' ' << down;
+    EXPECT_EQ(found.missing, 0U) << right << ' ' << down;
   }
   DepthImage image;
   show(image, 3.0, 2.0, 2.0);
