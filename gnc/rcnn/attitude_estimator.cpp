@@ -189,8 +189,8 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
   estimate.q_lrf_trf_second = second.q_lrf_trf;
   estimate.second_odds_ppm = second.odds_ppm;
   estimate.centroid_lrf_mm = position_lrf_mm(image);
-  estimate.explained =
-      explained_share(image, model_.projection, attitude, surface_, network_.explained_share_scratch());
+  estimate.explained = explained_share(image, model_.projection, model_.noise, attitude, surface_,
+                                       network_.explained_share_scratch());
 }
 
 template <class N>

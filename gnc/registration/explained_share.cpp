@@ -314,10 +314,14 @@ std::int32_t median_difference(const Fit& fit, std::int32_t& count, Scratch& scr
   return (median << kBinBits) + (1 << (kBinBits - 1)) - 65536;
 }
 
-// 2.5 standard deviations of the difference of two depths: the paper's noise of a range, over the mean of the
-// 6.5 rays of a cell, and 3 % of the radius for the sampled surface.
-std::int32_t depth_limit(const DepthImage& image, const DepthProjection& projection) {
-  const std::int64_t sigma_mm = 100 + image.centroid_distance_mm / 100;
+// 2.5 standard deviations of the difference of two depths: the noise of a range, over the mean of the 6.5
+// rays of a cell, and 3 % of the radius for the sampled surface.
+std::int32_t depth_limit(const DepthImage& image, const DepthProjection& projection,
+                         const RangeNoise& noise) {
+  const std::int64_t distance_mm = max(image.centroid_distance_mm, 0);
+  // Limited so that its square fits below; ranges are below 512 m.
+  const std::int64_t sigma_mm =
+      min<std::int64_t>(noise.constant_mm + divide(distance_mm * noise.share_1e5, 100'000), 1'000'000);
   const std::int64_t radius_mm = max<std::uint32_t>(projection.target_radius_mm, 1);
   const std::int64_t of_mean_q8 = sigma_mm * 100, of_surface_q8 = radius_mm * 8;  // mm / 256
   const std::uint32_t sigma_q8 =
@@ -333,8 +337,8 @@ std::uint32_t share_of(std::int64_t part, std::int32_t whole) {
 }  // namespace
 
 ExplainedShare explained_share(const DepthImage& image, const DepthProjection& projection,
-                               const Matrix3<Fixed>& r_lrf_trf, const SurfaceModel& surface,
-                               ExplainedShareScratch& scratch) {
+                               const RangeNoise& noise, const Matrix3<Fixed>& r_lrf_trf,
+                               const SurfaceModel& surface, ExplainedShareScratch& scratch) {
   ExplainedShare share;
   share.is_known = surface.is_known();
   if (!share.is_known) return share;
@@ -350,7 +354,7 @@ ExplainedShare explained_share(const DepthImage& image, const DepthProjection& p
 
   std::int32_t both = 0;
   const std::int32_t median = median_difference(fit, both, scratch);
-  const std::int32_t limit = depth_limit(image, projection);
+  const std::int32_t limit = depth_limit(image, projection, noise);
   std::int64_t apart = 0;
   for_each_cell(fit, scratch, [&](std::int32_t difference, std::int32_t counts) {
     apart += min_small(abs(difference - median), limit) & counts;
