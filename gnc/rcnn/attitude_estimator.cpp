@@ -59,6 +59,7 @@ std::array<std::int32_t, 3> position_lrf_mm(const DepthImage& image) {
 struct Alternative {
   QuaternionQ30 q_lrf_trf;
   std::uint32_t odds_ppm;
+  Fixed share;  // its probability over that of both
 };
 template <class Real>
 Alternative second_of(const Hypotheses<Real>& hypotheses, const Matrix3<Real>& attitude) {
@@ -79,10 +80,11 @@ Alternative second_of(const Hypotheses<Real>& hypotheses, const Matrix3<Real>& a
   constexpr std::int64_t kMostOdds_ppm = 1'000'000'000;
   const std::int64_t divisor = max<std::int64_t>(same, 1);
   const std::int64_t odds_ppm = min(kMostOdds_ppm, divide(std::int64_t{largest} * 1'000'000, divisor));
+  const Fixed share = Fixed::from_raw(largest) / Fixed::from_raw(max(same + largest, 1));
   Matrix3<Fixed> r_lrf_trf;
   for (int k = 0; k < 9; ++k) r_lrf_trf(k) = Fixed::from_raw(second[static_cast<std::size_t>(k)]);
   const QuaternionQ30 q_lrf_trf = quaternion_from_rotation(r_lrf_trf);
-  return {select(is_less(0, largest), q_lrf_trf, kIdentityQ30), static_cast<std::uint32_t>(odds_ppm)};
+  return {select(is_less(0, largest), q_lrf_trf, kIdentityQ30), static_cast<std::uint32_t>(odds_ppm), share};
 }
 
 // Whether this rate turns the target by more than kLargestTurn_rad in this time.
@@ -108,6 +110,19 @@ void add_to(Crc32& crc, const std::int16_t* values, std::size_t count) {
 }
 
 }  // namespace
+
+// Fitted to the parametric meshes of three targets under the paper's conditions and thirteen effects.
+Fixed expected_error_rad(const ErrorEvidence& evidence, Fixed network_error_rad) {
+  constexpr auto kWrongError_rad = constant<Fixed>(1.84);  // mean of wrong attitudes: 105 degrees
+  constexpr auto kSquareOf30Degrees = constant<Fixed>(0.26794919);
+  constexpr auto kPerSquare = constant<Fixed>(1.6 / 0.26794919);
+  const Fixed innovation = clamp(evidence.innovation_squared, Fixed{}, kSquareOf30Degrees);
+  const Fixed misfit = Fixed::from_raw(static_cast<std::int32_t>(evidence.misfit) << 8);  // from Q0.16
+  const Fixed wrong =
+      sigmoid(constant<Fixed>(0.82) * evidence.network_logit + constant<Fixed>(13.0) * misfit +
+              kPerSquare * innovation + constant<Fixed>(2.3) * evidence.second_share - constant<Fixed>(5.5));
+  return network_error_rad + wrong * (kWrongError_rad - network_error_rad);
+}
 
 template <class N>
 ModelStatus AttitudeEstimator<N>::load(const std::uint8_t* image, std::size_t size_bytes,
@@ -172,7 +187,6 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
   const Matrix3<Fixed> single_frame = converted<Fixed>(mean_attitude<Real>(
       hypotheses.r_lrf_trf.data(), hypotheses.probability.data(), shape::kHypotheses, hypotheses.likeliest));
   estimate.q_lrf_trf = quaternion_from_rotation(attitude);
-  estimate.predicted_error_urad = error_urad(attitude, converted<Fixed>(tracked.predicted_error_rad));
   estimate.q_lrf_trf_single_frame = quaternion_from_rotation(single_frame);
   estimate.predicted_error_single_frame_urad =
       error_urad(single_frame, converted<Fixed>(hypotheses.predicted_error_rad));
@@ -189,8 +203,19 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
   estimate.q_lrf_trf_second = second.q_lrf_trf;
   estimate.second_odds_ppm = second.odds_ppm;
   estimate.centroid_lrf_mm = position_lrf_mm(image);
-  estimate.explained =
-      explained_share(image, model_.projection, attitude, surface_, network_.explained_share_scratch());
+  estimate.explained = explained_share(image, model_.projection, model_.noise, attitude, surface_,
+                                       network_.explained_share_scratch());
+
+  const Fixed innovation_squared =
+      constant<Fixed>(3.0) -
+      trace_of_transpose_product<Fixed>(converted<Fixed>(prediction.r_lrf_trf()), attitude);
+  const Fixed network_error_rad = converted<Fixed>(tracked.predicted_error_rad);
+  const Fixed error_rad =
+      expected_error_rad({converted<Fixed>(head[2 * shape::kCandidates + 1]), misfit_of(estimate.explained),
+                          select(prediction.has_track, innovation_squared, Fixed{}), second.share},
+                         network_error_rad);
+  estimate.predicted_error_urad =
+      error_urad(attitude, select(estimate.explained.is_known, error_rad, network_error_rad));
 }
 
 template <class N>

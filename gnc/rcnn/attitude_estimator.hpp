@@ -19,8 +19,10 @@ inline constexpr std::uint32_t kPi_urad = 3'141'593;
 // The attitude at one frame, in integers for both numerics. Quaternions are unit, Hamilton, scalar first with
 // w >= 0, in Q1.30, and take the target frame (TRF) to the LiDAR frame (LRF): v_lrf = q_lrf_trf * v_trf.
 struct AttitudeEstimate {
-  QuaternionQ30 q_lrf_trf = kIdentityQ30;               // from all frames since reset (RCNN)
-  std::uint32_t predicted_error_urad = kPi_urad;        // expected angular error of q_lrf_trf, 0..pi
+  QuaternionQ30 q_lrf_trf = kIdentityQ30;  // from all frames since reset (RCNN)
+  // Expected angular error of q_lrf_trf, 0..pi: expected_error_rad() where the surface is known, else the
+  // network's.
+  std::uint32_t predicted_error_urad = kPi_urad;
   QuaternionQ30 q_lrf_trf_single_frame = kIdentityQ30;  // from this frame alone (CNN)
   std::uint32_t predicted_error_single_frame_urad = kPi_urad;
   std::uint32_t frames_since_reset = 0;  // 1 for the first frame of a track
@@ -40,6 +42,17 @@ struct AttitudeEstimate {
   std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
   ExplainedShare explained;  // of this frame, by the target at q_lrf_trf; not known in float32
 };
+
+// What tells an attitude that is wrong, by more than 20 degrees, from one that is right.
+struct ErrorEvidence {
+  Fixed network_logit;       // of the error that the network expects, over pi
+  std::uint32_t misfit = 0;  // misfit_of()
+  Fixed innovation_squared;  // 2 - 2 cos of the angle to the predicted attitude; 0 without a prediction
+  Fixed second_share;        // of the second attitude in the probability of both, 0..1
+};
+// The expected error [rad], 0..pi, from the one that the network expects and the probability of a wrong
+// attitude, by a logistic regression on the evidence: docs/numerics.md.
+Fixed expected_error_rad(const ErrorEvidence& evidence, Fixed network_error_rad);
 
 // The motion of the target in the LRF, in integers.
 struct PropagatedMotion {

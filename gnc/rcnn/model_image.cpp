@@ -67,6 +67,11 @@ DepthProjection read_projection(const std::uint8_t* image) {
   return {get_u32(image + kOffsetSwath), get_u32(image + kOffsetRadius)};
 }
 
+RangeNoise read_noise(const std::uint8_t* image) {
+  if (get_u32(image + kOffsetNoise) == 0) return {};
+  return {get_u16(image + kOffsetNoise), get_u16(image + kOffsetNoise + 2)};
+}
+
 template <class N>
 ModelStatus check_header_values(const std::uint8_t* image, const char* expected_target) {
   if (get_u32(image + kOffsetNumerics) != numerics_of<N>()) return ModelStatus::kBadNumerics;
@@ -78,14 +83,14 @@ ModelStatus check_header_values(const std::uint8_t* image, const char* expected_
   if (expected_target != nullptr && std::strcmp(header.target.data(), expected_target) != 0) {
     return ModelStatus::kBadTarget;
   }
-  const bool possible = read_inertia(image, header.inertia) && is_possible(read_projection(image)) &&
-                        get_u32(image + kOffsetReserved) == 0;
+  const bool possible = read_inertia(image, header.inertia) && is_possible(read_projection(image));
   return possible ? ModelStatus::kOk : ModelStatus::kBadValue;
 }
 
 void read_header(const std::uint8_t* image, ModelHeader& header) {
   std::memcpy(header.target.data(), image + kOffsetTarget, header.target.size());
   header.projection = read_projection(image);
+  header.noise = read_noise(image);
   (void)read_inertia(image, header.inertia);  // valid: check_header_values()
   header.crc32 = get_u32(image + kOffsetHeaderCrc);
 }

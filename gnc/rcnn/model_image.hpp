@@ -11,7 +11,8 @@
 //       16    32  target name, printable ASCII, padded with NUL, at least one NUL
 //       48     4  depth projection: swath [mm]
 //       52     4  depth projection: target radius [mm]
-//       56     4  reserved, 0
+//       56     2  standard deviation of a range that does not grow with it [mm]
+//       58     2  ... that grows with it, in 1/100,000 of the range; both 0: 0.1 m + 1 %
 //       60    24  inertia of the target in the TRF, scaled to a trace of 3, signed Q7.24:
 //                 xx, yy, zz, xy, xz, yz
 //       84     4  numerics: 0 float32, 1 fixed point
@@ -32,6 +33,7 @@
 #include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network.hpp"
+#include "gnc/registration/explained_share.hpp"
 #include "gnc/registration/surface_model.hpp"
 
 namespace tumblesight::gnc {
@@ -55,6 +57,7 @@ inline constexpr std::size_t kModelImageSize = kModelDataOffset<N> + kWeightByte
 struct ModelHeader {
   std::array<char, 32> target{};  // NUL-terminated name of the spacecraft the network was trained for
   DepthProjection projection;
+  RangeNoise noise;        // of the sensor for which the network was calibrated
   Inertia<Fixed> inertia;  // of the target, for its laws of motion
   // Identifies the image: it covers the header and, through the sections' CRCs, all weights. Set by the
   // reader, ignored by the writer.

@@ -36,6 +36,9 @@ std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>
   std::memcpy(out + kOffsetTarget, header.target.data(), header.target.size());
   put_u32(out + kOffsetSwath, header.projection.swath_mm);
   put_u32(out + kOffsetRadius, header.projection.target_radius_mm);
+  const bool is_default = header.noise == RangeNoise{};
+  put_u16(out + kOffsetNoise, is_default ? 0 : header.noise.constant_mm);
+  put_u16(out + kOffsetNoise + 2, is_default ? 0 : header.noise.share_1e5);
   for (std::size_t i = 0; i < kInertiaElements.size(); ++i) {
     const auto [row, column] = kInertiaElements[i];
     put_u32(out + kOffsetInertia + 4 * i,

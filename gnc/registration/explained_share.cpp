@@ -110,8 +110,9 @@ void reduce(const DepthImage& image, Scratch::Cells& seen) {
         count += static_cast<std::uint32_t>(filled & 1);
       }
       const auto mean = static_cast<std::int32_t>((std::int64_t{sum} * kInverse[count]) >> 16);
-      seen[row * kSide + column] = static_cast<std::int16_t>(
-          select(is_less<std::uint32_t>(0, count), clamp_small(mean, -kEmpty, kEmpty - 1), kEmpty));
+      const std::int32_t filled = sign_mask(-static_cast<std::int32_t>(count));
+      seen[row * kSide + column] =
+          static_cast<std::int16_t>(kEmpty ^ ((kEmpty ^ clamp_small(mean, -kEmpty, kEmpty - 1)) & filled));
     }
   }
 }
@@ -209,13 +210,6 @@ std::int32_t count_without(const Scratch::Rows& a, int a_down, const Scratch::Ro
   return sum;
 }
 
-void move_left(int columns, Scratch::Rows& rows) {
-  for (std::uint64_t& row : rows) row >>= columns;
-}
-void move_right_by_one(Scratch::Rows& rows) {
-  for (std::uint64_t& row : rows) row <<= 1;
-}
-
 // Where the drawing fits best, and the cells that do not fit there.
 struct Fit {
   std::int32_t cost = 0x7FFFFFFF;
@@ -223,13 +217,31 @@ struct Fit {
   std::int32_t unexplained = 0, missing = 0;
 };
 
-// `seen`, `expected`: numbers of cells. Moves the expected rows by kBorder columns to the right.
-Fit find_fit(std::int32_t seen, std::int32_t expected, Scratch& scratch) {
-  Fit best;
-  move_left(kBorder, scratch.expected_rows);
-  move_left(kBorder, scratch.near_expected_rows);
-  for (int right = -kBorder; right <= kBorder; ++right) {
-    for (int down = -kBorder; down <= kBorder; ++down) {
+// Moves of the drawing: `count` to each side of (right, down), `step` cells apart.
+struct Moves {
+  std::int32_t right, down, count, step;
+};
+
+// Moves all rows by -columns, by a shift of each bit of the number on its own: a processor with registers of
+// 32 bits has a branch in a 64-bit shift by a variable.
+template <int kBits>
+void move_left(std::int32_t columns, Scratch::Rows& rows) {
+  for (std::uint64_t& row : rows) {
+    for (int bit = 0; bit < kBits; ++bit) {
+      const auto moves = static_cast<std::uint32_t>(-((columns >> bit) & 1));
+      const std::uint64_t mask = (std::uint64_t{moves} << 32) | moves;
+      row ^= (row ^ (row >> (1 << bit))) & mask;
+    }
+  }
+}
+
+// `seen`, `expected`: numbers of cells. The rows of the drawing are moved to the first of the moves already,
+// and are moved beyond the last one.
+void try_moves(const Moves& moves, std::int32_t seen, std::int32_t expected, Scratch& scratch, Fit& best) {
+  for (int i = -moves.count; i <= moves.count; ++i) {
+    const std::int32_t right = moves.right + i * moves.step;
+    for (int k = -moves.count; k <= moves.count; ++k) {
+      const std::int32_t down = moves.down + k * moves.step;
       const std::int32_t unexplained = count_without(scratch.seen_rows, 0, scratch.near_expected_rows, down);
       const std::int32_t missing = count_without(scratch.expected_rows, down, scratch.near_seen_rows, 0);
       const std::int32_t cost = 16 * unexplained * expected + 5 * missing * seen + abs(right) + abs(down);
@@ -241,9 +253,28 @@ Fit find_fit(std::int32_t seen, std::int32_t expected, Scratch& scratch) {
       take(unexplained, best.unexplained);
       take(missing, best.missing);
     }
-    move_right_by_one(scratch.expected_rows);
-    move_right_by_one(scratch.near_expected_rows);
+    for (int row = 0; row < Scratch::kRows; ++row) {
+      scratch.expected_rows[row] <<= moves.step;
+      scratch.near_expected_rows[row] <<= moves.step;
+    }
   }
+}
+
+// The best of every second move, then the best of it and those around it.
+Fit find_fit(std::int32_t seen, std::int32_t expected, Scratch& scratch) {
+  constexpr Moves kCoarse{0, 0, kBorder / 2, 2};
+  constexpr int kBeyond = kBorder + 2;  // where the rows are after the coarse moves
+  static_assert(Scratch::kFirstBit + kSide + kBeyond < 64);
+  Fit best;
+  for (Scratch::Rows* rows : {&scratch.expected_rows, &scratch.near_expected_rows}) {
+    for (std::uint64_t& row : *rows) row >>= kBorder;
+  }
+  try_moves(kCoarse, seen, expected, scratch, best);
+  const Moves fine{clamp_small(best.right, 1 - kBorder, kBorder - 1),
+                   clamp_small(best.down, 1 - kBorder, kBorder - 1), 1, 1};
+  move_left<4>(kBeyond - (fine.right - 1), scratch.expected_rows);
+  move_left<4>(kBeyond - (fine.right - 1), scratch.near_expected_rows);
+  try_moves(fine, seen, expected, scratch, best);
   return best;
 }
 
@@ -283,10 +314,14 @@ std::int32_t median_difference(const Fit& fit, std::int32_t& count, Scratch& scr
   return (median << kBinBits) + (1 << (kBinBits - 1)) - 65536;
 }
 
-// 2.5 standard deviations of the difference of two depths: the paper's noise of a range, over the mean of the
-// 6.5 rays of a cell, and 3 % of the radius for the sampled surface.
-std::int32_t depth_limit(const DepthImage& image, const DepthProjection& projection) {
-  const std::int64_t sigma_mm = 100 + image.centroid_distance_mm / 100;
+// 2.5 standard deviations of the difference of two depths: the noise of a range, over the mean of the 6.5
+// rays of a cell, and 3 % of the radius for the sampled surface.
+std::int32_t depth_limit(const DepthImage& image, const DepthProjection& projection,
+                         const RangeNoise& noise) {
+  const std::int64_t distance_mm = max(image.centroid_distance_mm, 0);
+  // Limited so that its square fits below; ranges are below 512 m.
+  const std::int64_t sigma_mm =
+      min<std::int64_t>(noise.constant_mm + divide(distance_mm * noise.share_1e5, 100'000), 1'000'000);
   const std::int64_t radius_mm = max<std::uint32_t>(projection.target_radius_mm, 1);
   const std::int64_t of_mean_q8 = sigma_mm * 100, of_surface_q8 = radius_mm * 8;  // mm / 256
   const std::uint32_t sigma_q8 =
@@ -302,8 +337,8 @@ std::uint32_t share_of(std::int64_t part, std::int32_t whole) {
 }  // namespace
 
 ExplainedShare explained_share(const DepthImage& image, const DepthProjection& projection,
-                               const Matrix3<Fixed>& r_lrf_trf, const SurfaceModel& surface,
-                               ExplainedShareScratch& scratch) {
+                               const RangeNoise& noise, const Matrix3<Fixed>& r_lrf_trf,
+                               const SurfaceModel& surface, ExplainedShareScratch& scratch) {
   ExplainedShare share;
   share.is_known = surface.is_known();
   if (!share.is_known) return share;
@@ -319,7 +354,7 @@ ExplainedShare explained_share(const DepthImage& image, const DepthProjection& p
 
   std::int32_t both = 0;
   const std::int32_t median = median_difference(fit, both, scratch);
-  const std::int32_t limit = depth_limit(image, projection);
+  const std::int32_t limit = depth_limit(image, projection, noise);
   std::int64_t apart = 0;
   for_each_cell(fit, scratch, [&](std::int32_t difference, std::int32_t counts) {
     apart += min_small(abs(difference - median), limit) & counts;
@@ -327,8 +362,9 @@ ExplainedShare explained_share(const DepthImage& image, const DepthProjection& p
   share.unexplained = share_of(fit.unexplained, seen);
   share.missing = share_of(fit.missing, expected);
   // Without a cell in common nothing is explained.
+  const std::uint32_t depth_misfit = share_of(divide(apart * 256, limit), both * 256);
   share.depth_misfit =
-      select(is_less(0, both), share_of(divide(apart * 256, limit), both * 256), kWholeShare);
+      kWholeShare ^ ((kWholeShare ^ depth_misfit) & static_cast<std::uint32_t>(below_mask(0, both)));
   return share;
 }
 

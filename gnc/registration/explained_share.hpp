@@ -36,6 +36,15 @@ inline std::uint32_t misfit_of(const ExplainedShare& share) {
   return share.unexplained + 5 * share.missing / 8 + share.depth_misfit / 2;
 }
 
+// Standard deviation of a range: constant + share of the range. The default is the paper's sensor.
+struct RangeNoise {
+  std::uint16_t constant_mm = 100;
+  std::uint16_t share_1e5 = 1000;  // in 1/100,000
+  friend bool operator==(const RangeNoise& a, const RangeNoise& b) {
+    return a.constant_mm == b.constant_mm && a.share_1e5 == b.share_1e5;
+  }
+};
+
 // Working memory. The caller holds it, so that nothing large is on the stack; it need not be initialized.
 struct ExplainedShareScratch {
   static constexpr int kSide = 50;              // cells per side; each is 2 x 2 of the depth image
@@ -58,7 +67,7 @@ struct ExplainedShareScratch {
 // `r_lrf_trf`: a rotation; anything else gives shares without a meaning. The instruction count is the same
 // for every image, attitude and surface.
 [[nodiscard]] ExplainedShare explained_share(const DepthImage& image, const DepthProjection& projection,
-                                             const Matrix3<Fixed>& r_lrf_trf, const SurfaceModel& surface,
-                                             ExplainedShareScratch& scratch);
+                                             const RangeNoise& noise, const Matrix3<Fixed>& r_lrf_trf,
+                                             const SurfaceModel& surface, ExplainedShareScratch& scratch);
 
 }  // namespace tumblesight::gnc

@@ -115,6 +115,15 @@ void require_frames(std::size_t calibrating, std::size_t reported) {
       "metres, and are the effects those of the training?");
 }
 
+// The noise of the sensor, by which the flight program judges depths.
+gnc::RangeNoise noise_of(const ScenarioSettings& seen) {
+  const double factor = seen.effects.noise > 0.0 ? seen.effects.noise : 1.0;
+  const auto rounded = [factor](double value) {
+    return static_cast<std::uint16_t>(std::lround(std::min(65535.0, factor * value)));
+  };
+  return {rounded(1e3 * seen.sensor.noise_constant_m), rounded(1e5 * seen.sensor.noise_per_range)};
+}
+
 }  // namespace
 
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
@@ -144,8 +153,10 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
 
   QuantizationReport report;
   const double radius_m = 1e-3 * model.header.projection.target_radius_mm;
-  report.crc32 = write_model_file<FixedPoint>(path, model.header, network->weights,
-                                              surface_section(meshes.front(), radius_m));
+  gnc::ModelHeader header = model.header;
+  header.noise = noise_of(seen);
+  report.crc32 =
+      write_model_file<FixedPoint>(path, header, network->weights, surface_section(meshes.front(), radius_m));
   report.size_bytes = gnc::kModelImageSize<FixedPoint>;
   report.layers = compare(model.weights, *network, model.header.inertia, kept);
   report.difference = summarise(differences_deg(model, network->weights, kept));

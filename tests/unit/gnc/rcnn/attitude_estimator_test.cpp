@@ -181,6 +181,76 @@ TEST(AttitudeEstimator, ExpectsAnErrorOfPiForANonFiniteAttitude) {
   }
 }
 
+// docs/numerics.md, in double precision. Innovation: the angle between predicted and estimated attitude.
+double expected_error(double network_rad, double misfit, double innovation_rad, double second_share) {
+  const double share = network_rad / M_PI;
+  const double innovation = std::min(1.0, (1.0 - std::cos(innovation_rad)) / (1.0 - std::cos(M_PI / 6.0)));
+  const double sum =
+      0.82 * std::log(share / (1.0 - share)) + 13.0 * misfit + 1.6 * innovation + 2.3 * second_share - 5.5;
+  return network_rad + (1.84 - network_rad) / (1.0 + std::exp(-sum));
+}
+
+// Verifies TS-EST-192.
+TEST(AttitudeEstimator, ExpectsTheErrorThatTheEvidenceSpeaksFor) {
+  for (const double network_rad : {0.003, 0.02, 0.5, 3.1}) {
+    for (const double misfit : {0.0, 0.3, 0.6, 2.125}) {
+      for (const double innovation_rad : {0.0, 0.2, 0.5, 0.6, M_PI}) {
+        for (const double second_share : {0.0, 0.4, 1.0}) {
+          const double share = network_rad / M_PI;
+          const ErrorEvidence evidence{Fixed(std::log(share / (1.0 - share))),
+                                       static_cast<std::uint32_t>(std::lround(65536.0 * misfit)),
+                                       Fixed(2.0 - 2.0 * std::cos(innovation_rad)), Fixed(second_share)};
+          EXPECT_NEAR(std::ldexp(expected_error_rad(evidence, Fixed(network_rad)).raw(), -24),
+                      expected_error(network_rad, misfit, innovation_rad, second_share), 1e-4)
+              << network_rad << ' ' << misfit << ' ' << innovation_rad << ' ' << second_share;
+        }
+      }
+    }
+  }
+  // Whatever a damaged network or state says.
+  for (const double extreme : {-128.0, 128.0}) {
+    const Fixed found =
+        expected_error_rad({Fixed(extreme), 139'264, Fixed(extreme), Fixed(1.0)}, Fixed(M_PI));
+    EXPECT_GT(found, Fixed(1.8));
+    EXPECT_LT(found, Fixed(3.1416));
+  }
+}
+
+// Verifies TS-EST-192. With a target of one point, which explains no return, and without a surface.
+TEST(AttitudeEstimator, TakesTheEvidenceOfEachFrameIntoTheExpectedError) {
+  const auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
+  const std::vector<std::uint8_t>& without = lasting_model_image<FixedPoint>(31);
+  ModelHeader header;
+  ASSERT_EQ(read_model_image<FixedPoint>(without.data(), without.size(), nullptr, header, *weights),
+            ModelStatus::kOk);
+  std::vector<std::uint8_t> surface(SurfaceModel::kBytes), with(without.size());
+  surface[0] = 1;
+  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, with.data(), with.size(), surface.data()),
+            with.size());
+  const auto network = std::make_unique<AttitudeEstimator<FixedPoint>>();
+  const auto checked = std::make_unique<AttitudeEstimator<FixedPoint>>();
+  ASSERT_EQ(network->load(without.data(), without.size(), nullptr), ModelStatus::kOk);
+  ASSERT_EQ(checked->load(with.data(), with.size(), nullptr), ModelStatus::kOk);
+  bool second_counts = false;
+  for (unsigned k = 0; k < 12; ++k) {
+    AttitudeEstimate expected, found;
+    network->step(sequence_image(k), expected);
+    checked->step(sequence_image(k), found);
+    ASSERT_EQ(found.q_lrf_trf, expected.q_lrf_trf);
+    EXPECT_EQ(found.explained.unexplained, kWholeShare);
+    const double cosine = std::abs(to_double(found.q_lrf_trf).dot(to_double(found.q_lrf_trf_predicted)));
+    const double innovation_rad = found.has_prediction ? 2.0 * std::acos(std::min(1.0, cosine)) : 0.0;
+    const double odds = 1e-6 * found.second_odds_ppm;
+    EXPECT_NEAR(1e-6 * found.predicted_error_urad,
+                expected_error(1e-6 * expected.predicted_error_urad, misfit_of(found.explained) / 65536.0,
+                               innovation_rad, odds / (1.0 + odds)),
+                1e-4)
+        << k;
+    second_counts |= odds > 0.01;
+  }
+  EXPECT_TRUE(second_counts);
+}
+
 TYPED_TEST(EstimatorOf, ContinuesBitForBitAfterSaveAndRestore) {
   const auto estimator = loaded<TypeParam>(31);
   AttitudeEstimate estimate;

@@ -99,7 +99,6 @@ std::vector<Damage> damages() {
       {"HugeSwath", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 48, 100'001); })},
       {"NoRadius", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 52, 0); })},
       {"HugeRadius", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 52, 0xFFFFFFFFU); })},
-      {"ReservedFieldInUse", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 56, 1); })},
       {"InertiaNotScaled", ModelStatus::kBadValue, sealed([](Bytes& b) { put_u32(b, 60, 5U << 24); })},
       {"LargestProductOfInertia", ModelStatus::kBadValue,
        sealed([](Bytes& b) { put_u32(b, 72, 0x80000000U); })},
@@ -164,6 +163,7 @@ TEST(ModelImage, ReadsBackWhatWasWrittenBitForBit) {
   auto read = std::make_unique<NetworkWeights<Float32>>();
   fill_random(*written, 23);
   ModelHeader header = test_header();
+  header.noise = {50, 40};
   Bytes image(kModelImageSize<Float32>);
   ASSERT_EQ(write_model_image<Float32>(header, *written, image.data(), image.size()),
             kModelImageSize<Float32>);
@@ -174,6 +174,8 @@ TEST(ModelImage, ReadsBackWhatWasWrittenBitForBit) {
   EXPECT_EQ(found.target, header.target);
   EXPECT_EQ(found.projection.swath_mm, header.projection.swath_mm);
   EXPECT_EQ(found.projection.target_radius_mm, header.projection.target_radius_mm);
+  EXPECT_EQ(found.noise, header.noise);
+  EXPECT_EQ(get_u32(image, 56), 50U + (40U << 16));
   // Scaled to a trace of 3 once more, which rounds.
   const auto scaled = [](const ModelHeader& h) { return converted<float>(h.inertia.tensor_trf); };
   EXPECT_LT((scaled(found) - scaled(header)).norm(), 1e-6F);
@@ -192,6 +194,7 @@ TEST(ModelImage, HasTheDocumentedLayout) {
   EXPECT_STREQ(reinterpret_cast<const char*>(image.data() + 16), "test_craft");
   EXPECT_EQ(get_u32(image, 48), 7500U);
   EXPECT_EQ(get_u32(image, 52), 3250U);
+  EXPECT_EQ(get_u32(image, 56), 0U) << "the paper's noise: 0.1 m + 1 %";
   const double inertia[] = {3.0, 5.0, 6.0, 0.4, -0.2, 0.1};  // xx, yy, zz, xy, xz, yz
   for (int i = 0; i < 6; ++i) {
     const auto raw = static_cast<std::int32_t>(get_u32(image, 60 + 4 * static_cast<std::size_t>(i)));

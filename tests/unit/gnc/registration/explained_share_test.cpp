@@ -63,11 +63,12 @@ void show(DepthImage& image, double width_m, double height_m, double right_m = 0
 }
 
 ExplainedShare explain(const DepthImage& image, const SurfaceModel& surface,
-                       const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity()) {
+                       const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity(),
+                       const RangeNoise& noise = {}) {
   static const auto scratch = std::make_unique<ExplainedShareScratch>();
   Matrix3<Fixed> r_lrf_trf;
   for (int i = 0; i < 9; ++i) r_lrf_trf(i) = Fixed(rotation(i));
-  return explained_share(image, kProjection, r_lrf_trf, surface, *scratch);
+  return explained_share(image, kProjection, noise, r_lrf_trf, surface, *scratch);
 }
 
 double share(std::uint32_t q16) {
@@ -130,12 +131,14 @@ TEST(ExplainedShare, FallsWithAnAttitudeThatIsWrong) {
 TEST(ExplainedShare, DoesNotDependOnWhereTheTargetIsUpToFourCells) {
   Surface surface;
   surface.add_plate(3.0, 2.0, 0.0);
-  for (const double offset_m : {-0.8, -0.4, 0.6, 0.8}) {
+  // Three cells wider or higher than the plate, which the drawing with a cell around it covers in one place.
+  for (int i = 0; i < 2 * 81; ++i) {
+    const int right = i % 9 - 4, down = i / 9 % 9 - 4;
     DepthImage image;
-    show(image, 3.0, 2.0, offset_m, -offset_m);
+    show(image, i < 81 ? 3.6 : 3.0, i < 81 ? 2.0 : 2.6, 0.2 * right, 0.2 * down);
     const ExplainedShare found = explain(image, surface.model());
-    EXPECT_EQ(found.unexplained, 0U) << offset_m;
-    EXPECT_EQ(found.missing, 0U) << offset_m;
+    EXPECT_EQ(found.unexplained, 0U) << right << ' ' << down;
+    EXPECT_EQ(found.missing, 0U) << right << ' ' << down;
   }
   DepthImage image;
   show(image, 3.0, 2.0, 2.0);
@@ -152,6 +155,27 @@ TEST(ExplainedShare, ComparesDepths) {
   show(image, 2.0, 2.0, 1.0, 0.0, 2.0);
   image.centroid_distance_mm = 20'000;
   EXPECT_NEAR(share(explain(image, surface.model()).depth_misfit), 0.5, 0.06);
+}
+
+// A part of the returns is half a metre deeper than the others, where the target is flat.
+TEST(ExplainedShare, MeasuresDepthsByTheNoiseOfTheSensor) {
+  Surface surface;
+  surface.add_plate(4.0, 2.0, 0.0);
+  DepthImage image;
+  show(image, 2.2, 2.0, -0.9, 0.0, 0.0);
+  show(image, 1.8, 2.0, 1.1, 0.0, 0.5);
+  image.centroid_distance_mm = 50'000;
+  const auto misfit = [&](const RangeNoise& noise) {
+    return share(explain(image, surface.model(), Eigen::Matrix3d::Identity(), noise).depth_misfit);
+  };
+  const auto expected = [](double sigma_m) {
+    return 0.45 * std::min(1.0, 0.5 / (2.5 * std::hypot(sigma_m / std::sqrt(6.5), 0.03 * 4.0)));
+  };
+  EXPECT_NEAR(misfit({100, 1000}), expected(0.1 + 0.5), 0.04);
+  EXPECT_NEAR(misfit({300, 1000}), expected(0.3 + 0.5), 0.04);
+  EXPECT_NEAR(misfit({100, 4000}), expected(0.1 + 2.0), 0.04);
+  EXPECT_NEAR(misfit({0, 0}), expected(0.0), 0.06);
+  EXPECT_GT(misfit({0, 0}) - misfit({100, 4000}), 0.2);
 }
 
 TEST(ExplainedShare, ShowsTheNearestSurfaceOnly) {
@@ -200,7 +224,9 @@ TEST(ExplainedShare, StaysWithinItsRangeForAnyContent) {
       matrix(i) = Fixed::from_raw(run % 2 == 0 ? Fixed::kLargestRaw : -Fixed::kLargestRaw);
     const auto scratch = std::make_unique<ExplainedShareScratch>();
     for (const DepthProjection& projection : {DepthProjection{100, 100'000}, DepthProjection{100'000, 100}}) {
-      const ExplainedShare found = explained_share(image, projection, matrix, surface.model(), *scratch);
+      const RangeNoise noise = run % 5 == 0 ? RangeNoise{0, 0} : RangeNoise{0xFFFF, 0xFFFF};
+      const ExplainedShare found =
+          explained_share(image, projection, noise, matrix, surface.model(), *scratch);
       EXPECT_LE(found.unexplained, kWholeShare);
       EXPECT_LE(found.missing, kWholeShare);
       EXPECT_LE(found.depth_misfit, kWholeShare);
@@ -218,7 +244,7 @@ TEST(ExplainedShare, DoesNotReadTheScratchBeforeItIsWritten) {
   for (const int fill : {0x00, 0x5A, 0xFF}) {
     const auto scratch = std::make_unique<ExplainedShareScratch>();
     std::memset(scratch.get(), fill, sizeof *scratch);
-    found.push_back(explained_share(image, kProjection, identity, surface.model(), *scratch));
+    found.push_back(explained_share(image, kProjection, RangeNoise{}, identity, surface.model(), *scratch));
   }
   for (const ExplainedShare& one : found) {
     EXPECT_EQ(one.unexplained, found[0].unexplained);

@@ -115,6 +115,13 @@ TEST(Calibration, EffectsChangeTheImageAndOneThatHidesTheTargetIsRefused) {
         .crc32;
   };
   EXPECT_NE(crc32_with("dropout=0.6"), crc32_with("noise=1"));
+  const auto noise_with = [&](const char* effect) {
+    (void)crc32_with(effect);
+    return read_fixed_point_header(folder.path("near.tsm")).noise;
+  };
+  EXPECT_EQ(noise_with(""), (gnc::RangeNoise{100, 1000})) << "the paper's sensor";
+  EXPECT_EQ(noise_with("noise=3"), (gnc::RangeNoise{300, 3000}))
+      << "by which the flight program judges depths";
   EXPECT_NE(crc32_with("panel_turn=30"), crc32_with("noise=1")) << "the body";
   try {
     crc32_with("lobe=1");
