@@ -79,21 +79,21 @@ void print_report(const QuantizationReport& report, const std::string& path) {
   fmt::print("  {}, {} bytes, CRC-32 {:08x}\n\n", full_path(path), report.size_bytes, report.crc32);
 }
 
-// The surface of another body, or in another unit, would refuse every attitude, or none.
-void require_size_of_network(const TriangleMesh& mesh, const gnc::DepthProjection& network) {
+// With the surface of another body, or of one in another unit, the check of an attitude refuses every one or
+// none. Empty if the mesh has the size of the one that the network was trained for.
+std::string fault_of_size(const TriangleMesh& mesh, const gnc::DepthProjection& network) {
   const gnc::DepthProjection found = projection_of(mesh);
-  const auto differs = [](std::uint32_t one, std::uint32_t other) {
-    return std::abs(static_cast<double>(one) - other) > kSizeTolerance * other;
+  const auto agree = [](std::uint32_t one, std::uint32_t other) {
+    return std::abs(static_cast<double>(one) - other) <= kSizeTolerance * other;
   };
-  if (!differs(found.target_radius_mm, network.target_radius_mm) &&
-      !differs(found.swath_mm, network.swath_mm))
-    return;
-  throw std::invalid_argument(
-      fmt::format("mesh {} has a radius of {:.3f} m and a swath of {:.3f} m, and the network was trained for "
-                  "{:.3f} m and "
-                  "{:.3f} m; give the mesh of its target, in metres (--mesh-scale)",
-                  mesh.name, 1e-3 * found.target_radius_mm, 1e-3 * found.swath_mm,
-                  1e-3 * network.target_radius_mm, 1e-3 * network.swath_mm));
+  if (agree(found.target_radius_mm, network.target_radius_mm) && agree(found.swath_mm, network.swath_mm))
+    return {};
+  return fmt::format(
+      "mesh {} has a radius of {:.3f} m and a swath of {:.3f} m, "
+      "and the network was trained for {:.3f} m and {:.3f} m; give the mesh of its target, in metres "
+      "(--mesh-scale)",
+      mesh.name, 1e-3 * found.target_radius_mm, 1e-3 * found.swath_mm, 1e-3 * network.target_radius_mm,
+      1e-3 * network.swath_mm);
 }
 
 // Writes the image `--model` with the surface of the mesh.
@@ -103,7 +103,8 @@ void replace_surface(const QuantizeArguments& arguments) {
   const SensorFiles sensor = require_usable_files(arguments);
   const gnc::ModelHeader header = read_fixed_point_header(arguments.model);
   const TriangleMesh mesh = load_meshes(arguments.meshes, header.target.data()).front();
-  require_size_of_network(mesh, header.projection);
+  const std::string fault = fault_of_size(mesh, header.projection);
+  if (!fault.empty()) throw std::invalid_argument(fault);
   const std::vector<std::uint8_t> surface = surface_section(mesh, 1e-3 * header.projection.target_radius_mm);
   const std::uint32_t crc32 = write_with_surface(arguments.model, surface, arguments.out);
   copy_sensor_file(sensor);
@@ -124,12 +125,13 @@ void quantize_file(QuantizeArguments arguments) {
   std::vector<std::string> notes{check_sensor_of_model(arguments.model, arguments.sensor.sensor)};
   ScenarioSettings seen = seen_by(arguments.sensor, 1e-3 * model->header.projection.swath_mm, notes);
   seen.effects = arguments.effects;
+  const std::vector<TriangleMesh> meshes = load_meshes(arguments.meshes, model->header.target.data());
+  notes.push_back(fault_of_size(meshes.front(), model->header.projection));
   for (const std::string& note : notes) {
     if (!note.empty()) fmt::print(stderr, "  note: {}\n", note);
   }
   print_sensor(arguments.sensor.sensor, seen.ranges);
-  quantize_and_report(*model, load_meshes(arguments.meshes, model->header.target.data()), arguments.sequences,
-                      arguments.out, seen);
+  quantize_and_report(*model, meshes, arguments.sequences, arguments.out, seen);
   copy_sensor_file(sensor);
 }
 

@@ -514,8 +514,8 @@ std::string image_of_size(const Workplace& here, const gnc::DepthProjection& pro
 // Verifies TS-SIL-320.
 TEST(Quantize, KeepsTheSensorOfAnImageWhoseSurfaceItReplaces) {
   const Workplace here;
-  const gnc::DepthProjection fitting = projection_of(target_by_name("near_shoemaker"));
-  const std::string surface = "quantize --surface-only --model " + image_of_size(here, fitting) + " --out ";
+  const std::string surface = "quantize --surface-only --mesh " + own_mesh(here) + " --model " +
+                              image_of_size(here, {4200, 2000}) + " --out ";
   const SensorDescription scan = sensor_named("scan_128");
   write_sensor_file(here.path("stale.tsm"), scan);
   const Outcome stale = here.run(surface + "stale.tsm");
@@ -551,6 +551,17 @@ TEST(Quantize, RefusesASurfaceOfAnotherSizeWithBothSizes) {
   other = fitting;
   other.target_radius_mm = changed(fitting.target_radius_mm, 0.97);
   EXPECT_NE(errors().find("has a radius of"), std::string::npos) << errors();
+}
+
+TEST(Quantize, NotesThatTheMeshOfTheSurfaceHasAnotherSize) {
+  const Workplace here;
+  const Outcome outcome =
+      here.run("quantize --effect panel_turn=10 --out x.tsm --mesh " + own_mesh(here) +
+               " --model " TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.float32.tsm");
+  EXPECT_NE(
+      outcome.errors.find("mine.obj has a radius of 2.000 m and a swath of 4.200 m, and the network was "),
+      std::string::npos)
+      << outcome.errors;
 }
 
 TEST(Quantize, RefusesOptionsOfTheCalibrationWithASurface) {
