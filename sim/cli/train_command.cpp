@@ -28,6 +28,7 @@ struct TrainOptions {
   MeshArguments meshes;
   std::vector<std::string> conditions = {"all"};
   Effects effects;
+  std::vector<Effects> effect_sets;  // in turn
   SensorArguments sensor;
   std::string device = "auto";
   std::string precision = "auto";
@@ -84,10 +85,15 @@ std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurren
 // The reference, and the image that flies.
 void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes,
                   const TrainingTargets& targets, const std::unique_ptr<Float32Model>& model) {
-  const ScenarioSettings seen = scenario_of(targets, Condition::kNominal, 1);
+  const Effects& effects = targets.effect_sets.front().effects;
+  const ScenarioSettings seen = scenario_of(targets, Condition::kNominal, effects, 1);
   write_model_file<gnc::Float32>(stem + ".float32.tsm", model->header, model->weights);
   std::printf("Reference in float32: %s.float32.tsm\nFixed point, as it flies:\n", stem.c_str());
   quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm", seen);
+}
+
+std::vector<Effects> effect_sets_of(const TrainOptions& options) {
+  return options.effect_sets.empty() ? std::vector<Effects>{options.effects} : options.effect_sets;
 }
 
 TrainingTargets targets_of(const TrainOptions& options, const std::vector<TriangleMesh>& meshes) {
@@ -98,7 +104,31 @@ TrainingTargets targets_of(const TrainOptions& options, const std::vector<Triang
     return limits;
   };
   return make_training_targets(meshes, training_conditions(options.conditions), inertia_of(options),
-                               options.effects, options.target, options.sensor.sensor, ranges);
+                               effect_sets_of(options), options.target, options.sensor.sensor, ranges);
+}
+
+// "none", or effects as after --effect.
+Effects effect_set_from(const std::string& text) {
+  if (text == "none") return {};
+  try {
+    return effects_from(CLI::detail::split(text, ','));
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--effect-set", error.what());
+  }
+}
+
+void add_effect_set_option(CLI::App& command, std::vector<Effects>& effect_sets) {
+  const auto take = [&effect_sets](const std::vector<std::string>& texts) {
+    effect_sets.clear();
+    for (const std::string& text : texts) effect_sets.push_back(effect_set_from(text));
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--effect-set", take,
+          "effects that act together, or none; give it once per set: frames and sequences take turns "
+          "among the sets")
+      ->excludes(command.get_option("--effect"))
+      ->type_name("none|NAME=STRENGTH,...");
 }
 
 // Of the sensor's file in the folder it is enough that it is the one of --sensor: it is then left as it is.
@@ -117,7 +147,7 @@ void require_usable_folder(const TrainOptions& options, const std::string& stem)
 }
 
 int train(TrainOptions& options) {
-  require_the_target(options.effects);
+  for (const Effects& effects : effect_sets_of(options)) require_the_target(effects);
   require_a_cnn(options.settings);
   choose_device(options);
   // Beside the checkpoints and the images that follow.
@@ -180,6 +210,7 @@ void add_train_command(CLI::App& app) {
       ->capture_default_str();
   add_sensor_options(*command, options->sensor);
   add_effect_option(*command, options->effects);
+  add_effect_set_option(*command, options->effect_sets);
   command
       ->add_option("--start-from", settings.start_from,
                    "model image whose CNN to start from; that of another target saves most of the time")

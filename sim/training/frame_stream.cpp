@@ -26,9 +26,12 @@ struct Workspace {
 // Renders frame `index` of a seed. False if the sensor sees too little of the target.
 bool try_render(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t index, Workspace& work,
                 FrameTruth& truth) {
-  const auto& lidar = *targets.lidars[index % targets.lidars.size()];
-  const Condition condition = targets.conditions[(index / targets.lidars.size()) % targets.conditions.size()];
-  const Sequence sequence = make_sequence(scenario_of(targets, condition, 1), seed, index);
+  const std::uint64_t meshes = targets.effect_sets.front().lidars.size();
+  const std::uint64_t conditions = targets.conditions.size();
+  const EffectSet& seen = targets.effect_sets[index / (meshes * conditions) % targets.effect_sets.size()];
+  const FlashLidar& lidar = *seen.lidars[index % meshes];
+  const Condition condition = targets.conditions[index / meshes % conditions];
+  const Sequence sequence = make_sequence(scenario_of(targets, condition, seen.effects, 1), seed, index);
   truth = sequence.frames.front();
   FrameRenderer(lidar, 1e-3 * targets.projection.swath_mm, noise_seed_per_sequence)
       .render(sequence, 0, work.frame);
@@ -44,22 +47,38 @@ FrameTruth render(const TrainingTargets& targets, std::uint64_t seed, std::uint6
   return truth;
 }
 
-// Requires that at least half of a few dozen frames of every mesh can be used.
-void require_visible(const TrainingTargets& targets, const std::vector<TriangleMesh>& meshes) {
+// The index of try `i` with a set of effects and a mesh: the conditions take turns.
+std::uint64_t index_of_try(const TrainingTargets& targets, std::uint64_t set, std::uint64_t mesh,
+                           std::uint64_t i) {
+  const std::uint64_t conditions = targets.conditions.size();
+  const std::uint64_t turn = i / conditions * targets.effect_sets.size() + set;
+  return (turn * conditions + i % conditions) * targets.effect_sets.front().lidars.size() + mesh;
+}
+
+// Requires that at least half of a few dozen frames of a mesh can be used with a set of effects.
+void require_visible(const TrainingTargets& targets, std::uint64_t set, std::uint64_t mesh,
+                     const std::string& name, Workspace& work) {
   constexpr std::uint64_t kTries = 32;
-  const auto work = std::make_unique<Workspace>();
-  for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh) {
-    std::uint64_t seen = 0;
-    FrameTruth truth;
-    for (std::uint64_t i = 0; i < kTries; ++i)
-      seen += try_render(targets, 1, i * meshes.size() + mesh, *work, truth);
-    if (2 * seen < kTries) {
-      throw std::runtime_error(meshes[mesh].name + ": the sensor sees too little of it (fewer than " +
-                               std::to_string(gnc::kMinReturns) + " returns) in " +
-                               std::to_string(kTries - seen) + " of " + std::to_string(kTries) +
-                               " frames; is the surface complete and in metres?");
-    }
-  }
+  std::uint64_t seen = 0;
+  FrameTruth truth;
+  for (std::uint64_t i = 0; i < kTries; ++i)
+    seen += try_render(targets, 1, index_of_try(targets, set, mesh, i), work, truth);
+  if (2 * seen >= kTries) return;
+  const std::string effects = to_string(targets.effect_sets[set].effects);
+  throw std::runtime_error(
+      name + (effects.empty() ? "" : " with " + effects) + ": the sensor sees too little of it (fewer than " +
+      std::to_string(gnc::kMinReturns) + " returns) in " + std::to_string(kTries - seen) + " of " +
+      std::to_string(kTries) + " frames; " +
+      (effects.empty() ? "is the surface complete and in metres?"
+                       : "is the surface complete and in metres, or an effect too strong?"));
+}
+
+EffectSet effect_set(const Effects& effects, const std::string& target,
+                     const std::vector<TriangleMesh>& meshes) {
+  EffectSet set{effects, {}};
+  for (const TriangleMesh& mesh : meshes)
+    set.lidars.push_back(std::make_unique<FlashLidar>(observed_bodies(effects, target, mesh)));
+  return set;
 }
 
 std::uint32_t crc32_of(const std::vector<TriangleMesh>& meshes) {
@@ -95,8 +114,9 @@ torch::Tensor rotation_tensor(const FrameTruth& truth, const Eigen::Matrix3f& r_
 
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,
-                                      const Eigen::Matrix3d& inertia_kg_m2, const Effects& effects,
-                                      const std::string& target, const SensorDescription& sensor,
+                                      const Eigen::Matrix3d& inertia_kg_m2,
+                                      const std::vector<Effects>& effect_sets, const std::string& target,
+                                      const SensorDescription& sensor,
                                       const std::function<RangeLimits(double)>& ranges_of) {
   TrainingTargets targets;
   targets.inertia_kg_m2 = inertia_kg_m2;
@@ -104,10 +124,8 @@ TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
     throw std::invalid_argument("the target's inertia is not symmetric and positive definite");
   }
   targets.conditions = conditions;
-  targets.effects = effects;
   targets.sensor = sensor;
   for (const TriangleMesh& mesh : meshes) {
-    targets.lidars.push_back(std::make_unique<FlashLidar>(observed_bodies(effects, target, mesh)));
     const gnc::DepthProjection of_mesh = projection_of(mesh);
     targets.projection.swath_mm = std::max(targets.projection.swath_mm, of_mesh.swath_mm);
     targets.projection.target_radius_mm =
@@ -115,21 +133,31 @@ TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
   }
   if (ranges_of) targets.ranges = ranges_of(1e-3 * targets.projection.swath_mm);
   targets.meshes_crc32 = crc32_of(meshes);
-  require_visible(targets, meshes);
+  for (const Effects& effects : effect_sets)
+    targets.effect_sets.push_back(effect_set(effects, target, meshes));
+  if (effect_sets.empty()) targets.effect_sets.push_back(effect_set({}, target, meshes));
+  const auto work = std::make_unique<Workspace>();
+  for (std::size_t set = 0; set < targets.effect_sets.size(); ++set) {
+    for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh)
+      require_visible(targets, set, mesh, meshes[mesh].name, *work);
+  }
   return targets;
 }
 
 // The paper's sensor and ranges add nothing, so that checkpoints from before other ones existed stay valid.
 std::uint64_t view_hash(const TrainingTargets& targets) {
-  std::uint64_t hash = conditions_hash(targets.conditions, targets.effects);
+  std::vector<Effects> effect_sets;
+  for (const EffectSet& set : targets.effect_sets) effect_sets.push_back(set.effects);
+  std::uint64_t hash = conditions_hash(targets.conditions, effect_sets);
   if (!targets.sensor.is_the_papers()) hash = mix(hash, crc32_of(targets.sensor));
   if (targets.ranges.are_the_papers()) return hash;
   return mix(mix(hash, bits_of(targets.ranges.nearest_m)), bits_of(targets.ranges.farthest_m));
 }
 
-ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, int frames) {
+ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, const Effects& effects,
+                             int frames) {
   ScenarioSettings scenario{condition, frames};
-  scenario.effects = targets.effects;
+  scenario.effects = effects;
   scenario.sensor = targets.sensor.settings;
   scenario.ranges = targets.ranges;
   scenario.disturbances.period_s = targets.sensor.period_s;

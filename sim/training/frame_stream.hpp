@@ -23,40 +23,48 @@
 
 namespace tumblesight::sim {
 
+// A set of effects that act together, and the surfaces that are seen with them.
+struct EffectSet {
+  Effects effects{};
+  std::vector<std::unique_ptr<FlashLidar>> lidars;  // one per mesh
+};
+
 // The surfaces of the target that one network is trained for, and how it sees them.
 struct TrainingTargets {
-  std::vector<std::unique_ptr<FlashLidar>> lidars;  // one per mesh
-  gnc::DepthProjection projection;                  // fits all meshes
-  std::uint32_t meshes_crc32 = 0;                   // identifies the surfaces
-  std::vector<Condition> conditions;                // drawn in turn; may contain one more than once
-  Effects effects{};                                // in every frame
-  SensorDescription sensor{};                       // that sees them
-  RangeLimits ranges{};                             // at which it sees them
+  std::vector<EffectSet> effect_sets;  // drawn in turn; at least one
+  gnc::DepthProjection projection;     // fits all meshes
+  std::uint32_t meshes_crc32 = 0;      // identifies the surfaces
+  std::vector<Condition> conditions;   // drawn in turn; may contain one more than once
+  SensorDescription sensor{};          // that sees them
+  RangeLimits ranges{};                // at which it sees them
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF
   gnc::Inertia<float> inertia;                                  // the same, as the flight code takes it
 };
 
 // Throws std::runtime_error that names a mesh of which the sensor sees too little in most frames, and
 // std::invalid_argument for an inertia that is not symmetric and positive definite, or as observed_bodies()
-// does. `effects` change what the sensor sees, not the projection. `target`: key, for the effects on the
-// body. `ranges_of`: the ranges for a swath in metres; none: the paper's.
+// does. `effect_sets` take turns, none: no effects. They change what the sensor sees, not the projection.
+// `target`: key, for the effects on the body. `ranges_of`: the ranges for a swath in metres; none: the
+// paper's.
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,
                                       const Eigen::Matrix3d& inertia_kg_m2 = Eigen::Matrix3d::Identity(),
-                                      const Effects& effects = {}, const std::string& target = {},
-                                      const SensorDescription& sensor = {},
+                                      const std::vector<Effects>& effect_sets = {},
+                                      const std::string& target = {}, const SensorDescription& sensor = {},
                                       const std::function<RangeLimits(double)>& ranges_of = {});
 // Hash of conditions, effects, sensor and ranges, for a checkpoint's fingerprint.
 std::uint64_t view_hash(const TrainingTargets& targets);
-// A scenario of so many frames, as the targets are seen.
-ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, int frames);
+// A scenario of so many frames, as the targets are seen with the effects.
+ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, const Effects& effects,
+                             int frames);
 
 struct FrameBatch {
   torch::Tensor images;      // [B, 1, 100, 100], depth 0..1
   torch::Tensor r_view_trf;  // [B, 3, 3], attitude in the image's view frame
 };
 
-// An endless supply of batches, determined by the seed. Meshes and conditions are drawn in turn. Each
+// An endless supply of batches, determined by the seed. Meshes, conditions and sets of effects are drawn in
+// turn, the meshes fastest. Each
 // rendered group of frames gives four batches, one for each quarter turn about the view axis: the image is
 // square, so that these are exact new views at no rendering cost.
 class FrameStream {

@@ -38,10 +38,20 @@ Eigen::Matrix3d random_inertia(Random random) {
   return 0.5 * (inertia + inertia.transpose());
 }
 
+// Meshes, conditions, laws of the rate and sets of effects take turns, the meshes fastest.
+std::uint64_t meshes_of(const TrainingTargets& targets) {
+  return targets.effect_sets.front().lidars.size();
+}
+
+const EffectSet& effect_set_of(const TrainingTargets& targets, std::uint64_t number) {
+  const std::uint64_t turn = number / (meshes_of(targets) * targets.conditions.size() * 2);
+  return targets.effect_sets[turn % targets.effect_sets.size()];
+}
+
 ScenarioSettings scenario_of(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t number) {
-  const std::uint64_t turn = number / targets.lidars.size();
-  ScenarioSettings settings =
-      scenario_of(targets, targets.conditions[turn % targets.conditions.size()], kFrames);
+  const std::uint64_t turn = number / meshes_of(targets);
+  ScenarioSettings settings = scenario_of(targets, targets.conditions[turn % targets.conditions.size()],
+                                          effect_set_of(targets, number).effects, kFrames);
   settings.rate_law = (turn / targets.conditions.size()) % 2 == 0 ? RateLaw::kComponents : RateLaw::kNorm;
   Random random(mix(mix(seed, number), 4));
   settings.inertia_kg_m2 = random.uniform() < 0.5 ? targets.inertia_kg_m2 : random_inertia(random);
@@ -71,7 +81,7 @@ void put_frame(const gnc::Network<gnc::Float32>& network, const gnc::Hypotheses<
 bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t index, Workspace& work,
              FeatureSet& all) {
   const auto number = static_cast<std::uint64_t>(index);
-  const FrameRenderer renderer(*targets.lidars[number % targets.lidars.size()],
+  const FrameRenderer renderer(*effect_set_of(targets, number).lidars[number % meshes_of(targets)],
                                1e-3 * targets.projection.swath_mm);
   const Sequence sequence = make_sequence(scenario_of(targets, seed, number), seed, number);
   for (int k = 0; k < kFrames; ++k) {

@@ -15,7 +15,8 @@ std::vector<std::string> training_condition_words();
 // The conditions of the words, one after the other: "all" is all_training_conditions(), "paper" is
 // paper_training_conditions(). Throws std::invalid_argument for an unknown word.
 std::vector<Condition> training_conditions(const std::vector<std::string>& words);
-// Hash of the conditions and their order, and of the effects, for a checkpoint's fingerprint.
-std::uint64_t conditions_hash(const std::vector<Condition>& conditions, const Effects& effects = {});
+// Hash of the conditions and of the sets of effects, each in its order, for a checkpoint's fingerprint.
+std::uint64_t conditions_hash(const std::vector<Condition>& conditions,
+                              const std::vector<Effects>& effect_sets = {});
 
 }  // namespace tumblesight::sim

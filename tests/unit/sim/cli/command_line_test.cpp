@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/sensor_arguments.hpp"
@@ -675,6 +678,21 @@ TEST(Train, RefusesAFileAsItsFolder) {
   const Outcome outcome = here.run("train --out " + here.model());
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.errors.find("model.tsm: is a file; give a folder"), std::string::npos) << outcome.errors;
+}
+
+TEST(Train, RefusesSetsOfEffectsThatAreWrong) {
+  const Workplace here;
+  if (here.run("--help").output.find("train") == std::string::npos) GTEST_SKIP() << "built without training";
+  for (const auto& [arguments, message] : std::vector<std::pair<std::string, std::string>>{
+           {"--effect-set none --effect-set fog=1", "--effect-set: effect 'fog' is unknown"},
+           {"--effect-set noise=5,noise=4", "--effect-set: effect noise is given twice"},
+           {"--effect-set none,noise=5", "--effect-set: effect 'none' is unknown"},
+           {"--effect-set none --effect-set sphere=1", "wrong_object and sphere are for tests only"},
+           {"--effect noise=5 --effect-set none", "--effect excludes --effect-set"}}) {
+    const Outcome outcome = here.run("train --out out " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_NE(outcome.errors.find(message), std::string::npos) << outcome.errors;
+  }
 }
 
 // Verifies TS-SIL-320.

@@ -5,8 +5,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
+#include "sim/training/export_model.hpp"
+#include "sim/training/sequence_features.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
@@ -90,11 +94,60 @@ TEST(FrameStream, FramesHaveTheEffects) {
   const TriangleMesh mesh = make_near_shoemaker();
   const TrainingTargets plain = make_training_targets({mesh}, {Condition::kNominal});
   const TrainingTargets thin = make_training_targets(
-      {mesh}, {Condition::kNominal}, Eigen::Matrix3d::Identity(), effects_from({"dropout=0.6"}));
+      {mesh}, {Condition::kNominal}, Eigen::Matrix3d::Identity(), {effects_from({"dropout=0.6"})});
   EXPECT_EQ(thin.projection.swath_mm, plain.projection.swath_mm);
   const auto filled = [](const FrameBatch& batch) { return (batch.images > 0.0).sum().item<std::int64_t>(); };
   EXPECT_LT(filled(render_frames(thin, 5, 0, 4)), filled(render_frames(plain, 5, 0, 4)));
   EXPECT_GT(filled(render_frames(thin, 5, 0, 4)), 0);
+}
+
+TEST(FrameStream, SetsOfEffectsTakeTurnsAfterTheConditions) {
+  const TriangleMesh mesh = make_near_shoemaker();
+  const std::vector<Condition> conditions{Condition::kNominal, Condition::kOccluded};
+  const auto with = [&](const std::vector<Effects>& sets) {
+    return render_frames(make_training_targets({mesh}, conditions, Eigen::Matrix3d::Identity(), sets), 5, 0,
+                         12)
+        .images;
+  };
+  const Effects thin = effects_from({"dropout=0.6"});
+  const Effects turned_panels = effects_from({"panel_turn=60"});
+  const torch::Tensor none = with({}), all_thin = with({thin}), all_turned = with({turned_panels}),
+                      mixed = with({{}, thin, turned_panels});
+  for (int i = 0; i < 12; ++i) {
+    const int set = i / 2 % 3;
+    EXPECT_EQ(torch::equal(mixed[i], none[i]), set == 0) << i;
+    EXPECT_EQ(torch::equal(mixed[i], all_thin[i]), set == 1) << i;
+    EXPECT_EQ(torch::equal(mixed[i], all_turned[i]), set == 2) << i;
+  }
+}
+
+TEST(FrameStream, ASetOfEffectsThatHidesTheTargetIsRefusedByItsName) {
+  try {
+    make_training_targets({make_near_shoemaker()}, paper_training_conditions(), Eigen::Matrix3d::Identity(),
+                          {{}, effects_from({"dead_pixels=0.9", "dropout=0.99"})});
+    FAIL() << "accepted effects with which nothing is seen";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find(" with dropout=0.99,dead_pixels=0.9: "), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(SequenceFeatures, SetsOfEffectsTakeTurnsAfterConditionsAndLawsOfTheRate) {
+  const auto weights = std::make_unique<gnc::NetworkWeights<gnc::Float32>>();
+  torch::manual_seed(5);
+  export_weights(Cnn(), Recurrent(), *weights);
+  const auto with = [&](const std::vector<Effects>& sets) {
+    const TrainingTargets targets = make_training_targets({make_near_shoemaker()}, {Condition::kNominal},
+                                                          Eigen::Matrix3d::Identity(), sets);
+    SequenceFeatures supply(targets, *weights, 5, 8, 2);
+    return supply.first(8).hypotheses.features;
+  };
+  const Effects thin = effects_from({"dropout=0.6"});
+  const torch::Tensor none = with({}), all_thin = with({thin}), mixed = with({{}, thin});
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(torch::equal(mixed[i], none[i]), i / 2 % 2 == 0) << i;
+    EXPECT_EQ(torch::equal(mixed[i], all_thin[i]), i / 2 % 2 == 1) << i;
+  }
 }
 
 // Verifies TS-SIL-320, TS-SIL-330.
@@ -125,9 +178,14 @@ TEST(FrameStream, ListsOfConditionsHaveDifferentHashes) {
   EXPECT_NE(conditions_hash(paper_training_conditions()), conditions_hash(swapped));
   EXPECT_NE(conditions_hash(nominal), conditions_hash(twice));
   EXPECT_NE(conditions_hash(paper_training_conditions()), conditions_hash(all_training_conditions()));
-  EXPECT_NE(conditions_hash(nominal, effects_from({"noise=5"})), conditions_hash(nominal));
-  EXPECT_NE(conditions_hash(nominal, effects_from({"noise=5"})),
-            conditions_hash(nominal, effects_from({"noise=4"})));
+  EXPECT_NE(conditions_hash(nominal, {effects_from({"noise=5"})}), conditions_hash(nominal));
+  EXPECT_NE(conditions_hash(nominal, {effects_from({"noise=5"})}),
+            conditions_hash(nominal, {effects_from({"noise=4"})}));
+  const Effects noisy = effects_from({"noise=5"});
+  EXPECT_EQ(conditions_hash(nominal, {{}}), conditions_hash(nominal)) << "one set without effects is none";
+  EXPECT_NE(conditions_hash(nominal, {{}, noisy}), conditions_hash(nominal, {noisy}));
+  EXPECT_NE(conditions_hash(nominal, {{}, noisy}), conditions_hash(nominal, {noisy, {}}));
+  EXPECT_NE(conditions_hash(nominal, {{}, {}, noisy}), conditions_hash(nominal, {{}, noisy}));
   const std::vector<Condition> all = all_training_conditions();
   EXPECT_EQ(std::count(all.begin(), all.end(), Condition::kStress), 0) << "the stress test is for tests only";
 }
