@@ -15,10 +15,15 @@ static_assert(kModelImageSize<FixedPoint> <= 1'200'000, "the model image exceeds
 
 namespace {
 
+// Not inlined, to keep the code small.
+[[gnu::noinline]] Fixed trace_of_product(const Matrix3<Fixed>& a, const Matrix3<Fixed>& b) {
+  return trace_of_transpose_product<Fixed>(a, b);
+}
+
 // Expected error in microradians; pi if `attitude` is not a rotation, as damaged weights or a damaged state
 // may cause.
 std::uint32_t error_urad(const Matrix3<Fixed>& attitude, Fixed predicted_rad) {
-  const Fixed trace = trace_of_transpose_product<Fixed>(attitude, attitude);
+  const Fixed trace = trace_of_product(attitude, attitude);
   const bool is_rotation = abs(trace - Fixed(3.0)) < Fixed(0.1);
   const std::int64_t scaled = std::int64_t{predicted_rad.raw()} * 1'000'000;
   const std::int64_t urad = (scaled + (1 << (Fixed::kFractionBits - 1))) >> Fixed::kFractionBits;
@@ -80,7 +85,8 @@ Alternative second_of(const Hypotheses<Real>& hypotheses, const Matrix3<Real>& a
   constexpr std::int64_t kMostOdds_ppm = 1'000'000'000;
   const std::int64_t divisor = max<std::int64_t>(same, 1);
   const std::int64_t odds_ppm = min(kMostOdds_ppm, divide(std::int64_t{largest} * 1'000'000, divisor));
-  const Fixed share = Fixed::from_raw(largest) / Fixed::from_raw(max(same + largest, 1));
+  const Fixed share =
+      Fixed::from_raw(divide(std::int64_t{largest} << Fixed::kFractionBits, max(same + largest, 1)));
   Matrix3<Fixed> r_lrf_trf;
   for (int k = 0; k < 9; ++k) r_lrf_trf(k) = Fixed::from_raw(second[static_cast<std::size_t>(k)]);
   const QuaternionQ30 q_lrf_trf = quaternion_from_rotation(r_lrf_trf);
@@ -112,15 +118,17 @@ void add_to(Crc32& crc, const std::int16_t* values, std::size_t count) {
 }  // namespace
 
 // Fitted to the parametric meshes of three targets under the paper's conditions and thirteen effects.
+// The sum in 64 bits, since Fixed would limit each of its terms.
 Fixed expected_error_rad(const ErrorEvidence& evidence, Fixed network_error_rad) {
   constexpr auto kWrongError_rad = constant<Fixed>(1.84);  // mean of wrong attitudes: 105 degrees
-  constexpr auto kSquareOf30Degrees = constant<Fixed>(0.26794919);
-  constexpr auto kPerSquare = constant<Fixed>(1.6 / 0.26794919);
-  const Fixed innovation = clamp(evidence.innovation_squared, Fixed{}, kSquareOf30Degrees);
-  const Fixed misfit = Fixed::from_raw(static_cast<std::int32_t>(evidence.misfit) << 8);  // from Q0.16
-  const Fixed wrong =
-      sigmoid(constant<Fixed>(0.82) * evidence.network_logit + constant<Fixed>(13.0) * misfit +
-              kPerSquare * innovation + constant<Fixed>(2.3) * evidence.second_share - constant<Fixed>(5.5));
+  constexpr double kSquareOf30Degrees = 0.26794919;
+  constexpr auto weight = [](double value) { return std::int64_t{constant<Fixed>(value).raw()}; };
+  const Fixed innovation = clamp(evidence.innovation_squared, Fixed{}, constant<Fixed>(kSquareOf30Degrees));
+  const std::int64_t sum = weight(0.82) * evidence.network_logit.raw() +
+                           weight(13.0) * (static_cast<std::int64_t>(evidence.misfit) << 8) +  // from Q0.16
+                           weight(1.6 / kSquareOf30Degrees) * innovation.raw() +
+                           weight(2.3) * evidence.second_share.raw();
+  const Fixed wrong = sigmoid(Fixed::from_raw((sum >> Fixed::kFractionBits) - weight(5.5)));
   return network_error_rad + wrong * (kWrongError_rad - network_error_rad);
 }
 
@@ -207,8 +215,7 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
                                        network_.explained_share_scratch());
 
   const Fixed innovation_squared =
-      constant<Fixed>(3.0) -
-      trace_of_transpose_product<Fixed>(converted<Fixed>(prediction.r_lrf_trf()), attitude);
+      constant<Fixed>(3.0) - trace_of_product(converted<Fixed>(prediction.r_lrf_trf()), attitude);
   const Fixed network_error_rad = converted<Fixed>(tracked.predicted_error_rad);
   const Fixed error_rad =
       expected_error_rad({converted<Fixed>(head[2 * shape::kCandidates + 1]), misfit_of(estimate.explained),

@@ -110,9 +110,8 @@ void reduce(const DepthImage& image, Scratch::Cells& seen) {
         count += static_cast<std::uint32_t>(filled & 1);
       }
       const auto mean = static_cast<std::int32_t>((std::int64_t{sum} * kInverse[count]) >> 16);
-      const std::int32_t filled = sign_mask(-static_cast<std::int32_t>(count));
-      seen[row * kSide + column] =
-          static_cast<std::int16_t>(kEmpty ^ ((kEmpty ^ clamp_small(mean, -kEmpty, kEmpty - 1)) & filled));
+      seen[row * kSide + column] = static_cast<std::int16_t>(
+          select(is_less<std::uint32_t>(0, count), clamp_small(mean, -kEmpty, kEmpty - 1), kEmpty));
     }
   }
 }

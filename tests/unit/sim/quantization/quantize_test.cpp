@@ -114,15 +114,13 @@ TEST(Calibration, EffectsChangeTheImageAndOneThatHidesTheTargetIsRefused) {
                with_effect(effect))
         .crc32;
   };
-  EXPECT_NE(crc32_with("dropout=0.6"), crc32_with("noise=1"));
-  const auto noise_with = [&](const char* effect) {
-    (void)crc32_with(effect);
-    return read_fixed_point_header(folder.path("near.tsm")).noise;
-  };
-  EXPECT_EQ(noise_with(""), (gnc::RangeNoise{100, 1000})) << "the paper's sensor";
-  EXPECT_EQ(noise_with("noise=3"), (gnc::RangeNoise{300, 3000}))
-      << "by which the flight program judges depths";
-  EXPECT_NE(crc32_with("panel_turn=30"), crc32_with("noise=1")) << "the body";
+  const auto noise = [&] { return read_fixed_point_header(folder.path("near.tsm")).noise; };
+  const std::uint32_t plain = crc32_with("noise=1");
+  EXPECT_EQ(noise(), (gnc::RangeNoise{100, 1000})) << "the paper's sensor";
+  EXPECT_NE(crc32_with("noise=3"), plain);
+  EXPECT_EQ(noise(), (gnc::RangeNoise{300, 3000})) << "by which the flight program judges depths";
+  EXPECT_NE(crc32_with("dropout=0.6"), plain);
+  EXPECT_NE(crc32_with("panel_turn=30"), plain) << "the body";
   try {
     crc32_with("lobe=1");
     FAIL() << "calibrated without a frame";
