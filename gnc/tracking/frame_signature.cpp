@@ -12,6 +12,13 @@ namespace {
 constexpr std::uint32_t kIsReturn = 0x80;
 constexpr std::size_t kMask = kSignatureSide - 1;
 
+// 0 for a range outside the gate, which is no return.
+std::uint32_t usable(std::uint16_t range_counts) {
+  const std::int32_t range = range_counts;
+  return static_cast<std::uint32_t>(range & ~sign_mask(range - kMinRange_counts) &
+                                    sign_mask(range - kMaxRange_counts - 1));
+}
+
 std::size_t rays_of(const RangeImage& frame) {
   return static_cast<std::size_t>(min<int>(frame.rays, RangeImage::kMaxRays));
 }
@@ -33,7 +40,7 @@ void add_rays(const RangeImage& frame, int first, int end, SignatureStart& start
   const int rays = static_cast<int>(rays_of(frame));
   int row = first / rays, column = first - row * rays;
   for (int ray = first; ray < end; ++ray) {
-    const std::uint32_t range = frame.ranges[static_cast<std::size_t>(ray)];
+    const std::uint32_t range = usable(frame.ranges[static_cast<std::size_t>(ray)]);
     const std::size_t place = static_cast<std::size_t>(row) % kSignatureSide * kSignatureSide +
                               static_cast<std::size_t>(column) % kSignatureSide;
     if (range != 0 && start.cells[place] == 0) {
@@ -59,8 +66,8 @@ FrameSignature signature_of(const RangeImage& frame) {
       const std::size_t left = rays - first;
       const std::size_t columns = left < kSignatureSide ? left : kSignatureSide;
       for (std::size_t i = 0; i < columns / 2; ++i)
-        add_pair(ranges[first + 2 * i] | CellPair{ranges[first + 2 * i + 1]} << 16, cells[i]);
-      if (columns % 2 != 0) add_pair(ranges[rays - 1], cells[columns / 2]);
+        add_pair(usable(ranges[first + 2 * i]) | usable(ranges[first + 2 * i + 1]) << 16, cells[i]);
+      if (columns % 2 != 0) add_pair(usable(ranges[rays - 1]), cells[columns / 2]);
     }
   }
   FrameSignature signature{};
@@ -113,7 +120,7 @@ bool is_repetition(const FrameSignature& a, const FrameSignature& b) {
     returns += is_return;
     equal += is_return & ((difference - 1U) >> 31);
   }
-  return returns > 0 && 4 * equal >= 3 * returns;
+  return returns > 0 && 2 * equal >= returns;
 }
 
 bool is_alike(const FrameSignature& earlier, const SignatureStart& later) {
@@ -124,7 +131,7 @@ bool is_alike(const FrameSignature& earlier, const SignatureStart& later) {
     const auto difference = static_cast<std::uint32_t>(earlier[place] ^ later.cells[place]);
     equal += (difference - 1U) >> 31;
   }
-  return compared > 0 && 4 * equal >= 3 * compared;
+  return compared > 0 && 4 * equal >= compared;
 }
 
 }  // namespace tumblesight::gnc

@@ -2,8 +2,11 @@
 // change. The noise of a working sensor changes almost every range from frame to frame.
 //
 // The rays are folded into 16 x 16 cells: row and column modulo 16. A cell keeps the low bits of the first
-// return among its rays. So a target fills the cells however small it is in the frame, and a range that
-// changes affects at most one cell.
+// return among its rays, from 10 to 500 m. So a target fills the cells however small it is in the frame, and
+// a range that changes affects at most one cell.
+//
+// Limits: sensors with a resolution of 0.5 m or coarser repeat too many low bits. Stuck pixels within the
+// range gate that fill half of the cells before the target does make every frame a repetition.
 #pragma once
 
 #include <array>
@@ -49,12 +52,12 @@ class FrameHistory {
   std::uint32_t next_ = 0;  // the place of the oldest
 };
 
-// Whether at least three quarters of the cells in which one of both frames has a return are equal. Of two
-// different frames of one scene fewer than a half are equal if the noise is at least half a count of the
-// range (4 mm). False if no cell has a return.
+// Whether at least half of the cells in which one of both frames has a return are equal. Of two different
+// frames of one scene fewer are equal if the noise is at least half a count of the range (4 mm); with the
+// paper's noise it is one in twenty-five. False if no cell has a return.
 bool is_repetition(const FrameSignature& a, const FrameSignature& b);
-// Whether at least three quarters of the first kCompared cells of `later` are equal to those of `earlier`.
-// False if no cell has a return.
+// Whether at least a quarter of the first kCompared cells of `later` are equal to those of `earlier`. False
+// if no cell has a return.
 bool is_alike(const FrameSignature& earlier, const SignatureStart& later);
 
 }  // namespace tumblesight::gnc

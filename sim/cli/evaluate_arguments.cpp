@@ -47,7 +47,9 @@ void add_effect_limit_option(CLI::App& command, EvaluateArguments& arguments) {
   std::vector<std::string> names;
   for (const EffectRow& row : effect_table()) {
     const bool shows_target = row.strength != &Effects::wrong_object && row.strength != &Effects::sphere;
-    if (shows_target) names.emplace_back(row.name);
+    // Strengths that depend on the mesh or on the sensor's period have no common end to begin from.
+    const bool has_one_end = row.strength != &Effects::part_missing && row.strength != &Effects::scan_time;
+    if (shows_target && has_one_end) names.emplace_back(row.name);
   }
   command
       .add_option("--effect-limit", arguments.effect_limit,

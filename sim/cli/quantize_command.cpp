@@ -42,12 +42,16 @@ struct SensorFiles {
   std::string written;
 };
 
-// Throws std::runtime_error if the description of another image would stand beside the new one.
+// Throws std::runtime_error if the description cannot be read, or if that of another image would stand beside
+// the new one.
 SensorFiles sensor_files(const QuantizeArguments& arguments) {
   const std::string read = sensor_file_of(arguments.model), beside = sensor_file_of(arguments.out);
   std::error_code error;
   if (is_same_file(read, beside)) return {read, {}};
-  if (std::filesystem::exists(read, error)) return {read, beside};
+  if (std::filesystem::exists(read, error)) {
+    (void)sensor_named(read);
+    return {read, beside};
+  }
   if (!std::filesystem::exists(beside, error)) return {};
   throw std::runtime_error(fmt::format(
       "'{}' says for which sensor an earlier image of this name was trained, and '{}' has no such "

@@ -39,6 +39,7 @@ std::string truth_path(const RecordArguments& arguments) {
 
 void record(const RecordArguments& arguments) {
   const ScenarioArguments& wanted = arguments.scenario;
+  require_supported_length(wanted);
   require_possible_disturbances(wanted.disturbances, wanted.frames);
   const std::string truth = truth_path(arguments);
   // tumblesight replay would score these frames with the truth of others.
@@ -67,8 +68,9 @@ void record(const RecordArguments& arguments) {
   auto [bytes, rows] = make_recording(renderer, settings, [&](std::uint32_t done) { bar.update(done); });
   bar.finish();
   const SensorDescription& sensor = wanted.sensor.sensor;
+  const bool shows_target = wanted.effects.wrong_object == 0.0 && wanted.effects.sphere == 0.0;
   for (RecordedTruth& row : rows) {
-    row.target = wanted.target;
+    if (shows_target) row.target = wanted.target;
     row.sensor = {sensor.name, crc32_of(sensor)};
   }
   write_file(arguments.out, bytes);

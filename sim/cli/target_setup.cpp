@@ -127,6 +127,7 @@ OptionFiles files_read(const ScenarioArguments& arguments) {
   return {{"--mesh", arguments.mesh == kParametricMesh ? "" : arguments.mesh},
           {"--model", model},
           {"--model (its sensor)", sensor_file_of(model)},
+          {"--model (its float32 image)", model_stem(model) + ".float32.tsm"},
           {"--sensor", arguments.sensor.file}};
 }
 

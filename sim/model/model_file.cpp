@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "gnc/rcnn/model_format.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -26,16 +27,6 @@ std::uint32_t checked_crc32(const std::vector<std::uint8_t>& image, const std::s
                              "' is not written, since it would be refused: " + gnc::to_string(status));
   }
   return header.crc32;
-}
-
-std::uint32_t write_checked(const std::vector<std::uint8_t>& image, std::uint32_t crc32,
-                            const std::string& path) {
-  std::ofstream out(path + ".new", std::ios::binary);
-  out.write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
-  out.close();
-  if (!out) throw std::runtime_error("model image '" + path + "' cannot be written");
-  std::filesystem::rename(path + ".new", path);
-  return crc32;
 }
 
 // Format version 3 of an image in fixed point has one section less and is otherwise the same.
@@ -142,7 +133,9 @@ std::uint32_t write_model_file(const std::string& path, const gnc::ModelHeader& 
   std::vector<std::uint8_t> bytes(gnc::kModelImageSize<N>);
   bytes.resize(gnc::write_model_image<N>(header, weights, bytes.data(), bytes.size(),
                                          surface.empty() ? nullptr : surface.data()));
-  return write_checked(bytes, checked_crc32<N>(bytes, path), path);
+  const std::uint32_t crc32 = checked_crc32<N>(bytes, path);
+  write_file(path, bytes);
+  return crc32;
 }
 template std::uint32_t write_model_file(const std::string&, const gnc::ModelHeader&,
                                         const gnc::NetworkWeights<Float32>&,
@@ -156,7 +149,9 @@ std::uint32_t write_with_surface(const std::string& from, const std::vector<std:
   (void)read_fixed_point_header(from);
   std::vector<std::uint8_t> image = read_model_bytes(from);
   set_surface(image, surface);
-  return write_checked(image, checked_crc32<FixedPoint>(image, path), path);
+  const std::uint32_t crc32 = checked_crc32<FixedPoint>(image, path);
+  write_file(path, image);
+  return crc32;
 }
 
 }  // namespace tumblesight::sim

@@ -2,15 +2,13 @@
 
 #include <array>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <map>
-#include <stdexcept>
 #include <vector>
 
 #include "sim/model/network_layers.hpp"
 #include "sim/onnx/graph_builder.hpp"
 #include "sim/onnx/weight_layout.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 
@@ -200,27 +198,11 @@ std::string recurrent_as_onnx(const Float32Model& model) {
   return result.SerializeAsString();
 }
 
-namespace {
-
-OnnxFile write_temporary(const std::string& path, const std::string& bytes) {
-  std::ofstream out(path + ".new", std::ios::binary);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) {
-    std::error_code ignored;
-    std::filesystem::remove(path + ".new", ignored);
-    throw std::runtime_error("ONNX model '" + path + "' cannot be written");
-  }
-  return {path, bytes.size()};
-}
-
-}  // namespace
-
 OnnxFiles write_onnx_files(const Float32Model& model, const std::string& prefix) {
-  const OnnxFiles files{write_temporary(prefix + ".cnn.onnx", cnn_as_onnx(model)),
-                        write_temporary(prefix + ".recurrent.onnx", recurrent_as_onnx(model))};
-  for (const OnnxFile& file : {files.cnn, files.recurrent})
-    std::filesystem::rename(file.path + ".new", file.path);
+  const std::string cnn = cnn_as_onnx(model), recurrent = recurrent_as_onnx(model);
+  const OnnxFiles files{{prefix + ".cnn.onnx", cnn.size()}, {prefix + ".recurrent.onnx", recurrent.size()}};
+  write_file(files.cnn.path, cnn);
+  write_file(files.recurrent.path, recurrent);
   return files;
 }
 

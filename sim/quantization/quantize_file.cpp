@@ -121,7 +121,10 @@ gnc::RangeNoise noise_of(const ScenarioSettings& seen) {
   const auto rounded = [factor](double value) {
     return static_cast<std::uint16_t>(std::lround(std::min(65535.0, factor * value)));
   };
-  return {rounded(1e3 * seen.sensor.noise_constant_m), rounded(1e5 * seen.sensor.noise_per_range)};
+  const gnc::RangeNoise noise{rounded(1e3 * seen.sensor.noise_constant_m),
+                              rounded(1e5 * seen.sensor.noise_per_range)};
+  // In an image, no noise at all stands for the paper's.
+  return noise == gnc::RangeNoise{0, 0} ? gnc::RangeNoise{1, 0} : noise;
 }
 
 }  // namespace

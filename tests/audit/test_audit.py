@@ -138,7 +138,7 @@ class Documents(unittest.TestCase):
 
     def test_document_and_summary_name_every_processor(self):
         results = result(**self.FIGURES)
-        for text in (report.as_document(results, MACS, BUDGETS, "of x", "20 frames"), report.as_summary(results, MACS)):
+        for text in (report.as_document(results, MACS, BUDGETS, "of x", 1_000_000, "20 frames"), report.as_summary(results, MACS)):
             self.assertIn("| Cortex-M7, bare metal", text)
 
 

@@ -127,7 +127,7 @@ class FastLidar final : public hal::Lidar {
   static constexpr std::uint32_t kNoises = 10;
   static constexpr std::uint16_t kBeforeTheGate = 640;  // counts: 5 m
   static constexpr std::uint16_t kStuckRange = 6400;
-  static constexpr std::size_t kStuckRows = 8;
+  static constexpr std::size_t kStuckRows = 4;
   static constexpr std::size_t kFewSide = 9;
 
   void copy_with_noise(std::uint32_t noise, gnc::RangeImage& frame) const {

@@ -157,31 +157,54 @@ TEST_F(Cycle, UsedBufferUnderANewNumberDoesNotTakeThePlaceOfTheFreshFrame) {
   }
 }
 
-// Verifies TS-LID-052. Rows that are stuck, at the top of every frame, do not make it a repetition. Of the
-// deliveries of a cycle only the first are compared in full.
+// Verifies TS-LID-052. Rows that are stuck, at the top of every frame, do not make it a repetition, whether
+// they are in the range gate or not. Of the deliveries of a cycle only the first are compared in full.
 TEST_F(Cycle, FramesWithStuckFirstRowsAreUsed) {
-  const auto stuck_frame = [this](std::uint32_t number, std::int64_t exposure_ns, unsigned noise) {
-    gnc::RangeImage frame = good_frame(number, exposure_ns, noise);
-    std::fill_n(frame.ranges.begin(), 8 * frame.rays, 640);
-    return frame;
-  };
-  for (const std::uint32_t deliveries : {1U, 2U, 5U}) {
-    init_with_model();
-    std::uint32_t number = 0;
-    for (int cycle = 0; cycle < 12; ++cycle) {
+  for (const int stuck_counts : {640, 2560, 0xFFFF}) {
+    const auto stuck_frame = [&](std::uint32_t number, std::int64_t exposure_ns, unsigned noise) {
+      gnc::RangeImage frame = good_frame(number, exposure_ns, noise);
+      std::fill_n(frame.ranges.begin(), 7 * frame.rays, static_cast<std::uint16_t>(stuck_counts));
+      return frame;
+    };
+    for (const std::uint32_t deliveries : {1U, 2U, 5U}) {
+      SCOPED_TRACE(std::to_string(stuck_counts) + ' ' + std::to_string(deliveries));
+      init_with_model();
+      std::uint32_t number = 0;
+      for (std::uint32_t cycle = 0; cycle < 12; ++cycle) {
+        for (std::uint32_t i = deliveries; i-- > 0; ++number)
+          lidar.add(stuck_frame(number, next_time_ns() - 200'000'000 * i, number));
+        run();
+        EXPECT_EQ(link.telemetry.back().frames_used, cycle + 1);
+        EXPECT_EQ(link.attitudes.back().sequence_number, number - 1) << "the newest";
+      }
+      EXPECT_EQ(link.telemetry.back().frames_repeated, 0U);
+      const unsigned last_noise = number - 1;
       for (std::uint32_t i = deliveries; i-- > 0; ++number)
-        lidar.add(stuck_frame(number, next_time_ns() - 200'000'000 * i, number));
+        lidar.add(stuck_frame(number, next_time_ns() - 200'000'000 * i, last_noise));
       run();
-      EXPECT_EQ(last_validity(), Validity::kValid) << deliveries;
-      EXPECT_EQ(link.attitudes.back().sequence_number, number - 1) << "the newest";
+      EXPECT_EQ(link.telemetry.back().frames_repeated, deliveries) << "repetitions are still seen";
     }
-    EXPECT_EQ(link.telemetry.back().frames_repeated, 0U);
-    const unsigned last_noise = number - 1;
-    for (std::uint32_t i = deliveries; i-- > 0; ++number)
-      lidar.add(stuck_frame(number, next_time_ns() - 200'000'000 * i, last_noise));
-    run();
-    EXPECT_EQ(link.telemetry.back().frames_repeated, deliveries) << "repetitions are still seen";
   }
+}
+
+// Verifies TS-LID-052, TS-FDIR-170. A driver that delivers the fresh frame again, with some of its ranges
+// changed: the content keeps its own time.
+TEST_F(Cycle, FreshFrameIsNotReplacedByItsCopyWithStrayReturns) {
+  std::uint32_t number = 0;
+  for (unsigned cycle = 0; cycle < 20; ++cycle) {
+    const std::int64_t fresh_ns = next_time_ns() - 1'400'000'000;
+    const gnc::RangeImage fresh = good_frame(number++, fresh_ns, cycle);
+    gnc::RangeImage copy = fresh;
+    copy.sequence_number = number++;
+    copy.exposure_time_ns = next_time_ns() - 50'000'000;
+    for (std::size_t i = 0; i < 10; ++i)
+      copy.ranges[3 * i] = static_cast<std::uint16_t>(3'000 + 37 * i + cycle);
+    lidar.add(fresh);
+    lidar.add(copy);
+    run();
+    EXPECT_EQ(link.attitudes.back().exposure_time_ns, fresh_ns);
+  }
+  EXPECT_EQ(link.telemetry.back().frames_repeated, 20U);
 }
 
 // Verifies TS-LID-052, TS-FDIR-170. A used buffer whose time is that of the cycle, before a fresh frame with

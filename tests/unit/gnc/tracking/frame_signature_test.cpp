@@ -54,7 +54,7 @@ TEST(FrameSignature, IsTheLowBitsOfTheFirstReturnOfACell) {
   EXPECT_NE(signature_of(frame), FrameSignature{}) << "and does not read beyond the frame";
 }
 
-TEST(FrameSignature, RepeatsIfThreeQuartersOfTheCellsWithAReturnAreEqual) {
+TEST(FrameSignature, RepeatsIfHalfOfTheCellsWithAReturnAreEqual) {
   FrameSignature a{};
   EXPECT_FALSE(is_repetition(a, a)) << "no return";
   for (const int returns : {1, 2, 3, 4, 100, 256}) {
@@ -68,8 +68,8 @@ TEST(FrameSignature, RepeatsIfThreeQuartersOfTheCellsWithAReturnAreEqual) {
           std::uint8_t& cell = b[static_cast<std::size_t>(returns - 1 - i)];
           cell = static_cast<std::uint8_t>(lost ? 0 : cell ^ 1);
         }
-        EXPECT_EQ(is_repetition(a, b), 4 * different <= returns) << returns << ' ' << different;
-        EXPECT_EQ(is_repetition(b, a), 4 * different <= returns);
+        EXPECT_EQ(is_repetition(a, b), 2 * different <= returns) << returns << ' ' << different;
+        EXPECT_EQ(is_repetition(b, a), 2 * different <= returns);
       }
     }
   }
@@ -120,7 +120,7 @@ TEST(SignatureStart, IsTheFirstCellsOfTheSignature) {
   EXPECT_EQ(start_of(frame).filled, 0U);
 }
 
-TEST(SignatureStart, IsAlikeIfThreeQuartersOfTheComparedCellsAreEqual) {
+TEST(SignatureStart, IsAlikeIfAQuarterOfTheComparedCellsAreEqual) {
   EXPECT_FALSE(is_alike(FrameSignature{}, SignatureStart{})) << "no return";
   for (const std::uint32_t returns : {1U, 2U, 3U, 4U, 63U, 64U, 96U}) {
     RangeImage frame;
@@ -135,7 +135,8 @@ TEST(SignatureStart, IsAlikeIfThreeQuartersOfTheComparedCellsAreEqual) {
           std::uint8_t& cell = earlier[start.places[i]];
           cell = static_cast<std::uint8_t>(lost ? 0 : cell ^ 1);
         }
-        EXPECT_EQ(is_alike(earlier, start), 4 * different <= compared) << returns << ' ' << different;
+        EXPECT_EQ(is_alike(earlier, start), 4 * std::min(different, compared) <= 3 * compared)
+            << returns << ' ' << different;
       }
     }
   }
@@ -168,11 +169,43 @@ TEST(SignatureStart, NoiseOfACountMakesFramesOfOneSceneDifferent) {
 
 // Stuck rows make every frame begin like the one before; the target's noise below makes it another one.
 TEST(SignatureStart, StuckFirstRowsAreAlikeAndNoRepetition) {
-  for (const int stuck_rows : {1, 4, 8}) {
+  for (const int stuck_rows : {1, 4, 7}) {
     RangeImage a = square(128, 50, 40, 1), b = square(128, 50, 40, 2);
-    for (RangeImage* frame : {&a, &b}) std::fill_n(frame->ranges.begin(), 128 * stuck_rows, 640);
-    EXPECT_EQ(is_alike(signature_of(a), start_of(b)), stuck_rows >= 4) << stuck_rows;
+    for (RangeImage* frame : {&a, &b}) std::fill_n(frame->ranges.begin(), 128 * stuck_rows, 2560);
+    EXPECT_TRUE(is_alike(signature_of(a), start_of(b))) << stuck_rows;
     EXPECT_FALSE(is_repetition(signature_of(a), signature_of(b))) << stuck_rows;
+  }
+}
+
+// Ranges that are no return, such as those of saturated rays or of the chaser, fill no cell.
+TEST(FrameSignature, IsOfTheRangeGate) {
+  const RangeImage empty = square(128, 30, 50, 1);
+  for (const int range : {1, 1279, 64'001, 65'535}) {
+    RangeImage frame = empty;
+    for (std::uint16_t& counts : frame.ranges)
+      if (counts == 0) counts = static_cast<std::uint16_t>(range);
+    EXPECT_EQ(signature_of(frame), signature_of(empty)) << range;
+    EXPECT_EQ(start_of(frame).filled, 30U) << range << ": of the groups that are looked at";
+  }
+  for (const std::uint16_t range : {std::uint16_t{1280}, std::uint16_t{64'000}}) {
+    RangeImage frame;
+    frame.rays = 17;
+    frame.ranges.fill(range);
+    EXPECT_EQ(signature_of(frame)[0], (range | 0x80) & 0xFF) << range;
+    EXPECT_GE(start_of(frame).filled, SignatureStart::kMost);
+  }
+}
+
+// A frozen sensor whose rays without a return deliver some, each of which may be the first of its cell.
+TEST(FrameSignature, TwoPercentOfStrayReturnsDoNotHideARepetition) {
+  std::mt19937 engine(9);
+  for (int pair = 0; pair < 200; ++pair) {
+    RangeImage a = square(128, 60, 34, 1), b = a;
+    for (RangeImage* frame : {&a, &b})
+      for (std::uint16_t& range : frame->ranges)
+        if (engine() % 50 == 0) range = static_cast<std::uint16_t>(1280 + engine() % 60'000);
+    EXPECT_TRUE(is_alike(signature_of(a), start_of(b))) << pair;
+    EXPECT_TRUE(is_repetition(signature_of(a), signature_of(b))) << pair;
   }
 }
 

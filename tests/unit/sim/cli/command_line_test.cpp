@@ -260,7 +260,7 @@ TEST(Evaluate, SearchesTheStrengthOfAnEffect) {
       here.run(common + " --effect-limit noise --csv x.csv").errors.find("makes no tables; leave --csv out"),
       std::string::npos);
   for (const char* refused :
-       {" --effect-limit sphere", " --effect-limit noise --paper", " --effect-limit noise --effect noise=2",
+       {" --effect-limit sphere", " --effect-limit part_missing", " --effect-limit scan_time", " --effect-limit noise --paper", " --effect-limit noise --effect noise=2",
         " --effect-limit noise --curves", " --effect-limit noise --condition nominal,degraded"})
     EXPECT_EQ(here.run(common + refused).exit_code, 2) << refused;
 }
@@ -410,6 +410,8 @@ TEST(Inputs, AreNeverOverwritten) {
       {"evaluate --csv mine.obj" + mesh, "--csv: 'mine.obj' is also the file of --mesh"},
       {"evaluate --report model.tsm --model model.tsm", "is also the file of --model"},
       {"evaluate --json model.sensor.json --model model.tsm", "is also the file of --model (its sensor)"},
+      {"simulate --json model.float32.tsm --report r.html --model model.tsm",
+       "is also the file of --model (its float32 image)"},
       {"simulate --json own.json --report r.html" + sensor, "is also the file of --sensor"},
       {"simulate --report mine.obj" + mesh, "is also the file of --mesh"},
       {"simulate --report own.json --command-key own.json", "is also the file of --command-key"},

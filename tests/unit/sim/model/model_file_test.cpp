@@ -33,7 +33,19 @@ TEST(ModelFile, IsReadBackAsWritten) {
   EXPECT_EQ(gnc::layer_weights<0>(read_back->weights).weight, gnc::layer_weights<0>(model->weights).weight);
 }
 
-TEST(ModelFile, IsNotWrittenIfTheFolderIsMissingOrTheReaderWouldRefuseIt) {
+// The user's own files beside it and links stay what they are.
+TEST(ModelFile, IsWrittenAsAWholeAndThroughLinks) {
+  const TemporaryFolder folder;
+  const auto model = random_float32_model(77);
+  std::ofstream(folder.path("m.tsm.new")) << "mine";
+  std::filesystem::create_symlink(folder.path("real.tsm"), folder.path("m.tsm"));
+  (void)write_model_file<gnc::Float32>(folder.path("m.tsm"), model->header, model->weights);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path("m.tsm")));
+  EXPECT_NO_THROW((void)read_float32_model(folder.path("real.tsm")));
+  EXPECT_EQ(std::filesystem::file_size(folder.path("m.tsm.new")), 4U);
+}
+
+TEST(ModelFile, IsNotWrittenIfThereCanBeNoFolderOrTheReaderWouldRefuseIt) {
   const TemporaryFolder folder;
   const auto model = random_float32_model(77);
   EXPECT_THROW(write_model_file<gnc::Float32>("/dev/null/x.tsm", model->header, model->weights),

@@ -119,6 +119,8 @@ TEST(Calibration, EffectsChangeTheImageAndOneThatHidesTheTargetIsRefused) {
   EXPECT_EQ(noise(), (gnc::RangeNoise{100, 1000})) << "the paper's sensor";
   EXPECT_NE(crc32_with("noise=3"), plain);
   EXPECT_EQ(noise(), (gnc::RangeNoise{300, 3000})) << "by which the flight program judges depths";
+  crc32_with("noise=0.000001");
+  EXPECT_EQ(noise(), (gnc::RangeNoise{1, 0})) << "0 stands for the paper's noise";
   EXPECT_NE(crc32_with("dropout=0.6"), plain);
   EXPECT_NE(crc32_with("panel_turn=30"), plain) << "the body";
   try {
