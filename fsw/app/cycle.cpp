@@ -38,38 +38,48 @@ class Contents {
 
 static_assert(hal::Lidar::kMaxWaiting <= config::kMaxDeliveriesPerCycle, "a cycle receives all that wait");
 
-// Whether frames repeat one that was used, or the one of this cycle that is kept. Frames whose first rows are
-// alike have to be compared in full, so after a number of those the verdict of the last one stands for the
-// rest of the cycle. This bounds the time of a cycle.
+// Whether frames repeat one that was used, or the one of this cycle that is kept. The first frames of a cycle
+// are compared in full, and so are some of the others, if they begin like one of those. Then the verdict of
+// the last one stands for all that begin so. This bounds the time of a cycle.
 class Repetitions {
  public:
   Repetitions(const AttitudeInitApp& app, CycleWorkspace& workspace) : app_(app), workspace_(workspace) {}
 
   // `next`: the frame's buffer.
   bool look_at(std::size_t next) {
-    gnc::SignatureStart& start = workspace_.starts[next];
-    start = gnc::start_of(workspace_.frames[next]);
-    const bool has_kept = workspace_.inputs.frame != nullptr;
-    const bool is_like_used = app_.has_used_alike(start);
-    const bool is_like_kept = has_kept && gnc::is_alike(workspace_.starts[1 - next].cells, start);
-    if (!is_like_used && !is_like_kept) return false;
+    workspace_.starts[next] = gnc::start_of(workspace_.frames[next]);
+    has_signature_[next] = false;
+    if (looks_ >= config::kFramesComparedInFull && !is_alike(next)) return false;
     if (looks_ < config::kMaxFullComparisonsPerCycle) {
       ++looks_;
-      last_ = repeats(workspace_.frames[next]);
+      last_ = repeats(next);
     }
     return last_;
   }
 
  private:
-  bool repeats(const gnc::RangeImage& frame) const {
-    const gnc::FrameSignature signature = gnc::signature_of(frame);
-    if (app_.has_used(signature)) return true;
-    const gnc::RangeImage* const kept = workspace_.inputs.frame;
-    return kept != nullptr && gnc::is_repetition(gnc::signature_of(*kept), signature);
+  bool has_kept() const { return workspace_.inputs.frame != nullptr; }
+
+  bool is_alike(std::size_t next) const {
+    const gnc::SignatureStart& start = workspace_.starts[next];
+    if (app_.has_used_alike(start)) return true;
+    return has_kept() && gnc::is_alike(workspace_.starts[1 - next].cells, start);
+  }
+
+  bool repeats(std::size_t next) {
+    if (app_.has_used(signature(next))) return true;
+    return has_kept() && gnc::is_repetition(signature(1 - next), signature(next));
+  }
+
+  const gnc::FrameSignature& signature(std::size_t buffer) {
+    if (!has_signature_[buffer]) workspace_.signatures[buffer] = gnc::signature_of(workspace_.frames[buffer]);
+    has_signature_[buffer] = true;
+    return workspace_.signatures[buffer];
   }
 
   const AttitudeInitApp& app_;
   CycleWorkspace& workspace_;
+  std::array<bool, 2> has_signature_{};
   int looks_ = 0;
   bool last_ = false;
 };

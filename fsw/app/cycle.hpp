@@ -16,7 +16,8 @@ namespace tumblesight::fsw {
 // Memory of run_cycle(), about 80 kB. Allocate it statically, so that no frame is on the stack.
 struct CycleWorkspace {
   std::array<gnc::RangeImage, 2> frames;  // the newest usable one so far, and the one that is being received
-  std::array<gnc::SignatureStart, 2> starts;  // of the frames
+  std::array<gnc::SignatureStart, 2> starts;      // of the frames
+  std::array<gnc::FrameSignature, 2> signatures;  // of the frames, where they are compared in full
   StepInputs inputs;
   StepOutputs outputs;
 };

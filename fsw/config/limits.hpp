@@ -21,9 +21,10 @@ inline constexpr int kMaxCommandsPerStep = 8;
 inline constexpr int kMaxDeliveriesPerCycle = 32;
 // Frames with bad content after which the rest of a cycle's deliveries counts as bad without a look.
 inline constexpr int kMaxBadContentsPerCycle = 3;
-// Frames compared in full with the used ones after which the last comparison's result stands for the rest of
-// a cycle's frames that begin like one of those.
-inline constexpr int kMaxFullComparisonsPerCycle = 2;
+// A cycle's first frames that are compared in full with the used ones and with the one before, and the most
+// that are: after these the last comparison's result stands for the frames that begin alike.
+inline constexpr int kFramesComparedInFull = 2;
+inline constexpr int kMaxFullComparisonsPerCycle = 4;
 
 // Events that one step returns. Further events wait in the ring for the next step; events that do not fit
 // into the ring are counted as lost.

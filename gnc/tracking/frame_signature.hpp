@@ -53,8 +53,8 @@ class FrameHistory {
 };
 
 // Whether at least half of the cells in which one of both frames has a return are equal. Of two different
-// frames of one scene fewer are equal if the noise is at least half a count of the range (4 mm); with the
-// paper's noise it is one in twenty-five. False if no cell has a return.
+// frames of a scene that stands still fewer are equal if the noise is at least a count of the range (8 mm);
+// with the paper's noise it is one in twenty-five. False if no cell has a return.
 bool is_repetition(const FrameSignature& a, const FrameSignature& b);
 // Whether at least a quarter of the first kCompared cells of `later` are equal to those of `earlier`. False
 // if no cell has a return.

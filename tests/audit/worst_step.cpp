@@ -112,7 +112,7 @@ class FastLidar final : public hal::Lidar {
     if (waiting_ == 0) return hal::LidarStatus::kNoFrame;
     const int later = --waiting_;
     const int used = config::kMaxBadContentsPerCycle;  // the newer ones have no range within the gate
-    const int first_stuck = used + 1 + config::kMaxFullComparisonsPerCycle;
+    const int first_stuck = used + 1 + config::kMaxFullComparisonsPerCycle - config::kFramesComparedInFull;
     const auto either = static_cast<std::size_t>(later % 2);
     frame = later <= used ? used_ : later <= first_stuck ? stuck_[either] : few_[either];
     if (later < used) frame.ranges.fill(kBeforeTheGate);

@@ -160,7 +160,7 @@ TEST_F(Cycle, UsedBufferUnderANewNumberDoesNotTakeThePlaceOfTheFreshFrame) {
 // Verifies TS-LID-052. Rows that are stuck, at the top of every frame, do not make it a repetition, whether
 // they are in the range gate or not. Of the deliveries of a cycle only the first are compared in full.
 TEST_F(Cycle, FramesWithStuckFirstRowsAreUsed) {
-  for (const int stuck_counts : {640, 2560, 0xFFFF}) {
+  for (const int stuck_counts : {640, 9000, 0xFFFF}) {
     const auto stuck_frame = [&](std::uint32_t number, std::int64_t exposure_ns, unsigned noise) {
       gnc::RangeImage frame = good_frame(number, exposure_ns, noise);
       std::fill_n(frame.ranges.begin(), 7 * frame.rays, static_cast<std::uint16_t>(stuck_counts));
@@ -197,14 +197,29 @@ TEST_F(Cycle, FreshFrameIsNotReplacedByItsCopyWithStrayReturns) {
     gnc::RangeImage copy = fresh;
     copy.sequence_number = number++;
     copy.exposure_time_ns = next_time_ns() - 50'000'000;
-    for (std::size_t i = 0; i < 10; ++i)
-      copy.ranges[3 * i] = static_cast<std::uint16_t>(3'000 + 37 * i + cycle);
+    for (std::size_t i = 0; i < 100; ++i) copy.ranges[i] = static_cast<std::uint16_t>(3'000 + 37 * i + cycle);
     lidar.add(fresh);
     lidar.add(copy);
     run();
     EXPECT_EQ(link.attitudes.back().exposure_time_ns, fresh_ns);
   }
   EXPECT_EQ(link.telemetry.back().frames_repeated, 20U);
+}
+
+// Verifies TS-LID-052. A fast sensor that hangs after some frames of the cycle.
+TEST_F(Cycle, CopiesAreSeenAmongManyFrames) {
+  constexpr std::uint32_t kFrames = 20, kFresh = 9;
+  for (std::uint32_t cycle = 0; cycle < 5; ++cycle) {
+    std::uint32_t used = 0;
+    for (std::uint32_t i = 0; i < kFrames; ++i) {
+      const std::uint32_t number = cycle * kFrames + i, content = cycle * kFrames + std::min(i, kFresh - 1);
+      if (i < kFresh) used = number;
+      lidar.add(good_frame(number, next_time_ns() - 100'000'000 * (kFrames - 1 - i), content));
+    }
+    run();
+    EXPECT_EQ(link.attitudes.back().sequence_number, used) << "the last fresh one";
+  }
+  EXPECT_EQ(link.telemetry.back().frames_repeated, 5 * (kFrames - kFresh));
 }
 
 // Verifies TS-LID-052, TS-FDIR-170. A used buffer whose time is that of the cycle, before a fresh frame with

@@ -260,7 +260,8 @@ TEST(Evaluate, SearchesTheStrengthOfAnEffect) {
       here.run(common + " --effect-limit noise --csv x.csv").errors.find("makes no tables; leave --csv out"),
       std::string::npos);
   for (const char* refused :
-       {" --effect-limit sphere", " --effect-limit part_missing", " --effect-limit scan_time", " --effect-limit noise --paper", " --effect-limit noise --effect noise=2",
+       {" --effect-limit sphere", " --effect-limit part_missing", " --effect-limit scan_time",
+        " --effect-limit noise --paper", " --effect-limit noise --effect noise=2",
         " --effect-limit noise --curves", " --effect-limit noise --condition nominal,degraded"})
     EXPECT_EQ(here.run(common + refused).exit_code, 2) << refused;
 }
