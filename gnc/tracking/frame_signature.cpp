@@ -26,10 +26,15 @@ std::size_t rays_of(const RangeImage& frame) {
 // The cells of two neighbouring columns: 16 bits each, of which the low eight are used.
 using CellPair = std::uint32_t;
 constexpr std::size_t kPairs = kSignatureSide / 2;
-// Adds a pair of ranges. Masks instead of branches, for both at once.
+// Adds a pair of ranges. Masks instead of branches, for both at once: the highest bit of each half says
+// whether its range is at least the nearest, and beyond the farthest, of the gate.
 void add_pair(CellPair ranges, CellPair& cells) {
   constexpr CellPair kOne = 0x0001'0001;
-  const CellPair is_return = ((((ranges & 0x7FFF'7FFF) + 0x7FFF'7FFF) | ranges) >> 15) & kOne;
+  constexpr CellPair kHalf = 0x8000;
+  const CellPair low = ranges & (kHalf - 1) * kOne;
+  const CellPair is_far_enough = ranges | (low + (kHalf - kMinRange_counts) * kOne);
+  const CellPair is_beyond = ranges & (low + (2 * kHalf - kMaxRange_counts - 1) * kOne);
+  const CellPair is_return = ((is_far_enough & ~is_beyond) >> 15) & kOne;
   const CellPair is_new = (is_return & ~(cells >> 7)) * 0xFFU;
   cells |= (ranges | kIsReturn * kOne) & is_new;
 }
@@ -66,8 +71,8 @@ FrameSignature signature_of(const RangeImage& frame) {
       const std::size_t left = rays - first;
       const std::size_t columns = left < kSignatureSide ? left : kSignatureSide;
       for (std::size_t i = 0; i < columns / 2; ++i)
-        add_pair(usable(ranges[first + 2 * i]) | usable(ranges[first + 2 * i + 1]) << 16, cells[i]);
-      if (columns % 2 != 0) add_pair(usable(ranges[rays - 1]), cells[columns / 2]);
+        add_pair(ranges[first + 2 * i] | CellPair{ranges[first + 2 * i + 1]} << 16, cells[i]);
+      if (columns % 2 != 0) add_pair(ranges[rays - 1], cells[columns / 2]);
     }
   }
   FrameSignature signature{};
