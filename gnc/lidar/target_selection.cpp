@@ -44,11 +44,10 @@ int bins_of_slice(int first_bin, std::uint32_t target_radius_mm) {
   return static_cast<int>((depth_mm * 131) >> 17) + 2;  // 131 / 2^17 = 1 / 1000.5
 }
 
-// The sums of the bins before each bin. Leaves out the bins that are not used; the one of kMaxRange_m is
-// hardly in the range gate.
+// The sums of the bins before each bin. Leaves out the bins that are not used.
 void sum_up(Scratch::Counts& counts) {
   for (int bin = 0; bin < kMinRange_m; ++bin) counts[bin + 1] = 0;
-  for (int bin = kMaxRange_m; bin < kBins; ++bin) counts[bin + 1] = 0;
+  for (int bin = kMaxRange_m + 1; bin < kBins; ++bin) counts[bin + 1] = 0;
   for (int bin = 1; bin <= kBins; ++bin)
     counts[bin] = static_cast<std::uint16_t>(counts[bin] + counts[bin - 1]);
 }
@@ -62,7 +61,8 @@ void count_bins(const RangeImage& frame, int largest_step, Scratch& scratch) {
     const std::uint16_t* const ranges = frame.ranges.data() + row * frame.rays;
     int next = 0;  // the last ray of a row has none
     for (int column = frame.rays - 1; column >= 0; --column) {
-      const int range = ranges[column];
+      // A range beyond the gate counts as no return, also within the last bin.
+      const int range = ranges[column] & sign_mask(ranges[column] - kMaxRange_counts - 1);
       const int is_pair = sign_mask(abs(range - next) - largest_step - 1) & 1;
       const int bin = (range >> kBinBits) + 1;
       ++returns[bin];

@@ -105,6 +105,13 @@ TEST_F(TargetSelection, ReturnsJustBeyondTheRangeGateDoNotHideTheTarget) {
   }
 }
 
+// Verifies TS-LID-100. The farthest range is still one.
+TEST_F(TargetSelection, KeepsATargetAtTheEndOfTheRangeGate) {
+  fill([](int, int column) { return 64'000 - column % 2; });
+  select();
+  EXPECT_EQ(chosen(), 128 * 128);
+}
+
 // Verifies TS-LID-100. The largest target, seen from its end, fills slices over 100 m of ranges.
 TEST_F(TargetSelection, LargestTargetIsNotTakenForClutter) {
   for (const std::uint32_t radius_mm : {kMinProjection_mm, kMaxTargetRadius_mm}) {
@@ -253,13 +260,14 @@ class Definition {
   void choose_slice() {
     std::vector<int> of_bin(512), of_slice(512), pairs_of_bin(512), pairs_of_slice(512);
     for_each_ray([&](int row, int column) {
-      const auto bin = static_cast<std::size_t>(range(row, column) / 128);
-      const int next = column + 1 < n_ ? range(row, column + 1) : 0;
+      const auto usable = [&](int at) { return range(row, at) > 64'000 ? 0 : range(row, at); };
+      const auto bin = static_cast<std::size_t>(usable(column) / 128);
+      const int next = column + 1 < n_ ? usable(column + 1) : 0;
       ++of_bin[bin];
-      pairs_of_bin[bin] += std::abs(range(row, column) - next) <= radius_mm_ * 131 / 1024 ? 1 : 0;
+      pairs_of_bin[bin] += std::abs(usable(column) - next) <= radius_mm_ * 131 / 1024 ? 1 : 0;
     });
     for (int bin = 0; bin < 512; ++bin)
-      for (int i = std::max(bin, 10); i <= std::min(499, bin + slice_bins(bin) - 1); ++i) {
+      for (int i = std::max(bin, 10); i <= std::min(500, bin + slice_bins(bin) - 1); ++i) {
         of_slice[static_cast<std::size_t>(bin)] += of_bin[static_cast<std::size_t>(i)];
         pairs_of_slice[static_cast<std::size_t>(bin)] += pairs_of_bin[static_cast<std::size_t>(i)];
       }
