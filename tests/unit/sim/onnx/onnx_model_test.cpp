@@ -110,7 +110,7 @@ TEST(OnnxFile, ThatCannotBeWrittenIsNamedInTheError) {
     (void)write_onnx_files(*random_model(), "/dev/null/near");
     FAIL() << "a file was written into a folder that does not exist";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("/dev/null/near.cnn.onnx"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("'/dev/null'"), std::string::npos);
   }
 }
 

@@ -119,8 +119,6 @@ TEST(Calibration, EffectsChangeTheImageAndOneThatHidesTheTargetIsRefused) {
   EXPECT_EQ(noise(), (gnc::RangeNoise{100, 1000})) << "the paper's sensor";
   EXPECT_NE(crc32_with("noise=3"), plain);
   EXPECT_EQ(noise(), (gnc::RangeNoise{300, 3000})) << "by which the flight program judges depths";
-  crc32_with("noise=0.000001");
-  EXPECT_EQ(noise(), (gnc::RangeNoise{1, 0})) << "0 stands for the paper's noise";
   EXPECT_NE(crc32_with("dropout=0.6"), plain);
   EXPECT_NE(crc32_with("panel_turn=30"), plain) << "the body";
   try {
@@ -130,6 +128,17 @@ TEST(Calibration, EffectsChangeTheImageAndOneThatHidesTheTargetIsRefused) {
     EXPECT_NE(std::string(error.what()).find("the sensor sees too little"), std::string::npos)
         << error.what();
   }
+}
+
+// In an image, no noise at all stands for the paper's.
+TEST(Calibration, SensorWithoutNoiseIsNotJudgedByThePapers) {
+  const TemporaryFolder folder;
+  ScenarioSettings seen;
+  seen.sensor.noise_constant_m = seen.sensor.noise_per_range = 0.0;
+  (void)quantize_to_file(
+      *random_float32_model(77), {make_near_shoemaker()}, 10, folder.path("near.tsm"), [](std::uint64_t) {},
+      seen);
+  EXPECT_EQ(read_fixed_point_header(folder.path("near.tsm")).noise, (gnc::RangeNoise{1, 0}));
 }
 
 TEST_F(QuantizeTest, ReportsProgressAndTheDifferenceOfAQuarterOfTheFrames) {
