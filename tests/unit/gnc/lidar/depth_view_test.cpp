@@ -187,8 +187,10 @@ int expect_returns_where_they_are(const RangeImage& frame, const DepthProjection
     const Eigen::Vector2d at = in_cells(frame, ray, *image, projection);
     if ((at.array() < -kTolerance).any() || (at.array() >= kSide + kTolerance).any()) continue;
     bool filled = false;
-    for (int row = 0; row < kSide; ++row) {
-      for (int column = 0; column < kSide; ++column) {
+    const auto first = [&](double along) { return std::max(0, static_cast<int>(along - kTolerance) - 1); };
+    const auto end = [&](double along) { return std::min(kSide, static_cast<int>(along + kTolerance) + 2); };
+    for (int row = first(at.y()); row < end(at.y()); ++row) {
+      for (int column = first(at.x()); column < end(at.x()); ++column) {
         const Eigen::Vector2d from_middle = at - Eigen::Vector2d(column + 0.5, row + 0.5);
         if (from_middle.cwiseAbs().maxCoeff() > 0.5 + kTolerance) continue;
         const auto cell = static_cast<std::size_t>(row * kSide + column);
