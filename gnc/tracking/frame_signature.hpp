@@ -23,9 +23,9 @@ using FrameSignature = std::array<std::uint8_t, kSignatureSide * kSignatureSide>
 FrameSignature signature_of(const RangeImage& frame);
 
 // The first cells of a frame's signature that its rays fill, in their order: a fraction of the cost of a
-// signature. Frames whose starts differ are no repetitions. Frames whose starts are alike may still differ
-// below, where the first rows are stuck or show a part of the chaser without noise: there the signatures
-// decide. The instruction count depends on the ranges. It is bounded by that of a frame with few returns.
+// signature. It chooses which frames are compared in full. It misses a repetition whose first rows have stray
+// returns, and it finds frames alike that differ below stuck rows. The instruction count depends on the
+// ranges. It is bounded by that of a frame with few returns.
 struct SignatureStart {
   static constexpr std::uint32_t kCompared = 64;
   // Where one of two frames lacks some returns, the start of the other one reaches farther.
