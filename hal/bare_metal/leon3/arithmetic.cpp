@@ -4,7 +4,7 @@
 extern "C" {
 
 std::uint64_t __udivdi3(std::uint64_t dividend, std::uint64_t divisor) {
-  return tumblesight::gnc::divide_bit_by_bit(dividend, divisor);
+  return tumblesight::gnc::divide_by_reciprocal(dividend, divisor);
 }
 
 std::int64_t __divdi3(std::int64_t dividend, std::int64_t divisor) {

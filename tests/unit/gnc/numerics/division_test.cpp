@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace tumblesight::gnc {
 namespace {
@@ -16,15 +18,42 @@ std::uint64_t random_number(std::mt19937_64& engine) {
   return engine() >> (engine() % 64);
 }
 
-TEST(Division, BitByBitEqualsTheProcessorsDivision) {
+void expect_exact(std::uint64_t dividend, std::uint64_t divisor) {
+  ASSERT_EQ(divide_by_reciprocal(dividend, divisor), dividend / divisor) << dividend << " / " << divisor;
+}
+
+// Of every bit length, with remainders of 0, of the divisor minus 1, and others.
+TEST(Division, ByReciprocalEqualsTheProcessorsDivision) {
   std::mt19937_64 engine(5);
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < 300'000; ++i) {
     const std::uint64_t dividend = random_number(engine);
-    const std::uint64_t divisor = (random_number(engine) >> 1) + 1;
-    ASSERT_EQ(divide_bit_by_bit(dividend, divisor), dividend / divisor) << dividend << " / " << divisor;
+    const std::uint64_t divisor = std::max<std::uint64_t>(random_number(engine), 1);
+    expect_exact(dividend, divisor);
+    const std::uint64_t multiple = dividend / divisor * divisor;
+    expect_exact(multiple, divisor);
+    expect_exact(multiple - 1, divisor);
   }
-  EXPECT_EQ(divide_bit_by_bit(UINT64_MAX, 1), UINT64_MAX);
-  EXPECT_EQ(divide_bit_by_bit(UINT64_MAX, INT64_MAX), 2U);
+}
+
+// All pairs of powers of two, up to 3 more or less.
+TEST(Division, ByReciprocalIsExactAroundPowersOfTwo) {
+  std::vector<std::uint64_t> numbers;
+  for (int bit = 0; bit < 64; ++bit)
+    for (std::uint64_t more = 0; more <= 6; ++more) numbers.push_back((std::uint64_t{1} << bit) + more - 3);
+  for (const std::uint64_t dividend : numbers)
+    for (const std::uint64_t divisor : numbers)
+      if (divisor != 0) expect_exact(dividend, divisor);
+}
+
+// Every reciprocal of 20 bits, once just below and once at a multiple.
+TEST(Division, ByReciprocalIsExactForEveryLeadingPartOfADivisor) {
+  for (std::uint64_t lead = 1 << 19; lead < 1 << 20; ++lead) {
+    for (const std::uint64_t divisor : {lead, lead << 43, (lead << 43) | ((std::uint64_t{1} << 43) - 1)}) {
+      const std::uint64_t largest = UINT64_MAX / divisor * divisor;
+      expect_exact(largest, divisor);
+      expect_exact(largest - 1, divisor);
+    }
+  }
 }
 
 TEST(Division, TruncatesTowardZero) {
