@@ -101,10 +101,11 @@ struct alignas(8) AppState {
   std::uint32_t frames_unused = 0;    // superseded, passed over or overflowed since the last used one
   std::array<gnc::ModelStatus, hal::kModelBanks> boot_status{};
   Mode mode = Mode::kBoot;
-  bool boot_to_report = false;  // the next step reports what init() found
-  bool has_cycle = false;       // now_ns is the time of a cycle
-  bool outage = false;          // the previous cycle had no frame
-  bool long_task = false;       // this cycle has one: begin_long_task()
+  bool boot_to_report = false;    // the next step reports what init() found
+  bool has_cycle = false;         // now_ns is the time of a cycle
+  bool outage = false;            // the previous cycle had no frame
+  bool long_task = false;         // this cycle has one: begin_long_task()
+  bool pose_is_verified = false;  // the last one that was reported
 
   gnc::FrameTimeLimits time_limits() const;
   gnc::FrameTrackerLimits tracker_limits() const;

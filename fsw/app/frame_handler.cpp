@@ -227,6 +227,45 @@ void FrameHandler::report_attitude(const StepInputs& inputs, Validity validity) 
   attitude.q_lrf_trf_second = estimate.q_lrf_trf_second;
   attitude.second_odds_ppm = estimate.second_odds_ppm;
   attitude.centroid_lrf_mm = estimate.centroid_lrf_mm;
+  report_pose(inputs);
+}
+
+void FrameHandler::report_pose(const StepInputs& inputs) {
+  const gnc::PoseEstimate& pose = workspace_.outcome.estimate.pose;
+  hal::AttitudeReport& report = outputs_.attitude;
+  report.pose_doubts = static_cast<std::uint8_t>(pose.doubts);
+  note_verdict(pose);
+  if (!pose.is_known()) return;
+  report.pose_frames = static_cast<std::uint8_t>(pose.poses);
+  report.pose_q_lrf_trf = pose.state.q_lrf_trf;
+  report.pose_origin_lrf_um = pose.state.origin_lrf_um;
+  report.pose_rate_lrf_urad_s = pose.state.rate_lrf_urad_s;
+  report.pose_velocity_lrf_um_s = pose.state.velocity_lrf_um_s;
+  report.pose_sigma = pose.covariance.sigma;
+  report.pose_correlation_q15 = pose.covariance.correlation_q15;
+  const gnc::PoseState now =
+      tracker_.pose_at(state_.now_ns, inputs.chaser_now, state_.tracker_limits(), state_.tracking);
+  report.pose_q_lrf_trf_now = now.q_lrf_trf;
+  report.pose_origin_lrf_now_um = now.origin_lrf_um;
+  report.pose_rate_lrf_now_urad_s = now.rate_lrf_urad_s;
+  report.pose_velocity_lrf_now_um_s = now.velocity_lrf_um_s;
+  report.pose_mean_square_q8 = static_cast<std::uint32_t>(pose.evidence.mean_square_q8());
+  report.pose_unexplained_ppm = pose.evidence.unexplained_ppm();
+  report.pose_missing_ppm = pose.evidence.missing_ppm();
+  report.pose_advantage_q8 = pose.advantage_q8;
+}
+
+// Counts verified poses, and raises an event when the verdict changes.
+void FrameHandler::note_verdict(const gnc::PoseEstimate& pose) {
+  if (pose.is_verified()) count(state_.counters.poses_verified);
+  if (pose.is_verified() == state_.pose_is_verified) return;
+  state_.pose_is_verified = pose.is_verified();
+  const std::int32_t number = bits_of(outputs_.attitude.sequence_number);
+  if (pose.is_verified()) {
+    report_(EventId::kPoseVerified, number, pose.poses);
+  } else {
+    report_(EventId::kPoseDoubtful, number, static_cast<std::int32_t>(pose.doubts));
+  }
 }
 
 }  // namespace tumblesight::fsw

@@ -35,6 +35,8 @@ class FrameHandler {
                 std::uint32_t expected_number);
   Validity note_doubts(const gnc::RangeImage& frame);
   void report_attitude(const StepInputs& inputs, Validity validity);
+  void report_pose(const StepInputs& inputs);
+  void note_verdict(const gnc::PoseEstimate& pose);
 
   AppState& state_;
   gnc::FrameTracker<Numerics> tracker_;

@@ -1,5 +1,7 @@
 #include "fsw/app/memory_guard.hpp"
 
+#include <cstring>
+
 #include "fsw/app/counter.hpp"
 
 namespace tumblesight::fsw {
@@ -41,6 +43,7 @@ bool MemoryGuard::bound(const Estimator& estimator, AppState& state) {
 }
 
 void MemoryGuard::keep(const Estimator& estimator, AppState& state) {
+  std::memset(static_cast<void*>(&kept_), 0, sizeof kept_);  // the padding, too, so that no flip stays in it
   estimator.save(kept_);
   state.estimator_crc32 = estimator.state_crc32();
 }

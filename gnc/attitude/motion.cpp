@@ -233,6 +233,18 @@ MotionLaws<Real> motion_laws(const Inertia<Real>& inertia) {
   return laws;
 }
 
+std::array<std::int32_t, 3> rate_urad_s(const Vector3<Fixed>& rate) {
+  constexpr std::int64_t kNumerator = 1'000'000 * (1'000'000'000 / 100'000'000);
+  constexpr std::int64_t kDenominator = kNominalPeriod_ns / 100'000'000;
+  std::array<std::int32_t, 3> result{};
+  for (int i = 0; i < 3; ++i) {
+    const std::int64_t doubled =
+        divide(std::int64_t{rate[i].raw()} * kNumerator, kDenominator) >> (Fixed::kFractionBits - 1);
+    result[static_cast<std::size_t>(i)] = static_cast<std::int32_t>((doubled + 1) >> 1);
+  }
+  return result;
+}
+
 #define TUMBLESIGHT_INSTANTIATE(Real)                                                       \
   template bool make_inertia(const Matrix3<Real>&, Inertia<Real>&);                         \
   template Matrix3<Real> rotation_from_vector(const Vector3<Real>&);                        \

@@ -77,6 +77,9 @@ Motion<Real> propagate(const Motion<Real>& motion, const Inertia<Real>& inertia,
 template <class Real>
 Motion<Real> turned(const Motion<Real>& motion, const Matrix3<Real>& r_now_last);
 
+// A rate in microradians per second, rounded to the nearest.
+std::array<std::int32_t, 3> rate_urad_s(const Vector3<Fixed>& rate);
+
 // The laws of motion that the track follows in parallel. Each is torque-free rotation with its own inertia:
 //   0     that of a sphere: spin at a rate constant in the LRF
 //   1     that of the target

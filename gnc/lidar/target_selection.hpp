@@ -31,7 +31,24 @@ struct RayMask {
   static constexpr int kWordsPerRow = RangeImage::kMaxRays / kColumnsPerWord;
   using Row = std::array<std::uint32_t, kWordsPerRow>;
   std::array<Row, RangeImage::kMaxRays> rows;
+
+  bool has(int row, int column) const {
+    return (word_of(row, column) << (column % kColumnsPerWord)) >> 31 != 0;
+  }
+  // The rays in `column`, which is even, and in the next one: bit 1 and bit 0.
+  std::uint32_t pair(int row, int column) const {
+    return (word_of(row, column) >> (kColumnsPerWord - 2 - column % kColumnsPerWord)) & 3U;
+  }
+
+ private:
+  std::uint32_t word_of(int row, int column) const {
+    return rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column / kColumnsPerWord)];
+  }
 };
+// The number of rays in a RayMask::pair().
+constexpr int rays_of_pair(std::uint32_t pair) {
+  return static_cast<int>((pair + 1) >> 1);
+}
 
 // The number of ones in a word of a mask. Internal linkage, since it is compiled for several instruction
 // sets.
@@ -50,8 +67,8 @@ struct TargetSelectionScratch {
   Counts returns_before;                              // in the bins before this one
   Counts pairs_before;                                // of them those like the next ray of the row
   std::array<std::uint16_t, kBins> returns_in_slice;  // that begins with this bin
-  std::array<std::uint16_t, kMinRange_m>
-      near_returns;  // in the bins before kMinRange_m, which the others leave out
+  // In the bins before kMinRange_m, which the others leave out.
+  std::array<std::uint16_t, kMinRange_m> near_returns;
 
   // For each ray the number of chosen rays among the 5 x 5 around it, itself included: bit k of the number is
   // in support[k].
@@ -72,9 +89,8 @@ struct TargetSelectionScratch {
 //  1. Of all ranges from kMinRange_m to kMaxRange_m a slice as deep as the target: the nearest that holds
 //     clearly more returns than clutter would, and not scattered ones only. If it begins at kMinRange_m, it
 //     goes on nearer as long as the returns do.
-//  2. If there are isolated returns away from surfaces, every return needs neighbours, the more the denser
-//  the
-//     clutter is. A target of few returns loses none as long as there is no clutter.
+//  2. If there are isolated returns away from surfaces, every return needs neighbours: the denser the
+//     clutter, the more. A target of few returns loses none as long as there is no clutter.
 //  3. Connected parts of the image that are tiny beside the largest are dropped.
 // The instruction count is the same for every frame with the same ray count.
 //

@@ -11,7 +11,7 @@
 namespace tumblesight::gnc {
 
 static_assert(sizeof(AttitudeEstimator<FixedPoint>) <= 128 * 1024, "working memory exceeds its budget");
-static_assert(kModelImageSize<FixedPoint> <= 1'200'000, "the model image exceeds its budget");
+static_assert(kModelImageSize<FixedPoint> <= 1'500'000, "the model image exceeds its budget");
 
 namespace {
 
@@ -28,19 +28,6 @@ std::uint32_t error_urad(const Matrix3<Fixed>& attitude, Fixed predicted_rad) {
   const std::int64_t scaled = std::int64_t{predicted_rad.raw()} * 1'000'000;
   const std::int64_t urad = (scaled + (1 << (Fixed::kFractionBits - 1))) >> Fixed::kFractionBits;
   return select(is_rotation, static_cast<std::uint32_t>(min<std::int64_t>(kPi_urad, urad)), kPi_urad);
-}
-
-// From radians per nominal period, rounded to the nearest.
-std::int32_t urad_s(Fixed rate) {
-  constexpr std::int64_t kNumerator = 1'000'000 * (1'000'000'000 / 100'000'000);
-  constexpr std::int64_t kDenominator = kNominalPeriod_ns / 100'000'000;
-  const std::int64_t doubled =
-      divide(std::int64_t{rate.raw()} * kNumerator, kDenominator) >> (Fixed::kFractionBits - 1);
-  return static_cast<std::int32_t>((doubled + 1) >> 1);
-}
-
-std::array<std::int32_t, 3> urad_s(const Vector3<Fixed>& rate) {
-  return {urad_s(rate.x()), urad_s(rate.y()), urad_s(rate.z())};
 }
 
 QuaternionQ30 select(bool condition, const QuaternionQ30& yes, const QuaternionQ30& no) {
@@ -115,6 +102,27 @@ void add_to(Crc32& crc, const std::int16_t* values, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) crc.add_u32(static_cast<std::uint32_t>(values[i]));
 }
 
+void add_to(Crc32& crc, const std::array<std::int32_t, 3>& values) {
+  for (const std::int32_t value : values) crc.add_u32(static_cast<std::uint32_t>(value));
+}
+void add_to(Crc32& crc, const PoseTrackerState& state) {
+  crc.add_u32(static_cast<std::uint32_t>(state.history.count));
+  for (const PoseMeasurement& measurement : state.history.poses) {
+    add_to(crc, measurement.pose.r_lrf_trf.data(), 9);
+    add_to(crc, measurement.pose.origin_lrf_um);
+    for (const std::int32_t value : measurement.information) crc.add_u32(static_cast<std::uint32_t>(value));
+    crc.add_u32(static_cast<std::uint32_t>(measurement.age_ns));
+    crc.add_u32(static_cast<std::uint32_t>(measurement.age_ns >> 32));
+  }
+  add_to(crc, state.motion.turning.r_lrf_trf.data(), 9);
+  add_to(crc, state.motion.turning.rate_lrf.data(), 3);
+  add_to(crc, state.motion.origin_lrf_um);
+  add_to(crc, state.motion.velocity_um_period);
+  crc.add_u32(static_cast<std::uint32_t>(state.law));
+  crc.add_u32(static_cast<std::uint32_t>(state.challenger));
+  crc.add_u32(static_cast<std::uint32_t>(state.advantage_q8));
+}
+
 }  // namespace
 
 // Fitted to the parametric meshes of three targets under the paper's conditions and thirteen effects.
@@ -140,6 +148,7 @@ ModelStatus AttitudeEstimator<N>::load(const std::uint8_t* image, std::size_t si
   if (status == ModelStatus::kOk) {
     laws_ = motion_laws<Real>(converted<Real>(model_.inertia));
     surface_ = surface_of<N>(image);
+    mesh_ = surface_mesh_of<N>(image);
     has_model_ = true;
     reset();
   }
@@ -157,6 +166,7 @@ void AttitudeEstimator<N>::reload(const std::uint8_t* image) {
   take_model_image<N>(image, model_, network_.weights());
   laws_ = motion_laws<Real>(converted<Real>(model_.inertia));
   surface_ = surface_of<N>(image);
+  mesh_ = surface_mesh_of<N>(image);
   network_.use(fastest_kernels<N>());
   has_model_ = true;
 }
@@ -171,9 +181,32 @@ FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, const FrameInter
                                        AttitudeEstimate& estimate) {
   const DepthLoops& loops = fastest_depth_loops(network_.kernels().set);
   const FrameStatus status =
-      make_depth_image(frame, model_.projection, network_.projection_scratch(), image_, loops);
-  if (status == FrameStatus::kOk) step(image_, interval, estimate);
+      make_depth_image(frame, model_.projection, network_.projection_scratch(), depth_image(), loops);
+  if (status != FrameStatus::kOk) return status;
+  mask_ = network_.projection_scratch().mask;
+  step(depth_image(), interval, estimate);
+  register_pose(frame, interval, estimate);
   return status;
+}
+
+template <class N>
+void AttitudeEstimator<N>::register_pose(const RangeImage& frame, const FrameInterval& interval,
+                                         AttitudeEstimate& estimate) {
+  if constexpr (N::kIsInteger) {
+    const Motion<Real>& motion = state_.track.motion[estimate.law];
+    const PoseFrame pose_frame{frame,
+                               mask_,
+                               interval.elapsed_ns,
+                               rotation_from_quaternion(interval.q_now_last),
+                               {converted<Fixed>(motion.r_lrf_trf), converted<Fixed>(motion.rate_lrf)},
+                               rotation_from_quaternion(estimate.q_lrf_trf_second),
+                               estimate.second_odds_ppm,
+                               estimate.centroid_lrf_mm,
+                               laws_,
+                               estimate.law};
+    track_pose({mesh_, model_.projection.target_radius_mm, model_.noise}, pose_frame, network_.pose_scratch(),
+               screen_vertices(), state_.pose, estimate.pose);
+  }
 }
 
 template <class N>
@@ -204,13 +237,14 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
   const QuaternionQ30 predicted = quaternion_from_rotation(converted<Fixed>(prediction.r_lrf_trf()));
   estimate.q_lrf_trf_predicted = select(prediction.has_track, predicted, kIdentityQ30);
   estimate.has_prediction = prediction.has_track;
-  estimate.rate_lrf_urad_s = urad_s(rate);
+  estimate.rate_lrf_urad_s = rate_urad_s(rate);
   estimate.rate_is_ambiguous = prediction.has_track & turns_too_far(rate, prediction.elapsed_periods);
   estimate.law = state_.track.law();
   const Alternative second = second_of<Real>(hypotheses, tracked.r_lrf_trf);
   estimate.q_lrf_trf_second = second.q_lrf_trf;
   estimate.second_odds_ppm = second.odds_ppm;
   estimate.centroid_lrf_mm = position_lrf_mm(image);
+  estimate.pose = {};
   estimate.explained = explained_share(image, model_.projection, model_.noise, attitude, surface_,
                                        network_.explained_share_scratch());
 
@@ -232,7 +266,17 @@ PropagatedMotion AttitudeEstimator<N>::propagated(const FrameInterval& interval)
       turned<Real>(propagate<Real>(state_.track.motion[law], laws_[law], interval.elapsed_ns),
                    converted<Real>(rotation_from_quaternion(interval.q_now_last)));
   return {quaternion_from_rotation(converted<Fixed>(later.r_lrf_trf)),
-          urad_s(converted<Fixed>(later.rate_lrf))};
+          rate_urad_s(converted<Fixed>(later.rate_lrf))};
+}
+
+template <class N>
+PoseState AttitudeEstimator<N>::propagated_pose(const FrameInterval& interval) const {
+  if constexpr (N::kIsInteger) {
+    return pose_state(
+        later_pose(state_.pose, laws_, interval.elapsed_ns, rotation_from_quaternion(interval.q_now_last)));
+  } else {
+    return {};
+  }
 }
 
 template <class N>
@@ -246,6 +290,7 @@ std::uint32_t AttitudeEstimator<N>::crc32_of(const State& state) {
   }
   add_to(crc, state.track.log_likelihood.data(), state.track.log_likelihood.size());
   crc.add_u32(state.track.frames);
+  add_to(crc, state.pose);
   return crc.value();
 }
 
@@ -263,6 +308,7 @@ std::uint32_t AttitudeEstimator<N>::constants_crc32() const {
   add(model_);
   add(laws_);
   add(surface_);
+  add(mesh_);
   add(has_model_);
   return crc.value();
 }

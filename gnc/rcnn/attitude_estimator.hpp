@@ -2,6 +2,7 @@
 // FixedPoint.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include "gnc/rcnn/model_image.hpp"
 #include "gnc/rcnn/network.hpp"
 #include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/pose_tracker.hpp"
 
 namespace tumblesight::gnc {
 
@@ -41,6 +43,7 @@ struct AttitudeEstimate {
   std::uint32_t second_odds_ppm = 0;
   std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
   ExplainedShare explained;  // of this frame, by the target at q_lrf_trf; not known in float32
+  PoseEstimate pose;         // registered; not known in float32
 };
 
 // What tells an attitude that is wrong, by more than 20 degrees, from one that is right.
@@ -72,6 +75,7 @@ class AttitudeEstimator {
   struct State {
     LstmState<N> lstm;
     AttitudeTrack<Real> track;
+    PoseTrackerState pose;
   };
 
   // Validates the whole image, then uses it and resets the state. On any error the model loaded before, if
@@ -86,6 +90,8 @@ class AttitudeEstimator {
   void reload(const std::uint8_t* image);
   bool has_model() const { return has_model_; }
   const ModelHeader& model() const { return model_; }
+  // The target's surface in the loaded image; without triangles in float32.
+  const SurfaceMesh& mesh() const { return mesh_; }
 
   // Forgets all frames seen so far.
   void reset();
@@ -94,7 +100,7 @@ class AttitudeEstimator {
   // `estimate` and the state are unchanged. Requires has_model().
   [[nodiscard]] FrameStatus step(const RangeImage& frame, const FrameInterval& interval,
                                  AttitudeEstimate& estimate);
-  // The same from a depth image (tests, training, evaluation).
+  // The same from a depth image (tests, training, evaluation); without a pose.
   void step(const DepthImage& image, const FrameInterval& interval, AttitudeEstimate& estimate);
   // One nominal period after the last frame, without a turn of the chaser.
   [[nodiscard]] FrameStatus step(const RangeImage& frame, AttitudeEstimate& estimate) {
@@ -104,6 +110,8 @@ class AttitudeEstimator {
 
   // The motion of the track `interval` after the last frame; changes nothing. Requires frames() > 0.
   PropagatedMotion propagated(const FrameInterval& interval) const;
+  // The registered pose at the same time; without a meaning as long as there is none.
+  PoseState propagated_pose(const FrameInterval& interval) const;
 
   void save(State& state) const { state = state_; }
   void restore(const State& state) { state_ = state; }
@@ -112,11 +120,12 @@ class AttitudeEstimator {
   // CRC of everything that load() sets and no step changes, except float32 weights. Computed over the memory
   // of this processor: the value differs between processors.
   std::uint32_t constants_crc32() const;
-  // Of the last frame that was not refused.
-  const DepthImage& depth_image() const { return image_; }
   Network<N>& network() { return network_; }
 
  private:
+  // Registers the frame of `estimate`, whose depth image and mask are in use.
+  void register_pose(const RangeImage& frame, const FrameInterval& interval, AttitudeEstimate& estimate);
+
   // Results of the stages of a frame; members, to keep the stack small.
   struct Intermediates {
     OutputVector<Real> output;
@@ -126,13 +135,19 @@ class AttitudeEstimator {
     HeadOutput<Real> head;
   };
 
+  // Registration begins when the depth image has been used.
+  DepthImage& depth_image() { return in_place<DepthImage>(frame_memory_); }
+  ScreenVertices& screen_vertices() { return in_place<ScreenVertices>(frame_memory_); }
+
   Network<N> network_;
   State state_;
   Intermediates intermediates_;
   ModelHeader model_;
   MotionLaws<Real> laws_;
-  SurfaceModel surface_;  // in the model image
-  DepthImage image_;
+  SurfaceModel surface_;  // in the model image, as is mesh_
+  SurfaceMesh mesh_;
+  RayMask mask_;  // of the frame
+  alignas(64) std::array<std::byte, std::max(sizeof(DepthImage), sizeof(ScreenVertices))> frame_memory_;
   bool has_model_ = false;
 };
 

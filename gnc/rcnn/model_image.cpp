@@ -132,6 +132,27 @@ struct SectionCheck {
   }
 };
 
+// Whether a section of SurfaceMesh::kMaxBytes is a sound mesh and then zeros.
+bool is_possible_mesh(const std::uint8_t* section) {
+  if (!SurfaceMesh::is_sound(section, SurfaceMesh::kMaxBytes)) return false;
+  const SurfaceMesh mesh(section);
+  const auto count = [](int number) { return static_cast<std::size_t>(number); };
+  std::uint8_t behind = 0;
+  for (std::size_t at = SurfaceMesh::kHeaderBytes + 6 * count(mesh.vertices()) + 6 * count(mesh.triangles()) +
+                        8 * count(mesh.edges());
+       at < SurfaceMesh::kMaxBytes; ++at) {
+    behind = static_cast<std::uint8_t>(behind | section[at]);
+  }
+  return behind == 0;
+}
+
+template <class N>
+bool has_possible_surface(const std::uint8_t* image) {
+  if (!N::kIsInteger) return true;
+  return surface_of<N>(image).points() <= SurfaceModel::kMaxPoints &&
+         is_possible_mesh(image + (kModelImageSize<N> - kMeshBytes<N>));
+}
+
 // Uses only the number and sizes of the tensors in `weights`.
 template <class N>
 ModelStatus check_sections(const std::uint8_t* image, std::size_t size_bytes,
@@ -142,10 +163,12 @@ ModelStatus check_sections(const std::uint8_t* image, std::size_t size_bytes,
   SectionCheck check{image, kModelDataOffset<N>};
   for_each_tensor(
       weights, [&check](const char*, const char*, const auto& tensor) { check.next(size_in_image(tensor)); });
-  if (kSurfaceBytes < N >> 0) check.next(kSurfaceBytes<N>);
+  if (N::kIsInteger) {
+    check.next(kSurfaceBytes<N>);
+    check.next(kMeshBytes<N>);
+  }
   if (check.status != ModelStatus::kOk) return check.status;
-  const bool possible =
-      surface_of<N>(image).points() <= SurfaceModel::kMaxPoints && has_possible_values(image, weights);
+  const bool possible = has_possible_surface<N>(image) && has_possible_values(image, weights);
   return possible ? ModelStatus::kOk : ModelStatus::kBadValue;
 }
 

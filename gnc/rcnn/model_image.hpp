@@ -4,7 +4,7 @@
 // All numbers are little-endian. Floats are IEEE 754 binary32 and occur only in float32 images.
 //   offset  size  field
 //        0     4  magic "TSRM"
-//        4     2  format version: 3 in float32, 4 in fixed point
+//        4     2  format version: 3 in float32, 5 in fixed point
 //        6     2  header size (96)
 //        8     4  total size of the image in bytes
 //       12     4  architecture hash: network_shape.hpp
@@ -16,14 +16,16 @@
 //       60    24  inertia of the target in the TRF, scaled to a trace of 3, signed Q7.24:
 //                 xx, yy, zz, xy, xz, yz
 //       84     4  numerics: 0 float32, 1 fixed point
-//       88     4  number of sections: 21 in float32, 32 in fixed point
+//       88     4  number of sections: 21 in float32, 33 in fixed point
 //       92     4  CRC-32 of bytes 0..91, the section table and the zeros after it
 //       96  16 n  section table, 4 bytes per field: id (1, 2, ...), offset, size in bytes,
 //                 CRC-32 of the section
 //        -     -  zeros up to the next multiple of 64, where the first section begins
 //        -     -  sections without gaps: the tensors in the order of for_each_tensor().
 //                 Fixed-point weights take one byte each, all other numbers four. In fixed point the last
-//                 section is the target's surface (gnc/registration/surface_model.hpp)
+//                 two sections are the target's surface: points of it
+//                 (gnc/registration/surface_model.hpp), then its triangles
+//                 (gnc/registration/surface_mesh.hpp) and zeros up to SurfaceMesh::kMaxBytes
 #pragma once
 
 #include <array>
@@ -34,25 +36,29 @@
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network.hpp"
 #include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/surface_mesh.hpp"
 #include "gnc/registration/surface_model.hpp"
 
 namespace tumblesight::gnc {
 
 template <class N>
-inline constexpr std::uint16_t kModelFormatVersion = N::kIsInteger ? 4 : 3;
+inline constexpr std::uint16_t kModelFormatVersion = N::kIsInteger ? 5 : 3;
 inline constexpr std::size_t kModelHeaderSize = 96;
 inline constexpr std::size_t kModelSectionEntrySize = 16;
 // Only the image that flies has a surface. In float32 attitudes are compared, not judged.
 template <class N>
 inline constexpr std::size_t kSurfaceBytes = N::kIsInteger ? SurfaceModel::kBytes : 0;
 template <class N>
-inline constexpr std::size_t kModelSections = kTensorCount<N> + (kSurfaceBytes<N> > 0 ? 1 : 0);
+inline constexpr std::size_t kMeshBytes = N::kIsInteger ? SurfaceMesh::kMaxBytes : 0;
+template <class N>
+inline constexpr std::size_t kModelSections = kTensorCount<N> + (N::kIsInteger ? 2 : 0);
 template <class N>
 inline constexpr std::size_t kModelDataOffset = (kModelHeaderSize +
                                                  kModelSections<N> * kModelSectionEntrySize + 63) /
                                                 64 * 64;
 template <class N>
-inline constexpr std::size_t kModelImageSize = kModelDataOffset<N> + kWeightBytes<N> + kSurfaceBytes<N>;
+inline constexpr std::size_t kModelImageSize =
+    kModelDataOffset<N> + kWeightBytes<N> + kSurfaceBytes<N> + kMeshBytes<N>;
 
 struct ModelHeader {
   std::array<char, 32> target{};  // NUL-terminated name of the spacecraft the network was trained for
@@ -76,8 +82,9 @@ enum class ModelStatus : std::uint8_t {
   kBadTarget,        // of another spacecraft, or malformed target name
   kBadSection,       // section id, offset or size does not match the network
   kBadSectionCrc,    // weights damaged
-  kBadValue,     // impossible depth projection or inertia; a weight that is not finite; integers with which a
-                 // sum could leave 32 bits; a shift out of range; too many points on the surface
+  kBadValue,  // impossible depth projection or inertia; a weight that is not finite; integers with which a
+              // sum could leave 32 bits; a shift out of range; too many points on the surface; a mesh of it
+              // that SurfaceMesh::is_sound() refuses or that does not end in zeros
   kBadNumerics,  // intact, but fixed point where float32 is expected, or vice versa
 };
 const char* to_string(ModelStatus status);
@@ -103,12 +110,16 @@ template <class N>
 template <class N>
 void take_model_image(const std::uint8_t* image, ModelHeader& header, NetworkWeights<N>& weights);
 
-// The target's surface in an image that has passed the check; without points in float32. The image must stay
-// in place.
+// Points and mesh of the target's surface in an image that has passed the check; without points and without
+// triangles in float32. The image must stay in place.
 template <class N>
 SurfaceModel surface_of(const std::uint8_t* image) {
-  return kSurfaceBytes<N> > 0 ? SurfaceModel(image + (kModelImageSize<N> - kSurfaceBytes<N>))
-                              : SurfaceModel();
+  return N::kIsInteger ? SurfaceModel(image + (kModelImageSize<N> - kMeshBytes<N> - kSurfaceBytes<N>))
+                       : SurfaceModel();
+}
+template <class N>
+SurfaceMesh surface_mesh_of(const std::uint8_t* image) {
+  return N::kIsInteger ? SurfaceMesh(image + (kModelImageSize<N> - kMeshBytes<N>)) : SurfaceMesh();
 }
 
 // The CRC-32 that identifies an image (ModelHeader::crc32), from an image that has passed the check.
@@ -121,13 +132,18 @@ bool is_float32(const std::uint8_t* image, std::size_t size_bytes);
 // or not printable ASCII.
 [[nodiscard]] bool set_target(ModelHeader& header, const char* name);
 
+// The sections of the target's surface; nullptr: zeros, which stand for a shape that is not known.
+struct TargetSurface {
+  const std::uint8_t* points = nullptr;  // SurfaceModel::kBytes
+  const std::uint8_t* mesh = nullptr;    // SurfaceMesh::kMaxBytes
+};
+
 // Writes an image and returns its size, kModelImageSize<N>. Returns 0 and writes nothing if `capacity` is
 // smaller. The reader checks the values, not this function. Flight programs do not call it, so the linker
-// leaves it out. `surface`: the section, SurfaceModel::kBytes, which float32 images do not have; nullptr: it
-// has no points.
+// leaves it out. `surface`: not used for float32 images, which have none.
 template <class N>
 [[nodiscard]] std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights,
                                             std::uint8_t* out, std::size_t capacity,
-                                            const std::uint8_t* surface = nullptr);
+                                            const TargetSurface& surface = {});
 
 }  // namespace tumblesight::gnc

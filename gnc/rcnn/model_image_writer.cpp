@@ -24,7 +24,7 @@ void write(const std::array<Integer, kCount>& tensor, std::uint8_t* to) {
 
 template <class N>
 std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>& weights, std::uint8_t* out,
-                              std::size_t capacity, const std::uint8_t* surface) {
+                              std::size_t capacity, const TargetSurface& surface) {
   const std::size_t total = kModelImageSize<N>;
   if (capacity < total) return 0;
   std::memset(out, 0, kModelDataOffset<N>);
@@ -62,23 +62,27 @@ std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>
     write(tensor, out + offset);
     add_section(size_in_image(tensor));
   });
-  if (kSurfaceBytes < N >> 0) {
-    if (surface == nullptr) {
-      std::memset(out + offset, 0, kSurfaceBytes<N>);
-    } else {
-      std::memcpy(out + offset, surface, kSurfaceBytes<N>);
-    }
-    add_section(kSurfaceBytes<N>);
+  if (N::kIsInteger) {
+    const auto add_surface = [&](const std::uint8_t* section, std::size_t size) {
+      if (section == nullptr) {
+        std::memset(out + offset, 0, size);
+      } else {
+        std::memcpy(out + offset, section, size);
+      }
+      add_section(size);
+    };
+    add_surface(surface.points, kSurfaceBytes<N>);
+    add_surface(surface.mesh, kMeshBytes<N>);
   }
   put_u32(out + kOffsetHeaderCrc, header_crc(out, kModelSections<N>));
   return total;
 }
 
 template std::size_t write_model_image<FixedPoint>(const ModelHeader&, const NetworkWeights<FixedPoint>&,
-                                                   std::uint8_t*, std::size_t, const std::uint8_t*);
+                                                   std::uint8_t*, std::size_t, const TargetSurface&);
 #if TUMBLESIGHT_FLOAT32
 template std::size_t write_model_image<Float32>(const ModelHeader&, const NetworkWeights<Float32>&,
-                                                std::uint8_t*, std::size_t, const std::uint8_t*);
+                                                std::uint8_t*, std::size_t, const TargetSurface&);
 #endif
 
 }  // namespace tumblesight::gnc

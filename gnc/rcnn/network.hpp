@@ -12,6 +12,7 @@
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network_shape.hpp"
 #include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/pose_tracker.hpp"
 
 namespace tumblesight::gnc {
 
@@ -129,6 +130,14 @@ template <class Network, class Visitor>
   });
 }
 
+// An object in memory that several use in turn. Each is written before it is read, so that what another one
+// left there is never used.
+template <class Object, std::size_t kSize>
+Object& in_place(std::array<std::byte, kSize>& buffer) {
+  static_assert(sizeof(Object) <= kSize);
+  return *reinterpret_cast<Object*>(buffer.data());
+}
+
 // Memory of the activations: two buffers for the layers' inputs, used in turn, and one for their sums. Each
 // buffer is as large as the largest object that it ever holds.
 template <class N>
@@ -150,15 +159,9 @@ class Arena {
   // Over all three buffers.
   DepthImageScratch& projection_scratch() { return in_place<DepthImageScratch>(all_); }
   ExplainedShareScratch& explained_share_scratch() { return in_place<ExplainedShareScratch>(all_); }
+  PoseScratch& pose_scratch() { return in_place<PoseScratch>(all_); }
 
  private:
-  // Every object is written before it is read, so the values of another layer in the buffer are never used.
-  template <class Object, std::size_t kSize>
-  static Object& in_place(std::array<std::byte, kSize>& buffer) {
-    static_assert(sizeof(Object) <= kSize);
-    return *reinterpret_cast<Object*>(buffer.data());
-  }
-
   using Totals = LayerTotals<N>;
   struct Buffers {
     alignas(64) std::array<std::byte, Totals::template kLargestInput<0>> even;
@@ -167,7 +170,7 @@ class Arena {
   };
   union {
     Buffers buffers_;
-    alignas(64) std::array<std::byte, sizeof(DepthImageScratch)> all_;
+    alignas(64) std::array<std::byte, std::max(sizeof(DepthImageScratch), sizeof(PoseScratch))> all_;
   };
 };
 
@@ -189,6 +192,8 @@ class Network {
   DepthImageScratch& projection_scratch() { return arena_.projection_scratch(); }
   // The same for the check of the attitude: use it after infer_sequence() only.
   ExplainedShareScratch& explained_share_scratch() { return arena_.explained_share_scratch(); }
+  // And for registration.
+  PoseScratch& pose_scratch() { return arena_.pose_scratch(); }
 
   // Of the last infer_frame(): the output of layer kFeatureLayer, after ReLU.
   const Features<N>& features() const { return features_; }

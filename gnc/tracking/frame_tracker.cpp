@@ -20,6 +20,22 @@ bool holds_at(const ChaserAttitude& chaser, std::int64_t time_ns, std::int64_t t
   return later - earlier <= static_cast<std::uint64_t>(tolerance_ns);
 }
 
+// Whether the turn of the LRF since the last used frame is known.
+bool knows_turn(const ChaserAttitude& chaser, std::int64_t time_ns, const FrameTrackerLimits& limits,
+                const FrameTrackerState& state) {
+  return state.has_chaser_attitude && holds_at(chaser, time_ns, limits.chaser_time_tolerance_ns);
+}
+
+// From the last used frame.
+FrameInterval interval_until(std::int64_t time_ns, const ChaserAttitude& chaser,
+                             const FrameTrackerLimits& limits, const FrameTrackerState& state) {
+  FrameInterval interval;
+  interval.elapsed_ns = time_after(state.gate.last_exposure_time_ns(), time_ns);
+  if (knows_turn(chaser, time_ns, limits, state))
+    interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
+  return interval;
+}
+
 }  // namespace
 
 QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const QuaternionQ30& q_inertial_lrf_now) {
@@ -97,14 +113,14 @@ template <class N>
 PropagatedMotion FrameTracker<N>::motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
                                             const FrameTrackerLimits& limits, const FrameTrackerState& state,
                                             Doubts& doubts) const {
-  FrameInterval interval;
-  interval.elapsed_ns = time_after(state.gate.last_exposure_time_ns(), time_ns);
-  if (state.has_chaser_attitude && holds_at(chaser, time_ns, limits.chaser_time_tolerance_ns)) {
-    interval.q_now_last = turn_of_lrf(state.q_inertial_lrf, chaser.q_inertial_lrf);
-  } else {
-    doubts |= kChaserNowUnknown;
-  }
-  return estimator_.propagated(interval);
+  if (!knows_turn(chaser, time_ns, limits, state)) doubts |= kChaserNowUnknown;
+  return estimator_.propagated(interval_until(time_ns, chaser, limits, state));
+}
+
+template <class N>
+PoseState FrameTracker<N>::pose_at(std::int64_t time_ns, const ChaserAttitude& chaser,
+                                   const FrameTrackerLimits& limits, const FrameTrackerState& state) const {
+  return estimator_.propagated_pose(interval_until(time_ns, chaser, limits, state));
 }
 
 template class FrameTracker<FixedPoint>;

@@ -111,6 +111,9 @@ class FrameTracker {
   PropagatedMotion motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
                              const FrameTrackerLimits& limits, const FrameTrackerState& state,
                              Doubts& doubts) const;
+  // The registered pose at that time, in the same frame; requires one.
+  PoseState pose_at(std::int64_t time_ns, const ChaserAttitude& chaser, const FrameTrackerLimits& limits,
+                    const FrameTrackerState& state) const;
 
  private:
   AttitudeEstimator<N>& estimator_;

@@ -29,6 +29,18 @@ inline constexpr std::uint8_t kDoubtChaserNowUnknown = 32;  // q_lrf_trf_now is 
 inline constexpr std::uint8_t kDoubtUnexplained =
     64;  // kDoubtful: the target at this attitude does not explain the frame
 
+// Bits of AttitudeReport::pose_doubts: why the pose is not verified. 0: it is.
+inline constexpr std::uint8_t kPoseDoubtUnknown = 1;  // there is none: no surface in the model image, or the
+                                                      // target is nearer than two of its radii
+inline constexpr std::uint8_t kPoseDoubtCoasts = 2;   // predicted: this frame could not be registered
+inline constexpr std::uint8_t kPoseDoubtRanges = 4;   // the ranges do not lie on the target's surface
+inline constexpr std::uint8_t kPoseDoubtOutline = 8;  // returns beside the target, or too many missing on it
+inline constexpr std::uint8_t kPoseDoubtAmbiguous = 16;  // another attitude explains the frames about as well
+inline constexpr std::uint8_t kPoseDoubtMotion = 32;  // fewer than three poses, or they contradict each other
+inline constexpr std::uint8_t kPoseDoubtUncertain =
+    64;                                                 // a standard deviation of the attitude above a degree
+inline constexpr std::uint8_t kPoseDoubtNetwork = 128;  // q_lrf_trf is more than 20 degrees away
+
 // Quaternions: Hamilton, scalar first (w, x, y, z), target frame (TRF) to LiDAR frame (LRF), unit norm, Q30.
 // Expected errors: 0 ... pi.
 struct AttitudeReport {
@@ -56,6 +68,31 @@ struct AttitudeReport {
   std::array<std::int32_t, 4> q_lrf_trf_second{1 << 30, 0, 0, 0};
   std::uint32_t second_odds_ppm = 0;
   std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
+  // The registered pose at the exposure, in the LRF of the exposure, from the last ten frames: attitude,
+  // position of the TRF's origin, angular rate of the target relative to the inertial frame, and velocity of
+  // the origin relative to the sensor in axes that do not turn.
+  std::uint8_t pose_doubts = kPoseDoubtUnknown;  // 0: verified
+  std::uint8_t pose_frames = 0;                  // that the pose was fitted to
+  std::array<std::int32_t, 4> pose_q_lrf_trf{1 << 30, 0, 0, 0};
+  std::array<std::int32_t, 3> pose_origin_lrf_um{};
+  std::array<std::int32_t, 3> pose_rate_lrf_urad_s{};
+  std::array<std::int32_t, 3> pose_velocity_lrf_um_s{};
+  // Covariance of turn about the axes of the LRF, rate, position and velocity, three each: standard
+  // deviations [urad, urad/s, um, um/s], and correlations below the diagonal, row by row, Q15.
+  std::array<std::uint32_t, 12> pose_sigma{};
+  std::array<std::int16_t, 66> pose_correlation_q15{};
+  // The pose at time_ns, in the LRF of that time as q_lrf_trf_now is.
+  std::array<std::int32_t, 4> pose_q_lrf_trf_now{1 << 30, 0, 0, 0};
+  std::array<std::int32_t, 3> pose_origin_lrf_now_um{};
+  std::array<std::int32_t, 3> pose_rate_lrf_now_urad_s{};
+  std::array<std::int32_t, 3> pose_velocity_lrf_now_um_s{};
+  // What verifies it: mean squared difference of the ranges over their variance, Q8; shares of the returns
+  // beside the target and of the target's rays without a return; advantage over the best alternative [nats],
+  // Q8.
+  std::uint32_t pose_mean_square_q8 = 0;
+  std::uint32_t pose_unexplained_ppm = 0;
+  std::uint32_t pose_missing_ppm = 0;
+  std::int32_t pose_advantage_q8 = 0;
 };
 
 }  // namespace tumblesight::hal

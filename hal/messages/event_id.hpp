@@ -45,6 +45,8 @@ enum class EventId : std::uint16_t {
   kEstimatorResetByFault = 41,  // [Fault, -, -]
   kAttitudeDoubtful = 42,       // [sequence number, expected error in mrad, 1: jump + 2: unexplained]
   kFrameWithoutChaser = 43,     // [sequence number, exposure minus last accepted exposure, -]
+  kPoseVerified = 44,           // [sequence number, frames it was fitted to, -]; after one that was not
+  kPoseDoubtful = 45,           // [sequence number, AttitudeReport::pose_doubts, -]; after a verified one
 
   kAssertion = 50,      // [file_id of the source file, line, assertions since start]; the mode is SAFE now
   kFaultPersists = 51,  // [Fault, Response taken, cycles with the fault that its rule requires]
@@ -99,7 +101,7 @@ struct EventRule {
   EventId id;
   Severity severity;
 };
-inline constexpr std::array<EventRule, 62> kEventRules{{
+inline constexpr std::array<EventRule, 64> kEventRules{{
     {EventId::kModelActivated, Severity::kInformation},
     {EventId::kModelRefused, Severity::kError},
     {EventId::kUploadFailed, Severity::kError},
@@ -124,6 +126,8 @@ inline constexpr std::array<EventRule, 62> kEventRules{{
     {EventId::kEstimatorResetByFault, Severity::kWarning},
     {EventId::kAttitudeDoubtful, Severity::kInformation},
     {EventId::kFrameWithoutChaser, Severity::kWarning},
+    {EventId::kPoseVerified, Severity::kInformation},
+    {EventId::kPoseDoubtful, Severity::kInformation},
     {EventId::kAssertion, Severity::kError},
     {EventId::kFaultPersists, Severity::kWarning},
     {EventId::kFaultOver, Severity::kInformation},

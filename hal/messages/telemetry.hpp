@@ -52,6 +52,7 @@ struct Telemetry {
   std::uint32_t sequence_gaps = 0;          // sequence numbers skipped
   std::uint32_t estimator_resets = 0;
   std::uint32_t attitudes_doubtful = 0;
+  std::uint32_t poses_verified = 0;
 
   std::uint32_t events = 0;             // sum of sent, waiting, suppressed and lost events
   std::uint32_t events_suppressed = 0;  // too many of the same kind

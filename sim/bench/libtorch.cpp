@@ -126,23 +126,23 @@ class LibTorch : public Peer {
   explicit LibTorch(const Float32Model& model)
       : cnn_(optimized(model, "Cnn", cnn_script())),
         recurrent_(optimized(model, "Recurrent", recurrent_script())) {
-    const std::vector<float> image(shape::kImageSide * shape::kImageSide);
+    const PeerImage image{gnc::DepthImage{}};
     gnc::Features<gnc::Float32> features;
     gnc::OutputVector<float> out;
     gnc::LstmState<gnc::Float32> state;
     gnc::HeadOutput<float> head;
     for (int i = 0; i < kWarmUps; ++i) {
-      run_frame(image.data(), features, out);
+      run_frame(image, features, out);
       run_sequence({}, state, head);
     }
   }
 
   std::string name() const override { return std::string("LibTorch ") + TORCH_VERSION; }
 
-  void run_frame(const float* image, gnc::Features<gnc::Float32>& features,
+  void run_frame(const PeerImage& image, gnc::Features<gnc::Float32>& features,
                  gnc::OutputVector<float>& out) override {
     const c10::InferenceMode no_gradients;
-    const torch::Tensor input = torch::from_blob(const_cast<float*>(image),
+    const torch::Tensor input = torch::from_blob(const_cast<float*>(image.values.data()),
                                                  {1, 1, shape::kImageSide, shape::kImageSide}, torch::kFloat);
     const auto results = cnn_.forward({input}).toTuple();
     copy_to(results->elements()[0], features);

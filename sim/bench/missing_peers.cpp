@@ -8,6 +8,18 @@ std::unique_ptr<Peer> make_onnx_runtime(const Float32Model&, const std::string&,
   reason = "built without ONNX: install libonnx-dev and libprotobuf-dev and configure again";
   return nullptr;
 }
+std::unique_ptr<Peer> make_onnx_runtime_int8(const FixedPointModel&, const std::string&,
+                                             std::string& reason) {
+  reason = "built without ONNX: install libonnx-dev and libprotobuf-dev and configure again";
+  return nullptr;
+}
+#endif
+
+#if !TUMBLESIGHT_HAS_ONEDNN
+std::unique_ptr<Peer> make_onednn_int8(const FixedPointModel&, std::string& reason) {
+  reason = "built without oneDNN: install libdnnl-dev and configure again";
+  return nullptr;
+}
 #endif
 
 #if !TUMBLESIGHT_HAS_TRAINING

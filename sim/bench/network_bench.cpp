@@ -20,7 +20,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kPeerMeasured_s = 0.6;
 constexpr std::size_t kFewestRuns = 30;
-constexpr double kSameOutput = 1e-3;  // largest difference allowed, relative to the largest output
+// Largest difference allowed, relative to the largest value of an output. In int8 activations behind conv3
+// have fewer bits than in fixed point.
+constexpr double kSameOutput = 1e-3;
+constexpr double kSameInt8Output = 0.1;
 
 double us_between(Clock::time_point begin, Clock::time_point end) {
   return std::chrono::duration<double, std::micro>(end - begin).count();
@@ -159,47 +162,70 @@ std::vector<BenchRow> bench_sets(const BenchSubject& subject,
   return rows;
 }
 
-// Our network and a peer's on the same frames, each with its own state.
+float to_float(float value) {
+  return value;
+}
+float to_float(std::int16_t value) {
+  return static_cast<float>(value);
+}
+float to_float(gnc::Fixed value) {
+  return std::ldexp(static_cast<float>(value.raw()), -gnc::Fixed::kFractionBits);
+}
+
+// Largest difference of an output over all frames, relative to its largest value.
+class OutputDifference {
+ public:
+  template <class Ours, class Theirs>
+  void add(const Ours& ours, const Theirs& theirs) {
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      const double expected = to_float(ours[i]);
+      difference_ = std::max(difference_, std::abs(expected - theirs[i]));
+      largest_ = std::max(largest_, std::abs(expected));
+    }
+  }
+  double relative() const { return difference_ / largest_; }
+
+ private:
+  double difference_ = 0.0, largest_ = 1e-9;
+};
+
+// Our network in numerics N and a peer's on the same frames, each with its own state.
+template <class N>
 class Comparison {
  public:
-  Comparison(Peer& peer, const Float32Model& model, const std::vector<gnc::RangeImage>& frames)
-      : peer_(peer), network_(std::make_unique<gnc::Network<gnc::Float32>>()) {
-    network_->weights() = model.weights;
+  Comparison(Peer& peer, const gnc::ModelHeader& header, const gnc::NetworkWeights<N>& weights,
+             const std::vector<gnc::RangeImage>& frames)
+      : peer_(peer), network_(std::make_unique<gnc::Network<N>>()) {
+    network_->weights() = weights;
     const auto scratch = std::make_unique<gnc::DepthImageScratch>();
     for (const gnc::RangeImage& frame : frames) {
       auto image = std::make_unique<gnc::DepthImage>();
-      if (gnc::make_depth_image(frame, model.header.projection, *scratch, *image) != gnc::FrameStatus::kOk)
+      if (gnc::make_depth_image(frame, header.projection, *scratch, *image) != gnc::FrameStatus::kOk)
         continue;
-      pixels_.emplace_back(image->depth.begin(), image->depth.end());
-      for (float& pixel : pixels_.back()) pixel /= 65536.0F;
+      their_images_.emplace_back(*image);
       images_.push_back(std::move(image));
     }
   }
 
-  // Largest difference relative to the largest output.
   double largest_difference() {
-    gnc::LstmState<gnc::Float32> our_state{}, their_state{};
-    double difference = 0.0, largest = 1e-9;
-    const auto compare = [&](const auto& ours, const auto& theirs) {
-      for (std::size_t i = 0; i < ours.size(); ++i) {
-        difference = std::max(difference, std::abs(static_cast<double>(ours[i]) - theirs[i]));
-        largest = std::max(largest, std::abs(static_cast<double>(ours[i])));
-      }
-    };
+    gnc::LstmState<N> our_state{};
+    gnc::LstmState<gnc::Float32> their_state{};
+    OutputDifference of_output, of_features, of_head;
     for (std::size_t i = 0; i < images_.size(); ++i) {
-      gnc::OutputVector<float> our_output, their_output;
-      gnc::HeadOutput<float> our_head, their_head;
+      gnc::OutputVector<typename N::Real> our_output;
+      gnc::HeadOutput<typename N::Real> our_head;
+      gnc::OutputVector<float> their_output;
+      gnc::HeadOutput<float> their_head;
       gnc::Features<gnc::Float32> features;
       network_->infer_frame(*images_[i], our_output);
-      peer_.run_frame(pixels_[i].data(), features, their_output);
-      compare(our_output, their_output);
-      compare(network_->features(), features);
-      const gnc::LstmInput<gnc::Float32> input = lstm_input(features);
-      network_->infer_sequence(input, our_state, our_head);
-      peer_.run_sequence(input, their_state, their_head);
-      compare(our_head, their_head);
+      peer_.run_frame(their_images_[i], features, their_output);
+      of_output.add(our_output, their_output);
+      of_features.add(network_->features(), features);
+      network_->infer_sequence(lstm_input<N>(features), our_state, our_head);
+      peer_.run_sequence(lstm_input<gnc::Float32>(features), their_state, their_head);
+      of_head.add(our_head, their_head);
     }
-    return difference / largest;
+    return std::max({of_output.relative(), of_features.relative(), of_head.relative()});
   }
 
   double peer_us(std::size_t i) {
@@ -207,27 +233,49 @@ class Comparison {
     gnc::HeadOutput<float> head;
     gnc::Features<gnc::Float32> features;
     return timed([&] {
-      peer_.run_frame(pixels_[i % pixels_.size()].data(), features, output);
-      peer_.run_sequence(lstm_input(features), state_, head);
+      peer_.run_frame(their_images_[i % their_images_.size()], features, output);
+      peer_.run_sequence(lstm_input<gnc::Float32>(features), state_, head);
     });
   }
 
  private:
   // The features only. The rest of the input comes from algebra that is not part of the network.
-  static gnc::LstmInput<gnc::Float32> lstm_input(const gnc::Features<gnc::Float32>& features) {
-    gnc::LstmInput<gnc::Float32> input{};
-    std::copy(features.begin(), features.end(), input.begin());
+  template <class Numerics>
+  static gnc::LstmInput<Numerics> lstm_input(const gnc::Features<gnc::Float32>& features) {
+    gnc::LstmInput<Numerics> input{};
+    for (std::size_t i = 0; i < features.size(); ++i)
+      input[i] = static_cast<gnc::DenseInput<Numerics>>(features[i]);
     return input;
   }
 
   Peer& peer_;
-  std::unique_ptr<gnc::Network<gnc::Float32>> network_;
+  std::unique_ptr<gnc::Network<N>> network_;
   std::vector<std::unique_ptr<gnc::DepthImage>> images_;
-  std::vector<std::vector<float>> pixels_;
+  std::vector<PeerImage> their_images_;
   gnc::LstmState<gnc::Float32> state_{};
 };
 
+template <class N>
+BenchRow bench_with(Peer& peer, Comparison<N>& comparison, double limit) {
+  const double difference = comparison.largest_difference();
+  if (!(difference < limit)) {
+    throw std::runtime_error(
+        fmt::format("the outputs of {} differ from ours by {:.2g} of the largest output; the limit is {:g}",
+                    peer.name(), difference, limit));
+  }
+  const Times times = measured(kPeerMeasured_s, [&](std::size_t i) { return comparison.peer_us(i); });
+  return {peer.name(), peer.is_int8() ? "int8" : "float32", "", times.median_us, times.min_us, gnc::kMacCount,
+          {}};
+}
+
 }  // namespace
+
+PeerImage::PeerImage(const gnc::DepthImage& image) {
+  for (const std::uint16_t depth : image.depth) {
+    gnc::to_conv_input(depth, values.emplace_back());
+    gnc::to_conv_input(depth, counts.emplace_back());
+  }
+}
 
 std::vector<BenchRow> bench_numerics(const BenchSubject& subject,
                                      const std::function<void(const std::string&)>& started) {
@@ -237,15 +285,18 @@ std::vector<BenchRow> bench_numerics(const BenchSubject& subject,
 }
 
 BenchRow bench_peer(Peer& peer, const Float32Model& model, const std::vector<gnc::RangeImage>& frames) {
-  Comparison comparison(peer, model, frames);
-  const double difference = comparison.largest_difference();
-  if (!(difference < kSameOutput)) {
-    throw std::runtime_error(
-        fmt::format("the outputs of {} differ from ours by {:.2g} of the largest output; the limit is {:g}",
-                    peer.name(), difference, kSameOutput));
-  }
-  const Times times = measured(kPeerMeasured_s, [&](std::size_t i) { return comparison.peer_us(i); });
-  return {peer.name(), "float32", "", times.median_us, times.min_us, gnc::kMacCount, {}};
+  Comparison<gnc::Float32> comparison(peer, model.header, model.weights, frames);
+  return bench_with(peer, comparison, kSameOutput);
+}
+
+BenchRow bench_peer(Peer& peer, const FixedPointModel& model, const std::vector<gnc::RangeImage>& frames) {
+  Comparison<gnc::FixedPoint> comparison(peer, model.header, model.weights, frames);
+  return bench_with(peer, comparison, kSameInt8Output);
+}
+
+double largest_difference(Peer& peer, const FixedPointModel& model,
+                          const std::vector<gnc::RangeImage>& frames) {
+  return Comparison<gnc::FixedPoint>(peer, model.header, model.weights, frames).largest_difference();
 }
 
 }  // namespace tumblesight::sim

@@ -1,4 +1,5 @@
-// The peer ONNX Runtime, with the models that `tumblesight export` writes.
+// The peer ONNX Runtime: in float32 with the models that `tumblesight export` writes, in int8 with the CNN of
+// sim/onnx/int8_model.hpp.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -6,6 +7,8 @@
 
 #include "sim/bench/onnx_runtime_library.hpp"
 #include "sim/bench/peer.hpp"
+#include "sim/model/int8_layers.hpp"
+#include "sim/onnx/int8_model.hpp"
 #include "sim/onnx/onnx_model.hpp"
 
 namespace tumblesight::sim {
@@ -52,13 +55,26 @@ class Session {
   std::vector<Library::Object*> inputs_, outputs_;
 };
 
+struct OnnxModels {
+  std::string cnn, recurrent;
+};
+
+const std::vector<float>& pixels(const PeerImage& image, float) {
+  return image.values;
+}
+const std::vector<std::uint8_t>& pixels(const PeerImage& image, std::uint8_t) {
+  return image.counts;
+}
+
+// Pixel: float, or std::uint8_t for a CNN in int8.
+template <class Pixel>
 class OnnxRuntime : public Peer {
  public:
-  OnnxRuntime(const Float32Model& model, std::unique_ptr<Library> library)
+  OnnxRuntime(const OnnxModels& models, std::unique_ptr<Library> library)
       : library_(std::move(library)),
         environment_(library_->make_environment()),
-        cnn_(*library_, environment_, cnn_as_onnx(model)),
-        recurrent_(*library_, environment_, recurrent_as_onnx(model)) {
+        cnn_(*library_, environment_, models.cnn),
+        recurrent_(*library_, environment_, models.recurrent) {
     cnn_.input("image", image_, {1, 1, shape::kImageSide, shape::kImageSide});
     cnn_.output("features", features_);
     cnn_.output("output", out_);
@@ -71,10 +87,11 @@ class OnnxRuntime : public Peer {
   }
 
   std::string name() const override { return "ONNX Runtime " + library_->version(); }
+  bool is_int8() const override { return sizeof(Pixel) == 1; }
 
-  void run_frame(const float* image, gnc::Features<Float32>& features,
+  void run_frame(const PeerImage& image, gnc::Features<Float32>& features,
                  gnc::OutputVector<float>& out) override {
-    std::copy_n(image, image_.size(), image_.begin());
+    std::copy_n(pixels(image, Pixel{}).data(), image_.size(), image_.begin());
     cnn_.run();
     features = features_;
     out = out_;
@@ -94,7 +111,7 @@ class OnnxRuntime : public Peer {
   Library::Handle environment_;
   Session cnn_, recurrent_;
 
-  std::array<float, shape::kImageSide * shape::kImageSide> image_{};
+  std::array<Pixel, shape::kImageSide * shape::kImageSide> image_{};
   gnc::Features<Float32> features_{};
   gnc::OutputVector<float> out_{};
   gnc::LstmInput<Float32> input_{};
@@ -102,18 +119,30 @@ class OnnxRuntime : public Peer {
   gnc::HeadOutput<float> head_{};
 };
 
-}  // namespace
-
-std::unique_ptr<Peer> make_onnx_runtime(const Float32Model& model, const std::string& library,
-                                        std::string& reason) {
+template <class Pixel>
+std::unique_ptr<Peer> make_peer(const OnnxModels& models, const std::string& library, std::string& reason) {
   auto found = Library::open(library, reason);
   if (found == nullptr) return nullptr;
   try {
-    return std::make_unique<OnnxRuntime>(model, std::move(found));
+    return std::make_unique<OnnxRuntime<Pixel>>(models, std::move(found));
   } catch (const std::runtime_error& error) {
     reason = error.what();
     return nullptr;
   }
+}
+
+}  // namespace
+
+std::unique_ptr<Peer> make_onnx_runtime(const Float32Model& model, const std::string& library,
+                                        std::string& reason) {
+  return make_peer<float>({cnn_as_onnx(model), recurrent_as_onnx(model)}, library, reason);
+}
+
+std::unique_ptr<Peer> make_onnx_runtime_int8(const FixedPointModel& model, const std::string& library,
+                                             std::string& reason) {
+  const auto recurrent = recurrent_in_float32(model.header, model.weights);
+  return make_peer<std::uint8_t>(
+      {int8_cnn_as_onnx(model.header, model.weights), recurrent_as_onnx(*recurrent)}, library, reason);
 }
 
 }  // namespace tumblesight::sim

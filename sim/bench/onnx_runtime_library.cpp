@@ -44,6 +44,7 @@ constexpr int kSequential = 0;
 constexpr int kAllOptimizations = 99;
 constexpr int kErrorsOnly = 3;
 constexpr int kFloat = 1;
+constexpr int kUint8 = 2;
 constexpr int kDeviceAllocator = 0;
 constexpr int kDefaultMemory = 0;
 
@@ -147,10 +148,19 @@ OnnxRuntimeLibrary::Handle OnnxRuntimeLibrary::make_session(const Handle& enviro
 
 OnnxRuntimeLibrary::Handle OnnxRuntimeLibrary::make_tensor(float* numbers, std::size_t count,
                                                            const std::vector<std::int64_t>& shape) const {
+  return make_tensor(numbers, count * sizeof(float), kFloat, shape);
+}
+
+OnnxRuntimeLibrary::Handle OnnxRuntimeLibrary::make_tensor(std::uint8_t* numbers, std::size_t count,
+                                                           const std::vector<std::int64_t>& shape) const {
+  return make_tensor(numbers, count, kUint8, shape);
+}
+
+OnnxRuntimeLibrary::Handle OnnxRuntimeLibrary::make_tensor(void* numbers, std::size_t bytes, int type,
+                                                           const std::vector<std::int64_t>& shape) const {
   const Handle memory = made<kCreateCpuMemoryInfo, kReleaseMemoryInfo>(kDeviceAllocator, kDefaultMemory);
-  return made<kCreateTensorWithData, kReleaseValue>(static_cast<const Object*>(memory.get()),
-                                                    static_cast<void*>(numbers), count * sizeof(float),
-                                                    shape.data(), shape.size(), kFloat);
+  return made<kCreateTensorWithData, kReleaseValue>(static_cast<const Object*>(memory.get()), numbers, bytes,
+                                                    shape.data(), shape.size(), type);
 }
 
 void OnnxRuntimeLibrary::run(const Handle& session, const std::vector<const char*>& input_names,

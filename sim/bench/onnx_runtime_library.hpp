@@ -30,6 +30,7 @@ class OnnxRuntimeLibrary {
   Handle make_session(const Handle& environment, const std::string& onnx_model) const;
   // A tensor over the caller's memory, which must outlive it.
   Handle make_tensor(float* numbers, std::size_t count, const std::vector<std::int64_t>& shape) const;
+  Handle make_tensor(std::uint8_t* numbers, std::size_t count, const std::vector<std::int64_t>& shape) const;
   void run(const Handle& session, const std::vector<const char*>& input_names,
            const std::vector<Object*>& inputs, const std::vector<const char*>& output_names,
            std::vector<Object*>& outputs) const;
@@ -39,6 +40,8 @@ class OnnxRuntimeLibrary {
   template <class Function>
   Function* function(int place) const;
   void require(Object* status) const;
+  Handle make_tensor(void* numbers, std::size_t bytes, int type,
+                     const std::vector<std::int64_t>& shape) const;
   template <int kMake, int kRelease, class... Arguments>
   Handle made(Arguments... arguments) const;
 

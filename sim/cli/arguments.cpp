@@ -1,5 +1,6 @@
 #include "sim/cli/arguments.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 #include <stdexcept>
 
 #include "sim/model/model_file.hpp"
+#include "sim/terminal/write_file.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -32,21 +34,32 @@ std::string condition_help() {
   return "sensor and motion: " + joined(condition_names());
 }
 
+bool has_a_file(const std::string& mesh) {
+  return mesh != kParametricMesh;
+}
+bool has_a_file(const std::vector<std::string>& meshes) {
+  return std::any_of(meshes.begin(), meshes.end(), [](const std::string& mesh) { return has_a_file(mesh); });
+}
+
 // `mesh` is one file name or a list of them.
 template <class Mesh>
 void add_mesh_file_options(CLI::App& command, Mesh& mesh, std::string& up, double& scale,
                            const std::string& help) {
   CLI::Option* option = command.add_option("--mesh", mesh, help);
   option->check(file_path())->type_name("FILE");
-  command.add_option("--mesh-up", up, "axis of the mesh file that points along the target frame's z")
-      ->check(one_of({"y", "z"}))
-      ->type_name("y|z")
-      ->capture_default_str()
-      ->needs(option);
-  limit_number(command.add_option("--mesh-scale", scale, "metres per unit of the mesh file"), 1e-6, 1e6)
-      ->type_name("X")
-      ->capture_default_str()
-      ->needs(option);
+  CLI::Option* axis =
+      command.add_option("--mesh-up", up, "axis of the mesh file that points along the target frame's z");
+  axis->check(one_of({"y", "z"}))->type_name("y|z")->capture_default_str()->needs(option);
+  CLI::Option* unit = command.add_option("--mesh-scale", scale, "metres per unit of the mesh file");
+  limit_number(unit, 1e-6, 1e6)->type_name("X")->capture_default_str()->needs(option);
+  command.parse_complete_callback([&mesh, axis, unit] {
+    for (const CLI::Option* of_files : {axis, unit}) {
+      if (of_files->count() > 0 && !has_a_file(mesh))
+        throw CLI::ValidationError(of_files->get_name(),
+                                   "is for mesh files, and --mesh parametric has its axes and unit; leave " +
+                                       of_files->get_name() + " out, or give a file with --mesh");
+    }
+  });
 }
 
 // Before the default that stands in brackets at the end.
@@ -54,6 +67,27 @@ void describe_limits(CLI::Option& option, const std::string& limits) {
   std::string description = option.get_description();
   const std::size_t bracket = description.rfind(" [");
   option.description(description.insert(std::min(bracket, description.size()), limits));
+}
+
+// Why the file cannot be written beside an existing `path`, or in its place. Empty if it can.
+std::string fault_of_new_file(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::string made = partial_path(path);
+  if (made.empty() && fs::exists(path, error)) return {};
+  if (made.empty()) made = path;
+  // The end of a chain of links that leads to no file yet.
+  constexpr int kMostLinks = 40;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(made, error); ++i)
+    made = (fs::absolute(made).parent_path() / fs::read_symlink(made, error)).string();
+  if (fs::exists(made, error) && access(made.c_str(), W_OK) == 0) return {};
+  const int file = open(made.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  if (file < 0 && errno == ENAMETOOLONG) return "the name is too long to be written; give a shorter one";
+  if (file < 0)
+    return fmt::format("no file can be made in its folder: {}; choose another folder", std::strerror(errno));
+  close(file);
+  unlink(made.c_str());
+  return {};
 }
 
 MeshFileOptions mesh_file_options(const MeshArguments& arguments) {
@@ -262,10 +296,18 @@ void add_model_options(CLI::App& command, ScenarioArguments& arguments) {
       ->excludes(model);
 }
 
+OptionFiles mesh_files_read(const std::string& option, const std::string& mesh) {
+  if (mesh.empty() || mesh == kParametricMesh) return {};
+  OptionFiles files{{option, mesh}};
+  for (const std::string& part : mesh_side_files(mesh))
+    files.push_back({option + " (part of its mesh)", part});
+  return files;
+}
+
 OptionFiles files_read(const MeshArguments& meshes, const SensorArguments& sensor) {
   OptionFiles files{{"--sensor", sensor.file}};
   for (const std::string& mesh : meshes.meshes) {
-    if (mesh != kParametricMesh) files.push_back({"--mesh", mesh});
+    for (const OptionFile& file : mesh_files_read("--mesh", mesh)) files.push_back(file);
   }
   return files;
 }
@@ -329,7 +371,8 @@ void require_folder(const std::string& option, const std::string& path) {
   if (fs::exists(path, error) && !fs::is_directory(path, error)) refuse("is a file; give a folder");
   fs::create_directories(path, error);
   if (error) refuse("cannot be created: " + error.message());
-  if (access(path.c_str(), W_OK) != 0) refuse(std::string("cannot be written: ") + std::strerror(errno));
+  if (access(path.c_str(), W_OK) != 0)
+    refuse(fmt::format("cannot be written: {}; choose another folder", std::strerror(errno)));
 }
 
 void require_writable(const std::string& option, const std::string& path) {
@@ -339,11 +382,16 @@ void require_writable(const std::string& option, const std::string& path) {
   };
   std::error_code error;
   if (fs::is_directory(path, error)) refuse("is a folder; give a file name");
+  const fs::path name = fs::path(path).filename();
+  if (name.empty() || name == "." || name == "..") refuse("ends as a folder does; add a file name");
   const fs::path parent = fs::absolute(path).parent_path();
   fs::create_directories(parent, error);
-  if (error) refuse("cannot create its folder: " + error.message());
-  const std::string& checked = fs::exists(path, error) ? path : parent.string();
-  if (access(checked.c_str(), W_OK) != 0) refuse(std::string("cannot be written: ") + std::strerror(errno));
+  if (error) refuse("cannot create its folder: " + error.message() + "; choose another folder");
+  const bool exists = fs::exists(path, error);
+  if (exists && access(path.c_str(), W_OK) != 0)
+    refuse(fmt::format("cannot be written: {}; choose another file", std::strerror(errno)));
+  const std::string fault = fault_of_new_file(path);
+  if (!fault.empty()) refuse(fault);
 }
 
 }  // namespace tumblesight::sim

@@ -75,6 +75,8 @@ void add_mesh_options(CLI::App& command,
 void add_sequence_options(CLI::App& command, ScenarioArguments& arguments);  // --sequences, --frames, --seed
 void add_model_options(CLI::App& command, ScenarioArguments& arguments);     // --model, --numerics
 
+// A mesh file and the files that belong to it; none for the mesh that ships.
+OptionFiles mesh_files_read(const std::string& option, const std::string& mesh);
 // The mesh files and the description of the sensor.
 OptionFiles files_read(const MeshArguments& meshes, const SensorArguments& sensor);
 
@@ -115,8 +117,8 @@ void require_usable_files(const OptionFiles& read, const OptionFiles& written);
 // that fails or no file can be written into it.
 void require_folder(const std::string& option, const std::string& path);
 
-// Throws std::runtime_error that names option, file and reason if `path` cannot be written. Leaves no file
-// behind.
+// Throws std::runtime_error that names option, file, reason and remedy if write_file() could not write
+// `path`. Leaves no file behind.
 void require_writable(const std::string& option, const std::string& path);
 
 // The layout of help texts (help_formatter.cpp): descriptions are wrapped to a terminal of 80 columns.

@@ -49,20 +49,46 @@ void print_measuring(const std::string& what) {
   fmt::print(stderr, "  measuring {}\n", what);
 }
 
+// The fixed-point model whose weights are read from `image`.
+std::unique_ptr<FixedPointModel> fixed_point_model(const std::vector<std::uint8_t>& image) {
+  auto model = std::make_unique<FixedPointModel>();
+  const gnc::ModelStatus status = gnc::read_model_image<gnc::FixedPoint>(image.data(), image.size(), nullptr,
+                                                                         model->header, model->weights);
+  if (status != gnc::ModelStatus::kOk) throw std::runtime_error(gnc::to_string(status));
+  return model;
+}
+
 // A peer that is not installed is reported and left out; one whose outputs differ ends the run.
-void bench_peers(const BenchArguments& arguments, const Float32Model& model,
-                 const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
-  std::string reasons[2];
-  const std::unique_ptr<Peer> peers[2] = {make_onnx_runtime(model, arguments.onnxruntime, reasons[0]),
-                                          make_libtorch(model, reasons[1])};
-  for (int i = 0; i < 2; ++i) {
-    if (peers[i]) {
-      print_measuring(peers[i]->name());
-      rows.push_back(bench_peer(*peers[i], model, frames));
-    } else {
-      fmt::print(stderr, "  left out: {}\n", reasons[i]);
-    }
+template <class Model>
+void bench_one_peer(const std::unique_ptr<Peer>& peer, const std::string& reason, const Model& model,
+                    const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
+  if (peer == nullptr) {
+    fmt::print(stderr, "  left out: {}\n", reason);
+    return;
   }
+  print_measuring(peer->name() + (peer->is_int8() ? ", int8" : ", float32"));
+  rows.push_back(bench_peer(*peer, model, frames));
+}
+
+void bench_peers(const BenchArguments& arguments, const BenchImages& images,
+                 const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
+  const std::unique_ptr<FixedPointModel> fixed = fixed_point_model(images.fixed);
+  std::string reason;
+  const auto add = [&](const std::unique_ptr<Peer>& peer, const auto& model) {
+    bench_one_peer(peer, reason, model, frames, rows);
+  };
+  add(make_onnx_runtime_int8(*fixed, arguments.onnxruntime, reason), *fixed);
+  add(make_onednn_int8(*fixed, reason), *fixed);
+  add(make_onnx_runtime(*images.model, arguments.onnxruntime, reason), *images.model);
+  add(make_libtorch(*images.model, reason), *images.model);
+}
+
+// A library that the user names is not left out.
+void require_usable_library(const BenchArguments& arguments, const Float32Model& model) {
+  std::string reason;
+  if (arguments.onnxruntime.empty() || make_onnx_runtime(model, arguments.onnxruntime, reason)) return;
+  throw std::runtime_error(
+      fmt::format("--onnxruntime: {}; give libonnxruntime.so, or leave the option out", reason));
 }
 
 std::string table_of(const std::vector<BenchRow>& rows) {
@@ -98,6 +124,7 @@ void bench(const BenchArguments& arguments) {
                         {"--target (its model)", shipped_model_path(arguments.target + ".float32")}},
                        {{"--json", arguments.json}});
   const BenchImages images = read_bench_images(model_folder, arguments.target);
+  require_usable_library(arguments, *images.model);
   const std::vector<gnc::RangeImage> frames = rendered_frames(arguments.target);
   fmt::print("\n  {}, {:.1f} M multiply-accumulates per frame, one thread\n\n", arguments.target,
              1e-6 * static_cast<double>(gnc::kMacCount));
@@ -106,7 +133,7 @@ void bench(const BenchArguments& arguments) {
   for (const std::vector<std::uint8_t>& image : {images.fixed, images.float32}) {
     for (BenchRow& row : bench_numerics({image, frames}, print_measuring)) rows.push_back(std::move(row));
   }
-  bench_peers(arguments, *images.model, frames, rows);
+  bench_peers(arguments, images, frames, rows);
   fmt::print("\n{}\n", table_of(rows));
   if (!arguments.json.empty()) write_file(arguments.json, json_of(rows).dump(2) + "\n");
 }
@@ -126,8 +153,9 @@ void add_bench_command(CLI::App& app) {
   command->footer(
       "\nUses one thread, the shipped model in both numerics and every instruction set of\n"
       "this processor. A step goes from ranges to quaternion. The other runtimes run\n"
-      "the network alone. The peak is measured with the same multiply-accumulate\n"
-      "instructions and no memory access.\n\n"
+      "the network alone: ONNX Runtime and LibTorch in float32, ONNX Runtime and\n"
+      "oneDNN with the CNN in int8. The peak is measured with the same\n"
+      "multiply-accumulate instructions and no memory access.\n\n"
       "ONNX Runtime is measured if its library is installed:\n"
       "  npm install --prefix build --ignore-scripts onnxruntime-node\n");
   add_target_option(*command, arguments->target, TargetChoice::kShipped);
@@ -138,7 +166,11 @@ void add_bench_command(CLI::App& app) {
       ->check(existing_file())
       ->type_name("FILE");
   add_json_option(*command, arguments->json);
-  command->callback([arguments] { bench(*arguments); });
+  command->callback([arguments] {
+    // Without a slash it would be looked for among the system's libraries.
+    if (!arguments->onnxruntime.empty()) arguments->onnxruntime = full_path(arguments->onnxruntime);
+    bench(*arguments);
+  });
 }
 
 }  // namespace tumblesight::sim

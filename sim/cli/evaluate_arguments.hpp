@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/baseline/pose_peer.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/evaluation/experiment.hpp"
 
@@ -20,6 +21,7 @@ struct EvaluateArguments {
   std::string effect_limit;  // name of an effect; empty: none
   bool no_baseline = false;
   std::uint32_t baseline_sequences = 100;
+  bool peers = false;
   std::string csv;     // empty: none
   std::string report;  // empty: none
   bool paper = false;
@@ -33,6 +35,10 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments);
 void refuse_options_set_by_paper(const CLI::App& command);
 // Throws CLI::ValidationError if an option of the tables was given, which --effect-limit does not make.
 void refuse_options_of_tables(const CLI::App& command);
+
+// For --peers: a line for each peer that this build is without, with the remedy. Throws CLI::ValidationError
+// with these lines if it is without all of them.
+std::vector<std::string> missing_peers(const std::vector<PosePeerRow>& peers);
 
 // All settings except the conditions.
 ExperimentSettings experiment_settings(const EvaluateArguments& arguments);

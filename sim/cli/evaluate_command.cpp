@@ -63,11 +63,14 @@ void print_cell(const SubjectResult& subject, const CellResult& cell) {
         cell.baseline_ms, cell.baseline->count == 1 ? "frame" : "frames",
         counted(cell.baseline->count, "sequence"));
   }
+  if (!cell.peers.empty()) fmt::print("\n{}", terminal_text(transposed(peers_table(cell))));
 }
 
 void print_results(const Results& results) {
   const SubjectResult& subject = results.subjects.front();
   for (const CellResult& cell : subject.cells) print_cell(subject, cell);
+  const DataTable poses = poses_table(subject);
+  if (!poses.rows.empty()) fmt::print("\n{}", terminal_text(transposed(poses)));
   if (!subject.sweeps) return;
   const Sweeps& sweeps = *subject.sweeps;
   fmt::print("\n{}\n{}\n{}\n{}\n", terminal_text(curve_table("range [m]", subject.cells.front().by_range)),
@@ -119,8 +122,11 @@ Subject checked_subject(const EvaluateArguments& arguments, const ExperimentSett
 
 void evaluate(const EvaluateArguments& arguments) {
   const ExperimentSettings settings = checked_settings(arguments);
+  const std::vector<std::string> left_out =
+      settings.peers ? missing_peers(pose_peers()) : std::vector<std::string>{};
   const Subject subject = checked_subject(arguments, settings);
   announce(subject, settings);
+  for (const std::string& line : left_out) fmt::print(stderr, "  left out: {}\n", line);
 
   Results results;
   results.seed = settings.seed;

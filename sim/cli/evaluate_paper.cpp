@@ -85,7 +85,7 @@ void evaluate_paper(const EvaluateArguments& arguments) {
   }
   OptionFiles read, written;
   for (const PlannedSubject& planned : plan.subjects) {
-    read.push_back({"--mesh-folder", planned.mesh});
+    for (const OptionFile& file : mesh_files_read("--mesh-folder", planned.mesh)) read.push_back(file);
     read.push_back({"the models", planned.model});
   }
   for (const char* name : {"/results.md", "/results.csv", "/results.json", "/report.html"})

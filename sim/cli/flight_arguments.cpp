@@ -1,9 +1,14 @@
 #include "sim/cli/flight_arguments.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "hal/dds/idl/development_key.hpp"
@@ -47,7 +52,23 @@ std::string flight_path(const std::string& given) {
     throw std::runtime_error(fmt::format("flight program '{}' {}; give its path with --flight", path.string(),
                                          fs::exists(path, error) ? "is not a file" : "does not exist"));
   }
+  if (access(path.c_str(), X_OK) != 0)
+    throw std::runtime_error(
+        fmt::format("flight program '{}' cannot be started: {}; give an executable one with --flight",
+                    path.string(), std::strerror(errno)));
   return path.string();
+}
+
+// Keys and certificates, as in <PrivateKey>file:/path/key.pem</PrivateKey>.
+std::vector<std::string> files_of_security(const std::string& path) {
+  std::ifstream file(path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}}, scheme = ">file:";
+  std::vector<std::string> files;
+  for (std::size_t at = text.find(scheme); at != std::string::npos; at = text.find(scheme, at)) {
+    at += scheme.size();
+    files.push_back(text.substr(at, text.find('<', at) - at));
+  }
+  return files;
 }
 
 // One word for a shell, whatever it contains.
@@ -142,6 +163,8 @@ void require_usable_outputs(const FlightArguments& arguments, OptionFiles read, 
   if (arguments.flight != kNoFlight) read.push_back({"--flight", arguments.flight});
   read.push_back({"--command-key", arguments.command_key});
   read.push_back({"--dds-security", arguments.security});
+  for (const std::string& file : files_of_security(arguments.security))
+    read.push_back({"--dds-security (a file that it names)", file});
   require_usable_files(read, {{"--report", arguments.report}, {"--json", json}});
 }
 

@@ -1,6 +1,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -10,14 +11,20 @@
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/quantize_file.hpp"
 #include "sim/quantization/surface_samples.hpp"
+#include "sim/quantization/target_surface.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/write_file.hpp"
+#include "sim/world/math/angles.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr double kSizeTolerance = 0.02;  // as for the swath of a mesh that is evaluated
+// Of the points of a surface. Between the shipped meshes and NASA's of the same spacecraft it is below 0.01,
+// and with the other axis up above 0.44.
+constexpr double kMostUnlike = 0.25;
 
 struct QuantizeArguments {
   std::string model;
@@ -80,7 +87,8 @@ void print_report(const QuantizationReport& report, const std::string& path) {
   }
   fmt::print("\n  attitudes differ from float32 by {:.3f}° (mean), {:.3f}° (median), over {} frames\n",
              report.difference.mean_deg, report.difference.median_deg, report.difference.count);
-  fmt::print("  {}, {} bytes, CRC-32 {:08x}\n\n", full_path(path), report.size_bytes, report.crc32);
+  fmt::print("  {}, {} bytes, CRC-32 {:08x}:\n  {}\n\n", full_path(path), report.size_bytes, report.crc32,
+             description(report.surface));
 }
 
 // With the surface of another body, or of one in another unit, the check of an attitude refuses every one or
@@ -100,6 +108,30 @@ std::string fault_of_size(const TriangleMesh& mesh, const gnc::DepthProjection& 
       1e-3 * network.swath_mm);
 }
 
+// With other axes than those of the network, the check of an attitude refuses every one. Empty if the mesh
+// fits the surface that the image has, or if it has none.
+std::string fault_of_axes(const QuantizeArguments& arguments, const TriangleMesh& mesh,
+                          const gnc::SurfaceModel& found) {
+  const std::vector<std::uint8_t> image = read_model_bytes(arguments.model);
+  const gnc::SurfaceModel known = gnc::surface_of<gnc::FixedPoint>(image.data());
+  const double unlike = unlike_share(known, found);
+  if (unlike <= kMostUnlike) return {};
+  const bool is_y = arguments.meshes.mesh_up == "y";
+  const bool is_file = arguments.meshes.meshes.front() != kParametricMesh;
+  // From the axes of a file with the one up to those with the other.
+  const double angle_rad = is_y ? -kPi / 2.0 : kPi / 2.0;
+  const Eigen::AngleAxisd turn(angle_rad, Eigen::Vector3d::UnitX());
+  const bool fits_turned = is_file && unlike_share(known, found, turn.toRotationMatrix()) <= kMostUnlike;
+  return fmt::format(
+      "mesh {} does not fit the surface in model image '{}': {:.0f} % of the points are farther than a tenth "
+      "of the radius away; {}. If the surface in the image is the wrong one, make the image anew from the "
+      "one in float32 (tumblesight quantize without --surface-only)",
+      mesh.name, arguments.model, 100.0 * unlike,
+      fits_turned ? fmt::format("with the other axis up it fits: give --mesh-up {}", is_y ? "z" : "y")
+                  : "give the mesh of its target, with the axes of the mesh that the network was trained on "
+                    "(--mesh-up)");
+}
+
 // Writes the image `--model` with the surface of the mesh.
 void replace_surface(const QuantizeArguments& arguments) {
   if (arguments.meshes.meshes.size() > 1)
@@ -107,14 +139,14 @@ void replace_surface(const QuantizeArguments& arguments) {
   const SensorFiles sensor = require_usable_files(arguments);
   const gnc::ModelHeader header = read_fixed_point_header(arguments.model);
   const TriangleMesh mesh = load_meshes(arguments.meshes, header.target.data()).front();
-  const std::string fault = fault_of_size(mesh, header.projection);
-  if (!fault.empty()) throw std::invalid_argument(fault);
-  const std::vector<std::uint8_t> surface = surface_section(mesh, 1e-3 * header.projection.target_radius_mm);
+  const std::string fault_of_mesh = fault_of_size(mesh, header.projection);
+  if (!fault_of_mesh.empty()) throw std::invalid_argument(fault_of_mesh);
+  const SurfaceSections surface = target_surface(mesh, 1e-3 * header.projection.target_radius_mm);
+  const std::string fault_of_fit = fault_of_axes(arguments, mesh, gnc::SurfaceModel(surface.points.data()));
+  if (!fault_of_fit.empty()) throw std::invalid_argument(fault_of_fit);
   const std::uint32_t crc32 = write_with_surface(arguments.model, surface, arguments.out);
   copy_sensor_file(sensor);
-  const gnc::SurfaceModel points(surface.data());
-  fmt::print("  {}, CRC-32 {:08x}: {} points of the surface, {} mm apart\n", full_path(arguments.out), crc32,
-             points.points(), points.spacing_mm());
+  fmt::print("  {}, CRC-32 {:08x}:\n  {}\n", full_path(arguments.out), crc32, description(surface));
 }
 
 void quantize_file(QuantizeArguments arguments) {
@@ -123,6 +155,7 @@ void quantize_file(QuantizeArguments arguments) {
     return;
   }
   require_the_target(arguments.effects);
+  require_whole_scans("--effect", arguments.effects, arguments.sensor.sensor);
   if (arguments.out.empty()) arguments.out = default_out(arguments.model);
   const SensorFiles sensor = require_usable_files(arguments);
   const auto model = read_float32_model(arguments.model);
@@ -158,9 +191,10 @@ void add_quantize_command(CLI::App& app) {
       "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits.\n"
       "The scales are chosen on rendered sequences. --effect: those that the network\n"
       "was trained with. The table shows the quantization error of each layer. The\n"
-      "first mesh gives the surface by which the flight program checks what a frame\n"
-      "shows. --surface-only replaces that surface in an image that is in fixed point\n"
-      "already. The sensor's description beside --model is copied beside --out.\n\n"
+      "first mesh gives the surface, as points and as triangles, by which the flight\n"
+      "program judges what a frame shows. --surface-only replaces that surface in an\n"
+      "image that is in fixed point already, also in one of format version 3 or 4. The\n"
+      "sensor's description beside --model is copied beside --out.\n\n"
       "Example\n"
       "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
       "      --mesh parametric --mesh near.stl\n\n"

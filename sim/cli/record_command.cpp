@@ -58,6 +58,7 @@ void record(const RecordArguments& arguments) {
   settings.scenario.effects = wanted.effects;
   settings.scenario.sensor = wanted.sensor.sensor.settings;
   settings.scenario.ranges = target.ranges;
+  settings.scenario.swath_m = 1e-3 * target.projection.swath_mm;
   settings.seed = wanted.seed;
   settings.sequences = wanted.sequences;
   const FlashLidar lidar(observed_bodies(wanted.effects, wanted.target, target.mesh));

@@ -56,10 +56,11 @@ std::vector<std::string> remarks_on(const TruthTable& truth, const std::string& 
     return !row.second.target.empty() && row.second.target != target;
   });
   if (other != truth.end())
-    remarks.push_back(fmt::format(
-        "The truth in '{}', line {}, is of target {}, and the flight program looks for {}. The errors mean "
-        "nothing unless both have the same axes.",
-        file, other->second.line, other->second.target, target));
+    remarks.push_back(
+        fmt::format("The truth in '{0}', line {1}, is of target {2}, and the flight program looks for {3}. "
+                    "The errors mean "
+                    "nothing unless both have the same axes; --target {2} looks for that of the truth.",
+                    file, other->second.line, other->second.target, target));
   const std::string sensor_file = sensor_file_of(model);
   std::error_code error;
   const bool known = fs::exists(sensor_file, error);

@@ -88,6 +88,14 @@ void take_period_of_sensor(const CLI::App& command, ScenarioArguments& arguments
                               of_effect_s != 0.0 ? "--effect scan_time" : "--sensor", scan_s));
 }
 
+void require_whole_scans(const std::string& option, const Effects& effects, const SensorDescription& sensor) {
+  if (effects.scan_time <= sensor.period_s) return;
+  throw CLI::ValidationError(
+      option, fmt::format("scan_time={:g} is longer than the period of sensor {}, {:g} s; give at most "
+                          "scan_time={:g}, or a --sensor with a longer period",
+                          effects.scan_time, sensor.name, sensor.period_s, sensor.period_s));
+}
+
 namespace {
 
 // Those of --range, else the paper's from where the target fits into the view.

@@ -26,6 +26,10 @@ void add_sensor_options(CLI::App& command, SensorArguments& arguments);
 // takes longer than that.
 void take_period_of_sensor(const CLI::App& command, ScenarioArguments& arguments);
 
+// For verbs that make a network, whose frames come with the period of the sensor. Throws CLI::ValidationError
+// that names `option` if a scan of the effects takes longer.
+void require_whole_scans(const std::string& option, const Effects& effects, const SensorDescription& sensor);
+
 // The ranges to draw for a target that needs this swath: those of --range, else the paper's from where the
 // target fits into the view. Adds a warning if it does not fit at the nearest range. Throws
 // std::invalid_argument that names a range if it does not fit at any of the paper's, or if the sensor's range

@@ -99,14 +99,25 @@ void set_up_ranges(const ScenarioArguments& arguments, TargetSetup& setup) {
   setup.ranges = ranges_of(arguments.sensor, 1e-3 * setup.projection.swath_mm, setup.warnings);
 }
 
+// Of an image that is refused.
+std::string fault_of_image(const TargetSetup& setup, const std::string& target, gnc::ModelStatus status) {
+  const std::string refused =
+      fmt::format("model image '{}' is refused: {}", setup.model_path, gnc::to_string(status));
+  if (status != gnc::ModelStatus::kBadTarget) return refused;
+  const HostEstimator other(setup.model);
+  if (other.status() != gnc::ModelStatus::kOk) return refused;
+  return fmt::format(
+      "{}: it is for {}, and the run is for {}; give --target {}, or the model of {}, which `tumblesight "
+      "train --target {}` makes",
+      refused, other.model().target.data(), target, other.model().target.data(), target, target);
+}
+
 void load_model(const ScenarioArguments& arguments, TargetSetup& setup) {
   setup.model_path = model_path(arguments);
   setup.model = read_model(arguments, setup.model_path);
   const HostEstimator estimator(setup.model, arguments.target.c_str());
-  if (estimator.status() != gnc::ModelStatus::kOk) {
-    throw std::runtime_error(
-        fmt::format("model image '{}' is refused: {}", setup.model_path, gnc::to_string(estimator.status())));
-  }
+  if (estimator.status() != gnc::ModelStatus::kOk)
+    throw std::runtime_error(fault_of_image(setup, arguments.target, estimator.status()));
   setup.header = estimator.model();
   setup.projection = setup.header.projection;
 }
@@ -124,11 +135,12 @@ std::string shipped_model_path(const std::string& name) {
 
 OptionFiles files_read(const ScenarioArguments& arguments) {
   const std::string model = model_path(arguments);
-  return {{"--mesh", arguments.mesh == kParametricMesh ? "" : arguments.mesh},
-          {"--model", model},
-          {"--model (its sensor)", sensor_file_of(model)},
-          {"--model (its float32 image)", model_stem(model) + ".float32.tsm"},
-          {"--sensor", arguments.sensor.file}};
+  OptionFiles files = mesh_files_read("--mesh", arguments.mesh);
+  files.insert(files.end(), {{"--model", model},
+                             {"--model (its sensor)", sensor_file_of(model)},
+                             {"--model (its float32 image)", model_stem(model) + ".float32.tsm"},
+                             {"--sensor", arguments.sensor.file}});
+  return files;
 }
 
 TargetSetup set_up_target(const ScenarioArguments& arguments) {

@@ -11,6 +11,7 @@
 
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/quantization/target_surface.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
@@ -28,7 +29,7 @@ struct TrainOptions {
   MeshArguments meshes;
   std::vector<std::string> conditions = {"all"};
   Effects effects;
-  std::vector<Effects> effect_sets;  // in turn
+  std::vector<EffectRanges> effect_sets;  // in turn
   SensorArguments sensor;
   std::string device = "auto";
   std::string precision = "auto";
@@ -85,15 +86,15 @@ std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurren
 // The reference, and the image that flies.
 void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes,
                   const TrainingTargets& targets, const std::unique_ptr<Float32Model>& model) {
-  const Effects& effects = targets.effect_sets.front().effects;
+  const EffectRanges& effects = targets.effect_sets.front().effects;
   const ScenarioSettings seen = scenario_of(targets, Condition::kNominal, effects, 1);
   write_model_file<gnc::Float32>(stem + ".float32.tsm", model->header, model->weights);
   std::printf("Reference in float32: %s.float32.tsm\nFixed point, as it flies:\n", stem.c_str());
   quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm", seen);
 }
 
-std::vector<Effects> effect_sets_of(const TrainOptions& options) {
-  return options.effect_sets.empty() ? std::vector<Effects>{options.effects} : options.effect_sets;
+std::vector<EffectRanges> effect_sets_of(const TrainOptions& options) {
+  return options.effect_sets.empty() ? std::vector<EffectRanges>{options.effects} : options.effect_sets;
 }
 
 TrainingTargets targets_of(const TrainOptions& options, const std::vector<TriangleMesh>& meshes) {
@@ -107,17 +108,17 @@ TrainingTargets targets_of(const TrainOptions& options, const std::vector<Triang
                                effect_sets_of(options), options.target, options.sensor.sensor, ranges);
 }
 
-// "none", or effects as after --effect.
-Effects effect_set_from(const std::string& text) {
+// "none", or effects as after --effect, whose strengths may be ranges.
+EffectRanges effect_set_from(const std::string& text) {
   if (text == "none") return {};
   try {
-    return effects_from(CLI::detail::split(text, ','));
+    return effect_ranges_from(CLI::detail::split(text, ','));
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--effect-set", error.what());
   }
 }
 
-void add_effect_set_option(CLI::App& command, std::vector<Effects>& effect_sets) {
+void add_effect_set_option(CLI::App& command, std::vector<EffectRanges>& effect_sets) {
   const auto take = [&effect_sets](const std::vector<std::string>& texts) {
     effect_sets.clear();
     for (const std::string& text : texts) effect_sets.push_back(effect_set_from(text));
@@ -126,7 +127,7 @@ void add_effect_set_option(CLI::App& command, std::vector<Effects>& effect_sets)
       .add_option_function<std::vector<std::string>>(
           "--effect-set", take,
           "effects that act together, or none; give it once per set: frames and sequences take turns "
-          "among the sets")
+          "among the sets. A strength LOW:HIGH is drawn anew for each of them")
       ->excludes(command.get_option("--effect"))
       ->type_name("none|NAME=STRENGTH,...");
 }
@@ -147,7 +148,11 @@ void require_usable_folder(const TrainOptions& options, const std::string& stem)
 }
 
 int train(TrainOptions& options) {
-  for (const Effects& effects : effect_sets_of(options)) require_the_target(effects);
+  for (const EffectRanges& effects : effect_sets_of(options)) {
+    require_the_target(effects.high);
+    require_whole_scans(options.effect_sets.empty() ? "--effect" : "--effect-set", effects.high,
+                        options.sensor.sensor);
+  }
   require_a_cnn(options.settings);
   choose_device(options);
   // Beside the checkpoints and the images that follow.
@@ -159,6 +164,9 @@ int train(TrainOptions& options) {
   (void)check_sensor_of_model(stem + ".tsm", options.sensor.sensor);
   const std::vector<TriangleMesh> meshes = load_meshes(options.meshes, options.target);
   const TrainingTargets targets = targets_of(options, meshes);
+  // Now rather than after hours of training: a mesh whose surface the image that flies cannot have.
+  (void)target_surface(meshes.front(),
+                       1e-3 * model_header(options.target, targets).projection.target_radius_mm);
   if (!is_same_file(sensor_file_of(stem + ".tsm"), options.sensor.file))
     write_sensor_file(stem + ".tsm", options.sensor.sensor);
   print_sensor(options.sensor.sensor, targets.ranges);

@@ -23,11 +23,21 @@ struct Run {
   ScenarioSettings scenario;
   std::uint32_t sequences = 0;
   std::uint32_t baseline_sequences = 0;
+  std::vector<PosePeerRow> peers{};
 };
+
+std::vector<PosePeerRow> peers_of(const ExperimentSettings& settings) {
+  std::vector<PosePeerRow> rows;
+  if (!settings.peers || settings.baseline_sequences == 0) return rows;
+  for (const PosePeerRow& row : pose_peers())
+    if (row.missing == nullptr) rows.push_back(row);
+  return rows;
+}
 
 std::uint64_t steps_of(const Run& run, std::uint32_t sequences_done) {
   return std::uint64_t{sequences_done} * static_cast<std::uint64_t>(run.scenario.frames) +
-         kStepsPerMatch * std::min(sequences_done, run.baseline_sequences);
+         (kStepsPerMatch + kStepsPerPeer * run.peers.size()) *
+             std::min(sequences_done, run.baseline_sequences);
 }
 
 std::vector<Run> cells_of(const ExperimentSettings& settings) {
@@ -40,6 +50,7 @@ std::vector<Run> cells_of(const ExperimentSettings& settings) {
     run.scenario.effects = settings.effects;
     run.sequences = condition == Condition::kTumbling ? settings.tumbling_sequences : settings.sequences;
     run.baseline_sequences = std::min(settings.baseline_sequences, run.sequences);
+    run.peers = peers_of(settings);
     runs.push_back(run);
   }
   return runs;
@@ -97,6 +108,16 @@ std::vector<Run> runs_of(const ExperimentSettings& settings) {
   return runs;
 }
 
+// Every attitude of a peer counts as valid: it gives no other verdict.
+PeerErrors peer_errors(const PosePeerRow& row, const PeerRun& run) {
+  PeerErrors errors{row.key, row.name, summarise(run.errors_deg), run.ms};
+  if (errors.summary.count == 0) return errors;
+  const double found = static_cast<double>(run.found) / static_cast<double>(errors.summary.count);
+  errors.summary.right_and_valid = errors.summary.within_20deg;
+  errors.summary.wrong_and_valid = found - errors.summary.within_20deg;
+  return errors;
+}
+
 CellResult cell_result(const Run& run, const std::string& target, const MonteCarloResult& result) {
   const auto frames = static_cast<std::uint32_t>(run.scenario.frames);
   const std::vector<FrameResult> last = last_frames(result.frames, frames);
@@ -109,10 +130,12 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   cell.sequences = run.sequences;
   cell.frames = frames;
   cell.disturbances = run.scenario.disturbances;
-  cell.effects = run.scenario.effects;
+  cell.effects = run.scenario.effects.low;
   cell.ranges = run.scenario.ranges;
   cell.rcnn = last_frame_summary(result.frames, frames, Estimator::kRcnn);
   cell.cnn = last_frame_summary(result.frames, frames, Estimator::kCnn);
+  cell.pose = pose_summary(result.frames, frames - 1);
+  cell.pose_first = pose_summary(result.frames, 0);
   cell.common_turn = common_turn(last, Estimator::kRcnn);
   cell.rcnn_histogram = histogram(errors(Estimator::kRcnn));
   cell.cnn_histogram = histogram(errors(Estimator::kCnn));
@@ -122,6 +145,8 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   }
   cell.network_ms = result.network_ms;
   cell.baseline_ms = result.baseline_ms;
+  for (std::size_t i = 0; i < run.peers.size(); ++i)
+    cell.peers.push_back(peer_errors(run.peers[i], result.peers[i]));
   cell.by_frame = errors_by_frame(result.frames, frames);
   cell.by_range = errors_by_range(last, run.scenario.ranges);
   cell.by_rate = errors_by_rate(last);
@@ -177,6 +202,7 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
             .inertia_kg_m2;
     run.scenario.sensor = subject.sensor.settings;
     run.scenario.ranges = subject.ranges;
+    run.scenario.swath_m = subject.swath_m;
   }
   const FlashLidar lidar(observed_bodies(settings.effects, subject.target, subject.mesh));
   const FrameRenderer renderer(lidar, subject.swath_m);
@@ -184,12 +210,20 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
   if (settings.baseline_sequences > 0) {
     matcher = std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m);
   }
+  std::vector<std::unique_ptr<PosePeer>> peers;
+  std::vector<const PosePeer*> peers_run;
+  for (const PosePeerRow& row : peers_of(settings)) {
+    peers.push_back(row.make(subject.mesh, subject.swath_m));
+    peers_run.push_back(peers.back().get());
+  }
   SubjectResult result{
       subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}, {}};
   std::uint64_t done = 0;
   for (const Run& run : runs) {
-    const MonteCarloSettings monte_carlo{run.scenario, settings.seed, run.sequences, run.baseline_sequences,
-                                         settings.threads};
+    const bool with_peers = !run.peers.empty();
+    const MonteCarloSettings monte_carlo{
+        run.scenario,           settings.seed,    run.sequences,
+        run.baseline_sequences, settings.threads, with_peers ? peers_run : std::vector<const PosePeer*>{}};
     take(run,
          run_monte_carlo(renderer, subject.model, matcher.get(), monte_carlo,
                          [&](std::uint32_t sequences) { progress(done + steps_of(run, sequences)); }),

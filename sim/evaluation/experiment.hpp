@@ -37,14 +37,16 @@ struct ExperimentSettings {
   Disturbances disturbances;               // of every run, those of the curves too
   Effects effects;                         // likewise
   std::uint32_t baseline_sequences = 100;  // per cell; 0: no baseline
+  bool peers = false;                      // run the peers of this build on the frames of the baseline
   bool curves = false;                     // run the sweeps too
   bool disturbed_runs = false;             // run disturbed_runs() too
   int threads = 1;
 };
 
-// The size of an experiment in steps of about equal duration: one per frame, and kStepsPerMatch per match of
-// the baseline.
+// The size of an experiment in steps of about equal duration: one per frame, kStepsPerMatch per match of the
+// baseline, and kStepsPerPeer per match of a peer.
 inline constexpr std::uint64_t kStepsPerMatch = 100;
+inline constexpr std::uint64_t kStepsPerPeer = 1000;
 std::uint64_t steps_of(const ExperimentSettings& settings);
 
 // Runs cell after cell. `progress`: steps done so far, out of steps_of(settings); called on the calling

@@ -142,6 +142,13 @@ ErrorSummary last_frame_summary(const std::vector<FrameResult>& results, std::ui
   return summary;
 }
 
+PoseSummary pose_summary(const std::vector<FrameResult>& results, std::uint32_t frame) {
+  std::vector<PoseErrors> poses;
+  for (const FrameResult& result : results)
+    if (result.frame == frame) poses.push_back(result.pose);
+  return summarise_poses(poses);
+}
+
 CommonTurn common_turn(const std::vector<FrameResult>& results, Estimator estimator) {
   constexpr std::size_t kMost = 300;  // every turn is compared with every other one
   const std::size_t count = std::min(results.size(), kMost);

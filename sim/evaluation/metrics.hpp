@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/evaluation/pose_errors.hpp"
+
 namespace tumblesight::sim {
 
 // One frame of one sequence: the true attitude and the estimates. Quaternions TRF to LRF, of either sign, and
@@ -26,6 +28,7 @@ struct FrameResult {
   bool has_baseline = false;    // the template matcher was run on this frame
   bool baseline_valid = false;  // it found an attitude
   Eigen::Quaterniond baseline{1.0, 0.0, 0.0, 0.0};
+  PoseErrors pose;  // registered
 };
 
 // An estimate that is further off is wrong: the paper's limit.
@@ -71,6 +74,9 @@ std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& result
 // The summary of these errors, with the shares of trusted estimates.
 ErrorSummary last_frame_summary(const std::vector<FrameResult>& results, std::uint32_t frames,
                                 Estimator estimator);
+
+// The registered poses of frame `frame` (index) of every sequence that has one.
+PoseSummary pose_summary(const std::vector<FrameResult>& results, std::uint32_t frame);
 
 // The turn that most estimates are off by, in the axes of the target: estimate = truth * turn. A target whose
 // axes differ from those of the training gives such a turn, and another spacecraft does not.

@@ -5,15 +5,25 @@
 #include <chrono>
 #include <future>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/world/chaser_navigation.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr std::chrono::milliseconds kProgressPeriod{50};
+
+// What one peer made of the last frame of a sequence.
+struct PeerMatch {
+  double error_deg = 180.0;
+  bool found = false;
+  double ms = 0.0;
+};
 
 struct Job {
   const FrameRenderer& renderer;
@@ -24,9 +34,11 @@ struct Job {
   std::atomic<std::uint32_t> next{0};
   std::atomic<std::uint32_t> done{0};
   std::vector<FrameResult> results;
-  std::vector<std::uint8_t> delivered;  // per frame: 0 if it was lost
-  std::vector<double> network_ms;       // per frame
-  std::vector<double> baseline_ms;      // per sequence
+  std::vector<std::uint8_t> delivered;                              // per frame: 0 if it was lost
+  std::vector<double> network_ms;                                   // per frame
+  std::vector<double> baseline_ms;                                  // per sequence
+  std::vector<std::vector<std::optional<PeerMatch>>> peer_matches;  // per peer and sequence; none: lost frame
+  std::mutex peers_in_turn;
 };
 
 class Stopwatch {
@@ -39,7 +51,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-FrameResult frame_result(const FrameTruth& truth, const gnc::FrameOutcome& outcome) {
+FrameResult frame_result(const FrameTruth& truth, const gnc::FrameOutcome& outcome, double swath_m) {
   FrameResult result;
   result.truth = truth.q_lrf_trf;
   result.range_m = truth.range_m;
@@ -53,6 +65,7 @@ FrameResult frame_result(const FrameTruth& truth, const gnc::FrameOutcome& outco
   result.cnn = gnc::to_double(estimate.q_lrf_trf_single_frame);
   result.rcnn_predicted_rad = 1e-6 * estimate.predicted_error_urad;
   result.cnn_predicted_rad = 1e-6 * estimate.predicted_error_single_frame_urad;
+  result.pose = pose_errors(stated_pose(estimate.pose), truth, swath_m);
   return result;
 }
 
@@ -63,6 +76,31 @@ void run_baseline(Job& job, const gnc::RangeImage& frame, FrameResult& result) {
   result.has_baseline = true;
   result.baseline_valid = match.valid;
   result.baseline = match.q_lrf_trf;
+}
+
+void run_peers(Job& job, const gnc::RangeImage& frame, const FrameResult& result) {
+  const std::lock_guard<std::mutex> in_turn(job.peers_in_turn);
+  for (std::size_t i = 0; i < job.peer_matches.size(); ++i) {
+    const Stopwatch stopwatch;
+    const PosePeer::Result match = job.settings.peers[i]->match(frame);
+    PeerMatch& made = job.peer_matches[i][result.sequence].emplace();
+    made.ms = stopwatch.ms();
+    made.found = match.valid;
+    if (match.valid) made.error_deg = kDegPerRad * angular_error_rad(result.truth, match.q_lrf_trf);
+  }
+}
+
+PeerRun peer_run(const std::vector<std::optional<PeerMatch>>& matches) {
+  PeerRun run;
+  std::vector<double> times_ms;
+  for (const std::optional<PeerMatch>& match : matches) {
+    if (!match) continue;
+    run.errors_deg.push_back(match->error_deg);
+    run.found += match->found ? 1 : 0;
+    times_ms.push_back(match->ms);
+  }
+  run.ms = median(std::move(times_ms));
+  return run;
 }
 
 void run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::RangeImage& frame) {
@@ -79,13 +117,15 @@ void run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::
     const gnc::FrameOutcome outcome = estimator.step(frame, chaser);
     job.network_ms[place] = stopwatch.ms();
     FrameResult& result = job.results[place];
-    result = frame_result(truth, outcome);
+    result = frame_result(truth, outcome, job.renderer.swath_m());
     result.sequence = index;
     result.frame = k;
     job.delivered[place] = 1;
   }
-  if (index < job.baseline_ms.size())
-    run_baseline(job, frame, job.results[(std::size_t{index} + 1) * job.frames - 1]);
+  const std::size_t last = (std::size_t{index} + 1) * job.frames - 1;
+  if (index < job.baseline_ms.size()) run_baseline(job, frame, job.results[last]);
+  if (index < job.settings.baseline_sequences && job.delivered[last] != 0)
+    run_peers(job, frame, job.results[last]);
 }
 
 void remove_lost(Job& job) {
@@ -119,11 +159,14 @@ MonteCarloResult run_monte_carlo(const FrameRenderer& renderer, const std::vecto
                                  const std::function<void(std::uint32_t)>& progress) {
   if (settings.scenario.frames < 1) throw std::invalid_argument("a sequence needs at least one frame");
   const auto frames = static_cast<std::uint32_t>(settings.scenario.frames);
-  Job job{renderer, model, matcher, settings, frames, {}, {}, {}, {}, {}, {}};
+  Job job{renderer, model, matcher, settings, frames, {}, {}, {}, {}, {}, {}, {}, {}};
   job.results.resize(std::size_t{settings.sequences} * frames);
   job.delivered.resize(job.results.size());
   job.network_ms.resize(job.results.size());
-  if (matcher != nullptr) job.baseline_ms.resize(std::min(settings.baseline_sequences, settings.sequences));
+  const std::uint32_t matched = std::min(settings.baseline_sequences, settings.sequences);
+  if (matcher != nullptr) job.baseline_ms.resize(matched);
+  job.peer_matches.resize(settings.peers.size());
+  for (auto& matches : job.peer_matches) matches.resize(matched);
   std::vector<std::future<void>> workers;
   for (int i = 0; i < std::max(1, settings.threads); ++i) {
     workers.push_back(std::async(std::launch::async, [&job] { work(job); }));
@@ -134,7 +177,10 @@ MonteCarloResult run_monte_carlo(const FrameRenderer& renderer, const std::vecto
   }
   progress(job.done);
   remove_lost(job);
-  return {std::move(job.results), median(std::move(job.network_ms)), median(std::move(job.baseline_ms))};
+  std::vector<PeerRun> peers;
+  for (const auto& matches : job.peer_matches) peers.push_back(peer_run(matches));
+  return {std::move(job.results), median(std::move(job.network_ms)), median(std::move(job.baseline_ms)),
+          std::move(peers)};
 }
 
 }  // namespace tumblesight::sim

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "sim/baseline/pose_peer.hpp"
 #include "sim/baseline/template_matcher.hpp"
 #include "sim/evaluation/metrics.hpp"
 #include "sim/world/frame_renderer.hpp"
@@ -18,18 +19,27 @@ struct MonteCarloSettings {
   std::uint32_t sequences = 900;
   std::uint32_t baseline_sequences = 0;  // the baseline runs on the last frame of the first ones
   int threads = 1;
+  std::vector<const PosePeer*> peers{};  // run on the same frames as the baseline; must outlive the run
+};
+
+// One peer on the last frames of the first sequences.
+struct PeerRun {
+  std::vector<double> errors_deg;  // ordered by sequence; 180 without an attitude
+  std::size_t found = 0;           // frames with an attitude
+  double ms = 0.0;                 // median time per frame, one thread
 };
 
 struct MonteCarloResult {
   std::vector<FrameResult> frames;  // ordered by sequence and frame; lost frames have none
   double network_ms = 0.0;          // median time per frame from ranges to attitude, one thread
   double baseline_ms = 0.0;         // the same for the baseline; 0 if it was not run
+  std::vector<PeerRun> peers;       // in the order of the settings
 };
 
 // Every frame goes through the same gnc::FrameTracker as in flight. `renderer`: renders the frames. `model`:
 // a model image that AttitudeEstimator::load accepts; otherwise throws std::invalid_argument. `matcher`: the
-// baseline, or nullptr. `progress`: sequences done so far; called on the calling thread. The results except
-// the times do not depend on the number of threads.
+// baseline, or nullptr. Peers wait for each other, see PosePeer::match. `progress`: sequences done so far;
+// called on the calling thread. The results except the times do not depend on the number of threads.
 //
 // Sequence i is make_sequence(scenario, seed, i), as in `simulate`, so that a run over DDS can be compared
 // with one without. No network was trained on it: training draws its sequences from 64-bit hashes of its

@@ -29,36 +29,80 @@ std::uint32_t checked_crc32(const std::vector<std::uint8_t>& image, const std::s
   return header.crc32;
 }
 
-// Format version 3 of an image in fixed point has one section less and is otherwise the same.
-bool is_without_surface(const std::vector<std::uint8_t>& image) {
-  using namespace gnc::model_format;
-  return image.size() == gnc::kModelImageSize<FixedPoint> - gnc::SurfaceModel::kBytes &&
-         std::equal(kMagic.begin(), kMagic.end(), image.begin()) &&
-         get_u16(image.data() + kOffsetVersion) == 3 &&
-         get_u32(image.data() + kOffsetNumerics) == numerics_of<FixedPoint>() &&
-         get_u32(image.data() + kOffsetSectionCount) == gnc::kTensorCount<FixedPoint> &&
-         get_u32(image.data() + kOffsetHeaderCrc) == header_crc(image.data(), gnc::kTensorCount<FixedPoint>);
-}
-static_assert(gnc::model_format::data_offset(gnc::kTensorCount<FixedPoint>) ==
-              gnc::kModelDataOffset<FixedPoint>);
+constexpr std::size_t kPointsOffset = gnc::kModelDataOffset<FixedPoint> + gnc::kWeightBytes<FixedPoint>;
+constexpr std::uint32_t kTensors = gnc::kTensorCount<FixedPoint>;
 
-// `image`: in fixed point, with or without a surface.
-void set_surface(std::vector<std::uint8_t>& image, const std::vector<std::uint8_t>& surface) {
+// The format versions in fixed point before today's have fewer sections and are otherwise the same.
+struct FormerFormat {
+  std::uint16_t version;
+  std::uint32_t sections;
+  std::size_t size_bytes;
+};
+constexpr FormerFormat kFormerFormats[] = {
+    {3, kTensors, kPointsOffset},
+    {4, kTensors + 1, kPointsOffset + gnc::SurfaceModel::kBytes},
+};
+static_assert(gnc::model_format::data_offset(kTensors) == gnc::kModelDataOffset<FixedPoint>);
+static_assert(gnc::model_format::data_offset(kTensors + 1) == gnc::kModelDataOffset<FixedPoint>);
+
+// `image` is complete and its header intact. The damage in a section is found later, by the section's CRC-32.
+bool has_format(const std::vector<std::uint8_t>& image, const FormerFormat& format) {
   using namespace gnc::model_format;
-  constexpr std::size_t kOffset = gnc::kModelImageSize<FixedPoint> - gnc::SurfaceModel::kBytes;
+  return image.size() == format.size_bytes && std::equal(kMagic.begin(), kMagic.end(), image.begin()) &&
+         get_u16(image.data() + kOffsetVersion) == format.version &&
+         get_u32(image.data() + kOffsetNumerics) == numerics_of<FixedPoint>() &&
+         get_u32(image.data() + kOffsetSectionCount) == format.sections &&
+         get_u32(image.data() + kOffsetHeaderCrc) == header_crc(image.data(), format.sections);
+}
+
+// `sections`: in the image so far.
+void append_section(std::vector<std::uint8_t>& image, std::uint32_t sections,
+                    const std::vector<std::uint8_t>& section) {
+  using namespace gnc::model_format;
+  std::uint8_t* const entry = image.data() + gnc::kModelHeaderSize + sections * gnc::kModelSectionEntrySize;
+  put_u32(entry, sections + 1);
+  put_u32(entry + 4, static_cast<std::uint32_t>(image.size()));
+  put_u32(entry + 8, static_cast<std::uint32_t>(section.size()));
+  put_u32(entry + 12, gnc::crc32(section.data(), section.size()));
+  image.insert(image.end(), section.begin(), section.end());
+}
+
+// Header and CRC-32 of an image that has all sections.
+void complete_header(std::vector<std::uint8_t>& image) {
+  using namespace gnc::model_format;
   constexpr auto kSections = static_cast<std::uint32_t>(gnc::kModelSections<FixedPoint>);
-  image.resize(kOffset);
-  image.insert(image.end(), surface.begin(), surface.end());
   put_u16(image.data() + kOffsetVersion, gnc::kModelFormatVersion<FixedPoint>);
   put_u32(image.data() + kOffsetTotalSize, static_cast<std::uint32_t>(image.size()));
   put_u32(image.data() + kOffsetSectionCount, kSections);
-  std::uint8_t* const entry =
-      image.data() + gnc::kModelHeaderSize + (kSections - 1) * gnc::kModelSectionEntrySize;
-  put_u32(entry, kSections);
-  put_u32(entry + 4, static_cast<std::uint32_t>(kOffset));
-  put_u32(entry + 8, static_cast<std::uint32_t>(surface.size()));
-  put_u32(entry + 12, gnc::crc32(surface.data(), surface.size()));
   put_u32(image.data() + kOffsetHeaderCrc, header_crc(image.data(), kSections));
+}
+
+// Both sections in their full size.
+SurfaceSections padded(SurfaceSections surface) {
+  if (surface.points.empty()) surface.points.resize(gnc::SurfaceModel::kBytes);
+  if (surface.points.size() != gnc::SurfaceModel::kBytes || surface.mesh.size() > gnc::SurfaceMesh::kMaxBytes)
+    throw std::invalid_argument("a section of the target's surface has an impossible size");
+  surface.mesh.resize(gnc::SurfaceMesh::kMaxBytes);
+  return surface;
+}
+
+// `image`: of today's format version.
+void set_surface(std::vector<std::uint8_t>& image, const SurfaceSections& surface) {
+  image.resize(kPointsOffset);
+  const SurfaceSections sections = padded(surface);
+  append_section(image, kTensors, sections.points);
+  append_section(image, kTensors + 1, sections.mesh);
+  complete_header(image);
+}
+
+void upgrade(std::vector<std::uint8_t>& image) {
+  const SurfaceSections unknown = padded({});
+  if (has_format(image, kFormerFormats[0])) {
+    set_surface(image, unknown);
+  } else if (has_format(image, kFormerFormats[1])) {
+    append_section(image, kTensors + 1, unknown.mesh);  // the points keep their CRC-32
+    complete_header(image);
+  }
 }
 
 }  // namespace
@@ -97,7 +141,7 @@ std::vector<std::uint8_t> read_model_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error("model image '" + path + "' cannot be read");
   std::vector<std::uint8_t> image{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (is_without_surface(image)) set_surface(image, std::vector<std::uint8_t>(gnc::SurfaceModel::kBytes));
+  upgrade(image);
   return image;
 }
 
@@ -123,28 +167,32 @@ gnc::ModelHeader read_fixed_point_header(const std::string& path) {
   const gnc::ModelStatus status =
       gnc::read_model_image<FixedPoint>(image.data(), image.size(), nullptr, header, *weights);
   if (status == gnc::ModelStatus::kOk) return header;
+  if (status == gnc::ModelStatus::kBadNumerics) {
+    throw std::runtime_error("model image '" + path +
+                             "' is in float32; give the one in fixed point (<target>.tsm), as `tumblesight "
+                             "quantize --model " +
+                             path + "` makes it");
+  }
   throw std::runtime_error("model image '" + path + "' is refused: " + gnc::to_string(status));
 }
 
 template <class N>
 std::uint32_t write_model_file(const std::string& path, const gnc::ModelHeader& header,
-                               const gnc::NetworkWeights<N>& weights,
-                               const std::vector<std::uint8_t>& surface) {
+                               const gnc::NetworkWeights<N>& weights, const SurfaceSections& surface) {
   std::vector<std::uint8_t> bytes(gnc::kModelImageSize<N>);
+  const SurfaceSections sections = padded(surface);
   bytes.resize(gnc::write_model_image<N>(header, weights, bytes.data(), bytes.size(),
-                                         surface.empty() ? nullptr : surface.data()));
+                                         {sections.points.data(), sections.mesh.data()}));
   const std::uint32_t crc32 = checked_crc32<N>(bytes, path);
   write_file(path, bytes);
   return crc32;
 }
 template std::uint32_t write_model_file(const std::string&, const gnc::ModelHeader&,
-                                        const gnc::NetworkWeights<Float32>&,
-                                        const std::vector<std::uint8_t>&);
+                                        const gnc::NetworkWeights<Float32>&, const SurfaceSections&);
 template std::uint32_t write_model_file(const std::string&, const gnc::ModelHeader&,
-                                        const gnc::NetworkWeights<FixedPoint>&,
-                                        const std::vector<std::uint8_t>&);
+                                        const gnc::NetworkWeights<FixedPoint>&, const SurfaceSections&);
 
-std::uint32_t write_with_surface(const std::string& from, const std::vector<std::uint8_t>& surface,
+std::uint32_t write_with_surface(const std::string& from, const SurfaceSections& surface,
                                  const std::string& path) {
   (void)read_fixed_point_header(from);
   std::vector<std::uint8_t> image = read_model_bytes(from);

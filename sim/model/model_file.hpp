@@ -22,8 +22,9 @@ std::string model_stem(std::string path);
 std::string fault_of_model_path(const std::string& path);
 
 // The bytes of a file, not checked: for the estimators, which check the image themselves and read fixed-point
-// weights in place. An image in fixed point of format version 3, which had no surface, comes with one without
-// points. Throws std::runtime_error that names the file if it cannot be read.
+// weights in place. An image in fixed point of an earlier format version comes as one of today's, with zeros
+// for the sections that it did not have: points and mesh of the surface (version 3), the mesh (version 4).
+// Throws std::runtime_error that names the file if it cannot be read.
 std::vector<std::uint8_t> read_model_bytes(const std::string& path);
 
 struct Float32Model {
@@ -37,17 +38,22 @@ std::unique_ptr<Float32Model> read_float32_model(const std::string& path);
 // The header of an image in fixed point. Throws as read_float32_model does.
 gnc::ModelHeader read_fixed_point_header(const std::string& path);
 
-// Writes the file under a temporary name, then renames it. Returns the image's CRC-32. `surface`: in fixed
-// point, the target's surface (gnc::SurfaceModel::kBytes); empty: without points. Throws std::runtime_error
-// that names the file if it cannot be written, or if the reader would refuse the image.
+// The sections of the target's surface in an image in fixed point; empty: not known.
+struct SurfaceSections {
+  std::vector<std::uint8_t> points;  // gnc::SurfaceModel::kBytes
+  std::vector<std::uint8_t> mesh;    // as gnc::SurfaceMesh reads it; zeros behind it may be left out
+};
+
+// Writes the file under a temporary name, then renames it. Returns the image's CRC-32. `surface`: not used in
+// float32. Throws std::runtime_error that names the file if it cannot be written, or if the reader would
+// refuse the image, std::invalid_argument for a section of an impossible size.
 template <class N>
 std::uint32_t write_model_file(const std::string& path, const gnc::ModelHeader& header,
-                               const gnc::NetworkWeights<N>& weights,
-                               const std::vector<std::uint8_t>& surface = {});
+                               const gnc::NetworkWeights<N>& weights, const SurfaceSections& surface = {});
 
-// Writes a copy of the fixed-point image `from` with another surface; all weights stay as they are, byte for
-// byte. Throws as write_model_file does, and if `from` is no image in fixed point.
-std::uint32_t write_with_surface(const std::string& from, const std::vector<std::uint8_t>& surface,
+// Writes a copy of the fixed-point image `from`, in today's format version, with another surface; all weights
+// stay as they are, byte for byte. Throws as write_model_file does, and if `from` is no image in fixed point.
+std::uint32_t write_with_surface(const std::string& from, const SurfaceSections& surface,
                                  const std::string& path);
 
 }  // namespace tumblesight::sim

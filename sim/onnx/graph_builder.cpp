@@ -8,12 +8,25 @@ namespace tumblesight::sim {
 namespace {
 
 void describe(onnx::ValueInfoProto& value, const std::string& name, const OnnxShape& shape,
-              const std::string& description) {
+              const std::string& description, onnx::TensorProto::DataType element) {
   value.set_name(name);
   value.set_doc_string(description);
   onnx::TypeProto::Tensor& type = *value.mutable_type()->mutable_tensor_type();
-  type.set_elem_type(onnx::TensorProto::FLOAT);
+  type.set_elem_type(element);
   for (const std::int64_t size : shape) type.mutable_shape()->add_dim()->set_dim_value(size);
+}
+
+onnx::TensorProto::DataType type_of(float) {
+  return onnx::TensorProto::FLOAT;
+}
+onnx::TensorProto::DataType type_of(std::int8_t) {
+  return onnx::TensorProto::INT8;
+}
+onnx::TensorProto::DataType type_of(std::uint8_t) {
+  return onnx::TensorProto::UINT8;
+}
+onnx::TensorProto::DataType type_of(std::int32_t) {
+  return onnx::TensorProto::INT32;
 }
 
 onnx::AttributeProto& new_attribute(onnx::NodeProto& node, const std::string& name,
@@ -27,27 +40,35 @@ onnx::AttributeProto& new_attribute(onnx::NodeProto& node, const std::string& na
 }  // namespace
 
 std::string GraphBuilder::input(const std::string& name, const OnnxShape& shape,
-                                const std::string& description) {
-  describe(*graph_.add_input(), name, shape, description);
+                                const std::string& description, onnx::TensorProto::DataType type) {
+  describe(*graph_.add_input(), name, shape, description, type);
   return name;
 }
 
 void GraphBuilder::output(const std::string& name, const OnnxShape& shape, const std::string& description) {
-  describe(*graph_.add_output(), name, shape, description);
+  describe(*graph_.add_output(), name, shape, description, onnx::TensorProto::FLOAT);
 }
 
+template <class Number>
 std::string GraphBuilder::weights(const std::string& name, const OnnxShape& shape,
-                                  const std::vector<float>& values) {
+                                  const std::vector<Number>& values) {
   const auto count = std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>());
   if (count != static_cast<std::int64_t>(values.size()))
     throw std::logic_error(name + ": the number of values does not match the shape");
   onnx::TensorProto& tensor = *graph_.add_initializer();
   tensor.set_name(name);
-  tensor.set_data_type(onnx::TensorProto::FLOAT);
+  tensor.set_data_type(type_of(Number{}));
   tensor.mutable_dims()->Add(shape.begin(), shape.end());
-  tensor.set_raw_data(values.data(), values.size() * sizeof(float));
+  tensor.set_raw_data(values.data(), values.size() * sizeof(Number));
   return name;
 }
+template std::string GraphBuilder::weights(const std::string&, const OnnxShape&, const std::vector<float>&);
+template std::string GraphBuilder::weights(const std::string&, const OnnxShape&,
+                                           const std::vector<std::int8_t>&);
+template std::string GraphBuilder::weights(const std::string&, const OnnxShape&,
+                                           const std::vector<std::uint8_t>&);
+template std::string GraphBuilder::weights(const std::string&, const OnnxShape&,
+                                           const std::vector<std::int32_t>&);
 
 std::string GraphBuilder::reshape(const std::string& value, const OnnxShape& shape, const std::string& name) {
   onnx::TensorProto& tensor = *graph_.add_initializer();

@@ -6,7 +6,7 @@
 
 #include "sim/model/network_layers.hpp"
 #include "sim/quantization/scales.hpp"
-#include "sim/quantization/surface_samples.hpp"
+#include "sim/quantization/target_surface.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
@@ -99,7 +99,7 @@ std::vector<double> differences_deg(const Float32Model& model, const gnc::Networ
 struct Rendered {
   std::vector<std::unique_ptr<FlashLidar>> lidars;
   std::vector<const FlashLidar*> each;
-  Rendered(const std::vector<TriangleMesh>& meshes, const Effects& effects, const std::string& target) {
+  Rendered(const std::vector<TriangleMesh>& meshes, const EffectRanges& effects, const std::string& target) {
     for (const TriangleMesh& mesh : meshes) {
       lidars.push_back(std::make_unique<FlashLidar>(observed_bodies(effects, target, mesh)));
       each.push_back(lidars.back().get());
@@ -115,9 +115,10 @@ void require_frames(std::size_t calibrating, std::size_t reported) {
       "metres, and are the effects those of the training?");
 }
 
-// The noise of the sensor, by which the flight program judges depths.
+// The noise of the sensor, by which the flight program judges depths; the middle of a range.
 gnc::RangeNoise noise_of(const ScenarioSettings& seen) {
-  const double factor = seen.effects.noise > 0.0 ? seen.effects.noise : 1.0;
+  const double given = 0.5 * (seen.effects.low.noise + seen.effects.high.noise);
+  const double factor = given > 0.0 ? given : 1.0;
   const auto rounded = [factor](double value) {
     return static_cast<std::uint16_t>(std::lround(std::min(65535.0, factor * value)));
   };
@@ -133,6 +134,9 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
                                     int sequences, const std::string& path,
                                     const std::function<void(std::uint64_t)>& progress,
                                     const ScenarioSettings& seen) {
+  QuantizationReport report;
+  // First: a mesh without a surface is refused before anything is rendered.
+  report.surface = target_surface(meshes.front(), 1e-3 * model.header.projection.target_radius_mm);
   const Rendered rendered(meshes, seen.effects, model.header.target.data());
   const int held_back = sequences / kReportShare;
   Calibration calibration(model.weights,
@@ -154,12 +158,9 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
   require_frames(calibrating, reported);
   const std::unique_ptr<QuantizedNetwork> network = quantize(model.weights, calibration.statistics());
 
-  QuantizationReport report;
-  const double radius_m = 1e-3 * model.header.projection.target_radius_mm;
   gnc::ModelHeader header = model.header;
   header.noise = noise_of(seen);
-  report.crc32 =
-      write_model_file<FixedPoint>(path, header, network->weights, surface_section(meshes.front(), radius_m));
+  report.crc32 = write_model_file<FixedPoint>(path, header, network->weights, report.surface);
   report.size_bytes = gnc::kModelImageSize<FixedPoint>;
   report.layers = compare(model.weights, *network, model.header.inertia, kept);
   report.difference = summarise(differences_deg(model, network->weights, kept));

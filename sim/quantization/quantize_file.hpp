@@ -29,12 +29,13 @@ struct QuantizationReport {
   ErrorSummary difference;  // angles between the attitudes of both numerics, one per frame
   std::size_t size_bytes = 0;
   std::uint32_t crc32 = 0;
+  SurfaceSections surface;  // in the image
 };
 // Renders `sequences` sequences: three quarters calibrate, the last quarter is for the report. The first mesh
 // gives the image's surface, and the sensor its noise. Calls `progress` with the number of sequences done.
 // `seen`: sensor, ranges, period and effects of the sequences, as the network is trained for. Deterministic.
 // Throws std::runtime_error if the sensor sees too little of the target in all frames of one of the two
-// parts, or that names the file if it cannot be written, and std::invalid_argument as observed_bodies() does.
+// parts, or that names the file if it cannot be written, and as observed_bodies() and target_surface() do.
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
                                     int sequences, const std::string& path,
                                     const std::function<void(std::uint64_t)>& progress,

@@ -8,6 +8,7 @@
 
 #include "gnc/rcnn/model_format.hpp"
 #include "gnc/registration/surface_model.hpp"
+#include "sim/quantization/outside_views.hpp"
 #include "sim/world/math/random.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 
@@ -18,18 +19,16 @@ using Eigen::Vector3d;
 using gnc::SurfaceModel;
 
 constexpr int kCandidates = 40'000;  // points on the mesh, each with two sides
-constexpr int kDirections = 150;
 constexpr int kSeenBy = 2;
-constexpr double kGoldenAngle_rad = 2.399963229728653;
-// From this many radii the view is nearly parallel, and a ray meets the target every 0.004 radii.
-constexpr double kDistance_radii = 20.0;
-constexpr int kRays = 512;
+constexpr int kRays = 512;  // per side: one meets the target every 0.004 radii
 // A larger incidence would not tell the two sides of a thin panel: its slope within a ray exceeds the panel.
 constexpr double kLeastFacing = 0.5;
 constexpr double kDepthTolerance_radii = 0.001;
 constexpr double kHalfDiagonal_rays = 0.71;
 constexpr double kSameDirection = 0.5;  // cosine of the angle between two normals
 constexpr int kBisections = 24;
+// Above the spacing of the points, also on a sphere: 0.08 radii.
+constexpr double kFar_radii = 0.1;
 
 struct Sample {
   Vector3d position_m, normal;
@@ -82,17 +81,13 @@ bool is_seen(const Sample& sample, const Eigen::Matrix3d& r_lrf_trf, double rang
 
 void count_views(const TriangleMesh& mesh, std::vector<Sample>& samples) {
   const FlashLidar lidar(mesh);
-  const double radius_m = mesh.radius_m(), range_m = kDistance_radii * radius_m;
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / kDirections, across = std::sqrt(1.0 - z * z);
-    const Vector3d to_sensor(across * std::cos(kGoldenAngle_rad * i), across * std::sin(kGoldenAngle_rad * i),
-                             z);
-    const auto q_lrf_trf = Eigen::Quaterniond::FromTwoVectors(to_sensor, -Vector3d::UnitY());
-    const FrameTruth truth{q_lrf_trf, Vector3d::Zero(), range_m};
-    const Eigen::Matrix3d r_lrf_trf = q_lrf_trf.toRotationMatrix();
+  const double radius_m = mesh.radius_m();
+  for (int i = 0; i < kOutsideViews; ++i) {
+    const FrameTruth truth = outside_view(mesh, i);
+    const Eigen::Matrix3d r_lrf_trf = truth.q_lrf_trf.toRotationMatrix();
     const RangeGrid grid = lidar.true_ranges(truth, kRays, swath_m(mesh));
     for (Sample& sample : samples) {
-      if (is_seen(sample, r_lrf_trf, range_m, radius_m, grid)) ++sample.seen_by;
+      if (is_seen(sample, r_lrf_trf, truth.range_m, radius_m, grid)) ++sample.seen_by;
     }
   }
 }
@@ -140,7 +135,32 @@ void put_sample(const Sample& sample, double radius_m, std::uint8_t* at) {
   }
 }
 
+std::vector<Vector3d> positions_radii(const SurfaceModel& surface, const Eigen::Matrix3d& turn) {
+  std::vector<Vector3d> positions;
+  for (int i = 0; i < static_cast<int>(surface.points()); ++i) {
+    const auto& [x, y, z] = surface.point(i).position;
+    positions.emplace_back(turn * Vector3d(x, y, z) / SurfaceModel::kRadius);
+  }
+  return positions;
+}
+
+double share_far_from(const std::vector<Vector3d>& others, const std::vector<Vector3d>& points) {
+  const auto is_far = [&others](const Vector3d& point) {
+    return std::none_of(others.begin(), others.end(), [&point](const Vector3d& other) {
+      return (other - point).squaredNorm() <= kFar_radii * kFar_radii;
+    });
+  };
+  const auto far = std::count_if(points.begin(), points.end(), is_far);
+  return static_cast<double>(far) / static_cast<double>(points.size());
+}
+
 }  // namespace
+
+double unlike_share(const SurfaceModel& surface, const SurfaceModel& other, const Eigen::Matrix3d& turn) {
+  if (!surface.is_known() || !other.is_known()) return 0.0;
+  const auto one = positions_radii(surface, Eigen::Matrix3d::Identity()), two = positions_radii(other, turn);
+  return std::max(share_far_from(one, two), share_far_from(two, one));
+}
 
 std::vector<std::uint8_t> surface_section(const TriangleMesh& mesh, double radius_m) {
   std::vector<Sample> samples = candidates(mesh);

@@ -59,7 +59,7 @@ MadeRecording make_recording(const FrameRenderer& renderer, const RecordingSetti
   for (std::uint32_t i = 0; i < settings.sequences; ++i)
     sequences.push_back(make_sequence(settings.scenario, settings.seed, i));
   const ScenarioSettings& scenario = settings.scenario;
-  const int rays = frame_rays(sensor_settings(scenario.condition, scenario.effects, scenario.sensor));
+  const int rays = frame_rays(sensor_settings(scenario.condition, scenario.effects.high, scenario.sensor));
   const bool ego_motion = !settings.scenario.disturbances.no_ego_motion;
   RecordingWriter writer(static_cast<std::uint16_t>(rays), delivered_frames(sequences));
   MadeRecording made;

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "sim/recording/recording_file.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -103,7 +104,7 @@ class Parser {
     throw std::runtime_error(name_ + ", line " + std::to_string(line_) + ": " + what);
   }
   [[noreturn]] void refuse(Column column, std::string_view value, const std::string& what) const {
-    refuse(std::string(kTable[column].name) + ": '" + std::string(value) + "' " + what);
+    refuse(std::string(kTable[column].name) + ": '" + shortened(std::string(value)) + "' " + what);
   }
 
   bool has(std::size_t column) const {
@@ -116,7 +117,7 @@ class Parser {
           std::find_if(kTable.begin(), kTable.end(), [&](const ColumnRow& row) { return row.name == name; });
       const auto column = static_cast<std::size_t>(known - kTable.begin());
       if (known == kTable.end())
-        refuse("there is no column '" + std::string(name) + "'; docs/icd.md lists the columns");
+        refuse("there is no column '" + shortened(std::string(name)) + "'; docs/icd.md lists the columns");
       if (has(column)) refuse("the column " + std::string(name) + " is there twice; remove one");
       places_.push_back(column);
     }

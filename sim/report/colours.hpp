@@ -11,6 +11,8 @@ namespace tumblesight::sim {
 // The colours of estimators and conditions, the same in every figure.
 inline constexpr const char* kRcnnColour = "#1b5e9e";
 inline constexpr const char* kCnnColour = "#d0702a";
+inline constexpr const char* kPoseColour = "#3a8a3f";
+inline constexpr const char* kDoubtfulPoseColour = "#b83227";
 inline constexpr const char* kBaselineColour = "#7b8794";
 inline constexpr const char* kPaperColour = "#c3c9d1";
 

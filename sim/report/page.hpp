@@ -40,6 +40,10 @@ std::string predicted_error_figure(const RunReport& report);
 // estimated, in the image's perspective (LRF x to the right, z up), below that the error.
 std::string attitude_strip_figure(const RunReport& report, std::uint32_t sequence);
 std::string quaternion_figure(const RunReport& report, std::uint32_t sequence);
+// The registered poses of all sequences, the first with those of one sequence frame by frame.
+std::string pose_attitude_figure(const RunReport& report, std::uint32_t sequence);
+std::string pose_position_figure(const RunReport& report);
+std::string pose_verified_figure(const RunReport& report);
 
 // Depth images side by side, each with its sequence, frame and range.
 std::string gallery_figure(const std::vector<const ReportPicture*>& pictures);

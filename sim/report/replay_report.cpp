@@ -320,7 +320,7 @@ ReplayReport replay_report(const ReplaySetup& setup, const SilRunResult& run,
   const SilRunResult tracks = by_track(run);
   static_cast<FlightSetup&>(report.run.setup) = setup;
   report.run.frame_period_s = kFramePeriod_s;
-  report.run.results = frame_results(tracks);
+  report.run.results = frame_results(tracks, std::nullopt);
   for (const FrameResult& result : report.run.results)
     report.run.setup.frames = std::max(report.run.setup.frames, result.frame + 1);
   report.run.pictures = depth_pictures(tracks, setup.projection);

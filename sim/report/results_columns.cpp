@@ -66,6 +66,43 @@ std::string csv_text(const std::string& text) {
   return quoted + "\"";
 }
 
+std::string millimetres_text(double metres) {
+  return fmt::format("{:.1f} mm", 1e3 * metres);
+}
+
+std::string rate_text(double deg_s) {
+  return fmt::format("{:.3f}°/s", deg_s);
+}
+
+std::string velocity_text(double m_s) {
+  return fmt::format("{:.1f} mm/s", 1e3 * m_s);
+}
+
+std::string share_of_poses_text(double share) {
+  return percent_text(share);
+}
+
+// A pose is some ten times as sharp as the network's attitude.
+std::string pose_degrees_text(double deg) {
+  return fmt::format("{:.3f}°", deg);
+}
+
+// Figures of poses, in the lines of the RCNN, from whose attitudes the registration starts.
+void add_pose_columns(std::vector<CsvColumn>& columns, const std::string& prefix,
+                      PoseSummary CellResult::*poses) {
+  for (const PoseFigure& figure : pose_figures()) {
+    columns.push_back({prefix + figure.key,
+                       [&figure, poses](const EstimatorRow& row) {
+                         const PoseSummary& summary = row.cell.*poses;
+                         const double value = summary.*figure.value;
+                         const bool none = &row.summary != &row.cell.rcnn || !(summary.known > 0.0);
+                         return none || std::isnan(value) ? std::string{}
+                                                          : fmt::format("{:.{}f}", value, figure.decimals);
+                       },
+                       [](const CellResult& cell) { return cell.pose.known > 0.0; }});
+  }
+}
+
 std::vector<CsvColumn> make_csv_columns() {
   using Row = EstimatorRow;
   std::vector<CsvColumn> columns{
@@ -109,6 +146,8 @@ std::vector<CsvColumn> make_csv_columns() {
                        return fmt::format("{} to {}", ranges.nearest_m, ranges.farthest_m);
                      },
                      [](const CellResult& cell) { return !cell.ranges.are_the_papers(); }});
+  add_pose_columns(columns, "pose_", &CellResult::pose);
+  add_pose_columns(columns, "pose_first_", &CellResult::pose_first);
   return columns;
 }
 
@@ -217,6 +256,28 @@ const SummaryFigure& summary_figure(double ErrorSummary::*value) {
   throw std::out_of_range("an error figure that is not in summary_figures()");
 }
 
+const std::vector<PoseFigure>& pose_figures() {
+  static const std::vector<PoseFigure> figures{
+      {"mean_deg", nullptr, false, 4, &PoseSummary::mean_deg, pose_degrees_text},
+      {"mean_within_20_deg", "mean within 20°", true, 4, &PoseSummary::mean_within_20_deg, pose_degrees_text},
+      {"median_deg", "median", false, 4, &PoseSummary::median_deg, pose_degrees_text},
+      {"within_20deg", "within 20°", true, 5, &PoseSummary::within_20deg, share_of_poses_text},
+      {"across_m", "across", false, 5, &PoseSummary::across_m, millimetres_text},
+      {"along_m", "along", false, 5, &PoseSummary::along_m, millimetres_text},
+      {"rate_deg_s", "rate", false, 4, &PoseSummary::rate_deg_s, rate_text},
+      {"velocity_m_s", "velocity", false, 5, &PoseSummary::velocity_m_s, velocity_text},
+      {"verified", "verified", false, 5, &PoseSummary::verified, share_of_poses_text},
+      {"verified_wrong", "verified, wrong", false, 5, &PoseSummary::verified_wrong, share_of_poses_text},
+      {"inside_95", "inside 95 %", false, 5, &PoseSummary::inside_95, share_of_poses_text}};
+  return figures;
+}
+
+TableCell pose_cell(const PoseFigure& figure, const PoseSummary& summary) {
+  const double value = summary.*figure.value;
+  if (!(summary.known > 0.0) || std::isnan(value)) return {"-"};
+  return {figure.text(value)};
+}
+
 TableCell figure_cell(const SummaryFigure& figure, const ErrorSummary& summary, Mark mark) {
   if (summary.count == 0 || std::isnan(summary.*figure.value)) return {"-"};
   return {figure.text(summary), mark};
@@ -244,6 +305,8 @@ std::vector<EstimatorRow> estimator_rows(const Results& results) {
       rows.push_back({results, subject, cell, "rcnn", cell.rcnn, paper.rcnn});
       rows.push_back({results, subject, cell, "cnn", cell.cnn, paper.cnn});
       if (cell.baseline) rows.push_back({results, subject, cell, "baseline", *cell.baseline, std::nullopt});
+      for (const PeerErrors& peer : cell.peers)
+        rows.push_back({results, subject, cell, peer.key.c_str(), peer.summary, std::nullopt});
     }
     for (const CellResult& cell : subject.disturbed) {
       rows.push_back({results, subject, cell, "rcnn", cell.rcnn, std::nullopt});

@@ -31,6 +31,19 @@ const std::vector<SummaryFigure>& summary_figures();
 // The figure whose value is this member. Throws std::out_of_range if there is none.
 const SummaryFigure& summary_figure(double ErrorSummary::*value);
 
+// One figure of the registered poses of a frame.
+struct PoseFigure {
+  const char* key;      // in JSON, with its unit; in CSV with "pose_" or "pose_first_" before it
+  const char* heading;  // in tables; nullptr: they leave it out
+  bool of_first_frame;  // tables have it for the first frame too
+  int decimals;         // in the CSV file
+  double PoseSummary::*value;
+  std::string (*text)(double value);  // in tables, with unit
+};
+const std::vector<PoseFigure>& pose_figures();
+// In tables. "-" where the figure does not exist.
+TableCell pose_cell(const PoseFigure& figure, const PoseSummary& summary);
+
 // In tables. "-" without a sequence.
 TableCell figure_cell(const SummaryFigure& figure, const ErrorSummary& summary, Mark mark = Mark::kNone);
 // "-" where the paper does not have it.
@@ -43,7 +56,7 @@ struct EstimatorRow {
   const Results& results;
   const SubjectResult& subject;
   const CellResult& cell;
-  const char* estimator;  // "rcnn", "cnn", "baseline"
+  const char* estimator;  // "rcnn", "cnn", "baseline", or the key of a peer
   const ErrorSummary& summary;
   std::optional<PaperFigure> paper;
 };

@@ -31,6 +31,17 @@ Json baseline_json(const CellResult& cell) {
   return json;
 }
 
+Json peers_json(const CellResult& cell) {
+  Json json = Json::object();
+  for (const PeerErrors& peer : cell.peers) {
+    Json one = summary_json(peer.summary);
+    one["sequences"] = peer.summary.count;
+    one["ms_per_frame"] = peer.ms;
+    json[peer.key] = one;
+  }
+  return json;
+}
+
 Json curve_json(const Curve& curve) {
   Json json = Json::array();
   for (const CurvePoint& point : curve) {
@@ -50,6 +61,8 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
             {"sequences", cell.sequences},
             {"rcnn", estimator_json(cell.rcnn)},
             {"cnn", estimator_json(cell.cnn)},
+            {"pose", pose_json(cell.pose)},
+            {"pose_first", pose_json(cell.pose_first)},
             {"baseline", baseline_json(cell)},
             {"frames", cell.frames},
             {"disturbances", disturbances_json(cell.disturbances)},
@@ -61,6 +74,7 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
             {"paper_cnn", figure_json(paper.cnn)},
             {"goal", figure_json(paper.goal)},
             {"confusion", confusion_json(cell.rcnn_confusion)}};
+  if (!cell.peers.empty()) json["peers"] = peers_json(cell);
   if (!cell.sensor.is_the_papers()) json["sensor"] = sensor_json(cell.sensor);
   if (!cell.ranges.are_the_papers()) json["ranges_m"] = {cell.ranges.nearest_m, cell.ranges.farthest_m};
   // What an effect or a sensor costs depends on the range.
@@ -146,6 +160,16 @@ Json summary_json(const ErrorSummary& summary) {
   for (const SummaryFigure& figure : summary_figures()) {
     if (figure.in_degrees && figure.error_key != nullptr)
       json[figure.error_key] = figure_or_null(figure.error(summary));
+  }
+  return json;
+}
+
+nlohmann::ordered_json pose_json(const PoseSummary& pose) {
+  if (!(pose.known > 0.0)) return nullptr;
+  Json json = Json::object();
+  for (const PoseFigure& figure : pose_figures()) {
+    const double value = pose.*figure.value;
+    json[figure.key] = std::isnan(value) ? Json(nullptr) : Json(value);
   }
   return json;
 }

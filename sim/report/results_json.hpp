@@ -15,6 +15,9 @@ nlohmann::ordered_json summary_json(const ErrorSummary& summary);
 // The same with error_below_3_expected and expected_over_real.
 nlohmann::ordered_json estimator_json(const ErrorSummary& summary);
 
+// The figures of pose_figures() by their keys; null where one does not exist, or altogether without a pose.
+nlohmann::ordered_json pose_json(const PoseSummary& pose);
+
 // What was given, by the names of the table; empty for an undisturbed run.
 nlohmann::ordered_json disturbances_json(const Disturbances& disturbances);
 

@@ -68,6 +68,20 @@ DataTable cell_table(const std::string& target, const CellResult& cell) {
   return estimators_table(estimators, paper.sequences);
 }
 
+DataTable peers_table(const CellResult& cell) {
+  DataTable table{{"on the same frames"}, {}};
+  if (cell.peers.empty()) return table;
+  for (const SummaryFigure& figure : summary_figures()) table.header.emplace_back(figure.heading);
+  for (const char* heading : {"sequences", "ms per frame"}) table.header.emplace_back(heading);
+  const auto add = [&](const std::string& name, const ErrorSummary& summary, double ms) {
+    table.rows.push_back(estimator_cells({name, Mark::kNone, summary, std::nullopt}));
+    table.rows.back().push_back({fmt::format("{:.0f}", ms)});
+  };
+  if (cell.baseline) add("template matching", *cell.baseline, cell.baseline_ms);
+  for (const PeerErrors& peer : cell.peers) add(peer.name, peer.summary, peer.ms);
+  return table;
+}
+
 DataTable conditions_table(const std::vector<SubjectResult>& subjects, ConditionTables table) {
   DataTable made{condition_header(table), {}};
   for (const SubjectResult& subject : subjects) {
@@ -75,6 +89,34 @@ DataTable conditions_table(const std::vector<SubjectResult>& subjects, Condition
     for (const ResultRow& row : condition_rows(subject)) made.rows.push_back(condition_cells(row, table));
   }
   return made;
+}
+
+DataTable poses_table(const std::vector<NamedPoses>& poses) {
+  DataTable table{{"registered pose"}, {}};
+  for (const PoseFigure& figure : pose_figures())
+    if (figure.of_first_frame) table.header.push_back(std::string("first frame, ") + figure.heading);
+  for (const PoseFigure& figure : pose_figures())
+    if (figure.heading != nullptr) table.header.emplace_back(figure.heading);
+  for (const auto& [name, first, last] : poses) {
+    if (!(last.known > 0.0)) continue;
+    Cells cells{{name}};
+    for (const PoseFigure& figure : pose_figures())
+      if (figure.of_first_frame) cells.push_back(pose_cell(figure, first));
+    for (const PoseFigure& figure : pose_figures())
+      if (figure.heading != nullptr) cells.push_back(pose_cell(figure, last));
+    table.rows.push_back(cells);
+  }
+  return table;
+}
+
+DataTable poses_table(const SubjectResult& subject) {
+  std::vector<NamedPoses> poses;
+  for (const CellResult& cell : subject.cells) {
+    const std::string other = differences_from_paper(cell);
+    poses.push_back(
+        {to_string(cell.condition) + (other.empty() ? "" : ", ") + other, cell.pose_first, cell.pose});
+  }
+  return poses_table(poses);
 }
 
 DataTable by_frame_table(const Curve& by_frame) {

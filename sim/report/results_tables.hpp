@@ -21,10 +21,23 @@ struct EstimatorErrors {
 DataTable estimators_table(const std::vector<EstimatorErrors>& estimators, std::uint32_t paper_sequences);
 // The same for one condition: RCNN, CNN and, where it was run, template matching.
 DataTable cell_table(const std::string& target, const CellResult& cell);
+// Template matching and the peers on the frames that they share, with their times. No lines without peers.
+DataTable peers_table(const CellResult& cell);
 
 // A line per condition, with the columns that belong to `table`; overviews have a title above each
 // subject's lines.
 DataTable conditions_table(const std::vector<SubjectResult>& subjects, ConditionTables table);
+
+// The registered poses of the first and the last frames of sequences.
+struct NamedPoses {
+  std::string name;
+  PoseSummary first;
+  PoseSummary last;
+};
+// A line per entry whose last frames have poses.
+DataTable poses_table(const std::vector<NamedPoses>& poses);
+// The same for the conditions of a subject.
+DataTable poses_table(const SubjectResult& subject);
 
 // Mean and median of RCNN and CNN, a column per frame; of more than ten frames a selection that ends with the
 // last.

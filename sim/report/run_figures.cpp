@@ -4,6 +4,7 @@
 #include <array>
 
 #include "sim/evaluation/curves.hpp"
+#include "sim/evaluation/metrics.hpp"
 #include "sim/report/charts.hpp"
 #include "sim/report/colours.hpp"
 #include "sim/report/error_figures.hpp"
@@ -86,6 +87,41 @@ Series component_series(const std::vector<FrameResult>& frames, int component, b
   return series;
 }
 
+// The poses of one frame of every sequence, where they are known.
+std::vector<PoseErrors> poses_of(const RunReport& report, std::uint32_t frame) {
+  std::vector<PoseErrors> poses;
+  for (const FrameResult& result : report.results)
+    if (result.frame == frame && result.pose.known) poses.push_back(result.pose);
+  return poses;
+}
+
+// On a logarithmic axis: a value below it is drawn on its edge.
+double at_least(double value, double low) {
+  return std::max(value, low);
+}
+
+// The median of one error over the frames.
+Series pose_series(const RunReport& report, const char* name, const char* dash, double PoseErrors::*error,
+                   double unit, double low) {
+  Series series{name, kPoseColour, dash, {}};
+  for (std::uint32_t frame = 0; frame < report.setup.frames; ++frame) {
+    std::vector<double> values;
+    for (const PoseErrors& pose : poses_of(report, frame)) values.push_back(unit * pose.*error);
+    if (!values.empty()) series.points.push_back({frame + 1.0, at_least(median(values), low)});
+  }
+  return series;
+}
+
+LineChart frames_chart(const RunReport& report, const char* description, const char* y_label) {
+  LineChart chart;
+  chart.description = description;
+  chart.x_label = fmt::format("frame (one every {:g} s)", report.frame_period_s);
+  chart.y_label = y_label;
+  chart.x_low = 1.0;
+  chart.x_high = std::max(2.0, static_cast<double>(report.setup.frames));
+  return chart;
+}
+
 }  // namespace
 
 std::string error_over_frames_figure(const RunReport& report) {
@@ -138,6 +174,60 @@ std::string predicted_error_figure(const RunReport& report) {
   chart.low = 0.3;
   chart.series = {cnn, rcnn};
   return agreement_chart(chart);
+}
+
+std::string pose_attitude_figure(const RunReport& report, std::uint32_t sequence) {
+  constexpr double kLow_deg = 0.01;
+  LineChart chart = frames_chart(report, "Angular error of network and registered pose over the frame number",
+                                 "angular error [deg]");
+  chart.logarithmic_y = true;
+  chart.y_low = kLow_deg;
+  chart.y_high = 180.0;
+  Series rcnn{"RCNN median", kRcnnColour, "", {}};
+  for (const CurvePoint& errors : errors_by_frame(report.results, report.setup.frames)) {
+    if (errors.rcnn.count > 0) rcnn.points.push_back({errors.at, at_least(errors.rcnn.median_deg, kLow_deg)});
+  }
+  Series verified{"verified", kPoseColour, "", {}, true};
+  Series doubtful{"not verified", kDoubtfulPoseColour, "", {}, true};
+  for (const FrameResult& result : of_sequence(report, sequence)) {
+    if (!result.pose.known) continue;
+    Series& series = result.pose.verified ? verified : doubtful;
+    series.points.push_back({result.frame + 1.0, at_least(result.pose.turn_deg, kLow_deg)});
+  }
+  chart.series = {rcnn, pose_series(report, "pose median", "", &PoseErrors::turn_deg, 1.0, kLow_deg)};
+  for (const Series& series : {verified, doubtful})
+    if (!series.points.empty()) chart.series.push_back(series);
+  return line_chart(chart);
+}
+
+std::string pose_position_figure(const RunReport& report) {
+  constexpr double kLow_mm = 0.1;
+  LineChart chart = frames_chart(report, "Error of the registered position over the frame number",
+                                 "error of the position [mm]");
+  chart.logarithmic_y = true;
+  chart.y_low = kLow_mm;
+  chart.y_high = 1000.0;
+  chart.series = {pose_series(report, "across", "", &PoseErrors::across_m, 1e3, kLow_mm),
+                  pose_series(report, "along", "6 4", &PoseErrors::along_m, 1e3, kLow_mm)};
+  for (const Series& series : chart.series)
+    for (const Point& point : series.points) chart.y_high = std::max(chart.y_high, point.y);
+  return line_chart(chart);
+}
+
+std::string pose_verified_figure(const RunReport& report) {
+  LineChart chart =
+      frames_chart(report, "Share of verified poses over the frame number", "share of the sequences [%]");
+  chart.y_high = 100.0;
+  Series verified{"verified", kPoseColour, "", {}};
+  Series wrong{"verified and wrong", kDoubtfulPoseColour, "", {}};
+  for (std::uint32_t frame = 0; frame < report.setup.frames; ++frame) {
+    const PoseSummary summary = pose_summary(report.results, frame);
+    if (summary.count == 0) continue;
+    verified.points.push_back({frame + 1.0, 100.0 * summary.verified});
+    wrong.points.push_back({frame + 1.0, 100.0 * summary.verified_wrong});
+  }
+  chart.series = {verified, wrong};
+  return line_chart(chart);
 }
 
 std::string attitude_strip_figure(const RunReport& report, std::uint32_t sequence) {

@@ -34,6 +34,22 @@ std::string lead_sentence(const RunReport& report) {
                                    : fmt::format("heap memory {} times", report.heap_allocations));
 }
 
+// Nothing without poses.
+std::string poses_section(const RunReport& report, std::uint32_t shown) {
+  if (run_poses_table(report).rows.empty()) return {};
+  return html_figure(
+             "Attitude of the registered pose", pose_attitude_figure(report, shown),
+             fmt::format("Lines: medians of all sequences. Dots: the pose of sequence {}, by whether the "
+                         "flight program has verified it.",
+                         shown + 1)) +
+         html_figure("Position of the registered pose", pose_position_figure(report),
+                     "Medians of all sequences: error of the target frame's origin, perpendicular to the "
+                     "boresight and on it.") +
+         html_figure("Verified poses", pose_verified_figure(report),
+                     "Share of the sequences whose pose the flight program has verified. Wrong: more than 5° "
+                     "off.");
+}
+
 std::string charts_section(const RunReport& report, std::uint32_t shown) {
   return "<div class=pair>\n" +
          html_figure("Error over the frames", error_over_frames_figure(report),
@@ -47,7 +63,7 @@ std::string charts_section(const RunReport& report, std::uint32_t shown) {
          html_figure(
              fmt::format("Quaternion of sequence {}", shown + 1), quaternion_figure(report, shown),
              "Lines: true. Dots: RCNN. The sign is chosen for continuity. TRF to LRF, scalar w first.") +
-         "</div>\n";
+         poses_section(report, shown) + "</div>\n";
 }
 
 // Pictures of sequences other than the one shown frame by frame, evenly spread over those that were kept.
@@ -76,7 +92,7 @@ std::string body(const RunReport& report) {
                       report.frame_period_s);
   html += html_notices(report.notices, report.setup.remarks);
   html += fmt::format("<p class=lead>{}</p>\n", lead_sentence(report)) +
-          html_text(run_errors_table(report), "headline");
+          html_text(run_errors_table(report), "headline") + html_text(run_poses_table(report), "results");
   if (!report.results.empty()) {
     html += html_figure(fmt::format("Sequence {}, frame by frame", shown + 1),
                         attitude_strip_figure(report, shown),
@@ -97,6 +113,11 @@ DataTable run_errors_table(const RunReport& report) {
         last_frame_errors(report, Estimator::kRcnn), report.paper.rcnn},
        {"CNN, last frame alone", Mark::kCnn, last_frame_errors(report, Estimator::kCnn), report.paper.cnn}},
       report.paper.sequences);
+}
+
+DataTable run_poses_table(const RunReport& report) {
+  return poses_table({{report.setup.condition, pose_summary(report.results, 0),
+                       pose_summary(report.results, report.setup.frames - 1)}});
 }
 
 std::string run_page(const RunReport& report) {

@@ -74,6 +74,9 @@ struct RunReport {
 // Errors of RCNN and CNN in the last frame, with the paper's below them.
 DataTable run_errors_table(const RunReport& report);
 
+// The registered poses of first and last frames; no lines without poses.
+DataTable run_poses_table(const RunReport& report);
+
 std::string run_page(const RunReport& report);
 
 }  // namespace tumblesight::sim

@@ -32,6 +32,10 @@ std::uint32_t steps_answered(const SilRunResult& run) {
   return run.steps_planned - run.steps_missed - run.frames_superseded;
 }
 
+double swath_m_of(const FlightSetup& setup) {
+  return 1e-3 * setup.projection.swath_mm;
+}
+
 FactList settings_facts(const SilRunSetup& setup) {
   const std::string disturbed = to_string(setup.disturbances);
   const std::string effects = to_string(setup.effects);
@@ -47,7 +51,7 @@ FactList settings_facts(const SilRunSetup& setup) {
                 {"seed", fmt::format("{}", setup.seed)},
                 {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
                 {"time", setup.free_running ? "free-running" : "lockstep"},
-                {"swath", fmt::format("{:.2f} m", 1e-3 * setup.projection.swath_mm)}};
+                {"swath", fmt::format("{:.2f} m", swath_m_of(setup))}};
   return list;
 }
 
@@ -123,6 +127,7 @@ FactList counter_facts(const SilRunResult& run) {
       {"frames refused", h.frames_refused},
       {"… duplicate, stale or bad", h.frames_duplicate + h.frames_stale + h.frames_bad},
       {"attitudes doubtful", h.attitudes_doubtful},
+      {"poses verified", h.poses_verified},
       {"sequence numbers skipped", h.sequence_gaps},
       {"estimator resets", h.estimator_resets},
       {"commands accepted", h.commands_accepted},
@@ -194,7 +199,19 @@ std::string time_text(double time_us) {
   return time_us > 0.0 ? fmt::format("{:.2f} ms", 1e-3 * time_us) : "none";
 }
 
-std::vector<FrameResult> frame_results(const SilRunResult& run) {
+StatedPose stated_pose(const hal::AttitudeReport& report) {
+  StatedPose pose;
+  pose.doubts = report.pose_doubts;
+  pose.state.q_lrf_trf = report.pose_q_lrf_trf;
+  pose.state.origin_lrf_um = report.pose_origin_lrf_um;
+  pose.state.rate_lrf_urad_s = report.pose_rate_lrf_urad_s;
+  pose.state.velocity_lrf_um_s = report.pose_velocity_lrf_um_s;
+  pose.covariance.sigma = report.pose_sigma;
+  pose.covariance.correlation_q15 = report.pose_correlation_q15;
+  return pose;
+}
+
+std::vector<FrameResult> frame_results(const SilRunResult& run, std::optional<double> swath_m) {
   std::vector<FrameResult> results;
   for (const StepResult& step : run.steps) {
     if (!step.answered) continue;
@@ -209,6 +226,7 @@ std::vector<FrameResult> frame_results(const SilRunResult& run) {
     result.cnn = gnc::to_double(step.attitude.q_lrf_trf_single_frame);
     result.rcnn_predicted_rad = 1e-6 * step.attitude.predicted_error_urad;
     result.cnn_predicted_rad = 1e-6 * step.attitude.predicted_error_single_frame_urad;
+    if (result.valid && swath_m) result.pose = pose_errors(stated_pose(step.attitude), step.truth, *swath_m);
     results.push_back(result);
   }
   return results;
@@ -273,7 +291,7 @@ nlohmann::ordered_json outcome_json(const SilRunResult& run) {
 
 nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& run,
                                 const std::optional<NumericsComparison>& numerics) {
-  const std::vector<FrameResult> results = frame_results(run);
+  const std::vector<FrameResult> results = frame_results(run, swath_m_of(setup));
   nlohmann::ordered_json json{
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
   json["disturbances"] = disturbances_json(setup.disturbances);
@@ -282,6 +300,8 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
   if (!setup.ranges.are_the_papers()) json["ranges_m"] = {setup.ranges.nearest_m, setup.ranges.farthest_m};
   json["rcnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
   json["cnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
+  json["pose"] = pose_json(pose_summary(results, setup.frames - 1));
+  json["pose_first"] = pose_json(pose_summary(results, 0));
   if (numerics) {
     json["float32"] = summary_json(numerics->float32);
     json["difference_to_float32"] = {{"mean_deg", numerics->difference.mean_deg},
@@ -297,7 +317,7 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   RunReport report;
   report.setup = setup;
   report.frame_period_s = setup.disturbances.period_s;
-  report.results = frame_results(run);
+  report.results = frame_results(run, swath_m_of(setup));
   report.pictures = depth_pictures(run, setup.projection);
   if (to_string(setup.effects).empty() && setup.sensor.is_the_papers() && setup.ranges.are_the_papers())
     report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);

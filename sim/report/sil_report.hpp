@@ -14,8 +14,12 @@
 
 namespace tumblesight::sim {
 
-// Answered steps only.
-std::vector<FrameResult> frame_results(const SilRunResult& run);
+// The pose in a report of the flight program.
+StatedPose stated_pose(const hal::AttitudeReport& report);
+
+// Answered steps only. `swath_m`: of the renderer that made the frames; without it there are no poses, for
+// runs whose truth does not hold position and velocity.
+std::vector<FrameResult> frame_results(const SilRunResult& run, std::optional<double> swath_m);
 
 struct InferenceTime {
   double median_us = 0.0;

@@ -39,6 +39,14 @@ void TraceDigest::add_report(const hal::AttitudeReport& report) {
   add_all(report.q_lrf_trf_second);
   crc_.add_u32(report.second_odds_ppm);
   add_all(report.centroid_lrf_mm);
+  crc_.add_u32(report.pose_doubts);
+  add_all(report.pose_q_lrf_trf);
+  add_all(report.pose_origin_lrf_um);
+  add_all(report.pose_rate_lrf_urad_s);
+  add_all(report.pose_velocity_lrf_um_s);
+  add_all(report.pose_sigma);
+  add_all(report.pose_q_lrf_trf_now);
+  add_all(report.pose_origin_lrf_now_um);
 }
 
 void TraceDigest::add_telemetry(const hal::Telemetry& telemetry) {
@@ -48,7 +56,8 @@ void TraceDigest::add_telemetry(const hal::Telemetry& telemetry) {
         telemetry.commands_refused, telemetry.frames_used, telemetry.frames_missing, telemetry.frames_refused,
         telemetry.frames_duplicate, telemetry.frames_stale, telemetry.frames_bad, telemetry.frames_repeated,
         telemetry.frames_without_chaser, telemetry.frames_superseded, telemetry.sequence_gaps,
-        telemetry.estimator_resets, telemetry.attitudes_doubtful, telemetry.model_passes}) {
+        telemetry.estimator_resets, telemetry.attitudes_doubtful, telemetry.poses_verified,
+        telemetry.model_passes}) {
     crc_.add_u32(value);
   }
 }

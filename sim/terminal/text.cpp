@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 
 #include <algorithm>
+#include <cctype>
 #include <ctime>
 #include <sstream>
 
@@ -24,6 +25,42 @@ std::string wrapped(const std::string& text, std::size_t columns) {
     if (used > 0) result += fits ? ' ' : '\n';
     used = used > 0 && fits ? used + 1 + width : width;
     result += word;
+  }
+  return result;
+}
+
+namespace {
+
+bool continues_a_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+}
+
+// Bytes of the character that begins at `at`; 0 if none does.
+std::size_t size_of_character(const std::string& text, std::size_t at) {
+  const auto first = static_cast<unsigned char>(text[at]);
+  if (first < 0x80U) return 1;
+  const std::size_t size = first >= 0xF5U   ? 0
+                           : first >= 0xF0U ? 4
+                           : first >= 0xE0U ? 3
+                           : first >= 0xC2U ? 2
+                                            : 0;
+  if (at + size > text.size()) return 0;
+  for (std::size_t i = 1; i < size; ++i) {
+    if (!continues_a_character(text[at + i])) return 0;
+  }
+  return size;
+}
+
+}  // namespace
+
+std::string shortened(const std::string& text, std::size_t most) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t size = size_of_character(text, at), step = std::max<std::size_t>(1, size);
+    if (at + step > most) return result + "...";
+    const bool shown = size > 0 && std::iscntrl(static_cast<unsigned char>(text[at])) == 0;
+    result += shown ? text.substr(at, size) : "?";
+    at += step;
   }
   return result;
 }

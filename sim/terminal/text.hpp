@@ -14,6 +14,12 @@ std::size_t columns_of(const std::string& text);
 // Breaks lines at spaces, so that none has more columns unless one word does.
 std::string wrapped(const std::string& text, std::size_t columns);
 
+// A value of the user's own in a message: at most `most` bytes of it, then "...", with a "?" for every
+// control character and every byte that is not UTF-8, so that one damaged file cannot fill or upset a
+// terminal.
+inline constexpr std::size_t kMostOfAValue = 60;
+std::string shortened(const std::string& text, std::size_t most = kMostOfAValue);
+
 // A number with its noun.
 // "1 frame", "2 frames".
 inline std::string counted(std::uint64_t count, const std::string& noun) {

@@ -22,14 +22,19 @@ bool replaceable(const std::string& path) {
 
 }  // namespace
 
+std::string partial_path(const std::string& path) {
+  return replaceable(path) ? path + "." + std::to_string(getpid()) + ".partial" : "";
+}
+
 void write_file(const std::string& path, std::string_view content) {
   const fs::path parent = fs::path(path).parent_path();
   std::error_code error;
   if (!parent.empty()) fs::create_directories(parent, error);
   if (error) throw std::runtime_error("cannot create folder '" + parent.string() + "': " + error.message());
   // Written under another name, then renamed, so that a reader never finds a part of the file.
-  const bool renamed = replaceable(path);
-  const std::string written = renamed ? path + "." + std::to_string(getpid()) + ".partial" : path;
+  const std::string partial = partial_path(path);
+  const bool renamed = !partial.empty();
+  const std::string& written = renamed ? partial : path;
   errno = 0;
   std::ofstream file(written, std::ios::binary);
   file << content;

@@ -14,4 +14,8 @@ namespace tumblesight::sim {
 void write_file(const std::string& path, std::string_view content);
 void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes);
 
+// The name beside `path` under which write_file() writes before it renames. Empty if it writes to `path`
+// directly.
+std::string partial_path(const std::string& path);
+
 }  // namespace tumblesight::sim

@@ -55,10 +55,10 @@ bool load_checkpoint(const std::string& path, Module& module, torch::optim::Opti
         " is not a checkpoint of this program; choose another --out, or delete the file to start again");
   }
   if (fingerprint.item<std::int64_t>() != position.fingerprint) {
-    throw std::runtime_error(
-        path +
-        " belongs to a training with other settings (meshes, conditions, seed, numbers of samples); "
-        "choose another --out, or repeat the command that made it");
+    throw std::runtime_error(path +
+                             " belongs to a training with other settings (meshes, target, conditions, "
+                             "effects, sensor, ranges, seed, rates, precision, numbers of samples); "
+                             "choose another --out, or repeat the command that made it");
   }
   module->load(module_archive);
   optimizer.load(optimizer_archive);

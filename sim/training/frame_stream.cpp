@@ -73,7 +73,7 @@ void require_visible(const TrainingTargets& targets, std::uint64_t set, std::uin
                        : "is the surface complete and in metres, or an effect too strong?"));
 }
 
-EffectSet effect_set(const Effects& effects, const std::string& target,
+EffectSet effect_set(const EffectRanges& effects, const std::string& target,
                      const std::vector<TriangleMesh>& meshes) {
   EffectSet set{effects, {}};
   for (const TriangleMesh& mesh : meshes)
@@ -115,7 +115,7 @@ torch::Tensor rotation_tensor(const FrameTruth& truth, const Eigen::Matrix3f& r_
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,
                                       const Eigen::Matrix3d& inertia_kg_m2,
-                                      const std::vector<Effects>& effect_sets, const std::string& target,
+                                      const std::vector<EffectRanges>& effect_sets, const std::string& target,
                                       const SensorDescription& sensor,
                                       const std::function<RangeLimits(double)>& ranges_of) {
   TrainingTargets targets;
@@ -133,7 +133,7 @@ TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
   }
   if (ranges_of) targets.ranges = ranges_of(1e-3 * targets.projection.swath_mm);
   targets.meshes_crc32 = crc32_of(meshes);
-  for (const Effects& effects : effect_sets)
+  for (const EffectRanges& effects : effect_sets)
     targets.effect_sets.push_back(effect_set(effects, target, meshes));
   if (effect_sets.empty()) targets.effect_sets.push_back(effect_set({}, target, meshes));
   const auto work = std::make_unique<Workspace>();
@@ -146,7 +146,7 @@ TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
 
 // The paper's sensor and ranges add nothing, so that checkpoints from before other ones existed stay valid.
 std::uint64_t view_hash(const TrainingTargets& targets) {
-  std::vector<Effects> effect_sets;
+  std::vector<EffectRanges> effect_sets;
   for (const EffectSet& set : targets.effect_sets) effect_sets.push_back(set.effects);
   std::uint64_t hash = conditions_hash(targets.conditions, effect_sets);
   if (!targets.sensor.is_the_papers()) hash = mix(hash, crc32_of(targets.sensor));
@@ -154,7 +154,7 @@ std::uint64_t view_hash(const TrainingTargets& targets) {
   return mix(mix(hash, bits_of(targets.ranges.nearest_m)), bits_of(targets.ranges.farthest_m));
 }
 
-ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, const Effects& effects,
+ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, const EffectRanges& effects,
                              int frames) {
   ScenarioSettings scenario{condition, frames};
   scenario.effects = effects;

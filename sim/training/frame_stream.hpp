@@ -25,7 +25,7 @@ namespace tumblesight::sim {
 
 // A set of effects that act together, and the surfaces that are seen with them.
 struct EffectSet {
-  Effects effects{};
+  EffectRanges effects{};
   std::vector<std::unique_ptr<FlashLidar>> lidars;  // one per mesh
 };
 
@@ -49,13 +49,13 @@ struct TrainingTargets {
 TrainingTargets make_training_targets(const std::vector<TriangleMesh>& meshes,
                                       const std::vector<Condition>& conditions,
                                       const Eigen::Matrix3d& inertia_kg_m2 = Eigen::Matrix3d::Identity(),
-                                      const std::vector<Effects>& effect_sets = {},
+                                      const std::vector<EffectRanges>& effect_sets = {},
                                       const std::string& target = {}, const SensorDescription& sensor = {},
                                       const std::function<RangeLimits(double)>& ranges_of = {});
 // Hash of conditions, effects, sensor and ranges, for a checkpoint's fingerprint.
 std::uint64_t view_hash(const TrainingTargets& targets);
 // A scenario of so many frames, as the targets are seen with the effects.
-ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, const Effects& effects,
+ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, const EffectRanges& effects,
                              int frames);
 
 struct FrameBatch {
@@ -64,9 +64,9 @@ struct FrameBatch {
 };
 
 // An endless supply of batches, determined by the seed. Meshes, conditions and sets of effects are drawn in
-// turn, the meshes fastest. Each
-// rendered group of frames gives four batches, one for each quarter turn about the view axis: the image is
-// square, so that these are exact new views at no rendering cost.
+// turn, the meshes fastest. A frame has strengths of its own within the ranges of its set. Each rendered
+// group of frames gives four batches, one for each quarter turn about the view axis: the image is square, so
+// that these are exact new views at no rendering cost.
 class FrameStream {
  public:
   FrameStream(const TrainingTargets& targets, std::uint64_t seed, int batch, std::uint64_t first_batch,

@@ -57,8 +57,12 @@ void Stage::advance(double loss) {
   position_.seconds = seconds_before_ + seconds;
   loss_sum_ += loss;
   ++losses_;
-  progress_->update(samples(position_.iteration),
-                    fmt::format("loss {:.4f}  validation {:.2f} deg", latest_.loss, latest_.mean_deg));
+  progress_->update(samples(position_.iteration), progress_note(latest_));
+}
+
+std::string progress_note(const std::optional<TrainingPoint>& latest) {
+  if (!latest) return {};
+  return fmt::format("loss {:.4f}  validation {:.2f} deg", latest->loss, latest->mean_deg);
 }
 
 bool Stage::point_due() const {
@@ -81,6 +85,7 @@ TrainingPoint Stage::new_point() {
 void Stage::add_point(const TrainingPoint& point) {
   latest_ = point;
   log_->add(point);
+  progress_->update(samples(position_.iteration), progress_note(latest_));
 }
 
 }  // namespace tumblesight::sim

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "sim/terminal/progress.hpp"
@@ -33,6 +34,9 @@ struct StageSettings {
 // Hash of the settings that affect a stage's result. A checkpoint of other settings is refused.
 std::int64_t fingerprint(std::initializer_list<std::uint64_t> settings);
 std::uint64_t bits_of(double setting);  // for fingerprint()
+
+// The figures of the latest point, beside the progress. Empty before the first one.
+std::string progress_note(const std::optional<TrainingPoint>& latest);
 
 class Stage {
  public:
@@ -88,7 +92,7 @@ class Stage {
   double rate_ = 0.0;
   double loss_sum_ = 0.0;
   std::int64_t losses_ = 0;
-  TrainingPoint latest_;
+  std::optional<TrainingPoint> latest_;
 };
 
 }  // namespace tumblesight::sim

@@ -32,11 +32,11 @@ std::vector<Condition> training_conditions(const std::vector<std::string>& words
 
 // The first set adds only its effects, so that checkpoints from before there were more of them stay valid.
 std::uint64_t conditions_hash(const std::vector<Condition>& conditions,
-                              const std::vector<Effects>& effect_sets) {
+                              const std::vector<EffectRanges>& effect_sets) {
   std::uint64_t hash = 0;
   for (const Condition condition : conditions) hash = mix(hash, static_cast<std::uint64_t>(condition));
   std::string sets;
-  for (const Effects& effects : effect_sets) {
+  for (const EffectRanges& effects : effect_sets) {
     if (&effects != &effect_sets.front()) sets += '/';
     sets += to_string(effects);
   }

@@ -17,6 +17,6 @@ std::vector<std::string> training_condition_words();
 std::vector<Condition> training_conditions(const std::vector<std::string>& words);
 // Hash of the conditions and of the sets of effects, each in its order, for a checkpoint's fingerprint.
 std::uint64_t conditions_hash(const std::vector<Condition>& conditions,
-                              const std::vector<Effects>& effect_sets = {});
+                              const std::vector<EffectRanges>& effect_sets = {});
 
 }  // namespace tumblesight::sim

@@ -14,7 +14,7 @@ std::int32_t q30(double value) {
 
 gnc::ChaserAttitude chaser_attitude(const FrameTruth& truth, std::int64_t time_ns, bool known) {
   if (!known) return {};
-  const Eigen::Quaterniond& q = truth.q_inertial_lrf;
+  const Eigen::Quaterniond q = truth.q_inertial_lrf * truth.q_lrf_stated;
   return {time_ns, {q30(q.w()), q30(q.x()), q30(q.y()), q30(q.z())}, true};
 }
 

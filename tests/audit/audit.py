@@ -20,7 +20,7 @@ PROGRAMS = (("fixed", "flight_replay"), ("float32", "flight_replay_float32"))
 IMAGE = ROOT / "fsw/models/near_shoemaker.tsm"
 LONGEST_STEPS = "flight_worst_step"  # in fixed point
 # Verifies TS-MEM-030, TS-MEM-060.
-BUDGETS = {"ram": 192 * 1024, "stack": 6656, "text": 156 * 1024, "read_only": 24 * 1024}
+BUDGETS = {"ram": 192 * 1024, "stack": 6656, "text": 216 * 1024, "read_only": 24 * 1024}
 
 
 def programs(processor):
@@ -53,11 +53,11 @@ def measure(processor, numerics, program, plugin, folder):
     names, steps, console = instruction_count.count(processor, program, plugin, folder)
     digest = next((line.split()[-1] for line in console if line.startswith("digest ")), "none")
     heading = next(line for line in console if line.startswith("tumblesight, ")).split(", ")
-    # The application's work depends on what happens in the step. All other counts must be equal in steps of equal intervals: the
-    # first frame after the pause between the two recorded sequences resets the estimator.
+    # The application's work depends on what happens in the step, and registration draws what the frame shows. All other counts must
+    # be equal in steps of equal intervals: the first frame after the pause between the two recorded sequences resets the estimator.
     alike = [step for number, step in enumerate(steps) if number not in resets(console)]
     unequal = {name: sorted({step[i] for step in alike}) for i, name in enumerate(names)
-               if name not in ("application", "telemetry") and len({step[i] for step in alike}) > 1}
+               if name not in ("application", "telemetry", "registration") and len({step[i] for step in alike}) > 1}
     stages = {name: max(step[i] for step in steps) for i, name in enumerate(names)}
     stages["application"] += stages.pop("telemetry")
     longest = (instruction_count.count_longest_steps(processor, program.with_name(LONGEST_STEPS), plugin, folder)

@@ -65,15 +65,15 @@ class Processor:
 
 # Verifies TS-TIM-010, TS-TIM-020, TS-TIM-030, TS-TIM-040.
 ALL = (
-    Processor("cortex-a53", 1200, "Zynq UltraScale+; dual issue, in order", 14.5, 0.10),
-    Processor("cortex-a9", 667, "Zynq-7000; dual issue, NEON in order", 24.5, 0.10),
-    Processor("rv64gc", 600, "PolarFire SoC, U54; single issue, in order", 105, 0.50),
-    Processor("ppc750", 133, "RAD750; dual issue, out of order", 105, 0.50),
-    Processor("cortex-m7", 100, "SAMRH71; dual issue, in order", 44, 0.25),
-    Processor("cortex-r5f", 500, "Zynq UltraScale+; dual issue, in order", 44, 0.25),
-    Processor("rv64", 600, "PolarFire SoC, U54; single issue, in order", 105, 0.50),
+    Processor("cortex-a53", 1200, "Zynq UltraScale+; dual issue, in order", 45, 0.10),
+    Processor("cortex-a9", 667, "Zynq-7000; dual issue, NEON in order", 65, 0.10),
+    Processor("rv64gc", 600, "PolarFire SoC, U54; single issue, in order", 135, 0.70),
+    Processor("ppc750", 133, "RAD750; dual issue, out of order", 135, 0.70),
+    Processor("cortex-m7", 100, "SAMRH71; dual issue, in order", 80, 0.45),
+    Processor("cortex-r5f", 500, "Zynq UltraScale+; dual issue, in order", 80, 0.25),
+    Processor("rv64", 600, "PolarFire SoC, U54; single issue, in order", 135, 0.70),
     Processor("leon3", 100, "GR712RC class; single issue, in order, with the pipelined 32×32-bit multiplier (with the 16×16-bit one "
-              "a product takes four cycles, and a step about 70 % of the period)", 105, 0.50),
+              "a product takes four cycles, and a step about the whole period)", 135, 0.70),
 )
 
 

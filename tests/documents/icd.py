@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT = ROOT / "docs/icd.md"
 MESSAGES = "hal/messages/"
 IDL = "hal/dds/idl/tumblesight.idl"
-BYTES = {"octet": 1, "unsigned short": 2, "long": 4, "unsigned long": 4, "float": 4, "long long": 8}
+BYTES = {"short": 2, "octet": 1, "unsigned short": 2, "long": 4, "unsigned long": 4, "float": 4, "long long": 8}
 
 
 def source(path):

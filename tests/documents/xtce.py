@@ -19,7 +19,7 @@ DOCUMENT = icd.ROOT / "docs/tumblesight.xtce.xml"
 NAMESPACE = "http://www.omg.org/spec/XTCE/20180204"
 ERROR_CONTROL = {"Polynomial": "1021", "InitRemainder": "FFFF", "FinalXOR": "0000"}
 # By the end of a field's name.
-UNITS = {"_ns": "ns", "_us": "us", "_urad": "urad", "_urad_s": "urad/s", "_rad_s": "rad/s", "_mm": "mm", "_bytes": "byte", "_ppm": "ppm"}
+UNITS = {"_ns": "ns", "_us": "us", "_urad": "urad", "_urad_s": "urad/s", "_rad_s": "rad/s", "_mm": "mm", "_um": "um", "_um_s": "um/s", "_bytes": "byte", "_ppm": "ppm"}
 
 
 def add(parent, tag, text=None, **attributes):

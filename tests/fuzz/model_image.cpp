@@ -45,6 +45,7 @@ class ModelImageTarget {
     require(estimator_->has_model(), "there is a model");
     if (status == gnc::ModelStatus::kOk) {
       check_model(target);
+      check_mesh();
       if (steps) step(frames);
     } else {
       require(estimator_->model().crc32 == before, "a refused image leaves the earlier model in use");
@@ -63,6 +64,21 @@ class ModelImageTarget {
             "a target's name is NUL-terminated");
     require(target == nullptr || std::strcmp(header.target.data(), target) == 0,
             "the target is the expected one");
+  }
+
+  void check_mesh() {
+    const gnc::SurfaceMesh& mesh = estimator_->mesh();
+    const auto exists = [&mesh](std::uint16_t vertex) { return vertex < mesh.vertices(); };
+    for (int i = 0; i < mesh.triangles(); ++i) {
+      for (const std::uint16_t corner : mesh.triangle(i))
+        require(exists(corner), "a triangle's corner exists");
+    }
+    for (int i = 0; i < mesh.edges(); ++i) {
+      const gnc::SurfaceMesh::Edge edge = mesh.edge(i);
+      require(exists(edge.first) && exists(edge.second), "an edge's ends exist");
+      for (const std::uint16_t corner : edge.opposite)
+        require(exists(corner), "a corner beside an edge exists");
+    }
   }
 
   // The first frame of a track and, with two frames, one that continues it.

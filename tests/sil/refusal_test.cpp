@@ -14,6 +14,7 @@
 #include "hal/dds/idl/flight_end.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
 #include "tests/sil/sil_test_support.hpp"
+#include "tests/support/former_model_image.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -200,6 +201,8 @@ INSTANTIATE_TEST_SUITE_P(
     Sil, RefusedModel,
     ::testing::Values(BadModel{"Magic", "magic", [](auto& bytes) { bytes[0] ^= 1; }},
                       BadModel{"Version", "version", [](auto& bytes) { bytes[4] ^= 0xFF; }},
+                      BadModel{"FormerVersion", "quantize --surface-only renews an earlier one",
+                               [](auto& bytes) { bytes = gnc::former_model_image(4, bytes); }},
                       BadModel{"HeaderCrc", "header", [](auto& bytes) { bytes[49] ^= 1; }},
                       BadModel{"Architecture", "network architecture", change_architecture},
                       BadModel{"TooLarge", "too large",

@@ -2,6 +2,7 @@
 // the sensor loses and repeats frames, and while the chaser turns.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "sim/evaluation/host_estimator.hpp"
@@ -37,11 +38,17 @@ SilRunResult run_with(const Disturbances& disturbances, std::uint32_t frames = k
 }
 
 ErrorSummary expect_right_and_valid(const SilRunResult& run, std::uint32_t frames = kFrames) {
-  const ErrorSummary errors = last_frame_summary(frame_results(run), frames, Estimator::kRcnn);
+  const ErrorSummary errors =
+      last_frame_summary(frame_results(run, shipped_swath_m()), frames, Estimator::kRcnn);
   EXPECT_EQ(errors.count, kSequences);
   EXPECT_EQ(errors.wrong_and_valid, 0.0);
   EXPECT_GE(errors.right_and_valid, kMostlyRight);
   return errors;
+}
+
+bool has_event(const StepResult& step, hal::EventId id) {
+  return std::any_of(step.events.begin(), step.events.end(),
+                     [id](const hal::Event& event) { return event.id == id; });
 }
 
 bool stands(const StepResult& step, hal::Fault fault) {
@@ -63,6 +70,44 @@ void expect_no_attitude_from_repeats(const SilRunResult& run) {
     EXPECT_FALSE(gives_attitude(step.attitude))
         << "sequence " << step.sequence << ", frame " << step.frame_index;
   }
+}
+
+// The registered pose of the last frames is verified, and right; every verified pose is counted, and the
+// event says when the verdict changes.
+void expect_verified_poses(const SilRunResult& run) {
+  std::uint32_t verified = 0, last = 0, last_verified = 0;
+  bool before = false;
+  for (const StepResult& step : run.steps) {
+    const hal::AttitudeReport& report = step.attitude;
+    if (!gives_attitude(report)) continue;
+    const bool is_verified = report.pose_doubts == 0;
+    verified += is_verified ? 1 : 0;
+    EXPECT_EQ(has_event(step, is_verified ? hal::EventId::kPoseVerified : hal::EventId::kPoseDoubtful),
+              is_verified != before);
+    before = is_verified;
+    if (step.frame_index + 1 < kFrames) continue;
+    ++last;
+    if (!is_verified) continue;
+    ++last_verified;
+    EXPECT_EQ(report.pose_frames, kFrames);
+    EXPECT_LT(angular_error_rad(step.truth.q_lrf_trf, gnc::to_double(report.pose_q_lrf_trf)), 0.0175);
+    EXPECT_NEAR(1e-6 * report.pose_origin_lrf_um[0], 0.0, 0.02);
+    EXPECT_NEAR(1e-6 * report.pose_origin_lrf_um[1], step.truth.range_m, 0.15);
+    EXPECT_NEAR(1e-6 * report.pose_origin_lrf_um[2], 0.0, 0.02);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(1e-6 * report.pose_rate_lrf_urad_s[i], step.truth.rate_lrf_rad_s[static_cast<int>(i)],
+                  0.003);
+      EXPECT_NEAR(1e-6 * report.pose_origin_lrf_now_um[i], 1e-6 * report.pose_origin_lrf_um[i], 0.05);
+    }
+  }
+  EXPECT_GE(last_verified, kMostlyRight * last);
+  ASSERT_FALSE(run.steps.empty());
+  EXPECT_EQ(run.steps.back().telemetry.poses_verified, verified);
+}
+
+// Verifies TS-SIL-100, TS-EST-200, TS-EST-202.
+TEST(ShippedNetwork, ReportsVerifiedPoses) {
+  expect_verified_poses(run_with({}));
 }
 
 // Verifies TS-SIL-100, TS-EST-330.

@@ -61,6 +61,25 @@ inline CellResult sample_cell(Condition condition, double rcnn_deg, bool baselin
   return cell;
 }
 
+// Figures of poses that differ from each other.
+inline PoseSummary sample_poses() {
+  PoseSummary poses;
+  poses.count = 40;
+  poses.known = 1.0;
+  poses.mean_deg = 1.5;
+  poses.mean_within_20_deg = 0.25;
+  poses.median_deg = 0.125;
+  poses.within_20deg = 0.975;
+  poses.across_m = 0.0031;
+  poses.along_m = 0.0042;
+  poses.rate_deg_s = 0.0153;
+  poses.velocity_m_s = 0.0064;
+  poses.verified = 0.9;
+  poses.verified_wrong = 0.05;
+  poses.inside_95 = 0.925;
+  return poses;
+}
+
 inline Results sample_results() {
   SubjectResult near{"near_shoemaker", "near, \"odd\".stl", "near_shoemaker", 0x00C0FFEE, {}, {}, {}};
   near.cells = {sample_cell(Condition::kNominal, 1.0, true), sample_cell(Condition::kOccluded, 15.0, true)};

@@ -74,6 +74,8 @@ void boot(const FlightOptions& options, AttitudeInitApp& app, const hal::Platfor
     if (remedy[0] == '\0' && !options.model_given)
       std::snprintf(remedy, sizeof remedy, "; give --model, or the --target of an image in that folder");
   }
+  if (!unread && app.boot_status(0) == gnc::ModelStatus::kBadVersion)
+    std::snprintf(remedy, sizeof remedy, "; tumblesight quantize --surface-only renews an earlier one");
   std::fprintf(stderr, "%s: model image %s: %s%s; the mode is SAFE\n", kProgramName, options.model_path,
                unread ? to_string(store.status()) : gnc::to_string(app.boot_status(0)), remedy);
 }

@@ -15,7 +15,7 @@
 namespace tumblesight::sim {
 
 // Append new ones at the end: the values are part of the fingerprints of training checkpoints.
-enum class Condition { kNominal, kDegraded, kOccluded, kTumbling, kStress, kOffset, kOutliers };
+enum class Condition { kNominal, kDegraded, kOccluded, kTumbling, kStress, kOffset, kOutliers, kApproach };
 
 enum class RotationLaw {
   kConstantRate,  // rate constant in the LiDAR frame (spin())
@@ -30,6 +30,7 @@ inline constexpr TrainingRounds kSecondRound{false, true};
 inline constexpr TrainingRounds kNotTrained{false, false};  // for tests only
 
 inline constexpr const char* kEveryTarget = nullptr;
+inline constexpr const char* kNoTarget = "";
 
 struct ConditionRow {
   Condition condition;
@@ -40,10 +41,11 @@ struct ConditionRow {
   double inertia_zz_factor;  // kTorqueFree: applied to the target's inertia about z
   bool occluded;             // a part of the chaser moves through the view
   double max_offset_swaths;  // the target lies off the boresight by up to this; 0: on it
+  bool approaches;           // the chaser closes in, see approach.hpp
   TrainingRounds training;
   bool trained_in_paper;  // one of the paper's training conditions
   bool calibrates;        // its frames determine the scales of quantization
-  // Key of the only target that `evaluate --paper` tests under it, or kEveryTarget.
+  // Key of the only target that `evaluate --paper` tests under it, or kEveryTarget, or kNoTarget.
   const char* evaluated_for;
 };
 
@@ -57,19 +59,21 @@ inline constexpr SensorSettings kOutlierSensor{128, 0.0, 0.01};
 // clang-format off
 inline constexpr ConditionRow kConditions[] = {
     {Condition::kNominal, "nominal", "resolution FOV/128, range noise 0.1 m + 1 %",
-     kPaperSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, kBothRounds, true, true, kEveryTarget},
+     kPaperSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, false, kBothRounds, true, true, kEveryTarget},
     {Condition::kDegraded, "degraded", "resolution FOV/100, 10 % of the returns removed",
-     kDegradedSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, kBothRounds, true, true, kEveryTarget},
+     kDegradedSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, false, kBothRounds, true, true, kEveryTarget},
     {Condition::kOccluded, "occluded", "a part of the chaser hides 5 to 30 % of the target's returns",
-     kPaperSensor, RotationLaw::kConstantRate, 1.0, true, 0.0, kBothRounds, false, true, kEveryTarget},
+     kPaperSensor, RotationLaw::kConstantRate, 1.0, true, 0.0, false, kBothRounds, false, true, kEveryTarget},
     {Condition::kTumbling, "tumbling", "torque-free rotation with the target's inertia",
-     kPaperSensor, RotationLaw::kTorqueFree, 1.0, false, 0.0, kBothRounds, false, false, kEveryTarget},
+     kPaperSensor, RotationLaw::kTorqueFree, 1.0, false, 0.0, false, kBothRounds, false, false, kEveryTarget},
     {Condition::kStress, "stress", "tumbling with the inertia about z halved",
-     kPaperSensor, RotationLaw::kTorqueFree, 0.5, false, 0.0, kNotTrained, false, false, "near_shoemaker"},
+     kPaperSensor, RotationLaw::kTorqueFree, 0.5, false, 0.0, false, kNotTrained, false, false, "near_shoemaker"},
     {Condition::kOffset, "offset", "target off the boresight by up to 20 % of the swath", kPaperSensor,
-     RotationLaw::kConstantRate, 1.0, false, kMaxOffset_swaths, kFirstRound, false, false, kEveryTarget},
+     RotationLaw::kConstantRate, 1.0, false, kMaxOffset_swaths, false, kFirstRound, false, false, kEveryTarget},
     {Condition::kOutliers, "outliers", "1 % of the returns wrong by 5 sigma to 20 m",
-     kOutlierSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, kSecondRound, false, true, kEveryTarget},
+     kOutlierSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, false, kSecondRound, false, true, kEveryTarget},
+    {Condition::kApproach, "approach", "the chaser closes in to 12 m at up to 0.5 m/s, drifts and turns",
+     kPaperSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, true, kNotTrained, false, false, kNoTarget},
 };
 // clang-format on
 

@@ -124,7 +124,7 @@ void mark_frames(const Disturbances& disturbances, Random random, std::vector<Fr
   }
 }
 
-void turn_chaser(double rate_rad_s, Random random, const std::vector<double>& times_s,
+void turn_chaser(double rate_rad_s, Random random, const std::vector<double>& times_s, double swath_m,
                  std::vector<FrameTruth>& frames) {
   const Eigen::Quaterniond q_inertial_start = uniform_attitude(random);
   const Eigen::Vector3d rate_inertial_rad_s =
@@ -135,6 +135,11 @@ void turn_chaser(double rate_rad_s, Random random, const std::vector<double>& ti
     const Eigen::Quaterniond q_lrf_start = frame.q_inertial_lrf.conjugate() * q_inertial_start;
     frame.q_lrf_trf = (q_lrf_start * frame.q_lrf_trf).normalized();
     frame.rate_lrf_rad_s = q_lrf_start * frame.rate_lrf_rad_s;
+    const Eigen::Vector3d origin_lrf_m(swath_m * frame.offset_swaths.x(), frame.range_m,
+                                       swath_m * frame.offset_swaths.y());
+    // The same in the LRF at every time: the axis is fixed in it.
+    const Eigen::Vector3d chaser_rate_lrf_rad_s = frame.q_inertial_lrf.conjugate() * rate_inertial_rad_s;
+    frame.velocity_lrf_m_s = chaser_rate_lrf_rad_s.cross(origin_lrf_m);
   }
 }
 

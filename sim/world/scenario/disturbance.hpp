@@ -118,8 +118,9 @@ void mark_frames(const Disturbances& disturbances, Random random, std::vector<Fr
 // Turns the chaser at a constant rate about an axis that is fixed in inertial space and in the chaser. The
 // motion of the target in inertial space and its first attitude in the LRF stay what they are:
 //   q_lrf_trf(t) = conj(q_inertial_lrf(t)) q_inertial_trf(t)
-// The start attitude of the chaser and the axis are drawn. Requires exposure times in `frames`.
-void turn_chaser(double rate_rad_s, Random random, const std::vector<double>& times_s,
+// The start attitude of the chaser and the axis are drawn. The place of the target in the LRF stays what it
+// is, as in an orbit around it. Requires exposure times in `frames`. `swath_m`: of the renderer.
+void turn_chaser(double rate_rad_s, Random random, const std::vector<double>& times_s, double swath_m,
                  std::vector<FrameTruth>& frames);
 
 }  // namespace tumblesight::sim

@@ -10,6 +10,7 @@
 #include "sim/world/dynamics/motion.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/math/random.hpp"
+#include "sim/world/scenario/approach.hpp"
 #include "sim/world/scenario/draws.hpp"
 
 namespace tumblesight::sim {
@@ -91,6 +92,24 @@ void move_off_boresight(double max_offset_swaths, Random random, std::vector<Fra
   }
 }
 
+void require_one_turn(const ScenarioSettings& settings) {
+  if (!row_of(settings.condition).approaches || settings.disturbances.chaser_rate_deg_s == 0.0) return;
+  throw std::invalid_argument(fmt::format(
+      "--chaser-rate {:g} does not go with the condition {}, which turns the chaser itself: leave "
+      "it out, or choose another --condition",
+      settings.disturbances.chaser_rate_deg_s, to_string(settings.condition)));
+}
+
+ApproachLimits approach_limits(const ScenarioSettings& settings) {
+  ApproachLimits limits;
+  limits.swath_m = settings.swath_m;
+  limits.start_m = settings.range_m;
+  if (settings.ranges.are_the_papers()) return limits;
+  limits.nearest_m = settings.ranges.nearest_m;
+  limits.farthest_m = settings.ranges.farthest_m;
+  return limits;
+}
+
 }  // namespace
 
 std::string to_string(const RangeLimits& ranges) {
@@ -113,6 +132,7 @@ ScenarioSettings scenario_settings(Condition condition, std::uint32_t frames, co
 Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std::uint64_t index) {
   const Disturbances& disturbances = settings.disturbances;
   require_possible(disturbances, static_cast<std::uint32_t>(settings.frames));
+  require_one_turn(settings);
   Random random(mix(seed, index));
   const Eigen::Quaterniond q0 = uniform_attitude(random);
   const Eigen::Vector3d drawn_rate = uniform_rate(random);
@@ -122,7 +142,7 @@ Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std
 
   Sequence sequence;
   sequence.condition = settings.condition;
-  sequence.effects = settings.effects;
+  sequence.effects = drawn(settings.effects, stream_for(seed, index, 7).next());
   sequence.sensor = settings.sensor;
   sequence.noise_seed = random.next();
   const std::vector<double> times_s =
@@ -140,9 +160,12 @@ Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std
     move_off_boresight(condition.max_offset_swaths, stream_for(seed, index, 3), sequence.frames);
   }
   mark_frames(disturbances, stream_for(seed, index, 5), sequence.frames);
+  if (condition.approaches) {
+    close_in(approach_limits(settings), stream_for(seed, index, 8), times_s, sequence.frames);
+  }
   if (disturbances.chaser_rate_deg_s > 0.0) {
     turn_chaser(kRadPerDeg * disturbances.chaser_rate_deg_s, stream_for(seed, index, 6), times_s,
-                sequence.frames);
+                settings.swath_m, sequence.frames);
   }
   return sequence;
 }

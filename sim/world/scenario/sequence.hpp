@@ -40,9 +40,12 @@ struct ScenarioSettings {
   std::optional<double> rate_rad_s{};
   std::optional<double> hidden_share{};
   Disturbances disturbances{};
-  Effects effects{};
+  EffectRanges effects{};
   SensorSettings sensor{};  // on which condition and effects act
   RangeLimits ranges{};
+  // Of the renderer, for conditions under which the target moves: it relates lengths across the boresight to
+  // the offset. The default is that of a target with a radius of about 4 m.
+  double swath_m = 8.0;
 };
 
 // Settings for `target` under a condition. Throws std::invalid_argument that says what to do if the condition
@@ -61,8 +64,11 @@ struct Sequence {
 // Draws sequence `index` of `seed` (paper, sampling): attitude uniform on SO(3); range uniform on the
 // settings' limits, constant within the sequence; rate at most 20 deg/s, constant in the LRF or torque-free
 // as the condition says. The same (seed, index) gives the same sequence on every machine, and the same
-// initial attitude, range rate and noise under every condition, disturbance and effect. Throws
-// std::invalid_argument as require_possible() does.
+// initial attitude, range, rate and noise under every condition, disturbance and effect, but for the range of
+// an approach, which is within kNearestApproach_m to kFarthestApproach_m in place of the paper's. Strengths
+// of effects are drawn once for the sequence; those on the body are the body's own (observed_bodies()).
+// Throws std::invalid_argument as require_possible() does, and if both condition and disturbances turn the
+// chaser.
 Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std::uint64_t index);
 
 }  // namespace tumblesight::sim

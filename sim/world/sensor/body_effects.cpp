@@ -40,12 +40,47 @@ void leave_out(const std::vector<std::size_t>& triangles, TriangleMesh& mesh) {
   mesh = std::move(kept);
 }
 
+// Every panel is turned about its own hinge by a new angle_deg(), right-handed about the direction outwards.
+TriangleMesh with_panels_at(const char* effect, const TriangleMesh& mesh,
+                            const std::function<double()>& angle_deg) {
+  TriangleMesh changed = mesh;
+  for (const Panel& panel : panels_for_effect(effect, mesh)) {
+    const Eigen::Isometry3d turn = Eigen::Translation3d(panel.centre_trf_m) *
+                                   Eigen::AngleAxisd(kRadPerDeg * angle_deg(), panel.hinge_trf) *
+                                   Eigen::Translation3d(-panel.centre_trf_m);
+    // A corner that the panel shares with another part stays with that part.
+    for (const std::size_t triangle : panel.triangles) {
+      for (std::uint32_t& corner : changed.triangles[triangle]) {
+        const Eigen::Vector3d from = mesh.vertices_trf_m[corner].cast<double>();
+        corner = static_cast<std::uint32_t>(changed.vertices_trf_m.size());
+        changed.vertices_trf_m.push_back((turn * from).cast<float>());
+      }
+    }
+  }
+  return changed;
+}
+
 }  // namespace
+
+// Every solar panel stands at an angle of its own, drawn within `strength` of the limits of the target's
+// joints. Limit: only panels move, not their booms, and no antenna.
+std::vector<TriangleMesh> with_moved_joints(const std::function<double()>& strength, Random& random,
+                                            const std::string& target, const TriangleMesh& mesh) {
+  const JointLimits limits = joint_limits(target);
+  if (limits.lowest_deg == limits.highest_deg) {
+    throw std::invalid_argument("effect joints: the panels of " + display_name(target) +
+                                " are fixed; panel_turn turns them from the model");
+  }
+  const double share = strength();
+  return {with_panels_at("joints", mesh,
+                         [&] { return share * random.uniform(limits.lowest_deg, limits.highest_deg); })};
+}
 
 // Of the connected parts that are a sixth to a quarter of the target's radius across, the `strength` ones
 // whose boxes lie farthest from the TRF's origin are missing: instruments that stick out. On NASA's mesh of
 // NEAR Shoemaker the first one is the telescope on a corner of the aft deck.
-std::vector<TriangleMesh> without_parts(double strength, const std::string&, const TriangleMesh& mesh) {
+std::vector<TriangleMesh> without_parts(const std::function<double()>& strength, Random&, const std::string&,
+                                        const TriangleMesh& mesh) {
   struct Part {
     float distance_m;
     std::vector<std::size_t> triangles;
@@ -57,7 +92,7 @@ std::vector<TriangleMesh> without_parts(double strength, const std::string&, con
     if (size < kSmallestMissingPart || size > kLargestMissingPart) continue;
     parts.push_back({box.center().norm(), triangles});
   }
-  const auto count = static_cast<std::size_t>(std::lround(strength));
+  const auto count = static_cast<std::size_t>(std::lround(strength()));
   if (parts.size() < count) {
     throw std::invalid_argument("effect part_missing: " + mesh.name + " has only " +
                                 std::to_string(parts.size()) +
@@ -73,28 +108,17 @@ std::vector<TriangleMesh> without_parts(double strength, const std::string&, con
   return {changed};
 }
 
-// Every panel is turned about its own hinge by `strength` degrees, right-handed about the direction outwards.
-std::vector<TriangleMesh> with_turned_panels(double strength, const std::string&, const TriangleMesh& mesh) {
-  TriangleMesh changed = mesh;
-  for (const Panel& panel : panels_for_effect("panel_turn", mesh)) {
-    const Eigen::Isometry3d turn = Eigen::Translation3d(panel.centre_trf_m) *
-                                   Eigen::AngleAxisd(kRadPerDeg * strength, panel.hinge_trf) *
-                                   Eigen::Translation3d(-panel.centre_trf_m);
-    // A corner that the panel shares with another part stays with that part.
-    for (const std::size_t triangle : panel.triangles) {
-      for (std::uint32_t& corner : changed.triangles[triangle]) {
-        const Eigen::Vector3d from = mesh.vertices_trf_m[corner].cast<double>();
-        corner = static_cast<std::uint32_t>(changed.vertices_trf_m.size());
-        changed.vertices_trf_m.push_back((turn * from).cast<float>());
-      }
-    }
-  }
-  return {changed};
+// Every panel is turned about its own hinge by `strength` degrees, right-handed about the direction outwards;
+// each by a strength of its own if that is drawn.
+std::vector<TriangleMesh> with_turned_panels(const std::function<double()>& strength, Random&,
+                                             const std::string&, const TriangleMesh& mesh) {
+  return {with_panels_at("panel_turn", mesh, strength)};
 }
 
 // Each sequence shows one of the other shipped spacecraft, in its true size. Another configuration of the
 // same spacecraft is not another one.
-std::vector<TriangleMesh> other_targets(double, const std::string& target, const TriangleMesh&) {
+std::vector<TriangleMesh> other_targets(const std::function<double()>&, Random&, const std::string& target,
+                                        const TriangleMesh&) {
   const auto spacecraft = [](const std::string& key) {
     const TargetRow* row = find_target(key);
     return row != nullptr && row->paper_key != nullptr ? std::string(row->paper_key) : key;
@@ -107,8 +131,9 @@ std::vector<TriangleMesh> other_targets(double, const std::string& target, const
 }
 
 // A sphere of `strength` times the target's radius, around the TRF's origin.
-std::vector<TriangleMesh> a_sphere(double strength, const std::string&, const TriangleMesh& mesh) {
-  const auto radius = static_cast<float>(strength * mesh.radius_m());
+std::vector<TriangleMesh> a_sphere(const std::function<double()>& strength, Random&, const std::string&,
+                                   const TriangleMesh& mesh) {
+  const auto radius = static_cast<float>(strength() * mesh.radius_m());
   Outline profile;
   for (int i = 0; i <= kSphereSides / 2; ++i) {
     const float angle = 2.0F * kPi_f * static_cast<float>(i) / static_cast<float>(kSphereSides);

@@ -10,11 +10,16 @@ namespace tumblesight::sim {
 std::vector<Panel> panels_for_effect(const char* effect, const TriangleMesh& mesh);
 
 // body_effects.cpp
-std::vector<TriangleMesh> without_parts(double strength, const std::string& target, const TriangleMesh& mesh);
-std::vector<TriangleMesh> with_turned_panels(double strength, const std::string& target,
-                                             const TriangleMesh& mesh);
-std::vector<TriangleMesh> other_targets(double strength, const std::string& target, const TriangleMesh& mesh);
-std::vector<TriangleMesh> a_sphere(double strength, const std::string& target, const TriangleMesh& mesh);
+std::vector<TriangleMesh> with_moved_joints(const std::function<double()>& strength, Random& random,
+                                            const std::string& target, const TriangleMesh& mesh);
+std::vector<TriangleMesh> without_parts(const std::function<double()>& strength, Random& random,
+                                        const std::string& target, const TriangleMesh& mesh);
+std::vector<TriangleMesh> with_turned_panels(const std::function<double()>& strength, Random& random,
+                                             const std::string& target, const TriangleMesh& mesh);
+std::vector<TriangleMesh> other_targets(const std::function<double()>& strength, Random& random,
+                                        const std::string& target, const TriangleMesh& mesh);
+std::vector<TriangleMesh> a_sphere(const std::function<double()>& strength, Random& random,
+                                   const std::string& target, const TriangleMesh& mesh);
 
 // scene_effects.cpp
 void add_background(double strength, const Flash& flash, EffectRandom& random, RangeGrid& grid);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <optional>
 #include <stdexcept>
 
 #include "sim/world/sensor/effect_functions.hpp"
@@ -49,15 +51,51 @@ std::string range_text(const EffectRow& row) {
   return *row.unit == '\0' ? range : range + " " + row.unit;
 }
 
-double strength_from(const EffectRow& row, const std::string& text) {
+bool is_given(const EffectRow& row, const EffectRanges& ranges) {
+  return ranges.low.*row.strength != 0.0 || ranges.high.*row.strength != 0.0;
+}
+
+bool is_range(const EffectRow& row, const EffectRanges& ranges) {
+  return ranges.low.*row.strength != ranges.high.*row.strength;
+}
+
+// A number that the effect takes, or 0.
+std::optional<double> number_from(const EffectRow& row, const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool number = error == std::errc{} && end == text.data() + text.size();
   const bool whole = !must_be_whole(row) || value == std::floor(value);
-  if (number && whole && value != 0.0 && value >= row.lowest && value <= row.highest) return value;
+  const bool taken = value == 0.0 || (value >= row.lowest && value <= row.highest);
+  return number && whole && taken ? std::optional<double>(value) : std::nullopt;
+}
+
+double strength_from(const EffectRow& row, const std::string& text) {
+  const std::optional<double> value = number_from(row, text);
+  if (value && *value != 0.0) return *value;
   throw std::invalid_argument(fmt::format("effect {}: the strength must be a {} from {}{}, not '{}'",
                                           row.name, must_be_whole(row) ? "whole number" : "number",
                                           range_text(row), row.lowest < 0.0 ? ", and not 0" : "", text));
+}
+
+// "1:5", which ends at `colon`.
+void take_range(const EffectRow& row, const std::string& text, std::size_t colon, EffectRanges& ranges) {
+  const std::optional<double> low = number_from(row, text.substr(0, colon));
+  const std::optional<double> high = number_from(row, text.substr(colon + 1));
+  const bool ends_at_0 = low == 0.0 || high == 0.0;
+  if (!low || !high || !(*low < *high) || (ends_at_0 && !vanishes_at_0(row))) {
+    throw std::invalid_argument(
+        fmt::format("effect {}: a range must be LOW:HIGH, two ascending {} from {}{}, not '{}'", row.name,
+                    must_be_whole(row) ? "whole numbers" : "numbers", range_text(row),
+                    vanishes_at_0(row) && row.lowest > 0.0 ? " or 0 (off)" : "", text));
+  }
+  ranges.low.*row.strength = *low;
+  ranges.high.*row.strength = *high;
+}
+
+double drawn_strength(const EffectRow& row, const EffectRanges& ranges, Random& random) {
+  const double low = ranges.low.*row.strength, high = ranges.high.*row.strength;
+  if (low == high) return low;
+  return must_be_whole(row) ? std::floor(random.uniform(low, high + 1.0)) : random.uniform(low, high);
 }
 
 }  // namespace
@@ -65,6 +103,9 @@ double strength_from(const EffectRow& row, const std::string& text) {
 // clang-format off
 const std::vector<EffectRow>& effect_table() {
   static const std::vector<EffectRow> kTable{
+      {"joints", &Effects::joints, "of the limits", 0.01, 1,
+       "each sequence shows the panels at angles drawn within this share of what their joints allow",
+       "the targets' joints, each panel by itself", with_moved_joints},
       {"wrong_object", &Effects::wrong_object, "", 1, 1,
        "another spacecraft: each sequence shows one of the other shipped targets",
        "the shipped meshes", other_targets},
@@ -158,25 +199,57 @@ bool must_be_whole(const EffectRow& row) {
          row.strength == &Effects::wrong_object;
 }
 
-Effects effects_from(const std::vector<std::string>& texts) {
-  Effects effects;
+bool vanishes_at_0(const EffectRow& row) {
+  constexpr double Effects::*kOthers[] = {&Effects::wrong_object, &Effects::sphere,     &Effects::rays,
+                                          &Effects::fixed_fov,    &Effects::panel_lobe, &Effects::lobe,
+                                          &Effects::link_budget,  &Effects::noise};
+  return std::find(std::begin(kOthers), std::end(kOthers), row.strength) == std::end(kOthers);
+}
+
+EffectRanges effect_ranges_from(const std::vector<std::string>& texts) {
+  EffectRanges ranges;
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     const EffectRow& row = effect_named(text.substr(0, equals));
-    if (effects.*row.strength != 0.0)
-      throw std::invalid_argument(fmt::format("effect {} is given twice", row.name));
-    effects.*row.strength = strength_from(row, equals == std::string::npos ? "" : text.substr(equals + 1));
+    if (is_given(row, ranges)) throw std::invalid_argument(fmt::format("effect {} is given twice", row.name));
+    const std::string strength = equals == std::string::npos ? "" : text.substr(equals + 1);
+    const std::size_t colon = strength.find(':');
+    if (colon != std::string::npos) {
+      take_range(row, strength, colon, ranges);
+    } else {
+      ranges.low.*row.strength = ranges.high.*row.strength = strength_from(row, strength);
+    }
   }
-  return effects;
+  return ranges;
 }
 
-std::string to_string(const Effects& effects) {
+Effects effects_from(const std::vector<std::string>& texts) {
+  const EffectRanges ranges = effect_ranges_from(texts);
+  for (const EffectRow& row : effect_table()) {
+    if (!is_range(row, ranges)) continue;
+    throw std::invalid_argument(fmt::format(
+        "effect {}: give one strength here; a range is possible after train --effect-set", row.name));
+  }
+  return ranges.low;
+}
+
+std::string to_string(const EffectRanges& effects) {
   std::string text;
   for (const EffectRow& row : effect_table()) {
-    if (effects.*row.strength == 0.0) continue;
-    text += fmt::format("{}{}={}", text.empty() ? "" : ",", row.name, effects.*row.strength);
+    if (!is_given(row, effects)) continue;
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", row.name, effects.low.*row.strength);
+    if (is_range(row, effects)) text += fmt::format(":{}", effects.high.*row.strength);
   }
   return text;
+}
+
+Effects drawn(const EffectRanges& ranges, std::uint64_t seed) {
+  Effects effects;
+  for (const EffectRow& row : effect_table()) {
+    Random random(mix(seed, seed_of(row)));
+    effects.*row.strength = drawn_strength(row, ranges, random);
+  }
+  return effects;
 }
 
 std::string effect_explanations() {
@@ -197,18 +270,53 @@ std::vector<Panel> panels_for_effect(const char* effect, const TriangleMesh& mes
                   effect, mesh.name));
 }
 
-std::vector<TriangleMesh> observed_bodies(const Effects& effects, const std::string& target,
-                                          const TriangleMesh& mesh) {
+namespace {
+
+// Angles of joints are drawn even if their share of the limits is not.
+bool bodies_are_drawn(const EffectRanges& effects) {
+  const auto is_drawn = [&](const EffectRow& row) {
+    return std::holds_alternative<BodyEffect>(row.apply) && is_given(row, effects) &&
+           (is_range(row, effects) || row.strength == &Effects::joints);
+  };
+  return std::any_of(effect_table().begin(), effect_table().end(), is_drawn);
+}
+
+// `number` determines what is drawn.
+std::vector<TriangleMesh> changed_bodies(const EffectRanges& effects, std::uint64_t number,
+                                         const std::string& target, const TriangleMesh& mesh) {
   std::vector<TriangleMesh> bodies{mesh};
-  for_each_given<BodyEffect>(effects, [&](const EffectRow&, BodyEffect apply, double strength) {
+  for (const EffectRow& row : effect_table()) {
+    const BodyEffect* const apply = std::get_if<BodyEffect>(&row.apply);
+    if (apply == nullptr || !is_given(row, effects)) continue;
+    Random random(mix(number, seed_of(row)));
+    const auto strength = [&] { return drawn_strength(row, effects, random); };
     std::vector<TriangleMesh> changed;
     for (const TriangleMesh& body : bodies) {
-      const std::vector<TriangleMesh> more = apply(strength, target, body);
+      const std::vector<TriangleMesh> more = (*apply)(strength, random, target, body);
       changed.insert(changed.end(), more.begin(), more.end());
     }
     bodies = std::move(changed);
-  });
-  if (effects.panel_lobe == 0.0) return bodies;
+  }
+  return bodies;
+}
+
+}  // namespace
+
+std::vector<TriangleMesh> observed_bodies(const EffectRanges& effects, const std::string& target,
+                                          const TriangleMesh& mesh) {
+  const bool another_body = effects.high.wrong_object != 0.0 || effects.high.sphere != 0.0;
+  if (effects.high.joints != 0.0 && another_body) {
+    throw std::invalid_argument(
+        "effect joints moves the target's panels, and wrong_object or sphere shows another body: give one of "
+        "them");
+  }
+  std::vector<TriangleMesh> bodies;
+  const std::uint64_t count = bodies_are_drawn(effects) ? kDrawnBodies : 1;
+  for (std::uint64_t number = 0; number < count; ++number) {
+    const std::vector<TriangleMesh> more = changed_bodies(effects, number, target, mesh);
+    bodies.insert(bodies.end(), more.begin(), more.end());
+  }
+  if (effects.high.panel_lobe == 0.0) return bodies;
   for (TriangleMesh& body : bodies) {
     const std::vector<Panel> panels = panels_for_effect("panel_lobe", body);
     body.is_panel.assign(body.triangles.size(), 0);

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -26,6 +27,7 @@ struct SensorSettings;
 
 // The strengths, in the units of the table; 0: off.
 struct Effects {
+  double joints = 0.0;
   double part_missing = 0.0;
   double panel_turn = 0.0;
   double wrong_object = 0.0;
@@ -55,6 +57,15 @@ struct Effects {
   double dead_lines = 0.0;
 };
 
+// The strengths between which those of a frame or sequence are drawn. Where both ends are equal, nothing is
+// drawn. Effects stand for themselves: fixed strengths.
+struct EffectRanges {
+  EffectRanges() = default;
+  EffectRanges(const Effects& fixed) : low(fixed), high(fixed) {}
+  Effects low{};
+  Effects high{};
+};
+
 // One flash, as the effects see it.
 struct Flash {
   const FrameTruth& truth;
@@ -70,9 +81,10 @@ struct EffectRandom {
 };
 
 // The points at which an effect can act, in their order.
-// Changes the body that is observed. `target`: its key. More than one body: each sequence shows one of them.
-using BodyEffect = std::vector<TriangleMesh> (*)(double strength, const std::string& target,
-                                                 const TriangleMesh& mesh);
+// Changes the body that is observed. `strength`: each call draws one, without a range always the same.
+// `target`: its key. More than one body: each sequence shows one of them.
+using BodyEffect = std::vector<TriangleMesh> (*)(const std::function<double()>& strength, Random& random,
+                                                 const std::string& target, const TriangleMesh& mesh);
 // Changes a parameter of the sensor.
 using SensorEffect = void (*)(double strength, SensorSettings& settings);
 // Changes the light that comes back, before the receiver measures it: exact ranges, infinity without a
@@ -98,19 +110,30 @@ const std::vector<EffectRow>& effect_table();
 // Throws std::invalid_argument that lists the names if there is none of this name.
 const EffectRow& effect_named(const std::string& name);
 bool must_be_whole(const EffectRow& row);  // its strength
+// Whether the effect vanishes as its strength goes to 0, so that a range of strengths may reach 0.
+bool vanishes_at_0(const EffectRow& row);
 
 // "false_returns=0.01,noise=5": strengths by name. Throws std::invalid_argument that lists the names, or
-// gives the range of the strength, if one is wrong or is given twice.
+// gives the limits of the strength, if one is wrong or is given twice.
 Effects effects_from(const std::vector<std::string>& texts);
+// The same, where "noise=1:5" is a range from the lower to the higher strength.
+EffectRanges effect_ranges_from(const std::vector<std::string>& texts);
 // In the same form, in the order of the table; empty without an effect.
-std::string to_string(const Effects& effects);
+std::string to_string(const EffectRanges& effects);
+// Uniform within the ranges, each from a stream of its own: a range more does not change the others'
+// strengths.
+Effects drawn(const EffectRanges& ranges, std::uint64_t seed);
 // Name, range, unit, explanation and source of each, for the terminal.
 std::string effect_explanations();
 
+// So many bodies stand for all that could be drawn: a body takes too long to make for one to be new in every
+// frame.
+inline constexpr std::uint64_t kDrawnBodies = 16;
+
 // The bodies that are observed in place of `mesh`, which is that of `target` (key): `mesh` alone without an
-// effect on it. The parts that are panels are marked if an effect needs them. Throws std::invalid_argument if
-// the mesh lacks what an effect acts on.
-std::vector<TriangleMesh> observed_bodies(const Effects& effects, const std::string& target,
+// effect on it, kDrawnBodies where strengths or angles of joints are drawn. The parts that are panels are
+// marked if an effect needs them. Throws std::invalid_argument if the mesh lacks what an effect acts on.
+std::vector<TriangleMesh> observed_bodies(const EffectRanges& effects, const std::string& target,
                                           const TriangleMesh& mesh);
 // The settings with the parameters that the effects change.
 SensorSettings with_effects(SensorSettings settings, const Effects& effects);

@@ -1,15 +1,13 @@
 #include "sim/world/sensor/flash_lidar.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "sim/world/dynamics/motion.hpp"
 #include "sim/world/math/angles.hpp"
+#include "sim/world/sensor/embree_scene.hpp"
 #include "sim/world/sensor/ray_effects.hpp"
 
 namespace tumblesight::sim {
@@ -105,52 +103,21 @@ struct FlashLidar::Hits {
 };
 
 struct FlashLidar::Scene {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
+  EmbreeScene embree;
   std::vector<std::uint8_t> is_panel;  // per triangle; empty: none is
   std::array<Eigen::Vector3f, 6> corners_trf_m;
-  ~Scene() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
 
-  void build(const TriangleMesh& mesh);
+  explicit Scene(const TriangleMesh& mesh)
+      : embree(mesh), is_panel(mesh.is_panel), corners_trf_m(extreme_corners(mesh)) {}
   // Along the first `count` unit directions of a packet (TRF).
   Hits cast(const Eigen::Vector3f& origin, const std::array<Eigen::Vector3f, kPacket>& directions,
             int count) const;
   SurfaceHit surface_at(const Hits& hits, int ray) const {
     const bool panel =
         !is_panel.empty() && std::isfinite(hits.range_m[ray]) && is_panel[hits.triangle[ray]] != 0;
-    return {hits.range_m[ray], hits.cos_incidence[ray], panel};
+    return {hits.range_m[ray], hits.cos_incidence[ray], panel, hits.triangle[ray]};
   }
 };
-
-void FlashLidar::Scene::build(const TriangleMesh& mesh) {
-  is_panel = mesh.is_panel;
-  corners_trf_m = extreme_corners(mesh);
-  device = rtcNewDevice("threads=1");
-  if (device == nullptr) throw std::runtime_error("Embree could not be started");
-  scene = rtcNewScene(device);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices_trf_m.size()));
-  auto* indices = static_cast<std::uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t),
-                              mesh.triangles.size()));
-  if (vertices == nullptr || indices == nullptr)
-    throw std::runtime_error("Embree refused the mesh of " + mesh.name);
-  for (const Eigen::Vector3f& v : mesh.vertices_trf_m) vertices = std::copy(v.data(), v.data() + 3, vertices);
-  for (const auto& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene);
-  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
-    throw std::runtime_error("Embree could not build the scene of " + mesh.name);
-  }
-}
 
 FlashLidar::Hits FlashLidar::Scene::cast(const Eigen::Vector3f& origin,
                                          const std::array<Eigen::Vector3f, kPacket>& directions,
@@ -171,11 +138,13 @@ FlashLidar::Hits FlashLidar::Scene::cast(const Eigen::Vector3f& origin,
     packet.ray.mask[i] = 0xFFFFFFFF;
     packet.ray.flags[i] = 0;
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.primID[i] = 0;  // Embree leaves these as they are where nothing is hit
+    packet.hit.Ng_x[i] = packet.hit.Ng_y[i] = packet.hit.Ng_z[i] = 0.0F;
   }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(valid.data(), scene, &context, &packet);
+  rtcIntersect16(valid.data(), embree.get(), &context, &packet);
   Hits hits;
   for (int i = 0; i < kPacket; ++i) {
     const bool hit = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
@@ -190,10 +159,7 @@ FlashLidar::Hits FlashLidar::Scene::cast(const Eigen::Vector3f& origin,
 FlashLidar::FlashLidar(const TriangleMesh& mesh) : FlashLidar(std::vector<TriangleMesh>{mesh}) {}
 
 FlashLidar::FlashLidar(const std::vector<TriangleMesh>& bodies) {
-  for (const TriangleMesh& body : bodies) {
-    scenes_.push_back(std::make_unique<Scene>());
-    scenes_.back()->build(body);
-  }
+  for (const TriangleMesh& body : bodies) scenes_.push_back(std::make_unique<Scene>(body));
 }
 
 FlashLidar::~FlashLidar() = default;
@@ -202,11 +168,21 @@ const FlashLidar::Scene& FlashLidar::scene_of(const FrameTruth& truth) const {
   return *scenes_[mix(truth.scene_seed) % scenes_.size()];
 }
 
-RangeGrid FlashLidar::true_ranges(const FrameTruth& truth, int rays, double swath_m) const {
+FlashLidar::View FlashLidar::view_of(const FrameTruth& truth, int rays, double swath_m) {
   View view;
   view.rays = rays;
   view.fov_urad = fov_urad(swath_m, truth.range_m);
   view.swath_m = swath_m;
+  return view;
+}
+
+RangeGrid FlashLidar::true_ranges(const FrameTruth& truth, int rays, double swath_m) const {
+  return cast(truth, view_of(truth, rays, swath_m));
+}
+
+RangeGrid FlashLidar::true_surfaces(const FrameTruth& truth, int rays, double swath_m) const {
+  View view = view_of(truth, rays, swath_m);
+  view.surfaces = true;
   return cast(truth, view);
 }
 

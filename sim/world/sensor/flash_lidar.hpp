@@ -44,6 +44,8 @@ class FlashLidar {
 
   // Exact ranges of one flash of rays x rays, without occluder, effects, noise and losses. Thread-safe.
   RangeGrid true_ranges(const FrameTruth& truth, int rays, double swath_m) const;
+  // The same with RangeGrid::surfaces.
+  RangeGrid true_surfaces(const FrameTruth& truth, int rays, double swath_m) const;
 
   // Fills rays, field of view and ranges of `frame`; sequence number and exposure time are left to the caller
   // (FrameRenderer sets them). Thread-safe. The same arguments give the same frame.
@@ -63,6 +65,7 @@ class FlashLidar {
     bool surfaces = false;  // fill RangeGrid::surfaces
   };
 
+  static View view_of(const FrameTruth& truth, int rays, double swath_m);
   const Scene& scene_of(const FrameTruth& truth) const;
   RangeGrid cast(const FrameTruth& truth, const View& view) const;
   RangeGrid cast_footprints(const FrameTruth& truth, const View& view, double width_rays) const;

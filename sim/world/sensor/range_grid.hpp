@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct SurfaceHit {
   double range_m = 0.0;
   double cos_incidence = 1.0;  // cosine of the angle between the ray and the normal, 0..1
   bool is_panel = false;       // of the target's solar panels
+  std::uint32_t triangle = 0;  // of the mesh; of no meaning if the ray hits nothing
 };
 
 // How the rays of a sensor divide its field of view, in each axis.
@@ -58,7 +60,7 @@ struct RangeGrid {
 // front of it or surfaces are not known.
 inline SurfaceHit surface_of(const RangeGrid& grid, std::size_t index) {
   const bool target = !grid.surfaces.empty() && grid.surfaces[index].range_m == grid.range_m[index];
-  return target ? grid.surfaces[index] : SurfaceHit{grid.range_m[index], 1.0, false};
+  return target ? grid.surfaces[index] : SurfaceHit{grid.range_m[index]};
 }
 
 // The ray `index` gets no light back from the surface at `range_m` that it meets.

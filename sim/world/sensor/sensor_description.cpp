@@ -16,6 +16,7 @@
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/lidar/frame_rays.hpp"
 #include "gnc/numerics/crc.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
@@ -28,7 +29,6 @@ constexpr double kMinFov_deg = 1.0;
 constexpr double kMaxFov_deg = 40.0;
 
 constexpr std::size_t kMaxDepth = 4;    // of a description; a good one has 2
-constexpr std::size_t kMaxShown = 60;   // characters of a wrong value
 constexpr std::size_t kMaxFault = 200;  // characters of a fault that the parser found
 
 constexpr const char* kFields =
@@ -51,10 +51,6 @@ constexpr const char* kFields =
     "\nNothing says where the sensor is mounted: frames and attitudes are in its own frame,\n"
     "the LRF. docs/icd.md says what a driver makes of the attitude of the chaser's body.\n";
 
-std::string shortened(const std::string& text, std::size_t most) {
-  return text.size() <= most ? text : text.substr(0, most) + "...";
-}
-
 // One object of a description. Takes the fields one by one and refuses what is not as it must be.
 class Fields {
  public:
@@ -67,7 +63,7 @@ class Fields {
     if (!object.is_object()) fail(fmt::format("{} must be an object with {}", whole, names));
     for (const auto& [name, value] : object.items()) {
       if (std::find(known.begin(), known.end(), name) == known.end())
-        fail(fmt::format("field '{}' is unknown; {} has {}", full(name), whole, names));
+        fail(fmt::format("field '{}' is unknown; {} has {}", full(shortened(name)), whole, names));
     }
     for (const std::string& name : known) {
       if (!object.contains(name))
@@ -119,7 +115,7 @@ class Fields {
     return value.is_object() && value.contains("kind") && value.at("kind") == kind;
   }
   [[noreturn]] void refuse(const std::string& field, const Json& value, const std::string& limits) const {
-    fail(fmt::format("field '{}' is {}; it must be {}", field, shortened(value.dump(), kMaxShown), limits));
+    fail(fmt::format("field '{}' is {}; it must be {}", field, shortened(value.dump()), limits));
   }
 
  private:
@@ -237,7 +233,7 @@ SensorDescription sensor_from_json(const std::string& text, const std::string& f
       names[level + 1].clear();
     }
     if (event == Event::key && !names[level].insert(parsed.get<std::string>()).second)
-      refuse(fmt::format("field {} is given twice", parsed.dump()));
+      refuse(fmt::format("field {} is given twice", shortened(parsed.dump())));
     return true;
   };
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) refuse("the file is empty");

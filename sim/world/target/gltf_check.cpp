@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/terminal/text.hpp"
 #include "sim/world/target/mesh_file.hpp"
 
 namespace tumblesight::sim {
@@ -32,7 +33,7 @@ class Strict {
     if (event == json::parse_event_t::object_start) keys_.emplace_back();
     if (event == json::parse_event_t::object_end) keys_.pop_back();
     if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second) {
-      fail("its JSON holds " + parsed.dump() + " twice in one object");
+      fail("its JSON holds " + shortened(parsed.dump()) + " twice in one object");
     }
     return true;
   }
@@ -70,7 +71,7 @@ const json& list(const json& object, const char* key) {
 
 std::uint64_t whole(const json& value, std::uint64_t limit, const std::string& where) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= limit) {
-    fail(where + " is " + value.dump(-1, ' ', true, json::error_handler_t::replace) +
+    fail(where + " is " + shortened(value.dump(-1, ' ', true, json::error_handler_t::replace)) +
          ", not a whole number below " + std::to_string(limit));
   }
   return value.get<std::uint64_t>();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "sim/world/target/triangle_mesh.hpp"
 
@@ -33,6 +34,11 @@ inline constexpr double kMinMeshRadius_m = 0.1;
 // extension .stl, .obj, .gltf or .glb names; no triangles; vertices that are not finite; triangles without
 // area; a radius outside kMinMeshRadius_m..kMaxMeshRadius_m.
 TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& options = {});
+
+// The files that belong to a mesh file: an OBJ's materials, a glTF's buffers and images
+// (mesh_side_files.cpp). They need not exist. Empty for other formats, and for a file that is missing or
+// damaged.
+std::vector<std::string> mesh_side_files(const std::string& path);
 
 // "y" or "z"; throws std::invalid_argument otherwise.
 MeshUp mesh_up_from(const std::string& name);

@@ -14,17 +14,29 @@ namespace {
 // tensor is that of the flight configuration and is used for the stowed one too.
 constexpr InertiaElements kAquariusInertia = {2644.24, 3086.41, 1329.64, 2.10, 972.97, -11.49};
 
+// NEAR Shoemaker's panels are fixed. Magellan's follow the Sun about x; the stops of their drives are not
+// known here. Those of Aquarius do not track the Sun (shipped_meshes.hpp), and locks hold the stowed ones.
+constexpr JointLimits kFixed = {0.0, 0.0};
+constexpr JointLimits kWholeTurn = {-180.0, 180.0};
+
 constexpr TargetRow kTargets[] = {
     {"near_shoemaker",
      "NEAR Shoemaker",
      make_near_shoemaker,
      {372.38, 372.45, 316.17, -2.86, -2.95, -4.42},
      4,
-     "near_shoemaker"},
-    {"magellan", "Magellan", make_magellan, {3266.61, 4772.03, 2897.59, 2.62, 36.17, -42.65}, 2, "magellan"},
-    {"sacd_aquarius", "SAC-D/Aquarius", make_sacd_aquarius, kAquariusInertia, 1, "sacd_aquarius"},
+     "near_shoemaker",
+     kFixed},
+    {"magellan",
+     "Magellan",
+     make_magellan,
+     {3266.61, 4772.03, 2897.59, 2.62, 36.17, -42.65},
+     2,
+     "magellan",
+     kWholeTurn},
+    {"sacd_aquarius", "SAC-D/Aquarius", make_sacd_aquarius, kAquariusInertia, 1, "sacd_aquarius", kFixed},
     {"sacd_aquarius_stowed", "SAC-D/Aquarius, stowed", make_sacd_aquarius_stowed, kAquariusInertia, 1,
-     "sacd_aquarius"},
+     "sacd_aquarius", kFixed},
 };
 
 const TargetRow& shipped_target(const std::string& key) {
@@ -62,6 +74,11 @@ Eigen::Matrix3d inertia_kg_m2(const std::string& target) {
   Eigen::Matrix3d tensor;
   tensor << i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz;
   return tensor;
+}
+
+JointLimits joint_limits(const std::string& target) {
+  const TargetRow* row = find_target(target);
+  return row != nullptr ? row->joints : kWholeTurn;
 }
 
 TriangleMesh target_mesh(const std::string& target, const std::string& source,

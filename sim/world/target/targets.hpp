@@ -19,6 +19,12 @@ struct InertiaElements {
   double xx, yy, zz, xy, xz, yz;  // kg m^2
 };
 
+// How far a solar panel turns from where it stands in the mesh, about its hinge (panels.hpp), right-handed
+// about the direction outwards. Both 0: it is fixed.
+struct JointLimits {
+  double lowest_deg, highest_deg;
+};
+
 struct TargetRow {
   const char* key;           // on the command line, in model images, in file names: 1 to 31 of a-z, 0-9 and _
   const char* display_name;  // in reports
@@ -29,6 +35,7 @@ struct TargetRow {
   int symmetry_about_z;
   // Key of the target in the paper whose figures this target is compared with; nullptr: none.
   const char* paper_key;
+  JointLimits joints;  // of every panel
 };
 
 // nullptr for a target that does not ship, for instance a user's own.
@@ -43,6 +50,9 @@ TriangleMesh target_by_name(const std::string& name);
 // Inertia tensor of a shipped target (paper, spacecraft table), see TargetRow::inertia. Throws as
 // target_by_name does.
 Eigen::Matrix3d inertia_kg_m2(const std::string& target);
+
+// Of the panels of a target; a whole turn for one that does not ship.
+JointLimits joint_limits(const std::string& target);
 
 // Stands for the mesh that ships for a target, wherever a mesh file may be named.
 inline constexpr const char* kParametricMesh = "parametric";

@@ -15,7 +15,7 @@ namespace {
 using fsw::AppMemory;
 using fsw::Region;
 
-// A complete check of the model takes 24 cycles.
+// A complete check of the model takes 27 cycles.
 constexpr std::size_t cycles_per_trial(Place place) {
   return place == Place::kWeights || place == Place::kTwo ? 30 : 15;
 }

@@ -159,7 +159,7 @@ TEST_F(FlashStore, ImageInUseIsCopiedSectorBySectorWhileTheGroundSendsTheChanges
     ASSERT_EQ(out->telemetry.commands_refused_by[static_cast<std::size_t>(CommandRefusal::kStoreFailed)], 0U);
   }
   EXPECT_TRUE(to_send.empty()) << "commands go before the copy";
-  EXPECT_LT(cycles, 2 * 300) << "four segments are written together";
+  EXPECT_LT(cycles, 2 * 330) << "four segments are written together";
   finish();
   step_commands({validate()});
   step_commands({activate()});

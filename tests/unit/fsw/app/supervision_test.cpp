@@ -221,7 +221,7 @@ TEST_F(DoubtfulAttitudes, FrameThatTheTargetDoesNotExplainIsFlaggedAndTheAttitud
             gnc::ModelStatus::kOk);
   std::vector<std::uint8_t> surface(gnc::SurfaceModel::kBytes), image(without.size());
   surface[0] = 1;  // a target of one point
-  ASSERT_EQ(gnc::write_model_image(header, weights, image.data(), image.size(), surface.data()),
+  ASSERT_EQ(gnc::write_model_image(header, weights, image.data(), image.size(), {surface.data()}),
             image.size());
   store.fill(image);
   init(store);

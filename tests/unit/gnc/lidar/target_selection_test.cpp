@@ -29,6 +29,21 @@ class Random {
   std::mt19937 engine_;
 };
 
+TEST(RayMask, FindsEveryRayAndEveryPair) {
+  const auto mask = std::make_unique<RayMask>();
+  for (int row = 0; row < RangeImage::kMaxRays; ++row) {
+    for (int column = 0; column < RangeImage::kMaxRays; ++column) {
+      *mask = {};
+      mask->rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column / 32)] =
+          0x8000'0000U >> (column % 32);
+      EXPECT_TRUE(mask->has(row, column));
+      EXPECT_FALSE(mask->has(row, column ^ 1));
+      EXPECT_EQ(mask->pair(row, column & ~1), column % 2 == 0 ? 2U : 1U);
+    }
+  }
+  for (std::uint32_t pair = 0; pair < 4; ++pair) EXPECT_EQ(rays_of_pair(pair), count_ones(pair));
+}
+
 class TargetSelection : public testing::Test {
  protected:
   void use_rays(int rays) {

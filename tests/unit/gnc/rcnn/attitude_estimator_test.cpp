@@ -225,7 +225,7 @@ TEST(AttitudeEstimator, TakesTheEvidenceOfEachFrameIntoTheExpectedError) {
             ModelStatus::kOk);
   std::vector<std::uint8_t> surface(SurfaceModel::kBytes), with(without.size());
   surface[0] = 1;
-  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, with.data(), with.size(), surface.data()),
+  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, with.data(), with.size(), {surface.data()}),
             with.size());
   const auto network = std::make_unique<AttitudeEstimator<FixedPoint>>();
   const auto checked = std::make_unique<AttitudeEstimator<FixedPoint>>();
@@ -249,6 +249,37 @@ TEST(AttitudeEstimator, TakesTheEvidenceOfEachFrameIntoTheExpectedError) {
     second_counts |= odds > 0.01;
   }
   EXPECT_TRUE(second_counts);
+}
+
+// Verifies TS-MEM-080. The mesh is read in the image; no result depends on it yet.
+TEST(AttitudeEstimator, HasTheMeshOfTheLoadedImageAndChecksItWithItsConstants) {
+  const auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
+  const std::vector<std::uint8_t>& without = lasting_model_image<FixedPoint>(31);
+  ModelHeader header;
+  ASSERT_EQ(read_model_image<FixedPoint>(without.data(), without.size(), nullptr, header, *weights),
+            ModelStatus::kOk);
+  std::vector<std::uint8_t> mesh(SurfaceMesh::kMaxBytes), with(without.size());
+  mesh[0] = 3;   // vertices
+  mesh[2] = 1;   // triangle
+  mesh[6] = 12;  // mm
+  mesh[28] = 2;  // its second corner
+  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, with.data(), with.size(), {nullptr, mesh.data()}),
+            with.size());
+  const auto estimator = std::make_unique<AttitudeEstimator<FixedPoint>>();
+  EXPECT_FALSE(estimator->mesh().is_known());
+  ASSERT_EQ(estimator->load(without.data(), without.size(), nullptr), ModelStatus::kOk);
+  EXPECT_FALSE(estimator->mesh().is_known());
+  ASSERT_EQ(estimator->load(with.data(), with.size(), nullptr), ModelStatus::kOk);
+  EXPECT_EQ(estimator->mesh().triangles(), 1);
+  EXPECT_EQ(estimator->mesh().error_mm(), 12);
+  EXPECT_EQ(estimator->mesh().triangle(0), (SurfaceMesh::Triangle{0, 2, 0}));
+
+  const std::uint32_t constants = estimator->constants_crc32();
+  const_cast<SurfaceMesh&>(estimator->mesh()) = SurfaceMesh();
+  EXPECT_NE(estimator->constants_crc32(), constants);
+  estimator->reload(with.data());
+  EXPECT_EQ(estimator->constants_crc32(), constants);
+  EXPECT_EQ(estimator->mesh().triangles(), 1);
 }
 
 TYPED_TEST(EstimatorOf, ContinuesBitForBitAfterSaveAndRestore) {
@@ -335,7 +366,10 @@ TYPED_TEST(EstimatorOf, FrameAndItsDepthImageGiveTheSameEstimate) {
   const auto estimator = loaded<TypeParam>(35);
   AttitudeEstimate from_frame, from_image;
   ASSERT_EQ(estimator->step(random_frame(1), from_frame), FrameStatus::kOk);
-  const auto image = std::make_unique<DepthImage>(estimator->depth_image());
+  const auto image = std::make_unique<DepthImage>();
+  const auto scratch = std::make_unique<DepthImageScratch>();
+  ASSERT_EQ(make_depth_image(random_frame(1), estimator->model().projection, *scratch, *image),
+            FrameStatus::kOk);
   EXPECT_GT(std::count_if(image->depth.begin(), image->depth.end(), [](int depth) { return depth > 0; }),
             100);
   estimator->reset();

@@ -208,9 +208,9 @@ TEST(ModelImage, HasTheDocumentedLayout) {
 
   const Bytes& fixed = lasting_model_image<FixedPoint>(21);
   EXPECT_EQ(fixed.size(), kModelImageSize<FixedPoint>);
-  EXPECT_EQ(fixed[4] + 256 * fixed[5], 4);
+  EXPECT_EQ(fixed[4] + 256 * fixed[5], 5);
   EXPECT_EQ(get_u32(fixed, 84), 1U);
-  EXPECT_EQ(get_u32(fixed, kSections), 32U);
+  EXPECT_EQ(get_u32(fixed, kSections), 33U);
   EXPECT_EQ(get_u32(fixed, kTable + 4), kFixedData);
   EXPECT_EQ(get_u32(fixed, kTable + 8), 9U * 4 * 32);                   // one byte per weight
   EXPECT_EQ(get_u32(fixed, kTable + 16 + 4), kFixedData + 9 * 4 * 32);  // bias
@@ -219,7 +219,12 @@ TEST(ModelImage, HasTheDocumentedLayout) {
   const std::size_t surface = kTable + std::size_t{16} * 31;
   EXPECT_EQ(get_u32(fixed, surface), 32U);
   EXPECT_EQ(get_u32(fixed, surface + 8), 8U + 9 * 2048);
-  EXPECT_EQ(get_u32(fixed, surface + 4) + get_u32(fixed, surface + 8), fixed.size());
+  const std::size_t mesh = surface + 16;
+  EXPECT_EQ(get_u32(fixed, mesh), 33U);
+  EXPECT_EQ(get_u32(fixed, mesh + 4), get_u32(fixed, surface + 4) + get_u32(fixed, surface + 8));
+  EXPECT_EQ(get_u32(fixed, mesh + 8), 120'840U);
+  EXPECT_EQ(get_u32(fixed, mesh + 4) + get_u32(fixed, mesh + 8), fixed.size());
+  EXPECT_EQ(fixed.size(), 1'317'776U);
 }
 
 TEST(IsFloat32, NeedsAnIntactHeader) {
@@ -244,7 +249,7 @@ std::size_t offset_of(const Bytes& image, int index) {
   return get_u32(image, kTable + 16 * static_cast<std::size_t>(index) + 4);
 }
 
-constexpr int kSurface = 31;  // section
+constexpr int kSurface = 31, kMesh = 32;  // sections
 
 // Verifies TS-IFC-010, TS-IFC-020, TS-IFC-030, TS-IFC-040.
 TEST(FixedPointImage, HoldsTheSurfaceOfTheTarget) {
@@ -260,10 +265,11 @@ TEST(FixedPointImage, HoldsTheSurfaceOfTheTarget) {
   put_u32(section, 4, 150);
   const std::uint8_t second[] = {0x01, 0x80, 0xFF, 0x7F, 0xFE, 0xFF, 0x81, 0x7F, 0x00};
   std::copy(std::begin(second), std::end(second), section.begin() + 8 + 9);
-  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, image.data(), image.size(), section.data()),
+  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, image.data(), image.size(), {section.data()}),
             image.size());
   ASSERT_EQ(read_fixed(image), ModelStatus::kOk);
-  EXPECT_TRUE(std::equal(image.begin() + kFixedData, image.end() - SurfaceModel::kBytes,
+  EXPECT_TRUE(std::equal(image.begin() + kFixedData,
+                         image.end() - SurfaceModel::kBytes - SurfaceMesh::kMaxBytes,
                          without.begin() + kFixedData))
       << "weights";
   const SurfaceModel surface = surface_of<FixedPoint>(image.data());
@@ -274,16 +280,136 @@ TEST(FixedPointImage, HoldsTheSurfaceOfTheTarget) {
   EXPECT_EQ(surface.point(2047).normal, (std::array<std::int8_t, 3>{0, 0, 0}));
 
   Bytes damaged = image;
-  damaged.back() ^= 1;
+  damaged[offset_of(image, kSurface) + SurfaceModel::kBytes - 1] ^= 1;
   EXPECT_EQ(read_fixed(damaged), ModelStatus::kBadSectionCrc);
   damaged = image;
   put_u32(damaged, offset_of(damaged, kSurface), 2049);
   seal_section(damaged, kSurface);
   EXPECT_EQ(read_fixed(damaged), ModelStatus::kBadValue);
   damaged = image;
-  damaged[4] = 3;
-  seal_header(damaged);
-  EXPECT_EQ(read_fixed(damaged), ModelStatus::kBadVersion);
+  for (const std::uint8_t former : {3, 4}) {
+    damaged[4] = former;
+    seal_header(damaged);
+    EXPECT_EQ(read_fixed(damaged), ModelStatus::kBadVersion) << int{former};
+  }
+}
+
+// A tetrahedron: its triangles and its edges.
+Bytes tetrahedron() {
+  Bytes section(SurfaceMesh::kMaxBytes);
+  std::size_t at = 0;
+  const auto put = [&](std::initializer_list<int> numbers) {
+    for (const int number : numbers) {
+      section[at++] = static_cast<std::uint8_t>(number & 255);
+      section[at++] = static_cast<std::uint8_t>((number >> 8) & 255);
+    }
+  };
+  put({4, 4, 6, 37});
+  put({0, 0, 32767, 20000, 0, -10000, -10000, 20000, -10000, -10000, -20000, -10000});
+  put({0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2});
+  put({0, 1, 2, 3, 0, 2, 1, 3, 0, 3, 1, 2, 1, 2, 0, 3, 1, 3, 0, 2, 2, 3, 0, 1});
+  return section;
+}
+constexpr std::size_t kTetrahedronEnd = 8 + 6 * 4 + 6 * 4 + 8 * 6;
+
+const Bytes& image_of_tetrahedron() {
+  static const Bytes image = [] {
+    const Bytes& without = lasting_model_image<FixedPoint>(30);
+    ModelHeader header;
+    auto weights = std::make_unique<NetworkWeights<FixedPoint>>();
+    EXPECT_EQ(read_model_image<FixedPoint>(without.data(), without.size(), nullptr, header, *weights),
+              ModelStatus::kOk);
+    const Bytes mesh = tetrahedron();
+    Bytes with(without.size());
+    EXPECT_EQ(
+        write_model_image<FixedPoint>(header, *weights, with.data(), with.size(), {nullptr, mesh.data()}),
+        with.size());
+    return with;
+  }();
+  return image;
+}
+
+// Verifies TS-IFC-010.
+TEST(FixedPointImage, EndsInTheMeshOfTheTarget) {
+  const Bytes& without = lasting_model_image<FixedPoint>(30);
+  EXPECT_FALSE(surface_mesh_of<FixedPoint>(without.data()).is_known());
+  EXPECT_FALSE(surface_mesh_of<Float32>(good_image().data()).is_known()) << "has no such section";
+  const Bytes& image = image_of_tetrahedron();
+  ASSERT_EQ(read_fixed(image), ModelStatus::kOk);
+  EXPECT_TRUE(std::equal(image.begin() + kFixedData, image.end() - SurfaceMesh::kMaxBytes,
+                         without.begin() + kFixedData))
+      << "weights, and no points";
+  const Bytes section = tetrahedron();
+  EXPECT_TRUE(std::equal(section.begin(), section.end(), image.end() - SurfaceMesh::kMaxBytes));
+  const SurfaceMesh mesh = surface_mesh_of<FixedPoint>(image.data());
+  EXPECT_TRUE(mesh.is_known());
+  EXPECT_EQ(mesh.vertices(), 4);
+  EXPECT_EQ(mesh.triangles(), 4);
+  EXPECT_EQ(mesh.edges(), 6);
+  EXPECT_EQ(mesh.error_mm(), 37);
+  EXPECT_EQ(mesh.vertex(3), (SurfaceMesh::Vertex{-10000, -20000, -10000}));
+  EXPECT_EQ(mesh.triangle(3), (SurfaceMesh::Triangle{1, 3, 2}));
+  EXPECT_EQ(mesh.edge(5).first, 2);
+  EXPECT_EQ(mesh.edge(5).opposite, (std::array<std::uint16_t, 2>{0, 1}));
+}
+
+// Verifies TS-IFC-040.
+TEST(FixedPointImage, WithAnImpossibleMeshIsRefused) {
+  struct Change {
+    const char* what;
+    std::size_t at;  // in the section
+    std::uint16_t value;
+    ModelStatus expected;
+  };
+  const std::size_t triangles = 8 + 6 * 4, edges = triangles + 6 * 4;
+  std::vector<Change> changes = {
+      {"vertices: one too few for the triangles", 0, 3, ModelStatus::kBadValue},
+      {"too many vertices", 0, 4097, ModelStatus::kBadValue},
+      {"too many triangles", 2, 6145, ModelStatus::kBadValue},
+      {"a triangle less leaves the last edge behind the data", 2, 3, ModelStatus::kBadValue},
+      {"too many edges", 4, 8193, ModelStatus::kBadValue},
+      {"an edge less leaves the last one behind the data", 4, 5, ModelStatus::kBadValue},
+      {"any error", 6, 65535, ModelStatus::kOk},
+      {"any place of a vertex", 8, 0x8000, ModelStatus::kOk},
+      {"the byte behind the data", kTetrahedronEnd, 1, ModelStatus::kBadValue},
+      {"the middle of the zeros", 64'000, 0x0100, ModelStatus::kBadValue},
+      {"the last byte", SurfaceMesh::kMaxBytes - 2, 0x8000, ModelStatus::kBadValue},
+  };
+  for (std::size_t at = triangles; at < kTetrahedronEnd; at += 2) {
+    const char* const what = at < edges ? "corner of a triangle" : "corner of an edge";
+    changes.push_back({what, at, 3, ModelStatus::kOk});
+    changes.push_back({what, at, 4, ModelStatus::kBadValue});
+    changes.push_back({what, at, 65535, ModelStatus::kBadValue});
+  }
+  Bytes image = image_of_tetrahedron();
+  const std::size_t start = offset_of(image, kMesh);
+  for (const Change& change : changes) {
+    std::uint8_t* const bytes = image.data() + start + change.at;
+    const std::array<std::uint8_t, 2> before{bytes[0], bytes[1]};
+    bytes[0] = static_cast<std::uint8_t>(change.value & 255U);
+    bytes[1] = static_cast<std::uint8_t>(change.value >> 8U);
+    seal_section(image, kMesh);
+    EXPECT_EQ(read_fixed(image), change.expected) << change.what << " at " << change.at;
+    std::copy(before.begin(), before.end(), bytes);
+  }
+  seal_section(image, kMesh);
+  EXPECT_EQ(read_fixed(image), ModelStatus::kOk);
+}
+
+// Verifies TS-IFC-020.
+TEST(FixedPointImage, WithAFlippedBitAnywhereInItsMeshIsRefused) {
+  Bytes image = image_of_tetrahedron();
+  const std::size_t start = offset_of(image, kMesh);
+  std::vector<std::size_t> places;
+  for (std::size_t at = 0; at < kTetrahedronEnd + 4; ++at) places.push_back(at);
+  for (std::size_t at = 5003; at < SurfaceMesh::kMaxBytes; at += 5003) places.push_back(at);
+  places.push_back(SurfaceMesh::kMaxBytes - 1);
+  for (const std::size_t at : places) {
+    const auto bit = static_cast<std::uint8_t>(1U << (at % 8));
+    image[start + at] ^= bit;
+    EXPECT_EQ(read_fixed(image), ModelStatus::kBadSectionCrc) << at;
+    image[start + at] ^= bit;
+  }
 }
 
 // Verifies TS-IFC-010, TS-MEM-080.

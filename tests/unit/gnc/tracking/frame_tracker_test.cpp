@@ -152,7 +152,7 @@ TEST_F(Tracking, AFrameThatTheTargetDoesNotExplainIsADoubt) {
             ModelStatus::kOk);
   std::vector<std::uint8_t> surface(SurfaceModel::kBytes), image(without.size());
   surface[0] = 1;
-  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, image.data(), image.size(), surface.data()),
+  ASSERT_EQ(write_model_image<FixedPoint>(header, *weights, image.data(), image.size(), {surface.data()}),
             image.size());
   ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
   const std::uint32_t constants = estimator->constants_crc32();

@@ -1,4 +1,4 @@
-// Other runtimes compute the same as the flight network in float32.
+// Other runtimes compute the same as the flight network, in float32 or fixed point.
 #include "sim/bench/peer.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gnc/rcnn/network_flow.hpp"
+#include "sim/bench/network_bench.hpp"
 #include "tests/support/test_models.hpp"
 
 namespace tumblesight::sim {
@@ -40,12 +41,10 @@ void expect_near(const Numbers& numbers, const Numbers& expected, const char* wh
 void expect_same_frames(Peer& peer, Network& network) {
   for (unsigned seed = 0; seed < kFrames; ++seed) {
     const gnc::DepthImage image = gnc::random_depth_image(seed);
-    std::vector<float> numbers(image.depth.size());
-    for (std::size_t i = 0; i < numbers.size(); ++i) gnc::to_conv_input(image.depth[i], numbers[i]);
     gnc::OutputVector<float> expected, out;
     gnc::Features<Float32> features;
     network.ours.infer_frame(image, expected);
-    peer.run_frame(numbers.data(), features, out);
+    peer.run_frame(PeerImage(image), features, out);
     expect_near(features, network.ours.features(), "features");
     expect_near(out, expected, "output of the CNN");
   }
@@ -79,6 +78,40 @@ TEST(OnnxRuntime, GivesAReasonIfTheLibraryIsMissing) {
   std::string reason;
   EXPECT_EQ(make_onnx_runtime(network->model, "/no/such/library.so", reason), nullptr);
   EXPECT_FALSE(reason.empty());
+}
+
+// int8 activations have fewer bits than fixed point behind conv3, and random weights amplify that.
+constexpr double kInt8Tolerance = 0.1;
+
+struct FixedPointNetwork {
+  FixedPointNetwork() {
+    const auto& image = gnc::lasting_model_image<gnc::FixedPoint>(9);
+    EXPECT_EQ(gnc::read_model_image<gnc::FixedPoint>(image.data(), image.size(), nullptr, model.header,
+                                                     model.weights),
+              gnc::ModelStatus::kOk);
+    for (unsigned seed = 0; seed < kFrames; ++seed) frames.push_back(gnc::random_frame(seed));
+  }
+  FixedPointModel model;
+  std::vector<gnc::RangeImage> frames;
+};
+
+TEST(OnnxRuntime, InInt8ComputesTheSameAsFixedPointWithinABound) {
+  const auto network = std::make_unique<FixedPointNetwork>();
+  std::string reason;
+  const auto peer = make_onnx_runtime_int8(network->model, "", reason);
+  if (peer == nullptr) GTEST_SKIP() << reason;
+  EXPECT_TRUE(peer->is_int8());
+  EXPECT_LT(largest_difference(*peer, network->model, network->frames), kInt8Tolerance);
+}
+
+TEST(Onednn, InInt8ComputesTheSameAsFixedPointWithinABound) {
+  const auto network = std::make_unique<FixedPointNetwork>();
+  std::string reason;
+  const auto peer = make_onednn_int8(network->model, reason);
+  if (TUMBLESIGHT_HAS_ONEDNN == 0 && peer == nullptr) GTEST_SKIP() << reason;
+  ASSERT_NE(peer, nullptr) << reason;
+  EXPECT_TRUE(peer->is_int8());
+  EXPECT_LT(largest_difference(*peer, network->model, network->frames), kInt8Tolerance);
 }
 
 TEST(LibTorch, ComputesTheSameAsTheFlightNetwork) {

@@ -14,6 +14,7 @@
 #include "sim/world/sensor/effects.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/targets.hpp"
+#include "tests/support/former_model_image.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -84,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"record --out ''", 2, "--out: must be a path, not ''"},
         Refusal{"bench --onnxruntime /dev", 2, "--onnxruntime: '/dev' is not a regular file"},
         Refusal{"evaluate --effect fog=1", 2,
-                "--effect: effect 'fog' is unknown; the effects are: wrong_object, "},
+                "--effect: effect 'fog' is unknown; the effects are: joints, wrong_object, "},
         Refusal{"evaluate --effect noise=50", 2, "must be a number from 0.01 to 20 times, not '50'"},
         Refusal{"record --out x.tslr --effect plume", 2, "from 0.0001 to 0.5 of the rays, not ''"},
         Refusal{"evaluate --effect noise=5,noise=4", 2, "effect noise is given twice"},
@@ -102,17 +103,27 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --paper --range 20,50", 2, "--paper: sets --range itself"},
         Refusal{"evaluate --paper --frozen 1", 2, "--paper: sets --frozen itself"},
         Refusal{"evaluate --paper --target magellan", 2, "--paper: sets --target itself"},
+        Refusal{"evaluate --paper --numerics float32", 2, "--paper: sets --numerics itself"},
+        Refusal{"bench --onnxruntime /proc/self/comm", 1, "--onnxruntime: "},
         Refusal{"evaluate --paper --frames 5", 2, "sets --frames itself"},
         Refusal{"evaluate --mesh-folder meshes", 2, "requires --paper"},
         Refusal{"evaluate --out folder", 2, "requires --paper"},
         Refusal{"evaluate --paper --mesh-folder /no/such", 1, "--mesh-folder '/no/such' is not a folder"},
         Refusal{"evaluate --no-baseline --baseline-sequences 5", 2, "excludes"},
+        Refusal{"evaluate --no-baseline --peers", 2, "excludes"},
+        Refusal{"evaluate --paper --peers", 2, "--paper: sets --peers itself"},
+        Refusal{"evaluate --effect-limit noise --peers", 2, "makes no tables; leave --peers out"},
         Refusal{"evaluate --csv same --json same", 2, "'same' is also the file of --json"},
         Refusal{"evaluate --report /proc/none/x.html", 1, "--report /proc/none/x.html"},
         Refusal{"evaluate --target 'a b'", 2, "must be 1 to 31 characters of a-z"},
         Refusal{"evaluate --mesh x.stl --mesh-scale 0", 2, "from 1e-06 to 1e+06"},
         Refusal{"evaluate --mesh x.stl --mesh-up x", 2, "must be one of y, z, not 'x'"},
-        Refusal{"evaluate --mesh-up z", 2, "requires --mesh"}, Refusal{"evaluate --colour", 2, "--colour"},
+        Refusal{"evaluate --mesh-up z", 2, "requires --mesh"},
+        Refusal{"evaluate --mesh parametric --mesh-up z", 2, "--mesh-up: is for mesh files"},
+        Refusal{"evaluate --mesh parametric --mesh-scale 2", 2, "or give a file with --mesh"},
+        Refusal{"record --out x --mesh parametric --mesh-scale 2", 2, "--mesh-scale: is for mesh files"},
+        Refusal{"quantize --model /dev/null --mesh parametric --mesh-scale 2", 2, "leave --mesh-scale out"},
+        Refusal{"evaluate --colour", 2, "--colour"},
         Refusal{"evaluate --target sputnik", 1, "near_shoemaker"},
         Refusal{"evaluate --mesh /no/such.stl", 1, "/no/such.stl"},
         Refusal{"evaluate --model /no/such.tsm", 1, "'/no/such.tsm' does not exist"},
@@ -124,6 +135,48 @@ INSTANTIATE_TEST_SUITE_P(
                 "--effect: wrong_object and sphere are for tests only"},
         Refusal{"evaluate --model /dev/null", 1, "'/dev/null' is refused: too short"},
         Refusal{"evaluate --json /proc/none/x.json", 1, "--json /proc/none/x.json"}));
+
+// `count` times the letter.
+std::string letters(std::size_t count) {
+  return std::string(count, 'a');
+}
+
+// Verifies TS-SIL-160.
+TEST(Outputs, LinksStayAsTheyAreWhenARunIsRefused) {
+  const Workplace here;
+  std::filesystem::create_symlink(here.path("b"), here.path("a"));
+  std::filesystem::create_symlink(here.path("c"), here.path("b"));
+  EXPECT_NE(here.run("evaluate --sequences 1 --no-baseline --model none.tsm --json a").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(here.path("b")));
+  EXPECT_FALSE(std::filesystem::exists(here.path("c")));
+}
+
+// Verifies TS-SIL-160.
+TEST(Outputs, ThatCouldNotBeWrittenAreRefusedAtTheStart) {
+  const Workplace here;
+  here.model();
+  std::filesystem::create_symlink(here.path("none/x.json"), here.path("dangling.json"));
+  const auto errors = [&](const std::string& file) {
+    const Outcome outcome =
+        here.run("evaluate --sequences 1 --frames 1 --no-baseline --model model.tsm --json " + file);
+    EXPECT_EQ(outcome.exit_code, 1) << file;
+    EXPECT_EQ(outcome.output, "") << "it began";
+    EXPECT_NE(outcome.errors.find("--json " + file), std::string::npos) << outcome.errors;
+    return outcome.errors;
+  };
+  // A file that may be written, in a folder that takes no other one beside it.
+  EXPECT_NE(errors("/proc/self/comm").find("no file can be made in its folder: "), std::string::npos);
+  EXPECT_NE(errors("/proc/self/comm").find("choose another folder"), std::string::npos);
+  EXPECT_NE(errors("dangling.json").find("no file can be made in its folder: "), std::string::npos);
+  EXPECT_NE(errors("new/").find("ends as a folder does; add a file name"), std::string::npos);
+  EXPECT_NE(errors("new/.").find("ends as a folder does; add a file name"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(here.path("new")));
+  for (const std::size_t length : {250U, 300U})
+    EXPECT_NE(errors(letters(length)).find("too long to be written; give a shorter one"), std::string::npos);
+  EXPECT_EQ(here.run("record --sequences 1 --frames 1 --truth none --out " + letters(200)).exit_code, 0);
+  for (const auto& entry : std::filesystem::directory_iterator(here.path("")))
+    EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
+}
 
 TEST(Help, TeachesWithAnExample) {
   const Workplace here;
@@ -277,6 +330,17 @@ TEST(Effects, AreListedWithTheirRangesAndModels) {
   }
 }
 
+// Verifies TS-SIL-340.
+TEST(Effects, HaveOneStrengthOutsideOfTraining) {
+  const Workplace here;
+  for (const char* verb : {"evaluate", "simulate", "quantize"}) {
+    const Outcome outcome = here.run(std::string(verb) + " --model " + here.model() + " --effect noise=1:5");
+    EXPECT_NE(outcome.exit_code, 0) << verb;
+    EXPECT_NE(outcome.errors.find("a range is possible after train --effect-set"), std::string::npos)
+        << verb << outcome.errors;
+  }
+}
+
 TEST(Sensors, AreListedWithTheFieldsOfADescription) {
   const Workplace here;
   const Outcome outcome = here.run("record --sensor list");
@@ -396,6 +460,11 @@ TEST(Inputs, AreNeverOverwritten) {
   std::filesystem::create_symlink(here.path("own.json"), here.path("link.json"));
   std::filesystem::create_hard_link(here.path("own.json"), here.path("name.json"));
   here.model();
+  std::ofstream(here.path("parts.obj")) << "mtllib my paint.mtl\nmtllib a.mtl b.mtl\r\n"
+                                        << content(here.path("mine.obj"));
+  std::ofstream(here.path("parts.gltf"))
+      << R"({"asset":{"version":"2.0"},"buffers":[{"uri":"data:,x"},{"uri":"my%20mesh.bin"}],"images":[{"uri":"skin.png"}]})";
+  std::ofstream(here.path("bus.xml")) << "<PrivateKey>file:" << here.path("key.pem") << "</PrivateKey>";
   std::filesystem::copy(here.path("model.tsm"), here.path("net.cnn.onnx"));
   std::filesystem::copy(here.path("model.tsm"), here.path("mine.tsm"));
   const std::string help = here.run("--help").output;
@@ -420,6 +489,16 @@ TEST(Inputs, AreNeverOverwritten) {
       {"quantize --model model.tsm --out own.json" + sensor, "is also the file of --sensor"},
       {"quantize --model model.tsm --out link.json" + sensor, "is also the file of --sensor"},
       {"quantize --model model.tsm --out ./model.tsm", "--out: './model.tsm' is also the file of --model"},
+      {"evaluate --json mine.mtl" + mesh, "--json: 'mine.mtl' is also the file of --mesh (part of its mesh)"},
+      {"evaluate --json 'my paint.mtl' --mesh parts.obj", "is also the file of --mesh (part of its mesh)"},
+      {"record --out a.mtl --mesh parts.obj", "is also the file of --mesh (part of its mesh)"},
+      {"quantize --model model.tsm --out b.mtl --mesh parts.obj",
+       "is also the file of --mesh (part of its mesh)"},
+      {"simulate --json 'my mesh.bin' --report r.html --mesh parts.gltf",
+       "is also the file of --mesh (part of its mesh)"},
+      {"record --out skin.png --mesh parts.gltf", "is also the file of --mesh (part of its mesh)"},
+      {"simulate --json key.pem --report r.html --dds-security bus.xml",
+       "is also the file of --dds-security (a file that it names)"},
       {"bench --onnxruntime own.json --json own.json", "is also the file of --onnxruntime"},
       {"export --model net.cnn.onnx --onnx net", "--onnx: 'net.cnn.onnx' is also the file of --model"},
       {"train --target mine --out . --start-from mine.tsm", "is also the file of --start-from"},
@@ -488,6 +567,17 @@ TEST(Evaluate, NamesTheFaultOfAModelImage) {
   EXPECT_NE(outcome.errors.find("is refused"), std::string::npos) << outcome.errors;
 }
 
+TEST(Evaluate, SaysForWhichTargetAModelImageIs) {
+  const Workplace here;
+  const Outcome outcome = here.run("evaluate --sequences 1 --model " + here.model("magellan"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find(
+                "it is for magellan, and the run is for near_shoemaker; give --target magellan, or the "
+                "model of near_shoemaker, which `tumblesight train --target near_shoemaker` makes"),
+            std::string::npos)
+      << outcome.errors;
+}
+
 TEST(Evaluate, WarnsWhenTheNetworkWasTrainedForAnotherSwath) {
   const Workplace here;
   const Outcome outcome = here.run("evaluate --sequences 1 --frames 1 --no-baseline --model " +
@@ -508,6 +598,68 @@ TEST(Quantize, SaysThatAnImageIsInFixedPointAlready) {
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.errors.find("model.tsm' is in fixed point; give the one in float32"), std::string::npos)
       << outcome.errors;
+}
+
+TEST(Quantize, SaysThatASurfaceNeedsAnImageInFixedPoint) {
+  const Workplace here;
+  const std::string image = TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.float32.tsm";
+  const Outcome outcome = here.run("quantize --surface-only --out x.tsm --model " + image);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("near_shoemaker.float32.tsm' is in float32; give the one in fixed point "
+                                "(<target>.tsm), as `tumblesight quantize --model " +
+                                image + "` makes it"),
+            std::string::npos)
+      << outcome.errors;
+}
+
+TEST(Quantize, RefusesAScanThatIsLongerThanThePeriod) {
+  const Workplace here;
+  SensorDescription own;
+  own.name = "own";
+  own.period_s = 1.0;
+  std::ofstream(here.path("own.json")) << to_json(own);
+  const std::string options = " --sensor own.json --effect scan_time=";
+  const std::string quantize = "quantize --out x.tsm --model " TUMBLESIGHT_SOURCE_DIR
+                               "/fsw/models/near_shoemaker.float32.tsm --sequences 10" +
+                               options;
+  const Outcome outcome = here.run(quantize + "1.5");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(
+      outcome.errors.find("--effect: scan_time=1.5 is longer than the period of sensor own, 1 s; give at "
+                          "most scan_time=1, or a --sensor with a longer period"),
+      std::string::npos)
+      << outcome.errors;
+  EXPECT_EQ(here.run(quantize + "1").exit_code, 0);
+  if (here.run("--help").output.find("train") == std::string::npos) GTEST_SKIP() << "built without training";
+  EXPECT_NE(
+      here.run("train --out out" + options + "1.5").errors.find("--effect: scan_time=1.5 is longer than"),
+      std::string::npos);
+  EXPECT_NE(here.run("train --out out --sensor own.json --effect-set none --effect-set scan_time=1.5")
+                .errors.find("--effect-set: scan_time=1.5 is longer than"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(here.path("out")));
+}
+
+TEST(Quantize, RefusesASurfaceWithTheOtherAxisUp) {
+  const Workplace here;
+  const TriangleMesh mesh = target_by_name("magellan");
+  std::ofstream file(here.path("z_up.obj"));
+  for (const Eigen::Vector3f& v : mesh.vertices_trf_m)
+    file << "v " << v.x() << " " << v.y() << " " << v.z() << "\n";
+  for (const auto& [a, b, c] : mesh.triangles) file << "f " << a + 1 << " " << b + 1 << " " << c + 1 << "\n";
+  file.close();
+  const std::string image = TUMBLESIGHT_SOURCE_DIR "/fsw/models/magellan.tsm";
+  const std::string surface = "quantize --surface-only --out x.tsm --mesh z_up.obj --model " + image;
+  const Outcome wrong = here.run(surface);
+  EXPECT_EQ(wrong.exit_code, 1);
+  for (const std::string& part :
+       {"mesh z_up.obj does not fit the surface in model image '" + image,
+        std::string("with the other axis up it fits: give --mesh-up z"), std::string("make the image anew")})
+    EXPECT_NE(wrong.errors.find(part), std::string::npos) << wrong.errors;
+  EXPECT_FALSE(std::filesystem::exists(here.path("x.tsm")));
+  const Outcome right = here.run(surface + " --mesh-up z");
+  EXPECT_EQ(right.exit_code, 0) << right.errors;
+  EXPECT_TRUE(std::filesystem::exists(here.path("x.tsm")));
 }
 
 std::string image_of_size(const Workplace& here, const gnc::DepthProjection& projection) {
@@ -535,6 +687,36 @@ TEST(Quantize, KeepsTheSensorOfAnImageWhoseSurfaceItReplaces) {
   const Outcome outcome = here.run(surface + "stale.tsm");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_EQ(content(here.path("stale.sensor.json")), to_json(scan));
+}
+
+// Verifies TS-TRN-020. Images that an earlier program made can fly again; their weights are the same bytes.
+TEST(Quantize, WithSurfaceOnlyRenewsAnImageOfAnEarlierFormatVersion) {
+  const Workplace here;
+  const std::string shipped = content(TUMBLESIGHT_SOURCE_DIR "/fsw/models/sacd_aquarius.tsm");
+  const std::vector<std::uint8_t> today(shipped.begin(), shipped.end());
+  constexpr std::size_t kWeights = gnc::kModelDataOffset<gnc::FixedPoint>;
+  for (const int version : {3, 4}) {
+    SCOPED_TRACE(version);
+    const std::vector<std::uint8_t> former = gnc::former_model_image(version, today);
+    const std::string old = here.put("old.tsm", former);
+    const Outcome outcome =
+        here.run("quantize --surface-only --mesh parametric --model " + old + " --out new.tsm");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const std::string text = words_of(outcome.output);
+    for (const char* part : {"2048 points of the surface, ", " mm apart; ", " triangles, ",
+                             " edges, at most ", " mm from the mesh"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+    const std::string renewed = content(here.path("new.tsm"));
+    ASSERT_EQ(renewed.size(), today.size());
+    EXPECT_EQ(renewed[4], 5) << "format version";
+    EXPECT_TRUE(std::equal(former.begin() + kWeights,
+                           former.begin() + kWeights + gnc::kWeightBytes<gnc::FixedPoint>,
+                           renewed.begin() + kWeights,
+                           [](std::uint8_t a, char b) { return a == static_cast<std::uint8_t>(b); }));
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(renewed.data());
+    EXPECT_NEAR(gnc::surface_mesh_of<gnc::FixedPoint>(bytes).triangles(),
+                gnc::surface_mesh_of<gnc::FixedPoint>(today.data()).triangles(), 200);
+  }
 }
 
 TEST(Quantize, RefusesASurfaceOfAnotherSizeWithBothSizes) {
@@ -690,6 +872,10 @@ TEST(Train, RefusesSetsOfEffectsThatAreWrong) {
            {"--effect-set none --effect-set fog=1", "--effect-set: effect 'fog' is unknown"},
            {"--effect-set noise=5,noise=4", "--effect-set: effect noise is given twice"},
            {"--effect-set none,noise=5", "--effect-set: effect 'none' is unknown"},
+           {"--effect-set noise=5:1", "--effect-set: effect noise: a range must be LOW:HIGH"},
+           {"--effect noise=1:5",
+            "--effect: effect noise: give one strength here; a range is possible after"},
+           {"--effect-set sphere=0.5:1", "wrong_object and sphere are for tests only"},
            {"--effect-set none --effect-set sphere=1", "wrong_object and sphere are for tests only"},
            {"--effect noise=5 --effect-set none", "--effect excludes --effect-set"}}) {
     const Outcome outcome = here.run("train --out out " + arguments);

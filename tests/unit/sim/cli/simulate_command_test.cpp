@@ -58,6 +58,18 @@ TEST(Simulate, RefusesAMissingFlightProgram) {
   EXPECT_NE(outcome.errors.find("'/no/flight' does not exist"), std::string::npos) << outcome.errors;
 }
 
+TEST(Simulate, RefusesAFlightProgramThatCannotBeStarted) {
+  const Workplace here;
+  const std::string model = here.model();
+  const Outcome outcome = here.run("simulate --flight model.tsm --report r.html --model " + model);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(outcome.output, "") << "it began";
+  EXPECT_NE(outcome.errors.find("flight program 'model.tsm' cannot be started: Permission denied; give an "
+                                "executable one with --flight"),
+            std::string::npos)
+      << outcome.errors;
+}
+
 TEST(Simulate, LeavesFiguresAndAReport) {
   const Workplace here;
   const Outcome outcome = here.run("simulate --sequences 2 --frames 3 --seed 4 --model " + here.model() +

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "gnc/rcnn/model_format.hpp"
+#include "tests/support/former_model_image.hpp"
 #include "tests/support/sim_models.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -55,18 +56,17 @@ TEST(ModelFile, IsNotWrittenIfThereCanBeNoFolderOrTheReaderWouldRefuseIt) {
                std::runtime_error);
 }
 
-// An image without the section, as format version 3 had it.
-std::vector<std::uint8_t> of_version_3(std::vector<std::uint8_t> image) {
-  using namespace gnc::model_format;
-  constexpr std::uint32_t kTensors = 31;
-  image.resize(image.size() - gnc::SurfaceModel::kBytes);
-  put_u16(image.data() + kOffsetVersion, 3);
-  put_u32(image.data() + kOffsetTotalSize, static_cast<std::uint32_t>(image.size()));
-  put_u32(image.data() + kOffsetSectionCount, kTensors);
-  std::fill_n(image.data() + gnc::kModelHeaderSize + kTensors * gnc::kModelSectionEntrySize,
-              gnc::kModelSectionEntrySize, std::uint8_t{0});
-  put_u32(image.data() + kOffsetHeaderCrc, header_crc(image.data(), kTensors));
-  return image;
+constexpr std::size_t kPointsBytes = gnc::SurfaceModel::kBytes, kMeshBytes = gnc::SurfaceMesh::kMaxBytes;
+
+// `triangles` times the same one, each with its vertices.
+SurfaceSections surface_of(std::uint32_t points, int triangles) {
+  SurfaceSections surface;
+  surface.points.assign(kPointsBytes, 7);
+  gnc::model_format::put_u32(surface.points.data(), points);
+  surface.mesh.resize(8 + 24 * static_cast<std::size_t>(triangles));
+  gnc::model_format::put_u16(surface.mesh.data(), static_cast<std::uint16_t>(3 * triangles));
+  gnc::model_format::put_u16(surface.mesh.data() + 2, static_cast<std::uint16_t>(triangles));
+  return surface;
 }
 
 void write_bytes(const std::string& path, const std::vector<std::uint8_t>& bytes) {
@@ -77,29 +77,94 @@ void write_bytes(const std::string& path, const std::vector<std::uint8_t>& bytes
 TEST(ModelFile, GetsASurfaceAndKeepsItsWeights) {
   const TemporaryFolder folder;
   const std::string from = folder.path("without.tsm"), path = folder.path("with.tsm");
-  const std::vector<std::uint8_t> old = of_version_3(gnc::random_model_image<gnc::FixedPoint>(3));
-  write_bytes(from, old);
-  std::vector<std::uint8_t> surface(gnc::SurfaceModel::kBytes, 7);
-  gnc::model_format::put_u32(surface.data(), 2000);
-  const std::uint32_t crc32 = write_with_surface(from, surface, path);
-  const std::vector<std::uint8_t> image = read_model_bytes(path);
-  EXPECT_EQ(read_fixed_point_header(path).crc32, crc32);
-  EXPECT_EQ(image.size(), old.size() + surface.size());
-  EXPECT_TRUE(std::equal(old.begin() + gnc::kModelDataOffset<gnc::FixedPoint>, old.end(),
-                         image.begin() + gnc::kModelDataOffset<gnc::FixedPoint>));
-  EXPECT_TRUE(std::equal(surface.begin(), surface.end(), image.end() - gnc::SurfaceModel::kBytes));
-  // Another surface in its place.
-  gnc::model_format::put_u32(surface.data(), 1000);
-  (void)write_with_surface(path, surface, from);
-  EXPECT_EQ(gnc::surface_of<gnc::FixedPoint>(read_model_bytes(from).data()).points(), 1000U);
+  const std::vector<std::uint8_t> today = gnc::random_model_image<gnc::FixedPoint>(3);
+  for (const int version : {3, 4, 5}) {
+    SCOPED_TRACE(version);
+    write_bytes(from, version == 5 ? today : gnc::former_model_image(version, today));
+    const SurfaceSections surface = surface_of(2000, 5);
+    const std::uint32_t crc32 = write_with_surface(from, surface, path);
+    const std::vector<std::uint8_t> image = read_model_bytes(path);
+    EXPECT_EQ(read_fixed_point_header(path).crc32, crc32);
+    EXPECT_EQ(image.size(), today.size());
+    EXPECT_EQ(image[4], 5) << "format version";
+    EXPECT_TRUE(std::equal(today.begin() + gnc::kModelDataOffset<gnc::FixedPoint>,
+                           today.end() - kMeshBytes - kPointsBytes,
+                           image.begin() + gnc::kModelDataOffset<gnc::FixedPoint>));
+    EXPECT_TRUE(
+        std::equal(surface.points.begin(), surface.points.end(), image.end() - kMeshBytes - kPointsBytes));
+    EXPECT_TRUE(std::equal(surface.mesh.begin(), surface.mesh.end(), image.end() - kMeshBytes));
+    EXPECT_EQ(gnc::surface_mesh_of<gnc::FixedPoint>(image.data()).triangles(), 5);
+  }
+  // Another surface in its place, with fewer triangles: nothing of the first one stays behind them.
+  (void)write_with_surface(path, surface_of(1000, 2), from);
+  const std::vector<std::uint8_t> image = read_model_bytes(from);
+  EXPECT_EQ(gnc::surface_of<gnc::FixedPoint>(image.data()).points(), 1000U);
+  EXPECT_EQ(gnc::surface_mesh_of<gnc::FixedPoint>(image.data()).triangles(), 2);
+  EXPECT_EQ(std::count(image.end() - kMeshBytes + 8 + 24 * 2, image.end(), 0),
+            static_cast<std::ptrdiff_t>(kMeshBytes - 8 - 24 * 2));
 }
 
-TEST(ModelFile, OfFormatVersion3IsReadWithoutASurface) {
+TEST(ModelFile, IsWrittenWithTheSurfaceInFixedPoint) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> from = gnc::random_model_image<gnc::FixedPoint>(3);
+  gnc::ModelHeader header;
+  const auto weights = std::make_unique<gnc::NetworkWeights<gnc::FixedPoint>>();
+  ASSERT_EQ(gnc::read_model_image<gnc::FixedPoint>(from.data(), from.size(), nullptr, header, *weights),
+            gnc::ModelStatus::kOk);
+  const std::string path = folder.path("m.tsm");
+  (void)write_model_file<gnc::FixedPoint>(path, header, *weights, surface_of(1500, 3));
+  const std::vector<std::uint8_t> image = read_model_bytes(path);
+  EXPECT_EQ(gnc::surface_of<gnc::FixedPoint>(image.data()).points(), 1500U);
+  EXPECT_EQ(gnc::surface_mesh_of<gnc::FixedPoint>(image.data()).triangles(), 3);
+  // What the reader would refuse, and sections that are none.
+  SurfaceSections broken = surface_of(1500, 3);
+  gnc::model_format::put_u16(broken.mesh.data(), 0);
+  gnc::model_format::put_u16(broken.mesh.data() + 30, 9);
+  EXPECT_THROW((void)write_model_file<gnc::FixedPoint>(path, header, *weights, broken), std::runtime_error);
+  broken = surface_of(1500, 3);
+  broken.mesh.resize(kMeshBytes + 1);
+  EXPECT_THROW((void)write_model_file<gnc::FixedPoint>(path, header, *weights, broken),
+               std::invalid_argument);
+  broken = surface_of(1500, 3);
+  broken.points.pop_back();
+  EXPECT_THROW((void)write_model_file<gnc::FixedPoint>(path, header, *weights, broken),
+               std::invalid_argument);
+  EXPECT_EQ(read_model_bytes(path), image) << "the file is as it was";
+}
+
+TEST(ModelFile, OfAnEarlierFormatVersionIsReadWithoutTheSectionsThatItLacks) {
   const TemporaryFolder folder;
   const std::string path = folder.path("old.tsm");
-  const std::vector<std::uint8_t> expected = gnc::random_model_image<gnc::FixedPoint>(3);
-  write_bytes(path, of_version_3(expected));
+  const std::vector<std::uint8_t> without = gnc::random_model_image<gnc::FixedPoint>(3);
+  write_bytes(path, gnc::former_model_image(3, without));
+  EXPECT_EQ(read_model_bytes(path), without);
+
+  const std::string with = folder.path("with.tsm");
+  write_bytes(with, without);
+  (void)write_with_surface(with, {surface_of(2000, 1).points, {}}, with);
+  const std::vector<std::uint8_t> expected = read_model_bytes(with);
+  ASSERT_NE(expected, without);
+  write_bytes(path, gnc::former_model_image(4, expected));
   EXPECT_EQ(read_model_bytes(path), expected);
+}
+
+TEST(ModelFile, OfAnEarlierFormatVersionIsStillCheckedForDamage) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path("old.tsm");
+  for (const int version : {3, 4}) {
+    SCOPED_TRACE(version);
+    const std::vector<std::uint8_t> old =
+        gnc::former_model_image(version, gnc::random_model_image<gnc::FixedPoint>(3));
+    std::vector<std::uint8_t> damaged = old;
+    damaged.back() ^= 1;  // a weight, or a byte of the points
+    write_bytes(path, damaged);
+    EXPECT_THROW((void)read_fixed_point_header(path), std::runtime_error);
+    damaged = old;
+    damaged[17] ^= 1;  // the target's name
+    write_bytes(path, damaged);
+    EXPECT_EQ(read_model_bytes(path), damaged) << "not repaired";
+    EXPECT_THROW((void)read_fixed_point_header(path), std::runtime_error);
+  }
 }
 
 TEST(ModelFile, InFloat32GetsNoSurface) {
@@ -107,9 +172,7 @@ TEST(ModelFile, InFloat32GetsNoSurface) {
   const std::string path = folder.path("float32.tsm");
   const auto model = random_float32_model(77);
   (void)write_model_file<gnc::Float32>(path, model->header, model->weights);
-  EXPECT_THROW((void)write_with_surface(path, std::vector<std::uint8_t>(gnc::SurfaceModel::kBytes),
-                                        folder.path("out.tsm")),
-               std::runtime_error);
+  EXPECT_THROW((void)write_with_surface(path, {}, folder.path("out.tsm")), std::runtime_error);
 }
 
 TEST(ModelFile, ThatIsMissingOrAFolderIsRefusedByName) {

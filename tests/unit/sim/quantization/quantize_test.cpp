@@ -48,6 +48,8 @@ TEST_F(QuantizeTest, WritesAnImageThatTheFlightEstimatorLoads) {
             gnc::ModelStatus::kOk);
   EXPECT_EQ(estimator->model().crc32, report->crc32);
   EXPECT_GT(gnc::surface_of<gnc::FixedPoint>(image.data()).points(), 1900U);
+  EXPECT_GT(estimator->mesh().triangles(), 2000);
+  EXPECT_EQ(estimator->mesh().error_mm(), gnc::SurfaceMesh(report->surface.mesh.data()).error_mm());
 }
 
 // Verifies TS-TRN-020.
@@ -76,7 +78,7 @@ TEST(QuantizeShipped, NearKeepsTheSignalOfEveryLayerBeforeTheHypotheses) {
 
 ScenarioSettings with_effect(const std::string& effect) {
   ScenarioSettings seen;
-  if (!effect.empty()) seen.effects = effects_from({effect});
+  if (!effect.empty()) seen.effects = effect_ranges_from({effect});
   return seen;
 }
 
@@ -104,21 +106,46 @@ TEST(Calibration, FramesHaveTheEffects) {
   EXPECT_EQ(calibration_depths("", 0), plain);
 }
 
+// Verifies TS-SIL-340. Sequences of one image see the whole range.
+TEST(Calibration, SequencesDrawTheStrengthsOfARange) {
+  const auto share_of_returns = [](std::uint64_t number) {
+    const auto filled = [&](const char* effect) {
+      const std::vector<std::uint16_t> depths = calibration_depths(effect, number);
+      return static_cast<double>(std::count_if(depths.begin(), depths.end(), [](auto d) { return d != 0; }));
+    };
+    return filled("dropout=0.01:0.95") / filled("");
+  };
+  std::vector<double> shares;
+  for (std::uint64_t number = 0; number < 8; ++number) shares.push_back(share_of_returns(number));
+  const auto [least, most] = std::minmax_element(shares.begin(), shares.end());
+  EXPECT_LT(*least, 0.6);
+  EXPECT_GT(*most, 0.75);
+}
+
+std::uint32_t crc32_with(const std::string& effect, const TemporaryFolder& folder) {
+  return quantize_to_file(
+             *random_float32_model(77), {make_near_shoemaker()}, 10, folder.path("near.tsm"),
+             [](std::uint64_t) {}, with_effect(effect))
+      .crc32;
+}
+
+// Verifies TS-SIL-300.
+TEST(Calibration, NoiseChangesTheImageAndIsNotedInIt) {
+  const TemporaryFolder folder;
+  const auto noise = [&] { return read_fixed_point_header(folder.path("near.tsm")).noise; };
+  const std::uint32_t plain = crc32_with("noise=1", folder);
+  EXPECT_EQ(noise(), (gnc::RangeNoise{100, 1000})) << "the paper's sensor";
+  EXPECT_NE(crc32_with("noise=3", folder), plain);
+  EXPECT_EQ(noise(), (gnc::RangeNoise{300, 3000})) << "by which the flight program judges depths";
+  EXPECT_NE(crc32_with("noise=1:3", folder), plain);
+  EXPECT_EQ(noise(), (gnc::RangeNoise{200, 2000})) << "the middle of the range";
+}
+
 // Verifies TS-SIL-300.
 TEST(Calibration, EffectsChangeTheImageAndOneThatHidesTheTargetIsRefused) {
   const TemporaryFolder folder;
-  const auto model = random_float32_model(77);
-  const auto crc32_with = [&](const std::string& effect) {
-    return quantize_to_file(
-               *model, {make_near_shoemaker()}, 10, folder.path("near.tsm"), [](std::uint64_t) {},
-               with_effect(effect))
-        .crc32;
-  };
-  const auto noise = [&] { return read_fixed_point_header(folder.path("near.tsm")).noise; };
+  const auto crc32_with = [&](const std::string& effect) { return sim::crc32_with(effect, folder); };
   const std::uint32_t plain = crc32_with("noise=1");
-  EXPECT_EQ(noise(), (gnc::RangeNoise{100, 1000})) << "the paper's sensor";
-  EXPECT_NE(crc32_with("noise=3"), plain);
-  EXPECT_EQ(noise(), (gnc::RangeNoise{300, 3000})) << "by which the flight program judges depths";
   EXPECT_NE(crc32_with("dropout=0.6"), plain);
   EXPECT_NE(crc32_with("panel_turn=30"), plain) << "the body";
   try {

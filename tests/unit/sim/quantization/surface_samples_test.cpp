@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "gnc/registration/surface_model.hpp"
+#include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -84,6 +85,19 @@ TEST(SurfaceSamples, AreTheSameEveryTime) {
 
 TEST(SurfaceSamples, NeedASurface) {
   EXPECT_THROW((void)surface_section(TriangleMesh{}, 1.0), std::invalid_argument);
+}
+
+TEST(SurfaceSamples, AreUnlikeThoseOfATurnedMeshOnly) {
+  const SurfaceModel plates(section_of_plates().data());
+  TriangleMesh standing = two_plates();
+  for (Eigen::Vector3f& v : standing.vertices_trf_m) v = {v.x(), -v.z(), v.y()};
+  const std::vector<std::uint8_t> section = surface_section(standing, kRadius_m);
+  const SurfaceModel turned(section.data());
+  EXPECT_EQ(unlike_share(plates, plates), 0.0);
+  EXPECT_GT(unlike_share(plates, turned), 0.7);
+  const Eigen::Matrix3d back = Eigen::AngleAxisd(-0.5 * kPi, Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_EQ(unlike_share(plates, turned, back), 0.0);
+  EXPECT_EQ(unlike_share(plates, SurfaceModel()), 0.0) << "nothing to compare with";
 }
 
 }  // namespace

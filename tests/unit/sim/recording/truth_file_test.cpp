@@ -34,6 +34,17 @@ RecordedTruth some_truth() {
   return truth;
 }
 
+TEST(TruthFile, OfLongOrBinaryContentIsRefusedInAShortLine) {
+  const std::string row = "\n1,2,1,0,0," + std::string(100'000, '7') + "x\n";
+  const std::string value = refusal_of(kHeader + row), column = refusal_of(std::string("\1\033[2J") + row);
+  const std::string name = refusal_of(kHeader + "," + std::string(100'000, 'y') + "\n");
+  EXPECT_NE(value.find("q_lrf_trf_z: '777"), std::string::npos) << value;
+  EXPECT_NE(value.find("777...' must be a number from -1.001"), std::string::npos) << value;
+  EXPECT_NE(name.find("yyy...'; docs/icd.md lists the columns"), std::string::npos) << name;
+  for (const std::string& refusal : {value, name}) EXPECT_LT(refusal.size(), 250U) << refusal;
+  EXPECT_NE(column.find("there is no column '??[2J'"), std::string::npos) << column;
+}
+
 // Verifies TS-SIL-130.
 TEST(TruthFile, IsReadAsItWasWritten) {
   RecordedTruth bare = some_truth();

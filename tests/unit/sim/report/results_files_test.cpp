@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -69,7 +70,7 @@ TEST(ResultsJson, HasARowForEachSubjectAndCondition) {
   const auto& row = json["rows"][1];
   std::string keys;
   for (const auto& [key, value] : row.items()) keys += key + " ";
-  EXPECT_EQ(keys.substr(0, 50), "target mesh condition sequences rcnn cnn baseline ");
+  EXPECT_EQ(keys.substr(0, 66), "target mesh condition sequences rcnn cnn pose pose_first baseline ");
   EXPECT_EQ(row["condition"], "occluded");
   EXPECT_EQ(row["sequences"], 40);
   EXPECT_EQ(row["seed"], 7);
@@ -99,6 +100,55 @@ TEST(ResultsCsv, HasALinePerEstimatorWithAsManyFieldsAsTheHeader) {
   EXPECT_EQ(fields[7], "baseline");
   EXPECT_EQ(fields[8], "3");
   EXPECT_EQ(fields[9], "31.0000");
+}
+
+TEST(Results, HaveThePeersWhereTheyWereRun) {
+  Results results = sample_results();
+  EXPECT_FALSE(results_json(results)["rows"][1].contains("peers"));
+  results.subjects[0].cells[1].peers.push_back({"other", "Other library", summarise({30.0, 50.0}), 812.0});
+  const nlohmann::ordered_json row = results_json(results)["rows"][1];
+  EXPECT_EQ(row["peers"]["other"]["mean_deg"], 40.0);
+  EXPECT_EQ(row["peers"]["other"]["sequences"], 2);
+  EXPECT_EQ(row["peers"]["other"]["ms_per_frame"], 812.0);
+  EXPECT_FALSE(results_json(results)["rows"][0].contains("peers"));
+  EXPECT_NE(results_csv(results).find(",other,2,40.0000,"), std::string::npos);
+  EXPECT_NE(results_page(results).find("Other library"), std::string::npos);
+}
+
+TEST(ResultsJson, HasThePosesWhereThereAreAny) {
+  Results results = sample_results();
+  results.subjects[0].cells[1].pose = sample_poses();
+  results.subjects[0].cells[1].pose_first = sample_poses();
+  results.subjects[0].cells[1].pose_first.inside_95 = std::nan("");
+  const nlohmann::ordered_json rows = results_json(results)["rows"];
+  EXPECT_TRUE(rows[0]["pose"].is_null());
+  EXPECT_TRUE(rows[0]["pose_first"].is_null());
+  EXPECT_EQ(rows[1]["pose"].dump(),
+            R"({"mean_deg":1.5,"mean_within_20_deg":0.25,"median_deg":0.125,"within_20deg":0.975,)"
+            R"("across_m":0.0031,"along_m":0.0042,"rate_deg_s":0.0153,"velocity_m_s":0.0064,)"
+            R"("verified":0.9,"verified_wrong":0.05,"inside_95":0.925})");
+  EXPECT_TRUE(rows[1]["pose_first"]["inside_95"].is_null()) << "no pose is verified";
+}
+
+TEST(ResultsCsv, HasThePosesInTheLinesOfTheRcnn) {
+  Results results = sample_results();
+  EXPECT_EQ(results_csv(results).find("pose_"), std::string::npos);
+  results.subjects[0].cells[1].pose = sample_poses();
+  results.subjects[0].cells[1].pose_first = sample_poses();
+  results.subjects[0].cells[1].pose_first.inside_95 = std::nan("");
+  const std::vector<std::string> lines = lines_of(results_csv(results));
+  const std::vector<std::string> header = fields_of(lines[0]);
+  const auto field = [&](std::size_t line, const std::string& name) {
+    const auto place = std::find(header.begin(), header.end(), name) - header.begin();
+    return fields_of(lines.at(line)).at(static_cast<std::size_t>(place));
+  };
+  EXPECT_EQ(field(4, "estimator") + field(4, "condition"), "rcnnoccluded");
+  EXPECT_EQ(field(4, "pose_mean_deg"), "1.5000");
+  EXPECT_EQ(field(4, "pose_velocity_m_s"), "0.00640");
+  EXPECT_EQ(field(4, "pose_first_within_20deg"), "0.97500");
+  EXPECT_EQ(field(4, "pose_first_inside_95"), "");
+  EXPECT_EQ(field(1, "pose_mean_deg"), "") << "no pose under this condition";
+  EXPECT_EQ(field(5, "pose_mean_deg"), "") << "the CNN";
 }
 
 // Verifies TS-SIL-200.
@@ -211,6 +261,23 @@ TEST(ResultsMarkdown, ShowsDisturbedRunsWithTheirBars) {
   EXPECT_NE(text.find("| nominal | lost-frames 9 | 1.40"), std::string::npos) << "no bar";
   EXPECT_EQ(results_json(results)["rows"].size(), 5U);
   EXPECT_EQ(lines_of(results_csv(results)).size(), 1U + 3U + 3U + 2U + 4U);
+}
+
+TEST(ResultsDocuments, ShowThePosesWhereThereAreAny) {
+  Results results = sample_results();
+  EXPECT_EQ(results_markdown(results).find("Registered pose"), std::string::npos);
+  EXPECT_EQ(results_page(results).find("Registered pose"), std::string::npos);
+  results.subjects[1].cells[0].pose = sample_poses();
+  results.subjects[1].cells[0].pose_first = sample_poses();
+  const std::string markdown = results_markdown(results);
+  EXPECT_NE(
+      markdown.find("| offset | 0.250° | 97.5 % | 0.250° | 0.125° | 97.5 % | 3.1 mm | 4.2 mm | 0.015°/s | "
+                    "6.4 mm/s | 90.0 % | 5.0 % | 92.5 % |"),
+      std::string::npos)
+      << markdown;
+  const std::string page = results_page(results);
+  EXPECT_NE(page.find("<h2>Registered pose</h2>\n<h3>mine, parametric mesh"), std::string::npos);
+  EXPECT_NE(page.find("6.4 mm/s"), std::string::npos);
 }
 
 TEST(ResultsMarkdown, HoldsTablesWithAsManyCellsAsTheirHeader) {

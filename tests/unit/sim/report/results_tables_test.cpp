@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -104,6 +105,37 @@ TEST(CellTable, FitsATerminalOfAHundredColumns) {
   int read = 0;
   for (std::string line; std::getline(lines, line); ++read) EXPECT_LE(columns_of(line), 100U) << line;
   EXPECT_GE(read, 8);
+}
+
+// Verifies TS-SIL-180.
+TEST(PeersTable, HasTemplateMatchingAndEachPeerWithItsTime) {
+  CellResult cell;
+  cell.baseline = summarise({1.0, 3.0});
+  cell.baseline_ms = 104.0;
+  EXPECT_TRUE(peers_table(cell).rows.empty());
+  cell.peers.push_back({"other", "Other library", summarise({30.0, 50.0}), 812.3});
+  const DataTable table = peers_table(cell);
+  ASSERT_EQ(table.rows.size(), 2U);
+  for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
+  EXPECT_EQ(table.header.back(), "ms per frame");
+  EXPECT_EQ(table.rows[0].back().text, "104");
+  EXPECT_EQ(table.rows[1].front().text, "Other library");
+  EXPECT_EQ(table.rows[1].back().text, "812");
+}
+
+TEST(PosesTable, HasALinePerConditionWithAPose) {
+  Results results = sample_results();
+  EXPECT_TRUE(poses_table(results.subjects[0]).rows.empty());
+  results.subjects[0].cells[1].pose = sample_poses();
+  results.subjects[0].cells[1].pose.inside_95 = std::nan("");
+  const DataTable table = poses_table(results.subjects[0]);
+  ASSERT_EQ(table.rows.size(), 1U);
+  ASSERT_EQ(table.rows[0].size(), table.header.size());
+  EXPECT_EQ(table.rows[0].front().text, "occluded");
+  EXPECT_EQ(table.header[1], "first frame, mean within 20°");
+  EXPECT_EQ(table.rows[0][1].text, "-") << "no first frame has a pose";
+  EXPECT_EQ(table.header.back(), "inside 95 %");
+  EXPECT_EQ(table.rows[0].back().text, "-");
 }
 
 // Verifies TS-SIL-200.

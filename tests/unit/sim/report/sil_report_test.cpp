@@ -7,9 +7,12 @@
 
 #include "sim/evaluation/curves.hpp"
 #include "sim/sil/fault_names.hpp"
+#include "tests/unit/sim/report/markup_checks.hpp"
 
 namespace tumblesight::sim {
 namespace {
+
+constexpr double kSwath_m = 8.0;
 
 // Two sequences of two frames; every attitude 0.1 rad off, the single frame's 0.5 rad.
 SilRunResult run() {
@@ -37,6 +40,24 @@ SilRunSetup setup() {
   made.condition = "nominal";
   made.sequences = 2;
   made.frames = 2;
+  made.projection.swath_mm = 8000;
+  return made;
+}
+
+// The same with verified poses in the second frames: 0.01 rad, 5 mm across and 10 mm along off.
+SilRunResult run_with_poses() {
+  SilRunResult made = run();
+  for (StepResult& step : made.steps) {
+    step.truth.offset_swaths = {0.25, 0.0};
+    if (step.frame_index == 0) continue;
+    hal::AttitudeReport& report = step.attitude;
+    report.pose_doubts = 0;
+    report.pose_q_lrf_trf = {1073728403, 5368687, 0, 0};
+    report.pose_origin_lrf_um = {2'003'000, 50'010'000, -4'000};
+    report.pose_rate_lrf_urad_s = {0, 0, 17'453};
+    report.pose_velocity_lrf_um_s = {0, 3'000, 0};
+    report.pose_sigma.fill(10'000);
+  }
   return made;
 }
 
@@ -45,8 +66,8 @@ TEST(RunJson, HasExactlyTheAgreedKeys) {
   std::string keys;
   for (const auto& [key, value] : json.items()) keys += key + " ";
   EXPECT_EQ(keys,
-            "target condition sequences disturbances effect rcnn cnn inference_us flight_heap_allocations "
-            "steps_missed frames_superseded trace_crc32 faults ");
+            "target condition sequences disturbances effect rcnn cnn pose pose_first inference_us "
+            "flight_heap_allocations steps_missed frames_superseded trace_crc32 faults ");
   EXPECT_NEAR(json["rcnn"]["mean_deg"].get<double>(), 5.7296, 1e-3);
   EXPECT_NEAR(json["cnn"]["mean_deg"].get<double>(), 28.648, 1e-3);
   EXPECT_EQ(json["rcnn"]["within_20deg"], 1.0);
@@ -119,7 +140,7 @@ TEST(RunFaults, DoNotNameAFrameThatOwesNoAttitude) {
   disturbed.steps[2].truth.frozen_for = 1;
   disturbed.steps[2].attitude.validity = hal::Validity::kNoFrame;
   EXPECT_TRUE(run_faults(disturbed).empty());
-  EXPECT_EQ(errors_by_frame(frame_results(disturbed), 2)[0].rcnn.count, 0U);
+  EXPECT_EQ(errors_by_frame(frame_results(disturbed, kSwath_m), 2)[0].rcnn.count, 0U);
 }
 
 TEST(StandingFaults, AreCountedByStepAndSequence) {
@@ -158,7 +179,51 @@ TEST(RunFaults, NameHeapAllocations) {
 TEST(FrameResults, LeaveOutStepsWithoutAnAnswer) {
   SilRunResult some = run();
   some.steps[2].answered = false;
-  EXPECT_EQ(frame_results(some).size(), 3U);
+  EXPECT_EQ(frame_results(some, kSwath_m).size(), 3U);
+}
+
+TEST(FrameResults, HoldThePosesOfTheReports) {
+  const std::vector<FrameResult> results = frame_results(run_with_poses(), kSwath_m);
+  ASSERT_EQ(results.size(), 4U);
+  EXPECT_FALSE(results[0].pose.known);
+  const PoseErrors& pose = results[1].pose;
+  EXPECT_TRUE(pose.known);
+  EXPECT_TRUE(pose.verified);
+  EXPECT_NEAR(pose.turn_deg, 0.01 * 57.29578, 1e-4);
+  EXPECT_NEAR(pose.across_m, 0.005, 1e-6);
+  EXPECT_NEAR(pose.along_m, 0.010, 1e-6);
+  EXPECT_NEAR(pose.rate_deg_s, 1.0, 1e-3);
+  EXPECT_NEAR(pose.velocity_m_s, 0.003, 1e-6);
+  EXPECT_TRUE(pose.inside_95) << "10 mrad and 10 mm, one standard deviation each";
+}
+
+TEST(RunJson, HoldsThePoses) {
+  const nlohmann::ordered_json json = run_json(setup(), run_with_poses());
+  EXPECT_TRUE(json["pose_first"].is_null());
+  EXPECT_NEAR(json["pose"]["across_m"].get<double>(), 0.005, 1e-6);
+  EXPECT_EQ(json["pose"]["verified"], 1.0);
+  EXPECT_TRUE(run_json(setup(), run())["pose"].is_null());
+}
+
+TEST(RunPage, ShowsThePosesWhereThereAreAny) {
+  EXPECT_TRUE(run_poses_table(run_report(setup(), run())).rows.empty());
+  EXPECT_EQ(run_page(run_report(setup(), run())).find("registered pose"), std::string::npos);
+  const RunReport report = run_report(setup(), run_with_poses());
+  const DataTable table = run_poses_table(report);
+  ASSERT_EQ(table.rows.size(), 1U);
+  EXPECT_EQ(table.rows[0][1].text, "-") << "the first frames have none";
+  const std::string page = run_page(report);
+  for (const char* part :
+       {"registered pose", "0.573°", "5.0 mm", "10.0 mm", "1.000°/s", "3.0 mm/s",
+        "Attitude of the registered pose", "Position of the registered pose", "Verified poses"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  const std::vector<std::string> svgs = svgs_of(page);
+  EXPECT_EQ(svgs.size(), svgs_of(run_page(run_report(setup(), run()))).size() + 3);
+  for (const std::string& svg : svgs) {
+    EXPECT_EQ(xml_fault(svg), "");
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+  }
 }
 
 TEST(RunReport, CountsWarningsAndErrorsByEvent) {

@@ -50,6 +50,15 @@ TEST(Table, RefusesSurplusCells) {
   EXPECT_THROW(table.row({"1", "2"}), std::invalid_argument);
 }
 
+TEST(Text, IsShortenedBetweenCharactersAndWithoutControls) {
+  EXPECT_EQ(shortened("abc", 3), "abc");
+  EXPECT_EQ(shortened("abcd", 3), "abc...");
+  EXPECT_EQ(shortened("ab°d", 3), "ab...") << "the sign has two bytes";
+  EXPECT_EQ(shortened("ab°d", 4), "ab°...");
+  EXPECT_EQ(shortened("\033[2J\n"), "?[2J?");
+  EXPECT_EQ(shortened("\xff\xb0 \xc2 \xe2\x82"), "?? ? ??") << "not UTF-8";
+}
+
 TEST(Progress, ShowsRateAndTimeLeft) {
   EXPECT_EQ(progress_line("simulating", "frames", 50, 200, 10.0, 0),
             "  simulating   25 %  50/200 frames  5.0/s  30 s left");

@@ -11,6 +11,7 @@
 
 #include "sim/training/export_model.hpp"
 #include "sim/training/sequence_features.hpp"
+#include "sim/world/math/random.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
@@ -104,7 +105,7 @@ TEST(FrameStream, FramesHaveTheEffects) {
 TEST(FrameStream, SetsOfEffectsTakeTurnsAfterTheConditions) {
   const TriangleMesh mesh = make_near_shoemaker();
   const std::vector<Condition> conditions{Condition::kNominal, Condition::kOccluded};
-  const auto with = [&](const std::vector<Effects>& sets) {
+  const auto with = [&](const std::vector<EffectRanges>& sets) {
     return render_frames(make_training_targets({mesh}, conditions, Eigen::Matrix3d::Identity(), sets), 5, 0,
                          12)
         .images;
@@ -118,6 +119,37 @@ TEST(FrameStream, SetsOfEffectsTakeTurnsAfterTheConditions) {
     EXPECT_EQ(torch::equal(mixed[i], none[i]), set == 0) << i;
     EXPECT_EQ(torch::equal(mixed[i], all_thin[i]), set == 1) << i;
     EXPECT_EQ(torch::equal(mixed[i], all_turned[i]), set == 2) << i;
+  }
+}
+
+// Verifies TS-SIL-340. A frame with a drawn strength is the one with that strength given.
+TEST(FrameStream, FramesDrawTheStrengthsOfARange) {
+  const auto targets_with = [](const EffectRanges& effects) {
+    return make_training_targets({make_near_shoemaker()}, {Condition::kNominal}, Eigen::Matrix3d::Identity(),
+                                 {effects});
+  };
+  const TrainingTargets ranged = targets_with(effect_ranges_from({"dropout=0.1:0.9"}));
+  const FrameBatch frames = render_frames(ranged, 5, 0, 4);
+  for (int i = 0; i < 4; ++i) {
+    const ScenarioSettings scenario =
+        scenario_of(ranged, Condition::kNominal, ranged.effect_sets.front().effects, 1);
+    const Effects fixed = make_sequence(scenario, mix(5, 0), static_cast<std::uint64_t>(i)).effects;
+    EXPECT_TRUE(torch::equal(frames.images[i], render_frames(targets_with(fixed), 5, 0, 4).images[i])) << i;
+  }
+}
+
+// Verifies TS-SIL-340.
+TEST(FrameStream, WithRangesIsTheSameWithAnyNumberOfWorkersAndFromAnyStart) {
+  const TrainingTargets targets =
+      make_training_targets({make_near_shoemaker()}, {Condition::kNominal}, Eigen::Matrix3d::Identity(),
+                            {effect_ranges_from({"dropout=0.1:0.9", "panel_turn=-60:60"})});
+  FrameStream one(targets, 5, 4, 0, 1), three(targets, 5, 4, 0, 3), later(targets, 5, 4, 3, 2);
+  for (int i = 0; i < 6; ++i) {
+    const torch::Tensor images = one.next().images;
+    EXPECT_TRUE(torch::equal(images, three.next().images)) << i;
+    if (i >= 3) {
+      EXPECT_TRUE(torch::equal(images, later.next().images)) << i;
+    }
   }
 }
 
@@ -136,7 +168,7 @@ TEST(SequenceFeatures, SetsOfEffectsTakeTurnsAfterConditionsAndLawsOfTheRate) {
   const auto weights = std::make_unique<gnc::NetworkWeights<gnc::Float32>>();
   torch::manual_seed(5);
   export_weights(Cnn(), Recurrent(), *weights);
-  const auto with = [&](const std::vector<Effects>& sets) {
+  const auto with = [&](const std::vector<EffectRanges>& sets) {
     const TrainingTargets targets = make_training_targets({make_near_shoemaker()}, {Condition::kNominal},
                                                           Eigen::Matrix3d::Identity(), sets);
     SequenceFeatures supply(targets, *weights, 5, 8, 2);
@@ -147,6 +179,29 @@ TEST(SequenceFeatures, SetsOfEffectsTakeTurnsAfterConditionsAndLawsOfTheRate) {
   for (int i = 0; i < 8; ++i) {
     EXPECT_EQ(torch::equal(mixed[i], none[i]), i / 2 % 2 == 0) << i;
     EXPECT_EQ(torch::equal(mixed[i], all_thin[i]), i / 2 % 2 == 1) << i;
+  }
+}
+
+// Verifies TS-SIL-340. Twelve frames with one strength.
+TEST(SequenceFeatures, ASequenceKeepsTheStrengthThatItDraws) {
+  const auto weights = std::make_unique<gnc::NetworkWeights<gnc::Float32>>();
+  torch::manual_seed(5);
+  export_weights(Cnn(), Recurrent(), *weights);
+  const auto targets_with = [](const EffectRanges& effects) {
+    return make_training_targets({make_near_shoemaker()}, {Condition::kNominal}, Eigen::Matrix3d::Identity(),
+                                 {effects});
+  };
+  const auto features = [&](const TrainingTargets& targets) {
+    SequenceFeatures supply(targets, *weights, 5, 2, 2);
+    return supply.first(2).hypotheses.features;
+  };
+  const TrainingTargets ranged = targets_with(effect_ranges_from({"dropout=0.1:0.6"}));
+  const torch::Tensor drawn = features(ranged);
+  const ScenarioSettings scenario =
+      scenario_of(ranged, Condition::kNominal, ranged.effect_sets.front().effects, kTrainingFrames);
+  for (int i = 0; i < 2; ++i) {
+    const Effects fixed = make_sequence(scenario, mix(5, 0), static_cast<std::uint64_t>(i)).effects;
+    EXPECT_TRUE(torch::equal(drawn[i], features(targets_with(fixed))[i])) << i;
   }
 }
 
@@ -181,6 +236,8 @@ TEST(FrameStream, ListsOfConditionsHaveDifferentHashes) {
   EXPECT_NE(conditions_hash(nominal, {effects_from({"noise=5"})}), conditions_hash(nominal));
   EXPECT_NE(conditions_hash(nominal, {effects_from({"noise=5"})}),
             conditions_hash(nominal, {effects_from({"noise=4"})}));
+  EXPECT_NE(conditions_hash(nominal, {effect_ranges_from({"noise=4:5"})}),
+            conditions_hash(nominal, {effect_ranges_from({"noise=3:5"})}));
   const Effects noisy = effects_from({"noise=5"});
   EXPECT_EQ(conditions_hash(nominal, {{}}), conditions_hash(nominal)) << "one set without effects is none";
   EXPECT_NE(conditions_hash(nominal, {{}, noisy}), conditions_hash(nominal, {noisy}));

@@ -12,6 +12,7 @@
 
 #include "sim/model/model_file.hpp"
 #include "sim/training/export_model.hpp"
+#include "sim/training/stage.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
@@ -53,6 +54,14 @@ class TrainTest : public testing::Test {
   TrainingSettings settings;
   std::atomic<bool> never{false};
 };
+
+TEST(TrainingProgress, ShowsFiguresOnceThereAreSome) {
+  EXPECT_EQ(progress_note({}), "");
+  TrainingPoint point;
+  point.loss = 0.25;
+  point.mean_deg = 12.5;
+  EXPECT_EQ(progress_note(point), "loss 0.2500  validation 12.50 deg");
+}
 
 TEST_F(TrainTest, AStoppedCnnTrainingResumesToTheSameNetwork) {
   Cnn through = fresh_cnn();

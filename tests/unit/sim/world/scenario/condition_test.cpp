@@ -32,7 +32,7 @@ ScenarioSettings settings_of(Condition condition) {
 TEST(Condition, NamesRoundTripAndUnknownOnesListAllTheKnown) {
   const std::vector<std::string> names = condition_names();
   EXPECT_EQ(names, (std::vector<std::string>{"nominal", "degraded", "occluded", "tumbling", "stress",
-                                             "offset", "outliers"}));
+                                             "offset", "outliers", "approach"}));
   for (const std::string& name : names) EXPECT_EQ(to_string(condition_from(name)), name);
   try {
     condition_from("foggy");
@@ -79,6 +79,14 @@ TEST(Condition, ChangesWhatItsRowSaysAndNeitherAttitudeNorRangeNorRateNorNoise) 
       ASSERT_EQ(other.frames.size(), nominal.frames.size());
       const bool free = row.rotation == RotationLaw::kTorqueFree;
       for (std::size_t k = 0; k < nominal.frames.size(); ++k) {
+        if (row.approaches) {
+          if (k == 0) {
+            EXPECT_EQ(other.frames[0].q_lrf_trf.coeffs(), nominal.frames[0].q_lrf_trf.coeffs());
+          }
+          EXPECT_NEAR(other.frames[k].rate_lrf_rad_s.norm(), nominal.frames[k].rate_lrf_rad_s.norm(), 1e-12);
+          continue;  // approach_test.cpp
+        }
+        EXPECT_EQ(other.frames[k].velocity_lrf_m_s.norm(), 0.0) << name;
         EXPECT_EQ(other.frames[k].range_m, nominal.frames[k].range_m) << name;
         const bool hidden = other.frames[k].occluder.shape != OccluderShape::kNone;
         EXPECT_EQ(hidden, row.occluded) << name;

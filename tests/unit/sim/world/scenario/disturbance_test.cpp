@@ -194,13 +194,31 @@ TEST(ChaserTurn, IsAtItsRateAboutOneAxis) {
   }
 }
 
+TEST(ChaserTurn, MovesTheTargetOnACircleAroundTheChaser) {
+  ScenarioSettings settings;
+  settings.condition = Condition::kOffset;
+  settings.swath_m = 7.5;
+  settings.disturbances.chaser_rate_deg_s = 1.0;
+  settings.disturbances.period_s = 0.1;
+  const std::vector<FrameTruth> frames = make_sequence(settings, kSeed, 2).frames;
+  const auto position_m = [&](const FrameTruth& frame) -> Eigen::Vector3d {
+    return frame.q_inertial_lrf *
+           Eigen::Vector3d(7.5 * frame.offset_swaths.x(), frame.range_m, 7.5 * frame.offset_swaths.y());
+  };
+  for (std::size_t k = 1; k + 1 < frames.size(); ++k) {
+    const Eigen::Vector3d velocity_m_s = (position_m(frames[k + 1]) - position_m(frames[k - 1])) / 0.2;
+    EXPECT_LT((velocity_m_s - frames[k].q_inertial_lrf * frames[k].velocity_lrf_m_s).norm(), 1e-5);
+    EXPECT_GT(velocity_m_s.norm(), 0.01);
+  }
+}
+
 // A chaser that turns exactly with a spinning target sees it at rest.
 TEST(ChaserTurn, WithTheTargetMakesItStandStill) {
   const Eigen::Quaterniond q0 = Eigen::Quaterniond(0.5, 0.1, -0.7, 0.3).normalized();
   std::vector<FrameTruth> frames(5, FrameTruth{q0, Eigen::Vector3d::Zero(), 40.0});
   const std::vector<double> times_s{0.0, 2.7, 5.4, 8.1, 10.8};
   const double rate_rad_s = 0.1;
-  turn_chaser(rate_rad_s, Random(3), times_s, frames);
+  turn_chaser(rate_rad_s, Random(3), times_s, 8.0, frames);
   // The rate of the chaser, from its attitudes.
   const Eigen::AngleAxisd turn(frames[1].q_inertial_lrf * frames[0].q_inertial_lrf.conjugate());
   const Eigen::Vector3d rate_inertial = turn.axis() * (turn.angle() / 2.7);
@@ -208,7 +226,7 @@ TEST(ChaserTurn, WithTheTargetMakesItStandStill) {
   for (std::size_t k = 0; k < frames.size(); ++k) {
     frames[k] = FrameTruth{spin(q0, rate_start, times_s[k]), rate_start, 40.0};
   }
-  turn_chaser(rate_rad_s, Random(3), times_s, frames);
+  turn_chaser(rate_rad_s, Random(3), times_s, 8.0, frames);
   for (const FrameTruth& frame : frames) {
     EXPECT_LT(frame.q_lrf_trf.angularDistance(q0), 1e-9);
     EXPECT_LT((frame.rate_lrf_rad_s - rate_start).norm(), 1e-12);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "sim/world/math/angles.hpp"
@@ -146,6 +147,30 @@ TEST(Sequence, FixedValuesReplaceTheDrawnOnesAndChangeNoOtherDraw) {
   }
 }
 
+// Verifies TS-SIL-340.
+TEST(Sequence, DrawsStrengthsWithinTheirRangesAndChangesNoOtherDraw) {
+  ScenarioSettings settings;
+  const Sequence plain = make_sequence(settings, 12, 1);
+  settings.effects = effect_ranges_from({"noise=1:5", "dropout=0.3"});
+  std::set<double> noises;
+  for (std::uint64_t index = 0; index < 100; ++index) {
+    const Effects effects = make_sequence(settings, 12, index).effects;
+    EXPECT_GT(effects.noise, 1.0);
+    EXPECT_LT(effects.noise, 5.0);
+    EXPECT_EQ(effects.dropout, 0.3);
+    noises.insert(effects.noise);
+  }
+  EXPECT_EQ(noises.size(), 100U);
+  const Sequence with_range = make_sequence(settings, 12, 1);
+  EXPECT_EQ(with_range.effects.noise, make_sequence(settings, 12, 1).effects.noise);
+  EXPECT_EQ(with_range.noise_seed, plain.noise_seed);
+  for (std::size_t k = 0; k < plain.frames.size(); ++k) {
+    EXPECT_EQ(with_range.frames[k].q_lrf_trf.coeffs(), plain.frames[k].q_lrf_trf.coeffs());
+    EXPECT_EQ(with_range.frames[k].range_m, plain.frames[k].range_m);
+    EXPECT_EQ(with_range.frames[k].scene_seed, plain.frames[k].scene_seed);
+  }
+}
+
 TEST(Sequence, AtRateZeroTheTargetStandsStillUnderEveryLawAndCondition) {
   for (const std::string& name : condition_names()) {
     for (const RateLaw law : {RateLaw::kComponents, RateLaw::kNorm}) {
@@ -156,7 +181,10 @@ TEST(Sequence, AtRateZeroTheTargetStandsStillUnderEveryLawAndCondition) {
       const Sequence sequence = make_sequence(settings, 13, 2);
       for (const FrameTruth& frame : sequence.frames) {
         EXPECT_EQ(frame.rate_lrf_rad_s.norm(), 0.0) << name;
-        EXPECT_LT((frame.q_lrf_trf.coeffs() - sequence.frames[0].q_lrf_trf.coeffs()).norm(), 1e-12) << name;
+        const FrameTruth& first = sequence.frames[0];
+        const Eigen::Quaterniond q_inertial_trf = frame.q_inertial_lrf * frame.q_lrf_trf;
+        EXPECT_LT((q_inertial_trf.coeffs() - (first.q_inertial_lrf * first.q_lrf_trf).coeffs()).norm(), 1e-12)
+            << name;
       }
     }
   }

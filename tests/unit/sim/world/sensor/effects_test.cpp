@@ -1,9 +1,12 @@
-// Verifies TS-SIL-300, TS-SIL-310. The table of effects, and that a run without effects is what it was.
+// Verifies TS-SIL-300, TS-SIL-310, TS-SIL-340. The table of effects, and that a run without effects is what
+// it was.
 #include "sim/world/sensor/effects.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -18,7 +21,7 @@ namespace {
 
 std::string refusal(const std::vector<std::string>& texts) {
   try {
-    (void)effects_from(texts);
+    (void)effect_ranges_from(texts);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -66,13 +69,68 @@ TEST(Effects, RefuseWrongNamesAndStrengthsWithTheChoices) {
   EXPECT_TRUE(holds(refusal({"noise=5", "noise=4"}), "given twice"));
 }
 
+TEST(Effects, AreReadAsRangesInTheSameForm) {
+  const EffectRanges ranges = effect_ranges_from({"noise=1:5", "panel_turn=-30:30", "rays=64"});
+  EXPECT_EQ(ranges.low.noise, 1.0);
+  EXPECT_EQ(ranges.high.noise, 5.0);
+  EXPECT_EQ(ranges.low.panel_turn, -30.0);
+  EXPECT_EQ(ranges.high.panel_turn, 30.0);
+  EXPECT_EQ(ranges.low.rays, ranges.high.rays);
+  EXPECT_EQ(to_string(ranges), "panel_turn=-30:30,rays=64,noise=1:5");
+  EXPECT_EQ(to_string(effect_ranges_from({"part_missing=0:3", "range_bias=-2:0"})),
+            "part_missing=0:3,range_bias=-2:0");
+}
+
+TEST(Effects, RefuseWrongRangesWithTheLimits) {
+  for (const char* text : {"noise=5:1", "noise=2:2", "noise=1:21", "noise=0:5", "noise=1:", "noise=:5",
+                           "noise=1:2:3", "noise=1:x", "noise=:"}) {
+    EXPECT_TRUE(holds(refusal({text}), "LOW:HIGH, two ascending numbers from 0.01 to 20 times, not '"))
+        << text;
+  }
+  EXPECT_TRUE(holds(refusal({"rays=16.5:32"}), "two ascending whole numbers from 16 to 128 a side, not"));
+  EXPECT_TRUE(holds(refusal({"cosine=0:30"}), "numbers from 0.1 to 20 or 0 (off), not '0:30'"));
+  EXPECT_TRUE(holds(refusal({"noise=1:5", "noise=4"}), "given twice"));
+}
+
+TEST(Effects, TakeNoRangeWhereOneStrengthIsNeeded) {
+  try {
+    (void)effects_from({"rays=64", "noise=1:5"});
+    FAIL() << "took a range for a strength";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_TRUE(holds(error.what(), "effect noise: give one strength here; a range is possible"))
+        << error.what();
+  }
+}
+
+TEST(Effects, AreDrawnUniformlyAndEachByItself) {
+  constexpr int kDraws = 20000;
+  const EffectRanges ranges = effect_ranges_from({"noise=1:5", "part_missing=0:3", "cosine=2"});
+  const EffectRanges noise_alone = effect_ranges_from({"noise=1:5"});
+  double sum = 0.0, squares = 0.0;
+  std::array<int, 4> parts{};
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    const Effects effects = drawn(ranges, seed);
+    EXPECT_TRUE(effects.noise > 1.0 && effects.noise < 5.0) << effects.noise;
+    EXPECT_EQ(effects.noise, drawn(noise_alone, seed).noise);
+    EXPECT_EQ(effects.cosine, 2.0);
+    sum += effects.noise;
+    squares += effects.noise * effects.noise;
+    ++parts.at(static_cast<std::size_t>(effects.part_missing));
+  }
+  const double mean = sum / kDraws;
+  EXPECT_NEAR(mean, 3.0, 0.04);
+  EXPECT_NEAR(squares / kDraws - mean * mean, 16.0 / 12.0, 0.04);
+  for (const int count : parts) EXPECT_NEAR(count, kDraws / 4, 300);
+}
+
 class Exposure : public ::testing::Test {
  protected:
   std::unique_ptr<gnc::RangeImage> rendered(Condition condition, const Effects& effects,
-                                            std::uint32_t frame = 1) const {
+                                            std::uint32_t frame = 1, bool noise = true) const {
     ScenarioSettings settings{condition, 3};
+    settings.sensor.noise = noise;
     settings.effects = effects;
-    const FlashLidar lidar(observed_bodies(effects, "near_shoemaker", mesh_));
+    const FlashLidar lidar(observed_bodies(effects, "mine", mesh_));  // its panels are free to turn
     auto image = std::make_unique<gnc::RangeImage>();
     FrameRenderer(lidar, swath_m_).render(make_sequence(settings, 4, 2), frame, *image);
     return image;
@@ -129,6 +187,21 @@ TEST_F(Exposure, OfEveryEffectIsAFrameOfTheSensorUnderEveryCondition) {
       EXPECT_GE(image->fov_urad, gnc::kMinFov_urad) << row.name;
       EXPECT_EQ(image->ranges, rendered(condition, effects)->ranges) << row.name << " is not repeatable";
     }
+  }
+}
+
+// Without noise, of which lost returns and outliers change the draws.
+TEST_F(Exposure, OfAnEffectThatVanishesAt0IsTheOneWithoutIt) {
+  const auto plain = rendered(Condition::kNominal, {}, 1, false);
+  for (const EffectRow& row : effect_table()) {
+    if (!vanishes_at_0(row) || must_be_whole(row)) continue;
+    Effects effects;
+    effects.*row.strength = 1e-9;
+    const auto image = rendered(Condition::kNominal, effects, 1, false);
+    int changed = 0;
+    for (std::size_t i = 0; i < plain->ranges.size(); ++i)
+      changed += std::abs(plain->ranges[i] - image->ranges[i]) > 1;
+    EXPECT_LE(changed, 2) << row.name;
   }
 }
 

@@ -216,6 +216,18 @@ TEST(FlashLidar, AnOccluderStandsInTheFrameWithTheSensorsNoiseAndTheOtherRaysKee
   EXPECT_NEAR(std::sqrt(squares / blocked), 0.16, 0.02);  // 0.1 m + 1 % of 6 m
 }
 
+TEST(FlashLidar, NamesTheTriangleThatARayMeets) {
+  const RangeGrid grid = FlashLidar(square(1.0)).true_surfaces(truth(30.0), 64, 3.0);
+  int returns = 0;
+  for (int i = 0; i < 64 * 64; ++i) {
+    const double right = grid.slope(i % 64), up = -grid.slope(i / 64);
+    if (!std::isfinite(grid.range_m[i]) || std::abs(right - up) < 1e-6) continue;
+    EXPECT_EQ(grid.surfaces[i].triangle, right > up ? 0U : 1U) << i;
+    ++returns;
+  }
+  EXPECT_GT(returns, 1000);
+}
+
 TEST(FlashLidar, ATargetOffTheBoresightAppearsWhereItIs) {
   const FlashLidar lidar(square(1.0));
   const double swath = 6.0;

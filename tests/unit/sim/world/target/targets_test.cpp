@@ -60,6 +60,16 @@ TEST(Targets, HaveADisplayNameAndOthersKeepTheirKey) {
   EXPECT_EQ(find_target("magellan")->symmetry_about_z, 2);
 }
 
+TEST(Targets, HaveJointsThatReachTheMeshsOwnPosition) {
+  for (const std::string& name : target_names()) {
+    EXPECT_LE(joint_limits(name).lowest_deg, 0.0) << name;
+    EXPECT_GE(joint_limits(name).highest_deg, 0.0) << name;
+  }
+  EXPECT_EQ(joint_limits("near_shoemaker").highest_deg, 0.0) << "fixed";
+  EXPECT_EQ(joint_limits("magellan").highest_deg, 180.0);
+  EXPECT_EQ(joint_limits("mine").lowest_deg, -180.0);
+}
+
 // Symmetric, positive definite, and no principal moment exceeds the sum of the others.
 TEST(Targets, InertiasAreThoseOfRigidBodies) {
   for (const std::string& name : target_names()) {

@@ -1,0 +1,287 @@
+#include "gnc/registration/outline_fit.hpp"
+
+#include "gnc/numerics/division.hpp"
+#include "gnc/numerics/functions.hpp"
+#include "gnc/numerics/select.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr int kMaxAcross = 12;  // rays to either side of the outline
+constexpr int kMaxPlaces = 6144;
+constexpr int kMostPerRow = 4;  // places that share a row of the equations
+constexpr std::uint32_t kLeastFill_q16 = 32'768, kWholeFill_q16 = 64'880;  // 1/2 and 99 %
+constexpr std::int32_t kBehind_um = 250'000;  // an edge this far behind another surface is hidden
+
+// 1 / sqrt(1 + t^2) in Q14, by t in 64ths, from 0 to 1.
+constexpr std::array<std::int32_t, 66> kCosine_q14 = [] {
+  std::array<std::int32_t, 66> cosine{};
+  for (std::int64_t i = 0; i < 66; ++i) {
+    const std::int64_t square_q40 = (std::int64_t{1} << 52) / (4096 + i * i);
+    std::int64_t root_q20 = 0;
+    for (std::int64_t bit = 1 << 20; bit > 0; bit /= 2)
+      if ((root_q20 + bit) * (root_q20 + bit) <= square_q40) root_q20 += bit;
+    cosine[static_cast<std::size_t>(i)] = static_cast<std::int32_t>((root_q20 + 32) >> 6);
+  }
+  return cosine;
+}();
+// t_q14: 0 to 1.
+std::int32_t cosine_q14(std::int32_t t_q14) {
+  const auto at = static_cast<std::size_t>(t_q14 >> 8);
+  return kCosine_q14[at] + (((kCosine_q14[at + 1] - kCosine_q14[at]) * (t_q14 & 0xFF)) >> 8);
+}
+
+struct Rays {
+  std::int32_t derivative = 0;   // Q12 / sigma
+  std::int32_t information = 0;  // Q12 / sigma^2
+};
+
+// An edge that may be on the outline, in the direction in which it is followed: from row to row if it is
+// steep, else from column to column. `line`: that row or column; `across`: the other coordinate.
+struct OutlineEdge {
+  bool is_steep;
+  const ScreenPoint &from, &to;  // `line` grows
+  int from_vertex, to_vertex;
+  int outward;  // 1 or -1: the direction of `across` that leads out of the target
+
+  std::int32_t line(const ScreenPoint& point) const { return is_steep ? point.row : point.column; }
+  std::int32_t across(const ScreenPoint& point) const { return is_steep ? point.column : point.row; }
+};
+
+// The rays of one line on both sides of the outline.
+class Across {
+ public:
+  Across(const FrameView& view, const RenderedSurface& surface, const OutlineTable& table,
+         std::int32_t sigma_q8)
+      : view_(view),
+        surface_(surface),
+        table_(table),
+        reach_((3 * sigma_q8) / (256 / kScreenRay) + kScreenRay),
+        steps_per_distance_q16_((OutlineTable::kPerSigma << 24) / (sigma_q8 * kScreenRay)),
+        behind_(static_cast<std::int32_t>(
+            divide(std::int64_t{kBehind_um} << view.shift, view.reference_depth_um))) {}
+
+  // The whole look, in three parts: the rays next to the outline must agree with it, then outwards and
+  // inwards until the rendering changes. `place`: where the outline crosses the line, in 1/64 of a ray;
+  // `cosine_q14`: of its angle to the perpendicular of the line.
+  bool look_across(const OutlineEdge& edge, int line, std::int32_t place, std::int32_t nearness,
+                   std::int32_t cosine_q14, Rays& rays) const {
+    const Line at{edge.is_steep, line, view_.rays};
+    const int outer = edge.outward > 0 ? (place + kScreenRay / 2 - 1) >> kScreenBits
+                                       : (place - kScreenRay / 2) >> kScreenBits;
+    const int inner = outer - edge.outward;
+    if (inner < 0 || inner >= view_.rays) return false;
+    const std::int32_t from_place = (outer * kScreenRay + kScreenRay / 2 - place) * edge.outward;
+    const std::int32_t outer_distance = (from_place * cosine_q14) >> 14;
+    const std::int32_t step = (kScreenRay * cosine_q14) >> 14;
+    const std::int32_t inner_distance = outer_distance - step;
+    const bool is_inner_filled = is_filled(at, inner);
+    const bool is_contradicted = (!is_inner_filled && inner_distance < -2) ||
+                                 (outer_distance > 2 && is_filled(at, outer)) ||
+                                 is_filled(at, outer + edge.outward);
+    if (is_contradicted) return false;
+    if (is_inner_filled && surface_.nearness[at.ray(inner)] > nearness + behind_) return false;
+    rays = {};
+    std::int32_t distance = outer_distance;
+    for (int k = 0; k < kMaxAcross && distance <= reach_; ++k, distance += step) {
+      const int ray = outer + k * edge.outward;
+      if (ray < 0 || ray >= view_.rays || (k > 1 && is_filled(at, ray))) break;
+      if (!add(at, ray, distance, rays)) return false;
+    }
+    distance = inner_distance;
+    for (int k = 0; k < kMaxAcross && distance >= -reach_; ++k, distance -= step) {
+      const int ray = inner - k * edge.outward;
+      if (ray < 0 || ray >= view_.rays || (k > 0 && !is_filled(at, ray))) break;
+      if (!add(at, ray, distance, rays)) return false;
+    }
+    return true;
+  }
+
+ private:
+  struct Line {
+    bool is_row;
+    int number, rays;
+    std::size_t ray(int across) const {
+      return static_cast<std::size_t>(is_row ? number * rays + across : across * rays + number);
+    }
+  };
+  bool is_filled(const Line& line, int across) const {
+    return line.is_row ? surface_.is_filled(line.number, across) : surface_.is_filled(across, line.number);
+  }
+  // A ray at `distance` outside the outline, in 1/64 of a ray. False: it is hidden.
+  bool add(const Line& line, int across, std::int32_t distance, Rays& rays) const {
+    const int row = line.is_row ? line.number : across, column = line.is_row ? across : line.number;
+    if (view_.is_hidden(row, column)) return false;
+    constexpr int kMiddle = OutlineTable::kSteps / 2;
+    const int step = kMiddle + ((distance * steps_per_distance_q16_ + (1 << 15)) >> 16);
+    const auto at =
+        static_cast<std::size_t>(min_small(max_small(step, 0), std::int32_t{OutlineTable::kSteps - 1}));
+    rays.derivative += view_.is_returned(row, column) ? table_.if_hit[at] : table_.if_missed[at];
+    rays.information += table_.information[at];
+    return true;
+  }
+
+  const FrameView& view_;
+  const RenderedSurface& surface_;
+  const OutlineTable& table_;
+  std::int32_t reach_;  // in 1/64 of a ray
+  std::int32_t steps_per_distance_q16_;
+  std::int32_t behind_;
+};
+
+// A point on an edge.
+struct Place {
+  std::int32_t column, row;          // in 1/64 of a ray
+  std::int32_t out_right, out_down;  // the direction outwards, Q14
+  std::int32_t nearness;
+};
+
+// The row of the equations for a move of the outline outwards, per radius at the reference depth, Q14.
+class OutlineRows {
+ public:
+  OutlineRows(const FrameView& view, const Pose& pose)
+      : turn_(pose.r_lrf_trf), middle_(view.rays * (kScreenRay / 2)), shift_(view.shift) {
+    slope_q30_ = static_cast<std::int32_t>(divide(view.tan_half_fov_q30, middle_));
+  }
+  std::array<std::int32_t, kUnknowns> row_of(const Place& place, const SurfaceMesh::Vertex& vertex) const {
+    const auto slope_q14 = [&](std::int32_t from_middle) {
+      return static_cast<std::int32_t>((std::int64_t{from_middle} * slope_q30_) >> 16);
+    };
+    const std::int32_t right = slope_q14(place.column - middle_), up = slope_q14(middle_ - place.row);
+    const std::int32_t out_right = place.out_right, out_up = -place.out_down;
+    const std::int32_t nearer =
+        (1 << 14) + ((place.nearness * (1 << 14)) >> shift_);  // reference depth / depth
+    std::array<std::int32_t, 3> along{out_right, -((right * out_right + up * out_up) >> 14), out_up};
+    for (std::int32_t& element : along) element = (element * nearer) >> 14;
+    const Arm arm = turn_(vertex);
+    const auto cross = [&](std::size_t i, std::size_t k) {
+      return static_cast<std::int32_t>((std::int64_t{arm[i]} * along[k] - std::int64_t{arm[k]} * along[i]) >>
+                                       15);
+    };
+    return {cross(1, 2), cross(2, 0), cross(0, 1), along[0], along[1], along[2]};
+  }
+
+ private:
+  Turn turn_;
+  std::int32_t middle_;
+  int shift_;
+  std::int32_t slope_q30_;  // per 1/64 of a ray
+};
+
+// Adds the places where an edge crosses the middles of the lines, of `every` line one; returns the number of
+// lines.
+int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const OutlineRows& equation_rows,
+             const Across& across, int rays, OutlineFit& fit) {
+  // Between the first end and before the second one: a line through both of two edges is of one of them.
+  int first = max_small(0, (edge.line(edge.from) + kScreenRay / 2 - 1) >> kScreenBits);
+  const int end = min_small(rays, (edge.line(edge.to) + kScreenRay / 2 - 1) >> kScreenBits);
+  first += first & (every - 1);
+  if (first >= end) return 0;
+  const std::int32_t length = edge.line(edge.to) - edge.line(edge.from);
+  const std::int32_t aside = edge.across(edge.to) - edge.across(edge.from);
+  const std::int32_t per_line_q28 = (1 << 28) / length;  // of 1/64 of a ray
+  const std::int32_t slope_q14 = (aside * per_line_q28) >> 14;
+  const std::int32_t cosine = cosine_q14(min_small(abs(slope_q14), 1 << 14));
+  const std::int32_t out_across = edge.outward * cosine;
+  const std::int32_t out_along = -((out_across * slope_q14) >> 14);
+  // Length of the outline per line: 1 / cosine = cosine (1 + slope^2).
+  const std::int32_t length_q8 =
+      (every * ((cosine * ((1 << 14) + ((slope_q14 * slope_q14) >> 14))) >> 14)) >> 6;
+
+  Rays sum;
+  std::int32_t parts_q15 = 0, places = 0;
+  const auto add_row = [&] {
+    constexpr std::array<std::int32_t, kMostPerRow + 1> kInverse_q14{0, 16384, 8192, 5461, 4096};
+    const std::int32_t part_q14 = ((parts_q15 >> 1) * kInverse_q14[static_cast<std::size_t>(places)]) >> 14;
+    const auto between = [part_q14](std::int32_t a, std::int32_t b) {
+      return a + (((b - a) * part_q14 + (1 << 13)) >> 14);
+    };
+    const SurfaceMesh::Vertex from = mesh.vertex(edge.from_vertex), to = mesh.vertex(edge.to_vertex);
+    SurfaceMesh::Vertex vertex{};
+    for (std::size_t k = 0; k < 3; ++k) vertex[k] = static_cast<std::int16_t>(between(from[k], to[k]));
+    const Place place{between(edge.from.column, edge.to.column), between(edge.from.row, edge.to.row),
+                      edge.is_steep ? out_across : out_along, edge.is_steep ? out_along : out_across,
+                      between(edge.from.nearness, edge.to.nearness)};
+    // Every ray of the lines counts once, so that the slope of the outline does not matter.
+    fit.equations.add(equation_rows.row_of(place, vertex), every * sum.information, every * sum.derivative);
+    fit.length_q8 += places * length_q8;
+    sum = {};
+    parts_q15 = places = 0;
+  };
+  for (int line = first; line < end; line += every) {
+    const std::int32_t past = line * kScreenRay + kScreenRay / 2 - edge.line(edge.from);
+    const std::int32_t part_q15 = (past * (per_line_q28 >> 6)) >> 7;
+    const std::int32_t place = edge.across(edge.from) + ((past * slope_q14 + (1 << 13)) >> 14);
+    const std::int32_t nearness =
+        edge.from.nearness + ((((edge.to.nearness - edge.from.nearness) >> 1) * part_q15) >> 14);
+    Rays rays_across;
+    if (!across.look_across(edge, line, place, nearness, cosine, rays_across)) continue;
+    sum.derivative += rays_across.derivative;
+    sum.information += rays_across.information;
+    parts_q15 += part_q15;
+    if (++places == kMostPerRow) add_row();
+  }
+  if (places > 0) add_row();
+  return (end - first + every - 1) / every;
+}
+
+}  // namespace
+
+void make_outline_table(std::uint32_t fill_q16, OutlineTable& table) {
+  const Fixed fill =
+      Fixed::from_raw(std::int64_t{clamp<std::uint32_t>(fill_q16, kLeastFill_q16, kWholeFill_q16)} << 8);
+  for (int i = 0; i < OutlineTable::kSteps; ++i) {
+    const int step = i - OutlineTable::kSteps / 2;
+    const Fixed outside =
+        sigmoid(Fixed::from_raw(std::int64_t{step} * ((1 << 24) / OutlineTable::kPerSigma)));
+    const Fixed inside = Fixed(1.0) - outside;
+    const Fixed missed = Fixed(1.0) - fill * inside;
+    const Fixed derivative = fill * inside * outside / missed;
+    const auto q12 = [](Fixed value) { return static_cast<std::int16_t>((value.raw() + 2048) >> 12); };
+    const auto at = static_cast<std::size_t>(i);
+    table.if_hit[at] = q12(outside);
+    table.if_missed[at] = q12(-derivative);
+    table.information[at] = q12(outside * derivative);
+  }
+}
+
+void fit_outline(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose,
+                 const RenderedSurface& surface, const OutlineTable& table, std::int32_t sigma_q8,
+                 OutlineFit& fit, int every) {
+  fit = {};
+  const Across across(view, surface, table, sigma_q8);
+  const OutlineRows rows(view, pose);
+  const ScreenVertices& vertices = *surface.vertices;
+  int places = 0;
+  for (int i = 0; i < mesh.edges() && places < kMaxPlaces; ++i) {
+    const SurfaceMesh::Edge edge = mesh.edge(i);
+    // The image was sound when it was loaded, but its memory may have been damaged since.
+    if (max_small(max_small(edge.first, edge.second), max_small(edge.opposite[0], edge.opposite[1])) >=
+        mesh.vertices())
+      continue;
+    const ScreenPoint &first = vertices[edge.first], &second = vertices[edge.second];
+    const ScreenPoint &left = vertices[edge.opposite[0]], &right = vertices[edge.opposite[1]];
+    if (!surface.is_complete &&
+        (first.is_outside() || second.is_outside() || left.is_outside() || right.is_outside()))
+      continue;
+    // Both triangles on the same side of the edge: it parts the target from what is behind it.
+    const std::int32_t left_side = area(first, second, left), right_side = area(first, second, right);
+    if (left_side == 0 || right_side == 0 || (left_side ^ right_side) < 0) continue;
+    const bool on_right = left_side > 0;
+    const std::int32_t right_by = second.column - first.column, down_by = second.row - first.row;
+    const bool is_steep = abs(down_by) >= abs(right_by);
+    const bool is_forward = (is_steep ? down_by : right_by) >= 0;
+    // Triangles on the right of the way down are on its left on the screen, and the other way round for the
+    // way to the right, where they are below.
+    const bool is_outward_positive = on_right == is_forward ? is_steep : !is_steep;
+    const OutlineEdge found{is_steep,
+                            is_forward ? first : second,
+                            is_forward ? second : first,
+                            is_forward ? edge.first : edge.second,
+                            is_forward ? edge.second : edge.first,
+                            is_outward_positive ? 1 : -1};
+    places += add_edge(mesh, found, every, rows, across, view.rays, fit);
+  }
+}
+
+}  // namespace tumblesight::gnc

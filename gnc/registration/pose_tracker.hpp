@@ -1,0 +1,109 @@
+// PoseTracker: from the attitudes that the network offers to a pose with rates, covariance and a verdict.
+//
+// - First frames: the network's attitude and its second one are registered shortly. The one that explains
+//   the frame better is registered fully.
+// - Later frames: from two poses on, the motion predicts the next pose, which is registered. If the network
+//   offers another attitude, that is registered shortly as well.
+// - Advantage: by how much the pose of the track explains the frames better than the alternatives, summed
+//   over the frames. If it is lost, the track starts anew at the alternative.
+// - Motion: fitted to the last ten poses (pose_fit.hpp).
+// - Verdict: the frame must agree with the pose in ranges and outline, the track must have an advantage, and
+//   the poses must agree with one motion.
+//
+// Specification: docs/numerics.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "gnc/registration/pose_covariance.hpp"
+#include "gnc/registration/pose_evidence.hpp"
+#include "gnc/registration/pose_fit.hpp"
+#include "gnc/registration/refinement.hpp"
+
+namespace tumblesight::gnc {
+
+// Bit mask: why a pose is not verified. The values are part of the interface (docs/icd.md).
+using PoseDoubts = std::uint32_t;
+inline constexpr PoseDoubts kPoseUnknown = 1;     // no surface in the image, or the target too near
+inline constexpr PoseDoubts kPoseCoasts = 2;      // predicted: the frame could not be registered
+inline constexpr PoseDoubts kPoseRanges = 4;      // the ranges do not lie on the surface
+inline constexpr PoseDoubts kPoseOutline = 8;     // returns beside the target, or too many missing
+inline constexpr PoseDoubts kPoseAmbiguous = 16;  // an alternative explains the frames about as well
+inline constexpr PoseDoubts kPoseMotion = 32;     // fewer than three poses, or they contradict one motion
+inline constexpr PoseDoubts kPoseUncertain = 64;  // the attitude is known to a degree at best
+inline constexpr PoseDoubts kPoseNetwork = 128;   // the network's attitude is another one
+
+// A motion in the integers of the interface.
+struct PoseState {
+  QuaternionQ30 q_lrf_trf = kIdentityQ30;
+  std::array<std::int32_t, 3> origin_lrf_um{};      // of the TRF
+  std::array<std::int32_t, 3> rate_lrf_urad_s{};    // of the target relative to the inertial frame
+  std::array<std::int32_t, 3> velocity_lrf_um_s{};  // of the TRF's origin relative to the sensor
+};
+PoseState pose_state(const PoseMotion& motion);
+
+struct PoseEstimate {
+  PoseDoubts doubts = kPoseUnknown;  // none: verified
+  PoseState state;                   // at the exposure, in the LRF of the exposure
+  PoseCovariance covariance;
+  PoseEvidence evidence;             // of this frame at its registered pose
+  std::int32_t advantage_q8 = 0;     // over the best alternative, from all frames of the track [nats]
+  std::int64_t disagreement_q8 = 0;  // PoseFitResult
+  int poses = 0;                     // that the motion was fitted to
+
+  bool is_known() const { return (doubts & kPoseUnknown) == 0; }
+  bool is_verified() const { return doubts == 0; }
+};
+
+// What is the same for all frames.
+struct PoseTarget {
+  SurfaceMesh mesh;
+  std::uint32_t radius_mm;
+  RangeNoise noise;
+};
+// One frame, and what the network says of it.
+struct PoseFrame {
+  const RangeImage& image;
+  const RayMask& mask;              // its returns of the target
+  std::int64_t elapsed_ns;          // since the last frame of the track
+  Matrix3<Fixed> r_now_last;        // turn of the LRF since then: v_lrf now = r_now_last v_lrf last
+  Motion<Fixed> network;            // its attitude and rate
+  Matrix3<Fixed> second_r_lrf_trf;  // its second attitude
+  std::uint32_t second_odds_ppm;    // against the first; 0: there is none
+  std::array<std::int32_t, 3> centroid_lrf_mm;  // of the returns
+  const MotionLaws<Fixed>& laws;
+  int network_law;  // that the network's track follows
+};
+
+struct PoseTrackerState {
+  PoseHistory history;
+  PoseMotion motion;            // at the last frame; valid if there is a pose
+  int law = kSpinLaw;           // under which the poses agree best, so far
+  int challenger = kTumbleLaw;  // the law that is compared with it next
+  std::int32_t advantage_q8 = 0;
+};
+
+// A pose with what speaks for it.
+struct PoseCandidate {
+  Refinement refinement;
+  PoseEvidence evidence;
+};
+// Working memory. The caller holds it, so that nothing large is on the stack; it need not be initialized.
+// The vertices of the drawn surface lie apart.
+struct PoseScratch {
+  FrameView view;
+  RefinementScratch refinement;
+  PoseCandidate best, other;
+  PoseFitResult fit, other_fit;
+};
+
+// The motion of the track `elapsed_ns` after the last frame, in an LRF that has turned: `r_now_last`.
+PoseMotion later_pose(const PoseTrackerState& state, const MotionLaws<Fixed>& laws, std::int64_t elapsed_ns,
+                      const Matrix3<Fixed>& r_now_last);
+
+// Advances the track to a frame. `state` of a new track: PoseTrackerState().
+void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+                ScreenVertices& vertices, PoseTrackerState& state, PoseEstimate& estimate);
+
+}  // namespace tumblesight::gnc

@@ -1,0 +1,106 @@
+#include "gnc/registration/refinement.hpp"
+
+#include "gnc/attitude/motion.hpp"
+#include "gnc/numerics/division.hpp"
+#include "gnc/numerics/functions.hpp"
+#include "gnc/numerics/select.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr std::int32_t kLeastSigma_q8 = 16;  // of fit_outline
+
+// Both fits together, with 12 fraction bits.
+NormalEquations together(const FrameView& view, const OutlineFit& outline, const RangeFit& ranges,
+                         std::int32_t sigma_q8) {
+  // (rays per radius / sigma)^2 = scale 2^shift / 2^12. Limits so that nothing overflows where a target
+  // covers thousands of rays.
+  const std::int64_t per_sigma_q8 = divide(std::int64_t{view.rays_per_radius_q8} << 8, sigma_q8);
+  const std::int64_t square_q12 = (per_sigma_q8 * per_sigma_q8) >> 4;
+  const int shift = max(0, highest_bit(static_cast<std::uint64_t>(square_q12)) - 26);
+  constexpr std::int64_t kMostInformation = std::int64_t{1} << 35, kMostGradient = std::int64_t{1} << 42;
+  NormalEquations sum;
+  for (std::size_t i = 0; i < sum.information.size(); ++i) {
+    const std::int64_t outlines =
+        clamp(outline.equations.information[i] >> 8, -kMostInformation, kMostInformation);
+    sum.information[i] =
+        ((outlines * (square_q12 >> shift)) >> (20 - shift)) + (ranges.equations.information[i] >> 4);
+  }
+  for (std::size_t i = 0; i < sum.gradient.size(); ++i) {
+    const std::int64_t outlines = clamp(outline.equations.gradient[i] >> 6, -kMostGradient, kMostGradient);
+    sum.gradient[i] = ((outlines * (per_sigma_q8 >> 4)) >> 12) + (ranges.equations.gradient[i] >> 8);
+  }
+  return sum;
+}
+
+// What is known of the pose before the frame: it is `start`, within sigma.
+void add_prior(const RefinementSettings& settings, const Motion6& since_start, NormalEquations& equations) {
+  for (int i = 0; i < kUnknowns; ++i) {
+    const std::int64_t sigma_q24 = i < 3 ? settings.turn_sigma_q24 : settings.move_sigma_q24;
+    const std::int64_t inverse_q12 = divide(std::int64_t{1} << 36, sigma_q24);
+    const std::int64_t weight_q12 = (inverse_q12 * inverse_q12) >> 12;
+    const auto at = static_cast<std::size_t>(i);
+    equations.information[element(i, i)] += weight_q12;
+    equations.gradient[at] -= (weight_q12 * since_start[at]) >> 24;
+  }
+}
+
+void move(const FrameView& view, const Motion6& step, Pose& pose) {
+  const Vector3<Fixed> turn{Fixed::from_raw(step[0]), Fixed::from_raw(step[1]), Fixed::from_raw(step[2])};
+  pose.r_lrf_trf = product<Fixed>(rotation_from_vector<Fixed>(turn), pose.r_lrf_trf);
+  const RotationColumns<Fixed> columns =
+      orthonormalize<Fixed>(Vector3<Fixed>(pose.r_lrf_trf.col(0)), Vector3<Fixed>(pose.r_lrf_trf.col(1)));
+  pose.r_lrf_trf = rotation_from_columns<Fixed>(columns);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t um = (std::int64_t{step[i + 3]} * view.target_radius_um + (1 << 23)) >> 24;
+    pose.origin_lrf_um[i] += static_cast<std::int32_t>(um);
+  }
+}
+
+// Turn and move of a step are limited to a tenth of a radian and of a radius, in their directions.
+void limit(Motion6& step) {
+  constexpr std::int32_t kLargest = (1 << 24) / 10;
+  for (std::size_t first = 0; first < step.size(); first += 3) {
+    std::uint64_t square = 0;
+    for (std::size_t i = first; i < first + 3; ++i)
+      square += static_cast<std::uint64_t>(std::int64_t{step[i]} * step[i]);
+    const std::int64_t length = max<std::int64_t>(kLargest, integer_sqrt(square));
+    for (std::size_t i = first; i < first + 3; ++i)
+      step[i] = static_cast<std::int32_t>(divide(std::int64_t{step[i]} * kLargest, length));
+  }
+}
+
+}  // namespace
+
+void refine(const SurfaceMesh& mesh, const FrameView& view, const Pose& start,
+            const RefinementSettings& settings, RefinementScratch& scratch, Refinement& result) {
+  Pose& pose = result.pose;
+  pose = start;
+  Motion6 since_start{};
+  const std::int32_t last_sigma_q8 = max(settings.last_sigma_q8, kLeastSigma_q8);
+  std::int32_t sigma_q8 = max(settings.first_sigma_q8, last_sigma_q8);
+  const int steps = clamp(settings.steps, 1, RefinementSettings::kMaxSteps);
+  result.is_complete = true;
+  for (int i = 0; i <= steps; ++i) {
+    render(mesh, view, pose, scratch.surface);
+    if (i == 0) {
+      result.fill_q16 = fill_share(view, scratch.surface);
+      make_outline_table(result.fill_q16, scratch.table);
+    }
+    result.is_complete = result.is_complete && scratch.surface.is_complete;
+    const int every = i < settings.thinned_steps && i < steps ? 2 : 1;
+    fit_ranges(view, pose, scratch.surface, scratch.ranges, every);
+    if (i == steps) break;
+    fit_outline(mesh, view, pose, scratch.surface, scratch.table, sigma_q8, scratch.outline, every);
+    result.equations = together(view, scratch.outline, scratch.ranges, sigma_q8);
+    NormalEquations damped = result.equations;
+    add_prior(settings, since_start, damped);
+    Motion6 step = solve(damped);
+    limit(step);
+    move(view, step, pose);
+    for (std::size_t k = 0; k < step.size(); ++k) since_start[k] += step[k];
+    sigma_q8 = max(last_sigma_q8, sigma_q8 / 2);
+  }
+}
+
+}  // namespace tumblesight::gnc

@@ -1,0 +1,82 @@
+// SurfaceRenderer: the target's surface as the sensor would see it at a pose, on the screen of a frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "gnc/attitude/rotation.hpp"
+#include "gnc/registration/frame_view.hpp"
+#include "gnc/registration/surface_mesh.hpp"
+
+namespace tumblesight::gnc {
+
+// Where the target is and how it is turned, as the sensor sees it.
+struct Pose {
+  Matrix3<Fixed> r_lrf_trf = Matrix3<Fixed>::Identity();  // v_lrf = r_lrf_trf v_trf
+  std::array<std::int32_t, 3> origin_lrf_um{};            // origin of the TRF
+};
+
+// A vertex on the screen of a FrameView.
+struct ScreenPoint {
+  std::int16_t column, row;  // in 1/64 of a ray
+  std::int16_t nearness;
+  bool is_outside() const { return column == kOutside; }
+  static constexpr std::int16_t kOutside = -32768;
+};
+
+// Twice the area of the triangle (a, b, p), positive if p is on the right of the way from a to b on a screen
+// whose rows run downward.
+inline std::int32_t area(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& p) {
+  return (b.column - a.column) * (p.row - a.row) - (b.row - a.row) * (p.column - a.column);
+}
+
+using ScreenVertices = std::array<ScreenPoint, SurfaceMesh::kMaxVertices>;
+
+struct RenderedSurface {
+  static constexpr std::int16_t kEmpty = -32768;
+  int rays = 0;
+  // False: a part was not drawn, since it is more than 128 rays from the middle of the screen or behind the
+  // sensor, or since the work was more than the limit of a rendering.
+  bool is_complete = true;
+  ScreenVertices* vertices = nullptr;  // of the mesh; memory that the caller lends
+  std::array<std::int16_t, RangeImage::kMaxReturns> nearness;
+  RayMask filled;  // rays that are not kEmpty
+
+  // kEmpty outside the screen.
+  std::int16_t at(int row, int column) const {
+    if (row < 0 || column < 0 || row >= rays || column >= rays) return kEmpty;
+    return nearness[row * rays + column];
+  }
+  // False outside the screen.
+  bool is_filled(int row, int column) const {
+    return row >= 0 && column >= 0 && row < rays && column < rays && filled.has(row, column);
+  }
+};
+
+// A point of the target in the axes of the LRF, from the TRF's origin, in units of 1/32767 radius.
+using Arm = std::array<std::int32_t, 3>;
+
+// Turns vertices in 32 bits: the rotation has 15 fraction bits.
+class Turn {
+ public:
+  explicit Turn(const Matrix3<Fixed>& r_lrf_trf);
+  // One element [radii]. A vertex is at most sqrt(3) long; of what is not a rotation, the element wraps.
+  std::int32_t element_q30(std::size_t element, const SurfaceMesh::Vertex& v) const {
+    const auto product = [&](std::size_t i) {
+      return static_cast<std::uint32_t>(r_q15_[3 * element + i] * v[i]);
+    };
+    return static_cast<std::int32_t>(product(0) + product(1) + product(2));
+  }
+  // Within two units.
+  Arm operator()(const SurfaceMesh::Vertex& v) const {
+    const auto element = [&](std::size_t i) { return ((element_q30(i, v) >> 14) + 1) >> 1; };
+    return {element(0), element(1), element(2)};
+  }
+
+ private:
+  std::array<std::int32_t, 9> r_q15_{};
+};
+
+void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, RenderedSurface& surface);
+
+}  // namespace tumblesight::gnc

@@ -1,0 +1,373 @@
+#include "gnc/registration/pose_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <optional>
+
+#include "tests/unit/gnc/registration/scene.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr Sensor kSensor{128, 16.0};
+constexpr double kDepth_m = 20.0;
+constexpr double kLargestError_deg = 0.6;
+constexpr double kDegree = M_PI / 180.0;
+
+Eigen::Matrix3d rotation_of(const Eigen::Vector3d& turn_rad) {
+  const double angle = turn_rad.norm();
+  return angle == 0.0 ? Eigen::Matrix3d::Identity()
+                      : Eigen::AngleAxisd(angle, turn_rad / angle).toRotationMatrix();
+}
+Matrix3<Fixed> fixed_rotation(const Eigen::Matrix3d& r) {
+  return fixed({r, {0.0, 0.0, 0.0}}).r_lrf_trf;
+}
+double angle_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  return Eigen::AngleAxisd(Eigen::Quaterniond(a.transpose() * b).normalized()).angle() / kDegree;
+}
+Eigen::Matrix3d attitude_of(const PoseEstimate& estimate) {
+  return to_double(estimate.state.q_lrf_trf).normalized().toRotationMatrix();
+}
+
+// A body that spins before the sensor, and a network that sees it a degree or two off.
+class TrackPose : public testing::Test {
+ protected:
+  // The next frame, a nominal period later.
+  void see() {
+    if (frames_++ > 0) pass_a_period();
+    const auto depths_m = cast(shown_, truth_, kSensor);
+    frame_.emplace(kSensor);
+    Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
+    int returns = 0;
+    for (int i = 0; i < kSensor.rays * kSensor.rays; ++i) {
+      const double depth_m = depths_m[static_cast<std::size_t>(i)];
+      if (depth_m == kNothing) continue;
+      const int row = i / kSensor.rays, column = i % kSensor.rays;
+      const Eigen::Vector3d direction = ray(kSensor, row, column);
+      const double range_m = depth_m * direction.norm();
+      frame_->add(row, column, range_m + (0.1 + 0.01 * range_m) * random_.normal());
+      sum_m += depth_m * direction;
+      ++returns;
+    }
+    centroid_m_ = sum_m / std::max(returns, 1);
+  }
+  // Without torque; Euler's method in a thousand steps.
+  void pass_a_period() {
+    constexpr int kSteps = 1000;
+    const Eigen::Matrix3d r = truth_.r_lrf_trf;
+    const Eigen::Vector3d momentum = r * inertia_trf_ * r.transpose() * rate_;
+    for (int i = 0; i < kSteps; ++i) {
+      truth_.r_lrf_trf = rotation_of(rate_ / kSteps) * truth_.r_lrf_trf;
+      rate_ = truth_.r_lrf_trf * inertia_trf_.inverse() * truth_.r_lrf_trf.transpose() * momentum;
+    }
+  }
+  // The network's attitude is `turn_rad` away from the true one.
+  PoseEstimate track(const Eigen::Vector3d& turn_rad, const Eigen::Matrix3d& second, std::uint32_t odds_ppm) {
+    const Eigen::Vector3d network_rate = rate_ + rate_error_;
+    const PoseFrame frame{
+        *frame_->image,
+        *frame_->mask,
+        period_ns_,
+        fixed_rotation(turn_of_sensor_),
+        {fixed_rotation(rotation_of(turn_rad) * truth_.r_lrf_trf),
+         {Fixed(network_rate.x()), Fixed(network_rate.y()), Fixed(network_rate.z())}},
+        fixed_rotation(second),
+        odds_ppm,
+        {static_cast<std::int32_t>(1e3 * centroid_m_.x()), static_cast<std::int32_t>(1e3 * centroid_m_.y()),
+         static_cast<std::int32_t>(1e3 * centroid_m_.z())},
+        laws_,
+        kSpinLaw};
+    // In flight other stages use this memory between the frames.
+    std::memset(static_cast<void*>(scratch_.get()), 0xA5, sizeof *scratch_);
+    PoseEstimate estimate;
+    track_pose({has_mesh_ ? section_.mesh() : SurfaceMesh(), radius_mm_, {}}, frame, *scratch_, *vertices_,
+               *state_, estimate);
+    return estimate;
+  }
+  PoseEstimate track_next() {
+    see();
+    const Eigen::Vector3d turn_rad = random_.vector(kDegree);
+    return track(turn_rad, truth_.r_lrf_trf, 0);
+  }
+
+  Random random_{11};
+  const Body body_ = rounded(lopsided_body());
+  Body shown_ = body_;
+  MeshSection section_{body_};
+  bool has_mesh_ = true;
+  std::uint32_t radius_mm_ = 2500;
+  ExactPose truth_{random_.rotation(), {0.1, kDepth_m, -0.05}};
+  Eigen::Vector3d rate_{0.2, -0.1, 0.15};                 // [rad per period]
+  Eigen::Vector3d rate_error_ = Eigen::Vector3d::Zero();  // of the network
+  Eigen::Matrix3d turn_of_sensor_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d inertia_trf_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d centroid_m_;
+  std::optional<Frame> frame_;
+  int frames_ = 0;
+  std::int64_t period_ns_ = kNominalPeriod_ns;
+  MotionLaws<Fixed> laws_ = motion_laws<Fixed>(Inertia<Fixed>());
+  std::unique_ptr<PoseScratch> scratch_ = std::make_unique<PoseScratch>();
+  std::unique_ptr<ScreenVertices> vertices_ = std::make_unique<ScreenVertices>();
+  std::unique_ptr<PoseTrackerState> state_ = std::make_unique<PoseTrackerState>();
+};
+
+// Verifies TS-EST-200, TS-EST-202.
+TEST_F(TrackPose, IsVerifiedFromTheThirdFrameAndWithinItsCovariance) {
+  for (int k = 0; k < 10; ++k) {
+    const PoseEstimate estimate = track_next();
+    ASSERT_TRUE(estimate.is_known()) << k;
+    EXPECT_EQ(estimate.poses, k + 1);
+    EXPECT_LT(angle_deg(attitude_of(estimate), truth_.r_lrf_trf), kLargestError_deg) << k;
+    EXPECT_EQ((estimate.doubts & kPoseMotion) != 0, k < 2) << k;
+    if (k < 3) continue;  // the advantage over alternatives grows by four nats per frame
+    EXPECT_EQ(estimate.doubts, 0U) << k;
+    for (int i = 0; i < 3; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      EXPECT_NEAR(1e-6 * estimate.state.origin_lrf_um[at], truth_.origin_m[i],
+                  5e-6 * estimate.covariance.sigma[6 + at]);
+      EXPECT_NEAR(1e-6 * estimate.state.rate_lrf_urad_s[at], rate_[i] / 2.7,
+                  5e-6 * estimate.covariance.sigma[3 + at]);
+      EXPECT_NEAR(1e-6 * estimate.state.velocity_lrf_um_s[at], 0.0, 5e-6 * estimate.covariance.sigma[9 + at]);
+    }
+  }
+}
+
+// Verifies TS-EST-204.
+TEST_F(TrackPose, TakesTheSecondAttitudeWhereItExplainsTheFrameBetter) {
+  see();
+  const Eigen::Matrix3d right = rotation_of(random_.vector(kDegree)) * truth_.r_lrf_trf;
+  const PoseEstimate estimate = track({0.0, 0.0, 3.0}, right, 500'000);  // the first is 172 degrees off
+  EXPECT_LT(angle_deg(attitude_of(estimate), truth_.r_lrf_trf), kLargestError_deg);
+  EXPECT_NE(estimate.doubts & kPoseNetwork, 0U);
+  EXPECT_FALSE(estimate.is_verified());
+}
+
+TEST_F(TrackPose, KeepsTheFirstAttitudeWhereTheSecondIsWrong) {
+  see();
+  const Eigen::Matrix3d wrong = rotation_of({0.0, 0.0, 3.0}) * truth_.r_lrf_trf;
+  const PoseEstimate estimate = track({0.01, 0.0, 0.01}, wrong, 900'000);
+  EXPECT_LT(angle_deg(attitude_of(estimate), truth_.r_lrf_trf), kLargestError_deg);
+  EXPECT_GT(estimate.advantage_q8, 5 * 256);
+}
+
+// A wrong start is left as soon as the network shows the right attitude.
+// Verifies TS-EST-204.
+TEST_F(TrackPose, LeavesAWrongTrackForTheNetworksAttitude) {
+  for (int k = 0; k < 3; ++k) {
+    see();
+    track({0.0, 3.0, 0.0}, truth_.r_lrf_trf, 0);
+  }
+  PoseEstimate estimate;
+  for (int k = 0; k < 6; ++k) estimate = track_next();
+  EXPECT_LT(angle_deg(attitude_of(estimate), truth_.r_lrf_trf), kLargestError_deg);
+  EXPECT_EQ(estimate.doubts, 0U);
+}
+
+// The network's choice is the wrong track's attitude, a few degrees off: what it offers is its second one.
+TEST_F(TrackPose, LeavesAWrongTrackForTheNetworksSecondAttitude) {
+  for (int k = 0; k < 3; ++k) {
+    see();
+    track({0.0, 3.0, 0.0}, truth_.r_lrf_trf, 0);
+  }
+  PoseEstimate estimate;
+  for (int k = 0; k < 3; ++k) {
+    see();
+    const Eigen::Matrix3d offered = rotation_of(random_.vector(kDegree)) * truth_.r_lrf_trf;
+    estimate = track({0.0, 3.0 + 10.0 * kDegree, 0.0}, offered, 200'000);
+  }
+  EXPECT_LT(angle_deg(attitude_of(estimate), truth_.r_lrf_trf), kLargestError_deg);
+}
+
+// Its rate does not lead from one pose to the next.
+TEST_F(TrackPose, FindsTheRateWhereTheNetworksIsWrong) {
+  rate_error_ = {0.0, 1.5, 0.0};
+  PoseEstimate estimate;
+  for (int k = 0; k < 6; ++k) estimate = track_next();
+  EXPECT_EQ(estimate.poses, 6);
+  EXPECT_EQ(estimate.doubts, 0U);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(1e-6 * estimate.state.rate_lrf_urad_s[static_cast<std::size_t>(i)], rate_[i] / 2.7,
+                5e-6 * estimate.covariance.sigma[static_cast<std::size_t>(3 + i)]);
+}
+
+// Two frames whose second attitude is as good as the first, and then none: nothing was compared in that
+// frame.
+TEST_F(TrackPose, IsNotGivenUpInAFrameWithoutAnAlternative) {
+  for (int k = 0; k < 2; ++k) track_next();
+  state_->advantage_q8 = -10 * 256;
+  for (int k = 0; k < 2; ++k) {
+    const PoseEstimate estimate = track_next();
+    EXPECT_EQ(estimate.poses, 3 + k);
+    EXPECT_LT(angle_deg(attitude_of(estimate), truth_.r_lrf_trf), kLargestError_deg);
+    EXPECT_NE(estimate.doubts & kPoseAmbiguous, 0U);
+  }
+}
+
+// What spoke for one attitude in the first frame does not speak for another one in the second.
+TEST_F(TrackPose, AnotherFirstAttitudeBeginsWithoutAnAdvantage) {
+  see();
+  const Eigen::Matrix3d wrong = rotation_of({0.0, 3.0, 0.0}) * truth_.r_lrf_trf;
+  const std::int32_t first_q8 = track({0.0, 0.01, 0.0}, wrong, 900'000).advantage_q8;
+  EXPECT_GT(first_q8, 5 * 256);
+  see();
+  EXPECT_LE(track({0.0, 3.0, 0.0}, wrong, 0).advantage_q8, 4 * 256);
+}
+
+// Frames far apart fit a rate that is one turn per period off as well.
+// Verifies TS-EST-202.
+TEST_F(TrackPose, PosesFarApartDoNotTellTheRate) {
+  period_ns_ = 3 * kNominalPeriod_ns;
+  rate_ = {0.02, -0.01, 0.015};
+  for (int k = 0; k < 6; ++k) {
+    for (int more = 0; more < 2; ++more) pass_a_period();
+    EXPECT_NE(track_next().doubts & kPoseMotion, 0U) << k;
+  }
+}
+
+// And a right track stays while the network is wrong, and says so.
+TEST_F(TrackPose, KeepsARightTrackWhileTheNetworkIsWrong) {
+  for (int k = 0; k < 4; ++k) track_next();
+  for (int k = 0; k < 3; ++k) {
+    see();
+    const PoseEstimate estimate = track({0.0, 3.0, 0.0}, truth_.r_lrf_trf, 0);
+    EXPECT_LT(angle_deg(attitude_of(estimate), truth_.r_lrf_trf), kLargestError_deg) << k;
+    EXPECT_EQ(estimate.doubts, kPoseNetwork) << k;
+  }
+}
+
+// Verifies TS-EST-202.
+TEST_F(TrackPose, AnotherBodyIsNotVerified) {
+  shown_ = Body();
+  shown_.radius_m = 2.5;
+  shown_.add_box({-1.2, -1.2, -1.2}, {1.2, 1.2, 1.2});
+  for (int k = 0; k < 6; ++k) EXPECT_FALSE(track_next().is_verified()) << k;
+}
+
+// The network says that the target spins. Its poses tell that it tumbles.
+// Verifies TS-EST-206.
+TEST_F(TrackPose, FindsTheLawOfMotion) {
+  inertia_trf_ = Eigen::Vector3d(1.3, 0.6, 1.1).asDiagonal();
+  Matrix3<Fixed> tensor = Matrix3<Fixed>::Zero();
+  for (int i = 0; i < 3; ++i) tensor(i, i) = Fixed(inertia_trf_(i, i));
+  Inertia<Fixed> inertia;
+  ASSERT_TRUE(make_inertia<Fixed>(tensor, inertia));
+  laws_ = motion_laws<Fixed>(inertia);
+  rate_ = {0.4, 0.3, -0.3};
+  PoseEstimate estimate;
+  for (int k = 0; k < 10; ++k) estimate = track_next();
+  EXPECT_EQ(state_->law, kTumbleLaw);
+  EXPECT_EQ(estimate.doubts, 0U);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(1e-6 * estimate.state.rate_lrf_urad_s[static_cast<std::size_t>(i)], rate_[i] / 2.7,
+                5e-6 * estimate.covariance.sigma[static_cast<std::size_t>(3 + i)]);
+}
+
+TEST_F(TrackPose, WithoutAMeshThereIsNoPose) {
+  for (int k = 0; k < 3; ++k) track_next();
+  has_mesh_ = false;
+  EXPECT_EQ(track_next().doubts, kPoseUnknown);
+  EXPECT_EQ(state_->history.count, 0);
+}
+
+TEST_F(TrackPose, WithinTwoRadiiThereIsNoPose) {
+  radius_mm_ = 12'000;
+  const PoseEstimate estimate = track_next();
+  EXPECT_EQ(estimate.doubts, kPoseUnknown);
+  EXPECT_EQ(estimate.state.q_lrf_trf, kIdentityQ30);
+}
+
+// The target rests, and the sensor turns: in the LRF the target turns about the sensor.
+TEST_F(TrackPose, FollowsTheTurnOfTheSensor) {
+  rate_ = Eigen::Vector3d::Zero();
+  turn_of_sensor_ = rotation_of({0.005, 0.01, -0.004});
+  PoseEstimate estimate;
+  for (int k = 0; k < 6; ++k) {
+    if (k > 0) {
+      truth_.r_lrf_trf = turn_of_sensor_ * truth_.r_lrf_trf;
+      truth_.origin_m = turn_of_sensor_ * truth_.origin_m;
+    }
+    estimate = track_next();
+  }
+  EXPECT_EQ(estimate.doubts, 0U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(estimate.state.rate_lrf_urad_s[i], 0.0, 5.0 * estimate.covariance.sigma[3 + i]);
+    EXPECT_NEAR(estimate.state.velocity_lrf_um_s[i], 0.0, 5.0 * estimate.covariance.sigma[9 + i]);
+  }
+}
+
+TEST_F(TrackPose, AFrameWithoutReturnsOfTheTargetCoasts) {
+  PoseEstimate before;
+  for (int k = 0; k < 5; ++k) before = track_next();
+  see();
+  frame_.emplace(kSensor);
+  const PoseEstimate estimate = track({0.0, 0.0, 0.0}, truth_.r_lrf_trf, 0);
+  EXPECT_NE(estimate.doubts & kPoseCoasts, 0U);
+  EXPECT_LT(angle_deg(attitude_of(estimate), truth_.r_lrf_trf), kLargestError_deg);
+  for (std::size_t i = 0; i < 12; ++i) {  // of turn, rate, position, velocity
+    EXPECT_GT(estimate.covariance.sigma[i], 0U) << i;
+    if (i % 6 >= 3) continue;
+    EXPECT_GE(estimate.covariance.sigma[i], before.covariance.sigma[i]) << i;
+  }
+  EXPECT_EQ(track_next().doubts, 0U);
+}
+
+// Else its position would be integrated for ever.
+TEST_F(TrackPose, WithoutAPoseThereIsNoMotion) {
+  truth_.origin_m.x() = -1.0;
+  for (int k = 0; k < 4; ++k) {
+    truth_.origin_m.x() += 0.3;
+    track_next();
+  }
+  EXPECT_NE(state_->motion.velocity_um_period[0], 0);
+  has_mesh_ = false;
+  for (int k = 0; k < 2; ++k) track_next();
+  EXPECT_EQ(state_->motion.velocity_um_period, PoseMotion().velocity_um_period);
+  EXPECT_EQ(state_->motion.origin_lrf_um, PoseMotion().origin_lrf_um);
+}
+
+// Every bit of the number of poses, as radiation may flip it.
+TEST_F(TrackPose, ADamagedNumberOfPosesIsLimited) {
+  for (int k = 0; k < 3; ++k) track_next();
+  see();
+  const PoseTrackerState kept = *state_;
+  for (int bit = 0; bit < 32; ++bit) {
+    *state_ = kept;
+    state_->history.count = static_cast<int>(static_cast<std::uint32_t>(kept.history.count) ^ (1U << bit));
+    const PoseEstimate estimate = track({0.0, 0.0, 0.0}, truth_.r_lrf_trf, 0);
+    EXPECT_GE(estimate.poses, 0) << bit;
+    EXPECT_LE(estimate.poses, PoseHistory::kMost) << bit;
+  }
+}
+
+// Every bit of the numbers of vertices in the surface, which is read where it lies.
+TEST_F(TrackPose, ADamagedSurfaceIsDrawnWithinItsVertices) {
+  for (int k = 0; k < 3; ++k) track_next();
+  see();
+  const PoseTrackerState kept = *state_;
+  const SurfaceMesh mesh = section_.mesh();
+  const std::size_t first =
+      SurfaceMesh::kHeaderBytes + std::size_t{6} * static_cast<std::size_t>(mesh.vertices());
+  for (std::size_t byte = first; byte < section_.bytes().size(); ++byte) {
+    for (int bit = 0; bit < 8; bit += 7) {
+      *state_ = kept;
+      section_.bytes()[byte] ^= static_cast<std::uint8_t>(1U << bit);
+      EXPECT_LE(track({0.0, 0.0, 0.0}, truth_.r_lrf_trf, 0).poses, 4);
+      section_.bytes()[byte] ^= static_cast<std::uint8_t>(1U << bit);
+    }
+  }
+}
+
+TEST_F(TrackPose, LaterPoseIsWhereTheTargetIsThen) {
+  for (int k = 0; k < 6; ++k) track_next();
+  const PoseState later =
+      pose_state(later_pose(*state_, laws_, kNominalPeriod_ns / 2, Matrix3<Fixed>::Identity()));
+  const Eigen::Matrix3d expected = rotation_of(0.5 * rate_) * truth_.r_lrf_trf;
+  EXPECT_LT(angle_deg(to_double(later.q_lrf_trf).normalized().toRotationMatrix(), expected),
+            kLargestError_deg);
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc
