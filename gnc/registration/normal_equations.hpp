@@ -27,11 +27,15 @@ struct NormalEquations {
   // Adds `weight` * row row^T and `wanted` * row. `weight`: Q12; its product with an element of the row is
   // rounded to a whole number, so that every further product is one of 32 bits.
   void add(const std::array<std::int32_t, kUnknowns>& row, std::int32_t weight, std::int32_t wanted) {
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < kUnknowns; ++i) {
-      const auto weighted = static_cast<std::int32_t>((std::int64_t{weight} * row[i] + (1 << 11)) >> 12);
-      for (std::size_t k = 0; k <= i; ++k) information[at++] += std::int64_t{weighted} * row[k];
-      gradient[i] += std::int64_t{wanted} * row[i];
+    // Without loops at run time, which would take longer than the sums.
+#pragma GCC unroll 6
+    for (int i = 0; i < kUnknowns; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const auto weighted = static_cast<std::int32_t>((std::int64_t{weight} * row[at] + (1 << 11)) >> 12);
+#pragma GCC unroll 6
+      for (int k = 0; k <= i; ++k)
+        information[element(i, k)] += std::int64_t{weighted} * row[static_cast<std::size_t>(k)];
+      gradient[at] += std::int64_t{wanted} * row[at];
     }
   }
 };

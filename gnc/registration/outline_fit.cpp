@@ -256,9 +256,7 @@ void fit_outline(const SurfaceMesh& mesh, const FrameView& view, const Pose& pos
   for (int i = 0; i < mesh.edges() && places < kMaxPlaces; ++i) {
     const SurfaceMesh::Edge edge = mesh.edge(i);
     // The image was sound when it was loaded, but its memory may have been damaged since.
-    if (max_small(max_small(edge.first, edge.second), max_small(edge.opposite[0], edge.opposite[1])) >=
-        mesh.vertices())
-      continue;
+    if (!mesh.has(edge.first, edge.second, edge.opposite[0], edge.opposite[1])) continue;
     const ScreenPoint &first = vertices[edge.first], &second = vertices[edge.second];
     const ScreenPoint &left = vertices[edge.opposite[0]], &right = vertices[edge.opposite[1]];
     if (!surface.is_complete &&

@@ -14,7 +14,7 @@ constexpr std::array<std::int64_t, 4> kFloor{525, 60, 2000, 300};
 // Where they disagree more, more of it is an error of the mesh, which they share. Few poses say little about
 // that: kUsual_q8 counts as much as kUsualPoses of them, and the result is larger the fewer there are. Fitted
 // to three targets under the paper's conditions.
-constexpr std::int64_t kUsual_q8 = 38, kUsualPoses = 3, kPerSquare_q8 = 900, kFewPoses = 8;
+constexpr std::int64_t kUsual_q8 = 38, kUsualPoses = 3, kPerSquare_q8 = 1280, kFewPoses = 8;
 std::int64_t scale_q8(const PoseFitResult& fit, int poses) {
   const std::int64_t disagreement_q8 = clamp<std::int64_t>(fit.disagreement_q8, 0, 1 << 20);
   const std::int64_t mean_q8 =

@@ -17,7 +17,7 @@ constexpr std::int64_t kLongestStep_ns = 3 * kNominalPeriod_ns / 2;  // between 
 // Before the track knows a rate: the network's attitude is a degree or two off, and the position that the
 // middle of the returns gives is off by some rays where a part of the target is hidden.
 constexpr RefinementSettings kFirst{3, 3, 512, 128, 1677722, 8388608};
-constexpr RefinementSettings kFull{4, 2, 256, 40, 1677722, 8388608};
+constexpr RefinementSettings kFull{3, 2, 160, 40, 1677722, 8388608};
 // Of another attitude than the track's, at the position of the track. The second from kShort on.
 constexpr RefinementSettings kShort{2, 2, 512, 128, 1677722, 8388608};
 constexpr RefinementSettings kConfirm{2, 0, 128, 40, 1677722, 8388608};

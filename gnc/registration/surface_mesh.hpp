@@ -58,6 +58,12 @@ class SurfaceMesh {
   int triangles() const { return triangles_; }
   int edges() const { return edges_; }
   int error_mm() const { return error_mm_; }
+  // Whether vertices of all these numbers exist.
+  template <class... Numbers>
+  bool has(Numbers... numbers) const {
+    const std::int32_t last = vertices_ - 1;
+    return ((last - numbers) | ...) >= 0;  // no difference has its sign bit set
+  }
 
   Vertex vertex(int index) const {
     const std::uint8_t* at = vertex_data_ + std::size_t{6} * static_cast<std::size_t>(index);

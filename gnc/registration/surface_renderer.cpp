@@ -85,7 +85,7 @@ struct Bounds {
   int first, last;
   bool is_empty() const { return first > last; }
 };
-Bounds bounds(std::int32_t a, std::int32_t b, std::int32_t c, int rays) {
+inline Bounds bounds(std::int32_t a, std::int32_t b, std::int32_t c, int rays) {
   return {max_small(0, first_ray(min_small(a, min_small(b, c)))),
           min_small(rays - 1, last_ray(max_small(a, max_small(b, c))))};
 }
@@ -165,6 +165,16 @@ void fill_row(int row, int first, int last, std::int32_t nearness, const Plane& 
       from_first & (~std::uint32_t{0} << (RayMask::kColumnsPerWord - 1 - last % RayMask::kColumnsPerWord));
 }
 
+void clear(RenderedSurface& surface) {
+  // Eight at a time, which compilers make one or two stores of.
+  constexpr std::size_t kAtATime = 8;
+  static_assert(RangeImage::kMaxReturns % kAtATime == 0);
+  for (std::size_t first = 0; first < surface.nearness.size(); first += kAtATime)
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < kAtATime; ++i) surface.nearness[first + i] = RenderedSurface::kEmpty;
+  for (RayMask::Row& row : surface.filled.rows) row = {};
+}
+
 // Draws one triangle with area(a, b, c) > 0; returns the work done.
 int draw(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
          const Bounds& rows, const Bounds& columns, RenderedSurface& surface) {
@@ -227,8 +237,7 @@ Turn::Turn(const Matrix3<Fixed>& r_lrf_trf) {
 void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, RenderedSurface& surface) {
   surface.rays = view.rays;
   surface.is_complete = true;
-  surface.nearness.fill(RenderedSurface::kEmpty);
-  for (RayMask::Row& row : surface.filled.rows) row = {};
+  clear(surface);
   const Camera camera(view, pose);
   ScreenVertices& vertices = *surface.vertices;
   bool all_inside = true;
@@ -241,7 +250,7 @@ void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, Re
   for (int i = 0; i < mesh.triangles(); ++i) {
     const SurfaceMesh::Triangle triangle = mesh.triangle(i);
     // The image was sound when it was loaded, but its memory may have been damaged since.
-    if (max_small(triangle[0], max_small(triangle[1], triangle[2])) >= mesh.vertices()) continue;
+    if (!mesh.has(triangle[0], triangle[1], triangle[2])) continue;
     const ScreenPoint& a = vertices[triangle[0]];
     const ScreenPoint &b = vertices[triangle[1]], &c = vertices[triangle[2]];
     if (!all_inside && (a.is_outside() || b.is_outside() || c.is_outside())) {

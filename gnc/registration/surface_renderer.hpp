@@ -39,7 +39,7 @@ struct RenderedSurface {
   // sensor, or since the work was more than the limit of a rendering.
   bool is_complete = true;
   ScreenVertices* vertices = nullptr;  // of the mesh; memory that the caller lends
-  std::array<std::int16_t, RangeImage::kMaxReturns> nearness;
+  alignas(8) std::array<std::int16_t, RangeImage::kMaxReturns> nearness;
   RayMask filled;  // rays that are not kEmpty
 
   // kEmpty outside the screen.

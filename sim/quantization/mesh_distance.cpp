@@ -20,19 +20,21 @@ Vector3f closest_on_segment(const Vector3f& point, const Vector3f& from, const V
 
 struct Query {
   const TriangleMesh* mesh;
-  Vector3f point;
+  Vector3f point_m;
+  ClosestPoint closest;
 };
 
 // Called for each triangle whose box is within the query's radius.
 bool shorten(RTCPointQueryFunctionArguments* arguments) {
-  const Query& query = *static_cast<const Query*>(arguments->userPtr);
+  Query& query = *static_cast<Query*>(arguments->userPtr);
   const auto& corners = query.mesh->triangles[arguments->primID];
   const auto& vertices = query.mesh->vertices_trf_m;
   const Vector3f closest =
-      closest_point(query.point, vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]);
-  const float distance_m = (closest - query.point).norm();
+      closest_point(query.point_m, vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]);
+  const float distance_m = (closest - query.point_m).norm();
   if (!(distance_m < arguments->query->radius)) return false;
   arguments->query->radius = distance_m;
+  query.closest = {distance_m, arguments->primID, closest};
   return true;
 }
 
@@ -58,13 +60,14 @@ MeshDistance::MeshDistance(const TriangleMesh& mesh)
 
 MeshDistance::~MeshDistance() = default;
 
-float MeshDistance::distance_m(const Vector3f& point_m) const {
-  RTCPointQuery query{point_m.x(), point_m.y(), point_m.z(), 0.0F, std::numeric_limits<float>::infinity()};
+ClosestPoint MeshDistance::closest(const Vector3f& point_m) const {
+  constexpr float kFarthest = std::numeric_limits<float>::infinity();
+  RTCPointQuery query{point_m.x(), point_m.y(), point_m.z(), 0.0F, kFarthest};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
-  Query user{&mesh_, point_m};
+  Query user{&mesh_, point_m, {kFarthest, 0, point_m}};
   rtcPointQuery(scene_->get(), &query, &context, shorten, &user);
-  return query.radius;
+  return user.closest;
 }
 
 float MeshDistance::largest_distance_m(const std::vector<Vector3f>& points_m) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,12 @@ class EmbreeScene;
 Eigen::Vector3f closest_point(const Eigen::Vector3f& point, const Eigen::Vector3f& a,
                               const Eigen::Vector3f& b, const Eigen::Vector3f& c);
 
+struct ClosestPoint {
+  float distance_m;  // infinity for a mesh without triangles
+  std::uint32_t triangle;
+  Eigen::Vector3f point_m;
+};
+
 class MeshDistance {
  public:
   // The mesh must outlive this object. Throws std::runtime_error if Embree refuses it.
@@ -23,8 +30,8 @@ class MeshDistance {
   MeshDistance(const MeshDistance&) = delete;
   MeshDistance& operator=(const MeshDistance&) = delete;
 
-  // To the closest point of a triangle; infinity for a mesh without triangles.
-  float distance_m(const Eigen::Vector3f& point_m) const;
+  ClosestPoint closest(const Eigen::Vector3f& point_m) const;
+  float distance_m(const Eigen::Vector3f& point_m) const { return closest(point_m).distance_m; }
   // Of the point that is farthest away; 0 without points.
   float largest_distance_m(const std::vector<Eigen::Vector3f>& points_m) const;
 

@@ -62,7 +62,7 @@ TEST(PoseCovariance, IsTheInverseOfTheInformationInTheUnitsOfTheInterface) {
   // Ten poses that disagree by d, and five usual ones (0.15), over 13.
   const double disagreement = 0.5;
   make_covariance(result_of(information, disagreement), 10, kRadius_um, covariance);
-  const double scale = 3.52 * 1.8 * std::pow((10.0 * disagreement + 3.0 * 38.0 / 256.0) / 11.0, 2.0);
+  const double scale = 5.0 * 1.8 * std::pow((10.0 * disagreement + 3.0 * 38.0 / 256.0) / 11.0, 2.0);
   const Matrix12 found = matrix_of(covariance);
   for (int i = 0; i < 12; ++i)
     for (int k = 0; k < 12; ++k)

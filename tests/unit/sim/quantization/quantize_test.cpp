@@ -48,7 +48,7 @@ TEST_F(QuantizeTest, WritesAnImageThatTheFlightEstimatorLoads) {
             gnc::ModelStatus::kOk);
   EXPECT_EQ(estimator->model().crc32, report->crc32);
   EXPECT_GT(gnc::surface_of<gnc::FixedPoint>(image.data()).points(), 1900U);
-  EXPECT_GT(estimator->mesh().triangles(), 2000);
+  EXPECT_GT(estimator->mesh().triangles(), 1500);
   EXPECT_EQ(estimator->mesh().error_mm(), gnc::SurfaceMesh(report->surface.mesh.data()).error_mm());
 }
 

@@ -69,7 +69,9 @@ TEST_P(ShippedSurface, IsThatOfTheParametricMeshWithinItsError) {
   const SurfaceMesh section = gnc::surface_mesh_of<gnc::FixedPoint>(image.data());
   EXPECT_GT(section.triangles(), 2000);
   EXPECT_GT(section.edges(), 2000);
-  EXPECT_LE(section.error_mm(), 40);
+  EXPECT_LT(section.triangles(), 3100);
+  // A strut of the Aquarius that is thinner than the rays are apart is left out.
+  EXPECT_LE(section.error_mm(), 200);
   const auto unit_m = static_cast<float>(1e-3 * header.projection.target_radius_mm / SurfaceMesh::kRadius);
   TriangleMesh surface;
   for (int i = 0; i < section.vertices(); ++i) {
@@ -92,7 +94,12 @@ TEST_P(ShippedSurface, IsThatOfTheParametricMeshWithinItsError) {
     const auto [x, y, z] = points.point(i).position;
     seen_m.emplace_back(unit_m * Vector3f(x, y, z));
   }
-  EXPECT_LT(MeshDistance(surface).largest_distance_m(seen_m), error_m);
+  const MeshDistance distance(surface);
+  EXPECT_LT(distance.largest_distance_m(seen_m), error_m);
+  double sum_m = 0.0;
+  for (const Vector3f& point_m : seen_m) sum_m += static_cast<double>(distance.distance_m(point_m));
+  const double radius_m = 1e-3 * header.projection.target_radius_mm;
+  EXPECT_LT(sum_m / static_cast<double>(seen_m.size()), radius_m / 1500.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, ShippedSurface,
