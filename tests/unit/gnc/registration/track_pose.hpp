@@ -96,7 +96,7 @@ class TrackPose : public testing::Test {
         {static_cast<std::int32_t>(1e3 * centroid_m_.x()), static_cast<std::int32_t>(1e3 * centroid_m_.y()),
          static_cast<std::int32_t>(1e3 * centroid_m_.z())},
         laws_,
-        kSpinLaw};
+        network_law_};
     // In flight other stages use this memory between the frames.
     std::memset(static_cast<void*>(scratch_.get()), 0xA5, sizeof *scratch_);
     PoseEstimate estimate;
@@ -141,6 +141,7 @@ class TrackPose : public testing::Test {
   std::optional<Frame> frame_;
   int frames_ = 0;
   std::int64_t period_ns_ = kNominalPeriod_ns;
+  int network_law_ = kSpinLaw;
   MotionLaws<Fixed> laws_ = motion_laws<Fixed>(Inertia<Fixed>());
   std::unique_ptr<PoseScratch> scratch_ = std::make_unique<PoseScratch>();
   std::unique_ptr<ScreenVertices> vertices_ = std::make_unique<ScreenVertices>();
