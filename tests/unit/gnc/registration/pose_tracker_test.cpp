@@ -233,6 +233,24 @@ TEST_F(TrackPose, ADamagedNumberOfPosesIsLimited) {
   }
 }
 
+// Bits of the state, as radiation may flip them between the check of the state and its use: every one of the
+// numbers behind the poses, and some of the poses. In the sanitizers' build also: without an overflow.
+TEST_F(TrackPose, ADamagedStateIsUsedWithinItsLimits) {
+  track_frames(3);
+  see();
+  const PoseTrackerState kept = *state_;
+  auto* const bytes = reinterpret_cast<std::uint8_t*>(state_.get());
+  constexpr std::size_t kSomeBits = 97, kFirst = 8 * offsetof(PoseTrackerState, law);
+  for (std::size_t bit = 0; bit < 8 * sizeof(PoseTrackerState); bit += bit < kFirst ? kSomeBits : 1) {
+    *state_ = kept;
+    bytes[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+    const PoseEstimate estimate = track({0.0, 0.0, 0.0}, truth_.r_lrf_trf, 0);
+    EXPECT_LE(estimate.poses, 4) << bit;
+    EXPECT_LE(std::abs(estimate.advantage_q8), 32 * 256) << bit;
+    EXPECT_NEAR(to_double(estimate.state.q_lrf_trf).norm(), 1.0, 1e-6) << bit;
+  }
+}
+
 // Every bit of the numbers of vertices in the surface, which is read where it lies.
 TEST_F(TrackPose, ADamagedSurfaceIsDrawnWithinItsVertices) {
   for (int k = 0; k < 3; ++k) track_next();
