@@ -78,6 +78,12 @@ TEST_F(PoseAlternatives, ASettledTrackIsNotComparedWithTheSecondAttitude) {
   EXPECT_GT(track({0.0, 0.0, 0.0}, wrong(), 500'000).advantage_q8, 24 * kNat_q8);
 }
 
+TEST_F(PoseAlternatives, ATrackIsNotComparedWithASecondAttitudeOfLessThanOnePercent) {
+  track_frames(3);
+  see();
+  EXPECT_EQ(track({0.0, 0.0, 0.0}, wrong(), 9'999).advantage_q8, 4 * kWithoutAlternative_q8);
+}
+
 // The poses are too old, but the attitude is where it was: nothing speaks for the new track yet.
 TEST_F(PoseAlternatives, ATrackWithoutAPoseLeftBeginsWithoutAnAdvantage) {
   rate_ = Eigen::Vector3d::Zero();

@@ -164,6 +164,7 @@ TEST_F(TrackPose, WithoutAMeshThereIsNoPose) {
 }
 
 TEST_F(TrackPose, WithinTwoRadiiThereIsNoPose) {
+  track_frames(3);
   radius_mm_ = 12'000;
   const PoseEstimate estimate = track_next();
   EXPECT_EQ(estimate.doubts, kPoseUnknown);
