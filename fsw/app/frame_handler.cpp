@@ -8,6 +8,12 @@ namespace {
 
 using gnc::FrameVerdict;
 
+// The report passes the tracker's doubts about a pose on as they are.
+static_assert(hal::kPoseDoubtUnknown == gnc::kPoseUnknown && hal::kPoseDoubtCoasts == gnc::kPoseCoasts &&
+              hal::kPoseDoubtRanges == gnc::kPoseRanges && hal::kPoseDoubtOutline == gnc::kPoseOutline &&
+              hal::kPoseDoubtAmbiguous == gnc::kPoseAmbiguous && hal::kPoseDoubtMotion == gnc::kPoseMotion &&
+              hal::kPoseDoubtUncertain == gnc::kPoseUncertain && hal::kPoseDoubtNetwork == gnc::kPoseNetwork);
+
 std::int32_t bits_of(std::uint32_t sequence_number) {
   return static_cast<std::int32_t>(sequence_number);
 }

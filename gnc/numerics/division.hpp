@@ -80,7 +80,8 @@ struct Words {
   return quotient + 1 + less_mask(dividend - quotient * divisor, divisor);
 }
 
-// dividend / divisor, truncated toward zero. Requires divisor > 0.
+// dividend / divisor, truncated toward zero. Requires divisor > 0, and 2 at least for the most negative
+// dividend.
 constexpr std::int64_t divide(std::int64_t dividend, std::int64_t divisor) {
   if constexpr (sizeof(void*) == 8) return dividend / divisor;
   const auto quotient = static_cast<std::int64_t>(

@@ -104,8 +104,9 @@ constexpr std::int32_t max_small(std::int32_t a, std::int32_t b) {
 // Absolute value; the most negative integer stays as it is.
 template <class Integer>
 constexpr Integer abs(Integer value) {
+  using Unsigned = std::make_unsigned_t<Integer>;
   const Integer sign = static_cast<Integer>(value >> (8 * sizeof(Integer) - 1));
-  return static_cast<Integer>((value ^ sign) - sign);
+  return static_cast<Integer>(static_cast<Unsigned>(value ^ sign) - static_cast<Unsigned>(sign));
 }
 // `value` limited to [low, high]; NaN gives `low`.
 template <class Number>

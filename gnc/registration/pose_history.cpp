@@ -9,6 +9,9 @@ namespace {
 constexpr int kOverstated = 4;
 constexpr std::int64_t kMostInformation = std::int64_t{1'313'000} * 16;  // (0.05 deg)^-2, Q4
 
+// No element of a turned information is larger: 3 kMostInformation. Damaged ones are limited to it.
+constexpr std::int64_t kMostTurned = std::int64_t{1} << 26;
+
 using Block = std::array<std::array<std::int64_t, 3>, 3>;
 
 // r block r^T.
@@ -35,8 +38,8 @@ void turn_information(const Matrix3<Fixed>& r, std::array<std::int32_t, kElement
       Block block{};
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
-          block[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
-              information[symmetric_element(row + i, column + k)];
+          block[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] = clamp<std::int64_t>(
+              information[symmetric_element(row + i, column + k)], -kMostTurned, kMostTurned);
       const Block result = turned(r, block);
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
@@ -105,7 +108,9 @@ void PoseHistory::advance(std::int64_t elapsed_ns, const Matrix3<Fixed>& r_now_l
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     PoseMeasurement& measurement = poses[static_cast<std::size_t>(i)];
-    measurement.age_ns += elapsed_ns;
+    // Limited so that the sum does not overflow, whatever the time or a damaged age.
+    measurement.age_ns = clamp<std::int64_t>(measurement.age_ns, 0, kOldest_ns) +
+                         clamp<std::int64_t>(elapsed_ns, 0, kOldest_ns + 1);
     if (measurement.age_ns > kOldest_ns) continue;
     turn(r_now_last, measurement.pose);
     turn_information(r_now_last, measurement.information);

@@ -258,7 +258,8 @@ PoseMotion start_of_fit(const PoseFrame& frame, const PoseMotion& predicted, con
 
 // The law that is compared with the track's in this frame: the network's, or the next one of all.
 int challenger_of(const PoseFrame& frame, PoseTrackerState& state) {
-  state.challenger = state.challenger + 1 < 2 * kLaws ? state.challenger + 1 : 0;
+  const int next = clamp(state.challenger, 0, 2 * kLaws) + 1;  // memory may be damaged
+  state.challenger = next < 2 * kLaws ? next : 0;
   const int turn = clamp<int>(state.challenger / 2, 0, kLaws - 1);
   const bool is_networks_turn = state.challenger % 2 == 0 && frame.network_law != state.law;
   return clamp<int>(is_networks_turn ? frame.network_law : turn, 0, kLaws - 1);
@@ -366,7 +367,9 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
                 ScreenVertices& vertices, PoseTrackerState& state, PoseEstimate& estimate) {
   estimate = {};
   scratch.refinement.surface.vertices = &vertices;
-  state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);  // memory may be damaged
+  // Memory may be damaged.
+  state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);
+  state.advantage_q8 = clamp(state.advantage_q8, -kMostOfATrack_q8, kMostOfATrack_q8);
   if (state.history.count == 0) state.motion = {};
   const PoseMotion predicted = later_pose(state, frame.laws, frame.elapsed_ns, frame.r_now_last);
   state.history.advance(frame.elapsed_ns, frame.r_now_last);

@@ -25,12 +25,13 @@ namespace tumblesight::gnc {
 
 // Bit mask: why a pose is not verified. The values are part of the interface (docs/icd.md).
 using PoseDoubts = std::uint32_t;
-inline constexpr PoseDoubts kPoseUnknown = 1;     // no surface in the image, or the target too near
-inline constexpr PoseDoubts kPoseCoasts = 2;      // predicted: the frame could not be registered
-inline constexpr PoseDoubts kPoseRanges = 4;      // the ranges do not lie on the surface
-inline constexpr PoseDoubts kPoseOutline = 8;     // returns beside the target, or too many missing
+inline constexpr PoseDoubts kPoseUnknown = 1;  // no surface in the image, the target too near, or no pose yet
+inline constexpr PoseDoubts kPoseCoasts = 2;   // predicted: the frame could not be registered
+inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the surface
+inline constexpr PoseDoubts kPoseOutline = 8;  // returns beside the target, or too many missing
 inline constexpr PoseDoubts kPoseAmbiguous = 16;  // an alternative explains the frames about as well
-inline constexpr PoseDoubts kPoseMotion = 32;     // fewer than three poses, or they contradict one motion
+// Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
+inline constexpr PoseDoubts kPoseMotion = 32;
 inline constexpr PoseDoubts kPoseUncertain = 64;  // the attitude is known to a degree at best
 inline constexpr PoseDoubts kPoseNetwork = 128;   // the network's attitude is another one
 

@@ -30,16 +30,26 @@ inline constexpr std::uint8_t kDoubtUnexplained =
     64;  // kDoubtful: the target at this attitude does not explain the frame
 
 // Bits of AttitudeReport::pose_doubts: why the pose is not verified. 0: it is.
-inline constexpr std::uint8_t kPoseDoubtUnknown = 1;  // there is none: no surface in the model image, or the
-                                                      // target is nearer than two of its radii
-inline constexpr std::uint8_t kPoseDoubtCoasts = 2;   // predicted: this frame could not be registered
-inline constexpr std::uint8_t kPoseDoubtRanges = 4;   // the ranges do not lie on the target's surface
-inline constexpr std::uint8_t kPoseDoubtOutline = 8;  // returns beside the target, or too many missing on it
-inline constexpr std::uint8_t kPoseDoubtAmbiguous = 16;  // another attitude explains the frames about as well
-inline constexpr std::uint8_t kPoseDoubtMotion = 32;  // fewer than three poses, or they contradict each other
-inline constexpr std::uint8_t kPoseDoubtUncertain =
-    64;                                                 // a standard deviation of the attitude above a degree
-inline constexpr std::uint8_t kPoseDoubtNetwork = 128;  // q_lrf_trf is more than 20 degrees away
+
+// There is none: the model image has no surface of the target, the target is nearer than two of its radii or
+// 1 m, or this frame could not be registered and the track has no pose before it.
+inline constexpr std::uint8_t kPoseDoubtUnknown = 1;
+// It is predicted from the poses before, since this frame could not be registered.
+inline constexpr std::uint8_t kPoseDoubtCoasts = 2;
+// The ranges do not lie on the target's surface, or none could be compared with it.
+inline constexpr std::uint8_t kPoseDoubtRanges = 4;
+// More than 3 % of the returns are beside the target, or more than 69 % of its rays have no return.
+inline constexpr std::uint8_t kPoseDoubtOutline = 8;
+// The advantage over other attitudes is less than 8 nats: one explains the frames about as well, or the track
+// is too new.
+inline constexpr std::uint8_t kPoseDoubtAmbiguous = 16;
+// There are fewer than three poses, they or the newest of them do not follow one motion, or no two
+// consecutive ones are within 7.5 s, so that the rate may be one turn more or less.
+inline constexpr std::uint8_t kPoseDoubtMotion = 32;
+// A standard deviation of the attitude is above a degree.
+inline constexpr std::uint8_t kPoseDoubtUncertain = 64;
+// The network's attitude, q_lrf_trf, is more than 20 degrees away.
+inline constexpr std::uint8_t kPoseDoubtNetwork = 128;
 
 // Quaternions: Hamilton, scalar first (w, x, y, z), target frame (TRF) to LiDAR frame (LRF), unit norm, Q30.
 // Expected errors: 0 ... pi.

@@ -144,6 +144,12 @@ def validity():
 PARAMETER = re.compile(r"TUMBLESIGHT_PARAMETER\((\w+?)(?:_([a-z]+))?, ([\d']+), ([\d']+), ([\d']+)\)  // (.+)")
 
 
+def pose_doubts():
+    bits = re.findall(r"((?:// .*\n)+)inline constexpr std::uint8_t kPoseDoubt(\w+) = (\d+);", source(MESSAGES + "attitude_report.hpp"))
+    return table(["bit's value", "pose_doubts", ""],
+                 [[value, upper(name), " ".join(line[3:] for line in comment.splitlines()).removesuffix(".")] for comment, name, value in bits])
+
+
 def parameters():
     """[(field, name, unit, lowest, highest, initial, meaning)] of the rows."""
     rows = [line for line in source("fsw/config/parameters.inc").splitlines() if line.startswith("TUMBLESIGHT_PARAMETER")]
@@ -349,7 +355,7 @@ def packet(topic):
     return table(["offset", "bits", "field", ""], [*rows, [offset, "unsigned 16", "error control", ""]])
 
 
-TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "store statuses": store_statuses, "store health": store_health, "state losses": state_losses, "functions": functions, "refusals": refusals, "validity": validity, "parameters": parameter_rows, "parameter table": table_layout, "table status": table_status, "faults": faults,
+TABLES = {"transitions": transitions, "causes": causes, "reset causes": reset_causes, "store statuses": store_statuses, "store health": store_health, "state losses": state_losses, "functions": functions, "refusals": refusals, "validity": validity, "pose doubts": pose_doubts, "parameters": parameter_rows, "parameter table": table_layout, "table status": table_status, "faults": faults,
           "responses": responses, "dumped memory": dumped_memory, "events": events,
           "packets": packets, **{f"packet {CARRIED[topic][1]}": (lambda topic=topic: packet(topic)) for topic in CARRIED},
           **{f"topic {name}": (lambda name=name: struct(name))

@@ -86,6 +86,12 @@ class Check(unittest.TestCase):
         self.write("docs/mcdc.md", PAGE.replace("2 conditions", "3 conditions"))
         self.expect("1 decisions with 2 conditions")
 
+    def test_a_value_without_influence_needs_its_reason(self):
+        self.write("docs/mcdc.md", PAGE.replace("| One.Is |", "| none (b is never false) |"))
+        self.expect()
+        self.write("docs/mcdc.md", PAGE.replace("| One.Is |", "| none |"))
+        self.expect("docs/mcdc.md:7", "lacks `b`")
+
     def test_a_row_without_a_test_is_reported(self):
         self.write("docs/mcdc.md", PAGE.replace("| One.Is |", "| nobody knows |"))
         self.expect("docs/mcdc.md:7", "lacks `b`")

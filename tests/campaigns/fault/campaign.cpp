@@ -1,6 +1,7 @@
 #include "tests/campaigns/fault/campaign.hpp"
 
 #include <sys/mman.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,7 +24,8 @@ std::uint64_t noise_seed_of_campaign(const sim::Sequence& sequence, std::uint32_
   return sequence.noise_seed + frame;
 }
 
-constexpr unsigned kHang_s = 20;  // of one trial, which takes milliseconds
+// Processor time of one trial, which takes milliseconds. By the clock on the wall a busy machine would hang.
+constexpr itimerval kHang{{0, 0}, {20, 0}};
 
 // The results of a child process, which remain even if it dies.
 struct Shared {
@@ -52,13 +54,14 @@ class SharedTrials {
 
 const char* to_string(Place place) {
   constexpr const char* kNames[] = {"weights",          "activations", "estimator state", "application state",
-                                    "model descriptor", "command",     "frame",           "two at a time"};
+                                    "model descriptor", "command",     "frame",           "two at a time",
+                                    "surface"};
   return kNames[static_cast<int>(place)];
 }
 
 const char* to_string(Outcome outcome) {
   constexpr const char* kNames[] = {"masked",     "recovered", "safe", "flagged wrong", "silent wrong",
-                                    "lost count", "crash",     "hang", "unprotected"};
+                                    "lost count", "crash",     "hang", "unprotected",   "wrong pose"};
   return kNames[static_cast<int>(outcome)];
 }
 
@@ -95,7 +98,7 @@ std::vector<Trial> run_trials(const Flight& flight, Place place, bool with_prote
     if (child < 0) throw std::runtime_error("no process for the trials");
     if (child == 0) {
       while (shared->done < count) {
-        alarm(kHang_s);
+        setitimer(ITIMER_PROF, &kHang, nullptr);
         shared->trials[shared->done] = runner->run(place, seed, first + shared->done);
         ++shared->done;
       }
@@ -104,7 +107,7 @@ std::vector<Trial> run_trials(const Flight& flight, Place place, bool with_prote
     int status = 0;
     waitpid(child, &status, 0);
     if (WIFSIGNALED(status)) {
-      const bool hung = WTERMSIG(status) == SIGALRM;
+      const bool hung = WTERMSIG(status) == SIGPROF;
       shared->trials[shared->done++].outcome = hung ? Outcome::kHang : Outcome::kCrash;
     }
   }

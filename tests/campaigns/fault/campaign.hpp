@@ -20,10 +20,11 @@ enum class Place {
   kModelDescriptor,
   kCommand,
   kFrame,
-  kTwo,  // two bits at a time, each in the weights, the estimator's or the application's state or the
-         // descriptor
+  kTwo,      // two bits at a time, each in the weights, the estimator's or the application's state or the
+             // descriptor
+  kSurface,  // vertices, triangles and edges of the target's surface in the model image
 };
-inline constexpr int kPlaces = 8;
+inline constexpr int kPlaces = 9;
 const char* to_string(Place place);
 
 enum class Outcome : std::uint8_t {
@@ -37,13 +38,14 @@ enum class Outcome : std::uint8_t {
   kCrash,         // the process died
   kHang,          // a trial did not end
   kUnprotected,   // afterwards a further flip is not corrected
+  kWrongPose,     // a pose that is more than 5 degrees or 0.5 m off was verified and was not without the flip
 };
-inline constexpr int kOutcomes = 9;
+inline constexpr int kOutcomes = 10;
 const char* to_string(Outcome outcome);
 
 struct Trial {
   Outcome outcome = Outcome::kMasked;
-  bool changed = false;                // at least one bit of an attitude
+  bool changed = false;                // at least one bit of an attitude or a registered attitude
   std::uint8_t cycles_to_recover = 0;  // from the first affected cycle to the next correct attitude
 };
 

@@ -17,7 +17,8 @@ using fsw::Region;
 
 // A complete check of the model takes 27 cycles.
 constexpr std::size_t cycles_per_trial(Place place) {
-  return place == Place::kWeights || place == Place::kTwo ? 30 : 15;
+  const bool is_in_image = place == Place::kWeights || place == Place::kSurface || place == Place::kTwo;
+  return is_in_image ? 30 : 15;
 }
 constexpr std::int64_t kStart_ns = 1'000'000'000'000;
 constexpr const char* kNoTarget = nullptr;
@@ -64,6 +65,20 @@ const gnc::Kernels<gnc::FixedPoint>& hooked_kernels() {
   static const gnc::Kernels<gnc::FixedPoint> kernels{
       hook.real->set, hook.real->pixels, convolve, multiply, hook.real->max_pool, hook.real->average_pool};
   return kernels;
+}
+
+// A verified pose that is far outside of its covariance.
+constexpr double kWrongPose_deg = 5.0, kWrongPose_m = 0.5;
+
+// Vertices, triangles and edges of the target's surface, where the model image has them.
+Region surface_of(std::vector<std::uint8_t>& image) {
+  const gnc::SurfaceMesh mesh = gnc::surface_mesh_of<gnc::FixedPoint>(image.data());
+  const auto count = [](int number) { return static_cast<std::size_t>(number); };
+  const std::size_t bytes =
+      6 * count(mesh.vertices()) + 6 * count(mesh.triangles()) + 8 * count(mesh.edges());
+  std::uint8_t* const section =
+      image.data() + (gnc::kModelImageSize<gnc::FixedPoint> - gnc::kMeshBytes<gnc::FixedPoint>);
+  return {section + gnc::SurfaceMesh::kHeaderBytes, bytes};
 }
 
 double angle_deg(const gnc::QuaternionQ30& q, const Eigen::Quaterniond& truth) {
@@ -120,7 +135,17 @@ CycleResult TrialRunner::fly(std::size_t cycle) {
   result.validity = outputs_->attitude.validity;
   const bool has_attitude =
       result.validity == hal::Validity::kValid || result.validity == hal::Validity::kDoubtful;
-  if (has_attitude) result.error_deg = angle_deg(result.q_lrf_trf, flight_.truth[cycle].q_lrf_trf);
+  if (!has_attitude) return result;
+  const sim::FrameTruth& truth = flight_.truth[cycle];
+  result.error_deg = angle_deg(result.q_lrf_trf, truth.q_lrf_trf);
+  result.pose_q_lrf_trf = outputs_->attitude.pose_q_lrf_trf;
+  // The targets of the campaign are on the boresight.
+  const std::array<std::int32_t, 3>& origin_um = outputs_->attitude.pose_origin_lrf_um;
+  const Eigen::Vector3d apart_m(1e-6 * origin_um[0], 1e-6 * origin_um[1] - truth.range_m,
+                                1e-6 * origin_um[2]);
+  result.has_wrong_pose =
+      outputs_->attitude.pose_doubts == 0 &&
+      (angle_deg(result.pose_q_lrf_trf, truth.q_lrf_trf) > kWrongPose_deg || apart_m.norm() > kWrongPose_m);
   return result;
 }
 
@@ -134,6 +159,9 @@ void TrialRunner::flip_one(Place place, std::mt19937& engine) {
       hook.region = AppMemory::activations(*app_);
       hook.bit = engine() % (8 * hook.region.size);
       hook.countdown = static_cast<int>(engine() % kProductsInAStep);
+      break;
+    case Place::kSurface:
+      flip_any(surface_of(store_.banks[0].memory));
       break;
     case Place::kEstimatorState:
       AppMemory::flip_state_bit(*app_, engine() % AppMemory::kStateBits);
@@ -223,7 +251,8 @@ Trial TrialRunner::run(Place place, std::uint64_t seed, std::uint32_t number) {
   }
   cycles_flown_ = first + cycles_per_trial(place);
   Trial trial = judged(first, results);
-  const bool ended_well = trial.outcome != Outcome::kSilentWrong && trial.outcome != Outcome::kLostCount;
+  const bool ended_well = trial.outcome != Outcome::kSilentWrong && trial.outcome != Outcome::kWrongPose &&
+                          trial.outcome != Outcome::kLostCount;
   if (protected_ && !corrects_further_flips(engine) && ended_well) trial.outcome = Outcome::kUnprotected;
   return trial;
 }
@@ -244,13 +273,15 @@ bool TrialRunner::counts_every_command(std::size_t cycles) const {
 
 Trial TrialRunner::judged(std::size_t first, const std::vector<CycleResult>& results) const {
   Trial trial;
-  bool silent_wrong = false;
+  bool silent_wrong = false, wrong_pose = false;
   bool affected_at_the_end = false;
   std::size_t since = 0;  // consecutive affected cycles
   for (std::size_t i = 0; i < results.size(); ++i) {
     const CycleResult& clean = clean_[first + i];
     const CycleResult& hit = results[i];
-    trial.changed = trial.changed || hit.q_lrf_trf != clean.q_lrf_trf;
+    trial.changed =
+        trial.changed || hit.q_lrf_trf != clean.q_lrf_trf || hit.pose_q_lrf_trf != clean.pose_q_lrf_trf;
+    wrong_pose = wrong_pose || (hit.has_wrong_pose && !clean.has_wrong_pose);
     const bool affected = clean.right() && !hit.right();
     silent_wrong = silent_wrong || (affected && hit.validity == hal::Validity::kValid);
     since = affected ? since + 1 : 0;
@@ -259,6 +290,8 @@ Trial TrialRunner::judged(std::size_t first, const std::vector<CycleResult>& res
   }
   if (silent_wrong) {
     trial.outcome = Outcome::kSilentWrong;
+  } else if (wrong_pose) {
+    trial.outcome = Outcome::kWrongPose;
   } else if (!counts_every_command(cycles_flown_)) {
     trial.outcome = Outcome::kLostCount;
   } else if (outputs_->telemetry.mode == hal::Mode::kSafe) {

@@ -18,6 +18,8 @@ struct CycleResult {
   gnc::QuaternionQ30 q_lrf_trf{};
   hal::Validity validity = hal::Validity::kValid;
   double error_deg = 180.0;
+  gnc::QuaternionQ30 pose_q_lrf_trf{};
+  bool has_wrong_pose = false;  // verified
 
   bool right() const { return validity == hal::Validity::kValid && error_deg <= 20.0; }
 };

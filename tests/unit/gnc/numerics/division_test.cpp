@@ -60,6 +60,7 @@ TEST(Division, TruncatesTowardZero) {
   EXPECT_EQ(divide(7, 2), 3);
   EXPECT_EQ(divide(-7, 2), -3);
   EXPECT_EQ(divide(0, 5), 0);
+  EXPECT_EQ(divide(INT64_MIN, 2), INT64_MIN / 2);
 }
 
 template <class Integer>
@@ -82,6 +83,22 @@ void expect_masks() {
       EXPECT_EQ(min(a, b), b < a ? b : a);
     }
   }
+}
+
+template <class Integer>
+void expect_absolute_values() {
+  using Limits = std::numeric_limits<Integer>;
+  EXPECT_EQ(abs<Integer>(Limits::min()), Limits::min());
+  EXPECT_EQ(abs<Integer>(Limits::min() + 1), Limits::max());
+  EXPECT_EQ(abs<Integer>(-1), 1);
+  EXPECT_EQ(abs<Integer>(0), 0);
+  EXPECT_EQ(abs<Integer>(Limits::max()), Limits::max());
+}
+// In the sanitizers' build also: without an overflow.
+TEST(Select, AbsoluteValueKeepsTheMostNegativeInteger) {
+  expect_absolute_values<std::int16_t>();
+  expect_absolute_values<std::int32_t>();
+  expect_absolute_values<std::int64_t>();
 }
 
 TEST(Select, LessMaskEqualsTheComparison) {

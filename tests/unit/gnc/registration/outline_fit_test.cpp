@@ -138,6 +138,7 @@ Fit expected_fit(const ExactPose& pose, const FrameView& view) {
       for (int k = -kReach; k <= kReach; ++k) {
         const Eigen::Vector2d across = (place + k * edge.out).array().floor();
         const int ray_row = static_cast<int>(across.y()), ray_column = static_cast<int>(across.x());
+        if (ray_row < 0 || ray_column < 0 || ray_row >= view.rays || ray_column >= view.rays) continue;
         const double outside = edge.out.dot(across + Eigen::Vector2d(0.5, 0.5) - place) / sigma_rays;
         const bool is_hit = view.is_returned(ray_row, ray_column);
         fit.gradient += length / places * derivative(kFill, outside, is_hit) * row;

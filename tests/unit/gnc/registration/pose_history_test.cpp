@@ -63,6 +63,16 @@ TEST(PoseHistory, ForgetsPosesThatAreTooOld) {
   EXPECT_EQ(history->poses[0].age_ns, 15 * kNominalPeriod_ns + 1);
 }
 
+TEST(PoseHistory, ForgetsAllPosesAfterAnyLongTime) {
+  for (const std::int64_t elapsed_ns : {PoseHistory::kOldest_ns + 1, INT64_MAX}) {
+    const auto history = std::make_unique<PoseHistory>();
+    history->add(marked(1));
+    history->advance(kNominalPeriod_ns, Matrix3<Fixed>::Identity());
+    history->advance(elapsed_ns, Matrix3<Fixed>::Identity());
+    EXPECT_EQ(history->count, 0) << elapsed_ns;
+  }
+}
+
 TEST(PoseHistory, TurnsWithTheSensor) {
   Random random(1);
   for (int i = 0; i < 20; ++i) {

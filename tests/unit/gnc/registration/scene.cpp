@@ -87,6 +87,34 @@ Body plate() {
   return body;
 }
 
+Body ball() {
+  constexpr int kRings = 12, kSectors = 24;
+  Body body;
+  for (int ring = 0; ring <= kRings; ++ring) {
+    for (int sector = 0; sector < kSectors; ++sector) {
+      const double polar = M_PI * ring / kRings, azimuth = 2.0 * M_PI * sector / kSectors;
+      body.corners.emplace_back(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                                std::cos(polar));
+    }
+  }
+  for (int ring = 0; ring < kRings; ++ring) {
+    for (int sector = 0; sector < kSectors; ++sector) {
+      const int next = (sector + 1) % kSectors, above = ring * kSectors, below = above + kSectors;
+      body.triangles.push_back({above + sector, below + sector, below + next});
+      body.triangles.push_back({above + sector, below + next, above + next});
+    }
+  }
+  return body;
+}
+
+Body body_with_boom() {
+  Body body;
+  body.radius_m = 3.5;
+  body.add_box({-0.9, -0.7, -0.6}, {0.6, 0.7, 0.8});
+  body.add_box({0.6, -0.1, -0.5}, {2.5, 0.1, -0.3});
+  return body;
+}
+
 MeshSection::MeshSection(const Body& body, Sides sides) {
   const auto edges = edges_of(body);
   put_u16(static_cast<int>(body.corners.size()), bytes_);

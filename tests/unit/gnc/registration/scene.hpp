@@ -55,6 +55,11 @@ Body lopsided_body();
 // A rectangle across the boresight, 4 x 3 m. Radius 3 m.
 Body plate();
 
+// A ball of 1 m. Radius 1 m.
+Body ball();
+// A box with a boom to the right. Radius 3.5 m.
+Body body_with_boom();
+
 // The section of a body. Its edges are all edges of the triangles.
 class MeshSection {
  public:

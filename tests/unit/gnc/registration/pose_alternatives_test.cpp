@@ -1,0 +1,174 @@
+// Which other attitudes a frame is compared with, and when the track is given up for one of them.
+#include "tests/unit/gnc/registration/track_pose.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr std::int32_t kNat_q8 = 256;
+constexpr std::int32_t kWithoutAlternative_q8 = 4 * kNat_q8;
+
+class PoseAlternatives : public TrackPose {
+ protected:
+  // Four poses that agree, of a target that then stands elsewhere.
+  void follow_a_wrong_attitude() {
+    track_frames(4);
+    truth_.r_lrf_trf = wrong();
+    state_->advantage_q8 = 32 * kNat_q8;
+  }
+  double error_deg(const PoseEstimate& estimate) const {
+    return angle_deg(attitude_of(estimate), truth_.r_lrf_trf);
+  }
+  // About the boresight, far from every attitude that looks alike.
+  Eigen::Matrix3d wrong() const { return rotation_of({0.0, 3.0, 0.0}) * truth_.r_lrf_trf; }
+  // A box looks the same when it is turned by a half turn.
+  void take_box() {
+    Body box;
+    box.radius_m = 2.5;
+    box.add_box({-1.0, -0.8, -0.6}, {1.0, 0.8, 0.6});
+    take(box);
+  }
+  Eigen::Vector3d half_turn() const { return truth_.r_lrf_trf * Eigen::Vector3d(0.0, 0.0, M_PI); }
+};
+
+TEST_F(PoseAlternatives, ASecondAttitudeCountsFromOddsOfOnePercentOn) {
+  see();
+  const Eigen::Matrix3d right = truth_.r_lrf_trf;
+  EXPECT_GT(error_deg(track({0.0, 3.0, 0.0}, right, 9'999)), 90.0);
+  *state_ = {};
+  EXPECT_LT(error_deg(track({0.0, 3.0, 0.0}, right, 10'000)), kLargestError_deg);
+}
+
+TEST_F(PoseAlternatives, ASecondAttitudeWithin20DegreesIsNone) {
+  see();
+  const Eigen::Matrix3d second = rotation_of({0.0, 19.0 * kDegree, 0.0}) * truth_.r_lrf_trf;
+  EXPECT_EQ(track({0.0, 0.0, 0.0}, second, 1'000'000).advantage_q8, kWithoutAlternative_q8);
+}
+
+TEST_F(PoseAlternatives, FramesWithoutOneAddFourNatsEachUpTo32) {
+  for (int k = 1; k < 10; ++k)
+    EXPECT_EQ(track_next().advantage_q8, std::min(k * kWithoutAlternative_q8, 32 * kNat_q8)) << k;
+}
+
+// The network prefers the second attitude by four nats. The frame tells nothing, and the first stays, with
+// less than nothing in favour of it.
+TEST_F(PoseAlternatives, AFirstAttitudeThatIsSlightlyWorseStays) {
+  take_box();
+  see();
+  const Eigen::Matrix3d second = rotation_of(half_turn()) * truth_.r_lrf_trf;
+  const PoseEstimate estimate = track({0.01, 0.0, 0.01}, second, 1'000'000'000);
+  EXPECT_LT(estimate.advantage_q8, 0);
+  EXPECT_GE(estimate.advantage_q8, -6 * kNat_q8);
+  EXPECT_LT(error_deg(estimate), 2.0);
+}
+
+TEST_F(PoseAlternatives, ASecondAttitudeThatIsTakenHasTheAdvantage) {
+  see();
+  EXPECT_GE(track({0.0, 3.0, 0.0}, truth_.r_lrf_trf, 500'000).advantage_q8, 6 * kNat_q8);
+}
+
+// From 16 nats on only the network's own choice is compared with the track.
+TEST_F(PoseAlternatives, ASettledTrackIsNotComparedWithTheSecondAttitude) {
+  track_frames(4);
+  see();
+  const PoseTrackerState kept = *state_;
+  state_->advantage_q8 = 16 * kNat_q8;
+  EXPECT_EQ(track({0.0, 0.0, 0.0}, wrong(), 500'000).advantage_q8, 20 * kNat_q8);
+  *state_ = kept;
+  state_->advantage_q8 = 16 * kNat_q8 - 1;
+  EXPECT_GT(track({0.0, 0.0, 0.0}, wrong(), 500'000).advantage_q8, 24 * kNat_q8);
+}
+
+TEST_F(PoseAlternatives, ATrackIsNotComparedWithASecondAttitudeOfLessThanOnePercent) {
+  track_frames(3);
+  see();
+  EXPECT_EQ(track({0.0, 0.0, 0.0}, wrong(), 9'999).advantage_q8, 4 * kWithoutAlternative_q8);
+}
+
+// The poses are too old, but the attitude is where it was: nothing speaks for the new track yet.
+TEST_F(PoseAlternatives, ATrackWithoutAPoseLeftBeginsWithoutAnAdvantage) {
+  rate_ = Eigen::Vector3d::Zero();
+  track_frames(4);
+  period_ns_ = PoseHistory::kOldest_ns + 1;
+  const PoseEstimate estimate = track_next();
+  EXPECT_EQ(estimate.poses, 1);
+  EXPECT_EQ(estimate.advantage_q8, kWithoutAlternative_q8);
+}
+
+// Both explain the frames. Of equals the network's choice counts.
+TEST_F(PoseAlternatives, ATrackWhoseAdvantageIsLostIsGivenUp) {
+  take_box();
+  track_frames(4);
+  see();
+  state_->advantage_q8 = -2 * kNat_q8;
+  const PoseEstimate estimate = track(half_turn(), truth_.r_lrf_trf, 0);
+  EXPECT_NEAR(error_deg(estimate), 180.0, 2.0);
+  EXPECT_EQ(estimate.poses, 1);
+  EXPECT_GT(estimate.advantage_q8, 0);
+}
+
+TEST_F(PoseAlternatives, ASettledTrackIsLostWhereOnlyTheNetworksAttitudeExplainsTheFrame) {
+  follow_a_wrong_attitude();
+  const PoseEstimate estimate = track_next();
+  EXPECT_LT(error_deg(estimate), kLargestError_deg);
+  EXPECT_EQ(estimate.poses, 1);
+}
+
+// A box with a small knob that turns it by a half turn: the network's attitude is better, but that of the
+// track explains the frame too.
+TEST_F(PoseAlternatives, ASettledTrackThatExplainsTheFrameStays) {
+  Body box;
+  box.radius_m = 2.5;
+  box.add_box({-1.0, -0.8, -0.6}, {1.0, 0.8, 0.6});
+  box.add_box({1.0, -0.1, 0.35}, {1.25, 0.1, 0.55});
+  take(box);
+  truth_.r_lrf_trf = rotation_of({0.1, 0.2, 0.1});
+  rate_ = Eigen::Vector3d::Zero();
+  track_frames(4);
+  const Eigen::Vector3d back = -half_turn();
+  truth_.r_lrf_trf = rotation_of(half_turn()) * truth_.r_lrf_trf;
+  see();
+  state_->advantage_q8 = 32 * kNat_q8;
+  const PoseEstimate estimate = track({0.0, 0.0, 0.0}, rotation_of(back) * truth_.r_lrf_trf, 0);
+  EXPECT_LT(estimate.advantage_q8, 30 * kNat_q8);
+  EXPECT_NEAR(error_deg(estimate), 180.0, 3.0);
+  EXPECT_EQ(estimate.poses, 5);
+}
+
+TEST_F(PoseAlternatives, ASettledTrackStaysWhereTheNetworksAttitudeDoesNotExplainTheFrame) {
+  follow_a_wrong_attitude();
+  const PoseTrackerState kept = *state_;
+  const ExactPose pose = truth_;
+  for (int k = 0; k < 3; ++k) {
+    *state_ = kept;
+    truth_ = pose;
+    noise_ = k == 0 ? 1.5 : 1.0;
+    lost_ = k == 1 ? 0.75 : 0.0;
+    see();
+    if (k == 2) add_patch(0.05);
+    const PoseEstimate estimate = track_seen();
+    EXPECT_GT(error_deg(estimate), 90.0) << k;
+  }
+}
+
+// A plate, seen from the side, and some returns beside it. If it stood across the boresight these would be
+// explained, but half of its rays would have no return.
+TEST_F(PoseAlternatives, ASettledTrackStaysWhereTheNetworksAttitudeCostsMore) {
+  stated_noise_ = {2000, 0};  // the ranges tell nothing
+  take(plate());
+  truth_.r_lrf_trf = rotation_of({0.0, 0.0, 60.0 * kDegree});
+  rate_ = Eigen::Vector3d::Zero();
+  track_frames(4);
+  see();
+  for (int row = 57; row < 71; ++row)
+    for (int column = 94; column < 106; ++column) frame_->add(row, column, kDepth_m);
+  const PoseEstimate estimate = track({0.0, 0.0, -60.0 * kDegree}, truth_.r_lrf_trf, 0);
+  EXPECT_GT(estimate.evidence.unexplained_ppm(), 30'000U);
+  EXPECT_LE(scratch_->other.evidence.unexplained_ppm(), 30'000U);
+  EXPECT_LE(scratch_->other.evidence.missing_ppm(), 690'000U);
+  EXPECT_LE(scratch_->other.evidence.mean_square_q8(), 410);
+  EXPECT_EQ(estimate.poses, 5);
+  EXPECT_LT(error_deg(estimate), 20.0);
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc

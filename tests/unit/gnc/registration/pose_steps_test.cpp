@@ -1,0 +1,165 @@
+// How a frame is registered: where the fit starts, in how many steps, and under which laws of motion.
+#include "tests/unit/gnc/registration/track_pose.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+// From the predicted pose: in a long track, and else (docs/numerics.md, Track).
+constexpr RefinementSettings kTwoSteps{2, 1, 80, 40, 838861, 8388608};
+constexpr RefinementSettings kThreeSteps{3, 1, 160, 40, 838861, 8388608};
+
+class PoseSteps : public TrackPose {
+ protected:
+  // Tracks the frame; whether it was registered in these steps from the pose that the track predicted.
+  bool tracks_in(const RefinementSettings& settings) {
+    const PoseMotion predicted = later_pose(*state_, laws_, period_ns_, fixed_rotation(turn_of_sensor_));
+    const auto view = view_of(*frame_, 1e-6 * predicted.origin_lrf_um[1], body_.radius_m, stated_noise_);
+    RefinementScratch& scratch = *expected_scratch_;
+    scratch.surface.vertices = vertices_.get();
+    Refinement expected;
+    refine(section_.mesh(), *view, {predicted.turning.r_lrf_trf, predicted.origin_lrf_um}, settings, scratch,
+           expected);
+    track_seen();
+    const Pose& pose = scratch_->best.refinement.pose;
+    return pose.r_lrf_trf == expected.pose.r_lrf_trf && pose.origin_lrf_um == expected.pose.origin_lrf_um;
+  }
+
+  std::unique_ptr<RefinementScratch> expected_scratch_ = std::make_unique<RefinementScratch>();
+};
+
+TEST_F(PoseSteps, FromFourPosesOnTwoAreEnough) {
+  track_frames(2);
+  for (int poses = 2; poses < 6; ++poses) {
+    see();
+    EXPECT_TRUE(tracks_in(poses < 4 ? kThreeSteps : kTwoSteps)) << poses;
+  }
+}
+
+TEST_F(PoseSteps, AfterAGapThreeAreNeeded) {
+  for (const std::int64_t beyond_ns : {0, 1}) {
+    *state_ = {};
+    period_ns_ = kNominalPeriod_ns;
+    track_frames(4);
+    period_ns_ = 3 * kNominalPeriod_ns / 2 + beyond_ns;
+    pass_until(period_ns_);
+    see();
+    EXPECT_TRUE(tracks_in(beyond_ns == 0 ? kTwoSteps : kThreeSteps)) << beyond_ns;
+  }
+}
+
+// By noisy ranges, missing returns or returns beside the target.
+TEST_F(PoseSteps, AFrameThatIsNotExplainedIsRegisteredInThree) {
+  track_frames(4);
+  const PoseTrackerState kept = *state_;
+  const ExactPose pose = truth_;
+  for (int k = 0; k < 3; ++k) {
+    *state_ = kept;
+    truth_ = pose;
+    noise_ = k == 0 ? 1.5 : 1.0;
+    lost_ = k == 1 ? 0.75 : 0.0;
+    see();
+    if (k == 2) add_patch(0.05);
+    EXPECT_TRUE(tracks_in(kThreeSteps)) << k;
+  }
+}
+
+// A plate that turns its edge to the sensor: all of it is seen, but no range tells where it is.
+TEST_F(PoseSteps, AFrameWithoutARangeThatCountsIsNotExplained) {
+  take(plate());
+  truth_.r_lrf_trf = rotation_of({0.0, 0.0, 55.0 * kDegree});
+  rate_ = {0.0, 0.0, 5.0 * kDegree};
+  track_frames(5);
+  see();
+  EXPECT_TRUE(tracks_in(kThreeSteps));
+  EXPECT_EQ(scratch_->best.evidence.blocks, 0);
+  EXPECT_LE(scratch_->best.evidence.missing_ppm(), 690'000U);
+  EXPECT_LE(scratch_->best.evidence.unexplained_ppm(), 30'000U);
+  *state_ = {};
+  truth_.r_lrf_trf = rotation_of({0.0, 0.0, 50.0 * kDegree});
+  track_frames(6);
+  const PoseEstimate estimate = track_next();
+  EXPECT_EQ(estimate.doubts, kPoseCoasts | kPoseRanges);
+}
+
+// Its origin is not in its middle, by more than the fit bridges.
+TEST_F(PoseSteps, TheFirstFrameStartsAtTheMiddleOfTheReturns) {
+  Body body = lopsided_body();
+  body.radius_m = 4.0;
+  for (Eigen::Vector3d& corner : body.corners) corner += Eigen::Vector3d(1.2, 0.0, 0.9);
+  take(body);
+  truth_.r_lrf_trf = rotation_of({0.0, 0.3, 0.2});
+  truth_.origin_m = Eigen::Vector3d(0.0, kDepth_m, 0.0) - truth_.r_lrf_trf * Eigen::Vector3d(1.2, 0.0, 0.9);
+  EXPECT_LT(angle_deg(attitude_of(track_next()), truth_.r_lrf_trf), kLargestError_deg);
+}
+
+// Something hides the target, so that nothing pulls the pose either.
+TEST_F(PoseSteps, WithoutReturnsTheFirstFrameStartsAtTheCentroid) {
+  frame_.emplace(sensor_);
+  for (int row = 0; row < sensor_.rays; ++row)
+    for (int column = 0; column < sensor_.rays; ++column) frame_->hide(row, column, 5.0);
+  centroid_m_ = {0.5, kDepth_m, -0.25};
+  track_seen();
+  EXPECT_EQ(scratch_->best.refinement.pose.origin_lrf_um,
+            (std::array<std::int32_t, 3>{500'000, 20'000'000, -250'000}));
+}
+
+TEST_F(PoseSteps, OutOfViewTheFirstFrameStartsAtTheCentroid) {
+  see();
+  centroid_m_ = {12.0, kDepth_m, 0.0};
+  track_seen();
+  EXPECT_EQ(scratch_->best.refinement.pose.origin_lrf_um,
+            (std::array<std::int32_t, 3>{12'000'000, 20'000'000, 0}));
+}
+
+TEST_F(PoseSteps, PosesThatAgreeAreFittedOnceAndUnderOneLaw) {
+  const PoseFitResult untouched = [this] {
+    std::memset(static_cast<void*>(scratch_.get()), 0xA5, sizeof *scratch_);
+    return scratch_->other_fit;
+  }();
+  for (int k = 0; k < 8; ++k) {
+    track_next();
+    EXPECT_EQ(scratch_->other_fit.disagreement_q8, untouched.disagreement_q8) << k;
+    EXPECT_EQ(state_->challenger, kTumbleLaw) << k;
+  }
+}
+
+// Two poses that no rate joins tell nothing of the law.
+TEST_F(PoseSteps, TwoPosesAreFittedUnderOneLaw) {
+  rate_ = Eigen::Vector3d::Zero();
+  track_next();
+  truth_.r_lrf_trf = rotation_of({0.0, 170.0 * kDegree, 0.0}) * truth_.r_lrf_trf;
+  track_next();
+  EXPECT_EQ(state_->challenger, kTumbleLaw);
+}
+
+// A body that tumbles, in a track that takes it to spin. Between the challengers there is the network's law,
+// if it is another one than the track's.
+TEST_F(PoseSteps, LawsTakeTurnsWithTheNetworks) {
+  inertia_trf_ = Eigen::Vector3d(1.3, 0.6, 1.1).asDiagonal();
+  Matrix3<Fixed> tensor = Matrix3<Fixed>::Zero();
+  for (int i = 0; i < 3; ++i) tensor(i, i) = Fixed(inertia_trf_(i, i));
+  Inertia<Fixed> inertia;
+  ASSERT_TRUE(make_inertia<Fixed>(tensor, inertia));
+  laws_ = motion_laws<Fixed>(inertia);
+  rate_ = {0.4, 0.3, -0.3};
+  for (int k = 0; k < 6; ++k) {
+    state_->challenger = 0;  // the next one is the spin
+    track_next();
+  }
+  ASSERT_EQ(state_->law, kSpinLaw);
+  see();
+  const PoseTrackerState kept = *state_;
+  const auto law_after = [&](int challenger, int network_law) {
+    *state_ = kept;
+    state_->challenger = challenger;
+    network_law_ = network_law;
+    track_seen();
+    return state_->law;
+  };
+  EXPECT_EQ(law_after(3, kTumbleLaw), kTumbleLaw);  // the network's turn
+  EXPECT_NE(law_after(4, kTumbleLaw), kTumbleLaw);  // that of law 2
+  EXPECT_EQ(law_after(1, kSpinLaw), kTumbleLaw);    // the network's, but the track follows that already
+}
+
+}  // namespace
+}  // namespace tumblesight::gnc
