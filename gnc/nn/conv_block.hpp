@@ -41,10 +41,13 @@ struct ConvBlock {
   static constexpr int kWeights = 3 * 3 * kChannelsIn * kChannelsOut;
   static constexpr std::size_t kParameters = kWeights + kChannelsOut;
   static constexpr long kMacs = 1L * kColumns * kColumns * kWeights;  // including those with the padding
-  // Those that kernels execute which compute `pixels` pixels together.
-  static constexpr long macs_done(int pixels) {
-    const int rows_spared = kColumns % pixels != 0 ? 0 : kColumns == kSide ? 2 : 1;
-    return kMacs - 1L * rows_spared * kColumns * kWeights / 3;
+  // Those that `kernels` execute if they multiply every input with every weight.
+  static long macs_done(const Kernels<N>& kernels) {
+    const bool spares_rows = pooled_convolution_of(kernels) == nullptr && kColumns % kernels.pixels == 0;
+    const int padded = kColumns == kSide ? 2 : 1;  // rows or columns beside the padding
+    const int rows = 3 * kColumns - (spares_rows ? padded : 0);
+    const int columns = 3 * kColumns - (spares_rows && kernels.skips_zeros ? padded : 0);
+    return 1L * rows * columns * kChannelsIn * kChannelsOut;
   }
   using Weights = LayerWeights<N, kWeights, kChannelsOut>;
   using Input = PaddedImage<ConvInput<N>, kSide, kChannelsIn>;
@@ -55,6 +58,11 @@ struct ConvBlock {
   [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                         Sums& sums, MaxPooled& out) {
     out.values.fill({});
+    if (auto* const pooled_convolution = pooled_convolution_of(kernels)) {
+      pooled_convolution(kImage, in.values.data(), weights.bias.data(), weights.weight.data(),
+                         weights.shift.data(), out.row(0), MaxPooled::kRow);
+      return;
+    }
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);
       kernels.max_pool(sums.data(), kColumns, kChannelsOut, weights.shift.data(), out.row(y));
@@ -74,11 +82,25 @@ struct ConvBlock {
   }
 
  private:
+  static constexpr int kStrips = 3;
+
+  static constexpr ImageShape kImage{kSide, kChannelsIn, kChannelsOut};
+
+  static PooledConvolution<N>* pooled_convolution_of(const Kernels<N>& kernels) {
+    return kernels.pooled_convolution != nullptr ? kernels.pooled_convolution(kImage) : nullptr;
+  }
+  static constexpr ProductShape shape_of(int rows, int strips) {
+    return {rows,        kColumns,
+            Input::kRow, kChannelsIn,
+            strips,      3 * kChannelsIn,
+            Input::kRow, kChannelsOut,
+            kChannelsIn, kColumns == kSide ? kChannelsIn : 0};
+  }
+
   // Sums of rows 2 y and 2 y + 1. If rows can be computed one at a time at no cost, the first row skips the
   // padding above and the last row the padding below.
   static void two_rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int y,
                        Sums& sums) {
-    constexpr int kStrips = 3;
     const bool skips_padding = kColumns % kernels.pixels == 0;
     const int above = skips_padding && y == 0 ? 1 : 0;
     const int below = skips_padding && 2 * y + 2 == kSide ? 1 : 0;
@@ -93,9 +115,8 @@ struct ConvBlock {
   // Sums of `count` rows starting at row `first`, over `strips` strips (ky) starting at `first_strip`.
   static void rows(const Kernels<N>& kernels, const Weights& weights, const Input& in, int first, int count,
                    int first_strip, int strips, Sum<N>* sums) {
-    const ProductShape shape{count,  kColumns,        Input::kRow, kChannelsIn,
-                             strips, 3 * kChannelsIn, Input::kRow, kChannelsOut};
-    kernels.convolve(shape, in.values.data() + (first + first_strip) * Input::kRow, weights.bias.data(),
+    kernels.convolve(shape_of(count, strips), in.values.data() + (first + first_strip) * Input::kRow,
+                     weights.bias.data(),
                      weights.weight.data() + first_strip * 3 * kChannelsIn * kChannelsOut, sums);
   }
 };

@@ -60,7 +60,7 @@ template <class N>
 double convolution_macs(const gnc::Kernels<N>& kernels) {
   long macs = 0;
   gnc::for_each_index<0, gnc::kImageLayerCount>(
-      [&](auto index) { macs += gnc::Layer<N, decltype(index)::value>::macs_done(kernels.pixels); });
+      [&](auto index) { macs += gnc::Layer<N, decltype(index)::value>::macs_done(kernels); });
   return static_cast<double>(macs);
 }
 

@@ -1,4 +1,6 @@
 #include "gnc/nn/kernels/float_vectors.hpp"
+#include "gnc/nn/kernels/pool_256_bit.hpp"
+#include "gnc/nn/kernels/row_blocks.hpp"
 #include "gnc/nn/kernels/sets.hpp"
 #include "gnc/nn/kernels/x86_vectors.hpp"
 
@@ -21,10 +23,13 @@ struct Int16 {
   }
 };
 
-// Convolution: weights and inputs are widened to 16 bits. A group has four products; the sums of its two
-// pairs are kept separately and added at the end.
-struct Int8 {
-  using Kind = Int8Product;
+// Convolution: weights and inputs are widened to 16 bits, the inputs before they are used. A group has four
+// products; the sums of its two pairs are kept separately and added at the end.
+struct WidenedProduct : Int8Product {
+  using Input = std::int16_t;
+};
+struct Widened {
+  using Kind = WidenedProduct;
   static constexpr int kWidth = 8;
   struct Sums {
     __m256i low, high;  // channels 0..3 and 4..7, two partial sums each
@@ -41,39 +46,138 @@ struct Int8 {
   TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) {
     return {_mm256_cvtepi8_epi16(load_128(from)), _mm256_cvtepi8_epi16(load_128(from + 16))};
   }
-  TUMBLESIGHT_INLINE Values values(const std::uint8_t* from) {
-    return _mm256_cvtepu8_epi16(_mm_set1_epi32(group_of(from)));
+  TUMBLESIGHT_INLINE Values values(const std::int16_t* from) {
+    std::int64_t group = 0;
+    std::memcpy(&group, from, sizeof group);
+    return _mm256_set1_epi64x(group);
   }
   TUMBLESIGHT_INLINE void add(Sums& sum, Values value, const Weights& weight) {
     sum.low = _mm256_add_epi32(sum.low, _mm256_madd_epi16(value, weight.low));
     sum.high = _mm256_add_epi32(sum.high, _mm256_madd_epi16(value, weight.high));
   }
 };
+// The same with inputs that are widened each time.
+struct Int8 : Widened {
+  using Kind = Int8Product;
+  TUMBLESIGHT_INLINE Values values(const std::uint8_t* from) {
+    return _mm256_cvtepu8_epi16(_mm_set1_epi32(group_of(from)));
+  }
+};
+
+constexpr int kMostWidened = 4096;
+TUMBLESIGHT_INLINE void widen(const std::uint8_t* in, int count, std::int16_t* out) {
+  int i = 0;
+  for (; i + 16 <= count; i += 16) store_256(_mm256_cvtepu8_epi16(load_128(in + i)), out + i);
+  for (; i < count; ++i) out[i] = in[i];
+}
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  if (Blocks<Int8>::is_narrow<5, 1, 4>(shape)) {
-    Blocks<Int8>::narrow_product<5, 1, 4>(shape, in, start, weights, out);
-  } else {
+  const int inputs = (shape.rows - 1) * shape.row_step + (shape.columns - 1) * shape.column_step +
+                     (shape.strips - 1) * shape.strip_step + shape.strip_length;
+  if (inputs > kMostWidened) {
     Blocks<Int8>::product<6, 1, 4>(shape, in, start, weights, out);
+    return;
+  }
+  alignas(32) std::int16_t widened[kMostWidened];
+  widen(in, inputs, widened);
+  if (RowBlocks<Widened>::fit<6, 1>(shape)) {
+    RowBlocks<Widened>::product<6, 1>(shape, widened, start, weights, out);
+  } else {
+    Blocks<Widened>::product<6, 1, 4>(shape, widened, start, weights, out);
   }
 }
+
+// The first and third input of a group in one vector, the second and fourth in another: 16-bit pairs.
+struct Pairs {
+  __m256i even, odd;
+};
+TUMBLESIGHT_INLINE Pairs pairs_of_weights(const std::int8_t* from) {
+  const __m256i weights = load_256(from);
+  return {_mm256_srai_epi16(_mm256_slli_epi16(weights, 8), 8), _mm256_srai_epi16(weights, 8)};
+}
+
+// For the first layer, whose sums are short: no partial sums have to be added at the end. 16 channels; all
+// weights and inputs are widened before they are used.
+struct WidenedPairs {
+  using Input = std::int16_t;
+  using Weight = std::int16_t;
+  struct Weights {
+    Pairs low, high;  // channels 0..7 and 8..15
+  };
+  struct Values {
+    __m256i even, odd;
+  };
+  TUMBLESIGHT_INLINE Weights weights(const std::int16_t* from) {
+    return {{load_256(from), load_256(from + 16)}, {load_256(from + 32), load_256(from + 48)}};
+  }
+  TUMBLESIGHT_INLINE Values values(const std::int16_t* from) {
+    return {_mm256_set1_epi32(group_of(from)), _mm256_set1_epi32(group_of(from + 2))};
+  }
+  TUMBLESIGHT_INLINE void add(Pool256Bit::Sums& sum, const Values& value, const Weights& weight) {
+    sum.low = _mm256_add_epi32(sum.low, _mm256_madd_epi16(value.even, weight.low.even));
+    sum.high = _mm256_add_epi32(sum.high, _mm256_madd_epi16(value.even, weight.high.even));
+    sum.low = _mm256_add_epi32(sum.low, _mm256_madd_epi16(value.odd, weight.low.odd));
+    sum.high = _mm256_add_epi32(sum.high, _mm256_madd_epi16(value.odd, weight.high.odd));
+  }
+};
+using Windows = PooledWindows<Pool256Bit>;
+constexpr int kGroupsOfWindow = 9;  // of an image of four channels
+
+// The weights of 16 channels.
+TUMBLESIGHT_INLINE void widen_weights(const std::int8_t* weights, int weight_step, std::int16_t* out) {
+  for (int group = 0; group < kGroupsOfWindow; ++group, weights += weight_step) {
+    for (int half = 0; half < 2; ++half, out += 32) {
+      const Pairs pairs = pairs_of_weights(weights + 32 * half);
+      store_256(pairs.even, out);
+      store_256(pairs.odd, out + 16);
+    }
+  }
+}
+// Inputs in the order of WidenedPairs.
+TUMBLESIGHT_INLINE void widen_pairs(const std::uint8_t* in, int count, std::int16_t* out) {
+  const __m256i kOrder = _mm256_setr_epi8(0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15, 0, 1, 4, 5, 2,
+                                          3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15);
+  for (int i = 0; i < count; i += 16)
+    store_256(_mm256_shuffle_epi8(_mm256_cvtepu8_epi16(load_128(in + i)), kOrder), out + i);
+}
+
+void convolve_and_pool(const ImageShape& shape, const std::uint8_t* in, const std::int32_t* start,
+                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out,
+                       int out_row) {
+  alignas(32) std::int16_t widened_weights[kGroupsOfWindow * Windows::kWidth * Windows::kGroup];
+  alignas(32) std::int16_t widened[kMostWidened];
+  for (int c = 0; c < shape.channels_out; c += Windows::kWidth) {
+    widen_weights(weights + c * Windows::kGroup, shape.channels_out * Windows::kGroup, widened_weights);
+    for (int y = 0; y < shape.side / 2; ++y) {
+      widen_pairs(in + 2 * y * shape.row(), 4 * shape.row(), widened);
+      Windows::convolve_row<WidenedPairs, 1>(shape, widened, start + c, widened_weights,
+                                             Windows::kWidth * Windows::kGroup, shift + c,
+                                             out + y * out_row + c);
+    }
+  }
+}
+PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
+  return Windows::fits(shape) && 4 * shape.row() <= kMostWidened ? convolve_and_pool : nullptr;
+}
+
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Int16>::product<4, 2, 8>(shape, in, start, weights, out);
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
               std::uint8_t* out) {
-  pool<FixedPoint, MaxPooling<FixedPoint>>(sums, columns, channels, shift, out);
+  Windows::max_pool(sums, columns, channels, shift, out);
 }
 void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
                   std::int16_t* out) {
-  pool<FixedPoint, AveragePooling<FixedPoint>>(sums, columns, channels, shift, out);
+  Windows::average_pool(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, 6, convolve, multiply, max_pool, average_pool};
+const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, 6,   convolve, multiply, max_pool, average_pool,
+                                     pooled_convolution,    true};
 
 #if TUMBLESIGHT_FLOAT32
 namespace {

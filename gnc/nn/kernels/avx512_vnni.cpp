@@ -1,3 +1,5 @@
+#include "gnc/nn/kernels/pooled_windows.hpp"
+#include "gnc/nn/kernels/row_blocks.hpp"
 #include "gnc/nn/kernels/sets.hpp"
 #include "gnc/nn/kernels/x86_vectors.hpp"
 
@@ -14,6 +16,8 @@ struct Vnni {
 };
 struct Int8 : Vnni {
   using Kind = Int8Product;
+  using Input = std::uint8_t;
+  using Weight = std::int8_t;
   TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) { return _mm512_loadu_si512(from); }
   TUMBLESIGHT_INLINE Values values(const std::uint8_t* from) { return _mm512_set1_epi32(group_of(from)); }
   TUMBLESIGHT_INLINE void add(Sums& sum, Values value, Weights weight) {
@@ -29,10 +33,38 @@ struct Int16 : Vnni {
   }
 };
 
+struct Pool {
+  using Sums = __m512i;
+  struct Rounding {
+    __m512i half, shift;
+  };
+  TUMBLESIGHT_INLINE Sums load(const std::int32_t* from) { return _mm512_loadu_si512(from); }
+  TUMBLESIGHT_INLINE Sums max(Sums a, Sums b) { return _mm512_max_epi32(a, b); }
+  TUMBLESIGHT_INLINE Sums add(Sums a, Sums b) { return _mm512_add_epi32(a, b); }
+  TUMBLESIGHT_INLINE Rounding rounding(const std::uint8_t* from) {
+    const __m512i one = _mm512_set1_epi32(1), shift = _mm512_cvtepu8_epi32(load_128(from));
+    return {_mm512_sllv_epi32(one, _mm512_sub_epi32(shift, one)), shift};
+  }
+  TUMBLESIGHT_INLINE Sums requantize(Sums sums, const Rounding& rounding) {
+    return _mm512_srav_epi32(_mm512_add_epi32(sums, rounding.half), rounding.shift);
+  }
+  TUMBLESIGHT_INLINE Sums limit(Sums sums, std::int32_t largest) {
+    return _mm512_min_epi32(_mm512_max_epi32(sums, _mm512_setzero_si512()), _mm512_set1_epi32(largest));
+  }
+  TUMBLESIGHT_INLINE void store(Sums sums, std::uint8_t* to) {
+    const __m512i not_negative = _mm512_max_epi32(sums, _mm512_setzero_si512());
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm512_cvtusepi32_epi8(not_negative));
+  }
+  TUMBLESIGHT_INLINE void store(Sums sums, std::int16_t* to) { store_256(_mm512_cvtepi32_epi16(sums), to); }
+};
+using Windows = PooledWindows<Pool>;
+
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  if (Blocks<Int8>::is_narrow<25, 1, 4>(shape)) {
-    Blocks<Int8>::narrow_product<25, 1, 4>(shape, in, start, weights, out);
+  if (RowBlocks<Int8>::fit<6, 4>(shape)) {
+    RowBlocks<Int8>::product<6, 4>(shape, in, start, weights, out);
+  } else if (RowBlocks<Int8>::fit<6, 3>(shape)) {
+    RowBlocks<Int8>::product<6, 3>(shape, in, start, weights, out);
   } else if (shape.channels % 64 == 0) {
     Blocks<Int8>::product<6, 4, 8>(shape, in, start, weights, out);
   } else if (shape.channels % 48 == 0) {
@@ -41,22 +73,30 @@ void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int3
     Blocks<Int8>::product<12, 2, 8>(shape, in, start, weights, out);
   }
 }
+void convolve_and_pool(const ImageShape& shape, const std::uint8_t* in, const std::int32_t* start,
+                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out,
+                       int out_row) {
+  Windows::convolve<Int8, 2>(shape, in, start, weights, shift, out, out_row);
+}
+PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
+  return Windows::fits(shape) ? convolve_and_pool : nullptr;
+}
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Int16>::product<6, 4, 12>(shape, in, start, weights, out);
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
               std::uint8_t* out) {
-  pool<FixedPoint, MaxPooling<FixedPoint>>(sums, columns, channels, shift, out);
+  Windows::max_pool(sums, columns, channels, shift, out);
 }
 void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
                   std::int16_t* out) {
-  pool<FixedPoint, AveragePooling<FixedPoint>>(sums, columns, channels, shift, out);
+  Windows::average_pool(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
 const Kernels<FixedPoint> kFixedAvx512Vnni{
-    InstructionSet::kAvx512Vnni, 6, convolve, multiply, max_pool, average_pool};
+    InstructionSet::kAvx512Vnni, 6, convolve, multiply, max_pool, average_pool, pooled_convolution, true};
 
 }  // namespace tumblesight::gnc::kernels

@@ -1,3 +1,5 @@
+#include "gnc/nn/kernels/pool_256_bit.hpp"
+#include "gnc/nn/kernels/row_blocks.hpp"
 #include "gnc/nn/kernels/sets.hpp"
 #include "gnc/nn/kernels/x86_vectors.hpp"
 
@@ -29,13 +31,37 @@ struct Int16 : Vnni {
   }
 };
 
+// 16 channels.
+struct Int8Pair {
+  using Input = std::uint8_t;
+  using Weight = std::int8_t;
+  using Weights = Pool256Bit::Sums;
+  TUMBLESIGHT_INLINE Weights weights(const std::int8_t* from) {
+    return {load_256(from), load_256(from + 32)};
+  }
+  TUMBLESIGHT_INLINE __m256i values(const std::uint8_t* from) { return Int8::values(from); }
+  TUMBLESIGHT_INLINE void add(Pool256Bit::Sums& sum, __m256i value, const Weights& weight) {
+    Int8::add(sum.low, value, weight.low);
+    Int8::add(sum.high, value, weight.high);
+  }
+};
+using Windows = PooledWindows<Pool256Bit>;
+
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  if (Blocks<Int8>::is_narrow<5, 2, 4>(shape)) {
-    Blocks<Int8>::narrow_product<5, 2, 4>(shape, in, start, weights, out);
+  if (RowBlocks<Int8>::fit<6, 2>(shape)) {
+    RowBlocks<Int8>::product<6, 2>(shape, in, start, weights, out);
   } else {
     Blocks<Int8>::product<6, 2, 8>(shape, in, start, weights, out);
   }
+}
+void convolve_and_pool(const ImageShape& shape, const std::uint8_t* in, const std::int32_t* start,
+                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out,
+                       int out_row) {
+  Windows::convolve<Int8Pair, 1>(shape, in, start, weights, shift, out, out_row);
+}
+PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
+  return Windows::fits(shape) ? convolve_and_pool : nullptr;
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
@@ -43,16 +69,16 @@ void multiply(const ProductShape& shape, const std::int16_t* in, const std::int3
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
               std::uint8_t* out) {
-  pool<FixedPoint, MaxPooling<FixedPoint>>(sums, columns, channels, shift, out);
+  Windows::max_pool(sums, columns, channels, shift, out);
 }
 void average_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
                   std::int16_t* out) {
-  pool<FixedPoint, AveragePooling<FixedPoint>>(sums, columns, channels, shift, out);
+  Windows::average_pool(sums, columns, channels, shift, out);
 }
 
 }  // namespace
 
 const Kernels<FixedPoint> kFixedAvxVnni{
-    InstructionSet::kAvxVnni, 6, convolve, multiply, max_pool, average_pool};
+    InstructionSet::kAvxVnni, 6, convolve, multiply, max_pool, average_pool, pooled_convolution, true};
 
 }  // namespace tumblesight::gnc::kernels

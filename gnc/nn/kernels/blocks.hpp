@@ -103,55 +103,6 @@ struct Blocks {
     return c;
   }
 
-  // For the first layer, whose pixels have few channels and whose sums are short: kPixels adjacent pixels of
-  // a row at a distance known to the compiler do not need a pointer each.
-  template <int kPixels, int kPacks, int kColumnStep>
-  TUMBLESIGHT_INLINE bool is_narrow(const ProductShape& shape) {
-    static_assert(kFillBlocks<kPacks>);
-    return shape.column_step == kColumnStep && shape.columns % kPixels == 0;
-  }
-  template <int kPixels, int kPacks, int kColumnStep>
-  TUMBLESIGHT_INLINE void narrow_block(const ProductShape& shape, const Input* in, const Sum* start,
-                                       const Weight* weights, Sum* out) {
-    typename Ops::Sums sum[kPixels][kPacks];
-#pragma GCC unroll 32
-    for (int p = 0; p < kPixels; ++p) {
-#pragma GCC unroll 16
-      for (int c = 0; c < kPacks; ++c) sum[p][c] = Ops::load(start + c * kWidth);
-    }
-    for (int strip = 0; strip < shape.strips; ++strip) {
-      const Input* const strip_in = in + strip * shape.strip_step;
-      for (int i = 0; i < shape.strip_length; i += kGroup, weights += shape.channels * kGroup) {
-        typename Ops::Weights weight[kPacks];
-#pragma GCC unroll 16
-        for (int c = 0; c < kPacks; ++c) weight[c] = Ops::weights(weights + c * kWidth * kGroup);
-#pragma GCC unroll 32
-        for (int p = 0; p < kPixels; ++p) {
-          const typename Ops::Values value = Ops::values(strip_in + p * kColumnStep + i);
-#pragma GCC unroll 16
-          for (int c = 0; c < kPacks; ++c) Ops::add(sum[p][c], value, weight[c]);
-        }
-      }
-    }
-#pragma GCC unroll 32
-    for (int p = 0; p < kPixels; ++p) {
-#pragma GCC unroll 16
-      for (int c = 0; c < kPacks; ++c) Ops::store(sum[p][c], out + p * shape.channels + c * kWidth);
-    }
-  }
-  template <int kPixels, int kPacks, int kColumnStep>
-  TUMBLESIGHT_INLINE void narrow_product(const ProductShape& shape, const Input* in, const Sum* start,
-                                         const Weight* weights, Sum* out) {
-    for (int c = 0; c < shape.channels; c += kPacks * kWidth) {
-      for (int first = 0; first < shape.rows * shape.columns; first += kPixels) {
-        const int y = first / shape.columns;
-        const Input* const pixel = in + y * shape.row_step + (first - y * shape.columns) * kColumnStep;
-        narrow_block<kPixels, kPacks, kColumnStep>(shape, pixel, start + c, weights + c * kGroup,
-                                                   out + first * shape.channels + c);
-      }
-    }
-  }
-
   // The product: blocks of kPixels pixels and kPacks vectors, or of one pixel and kSinglePacks vectors if
   // there are fewer pixels. A block needs kPixels * kPacks registers for sums, kPacks for weights and one for
   // a value. Returns the first channel that is not computed.

@@ -23,6 +23,29 @@ template <class N>
 using AveragePool = void(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift,
                          DenseInput<N>* out);
 
+// A square image inside a border of one pixel of zeros, and the number of channels that a convolution turns
+// its channels into.
+struct ImageShape {
+  int side;  // without the border
+  int channels_in;
+  int channels_out;
+
+  constexpr int columns() const { return side / 2 * 2; }  // of sums: an odd last one fills no window
+  constexpr int row() const { return (side + 2) * channels_in; }
+};
+
+// 3x3 convolution of a whole image and max pooling, without storing all sums.
+//
+// in        from the first value of the border on
+// start     channels_out sums
+// weights   as for a Product of three strips of three pixels
+// shift     1..30 per channel
+// out       the first value inside the border, `out_row` values per row
+template <class N>
+using PooledConvolution = void(const ImageShape& shape, const ConvInput<N>* in, const Sum<N>* start,
+                               const typename N::ConvProduct::Weight* weights, const std::uint8_t* shift,
+                               ConvInput<N>* out, int out_row);
+
 template <class N>
 struct Kernels {
   InstructionSet set;
@@ -33,6 +56,11 @@ struct Kernels {
   Product<typename N::DenseProduct>* multiply;
   MaxPool<N>* max_pool;
   AveragePool<N>* average_pool;
+  // The fastest convolution with pooling of an image of this shape, nullptr if that is convolve() and
+  // max_pool(). nullptr: it is so for every shape.
+  PooledConvolution<N>* (*pooled_convolution)(const ImageShape& shape) = nullptr;
+  // Whether convolve() skips the zeros of a shape whose columns are a multiple of `pixels`.
+  bool skips_zeros = false;
 };
 
 // The kernels for `set`; nullptr if there are none for this numerics, in this build or on this processor.

@@ -48,6 +48,10 @@ struct ProductShape {
   int strip_length;  // a multiple of kGroup
   int strip_step;    // values from one strip of `in` to the next
   int channels;      // output channels; for integers a multiple of kIntegerChannels
+  // Inputs known to be zero, which need not be multiplied: at the start of each strip of a row's first pixel,
+  // and at the end of each strip of its last pixel. column_step values or none.
+  int zeros_left = 0;
+  int zeros_right = 0;
 };
 inline constexpr int kIntegerChannels = 16;
 

@@ -68,7 +68,36 @@ std::vector<ProductShape> shapes(bool integers) {
   all.push_back(convolution(2, 4, 4, 16));
   all.back().strips = 17;  // more than a chunk holds
   all.push_back(dense(382, 768));
+  if (integers) all.push_back(convolution(2, 10, 96, 16));  // more inputs than AVX2 widens beforehand
   return all;
+}
+
+// Rows of blocks beside the padding: on both sides of a row, and on the left only.
+std::vector<ProductShape> shapes_with_zeros() {
+  std::vector<ProductShape> all;
+  for (const int columns : {6, 12, 24}) {
+    for (const int channels : {16, 48, 64}) {
+      for (const bool on_both_sides : {true, false}) {
+        all.push_back(convolution(2, columns, 8, channels));
+        all.back().zeros_left = 8;
+        all.back().zeros_right = on_both_sides ? 8 : 0;
+      }
+    }
+  }
+  return all;
+}
+
+// The zeros that `s` states.
+template <class Kind>
+void clear_zeros(const ProductShape& s, std::vector<typename Kind::Input>& in) {
+  for (int y = 0; y < s.rows; ++y) {
+    for (int t = 0; t < s.strips; ++t) {
+      const auto first = in.begin() + y * s.row_step + t * s.strip_step;
+      const auto last = first + (s.columns - 1) * s.column_step + s.strip_length;
+      std::fill(first, first + s.zeros_left, typename Kind::Input{});
+      std::fill(last - s.zeros_right, last, typename Kind::Input{});
+    }
+  }
 }
 
 std::size_t input_size(const ProductShape& s) {
@@ -97,7 +126,10 @@ void expect_definition_for_all_shapes(Product<Kind>* product) {
   RandomValues random(7);
   std::vector<ProductShape> all = shapes(kIntegers);
   // Enough inputs for a second chunk. Sums of 16-bit inputs would exceed 32 bits.
-  if (std::is_same_v<Kind, Int8Product>) all.push_back(convolution(1, 10, 72, 16));
+  if (std::is_same_v<Kind, Int8Product>) {
+    all.push_back(convolution(1, 10, 72, 16));
+    for (const ProductShape& s : shapes_with_zeros()) all.push_back(s);
+  }
   for (ProductShape s : all) {
     SCOPED_TRACE(::testing::Message()
                  << s.rows << "x" << s.columns << ", " << s.strip_length << " to " << s.channels);
@@ -107,14 +139,15 @@ void expect_definition_for_all_shapes(Product<Kind>* product) {
     if (kIntegers) {
       for (auto& value : start) value = static_cast<typename Kind::Sum>(value / 4);
     }
-    expect_definition<Kind>(product, s, random.vector<typename Kind::Input>(input_size(s)), start,
-                            random.vector<typename Kind::Weight>(weights));
+    auto in = random.vector<typename Kind::Input>(input_size(s));
+    clear_zeros<Kind>(s, in);
+    expect_definition<Kind>(product, s, in, start, random.vector<typename Kind::Weight>(weights));
     if (!kIntegers) continue;
+    std::fill(in.begin(), in.end(), std::numeric_limits<typename Kind::Input>::max());
+    clear_zeros<Kind>(s, in);
     for (const int sign : {-1, 1}) {
       expect_definition<Kind>(
-          product, s,
-          std::vector<typename Kind::Input>(input_size(s), std::numeric_limits<typename Kind::Input>::max()),
-          std::vector<typename Kind::Sum>(s.channels, 0),
+          product, s, in, std::vector<typename Kind::Sum>(s.channels, 0),
           std::vector<typename Kind::Weight>(weights, static_cast<typename Kind::Weight>(127 * sign)));
     }
   }
@@ -178,6 +211,72 @@ void expect_average_pool_by_definition(AveragePool<N>* average_pool) {
   }
 }
 
+// A padded image, convolved and pooled.
+class PooledImage {
+ public:
+  explicit PooledImage(const ImageShape& shape)
+      : shape_(shape),
+        in_(static_cast<std::size_t>(shape.side + 2) * shape.row()),
+        start_(shape.channels_out),
+        weights_(static_cast<std::size_t>(9) * shape.channels_in * shape.channels_out),
+        shift_(shape.channels_out) {
+    for (int c = 0; c < shape.channels_out; ++c) shift_[c] = static_cast<std::uint8_t>(8 + c % 10);
+  }
+
+  void fill_randomly(RandomValues& random) {
+    fill_image([&random] { return random.next<std::uint8_t>(); });
+    random.fill(weights_);
+    for (std::int32_t& start : start_) start = random.next<std::int16_t>();
+  }
+  // The largest sums of one sign. `every_third`: of the other sign are the weights of every third pixel.
+  void fill_with_largest(int sign, bool every_third) {
+    fill_image([] { return std::uint8_t{255}; });
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      const std::size_t pixel = i / static_cast<std::size_t>(shape_.channels_in * shape_.channels_out);
+      weights_[i] = static_cast<std::int8_t>(every_third && pixel % 3 == 1 ? -127 * sign : 127 * sign);
+    }
+  }
+
+  void expect_definition(PooledConvolution<FixedPoint>* convolution) const {
+    const int side_out = shape_.side / 2;
+    const int row = (side_out + 2) * shape_.channels_out;  // one pixel of each end must not be written
+    std::vector<std::uint8_t> out(static_cast<std::size_t>(side_out) * row, 77);
+    convolution(shape_, in_.data(), start_.data(), weights_.data(), shift_.data(),
+                out.data() + shape_.channels_out, row);
+    EXPECT_EQ(out, by_parts(row));
+  }
+
+ private:
+  template <class Next>
+  void fill_image(const Next& next) {
+    for (int y = 1; y <= shape_.side; ++y) {
+      const auto first = in_.begin() + y * shape_.row() + shape_.channels_in;
+      std::generate(first, first + shape_.side * shape_.channels_in, next);
+    }
+  }
+  // Product and pooling one after the other.
+  std::vector<std::uint8_t> by_parts(int row) const {
+    const Kernels<FixedPoint>& portable = *kernels_on<FixedPoint>(InstructionSet::kPortable);
+    ProductShape two_rows = convolution(2, shape_.columns(), shape_.channels_in, shape_.channels_out);
+    two_rows.row_step = two_rows.strip_step = shape_.row();
+    std::vector<std::uint8_t> out(static_cast<std::size_t>(shape_.side / 2) * row, 77);
+    for (int y = 0; y < shape_.side / 2; ++y) {
+      const auto first = in_.begin() + 2 * y * shape_.row();
+      const std::vector<std::int32_t> sums =
+          by_definition<Int8Product>(two_rows, {first, first + 4 * shape_.row()}, start_, weights_);
+      portable.max_pool(sums.data(), shape_.columns(), shape_.channels_out, shift_.data(),
+                        out.data() + y * row + shape_.channels_out);
+    }
+    return out;
+  }
+
+  ImageShape shape_;
+  std::vector<std::uint8_t> in_;
+  std::vector<std::int32_t> start_;
+  std::vector<std::int8_t> weights_;
+  std::vector<std::uint8_t> shift_;
+};
+
 class KernelsOf : public ::testing::TestWithParam<InstructionSet> {
  protected:
   template <class N>
@@ -197,6 +296,29 @@ TEST_P(KernelsOf, FixedPointHaveTheBitsOfTheirDefinition) {
 }
 TEST_P(KernelsOf, Float32HaveTheBitsOfTheirDefinition) {
   check<Float32>();
+}
+TEST_P(KernelsOf, ConvolveAndPoolWithTheBitsOfBothParts) {
+  const Kernels<FixedPoint>* kernels = kernels_on<FixedPoint>(GetParam());
+  if (kernels == nullptr || kernels->pooled_convolution == nullptr) GTEST_SKIP() << "has none";
+  RandomValues random(12);
+  // Those of the network, then odd sides and other numbers of channels.
+  const ImageShape shapes[] = {{50, 4, 32},  {25, 32, 64}, {12, 64, 128}, {7, 4, 48},
+                               {10, 32, 16}, {8, 64, 48},  {6, 96, 16}};
+  for (const ImageShape& shape : shapes) {
+    SCOPED_TRACE(::testing::Message()
+                 << shape.side << ", " << shape.channels_in << " to " << shape.channels_out);
+    PooledConvolution<FixedPoint>* const convolution = kernels->pooled_convolution(shape);
+    if (convolution == nullptr) continue;
+    PooledImage image(shape);
+    image.fill_randomly(random);
+    image.expect_definition(convolution);
+    for (const int sign : {-1, 1}) {
+      for (const bool every_third : {false, true}) {
+        image.fill_with_largest(sign, every_third);
+        image.expect_definition(convolution);
+      }
+    }
+  }
 }
 
 // Only the portable kernels of 32-bit processors use it.
