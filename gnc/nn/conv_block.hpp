@@ -41,12 +41,15 @@ struct ConvBlock {
   static constexpr int kWeights = 3 * 3 * kChannelsIn * kChannelsOut;
   static constexpr std::size_t kParameters = kWeights + kChannelsOut;
   static constexpr long kMacs = 1L * kColumns * kColumns * kWeights;  // including those with the padding
-  // Those that `kernels` execute if they multiply every input with every weight.
+  // Those that convolve() of `kernels` executes. Where it is not used, the products with the padding are left
+  // out.
   static long macs_done(const Kernels<N>& kernels) {
-    const bool spares_rows = pooled_convolution_of(kernels) == nullptr && kColumns % kernels.pixels == 0;
+    const bool is_pooled = pooled_convolution_of(kernels) != nullptr;
+    const bool spares_rows = is_pooled || kColumns % kernels.pixels == 0;
+    const bool spares_columns = is_pooled || (spares_rows && kernels.skips_zeros);
     const int padded = kColumns == kSide ? 2 : 1;  // rows or columns beside the padding
     const int rows = 3 * kColumns - (spares_rows ? padded : 0);
-    const int columns = 3 * kColumns - (spares_rows && kernels.skips_zeros ? padded : 0);
+    const int columns = 3 * kColumns - (spares_columns ? padded : 0);
     return 1L * rows * columns * kChannelsIn * kChannelsOut;
   }
   using Weights = LayerWeights<N, kWeights, kChannelsOut>;

@@ -2,6 +2,7 @@
 #include "gnc/nn/kernels/pool_256_bit.hpp"
 #include "gnc/nn/kernels/row_blocks.hpp"
 #include "gnc/nn/kernels/sets.hpp"
+#include "gnc/nn/kernels/winograd_tiles.hpp"
 #include "gnc/nn/kernels/x86_vectors.hpp"
 
 namespace tumblesight::gnc::kernels {
@@ -157,8 +158,48 @@ void convolve_and_pool(const ImageShape& shape, const std::uint8_t* in, const st
     }
   }
 }
+struct WinogradOps {
+  using Vector = __m256i;
+  using Pool = Pool256Bit;
+  static constexpr int kLanes = 8, kTiles = 3, kPooled = 2;
+  TUMBLESIGHT_INLINE Vector load(const void* from) { return load_256(from); }
+  TUMBLESIGHT_INLINE void store(Vector a, void* to) { store_256(a, to); }
+  TUMBLESIGHT_INLINE Vector zero() { return _mm256_setzero_si256(); }
+  TUMBLESIGHT_INLINE Vector broadcast(const std::int32_t* from) { return _mm256_set1_epi32(*from); }
+  TUMBLESIGHT_INLINE Vector add_16(Vector a, Vector b) { return _mm256_add_epi16(a, b); }
+  TUMBLESIGHT_INLINE Vector sub_16(Vector a, Vector b) { return _mm256_sub_epi16(a, b); }
+  template <int kBits>
+  TUMBLESIGHT_INLINE Vector shift_16(Vector a) {
+    return _mm256_slli_epi16(a, kBits);
+  }
+  TUMBLESIGHT_INLINE Vector add_32(Vector a, Vector b) { return _mm256_add_epi32(a, b); }
+  TUMBLESIGHT_INLINE Vector sub_32(Vector a, Vector b) { return _mm256_sub_epi32(a, b); }
+  TUMBLESIGHT_INLINE Vector max_32(Vector a, Vector b) { return _mm256_max_epi32(a, b); }
+  template <int kBits>
+  TUMBLESIGHT_INLINE Vector shift_32(Vector a) {
+    return _mm256_slli_epi32(a, kBits);
+  }
+  template <int kBits>
+  TUMBLESIGHT_INLINE Vector divide(Vector a) {
+    return _mm256_srai_epi32(a, kBits);
+  }
+  TUMBLESIGHT_INLINE Vector multiply_32(Vector a, std::int32_t b) {
+    return _mm256_mullo_epi32(a, _mm256_set1_epi32(b));
+  }
+  template <int kOdd>
+  TUMBLESIGHT_INLINE Vector widen(Vector bytes) {
+    return _mm256_srai_epi16(kOdd == 1 ? bytes : _mm256_slli_epi16(bytes, 8), 8);
+  }
+  TUMBLESIGHT_INLINE void multiply_add(Vector& sum, Vector a, Vector b) {
+    sum = _mm256_add_epi32(sum, _mm256_madd_epi16(a, b));
+  }
+  TUMBLESIGHT_INLINE Pool::Sums sums(const Vector* vectors) { return {vectors[0], vectors[1]}; }
+};
+using Tiles = WinogradTiles<WinogradOps>;
+
 PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
-  return Windows::fits(shape) && 4 * shape.row() <= kMostWidened ? convolve_and_pool : nullptr;
+  if (Windows::fits(shape) && 4 * shape.row() <= kMostWidened) return convolve_and_pool;
+  return Tiles::fits(shape) ? Tiles::convolve : nullptr;
 }
 
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,

@@ -1,6 +1,7 @@
 #include "gnc/nn/kernels/pooled_windows.hpp"
 #include "gnc/nn/kernels/row_blocks.hpp"
 #include "gnc/nn/kernels/sets.hpp"
+#include "gnc/nn/kernels/winograd_tiles.hpp"
 #include "gnc/nn/kernels/x86_vectors.hpp"
 
 namespace tumblesight::gnc::kernels {
@@ -78,8 +79,48 @@ void convolve_and_pool(const ImageShape& shape, const std::uint8_t* in, const st
                        int out_row) {
   Windows::convolve<Int8, 2>(shape, in, start, weights, shift, out, out_row);
 }
+struct WinogradOps {
+  using Vector = __m512i;
+  using Pool = kernels::Pool;
+  static constexpr int kLanes = 16, kTiles = 9, kPooled = 1;
+  TUMBLESIGHT_INLINE Vector load(const void* from) { return _mm512_loadu_si512(from); }
+  TUMBLESIGHT_INLINE void store(Vector a, void* to) { _mm512_storeu_si512(to, a); }
+  TUMBLESIGHT_INLINE Vector zero() { return _mm512_setzero_si512(); }
+  TUMBLESIGHT_INLINE Vector broadcast(const std::int32_t* from) { return _mm512_set1_epi32(*from); }
+  TUMBLESIGHT_INLINE Vector add_16(Vector a, Vector b) { return _mm512_add_epi16(a, b); }
+  TUMBLESIGHT_INLINE Vector sub_16(Vector a, Vector b) { return _mm512_sub_epi16(a, b); }
+  template <int kBits>
+  TUMBLESIGHT_INLINE Vector shift_16(Vector a) {
+    return _mm512_slli_epi16(a, kBits);
+  }
+  TUMBLESIGHT_INLINE Vector add_32(Vector a, Vector b) { return _mm512_add_epi32(a, b); }
+  TUMBLESIGHT_INLINE Vector sub_32(Vector a, Vector b) { return _mm512_sub_epi32(a, b); }
+  TUMBLESIGHT_INLINE Vector max_32(Vector a, Vector b) { return _mm512_max_epi32(a, b); }
+  template <int kBits>
+  TUMBLESIGHT_INLINE Vector shift_32(Vector a) {
+    return _mm512_slli_epi32(a, kBits);
+  }
+  template <int kBits>
+  TUMBLESIGHT_INLINE Vector divide(Vector a) {
+    return _mm512_srai_epi32(a, kBits);
+  }
+  TUMBLESIGHT_INLINE Vector multiply_32(Vector a, std::int32_t b) {
+    return _mm512_mullo_epi32(a, _mm512_set1_epi32(b));
+  }
+  template <int kOdd>
+  TUMBLESIGHT_INLINE Vector widen(Vector bytes) {
+    return _mm512_srai_epi16(kOdd == 1 ? bytes : _mm512_slli_epi16(bytes, 8), 8);
+  }
+  TUMBLESIGHT_INLINE void multiply_add(Vector& sum, Vector a, Vector b) {
+    sum = _mm512_dpwssd_epi32(sum, a, b);
+  }
+  TUMBLESIGHT_INLINE Pool::Sums sums(const Vector* vectors) { return vectors[0]; }
+};
+using Tiles = WinogradTiles<WinogradOps>;
+
 PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
-  return Windows::fits(shape) ? convolve_and_pool : nullptr;
+  if (Windows::fits(shape)) return convolve_and_pool;
+  return Tiles::fits(shape) ? Tiles::convolve : nullptr;
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {

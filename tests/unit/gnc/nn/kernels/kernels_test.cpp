@@ -303,7 +303,7 @@ TEST_P(KernelsOf, ConvolveAndPoolWithTheBitsOfBothParts) {
   RandomValues random(12);
   // Those of the network, then odd sides and other numbers of channels.
   const ImageShape shapes[] = {{50, 4, 32},  {25, 32, 64}, {12, 64, 128}, {7, 4, 48},
-                               {10, 32, 16}, {8, 64, 48},  {6, 96, 16}};
+                               {13, 96, 32}, {16, 32, 96}, {20, 32, 32}};
   for (const ImageShape& shape : shapes) {
     SCOPED_TRACE(::testing::Message()
                  << shape.side << ", " << shape.channels_in << " to " << shape.channels_out);
