@@ -101,7 +101,7 @@ class AttitudeInitApp final {
   Voted<AppState> state_;
 };
 #if !TUMBLESIGHT_APP_FLOAT32
-static_assert(sizeof(AttitudeInitApp) <= config::kMaxAppBytes,
+static_assert(sizeof(AttitudeInitApp) <= config::kMaxAppBytes + gnc::kKernelScratchBytes,
               "the application is larger than its memory budget");
 #endif
 

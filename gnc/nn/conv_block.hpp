@@ -54,17 +54,21 @@ struct ConvBlock {
   }
   using Weights = LayerWeights<N, kWeights, kChannelsOut>;
   using Input = PaddedImage<ConvInput<N>, kSide, kChannelsIn>;
-  using Sums = std::array<Sum<N>, 2 * kColumns * kChannelsOut>;  // scratch: two rows
+  // Scratch: two rows, or what a pooled convolution needs.
+  static constexpr int kTwoRows = 2 * kColumns * kChannelsOut;
+  using Sums = std::array<Sum<N>, N::kIsInteger ? max(kTwoRows, kPooledConvolutionScratch) : kTwoRows>;
 
-  // Max pooling: the activation of the largest sum of each window. `sums` is scratch memory.
+  // Max pooling: the activation of the largest sum of each window. `sums`: scratch, aligned to 64 bytes.
   using MaxPooled = PaddedImage<ConvInput<N>, kSideOut, kChannelsOut>;
   [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                         Sums& sums, MaxPooled& out) {
     out.values.fill({});
-    if (auto* const pooled_convolution = pooled_convolution_of(kernels)) {
-      pooled_convolution(kImage, in.values.data(), weights.bias.data(), weights.weight.data(),
-                         weights.shift.data(), out.row(0), MaxPooled::kRow);
-      return;
+    if constexpr (N::kIsInteger) {
+      if (auto* const pooled_convolution = pooled_convolution_of(kernels)) {
+        pooled_convolution(kImage, in.values.data(), weights.bias.data(), weights.weight.data(),
+                           weights.shift.data(), out.row(0), MaxPooled::kRow, sums.data());
+        return;
+      }
     }
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);

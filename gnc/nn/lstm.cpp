@@ -1,38 +1,18 @@
 #include "gnc/nn/lstm.hpp"
 
 #include "gnc/nn/activation.hpp"
+#include "gnc/nn/kernels/gate_table.hpp"
 
 namespace tumblesight::gnc {
 namespace {
 
-// Table of the sigmoid at 0, 1/32, ... 16, interpolated linearly.
-constexpr int kSegmentsPerUnit = 32;
-constexpr int kSegments = 16 * kSegmentsPerUnit;
-
-// e^-x for x in [0, 16] as (e^(-x / 1024))^1024; the error of the truncated series is below the last bit of a
-// double. Evaluated by the compiler only.
-constexpr double exp_negative(double x) {
-  const double t = -x / 1024.0;
-  double power = 1.0 + t * (1.0 + t / 2.0 * (1.0 + t / 3.0 * (1.0 + t / 4.0 * (1.0 + t / 5.0))));
-  for (int i = 0; i < 10; ++i) power *= power;
-  return power;
-}
-
-constexpr std::array<Fixed, kSegments + 1> make_sigmoid_table() {
-  std::array<Fixed, kSegments + 1> table{};
-  for (int i = 0; i <= kSegments; ++i)
-    table[i] = Fixed(1.0 / (1.0 + exp_negative(1.0 * i / kSegmentsPerUnit)));
-  return table;
-}
-constexpr std::array<Fixed, kSegments + 1> kSigmoidTable = make_sigmoid_table();
+constexpr std::array<Fixed, kGateSegments + 1> kSigmoidTable = make_gate_table();
 
 }  // namespace
 
 Fixed gate_sigmoid(Fixed x) {
-  constexpr int kFractionBits = Fixed::kFractionBits - 5;  // of the position within a segment
-  static_assert(1 << 5 == kSegmentsPerUnit);
-  constexpr std::int32_t kEnd = 16 << Fixed::kFractionBits;
-  const std::int32_t inside = min(abs(x.raw()), kEnd - 1);
+  constexpr int kFractionBits = kGatePositionBits;
+  const std::int32_t inside = min(abs(x.raw()), kGateEnd - 1);
   const std::int32_t segment = inside >> kFractionBits;
   const std::int64_t rise = kSigmoidTable[segment + 1].raw() - kSigmoidTable[segment].raw();
   const std::int64_t position = inside & ((1 << kFractionBits) - 1);

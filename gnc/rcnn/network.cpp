@@ -5,7 +5,7 @@
 namespace tumblesight::gnc {
 
 static_assert(DepthImage::kSide == shape::kImageSide);
-static_assert(sizeof(Network<FixedPoint>) <= 80 * 1024, "budget of the activations");
+static_assert(sizeof(Network<FixedPoint>) <= 80 * 1024 + kKernelScratchBytes, "budget of the activations");
 
 namespace {
 constexpr auto kNoObserver = [](const char*, const auto&) {};

@@ -65,27 +65,38 @@ struct Int8 : Widened {
   }
 };
 
-constexpr int kMostWidened = 4096;
+constexpr int kMostWidened = 1024;  // inputs of a strip over a row of pixels
 TUMBLESIGHT_INLINE void widen(const std::uint8_t* in, int count, std::int16_t* out) {
   int i = 0;
   for (; i + 16 <= count; i += 16) store_256(_mm256_cvtepu8_epi16(load_128(in + i)), out + i);
   for (; i < count; ++i) out[i] = in[i];
 }
+TUMBLESIGHT_INLINE int inputs_of_row(const ProductShape& shape) {
+  return (shape.columns - 1) * shape.column_step + shape.strip_length;
+}
+// One row of pixels and one strip at a time, each added to the sums of the strips before.
+TUMBLESIGHT_INLINE void convolve_rows(const ProductShape& shape, const std::uint8_t* in,
+                                      const std::int32_t* start, const std::int8_t* weights,
+                                      std::int32_t* out) {
+  alignas(32) std::int16_t widened[kMostWidened];
+  ProductShape row = shape;
+  row.rows = row.strips = 1;
+  for (int y = 0; y < shape.rows; ++y, out += shape.columns * shape.channels) {
+    for (int strip = 0; strip < shape.strips; ++strip) {
+      widen(in + y * shape.row_step + strip * shape.strip_step, inputs_of_row(shape), widened);
+      RowBlocks<Widened>::product<6, 1>(row, widened, strip == 0 ? start : out,
+                                        strip == 0 ? 0 : shape.channels,
+                                        weights + strip * shape.strip_length * shape.channels, out);
+    }
+  }
+}
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  const int inputs = (shape.rows - 1) * shape.row_step + (shape.columns - 1) * shape.column_step +
-                     (shape.strips - 1) * shape.strip_step + shape.strip_length;
-  if (inputs > kMostWidened) {
-    Blocks<Int8>::product<6, 1, 4>(shape, in, start, weights, out);
-    return;
-  }
-  alignas(32) std::int16_t widened[kMostWidened];
-  widen(in, inputs, widened);
-  if (RowBlocks<Widened>::fit<6, 1>(shape)) {
-    RowBlocks<Widened>::product<6, 1>(shape, widened, start, weights, out);
+  if (RowBlocks<Widened>::fit<6, 1>(shape) && inputs_of_row(shape) <= kMostWidened) {
+    convolve_rows(shape, in, start, weights, out);
   } else {
-    Blocks<Widened>::product<6, 1, 4>(shape, widened, start, weights, out);
+    Blocks<Int8>::product<6, 1, 4>(shape, in, start, weights, out);
   }
 }
 
@@ -144,10 +155,11 @@ TUMBLESIGHT_INLINE void widen_pairs(const std::uint8_t* in, int count, std::int1
 }
 
 void convolve_and_pool(const ImageShape& shape, const std::uint8_t* in, const std::int32_t* start,
-                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out,
-                       int out_row) {
-  alignas(32) std::int16_t widened_weights[kGroupsOfWindow * Windows::kWidth * Windows::kGroup];
-  alignas(32) std::int16_t widened[kMostWidened];
+                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out, int out_row,
+                       std::int32_t* scratch) {
+  constexpr int kWeights = kGroupsOfWindow * Windows::kWidth * Windows::kGroup;
+  auto* const widened_weights = reinterpret_cast<std::int16_t*>(scratch);
+  std::int16_t* const widened = widened_weights + kWeights;
   for (int c = 0; c < shape.channels_out; c += Windows::kWidth) {
     widen_weights(weights + c * Windows::kGroup, shape.channels_out * Windows::kGroup, widened_weights);
     for (int y = 0; y < shape.side / 2; ++y) {
@@ -198,7 +210,7 @@ struct WinogradOps {
 using Tiles = WinogradTiles<WinogradOps>;
 
 PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
-  if (Windows::fits(shape) && 4 * shape.row() <= kMostWidened) return convolve_and_pool;
+  if (Windows::fits(shape)) return convolve_and_pool;
   return Tiles::fits(shape) ? Tiles::convolve : nullptr;
 }
 

@@ -1,3 +1,4 @@
+#include "gnc/nn/kernels/gate_table.hpp"
 #include "gnc/nn/kernels/pooled_windows.hpp"
 #include "gnc/nn/kernels/row_blocks.hpp"
 #include "gnc/nn/kernels/sets.hpp"
@@ -63,9 +64,9 @@ using Windows = PooledWindows<Pool>;
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
   if (RowBlocks<Int8>::fit<6, 4>(shape)) {
-    RowBlocks<Int8>::product<6, 4>(shape, in, start, weights, out);
+    RowBlocks<Int8>::product<6, 4>(shape, in, start, 0, weights, out);
   } else if (RowBlocks<Int8>::fit<6, 3>(shape)) {
-    RowBlocks<Int8>::product<6, 3>(shape, in, start, weights, out);
+    RowBlocks<Int8>::product<6, 3>(shape, in, start, 0, weights, out);
   } else if (shape.channels % 64 == 0) {
     Blocks<Int8>::product<6, 4, 8>(shape, in, start, weights, out);
   } else if (shape.channels % 48 == 0) {
@@ -75,8 +76,8 @@ void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int3
   }
 }
 void convolve_and_pool(const ImageShape& shape, const std::uint8_t* in, const std::int32_t* start,
-                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out,
-                       int out_row) {
+                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out, int out_row,
+                       std::int32_t*) {
   Windows::convolve<Int8, 2>(shape, in, start, weights, shift, out, out_row);
 }
 struct WinogradOps {
@@ -124,7 +125,13 @@ PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  Blocks<Int16>::product<6, 4, 12>(shape, in, start, weights, out);
+  if (shape.channels % 192 == 0) {
+    Blocks<Int16>::product<6, 4, 12>(shape, in, start, weights, out);
+  } else if (shape.channels % 128 == 0) {
+    Blocks<Int16>::product<6, 4, 8>(shape, in, start, weights, out);
+  } else {
+    Blocks<Int16>::product<6, 4, 4>(shape, in, start, weights, out);
+  }
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
               std::uint8_t* out) {
@@ -135,9 +142,94 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
   Windows::average_pool(sums, columns, channels, shift, out);
 }
 
+// The LSTM, 16 units at a time. Products of Fixed are computed in 64 bits, of the units with an even and an
+// odd index separately.
+constexpr auto kGateTable = make_gate_table();
+constexpr std::int32_t kOne = 1 << Fixed::kFractionBits;
+
+TUMBLESIGHT_INLINE __m512i interleave(__m512i even, __m512i odd) {
+  constexpr __mmask16 kOdd = 0xAAAA;
+  return _mm512_mask_blend_epi32(kOdd, even, _mm512_slli_epi64(odd, 32));
+}
+TUMBLESIGHT_INLINE __m512i odd_units(__m512i a) {
+  return _mm512_srli_epi64(a, 32);
+}
+TUMBLESIGHT_INLINE __m512i limit_64(__m512i a, std::int64_t largest) {
+  return _mm512_min_epi64(_mm512_max_epi64(a, _mm512_set1_epi64(-largest)), _mm512_set1_epi64(largest));
+}
+// Output rule: to_real() of numerics.hpp for eight sums.
+TUMBLESIGHT_INLINE __m256i to_real_8(__m256i sums, __m128i shift_bytes) {
+  const __m512i one = _mm512_set1_epi64(1), shift = _mm512_cvtepu8_epi64(shift_bytes);
+  const __m512i raw = _mm512_slli_epi64(_mm512_cvtepi32_epi64(sums), Fixed::kFractionBits);
+  const __m512i half = _mm512_sllv_epi64(one, _mm512_sub_epi64(shift, one));
+  const __m512i rounded = _mm512_srav_epi64(_mm512_add_epi64(raw, half), shift);
+  return _mm512_cvtepi64_epi32(limit_64(rounded, Fixed::kLargestRaw));
+}
+TUMBLESIGHT_INLINE __m512i gate_value(const std::int32_t* sums, const std::uint8_t* shift) {
+  const __m128i shifts = load_128(shift);
+  return _mm512_inserti64x4(_mm512_castsi256_si512(to_real_8(load_256(sums), shifts)),
+                            to_real_8(load_256(sums + 8), _mm_srli_si128(shifts, 8)), 1);
+}
+// gate_sigmoid() of lstm.hpp. The product with the position is computed in two parts of 32 bits.
+TUMBLESIGHT_INLINE __m512i gate_sigmoids(__m512i x) {
+  constexpr int kLowBits = 8;
+  const __m512i inside = _mm512_min_epi32(_mm512_abs_epi32(x), _mm512_set1_epi32(kGateEnd - 1));
+  const __m512i segment = _mm512_srli_epi32(inside, kGatePositionBits);
+  const __m512i position = _mm512_and_si512(inside, _mm512_set1_epi32((1 << kGatePositionBits) - 1));
+  const __m512i from = _mm512_i32gather_epi32(segment, kGateTable.data(), 4);
+  const __m512i rise = _mm512_sub_epi32(_mm512_i32gather_epi32(segment, kGateTable.data() + 1, 4), from);
+  const __m512i low =
+      _mm512_mullo_epi32(rise, _mm512_and_si512(position, _mm512_set1_epi32((1 << kLowBits) - 1)));
+  const __m512i high = _mm512_mullo_epi32(rise, _mm512_srli_epi32(position, kLowBits));
+  const __m512i half = _mm512_set1_epi32(1 << (kGatePositionBits - 1));
+  const __m512i scaled = _mm512_add_epi32(high, _mm512_srli_epi32(_mm512_add_epi32(low, half), kLowBits));
+  const __m512i above = _mm512_add_epi32(from, _mm512_srli_epi32(scaled, kGatePositionBits - kLowBits));
+  const __mmask16 is_negative = _mm512_cmplt_epi32_mask(x, _mm512_setzero_si512());
+  return _mm512_mask_sub_epi32(above, is_negative, _mm512_set1_epi32(kOne), above);
+}
+TUMBLESIGHT_INLINE __m512i gate_tanhs(__m512i x) {
+  const __m512i end = _mm512_set1_epi32(kGateEnd);
+  const __m512i limited =
+      _mm512_max_epi32(_mm512_min_epi32(x, end), _mm512_sub_epi32(_mm512_setzero_si512(), end));
+  const __m512i sigmoid = gate_sigmoids(_mm512_add_epi32(limited, limited));
+  return _mm512_sub_epi32(_mm512_add_epi32(sigmoid, sigmoid), _mm512_set1_epi32(kOne));
+}
+// a b + c d of the even units, rounded and limited to the bound of the cells.
+TUMBLESIGHT_INLINE __m512i even_cells(__m512i a, __m512i b, __m512i c, __m512i d) {
+  constexpr std::int64_t kBound = std::int64_t{64} << Fixed::kFractionBits;  // kLstmCellBound
+  const __m512i sum = _mm512_add_epi64(_mm512_mul_epi32(a, b), _mm512_mul_epi32(c, d));
+  const __m512i half = _mm512_set1_epi64(kOne / 2);
+  return limit_64(_mm512_srai_epi64(_mm512_add_epi64(sum, half), Fixed::kFractionBits), kBound);
+}
+// a b of the even units in Q0.15.
+TUMBLESIGHT_INLINE __m512i even_inputs(__m512i a, __m512i b) {
+  constexpr int kShift = 2 * Fixed::kFractionBits - 15;
+  const __m512i half = _mm512_set1_epi64(std::int64_t{1} << (kShift - 1));
+  return limit_64(_mm512_srai_epi64(_mm512_add_epi64(_mm512_mul_epi32(a, b), half), kShift), 32767);
+}
+void update_lstm(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h,
+                 Fixed* c) {
+  for (int i = 0; i < hidden; i += 16) {
+    const __m512i input = gate_sigmoids(gate_value(gates + i, shift + i));
+    const __m512i forget = gate_sigmoids(gate_value(gates + hidden + i, shift + hidden + i));
+    const __m512i cell = gate_tanhs(gate_value(gates + 2 * hidden + i, shift + 2 * hidden + i));
+    const __m512i output = gate_sigmoids(gate_value(gates + 3 * hidden + i, shift + 3 * hidden + i));
+    const __m512i before = _mm512_loadu_si512(c + i);
+    const __m512i cells =
+        interleave(even_cells(forget, before, input, cell),
+                   even_cells(odd_units(forget), odd_units(before), odd_units(input), odd_units(cell)));
+    _mm512_storeu_si512(c + i, cells);
+    const __m512i tanhs = gate_tanhs(cells);
+    const __m512i inputs =
+        interleave(even_inputs(output, tanhs), even_inputs(odd_units(output), odd_units(tanhs)));
+    store_256(_mm512_cvtepi32_epi16(inputs), h + i);
+  }
+}
+
 }  // namespace
 
 const Kernels<FixedPoint> kFixedAvx512Vnni{
-    InstructionSet::kAvx512Vnni, 6, convolve, multiply, max_pool, average_pool, pooled_convolution, true};
+    InstructionSet::kAvx512Vnni, 6,    convolve,   multiply, max_pool, average_pool,
+    pooled_convolution,          true, update_lstm};
 
 }  // namespace tumblesight::gnc::kernels

@@ -50,14 +50,14 @@ using Windows = PooledWindows<Pool256Bit>;
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
   if (RowBlocks<Int8>::fit<6, 2>(shape)) {
-    RowBlocks<Int8>::product<6, 2>(shape, in, start, weights, out);
+    RowBlocks<Int8>::product<6, 2>(shape, in, start, 0, weights, out);
   } else {
     Blocks<Int8>::product<6, 2, 8>(shape, in, start, weights, out);
   }
 }
 void convolve_and_pool(const ImageShape& shape, const std::uint8_t* in, const std::int32_t* start,
-                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out,
-                       int out_row) {
+                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out, int out_row,
+                       std::int32_t*) {
   Windows::convolve<Int8Pair, 1>(shape, in, start, weights, shift, out, out_row);
 }
 PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {

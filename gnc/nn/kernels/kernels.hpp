@@ -1,6 +1,7 @@
 // Kernels: the inner loops of the network, one table per instruction set and numerics.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "gnc/nn/kernels/numerics.hpp"
@@ -34,6 +35,14 @@ struct ImageShape {
   constexpr int row() const { return (side + 2) * channels_in; }
 };
 
+// Memory that such a convolution may use, in numbers of 32 bits.
+#if defined(__x86_64__)
+inline constexpr int kPooledConvolutionScratch = 51'000;
+#else
+inline constexpr int kPooledConvolutionScratch = 0;  // there is none
+#endif
+inline constexpr std::size_t kKernelScratchBytes = kPooledConvolutionScratch * sizeof(std::int32_t);
+
 // 3x3 convolution of a whole image and max pooling, without storing all sums.
 //
 // in        from the first value of the border on
@@ -41,10 +50,15 @@ struct ImageShape {
 // weights   as for a Product of three strips of three pixels
 // shift     1..30 per channel
 // out       the first value inside the border, `out_row` values per row
+// scratch   kPooledConvolutionScratch numbers, aligned to 64 bytes
 template <class N>
 using PooledConvolution = void(const ImageShape& shape, const ConvInput<N>* in, const Sum<N>* start,
                                const typename N::ConvProduct::Weight* weights, const std::uint8_t* shift,
-                               ConvInput<N>* out, int out_row);
+                               ConvInput<N>* out, int out_row, std::int32_t* scratch);
+
+// lstm_update() of lstm.hpp in fixed point, for a multiple of kIntegerChannels hidden units.
+using LstmUpdate = void(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h,
+                        Fixed* c);
 
 template <class N>
 struct Kernels {
@@ -61,6 +75,7 @@ struct Kernels {
   PooledConvolution<N>* (*pooled_convolution)(const ImageShape& shape) = nullptr;
   // Whether convolve() skips the zeros of a shape whose columns are a multiple of `pixels`.
   bool skips_zeros = false;
+  LstmUpdate* update_lstm = nullptr;  // nullptr: lstm_update()
 };
 
 // The kernels for `set`; nullptr if there are none for this numerics, in this build or on this processor.

@@ -37,9 +37,10 @@ struct RowBlocks {
   }
 
   // kPixels pixels and kPacks vectors of channels. Skips the zeros of the first pixel if kFirst, those of the
-  // last one if kLast. `in`, `start`, `weights` and `out` point to the first pixel and channel of the block.
+  // last one if kLast. `in`, `start`, `weights` and `out` point to the first pixel and channel of the block;
+  // `start_step`: from the start of one pixel to that of the next, 0 if it is the same for all.
   template <int kPixels, int kPacks, bool kFirst, bool kLast>
-  TUMBLESIGHT_INLINE void block(const ProductShape& shape, const Input* in, const Sum* start,
+  TUMBLESIGHT_INLINE void block(const ProductShape& shape, const Input* in, const Sum* start, int start_step,
                                 const Weight* weights, Sum* out) {
     typename Ops::Sums sum[kPixels][kPacks];
     const Input* pixel[kPixels];
@@ -47,7 +48,7 @@ struct RowBlocks {
     for (int p = 0; p < kPixels; ++p) {
       pixel[p] = in + p * shape.column_step;
 #pragma GCC unroll 16
-      for (int c = 0; c < kPacks; ++c) sum[p][c] = Ops::load(start + c * kWidth);
+      for (int c = 0; c < kPacks; ++c) sum[p][c] = Ops::load(start + p * start_step + c * kWidth);
     }
     for (int strip = 0; strip < shape.strips; ++strip) {
       const int begin = strip * shape.strip_step, end = begin + shape.strip_length;
@@ -73,24 +74,26 @@ struct RowBlocks {
 
   template <int kPixels, int kPacks>
   TUMBLESIGHT_INLINE void product(const ProductShape& shape, const Input* in, const Sum* start,
-                                  const Weight* weights, Sum* out) {
+                                  int start_step, const Weight* weights, Sum* out) {
     const int last = shape.columns - kPixels;
     for (int c = 0; c < shape.channels; c += kPacks * kWidth) {
       const Weight* const from = weights + c * kGroup;
       for (int y = 0; y < shape.rows; ++y) {
         for (int x = 0; x <= last; x += kPixels) {
           const Input* const pixel = in + y * shape.row_step + x * shape.column_step;
-          Sum* const to = out + (y * shape.columns + x) * shape.channels + c;
+          const int first = y * shape.columns + x;
+          const Sum* const begin = start + first * start_step + c;
+          Sum* const to = out + first * shape.channels + c;
           const bool skips_left = x == 0 && shape.zeros_left > 0;
           const bool skips_right = x == last && shape.zeros_right > 0;
           if (skips_left && skips_right) {
-            block<kPixels, kPacks, true, true>(shape, pixel, start + c, from, to);
+            block<kPixels, kPacks, true, true>(shape, pixel, begin, start_step, from, to);
           } else if (skips_left) {
-            block<kPixels, kPacks, true, false>(shape, pixel, start + c, from, to);
+            block<kPixels, kPacks, true, false>(shape, pixel, begin, start_step, from, to);
           } else if (skips_right) {
-            block<kPixels, kPacks, false, true>(shape, pixel, start + c, from, to);
+            block<kPixels, kPacks, false, true>(shape, pixel, begin, start_step, from, to);
           } else {
-            block<kPixels, kPacks, false, false>(shape, pixel, start + c, from, to);
+            block<kPixels, kPacks, false, false>(shape, pixel, begin, start_step, from, to);
           }
         }
       }

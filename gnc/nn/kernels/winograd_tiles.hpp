@@ -48,11 +48,11 @@ struct WinogradTiles {
   // Pairs of inputs by position, tile and channel. In each chunk first the even channels of every group, then
   // the odd ones, as split() leaves them.
   struct Scratch {
-    alignas(64) std::int32_t inputs[kMaxInputPairs];
+    std::int32_t inputs[kMaxInputPairs];
     // One row more than used: at a distance of a power of two they would compete for the same places in the
     // cache.
-    alignas(64) std::int32_t weights[kPositions][kPairs + 1][kPacks][kLanes];
-    alignas(64) std::int32_t sums[kPositions][kBatch][kPacks][kLanes];
+    std::int32_t weights[kPositions][kPairs + 1][kPacks][kLanes];
+    std::int32_t sums[kPositions][kBatch][kPacks][kLanes];
   };
 
   static constexpr int tiles_of(const ImageShape& shape) {
@@ -285,9 +285,10 @@ struct WinogradTiles {
   }
 
   static void convolve(const ImageShape& shape, const std::uint8_t* in, const std::int32_t* start,
-                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out,
-                       int out_row) {
-    Scratch scratch;
+                       const std::int8_t* weights, const std::uint8_t* shift, std::uint8_t* out, int out_row,
+                       std::int32_t* memory) {
+    static_assert(sizeof(Scratch) <= kPooledConvolutionScratch * sizeof(std::int32_t));
+    Scratch& scratch = *reinterpret_cast<Scratch*>(memory);
     transform_image(shape, in, scratch.inputs);
     const int side = shape.columns() / kTile, tiles = side * side;
     const int column_step = shape.channels_in * shape.channels_out;

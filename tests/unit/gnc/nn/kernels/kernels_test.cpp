@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gnc/nn/kernels/winograd.hpp"
+#include "gnc/nn/lstm.hpp"
 #include "tests/unit/gnc/nn/random_values.hpp"
 
 namespace tumblesight::gnc {
@@ -68,7 +69,7 @@ std::vector<ProductShape> shapes(bool integers) {
   all.push_back(convolution(2, 4, 4, 16));
   all.back().strips = 17;  // more than a chunk holds
   all.push_back(dense(382, 768));
-  if (integers) all.push_back(convolution(2, 10, 96, 16));  // more inputs than AVX2 widens beforehand
+  if (integers) all.push_back(convolution(2, 12, 96, 16));  // more inputs than AVX2 widens beforehand
   return all;
 }
 
@@ -241,8 +242,10 @@ class PooledImage {
     const int side_out = shape_.side / 2;
     const int row = (side_out + 2) * shape_.channels_out;  // one pixel of each end must not be written
     std::vector<std::uint8_t> out(static_cast<std::size_t>(side_out) * row, 77);
+    std::vector<std::int32_t> scratch(kPooledConvolutionScratch + 1, 123);  // whatever it contains
     convolution(shape_, in_.data(), start_.data(), weights_.data(), shift_.data(),
-                out.data() + shape_.channels_out, row);
+                out.data() + shape_.channels_out, row, scratch.data());
+    EXPECT_EQ(scratch.back(), 123);
     EXPECT_EQ(out, by_parts(row));
   }
 
@@ -330,6 +333,27 @@ TEST(Winograd, HasTheBitsOfTheDefinition) {
     (supported ? Winograd::convolve : kernels_on<FixedPoint>(InstructionSet::kPortable)->convolve)(
         shape, in, start, weights, out);
   });
+}
+
+TEST_P(KernelsOf, UpdateTheLstmWithTheBitsOfItsDefinition) {
+  const Kernels<FixedPoint>* kernels = kernels_on<FixedPoint>(GetParam());
+  if (kernels == nullptr || kernels->update_lstm == nullptr) GTEST_SKIP() << "has none";
+  RandomValues random(13);
+  constexpr int kHidden = 6400;
+  std::vector<std::int32_t> gates(4 * kHidden);
+  std::vector<std::uint8_t> shift(4 * kHidden);
+  for (std::size_t i = 0; i < gates.size(); ++i) {
+    gates[i] = random.next<std::int32_t>() >> (i % 31);
+    shift[i] = static_cast<std::uint8_t>(1 + i % 62);
+  }
+  std::vector<Fixed> c(kHidden);
+  for (int i = 0; i < kHidden; ++i) c[i] = Fixed::from_raw(random.next<std::int32_t>() >> (i % 29));
+  std::vector<std::int16_t> h(kHidden), expected_h(kHidden);
+  std::vector<Fixed> expected_c = c;
+  lstm_update(gates.data(), shift.data(), kHidden, expected_h.data(), expected_c.data());
+  kernels->update_lstm(gates.data(), shift.data(), kHidden, h.data(), c.data());
+  EXPECT_EQ(h, expected_h);
+  EXPECT_EQ(c, expected_c);
 }
 
 TEST_P(KernelsOf, AddToTheOutputIfItIsTheStart) {
