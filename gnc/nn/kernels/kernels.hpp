@@ -37,7 +37,7 @@ struct ImageShape {
 
 // Memory that such a convolution may use, in numbers of 32 bits.
 #if defined(__x86_64__)
-inline constexpr int kPooledConvolutionScratch = 51'000;
+inline constexpr int kPooledConvolutionScratch = 50 * 1024;
 #else
 inline constexpr int kPooledConvolutionScratch = 0;  // there is none
 #endif
