@@ -63,7 +63,7 @@ struct ConvBlock {
   [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                         Sums& sums, MaxPooled& out) {
     out.values.fill({});
-    if constexpr (N::kIsInteger) {
+    if constexpr (kMayPool) {
       if (auto* const pooled_convolution = pooled_convolution_of(kernels)) {
         pooled_convolution(kImage, in.values.data(), weights.bias.data(), weights.weight.data(),
                            weights.shift.data(), out.row(0), MaxPooled::kRow, sums.data());
@@ -91,9 +91,11 @@ struct ConvBlock {
  private:
   static constexpr int kStrips = 3;
 
+  static constexpr bool kMayPool = N::kIsInteger && kHasLayerKernels;
   static constexpr ImageShape kImage{kSide, kChannelsIn, kChannelsOut};
 
   static PooledConvolution<N>* pooled_convolution_of(const Kernels<N>& kernels) {
+    if constexpr (!kMayPool) return nullptr;
     return kernels.pooled_convolution != nullptr ? kernels.pooled_convolution(kImage) : nullptr;
   }
   static constexpr ProductShape shape_of(int rows, int strips) {

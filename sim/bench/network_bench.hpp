@@ -21,7 +21,8 @@ struct BenchRow {
   double median_us = 0.0;
   double min_us = 0.0;
   double macs = 0.0;  // multiply-accumulates per run; 0: not counted
-  // Of the fastest run: multiply-accumulates per second over the measured peak of the core, 0 to 1.
+  // Of the fastest run: multiply-accumulates per second over the measured peak of the core. They are those of
+  // a direct convolution: kernels that need fewer may exceed 1.
   std::optional<double> share_of_peak;
 };
 

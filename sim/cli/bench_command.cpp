@@ -155,7 +155,9 @@ void add_bench_command(CLI::App& app) {
       "this processor. A step goes from ranges to quaternion. The other runtimes run\n"
       "the network alone: ONNX Runtime and LibTorch in float32, ONNX Runtime and\n"
       "oneDNN with the CNN in int8. The peak is measured with the same\n"
-      "multiply-accumulate instructions and no memory access.\n\n"
+      "multiply-accumulate instructions and no memory access. The share counts the\n"
+      "multiplications of a direct convolution; with Winograd's filter, which needs\n"
+      "fewer, it may exceed 100 %.\n\n"
       "ONNX Runtime is measured if its library is installed:\n"
       "  npm install --prefix build --ignore-scripts onnxruntime-node\n");
   add_target_option(*command, arguments->target, TargetChoice::kShipped);

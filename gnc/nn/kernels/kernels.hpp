@@ -35,12 +35,14 @@ struct ImageShape {
   constexpr int row() const { return (side + 2) * channels_in; }
 };
 
-// Memory that such a convolution may use, in numbers of 32 bits.
+// Whether a table of this build may have kernels for a whole layer.
 #if defined(__x86_64__)
-inline constexpr int kPooledConvolutionScratch = 50 * 1024;
+inline constexpr bool kHasLayerKernels = true;
 #else
-inline constexpr int kPooledConvolutionScratch = 0;  // there is none
+inline constexpr bool kHasLayerKernels = false;
 #endif
+// Memory that a pooled convolution may use, in numbers of 32 bits.
+inline constexpr int kPooledConvolutionScratch = kHasLayerKernels ? 50 * 1024 : 0;
 inline constexpr std::size_t kKernelScratchBytes = kPooledConvolutionScratch * sizeof(std::int32_t);
 
 // 3x3 convolution of a whole image and max pooling, without storing all sums.
