@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/mesh_warnings.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/target_surface.hpp"
 #include "sim/training/export_model.hpp"
@@ -163,6 +164,7 @@ int train(TrainOptions& options) {
 
   (void)check_sensor_of_model(stem + ".tsm", options.sensor.sensor);
   const std::vector<TriangleMesh> meshes = load_meshes(options.meshes, options.target);
+  print_mesh_warnings(options.meshes, meshes);
   const TrainingTargets targets = targets_of(options, meshes);
   // Now rather than after hours of training: a mesh whose surface the image that flies cannot have.
   (void)target_surface(meshes.front(),
