@@ -98,9 +98,10 @@ void add_mesh_command(CLI::App& app, const std::string& command_line) {
   CLI::App* command =
       app.add_subcommand("mesh", "Show what a mesh file holds, and what to mend before training");
   command->footer(
-      "\nReads STL, OBJ, glTF and GLB, also compressed with Draco. Exits with 0, or with 4 if the\n"
-      "mesh is of no use as it is. docs/own_spacecraft.md explains each finding.\n\n"
-      "Example: a mesh in millimetres, looked at and written anew about its centre of mass\n"
+      "\nReads STL, OBJ, glTF and GLB, also compressed with Draco. Exits with 0, or with\n"
+      "4 if the mesh is of no use as it is. docs/own_spacecraft.md explains each\n"
+      "finding.\n\n"
+      "Example: a mesh in millimetres, looked at, and written about its centre of mass\n"
       "  tumblesight mesh craft.glb --mesh-scale 0.001 --html craft.html\n"
       "  tumblesight mesh craft.glb --mesh-scale 0.001 --fix craft.stl --origin 0,0,0.8\n");
   command->add_option("FILE", arguments->file, "mesh file")->required()->check(file_path());

@@ -11,7 +11,7 @@
 
 namespace tumblesight::sim {
 
-inline constexpr std::array<int, 6> kFolds{2, 3, 4, 5, 6, 8};
+inline constexpr std::array<int, 5> kFolds{2, 3, 4, 5, 6};
 
 struct SymmetryAxis {
   Eigen::Vector3d axis_trf = Eigen::Vector3d::UnitZ();  // unit; its largest component is positive

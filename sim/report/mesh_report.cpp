@@ -176,7 +176,7 @@ DataTable symmetry_table(const MeshReport& report) {
   for (const char* heading : {"others", "least"}) table.header.emplace_back(heading);
   const SurfaceSymmetry& symmetry = report.found.symmetry;
   const auto cell = [&report](double moved_m) {
-    return TableCell{fmt::format("{:.2f} %", percent(moved_m, report.found.centred_radius_m))};
+    return TableCell{fmt::format("{:.2f}", percent(moved_m, report.found.centred_radius_m))};
   };
   for (int i = 0; i < 3; ++i) {
     const SymmetryAxis& axis = symmetry.axes[i];
