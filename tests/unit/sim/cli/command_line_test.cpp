@@ -865,6 +865,16 @@ TEST(Train, RefusesAFileAsItsFolder) {
   EXPECT_NE(outcome.errors.find("model.tsm: is a file; give a folder"), std::string::npos) << outcome.errors;
 }
 
+TEST(Train, AsksForTheNameOfAMeshOfTheUsersOwn) {
+  const Workplace here;
+  if (here.run("--help").output.find("train") == std::string::npos) GTEST_SKIP() << "built without training";
+  const Outcome outcome = here.run("train --out out --mesh " + own_mesh(here));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.errors.find("--mesh: name the spacecraft of the file with --target"), std::string::npos)
+      << outcome.errors;
+  EXPECT_FALSE(std::filesystem::exists(here.path("out")));
+}
+
 TEST(Train, RefusesSetsOfEffectsThatAreWrong) {
   const Workplace here;
   if (here.run("--help").output.find("train") == std::string::npos) GTEST_SKIP() << "built without training";
