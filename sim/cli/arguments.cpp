@@ -316,6 +316,8 @@ std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std:
   std::vector<TriangleMesh> meshes;
   for (const std::string& mesh : arguments.meshes) {
     meshes.push_back(target_mesh(target, mesh, mesh_file_options(arguments)));
+    const std::string left_out = left_out_note(meshes.back());
+    if (!left_out.empty()) fmt::print(stderr, "  note: mesh '{}': {}\n", mesh, left_out);
   }
   return meshes;
 }

@@ -80,7 +80,7 @@ OptionFiles mesh_files_read(const std::string& option, const std::string& mesh);
 // The mesh files and the description of the sensor.
 OptionFiles files_read(const MeshArguments& meshes, const SensorArguments& sensor);
 
-// Throws as target_mesh does.
+// Notes on the standard error stream what is left out of a file. Throws as target_mesh does.
 std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std::string& target);
 
 // Throws CLI::ValidationError if sequences times frames is more than a run can hold in memory.

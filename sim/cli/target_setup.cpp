@@ -89,6 +89,8 @@ void compare_swaths(TargetSetup& setup) {
 TargetSetup set_up_body(const ScenarioArguments& arguments) {
   TargetSetup setup;
   setup.mesh = load_mesh(arguments);
+  const std::string left_out = left_out_note(setup.mesh);
+  if (!left_out.empty()) setup.warnings.push_back(fmt::format("Mesh '{}': {}.", arguments.mesh, left_out));
   setup.mesh_name =
       arguments.mesh.empty() ? kParametricMesh : std::filesystem::path(arguments.mesh).filename().string();
   setup.inertia_kg_m2 = inertia_of(arguments);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/mesh_warnings.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/target_surface.hpp"
 #include "sim/training/export_model.hpp"
@@ -147,6 +148,18 @@ void require_usable_folder(const TrainOptions& options, const std::string& stem)
   require_usable_files(read, written);
 }
 
+// The default would give a user's own spacecraft the inertia and the name of another.
+void require_a_name(const TrainOptions& options, bool named) {
+  const std::vector<std::string>& meshes = options.meshes.meshes;
+  const bool all_ship = std::all_of(meshes.begin(), meshes.end(),
+                                    [](const std::string& mesh) { return mesh == kParametricMesh; });
+  if (named || all_ship) return;
+  throw CLI::ValidationError(
+      "--mesh",
+      "name the spacecraft of the file with --target: a name of your own, or a shipped "
+      "target, whose inertia the network then has");
+}
+
 int train(TrainOptions& options) {
   for (const EffectRanges& effects : effect_sets_of(options)) {
     require_the_target(effects.high);
@@ -163,6 +176,7 @@ int train(TrainOptions& options) {
 
   (void)check_sensor_of_model(stem + ".tsm", options.sensor.sensor);
   const std::vector<TriangleMesh> meshes = load_meshes(options.meshes, options.target);
+  print_mesh_warnings(options.meshes, meshes);
   const TrainingTargets targets = targets_of(options, meshes);
   // Now rather than after hours of training: a mesh whose surface the image that flies cannot have.
   (void)target_surface(meshes.front(),
@@ -260,7 +274,10 @@ void add_train_command(CLI::App& app) {
       ->check(one_of({"auto", "float32", "bfloat16"}))
       ->type_name("auto|float32|bfloat16")
       ->capture_default_str();
-  command->callback([options] { throw CLI::RuntimeError(train(*options)); });
+  command->callback([options, command] {
+    require_a_name(*options, command->count("--target") > 0);
+    throw CLI::RuntimeError(train(*options));
+  });
 }
 
 }  // namespace tumblesight::sim

@@ -7,6 +7,7 @@ void add_verbs(CLI::App& app, const std::string& command_line) {
   add_simulate_command(app, command_line);
   add_replay_command(app, command_line);
 #endif
+  add_mesh_command(app, command_line);
   add_evaluate_command(app, command_line);
   add_quantize_command(app);
   add_record_command(app);

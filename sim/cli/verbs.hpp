@@ -23,6 +23,9 @@ void add_simulate_command(CLI::App& app, const std::string& command_line);
 // `tumblesight replay`: the flight program over a recording, with its attitudes compared with the truth.
 void add_replay_command(CLI::App& app, const std::string& command_line);
 
+// `tumblesight mesh`: what a mesh file holds, what of it a network would suffer from, and a cleaned copy.
+void add_mesh_command(CLI::App& app, const std::string& command_line);
+
 // `tumblesight evaluate`: accuracy of a model over many sequences, from the renderer directly to the
 // estimator.
 void add_evaluate_command(CLI::App& app, const std::string& command_line);

@@ -92,13 +92,45 @@ std::uint64_t count_of(const json& accessor, const Counts& counts, const std::st
   return counts[whole(accessor, counts.size(), where)];
 }
 
+// What changes the surface and is not read. Other extensions concern materials, lights or animations.
+struct UnreadExtension {
+  const char* name;
+  const char* remedy;
+};
+constexpr UnreadExtension kUnread[] = {
+    {"EXT_meshopt_compression", "is compressed with meshoptimizer; export it without compression"},
+    {"EXT_mesh_gpu_instancing", "repeats its parts by instancing; export it with every part written out"},
+};
+
+void check_extensions(const json& file) {
+  for (const json& used : list(file, "extensionsUsed")) {
+    for (const auto& [name, remedy] : kUnread) {
+      if (used == name)
+        throw std::runtime_error(std::string("uses ") + name + ", which is not read: it " + remedy);
+    }
+  }
+}
+
+// Assimp takes other numbers for single precision.
+void check_positions(const json& file, const json& accessor) {
+  constexpr unsigned kFloat = 5126;
+  const auto& accessors = list(file, "accessors");
+  const json& positions = accessors[accessor.get<std::size_t>()];
+  if (positions.value("componentType", json(kFloat)) == kFloat) return;
+  throw std::runtime_error(
+      "has positions in whole numbers (KHR_mesh_quantization), which are not read; export it without "
+      "quantization");
+}
+
 // By primitive mode: points, lines, line loop, line strip, triangles, triangle strip, triangle fan.
 constexpr std::array<std::uint64_t, 7> kMinCorners{1, 2, 2, 2, 3, 3, 3};
 
-void check_primitive(const json& primitive, const Counts& counts, const std::string& where) {
+void check_primitive(const json& file, const json& primitive, const Counts& counts,
+                     const std::string& where) {
   const json& attributes = member(primitive, "attributes", where);
-  std::uint64_t elements =
-      count_of(member(attributes, "POSITION", where + "'s attributes"), counts, where + "'s POSITION");
+  const json& positions = member(attributes, "POSITION", where + "'s attributes");
+  std::uint64_t elements = count_of(positions, counts, where + "'s POSITION");
+  check_positions(file, positions);
   for (const auto& [name, accessor] : attributes.items()) {
     if (count_of(accessor, counts, where + "'s attribute") != elements) {
       fail(where + " has attributes of different counts");
@@ -118,6 +150,7 @@ void check_json(const std::string& text) {
   const json& version = member(member(file, "asset", "its JSON"), "version", "its asset");
   if (!version.is_string() || version.get_ref<const std::string&>().rfind("2.", 0) != 0)
     fail("it is not glTF 2");
+  check_extensions(file);
   const Counts counts = accessor_counts(file);
   std::size_t mesh_number = 0;
   for (const json& mesh : list(file, "meshes")) {
@@ -125,7 +158,7 @@ void check_json(const std::string& text) {
     std::size_t number = 0;
     if (!mesh.is_object()) fail(where + " is not an object");
     for (const json& primitive : list(mesh, "primitives")) {
-      check_primitive(primitive, counts, where + "'s primitive " + std::to_string(number++));
+      check_primitive(file, primitive, counts, where + "'s primitive " + std::to_string(number++));
     }
   }
 }

@@ -8,17 +8,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <map>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#ifdef TUMBLESIGHT_HAS_ASSIMP
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
-#endif
+#include "sim/world/target/mesh_import.hpp"
 
 namespace tumblesight::sim {
 
@@ -58,13 +53,13 @@ void check_readable(const std::string& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    refuse(path, "no such file; check the path given with --mesh");
+    refuse(path, "no such file; check its path");
   }
   if (!std::filesystem::is_regular_file(status)) {
-    refuse(path, "is not a file; --mesh takes one STL, OBJ, glTF or GLB file");
+    refuse(path, "is not a file; give one STL, OBJ, glTF or GLB file");
   }
   if (std::filesystem::file_size(path, error) == 0 && !error) {
-    refuse(path, "the file is empty (0 bytes)");
+    refuse(path, "the file is empty (0 bytes); export it again");
   }
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) {
@@ -75,12 +70,8 @@ void check_readable(const std::string& path) {
 
 void check_start(const std::string& path) {
   const std::string extension = extension_of(path);
-  try {
-    if (extension == ".glb") check_glb(path);
-    if (extension == ".gltf") check_gltf(path);
-  } catch (const std::exception& error) {
-    refuse(path, error.what());
-  }
+  if (extension == ".glb") check_glb(path);
+  if (extension == ".gltf") check_gltf(path);
 }
 
 void check_vertices(const std::string& path, const std::vector<Eigen::Vector3f>& vertices) {
@@ -95,27 +86,43 @@ void check_vertices(const std::string& path, const std::vector<Eigen::Vector3f>&
                    number(first->y()) + ", " + number(first->z()) + "); repair the mesh and export it again");
 }
 
-// Gives vertices at exactly the same place the same index. (The step of Assimp joins within a tolerance in
-// the unit of the file, which can make small triangles degenerate, and treats not-a-number as equal to
-// anything.)
+// For each vertex the first one at exactly the same place.
+std::vector<std::uint32_t> first_at_same_place(const std::vector<Eigen::Vector3f>& vertices) {
+  const auto key = [&vertices](std::uint32_t i) {
+    return std::array<float, 3>{vertices[i].x(), vertices[i].y(), vertices[i].z()};
+  };
+  std::vector<std::uint32_t> sorted(vertices.size());
+  std::iota(sorted.begin(), sorted.end(), 0U);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&key](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::vector<std::uint32_t> first(vertices.size());
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const bool repeated = i > 0 && key(sorted[i]) == key(sorted[i - 1]);
+    first[sorted[i]] = repeated ? first[sorted[i - 1]] : sorted[i];
+  }
+  return first;
+}
+
+// Gives vertices at exactly the same place the same index, and leaves out those of no triangle, which would
+// count for the radius. (The step of Assimp joins within a tolerance in the unit of the file, which can make
+// small triangles degenerate, and treats not-a-number as equal to anything.)
 void join_equal_vertices(TriangleMesh& mesh) {
-  std::map<std::array<float, 3>, std::uint32_t> index_at;
-  std::vector<std::uint32_t> joined;
-  std::vector<Eigen::Vector3f> places;
-  for (const Eigen::Vector3f& v : mesh.vertices_trf_m) {
-    const auto next = static_cast<std::uint32_t>(places.size());
-    const auto [entry, is_new] = index_at.try_emplace({v.x(), v.y(), v.z()}, next);
-    if (is_new) {
-      places.push_back(v);
-    }
-    joined.push_back(entry->second);
+  const std::vector<std::uint32_t> first = first_at_same_place(mesh.vertices_trf_m);
+  std::vector<std::uint8_t> used(first.size(), 0);
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) used[first[corner]] = 1;
+  }
+  std::vector<std::uint32_t> index(first.size(), 0);
+  std::vector<Eigen::Vector3f> kept;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (used[i] == 0) continue;
+    index[i] = static_cast<std::uint32_t>(kept.size());
+    kept.push_back(mesh.vertices_trf_m[i]);
   }
   for (auto& triangle : mesh.triangles) {
-    for (std::uint32_t& corner : triangle) {
-      corner = joined[corner];
-    }
+    for (std::uint32_t& corner : triangle) corner = index[first[corner]];
   }
-  mesh.vertices_trf_m = std::move(places);
+  mesh.vertices_trf_m = std::move(kept);
 }
 
 bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
@@ -127,136 +134,91 @@ bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& tria
   return 0.5 * (b - a).cross(c - a).norm() > kMinAreaShare * longest_squared;
 }
 
-void check_triangles(const std::string& path, const TriangleMesh& mesh) {
-  std::size_t bad = 0;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (!has_area(mesh, mesh.triangles[i])) {
-      first = bad == 0 ? i : first;
-      ++bad;
-    }
-  }
-  if (bad > 0) {
-    refuse(path, std::to_string(bad) + " of " + std::to_string(mesh.triangles.size()) +
-                     " triangles have no area, the first is triangle " + std::to_string(first) +
-                     "; remove degenerate faces in the modelling tool and export it again");
-  }
+std::string share_text(std::size_t part, std::size_t whole) {
+  return std::to_string(part) + " of " + std::to_string(whole) + " triangles (" +
+         number(100.0 * static_cast<double>(part) / static_cast<double>(whole)) + " %)";
 }
 
-void check_radius(const std::string& path, const TriangleMesh& mesh, double scale) {
-  const double radius = mesh.radius_m();
-  const std::string measured = "its farthest vertex is " + number(radius) + " m from the origin";
-  const std::string advice =
-      "; the unit of the file is probably not the metre: give its length in metres with --mesh-scale"
-      " (now " +
-      number(scale) + ", 0.001 for millimetres)";
-  if (radius > kMaxMeshRadius_m) {
-    refuse(path, measured + ", at most " + number(kMaxMeshRadius_m) + " m are supported" + advice +
-                     ", or the mesh is not centred on its origin");
+void leave_out_triangles_without_area(const std::string& path, TriangleMesh& mesh) {
+  const std::size_t all = mesh.triangles.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < all; ++i) {
+    if (!has_area(mesh, mesh.triangles[i])) continue;
+    mesh.triangles[kept] = mesh.triangles[i];
+    if (!mesh.is_panel.empty()) mesh.is_panel[kept] = mesh.is_panel[i];
+    ++kept;
   }
-  if (radius < kMinMeshRadius_m) {
-    refuse(path, measured + ", at least " + number(kMinMeshRadius_m) + " m are needed" + advice);
+  mesh.left_out = all - kept;
+  if (kept == 0 || static_cast<double>(mesh.left_out) > kMaxShareWithoutArea * static_cast<double>(all)) {
+    refuse(
+        path,
+        share_text(mesh.left_out, all) + " have no area, more than the " +
+            number(100.0 * kMaxShareWithoutArea) +
+            " % that are left out: details are lost, perhaps by a compression that rounds; remove degenerate "
+            "faces in the modelling tool and export it again");
   }
+  mesh.triangles.resize(kept);
+  if (!mesh.is_panel.empty()) mesh.is_panel.resize(kept);
 }
-
-#ifdef TUMBLESIGHT_HAS_ASSIMP
-
-// Rotation from the axes of the file to the TRF.
-Eigen::Matrix3d axes_trf_file(MeshUp up) {
-  if (up == MeshUp::kZ) {
-    return Eigen::Matrix3d::Identity();
-  }
-  Eigen::Matrix3d axes;
-  axes << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  return axes;
-}
-
-// Whether the name of its material says so. The names of nodes are lost when their transforms are applied.
-bool is_named_panel(const aiMaterial& material) {
-  std::string name = material.GetName().C_Str();
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name.find("panel") != std::string::npos || name.find("solar") != std::string::npos;
-}
-
-void append_faces(const aiMesh& part, const MeshFileOptions& options, TriangleMesh& mesh) {
-  const Eigen::Matrix3d to_trf_m = options.scale * axes_trf_file(options.up);
-  const auto offset = static_cast<std::uint32_t>(mesh.vertices_trf_m.size());
-  for (unsigned i = 0; i < part.mNumVertices; ++i) {
-    const aiVector3D& v = part.mVertices[i];
-    mesh.vertices_trf_m.push_back((to_trf_m * Eigen::Vector3d(v.x, v.y, v.z)).cast<float>());
-  }
-  for (unsigned i = 0; i < part.mNumFaces; ++i) {
-    const aiFace& face = part.mFaces[i];
-    if (face.mNumIndices == 3) {
-      mesh.triangles.push_back(
-          {offset + face.mIndices[0], offset + face.mIndices[1], offset + face.mIndices[2]});
-    }
-  }
-}
-
-TriangleMesh import(const std::string& path, const MeshFileOptions& options) {
-  Assimp::Importer importer;
-  // Only the surface is needed. Points and lines are sorted into separate meshes and left out: no ray hits
-  // them.
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
-                              aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                  aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
-  importer.SetPropertyBool(AI_CONFIG_PP_PTV_KEEP_HIERARCHY, false);
-  const unsigned steps = aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_PreTransformVertices |
-                         aiProcess_SortByPType | aiProcess_ValidateDataStructure;
-  const aiScene* scene = nullptr;
-  try {
-    scene = importer.ReadFile(path, steps);
-  } catch (const std::exception& error) {  // for instance out of memory
-    refuse(path, std::string("cannot be read: ") + error.what());
-  }
-  if (scene == nullptr || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0U) {
-    refuse(path, std::string("cannot be read as STL, OBJ, glTF or GLB: ") + importer.GetErrorString());
-  }
-  TriangleMesh mesh;
-  mesh.name = path;
-  bool named = false;  // a part is named as a panel
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-    if ((scene->mMeshes[i]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0U) {
-      append_faces(*scene->mMeshes[i], options, mesh);
-      const bool panel = is_named_panel(*scene->mMaterials[scene->mMeshes[i]->mMaterialIndex]);
-      named = named || panel;
-      mesh.is_panel.resize(mesh.triangles.size(), panel ? 1 : 0);
-    }
-  }
-  if (!named) mesh.is_panel.clear();
-  return mesh;
-}
-
-#else
-
-TriangleMesh import(const std::string& path, const MeshFileOptions&) {
-  refuse(
-      path,
-      "this build has no Assimp and reads no mesh files; install libassimp-dev, configure and build again");
-}
-
-#endif
 
 }  // namespace
 
-TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& options) {
+TriangleMesh read_mesh_file(const std::string& path, const MeshFileOptions& options) {
   if (!std::isfinite(options.scale) || options.scale <= 0.0) {
     refuse(path, "the scale is " + number(options.scale) + ", it must be positive; correct --mesh-scale");
   }
   check_readable(path);
   check_format(path);
-  check_start(path);
-  TriangleMesh mesh = import(path, options);
+  TriangleMesh mesh;
+  try {
+    check_start(path);
+    mesh = import_mesh(path, options);
+  } catch (const std::exception& error) {
+    refuse(path, error.what());
+  }
   if (mesh.triangles.empty()) {
     refuse(path, "holds no triangles; export the surface as a triangle mesh");
   }
+  if (mesh.triangles.size() > kMaxTriangles) {
+    refuse(path, "has " + std::to_string(mesh.triangles.size()) + " triangles, at most " +
+                     std::to_string(kMaxTriangles) +
+                     " are supported; simplify it in the modelling tool: 100000 show every detail that the "
+                     "sensor can");
+  }
   check_vertices(path, mesh.vertices_trf_m);
+  leave_out_triangles_without_area(path, mesh);
   join_equal_vertices(mesh);
-  check_triangles(path, mesh);
-  check_radius(path, mesh, options.scale);
   return mesh;
+}
+
+std::string fault_of_size(const TriangleMesh& mesh, double scale) {
+  const double radius_m = mesh.radius_m();
+  if (radius_m >= kMinMeshRadius_m && radius_m <= kMaxMeshRadius_m) return {};
+  const bool is_large = radius_m > kMaxMeshRadius_m;
+  const std::string limit = is_large ? "at most " + number(kMaxMeshRadius_m) + " m are supported: a target " +
+                                           number(2.0 * kMaxMeshRadius_m) +
+                                           " m across just fits the widest view of the sensor"
+                                     : "at least " + number(kMinMeshRadius_m) + " m are needed";
+  return "its farthest vertex is " + number(radius_m) + " m from the origin, " + limit +
+         "; if the unit of the file is not the metre, give its length in metres with --mesh-scale (now " +
+         number(scale) + ", 0.001 for millimetres, 0.0254 for inches)" +
+         (is_large ? "; if its origin is off its centre or a part lies far away, `tumblesight mesh` shows "
+                     "that and its --fix removes it"
+                   : "");
+}
+
+TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& options) {
+  TriangleMesh mesh = read_mesh_file(path, options);
+  const std::string fault = fault_of_size(mesh, options.scale);
+  if (!fault.empty()) refuse(path, fault);
+  return mesh;
+}
+
+std::string left_out_note(const TriangleMesh& mesh) {
+  if (mesh.left_out == 0) return {};
+  return share_text(mesh.left_out, mesh.triangles.size() + mesh.left_out) +
+         (mesh.left_out == 1 ? " has" : " have") + " no area and " + (mesh.left_out == 1 ? "is" : "are") +
+         " left out: no ray hits " + (mesh.left_out == 1 ? "it" : "them");
 }
 
 MeshUp mesh_up_from(const std::string& name) {

@@ -1,6 +1,7 @@
 // Mesh files: a target's surface from a CAD file (STL, OBJ, glTF, GLB), through Assimp.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -25,20 +26,38 @@ struct MeshFileOptions {
 inline constexpr double kMaxMeshRadius_m = 20.0;
 inline constexpr double kMinMeshRadius_m = 0.1;
 
-// The triangles of the file in the TRF, in metres, with node transforms applied and equal vertices joined.
-// The origin of the file becomes the origin of the TRF. A faulty file is refused, not repaired; only what
-// Assimp itself skips is left out (points, lines, glTF faces with an index out of range).
+// Triangles without area are left out, since no ray hits them. A file in which more of them have none is
+// damaged.
+inline constexpr double kMaxShareWithoutArea = 0.2;
+inline constexpr std::size_t kMaxTriangles = 5'000'000;
+
+// The triangles of the file in the TRF, in metres, with node transforms applied, equal vertices joined and
+// meshes decompressed (Draco). The origin of the file becomes the origin of the TRF. Left out are triangles
+// without area, which TriangleMesh::left_out counts, and what Assimp skips: points, lines, glTF faces with an
+// index out of range. Nothing else is repaired.
 //
 // Throws std::runtime_error that names the file, the fault, the value, the limit and the remedy for: a scale
 // that is not positive and finite; a file that is missing, unreadable, or not of the format that its
-// extension .stl, .obj, .gltf or .glb names; no triangles; vertices that are not finite; triangles without
-// area; a radius outside kMinMeshRadius_m..kMaxMeshRadius_m.
+// extension .stl, .obj, .gltf or .glb names; a compression that this build cannot read; no triangles, or more
+// than kMaxTriangles; vertices that are not finite; too many triangles without area.
+TriangleMesh read_mesh_file(const std::string& path, const MeshFileOptions& options = {});
+
+// Empty if the sensor can see a target of this size; otherwise the size, the limit and the remedies.
+std::string fault_of_size(const TriangleMesh& mesh, double scale);
+
+// read_mesh_file(), which also throws for a radius outside kMinMeshRadius_m..kMaxMeshRadius_m.
 TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& options = {});
+
+// "6 of 9312 triangles (0.06 %) have no area and are left out: no ray hits them". Empty if none was left out.
+std::string left_out_note(const TriangleMesh& mesh);
 
 // The files that belong to a mesh file: an OBJ's materials, a glTF's buffers and images
 // (mesh_side_files.cpp). They need not exist. Empty for other formats, and for a file that is missing or
 // damaged.
 std::vector<std::string> mesh_side_files(const std::string& path);
+
+// "my%20mesh.bin" -> "my mesh.bin", as glTF names files.
+std::string decoded_uri(const std::string& uri);
 
 // "y" or "z"; throws std::invalid_argument otherwise.
 MeshUp mesh_up_from(const std::string& name);

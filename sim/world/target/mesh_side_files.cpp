@@ -41,20 +41,6 @@ std::vector<std::string> libraries_of_obj(const fs::path& path) {
   return files;
 }
 
-// "my%20mesh.bin" -> "my mesh.bin"
-std::string decoded(const std::string& uri) {
-  std::string text;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    const auto is_digit = [&](std::size_t at) {
-      return at < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[at])) != 0;
-    };
-    const bool escaped = uri[i] == '%' && is_digit(i + 1) && is_digit(i + 2);
-    text += escaped ? static_cast<char>(std::strtol(uri.substr(i + 1, 2).c_str(), nullptr, 16)) : uri[i];
-    if (escaped) i += 2;
-  }
-  return text;
-}
-
 std::vector<std::string> parts_of_gltf(const fs::path& path) {
   std::ifstream file(path);
   const auto json = nlohmann::json::parse(file, nullptr, false);
@@ -67,13 +53,26 @@ std::vector<std::string> parts_of_gltf(const fs::path& path) {
       const auto uri = part.is_object() ? part.find("uri") : part.end();
       if (uri == part.end() || !uri->is_string()) continue;
       const auto text = uri->get<std::string>();
-      if (text.rfind("data:", 0) != 0) files.push_back((path.parent_path() / decoded(text)).string());
+      if (text.rfind("data:", 0) != 0) files.push_back((path.parent_path() / decoded_uri(text)).string());
     }
   }
   return files;
 }
 
 }  // namespace
+
+std::string decoded_uri(const std::string& uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const auto is_digit = [&](std::size_t at) {
+      return at < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[at])) != 0;
+    };
+    const bool escaped = uri[i] == '%' && is_digit(i + 1) && is_digit(i + 2);
+    text += escaped ? static_cast<char>(std::strtol(uri.substr(i + 1, 2).c_str(), nullptr, 16)) : uri[i];
+    if (escaped) i += 2;
+  }
+  return text;
+}
 
 std::vector<std::string> mesh_side_files(const std::string& path) {
   std::string extension = fs::path(path).extension().string();

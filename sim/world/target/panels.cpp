@@ -6,7 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+
+#include "sim/world/target/groups.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -33,20 +34,6 @@ Eigen::Vector3d area_vector_m2(const TriangleMesh& mesh, std::size_t triangle) {
   const Corners c = corners_of(mesh, triangle);
   return 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
 }
-
-// Sets that are joined step by step.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::size_t of(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) { parent_[of(b)] = of(a); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 struct Extent {
   double low = std::numeric_limits<double>::infinity();

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // vertex indices; both sides reflect
   // Per triangle: 1 if it belongs to a solar panel. Empty: not known, see panels.hpp.
   std::vector<std::uint8_t> is_panel{};
+  // Triangles of the file that are not among these, because they have no area.
+  std::size_t left_out = 0;
 
   // Largest distance of a vertex from the TRF's origin.
   float radius_m() const {

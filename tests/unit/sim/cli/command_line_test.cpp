@@ -233,7 +233,7 @@ std::size_t widest_line(const std::string& text) {
 TEST(Help, FitsATerminal) {
   const Workplace here;
   for (const std::string verb :
-       {"", "simulate", "evaluate", "quantize", "record", "bench", "export", "train"}) {
+       {"", "simulate", "mesh", "evaluate", "quantize", "record", "bench", "export", "train"}) {
     const Outcome outcome = here.run(verb + " --help");
     EXPECT_LE(widest_line(outcome.output), 80U) << outcome.output;
   }
@@ -863,6 +863,16 @@ TEST(Train, RefusesAFileAsItsFolder) {
   const Outcome outcome = here.run("train --out " + here.model());
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.errors.find("model.tsm: is a file; give a folder"), std::string::npos) << outcome.errors;
+}
+
+TEST(Train, AsksForTheNameOfAMeshOfTheUsersOwn) {
+  const Workplace here;
+  if (here.run("--help").output.find("train") == std::string::npos) GTEST_SKIP() << "built without training";
+  const Outcome outcome = here.run("train --out out --mesh " + own_mesh(here));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.errors.find("--mesh: name the spacecraft of the file with --target"), std::string::npos)
+      << outcome.errors;
+  EXPECT_FALSE(std::filesystem::exists(here.path("out")));
 }
 
 TEST(Train, RefusesSetsOfEffectsThatAreWrong) {

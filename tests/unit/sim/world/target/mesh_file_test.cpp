@@ -245,6 +245,39 @@ TEST_F(MeshFile, InvalidGltfIsRefusedBeforeAssimpReadsIt) {
   expect_refused(write("other.gltf", "ply\nformat ascii 1.0\nelement vertex 4\n"), {"glTF"});
 }
 
+// Several roots, a part that is used twice, a mirroring scale and a matrix.
+// Verifies TS-SIL-350.
+TEST_F(MeshFile, GltfPartsAreWhereTheirNodesPutThem) {
+  std::string text = gltf("wedge.bin");
+  const std::string nodes = R"("scenes":[{"nodes":[0]}],
+"nodes":[{"children":[1],"translation":[0.5,0,0]},{"mesh":0,"scale":[2,2,2]}])";
+  ASSERT_NE(text.find(nodes), std::string::npos);
+  text.replace(text.find(nodes), nodes.size(), R"("scenes":[{"nodes":[0,1]}],
+"nodes":[{"mesh":0,"scale":[-1,1,1]},{"children":[2],"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,4,0,0,1]},{"mesh":0}])");
+  (void)write("wedge.bin", gltf_buffer());
+  const TriangleMesh mesh = load_mesh_file(write("roots.gltf", text), {MeshUp::kZ, 1.0});
+  EXPECT_EQ(mesh.triangles.size(), 8U);
+  expect_box(mesh, {-1.0F, 0.0F, 0.0F}, {5.0F, 2.0F, 3.0F});
+}
+
+// Verifies TS-SIL-350.
+TEST_F(MeshFile, WhatGltfIsNotReadIsRefusedByName) {
+  const auto with = [](const std::string& part, const std::string& other) {
+    std::string text = gltf("wedge.bin");
+    return text.replace(text.find(part), part.size(), other);
+  };
+  (void)write("wedge.bin", gltf_buffer());
+  expect_refused(write("quantized.gltf", with(R"("componentType":5126)", R"("componentType":5123)")),
+                 {"KHR_mesh_quantization", "export it without"});
+  const std::string version = R"({"version":"2.0"})";
+  expect_refused(
+      write("meshopt.gltf", with(version, version + R"(,"extensionsUsed":["EXT_meshopt_compression"])")),
+      {"EXT_meshopt_compression", "export it without"});
+  expect_refused(
+      write("copies.gltf", with(version, version + R"(,"extensionsUsed":["EXT_mesh_gpu_instancing"])")),
+      {"EXT_mesh_gpu_instancing", "written out"});
+}
+
 TEST_F(MeshFile, UnknownOrCorruptContentIsRefused) {
   expect_refused(write("notes.txt", "not a mesh\n"), {"cannot be read"});
   expect_refused(write("broken.gltf", "{\"asset\":"), {"cannot be read"});
@@ -266,11 +299,43 @@ TEST_F(MeshFile, NotANumberIsRefusedAndCounted) {
   expect_refused(write("inf.stl", stl(triangles)), {"1 of", "not finite", "inf"});
 }
 
-TEST_F(MeshFile, TrianglesWithoutAreaAreRefusedAndCounted) {
+std::vector<float> without_area(int i) {
+  if (i % 2 == 0) return {0, 0, 0, 1, 0, 0, 1, 0, 0};  // two equal corners
+  return {0, 0, 0, 1, 0, 0, 3, 0, 0};                  // three on a line
+}
+
+// Verifies TS-SIL-350.
+TEST_F(MeshFile, TrianglesWithoutAreaAreLeftOutAndCounted) {
   auto triangles = wedge_triangles();
-  triangles.push_back({0, 0, 0, 1, 0, 0, 1, 0, 0});  // two equal corners
-  triangles.push_back({0, 0, 0, 1, 0, 0, 3, 0, 0});  // three on a line
-  expect_refused(write("flat.stl", stl(triangles)), {"2 of 6", "no area", "triangle 4"});
+  triangles.insert(triangles.begin(), without_area(1));  // reaches farther than the others
+  triangles[0][6] = 50.0F;
+  const TriangleMesh mesh = load_mesh_file(write("flat.stl", stl(triangles)));
+  EXPECT_EQ(mesh.triangles.size(), 4U);
+  EXPECT_EQ(mesh.left_out, 1U);
+  EXPECT_EQ(mesh.vertices_trf_m.size(), 4U) << "its corner does not count for the radius";
+  EXPECT_EQ(left_out_note(mesh), "1 of 5 triangles (20 %) has no area and is left out: no ray hits it");
+  EXPECT_EQ(left_out_note(load_mesh_file(write("whole.stl", stl(wedge_triangles())))), "");
+}
+
+// Verifies TS-SIL-350.
+TEST_F(MeshFile, ManyTrianglesWithoutAreaAreRefused) {
+  auto triangles = wedge_triangles();
+  triangles.push_back(without_area(0));
+  triangles.push_back(without_area(1));
+  expect_refused(write("flat.stl", stl(triangles)), {"2 of 6 triangles (33.33 %)", "no area", "20 %"});
+  expect_refused(write("none.stl", stl({without_area(0), without_area(1)})), {"2 of 2", "no area"});
+}
+
+// Of the panels' marks the right ones stay.
+TEST_F(MeshFile, PanelsStayMarkedBesideTrianglesWithoutArea) {
+  (void)write("file.mtl", "newmtl bus\nnewmtl panel\n");
+  const TriangleMesh mesh = load_mesh_file(write(
+      "panel.obj",
+      "mtllib file.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl bus\nf 1 1 2\nf 1 2 3\nf 2 3 4\nf 1 3 4\n"
+      "f 1 4 2\nusemtl panel\nf 1 2 4\n"));
+  EXPECT_EQ(mesh.left_out, 1U);
+  ASSERT_EQ(mesh.is_panel.size(), 5U);
+  EXPECT_EQ(std::count(mesh.is_panel.begin(), mesh.is_panel.end(), 1), 1);
 }
 
 TEST_F(MeshFile, SizeBeyondTheSensorIsRefusedWithTheLimit) {

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sim/cli/arguments.hpp"
+#include "sim/cli/verbs.hpp"
+#include "sim/inspection/cleaned_mesh.hpp"
+#include "sim/inspection/mesh_inspection.hpp"
+#include "sim/inspection/six_views.hpp"
+#include "sim/inspection/write_mesh.hpp"
+#include "sim/report/mesh_report.hpp"
+#include "sim/terminal/text.hpp"
+#include "sim/terminal/write_file.hpp"
+#include "sim/world/target/mesh_file.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr int kUnusable = 4;      // exit status: read, but of no use as it is
+constexpr int kPagePixels = 256;  // per side of a picture
+constexpr int kSketchPixels = 128;
+
+struct MeshCommandArguments {
+  std::string file;
+  std::string mesh_up = "y";
+  double mesh_scale = 1.0;
+  std::string fix;
+  std::vector<double> origin;  // empty: the centre of the surface
+  bool keep_strays = false;
+  std::string html;
+  std::string json;
+};
+
+void require_usable(const MeshCommandArguments& arguments) {
+  OptionFiles read{{"FILE", arguments.file}};
+  for (const std::string& part : mesh_side_files(arguments.file)) read.push_back({"FILE (part of it)", part});
+  OptionFiles written{{"--fix", arguments.fix}, {"--html", arguments.html}, {"--json", arguments.json}};
+  if (std::filesystem::path(arguments.fix).extension() == ".obj")
+    written.push_back({"--fix (its materials)", materials_of(arguments.fix)});
+  require_usable_files(read, written);
+}
+
+void fix(const MeshCommandArguments& arguments, const TriangleMesh& mesh, const MeshInspection& found) {
+  CleaningOptions options;
+  options.keep_strays = arguments.keep_strays;
+  if (!arguments.origin.empty())
+    options.origin_trf_m = Eigen::Vector3d(arguments.origin[0], arguments.origin[1], arguments.origin[2]);
+  const CleanedMesh result = cleaned(mesh, found, options);
+  write_mesh(arguments.fix, result.mesh);
+  fmt::print("  Cleaned copy: {}, {}, in metres, z up: use it with --mesh-up z.\n", full_path(arguments.fix),
+             counted(result.mesh.triangles.size(), "triangle"));
+  fmt::print("  Left out: {} without area, {} repeated, {} of a marker, {} of stray parts.\n", mesh.left_out,
+             result.repeated, result.marker, result.strays);
+  fmt::print("  Its origin is {} ({:.4f}, {:.4f}, {:.4f}) m of the original.\n\n",
+             arguments.origin.empty() ? "the centre of the outer surface, at" : "at", -result.moved_m.x(),
+             -result.moved_m.y(), -result.moved_m.z());
+}
+
+int show_mesh(const MeshCommandArguments& arguments, const std::string& command_line) {
+  require_usable(arguments);
+  MeshReport report;
+  report.file = arguments.file;
+  report.options = {mesh_up_from(arguments.mesh_up), arguments.mesh_scale};
+  report.command = command_line;
+  report.generated = local_time_text();
+  const TriangleMesh mesh = read_mesh_file(arguments.file, report.options);
+  report.found = inspect(mesh, report.options);
+  fmt::print("{}", mesh_text(report, six_views(mesh, kSketchPixels)));
+  if (!arguments.html.empty()) {
+    write_file(arguments.html, mesh_page(report, six_views(mesh, kPagePixels)));
+    fmt::print("  Page: {}\n\n", full_path(arguments.html));
+  }
+  if (!arguments.json.empty()) write_file(arguments.json, mesh_json(report).dump(2) + "\n");
+  if (!arguments.fix.empty()) fix(arguments, mesh, report.found);
+  const bool faulty =
+      !report.found.findings.empty() && report.found.findings.front().severity == Severity::kFault;
+  return faulty ? kUnusable : 0;
+}
+
+CLI::Validator mesh_to_write() {
+  const auto check = [](std::string& path) -> std::string {
+    for (const char* ending : {".stl", ".obj"}) {
+      if (path.size() > 4 && path.compare(path.size() - 4, 4, ending) == 0) return {};
+    }
+    return fmt::format("must end in .stl or .obj, not '{}'", path);
+  };
+  return CLI::Validator(check, "", "mesh file");
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& app, const std::string& command_line) {
+  auto arguments = std::make_shared<MeshCommandArguments>();
+  CLI::App* command =
+      app.add_subcommand("mesh", "Show what a mesh file holds, and what to mend before training");
+  command->footer(
+      "\nReads STL, OBJ, glTF and GLB, also compressed with Draco. Exits with 0, or with\n"
+      "4 if the mesh is of no use as it is. docs/own_spacecraft.md explains each\n"
+      "finding.\n\n"
+      "Example: a mesh in millimetres, looked at, and written about its centre of mass\n"
+      "  tumblesight mesh craft.glb --mesh-scale 0.001 --html craft.html\n"
+      "  tumblesight mesh craft.glb --mesh-scale 0.001 --fix craft.stl --origin 0,0,0.8\n");
+  command->add_option("FILE", arguments->file, "mesh file")->required()->check(file_path());
+  command
+      ->add_option("--mesh-up", arguments->mesh_up,
+                   "axis of the mesh file that points along the target frame's z")
+      ->check(one_of({"y", "z"}))
+      ->type_name("y|z")
+      ->capture_default_str();
+  limit_number(command->add_option("--mesh-scale", arguments->mesh_scale, "metres per unit of the mesh file"),
+               1e-6, 1e6)
+      ->type_name("X")
+      ->capture_default_str();
+  CLI::Option* fix_option = command->add_option(
+      "--fix", arguments->fix,
+      "write a cleaned copy to this file (.stl or .obj): in metres, z up, about a new origin");
+  fix_option->check(mesh_to_write())->type_name("FILE");
+  command
+      ->add_option(
+          "--origin", arguments->origin,
+          "of the cleaned copy: a place in the target frame in metres, best the centre of mass; 0,0,0 leaves "
+          "it [the centre of the outer surface]")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z")
+      ->needs(fix_option);
+  command->add_flag("--keep-strays", arguments->keep_strays, "leave parts that lie apart in the cleaned copy")
+      ->needs(fix_option);
+  command->add_option("--html", arguments->html, "write a page with pictures of the six sides to this file")
+      ->check(file_path())
+      ->type_name("FILE");
+  add_json_option(*command, arguments->json);
+  command->callback(
+      [arguments, command_line] { throw CLI::RuntimeError(show_mesh(*arguments, command_line)); });
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,29 @@
+#include "sim/cli/mesh_warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "sim/inspection/mesh_inspection.hpp"
+#include "sim/world/target/targets.hpp"
+
+namespace tumblesight::sim {
+
+void print_mesh_warnings(const MeshArguments& arguments, const std::vector<TriangleMesh>& meshes) {
+  const MeshFileOptions options{mesh_up_from(arguments.mesh_up), arguments.mesh_scale};
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (arguments.meshes[i] == kParametricMesh) continue;
+    bool any = false;
+    for (const Finding& finding : inspect(meshes[i], options).findings) {
+      if (finding.severity == Severity::kNote) continue;
+      fmt::print(stderr, "warning: mesh '{}': {}\n", arguments.meshes[i], finding.text);
+      any = true;
+    }
+    if (any)
+      fmt::print(stderr,
+                 "warning: `tumblesight mesh {} --mesh-up {} --mesh-scale {:g}` shows more, and what to do\n",
+                 arguments.meshes[i], arguments.mesh_up, arguments.mesh_scale);
+  }
+}
+
+}  // namespace tumblesight::sim

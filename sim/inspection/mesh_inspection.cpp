@@ -1,0 +1,122 @@
+#include "sim/inspection/mesh_inspection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/inspection/cleaned_mesh.hpp"
+#include "sim/inspection/findings.hpp"
+#include "sim/quantization/outside_views.hpp"
+#include "sim/world/target/panels.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+using Eigen::Vector3d;
+using Points = std::vector<Eigen::Vector3f>;
+
+// A facetted body of revolution moves a little with every turn.
+constexpr double kRound = 0.01;        // of the radius
+constexpr double kAboutOneAxis = 0.9;  // cosine
+
+// The sensor model sees at most 500 m; a mesh in millimetres is larger.
+TriangleMesh of_radius_1(TriangleMesh mesh, double radius_m) {
+  for (Eigen::Vector3f& vertex : mesh.vertices_trf_m) vertex /= static_cast<float>(radius_m);
+  return mesh;
+}
+
+double radius_about(const TriangleMesh& mesh, const Vector3d& centre) {
+  double radius_m = 0.0;
+  for (const Eigen::Vector3f& vertex : mesh.vertices_trf_m)
+    radius_m = std::max(radius_m, (vertex.cast<double>() - centre).norm());
+  return radius_m;
+}
+
+Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : mesh.vertices_trf_m) box.extend(vertex.cast<double>());
+  return box;
+}
+
+double radius_of_share(const Points& points, const Vector3d& centre, double share) {
+  std::vector<double> distances;
+  for (const Eigen::Vector3f& point : points) distances.push_back((point.cast<double>() - centre).norm());
+  const auto at =
+      distances.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(distances.size() - 1));
+  std::nth_element(distances.begin(), at, distances.end());
+  return *at;
+}
+
+SurfaceSymmetry scaled(SurfaceSymmetry symmetry, double factor) {
+  symmetry.centre_trf_m *= factor;
+  symmetry.extent_m *= factor;
+  for (SymmetryAxis& axis : symmetry.axes) {
+    for (double& moved_m : axis.moved_m) moved_m *= factor;
+    axis.any_turn_m *= factor;
+  }
+  return symmetry;
+}
+
+void set_roundness(MeshInspection& found) {
+  std::vector<Vector3d> round;
+  for (const SymmetryAxis& axis : found.symmetry.axes) {
+    const double worst_m =
+        std::max(axis.any_turn_m, *std::max_element(axis.moved_m.begin(), axis.moved_m.end()));
+    if (worst_m <= kRound * found.centred_radius_m) round.push_back(axis.axis_trf);
+  }
+  if (round.empty()) return;
+  found.round_axis_trf = round.front();
+  const bool one_axis = std::all_of(round.begin(), round.end(), [&](const Vector3d& axis) {
+    return std::abs(axis.dot(round.front())) > kAboutOneAxis;
+  });
+  found.roundness = one_axis ? Roundness::kAboutAnAxis : Roundness::kSphere;
+}
+
+// What the views from outside show of the mesh without its strays.
+void look_from_outside(const TriangleMesh& core, MeshInspection& found) {
+  const TriangleMesh unit = of_radius_1(core, found.core_radius_m);
+  const OuterSurface outer = outer_surface(unit);
+  found.symmetry = scaled(symmetry_of(unit, outer.points_trf_m), found.core_radius_m);
+  found.centred_radius_m = std::min({found.core_radius_m, radius_about(core, found.symmetry.centre_trf_m),
+                                     radius_about(core, box_of(core).center())});
+  found.radius_of_95_m =
+      found.core_radius_m *
+      radius_of_share(outer.points_trf_m, found.symmetry.centre_trf_m / found.core_radius_m, 0.95);
+  set_roundness(found);
+}
+
+void count(const TriangleMesh& mesh, MeshInspection& found) {
+  found.triangles = mesh.triangles.size();
+  found.left_out = mesh.left_out;
+  const std::vector<std::uint8_t> repeated = repeated_triangles(mesh);
+  found.repeated = static_cast<std::size_t>(std::count(repeated.begin(), repeated.end(), 1));
+  found.shells = connected_parts(mesh).size();
+  found.edges = edges_of(mesh);
+  found.panels = find_panels(mesh).size();
+  found.panels_are_named = !mesh.is_panel.empty();
+}
+
+}  // namespace
+
+std::size_t best_fold(const SymmetryAxis& axis) {
+  return static_cast<std::size_t>(std::min_element(axis.moved_m.begin(), axis.moved_m.end()) -
+                                  axis.moved_m.begin());
+}
+
+MeshInspection inspect(const TriangleMesh& mesh, const MeshFileOptions& options) {
+  MeshInspection found;
+  count(mesh, found);
+  found.box_trf_m = box_of(mesh);
+  found.radius_m = mesh.radius_m();
+  found.parts = separate_parts(mesh);
+  for (const SeparatePart& part : found.parts) found.area_m2 += part.area_m2;
+  found.strays = strays_of(found.parts);
+  found.marker = marker_cube(mesh);
+  const TriangleMesh core = without(mesh, triangles_of_strays(found));
+  found.core_radius_m = core.radius_m();
+  look_from_outside(core, found);
+  found.likely_units = likely_units(found.core_radius_m / options.scale);
+  found.findings = findings_of(mesh.name, found, options);
+  return found;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,168 @@
+#include "sim/inspection/separate_parts.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+
+#include "sim/world/target/groups.hpp"
+#include "sim/world/target/panels.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kCellShare = 0.01F;      // of the diagonal of the mesh's box
+constexpr double kMaxStrayArea = 0.05;   // of the whole area
+constexpr double kMinStrayReach = 1.05;  // its reach over that of the rest
+constexpr double kCubeTolerance = 1e-3;  // of its side
+constexpr std::size_t kCubeTriangles = 12;
+
+// The cells of a grid that the surface passes through. Cells side by side belong to one group.
+class Cells {
+ public:
+  Cells(const Eigen::AlignedBox3f& box, float cell_m) : origin_(box.min()), cell_m_(cell_m) {}
+
+  std::size_t at(const Vector3f& point) {
+    const Vector3f scaled = (point - origin_) / cell_m_;
+    const std::array<std::int64_t, 3> place{std::lround(scaled.x()) + 1, std::lround(scaled.y()) + 1,
+                                            std::lround(scaled.z()) + 1};
+    const auto [entry, is_new] = cells_.try_emplace(key(place), groups_count_);
+    if (!is_new) return entry->second;
+    const std::size_t cell = groups_.add();
+    ++groups_count_;
+    join_neighbours(place, cell);
+    return cell;
+  }
+  void join(std::size_t a, std::size_t b) { groups_.join(a, b); }
+  std::size_t group(std::size_t cell) { return groups_.of(cell); }
+
+ private:
+  static std::uint64_t key(const std::array<std::int64_t, 3>& place) {
+    constexpr int kBits = 20;
+    return static_cast<std::uint64_t>(place[0]) << (2 * kBits) |
+           static_cast<std::uint64_t>(place[1]) << kBits | static_cast<std::uint64_t>(place[2]);
+  }
+  void join_neighbours(const std::array<std::int64_t, 3>& place, std::size_t cell) {
+    for (int i = 0; i < 27; ++i) {
+      const auto found =
+          cells_.find(key({place[0] + i % 3 - 1, place[1] + i / 3 % 3 - 1, place[2] + i / 9 - 1}));
+      if (found != cells_.end()) groups_.join(found->second, cell);
+    }
+  }
+
+  Vector3f origin_;
+  float cell_m_;
+  Groups groups_{0};
+  std::size_t groups_count_ = 0;
+  std::unordered_map<std::uint64_t, std::size_t> cells_;
+};
+
+Eigen::AlignedBox3f box_of(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3f box;
+  for (const Vector3f& v : mesh.vertices_trf_m) box.extend(v);
+  return box;
+}
+
+// Marks the cells that a triangle passes through, with a point per cell; returns one of them.
+std::size_t add_triangle(const Vector3f& a, const Vector3f& b, const Vector3f& c, float cell_m,
+                         Cells& cells) {
+  const float longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  const int steps = std::max(1, static_cast<int>(std::ceil(longest / cell_m)));
+  const std::size_t first = cells.at(a);
+  for (int i = 0; i <= steps; ++i) {
+    for (int j = 0; j <= steps - i; ++j) {
+      const float u = static_cast<float>(i) / static_cast<float>(steps);
+      const float v = static_cast<float>(j) / static_cast<float>(steps);
+      cells.join(first, cells.at(a + u * (b - a) + v * (c - a)));
+    }
+  }
+  return first;
+}
+
+SeparatePart part_of(const TriangleMesh& mesh, std::vector<std::size_t> triangles) {
+  SeparatePart part;
+  part.area_m2 = area_m2(mesh, triangles);
+  Eigen::AlignedBox3d box;
+  for (const std::size_t triangle : triangles) {
+    for (const std::uint32_t corner : mesh.triangles[triangle]) {
+      const Eigen::Vector3d place = mesh.vertices_trf_m[corner].cast<double>();
+      part.reach_m = std::max(part.reach_m, place.norm());
+      box.extend(place);
+    }
+  }
+  part.centre_trf_m = box.center();
+  part.triangles = std::move(triangles);
+  return part;
+}
+
+}  // namespace
+
+std::vector<SeparatePart> separate_parts(const TriangleMesh& mesh) {
+  const Eigen::AlignedBox3f box = box_of(mesh);
+  const float cell_m = kCellShare * box.diagonal().norm();
+  Cells cells(box, cell_m);
+  std::vector<std::size_t> cell_of;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto& v = mesh.vertices_trf_m;
+    cell_of.push_back(add_triangle(v[a], v[b], v[c], cell_m, cells));
+  }
+  std::unordered_map<std::size_t, std::size_t> number_of;
+  std::vector<std::vector<std::size_t>> triangles;
+  for (std::size_t i = 0; i < cell_of.size(); ++i) {
+    const auto [entry, is_new] = number_of.try_emplace(cells.group(cell_of[i]), triangles.size());
+    if (is_new) triangles.emplace_back();
+    triangles[entry->second].push_back(i);
+  }
+  std::vector<SeparatePart> parts;
+  for (std::vector<std::size_t>& of_part : triangles) parts.push_back(part_of(mesh, std::move(of_part)));
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const SeparatePart& a, const SeparatePart& b) { return a.area_m2 > b.area_m2; });
+  return parts;
+}
+
+std::vector<std::size_t> strays_of(const std::vector<SeparatePart>& parts) {
+  double area_m2 = 0.0;
+  for (const SeparatePart& part : parts) area_m2 += part.area_m2;
+  const auto is_small = [area_m2](const SeparatePart& part) {
+    return part.area_m2 < kMaxStrayArea * area_m2;
+  };
+  double reach_m = 0.0;  // of what cannot be a stray
+  for (const SeparatePart& part : parts) {
+    if (!is_small(part)) reach_m = std::max(reach_m, part.reach_m);
+  }
+  std::vector<std::size_t> strays;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (is_small(parts[i]) && parts[i].reach_m > kMinStrayReach * reach_m) strays.push_back(i);
+  }
+  return reach_m > 0.0 ? strays : std::vector<std::size_t>{};
+}
+
+std::optional<MarkerCube> marker_cube(const TriangleMesh& mesh) {
+  const std::vector<std::vector<std::size_t>> parts = connected_parts(mesh);
+  if (parts.size() < 2) return std::nullopt;
+  for (const std::vector<std::size_t>& part : parts) {
+    if (part.size() != kCubeTriangles) continue;
+    Eigen::AlignedBox3d box;
+    double nearest_m = INFINITY, farthest_m = 0.0;
+    for (const std::size_t triangle : part) {
+      for (const std::uint32_t corner : mesh.triangles[triangle]) {
+        const Eigen::Vector3d place = mesh.vertices_trf_m[corner].cast<double>();
+        box.extend(place);
+        nearest_m = std::min(nearest_m, place.norm());
+        farthest_m = std::max(farthest_m, place.norm());
+      }
+    }
+    const double side_m = box.sizes().maxCoeff();
+    const bool is_cube = farthest_m - nearest_m < kCubeTolerance * side_m &&
+                         side_m - box.sizes().minCoeff() < kCubeTolerance * side_m &&
+                         box.center().norm() < kCubeTolerance * side_m;
+    if (is_cube) return MarkerCube{part, side_m};
+  }
+  return std::nullopt;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,37 @@
+// Parts of a mesh that stand apart from the rest, with a gap around them: what a modelling tool has left
+// behind, and parts whose support the model lacks.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "sim/world/target/triangle_mesh.hpp"
+
+namespace tumblesight::sim {
+
+struct SeparatePart {
+  std::vector<std::size_t> triangles;
+  double area_m2 = 0.0;
+  double reach_m = 0.0;  // of its farthest vertex, from the origin
+  Eigen::Vector3d centre_trf_m = Eigen::Vector3d::Zero();
+};
+
+// The parts that are more than about 2 % of the size of the mesh away from each other, the largest in area
+// first. Parts that touch or penetrate each other are one, whether they share vertices or not. A mesh of one
+// piece gives one part.
+std::vector<SeparatePart> separate_parts(const TriangleMesh& mesh);
+
+// Of parts as above, those that enlarge the radius by more than 5 % and have less than 5 % of the area: the
+// numbers of the parts. They cost resolution, since the image shows the whole radius.
+std::vector<std::size_t> strays_of(const std::vector<SeparatePart>& parts);
+
+// The cube of 12 triangles about the origin that some exporters add to mark it (NASA's name it `_root`).
+struct MarkerCube {
+  std::vector<std::size_t> triangles;
+  double side_m = 0.0;
+};
+std::optional<MarkerCube> marker_cube(const TriangleMesh& mesh);
+
+}  // namespace tumblesight::sim
