@@ -78,7 +78,8 @@ TEST_F(PoseSteps, AFrameWithoutARangeThatCountsIsNotExplained) {
   truth_.r_lrf_trf = rotation_of({0.0, 0.0, 50.0 * kDegree});
   track_frames(6);
   const PoseEstimate estimate = track_next();
-  EXPECT_EQ(estimate.doubts, kPoseCoasts | kPoseRanges);
+  // How well the frames before tell the plate's turn does not matter.
+  EXPECT_EQ(estimate.doubts & ~kPoseUncertain, kPoseCoasts | kPoseRanges);
 }
 
 // Its origin is not in its middle, by more than the fit bridges.

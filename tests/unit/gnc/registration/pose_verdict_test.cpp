@@ -112,7 +112,7 @@ TEST_F(PoseVerdict, PosesTooFarApartToTellTheRateAreADoubt) {
 TEST_F(PoseVerdict, AnAttitudeThatIsKnownToADegreeAtBestIsADoubt) {
   take(ball());
   rate_ = Eigen::Vector3d::Zero();
-  const PoseEstimate estimate = track_frames(4);
+  const PoseEstimate estimate = track_frames(12);
   EXPECT_EQ(estimate.doubts, kPoseUncertain);
   EXPECT_GT(*std::max_element(estimate.covariance.sigma.begin(), estimate.covariance.sigma.begin() + 3),
             17'453U);
