@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sim/inspection/findings.hpp"
@@ -25,8 +26,13 @@ double percent(double part, double whole) {
   return 100.0 * part / whole;
 }
 
+// Three digits, without an exponent.
+std::string metres(double length_m) {
+  return std::abs(length_m) < 100.0 ? fmt::format("{:.3g}", length_m) : fmt::format("{:.0f}", length_m);
+}
+
 std::string place_text(const Eigen::Vector3d& place) {
-  return fmt::format("({:.3g}, {:.3g}, {:.3g})", place.x(), place.y(), place.z());
+  return fmt::format("({}, {}, {})", metres(place.x()), metres(place.y()), metres(place.z()));
 }
 
 std::string units_text(const MeshReport& report) {
@@ -151,13 +157,13 @@ std::vector<std::pair<std::string, std::string>> mesh_facts(const MeshReport& re
   const Eigen::Vector3d size_m = found.box_trf_m.sizes();
   const bool y_up = report.options.up == MeshUp::kY;
   return {
-      {"triangles",
-       fmt::format("{}, {} m2, in {}; {} left out", found.triangles, fmt::format("{:.3g}", found.area_m2),
-                   counted(found.shells, "shell"), found.left_out)},
+      {"triangles", fmt::format("{}, {} m2, in {}; {} left out", found.triangles, metres(found.area_m2),
+                                counted(found.shells, "shell"), found.left_out)},
       {"axes", y_up ? "--mesh-up y: x is the file's x, y its -z, z its y" : "--mesh-up z: those of the file"},
-      {"size", fmt::format("{:.3g} x {:.3g} x {:.3g} m along x, y, z", size_m.x(), size_m.y(), size_m.z())},
-      {"radius", fmt::format("{:.3g} m about the origin, {:.3g} m about the centre", found.radius_m,
-                             found.centred_radius_m)},
+      {"size", fmt::format("{} x {} x {} m along x, y, z", metres(size_m.x()), metres(size_m.y()),
+                           metres(size_m.z()))},
+      {"radius", fmt::format("{} m about the origin, {} m about the centre", metres(found.radius_m),
+                             metres(found.centred_radius_m))},
       {"centre of surface", fmt::format("{} m, {:.3g} m from the origin",
                                         place_text(found.symmetry.centre_trf_m), found.centre_distance_m())},
       {"unit", fmt::format("{:g} m (--mesh-scale): {}", report.options.scale, units_text(report))},
@@ -180,7 +186,7 @@ DataTable symmetry_table(const MeshReport& report) {
   };
   for (int i = 0; i < 3; ++i) {
     const SymmetryAxis& axis = symmetry.axes[i];
-    std::vector<TableCell> row{{axis_name(axis.axis_trf)}, {fmt::format("{:.3g} m", symmetry.extent_m[i])}};
+    std::vector<TableCell> row{{axis_name(axis.axis_trf)}, {metres(symmetry.extent_m[i]) + " m"}};
     for (const double moved_m : axis.moved_m) row.push_back(cell(moved_m));
     row.push_back(cell(axis.any_turn_m));
     row.push_back({fmt::format("{:.0f} mm", 1e3 * axis.moved_m[best_fold(axis)])});
@@ -196,9 +202,9 @@ std::string mesh_text(const MeshReport& report, const std::array<SideView, 6>& v
   text +=
       "\n  How far parts of a turn move the outer surface on average, in % of the radius and at least:\n\n";
   text += terminal_text(symmetry_table(report));
-  text += fmt::format(
-      "\n  The six sides in axes of the target frame, {:.3g} m wide, the origin in the middle:\n\n",
-      views.front().swath_m);
+  text +=
+      fmt::format("\n  The six sides in axes of the target frame, {} m wide, the origin in the middle:\n\n",
+                  metres(views.front().swath_m));
   return text + sketches(views) + findings_text(report.found) + "\n";
 }
 

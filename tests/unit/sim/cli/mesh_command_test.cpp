@@ -57,7 +57,7 @@ TEST(Mesh, AMeshInMillimetresIsOfNoUseUntilItsUnitIsGiven) {
   write_mesh(here.path("craft.stl"), moved(times(sound_mesh(), 1000.0F), {0.0F, 0.0F, 3000.0F}));
   const Outcome wrong = here.run("mesh craft.stl --mesh-up z --json wrong.json");
   EXPECT_EQ(wrong.exit_code, 4);
-  EXPECT_NE(wrong.output.find("--mesh-scale 0.001"), std::string::npos) << wrong.output;
+  EXPECT_NE(wrong.output.find("in millimetres (--mesh-scale"), std::string::npos) << wrong.output;
   EXPECT_EQ(nlohmann::json::parse(content(here.path("wrong.json"))).at("findings").at(0).at("key"), "size");
   const Outcome fixed = here.run(
       "mesh craft.stl --mesh-up z --mesh-scale 0.001 --fix fixed.obj --origin 0,0,3 --json right.json");
