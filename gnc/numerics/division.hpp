@@ -54,7 +54,7 @@ struct Words {
 [[gnu::noinline]] constexpr std::uint64_t divide_by_reciprocal(std::uint64_t dividend,
                                                                std::uint64_t divisor) {
   const auto high_product = [](std::uint32_t a, std::uint32_t b) {
-    return static_cast<std::uint32_t>((std::uint64_t{a} * b) >> 32);
+    return static_cast<std::uint32_t>((static_cast<std::uint64_t>(a) * b) >> 32);
   };
   Words normalized(divisor);
   const std::uint32_t shift = normalized.normalize();

@@ -24,7 +24,7 @@ constexpr int highest_bit_32(std::uint32_t value) {
 }
 // The upper 32 bits of a product, rounded down.
 constexpr std::int32_t high_product(std::int32_t a, std::int32_t b) {
-  return static_cast<std::int32_t>((std::int64_t{a} * b) >> 32);
+  return static_cast<std::int32_t>((static_cast<std::int64_t>(a) * b) >> 32);
 }
 
 // Square root, error at most 2^-24. Negative arguments give 0.

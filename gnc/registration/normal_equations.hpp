@@ -17,7 +17,8 @@ constexpr std::size_t element(int row, int column) {
 }
 // The same for any row and column.
 constexpr std::size_t symmetric_element(int row, int column) {
-  return row >= column ? element(row, column) : element(column, row);
+  const int larger = row >= column ? row : column, smaller = row + column - larger;
+  return element(larger, smaller);
 }
 
 struct NormalEquations {
@@ -31,11 +32,11 @@ struct NormalEquations {
 #pragma GCC unroll 6
     for (int i = 0; i < kUnknowns; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const auto weighted = static_cast<std::int32_t>((std::int64_t{weight} * row[at] + (1 << 11)) >> 12);
+      const auto weighted = static_cast<std::int32_t>((row[at] * std::int64_t{weight} + (1 << 11)) >> 12);
 #pragma GCC unroll 6
       for (int k = 0; k <= i; ++k)
-        information[element(i, k)] += std::int64_t{weighted} * row[static_cast<std::size_t>(k)];
-      gradient[at] += std::int64_t{wanted} * row[at];
+        information[element(i, k)] += row[static_cast<std::size_t>(k)] * std::int64_t{weighted};
+      gradient[at] += row[at] * std::int64_t{wanted};
     }
   }
 };

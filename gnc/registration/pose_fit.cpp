@@ -39,7 +39,9 @@ Vector3<Fixed> turn_between(const Matrix3<Fixed>& a, const Matrix3<Fixed>& b) {
 
 // The motion and six others, each with one unknown changed. They only give derivatives, so that they are
 // propagated in long parts, all of them alike.
-using Probes = std::array<Motion<Fixed>, kUnknownMotions + 1>;
+constexpr int kProbes = 7;  // the motion itself and one per unknown
+static_assert(kProbes == kUnknownMotions + 1);
+using Probes = std::array<Motion<Fixed>, kProbes>;
 Probes probes_of(const Motion<Fixed>& motion) {
   Probes probes;
   probes.fill(motion);
@@ -60,7 +62,7 @@ Jacobian derivatives_of(const Probes& probes) {
     const Vector3<Fixed> turn = turn_between(probes[i + 1].r_lrf_trf, probes[0].r_lrf_trf);
     for (std::size_t k = 0; k < 3; ++k)
       jacobian[k][i] = static_cast<std::int32_t>(clamp<std::int64_t>(
-          std::int64_t{turn[static_cast<int>(k)].raw()} * (1 << (24 - kProbeBits)), -(1 << 30), 1 << 30));
+          turn[static_cast<int>(k)].raw() * (std::int64_t{1} << (24 - kProbeBits)), -(1 << 30), 1 << 30));
   }
   return jacobian;
 }
@@ -174,9 +176,9 @@ void move(const std::array<std::int32_t, kMotionUnknowns>& step, std::int32_t ra
   r = rotation_from_columns<Fixed>(orthonormalize<Fixed>(Vector3<Fixed>(r.col(0)), Vector3<Fixed>(r.col(1))));
   for (std::size_t i = 0; i < 3; ++i) {
     motion.origin_lrf_um[i] =
-        limited_sum(motion.origin_lrf_um[i], (std::int64_t{step[i + 6]} * radius_um) >> 24, kFarthest_um);
+        limited_sum(motion.origin_lrf_um[i], (step[i + 6] * std::int64_t{radius_um}) >> 24, kFarthest_um);
     motion.velocity_um_period[i] = limited_sum(
-        motion.velocity_um_period[i], (std::int64_t{step[i + 9]} * radius_um) >> 24, kFastest_um_period);
+        motion.velocity_um_period[i], (step[i + 9] * std::int64_t{radius_um}) >> 24, kFastest_um_period);
   }
 }
 

@@ -353,7 +353,7 @@ PoseState pose_state(const PoseMotion& motion) {
   constexpr std::int64_t kTenthsPerPeriod = kNominalPeriod_ns / 100'000'000;
   for (std::size_t i = 0; i < 3; ++i)
     state.velocity_lrf_um_s[i] =
-        static_cast<std::int32_t>(divide(std::int64_t{motion.velocity_um_period[i]} * 10, kTenthsPerPeriod));
+        static_cast<std::int32_t>(divide(motion.velocity_um_period[i] * std::int64_t{10}, kTenthsPerPeriod));
   return state;
 }
 

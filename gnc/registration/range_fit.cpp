@@ -46,7 +46,7 @@ class RangeRows {
     slope_per_half_ray_q24_ = static_cast<std::int32_t>(divide(view.tan_half_fov_q30, view.rays) >> 6);
     for (std::size_t i = 0; i < 3; ++i)
       origin_q14_[i] = static_cast<std::int32_t>(
-          divide(std::int64_t{pose.origin_lrf_um[i]} * (1 << 14), view.target_radius_um));
+          divide(pose.origin_lrf_um[i] * (std::int64_t{1} << 14), view.target_radius_um));
     reference_q17_ = static_cast<std::int32_t>(
         divide(std::int64_t{view.reference_depth_um} * (1 << 17), view.target_radius_um));
     const std::int64_t per_count_q16 = divide(std::int64_t{1} << 32, view.noise_q8);

@@ -89,7 +89,9 @@ void expect_verified_poses(const SilRunResult& run) {
     ++last;
     if (!is_verified) continue;
     ++last_verified;
-    EXPECT_EQ(report.pose_frames, kFrames);
+    // A pose of the first frames that contradicts the others is forgotten.
+    EXPECT_GE(report.pose_frames, kFrames - 2);
+    EXPECT_LE(report.pose_frames, kFrames);
     EXPECT_LT(angular_error_rad(step.truth.q_lrf_trf, gnc::to_double(report.pose_q_lrf_trf)), 0.0175);
     EXPECT_NEAR(1e-6 * report.pose_origin_lrf_um[0], 0.0, 0.02);
     EXPECT_NEAR(1e-6 * report.pose_origin_lrf_um[1], step.truth.range_m, 0.15);
