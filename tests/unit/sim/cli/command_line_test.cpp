@@ -463,7 +463,8 @@ TEST(Inputs, AreNeverOverwritten) {
   std::ofstream(here.path("parts.obj")) << "mtllib my paint.mtl\nmtllib a.mtl b.mtl\r\n"
                                         << content(here.path("mine.obj"));
   std::ofstream(here.path("parts.gltf"))
-      << R"({"asset":{"version":"2.0"},"buffers":[{"uri":"data:,x"},{"uri":"my%20mesh.bin"}],"images":[{"uri":"skin.png"}]})";
+      << R"({"asset":{"version":"2.0"},"buffers":[{"uri":"data:,x"},{"uri":"my%20mesh.bin"}],)"
+      << R"("images":[{"uri":"skin.png"}]})";
   std::ofstream(here.path("bus.xml")) << "<PrivateKey>file:" << here.path("key.pem") << "</PrivateKey>";
   std::filesystem::copy(here.path("model.tsm"), here.path("net.cnn.onnx"));
   std::filesystem::copy(here.path("model.tsm"), here.path("mine.tsm"));
