@@ -141,10 +141,7 @@ TEST_F(PoseAlternatives, ASettledTrackStaysWhereTheNetworksAttitudeDoesNotExplai
   for (int k = 0; k < 3; ++k) {
     *state_ = kept;
     truth_ = pose;
-    noise_ = k == 0 ? 1.5 : 1.0;
-    lost_ = k == 1 ? 0.75 : 0.0;
-    see();
-    if (k == 2) add_patch(0.05);
+    see_unexplained(k);
     const PoseEstimate estimate = track_seen();
     EXPECT_GT(error_deg(estimate), 90.0) << k;
   }

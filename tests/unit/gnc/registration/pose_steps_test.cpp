@@ -55,10 +55,7 @@ TEST_F(PoseSteps, AFrameThatIsNotExplainedIsRegisteredInThree) {
   for (int k = 0; k < 3; ++k) {
     *state_ = kept;
     truth_ = pose;
-    noise_ = k == 0 ? 1.5 : 1.0;
-    lost_ = k == 1 ? 0.75 : 0.0;
-    see();
-    if (k == 2) add_patch(0.05);
+    see_unexplained(k);
     EXPECT_TRUE(tracks_in(kThreeSteps)) << k;
   }
 }
@@ -136,13 +133,7 @@ TEST_F(PoseSteps, TwoPosesAreFittedUnderOneLaw) {
 // A body that tumbles, in a track that takes it to spin. Between the challengers there is the network's law,
 // if it is another one than the track's.
 TEST_F(PoseSteps, LawsTakeTurnsWithTheNetworks) {
-  inertia_trf_ = Eigen::Vector3d(1.3, 0.6, 1.1).asDiagonal();
-  Matrix3<Fixed> tensor = Matrix3<Fixed>::Zero();
-  for (int i = 0; i < 3; ++i) tensor(i, i) = Fixed(inertia_trf_(i, i));
-  Inertia<Fixed> inertia;
-  ASSERT_TRUE(make_inertia<Fixed>(tensor, inertia));
-  laws_ = motion_laws<Fixed>(inertia);
-  rate_ = {0.4, 0.3, -0.3};
+  tumble();
   for (int k = 0; k < 6; ++k) {
     state_->challenger = 0;  // the next one is the spin
     track_next();

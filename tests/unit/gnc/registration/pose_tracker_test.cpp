@@ -140,13 +140,7 @@ TEST_F(TrackPose, AnotherBodyIsNotVerified) {
 // The network says that the target spins. Its poses tell that it tumbles.
 // Verifies TS-EST-206.
 TEST_F(TrackPose, FindsTheLawOfMotion) {
-  inertia_trf_ = Eigen::Vector3d(1.3, 0.6, 1.1).asDiagonal();
-  Matrix3<Fixed> tensor = Matrix3<Fixed>::Zero();
-  for (int i = 0; i < 3; ++i) tensor(i, i) = Fixed(inertia_trf_(i, i));
-  Inertia<Fixed> inertia;
-  ASSERT_TRUE(make_inertia<Fixed>(tensor, inertia));
-  laws_ = motion_laws<Fixed>(inertia);
-  rate_ = {0.4, 0.3, -0.3};
+  tumble();
   PoseEstimate estimate;
   for (int k = 0; k < 10; ++k) estimate = track_next();
   EXPECT_EQ(state_->law, kTumbleLaw);

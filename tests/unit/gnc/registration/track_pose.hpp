@@ -66,6 +66,24 @@ class TrackPose : public testing::Test {
     for (int row = 2; row < 2 + side; ++row)
       for (int column = 2; column < 2 + side; ++column) frame_->add(row, column, kDepth_m);
   }
+  // The next frame, which the target does not explain: by noisy ranges (0), missing returns (1) or returns
+  // beside it (2).
+  void see_unexplained(int kind) {
+    noise_ = kind == 0 ? 1.5 : 1.0;
+    lost_ = kind == 1 ? 0.75 : 0.0;
+    see();
+    if (kind == 2) add_patch(0.05);
+  }
+  // From now on the body tumbles, and the tracker knows its inertia.
+  void tumble() {
+    inertia_trf_ = Eigen::Vector3d(1.3, 0.6, 1.1).asDiagonal();
+    Matrix3<Fixed> tensor = Matrix3<Fixed>::Zero();
+    for (int i = 0; i < 3; ++i) tensor(i, i) = Fixed(inertia_trf_(i, i));
+    Inertia<Fixed> inertia;
+    ASSERT_TRUE(make_inertia<Fixed>(tensor, inertia));
+    laws_ = motion_laws<Fixed>(inertia);
+    rate_ = {0.4, 0.3, -0.3};
+  }
   // What is left of the time between two frames, of which see() passes a nominal period.
   void pass_until(std::int64_t period_ns) {
     const double periods = static_cast<double>(period_ns) / kNominalPeriod_ns - 1.0;
