@@ -56,6 +56,7 @@ std::string html_row(const std::vector<std::string>& cells, const char* tag) {
 }  // namespace
 
 DataTable transposed(const DataTable& table) {
+  if (table.rows.empty()) return table;
   DataTable turned{{table.header.front()}, {}};
   for (const std::vector<TableCell>& row : table.rows) turned.header.push_back(row.front().text);
   for (std::size_t column = 1; column < table.header.size(); ++column) {

@@ -28,7 +28,7 @@ struct DataTable {
   std::vector<std::vector<TableCell>> rows;
 };
 
-// A column per row and a row per column, for a table without titles.
+// A column per row and a row per column, for a table without titles. A table without rows stays as it is.
 DataTable transposed(const DataTable& table);
 
 // The first column is left-aligned, the others are right-aligned. A table without rows gives an empty text.

@@ -29,7 +29,7 @@ std::string poses_section(const Results& results) {
     const DataTable table = poses_table(subject);
     if (table.rows.empty()) continue;
     if (results.subjects.size() > 1) text += "<h3>" + escape_markup(title_of(subject)) + "</h3>\n";
-    text += html_text(table, "results");
+    text += html_text(transposed(table), "poses");
   }
   if (text.empty()) return text;
   return "<h2>Registered pose</h2>\n" + text +

@@ -20,16 +20,25 @@ ErrorSummary last_frame_errors(const RunReport& report, Estimator estimator) {
   return last_frame_summary(report.results, report.setup.frames, estimator);
 }
 
+// Nothing without poses.
+std::string pose_sentence(const RunReport& report) {
+  if (run_poses_table(report).rows.empty()) return {};
+  const PoseSummary pose = pose_summary(report.results, report.setup.frames - 1);
+  return fmt::format(
+      " The registered pose's is {:.2f}° (median {:.2f}°), and {:.0f} % of the poses are verified.",
+      pose.mean_deg, pose.median_deg, 100.0 * pose.verified);
+}
+
 std::string lead_sentence(const RunReport& report) {
   const ErrorSummary rcnn = last_frame_errors(report, Estimator::kRcnn);
   if (rcnn.count == 0) return "No sequence was answered completely, so there is no error to report.";
   const auto within = static_cast<std::size_t>(rcnn.within_20deg * static_cast<double>(rcnn.count) + 0.5);
   return fmt::format(
-      "After {} the mean attitude error is {:.1f}° (median {:.1f}°). It is within 20° in {} of {} "
-      "sequences. {} of "
-      "{} steps were answered. The flight task allocated {} after its start.",
+      "After {} the network's mean attitude error is {:.1f}° (median {:.1f}°). It is within 20° in {} of {} "
+      "sequences.{} {} of {} steps were answered. The flight task allocated {} after its start.",
       counted(report.setup.frames, "frame"), rcnn.mean_deg, rcnn.median_deg, within, rcnn.count,
-      report.steps_planned - report.steps_missed - report.frames_superseded, report.steps_planned,
+      pose_sentence(report), report.steps_planned - report.steps_missed - report.frames_superseded,
+      report.steps_planned,
       report.heap_allocations == 0 ? "no heap memory"
                                    : fmt::format("heap memory {} times", report.heap_allocations));
 }
@@ -92,7 +101,8 @@ std::string body(const RunReport& report) {
                       report.frame_period_s);
   html += html_notices(report.notices, report.setup.remarks);
   html += fmt::format("<p class=lead>{}</p>\n", lead_sentence(report)) +
-          html_text(run_errors_table(report), "headline") + html_text(run_poses_table(report), "results");
+          html_text(run_errors_table(report), "headline") +
+          html_text(transposed(run_poses_table(report)), "poses");
   if (!report.results.empty()) {
     html += html_figure(fmt::format("Sequence {}, frame by frame", shown + 1),
                         attitude_strip_figure(report, shown),

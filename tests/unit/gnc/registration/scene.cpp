@@ -47,6 +47,18 @@ double depth_on(const Eigen::Vector3d& direction, const Eigen::Vector3d& a, cons
   return depth > 0.0 ? depth : kNothing;
 }
 
+// Columns and rows that may meet the triangle: all of them if a corner is not before the sensor.
+Eigen::AlignedBox2i rays_around(const Sensor& sensor, const std::array<Eigen::Vector3d, 3>& corners) {
+  const Eigen::AlignedBox2i screen(Eigen::Vector2i(0, 0), Eigen::Vector2i(sensor.rays - 1, sensor.rays - 1));
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& corner : corners) {
+    if (corner.y() < 0.01) return screen;
+    box.extend(on_screen(sensor, corner).cwiseMax(-10.0).cwiseMin(sensor.rays + 10.0));
+  }
+  return screen.intersection(
+      Eigen::AlignedBox2i((box.min().array() - 2.0).cast<int>(), (box.max().array() + 2.0).cast<int>()));
+}
+
 }  // namespace
 
 void Body::add_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
@@ -181,16 +193,17 @@ std::vector<double> cast(const Body& body, const ExactPose& pose, const Sensor& 
   std::vector<Eigen::Vector3d> corners;
   for (const Eigen::Vector3d& corner : body.corners)
     corners.emplace_back(pose.r_lrf_trf * corner + pose.origin_m);
-  std::vector<double> depths;
-  for (int row = 0; row < sensor.rays; ++row) {
-    for (int column = 0; column < sensor.rays; ++column) {
-      const Eigen::Vector3d direction = ray(sensor, row, column);
-      double nearest = kNothing;
-      for (const auto& [a, b, c] : body.triangles)
-        nearest = std::min(
-            nearest, depth_on(direction, corners[static_cast<std::size_t>(a)],
-                              corners[static_cast<std::size_t>(b)], corners[static_cast<std::size_t>(c)]));
-      depths.push_back(nearest);
+  std::vector<double> depths(static_cast<std::size_t>(sensor.rays * sensor.rays), kNothing);
+  for (const auto& triangle : body.triangles) {
+    const Eigen::Vector3d &a = corners[static_cast<std::size_t>(triangle[0])],
+                          &b = corners[static_cast<std::size_t>(triangle[1])],
+                          &c = corners[static_cast<std::size_t>(triangle[2])];
+    const Eigen::AlignedBox2i rays = rays_around(sensor, {a, b, c});
+    for (int row = rays.min().y(); row <= rays.max().y(); ++row) {
+      for (int column = rays.min().x(); column <= rays.max().x(); ++column) {
+        double& nearest = depths[static_cast<std::size_t>(row * sensor.rays + column)];
+        nearest = std::min(nearest, depth_on(ray(sensor, row, column), a, b, c));
+      }
     }
   }
   return depths;
