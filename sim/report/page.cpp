@@ -34,6 +34,7 @@ td { border-bottom: 1px solid #e4e6ea; }
 .results { width: 100%; font-size: 13.5px; } .results th, .results td { padding: 4px 14px 4px 0; }
 .results th { white-space: nowrap; } .results td { white-space: nowrap; } .results th.number { text-align: right; }
 .results td:last-child, .results th:last-child { padding-right: 0; }
+.pair .results th { white-space: normal; vertical-align: bottom; }
 .poses { font-size: 13.5px; } .headline + .poses { margin-top: 28px; }
 .poses th, .poses td { padding: 3px 22px 3px 0; white-space: nowrap; }
 tr.group th { padding-top: 18px; color: #22262d; border-bottom: 1px solid #9aa1ab; }
