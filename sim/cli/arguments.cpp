@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 
@@ -94,7 +96,46 @@ MeshFileOptions mesh_file_options(const MeshArguments& arguments) {
   MeshFileOptions options;
   options.up = mesh_up_from(arguments.mesh_up);
   options.scale = arguments.mesh_scale;
+  options.origin_trf_m = arguments.origin_trf_m;
   return options;
+}
+
+void take_sensor_of(const Mission& mission, const CLI::App& command, SensorArguments& sensor) {
+  const auto given = [&command](const char* option) {
+    const CLI::Option* found = command.get_option_no_throw(option);
+    return found != nullptr && found->count() > 0;
+  };
+  if (!given("--sensor")) {
+    sensor.sensor = sensor_named(mission.sensor);
+    sensor.file = sensor_path(mission.sensor);
+  }
+  if (!given("--range")) {
+    if (mission.ranges_m)
+      sensor.ranges = RangeLimits{mission.ranges_m->nearest_m, mission.ranges_m->farthest_m};
+    sensor.largest_rate_deg_s = mission.largest_rate_deg_s;
+  }
+}
+
+// `take`: called with the mission when all other options are known.
+void add_mission(CLI::App& command, const std::function<void(const Mission&)>& take) {
+  const auto read = [take](const std::string& text) {
+    try {
+      const Mission mission = mission_named(text, condition_names());
+      use_mission(mission);
+      take(mission);
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError("--mission", error.what());
+    }
+  };
+  CLI::Option* option =
+      command.add_option_function<std::string>("--mission", read,
+                                               "a TOML file that says all this at once: target, mesh, axes, "
+                                               "unit, inertia, sensor, ranges; or the name of "
+                                               "a target that ships");
+  option->type_name("FILE|NAME");
+  for (const char* same : {"--target", "--mesh", "--mesh-up", "--mesh-scale", "--inertia"}) {
+    if (CLI::Option* other = command.get_option_no_throw(same)) option->excludes(other);
+  }
 }
 
 }  // namespace
@@ -253,17 +294,56 @@ void add_report_option(CLI::App& command, std::string& report, const std::string
       ->type_name("FILE");
 }
 
+Eigen::Matrix3d checked_inertia(const std::vector<double>& i) {
+  const Eigen::Matrix3d inertia = tensor_of({i[0], i[1], i[2], i[3], i[4], i[5]});
+  const std::string fault = fault_of_inertia(inertia);
+  if (!fault.empty()) throw std::invalid_argument(fmt::format("--inertia {}: {}", fmt::join(i, ","), fault));
+  return inertia;
+}
+
+void add_inertia_option(CLI::App& command, std::vector<double>& inertia) {
+  command
+      .add_option(
+          "--inertia", inertia,
+          "inertia Ixx,Iyy,Izz,Ixy,Ixz,Iyz of the target in kg m2 about its centre of mass, in the axes of "
+          "the target frame, products with their minus sign; for a tumbling target of your own")
+      ->delimiter(',')
+      ->expected(6)
+      ->type_name("N,N,...");
+}
+
+void add_mission_option(CLI::App& command, ScenarioArguments& arguments) {
+  add_mission(command, [&command, &arguments](const Mission& mission) {
+    arguments.mission = mission;
+    arguments.target = mission.name;
+    arguments.mesh = mission.mesh.file;
+    arguments.mesh_up = mission.mesh.up;
+    arguments.mesh_scale = mission.mesh.scale;
+    arguments.mesh_origin_trf_m = mesh_file_options(mission.mesh).origin_trf_m;
+    take_sensor_of(mission, command, arguments.sensor);
+  });
+}
+
+void add_mission_option(CLI::App& command, std::string& target, MeshArguments& meshes,
+                        SensorArguments& sensor, std::optional<Mission>& known) {
+  add_mission(command, [&command, &target, &meshes, &sensor, &known](const Mission& mission) {
+    known = mission;
+    target = mission.name;
+    meshes.meshes = {mission.mesh.file};
+    meshes.mesh_up = mission.mesh.up;
+    meshes.mesh_scale = mission.mesh.scale;
+    meshes.origin_trf_m = mesh_file_options(mission.mesh).origin_trf_m;
+    take_sensor_of(mission, command, sensor);
+  });
+}
+
 void add_target_options(CLI::App& command, ScenarioArguments& arguments) {
   add_target_option(command, arguments.target, TargetChoice::kAny);
   add_mesh_file_options(
       command, arguments.mesh, arguments.mesh_up, arguments.mesh_scale,
       "surface of the target: a file (STL, OBJ, glTF), or parametric for the mesh that ships [parametric]");
-  command
-      .add_option("--inertia", arguments.inertia,
-                  "inertia Ixx,Iyy,Izz,Ixy,Ixz,Iyz of the target in kg m2, for a tumbling target of your own")
-      ->delimiter(',')
-      ->expected(6)
-      ->type_name("N,N,...");
+  add_inertia_option(command, arguments.inertia);
+  add_mission_option(command, arguments);
 }
 
 void add_mesh_options(CLI::App& command, MeshArguments& arguments) {

@@ -4,22 +4,26 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/cli/sensor_arguments.hpp"
+#include "sim/mission/mission.hpp"
 #include "sim/world/scenario/disturbance.hpp"
 #include "sim/world/sensor/effects.hpp"
+#include "sim/world/target/targets.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
 
 // The observed target and motion, and the network.
 struct ScenarioArguments {
-  std::string target = "near_shoemaker";
+  std::string target = default_target();
   std::string mesh;  // a file, or "parametric"; empty: the same
   std::string mesh_up = "y";
   double mesh_scale = 1.0;
+  Eigen::Vector3d mesh_origin_trf_m = Eigen::Vector3d::Zero();  // of --mission
   std::vector<double> inertia;  // Ixx, Iyy, Izz, Ixy, Ixz, Iyz [kg m2]; empty: the shipped target's
   std::string condition = "nominal";
   std::uint32_t sequences = 30;
@@ -31,6 +35,7 @@ struct ScenarioArguments {
   std::string numerics = "fixed";  // or "float32": which of the shipped models
   std::string model;  // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
   std::string json;   // empty: none
+  std::optional<Mission> mission;  // of --mission
 };
 
 // The surfaces that a network is made for.
@@ -38,6 +43,7 @@ struct MeshArguments {
   std::vector<std::string> meshes{"parametric"};  // files, or "parametric" for the mesh that ships
   std::string mesh_up = "y";
   double mesh_scale = 1.0;
+  Eigen::Vector3d origin_trf_m = Eigen::Vector3d::Zero();  // of --mission
 };
 
 // A file that a run reads or writes, and the option that names it. An empty path: none.
@@ -68,12 +74,25 @@ void require_the_target(const Effects& effects);
 void add_json_option(CLI::App& command, std::string& json);
 void add_report_option(CLI::App& command, std::string& report, const std::string& default_text);
 
+// --mission, which excludes the options that say the same; they must have been added before. The target of
+// the mission is then known by its name. Sensor and ranges of the mission count unless their options are
+// given.
+void add_mission_option(CLI::App& command, ScenarioArguments& arguments);
+// The same for verbs that make a network.
+void add_mission_option(CLI::App& command, std::string& target, MeshArguments& meshes,
+                        SensorArguments& sensor, std::optional<Mission>& mission);
+
 // Groups of options.
 void add_target_options(CLI::App& command, ScenarioArguments& arguments);  // --target, --mesh…, --inertia
 void add_mesh_options(CLI::App& command,
                       MeshArguments& arguments);  // --mesh (repeated), --mesh-up, --mesh-scale
 void add_sequence_options(CLI::App& command, ScenarioArguments& arguments);  // --sequences, --frames, --seed
 void add_model_options(CLI::App& command, ScenarioArguments& arguments);     // --model, --numerics
+
+// The tensor of --inertia's six elements. Throws std::invalid_argument that names the limits if no rigid body
+// has it.
+Eigen::Matrix3d checked_inertia(const std::vector<double>& elements);
+void add_inertia_option(CLI::App& command, std::vector<double>& inertia);
 
 // A mesh file and the files that belong to it; none for the mesh that ships.
 OptionFiles mesh_files_read(const std::string& option, const std::string& mesh);

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kSequences = 5;
 
 struct BenchArguments {
-  std::string target = "near_shoemaker";
+  std::string target = default_target();
   std::string onnxruntime;
   std::string json;
 };

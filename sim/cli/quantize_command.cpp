@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "sim/cli/arguments.hpp"
@@ -34,6 +35,8 @@ struct QuantizeArguments {
   int sequences = kCalibrationSequences;
   SensorArguments sensor;
   bool surface_only = false;
+  std::string target;  // of --mission
+  std::optional<Mission> mission;
 };
 
 // near.float32.tsm -> near.tsm; anything else.tsm -> else.fixed.tsm
@@ -210,6 +213,7 @@ void add_quantize_command(CLI::App& app) {
       ->check(file_path())
       ->type_name("FILE");
   add_mesh_options(*command, arguments->meshes);
+  add_mission_option(*command, arguments->target, arguments->meshes, arguments->sensor, arguments->mission);
   add_effect_option(*command, arguments->effects);
   add_sensor_options(*command, arguments->sensor);
   limit_whole_number(command->add_option("--sequences", arguments->sequences,

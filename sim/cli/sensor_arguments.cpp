@@ -125,7 +125,8 @@ RangeLimits wanted_ranges(const SensorArguments& arguments, double swath_m,
 }  // namespace
 
 RangeLimits ranges_of(const SensorArguments& arguments, double swath_m, std::vector<std::string>& warnings) {
-  const RangeLimits ranges = wanted_ranges(arguments, swath_m, warnings);
+  RangeLimits ranges = wanted_ranges(arguments, swath_m, warnings);
+  ranges.largest_rate_deg_s = arguments.largest_rate_deg_s;
   const SensorSettings& sensor = arguments.sensor.settings;
   if (ranges.nearest_m >= sensor.nearest_m && ranges.farthest_m <= sensor.farthest_m) return ranges;
   const double nearest_m = std::max(ranges.nearest_m, sensor.nearest_m);

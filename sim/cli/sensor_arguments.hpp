@@ -15,8 +15,9 @@ struct ScenarioArguments;
 
 struct SensorArguments {
   SensorDescription sensor;
-  std::optional<RangeLimits> ranges{};  // those of --range
-  std::string file{};                   // that describes the sensor; empty: none was given
+  std::optional<RangeLimits> ranges{};  // those of --range or of --mission
+  double largest_rate_deg_s = RangeLimits{}.largest_rate_deg_s;
+  std::string file{};  // that describes the sensor; empty: none was given
 };
 
 // --sensor and --range. `--sensor list` prints the descriptions that ship and ends the program. `arguments`

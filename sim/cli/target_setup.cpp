@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,7 +10,6 @@
 #include <memory>
 #include <stdexcept>
 
-#include "gnc/attitude/motion.hpp"
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/model/model_file.hpp"
@@ -27,6 +25,7 @@ TriangleMesh load_mesh(const ScenarioArguments& arguments) {
   MeshFileOptions options;
   options.up = mesh_up_from(arguments.mesh_up);
   options.scale = arguments.mesh_scale;
+  options.origin_trf_m = arguments.mesh_origin_trf_m;
   return target_mesh(arguments.target, arguments.mesh.empty() ? kParametricMesh : arguments.mesh, options);
 }
 
@@ -35,35 +34,9 @@ std::string model_path(const ScenarioArguments& arguments) {
   return shipped_model_path(arguments.target + (arguments.numerics == "float32" ? ".float32" : ""));
 }
 
-// Covers bodies from the size of a hand to that of a space station.
-constexpr double kSmallestMoment_kg_m2 = 1e-6;
-constexpr double kLargestMoment_kg_m2 = 1e12;
-
-// No principal moment of a body exceeds the sum of the other two. None may be smaller than a model image can
-// hold.
-bool is_possible(const Eigen::Matrix3d& inertia) {
-  if (!inertia.allFinite() || inertia.cwiseAbs().maxCoeff() > kLargestMoment_kg_m2) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d moments = solver.eigenvalues();  // ascending
-  const double smallest = std::max(kSmallestMoment_kg_m2, gnc::kSmallestMoment * moments.mean());
-  return moments[0] >= smallest && moments[2] <= moments[0] + moments[1];
-}
-
 std::optional<Eigen::Matrix3d> inertia_of(const ScenarioArguments& arguments) {
-  const std::vector<double>& i = arguments.inertia;
-  if (i.empty()) {
-    return find_target(arguments.target) ? std::optional(inertia_kg_m2(arguments.target)) : std::nullopt;
-  }
-  Eigen::Matrix3d inertia;
-  inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
-  if (!is_possible(inertia)) {
-    throw std::invalid_argument(
-        fmt::format("--inertia {}: no rigid body has this inertia; its principal moments must be {:g} to "
-                    "{:g} kg m2, none larger "
-                    "than the sum of the other two and none below {:g} of their mean",
-                    fmt::join(i, ","), kSmallestMoment_kg_m2, kLargestMoment_kg_m2, gnc::kSmallestMoment));
-  }
-  return inertia;
+  if (arguments.inertia.empty()) return known_inertia_kg_m2(arguments.target);
+  return checked_inertia(arguments.inertia);
 }
 
 std::vector<std::uint8_t> read_model(const ScenarioArguments& arguments, const std::string& path) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -16,6 +17,7 @@
 #include "sim/training/export_model.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
+#include "sim/world/math/angles.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
@@ -26,7 +28,7 @@ constexpr int kStopped = 3;  // exit status of a run that was stopped and can be
 std::atomic<bool> stop_requested{false};
 
 struct TrainOptions {
-  std::string target = "near_shoemaker";
+  std::string target = default_target();
   MeshArguments meshes;
   std::vector<std::string> conditions = {"all"};
   Effects effects;
@@ -34,26 +36,30 @@ struct TrainOptions {
   SensorArguments sensor;
   std::string device = "auto";
   std::string precision = "auto";
+  std::vector<double> inertia;  // six elements; empty: that of a known target
+  std::optional<Mission> mission;
+  double minutes = 0.0;  // of wall-clock time in place of numbers of samples; 0: none
   TrainingSettings settings;
 };
 
-// Whether bfloat16 convolutions are fast: oneDNN has kernels for these x86 extensions.
-bool cpu_has_bfloat16() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.rfind("flags", 0) == 0) {
-      return line.find("avx512_bf16") != std::string::npos || line.find("amx_bf16") != std::string::npos;
-    }
-  }
-  return false;
+Eigen::Matrix3d inertia_of(const TrainOptions& options) {
+  if (!options.inertia.empty()) return checked_inertia(options.inertia);
+  if (const std::optional<Eigen::Matrix3d> known = known_inertia_kg_m2(options.target)) return *known;
+  std::fprintf(
+      stderr,
+      "warning: the inertia of '%s' is not known, so the network learns the free rotation of a sphere, a "
+      "constant spin; for a target that tumbles give --inertia, or a --mission with one\n",
+      options.target.c_str());
+  return Eigen::Matrix3d::Identity();
 }
 
-// For a target of the user's own, the inertia of a sphere: its free rotation is a constant spin.
-Eigen::Matrix3d inertia_of(const TrainOptions& options) {
-  const std::vector<std::string> known = target_names();
-  if (std::find(known.begin(), known.end(), options.target) != known.end())
-    return inertia_kg_m2(options.target);
-  return Eigen::Matrix3d::Identity();
+// The recurrent part takes about a fifth of the time to learn as well as the CNN.
+constexpr double kShareOfRecurrentPart = 0.22;
+
+void share_out_time(TrainOptions& options) {
+  const double seconds = 60.0 * options.minutes;
+  options.settings.rcnn_seconds = kShareOfRecurrentPart * seconds;
+  options.settings.cnn_seconds = seconds - options.settings.rcnn_seconds;
 }
 
 void choose_device(TrainOptions& options) {
@@ -70,28 +76,21 @@ void choose_device(TrainOptions& options) {
 
 // With fewer images than one batch and no CNN to start from, the weights would stay random.
 void require_a_cnn(const TrainingSettings& settings) {
-  if (!settings.start_from.empty() || settings.cnn_images >= settings.cnn_batch) return;
+  if (!settings.start_from.empty() || settings.cnn_seconds > 0.0 || settings.cnn_images >= settings.cnn_batch)
+    return;
   throw CLI::ValidationError("--cnn-images", "must be at least " + std::to_string(settings.cnn_batch) +
                                                  " unless --start-from names a model image");
 }
 
-std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurrent, const std::string& target,
-                                       const TrainingTargets& targets) {
-  auto model = std::make_unique<Float32Model>();
-  model->header = model_header(target, targets);
-  export_weights(cnn, recurrent, model->weights);
-  round_to_10_bits(model->weights);
-  return model;
-}
-
 // The reference, and the image that flies.
 void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes,
-                  const TrainingTargets& targets, const std::unique_ptr<Float32Model>& model) {
+                  const TrainingTargets& targets, const std::unique_ptr<Float32Model>& model,
+                  int sequences = kCalibrationSequences) {
   const EffectRanges& effects = targets.effect_sets.front().effects;
   const ScenarioSettings seen = scenario_of(targets, Condition::kNominal, effects, 1);
   write_model_file<gnc::Float32>(stem + ".float32.tsm", model->header, model->weights);
   std::printf("Reference in float32: %s.float32.tsm\nFixed point, as it flies:\n", stem.c_str());
-  quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm", seen);
+  quantize_and_report(*model, meshes, sequences, stem + ".tsm", seen);
 }
 
 std::vector<EffectRanges> effect_sets_of(const TrainOptions& options) {
@@ -160,7 +159,24 @@ void require_a_name(const TrainOptions& options, bool named) {
       "target, whose inertia the network then has");
 }
 
+// The images of a run that was stopped: of the state that the checkpoint continues from.
+void write_images_so_far(const std::string& stem, const std::vector<TriangleMesh>& meshes,
+                         const TrainingTargets& targets, const TrainOptions& options, const Cnn& cnn,
+                         Recurrent& recurrent, const std::optional<TrainingPoint>& latest) {
+  constexpr int kQuickly = 20;  // sequences
+  if (!latest) {
+    std::printf("Stopped before the first validation: no model image is written.\n");
+    return;
+  }
+  const bool trained = latest->stage == "rcnn";
+  if (!trained) make_neutral(recurrent, kRadPerDeg * latest->mean_deg);
+  std::printf("Model images of the network so far, for a look at it%s:\n",
+              trained ? "" : " (its recurrent part is not trained yet)");
+  write_images(stem, meshes, targets, model_of(cnn, recurrent, options.target, targets), kQuickly);
+}
+
 int train(TrainOptions& options) {
+  if (options.minutes > 0.0) share_out_time(options);
   for (const EffectRanges& effects : effect_sets_of(options)) {
     require_the_target(effects.high);
     require_whole_scans(options.effect_sets.empty() ? "--effect" : "--effect-set", effects.high,
@@ -188,11 +204,14 @@ int train(TrainOptions& options) {
   torch::manual_seed(options.settings.seed);
   Cnn cnn;
   Recurrent recurrent(targets.inertia);
+  std::optional<TrainingPoint> latest;
+  options.settings.after_point = [&latest](const TrainingPoint& point, bool) { latest = point; };
   const bool finished = train_cnn(targets, options.settings, cnn, stop_requested) &&
                         train_rcnn(targets, options.settings, cnn, recurrent, stop_requested);
 
   const std::string& folder = options.settings.folder;
   if (!finished) {
+    write_images_so_far(stem, meshes, targets, options, cnn, recurrent, latest);
     std::printf("Stopped. The same command continues from the checkpoint in %s.\n", folder.c_str());
     return kStopped;
   }
@@ -216,6 +235,8 @@ void add_train_command(CLI::App& app) {
       "      --out out/near\n");
   add_target_option(*command, options->target, TargetChoice::kAny);
   add_mesh_options(*command, options->meshes);
+  add_inertia_option(*command, options->inertia);
+  add_mission_option(*command, options->target, options->meshes, options->sensor, options->mission);
   add_seed_option(*command, settings.seed);
   command->add_option("--out", settings.folder, "folder for checkpoints, log, error curve and model images")
       ->required()
@@ -258,6 +279,21 @@ void add_train_command(CLI::App& app) {
                      1, 10'000'000)
       ->type_name("N")
       ->capture_default_str();
+  CLI::Option* minutes =
+      limit_number(
+          command->add_option("--minutes", options->minutes,
+                              "wall-clock minutes to train for, in place of numbers of images, sequences "
+                              "and batches; ends early if nothing improves any more"),
+          0.1, 100'000.0)
+          ->type_name("X");
+  for (const char* number : {"--cnn-images", "--rcnn-iterations"})
+    minutes->excludes(command->get_option(number));
+  limit_whole_number(
+      command->add_option("--trainers", settings.trainers,
+                          "threads that share the batches of the CNN, beside the rendering ones"),
+      1, 64)
+      ->type_name("N")
+      ->capture_default_str();
   limit_number(command->add_option("--checkpoint-seconds", settings.checkpoint_s,
                                    "wall-clock seconds between checkpoints"),
                0.0, 3600.0)
@@ -275,7 +311,7 @@ void add_train_command(CLI::App& app) {
       ->type_name("auto|float32|bfloat16")
       ->capture_default_str();
   command->callback([options, command] {
-    require_a_name(*options, command->count("--target") > 0);
+    require_a_name(*options, command->count("--target") > 0 || options->mission.has_value());
     throw CLI::RuntimeError(train(*options));
   });
 }

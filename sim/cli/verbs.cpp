@@ -3,6 +3,9 @@
 namespace tumblesight::sim {
 
 void add_verbs(CLI::App& app, const std::string& command_line) {
+#ifdef TUMBLESIGHT_HAS_ADOPTION
+  add_adopt_command(app, command_line);
+#endif
 #ifdef TUMBLESIGHT_HAS_SIL
   add_simulate_command(app, command_line);
   add_replay_command(app, command_line);

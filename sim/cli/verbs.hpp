@@ -39,6 +39,9 @@ void add_export_command(CLI::App& app);
 // `tumblesight train`: trains a network for a target and writes its model images.
 void add_train_command(CLI::App& app);
 
+// `tumblesight adopt`: from a mission file to a network that flies, and a verdict on it.
+void add_adopt_command(CLI::App& app, const std::string& command_line);
+
 // `tumblesight quantize`: makes the fixed-point model image that flies from a float32 one.
 void add_quantize_command(CLI::App& app);
 

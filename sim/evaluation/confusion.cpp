@@ -39,8 +39,8 @@ Nearest nearest_symmetry(const FrameResult& result, Estimator estimator,
 
 std::vector<NearSymmetry> near_symmetries(const std::string& target) {
   std::vector<NearSymmetry> symmetries{about_z("right", 0.0)};
-  const TargetRow* shipped = find_target(target);
-  const int fold = shipped != nullptr ? shipped->symmetry_about_z : 1;
+  const Mission* mission = find_target(target);
+  const int fold = mission != nullptr ? mission->quasi_symmetry_about_z : 1;
   for (int i = 1; i < fold; ++i) {
     const int signed_step = 2 * i > fold ? i - fold : i;  // angles from -180 (excluded) to 180 degrees
     symmetries.push_back(about_z(angle_name(360 * signed_step / fold), 2.0 * signed_step / fold * kPi));

@@ -17,7 +17,7 @@ struct NearSymmetry {
   Eigen::Quaterniond q_trf;
 };
 
-// From TargetRow::symmetry_about_z. The identity ("right") comes first. It is the only one for a target
+// From Mission::quasi_symmetry_about_z. The identity ("right") comes first. It is the only one for a target
 // without a symmetry and for one that does not ship.
 std::vector<NearSymmetry> near_symmetries(const std::string& target);
 

@@ -12,7 +12,7 @@ namespace {
 constexpr PaperFigure kNotPublished{-1.0, 0.0};
 
 struct Row {
-  const char* target;  // TargetRow::paper_key
+  const char* target;  // Mission::paper_target
   Condition condition;
   PaperFigure rcnn;
   PaperFigure goal;
@@ -39,10 +39,10 @@ constexpr Row kRows[] = {
 
 PaperFigures paper_figures(const std::string& target, Condition condition, const Disturbances& disturbances) {
   if (!given_disturbances(disturbances).empty()) return {};
-  const TargetRow* shipped = find_target(target);
-  if (shipped == nullptr || shipped->paper_key == nullptr) return {};
+  const Mission* mission = find_target(target);
+  if (mission == nullptr || mission->paper_target.empty()) return {};
   const auto* row = std::find_if(std::begin(kRows), std::end(kRows), [&](const Row& r) {
-    return std::string_view(r.target) == shipped->paper_key && r.condition == condition;
+    return std::string_view(r.target) == mission->paper_target && r.condition == condition;
   });
   if (row == std::end(kRows)) return {};
   PaperFigures figures;

@@ -27,7 +27,7 @@ struct PaperFigures {
   std::uint32_t sequences = kPaperSequences;
 };
 
-// Empty if the paper has no figures for this target (TargetRow::paper_key) and condition. It has none for a
+// Empty if the paper has no figures for this target (Mission::paper_target) and condition. It has none for a
 // disturbed run.
 PaperFigures paper_figures(const std::string& target, Condition condition,
                            const Disturbances& disturbances = {});

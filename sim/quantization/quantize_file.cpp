@@ -133,10 +133,12 @@ gnc::RangeNoise noise_of(const ScenarioSettings& seen) {
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
                                     int sequences, const std::string& path,
                                     const std::function<void(std::uint64_t)>& progress,
-                                    const ScenarioSettings& seen) {
+                                    const ScenarioSettings& seen, const SurfaceSections* surface) {
   QuantizationReport report;
   // First: a mesh without a surface is refused before anything is rendered.
-  report.surface = target_surface(meshes.front(), 1e-3 * model.header.projection.target_radius_mm);
+  report.surface = surface != nullptr
+                       ? *surface
+                       : target_surface(meshes.front(), 1e-3 * model.header.projection.target_radius_mm);
   const Rendered rendered(meshes, seen.effects, model.header.target.data());
   const int held_back = sequences / kReportShare;
   Calibration calibration(model.weights,

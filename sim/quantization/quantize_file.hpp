@@ -33,12 +33,14 @@ struct QuantizationReport {
 };
 // Renders `sequences` sequences: three quarters calibrate, the last quarter is for the report. The first mesh
 // gives the image's surface, and the sensor its noise. Calls `progress` with the number of sequences done.
-// `seen`: sensor, ranges, period and effects of the sequences, as the network is trained for. Deterministic.
-// Throws std::runtime_error if the sensor sees too little of the target in all frames of one of the two
-// parts, or that names the file if it cannot be written, and as observed_bodies() and target_surface() do.
+// `seen`: sensor, ranges, period and effects of the sequences, as the network is trained for. `surface`: that
+// of the first mesh where it is known, since making it takes seconds. Deterministic. Throws
+// std::runtime_error if the sensor sees too little of the target in all frames of one of the two parts, or
+// that names the file if it cannot be written, and as observed_bodies() and target_surface() do.
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
                                     int sequences, const std::string& path,
                                     const std::function<void(std::uint64_t)>& progress,
-                                    const ScenarioSettings& seen = {});
+                                    const ScenarioSettings& seen = {},
+                                    const SurfaceSections* surface = nullptr);
 
 }  // namespace tumblesight::sim

@@ -5,6 +5,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "sim/world/math/angles.hpp"
+
 namespace tumblesight::sim {
 
 torch::Tensor tensor_of(const TensorView& values) {
@@ -149,6 +151,24 @@ gnc::ModelHeader model_header(const std::string& target, const TrainingTargets& 
                              "' is too close to that of a thin rod: no principal moment may be near zero");
   }
   return header;
+}
+
+void make_neutral(Recurrent& recurrent, double mean_error_rad) {
+  torch::NoGradGuard guard;
+  torch::nn::Linear& last = recurrent->head.back();
+  last->weight.zero_();
+  last->bias.zero_();
+  const double share = std::clamp(mean_error_rad / kPi, 1e-3, 0.9);
+  last->bias[shape::kHeadOutput - 1] = std::log(share / (1.0 - share));
+}
+
+std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurrent, const std::string& target,
+                                       const TrainingTargets& targets) {
+  auto model = std::make_unique<Float32Model>();
+  model->header = model_header(target, targets);
+  export_weights(cnn, recurrent, model->weights);
+  round_to_10_bits(model->weights);
+  return model;
 }
 
 }  // namespace tumblesight::sim

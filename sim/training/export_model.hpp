@@ -3,9 +3,11 @@
 
 #include <torch/torch.h>
 
+#include <memory>
 #include <string>
 
 #include "gnc/rcnn/model_image.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/model/network_layers.hpp"
 #include "sim/training/frame_stream.hpp"
 #include "sim/training/rcnn_module.hpp"
@@ -25,6 +27,15 @@ torch::Tensor weight_to_flight(const gnc::LayerRow& row, const torch::Tensor& we
 // the standardization of the LSTM input into the LSTM and the recurrent head. The modules may be on any
 // device.
 void export_weights(const Cnn& cnn, const Recurrent& recurrent, gnc::NetworkWeights<gnc::Float32>& weights);
+
+// A recurrent part that leaves the weights of the CNN's hypotheses as they are: the track alone combines the
+// frames. For images of a network whose recurrent part is not trained yet. `mean_error_rad`: of the CNN; it
+// becomes the expected error.
+void make_neutral(Recurrent& recurrent, double mean_error_rad);
+
+// The network as a model image in float32, its weights rounded.
+std::unique_ptr<Float32Model> model_of(const Cnn& cnn, const Recurrent& recurrent, const std::string& target,
+                                       const TrainingTargets& targets);
 
 // Rounds every weight to 10 significant bits. The effect on attitudes is far below their error, and the image
 // compresses to half its size.

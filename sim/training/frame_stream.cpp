@@ -151,7 +151,9 @@ std::uint64_t view_hash(const TrainingTargets& targets) {
   std::uint64_t hash = conditions_hash(targets.conditions, effect_sets);
   if (!targets.sensor.is_the_papers()) hash = mix(hash, crc32_of(targets.sensor));
   if (targets.ranges.are_the_papers()) return hash;
-  return mix(mix(hash, bits_of(targets.ranges.nearest_m)), bits_of(targets.ranges.farthest_m));
+  hash = mix(mix(hash, bits_of(targets.ranges.nearest_m)), bits_of(targets.ranges.farthest_m));
+  if (targets.ranges.largest_rate_deg_s == RangeLimits{}.largest_rate_deg_s) return hash;
+  return mix(hash, bits_of(targets.ranges.largest_rate_deg_s));
 }
 
 ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition, const EffectRanges& effects,

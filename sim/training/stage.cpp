@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <string>
 
 #include "gnc/numerics/crc.hpp"
 #include "sim/world/math/angles.hpp"
@@ -18,6 +20,16 @@ void keep_to_one_thread() {
   if (void* set_threads = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) {
     reinterpret_cast<void (*)(int)>(set_threads)(1);
   }
+}
+
+bool cpu_has_bfloat16() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.rfind("flags", 0) == 0) {
+      return line.find("avx512_bf16") != std::string::npos || line.find("amx_bf16") != std::string::npos;
+    }
+  }
+  return false;
 }
 
 std::int64_t fingerprint(std::initializer_list<std::uint64_t> settings) {
@@ -38,17 +50,27 @@ std::uint64_t bits_of(double setting) {
 void Stage::start() {
   log_ = std::make_unique<TrainingLog>(settings_.folder, settings_.name, position_.iteration);
   start_ = last_save_ = Clock::now();
-  progress_ = std::make_unique<ProgressBar>(settings_.name, settings_.unit, samples(settings_.iterations),
-                                            stderr, samples(position_.iteration));
+  const bool timed = settings_.seconds > 0.0;
+  progress_ = std::make_unique<ProgressBar>(
+      settings_.name, timed ? "s" : settings_.unit,
+      timed ? whole_seconds(settings_.seconds) : samples(settings_.iterations), stderr, done());
 }
 
 void Stage::set_rate(torch::optim::Optimizer& optimizer) {
   constexpr double kWarmUp = 200.0;  // iterations
-  const double fraction =
-      static_cast<double>(position_.iteration) / static_cast<double>(settings_.iterations);
   const double warm = std::min(1.0, static_cast<double>(position_.iteration + 1) / kWarmUp);
-  rate_ = 0.5 * settings_.learning_rate * (1.0 + std::cos(kPi * std::min(1.0, fraction))) * warm;
+  rate_ = 0.5 * settings_.learning_rate * (1.0 + std::cos(kPi * fraction())) * warm;
   for (auto& group : optimizer.param_groups()) group.options().set_lr(rate_);
+}
+
+double Stage::fraction() const {
+  if (settings_.seconds > 0.0) return std::min(1.0, position_.seconds / settings_.seconds);
+  return std::min(1.0, static_cast<double>(position_.iteration) / static_cast<double>(settings_.iterations));
+}
+
+std::uint64_t Stage::done() const {
+  return settings_.seconds > 0.0 ? whole_seconds(std::min(position_.seconds, settings_.seconds))
+                                 : samples(position_.iteration);
 }
 
 void Stage::advance(double loss) {
@@ -57,7 +79,7 @@ void Stage::advance(double loss) {
   position_.seconds = seconds_before_ + seconds;
   loss_sum_ += loss;
   ++losses_;
-  progress_->update(samples(position_.iteration), progress_note(latest_));
+  progress_->update(done(), progress_note(latest_));
 }
 
 std::string progress_note(const std::optional<TrainingPoint>& latest) {
@@ -82,10 +104,14 @@ TrainingPoint Stage::new_point() {
   return point;
 }
 
-void Stage::add_point(const TrainingPoint& point) {
+bool Stage::add_point(const TrainingPoint& point) {
   latest_ = point;
   log_->add(point);
-  progress_->update(samples(position_.iteration), progress_note(latest_));
+  progress_->update(done(), progress_note(latest_));
+  if (point.mean_deg >= least_mean_deg_) return false;
+  least_mean_deg_ = point.mean_deg;
+  fraction_of_best_ = fraction();
+  return true;
 }
 
 }  // namespace tumblesight::sim

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
@@ -19,10 +20,14 @@ namespace tumblesight::sim {
 // training's time.
 void keep_to_one_thread();
 
+// Whether bfloat16 convolutions are fast: oneDNN has kernels for these x86 extensions.
+bool cpu_has_bfloat16();
+
 struct StageSettings {
   std::string name;  // "cnn" or "rcnn": in the checkpoint's file name and in the log
   std::string folder;
-  std::int64_t iterations = 0;
+  std::int64_t iterations = 0;  // of a stage without a time of its own
+  double seconds = 0.0;         // wall-clock time of the stage; 0: it ends after its iterations
   int batch = 0;
   const char* unit = "";                  // of a batch: "images" or "sequences"
   double learning_rate = 0.0;             // maximum: short linear warm-up, then a cosine to zero
@@ -34,6 +39,8 @@ struct StageSettings {
 // Hash of the settings that affect a stage's result. A checkpoint of other settings is refused.
 std::int64_t fingerprint(std::initializer_list<std::uint64_t> settings);
 std::uint64_t bits_of(double setting);  // for fingerprint()
+// In place of a number of samples, in a stage with a time of its own: the time may change.
+inline constexpr std::uint64_t kTimed = ~std::uint64_t{0};
 
 // The figures of the latest point, beside the progress. Empty before the first one.
 std::string progress_note(const std::optional<TrainingPoint>& latest);
@@ -49,18 +56,22 @@ class Stage {
   bool resume(Module& module, torch::optim::Optimizer& optimizer) {
     const bool found = load_checkpoint(path(), module, optimizer, position_);
     seconds_before_ = position_.seconds;
+    fraction_of_best_ = fraction();
     return found;
   }
   void start();  // opens the log and starts the clock
 
   std::int64_t iteration() const { return position_.iteration; }
-  bool finished() const { return position_.iteration >= settings_.iterations; }
+  double fraction() const;  // of the stage that is done, 0..1
+  // Done, or, in a stage with a time of its own, no better for kPatience of that time.
+  bool finished() const { return fraction() >= 1.0 || no_longer_improves(); }
   void set_rate(torch::optim::Optimizer& optimizer);  // for the next iteration
 
   void advance(double loss);  // after every iteration
   bool point_due() const;
   TrainingPoint new_point();  // the caller fills in the validation figures
-  void add_point(const TrainingPoint& point);
+  // Returns whether its mean error is the least so far.
+  bool add_point(const TrainingPoint& point);
 
   template <typename Module>
   void save_if_due(const Module& module, const torch::optim::Optimizer& optimizer) {
@@ -78,9 +89,17 @@ class Stage {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr double kPatience = 0.35;
+  bool no_longer_improves() const {
+    return settings_.seconds > 0.0 && fraction() - fraction_of_best_ > kPatience;
+  }
   std::uint64_t samples(std::int64_t iterations) const {
     return static_cast<std::uint64_t>(iterations * settings_.batch);
   }
+  static std::uint64_t whole_seconds(double seconds) {
+    return static_cast<std::uint64_t>(std::ceil(seconds));
+  }
+  std::uint64_t done() const;  // for the progress: samples, or seconds of a stage with a time of its own
   std::string path() const { return settings_.folder + "/" + settings_.name + ".ckpt"; }
 
   StageSettings settings_;
@@ -93,6 +112,8 @@ class Stage {
   double loss_sum_ = 0.0;
   std::int64_t losses_ = 0;
   std::optional<TrainingPoint> latest_;
+  double least_mean_deg_ = 180.0;
+  double fraction_of_best_ = 0.0;
 };
 
 }  // namespace tumblesight::sim

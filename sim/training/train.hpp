@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,16 +18,24 @@ struct TrainingSettings {
   std::string folder;      // for checkpoints, log and model images; must exist
   std::string start_from;  // model image whose CNN is the starting point; empty: random weights
   std::uint64_t seed = 1;
-  int workers = 1;        // rendering threads
+  int workers = 1;  // rendering threads
+  // Threads that share a batch, 1 or more; each normalizes its own part of the batch. Their number is part of
+  // the checkpoint's fingerprint.
+  int trainers = 1;
   bool bfloat16 = false;  // convolutions in bfloat16
   torch::Device device{torch::kCPU};
   double checkpoint_s = 180.0;  // wall-clock seconds between checkpoints
+  // Called after every validation, with the state of the network at that moment; `best`: its mean error is
+  // the least of the stage so far.
+  std::function<void(const TrainingPoint&, bool best)> after_point{};
 
+  double cnn_seconds = 0.0;  // wall-clock time in place of cnn_images; 0: none
   std::int64_t cnn_images = 2'000'000;
   int cnn_batch = 64;
   double cnn_learning_rate = 1e-3;
 
   std::int64_t rcnn_sequences = 16'000;  // distinct sequences
+  double rcnn_seconds = 0.0;             // wall-clock time in place of rcnn_iterations; 0: none
   std::int64_t rcnn_iterations = 4'000;
   int rcnn_batch = 128;
   double rcnn_learning_rate = 1e-3;

@@ -1,4 +1,6 @@
+#include <future>
 #include <memory>
+#include <vector>
 
 #include "sim/model/model_file.hpp"
 #include "sim/training/import_model.hpp"
@@ -19,9 +21,9 @@ constexpr std::uint64_t kValidationSeed = 0x76616C6964ULL;
 
 // Weight of the mean over all hypotheses in the loss: 2 %; from random weights 30 % at first, falling to 2 %
 // in the first quarter.
-double spread_at(const TrainingSettings& settings, std::int64_t iteration, std::int64_t total) {
+double spread_at(const TrainingSettings& settings, double fraction) {
   if (!settings.start_from.empty()) return 0.02;
-  const double done = static_cast<double>(iteration) / (0.25 * static_cast<double>(total));
+  const double done = fraction / 0.25;
   return done >= 1.0 ? 0.02 : 0.3 + (0.02 - 0.3) * done;
 }
 
@@ -40,16 +42,72 @@ void validate(Cnn& cnn, const FrameBatch& data, const TrainingSettings& settings
   cnn->train();
 }
 
-double train_once(Cnn& cnn, const FrameBatch& batch, const TrainingSettings& settings, double spread,
-                  torch::optim::Optimizer& optimizer) {
+// Computes the gradient of a batch in the module's parameters. Returns the loss.
+double backward(Cnn& cnn, const FrameBatch& batch, const TrainingSettings& settings, double spread) {
   const auto result = cnn->forward(batch.images.to(settings.device), settings.bfloat16);
   const auto errors = hypothesis_errors(result.output, batch.r_view_trf.to(settings.device));
   const torch::Tensor loss = hypothesis_loss(result.output, errors, spread);
-  optimizer.zero_grad();
+  cnn->zero_grad();
   loss.backward();
+  return loss.item<double>();
+}
+
+// Threads that share the batches of one network: its own and replicas, which use its weights.
+class Trainers {
+ public:
+  Trainers(Cnn& cnn, const TrainingSettings& settings) : cnn_(cnn), settings_(settings) {
+    for (int i = 1; i < settings.trainers; ++i) {
+      Cnn replica;
+      replica->train();
+      const std::vector<torch::Tensor> own = cnn->parameters();
+      std::vector<torch::Tensor> others = replica->parameters();
+      for (std::size_t k = 0; k < own.size(); ++k) others[k].set_data(own[k].data());
+      replicas_.push_back(replica);
+    }
+  }
+
+  // The gradient of the whole batch in the network's parameters. Returns the loss.
+  double backward_all(const FrameBatch& batch, double spread) {
+    if (replicas_.empty()) return backward(cnn_, batch, settings_, spread);
+    const std::int64_t part = batch.images.size(0) / settings_.trainers;
+    const auto part_of = [&](std::int64_t i) {
+      return FrameBatch{batch.images.narrow(0, i * part, part), batch.r_view_trf.narrow(0, i * part, part)};
+    };
+    std::vector<std::future<double>> others;
+    for (std::size_t i = 0; i < replicas_.size(); ++i) {
+      others.push_back(std::async(std::launch::async, [&, i] {
+        keep_to_one_thread();
+        return backward(replicas_[i], part_of(static_cast<std::int64_t>(i) + 1), settings_, spread);
+      }));
+    }
+    double loss = backward(cnn_, part_of(0), settings_, spread);
+    for (std::future<double>& other : others) loss += other.get();
+    add_gradients();
+    return loss / settings_.trainers;
+  }
+
+ private:
+  void add_gradients() {
+    torch::NoGradGuard guard;
+    std::vector<torch::Tensor> own = cnn_->parameters();
+    for (Cnn& replica : replicas_) {
+      const std::vector<torch::Tensor> others = replica->parameters();
+      for (std::size_t k = 0; k < own.size(); ++k) own[k].mutable_grad().add_(others[k].grad());
+    }
+    for (torch::Tensor& parameter : own) parameter.mutable_grad().div_(settings_.trainers);
+  }
+
+  Cnn& cnn_;
+  const TrainingSettings& settings_;
+  std::vector<Cnn> replicas_;
+};
+
+double train_once(Cnn& cnn, Trainers& trainers, const FrameBatch& batch, double spread,
+                  torch::optim::Optimizer& optimizer) {
+  const double loss = trainers.backward_all(batch, spread);
   torch::nn::utils::clip_grad_norm_(cnn->parameters(), kGradientNorm);
   optimizer.step();
-  return loss.item<double>();
+  return loss;
 }
 
 // Loads the starting weights and returns their CRC-32; 0 for random weights.
@@ -66,15 +124,18 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.name = "cnn";
   stage.folder = settings.folder;
   stage.iterations = settings.cnn_images / settings.cnn_batch;
+  stage.seconds = settings.cnn_seconds;
   stage.batch = settings.cnn_batch;
   stage.unit = "images";
   stage.learning_rate = settings.cnn_learning_rate;
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;
-  stage.fingerprint =
-      fingerprint({settings.seed, static_cast<std::uint64_t>(settings.cnn_images),
-                   static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32, view_hash(targets),
-                   start_crc32, bits_of(settings.cnn_learning_rate), settings.bfloat16});
+  stage.fingerprint = fingerprint(
+      {settings.seed, settings.cnn_seconds > 0.0 ? kTimed : static_cast<std::uint64_t>(settings.cnn_images),
+       static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32, view_hash(targets), start_crc32,
+       bits_of(settings.cnn_learning_rate),
+       static_cast<std::uint64_t>(settings.bfloat16) +
+           2 * static_cast<std::uint64_t>(settings.trainers - 1)});
   return stage;
 }
 
@@ -104,14 +165,16 @@ bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings,
                      static_cast<std::uint64_t>(stage.iteration()), settings.workers);
   stage.start();
   cnn->train();
+  Trainers trainers(cnn, settings);
   while (!stage.finished() && !stop) {
     stage.set_rate(optimizer);
-    const double spread = spread_at(settings, stage.iteration(), shape.iterations);
-    stage.advance(train_once(cnn, stream.next(), settings, spread, optimizer));
+    const double spread = spread_at(settings, stage.fraction());
+    stage.advance(train_once(cnn, trainers, stream.next(), spread, optimizer));
     if (stage.point_due()) {
       TrainingPoint point = stage.new_point();
       validate(cnn, validation, settings, point);
-      stage.add_point(point);
+      const bool best = stage.add_point(point);
+      if (settings.after_point) settings.after_point(point, best);
     }
     stage.save_if_due(cnn, optimizer);
   }

@@ -85,16 +85,17 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.name = "rcnn";
   stage.folder = settings.folder;
   stage.iterations = settings.rcnn_iterations;
+  stage.seconds = settings.rcnn_seconds;
   stage.batch = settings.rcnn_batch;
   stage.unit = "sequences";
   stage.learning_rate = settings.rcnn_learning_rate;
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;
-  stage.fingerprint =
-      fingerprint({settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
-                   static_cast<std::uint64_t>(settings.rcnn_iterations),
-                   static_cast<std::uint64_t>(settings.rcnn_batch), targets.meshes_crc32, view_hash(targets),
-                   crc32_of_cnn(weights), bits_of(settings.rcnn_learning_rate), crc32_of(targets.inertia)});
+  stage.fingerprint = fingerprint(
+      {settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
+       settings.rcnn_seconds > 0.0 ? kTimed : static_cast<std::uint64_t>(settings.rcnn_iterations),
+       static_cast<std::uint64_t>(settings.rcnn_batch), targets.meshes_crc32, view_hash(targets),
+       crc32_of_cnn(weights), bits_of(settings.rcnn_learning_rate), crc32_of(targets.inertia)});
   return stage;
 }
 
@@ -142,7 +143,8 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
     if (stage.point_due()) {
       TrainingPoint point = stage.new_point();
       validate(recurrent, validation, settings.device, point);
-      stage.add_point(point);
+      const bool best = stage.add_point(point);
+      if (settings.after_point) settings.after_point(point, best);
     }
     stage.save_if_due(recurrent, optimizer);
   }

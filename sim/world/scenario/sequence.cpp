@@ -36,6 +36,7 @@ Random stream_for(std::uint64_t seed, std::uint64_t index, std::uint64_t purpose
 }
 
 Eigen::Vector3d apply_rate_settings(const ScenarioSettings& settings, Eigen::Vector3d rate, Random random) {
+  rate *= settings.ranges.largest_rate_deg_s * kRadPerDeg / kMaxRate_rad_s;
   if (settings.rate_law == RateLaw::kNorm) rate *= kMaxRate_rad_s * random.uniform() / rate.norm();
   if (settings.rate_rad_s) rate *= *settings.rate_rad_s / rate.norm();
   return rate;
@@ -113,7 +114,9 @@ ApproachLimits approach_limits(const ScenarioSettings& settings) {
 }  // namespace
 
 std::string to_string(const RangeLimits& ranges) {
-  return fmt::format("{} to {} m", ranges.nearest_m, ranges.farthest_m);
+  const std::string lengths = fmt::format("{} to {} m", ranges.nearest_m, ranges.farthest_m);
+  if (ranges.largest_rate_deg_s == RangeLimits{}.largest_rate_deg_s) return lengths;
+  return fmt::format("{}, at most {} deg/s", lengths, ranges.largest_rate_deg_s);
 }
 
 ScenarioSettings scenario_settings(Condition condition, std::uint32_t frames, const std::string& target,

@@ -21,13 +21,17 @@ enum class RateLaw {
   kNorm,        // norm uniform on 0..20 deg/s, direction uniform
 };
 
-// The interval from which the range of a sequence is drawn (paper, sampling).
+// The limits within which range and rate of a sequence are drawn (paper, sampling).
 struct RangeLimits {
   double nearest_m = 20.0;
   double farthest_m = 100.0;
-  bool are_the_papers() const { return nearest_m == 20.0 && farthest_m == 100.0; }
+  double largest_rate_deg_s = 20.0;
+  bool are_the_papers() const {
+    return nearest_m == 20.0 && farthest_m == 100.0 && largest_rate_deg_s == 20.0;
+  }
 };
-// "20 to 100 m", with all digits that were given.
+// "20 to 100 m", with all digits that were given; "20 to 100 m, at most 5 deg/s" for a rate that is not the
+// paper's.
 std::string to_string(const RangeLimits& ranges);
 
 struct ScenarioSettings {

@@ -120,8 +120,8 @@ std::vector<TriangleMesh> with_turned_panels(const std::function<double()>& stre
 std::vector<TriangleMesh> other_targets(const std::function<double()>&, Random&, const std::string& target,
                                         const TriangleMesh&) {
   const auto spacecraft = [](const std::string& key) {
-    const TargetRow* row = find_target(key);
-    return row != nullptr && row->paper_key != nullptr ? std::string(row->paper_key) : key;
+    const Mission* mission = find_target(key);
+    return mission != nullptr && !mission->paper_target.empty() ? mission->paper_target : key;
   };
   std::vector<TriangleMesh> others;
   for (const std::string& key : target_names()) {

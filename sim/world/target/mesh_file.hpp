@@ -1,6 +1,7 @@
 // Mesh files: a target's surface from a CAD file (STL, OBJ, glTF, GLB), through Assimp.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -18,7 +19,8 @@ enum class MeshUp {
 
 struct MeshFileOptions {
   MeshUp up = MeshUp::kY;
-  double scale = 1.0;  // metres per unit of the file, positive
+  double scale = 1.0;                                      // metres per unit of the file, positive
+  Eigen::Vector3d origin_trf_m = Eigen::Vector3d::Zero();  // the place that becomes the origin
 };
 
 // A target of this radius is 40 m across and fits into a field of view of 40 degrees from 58 m. A larger one,
@@ -32,9 +34,9 @@ inline constexpr double kMaxShareWithoutArea = 0.2;
 inline constexpr std::size_t kMaxTriangles = 5'000'000;
 
 // The triangles of the file in the TRF, in metres, with node transforms applied, equal vertices joined and
-// meshes decompressed (Draco). The origin of the file becomes the origin of the TRF. Left out are triangles
-// without area, which TriangleMesh::left_out counts, and what Assimp skips: points, lines, glTF faces with an
-// index out of range. Nothing else is repaired.
+// meshes decompressed (Draco). The origin of the file becomes the origin of the TRF, unless `origin_trf_m`
+// moves it. Left out are triangles without area, which TriangleMesh::left_out counts, and what Assimp skips:
+// points, lines, glTF faces with an index out of range. Nothing else is repaired.
 //
 // Throws std::runtime_error that names the file, the fault, the value, the limit and the remedy for: a scale
 // that is not positive and finite; a file that is missing, unreadable, or not of the format that its

@@ -42,7 +42,8 @@ void append_faces(const aiMesh& part, const MeshFileOptions& options, TriangleMe
   const auto offset = static_cast<std::uint32_t>(mesh.vertices_trf_m.size());
   for (unsigned i = 0; i < part.mNumVertices; ++i) {
     const aiVector3D& v = part.mVertices[i];
-    mesh.vertices_trf_m.push_back((to_trf_m * Eigen::Vector3d(v.x, v.y, v.z)).cast<float>());
+    mesh.vertices_trf_m.push_back(
+        (to_trf_m * Eigen::Vector3d(v.x, v.y, v.z) - options.origin_trf_m).cast<float>());
   }
   for (unsigned i = 0; i < part.mNumFaces; ++i) {
     const aiFace& face = part.mFaces[i];

@@ -1,9 +1,15 @@
 // The parametric meshes that ship with Tumblesight, one function per target and configuration.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
+
+// The mesh that ships for a target; empty if none does.
+std::optional<TriangleMesh> shipped_mesh(const std::string& target);
 
 // Magellan.
 //

@@ -1,89 +1,175 @@
 #include "sim/world/target/targets.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 
+#include "gnc/numerics/crc.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-// The paper gives Aquarius in y-up axes, as the display model is: only then do its plane of symmetry and its
-// axis of least inertia (28 deg from z) agree with the mesh. Its (X, Y, Z) are the TRF's (x, z, -y). The
-// tensor is that of the flight configuration and is used for the stowed one too.
-constexpr InertiaElements kAquariusInertia = {2644.24, 3086.41, 1329.64, 2.10, 972.97, -11.49};
+namespace fs = std::filesystem;
 
-// NEAR Shoemaker's panels are fixed. Magellan's follow the Sun about x; the stops of their drives are not
-// known here. Those of Aquarius do not track the Sun (shipped_meshes.hpp), and locks hold the stowed ones.
-constexpr JointLimits kFixed = {0.0, 0.0};
 constexpr JointLimits kWholeTurn = {-180.0, 180.0};
 
-constexpr TargetRow kTargets[] = {
-    {"near_shoemaker",
-     "NEAR Shoemaker",
-     make_near_shoemaker,
-     {372.38, 372.45, 316.17, -2.86, -2.95, -4.42},
-     4,
-     "near_shoemaker",
-     kFixed},
-    {"magellan",
-     "Magellan",
-     make_magellan,
-     {3266.61, 4772.03, 2897.59, 2.62, 36.17, -42.65},
-     2,
-     "magellan",
-     kWholeTurn},
-    {"sacd_aquarius", "SAC-D/Aquarius", make_sacd_aquarius, kAquariusInertia, 1, "sacd_aquarius", kFixed},
-    {"sacd_aquarius_stowed", "SAC-D/Aquarius, stowed", make_sacd_aquarius_stowed, kAquariusInertia, 1,
-     "sacd_aquarius", kFixed},
-};
+std::vector<Mission> read_shipped_missions() {
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(TUMBLESIGHT_SOURCE_DIR "/sim/world/target/missions"))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  std::vector<Mission> missions;
+  for (const std::string& file : files) missions.push_back(read_mission(file, {}));
+  return missions;
+}
 
-const TargetRow& shipped_target(const std::string& key) {
-  if (const TargetRow* row = find_target(key)) return *row;
+const Mission* shipped_mission(const std::string& name) {
+  const std::vector<Mission>& missions = shipped_missions();
+  const auto found = std::find_if(missions.begin(), missions.end(),
+                                  [&](const Mission& mission) { return mission.name == name; });
+  return found == missions.end() ? nullptr : &*found;
+}
+
+std::optional<Mission>& users_mission() {
+  static std::optional<Mission> mission;
+  return mission;
+}
+
+std::string list_of_names() {
   std::string known;
-  for (const TargetRow& row : kTargets) known += (known.empty() ? "" : ", ") + std::string(row.key);
-  throw std::invalid_argument("target '" + key + "' is unknown; the targets are: " + known);
+  for (const std::string& name : target_names()) known += (known.empty() ? "" : ", ") + name;
+  return known;
+}
+
+void add_text(gnc::Crc32& crc, const std::string& text) {
+  crc.add_u32(static_cast<std::uint32_t>(text.size()));
+  crc.add(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+}
+
+void add_number(gnc::Crc32& crc, double number) {
+  const auto value = static_cast<float>(number);
+  crc.add_f32(&value, 1);
+}
+
+void add_file(gnc::Crc32& crc, const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error("mesh '" + path + "' cannot be read");
+  add_text(crc, std::string{std::istreambuf_iterator<char>(in), {}});
+}
+
+void add_mesh(gnc::Crc32& crc, const Mission& mission) {
+  const MissionMesh& mesh = mission.mesh;
+  if (mesh.file == kParametricMesh) return add_text(crc, mesh.file + " " + mission.name);
+  add_file(crc, mesh.file);
+  std::error_code error;
+  for (const std::string& part : mesh_side_files(mesh.file)) {
+    const std::string ending = fs::path(part).extension().string();
+    const bool shapes = ending == ".bin" || ending == ".mtl";  // not textures
+    if (shapes && fs::is_regular_file(part, error)) add_file(crc, part);
+  }
+  add_text(crc, mesh.up);
+  add_number(crc, mesh.scale);
+  for (const double place_m : mesh.origin_trf_m) add_number(crc, place_m);
 }
 
 }  // namespace
 
-const TargetRow* find_target(const std::string& key) {
-  const TargetRow* row = std::find_if(std::begin(kTargets), std::end(kTargets),
-                                      [&](const TargetRow& r) { return key == r.key; });
-  return row == std::end(kTargets) ? nullptr : row;
+const std::vector<Mission>& shipped_missions() {
+  static const std::vector<Mission> missions = read_shipped_missions();
+  return missions;
 }
 
 std::vector<std::string> target_names() {
   std::vector<std::string> names;
-  for (const TargetRow& row : kTargets) names.emplace_back(row.key);
+  for (const Mission& mission : shipped_missions()) names.push_back(mission.name);
   return names;
 }
 
+const std::string& default_target() {
+  return shipped_missions().front().name;
+}
+
+std::string mission_path(const std::string& name_or_file) {
+  const Mission* shipped = shipped_mission(name_or_file);
+  return shipped != nullptr ? shipped->file : name_or_file;
+}
+
+Mission mission_named(const std::string& name_or_file, const std::vector<std::string>& conditions) {
+  const std::string path = mission_path(name_or_file);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error))
+    throw std::invalid_argument("there is no mission '" + name_or_file + "'; give a TOML file, or one of " +
+                                list_of_names());
+  return read_mission(path, conditions);
+}
+
+void use_mission(const Mission& mission) {
+  users_mission() = mission;
+}
+
+const Mission* find_target(const std::string& name) {
+  const std::optional<Mission>& own = users_mission();
+  return own && own->name == name ? &*own : shipped_mission(name);
+}
+
 std::string display_name(const std::string& target) {
-  const TargetRow* row = find_target(target);
-  return row != nullptr ? row->display_name : target;
+  const Mission* mission = find_target(target);
+  return mission != nullptr ? mission->title : target;
 }
 
 TriangleMesh target_by_name(const std::string& name) {
-  return shipped_target(name).make_mesh();
+  if (std::optional<TriangleMesh> mesh = shipped_mesh(name)) return std::move(*mesh);
+  throw std::invalid_argument("target '" + name + "' is unknown; the targets are: " + list_of_names());
+}
+
+std::optional<Eigen::Matrix3d> known_inertia_kg_m2(const std::string& target) {
+  const Mission* mission = find_target(target);
+  if (mission == nullptr || !mission->inertia) return std::nullopt;
+  return tensor_of(*mission->inertia);
 }
 
 Eigen::Matrix3d inertia_kg_m2(const std::string& target) {
-  const InertiaElements& i = shipped_target(target).inertia;
-  Eigen::Matrix3d tensor;
-  tensor << i.xx, i.xy, i.xz, i.xy, i.yy, i.yz, i.xz, i.yz, i.zz;
-  return tensor;
+  if (const std::optional<Eigen::Matrix3d> inertia = known_inertia_kg_m2(target)) return *inertia;
+  throw std::invalid_argument(
+      "target '" + target +
+      "' is unknown or its mission has no inertia; the targets are: " + list_of_names());
 }
 
 JointLimits joint_limits(const std::string& target) {
-  const TargetRow* row = find_target(target);
-  return row != nullptr ? row->joints : kWholeTurn;
+  const Mission* mission = find_target(target);
+  return mission != nullptr ? mission->panels.value_or(kWholeTurn) : kWholeTurn;
 }
 
 TriangleMesh target_mesh(const std::string& target, const std::string& source,
                          const MeshFileOptions& options) {
   return source == kParametricMesh ? target_by_name(target) : load_mesh_file(source, options);
+}
+
+MeshFileOptions mesh_file_options(const MissionMesh& mesh) {
+  MeshFileOptions options;
+  options.up = mesh_up_from(mesh.up);
+  options.scale = mesh.scale;
+  options.origin_trf_m = {mesh.origin_trf_m[0], mesh.origin_trf_m[1], mesh.origin_trf_m[2]};
+  return options;
+}
+
+std::uint32_t mission_crc32(const Mission& mission) {
+  gnc::Crc32 crc;
+  add_text(crc, mission.name);
+  add_mesh(crc, mission);
+  if (mission.inertia) {
+    const InertiaElements& i = *mission.inertia;
+    for (const double element : {i.xx, i.yy, i.zz, i.xy, i.xz, i.yz}) add_number(crc, element);
+  }
+  const JointLimits panels = mission.panels.value_or(JointLimits{});
+  add_number(crc, panels.lowest_deg);
+  add_number(crc, panels.highest_deg);
+  return crc.value();
 }
 
 }  // namespace tumblesight::sim

@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sim/adoption/adoption.hpp"
+#include "sim/cli/arguments.hpp"
+#include "sim/cli/target_setup.hpp"
+#include "sim/cli/verbs.hpp"
+#include "sim/terminal/text.hpp"
+#include "sim/world/scenario/condition.hpp"
+#include "sim/world/target/targets.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kStopped = 3;
+constexpr int kNoGo = 4;
+constexpr std::size_t kWidth = 78;
+
+std::atomic<bool> stop_requested{false};
+
+struct AdoptArguments {
+  std::string mission;
+  double minutes = 0.0;  // 0: the mission's
+  std::string out;       // empty: out/<name>
+  std::string start_from;
+  std::uint64_t seed = 1;
+  std::uint32_t sequences = 0;  // 0: by the time
+  int threads = 0;              // 0: one per core
+};
+
+// The float32 images of the targets that ship, as far as they are in fsw/models.
+std::vector<std::string> shipped_starts() {
+  std::vector<std::string> images;
+  std::error_code error;
+  for (const std::string& name : target_names()) {
+    const std::string image = shipped_model_path(name + ".float32");
+    if (fs::is_regular_file(image, error)) images.push_back(image);
+  }
+  return images;
+}
+
+SensorArguments sensor_of(const Mission& mission) {
+  SensorArguments sensor;
+  sensor.sensor = sensor_named(mission.sensor);
+  sensor.file = sensor_path(mission.sensor);
+  if (mission.ranges_m)
+    sensor.ranges = RangeLimits{mission.ranges_m->nearest_m, mission.ranges_m->farthest_m};
+  sensor.largest_rate_deg_s = mission.largest_rate_deg_s;
+  return sensor;
+}
+
+AdoptionSettings settings_of(const AdoptArguments& arguments, const std::string& command_line) {
+  AdoptionSettings settings;
+  settings.mission = mission_named(arguments.mission, condition_names());
+  use_mission(settings.mission);
+  const SensorArguments sensor = sensor_of(settings.mission);
+  settings.sensor = sensor.sensor;
+  settings.ranges_of = [sensor](double swath_m) {
+    std::vector<std::string> warnings;
+    const RangeLimits ranges = ranges_of(sensor, swath_m, warnings);
+    for (const std::string& warning : warnings) fmt::print(stderr, "  note: {}\n", warning);
+    return ranges;
+  };
+  settings.folder = arguments.out.empty() ? "out/" + settings.mission.name : arguments.out;
+  settings.minutes = arguments.minutes > 0.0 ? arguments.minutes : settings.mission.minutes;
+  settings.seed = arguments.seed;
+  settings.sequences = arguments.sequences;
+  settings.start_from = arguments.start_from.empty()       ? shipped_starts()
+                        : arguments.start_from == "random" ? std::vector<std::string>{}
+                                                           : std::vector<std::string>{arguments.start_from};
+  settings.threads = arguments.threads > 0
+                         ? arguments.threads
+                         : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  settings.program = fs::read_symlink("/proc/self/exe").string();
+  settings.command = command_line;
+  return settings;
+}
+
+void require_usable_folder(const AdoptionSettings& settings) {
+  require_folder("--out", settings.folder);
+  const std::string stem = settings.folder + "/" + settings.mission.name;
+  OptionFiles read = mesh_files_read("the mission's mesh", settings.mission.mesh.file);
+  read.push_back({"MISSION", settings.mission.file});
+  for (const std::string& image : settings.start_from) read.push_back({"--start-from", image});
+  OptionFiles written;
+  for (const std::string& path : {stem + ".tsm", stem + ".float32.tsm", settings.folder + "/verdict.json",
+                                  settings.folder + "/report.html", settings.folder + "/progress.html"})
+    written.push_back({"--out", path});
+  require_usable_files(read, written);
+}
+
+void print_list(const char* heading, const std::vector<std::string>& lines) {
+  if (lines.empty()) return;
+  fmt::print("\n  {}\n", heading);
+  for (const std::string& line : lines) {
+    std::string text = "  - ";
+    for (const char c : wrapped(line, kWidth - 4)) {
+      text += c;
+      if (c == '\n') text += "    ";
+    }
+    fmt::print("{}\n", text);
+  }
+}
+
+void print_outcome(const AdoptionSettings& settings, const AdoptionOutcome& outcome) {
+  fmt::print("\n  {}, after {:.1f} of {:g} minutes: {}\n", settings.mission.title, outcome.minutes_taken,
+             settings.minutes, outcome.go ? "GO" : "NO-GO");
+  for (const GoalCheck& check : outcome.checks)
+    fmt::print("    {:<6} {:<9} {}: {} ({})\n", check.met ? "met" : "MISSED", to_string(check.condition),
+               check.figure, check.value, check.limit);
+  print_list("Reasons for NO-GO", outcome.reasons);
+  print_list("What more time would bring", outcome.outlook);
+  if (!outcome.model_path.empty())
+    fmt::print("\n  Model image that flies: {}, CRC-32 {:08x}\n", full_path(outcome.model_path),
+               outcome.model_crc32);
+  fmt::print("  Report: {}\n\n", full_path(settings.folder + "/report.html"));
+}
+
+int run(const AdoptArguments& arguments, const std::string& command_line) {
+  const AdoptionSettings settings = settings_of(arguments, command_line);
+  require_usable_folder(settings);
+  std::signal(SIGINT, [](int) { stop_requested = true; });
+  std::signal(SIGTERM, [](int) { stop_requested = true; });
+  fmt::print("\n  Adoption of {} in {:g} minutes. The page {} renews itself.\n", settings.mission.title,
+             settings.minutes, full_path(settings.folder + "/progress.html"));
+  const AdoptionOutcome outcome = adopt(settings, stop_requested);
+  if (outcome.stopped) {
+    fmt::print(
+        "\n  Stopped. The same command goes on from here. The network so far, if a validation has been\n"
+        "  reached: {}/{}.tsm\n\n",
+        settings.folder, settings.mission.name);
+    return kStopped;
+  }
+  print_outcome(settings, outcome);
+  return outcome.go ? 0 : kNoGo;
+}
+
+}  // namespace
+
+void add_adopt_command(CLI::App& app, const std::string& command_line) {
+  auto arguments = std::make_shared<AdoptArguments>();
+  CLI::App* command = app.add_subcommand(
+      "adopt",
+      "From a mission file (your spacecraft, your LiDAR) to a network that flies, and a verdict on it");
+  command->footer(
+      std::string("\nChecks the mesh, trains, makes the fixed-point image, evaluates every condition\n"
+                  "against the goals of the mission, flies it over DDS, all within the time, and says\n"
+                  "GO or NO-GO with the reasons. Exit status: 0 GO, 4 NO-GO, 3 stopped (the same\n"
+                  "command goes on), 1 failed, 2 wrong arguments.\n\n"
+                  "A first mission file, craft.toml:\n") +
+      kFirstMission +
+      "docs/own_spacecraft.md lists all keys.\n\n"
+      "Example\n"
+      "  tumblesight adopt craft.toml --minutes 60\n");
+  command
+      ->add_option("MISSION", arguments->mission, "mission file (TOML), or the name of a target that ships")
+      ->required()
+      ->type_name("FILE|NAME");
+  limit_number(command->add_option("--minutes", arguments->minutes,
+                                   "wall-clock time for everything [that of the mission, else 60]"),
+               1.0, 100'000.0)
+      ->type_name("X");
+  command->add_option("--out", arguments->out, "folder for model images, report and checkpoints [out/<name>]")
+      ->check(file_path())
+      ->type_name("DIR");
+  add_seed_option(*command, arguments->seed);
+  limit_whole_number(
+      command->add_option("--sequences", arguments->sequences,
+                          "sequences per condition of the evaluation [by the time, 20 to 900]"),
+      1, 100'000)
+      ->type_name("N");
+  command
+      ->add_option(
+          "--start-from", arguments->start_from,
+          "float32 model image whose CNN to start from, or random [the nearest of those in fsw/models]")
+      ->type_name("FILE|random");
+  limit_whole_number(command->add_option("--threads", arguments->threads, "worker threads, 0: one per core"),
+                     0, 256)
+      ->type_name("N")
+      ->capture_default_str();
+  command->callback([arguments, command_line] {
+    if (!arguments->start_from.empty() && arguments->start_from != "random") {
+      const std::string fault = fault_of_model_path(arguments->start_from);
+      if (!fault.empty()) throw CLI::ValidationError("--start-from", fault);
+    }
+    throw CLI::RuntimeError(run(*arguments, command_line));
+  });
+}
+
+}  // namespace tumblesight::sim
