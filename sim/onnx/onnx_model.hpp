@@ -1,5 +1,6 @@
-// The float32 network as two ONNX models (opset 13), for other runtimes and tools. The attitude algebra
-// between the two is not part of them: gnc/rcnn/hypotheses.hpp and attitude_track.hpp.
+// The float32 network as ONNX models (opset 13), for other runtimes and tools: the whole step, which is the one
+// to run (step_model.hpp), and its two parts with weights alone, for tools that measure or convert networks.
+// The attitude algebra between the two parts is in the step only.
 #pragma once
 
 #include <cstdint>
@@ -26,11 +27,11 @@ struct OnnxFile {
   std::uint64_t size_bytes;
 };
 struct OnnxFiles {
-  OnnxFile cnn, recurrent;
+  OnnxFile step, cnn, recurrent;
 };
 
-// Writes <prefix>.cnn.onnx and <prefix>.recurrent.onnx under temporary names and renames them when both are
-// complete. Throws std::runtime_error that names the file if one cannot be written.
+// Writes <prefix>.step.onnx, <prefix>.cnn.onnx and <prefix>.recurrent.onnx, each as a whole. Throws
+// std::runtime_error that names the file if one cannot be written.
 OnnxFiles write_onnx_files(const Float32Model& model, const std::string& prefix);
 
 }  // namespace tumblesight::sim
