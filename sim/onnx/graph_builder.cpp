@@ -14,7 +14,12 @@ void describe(onnx::ValueInfoProto& value, const std::string& name, const OnnxSh
   onnx::TypeProto::Tensor& type = *value.mutable_type()->mutable_tensor_type();
   type.set_elem_type(element);
   onnx::TensorShapeProto& sizes = *type.mutable_shape();  // that of a scalar is there, and empty
-  for (const std::int64_t size : shape) sizes.add_dim()->set_dim_value(size);
+  for (const std::int64_t size : shape) {
+    if (size == kAnySize)
+      sizes.add_dim()->set_dim_param("n");
+    else
+      sizes.add_dim()->set_dim_value(size);
+  }
 }
 
 onnx::TensorProto::DataType type_of(float) {

@@ -10,6 +10,7 @@
 namespace tumblesight::sim {
 
 using OnnxShape = std::vector<std::int64_t>;
+inline constexpr std::int64_t kAnySize = -1;  // in the shape of an input: known at run time only
 
 class GraphBuilder {
  public:

@@ -3,8 +3,6 @@
 #include "sim/onnx/graph_builder.hpp"
 #include "sim/onnx/layer_graph.hpp"
 #include "sim/onnx/new_model.hpp"
-#include "sim/onnx/step_model.hpp"
-#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 
@@ -74,18 +72,6 @@ std::string recurrent_as_onnx(const Float32Model& model) {
   graph.flow("Identity", {layers.next_c()}, "c_next");
   describe_recurrent_outputs(graph);
   return result.SerializeAsString();
-}
-
-OnnxFiles write_onnx_files(const Float32Model& model, const std::string& prefix) {
-  const std::string step = step_as_onnx(model);
-  const std::string cnn = cnn_as_onnx(model), recurrent = recurrent_as_onnx(model);
-  const OnnxFiles files{{prefix + ".step.onnx", step.size()},
-                        {prefix + ".cnn.onnx", cnn.size()},
-                        {prefix + ".recurrent.onnx", recurrent.size()}};
-  write_file(files.step.path, step);
-  write_file(files.cnn.path, cnn);
-  write_file(files.recurrent.path, recurrent);
-  return files;
 }
 
 }  // namespace tumblesight::sim

@@ -52,6 +52,11 @@ OnnxTensor scalar(GraphBuilder& graph, double value) {
   return constant_tensor<float>(graph, {}, {static_cast<float>(value)});
 }
 
+void add_output(const OnnxTensor& value, const std::string& name, const OnnxShape& shape,
+                const std::string& description) {
+  value.graph().output(value.graph().flow("Identity", {value.name()}, name), shape, description);
+}
+
 OnnxTensor operation(const std::string& name, const std::vector<OnnxTensor>& inputs) {
   std::string result;
   add_node(name, inputs, result);

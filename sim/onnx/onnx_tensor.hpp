@@ -29,6 +29,10 @@ template <class Number>
 OnnxTensor constant_tensor(GraphBuilder& graph, const OnnxShape& shape, const std::vector<Number>& values);
 OnnxTensor scalar(GraphBuilder& graph, double value);
 
+// Makes a value an output of its graph, under this name.
+void add_output(const OnnxTensor& value, const std::string& name, const OnnxShape& shape,
+                const std::string& description);
+
 // Any operation without attributes. The node goes into the graph of the first input.
 OnnxTensor operation(const std::string& name, const std::vector<OnnxTensor>& inputs);
 

@@ -73,11 +73,6 @@ StepInputs describe_inputs(GraphBuilder& graph) {
           state};
 }
 
-void add_output(const OnnxTensor& value, const char* name, const OnnxShape& size, const char* description) {
-  value.graph().flow("Identity", {value.name()}, name);
-  value.graph().output(name, size, description);
-}
-
 void describe_outputs(const TrackedGraph& tracked, const HypothesesGraph& hypotheses,
                       const OnnxTensor& next_state) {
   add_output(quaternion_from_rotation(tracked.motion.r_lrf_trf), "q_lrf_trf", {1, 4},
