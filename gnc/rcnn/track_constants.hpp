@@ -45,8 +45,7 @@ inline constexpr double kMinVariance_rad2 = 7e-4;  // of the attitude of a frame
 inline constexpr double kMinLogLikelihood = -6.0;
 inline constexpr double kMaxEvidence = 64.0;     // against a law by one frame
 inline constexpr double kLikelihoodDecay = 0.9;  // factor on the log-likelihoods per frame
-inline constexpr double kLostTargetInnovation =
-    2.0 * (1.0 - 0.93969262);  // squared innovation of 20 degrees
+inline constexpr double kLostTargetInnovation = 2.0 * (1.0 - 0.93969262);  // squared innovation of 20 degrees
 // Sum over the hypotheses near the prediction of a law. With less, the law has lost the target.
 inline constexpr double kMinProbabilityNearPrediction = 0.1;
 

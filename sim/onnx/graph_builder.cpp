@@ -87,8 +87,8 @@ template std::string GraphBuilder::weights(const std::string&, const OnnxShape&,
                                            const std::vector<std::int64_t>&);
 
 std::string GraphBuilder::reshape(const std::string& value, const OnnxShape& shape, const std::string& name) {
-  return flow("Reshape",
-              {value, weights(name + ".shape", {static_cast<std::int64_t>(shape.size())}, shape)}, name);
+  return flow("Reshape", {value, weights(name + ".shape", {static_cast<std::int64_t>(shape.size())}, shape)},
+              name);
 }
 
 std::string GraphBuilder::flow(const std::string& operation, const std::vector<std::string>& inputs,

@@ -22,8 +22,8 @@ class GraphBuilder {
   // Each returns the name of the new value. `description` becomes the doc string.
   std::string input(const std::string& name, const OnnxShape& shape, const std::string& description,
                     onnx::TensorProto::DataType type = onnx::TensorProto::FLOAT);
-  // Number: float, std::int8_t, std::uint8_t, std::int32_t or std::int64_t. Throws std::logic_error if the number of values
-  // does not match the shape.
+  // Number: float, std::int8_t, std::uint8_t, std::int32_t or std::int64_t. Throws std::logic_error if the
+  // number of values does not match the shape.
   template <class Number>
   std::string weights(const std::string& name, const OnnxShape& shape, const std::vector<Number>& values);
   std::string reshape(const std::string& value, const OnnxShape& shape, const std::string& name);

@@ -25,8 +25,8 @@ OnnxTensor rotation_of_y_to(const OnnxTensor& direction) {
 OnnxTensor marked(const OnnxTensor& cells) {
   std::vector<float> numbers(kSide);
   std::iota(numbers.begin(), numbers.end(), 0.0F);
-  return as_number(operation("Equal", {operation("Floor", {cells}),
-                                       constant_tensor(cells.graph(), {1, kSide}, numbers)}));
+  return as_number(
+      operation("Equal", {operation("Floor", {cells}), constant_tensor(cells.graph(), {1, kSide}, numbers)}));
 }
 
 // Sum of the values [n, 1] in each cell: [kSide, kSide].
@@ -40,9 +40,10 @@ std::string image_as_onnx(const gnc::ModelHeader& header) {
   onnx::ModelProto result = new_model(header, "image", "The step's depth image from the target's returns.");
   GraphBuilder graph(*result.mutable_graph());
   const OnnxTensor points(
-      graph, graph.input("points_lrf_m", {kAnySize, 3},
-                         "The target's returns as points in the LiDAR's frame: +x right, +y boresight, +z up. "
-                         "In metres; 0, 0, 0 is no return."));
+      graph,
+      graph.input("points_lrf_m", {kAnySize, 3},
+                  "The target's returns as points in the LiDAR's frame: +x right, +y boresight, +z up. "
+                  "In metres; 0, 0, 0 is no return."));
   const double cells_per_m = 1000.0 * kSide / header.projection.swath_mm;
   const double radius_m = 1e-3 * header.projection.target_radius_mm;
 

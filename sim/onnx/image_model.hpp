@@ -1,5 +1,5 @@
-// An ONNX model (opset 13) from the target's returns to the network's depth image, for sensors of any kind. It is
-// make_depth_image() (gnc/lidar/depth_image.hpp) without the selection of the target's returns, the
+// An ONNX model (opset 13) from the target's returns to the network's depth image, for sensors of any kind.
+// It is make_depth_image() (gnc/lidar/depth_image.hpp) without the selection of the target's returns, the
 // interpolation between few rays and the rounding of the 16-bit image.
 #pragma once
 

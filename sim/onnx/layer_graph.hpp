@@ -13,8 +13,8 @@ class LayerGraph {
  public:
   explicit LayerGraph(GraphBuilder& graph) : graph_(graph) {}
 
-  // The layers that read `name`, one of the names in the network's table, get the ONNX value `value`. The LSTM
-  // reads its state from "h" and "c", each [1, kLstm].
+  // The layers that read `name`, one of the names in the network's table, get the ONNX value `value`. The
+  // LSTM reads its state from "h" and "c", each [1, kLstm].
   void set_input(const std::string& name, const std::string& value) { values_[name] = value; }
 
   // Declares the graph's input `image` [1, 1, kImageSide, kImageSide] and adds the layers that follow it.

@@ -23,8 +23,8 @@ struct OnnxFile {
   std::string path;
   std::uint64_t size_bytes;
 };
-// Writes each file as a whole, in the order of the table. Throws std::runtime_error that names the file if one
-// cannot be written.
+// Writes each file as a whole, in the order of the table. Throws std::runtime_error that names the file if
+// one cannot be written.
 std::vector<OnnxFile> write_onnx_files(const Float32Model& model, const std::string& prefix);
 
 }  // namespace tumblesight::sim

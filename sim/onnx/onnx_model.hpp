@@ -1,5 +1,5 @@
-// The two parts of the float32 network as ONNX models (opset 13), for tools that measure or convert networks. The
-// attitude algebra between the two is part of the whole step only: step_model.hpp.
+// The two parts of the float32 network as ONNX models (opset 13), for tools that measure or convert networks.
+// The attitude algebra between the two is part of the whole step only: step_model.hpp.
 #pragma once
 
 #include <string>

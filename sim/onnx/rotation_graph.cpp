@@ -28,16 +28,15 @@ OnnxTensor identity(GraphBuilder& graph) {
 
 // [v]x
 OnnxTensor cross_matrix(const OnnxTensor& v) {
-  const OnnxTensor elements = constant_tensor<float>(v.graph(), {1, 9, 3},
-                                                     {0, 0, 0,   // row 0: 0, -z, y
-                                                      0, 0, -1,  //
-                                                      0, 1, 0,   //
-                                                      0, 0, 1,   // row 1: z, 0, -x
-                                                      0, 0, 0,   //
-                                                      -1, 0, 0,  //
-                                                      0, -1, 0,  // row 2: -y, x, 0
-                                                      1, 0, 0,   //
-                                                      0, 0, 0});
+  const OnnxTensor elements = constant_tensor<float>(v.graph(), {1, 9, 3}, {0,  0,  0,   // row 0: 0, -z, y
+                                                                            0,  0,  -1,  //
+                                                                            0,  1,  0,   //
+                                                                            0,  0,  1,   // row 1: z, 0, -x
+                                                                            0,  0,  0,   //
+                                                                            -1, 0,  0,   //
+                                                                            0,  -1, 0,   // row 2: -y, x, 0
+                                                                            1,  0,  0,   //
+                                                                            0,  0,  0});
   return reshaped(product(elements, v), {-1, 3, 3});
 }
 
@@ -91,16 +90,15 @@ OnnxTensor two_columns(const OnnxTensor& rotation) {
 
 OnnxTensor rotation_from_quaternion(const OnnxTensor& q) {
   // Nine elements from the sixteen products of two parts of q: ww, wx, wy, wz, xw, ...
-  const OnnxTensor from_products =
-      constant_tensor<float>(q.graph(), {1, 9, 16},
-                             {1, 0,  0,  0,  0, 1, 0, 0, 0, 0, -1, 0,  0, 0, 0, -1,   // xx
-                              0, 0,  0,  -2, 0, 0, 2, 0, 0, 0, 0,  0,  0, 0, 0, 0,    // xy
-                              0, 0,  2,  0,  0, 0, 0, 2, 0, 0, 0,  0,  0, 0, 0, 0,    // xz
-                              0, 0,  0,  2,  0, 0, 2, 0, 0, 0, 0,  0,  0, 0, 0, 0,    // yx
-                              1, 0,  0,  0,  0, -1, 0, 0, 0, 0, 1, 0,  0, 0, 0, -1,   // yy
-                              0, -2, 0,  0,  0, 0, 0, 0, 0, 0, 0,  2,  0, 0, 0, 0,    // yz
-                              0, 0,  -2, 0,  0, 0, 0, 2, 0, 0, 0,  0,  0, 0, 0, 0,    // zx
-                              0, 2,  0,  0,  0, 0, 0, 0, 0, 0, 0,  2,  0, 0, 0, 0,    // zy
+  const OnnxTensor from_products = constant_tensor<float>(
+      q.graph(), {1, 9, 16}, {1, 0,  0,  0,  0, 1,  0, 0, 0, 0, -1, 0, 0, 0, 0, -1,   // xx
+                              0, 0,  0,  -2, 0, 0,  2, 0, 0, 0, 0,  0, 0, 0, 0, 0,    // xy
+                              0, 0,  2,  0,  0, 0,  0, 2, 0, 0, 0,  0, 0, 0, 0, 0,    // xz
+                              0, 0,  0,  2,  0, 0,  2, 0, 0, 0, 0,  0, 0, 0, 0, 0,    // yx
+                              1, 0,  0,  0,  0, -1, 0, 0, 0, 0, 1,  0, 0, 0, 0, -1,   // yy
+                              0, -2, 0,  0,  0, 0,  0, 0, 0, 0, 0,  2, 0, 0, 0, 0,    // yz
+                              0, 0,  -2, 0,  0, 0,  0, 2, 0, 0, 0,  0, 0, 0, 0, 0,    // zx
+                              0, 2,  0,  0,  0, 0,  0, 0, 0, 0, 0,  2, 0, 0, 0, 0,    // zy
                               1, 0,  0,  0,  0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1});  // zz
   const OnnxTensor products = product(reshaped(q, {-1, 4, 1}), reshaped(q, {-1, 1, 4}));
   return reshaped(product(from_products, reshaped(products, {-1, 16, 1})), {-1, 3, 3});
@@ -110,23 +108,23 @@ OnnxTensor rotation_from_quaternion(const OnnxTensor& q) {
 // taken.
 OnnxTensor quaternion_from_rotation(const OnnxTensor& rotation) {
   GraphBuilder& graph = rotation.graph();
-  const OnnxTensor from_elements = constant_tensor<float>(graph, {1, 16, 9},
-                                                          {1, 0, 0, 0, 1, 0, 0, 0, 1,     // ww
-                                                           0, 0, 0, 0, 0, -1, 0, 1, 0,    // wx
-                                                           0, 0, 1, 0, 0, 0, -1, 0, 0,    // wy
-                                                           0, -1, 0, 1, 0, 0, 0, 0, 0,    // wz
-                                                           0, 0, 0, 0, 0, -1, 0, 1, 0,    // xw
-                                                           1, 0, 0, 0, -1, 0, 0, 0, -1,   // xx
-                                                           0, 1, 0, 1, 0, 0, 0, 0, 0,     // xy
-                                                           0, 0, 1, 0, 0, 0, 1, 0, 0,     // xz
-                                                           0, 0, 1, 0, 0, 0, -1, 0, 0,    // yw
-                                                           0, 1, 0, 1, 0, 0, 0, 0, 0,     // yx
-                                                           -1, 0, 0, 0, 1, 0, 0, 0, -1,   // yy
-                                                           0, 0, 0, 0, 0, 1, 0, 1, 0,     // yz
-                                                           0, -1, 0, 1, 0, 0, 0, 0, 0,    // zw
-                                                           0, 0, 1, 0, 0, 0, 1, 0, 0,     // zx
-                                                           0, 0, 0, 0, 0, 1, 0, 1, 0,     // zy
-                                                           -1, 0, 0, 0, -1, 0, 0, 0, 1});  // zz
+  const OnnxTensor from_elements =
+      constant_tensor<float>(graph, {1, 16, 9}, {1,  0,  0, 0, 1,  0,  0,  0, 1,    // ww
+                                                 0,  0,  0, 0, 0,  -1, 0,  1, 0,    // wx
+                                                 0,  0,  1, 0, 0,  0,  -1, 0, 0,    // wy
+                                                 0,  -1, 0, 1, 0,  0,  0,  0, 0,    // wz
+                                                 0,  0,  0, 0, 0,  -1, 0,  1, 0,    // xw
+                                                 1,  0,  0, 0, -1, 0,  0,  0, -1,   // xx
+                                                 0,  1,  0, 1, 0,  0,  0,  0, 0,    // xy
+                                                 0,  0,  1, 0, 0,  0,  1,  0, 0,    // xz
+                                                 0,  0,  1, 0, 0,  0,  -1, 0, 0,    // yw
+                                                 0,  1,  0, 1, 0,  0,  0,  0, 0,    // yx
+                                                 -1, 0,  0, 0, 1,  0,  0,  0, -1,   // yy
+                                                 0,  0,  0, 0, 0,  1,  0,  1, 0,    // yz
+                                                 0,  -1, 0, 1, 0,  0,  0,  0, 0,    // zw
+                                                 0,  0,  1, 0, 0,  0,  1,  0, 0,    // zx
+                                                 0,  0,  0, 0, 0,  1,  0,  1, 0,    // zy
+                                                 -1, 0,  0, 0, -1, 0,  0,  0, 1});  // zz
   const OnnxTensor one =
       constant_tensor<float>(graph, {1, 4, 4}, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
   const OnnxTensor candidates =
@@ -171,19 +169,17 @@ MotionGraph propagated(const MotionGraph& motion, const gnc::MotionLaws<float>& 
   // The rate limited to kLargestRate.
   const double most = gnc::kLargestRate;
   const OnnxTensor rate = minimum(most / length_of(motion.rate_lrf), 1.0) * motion.rate_lrf;
-  const OnnxTensor momentum_lrf = product(
-      motion.r_lrf_trf, product(tensor_trf, product(transposed(motion.r_lrf_trf), rate)));
+  const OnnxTensor momentum_lrf =
+      product(motion.r_lrf_trf, product(tensor_trf, product(transposed(motion.r_lrf_trf), rate)));
   const auto midpoint_step = [&](const OnnxTensor& r) {
     const auto turned_at = [&](const OnnxTensor& r_at, double part) {
-      const OnnxTensor rate_at =
-          rate_from_momentum(r_at, seen_by(r, momentum_lrf), seen_by(r, inverse_trf));
+      const OnnxTensor rate_at = rate_from_momentum(r_at, seen_by(r, momentum_lrf), seen_by(r, inverse_trf));
       const OnnxTensor turn = part * rate_at * seen_by(r, step);
       return product(rotation_by(clamped(turn, -kLargestElement, kLargestElement)), r);
     };
     return turned_at(turned_at(r, 0.5), 1.0);
   };
-  const OnnxTensor r =
-      repeated(as_integer(steps), motion.r_lrf_trf, {gnc::kLaws, 3, 3}, midpoint_step);
+  const OnnxTensor r = repeated(as_integer(steps), motion.r_lrf_trf, {gnc::kLaws, 3, 3}, midpoint_step);
   return {r, rate_from_momentum(r, momentum_lrf, inverse_trf)};
 }
 

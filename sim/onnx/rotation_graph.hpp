@@ -1,5 +1,5 @@
-// The algebra of gnc/attitude (rotation.hpp, motion.hpp) in ONNX. Shapes: rotation matrices [K, 3, 3], vectors
-// [K, 3, 1], scalars [K, 1, 1], quaternions [K, 4], scalar first.
+// The algebra of gnc/attitude (rotation.hpp, motion.hpp) in ONNX. Shapes: rotation matrices [K, 3, 3],
+// vectors [K, 3, 1], scalars [K, 1, 1], quaternions [K, 4], scalar first.
 #pragma once
 
 #include "gnc/attitude/motion.hpp"

@@ -66,11 +66,9 @@ StepInputs describe_inputs(GraphBuilder& graph) {
             "Turn of the LiDAR, with the chaser, since the last frame: unit quaternion w, x, y, z with v_lrf "
             "now = q_now_last v_lrf last, for vectors that are fixed in inertial space; 1, 0, 0, 0 for a "
             "chaser that does not turn.");
-  const OnnxTensor state = input("state", {1, kStepState},
-                                 "next_state of the last frame; zeros at the first frame of a track.");
-  return {r_lrf_view,
-          {reshaped(elapsed_s, {1, 1, 1}), rotation_from_quaternion(q_now_last)},
-          state};
+  const OnnxTensor state =
+      input("state", {1, kStepState}, "next_state of the last frame; zeros at the first frame of a track.");
+  return {r_lrf_view, {reshaped(elapsed_s, {1, 1, 1}), rotation_from_quaternion(q_now_last)}, state};
 }
 
 void describe_outputs(const TrackedGraph& tracked, const HypothesesGraph& hypotheses,
@@ -116,9 +114,9 @@ std::string step_as_onnx(const Float32Model& model) {
   layers.add_recurrent(model.weights);
 
   const TrackedGraph tracked = advanced(hypotheses, prediction, OnnxTensor(graph, layers.head_output()));
-  describe_outputs(tracked, hypotheses,
-                   packed({OnnxTensor(graph, layers.next_h()), OnnxTensor(graph, layers.next_c()),
-                           tracked.track}));
+  describe_outputs(
+      tracked, hypotheses,
+      packed({OnnxTensor(graph, layers.next_h()), OnnxTensor(graph, layers.next_c()), tracked.track}));
   return result.SerializeAsString();
 }
 

@@ -59,9 +59,8 @@ OnnxTensor probability_of(const HypothesesGraph& hypotheses, const OnnxTensor& r
 // AttitudeTrack::forget_rate()
 TrackGraph without_rate(const TrackGraph& track, const OnnxTensor& forgets) {
   const OnnxTensor last = picked(track.motion, law_of(track.log_likelihood)).r_lrf_trf;
-  return {where(forgets, of_all_laws(at_rest(last)), track.motion),
-          where(forgets, 0.0, track.log_likelihood), where(forgets, minimum(track.frames, 1.0), track.frames),
-          track.has_found_rate};
+  return {where(forgets, of_all_laws(at_rest(last)), track.motion), where(forgets, 0.0, track.log_likelihood),
+          where(forgets, minimum(track.frames, 1.0), track.frames), track.has_found_rate};
 }
 
 // What an innovation means for the rate.
@@ -71,8 +70,8 @@ struct RateCorrectionGraph {
 
 OnnxTensor corrected_rate(const MotionGraph& predicted_motion, const OnnxTensor& r_lrf_trf,
                           const RateCorrectionGraph& correction) {
-  const OnnxTensor innovation = rotation_vector(product(r_lrf_trf, transposed(predicted_motion.r_lrf_trf)),
-                                                correction.largest_versine);
+  const OnnxTensor innovation =
+      rotation_vector(product(r_lrf_trf, transposed(predicted_motion.r_lrf_trf)), correction.largest_versine);
   return predicted_motion.rate_lrf + correction.gain * innovation / correction.periods;
 }
 
@@ -131,16 +130,15 @@ OnnxTensor squared_innovations(const HypothesesGraph& hypotheses, const OnnxTens
   return where(unseen, kLostInnovation, minimum(innovation, kLostInnovation));
 }
 
-// Lowers the log-likelihoods by the evidence; a law that has lost the target takes over the motion of the best
-// law that has not.
+// Lowers the log-likelihoods by the evidence; a law that has lost the target takes over the motion of the
+// best law that has not.
 TrackGraph weighed(const MotionGraph& motion, const OnnxTensor& log_likelihood_before,
                    const OnnxTensor& innovations, const OnnxTensor& evidence, const TrackGraph& before) {
   const OnnxTensor against = minimum(evidence * innovations, gnc::kMaxEvidence);
   const OnnxTensor lowered = gnc::kLikelihoodDecay * log_likelihood_before - against;
   const OnnxTensor log_likelihood = maximum(lowered - largest(lowered, 0), gnc::kMinLogLikelihood);
   const OnnxTensor follows = innovations < kLostInnovation;
-  const OnnxTensor best =
-      index_of_largest(where(follows, scores(log_likelihood), kFarBelowAllScores), 0);
+  const OnnxTensor best = index_of_largest(where(follows, scores(log_likelihood), kFarBelowAllScores), 0);
   const OnnxTensor any_follows = largest(as_number(follows), 0) > 0.5;
   return {where(any_follows & !follows, of_all_laws(picked(motion, best)), motion), log_likelihood,
           1.0 + before.frames, before.has_found_rate};
@@ -153,8 +151,7 @@ HypothesesGraph decoded_hypotheses(const OnnxTensor& cnn_output, const OnnxTenso
       transposed(reshaped(slice(cnn_output, 1, 0, shape::kColumns), {shape::kHypotheses, 2, 3}));
   const OnnxTensor r_view_trf = rotation_from_columns(slice(columns, 2, 0, 1), slice(columns, 2, 1, 2));
   const OnnxTensor r_lrf_trf = product(r_lrf_view, r_view_trf);
-  const OnnxTensor logits =
-      slice(cnn_output, 1, shape::kColumns, shape::kColumns + shape::kHypotheses);
+  const OnnxTensor logits = slice(cnn_output, 1, shape::kColumns, shape::kColumns + shape::kHypotheses);
   return {r_lrf_trf, logits, softmax(logits, 1), picked(r_lrf_trf, index_of_largest(logits, 1), 0)};
 }
 
@@ -169,30 +166,27 @@ PredictionGraph predicted(const TrackGraph& before, const gnc::MotionLaws<float>
   const OnnxTensor elapsed_s =
       where(has_track, clamped(interval.elapsed_s, kShortest_s, kLongest_s), kPeriod_s);
   const OnnxTensor periods = elapsed_s / kPeriod_s;
-  const MotionGraph propagated_motion =
-      turned(propagated(track.motion, laws, periods), interval.r_now_last);
-  const MotionGraph motion =
-      where(has_track, propagated_motion, of_all_laws(at_rest(hypotheses.likeliest)));
+  const MotionGraph propagated_motion = turned(propagated(track.motion, laws, periods), interval.r_now_last);
+  const MotionGraph motion = where(has_track, propagated_motion, of_all_laws(at_rest(hypotheses.likeliest)));
   const OnnxTensor law = law_of(track.log_likelihood);
 
   // gnc::keep_confirmed()
-  const OnnxTensor confirmed = probability_of(hypotheses, picked(motion, law).r_lrf_trf) >
-                               gnc::kMinProbabilityNearPrediction;
+  const OnnxTensor confirmed =
+      probability_of(hypotheses, picked(motion, law).r_lrf_trf) > gnc::kMinProbabilityNearPrediction;
   const OnnxTensor starts_anew = finds_no_rate & !confirmed;
   const MotionGraph last = at_rest(picked(turned(track.motion, interval.r_now_last), law).r_lrf_trf);
   GraphBuilder& graph = periods.graph();
-  const OnnxTensor first_rate =
-      corrected_rate(last, hypotheses.likeliest,
-                     {scalar(graph, 1.0), periods, scalar(graph, gnc::kVersineOf150Degrees)});
+  const OnnxTensor first_rate = corrected_rate(
+      last, hypotheses.likeliest, {scalar(graph, 1.0), periods, scalar(graph, gnc::kVersineOf150Degrees)});
   const MotionGraph first = of_all_laws({hypotheses.likeliest, first_rate});
 
   const MotionGraph kept = where(starts_anew, first, motion);
   const OnnxTensor log_likelihood = where(starts_anew, 0.0, track.log_likelihood);
-  return {{kept, log_likelihood, where(starts_anew, 0.0, track.frames),
-           as_number(has_track & !finds_no_rate)},
-          picked(kept, law_of(log_likelihood)).r_lrf_trf,
-          periods,
-          starts_anew};
+  return {
+      {kept, log_likelihood, where(starts_anew, 0.0, track.frames), as_number(has_track & !finds_no_rate)},
+      picked(kept, law_of(log_likelihood)).r_lrf_trf,
+      periods,
+      starts_anew};
 }
 
 OnnxTensor lstm_input(const OnnxTensor& features, const HypothesesGraph& hypotheses,
@@ -210,8 +204,8 @@ TrackedGraph advanced(const HypothesesGraph& hypotheses, const PredictionGraph& 
   const gnc::FilterGains<OnnxTensor> filter = filter_gains(before.frames);
 
   const OnnxTensor no_logit = constant_tensor<float>(head_output.graph(), {1, 1}, {0});  // of the prediction
-  const OnnxTensor anchor = index_of_largest(
-      joined({hypotheses.logits, no_logit}, 1) + slice(head_output, 1, 0, kCandidates), 1);
+  const OnnxTensor anchor =
+      index_of_largest(joined({hypotheses.logits, no_logit}, 1) + slice(head_output, 1, 0, kCandidates), 1);
   const OnnxTensor weights = candidate_weights(
       hypotheses, slice(head_output, 1, kCandidates, 2 * kCandidates), filter.predicted_weight);
   const OnnxTensor learned_gain = operation("Sigmoid", {filter.rate_logit + head_value(2 * kCandidates)});
@@ -225,8 +219,8 @@ TrackedGraph advanced(const HypothesesGraph& hypotheses, const PredictionGraph& 
   const OnnxTensor rate_lrf = corrected_rate(motion, r_lrf_trf, correction);
   const OnnxTensor error_rad = gnc::kPi * operation("Sigmoid", {head_value(2 * kCandidates + 1)});
   const OnnxTensor variance = maximum(error_rad * error_rad, gnc::kMinVariance_rad2);
-  const TrackGraph after = weighed({r_lrf_trf, rate_lrf}, before.log_likelihood, innovations,
-                                   filter.evidence / variance, before);
+  const TrackGraph after =
+      weighed({r_lrf_trf, rate_lrf}, before.log_likelihood, innovations, filter.evidence / variance, before);
   return {after, picked(after.motion, law_of(after.log_likelihood)), reshaped(error_rad, {1, 1})};
 }
 

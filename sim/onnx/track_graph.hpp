@@ -1,6 +1,6 @@
 // gnc/rcnn/hypotheses.hpp and attitude_track.hpp in ONNX. The flight code gives the same values
-// (tests/unit/sim/bench/step_model_test.cpp). Left out are its repairs of a damaged state: an attitude that is
-// no rotation, numbers that are not finite.
+// (tests/unit/sim/bench/step_model_test.cpp). Left out are its repairs of a damaged state: an attitude that
+// is no rotation, numbers that are not finite.
 //
 // Shapes as in rotation_graph.hpp; 8 hypotheses, 9 candidates, 5 laws of motion. A truth value is [1, 1, 1].
 #pragma once
@@ -39,8 +39,8 @@ struct PredictionGraph {
   OnnxTensor periods;      // [1, 1, 1]: since the last frame
   OnnxTensor starts_anew;  // the state of the LSTM must be reset: gnc::keep_confirmed() is false
 };
-// AttitudeTrack::forget_rate(), predict() and keep_confirmed() of the flight code. What FrameTracker tells the
-// estimator about the rate, from which keep_confirmed() follows, is found here from `has_found_rate`.
+// AttitudeTrack::forget_rate(), predict() and keep_confirmed() of the flight code. What FrameTracker tells
+// the estimator about the rate, from which keep_confirmed() follows, is found here from `has_found_rate`.
 PredictionGraph predicted(const TrackGraph& track, const gnc::MotionLaws<float>& laws,
                           const HypothesesGraph& hypotheses, const IntervalGraph& interval);
 

@@ -2,10 +2,6 @@
 // tests/unit/sim/bench: peer_test.cpp and step_model_test.cpp.
 #include "sim/onnx/onnx_model.hpp"
 
-#include "sim/onnx/image_model.hpp"
-#include "sim/onnx/onnx_files.hpp"
-#include "sim/onnx/step_model.hpp"
-
 #include <gtest/gtest.h>
 #include <onnx/checker.h>
 #include <onnx/onnx_pb.h>
@@ -18,6 +14,9 @@
 #include <set>
 #include <vector>
 
+#include "sim/onnx/image_model.hpp"
+#include "sim/onnx/onnx_files.hpp"
+#include "sim/onnx/step_model.hpp"
 #include "tests/support/sim_models.hpp"
 
 namespace tumblesight::sim {
@@ -87,13 +86,12 @@ TEST(OnnxModel, OfTheStepIsValidAndHasItsSizes) {
                                                     {"elapsed_s", {1, 1}},
                                                     {"q_now_last", {1, 4}},
                                                     {"state", {1, kStepState}}}));
-  EXPECT_EQ(sizes_of(model.graph().output()),
-            (Sizes{{"q_lrf_trf", {1, 4}},
-                   {"expected_error_rad", {1, 1}},
-                   {"rate_lrf_rad_s", {1, 3}},
-                   {"q_lrf_trf_hypotheses", {1, shape::kHypotheses, 4}},
-                   {"probabilities", {1, shape::kHypotheses}},
-                   {"next_state", {1, kStepState}}}));
+  EXPECT_EQ(sizes_of(model.graph().output()), (Sizes{{"q_lrf_trf", {1, 4}},
+                                                     {"expected_error_rad", {1, 1}},
+                                                     {"rate_lrf_rad_s", {1, 3}},
+                                                     {"q_lrf_trf_hypotheses", {1, shape::kHypotheses, 4}},
+                                                     {"probabilities", {1, shape::kHypotheses}},
+                                                     {"next_state", {1, kStepState}}}));
   EXPECT_EQ(kStepState, 451) << "docs/onnx.md and docs/examples name it";
 }
 
@@ -153,14 +151,15 @@ TEST(OnnxModel, HasTheMetadataOfTheModelImage) {
   for (const char* in_words : {"units", "frames"}) EXPECT_FALSE(metadata[in_words].empty()) << in_words;
   metadata.erase("units");
   metadata.erase("frames");
-  EXPECT_EQ(metadata, (std::map<std::string, std::string>{{"target", "test_craft"},
-                                                          {"crc32", "00abcdef"},
-                                                          {"swath_mm", "7500"},
-                                                          {"target_radius_mm", "3250"},
-                                                          {"inertia_trf",
-                                                           "0.7500000 1.0000000 1.2500000 0.0625000 -0.1250000 "
-                                                           "0.0000000"},
-                                                          {"period_s", "2.7"}}));
+  EXPECT_EQ(metadata,
+            (std::map<std::string, std::string>{{"target", "test_craft"},
+                                                {"crc32", "00abcdef"},
+                                                {"swath_mm", "7500"},
+                                                {"target_radius_mm", "3250"},
+                                                {"inertia_trf",
+                                                 "0.7500000 1.0000000 1.2500000 0.0625000 -0.1250000 "
+                                                 "0.0000000"},
+                                                {"period_s", "2.7"}}));
 }
 
 TEST(OnnxFile, HoldsTheModelAndNoTemporaryFileRemains) {
