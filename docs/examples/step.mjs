@@ -11,7 +11,8 @@ function* framesOf(data) {
     const rangesM = new Float64Array(rays * rays);
     at += 41;
     for (let row = 0; row < rays; ++row, at += 2 + 2 * data[at + 1])
-      for (let i = 0; i < data[at + 1]; ++i) rangesM[row * rays + data[at] + i] = data.readUInt16LE(at + 2 + 2 * i) / 128;
+      for (let i = 0; i < data[at + 1]; ++i)
+        rangesM[row * rays + data[at] + i] = data.readUInt16LE(at + 2 + 2 * i) / 128;
     yield { timeS, fovRad, rays, rangesM, q };
   }
 }
@@ -40,6 +41,7 @@ for (const frame of framesOf(readFileSync(process.argv[3]))) {
   const out = await stepModel.run({ image, r_lrf_view, elapsed_s: tensor([frame.timeS - last.timeS], [1, 1]),
     q_now_last: tensor(turn(frame.q, last.q), [1, 4]), state });
   [state, last] = [out.next_state, frame];
-  console.log(`${frame.timeS.toFixed(2)} s  q_lrf_trf`, [...out.q_lrf_trf.data].map((part) => part.toFixed(4)).join(' '),
+  const attitude = [...out.q_lrf_trf.data].map((part) => part.toFixed(4)).join(' ');
+  console.log(`${frame.timeS.toFixed(2)} s  q_lrf_trf ${attitude}`,
     ` error ${out.expected_error_rad.data[0].toFixed(4)} rad`);
 }

@@ -44,4 +44,5 @@ with open(sys.argv[2], "rb") as recording:
             "image": image, "r_lrf_view": r_lrf_view, "elapsed_s": np.array([[time_s - last[0]]], np.float32),
             "q_now_last": turn(q, last[1]), "state": state})
         last = time_s, q
-        print(f"{time_s:.2f} s  q_lrf_trf", *(f"{part:.4f}" for part in attitude[0]), f" error {error_rad[0, 0]:.4f} rad")
+        parts = " ".join(f"{part:.4f}" for part in attitude[0])
+        print(f"{time_s:.2f} s  q_lrf_trf {parts}  error {error_rad[0, 0]:.4f} rad")

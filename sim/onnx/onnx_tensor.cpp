@@ -185,7 +185,7 @@ OnnxTensor repeated(const OnnxTensor& times, const OnnxTensor& value, const Onnx
   const OnnxTensor after = step(before);
   body.output(body.flow("Identity", {goes_on}, body.new_name("Identity")), {}, "", onnx::TensorProto::BOOL);
   body.output(after.name(), shape, "");
-  return {around, result};
+  return reshaped({around, result}, shape);  // tools do not derive the shape of what a loop gives
 }
 
 }  // namespace tumblesight::sim

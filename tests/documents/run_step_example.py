@@ -3,8 +3,8 @@
 
     run_step_example.py TRUTH.csv PROGRAM EXAMPLE PREFIX FRAMES.tslr
 
-Exits with 3 if the example cannot run here, because the program, ONNX Runtime or numpy is missing. The example has then
-been read by its program at least, so that an error of syntax is found.
+Exits with 3 if the example cannot run here, because the program, ONNX Runtime or numpy is missing. Without the last two
+the program has read the example nevertheless, so that an error of syntax is found.
 """
 import csv
 import math
@@ -19,8 +19,8 @@ PRINTED = re.compile(r"^([\d.]+) s  q_lrf_trf (-?[\d.]+) (-?[\d.]+) (-?[\d.]+) (
 
 
 def skip(reason):
-    print(f"skipped: {reason}; `npm install --prefix build --ignore-scripts onnxruntime-node` installs ONNX Runtime for "
-          "Node, pip and the packages numpy and onnxruntime the one for Python")
+    print(f"skipped: {reason}. For Node: `npm install --prefix build --ignore-scripts onnxruntime-node`; for Python: "
+          "`pip install numpy onnxruntime`")
     sys.exit(SKIPPED)
 
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <onnx/checker.h>
 #include <onnx/onnx_pb.h>
+#include <onnx/shape_inference/implementation.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -104,6 +105,19 @@ TEST(OnnxModel, OfTheImageIsValidAndHasItsSizes) {
   EXPECT_EQ(sizes_of(model.graph().output()), (Sizes{{"image", {1, 1, shape::kImageSide, shape::kImageSide}},
                                                      {"r_lrf_view", {1, 3, 3}},
                                                      {"distance_m", {1, 1}}}));
+}
+
+// Verifies TS-TRN-070.
+TEST(OnnxModel, TypesAndSizesOfAllValuesFollowFromTheInputs) {
+  const auto random = random_model();
+  for (const OnnxFileRow& row : onnx_file_rows()) {
+    onnx::ModelProto model = parsed(row.make(*random));
+    const Sizes stated = sizes_of(model.graph().output());
+    for (auto& output : *model.mutable_graph()->mutable_output()) output.mutable_type()->Clear();
+    const onnx::ShapeInferenceOptions strict(true, 1, true);
+    EXPECT_NO_THROW(onnx::shape_inference::InferShapes(model, onnx::OpSchemaRegistry::Instance(), strict));
+    EXPECT_EQ(sizes_of(model.graph().output()), stated) << row.name;
+  }
 }
 
 void add_operators(const onnx::GraphProto& graph, std::set<std::string>& domains,
