@@ -4,46 +4,12 @@
 
 #include "gnc/attitude/quaternion.hpp"
 #include "gnc/nn/activation.hpp"
+#include "gnc/rcnn/track_constants.hpp"
 
 namespace tumblesight::gnc {
 namespace {
 
 constexpr int kCandidates = shape::kCandidates;
-constexpr double kMinProbability = 1e-6;  // so that the weights of a group of candidates are never all zero
-constexpr double kMaxCorrection = 8.0;    // of the logarithm of a weight, by the network
-
-// Gains of the recursive least-squares fit of a straight line to k equally good measurements: attitude gain
-// a = 2 (2k - 1) / (k (k + 1)), ratio of the rate gain to it 3 / (2k - 1). Constant from k = 10 on, so that
-// the track keeps responding to measurements.
-constexpr int kGains = 10;
-
-template <class Real>
-struct FilterGains {
-  Real predicted_weight;  // of the predicted attitude relative to the hypotheses of a frame: (1 - a) / a
-  Real rate_logit;        // logit of the ratio of the rate gain to the attitude gain
-  Real evidence;          // decrease of a law's log-likelihood per squared innovation: (1 - a) / (2 a^2)
-};
-
-template <class Real>
-constexpr FilterGains<Real> gains(double predicted_weight, double rate_logit, double evidence) {
-  return {constant<Real>(predicted_weight), constant<Real>(rate_logit), constant<Real>(evidence)};
-}
-
-template <class Real>
-constexpr std::array<FilterGains<Real>, kGains> kFilterGains{
-    {gains<Real>(0.0003, 6.9067548, 0.0), gains<Real>(0.0003, 6.9067548, 0.0),
-     gains<Real>(0.2, 0.40546511, 0.12), gains<Real>(0.42857143, -0.28768207, 0.30612245),
-     gains<Real>(0.66666667, -0.69314718, 0.55555556), gains<Real>(0.90909091, -0.98082925, 0.8677686),
-     gains<Real>(1.1538462, -1.2039728, 1.2426036), gains<Real>(1.4, -1.3862944, 1.68),
-     gains<Real>(1.6470588, -1.540445, 2.1799308), gains<Real>(1.8947368, -1.6739764, 2.7423823)}};
-
-constexpr double kMinVariance_rad2 = 7e-4;  // of the attitude of a frame: (1.5 degrees)^2
-constexpr double kMinLogLikelihood = -6.0;
-constexpr double kMaxEvidence = 64.0;                               // against a law by one frame
-constexpr double kLikelihoodDecay = 0.9;                            // factor on the log-likelihoods per frame
-constexpr double kLostTargetInnovation = 2.0 * (1.0 - 0.93969262);  // squared innovation of 20 degrees
-// Sum over the hypotheses near the prediction of a law. With less, the law has lost the target.
-constexpr double kMinProbabilityNearPrediction = 0.1;
 
 // False for a damaged state: not finite, or not a rotation.
 template <class Real>

@@ -1,13 +1,10 @@
 #include "gnc/rcnn/hypotheses.hpp"
 
 #include "gnc/nn/activation.hpp"
+#include "gnc/rcnn/track_constants.hpp"
 
 namespace tumblesight::gnc {
 namespace {
-
-template <class Real>
-constexpr Real kTraceOfSameAttitude = constant<Real>(1.0 + 2.0 * 0.93969262078590838);  // 1 + 2 cos 20 deg
-static_assert(kSameAttitude_deg == 20.0F);
 
 // Softmax: exp(x_k - largest) over their sum, added in order.
 template <class Real>

@@ -3,11 +3,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/model/model_file.hpp"
-#include "sim/onnx/onnx_model.hpp"
+#include "sim/onnx/onnx_files.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -18,11 +19,19 @@ struct ExportArguments {
 };
 
 constexpr const char* kUseOfTheModels =
-    "For every frame: run the CNN on its depth image, predict the attitude from the\n"
-    "frames before, and give both to the recurrent network. h_next and c_next are h\n"
-    "and c of the next frame. The algebra between the two models is in\n"
-    "gnc/rcnn/hypotheses.hpp and gnc/rcnn/attitude_track.hpp. The doc strings of the\n"
-    "models describe every input and output.\n";
+    "For every frame: run the image model on the target's returns, then the step on its\n"
+    "outputs. next_state is the state of the next frame. docs/onnx.md explains it and\n"
+    "has examples in Python and JavaScript; the doc strings of the models describe\n"
+    "every input and output. cnn and recurrent are the step's network in two parts,\n"
+    "for tools that measure or convert networks.\n";
+
+// One line per file, for help texts.
+std::string explanations() {
+  std::string text;
+  for (const OnnxFileRow& row : onnx_file_rows())
+    text += fmt::format("  {:<22}{}\n", onnx_path("PREFIX", row), row.explanation);
+  return text;
+}
 
 void require_a_name(const std::string& prefix) {
   if (!std::filesystem::path(prefix).filename().empty()) return;
@@ -31,17 +40,18 @@ void require_a_name(const std::string& prefix) {
 
 void export_model(const ExportArguments& arguments) {
   require_a_name(arguments.onnx);
-  require_usable_files({{"--model", arguments.model}}, {{"--onnx", arguments.onnx + ".cnn.onnx"},
-                                                        {"--onnx", arguments.onnx + ".recurrent.onnx"}});
+  OptionFiles outputs;
+  for (const OnnxFileRow& row : onnx_file_rows())
+    outputs.push_back({"--onnx", onnx_path(arguments.onnx, row)});
+  require_usable_files({{"--model", arguments.model}}, outputs);
   const auto model = read_float32_model(arguments.model);
-  const OnnxFiles files = write_onnx_files(*model, arguments.onnx);
+  const std::vector<OnnxFile> files = write_onnx_files(*model, arguments.onnx);
   fmt::print("\n  ONNX models of {} in float32, image {:08x}\n", model->header.target.data(),
              model->header.crc32);
-  fmt::print("  {}, {} bytes: depth image -> features, hypotheses\n", full_path(files.cnn.path),
-             files.cnn.size_bytes);
-  fmt::print("  {}, {} bytes: input, state -> corrections, next state\n\n", full_path(files.recurrent.path),
-             files.recurrent.size_bytes);
-  fmt::print("{}\n", kUseOfTheModels);
+  for (std::size_t i = 0; i < files.size(); ++i)
+    fmt::print("  {}, {} bytes: {}\n", full_path(files[i].path), files[i].size_bytes,
+               onnx_file_rows()[i].explanation);
+  fmt::print("\n{}\n", kUseOfTheModels);
 }
 
 }  // namespace
@@ -49,13 +59,12 @@ void export_model(const ExportArguments& arguments) {
 void add_export_command(CLI::App& app) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", "Write a float32 model image as ONNX models");
-  command->footer(std::string("\nWrites PREFIX.cnn.onnx and PREFIX.recurrent.onnx (opset 13).\n") +
-                  kUseOfTheModels +
+  command->footer("\nFiles (opset 13)\n" + explanations() + "\n" + kUseOfTheModels +
                   "\nExample\n"
                   "  tumblesight export --model out/near/near_shoemaker.float32.tsm \\\n"
                   "      --onnx out/near/near_shoemaker\n");
   add_float32_model_option(*command, arguments->model);
-  command->add_option("--onnx", arguments->onnx, "first part of both file names")
+  command->add_option("--onnx", arguments->onnx, "first part of the file names")
       ->required()
       ->type_name("PREFIX");
   command->callback([arguments] { export_model(*arguments); });

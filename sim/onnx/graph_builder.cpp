@@ -13,7 +13,13 @@ void describe(onnx::ValueInfoProto& value, const std::string& name, const OnnxSh
   value.set_doc_string(description);
   onnx::TypeProto::Tensor& type = *value.mutable_type()->mutable_tensor_type();
   type.set_elem_type(element);
-  for (const std::int64_t size : shape) type.mutable_shape()->add_dim()->set_dim_value(size);
+  onnx::TensorShapeProto& sizes = *type.mutable_shape();  // that of a scalar is there, and empty
+  for (const std::int64_t size : shape) {
+    if (size == kAnySize)
+      sizes.add_dim()->set_dim_param("n");
+    else
+      sizes.add_dim()->set_dim_value(size);
+  }
 }
 
 onnx::TensorProto::DataType type_of(float) {
@@ -27,6 +33,9 @@ onnx::TensorProto::DataType type_of(std::uint8_t) {
 }
 onnx::TensorProto::DataType type_of(std::int32_t) {
   return onnx::TensorProto::INT32;
+}
+onnx::TensorProto::DataType type_of(std::int64_t) {
+  return onnx::TensorProto::INT64;
 }
 
 onnx::AttributeProto& new_attribute(onnx::NodeProto& node, const std::string& name,
@@ -45,8 +54,13 @@ std::string GraphBuilder::input(const std::string& name, const OnnxShape& shape,
   return name;
 }
 
-void GraphBuilder::output(const std::string& name, const OnnxShape& shape, const std::string& description) {
-  describe(*graph_.add_output(), name, shape, description, onnx::TensorProto::FLOAT);
+void GraphBuilder::output(const std::string& name, const OnnxShape& shape, const std::string& description,
+                          onnx::TensorProto::DataType type) {
+  describe(*graph_.add_output(), name, shape, description, type);
+}
+
+std::string GraphBuilder::new_name(const std::string& operation) {
+  return prefix_ + operation + "." + std::to_string(names_++);
 }
 
 template <class Number>
@@ -69,14 +83,12 @@ template std::string GraphBuilder::weights(const std::string&, const OnnxShape&,
                                            const std::vector<std::uint8_t>&);
 template std::string GraphBuilder::weights(const std::string&, const OnnxShape&,
                                            const std::vector<std::int32_t>&);
+template std::string GraphBuilder::weights(const std::string&, const OnnxShape&,
+                                           const std::vector<std::int64_t>&);
 
 std::string GraphBuilder::reshape(const std::string& value, const OnnxShape& shape, const std::string& name) {
-  onnx::TensorProto& tensor = *graph_.add_initializer();
-  tensor.set_name(name + ".shape");
-  tensor.set_data_type(onnx::TensorProto::INT64);
-  tensor.add_dims(static_cast<std::int64_t>(shape.size()));
-  tensor.mutable_int64_data()->Add(shape.begin(), shape.end());
-  return flow("Reshape", {value, name + ".shape"}, name);
+  return flow("Reshape", {value, weights(name + ".shape", {static_cast<std::int64_t>(shape.size())}, shape)},
+              name);
 }
 
 std::string GraphBuilder::flow(const std::string& operation, const std::vector<std::string>& inputs,
@@ -104,6 +116,12 @@ void set_attribute(onnx::NodeProto& node, const std::string& name, std::int64_t 
 void set_attribute(onnx::NodeProto& node, const std::string& name, const OnnxShape& values) {
   onnx::AttributeProto& attribute = new_attribute(node, name, onnx::AttributeProto::INTS);
   attribute.mutable_ints()->Add(values.begin(), values.end());
+}
+
+onnx::GraphProto& set_graph_attribute(onnx::NodeProto& node, const std::string& name) {
+  onnx::GraphProto& graph = *new_attribute(node, name, onnx::AttributeProto::GRAPH).mutable_g();
+  graph.set_name(name);
+  return graph;
 }
 
 }  // namespace tumblesight::sim

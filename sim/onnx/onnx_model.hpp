@@ -1,8 +1,7 @@
-// The float32 network as two ONNX models (opset 13), for other runtimes and tools. The attitude algebra
-// between the two is not part of them: gnc/rcnn/hypotheses.hpp and attitude_track.hpp.
+// The two parts of the float32 network as ONNX models (opset 13), for tools that measure or convert networks.
+// The attitude algebra between the two is part of the whole step only: step_model.hpp.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "sim/model/model_file.hpp"
@@ -10,7 +9,7 @@
 namespace tumblesight::sim {
 
 // Each returns a serialized model, the contents of an .onnx file. Doc strings describe inputs and outputs;
-// the metadata contain target, CRC-32 of the model image and depth projection.
+// the metadata: new_model.hpp.
 //
 // Inputs:  image [1, 1, 100, 100]
 // Outputs: features [1, kDense2], after ReLU; output [1, kOutput]
@@ -20,17 +19,5 @@ std::string cnn_as_onnx(const Float32Model& model);
 // Outputs: output [1, kHeadOutput]; h_next, c_next [1, kLstm]
 // The bound on the cells (kLstmCellBound) is left out: no sequence of frames reaches it.
 std::string recurrent_as_onnx(const Float32Model& model);
-
-struct OnnxFile {
-  std::string path;
-  std::uint64_t size_bytes;
-};
-struct OnnxFiles {
-  OnnxFile cnn, recurrent;
-};
-
-// Writes <prefix>.cnn.onnx and <prefix>.recurrent.onnx under temporary names and renames them when both are
-// complete. Throws std::runtime_error that names the file if one cannot be written.
-OnnxFiles write_onnx_files(const Float32Model& model, const std::string& prefix);
 
 }  // namespace tumblesight::sim

@@ -1,0 +1,35 @@
+#include "sim/onnx/onnx_files.hpp"
+
+#include "sim/onnx/image_model.hpp"
+#include "sim/onnx/onnx_model.hpp"
+#include "sim/onnx/step_model.hpp"
+#include "sim/terminal/write_file.hpp"
+
+namespace tumblesight::sim {
+
+const std::vector<OnnxFileRow>& onnx_file_rows() {
+  static const std::vector<OnnxFileRow> rows{
+      {"image", "the target's returns -> depth image",
+       [](const Float32Model& model) { return image_as_onnx(model.header); }},
+      {"step", "depth image, time, chaser's turn, state -> attitude, rate, next state", step_as_onnx},
+      {"cnn", "first part of the step's network: depth image -> features, hypotheses", cnn_as_onnx},
+      {"recurrent", "second part: input, state -> corrections, next state", recurrent_as_onnx},
+  };
+  return rows;
+}
+
+std::string onnx_path(const std::string& prefix, const OnnxFileRow& row) {
+  return prefix + "." + row.name + ".onnx";
+}
+
+std::vector<OnnxFile> write_onnx_files(const Float32Model& model, const std::string& prefix) {
+  std::vector<OnnxFile> files;
+  for (const OnnxFileRow& row : onnx_file_rows()) {
+    const std::string content = row.make(model);
+    files.push_back({onnx_path(prefix, row), content.size()});
+    write_file(files.back().path, content);
+  }
+  return files;
+}
+
+}  // namespace tumblesight::sim
