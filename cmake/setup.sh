@@ -16,8 +16,9 @@ packages_of_toolchains() {
 # Debian 12's packages. What each is for, and its name on other systems: docs/packages.md. A change here belongs there too.
 packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
   libassimp-dev libcli11-dev libdraco-dev libfmt-dev libmeshoptimizer-dev libonnx-dev libpng-dev libprotobuf-dev
-  libssl-dev nlohmann-json3-dev)
-packages_to_test=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread libdnnl-dev libgtest-dev libgmock-dev
+  libssl-dev libtomlplusplus-dev nlohmann-json3-dev)
+packages_to_train=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread)
+packages_to_test=("${packages_to_train[@]}" libdnnl-dev libgtest-dev libgmock-dev
   clang clang-format git python3 valgrind)
 packages_to_fuzz=("${packages_to_run[@]}" clang libclang-rt-dev python3)
 # The flight side only, with GCC's branch counts.

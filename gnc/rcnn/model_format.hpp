@@ -63,6 +63,15 @@ constexpr std::size_t data_offset(std::size_t sections) {
   return (kModelHeaderSize + sections * kModelSectionEntrySize + 63) / 64 * 64;
 }
 
+// Of the mission's CRC-32.
+constexpr std::size_t mission_offset(std::size_t sections) {
+  return data_offset(sections) - 4;
+}
+static_assert(mission_offset(kModelSections<FixedPoint>) >=
+              kModelHeaderSize + kModelSections<FixedPoint> * kModelSectionEntrySize);
+static_assert(mission_offset(kModelSections<Float32>) >=
+              kModelHeaderSize + kModelSections<Float32> * kModelSectionEntrySize);
+
 inline std::uint32_t header_crc(const std::uint8_t* image, std::size_t sections) {
   Crc32 crc;
   crc.add(image, kOffsetHeaderCrc);

@@ -92,6 +92,7 @@ void read_header(const std::uint8_t* image, ModelHeader& header) {
   header.projection = read_projection(image);
   header.noise = read_noise(image);
   (void)read_inertia(image, header.inertia);  // valid: check_header_values()
+  header.mission_crc32 = get_u32(image + mission_offset(get_u32(image + kOffsetSectionCount)));
   header.crc32 = get_u32(image + kOffsetHeaderCrc);
 }
 

@@ -17,10 +17,12 @@
 //                 xx, yy, zz, xy, xz, yz
 //       84     4  numerics: 0 float32, 1 fixed point
 //       88     4  number of sections: 21 in float32, 33 in fixed point
-//       92     4  CRC-32 of bytes 0..91, the section table and the zeros after it
+//       92     4  CRC-32 of bytes 0..91, the section table and what follows it up to the first section
 //       96  16 n  section table, 4 bytes per field: id (1, 2, ...), offset, size in bytes,
 //                 CRC-32 of the section
-//        -     -  zeros up to the next multiple of 64, where the first section begins
+//        -     -  zeros up to the next multiple of 64, where the first section begins; but the last four
+//        bytes
+//                 before it identify the mission that the network was trained for (CRC-32), 0: not known
 //        -     -  sections without gaps: the tensors in the order of for_each_tensor().
 //                 Fixed-point weights take one byte each, all other numbers four. In fixed point the last
 //                 two sections are the target's surface: points of it
@@ -65,6 +67,8 @@ struct ModelHeader {
   DepthProjection projection;
   RangeNoise noise;        // of the sensor for which the network was calibrated
   Inertia<Fixed> inertia;  // of the target, for its laws of motion
+  // Identifies the mission that the network was trained for; 0: not known. For the ground: flight ignores it.
+  std::uint32_t mission_crc32 = 0;
   // Identifies the image: it covers the header and, through the sections' CRCs, all weights. Set by the
   // reader, ignored by the writer.
   std::uint32_t crc32 = 0;

@@ -46,6 +46,7 @@ std::size_t write_model_image(const ModelHeader& header, const NetworkWeights<N>
   }
   put_u32(out + kOffsetNumerics, numerics_of<N>());
   put_u32(out + kOffsetSectionCount, static_cast<std::uint32_t>(kModelSections<N>));
+  put_u32(out + mission_offset(kModelSections<N>), header.mission_crc32);
 
   std::uint8_t* entry = out + kModelHeaderSize;
   std::uint32_t id = 1;

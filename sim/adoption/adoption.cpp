@@ -149,6 +149,7 @@ class Adoption {
         mission_.inertia ? tensor_of(*mission_.inertia) : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
     targets_ = make_training_targets({mesh_}, trained_conditions(mission_), inertia, sets, mission_.name,
                                      settings_.sensor, settings_.ranges_of);
+    targets_.mission_crc32 = mission_crc32(mission_);
     training_.folder = settings_.folder + "/training";
     training_.seed = settings_.seed;
     training_.workers = std::max(1, settings_.threads - 1);
@@ -271,7 +272,7 @@ class Adoption {
 
   void to_fixed_point() {
     steps_.begin(kFixedPoint);
-    const QuantizationReport report = keeper_->finish(*network_);
+    const QuantizationReport report = keeper_->finish(*network_, plan_.time.calibration_sequences);
     outcome_.model_path = keeper_->fixed_path();
     outcome_.model_crc32 = report.crc32;
     steps_.say(fmt::format("differs from float32 by {:.2f}°", report.difference.median_deg));

@@ -19,6 +19,7 @@ void write_plan(const std::string& path, const AdoptionPlan& plan) {
                                     {"rcnn_s", plan.time.rcnn_s},
                                     {"after_s", plan.time.after_s},
                                     {"sequences", plan.time.sequences},
+                                    {"calibration_sequences", plan.time.calibration_sequences},
                                     {"elapsed_s", plan.elapsed_s}};
   write_file(path, json.dump(2) + "\n");
 }
@@ -34,7 +35,8 @@ std::optional<AdoptionPlan> read_plan(const std::string& path, std::uint32_t mis
     plan.minutes = json.at("minutes");
     plan.seed = json.at("seed");
     plan.start_from = json.at("start_from");
-    plan.time = {json.at("cnn_s"), json.at("rcnn_s"), json.at("after_s"), json.at("sequences")};
+    plan.time = {json.at("cnn_s"), json.at("rcnn_s"), json.at("after_s"), json.at("sequences"),
+                 json.at("calibration_sequences")};
     plan.elapsed_s = json.at("elapsed_s");
   } catch (const nlohmann::json::exception&) {
     throw std::runtime_error("'" + path +

@@ -9,7 +9,6 @@ namespace tumblesight::sim {
 namespace {
 
 constexpr int kQuickSequences = 20;
-constexpr int kFinalSequences = 200;
 
 }  // namespace
 
@@ -39,10 +38,10 @@ void ImageKeeper::keep(std::unique_ptr<Float32Model> model) {
   });
 }
 
-QuantizationReport ImageKeeper::finish(const Float32Model& model) {
+QuantizationReport ImageKeeper::finish(const Float32Model& model, int sequences) {
   if (work_.valid()) work_.get();
   write_model_file<gnc::Float32>(float32_path(), model.header, model.weights);
-  return write_fixed(model, kFinalSequences);
+  return write_fixed(model, sequences);
 }
 
 }  // namespace tumblesight::sim

@@ -24,8 +24,8 @@ class ImageKeeper {
   // Writes <stem>.float32.tsm at once, and <stem>.tsm unless an earlier one is still in work. Its scales come
   // from a few sequences, which costs a few hundredths of a degree.
   void keep(std::unique_ptr<Float32Model> model);
-  // Writes both with scales from many sequences and waits for it.
-  QuantizationReport finish(const Float32Model& model);
+  // Writes both, with scales from so many sequences, and waits for it.
+  QuantizationReport finish(const Float32Model& model, int sequences);
 
   std::string fixed_path() const { return stem_ + ".tsm"; }
   std::string float32_path() const { return stem_ + ".float32.tsm"; }

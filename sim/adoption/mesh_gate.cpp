@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sim/terminal/text.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -25,11 +27,10 @@ std::string how_to_accept(const std::string& key) {
 
 std::string panels_remark(const MeshInspection& found) {
   return fmt::format(
-      "The mesh has {} solar panels, and the mission does not say whether they turn: the network learns them "
-      "as "
-      "they stand in the mesh. [panels] turn_deg = [-180, 180] lets them turn, [0, 0] says that they are "
-      "fixed.",
-      found.panels);
+      "The mesh has {}, and the mission does not say whether they turn: the network learns them as they "
+      "stand in "
+      "the mesh. [panels] turn_deg = [-180, 180] lets them turn, [0, 0] says that they are fixed.",
+      counted(found.panels, "solar panel"));
 }
 
 }  // namespace

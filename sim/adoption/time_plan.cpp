@@ -9,8 +9,11 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kQuantizing_s = 35.0;  // 200 sequences for the scales, on a slow core
-constexpr double kFlying_s = 10.0;
+constexpr double kCalibration_s = 0.16;  // of a sequence for the scales, on a slow core
+constexpr double kSurface_s = 2.0;
+constexpr double kFlying_s = 5.0;
+constexpr double kSecondsPerCalibration = 15.0;  // one sequence more
+constexpr double kFewestCalibrations = 20.0, kMostCalibrations = 200.0;
 constexpr double kShareForEvaluation = 0.08;
 constexpr double kShareOfRecurrentPart = 0.22;  // of the training; as `train --minutes`
 constexpr double kMargin = 1.15;
@@ -24,7 +27,10 @@ TimePlan time_plan(double seconds, std::uint32_t rows, double sequence_s, std::u
   plan.sequences = sequences > 0
                        ? sequences
                        : static_cast<std::uint32_t>(std::clamp(affordable, double{kFewest}, double{kMost}));
-  plan.after_s = kMargin * (kQuantizing_s + kFlying_s + rows * plan.sequences * sequence_s);
+  plan.calibration_sequences =
+      static_cast<int>(std::clamp(seconds / kSecondsPerCalibration, kFewestCalibrations, kMostCalibrations));
+  plan.after_s = kMargin * (kSurface_s + kCalibration_s * plan.calibration_sequences + kFlying_s +
+                            rows * plan.sequences * sequence_s);
   const double training_s = seconds - plan.after_s;
   if (training_s < 0.5 * seconds)
     throw std::invalid_argument(

@@ -8,8 +8,9 @@ namespace tumblesight::sim {
 struct TimePlan {
   double cnn_s = 0.0;
   double rcnn_s = 0.0;
-  double after_s = 0.0;         // kept for quantization, evaluation and flight
-  std::uint32_t sequences = 0;  // of each row of the evaluation
+  double after_s = 0.0;           // kept for quantization, evaluation and flight
+  std::uint32_t sequences = 0;    // of each row of the evaluation
+  int calibration_sequences = 0;  // of the scales in fixed point
 };
 
 // `seconds`: what is left when training begins. `rows`: of the evaluation. `sequence_s`: measured time of one

@@ -171,7 +171,7 @@ void add_adopt_command(CLI::App& app, const std::string& command_line) {
       ->type_name("FILE|NAME");
   limit_number(command->add_option("--minutes", arguments->minutes,
                                    "wall-clock time for everything [that of the mission, else 60]"),
-               1.0, 100'000.0)
+               0.5, 100'000.0)
       ->type_name("X");
   command->add_option("--out", arguments->out, "folder for model images, report and checkpoints [out/<name>]")
       ->check(file_path())

@@ -97,8 +97,22 @@ void load_model(const ScenarioArguments& arguments, TargetSetup& setup) {
   setup.projection = setup.header.projection;
 }
 
+// An image that does not know its mission, as those from before there were any, is taken as it is.
+void compare_missions(const ScenarioArguments& arguments, TargetSetup& setup) {
+  if (!arguments.mission || setup.header.mission_crc32 == 0) return;
+  const std::uint32_t wanted = mission_crc32(*arguments.mission);
+  if (wanted == setup.header.mission_crc32) return;
+  setup.warnings.push_back(
+      fmt::format("Model image '{}' was trained for another mission ({:08x}) than {} ({:08x}): the mesh "
+                  "file, its axes, unit or "
+                  "origin, the inertia or the panels differ. Give the mission that it was trained for, or "
+                  "adopt this one.",
+                  setup.model_path, setup.header.mission_crc32, arguments.mission->file, wanted));
+}
+
 void set_up_model(const ScenarioArguments& arguments, TargetSetup& setup) {
   load_model(arguments, setup);
+  compare_missions(arguments, setup);
   compare_swaths(setup);
 }
 

@@ -97,6 +97,20 @@ std::vector<EffectRanges> effect_sets_of(const TrainOptions& options) {
   return options.effect_sets.empty() ? std::vector<EffectRanges>{options.effects} : options.effect_sets;
 }
 
+// What identifies the training in its images: the mission, or one of the same content as the options.
+Mission mission_of(const TrainOptions& options) {
+  if (options.mission) return *options.mission;
+  const Mission* known = find_target(options.target);
+  Mission mission = known != nullptr ? *known : Mission{};
+  mission.name = options.target;
+  mission.mesh.file = options.meshes.meshes.front();
+  mission.mesh.up = options.meshes.mesh_up;
+  mission.mesh.scale = options.meshes.mesh_scale;
+  const std::vector<double>& i = options.inertia;
+  if (!i.empty()) mission.inertia = InertiaElements{i[0], i[1], i[2], i[3], i[4], i[5]};
+  return mission;
+}
+
 TrainingTargets targets_of(const TrainOptions& options, const std::vector<TriangleMesh>& meshes) {
   const auto ranges = [&options](double swath_m) {
     std::vector<std::string> warnings;
@@ -193,7 +207,8 @@ int train(TrainOptions& options) {
   (void)check_sensor_of_model(stem + ".tsm", options.sensor.sensor);
   const std::vector<TriangleMesh> meshes = load_meshes(options.meshes, options.target);
   print_mesh_warnings(options.meshes, meshes);
-  const TrainingTargets targets = targets_of(options, meshes);
+  TrainingTargets targets = targets_of(options, meshes);
+  targets.mission_crc32 = mission_crc32(mission_of(options));
   // Now rather than after hours of training: a mesh whose surface the image that flies cannot have.
   (void)target_surface(meshes.front(),
                        1e-3 * model_header(options.target, targets).projection.target_radius_mm);

@@ -219,7 +219,7 @@ Mission mission_of(const toml::table& root, const std::string& file, const std::
   take_sensor(fields, mission);
   mission.conditions = conditions_of(fields, known);
   mission.goals = goals_of(fields, known);
-  mission.minutes = fields.number("minutes", 1.0, 10'000.0).value_or(mission.minutes);
+  mission.minutes = fields.number("minutes", 0.5, 10'000.0).value_or(mission.minutes);
   mission.paper_target = fields.text("paper_target").value_or("");
   mission.quasi_symmetry_about_z = fields.whole_number("quasi_symmetry_about_z", 1, 12).value_or(1);
   fields.require_all_taken(kKeys);

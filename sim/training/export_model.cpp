@@ -145,6 +145,7 @@ gnc::ModelHeader model_header(const std::string& target, const TrainingTargets& 
                              std::to_string(header.target.size() - 1) + " characters");
   }
   header.projection = targets.projection;
+  header.mission_crc32 = targets.mission_crc32;
   const gnc::Matrix3<gnc::Fixed> tensor_trf = gnc::converted<gnc::Fixed>(targets.inertia.tensor_trf);
   if (!gnc::make_inertia<gnc::Fixed>(tensor_trf, header.inertia)) {
     throw std::runtime_error("the inertia of '" + target +

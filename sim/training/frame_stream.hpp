@@ -39,6 +39,7 @@ struct TrainingTargets {
   RangeLimits ranges{};                // at which it sees them
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF
   gnc::Inertia<float> inertia;                                  // the same, as the flight code takes it
+  std::uint32_t mission_crc32 = 0;                              // of the image that is made; 0: no mission
 };
 
 // Throws std::runtime_error that names a mesh of which the sensor sees too little in most frames, and

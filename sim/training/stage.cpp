@@ -49,7 +49,8 @@ std::uint64_t bits_of(double setting) {
 
 void Stage::start() {
   log_ = std::make_unique<TrainingLog>(settings_.folder, settings_.name, position_.iteration);
-  start_ = last_save_ = Clock::now();
+  last_save_ = Clock::now();
+  if (start_ == Clock::time_point{}) start_ = last_save_;
   const bool timed = settings_.seconds > 0.0;
   progress_ = std::make_unique<ProgressBar>(
       settings_.name, timed ? "s" : settings_.unit,
@@ -58,7 +59,11 @@ void Stage::start() {
 
 void Stage::set_rate(torch::optim::Optimizer& optimizer) {
   constexpr double kWarmUp = 200.0;  // iterations
-  const double warm = std::min(1.0, static_cast<double>(position_.iteration + 1) / kWarmUp);
+  constexpr double kWarmUpShare = 0.1;
+  const double done = static_cast<double>(position_.iteration + 1);
+  // A short stage with a time of its own has few iterations.
+  const double of_time = settings_.seconds > 0.0 ? fraction() / kWarmUpShare : 0.0;
+  const double warm = std::min(1.0, std::max(done / kWarmUp, of_time));
   rate_ = 0.5 * settings_.learning_rate * (1.0 + std::cos(kPi * fraction())) * warm;
   for (auto& group : optimizer.param_groups()) group.options().set_lr(rate_);
 }

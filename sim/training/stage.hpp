@@ -59,7 +59,9 @@ class Stage {
     fraction_of_best_ = fraction();
     return found;
   }
-  void start();  // opens the log and starts the clock
+  // Starts the clock of a stage with a time of its own, for what it prepares before start().
+  void start_clock() { start_ = Clock::now(); }
+  void start();  // opens the log; starts the clock unless it runs
 
   std::int64_t iteration() const { return position_.iteration; }
   double fraction() const;  // of the stage that is done, 0..1
@@ -105,7 +107,7 @@ class Stage {
   StageSettings settings_;
   CheckpointPosition position_;
   double seconds_before_ = 0.0;
-  Clock::time_point start_, last_save_;
+  Clock::time_point start_{}, last_save_{};
   std::unique_ptr<TrainingLog> log_;
   std::unique_ptr<ProgressBar> progress_;
   double rate_ = 0.0;

@@ -20,7 +20,9 @@ constexpr double kGradientNorm = 1.0;
 constexpr double kWeightDecay = 1e-3;
 constexpr std::int64_t kValidationSequences = 512;
 constexpr std::uint64_t kValidationSeed = 0x76616C6964ULL + 1;
-constexpr std::int64_t kFirstSequences = 2048;      // available before the first iteration
+constexpr std::int64_t kFirstSequences = 2048;    // available before the first iteration
+constexpr double kFirstSequencesPerSecond = 4.0;  // of a stage with a time of its own: fewer for a short one
+constexpr std::int64_t kFewestFirstSequences = 256;
 constexpr std::int64_t kSequencesPerIteration = 8;  // added with every iteration
 constexpr std::int64_t kIterationsPerPoint = 100;
 
@@ -99,6 +101,12 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   return stage;
 }
 
+std::int64_t first_sequences(const TrainingSettings& settings) {
+  if (settings.rcnn_seconds == 0.0) return std::min(kFirstSequences, settings.rcnn_sequences);
+  const auto affordable = static_cast<std::int64_t>(kFirstSequencesPerSecond * settings.rcnn_seconds);
+  return std::min(settings.rcnn_sequences, std::clamp(affordable, kFewestFirstSequences, kFirstSequences));
+}
+
 // Returns false if `stop` became true before `count` sequences were ready.
 bool wait_for(SequenceFeatures& supply, std::int64_t count, const char* what, const std::atomic<bool>& stop) {
   if (supply.ready() >= count) return !stop;
@@ -124,12 +132,13 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
   const bool resumed = stage.resume(recurrent, optimizer);
   if (stage.finished()) return true;
 
-  const std::int64_t test_count = std::min(kValidationSequences, settings.rcnn_sequences);
+  if (settings.rcnn_seconds > 0.0) stage.start_clock();
+  const std::int64_t at_first = first_sequences(settings);
+  const std::int64_t test_count = std::min({kValidationSequences, settings.rcnn_sequences, at_first});
   SequenceFeatures tests(targets, *weights, kValidationSeed, test_count, settings.workers + 1);
   if (!wait_for(tests, test_count, "validation sequences", stop)) return false;
   const FeatureSet validation = tests.first(test_count);
   SequenceFeatures supply(targets, *weights, settings.seed, settings.rcnn_sequences, settings.workers);
-  const std::int64_t at_first = std::min(kFirstSequences, settings.rcnn_sequences);
   if (!wait_for(supply, at_first, "first sequences", stop)) return false;
   if (!resumed) standardise(recurrent, supply.first(at_first), settings.device);
 
@@ -137,7 +146,7 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
   while (!stage.finished() && !stop) {
     stage.set_rate(optimizer);
     const std::int64_t available =
-        std::min(settings.rcnn_sequences, kFirstSequences + kSequencesPerIteration * stage.iteration());
+        std::min(settings.rcnn_sequences, at_first + kSequencesPerIteration * stage.iteration());
     const torch::Tensor rows = draw(settings.seed, stage.iteration(), available, settings.rcnn_batch);
     stage.advance(train_once(recurrent, supply.first(available), rows, settings.device, optimizer));
     if (stage.point_due()) {

@@ -17,6 +17,56 @@
 namespace tumblesight::sim {
 namespace {
 
+// Verifies TS-TRN-090.
+TEST(Targets, AreMissionsThatShip) {
+  for (const Mission& mission : shipped_missions()) {
+    EXPECT_EQ(mission_named(mission.name, {}).file, mission.file);
+    EXPECT_EQ(mission_named(mission.file, {}).name, mission.name);
+    EXPECT_TRUE(mission.inertia) << mission.name;
+    EXPECT_TRUE(mission.panels) << mission.name;
+    EXPECT_EQ(target_by_name(mission.name).name, mission.name);
+  }
+  EXPECT_THROW((void)mission_named("sputnik", {}), std::invalid_argument);
+}
+
+// A network is for what is in the hash: another name, mesh, axis, unit, origin, inertia or panel is another
+// one.
+TEST(Targets, AMissionIsIdentifiedByWhatItsNetworkIsTrainedFor) {
+  const Mission magellan = mission_named("magellan", {});
+  std::set<std::uint32_t> hashes{mission_crc32(magellan)};
+  const auto expect_another = [&hashes](const Mission& mission, const char* what) {
+    EXPECT_TRUE(hashes.insert(mission_crc32(mission)).second) << what;
+  };
+  Mission other = magellan;
+  other.name = "sacd_aquarius";
+  expect_another(other, "name");
+  other = magellan;
+  other.inertia->xx += 1.0;
+  expect_another(other, "inertia");
+  other = magellan;
+  other.panels = JointLimits{0.0, 0.0};
+  expect_another(other, "panels");
+  const std::string path = testing::TempDir() + "mission_crc32.stl";
+  std::ofstream(path) << "a mesh";
+  other = magellan;
+  other.mesh.file = path;
+  expect_another(other, "mesh");
+  other.mesh.up = "z";
+  expect_another(other, "axis");
+  other.mesh.scale = 0.001;
+  expect_another(other, "unit");
+  other.mesh.origin_trf_m[2] = 0.1;
+  expect_another(other, "origin");
+  std::ofstream(path) << "another mesh";
+  expect_another(other, "content of the mesh");
+
+  other = magellan;
+  other.minutes = 5.0;
+  other.title = "M";
+  other.goals.clear();
+  EXPECT_EQ(mission_crc32(other), mission_crc32(magellan)) << "goals and time do not change the network";
+}
+
 TEST(Targets, HaveTheirAxesAndOriginInTheInterfaceDocument) {
   std::ostringstream document;
   document << std::ifstream(TUMBLESIGHT_SOURCE_DIR "/docs/icd.md").rdbuf();
@@ -57,7 +107,7 @@ TEST(Targets, HaveADisplayNameAndOthersKeepTheirKey) {
   EXPECT_EQ(display_name("near_shoemaker"), "NEAR Shoemaker");
   EXPECT_EQ(display_name("mine"), "mine");
   EXPECT_EQ(find_target("mine"), nullptr);
-  EXPECT_EQ(find_target("magellan")->symmetry_about_z, 2);
+  EXPECT_EQ(find_target("magellan")->quasi_symmetry_about_z, 2);
 }
 
 TEST(Targets, HaveJointsThatReachTheMeshsOwnPosition) {

@@ -1,0 +1,63 @@
+#include "sim/adoption/mesh_gate.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tumblesight::sim {
+namespace {
+
+MeshInspection found_with(const std::string& key, Severity severity) {
+  MeshInspection found;
+  found.core_radius_m = 3.0;
+  found.centred_radius_m = 2.9;
+  found.findings.push_back({key, severity, "what was found", "what to do"});
+  return found;
+}
+
+TEST(MeshGate, FaultsStopAndLikelyMistakesSpeakAgainstGo) {
+  const Mission mission;
+  EXPECT_EQ(mesh_gate(mission, found_with("sphere", Severity::kFault)).faults.size(), 1U);
+  for (const char* key : {"unit", "up", "strays"}) {
+    const MeshGate gate = mesh_gate(mission, found_with(key, Severity::kWarning));
+    ASSERT_EQ(gate.doubts.size(), 1U) << key;
+    EXPECT_NE(gate.doubts.front().find(std::string("accept = [\"") + key + "\"]"), std::string::npos);
+  }
+  for (const char* key : {"reach", "triangles", "symmetry"})
+    EXPECT_TRUE(mesh_gate(mission, found_with(key, Severity::kWarning)).doubts.empty()) << key;
+  EXPECT_EQ(mesh_gate(mission, found_with("open", Severity::kNote)).remarks.size(), 1U);
+}
+
+TEST(MeshGate, AnOriginSpeaksAgainstGoWhereAThirdOfTheResolutionIsLost) {
+  MeshInspection found = found_with("origin", Severity::kWarning);
+  EXPECT_TRUE(mesh_gate({}, found).doubts.empty());
+  found.centred_radius_m = 1.9;
+  EXPECT_EQ(mesh_gate({}, found).doubts.size(), 1U);
+}
+
+TEST(MeshGate, WhatTheMissionAcceptsIsARemark) {
+  Mission mission;
+  mission.accept = {"strays"};
+  const MeshGate accepted = mesh_gate(mission, found_with("strays", Severity::kWarning));
+  EXPECT_TRUE(accepted.doubts.empty());
+  EXPECT_EQ(accepted.remarks.size(), 1U);
+}
+
+TEST(MeshGate, ASymmetryIsNoFaultOnceTheMissionStatesIt) {
+  Mission mission;
+  EXPECT_EQ(mesh_gate(mission, found_with("symmetry", Severity::kFault)).faults.size(), 1U);
+  mission.symmetry = {"z:4"};
+  EXPECT_TRUE(mesh_gate(mission, found_with("symmetry", Severity::kFault)).faults.empty());
+  EXPECT_EQ(mesh_gate(mission, found_with("sphere", Severity::kFault)).faults.size(), 1U)
+      << "of a sphere no attitude can be told";
+}
+
+TEST(MeshGate, PanelsOfWhichTheMissionSaysNothingAreRemarkedUpon) {
+  MeshInspection found;
+  found.panels = 2;
+  EXPECT_EQ(mesh_gate({}, found).remarks.size(), 1U);
+  Mission mission;
+  mission.panels = JointLimits{0.0, 0.0};
+  EXPECT_TRUE(mesh_gate(mission, found).remarks.empty());
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
