@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/exit_status.hpp"
 #include "sim/cli/mesh_warnings.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/target_surface.hpp"
@@ -20,8 +21,6 @@
 
 namespace tumblesight::sim {
 namespace {
-
-constexpr int kStopped = 3;  // exit status of a run that was stopped and can be continued
 
 std::atomic<bool> stop_requested{false};
 
@@ -148,18 +147,6 @@ void require_usable_folder(const TrainOptions& options, const std::string& stem)
   require_usable_files(read, written);
 }
 
-// The default would give a user's own spacecraft the inertia and the name of another.
-void require_a_name(const TrainOptions& options, bool named) {
-  const std::vector<std::string>& meshes = options.meshes.meshes;
-  const bool all_ship = std::all_of(meshes.begin(), meshes.end(),
-                                    [](const std::string& mesh) { return mesh == kParametricMesh; });
-  if (named || all_ship) return;
-  throw CLI::ValidationError(
-      "--mesh",
-      "name the spacecraft of the file with --target: a name of your own, or a shipped "
-      "target, whose inertia the network then has");
-}
-
 int train(TrainOptions& options) {
   for (const EffectRanges& effects : effect_sets_of(options)) {
     require_the_target(effects.high);
@@ -275,7 +262,7 @@ void add_train_command(CLI::App& app) {
       ->type_name("auto|float32|bfloat16")
       ->capture_default_str();
   command->callback([options, command] {
-    require_a_name(*options, command->count("--target") > 0);
+    require_a_name(*command, options->meshes.meshes);
     throw CLI::RuntimeError(train(*options));
   });
 }
