@@ -102,7 +102,7 @@ bool print_what_is_wrong(const EvaluateArguments& arguments, const Subject& subj
   const CellResult* first = nullptr;
   for (const CellResult& cell : result.cells) {
     if (!is_mostly_wrong(cell)) continue;
-    fmt::print("\n{}", paragraph(fmt::format("{}: {}", to_string(cell.condition),
+    fmt::print("\n{}", paragraph(fmt::format("Condition {}: {}", to_string(cell.condition),
                                              mostly_wrong_text(cell.rcnn, cell.symmetry))));
     if (first == nullptr) first = &cell;
   }

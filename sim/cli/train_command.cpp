@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -90,7 +92,14 @@ void write_images(const std::string& stem, const std::vector<TriangleMesh>& mesh
   const ScenarioSettings seen = scenario_of(targets, Condition::kNominal, effects, 1);
   write_model_file<gnc::Float32>(stem + ".float32.tsm", model->header, model->weights);
   std::printf("Reference in float32: %s.float32.tsm\nFixed point, as it flies:\n", stem.c_str());
-  quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm", seen);
+  const QuantizationReport report =
+      quantize_and_report(*model, meshes, kCalibrationSequences, stem + ".tsm", seen);
+  if (is_another_network(report.difference))
+    fmt::print(
+        stderr,
+        "warning: the attitudes in fixed point are {:.1f}° (mean) from those in float32; a network that "
+        "was not trained for long enough differs like this\n",
+        report.difference.mean_deg);
 }
 
 std::vector<EffectRanges> effect_sets_of(const TrainOptions& options) {

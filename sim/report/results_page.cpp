@@ -61,7 +61,8 @@ std::string lead_of(const SubjectResult& subject) {
   std::string errors, wrong;
   for (const CellResult& cell : subject.cells) {
     if (is_mostly_wrong(cell))
-      wrong += fmt::format(" {}: {}", to_string(cell.condition), mostly_wrong_text(cell.rcnn, cell.symmetry));
+      wrong += fmt::format(" Condition {}: {}", to_string(cell.condition),
+                           mostly_wrong_text(cell.rcnn, cell.symmetry));
     errors += fmt::format("{}{} ({})", errors.empty() ? "" : ", ",
                           figure_cell(summary_figure(&ErrorSummary::mean_deg), cell.rcnn).text,
                           to_string(cell.condition));

@@ -38,8 +38,8 @@ std::uint64_t bits_of(double setting) {
 void Stage::start() {
   log_ = std::make_unique<TrainingLog>(settings_.folder, settings_.name, position_.iteration);
   start_ = last_save_ = Clock::now();
-  progress_ = std::make_unique<ProgressBar>(settings_.name, settings_.unit, samples(settings_.iterations),
-                                            stderr, samples(position_.iteration));
+  progress_ = std::make_unique<ProgressBar>(settings_.name, settings_.unit, units(settings_.iterations),
+                                            stderr, units(position_.iteration));
 }
 
 void Stage::set_rate(torch::optim::Optimizer& optimizer) {
@@ -57,7 +57,7 @@ void Stage::advance(double loss) {
   position_.seconds = seconds_before_ + seconds;
   loss_sum_ += loss;
   ++losses_;
-  progress_->update(samples(position_.iteration), progress_note(latest_));
+  progress_->update(units(position_.iteration), progress_note(latest_));
 }
 
 std::string progress_note(const std::optional<TrainingPoint>& latest) {
@@ -85,7 +85,7 @@ TrainingPoint Stage::new_point() {
 void Stage::add_point(const TrainingPoint& point) {
   latest_ = point;
   log_->add(point);
-  progress_->update(samples(position_.iteration), progress_note(latest_));
+  progress_->update(units(position_.iteration), progress_note(latest_));
 }
 
 }  // namespace tumblesight::sim

@@ -24,7 +24,8 @@ struct StageSettings {
   std::string folder;
   std::int64_t iterations = 0;
   int batch = 0;
-  const char* unit = "";                  // of a batch: "images" or "sequences"
+  const char* unit = "";  // of the progress: "images" or "batches", as the option counts
+  int units_per_batch = 1;
   double learning_rate = 0.0;             // maximum: short linear warm-up, then a cosine to zero
   std::int64_t iterations_per_point = 0;  // between points of the log
   double checkpoint_s = 0.0;              // wall-clock time between checkpoints
@@ -78,8 +79,8 @@ class Stage {
 
  private:
   using Clock = std::chrono::steady_clock;
-  std::uint64_t samples(std::int64_t iterations) const {
-    return static_cast<std::uint64_t>(iterations * settings_.batch);
+  std::uint64_t units(std::int64_t iterations) const {
+    return static_cast<std::uint64_t>(iterations * settings_.units_per_batch);
   }
   std::string path() const { return settings_.folder + "/" + settings_.name + ".ckpt"; }
 

@@ -86,7 +86,7 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.folder = settings.folder;
   stage.iterations = settings.rcnn_iterations;
   stage.batch = settings.rcnn_batch;
-  stage.unit = "sequences";
+  stage.unit = "batches";
   stage.learning_rate = settings.rcnn_learning_rate;
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;

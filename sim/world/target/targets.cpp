@@ -39,11 +39,15 @@ constexpr TargetRow kTargets[] = {
      "sacd_aquarius", kFixed},
 };
 
-const TargetRow& shipped_target(const std::string& key) {
-  if (const TargetRow* row = find_target(key)) return *row;
+std::string known_targets() {
   std::string known;
   for (const TargetRow& row : kTargets) known += (known.empty() ? "" : ", ") + std::string(row.key);
-  throw std::invalid_argument("target '" + key + "' is unknown; the targets are: " + known);
+  return known;
+}
+
+const TargetRow& shipped_target(const std::string& key) {
+  if (const TargetRow* row = find_target(key)) return *row;
+  throw std::invalid_argument("target '" + key + "' is unknown; the targets are: " + known_targets());
 }
 
 }  // namespace
@@ -83,7 +87,13 @@ JointLimits joint_limits(const std::string& target) {
 
 TriangleMesh target_mesh(const std::string& target, const std::string& source,
                          const MeshFileOptions& options) {
-  return source == kParametricMesh ? target_by_name(target) : load_mesh_file(source, options);
+  if (source != kParametricMesh) return load_mesh_file(source, options);
+  if (find_target(target) == nullptr)
+    throw std::invalid_argument("target '" + target +
+                                "' does not ship, so there is no mesh of it here; give its file with --mesh, "
+                                "or one of the targets that ship: " +
+                                known_targets());
+  return target_by_name(target);
 }
 
 }  // namespace tumblesight::sim
