@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -141,6 +142,8 @@ std::string fault_of_axes(const QuantizeArguments& arguments, const TriangleMesh
 void replace_surface(const QuantizeArguments& arguments) {
   if (arguments.meshes.meshes.size() > 1)
     throw CLI::ValidationError("--surface-only", "takes the surface of one mesh; give one --mesh");
+  if (!arguments.symmetry.is_none())
+    throw CLI::ValidationError("--surface-only", "compares no attitudes; leave --symmetry out");
   const SensorFiles sensor = require_usable_files(arguments);
   const gnc::ModelHeader header = read_fixed_point_header(arguments.model);
   const TriangleMesh mesh = load_meshes(arguments.meshes, header.target.data()).front();
@@ -176,6 +179,7 @@ void quantize_file(QuantizeArguments arguments) {
   const QuantizationReport report =
       quantize_and_report(*model, meshes, arguments.sequences, arguments.out, seen, arguments.symmetry, true);
   if (!report.written) {
+    std::fflush(stdout);
     fmt::print(
         stderr,
         "tumblesight: the attitudes in fixed point are {:.1f}° (mean) from those in float32, more than "
@@ -245,7 +249,7 @@ void add_quantize_command(CLI::App& app) {
                         "--model is in fixed point: keep its weights, and replace its surface by that of "
                         "--mesh, which must have its size");
   surface->needs("--out");
-  for (const char* of_calibration : {"--effect", "--sensor", "--range", "--symmetry", "--sequences"})
+  for (const char* of_calibration : {"--effect", "--sensor", "--range", "--sequences"})
     surface->excludes(command->get_option(of_calibration));
   command->callback([arguments] { quantize_file(*arguments); });
 }

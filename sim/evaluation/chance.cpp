@@ -39,6 +39,9 @@ bool is_near_chance(const ErrorSummary& errors, double chance_deg) {
 }  // namespace
 
 double chance_mean_deg(const TargetSymmetry& symmetry) {
+  if (symmetry.is_none()) return kDegPerRad * (kPi / 2.0 + 2.0 / kPi);
+  // The axis points anywhere on a sphere, or on half of one.
+  if (symmetry.axis_of_revolution_trf()) return symmetry.turns_trf().size() == 1 ? 90.0 : kDegPerRad;
   const Eigen::Quaterniond truth = Eigen::Quaterniond::Identity();
   double sum_rad = 0.0;
   for (int i = 0; i < kAttitudes; ++i)

@@ -9,7 +9,7 @@
 namespace tumblesight::sim {
 
 // Mean error of attitudes drawn uniformly: 90 degrees + 2/pi rad = 126.5 degrees without a symmetry, less
-// with one. To 0.1 degrees.
+// with one. To 0.2 degrees.
 double chance_mean_deg(const TargetSymmetry& symmetry = {});
 
 // More than half of the attitudes are wrong (kWrong_deg). False without any.

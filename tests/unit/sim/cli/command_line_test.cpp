@@ -888,6 +888,7 @@ TEST(Quantize, RefusesOptionsOfTheCalibrationWithASurface) {
     EXPECT_EQ(outcome.exit_code, 2) << option;
     EXPECT_NE(outcome.errors.find(" excludes --surface-only"), std::string::npos) << outcome.errors;
   }
+  EXPECT_NE(here.run(surface + " --symmetry z:4").errors.find("leave --symmetry out"), std::string::npos);
   EXPECT_NE(here.run(surface + " --mesh a.stl --mesh b.stl").errors.find("give one --mesh"),
             std::string::npos);
   EXPECT_NE(here.run("quantize --surface-only --model model.tsm").errors.find("requires --out"),

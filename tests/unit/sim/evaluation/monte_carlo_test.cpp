@@ -231,7 +231,8 @@ TEST_F(MonteCarlo, TakesEveryEstimateToTheNearestAttitudeThatLooksTheSame) {
       const Eigen::Quaterniond expected =
           nearest_equivalent(estimate(plain.frames[i], estimator), plain.frames[i].truth, symmetric.symmetry);
       EXPECT_EQ(estimate(nearest.frames[i], estimator).coeffs(), expected.coeffs());
-      EXPECT_LE(error_deg(nearest.frames[i], estimator), 98.43) << "the farthest from a square prism's";
+      if (has_estimate(nearest.frames[i], estimator))
+        EXPECT_LE(error_deg(nearest.frames[i], estimator), 98.43) << "the farthest from a square prism's";
       if (error_deg(nearest.frames[i], estimator) < error_deg(plain.frames[i], estimator) - 1.0) ++nearer;
     }
   }
