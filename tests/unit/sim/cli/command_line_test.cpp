@@ -607,7 +607,7 @@ TEST(Evaluate, GivesErrorsModuloTheSymmetryOfTheTarget) {
   }
 }
 
-// Verifies TS-SIL-400.
+// Verifies TS-TRN-070.
 TEST(Quantize, WritesNoImageThatIsAnotherNetwork) {
   const Workplace here;
   const std::string quantize = "quantize --sequences 40 --out x.tsm --model " TUMBLESIGHT_SOURCE_DIR
