@@ -90,6 +90,7 @@ class Adoption {
         stop_(stop),
         plan_path_(settings.folder + "/training/plan.json"),
         found_plan_(read_plan(plan_path_, mission_crc32(settings.mission), settings.minutes, settings.seed)),
+        symmetry_(target_symmetry_from(settings.mission.symmetry)),
         steps_(mission_.title, settings.folder, 60.0 * settings.minutes,
                found_plan_ ? found_plan_->elapsed_s : 0.0) {}
 
@@ -217,6 +218,7 @@ class Adoption {
     if (mission_.inertia) subject.inertia_kg_m2 = tensor_of(*mission_.inertia);
     subject.sensor = settings_.sensor;
     subject.ranges = targets_.ranges;
+    subject.symmetry = symmetry_;
     return subject;
   }
 
@@ -370,6 +372,7 @@ class Adoption {
   std::string plan_path_;
   std::optional<AdoptionPlan> found_plan_;
   AdoptionPlan plan_;
+  TargetSymmetry symmetry_;
   AdoptionSteps steps_;
   AdoptionOutcome outcome_;
   TriangleMesh mesh_;

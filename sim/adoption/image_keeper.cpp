@@ -23,8 +23,8 @@ ImageKeeper::~ImageKeeper() {
 }
 
 QuantizationReport ImageKeeper::write_fixed(const Float32Model& model, int sequences) const {
-  return quantize_to_file(
-      model, meshes_, sequences, fixed_path(), [](std::uint64_t) {}, seen_, &surface_);
+  return quantize_to_file(model, meshes_, sequences, fixed_path(), [](std::uint64_t) {}, seen_,
+                          {{}, false, &surface_});
 }
 
 void ImageKeeper::keep(std::unique_ptr<Float32Model> model) {

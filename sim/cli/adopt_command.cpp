@@ -14,6 +14,7 @@
 
 #include "sim/adoption/adoption.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/exit_status.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/terminal/text.hpp"
@@ -25,8 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kStopped = 3;
-constexpr int kNoGo = 4;
 constexpr std::size_t kWidth = 78;
 
 std::atomic<bool> stop_requested{false};
@@ -145,7 +144,7 @@ int run(const AdoptArguments& arguments, const std::string& command_line) {
     return kStopped;
   }
   print_outcome(settings, outcome);
-  return outcome.go ? 0 : kNoGo;
+  return outcome.go ? 0 : kOfNoUse;
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ std::string condition_help() {
 }
 
 bool has_a_file(const std::string& mesh) {
-  return mesh != kParametricMesh;
+  return !mesh.empty() && mesh != kParametricMesh;
 }
 bool has_a_file(const std::vector<std::string>& meshes) {
   return std::any_of(meshes.begin(), meshes.end(), [](const std::string& mesh) { return has_a_file(mesh); });
@@ -275,8 +275,18 @@ void add_effect_option(CLI::App& command, Effects& effects) {
       ->type_name("NAME=STRENGTH,...");
 }
 
+void require_a_name(const CLI::App& command, const std::vector<std::string>& meshes) {
+  const bool named =
+      command.get_option("--target")->count() > 0 || command.get_option("--mission")->count() > 0;
+  if (named || !has_a_file(meshes)) return;
+  throw CLI::ValidationError(
+      "--mesh",
+      "name the spacecraft of the file with --target: a name of your own, or that of a shipped target if the "
+      "file is a mesh of it; or give a --mission instead of both");
+}
+
 void require_the_target(const Effects& effects) {
-  if (effects.wrong_object == 0.0 && effects.sphere == 0.0) return;
+  if (show_the_target(effects)) return;
   throw CLI::ValidationError("--effect",
                              "wrong_object and sphere are for tests only: a network cannot learn "
                              "the target's attitude from another body");
@@ -321,6 +331,7 @@ void add_mission_option(CLI::App& command, ScenarioArguments& arguments) {
     arguments.mesh_scale = mission.mesh.scale;
     arguments.mesh_origin_trf_m = mesh_file_options(mission.mesh).origin_trf_m;
     take_sensor_of(mission, command, arguments.sensor);
+    arguments.symmetry = target_symmetry_from(mission.symmetry);
   });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/cli/sensor_arguments.hpp"
+#include "sim/evaluation/target_symmetry.hpp"
 #include "sim/mission/mission.hpp"
 #include "sim/world/scenario/disturbance.hpp"
 #include "sim/world/sensor/effects.hpp"
@@ -31,6 +32,7 @@ struct ScenarioArguments {
   std::uint64_t seed = 1;
   Disturbances disturbances;
   Effects effects;
+  TargetSymmetry symmetry;
   SensorArguments sensor;
   std::string numerics = "fixed";  // or "float32": which of the shipped models
   std::string model;  // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
@@ -68,6 +70,10 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed);
 void add_float32_model_option(CLI::App& command, std::string& model);  // --model, required
 // --effect; `--effect list` prints the effects and ends the program. `effects` must outlive the parsing.
 void add_effect_option(CLI::App& command, Effects& effects);
+// Throws CLI::ValidationError if --mesh names a file and --target is not given: the default would give a
+// spacecraft of the user's own the name, the inertia and the published figures of another. `meshes`: of
+// --mesh.
+void require_a_name(const CLI::App& command, const std::vector<std::string>& meshes);
 // For verbs that make a network. Throws CLI::ValidationError if the effects put another body in the target's
 // place: the network would learn that body under the target's name.
 void require_the_target(const Effects& effects);

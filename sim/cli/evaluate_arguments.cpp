@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "sim/cli/disturbance_arguments.hpp"
+#include "sim/cli/symmetry_arguments.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -97,6 +98,7 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
   add_sensor_options(command, arguments.scenario.sensor);
   add_effect_option(command, arguments.scenario.effects);
   add_effect_limit_option(command, arguments);
+  add_symmetry_option(command, arguments.scenario.symmetry);
   add_disturbance_options(command, arguments.scenario.disturbances);
   command.footer("\nConditions\n" + condition_explanations() +
                  "\nThe error is the angle between true and estimated attitude in the last frame of\n"
@@ -113,6 +115,9 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
                  "the surface mesh in the model image; shown where the image has one. Wrong: more\n"
                  "than 5° off. Inside 95 %: share of the verified poses within the 95 % ellipsoid\n"
                  "of their covariance.\n\n"
+                 "The exit status is 4 if more than half of the attitudes in the last frame of a\n"
+                 "condition are wrong. Not so with --paper, --effect-limit, and the effects that\n"
+                 "show another body. 1: a file failed. 2: wrong arguments.\n\n"
                  "Example: two of the paper's tests, figures to a file, graphs to a page\n"
                  "  tumblesight evaluate --target near_shoemaker --condition nominal,occluded \\\n"
                  "      --json near.json --report near.html\n\n"
@@ -130,9 +135,9 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
 }
 
 void refuse_options_set_by_paper(const CLI::App& command) {
-  std::vector<std::string> own_options{"--target", "--mesh",     "--inertia", "--condition", "--frames",
-                                       "--model",  "--numerics", "--json",    "--csv",       "--report",
-                                       "--curves", "--effect",   "--sensor",  "--range",     "--peers"};
+  std::vector<std::string> own_options{
+      "--target", "--mesh",   "--inertia", "--condition", "--frames", "--model", "--numerics", "--json",
+      "--csv",    "--report", "--curves",  "--effect",    "--sensor", "--range", "--peers",    "--symmetry"};
   for (const DisturbanceRow& row : kDisturbances) own_options.push_back(std::string("--") + row.name);
   for (const std::string& own : own_options) {
     if (command.get_option(own)->count() == 0) continue;

@@ -8,9 +8,12 @@
 
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/evaluate_arguments.hpp"
+#include "sim/cli/exit_status.hpp"
 #include "sim/cli/mesh_advice.hpp"
+#include "sim/cli/symmetry_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/curves.hpp"
 #include "sim/report/results_files.hpp"
@@ -44,6 +47,7 @@ void announce(const Subject& subject, const ExperimentSettings& settings) {
              conditions, counted(settings.sequences, "sequence"), counted(settings.frames, "frame"),
              settings.seed, subject.mesh_name, subject.model_name, subject.model_crc32);
   print_sensor(subject.sensor, subject.ranges);
+  print_symmetry(subject.symmetry);
   const std::string disturbances = to_string(settings.disturbances);
   if (!disturbances.empty()) fmt::print("  disturbed: {}\n\n", disturbances);
   const std::string effects = to_string(settings.effects);
@@ -91,14 +95,20 @@ void write_files(const EvaluateArguments& arguments, const Results& results) {
   fmt::print("  report               {}\n", full_path(arguments.report));
 }
 
-void print_advice(const EvaluateArguments& arguments, const Subject& subject, const SubjectResult& result) {
+// Returns whether there is a condition with mostly wrong attitudes. Says what each has, and what it can mean.
+bool print_what_is_wrong(const EvaluateArguments& arguments, const Subject& subject,
+                         const SubjectResult& result) {
   const Swaths swaths{swath_m(subject.mesh), subject.swath_m};
+  const CellResult* first = nullptr;
   for (const CellResult& cell : result.cells) {
-    const std::string advice = mesh_advice(arguments.scenario, swaths, cell.rcnn, cell.common_turn);
-    if (advice.empty()) continue;
-    fmt::print("\n{}", advice);
-    return;
+    if (!is_mostly_wrong(cell)) continue;
+    fmt::print("\n{}", paragraph(fmt::format("Condition {}: {}", to_string(cell.condition),
+                                             mostly_wrong_text(cell.rcnn, cell.symmetry))));
+    if (first == nullptr) first = &cell;
   }
+  if (first == nullptr) return false;
+  fmt::print("{}", mesh_advice(arguments.scenario, swaths, first->rcnn, first->common_turn));
+  return true;
 }
 
 ExperimentSettings checked_settings(const EvaluateArguments& arguments) {
@@ -137,9 +147,10 @@ void evaluate(const EvaluateArguments& arguments) {
       run_experiment(subject, settings, [&](std::uint64_t done) { bar.update(done); }));
   bar.finish();
   print_results(results);
-  print_advice(arguments, subject, results.subjects.front());
+  const bool wrong = print_what_is_wrong(arguments, subject, results.subjects.front());
   write_files(arguments, results);
   fmt::print("\n");
+  if (wrong) throw CLI::RuntimeError(kOfNoUse);
 }
 
 std::string text_of(const EffectLimit& limit) {
@@ -224,6 +235,7 @@ void add_evaluate_command(CLI::App& app, const std::string& command_line) {
   add_evaluate_options(*command, *arguments);
   command->callback([arguments, command] {
     take_period_of_sensor(*command, arguments->scenario);
+    if (!arguments->paper) require_a_name(*command, {arguments->scenario.mesh});
     arguments->sequences_given = command->get_option("--sequences")->count() > 0;
     if (!arguments->effect_limit.empty()) {
       refuse_options_of_tables(*command);

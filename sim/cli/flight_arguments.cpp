@@ -14,6 +14,7 @@
 #include "hal/dds/idl/development_key.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/exit_status.hpp"
 #include "sim/sil/interruption.hpp"
 #include "sim/sil/signed_telecommand.hpp"
 #include "sim/terminal/write_file.hpp"
@@ -28,8 +29,7 @@ constexpr double kSlowest = 0.1;
 constexpr double kFastest = 1000.0;
 constexpr double kManualStart_s = 60.0;  // time for the user to start the flight program
 constexpr int kDefaultFlightDomain = 0;  // of a flight program without --domain
-constexpr int kRunFailed = 1;
-constexpr int kInterrupted = 128;  // and the number of the signal, as a shell reports it
+constexpr int kInterrupted = 128;        // and the number of the signal, as a shell reports it
 constexpr const char* kNoFlight = "none";
 
 CLI::Validator speed() {
@@ -183,7 +183,8 @@ void announce_flight(const SilSettings& settings, const TargetSetup& setup) {
 }
 
 void finish_flight(const FlightArguments& arguments, const std::string& page, const std::string& json,
-                   const nlohmann::ordered_json& figures, std::vector<std::string> faults) {
+                   const nlohmann::ordered_json& figures, std::vector<std::string> faults,
+                   bool mostly_wrong) {
   const auto attempt = [&](const auto& write) {
     try {
       write();
@@ -202,7 +203,8 @@ void finish_flight(const FlightArguments& arguments, const std::string& page, co
   std::fflush(stdout);
   for (const std::string& fault : faults) fmt::print(stderr, "tumblesight: {}\n", fault);
   if (Interruption::signal() != 0) throw CLI::RuntimeError(kInterrupted + Interruption::signal());
-  if (!faults.empty()) throw CLI::RuntimeError(kRunFailed);
+  if (!faults.empty()) throw CLI::RuntimeError(kFailed);
+  if (mostly_wrong) throw CLI::RuntimeError(kOfNoUse);
 }
 
 }  // namespace tumblesight::sim

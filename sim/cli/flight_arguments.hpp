@@ -46,8 +46,8 @@ void announce_flight(const SilSettings& settings, const TargetSetup& setup);
 
 // Writes report and figures, even if one of them cannot be written, and prints the faults of the run and of
 // the files. Throws CLI::RuntimeError with the exit status unless all went well: 1, or 128 and the signal
-// that ended the run.
+// that ended the run, or kOfNoUse if nothing failed and the attitudes are mostly wrong.
 void finish_flight(const FlightArguments& arguments, const std::string& page, const std::string& json,
-                   const nlohmann::ordered_json& figures, std::vector<std::string> faults);
+                   const nlohmann::ordered_json& figures, std::vector<std::string> faults, bool mostly_wrong);
 
 }  // namespace tumblesight::sim

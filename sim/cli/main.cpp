@@ -11,6 +11,7 @@
 #include "cmake/version.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/exit_status.hpp"
 #include "sim/cli/verbs.hpp"
 #ifdef TUMBLESIGHT_HAS_SIL
 #include "hal/dds/idl/icd_hash.hpp"
@@ -18,8 +19,8 @@
 
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kBadArguments = 2;
+using tumblesight::sim::kBadArguments;
+using tumblesight::sim::kFailed;
 
 int report(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   // --help, and commands that have already reported their failure.

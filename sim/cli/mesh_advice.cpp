@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sim/evaluation/chance.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/target/targets.hpp"
@@ -11,23 +12,12 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kMostly = 0.5;
 // By chance, two turns are within 20 degrees of each other in 0.2 % of the cases.
 constexpr double kShareOfACommonTurn = 0.4;
 constexpr std::size_t kFewestForACommonTurn = 5;
 constexpr double kAboutAnAxis = 0.97;  // cosine
 constexpr double kQuarterTurn_deg = 90.0;
 constexpr std::size_t kWidth = 78;
-
-// `further`: before the second and later lines.
-std::string paragraph(const std::string& text, const std::string& further = "  ") {
-  std::string indented = "  ";
-  for (const char c : wrapped(text, kWidth - further.size())) {
-    indented += c;
-    if (c == '\n') indented += further;
-  }
-  return indented + "\n";
-}
 
 std::string point(const std::string& text) {
   return paragraph("- " + text, "    ");
@@ -60,6 +50,15 @@ std::string turned(const ScenarioArguments& arguments, const CommonTurn& common)
       100.0 * common.share, angle_deg(common), axis_text(common.turn.axis()), remedy));
 }
 
+std::string likely_causes_without_a_mesh() {
+  return paragraph("Likely causes:") +
+         point(
+             "a network that was not trained, or not for long enough; docs/training.md shows how to train "
+             "one") +
+         point("disturbances, effects, a sensor or ranges that it was not trained for") +
+         point("a surface that looks the same from several sides; --symmetry tells of it");
+}
+
 std::string likely_causes(const ScenarioArguments& arguments, const Swaths& swaths) {
   return paragraph("Likely causes:") +
          point(
@@ -69,20 +68,28 @@ std::string likely_causes(const ScenarioArguments& arguments, const Swaths& swat
          point(fmt::format(
              "the unit: the mesh needs a swath of {:.2f} m, and the network was trained for {:.2f} "
              "m; is --mesh-scale {:g} right?",
-             swaths.mesh_m, swaths.network_m, arguments.mesh_scale));
+             swaths.mesh_m, swaths.network_m, arguments.mesh_scale)) +
+         point("a surface that looks the same from several sides; --symmetry tells of it");
 }
 
 }  // namespace
 
+std::string paragraph(const std::string& text, const std::string& further) {
+  std::string indented = "  ";
+  for (const char c : wrapped(text, kWidth - further.size())) {
+    indented += c;
+    if (c == '\n') indented += further;
+  }
+  return indented + "\n";
+}
+
 std::string mesh_advice(const ScenarioArguments& arguments, const Swaths& swaths, const ErrorSummary& last,
                         const CommonTurn& common) {
-  const bool own_mesh = !arguments.mesh.empty() && arguments.mesh != kParametricMesh;
-  if (!own_mesh || last.count == 0 || last.within_20deg >= kMostly) return {};
+  if (!is_mostly_wrong(last)) return {};
+  if (arguments.mesh.empty() || arguments.mesh == kParametricMesh) return likely_causes_without_a_mesh();
   const bool is_turned = last.count >= kFewestForACommonTurn && common.share >= kShareOfACommonTurn &&
                          angle_deg(common) > kWrong_deg;
-  return paragraph(fmt::format("{:.0f} % of the attitudes of {} are more than 20° off.",
-                               100.0 * (1.0 - last.within_20deg), arguments.mesh)) +
-         (is_turned ? turned(arguments, common) : likely_causes(arguments, swaths));
+  return is_turned ? turned(arguments, common) : likely_causes(arguments, swaths);
 }
 
 }  // namespace tumblesight::sim

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/exit_status.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/inspection/cleaned_mesh.hpp"
 #include "sim/inspection/mesh_inspection.hpp"
@@ -20,7 +21,6 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr int kUnusable = 4;      // exit status: read, but of no use as it is
 constexpr int kPagePixels = 256;  // per side of a picture
 constexpr int kSketchPixels = 128;
 
@@ -78,7 +78,7 @@ int show_mesh(const MeshCommandArguments& arguments, const std::string& command_
   if (!arguments.fix.empty()) fix(arguments, mesh, report.found);
   const bool faulty =
       !report.found.findings.empty() && report.found.findings.front().severity == Severity::kFault;
-  return faulty ? kUnusable : 0;
+  return faulty ? kOfNoUse : 0;
 }
 
 CLI::Validator mesh_to_write() {

@@ -3,12 +3,15 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/exit_status.hpp"
+#include "sim/cli/symmetry_arguments.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/quantize_file.hpp"
 #include "sim/quantization/surface_samples.hpp"
@@ -32,6 +35,7 @@ struct QuantizeArguments {
   std::string out;
   MeshArguments meshes;
   Effects effects;
+  TargetSymmetry symmetry;
   int sequences = kCalibrationSequences;
   SensorArguments sensor;
   bool surface_only = false;
@@ -90,13 +94,15 @@ void print_report(const QuantizationReport& report, const std::string& path) {
   }
   fmt::print("\n  attitudes differ from float32 by {:.3f}° (mean), {:.3f}° (median), over {} frames\n",
              report.difference.mean_deg, report.difference.median_deg, report.difference.count);
+  if (!report.written) return;
   fmt::print("  {}, {} bytes, CRC-32 {:08x}:\n  {}\n\n", full_path(path), report.size_bytes, report.crc32,
              description(report.surface));
 }
 
 // With the surface of another body, or of one in another unit, the check of an attitude refuses every one or
 // none. Empty if the mesh has the size of the one that the network was trained for.
-std::string fault_of_size(const TriangleMesh& mesh, const gnc::DepthProjection& network) {
+std::string fault_of_size(const TriangleMesh& mesh, const gnc::ModelHeader& header) {
+  const gnc::DepthProjection& network = header.projection;
   const gnc::DepthProjection found = projection_of(mesh);
   const auto agree = [](std::uint32_t one, std::uint32_t other) {
     return std::abs(static_cast<double>(one) - other) <= kSizeTolerance * other;
@@ -105,10 +111,10 @@ std::string fault_of_size(const TriangleMesh& mesh, const gnc::DepthProjection& 
     return {};
   return fmt::format(
       "mesh {} has a radius of {:.3f} m and a swath of {:.3f} m, "
-      "and the network was trained for {:.3f} m and {:.3f} m; give the mesh of its target, in metres "
-      "(--mesh-scale)",
+      "and the network was trained for {:.3f} m and {:.3f} m; give the mesh of its target, {}, in "
+      "metres (--mesh-scale)",
       mesh.name, 1e-3 * found.target_radius_mm, 1e-3 * found.swath_mm, 1e-3 * network.target_radius_mm,
-      1e-3 * network.swath_mm);
+      1e-3 * network.swath_mm, header.target.data());
 }
 
 // With other axes than those of the network, the check of an attitude refuses every one. Empty if the mesh
@@ -139,10 +145,12 @@ std::string fault_of_axes(const QuantizeArguments& arguments, const TriangleMesh
 void replace_surface(const QuantizeArguments& arguments) {
   if (arguments.meshes.meshes.size() > 1)
     throw CLI::ValidationError("--surface-only", "takes the surface of one mesh; give one --mesh");
+  if (!arguments.symmetry.is_none())
+    throw CLI::ValidationError("--surface-only", "compares no attitudes; leave --symmetry out");
   const SensorFiles sensor = require_usable_files(arguments);
   const gnc::ModelHeader header = read_fixed_point_header(arguments.model);
   const TriangleMesh mesh = load_meshes(arguments.meshes, header.target.data()).front();
-  const std::string fault_of_mesh = fault_of_size(mesh, header.projection);
+  const std::string fault_of_mesh = fault_of_size(mesh, header);
   if (!fault_of_mesh.empty()) throw std::invalid_argument(fault_of_mesh);
   const SurfaceSections surface = target_surface(mesh, 1e-3 * header.projection.target_radius_mm);
   const std::string fault_of_fit = fault_of_axes(arguments, mesh, gnc::SurfaceModel(surface.points.data()));
@@ -166,24 +174,39 @@ void quantize_file(QuantizeArguments arguments) {
   ScenarioSettings seen = seen_by(arguments.sensor, 1e-3 * model->header.projection.swath_mm, notes);
   seen.effects = arguments.effects;
   const std::vector<TriangleMesh> meshes = load_meshes(arguments.meshes, model->header.target.data());
-  notes.push_back(fault_of_size(meshes.front(), model->header.projection));
+  notes.push_back(fault_of_size(meshes.front(), model->header));
   for (const std::string& note : notes) {
     if (!note.empty()) fmt::print(stderr, "  note: {}\n", note);
   }
   print_sensor(arguments.sensor.sensor, seen.ranges);
-  quantize_and_report(*model, meshes, arguments.sequences, arguments.out, seen);
+  const QuantizationReport report =
+      quantize_and_report(*model, meshes, arguments.sequences, arguments.out, seen, arguments.symmetry, true);
+  if (!report.written) {
+    std::fflush(stdout);
+    fmt::print(
+        stderr,
+        "tumblesight: the attitudes in fixed point are {:.1f}° (mean) from those in float32, more than "
+        "{:g}°; {} is not written. A network differs that much on frames unlike those it was trained on: "
+        "give the meshes, axes and unit (--mesh, --mesh-up, --mesh-scale), the sensor and the effects of "
+        "its training; its target is {}\n",
+        report.difference.mean_deg, kMostDifference_deg, arguments.out, model->header.target.data());
+    throw CLI::RuntimeError(kOfNoUse);
+  }
   copy_sensor_file(sensor);
 }
 
 }  // namespace
 
-void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
-                         const std::string& out, const ScenarioSettings& seen) {
+QuantizationReport quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
+                                       int sequences, const std::string& out, const ScenarioSettings& seen,
+                                       const TargetSymmetry& symmetry, bool refuse_another_network) {
   ProgressBar bar("calibrating", "sequences", static_cast<std::uint64_t>(sequences));
-  const QuantizationReport report = quantize_to_file(
-      model, meshes, sequences, out, [&bar](std::uint64_t done) { bar.update(done); }, seen);
+  const QuantizationReport report =
+      quantize_to_file(model, meshes, sequences, out, [&bar](std::uint64_t done) { bar.update(done); }, seen,
+                       {symmetry, refuse_another_network, nullptr});
   bar.finish();
   print_report(report, out);
+  return report;
 }
 
 void add_quantize_command(CLI::App& app) {
@@ -198,6 +221,9 @@ void add_quantize_command(CLI::App& app) {
       "program judges what a frame shows. --surface-only replaces that surface in an\n"
       "image that is in fixed point already, also in one of format version 3 or 4. The\n"
       "sensor's description beside --model is copied beside --out.\n\n"
+      "The exit status is 0, 1 if a file failed or the mesh does not fit, 2 for wrong\n"
+      "arguments, and 4 if the attitudes in fixed point differ from those in float32 by\n"
+      "more than 5° on average; then no image is written.\n\n"
       "Example\n"
       "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
       "      --mesh parametric --mesh near.stl\n\n"
@@ -216,6 +242,7 @@ void add_quantize_command(CLI::App& app) {
   add_mission_option(*command, arguments->target, arguments->meshes, arguments->sensor, arguments->mission);
   add_effect_option(*command, arguments->effects);
   add_sensor_options(*command, arguments->sensor);
+  add_symmetry_option(*command, arguments->symmetry);
   limit_whole_number(command->add_option("--sequences", arguments->sequences,
                                          "sequences of ten frames to render for calibration"),
                      10, 10'000)

@@ -69,9 +69,8 @@ void record(const RecordArguments& arguments) {
   auto [bytes, rows] = make_recording(renderer, settings, [&](std::uint32_t done) { bar.update(done); });
   bar.finish();
   const SensorDescription& sensor = wanted.sensor.sensor;
-  const bool shows_target = wanted.effects.wrong_object == 0.0 && wanted.effects.sphere == 0.0;
   for (RecordedTruth& row : rows) {
-    if (shows_target) row.target = wanted.target;
+    if (show_the_target(wanted.effects)) row.target = wanted.target;
     row.sensor = {sensor.name, crc32_of(sensor)};
   }
   write_file(arguments.out, bytes);
@@ -109,6 +108,12 @@ void add_record_command(CLI::App& app) {
   add_sensor_options(*command, arguments->scenario.sensor);
   add_effect_option(*command, arguments->scenario.effects);
   add_disturbance_options(*command, arguments->scenario.disturbances);
+  command
+      ->add_option("--model", arguments->scenario.model,
+                   "model image that is to see the frames: its swath, its sensor [the one that ships for the "
+                   "target; without one the mesh]")
+      ->check(existing_model_image())
+      ->type_name("FILE");
   command->add_option("--out", arguments->out, "recording to write")
       ->required()
       ->check(file_path())
@@ -120,6 +125,7 @@ void add_record_command(CLI::App& app) {
       ->type_name("FILE");
   command->callback([arguments, command] {
     take_period_of_sensor(*command, arguments->scenario);
+    require_a_name(*command, {arguments->scenario.mesh});
     record(*arguments);
   });
 }

@@ -8,6 +8,7 @@
 
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/flight_arguments.hpp"
+#include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/recording/recording_file.hpp"
@@ -80,6 +81,13 @@ std::vector<std::string> remarks_on(const TruthTable& truth, const std::string& 
   return remarks;
 }
 
+// `tumblesight record` names the sensor of every frame, and the target only where the frames show it.
+bool shows_another_body(const TruthTable& truth) {
+  return !truth.empty() && std::all_of(truth.begin(), truth.end(), [](const auto& row) {
+    return row.second.sensor && row.second.target.empty();
+  });
+}
+
 void announce(const ReplayArguments& arguments, const ReplaySetup& setup, std::size_t known) {
   fmt::print("\n  {}: {} as {}, model {}\n", setup.recording, counted(setup.frames, "frame"), setup.target,
              setup.model_path);
@@ -136,6 +144,7 @@ void replay(ReplayArguments arguments) {
   static_cast<FlightSetup&>(setup) = flight_setup(arguments.scenario.target, target, settings);
   setup.recording = arguments.recording;
   setup.truth = truth_file;
+  setup.shows_target = !shows_another_body(rows);
   setup.frames = static_cast<std::uint32_t>(recording.frames.size());
   const auto known =
       std::count_if(truth.begin(), truth.end(), [](const auto& row) { return row.has_value(); });
@@ -156,8 +165,10 @@ void replay(ReplayArguments arguments) {
   report.run.command = arguments.command_line;
   report.run.generated = local_time_text();
   print_results(report, run);
+  const std::string wrong = mostly_wrong_text(report);
+  if (!wrong.empty()) fmt::print("\n{}\n", paragraph(wrong));
   finish_flight(arguments, replay_page(report), arguments.scenario.json, replay_json(report, run),
-                flight_faults(run));
+                flight_faults(run), !wrong.empty());
 }
 
 }  // namespace
@@ -192,10 +203,11 @@ void add_replay_command(CLI::App& app, const std::string& command_line) {
       "Example: frames of your own, as those of a target with a network of your own\n"
       "  tumblesight replay frames.tslr --truth truth.csv --target mine --model mine.tsm\n\n"
       "The exit status is 0 if every cycle was answered, the flight task allocated no\n"
-      "heap memory and the files were written, whatever the attitudes are: refused\n"
-      "frames, doubtful attitudes and errors are results. It is 1 if the run or a file\n"
-      "failed, 2 for wrong arguments, and 130 or 143 after Ctrl-C or SIGTERM; then the\n"
-      "report covers what was done.\n");
+      "heap memory and the files were written: refused frames and doubtful attitudes\n"
+      "are results. It is 4 if more than half of the attitudes whose truth is known are\n"
+      "more than 20° off, except where the recording is known to show another body. It\n"
+      "is 1 if the run or a file failed, 2 for wrong arguments, and 130 or 143 after\n"
+      "Ctrl-C or SIGTERM; then the report covers what was done.\n");
   command->callback([arguments] { replay(*arguments); });
 }
 

@@ -75,6 +75,8 @@ std::string default_report_name(const SimulateArguments& arguments) {
   if (!disturbances.empty()) name += "_" + plain_words(disturbances);
   const std::string effects = to_string(scenario.effects);
   if (!effects.empty()) name += "_" + plain_words(effects);
+  if (!scenario.symmetry.is_none())
+    name += fmt::format("_symmetry-{:08x}", crc32_of(to_string(scenario.symmetry)));
   const SensorDescription& sensor = scenario.sensor.sensor;
   if (!sensor.is_the_papers()) name += fmt::format("_{}-{:08x}", sensor.name, crc32_of(sensor));
   if (scenario.sensor.ranges) {

@@ -10,6 +10,7 @@
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/simulate_arguments.hpp"
+#include "sim/cli/symmetry_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/evaluation/curves.hpp"
@@ -38,6 +39,7 @@ SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& targ
   setup.effects = scenario.effects;
   setup.sensor = scenario.sensor.sensor;
   setup.ranges = target.ranges;
+  setup.symmetry = scenario.symmetry;
   setup.seed = scenario.seed;
   return setup;
 }
@@ -95,6 +97,7 @@ void announce(const ScenarioArguments& scenario, const TargetSetup& target, cons
              counted(scenario.sequences, "sequence"), counted(scenario.frames, "frame"), scenario.seed,
              target.mesh_name, target.model_path);
   print_sensor(scenario.sensor.sensor, target.ranges);
+  print_symmetry(scenario.symmetry);
   const std::string disturbances = to_string(scenario.disturbances);
   if (!disturbances.empty()) fmt::print("  disturbed: {}\n\n", disturbances);
   const std::string effects = to_string(scenario.effects);
@@ -102,13 +105,17 @@ void announce(const ScenarioArguments& scenario, const TargetSetup& target, cons
   announce_flight(settings, target);
 }
 
-void print_advice(const ScenarioArguments& scenario, const TargetSetup& target, const RunReport& report) {
+// What the attitudes are if most of them are wrong, and what it can mean.
+void print_what_is_wrong(const ScenarioArguments& scenario, const TargetSetup& target,
+                         const RunReport& report) {
+  const std::string wrong = mostly_wrong_text(report);
+  if (wrong.empty()) return;
   const std::vector<FrameResult> last = last_frames(report.results, scenario.frames);
   const std::string advice =
       mesh_advice(scenario, {swath_m(target.mesh), 1e-3 * target.projection.swath_mm},
                   last_frame_summary(report.results, scenario.frames, Estimator::kRcnn),
                   common_turn(last, Estimator::kRcnn));
-  if (!advice.empty()) fmt::print("\n{}\n", advice);
+  fmt::print("\n{}{}\n", paragraph(wrong), advice);
 }
 
 void require_a_speed(const SimulateArguments& arguments) {
@@ -138,13 +145,15 @@ void simulate(SimulateArguments arguments) {
   // The reference gets every frame. In a free run the flight program may have missed some.
   const bool same_frames = !arguments.free_running || (run.frames_superseded == 0 && run.steps_missed == 0);
   if (float32 && same_frames)
-    numerics = float32.compare(frame_results(run, 1e-3 * target.projection.swath_mm), scenario.frames);
+    numerics = float32.compare(frame_results(run, 1e-3 * target.projection.swath_mm), scenario.frames,
+                               scenario.symmetry);
   RunReport report = run_report(setup, run, numerics);
   report.command = arguments.command_line;
   report.generated = local_time_text();
   print_results(report, run, numerics);
-  print_advice(scenario, target, report);
-  finish_flight(arguments, run_page(report), scenario.json, run_json(setup, run, numerics), run_faults(run));
+  print_what_is_wrong(scenario, target, report);
+  finish_flight(arguments, run_page(report), scenario.json, run_json(setup, run, numerics), run_faults(run),
+                !mostly_wrong_text(report).empty());
 }
 
 }  // namespace
@@ -161,6 +170,7 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   add_json_option(*command, arguments->scenario.json);
   add_sensor_options(*command, arguments->scenario.sensor);
   add_effect_option(*command, arguments->scenario.effects);
+  add_symmetry_option(*command, arguments->scenario.symmetry);
   add_disturbance_options(*command, arguments->scenario.disturbances);
   add_flight_options(*command, *arguments);
   command->add_flag(
@@ -177,12 +187,16 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "sensor delivered a new frame, no telecommand was refused, the flight task\n"
       "allocated no heap memory, no other program wrote to the topics of the run and\n"
       "the report was written. Faults that the flight program reports do not count.\n"
+      "Otherwise it is 1, or 2 for wrong arguments. It is 4 if all that holds and more\n"
+      "than half of the attitudes in the last frame are more than 20° off, except with\n"
+      "the effects that show another body.\n"
       "Ctrl-C ends the run, and the report covers what was done.\n"
       "With --free-running and a sensor that is faster than the cycle, the newest frame\n"
       "of each cycle is used. The frames that it supersedes are counted.\n" +
       disturbance_examples("simulate"));
   command->callback([arguments, command] {
     take_period_of_sensor(*command, arguments->scenario);
+    require_a_name(*command, {arguments->scenario.mesh});
     simulate(*arguments);
   });
 }

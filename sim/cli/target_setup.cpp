@@ -149,9 +149,13 @@ TargetSetup set_up_model_alone(const ScenarioArguments& arguments) {
 
 TargetSetup set_up_target_without_model(const ScenarioArguments& arguments) {
   TargetSetup setup = set_up_body(arguments);
+  const bool given = !arguments.model.empty();
   const bool ships = find_target(arguments.target) && fault_of_model_path(model_path(arguments)).empty();
-  if (ships) {
+  if (given || ships) {
     set_up_model(arguments, setup);
+    const std::string warning =
+        given ? check_sensor_of_model(setup.model_path, arguments.sensor.sensor) : std::string{};
+    if (!warning.empty()) setup.warnings.push_back(warning);
   } else {
     setup.projection = projection_of(setup.mesh);
   }
@@ -173,6 +177,7 @@ Subject set_up_subject(const ScenarioArguments& arguments) {
   subject.inertia_kg_m2 = setup.inertia_kg_m2;
   subject.sensor = arguments.sensor.sensor;
   subject.ranges = setup.ranges;
+  subject.symmetry = arguments.symmetry;
   return subject;
 }
 

@@ -40,8 +40,8 @@ TargetSetup set_up_target(const ScenarioArguments& arguments);
 // The same without a body, for verbs that see frames of others: mesh and inertia stay empty.
 TargetSetup set_up_model_alone(const ScenarioArguments& arguments);
 
-// The same for verbs that run no network. The model is the image that ships for the target. Without one
-// the fields of the model stay empty, and the swath is that of the mesh.
+// The same for verbs that run no network. The model is that of --model, or the image that ships for the
+// target. Without either the fields of the model stay empty, and the swath is that of the mesh.
 TargetSetup set_up_target_without_model(const ScenarioArguments& arguments);
 
 // The subject of an experiment. Prints the warnings of set_up_target on the standard error stream. Throws as

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/model/model_file.hpp"
+#include "sim/quantization/quantize_file.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
@@ -48,9 +49,12 @@ void add_quantize_command(CLI::App& app);
 inline constexpr int kCalibrationSequences = 200;
 
 // Shows its progress and prints the quantization error of each layer. Throws as quantize_to_file does.
-// `seen`: sensor, ranges, period and effects of the sequences.
-void quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes, int sequences,
-                         const std::string& out, const ScenarioSettings& seen);
+// `seen`: sensor, ranges, period and effects of the sequences. Returns the report, by which the caller judges
+// the image; with `refuse_another_network` it may not be written.
+QuantizationReport quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
+                                       int sequences, const std::string& out, const ScenarioSettings& seen,
+                                       const TargetSymmetry& symmetry = {},
+                                       bool refuse_another_network = false);
 
 // `tumblesight bench`: speed of the flight network in both numerics and with every instruction set, compared
 // with other runtimes.

@@ -223,15 +223,20 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
     const bool with_peers = !run.peers.empty();
     const MonteCarloSettings monte_carlo{
         run.scenario,           settings.seed,    run.sequences,
-        run.baseline_sequences, settings.threads, with_peers ? peers_run : std::vector<const PosePeer*>{}};
+        run.baseline_sequences, settings.threads, with_peers ? peers_run : std::vector<const PosePeer*>{},
+        subject.symmetry};
     take(run,
          run_monte_carlo(renderer, subject.model, matcher.get(), monte_carlo,
                          [&](std::uint32_t sequences) { progress(done + steps_of(run, sequences)); }),
          result);
     done += steps_of(run, run.sequences);
   }
-  for (CellResult& cell : result.cells) cell.sensor = subject.sensor;
-  for (CellResult& cell : result.disturbed) cell.sensor = subject.sensor;
+  for (auto* cells : {&result.cells, &result.disturbed}) {
+    for (CellResult& cell : *cells) {
+      cell.sensor = subject.sensor;
+      cell.symmetry = subject.symmetry;
+    }
+  }
   return result;
 }
 

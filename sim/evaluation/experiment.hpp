@@ -25,6 +25,7 @@ struct Subject {
   std::optional<Eigen::Matrix3d> inertia_kg_m2;  // in the TRF
   SensorDescription sensor{};                    // that sees it
   RangeLimits ranges{};                          // at which it is seen
+  TargetSymmetry symmetry{};                     // of its surface
 };
 
 struct ExperimentSettings {

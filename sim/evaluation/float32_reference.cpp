@@ -35,10 +35,12 @@ void Float32Reference::add(std::uint32_t sequence, std::uint32_t frame, const Fr
   results_.push_back(result);
 }
 
-NumericsComparison Float32Reference::compare(const std::vector<FrameResult>& results,
-                                             std::uint32_t frames) const {
+NumericsComparison Float32Reference::compare(const std::vector<FrameResult>& results, std::uint32_t frames,
+                                             const TargetSymmetry& symmetry) const {
   NumericsComparison comparison;
-  comparison.float32 = summarise(last_frame_errors_deg(results_, frames, Estimator::kRcnn));
+  std::vector<FrameResult> nearest = results_;
+  for (FrameResult& result : nearest) take_nearest_equivalents(result, symmetry);
+  comparison.float32 = summarise(last_frame_errors_deg(nearest, frames, Estimator::kRcnn));
   std::vector<double> differences;
   auto reference = results_.begin();  // both are in the order of the frames; each may lack some
   const auto place = [](const FrameResult& a) { return std::make_pair(a.sequence, a.frame); };
@@ -46,7 +48,8 @@ NumericsComparison Float32Reference::compare(const std::vector<FrameResult>& res
     while (reference != results_.end() && place(*reference) < place(result)) ++reference;
     if (reference == results_.end()) break;
     if (place(*reference) == place(result) && result.valid && reference->valid) {
-      differences.push_back(kDegPerRad * angular_error_rad(result.rcnn, reference->rcnn));
+      const Eigen::Quaterniond same = nearest_equivalent(result.rcnn, reference->rcnn, symmetry);
+      differences.push_back(kDegPerRad * angular_error_rad(same, reference->rcnn));
     }
   }
   if (!differences.empty()) {

@@ -33,8 +33,9 @@ class Float32Reference {
   void add(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth, const gnc::RangeImage& image,
            const gnc::ChaserAttitude& chaser);
   // Over the frames that have a result both here and in `results`, which are in the order of add(). A frame
-  // that was not delivered has none here.
-  NumericsComparison compare(const std::vector<FrameResult>& results, std::uint32_t frames) const;
+  // that was not delivered has none here. Attitudes that look the same do not differ.
+  NumericsComparison compare(const std::vector<FrameResult>& results, std::uint32_t frames,
+                             const TargetSymmetry& symmetry = {}) const;
 
  private:
   std::vector<std::uint8_t> image_;

@@ -66,6 +66,11 @@ double angular_error_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& 
   return 2.0 * std::atan2(between.vec().norm(), std::abs(between.w()));
 }
 
+void take_nearest_equivalents(FrameResult& result, const TargetSymmetry& symmetry) {
+  for (Eigen::Quaterniond* estimate : {&result.rcnn, &result.cnn, &result.baseline})
+    *estimate = nearest_equivalent(*estimate, result.truth, symmetry);
+}
+
 bool has_estimate(const FrameResult& result, Estimator estimator) {
   return estimator == Estimator::kBaseline ? result.baseline_valid : result.valid;
 }

@@ -31,6 +31,10 @@ struct FrameResult {
   PoseErrors pose;  // registered
 };
 
+// Each estimate becomes the attitude nearest to the truth that looks like it. The pose is not touched: see
+// pose_errors().
+void take_nearest_equivalents(FrameResult& result, const TargetSymmetry& symmetry);
+
 // An estimate that is further off is wrong: the paper's limit.
 inline constexpr double kWrong_deg = 20.0;
 

@@ -51,7 +51,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-FrameResult frame_result(const FrameTruth& truth, const gnc::FrameOutcome& outcome, double swath_m) {
+FrameResult frame_result(const FrameTruth& truth, const gnc::FrameOutcome& outcome, double swath_m,
+                         const TargetSymmetry& symmetry) {
   FrameResult result;
   result.truth = truth.q_lrf_trf;
   result.range_m = truth.range_m;
@@ -65,7 +66,7 @@ FrameResult frame_result(const FrameTruth& truth, const gnc::FrameOutcome& outco
   result.cnn = gnc::to_double(estimate.q_lrf_trf_single_frame);
   result.rcnn_predicted_rad = 1e-6 * estimate.predicted_error_urad;
   result.cnn_predicted_rad = 1e-6 * estimate.predicted_error_single_frame_urad;
-  result.pose = pose_errors(stated_pose(estimate.pose), truth, swath_m);
+  result.pose = pose_errors(stated_pose(estimate.pose), truth, swath_m, symmetry);
   return result;
 }
 
@@ -86,7 +87,8 @@ void run_peers(Job& job, const gnc::RangeImage& frame, const FrameResult& result
     PeerMatch& made = job.peer_matches[i][result.sequence].emplace();
     made.ms = stopwatch.ms();
     made.found = match.valid;
-    if (match.valid) made.error_deg = kDegPerRad * angular_error_rad(result.truth, match.q_lrf_trf);
+    const Eigen::Quaterniond found = nearest_equivalent(match.q_lrf_trf, result.truth, job.settings.symmetry);
+    if (match.valid) made.error_deg = kDegPerRad * angular_error_rad(result.truth, found);
   }
 }
 
@@ -117,7 +119,7 @@ void run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::
     const gnc::FrameOutcome outcome = estimator.step(frame, chaser);
     job.network_ms[place] = stopwatch.ms();
     FrameResult& result = job.results[place];
-    result = frame_result(truth, outcome, job.renderer.swath_m());
+    result = frame_result(truth, outcome, job.renderer.swath_m(), job.settings.symmetry);
     result.sequence = index;
     result.frame = k;
     job.delivered[place] = 1;
@@ -177,6 +179,7 @@ MonteCarloResult run_monte_carlo(const FrameRenderer& renderer, const std::vecto
   }
   progress(job.done);
   remove_lost(job);
+  for (FrameResult& result : job.results) take_nearest_equivalents(result, settings.symmetry);
   std::vector<PeerRun> peers;
   for (const auto& matches : job.peer_matches) peers.push_back(peer_run(matches));
   return {std::move(job.results), median(std::move(job.network_ms)), median(std::move(job.baseline_ms)),

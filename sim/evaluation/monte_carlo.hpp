@@ -20,6 +20,7 @@ struct MonteCarloSettings {
   std::uint32_t baseline_sequences = 0;  // the baseline runs on the last frame of the first ones
   int threads = 1;
   std::vector<const PosePeer*> peers{};  // run on the same frames as the baseline; must outlive the run
+  TargetSymmetry symmetry{};             // errors are to the nearest attitude that looks the same
 };
 
 // One peer on the last frames of the first sequences.

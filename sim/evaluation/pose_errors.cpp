@@ -49,12 +49,14 @@ StatedPose stated_pose(const gnc::PoseEstimate& estimate) {
   return {estimate.doubts, estimate.state, estimate.covariance};
 }
 
-PoseErrors pose_errors(const StatedPose& pose, const FrameTruth& truth, double swath_m) {
+PoseErrors pose_errors(const StatedPose& pose, const FrameTruth& truth, double swath_m,
+                       const TargetSymmetry& symmetry) {
   PoseErrors errors;
   errors.known = (pose.doubts & gnc::kPoseUnknown) == 0;
   if (!errors.known) return errors;
   errors.verified = pose.doubts == 0;
-  const Eigen::Quaterniond found = gnc::to_double(pose.state.q_lrf_trf);
+  const Eigen::Quaterniond found =
+      nearest_equivalent(gnc::to_double(pose.state.q_lrf_trf), truth.q_lrf_trf, symmetry);
   errors.turn_deg = kDegPerRad * angular_error_rad(truth.q_lrf_trf, found);
   const Eigen::Vector3d origin_m(swath_m * truth.offset_swaths.x(), truth.range_m,
                                  swath_m * truth.offset_swaths.y());

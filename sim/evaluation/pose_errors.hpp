@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gnc/registration/pose_tracker.hpp"
+#include "sim/evaluation/target_symmetry.hpp"
 #include "sim/world/sensor/frame_truth.hpp"
 
 namespace tumblesight::sim {
@@ -29,8 +30,10 @@ struct StatedPose {
 };
 StatedPose stated_pose(const gnc::PoseEstimate& estimate);
 
-// `swath_m`: of the renderer that made the frame.
-PoseErrors pose_errors(const StatedPose& pose, const FrameTruth& truth, double swath_m);
+// `swath_m`: of the renderer that made the frame. The turn is that of the nearest attitude that looks the
+// same.
+PoseErrors pose_errors(const StatedPose& pose, const FrameTruth& truth, double swath_m,
+                       const TargetSymmetry& symmetry = {});
 
 // Over the same frame of all sequences. Shares are 0..1. Means of lengths and rates are over the poses within
 // 20 degrees; NaN without any.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "sim/evaluation/chance.hpp"
+
 namespace tumblesight::sim {
 
 bool differs_from_paper(const CellResult& cell) {
@@ -14,12 +16,17 @@ std::string differences_from_paper(const CellResult& cell) {
   if (!cell.ranges.are_the_papers()) text += ", " + to_string(cell.ranges);
   const std::string effects = to_string(cell.effects);
   if (!effects.empty()) text += ", " + effects;
+  if (!cell.symmetry.is_none()) text += ", modulo " + to_string(cell.symmetry);
   return text.empty() ? text : text.substr(2);
 }
 
 PaperFigures paper_figures(const std::string& target, const CellResult& cell) {
   if (differs_from_paper(cell)) return {};
   return paper_figures(target, cell.condition, cell.disturbances);
+}
+
+bool is_mostly_wrong(const CellResult& cell) {
+  return is_mostly_wrong(cell.rcnn) && show_the_target(cell.effects);
 }
 
 const CellResult* cell_of(const SubjectResult& subject, Condition condition) {

@@ -34,6 +34,7 @@ struct CellResult {
   Effects effects;
   SensorDescription sensor;
   RangeLimits ranges;
+  TargetSymmetry symmetry;  // all errors are modulo it
   ErrorSummary rcnn;
   ErrorSummary cnn;
   PoseSummary pose;                      // registered
@@ -84,12 +85,15 @@ struct Results {
   std::vector<SubjectResult> subjects;
 };
 
-// Whether effects, another sensor or other ranges than the paper's make the frames of a cell.
+// Whether effects, another sensor or other ranges than the paper's make the frames of a cell, or its errors
+// are modulo a symmetry.
 bool differs_from_paper(const CellResult& cell);
-// What makes them, "sensor flash_256, 50 to 200 m, noise=2"; empty for the paper's.
+// What differs, "sensor flash_256, 50 to 200 m, noise=2"; empty for the paper's.
 std::string differences_from_paper(const CellResult& cell);
 // The paper's figures for a cell, see paper_figures(). None for one that differs from it in this way.
 PaperFigures paper_figures(const std::string& target, const CellResult& cell);
+// More than half of the attitudes in the last frame are wrong, and the frames show the target.
+bool is_mostly_wrong(const CellResult& cell);
 // The figures of one condition, or nullptr if it was not run.
 const CellResult* cell_of(const SubjectResult& subject, Condition condition);
 // Detection, summed over all conditions of a subject.

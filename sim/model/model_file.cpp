@@ -145,15 +145,33 @@ std::vector<std::uint8_t> read_model_bytes(const std::string& path) {
   return image;
 }
 
+namespace {
+
+// That an image names; "<target>" for one that is damaged.
+template <class N>
+std::string target_of(const std::vector<std::uint8_t>& image) {
+  gnc::ModelHeader header;
+  const auto weights = std::make_unique<gnc::NetworkWeights<N>>();
+  const gnc::ModelStatus status =
+      gnc::read_model_image<N>(image.data(), image.size(), nullptr, header, *weights);
+  return status == gnc::ModelStatus::kOk ? header.target.data() : "<target>";
+}
+
+}  // namespace
+
 std::unique_ptr<Float32Model> read_float32_model(const std::string& path) {
   const std::vector<std::uint8_t> bytes = read_model_bytes(path);
   auto model = std::make_unique<Float32Model>();
   const gnc::ModelStatus status =
       gnc::read_model_image<Float32>(bytes.data(), bytes.size(), nullptr, model->header, model->weights);
   if (status == gnc::ModelStatus::kBadNumerics) {
-    throw std::runtime_error("model image '" + path +
-                             "' is in fixed point; give the one in float32, as `tumblesight train` writes it "
-                             "(<target>.float32.tsm)");
+    const std::string beside = model_stem(path) + ".float32.tsm";
+    std::error_code error;
+    throw std::runtime_error(
+        "model image '" + path +
+        "' is in fixed point; give the one in float32, as `tumblesight train` writes it: " +
+        (std::filesystem::exists(beside, error) ? "--model " + beside
+                                                : target_of<FixedPoint>(bytes) + ".float32.tsm"));
   }
   if (status != gnc::ModelStatus::kOk)
     throw std::runtime_error("model image '" + path + "' is refused: " + gnc::to_string(status));
@@ -168,10 +186,9 @@ gnc::ModelHeader read_fixed_point_header(const std::string& path) {
       gnc::read_model_image<FixedPoint>(image.data(), image.size(), nullptr, header, *weights);
   if (status == gnc::ModelStatus::kOk) return header;
   if (status == gnc::ModelStatus::kBadNumerics) {
-    throw std::runtime_error("model image '" + path +
-                             "' is in float32; give the one in fixed point (<target>.tsm), as `tumblesight "
-                             "quantize --model " +
-                             path + "` makes it");
+    throw std::runtime_error("model image '" + path + "' is in float32; give the one in fixed point (" +
+                             target_of<Float32>(image) + ".tsm), as `tumblesight quantize --model " + path +
+                             "` makes it");
   }
   throw std::runtime_error("model image '" + path + "' is refused: " + gnc::to_string(status));
 }

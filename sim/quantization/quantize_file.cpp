@@ -81,7 +81,8 @@ Eigen::Quaterniond quaternion(const gnc::Matrix3<float>& rotation) {
 
 // Angle between the attitudes of both numerics, per frame.
 std::vector<double> differences_deg(const Float32Model& model, const gnc::NetworkWeights<FixedPoint>& fixed,
-                                    const std::vector<ImageSequence>& sequences) {
+                                    const std::vector<ImageSequence>& sequences,
+                                    const TargetSymmetry& symmetry) {
   const auto float_laws = gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia));
   const auto fixed_laws = gnc::motion_laws<gnc::Fixed>(model.header.inertia);
   std::vector<double> differences;
@@ -89,8 +90,10 @@ std::vector<double> differences_deg(const Float32Model& model, const gnc::Networ
     const auto expected = attitudes_of<Float32>(model.weights, float_laws, sequence);
     const auto found = attitudes_of<FixedPoint>(fixed, fixed_laws, sequence);
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      const Eigen::Quaterniond other = quaternion(gnc::converted<float>(found[i]));
-      differences.push_back(kDegPerRad * angular_error_rad(quaternion(expected[i]), other));
+      const Eigen::Quaterniond reference = quaternion(expected[i]);
+      const Eigen::Quaterniond other =
+          nearest_equivalent(quaternion(gnc::converted<float>(found[i])), reference, symmetry);
+      differences.push_back(kDegPerRad * angular_error_rad(reference, other));
     }
   }
   return differences;
@@ -130,14 +133,19 @@ gnc::RangeNoise noise_of(const ScenarioSettings& seen) {
 
 }  // namespace
 
+bool is_another_network(const ErrorSummary& difference) {
+  constexpr double kStandardErrors = 2.0;
+  return difference.mean_deg - kStandardErrors * difference.mean_standard_error_deg > kMostDifference_deg;
+}
+
 QuantizationReport quantize_to_file(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
                                     int sequences, const std::string& path,
                                     const std::function<void(std::uint64_t)>& progress,
-                                    const ScenarioSettings& seen, const SurfaceSections* surface) {
+                                    const ScenarioSettings& seen, const QuantizationOptions& options) {
   QuantizationReport report;
   // First: a mesh without a surface is refused before anything is rendered.
-  report.surface = surface != nullptr
-                       ? *surface
+  report.surface = options.surface != nullptr
+                       ? *options.surface
                        : target_surface(meshes.front(), 1e-3 * model.header.projection.target_radius_mm);
   const Rendered rendered(meshes, seen.effects, model.header.target.data());
   const int held_back = sequences / kReportShare;
@@ -162,10 +170,12 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
 
   gnc::ModelHeader header = model.header;
   header.noise = noise_of(seen);
-  report.crc32 = write_model_file<FixedPoint>(path, header, network->weights, report.surface);
-  report.size_bytes = gnc::kModelImageSize<FixedPoint>;
   report.layers = compare(model.weights, *network, model.header.inertia, kept);
-  report.difference = summarise(differences_deg(model, network->weights, kept));
+  report.difference = summarise(differences_deg(model, network->weights, kept, options.symmetry));
+  report.size_bytes = gnc::kModelImageSize<FixedPoint>;
+  if (options.refuse_another_network && is_another_network(report.difference)) return report;
+  report.crc32 = write_model_file<FixedPoint>(path, header, network->weights, report.surface);
+  report.written = true;
   return report;
 }
 

@@ -75,6 +75,11 @@ std::string html_figure(const std::string& heading, const std::string& svg, cons
   return fmt::format("<figure><h2>{}</h2>\n{}<figcaption>{}</figcaption></figure>\n", heading, svg, caption);
 }
 
+std::string not_known_sentence(const std::string& target) {
+  return fmt::format("The network does not know the attitude of {} in these frames.",
+                     escape_markup(display_name(target)));
+}
+
 std::string html_notices(const std::vector<std::string>& notices, const std::vector<std::string>& remarks) {
   std::string html;
   for (const std::string& notice : notices) {

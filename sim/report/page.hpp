@@ -15,6 +15,9 @@ std::string html_page(const std::string& title, const std::string& body);
 // A figure below its heading. Heading and caption are markup. Empty when `svg` is empty.
 std::string html_figure(const std::string& heading, const std::string& svg, const std::string& caption);
 
+// The lead of a page whose attitudes are mostly wrong. Markup.
+std::string not_known_sentence(const std::string& target);
+
 // Faults and remarks at the top of a page, lists of facts side by side, and the last lines.
 std::string html_notices(const std::vector<std::string>& notices, const std::vector<std::string>& remarks);
 std::string html_facts(const std::vector<FactList>& lists);

@@ -63,9 +63,11 @@ std::string gallery(const ReplayReport& report) {
 std::string lead_sentence(const ReplayReport& report) {
   const auto has_attitude = [](const ReplayRow& row) { return row.has_attitude; };
   const auto attitudes = std::count_if(report.rows.begin(), report.rows.end(), has_attitude);
-  std::string text = fmt::format("The flight program gave {} to {} of the recording.",
-                                 counted(static_cast<std::uint64_t>(attitudes), "attitude"),
-                                 counted(report.setup.frames, "frame"));
+  std::string text = mostly_wrong_text(report);
+  if (!text.empty()) text = not_known_sentence(report.setup.target) + " " + text + " ";
+  text += fmt::format("The flight program gave {} to {} of the recording.",
+                      counted(static_cast<std::uint64_t>(attitudes), "attitude"),
+                      counted(report.setup.frames, "frame"));
   if (report.setup.truth.empty())
     text += " The truth is not known, so the errors are those that it expects itself.";
   return text;

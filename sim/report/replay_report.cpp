@@ -7,6 +7,7 @@
 #include <array>
 #include <functional>
 
+#include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/sil_report.hpp"
@@ -387,6 +388,10 @@ DataTable replay_errors_table(const ReplayReport& report) {
                 errors_row("RCNN, valid or doubtful", Mark::kRcnn, errors_of_all(report)),
                 errors_row("CNN, each frame alone", Mark::kCnn, errors_of_single_frames(report))};
   return table;
+}
+
+std::string mostly_wrong_text(const ReplayReport& report) {
+  return report.setup.shows_target ? mostly_wrong_text(summarise(errors_of_all(report))) : std::string{};
 }
 
 Json replay_json(const ReplayReport& report, const SilRunResult& run) {

@@ -18,6 +18,7 @@ namespace tumblesight::sim {
 struct ReplaySetup : FlightSetup {
   std::string recording;     // file
   std::string truth;         // file; empty: not known
+  bool shows_target = true;  // false: the recording is known to show another body
   std::uint32_t frames = 0;  // of the recording
 };
 
@@ -67,6 +68,9 @@ DataTable replay_table(const ReplayReport& report);
 FactList replay_facts(const ReplayReport& report);
 // Errors of valid attitudes, of all, and of single frames; no rows without truth.
 DataTable replay_errors_table(const ReplayReport& report);
+// What the reader must know if most of the attitudes whose truth is known are wrong, see mostly_wrong_text().
+// Empty otherwise, and if the frames show another body.
+std::string mostly_wrong_text(const ReplayReport& report);
 nlohmann::ordered_json replay_json(const ReplayReport& report, const SilRunResult& run);
 std::string replay_page(const ReplayReport& report);
 

@@ -146,6 +146,8 @@ std::vector<CsvColumn> make_csv_columns() {
                        return fmt::format("{} to {}", ranges.nearest_m, ranges.farthest_m);
                      },
                      [](const CellResult& cell) { return !cell.ranges.are_the_papers(); }});
+  columns.push_back({"symmetry", [](const Row& row) { return csv_text(to_string(row.cell.symmetry)); },
+                     [](const CellResult& cell) { return !cell.symmetry.is_none(); }});
   add_pose_columns(columns, "pose_", &CellResult::pose);
   add_pose_columns(columns, "pose_first_", &CellResult::pose_first);
   return columns;

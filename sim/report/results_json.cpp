@@ -74,6 +74,8 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
             {"paper_cnn", figure_json(paper.cnn)},
             {"goal", figure_json(paper.goal)},
             {"confusion", confusion_json(cell.rcnn_confusion)}};
+  if (!cell.symmetry.is_none()) json["symmetry"] = to_string(cell.symmetry);
+  if (is_mostly_wrong(cell)) json["mostly_wrong"] = true;
   if (!cell.peers.empty()) json["peers"] = peers_json(cell);
   if (!cell.sensor.is_the_papers()) json["sensor"] = sensor_json(cell.sensor);
   if (!cell.ranges.are_the_papers()) json["ranges_m"] = {cell.ranges.nearest_m, cell.ranges.farthest_m};

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/colours.hpp"
@@ -57,12 +58,16 @@ std::string peers_section(const SubjectResult& subject) {
 
 // One network on one mesh: its error under each condition.
 std::string lead_of(const SubjectResult& subject) {
-  std::string errors;
+  std::string errors, wrong;
   for (const CellResult& cell : subject.cells) {
+    if (is_mostly_wrong(cell))
+      wrong += fmt::format(" Condition {}: {}", to_string(cell.condition),
+                           mostly_wrong_text(cell.rcnn, cell.symmetry));
     errors += fmt::format("{}{} ({})", errors.empty() ? "" : ", ",
                           figure_cell(summary_figure(&ErrorSummary::mean_deg), cell.rcnn).text,
                           to_string(cell.condition));
   }
+  if (!wrong.empty()) return not_known_sentence(subject.target) + wrong;
   return fmt::format("After {} frames the mean error of the attitude of {} is {}.",
                      subject.cells.front().frames, escape_markup(display_name(subject.target)), errors);
 }
@@ -183,6 +188,16 @@ bool has_chapter(const Results& results, const SubjectResult& subject) {
   return !subject.cells.empty() && (subject.sweeps.has_value() || results.subjects.size() == 1);
 }
 
+// Of the subjects that have one; all cells of a subject have the same.
+std::string symmetries_of(const Results& results) {
+  std::string text;
+  for (const SubjectResult& subject : results.subjects) {
+    if (subject.cells.empty() || subject.cells.front().symmetry.is_none()) continue;
+    text += (text.empty() ? "" : "; ") + to_string(subject.cells.front().symmetry);
+  }
+  return text;
+}
+
 std::string notes_section(const std::vector<std::string>& notes) {
   std::string lines;
   for (const std::string& note : notes) lines += (lines.empty() ? "" : "<br>\n") + escape_markup(note);
@@ -195,6 +210,9 @@ std::string results_page(const Results& results) {
   std::string body = "<h1>Accuracy of attitude initialization</h1>\n";
   body += fmt::format("<p class=sub>Tumblesight, Monte Carlo evaluation, seed {}</p>\n<p class=lead>{}</p>\n",
                       results.seed, lead_sentence(results));
+  const std::string symmetries = symmetries_of(results);
+  if (!symmetries.empty())
+    body += fmt::format("<p class=sub>Errors modulo the symmetry of the target: {}.</p>\n", symmetries);
   body += notes_section(results.notes);
   body += overview_section(results) + poses_section(results);
   for (const SubjectResult& subject : results.subjects) {

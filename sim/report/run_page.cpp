@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/page.hpp"
@@ -33,9 +34,12 @@ std::string lead_sentence(const RunReport& report) {
   const ErrorSummary rcnn = last_frame_errors(report, Estimator::kRcnn);
   if (rcnn.count == 0) return "No sequence was answered completely, so there is no error to report.";
   const auto within = static_cast<std::size_t>(rcnn.within_20deg * static_cast<double>(rcnn.count) + 0.5);
+  const std::string wrong = mostly_wrong_text(report);
   return fmt::format(
-      "After {} the network's mean attitude error is {:.1f}° (median {:.1f}°). It is within 20° in {} of {} "
+      "{}After {} the network's mean attitude error is {:.1f}° (median {:.1f}°). It is within 20° in {} of "
+      "{} "
       "sequences.{} {} of {} steps were answered. The flight task allocated {} after its start.",
+      wrong.empty() ? "" : not_known_sentence(report.setup.target) + " " + wrong + " ",
       counted(report.setup.frames, "frame"), rcnn.mean_deg, rcnn.median_deg, within, rcnn.count,
       pose_sentence(report), report.steps_planned - report.steps_missed - report.frames_superseded,
       report.steps_planned,
@@ -99,6 +103,9 @@ std::string body(const RunReport& report) {
   html += fmt::format("<p class=sub>Software-in-the-loop run of Tumblesight: {} of {}, {:g} s apart</p>\n",
                       counted(report.setup.sequences, "sequence"), counted(report.setup.frames, "frame"),
                       report.frame_period_s);
+  if (!report.setup.symmetry.is_none())
+    html += fmt::format("<p class=sub>Errors modulo the symmetry of the target: {}.</p>\n",
+                        to_string(report.setup.symmetry));
   html += html_notices(report.notices, report.setup.remarks);
   html += fmt::format("<p class=lead>{}</p>\n", lead_sentence(report)) +
           html_text(run_errors_table(report), "headline") +
@@ -128,6 +135,11 @@ DataTable run_errors_table(const RunReport& report) {
 DataTable run_poses_table(const RunReport& report) {
   return poses_table({{report.setup.condition, pose_summary(report.results, 0),
                        pose_summary(report.results, report.setup.frames - 1)}});
+}
+
+std::string mostly_wrong_text(const RunReport& report) {
+  if (!show_the_target(report.setup.effects)) return {};
+  return mostly_wrong_text(last_frame_errors(report, Estimator::kRcnn), report.setup.symmetry);
 }
 
 std::string run_page(const RunReport& report) {

@@ -50,6 +50,7 @@ struct SilRunSetup : FlightSetup {
   Effects effects;
   SensorDescription sensor;
   RangeLimits ranges;
+  TargetSymmetry symmetry;  // errors are modulo it
 };
 
 struct RunReport {
@@ -76,6 +77,10 @@ DataTable run_errors_table(const RunReport& report);
 
 // The registered poses of first and last frames; no lines without poses.
 DataTable run_poses_table(const RunReport& report);
+
+// What the reader must know if most of the last frames are wrong, see mostly_wrong_text(). Empty otherwise,
+// and if the frames show another body.
+std::string mostly_wrong_text(const RunReport& report);
 
 std::string run_page(const RunReport& report);
 

@@ -8,6 +8,7 @@
 #include "hal/dds/idl/topics.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_json.hpp"
+#include "sim/sil/event_texts.hpp"
 #include "sim/sil/fault_names.hpp"
 #include "sim/terminal/text.hpp"
 
@@ -52,6 +53,7 @@ FactList settings_facts(const SilRunSetup& setup) {
                 {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
                 {"time", setup.free_running ? "free-running" : "lockstep"},
                 {"swath", fmt::format("{:.2f} m", swath_m_of(setup))}};
+  if (!setup.symmetry.is_none()) list.facts.emplace_back("errors modulo", to_string(setup.symmetry));
   return list;
 }
 
@@ -164,8 +166,9 @@ FactList event_facts(const SilRunResult& run) {
   }
   FactList list{"Warnings and errors", {}};
   for (const Kind& kind : kinds) {
-    list.facts.emplace_back(fmt::format("event {}", static_cast<int>(kind.id)),
-                            fmt::format("{} times, first in step {}", kind.count, kind.first_step));
+    list.facts.emplace_back(
+        fmt::format("{} (event {})", text_of(kind.id), static_cast<int>(kind.id)),
+        fmt::format("{}, first in step {}", counted(kind.count, "time"), kind.first_step));
   }
   return list;
 }
@@ -211,7 +214,8 @@ StatedPose stated_pose(const hal::AttitudeReport& report) {
   return pose;
 }
 
-std::vector<FrameResult> frame_results(const SilRunResult& run, std::optional<double> swath_m) {
+std::vector<FrameResult> frame_results(const SilRunResult& run, std::optional<double> swath_m,
+                                       const TargetSymmetry& symmetry) {
   std::vector<FrameResult> results;
   for (const StepResult& step : run.steps) {
     if (!step.answered) continue;
@@ -226,7 +230,9 @@ std::vector<FrameResult> frame_results(const SilRunResult& run, std::optional<do
     result.cnn = gnc::to_double(step.attitude.q_lrf_trf_single_frame);
     result.rcnn_predicted_rad = 1e-6 * step.attitude.predicted_error_urad;
     result.cnn_predicted_rad = 1e-6 * step.attitude.predicted_error_single_frame_urad;
-    if (result.valid && swath_m) result.pose = pose_errors(stated_pose(step.attitude), step.truth, *swath_m);
+    if (result.valid && swath_m)
+      result.pose = pose_errors(stated_pose(step.attitude), step.truth, *swath_m, symmetry);
+    take_nearest_equivalents(result, symmetry);
     results.push_back(result);
   }
   return results;
@@ -291,13 +297,14 @@ nlohmann::ordered_json outcome_json(const SilRunResult& run) {
 
 nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& run,
                                 const std::optional<NumericsComparison>& numerics) {
-  const std::vector<FrameResult> results = frame_results(run, swath_m_of(setup));
+  const std::vector<FrameResult> results = frame_results(run, swath_m_of(setup), setup.symmetry);
   nlohmann::ordered_json json{
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
   json["disturbances"] = disturbances_json(setup.disturbances);
   json["effect"] = effect_json(setup.effects);
   if (!setup.sensor.is_the_papers()) json["sensor"] = sensor_json(setup.sensor);
   if (!setup.ranges.are_the_papers()) json["ranges_m"] = {setup.ranges.nearest_m, setup.ranges.farthest_m};
+  if (!setup.symmetry.is_none()) json["symmetry"] = to_string(setup.symmetry);
   json["rcnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kRcnn));
   json["cnn"] = estimator_json(last_frame_summary(results, setup.frames, Estimator::kCnn));
   json["pose"] = pose_json(pose_summary(results, setup.frames - 1));
@@ -317,9 +324,10 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   RunReport report;
   report.setup = setup;
   report.frame_period_s = setup.disturbances.period_s;
-  report.results = frame_results(run, swath_m_of(setup));
+  report.results = frame_results(run, swath_m_of(setup), setup.symmetry);
   report.pictures = depth_pictures(run, setup.projection);
-  if (to_string(setup.effects).empty() && setup.sensor.is_the_papers() && setup.ranges.are_the_papers())
+  if (to_string(setup.effects).empty() && setup.sensor.is_the_papers() && setup.ranges.are_the_papers() &&
+      setup.symmetry.is_none())
     report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
   report.steps_planned = run.steps_planned;
   report.steps_missed = run.steps_missed;

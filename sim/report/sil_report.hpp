@@ -18,8 +18,10 @@ namespace tumblesight::sim {
 StatedPose stated_pose(const hal::AttitudeReport& report);
 
 // Answered steps only. `swath_m`: of the renderer that made the frames; without it there are no poses, for
-// runs whose truth does not hold position and velocity.
-std::vector<FrameResult> frame_results(const SilRunResult& run, std::optional<double> swath_m);
+// runs whose truth does not hold position and velocity. Errors are to the nearest attitude that looks the
+// same.
+std::vector<FrameResult> frame_results(const SilRunResult& run, std::optional<double> swath_m,
+                                       const TargetSymmetry& symmetry = {});
 
 struct InferenceTime {
   double median_us = 0.0;

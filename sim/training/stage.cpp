@@ -54,7 +54,7 @@ void Stage::start() {
   const bool timed = settings_.seconds > 0.0;
   progress_ = std::make_unique<ProgressBar>(
       settings_.name, timed ? "s" : settings_.unit,
-      timed ? whole_seconds(settings_.seconds) : samples(settings_.iterations), stderr, done());
+      timed ? whole_seconds(settings_.seconds) : units(settings_.iterations), stderr, done());
 }
 
 void Stage::set_rate(torch::optim::Optimizer& optimizer) {
@@ -75,7 +75,7 @@ double Stage::fraction() const {
 
 std::uint64_t Stage::done() const {
   return settings_.seconds > 0.0 ? whole_seconds(std::min(position_.seconds, settings_.seconds))
-                                 : samples(position_.iteration);
+                                 : units(position_.iteration);
 }
 
 void Stage::advance(double loss) {

@@ -29,7 +29,8 @@ struct StageSettings {
   std::int64_t iterations = 0;  // of a stage without a time of its own
   double seconds = 0.0;         // wall-clock time of the stage; 0: it ends after its iterations
   int batch = 0;
-  const char* unit = "";                  // of a batch: "images" or "sequences"
+  const char* unit = "";  // of the progress: "images" or "batches", as the option counts
+  int units_per_batch = 1;
   double learning_rate = 0.0;             // maximum: short linear warm-up, then a cosine to zero
   std::int64_t iterations_per_point = 0;  // between points of the log
   double checkpoint_s = 0.0;              // wall-clock time between checkpoints
@@ -95,13 +96,13 @@ class Stage {
   bool no_longer_improves() const {
     return settings_.seconds > 0.0 && fraction() - fraction_of_best_ > kPatience;
   }
-  std::uint64_t samples(std::int64_t iterations) const {
-    return static_cast<std::uint64_t>(iterations * settings_.batch);
+  std::uint64_t units(std::int64_t iterations) const {
+    return static_cast<std::uint64_t>(iterations * settings_.units_per_batch);
   }
   static std::uint64_t whole_seconds(double seconds) {
     return static_cast<std::uint64_t>(std::ceil(seconds));
   }
-  std::uint64_t done() const;  // for the progress: samples, or seconds of a stage with a time of its own
+  std::uint64_t done() const;  // for the progress: units, or seconds of a stage with a time of its own
   std::string path() const { return settings_.folder + "/" + settings_.name + ".ckpt"; }
 
   StageSettings settings_;

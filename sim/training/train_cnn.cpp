@@ -127,6 +127,7 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.seconds = settings.cnn_seconds;
   stage.batch = settings.cnn_batch;
   stage.unit = "images";
+  stage.units_per_batch = settings.cnn_batch;
   stage.learning_rate = settings.cnn_learning_rate;
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;

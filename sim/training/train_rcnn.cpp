@@ -89,7 +89,7 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.iterations = settings.rcnn_iterations;
   stage.seconds = settings.rcnn_seconds;
   stage.batch = settings.rcnn_batch;
-  stage.unit = "sequences";
+  stage.unit = "batches";
   stage.learning_rate = settings.rcnn_learning_rate;
   stage.iterations_per_point = kIterationsPerPoint;
   stage.checkpoint_s = settings.checkpoint_s;

@@ -243,6 +243,10 @@ std::string to_string(const EffectRanges& effects) {
   return text;
 }
 
+bool show_the_target(const EffectRanges& effects) {
+  return effects.high.wrong_object == 0.0 && effects.high.sphere == 0.0;
+}
+
 Effects drawn(const EffectRanges& ranges, std::uint64_t seed) {
   Effects effects;
   for (const EffectRow& row : effect_table()) {

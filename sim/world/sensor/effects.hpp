@@ -120,6 +120,8 @@ Effects effects_from(const std::vector<std::string>& texts);
 EffectRanges effect_ranges_from(const std::vector<std::string>& texts);
 // In the same form, in the order of the table; empty without an effect.
 std::string to_string(const EffectRanges& effects);
+// Whether the frames show the target. Not so with the effects that put another body in its place.
+bool show_the_target(const EffectRanges& effects);
 // Uniform within the ranges, each from a stream of its own: a range more does not change the others'
 // strengths.
 Effects drawn(const EffectRanges& ranges, std::uint64_t seed);

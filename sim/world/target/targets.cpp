@@ -147,7 +147,13 @@ JointLimits joint_limits(const std::string& target) {
 
 TriangleMesh target_mesh(const std::string& target, const std::string& source,
                          const MeshFileOptions& options) {
-  return source == kParametricMesh ? target_by_name(target) : load_mesh_file(source, options);
+  if (source != kParametricMesh) return load_mesh_file(source, options);
+  if (find_target(target) == nullptr)
+    throw std::invalid_argument("target '" + target +
+                                "' does not ship, so there is no mesh of it here; give its file with --mesh, "
+                                "or one of the targets that ship: " +
+                                list_of_names());
+  return target_by_name(target);
 }
 
 MeshFileOptions mesh_file_options(const MissionMesh& mesh) {

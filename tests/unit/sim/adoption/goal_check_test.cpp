@@ -24,6 +24,7 @@ Mission mission_with(const std::string& condition, const MissionGoal& goal) {
   return mission;
 }
 
+// Verifies TS-TRN-080.
 TEST(GoalChecks, CompareEachFigureWithItsLimit) {
   MissionGoal goal;
   goal.network_mean_deg = 2.0;

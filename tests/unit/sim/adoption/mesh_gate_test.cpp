@@ -13,6 +13,7 @@ MeshInspection found_with(const std::string& key, Severity severity) {
   return found;
 }
 
+// Verifies TS-TRN-080.
 TEST(MeshGate, FaultsStopAndLikelyMistakesSpeakAgainstGo) {
   const Mission mission;
   EXPECT_EQ(mesh_gate(mission, found_with("sphere", Severity::kFault)).faults.size(), 1U);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/cli/exit_status.hpp"
 #include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/sensor_arguments.hpp"
 #include "sim/cli/verbs.hpp"
@@ -125,7 +126,14 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"quantize --model /dev/null --mesh parametric --mesh-scale 2", 2, "leave --mesh-scale out"},
         Refusal{"evaluate --colour", 2, "--colour"},
         Refusal{"evaluate --target sputnik", 1, "near_shoemaker"},
-        Refusal{"evaluate --mesh /no/such.stl", 1, "/no/such.stl"},
+        Refusal{"evaluate --target mine --mesh /no/such.stl", 1, "/no/such.stl"},
+        Refusal{"evaluate --target mine", 1,
+                "'mine' does not ship, so there is no mesh of it here; give its file"},
+        Refusal{"evaluate --symmetry z:1 --sequences 1", 2, "--symmetry: 'z:1' is not AXIS:FOLD"},
+        Refusal{"evaluate --symmetry z:7 --symmetry x:3", 2,
+                "--symmetry: these axes make more than 60 attitudes"},
+        Refusal{"evaluate --paper --symmetry z:4", 2, "--paper: sets --symmetry itself"},
+        Refusal{"record --out x --model none.tsm", 2, "--model: model image 'none.tsm' does not exist"},
         Refusal{"evaluate --model /no/such.tsm", 1, "'/no/such.tsm' does not exist"},
         Refusal{"evaluate --model /dev", 1, "'/dev' is a folder; give a file"},
         Refusal{"quantize --model /dev", 2, "'/dev' is a folder; give a file"},
@@ -244,8 +252,8 @@ TEST(Evaluate, GivesTheSameFiguresWithOneAndTwoThreads) {
   const Workplace here;
   const std::string common =
       "evaluate --sequences 3 --frames 2 --seed 9 --no-baseline --model " + here.model();
-  ASSERT_EQ(here.run(common + " --threads 1 --json " + here.path("one.json")).exit_code, 0);
-  ASSERT_EQ(here.run(common + " --threads 2 --json " + here.path("two.json")).exit_code, 0);
+  ASSERT_EQ(here.run(common + " --threads 1 --json " + here.path("one.json")).exit_code, kGuessed);
+  ASSERT_EQ(here.run(common + " --threads 2 --json " + here.path("two.json")).exit_code, kGuessed);
   const std::string one = content(here.path("one.json"));
   EXPECT_FALSE(one.empty());
   EXPECT_EQ(one, content(here.path("two.json")));
@@ -256,7 +264,7 @@ TEST(Evaluate, WritesARowWithAllEstimatorsForEachCondition) {
   const Outcome outcome = here.run(
       "evaluate --sequences 2 --frames 2 --baseline-sequences 1 --condition degraded,offset --model " +
       here.model() + " --json " + here.path("rows.json"));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  ASSERT_EQ(outcome.exit_code, kGuessed) << outcome.errors;
   EXPECT_NE(outcome.output.find("near_shoemaker, degraded, offset, 2 sequences of 2 frames, seed 1"),
             std::string::npos)
       << outcome.output;
@@ -281,7 +289,7 @@ TEST(Evaluate, TakesEffectsTogetherAndNamesThem) {
   const std::string common = "evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model();
   const Outcome outcome =
       here.run(common + " --condition occluded --effect noise=5,rays=64 --json " + here.path("rows.json"));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  ASSERT_EQ(outcome.exit_code, kGuessed) << outcome.errors;
   EXPECT_NE(outcome.output.find("effect: rays=64,noise=5\n"), std::string::npos) << outcome.output;
   const auto rows = nlohmann::json::parse(content(here.path("rows.json"))).at("rows");
   ASSERT_EQ(rows.size(), 1U);
@@ -360,7 +368,7 @@ TEST(Evaluate, TakesAnotherSensorAndNamesItAndItsPeriod) {
   const std::string common = "evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model();
   const Outcome outcome =
       here.run(common + " --sensor own.json --range 30,60 --json rows.json --csv rows.csv");
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  ASSERT_EQ(outcome.exit_code, kGuessed) << outcome.errors;
   EXPECT_NE(outcome.output.find("sensor: own (CRC-32 "), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("ranges: 30 to 60 m"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.errors.find("No model.sensor.json says for which sensor"), std::string::npos)
@@ -375,7 +383,7 @@ TEST(Evaluate, TakesAnotherSensorAndNamesItAndItsPeriod) {
   EXPECT_EQ(
       nlohmann::json::parse(content(here.path("slower.json"))).at("rows")[0].at("disturbances").at("period"),
       2.0);
-  ASSERT_EQ(here.run(common + " --json plain.json").exit_code, 0);
+  ASSERT_EQ(here.run(common + " --json plain.json").exit_code, kGuessed);
   const std::string plain = content(here.path("plain.json"));
   for (const char* word : {"\"sensor\"", "ranges_m", "by_range_m"})
     EXPECT_EQ(plain.find(word), std::string::npos) << word;
@@ -387,7 +395,7 @@ TEST(Evaluate, RefusesANetworkThatWasTrainedForAnotherSensor) {
   const std::string common = "evaluate --sequences 1 --frames 1 --no-baseline --model " + here.model();
   const SensorDescription scan = sensor_named("scan_128");
   write_sensor_file(here.path("model.tsm"), scan);
-  EXPECT_EQ(here.run(common + " --sensor scan_128").exit_code, 0);
+  EXPECT_EQ(here.run(common + " --sensor scan_128").exit_code, kGuessed);
   const Outcome other = here.run(common + " --sensor flash_256");
   EXPECT_EQ(other.exit_code, 1);
   for (const std::string& what :
@@ -447,7 +455,7 @@ TEST(Evaluate, WritesACsvFileAndAPage) {
   const Workplace here;
   const Outcome outcome = here.run("evaluate --sequences 2 --frames 2 --no-baseline --model " + here.model() +
                                    " --csv " + here.path("rows.csv") + " --report " + here.path("page.html"));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  ASSERT_EQ(outcome.exit_code, kGuessed) << outcome.errors;
   EXPECT_EQ(content(here.path("rows.csv")).substr(0, 12), "target,mesh,");
   EXPECT_NE(content(here.path("page.html")).find("--sequences 2"), std::string::npos);
 }
@@ -491,13 +499,15 @@ TEST(Inputs, AreNeverOverwritten) {
       {"quantize --model model.tsm --out link.json" + sensor, "is also the file of --sensor"},
       {"quantize --model model.tsm --out ./model.tsm", "--out: './model.tsm' is also the file of --model"},
       {"evaluate --json mine.mtl" + mesh, "--json: 'mine.mtl' is also the file of --mesh (part of its mesh)"},
-      {"evaluate --json 'my paint.mtl' --mesh parts.obj", "is also the file of --mesh (part of its mesh)"},
-      {"record --out a.mtl --mesh parts.obj", "is also the file of --mesh (part of its mesh)"},
+      {"evaluate --json 'my paint.mtl' --target mine --mesh parts.obj",
+       "is also the file of --mesh (part of its mesh)"},
+      {"record --out a.mtl --target mine --mesh parts.obj", "is also the file of --mesh (part of its mesh)"},
       {"quantize --model model.tsm --out b.mtl --mesh parts.obj",
        "is also the file of --mesh (part of its mesh)"},
-      {"simulate --json 'my mesh.bin' --report r.html --mesh parts.gltf",
+      {"simulate --json 'my mesh.bin' --report r.html --target mine --mesh parts.gltf",
        "is also the file of --mesh (part of its mesh)"},
-      {"record --out skin.png --mesh parts.gltf", "is also the file of --mesh (part of its mesh)"},
+      {"record --out skin.png --target mine --mesh parts.gltf",
+       "is also the file of --mesh (part of its mesh)"},
       {"simulate --json key.pem --report r.html --dds-security bus.xml",
        "is also the file of --dds-security (a file that it names)"},
       {"bench --onnxruntime own.json --json own.json", "is also the file of --onnxruntime"},
@@ -520,14 +530,118 @@ TEST(Inputs, AreNeverOverwritten) {
 // Verifies TS-SIL-120.
 TEST(Evaluate, SaysWhatWrongAttitudesOfAMeshOfTheUsersOwnCanMean) {
   const Workplace here;
-  const Outcome outcome = here.run("evaluate --sequences 6 --frames 1 --no-baseline --mesh " +
-                                   own_mesh(here) + " --model " + here.model());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const Outcome outcome =
+      here.run("evaluate --sequences 6 --frames 1 --no-baseline --target near_shoemaker --mesh " +
+               own_mesh(here) + " --model " + here.model());
+  EXPECT_EQ(outcome.exit_code, kOfNoUse) << outcome.errors;
   for (const char* part :
        {"more than 20° off", "another spacecraft", "docs/training.md", "--mesh-up y", "--mesh-scale 1"})
     EXPECT_NE(words_of(outcome.output).find(part), std::string::npos) << part << " in: " << outcome.output;
   const Outcome shipped = here.run("evaluate --sequences 6 --frames 1 --no-baseline --model " + here.model());
   EXPECT_EQ(shipped.output.find("another spacecraft"), std::string::npos) << shipped.output;
+}
+
+// Verifies TS-SIL-380. Random weights, so that the attitudes are guesses.
+TEST(Evaluate, SaysWhatGuessingGivesAndFailsWithAStatusOfItsOwn) {
+  const Workplace here;
+  const std::string common = "evaluate --sequences 40 --frames 1 --no-baseline --model " + here.model();
+  const Outcome outcome = here.run(common + " --report page.html --json rows.json");
+  EXPECT_EQ(outcome.exit_code, kOfNoUse) << outcome.errors;
+  for (const char* part : {"Condition nominal: ", " % of the attitudes are more than 20° off",
+                           "is what guessing gives: an attitude drawn at random is off by 126.5° on average",
+                           "a network that was not trained"})
+    EXPECT_NE(words_of(outcome.output).find(part), std::string::npos) << part << " in: " << outcome.output;
+  EXPECT_NE(content(here.path("page.html")).find("does not know the attitude of NEAR Shoemaker"),
+            std::string::npos);
+  EXPECT_TRUE(
+      nlohmann::json::parse(content(here.path("rows.json"))).at("rows")[0].at("mostly_wrong").get<bool>());
+  for (const char* another : {"sphere=1", "wrong_object=1"}) {
+    const Outcome other = here.run(common + " --effect " + another);
+    EXPECT_EQ(other.exit_code, 0) << another << other.errors;
+    EXPECT_EQ(other.output.find("guessing"), std::string::npos) << other.output;
+  }
+  const Outcome right = here.run("evaluate --sequences 6 --no-baseline");
+  EXPECT_EQ(right.exit_code, 0) << right.errors;
+  EXPECT_EQ(right.output.find("more than 20° off"), std::string::npos) << right.output;
+}
+
+// Verifies TS-SIL-380.
+TEST(Mesh, OfTheUsersOwnNeedsANameInEveryVerb) {
+  const Workplace here;
+  const std::string mesh = " --mesh " + own_mesh(here), help = here.run("--help").output;
+  for (const std::string verb : {"simulate", "evaluate", "record --out x.tslr", "train --out out"}) {
+    if (help.find("\n  " + verb.substr(0, verb.find(' '))) == std::string::npos) continue;  // not built
+    const Outcome outcome = here.run(verb + mesh);
+    EXPECT_EQ(outcome.exit_code, kBadArguments) << verb;
+    EXPECT_NE(
+        outcome.errors.find("--mesh: name the spacecraft of the file with --target: a name of your own"),
+        std::string::npos)
+        << outcome.errors;
+    EXPECT_EQ(outcome.output, "") << "it began";
+  }
+  EXPECT_EQ(here.run("record --out x.tslr --frames 1 --sequences 1 --mesh parametric").exit_code, 0);
+}
+
+// Verifies TS-SIL-390.
+TEST(Evaluate, GivesErrorsModuloTheSymmetryOfTheTarget) {
+  const Workplace here;
+  const std::string common =
+      "evaluate --sequences 4 --frames 1 --no-baseline --model " + here.model() + " --json ";
+  (void)here.run(common + "plain.json");
+  const Outcome outcome = here.run(common + "any.json --symmetry z:any --symmetry x:2");
+  EXPECT_NE(outcome.output.find("errors modulo the symmetry: any turn about z, 1/2 turn about x"),
+            std::string::npos)
+      << outcome.output << outcome.errors;
+  const auto row = [&](const char* name) {
+    return nlohmann::json::parse(content(here.path(name))).at("rows").at(0);
+  };
+  EXPECT_EQ(row("any.json").at("symmetry"), "any turn about z, 1/2 turn about x");
+  EXPECT_TRUE(row("any.json").at("paper_rcnn").is_null());
+  EXPECT_FALSE(row("plain.json").at("paper_rcnn").is_null());
+  for (const char* estimator : {"rcnn", "cnn"}) {
+    const auto mean_deg = [&](const char* name) {
+      return row(name).at(estimator).at("mean_deg").get<double>();
+    };
+    EXPECT_LE(mean_deg("any.json"), 90.0);
+    EXPECT_LT(mean_deg("any.json"), mean_deg("plain.json"));
+  }
+}
+
+// Verifies TS-TRN-100.
+TEST(Quantize, WritesNoImageThatIsAnotherNetwork) {
+  const Workplace here;
+  const std::string quantize = "quantize --sequences 40 --out x.tsm --model " TUMBLESIGHT_SOURCE_DIR
+                               "/fsw/models/near_shoemaker.float32.tsm --mesh ";
+  const Outcome outcome = here.run(quantize + own_mesh(here) + " --mesh-scale 1.4");
+  EXPECT_EQ(outcome.exit_code, kOfNoUse) << outcome.output << outcome.errors;
+  for (const char* part :
+       {"the attitudes in fixed point are ", "° (mean) from those in float32, more than 5°",
+        "x.tsm is not written", "--mesh-up, --mesh-scale", "its target is near_shoemaker"})
+    EXPECT_NE(outcome.errors.find(part), std::string::npos) << part << " in: " << outcome.errors;
+  EXPECT_FALSE(std::filesystem::exists(here.path("x.tsm")));
+  const Outcome right = here.run(quantize + "parametric");
+  EXPECT_EQ(right.exit_code, 0) << right.errors;
+  EXPECT_TRUE(std::filesystem::exists(here.path("x.tsm")));
+}
+
+TEST(Record, TakesTheSwathAndTheSensorOfAModel) {
+  const Workplace here;
+  const std::string record = "record --target mine --sequences 1 --frames 1 --mesh " + own_mesh(here);
+  const std::string model = here.model("mine", 5000);
+  ASSERT_EQ(here.run(record + " --out mesh.tslr").exit_code, 0);
+  const Outcome outcome = here.run(record + " --out model.tslr --model " + model);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("The network was trained for 5.00 m, which is used"), std::string::npos)
+      << outcome.errors;
+  EXPECT_NE(content(here.path("model.tslr")), content(here.path("mesh.tslr")));
+  EXPECT_NE(
+      here.run(record + " --out x.tslr --model " + here.model("magellan")).errors.find("it is for magellan"),
+      std::string::npos);
+  here.model("mine", 5000);
+  write_sensor_file(model, sensor_named("scan_128"));
+  const Outcome other = here.run(record + " --out x.tslr --model " + model);
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_NE(other.errors.find("is for sensor scan_128"), std::string::npos) << other.errors;
 }
 
 TEST(MeshAdvice, NamesTheOtherAxisOrTheTurn) {
@@ -546,6 +660,11 @@ TEST(MeshAdvice, NamesTheOtherAxisOrTheTurn) {
   EXPECT_NE(turn.find("modelling tool"), std::string::npos) << turn;
   wrong.within_20deg = 0.6;
   EXPECT_EQ(mesh_advice(arguments, {5.9, 5.9}, wrong, common), "");
+  wrong.within_20deg = 0.4;
+  arguments.mesh.clear();
+  const std::string shipped = words_of(mesh_advice(arguments, {5.9, 5.9}, wrong, common));
+  EXPECT_NE(shipped.find("a network that was not trained"), std::string::npos) << shipped;
+  EXPECT_EQ(shipped.find("--mesh-up"), std::string::npos) << shipped;
 }
 
 TEST(Evaluate, NeedsTheInertiaOfATumblingTargetOfTheUsersOwn) {
@@ -558,7 +677,7 @@ TEST(Evaluate, NeedsTheInertiaOfATumblingTargetOfTheUsersOwn) {
   EXPECT_NE(without.errors.find("needs the inertia of 'mine'"), std::string::npos) << without.errors;
   EXPECT_NE(without.errors.find("--inertia Ixx,Iyy,Izz,Ixy,Ixz,Iyz"), std::string::npos) << without.errors;
   const Outcome with = here.run(common + " --inertia 10,12,9,0,-1,0.5");
-  EXPECT_EQ(with.exit_code, 0) << with.errors;
+  EXPECT_EQ(with.exit_code, kGuessed) << with.errors;
 }
 
 TEST(Evaluate, NamesTheFaultOfAModelImage) {
@@ -583,7 +702,7 @@ TEST(Evaluate, WarnsWhenTheNetworkWasTrainedForAnotherSwath) {
   const Workplace here;
   const Outcome outcome = here.run("evaluate --sequences 1 --frames 1 --no-baseline --model " +
                                    here.model("near_shoemaker", 11000));
-  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.exit_code, kGuessed);
   EXPECT_NE(outcome.errors.find("trained for 11.00 m"), std::string::npos) << outcome.errors;
 }
 
@@ -597,8 +716,16 @@ TEST(Quantize, SaysThatAnImageIsInFixedPointAlready) {
   const Workplace here;
   const Outcome outcome = here.run("quantize --model " + here.model());
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_NE(outcome.errors.find("model.tsm' is in fixed point; give the one in float32"), std::string::npos)
+  EXPECT_NE(
+      outcome.errors.find("model.tsm' is in fixed point; give the one in float32, as `tumblesight train` "
+                          "writes it: near_shoemaker.float32.tsm"),
+      std::string::npos)
       << outcome.errors;
+  const Outcome beside = here.run("quantize --model " TUMBLESIGHT_SOURCE_DIR "/fsw/models/magellan.tsm");
+  EXPECT_NE(
+      beside.errors.find("writes it: --model " TUMBLESIGHT_SOURCE_DIR "/fsw/models/magellan.float32.tsm"),
+      std::string::npos)
+      << beside.errors;
 }
 
 TEST(Quantize, SaysThatASurfaceNeedsAnImageInFixedPoint) {
@@ -607,7 +734,7 @@ TEST(Quantize, SaysThatASurfaceNeedsAnImageInFixedPoint) {
   const Outcome outcome = here.run("quantize --surface-only --out x.tsm --model " + image);
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.errors.find("near_shoemaker.float32.tsm' is in float32; give the one in fixed point "
-                                "(<target>.tsm), as `tumblesight quantize --model " +
+                                "(near_shoemaker.tsm), as `tumblesight quantize --model " +
                                 image + "` makes it"),
             std::string::npos)
       << outcome.errors;
@@ -761,6 +888,7 @@ TEST(Quantize, RefusesOptionsOfTheCalibrationWithASurface) {
     EXPECT_EQ(outcome.exit_code, 2) << option;
     EXPECT_NE(outcome.errors.find(" excludes --surface-only"), std::string::npos) << outcome.errors;
   }
+  EXPECT_NE(here.run(surface + " --symmetry z:4").errors.find("leave --symmetry out"), std::string::npos);
   EXPECT_NE(here.run(surface + " --mesh a.stl --mesh b.stl").errors.find("give one --mesh"),
             std::string::npos);
   EXPECT_NE(here.run("quantize --surface-only --model model.tsm").errors.find("requires --out"),

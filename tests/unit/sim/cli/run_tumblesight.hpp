@@ -12,10 +12,14 @@
 #include <string>
 #include <vector>
 
+#include "sim/cli/exit_status.hpp"
 #include "tests/support/sim_models.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {
+
+// Exit status of a run with the random weights of model(): the attitudes are guesses.
+inline constexpr int kGuessed = kOfNoUse;
 
 struct Outcome {
   int exit_code = -1;

@@ -74,7 +74,7 @@ TEST(Simulate, LeavesFiguresAndAReport) {
   const Workplace here;
   const Outcome outcome = here.run("simulate --sequences 2 --frames 3 --seed 4 --model " + here.model() +
                                    " --json " + here.path("run.json") + " --report " + here.path("run.html"));
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  ASSERT_EQ(outcome.exit_code, kGuessed) << outcome.errors;
   const auto json = nlohmann::json::parse(content(here.path("run.json")));
   EXPECT_EQ(json.at("steps_missed"), 0);
   EXPECT_EQ(json.at("flight_heap_allocations"), 0);
@@ -93,14 +93,44 @@ TEST(Simulate, AgreesWithEvaluateOnTheSameSeed) {
       " --condition tumbling --sequences 2 --frames 3 --seed 4 --sensor own.json --model " + here.model() +
       " --json ";
   ASSERT_EQ(here.run("simulate --report " + here.path("r.html") + common + here.path("sil.json")).exit_code,
-            0);
-  ASSERT_EQ(here.run("evaluate --no-baseline" + common + here.path("direct.json")).exit_code, 0);
+            kGuessed);
+  ASSERT_EQ(here.run("evaluate --no-baseline" + common + here.path("direct.json")).exit_code, kGuessed);
   const auto sil = nlohmann::json::parse(content(here.path("sil.json")));
   const auto direct = nlohmann::json::parse(content(here.path("direct.json"))).at("rows").at(0);
   EXPECT_EQ(sil.at("rcnn"), direct.at("rcnn"));
   EXPECT_EQ(sil.at("cnn"), direct.at("cnn"));
   EXPECT_EQ(sil.at("disturbances").at("period"), 1.5);
   EXPECT_EQ(sil.at("disturbances"), direct.at("disturbances"));
+}
+
+// Verifies TS-SIL-380. Random weights, so that the attitudes are guesses.
+TEST(Simulate, SaysThatTheAttitudesAreMostlyWrongAndFailsWithAStatusOfItsOwn) {
+  const Workplace here;
+  const std::string common = "simulate --sequences 6 --frames 2 --report r.html --model " + here.model();
+  const Outcome outcome = here.run(common);
+  EXPECT_EQ(outcome.exit_code, kOfNoUse) << outcome.errors;
+  EXPECT_NE(outcome.output.find(" % of the attitudes are more than 20° off"), std::string::npos)
+      << outcome.output;
+  EXPECT_NE(content(here.path("r.html")).find("does not know the attitude of NEAR Shoemaker"),
+            std::string::npos);
+  EXPECT_EQ(here.run(common + " --effect sphere=1").exit_code, 0);
+  const Outcome right = here.run("simulate --sequences 3 --report r.html");
+  EXPECT_EQ(right.exit_code, 0) << right.errors;
+  EXPECT_EQ(right.output.find("more than 20° off"), std::string::npos) << right.output;
+}
+
+// Verifies TS-SIL-390.
+TEST(Simulate, GivesTheErrorsOfEvaluateModuloTheSymmetryOfTheTarget) {
+  const Workplace here;
+  const std::string common =
+      " --sequences 2 --frames 2 --symmetry z:4 --symmetry 1,0,0:2 --model " + here.model() + " --json ";
+  (void)here.run("simulate --report r.html" + common + "sil.json");
+  (void)here.run("evaluate --no-baseline" + common + "direct.json");
+  const auto sil = nlohmann::json::parse(content(here.path("sil.json")));
+  const auto direct = nlohmann::json::parse(content(here.path("direct.json"))).at("rows").at(0);
+  EXPECT_EQ(sil.at("symmetry"), "1/4 turn about z, 1/2 turn about x");
+  for (const char* key : {"symmetry", "rcnn", "cnn", "pose", "pose_first"})
+    EXPECT_EQ(sil.at(key), direct.at(key)) << key;
 }
 
 TEST(Simulate, FailsWhenTheFlightProgramRefusesTheModel) {
@@ -140,7 +170,7 @@ TEST(Simulate, CarriesOnWithAFlightProgramThatKeepsItsState) {
                                 flight + " --report r.html --json ";
   for (const char* const figures : {"first.json", "second.json"}) {
     const Outcome outcome = here.run(arguments + figures);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_EQ(outcome.exit_code, kGuessed) << outcome.errors;
   }
   const auto first = nlohmann::json::parse(content(here.path("first.json")));
   const auto second = nlohmann::json::parse(content(here.path("second.json")));
@@ -216,7 +246,7 @@ TEST(Simulate, ShowsTheFlightProgramThatItWaitsFor) {
   const Outcome flight = here.run_command("timeout 30 " + command, "flight");
   const Outcome outcome = simulation.get();
   EXPECT_EQ(flight.exit_code, 0) << flight.errors;
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.exit_code, kGuessed) << outcome.errors;
   EXPECT_NE(outcome.output.find("2 of 2 answered"), std::string::npos) << outcome.output;
 }
 
@@ -226,7 +256,7 @@ TEST(Simulate, GivesBothSidesTheKeyOfAFile) {
   std::ofstream(here.path("mission.key")) << std::string(64, '7');
   const Outcome outcome = here.run(
       "simulate --sequences 1 --frames 2 --command-key mission.key --report r.html --model " + here.model());
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.exit_code, kGuessed) << outcome.errors;
 }
 
 // Verifies TS-SEC-040.
@@ -261,8 +291,8 @@ TEST(Simulate, SucceedsTwiceAtOnceWithTheSameReport) {
       "simulate --sequences 3 --frames 4 --report same.html --model " + here.model();
   auto first = std::async(std::launch::async, [&] { return here.run(arguments, "first"); });
   const Outcome second = here.run(arguments, "second");
-  EXPECT_EQ(first.get().exit_code, 0) << content(here.path("first.err"));
-  EXPECT_EQ(second.exit_code, 0) << second.errors;
+  EXPECT_EQ(first.get().exit_code, kGuessed) << content(here.path("first.err"));
+  EXPECT_EQ(second.exit_code, kGuessed) << second.errors;
   EXPECT_NE(content(here.path("same.html")).find("</html>"), std::string::npos);
   for (const auto& entry : std::filesystem::directory_iterator(here.path(""))) {
     EXPECT_NE(entry.path().extension(), ".partial");

@@ -209,6 +209,37 @@ TEST_F(MonteCarlo, TellsTheEstimatorTheTurnOfTheChaserUnlessAskedNotTo) {
   EXPECT_GT(different, 0U);
 }
 
+// Verifies TS-SIL-390.
+TEST_F(MonteCarlo, TakesEveryEstimateToTheNearestAttitudeThatLooksTheSame) {
+  TemplateMatcherSettings coarse;
+  coarse.directions = 20;
+  coarse.rolls = 4;
+  coarse.candidates = 1;
+  coarse.icp_iterations = 1;
+  const TemplateMatcher matcher(mesh_, swath_m(mesh_), coarse);
+  const ConstantPeer peer;
+  MonteCarloSettings symmetric = settings(2, 5);
+  symmetric.baseline_sequences = 3;
+  symmetric.peers = {&peer};
+  const MonteCarloResult plain = run(symmetric, &matcher);
+  symmetric.symmetry = target_symmetry_from({"z:4", "x:2"});
+  const MonteCarloResult nearest = run(symmetric, &matcher);
+  ASSERT_EQ(nearest.frames.size(), plain.frames.size());
+  std::size_t nearer = 0;
+  for (std::size_t i = 0; i < nearest.frames.size(); ++i) {
+    for (const Estimator estimator : {Estimator::kRcnn, Estimator::kCnn, Estimator::kBaseline}) {
+      const Eigen::Quaterniond expected =
+          nearest_equivalent(estimate(plain.frames[i], estimator), plain.frames[i].truth, symmetric.symmetry);
+      EXPECT_EQ(estimate(nearest.frames[i], estimator).coeffs(), expected.coeffs());
+      if (has_estimate(nearest.frames[i], estimator))
+        EXPECT_LE(error_deg(nearest.frames[i], estimator), 98.43) << "the farthest from a square prism's";
+      if (error_deg(nearest.frames[i], estimator) < error_deg(plain.frames[i], estimator) - 1.0) ++nearer;
+    }
+  }
+  EXPECT_GT(nearer, 10U);
+  EXPECT_LE(nearest.peers[0].errors_deg[2], 98.43);
+}
+
 TEST_F(MonteCarlo, RefusesADamagedModel) {
   model_.back() ^= 1U;
   EXPECT_THROW(run(2), std::invalid_argument);

@@ -92,6 +92,17 @@ TEST(PoseErrors, DoNotDependOnTheSignOfTheQuaternion) {
   EXPECT_TRUE(errors.inside_95);
 }
 
+// Verifies TS-SIL-390.
+TEST(PoseErrors, AreToTheNearestAttitudeThatLooksTheSame) {
+  // A quarter turn about the target's z, and 1 mrad.
+  const Eigen::Vector3d z_lrf = truth().q_lrf_trf * Eigen::Vector3d::UnitZ();
+  const StatedPose pose = pose_off_by((kPi / 2.0 + 0.001) * z_lrf, Eigen::Vector3d::Zero());
+  EXPECT_NEAR(pose_errors(pose, truth(), kSwath_m).turn_deg, 90.0573, 1e-3);
+  const PoseErrors errors = pose_errors(pose, truth(), kSwath_m, target_symmetry_from({"z:4"}));
+  EXPECT_NEAR(errors.turn_deg, 0.001 * kDegPerRad, 1e-5);
+  EXPECT_TRUE(errors.inside_95);
+}
+
 TEST(PoseErrors, WithoutAPoseAreAHalfTurn) {
   StatedPose pose = pose_off_by(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   pose.doubts = gnc::kPoseUnknown;

@@ -43,6 +43,7 @@ class MissionFile : public testing::Test {
   std::filesystem::path folder_;
 };
 
+// Verifies TS-TRN-090.
 TEST_F(MissionFile, NeedsOnlyNameAndMesh) {
   const Mission mission = read(with(""));
   EXPECT_EQ(mission.name, "craft");
@@ -104,6 +105,7 @@ TEST_F(MissionFile, InertiaInTheAxesOfTheFileIsTurned) {
   EXPECT_EQ(tensor_of(*z_up.inertia), in_file) << "the axes of a z-up file are those of the TRF";
 }
 
+// Verifies TS-TRN-090.
 TEST_F(MissionFile, WhatIsWrongIsNamedWithLineLimitsAndRemedy) {
   const struct {
     std::string text;

@@ -105,6 +105,22 @@ TEST(ReplayReport, NamesTheKindOfARefusalWhoseEventWasSuppressed) {
   EXPECT_EQ(report_of(made, "").rows[4].status, "refused: bad");
 }
 
+// Verifies TS-SIL-380.
+TEST(ReplayReport, SaysThatMostOfItsAttitudesAreWrong) {
+  SilRunResult made = run();
+  EXPECT_EQ(mostly_wrong_text(report_of(made, "a.csv")), "");
+  for (StepResult& step : made.steps) step.attitude.q_lrf_trf = {0, 1 << 30, 0, 0};
+  EXPECT_EQ(mostly_wrong_text(report_of(made, "")), "") << "the truth is not known";
+  ReplayReport report = report_of(made, "a.csv");
+  EXPECT_EQ(mostly_wrong_text(report),
+            "100 % of the attitudes are more than 20° off, and their mean error of 180.0° is of no use.");
+  EXPECT_NE(replay_page(report).find("<p class=lead>The network does not know the attitude"),
+            std::string::npos);
+  report.setup.shows_target = false;
+  EXPECT_EQ(mostly_wrong_text(report), "");
+  EXPECT_EQ(replay_page(report).find("does not know"), std::string::npos);
+}
+
 TEST(ReplayPage, IsWellFormedWithTruthWithoutItAndWithoutAnswers) {
   for (const char* const truth : {"a.csv", ""}) {
     for (const bool answered : {true, false}) {

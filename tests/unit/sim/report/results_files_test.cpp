@@ -64,6 +64,39 @@ TEST(SummaryJson, IsNullWithoutASequence) {
   for (const auto& [key, value] : json.items()) EXPECT_TRUE(value.is_null()) << key;
 }
 
+// Verifies TS-SIL-390.
+TEST(ResultsFiles, NameTheSymmetryAndLeaveOutThePapersFigures) {
+  Results results = sample_results();
+  EXPECT_EQ(results_csv(results).find("symmetry"), std::string::npos);
+  EXPECT_EQ(results_json(results)["rows"][0].count("symmetry"), 0U);
+  results.subjects.pop_back();
+  for (CellResult& cell : results.subjects[0].cells) cell.symmetry = target_symmetry_from({"z:4"});
+  const nlohmann::ordered_json row = results_json(results)["rows"][0];
+  EXPECT_EQ(row["symmetry"], "1/4 turn about z");
+  EXPECT_TRUE(row["paper_rcnn"].is_null());
+  EXPECT_NE(results_csv(results).find(",symmetry\n"), std::string::npos);
+  EXPECT_NE(results_markdown(results).find("nominal, modulo 1/4 turn about z"), std::string::npos);
+  const std::string page = results_page(results);
+  EXPECT_NE(page.find("Errors modulo the symmetry of the target: 1/4 turn about z."), std::string::npos);
+  EXPECT_EQ(page.find("12.69"), std::string::npos) << "the paper's figure";
+}
+
+// Verifies TS-SIL-380.
+TEST(ResultsPage, LeadsWithTheConditionsWhoseAttitudesAreMostlyWrong) {
+  Results results = sample_results();
+  results.subjects.pop_back();
+  EXPECT_EQ(results_page(results).find("does not know the attitude"), std::string::npos);
+  EXPECT_EQ(results_json(results)["rows"][1].count("mostly_wrong"), 0U);
+  results.subjects[0].cells[1] = sample_cell(Condition::kOccluded, 120.0, false);
+  const std::string page = results_page(results);
+  EXPECT_NE(
+      page.find("<p class=lead>The network does not know the attitude of NEAR Shoemaker in these frames. "
+                "Condition occluded: 100 % of the attitudes are more than 20° off, and their mean error of "
+                "124.0° is what guessing gives"),
+      std::string::npos);
+  EXPECT_EQ(results_json(results)["rows"][1]["mostly_wrong"], true);
+}
+
 TEST(ResultsJson, HasARowForEachSubjectAndCondition) {
   const nlohmann::ordered_json json = results_json(sample_results());
   ASSERT_EQ(json.at("rows").size(), 3U);

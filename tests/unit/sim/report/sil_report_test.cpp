@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "sim/evaluation/curves.hpp"
+#include "sim/sil/event_texts.hpp"
 #include "sim/sil/fault_names.hpp"
 #include "tests/unit/sim/report/markup_checks.hpp"
 
@@ -235,8 +237,49 @@ TEST(RunReport, CountsWarningsAndErrorsByEvent) {
   const RunReport report = run_report(setup(), warned);
   const auto& facts = report.facts.back().facts;
   ASSERT_EQ(facts.size(), 1U);
-  EXPECT_EQ(facts[0].first, "event 34");
+  EXPECT_EQ(facts[0].first, "frame from the future (event 34)");
   EXPECT_EQ(facts[0].second, "2 times, first in step 1");
+}
+
+// No two events have the same text, and none is without.
+TEST(EventTexts, AreOneForEachEvent) {
+  std::set<std::string> texts;
+  for (const hal::EventRule& rule : hal::kEventRules) texts.insert(text_of(rule.id));
+  EXPECT_EQ(texts.size(), hal::kEventRules.size());
+  EXPECT_EQ(texts.count("unknown"), 0U);
+  EXPECT_EQ(text_of(static_cast<hal::EventId>(999)), "unknown");
+}
+
+// Verifies TS-SIL-390.
+TEST(RunReport, IsModuloTheSymmetryOfTheTargetAndWithoutThePapersFigures) {
+  SilRunResult quarter = run();
+  for (StepResult& step : quarter.steps) step.attitude.q_lrf_trf = {759250125, 0, 0, 759250125};
+  SilRunSetup symmetric = setup();
+  EXPECT_TRUE(run_report(symmetric, quarter).paper.rcnn.has_value());
+  EXPECT_EQ(run_json(symmetric, quarter).count("symmetry"), 0U);
+  symmetric.symmetry = target_symmetry_from({"z:4"});
+  const RunReport report = run_report(symmetric, quarter);
+  EXPECT_FALSE(report.paper.rcnn.has_value());
+  EXPECT_EQ(mostly_wrong_text(report), "");
+  EXPECT_NE(run_page(report).find("Errors modulo the symmetry of the target: 1/4 turn about z."),
+            std::string::npos);
+  const nlohmann::ordered_json json = run_json(symmetric, quarter);
+  EXPECT_EQ(json.at("symmetry"), "1/4 turn about z");
+  EXPECT_LT(json.at("rcnn").at("mean_deg").get<double>(), 1e-3);
+}
+
+// Verifies TS-SIL-380.
+TEST(RunReport, SaysFirstThatTheAttitudesAreMostlyWrong) {
+  SilRunResult quarter = run();
+  for (StepResult& step : quarter.steps) step.attitude.q_lrf_trf = {759250125, 0, 0, 759250125};
+  SilRunSetup wrong = setup();
+  EXPECT_EQ(run_page(run_report(wrong, run())).find("does not know the attitude"), std::string::npos);
+  EXPECT_NE(run_page(run_report(wrong, quarter))
+                .find("<p class=lead>The network does not know the attitude of NEAR Shoemaker in these "
+                      "frames. 100 % of the attitudes are more than 20° off"),
+            std::string::npos);
+  wrong.effects.sphere = 1.0;
+  EXPECT_EQ(mostly_wrong_text(run_report(wrong, quarter)), "") << "it is not the target";
 }
 
 TEST(RunReport, CarriesPicturesAndSettings) {

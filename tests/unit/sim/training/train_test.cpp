@@ -63,6 +63,18 @@ TEST(TrainingProgress, ShowsFiguresOnceThereAreSome) {
   EXPECT_EQ(progress_note(point), "loss 0.2500  validation 12.50 deg");
 }
 
+TEST_F(TrainTest, ShowsItsProgressInTheUnitsOfItsOptions) {
+  const TrainingSettings here = in("progress");
+  Cnn cnn = fresh_cnn();
+  Recurrent recurrent(targets.inertia);
+  testing::internal::CaptureStderr();
+  ASSERT_TRUE(train_cnn(targets, here, cnn, never));
+  ASSERT_TRUE(train_rcnn(targets, here, cnn, recurrent, never));
+  const std::string shown = testing::internal::GetCapturedStderr();
+  EXPECT_NE(shown.find("48/48 images"), std::string::npos) << shown;  // --cnn-images
+  EXPECT_NE(shown.find("6/6 batches"), std::string::npos) << shown;   // --rcnn-iterations
+}
+
 TEST_F(TrainTest, AStoppedCnnTrainingResumesToTheSameNetwork) {
   Cnn through = fresh_cnn();
   ASSERT_TRUE(train_cnn(targets, in("through"), through, never));

@@ -1,0 +1,16 @@
+// --symmetry: turns after which the target looks the same.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "sim/evaluation/target_symmetry.hpp"
+
+namespace tumblesight::sim {
+
+// `symmetry` must outlive the parsing.
+void add_symmetry_option(CLI::App& command, TargetSymmetry& symmetry);
+
+// A line on the terminal; none without a symmetry.
+void print_symmetry(const TargetSymmetry& symmetry);
+
+}  // namespace tumblesight::sim
