@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@
 #include "sim/report/mesh_report.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
+#include "sim/world/scenario/condition.hpp"
 #include "sim/world/target/mesh_file.hpp"
+#include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -28,6 +31,7 @@ struct MeshCommandArguments {
   std::string file;
   std::string mesh_up = "y";
   double mesh_scale = 1.0;
+  Eigen::Vector3d moved_origin_trf_m = Eigen::Vector3d::Zero();  // of --mission
   std::string fix;
   std::vector<double> origin;  // empty: the centre of the surface
   bool keep_strays = false;
@@ -64,7 +68,7 @@ int show_mesh(const MeshCommandArguments& arguments, const std::string& command_
   require_usable(arguments);
   MeshReport report;
   report.file = arguments.file;
-  report.options = {mesh_up_from(arguments.mesh_up), arguments.mesh_scale};
+  report.options = {mesh_up_from(arguments.mesh_up), arguments.mesh_scale, arguments.moved_origin_trf_m};
   report.command = command_line;
   report.generated = local_time_text();
   const TriangleMesh mesh = read_mesh_file(arguments.file, report.options);
@@ -91,6 +95,27 @@ CLI::Validator mesh_to_write() {
   return CLI::Validator(check, "", "mesh file");
 }
 
+void add_mesh_of_mission_option(CLI::App& command, MeshCommandArguments& arguments) {
+  const auto take = [&arguments](const std::string& text) {
+    try {
+      const Mission mission = mission_named(text, condition_names());
+      if (mission.mesh.file == kParametricMesh)
+        throw std::invalid_argument("the mesh of '" + mission.name +
+                                    "' ships and is in no file; give one of your own");
+      arguments.file = mission.mesh.file;
+      arguments.mesh_up = mission.mesh.up;
+      arguments.mesh_scale = mission.mesh.scale;
+      arguments.moved_origin_trf_m = mesh_file_options(mission.mesh).origin_trf_m;
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError("--mission", error.what());
+    }
+  };
+  CLI::Option* option = command.add_option_function<std::string>(
+      "--mission", take, "the mesh of this mission file, as the mission reads it");
+  option->type_name("FILE");
+  for (const char* same : {"FILE", "--mesh-up", "--mesh-scale"}) option->excludes(command.get_option(same));
+}
+
 }  // namespace
 
 void add_mesh_command(CLI::App& app, const std::string& command_line) {
@@ -104,7 +129,7 @@ void add_mesh_command(CLI::App& app, const std::string& command_line) {
       "Example: a mesh in millimetres, looked at, and written about its centre of mass\n"
       "  tumblesight mesh craft.glb --mesh-scale 0.001 --html craft.html\n"
       "  tumblesight mesh craft.glb --mesh-scale 0.001 --fix craft.stl --origin 0,0,0.8\n");
-  command->add_option("FILE", arguments->file, "mesh file")->required()->check(file_path());
+  command->add_option("FILE", arguments->file, "mesh file, unless --mission names one")->check(file_path());
   command
       ->add_option("--mesh-up", arguments->mesh_up,
                    "axis of the mesh file that points along the target frame's z")
@@ -115,6 +140,7 @@ void add_mesh_command(CLI::App& app, const std::string& command_line) {
                1e-6, 1e6)
       ->type_name("X")
       ->capture_default_str();
+  add_mesh_of_mission_option(*command, *arguments);
   CLI::Option* fix_option = command->add_option(
       "--fix", arguments->fix,
       "write a cleaned copy to this file (.stl or .obj): in metres, z up, about a new origin");
@@ -134,8 +160,10 @@ void add_mesh_command(CLI::App& app, const std::string& command_line) {
       ->check(file_path())
       ->type_name("FILE");
   add_json_option(*command, arguments->json);
-  command->callback(
-      [arguments, command_line] { throw CLI::RuntimeError(show_mesh(*arguments, command_line)); });
+  command->callback([arguments, command_line] {
+    if (arguments->file.empty()) throw CLI::RequiredError("FILE or --mission");
+    throw CLI::RuntimeError(show_mesh(*arguments, command_line));
+  });
 }
 
 }  // namespace tumblesight::sim

@@ -191,6 +191,7 @@ void add_replay_command(CLI::App& app, const std::string& command_line) {
       ->check(file_path())
       ->type_name("FILE");
   add_target_option(*command, arguments->scenario.target, TargetChoice::kWithModel);
+  add_mission_option(*command, arguments->scenario);
   add_model_options(*command, arguments->scenario);
   add_json_option(*command, arguments->scenario.json);
   add_flight_options(*command, *arguments);

@@ -207,8 +207,11 @@ class Findings {
                     length_text(off_m), length_text(found_.core_radius_m),
                     length_text(found_.centred_radius_m),
                     std::max(0.0, 100.0 - percent(found_.centred_radius_m, found_.core_radius_m))),
-        "--fix OUT.stl --origin X,Y,Z moves the origin to the centre of mass; without --origin, to the "
-        "centre of the surface.");
+        fmt::format(
+            "--fix OUT.stl --origin X,Y,Z, or origin = [X, Y, Z] in a mission, moves the origin to the "
+            "centre of mass; the centre of the surface is at {:.2f},{:.2f},{:.2f}.",
+            found_.symmetry.centre_trf_m.x(), found_.symmetry.centre_trf_m.y(),
+            found_.symmetry.centre_trf_m.z()));
   }
 
   void thin_reach() {
