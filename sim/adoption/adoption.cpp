@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -19,10 +20,11 @@
 #include "sim/evaluation/experiment.hpp"
 #include "sim/sil/flight_process.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/write_file.hpp"
 #include "sim/training/export_model.hpp"
+#include "sim/training/mission_training.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
-#include "sim/training/training_conditions.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -48,8 +50,13 @@ constexpr std::uint32_t kFlownSequences = 10;
 constexpr double kLongestFlight_s = 300.0;
 constexpr std::uint32_t kShareForJoints = 3;  // a row of an angle has a third of the sequences
 
-bool panels_turn(const Mission& mission, const MeshInspection& mesh) {
-  return mesh.panels > 0 && mission.panels && mission.panels->lowest_deg < mission.panels->highest_deg;
+// The largest number of threads that divides the batch, up to the point where parts become too small to be
+// normalized.
+int trainers_of(int threads) {
+  constexpr int kMost = 4;
+  int trainers = 1;
+  while (2 * trainers <= std::min(threads, kMost)) trainers *= 2;
+  return trainers;
 }
 
 // In the order of the table of conditions. Tumbling needs an inertia.
@@ -60,14 +67,6 @@ std::vector<Condition> judged_conditions(const Mission& mission) {
     if (needs_inertia(row.condition) && !mission.inertia) continue;
     conditions.push_back(row.condition);
   }
-  return conditions;
-}
-
-std::vector<Condition> trained_conditions(const Mission& mission) {
-  if (mission.conditions.empty()) return training_conditions({"all"});
-  std::vector<Condition> conditions;
-  for (const auto& [name, weight] : mission.conditions)
-    conditions.insert(conditions.end(), static_cast<std::size_t>(weight), condition_from(name));
   return conditions;
 }
 
@@ -101,20 +100,28 @@ class Adoption {
       steps_.plan(step, 0.0);
     if (check_mesh()) {
       prepare();
-      choose_start(budget_s);
-      if (train()) {
-        to_fixed_point();
-        evaluate();
-        fly();
-      } else {
-        outcome_.stopped = true;
-      }
+      const bool done = choose_start(budget_s) && train() && go_on([this] { to_fixed_point(); }) &&
+                        go_on([this] { evaluate(); }) && go_on([this] { fly(); });
+      outcome_.stopped = !done;
     }
     judge();
     return std::move(outcome_);
   }
 
  private:
+  // One more step. False if the run was stopped before its end.
+  bool go_on(const std::function<void()>& step) {
+    if (stop_) return false;
+    step();
+    save_plan();
+    return !stop_;
+  }
+
+  void save_plan() {
+    plan_.elapsed_s = steps_.elapsed_s();
+    write_plan(plan_path_, plan_);
+  }
+
   // False if no network could be right.
   bool check_mesh() {
     steps_.begin(kMesh);
@@ -140,21 +147,16 @@ class Adoption {
   }
 
   void prepare() {
-    std::vector<EffectRanges> sets{{}};
-    if (panels_turn(mission_, outcome_.mesh)) {
-      Effects joints;
-      joints.joints = 1.0;
-      sets.emplace_back(joints);
-    }
     const Eigen::Matrix3d inertia =
         mission_.inertia ? tensor_of(*mission_.inertia) : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
-    targets_ = make_training_targets({mesh_}, trained_conditions(mission_), inertia, sets, mission_.name,
-                                     settings_.sensor, settings_.ranges_of);
+    targets_ =
+        make_training_targets({mesh_}, training_conditions(mission_), inertia, training_effect_sets(mission_),
+                              mission_.name, settings_.sensor, settings_.ranges_of);
     targets_.mission_crc32 = mission_crc32(mission_);
     training_.folder = settings_.folder + "/training";
     training_.seed = settings_.seed;
     training_.workers = std::max(1, settings_.threads - 1);
-    training_.trainers = settings_.threads;
+    training_.trainers = found_plan_ ? found_plan_->trainers : trainers_of(settings_.threads);
     training_.bfloat16 = cpu_has_bfloat16();
     training_.checkpoint_s = 60.0;
     keep_to_one_thread();
@@ -162,22 +164,26 @@ class Adoption {
     keeper_ = std::make_unique<ImageKeeper>(
         settings_.folder + "/" + mission_.name, mesh_,
         1e-3 * model_header(mission_.name, targets_).projection.target_radius_mm,
-        scenario_of(targets_, Condition::kNominal, {}, 1));
+        scenario_of(targets_, Condition::kNominal, {}, 1), symmetry_);
+    write_file(settings_.folder + "/" + mission_.name + ".sensor.json", to_json(settings_.sensor));
   }
 
-  // Also shares out the time.
-  void choose_start(double budget_s) {
+  // Also shares out the time. False if it was stopped.
+  bool choose_start(double budget_s) {
     steps_.begin(kStart);
     if (found_plan_) {
       plan_ = *found_plan_;
+      require_same_start();
     } else {
       plan_.mission_crc32 = mission_crc32(mission_);
       plan_.minutes = settings_.minutes;
       plan_.seed = settings_.seed;
+      plan_.trainers = training_.trainers;
       plan_.start_from = nearest_start(budget_s);
+      if (stop_) return false;
       const auto rows = static_cast<std::uint32_t>(judged_conditions(mission_).size());
       plan_.time = time_plan(steps_.left_s(), rows + 1, sequence_s(), settings_.sequences);
-      write_plan(plan_path_, plan_);
+      save_plan();
     }
     training_.start_from = plan_.start_from;
     training_.cnn_seconds = plan_.time.cnn_s;
@@ -187,7 +193,26 @@ class Adoption {
     steps_.plan(kEvaluation, plan_.time.after_s);
     outcome_.start_from =
         plan_.start_from.empty() ? "random weights" : fs::path(plan_.start_from).filename().string();
+    if (plan_.start_from.empty())
+      outcome_.remarks.emplace_back(
+          "The training began from random weights, since there is no trained network in float32 to begin "
+          "from: "
+          "fsw/models/fetch_images gets them from the history of the repository.");
+    fmt::print("    {}\n", outcome_.start_from);
     steps_.say(outcome_.start_from);
+    return true;
+  }
+
+  void require_same_start() const {
+    const bool same = !settings_.start_was_given ||
+                      (settings_.start_from.empty() ? plan_.start_from.empty()
+                                                    : settings_.start_from.front() == plan_.start_from);
+    if (same && (settings_.sequences == 0 || settings_.sequences == plan_.time.sequences)) return;
+    throw std::runtime_error(fmt::format(
+        "'{}' is of a run that began from {} and evaluates {} sequences; leave --start-from and --sequences "
+        "out to go "
+        "on, or choose another --out",
+        plan_path_, plan_.start_from.empty() ? "random weights" : plan_.start_from, plan_.time.sequences));
   }
 
   std::string nearest_start(double budget_s) {
@@ -246,21 +271,21 @@ class Adoption {
     Cnn cnn;
     Recurrent recurrent(targets_.inertia);
     training_.after_point = [&](const TrainingPoint& point, bool best) {
-      outcome_.training.push_back(point);
       steps_.say(fmt::format("validation error {:.2f}°", point.mean_deg));
-      plan_.elapsed_s = steps_.elapsed_s();
-      write_plan(plan_path_, plan_);
+      save_plan();
       if (best) keep_images(cnn, recurrent, point);
     };
     steps_.begin(kCnn);
     bool finished = train_cnn(targets_, training_, cnn, stop_);
     if (finished) {
-      recurrent = Recurrent(targets_.inertia);  // without what keep_images() made of it
+      // A run that was continued has less time.
+      training_.rcnn_seconds = std::max(0.25 * plan_.time.rcnn_s,
+                                        std::min(plan_.time.rcnn_s, steps_.left_s() - plan_.time.after_s));
       steps_.begin(kRecurrent);
       finished = train_rcnn(targets_, training_, cnn, recurrent, stop_);
     }
-    plan_.elapsed_s = steps_.elapsed_s();
-    write_plan(plan_path_, plan_);
+    save_plan();
+    outcome_.training = read_training_log(training_.folder);
     if (finished) network_ = model_of(cnn, recurrent, mission_.name, targets_);
     return finished;
   }
@@ -288,7 +313,7 @@ class Adoption {
     ProgressBar bar("evaluating", "steps", steps_of(experiment));
     outcome_.result = run_experiment(subject, experiment, [&bar](std::uint64_t done) { bar.update(done); });
     bar.finish();
-    if (panels_turn(mission_, outcome_.mesh)) evaluate_joints(subject);
+    if (panels_turn(mission_)) evaluate_joints(subject);
     std::string text;
     for (const CellResult& cell : outcome_.result.cells)
       text += fmt::format("{}{} {:.2f}°", text.empty() ? "network: " : ", ", to_string(cell.condition),
@@ -321,11 +346,16 @@ class Adoption {
                                        "--report",
                                        folder + "/flight.html"};
     outcome_.flight.command = "tumblesight";
-    for (const std::string& argument : arguments) outcome_.flight.command += " " + argument;
+    for (const std::string& argument : arguments) {
+      const bool spaced = argument.find(' ') != std::string::npos;
+      outcome_.flight.command += spaced ? " '" + argument + "'" : " " + argument;
+    }
     FlightProcess process(settings_.program, arguments, folder + "/flight.log");
     outcome_.flight.flown = process.wait_for_end(kLongestFlight_s);
     outcome_.flight.well = process.ended_well();
-    steps_.say(outcome_.flight.well ? fmt::format("{} sequences", kFlownSequences) : process.how_it_ended());
+    steps_.say(outcome_.flight.well    ? fmt::format("{} sequences", kFlownSequences)
+               : outcome_.flight.flown ? std::string("did not end well")
+                                       : fmt::format("took longer than {:g} s", kLongestFlight_s));
   }
 
   // The verdict. A run that was stopped has none.
@@ -340,6 +370,7 @@ class Adoption {
     for (const GoalCheck& check : outcome_.checks)
       if (!check.met) outcome_.reasons.push_back(to_string(check));
     for (const std::string& reason : failing_conditions(outcome_.result)) outcome_.reasons.push_back(reason);
+    judge_joints();
     const bool trained = !outcome_.model_path.empty();
     if (trained && !outcome_.flight.well)
       outcome_.reasons.push_back(
@@ -350,6 +381,16 @@ class Adoption {
     steps_.finish(outcome_.go ? "GO" : "NO-GO");
     outcome_.steps = steps_.steps();
     write_adoption_report(settings_, outcome_, mesh_);
+  }
+
+  void judge_joints() {
+    for (std::size_t i = 0; i < outcome_.joint_cells.size(); ++i) {
+      const ErrorSummary& network = outcome_.joint_cells[i].rcnn;
+      if (network.count == 0 || network.within_20deg >= 0.5) continue;
+      outcome_.reasons.push_back(
+          fmt::format("nominal, panels at {:g}°: {:.1f} % of the network's attitudes are more than 20° off",
+                      outcome_.joint_angles_deg[i], 100.0 * (1.0 - network.within_20deg)));
+    }
   }
 
   void add_outlook() {

@@ -29,6 +29,7 @@ struct AdoptionSettings {
   std::uint64_t seed = 1;
   std::uint32_t sequences = 0;          // per row of the evaluation; 0: by the time
   std::vector<std::string> start_from;  // float32 images to choose from; empty: random weights
+  bool start_was_given = false;         // by the user, not chosen from what ships
   int threads = 1;
   std::string program;  // of this tool, which flies the network
   std::string command;  // that was typed, for the report

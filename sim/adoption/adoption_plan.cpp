@@ -15,6 +15,7 @@ void write_plan(const std::string& path, const AdoptionPlan& plan) {
                                     {"minutes", plan.minutes},
                                     {"seed", plan.seed},
                                     {"start_from", plan.start_from},
+                                    {"trainers", plan.trainers},
                                     {"cnn_s", plan.time.cnn_s},
                                     {"rcnn_s", plan.time.rcnn_s},
                                     {"after_s", plan.time.after_s},
@@ -35,6 +36,7 @@ std::optional<AdoptionPlan> read_plan(const std::string& path, std::uint32_t mis
     plan.minutes = json.at("minutes");
     plan.seed = json.at("seed");
     plan.start_from = json.at("start_from");
+    plan.trainers = json.at("trainers");
     plan.time = {json.at("cnn_s"), json.at("rcnn_s"), json.at("after_s"), json.at("sequences"),
                  json.at("calibration_sequences")};
     plan.elapsed_s = json.at("elapsed_s");

@@ -14,6 +14,7 @@ struct AdoptionPlan {
   double minutes = 0.0;
   std::uint64_t seed = 0;
   std::string start_from;  // empty: random weights
+  int trainers = 1;
   TimePlan time;
   double elapsed_s = 0.0;  // when it was last written
 };

@@ -73,10 +73,9 @@ std::string list_of(const std::string& heading, const std::vector<std::string>& 
 }
 
 DataTable goals_table(const std::vector<GoalCheck>& checks) {
-  DataTable table{{"condition", "figure", "asked", "found"}, {}};
+  DataTable table{{"goal", "asked", "found"}, {}};
   for (const GoalCheck& check : checks)
-    table.rows.push_back({{to_string(check.condition)},
-                          {check.figure},
+    table.rows.push_back({{to_string(check.condition) + ": " + check.figure},
                           {check.limit},
                           {check.value, check.met ? Mark::kMet : Mark::kMissed}});
   return table;

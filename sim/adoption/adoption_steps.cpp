@@ -87,15 +87,10 @@ void AdoptionSteps::begin(const std::string& name) {
     last->taken_s = seconds_since(step_start_);
     last->state = StepState::kDone;
   }
-  plan(name, 0.0);
-  std::size_t number = 1;
-  for (AdoptionStep& step : steps_) {
-    if (step.name == name) {
-      step.state = StepState::kRunning;
-      break;
-    }
-    ++number;
-  }
+  const auto next = std::find_if(steps_.begin(), steps_.end(),
+                                 [&name](const AdoptionStep& step) { return step.name == name; });
+  next->state = StepState::kRunning;
+  const auto number = next - steps_.begin() + 1;
   step_start_ = Clock::now();
   fmt::print("\n  Step {} of {}: {}  ({} of {} left)\n", number, steps_.size(), name, duration_text(left_s()),
              duration_text(budget_s_));
@@ -135,7 +130,7 @@ void AdoptionSteps::write_page(bool renews) const {
       "<table><tr><th>step</th><th></th><th class=number>time</th><th "
       "class=number>planned</th><th></th></tr>\n";
   for (const AdoptionStep& step : steps_) body += row_of(step);
-  body += "</table>\n" + html_figure("Validation error", curve_of(folder_), "");
+  body += "</table>\n<div class=pair>" + html_figure("Validation error", curve_of(folder_), "") + "</div>\n";
   if (!renews) body += "<p><a href=report.html>Report</a></p>\n";
   write_file(folder_ + "/progress.html", html_page("adoption", body + html_footer(local_time_text(), "")));
 }

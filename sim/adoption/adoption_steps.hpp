@@ -25,7 +25,7 @@ class AdoptionSteps {
   AdoptionSteps(std::string title, std::string folder, double budget_s, double taken_s);
 
   void plan(const std::string& name, double seconds);
-  // Ends the running step, if there is one, and begins this one. Prints a line.
+  // Ends the running step, if there is one, and begins this one, which was planned. Prints a line.
   void begin(const std::string& name);
   void say(const std::string& result);     // of the running step; renews the page
   void remark(const std::string& text);    // stands on the page from now on

@@ -18,11 +18,12 @@ class ImageKeeper {
  public:
   // `stem`: path of the images without ".tsm". `seen`: the sequences that calibrate the scales. Makes the
   // surface of the image; throws as target_surface() does. The mesh must outlive this object.
-  ImageKeeper(std::string stem, const TriangleMesh& mesh, double radius_m, ScenarioSettings seen);
-  ~ImageKeeper();  // waits for the image in work
+  ImageKeeper(std::string stem, const TriangleMesh& mesh, double radius_m, ScenarioSettings seen,
+              TargetSymmetry symmetry);
+  ~ImageKeeper();  // writes what is still to be written
 
-  // Writes <stem>.float32.tsm at once, and <stem>.tsm unless an earlier one is still in work. Its scales come
-  // from a few sequences, which costs a few hundredths of a degree.
+  // Writes <stem>.float32.tsm at once, and <stem>.tsm as soon as an earlier one is done. Its scales come from
+  // a few sequences, which costs a few hundredths of a degree. A failure is printed: the training goes on.
   void keep(std::unique_ptr<Float32Model> model);
   // Writes both, with scales from so many sequences, and waits for it.
   QuantizationReport finish(const Float32Model& model, int sequences);
@@ -31,12 +32,16 @@ class ImageKeeper {
   std::string float32_path() const { return stem_ + ".float32.tsm"; }
 
  private:
+  bool is_busy() const;
+  void begin(std::shared_ptr<Float32Model> model);
   QuantizationReport write_fixed(const Float32Model& model, int sequences) const;
 
   std::string stem_;
   std::vector<TriangleMesh> meshes_;
   ScenarioSettings seen_;
   SurfaceSections surface_;
+  TargetSymmetry symmetry_;
+  std::shared_ptr<Float32Model> waiting_;  // for the image in work
   std::future<void> work_;
 };
 

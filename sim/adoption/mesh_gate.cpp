@@ -53,6 +53,12 @@ MeshGate mesh_gate(const Mission& mission, const MeshInspection& found) {
       gate.remarks.push_back(text);
     }
   }
+  const bool turn = mission.panels && mission.panels->lowest_deg < mission.panels->highest_deg;
+  if (turn && found.panels == 0)
+    gate.faults.push_back(
+        "The mission has panels that turn, and none is found in the mesh: name their material solar or panel "
+        "(OBJ, glTF), "
+        "separate them from the body, or leave [panels] out.");
   if (found.panels > 0 && !mission.panels) gate.remarks.push_back(panels_remark(found));
   return gate;
 }

@@ -18,6 +18,7 @@
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/terminal/text.hpp"
+#include "sim/training/mission_training.hpp"
 #include "sim/world/scenario/condition.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -61,9 +62,22 @@ SensorArguments sensor_of(const Mission& mission) {
   return sensor;
 }
 
+// Now rather than after the training.
+void require_programs(const std::string& program) {
+  const std::string flight = (fs::path(program).parent_path() / "flight").string();
+  if (!fs::exists(flight))
+    throw std::runtime_error("the flight program '" + flight + "' is not there; build it too: ninja flight");
+}
+
 AdoptionSettings settings_of(const AdoptArguments& arguments, const std::string& command_line) {
   AdoptionSettings settings;
-  settings.mission = mission_named(arguments.mission, condition_names());
+  try {
+    settings.mission = mission_named(arguments.mission, condition_names());
+    (void)training_conditions(settings.mission);
+    (void)target_symmetry_from(settings.mission.symmetry);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("MISSION", error.what());
+  }
   use_mission(settings.mission);
   const SensorArguments sensor = sensor_of(settings.mission);
   settings.sensor = sensor.sensor;
@@ -73,18 +87,21 @@ AdoptionSettings settings_of(const AdoptArguments& arguments, const std::string&
     for (const std::string& warning : warnings) fmt::print(stderr, "  note: {}\n", warning);
     return ranges;
   };
+  settings.start_was_given = !arguments.start_from.empty();
   settings.folder = arguments.out.empty() ? "out/" + settings.mission.name : arguments.out;
   settings.minutes = arguments.minutes > 0.0 ? arguments.minutes : settings.mission.minutes;
   settings.seed = arguments.seed;
   settings.sequences = arguments.sequences;
-  settings.start_from = arguments.start_from.empty()       ? shipped_starts()
-                        : arguments.start_from == "random" ? std::vector<std::string>{}
-                                                           : std::vector<std::string>{arguments.start_from};
+  settings.start_from = arguments.start_from.empty() ? shipped_starts()
+                        : arguments.start_from == "random"
+                            ? std::vector<std::string>{}
+                            : std::vector<std::string>{full_path(arguments.start_from)};
   settings.threads = arguments.threads > 0
                          ? arguments.threads
                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   settings.program = fs::read_symlink("/proc/self/exe").string();
   settings.command = command_line;
+  require_programs(settings.program);
   return settings;
 }
 
@@ -182,9 +199,9 @@ void add_adopt_command(CLI::App& app, const std::string& command_line) {
       1, 100'000)
       ->type_name("N");
   command
-      ->add_option(
-          "--start-from", arguments->start_from,
-          "float32 model image whose CNN to start from, or random [the nearest of those in fsw/models]")
+      ->add_option("--start-from", arguments->start_from,
+                   "float32 model image whose CNN to start from, or random [the nearest of those in "
+                   "fsw/models; in less than 20 minutes the first]")
       ->type_name("FILE|random");
   limit_whole_number(command->add_option("--threads", arguments->threads, "worker threads, 0: one per core"),
                      0, 256)
@@ -194,6 +211,7 @@ void add_adopt_command(CLI::App& app, const std::string& command_line) {
     if (!arguments->start_from.empty() && arguments->start_from != "random") {
       const std::string fault = fault_of_model_path(arguments->start_from);
       if (!fault.empty()) throw CLI::ValidationError("--start-from", fault);
+      (void)read_float32_model(arguments->start_from);  // throws now rather than after the mesh
     }
     throw CLI::RuntimeError(run(*arguments, command_line));
   });

@@ -109,11 +109,9 @@ void take_sensor_of(const Mission& mission, const CLI::App& command, SensorArgum
     sensor.sensor = sensor_named(mission.sensor);
     sensor.file = sensor_path(mission.sensor);
   }
-  if (!given("--range")) {
-    if (mission.ranges_m)
-      sensor.ranges = RangeLimits{mission.ranges_m->nearest_m, mission.ranges_m->farthest_m};
-    sensor.largest_rate_deg_s = mission.largest_rate_deg_s;
-  }
+  if (!given("--range") && mission.ranges_m)
+    sensor.ranges = RangeLimits{mission.ranges_m->nearest_m, mission.ranges_m->farthest_m};
+  sensor.largest_rate_deg_s = mission.largest_rate_deg_s;
 }
 
 // `take`: called with the mission when all other options are known.

@@ -141,6 +141,13 @@ std::string fault_of_axes(const QuantizeArguments& arguments, const TriangleMesh
                     "(--mesh-up)");
 }
 
+void require_the_missions_target(const QuantizeArguments& arguments, const std::string& of_image) {
+  if (!arguments.mission || arguments.target == of_image) return;
+  throw std::invalid_argument(fmt::format("model image '{}' is of {}, and the mission '{}' of {}",
+                                          arguments.model, of_image, arguments.mission->file,
+                                          arguments.target));
+}
+
 // Writes the image `--model` with the surface of the mesh.
 void replace_surface(const QuantizeArguments& arguments) {
   if (arguments.meshes.meshes.size() > 1)
@@ -149,6 +156,7 @@ void replace_surface(const QuantizeArguments& arguments) {
     throw CLI::ValidationError("--surface-only", "compares no attitudes; leave --symmetry out");
   const SensorFiles sensor = require_usable_files(arguments);
   const gnc::ModelHeader header = read_fixed_point_header(arguments.model);
+  require_the_missions_target(arguments, header.target.data());
   const TriangleMesh mesh = load_meshes(arguments.meshes, header.target.data()).front();
   const std::string fault_of_mesh = fault_of_size(mesh, header);
   if (!fault_of_mesh.empty()) throw std::invalid_argument(fault_of_mesh);
@@ -170,6 +178,9 @@ void quantize_file(QuantizeArguments arguments) {
   if (arguments.out.empty()) arguments.out = default_out(arguments.model);
   const SensorFiles sensor = require_usable_files(arguments);
   const auto model = read_float32_model(arguments.model);
+  require_the_missions_target(arguments, model->header.target.data());
+  if (arguments.mission && arguments.symmetry.is_none())
+    arguments.symmetry = target_symmetry_from(arguments.mission->symmetry);
   std::vector<std::string> notes{check_sensor_of_model(arguments.model, arguments.sensor.sensor)};
   ScenarioSettings seen = seen_by(arguments.sensor, 1e-3 * model->header.projection.swath_mm, notes);
   seen.effects = arguments.effects;

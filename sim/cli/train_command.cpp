@@ -18,6 +18,7 @@
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/target_surface.hpp"
 #include "sim/training/export_model.hpp"
+#include "sim/training/mission_training.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
 #include "sim/world/math/angles.hpp"
@@ -34,6 +35,7 @@ struct TrainOptions {
   std::vector<std::string> conditions = {"all"};
   Effects effects;
   std::vector<EffectRanges> effect_sets;  // in turn
+  bool conditions_given = false, effects_given = false;
   SensorArguments sensor;
   std::string device = "auto";
   std::string precision = "auto";
@@ -100,7 +102,14 @@ void write_images(const std::string& stem, const std::vector<TriangleMesh>& mesh
         report.difference.mean_deg);
 }
 
+// Those of --mission, unless their options are given.
+std::vector<Condition> conditions_of(const TrainOptions& options) {
+  if (options.mission && !options.conditions_given) return training_conditions(*options.mission);
+  return training_conditions(options.conditions);
+}
+
 std::vector<EffectRanges> effect_sets_of(const TrainOptions& options) {
+  if (options.mission && !options.effects_given) return training_effect_sets(*options.mission);
   return options.effect_sets.empty() ? std::vector<EffectRanges>{options.effects} : options.effect_sets;
 }
 
@@ -125,8 +134,8 @@ TrainingTargets targets_of(const TrainOptions& options, const std::vector<Triang
     for (const std::string& warning : warnings) std::printf("note: %s\n", warning.c_str());
     return limits;
   };
-  return make_training_targets(meshes, training_conditions(options.conditions), inertia_of(options),
-                               effect_sets_of(options), options.target, options.sensor.sensor, ranges);
+  return make_training_targets(meshes, conditions_of(options), inertia_of(options), effect_sets_of(options),
+                               options.target, options.sensor.sensor, ranges);
 }
 
 // "none", or effects as after --effect, whose strengths may be ranges.
@@ -300,8 +309,9 @@ void add_train_command(CLI::App& app) {
     minutes->excludes(command->get_option(number));
   limit_whole_number(
       command->add_option("--trainers", settings.trainers,
-                          "threads that share the batches of the CNN, beside the rendering ones"),
-      1, 64)
+                          "threads that share the batches of the CNN, beside the rendering ones: 1, 2, 4, 8"),
+      1, 8)
+      ->check(one_of({"1", "2", "4", "8"}))
       ->type_name("N")
       ->capture_default_str();
   limit_number(command->add_option("--checkpoint-seconds", settings.checkpoint_s,
@@ -322,6 +332,8 @@ void add_train_command(CLI::App& app) {
       ->capture_default_str();
   command->callback([options, command] {
     require_a_name(*command, options->meshes.meshes);
+    options->conditions_given = command->count("--condition") > 0;
+    options->effects_given = command->count("--effect") > 0 || command->count("--effect-set") > 0;
     throw CLI::RuntimeError(train(*options));
   });
 }

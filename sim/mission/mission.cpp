@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMaxBytes = 1'000'000;
 constexpr double kNearest_m = 10.0;
 constexpr double kFarthest_m = 500.0;
+constexpr double kSlowest_deg_s = 0.1;
 constexpr double kFastest_deg_s =
     20.0;  // the paper's limit; at more, a turn between two frames is not unique
 constexpr const char* kKeys =
@@ -189,6 +190,17 @@ std::map<std::string, MissionGoal> goals_of(TomlFields& fields, const std::vecto
   return goals;
 }
 
+// Warnings of `tumblesight mesh` that may be as they should be. A fault cannot be accepted.
+std::vector<std::string> accepted_findings(TomlFields& fields) {
+  const std::vector<std::string> known{"unit", "up", "origin", "strays", "reach", "triangles"};
+  const std::vector<std::string> keys = fields.texts("accept");
+  for (const std::string& key : keys) {
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      fields.refuse("accept", fmt::format("a list of findings of the mesh: {}", fmt::join(known, ", ")));
+  }
+  return keys;
+}
+
 void take_sensor(TomlFields& fields, Mission& mission) {
   if (const auto sensor = fields.text("sensor")) {
     const bool is_file = sensor->find('/') != std::string::npos || sensor->find('.') != std::string::npos;
@@ -201,7 +213,7 @@ void take_sensor(TomlFields& fields, Mission& mission) {
     mission.ranges_m = MissionRanges{(*ranges)[0], (*ranges)[1]};
   }
   mission.largest_rate_deg_s =
-      fields.number("largest_rate_deg_s", 0.0, kFastest_deg_s).value_or(kFastest_deg_s);
+      fields.number("largest_rate_deg_s", kSlowest_deg_s, kFastest_deg_s).value_or(kFastest_deg_s);
 }
 
 Mission mission_of(const toml::table& root, const std::string& file, const std::vector<std::string>& known) {
@@ -215,7 +227,7 @@ Mission mission_of(const toml::table& root, const std::string& file, const std::
   mission.inertia = inertia_of(fields, mission.mesh);
   mission.panels = panels_of(fields);
   mission.symmetry = fields.texts("symmetry");
-  mission.accept = fields.texts("accept");
+  mission.accept = accepted_findings(fields);
   take_sensor(fields, mission);
   mission.conditions = conditions_of(fields, known);
   mission.goals = goals_of(fields, known);

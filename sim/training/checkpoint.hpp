@@ -13,7 +13,10 @@ namespace tumblesight::sim {
 struct CheckpointPosition {
   std::int64_t iteration = 0;
   double seconds = 0.0;
-  std::int64_t fingerprint = 0;  // hash of all settings that affect the result: fingerprint() in stage.hpp
+  double skipped = 0.0;           // share of the stage that an early end left out
+  double least_mean_deg = 180.0;  // validation error of the best point so far
+  double fraction_of_best = 0.0;  // of the stage, when it was reached
+  std::int64_t fingerprint = 0;   // hash of all settings that affect the result: fingerprint() in stage.hpp
 };
 
 // Writes a temporary file and renames it: if the process is killed, either the old or the new checkpoint is
@@ -28,6 +31,10 @@ void save_checkpoint(const std::string& path, const Module& module, const torch:
   archive.write("optimizer", optimizer_archive);
   archive.write("iteration", torch::tensor(position.iteration), true);
   archive.write("seconds", torch::tensor(position.seconds, torch::kDouble), true);
+  archive.write(
+      "course",
+      torch::tensor({position.skipped, position.least_mean_deg, position.fraction_of_best}, torch::kDouble),
+      true);
   archive.write("fingerprint", torch::tensor(position.fingerprint), true);
   archive.save_to(path + ".new");
   std::filesystem::rename(path + ".new", path);
@@ -64,6 +71,12 @@ bool load_checkpoint(const std::string& path, Module& module, torch::optim::Opti
   optimizer.load(optimizer_archive);
   position.iteration = iteration.item<std::int64_t>();
   position.seconds = seconds.item<double>();
+  // Checkpoints from before there was a time of a stage do not have it.
+  if (torch::Tensor course; archive.try_read("course", course, true)) {
+    position.skipped = course[0].item<double>();
+    position.least_mean_deg = course[1].item<double>();
+    position.fraction_of_best = course[2].item<double>();
+  }
   return true;
 }
 

@@ -69,13 +69,13 @@ void Stage::set_rate(torch::optim::Optimizer& optimizer) {
 }
 
 double Stage::fraction() const {
-  if (settings_.seconds > 0.0) return std::min(1.0, position_.seconds / settings_.seconds);
+  if (settings_.seconds > 0.0)
+    return std::min(1.0, position_.seconds / settings_.seconds + position_.skipped);
   return std::min(1.0, static_cast<double>(position_.iteration) / static_cast<double>(settings_.iterations));
 }
 
 std::uint64_t Stage::done() const {
-  return settings_.seconds > 0.0 ? whole_seconds(std::min(position_.seconds, settings_.seconds))
-                                 : units(position_.iteration);
+  return settings_.seconds > 0.0 ? whole_seconds(fraction() * settings_.seconds) : units(position_.iteration);
 }
 
 void Stage::advance(double loss) {
@@ -113,10 +113,19 @@ bool Stage::add_point(const TrainingPoint& point) {
   latest_ = point;
   log_->add(point);
   progress_->update(done(), progress_note(latest_));
-  if (point.mean_deg >= least_mean_deg_) return false;
-  least_mean_deg_ = point.mean_deg;
-  fraction_of_best_ = fraction();
+  if (point.mean_deg >= position_.least_mean_deg) {
+    skip_if_nothing_improves();
+    return false;
+  }
+  position_.least_mean_deg = point.mean_deg;
+  position_.fraction_of_best = fraction();
   return true;
+}
+
+void Stage::skip_if_nothing_improves() {
+  const double now = fraction();
+  if (settings_.seconds == 0.0 || now >= kLastPart || now - position_.fraction_of_best <= kPatience) return;
+  position_.skipped += kLastPart - now;
 }
 
 }  // namespace tumblesight::sim

@@ -57,7 +57,6 @@ class Stage {
   bool resume(Module& module, torch::optim::Optimizer& optimizer) {
     const bool found = load_checkpoint(path(), module, optimizer, position_);
     seconds_before_ = position_.seconds;
-    fraction_of_best_ = fraction();
     return found;
   }
   // Starts the clock of a stage with a time of its own, for what it prepares before start().
@@ -66,8 +65,7 @@ class Stage {
 
   std::int64_t iteration() const { return position_.iteration; }
   double fraction() const;  // of the stage that is done, 0..1
-  // Done, or, in a stage with a time of its own, no better for kPatience of that time.
-  bool finished() const { return fraction() >= 1.0 || no_longer_improves(); }
+  bool finished() const { return fraction() >= 1.0; }
   void set_rate(torch::optim::Optimizer& optimizer);  // for the next iteration
 
   void advance(double loss);  // after every iteration
@@ -92,10 +90,11 @@ class Stage {
 
  private:
   using Clock = std::chrono::steady_clock;
+  // A stage with a time of its own that has not improved for kPatience of it goes on at kLastPart, with the
+  // rates of the end of a stage.
   static constexpr double kPatience = 0.35;
-  bool no_longer_improves() const {
-    return settings_.seconds > 0.0 && fraction() - fraction_of_best_ > kPatience;
-  }
+  static constexpr double kLastPart = 0.8;
+  void skip_if_nothing_improves();
   std::uint64_t units(std::int64_t iterations) const {
     return static_cast<std::uint64_t>(iterations * settings_.units_per_batch);
   }
@@ -115,8 +114,6 @@ class Stage {
   double loss_sum_ = 0.0;
   std::int64_t losses_ = 0;
   std::optional<TrainingPoint> latest_;
-  double least_mean_deg_ = 180.0;
-  double fraction_of_best_ = 0.0;
 };
 
 }  // namespace tumblesight::sim

@@ -19,8 +19,8 @@ struct TrainingSettings {
   std::string start_from;  // model image whose CNN is the starting point; empty: random weights
   std::uint64_t seed = 1;
   int workers = 1;  // rendering threads
-  // Threads that share a batch, 1 or more; each normalizes its own part of the batch. Their number is part of
-  // the checkpoint's fingerprint.
+  // Threads that share a batch, which they divide without a remainder; each normalizes its own part. Their
+  // number is part of the checkpoint's fingerprint.
   int trainers = 1;
   bool bfloat16 = false;  // convolutions in bfloat16
   torch::Device device{torch::kCPU};

@@ -1,3 +1,5 @@
+#include <ATen/Parallel.h>
+
 #include <future>
 #include <memory>
 #include <vector>
@@ -58,6 +60,7 @@ class Trainers {
   Trainers(Cnn& cnn, const TrainingSettings& settings) : cnn_(cnn), settings_(settings) {
     for (int i = 1; i < settings.trainers; ++i) {
       Cnn replica;
+      replica->to(settings.device);
       replica->train();
       const std::vector<torch::Tensor> own = cnn->parameters();
       std::vector<torch::Tensor> others = replica->parameters();
@@ -76,7 +79,7 @@ class Trainers {
     std::vector<std::future<double>> others;
     for (std::size_t i = 0; i < replicas_.size(); ++i) {
       others.push_back(std::async(std::launch::async, [&, i] {
-        keep_to_one_thread();
+        at::set_num_threads(1);  // of this thread
         return backward(replicas_[i], part_of(static_cast<std::int64_t>(i) + 1), settings_, spread);
       }));
     }

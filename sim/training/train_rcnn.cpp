@@ -132,21 +132,24 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
   const bool resumed = stage.resume(recurrent, optimizer);
   if (stage.finished()) return true;
 
-  if (settings.rcnn_seconds > 0.0) stage.start_clock();
   const std::int64_t at_first = first_sequences(settings);
+  const auto available_at = [&](std::int64_t iteration) {
+    return std::min(settings.rcnn_sequences, at_first + kSequencesPerIteration * iteration);
+  };
+  // A run that goes on needs what it had; that is not time of the stage.
+  if (settings.rcnn_seconds > 0.0 && !resumed) stage.start_clock();
   const std::int64_t test_count = std::min({kValidationSequences, settings.rcnn_sequences, at_first});
   SequenceFeatures tests(targets, *weights, kValidationSeed, test_count, settings.workers + 1);
   if (!wait_for(tests, test_count, "validation sequences", stop)) return false;
   const FeatureSet validation = tests.first(test_count);
   SequenceFeatures supply(targets, *weights, settings.seed, settings.rcnn_sequences, settings.workers);
-  if (!wait_for(supply, at_first, "first sequences", stop)) return false;
+  if (!wait_for(supply, available_at(stage.iteration()), "first sequences", stop)) return false;
   if (!resumed) standardise(recurrent, supply.first(at_first), settings.device);
 
   stage.start();
   while (!stage.finished() && !stop) {
     stage.set_rate(optimizer);
-    const std::int64_t available =
-        std::min(settings.rcnn_sequences, at_first + kSequencesPerIteration * stage.iteration());
+    const std::int64_t available = available_at(stage.iteration());
     const torch::Tensor rows = draw(settings.seed, stage.iteration(), available, settings.rcnn_batch);
     stage.advance(train_once(recurrent, supply.first(available), rows, settings.device, optimizer));
     if (stage.point_due()) {

@@ -70,15 +70,20 @@ std::string error_curve(const std::vector<TrainingPoint>& points) {
 
 }  // namespace
 
-TrainingLog::TrainingLog(const std::string& folder, const std::string& stage, std::int64_t last_iteration)
-    : folder_(folder) {
+std::vector<TrainingPoint> read_training_log(const std::string& folder) {
+  std::vector<TrainingPoint> points;
   std::ifstream in(folder + "/log.csv");
   TrainingPoint point;
-  for (std::string line; std::getline(in, line);) {
-    if (from_csv(line, point) && (point.stage != stage || point.iteration <= last_iteration))
-      points_.push_back(point);
+  for (std::string line; std::getline(in, line);)
+    if (from_csv(line, point)) points.push_back(point);
+  return points;
+}
+
+TrainingLog::TrainingLog(const std::string& folder, const std::string& stage, std::int64_t last_iteration)
+    : folder_(folder) {
+  for (const TrainingPoint& point : read_training_log(folder)) {
+    if (point.stage != stage || point.iteration <= last_iteration) points_.push_back(point);
   }
-  in.close();
   const std::string renewed =
       folder + "/log.csv.new";  // renamed when complete: a kill leaves the old log or the new one
   std::ofstream out(renewed);

@@ -21,6 +21,9 @@ struct TrainingPoint {
   double within_20deg = 0.0;
 };
 
+// The points in `folder`/log.csv; none if there is no such file.
+std::vector<TrainingPoint> read_training_log(const std::string& folder);
+
 class TrainingLog {
  public:
   // Continues `folder`/log.csv if it exists. Points of `stage` after `last_iteration` are removed: a run that

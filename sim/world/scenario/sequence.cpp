@@ -36,8 +36,9 @@ Random stream_for(std::uint64_t seed, std::uint64_t index, std::uint64_t purpose
 }
 
 Eigen::Vector3d apply_rate_settings(const ScenarioSettings& settings, Eigen::Vector3d rate, Random random) {
-  rate *= settings.ranges.largest_rate_deg_s * kRadPerDeg / kMaxRate_rad_s;
-  if (settings.rate_law == RateLaw::kNorm) rate *= kMaxRate_rad_s * random.uniform() / rate.norm();
+  const double largest_rad_s = settings.ranges.largest_rate_deg_s * kRadPerDeg;
+  rate *= largest_rad_s / kMaxRate_rad_s;
+  if (settings.rate_law == RateLaw::kNorm) rate *= largest_rad_s * random.uniform() / rate.norm();
   if (settings.rate_rad_s) rate *= *settings.rate_rad_s / rate.norm();
   return rate;
 }

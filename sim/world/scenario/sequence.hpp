@@ -25,7 +25,7 @@ enum class RateLaw {
 struct RangeLimits {
   double nearest_m = 20.0;
   double farthest_m = 100.0;
-  double largest_rate_deg_s = 20.0;
+  double largest_rate_deg_s = 20.0;  // above 0
   bool are_the_papers() const {
     return nearest_m == 20.0 && farthest_m == 100.0 && largest_rate_deg_s == 20.0;
   }

@@ -91,6 +91,8 @@ std::vector<std::string> target_names() {
 }
 
 const std::string& default_target() {
+  if (shipped_missions().empty())
+    throw std::runtime_error("there is no mission in " TUMBLESIGHT_SOURCE_DIR "/sim/world/target/missions");
   return shipped_missions().front().name;
 }
 

@@ -83,7 +83,7 @@ TEST_F(Adopted, ASphereIsRefusedBeforeTheTraining) {
 TEST_F(Adopted, AMissionThatIsWrongIsNamed) {
   write_mesh((folder_ / "craft.stl").string(), target_by_name("magellan"));
   write_mission("ups = 1\n");
-  EXPECT_EQ(adopt(""), 1);
+  EXPECT_EQ(adopt(""), 2);
   EXPECT_NE(text_of("output.txt").find("no key 'ups'"), std::string::npos) << text_of("output.txt");
 }
 
