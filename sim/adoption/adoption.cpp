@@ -48,6 +48,7 @@ constexpr std::uint32_t kProbeSequences = 16;
 constexpr double kUsualSequence_s = 0.02;
 constexpr std::uint32_t kFlownSequences = 10;
 constexpr double kLongestFlight_s = 300.0;
+constexpr int kMostlyWrong = 4;               // exit status of `simulate`
 constexpr std::uint32_t kShareForJoints = 3;  // a row of an angle has a third of the sequences
 
 // The largest number of threads that divides the batch, up to the point where parts become too small to be
@@ -352,7 +353,8 @@ class Adoption {
     }
     FlightProcess process(settings_.program, arguments, folder + "/flight.log");
     outcome_.flight.flown = process.wait_for_end(kLongestFlight_s);
-    outcome_.flight.well = process.ended_well();
+    outcome_.flight.wrong = process.exit_status() == kMostlyWrong;
+    outcome_.flight.well = process.ended_well() || outcome_.flight.wrong;
     steps_.say(outcome_.flight.well    ? fmt::format("{} sequences", kFlownSequences)
                : outcome_.flight.flown ? std::string("did not end well")
                                        : fmt::format("took longer than {:g} s", kLongestFlight_s));
@@ -375,6 +377,9 @@ class Adoption {
     if (trained && !outcome_.flight.well)
       outcome_.reasons.push_back(
           fmt::format("the flight over DDS did not end well: see {}/flight.log", settings_.folder));
+    if (outcome_.flight.wrong)
+      outcome_.reasons.emplace_back(
+          "in the flight over DDS more than half of the attitudes were more than 20° off");
     add_outlook();
     outcome_.go = trained && outcome_.reasons.empty();
     write_adoption_report(settings_, outcome_, mesh_);

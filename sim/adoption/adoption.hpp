@@ -37,7 +37,8 @@ struct AdoptionSettings {
 
 struct AdoptionFlight {
   bool flown = false;
-  bool well = false;
+  bool well = false;   // every step was answered
+  bool wrong = false;  // more than half of the attitudes
   std::string command;
 };
 

@@ -157,8 +157,10 @@ Json verdict_json(const AdoptionSettings& settings, const AdoptionOutcome& outco
                                  {"crc32", fmt::format("{:08x}", outcome.model_crc32)},
                                  {"start_from", outcome.start_from}}
                           : Json(nullptr);
-  json["flight"] = {
-      {"flown", outcome.flight.flown}, {"well", outcome.flight.well}, {"command", outcome.flight.command}};
+  json["flight"] = {{"flown", outcome.flight.flown},
+                    {"well", outcome.flight.well},
+                    {"mostly_wrong", outcome.flight.wrong},
+                    {"command", outcome.flight.command}};
   json["minutes_allowed"] = settings.minutes;
   json["minutes_taken"] = std::round(100.0 * outcome.minutes_taken) / 100.0;
   json["steps"] = steps_json(outcome.steps);

@@ -15,7 +15,7 @@ constexpr double kFlying_s = 5.0;
 constexpr double kSecondsPerCalibration = 15.0;  // one sequence more
 constexpr double kFewestCalibrations = 20.0, kMostCalibrations = 200.0;
 constexpr double kShareForEvaluation = 0.08;
-constexpr double kShareOfRecurrentPart = 0.22;  // of the training; as `train --minutes`
+constexpr double kShareOfRecurrentPart = 0.15;  // of the training; as `train --minutes`
 constexpr double kMargin = 1.15;
 constexpr std::uint32_t kFewest = 20, kMost = 900;
 

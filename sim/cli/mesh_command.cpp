@@ -161,7 +161,7 @@ void add_mesh_command(CLI::App& app, const std::string& command_line) {
       ->type_name("FILE");
   add_json_option(*command, arguments->json);
   command->callback([arguments, command_line] {
-    if (arguments->file.empty()) throw CLI::RequiredError("FILE or --mission");
+    if (arguments->file.empty()) throw CLI::RequiredError("FILE (or --mission)");
     throw CLI::RuntimeError(show_mesh(*arguments, command_line));
   });
 }

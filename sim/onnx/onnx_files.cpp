@@ -11,9 +11,9 @@ const std::vector<OnnxFileRow>& onnx_file_rows() {
   static const std::vector<OnnxFileRow> rows{
       {"image", "the target's returns -> depth image",
        [](const Float32Model& model) { return image_as_onnx(model.header); }},
-      {"step", "depth image, time, chaser's turn, state -> attitude, rate, next state", step_as_onnx},
-      {"cnn", "first part of the step's network: depth image -> features, hypotheses", cnn_as_onnx},
-      {"recurrent", "second part: input, state -> corrections, next state", recurrent_as_onnx},
+      {"step", "depth image, time, turn, state -> attitude, next state", step_as_onnx},
+      {"cnn", "part of the step: depth image -> features, hypotheses", cnn_as_onnx},
+      {"recurrent", "part of the step: input, state -> corrections, next", recurrent_as_onnx},
   };
   return rows;
 }

@@ -89,7 +89,11 @@ bool FlightProcess::wait_for_end(double timeout_s) {
 }
 
 bool FlightProcess::ended_well() const {
-  return ended_ && !status_lost_ && WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
+  return exit_status() == 0;
+}
+
+int FlightProcess::exit_status() const {
+  return ended_ && !status_lost_ && WIFEXITED(status_) ? WEXITSTATUS(status_) : -1;
 }
 
 std::string FlightProcess::how_it_ended() const {

@@ -26,6 +26,7 @@ class FlightProcess {
   bool wait_for_end(double timeout_s);
   bool ended() const { return ended_; }
   bool ended_well() const;           // ended with exit status 0
+  int exit_status() const;           // -1: it has not ended by itself
   std::string how_it_ended() const;  // "ended with exit status 4: the simulator is gone"
   pid_t pid() const { return pid_; }
 

@@ -22,7 +22,7 @@ TEST(TimePlan, FillsTheTimeAndKeepsWhatComesAfterTheTraining) {
 
 TEST(TimePlan, TooLittleTimeIsRefusedWithTheLeast) {
   try {
-    (void)time_plan(60.0, 5, 0.02, 0);
+    (void)time_plan(20.0, 5, 0.02, 0);
     FAIL() << "not refused";
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("--minutes"), std::string::npos) << error.what();

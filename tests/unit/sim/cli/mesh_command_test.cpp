@@ -21,7 +21,7 @@ TEST(Mesh, RefusesWrongArgumentsInOneLine) {
   const Workplace here;
   write_mesh(here.path("craft.stl"), sound_mesh());
   for (const auto& [arguments, code, message] : std::vector<std::tuple<std::string, int, std::string>>{
-           {"", 2, "FILE is required"},
+           {"", 2, "FILE (or --mission) is required"},
            {"none.stl", 1, "no such file"},
            {"craft.stl --mesh-up x", 2, "must be one of y, z, not 'x'"},
            {"craft.stl --mesh-scale 0", 2, "from 1e-06 to 1e+06"},

@@ -186,7 +186,9 @@ TEST_F(MonteCarlo, HasNoResultForALostFrameAndNoAttitudeForARepeatedOne) {
     EXPECT_EQ(results[i].valid, i % 4 != 2) << "the third frame repeats the second";
     const FrameResult& same = plain[5 * (i / 4) + results[i].frame];
     EXPECT_EQ(results[i].truth.coeffs(), same.truth.coeffs());
-    if (results[i].frame < 2) EXPECT_TRUE(equal(results[i], same)) << i;
+    if (results[i].frame < 2) {
+      EXPECT_TRUE(equal(results[i], same)) << i;
+    }
   }
 }
 
@@ -231,8 +233,9 @@ TEST_F(MonteCarlo, TakesEveryEstimateToTheNearestAttitudeThatLooksTheSame) {
       const Eigen::Quaterniond expected =
           nearest_equivalent(estimate(plain.frames[i], estimator), plain.frames[i].truth, symmetric.symmetry);
       EXPECT_EQ(estimate(nearest.frames[i], estimator).coeffs(), expected.coeffs());
-      if (has_estimate(nearest.frames[i], estimator))
+      if (has_estimate(nearest.frames[i], estimator)) {
         EXPECT_LE(error_deg(nearest.frames[i], estimator), 98.43) << "the farthest from a square prism's";
+      }
       if (error_deg(nearest.frames[i], estimator) < error_deg(plain.frames[i], estimator) - 1.0) ++nearer;
     }
   }

@@ -106,6 +106,22 @@ TEST(RateLaw, ComponentsFillTheBallOf20DegreesPerSecondEvenly) {
   EXPECT_LT(unlikeliness(volumes), kUnlikely);
 }
 
+// A mission may bound the rate; both laws keep the bound and draw the same directions.
+TEST(RateLaw, BothKeepALimitBelow20DegreesPerSecond) {
+  for (const RateLaw law : {RateLaw::kComponents, RateLaw::kNorm}) {
+    ScenarioSettings usual, slow;
+    usual.rate_law = slow.rate_law = law;
+    slow.ranges.largest_rate_deg_s = 5.0;
+    EXPECT_FALSE(slow.ranges.are_the_papers());
+    for (std::uint64_t i = 0; i < 300; ++i) {
+      const Eigen::Vector3d fast_rad_s = make_sequence(usual, 3, i).frames.front().rate_lrf_rad_s;
+      const Eigen::Vector3d slow_rad_s = make_sequence(slow, 3, i).frames.front().rate_lrf_rad_s;
+      EXPECT_LE(slow_rad_s.norm(), 5.0 * kRadPerDeg * (1.0 + 1e-12)) << i;
+      EXPECT_LT((slow_rad_s - 0.25 * fast_rad_s).norm(), 1e-12) << i;
+    }
+  }
+}
+
 TEST(RateLaw, ChangesTheNormOnly) {
   ScenarioSettings settings;
   const Sequence components = make_sequence(settings, 11, 5);
