@@ -169,13 +169,12 @@ int run(const AdoptArguments& arguments, const std::string& command_line) {
 void add_adopt_command(CLI::App& app, const std::string& command_line) {
   auto arguments = std::make_shared<AdoptArguments>();
   CLI::App* command = app.add_subcommand(
-      "adopt",
-      "From a mission file (your spacecraft, your LiDAR) to a network that flies, and a verdict on it");
+      "adopt", "Train, judge and fly a network for your spacecraft, from one mission file");
   command->footer(
       std::string("\nChecks the mesh, trains, makes the fixed-point image, evaluates every condition\n"
-                  "against the goals of the mission, flies it over DDS, all within the time, and says\n"
-                  "GO or NO-GO with the reasons. Exit status: 0 GO, 4 NO-GO, 3 stopped (the same\n"
-                  "command goes on), 1 failed, 2 wrong arguments.\n\n"
+                  "against the goals of the mission, flies it over DDS, all within the time, and\n"
+                  "says GO or NO-GO with the reasons. Exit status: 0 GO, 4 NO-GO, 3 stopped (the\n"
+                  "same command goes on), 1 failed, 2 wrong arguments.\n\n"
                   "A first mission file, craft.toml:\n") +
       kFirstMission +
       "docs/own_spacecraft.md lists all keys.\n\n"

@@ -241,7 +241,7 @@ std::size_t widest_line(const std::string& text) {
 TEST(Help, FitsATerminal) {
   const Workplace here;
   for (const std::string verb :
-       {"", "simulate", "mesh", "evaluate", "quantize", "record", "bench", "export", "train"}) {
+       {"", "simulate", "mesh", "evaluate", "quantize", "record", "bench", "export", "train", "adopt"}) {
     const Outcome outcome = here.run(verb + " --help");
     EXPECT_LE(widest_line(outcome.output), 80U) << outcome.output;
   }
