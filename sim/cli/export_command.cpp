@@ -20,10 +20,10 @@ struct ExportArguments {
 
 constexpr const char* kUseOfTheModels =
     "For every frame: run the image model on the target's returns, then the step on\n"
-    "its outputs. next_state is the state of the next frame. docs/onnx.md explains it\n"
-    "and has examples in Python and JavaScript; the doc strings of the models\n"
-    "describe every input and output. cnn and recurrent are the step's network in two parts,\n"
-    "for tools that measure or convert networks.\n";
+    "its outputs. next_state is the state of the next frame. docs/onnx.md explains\n"
+    "it and has examples in Python and JavaScript; the doc strings of the models\n"
+    "describe every input and output. cnn and recurrent are the step's network in\n"
+    "two parts, for tools that measure or convert networks.\n";
 
 // One line per file, for help texts.
 std::string explanations() {
