@@ -1,4 +1,6 @@
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 
 #include <algorithm>
 #include <atomic>
@@ -83,9 +85,14 @@ AdoptionSettings settings_of(const AdoptArguments& arguments, const std::string&
   settings.sensor = sensor.sensor;
   settings.ranges_of = [sensor](double swath_m) {
     std::vector<std::string> warnings;
-    const RangeLimits ranges = ranges_of(sensor, swath_m, warnings);
-    for (const std::string& warning : warnings) fmt::print(stderr, "  note: {}\n", warning);
-    return ranges;
+    try {
+      const RangeLimits ranges = ranges_of(sensor, swath_m, warnings);
+      for (const std::string& warning : warnings) fmt::print(stderr, "  note: {}\n", warning);
+      return ranges;
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(std::string(error.what()) +
+                                  "; in a mission: ranges_m = [NEAREST, FARTHEST]");
+    }
   };
   settings.start_was_given = !arguments.start_from.empty();
   settings.folder = arguments.out.empty() ? "out/" + settings.mission.name : arguments.out;
@@ -118,6 +125,16 @@ void require_usable_folder(const AdoptionSettings& settings) {
   require_usable_files(read, written);
 }
 
+// Two runs would write the same checkpoints. The lock ends with the program.
+void lock_folder(const std::string& folder) {
+  fs::create_directories(folder + "/training");
+  const std::string path = folder + "/training/lock";
+  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return;
+  throw std::runtime_error("another adoption is at work in '" + folder +
+                           "'; wait for it, or choose another --out");
+}
+
 void print_list(const char* heading, const std::vector<std::string>& lines) {
   if (lines.empty()) return;
   fmt::print("\n  {}\n", heading);
@@ -148,6 +165,7 @@ void print_outcome(const AdoptionSettings& settings, const AdoptionOutcome& outc
 int run(const AdoptArguments& arguments, const std::string& command_line) {
   const AdoptionSettings settings = settings_of(arguments, command_line);
   require_usable_folder(settings);
+  lock_folder(settings.folder);
   std::signal(SIGINT, [](int) { stop_requested = true; });
   std::signal(SIGTERM, [](int) { stop_requested = true; });
   fmt::print("\n  Adoption of {} in {:g} minutes. The page {} renews itself.\n", settings.mission.title,
