@@ -60,5 +60,14 @@ TEST(MeshGate, PanelsOfWhichTheMissionSaysNothingAreRemarkedUpon) {
   EXPECT_TRUE(mesh_gate(mission, found).remarks.empty());
 }
 
+TEST(MeshGate, PanelsThatTurnMustBeFoundInTheMesh) {
+  Mission mission;
+  mission.panels = JointLimits{-90.0, 90.0};
+  EXPECT_EQ(mesh_gate(mission, MeshInspection{}).faults.size(), 1U);
+  MeshInspection found;
+  found.panels = 1;
+  EXPECT_TRUE(mesh_gate(mission, found).faults.empty());
+}
+
 }  // namespace
 }  // namespace tumblesight::sim
