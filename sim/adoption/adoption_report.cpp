@@ -168,8 +168,7 @@ Json verdict_json(const AdoptionSettings& settings, const AdoptionOutcome& outco
   return json;
 }
 
-std::string adoption_page(const AdoptionSettings& settings, const AdoptionOutcome& outcome,
-                          const TriangleMesh&) {
+std::string adoption_page(const AdoptionSettings& settings, const AdoptionOutcome& outcome) {
   std::string body = fmt::format(
       "<h1>Adoption of {}</h1>\n<p class=sub>mission {}, {} of {} minutes used</p>\n<p class=lead>{}</p>\n",
       escape_markup(settings.mission.title),
@@ -206,7 +205,7 @@ void write_adoption_report(const AdoptionSettings& settings, const AdoptionOutco
                            const TriangleMesh& mesh) {
   const std::string& folder = settings.folder;
   write_file(folder + "/verdict.json", verdict_json(settings, outcome).dump(2) + "\n");
-  write_file(folder + "/report.html", adoption_page(settings, outcome, mesh));
+  write_file(folder + "/report.html", adoption_page(settings, outcome));
   MeshReport report;
   report.file = settings.mission.mesh.file;
   report.options = mesh_file_options(settings.mission.mesh);

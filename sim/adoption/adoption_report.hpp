@@ -13,8 +13,7 @@ namespace tumblesight::sim {
 nlohmann::ordered_json verdict_json(const AdoptionSettings& settings, const AdoptionOutcome& outcome);
 
 // A self-contained page.
-std::string adoption_page(const AdoptionSettings& settings, const AdoptionOutcome& outcome,
-                          const TriangleMesh& mesh);
+std::string adoption_page(const AdoptionSettings& settings, const AdoptionOutcome& outcome);
 
 // verdict.json, report.html and, with a network, evaluation.html in the folder of the settings. Throws as
 // write_file does.

@@ -17,6 +17,7 @@
 #include "sim/adoption/adoption.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
+#include "sim/cli/mission_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/terminal/text.hpp"
@@ -54,16 +55,6 @@ std::vector<std::string> shipped_starts() {
   return images;
 }
 
-SensorArguments sensor_of(const Mission& mission) {
-  SensorArguments sensor;
-  sensor.sensor = sensor_named(mission.sensor);
-  sensor.file = sensor_path(mission.sensor);
-  if (mission.ranges_m)
-    sensor.ranges = RangeLimits{mission.ranges_m->nearest_m, mission.ranges_m->farthest_m};
-  sensor.largest_rate_deg_s = mission.largest_rate_deg_s;
-  return sensor;
-}
-
 // Now rather than after the training.
 void require_programs(const std::string& program) {
   const std::string flight = (fs::path(program).parent_path() / "flight").string();
@@ -81,7 +72,7 @@ AdoptionSettings settings_of(const AdoptArguments& arguments, const std::string&
     throw CLI::ValidationError("MISSION", error.what());
   }
   use_mission(settings.mission);
-  const SensorArguments sensor = sensor_of(settings.mission);
+  const SensorArguments sensor = sensor_arguments_of(settings.mission);
   settings.sensor = sensor.sensor;
   settings.ranges_of = [sensor](double swath_m) {
     std::vector<std::string> warnings;

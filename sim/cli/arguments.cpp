@@ -11,10 +11,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <functional>
 #include <limits>
 #include <stdexcept>
 
+#include "sim/cli/mission_arguments.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/terminal/write_file.hpp"
 #include "sim/world/scenario/sequence.hpp"
@@ -98,42 +98,6 @@ MeshFileOptions mesh_file_options(const MeshArguments& arguments) {
   options.scale = arguments.mesh_scale;
   options.origin_trf_m = arguments.origin_trf_m;
   return options;
-}
-
-void take_sensor_of(const Mission& mission, const CLI::App& command, SensorArguments& sensor) {
-  const auto given = [&command](const char* option) {
-    const CLI::Option* found = command.get_option_no_throw(option);
-    return found != nullptr && found->count() > 0;
-  };
-  if (!given("--sensor")) {
-    sensor.sensor = sensor_named(mission.sensor);
-    sensor.file = sensor_path(mission.sensor);
-  }
-  if (!given("--range") && mission.ranges_m)
-    sensor.ranges = RangeLimits{mission.ranges_m->nearest_m, mission.ranges_m->farthest_m};
-  sensor.largest_rate_deg_s = mission.largest_rate_deg_s;
-}
-
-// `take`: called with the mission when all other options are known.
-void add_mission(CLI::App& command, const std::function<void(const Mission&)>& take) {
-  const auto read = [take](const std::string& text) {
-    try {
-      const Mission mission = mission_named(text, condition_names());
-      use_mission(mission);
-      take(mission);
-    } catch (const std::invalid_argument& error) {
-      throw CLI::ValidationError("--mission", error.what());
-    }
-  };
-  CLI::Option* option =
-      command.add_option_function<std::string>("--mission", read,
-                                               "a TOML file that says all this at once: target, mesh, axes, "
-                                               "unit, inertia, sensor, ranges; or the name of "
-                                               "a target that ships");
-  option->type_name("FILE|NAME");
-  for (const char* same : {"--target", "--mesh", "--mesh-up", "--mesh-scale", "--inertia"}) {
-    if (CLI::Option* other = command.get_option_no_throw(same)) option->excludes(other);
-  }
 }
 
 }  // namespace
@@ -318,32 +282,6 @@ void add_inertia_option(CLI::App& command, std::vector<double>& inertia) {
       ->delimiter(',')
       ->expected(6)
       ->type_name("N,N,...");
-}
-
-void add_mission_option(CLI::App& command, ScenarioArguments& arguments) {
-  add_mission(command, [&command, &arguments](const Mission& mission) {
-    arguments.mission = mission;
-    arguments.target = mission.name;
-    arguments.mesh = mission.mesh.file;
-    arguments.mesh_up = mission.mesh.up;
-    arguments.mesh_scale = mission.mesh.scale;
-    arguments.mesh_origin_trf_m = mesh_file_options(mission.mesh).origin_trf_m;
-    take_sensor_of(mission, command, arguments.sensor);
-    arguments.symmetry = target_symmetry_from(mission.symmetry);
-  });
-}
-
-void add_mission_option(CLI::App& command, std::string& target, MeshArguments& meshes,
-                        SensorArguments& sensor, std::optional<Mission>& known) {
-  add_mission(command, [&command, &target, &meshes, &sensor, &known](const Mission& mission) {
-    known = mission;
-    target = mission.name;
-    meshes.meshes = {mission.mesh.file};
-    meshes.mesh_up = mission.mesh.up;
-    meshes.mesh_scale = mission.mesh.scale;
-    meshes.origin_trf_m = mesh_file_options(mission.mesh).origin_trf_m;
-    take_sensor_of(mission, command, sensor);
-  });
 }
 
 void add_target_options(CLI::App& command, ScenarioArguments& arguments) {

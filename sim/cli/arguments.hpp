@@ -80,14 +80,6 @@ void require_the_target(const Effects& effects);
 void add_json_option(CLI::App& command, std::string& json);
 void add_report_option(CLI::App& command, std::string& report, const std::string& default_text);
 
-// --mission, which excludes the options that say the same; they must have been added before. The target of
-// the mission is then known by its name. Sensor and ranges of the mission count unless their options are
-// given.
-void add_mission_option(CLI::App& command, ScenarioArguments& arguments);
-// The same for verbs that make a network.
-void add_mission_option(CLI::App& command, std::string& target, MeshArguments& meshes,
-                        SensorArguments& sensor, std::optional<Mission>& mission);
-
 // Groups of options.
 void add_target_options(CLI::App& command, ScenarioArguments& arguments);  // --target, --mesh…, --inertia
 void add_mesh_options(CLI::App& command,

@@ -11,6 +11,7 @@
 
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
+#include "sim/cli/mission_arguments.hpp"
 #include "sim/cli/symmetry_arguments.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/quantize_file.hpp"

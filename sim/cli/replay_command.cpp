@@ -9,6 +9,7 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/flight_arguments.hpp"
 #include "sim/cli/mesh_advice.hpp"
+#include "sim/cli/mission_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/recording/recording_file.hpp"

@@ -15,6 +15,7 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/mesh_warnings.hpp"
+#include "sim/cli/mission_arguments.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/target_surface.hpp"
 #include "sim/training/export_model.hpp"

@@ -1,5 +1,5 @@
 // Mission: a spacecraft, how it is seen, and what is asked of its network, in one TOML file. The targets that
-// ship are such files too: sim/mission/shipped.
+// ship are such files too: sim/world/target/missions.
 //
 // To add a key: its field below, its line in mission.cpp, its row in docs/own_spacecraft.md.
 #pragma once
