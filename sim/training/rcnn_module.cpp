@@ -133,7 +133,7 @@ TrackedSequences RecurrentImpl::forward(const SequenceHypotheses& sequences) {
   std::vector<torch::Tensor> inputs, answers, means, anchors, errors;
   for (std::int64_t k = 0; k < sequences.features.size(1); ++k) {
     const FrameHypotheses frame(sequences.features.select(1, k), sequences.r_lrf_trf.select(1, k),
-                                sequences.logits.select(1, k));
+                                sequences.logits.select(1, k), sequences.periods.select(1, k));
     track.predict(frame);
     const torch::Tensor input = track.lstm_input(frame);
     const torch::Tensor x = (input - input_mean) / input_deviation;

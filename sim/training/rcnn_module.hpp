@@ -59,6 +59,7 @@ struct SequenceHypotheses {
   torch::Tensor features;   // [B, T, 128]
   torch::Tensor r_lrf_trf;  // [B, T, 8, 3, 3]
   torch::Tensor logits;     // [B, T, 8]
+  torch::Tensor periods;    // [B, T], time since the frame before, in nominal periods; 1 for the first frame
 };
 
 // The recurrent part's output. Every candidate (the frame's hypotheses and the predicted attitude) represents

@@ -1,7 +1,9 @@
 #include "sim/training/sequence_features.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <vector>
 
 #include "gnc/rcnn/hypotheses.hpp"
 #include "gnc/rcnn/network_shape.hpp"
@@ -48,10 +50,38 @@ const EffectSet& effect_set_of(const TrainingTargets& targets, std::uint64_t num
   return targets.effect_sets[turn % targets.effect_sets.size()];
 }
 
-ScenarioSettings scenario_of(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t number) {
+// When the frames of a sequence come: every second sequence in the sensor's own period; of the others a third
+// with another period, a third with times that vary, and a third with single frames that are lost.
+struct Timing {
+  Disturbances disturbances;
+  std::vector<std::uint32_t> frames;  // that arrive
+};
+Timing timing_of(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t number) {
+  constexpr double kShortest_s = 0.4, kLongest_s = 7.0, kJitter = 0.5, kLostShare = 0.3;
+  Random random(mix(mix(seed, number), 5));
+  Timing timing;
+  timing.disturbances.period_s = targets.sensor.period_s;
+  std::uint32_t frame = 0;
+  const double kind = random.uniform(0.0, 6.0);
+  if (kind >= 5.0) {
+    timing.disturbances.period_s = kShortest_s * std::pow(kLongest_s / kShortest_s, random.uniform());
+  } else if (kind >= 4.0) {
+    timing.disturbances.period_jitter = kJitter;
+  }
+  for (int k = 0; k < kFrames; ++k) {
+    timing.frames.push_back(frame);
+    frame += kind >= 3.0 && kind < 4.0 && random.uniform() < kLostShare ? 2 : 1;
+  }
+  return timing;
+}
+
+ScenarioSettings scenario_of(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t number,
+                             const Timing& timing) {
   const std::uint64_t turn = number / meshes_of(targets);
-  ScenarioSettings settings = scenario_of(targets, targets.conditions[turn % targets.conditions.size()],
-                                          effect_set_of(targets, number).effects, kFrames);
+  ScenarioSettings settings =
+      scenario_of(targets, targets.conditions[turn % targets.conditions.size()],
+                  effect_set_of(targets, number).effects, static_cast<int>(timing.frames.back()) + 1);
+  settings.disturbances = timing.disturbances;
   settings.rate_law = (turn / targets.conditions.size()) % 2 == 0 ? RateLaw::kComponents : RateLaw::kNorm;
   Random random(mix(mix(seed, number), 4));
   settings.inertia_kg_m2 = random.uniform() < 0.5 ? targets.inertia_kg_m2 : random_inertia(random);
@@ -64,7 +94,7 @@ void put_rotation(const Eigen::Matrix3f& rotation, float* at) {
 
 // Frame `row` (counted over all sequences) of `all`.
 void put_frame(const gnc::Network<gnc::Float32>& network, const gnc::Hypotheses<float>& hypotheses,
-               const Eigen::Matrix3f& truth, std::int64_t row, FeatureSet& all) {
+               const Eigen::Matrix3f& truth, float periods, std::int64_t row, FeatureSet& all) {
   const SequenceHypotheses& to = all.hypotheses;
   std::copy(network.features().begin(), network.features().end(),
             to.features.data_ptr<float>() + row * shape::kDense2);
@@ -74,6 +104,7 @@ void put_frame(const gnc::Network<gnc::Float32>& network, const gnc::Hypotheses<
     put_rotation(hypotheses.r_lrf_trf[i],
                  to.r_lrf_trf.data_ptr<float>() + 9 * (row * shape::kHypotheses + i));
   }
+  to.periods.data_ptr<float>()[row] = periods;
   put_rotation(truth, all.r_lrf_trf.data_ptr<float>() + 9 * row);
 }
 
@@ -83,16 +114,22 @@ bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t in
   const auto number = static_cast<std::uint64_t>(index);
   const FrameRenderer renderer(*effect_set_of(targets, number).lidars[number % meshes_of(targets)],
                                1e-3 * targets.projection.swath_mm);
-  const Sequence sequence = make_sequence(scenario_of(targets, seed, number), seed, number);
+  const Timing timing = timing_of(targets, seed, number);
+  const Sequence sequence = make_sequence(scenario_of(targets, seed, number, timing), seed, number);
+  std::int64_t last_ns = sequence.frames.front().time_ns - gnc::kNominalPeriod_ns;
   for (int k = 0; k < kFrames; ++k) {
-    const FrameTruth& truth = sequence.frames[k];
-    renderer.render(sequence, static_cast<std::uint32_t>(k), work.frame);
+    const std::uint32_t frame = timing.frames[static_cast<std::size_t>(k)];
+    const FrameTruth& truth = sequence.frames[frame];
+    const auto periods =
+        static_cast<float>(truth.time_ns - last_ns) / static_cast<float>(gnc::kNominalPeriod_ns);
+    last_ns = truth.time_ns;
+    renderer.render(sequence, frame, work.frame);
     if (make_depth_image(work.frame, targets.projection, work.scratch, work.image) != gnc::FrameStatus::kOk)
       return false;
     work.network.infer_frame(work.image, work.output);
     put_frame(work.network,
               gnc::decode_hypotheses<float>(work.output, gnc::converted<float>(work.image.r_lrf_view)),
-              truth.q_lrf_trf.toRotationMatrix().cast<float>(), index * kFrames + k, all);
+              truth.q_lrf_trf.toRotationMatrix().cast<float>(), periods, index * kFrames + k, all);
   }
   return true;
 }
@@ -108,7 +145,7 @@ SequenceFeatures::SequenceFeatures(const TrainingTargets& targets,
       count_(count),
       all_{{torch::empty({count, kFrames, shape::kDense2}),
             torch::empty({count, kFrames, shape::kHypotheses, 3, 3}),
-            torch::empty({count, kFrames, shape::kHypotheses})},
+            torch::empty({count, kFrames, shape::kHypotheses}), torch::empty({count, kFrames})},
            torch::empty({count, kFrames, 3, 3})},
       done_(static_cast<std::size_t>(count), false) {
   for (int i = 0; i < workers; ++i) workers_.emplace_back([this] { work(); });
@@ -156,13 +193,15 @@ FeatureSet SequenceFeatures::first(std::int64_t count) {
 FeatureSet first_of(const FeatureSet& data, std::int64_t count) {
   const auto first = [count](const torch::Tensor& t) { return t.narrow(0, 0, count); };
   const SequenceHypotheses& from = data.hypotheses;
-  return {{first(from.features), first(from.r_lrf_trf), first(from.logits)}, first(data.r_lrf_trf)};
+  return {{first(from.features), first(from.r_lrf_trf), first(from.logits), first(from.periods)},
+          first(data.r_lrf_trf)};
 }
 
 FeatureSet rows_of(const FeatureSet& data, const torch::Tensor& rows, const torch::Device& device) {
   const auto pick = [&](const torch::Tensor& t) { return t.index_select(0, rows).to(device); };
   const SequenceHypotheses& from = data.hypotheses;
-  return {{pick(from.features), pick(from.r_lrf_trf), pick(from.logits)}, pick(data.r_lrf_trf)};
+  return {{pick(from.features), pick(from.r_lrf_trf), pick(from.logits), pick(from.periods)},
+          pick(data.r_lrf_trf)};
 }
 
 }  // namespace tumblesight::sim

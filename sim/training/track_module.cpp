@@ -79,46 +79,64 @@ torch::Tensor cross_matrix(const torch::Tensor& v) {
   return torch::stack({o, -z, y, z, o, -x, -y, x, o}, -1).unflatten(-1, {3, 3});
 }
 
-torch::Tensor rotation_by(const torch::Tensor& turn) {
-  const torch::Tensor v = bounded(turn);
+torch::Tensor rotation_by(const torch::Tensor& v) {
   const torch::Tensor angle = (v.square().sum(-1) + 1e-12).sqrt().unsqueeze(-1).unsqueeze(-1);
   const torch::Tensor k = cross_matrix(v);
   return torch::eye(3, v.options()) + torch::sin(angle) / angle * k +
          (1.0 - torch::cos(angle)) / angle.square() * torch::matmul(k, k);
 }
 
-torch::Tensor small_turn_of(const torch::Tensor& r) {
+// The largest innovation that corrects the rate, as a versine (gnc/rcnn/attitude_track.cpp).
+torch::Tensor largest_versine(const torch::Tensor& periods, bool finds_rate) {
+  const torch::Tensor nominal = torch::full_like(periods, gnc::kVersineOf60Degrees);
+  const torch::Tensor grown = (nominal + (periods - 1.0).clamp_min(0.0) *
+                                             (gnc::kVersineOf150Degrees - gnc::kVersineOf60Degrees) / 1.5)
+                                  .clamp_max(gnc::kVersineOf150Degrees);
+  const torch::Tensor half_square = 0.5 * (0.17453293 + 0.87266463 * periods).square();
+  const torch::Tensor reduced = half_square - half_square.square() / 6.0;
+  return torch::where(periods < 1.0, reduced, finds_rate ? grown : nominal);
+}
+
+// The rotation vector of `r`; zero where its versine is not below `largest`.
+torch::Tensor turn_of(const torch::Tensor& r, const torch::Tensor& largest) {
   const torch::Tensor y = 0.5 * (3.0 - r.diagonal(0, -2, -1).sum(-1));
   torch::Tensor f = torch::ones_like(y);
   for (int n = 8; n >= 1; --n) f = 1.0 + y.clamp(0.0, 0.5) * (n / (2.0 * n + 1.0)) * f;
-  const torch::Tensor half = torch::where(y < 0.5, 0.5 * f, torch::zeros_like(f));
   const torch::Tensor skew = r - r.transpose(-1, -2);
-  return half.unsqueeze(-1) *
-         torch::stack({skew.select(-2, 2).select(-1, 1), skew.select(-2, 0).select(-1, 2),
-                       skew.select(-2, 1).select(-1, 0)},
-                      -1);
+  const torch::Tensor v = torch::stack(
+      {skew.select(-2, 2).select(-1, 1), skew.select(-2, 0).select(-1, 2), skew.select(-2, 1).select(-1, 0)},
+      -1);
+  const torch::Tensor sine = 0.5 * (v.square().sum(-1) + 1e-12).sqrt();
+  const torch::Tensor large = torch::atan2(sine, 1.0 - y) / sine;
+  const torch::Tensor factor = torch::where(y < gnc::kVersineOf60Degrees, f, large);
+  return torch::where(y < largest, 0.5 * factor, torch::zeros_like(f)).unsqueeze(-1) * v;
 }
 
 struct MotionTensors {
   torch::Tensor r_lrf_trf, rate_lrf;  // [B, laws, 3, 3], [B, laws, 3]
 };
 
-MotionTensors spin(const MotionTensors& motion) {
-  return {torch::matmul(rotation_by(motion.rate_lrf), motion.r_lrf_trf), bounded(motion.rate_lrf)};
+MotionTensors spin(const MotionTensors& motion, const torch::Tensor& periods) {
+  const torch::Tensor rate = bounded(motion.rate_lrf);
+  return {torch::matmul(rotation_by(rate * periods.view({-1, 1, 1})), motion.r_lrf_trf), rate};
 }
 
 // Calls the flight code for each motion. The gradient treats the turn as a constant.
-MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia<float>* laws) {
+MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia<float>* laws,
+                     const torch::Tensor& periods) {
   using RowMajor = Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>;
   const torch::Tensor before = motion.r_lrf_trf.detach().cpu().contiguous();
   const torch::Tensor rate_before = motion.rate_lrf.detach().cpu().contiguous();
   const torch::Tensor turn = torch::empty_like(before), rate = torch::empty_like(rate_before);
   const std::int64_t count = before.size(1);
+  const torch::Tensor times = periods.cpu().contiguous();
   for (std::int64_t i = 0; i < before.size(0) * count; ++i) {
     gnc::Motion<float> m;
     m.r_lrf_trf = RowMajor(before.data_ptr<float>() + 9 * i);
     m.rate_lrf = Eigen::Map<Eigen::Vector3f>(rate_before.data_ptr<float>() + 3 * i);
-    const gnc::Motion<float> after = gnc::propagate<float>(m, laws[i % count]);
+    const std::int64_t elapsed_ns =
+        std::llround(static_cast<double>(times.data_ptr<float>()[i / count]) * gnc::kNominalPeriod_ns);
+    const gnc::Motion<float> after = gnc::propagate<float>(m, laws[i % count], elapsed_ns);
     RowMajor{turn.data_ptr<float>() + 9 * i} = after.r_lrf_trf * m.r_lrf_trf.transpose();
     Eigen::Map<Eigen::Vector3f>{rate.data_ptr<float>() + 3 * i} = after.rate_lrf;
   }
@@ -135,11 +153,12 @@ torch::Tensor rotation_from_columns(const torch::Tensor& a, const torch::Tensor&
 }
 
 FrameHypotheses::FrameHypotheses(const torch::Tensor& features_, const torch::Tensor& r_lrf_trf_,
-                                 const torch::Tensor& logits_)
+                                 const torch::Tensor& logits_, const torch::Tensor& periods_)
     : features(features_),
       r_lrf_trf(r_lrf_trf_),
       logits(logits_),
-      probabilities(torch::softmax(logits_, -1)) {}
+      probabilities(torch::softmax(logits_, -1)),
+      periods(periods_) {}
 
 torch::Tensor TrackModule::standing() const {
   const torch::Tensor asked =
@@ -162,9 +181,9 @@ void TrackModule::predict(const FrameHypotheses& frame) {
   // The first law is a spin: the gradient flows through it.
   static_assert(gnc::kSpinLaw == 0);
   constexpr int kOthers = gnc::kLaws - 1;
-  const MotionTensors spun = spin({r_lrf_trf_.narrow(1, 0, 1), rate_lrf_.narrow(1, 0, 1)});
-  const MotionTensors tumbled =
-      tumble({r_lrf_trf_.narrow(1, 1, kOthers), rate_lrf_.narrow(1, 1, kOthers)}, laws_.data() + 1);
+  const MotionTensors spun = spin({r_lrf_trf_.narrow(1, 0, 1), rate_lrf_.narrow(1, 0, 1)}, frame.periods);
+  const MotionTensors tumbled = tumble({r_lrf_trf_.narrow(1, 1, kOthers), rate_lrf_.narrow(1, 1, kOthers)},
+                                       laws_.data() + 1, frame.periods);
   r_lrf_trf_ = torch::cat({spun.r_lrf_trf, tumbled.r_lrf_trf}, 1);
   rate_lrf_ = torch::cat({spun.rate_lrf, tumbled.rate_lrf}, 1);
 }
@@ -205,7 +224,9 @@ Fusion TrackModule::advance(const FrameHypotheses& frame, const torch::Tensor& h
                                    .masked_fill(unseen, kMissOfLostTarget)
                                    .detach();
   if (frames_ > 0) {
-    rate_lrf_ = rate_lrf_ + rate_gain * small_turn_of(torch::matmul(answers, r_lrf_trf_.transpose(-1, -2)));
+    const torch::Tensor largest = largest_versine(frame.periods, frames_ < kGains).unsqueeze(-1);
+    const torch::Tensor innovation = turn_of(torch::matmul(answers, r_lrf_trf_.transpose(-1, -2)), largest);
+    rate_lrf_ = rate_lrf_ + rate_gain * innovation / frame.periods.view({-1, 1, 1});
   }
 
   const torch::Tensor variance =

@@ -1,5 +1,6 @@
 // gnc/rcnn/attitude_track.hpp in LibTorch: for batches, with gradients. The flight code gives the same values
-// (tests/unit/sim/training/export_test.cpp).
+// (tests/unit/sim/training/export_test.cpp) as long as the chaser does not turn and two frames are close
+// enough in time to tell the rate (gnc::kLongestToFindRate_ns).
 //
 // Shapes: B rows of a batch, 8 hypotheses, 9 candidates, 5 laws of motion.
 #pragma once
@@ -16,11 +17,13 @@ torch::Tensor rotation_from_columns(const torch::Tensor& a, const torch::Tensor&
 
 // The CNN's output for one frame.
 struct FrameHypotheses {
-  FrameHypotheses(const torch::Tensor& features, const torch::Tensor& r_lrf_trf, const torch::Tensor& logits);
+  FrameHypotheses(const torch::Tensor& features, const torch::Tensor& r_lrf_trf, const torch::Tensor& logits,
+                  const torch::Tensor& periods);
   torch::Tensor features;       // [B, 128]
   torch::Tensor r_lrf_trf;      // [B, 8, 3, 3]
   torch::Tensor logits;         // [B, 8]
   torch::Tensor probabilities;  // [B, 8]
+  torch::Tensor periods;        // [B], since the frame before
 };
 
 // The estimate for one frame; as TrackedSequences, without T.

@@ -16,6 +16,8 @@
 namespace tumblesight::sim {
 namespace {
 
+// How the frames of a sequence are spaced: 1 for today's ways (sequence_features.cpp).
+constexpr std::uint64_t kTimings = 1;
 constexpr double kGradientNorm = 1.0;
 constexpr double kWeightDecay = 1e-3;
 constexpr std::int64_t kValidationSequences = 512;
@@ -97,7 +99,7 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
       {settings.seed, static_cast<std::uint64_t>(settings.rcnn_sequences),
        settings.rcnn_seconds > 0.0 ? kTimed : static_cast<std::uint64_t>(settings.rcnn_iterations),
        static_cast<std::uint64_t>(settings.rcnn_batch), targets.meshes_crc32, view_hash(targets),
-       crc32_of_cnn(weights), bits_of(settings.rcnn_learning_rate), crc32_of(targets.inertia)});
+       crc32_of_cnn(weights), bits_of(settings.rcnn_learning_rate), crc32_of(targets.inertia), kTimings});
   return stage;
 }
 

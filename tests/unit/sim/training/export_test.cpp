@@ -122,7 +122,7 @@ class ExportTest : public testing::Test {
       logits.push_back(torch::from_blob(logit.data(), {gnc::shape::kHypotheses}).clone());
     }
     return {torch::stack(features).unsqueeze(0), torch::stack(rotations).unsqueeze(0),
-            torch::stack(logits).unsqueeze(0)};
+            torch::stack(logits).unsqueeze(0), torch::ones({1, kFrames})};
   }
 
   std::unique_ptr<gnc::AttitudeEstimator<gnc::Float32>> estimator_from_file() {
@@ -139,13 +139,22 @@ class ExportTest : public testing::Test {
   }
 
   // Steps the estimator through the sequence and compares every estimate with LibTorch's.
-  void expect_equal_estimates(const ImageSequence& sequence, const char* what) {
+  // `elapsed_ns`: between two frames; they take turns.
+  void expect_equal_estimates(const ImageSequence& sequence, const char* what,
+                              const std::vector<std::int64_t>& elapsed_ns = {gnc::kNominalPeriod_ns}) {
     const auto estimator = estimator_from_file();
-    const TrackedSequences expected = recurrent->forward(hypotheses_of(sequence));
+    SequenceHypotheses hypotheses = hypotheses_of(sequence);
+    for (int k = 1; k < kFrames; ++k)
+      hypotheses.periods[0][k] =
+          static_cast<double>(elapsed_ns[static_cast<std::size_t>(k) % elapsed_ns.size()]) /
+          gnc::kNominalPeriod_ns;
+    const TrackedSequences expected = recurrent->forward(hypotheses);
     for (int k = 0; k < kFrames; ++k) {
       depth_image(sequence, k);
       gnc::AttitudeEstimate estimate;
-      estimator->step(*image, estimate);
+      gnc::FrameInterval interval;
+      interval.elapsed_ns = elapsed_ns[static_cast<std::size_t>(k) % elapsed_ns.size()];
+      estimator->step(*image, interval, estimate);
       const torch::Tensor difference =
           tensor_of(gnc::to_double(estimate.q_lrf_trf).toRotationMatrix().cast<float>()) -
           expected.r_lrf_trf[0][k];
@@ -194,6 +203,17 @@ TEST_F(ExportTest, TheEstimatorAgreesWithLibTorchIfEveryFrameContradictsTheLast)
   torch::NoGradGuard guard;
   for (std::uint64_t index = 0; index < 3; ++index)
     expect_equal_estimates(unrelated_frames(index), "unrelated");
+}
+
+TEST_F(ExportTest, TheEstimatorAgreesWithLibTorchWhateverTheTimeBetweenFrames) {
+  torch::NoGradGuard guard;
+  const std::vector<std::int64_t> times{gnc::kNominalPeriod_ns, 400'000'000, 5'400'000'000, 1'350'000'000,
+                                        7'000'000'000};
+  for (std::uint64_t index = 0; index < 3; ++index) {
+    expect_equal_estimates(moving_target(Condition::kNominal, index), "spinning", times);
+    expect_equal_estimates(moving_target(Condition::kTumbling, index), "tumbling", times);
+    expect_equal_estimates(unrelated_frames(index), "unrelated", times);
+  }
 }
 
 TEST_F(ExportTest, ATargetNameThatIsTooLongIsRefused) {
