@@ -51,7 +51,9 @@ const EffectSet& effect_set_of(const TrainingTargets& targets, std::uint64_t num
 }
 
 // When the frames of a sequence come: every second sequence in the sensor's own period; of the others a third
-// with another period, a third with times that vary, and a third with single frames that are lost.
+// with another period, a third with times that vary, and a third with single frames that are lost. The last
+// two only with a sensor with which all times between frames stay within kShortest_s to kLongest_s, so that
+// they tell the rate of the target.
 struct Timing {
   Disturbances disturbances;
   std::vector<std::uint32_t> frames;  // that arrive
@@ -60,17 +62,20 @@ Timing timing_of(const TrainingTargets& targets, std::uint64_t seed, std::uint64
   constexpr double kShortest_s = 0.4, kLongest_s = 7.0, kJitter = 0.5, kLostShare = 0.3;
   Random random(mix(mix(seed, number), 5));
   Timing timing;
-  timing.disturbances.period_s = targets.sensor.period_s;
+  const double period_s = targets.sensor.period_s;
+  timing.disturbances.period_s = period_s;
+  const bool may_vary = (1.0 - kJitter) * period_s >= kShortest_s && (1.0 + kJitter) * period_s <= kLongest_s;
+  const bool may_lose = 2.0 * period_s <= kLongest_s;
   std::uint32_t frame = 0;
   const double kind = random.uniform(0.0, 6.0);
   if (kind >= 5.0) {
     timing.disturbances.period_s = kShortest_s * std::pow(kLongest_s / kShortest_s, random.uniform());
-  } else if (kind >= 4.0) {
+  } else if (kind >= 4.0 && may_vary) {
     timing.disturbances.period_jitter = kJitter;
   }
   for (int k = 0; k < kFrames; ++k) {
     timing.frames.push_back(frame);
-    frame += kind >= 3.0 && kind < 4.0 && random.uniform() < kLostShare ? 2 : 1;
+    frame += may_lose && kind >= 3.0 && kind < 4.0 && random.uniform() < kLostShare ? 2 : 1;
   }
   return timing;
 }

@@ -16,7 +16,8 @@
 namespace tumblesight::sim {
 namespace {
 
-// How the frames of a sequence are spaced: 1 for today's ways (sequence_features.cpp).
+// Version of the rule for the times between frames (sequence_features.cpp). A checkpoint of another one is
+// refused.
 constexpr std::uint64_t kTimings = 1;
 constexpr double kGradientNorm = 1.0;
 constexpr double kWeightDecay = 1e-3;

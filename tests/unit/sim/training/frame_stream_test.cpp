@@ -182,6 +182,33 @@ TEST(SequenceFeatures, SetsOfEffectsTakeTurnsAfterConditionsAndLawsOfTheRate) {
   }
 }
 
+// A sensor with a short period cannot be late by half of it, and one with a long period cannot lose a frame:
+// the target may turn too far in the gap.
+TEST(SequenceFeatures, TimesBetweenFramesSuitTheSensor) {
+  const auto weights = std::make_unique<gnc::NetworkWeights<gnc::Float32>>();
+  torch::manual_seed(5);
+  export_weights(Cnn(), Recurrent(), *weights);
+  constexpr double kNominal_s = 2.7;
+  for (const double period_s : {0.1, kNominal_s, 5.0}) {
+    SCOPED_TRACE(period_s);
+    TrainingTargets targets = make_training_targets({make_near_shoemaker()}, {Condition::kNominal});
+    targets.sensor.period_s = period_s;
+    constexpr int kCount = 64;
+    SequenceFeatures supply(targets, *weights, 5, kCount, 2);
+    const torch::Tensor periods = supply.first(kCount).hypotheses.periods;
+    EXPECT_TRUE(periods.select(1, 0).eq(1.0).all().item<bool>());
+    const torch::Tensor times_s = kNominal_s * periods.narrow(1, 1, kTrainingFrames - 1);
+    EXPECT_GE(times_s.min().item<double>(), std::min(0.4, period_s) - 1e-4);
+    EXPECT_LE(times_s.max().item<double>(), 7.0 + 1e-4);
+    const torch::Tensor as_the_sensor = (times_s - period_s).abs().lt(1e-4);
+    const auto regular = as_the_sensor.all(1).sum().item<std::int64_t>();
+    EXPECT_GE(regular, kCount / 3);
+    EXPECT_LT(regular, kCount);
+    const bool has_gaps = (times_s - 2.0 * period_s).abs().lt(1e-4).any().item<bool>();
+    EXPECT_EQ(has_gaps, period_s != 5.0);
+  }
+}
+
 // Verifies TS-SIL-340. Twelve frames with one strength.
 TEST(SequenceFeatures, ASequenceKeepsTheStrengthThatItDraws) {
   const auto weights = std::make_unique<gnc::NetworkWeights<gnc::Float32>>();
