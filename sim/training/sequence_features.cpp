@@ -52,8 +52,8 @@ const EffectSet& effect_set_of(const TrainingTargets& targets, std::uint64_t num
 
 // When the frames of a sequence come: every second sequence in the sensor's own period; of the others a third
 // with another period, a third with times that vary, and a third with single frames that are lost. The last
-// two only with a sensor with which all times between frames stay within kShortest_s to kLongest_s, so that
-// they tell the rate of the target.
+// two are left out if a time between frames would then be shorter than kShortest_s or longer than kLongest_s:
+// such frames do not tell the rate of the target.
 struct Timing {
   Disturbances disturbances;
   std::vector<std::uint32_t> frames;  // that arrive
