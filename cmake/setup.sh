@@ -17,9 +17,11 @@ packages_of_toolchains() {
 packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
   libassimp-dev libcli11-dev libdraco-dev libfmt-dev libmeshoptimizer-dev libonnx-dev libpng-dev libprotobuf-dev
   libssl-dev libtomlplusplus-dev nlohmann-json3-dev)
+# The console in the browser: sim/run --watch.
+packages_to_watch=("${packages_to_run[@]}" libcivetweb-dev libjs-dygraphs libjs-three)
 packages_to_train=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread)
-packages_to_test=("${packages_to_train[@]}" libdnnl-dev libgtest-dev libgmock-dev
-  clang clang-format git python3 valgrind)
+packages_to_test=("${packages_to_train[@]}" "${packages_to_watch[@]}" libdnnl-dev libgtest-dev libgmock-dev
+  chromium clang clang-format git python3 valgrind)
 packages_to_fuzz=("${packages_to_run[@]}" clang libclang-rt-dev python3)
 # The flight side only, with GCC's branch counts.
 packages_to_cover=(g++ cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev gcovr python3)

@@ -19,6 +19,11 @@ constexpr int kTimesMedian = 4;
 constexpr int kFullestOverFilled = 64;
 // Of a target's returns at least this share is like the next ray of the row; of scattered ones hardly any.
 constexpr int kReturnsOverPairs = 16;
+// A slice goes on bin by bin while the next one holds this share of the returns of the one before, and at
+// least kFilled of them: ranges that are noisier than the paper's fall off slowly, and clean ones at once.
+constexpr int kGoesOnNumerator = 3, kGoesOnDenominator = 8;
+constexpr int kFilled = 4;
+constexpr int kMostMoreBins = 32;  // to either side
 
 // A block with this many chosen rays belongs to a surface.
 constexpr int kRaysOfSurface = 8;
@@ -108,13 +113,43 @@ int first_filled_slice(const Scratch& scratch, int needed, int with_pairs, std::
   return first;
 }
 
+int returns_of_bin(const Scratch& scratch, int bin) {
+  return scratch.returns_before[bin + 1] - scratch.returns_before[bin];
+}
+
+// The last bin to which a slice goes on from `edge`, its outermost bin, by `step`: 1 or -1. `count`: bins of
+// the slice, 0 for none; it grows by no more than these to either side.
+int goes_on_to(const Scratch& scratch, int edge, int step, int count, int median) {
+  int bin = edge;
+  const int inner = min_small(max_small(edge - step, 0), kBins - 1);
+  int before = max_small(returns_of_bin(scratch, edge), returns_of_bin(scratch, inner));
+  int goes_on = -1;
+  for (int more = 0; more < kMostMoreBins; ++more) {
+    const int next = min_small(max_small(bin + step, 0), kBins - 1);
+    const int returns = returns_of_bin(scratch, next);
+    const int falls_off = sign_mask(kGoesOnDenominator * returns - kGoesOnNumerator * before);
+    const int is_clutter = sign_mask(returns * count - kTimesMedian * median);
+    goes_on &= sign_mask(more - count) & ~falls_off & ~is_clutter & ~sign_mask(returns - kFilled);
+    bin += (next - bin) & goes_on;
+    before = returns;
+  }
+  return bin;
+}
+
+// The slice and the bins to which a noisy target goes on.
+Slice with_tails(const Scratch& scratch, Slice slice, int median) {
+  const int end = min_small(max_small(slice.first + slice.count, 1), kBins);
+  const int last = goes_on_to(scratch, end - 1, 1, slice.count, median);
+  const int first = goes_on_to(scratch, slice.first, -1, slice.count, median);
+  return {first, (last + 1 - first) & sign_mask(-slice.count)};
+}
+
 // Of the slices that begin within the first well filled one, the one with the most returns. Its count is 0 if
 // no slice is well filled.
-Slice nearest_filled_slice(const Scratch& scratch, std::uint32_t target_radius_mm) {
+Slice nearest_filled_slice(const Scratch& scratch, int median, std::uint32_t target_radius_mm) {
   int fullest = 0;
   for (const std::uint16_t returns : scratch.returns_in_slice) fullest = max_small(fullest, returns);
-  const int needed =
-      max(max(kMinReturns, kTimesMedian * median_of_slices(scratch)), fullest / kFullestOverFilled);
+  const int needed = max(max(kMinReturns, kTimesMedian * median), fullest / kFullestOverFilled);
 
   // A target that reflects few rays may have no pairs.
   const int with_pairs = first_filled_slice(scratch, needed, -1, target_radius_mm);
@@ -134,10 +169,8 @@ Slice nearest_filled_slice(const Scratch& scratch, std::uint32_t target_radius_m
 // Counts from which a slice takes returns: kMinRange_counts or its own begin. A target that fills the bins on
 // both sides of kMinRange_m goes on nearer, bin by bin, until it is as deep as its slice.
 int begin_of(const Scratch& scratch, Slice slice) {
-  constexpr int kFilled = 4;
   const auto is_filled = [&scratch](int bin) {
-    const int returns = bin < kMinRange_m ? scratch.near_returns[bin]
-                                          : scratch.returns_before[bin + 1] - scratch.returns_before[bin];
+    const int returns = bin < kMinRange_m ? scratch.near_returns[bin] : returns_of_bin(scratch, bin);
     return ~sign_mask(returns - kFilled);
   };
   int deepest = 0;  // filled bin of the slice
@@ -409,7 +442,9 @@ void select_target(const RangeImage& frame, std::uint32_t target_radius_mm, Targ
                    RayMask& mask) {
   count_bins(frame, largest_step_counts(target_radius_mm), scratch);
   count_slices(target_radius_mm, scratch);
-  choose_slice(frame, scratch, nearest_filled_slice(scratch, target_radius_mm), mask);
+  const int median = median_of_slices(scratch);
+  const Slice slice = nearest_filled_slice(scratch, median, target_radius_mm);
+  choose_slice(frame, scratch, with_tails(scratch, slice, median), mask);
 
   for (int row = 0; row < frame.rays; ++row) count_support(mask, row, scratch);
   count_blocks(mask, scratch);

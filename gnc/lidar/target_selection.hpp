@@ -88,7 +88,8 @@ struct TargetSelectionScratch {
 // Chooses the returns of the target in three steps.
 //  1. Of all ranges from kMinRange_m to kMaxRange_m a slice as deep as the target: the nearest that holds
 //     clearly more returns than clutter would, and not scattered ones only. If it begins at kMinRange_m, it
-//     goes on nearer as long as the returns do.
+//     goes on nearer as long as the returns do. If the returns fall off slowly beyond its ends, since the
+//     ranges are noisier than the paper's, it goes on with them, to three times its depth at most.
 //  2. If there are isolated returns away from surfaces, every return needs neighbours: the denser the
 //     clutter, the more. A target of few returns loses none as long as there is no clutter.
 //  3. Connected parts of the image that are tiny beside the largest are dropped.

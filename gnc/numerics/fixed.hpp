@@ -62,7 +62,17 @@ class Fixed {
   static_assert((std::int64_t{-3} >> 1) == -2, "right shifts must be arithmetic");
 
   static constexpr std::int32_t saturate(std::int64_t raw) {
-    return static_cast<std::int32_t>(clamp<std::int64_t>(raw, -kLargestRaw, kLargestRaw));
+    if constexpr (kHasConditionalMoves)
+      return static_cast<std::int32_t>(clamp<std::int64_t>(raw, -kLargestRaw, kLargestRaw));
+    // By its words, in half as many instructions of 32 bits. A negative number fits if the number below it
+    // does.
+    const std::uint32_t sign = static_cast<std::uint32_t>(raw >> 63);
+    const Words farther(static_cast<std::uint64_t>(raw) + static_cast<std::uint64_t>(raw >> 63));
+    const std::uint32_t lost = farther.high ^ (0U - (farther.low >> 31));
+    const std::uint32_t does_not_fit = 0U - ((lost | (0U - lost)) >> 31);
+    const std::uint32_t limit = (std::uint32_t{kLargestRaw} ^ sign) - sign;
+    const auto low = static_cast<std::uint32_t>(raw);
+    return static_cast<std::int32_t>(low ^ ((low ^ limit) & does_not_fit));
   }
   static constexpr Fixed from_product(std::int64_t product) {
     return from_raw((product + (kOne >> 1)) >> kFractionBits);
@@ -71,7 +81,15 @@ class Fixed {
   // overflow.
   static constexpr std::int64_t with_headroom(std::int64_t sum) {
     constexpr std::int64_t kBound = std::int64_t{1} << 61;
-    return clamp(sum, -kBound, kBound);
+    if constexpr (kHasConditionalMoves) return clamp(sum, -kBound, kBound);
+    // By the high word: from +-2^61 on the low one is 0.
+    constexpr std::int32_t kHighBound = 1 << 29;
+    const auto high = static_cast<std::int32_t>(sum >> 32);
+    const std::int32_t sign = sign_mask(high);
+    const std::int32_t is_beyond = sign_mask(kHighBound - 1 - (high ^ sign));
+    const std::int32_t limited = high ^ ((high ^ ((kHighBound ^ sign) - sign)) & is_beyond);
+    const std::uint32_t low = static_cast<std::uint32_t>(sum) & ~static_cast<std::uint32_t>(is_beyond);
+    return (std::int64_t{limited} * (std::int64_t{1} << 32)) | low;
   }
 
   std::int32_t raw_ = 0;

@@ -126,21 +126,6 @@ void add_to(Crc32& crc, const PoseTrackerState& state) {
 
 }  // namespace
 
-// Fitted to the parametric meshes of three targets under the paper's conditions and thirteen effects.
-// The sum in 64 bits, since Fixed would limit each of its terms.
-Fixed expected_error_rad(const ErrorEvidence& evidence, Fixed network_error_rad) {
-  constexpr auto kWrongError_rad = constant<Fixed>(1.84);  // mean of wrong attitudes: 105 degrees
-  constexpr double kSquareOf30Degrees = 0.26794919;
-  constexpr auto weight = [](double value) { return std::int64_t{constant<Fixed>(value).raw()}; };
-  const Fixed innovation = clamp(evidence.innovation_squared, Fixed{}, constant<Fixed>(kSquareOf30Degrees));
-  const std::int64_t sum = weight(0.82) * evidence.network_logit.raw() +
-                           weight(13.0) * (static_cast<std::int64_t>(evidence.misfit) << 8) +  // from Q0.16
-                           weight(1.6 / kSquareOf30Degrees) * innovation.raw() +
-                           weight(2.3) * evidence.second_share.raw();
-  const Fixed wrong = sigmoid(Fixed::from_raw((sum >> Fixed::kFractionBits) - weight(5.5)));
-  return network_error_rad + wrong * (kWrongError_rad - network_error_rad);
-}
-
 template <class N>
 ModelStatus AttitudeEstimator<N>::load(const std::uint8_t* image, std::size_t size_bytes,
                                        const char* expected_target) {
@@ -209,6 +194,10 @@ void AttitudeEstimator<N>::register_pose(const RangeImage& frame, const FrameInt
                                estimate.law};
     track_pose({mesh_, model_.projection.target_radius_mm, model_.noise}, pose_frame, network_.pose_scratch(),
                screen_vertices(), state_.pose, estimate.pose);
+    add_pose(estimate.pose, estimate.q_lrf_trf, estimate.evidence);
+    const Matrix3<Fixed> attitude = rotation_from_quaternion(estimate.q_lrf_trf);
+    if (estimate.evidence.has_pose && estimate.predicted_error_urad < kPi_urad)
+      estimate.predicted_error_urad = error_urad(attitude, expected_error_rad(estimate.evidence));
   }
 }
 
@@ -254,10 +243,13 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
   const Fixed innovation_squared =
       constant<Fixed>(3.0) - trace_of_product(converted<Fixed>(prediction.r_lrf_trf()), attitude);
   const Fixed network_error_rad = converted<Fixed>(tracked.predicted_error_rad);
-  const Fixed error_rad =
-      expected_error_rad({converted<Fixed>(head[2 * shape::kCandidates + 1]), misfit_of(estimate.explained),
-                          select(prediction.has_track, innovation_squared, Fixed{}), second.share},
-                         network_error_rad);
+  estimate.evidence = {};
+  estimate.evidence.network_error_rad = network_error_rad;
+  estimate.evidence.network_logit = converted<Fixed>(head[2 * shape::kCandidates + 1]);
+  estimate.evidence.misfit = misfit_of(estimate.explained);
+  estimate.evidence.innovation_squared = select(prediction.has_track, innovation_squared, Fixed{});
+  estimate.evidence.second_share = second.share;
+  const Fixed error_rad = expected_error_rad(estimate.evidence);
   estimate.predicted_error_urad =
       error_urad(attitude, select(estimate.explained.is_known, error_rad, network_error_rad));
 }

@@ -9,6 +9,7 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/attitude_track.hpp"
+#include "gnc/rcnn/expected_error.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "gnc/rcnn/network.hpp"
 #include "gnc/registration/explained_share.hpp"
@@ -42,20 +43,10 @@ struct AttitudeEstimate {
   QuaternionQ30 q_lrf_trf_second = kIdentityQ30;
   std::uint32_t second_odds_ppm = 0;
   std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
+  ErrorEvidence evidence;                         // behind the expected error
   ExplainedShare explained;  // of this frame, by the target at q_lrf_trf; not known in float32
   PoseEstimate pose;         // registered; not known in float32
 };
-
-// What tells an attitude that is wrong, by more than 20 degrees, from one that is right.
-struct ErrorEvidence {
-  Fixed network_logit;       // of the error that the network expects, over pi
-  std::uint32_t misfit = 0;  // misfit_of()
-  Fixed innovation_squared;  // 2 - 2 cos of the angle to the predicted attitude; 0 without a prediction
-  Fixed second_share;        // of the second attitude in the probability of both, 0..1
-};
-// The expected error [rad], 0..pi, from the one that the network expects and the probability of a wrong
-// attitude, by a logistic regression on the evidence: docs/numerics.md.
-Fixed expected_error_rad(const ErrorEvidence& evidence, Fixed network_error_rad);
 
 // The motion of the target in the LRF, in integers.
 struct PropagatedMotion {
@@ -123,7 +114,8 @@ class AttitudeEstimator {
   Network<N>& network() { return network_; }
 
  private:
-  // Registers the frame of `estimate`, whose depth image and mask are in use.
+  // Registers the frame of `estimate`, whose depth image and mask are in use, and lets the pose judge its
+  // attitude.
   void register_pose(const RangeImage& frame, const FrameInterval& interval, AttitudeEstimate& estimate);
 
   // Results of the stages of a frame; members, to keep the stack small.

@@ -11,10 +11,10 @@ namespace shape {
 
 inline constexpr int kImageSide = 100;
 inline constexpr int kSpaceToDepthChannels = 4;  // channel = 2 * (row & 1) + (column & 1)
-inline constexpr int kConv1 = 32;                // 50x50 -> 25x25
-inline constexpr int kConv2 = 64;                // 25x25 -> 12x12
-inline constexpr int kConv3 = 128;               // 12x12 -> 6x6
-inline constexpr int kConv4 = 240;               // 6x6   -> 3x3
+inline constexpr int kConv1 = 16;                // 50x50 -> 25x25
+inline constexpr int kConv2 = 48;                // 25x25 -> 12x12
+inline constexpr int kConv3 = 96;                // 12x12 -> 6x6
+inline constexpr int kConv4 = 160;               // 6x6   -> 3x3
 inline constexpr int kFlat = 3 * 3 * kConv4;
 inline constexpr int kDense1 = 192;
 inline constexpr int kDense2 = 128;

@@ -7,9 +7,9 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr int kMaxAcross = 12;  // rays to either side of the outline
-constexpr int kMaxPlaces = 6144;
-constexpr int kMostPerRow = 4;  // places that share a row of the equations
+constexpr int kMaxAcross = 12;    // rays to either side of the outline
+constexpr int kMaxPlaces = 6144;  // of the silhouette, and as many between dark and bright surfaces
+constexpr int kMostPerRow = 4;    // places that share a row of the equations
 constexpr std::uint32_t kLeastFill_q16 = 32'768, kWholeFill_q16 = 64'880;  // 1/2 and 99 %
 constexpr std::int32_t kBehind_um = 250'000;  // an edge this far behind another surface is hidden
 
@@ -60,6 +60,21 @@ class Across {
         steps_per_distance_q16_((OutlineTable::kPerSigma << 24) / (sigma_q8 * kScreenRay)),
         behind_(static_cast<std::int32_t>(
             divide(std::int64_t{kBehind_um} << view.shift, view.reference_depth_um))) {}
+
+  // On which side of an edge between two triangles nothing returns: 1 or -1 as OutlineEdge::outward, 0 if
+  // both sides are dark or bright, or something nearer hides them. Its middle decides. An edge next to the
+  // silhouette counts, too: the outline is trusted more where surfaces are dark (docs/numerics.md).
+  int dark_side(const OutlineEdge& edge) const {
+    const Line at{edge.is_steep, (edge.line(edge.from) + edge.line(edge.to)) >> (kScreenBits + 1),
+                  view_.rays};
+    const int across = (edge.across(edge.from) + edge.across(edge.to)) >> (kScreenBits + 1);
+    const bool is_before = is_filled(at, across - 1), is_after = is_filled(at, across + 1);
+    if (is_before == is_after) return 0;
+    const std::int32_t nearness = (edge.from.nearness + edge.to.nearness) >> 1;
+    const int bright = is_before ? across - 1 : across + 1;
+    if (surface_.nearness[at.ray(bright)] > nearness + behind_) return 0;
+    return is_before ? 1 : -1;
+  }
 
   // The whole look, in three parts: the rays next to the outline must agree with it, then outwards and
   // inwards until the rendering changes. `place`: where the outline crosses the line, in 1/64 of a ray;
@@ -169,9 +184,9 @@ class OutlineRows {
 };
 
 // Adds the places where an edge crosses the middles of the lines, of `every` line one; returns the number of
-// lines.
+// lines. `found`: whether one was added.
 int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const OutlineRows& equation_rows,
-             const Across& across, int rays, OutlineFit& fit) {
+             const Across& across, int rays, OutlineFit& fit, bool& found) {
   // Between the first end and before the second one: a line through both of two edges is of one of them.
   int first = max_small(0, (edge.line(edge.from) + kScreenRay / 2 - 1) >> kScreenBits);
   const int end = min_small(rays, (edge.line(edge.to) + kScreenRay / 2 - 1) >> kScreenBits);
@@ -207,6 +222,7 @@ int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const 
     fit.length_q8 += places * length_q8;
     sum = {};
     parts_q15 = places = 0;
+    found = true;
   };
   for (int line = first; line < end; line += every) {
     const std::int32_t past = line * kScreenRay + kScreenRay / 2 - edge.line(edge.from);
@@ -223,6 +239,42 @@ int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const 
   }
   if (places > 0) add_row();
   return (end - first + every - 1) / every;
+}
+
+// The triangles on both sides of an edge.
+struct Sides {
+  bool are_drawn = false;        // with an area on the screen
+  bool are_on_one_side = false;  // of the edge, which parts the target from what is behind it
+  bool first_is_right = false;   // on the right of the way from the edge's first end to its second
+};
+Sides sides_of(const SurfaceMesh& mesh, const RenderedSurface& surface, const SurfaceMesh::Edge& edge) {
+  // The image was sound when it was loaded, but its memory may have been damaged since.
+  if (!mesh.has(edge.first, edge.second, edge.opposite[0], edge.opposite[1])) return {};
+  const ScreenVertices& vertices = *surface.vertices;
+  const ScreenPoint &first = vertices[edge.first], &second = vertices[edge.second];
+  const ScreenPoint &left = vertices[edge.opposite[0]], &right = vertices[edge.opposite[1]];
+  if (!surface.is_complete &&
+      (first.is_outside() || second.is_outside() || left.is_outside() || right.is_outside()))
+    return {};
+  const std::int32_t left_side = area(first, second, left), right_side = area(first, second, right);
+  return {left_side != 0 && right_side != 0, (left_side ^ right_side) >= 0, left_side > 0};
+}
+
+// `is_right`: the target is on the right of the way from the edge's first end to its second.
+OutlineEdge outline_edge(const ScreenVertices& vertices, const SurfaceMesh::Edge& edge, bool is_right) {
+  const ScreenPoint &first = vertices[edge.first], &second = vertices[edge.second];
+  const std::int32_t right_by = second.column - first.column, down_by = second.row - first.row;
+  const bool is_steep = abs(down_by) >= abs(right_by);
+  const bool is_forward = (is_steep ? down_by : right_by) >= 0;
+  // Triangles on the right of the way down are on its left on the screen, and the other way round for the
+  // way to the right, where they are below.
+  const bool is_outward_positive = is_right == is_forward ? is_steep : !is_steep;
+  return {is_steep,
+          is_forward ? first : second,
+          is_forward ? second : first,
+          is_forward ? edge.first : edge.second,
+          is_forward ? edge.second : edge.first,
+          is_outward_positive ? 1 : -1};
 }
 
 }  // namespace
@@ -251,34 +303,26 @@ void fit_outline(const SurfaceMesh& mesh, const FrameView& view, const Pose& pos
   fit = {};
   const Across across(view, surface, table, sigma_q8);
   const OutlineRows rows(view, pose);
-  const ScreenVertices& vertices = *surface.vertices;
-  int places = 0;
-  for (int i = 0; i < mesh.edges() && places < kMaxPlaces; ++i) {
+  int silhouettes = 0, between = 0;  // places
+  for (int i = 0; i < mesh.edges(); ++i) {
     const SurfaceMesh::Edge edge = mesh.edge(i);
-    // The image was sound when it was loaded, but its memory may have been damaged since.
-    if (!mesh.has(edge.first, edge.second, edge.opposite[0], edge.opposite[1])) continue;
-    const ScreenPoint &first = vertices[edge.first], &second = vertices[edge.second];
-    const ScreenPoint &left = vertices[edge.opposite[0]], &right = vertices[edge.opposite[1]];
-    if (!surface.is_complete &&
-        (first.is_outside() || second.is_outside() || left.is_outside() || right.is_outside()))
+    const Sides sides = sides_of(mesh, surface, edge);
+    // Between a dark surface and another one is an outline, too.
+    if (!sides.are_drawn || (!sides.are_on_one_side && !surface.has_dark)) continue;
+    OutlineEdge outline = outline_edge(*surface.vertices, edge, sides.first_is_right);
+    bool found = false;
+    if (!sides.are_on_one_side) {
+      outline.outward = across.dark_side(outline);
+      if (outline.outward != 0 && between < kMaxPlaces)
+        between += add_edge(mesh, outline, every, rows, across, view.rays, fit, found);
       continue;
-    // Both triangles on the same side of the edge: it parts the target from what is behind it.
-    const std::int32_t left_side = area(first, second, left), right_side = area(first, second, right);
-    if (left_side == 0 || right_side == 0 || (left_side ^ right_side) < 0) continue;
-    const bool on_right = left_side > 0;
-    const std::int32_t right_by = second.column - first.column, down_by = second.row - first.row;
-    const bool is_steep = abs(down_by) >= abs(right_by);
-    const bool is_forward = (is_steep ? down_by : right_by) >= 0;
-    // Triangles on the right of the way down are on its left on the screen, and the other way round for the
-    // way to the right, where they are below.
-    const bool is_outward_positive = on_right == is_forward ? is_steep : !is_steep;
-    const OutlineEdge found{is_steep,
-                            is_forward ? first : second,
-                            is_forward ? second : first,
-                            is_forward ? edge.first : edge.second,
-                            is_forward ? edge.second : edge.first,
-                            is_outward_positive ? 1 : -1};
-    places += add_edge(mesh, found, every, rows, across, view.rays, fit);
+    }
+    if (silhouettes >= kMaxPlaces) continue;
+    silhouettes += add_edge(mesh, outline, every, rows, across, view.rays, fit, found);
+    if (found || !surface.has_dark) continue;
+    // A dark surface before a bright one.
+    outline.outward = -outline.outward;
+    silhouettes += add_edge(mesh, outline, every, rows, across, view.rays, fit, found);
   }
 }
 

@@ -3,224 +3,28 @@
 #include "gnc/numerics/division.hpp"
 #include "gnc/numerics/functions.hpp"
 #include "gnc/numerics/select.hpp"
+#include "gnc/registration/pose_choice.hpp"
 
 namespace tumblesight::gnc {
 namespace {
 
-constexpr int kTrackedPoses = 2;  // from so many on the motion predicts the next pose
-constexpr int kPosesOfALaw = 3;   // from so many on they tell laws of motion apart
-// From so many on the predicted motion is a good start of the fit, and a very good one.
-constexpr int kPosesOfARate = 4, kPosesOfALongTrack = 7;
-constexpr std::int64_t kDisagreement_q8 = 90;                        // from here on another law is tried
-constexpr std::int64_t kLongestStep_ns = 3 * kNominalPeriod_ns / 2;  // between frames without a gap
-
-// Before the track knows a rate: the network's attitude is a degree or two off, and the position that the
-// middle of the returns gives is off by some rays where a part of the target is hidden.
-constexpr RefinementSettings kFirst{3, 3, 512, 128, 1677722, 8388608};
-constexpr RefinementSettings kFull{3, 2, 160, 40, 1677722, 8388608};
-// Of another attitude than the track's, at the position of the track. The second from kShort on.
-constexpr RefinementSettings kShort{2, 2, 512, 128, 1677722, 8388608};
-constexpr RefinementSettings kConfirm{2, 0, 128, 40, 1677722, 8388608};
-// At the predicted pose.
-constexpr RefinementSettings kTracked{3, 1, 160, 40, 838861, 8388608};
-constexpr RefinementSettings kLongTrack{2, 1, 80, 40, 838861, 8388608};  // with a rate, and without a gap
-
-// 1 + 2 cos of the angle between two attitudes that are different ones.
-constexpr Fixed kTraceOf2Degrees = constant<Fixed>(2.99878165);
-constexpr Fixed kTraceOf6Degrees = constant<Fixed>(2.98904379);
-constexpr Fixed kTraceOf20Degrees = constant<Fixed>(2.87938524);
-
-constexpr std::uint32_t kLeastOdds_ppm = 10'000;  // of a second attitude that is worth a look
-
-// Advantages [nats, Q8]. From kSettled_q8 on only the network's own choice is compared with the track.
-constexpr std::int32_t kMostOfAFrame_q8 = 16 * 256, kMostOfATrack_q8 = 32 * 256;
-constexpr std::int32_t kWithoutAlternative_q8 = 4 * 256;  // of a frame
-constexpr std::int32_t kNetworkDisagrees_q8 = 1 * 256;    // against the track, per frame
-constexpr std::int32_t kMostOfNetwork_q8 = 4 * 256;       // its odds, in the first frames
-constexpr std::int32_t kClear_q8 = 6 * 256;               // after kFirst, for the second attitude
-constexpr std::int32_t kLeastAdvantage_q8 = 8 * 256, kSettled_q8 = 16 * 256;
+constexpr int kTrackedPoses = 2;       // from so many on the motion predicts the next pose
+constexpr int kPosesOfALaw = 3;        // from so many on they tell laws of motion apart
+constexpr int kPosesOfALongTrack = 7;  // from so many on the predicted motion is a very good start of the fit
+constexpr std::int64_t kDisagreement_q8 = 90;  // from here on another law is tried
 
 // Limits of the verdict.
 constexpr int kVerifiedPoses = 3;
 constexpr std::int64_t kLongestToTellRate_ns = 7'500'000'000;  // between poses; as of the network's track
-constexpr std::int32_t kLargestMeanSquare_q8 = 410;            // 1.6
-constexpr std::uint32_t kMostUnexplained_ppm = 30'000, kMostMissing_ppm = 690'000;
+constexpr std::int32_t kLeastAdvantage_q8 = 8 * 256;           // of the track
 constexpr std::int64_t kMostDisagreement_q8 = 3 * 256;
 constexpr std::uint32_t kLargestSigma_urad = 17'453;  // a degree
 
-bool explains(const PoseEvidence& evidence) {
-  return evidence.blocks > 0 && evidence.mean_square_q8() <= kLargestMeanSquare_q8 &&
-         evidence.unexplained_ppm() <= kMostUnexplained_ppm && evidence.missing_ppm() <= kMostMissing_ppm;
-}
-
-bool differs(const Matrix3<Fixed>& a, const Matrix3<Fixed>& b, Fixed trace) {
-  return trace_of_transpose_product<Fixed>(a, b) < trace;
-}
-
-// Sums over rays: their place and the mean nearness of the blocks that they are in.
-struct Middle {
-  std::int64_t rays = 0, columns = 0, rows = 0, nearness = 0;
-  void add(int row, int column, int count, std::int32_t value) {
-    rays += count;
-    columns += std::int64_t{count} * column;
-    rows += std::int64_t{count} * row;
-    nearness += std::int64_t{count} * value;
-  }
-  std::int64_t mean_q8(std::int64_t sum) const { return divide(sum * 256, max<std::int64_t>(rays, 1)); }
-};
-
-// Whether the network's second attitude is another one than this.
-bool offers_second(const Matrix3<Fixed>& r_lrf_trf, const PoseFrame& frame) {
-  return frame.second_odds_ppm >= kLeastOdds_ppm &&
-         differs(r_lrf_trf, frame.second_r_lrf_trf, kTraceOf20Degrees);
-}
-
-// A pose with the attitude `r_lrf_trf`, at which the middle of the drawn target is that of the returns.
-Pose placed(const PoseTarget& target, const PoseFrame& frame, const Matrix3<Fixed>& r_lrf_trf,
-            PoseScratch& scratch) {
-  const FrameView& view = scratch.view;
-  const RenderedSurface& surface = scratch.refinement.surface;
-  Pose pose;
-  pose.r_lrf_trf = r_lrf_trf;
-  for (std::size_t i = 0; i < 3; ++i) pose.origin_lrf_um[i] = frame.centroid_lrf_mm[i] * 1000;
-  render(target.mesh, view, pose, scratch.refinement.surface);
-  Middle seen, drawn;
-  for (int row = 0; row + 1 < view.rays; row += 2) {
-    for (int column = 0; column + 1 < view.rays; column += 2) {
-      const int returns =
-          rays_of_pair(view.returned.pair(row, column)) + rays_of_pair(view.returned.pair(row + 1, column));
-      seen.add(row, column, returns, view.nearness_of_block(row / 2, column / 2));
-      if (surface.is_filled(row, column)) drawn.add(row, column, 1, surface.at(row, column));
-    }
-  }
-  if (seen.rays == 0 || drawn.rays == 0) return pose;
-  const auto um = [&view](std::int64_t rays_q8) {
-    return static_cast<std::int32_t>(
-        divide(rays_q8 * view.target_radius_um, max<std::int64_t>(view.rays_per_radius_q8, 1)));
-  };
-  pose.origin_lrf_um[0] += um(seen.mean_q8(seen.columns) - drawn.mean_q8(drawn.columns));
-  pose.origin_lrf_um[2] -= um(seen.mean_q8(seen.rows) - drawn.mean_q8(drawn.rows));
-  const std::int64_t nearer_q8 = seen.mean_q8(seen.nearness) - drawn.mean_q8(drawn.nearness);
-  pose.origin_lrf_um[1] -=
-      static_cast<std::int32_t>((nearer_q8 * view.reference_depth_um) >> (8 + view.shift));
-  return pose;
-}
-
-void refine_candidate(const PoseTarget& target, const Pose& start, const RefinementSettings& settings,
-                      PoseScratch& scratch, PoseCandidate& candidate) {
-  refine(target.mesh, scratch.view, start, settings, scratch.refinement, candidate.refinement);
-  candidate.evidence = evidence_of(scratch.view, scratch.refinement.surface, scratch.refinement.ranges);
-}
-
-// What is compared with the pose of the track.
-struct Alternative {
-  Matrix3<Fixed> r_lrf_trf;
-  bool exists = false;
-  bool is_network = false;  // it is the network's choice
-};
-
-// Another attitude of the network than this, if it has one: its choice, or its second attitude unless the
-// track is settled. The choice also counts if it is not quite the same: the pose may be beside the right one.
-Alternative alternative_to(const Matrix3<Fixed>& r_lrf_trf, const PoseFrame& frame, bool is_settled) {
-  const Matrix3<Fixed>& choice = frame.network.r_lrf_trf;
-  if (differs(r_lrf_trf, choice, kTraceOf20Degrees)) return {choice, true, true};
-  if (!is_settled && offers_second(r_lrf_trf, frame)) return {frame.second_r_lrf_trf, true, false};
-  return {choice, differs(r_lrf_trf, choice, kTraceOf6Degrees), true};
-}
-
-// By how much the first explains the frame better, limited.
-std::int32_t advantage_q8(const PoseCandidate& first, const PoseCandidate& second) {
-  return clamp<std::int32_t>(second.evidence.cost_q8() - first.evidence.cost_q8(), -kMostOfAFrame_q8,
-                             kMostOfAFrame_q8);
-}
-
-void add_advantage(std::int32_t more_q8, PoseTrackerState& state) {
-  state.advantage_q8 = clamp<std::int32_t>(state.advantage_q8 + more_q8, -kMostOfATrack_q8, kMostOfATrack_q8);
-}
-
-// What the network's odds say for its first attitude against its second one [nats, Q8], limited.
-std::int32_t network_advantage_q8(std::uint32_t second_odds_ppm) {
-  constexpr std::int32_t kNatsPerBit_q8 = 177;
-  const int bits_below_one = 20 - highest_bit(second_odds_ppm);
-  return clamp<std::int32_t>(bits_below_one * kNatsPerBit_q8, -kMostOfNetwork_q8, kMostOfNetwork_q8);
-}
-
-// The first frames of a track: `best` becomes the network's attitude or its second one.
-void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
-                 PoseTrackerState& state) {
-  PoseCandidate& best = scratch.best;
-  PoseCandidate& other = scratch.other;
-  refine_candidate(target, placed(target, frame, frame.network.r_lrf_trf, scratch), kFirst, scratch, best);
-  const bool has_second = offers_second(best.refinement.pose.r_lrf_trf, frame);
-  std::int32_t more_q8 = kWithoutAlternative_q8;
-  if (has_second) {
-    refine_candidate(target, placed(target, frame, frame.second_r_lrf_trf, scratch), kFirst, scratch, other);
-    more_q8 = advantage_q8(best, other) + network_advantage_q8(frame.second_odds_ppm);
-  }
-  if (more_q8 < -kClear_q8) {
-    best = other;
-    // The pose before, if any, is of the other attitude.
-    state.history.count = 0;
-  }
-  // What spoke for another attitude does not speak for this one.
-  const bool goes_on = state.history.count > 0 && !differs(best.refinement.pose.r_lrf_trf,
-                                                           state.motion.turning.r_lrf_trf, kTraceOf20Degrees);
-  if (!goes_on) state.advantage_q8 = 0;
-  add_advantage(more_q8 < 0 && more_q8 >= -kClear_q8 ? more_q8 : abs(more_q8), state);
-  const Pose start = best.refinement.pose;
-  refine_candidate(target, start, kFull, scratch, best);
-}
-
-// Registers the frame at the pose that the motion of the track predicts. After a gap, or if a short
-// registration does not explain the frame, in more steps.
-void follow_motion(const PoseTarget& target, const PoseFrame& frame, const PoseMotion& predicted,
-                   PoseScratch& scratch, const PoseTrackerState& state) {
-  const Pose start{predicted.turning.r_lrf_trf, predicted.origin_lrf_um};
-  if (state.history.count >= kPosesOfARate && frame.elapsed_ns <= kLongestStep_ns) {
-    refine_candidate(target, start, kLongTrack, scratch, scratch.best);
-    if (explains(scratch.best.evidence)) return;
-  }
-  refine_candidate(target, start, kTracked, scratch, scratch.best);
-}
-
-// Registers an attitude of the network at the position of the track. Returns by how much the track explains
-// the frame better.
-std::int32_t compare(const PoseTarget& target, const Alternative& alternative, PoseScratch& scratch) {
-  const Pose start{alternative.r_lrf_trf, scratch.best.refinement.pose.origin_lrf_um};
-  if (alternative.is_network) {
-    refine_candidate(target, start, kFull, scratch, scratch.other);
-    return advantage_q8(scratch.best, scratch.other) - kNetworkDisagrees_q8;
-  }
-  refine_candidate(target, start, kShort, scratch, scratch.other);
-  const std::int32_t short_q8 = advantage_q8(scratch.best, scratch.other);
-  if (short_q8 >= 0) return short_q8;
-  const Pose found = scratch.other.refinement.pose;
-  refine_candidate(target, found, kConfirm, scratch, scratch.other);
-  return advantage_q8(scratch.best, scratch.other);
-}
-
-// A frame of a track whose motion predicts `predicted`. False: the track was given up for another attitude.
-bool follow_track(const PoseTarget& target, const PoseFrame& frame, const PoseMotion& predicted,
-                  PoseScratch& scratch, PoseTrackerState& state) {
-  PoseCandidate& best = scratch.best;
-  PoseCandidate& other = scratch.other;
-  follow_motion(target, frame, predicted, scratch, state);
-  const bool is_settled = state.advantage_q8 >= kSettled_q8;
-  const Alternative alternative = alternative_to(best.refinement.pose.r_lrf_trf, frame, is_settled);
-  std::int32_t more_q8 = kWithoutAlternative_q8;
-  bool has_other = false;  // `other` is another pose of this frame
-  if (alternative.exists) {
-    const std::int32_t advantage = compare(target, alternative, scratch);
-    has_other = differs(best.refinement.pose.r_lrf_trf, other.refinement.pose.r_lrf_trf, kTraceOf2Degrees);
-    if (has_other) more_q8 = advantage;
-  }
-  add_advantage(more_q8, state);
-  const bool is_lost = more_q8 < 0 && !explains(best.evidence) && explains(other.evidence);
-  if (!has_other || (state.advantage_q8 >= 0 && !is_lost)) return true;
-  best = other;
-  state.advantage_q8 = abs(state.advantage_q8);
-  state.history.count = 0;
-  return false;
+// A pose whose outline is not where the frame shows one is known less well.
+void discount(const PoseEvidence& evidence, PoseMeasurement& measurement) {
+  if (evidence.fits_outline()) return;
+  const int shift = evidence.fits_outline(3) ? 4 : 8;
+  for (std::int32_t& element : measurement.information) element >>= shift;
 }
 
 // Whether the poses tell the rate: farther apart, the target may have made a turn more or less between them.
@@ -233,15 +37,14 @@ bool tells_rate(const PoseHistory& history) {
 PoseDoubts doubts_of(const PoseFrame& frame, const Matrix3<Fixed>& r_lrf_trf, const PoseEstimate& estimate) {
   const PoseEvidence& evidence = estimate.evidence;
   PoseDoubts doubts = 0;
-  if (evidence.blocks == 0 || evidence.mean_square_q8() > kLargestMeanSquare_q8) doubts |= kPoseRanges;
-  if (evidence.unexplained_ppm() > kMostUnexplained_ppm || evidence.missing_ppm() > kMostMissing_ppm)
-    doubts |= kPoseOutline;
+  if (!evidence.fits_ranges()) doubts |= kPoseRanges;
+  if (!evidence.fits_returns() || !evidence.fits_outline()) doubts |= kPoseOutline;
   if (estimate.advantage_q8 < kLeastAdvantage_q8) doubts |= kPoseAmbiguous;
   if (estimate.poses < kVerifiedPoses || estimate.disagreement_q8 > kMostDisagreement_q8)
     doubts |= kPoseMotion;
   for (std::size_t i = 0; i < 3; ++i)
     if (estimate.covariance.sigma[i] > kLargestSigma_urad) doubts |= kPoseUncertain;
-  if (differs(r_lrf_trf, frame.network.r_lrf_trf, kTraceOf20Degrees)) doubts |= kPoseNetwork;
+  if (is_another_attitude(r_lrf_trf, frame.network.r_lrf_trf)) doubts |= kPoseNetwork;
   return doubts;
 }
 
@@ -369,7 +172,7 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   scratch.refinement.surface.vertices = &vertices;
   // Memory may be damaged.
   state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);
-  state.advantage_q8 = clamp(state.advantage_q8, -kMostOfATrack_q8, kMostOfATrack_q8);
+  state.advantage_q8 = limited_advantage_q8(state.advantage_q8);
   if (state.history.count == 0) state.motion = {};
   const PoseMotion predicted = later_pose(state, frame.laws, frame.elapsed_ns, frame.r_now_last);
   state.history.advance(frame.elapsed_ns, frame.r_now_last);
@@ -393,7 +196,9 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   const bool is_measured = scratch.best.refinement.is_complete && scratch.best.evidence.blocks > 0;
   if (is_measured) {
     const Pose& pose = scratch.best.refinement.pose;
-    state.history.add(measured_pose(pose, scratch.best.refinement.equations));
+    PoseMeasurement measurement = measured_pose(pose, scratch.best.refinement.equations);
+    discount(scratch.best.evidence, measurement);
+    state.history.add(measurement);
     if (!fit_track(frame, start_of_fit(frame, predicted, pose, is_tracked), scratch, state))
       estimate.doubts = kPoseMotion;
     estimate.disagreement_q8 = scratch.fit.disagreement_q8;

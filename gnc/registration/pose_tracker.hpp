@@ -2,8 +2,9 @@
 //
 // - First frames: the network's attitude and its second one are registered shortly. The one that explains
 //   the frame better is registered fully.
-// - Later frames: from two poses on, the motion predicts the next pose, which is registered. If the network
-//   offers another attitude, that is registered shortly as well.
+// - Later frames: from two poses on, the motion predicts the next pose, which is registered. If it does not
+//   explain the frame, the network's attitude is registered as well. Another one that the network offers is
+//   registered shortly.
 // - Advantage: by how much the pose of the track explains the frames better than the alternatives, summed
 //   over the frames. If it is lost, the track starts anew at the alternative.
 // - Motion: fitted to the last ten poses (pose_fit.hpp).
@@ -16,6 +17,7 @@
 #include <array>
 #include <cstdint>
 
+#include "gnc/registration/placement.hpp"
 #include "gnc/registration/pose_covariance.hpp"
 #include "gnc/registration/pose_evidence.hpp"
 #include "gnc/registration/pose_fit.hpp"
@@ -28,7 +30,8 @@ using PoseDoubts = std::uint32_t;
 inline constexpr PoseDoubts kPoseUnknown = 1;  // no surface in the image, the target too near, or no pose yet
 inline constexpr PoseDoubts kPoseCoasts = 2;   // predicted: the frame could not be registered
 inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the surface
-inline constexpr PoseDoubts kPoseOutline = 8;  // returns beside the target, or too many missing
+inline constexpr PoseDoubts kPoseOutline =
+    8;  // returns beside it, too many missing, or its outline elsewhere
 inline constexpr PoseDoubts kPoseAmbiguous = 16;  // an alternative explains the frames about as well
 // Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
 inline constexpr PoseDoubts kPoseMotion = 32;
@@ -95,6 +98,7 @@ struct PoseCandidate {
 struct PoseScratch {
   FrameView view;
   RefinementScratch refinement;
+  PlacementScratch placement;
   PoseCandidate best, other;
   PoseFitResult fit, other_fit;
 };

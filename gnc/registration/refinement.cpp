@@ -8,7 +8,8 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr std::int32_t kLeastSigma_q8 = 16;  // of fit_outline
+constexpr std::int32_t kLeastSigma_q8 = 16;      // of fit_outline
+constexpr std::uint32_t kLeastFill_q16 = 57344;  // 7/8: where less returns, surfaces may be dark
 
 // Both fits together, with 12 fraction bits.
 NormalEquations together(const FrameView& view, const OutlineFit& outline, const RangeFit& ranges,
@@ -74,32 +75,46 @@ void limit(Motion6& step) {
 
 void refine(const SurfaceMesh& mesh, const FrameView& view, const Pose& start,
             const RefinementSettings& settings, RefinementScratch& scratch, Refinement& result) {
-  Pose& pose = result.pose;
-  pose = start;
+  result.pose = start;
+  render(mesh, view, start, scratch.surface);
+  refine_further(mesh, view, settings, scratch, result);
+}
+
+void refine_further(const SurfaceMesh& mesh, const FrameView& view, const RefinementSettings& settings,
+                    RefinementScratch& scratch, Refinement& result) {
+  RenderedSurface& surface = scratch.surface;
+  result.is_complete = surface.is_complete;
+  result.fill_q16 = fill_share(view, surface);
+  const bool may_be_dark = surface.has_dark || result.fill_q16 < kLeastFill_q16;
+  const auto take_out_dark = [&] {
+    take_out_dark_surfaces(mesh, view, scratch.dark, surface);
+    result.fill_q16 = fill_share(view, surface);
+  };
+  if (may_be_dark && !surface.has_dark) {
+    measure_brightness(mesh, view, surface, scratch.dark);
+    take_out_dark();
+  }
   Motion6 since_start{};
   const std::int32_t last_sigma_q8 = max(settings.last_sigma_q8, kLeastSigma_q8);
   std::int32_t sigma_q8 = max(settings.first_sigma_q8, last_sigma_q8);
   const int steps = clamp(settings.steps, 1, RefinementSettings::kMaxSteps);
-  result.is_complete = true;
-  for (int i = 0; i <= steps; ++i) {
-    render(mesh, view, pose, scratch.surface);
-    if (i == 0) {
-      result.fill_q16 = fill_share(view, scratch.surface);
-      make_outline_table(result.fill_q16, scratch.table);
-    }
-    result.is_complete = result.is_complete && scratch.surface.is_complete;
-    const int every = i < settings.thinned_steps && i < steps ? 2 : 1;
-    fit_ranges(view, pose, scratch.surface, scratch.ranges, every);
-    if (i == steps) break;
-    fit_outline(mesh, view, pose, scratch.surface, scratch.table, sigma_q8, scratch.outline, every);
+  const auto every = [&](int step) { return step < settings.thinned_steps && step < steps ? 2 : 1; };
+  fit_ranges(view, result.pose, surface, scratch.ranges, every(0));
+  for (int i = 0; i < steps; ++i) {
+    if (i == 0 || may_be_dark) make_outline_table(result.fill_q16, scratch.table);
+    fit_outline(mesh, view, result.pose, surface, scratch.table, sigma_q8, scratch.outline, every(i));
     result.equations = together(view, scratch.outline, scratch.ranges, sigma_q8);
     NormalEquations damped = result.equations;
     add_prior(settings, since_start, damped);
     Motion6 step = solve(damped);
     limit(step);
-    move(view, step, pose);
+    move(view, step, result.pose);
     for (std::size_t k = 0; k < step.size(); ++k) since_start[k] += step[k];
     sigma_q8 = max(last_sigma_q8, sigma_q8 / 2);
+    render(mesh, view, result.pose, surface);
+    result.is_complete = result.is_complete && surface.is_complete;
+    if (may_be_dark) take_out_dark();
+    fit_ranges(view, result.pose, surface, scratch.ranges, every(i + 1));
   }
 }
 

@@ -2,6 +2,7 @@
 // steps.
 #pragma once
 
+#include "gnc/registration/dark_surfaces.hpp"
 #include "gnc/registration/outline_fit.hpp"
 #include "gnc/registration/range_fit.hpp"
 #include "gnc/registration/surface_renderer.hpp"
@@ -10,6 +11,7 @@ namespace tumblesight::gnc {
 
 struct RefinementScratch {
   RenderedSurface surface;
+  DarkSurfaces dark;
   OutlineTable table;
   OutlineFit outline;
   RangeFit ranges;
@@ -36,5 +38,10 @@ struct Refinement {
 // at the pose and how its ranges differ (evidence_of()).
 void refine(const SurfaceMesh& mesh, const FrameView& view, const Pose& start,
             const RefinementSettings& settings, RefinementScratch& scratch, Refinement& result);
+
+// Goes on from the end of a refinement of the same frame, the last one that used `scratch`. It saves drawing
+// the surface there anew.
+void refine_further(const SurfaceMesh& mesh, const FrameView& view, const RefinementSettings& settings,
+                    RefinementScratch& scratch, Refinement& result);
 
 }  // namespace tumblesight::gnc

@@ -38,9 +38,11 @@ struct RenderedSurface {
   // False: a part was not drawn, since it is more than 128 rays from the middle of the screen or behind the
   // sensor, or since the work was more than the limit of a rendering.
   bool is_complete = true;
+  bool has_dark = false;               // surfaces are dark (dark_surfaces.hpp)
   ScreenVertices* vertices = nullptr;  // of the mesh; memory that the caller lends
   alignas(8) std::array<std::int16_t, RangeImage::kMaxReturns> nearness;
-  RayMask filled;  // rays that are not kEmpty
+  RayMask filled;  // rays that are not kEmpty, and not dark
+  RayMask dark;    // rays of dark surfaces
 
   // kEmpty outside the screen.
   std::int16_t at(int row, int column) const {

@@ -38,7 +38,8 @@ inline constexpr std::uint8_t kPoseDoubtUnknown = 1;
 inline constexpr std::uint8_t kPoseDoubtCoasts = 2;
 // The ranges do not lie on the target's surface, or none could be compared with it.
 inline constexpr std::uint8_t kPoseDoubtRanges = 4;
-// More than 3 % of the returns are beside the target, or more than 69 % of its rays have no return.
+// More than 3 % of the returns are beside the target, more than 69 % of its rays have no return or meet a
+// dark surface, or more than an eighth of the rays next to its outline are not as drawn.
 inline constexpr std::uint8_t kPoseDoubtOutline = 8;
 // The advantage over other attitudes is less than 8 nats: one explains the frames about as well, or the track
 // is too new.
@@ -97,8 +98,8 @@ struct AttitudeReport {
   std::array<std::int32_t, 3> pose_rate_lrf_now_urad_s{};
   std::array<std::int32_t, 3> pose_velocity_lrf_now_um_s{};
   // What verifies it: mean squared difference of the ranges over their variance, Q8; shares of the returns
-  // beside the target and of the target's rays without a return; advantage over the best alternative [nats],
-  // Q8.
+  // beside the target and of the target's rays that have no return or meet a dark surface; advantage over the
+  // best alternative [nats], Q8.
   std::uint32_t pose_mean_square_q8 = 0;
   std::uint32_t pose_unexplained_ppm = 0;
   std::uint32_t pose_missing_ppm = 0;

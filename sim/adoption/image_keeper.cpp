@@ -32,7 +32,7 @@ ImageKeeper::~ImageKeeper() {
 
 QuantizationReport ImageKeeper::write_fixed(const Float32Model& model, int sequences) const {
   return quantize_to_file(model, meshes_, sequences, fixed_path(), [](std::uint64_t) {}, seen_,
-                          {symmetry_, false, &surface_});
+                          {symmetry_, false, {}, &surface_});
 }
 
 bool ImageKeeper::is_busy() const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "sim/training/train.hpp"
+
 namespace tumblesight::sim {
 
 std::vector<StartTrial> start_trials(const TrainingTargets& targets, const TrainingSettings& settings,

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "sim/training/train.hpp"
-
 namespace tumblesight::sim {
+
+// sim/training/train.hpp. Not included, since LibTorch's headers are slow to read.
+struct TrainingTargets;
+struct TrainingSettings;
 
 struct StartTrial {
   std::string image;      // path

@@ -100,6 +100,16 @@ MeshFileOptions mesh_file_options(const MeshArguments& arguments) {
   return options;
 }
 
+// "none", or effects as after --effect, whose strengths may be ranges.
+EffectRanges effect_set_from(const std::string& text) {
+  if (text == "none") return {};
+  try {
+    return effect_ranges_from(CLI::detail::split(text, ','));
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--effect-set", error.what());
+  }
+}
+
 }  // namespace
 
 CLI::Validator target_name() {
@@ -237,6 +247,20 @@ void add_effect_option(CLI::App& command, Effects& effects) {
       ->type_name("NAME=STRENGTH,...");
 }
 
+void add_effect_set_option(CLI::App& command, std::vector<EffectRanges>& effect_sets) {
+  const auto take = [&effect_sets](const std::vector<std::string>& texts) {
+    effect_sets.clear();
+    for (const std::string& text : texts) effect_sets.push_back(effect_set_from(text));
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--effect-set", take,
+          "effects that act together, or none; give it once per set: frames and sequences take turns "
+          "among the sets. A strength LOW:HIGH is drawn anew for each of them")
+      ->excludes(command.get_option("--effect"))
+      ->type_name("none|NAME=STRENGTH,...");
+}
+
 void require_a_name(const CLI::App& command, const std::vector<std::string>& meshes) {
   const bool named =
       command.get_option("--target")->count() > 0 || command.get_option("--mission")->count() > 0;
@@ -360,7 +384,11 @@ void require_supported_length(const ScenarioArguments& arguments) {
 std::string full_path(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
+  fs::path absolute = fs::absolute(path, error);
+  // weakly_canonical() leaves a link to a file that does not exist yet as it is.
+  constexpr int kMostLinks = 40;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(absolute, error) && !fs::exists(absolute, error); ++i)
+    absolute = absolute.parent_path() / fs::read_symlink(absolute, error);
   const fs::path full = fs::weakly_canonical(absolute, error);
   return (error ? absolute.lexically_normal() : full).string();
 }

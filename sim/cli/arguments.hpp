@@ -70,6 +70,8 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed);
 void add_float32_model_option(CLI::App& command, std::string& model);  // --model, required
 // --effect; `--effect list` prints the effects and ends the program. `effects` must outlive the parsing.
 void add_effect_option(CLI::App& command, Effects& effects);
+// --effect-set, in place of --effect.
+void add_effect_set_option(CLI::App& command, std::vector<EffectRanges>& effect_sets);
 // Throws CLI::ValidationError if --mesh names a file and --target is not given: the default would give a
 // spacecraft of the user's own the name, the inertia and the published figures of another. `meshes`: of
 // --mesh.

@@ -10,6 +10,7 @@
 
 #include "sim/bench/network_bench.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/bench_images.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/model/model_file.hpp"
@@ -139,12 +140,6 @@ void bench(const BenchArguments& arguments) {
 }
 
 }  // namespace
-
-BenchImages read_bench_images(const std::string& folder, const std::string& target) {
-  const std::string float32_path = folder + "/" + target + ".float32.tsm";
-  return {read_model_bytes(folder + "/" + target + ".tsm"), read_model_bytes(float32_path),
-          read_float32_model(float32_path)};
-}
 
 void add_bench_command(CLI::App& app) {
   auto arguments = std::make_shared<BenchArguments>();

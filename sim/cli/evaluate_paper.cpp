@@ -32,6 +32,7 @@ Job job_of(const EvaluateArguments& arguments, const PlannedSubject& planned) {
   job.settings.conditions = evaluated_conditions(planned.target);
   job.settings.curves = planned.curves;
   job.settings.disturbed_runs = planned.disturbed_runs;
+  job.settings.sensor_runs = planned.sensor_runs;
   if (!planned.baseline) job.settings.baseline_sequences = 0;
   if (!arguments.sequences_given) job.settings.tumbling_sequences = kPaperTumblingSequences;
   return job;

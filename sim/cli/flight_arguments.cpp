@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -91,6 +92,13 @@ std::string flight_command_line(const SilSettings& settings) {
   return line;
 }
 
+// False also if the file could not be written, whatever else is there.
+bool is_recording_of_a_run(const std::string& path) {
+  std::array<char, 5> begin{};
+  return !path.empty() && std::ifstream(path, std::ios::binary).read(begin.data(), begin.size()) &&
+         std::string(begin.begin() + 1, begin.end()) == "MCAP";
+}
+
 }  // namespace
 
 void add_flight_options(CLI::App& command, FlightArguments& arguments) {
@@ -116,6 +124,13 @@ void add_flight_options(CLI::App& command, FlightArguments& arguments) {
                   "secures the bus with certificates; hal/dds/make_security writes the file")
       ->check(existing_file())
       ->type_name("FILE");
+  command
+      .add_option(
+          "--mcap", arguments.mcap,
+          "also records the run for Foxglove, Lichtblick or PlotJuggler: every sample of the bus, the "
+          "points, frames and events that they show, and errors to plot")
+      ->check(file_path())
+      ->type_name("FILE");
   limit_whole_number(
       command.add_option("--domain", arguments.domain, "DDS domain [a free one, or 0 with --flight none]"), 0,
       hal::dds::kMaxDomain)
@@ -137,6 +152,8 @@ SilSettings sil_settings(const FlightArguments& arguments, const std::string& ta
     settings.flight_arguments = {"--command-key", full_path(arguments.command_key)};
   }
   if (!arguments.security.empty()) settings.security_path = full_path(arguments.security);
+  settings.mcap_path = arguments.mcap;
+  settings.swath_m = 1e-3 * setup.projection.swath_mm;
   if (arguments.flight == kNoFlight) {
     if (settings.domain < 0) settings.domain = kDefaultFlightDomain;
     settings.step_timeout_s = kManualStart_s;
@@ -165,7 +182,7 @@ void require_usable_outputs(const FlightArguments& arguments, OptionFiles read, 
   read.push_back({"--dds-security", arguments.security});
   for (const std::string& file : files_of_security(arguments.security))
     read.push_back({"--dds-security (a file that it names)", file});
-  require_usable_files(read, {{"--report", arguments.report}, {"--json", json}});
+  require_usable_files(read, {{"--report", arguments.report}, {"--json", json}, {"--mcap", arguments.mcap}});
 }
 
 std::string default_report_path(const std::string& name) {
@@ -196,6 +213,8 @@ void finish_flight(const FlightArguments& arguments, const std::string& page, co
     write_file(arguments.report, page);
     fmt::print("  report             {}\n", full_path(arguments.report));
   });
+  if (is_recording_of_a_run(arguments.mcap))
+    fmt::print("  recording          {}\n", full_path(arguments.mcap));
   attempt([&] {
     if (!json.empty()) write_file(json, figures.dump(2) + "\n");
   });

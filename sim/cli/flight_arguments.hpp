@@ -21,11 +21,12 @@ struct FlightArguments {
   std::string command_key;  // file; empty: the public development key
   std::string security;     // file; empty: the bus is not secured
   int domain = -1;          // -1: none given
+  std::string mcap;         // file; empty: the run is not recorded
   std::string report;       // file
   std::string command_line;
 };
 
-// --speed, --flight, --command-key, --dds-security, --domain.
+// --speed, --flight, --command-key, --dds-security, --domain, --mcap.
 void add_flight_options(CLI::App& command, FlightArguments& arguments);
 
 // Throws std::runtime_error that names the flight program or the key if it cannot be used.

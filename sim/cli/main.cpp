@@ -1,11 +1,16 @@
 // tumblesight: the ground tool, with one subcommand per job.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "cmake/version.hpp"
@@ -56,10 +61,26 @@ std::string version_text() {
   return text;
 }
 
+#ifdef TUMBLESIGHT_FULL_PROGRAM
+// Goes on in the program with all verbs, which lists them in its help and refuses those that do not exist.
+void start_full_program(char** argv) {
+  const auto full = std::filesystem::read_symlink("/proc/self/exe").parent_path() / TUMBLESIGHT_FULL_PROGRAM;
+  execv(full.c_str(), argv);
+  throw std::runtime_error(full.string() + ": " + std::strerror(errno) +
+                           "; build the target tumblesight again");
+}
+
+bool is_version_or_verb(const CLI::App& app, const std::string& argument) {
+  const auto is_it = [&argument](const CLI::App* verb) { return verb->get_name() == argument; };
+  return argument == "--version" || !app.get_subcommands(is_it).empty();
+}
+#endif
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace tumblesight;
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is an error of the file, as a full disk is
   CLI::App app{"Tumblesight: attitude of tumbling spacecraft from flash-LiDAR frames."};
   app.name("tumblesight");
   app.set_version_flag("--version", version_text(), "version, commit, model format and interface hash");
@@ -69,6 +90,11 @@ int main(int argc, char** argv) {
     std::string command_line = "tumblesight";
     for (int i = 1; i < argc; ++i) command_line += std::string(" ") + argv[i];
     sim::add_verbs(app, command_line);
+#ifdef TUMBLESIGHT_FULL_PROGRAM
+    if (argc < 2 || !is_version_or_verb(app, argv[1])) start_full_program(argv);
+#else
+    sim::add_libtorch_verbs(app, command_line);
+#endif
     app.footer(
         "\nStart with\n  tumblesight simulate\n"
         "and see `tumblesight SUBCOMMAND --help` for the options of each.\n");

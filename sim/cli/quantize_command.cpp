@@ -36,6 +36,7 @@ struct QuantizeArguments {
   std::string out;
   MeshArguments meshes;
   Effects effects;
+  std::vector<EffectRanges> effect_sets;
   TargetSymmetry symmetry;
   int sequences = kCalibrationSequences;
   SensorArguments sensor;
@@ -153,6 +154,8 @@ void require_the_missions_target(const QuantizeArguments& arguments, const std::
 void replace_surface(const QuantizeArguments& arguments) {
   if (arguments.meshes.meshes.size() > 1)
     throw CLI::ValidationError("--surface-only", "takes the surface of one mesh; give one --mesh");
+  if (!arguments.effect_sets.empty())
+    throw CLI::ValidationError("--surface-only", "renders no frames; leave --effect-set out");
   if (!arguments.symmetry.is_none())
     throw CLI::ValidationError("--surface-only", "compares no attitudes; leave --symmetry out");
   const SensorFiles sensor = require_usable_files(arguments);
@@ -174,8 +177,11 @@ void quantize_file(QuantizeArguments arguments) {
     replace_surface(arguments);
     return;
   }
-  require_the_target(arguments.effects);
-  require_whole_scans("--effect", arguments.effects, arguments.sensor.sensor);
+  if (arguments.effect_sets.empty()) arguments.effect_sets = {arguments.effects};
+  for (const EffectRanges& effects : arguments.effect_sets) {
+    require_the_target(effects.high);
+    require_whole_scans("--effect", effects.high, arguments.sensor.sensor);
+  }
   if (arguments.out.empty()) arguments.out = default_out(arguments.model);
   const SensorFiles sensor = require_usable_files(arguments);
   const auto model = read_float32_model(arguments.model);
@@ -184,7 +190,6 @@ void quantize_file(QuantizeArguments arguments) {
     arguments.symmetry = target_symmetry_from(arguments.mission->symmetry);
   std::vector<std::string> notes{check_sensor_of_model(arguments.model, arguments.sensor.sensor)};
   ScenarioSettings seen = seen_by(arguments.sensor, 1e-3 * model->header.projection.swath_mm, notes);
-  seen.effects = arguments.effects;
   const std::vector<TriangleMesh> meshes = load_meshes(arguments.meshes, model->header.target.data());
   notes.push_back(fault_of_size(meshes.front(), model->header));
   for (const std::string& note : notes) {
@@ -192,7 +197,8 @@ void quantize_file(QuantizeArguments arguments) {
   }
   print_sensor(arguments.sensor.sensor, seen.ranges);
   const QuantizationReport report =
-      quantize_and_report(*model, meshes, arguments.sequences, arguments.out, seen, arguments.symmetry, true);
+      quantize_and_report(*model, meshes, arguments.sequences, arguments.out, seen, arguments.effect_sets,
+                          arguments.symmetry, true);
   if (!report.written) {
     std::fflush(stdout);
     fmt::print(
@@ -211,11 +217,12 @@ void quantize_file(QuantizeArguments arguments) {
 
 QuantizationReport quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
                                        int sequences, const std::string& out, const ScenarioSettings& seen,
+                                       const std::vector<EffectRanges>& effect_sets,
                                        const TargetSymmetry& symmetry, bool refuse_another_network) {
   ProgressBar bar("calibrating", "sequences", static_cast<std::uint64_t>(sequences));
   const QuantizationReport report =
       quantize_to_file(model, meshes, sequences, out, [&bar](std::uint64_t done) { bar.update(done); }, seen,
-                       {symmetry, refuse_another_network, nullptr});
+                       {symmetry, refuse_another_network, effect_sets, nullptr});
   bar.finish();
   print_report(report, out);
   return report;
@@ -227,12 +234,12 @@ void add_quantize_command(CLI::App& app) {
       app.add_subcommand("quantize", "Make the fixed-point model image that flies from a float32 one");
   command->footer(
       "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits.\n"
-      "The scales are chosen on rendered sequences. --effect: those that the network\n"
-      "was trained with. The table shows the quantization error of each layer. The\n"
-      "first mesh gives the surface, as points and as triangles, by which the flight\n"
-      "program judges what a frame shows. --surface-only replaces that surface in an\n"
-      "image that is in fixed point already, also in one of format version 3 or 4. The\n"
-      "sensor's description beside --model is copied beside --out.\n\n"
+      "The scales are chosen on rendered sequences. --effect, --effect-set: those that\n"
+      "the network was trained with. The table shows the quantization error of each\n"
+      "layer. The first mesh gives the surface, as points and as triangles, by which\n"
+      "the flight program judges what a frame shows. --surface-only replaces that\n"
+      "surface in an image that is in fixed point already, also in one of format\n"
+      "version 3 or 4. The sensor's description beside --model is copied beside --out.\n\n"
       "The exit status is 0, 1 if a file failed or the mesh does not fit, 2 for wrong\n"
       "arguments, and 4 if the attitudes in fixed point differ from those in float32 by\n"
       "more than 5° on average; then no image is written.\n\n"
@@ -253,6 +260,7 @@ void add_quantize_command(CLI::App& app) {
   add_mesh_options(*command, arguments->meshes);
   add_mission_option(*command, arguments->target, arguments->meshes, arguments->sensor, arguments->mission);
   add_effect_option(*command, arguments->effects);
+  add_effect_set_option(*command, arguments->effect_sets);
   add_sensor_options(*command, arguments->sensor);
   add_symmetry_option(*command, arguments->symmetry);
   limit_whole_number(command->add_option("--sequences", arguments->sequences,

@@ -44,7 +44,8 @@ void record(const RecordArguments& arguments) {
   const std::string truth = truth_path(arguments);
   // tumblesight replay would score these frames with the truth of others.
   const std::string beside = truth_path_of(arguments.out);
-  if (beside != truth && std::filesystem::is_regular_file(beside)) {
+  const bool is_another = beside != truth || !std::filesystem::exists(arguments.out);
+  if (is_another && std::filesystem::is_regular_file(beside)) {
     throw std::runtime_error(fmt::format(
         "'{}' is the truth of an earlier recording of this name; remove it, or give another --out", beside));
   }

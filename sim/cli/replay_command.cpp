@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "sim/cli/arguments.hpp"
@@ -17,6 +19,7 @@
 #include "sim/report/sil_report.hpp"
 #include "sim/sil/interruption.hpp"
 #include "sim/sil/recorded_steps.hpp"
+#include "sim/sil/run_steps.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"
 
@@ -32,6 +35,7 @@ struct ReplayArguments : FlightArguments {
   ScenarioArguments scenario;  // of which only target, model, numerics and figures have options
   std::string recording;
   std::string truth;  // empty: the one beside the recording, if there is one
+  bool is_target_given = false;
 };
 
 // Empty: there is none.
@@ -126,18 +130,102 @@ void print_results(const ReplayReport& report, const SilRunResult& run) {
     fmt::print("  {}{}{}\n", name, std::string(19 - std::min<std::size_t>(18, columns_of(name)), ' '), value);
 }
 
+// Runs the flight program over the steps, and writes what came of it. `check`: gives further faults of the
+// run.
+void run_and_report(const ReplayArguments& arguments, const SilSettings& settings, const ReplaySetup& setup,
+                    StepSource& steps,
+                    const std::function<std::vector<std::string>(const SilRunResult&)>& check) {
+  std::vector<ReplayedFrame> frames;
+  ProgressBar bar("replaying", "cycles", steps.steps());
+  std::optional<Interruption> interruption(std::in_place);
+  const SilRunResult run = run_sil(
+      settings, steps, [&](std::uint32_t done, std::uint32_t) { bar.update(done); },
+      [&](const StepResult& step, const gnc::RangeImage& frame) {
+        frames.push_back(replayed_frame(step, frame));
+      });
+  interruption.reset();
+  bar.finish();
+  ReplayReport report = replay_report(setup, run, frames);
+  report.run.command = arguments.command_line;
+  if (!arguments.mcap.empty())
+    report.run.recording = full_path(arguments.mcap);
+  else if (RunFile::is_one(arguments.recording))
+    report.run.recording = full_path(arguments.recording);
+  report.run.generated = local_time_text();
+  print_results(report, run);
+  std::vector<std::string> faults = flight_faults(run);
+  for (std::string& fault : check(run)) faults.push_back(std::move(fault));
+  const std::string wrong = mostly_wrong_text(report);
+  if (!wrong.empty()) fmt::print("\n{}\n", paragraph(wrong));
+  finish_flight(arguments, replay_page(report), arguments.scenario.json, replay_json(report, run),
+                std::move(faults), !wrong.empty());
+}
+
+// Compares the states of the flight program with those of the recorded run, step by step.
+std::vector<std::string> compare_states(const RunSteps& steps, const SilRunResult& run, bool is_same_model) {
+  std::size_t same = 0, compared = 0;
+  std::optional<std::uint32_t> first;
+  for (std::uint32_t k = 0; k < run.steps.size(); ++k) {
+    if (!run.steps[k].answered || !steps.state_crc32(k)) continue;
+    ++compared;
+    const bool is_same = run.steps[k].state_crc32 == *steps.state_crc32(k);
+    if (is_same) ++same;
+    if (!is_same && !first) first = k;
+  }
+  fmt::print("  states             {} of {} as recorded\n", same, compared);
+  if (!first || !is_same_model) return {};
+  return {
+      fmt::format("the state of the flight program differs from the recorded one from step {} on: is it of "
+                  "another version, or --command-key another?",
+                  *first)};
+}
+
+// A run that simulate or replay recorded, with its telecommands.
+void replay_run(const ReplayArguments& given) {
+  ReplayArguments arguments = given;
+  if (!arguments.truth.empty())
+    throw CLI::ValidationError("--truth", "is of recordings of frames; this one of a run has its own truth");
+  require_usable_outputs(arguments, files_read(arguments, {}), arguments.scenario.json);
+  RunSteps steps(arguments.recording);
+  if (steps.target() != arguments.scenario.target) {
+    if (arguments.is_target_given)
+      throw CLI::ValidationError("--target", fmt::format("{}: the recorded run is of {}",
+                                                         arguments.scenario.target, steps.target()));
+    arguments.scenario.target = steps.target();
+  }
+  const TargetSetup target = set_up_model_alone(arguments.scenario);
+  const SilSettings settings = sil_settings(arguments, arguments.scenario.target, target);
+  const bool is_same_model = steps.model_crc32() == target.header.crc32;
+  ReplaySetup setup;
+  static_cast<FlightSetup&>(setup) = flight_setup(arguments.scenario.target, target, settings);
+  setup.recording = arguments.recording;
+  setup.truth = arguments.recording;
+  setup.frames = steps.frames();
+  fmt::print("\n  {}: a run of {} and {}, as {}, model {}\n", setup.recording, counted(steps.steps(), "step"),
+             counted(setup.frames, "frame"), setup.target, setup.model_path);
+  if (!steps.is_whole()) fmt::print("  The recording has no end: its writer was killed.\n");
+  if (!is_same_model)
+    fmt::print("  The run had another model image (CRC-32 {:08x}), so that the states differ.\n",
+               steps.model_crc32());
+  fmt::print("\n");
+  announce_flight(settings, target);
+  run_and_report(arguments, settings, setup, steps,
+                 [&](const SilRunResult& run) { return compare_states(steps, run, is_same_model); });
+}
+
 void replay(ReplayArguments arguments) {
   if (arguments.report.empty())
     arguments.report = default_report_path(recording_stem(fs::path(arguments.recording).filename().string()) +
                                            "_replay.html");
+  if (RunFile::is_one(arguments.recording)) return replay_run(arguments);
   const std::string truth_file = truth_path(arguments);
   require_usable_outputs(arguments, files_read(arguments, truth_file), arguments.scenario.json);
   const RecordingFile recording = read_recording(arguments.recording);
   const TruthTable rows = truth_file.empty() ? TruthTable{} : read_truth(truth_file);
   std::vector<std::optional<RecordedTruth>> truth;
   if (!truth_file.empty()) truth = truth_by_frame(recording, rows, truth_file);
-  RecordedSteps steps(recording, truth);
   TargetSetup target = set_up_model_alone(arguments.scenario);
+  RecordedSteps steps(recording, truth, 1e-3 * target.projection.swath_mm);
   target.warnings = remarks_on(rows, truth_file, arguments.scenario.target, target.model_path);
   const SilSettings settings = sil_settings(arguments, arguments.scenario.target, target);
 
@@ -152,24 +240,8 @@ void replay(ReplayArguments arguments) {
   announce(arguments, setup, static_cast<std::size_t>(known));
   announce_flight(settings, target);
 
-  std::vector<ReplayedFrame> frames;
-  ProgressBar bar("replaying", "cycles", steps.steps());
-  std::optional<Interruption> interruption(std::in_place);
-  const SilRunResult run = run_sil(
-      settings, steps, [&](std::uint32_t done, std::uint32_t) { bar.update(done); },
-      [&](const StepResult& step, const gnc::RangeImage& frame) {
-        frames.push_back(replayed_frame(step, frame));
-      });
-  interruption.reset();
-  bar.finish();
-  ReplayReport report = replay_report(setup, run, frames);
-  report.run.command = arguments.command_line;
-  report.run.generated = local_time_text();
-  print_results(report, run);
-  const std::string wrong = mostly_wrong_text(report);
-  if (!wrong.empty()) fmt::print("\n{}\n", paragraph(wrong));
-  finish_flight(arguments, replay_page(report), arguments.scenario.json, replay_json(report, run),
-                flight_faults(run), !wrong.empty());
+  run_and_report(arguments, settings, setup, steps,
+                 [](const SilRunResult&) { return std::vector<std::string>(); });
 }
 
 }  // namespace
@@ -181,7 +253,8 @@ void add_replay_command(CLI::App& app, const std::string& command_line) {
   arguments->command_line = command_line;
   command
       ->add_option("RECORDING", arguments->recording,
-                   "frames, as `tumblesight record` or a program of your own writes them")
+                   "frames, as `tumblesight record` or a program of your own writes them; or a run, as "
+                   "simulate --mcap does")
       ->required()
       ->check(existing_file())
       ->type_name("FILE");
@@ -196,12 +269,15 @@ void add_replay_command(CLI::App& app, const std::string& command_line) {
   add_model_options(*command, arguments->scenario);
   add_json_option(*command, arguments->scenario.json);
   add_flight_options(*command, *arguments);
-  add_report_option(*command, arguments->report, " [out/<recording>_replay.html]");
+  add_report_option(*command, arguments->report, " [out/<recording>_replay.html of the source tree]");
   command->footer(
       "\nThe flight program gets one cycle per frame, at its exposure time, and a cycle\n"
       "without a frame wherever one is missing for 2.7 s. It sees nothing of the truth.\n"
       "docs/icd.md describes recording, truth, and what a frame must be like;\n"
       "docs/examples/write_recording.py writes one from data of your own.\n\n"
+      "A recording of a run has its telecommands, too, and the state of the flight\n"
+      "program after each step: the replay must come to the same states, or its exit\n"
+      "status is 1.\n\n"
       "Example: frames of your own, as those of a target with a network of your own\n"
       "  tumblesight replay frames.tslr --truth truth.csv --target mine --model mine.tsm\n\n"
       "The exit status is 0 if every cycle was answered, the flight task allocated no\n"
@@ -210,7 +286,10 @@ void add_replay_command(CLI::App& app, const std::string& command_line) {
       "more than 20° off, except where the recording is known to show another body. It\n"
       "is 1 if the run or a file failed, 2 for wrong arguments, and 130 or 143 after\n"
       "Ctrl-C or SIGTERM; then the report covers what was done.\n");
-  command->callback([arguments] { replay(*arguments); });
+  command->callback([arguments, command] {
+    arguments->is_target_given = command->count("--target") > 0;
+    replay(*arguments);
+  });
 }
 
 }  // namespace tumblesight::sim

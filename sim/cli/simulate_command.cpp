@@ -61,7 +61,7 @@ void print_results(const RunReport& report, const SilRunResult& run,
   fmt::print("  flight heap        {} allocations after init\n", report.heap_allocations);
   fmt::print("  faults that stood  {}\n", text_of(standing_faults(run)));
   fmt::print("  trace CRC-32       {:08x}\n", report.trace_crc32);
-  if (!numerics) return;
+  if (!numerics || numerics->float32.count == 0) return;
   fmt::print("  float32 reference  mean error {}; difference of the attitudes: mean {}, max {}\n",
              degrees_text(numerics->float32.mean_deg), degrees_text(numerics->difference.mean_deg),
              degrees_text(numerics->largest_difference_deg));
@@ -149,6 +149,7 @@ void simulate(SimulateArguments arguments) {
                                scenario.symmetry);
   RunReport report = run_report(setup, run, numerics);
   report.command = arguments.command_line;
+  if (!arguments.mcap.empty()) report.recording = full_path(arguments.mcap);
   report.generated = local_time_text();
   print_results(report, run, numerics);
   print_what_is_wrong(scenario, target, report);
@@ -176,9 +177,9 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   command->add_flag(
       "--free-running", arguments->free_running,
       "the flight program runs on its own timer, not in lockstep; needs --speed N (1: as in flight)");
-  add_report_option(
-      *command, arguments->report,
-      " [out/<target>_<condition>_seed<seed>.html, plus every option that is not at its default]");
+  add_report_option(*command, arguments->report,
+                    " [out/<target>_<condition>_seed<seed>.html of the source tree, plus every option that "
+                    "is not at its default]");
   command->footer(
       "\nExample: 100 sequences with a degraded sensor, figures to a file\n"
       "  tumblesight simulate --condition degraded --sequences 100 --seed 7 \\\n"

@@ -90,11 +90,13 @@ void require_a_cnn(const TrainingSettings& settings) {
 void write_images(const std::string& stem, const std::vector<TriangleMesh>& meshes,
                   const TrainingTargets& targets, const std::unique_ptr<Float32Model>& model,
                   int sequences = kCalibrationSequences) {
-  const EffectRanges& effects = targets.effect_sets.front().effects;
-  const ScenarioSettings seen = scenario_of(targets, Condition::kNominal, effects, 1);
+  std::vector<EffectRanges> effect_sets;
+  for (const auto& set : targets.effect_sets) effect_sets.push_back(set.effects);
+  const ScenarioSettings seen = scenario_of(targets, Condition::kNominal, effect_sets.front(), 1);
   write_model_file<gnc::Float32>(stem + ".float32.tsm", model->header, model->weights);
   std::printf("Reference in float32: %s.float32.tsm\nFixed point, as it flies:\n", stem.c_str());
-  const QuantizationReport report = quantize_and_report(*model, meshes, sequences, stem + ".tsm", seen);
+  const QuantizationReport report =
+      quantize_and_report(*model, meshes, sequences, stem + ".tsm", seen, effect_sets);
   if (is_another_network(report.difference))
     fmt::print(
         stderr,
@@ -137,30 +139,6 @@ TrainingTargets targets_of(const TrainOptions& options, const std::vector<Triang
   };
   return make_training_targets(meshes, conditions_of(options), inertia_of(options), effect_sets_of(options),
                                options.target, options.sensor.sensor, ranges);
-}
-
-// "none", or effects as after --effect, whose strengths may be ranges.
-EffectRanges effect_set_from(const std::string& text) {
-  if (text == "none") return {};
-  try {
-    return effect_ranges_from(CLI::detail::split(text, ','));
-  } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("--effect-set", error.what());
-  }
-}
-
-void add_effect_set_option(CLI::App& command, std::vector<EffectRanges>& effect_sets) {
-  const auto take = [&effect_sets](const std::vector<std::string>& texts) {
-    effect_sets.clear();
-    for (const std::string& text : texts) effect_sets.push_back(effect_set_from(text));
-  };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--effect-set", take,
-          "effects that act together, or none; give it once per set: frames and sequences take turns "
-          "among the sets. A strength LOW:HIGH is drawn anew for each of them")
-      ->excludes(command.get_option("--effect"))
-      ->type_name("none|NAME=STRENGTH,...");
 }
 
 // Of the sensor's file in the folder it is enough that it is the one of --sensor: it is then left as it is.

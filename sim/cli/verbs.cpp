@@ -3,23 +3,19 @@
 namespace tumblesight::sim {
 
 void add_verbs(CLI::App& app, const std::string& command_line) {
-#ifdef TUMBLESIGHT_HAS_ADOPTION
-  add_adopt_command(app, command_line);
-#endif
 #ifdef TUMBLESIGHT_HAS_SIL
   add_simulate_command(app, command_line);
   add_replay_command(app, command_line);
+#endif
+#ifdef TUMBLESIGHT_HAS_CONSOLE
+  add_console_command(app);
 #endif
   add_mesh_command(app, command_line);
   add_evaluate_command(app, command_line);
   add_quantize_command(app);
   add_record_command(app);
-  add_bench_command(app);
 #ifdef TUMBLESIGHT_HAS_ONNX
   add_export_command(app);
-#endif
-#ifdef TUMBLESIGHT_HAS_TRAINING
-  add_train_command(app);
 #endif
 }
 

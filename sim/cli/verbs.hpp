@@ -14,15 +14,20 @@
 
 namespace tumblesight::sim {
 
-// Adds every verb to `app`, in the order in which --help lists them. `command_line`: what the user typed, for
-// reports that name it.
+// Adds the verbs that need no LibTorch to `app`, in the order in which --help lists them. `command_line`:
+// what the user typed, for reports that name it.
 void add_verbs(CLI::App& app, const std::string& command_line);
+// Adds those that need it if it is there: `adopt`, `train`, and `bench`, which compares with it.
+void add_libtorch_verbs(CLI::App& app, const std::string& command_line);
 
 // `tumblesight simulate`: a software-in-the-loop run with the flight program, with figures and a report.
 void add_simulate_command(CLI::App& app, const std::string& command_line);
 
 // `tumblesight replay`: the flight program over a recording, with its attitudes compared with the truth.
 void add_replay_command(CLI::App& app, const std::string& command_line);
+
+// `tumblesight console`: a run on the bus or out of a recording, in the browser.
+void add_console_command(CLI::App& app);
 
 // `tumblesight mesh`: what a mesh file holds, what of it a network would suffer from, and a cleaned copy.
 void add_mesh_command(CLI::App& app, const std::string& command_line);
@@ -49,24 +54,16 @@ void add_quantize_command(CLI::App& app);
 inline constexpr int kCalibrationSequences = 200;
 
 // Shows its progress and prints the quantization error of each layer. Throws as quantize_to_file does.
-// `seen`: sensor, ranges, period and effects of the sequences. Returns the report, by which the caller judges
-// the image; with `refuse_another_network` it may not be written.
+// `seen`: sensor, ranges and period of the sequences, which take turns among `effect_sets`. Returns the
+// report, by which the caller judges the image; with `refuse_another_network` it may not be written.
 QuantizationReport quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
                                        int sequences, const std::string& out, const ScenarioSettings& seen,
+                                       const std::vector<EffectRanges>& effect_sets,
                                        const TargetSymmetry& symmetry = {},
                                        bool refuse_another_network = false);
 
 // `tumblesight bench`: speed of the flight network in both numerics and with every instruction set, compared
 // with other runtimes.
 void add_bench_command(CLI::App& app);
-
-// The images of a target that are measured. `float32` and `model` hold the same one.
-struct BenchImages {
-  std::vector<std::uint8_t> fixed;
-  std::vector<std::uint8_t> float32;
-  std::unique_ptr<Float32Model> model;
-};
-// Reads both before anything is measured. Throws as read_model_bytes and read_float32_model do.
-BenchImages read_bench_images(const std::string& folder, const std::string& target);
 
 }  // namespace tumblesight::sim

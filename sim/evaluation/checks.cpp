@@ -32,10 +32,6 @@ void add_drift(std::vector<Check>& checks, const Curve& long_run) {
 
 }  // namespace
 
-bool meets(const ErrorSummary& summary, const PaperFigure& goal) {
-  return summary.count > 0 && summary.mean_deg <= goal.mean_deg && summary.within_20deg >= goal.within_20deg;
-}
-
 std::vector<Check> checks_of(const SubjectResult& subject) {
   std::vector<Check> checks;
   const CellResult* nominal = cell_of(subject, Condition::kNominal);

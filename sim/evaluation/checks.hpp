@@ -8,9 +8,6 @@
 
 namespace tumblesight::sim {
 
-// Whether the mean is at most the goal's and the share at least the goal's. False for an empty summary.
-bool meets(const ErrorSummary& summary, const PaperFigure& goal);
-
 struct Check {
   std::string what;
   double value = 0.0;

@@ -6,6 +6,7 @@
 
 #include "sim/evaluation/disturbed_runs.hpp"
 #include "sim/evaluation/monte_carlo.hpp"
+#include "sim/evaluation/pose_goals.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -15,10 +16,11 @@ constexpr double kHiddenStep = 0.05;
 constexpr std::uint32_t kSweepFraction = 3;  // a swept value runs a third of a cell's sequences
 constexpr std::uint32_t kLongFraction = 9;
 constexpr std::uint32_t kLongFrames = 200;
+constexpr std::uint32_t kFifth = 4;                // frame, by index
 constexpr std::uint32_t kMaxLongSequences = 1000;  // limited by the memory for their frames
 
 struct Run {
-  enum class Kind { kCell, kRateNorm, kHiddenShare, kLong, kDisturbed };
+  enum class Kind { kCell, kRateNorm, kHiddenShare, kLong, kDisturbed, kSensor };
   Kind kind = Kind::kCell;
   ScenarioSettings scenario;
   std::uint32_t sequences = 0;
@@ -96,6 +98,20 @@ std::vector<Run> disturbed_runs_of(const ExperimentSettings& settings) {
   return runs;
 }
 
+std::vector<Run> sensor_runs_of(const ExperimentSettings& settings) {
+  std::vector<Run> runs;
+  for (const SensorRun& of_sensor : sensor_runs()) {
+    Run run;
+    run.kind = Run::Kind::kSensor;
+    run.scenario.frames = static_cast<int>(settings.frames);
+    run.scenario.effects = of_sensor.effects;
+    run.scenario.ranges = of_sensor.ranges;
+    run.sequences = settings.sequences;
+    runs.push_back(run);
+  }
+  return runs;
+}
+
 void append(std::vector<Run>& runs, const std::vector<Run>& more) {
   runs.insert(runs.end(), more.begin(), more.end());
 }
@@ -105,6 +121,7 @@ std::vector<Run> runs_of(const ExperimentSettings& settings) {
   std::vector<Run> runs = cells_of(settings);
   if (settings.curves) append(runs, sweeps_of(settings));
   if (settings.disturbed_runs) append(runs, disturbed_runs_of(settings));
+  if (settings.sensor_runs) append(runs, sensor_runs_of(settings));
   return runs;
 }
 
@@ -136,6 +153,7 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   cell.cnn = last_frame_summary(result.frames, frames, Estimator::kCnn);
   cell.pose = pose_summary(result.frames, frames - 1);
   cell.pose_first = pose_summary(result.frames, 0);
+  cell.never_valid_from_fifth = share_never_trusted(result.frames, kFifth);
   cell.common_turn = common_turn(last, Estimator::kRcnn);
   cell.rcnn_histogram = histogram(errors(Estimator::kRcnn));
   cell.cnn_histogram = histogram(errors(Estimator::kCnn));
@@ -181,6 +199,10 @@ void take(const Run& run, const MonteCarloResult& result, SubjectResult& into) {
     into.disturbed.push_back(cell_result(run, into.target, result));
     return;
   }
+  if (run.kind == Run::Kind::kSensor) {
+    into.sensor_runs.push_back(cell_result(run, into.target, result));
+    return;
+  }
   if (!into.sweeps) into.sweeps.emplace();
   take_sweep(run, result, *into.sweeps);
 }
@@ -201,11 +223,10 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
         scenario_settings(run.scenario.condition, settings.frames, subject.target, subject.inertia_kg_m2)
             .inertia_kg_m2;
     run.scenario.sensor = subject.sensor.settings;
-    run.scenario.ranges = subject.ranges;
+    if (run.kind != Run::Kind::kSensor) run.scenario.ranges = subject.ranges;
     run.scenario.swath_m = subject.swath_m;
   }
   const FlashLidar lidar(observed_bodies(settings.effects, subject.target, subject.mesh));
-  const FrameRenderer renderer(lidar, subject.swath_m);
   std::unique_ptr<TemplateMatcher> matcher;
   if (settings.baseline_sequences > 0) {
     matcher = std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m);
@@ -217,10 +238,15 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
     peers_run.push_back(peers.back().get());
   }
   SubjectResult result{
-      subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}, {}};
+      subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}, {}, {}};
   std::uint64_t done = 0;
   for (const Run& run : runs) {
     const bool with_peers = !run.peers.empty();
+    std::unique_ptr<FlashLidar> own_lidar;
+    if (run.kind == Run::Kind::kSensor)
+      own_lidar =
+          std::make_unique<FlashLidar>(observed_bodies(run.scenario.effects, subject.target, subject.mesh));
+    const FrameRenderer renderer(own_lidar ? *own_lidar : lidar, subject.swath_m);
     const MonteCarloSettings monte_carlo{
         run.scenario,           settings.seed,    run.sequences,
         run.baseline_sequences, settings.threads, with_peers ? peers_run : std::vector<const PosePeer*>{},
@@ -231,7 +257,7 @@ SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& s
          result);
     done += steps_of(run, run.sequences);
   }
-  for (auto* cells : {&result.cells, &result.disturbed}) {
+  for (auto* cells : {&result.cells, &result.disturbed, &result.sensor_runs}) {
     for (CellResult& cell : *cells) {
       cell.sensor = subject.sensor;
       cell.symmetry = subject.symmetry;

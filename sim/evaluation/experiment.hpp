@@ -41,6 +41,7 @@ struct ExperimentSettings {
   bool peers = false;                      // run the peers of this build on the frames of the baseline
   bool curves = false;                     // run the sweeps too
   bool disturbed_runs = false;             // run disturbed_runs() too
+  bool sensor_runs = false;                // run sensor_runs() too, with the paper's sensor
   int threads = 1;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "sim/evaluation/statistics.hpp"
@@ -145,6 +146,18 @@ ErrorSummary last_frame_summary(const std::vector<FrameResult>& results, std::ui
   if (estimator != Estimator::kBaseline)
     compare_expected(last_frames_of(results, frames, estimator), estimator, summary);
   return summary;
+}
+
+double share_never_trusted(const std::vector<FrameResult>& results, std::uint32_t first) {
+  std::map<std::uint32_t, bool> trusted;  // by sequence
+  for (const FrameResult& result : results) {
+    bool& once = trusted[result.sequence];
+    once = once || (result.frame >= first && result.trusted);
+  }
+  if (trusted.empty()) return 0.0;
+  const auto never =
+      std::count_if(trusted.begin(), trusted.end(), [](const auto& sequence) { return !sequence.second; });
+  return static_cast<double>(never) / static_cast<double>(trusted.size());
 }
 
 PoseSummary pose_summary(const std::vector<FrameResult>& results, std::uint32_t frame) {

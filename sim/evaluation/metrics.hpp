@@ -79,6 +79,9 @@ std::vector<double> last_frame_errors_deg(const std::vector<FrameResult>& result
 ErrorSummary last_frame_summary(const std::vector<FrameResult>& results, std::uint32_t frames,
                                 Estimator estimator);
 
+// Share of the sequences with frames that have no trusted estimate in frame `first` (index) or later.
+double share_never_trusted(const std::vector<FrameResult>& results, std::uint32_t first);
+
 // The registered poses of frame `frame` (index) of every sequence that has one.
 PoseSummary pose_summary(const std::vector<FrameResult>& results, std::uint32_t frame);
 

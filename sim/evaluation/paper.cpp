@@ -15,24 +15,23 @@ struct Row {
   const char* target;  // Mission::paper_target
   Condition condition;
   PaperFigure rcnn;
-  PaperFigure goal;
   PaperFigure cnn = kNotPublished;
 };
 
 constexpr Row kRows[] = {
-    {"near_shoemaker", Condition::kNominal, {12.69, 0.88}, {2.5, 0.998}, {40.94, 0.45}},
-    {"near_shoemaker", Condition::kDegraded, {14.09, 0.84}, {3.0, 0.995}},
-    {"near_shoemaker", Condition::kOccluded, {22.86, 0.64}, {8.0, 0.93}},
-    {"near_shoemaker", Condition::kTumbling, {13.16, 0.85}, {2.8, 0.995}},
-    {"near_shoemaker", Condition::kStress, {17.21, 0.74}, {4.0, 0.99}},
-    {"magellan", Condition::kNominal, {3.99, 0.99}, {1.3, 1.0}, {6.36, 0.94}},
-    {"magellan", Condition::kDegraded, {4.57, 1.00}, {1.6, 1.0}},
-    {"magellan", Condition::kOccluded, {13.89, 0.83}, {5.0, 0.97}},
-    {"magellan", Condition::kTumbling, {4.86, 0.99}, {1.5, 1.0}},
-    {"sacd_aquarius", Condition::kNominal, {3.09, 1.00}, {1.2, 1.0}, {5.31, 0.95}},
-    {"sacd_aquarius", Condition::kDegraded, {3.86, 1.00}, {1.5, 1.0}},
-    {"sacd_aquarius", Condition::kOccluded, {12.82, 0.86}, {5.0, 0.97}},
-    {"sacd_aquarius", Condition::kTumbling, {3.97, 0.99}, {1.4, 1.0}},
+    {"near_shoemaker", Condition::kNominal, {12.69, 0.88}, {40.94, 0.45}},
+    {"near_shoemaker", Condition::kDegraded, {14.09, 0.84}},
+    {"near_shoemaker", Condition::kOccluded, {22.86, 0.64}},
+    {"near_shoemaker", Condition::kTumbling, {13.16, 0.85}},
+    {"near_shoemaker", Condition::kStress, {17.21, 0.74}},
+    {"magellan", Condition::kNominal, {3.99, 0.99}, {6.36, 0.94}},
+    {"magellan", Condition::kDegraded, {4.57, 1.00}},
+    {"magellan", Condition::kOccluded, {13.89, 0.83}},
+    {"magellan", Condition::kTumbling, {4.86, 0.99}},
+    {"sacd_aquarius", Condition::kNominal, {3.09, 1.00}, {5.31, 0.95}},
+    {"sacd_aquarius", Condition::kDegraded, {3.86, 1.00}},
+    {"sacd_aquarius", Condition::kOccluded, {12.82, 0.86}},
+    {"sacd_aquarius", Condition::kTumbling, {3.97, 0.99}},
 };
 
 }  // namespace
@@ -47,7 +46,6 @@ PaperFigures paper_figures(const std::string& target, Condition condition, const
   if (row == std::end(kRows)) return {};
   PaperFigures figures;
   figures.rcnn = row->rcnn;
-  figures.goal = row->goal;
   if (condition == Condition::kTumbling) figures.sequences = kPaperTumblingSequences;
   if (row->cnn.mean_deg >= 0.0) figures.cnn = row->cnn;
   return figures;

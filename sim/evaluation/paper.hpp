@@ -22,8 +22,7 @@ struct PaperFigure {
 
 struct PaperFigures {
   std::optional<PaperFigure> rcnn;
-  std::optional<PaperFigure> cnn;   // published for the nominal condition only
-  std::optional<PaperFigure> goal;  // for the RCNN: at most this mean, at least this share
+  std::optional<PaperFigure> cnn;  // published for the nominal condition only
   std::uint32_t sequences = kPaperSequences;
 };
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "sim/evaluation/pose_goals.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -45,6 +46,7 @@ std::vector<PlannedSubject> on_each_mesh(const std::string& target, const std::s
   subjects.push_back({target, model, {}});
   subjects.front().curves = true;
   subjects.front().disturbed_runs = target == kDisturbedTarget;
+  subjects.front().sensor_runs = has_sensor_runs(target);
   return subjects;
 }
 
@@ -72,6 +74,7 @@ PaperPlan plan_paper(const std::string& mesh_folder, const std::string& model_fo
     for (PlannedSubject planned : on_each_mesh(target, rule_model, mesh)) {
       planned.curves = false;
       planned.disturbed_runs = false;
+      planned.sensor_runs = false;
       planned.baseline = model.empty();
       by_paper_rule.push_back(planned);
     }

@@ -14,6 +14,7 @@ struct PlannedSubject {
   bool curves = false;   // once per target: on its mesh file if there is one, otherwise on the shipped mesh
   bool baseline = true;  // once per mesh, not for every network
   bool disturbed_runs = false;  // where the curves are, for the target of the disturbed runs
+  bool sensor_runs = false;     // where the curves are, for the targets of the runs under real sensors
 };
 
 struct PaperPlan {

@@ -39,6 +39,7 @@ struct CellResult {
   ErrorSummary cnn;
   PoseSummary pose;                      // registered
   PoseSummary pose_first;                // of the first frames
+  double never_valid_from_fifth = 0.0;   // share of the sequences without a valid frame from the fifth on
   CommonTurn common_turn;                // of the RCNN
   std::optional<ErrorSummary> baseline;  // over the first sequences only, see its count
   double network_ms = 0.0;               // per frame, one thread
@@ -74,7 +75,8 @@ struct SubjectResult {
   std::uint32_t model_crc32 = 0;
   std::vector<CellResult> cells;
   std::optional<Sweeps> sweeps;
-  std::vector<CellResult> disturbed;  // disturbed_runs(), or none
+  std::vector<CellResult> disturbed;    // disturbed_runs(), or none
+  std::vector<CellResult> sensor_runs;  // sensor_runs() of pose_goals.hpp, or none
 };
 
 struct Results {

@@ -99,10 +99,13 @@ std::vector<double> differences_deg(const Float32Model& model, const gnc::Networ
   return differences;
 }
 
+// The meshes under one set of effects.
 struct Rendered {
+  EffectRanges effects;
   std::vector<std::unique_ptr<FlashLidar>> lidars;
   std::vector<const FlashLidar*> each;
-  Rendered(const std::vector<TriangleMesh>& meshes, const EffectRanges& effects, const std::string& target) {
+  Rendered(const std::vector<TriangleMesh>& meshes, const EffectRanges& set, const std::string& target)
+      : effects(set) {
     for (const TriangleMesh& mesh : meshes) {
       lidars.push_back(std::make_unique<FlashLidar>(observed_bodies(effects, target, mesh)));
       each.push_back(lidars.back().get());
@@ -147,15 +150,21 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
   report.surface = options.surface != nullptr
                        ? *options.surface
                        : target_surface(meshes.front(), 1e-3 * model.header.projection.target_radius_mm);
-  const Rendered rendered(meshes, seen.effects, model.header.target.data());
+  const std::vector<EffectRanges> sets =
+      options.effect_sets.empty() ? std::vector<EffectRanges>{seen.effects} : options.effect_sets;
+  std::vector<Rendered> rendered;
+  for (const EffectRanges& effects : sets) rendered.emplace_back(meshes, effects, model.header.target.data());
   const int held_back = sequences / kReportShare;
   Calibration calibration(model.weights,
                           gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia)));
   std::vector<ImageSequence> kept;
   std::size_t calibrating = 0, reported = 0;  // frames
   for (int i = 0; i < sequences; ++i) {
+    const Rendered& in_turn = rendered[static_cast<std::size_t>(i) % rendered.size()];
+    ScenarioSettings scenario = seen;
+    scenario.effects = in_turn.effects;
     ImageSequence sequence =
-        calibration_sequence(rendered.each, model.header.projection, static_cast<std::uint64_t>(i), seen);
+        calibration_sequence(in_turn.each, model.header.projection, static_cast<std::uint64_t>(i), scenario);
     if (i < sequences - held_back) {
       calibrating += sequence.size();
       calibration.add(sequence);
@@ -169,7 +178,9 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
   const std::unique_ptr<QuantizedNetwork> network = quantize(model.weights, calibration.statistics());
 
   gnc::ModelHeader header = model.header;
-  header.noise = noise_of(seen);
+  ScenarioSettings first = seen;
+  first.effects = sets.front();
+  header.noise = noise_of(first);
   report.layers = compare(model.weights, *network, model.header.inertia, kept);
   report.difference = summarise(differences_deg(model, network->weights, kept, options.symmetry));
   report.size_bytes = gnc::kModelImageSize<FixedPoint>;

@@ -43,6 +43,9 @@ struct QuantizationReport {
 struct QuantizationOptions {
   TargetSymmetry symmetry{};            // of the target: attitudes that look the same do not differ
   bool refuse_another_network = false;  // nothing is written if is_another_network()
+  // The sequences take turns among these, in place of the effects of `seen`; empty: those of `seen`. The
+  // noise that the image notes is that of the first.
+  std::vector<EffectRanges> effect_sets{};
   // That of the first mesh where it is known, since making it takes seconds.
   const SurfaceSections* surface = nullptr;
 };

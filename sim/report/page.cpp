@@ -55,8 +55,11 @@ svg { display: block; width: 100%; height: auto; font-family: inherit; }
 footer { margin-top: 40px; color: #6b7280; font-size: 13px; border-top: 1px solid #e4e6ea; padding-top: 12px; }
 code { font-family: "SF Mono", Consolas, "DejaVu Sans Mono", monospace; font-size: 12px; overflow-wrap: anywhere; }
 @media (max-width: 760px) { .pair, .facts { grid-template-columns: 1fr; } main { padding: 24px 16px; } }
-@media print { main { max-width: none; padding: 0; } body { font-size: 11pt; } .lead { font-size: 13pt; }
-  .notice, svg, img { print-color-adjust: exact; -webkit-print-color-adjust: exact; } @page { margin: 16mm; } }
+@media print { main { max-width: none; padding: 0; } body { font-size: 9.5pt; } .lead { font-size: 11pt; } h1 { font-size: 18pt; }
+  h2 { font-size: 12pt; margin-top: 22px; break-after: avoid; } th, td { padding: 3px 12px 3px 0; } tr { break-inside: avoid; }
+  .pair { grid-template-columns: minmax(0, 1fr) minmax(0, 1fr); gap: 4px 20px; }
+  .facts { grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0 20px; } .facts table { font-size: 8pt; }
+  .notice, svg, img { print-color-adjust: exact; -webkit-print-color-adjust: exact; } @page { size: A4; margin: 14mm; } }
 )css";
 
 }  // namespace
@@ -101,6 +104,12 @@ std::string html_facts(const std::vector<FactList>& lists) {
     html += "</table></section>\n";
   }
   return html + "</div>\n";
+}
+
+std::string html_console(const std::string& recording) {
+  if (recording.empty()) return {};
+  return fmt::format("<p>Step through this run in the console: <code>tumblesight console {}</code></p>\n",
+                     escape_markup(recording));
 }
 
 std::string html_footer(const std::string& generated, const std::string& command) {

@@ -21,6 +21,8 @@ std::string not_known_sentence(const std::string& target);
 // Faults and remarks at the top of a page, lists of facts side by side, and the last lines.
 std::string html_notices(const std::vector<std::string>& notices, const std::vector<std::string>& remarks);
 std::string html_facts(const std::vector<FactList>& lists);
+// How to open the recording of a run (MCAP) in the console; empty without one.
+std::string html_console(const std::string& recording);
 std::string html_footer(const std::string& generated, const std::string& command);
 
 // Of one network on one mesh (results_figures.cpp).

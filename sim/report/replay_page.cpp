@@ -114,7 +114,7 @@ std::string body(const ReplayReport& report) {
       "brighter. Below each: track / frame, range. Frames that are mirrored, turned or cut off show here.");
   html += html_facts(report.run.facts);
   html += "<h2>Cycles</h2>\n" + html_text(replay_table(report), "results");
-  return html + html_footer(report.run.generated, report.run.command);
+  return html + html_console(report.run.recording) + html_footer(report.run.generated, report.run.command);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/evaluation/checks.hpp"
+#include "sim/evaluation/pose_goals.hpp"
 #include "sim/evaluation/statistics.hpp"
 
 namespace tumblesight::sim {
@@ -176,15 +176,11 @@ void add_figures(std::vector<ConditionColumn>& columns, const char* name, Estima
   }
 }
 
-TableCell goal_cell(const ResultRow& row) {
-  if (!row.paper.goal) return {"-"};
-  return {paper_text(row.paper.goal), meets(row.cell.rcnn, *row.paper.goal) ? Mark::kMet : Mark::kMissed};
-}
-
-TableCell goal_met_cell(const ResultRow& row) {
-  if (!row.paper.goal) return {""};
-  const bool met = meets(row.cell.rcnn, *row.paper.goal);
-  return {met ? "yes" : "no", met ? Mark::kMet : Mark::kMissed};
+// What the registered pose of this row has to reach.
+TableCell pose_goal_cell(const ResultRow& row) {
+  const std::optional<PoseGoal> goal = pose_goal(row.subject.target, row.cell);
+  if (!goal || !(row.cell.pose.known > 0.0)) return {"-"};
+  return {text_of(*goal), meets(row.cell.pose, *goal) ? Mark::kMet : Mark::kMissed};
 }
 
 std::vector<ConditionColumn> make_condition_columns() {
@@ -204,8 +200,7 @@ std::vector<ConditionColumn> make_condition_columns() {
   });
   columns.push_back({kOverviews | kAccuracyTable, "paper",
                      [](const Row& row) -> TableCell { return {paper_text(row.paper.rcnn)}; }});
-  columns.push_back({kOverviews | kAccuracyTable, "goal", goal_cell});
-  columns.push_back({kAccuracyTable, "goal met", goal_met_cell});
+  columns.push_back({kOverviews, "goal of the pose", pose_goal_cell});
   const auto others = [](const SummaryFigure& figure) {
     if (figure.paper == nullptr) return 0U;
     return kOthers | kPageOverview | (figure.value == &ErrorSummary::mean_deg ? kTerminalOverview : 0U);
@@ -310,9 +305,11 @@ std::vector<EstimatorRow> estimator_rows(const Results& results) {
       for (const PeerErrors& peer : cell.peers)
         rows.push_back({results, subject, cell, peer.key.c_str(), peer.summary, std::nullopt});
     }
-    for (const CellResult& cell : subject.disturbed) {
-      rows.push_back({results, subject, cell, "rcnn", cell.rcnn, std::nullopt});
-      rows.push_back({results, subject, cell, "cnn", cell.cnn, std::nullopt});
+    for (const auto* further : {&subject.disturbed, &subject.sensor_runs}) {
+      for (const CellResult& cell : *further) {
+        rows.push_back({results, subject, cell, "rcnn", cell.rcnn, std::nullopt});
+        rows.push_back({results, subject, cell, "cnn", cell.cnn, std::nullopt});
+      }
     }
   }
   return rows;

@@ -48,7 +48,7 @@ TableCell pose_cell(const PoseFigure& figure, const PoseSummary& summary);
 TableCell figure_cell(const SummaryFigure& figure, const ErrorSummary& summary, Mark mark = Mark::kNone);
 // "-" where the paper does not have it.
 TableCell paper_cell(const SummaryFigure& figure, const PaperFigure& paper);
-// "12.69°, 88 %", or "-"; the share of a goal keeps its decimals.
+// "12.69°, 88 %", or "-".
 std::string paper_text(const std::optional<PaperFigure>& figure);
 
 // One estimator under one condition: a line of the CSV file. Holds references into the results.

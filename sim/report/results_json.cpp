@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sim/evaluation/pose_goals.hpp"
 #include "sim/report/results_columns.hpp"
 
 namespace tumblesight::sim {
@@ -22,6 +23,12 @@ Json confusion_json(const Confusion& confusion) {
 Json figure_json(const std::optional<PaperFigure>& figure) {
   if (!figure) return nullptr;
   return {{"mean_deg", figure->mean_deg}, {"within_20deg", figure->within_20deg}};
+}
+
+Json goal_json(const std::optional<PoseGoal>& goal) {
+  if (!goal) return nullptr;
+  return {{"pose_mean_within_20_deg", goal->most_mean_within_20_deg},
+          {"pose_within_20deg", goal->least_within_20deg}};
 }
 
 Json baseline_json(const CellResult& cell) {
@@ -72,7 +79,7 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
             {"model_crc32", fmt::format("{:08x}", subject.model_crc32)},
             {"paper_rcnn", figure_json(paper.rcnn)},
             {"paper_cnn", figure_json(paper.cnn)},
-            {"goal", figure_json(paper.goal)},
+            {"goal", goal_json(pose_goal(subject.target, cell))},
             {"confusion", confusion_json(cell.rcnn_confusion)}};
   if (!cell.symmetry.is_none()) json["symmetry"] = to_string(cell.symmetry);
   if (is_mostly_wrong(cell)) json["mostly_wrong"] = true;
@@ -191,7 +198,8 @@ Json results_json(const Results& results) {
   Json curves = Json::array();
   for (const SubjectResult& subject : results.subjects) {
     for (const CellResult& cell : subject.cells) rows.push_back(row_json(results, subject, cell));
-    for (const CellResult& cell : subject.disturbed) rows.push_back(row_json(results, subject, cell));
+    for (const auto* further : {&subject.disturbed, &subject.sensor_runs})
+      for (const CellResult& cell : *further) rows.push_back(row_json(results, subject, cell));
     if (subject.sweeps && !subject.cells.empty()) curves.push_back(curves_json(subject));
   }
   Json json{{"rows", rows}};

@@ -2,6 +2,7 @@
 
 #include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/checks.hpp"
+#include "sim/evaluation/pose_goals.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/colours.hpp"
 #include "sim/report/error_figures.hpp"
@@ -42,6 +43,31 @@ std::string poses_section(const Results& results) {
          "ellipsoid of their covariance.</p>\n";
 }
 
+// The table is wide: with few lines it stands better the other way round, with many it scrolls.
+std::string goals_html(const DataTable& table) {
+  constexpr std::size_t kFewLines = 6;
+  if (table.rows.size() <= kFewLines) return html_text(transposed(table), "poses");
+  return "<div style=\"overflow-x:auto\">" + html_text(table, "results") + "</div>\n";
+}
+
+// Nothing without runs that have a goal.
+std::string goals_section(const Results& results) {
+  std::string text;
+  for (const SubjectResult& subject : results.subjects) {
+    const DataTable table = goals_table(subject);
+    if (table.rows.empty()) continue;
+    if (results.subjects.size() > 1) text += "<h3>" + escape_markup(title_of(subject)) + "</h3>\n";
+    text += goals_html(table);
+  }
+  if (text.empty()) return text;
+  return "<h2>Goals</h2>\n" + text +
+         "<p class=sub>Last frame. Pose: registered; the goal is a mean error of the poses within 20° and a "
+         "share of all sequences. Wrong and valid: the network's attitude is more than 20° off and the "
+         "report calls it valid. Trust: at most 1 % wrong and valid, at least 97 % of the right ones valid "
+         "(99.5 % under the paper's conditions), at least 97 % of the errors below three times the expected "
+         "one, mean expected error 0.7 to 1.5 of the real one.</p>\n";
+}
+
 // Nothing without peers.
 std::string peers_section(const SubjectResult& subject) {
   std::string text;
@@ -72,24 +98,28 @@ std::string lead_of(const SubjectResult& subject) {
                      subject.cells.front().frames, escape_markup(display_name(subject.target)), errors);
 }
 
-// Many: how they compare with the paper and the goals.
+// Many: how they compare with the paper and with the goals of the registered pose.
 std::string lead_of(const std::vector<SubjectResult>& subjects) {
   std::size_t published = 0;
   std::size_t better = 0;
+  std::size_t goals = 0;
   std::size_t met = 0;
   for (const SubjectResult& subject : subjects) {
     for (const CellResult& cell : subject.cells) {
       const PaperFigures paper = paper_figures(subject.target, cell);
-      if (!paper.rcnn || !paper.goal) continue;
+      if (!paper.rcnn) continue;
       ++published;
       if (cell.rcnn.mean_deg < paper.rcnn->mean_deg) ++better;
-      if (meets(cell.rcnn, *paper.goal)) ++met;
+      const std::optional<PoseGoal> goal = pose_goal(subject.target, cell);
+      if (!goal || !(cell.pose.known > 0.0)) continue;
+      ++goals;
+      if (meets(cell.pose, *goal)) ++met;
     }
   }
   return fmt::format(
-      "For {} lines of the table the paper published a figure. In {} of them the mean error here is smaller, "
-      "and {} meet the goal that this project set itself.",
-      published, better, met);
+      "For {} lines of the table the paper published a figure. In {} of them the mean error of the network "
+      "here is smaller. The registered pose meets the goal that this project set itself in {} of {} lines.",
+      published, better, met, goals);
 }
 
 std::string lead_sentence(const Results& results) {
@@ -214,7 +244,7 @@ std::string results_page(const Results& results) {
   if (!symmetries.empty())
     body += fmt::format("<p class=sub>Errors modulo the symmetry of the target: {}.</p>\n", symmetries);
   body += notes_section(results.notes);
-  body += overview_section(results) + poses_section(results);
+  body += overview_section(results) + goals_section(results) + poses_section(results);
   for (const SubjectResult& subject : results.subjects) {
     if (has_chapter(results, subject)) body += chapter(results, subject);
   }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/disturbed_runs.hpp"
+#include "sim/evaluation/pose_goals.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/terminal/text.hpp"
 
@@ -43,6 +45,43 @@ Cells condition_cells(const ResultRow& row, ConditionTables table) {
   for (const ConditionColumn& column : condition_columns()) {
     if ((column.tables & table) != 0) cells.push_back(column.cell(row));
   }
+  return cells;
+}
+
+std::string name_of(const CellResult& cell) {
+  const std::string other = differences_from_paper(cell);
+  return other.empty() ? to_string(cell.condition) : other;
+}
+
+// "-" where the figure does not exist.
+std::string ratio_text(double ratio) {
+  return std::isnan(ratio) ? "-" : fmt::format("{:.2f}", ratio);
+}
+std::string pose_error_text(double deg) {
+  return std::isnan(deg) ? "-" : fmt::format("{:.3f}°", deg);
+}
+
+Cells goal_cells(const CellResult& cell, const std::optional<PoseGoal>& goal) {
+  const PoseSummary& pose = cell.pose;
+  const bool shown = show_the_target(cell.effects);
+  const bool reached = goal ? meets(pose, *goal) : !shown;
+  const std::string missed = missed_trust(cell);
+  const auto mark = [](bool met) { return met ? Mark::kMet : Mark::kMissed; };
+  const bool any_right = shown && cell.rcnn.within_20deg > 0.0;
+  Cells cells{{name_of(cell)}, {std::to_string(cell.sequences)}};
+  cells.push_back({shown ? percent_text(cell.rcnn.within_20deg) : "-"});
+  cells.push_back({shown ? pose_error_text(pose.mean_within_20_deg) : "-"});
+  cells.push_back({shown ? percent_text(pose.within_20deg, pose.count) : "-"});
+  cells.push_back({goal ? text_of(*goal) : "-", mark(reached)});
+  cells.push_back({percent_text(cell.rcnn.wrong_and_valid)});
+  cells.push_back({any_right ? percent_text(cell.rcnn.right_and_valid / cell.rcnn.within_20deg) : "-"});
+  cells.push_back({shown ? percent_text(cell.rcnn.error_below_3_expected) : "-"});
+  cells.push_back({shown ? ratio_text(cell.rcnn.expected_over_real) : "-"});
+  cells.push_back({percent_text(pose.verified)});
+  cells.push_back({percent_text(pose.verified_wrong)});
+  cells.push_back({percent_text(cell.never_valid_from_fifth)});
+  cells.push_back({goal ? reached ? "yes" : "no" : "", mark(reached)});
+  cells.push_back({missed.empty() ? "yes" : "no: " + missed, mark(missed.empty())});
   return cells;
 }
 
@@ -236,6 +275,22 @@ DataTable disturbed_table(const SubjectResult& subject) {
     cells.push_back(bar.empty() ? TableCell{""}
                                 : TableCell{met ? "yes" : "no", met ? Mark::kMet : Mark::kMissed});
     table.rows.push_back(cells);
+  }
+  return table;
+}
+
+DataTable goals_table(const SubjectResult& subject) {
+  DataTable table{
+      {"frames", "sequences", "network within 20°", "pose, mean within 20°", "pose within 20°", "goal",
+       "wrong and valid", "valid of the right ones", "error below 3 expected", "expected over real",
+       "verified", "verified, wrong", "never valid from the fifth frame", "goal met", "trust met"},
+      {}};
+  for (const auto* cells : {&subject.cells, &subject.sensor_runs}) {
+    for (const CellResult& cell : *cells) {
+      const std::optional<PoseGoal> goal = pose_goal(subject.target, cell);
+      const bool counts = goal ? cell.pose.known > 0.0 : !show_the_target(cell.effects);
+      if (counts) table.rows.push_back(goal_cells(cell, goal));
+    }
   }
   return table;
 }

@@ -53,6 +53,9 @@ DataTable reliability_table(const CellResult& cell);
 DataTable detection_table(const SubjectResult& subject);
 // A line per disturbed run, with its bar.
 DataTable disturbed_table(const SubjectResult& subject);
+// A line per run that has a goal of the registered pose or does not show the target: what it reached, the
+// goal, and what of the trust in it is missed. Nothing without such runs.
+DataTable goals_table(const SubjectResult& subject);
 DataTable checks_table(const SubjectResult& subject);
 
 }  // namespace tumblesight::sim

@@ -119,7 +119,8 @@ std::string body(const RunReport& report) {
                         "angular errors.") +
             charts_section(report, shown) + gallery_section(report, shown);
   }
-  return html + html_facts(report.facts) + html_footer(report.generated, report.command);
+  return html + html_console(report.recording) + html_facts(report.facts) +
+         html_footer(report.generated, report.command);
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ struct SilRunSetup : FlightSetup {
 struct RunReport {
   SilRunSetup setup;
   std::string command;    // that was run
+  std::string recording;  // of the run, as an MCAP file; empty: none
   std::string generated;  // date and time, as text
   double frame_period_s = 0.0;
   std::vector<FrameResult> results;  // answered steps only

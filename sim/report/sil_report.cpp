@@ -59,7 +59,8 @@ FactList settings_facts(const SilRunSetup& setup) {
 
 FactList numerics_facts(const NumericsComparison& numerics) {
   return {"Float32 reference, same frames",
-          {{"mean error, last frame", degrees_text(numerics.float32.mean_deg)},
+          {{"mean error, last frame",
+            numerics.float32.count == 0 ? "–" : degrees_text(numerics.float32.mean_deg)},
            {"difference of the attitudes, mean", degrees_text(numerics.difference.mean_deg)},
            {"difference of the attitudes, max", degrees_text(numerics.largest_difference_deg)}}};
 }

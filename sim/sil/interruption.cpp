@@ -38,11 +38,13 @@ Interruption::Interruption() {
   arrived = 0;
   note_once(SIGINT);
   note_once(SIGTERM);
+  note_once(SIGHUP);
 }
 
 Interruption::~Interruption() {
   restore(SIGINT);
   restore(SIGTERM);
+  restore(SIGHUP);
 }
 
 int Interruption::signal() {

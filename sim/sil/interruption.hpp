@@ -1,5 +1,5 @@
-// Interruption: while an object lives, SIGINT and SIGTERM end the SIL run, and what was done is reported. A
-// second signal of the kind ends the program at once. Signals that are ignored stay ignored.
+// Interruption: while an object lives, SIGINT, SIGTERM and SIGHUP end the SIL run, and what was done is
+// reported. A second signal of the kind ends the program at once. Signals that are ignored stay ignored.
 #pragma once
 
 namespace tumblesight::sim {

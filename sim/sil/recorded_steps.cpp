@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -49,9 +50,10 @@ std::vector<RecordedCycle> plan_cycles(const std::vector<FrameStamp>& frames) {
 }
 
 RecordedSteps::RecordedSteps(const RecordingFile& recording,
-                             const std::vector<std::optional<RecordedTruth>>& truth)
+                             const std::vector<std::optional<RecordedTruth>>& truth, double swath_m)
     : file_(recording),
       truth_(truth),
+      swath_m_(swath_m),
       cycles_(plan_cycles(recording.frames)),
       recording_(recording.open()),
       frame_(std::make_unique<gnc::RangeImage>()) {}
@@ -84,8 +86,12 @@ void RecordedSteps::take_frame(SourcedStep& sourced) {
   if (next_frame_ < truth_.size() && truth_[next_frame_]) {
     const RecordedTruth& known = *truth_[next_frame_];
     truth.q_lrf_trf = known.q_lrf_trf;
-    if (known.rate_lrf_rad_s) truth.rate_lrf_rad_s = *known.rate_lrf_rad_s;
-    if (known.trf_origin_lrf_m) truth.range_m = known.trf_origin_lrf_m->y();
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(kUnknown);
+    const Eigen::Vector3d origin_m = known.trf_origin_lrf_m.value_or(unknown);
+    truth.rate_lrf_rad_s = known.rate_lrf_rad_s.value_or(unknown);
+    truth.range_m = origin_m.y();
+    truth.offset_swaths = Eigen::Vector2d(origin_m.x(), origin_m.z()) / swath_m_;
     sourced.step.truth_known = true;
   }
   last_frame_ns_ = sourced.step.time_ns;

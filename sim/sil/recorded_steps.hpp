@@ -27,8 +27,10 @@ class RecordedSteps final : public StepSource {
  public:
   // `truth`: of each frame (truth_by_frame), or empty. A step whose truth is not known says so
   // (StepResult::truth_known). A pause after which the flight program begins a new track begins a new
-  // sequence. `recording` and `truth` must outlive the object. Throws as plan_cycles does.
-  RecordedSteps(const RecordingFile& recording, const std::vector<std::optional<RecordedTruth>>& truth);
+  // sequence. Range and rate that are not known are NaN. `swath_m`: of FrameTruth::offset_swaths. `recording`
+  // and `truth` must outlive the object. Throws as plan_cycles does.
+  RecordedSteps(const RecordingFile& recording, const std::vector<std::optional<RecordedTruth>>& truth,
+                double swath_m);
 
   std::uint32_t steps() const override { return static_cast<std::uint32_t>(cycles_.size()); }
   std::int64_t time_ns(std::uint32_t k) const override { return cycles_[k].time_ns; }
@@ -40,6 +42,7 @@ class RecordedSteps final : public StepSource {
 
   const RecordingFile& file_;
   const std::vector<std::optional<RecordedTruth>>& truth_;
+  double swath_m_;
   std::vector<RecordedCycle> cycles_;
   hal::replay::Recording recording_;
   std::unique_ptr<gnc::RangeImage> frame_;

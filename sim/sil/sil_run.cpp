@@ -4,8 +4,11 @@
 #include <chrono>
 #include <exception>
 #include <optional>
+#include <utility>
 
 #include "sim/sil/fault_names.hpp"
+#include "sim/sil/frame_faults.hpp"
+#include "sim/sil/run_control.hpp"
 #include "sim/sil/sil_session.hpp"
 #include "sim/sil/simulated_steps.hpp"
 #include "sim/sil/trace.hpp"
@@ -37,6 +40,7 @@ class SilRun {
           "a free-running flight program needs a speed: --speed 1 for real time, N for N times real time");
     }
     SilSession session(settings_);
+    control_.emplace(session.domain());
     settings_.free_running ? simulate_free_running(session) : simulate_in_lockstep(session);
     session.finish();
   }
@@ -99,13 +103,16 @@ class SilRun {
 
   StepInput prepare(const SilSession& session, std::uint32_t k) {
     SourcedStep sourced = source_.next();
-    result_.steps.push_back(sourced.step);
     StepInput& input = sourced.input;
+    for (Telecommand& command : control_->take(k, faults_)) input.commands.push_back(std::move(command));
+    faults_.apply(input, sourced.step.truth);
+    result_.steps.push_back(sourced.step);
     for (const gnc::RangeImage* frame : input.frames) {
       if (frame_sent_) frame_sent_(sourced.step, *frame);
       if (sourced.keep_picture) result_.pictures.emplace_back(k, *frame);
     }
-    if (k == 0 && session.flight_mode() == hal::Mode::kStandby)
+    // A run that is sent again has its own.
+    if (k == 0 && session.flight_mode() == hal::Mode::kStandby && input.packets.empty())
       input.commands.insert(input.commands.begin(), set_mode(hal::Mode::kRun));
     input.last = k + 1 == steps_;
     return std::move(input);
@@ -152,6 +159,8 @@ class SilRun {
   }
 
   const SilSettings& settings_;
+  std::optional<RunControl> control_;
+  FrameFaults faults_;
   StepSource& source_;
   const SilProgress& progress_;
   const FrameObserver& frame_sent_;

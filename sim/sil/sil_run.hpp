@@ -29,6 +29,8 @@ struct SilSettings {
   bool ego_motion = true;        // the flight program is told the chaser's attitude at each exposure
   double step_timeout_s = 10.0;  // wall clock; a step without an answer by then ends the run
   std::string flight_log_path;   // file for the flight program's messages; empty: our own output
+  std::string mcap_path;         // file for a recording of the run; empty: none
+  double swath_m = 0.0;          // of the truth's displacement from the boresight, for the recording
   std::string security_path;  // file that secures the bus, passed to the flight program; empty: not secured
   std::vector<std::string> flight_arguments;  // additional ones
   // The flight program must have the same key.

@@ -81,6 +81,10 @@ SilSession::SilSession(const SilSettings& settings)
   }
   endpoints_ = std::make_unique<SimulatorEndpoints>(domain_);
   answers_ = std::make_unique<AnswerCollector>(*endpoints_, secret_.run_id);
+  announcement_ = std::make_unique<RunAnnouncement>(lease_.domain(), secret_);
+  // Before the flight program starts, so that it finds the recording as early as the other endpoints.
+  if (!settings_.mcap_path.empty())
+    recorder_ = std::make_unique<RunRecorder>(domain_, settings_.mcap_path, settings_.swath_m);
   write(endpoints_->hello_out, hello());
   if (!settings_.flight_path.empty()) start_flight();
   shake_hands();
@@ -182,7 +186,7 @@ void SilSession::bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKe
 
 void SilSession::shake_hands() {
   const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.step_timeout_s);
-  while (!flight_ready_ || !endpoints_->bind(*flight_)) {
+  while (!flight_ready_ || !endpoints_->bind(*flight_) || (recorder_ && !recorder_->has_writers())) {
     require_not_interrupted();
     read_hello();
     require_no_foreigner();
@@ -195,6 +199,8 @@ void SilSession::shake_hands() {
       fail("the flight program " + process_->how_it_ended());
     }
     if (Clock::now() > deadline) {
+      if (flight_ready_ && endpoints_->bind(*flight_))
+        fail("the recording of --mcap does not find the topics of the run on the bus");
       fail(process_ ? "the flight program was started but did not announce itself"
                     : "no flight program announced itself in DDS domain " + std::to_string(lease_.domain()) +
                           "; start one with --domain " + std::to_string(lease_.domain()));
@@ -285,6 +291,7 @@ void SilSession::send(const StepInput& input) {
   content.announce_in(step);
   write(endpoints_->steps, step);
   last_sent_ = input.last;
+  if (recorder_) recorder_->add(input.frames, input.time_ns);
 }
 
 StepAnswer SilSession::wait_for_answer(std::uint32_t k) {
@@ -301,6 +308,7 @@ std::optional<StepAnswer> SilSession::collect_answer() {
   require_no_foreigner();
   std::optional<StepAnswer> answer = answers_->next();
   if (!answer) return answer;
+  if (recorder_) recorder_->add(*answer);  // also a wrong one, which the recording explains
   const std::string fault = check_.fault_of(*answer);
   if (!fault.empty()) throw SilFailure(fault);
   return answer;
@@ -310,6 +318,7 @@ std::optional<StepAnswer> SilSession::next_answer(Clock::time_point deadline) {
   for (;;) {
     require_not_interrupted();
     if (auto answer = collect_answer()) return answer;
+    if (recorder_) recorder_->write_due();
     const auto left = deadline - Clock::now();
     if (left <= Clock::duration::zero()) return std::nullopt;
     const bool arrived = endpoints_->wait_for_data(std::min<Clock::duration>(left, kPoll).count());
@@ -325,11 +334,13 @@ void SilSession::sleep_until(Clock::time_point time) {
   while (Clock::now() < time) {
     std::this_thread::sleep_until(std::min(time, Clock::now() + 200ms));
     require_not_interrupted();
+    if (recorder_) recorder_->write_due();
     if (flight_ended()) fail_flight_ended();
   }
 }
 
 void SilSession::finish() {
+  if (recorder_) recorder_->close();
   if (!process_) return;
   if (!process_->wait_for_end(settings_.step_timeout_s))
     fail("the flight program did not end after its last step");
@@ -351,6 +362,7 @@ void SilSession::publish_truth(std::uint32_t sequence, std::uint32_t frame, cons
   for (int i = 0; i < 3; ++i) sample.rate_lrf_rad_s[i] = static_cast<float>(truth.rate_lrf_rad_s[i]);
   sample.range_m = static_cast<float>(truth.range_m);
   write(endpoints_->truth, sample);
+  if (recorder_) recorder_->add(truth);
 }
 
 }  // namespace tumblesight::sim

@@ -22,6 +22,8 @@
 #include "sim/sil/domain_lease.hpp"
 #include "sim/sil/failure.hpp"
 #include "sim/sil/flight_process.hpp"
+#include "sim/sil/run_announcement.hpp"
+#include "sim/sil/run_recorder.hpp"
 #include "sim/sil/signed_telecommand.hpp"
 #include "sim/sil/sil_run.hpp"
 #include "sim/sil/simulator_endpoints.hpp"
@@ -88,6 +90,8 @@ class SilSession {
   hal::dds::Domain domain_;
   std::unique_ptr<SimulatorEndpoints> endpoints_;
   std::unique_ptr<AnswerCollector> answers_;
+  std::unique_ptr<RunAnnouncement> announcement_;
+  std::unique_ptr<RunRecorder> recorder_;  // none: the run is not recorded
   AnswerCheck check_;
   std::unique_ptr<FlightProcess> process_;  // destroyed before the domain is released
   TelecommandEncoder encoder_;

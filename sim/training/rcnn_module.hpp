@@ -20,7 +20,7 @@ namespace tumblesight::sim {
 class BackboneImpl : public torch::nn::Module {
  public:
   BackboneImpl();
-  // images [B, 1, 100, 100] -> flattened image [B, 2160], channel by channel. `fast`: in bfloat16, except for
+  // images [B, 1, 100, 100] -> flattened image [B, 1440], channel by channel. `fast`: in bfloat16, except for
   // the result.
   torch::Tensor forward(const torch::Tensor& images, bool fast);
 

@@ -1,9 +1,11 @@
 """Tests of the audit itself. Run by ctest; alone: python3 -m unittest discover tests/audit"""
+import csv
 import pathlib
 import re
 import tempfile
 import unittest
 
+import audit
 import instruction_count
 import network_layers
 import processors
@@ -132,6 +134,15 @@ class Documents(unittest.TestCase):
     def test_missing_mark_is_refused(self):
         with self.assertRaises(SystemExit):
             report.with_table(f"{report.END}\n{report.BEGIN}\n", "new")
+
+    # The audit had let the code grow beyond the 156 KiB that the requirement allowed.
+    def test_budgets_are_those_of_the_requirements(self):
+        with open(processors.ROOT / "docs/requirements.csv", newline="") as file:
+            texts = {row[0]: row[1] for row in csv.reader(file)}
+        for number, words, kib in (("TS-MEM-060", " KiB of RAM", audit.BUDGETS["ram"]), ("TS-MEM-060", " KiB of code", audit.BUDGETS["text"]),
+                                   ("TS-MEM-060", " KiB of constants", audit.BUDGETS["read_only"]),
+                                   ("TS-MEM-030", " KiB of stack", audit.BUDGETS["stack"])):
+            self.assertIn(f"{kib / 1024:g}{words}", texts[number])
 
     def test_readme_has_the_marks(self):
         report.with_table((processors.ROOT / "README.md").read_text(), "new")

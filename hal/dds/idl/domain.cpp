@@ -41,6 +41,7 @@ bool read_security(const char* path, SecurityElement& security) {
 }
 
 dds_return_t Domain::open(std::uint32_t id, const char* partition, const char* security) {
+  id_ = id;
   partition_ = partition;
   char configuration[kMaxConfiguration + sizeof(SecurityElement)];
   const int length = std::snprintf(configuration, sizeof configuration, "%s%s%s", kConfiguration, security,
@@ -51,6 +52,10 @@ dds_return_t Domain::open(std::uint32_t id, const char* partition, const char* s
   if (domain_ < 0) return domain_;
   participant_ = dds_create_participant(id, nullptr, nullptr);
   return participant_ < 0 ? participant_ : 0;
+}
+
+dds_entity_t Domain::join() const {
+  return dds_create_participant(id_, nullptr, nullptr);
 }
 
 void Domain::close() {

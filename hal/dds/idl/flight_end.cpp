@@ -37,7 +37,7 @@ const char* to_string(FlightEnd end) {
     case FlightEnd::kTerminated:
       return "asked to stop";
   }
-  return "?";
+  return "a status that Tumblesight's flight program does not have";
 }
 
 }  // namespace tumblesight::hal::dds

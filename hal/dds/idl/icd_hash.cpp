@@ -15,4 +15,8 @@ std::uint32_t icd_hash() {
   return gnc::crc32(kIdl, sizeof kIdl);
 }
 
+std::string_view idl_text() {
+  return {reinterpret_cast<const char*>(kIdl), sizeof kIdl};
+}
+
 }  // namespace tumblesight::hal::dds

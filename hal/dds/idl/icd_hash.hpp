@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace tumblesight::hal::dds {
 
 std::uint32_t icd_hash();
+// The file itself.
+std::string_view idl_text();
 
 }  // namespace tumblesight::hal::dds

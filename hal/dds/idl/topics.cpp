@@ -32,12 +32,12 @@ dds_qos_t* qos_of(const Topic& topic, const char* partition) {
 using Create = dds_entity_t (*)(dds_entity_t participant, dds_entity_t topic, const dds_qos_t* qos,
                                 const dds_listener_t* listener);
 
-dds_entity_t create(const Domain& domain, const Topic& topic, Create create_endpoint) {
-  const dds_entity_t handle =
-      dds_create_topic(domain.participant(), topic.type, topic.name, nullptr, nullptr);
+dds_entity_t create(dds_entity_t participant, const char* partition, const Topic& topic,
+                    Create create_endpoint) {
+  const dds_entity_t handle = dds_create_topic(participant, topic.type, topic.name, nullptr, nullptr);
   if (handle < 0) return handle;
-  dds_qos_t* qos = qos_of(topic, domain.partition());
-  const dds_entity_t endpoint = create_endpoint(domain.participant(), handle, qos, nullptr);
+  dds_qos_t* qos = qos_of(topic, partition);
+  const dds_entity_t endpoint = create_endpoint(participant, handle, qos, nullptr);
   dds_delete_qos(qos);
   return endpoint;
 }
@@ -90,11 +90,15 @@ const Topic& topic_of<TruthSample>() {
 }
 
 dds_entity_t create_writer(const Domain& domain, const Topic& topic) {
-  return create(domain, topic, dds_create_writer);
+  return create(domain.participant(), domain.partition(), topic, dds_create_writer);
 }
 
 dds_entity_t create_reader(const Domain& domain, const Topic& topic) {
-  return create(domain, topic, dds_create_reader);
+  return create_reader(domain, domain.participant(), topic);
+}
+
+dds_entity_t create_reader(const Domain& domain, dds_entity_t participant, const Topic& topic) {
+  return create(participant, domain.partition(), topic, dds_create_reader);
 }
 
 dds_return_t BoundReader::open(const Domain& domain, const Topic& topic) {

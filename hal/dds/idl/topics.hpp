@@ -68,6 +68,8 @@ const Topic& topic_of<TruthSample>();
 // Untyped functions. They return a positive entity handle or a negative DDS return code.
 dds_entity_t create_writer(const Domain& domain, const Topic& topic);
 dds_entity_t create_reader(const Domain& domain, const Topic& topic);
+// Of another participant of the domain (Domain::join()).
+dds_entity_t create_reader(const Domain& domain, dds_entity_t participant, const Topic& topic);
 // Whether a peer has the topic with another type or quality of service; such endpoints never match.
 bool saw_incompatible_writer(dds_entity_t reader);
 // Waits until all readers have acknowledged all samples. False: timeout.

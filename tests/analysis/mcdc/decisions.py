@@ -8,7 +8,7 @@ Condition = collections.namedtuple("Condition", "text begin end")  # begin, end:
 _QUIET = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
 _OPERATOR = re.compile(r"&&|\|\|")
 _OPENS, _CLOSES = "([{", ")]}"
-_DEFINITION = re.compile(r"^ {0,2}(?:[\w:<>,&*]+ )*[&*]*(?:\w+(?:<\w+>)?::)?(\w+)\(", re.M)
+_DEFINITION = re.compile(r"^ {0,2}(?:\[\[[\w:]+\]\] )?(?:[\w:<>,&*]+ )*[&*]*(?:\w+(?:<\w+>)?::)?(\w+)\(", re.M)
 _KEYWORDS = {"if", "for", "while", "switch", "return", "static_assert", "sizeof"}
 
 

@@ -38,6 +38,10 @@ class Decisions(unittest.TestCase):
         self.assertEqual(found[0][2][:2], ["a > 0", "b < 3"])
         self.assertEqual([one[1] for one in found[1:]], ["i < a && is_on()", "a == 1 && !off()", "both && one"])
 
+    def test_a_function_with_an_attribute_is_found(self):
+        code = "bool a(int x) {\n  return x;\n}\n[[gnu::noinline]] bool b(int x) {\n  return x > 0 && x < 9;\n}\n"
+        self.assertEqual([one.function for one in decisions.decisions_in(code)], ["b"])
+
     def test_conditions_stand_where_they_say(self):
         for one in decisions.decisions_in(CODE):
             for condition in one.conditions[:2]:

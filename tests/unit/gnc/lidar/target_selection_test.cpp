@@ -206,6 +206,33 @@ TEST_F(TargetSelection, DropsWhateverFillsTheViewBehindTheTarget) {
   EXPECT_EQ(chosen(), of_target);
 }
 
+// Verifies TS-LID-100. Normal noise of 5 m: the slice alone, 10 m deep, holds two thirds of the returns.
+TEST_F(TargetSelection, GoesOnWhereTheRangesAreNoisierThanThePapers) {
+  const auto noise = [this] {
+    int sum = 0;
+    for (int i = 0; i < 12; ++i) sum += random.below(1001);
+    return (sum - 6000) * 5 * 128 / 1000;
+  };
+  fill([&](int row, int column) {
+    const int hit = target(row, column);
+    return hit != 0 ? hit + noise() : 0;
+  });
+  select();
+  EXPECT_GE(chosen(), returns() * 0.98);
+}
+
+// Verifies TS-LID-100. A second body in the view, as large, does not belong to the target.
+TEST_F(TargetSelection, DoesNotGoOnAcrossAGap) {
+  int of_target = 0;
+  fill([&](int row, int column) {
+    const int hit = target(row, column);
+    of_target += hit != 0 && column < 64 ? 1 : 0;
+    return hit != 0 && column >= 64 ? hit + 14 * 128 : hit;
+  });
+  select();
+  EXPECT_EQ(chosen(), of_target);
+}
+
 // Verifies TS-LID-100.
 TEST_F(TargetSelection, DropsAPieceBesideTheTargetThatIsTinyAgainstIt) {
   fill([this](int row, int column) { return target(row, column); });
@@ -303,16 +330,30 @@ class Definition {
     for (int bin = nearest; bin < std::min(512, nearest + slice_bins(nearest)); ++bin)
       if (of_slice[static_cast<std::size_t>(bin)] > of_slice[static_cast<std::size_t>(best)]) best = bin;
     const auto is_filled = [&](int bin) { return of_bin[static_cast<std::size_t>(bin)] >= 4; };
-    int begin = 10, deepest = std::min(511, best + slice_bins(best) - 1);
+    const auto at = [&](int bin) {  // a bin that is used
+      return bin < 10 || bin > 500 ? 0 : of_bin[static_cast<std::size_t>(bin)];
+    };
+    const int depth = slice_bins(best);
+    int first = best, last = std::min(511, best + depth - 1);
+    const auto goes_on = [&](int next, int here, int before) {
+      return at(next) >= 4 && 8 * at(next) >= 3 * before && at(next) * depth >= 4 * sorted[256] &&
+             std::abs(next - here) <= std::min(32, depth);
+    };
+    const int near = first, far = last;
+    for (int before = std::max(at(far), at(far - 1)); goes_on(last + 1, far, before); ++last)
+      before = at(last + 1);
+    for (int before = std::max(at(near), at(near + 1)); goes_on(first - 1, near, before); --first)
+      before = at(first - 1);
+    int begin = 10, deepest = last;
     while (deepest > 10 && !is_filled(deepest)) --deepest;
-    while (best <= 10 && begin > 1 && is_filled(10) && is_filled(begin - 1) &&
-           begin - 1 > deepest - slice_bins(best))
+    while (first <= 10 && begin > 1 && is_filled(10) && is_filled(begin - 1) &&
+           begin - 1 > deepest - (last + 1 - first))
       --begin;
     for_each_ray([&](int row, int column) {
       const int counts = range(row, column);
       chosen_[static_cast<std::size_t>(row * n_ + column)] = counts >= begin * 128 && counts <= 64000 &&
-                                                             (begin < 10 || counts >= best * 128) &&
-                                                             counts < (best + slice_bins(best)) * 128;
+                                                             (begin < 10 || counts >= first * 128) &&
+                                                             counts < (last + 1) * 128;
     });
   }
 
@@ -392,17 +433,20 @@ class Definition {
 TEST_F(TargetSelection, IsWhatTheDefinitionSays) {
   int frames_with_target = 0;
   constexpr double kShares[] = {0.0, 0.002, 0.02, 0.1, 0.3};
+  constexpr int kSpreads[] = {1, 1024, 4096, 20000};  // of the ranges [counts]
   for (int trial = 0; trial < trials(60); ++trial) {
     SCOPED_TRACE(trial);
     use_rays(trial % 3 == 0 ? 128 : 16 + random.below(113));
     const int nearer = random.below(2) * (47 + random.below(10)) * 128;  // some targets are around 10 m away
     const double clutter = kShares[random.below(5)], hot = kShares[random.below(3)],
                  thin = random.below(2) == 0 ? 1.0 : kShares[3 + random.below(2)];
+    const int spread = kSpreads[random.below(4)];
     fill([&](int row, int column) {
       if (random.happens(clutter)) return random.below(65536);
       if (random.happens(hot)) return 7700;
       const int hit = target(row * 128 / frame->rays, column * 128 / frame->rays);
-      return random.happens(thin) && hit > nearer ? hit - nearer : 0;
+      const int further = (random.below(spread) + random.below(spread)) / 2;
+      return random.happens(thin) && hit > nearer ? hit - nearer + further : 0;
     });
     select();
     const Definition expected(*frame, kRadius_mm);

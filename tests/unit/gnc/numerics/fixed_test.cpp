@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -82,6 +83,35 @@ TEST(Fixed, DotProductsAreRoundedOnceAndSaturate) {
   const Fixed largest = Fixed::from_raw(Fixed::kLargestRaw);
   EXPECT_EQ(Fixed::dot(largest, largest, largest, largest, largest, largest), largest);
   EXPECT_EQ(Fixed::dot(largest, -largest, largest, -largest, largest, -largest), -largest);
+}
+
+// On 32-bit processors both limits are applied word by word.
+TEST(Fixed, AnyRawNumberIsLimitedToTheLargestOnes) {
+  constexpr std::int64_t kMost = Fixed::kLargestRaw;
+  for (const std::int64_t near : {std::int64_t{0}, kMost, std::int64_t{1} << 32, std::int64_t{3} << 31,
+                                  std::int64_t{1} << 61, std::numeric_limits<std::int64_t>::max() - 3}) {
+    for (std::int64_t more = -3; more <= 3; ++more) {
+      for (const std::int64_t raw : {near + more, -near + more, -near - more - 1})
+        EXPECT_EQ(Fixed::from_raw(raw).raw(), std::clamp(raw, -kMost, kMost)) << raw;
+    }
+  }
+  EXPECT_EQ(Fixed::from_raw(std::numeric_limits<std::int64_t>::min()).raw(), -kMost);
+}
+
+TEST(Fixed, TheFirstTwoProductsOfADotProductAreLimited) {
+  constexpr std::int64_t kBound = std::int64_t{1} << 61, kQ30 = std::int64_t{1} << 30;
+  for (const std::int64_t sign : {-1, 1}) {
+    // Twice the square of 2^30 is 2^61. The third product takes what is left into the range.
+    for (const std::int64_t factor :
+         {kQ30 - 3, kQ30 - 1, kQ30, kQ30 + 1, kQ30 + 3, std::int64_t{Fixed::kLargestRaw}}) {
+      const Fixed a = Fixed::from_raw(sign * factor), b = Fixed::from_raw(factor);
+      const Fixed c = Fixed::from_raw(-sign * Fixed::kLargestRaw), d = Fixed::from_raw(kQ30);
+      const std::int64_t limited = std::clamp(sign * 2 * factor * factor, -kBound, kBound);
+      const std::int64_t rounded = (limited + std::int64_t{c.raw()} * d.raw() + (1 << 23)) >> 24;
+      ASSERT_LT(std::abs(rounded), Fixed::kLargestRaw);
+      EXPECT_EQ(Fixed::dot(a, b, a, b, c, d).raw(), rounded) << factor << " " << sign;
+    }
+  }
 }
 
 TEST(Fixed, ConstantsAreRoundedToTheNearestAndSaturate) {

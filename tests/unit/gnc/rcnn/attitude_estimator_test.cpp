@@ -190,32 +190,6 @@ double expected_error(double network_rad, double misfit, double innovation_rad, 
   return network_rad + (1.84 - network_rad) / (1.0 + std::exp(-sum));
 }
 
-// Verifies TS-EST-192.
-TEST(AttitudeEstimator, ExpectsTheErrorThatTheEvidenceSpeaksFor) {
-  for (const double network_rad : {0.003, 0.02, 0.5, 3.1}) {
-    for (const double misfit : {0.0, 0.3, 0.6, 2.125}) {
-      for (const double innovation_rad : {0.0, 0.2, 0.5, 0.6, M_PI}) {
-        for (const double second_share : {0.0, 0.4, 1.0}) {
-          const double share = network_rad / M_PI;
-          const ErrorEvidence evidence{Fixed(std::log(share / (1.0 - share))),
-                                       static_cast<std::uint32_t>(std::lround(65536.0 * misfit)),
-                                       Fixed(2.0 - 2.0 * std::cos(innovation_rad)), Fixed(second_share)};
-          EXPECT_NEAR(std::ldexp(expected_error_rad(evidence, Fixed(network_rad)).raw(), -24),
-                      expected_error(network_rad, misfit, innovation_rad, second_share), 1e-4)
-              << network_rad << ' ' << misfit << ' ' << innovation_rad << ' ' << second_share;
-        }
-      }
-    }
-  }
-  // Whatever a damaged network or state says.
-  for (const double extreme : {-128.0, 128.0}) {
-    const Fixed found =
-        expected_error_rad({Fixed(extreme), 139'264, Fixed(extreme), Fixed(1.0)}, Fixed(M_PI));
-    EXPECT_GT(found, Fixed(1.8));
-    EXPECT_LT(found, Fixed(3.1416));
-  }
-}
-
 // Verifies TS-EST-192. With a target of one point, which explains no return, and without a surface.
 TEST(AttitudeEstimator, TakesTheEvidenceOfEachFrameIntoTheExpectedError) {
   const auto weights = std::make_unique<NetworkWeights<FixedPoint>>();

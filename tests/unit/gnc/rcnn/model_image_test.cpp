@@ -204,7 +204,7 @@ TEST(ModelImage, HasTheDocumentedLayout) {
   EXPECT_EQ(get_u32(image, kSections), 21U);
   EXPECT_EQ(get_u32(image, kTable), 1U);
   EXPECT_EQ(get_u32(image, kTable + 4), kFloatData);
-  EXPECT_EQ(get_u32(image, kTable + 8), 9U * 4 * 32 * 4);
+  EXPECT_EQ(get_u32(image, kTable + 8), 9U * 4 * 16 * 4);
 
   const Bytes& fixed = lasting_model_image<FixedPoint>(21);
   EXPECT_EQ(fixed.size(), kModelImageSize<FixedPoint>);
@@ -212,10 +212,10 @@ TEST(ModelImage, HasTheDocumentedLayout) {
   EXPECT_EQ(get_u32(fixed, 84), 1U);
   EXPECT_EQ(get_u32(fixed, kSections), 33U);
   EXPECT_EQ(get_u32(fixed, kTable + 4), kFixedData);
-  EXPECT_EQ(get_u32(fixed, kTable + 8), 9U * 4 * 32);                   // one byte per weight
-  EXPECT_EQ(get_u32(fixed, kTable + 16 + 4), kFixedData + 9 * 4 * 32);  // bias
-  EXPECT_EQ(get_u32(fixed, kTable + 16 + 8), 4U * 32);
-  EXPECT_EQ(get_u32(fixed, kTable + 32 + 8), 4U * 32);  // shifts
+  EXPECT_EQ(get_u32(fixed, kTable + 8), 9U * 4 * 16);                   // one byte per weight
+  EXPECT_EQ(get_u32(fixed, kTable + 16 + 4), kFixedData + 9 * 4 * 16);  // bias
+  EXPECT_EQ(get_u32(fixed, kTable + 16 + 8), 4U * 16);
+  EXPECT_EQ(get_u32(fixed, kTable + 32 + 8), 4U * 16);  // shifts
   const std::size_t surface = kTable + std::size_t{16} * 31;
   EXPECT_EQ(get_u32(fixed, surface), 32U);
   EXPECT_EQ(get_u32(fixed, surface + 8), 8U + 9 * 2048);
@@ -224,7 +224,7 @@ TEST(ModelImage, HasTheDocumentedLayout) {
   EXPECT_EQ(get_u32(fixed, mesh + 4), get_u32(fixed, surface + 4) + get_u32(fixed, surface + 8));
   EXPECT_EQ(get_u32(fixed, mesh + 8), 120'840U);
   EXPECT_EQ(get_u32(fixed, mesh + 4) + get_u32(fixed, mesh + 8), fixed.size());
-  EXPECT_EQ(fixed.size(), 1'317'776U);
+  EXPECT_EQ(fixed.size(), 995'792U);
 }
 
 TEST(IsFloat32, NeedsAnIntactHeader) {
@@ -463,7 +463,7 @@ TEST(FixedPointImage, IsRefusedIfASumCouldLeave32Bits) {
       EXPECT_EQ(read_fixed(image), ModelStatus::kBadValue) << section << ' ' << bias;
     }
   }
-  // Weights alone: 2160 inputs of up to 16380, each times 127.
+  // Weights alone: 1440 inputs of up to 16380, each times 127.
   Bytes image = random_model_image<FixedPoint>(32);
   std::fill_n(image.begin() + static_cast<std::ptrdiff_t>(offset_of(image, 12)),
               get_u32(image, kTable + 16 * 12 + 8), 127);

@@ -38,6 +38,16 @@ TEST_F(PoseVerdict, ReturnsBesideTheTargetAreADoubt) {
 }
 
 // Verifies TS-EST-202.
+TEST_F(PoseVerdict, AnOutlineThatIsTooSmallIsADoubt) {
+  verify();
+  see();
+  lose_rim();
+  EXPECT_EQ(track_seen().doubts, kPoseOutline);
+  EXPECT_LT(scratch_->best.evidence.missing_ppm(), 10'000U);
+  EXPECT_EQ(track_next().doubts, 0U);
+}
+
+// Verifies TS-EST-202.
 TEST_F(PoseVerdict, TooManyMissingReturnsAreADoubt) {
   verify();
   lost_ = 0.75;

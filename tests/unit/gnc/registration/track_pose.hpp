@@ -66,13 +66,32 @@ class TrackPose : public testing::Test {
     for (int row = 2; row < 2 + side; ++row)
       for (int column = 2; column < 2 + side; ++column) frame_->add(row, column, kDepth_m);
   }
-  // The next frame, which the target does not explain: by noisy ranges (0), missing returns (1) or returns
-  // beside it (2).
+  // Loses a share of the outermost rays of the target in every row and column, so that its outline is too
+  // small.
+  void lose_rim(double share = 1.0) {
+    const RayMask all = *frame_->mask;
+    const auto is_inside = [&](int row, int column) {
+      return all.has(row - 1, column) && all.has(row + 1, column) && all.has(row, column - 1) &&
+             all.has(row, column + 1);
+    };
+    for (int row = 1; row + 1 < sensor_.rays; ++row) {
+      for (int column = 1; column + 1 < sensor_.rays; ++column) {
+        if (!all.has(row, column) || is_inside(row, column) || !random_.happens(share)) continue;
+        frame_->mask->rows[static_cast<std::size_t>(row)]
+                          [static_cast<std::size_t>(column / RayMask::kColumnsPerWord)] &=
+            ~(0x8000'0000U >> (column % RayMask::kColumnsPerWord));
+        frame_->image->ranges[static_cast<std::size_t>(row * sensor_.rays + column)] = 0;
+      }
+    }
+  }
+  // The next frame, which the target does not explain: by noisy ranges (0), missing returns (1), returns
+  // beside it (2) or an outline that is too small (3).
   void see_unexplained(int kind) {
     noise_ = kind == 0 ? 1.5 : 1.0;
     lost_ = kind == 1 ? 0.75 : 0.0;
     see();
     if (kind == 2) add_patch(0.05);
+    if (kind == 3) lose_rim();
   }
   // From now on the body tumbles, and the tracker knows its inertia.
   void tumble() {
@@ -129,7 +148,10 @@ class TrackPose : public testing::Test {
     radius_mm_ = static_cast<std::uint32_t>(1e3 * body_.radius_m);
   }
   // As the network usually sees it.
-  PoseEstimate track_seen() { return track(random_.vector(kDegree), truth_.r_lrf_trf, 0); }
+  PoseEstimate track_seen() {
+    const Eigen::Vector3d usual = random_.vector(kDegree);
+    return track(network_turn_.value_or(usual), truth_.r_lrf_trf, 0);
+  }
   PoseEstimate track_next() {
     see();
     return track_seen();
@@ -152,6 +174,7 @@ class TrackPose : public testing::Test {
   ExactPose truth_{random_.rotation(), {0.1, kDepth_m, -0.05}};
   Eigen::Vector3d rate_{0.2, -0.1, 0.15};                 // [rad per period]
   Eigen::Vector3d rate_error_ = Eigen::Vector3d::Zero();  // of the network
+  std::optional<Eigen::Vector3d> network_turn_;           // by which its attitude is wrong; a degree or two
   Eigen::Matrix3d turn_of_sensor_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d inertia_trf_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d centroid_m_;

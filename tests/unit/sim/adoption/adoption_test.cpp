@@ -51,7 +51,7 @@ class Adopted : public testing::Test {
 TEST_F(Adopted, ANetworkOfHalfAMinuteFliesAndIsNotToBeFlown) {
   write_mesh((folder_ / "craft.stl").string(), target_by_name("magellan"));
   write_mission("inertia = [3266, 4772, 2897, 2, 36, -42]\n[panels]\nturn_deg = [-90, 90]\n");
-  ASSERT_EQ(adopt("--minutes 0.6 --sequences 2 --threads 1"), 4) << text_of("output.txt");
+  ASSERT_EQ(adopt("--minutes 0.8 --sequences 2 --threads 1"), 4) << text_of("output.txt");
   const nlohmann::json verdict = nlohmann::json::parse(text_of("out/verdict.json"));
   EXPECT_EQ(verdict.at("verdict"), "NO-GO");
   EXPECT_FALSE(verdict.at("reasons").empty());

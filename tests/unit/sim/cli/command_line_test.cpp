@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/cli/bench_images.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/sensor_arguments.hpp"
@@ -889,6 +890,8 @@ TEST(Quantize, RefusesOptionsOfTheCalibrationWithASurface) {
     EXPECT_NE(outcome.errors.find(" excludes --surface-only"), std::string::npos) << outcome.errors;
   }
   EXPECT_NE(here.run(surface + " --symmetry z:4").errors.find("leave --symmetry out"), std::string::npos);
+  EXPECT_NE(here.run(surface + " --effect-set noise=2").errors.find("leave --effect-set out"),
+            std::string::npos);
   EXPECT_NE(here.run(surface + " --mesh a.stl --mesh b.stl").errors.find("give one --mesh"),
             std::string::npos);
   EXPECT_NE(here.run("quantize --surface-only --model model.tsm").errors.find("requires --out"),

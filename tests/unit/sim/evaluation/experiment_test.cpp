@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "sim/baseline/pose_peer.hpp"
+#include "sim/evaluation/pose_goals.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/targets.hpp"
@@ -74,6 +76,26 @@ TEST_F(Experiment, SweepsRateHiddenShareAndALongRunAndCountsEveryStep) {
   std::size_t counted = 0;
   for (const CurvePoint& point : result.sweeps->by_rate_norm) counted += point.rcnn.count;
   EXPECT_EQ(counted, 3U);
+}
+
+// The body that a run shows is its own: of a sphere nothing is left of the target, and the next run has it
+// again.
+TEST_F(Experiment, RunsEachEffectOfRealSensorsOnItsOwnBody) {
+  settings_.sensor_runs = true;
+  settings_.sequences = 1;
+  std::uint64_t last = 0;
+  const SubjectResult result = run_experiment(subject_, settings_, [&](std::uint64_t done) { last = done; });
+  EXPECT_EQ(last, steps_of(settings_));
+  ASSERT_EQ(result.sensor_runs.size(), sensor_runs().size());
+  std::set<double> first_errors_deg;
+  for (std::size_t i = 0; i < sensor_runs().size(); ++i) {
+    const CellResult& cell = result.sensor_runs[i];
+    EXPECT_EQ(to_string(cell.effects), to_string(sensor_runs()[i].effects));
+    EXPECT_EQ(to_string(cell.ranges), to_string(sensor_runs()[i].ranges));
+    EXPECT_EQ(cell.rcnn.count, 1U);
+    first_errors_deg.insert(cell.rcnn.mean_deg);
+  }
+  EXPECT_GT(first_errors_deg.size(), sensor_runs().size() / 2) << "most effects change the frames";
 }
 
 TEST_F(Experiment, ReportsWhatToDoWhenTheInertiaIsUnknown) {

@@ -141,6 +141,19 @@ TEST(CommonTurn, IsThatOfAMeshWithOtherAxes) {
   EXPECT_NEAR(common.turn.axis().x(), 1.0, 1e-9);
 }
 
+TEST(NeverTrusted, CountsTheSequencesWithoutATrustedFrameFromAFrameOn) {
+  std::vector<FrameResult> results;
+  for (std::uint32_t sequence = 0; sequence < 4; ++sequence)
+    for (std::uint32_t frame = 0; frame < 6; ++frame)
+      results.push_back(result_with(sequence, frame, 3.0, 3.0));
+  results[6 * 1 + 3].trusted = true;  // before
+  results[6 * 2 + 4].trusted = true;
+  results[6 * 3 + 5].trusted = true;
+  EXPECT_DOUBLE_EQ(share_never_trusted(results, 4), 0.5);
+  EXPECT_DOUBLE_EQ(share_never_trusted(results, 0), 0.25);
+  EXPECT_EQ(share_never_trusted({}, 4), 0.0);
+}
+
 TEST(CommonTurn, IsNoneOfNoResultsAndSmallOfGoodOnes) {
   EXPECT_EQ(common_turn({}, Estimator::kRcnn).share, 0.0);
   const Eigen::AngleAxisd none(0.0, Eigen::Vector3d::UnitX());

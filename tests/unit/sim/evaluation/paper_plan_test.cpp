@@ -46,8 +46,10 @@ TEST_F(PaperPlanTest, TakesAMeshFileFirstAndDrawsTheCurvesOnIt) {
   ASSERT_EQ(made.subjects.size(), 3U);
   EXPECT_EQ(stem(made.subjects[0].mesh), "near_shoemaker");
   EXPECT_TRUE(made.subjects[0].curves);
+  EXPECT_TRUE(made.subjects[0].sensor_runs);
   EXPECT_EQ(made.subjects[1].mesh, "");
   EXPECT_FALSE(made.subjects[1].curves);
+  EXPECT_FALSE(made.subjects[1].sensor_runs) << "once per target";
   EXPECT_EQ(made.subjects[2].target, "magellan");
   EXPECT_TRUE(made.subjects[2].curves);
 }

@@ -26,7 +26,6 @@ TEST(PaperFigures, CoverThePapersConditions) {
     for (const Condition condition :
          {Condition::kNominal, Condition::kDegraded, Condition::kOccluded, Condition::kTumbling}) {
       EXPECT_TRUE(paper_figures(target, condition).rcnn.has_value()) << target << " " << to_string(condition);
-      EXPECT_TRUE(paper_figures(target, condition).goal.has_value()) << target << " " << to_string(condition);
       EXPECT_EQ(paper_figures(target, condition).cnn.has_value(), condition == Condition::kNominal);
     }
   }
@@ -34,14 +33,6 @@ TEST(PaperFigures, CoverThePapersConditions) {
   EXPECT_FALSE(paper_figures("magellan", Condition::kStress).rcnn.has_value());
   EXPECT_FALSE(paper_figures("mine", Condition::kNominal).rcnn.has_value());
   EXPECT_EQ(paper_figures("magellan", Condition::kTumbling).sequences, 1000U);
-}
-
-TEST(Goal, IsMetByMeanAndShareTogether) {
-  const PaperFigure goal{2.5, 0.998};
-  EXPECT_TRUE(meets(summary(900, 2.5, 0.1, 0.998), goal));
-  EXPECT_FALSE(meets(summary(900, 2.51, 0.1, 1.0), goal));
-  EXPECT_FALSE(meets(summary(900, 2.0, 0.1, 0.997), goal));
-  EXPECT_FALSE(meets({}, goal));
 }
 
 TEST(Checks, MeasureTheCostOfAnOffset) {

@@ -129,6 +129,23 @@ std::uint32_t crc32_with(const std::string& effect, const TemporaryFolder& folde
       .crc32;
 }
 
+// Verifies TS-TRN-020.
+TEST(Calibration, SequencesTakeTurnsAmongSetsOfEffects) {
+  const TemporaryFolder folder;
+  const auto crc32_of = [&](const std::vector<std::string>& effects) {
+    QuantizationOptions options;
+    for (const std::string& effect : effects) options.effect_sets.push_back(with_effect(effect).effects);
+    return quantize_to_file(
+               *random_float32_model(77), {make_near_shoemaker()}, 10, folder.path("near.tsm"),
+               [](std::uint64_t) {}, {}, options)
+        .crc32;
+  };
+  // Each quantization takes seconds.
+  const std::uint32_t of_both = crc32_of({"noise=3", "dropout=0.6"});
+  EXPECT_EQ(read_fixed_point_header(folder.path("near.tsm")).noise, (gnc::RangeNoise{300, 3000}));
+  EXPECT_NE(of_both, crc32_with("noise=3", folder)) << "the second set counts too";
+}
+
 // Verifies TS-SIL-300.
 TEST(Calibration, NoiseChangesTheImageAndIsNotedInIt) {
   const TemporaryFolder folder;

@@ -240,11 +240,10 @@ TEST(Effects, OfARunAreInItsJsonAndCsv) {
   EXPECT_EQ(lines[4], lines_of(plain_csv)[4] + ",");
 }
 
-TEST(ResultsMarkdown, ShowsOursThePapersAndTheGoalWithCrcAndSeed) {
+TEST(ResultsMarkdown, ShowsOursAndThePapersWithCrcAndSeed) {
   const std::string text = results_markdown(sample_results());
-  for (const char* part :
-       {"`00c0ffee`", "`12345678`", "seed 7", "12.69°, 88 %", "2.50°, 99.8 %", "40.94°, 45 %",
-        "tumblesight evaluate --paper", "magellan is left out", "| occluded | 40 |"}) {
+  for (const char* part : {"`00c0ffee`", "`12345678`", "seed 7", "12.69°, 88 %", "40.94°, 45 %",
+                           "tumblesight evaluate --paper", "magellan is left out", "| occluded | 40 |"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part;
   }
 }
@@ -294,6 +293,47 @@ TEST(ResultsMarkdown, ShowsDisturbedRunsWithTheirBars) {
   EXPECT_NE(text.find("| nominal | lost-frames 9 | 1.40"), std::string::npos) << "no bar";
   EXPECT_EQ(results_json(results)["rows"].size(), 5U);
   EXPECT_EQ(lines_of(results_csv(results)).size(), 1U + 3U + 3U + 2U + 4U);
+}
+
+TEST(ResultsDocuments, ShowGoalsAndTrustOfTheRunsThatHaveThem) {
+  Results results = sample_results();
+  EXPECT_EQ(results_markdown(results).find("## Goals"), std::string::npos) << "no poses";
+  CellResult cell = results.subjects[0].cells[0];
+  cell.pose = sample_poses();
+  cell.rcnn.within_20deg = 0.8;
+  cell.rcnn.right_and_valid = 0.4;
+  cell.rcnn.wrong_and_valid = 0.1;
+  cell.rcnn.error_below_3_expected = 0.99;
+  cell.rcnn.expected_over_real = 1.0;
+  cell.effects.plume = 0.01;
+  results.subjects[0].sensor_runs = {cell};
+  cell.effects = {};
+  cell.effects.sphere = 1.0;
+  cell.never_valid_from_fifth = 1.0;
+  results.subjects[0].sensor_runs.push_back(cell);
+  const std::string text = results_markdown(results);
+  EXPECT_NE(text.find("| plume=0.01 | 40 | 80.0 % | 0.250° | 97.5"), std::string::npos) << text;
+  EXPECT_NE(
+      text.find("| **0.20°, 99.8 %** | 10.0 % | 50.0 % | 99.0 % | 1.00 | 90.0 % | 5.0 % | 0.0 % | **no** | "
+                "**no: wrong and valid, right and valid** |"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(
+      text.find("| sphere=1 | 40 | - | - | - | - | 10.0 % | - | - | - | 90.0 % | 5.0 % | 100.0 % |  | yes |"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(text.find("4 of 40 last frames, 10.00 %; goal: at most 0.2 %, missed."), std::string::npos)
+      << text;
+  EXPECT_NE(results_page(results).find("<h2>Goals</h2>"), std::string::npos);
+  cell.effects = {};
+  cell.effects.lobe = 40.0;
+  cell.pose.mean_within_20_deg = std::nan("");
+  cell.pose.within_20deg = cell.rcnn.within_20deg = 0.0;
+  results.subjects[0].sensor_runs = {cell};
+  EXPECT_NE(results_markdown(results).find("| lobe=40 | 40 | 0.0 % | - | 0.0"), std::string::npos);
+  EXPECT_EQ(results_markdown(results).find("nan"), std::string::npos);
+  results.subjects[0].sensor_runs.push_back(cell);
+  EXPECT_EQ(results_json(results)["rows"].size(), 5U);
 }
 
 TEST(ResultsDocuments, ShowThePosesWhereThereAreAny) {

@@ -70,6 +70,14 @@ TEST(RunPage, NeedsNothingButItself) {
   EXPECT_EQ(outside_reference(run_page(small_report())), "");
 }
 
+TEST(RunPage, OfARunThatWasRecordedSaysHowToStepThroughIt) {
+  RunReport report = small_report();
+  EXPECT_EQ(run_page(report).find("tumblesight console"), std::string::npos);
+  report.recording = "/out/<run>.mcap";
+  EXPECT_NE(run_page(report).find("<code>tumblesight console /out/&lt;run&gt;.mcap</code>"),
+            std::string::npos);
+}
+
 TEST(RunPage, OfARunThatEndedEarlySaysSo) {
   RunReport report = small_report();
   report.steps_missed = 12;

@@ -1,0 +1,32 @@
+// ExpectedError: by how much an attitude of the network is wrong, from all that the frame says about it. A
+// logistic regression gives the probability that it is wrong, by more than 20 degrees. Specification:
+// docs/numerics.md.
+#pragma once
+
+#include <cstdint>
+
+#include "gnc/attitude/quaternion.hpp"
+#include "gnc/registration/pose_tracker.hpp"
+
+namespace tumblesight::gnc {
+
+struct ErrorEvidence {
+  Fixed network_error_rad;   // that the network expects, 0..pi
+  Fixed network_logit;       // of that error over pi
+  std::uint32_t misfit = 0;  // misfit_of()
+  Fixed innovation_squared;  // 2 - 2 cos of the angle to the predicted attitude; 0 without a prediction
+  Fixed second_share;        // of the second attitude in the probability of both, 0..1
+  // Of a pose that was registered with the frame.
+  bool has_pose = false;
+  PoseDoubts pose_doubts = 0;
+  Fixed pose_error_rad;  // of the attitude if the pose is right: root of the squared angle between them and
+                         // of the pose's variance; used below 20 degrees (kPoseNetwork)
+};
+
+// 0..pi [rad].
+Fixed expected_error_rad(const ErrorEvidence& evidence);
+
+// What a registered pose says of the attitude `q_lrf_trf`. Nothing if it is not known or only predicted.
+void add_pose(const PoseEstimate& pose, const QuaternionQ30& q_lrf_trf, ErrorEvidence& evidence);
+
+}  // namespace tumblesight::gnc

@@ -1,0 +1,251 @@
+#include "gnc/registration/pose_choice.hpp"
+
+#include "gnc/numerics/functions.hpp"
+#include "gnc/numerics/select.hpp"
+
+namespace tumblesight::gnc {
+namespace {
+
+constexpr std::int64_t kLongestStep_ns = 3 * kNominalPeriod_ns / 2;  // between frames without a gap
+
+// Before the track knows a rate: the network's attitude is a degree or two off, and the position that the
+// middle of the returns gives is off by some rays where a part of the target is hidden.
+constexpr RefinementSettings kFirst{3, 3, 512, 128, 1677722, 8388608};
+constexpr RefinementSettings kFirstSecond{2, 2, 512, 256, 1677722, 8388608};  // of the second attitude
+constexpr RefinementSettings kFull{3, 2, 160, 40, 1677722, 8388608};
+// Of another attitude than the track's, at the position of the track. The second from kShort on.
+constexpr RefinementSettings kShort{2, 2, 512, 256, 1677722, 8388608};
+constexpr RefinementSettings kConfirm{2, 0, 128, 64, 1677722, 8388608};
+// At the predicted pose.
+constexpr RefinementSettings kTracked{3, 1, 160, 40, 838861, 8388608};
+constexpr RefinementSettings kLongTrack{2, 1, 80, 40, 838861, 8388608};  // with a rate, and without a gap
+constexpr RefinementSettings kTrackedFurther{2, 1, 160, 80, 838861, 8388608};
+// In a frame that is not explained: there the network's attitude is ten degrees off, as where surfaces are
+// dark. The first is of the first frames, the other of a track.
+constexpr RefinementSettings kLongSearch{4, 2, 512, 64, 4194304, 8388608};
+constexpr RefinementSettings kSearch{3, 2, 512, 128, 4194304, 8388608};
+
+// 1 + 2 cos of the angle between two attitudes that are different ones.
+constexpr Fixed kTraceOf2Degrees = constant<Fixed>(2.99878165);
+constexpr Fixed kTraceOf6Degrees = constant<Fixed>(2.98904379);
+constexpr Fixed kTraceOf20Degrees = constant<Fixed>(2.87938524);
+
+constexpr std::uint32_t kLeastOdds_ppm = 10'000;  // of a second attitude that is worth a look
+
+// Advantages [nats, Q8]. From kSettled_q8 on only the network's own choice is compared with the track.
+constexpr std::int32_t kMostOfAFrame_q8 = 16 * 256, kMostOfATrack_q8 = 32 * 256;
+constexpr std::int32_t kWithoutAlternative_q8 = 4 * 256;  // of a frame
+constexpr std::int32_t kNetworkDisagrees_q8 = 1 * 256;    // against the track, per frame
+constexpr std::int32_t kMostOfNetwork_q8 = 4 * 256;       // its odds, in the first frames
+constexpr std::int32_t kClear_q8 = 6 * 256;               // after kFirst, for the second attitude
+constexpr std::int32_t kSettled_q8 = 16 * 256;
+
+void exchange(PoseCandidate& a, PoseCandidate& b) {
+  const PoseCandidate kept = a;
+  a = b;
+  b = kept;
+}
+
+bool differs(const Matrix3<Fixed>& a, const Matrix3<Fixed>& b, Fixed trace) {
+  return trace_of_transpose_product<Fixed>(a, b) < trace;
+}
+
+// Whether the network's second attitude is another one than this.
+bool offers_second(const Matrix3<Fixed>& r_lrf_trf, const PoseFrame& frame) {
+  return frame.second_odds_ppm >= kLeastOdds_ppm && is_another_attitude(r_lrf_trf, frame.second_r_lrf_trf);
+}
+
+// A pose with the attitude `r_lrf_trf`, where the target is among the returns.
+Pose placed(const PoseTarget& target, const PoseFrame& frame, const Matrix3<Fixed>& r_lrf_trf,
+            PoseScratch& scratch) {
+  Pose pose;
+  pose.r_lrf_trf = r_lrf_trf;
+  for (std::size_t i = 0; i < 3; ++i) pose.origin_lrf_um[i] = frame.centroid_lrf_mm[i] * 1000;
+  place(target.mesh, scratch.view, scratch.refinement.surface, scratch.placement, pose);
+  return pose;
+}
+
+// What speaks against the pose that was refined last.
+PoseEvidence evidence_of_last(const PoseScratch& scratch) {
+  const RefinementScratch& last = scratch.refinement;
+  return evidence_of(scratch.view, last.surface, last.ranges, last.dark.surfaces);
+}
+
+void refine_candidate(const PoseTarget& target, const Pose& start, const RefinementSettings& settings,
+                      PoseScratch& scratch, PoseCandidate& candidate) {
+  refine(target.mesh, scratch.view, start, settings, scratch.refinement, candidate.refinement);
+  candidate.evidence = evidence_of_last(scratch);
+}
+
+// Goes on with the candidate that was refined last.
+void refine_candidate_further(const PoseTarget& target, const RefinementSettings& settings,
+                              PoseScratch& scratch, PoseCandidate& candidate) {
+  refine_further(target.mesh, scratch.view, settings, scratch.refinement, candidate.refinement);
+  candidate.evidence = evidence_of_last(scratch);
+}
+
+// The same, with the surface drawn anew if another candidate was refined last.
+void go_on(const PoseTarget& target, const RefinementSettings& settings, bool is_anew, PoseScratch& scratch,
+           PoseCandidate& candidate) {
+  if (!is_anew) return refine_candidate_further(target, settings, scratch, candidate);
+  const Pose start = candidate.refinement.pose;
+  refine_candidate(target, start, settings, scratch, candidate);
+}
+
+// What is compared with the pose of the track.
+struct Alternative {
+  Matrix3<Fixed> r_lrf_trf;
+  bool exists = false;
+  bool is_network = false;  // it is the network's choice
+};
+
+// Another attitude of the network than this, if it has one: its choice, or its second attitude unless the
+// track is settled. The choice also counts if it is not quite the same: the pose may be beside the right one.
+Alternative alternative_to(const Matrix3<Fixed>& r_lrf_trf, const PoseFrame& frame, bool is_settled) {
+  const Matrix3<Fixed>& choice = frame.network.r_lrf_trf;
+  if (is_another_attitude(r_lrf_trf, choice)) return {choice, true, true};
+  if (!is_settled && offers_second(r_lrf_trf, frame)) return {frame.second_r_lrf_trf, true, false};
+  return {choice, differs(r_lrf_trf, choice, kTraceOf6Degrees), true};
+}
+
+bool are_whole(const PoseCandidate& a, const PoseCandidate& b) {
+  return a.refinement.is_complete && b.refinement.is_complete;
+}
+
+// Whether a pose can be used and explains the frame.
+bool explains(const PoseCandidate& candidate) {
+  return candidate.refinement.is_complete && candidate.evidence.fits();
+}
+
+// By how much the first explains the frame better, limited. One that was not drawn whole says nothing, except
+// that it cannot be used: then a second one that was, and that explains the frame, is taken.
+std::int32_t advantage_q8(const PoseCandidate& first, const PoseCandidate& second) {
+  if (are_whole(first, second))
+    return clamp<std::int32_t>(second.evidence.cost_q8() - first.evidence.cost_q8(), -kMostOfAFrame_q8,
+                               kMostOfAFrame_q8);
+  return explains(second) ? -kMostOfAFrame_q8 : 0;
+}
+
+void add_advantage(std::int32_t more_q8, PoseTrackerState& state) {
+  state.advantage_q8 = limited_advantage_q8(state.advantage_q8 + more_q8);
+}
+
+// What the network's odds say for its first attitude against its second one [nats, Q8], limited.
+std::int32_t network_advantage_q8(std::uint32_t second_odds_ppm) {
+  constexpr std::int32_t kNatsPerBit_q8 = 177;
+  const int bits_below_one = 20 - highest_bit(second_odds_ppm);
+  return clamp<std::int32_t>(bits_below_one * kNatsPerBit_q8, -kMostOfNetwork_q8, kMostOfNetwork_q8);
+}
+
+// Registers the frame at the pose that the motion of the track predicts. After a gap, or if a short
+// registration does not explain the frame, in more steps; if they do not explain it either, also from the
+// network's attitude, and the one that explains it better stays. True: the network's attitude was tried.
+bool follow_motion(const PoseTarget& target, const PoseFrame& frame, const PoseMotion& predicted,
+                   PoseScratch& scratch, const PoseTrackerState& state) {
+  PoseCandidate& best = scratch.best;
+  PoseCandidate& other = scratch.other;
+  const Pose start{predicted.turning.r_lrf_trf, predicted.origin_lrf_um};
+  if (state.history.count >= kPosesOfARate && frame.elapsed_ns <= kLongestStep_ns) {
+    refine_candidate(target, start, kLongTrack, scratch, best);
+    if (best.evidence.fits()) return false;
+    refine_candidate_further(target, kTrackedFurther, scratch, best);
+  } else {
+    refine_candidate(target, start, kTracked, scratch, best);
+  }
+  if (best.evidence.fits()) return false;
+  // Another attitude is compared with the track's as an alternative, see alternative_to().
+  const Matrix3<Fixed>& of_network = frame.network.r_lrf_trf;
+  if (is_another_attitude(best.refinement.pose.r_lrf_trf, of_network)) return false;
+  refine_candidate(target, placed(target, frame, of_network, scratch), kSearch, scratch, other);
+  if (advantage_q8(best, other) < 0) exchange(best, other);
+  return true;
+}
+
+// Registers an attitude of the network at the position of the track. Returns by how much the track explains
+// the frame better.
+std::int32_t compare(const PoseTarget& target, const Alternative& alternative, PoseScratch& scratch) {
+  const Pose start{alternative.r_lrf_trf, scratch.best.refinement.pose.origin_lrf_um};
+  if (alternative.is_network) {
+    refine_candidate(target, start, scratch.best.evidence.fits() ? kFull : kSearch, scratch, scratch.other);
+    return advantage_q8(scratch.best, scratch.other) - kNetworkDisagrees_q8;
+  }
+  refine_candidate(target, start, kShort, scratch, scratch.other);
+  const std::int32_t short_q8 = advantage_q8(scratch.best, scratch.other);
+  if (short_q8 >= 0) return short_q8;
+  refine_candidate_further(target, kConfirm, scratch, scratch.other);
+  return advantage_q8(scratch.best, scratch.other);
+}
+
+}  // namespace
+
+bool is_another_attitude(const Matrix3<Fixed>& a, const Matrix3<Fixed>& b) {
+  return differs(a, b, kTraceOf20Degrees);
+}
+
+std::int32_t limited_advantage_q8(std::int32_t advantage_q8) {
+  return clamp(advantage_q8, -kMostOfATrack_q8, kMostOfATrack_q8);
+}
+
+void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+                 PoseTrackerState& state) {
+  PoseCandidate& best = scratch.best;
+  PoseCandidate& other = scratch.other;
+  const bool has_second = offers_second(frame.network.r_lrf_trf, frame);
+  if (has_second)
+    refine_candidate(target, placed(target, frame, frame.second_r_lrf_trf, scratch), kFirstSecond, scratch,
+                     other);
+  refine_candidate(target, placed(target, frame, frame.network.r_lrf_trf, scratch), kFirst, scratch, best);
+  std::int32_t more_q8 = kWithoutAlternative_q8;
+  if (has_second) more_q8 = advantage_q8(best, other) + network_advantage_q8(frame.second_odds_ppm);
+  const bool is_second = more_q8 < -kClear_q8;
+  if (is_second) {
+    if (!are_whole(best, other)) more_q8 = 0;
+    best = other;
+    // The pose before, if any, is of the other attitude.
+    state.history.count = 0;
+  }
+  // What spoke for another attitude does not speak for this one.
+  const bool goes_on = state.history.count > 0 &&
+                       !is_another_attitude(best.refinement.pose.r_lrf_trf, state.motion.turning.r_lrf_trf);
+  if (!goes_on) state.advantage_q8 = 0;
+  add_advantage(more_q8 < 0 && more_q8 >= -kClear_q8 ? more_q8 : abs(more_q8), state);
+  // Where surfaces are dark and the frame is not explained, the attitude may be far off: the search follows
+  // at once, so that the first frame with dark surfaces takes no more steps than one without.
+  const bool is_dark = best.evidence.dark_surfaces > 0, is_explained = best.evidence.fits();
+  if (!is_dark || is_explained) {
+    go_on(target, kFull, is_second, scratch, best);
+    if (is_dark || best.evidence.fits()) return;
+  }
+  other = best;
+  go_on(target, kLongSearch, is_second && is_dark, scratch, best);
+  if (advantage_q8(best, other) < 0) exchange(best, other);
+}
+
+bool follow_track(const PoseTarget& target, const PoseFrame& frame, const PoseMotion& predicted,
+                  PoseScratch& scratch, PoseTrackerState& state) {
+  PoseCandidate& best = scratch.best;
+  PoseCandidate& other = scratch.other;
+  const bool has_tried_network = follow_motion(target, frame, predicted, scratch, state);
+  const bool is_settled = state.advantage_q8 >= kSettled_q8;
+  const Alternative alternative = alternative_to(best.refinement.pose.r_lrf_trf, frame, is_settled);
+  const bool was_tried = has_tried_network && alternative.is_network;
+  std::int32_t more_q8 = kWithoutAlternative_q8;
+  if (alternative.exists && !was_tried) {
+    const std::int32_t compared_q8 = compare(target, alternative, scratch);
+    const bool is_another =
+        differs(best.refinement.pose.r_lrf_trf, other.refinement.pose.r_lrf_trf, kTraceOf2Degrees);
+    if (is_another) more_q8 = compared_q8;
+  }
+  add_advantage(more_q8, state);
+  // A pose that this frame speaks against is not taken, whatever spoke against the track before.
+  if (more_q8 >= 0) return true;
+  const bool were_compared = are_whole(best, other);
+  const bool is_lost = !explains(best) && explains(other);
+  if (state.advantage_q8 >= 0 && !is_lost) return true;
+  best = other;
+  state.advantage_q8 = were_compared ? abs(state.advantage_q8) : 0;
+  state.history.count = 0;
+  return false;
+}
+
+}  // namespace tumblesight::gnc

@@ -1,0 +1,164 @@
+// The rays of the screen that a triangle covers, row by row, with the nearness of its plane.
+#pragma once
+
+#include <cstdint>
+
+#include "gnc/numerics/functions.hpp"
+#include "gnc/numerics/select.hpp"
+#include "gnc/registration/surface_renderer.hpp"
+
+namespace tumblesight::gnc {
+
+// First ray whose middle is at `coordinate` or after it, and last one at it or before it.
+inline int first_ray(std::int32_t coordinate) {
+  return (coordinate + kScreenRay / 2 - 1) >> kScreenBits;
+}
+inline int last_ray(std::int32_t coordinate) {
+  return (coordinate - kScreenRay / 2) >> kScreenBits;
+}
+
+struct Bounds {
+  int first, last;
+  bool is_empty() const { return first > last; }
+};
+inline Bounds bounds(std::int32_t a, std::int32_t b, std::int32_t c, int rays) {
+  return {max_small(0, first_ray(min_small(a, min_small(b, c)))),
+          min_small(rays - 1, last_ray(max_small(a, max_small(b, c))))};
+}
+
+// Where an edge crosses the middles of the rows, with kBits fraction bits.
+class Crossing {
+ public:
+  static constexpr int kBits = 14;
+  static constexpr std::int32_t kOne = 1 << kBits;
+
+  // `a` above `b`; `row`: the first one.
+  Crossing(const ScreenPoint& a, const ScreenPoint& b, int row) {
+    const std::int32_t down = b.row - a.row;
+    const std::int32_t slope = down == 0 ? 0 : ((b.column - a.column) * kOne) / down;  // per 1/64 of a ray
+    column_ = a.column * kOne + slope * (row * kScreenRay + kScreenRay / 2 - a.row);
+    // An edge that is less high crosses one row at most.
+    per_row_ = down < kScreenRay ? 0 : slope * kScreenRay;
+  }
+  std::int32_t column() const { return column_; }
+  void next_row() { column_ += per_row_; }
+
+ private:
+  std::int32_t column_, per_row_;
+};
+
+// The nearness of a triangle's plane, in 1/256.
+struct Plane {
+  std::int32_t at_first;  // at the middle of the first ray of `rows` and `columns`
+  std::int32_t per_column, per_row;
+  std::int32_t lowest, highest;  // of the corners, in whole numbers
+};
+inline Plane plane_of(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
+                      const Bounds& rows, const Bounds& columns) {
+  const std::int32_t to_b = b.nearness - a.nearness, to_c = c.nearness - a.nearness;
+  // 1 / whole, by a reciprocal of the number with 30 bits.
+  const int shift = 29 - highest_bit_32(static_cast<std::uint32_t>(whole));
+  const std::int32_t inverse_q28 = reciprocal_q28(whole * (1 << shift));
+  // * 64 * 256 / whole; the halves keep the difference within 32 bits.
+  const auto per_ray = [&](std::int32_t first, std::int32_t second) -> std::int32_t {
+    constexpr std::int32_t kLargest = 1 << 22;
+    const std::int32_t half = (first >> 1) - (second >> 1);
+    if ((half >> 7) >= whole) return kLargest;
+    if ((half >> 7) < -whole) return -kLargest;
+    const std::int32_t scaled = shift >= 7 ? half * (1 << (shift - 7)) : half >> (7 - shift);
+    return high_product(scaled, inverse_q28) >> 4;
+  };
+  Plane plane{};
+  plane.per_column = per_ray(to_b * (c.row - a.row), to_c * (b.row - a.row));
+  plane.per_row = per_ray(to_c * (b.column - a.column), to_b * (c.column - a.column));
+  const std::int32_t right = columns.first * kScreenRay + kScreenRay / 2 - a.column;
+  const std::int32_t down = rows.first * kScreenRay + kScreenRay / 2 - a.row;
+  constexpr std::int64_t kMost = 1 << 29;
+  const std::int64_t from_a =
+      (std::int64_t{plane.per_column} * right + std::int64_t{plane.per_row} * down) >> kScreenBits;
+  plane.at_first = a.nearness * 256 + 128 + static_cast<std::int32_t>(clamp(from_a, -kMost, kMost));
+  plane.lowest = min_small(a.nearness, min_small(b.nearness, c.nearness));
+  plane.highest = max_small(a.nearness, max_small(b.nearness, c.nearness));
+  return plane;
+}
+
+// Calls visit(row, first column, last column, nearness at the first in 1/256, plane) for every row of a
+// triangle with area(a, b, c) = whole > 0 in which it covers a ray. Returns the work: rays and rows.
+template <class Visit>
+inline int visit_spans(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
+                       const Bounds& rows, const Bounds& columns, Visit&& visit) {
+  // The corners from top to bottom. The long edge joins the first and the last one.
+  const ScreenPoint *top = &a, *middle = &b, *bottom = &c;
+  bool is_long_edge_left = false;
+  const auto exchange = [&](const ScreenPoint*& p, const ScreenPoint*& q) {
+    const ScreenPoint* const kept = p;
+    p = q;
+    q = kept;
+    is_long_edge_left = !is_long_edge_left;
+  };
+  if (top->row > middle->row) exchange(top, middle);
+  if (middle->row > bottom->row) exchange(middle, bottom);
+  if (top->row > middle->row) exchange(top, middle);
+  // To the right of the way down a triangle with positive area has its corners in turn.
+  is_long_edge_left = !is_long_edge_left;
+
+  Crossing long_edge(*top, *bottom, rows.first);
+  // Rows with their middle above the middle corner or, unless the upper edge is level, at it.
+  const int bend = top->row == middle->row
+                       ? rows.first
+                       : max_small(rows.first, min_small(rows.last, last_ray(middle->row)) + 1);
+  Plane plane{};
+  int covered = 0;
+  const auto fill = [&](Crossing short_edge, int from, int to) {
+    for (int row = from; row <= to; ++row) {
+      const std::int32_t left = is_long_edge_left ? long_edge.column() : short_edge.column();
+      const std::int32_t right = is_long_edge_left ? short_edge.column() : long_edge.column();
+      long_edge.next_row();
+      short_edge.next_row();
+      constexpr std::int32_t kHalf = Crossing::kOne * kScreenRay / 2;
+      const int first = max_small(columns.first, (left + kHalf - 1) >> (Crossing::kBits + kScreenBits));
+      const int last = min_small(columns.last, (right - kHalf) >> (Crossing::kBits + kScreenBits));
+      if (first > last) continue;
+      // Many triangles lie between the rays and need no plane.
+      if (covered == 0) plane = plane_of(a, b, c, whole, rows, columns);
+      const std::int32_t nearness =
+          plane.at_first + plane.per_row * (row - rows.first) + plane.per_column * (first - columns.first);
+      visit(row, first, last, nearness, plane);
+      covered += last - first + 1;
+    }
+  };
+  if (bend > rows.first) fill(Crossing(*top, *middle, rows.first), rows.first, bend - 1);
+  if (bend <= rows.last) fill(Crossing(*middle, *bottom, bend), bend, rows.last);
+  return covered + rows.last - rows.first + 1;
+}
+
+// Calls visit(a, b, c, whole, rows, columns) for every triangle of the drawn surface's mesh that shows
+// its front and may cover a ray, with area(a, b, c) = whole > 0. It ends when `visit` gives false, and gives
+// false if that happened or a triangle has a corner that is not on the screen.
+template <class Visit>
+inline bool visit_front(const SurfaceMesh& mesh, int rays, const ScreenVertices& vertices, bool all_inside,
+                        Visit&& visit) {
+  bool is_complete = true;
+  for (int i = 0; i < mesh.triangles(); ++i) {
+    const SurfaceMesh::Triangle triangle = mesh.triangle(i);
+    // The image was sound when it was loaded, but its memory may have been damaged since.
+    if (!mesh.has(triangle[0], triangle[1], triangle[2])) continue;
+    const ScreenPoint& a = vertices[triangle[0]];
+    const ScreenPoint &b = vertices[triangle[1]], &c = vertices[triangle[2]];
+    if (!all_inside && (a.is_outside() || b.is_outside() || c.is_outside())) {
+      is_complete = false;
+      continue;
+    }
+    // Its corners run counterclockwise if it shows its front.
+    const std::int32_t whole = area(a, c, b);
+    if (whole <= 0) continue;
+    const Bounds rows = bounds(a.row, b.row, c.row, rays);
+    if (rows.is_empty()) continue;
+    const Bounds columns = bounds(a.column, b.column, c.column, rays);
+    if (columns.is_empty()) continue;
+    if (!visit(a, c, b, whole, rows, columns)) return false;
+  }
+  return is_complete;
+}
+
+}  // namespace tumblesight::gnc

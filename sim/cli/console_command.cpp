@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include "hal/dds/idl/domain.hpp"
+#include "hal/dds/idl/run_secret.hpp"
+#include "sim/cli/target_setup.hpp"
+#include "sim/cli/verbs.hpp"
+#include "sim/console/bus_run.hpp"
+#include "sim/console/console_server.hpp"
+#include "sim/console/recorded_run.hpp"
+#include "sim/sil/interruption.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr int kDefaultPort = 7320;
+
+struct ConsoleArguments {
+  std::string recording;  // empty: the bus
+  int domain = -1;
+  int port = kDefaultPort;
+  std::string security, model, mcap;
+};
+
+std::string make_token() {
+  hal::dds::RunSecret secret;
+  if (!hal::dds::make_run_secret(secret)) throw std::runtime_error("the system provides no random numbers");
+  return secret.partition;
+}
+
+std::unique_ptr<RunSource> open_run(const ConsoleArguments& arguments) {
+  if (arguments.recording.empty())
+    return std::make_unique<BusRun>(arguments.domain, arguments.security, arguments.mcap);
+  if (!arguments.mcap.empty())
+    throw CLI::ValidationError("--mcap", "records a run on the bus; this is a recording");
+  if (arguments.domain >= 0)
+    throw CLI::ValidationError("--domain", "is of a run on the bus; a recording has none");
+  return std::make_unique<RecordedRun>(arguments.recording);
+}
+
+// The image of a target: the one given, or the one shipped if there is one.
+Requests::ModelOf model_of(const ConsoleArguments& arguments) {
+  const std::string given = arguments.model;
+  return [given](const std::string& target) {
+    if (!given.empty() || target.empty()) return given;
+    const std::string shipped = shipped_model_path(target);
+    std::error_code error;
+    return std::filesystem::is_regular_file(shipped, error) ? shipped : std::string();
+  };
+}
+
+void show(const ConsoleArguments& arguments) {
+  if (!arguments.model.empty()) ConsoleTarget{arguments.model};  // throws what is wrong with it
+  if (!arguments.mcap.empty()) require_usable_files({}, {{"--mcap", arguments.mcap}});
+  const std::unique_ptr<RunSource> run = open_run(arguments);
+  const std::string token = make_token();
+  const Requests requests(*run, model_of(arguments), token);
+  const Interruption interruption;
+  const ConsoleServer server(requests, arguments.port);
+  fmt::print(
+      "\n  {}\n\n  http://127.0.0.1:{}/?token={}\n\n  Open this address in a browser. Ctrl-C ends the "
+      "console{}.\n",
+      run->title(), server.port(), token, arguments.recording.empty() ? "; the run goes on" : "");
+  std::fflush(stdout);
+  const auto* const bus = dynamic_cast<const BusRun*>(run.get());
+  std::string told;
+  while (Interruption::signal() == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const std::string failure = bus == nullptr ? "" : bus->failure();
+    if (failure != told) fmt::print(stderr, "tumblesight: {}\n", failure);
+    told = failure;
+  }
+}
+
+}  // namespace
+
+void add_console_command(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("console", "Watch a run in the browser while it goes on, or a recording of one");
+  auto arguments = std::make_shared<ConsoleArguments>();
+  command->add_option("RECORDING", arguments->recording,
+                      "file of simulate --mcap or replay --mcap [the run on this machine's bus]");
+  command
+      ->add_option("--domain", arguments->domain,
+                   "DDS domain of the run [the newest run that you have started]")
+      ->check(CLI::Range(0, static_cast<int>(hal::dds::kMaxDomain)));
+  command->add_option("--port", arguments->port, "of 127.0.0.1; 0: a free one")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  command
+      ->add_option("--mcap", arguments->mcap,
+                   "also record the run to FILE, from where the console joins it; a recording that can be "
+                   "replayed is made by simulate --mcap")
+      ->type_name("FILE");
+  command
+      ->add_option("--model", arguments->model,
+                   "model image that has the target's surface and scale [the one shipped for the target]")
+      ->check(CLI::ExistingFile);
+  command
+      ->add_option("--dds-security", arguments->security,
+                   "of a secured bus; hal/dds/make_security writes the file")
+      ->check(CLI::ExistingFile);
+  command->footer(
+      "\nExample: in one terminal a run at the speed of flight, in another the console\n"
+      "  tumblesight simulate --sequences 30 --speed 10\n"
+      "  tumblesight console\n\n"
+      "Example: a run as a file, then the same page with it\n"
+      "  tumblesight simulate --sequences 30 --mcap run.mcap\n"
+      "  tumblesight console run.mcap\n\n"
+      "The console may start before the run, come late or leave: the run does not wait\n"
+      "for it. It answers on this machine only, and only at the address with its token.\n"
+      "docs/console.md explains the page and its keys. The exit status is 0 after\n"
+      "Ctrl-C, 1 if the recording or the port cannot be used, 2 for wrong arguments.");
+  command->callback([arguments] { show(*arguments); });
+}
+
+}  // namespace tumblesight::sim

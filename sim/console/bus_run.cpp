@@ -1,0 +1,224 @@
+#include "sim/console/bus_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "sim/sil/cdr_sample.hpp"
+#include "sim/sil/failure.hpp"
+#include "sim/sil/run_channels.hpp"
+#include "sim/sil/run_control.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr dds_duration_t kPoll = DDS_MSECS(50);
+constexpr auto kBetweenLooks = std::chrono::milliseconds(30);
+constexpr int kAnswerTimeout_ms = 5000;  // a run at the speed of flight takes requests every 2.7 s
+constexpr auto kLongestWait = std::chrono::seconds(10);  // for a simulator that has announced its run
+
+dds_entity_t checked(dds_entity_t entity) {
+  if (entity < 0)
+    throw SilFailure(std::string("the console could not join the bus: ") + dds_strretcode(entity));
+  return entity;
+}
+
+template <class Sample, class Readers>
+dds_entity_t reader_of(const Readers& readers) {
+  const hal::dds::Topic* const topic = &hal::dds::topic_of<Sample>();
+  return std::find_if(readers.begin(), readers.end(),
+                      [topic](const auto& reader) { return reader.first == topic; })
+      ->second;
+}
+
+}  // namespace
+
+BusRun::BusRun(int domain, const std::string& security_path, const std::string& mcap_path)
+    : domain_(domain),
+      mcap_path_(mcap_path),
+      security_(std::make_unique<hal::dds::SecurityElement>()),
+      frame_sample_(std::make_unique<hal::dds::LidarFrameSample>()) {
+  if (!security_path.empty() && !hal::dds::read_security(security_path.c_str(), *security_))
+    throw SilFailure("--dds-security " + security_path + ": cannot be read, is empty, or is too large");
+  thread_ = std::thread([this] { look_for_runs(); });
+}
+
+BusRun::~BusRun() {
+  is_stopping_ = true;
+  thread_.join();
+}
+
+std::unique_ptr<BusRun::Connection> BusRun::connect(const AnnouncedRun& run) const {
+  auto made = std::make_unique<Connection>();
+  made->secret = run.secret;
+  checked(made->domain.open(run.domain, made->secret.partition, security_->text));
+  made->participant = made->domain.participant();
+  made->waitset = checked(dds_create_waitset(made->participant));
+  each_topic([&made](auto type, const char*) { open<typename decltype(type)::type>(*made); });
+  return made;
+}
+
+template <class Sample>
+void BusRun::open(Connection& connection) {
+  const hal::dds::Topic& topic = hal::dds::topic_of<Sample>();
+  const dds_entity_t reader = checked(hal::dds::create_reader(connection.domain, topic));
+  dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS);
+  dds_waitset_attach(connection.waitset, reader, 0);
+  connection.readers.emplace_back(&topic, reader);
+}
+
+// Takes every sample of a topic. True: there was one.
+template <class Sample>
+bool BusRun::take(const Connection& connection, Sample& sample) {
+  const hal::dds::Topic& topic = hal::dds::topic_of<Sample>();
+  const dds_entity_t reader = reader_of<Sample>(connection.readers);
+  std::vector<std::uint8_t> bytes;
+  bool any = false;
+  while (take_cdr(reader, bytes)) {
+    any = true;
+    if (!read_cdr(bytes.data(), bytes.size(), sample)) continue;
+    show(sample);
+    if (!recording_) continue;
+    if constexpr (std::is_same_v<Sample, hal::dds::HelloSample>) {
+      recording_->add(topic, bytes, std::nullopt);
+    } else {
+      if constexpr (std::is_same_v<Sample, hal::dds::StepSample>)
+        recording_->add_step(sample.k, sample.time_ns);
+      recording_->add(topic, bytes, sample.k);
+    }
+  }
+  return any;
+}
+
+// What the page shows; other samples are only recorded.
+template <class Sample>
+void BusRun::show(const Sample& sample) {
+  if constexpr (std::is_same_v<Sample, hal::dds::LidarFrameSample>) {
+    keep(sample);
+  } else if constexpr (!std::is_same_v<Sample, hal::dds::NavigationSample> &&
+                       !std::is_same_v<Sample, hal::dds::MemoryDumpSample>) {
+    log_.add(sample);
+  }
+}
+
+bool BusRun::take_samples(const Connection& connection) {
+  bool any = false;
+  each_topic([&](auto type, const char*) {
+    using Sample = typename decltype(type)::type;
+    if constexpr (std::is_same_v<Sample, hal::dds::LidarFrameSample>) {
+      any |= take(connection, *frame_sample_);
+    } else {
+      Sample sample;
+      any |= take(connection, sample);
+    }
+  });
+  return any;
+}
+
+void BusRun::keep(const hal::dds::LidarFrameSample& sample) {
+  const bool is_possible = sample.rays > 0 && sample.rays <= gnc::RangeImage::kMaxRays;
+  if (!is_possible || sample.run_id != log_.state().run_id) return;
+  const std::lock_guard lock(mutex_);
+  if (sample.run_id != run_of_frames_) frames_.clear();
+  run_of_frames_ = sample.run_id;
+  KeptFrame& kept = frames_.emplace_back();
+  kept.k = sample.k;
+  kept.frame = frame_of(sample);
+  if (frames_.size() > kFramesKept) frames_.pop_front();
+}
+
+// Until the simulator has left, and nothing has come since.
+void BusRun::follow(const Connection& connection) {
+  const dds_entity_t steps = reader_of<hal::dds::StepSample>(connection.readers);
+  const auto give_up = std::chrono::steady_clock::now() + kLongestWait;
+  bool had_simulator = false;
+  while (!is_stopping_) {
+    dds_attach_t triggered[1];
+    dds_waitset_wait(connection.waitset, triggered, 1, kPoll);
+    const bool any = take_samples(connection);
+    if (recording_) recording_->poll();
+    const bool has_simulator = dds_get_matched_publications(steps, nullptr, 0) > 0;
+    had_simulator |= has_simulator;
+    if (had_simulator ? !has_simulator && !any : std::chrono::steady_clock::now() > give_up) break;
+  }
+  log_.end();
+}
+
+// Of the first run that is seen.
+void BusRun::begin_recording() {
+  if (!mcap_path_.empty()) recording_ = std::make_unique<JoinedRecording>(mcap_path_, *this);
+  mcap_path_.clear();
+}
+void BusRun::end_recording() {
+  if (recording_) recording_->close();
+  recording_.reset();
+}
+
+std::string BusRun::failure() const {
+  const std::lock_guard lock(mutex_);
+  return failure_;
+}
+
+void BusRun::join(std::optional<std::uint32_t> domain) {
+  const std::lock_guard lock(mutex_);
+  joined_ = domain;
+}
+
+void BusRun::look_for_runs() {
+  std::uint32_t last_run = 0;
+  while (!is_stopping_) {
+    const std::optional<AnnouncedRun> run = announced_run(domain_);
+    if (run && run->secret.run_id != last_run) {
+      last_run = run->secret.run_id;
+      try {
+        const std::unique_ptr<Connection> connection = connect(*run);
+        join(run->domain);
+        begin_recording();
+        follow(*connection);
+        end_recording();
+      } catch (const std::runtime_error& failure) {  // of the bus or the recording
+        const std::lock_guard lock(mutex_);
+        failure_ = failure.what();
+        recording_.reset();
+      }
+      join(std::nullopt);
+    }
+    std::this_thread::sleep_for(kBetweenLooks);
+  }
+}
+
+std::string BusRun::title() const {
+  char text[64];
+  std::snprintf(text, sizeof text, ", run %08x", log_.state().run_id);
+  const std::string target = log_.target();
+  if (!target.empty()) return target + text;
+  const std::lock_guard lock(mutex_);
+  return failure_.empty() ? "waiting for a run: start sim/run or tumblesight simulate" : failure_;
+}
+
+std::string BusRun::ask(const std::string& request) const {
+  std::optional<std::uint32_t> domain;
+  {
+    const std::lock_guard lock(mutex_);
+    domain = joined_;
+  }
+  if (!domain) throw SilFailure("there is no run to ask: start one");
+  return ask_run(*domain, request, kAnswerTimeout_ms);
+}
+
+std::uint64_t BusRun::first_frame() const {
+  const std::lock_guard lock(mutex_);
+  return frames_.empty() ? 0 : log_.number_of(frames_.front().k);
+}
+
+bool BusRun::frame(std::uint64_t step, gnc::RangeImage& frame) const {
+  const std::int64_t k = log_.k_of(step);
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::find_if(frames_.rbegin(), frames_.rend(), [k](const KeptFrame& kept) { return kept.k == k; });
+  if (found == frames_.rend()) return false;
+  frame = found->frame;
+  return true;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,295 @@
+#include "sim/console/console_server.hpp"
+
+#include <civetweb.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "sim/console/foxglove_session.hpp"
+#include "sim/console/page_files.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kBetweenNews = 50ms;
+// Threads of the server. Each open connection takes one: browsers open up to six beside their WebSocket.
+constexpr const char* kThreads = "48";
+
+std::string text_or_empty(const char* text) {
+  return text == nullptr ? std::string() : std::string(text);
+}
+
+Request request_of(const mg_connection* connection) {
+  const mg_request_info* const info = mg_get_request_info(connection);
+  return {text_or_empty(info->request_method),
+          text_or_empty(info->local_uri),
+          text_or_empty(info->query_string),
+          text_or_empty(mg_get_header(connection, "Host")),
+          text_or_empty(mg_get_header(connection, "Origin")),
+          {}};
+}
+
+// At most as much as any request has; a longer one is cut, and then is no JSON.
+std::string body_of(mg_connection* connection) {
+  constexpr std::size_t kMost = 16'384;
+  std::string body(kMost, '\0');
+  std::size_t size = 0;
+  while (size < kMost) {
+    const int count = mg_read(connection, body.data() + size, kMost - size);
+    if (count <= 0) break;
+    size += static_cast<std::size_t>(count);
+  }
+  body.resize(size);
+  return body;
+}
+
+void send_answer(mg_connection* connection, const Answer& answer, bool with_body) {
+  const std::string head =
+      "HTTP/1.1 " + std::to_string(answer.status) + " " +
+      mg_get_response_code_text(connection, answer.status) + "\r\nContent-Type: " + answer.type +
+      "\r\nContent-Length: " + std::to_string(answer.body.size()) +
+      "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer"
+      "\r\nContent-Security-Policy: default-src 'self'; style-src 'self' 'unsafe-inline'; "
+      "img-src 'self' data: blob:; connect-src 'self' ws:; frame-ancestors 'none'\r\n\r\n";
+  mg_write(connection, head.data(), head.size());
+  if (with_body) mg_write(connection, answer.body.data(), answer.body.size());
+}
+
+// False: it did not go out whole.
+bool write(mg_connection* connection, int opcode, std::string_view bytes) {
+  const int least = bytes.empty() ? 1 : static_cast<int>(bytes.size());
+  return mg_websocket_write(connection, opcode, bytes.data(), bytes.size()) >= least;
+}
+
+// Repeats something in a thread of its own, until it returns false or the object ends.
+class Repeating {
+ public:
+  ~Repeating() {
+    is_leaving_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  void start(std::function<bool()> what) {
+    thread_ = std::thread([this, what = std::move(what)] {
+      while (!is_leaving_ && what()) std::this_thread::sleep_for(kBetweenNews);
+    });
+  }
+
+ private:
+  std::atomic<bool> is_leaving_{false};
+  std::thread thread_;
+};
+
+}  // namespace
+
+class ConsoleServer::Client {
+ public:
+  virtual ~Client() = default;
+  // A part of a message of the client, with the first byte of its frame (RFC 6455). False: the connection
+  // ends.
+  virtual bool receive(int first_byte, std::string_view bytes) = 0;
+};
+
+// Gets the state whenever it has changed. A page only listens.
+class ConsoleServer::PageClient final : public Client {
+ public:
+  PageClient(mg_connection* connection, const Requests& requests) {
+    repeating_.start([connection, &requests, last = std::string()]() mutable {
+      std::string now = requests.state_text();
+      if (now != last && !write(connection, MG_WEBSOCKET_OPCODE_TEXT, now)) return false;
+      last = std::move(now);
+      return true;
+    });
+  }
+  bool receive(int, std::string_view) override { return true; }
+
+ private:
+  Repeating repeating_;
+};
+
+class ConsoleServer::FoxgloveClient final : public Client {
+ public:
+  FoxgloveClient(mg_connection* connection, const RunSource& run) : connection_(connection), session_(run) {
+    send(session_.begin());
+    repeating_.start([this] { return send_news(); });
+  }
+  bool receive(int first_byte, std::string_view bytes) override {
+    constexpr int kOpcode = 0x0F, kIsLast = 0x80;
+    // Its stream may have ended within a message.
+    if (has_failed_ || message_.size() + bytes.size() > FoxgloveSession::kMostBytes) return false;
+    switch (first_byte & kOpcode) {
+      case MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE:
+        write(connection_, MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, bytes);
+        return false;
+      case MG_WEBSOCKET_OPCODE_PING:
+        return write(connection_, MG_WEBSOCKET_OPCODE_PONG, bytes);
+      case MG_WEBSOCKET_OPCODE_PONG:
+        return true;
+      default:
+        message_ += bytes;
+        return (first_byte & kIsLast) == 0 || answer();
+    }
+  }
+
+ private:
+  bool answer() {
+    std::vector<FoxgloveSession::Outgoing> answers;
+    {
+      const std::lock_guard lock(mutex_);
+      answers = session_.receive(message_);
+    }
+    message_.clear();
+    return send(answers);
+  }
+  bool send_news() {
+    std::vector<FoxgloveSession::Outgoing> news;
+    {
+      const std::lock_guard lock(mutex_);
+      news = session_.poll();
+    }
+    return send(news);
+  }
+  // Without the lock: a client that does not read makes it wait.
+  bool send(const std::vector<FoxgloveSession::Outgoing>& messages) {
+    for (const auto& [is_binary, bytes] : messages)
+      if (!write(connection_, is_binary ? MG_WEBSOCKET_OPCODE_BINARY : MG_WEBSOCKET_OPCODE_TEXT, bytes))
+        has_failed_ = true;
+    return !has_failed_;
+  }
+
+  mg_connection* connection_;
+  std::mutex mutex_;  // of the session
+  FoxgloveSession session_;
+  std::string message_;  // of which not all has come
+  std::atomic<bool> has_failed_{false};
+  Repeating repeating_;  // last: ends before what it uses
+};
+
+struct ConsoleServer::Handlers {
+  static ConsoleServer& server(void* self) { return *static_cast<ConsoleServer*>(self); }
+
+  static int request(mg_connection* connection, void* self) {
+    Request request = request_of(connection);
+    if (request.method == "POST") request.body = body_of(connection);
+    const Answer answer = server(self).requests_.answer(request, server(self).port_);
+    send_answer(connection, answer, request.method != "HEAD");
+    return answer.status;
+  }
+  // Not 0: the connection is refused.
+  static int connect_page(const mg_connection* connection, void* self) {
+    ConsoleServer& own = server(self);
+    return own.clients() >= kMostClients ||
+                   !own.requests_.refusal_of(request_of(connection), own.port_).empty()
+               ? 1
+               : 0;
+  }
+  static int connect_foxglove(const mg_connection* connection, void* self) {
+    ConsoleServer& own = server(self);
+    Answer refusal{403, "text/plain; charset=utf-8",
+                   own.requests_.refusal_of_foxglove(request_of(connection), own.port_)};
+    if (refusal.body.empty() && mg_get_request_info(connection)->acceptedWebSocketSubprotocol == nullptr) {
+      refusal.status = 400;
+      refusal.body = "the subprotocol here is foxglove.sdk.v1 or foxglove.websocket.v1";
+    }
+    if (refusal.body.empty() && own.clients() >= kMostClients) {
+      refusal.status = 503;
+      refusal.body = "this console has as many clients as it takes";
+    }
+    if (refusal.body.empty()) return 0;
+    // Civetweb itself gives no reason. Nothing else uses the connection now.
+    send_answer(const_cast<mg_connection*>(connection), refusal, true);
+    return 1;
+  }
+  static void ready_page(mg_connection* connection, void* self) {
+    add(connection, self, std::make_unique<PageClient>(connection, server(self).requests_));
+  }
+  static void ready_foxglove(mg_connection* connection, void* self) {
+    add(connection, self, std::make_unique<FoxgloveClient>(connection, server(self).requests_.run()));
+  }
+  static void add(const mg_connection* connection, void* self, std::unique_ptr<Client> client) {
+    const std::lock_guard lock(server(self).mutex_);
+    server(self).clients_[connection] = std::move(client);
+  }
+  // 0 ends the connection. The client stays until `close`, which the same thread calls.
+  static int data(mg_connection* connection, int first_byte, char* bytes, std::size_t size, void* self) {
+    ConsoleServer& own = server(self);
+    Client* client = nullptr;
+    {
+      const std::lock_guard lock(own.mutex_);
+      const auto found = own.clients_.find(connection);
+      if (found != own.clients_.end()) client = found->second.get();
+    }
+    return client != nullptr && client->receive(first_byte, {bytes, size}) ? 1 : 0;
+  }
+  static void close(const mg_connection* connection, void* self) {
+    ConsoleServer& own = server(self);
+    std::unique_ptr<Client> leaving;  // joined without the lock
+    const std::lock_guard lock(own.mutex_);
+    const auto found = own.clients_.find(connection);
+    if (found == own.clients_.end()) return;
+    leaving = std::move(found->second);
+    own.clients_.erase(found);
+  }
+  static void listen(mg_context* context, ConsoleServer* self) {
+    static const char* names[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
+    static mg_websocket_subprotocols foxglove{2, names};
+    mg_set_websocket_handler(context, "/ws$", connect_page, ready_page, data, close, self);
+    for (const char* path : {"/$", "/ws/foxglove$"})
+      mg_set_websocket_handler_with_subprotocols(context, path, &foxglove, connect_foxglove, ready_foxglove,
+                                                 data, close, self);
+    mg_set_request_handler(context, "/", request, self);
+  }
+};
+
+ConsoleServer::ConsoleServer(const Requests& requests, int port) : requests_(requests) {
+  const std::string missing = missing_libraries();
+  if (!missing.empty()) throw std::runtime_error("the console cannot show its page: " + missing);
+  mg_init_library(0);
+  const std::string address = "127.0.0.1:" + std::to_string(port);
+  const std::array<const char*, 13> options{"listening_ports",
+                                            address.c_str(),
+                                            "num_threads",
+                                            kThreads,
+                                            "request_timeout_ms",
+                                            "10000",
+                                            "keep_alive_timeout_ms",
+                                            "2000",
+                                            "enable_keep_alive",
+                                            "yes",
+                                            "websocket_timeout_ms",
+                                            "30000",
+                                            nullptr};
+  mg_callbacks callbacks;
+  std::memset(&callbacks, 0, sizeof callbacks);
+  callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // no log on the terminal
+  server_ = mg_start(&callbacks, this, const_cast<const char**>(options.data()));
+  if (server_ == nullptr)
+    throw std::runtime_error(
+        "port " + std::to_string(port) +
+        " of 127.0.0.1 cannot be used: another program has it; give another one with --port, "
+        "or --port 0 for a free one");
+  mg_server_port opened{};
+  mg_get_server_ports(server_, 1, &opened);
+  port_ = opened.port;
+  Handlers::listen(server_, this);
+}
+
+ConsoleServer::~ConsoleServer() {
+  mg_stop(server_);
+  mg_exit_library();
+}
+
+int ConsoleServer::clients() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<int>(clients_.size());
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,264 @@
+#include "sim/recording/mcap_writer.hpp"
+
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+constexpr std::size_t kChunkBytes = 1 << 20;
+constexpr std::chrono::seconds kLongestChunk{1};
+constexpr std::size_t kMostIds = 65'535;
+
+enum class Record : std::uint8_t {
+  kHeader = 1,
+  kFooter = 2,
+  kSchema = 3,
+  kChannel = 4,
+  kMessage = 5,
+  kChunk = 6,
+  kMessageIndex = 7,
+  kChunkIndex = 8,
+  kStatistics = 11,
+  kSummaryOffset = 14,
+  kDataEnd = 15,
+};
+
+// Content of a record. Numbers are little-endian; texts and maps begin with their length in bytes.
+class Content {
+ public:
+  template <class Number>
+  Content& number(Number value) {
+    for (std::size_t i = 0; i < sizeof value; ++i)
+      bytes_.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i)));
+    return *this;
+  }
+  Content& text(std::string_view text) {
+    number(static_cast<std::uint32_t>(text.size()));
+    bytes_.insert(bytes_.end(), text.begin(), text.end());
+    return *this;
+  }
+  Content& raw(const std::uint8_t* bytes, std::size_t size) {
+    bytes_.insert(bytes_.end(), bytes, bytes + size);
+    return *this;
+  }
+  Content& map(const std::map<McapId, std::uint64_t>& numbers) {
+    number(static_cast<std::uint32_t>(numbers.size() * (sizeof(McapId) + sizeof(std::uint64_t))));
+    for (const auto& [key, value] : numbers) number(key).number(value);
+    return *this;
+  }
+  const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+
+  std::vector<std::uint8_t> as(Record record) const {
+    Content whole;
+    whole.number(static_cast<std::uint8_t>(record)).number(std::uint64_t{bytes_.size()});
+    whole.raw(bytes_.data(), bytes_.size());
+    return whole.bytes_;
+  }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace
+
+McapWriter::McapWriter(std::string path, const std::string& library)
+    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "ab"), &std::fclose) {
+  if (!file_) fail(std::string("cannot be written: ") + std::strerror(errno));
+  // Not emptied before it is ours alone. A device can be neither locked nor emptied.
+  if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    fail("another program is writing it; give another name");
+  struct stat status {};
+  if (fstat(fileno(file_.get()), &status) == 0 && S_ISREG(status.st_mode) &&
+      ftruncate(fileno(file_.get()), 0) != 0)
+    fail(std::string("cannot be emptied: ") + std::strerror(errno));
+  put({kMagic.begin(), kMagic.end()});
+  put(Content().text("").text(library).as(Record::kHeader));
+}
+
+McapWriter::~McapWriter() {
+  try {
+    close();
+  } catch (const std::runtime_error&) {  // who wants to know calls close()
+  }
+}
+
+void McapWriter::fail(const std::string& what) const {
+  throw std::runtime_error("recording '" + path_ + "': " + what);
+}
+
+void McapWriter::put(const Bytes& bytes) {
+  // After a part of a record nothing may follow, or every offset behind it is wrong.
+  if (has_failed_) fail("an earlier part of it could not be written");
+  has_failed_ = std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size() ||
+                std::fflush(file_.get()) != 0;
+  if (has_failed_)
+    fail(std::string("cannot be written: ") + std::strerror(errno) + "; is there space on the disk?");
+  crc_.add(bytes.data(), bytes.size());
+  position_ += bytes.size();
+}
+
+McapId McapWriter::add_schema(const std::string& name, const std::string& encoding, std::string_view text) {
+  if (schemas_.size() == kMostIds) fail("more than 65,535 schemas");
+  const auto id = static_cast<McapId>(schemas_.size() + 1);
+  schemas_.push_back(Content().number(id).text(name).text(encoding).text(text).as(Record::kSchema));
+  put(schemas_.back());
+  return id;
+}
+
+McapId McapWriter::add_channel(const std::string& topic, const std::string& encoding, McapId schema) {
+  if (channels_.size() == kMostIds) fail("more than 65,535 channels");
+  const auto id = static_cast<McapId>(channels_.size() + 1);
+  channels_[id] = {};
+  channel_records_.push_back(
+      Content().number(id).number(schema).text(topic).text(encoding).map({}).as(Record::kChannel));
+  put(channel_records_.back());
+  return id;
+}
+
+void McapWriter::write(McapId channel, std::int64_t time_ns, std::string_view text) {
+  write(channel, time_ns, reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+}
+
+void McapWriter::write(McapId channel, std::int64_t time_ns, const std::uint8_t* bytes, std::size_t size) {
+  const auto found = channels_.find(channel);
+  if (found == channels_.end()) fail("a message of an unknown channel");
+  if (time_ns < 0) fail("a message at " + std::to_string(time_ns) + " ns: the format has no time before 0");
+  const auto time = static_cast<std::uint64_t>(time_ns);
+  if (chunk_.empty()) {
+    chunk_first_ns_ = chunk_last_ns_ = time;
+    chunk_began_ = std::chrono::steady_clock::now();
+  }
+  found->second.in_chunk.push_back({time, chunk_.size()});
+  const Bytes record = Content()
+                           .number(channel)
+                           .number(found->second.sequence++)
+                           .number(time)
+                           .number(time)
+                           .raw(bytes, size)
+                           .as(Record::kMessage);
+  chunk_.insert(chunk_.end(), record.begin(), record.end());
+  chunk_first_ns_ = std::min(chunk_first_ns_, time);
+  chunk_last_ns_ = std::max(chunk_last_ns_, time);
+  ++messages_;
+  if (chunk_.size() >= kChunkBytes) write_chunk();
+  write_due();
+}
+
+void McapWriter::write_due() {
+  if (!chunk_.empty() && std::chrono::steady_clock::now() - chunk_began_ >= kLongestChunk) write_chunk();
+}
+
+void McapWriter::write_chunk() {
+  if (chunk_.empty()) return;
+  ChunkIndex index{chunk_first_ns_, chunk_last_ns_, position_, 0, chunk_.size(), {}, 0};
+  put(Content()
+          .number(chunk_first_ns_)
+          .number(chunk_last_ns_)
+          .number(std::uint64_t{chunk_.size()})
+          .number(gnc::crc32(chunk_.data(), chunk_.size()))
+          .text("")
+          .number(std::uint64_t{chunk_.size()})
+          .raw(chunk_.data(), chunk_.size())
+          .as(Record::kChunk));
+  index.length = position_ - index.start;
+  const std::uint64_t indices_start = position_;
+  for (auto& [id, channel] : channels_) {
+    if (channel.in_chunk.empty()) continue;
+    index.index_offsets[id] = position_;
+    Content entries;
+    for (const IndexEntry& entry : channel.in_chunk) entries.number(entry.time_ns).number(entry.offset);
+    put(Content()
+            .number(id)
+            .number(static_cast<std::uint32_t>(entries.bytes().size()))
+            .raw(entries.bytes().data(), entries.bytes().size())
+            .as(Record::kMessageIndex));
+    channel.in_chunk.clear();
+  }
+  index.index_length = position_ - indices_start;
+  first_ns_ = chunks_.empty() ? chunk_first_ns_ : std::min(first_ns_, chunk_first_ns_);
+  last_ns_ = std::max(last_ns_, chunk_last_ns_);
+  chunks_.push_back(index);
+  chunk_.clear();
+}
+
+McapWriter::Bytes McapWriter::statistics() const {
+  std::map<McapId, std::uint64_t> counts;
+  for (const auto& [id, channel] : channels_)
+    if (channel.sequence > 0) counts[id] = channel.sequence;
+  return Content()
+      .number(messages_)
+      .number(static_cast<std::uint16_t>(schemas_.size()))
+      .number(static_cast<std::uint32_t>(channels_.size()))
+      .number(std::uint32_t{0})  // attachments
+      .number(std::uint32_t{0})  // metadata
+      .number(static_cast<std::uint32_t>(chunks_.size()))
+      .number(first_ns_)
+      .number(last_ns_)
+      .map(counts)
+      .as(Record::kStatistics);
+}
+
+void McapWriter::write_summary() {
+  const std::uint64_t start = position_;
+  crc_ = {};
+  Bytes offsets;
+  const auto put_group = [&](Record record, const std::vector<Bytes>& records) {
+    if (records.empty()) return;
+    const std::uint64_t group_start = position_;
+    for (const Bytes& one : records) put(one);
+    const Bytes offset = Content()
+                             .number(static_cast<std::uint8_t>(record))
+                             .number(group_start)
+                             .number(position_ - group_start)
+                             .as(Record::kSummaryOffset);
+    offsets.insert(offsets.end(), offset.begin(), offset.end());
+  };
+  std::vector<Bytes> indices;
+  for (const ChunkIndex& chunk : chunks_) {
+    indices.push_back(Content()
+                          .number(chunk.first_ns)
+                          .number(chunk.last_ns)
+                          .number(chunk.start)
+                          .number(chunk.length)
+                          .map(chunk.index_offsets)
+                          .number(chunk.index_length)
+                          .text("")
+                          .number(chunk.size)
+                          .number(chunk.size)
+                          .as(Record::kChunkIndex));
+  }
+  put_group(Record::kSchema, schemas_);
+  put_group(Record::kChannel, channel_records_);
+  put_group(Record::kStatistics, {statistics()});
+  put_group(Record::kChunkIndex, indices);
+  const std::uint64_t offsets_start = position_;
+  put(offsets);
+  // The checksum covers the footer up to itself.
+  Bytes footer = Content().number(start).number(offsets_start).number(std::uint32_t{0}).as(Record::kFooter);
+  footer.resize(footer.size() - sizeof(std::uint32_t));
+  put(footer);
+  put(Content().number(crc_.value()).bytes());
+}
+
+void McapWriter::close() {
+  if (!file_) return;
+  struct Release {
+    McapWriter& writer;
+    ~Release() { writer.file_.reset(); }
+  } release{*this};
+  write_chunk();
+  put(Content().number(crc_.value()).as(Record::kDataEnd));
+  write_summary();
+  put({kMagic.begin(), kMagic.end()});
+}
+
+}  // namespace tumblesight::sim

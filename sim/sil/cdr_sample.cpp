@@ -1,0 +1,53 @@
+#include "sim/sil/cdr_sample.hpp"
+
+#include <dds/ddsi/ddsi_cdrstream.h>
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <memory>
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 4;
+constexpr std::size_t kMostBytes = 1 << 20;  // far more than any sample of the interface
+// RTPS: 0 and 1 for CDR in big-endian and little-endian; others are not written for final types.
+constexpr std::uint8_t kLittleEndian = 1;
+constexpr std::uint32_t kXcdrVersion = 1;
+
+}  // namespace
+
+bool read_cdr(const hal::dds::Topic& topic, const std::uint8_t* bytes, std::size_t size, void* sample) {
+  if (size <= kHeaderBytes || size > kMostBytes) return false;
+  if (bytes[0] != 0 || bytes[1] > kLittleEndian) return false;
+  const std::size_t padding = bytes[3] & 3U;
+  const auto length = static_cast<std::uint32_t>(size - kHeaderBytes);
+  if (padding >= length) return false;
+  // Aligned, and writable for the change of the byte order.
+  const std::uint32_t content = length - static_cast<std::uint32_t>(padding);
+  const auto copy = std::make_unique<std::uint64_t[]>((content + 7) / 8);
+  std::memcpy(copy.get(), bytes + kHeaderBytes, content);
+  std::uint32_t read = 0;
+  const bool swaps = (bytes[1] == kLittleEndian) != (DDSRT_ENDIAN == DDSRT_LITTLE_ENDIAN);
+  if (dds_stream_normalize_data(reinterpret_cast<char*>(copy.get()), &read, content, swaps, kXcdrVersion,
+                                topic.type->m_ops) == nullptr ||
+      read != content)
+    return false;
+  dds_istream_t stream;
+  dds_istream_init(&stream, content, copy.get(), kXcdrVersion);
+  dds_stream_read(&stream, static_cast<char*>(sample), topic.type->m_ops);
+  return true;
+}
+
+gnc::RangeImage frame_of(const hal::dds::LidarFrameSample& sample) {
+  gnc::RangeImage frame{};
+  frame.rays = sample.rays;
+  frame.fov_urad = sample.fov_urad;
+  frame.sequence_number = sample.sequence_number;
+  frame.exposure_time_ns = sample.exposure_time_ns;
+  std::copy(std::begin(sample.ranges), std::end(sample.ranges), frame.ranges.begin());
+  return frame;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,26 @@
+// Samples of the bus out of their serialized form, as recordings keep them: an encapsulation header, then
+// CDR.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "gnc/lidar/range_image.hpp"
+#include "hal/dds/idl/topics.hpp"
+
+namespace tumblesight::sim {
+
+// False: the bytes are no sample of this topic.
+[[nodiscard]] bool read_cdr(const hal::dds::Topic& topic, const std::uint8_t* bytes, std::size_t size,
+                            void* sample);
+
+// The same with a type. `sample`: plain data without pointers, as all of tumblesight.idl is.
+template <class Sample>
+[[nodiscard]] bool read_cdr(const std::uint8_t* bytes, std::size_t size, Sample& sample) {
+  return read_cdr(hal::dds::topic_of<Sample>(), bytes, size, &sample);
+}
+
+// A frame as its sample has it.
+gnc::RangeImage frame_of(const hal::dds::LidarFrameSample& sample);
+
+}  // namespace tumblesight::sim

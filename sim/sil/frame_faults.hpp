@@ -1,0 +1,43 @@
+// FrameFaults: faults of the sensor that are put into a run while it goes on: what the flight program gets
+// differs from what the simulated sensor delivered.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "gnc/lidar/range_image.hpp"
+#include "sim/sil/sil_session.hpp"
+#include "sim/world/sensor/frame_truth.hpp"
+
+namespace tumblesight::sim {
+
+class FrameFaults {
+ public:
+  enum class Kind {
+    kDrop,    // no frame
+    kFreeze,  // the ranges of the frame before, under new numbers and times
+    kDelay,   // each frame a step late
+  };
+  static constexpr std::uint32_t kMostSteps = 1000;
+
+  // For the next steps, 1 to kMostSteps. It takes the place of a fault that goes on.
+  void begin(Kind kind, std::uint32_t steps);
+  // Changes what a step sends, and what the truth says of the frame. Frames that `input` then has are valid
+  // until the next call.
+  void apply(StepInput& input, FrameTruth& truth);
+
+ private:
+  Kind kind_ = Kind::kDrop;
+  std::uint32_t left_ = 0, applied_ = 0;
+  bool has_last_ = false;
+  gnc::RangeImage last_{};               // that was sent
+  std::deque<gnc::RangeImage> delayed_;  // that wait for a later step
+  std::deque<gnc::RangeImage> shown_;    // of this step
+};
+
+// "drop", "freeze", "delay". False: no fault has this name.
+[[nodiscard]] bool read_fault(const std::string& name, FrameFaults::Kind& kind);
+
+}  // namespace tumblesight::sim

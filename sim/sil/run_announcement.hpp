@@ -1,0 +1,33 @@
+// RunAnnouncement: tells the user's other programs on this machine how to join a run: its DDS domain and
+// partition. It is a file in the temporary folder that only its owner can read, beside the lock file of the
+// domain (DomainLease). Programs that only read the bus, as the console, find the run by it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "hal/dds/idl/run_secret.hpp"
+
+namespace tumblesight::sim {
+
+class RunAnnouncement {
+ public:
+  // Without a file if it cannot be written: the run goes on, and cannot be joined.
+  RunAnnouncement(std::uint32_t domain, const hal::dds::RunSecret& secret);
+  ~RunAnnouncement();  // removes the file
+  RunAnnouncement(const RunAnnouncement&) = delete;
+  RunAnnouncement& operator=(const RunAnnouncement&) = delete;
+
+ private:
+  std::string path_;
+};
+
+struct AnnouncedRun {
+  std::uint32_t domain;
+  hal::dds::RunSecret secret;
+};
+// The newest run of this user that is going on, or the one in this domain. `domain`: -1: any.
+std::optional<AnnouncedRun> announced_run(int domain);
+
+}  // namespace tumblesight::sim

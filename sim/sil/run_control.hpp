@@ -1,0 +1,53 @@
+// RunControl: takes requests of the user's other programs into a run that goes on: telecommands, which the
+// run numbers and signs, and faults of the sensor. It is a socket in the temporary folder that only its owner
+// can use, beside the announcement of the run (RunAnnouncement).
+//
+// A request is a line of JSON, and so is its answer:
+//   {"function": 3, "arguments": "02"}      a function code and its arguments as hexadecimal digits
+//   {"fault": "freeze", "steps": 5}         FrameFaults
+//   {"step": 41}                            the step in which it takes effect
+//   {"error": "..."}                        it was not taken
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/sil/frame_faults.hpp"
+#include "sim/sil/signed_telecommand.hpp"
+
+namespace tumblesight::sim {
+
+class RunControl {
+ public:
+  static constexpr std::size_t kMostClients = 8;
+  static constexpr std::size_t kMostBytes = 8192;   // of a request
+  static constexpr std::size_t kMostCommands = 16;  // per step; half of what a step may carry
+
+  // Without a socket if it cannot be made: the run goes on, and takes no requests.
+  explicit RunControl(std::uint32_t domain);
+  ~RunControl();  // removes the socket
+  RunControl(const RunControl&) = delete;
+  RunControl& operator=(const RunControl&) = delete;
+
+  // What was requested since the last call. Does not wait. `step`: of the answers. Faults go to `faults`.
+  std::vector<Telecommand> take(std::uint32_t step, FrameFaults& faults);
+
+ private:
+  struct Client {
+    int socket;
+    std::string received;
+  };
+  void accept_clients();
+  bool serve(Client& client, std::uint32_t step, FrameFaults& faults, std::vector<Telecommand>& commands);
+
+  std::string path_;
+  int socket_ = -1;
+  std::vector<Client> clients_;
+};
+
+// Sends a request to the run in a domain and waits for its answer, at most `timeout_ms`. Throws SilFailure
+// that says why there is none.
+std::string ask_run(std::uint32_t domain, const std::string& request, int timeout_ms);
+
+}  // namespace tumblesight::sim

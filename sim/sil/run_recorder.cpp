@@ -1,0 +1,104 @@
+#include "sim/sil/run_recorder.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "sim/sil/failure.hpp"
+#include "sim/sil/foxglove_messages.hpp"
+#include "sim/sil/sil_run.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::size_t kTruthsKept = 16;  // a free-running flight program answers a few cycles later
+
+void check(dds_return_t result) {
+  if (result < 0)
+    throw SilFailure(std::string("the recording could not join the bus: ") + dds_strretcode(result));
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(const hal::dds::Domain& domain, const std::string& path, double swath_m)
+    : swath_m_(swath_m), file_(path, "tumblesight"), channels_(file_) {
+  // Endpoints do not receive samples of their own participant, so the recording has one of its own.
+  participant_ = domain.join();
+  check(participant_);
+  each_topic([&](auto type, const char*) {
+    const hal::dds::Topic& topic = hal::dds::topic_of<typename decltype(type)::type>();
+    const dds_entity_t reader = hal::dds::create_reader(domain, participant_, topic);
+    check(reader);
+    sources_.push_back({reader, channels_.of_bus.at(&topic)});
+  });
+}
+
+RunRecorder::~RunRecorder() {
+  try {
+    close();                             // of a run that failed: what explains it may have come last
+  } catch (const std::runtime_error&) {  // the failure of the run is the one to report
+  }
+  if (participant_ > 0) dds_delete(participant_);
+}
+
+bool RunRecorder::has_writers() const {
+  for (const Source& source : sources_)
+    if (dds_get_matched_publications(source.reader, nullptr, 0) < 1) return false;
+  return true;
+}
+
+void RunRecorder::add(const FrameTruth& truth) {
+  next_truth_ = std::make_unique<FrameTruth>(truth);
+}
+
+void RunRecorder::add(const std::vector<const gnc::RangeImage*>& frames, std::int64_t time_ns) {
+  for (const gnc::RangeImage* frame : frames) {
+    file_.write(channels_.points, time_in_file_ns(time_ns),
+                point_cloud_json(*frame, time_in_file_ns(time_ns)));
+    if (next_truth_) truths_.push_back({frame->exposure_time_ns, *next_truth_});
+  }
+  next_truth_.reset();
+  while (truths_.size() > kTruthsKept) truths_.pop_front();
+  take_samples(time_ns);
+}
+
+void RunRecorder::add(const StepAnswer& answer) {
+  const hal::AttitudeReport& report = answer.attitude;
+  const std::int64_t time_ns = time_in_file_ns(report.time_ns);
+  const FrameTruth* const truth = truth_of(report);
+  // Where the target was when the points were measured: in a free run the answer comes cycles later.
+  const std::int64_t pose_time_ns =
+      gives_attitude(report) ? time_in_file_ns(report.exposure_time_ns) : time_ns;
+  file_.write(channels_.transforms, time_ns, transforms_json(report, truth, swath_m_, pose_time_ns));
+  file_.write(channels_.figures, time_ns, figures_json(report, truth));
+  for (const hal::Event& event : answer.events) file_.write(channels_.log, time_ns, log_json(event, time_ns));
+  take_samples(report.time_ns);
+}
+
+// Only a report with an attitude names its frame.
+const FrameTruth* RunRecorder::truth_of(const hal::AttitudeReport& report) const {
+  if (!gives_attitude(report)) return nullptr;
+  const auto found = std::find_if(truths_.rbegin(), truths_.rend(), [&report](const TruthOfFrame& of) {
+    return of.exposure_time_ns == report.exposure_time_ns;
+  });
+  return found == truths_.rend() ? nullptr : &found->truth;
+}
+
+std::int64_t RunRecorder::time_in_file_ns(std::int64_t time_ns) {
+  if (!first_ns_) first_ns_ = time_ns;
+  return std::max<std::int64_t>(0, time_ns - std::min<std::int64_t>(0, *first_ns_));
+}
+
+void RunRecorder::take_samples(std::int64_t step_time_ns) {
+  const std::int64_t time_ns = time_in_file_ns(step_time_ns);
+  last_ns_ = step_time_ns;
+  std::vector<std::uint8_t> bytes;
+  for (const Source& source : sources_)
+    while (take_cdr(source.reader, bytes)) file_.write(source.channel, time_ns, bytes.data(), bytes.size());
+}
+
+void RunRecorder::close() {
+  if (first_ns_) take_samples(last_ns_);
+  file_.close();
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,69 @@
+// RunRecorder: a run as an MCAP file. It joins the bus as one more participant and keeps every sample of
+// every topic as it is (CDR, with tumblesight.idl as schema). Beside them it writes what viewers show without
+// set-up (foxglove_messages.hpp). The time of a message is the mission time of its step, counted from the
+// first step if that is before 0, which the format does not have.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gnc/lidar/range_image.hpp"
+#include "hal/dds/idl/domain.hpp"
+#include "hal/dds/idl/topics.hpp"
+#include "sim/recording/mcap_writer.hpp"
+#include "sim/sil/answer_collector.hpp"
+#include "sim/sil/run_channels.hpp"
+#include "sim/world/sensor/frame_truth.hpp"
+
+namespace tumblesight::sim {
+
+class RunRecorder {
+ public:
+  // `domain`: that of this program, which must outlive the object. `swath_m`: of the truth (FrameTruth).
+  // Throws std::runtime_error, as all functions do, if the file cannot be written, or SilFailure if the bus
+  // cannot be joined.
+  RunRecorder(const hal::dds::Domain& domain, const std::string& path, double swath_m);
+  ~RunRecorder();
+
+  // Whether every topic that this program and the flight program write has its writer.
+  bool has_writers() const;
+  // Of the step that is sent next.
+  void add(const FrameTruth& truth);
+  // What a step sends, as soon as it is sent.
+  void add(const std::vector<const gnc::RangeImage*>& frames, std::int64_t time_ns);
+  // The answer of the flight program.
+  void add(const StepAnswer& answer);
+  // Writes what is due, see McapWriter::write_due().
+  void write_due() { file_.write_due(); }
+  // The rest of the samples, and the end of the file.
+  void close();
+
+ private:
+  struct Source {
+    dds_entity_t reader;
+    McapId channel;
+  };
+  void take_samples(std::int64_t time_ns);
+  std::int64_t time_in_file_ns(std::int64_t time_ns);
+  const FrameTruth* truth_of(const hal::AttitudeReport& report) const;
+
+  double swath_m_;
+  dds_entity_t participant_ = 0;
+  McapWriter file_;
+  RunChannels channels_;
+  std::vector<Source> sources_;
+  std::unique_ptr<FrameTruth> next_truth_;  // of the step that is sent next, if it is known
+  struct TruthOfFrame {
+    std::int64_t exposure_time_ns;
+    FrameTruth truth;
+  };
+  std::deque<TruthOfFrame> truths_;  // of the last frames
+  std::int64_t last_ns_ = 0;
+  std::optional<std::int64_t> first_ns_;
+};
+
+}  // namespace tumblesight::sim

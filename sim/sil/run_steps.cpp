@@ -1,0 +1,138 @@
+#include "sim/sil/run_steps.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "hal/dds/idl/hello.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::uint32_t kFirstPictures = 10;
+constexpr std::uint32_t kLaterPictures = 16;  // evenly spread
+
+}  // namespace
+
+RunSteps::RunSteps(const std::string& path)
+    : file_(path), sample_(std::make_unique<hal::dds::LidarFrameSample>()) {
+  read_run();
+  read_steps();
+  read_contents();
+  require_whole_steps();
+}
+
+void RunSteps::read_run() {
+  hal::dds::HelloSample hello;
+  file_.each(hello, [&](const hal::dds::HelloSample& sample, const McapReader::Entry&) {
+    const bool is_flight = sample.role == static_cast<std::uint8_t>(hal::dds::Role::kFlight);
+    if (is_flight && sample.run_id == run_id_) model_crc32_ = sample.model_crc32;
+    if (is_flight) return;
+    run_id_ = sample.run_id;
+    target_ = hal::dds::target_of(sample).text;
+  });
+  if (target_.empty()) throw std::runtime_error("'" + file_.path() + "' does not say of which target it is");
+}
+
+// A run that was cut short lacks the last ones. Those that nobody answered are left out.
+void RunSteps::read_steps() {
+  hal::dds::StepSample step;
+  file_.each(step, [&](const hal::dds::StepSample& sample, const McapReader::Entry&) {
+    if (sample.run_id != run_id_) return;
+    if (sample.k != steps_.size())
+      throw std::runtime_error("'" + file_.path() + "' lacks step " + std::to_string(steps_.size()) +
+                               " of the run: only a recording of a whole run can be replayed");
+    steps_.emplace_back().sample = sample;
+  });
+  hal::dds::StepDoneSample done;
+  file_.each(done, [&](const hal::dds::StepDoneSample& sample, const McapReader::Entry&) {
+    if (RecordedStep* const of = step_of(sample)) of->state_crc32 = sample.state_crc32;
+  });
+  while (!steps_.empty() && !steps_.back().state_crc32) steps_.pop_back();
+  if (steps_.empty()) throw std::runtime_error("'" + file_.path() + "' has no step that was answered");
+}
+
+template <class Sample>
+RunSteps::RecordedStep* RunSteps::step_of(const Sample& sample) {
+  return sample.run_id == run_id_ && sample.k < steps_.size() ? &steps_[sample.k] : nullptr;
+}
+
+void RunSteps::read_contents() {
+  hal::dds::TruthSample truth;
+  file_.each(truth, [&](const hal::dds::TruthSample& sample, const McapReader::Entry&) {
+    if (RecordedStep* const step = step_of(sample)) step->truth = sample;
+  });
+  file_.each(*sample_, [&](const hal::dds::LidarFrameSample& sample, const McapReader::Entry& entry) {
+    RecordedStep* const step = step_of(sample);
+    if (step == nullptr) return;
+    step->frames.push_back(entry);
+    ++frames_;
+  });
+  hal::dds::NavigationSample navigation;
+  file_.each(navigation, [&](const hal::dds::NavigationSample& sample, const McapReader::Entry&) {
+    RecordedStep* const step = step_of(sample);
+    if (step == nullptr) return;
+    gnc::ChaserAttitude& attitude = step->navigations.emplace_back();
+    attitude.time_ns = sample.time_ns;
+    std::copy(std::begin(sample.q_inertial_lrf), std::end(sample.q_inertial_lrf),
+              attitude.q_inertial_lrf.begin());
+    attitude.valid = sample.valid != 0;
+  });
+  hal::dds::CommandSample command;
+  file_.each(command, [&](const hal::dds::CommandSample& sample, const McapReader::Entry&) {
+    RecordedStep* const step = step_of(sample);
+    if (step == nullptr) return;
+    hal::CommandPacket& packet = step->packets.emplace_back();
+    packet.size = sample.size;
+    std::copy(std::begin(sample.bytes), std::end(sample.bytes), packet.bytes.begin());
+  });
+}
+
+void RunSteps::require_whole_steps() const {
+  for (const RecordedStep& step : steps_) {
+    if (step.frames.size() != step.sample.frames || step.navigations.size() != step.sample.navigations ||
+        step.packets.size() != step.sample.commands)
+      throw std::runtime_error("'" + file_.path() + "' lacks samples of step " +
+                               std::to_string(step.sample.k) +
+                               ": only a recording of a whole run can be replayed");
+  }
+}
+
+FrameTruth RunSteps::truth_of(const RecordedStep& step) const {
+  FrameTruth truth{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), 0.0};
+  truth.lost = step.frames.empty();
+  if (!step.truth) return truth;
+  const float* const q = step.truth->q_lrf_trf;
+  truth.q_lrf_trf = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+  const float* const rate = step.truth->rate_lrf_rad_s;
+  truth.rate_lrf_rad_s = Eigen::Vector3d(rate[0], rate[1], rate[2]);
+  truth.range_m = step.truth->range_m;
+  return truth;
+}
+
+SourcedStep RunSteps::next() {
+  const std::uint32_t k = next_++;
+  const RecordedStep& step = steps_[k];
+  SourcedStep sourced;
+  sourced.step.time_ns = sourced.input.time_ns = step.sample.time_ns;
+  sourced.step.truth = truth_of(step);
+  sourced.step.truth_known = step.truth.has_value();
+  if (step.truth) {
+    sourced.step.sequence = step.truth->sequence_index;
+    sourced.step.frame_index = step.truth->frame_index;
+  }
+  images_.assign(step.frames.size(), {});
+  for (std::size_t i = 0; i < step.frames.size(); ++i) {
+    file_.read(step.frames[i], *sample_);
+    images_[i] = frame_of(*sample_);
+    sourced.input.frames.push_back(&images_[i]);
+  }
+  sourced.input.navigations = step.navigations;
+  sourced.input.packets = step.packets;
+  const bool is_regular = k % (1 + steps() / kLaterPictures) == 0;
+  sourced.keep_picture = !step.frames.empty() && (frames_sent_ < kFirstPictures || is_regular);
+  frames_sent_ += static_cast<std::uint32_t>(step.frames.size());
+  return sourced;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,82 @@
+// How the console finds a run, and that nobody else does.
+#include "sim/sil/run_announcement.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "sim/sil/domain_lease.hpp"
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+class Announcement : public testing::Test {
+ protected:
+  Announcement() {
+    EXPECT_TRUE(hal::dds::make_run_secret(secret_));
+    lease_.emplace(test::spare_domain());
+    path_ = std::filesystem::temp_directory_path().string() + "/tumblesight-domain-" +
+            std::to_string(lease_->domain()) + ".run";
+  }
+  int domain() const { return static_cast<int>(lease_->domain()); }
+
+  hal::dds::RunSecret secret_;
+  std::optional<DomainLease> lease_;
+  std::string path_;
+};
+
+TEST_F(Announcement, TellsItsOwnerAlone) {
+  const RunAnnouncement announcement(lease_->domain(), secret_);
+  const std::optional<AnnouncedRun> run = announced_run(domain());
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->domain, lease_->domain());
+  EXPECT_EQ(run->secret.run_id, secret_.run_id);
+  EXPECT_STREQ(run->secret.partition, secret_.partition);
+  struct stat status {};
+  ASSERT_EQ(stat(path_.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0600U);
+  EXPECT_TRUE(announced_run(-1));
+}
+
+TEST_F(Announcement, OfTheDefaultPartitionHasNoName) {
+  secret_.partition[0] = '\0';
+  const RunAnnouncement announcement(lease_->domain(), secret_);
+  const std::optional<AnnouncedRun> run = announced_run(domain());
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->secret.run_id, secret_.run_id);
+  EXPECT_STREQ(run->secret.partition, "");
+}
+
+TEST_F(Announcement, EndsWithTheRun) {
+  { const RunAnnouncement announcement(lease_->domain(), secret_); }
+  EXPECT_FALSE(announced_run(domain()));
+}
+
+// It could not remove its file, and the system released its lock.
+TEST_F(Announcement, OfAKilledRunIsIgnored) {
+  const RunAnnouncement announcement(lease_->domain(), secret_);
+  const int before = domain();
+  lease_.reset();
+  EXPECT_FALSE(announced_run(before));
+}
+
+TEST_F(Announcement, ThatIsDamagedOrALinkIsIgnored) {
+  for (const std::string text :
+       {"", "x", "12", "12:xyz", ":", "99999999999:0123456789abcdef0123456789abcdef"}) {
+    test::write_file(path_, {text.begin(), text.end()});
+    EXPECT_FALSE(announced_run(domain())) << text;
+  }
+  std::filesystem::remove(path_);
+  const std::string elsewhere = test::temporary_path("elsewhere");
+  const hal::dds::RunSecretText text = to_text(secret_);
+  test::write_file(elsewhere, {std::begin(text.text), std::begin(text.text) + std::string(text.text).size()});
+  std::filesystem::create_symlink(elsewhere, path_);
+  EXPECT_FALSE(announced_run(domain()));
+  std::filesystem::remove(path_);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,207 @@
+// The answers to the page's requests, and who gets none. Verifies TS-SIL-195.
+#include "sim/console/requests.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "hal/dds/idl/hello.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr int kPort = 7320;
+const std::string kToken = "0123456789abcdef";
+const std::string kModel = TUMBLESIGHT_SHIPPED_MODEL;
+
+class OneStep final : public RunSource {
+ public:
+  OneStep() {
+    hal::dds::HelloSample hello{};
+    hello.run_id = 1;
+    hal::dds::set_target(hello, "near_shoemaker");
+    log_.add(hello);
+    hal::dds::AttitudeSample attitude{};
+    attitude.run_id = 1;
+    log_.add(attitude);
+    log_.end();
+  }
+  const StepLog& log() const override { return log_; }
+  const char* kind() const override { return "bus"; }
+  std::string title() const override { return "near_shoemaker"; }
+  std::uint64_t first_frame() const override { return 0; }
+  std::string ask(const std::string& request) const override {
+    if (!answers) throw std::runtime_error("there is no run to ask");
+    asked = request;
+    return R"({"step":1})";
+  }
+  bool frame(std::uint64_t step, gnc::RangeImage& frame) const override {
+    if (step != 0) return false;
+    frame = {};
+    frame.rays = 16;
+    frame.fov_urad = 200'000;
+    frame.ranges[3] = 0x1234;
+    return true;
+  }
+
+  mutable std::string asked;
+  bool answers = true;
+
+ private:
+  StepLog log_;
+};
+
+class ConsoleRequests : public testing::Test {
+ protected:
+  static Request get(const std::string& path, const std::string& query = "") {
+    return {"GET", path, "token=" + kToken + (query.empty() ? "" : "&" + query), "127.0.0.1:7320", "", ""};
+  }
+  int status(const Request& request) const { return requests_.answer(request, kPort).status; }
+  Json json(const Request& request) const { return Json::parse(requests_.answer(request, kPort).body); }
+
+  OneStep run_;
+  Requests requests_{run_, [](const std::string&) { return kModel; }, kToken};
+};
+
+TEST_F(ConsoleRequests, TheRunSaysWhatItIs) {
+  const Json run = json(get("/api/run"));
+  EXPECT_EQ(run["steps"], 1);
+  EXPECT_EQ(run["target"], "near_shoemaker");
+  EXPECT_GT(run["target_radius_m"].get<double>(), 1.0);
+  EXPECT_EQ(run["fields"][0], "k");
+  EXPECT_EQ(json(get("/api/steps", "from=0"))["rows"].size(), 1U);
+  EXPECT_EQ(json(get("/api/step", "k=0"))["k"], 0);
+  EXPECT_EQ(Json::parse(requests_.state_text())["steps"], 1);
+}
+
+TEST_F(ConsoleRequests, AFrameIsItsRangesInLittleEndian) {
+  const std::string bytes = requests_.answer(get("/api/frame", "k=0"), kPort).body;
+  ASSERT_EQ(bytes.size(), 8U + 2U * 16 * 16);
+  EXPECT_EQ(bytes[0], 16);
+  EXPECT_EQ(bytes[8 + 6], 0x34);
+  EXPECT_EQ(bytes[8 + 7], 0x12);
+  EXPECT_EQ(status(get("/api/frame", "k=1")), 404);
+}
+
+TEST_F(ConsoleRequests, TheMeshIsThatOfTheModelImage) {
+  const std::string bytes = requests_.answer(get("/api/mesh"), kPort).body;
+  std::uint32_t vertices = 0, triangles = 0;
+  std::memcpy(&vertices, bytes.data(), 4);
+  std::memcpy(&triangles, bytes.data() + 4, 4);
+  EXPECT_GT(triangles, 100U);
+  EXPECT_EQ(bytes.size(), 8 + 12 * std::size_t{vertices} + 6 * std::size_t{triangles});
+  // Of too few returns the network sees nothing.
+  EXPECT_EQ(status(get("/api/depth", "k=0")), 404);
+}
+
+TEST_F(ConsoleRequests, AnUnknownTargetHasNoMeshAndSaysHowToGiveOne) {
+  const Requests without(
+      run_, [](const std::string&) { return ""; }, kToken);
+  const Answer answer = without.answer(get("/api/mesh"), kPort);
+  EXPECT_EQ(answer.status, 404);
+  EXPECT_NE(answer.body.find("--model"), std::string::npos);
+  EXPECT_TRUE(Json::parse(without.answer(get("/api/run"), kPort).body)["target_radius_m"].is_null());
+  const Requests damaged(
+      run_, [](const std::string&) { return "/none.tsm"; }, kToken);
+  EXPECT_EQ(damaged.answer(get("/api/mesh"), kPort).status, 404);
+}
+
+TEST_F(ConsoleRequests, WithoutTheTokenThereIsNoData) {
+  for (const char* path : {"/", "/api/run", "/api/steps", "/api/step", "/api/frame", "/api/depth",
+                           "/api/mesh", "/ws", "/none"}) {
+    for (const char* query :
+         {"", "token=", "token=0123456789abcdee", "token=0123456789abcdef0", "x=0123456789abcdef"}) {
+      Request request = get(path);
+      request.query = query;
+      EXPECT_EQ(status(request), 403) << path << " " << query;
+    }
+  }
+  Request script = get("/main.js");
+  script.query = "";
+  EXPECT_EQ(status(script), 200);
+}
+
+TEST_F(ConsoleRequests, AnotherHostOrOriginGetsNothing) {
+  for (const char* host :
+       {"", "evil:7320", "127.0.0.1", "127.0.0.1:7321", "localhost:80", "127.0.0.1.evil:7320"}) {
+    Request request = get("/");
+    request.host = host;
+    EXPECT_EQ(status(request), 403) << host;
+  }
+  for (const char* origin : {"null", "http://evil", "http://127.0.0.1:7321", "https://127.0.0.1:7320"}) {
+    Request request = get("/api/run");
+    request.origin = origin;
+    EXPECT_EQ(status(request), 403) << origin;
+  }
+  Request request = get("/api/run");
+  request.origin = "http://127.0.0.1:7320";
+  EXPECT_EQ(status(request), 200);
+  request.host = "localhost:7320";
+  request.origin = "http://localhost:7320";
+  EXPECT_EQ(status(request), 200);
+}
+
+TEST_F(ConsoleRequests, WrongOnesSayWhatIsWrong) {
+  for (const char* query : {"", "k=", "k=-1", "k=x", "k=1x", "k=99999999999999999999", "kk=1"}) {
+    const Answer answer = requests_.answer(get("/api/step", query), kPort);
+    EXPECT_EQ(answer.status, 400) << query;
+    EXPECT_NE(answer.body.find("k=NUMBER"), std::string::npos);
+  }
+  EXPECT_EQ(status(get("/api/step", "k=18446744073709551615")), 404);
+  EXPECT_EQ(status(get("/api/steps", "from=")), 400);
+  EXPECT_EQ(status(get("/../main.cpp")), 404);
+  Request request = get("/api/run");
+  request.method = "PUT";
+  EXPECT_EQ(status(request), 405);
+}
+
+TEST_F(ConsoleRequests, ATelecommandIsCheckedAndSentAsBytes) {
+  const auto post = [](const std::string& path, const std::string& body) {
+    Request request = get(path);
+    request.method = "POST";
+    request.body = body;
+    return request;
+  };
+  EXPECT_EQ(
+      requests_.answer(post("/api/command", R"({"name":"SET_MODE","arguments":{"mode":"2"}})"), kPort).body,
+      R"({"step":1})");
+  EXPECT_EQ(run_.asked, R"({"function":3,"arguments":"02"})");
+  EXPECT_EQ(status(post("/api/command", R"({"function":99,"bytes":"ff"})")), 200);
+  EXPECT_EQ(run_.asked, R"({"function":99,"arguments":"ff"})");
+  EXPECT_EQ(status(post("/api/fault", R"({"fault":"freeze","steps":5})")), 200);
+  EXPECT_EQ(run_.asked, R"({"fault":"freeze","steps":5})");
+  const Answer wrong =
+      requests_.answer(post("/api/command", R"({"name":"SET_MODE","arguments":{"mode":"9"}})"), kPort);
+  EXPECT_EQ(wrong.status, 400);
+  EXPECT_EQ(wrong.body, "SET_MODE: mode '9' must be a whole number from 1 to 3\n");
+  for (const char* body : {"", "x", "[]", "{}", R"({"name":3,"arguments":{}})", R"({"name":"NOOP"})"})
+    EXPECT_EQ(status(post("/api/command", body)), 400) << body;
+  EXPECT_EQ(status(post("/api/run", "{}")), 404);
+  run_.answers = false;
+  EXPECT_EQ(status(post("/api/fault", R"({"fault":"freeze","steps":5})")), 409);
+  Request foreign = post("/api/command", R"({"name":"NOOP","arguments":{}})");
+  foreign.origin = "http://evil";
+  EXPECT_EQ(status(foreign), 403);
+}
+
+TEST_F(ConsoleRequests, ThePageComesWithItsFilesAndLibraries) {
+  const Answer page = requests_.answer(get("/"), kPort);
+  EXPECT_EQ(page.status, 200);
+  EXPECT_EQ(page.type, "text/html; charset=utf-8");
+  std::size_t files = 0;
+  for (const char* const mark : {"src=\"", "href=\""}) {
+    for (std::size_t at = page.body.find(mark); at != std::string::npos; at = page.body.find(mark, at + 1)) {
+      const std::size_t begin = at + std::strlen(mark);
+      std::string file = page.body.substr(begin, page.body.find('"', begin) - begin);
+      if (file.rfind("data:", 0) == 0) continue;
+      EXPECT_EQ(file.find("//"), std::string::npos) << file << ": nothing comes from another host";
+      if (file.front() != '/') file = "/" + file;
+      EXPECT_EQ(status(get(file)), 200) << file;
+      ++files;
+    }
+  }
+  EXPECT_GT(files, 3U);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,216 @@
+// What the console knows of a run is what the bus said, in whatever order it came.
+#include "sim/console/step_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "hal/dds/idl/hello.hpp"
+#include "sim/console/step_json.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+constexpr std::uint32_t kRun = 7;
+
+hal::dds::HelloSample hello_of(std::uint32_t run_id) {
+  hal::dds::HelloSample hello{};
+  hello.role = static_cast<std::uint8_t>(hal::dds::Role::kSimulator);
+  hello.run_id = run_id;
+  hal::dds::set_target(hello, "near_shoemaker");
+  return hello;
+}
+template <class Sample>
+Sample sample_of(std::uint32_t k, std::uint32_t run_id = kRun) {
+  Sample sample{};
+  sample.run_id = run_id;
+  sample.k = k;
+  return sample;
+}
+hal::dds::AttitudeSample attitude_of(std::uint32_t k) {
+  auto sample = sample_of<hal::dds::AttitudeSample>(k);
+  sample.time_ns = 2'700'000'000 * (k + 1LL);
+  sample.q_lrf_trf[0] = sample.pose_q_lrf_trf[0] = sample.q_lrf_trf_second[0] = 1 << 30;
+  sample.predicted_error_urad = 17'453;
+  sample.pose_origin_lrf_um[1] = 30'000'000;
+  return sample;
+}
+hal::dds::StepDoneSample done_of(std::uint32_t k, std::uint8_t events = 0) {
+  auto done = sample_of<hal::dds::StepDoneSample>(k);
+  done.attitudes = done.telemetries = 1;
+  done.events = events;
+  return done;
+}
+// Turned by 60 degrees about the boresight.
+hal::dds::TruthSample truth_of(std::uint32_t k) {
+  auto truth = sample_of<hal::dds::TruthSample>(k);
+  truth.q_lrf_trf[0] = std::sqrt(0.75F);
+  truth.q_lrf_trf[2] = 0.5F;
+  truth.range_m = 31.0F;
+  return truth;
+}
+
+class Log : public testing::Test {
+ protected:
+  Log() { log_.add(hello_of(kRun)); }
+  void add_step(std::uint32_t k) {
+    log_.add(attitude_of(k));
+    log_.add(sample_of<hal::dds::TelemetrySample>(k));
+    log_.add(done_of(k));
+  }
+  // The number of a field in a row.
+  static Json value(const Json& row, const std::string& field) {
+    const Json fields = row_fields();
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if (fields[i] == field) return row[i];
+    ADD_FAILURE() << field;
+    return nullptr;
+  }
+  StepLog log_;
+};
+
+TEST_F(Log, HasAStepAsSoonAsAllOfItHasCome) {
+  log_.add(done_of(0, 1));
+  log_.add(sample_of<hal::dds::TelemetrySample>(0));
+  log_.add(attitude_of(0));
+  EXPECT_EQ(log_.state().steps, 0U);
+  log_.add(sample_of<hal::dds::EventSample>(0));
+  EXPECT_EQ(log_.state().steps, 1U);
+  EXPECT_EQ(log_.rows(0)["events"].size(), 1U);
+}
+
+// Its topics have no order among each other.
+TEST_F(Log, AStepWaitsForItsTruthIfTheRunHasOne) {
+  log_.add(truth_of(0));
+  add_step(0);
+  add_step(1);
+  EXPECT_EQ(log_.state().steps, 1U);
+  log_.add(truth_of(1));
+  EXPECT_EQ(log_.state().steps, 2U);
+  EXPECT_FALSE(value(log_.rows(1)["rows"][0], "network_error_deg").is_null());
+}
+
+TEST_F(Log, TheTruthOfTheFirstStepMayComeAfterIt) {
+  add_step(0);
+  EXPECT_EQ(log_.state().steps, 1U);
+  log_.add(truth_of(0));
+  EXPECT_FALSE(value(log_.rows(0)["rows"][0], "network_error_deg").is_null());
+}
+
+TEST_F(Log, RowsHaveANumberOrNullForEachField) {
+  log_.add(truth_of(0));
+  add_step(0);
+  add_step(1);
+  log_.end();
+  const Json rows = log_.rows(0)["rows"];
+  ASSERT_EQ(rows.size(), 2U);
+  for (const Json& row : rows) ASSERT_EQ(row.size(), row_fields().size());
+  EXPECT_NEAR(value(rows[0], "network_error_deg").get<double>(), 60.0, 1e-4);
+  EXPECT_NEAR(value(rows[0], "network_expected_deg").get<double>(), 1.0, 1e-4);
+  EXPECT_NEAR(value(rows[0], "true_range_m").get<double>(), 31.0, 1e-4);
+  EXPECT_NEAR(value(rows[0], "pose_range_m").get<double>(), 30.0, 1e-9);
+  EXPECT_EQ(value(rows[0], "verified"), 1);
+  EXPECT_TRUE(value(rows[1], "network_error_deg").is_null());
+  EXPECT_NEAR(value(rows[1], "t_s").get<double>(), 2.7, 1e-9);
+}
+
+TEST_F(Log, AStepWhoseSampleIsLostIsShownWhenOthersFollow) {
+  log_.add(attitude_of(0));
+  for (std::uint32_t k = 1; k <= 4; ++k) add_step(k);
+  EXPECT_EQ(log_.state().steps, 5U);
+  EXPECT_TRUE(value(log_.rows(0)["rows"][0], "step_ms").is_null());
+}
+
+TEST_F(Log, AStepThatIsOnlyAnnouncedIsNone) {
+  log_.add(sample_of<hal::dds::StepSample>(0));
+  log_.end();
+  EXPECT_EQ(log_.state().steps, 0U);
+  EXPECT_TRUE(log_.state().has_ended);
+}
+
+TEST_F(Log, ACommandIsAcceptedOrRefusedByTheCounters) {
+  add_step(0);
+  auto command = sample_of<hal::dds::CommandSample>(1);
+  command.size = 8 + 1 + 24;
+  command.bytes[6] = 3;
+  command.bytes[8] = 2;
+  log_.add(command);
+  auto telemetry = sample_of<hal::dds::TelemetrySample>(1);
+  telemetry.commands_accepted = 1;
+  log_.add(telemetry);
+  log_.add(attitude_of(1));
+  log_.add(done_of(1));
+  command.k = telemetry.k = 2;
+  command.bytes[6] = 99;
+  telemetry.commands_refused = 1;
+  log_.add(command);
+  log_.add(telemetry);
+  log_.add(attitude_of(2));
+  log_.add(done_of(2));
+  const Json commands = log_.rows(0)["commands"];
+  ASSERT_EQ(commands.size(), 2U);
+  EXPECT_EQ(commands[0], Json({1, 2.7, "SET_MODE 2", "accepted"}));
+  EXPECT_EQ(commands[1][2], "FUNCTION 99 2");
+  EXPECT_EQ(commands[1][3], "refused");
+}
+
+TEST_F(Log, ALaterRunTakesThePlaceOfTheOneBefore) {
+  add_step(0);
+  log_.add(hello_of(kRun));
+  EXPECT_EQ(log_.state().steps, 1U);
+  log_.end();
+  log_.add(hello_of(8));
+  EXPECT_EQ(log_.state().steps, 0U);
+  EXPECT_FALSE(log_.state().has_ended);
+  log_.add(attitude_of(0));  // of the run before
+  log_.end();
+  EXPECT_EQ(log_.state().steps, 0U);
+}
+
+TEST_F(Log, ALateConsoleNumbersItsStepsFromZero) {
+  for (std::uint32_t k = 40; k < 45; ++k) add_step(k);
+  EXPECT_EQ(log_.state().steps, 5U);
+  EXPECT_EQ(log_.k_of(2), 42);
+  EXPECT_EQ(log_.number_of(44), 4U);
+  EXPECT_EQ(log_.k_of(5), -1);
+}
+
+TEST_F(Log, RowsBeginWhereTheyAreAskedFor) {
+  for (std::uint32_t k = 0; k < 10; ++k) add_step(k);
+  const Json rows = log_.rows(7);
+  EXPECT_EQ(rows["from"], 7);
+  EXPECT_EQ(rows["to"], 10);
+  EXPECT_EQ(rows["rows"].size(), 3U);
+  EXPECT_EQ(rows["rows"][0][0], 7);
+  EXPECT_TRUE(log_.rows(100)["rows"].empty());
+  EXPECT_TRUE(log_.step(10).is_null());
+}
+
+TEST_F(Log, ADetailHasTheAttitudesThePoseAndEveryCounter) {
+  log_.add(truth_of(0));
+  auto attitude = attitude_of(0);
+  attitude.pose_doubts = hal::kPoseDoubtAmbiguous;
+  attitude.second_odds_ppm = 250'000;
+  log_.add(attitude);
+  auto telemetry = sample_of<hal::dds::TelemetrySample>(0);
+  telemetry.mode = static_cast<std::uint8_t>(hal::Mode::kSafe);
+  telemetry.faults_persisting = 1U << static_cast<int>(hal::Fault::kFrameFrozen);
+  telemetry.cycles = 12;
+  log_.add(telemetry);
+  log_.add(done_of(0));
+  const Json step = log_.step(0);
+  EXPECT_EQ(step["pose"]["doubts"][0], "another attitude explains it too");
+  EXPECT_NEAR(step["second"]["odds"].get<double>(), 0.25, 1e-9);
+  EXPECT_EQ(step["telemetry"]["cycles"], 12);
+  bool has_mode = false, has_fault = false;
+  for (const Json& light : step["lights"]) {
+    has_mode |= light["name"] == "mode" && light["text"] == "SAFE" && light["state"] == "alarm";
+    has_fault |= light["name"] == "faults" && light["text"] == "FRAME_FROZEN";
+  }
+  EXPECT_TRUE(has_mode);
+  EXPECT_TRUE(has_fault);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,119 @@
+#include "sim/recording/mcap_writer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/support/mcap_reader.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Mcap : public testing::Test {
+ protected:
+  TemporaryFolder folder_;
+  std::string path_ = folder_.path("run.mcap");
+};
+
+// Verifies TS-SIL-190.
+TEST_F(Mcap, HasWhatWasWrittenWithChecksumsAndIndices) {
+  McapWriter writer(path_, "test");
+  const McapId schema = writer.add_schema("Number", "jsonschema", R"({"type":"object"})");
+  const McapId first = writer.add_channel("/first", "json", schema);
+  const McapId second = writer.add_channel("/second", "json", schema);
+  const std::string large(400'000, 'x');  // three make a chunk
+  for (int i = 0; i < 10; ++i) writer.write(first, 1000 - i, large + std::to_string(i));
+  writer.write(second, 7, R"({"a":1})");
+  writer.close();
+  const std::string bytes = bytes_of(path_);
+  const McapReader reader(bytes);
+  ASSERT_EQ(reader.messages.size(), 11U);
+  EXPECT_EQ(reader.messages_in_statistics, 11U);
+  EXPECT_EQ(reader.chunks(), 4U);
+  EXPECT_EQ(reader.schemas.at(schema), "Number");
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    EXPECT_EQ(reader.messages[i].topic, "/first");
+    EXPECT_EQ(reader.messages[i].sequence, i);
+    EXPECT_EQ(reader.messages[i].time_ns, 1000 - i);
+    EXPECT_EQ(reader.messages[i].data, large + std::to_string(i));
+  }
+  EXPECT_EQ(reader.messages[10].topic, "/second");
+  EXPECT_EQ(reader.messages[10].sequence, 0U);
+  EXPECT_EQ(reader.messages[10].data, R"({"a":1})");
+}
+
+TEST_F(Mcap, WithoutAMessageIsAValidFile) {
+  McapWriter(path_, "test").close();
+  const std::string bytes = bytes_of(path_);
+  EXPECT_TRUE(McapReader(bytes).messages.empty());
+}
+
+// Of a program that is killed: chunks are on the disk as soon as they are full.
+TEST_F(Mcap, WithoutItsEndHasEveryChunkThatWasWritten) {
+  McapWriter writer(path_, "test");
+  const McapId channel = writer.add_channel("/a", "json", writer.add_schema("A", "jsonschema", "{}"));
+  const std::string large(600'000, 'x');
+  for (int i = 0; i < 5; ++i) writer.write(channel, i, large);
+  const std::string bytes = bytes_of(path_);
+  EXPECT_EQ(McapReader(bytes, false).messages.size(), 4U);
+}
+
+TEST_F(Mcap, ThatCannotBeWrittenIsNamed) {
+  try {
+    McapWriter writer(folder_.path("none/run.mcap"), "test");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("/none/run.mcap': cannot be written: No such file"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+// Every write to this device fails as on a full disk.
+TEST_F(Mcap, AFullDiskIsAnError) {
+  EXPECT_THROW(McapWriter("/dev/full", "test"), std::runtime_error);
+}
+
+TEST_F(Mcap, AMessageOfAnUnknownChannelOrBeforeTimeZeroIsAMistakeOfTheCaller) {
+  McapWriter writer(path_, "test");
+  const McapId channel = writer.add_channel("/a", "json", writer.add_schema("A", "jsonschema", "{}"));
+  EXPECT_THROW(writer.write(static_cast<McapId>(channel + 1), 0, "{}"), std::runtime_error);
+  EXPECT_THROW(writer.write(channel, -1, "{}"), std::runtime_error);
+}
+
+// A run may pause, or its flight program hang, before it is killed.
+TEST_F(Mcap, AMessageIsInTheFileASecondAfterItCameAtTheLatest) {
+  McapWriter writer(path_, "test");
+  const McapId channel =
+      writer.add_channel("/first", "json", writer.add_schema("Number", "jsonschema", "{}"));
+  writer.write(channel, 1, "1");
+  writer.write_due();
+  EXPECT_EQ(McapReader(bytes_of(path_), false).messages.size(), 0U);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1010));
+  writer.write_due();
+  EXPECT_EQ(McapReader(bytes_of(path_), false).messages.size(), 1U);
+}
+
+TEST_F(Mcap, IsWrittenByOneProgramAtATime) {
+  McapWriter writer(path_, "test");
+  writer.add_schema("A", "jsonschema", "{}");
+  const std::string before = bytes_of(path_);
+  EXPECT_THROW(McapWriter(path_, "other"), std::runtime_error);
+  EXPECT_EQ(bytes_of(path_), before);
+  writer.close();
+  McapWriter(path_, "other").close();
+  EXPECT_NE(bytes_of(path_), before);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
