@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
@@ -16,6 +17,7 @@
 #include "sim/console/bus_run.hpp"
 #include "sim/console/console_server.hpp"
 #include "sim/console/recorded_run.hpp"
+#include "sim/console/ros2_bridge.hpp"
 #include "sim/sil/interruption.hpp"
 
 namespace tumblesight::sim {
@@ -27,6 +29,7 @@ struct ConsoleArguments {
   std::string recording;  // empty: the bus
   int domain = -1;
   int port = kDefaultPort;
+  std::optional<std::uint32_t> ros2_domain;  // without: not published to ROS 2
   std::string security, model, mcap;
 };
 
@@ -46,6 +49,17 @@ std::unique_ptr<RunSource> open_run(const ConsoleArguments& arguments) {
   return std::make_unique<RecordedRun>(arguments.recording);
 }
 
+std::unique_ptr<Ros2Bridge> open_ros2(const ConsoleArguments& arguments, const RunSource& run) {
+  if (!arguments.ros2_domain) return nullptr;
+  return std::make_unique<Ros2Bridge>(run, *arguments.ros2_domain);
+}
+
+// Notes a failure that has not been told yet.
+void tell(const std::string& failure, std::string& told) {
+  if (failure != told && !failure.empty()) fmt::print(stderr, "tumblesight: {}\n", failure);
+  told = failure;
+}
+
 // The image of a target: the one given, or the one shipped if there is one.
 Requests::ModelOf model_of(const ConsoleArguments& arguments) {
   const std::string given = arguments.model;
@@ -62,6 +76,7 @@ void show(const ConsoleArguments& arguments) {
   if (!arguments.mcap.empty()) require_usable_files({}, {{"--mcap", arguments.mcap}});
   const std::unique_ptr<RunSource> run = open_run(arguments);
   const std::string token = make_token();
+  const std::unique_ptr<Ros2Bridge> ros2 = open_ros2(arguments, *run);
   const Requests requests(*run, model_of(arguments), token);
   const Interruption interruption;
   const ConsoleServer server(requests, arguments.port);
@@ -69,14 +84,16 @@ void show(const ConsoleArguments& arguments) {
       "\n  {}\n\n  http://127.0.0.1:{}/?token={}\n\n  Open this address in a browser. Ctrl-C ends the "
       "console{}.\n",
       run->title(), server.port(), token, arguments.recording.empty() ? "; the run goes on" : "");
+  if (ros2) fmt::print("  ROS 2 nodes see the run in ROS domain {}.\n", *arguments.ros2_domain);
   std::fflush(stdout);
   const auto* const bus = dynamic_cast<const BusRun*>(run.get());
-  std::string told;
+  std::string told_of_bus, told_of_ros2;
   while (Interruption::signal() == 0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    const std::string failure = bus == nullptr ? "" : bus->failure();
-    if (failure != told) fmt::print(stderr, "tumblesight: {}\n", failure);
-    told = failure;
+    if (bus != nullptr) tell(bus->failure(), told_of_bus);
+    if (!ros2) continue;
+    ros2->poll();
+    tell(ros2->failure(), told_of_ros2);
   }
 }
 
@@ -100,6 +117,13 @@ void add_console_command(CLI::App& app) {
                    "also record the run to FILE, from where the console joins it; a recording that can be "
                    "replayed is made by simulate --mcap")
       ->type_name("FILE");
+  limit_whole_number(
+      command
+          ->add_option("--ros2", arguments->ros2_domain,
+                       "also publish the run to the ROS 2 nodes of this machine with this ROS_DOMAIN_ID; "
+                       "docs/console.md has their settings")
+          ->type_name("DOMAIN"),
+      0, Ros2Bridge::kMostDomain);
   command
       ->add_option("--model", arguments->model,
                    "model image that has the target's surface and scale [the one shipped for the target]")
@@ -118,7 +142,8 @@ void add_console_command(CLI::App& app) {
       "The console may start before the run, come late or leave: the run does not wait\n"
       "for it. It answers on this machine only, and only at the address with its token.\n"
       "docs/console.md explains the page and its keys. The exit status is 0 after\n"
-      "Ctrl-C, 1 if the recording or the port cannot be used, 2 for wrong arguments.");
+      "Ctrl-C, 1 if the recording, the port or the ROS domain cannot be used, 2 for\n"
+      "wrong arguments.");
   command->callback([arguments] { show(*arguments); });
 }
 

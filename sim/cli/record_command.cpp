@@ -1,17 +1,23 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
+#include "gnc/numerics/crc.hpp"
 #include "hal/replay/recording.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/recording/make_recording.hpp"
+#include "sim/recording/recording_file.hpp"
 #include "sim/recording/truth_file.hpp"
+#include "sim/sil/frames_file.hpp"
+#include "sim/sil/recorded_steps.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
@@ -25,6 +31,7 @@ struct RecordArguments {
   ScenarioArguments scenario;
   std::string out;
   std::string truth;  // empty: beside the recording
+  std::string mcap;   // empty: none
 };
 
 // Empty: none is written. A device has nothing beside it.
@@ -35,6 +42,17 @@ std::string truth_path(const RecordArguments& arguments) {
   const std::filesystem::path out(arguments.out);
   const bool device = std::filesystem::is_other(out, error) || out.parent_path() == "/dev";
   return device ? std::string() : truth_path_of(arguments.out);
+}
+
+// The recording again, as a run without a flight program.
+void write_mcap(const RecordArguments& arguments, const std::vector<std::uint8_t>& bytes,
+                const std::vector<RecordedTruth>& rows, double swath_m) {
+  const RecordingFile recording = recording_of(bytes, arguments.out);
+  const std::vector<std::optional<RecordedTruth>> truth(rows.begin(), rows.end());
+  RecordedSteps steps(recording, truth, swath_m);
+  const std::uint32_t crc32 = gnc::crc32(recording.bytes.data(), recording.bytes.size());
+  write_frames_file(arguments.mcap, steps, arguments.scenario.target, std::max<std::uint32_t>(1, crc32),
+                    swath_m);
 }
 
 void record(const RecordArguments& arguments) {
@@ -49,7 +67,8 @@ void record(const RecordArguments& arguments) {
     throw std::runtime_error(fmt::format(
         "'{}' is the truth of an earlier recording of this name; remove it, or give another --out", beside));
   }
-  require_usable_files(files_read(wanted), {{"--out", arguments.out}, {"--truth", truth}});
+  require_usable_files(files_read(wanted),
+                       {{"--out", arguments.out}, {"--truth", truth}, {"--mcap", arguments.mcap}});
   const TargetSetup target = set_up_target_without_model(wanted);
   for (const std::string& warning : target.warnings) fmt::print(stderr, "  note: {}\n", warning);
   RecordingSettings settings;
@@ -79,10 +98,13 @@ void record(const RecordArguments& arguments) {
   hal::replay::Recording recording;
   if (recording.open(bytes.data(), bytes.size()) != hal::replay::RecordingStatus::kOk)
     throw std::logic_error("the recording that was made is not valid");
+  if (!arguments.mcap.empty()) write_mcap(arguments, bytes, rows, renderer.swath_m());
   fmt::print("\n  {}, {}: {}, {} bytes: {}\n", wanted.target, wanted.condition,
              counted(recording.frames(), "frame"), bytes.size(), full_path(arguments.out));
   fmt::print("  sensor {}, {}\n", to_string(sensor), to_string(target.ranges));
-  fmt::print("  truth: {}\n\n", truth.empty() ? kNoTruth : full_path(truth));
+  fmt::print("  truth: {}\n", truth.empty() ? kNoTruth : full_path(truth));
+  if (!arguments.mcap.empty()) fmt::print("  MCAP: {}\n", full_path(arguments.mcap));
+  fmt::print("\n");
 }
 
 }  // namespace
@@ -122,6 +144,13 @@ void add_record_command(CLI::App& app) {
   command
       ->add_option("--truth", arguments->truth,
                    "truth to write [beside the recording: FRAMES.truth.csv]; none: no truth")
+      ->check(file_path())
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--mcap", arguments->mcap,
+          "also write frames and truth as an MCAP file, for tumblesight console and replay, Foxglove, "
+          "Lichtblick or PlotJuggler")
       ->check(file_path())
       ->type_name("FILE");
   command->callback([arguments, command] {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
+#include <utility>
 
 #include "sim/sil/cdr_sample.hpp"
 #include "sim/sil/failure.hpp"
@@ -78,16 +80,34 @@ bool BusRun::take(const Connection& connection, Sample& sample) {
     any = true;
     if (!read_cdr(bytes.data(), bytes.size(), sample)) continue;
     show(sample);
-    if (!recording_) continue;
-    if constexpr (std::is_same_v<Sample, hal::dds::HelloSample>) {
-      recording_->add(topic, bytes, std::nullopt);
-    } else {
-      if constexpr (std::is_same_v<Sample, hal::dds::StepSample>)
-        recording_->add_step(sample.k, sample.time_ns);
-      recording_->add(topic, bytes, sample.k);
-    }
+    record([&](JoinedRecording& recording) {
+      if constexpr (std::is_same_v<Sample, hal::dds::HelloSample>) {
+        recording.add(topic, bytes, std::nullopt);
+      } else {
+        if constexpr (std::is_same_v<Sample, hal::dds::StepSample>)
+          recording.add_step(sample.k, sample.time_ns);
+        recording.add(topic, bytes, sample.k);
+      }
+    });
   }
   return any;
+}
+
+// A recording that fails ends. What the page shows goes on.
+template <class Action>
+void BusRun::record(const Action& action) {
+  if (!recording_) return;
+  try {
+    action(*recording_);
+  } catch (const std::exception& failure) {
+    recording_.reset();
+    note(failure.what());
+  }
+}
+
+void BusRun::note(const std::string& failure) {
+  const std::lock_guard lock(mutex_);
+  failure_ = failure;
 }
 
 // What the page shows; other samples are only recorded.
@@ -136,7 +156,7 @@ void BusRun::follow(const Connection& connection) {
     dds_attach_t triggered[1];
     dds_waitset_wait(connection.waitset, triggered, 1, kPoll);
     const bool any = take_samples(connection);
-    if (recording_) recording_->poll();
+    record([](JoinedRecording& recording) { recording.poll(); });
     const bool has_simulator = dds_get_matched_publications(steps, nullptr, 0) > 0;
     had_simulator |= has_simulator;
     if (had_simulator ? !has_simulator && !any : std::chrono::steady_clock::now() > give_up) break;
@@ -146,11 +166,11 @@ void BusRun::follow(const Connection& connection) {
 
 // Of the first run that is seen.
 void BusRun::begin_recording() {
-  if (!mcap_path_.empty()) recording_ = std::make_unique<JoinedRecording>(mcap_path_, *this);
-  mcap_path_.clear();
+  const std::string path = std::exchange(mcap_path_, {});
+  if (!path.empty()) recording_ = std::make_unique<JoinedRecording>(path, *this);
 }
 void BusRun::end_recording() {
-  if (recording_) recording_->close();
+  record([](JoinedRecording& recording) { recording.close(); });
   recording_.reset();
 }
 
@@ -176,10 +196,10 @@ void BusRun::look_for_runs() {
         begin_recording();
         follow(*connection);
         end_recording();
-      } catch (const std::runtime_error& failure) {  // of the bus or the recording
-        const std::lock_guard lock(mutex_);
-        failure_ = failure.what();
+      } catch (const std::exception& failure) {  // of the bus, or of the start of the recording
+        note(failure.what());
         recording_.reset();
+        log_.end();
       }
       join(std::nullopt);
     }
@@ -213,7 +233,9 @@ std::uint64_t BusRun::first_frame() const {
 
 bool BusRun::frame(std::uint64_t step, gnc::RangeImage& frame) const {
   const std::int64_t k = log_.k_of(step);
+  const std::uint32_t run = log_.state().run_id;
   const std::lock_guard lock(mutex_);
+  if (run != run_of_frames_) return false;  // of the run before
   const auto found =
       std::find_if(frames_.rbegin(), frames_.rend(), [k](const KeptFrame& kept) { return kept.k == k; });
   if (found == frames_.rend()) return false;

@@ -62,6 +62,9 @@ class BusRun final : public RunSource {
   void keep(const hal::dds::LidarFrameSample& sample);
   void follow(const Connection& connection);
   void join(std::optional<std::uint32_t> domain);
+  template <class Action>
+  void record(const Action& action);
+  void note(const std::string& failure);
   void begin_recording();
   void end_recording();
   void look_for_runs();

@@ -53,7 +53,9 @@ Outgoing advertisement() {
 }
 
 Outgoing status(int level, const std::string& what) {
-  return {false, Json{{"op", "status"}, {"level", level}, {"message", what}}.dump()};
+  // A file name in it need not be UTF-8.
+  return {false, Json{{"op", "status"}, {"level", level}, {"message", what}}.dump(
+                     -1, ' ', false, Json::error_handler_t::replace)};
 }
 
 Outgoing data_of(std::uint32_t subscription, std::int64_t time_ns, const std::string& payload) {
@@ -205,10 +207,13 @@ void FoxgloveSession::add_message(const LoggedStep& step, std::uint64_t number, 
       out.push_back(data_of(id, time_ns, log_json(event, time_ns)));
     return;
   }
-  if (!step.attitude) return;
-  const hal::AttitudeReport& report = *step.attitude;
-  const FrameTruth known = step.truth ? frame_truth_of(*step.truth) : FrameTruth{};
-  const FrameTruth* const truth = step.truth ? &known : nullptr;
+  hal::AttitudeReport report;
+  report.validity = hal::Validity::kNoFrame;
+  if (step.attitude) report = *step.attitude;
+  // At the time of the attitude, if there is one.
+  const auto& sample = gives_attitude(report) ? step.truth_of_attitude : step.truth;
+  const FrameTruth known = sample ? frame_truth_of(*sample) : FrameTruth{};
+  const FrameTruth* const truth = sample ? &known : nullptr;
   // Where the target was when the points were measured, as in a recording.
   const std::int64_t pose_ns = gives_attitude(report) ? shown_time_ns(report.exposure_time_ns) : time_ns;
   out.push_back(data_of(

@@ -19,6 +19,7 @@ void add_to_log(const RunFile& file, const McapReader::Entry& entry, StepLog& lo
 }  // namespace
 
 RecordedRun::RecordedRun(const std::string& path) : file_(path) {
+  if (file_.reader().entries(file_.channel<hal::dds::StepDoneSample>().id).empty()) log_.expect_no_answers();
   for (const Place& place : places_in_order()) place.add(file_, *place.entry, log_);
   log_.end();
   char run[32];

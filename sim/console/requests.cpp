@@ -11,6 +11,7 @@
 #include "sim/console/little_endian.hpp"
 #include "sim/console/page_files.hpp"
 #include "sim/console/step_json.hpp"
+#include "sim/sil/fault_table.hpp"
 #include "sim/sil/function_names.hpp"
 #include "sim/sil/telecommand_table.hpp"
 
@@ -23,6 +24,11 @@ constexpr const char* kNoToken =
 
 Answer text(int status, const std::string& what) {
   return {status, "text/plain; charset=utf-8", what + "\n"};
+}
+
+// Names come from files that anyone may have written, so that they need not be UTF-8.
+Answer json_answer(const Json& json) {
+  return {200, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace)};
 }
 
 std::optional<std::uint64_t> number_of(const std::string& query, const std::string& name) {
@@ -74,7 +80,19 @@ Answer commands_answer() {
                         {"meaning", field.meaning}});
     commands.push_back({{"name", name_of(row.function)}, {"fields", fields}});
   }
-  return {200, "application/json", commands.dump()};
+  return json_answer(commands);
+}
+
+Answer faults_answer() {
+  Json faults = Json::array();
+  for (const FaultRow& row : fault_table())
+    faults.push_back({{"name", row.name},
+                      {"explanation", row.explanation},
+                      {"unit", row.unit},
+                      {"least", row.lowest},
+                      {"most", row.highest},
+                      {"whole", row.must_be_whole}});
+  return json_answer({{"most_steps", kMostFaultSteps}, {"faults", faults}});
 }
 
 // Not a name of another host that leads here.
@@ -130,7 +148,14 @@ std::string Requests::state_text() const {
 Answer Requests::answer(const Request& request, int port) const {
   const std::string refusal = refusal_of(request, port);
   if (!refusal.empty()) return text(403, refusal);
-  if (request.method == "POST") return post_answer(request);
+  try {
+    return request.method == "POST" ? post_answer(request) : get_answer(request);
+  } catch (const std::exception& error) {  // a recording that is damaged
+    return text(500, error.what());
+  }
+}
+
+Answer Requests::get_answer(const Request& request) const {
   if (request.method != "GET" && request.method != "HEAD")
     return text(405, "only GET and POST are answered here");
   if (const PageFile* const file = page_file(request.path))
@@ -138,9 +163,10 @@ Answer Requests::answer(const Request& request, int port) const {
   if (request.path == "/api/run") return run_answer();
   if (request.path == "/api/mesh") return mesh_answer();
   if (request.path == "/api/commands") return commands_answer();
+  if (request.path == "/api/faults") return faults_answer();
   if (request.path == "/api/steps") {
     const auto from = number_of(request.query, "from");
-    return from ? Answer{200, "application/json", run_.log().rows(*from).dump()}
+    return from ? json_answer(run_.log().rows(*from))
                 : text(400, "/api/steps needs from=NUMBER, the first step that is wanted");
   }
   using Of = Answer (Requests::*)(std::uint64_t) const;
@@ -174,8 +200,7 @@ Answer Requests::post_answer(const Request& request) const {
 Answer Requests::command_answer(const Json& wanted) const {
   Json request;
   if (wanted.contains("function")) {
-    request = {{"function", wanted.at("function").get<int>()},
-               {"arguments", wanted.at("bytes").get<std::string>()}};
+    request = {{"function", wanted.at("function")}, {"arguments", wanted.at("bytes").get<std::string>()}};
   } else {
     std::map<std::string, std::string> values;
     for (const auto& [name, value] : wanted.at("arguments").items()) values[name] = value.get<std::string>();
@@ -185,10 +210,11 @@ Answer Requests::command_answer(const Json& wanted) const {
   return {200, "application/json", run_.ask(request.dump())};
 }
 
-// {"fault": "freeze", "steps": 5}
+// {"fault": "freeze", "steps": 5}, {"fault": "debris", "strength": 1.5, "steps": 5}
 Answer Requests::fault_answer(const Json& wanted) const {
-  const Json request{{"fault", wanted.at("fault").get<std::string>()},
-                     {"steps", wanted.at("steps").get<int>()}};
+  // The run checks the numbers.
+  Json request{{"fault", wanted.at("fault").get<std::string>()}, {"steps", wanted.at("steps")}};
+  if (wanted.contains("strength")) request["strength"] = wanted.at("strength");
   return {200, "application/json", run_.ask(request.dump())};
 }
 
@@ -197,27 +223,25 @@ Answer Requests::run_answer() const {
   const auto drawn = target();
   Json radius;
   if (drawn) radius = drawn->radius_m();
-  return {200, "application/json",
-          Json{{"source", run_.kind()},
-               {"run", state.run_id},
-               {"title", run_.title()},
-               {"target", run_.log().target()},
-               {"target_radius_m", radius},
-               {"period_s", 2.7},
-               {"steps", state.steps},
-               {"ended", state.has_ended},
-               {"first_frame", run_.first_frame()},
-               {"whole", run_.is_whole()},
-               {"fields", row_fields()},
-               {"modes", {{"0", "BOOT"}, {"1", "STANDBY"}, {"2", "RUN"}, {"3", "SAFE"}}}}
-              .dump()};
+  return json_answer({{"source", run_.kind()},
+                      {"run", state.run_id},
+                      {"title", run_.title()},
+                      {"target", run_.log().target()},
+                      {"target_radius_m", radius},
+                      {"period_s", 2.7},
+                      {"steps", state.steps},
+                      {"ended", state.has_ended},
+                      {"first_frame", run_.first_frame()},
+                      {"whole", run_.is_whole()},
+                      {"fields", row_fields()},
+                      {"modes", {{"0", "BOOT"}, {"1", "STANDBY"}, {"2", "RUN"}, {"3", "SAFE"}}}});
 }
 
 Answer Requests::step_answer(std::uint64_t step) const {
   const Json detail = run_.log().step(step);
   if (detail.is_null())
     return text(404, "there is no step " + std::to_string(step) + ", or it is no longer kept");
-  return {200, "application/json", detail.dump()};
+  return json_answer(detail);
 }
 
 Answer Requests::frame_answer(std::uint64_t step) const {

@@ -43,6 +43,7 @@ class Requests {
   std::string state_text() const;
 
  private:
+  Answer get_answer(const Request& request) const;
   Answer run_answer() const;
   Answer step_answer(std::uint64_t step) const;
   Answer frame_answer(std::uint64_t step) const;

@@ -61,8 +61,8 @@ Figures figures_of_truth(const LoggedStep& step) {
   figures.true_rate_deg_s = kDegrees * vector_of(truth.rate_lrf_rad_s, 1.0).norm();
   figures.sequence = truth.sequence_index;
   figures.frame = truth.frame_index;
-  if (!step.attitude || !has_attitude(*step.attitude)) return figures;
-  const Eigen::Quaterniond q = true_attitude(truth);
+  if (!step.truth_of_attitude) return figures;
+  const Eigen::Quaterniond q = true_attitude(*step.truth_of_attitude);
   figures.network_error_deg = kDegrees * q.angularDistance(quaternion_of(step.attitude->q_lrf_trf));
   if (has_pose(*step.attitude))
     figures.pose_error_deg = kDegrees * q.angularDistance(quaternion_of(step.attitude->pose_q_lrf_trf));
@@ -307,10 +307,12 @@ Json row_of(const LoggedStep& step, double seconds) {
 Json detail_of(const LoggedStep& step, double seconds) {
   Json detail{{"k", step.k},        {"t_s", seconds},    {"frames", step.frames}, {"truth", nullptr},
               {"network", nullptr}, {"second", nullptr}, {"pose", nullptr}};
-  if (step.truth)
-    detail["truth"] = {{"q", json_of(true_attitude(*step.truth))},
-                       {"range_m", step.truth->range_m},
-                       {"rate_deg_s", json_of(vector_of(step.truth->rate_lrf_rad_s, kDegrees))}};
+  // At the time of what else is shown.
+  const auto& truth = step.truth_of_attitude ? step.truth_of_attitude : step.truth;
+  if (truth)
+    detail["truth"] = {{"q", json_of(true_attitude(*truth))},
+                       {"range_m", truth->range_m},
+                       {"rate_deg_s", json_of(vector_of(truth->rate_lrf_rad_s, kDegrees))}};
   Json lights = Json::array();
   if (step.attitude) {
     add_attitude(*step.attitude, detail);

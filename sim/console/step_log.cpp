@@ -6,12 +6,14 @@
 #include "hal/dds/idl/sample_fields.hpp"
 #include "sim/console/step_json.hpp"
 #include "sim/sil/event_texts.hpp"
+#include "sim/sil/sil_run.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 // Steps that may wait for samples that are still on their way: topics have no order among each other.
 constexpr std::size_t kMostWaiting = 4;
+constexpr std::size_t kTruthsKept = 64;
 constexpr std::size_t kMostEvents = 100'000, kMostCommands = 20'000;
 
 template <class List>
@@ -29,6 +31,7 @@ auto from_step(const List& list, std::uint64_t step) {
 
 bool StepLog::is_complete(const Pending& pending) const {
   const auto& done = pending.done;
+  if (!expects_answers_) return pending.has_step && (!has_truth_ || pending.step.truth);
   if ((has_steps_ && !pending.has_step) || (has_truth_ && !pending.step.truth)) return false;
   return done && pending.attitudes >= done->attitudes && pending.telemetries >= done->telemetries &&
          pending.events >= done->events;
@@ -44,6 +47,7 @@ void StepLog::add(const hal::dds::HelloSample& hello) {
   target_ = hal::dds::target_of(hello).text;
   pending_.clear();
   steps_.clear();
+  truths_.clear();
   events_.clear();
   commands_.clear();
   first_step_ = 0;
@@ -60,6 +64,8 @@ StepLog::Pending* StepLog::pending_of(const Sample& sample) {
 
 void StepLog::add(const hal::dds::TruthSample& sample) {
   const std::lock_guard lock(mutex_);
+  if (is_bound_ && sample.run_id == run_id_) truths_.push_back(sample);
+  keep_newest(truths_, kTruthsKept);
   Pending* const pending = pending_of(sample);
   if (pending == nullptr) return add_late(sample);
   pending->step.truth = sample;
@@ -73,7 +79,20 @@ void StepLog::add_late(const hal::dds::TruthSample& sample) {
   has_truth_ = true;
   const auto found = std::find_if(steps_.rbegin(), steps_.rend(),
                                   [&sample](const LoggedStep& step) { return step.k <= sample.k; });
-  if (found != steps_.rend() && found->k == sample.k) found->truth = sample;
+  if (found == steps_.rend() || found->k != sample.k) return;
+  found->truth = sample;
+  found->truth_of_attitude = truth_at_exposure(*found);
+}
+
+// The truth of a step has the time of the frame that its sensor took. An answer may be to an earlier frame:
+// of a flight program on its own timer, or of a sensor that delivers late.
+std::optional<hal::dds::TruthSample> StepLog::truth_at_exposure(const LoggedStep& step) const {
+  if (!step.attitude || !gives_attitude(*step.attitude)) return std::nullopt;
+  const auto found =
+      std::find_if(truths_.rbegin(), truths_.rend(), [&step](const hal::dds::TruthSample& truth) {
+        return truth.time_ns == step.attitude->exposure_time_ns;
+      });
+  return found == truths_.rend() ? std::nullopt : std::optional<hal::dds::TruthSample>(*found);
 }
 
 void StepLog::add(const hal::dds::StepSample& sample) {
@@ -96,7 +115,8 @@ void StepLog::add(const hal::dds::AttitudeSample& sample) {
   Pending* const pending = pending_of(sample);
   if (pending == nullptr) return;
   hal::dds::copy_attitude_fields(sample, pending->step.attitude.emplace());
-  pending->step.time_ns = sample.time_ns;
+  // In a free run that of the flight program's cycle, which is another.
+  if (!pending->has_step) pending->step.time_ns = sample.time_ns;
   ++pending->attitudes;
   take_complete(kMostWaiting);
 }
@@ -138,16 +158,21 @@ void StepLog::take_complete(std::size_t most_waiting) {
   while (!pending_.empty()) {
     const auto oldest = pending_.begin();
     if (!is_complete(oldest->second) && pending_.size() <= most_waiting) return;
-    // What a simulator announced and nobody has answered yet is no step.
-    if (oldest->second.step.attitude || oldest->second.done) take(oldest->second);
+    if (is_step(oldest->second)) take(oldest->second);
     next_k_ = oldest->first + 1;
     pending_.erase(oldest);
   }
 }
 
+// What a simulator announced and nobody has answered yet is none.
+bool StepLog::is_step(const Pending& pending) const {
+  return expects_answers_ ? pending.step.attitude || pending.done : pending.has_step;
+}
+
 void StepLog::take(const Pending& pending) {
   if (steps_.empty() && first_step_ == 0) first_time_ns_ = pending.step.time_ns;
   steps_.push_back(pending.step);
+  steps_.back().truth_of_attitude = truth_at_exposure(pending.step);
   const std::uint64_t number = first_step_ + steps_.size() - 1;
   for (const hal::Event& event : pending.event_list) events_.push_back({number, event});
   const std::string outcome = outcome_of_commands(pending.step);
@@ -162,9 +187,15 @@ void StepLog::take(const Pending& pending) {
 
 // By the counters of the telemetry before and after.
 std::string StepLog::outcome_of_commands(const LoggedStep& step) const {
-  const hal::Telemetry before =
-      steps_.size() < 2 ? hal::Telemetry{} : steps_[steps_.size() - 2].telemetry.value_or(hal::Telemetry{});
-  if (!step.telemetry) return "sent";
+  const bool is_first = steps_.size() < 2;
+  hal::Telemetry before;
+  if (!is_first) before = steps_[steps_.size() - 2].telemetry.value_or(hal::Telemetry{});
+  // Of a late console's first step nothing is known before.
+  if (!step.telemetry || (is_first && step.k > 0)) return "sent";
+  // RESET_COUNTERS begins them again.
+  const bool is_reset = step.telemetry->commands_refused < before.commands_refused ||
+                        step.telemetry->commands_accepted < before.commands_accepted;
+  if (is_reset) before.commands_refused = before.commands_accepted = 0;
   if (step.telemetry->commands_refused == before.commands_refused) return "accepted";
   return step.telemetry->commands_accepted == before.commands_accepted ? "refused" : "in part refused";
 }

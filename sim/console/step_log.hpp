@@ -27,6 +27,9 @@ struct LoggedStep {
   std::int64_t time_ns = 0;
   std::uint32_t frames = 0;  // that were sent for it
   std::optional<hal::dds::TruthSample> truth;
+  // At the exposure of the frame that the attitude is from, which need not be one of this step. Nothing:
+  // there is no attitude, or the truth at its exposure is not known.
+  std::optional<hal::dds::TruthSample> truth_of_attitude;
   std::optional<hal::AttitudeReport> attitude;
   std::optional<hal::Telemetry> telemetry;
 };
@@ -46,6 +49,8 @@ class StepLog {
   void add(const hal::dds::TelemetrySample& sample);
   void add(const hal::dds::EventSample& sample);
   void add(const hal::dds::StepDoneSample& sample);
+  // Before the first sample: no flight program answers, so that a step is complete without an answer.
+  void expect_no_answers() { expects_answers_ = false; }
   // No sample follows: steps that wait for more are shown as they are.
   void end();
 
@@ -96,7 +101,9 @@ class StepLog {
   bool is_complete(const Pending& pending) const;
   void take_complete(std::size_t most_waiting);
   void take(const Pending& pending);
+  bool is_step(const Pending& pending) const;
   void add_late(const hal::dds::TruthSample& sample);
+  std::optional<hal::dds::TruthSample> truth_at_exposure(const LoggedStep& step) const;
   std::string outcome_of_commands(const LoggedStep& step) const;
   double seconds_of(std::int64_t time_ns) const;
   const LoggedStep* find(std::uint64_t number) const;  // null: there is no such step
@@ -107,12 +114,14 @@ class StepLog {
   // In which there are samples of these topics: a step waits for its own.
   bool has_steps_ = false, has_truth_ = false;
   bool has_ended_ = false;
+  bool expects_answers_ = true;
   std::string target_;
   std::map<std::uint32_t, Pending> pending_;  // by k
   std::uint32_t next_k_ = 0;                  // samples of earlier steps are too late
   std::deque<LoggedStep> steps_;
   std::uint64_t first_step_ = 0;  // number of steps_.front()
   std::int64_t first_time_ns_ = 0;
+  std::deque<hal::dds::TruthSample> truths_;  // the newest
   std::deque<LoggedEvent> events_;
   std::deque<LoggedCommand> commands_;
 };

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -71,17 +72,28 @@ class Content {
 }  // namespace
 
 McapWriter::McapWriter(std::string path, const std::string& library)
-    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "ab"), &std::fclose) {
-  if (!file_) fail(std::string("cannot be written: ") + std::strerror(errno));
-  // Not emptied before it is ours alone. A device can be neither locked nor emptied.
-  if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    fail("another program is writing it; give another name");
+    : path_(std::move(path)), file_(nullptr, &std::fclose) {
+  open_alone(path_);
   struct stat status {};
-  if (fstat(fileno(file_.get()), &status) == 0 && S_ISREG(status.st_mode) &&
-      ftruncate(fileno(file_.get()), 0) != 0)
-    fail(std::string("cannot be emptied: ") + std::strerror(errno));
+  if (fstat(fileno(file_.get()), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0) replace();
   put({kMagic.begin(), kMagic.end()});
   put(Content().text("").text(library).as(Record::kHeader));
+}
+
+// Not emptied before it is ours alone. A device can be neither locked nor emptied.
+void McapWriter::open_alone(const std::string& path) {
+  file_.reset(std::fopen(path.c_str(), "ab"));
+  if (!file_) fail(std::string("cannot be written: ") + std::strerror(errno));
+  if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    fail("another program is writing it; give another name");
+}
+
+// Another file takes the place of the old one, which a console may still show. Where that cannot be, it is
+// emptied.
+void McapWriter::replace() {
+  const std::unique_ptr<char, void (*)(void*)> resolved(realpath(path_.c_str(), nullptr), &std::free);
+  if (resolved && unlink(resolved.get()) == 0) return open_alone(resolved.get());
+  if (ftruncate(fileno(file_.get()), 0) != 0) fail(std::string("cannot be emptied: ") + std::strerror(errno));
 }
 
 McapWriter::~McapWriter() {

@@ -24,8 +24,9 @@ using McapId = std::uint16_t;  // of a schema or a channel, from 1 on
 
 class McapWriter {
  public:
-  // Creates the file or replaces it. Throws std::runtime_error, as all functions do, that names the file and
-  // what is wrong. `library`: the program that writes.
+  // Creates the file, or another one in place of it: who has the old one open keeps it. Throws
+  // std::runtime_error, as all functions do, that names the file and what is wrong. `library`: the program
+  // that writes.
   McapWriter(std::string path, const std::string& library);
   ~McapWriter();  // closes as far as it can
   McapWriter(const McapWriter&) = delete;
@@ -60,6 +61,8 @@ class McapWriter {
   };
   using Bytes = std::vector<std::uint8_t>;
 
+  void open_alone(const std::string& path);
+  void replace();
   void put(const Bytes& bytes);
   void write_chunk();
   Bytes statistics() const;

@@ -36,8 +36,12 @@ Recording RecordingFile::open() const {
 }
 
 RecordingFile read_recording(const std::string& path) {
+  return recording_of(read_bytes(path), path);
+}
+
+RecordingFile recording_of(std::vector<std::uint8_t> bytes, const std::string& path) {
   RecordingFile file;
-  file.bytes = read_bytes(path);
+  file.bytes = std::move(bytes);
   Recording recording;
   const RecordingStatus status = recording.open(file.bytes.data(), file.bytes.size());
   if (status != RecordingStatus::kOk) refuse(path, to_string(status));

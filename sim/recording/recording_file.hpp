@@ -26,6 +26,8 @@ struct RecordingFile {
 // Reads the file and every frame in it. Throws std::runtime_error that names file, reason and remedy if it is
 // no recording, is damaged, has no frame, or has fewer frames than its header says.
 RecordingFile read_recording(const std::string& path);
+// The same of bytes that are to be written to `path`, or were read from it.
+RecordingFile recording_of(std::vector<std::uint8_t> bytes, const std::string& path);
 
 // The truth of each frame, in the order of the recording; nothing where the table has no row. Throws
 // std::runtime_error that names file, line and remedy if a row belongs to no frame. `name`: of the truth's

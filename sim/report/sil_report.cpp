@@ -115,6 +115,7 @@ FactList outcome_facts(const SilRunResult& run, const FlightSetup& setup) {
                 {"trace CRC-32", fmt::format("{:08x}", run.trace_crc32)},
                 {"model", file_name(setup.model_path)},
                 {"model CRC-32", setup.model_crc32}};
+  if (!run.requests.empty()) list.facts.emplace_back("requests while it ran", text_of(run.requests));
   return list;
 }
 
@@ -189,6 +190,15 @@ std::string text_of(const std::vector<StandingFault>& faults) {
     text += fmt::format("{}{} in {} of {}", text.empty() ? "" : ", ", name_of(one.fault),
                         counted(one.steps, "step"), counted(one.sequences, "sequence"));
   }
+  return text.empty() ? "none" : text;
+}
+
+std::string text_of(const std::vector<RunRequest>& requests) {
+  constexpr std::size_t kMostShown = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(requests.size(), kMostShown); ++i)
+    text += fmt::format("{}step {}: {}", i == 0 ? "" : "; ", requests[i].step, requests[i].what);
+  if (requests.size() > kMostShown) text += fmt::format("; and {} more", requests.size() - kMostShown);
   return text.empty() ? "none" : text;
 }
 
@@ -293,6 +303,9 @@ nlohmann::ordered_json outcome_json(const SilRunResult& run) {
   json["frames_superseded"] = run.frames_superseded;
   json["trace_crc32"] = run.trace_crc32;
   json["faults"] = faults_json(standing_faults(run));
+  json["requests"] = nlohmann::ordered_json::array();
+  for (const RunRequest& request : run.requests)
+    json["requests"].push_back({{"step", request.step}, {"request", request.what}});
   return json;
 }
 
@@ -328,7 +341,7 @@ RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,
   report.results = frame_results(run, swath_m_of(setup), setup.symmetry);
   report.pictures = depth_pictures(run, setup.projection);
   if (to_string(setup.effects).empty() && setup.sensor.is_the_papers() && setup.ranges.are_the_papers() &&
-      setup.symmetry.is_none())
+      setup.symmetry.is_none() && run.requests.empty())
     report.paper = paper_figures(setup.target, condition_from(setup.condition), setup.disturbances);
   report.steps_planned = run.steps_planned;
   report.steps_missed = run.steps_missed;

@@ -61,6 +61,9 @@ std::vector<StandingFault> standing_faults(const SilRunResult& run);
 // "FRAME_FROZEN in 12 steps of 4 sequences, OUTAGE in 1 step of 1 sequence"; "none" without one.
 std::string text_of(const std::vector<StandingFault>& faults);
 
+// "step 41: debris 1.5 m for 5 steps", several with a semicolon between them; the first ones of many; "none".
+std::string text_of(const std::vector<RunRequest>& requests);
+
 nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& run,
                                 const std::optional<NumericsComparison>& numerics = {});
 RunReport run_report(const SilRunSetup& setup, const SilRunResult& run,

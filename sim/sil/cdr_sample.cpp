@@ -40,6 +40,19 @@ bool read_cdr(const hal::dds::Topic& topic, const std::uint8_t* bytes, std::size
   return true;
 }
 
+std::vector<std::uint8_t> cdr_of(const hal::dds::Topic& topic, const void* sample) {
+  std::vector<std::uint8_t> bytes{0, kLittleEndian, 0, 0};
+  dds_ostreamLE_t stream;
+  dds_ostreamLE_init(&stream, 0, kXcdrVersion);
+  dds_stream_writeLE(&stream, static_cast<const char*>(sample), topic.type->m_ops);
+  bytes.insert(bytes.end(), stream.x.m_buffer, stream.x.m_buffer + stream.x.m_index);
+  dds_ostreamLE_fini(&stream);
+  // The header says by how many bytes the content is padded to a multiple of four.
+  bytes[3] = static_cast<std::uint8_t>((4 - bytes.size() % 4) % 4);
+  bytes.resize(bytes.size() + bytes[3]);
+  return bytes;
+}
+
 gnc::RangeImage frame_of(const hal::dds::LidarFrameSample& sample) {
   gnc::RangeImage frame{};
   frame.rays = sample.rays;

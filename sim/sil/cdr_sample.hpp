@@ -1,9 +1,10 @@
-// Samples of the bus out of their serialized form, as recordings keep them: an encapsulation header, then
-// CDR.
+// Samples of the bus out of their serialized form and into it, as recordings keep them: an encapsulation
+// header, then CDR.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "gnc/lidar/range_image.hpp"
 #include "hal/dds/idl/topics.hpp"
@@ -18,6 +19,13 @@ namespace tumblesight::sim {
 template <class Sample>
 [[nodiscard]] bool read_cdr(const std::uint8_t* bytes, std::size_t size, Sample& sample) {
   return read_cdr(hal::dds::topic_of<Sample>(), bytes, size, &sample);
+}
+
+// Little-endian.
+std::vector<std::uint8_t> cdr_of(const hal::dds::Topic& topic, const void* sample);
+template <class Sample>
+std::vector<std::uint8_t> cdr_of(const Sample& sample) {
+  return cdr_of(hal::dds::topic_of<Sample>(), &sample);
 }
 
 // A frame as its sample has it.

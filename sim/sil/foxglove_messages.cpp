@@ -182,7 +182,7 @@ std::string log_json(const hal::Event& event, std::int64_t time_ns) {
   const std::string message = text_of(event.id) + " [" + std::to_string(a[0]) + ", " + std::to_string(a[1]) +
                               ", " + std::to_string(a[2]) + "]";
   return Json{{"timestamp", timestamp(time_ns)},
-              {"level", kLevels[static_cast<std::size_t>(event.severity)]},
+              {"level", kLevels[std::min(static_cast<std::size_t>(event.severity), kLevels.size() - 1)]},
               {"message", message},
               {"name", "flight"},
               {"file", ""},

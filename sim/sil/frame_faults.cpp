@@ -6,8 +6,7 @@ namespace tumblesight::sim {
 
 void FrameFaults::begin(Kind kind, std::uint32_t steps) {
   kind_ = kind;
-  left_ = std::min(steps, kMostSteps);
-  applied_ = 0;
+  left_ = steps;
 }
 
 void FrameFaults::apply(StepInput& input, FrameTruth& truth) {
@@ -16,10 +15,7 @@ void FrameFaults::apply(StepInput& input, FrameTruth& truth) {
   delayed_.clear();
   // Frames that waited come first, with the one of this step behind them.
   std::vector<const gnc::RangeImage*> frames;
-  if (is_on) {
-    --left_;
-    ++applied_;
-  }
+  if (is_on) --left_;
   for (const gnc::RangeImage* frame : input.frames) {
     if (!is_on) {
       shown_.push_back(*frame);
@@ -32,11 +28,14 @@ void FrameFaults::apply(StepInput& input, FrameTruth& truth) {
     }
   }
   for (const gnc::RangeImage& frame : shown_) frames.push_back(&frame);
-  if (is_on && kind_ == Kind::kFreeze && has_last_)
-    truth.frozen_for = std::max(truth.frozen_for, applied_);
+  const bool is_frozen = is_on && kind_ == Kind::kFreeze && has_last_;
+  if (is_frozen) frozen_for_ = std::max(truth.frozen_for, frozen_for_ + 1);
+  if (!is_frozen) frozen_for_ = 0;
+  if (is_frozen)
+    truth.frozen_for = frozen_for_;
   else if (is_on && kind_ != Kind::kFreeze)
     truth.lost = true;
-  if (!shown_.empty() && !(is_on && kind_ == Kind::kFreeze)) {
+  if (!shown_.empty() && !is_frozen) {  // the first image of all is new, frozen or not
     last_ = shown_.back();
     has_last_ = true;
   }

@@ -20,9 +20,8 @@ class FrameFaults {
     kFreeze,  // the ranges of the frame before, under new numbers and times
     kDelay,   // each frame a step late
   };
-  static constexpr std::uint32_t kMostSteps = 1000;
 
-  // For the next steps, 1 to kMostSteps. It takes the place of a fault that goes on.
+  // For the next steps, at least 1. It takes the place of a fault that goes on.
   void begin(Kind kind, std::uint32_t steps);
   // Changes what a step sends, and what the truth says of the frame. Frames that `input` then has are valid
   // until the next call.
@@ -30,7 +29,8 @@ class FrameFaults {
 
  private:
   Kind kind_ = Kind::kDrop;
-  std::uint32_t left_ = 0, applied_ = 0;
+  std::uint32_t left_ = 0;        // steps
+  std::uint32_t frozen_for_ = 0;  // frames
   bool has_last_ = false;
   gnc::RangeImage last_{};               // that was sent
   std::deque<gnc::RangeImage> delayed_;  // that wait for a later step

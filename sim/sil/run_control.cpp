@@ -48,42 +48,34 @@ bool is_own_user(int socket) {
   return getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == geteuid();
 }
 
-// Throws std::invalid_argument or a JSON exception.
-void take_request(const std::string& line, FrameFaults& faults, std::vector<Telecommand>& commands) {
-  const Json request = Json::parse(line);
-  if (request.contains("fault")) {
-    FrameFaults::Kind kind{};
-    const auto steps = request.at("steps").get<std::int64_t>();
-    if (!read_fault(request.at("fault").get<std::string>(), kind))
-      throw std::invalid_argument("there is no fault '" + request.at("fault").get<std::string>() +
-                                  "': drop, freeze or delay");
-    if (steps < 1 || steps > FrameFaults::kMostSteps)
-      throw std::invalid_argument("steps must be 1 to " + std::to_string(FrameFaults::kMostSteps));
-    faults.begin(kind, static_cast<std::uint32_t>(steps));
-    return;
+// One that does not fit is beyond every limit here.
+std::int64_t whole_number(const Json& value) {
+  if (!value.is_number_integer()) throw std::invalid_argument(value.dump() + " is no whole number");
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX) return INT64_MAX;
+  return value.get<std::int64_t>();
+}
+
+InjectedFault fault_of(const Json& request) {
+  InjectedFault fault;
+  fault.name = request.at("fault").get<std::string>();
+  const std::int64_t steps = whole_number(request.at("steps"));
+  fault.steps = static_cast<std::uint32_t>(std::clamp<std::int64_t>(steps, 0, kMostFaultSteps + 1));
+  if (request.contains("strength")) {
+    if (!request.at("strength").is_number()) throw std::invalid_argument("the strength must be a number");
+    fault.strength = request.at("strength").get<double>();
   }
-  const auto function = request.at("function").get<std::int64_t>();
+  require_possible(fault);
+  return fault;
+}
+
+Telecommand telecommand_of(const Json& request) {
+  const std::int64_t function = whole_number(request.at("function"));
   if (function < 0 || function > 127) throw std::invalid_argument("a function code is 0 to 127");
   const std::vector<std::uint8_t> arguments = bytes_of_hex(request.at("arguments").get<std::string>());
   if (arguments.size() > hal::kMaxCommandArgumentBytes)
     throw std::invalid_argument("a telecommand has at most " + std::to_string(hal::kMaxCommandArgumentBytes) +
                                 " bytes of arguments");
-  if (commands.size() >= RunControl::kMostCommands)
-    throw std::invalid_argument("a step takes at most " + std::to_string(RunControl::kMostCommands) +
-                                " telecommands: send it again");
-  commands.push_back({static_cast<hal::FunctionCode>(function), arguments});
-}
-
-std::string answer_to(const std::string& line, std::uint32_t step, FrameFaults& faults,
-                      std::vector<Telecommand>& commands) {
-  try {
-    take_request(line, faults, commands);
-    return Json{{"step", step}}.dump() + "\n";
-  } catch (const std::invalid_argument& error) {
-    return Json{{"error", error.what()}}.dump() + "\n";
-  } catch (const Json::exception&) {
-    return Json{{"error", "the request is not as RunControl knows it"}}.dump() + "\n";
-  }
+  return {static_cast<hal::FunctionCode>(function), arguments};
 }
 
 }  // namespace
@@ -120,30 +112,69 @@ void RunControl::accept_clients() {
   }
 }
 
-std::vector<Telecommand> RunControl::take(std::uint32_t step, FrameFaults& faults) {
-  std::vector<Telecommand> commands;
-  if (socket_ < 0) return commands;
+RunRequests RunControl::take(std::uint32_t step, FrameFaults& frames, StepSource& source) {
+  Step of{step, frames, source, {}};
+  if (socket_ < 0) return of.requests;
   accept_clients();
   clients_.erase(std::remove_if(clients_.begin(), clients_.end(),
                                 [&](Client& client) {
-                                  if (serve(client, step, faults, commands)) return false;
+                                  if (serve(client, of)) return false;
                                   close(client.socket);
                                   return true;
                                 }),
                  clients_.end());
-  return commands;
+  return of.requests;
+}
+
+// Throws std::invalid_argument or a JSON exception.
+void RunControl::take_request(const std::string& line, Step& step) {
+  const Json request = Json::parse(line);
+  if (request.contains("fault")) {
+    const InjectedFault fault = fault_of(request);
+    if (step.requests.faults.size() >= kMostFaults)
+      throw std::invalid_argument("a step takes at most " + std::to_string(kMostFaults) +
+                                  " faults: send it again");
+    FrameFaults::Kind kind{};
+    if (read_fault(fault.name, kind))
+      step.frames.begin(kind, fault.steps);
+    else
+      step.source.begin_fault(fault);
+    step.requests.faults.push_back(fault);
+    return;
+  }
+  if (!step.source.takes_telecommands())
+    throw std::invalid_argument(
+        "the telecommands of this run are recorded, with their numbers: start a run with tumblesight "
+        "simulate");
+  if (step.requests.commands.size() >= kMostCommands)
+    throw std::invalid_argument("a step takes at most " + std::to_string(kMostCommands) +
+                                " telecommands: send it again");
+  step.requests.commands.push_back(telecommand_of(request));
+}
+
+std::string RunControl::answer_to(const std::string& line, Step& step) {
+  try {
+    take_request(line, step);
+    return Json{{"step", step.k}}.dump() + "\n";
+  } catch (const std::invalid_argument& error) {
+    return Json{{"error", error.what()}}.dump() + "\n";
+  } catch (const Json::exception&) {
+    return Json{{"error", "the request is not as RunControl knows it"}}.dump() + "\n";
+  }
 }
 
 // False: the client has left, or must leave.
-bool RunControl::serve(Client& client, std::uint32_t step, FrameFaults& faults,
-                       std::vector<Telecommand>& commands) {
+bool RunControl::serve(Client& client, Step& step) {
+  // Who has given up waiting has told its user so, and nothing of it must be carried out afterwards.
+  pollfd state{client.socket, POLLIN | POLLRDHUP, 0};
+  if (poll(&state, 1, 0) > 0 && (state.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0) return false;
   char buffer[kMostBytes];
   const ssize_t count = read(client.socket, buffer, sizeof buffer);
   if (count == 0 || (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK)) return false;
   if (count > 0) client.received.append(buffer, static_cast<std::size_t>(count));
   for (std::size_t end = client.received.find('\n'); end != std::string::npos;
        end = client.received.find('\n')) {
-    const std::string answer = answer_to(client.received.substr(0, end), step, faults, commands);
+    const std::string answer = answer_to(client.received.substr(0, end), step);
     client.received.erase(0, end + 1);
     // One that does not read its answers is not waited for.
     if (send(client.socket, answer.data(), answer.size(), MSG_NOSIGNAL | MSG_DONTWAIT) !=

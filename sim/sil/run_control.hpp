@@ -4,7 +4,7 @@
 //
 // A request is a line of JSON, and so is its answer:
 //   {"function": 3, "arguments": "02"}      a function code and its arguments as hexadecimal digits
-//   {"fault": "freeze", "steps": 5}         FrameFaults
+//   {"fault": "debris", "strength": 1.5, "steps": 5}     fault_table(); without strength where it has none
 //   {"step": 41}                            the step in which it takes effect
 //   {"error": "..."}                        it was not taken
 #pragma once
@@ -15,14 +15,22 @@
 
 #include "sim/sil/frame_faults.hpp"
 #include "sim/sil/signed_telecommand.hpp"
+#include "sim/sil/step_source.hpp"
 
 namespace tumblesight::sim {
+
+// What was requested for one step.
+struct RunRequests {
+  std::vector<Telecommand> commands;
+  std::vector<InjectedFault> faults;  // that have begun
+};
 
 class RunControl {
  public:
   static constexpr std::size_t kMostClients = 8;
   static constexpr std::size_t kMostBytes = 8192;   // of a request
   static constexpr std::size_t kMostCommands = 16;  // per step; half of what a step may carry
+  static constexpr std::size_t kMostFaults = 16;    // per step
 
   // Without a socket if it cannot be made: the run goes on, and takes no requests.
   explicit RunControl(std::uint32_t domain);
@@ -30,8 +38,9 @@ class RunControl {
   RunControl(const RunControl&) = delete;
   RunControl& operator=(const RunControl&) = delete;
 
-  // What was requested since the last call. Does not wait. `step`: of the answers. Faults go to `faults`.
-  std::vector<Telecommand> take(std::uint32_t step, FrameFaults& faults);
+  // What was requested since the last call. Does not wait. `step`: of the answers, the next one of `source`.
+  // Faults begin in `frames` or `source`.
+  RunRequests take(std::uint32_t step, FrameFaults& frames, StepSource& source);
 
  private:
   struct Client {
@@ -39,7 +48,15 @@ class RunControl {
     std::string received;
   };
   void accept_clients();
-  bool serve(Client& client, std::uint32_t step, FrameFaults& faults, std::vector<Telecommand>& commands);
+  struct Step {
+    std::uint32_t k;
+    FrameFaults& frames;
+    StepSource& source;
+    RunRequests requests;
+  };
+  static void take_request(const std::string& line, Step& step);
+  static std::string answer_to(const std::string& line, Step& step);
+  static bool serve(Client& client, Step& step);
 
   std::string path_;
   int socket_ = -1;

@@ -46,18 +46,15 @@ bool RunRecorder::has_writers() const {
   return true;
 }
 
-void RunRecorder::add(const FrameTruth& truth) {
-  next_truth_ = std::make_unique<FrameTruth>(truth);
+void RunRecorder::add(const FrameTruth& truth, std::int64_t exposure_time_ns) {
+  truths_.push_back({exposure_time_ns, truth});
+  while (truths_.size() > kTruthsKept) truths_.pop_front();
 }
 
 void RunRecorder::add(const std::vector<const gnc::RangeImage*>& frames, std::int64_t time_ns) {
-  for (const gnc::RangeImage* frame : frames) {
+  for (const gnc::RangeImage* frame : frames)
     file_.write(channels_.points, time_in_file_ns(time_ns),
                 point_cloud_json(*frame, time_in_file_ns(time_ns)));
-    if (next_truth_) truths_.push_back({frame->exposure_time_ns, *next_truth_});
-  }
-  next_truth_.reset();
-  while (truths_.size() > kTruthsKept) truths_.pop_front();
   take_samples(time_ns);
 }
 

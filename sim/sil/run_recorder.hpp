@@ -31,8 +31,8 @@ class RunRecorder {
 
   // Whether every topic that this program and the flight program write has its writer.
   bool has_writers() const;
-  // Of the step that is sent next.
-  void add(const FrameTruth& truth);
+  // At the exposure of a frame that is sent next, or later.
+  void add(const FrameTruth& truth, std::int64_t exposure_time_ns);
   // What a step sends, as soon as it is sent.
   void add(const std::vector<const gnc::RangeImage*>& frames, std::int64_t time_ns);
   // The answer of the flight program.
@@ -56,7 +56,6 @@ class RunRecorder {
   McapWriter file_;
   RunChannels channels_;
   std::vector<Source> sources_;
-  std::unique_ptr<FrameTruth> next_truth_;  // of the step that is sent next, if it is known
   struct TruthOfFrame {
     std::int64_t exposure_time_ns;
     FrameTruth truth;

@@ -25,9 +25,11 @@ RunSteps::RunSteps(const std::string& path)
 void RunSteps::read_run() {
   hal::dds::HelloSample hello;
   file_.each(hello, [&](const hal::dds::HelloSample& sample, const McapReader::Entry&) {
-    const bool is_flight = sample.role == static_cast<std::uint8_t>(hal::dds::Role::kFlight);
-    if (is_flight && sample.run_id == run_id_) model_crc32_ = sample.model_crc32;
-    if (is_flight) return;
+    if (sample.role == static_cast<std::uint8_t>(hal::dds::Role::kFlight)) {
+      has_flown_ = true;
+      if (sample.run_id == run_id_) model_crc32_ = sample.model_crc32;
+      return;
+    }
     run_id_ = sample.run_id;
     target_ = hal::dds::target_of(sample).text;
   });
@@ -48,8 +50,9 @@ void RunSteps::read_steps() {
   file_.each(done, [&](const hal::dds::StepDoneSample& sample, const McapReader::Entry&) {
     if (RecordedStep* const of = step_of(sample)) of->state_crc32 = sample.state_crc32;
   });
-  while (!steps_.empty() && !steps_.back().state_crc32) steps_.pop_back();
-  if (steps_.empty()) throw std::runtime_error("'" + file_.path() + "' has no step that was answered");
+  while (has_flown_ && !steps_.empty() && !steps_.back().state_crc32) steps_.pop_back();
+  if (steps_.empty())
+    throw std::runtime_error("'" + file_.path() + "' has no step" + (has_flown_ ? " that was answered" : ""));
 }
 
 template <class Sample>

@@ -22,10 +22,14 @@ class RunSteps final : public StepSource {
   std::uint32_t steps() const override { return static_cast<std::uint32_t>(steps_.size()); }
   std::int64_t time_ns(std::uint32_t k) const override { return steps_[k].sample.time_ns; }
   SourcedStep next() override;
+  // The recorded ones have the numbers that added ones would get.
+  bool takes_telecommands() const override { return !has_flown_; }
 
   std::string target() const { return target_; }
   std::uint32_t model_crc32() const { return model_crc32_; }  // of the image that flew; 0: not known
   std::uint32_t frames() const { return frames_; }
+  // False: frames that no flight program has seen (write_frames_file()).
+  bool has_flown() const { return has_flown_; }
   bool is_whole() const { return file_.reader().is_whole(); }
   // Of the flight program after step k; nothing: it did not answer.
   std::optional<std::uint32_t> state_crc32(std::uint32_t k) const { return steps_[k].state_crc32; }
@@ -50,6 +54,7 @@ class RunSteps final : public StepSource {
   RunFile file_;
   std::string target_;
   std::uint32_t run_id_ = 0, model_crc32_ = 0, frames_ = 0;
+  bool has_flown_ = false;
   std::uint32_t frames_sent_ = 0;
   std::vector<RecordedStep> steps_;
   std::uint32_t next_ = 0;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <exception>
 #include <optional>
 #include <utility>
 
 #include "sim/sil/fault_names.hpp"
 #include "sim/sil/frame_faults.hpp"
+#include "sim/sil/function_names.hpp"
 #include "sim/sil/run_control.hpp"
 #include "sim/sil/sil_session.hpp"
 #include "sim/sil/simulated_steps.hpp"
@@ -17,6 +19,8 @@ namespace tumblesight::sim {
 namespace {
 
 using Clock = SilSession::Clock;
+
+constexpr std::size_t kTakenKept = 16;  // frames: a late one is answered a few steps later
 
 // One run: its steps, and its result so far.
 class SilRun {
@@ -49,8 +53,8 @@ class SilRun {
   void simulate_in_lockstep(SilSession& session) {
     const auto begin = Clock::now();
     for (std::uint32_t k = 0; k < steps_; ++k) {
-      const StepInput input = prepare(session, k);
       if (settings_.speed > 0.0) session.sleep_until(begin + wall_time_of(k));
+      const StepInput input = prepare(session, k);
       publish_truth(session, result_.steps[k]);
       store_answer(k, session.step(input));
       if (k == 0) require_running(session, result_.steps[0].telemetry);
@@ -61,8 +65,8 @@ class SilRun {
   void simulate_free_running(SilSession& session) {
     const auto begin = Clock::now();
     for (std::uint32_t k = 0; k < steps_; ++k) {
-      const StepInput input = prepare(session, k);
       receive_until(session, begin + wall_time_of(k));
+      const StepInput input = prepare(session, k);
       publish_truth(session, result_.steps[k]);
       session.send(input);
     }
@@ -71,14 +75,16 @@ class SilRun {
   }
 
   static void publish_truth(SilSession& session, const StepResult& step) {
-    if (step.truth_known) session.publish_truth(step.sequence, step.frame_index, step.truth, step.time_ns);
+    if (step.truth_known)
+      session.publish_truth(step.sequence, step.frame_index, step.truth, step.time_ns, step.exposure_time_ns);
   }
 
   void receive_until(SilSession& session, Clock::time_point deadline) {
     while (Clock::now() < deadline && !last_answered()) {
       const std::optional<StepAnswer> answer = session.next_answer(deadline);
       if (!answer) return;
-      require_running(session, answer->telemetry);
+      if (!is_running_) require_running(session, answer->telemetry);
+      is_running_ = true;  // later the user, or a fault, may end it
       store_counters(answer->telemetry);
       // Only a report with an attitude names its frame.
       const bool has_frame = gives_attitude(answer->attitude);
@@ -102,9 +108,18 @@ class SilRun {
   }
 
   StepInput prepare(const SilSession& session, std::uint32_t k) {
+    RunRequests requests = control_->take(k, faults_, source_);
     SourcedStep sourced = source_.next();
     StepInput& input = sourced.input;
-    for (Telecommand& command : control_->take(k, faults_)) input.commands.push_back(std::move(command));
+    for (Telecommand& command : requests.commands) {
+      result_.requests.push_back({k, "telecommand " + name_of(command.function)});
+      input.commands.push_back(std::move(command));
+    }
+    for (const InjectedFault& fault : requests.faults) result_.requests.push_back({k, to_string(fault)});
+    sourced.step.exposure_time_ns =
+        input.frames.empty() ? input.time_ns : input.frames.back()->exposure_time_ns;
+    taken_.push_back({sourced.step.exposure_time_ns, sourced.step.truth, sourced.step.truth_known});
+    if (taken_.size() > kTakenKept) taken_.pop_front();
     faults_.apply(input, sourced.step.truth);
     result_.steps.push_back(sourced.step);
     for (const gnc::RangeImage* frame : input.frames) {
@@ -125,9 +140,25 @@ class SilRun {
     step.telemetry = answer.telemetry;
     step.events = answer.events;
     step.state_crc32 = answer.state_crc32;
+    take_truth_of_attitude(k);
     store_counters(answer.telemetry);
     ++answered_;
     if (progress_) progress_(answered_, result_.steps_planned);
+  }
+
+  // A frame that was delivered late is answered late.
+  void take_truth_of_attitude(std::uint32_t k) {
+    StepResult& step = result_.steps[k];
+    const std::int64_t exposure_time_ns = step.attitude.exposure_time_ns;
+    if (!gives_attitude(step.attitude) || exposure_time_ns == step.exposure_time_ns) return;
+    const auto earlier = std::find_if(taken_.begin(), taken_.end(), [&](const TakenFrame& frame) {
+      return frame.exposure_time_ns == exposure_time_ns;
+    });
+    if (earlier == taken_.end()) return;
+    const bool lost = step.truth.lost;  // whether the step owes an attitude stays as it is
+    step.truth = earlier->truth;
+    step.truth.lost = lost;
+    step.truth_known = earlier->truth_known;
   }
 
   void store_counters(const hal::Telemetry& telemetry) {
@@ -167,6 +198,14 @@ class SilRun {
   SilRunResult& result_;
   std::uint32_t steps_;
   std::uint32_t answered_ = 0;
+  bool is_running_ = false;  // the flight program has answered, and was not in SAFE
+  // What the sensor took, whatever was delivered.
+  struct TakenFrame {
+    std::int64_t exposure_time_ns;
+    FrameTruth truth;
+    bool truth_known;
+  };
+  std::deque<TakenFrame> taken_;
 };
 
 // Free-running, an answer names its frame, so a frame that was lost or repeated need not have one.

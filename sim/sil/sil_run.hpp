@@ -42,8 +42,9 @@ struct StepResult {
   std::uint32_t sequence = 0;
   std::uint32_t frame_index = 0;
   std::int64_t time_ns = 0;
-  FrameTruth truth;
-  bool truth_known = true;  // otherwise the truth says only whether a frame was delivered
+  std::int64_t exposure_time_ns = 0;  // of the frame that the sensor took; without one that of the step
+  FrameTruth truth;                   // of the frame that the attitude is from, if that is an earlier one
+  bool truth_known = true;            // otherwise the truth says only whether a frame was delivered
   bool answered = false;
   hal::AttitudeReport attitude;
   hal::Telemetry telemetry;
@@ -54,8 +55,15 @@ struct StepResult {
 // Whether the report holds an attitude: valid or doubtful.
 bool gives_attitude(const hal::AttitudeReport& report);
 
+// What another program asked of the run while it went on (RunControl).
+struct RunRequest {
+  std::uint32_t step = 0;  // in which it took effect
+  std::string what;        // "NOOP", "debris 1.5 m for 5 steps"
+};
+
 struct SilRunResult {
   std::vector<StepResult> steps;
+  std::vector<RunRequest> requests;                               // in their order
   std::vector<std::pair<std::size_t, gnc::RangeImage>> pictures;  // index into steps, frame; a selection
   std::uint32_t steps_planned = 0;
   std::uint32_t steps_missed = 0;             // without an answer, and not superseded

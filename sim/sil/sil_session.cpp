@@ -10,6 +10,7 @@
 #include "hal/dds/idl/icd_hash.hpp"
 #include "hal/dds/idl/step_content.hpp"
 #include "sim/sil/interruption.hpp"
+#include "sim/sil/step_samples.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -249,25 +250,15 @@ void SilSession::send(const StepInput& input) {
   require_not_interrupted();
   const std::uint32_t k = next_k_++;
   check_.sent(k, input.time_ns, input.frames);
+  const StepOfRun of{secret_.run_id, k};
   hal::dds::StepContent content;
   for (const gnc::RangeImage* frame : input.frames) {
-    frame_sample_.run_id = secret_.run_id;
-    frame_sample_.k = k;
-    frame_sample_.sequence_number = frame->sequence_number;
-    frame_sample_.exposure_time_ns = frame->exposure_time_ns;
-    frame_sample_.fov_urad = frame->fov_urad;
-    frame_sample_.rays = frame->rays;
-    std::copy(frame->ranges.begin(), frame->ranges.end(), frame_sample_.ranges);
+    fill(frame_sample_, of, *frame);
     write(endpoints_->frames, frame_sample_);
     content.add(frame_sample_);
   }
   for (const gnc::ChaserAttitude& attitude : input.navigations) {
-    hal::dds::NavigationSample sample{};
-    sample.run_id = secret_.run_id;
-    sample.k = k;
-    sample.time_ns = attitude.time_ns;
-    std::copy(attitude.q_inertial_lrf.begin(), attitude.q_inertial_lrf.end(), sample.q_inertial_lrf);
-    sample.valid = attitude.valid ? 1 : 0;
+    const hal::dds::NavigationSample sample = navigation_sample(of, attitude);
     write(endpoints_->navigations, sample);
     content.add(sample);
   }
@@ -349,20 +340,9 @@ void SilSession::finish() {
 }
 
 void SilSession::publish_truth(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth,
-                               std::int64_t time_ns) {
-  hal::dds::TruthSample sample{};
-  sample.run_id = secret_.run_id;
-  sample.k = next_k_;
-  sample.time_ns = time_ns;
-  sample.sequence_index = sequence;
-  sample.frame_index = frame;
-  const Eigen::Quaternionf q = truth.q_lrf_trf.cast<float>();
-  const float scalar_first[] = {q.w(), q.x(), q.y(), q.z()};
-  std::copy(std::begin(scalar_first), std::end(scalar_first), sample.q_lrf_trf);
-  for (int i = 0; i < 3; ++i) sample.rate_lrf_rad_s[i] = static_cast<float>(truth.rate_lrf_rad_s[i]);
-  sample.range_m = static_cast<float>(truth.range_m);
-  write(endpoints_->truth, sample);
-  if (recorder_) recorder_->add(truth);
+                               std::int64_t time_ns, std::int64_t exposure_time_ns) {
+  write(endpoints_->truth, truth_sample({secret_.run_id, next_k_}, sequence, frame, truth, time_ns));
+  if (recorder_) recorder_->add(truth, exposure_time_ns);
 }
 
 }  // namespace tumblesight::sim

@@ -61,8 +61,9 @@ class SilSession {
   // After the last step: waits until the flight program ends, which it does by itself.
   void finish();
 
+  // `time_ns`: of the step, `exposure_time_ns`: of the frame that its sensor took.
   void publish_truth(std::uint32_t sequence, std::uint32_t frame, const FrameTruth& truth,
-                     std::int64_t time_ns);
+                     std::int64_t time_ns, std::int64_t exposure_time_ns);
   hal::Mode flight_mode() const { return flight_mode_; }  // in the hello of flight
   pid_t flight_pid() const { return process_ ? process_->pid() : 0; }
   std::uint32_t run_id() const { return secret_.run_id; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
+#include "sim/sil/scene_faults.hpp"
 #include "sim/sil/step_source.hpp"
 #include "sim/world/frame_renderer.hpp"
 
@@ -25,6 +26,7 @@ class SimulatedSteps final : public StepSource {
   std::uint32_t steps() const override { return static_cast<std::uint32_t>(plan_.size()); }
   std::int64_t time_ns(std::uint32_t k) const override { return plan_[k].time_ns; }
   SourcedStep next() override;
+  void begin_fault(const InjectedFault& fault) override;
 
  private:
   struct PlannedStep {
@@ -32,18 +34,20 @@ class SimulatedSteps final : public StepSource {
     std::uint32_t frame = 0;     // index in the sequence
     std::int64_t time_ns = 0;    // mission time
   };
-  const FrameTruth& truth_of(const PlannedStep& plan) const {
-    return sequences_[plan.sequence].frames[plan.frame];
-  }
+  // With the faults of the scene.
+  Sequence sequence_in(std::size_t step) const;
   void render(std::size_t step, gnc::RangeImage& frame) const;
   void start_rendering(std::size_t step);
 
+  const FlashLidar& lidar_;
   FrameRenderer renderer_;
+  SceneFaults faults_;
   const std::vector<Sequence>& sequences_;
   bool ego_motion_;
   std::vector<PlannedStep> plan_;
   std::array<gnc::RangeImage, 2> frames_;  // one in use, one being rendered
   std::size_t next_step_ = 0;
+  bool is_stale_ = false;  // the frame that was rendered is without a fault that has begun since
   std::future<void>
       rendering_;  // last member: its destructor waits for the worker before the frames are destroyed
 };

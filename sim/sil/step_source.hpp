@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <stdexcept>
 
+#include "sim/sil/fault_table.hpp"
 #include "sim/sil/sil_session.hpp"
 
 namespace tumblesight::sim {
@@ -21,6 +23,14 @@ class StepSource {
   virtual std::int64_t time_ns(std::uint32_t k) const = 0;
   // The next step, from step 0 on. Must be called at most once per step.
   virtual SourcedStep next() = 0;
+  // Whether telecommands may be added to those of the steps.
+  virtual bool takes_telecommands() const { return true; }
+  // Puts a fault of the scene (FaultRow::is_of_scene) that is possible into the next step and those after it.
+  // Throws std::invalid_argument that says why it cannot be.
+  virtual void begin_fault(const InjectedFault& fault) {
+    throw std::invalid_argument("the frames of this run are recorded, and fault " + fault.name +
+                                " has to be rendered: only drop, freeze and delay are possible");
+  }
 };
 
 }  // namespace tumblesight::sim

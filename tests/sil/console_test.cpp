@@ -14,6 +14,8 @@
 #include "sim/console/console_server.hpp"
 #include "sim/console/foxglove_session.hpp"
 #include "sim/console/recorded_run.hpp"
+#include "sim/sil/frames_file.hpp"
+#include "sim/sil/simulated_steps.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -65,6 +67,41 @@ TEST(Console, ShowsEveryStepOfARecordingWithItsFrame) {
   EXPECT_TRUE(shown.is_whole());
   EXPECT_EQ(shown.log().target(), "near_shoemaker");
   expect_the_steps(recorded, shown, 0);
+}
+
+// A flight program on its own timer.
+TEST(Console, ShowsTheFramesOfAFreeRun) {
+  const std::string path = test::temporary_path("run.mcap");
+  SilSettings settings = test::settings();
+  settings.target = "near_shoemaker";
+  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
+  settings.mcap_path = path;
+  settings.swath_m = test::kSwath_m;
+  settings.free_running = true;
+  settings.speed = 10;
+  ASSERT_EQ(run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {}).failure, "");
+  const RecordedRun shown(path);
+  std::uint64_t frames = 0;
+  gnc::RangeImage frame;
+  for (std::uint64_t i = 0; i < shown.log().state().steps; ++i) frames += shown.frame(i, frame) ? 1 : 0;
+  EXPECT_GE(frames, 8U);
+}
+
+TEST(Console, ShowsFramesThatNoFlightProgramHasSeen) {
+  const std::string path = test::temporary_path("frames.mcap");
+  const std::vector<Sequence> sequences = test::sequences(kSteps / 10, 1);
+  SimulatedSteps source(test::lidar(), test::kSwath_m, sequences, true);
+  write_frames_file(path, source, "near_shoemaker", 5, test::kSwath_m);
+  const RecordedRun shown(path);
+  ASSERT_EQ(shown.log().state().steps, kSteps);
+  for (std::uint32_t k = 0; k < kSteps; ++k) {
+    gnc::RangeImage frame;
+    EXPECT_TRUE(shown.frame(k, frame)) << k;
+    EXPECT_EQ(frame.sequence_number, k);
+    EXPECT_NEAR(shown.log().step(k)["truth"]["range_m"].get<double>(),
+                sequences[k / 10].frames[k % 10].range_m, 1e-4);
+    EXPECT_TRUE(shown.log().step(k)["network"].is_null());
+  }
 }
 
 TEST(Console, ShowsARecordingWithoutItsEnd) {

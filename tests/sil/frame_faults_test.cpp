@@ -1,4 +1,5 @@
 // What the flight program gets of a sensor with a fault.
+// Verifies TS-SIL-198.
 #include "sim/sil/frame_faults.hpp"
 
 #include <gtest/gtest.h>
@@ -65,6 +66,17 @@ TEST_F(Sensor, ThatIsFrozenFromTheFirstFrameOnDeliversThatOne) {
   faults_.begin(FrameFaults::Kind::kFreeze, 3);
   EXPECT_EQ(step(0)[0]->ranges[0], 100);
   EXPECT_TRUE(truth_.is_genuine());
+  EXPECT_EQ(step(1)[0]->ranges[0], 100);
+  EXPECT_EQ(truth_.frozen_for, 1U);
+}
+
+TEST_F(Sensor, ThatFreezesAgainWhileItIsFrozenGoesOnWithTheSameImage) {
+  step(0);
+  faults_.begin(FrameFaults::Kind::kFreeze, 3);
+  step(1);
+  faults_.begin(FrameFaults::Kind::kFreeze, 3);
+  EXPECT_EQ(step(2)[0]->ranges[0], 100);
+  EXPECT_EQ(truth_.frozen_for, 2U);
 }
 
 TEST_F(Sensor, ThatIsLateDeliversEachFrameAStepLaterUnderItsOwnNumber) {

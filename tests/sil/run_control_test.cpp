@@ -19,6 +19,21 @@
 namespace tumblesight::sim {
 namespace {
 
+// Frames that cannot be rendered anew, but for one fault.
+class Source final : public StepSource {
+ public:
+  std::uint32_t steps() const override { return 0; }
+  std::int64_t time_ns(std::uint32_t) const override { return 0; }
+  SourcedStep next() override { return {}; }
+  void begin_fault(const InjectedFault& fault) override {
+    if (fault.name != "debris") return StepSource::begin_fault(fault);
+    begun.push_back(fault);
+  }
+  bool takes_telecommands() const override { return takes; }
+  std::vector<InjectedFault> begun;
+  bool takes = true;
+};
+
 class Control : public testing::Test {
  protected:
   Control() : lease_(test::spare_domain()), control_(std::make_unique<RunControl>(lease_.domain())) {}
@@ -30,13 +45,15 @@ class Control : public testing::Test {
   std::string ask(const std::string& request) {
     auto answer = std::async(std::launch::async, [&] { return ask_run(lease_.domain(), request, 5000); });
     while (answer.wait_for(std::chrono::milliseconds(2)) != std::future_status::ready)
-      for (Telecommand& command : control_->take(41, faults_)) commands_.push_back(std::move(command));
+      for (Telecommand& command : control_->take(41, faults_, source_).commands)
+        commands_.push_back(std::move(command));
     return answer.get();
   }
 
   DomainLease lease_;
   std::unique_ptr<RunControl> control_;
   FrameFaults faults_;
+  Source source_;
   std::vector<Telecommand> commands_;
 };
 
@@ -57,13 +74,75 @@ TEST_F(Control, TakesAFault) {
   EXPECT_TRUE(input.frames.empty());
 }
 
+TEST_F(Control, TakesAFaultOfTheScene) {
+  EXPECT_EQ(ask(R"({"fault":"debris","strength":1.5,"steps":2})"), R"({"step":41})");
+  ASSERT_EQ(source_.begun.size(), 1U);
+  EXPECT_EQ(source_.begun[0].strength, 1.5);
+  EXPECT_EQ(source_.begun[0].steps, 2U);
+}
+
+TEST_F(Control, SaysThatRecordedFramesCannotBeRendered) {
+  EXPECT_NE(ask(R"({"fault":"occlude","strength":0.5,"steps":2})").find("only drop, freeze and delay"),
+            std::string::npos);
+}
+
+TEST_F(Control, AddsNoTelecommandToRecordedOnes) {
+  source_.takes = false;
+  EXPECT_NE(ask(R"({"function":1,"arguments":""})").find("are recorded"), std::string::npos);
+  EXPECT_TRUE(commands_.empty());
+}
+
+// Its user was told that it failed.
+TEST_F(Control, DoesNotCarryOutWhatNobodyWaitsFor) {
+  EXPECT_THROW(ask_run(lease_.domain(), R"({"function":1,"arguments":""})", 20), SilFailure);
+  EXPECT_THROW(ask_run(lease_.domain(), R"({"fault":"debris","strength":1,"steps":1})", 20), SilFailure);
+  EXPECT_TRUE(control_->take(41, faults_, source_).commands.empty());
+  EXPECT_TRUE(source_.begun.empty());
+}
+
+TEST_F(Control, LimitsTheFaultsOfAStep) {
+  const int client = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path, path().data(), path().size());
+  ASSERT_EQ(connect(client, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  const std::string line = "{\"fault\":\"debris\",\"strength\":1,\"steps\":1}\n";
+  std::string lines;
+  for (std::size_t i = 0; i < RunControl::kMostFaults + 3; ++i) lines += line;
+  ASSERT_EQ(send(client, lines.data(), lines.size(), MSG_NOSIGNAL), static_cast<ssize_t>(lines.size()));
+  EXPECT_EQ(control_->take(41, faults_, source_).faults.size(), RunControl::kMostFaults);
+  EXPECT_EQ(source_.begun.size(), RunControl::kMostFaults);
+  close(client);
+}
+
 TEST_F(Control, RefusesWhatIsNoRequest) {
-  for (const char* request :
-       {"", "x", "[]", "{}", R"({"function":128,"arguments":""})", R"({"function":-1,"arguments":""})",
-        R"({"function":1})", R"({"function":1,"arguments":"0"})", R"({"function":1,"arguments":"gg"})",
-        R"({"function":"NOOP","arguments":""})", R"({"fault":"melt","steps":1})",
-        R"({"fault":"drop","steps":0})", R"({"fault":"drop","steps":1001})", R"({"fault":"drop"})",
-        R"({"fault":1,"steps":1})"}) {
+  for (const char* request : {"",
+                              "x",
+                              "[]",
+                              "{}",
+                              R"({"function":128,"arguments":""})",
+                              R"({"function":-1,"arguments":""})",
+                              R"({"function":1})",
+                              R"({"function":1,"arguments":"0"})",
+                              R"({"function":1,"arguments":"gg"})",
+                              R"({"function":"NOOP","arguments":""})",
+                              R"({"fault":"melt","steps":1})",
+                              R"({"fault":"drop","steps":0})",
+                              R"({"fault":"drop","steps":1001})",
+                              R"({"fault":"drop"})",
+                              R"({"fault":1,"steps":1})",
+                              R"({"fault":"debris","steps":1})",
+                              R"({"fault":"debris","strength":"1","steps":1})",
+                              R"({"fault":"debris","strength":11,"steps":1})",
+                              R"({"fault":"debris","strength":1e999,"steps":1})",
+                              R"({"fault":"drop","strength":1,"steps":1})",
+                              R"({"fault":"panel_turn","strength":10,"steps":1})",
+                              R"({"fault":"drop","steps":18446744073709551615})",
+                              R"({"fault":"drop","steps":4294967301})",
+                              R"({"fault":"drop","steps":2.5})",
+                              R"({"fault":"drop","steps":true})",
+                              R"({"function":4294967299,"arguments":"02"})",
+                              R"({"function":3.5,"arguments":"02"})"}) {
     EXPECT_EQ(ask(request).find(R"({"error":)"), 0U) << request;
   }
   EXPECT_EQ(ask(R"({"function":1,"arguments":")" + std::string(2 * 1029, '0') + "\"}").find(R"({"error":)"),
@@ -100,9 +179,10 @@ TEST_F(Control, ClientsThatMisbehaveDoNotStopTheRun) {
     const std::string flood = i % 2 == 0 ? std::string(20'000, 'x') : "x\nx\nx\nx\n";
     (void)send(sockets.back(), flood.data(), flood.size(), MSG_NOSIGNAL);
   }
-  for (std::uint32_t step = 0; step < 10; ++step) EXPECT_TRUE(control_->take(step, faults_).empty());
+  for (std::uint32_t step = 0; step < 10; ++step)
+    EXPECT_TRUE(control_->take(step, faults_, source_).commands.empty());
   for (const int one : sockets) close(one);
-  control_->take(10, faults_);
+  control_->take(10, faults_, source_);
   EXPECT_EQ(ask(R"({"function":1,"arguments":""})"), R"({"step":41})");
 }
 

@@ -81,7 +81,7 @@ inline PoseSummary sample_poses() {
 }
 
 inline Results sample_results() {
-  SubjectResult near{"near_shoemaker", "near, \"odd\".stl", "near_shoemaker", 0x00C0FFEE, {}, {}, {}};
+  SubjectResult near{"near_shoemaker", "near, \"odd\".stl", "near_shoemaker", 0x00C0FFEE, {}, {}, {}, {}};
   near.cells = {sample_cell(Condition::kNominal, 1.0, true), sample_cell(Condition::kOccluded, 15.0, true)};
   Sweeps sweeps;
   sweeps.by_rate_norm = near.cells.front().by_rate;
@@ -92,7 +92,8 @@ inline Results sample_results() {
   }
   near.sweeps = sweeps;
   SubjectResult mine{
-      "mine", kParametricMesh, "other", 0x12345678, {sample_cell(Condition::kOffset, 3.0, false)}, {}, {}};
+      "mine", kParametricMesh, "other", 0x12345678, {sample_cell(Condition::kOffset, 3.0, false)}, {}, {},
+      {}};
   Results results;
   results.seed = 7;
   results.command = "tumblesight evaluate --paper";

@@ -78,6 +78,10 @@ export async function getMesh() {
 export function getCommands() {
   return json('/api/commands');
 }
+/** {most_steps, faults: [{name, explanation, unit, least, most, whole}]}; least and most are 0 without a strength. */
+export function getFaults() {
+  return json('/api/faults');
+}
 /** {step} in which it takes effect, or {error} of the run. Throws a Refusal with the server's words. */
 export function postCommand(command) {
   return post('/api/command', command);

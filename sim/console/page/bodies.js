@@ -38,6 +38,11 @@ function ghostMaterial(colour, opacity) {
   return new THREE.MeshBasicMaterial({ color: colour, side: THREE.DoubleSide, transparent: true, opacity, depthWrite: false });
 }
 
+/** At an unknown range the true body has no place. */
+export function hasTruePlace(detail) {
+  return Boolean(detail && detail.truth) && Number.isFinite(detail.truth.range_m);
+}
+
 class Body {
   /** `faceMaterial`: null for a body of wire alone. */
   constructor(faceMaterial, wire, isSolid = false) {
@@ -89,7 +94,7 @@ export class Bodies {
 
   /** The best known place of the target: that of the pose, else the true one, else what `centre` holds. */
   show(detail, centre) {
-    const truth = detail ? detail.truth : null;
+    const truth = hasTruePlace(detail) ? detail.truth : null;
     const pose = detail ? detail.pose : null;
     if (pose) centre.fromArray(pose.origin_m);
     else if (truth) centre.set(0, truth.range_m, 0);

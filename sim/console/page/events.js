@@ -1,13 +1,12 @@
 // Events and commands as a list. Only the rows in sight are in the page, so that its length does not matter.
-import { COMMAND, severityNames } from '/step_store.js';
+import { COMMAND, ERROR, INFO, severityNames, WARNING } from '/step_store.js';
 import { element, figure, setText } from '/dom.js';
 
 const ROW_PX = 19;
 const SPARE_ROWS = 4;
-const DEBUG = 0;
-const filterOrder = [3, 2, 1, 0, COMMAND];
-const filterWords = ['Debug', 'Info', 'Warnings', 'Errors', 'Commands'];
-const marks = ['·', 'i', '▲', '■', '▸'];
+const filterOrder = [ERROR, WARNING, INFO, COMMAND];
+const filterWords = ['Info', 'Warnings', 'Errors', 'Commands'];
+const marks = ['i', '▲', '■', '▸'];
 
 export class EventList {
   constructor(store, onChoose) {
@@ -15,7 +14,8 @@ export class EventList {
     this.onChoose = onChoose;
     this.shown = [];       // indices into the store's events that pass the filter
     this.taken = 0;        // events of the store that the filter has seen
-    this.isOn = severityNames.map((name, severity) => severity !== DEBUG);
+    // Information comes with most sequences, and would hide the rest from the list and the keys n and p.
+    this.isOn = severityNames.map((name, severity) => severity !== INFO);
     this.counts = severityNames.map(() => 0);
     this.selected = -1;
     this.rows = [];
@@ -79,7 +79,8 @@ export class EventList {
     filterOrder.forEach((severity) => {
       const count = this.counts[severity];
       // There is room for the counts that matter most.
-      setText(this.filterTexts[severity], severity === 2 || severity === 3 ? `${filterWords[severity]} ${count}` : filterWords[severity]);
+      const isCounted = severity === WARNING || severity === ERROR;
+      setText(this.filterTexts[severity], isCounted ? `${filterWords[severity]} ${count}` : filterWords[severity]);
       this.filterTexts[severity].title = `Show or hide (${count})`;
     });
   }

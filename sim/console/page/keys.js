@@ -8,7 +8,7 @@ const descriptions = [
   [['Home', 'End'], 'first step, newest step'],
   [['+', '−'], 'faster, slower'],
   [['f'], 'follow the live run'],
-  [['n', 'p'], 'next event, previous event'],
+  [['n', 'p'], 'next event, previous event of those in the list'],
   [['?'], 'show or close this list'],
 ];
 const mouse = [

@@ -64,6 +64,7 @@ function selectionChanged() {
 async function readMesh(run) {
   viewControls.meshNote = '';
   if (!view) return;
+  view.removeMesh();
   if (!run.target_radius_m) return;  // before a run there is no target
   view.setRadius(run.target_radius_m);
   try {
@@ -142,7 +143,7 @@ setTheme(document.documentElement.dataset.theme);
 
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', (event) => setTheme(event.matches ? 'dark' : 'light'));
 
-/** For tests: what the page shows. */
+/** For tests: what the page shows. `mesh`: the target's surface has arrived. */
 window.console_state = () => {
   const known = (field) => {
     const value = store.value(field, playback.selected);
@@ -151,7 +152,7 @@ window.console_state = () => {
   return {
     steps: store.steps, selected: playback.selected, following: playback.isFollowing, playing: playback.isPlaying,
     connected: isConnected, settled: loader.isSettled, network_error_deg: known('network_error_deg'),
-    pose_error_deg: known('pose_error_deg'), points: view ? view.cloud.count : 0, fps: view ? view.rate.perSecond : 0,
+    pose_error_deg: known('pose_error_deg'), mesh: view ? view.hasMesh : false, points: view ? view.cloud.count : 0, fps: view ? view.rate.perSecond : 0,
     light_texts: { ...lights.texts }, last_event: events.last() ? { ...events.last() } : null,
   };
 };

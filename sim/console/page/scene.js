@@ -1,6 +1,6 @@
 // The 3-D view, in the axes of the sensor (LRF): x right, y along the boresight, z up. It draws only when
 // something changed.
-import { Bodies, makeShape } from '/bodies.js';
+import { Bodies, hasTruePlace, makeShape } from '/bodies.js';
 import { FrameRate } from '/frame_rate.js';
 import { Gizmo, makeTargetAxes, SensorLines, sizeLetters } from '/axes.js';
 import { Orbit } from '/orbit.js';
@@ -40,6 +40,7 @@ export class SceneView {
     this.onViewChange = () => {};
     this.onStill = () => {};
     this.shape = null;
+    this.hasMesh = false;
     this.clearColour = new THREE.Color();
     this.addFixedParts();
     this.draw = this.draw.bind(this);
@@ -65,19 +66,30 @@ export class SceneView {
   }
 
   setMesh(mesh) {
-    const shape = makeShape(mesh);
+    this.setShape(makeShape(mesh));
+    this.hasMesh = true;
+    this.setRadius(this.shape.radius);
+  }
+
+  /** Of another target than that of the run to come. */
+  removeMesh() {
+    if (this.hasMesh) this.setShape(makeShape({ vertices: new Float32Array(0), triangles: new Uint16Array(0) }));
+    this.hasMesh = false;
+    this.invalidate();
+  }
+
+  setShape(shape) {
     if (this.shape) for (const geometry of [this.shape.indexed, this.shape.faces, this.shape.edges]) geometry.dispose();
     this.shape = shape;
     this.bodies.setShape(shape);
     this.surface.setGeometry(shape.indexed);
     this.isSurfaceStale = true;
-    this.setRadius(shape.radius);
   }
 
   show(step) {
     this.cloud.show(step.frame);
-    if (this.cloud.count > 0 && !(step.detail && (step.detail.pose || step.detail.truth)))
-      this.cloud.centre(this.orbit.centre);
+    const isPlaced = hasTruePlace(step.detail) || Boolean(step.detail && step.detail.pose);
+    if (this.cloud.count > 0 && !isPlaced) this.cloud.centre(this.orbit.centre);
     this.bodies.show(step.detail, this.orbit.centre);
     this.placeAxes();
     this.sensor.set(this.cloud.fov || DEFAULT_SENSOR_FOV, this.orbit.centre.length() + this.radius);

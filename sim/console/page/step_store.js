@@ -2,9 +2,9 @@
 
 const FIRST_CAPACITY = 1024;
 
-/** Severity of a command in the list of events. */
-export const COMMAND = 4;
-export const severityNames = ['Debug', 'Info', 'Warning', 'Error', 'Command'];
+/** Severities as the server numbers those of events (hal/messages/event_id.hpp), and one for commands. */
+export const INFO = 0, WARNING = 1, ERROR = 2, COMMAND = 3;
+export const severityNames = ['Info', 'Warning', 'Error', 'Command'];
 
 export class StepStore {
   constructor() {

@@ -1,5 +1,5 @@
 // The timeline: a slider over all steps with marks of the events, and the buttons that move along it.
-import { COMMAND } from '/step_store.js';
+import { COMMAND, ERROR, INFO, WARNING } from '/step_store.js';
 import { element, figure, setText } from '/dom.js';
 import { speeds } from '/playback.js';
 import { themeColour } from '/colours.js';
@@ -10,8 +10,8 @@ const BAND_PX = 4;
 
 // From the least to the most important: the later cover the earlier.
 const markKinds = [
-  { severity: 0, colour: 'off', height: 4 }, { severity: 1, colour: 'accent', height: 7 }, { severity: COMMAND, colour: 'second', height: 10 },
-  { severity: 2, colour: 'warn', height: 12 }, { severity: 3, colour: 'alarm', height: 17 },
+  { severity: INFO, colour: 'accent', height: 5 }, { severity: COMMAND, colour: 'second', height: 9 },
+  { severity: WARNING, colour: 'warn', height: 12 }, { severity: ERROR, colour: 'alarm', height: 17 },
 ];
 
 export class Timeline {
@@ -41,7 +41,7 @@ export class Timeline {
   explainMarks() {
     const legend = document.getElementById('mark-legend');
     legend.append('Marks by height: ');
-    for (const [name, severity] of [['error', 3], ['warning', 2], ['command', COMMAND], ['info', 1], ['debug', 0]])
+    for (const [name, severity] of [['error', ERROR], ['warning', WARNING], ['command', COMMAND], ['info', INFO]])
       legend.append(element('span', { className: `severity-${severity}`, textContent: name }), ' ');
     legend.append(' Band: ', element('span', { className: 'mark-verified', textContent: 'verified' }), ' ',
       element('span', { className: 'mark-valid', textContent: 'valid' }));

@@ -304,6 +304,13 @@ std::vector<TriangleMesh> changed_bodies(const EffectRanges& effects, std::uint6
   return bodies;
 }
 
+void mark(const std::vector<Panel>& panels, TriangleMesh& mesh) {
+  mesh.is_panel.assign(mesh.triangles.size(), 0);
+  for (const Panel& panel : panels) {
+    for (const std::size_t triangle : panel.triangles) mesh.is_panel[triangle] = 1;
+  }
+}
+
 }  // namespace
 
 std::vector<TriangleMesh> observed_bodies(const EffectRanges& effects, const std::string& target,
@@ -321,14 +328,13 @@ std::vector<TriangleMesh> observed_bodies(const EffectRanges& effects, const std
     bodies.insert(bodies.end(), more.begin(), more.end());
   }
   if (effects.high.panel_lobe == 0.0) return bodies;
-  for (TriangleMesh& body : bodies) {
-    const std::vector<Panel> panels = panels_for_effect("panel_lobe", body);
-    body.is_panel.assign(body.triangles.size(), 0);
-    for (const Panel& panel : panels) {
-      for (const std::size_t triangle : panel.triangles) body.is_panel[triangle] = 1;
-    }
-  }
+  for (TriangleMesh& body : bodies) mark(panels_for_effect("panel_lobe", body), body);
   return bodies;
+}
+
+void mark_panels(TriangleMesh& mesh) {
+  const std::vector<Panel> panels = find_panels(mesh);
+  if (!panels.empty()) mark(panels, mesh);
 }
 
 SensorSettings with_effects(SensorSettings settings, const Effects& effects) {

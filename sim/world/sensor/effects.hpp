@@ -137,6 +137,8 @@ inline constexpr std::uint64_t kDrawnBodies = 16;
 // marked if an effect needs them. Throws std::invalid_argument if the mesh lacks what an effect acts on.
 std::vector<TriangleMesh> observed_bodies(const EffectRanges& effects, const std::string& target,
                                           const TriangleMesh& mesh);
+// Marks the parts that are panels, if the mesh has any, so that the effect panel_lobe can act on it later.
+void mark_panels(TriangleMesh& mesh);
 // The settings with the parameters that the effects change.
 SensorSettings with_effects(SensorSettings settings, const Effects& effects);
 // Whether a return depends on the direction or the kind of the surface, so that the grid has to know them.

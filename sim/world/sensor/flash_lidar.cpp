@@ -164,6 +164,11 @@ FlashLidar::FlashLidar(const std::vector<TriangleMesh>& bodies) {
 
 FlashLidar::~FlashLidar() = default;
 
+bool FlashLidar::knows_panels() const {
+  return std::all_of(scenes_.begin(), scenes_.end(),
+                     [](const auto& scene) { return !scene->is_panel.empty(); });
+}
+
 const FlashLidar::Scene& FlashLidar::scene_of(const FrameTruth& truth) const {
   return *scenes_[mix(truth.scene_seed) % scenes_.size()];
 }

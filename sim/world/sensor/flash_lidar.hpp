@@ -42,6 +42,8 @@ class FlashLidar {
   FlashLidar(const FlashLidar&) = delete;
   FlashLidar& operator=(const FlashLidar&) = delete;
 
+  // Whether the effects on solar panels know which triangles those are.
+  bool knows_panels() const;
   // Exact ranges of one flash of rays x rays, without occluder, effects, noise and losses. Thread-safe.
   RangeGrid true_ranges(const FrameTruth& truth, int rays, double swath_m) const;
   // The same with RangeGrid::surfaces.

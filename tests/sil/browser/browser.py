@@ -78,9 +78,17 @@ class Browser:
     def __init__(self, url):
         self.folder = tempfile.TemporaryDirectory(prefix="tumblesight-browser-", ignore_cleanup_errors=True)
         self.errors, self.number = [], 0
+        self.socket = None
         self.process = subprocess.Popen([find_chromium(), *OPTIONS, f"--user-data-dir={self.folder.name}", "about:blank"],
                                         stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                                         start_new_session=True)
+        try:
+            self._open(url)
+        except BaseException:
+            self.__exit__()
+            raise
+
+    def _open(self, url):
         port = self._port()
         targets = json.load(urllib.request.urlopen(f"http://127.0.0.1:{port}/json", timeout=30))
         page = next(target for target in targets if target["type"] == "page")
@@ -102,7 +110,8 @@ class Browser:
         return self
 
     def __exit__(self, *_):
-        self.socket.socket.close()
+        if self.socket:
+            self.socket.socket.close()
         os.killpg(self.process.pid, signal.SIGKILL)  # with its helpers, which write to its folder
         self.process.wait()
         self.process.stderr.close()
@@ -128,7 +137,7 @@ class Browser:
             raise RuntimeError(f"{expression}: {result['exceptionDetails']}")
         return result["result"].get("value")
 
-    def wait_for(self, expression, seconds=30):
+    def wait_for(self, expression, seconds=60):
         """The value of the expression once it is true."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:

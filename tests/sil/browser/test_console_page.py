@@ -4,13 +4,17 @@ Usage: test_console_page.py TUMBLESIGHT [FOLDER]     FOLDER keeps the screenshot
 """
 
 import collections
+import json
+import os
 import pathlib
 import re
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+import urllib.request
 
 import browser
 
@@ -18,6 +22,9 @@ SEQUENCES = 30
 FRAMES = 10
 STEPS = SEQUENCES * FRAMES
 DOMAIN = "213"  # that no other run takes by itself
+ENDLESS = 200   # sequences: more than a test on a slow machine lets pass
+INFO, WARNING, ERROR = range(3)  # as the server numbers severities
+MODEL_IMAGE = pathlib.Path(__file__).parents[3] / "fsw/models/near_shoemaker.tsm"  # all have the same size
 
 
 class Console:
@@ -38,20 +45,68 @@ class Console:
 
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGINT)
-        self.process.wait(timeout=20)
-        self.process.stdout.close()
+        try:
+            self.process.wait(timeout=20)
+        finally:
+            self.process.kill()
+            self.process.stdout.close()
+
+    def get(self, path, query=""):
+        """What the API answers, beside the page."""
+        address = self.address.replace("/?", f"{path}?{query}&")
+        return json.load(urllib.request.urlopen(address, timeout=30))
+
+    def newest(self):
+        """The newest step."""
+        return self.get("/api/step", f"k={self.get('/api/run')['steps'] - 1}")
+
+    def severities(self):
+        """How many events of each severity there are."""
+        events = self.get("/api/steps", "from=0")["events"]
+        return collections.Counter(severity for _, _, severity, *_ in events)
 
 
-def simulate(*arguments):
-    return subprocess.Popen([TUMBLESIGHT, "simulate", "--sequences", str(SEQUENCES), "--report", str(FOLDER / "report.html"), *arguments],
-                            stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+def end(process):
+    """Ends a run, and the flight program with it."""
+    process.terminate()
+    try:
+        process.wait(timeout=30)
+    finally:
+        try:
+            os.killpg(process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
 
 
 def state(page, name):
     return page.value_of(f"console_state().{name}")
 
 
+def has_event(severity, words):
+    """An expression: the list shows such an event."""
+    return (f"[...document.querySelectorAll('#event-list .event:not([hidden])')].some(({{children}}) => "
+            f"children[1].textContent === {severity!r} && children[2].textContent.startsWith({words!r}))")
+
+
 class Page(unittest.TestCase):
+    def simulate(self, *arguments, sequences=SEQUENCES):
+        """A run that ends with the test at the latest."""
+        run = subprocess.Popen([TUMBLESIGHT, "simulate", "--sequences", str(sequences), "--frames", str(FRAMES),
+                                "--report", str(FOLDER / "report.html"), *arguments],
+                               stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL, start_new_session=True)
+        self.addCleanup(end, run)
+        return run
+
+    def watch(self, page, changes):
+        """The errors of the pose while the page goes to another step so many times."""
+        errors, selected = [], state(page, "selected")
+        for _ in range(changes):
+            shown = page.wait_for(f"console_state().selected > {selected} && console_state()")
+            selected = shown["selected"]
+            if shown["pose_error_deg"] is not None:
+                errors.append(shown["pose_error_deg"])
+        return errors
+
     def check_view(self, page, name):
         """The 3-D view shows something: many colours beside its background."""
         rows = page.screenshot(FOLDER / f"{name}_view.png", "[data-testid=view-3d] canvas")
@@ -64,19 +119,42 @@ class Page(unittest.TestCase):
     def test_a_live_run_is_followed_to_its_end(self):
         with Console("--domain", DOMAIN) as console, browser.Browser(console.address) as page:
             page.wait_for("window.console_state && console_state().connected")
-            run = simulate("--speed", "100", "--domain", DOMAIN)
-            page.wait_for("console_state().steps > 20 && console_state().points > 100")
+            self.assertEqual(state(page, "steps"), 0)
+            self.assertFalse(state(page, "mesh"))
+            run = self.simulate("--speed", "40", "--domain", DOMAIN)
+            page.wait_for("console_state().steps > 5 && console_state().points > 100 && console_state().mesh")
             self.assertTrue(state(page, "following"))
-            seen = [page.wait_for(f"console_state().selected >= {step} && console_state()") for step in (40, 80, 120)]
-            errors = {state_then["pose_error_deg"] for state_then in seen}
-            self.assertGreater(len(errors), 1, "the estimate does not move")
+            self.check_title(page, console)
+            errors = self.watch(page, 12)
+            self.assertGreater(len(set(errors)), 1, "the estimate does not move")
             self.assertLess(min(errors), 1.0)
             self.check_view(page, "live")
             self.assertEqual(run.wait(timeout=120), 0)
             last = page.wait_for("document.body.innerText.includes('ended') && console_state()")
             self.assertEqual(last["selected"], last["steps"] - 1)
             self.assertGreater(last["steps"], STEPS - 20)
+            self.check_that_another_run_is_followed(page, console)
             self.assertEqual(page.errors, [])
+
+    def check_title(self, page, console):
+        target = console.get("/api/run")["target"]
+        self.assertNotEqual(target, "")
+        for title in (page.value_of("document.title"), page.value_of("document.querySelector('[data-testid=run-title]').innerText")):
+            self.assertRegex(title, f"^{target}, run [0-9a-f]{{8}}")
+
+    def check_that_another_run_is_followed(self, page, console):
+        self.simulate("--target", "magellan", "--speed", "20", "--domain", DOMAIN, sequences=4)
+        page.wait_for("document.title.startsWith('magellan') && console_state().steps > 10 && console_state().mesh")
+        self.assertLessEqual(state(page, "steps"), 4 * FRAMES)
+        self.check_title(page, console)
+
+    def check_counts(self, page, console):
+        """The filter counts the events as the server does."""
+        counts = console.severities()
+        for name, severity in (("info", INFO), ("warning", WARNING), ("error", ERROR)):
+            title = page.value_of(f"document.querySelector('[data-testid=filter-{name}]').title")
+            self.assertEqual(title, f"Show or hide ({counts[severity]})", name)
+        return counts
 
     def send(self, page, form, answer):
         page.value_of(f"document.querySelector('[data-testid={form}] button').click()")
@@ -85,15 +163,57 @@ class Page(unittest.TestCase):
     def fill(self, page, name, value):
         page.value_of(f"(() => {{ const field = document.querySelector('#command-panel [name={name}]'); field.value = {value!r}; }})()")
 
+    def give_strength(self, page, value):
+        page.value_of(f"(() => {{ document.querySelector('[data-testid=fault-strength]').value = {value!r}; }})()")
+
+    def give_steps(self, page, value):
+        page.value_of(f"(() => {{ document.querySelector('[data-testid=fault-steps]').value = {value!r}; }})()")
+
+    def answer(self, page):
+        return page.value_of("document.querySelector('[data-testid=command-answer]').innerText")
+
+    def check_that_empty_fields_are_not_sent(self, page):
+        page.value_of("(() => { const fetch = window.fetch; window.posts = 0;"
+                      "window.fetch = (url, what) => { posts += what?.method === 'POST'; return fetch(url, what); }; })()")
+        self.choose(page, "command-name", "Bytes, unchecked")
+        self.send(page, "command-form", "function '' must be a whole number from 0 to 127")
+        self.choose(page, "fault-kind", "debris")
+        for strength, steps in (("", "5"), ("6", "")):
+            self.give_strength(page, strength)
+            self.give_steps(page, steps)
+            page.value_of("document.querySelector('[data-testid=fault-form] button').click()")
+        self.assertIn("function ''", self.answer(page), "the form of faults was sent")
+        self.assertEqual(page.value_of("posts"), 0)
+
+    def check_error(self, page, console):
+        """An image that was begun, as a copy of the one in use, and is then validated with a wrong checksum."""
+        end = time.monotonic() + 60
+        while console.newest()["telemetry"]["model_segments_missing"] > 0:
+            self.assertLess(time.monotonic(), end, "the image in use was not copied")
+            time.sleep(0.2)
+        self.choose(page, "command-name", "SET_MODE")
+        self.fill(page, "mode", "1")  # STANDBY, where an image can be validated
+        self.send(page, "command-form", "SET_MODE: in step")
+        page.wait_for("Object.values(console_state().light_texts).includes('STANDBY')")
+        self.choose(page, "command-name", "MODEL_VALIDATE")
+        self.fill(page, "size", str(MODEL_IMAGE.stat().st_size))
+        self.fill(page, "crc32", "0")
+        self.send(page, "command-form", "MODEL_VALIDATE: in step")
+        page.wait_for(has_event("■ Error", "model image refused"))
+        page.wait_for("document.querySelector('[data-testid=filter-error]').innerText === 'Errors 1'")
+        page.wait_for(has_event("▲ Warning", "telecommand without a model to act on"))
+
     def choose(self, page, name, value):
         page.value_of(f"(() => {{ const list = document.querySelector('[data-testid={name}]'); list.value = {value!r};"
                       "list.dispatchEvent(new Event('change')); })()")
 
     def test_commands_and_faults_go_into_a_live_run(self):
         with Console("--domain", DOMAIN) as console, browser.Browser(console.address) as page:
-            run = simulate("--speed", "30", "--domain", DOMAIN)
-            page.wait_for("window.console_state && console_state().steps > 5 && document.querySelector('[data-testid=command-form]')")
+            self.simulate("--speed", "20", "--domain", DOMAIN, sequences=ENDLESS)
+            page.wait_for("window.console_state && console_state().steps > 5 && document.querySelector('#command-panel form:not([hidden])')")
             events = "document.querySelector('[data-testid=event-list]').innerText"
+            self.check_that_empty_fields_are_not_sent(page)
+            self.choose(page, "command-name", "NOOP")
             self.send(page, "command-form", "NOOP: in step")
             page.wait_for(f"{events}.includes('NOOP: accepted')")
             self.choose(page, "command-name", "SET_MODE")
@@ -103,22 +223,45 @@ class Page(unittest.TestCase):
             self.fill(page, "function", "99")
             self.fill(page, "bytes", "00ff")
             self.send(page, "command-form", "Bytes, unchecked: in step")
-            page.wait_for(f"{events}.includes('FUNCTION 99 0 255: refused')")
+            page.wait_for(has_event("▸ Command", "FUNCTION 99 0 255: refused"))
+            page.wait_for(has_event("▲ Warning", "telecommand unknown"))
+            self.choose(page, "command-name", "MODEL_BEGIN")
+            self.fill(page, "base", "1")
+            self.send(page, "command-form", "MODEL_BEGIN: in step")
             self.choose(page, "fault-kind", "freeze")
+            self.give_steps(page, "20")
             self.send(page, "fault-form", "Freeze the sensor: in step")
             page.wait_for("Object.values(console_state().light_texts).some((text) => text.includes('FRAME_FROZEN'))")
             page.screenshot(FOLDER / "frozen.png")
             page.wait_for("!Object.values(console_state().light_texts).some((text) => text.includes('FRAME_FROZEN'))")
-            run.terminate()
-            run.wait(timeout=30)
+            self.choose(page, "fault-kind", "debris")
+            self.give_strength(page, "99")
+            self.send(page, "fault-form", "the strength must be a number from 0.1 to 10 m, not 99")
+            self.give_strength(page, "6")
+            self.send(page, "fault-form", "debris: in step")
+            self.watch(page, 3)
+            page.screenshot(FOLDER / "debris.png")
+            self.choose(page, "fault-kind", "occlude")
+            self.give_strength(page, "0.4")
+            self.send(page, "fault-form", "Occlude the target: in step")
+            self.watch(page, 3)
+            page.screenshot(FOLDER / "occluded.png")
+            self.check_error(page, console)
+            page.screenshot(FOLDER / "error.png")
 
     def test_a_recording_is_scrubbed(self):
         path = FOLDER / "run.mcap"
-        self.assertEqual(simulate("--mcap", str(path)).wait(timeout=120), 0)
+        self.assertEqual(self.simulate("--mcap", str(path)).wait(timeout=120), 0)
         with Console(str(path)) as console, browser.Browser(console.address) as page:
             page.wait_for(f"window.console_state && console_state().steps == {STEPS} && console_state().points > 100")
             self.assertFalse(state(page, "following"))
             self.assertEqual(state(page, "selected"), 0)
+            self.check_title(page, console)
+            self.assertGreater(self.check_counts(page, console)[INFO], 0)
+            self.assertFalse(page.value_of(has_event("i Info", "")))
+            page.value_of("document.querySelector('[data-testid=filter-info]').click()")
+            page.wait_for(has_event("i Info", "model activated"))
+            page.value_of("document.querySelector('[data-testid=filter-info]').click()")
             page.press("End")
             page.wait_for(f"console_state().selected == {STEPS - 1}")
             page.press("Home")

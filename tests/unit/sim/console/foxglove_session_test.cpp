@@ -41,6 +41,7 @@ class GrowingRun final : public RunSource {
     auto truth = sample<hal::dds::TruthSample>();
     truth.q_lrf_trf[0] = 1.0F;
     truth.range_m = range_m;
+    truth.time_ns = first_ns + kPeriod_ns * k_;
     log_.add(truth);
     auto attitude = sample<hal::dds::AttitudeSample>();
     attitude.time_ns = first_ns + kPeriod_ns * k_;

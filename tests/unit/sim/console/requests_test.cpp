@@ -28,7 +28,7 @@ class OneStep final : public RunSource {
   }
   const StepLog& log() const override { return log_; }
   const char* kind() const override { return "bus"; }
-  std::string title() const override { return "near_shoemaker"; }
+  std::string title() const override { return shown_title; }
   std::uint64_t first_frame() const override { return 0; }
   std::string ask(const std::string& request) const override {
     if (!answers) throw std::runtime_error("there is no run to ask");
@@ -36,6 +36,7 @@ class OneStep final : public RunSource {
     return R"({"step":1})";
   }
   bool frame(std::uint64_t step, gnc::RangeImage& frame) const override {
+    if (is_damaged) throw std::runtime_error("'run.mcap' is damaged");
     if (step != 0) return false;
     frame = {};
     frame.rays = 16;
@@ -45,7 +46,8 @@ class OneStep final : public RunSource {
   }
 
   mutable std::string asked;
-  bool answers = true;
+  bool answers = true, is_damaged = false;
+  std::string shown_title = "near_shoemaker";
 
  private:
   StepLog log_;
@@ -81,6 +83,49 @@ TEST_F(ConsoleRequests, AFrameIsItsRangesInLittleEndian) {
   EXPECT_EQ(bytes[8 + 6], 0x34);
   EXPECT_EQ(bytes[8 + 7], 0x12);
   EXPECT_EQ(status(get("/api/frame", "k=1")), 404);
+}
+
+TEST_F(ConsoleRequests, DamageInARecordingIsAnAnswer) {
+  run_.is_damaged = true;
+  for (const char* path : {"/api/frame", "/api/depth"}) {
+    const Answer answer = requests_.answer(get(path, "k=0"), kPort);
+    EXPECT_EQ(answer.status, 500);
+    EXPECT_EQ(answer.body, "'run.mcap' is damaged\n");
+  }
+}
+
+// Latin-1, as a file system may have it.
+TEST_F(ConsoleRequests, ANameThatIsNotUtf8IsShownAsFarAsItCanBe) {
+  run_.shown_title = "f\xfcr.mcap";
+  EXPECT_EQ(json(get("/api/run"))["title"], "f\xef\xbf\xbdr.mcap");
+}
+
+TEST_F(ConsoleRequests, FaultsHaveTheirLimits) {
+  const Json faults = json(get("/api/faults"));
+  EXPECT_EQ(faults["most_steps"], 1000);
+  bool has_debris = false;
+  for (const Json& fault : faults["faults"]) {
+    if (fault["name"] != "debris") continue;
+    has_debris = true;
+    EXPECT_EQ(fault["least"], 0.1);
+    EXPECT_EQ(fault["most"], 10.0);
+    EXPECT_EQ(fault["unit"], "m");
+  }
+  EXPECT_TRUE(has_debris);
+}
+
+// The run checks them.
+TEST_F(ConsoleRequests, NumbersOfARequestAreNotChanged) {
+  Request request = get("/api/fault");
+  request.method = "POST";
+  request.body = R"({"fault":"debris","strength":1.5,"steps":4294967301})";
+  EXPECT_EQ(status(request), 200);
+  EXPECT_EQ(Json::parse(run_.asked)["steps"], 4294967301);
+  EXPECT_EQ(Json::parse(run_.asked)["strength"], 1.5);
+  request.path = "/api/command";
+  request.body = R"({"function":4294967299,"bytes":"02"})";
+  EXPECT_EQ(status(request), 200);
+  EXPECT_EQ(Json::parse(run_.asked)["function"], 4294967299);
 }
 
 TEST_F(ConsoleRequests, TheMeshIsThatOfTheModelImage) {

@@ -155,6 +155,89 @@ TEST_F(Log, ACommandIsAcceptedOrRefusedByTheCounters) {
   EXPECT_EQ(commands[1][3], "refused");
 }
 
+// RESET_COUNTERS after a refused one.
+TEST_F(Log, ACommandThatResetsTheCountersIsAccepted) {
+  auto telemetry = sample_of<hal::dds::TelemetrySample>(0);
+  telemetry.commands_accepted = 1;
+  telemetry.commands_refused = 4;
+  log_.add(attitude_of(0));
+  log_.add(telemetry);
+  log_.add(done_of(0));
+  auto command = sample_of<hal::dds::CommandSample>(1);
+  command.size = 20;
+  log_.add(command);
+  telemetry = sample_of<hal::dds::TelemetrySample>(1);
+  telemetry.commands_accepted = 1;
+  log_.add(attitude_of(1));
+  log_.add(telemetry);
+  log_.add(done_of(1));
+  EXPECT_EQ(log_.rows(0)["commands"][0][3], "accepted");
+}
+
+// What came before it is not known.
+TEST_F(Log, OfACommandInTheFirstStepThatALateConsoleSeesOnlyThatItWasSent) {
+  auto command = sample_of<hal::dds::CommandSample>(50);
+  command.size = 20;
+  log_.add(command);
+  auto telemetry = sample_of<hal::dds::TelemetrySample>(50);
+  telemetry.commands_refused = 4;
+  log_.add(attitude_of(50));
+  log_.add(telemetry);
+  log_.add(done_of(50));
+  EXPECT_EQ(log_.rows(0)["commands"][0][3], "sent");
+}
+
+// A frame that was delivered a step late: the truth is that of its exposure.
+TEST_F(Log, AnErrorIsToTheTruthAtTheExposure) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    auto truth = truth_of(k);
+    truth.time_ns = 2'700'000'000 * (k + 1LL);
+    if (k == 1) truth.q_lrf_trf[0] = 1.0F, truth.q_lrf_trf[2] = 0.0F;
+    log_.add(truth);
+    auto attitude = attitude_of(k);
+    attitude.exposure_time_ns = k == 2 ? 2 * 2'700'000'000LL : attitude.time_ns;
+    log_.add(attitude);
+    log_.add(sample_of<hal::dds::TelemetrySample>(k));
+    log_.add(done_of(k));
+  }
+  const Json rows = log_.rows(0)["rows"];
+  EXPECT_NEAR(value(rows[0], "network_error_deg").get<double>(), 60.0, 1e-3);
+  EXPECT_NEAR(value(rows[1], "network_error_deg").get<double>(), 0.0, 1e-3);
+  EXPECT_NEAR(value(rows[2], "network_error_deg").get<double>(), 0.0, 1e-3);
+}
+
+TEST_F(Log, AnErrorIsNotKnownWithoutATruthAtTheExposure) {
+  auto truth = truth_of(0);
+  truth.time_ns = 5;
+  log_.add(truth);
+  add_step(0);
+  EXPECT_TRUE(value(log_.rows(0)["rows"][0], "network_error_deg").is_null());
+  EXPECT_EQ(value(log_.rows(0)["rows"][0], "true_range_m"), 31.0);
+}
+
+// The cycle of a flight program on its own timer has another time than the frame.
+TEST_F(Log, AStepHasTheTimeThatTheSimulatorGaveIt) {
+  auto step = sample_of<hal::dds::StepSample>(0);
+  step.time_ns = 1000;
+  log_.add(step);
+  add_step(0);
+  EXPECT_EQ(log_.time_ns_of(0), 1000);
+}
+
+TEST_F(Log, FramesThatNoFlightProgramSeesAreStepsToo) {
+  StepLog log;
+  log.expect_no_answers();
+  log.add(hello_of(kRun));
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if (k != 1) log.add(truth_of(k));  // a pause has none
+    log.add(sample_of<hal::dds::StepSample>(k));
+  }
+  log.end();
+  ASSERT_EQ(log.state().steps, 3U);
+  EXPECT_EQ(value(log.rows(0)["rows"][0], "true_range_m"), 31.0);
+  EXPECT_TRUE(value(log.rows(0)["rows"][0], "network_error_deg").is_null());
+}
+
 TEST_F(Log, ALaterRunTakesThePlaceOfTheOneBefore) {
   add_step(0);
   log_.add(hello_of(kRun));

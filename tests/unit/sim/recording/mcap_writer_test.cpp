@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -24,6 +25,25 @@ class Mcap : public testing::Test {
   TemporaryFolder folder_;
   std::string path_ = folder_.path("run.mcap");
 };
+
+// A console may still show it.
+TEST_F(Mcap, WhoHasTheFileOpenKeepsItWhenItIsWrittenAgain) {
+  McapWriter(path_, "first").close();
+  const std::string before = bytes_of(path_);
+  std::ifstream open(path_, std::ios::binary);
+  McapWriter(path_, "the second one").close();
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(open), {}), before);
+  EXPECT_NE(bytes_of(path_), before);
+}
+
+TEST_F(Mcap, ALinkToTheFileStays) {
+  const std::string link = folder_.path("link.mcap");
+  McapWriter(path_, "first").close();
+  std::filesystem::create_symlink(path_, link);
+  McapWriter(link, "the second one").close();
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_NE(bytes_of(path_).find("the second one"), std::string::npos);
+}
 
 // Verifies TS-SIL-190.
 TEST_F(Mcap, HasWhatWasWrittenWithChecksumsAndIndices) {

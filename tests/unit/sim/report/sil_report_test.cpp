@@ -69,7 +69,7 @@ TEST(RunJson, HasExactlyTheAgreedKeys) {
   for (const auto& [key, value] : json.items()) keys += key + " ";
   EXPECT_EQ(keys,
             "target condition sequences disturbances effect rcnn cnn pose pose_first inference_us "
-            "flight_heap_allocations steps_missed frames_superseded trace_crc32 faults ");
+            "flight_heap_allocations steps_missed frames_superseded trace_crc32 faults requests ");
   EXPECT_NEAR(json["rcnn"]["mean_deg"].get<double>(), 5.7296, 1e-3);
   EXPECT_NEAR(json["cnn"]["mean_deg"].get<double>(), 28.648, 1e-3);
   EXPECT_EQ(json["rcnn"]["within_20deg"], 1.0);
@@ -197,6 +197,17 @@ TEST(FrameResults, HoldThePosesOfTheReports) {
   EXPECT_NEAR(pose.rate_deg_s, 1.0, 1e-3);
   EXPECT_NEAR(pose.velocity_m_s, 0.003, 1e-6);
   EXPECT_TRUE(pose.inside_95) << "10 mrad and 10 mm, one standard deviation each";
+}
+
+TEST(RunJson, NamesWhatWasAskedOfTheRun) {
+  SilRunResult asked = run();
+  asked.requests = {{4, "freeze for 2 steps"}, {6, "telecommand NOOP"}};
+  const nlohmann::ordered_json json = run_json(SilRunSetup{}, asked);
+  EXPECT_EQ(json["requests"][1]["step"], 6);
+  EXPECT_EQ(json["requests"][1]["request"], "telecommand NOOP");
+  EXPECT_EQ(text_of(asked.requests), "step 4: freeze for 2 steps; step 6: telecommand NOOP");
+  asked.requests.assign(10, {1, "drop for 1 step"});
+  EXPECT_NE(text_of(asked.requests).find("; and 2 more"), std::string::npos);
 }
 
 TEST(RunJson, HoldsThePoses) {

@@ -1,0 +1,41 @@
+// The faults that can be put into a run while it goes on, as a person gives them: by name, with a strength in
+// the unit of the table and a number of steps. docs/console.md explains them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tumblesight::sim {
+
+struct FaultRow {
+  std::string name;
+  std::string explanation;  // one line
+  std::string unit;         // of the strength
+  // Limits of the strength. Both 0: the fault has none.
+  double lowest = 0.0, highest = 0.0;
+  bool must_be_whole = false;  // the strength
+  // Of what the sensor sees, so that frames have to be rendered with it: SceneFaults. Otherwise of the frames
+  // that it delivers: FrameFaults.
+  bool is_of_scene = false;
+};
+
+// A fault for the next steps.
+struct InjectedFault {
+  std::string name;
+  double strength = 0.0;
+  std::uint32_t steps = 1;
+};
+inline constexpr std::uint32_t kMostFaultSteps = 1000;
+
+// Those of the frames, an occluder and a chaser that turns, and the effects of sim/world/sensor/effects.hpp
+// but those that change the target's body.
+const std::vector<FaultRow>& fault_table();
+// Throws std::invalid_argument that lists the names if there is none of this name.
+const FaultRow& fault_named(const std::string& name);
+// Throws std::invalid_argument that names fault, value and limits.
+void require_possible(const InjectedFault& fault);
+// "debris 1.5 m for 5 steps"
+std::string to_string(const InjectedFault& fault);
+
+}  // namespace tumblesight::sim
