@@ -22,7 +22,7 @@ packages_to_watch=("${packages_to_run[@]}" libcivetweb-dev libjs-dygraphs libjs-
 packages_to_train=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread)
 packages_to_test=("${packages_to_train[@]}" "${packages_to_watch[@]}" libdnnl-dev libgtest-dev libgmock-dev
   chromium clang clang-format git python3 valgrind)
-packages_to_fuzz=("${packages_to_run[@]}" clang libclang-rt-dev python3)
+packages_to_fuzz=("${packages_to_run[@]}" clang libcivetweb-dev libclang-rt-dev python3)
 # The flight side only, with GCC's branch counts.
 packages_to_cover=(g++ cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev gcovr python3)
 packages_to_analyse=("${packages_to_run[@]}" libgtest-dev libgmock-dev clang clang-tidy cppcheck python3)

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "sim/cli/arguments.hpp"
@@ -14,6 +15,7 @@
 #include "sim/cli/mission_arguments.hpp"
 #include "sim/cli/symmetry_arguments.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/quantization/dequantize.hpp"
 #include "sim/quantization/quantize_file.hpp"
 #include "sim/quantization/surface_samples.hpp"
 #include "sim/quantization/target_surface.hpp"
@@ -41,6 +43,7 @@ struct QuantizeArguments {
   int sequences = kCalibrationSequences;
   SensorArguments sensor;
   bool surface_only = false;
+  bool to_float32 = false;
   std::string target;  // of --mission
   std::optional<Mission> mission;
 };
@@ -172,7 +175,31 @@ void replace_surface(const QuantizeArguments& arguments) {
   fmt::print("  {}, CRC-32 {:08x}:\n  {}\n", full_path(arguments.out), crc32, description(surface));
 }
 
+// All others are of the calibration or of the surface, and would have no effect.
+void require_only_files(const CLI::App& command) {
+  const std::set<std::string> allowed{"--to-float32", "--model", "--out"};
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() > 0 && allowed.count(option->get_name()) == 0)
+      throw CLI::ValidationError("--to-float32",
+                                 fmt::format("takes no {}; leave it out", option->get_name()));
+  }
+}
+
+// Writes the fixed-point image `--model` in float32.
+void write_float32(const QuantizeArguments& arguments) {
+  const SensorFiles sensor = require_usable_files(arguments);
+  const auto model = dequantized_model(arguments.model);
+  const std::uint32_t crc32 = write_model_file<gnc::Float32>(arguments.out, model->header, model->weights);
+  copy_sensor_file(sensor);
+  fmt::print("  {}, {} bytes, CRC-32 {:08x}\n", full_path(arguments.out), gnc::kModelImageSize<gnc::Float32>,
+             crc32);
+}
+
 void quantize_file(QuantizeArguments arguments) {
+  if (arguments.to_float32) {
+    write_float32(arguments);
+    return;
+  }
   if (arguments.surface_only) {
     replace_surface(arguments);
     return;
@@ -239,7 +266,10 @@ void add_quantize_command(CLI::App& app) {
       "layer. The first mesh gives the surface, as points and as triangles, by which\n"
       "the flight program judges what a frame shows. --surface-only replaces that\n"
       "surface in an image that is in fixed point already, also in one of format\n"
-      "version 3 or 4. The sensor's description beside --model is copied beside --out.\n\n"
+      "version 3 or 4. --to-float32 goes the other way, for a network of which only\n"
+      "the image in fixed point is left. The float32 image computes the same, without\n"
+      "the rounding of activations, and training can start from it. The sensor's\n"
+      "description beside --model is copied beside --out.\n\n"
       "The exit status is 0, 1 if a file failed or the mesh does not fit, 2 for wrong\n"
       "arguments, and 4 if the attitudes in fixed point differ from those in float32 by\n"
       "more than 5° on average; then no image is written.\n\n"
@@ -248,13 +278,18 @@ void add_quantize_command(CLI::App& app) {
       "      --mesh parametric --mesh near.stl\n\n"
       "Example: the surface of your CAD file for an image that ships\n"
       "  tumblesight quantize --surface-only --model fsw/models/near_shoemaker.tsm \\\n"
-      "      --mesh near.stl --out near.tsm\n");
+      "      --mesh near.stl --out near.tsm\n\n"
+      "Example: a start for training from an image that ships\n"
+      "  tumblesight quantize --to-float32 --model fsw/models/magellan.tsm \\\n"
+      "      --out magellan.float32.tsm\n");
   add_float32_model_option(*command, arguments->model);
   CLI::Option* model = command->get_option("--model");
-  model->description(model->get_description() + "; with --surface-only one in fixed point");
+  model->description(model->get_description() +
+                     "; with --surface-only one in fixed point, as with --to-float32");
   command
       ->add_option("--out", arguments->out,
-                   "model image to write [--model without .float32; --surface-only has no default]")
+                   "model image to write [--model without .float32; --surface-only has no default, nor has "
+                   "--to-float32]")
       ->check(file_path())
       ->type_name("FILE");
   add_mesh_options(*command, arguments->meshes);
@@ -275,7 +310,15 @@ void add_quantize_command(CLI::App& app) {
   surface->needs("--out");
   for (const char* of_calibration : {"--effect", "--sensor", "--range", "--sequences"})
     surface->excludes(command->get_option(of_calibration));
-  command->callback([arguments] { quantize_file(*arguments); });
+  command
+      ->add_flag("--to-float32", arguments->to_float32,
+                 "--model is in fixed point: write the float32 image of the same weights; takes no options "
+                 "but --model and --out")
+      ->needs("--out");
+  command->callback([command, arguments] {
+    if (arguments->to_float32) require_only_files(*command);
+    quantize_file(*arguments);
+  });
 }
 
 }  // namespace tumblesight::sim

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "sim/model/network_layers.hpp"
+#include "sim/quantization/input_units.hpp"
 #include "sim/quantization/scales.hpp"
 
 namespace tumblesight::sim {
@@ -16,7 +17,6 @@ namespace {
 
 // Half the range: frames other than those of the calibration may exceed its largest value.
 constexpr double kLargestInt16 = 32767.0 / 2.0;
-constexpr double kQ15 = 1.0 / 32768.0;
 
 std::int32_t to_integer(double value) {
   return static_cast<std::int32_t>(std::lround(std::min(2147483647.0, std::max(-2147483647.0, value))));
@@ -66,7 +66,7 @@ class Quantizer {
       : from_(from), statistics_(statistics), to_(to) {}
 
   void run() {
-    to_.scales[gnc::kDepthInput].assign(shape::kSpaceToDepthChannels, 1.0 / 256.0);
+    put_depth_scales(to_.scales);
     gnc::for_each_index<0, gnc::kLayerCount>([this](auto index) {
       constexpr int kIndex = decltype(index)::value;
       constexpr gnc::LayerRow kRow = gnc::kLayers[kIndex];
@@ -102,24 +102,10 @@ class Quantizer {
     lstm(row, from, to);
   }
 
-  // The unit of each input of the layer's sums.
-  std::vector<double> input_units(const gnc::LayerRow& row) const {
-    std::vector<double> units;
-    const auto append = [&](const std::string& name, int times) {
-      const std::vector<double>& scales = to_.scales.at(name);
-      for (int i = 0; i < times; ++i) units.insert(units.end(), scales.begin(), scales.end());
-    };
-    for (const std::string& name : reads_of(row)) {
-      append(name, is_image_layer(row) ? pixels_per_sum(row)
-                                       : gnc::values_per_frame(name.c_str()) / channels_of(name));
-    }
-    if (sums_of(row.kind).read_state) append(row.name, 1);
-    return units;
-  }
-
   template <class From>
   FloatLayer layer_of(const gnc::LayerRow& row, const From& from) const {
-    FloatLayer layer{row.name, static_cast<int>(from.bias.size()), {}, input_units(row), from.bias.data()};
+    FloatLayer layer{
+        row.name, static_cast<int>(from.bias.size()), {}, input_units(row, to_.scales), from.bias.data()};
     add_rows(layer, from.weight.data(), from.weight.size() / from.bias.size());
     return layer;
   }
@@ -168,14 +154,9 @@ class Quantizer {
     put_output_shifts(layer, scales, to);
   }
 
-  // The LSTM's input and its hidden state have a fixed unit, 2^-15, except for the features, which keep
-  // theirs.
   template <class From, class To>
   void lstm(const gnc::LayerRow& row, const From& from, To& to) {
-    to_.scales[gnc::kLstmInput] = to_.scales.at(gnc::kLayers[gnc::kFeatureLayer].name);
-    to_.scales[gnc::kLstmInput].resize(static_cast<std::size_t>(row.inputs), kQ15);
-    to_.scales[row.name].assign(static_cast<std::size_t>(row.outputs), kQ15);
-
+    put_lstm_scales(row, to_.scales);
     FloatLayer layer = layer_of(row, from);
     const auto inputs = static_cast<std::size_t>(row.inputs), hidden = static_cast<std::size_t>(row.outputs);
     add_rows(layer, from.recurrent.data(), hidden);

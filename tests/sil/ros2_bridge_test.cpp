@@ -1,5 +1,6 @@
 // ROS 2 nodes beside the console: what a reader with their settings gets, as bytes that the test decodes
 // itself.
+// Verifies TS-SIL-199.
 #include "sim/console/ros2_bridge.hpp"
 
 #include <gtest/gtest.h>

@@ -57,7 +57,7 @@ export class Numbers {
     this.wide('sigma-attitude', pose ? `${threeOf(pose.sigma_deg, 1, 3)} °` : '–');
     this.wide('sigma-position', pose ? `${threeOf(pose.sigma_m, 1000, 1)} mm` : '–');
     const second = detail ? detail.second : null;
-    this.wide('second', second ? `odds ${figure(100 * second.odds, 1)} %` : '–');
+    this.wide('second', second ? `odds ${figure(second.odds, 2)} to 1` : '–');
     this.wide('doubts', doubtsOf(detail));
   }
 }
