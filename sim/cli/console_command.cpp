@@ -85,6 +85,8 @@ void show(const ConsoleArguments& arguments) {
       "console{}.\n",
       run->title(), server.port(), token, arguments.recording.empty() ? "; the run goes on" : "");
   if (ros2) fmt::print("  ROS 2 nodes see the run in ROS domain {}.\n", *arguments.ros2_domain);
+  if (!run->is_whole())
+    fmt::print("  The recording has no end: its writer was killed, or has not ended yet.\n");
   std::fflush(stdout);
   const auto* const bus = dynamic_cast<const BusRun*>(run.get());
   std::string told_of_bus, told_of_ros2;
@@ -103,19 +105,21 @@ void add_console_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("console", "Watch a run in the browser while it goes on, or a recording of one");
   auto arguments = std::make_shared<ConsoleArguments>();
-  command->add_option("RECORDING", arguments->recording,
-                      "file of simulate --mcap or replay --mcap [the run on this machine's bus]");
   command
-      ->add_option("--domain", arguments->domain,
-                   "DDS domain of the run [the newest run that you have started]")
-      ->check(CLI::Range(0, static_cast<int>(hal::dds::kMaxDomain)));
-  command->add_option("--port", arguments->port, "of 127.0.0.1; 0: a free one")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 65535));
+      ->add_option("RECORDING", arguments->recording,
+                   "file of simulate, replay or record with --mcap [the run on this machine's bus]")
+      ->check(file_path());
+  limit_whole_number(command->add_option("--domain", arguments->domain,
+                                         "DDS domain of the run [the newest run that you have started]"),
+                     0, hal::dds::kMaxDomain);
+  limit_whole_number(
+      command->add_option("--port", arguments->port, "of 127.0.0.1; 0: a free one")->capture_default_str(), 0,
+      65535);
   command
       ->add_option("--mcap", arguments->mcap,
                    "also record the run to FILE, from where the console joins it; a recording that can be "
                    "replayed is made by simulate --mcap")
+      ->check(file_path())
       ->type_name("FILE");
   limit_whole_number(
       command

@@ -167,7 +167,12 @@ void BusRun::follow(const Connection& connection) {
 // Of the first run that is seen.
 void BusRun::begin_recording() {
   const std::string path = std::exchange(mcap_path_, {});
-  if (!path.empty()) recording_ = std::make_unique<JoinedRecording>(path, *this);
+  if (path.empty()) return;
+  try {
+    recording_ = std::make_unique<JoinedRecording>(path, *this);
+  } catch (const std::exception& failure) {
+    note(failure.what());
+  }
 }
 void BusRun::end_recording() {
   record([](JoinedRecording& recording) { recording.close(); });
@@ -196,7 +201,7 @@ void BusRun::look_for_runs() {
         begin_recording();
         follow(*connection);
         end_recording();
-      } catch (const std::exception& failure) {  // of the bus, or of the start of the recording
+      } catch (const std::exception& failure) {  // of the bus
         note(failure.what());
         recording_.reset();
         log_.end();

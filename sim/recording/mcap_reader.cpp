@@ -47,22 +47,6 @@ Number little_endian(const std::uint8_t* bytes) {
   return static_cast<Number>(value);
 }
 
-// A file descriptor that is closed in any case.
-class Descriptor {
- public:
-  // Does not wait for the writer of a pipe.
-  explicit Descriptor(const std::string& path) : fd_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
-  ~Descriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 std::string quoted(std::string_view text) {
   return "'" + shortened(std::string(text)) + "'";
 }
@@ -104,6 +88,22 @@ class McapReader::Fields {
   std::uint64_t at_, end_;
 };
 
+// A file descriptor that is closed in any case.
+class McapReader::Descriptor {
+ public:
+  // Does not wait for the writer of a pipe.
+  explicit Descriptor(const std::string& path) : fd_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+  ~Descriptor() {
+    if (fd_ >= 0) close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
 McapReader::McapReader(const std::string& path) : McapReader(mapped(path)) {}
 
 McapReader McapReader::from_bytes(std::vector<std::uint8_t> bytes, std::string name) {
@@ -122,17 +122,25 @@ McapReader::McapReader(File file) : file_(std::move(file)) {
 }
 
 McapReader::File McapReader::mapped(const std::string& path) {
-  const Descriptor descriptor(path);
+  const auto descriptor = std::make_shared<const Descriptor>(path);
   struct stat state {};
-  if (descriptor.get() < 0 || fstat(descriptor.get(), &state) != 0)
+  if (descriptor->get() < 0 || fstat(descriptor->get(), &state) != 0)
     fail(path, std::string("cannot be read: ") + std::strerror(errno) + "; give an existing file");
   if (!S_ISREG(state.st_mode)) fail(path, "is not a file; give the path of an MCAP file");
   if (state.st_size == 0) fail(path, "is empty; give a file that has a recording");
   const auto size = static_cast<std::size_t>(state.st_size);
-  void* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor.get(), 0);
+  void* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor->get(), 0);
   if (memory == MAP_FAILED) fail(path, std::string("cannot be mapped into memory: ") + std::strerror(errno));
   const auto unmap = [size](std::uint8_t* bytes) { munmap(bytes, size); };
-  return {path, std::shared_ptr<std::uint8_t>(static_cast<std::uint8_t*>(memory), unmap), size};
+  return {path, std::shared_ptr<std::uint8_t>(static_cast<std::uint8_t*>(memory), unmap), size, descriptor};
+}
+
+// Beyond the end of the file the mapping has no memory.
+void McapReader::require_same_length() const {
+  struct stat state {};
+  if (!file_.descriptor || fstat(file_.descriptor->get(), &state) != 0) return;
+  if (static_cast<std::uint64_t>(state.st_size) < file_.size)
+    fail(file_.name, "another program has made it shorter since it was opened; open it again");
 }
 
 void McapReader::fail(const std::string& name, const std::string& what) {
@@ -424,6 +432,7 @@ const std::vector<McapReader::Entry>& McapReader::entries(McapId channel) const 
 }
 
 McapReader::Message McapReader::read(McapId channel, const Entry& entry) const {
+  require_same_length();
   std::uint64_t start = entry.offset, end = file_.size;
   if (entry.chunk != kNoChunk) {
     if (entry.chunk >= contents_.chunks.size()) throw std::logic_error("an entry of an unknown chunk");

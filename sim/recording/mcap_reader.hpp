@@ -48,7 +48,8 @@ class McapReader {
   };
 
   // Throws std::runtime_error, as all functions do, that names the file, what is wrong at which byte, and
-  // the remedy. The file may grow while it is mapped, but must not become shorter.
+  // the remedy. The file may grow while it is mapped. One that has become shorter
+  // is refused from then on, unless it is cut off at the moment of a read.
   explicit McapReader(const std::string& path);
   // The same from memory. `name`: stands for the file in messages.
   static McapReader from_bytes(std::vector<std::uint8_t> bytes, std::string name);
@@ -93,10 +94,12 @@ class McapReader {
     std::uint64_t schema_bytes = 0;  // in all channels
   };
   // What the bytes are read from: a mapping or memory.
+  class Descriptor;
   struct File {
     std::string name;
     std::shared_ptr<const std::uint8_t> bytes;
     std::uint64_t size;
+    std::shared_ptr<const Descriptor> descriptor{};  // of a mapping
   };
   class Fields;
 
@@ -105,6 +108,7 @@ class McapReader {
   [[noreturn]] static void fail(const std::string& name, const std::string& what);
   [[noreturn]] void damaged(std::uint64_t at, const std::string& what) const;
 
+  void require_same_length() const;
   void require_start() const;
   // A record that ends at `end` at the latest.
   std::optional<Record> record_at(std::uint64_t at, std::uint64_t end) const;

@@ -82,6 +82,9 @@ McapWriter::McapWriter(std::string path, const std::string& library)
 
 // Not emptied before it is ours alone. A device can be neither locked nor emptied.
 void McapWriter::open_alone(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode))
+    fail("is a pipe, which cannot be a recording; give the path of a file");
   file_.reset(std::fopen(path.c_str(), "ab"));
   if (!file_) fail(std::string("cannot be written: ") + std::strerror(errno));
   if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)

@@ -268,8 +268,9 @@ std::vector<std::string> flight_faults(const SilRunResult& run) {
   }
   const StepResult* last = last_answered(run);
   if (last != nullptr && last->telemetry.commands_refused > 0) {
-    found.push_back(fmt::format("The flight program refused {}; see its command counter and key.",
-                                counted(last->telemetry.commands_refused, "telecommand")));
+    found.push_back(
+        fmt::format("The flight program refused {}; see its command counter, its key and the arguments.",
+                    counted(last->telemetry.commands_refused, "telecommand")));
   }
   if (run.flight_heap_allocations > 0) {
     found.push_back(fmt::format("The flight task allocated heap memory {} times after its start.",

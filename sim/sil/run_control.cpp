@@ -25,6 +25,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kMostWaiting = 8;  // connections
+constexpr const char* kNotAnswered =
+    "the run has not taken the request in time, and will not carry it out: it is paused, or its steps take "
+    "longer than that";
 
 std::string path_of(std::uint32_t domain) {
   std::error_code no_folder;
@@ -50,7 +53,7 @@ bool is_own_user(int socket) {
 
 // One that does not fit is beyond every limit here.
 std::int64_t whole_number(const Json& value) {
-  if (!value.is_number_integer()) throw std::invalid_argument(value.dump() + " is no whole number");
+  if (!value.is_number_integer()) throw std::invalid_argument("steps and function must be whole numbers");
   if (value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX) return INT64_MAX;
   return value.get<std::int64_t>();
 }
@@ -59,7 +62,7 @@ InjectedFault fault_of(const Json& request) {
   InjectedFault fault;
   fault.name = request.at("fault").get<std::string>();
   const std::int64_t steps = whole_number(request.at("steps"));
-  fault.steps = static_cast<std::uint32_t>(std::clamp<std::int64_t>(steps, 0, kMostFaultSteps + 1));
+  fault.steps = static_cast<std::uint32_t>(std::clamp<std::int64_t>(steps, 0, UINT32_MAX));
   if (request.contains("strength")) {
     if (!request.at("strength").is_number()) throw std::invalid_argument("the strength must be a number");
     fault.strength = request.at("strength").get<double>();
@@ -186,16 +189,18 @@ bool RunControl::serve(Client& client, Step& step) {
 
 std::string ask_run(std::uint32_t domain, const std::string& request, int timeout_ms) {
   sockaddr_un address;
-  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   struct Closer {
     int socket;
     ~Closer() {
       if (socket >= 0) close(socket);
     }
   } closer{socket};
-  if (socket < 0 || !address_of(path_of(domain), address) ||
-      connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      !is_own_user(socket))
+  if (socket < 0 || !address_of(path_of(domain), address))
+    throw SilFailure("the run takes no requests: it has ended, or is of another version");
+  const int connected = connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  if (connected != 0 && errno == EAGAIN) throw SilFailure(kNotAnswered);  // too many wait before
+  if (connected != 0 || !is_own_user(socket))
     throw SilFailure("the run takes no requests: it has ended, or is of another version");
   const std::string line = request + "\n";
   if (send(socket, line.data(), line.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(line.size()))
@@ -204,7 +209,7 @@ std::string ask_run(std::uint32_t domain, const std::string& request, int timeou
   pollfd readable{socket, POLLIN, 0};
   while (answer.find('\n') == std::string::npos) {
     char buffer[1024];
-    if (poll(&readable, 1, timeout_ms) <= 0) throw SilFailure("the run has not answered: is it paused?");
+    if (poll(&readable, 1, timeout_ms) <= 0) throw SilFailure(kNotAnswered);
     const ssize_t count = read(socket, buffer, sizeof buffer);
     if (count <= 0) throw SilFailure("the run ended before it answered");
     answer.append(buffer, static_cast<std::size_t>(count));

@@ -1,5 +1,6 @@
 #include "sim/sil/run_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 
@@ -8,11 +9,23 @@
 namespace tumblesight::sim {
 
 RunFile::RunFile(const std::string& path) : path_(path), reader_(path) {
-  if (channel<hal::dds::StepSample>().schema_text != hal::dds::idl_text())
+  const McapReader::Channel* const steps = reader_.find(hal::dds::topic_of<hal::dds::StepSample>().name);
+  if (steps != nullptr && steps->schema_text != hal::dds::idl_text())
     throw std::runtime_error(
         "'" + path +
         "' was recorded with another version of the interface (tumblesight.idl): use the "
         "tumblesight that wrote it");
+  if (!reader_.is_whole() && !has_messages())
+    throw std::runtime_error("'" + path +
+                             "' was cut off before its first part was complete (a second, or a mebibyte): it "
+                             "has no message; record the run again");
+  (void)channel<hal::dds::StepSample>();  // throws if it is no recording of a run
+}
+
+bool RunFile::has_messages() const {
+  const auto& channels = reader_.channels();
+  return std::any_of(channels.begin(), channels.end(),
+                     [&](const auto& channel) { return !reader_.entries(channel.id).empty(); });
 }
 
 bool RunFile::is_one(const std::string& path) {

@@ -41,6 +41,7 @@ class RunFile {
   }
 
  private:
+  bool has_messages() const;
   const McapReader::Channel& channel_of(const std::string& topic) const;
   McapReader::Message message_of(McapId channel, const McapReader::Entry& entry) const;
   [[noreturn]] void fail_damaged(const std::string& topic) const;

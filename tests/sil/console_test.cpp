@@ -118,6 +118,31 @@ TEST(Console, ShowsARecordingWithoutItsEnd) {
   EXPECT_LT(shown.log().state().steps, kSteps);
 }
 
+TEST(Console, SaysThatARecordingWasCutOffBeforeItsFirstMessages) {
+  const std::string path = test::temporary_path("run.mcap");
+  ASSERT_EQ(run(path).failure, "");
+  const std::string bytes = test::read_file(path);
+  for (const std::ptrdiff_t left : {36, 2'000, 100'000, 500'000}) {
+    test::write_file(path, {bytes.begin(), bytes.begin() + left});
+    try {
+      const RecordedRun shown(path);
+      FAIL() << left;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("was cut off before"), std::string::npos) << error.what();
+    }
+  }
+}
+
+// Another program writes over it.
+TEST(Console, ARecordingThatBecomesShorterIsRefusedFromThenOn) {
+  const std::string path = test::temporary_path("run.mcap");
+  ASSERT_EQ(run(path).failure, "");
+  const RecordedRun shown(path);
+  ASSERT_EQ(truncate(path.c_str(), 5000), 0);
+  gnc::RangeImage frame;
+  EXPECT_THROW((void)shown.frame(kSteps - 1, frame), std::runtime_error);
+}
+
 TEST(Console, RefusesAFileThatIsNoRecordingOfARunByName) {
   const std::string path = test::temporary_path("other.mcap");
   McapWriter(path, "test").close();
@@ -205,6 +230,15 @@ TEST(Console, RecordsTheRunThatItHasJoined) {
     EXPECT_GE(reader.entries(reader.find(topic)->id).size(), steps - 1) << topic;
   gnc::RangeImage frame;
   EXPECT_TRUE(recorded.frame(steps - 1, frame));
+}
+
+TEST(Console, ShowsARunWhoseRecordingCannotBeWritten) {
+  const int domain = test::spare_domain();
+  const BusRun shown(domain, "", "/dev/full");
+  simulate("--speed 50 --domain " + std::to_string(domain));
+  ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
+  EXPECT_GE(shown.log().state().steps, kSteps / 2);
+  EXPECT_NE(shown.failure().find("/dev/full"), std::string::npos) << shown.failure();
 }
 
 TEST(Console, ShowsTheNextRunAfterTheOneBefore) {

@@ -100,6 +100,17 @@ TEST_F(Control, DoesNotCarryOutWhatNobodyWaitsFor) {
   EXPECT_TRUE(source_.begun.empty());
 }
 
+// A run that is paused, and more who ask than can wait.
+TEST_F(Control, NobodyWaitsForEver) {
+  std::vector<std::future<void>> all;
+  for (int i = 0; i < 24; ++i)
+    all.push_back(std::async(std::launch::async, [this] {
+      EXPECT_THROW(ask_run(lease_.domain(), R"({"function":1,"arguments":""})", 50), SilFailure);
+    }));
+  for (std::future<void>& one : all)
+    ASSERT_EQ(one.wait_for(std::chrono::seconds(5)), std::future_status::ready);
+}
+
 TEST_F(Control, LimitsTheFaultsOfAStep) {
   const int client = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_un address{};

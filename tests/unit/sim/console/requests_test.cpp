@@ -128,6 +128,23 @@ TEST_F(ConsoleRequests, NumbersOfARequestAreNotChanged) {
   EXPECT_EQ(Json::parse(run_.asked)["function"], 4294967299);
 }
 
+// Deep nesting would take more stack than a thread of the server has.
+TEST_F(ConsoleRequests, ANumberThatIsNoneIsRefused) {
+  const std::string nested = std::string(2000, '[') + std::string(2000, ']');
+  for (const std::string& wrong : {nested, std::string("\"5\""), std::string("null"), std::string("true")}) {
+    Request request = get("/api/fault");
+    request.method = "POST";
+    request.body = R"({"fault":"drop","steps":)" + wrong + "}";
+    EXPECT_EQ(status(request), 400) << wrong;
+    request.body = R"({"fault":"debris","steps":1,"strength":)" + wrong + "}";
+    EXPECT_EQ(status(request), 400) << wrong;
+    request.path = "/api/command";
+    request.body = R"({"bytes":"","function":)" + wrong + "}";
+    EXPECT_EQ(status(request), 400) << wrong;
+  }
+  EXPECT_EQ(run_.asked, "");
+}
+
 TEST_F(ConsoleRequests, TheMeshIsThatOfTheModelImage) {
   const std::string bytes = requests_.answer(get("/api/mesh"), kPort).body;
   std::uint32_t vertices = 0, triangles = 0;

@@ -1,6 +1,7 @@
 #include "sim/recording/mcap_writer.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <filesystem>
@@ -34,6 +35,11 @@ TEST_F(Mcap, WhoHasTheFileOpenKeepsItWhenItIsWrittenAgain) {
   McapWriter(path_, "the second one").close();
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(open), {}), before);
   EXPECT_NE(bytes_of(path_), before);
+}
+
+TEST_F(Mcap, APipeIsRefused) {
+  ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
+  EXPECT_THROW(McapWriter(path_, "test"), std::runtime_error);
 }
 
 TEST_F(Mcap, ALinkToTheFileStays) {
