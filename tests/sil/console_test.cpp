@@ -211,6 +211,7 @@ TEST(Console, FollowsARunWithoutChangingIt) {
   }
 }
 
+// Topics are joined one after the other: of the first steps a part may be in the recording only, or missing.
 TEST(Console, RecordsTheRunThatItHasJoined) {
   const int domain = test::spare_domain();
   const std::string path = test::temporary_path("joined.mcap");
@@ -224,12 +225,15 @@ TEST(Console, RecordsTheRunThatItHasJoined) {
   }
   const RecordedRun recorded(path);
   EXPECT_TRUE(recorded.is_whole());
-  EXPECT_EQ(recorded.log().state().steps, steps);
+  const std::uint64_t recorded_steps = recorded.log().state().steps;
+  EXPECT_GE(recorded_steps, steps);
+  EXPECT_LE(recorded_steps, kSteps);
+  EXPECT_EQ(recorded.log().k_of(recorded_steps - 1), kSteps - 1);
   const McapReader reader(path);
   for (const char* topic : {"/figures", "/tf", "/lidar/points"})
-    EXPECT_GE(reader.entries(reader.find(topic)->id).size(), steps - 1) << topic;
+    EXPECT_GE(reader.entries(reader.find(topic)->id).size(), kSteps / 2) << topic;
   gnc::RangeImage frame;
-  EXPECT_TRUE(recorded.frame(steps - 1, frame));
+  EXPECT_TRUE(recorded.frame(recorded_steps - 1, frame));
 }
 
 TEST(Console, ShowsARunWhoseRecordingCannotBeWritten) {
