@@ -3,11 +3,10 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstring>
 #include <utility>
 
 #include "sim/sil/sil_run.hpp"
+#include "sim/sil/viewed_frame.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -18,11 +17,6 @@ char kTrue[] = "target_true", kNetwork[] = "target_network", kPose[] = "target_p
 char kX[] = "x", kY[] = "y", kZ[] = "z", kRange[] = "range";
 
 constexpr std::uint32_t kFloatBytes = 4;
-
-struct PoseInLrf {
-  Eigen::Quaterniond q_lrf_trf;
-  Eigen::Vector3d origin_lrf_m;
-};
 
 std_msgs_msg_dds__Header_ header(std::int64_t time_ns) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -46,21 +40,6 @@ geometry_msgs_msg_dds__Quaternion_ quaternion(const Eigen::Quaterniond& q) {
 Eigen::Vector3d scaled(const std::array<std::int32_t, 3>& v, double unit) {
   return unit * Eigen::Vector3d(v[0], v[1], v[2]);
 }
-Eigen::Quaterniond attitude_of(const std::array<std::int32_t, 4>& q) {
-  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
-}
-
-std::optional<PoseInLrf> network_pose(const hal::AttitudeReport& report) {
-  if (!gives_attitude(report)) return std::nullopt;
-  return PoseInLrf{attitude_of(report.q_lrf_trf), scaled(report.centroid_lrf_mm, 1e-3)};
-}
-bool has_registered_pose(const hal::AttitudeReport& report) {
-  return gives_attitude(report) && (report.pose_doubts & hal::kPoseDoubtUnknown) == 0;
-}
-std::optional<PoseInLrf> registered_pose(const hal::AttitudeReport& report) {
-  if (!has_registered_pose(report)) return std::nullopt;
-  return PoseInLrf{attitude_of(report.pose_q_lrf_trf), scaled(report.pose_origin_lrf_um, 1e-6)};
-}
 std::optional<PoseInLrf> pose_of(const hal::dds::TruthSample& truth) {
   const float* const q = truth.q_lrf_trf;
   if (!std::isfinite(truth.range_m)) return std::nullopt;
@@ -81,36 +60,11 @@ sensor_msgs_msg_dds__PointField_ field(char* name, std::uint32_t index) {
   return {name, index * kFloatBytes, sensor_msgs_msg_dds__PointField_Constants_FLOAT32_, 1};
 }
 
-void add_float(std::vector<std::uint8_t>& bytes, double value) {
-  const auto number = static_cast<float>(value);
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &number, sizeof bits);
-  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
-}
-
-std::vector<std::uint8_t> bytes_of(const gnc::RangeImage& frame) {
-  std::vector<std::uint8_t> bytes;
-  const double slope = std::tan(0.5e-6 * frame.fov_urad);
-  const int rays = frame.rays;
-  for (int row = 0; row < rays; ++row) {
-    for (int column = 0; column < rays; ++column) {
-      const std::uint16_t count = frame.ranges[static_cast<std::size_t>(row * rays + column)];
-      if (count == 0) continue;
-      const double range_m = count * double{gnc::RangeImage::kMetresPerCount};
-      const Eigen::Vector3d direction(slope * ((2.0 * column + 1.0) / rays - 1.0), 1.0,
-                                      slope * (1.0 - (2.0 * row + 1.0) / rays));
-      const Eigen::Vector3d point_m = range_m * direction.normalized();
-      for (int i = 0; i < 3; ++i) add_float(bytes, point_m[i]);
-      add_float(bytes, range_m);
-    }
-  }
-  return bytes;
-}
-
 }  // namespace
 
 Ros2Points::Ros2Points(const gnc::RangeImage& frame, std::int64_t time_ns)
-    : fields_{field(kX, 0), field(kY, 1), field(kZ, 2), field(kRange, 3)}, bytes_(bytes_of(frame)) {
+    : fields_{field(kX, 0), field(kY, 1), field(kZ, 2), field(kRange, 3)},
+      bytes_(point_bytes(frame, PointFields::kXyzRange)) {
   const auto bytes = static_cast<std::uint32_t>(bytes_.size());
   const auto fields = static_cast<std::uint32_t>(fields_.size());
   sample_.header_ = header(time_ns);
@@ -135,7 +89,7 @@ std::optional<Ros2Pose> true_pose(const hal::dds::TruthSample& truth, std::int64
 
 std::optional<Ros2Twist> estimated_twist(const hal::AttitudeReport& report, std::int64_t time_ns) {
   if (!gives_attitude(report)) return std::nullopt;
-  const bool is_registered = has_registered_pose(report);
+  const bool is_registered = registered_pose(report).has_value();
   geometry_msgs_msg_dds__TwistStamped_ sample{};
   sample.header_ = header(time_ns);
   sample.twist_.angular_ =

@@ -1,12 +1,12 @@
 #include "sim/sil/foxglove_messages.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "sim/sil/event_texts.hpp"
 #include "sim/sil/sil_run.hpp"
+#include "sim/sil/viewed_frame.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -32,26 +32,12 @@ Json quaternion(const Eigen::Quaterniond& q) {
   return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}};
 }
 
-Eigen::Quaterniond attitude_of(const std::array<std::int32_t, 4>& q) {
-  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
-}
-
-Json transform(const char* child, const Eigen::Vector3d& origin_m, const Eigen::Quaterniond& q_lrf_trf,
-               std::int64_t time_ns) {
+Json transform(const char* child, const PoseInLrf& pose, std::int64_t time_ns) {
   return {{"timestamp", timestamp(time_ns)},
           {"parent_frame_id", kLrf},
           {"child_frame_id", child},
-          {"translation", vector(origin_m)},
-          {"rotation", quaternion(q_lrf_trf)}};
-}
-
-bool has_pose(const hal::AttitudeReport& report) {
-  return gives_attitude(report) && (report.pose_doubts & hal::kPoseDoubtUnknown) == 0;
-}
-
-Eigen::Vector3d pose_origin_m(const hal::AttitudeReport& report) {
-  const auto& um = report.pose_origin_lrf_um;
-  return 1e-6 * Eigen::Vector3d(um[0], um[1], um[2]);
+          {"translation", vector(pose.origin_lrf_m)},
+          {"rotation", quaternion(pose.q_lrf_trf)}};
 }
 
 std::string base64(const std::vector<std::uint8_t>& bytes) {
@@ -65,31 +51,6 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
       text += i + k > bytes.size() ? '=' : kDigits[(three >> (18 - 6 * k)) & 63];
   }
   return text;
-}
-
-void add_float(std::vector<std::uint8_t>& bytes, double value) {
-  const auto number = static_cast<float>(value);
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &number, sizeof bits);
-  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
-}
-
-// The returns, as three floats each [m].
-std::vector<std::uint8_t> points_of(const gnc::RangeImage& frame) {
-  std::vector<std::uint8_t> points;
-  const double slope = std::tan(0.5e-6 * frame.fov_urad);
-  const int rays = frame.rays;
-  for (int row = 0; row < rays; ++row) {
-    for (int column = 0; column < rays; ++column) {
-      const std::uint16_t count = frame.ranges[static_cast<std::size_t>(row * rays + column)];
-      if (count == 0) continue;
-      const Eigen::Vector3d direction(slope * ((2.0 * column + 1.0) / rays - 1.0), 1.0,
-                                      slope * (1.0 - (2.0 * row + 1.0) / rays));
-      const Eigen::Vector3d point = count * double{gnc::RangeImage::kMetresPerCount} * direction.normalized();
-      for (int i = 0; i < 3; ++i) add_float(points, point[i]);
-    }
-  }
-  return points;
 }
 
 // A recording's truth may be of the attitude alone.
@@ -109,9 +70,11 @@ const FoxgloveSchema& point_cloud_schema() {
 "frame_id":{"type":"string"},
 "pose":{"type":"object","properties":{
 "position":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},
-"orientation":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}},
+"orientation":{"type":"object","properties":{
+"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}},
 "point_stride":{"type":"integer"},
-"fields":{"type":"array","items":{"type":"object","properties":{"name":{"type":"string"},"offset":{"type":"integer"},"type":{"type":"integer"}}}},
+"fields":{"type":"array","items":{"type":"object","properties":{
+"name":{"type":"string"},"offset":{"type":"integer"},"type":{"type":"integer"}}}},
 "data":{"type":"string","contentEncoding":"base64"}}})"};
   return schema;
 }
@@ -121,15 +84,18 @@ const FoxgloveSchema& transforms_schema() {
 "transforms":{"type":"array","items":{"type":"object","properties":{
 "timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},
 "parent_frame_id":{"type":"string"},"child_frame_id":{"type":"string"},
-"translation":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},
-"rotation":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}}}}})"};
+"translation":{"type":"object","properties":{
+"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},
+"rotation":{"type":"object","properties":{
+"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}}}}})"};
   return schema;
 }
 
 const FoxgloveSchema& log_schema() {
   static const FoxgloveSchema schema{"foxglove.Log", R"({"type":"object","properties":{
 "timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},
-"level":{"type":"integer"},"message":{"type":"string"},"name":{"type":"string"},"file":{"type":"string"},"line":{"type":"integer"}}})"};
+"level":{"type":"integer"},"message":{"type":"string"},"name":{"type":"string"},"file":{"type":"string"},
+"line":{"type":"integer"}}})"};
   return schema;
 }
 
@@ -154,7 +120,7 @@ std::string point_cloud_json(const gnc::RangeImage& frame, std::int64_t time_ns)
                 {"orientation", quaternion(Eigen::Quaterniond::Identity())}}},
               {"point_stride", kPointFloats * kFloatBytes},
               {"fields", fields},
-              {"data", base64(points_of(frame))}}
+              {"data", base64(point_bytes(frame, PointFields::kXyz))}}
       .dump();
 }
 
@@ -164,16 +130,12 @@ std::string transforms_json(const hal::AttitudeReport& report, const FrameTruth*
   if (truth != nullptr && is_known(truth->range_m)) {
     const Eigen::Vector3d origin_m(swath_m * truth->offset_swaths.x(), truth->range_m,
                                    swath_m * truth->offset_swaths.y());
-    transforms.push_back(transform("target_true", origin_m, truth->q_lrf_trf, time_ns));
+    transforms.push_back(transform("target_true", {truth->q_lrf_trf, origin_m}, time_ns));
   }
-  if (gives_attitude(report)) {
-    const auto& mm = report.centroid_lrf_mm;
-    transforms.push_back(transform("target_network", 1e-3 * Eigen::Vector3d(mm[0], mm[1], mm[2]),
-                                   attitude_of(report.q_lrf_trf), time_ns));
-  }
-  if (has_pose(report))
-    transforms.push_back(
-        transform("target_pose", pose_origin_m(report), attitude_of(report.pose_q_lrf_trf), time_ns));
+  if (const auto pose = network_pose(report))
+    transforms.push_back(transform("target_network", *pose, time_ns));
+  if (const auto pose = registered_pose(report))
+    transforms.push_back(transform("target_pose", *pose, time_ns));
   return Json{{"transforms", transforms}}.dump();
 }
 
@@ -193,20 +155,19 @@ std::string log_json(const hal::Event& event, std::int64_t time_ns) {
 std::string figures_json(const hal::AttitudeReport& report, const FrameTruth* truth) {
   Json figures{{"valid", report.validity == hal::Validity::kValid},
                {"verified", gives_attitude(report) && report.pose_doubts == 0}};
-  if (gives_attitude(report)) {
+  const std::optional<PoseInLrf> network = network_pose(report), registered = registered_pose(report);
+  if (network) {
     figures["network_expected_error_deg"] = 1e-6 * kDegrees * report.predicted_error_urad;
-    if (truth != nullptr)
-      figures["network_error_deg"] = angle_deg(attitude_of(report.q_lrf_trf), truth->q_lrf_trf);
+    if (truth != nullptr) figures["network_error_deg"] = angle_deg(network->q_lrf_trf, truth->q_lrf_trf);
   }
-  if (has_pose(report)) {
+  if (registered) {
     const Eigen::Vector3d sigma_urad(report.pose_sigma[0], report.pose_sigma[1], report.pose_sigma[2]);
     const auto& rate = report.pose_rate_lrf_urad_s;
     figures["pose_sigma_deg"] = 1e-6 * kDegrees * sigma_urad.norm();
-    figures["pose_range_m"] = pose_origin_m(report).y();
+    figures["pose_range_m"] = registered->origin_lrf_m.y();
     figures["pose_rate_deg_s"] = 1e-6 * kDegrees * Eigen::Vector3d(rate[0], rate[1], rate[2]).norm();
+    if (truth != nullptr) figures["pose_error_deg"] = angle_deg(registered->q_lrf_trf, truth->q_lrf_trf);
   }
-  if (has_pose(report) && truth != nullptr)
-    figures["pose_error_deg"] = angle_deg(attitude_of(report.pose_q_lrf_trf), truth->q_lrf_trf);
   if (truth == nullptr) return figures.dump();
   if (is_known(truth->range_m)) figures["true_range_m"] = truth->range_m;
   if (is_known(truth->rate_lrf_rad_s.x()))
