@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -14,31 +13,17 @@
 #include <utility>
 
 #include "gnc/numerics/crc.hpp"
+#include "sim/recording/mcap_format.hpp"
 #include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 constexpr std::uint64_t kRecordHead = 1 + 8;            // bytes: opcode, length
 constexpr std::uint64_t kFooterContent = 8 + 8 + 4;     // bytes
 constexpr std::uint64_t kMessageHead = 2 + 4 + 8 + 8;   // bytes before a message's own
 constexpr std::uint64_t kIndexEntry = 8 + 8;            // bytes: time, offset
 constexpr std::uint64_t kMostSchemaBytes = 256U << 20;  // each channel has a copy of its schema
-
-enum Opcode : std::uint8_t {
-  kInvalid = 0,
-  kHeader = 1,
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kMessageIndex = 7,
-  kChunkIndex = 8,
-  kStatistics = 11,
-  kDataEnd = 15,
-};
 
 template <class Number>
 Number little_endian(const std::uint8_t* bytes) {
@@ -155,14 +140,14 @@ void McapReader::damaged(std::uint64_t at, const std::string& what) const {
 
 void McapReader::require_start() const {
   const std::uint8_t* bytes = file_.bytes.get();
-  const std::uint64_t compared = std::min<std::uint64_t>(file_.size, kMagic.size());
+  const std::uint64_t compared = std::min<std::uint64_t>(file_.size, kMcapMagic.size());
   if (compared == 0) fail(file_.name, "is empty; give a file that has a recording");
-  if (!std::equal(bytes, bytes + compared, kMagic.begin()))
+  if (!std::equal(bytes, bytes + compared, kMcapMagic.begin()))
     fail(file_.name, "is not an MCAP file: it begins with " +
                          quoted({reinterpret_cast<const char*>(bytes), compared}) +
                          "; give a file that `tumblesight simulate --mcap` or another program has recorded");
-  const std::optional<Record> header = record_at(kMagic.size(), file_.size);
-  if (header && header->opcode != kHeader) damaged(header->start, "a record before the header");
+  const std::optional<Record> header = record_at(kMcapMagic.size(), file_.size);
+  if (header && header->opcode != kMcapHeader) damaged(header->start, "a record before the header");
   if (!header)
     fail(file_.name,
          "byte " + std::to_string(file_.size) +
@@ -174,7 +159,7 @@ std::optional<McapReader::Record> McapReader::record_at(std::uint64_t at, std::u
   if (at > end || end - at < kRecordHead) return std::nullopt;
   const std::uint8_t* head = file_.bytes.get() + at;
   const auto size = little_endian<std::uint64_t>(head + 1);
-  if (head[0] == kInvalid || size > end - at - kRecordHead) return std::nullopt;
+  if (head[0] == kMcapInvalid || size > end - at - kRecordHead) return std::nullopt;
   return Record{head[0], at, at + kRecordHead, size};
 }
 
@@ -186,12 +171,12 @@ McapReader::Record McapReader::required_record(std::uint64_t at, std::uint64_t e
 
 // Nothing: the file has no end. A footer stands at a fixed distance from the end.
 std::optional<McapReader::Record> McapReader::footer() const {
-  const std::uint64_t tail = kRecordHead + kFooterContent + kMagic.size();
-  if (file_.size < kMagic.size() + tail) return std::nullopt;
-  const std::uint64_t magic = file_.size - kMagic.size();
-  if (!std::equal(kMagic.begin(), kMagic.end(), file_.bytes.get() + magic)) return std::nullopt;
+  const std::uint64_t tail = kRecordHead + kFooterContent + kMcapMagic.size();
+  if (file_.size < kMcapMagic.size() + tail) return std::nullopt;
+  const std::uint64_t magic = file_.size - kMcapMagic.size();
+  if (!std::equal(kMcapMagic.begin(), kMcapMagic.end(), file_.bytes.get() + magic)) return std::nullopt;
   const std::optional<Record> footer = record_at(file_.size - tail, magic);
-  if (!footer || footer->opcode != kFooter || footer->size != kFooterContent) return std::nullopt;
+  if (!footer || footer->opcode != kMcapFooter || footer->size != kFooterContent) return std::nullopt;
   return footer;
 }
 
@@ -207,19 +192,19 @@ bool McapReader::open_by_summary(const Record& footer) {
     groups[record.opcode].push_back(record);
     at = record.end();
   }
-  for (const Record& record : groups[kSchema]) add_schema(record);
-  for (const Record& record : groups[kChannel])
+  for (const Record& record : groups[kMcapSchema]) add_schema(record);
+  for (const Record& record : groups[kMcapChannel])
     if (!add_channel(record)) return false;
   // The statistics tell whether the summary has all channels and indices: each kind is optional.
-  if (groups[kStatistics].empty()) return false;
-  Fields statistics(*this, groups[kStatistics].front());
+  if (groups[kMcapStatistics].empty()) return false;
+  Fields statistics(*this, groups[kMcapStatistics].front());
   const auto messages = statistics.number<std::uint64_t>();
   statistics.skip(sizeof(std::uint16_t));  // schemas
   const auto channels = statistics.number<std::uint32_t>();
   statistics.skip(2 * sizeof(std::uint32_t));  // attachments, metadata
   const auto chunks = statistics.number<std::uint32_t>();
-  if (channels != contents_.channels.size() || chunks != groups[kChunkIndex].size()) return false;
-  return read_chunk_indices(std::move(groups[kChunkIndex]), footer.start, messages);
+  if (channels != contents_.channels.size() || chunks != groups[kMcapChunkIndex].size()) return false;
+  return read_chunk_indices(std::move(groups[kMcapChunkIndex]), footer.start, messages);
 }
 
 // That of the footer if there is no summary. The checksum covers the footer up to itself.
@@ -230,7 +215,7 @@ std::uint64_t McapReader::summary_start(const Record& footer) const {
   const std::uint64_t covered = fields.at();
   const auto crc = fields.number<std::uint32_t>();
   const std::uint64_t start = announced == 0 ? footer.start : announced;
-  if (start < kMagic.size() || start > footer.start)
+  if (start < kMcapMagic.size() || start > footer.start)
     damaged(footer.start, "a footer that places the summary outside the file");
   if (crc != 0 && crc != crc_of(start, covered)) damaged(start, "a summary that does not fit its checksum");
   return start;
@@ -255,7 +240,7 @@ bool McapReader::read_chunk_indices(std::vector<Record> chunk_indices, std::uint
     const auto start = fields.number<std::uint64_t>(), size = fields.number<std::uint64_t>();
     const bool overlaps = !contents_.chunks.empty() && start < contents_.chunks.back().end();
     const std::optional<Record> chunk = overlaps ? std::nullopt : record_at(start, end);
-    if (!chunk || chunk->opcode != kChunk || chunk->end() - start != size)
+    if (!chunk || chunk->opcode != kMcapChunk || chunk->end() - start != size)
       damaged(chunk_index.start, "an index of a chunk that is not there");
     contents_.chunks.push_back(chunk_of(*chunk));
     if (!read_message_indices(chunk_index, end, messages)) return false;
@@ -274,7 +259,7 @@ bool McapReader::read_message_indices(const Record& chunk_index, std::uint64_t e
     const auto at = fields.number<std::uint64_t>();
     if (contents_.entries.count(channel) == 0) return false;
     const std::optional<Record> index = record_at(at, end);
-    if (!index || index->opcode != kMessageIndex)
+    if (!index || index->opcode != kMcapMessageIndex)
       damaged(chunk_index.start, "a chunk index that names a message index that is not there");
     if (!read_message_index(*index, channel, messages_left)) return false;
   }
@@ -310,12 +295,12 @@ bool McapReader::read_message_index(const Record& index, McapId channel, std::ui
 // Message indices are not used here: those of the last chunks may be missing.
 void McapReader::scan(std::uint64_t end) {
   contents_ = {};
-  for (std::uint64_t at = kMagic.size(); at < end;) {
+  for (std::uint64_t at = kMcapMagic.size(); at < end;) {
     const std::optional<Record> record = record_at(at, end);
     if (!record && !is_whole_) return;  // the writer was killed here
     if (!record) damaged(at, "no complete record begins here");
-    if (record->opcode == kDataEnd) return require_data_checksum(*record);
-    if (record->opcode == kChunk)
+    if (record->opcode == kMcapDataEnd) return require_data_checksum(*record);
+    if (record->opcode == kMcapChunk)
       scan_chunk(*record);
     else
       add(*record, kNoChunk, 0);
@@ -344,10 +329,10 @@ void McapReader::require_data_checksum(const Record& data_end) const {
 
 // Other records, as attachments and metadata, are skipped.
 void McapReader::add(const Record& record, std::uint64_t chunk, std::uint64_t chunk_records) {
-  if (record.opcode == kSchema) add_schema(record);
-  if (record.opcode == kChannel && !add_channel(record))
+  if (record.opcode == kMcapSchema) add_schema(record);
+  if (record.opcode == kMcapChannel && !add_channel(record))
     damaged(record.start, "a channel of a schema that is not there");
-  if (record.opcode == kMessage) add_message(record, chunk, chunk_records);
+  if (record.opcode == kMcapMessage) add_message(record, chunk, chunk_records);
 }
 
 void McapReader::add_schema(const Record& record) {
@@ -446,7 +431,8 @@ McapReader::Message McapReader::read(McapId channel, const Entry& entry) const {
     end = chunk.end();
   }
   const std::optional<Record> record = record_at(start, end);
-  if (!record || record->opcode != kMessage) damaged(start, "no message, although the index announces one");
+  if (!record || record->opcode != kMcapMessage)
+    damaged(start, "no message, although the index announces one");
   Fields fields(*this, *record);
   const auto its_channel = fields.number<McapId>();
   fields.skip(sizeof(std::uint32_t));  // its number

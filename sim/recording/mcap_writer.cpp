@@ -11,27 +11,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/recording/mcap_format.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 constexpr std::size_t kChunkBytes = 1 << 20;
 constexpr std::chrono::seconds kLongestChunk{1};
 constexpr std::size_t kMostIds = 65'535;
-
-enum class Record : std::uint8_t {
-  kHeader = 1,
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kMessageIndex = 7,
-  kChunkIndex = 8,
-  kStatistics = 11,
-  kSummaryOffset = 14,
-  kDataEnd = 15,
-};
 
 // Content of a record. Numbers are little-endian; texts and maps begin with their length in bytes.
 class Content {
@@ -58,9 +45,9 @@ class Content {
   }
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }
 
-  std::vector<std::uint8_t> as(Record record) const {
+  std::vector<std::uint8_t> as(McapOpcode opcode) const {
     Content whole;
-    whole.number(static_cast<std::uint8_t>(record)).number(std::uint64_t{bytes_.size()});
+    whole.number(static_cast<std::uint8_t>(opcode)).number(std::uint64_t{bytes_.size()});
     whole.raw(bytes_.data(), bytes_.size());
     return whole.bytes_;
   }
@@ -76,8 +63,8 @@ McapWriter::McapWriter(std::string path, const std::string& library)
   open_alone(path_);
   struct stat status {};
   if (fstat(fileno(file_.get()), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0) replace();
-  put({kMagic.begin(), kMagic.end()});
-  put(Content().text("").text(library).as(Record::kHeader));
+  put({kMcapMagic.begin(), kMcapMagic.end()});
+  put(Content().text("").text(library).as(kMcapHeader));
 }
 
 // Not emptied before it is ours alone. A device can be neither locked nor emptied.
@@ -124,7 +111,7 @@ void McapWriter::put(const Bytes& bytes) {
 McapId McapWriter::add_schema(const std::string& name, const std::string& encoding, std::string_view text) {
   if (schemas_.size() == kMostIds) fail("more than 65,535 schemas");
   const auto id = static_cast<McapId>(schemas_.size() + 1);
-  schemas_.push_back(Content().number(id).text(name).text(encoding).text(text).as(Record::kSchema));
+  schemas_.push_back(Content().number(id).text(name).text(encoding).text(text).as(kMcapSchema));
   put(schemas_.back());
   return id;
 }
@@ -134,7 +121,7 @@ McapId McapWriter::add_channel(const std::string& topic, const std::string& enco
   const auto id = static_cast<McapId>(channels_.size() + 1);
   channels_[id] = {};
   channel_records_.push_back(
-      Content().number(id).number(schema).text(topic).text(encoding).map({}).as(Record::kChannel));
+      Content().number(id).number(schema).text(topic).text(encoding).map({}).as(kMcapChannel));
   put(channel_records_.back());
   return id;
 }
@@ -159,7 +146,7 @@ void McapWriter::write(McapId channel, std::int64_t time_ns, const std::uint8_t*
                            .number(time)
                            .number(time)
                            .raw(bytes, size)
-                           .as(Record::kMessage);
+                           .as(kMcapMessage);
   chunk_.insert(chunk_.end(), record.begin(), record.end());
   chunk_first_ns_ = std::min(chunk_first_ns_, time);
   chunk_last_ns_ = std::max(chunk_last_ns_, time);
@@ -183,7 +170,7 @@ void McapWriter::write_chunk() {
           .text("")
           .number(std::uint64_t{chunk_.size()})
           .raw(chunk_.data(), chunk_.size())
-          .as(Record::kChunk));
+          .as(kMcapChunk));
   index.length = position_ - index.start;
   const std::uint64_t indices_start = position_;
   for (auto& [id, channel] : channels_) {
@@ -195,7 +182,7 @@ void McapWriter::write_chunk() {
             .number(id)
             .number(static_cast<std::uint32_t>(entries.bytes().size()))
             .raw(entries.bytes().data(), entries.bytes().size())
-            .as(Record::kMessageIndex));
+            .as(kMcapMessageIndex));
     channel.in_chunk.clear();
   }
   index.index_length = position_ - indices_start;
@@ -219,22 +206,22 @@ McapWriter::Bytes McapWriter::statistics() const {
       .number(first_ns_)
       .number(last_ns_)
       .map(counts)
-      .as(Record::kStatistics);
+      .as(kMcapStatistics);
 }
 
 void McapWriter::write_summary() {
   const std::uint64_t start = position_;
   crc_ = {};
   Bytes offsets;
-  const auto put_group = [&](Record record, const std::vector<Bytes>& records) {
+  const auto put_group = [&](McapOpcode opcode, const std::vector<Bytes>& records) {
     if (records.empty()) return;
     const std::uint64_t group_start = position_;
     for (const Bytes& one : records) put(one);
     const Bytes offset = Content()
-                             .number(static_cast<std::uint8_t>(record))
+                             .number(static_cast<std::uint8_t>(opcode))
                              .number(group_start)
                              .number(position_ - group_start)
-                             .as(Record::kSummaryOffset);
+                             .as(kMcapSummaryOffset);
     offsets.insert(offsets.end(), offset.begin(), offset.end());
   };
   std::vector<Bytes> indices;
@@ -249,16 +236,16 @@ void McapWriter::write_summary() {
                           .text("")
                           .number(chunk.size)
                           .number(chunk.size)
-                          .as(Record::kChunkIndex));
+                          .as(kMcapChunkIndex));
   }
-  put_group(Record::kSchema, schemas_);
-  put_group(Record::kChannel, channel_records_);
-  put_group(Record::kStatistics, {statistics()});
-  put_group(Record::kChunkIndex, indices);
+  put_group(kMcapSchema, schemas_);
+  put_group(kMcapChannel, channel_records_);
+  put_group(kMcapStatistics, {statistics()});
+  put_group(kMcapChunkIndex, indices);
   const std::uint64_t offsets_start = position_;
   put(offsets);
   // The checksum covers the footer up to itself.
-  Bytes footer = Content().number(start).number(offsets_start).number(std::uint32_t{0}).as(Record::kFooter);
+  Bytes footer = Content().number(start).number(offsets_start).number(std::uint32_t{0}).as(kMcapFooter);
   footer.resize(footer.size() - sizeof(std::uint32_t));
   put(footer);
   put(Content().number(crc_.value()).bytes());
@@ -271,9 +258,9 @@ void McapWriter::close() {
     ~Release() { writer.file_.reset(); }
   } release{*this};
   write_chunk();
-  put(Content().number(crc_.value()).as(Record::kDataEnd));
+  put(Content().number(crc_.value()).as(kMcapDataEnd));
   write_summary();
-  put({kMagic.begin(), kMagic.end()});
+  put({kMcapMagic.begin(), kMcapMagic.end()});
 }
 
 }  // namespace tumblesight::sim
