@@ -14,34 +14,13 @@ constexpr const char* kTopicPrefix = "rt/";
 
 // A process has each domain of Cyclone only once, and that of the run may have the same number. So this
 // domain has a number beyond those of the protocol inside the process, and the external one on the bus.
-// Discovery and traffic are as in hal/dds/idl/domain.cpp: on loopback, without multicast. The watermark is
-// above the size of ten point clouds, so that a program that does not read delays nobody.
-constexpr dds_domainid_t kFirstInternalId = 1000;
+constexpr std::uint32_t kFirstInternalId = 1000;
 
-std::string configuration(std::uint32_t id) {
-  return R"(
-<CycloneDDS><Domain id="any">
-  <General>
-    <Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>
-    <AllowMulticast>false</AllowMulticast>
-    <MaxMessageSize>65500B</MaxMessageSize>
-    <FragmentSize>65000B</FragmentSize>
-  </General>
-  <Discovery>
-    <ExternalDomainId>)" +
-         std::to_string(id) +
-         R"(</ExternalDomainId>
-    <ParticipantIndex>auto</ParticipantIndex>
-    <MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
-    <Peers><Peer address="127.0.0.1"/></Peers>
-    <LeaseDuration>3s</LeaseDuration>
-    <SPDPInterval>500ms</SPDPInterval>
-  </Discovery>
-  <Internal>
-    <WriterLingerDuration>100ms</WriterLingerDuration>
-    <Watermarks><WhcHigh>8MB</WhcHigh></Watermarks>
-  </Internal>
-</Domain></CycloneDDS>)";
+// The watermark is above the size of ten point clouds, so that a program that does not read delays nobody.
+std::string elements(std::uint32_t id) {
+  return "<Discovery><ExternalDomainId>" + std::to_string(id) +
+         "</ExternalDomainId></Discovery>"
+         "<Internal><Watermarks><WhcHigh>8MB</WhcHigh></Watermarks></Internal>";
 }
 
 void check(dds_return_t result, const std::string& what) {
@@ -65,12 +44,7 @@ dds_qos_t* default_profile(const std::string& user_data) {
 Ros2Domain::Ros2Domain(std::uint32_t id) {
   const std::string problem = "ROS domain " + std::to_string(id) +
                               " cannot be joined on 127.0.0.1: there may be more than 33 programs in it";
-  const dds_domainid_t internal_id = kFirstInternalId + id;
-  domain_ = dds_create_domain(internal_id, configuration(id).c_str());
-  check(domain_, problem);
-  participant_ = dds_create_participant(internal_id, nullptr, nullptr);
-  if (participant_ < 0) dds_delete(domain_);
-  check(participant_, problem);
+  check(domain_.open(kFirstInternalId + id, "", elements(id).c_str()), problem);
 }
 
 Ros2Endpoint::Ros2Endpoint(const Ros2Domain& domain, const dds_topic_descriptor_t& type,

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "hal/dds/idl/domain.hpp"
 #include "sim/console/ros2_messages.hpp"
 
 namespace tumblesight::sim {
@@ -19,14 +20,10 @@ class Ros2Domain {
  public:
   // `id`: ROS_DOMAIN_ID. Throws std::runtime_error if DDS cannot be set up.
   explicit Ros2Domain(std::uint32_t id);
-  ~Ros2Domain() { dds_delete(domain_); }  // with its writers
-  Ros2Domain(const Ros2Domain&) = delete;
-  Ros2Domain& operator=(const Ros2Domain&) = delete;
-  dds_entity_t participant() const { return participant_; }
+  dds_entity_t participant() const { return domain_.participant(); }
 
  private:
-  dds_entity_t domain_ = 0;
-  dds_entity_t participant_ = 0;
+  hal::dds::Domain domain_;
 };
 
 // A writer without a type, which tells when readers have come.

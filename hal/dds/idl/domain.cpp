@@ -26,7 +26,7 @@ constexpr const char* kConfiguration = R"(
   <Internal><WriterLingerDuration>100ms</WriterLingerDuration></Internal>
 )";
 constexpr const char* kConfigurationEnd = "</Domain></CycloneDDS>";
-constexpr std::size_t kMaxConfiguration = 2048;  // without the security
+constexpr std::size_t kMaxConfiguration = 2048;  // without the further elements
 
 }  // namespace
 
@@ -40,11 +40,11 @@ bool read_security(const char* path, SecurityElement& security) {
   return complete;
 }
 
-dds_return_t Domain::open(std::uint32_t id, const char* partition, const char* security) {
+dds_return_t Domain::open(std::uint32_t id, const char* partition, const char* further) {
   id_ = id;
   partition_ = partition;
   char configuration[kMaxConfiguration + sizeof(SecurityElement)];
-  const int length = std::snprintf(configuration, sizeof configuration, "%s%s%s", kConfiguration, security,
+  const int length = std::snprintf(configuration, sizeof configuration, "%s%s%s", kConfiguration, further,
                                    kConfigurationEnd);
   if (length < 0 || static_cast<std::size_t>(length) >= sizeof configuration)
     return DDS_RETCODE_BAD_PARAMETER;

@@ -26,9 +26,10 @@ class Domain {
   Domain& operator=(const Domain&) = delete;
 
   // Creates domain and participant. Endpoints meet those of the same `partition` only; empty: the default
-  // one; it must outlive the domain. `security`: the element <Security> of Cyclone's configuration; empty:
-  // the bus is not secured. Returns 0 or a negative DDS return code; dds_strretcode() gives its text.
-  [[nodiscard]] dds_return_t open(std::uint32_t id, const char* partition = "", const char* security = "");
+  // one; it must outlive the domain. `further`: elements of Cyclone's configuration beside those of every
+  // domain, such as <Security>, without which the bus is not secured. Returns 0 or a negative DDS return
+  // code; dds_strretcode() gives its text.
+  [[nodiscard]] dds_return_t open(std::uint32_t id, const char* partition = "", const char* further = "");
   // Deletes the domain with all its readers and writers.
   void close();
   dds_entity_t participant() const { return participant_; }
