@@ -26,12 +26,7 @@ using namespace std::chrono_literals;
 constexpr std::uint32_t kSteps = 20;
 
 SilRunResult run(const std::string& mcap_path) {
-  SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";
-  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
-  settings.mcap_path = mcap_path;
-  settings.swath_m = test::kSwath_m;
-  return run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(kSteps / 10, 1), {});
+  return test::run_shipped(mcap_path, kSteps / 10);
 }
 
 void expect_the_steps(const SilRunResult& run, const RunSource& source, std::uint32_t first) {
@@ -72,11 +67,7 @@ TEST(Console, ShowsEveryStepOfARecordingWithItsFrame) {
 // A flight program on its own timer.
 TEST(Console, ShowsTheFramesOfAFreeRun) {
   const std::string path = test::temporary_path("run.mcap");
-  SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";
-  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
-  settings.mcap_path = path;
-  settings.swath_m = test::kSwath_m;
+  SilSettings settings = test::shipped_settings(path);
   settings.free_running = true;
   settings.speed = 10;
   ASSERT_EQ(run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {}).failure, "");
@@ -176,29 +167,13 @@ TEST(Console, RefusesARecordingOfAnotherInterface) {
   }
 }
 
-// `tumblesight simulate` as another process, as a user starts it: one process opens a domain only once.
-// Returns what it printed.
-std::string simulate(const std::string& options) {
-  const std::string command = std::string(TUMBLESIGHT_PROGRAM) + " simulate --sequences 2 --report " +
-                              test::temporary_path("report.html") + " " + options + " 2>&1";
-  std::string text;
-  FILE* const output = popen(command.c_str(), "r");
-  for (int c = std::fgetc(output); c != EOF; c = std::fgetc(output)) text += static_cast<char>(c);
-  EXPECT_EQ(pclose(output), 0) << text;
-  return text;
-}
-std::string trace_of(const std::string& text) {
-  const std::size_t at = text.find("trace CRC-32");
-  return at == std::string::npos ? text : text.substr(at, text.find('\n', at) - at);
-}
-
 // Verifies TS-SIL-195. It may miss the first steps, since the run does not wait for it.
 TEST(Console, FollowsARunWithoutChangingIt) {
   const int domain = test::spare_domain();
-  const std::string alone = simulate("");
+  const std::string alone = test::simulate("");
   const BusRun shown(domain, "");
-  const std::string watched = simulate("--speed 20 --domain " + std::to_string(domain));
-  EXPECT_EQ(trace_of(watched), trace_of(alone));
+  const std::string watched = test::simulate("--speed 20 --domain " + std::to_string(domain));
+  EXPECT_EQ(test::trace_of(watched), test::trace_of(alone));
   ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
   const StepLog::State state = shown.log().state();
   EXPECT_GE(state.steps, kSteps / 2);
@@ -218,7 +193,7 @@ TEST(Console, RecordsTheRunThatItHasJoined) {
   std::uint64_t steps = 0;
   {
     const BusRun shown(domain, "", path);
-    simulate("--speed 20 --domain " + std::to_string(domain));
+    test::simulate("--speed 20 --domain " + std::to_string(domain));
     ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
     steps = shown.log().state().steps;
     EXPECT_EQ(shown.failure(), "");
@@ -239,7 +214,7 @@ TEST(Console, RecordsTheRunThatItHasJoined) {
 TEST(Console, ShowsARunWhoseRecordingCannotBeWritten) {
   const int domain = test::spare_domain();
   const BusRun shown(domain, "", "/dev/full");
-  simulate("--speed 50 --domain " + std::to_string(domain));
+  test::simulate("--speed 50 --domain " + std::to_string(domain));
   ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
   EXPECT_GE(shown.log().state().steps, kSteps / 2);
   EXPECT_NE(shown.failure().find("/dev/full"), std::string::npos) << shown.failure();
@@ -249,10 +224,10 @@ TEST(Console, ShowsTheNextRunAfterTheOneBefore) {
   const int domain = test::spare_domain();
   const BusRun shown(domain, "");
   EXPECT_EQ(shown.title(), "waiting for a run: start sim/run or tumblesight simulate");
-  simulate("--speed 100 --domain " + std::to_string(domain));
+  test::simulate("--speed 100 --domain " + std::to_string(domain));
   ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
   const std::uint32_t before = shown.log().state().run_id;
-  simulate("--speed 100 --domain " + std::to_string(domain));
+  test::simulate("--speed 100 --domain " + std::to_string(domain));
   EXPECT_TRUE(
       wait_until([&] { return shown.log().state().has_ended && shown.log().state().run_id != before; }));
 }

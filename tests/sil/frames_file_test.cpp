@@ -66,11 +66,7 @@ TEST(FramesFile, HasPointsForEveryFrameAndTheTruthForEveryStep) {
 
 // The bytes are those that DDS itself writes.
 TEST(FramesFile, SerializesSamplesAsTheBusDoes) {
-  SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";
-  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
-  settings.mcap_path = test::temporary_path("run.mcap");
-  settings.swath_m = test::kSwath_m;
+  const SilSettings settings = test::shipped_settings(test::temporary_path("run.mcap"));
   ASSERT_EQ(run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {}).failure, "");
   const RunFile file(settings.mcap_path);
   const auto compare = [&](auto& sample) {
@@ -99,9 +95,7 @@ TEST(FramesFile, SerializesSamplesAsTheBusDoes) {
 
 // The flight program sees the same through the file.
 TEST(FramesFile, IsReplayedAsTheFramesThemselves) {
-  SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";
-  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
+  const SilSettings settings = test::shipped_settings();
   RunSteps first(written()), second(written());
   const SilRunResult run = run_sil(settings, first, {});
   ASSERT_EQ(run.failure, "");

@@ -16,9 +16,8 @@ using test::Conversation;
 // Verifies TS-SIL-010.
 TEST(Lockstep, EveryStepOfARunIsAnsweredWithAnAttitude) {
   std::uint32_t done = 0;
-  SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";  // the attitudes of a random network would jump
-  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
+  // The attitudes of a random network would jump.
+  const SilSettings settings = test::shipped_settings();
   const SilRunResult recording = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(3, 1),
                                          [&](std::uint32_t answered, std::uint32_t planned) {
                                            EXPECT_EQ(planned, 30U);

@@ -110,9 +110,7 @@ TEST(Replay, GivesTheAttitudesOfTheSimulatedRunBitForBit) {
   recorded.seed = 11;
   recorded.scenario.disturbances.loss_every = 4;
   recorded.scenario.disturbances.chaser_rate_deg_s = 2.0;
-  SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";
-  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
+  const SilSettings settings = test::shipped_settings();
   const double swath_m =
       1e-3 * HostEstimator(read_model_bytes(TUMBLESIGHT_SHIPPED_MODEL)).model().projection.swath_mm;
   std::vector<Sequence> sequences;

@@ -23,9 +23,7 @@ const std::vector<Sequence>& sequences() {
 
 // With one request as soon as the run takes it.
 SilRunResult run_with(const std::string& request) {
-  SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";
-  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
+  SilSettings settings = test::shipped_settings();
   settings.speed = 20;
   settings.domain = test::spare_domain();
   auto run = std::async(std::launch::async,

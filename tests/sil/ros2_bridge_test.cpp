@@ -5,90 +5,27 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <future>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "hal/dds/idl/hello.hpp"
 #include "sim/console/bus_run.hpp"
 #include "sim/sil/run_channels.hpp"
 #include "tests/sil/sil_test_support.hpp"
+#include "tests/support/growing_run.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kPeriod_ns = 2'700'000'000;
-constexpr std::int32_t kOneQ30 = 1 << 30;
-
-// A run to which the test adds steps. Frames have one return, 10 m along the boresight.
-class FixedRun final : public RunSource {
- public:
-  explicit FixedRun(std::int64_t first_ns) : first_ns_(first_ns) { begin(7); }
-  void begin(std::uint32_t run_id) {
-    run_id_ = run_id;
-    k_ = 0;
-    hal::dds::HelloSample hello{};
-    hello.role = static_cast<std::uint8_t>(hal::dds::Role::kSimulator);
-    hello.run_id = run_id;
-    hal::dds::set_target(hello, "near_shoemaker");
-    log_.add(hello);
-  }
-  void add_step() {
-    auto truth = sample<hal::dds::TruthSample>();
-    truth.time_ns = time_ns(k_);
-    truth.q_lrf_trf[0] = 1.0F;
-    truth.range_m = 31.0F;
-    log_.add(truth);
-    auto attitude = sample<hal::dds::AttitudeSample>();
-    attitude.time_ns = attitude.exposure_time_ns = time_ns(k_);
-    attitude.validity = static_cast<std::uint8_t>(hal::Validity::kValid);
-    attitude.q_lrf_trf[0] = kOneQ30;
-    attitude.pose_q_lrf_trf[3] = kOneQ30;  // w, x, y, z
-    attitude.pose_origin_lrf_um[1] = 30'500'000;
-    attitude.pose_rate_lrf_urad_s[2] = 20'000;
-    attitude.pose_velocity_lrf_um_s[0] = 1000;
-    log_.add(attitude);
-    log_.add(sample<hal::dds::TelemetrySample>());
-    auto done = sample<hal::dds::StepDoneSample>();
-    done.attitudes = done.telemetries = 1;
-    log_.add(done);
-    ++k_;
-  }
-  const StepLog& log() const override { return log_; }
-  const char* kind() const override { return "recording"; }
-  std::string title() const override { return "near_shoemaker"; }
-  std::uint64_t first_frame() const override { return 0; }
-  std::string ask(const std::string&) const override { return {}; }
-  bool frame(std::uint64_t step, gnc::RangeImage& frame) const override {
-    frame = {};
-    frame.exposure_time_ns = time_ns(static_cast<std::uint32_t>(step));
-    frame.rays = 1;
-    frame.fov_urad = 200'000;
-    frame.ranges[0] = 1280;
-    return true;
-  }
-
- private:
-  template <class Sample>
-  Sample sample() const {
-    Sample sample{};
-    sample.run_id = run_id_;
-    sample.k = k_;
-    return sample;
-  }
-  std::int64_t time_ns(std::uint32_t k) const { return first_ns_ + kPeriod_ns * k; }
-
-  std::int64_t first_ns_;
-  StepLog log_;
-  std::uint32_t run_id_ = 0, k_ = 0;
-};
+using test::GrowingRun;
+using test::kPeriod_ns;
 
 // A ROS 2 node as far as DDS goes, with the settings that docs/console.md gives for nodes on Cyclone DDS. In
 // its own process it would have its domain under its own number.
@@ -225,7 +162,7 @@ class Ros2 : public testing::Test {
 };
 
 TEST_F(Ros2, NodesOfEachProfileGetThePoints) {
-  FixedRun run(kPeriod_ns);
+  GrowingRun run(kPeriod_ns);
   run.add_step();
   Ros2Bridge bridge(run, id());
   Node node(domain_);
@@ -235,7 +172,7 @@ TEST_F(Ros2, NodesOfEachProfileGetThePoints) {
 }
 
 TEST_F(Ros2, NodesGetPosesTwistAndTransforms) {
-  FixedRun run(kPeriod_ns);
+  GrowingRun run(kPeriod_ns);
   run.add_step();
   Ros2Bridge bridge(run, id());
   Node node(domain_);
@@ -267,7 +204,7 @@ TEST_F(Ros2, NodesGetPosesTwistAndTransforms) {
 
 // As in a recording, the first step of a run that begins before 0 is at 0.
 TEST_F(Ros2, StampsAreNotNegativeAndEveryRunBeginsAnew) {
-  FixedRun run(-kPeriod_ns);
+  GrowingRun run(-kPeriod_ns);
   run.add_step();
   Ros2Bridge bridge(run, id());
   Node node(domain_);
@@ -293,7 +230,7 @@ TEST_F(Ros2, StampsAreNotNegativeAndEveryRunBeginsAnew) {
 }
 
 TEST_F(Ros2, OfWhatIsThereItBeginsWithTheLastStep) {
-  FixedRun run(0);
+  GrowingRun run(0);
   for (int i = 0; i < 4; ++i) run.add_step();
   Ros2Bridge bridge(run, id());
   bridge.poll();
@@ -303,7 +240,7 @@ TEST_F(Ros2, OfWhatIsThereItBeginsWithTheLastStep) {
 }
 
 TEST_F(Ros2, ADomainThatCannotBeOpenedIsNamed) {
-  FixedRun run(0);
+  GrowingRun run(0);
   const Ros2Bridge first(run, id());
   try {
     const Ros2Bridge second(run, id());  // one process has a domain once
@@ -315,36 +252,24 @@ TEST_F(Ros2, ADomainThatCannotBeOpenedIsNamed) {
 }
 
 TEST_F(Ros2, TheHighestDomainOfRos2CanBeOpened) {
-  FixedRun run(0);
+  GrowingRun run(0);
   EXPECT_NO_THROW(Ros2Bridge(run, Ros2Bridge::kMostDomain));
-}
-
-// `tumblesight simulate` in another process. Returns its trace.
-std::string trace_of_run(const std::string& options) {
-  const std::string command = std::string(TUMBLESIGHT_PROGRAM) + " simulate --sequences 2 --report " +
-                              test::temporary_path("report.html") + " " + options + " 2>&1";
-  std::string text;
-  FILE* const output = popen(command.c_str(), "r");
-  for (int c = std::fgetc(output); c != EOF; c = std::fgetc(output)) text += static_cast<char>(c);
-  EXPECT_EQ(pclose(output), 0) << text;
-  const std::size_t at = text.find("trace CRC-32");
-  return at == std::string::npos ? text : text.substr(at, text.find('\n', at) - at);
 }
 
 // The ROS domain has the number of the run's DDS domain.
 TEST_F(Ros2, NodesFollowARunInItsOwnDomainWithoutChangingIt) {
-  const std::string alone = trace_of_run("");
+  const std::string alone = test::trace_of(test::simulate(""));
   const BusRun shown(domain_, "");
   Ros2Bridge bridge(shown, id());
   Node node(domain_);
   const dds_entity_t points = node.subscribe("rt/lidar/points", sensor_msgs_msg_dds__PointCloud2__desc);
   const dds_entity_t poses = node.subscribe("rt/target/pose_true", geometry_msgs_msg_dds__PoseStamped__desc);
-  std::string watched;
-  std::atomic<bool> is_over = false;
-  std::thread simulator([&] {
-    watched = trace_of_run("--speed 20 --domain " + std::to_string(domain_));
-    is_over = true;
+  auto watched = std::async(std::launch::async, [this] {
+    return test::trace_of(test::simulate("--speed 20 --domain " + std::to_string(domain_)));
   });
+  const auto is_over = [&] {
+    return watched.wait_for(0s) == std::future_status::ready && shown.log().state().has_ended;
+  };
   std::vector<std::uint8_t> bytes;
   int frames = 0, truths = 0;
   const auto take_all = [&] {
@@ -352,16 +277,15 @@ TEST_F(Ros2, NodesFollowARunInItsOwnDomainWithoutChangingIt) {
     while (take_cdr(points, bytes)) ++frames;
     while (take_cdr(poses, bytes)) ++truths;
   };
-  for (int i = 0; i < 1000 && !(is_over && shown.log().state().has_ended); ++i) {
+  for (int i = 0; i < 1000 && !is_over(); ++i) {
     take_all();
     std::this_thread::sleep_for(20ms);
   }
-  simulator.join();
   for (int i = 0; i < 25; ++i) {
     take_all();
     std::this_thread::sleep_for(20ms);
   }
-  EXPECT_EQ(watched, alone);
+  EXPECT_EQ(watched.get(), alone);
   EXPECT_EQ(shown.failure(), "");
   EXPECT_EQ(bridge.failure(), "");
   // The run does not wait for the console, which may miss the first steps.

@@ -14,14 +14,7 @@ constexpr std::uint32_t kSteps = 20;
 
 class RecordedRun : public testing::Test {
  protected:
-  static SilRunResult run(const std::string& mcap_path) {
-    SilSettings settings = test::settings();
-    settings.target = "near_shoemaker";
-    settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
-    settings.mcap_path = mcap_path;
-    settings.swath_m = test::kSwath_m;
-    return run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(kSteps / 10, 1), {});
-  }
+  static SilRunResult run(const std::string& mcap_path) { return test::run_shipped(mcap_path, kSteps / 10); }
 };
 
 // Verifies TS-SIL-190.

@@ -13,25 +13,17 @@ namespace {
 
 constexpr std::uint32_t kSteps = 40;
 
-// Telecommands, a lost frame and a chaser that turns, so that every topic has something.
-SilSettings settings(const std::string& mcap_path) {
-  SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";
-  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
-  settings.mcap_path = mcap_path;
-  settings.swath_m = test::kSwath_m;
-  return settings;
-}
+// With lost frames and a chaser that turns.
 SilRunResult record(const std::string& path) {
   ScenarioSettings scenario;
   scenario.disturbances.loss_every = 4;
   scenario.disturbances.chaser_rate_deg_s = 2.0;
   std::vector<Sequence> sequences;
   for (std::uint32_t i = 0; i < kSteps / 10; ++i) sequences.push_back(make_sequence(scenario, 3, i));
-  return run_sil(settings(path), test::lidar(), test::kSwath_m, sequences, {});
+  return run_sil(test::shipped_settings(path), test::lidar(), test::kSwath_m, sequences, {});
 }
 SilRunResult replay(StepSource& steps) {
-  return run_sil(settings(""), steps, {}, [](const StepResult&, const gnc::RangeImage&) {});
+  return run_sil(test::shipped_settings(), steps, {}, [](const StepResult&, const gnc::RangeImage&) {});
 }
 
 // Verifies TS-SIL-197.

@@ -28,9 +28,7 @@ SilRunResult run_with(const Disturbances& disturbances, std::uint32_t frames = k
   scenario.disturbances = disturbances;
   std::vector<Sequence> sequences;
   for (std::uint32_t i = 0; i < kSequences; ++i) sequences.push_back(make_sequence(scenario, 1, i));
-  SilSettings settings = test::settings();
-  settings.target = "near_shoemaker";
-  settings.model_path = TUMBLESIGHT_SHIPPED_MODEL;
+  const SilSettings settings = test::shipped_settings();
   SilRunResult run = run_sil(settings, test::lidar(), shipped_swath_m(), sequences, {});
   EXPECT_EQ(run.steps.size(), kSequences * frames);
   EXPECT_EQ(run_faults(run), std::vector<std::string>{});

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -90,6 +91,34 @@ SilSettings settings() {
   result.flight_path = TUMBLESIGHT_FLIGHT;
   result.flight_log_path = temporary_path("flight.log");
   return result;
+}
+
+SilSettings shipped_settings(const std::string& mcap_path) {
+  SilSettings shipped = settings();
+  shipped.target = "near_shoemaker";
+  shipped.model_path = TUMBLESIGHT_SHIPPED_MODEL;
+  shipped.mcap_path = mcap_path;
+  shipped.swath_m = kSwath_m;
+  return shipped;
+}
+
+SilRunResult run_shipped(const std::string& mcap_path, int count) {
+  return run_sil(shipped_settings(mcap_path), lidar(), kSwath_m, sequences(count, 1), {});
+}
+
+std::string simulate(const std::string& options) {
+  const std::string command = std::string(TUMBLESIGHT_PROGRAM) + " simulate --sequences 2 --report " +
+                              temporary_path("report.html") + " " + options + " 2>&1";
+  std::string text;
+  FILE* const output = popen(command.c_str(), "r");
+  for (int c = std::fgetc(output); c != EOF; c = std::fgetc(output)) text += static_cast<char>(c);
+  if (pclose(output) != 0) throw std::runtime_error(command + ":\n" + text);
+  return text;
+}
+
+std::string trace_of(const std::string& printed) {
+  const std::size_t at = printed.find("trace CRC-32");
+  return at == std::string::npos ? printed : printed.substr(at, printed.find('\n', at) - at);
 }
 
 const FlashLidar& lidar() {

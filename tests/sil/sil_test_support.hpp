@@ -28,6 +28,17 @@ const std::string& model_path();
 
 // The flight program of this build, a free domain, and a file for the program's messages.
 SilSettings settings();
+// The same for NEAR Shoemaker with the model that flies. `mcap_path`: recording of the run; empty: none.
+SilSettings shipped_settings(const std::string& mcap_path = "");
+// A run with them over sequences(count, 1).
+SilRunResult run_shipped(const std::string& mcap_path, int count);
+
+// `tumblesight simulate` with two sequences as another process, as a user starts it: one process opens a
+// domain only once. Returns what it printed, which it throws as
+// std::runtime_error if the program fails.
+std::string simulate(const std::string& options);
+// The line of it that has the checksum over the run's trace.
+std::string trace_of(const std::string& printed);
 
 const FlashLidar& lidar();
 std::vector<Sequence> sequences(int count, std::uint64_t seed);

@@ -8,76 +8,16 @@
 #include <set>
 #include <stdexcept>
 
-#include "hal/dds/idl/hello.hpp"
 #include "sim/console/requests.hpp"
+#include "tests/support/growing_run.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
+using test::GrowingRun;
+using test::kPeriod_ns;
 using Outgoing = FoxgloveSession::Outgoing;
 constexpr std::uint32_t kPoints = 1, kTransforms = 2, kLog = 3, kFigures = 4;
-constexpr std::int64_t kPeriod_ns = 2'700'000'000;
-
-// A run to which the test adds steps.
-class GrowingRun final : public RunSource {
- public:
-  void begin(std::uint32_t run_id) {
-    run_id_ = run_id;
-    k_ = 0;
-    hal::dds::HelloSample hello{};
-    hello.role = static_cast<std::uint8_t>(hal::dds::Role::kSimulator);
-    hello.run_id = run_id;
-    hal::dds::set_target(hello, "near_shoemaker");
-    log_.add(hello);
-  }
-  template <class Sample>
-  Sample sample() const {
-    Sample sample{};
-    sample.run_id = run_id_;
-    sample.k = k_;
-    return sample;
-  }
-  void add_step(std::uint8_t events = 0, float range_m = 31.0F) {
-    auto truth = sample<hal::dds::TruthSample>();
-    truth.q_lrf_trf[0] = 1.0F;
-    truth.range_m = range_m;
-    truth.time_ns = first_ns + kPeriod_ns * k_;
-    log_.add(truth);
-    auto attitude = sample<hal::dds::AttitudeSample>();
-    attitude.time_ns = first_ns + kPeriod_ns * k_;
-    attitude.exposure_time_ns = attitude.time_ns;
-    attitude.validity = static_cast<std::uint8_t>(hal::Validity::kValid);
-    attitude.q_lrf_trf[0] = attitude.pose_q_lrf_trf[0] = 1 << 30;
-    log_.add(attitude);
-    log_.add(sample<hal::dds::TelemetrySample>());
-    for (int i = 0; i < events; ++i) log_.add(sample<hal::dds::EventSample>());
-    auto done = sample<hal::dds::StepDoneSample>();
-    done.attitudes = done.telemetries = 1;
-    done.events = events;
-    log_.add(done);
-    ++k_;
-  }
-  const StepLog& log() const override { return log_; }
-  const char* kind() const override { return "bus"; }
-  std::string title() const override { return "near_shoemaker"; }
-  std::uint64_t first_frame() const override { return 0; }
-  std::string ask(const std::string&) const override { return {}; }
-  bool frame(std::uint64_t, gnc::RangeImage& frame) const override {
-    if (is_damaged) throw std::runtime_error("damaged");
-    frame = {};
-    frame.rays = 16;
-    frame.fov_urad = 200'000;
-    frame.ranges[3] = 0x1234;
-    return has_frames;
-  }
-
-  bool has_frames = true, is_damaged = false;
-  std::int64_t first_ns = kPeriod_ns;
-
- private:
-  StepLog log_;
-  std::uint32_t run_id_ = 0, k_ = 0;
-};
 
 std::uint64_t number_at(const Outgoing& message, std::size_t at, std::size_t size) {
   std::uint64_t number = 0;
@@ -97,10 +37,7 @@ std::string subscription(std::uint32_t id, std::uint32_t channel) {
 
 class Foxglove : public testing::Test {
  protected:
-  Foxglove() {
-    run_.begin(7);
-    session_.begin();
-  }
+  Foxglove() { session_.begin(); }
   void subscribe(std::uint32_t id, std::uint32_t channel) {
     EXPECT_TRUE(session_.receive(subscription(id, channel)).empty());
   }
@@ -234,11 +171,13 @@ TEST_F(Foxglove, ANewRunIsANewSessionWithTheSameSubscriptions) {
 }
 
 TEST_F(Foxglove, TimesBeforeZeroBeginAtZero) {
-  run_.first_ns = -3 * kPeriod_ns;
-  run_.add_step();
-  run_.add_step();
-  subscribe(1, kFigures);
-  const std::vector<Outgoing> news = session_.poll();
+  GrowingRun run(-3 * kPeriod_ns);
+  run.add_step();
+  run.add_step();
+  FoxgloveSession session(run);
+  session.begin();
+  EXPECT_TRUE(session.receive(subscription(1, kFigures)).empty());
+  const std::vector<Outgoing> news = session.poll();
   ASSERT_EQ(news.size(), 1U);
   EXPECT_EQ(number_at(news[0], 5, 8), std::uint64_t{kPeriod_ns});
 }
