@@ -55,11 +55,14 @@ svg { display: block; width: 100%; height: auto; font-family: inherit; }
 footer { margin-top: 40px; color: #6b7280; font-size: 13px; border-top: 1px solid #e4e6ea; padding-top: 12px; }
 code { font-family: "SF Mono", Consolas, "DejaVu Sans Mono", monospace; font-size: 12px; overflow-wrap: anywhere; }
 @media (max-width: 760px) { .pair, .facts { grid-template-columns: 1fr; } main { padding: 24px 16px; } }
-@media print { main { max-width: none; padding: 0; } body { font-size: 9.5pt; } .lead { font-size: 11pt; } h1 { font-size: 18pt; }
-  h2 { font-size: 12pt; margin-top: 22px; break-after: avoid; } th, td { padding: 3px 12px 3px 0; } tr { break-inside: avoid; }
+@media print { main { max-width: none; padding: 0; } body { font-size: 9.5pt; }
+  .lead { font-size: 11pt; } h1 { font-size: 18pt; }
+  h2 { font-size: 12pt; margin-top: 22px; break-after: avoid; }
+  th, td { padding: 3px 12px 3px 0; } tr { break-inside: avoid; }
   .pair { grid-template-columns: minmax(0, 1fr) minmax(0, 1fr); gap: 4px 20px; }
   .facts { grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0 20px; } .facts table { font-size: 8pt; }
-  .notice, svg, img { print-color-adjust: exact; -webkit-print-color-adjust: exact; } @page { size: A4; margin: 14mm; } }
+  .notice, svg, img { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  @page { size: A4; margin: 14mm; } }
 )css";
 
 }  // namespace
