@@ -240,6 +240,45 @@ void quantize_file(QuantizeArguments arguments) {
   copy_sensor_file(sensor);
 }
 
+constexpr const char* kFooter =
+    "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits.\n"
+    "The scales are chosen on rendered sequences. --effect, --effect-set: those that\n"
+    "the network was trained with. The table shows the quantization error of each\n"
+    "layer. The first mesh gives the surface, as points and as triangles, by which\n"
+    "the flight program judges what a frame shows. --surface-only replaces that\n"
+    "surface in an image that is in fixed point already, also in one of format\n"
+    "version 3 or 4. --to-float32 goes the other way, for a network of which only\n"
+    "the image in fixed point is left. The float32 image computes the same, without\n"
+    "the rounding of activations, and training can start from it. The sensor's\n"
+    "description beside --model is copied beside --out.\n\n"
+    "The exit status is 0, 1 if a file failed or the mesh does not fit, 2 for wrong\n"
+    "arguments, and 4 if the attitudes in fixed point differ from those in float32 by\n"
+    "more than 5° on average; then no image is written.\n\n"
+    "Example\n"
+    "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
+    "      --mesh parametric --mesh near.stl\n\n"
+    "Example: the surface of your CAD file for an image that ships\n"
+    "  tumblesight quantize --surface-only --model fsw/models/near_shoemaker.tsm \\\n"
+    "      --mesh near.stl --out near.tsm\n\n"
+    "Example: a start for training from an image that ships\n"
+    "  tumblesight quantize --to-float32 --model fsw/models/magellan.tsm \\\n"
+    "      --out magellan.float32.tsm\n";
+
+void add_options_without_calibration(CLI::App& command, QuantizeArguments& arguments) {
+  CLI::Option* surface =
+      command.add_flag("--surface-only", arguments.surface_only,
+                       "--model is in fixed point: keep its weights, and replace its surface by that of "
+                       "--mesh, which must have its size");
+  surface->needs("--out");
+  for (const char* of_calibration : {"--effect", "--sensor", "--range", "--sequences"})
+    surface->excludes(command.get_option(of_calibration));
+  command
+      .add_flag("--to-float32", arguments.to_float32,
+                "--model is in fixed point: write the float32 image of the same weights; takes no options "
+                "but --model and --out")
+      ->needs("--out");
+}
+
 }  // namespace
 
 QuantizationReport quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
@@ -259,29 +298,7 @@ void add_quantize_command(CLI::App& app) {
   auto arguments = std::make_shared<QuantizeArguments>();
   CLI::App* command =
       app.add_subcommand("quantize", "Make the fixed-point model image that flies from a float32 one");
-  command->footer(
-      "\nWeights have 8 bits and a scale per channel, activations have 8 or 16 bits.\n"
-      "The scales are chosen on rendered sequences. --effect, --effect-set: those that\n"
-      "the network was trained with. The table shows the quantization error of each\n"
-      "layer. The first mesh gives the surface, as points and as triangles, by which\n"
-      "the flight program judges what a frame shows. --surface-only replaces that\n"
-      "surface in an image that is in fixed point already, also in one of format\n"
-      "version 3 or 4. --to-float32 goes the other way, for a network of which only\n"
-      "the image in fixed point is left. The float32 image computes the same, without\n"
-      "the rounding of activations, and training can start from it. The sensor's\n"
-      "description beside --model is copied beside --out.\n\n"
-      "The exit status is 0, 1 if a file failed or the mesh does not fit, 2 for wrong\n"
-      "arguments, and 4 if the attitudes in fixed point differ from those in float32 by\n"
-      "more than 5° on average; then no image is written.\n\n"
-      "Example\n"
-      "  tumblesight quantize --model out/near/near_shoemaker.float32.tsm \\\n"
-      "      --mesh parametric --mesh near.stl\n\n"
-      "Example: the surface of your CAD file for an image that ships\n"
-      "  tumblesight quantize --surface-only --model fsw/models/near_shoemaker.tsm \\\n"
-      "      --mesh near.stl --out near.tsm\n\n"
-      "Example: a start for training from an image that ships\n"
-      "  tumblesight quantize --to-float32 --model fsw/models/magellan.tsm \\\n"
-      "      --out magellan.float32.tsm\n");
+  command->footer(kFooter);
   add_float32_model_option(*command, arguments->model);
   CLI::Option* model = command->get_option("--model");
   model->description(model->get_description() +
@@ -303,18 +320,7 @@ void add_quantize_command(CLI::App& app) {
                      10, 10'000)
       ->type_name("N")
       ->capture_default_str();
-  CLI::Option* surface =
-      command->add_flag("--surface-only", arguments->surface_only,
-                        "--model is in fixed point: keep its weights, and replace its surface by that of "
-                        "--mesh, which must have its size");
-  surface->needs("--out");
-  for (const char* of_calibration : {"--effect", "--sensor", "--range", "--sequences"})
-    surface->excludes(command->get_option(of_calibration));
-  command
-      ->add_flag("--to-float32", arguments->to_float32,
-                 "--model is in fixed point: write the float32 image of the same weights; takes no options "
-                 "but --model and --out")
-      ->needs("--out");
+  add_options_without_calibration(*command, *arguments);
   command->callback([command, arguments] {
     if (arguments->to_float32) require_only_files(*command);
     quantize_file(*arguments);

@@ -218,6 +218,66 @@ int train(TrainOptions& options) {
   return 0;
 }
 
+void add_length_options(CLI::App& command, TrainOptions& options) {
+  TrainingSettings& settings = options.settings;
+  limit_number(
+      command.add_option("--cnn-rate", settings.cnn_learning_rate, "highest learning rate of the CNN"), 1e-6,
+      1e-1)
+      ->type_name("X")
+      ->capture_default_str();
+  limit_whole_number(
+      command.add_option("--cnn-images", settings.cnn_images, "new images to train the CNN on"), 0,
+      1'000'000'000)
+      ->type_name("N")
+      ->capture_default_str();
+  limit_whole_number(command.add_option("--rcnn-sequences", settings.rcnn_sequences,
+                                        "different sequences to train the LSTM on"),
+                     16, 1'000'000)
+      ->type_name("N")
+      ->capture_default_str();
+  limit_whole_number(command.add_option("--rcnn-iterations", settings.rcnn_iterations,
+                                        "batches of sequences to train the LSTM on"),
+                     1, 10'000'000)
+      ->type_name("N")
+      ->capture_default_str();
+  CLI::Option* minutes =
+      limit_number(
+          command.add_option("--minutes", options.minutes,
+                             "wall-clock minutes to train for, in place of numbers of images, sequences "
+                             "and batches; ends early if nothing improves any more"),
+          0.1, 100'000.0)
+          ->type_name("X");
+  for (const char* number : {"--cnn-images", "--rcnn-iterations"})
+    minutes->excludes(command.get_option(number));
+}
+
+void add_machine_options(CLI::App& command, TrainOptions& options) {
+  TrainingSettings& settings = options.settings;
+  limit_whole_number(
+      command.add_option("--trainers", settings.trainers,
+                         "threads that share the batches of the CNN, beside the rendering ones: 1, 2, 4, 8"),
+      1, 8)
+      ->check(one_of({"1", "2", "4", "8"}))
+      ->type_name("N")
+      ->capture_default_str();
+  limit_number(command.add_option("--checkpoint-seconds", settings.checkpoint_s,
+                                  "wall-clock seconds between checkpoints"),
+               0.0, 3600.0)
+      ->type_name("X")
+      ->capture_default_str();
+  limit_whole_number(command.add_option("--workers", settings.workers, "rendering threads"), 1, 256)
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--device", options.device, "device to train on")
+      ->check(one_of({"auto", "cpu", "cuda"}))
+      ->type_name("auto|cpu|cuda")
+      ->capture_default_str();
+  command.add_option("--precision", options.precision, "precision of the convolutions in training")
+      ->check(one_of({"auto", "float32", "bfloat16"}))
+      ->type_name("auto|float32|bfloat16")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_train_command(CLI::App& app) {
@@ -257,58 +317,8 @@ void add_train_command(CLI::App& app) {
                    "model image whose CNN to start from; that of another target saves most of the time")
       ->check(existing_model_image())
       ->type_name("FILE");
-  limit_number(
-      command->add_option("--cnn-rate", settings.cnn_learning_rate, "highest learning rate of the CNN"), 1e-6,
-      1e-1)
-      ->type_name("X")
-      ->capture_default_str();
-  limit_whole_number(
-      command->add_option("--cnn-images", settings.cnn_images, "new images to train the CNN on"), 0,
-      1'000'000'000)
-      ->type_name("N")
-      ->capture_default_str();
-  limit_whole_number(command->add_option("--rcnn-sequences", settings.rcnn_sequences,
-                                         "different sequences to train the LSTM on"),
-                     16, 1'000'000)
-      ->type_name("N")
-      ->capture_default_str();
-  limit_whole_number(command->add_option("--rcnn-iterations", settings.rcnn_iterations,
-                                         "batches of sequences to train the LSTM on"),
-                     1, 10'000'000)
-      ->type_name("N")
-      ->capture_default_str();
-  CLI::Option* minutes =
-      limit_number(
-          command->add_option("--minutes", options->minutes,
-                              "wall-clock minutes to train for, in place of numbers of images, sequences "
-                              "and batches; ends early if nothing improves any more"),
-          0.1, 100'000.0)
-          ->type_name("X");
-  for (const char* number : {"--cnn-images", "--rcnn-iterations"})
-    minutes->excludes(command->get_option(number));
-  limit_whole_number(
-      command->add_option("--trainers", settings.trainers,
-                          "threads that share the batches of the CNN, beside the rendering ones: 1, 2, 4, 8"),
-      1, 8)
-      ->check(one_of({"1", "2", "4", "8"}))
-      ->type_name("N")
-      ->capture_default_str();
-  limit_number(command->add_option("--checkpoint-seconds", settings.checkpoint_s,
-                                   "wall-clock seconds between checkpoints"),
-               0.0, 3600.0)
-      ->type_name("X")
-      ->capture_default_str();
-  limit_whole_number(command->add_option("--workers", settings.workers, "rendering threads"), 1, 256)
-      ->type_name("N")
-      ->capture_default_str();
-  command->add_option("--device", options->device, "device to train on")
-      ->check(one_of({"auto", "cpu", "cuda"}))
-      ->type_name("auto|cpu|cuda")
-      ->capture_default_str();
-  command->add_option("--precision", options->precision, "precision of the convolutions in training")
-      ->check(one_of({"auto", "float32", "bfloat16"}))
-      ->type_name("auto|float32|bfloat16")
-      ->capture_default_str();
+  add_length_options(*command, *options);
+  add_machine_options(*command, *options);
   command->callback([options, command] {
     require_a_name(*command, options->meshes.meshes);
     options->conditions_given = command->count("--condition") > 0;
