@@ -95,7 +95,11 @@ std::optional<StepAnswer> AnswerCollector::next() {
   if (found == partials_.end()) return std::nullopt;
   if (found->second.has_too_many())
     throw SilFailure("more samples than announced for step " + std::to_string(found->first));
-  StepAnswer answer = std::move(found->second.answer);
+  Partial& partial = found->second;
+  partial.answer.samples = partial.attitudes + partial.telemetries +
+                           static_cast<std::uint32_t>(partial.answer.events.size()) + partial.dumps +
+                           partial.dones;
+  StepAnswer answer = std::move(partial.answer);
   partials_.erase(found);
   return answer;
 }

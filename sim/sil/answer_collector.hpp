@@ -21,6 +21,7 @@ struct StepAnswer {
   std::vector<hal::Event> events;
   std::vector<std::uint8_t> dump;  // part of a model bank; empty: none
   std::uint32_t state_crc32 = 0;
+  std::uint32_t samples = 0;  // of the bus, of which the answer was made
 };
 
 class AnswerCollector {

@@ -1,7 +1,11 @@
 #include "sim/sil/run_recorder.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
+#include <type_traits>
+#include <utility>
 
 #include "sim/sil/failure.hpp"
 #include "sim/sil/foxglove_messages.hpp"
@@ -10,12 +14,20 @@
 namespace tumblesight::sim {
 namespace {
 
+constexpr auto kLongestWait = std::chrono::seconds(1);
+constexpr auto kBetweenLooks = std::chrono::milliseconds(1);
 constexpr std::size_t kTruthsKept = 16;  // a free-running flight program answers a few cycles later
 
 void check(dds_return_t result) {
   if (result < 0)
     throw SilFailure(std::string("the recording could not join the bus: ") + dds_strretcode(result));
 }
+
+template <class Sample>
+constexpr bool kIsAnswer =
+    std::is_same_v<Sample, hal::dds::AttitudeSample> || std::is_same_v<Sample, hal::dds::TelemetrySample> ||
+    std::is_same_v<Sample, hal::dds::EventSample> || std::is_same_v<Sample, hal::dds::MemoryDumpSample> ||
+    std::is_same_v<Sample, hal::dds::StepDoneSample>;
 
 }  // namespace
 
@@ -25,10 +37,11 @@ RunRecorder::RunRecorder(const hal::dds::Domain& domain, const std::string& path
   participant_ = domain.join();
   check(participant_);
   each_topic([&](auto type, const char*) {
-    const hal::dds::Topic& topic = hal::dds::topic_of<typename decltype(type)::type>();
+    using Sample = typename decltype(type)::type;
+    const hal::dds::Topic& topic = hal::dds::topic_of<Sample>();
     const dds_entity_t reader = hal::dds::create_reader(domain, participant_, topic);
     check(reader);
-    sources_.push_back({reader, channels_.of_bus.at(&topic)});
+    sources_.push_back({reader, channels_.of_bus.at(&topic), kIsAnswer<Sample>});
   });
 }
 
@@ -59,6 +72,7 @@ void RunRecorder::add(const std::vector<const gnc::RangeImage*>& frames, std::in
 }
 
 void RunRecorder::add(const StepAnswer& answer) {
+  answered_samples_ += answer.samples;
   const hal::AttitudeReport& report = answer.attitude;
   const std::int64_t time_ns = time_in_file_ns(report.time_ns);
   const FrameTruth* const truth = truth_of(report);
@@ -89,12 +103,22 @@ void RunRecorder::take_samples(std::int64_t step_time_ns) {
   const std::int64_t time_ns = time_in_file_ns(step_time_ns);
   last_ns_ = step_time_ns;
   std::vector<std::uint8_t> bytes;
-  for (const Source& source : sources_)
-    while (take_cdr(source.reader, bytes)) file_.write(source.channel, time_ns, bytes.data(), bytes.size());
+  for (const Source& source : sources_) {
+    while (take_cdr(source.reader, bytes)) {
+      file_.write(source.channel, time_ns, bytes.data(), bytes.size());
+      taken_answer_samples_ += source.is_answer ? 1 : 0;
+    }
+  }
 }
 
 void RunRecorder::close() {
+  if (std::exchange(is_closed_, true)) return;
+  const auto give_up = std::chrono::steady_clock::now() + kLongestWait;
   if (first_ns_) take_samples(last_ns_);
+  while (taken_answer_samples_ < answered_samples_ && std::chrono::steady_clock::now() < give_up) {
+    std::this_thread::sleep_for(kBetweenLooks);
+    take_samples(last_ns_);
+  }
   file_.close();
 }
 

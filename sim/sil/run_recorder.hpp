@@ -39,13 +39,15 @@ class RunRecorder {
   void add(const StepAnswer& answer);
   // Writes what is due, see McapWriter::write_due().
   void write_due() { file_.write_due(); }
-  // The rest of the samples, and the end of the file.
+  // The rest of the samples, and the end of the file. Waits up to a second for samples of answers that have
+  // not come here yet: the answers came to another participant.
   void close();
 
  private:
   struct Source {
     dds_entity_t reader;
     McapId channel;
+    bool is_answer;  // of the flight program to a step
   };
   void take_samples(std::int64_t time_ns);
   std::int64_t time_in_file_ns(std::int64_t time_ns);
@@ -63,6 +65,8 @@ class RunRecorder {
   std::deque<TruthOfFrame> truths_;  // of the last frames
   std::int64_t last_ns_ = 0;
   std::optional<std::int64_t> first_ns_;
+  std::uint64_t answered_samples_ = 0, taken_answer_samples_ = 0;
+  bool is_closed_ = false;
 };
 
 }  // namespace tumblesight::sim

@@ -1,8 +1,14 @@
 // A run as an MCAP file: every sample of the bus, and what viewers show.
+#include "sim/sil/run_recorder.hpp"
+
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstring>
+#include <future>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/sil/sil_test_support.hpp"
 #include "tests/support/mcap_reader.hpp"
@@ -82,6 +88,50 @@ TEST_F(RecordedRun, ShowsPointsFramesAndErrors) {
 TEST_F(RecordedRun, AFileThatCannotBeWrittenEndsTheRunWithItsName) {
   EXPECT_NE(run("/none/run.mcap").failure.find("recording '/none/run.mcap': cannot be written"),
             std::string::npos);
+}
+
+// The recording has a participant of its own, which may get a sample later than the one with the answers.
+class LateSamples : public testing::Test {
+ protected:
+  LateSamples() {
+    EXPECT_EQ(domain_.open(static_cast<std::uint32_t>(test::spare_domain())), 0);
+    writer_ = hal::dds::create_writer(domain_, hal::dds::topic_of<hal::dds::StepDoneSample>());
+    recorder_ = std::make_unique<RunRecorder>(domain_, path_, test::kSwath_m);
+    dds_publication_matched_status_t status{};
+    for (int i = 0; i < 500 && status.current_count == 0; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      dds_get_publication_matched_status(writer_, &status);
+    }
+    EXPECT_EQ(status.current_count, 1U);
+    StepAnswer answer;
+    answer.samples = 1;
+    recorder_->add(answer);
+  }
+  std::size_t recorded() const {
+    const std::string bytes = test::read_file(path_);
+    return McapReader(bytes).count("sil/step_done");
+  }
+
+  hal::dds::Domain domain_;
+  dds_entity_t writer_ = 0;
+  const std::string path_ = test::temporary_path("run.mcap");
+  std::unique_ptr<RunRecorder> recorder_;
+};
+
+TEST_F(LateSamples, AreWaitedForAtTheEnd) {
+  const auto late = std::async(std::launch::async, [this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const hal::dds::StepDoneSample sample{};
+    EXPECT_EQ(dds_write(writer_, &sample), 0);
+  });
+  recorder_->close();
+  late.wait();
+  EXPECT_EQ(recorded(), 1U);
+}
+
+TEST_F(LateSamples, ThatNeverComeDoNotHoldUpTheEnd) {
+  recorder_->close();
+  EXPECT_EQ(recorded(), 0U);
 }
 
 }  // namespace
