@@ -324,8 +324,9 @@ void add_mesh_options(CLI::App& command, MeshArguments& arguments) {
       "may be repeated [parametric]");
 }
 
-void add_sequence_options(CLI::App& command, ScenarioArguments& arguments) {
-  limit_whole_number(command.add_option("--sequences", arguments.sequences, "sequences to run"), 1, 100'000)
+void add_sequence_options(CLI::App& command, ScenarioArguments& arguments, std::uint64_t most_sequences) {
+  limit_whole_number(command.add_option("--sequences", arguments.sequences, "sequences to run"), 1,
+                     most_sequences)
       ->type_name("N")
       ->capture_default_str();
   limit_whole_number(command.add_option("--frames", arguments.frames, "frames per sequence"), 1, 1000)
@@ -373,12 +374,13 @@ std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std:
   return meshes;
 }
 
-void require_supported_length(const ScenarioArguments& arguments) {
+void require_supported_length(const ScenarioArguments& arguments, const std::string& remedy) {
   const std::uint64_t frames = std::uint64_t{arguments.sequences} * arguments.frames;
   if (frames <= kMaxRunFrames) return;
-  throw CLI::ValidationError("--sequences, --frames",
-                             fmt::format("{} x {} are {} frames in all; a run has at most {}",
-                                         arguments.sequences, arguments.frames, frames, kMaxRunFrames));
+  throw CLI::ValidationError(
+      "--sequences, --frames",
+      fmt::format("{} x {} are {} frames in all; a run has at most {}{}", arguments.sequences,
+                  arguments.frames, frames, kMaxRunFrames, remedy));
 }
 
 std::string full_path(const std::string& path) {

@@ -85,9 +85,12 @@ void add_report_option(CLI::App& command, std::string& report, const std::string
 // Groups of options.
 void add_target_options(CLI::App& command, ScenarioArguments& arguments);  // --target, --mesh…, --inertia
 void add_mesh_options(CLI::App& command,
-                      MeshArguments& arguments);  // --mesh (repeated), --mesh-up, --mesh-scale
-void add_sequence_options(CLI::App& command, ScenarioArguments& arguments);  // --sequences, --frames, --seed
-void add_model_options(CLI::App& command, ScenarioArguments& arguments);     // --model, --numerics
+                      MeshArguments& arguments);          // --mesh (repeated), --mesh-up, --mesh-scale
+inline constexpr std::uint64_t kMostSequences = 100'000;  // of a run that keeps them in memory
+// --sequences, --frames, --seed
+void add_sequence_options(CLI::App& command, ScenarioArguments& arguments,
+                          std::uint64_t most_sequences = kMostSequences);
+void add_model_options(CLI::App& command, ScenarioArguments& arguments);  // --model, --numerics
 
 // The tensor of --inertia's six elements. Throws std::invalid_argument that names the limits if no rigid body
 // has it.
@@ -102,8 +105,9 @@ OptionFiles files_read(const MeshArguments& meshes, const SensorArguments& senso
 // Notes on the standard error stream what is left out of a file. Throws as target_mesh does.
 std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std::string& target);
 
-// Throws CLI::ValidationError if sequences times frames is more than a run can hold in memory.
-void require_supported_length(const ScenarioArguments& arguments);
+// Throws CLI::ValidationError if sequences times frames is more than a run can hold in memory. `remedy`: what
+// to do then, "; divide it".
+void require_supported_length(const ScenarioArguments& arguments, const std::string& remedy = {});
 
 // Validators whose message names the limits, for example "must be a whole number from 1 to 100000, not
 // 'many'". Leading zeros are refused, because CLI11 would read an octal number.

@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <thread>
 
+#include "sim/campaign/shard_file.hpp"
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/symmetry_arguments.hpp"
+#include "sim/cli/target_setup.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr int kMaxThreads = 1024;
+constexpr std::uint64_t kMostInShards = 10'000'000;  // of which each shard is in memory one by one
 
 void add_run_options(CLI::App& command, EvaluateArguments& arguments) {
   command.add_flag(
@@ -38,14 +41,18 @@ void add_run_options(CLI::App& command, EvaluateArguments& arguments) {
       ->capture_default_str();
 }
 
-void add_output_options(CLI::App& command, EvaluateArguments& arguments) {
-  command
-      .add_option("--csv", arguments.csv,
-                  "write the figures to this file, one line per estimator and condition")
-      ->check(file_path())
-      ->type_name("FILE");
-  add_json_option(command, arguments.scenario.json);
-  add_report_option(command, arguments.report, "");
+// In place of the tables, too.
+void add_shard_options(CLI::App& command, EvaluateArguments& arguments) {
+  CLI::Option* shard = command.add_option(
+      "--shard", arguments.shard,
+      "run only part I of N of the sequences, I from 0, and write their results to --shard-file; "
+      "`tumblesight merge` makes the figures of all parts");
+  shard->check(shard_text())->type_name("I/N");
+  CLI::Option* file =
+      command.add_option("--shard-file", arguments.shard_file,
+                         "file of the results of a shard; a run that was stopped goes on in it");
+  file->check(file_path())->type_name("FILE")->needs(shard);
+  shard->needs(file);
 }
 
 // In place of the tables. What must show the target is not an effect whose limit can be searched.
@@ -90,10 +97,11 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
   arguments.scenario.sequences = 900;
   add_target_options(command, arguments.scenario);
   add_condition_option(command, arguments.conditions);
-  add_sequence_options(command, arguments.scenario);
+  add_sequence_options(command, arguments.scenario, kMostInShards);
   add_model_options(command, arguments.scenario);
   add_run_options(command, arguments);
-  add_output_options(command, arguments);
+  add_results_options(command, arguments.files);
+  add_shard_options(command, arguments);
   add_paper_options(command, arguments);
   add_sensor_options(command, arguments.scenario.sensor);
   add_effect_option(command, arguments.scenario.effects);
@@ -134,10 +142,41 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
                  disturbance_examples("evaluate"));
 }
 
+CLI::Validator shard_text() {
+  return CLI::Validator(
+      [](std::string& text) {
+        try {
+          (void)shard_from(text);
+          return std::string();
+        } catch (const std::invalid_argument& error) {
+          return std::string(error.what());
+        }
+      },
+      "");
+}
+
+void complete(const CLI::App& command, EvaluateArguments& arguments) {
+  take_period_of_sensor(command, arguments.scenario);
+  if (!arguments.paper) require_a_name(command, {arguments.scenario.mesh});
+  arguments.sequences_given = command.get_option("--sequences")->count() > 0;
+  if (!arguments.shard.empty()) refuse_options_of_merge(command);
+}
+
+EvaluateArguments parsed_evaluate(const std::vector<std::string>& options) {
+  CLI::App command;
+  EvaluateArguments arguments;
+  add_evaluate_options(command, arguments);
+  // CLI11 takes the words in reverse.
+  command.parse(std::vector<std::string>(options.rbegin(), options.rend()));
+  complete(command, arguments);
+  return arguments;
+}
+
 void refuse_options_set_by_paper(const CLI::App& command) {
-  std::vector<std::string> own_options{
-      "--target", "--mesh",   "--inertia", "--condition", "--frames", "--model", "--numerics", "--json",
-      "--csv",    "--report", "--curves",  "--effect",    "--sensor", "--range", "--peers",    "--symmetry"};
+  std::vector<std::string> own_options{"--target",   "--mesh",     "--inertia", "--condition", "--frames",
+                                       "--model",    "--numerics", "--json",    "--csv",       "--report",
+                                       "--curves",   "--effect",   "--sensor",  "--range",     "--peers",
+                                       "--symmetry", "--shard"};
   for (const DisturbanceRow& row : kDisturbances) own_options.push_back(std::string("--") + row.name);
   for (const std::string& own : own_options) {
     if (command.get_option(own)->count() == 0) continue;
@@ -146,10 +185,22 @@ void refuse_options_set_by_paper(const CLI::App& command) {
 }
 
 void refuse_options_of_tables(const CLI::App& command) {
-  for (const char* other : {"--paper", "--curves", "--csv", "--report", "--baseline-sequences", "--peers"}) {
+  for (const char* other :
+       {"--paper", "--curves", "--csv", "--report", "--baseline-sequences", "--peers", "--shard"}) {
     if (command.get_option(other)->count() == 0) continue;
     throw CLI::ValidationError("--effect-limit", fmt::format("makes no tables; leave {} out", other));
   }
+}
+
+void refuse_options_of_merge(const CLI::App& command) {
+  for (const char* other : {"--json", "--csv", "--report"}) {
+    if (command.get_option(other)->count() == 0) continue;
+    throw CLI::ValidationError(
+        "--shard", fmt::format("makes no figures; give {} to `tumblesight merge`, which does", other));
+  }
+  if (command.get_option("--peers")->count() > 0)
+    throw CLI::ValidationError("--shard",
+                               "runs no peers: their times are those of one process; leave --peers out");
 }
 
 std::vector<std::string> missing_peers(const std::vector<PosePeerRow>& peers) {
@@ -165,6 +216,21 @@ std::vector<std::string> missing_peers(const std::vector<PosePeerRow>& peers) {
   return lines;
 }
 
+namespace {
+
+std::vector<Condition> conditions_of(const EvaluateArguments& arguments) {
+  std::vector<Condition> conditions;
+  for (const std::string& name : arguments.conditions) {
+    const Condition condition = condition_from(name);
+    const bool known = std::find(conditions.begin(), conditions.end(), condition) != conditions.end();
+    if (known) throw CLI::ValidationError("--condition", fmt::format("'{}' is given twice", name));
+    conditions.push_back(condition);
+  }
+  return conditions;
+}
+
+}  // namespace
+
 ExperimentSettings experiment_settings(const EvaluateArguments& arguments) {
   ExperimentSettings settings;
   settings.seed = arguments.scenario.seed;
@@ -179,6 +245,28 @@ ExperimentSettings experiment_settings(const EvaluateArguments& arguments) {
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   settings.threads = arguments.threads > 0 ? arguments.threads : cores;
   return settings;
+}
+
+ExperimentSettings checked_settings(const EvaluateArguments& arguments) {
+  ExperimentSettings settings = experiment_settings(arguments);
+  settings.conditions = conditions_of(arguments);
+  if (arguments.shard.empty())
+    require_supported_length(arguments.scenario, "; divide it into parts with --shard");
+  require_possible_disturbances(settings.disturbances, settings.frames);
+  OptionFiles written = files_written(arguments.files);
+  // A shard file is continued, and not replaced.
+  written.push_back({"--shard-file", arguments.shard_file});
+  require_separate_files(files_read(arguments.scenario), written);
+  require_usable_files({}, files_written(arguments.files));
+  return settings;
+}
+
+Subject checked_subject(const EvaluateArguments& arguments, const ExperimentSettings& settings) {
+  Subject subject = set_up_subject(arguments.scenario);
+  for (const Condition condition : settings.conditions) {
+    (void)scenario_settings(condition, settings.frames, subject.target, subject.inertia_kg_m2);
+  }
+  return subject;
 }
 
 }  // namespace tumblesight::sim

@@ -8,6 +8,7 @@
 
 #include "sim/baseline/pose_peer.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/evaluation_output.hpp"
 #include "sim/evaluation/experiment.hpp"
 
 namespace tumblesight::sim {
@@ -22,19 +23,29 @@ struct EvaluateArguments {
   bool no_baseline = false;
   std::uint32_t baseline_sequences = 100;
   bool peers = false;
-  std::string csv;     // empty: none
-  std::string report;  // empty: none
+  ResultsFiles files;
+  std::string shard;       // "3/16"; empty: all sequences
+  std::string shard_file;  // of it
   bool paper = false;
   std::string mesh_folder;  // empty: parametric meshes only
   std::string out;          // empty: docs, or out/paper if the number of sequences was given
   std::string command_line;
+  bool quiet = false;  // with --shard: no output but errors
 };
 
 void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments);
+// I/N of --shard.
+CLI::Validator shard_text();
+// What depends on which options were given; after parsing. Throws CLI::ValidationError.
+void complete(const CLI::App& command, EvaluateArguments& arguments);
+// From options as they stand on a command line, without the verb. Throws CLI::ParseError.
+EvaluateArguments parsed_evaluate(const std::vector<std::string>& options);
 // Throws CLI::ValidationError if an option was given that --paper sets itself.
 void refuse_options_set_by_paper(const CLI::App& command);
 // Throws CLI::ValidationError if an option of the tables was given, which --effect-limit does not make.
 void refuse_options_of_tables(const CLI::App& command);
+// Throws CLI::ValidationError if an option was given with --shard that belongs to the figures of all shards.
+void refuse_options_of_merge(const CLI::App& command);
 
 // For --peers: a line for each peer that this build is without, with the remedy. Throws CLI::ValidationError
 // with these lines if it is without all of them.
@@ -42,6 +53,16 @@ std::vector<std::string> missing_peers(const std::vector<PosePeerRow>& peers);
 
 // All settings except the conditions.
 ExperimentSettings experiment_settings(const EvaluateArguments& arguments);
+// All settings. Throws CLI::ValidationError or std::invalid_argument if they do not fit together, and as
+// require_usable_files() does.
+ExperimentSettings checked_settings(const EvaluateArguments& arguments);
+// Throws as set_up_subject() does, and if a condition needs an inertia that is not known.
+Subject checked_subject(const EvaluateArguments& arguments, const ExperimentSettings& settings);
+
+// --effect-limit: how strong an effect may be.
+void evaluate_effect_limit(const EvaluateArguments& arguments);
+// --shard: the results of a part of the sequences, to a file.
+void evaluate_shard(const EvaluateArguments& arguments);
 
 // --paper: every table and figure of the paper, for every target that has a model. Writes results.md,
 // results.csv, results.json and report.html after every subject, so that an interrupted run keeps what it has

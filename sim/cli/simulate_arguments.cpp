@@ -66,6 +66,7 @@ std::string default_report_name(const SimulateArguments& arguments) {
   if (scenario.sequences != usual.scenario.sequences || scenario.frames != usual.scenario.frames) {
     name += fmt::format("_{}x{}", scenario.sequences, scenario.frames);
   }
+  if (!arguments.only.empty()) name += fmt::format("_only-{}", fmt::join(arguments.only, "-"));
   if (scenario.numerics != usual.scenario.numerics) name += "_" + scenario.numerics;
   name += files_part(arguments);
   if (scenario.mesh_up != usual.scenario.mesh_up) name += "_up-" + scenario.mesh_up;

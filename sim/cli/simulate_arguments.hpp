@@ -10,6 +10,7 @@ namespace tumblesight::sim {
 
 struct SimulateArguments : FlightArguments {
   ScenarioArguments scenario;
+  std::vector<std::uint32_t> only;  // indices of sequences, in place of the first ones; empty: these
 };
 
 // A file name that differs between different runs: target, condition and seed, then every option that is not

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -27,13 +28,15 @@
 namespace tumblesight::sim {
 namespace {
 
-SilRunSetup run_setup(const ScenarioArguments& scenario, const TargetSetup& target,
+SilRunSetup run_setup(const SimulateArguments& arguments, const TargetSetup& target,
                       const SilSettings& settings) {
+  const ScenarioArguments& scenario = arguments.scenario;
   SilRunSetup setup;
   static_cast<FlightSetup&>(setup) = flight_setup(scenario.target, target, settings);
   setup.mesh_name = target.mesh_name;
   setup.condition = scenario.condition;
   setup.sequences = scenario.sequences;
+  setup.only = arguments.only;
   setup.frames = scenario.frames;
   setup.disturbances = scenario.disturbances;
   setup.effects = scenario.effects;
@@ -68,8 +71,18 @@ void print_results(const RunReport& report, const SilRunResult& run,
              degrees_text(numerics->largest_difference_deg));
 }
 
-SilRunResult run_sequences(const ScenarioArguments& scenario, const TargetSetup& target,
+std::vector<Sequence> sequences_of(const SimulateArguments& arguments, const ScenarioSettings& settings) {
+  std::vector<Sequence> sequences;
+  for (std::uint32_t i = 0; i < arguments.scenario.sequences; ++i) {
+    const std::uint32_t index = arguments.only.empty() ? i : arguments.only[i];
+    sequences.push_back(make_sequence(settings, arguments.scenario.seed, index));
+  }
+  return sequences;
+}
+
+SilRunResult run_sequences(const SimulateArguments& arguments, const TargetSetup& target,
                            const SilSettings& settings, Float32Reference& float32) {
+  const ScenarioArguments& scenario = arguments.scenario;
   ScenarioSettings sequence_settings = scenario_settings(condition_from(scenario.condition), scenario.frames,
                                                          scenario.target, target.inertia_kg_m2);
   sequence_settings.disturbances = scenario.disturbances;
@@ -77,10 +90,7 @@ SilRunResult run_sequences(const ScenarioArguments& scenario, const TargetSetup&
   sequence_settings.sensor = scenario.sensor.sensor.settings;
   sequence_settings.ranges = target.ranges;
   sequence_settings.swath_m = 1e-3 * target.projection.swath_mm;
-  std::vector<Sequence> sequences;
-  for (std::uint32_t i = 0; i < scenario.sequences; ++i) {
-    sequences.push_back(make_sequence(sequence_settings, scenario.seed, i));
-  }
+  const std::vector<Sequence> sequences = sequences_of(arguments, sequence_settings);
   std::vector<TriangleMesh> bodies = observed_bodies(scenario.effects, scenario.target, target.mesh);
   for (TriangleMesh& body : bodies) mark_panels(body);  // for faults that come while the run goes on
   const FlashLidar lidar(bodies);
@@ -127,7 +137,17 @@ void require_a_speed(const SimulateArguments& arguments) {
                              "needs a speed: --speed 1 for real time, --speed N for N times real time");
 }
 
+void take_only(SimulateArguments& arguments) {
+  if (arguments.only.empty()) return;
+  std::vector<std::uint32_t> sorted = arguments.only;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end()) throw CLI::ValidationError("--only", fmt::format("{} is given twice", *twice));
+  arguments.scenario.sequences = static_cast<std::uint32_t>(arguments.only.size());
+}
+
 void simulate(SimulateArguments arguments) {
+  take_only(arguments);
   const ScenarioArguments& scenario = arguments.scenario;
   require_supported_length(scenario);
   require_a_speed(arguments);
@@ -137,12 +157,12 @@ void simulate(SimulateArguments arguments) {
   const TargetSetup target = set_up_target(scenario);
   SilSettings settings = sil_settings(arguments, scenario.target, target);
   settings.ego_motion = !scenario.disturbances.no_ego_motion;
-  const SilRunSetup setup = run_setup(scenario, target, settings);
+  const SilRunSetup setup = run_setup(arguments, target, settings);
   announce(scenario, target, settings);
 
   Float32Reference float32(target.model_path, target.model, scenario.target);
   std::optional<Interruption> interruption(std::in_place);
-  const SilRunResult run = run_sequences(scenario, target, settings, float32);
+  const SilRunResult run = run_sequences(arguments, target, settings, float32);
   interruption.reset();
   std::optional<NumericsComparison> numerics;
   // The reference gets every frame, and no telecommand. In a free run the flight program may have missed
@@ -172,6 +192,14 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   add_target_options(*command, arguments->scenario);
   add_condition_option(*command, arguments->scenario.condition);
   add_sequence_options(*command, arguments->scenario);
+  command
+      ->add_option("--only", arguments->only,
+                   "run these sequences, by their index from 0, in place of the first ones: those that "
+                   "`evaluate` or a campaign lists as the worst")
+      ->delimiter(',')
+      ->check(whole_number(0, 9'999'999))
+      ->excludes(command->get_option("--sequences"))
+      ->type_name("I,...");
   add_model_options(*command, arguments->scenario);
   add_json_option(*command, arguments->scenario.json);
   add_sensor_options(*command, arguments->scenario.sensor);

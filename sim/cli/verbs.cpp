@@ -12,6 +12,8 @@ void add_verbs(CLI::App& app, const std::string& command_line) {
 #endif
   add_mesh_command(app, command_line);
   add_evaluate_command(app, command_line);
+  add_merge_command(app);
+  add_campaign_command(app, command_line);
   add_quantize_command(app);
   add_record_command(app);
 #ifdef TUMBLESIGHT_HAS_ONNX

@@ -36,6 +36,12 @@ void add_mesh_command(CLI::App& app, const std::string& command_line);
 // estimator.
 void add_evaluate_command(CLI::App& app, const std::string& command_line);
 
+// `tumblesight merge`: the figures of an evaluation out of its shards.
+void add_merge_command(CLI::App& app);
+
+// `tumblesight campaign`: many evaluations, on many cores or machines.
+void add_campaign_command(CLI::App& app, const std::string& command_line);
+
 // `tumblesight record`: renders frames into a recording, with their truth beside it.
 void add_record_command(CLI::App& app);
 

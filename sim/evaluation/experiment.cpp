@@ -1,129 +1,16 @@
 #include "sim/evaluation/experiment.hpp"
 
-#include <algorithm>
 #include <memory>
-#include <stdexcept>
+#include <numeric>
+#include <utility>
 
-#include "sim/evaluation/disturbed_runs.hpp"
 #include "sim/evaluation/monte_carlo.hpp"
-#include "sim/evaluation/pose_goals.hpp"
+#include "sim/evaluation/replay_command.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-constexpr int kHiddenSteps = 10;
-constexpr double kHiddenStep = 0.05;
-constexpr std::uint32_t kSweepFraction = 3;  // a swept value runs a third of a cell's sequences
-constexpr std::uint32_t kLongFraction = 9;
-constexpr std::uint32_t kLongFrames = 200;
-constexpr std::uint32_t kFifth = 4;                // frame, by index
-constexpr std::uint32_t kMaxLongSequences = 1000;  // limited by the memory for their frames
-
-struct Run {
-  enum class Kind { kCell, kRateNorm, kHiddenShare, kLong, kDisturbed, kSensor };
-  Kind kind = Kind::kCell;
-  ScenarioSettings scenario;
-  std::uint32_t sequences = 0;
-  std::uint32_t baseline_sequences = 0;
-  std::vector<PosePeerRow> peers{};
-};
-
-std::vector<PosePeerRow> peers_of(const ExperimentSettings& settings) {
-  std::vector<PosePeerRow> rows;
-  if (!settings.peers || settings.baseline_sequences == 0) return rows;
-  for (const PosePeerRow& row : pose_peers())
-    if (row.missing == nullptr) rows.push_back(row);
-  return rows;
-}
-
-std::uint64_t steps_of(const Run& run, std::uint32_t sequences_done) {
-  return std::uint64_t{sequences_done} * static_cast<std::uint64_t>(run.scenario.frames) +
-         (kStepsPerMatch + kStepsPerPeer * run.peers.size()) *
-             std::min(sequences_done, run.baseline_sequences);
-}
-
-std::vector<Run> cells_of(const ExperimentSettings& settings) {
-  std::vector<Run> runs;
-  for (const Condition condition : settings.conditions) {
-    Run run;
-    run.scenario.condition = condition;
-    run.scenario.frames = static_cast<int>(settings.frames);
-    run.scenario.disturbances = settings.disturbances;
-    run.scenario.effects = settings.effects;
-    run.sequences = condition == Condition::kTumbling ? settings.tumbling_sequences : settings.sequences;
-    run.baseline_sequences = std::min(settings.baseline_sequences, run.sequences);
-    run.peers = peers_of(settings);
-    runs.push_back(run);
-  }
-  return runs;
-}
-
-std::vector<Run> sweeps_of(const ExperimentSettings& settings) {
-  Run base;
-  base.scenario.condition = settings.conditions.front();
-  base.scenario.frames = static_cast<int>(settings.frames);
-  base.scenario.disturbances = settings.disturbances;
-  base.scenario.effects = settings.effects;
-  base.sequences = settings.sequences;
-
-  std::vector<Run> runs{base};
-  runs.back().kind = Run::Kind::kRateNorm;
-  runs.back().scenario.rate_law = RateLaw::kNorm;
-  for (int step = 1; step <= kHiddenSteps; ++step) {
-    runs.push_back(base);
-    runs.back().kind = Run::Kind::kHiddenShare;
-    runs.back().scenario.condition = Condition::kOccluded;
-    runs.back().scenario.hidden_share = kHiddenStep * step;
-    runs.back().sequences = std::max(1U, settings.sequences / kSweepFraction);
-  }
-  runs.push_back(base);
-  runs.back().kind = Run::Kind::kLong;
-  runs.back().scenario.frames = static_cast<int>(kLongFrames);
-  runs.back().sequences = std::clamp(settings.sequences / kLongFraction, 1U, kMaxLongSequences);
-  return runs;
-}
-
-std::vector<Run> disturbed_runs_of(const ExperimentSettings& settings) {
-  std::vector<Run> runs;
-  for (const DisturbedRun& disturbed : disturbed_runs()) {
-    Run run;
-    run.kind = Run::Kind::kDisturbed;
-    run.scenario.condition = disturbed.condition;
-    run.scenario.frames = static_cast<int>(settings.frames);
-    run.scenario.disturbances = disturbed.disturbances;
-    run.scenario.effects = settings.effects;
-    run.sequences = settings.sequences;
-    runs.push_back(run);
-  }
-  return runs;
-}
-
-std::vector<Run> sensor_runs_of(const ExperimentSettings& settings) {
-  std::vector<Run> runs;
-  for (const SensorRun& of_sensor : sensor_runs()) {
-    Run run;
-    run.kind = Run::Kind::kSensor;
-    run.scenario.frames = static_cast<int>(settings.frames);
-    run.scenario.effects = of_sensor.effects;
-    run.scenario.ranges = of_sensor.ranges;
-    run.sequences = settings.sequences;
-    runs.push_back(run);
-  }
-  return runs;
-}
-
-void append(std::vector<Run>& runs, const std::vector<Run>& more) {
-  runs.insert(runs.end(), more.begin(), more.end());
-}
-
-std::vector<Run> runs_of(const ExperimentSettings& settings) {
-  if (settings.conditions.empty()) throw std::invalid_argument("an experiment needs at least one condition");
-  std::vector<Run> runs = cells_of(settings);
-  if (settings.curves) append(runs, sweeps_of(settings));
-  if (settings.disturbed_runs) append(runs, disturbed_runs_of(settings));
-  if (settings.sensor_runs) append(runs, sensor_runs_of(settings));
-  return runs;
-}
+constexpr std::uint32_t kFifth = 4;  // frame, by index
 
 // Every attitude of a peer counts as valid: it gives no other verdict.
 PeerErrors peer_errors(const PosePeerRow& row, const PeerRun& run) {
@@ -135,19 +22,22 @@ PeerErrors peer_errors(const PosePeerRow& row, const PeerRun& run) {
   return errors;
 }
 
-CellResult cell_result(const Run& run, const std::string& target, const MonteCarloResult& result) {
+CellResult cell_result(const ExperimentRun& run, const SubjectDescription& subject,
+                       const MonteCarloResult& result) {
   const auto frames = static_cast<std::uint32_t>(run.scenario.frames);
   const std::vector<FrameResult> last = last_frames(result.frames, frames);
   const auto errors = [&](Estimator estimator) {
     return last_frame_errors_deg(result.frames, frames, estimator);
   };
-  const std::vector<NearSymmetry> symmetries = near_symmetries(target);
+  const std::vector<NearSymmetry> symmetries = near_symmetries(subject.target);
   CellResult cell;
   cell.condition = run.scenario.condition;
   cell.sequences = run.sequences;
   cell.frames = frames;
   cell.disturbances = run.scenario.disturbances;
   cell.effects = run.scenario.effects.low;
+  cell.sensor = subject.sensor;
+  cell.symmetry = subject.symmetry;
   cell.ranges = run.scenario.ranges;
   cell.rcnn = last_frame_summary(result.frames, frames, Estimator::kRcnn);
   cell.cnn = last_frame_summary(result.frames, frames, Estimator::kCnn);
@@ -155,6 +45,7 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   cell.pose_first = pose_summary(result.frames, 0);
   cell.never_valid_from_fifth = share_never_trusted(result.frames, kFifth);
   cell.common_turn = common_turn(last, Estimator::kRcnn);
+  cell.rare = rare_events(last);
   cell.rcnn_histogram = histogram(errors(Estimator::kRcnn));
   cell.cnn_histogram = histogram(errors(Estimator::kCnn));
   if (run.baseline_sequences > 0) {
@@ -175,13 +66,13 @@ CellResult cell_result(const Run& run, const std::string& target, const MonteCar
   return cell;
 }
 
-void take_sweep(const Run& run, const MonteCarloResult& result, Sweeps& sweeps) {
+void take_sweep(const ExperimentRun& run, const MonteCarloResult& result, Sweeps& sweeps) {
   const auto frames = static_cast<std::uint32_t>(run.scenario.frames);
   const std::vector<FrameResult> last = last_frames(result.frames, frames);
-  if (run.kind == Run::Kind::kRateNorm) {
+  if (run.kind == ExperimentRun::Kind::kRateNorm) {
     sweeps.base = run.scenario.condition;
     sweeps.by_rate_norm = errors_by_rate(last);
-  } else if (run.kind == Run::Kind::kHiddenShare) {
+  } else if (run.kind == ExperimentRun::Kind::kHiddenShare) {
     sweeps.sweep_sequences = run.sequences;
     sweeps.by_hidden_share.push_back(curve_point(run.scenario.hidden_share.value_or(0.0), last));
   } else {
@@ -190,80 +81,137 @@ void take_sweep(const Run& run, const MonteCarloResult& result, Sweeps& sweeps) 
   }
 }
 
-void take(const Run& run, const MonteCarloResult& result, SubjectResult& into) {
-  if (run.kind == Run::Kind::kCell) {
-    into.cells.push_back(cell_result(run, into.target, result));
-    return;
+// Where the figures of a kind of run go; the curves have a place of their own.
+std::vector<CellResult>* cells_of(ExperimentRun::Kind kind, SubjectResult& figures) {
+  switch (kind) {
+    case ExperimentRun::Kind::kCell:
+      return &figures.cells;
+    case ExperimentRun::Kind::kDisturbed:
+      return &figures.disturbed;
+    case ExperimentRun::Kind::kSensor:
+      return &figures.sensor_runs;
+    default:
+      return nullptr;
   }
-  if (run.kind == Run::Kind::kDisturbed) {
-    into.disturbed.push_back(cell_result(run, into.target, result));
-    return;
+}
+
+// What belongs to the subject.
+void complete(ScenarioSettings& scenario, ExperimentRun::Kind kind, const SubjectDescription& subject) {
+  scenario.sensor = subject.sensor.settings;
+  if (kind != ExperimentRun::Kind::kSensor) scenario.ranges = subject.ranges;
+  scenario.swath_m = subject.swath_m;
+}
+
+// With the inertia, which only the run itself needs.
+std::vector<ExperimentRun> complete_runs(const Subject& subject, const ExperimentSettings& settings) {
+  std::vector<ExperimentRun> runs = runs_of(settings);
+  for (ExperimentRun& run : runs) {
+    complete(run.scenario, run.kind, subject);
+    run.scenario.inertia_kg_m2 =
+        scenario_settings(run.scenario.condition, settings.frames, subject.target, subject.inertia_kg_m2)
+            .inertia_kg_m2;
   }
-  if (run.kind == Run::Kind::kSensor) {
-    into.sensor_runs.push_back(cell_result(run, into.target, result));
-    return;
+  return runs;
+}
+
+// The methods to compare with, made once for all runs.
+struct Rivals {
+  std::unique_ptr<TemplateMatcher> matcher;
+  std::vector<std::unique_ptr<PosePeer>> peers;
+
+  std::vector<const PosePeer*> peers_of(const ExperimentRun& run) const {
+    std::vector<const PosePeer*> used;
+    if (run.peers.empty()) return used;
+    for (const std::unique_ptr<PosePeer>& peer : peers) used.push_back(peer.get());
+    return used;
   }
-  if (!into.sweeps) into.sweeps.emplace();
-  take_sweep(run, result, *into.sweeps);
+};
+
+Rivals make_rivals(const Subject& subject, const ExperimentSettings& settings) {
+  Rivals rivals;
+  if (settings.baseline_sequences > 0)
+    rivals.matcher = std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m);
+  for (const PosePeerRow& row : peers_of(settings))
+    rivals.peers.push_back(row.make(subject.mesh, subject.swath_m));
+  return rivals;
 }
 
 }  // namespace
 
-std::uint64_t steps_of(const ExperimentSettings& settings) {
-  std::uint64_t steps = 0;
-  for (const Run& run : runs_of(settings)) steps += steps_of(run, run.sequences);
-  return steps;
+void set_replay(SubjectResult& figures, const std::string& command) {
+  for (CellResult& cell : figures.cells) cell.replay = replay_command(command, cell.condition);
+}
+
+ExperimentFigures::ExperimentFigures(const SubjectDescription& subject, const ExperimentSettings& settings)
+    : subject_(subject),
+      runs_([&] {
+        std::vector<ExperimentRun> runs = runs_of(settings);
+        for (ExperimentRun& run : runs) complete(run.scenario, run.kind, subject);
+        return runs;
+      }()),
+      figures_{subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}, {}, {}} {}
+
+void ExperimentFigures::add(std::size_t run, SequenceResult&& result) {
+  while (run_ < run) finish_run();
+  results_.push_back(std::move(result));
+}
+
+SubjectResult ExperimentFigures::finish() {
+  while (run_ < runs_.size()) finish_run();
+  return std::move(figures_);
+}
+
+void ExperimentFigures::finish_run() {
+  ExperimentRun& run = runs_[run_++];
+  run.sequences = static_cast<std::uint32_t>(results_.size());
+  const MonteCarloResult result = joined(std::move(results_), subject_.symmetry);
+  results_ = {};
+  if (std::vector<CellResult>* cells = cells_of(run.kind, figures_)) {
+    cells->push_back(cell_result(run, subject_, result));
+    return;
+  }
+  if (!figures_.sweeps) figures_.sweeps.emplace();
+  take_sweep(run, result, *figures_.sweeps);
+}
+
+void run_chosen(const Subject& subject, const ExperimentSettings& settings, const SequenceChoice& choice,
+                const std::function<void(std::size_t run, SequenceResult&&)>& take,
+                const std::function<void(std::uint64_t)>& progress) {
+  const std::vector<ExperimentRun> runs = complete_runs(subject, settings);
+  const FlashLidar lidar(observed_bodies(settings.effects, subject.target, subject.mesh));
+  const Rivals rivals = make_rivals(subject, settings);
+  std::uint64_t done = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const ExperimentRun& run = runs[i];
+    std::unique_ptr<FlashLidar> own_lidar;
+    if (run.kind == ExperimentRun::Kind::kSensor)
+      own_lidar =
+          std::make_unique<FlashLidar>(observed_bodies(run.scenario.effects, subject.target, subject.mesh));
+    const FrameRenderer renderer(own_lidar ? *own_lidar : lidar, subject.swath_m);
+    const MonteCarloSettings monte_carlo{run.scenario,           settings.seed,    run.sequences,
+                                         run.baseline_sequences, settings.threads, rivals.peers_of(run),
+                                         subject.symmetry};
+    const std::vector<std::uint32_t> indices = choice(i, run);
+    run_sequences(
+        renderer, subject.model, rivals.matcher.get(), monte_carlo, indices,
+        [&](SequenceResult&& result) { take(i, std::move(result)); },
+        [&](std::uint32_t sequences) { progress(done + steps_of(run, sequences)); });
+    done += steps_of(run, static_cast<std::uint32_t>(indices.size()));
+  }
 }
 
 SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& settings,
                              const std::function<void(std::uint64_t)>& progress) {
-  std::vector<Run> runs = runs_of(settings);
-  for (Run& run : runs) {
-    run.scenario.inertia_kg_m2 =
-        scenario_settings(run.scenario.condition, settings.frames, subject.target, subject.inertia_kg_m2)
-            .inertia_kg_m2;
-    run.scenario.sensor = subject.sensor.settings;
-    if (run.kind != Run::Kind::kSensor) run.scenario.ranges = subject.ranges;
-    run.scenario.swath_m = subject.swath_m;
-  }
-  const FlashLidar lidar(observed_bodies(settings.effects, subject.target, subject.mesh));
-  std::unique_ptr<TemplateMatcher> matcher;
-  if (settings.baseline_sequences > 0) {
-    matcher = std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m);
-  }
-  std::vector<std::unique_ptr<PosePeer>> peers;
-  std::vector<const PosePeer*> peers_run;
-  for (const PosePeerRow& row : peers_of(settings)) {
-    peers.push_back(row.make(subject.mesh, subject.swath_m));
-    peers_run.push_back(peers.back().get());
-  }
-  SubjectResult result{
-      subject.target, subject.mesh_name, subject.model_name, subject.model_crc32, {}, {}, {}, {}};
-  std::uint64_t done = 0;
-  for (const Run& run : runs) {
-    const bool with_peers = !run.peers.empty();
-    std::unique_ptr<FlashLidar> own_lidar;
-    if (run.kind == Run::Kind::kSensor)
-      own_lidar =
-          std::make_unique<FlashLidar>(observed_bodies(run.scenario.effects, subject.target, subject.mesh));
-    const FrameRenderer renderer(own_lidar ? *own_lidar : lidar, subject.swath_m);
-    const MonteCarloSettings monte_carlo{
-        run.scenario,           settings.seed,    run.sequences,
-        run.baseline_sequences, settings.threads, with_peers ? peers_run : std::vector<const PosePeer*>{},
-        subject.symmetry};
-    take(run,
-         run_monte_carlo(renderer, subject.model, matcher.get(), monte_carlo,
-                         [&](std::uint32_t sequences) { progress(done + steps_of(run, sequences)); }),
-         result);
-    done += steps_of(run, run.sequences);
-  }
-  for (auto* cells : {&result.cells, &result.disturbed, &result.sensor_runs}) {
-    for (CellResult& cell : *cells) {
-      cell.sensor = subject.sensor;
-      cell.symmetry = subject.symmetry;
-    }
-  }
-  return result;
+  ExperimentFigures figures(subject, settings);
+  const auto all = [](std::size_t, const ExperimentRun& run) {
+    std::vector<std::uint32_t> indices(run.sequences);
+    std::iota(indices.begin(), indices.end(), 0U);
+    return indices;
+  };
+  run_chosen(
+      subject, settings, all,
+      [&](std::size_t run, SequenceResult&& result) { figures.add(run, std::move(result)); }, progress);
+  return figures.finish();
 }
 
 }  // namespace tumblesight::sim

@@ -1,4 +1,5 @@
-// Experiment: the paper's tables and curves for one network on one mesh.
+// Experiment: the paper's tables and curves for one network on one mesh. Its sequences are run first, in any
+// order and in as many parts as one likes; the figures are made from their results afterwards.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,52 +9,67 @@
 #include <string>
 #include <vector>
 
+#include "sim/evaluation/experiment_runs.hpp"
 #include "sim/evaluation/results.hpp"
+#include "sim/evaluation/sequence_result.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
 
-// What is measured.
-struct Subject {
+// What the figures need to know of the subject that was measured.
+struct SubjectDescription {
   std::string target;  // key
   std::string mesh_name;
-  TriangleMesh mesh;  // rendered for the frames and for the templates of the baseline
   double swath_m = 0.0;
   std::string model_name;
   std::uint32_t model_crc32 = 0;
-  std::vector<std::uint8_t> model;               // an image that AttitudeEstimator::load accepts
   std::optional<Eigen::Matrix3d> inertia_kg_m2;  // in the TRF
   SensorDescription sensor{};                    // that sees it
   RangeLimits ranges{};                          // at which it is seen
   TargetSymmetry symmetry{};                     // of its surface
 };
 
-struct ExperimentSettings {
-  std::vector<Condition> conditions{
-      Condition::kNominal};  // one cell each; the first one is the base of the curves
-  std::uint64_t seed = 1;
-  std::uint32_t sequences = 900;
-  std::uint32_t tumbling_sequences = 900;
-  std::uint32_t frames = kFramesPerSequence;
-  Disturbances disturbances;               // of every run, those of the curves too
-  Effects effects;                         // likewise
-  std::uint32_t baseline_sequences = 100;  // per cell; 0: no baseline
-  bool peers = false;                      // run the peers of this build on the frames of the baseline
-  bool curves = false;                     // run the sweeps too
-  bool disturbed_runs = false;             // run disturbed_runs() too
-  bool sensor_runs = false;                // run sensor_runs() too, with the paper's sensor
-  int threads = 1;
+// What is measured.
+struct Subject : SubjectDescription {
+  TriangleMesh mesh;                // rendered for the frames and for the templates of the baseline
+  std::vector<std::uint8_t> model;  // an image that AttitudeEstimator::load accepts
 };
 
-// The size of an experiment in steps of about equal duration: one per frame, kStepsPerMatch per match of the
-// baseline, and kStepsPerPeer per match of a peer.
-inline constexpr std::uint64_t kStepsPerMatch = 100;
-inline constexpr std::uint64_t kStepsPerPeer = 1000;
-std::uint64_t steps_of(const ExperimentSettings& settings);
+// Sets what replays the sequences of the cells: `command` is that of the evaluation.
+void set_replay(SubjectResult& figures, const std::string& command);
 
-// Runs cell after cell. `progress`: steps done so far, out of steps_of(settings); called on the calling
-// thread. Throws std::invalid_argument if the model is refused, an inertia is missing or there are no
-// conditions, or as require_possible() and observed_bodies() do.
+// Makes the figures of an experiment from the results of its sequences.
+class ExperimentFigures {
+ public:
+  ExperimentFigures(const SubjectDescription& subject, const ExperimentSettings& settings);
+
+  // Sequences of a run, an index of runs_of(), in any order and each once. The runs in ascending order.
+  void add(std::size_t run, SequenceResult&& result);
+  // Of the sequences that were added.
+  SubjectResult finish();
+
+ private:
+  void finish_run();
+
+  const SubjectDescription subject_;
+  std::vector<ExperimentRun> runs_;
+  std::size_t run_ = 0;
+  std::vector<SequenceResult> results_;
+  SubjectResult figures_;
+};
+
+// The sequences of a run, an index of runs_of(), that are to be run.
+using SequenceChoice = std::function<std::vector<std::uint32_t>(std::size_t run, const ExperimentRun&)>;
+
+// Runs the chosen sequences, run after run, and gives each result to `take`, one at a time. `progress`: steps
+// done so far, see steps_of(); called on the calling thread. Throws std::invalid_argument if the model is
+// refused, an inertia is missing or there are no conditions, or as require_possible() and observed_bodies()
+// do.
+void run_chosen(const Subject& subject, const ExperimentSettings& settings, const SequenceChoice& choice,
+                const std::function<void(std::size_t run, SequenceResult&&)>& take,
+                const std::function<void(std::uint64_t)>& progress);
+
+// Runs all sequences and makes the figures. `progress`: steps done so far, out of steps_of(settings).
 SubjectResult run_experiment(const Subject& subject, const ExperimentSettings& settings,
                              const std::function<void(std::uint64_t)>& progress);
 

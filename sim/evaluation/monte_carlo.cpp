@@ -6,7 +6,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
-#include <optional>
+#include <numeric>
 #include <stdexcept>
 
 #include "sim/evaluation/host_estimator.hpp"
@@ -18,27 +18,17 @@ namespace {
 
 constexpr std::chrono::milliseconds kProgressPeriod{50};
 
-// What one peer made of the last frame of a sequence.
-struct PeerMatch {
-  double error_deg = 180.0;
-  bool found = false;
-  double ms = 0.0;
-};
-
 struct Job {
   const FrameRenderer& renderer;
   const std::vector<std::uint8_t>& model;
   const TemplateMatcher* matcher;
   const MonteCarloSettings& settings;
-  std::uint32_t frames;
-  std::atomic<std::uint32_t> next{0};
+  const std::vector<std::uint32_t>& indices;
+  const SequenceSink& take;
+  std::atomic<std::size_t> next{0};
   std::atomic<std::uint32_t> done{0};
-  std::vector<FrameResult> results;
-  std::vector<std::uint8_t> delivered;                              // per frame: 0 if it was lost
-  std::vector<double> network_ms;                                   // per frame
-  std::vector<double> baseline_ms;                                  // per sequence
-  std::vector<std::vector<std::optional<PeerMatch>>> peer_matches;  // per peer and sequence; none: lost frame
-  std::mutex peers_in_turn;
+  std::mutex take_in_turn{};
+  std::mutex peers_in_turn{};
 };
 
 class Stopwatch {
@@ -70,76 +60,81 @@ FrameResult frame_result(const FrameTruth& truth, const gnc::FrameOutcome& outco
   return result;
 }
 
-void run_baseline(Job& job, const gnc::RangeImage& frame, FrameResult& result) {
+void run_baseline(const Job& job, const gnc::RangeImage& frame, SequenceResult& made) {
   const Stopwatch stopwatch;
   const TemplateMatcher::Result match = job.matcher->match(frame);
-  job.baseline_ms[result.sequence] = stopwatch.ms();
-  result.has_baseline = true;
-  result.baseline_valid = match.valid;
-  result.baseline = match.q_lrf_trf;
+  made.baseline_ms = stopwatch.ms();
+  FrameResult& last = made.frames.back();
+  last.has_baseline = true;
+  last.baseline_valid = match.valid;
+  last.baseline = match.q_lrf_trf;
 }
 
-void run_peers(Job& job, const gnc::RangeImage& frame, const FrameResult& result) {
+void run_peers(Job& job, const gnc::RangeImage& frame, SequenceResult& made) {
   const std::lock_guard<std::mutex> in_turn(job.peers_in_turn);
-  for (std::size_t i = 0; i < job.peer_matches.size(); ++i) {
+  const Eigen::Quaterniond& truth = made.frames.back().truth;
+  for (const PosePeer* peer : job.settings.peers) {
     const Stopwatch stopwatch;
-    const PosePeer::Result match = job.settings.peers[i]->match(frame);
-    PeerMatch& made = job.peer_matches[i][result.sequence].emplace();
-    made.ms = stopwatch.ms();
-    made.found = match.valid;
-    const Eigen::Quaterniond found = nearest_equivalent(match.q_lrf_trf, result.truth, job.settings.symmetry);
-    if (match.valid) made.error_deg = kDegPerRad * angular_error_rad(result.truth, found);
+    const PosePeer::Result found = peer->match(frame);
+    PeerMatch match;
+    match.ms = stopwatch.ms();
+    match.found = found.valid;
+    const Eigen::Quaterniond nearest = nearest_equivalent(found.q_lrf_trf, truth, job.settings.symmetry);
+    if (found.valid) match.error_deg = kDegPerRad * angular_error_rad(truth, nearest);
+    made.peers.push_back(match);
   }
 }
 
-PeerRun peer_run(const std::vector<std::optional<PeerMatch>>& matches) {
+PeerRun peer_run(const std::vector<SequenceResult>& results, std::size_t peer) {
   PeerRun run;
   std::vector<double> times_ms;
-  for (const std::optional<PeerMatch>& match : matches) {
-    if (!match) continue;
-    run.errors_deg.push_back(match->error_deg);
-    run.found += match->found ? 1 : 0;
-    times_ms.push_back(match->ms);
+  for (const SequenceResult& result : results) {
+    if (result.peers.empty()) continue;
+    const PeerMatch& match = result.peers[peer];
+    run.errors_deg.push_back(match.error_deg);
+    run.found += match.found ? 1 : 0;
+    times_ms.push_back(match.ms);
   }
   run.ms = median(std::move(times_ms));
   return run;
 }
 
-void run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::RangeImage& frame) {
+std::vector<PeerRun> peer_runs(const std::vector<SequenceResult>& results) {
+  std::size_t peers = 0;
+  for (const SequenceResult& result : results) peers = std::max(peers, result.peers.size());
+  std::vector<PeerRun> runs;
+  for (std::size_t peer = 0; peer < peers; ++peer) runs.push_back(peer_run(results, peer));
+  return runs;
+}
+
+SequenceResult run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::RangeImage& frame) {
   const Sequence sequence = make_sequence(job.settings.scenario, job.settings.seed, index);
+  const auto frames = static_cast<std::uint32_t>(sequence.frames.size());
+  SequenceResult made;
+  made.sequence = index;
+  made.frames.reserve(frames);
+  double network_ms = 0.0;
   estimator.reset();
-  for (std::uint32_t k = 0; k < job.frames; ++k) {
+  for (std::uint32_t k = 0; k < frames; ++k) {
     const FrameTruth& truth = sequence.frames[k];
     if (truth.lost) continue;
     job.renderer.render(sequence, k, frame);
     const gnc::ChaserAttitude chaser =
         chaser_attitude(truth, frame.exposure_time_ns, !job.settings.scenario.disturbances.no_ego_motion);
-    const std::size_t place = std::size_t{index} * job.frames + k;
     const Stopwatch stopwatch;
     const gnc::FrameOutcome outcome = estimator.step(frame, chaser);
-    job.network_ms[place] = stopwatch.ms();
-    FrameResult& result = job.results[place];
-    result = frame_result(truth, outcome, job.renderer.swath_m(), job.settings.symmetry);
+    network_ms += stopwatch.ms();
+    FrameResult& result =
+        made.frames.emplace_back(frame_result(truth, outcome, job.renderer.swath_m(), job.settings.symmetry));
     result.sequence = index;
     result.frame = k;
-    job.delivered[place] = 1;
   }
-  const std::size_t last = (std::size_t{index} + 1) * job.frames - 1;
-  if (index < job.baseline_ms.size()) run_baseline(job, frame, job.results[last]);
-  if (index < job.settings.baseline_sequences && job.delivered[last] != 0)
-    run_peers(job, frame, job.results[last]);
-}
-
-void remove_lost(Job& job) {
-  std::size_t kept = 0;
-  for (std::size_t place = 0; place < job.results.size(); ++place) {
-    if (job.delivered[place] == 0) continue;
-    job.results[kept] = job.results[place];
-    job.network_ms[kept] = job.network_ms[place];
-    ++kept;
-  }
-  job.results.resize(kept);
-  job.network_ms.resize(kept);
+  if (made.frames.empty()) return made;
+  made.network_ms = network_ms / static_cast<double>(made.frames.size());
+  const bool matched = index < job.settings.baseline_sequences && !sequence.frames.back().lost;
+  if (matched && job.matcher != nullptr) run_baseline(job, frame, made);
+  if (matched) run_peers(job, frame, made);
+  return made;
 }
 
 void work(Job& job) {
@@ -148,42 +143,78 @@ void work(Job& job) {
   if (estimator.status() != gnc::ModelStatus::kOk) {
     throw std::invalid_argument("the estimator refuses the model image");
   }
-  for (std::uint32_t index = job.next++; index < job.settings.sequences; index = job.next++) {
-    run_sequence(job, index, estimator, *frame);
+  for (std::size_t place = job.next++; place < job.indices.size(); place = job.next++) {
+    SequenceResult made = run_sequence(job, job.indices[place], estimator, *frame);
+    const std::lock_guard<std::mutex> in_turn(job.take_in_turn);
+    job.take(std::move(made));
     ++job.done;
+  }
+}
+
+// A failure of one worker leaves nothing to do for the others.
+void work_or_stop(Job& job) {
+  try {
+    work(job);
+  } catch (...) {
+    job.next = job.indices.size();
+    throw;
   }
 }
 
 }  // namespace
 
-MonteCarloResult run_monte_carlo(const FrameRenderer& renderer, const std::vector<std::uint8_t>& model,
-                                 const TemplateMatcher* matcher, const MonteCarloSettings& settings,
-                                 const std::function<void(std::uint32_t)>& progress) {
+void run_sequences(const FrameRenderer& renderer, const std::vector<std::uint8_t>& model,
+                   const TemplateMatcher* matcher, const MonteCarloSettings& settings,
+                   const std::vector<std::uint32_t>& indices, const SequenceSink& take,
+                   const std::function<void(std::uint32_t)>& progress) {
   if (settings.scenario.frames < 1) throw std::invalid_argument("a sequence needs at least one frame");
-  const auto frames = static_cast<std::uint32_t>(settings.scenario.frames);
-  Job job{renderer, model, matcher, settings, frames, {}, {}, {}, {}, {}, {}, {}, {}};
-  job.results.resize(std::size_t{settings.sequences} * frames);
-  job.delivered.resize(job.results.size());
-  job.network_ms.resize(job.results.size());
-  const std::uint32_t matched = std::min(settings.baseline_sequences, settings.sequences);
-  if (matcher != nullptr) job.baseline_ms.resize(matched);
-  job.peer_matches.resize(settings.peers.size());
-  for (auto& matches : job.peer_matches) matches.resize(matched);
+  Job job{renderer, model, matcher, settings, indices, take};
   std::vector<std::future<void>> workers;
   for (int i = 0; i < std::max(1, settings.threads); ++i) {
-    workers.push_back(std::async(std::launch::async, [&job] { work(job); }));
+    workers.push_back(std::async(std::launch::async, [&job] { work_or_stop(job); }));
   }
   for (std::future<void>& worker : workers) {
     while (worker.wait_for(kProgressPeriod) != std::future_status::ready) progress(job.done);
     worker.get();
   }
   progress(job.done);
-  remove_lost(job);
-  for (FrameResult& result : job.results) take_nearest_equivalents(result, settings.symmetry);
-  std::vector<PeerRun> peers;
-  for (const auto& matches : job.peer_matches) peers.push_back(peer_run(matches));
-  return {std::move(job.results), median(std::move(job.network_ms)), median(std::move(job.baseline_ms)),
-          std::move(peers)};
+}
+
+MonteCarloResult joined(std::vector<SequenceResult> results, const TargetSymmetry& symmetry) {
+  std::sort(results.begin(), results.end(),
+            [](const SequenceResult& a, const SequenceResult& b) { return a.sequence < b.sequence; });
+  MonteCarloResult all;
+  all.peers = peer_runs(results);
+  std::vector<double> network_ms;
+  std::vector<double> baseline_ms;
+  std::size_t frames = 0;
+  for (const SequenceResult& result : results) frames += result.frames.size();
+  all.frames.reserve(frames);
+  for (SequenceResult& result : results) {
+    if (!result.frames.empty()) network_ms.push_back(result.network_ms);
+    if (result.baseline_ms > 0.0) baseline_ms.push_back(result.baseline_ms);
+    for (FrameResult& frame : result.frames) {
+      take_nearest_equivalents(frame, symmetry);
+      all.frames.push_back(frame);
+    }
+    std::vector<FrameResult>().swap(result.frames);  // a million sequences are a few gigabytes
+  }
+  all.network_ms = median(std::move(network_ms));
+  all.baseline_ms = median(std::move(baseline_ms));
+  return all;
+}
+
+MonteCarloResult run_monte_carlo(const FrameRenderer& renderer, const std::vector<std::uint8_t>& model,
+                                 const TemplateMatcher* matcher, const MonteCarloSettings& settings,
+                                 const std::function<void(std::uint32_t)>& progress) {
+  std::vector<std::uint32_t> indices(settings.sequences);
+  std::iota(indices.begin(), indices.end(), 0U);
+  std::vector<SequenceResult> results;
+  results.reserve(indices.size());
+  run_sequences(
+      renderer, model, matcher, settings, indices,
+      [&](SequenceResult&& result) { results.push_back(std::move(result)); }, progress);
+  return joined(std::move(results), settings.symmetry);
 }
 
 }  // namespace tumblesight::sim

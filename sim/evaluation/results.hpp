@@ -10,6 +10,7 @@
 #include "sim/evaluation/confusion.hpp"
 #include "sim/evaluation/curves.hpp"
 #include "sim/evaluation/paper.hpp"
+#include "sim/evaluation/rare_events.hpp"
 #include "sim/evaluation/reliability.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/sensor_description.hpp"
@@ -37,10 +38,12 @@ struct CellResult {
   TargetSymmetry symmetry;  // all errors are modulo it
   ErrorSummary rcnn;
   ErrorSummary cnn;
-  PoseSummary pose;                      // registered
-  PoseSummary pose_first;                // of the first frames
-  double never_valid_from_fifth = 0.0;   // share of the sequences without a valid frame from the fifth on
-  CommonTurn common_turn;                // of the RCNN
+  PoseSummary pose;                     // registered
+  PoseSummary pose_first;               // of the first frames
+  double never_valid_from_fifth = 0.0;  // share of the sequences without a valid frame from the fifth on
+  CommonTurn common_turn;               // of the RCNN
+  RareEvents rare;
+  std::string replay;  // the command that shows a sequence, up to its index; empty: not known
   std::optional<ErrorSummary> baseline;  // over the first sequences only, see its count
   double network_ms = 0.0;               // per frame, one thread
   double baseline_ms = 0.0;

@@ -125,7 +125,7 @@ void TomlFields::require_all_taken(const std::string& known) const {
   for (const auto& [key, value] : table_) {
     if (taken_.count(key.str()) > 0) continue;
     fail(key.str(), fmt::format("there is no key '{}'; {} has {}", full(shortened(std::string(key.str()))),
-                                path_.empty() ? "a mission" : fmt::format("[{}]", path_), known));
+                                path_.empty() ? "the file" : fmt::format("[{}]", path_), known));
   }
 }
 

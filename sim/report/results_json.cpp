@@ -60,6 +60,30 @@ Json curve_json(const Curve& curve) {
   return json;
 }
 
+Json rare_events_json(const RareEvents& events) {
+  Json json = Json::object();
+  const std::vector<RareEventRow>& table = rare_event_table();
+  for (std::size_t i = 0; i < events.counts.size(); ++i) {
+    const ShareBounds bounds = share_bounds_95(events.counts[i], events.of);
+    json[table[i].key] = {
+        {"count", events.counts[i]}, {"of", events.of}, {"low_95", bounds.low}, {"high_95", bounds.high}};
+  }
+  return json;
+}
+
+Json worst_json(const RareEvents& events) {
+  Json json = Json::array();
+  for (const WorstSequence& one : events.worst)
+    json.push_back({{"sequence", one.sequence},
+                    {"error_deg", one.error_deg},
+                    {"valid", one.valid},
+                    {"pose_deg", one.pose_deg},
+                    {"pose_verified", one.pose_verified},
+                    {"range_m", one.range_m},
+                    {"rate_deg_s", one.rate_deg_s}});
+  return json;
+}
+
 Json row_json(const Results& results, const SubjectResult& subject, const CellResult& cell) {
   const PaperFigures paper = paper_figures(subject.target, cell);
   Json json{{"target", subject.target},
@@ -80,7 +104,9 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
             {"paper_rcnn", figure_json(paper.rcnn)},
             {"paper_cnn", figure_json(paper.cnn)},
             {"goal", goal_json(pose_goal(subject.target, cell))},
-            {"confusion", confusion_json(cell.rcnn_confusion)}};
+            {"confusion", confusion_json(cell.rcnn_confusion)},
+            {"rare_events", rare_events_json(cell.rare)},
+            {"worst", worst_json(cell.rare)}};
   if (!cell.symmetry.is_none()) json["symmetry"] = to_string(cell.symmetry);
   if (is_mostly_wrong(cell)) json["mostly_wrong"] = true;
   if (!cell.peers.empty()) json["peers"] = peers_json(cell);

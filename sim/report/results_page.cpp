@@ -50,6 +50,29 @@ std::string goals_html(const DataTable& table) {
   return "<div style=\"overflow-x:auto\">" + html_text(table, "results") + "</div>\n";
 }
 
+// The rates of what must not happen, and the sequences in which it did or nearly did.
+std::string rare_events_section(const Results& results) {
+  std::string text = "<h2>Rare events</h2>\n";
+  for (const SubjectResult& subject : results.subjects) {
+    if (results.subjects.size() > 1) text += "<h3>" + escape_markup(title_of(subject)) + "</h3>\n";
+    text += "<div style=\"overflow-x:auto\">" + html_text(rare_events_table(subject), "results") + "</div>\n";
+    for (const CellResult* cell : all_cells(subject)) {
+      text += fmt::format("<details><summary>Worst sequences, {}</summary>\n{}",
+                          escape_markup(run_name(*cell)), html_text(worst_sequences_table(*cell), "results"));
+      if (!cell->replay.empty() && !cell->rare.worst.empty())
+        text += fmt::format("<p class=sub>To see the worst: <code>{}{}</code></p>\n",
+                            escape_markup(cell->replay), cell->rare.worst.front().sequence);
+      text += "</details>\n";
+    }
+  }
+  return text +
+         "<p class=sub>Last frames that went wrong, of all last frames, with exact (Clopper-Pearson) bounds: "
+         "the "
+         "true rate is above the lower one with probability 97.5 %, and below the upper one likewise. Worst: "
+         "by "
+         "the error of the network's attitude.</p>\n";
+}
+
 // Nothing without runs that have a goal.
 std::string goals_section(const Results& results) {
   std::string text;
@@ -244,7 +267,8 @@ std::string results_page(const Results& results) {
   if (!symmetries.empty())
     body += fmt::format("<p class=sub>Errors modulo the symmetry of the target: {}.</p>\n", symmetries);
   body += notes_section(results.notes);
-  body += overview_section(results) + goals_section(results) + poses_section(results);
+  body += overview_section(results) + goals_section(results) + poses_section(results) +
+          rare_events_section(results);
   for (const SubjectResult& subject : results.subjects) {
     if (has_chapter(results, subject)) body += chapter(results, subject);
   }

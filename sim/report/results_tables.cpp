@@ -54,6 +54,9 @@ std::string name_of(const CellResult& cell) {
 }
 
 // "-" where the figure does not exist.
+std::string text_or_dash(double value, std::string (*text)(double)) {
+  return std::isnan(value) ? "-" : text(value);
+}
 std::string ratio_text(double ratio) {
   return std::isnan(ratio) ? "-" : fmt::format("{:.2f}", ratio);
 }
@@ -150,12 +153,64 @@ DataTable poses_table(const std::vector<NamedPoses>& poses) {
 
 DataTable poses_table(const SubjectResult& subject) {
   std::vector<NamedPoses> poses;
-  for (const CellResult& cell : subject.cells) {
-    const std::string other = differences_from_paper(cell);
-    poses.push_back(
-        {to_string(cell.condition) + (other.empty() ? "" : ", ") + other, cell.pose_first, cell.pose});
-  }
+  for (const CellResult& cell : subject.cells) poses.push_back({run_name(cell), cell.pose_first, cell.pose});
   return poses_table(poses);
+}
+
+std::string run_name(const CellResult& cell) {
+  std::string name = to_string(cell.condition);
+  for (const std::string& other : {differences_from_paper(cell), to_string(cell.disturbances)})
+    if (!other.empty()) name += ", " + other;
+  return name;
+}
+
+std::vector<const CellResult*> all_cells(const SubjectResult& subject) {
+  std::vector<const CellResult*> all;
+  for (const auto* cells : {&subject.cells, &subject.disturbed, &subject.sensor_runs})
+    for (const CellResult& cell : *cells) all.push_back(&cell);
+  return all;
+}
+
+DataTable accuracy_table(const SubjectResult& subject) {
+  DataTable table{{"last frame", "sequences", "attitude, mean", "within 20°", "pose, mean within 20°",
+                   "verified", "inside 95 %"},
+                  {}};
+  for (const CellResult* cell : all_cells(subject)) {
+    table.rows.push_back({{run_name(*cell)},
+                          {std::to_string(cell->rcnn.count)},
+                          {degrees_text(cell->rcnn.mean_deg)},
+                          {percent_text(cell->rcnn.within_20deg)},
+                          {text_or_dash(cell->pose.mean_within_20_deg, degrees_text)},
+                          {text_or_dash(cell->pose.verified, percent_text)},
+                          {text_or_dash(cell->pose.inside_95, percent_text)}});
+  }
+  return table;
+}
+
+DataTable rare_events_table(const SubjectResult& subject) {
+  DataTable table{{"last frame, 95 % bounds", "of"}, {}};
+  for (const RareEventRow& row : rare_event_table()) table.header.emplace_back(row.name);
+  for (const CellResult* cell : all_cells(subject)) {
+    Cells line{{run_name(*cell)}, {std::to_string(cell->rare.of)}};
+    for (const std::size_t count : cell->rare.counts) line.push_back({count_text(count, cell->rare.of)});
+    table.rows.push_back(line);
+  }
+  return table;
+}
+
+DataTable worst_sequences_table(const CellResult& cell) {
+  DataTable table{{"sequence", "attitude off", "valid", "pose off", "verified", "range [m]", "rate [deg/s]"},
+                  {}};
+  for (const WorstSequence& one : cell.rare.worst) {
+    table.rows.push_back({{std::to_string(one.sequence)},
+                          {degrees_text(one.error_deg)},
+                          {one.valid ? "yes" : "no"},
+                          {degrees_text(one.pose_deg)},
+                          {one.pose_verified ? "yes" : "no"},
+                          {fmt::format("{:.1f}", one.range_m)},
+                          {fmt::format("{:.1f}", one.rate_deg_s)}});
+  }
+  return table;
 }
 
 DataTable by_frame_table(const Curve& by_frame) {

@@ -39,6 +39,17 @@ DataTable poses_table(const std::vector<NamedPoses>& poses);
 // The same for the conditions of a subject.
 DataTable poses_table(const SubjectResult& subject);
 
+// All runs of a subject: cells, disturbed runs, runs with effects.
+std::vector<const CellResult*> all_cells(const SubjectResult& subject);
+// "nominal, noise=2, lost-frames 1"
+std::string run_name(const CellResult& cell);
+// Network and pose in the last frame, a line per run.
+DataTable accuracy_table(const SubjectResult& subject);
+// How often the last frame goes wrong, with bounds: a line per run.
+DataTable rare_events_table(const SubjectResult& subject);
+// The worst sequences of a run, a line each, with what replays them.
+DataTable worst_sequences_table(const CellResult& cell);
+
 // Mean and median of RCNN and CNN, a column per frame; of more than ten frames a selection that ends with the
 // last.
 DataTable by_frame_table(const Curve& by_frame);

@@ -44,7 +44,8 @@ struct SilRunSetup : FlightSetup {
   std::string mesh_name;
   std::string condition;
   std::uint32_t sequences = 0;
-  std::uint32_t frames = 0;  // per sequence
+  std::vector<std::uint32_t> only;  // their indices; empty: from 0
+  std::uint32_t frames = 0;         // per sequence
   std::uint64_t seed = 0;
   Disturbances disturbances;
   Effects effects;

@@ -1,6 +1,7 @@
 #include "sim/report/sil_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -37,6 +38,11 @@ double swath_m_of(const FlightSetup& setup) {
   return 1e-3 * setup.projection.swath_mm;
 }
 
+std::string indices_text(const SilRunSetup& setup) {
+  if (setup.only.empty()) return fmt::format("0 to {}", setup.sequences - 1);
+  return fmt::format("{}", fmt::join(setup.only, ", "));
+}
+
 FactList settings_facts(const SilRunSetup& setup) {
   const std::string disturbed = to_string(setup.disturbances);
   const std::string effects = to_string(setup.effects);
@@ -50,6 +56,7 @@ FactList settings_facts(const SilRunSetup& setup) {
                 {"sensor", setup.sensor.name},
                 {"ranges", to_string(setup.ranges)},
                 {"seed", fmt::format("{}", setup.seed)},
+                {"indices of the sequences", indices_text(setup)},
                 {"speed", setup.speed > 0.0 ? fmt::format("{:g} × real time", setup.speed) : "max"},
                 {"time", setup.free_running ? "free-running" : "lockstep"},
                 {"swath", fmt::format("{:.2f} m", swath_m_of(setup))}};
@@ -315,6 +322,7 @@ nlohmann::ordered_json run_json(const SilRunSetup& setup, const SilRunResult& ru
   const std::vector<FrameResult> results = frame_results(run, swath_m_of(setup), setup.symmetry);
   nlohmann::ordered_json json{
       {"target", setup.target}, {"condition", setup.condition}, {"sequences", setup.sequences}};
+  if (!setup.only.empty()) json["only"] = setup.only;
   json["disturbances"] = disturbances_json(setup.disturbances);
   json["effect"] = effect_json(setup.effects);
   if (!setup.sensor.is_the_papers()) json["sensor"] = sensor_json(setup.sensor);

@@ -1,110 +1,24 @@
 #include "sim/sil/flight_process.hpp"
 
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
-#include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <thread>
+#include <stdexcept>
 
 #include "hal/dds/idl/flight_end.hpp"
 #include "sim/sil/failure.hpp"
 
-extern char** environ;
-
 namespace tumblesight::sim {
-namespace {
-
-constexpr double kGrace_s = 2.0;
-
-class SpawnActions {
- public:
-  SpawnActions(const std::string& log_path, int inherited_file) {
-    posix_spawn_file_actions_init(&actions_);
-    // dup2 onto itself clears the close-on-exec flag.
-    if (inherited_file >= 0) posix_spawn_file_actions_adddup2(&actions_, inherited_file, inherited_file);
-    if (log_path.empty()) return;
-    posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                     0644);
-    posix_spawn_file_actions_adddup2(&actions_, STDERR_FILENO, STDOUT_FILENO);
-  }
-  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
-  SpawnActions(const SpawnActions&) = delete;
-  SpawnActions& operator=(const SpawnActions&) = delete;
-  const posix_spawn_file_actions_t* get() const { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_;
-};
-
-// The additional entries come first: of two entries with one name the first one counts.
-std::vector<char*> with_our_environment(const std::vector<std::string>& additional) {
-  std::vector<char*> entries;
-  for (const std::string& entry : additional) entries.push_back(const_cast<char*>(entry.c_str()));
-  for (char** entry = environ; *entry != nullptr; ++entry) entries.push_back(*entry);
-  entries.push_back(nullptr);
-  return entries;
-}
-
-}  // namespace
 
 FlightProcess::FlightProcess(const std::string& program, const std::vector<std::string>& arguments,
                              const std::string& log_path, int inherited_file,
-                             const std::vector<std::string>& environment) {
-  std::vector<char*> argv{const_cast<char*>(program.c_str())};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  const SpawnActions actions(log_path, inherited_file);
-  const int error = posix_spawn(&pid_, program.c_str(), actions.get(), nullptr, argv.data(),
-                                with_our_environment(environment).data());
-  if (error != 0)
-    throw SilFailure("the flight program " + program + " cannot be started: " + strerror(error));
-}
-
-FlightProcess::~FlightProcess() {
-  if (!running()) return;
-  kill(pid_, SIGTERM);
-  if (wait_for_end(kGrace_s)) return;
-  kill(pid_, SIGKILL);
-  waitpid(pid_, nullptr, 0);
-}
-
-bool FlightProcess::running() {
-  if (ended_) return false;
-  const pid_t result = waitpid(pid_, &status_, WNOHANG);
-  ended_ = result != 0;
-  // A parent that ignores SIGCHLD gets no exit status.
-  status_lost_ = result < 0;
-  return !ended_;
-}
-
-bool FlightProcess::wait_for_end(double timeout_s) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
-  while (running() && std::chrono::steady_clock::now() < end)
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  return ended_;
-}
-
-bool FlightProcess::ended_well() const {
-  return exit_status() == 0;
-}
-
-int FlightProcess::exit_status() const {
-  return ended_ && !status_lost_ && WIFEXITED(status_) ? WEXITSTATUS(status_) : -1;
+                             const std::vector<std::string>& environment) try
+    : ChildProcess(program, arguments, log_path, inherited_file, environment) {
+} catch (const std::runtime_error& error) {
+  throw SilFailure(std::string("the flight program ") + error.what());
 }
 
 std::string FlightProcess::how_it_ended() const {
-  if (status_lost_) return "ended, but its exit status is lost (is SIGCHLD ignored?)";
-  if (WIFSIGNALED(status_)) {
-    const int signal = WTERMSIG(status_);
-    return "was ended by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
-  }
-  const int status = WEXITSTATUS(status_);
-  return "ended with exit status " + std::to_string(status) + ": " +
-         hal::dds::to_string(static_cast<hal::dds::FlightEnd>(status));
+  const int status = exit_status();
+  if (status < 0) return ChildProcess::how_it_ended();
+  return ChildProcess::how_it_ended() + ": " + hal::dds::to_string(static_cast<hal::dds::FlightEnd>(status));
 }
 
 }  // namespace tumblesight::sim

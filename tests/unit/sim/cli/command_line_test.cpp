@@ -47,13 +47,14 @@ INSTANTIATE_TEST_SUITE_P(
     Evaluate, BadArguments,
     ::testing::Values(
         Refusal{"", 2, "subcommand is required"}, Refusal{"fly", 2, "no subcommand 'fly'"},
-        Refusal{"evaluate --sequences 0", 2, "--sequences: must be a whole number from 1 to 100000, not '0'"},
+        Refusal{"evaluate --sequences 0", 2,
+                "--sequences: must be a whole number from 1 to 10000000, not '0'"},
         Refusal{"evaluate --sequences 2.5", 2, "not '2.5'"},
         Refusal{"evaluate --sequences 010", 2, "without leading zeros, not '010'"},
         Refusal{"evaluate --sequences 0x10", 2, "not '0x10'"}, Refusal{"evaluate --frames 08", 2, "not '08'"},
         Refusal{"evaluate --seed 007", 2, "not '007'"}, Refusal{"evaluate --threads 02", 2, "not '02'"},
         Refusal{"evaluate --sequences 100000 --frames 11", 2,
-                "1100000 frames in all; a run has at most 1000000"},
+                "1100000 frames in all; a run has at most 1000000; divide it into parts with --shard"},
         Refusal{"evaluate --sequences", 2, "--sequences"},
         Refusal{"evaluate --frames 1001", 2, "from 1 to 1000"}, Refusal{"evaluate --seed -1", 2, "not '-1'"},
         Refusal{"evaluate --threads 9999", 2, "from 0 to 1024"},
@@ -214,7 +215,7 @@ TEST(Help, NamesTheLimitsOfTheDisturbances) {
     for (const char* part :
          {"are lost (0 to 999)", "before the last (2 to 999)", "probability X (0 to 1)", "times (0 to 998)",
           "means these (1 to 1000)", "in seconds (0.1 to 60)", "uniformly (0 to 0.9)", "around it (0 to 20)",
-          "sequences to run (1 to 100000)"}) {
+          "sequences to run (1 to 100000"}) {
       EXPECT_NE(help.find(part), std::string::npos) << part << " in: " << help;
     }
   }

@@ -130,7 +130,7 @@ TEST_F(MissionFile, WhatIsWrongIsNamedWithLineLimitsAndRemedy) {
       {with("[goals.nominal]\nverified = 2\n"), {"goals.nominal.verified is 2", "from 0 to 1"}},
       {with("accept = [\"orgin\"]\n"), {"accept", "unit, up, origin"}},
       {with("largest_rate_deg_s = 0\n"), {"largest_rate_deg_s is 0", "from 0.1 to 20"}},
-      {with("inertias = [1]\n"), {"line 3", "no key 'inertias'", "a mission has name, title"}},
+      {with("inertias = [1]\n"), {"line 3", "no key 'inertias'", "the file has name, title"}},
       {with("name = 3"), {"craft.toml, line 3"}},
       {"name = \"craft\"\nmesh = \"parametric\"\nup = \"z\"\n", {"up is for mesh files"}},
   };

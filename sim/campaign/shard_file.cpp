@@ -1,0 +1,261 @@
+#include "sim/campaign/shard_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "gnc/numerics/crc.hpp"
+#include "sim/campaign/sequence_record.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr char kMagic[] = "tumblesight shard 1\n";
+constexpr std::size_t kMagicBytes = sizeof kMagic - 1;
+constexpr std::size_t kCrcBytes = 4;
+constexpr std::size_t kMostHeaderBytes = 1 << 16;
+
+std::uint32_t crc_of(const std::string& text) {
+  return gnc::crc32(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+}
+
+std::string header_text(const ShardHeader& header) {
+  Json json{{"shard", to_string(header.shard)}, {"command", header.command}, {"commit", header.commit}};
+  json["evaluation"] = to_json(header.identity);
+  return json.dump();
+}
+
+std::string header_bytes(const ShardHeader& header) {
+  const std::string text = header_text(header);
+  const std::uint32_t crc = crc_of(text);
+  std::string bytes = kMagic + text + "\n";
+  bytes.append(reinterpret_cast<const char*>(&crc), kCrcBytes);
+  return bytes;
+}
+
+ShardHeader header_from(const std::string& text) {
+  const Json json = Json::parse(text);
+  return {identity_from(json.at("evaluation")), shard_from(json.at("shard").get<std::string>()),
+          json.at("command").get<std::string>(), json.at("commit").get<std::string>()};
+}
+
+[[noreturn]] void fail(const std::string& path, const std::string& what) {
+  throw std::runtime_error(fmt::format("shard file '{}': {}", path, what));
+}
+
+// Leaves `file` behind the header.
+ShardHeader read_header(const std::string& path, std::ifstream& file) {
+  constexpr char kRemedy[] =
+      "it is no shard file, or its beginning is damaged; shard files are made by "
+      "`tumblesight evaluate --shard I/N --shard-file FILE`";
+  std::string magic(kMagicBytes, '\0');
+  if (!file.read(magic.data(), kMagicBytes) || magic != kMagic) fail(path, kRemedy);
+  std::string text;
+  std::uint32_t crc = 0;
+  for (char c = 0; text.size() < kMostHeaderBytes && file.get(c) && c != '\n';) text += c;
+  if (!file.read(reinterpret_cast<char*>(&crc), kCrcBytes) || crc != crc_of(text)) fail(path, kRemedy);
+  try {
+    return header_from(text);
+  } catch (const std::exception& error) {
+    fail(path, fmt::format("its header is of another version of tumblesight: {}", error.what()));
+  }
+}
+
+std::vector<std::uint32_t> frames_of(const std::vector<ExperimentRun>& runs) {
+  std::vector<std::uint32_t> frames;
+  for (const ExperimentRun& run : runs) frames.push_back(static_cast<std::uint32_t>(run.scenario.frames));
+  return frames;
+}
+
+// Record after record, until the end or something that is none.
+class Records {
+ public:
+  Records(const std::string& path, std::vector<std::uint32_t> frames)
+      : file_(path, std::ios::binary), frames_(std::move(frames)) {}
+
+  std::ifstream& file() { return file_; }
+  std::uint32_t run() const { return run_of_record(bytes_.data()); }
+  std::optional<SequenceResult> next() {
+    bytes_.resize(sizeof(std::uint32_t));
+    if (!read(0)) return std::nullopt;
+    if (run() >= frames_.size()) return std::nullopt;
+    bytes_.resize(record_size_bytes(frames_[run()]));
+    if (!read(sizeof(std::uint32_t))) return std::nullopt;
+    return from_record(bytes_.data(), frames_[run()]);
+  }
+
+ private:
+  bool read(std::size_t from) {
+    return static_cast<bool>(file_.read(reinterpret_cast<char*>(bytes_.data() + from),
+                                        static_cast<std::streamsize>(bytes_.size() - from)));
+  }
+
+  std::ifstream file_;
+  std::vector<std::uint32_t> frames_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace
+
+std::string to_string(const Shard& shard) {
+  return fmt::format("{}/{}", shard.index, shard.count);
+}
+
+Shard shard_from(const std::string& text) {
+  const auto refuse = [&] {
+    throw std::invalid_argument(fmt::format(
+        "'{}' is no part I/N of the sequences: N is a whole number from 1 to {}, I from 0 to N - 1", text,
+        kMostShards));
+  };
+  const std::size_t slash = text.find('/');
+  const auto number = [&](const std::string& digits) {
+    const bool is_number =
+        !digits.empty() && digits.size() <= 7 &&
+        std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (!is_number) refuse();
+    return static_cast<std::uint32_t>(std::stoul(digits));
+  };
+  if (slash == std::string::npos) refuse();
+  const Shard shard{number(text.substr(0, slash)), number(text.substr(slash + 1))};
+  if (shard.count > kMostShards || shard.index >= shard.count) refuse();
+  return shard;
+}
+
+std::vector<std::uint32_t> sequences_of(const Shard& shard, std::uint32_t sequences) {
+  std::vector<std::uint32_t> indices;
+  for (std::uint32_t i = shard.index; i < sequences; i += shard.count) indices.push_back(i);
+  return indices;
+}
+
+ShardWriter::ShardWriter(const std::string& path, const ShardHeader& header)
+    : path_(path), runs_(runs_of(header.identity.settings)), done_(runs_.size()) {
+  take_file();
+  try {
+    if (std::filesystem::file_size(path_) == 0)
+      start_file(header);
+    else
+      continue_file(header);
+  } catch (...) {
+    close(file_);
+    throw;
+  }
+}
+
+ShardWriter::~ShardWriter() {
+  close(file_);
+}
+
+void ShardWriter::take_file() {
+  const std::filesystem::path parent = std::filesystem::path(path_).parent_path();
+  if (!parent.empty()) std::filesystem::create_directories(parent);
+  file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (file_ < 0) fail(path_, fmt::format("cannot be written: {}", std::strerror(errno)));
+  if (flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+  const bool taken = errno == EWOULDBLOCK;
+  const std::string reason = std::strerror(errno);
+  close(file_);
+  if (taken)
+    throw ShardInUse(
+        fmt::format("shard file '{}': another process is writing it; wait until it ends, or end it", path_));
+  fail(path_, reason);
+}
+
+void ShardWriter::start_file(const ShardHeader& header) {
+  const std::string bytes = header_bytes(header);
+  if (write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+    fail(path_, fmt::format("cannot be written: {}", std::strerror(errno)));
+}
+
+void ShardWriter::continue_file(const ShardHeader& header) {
+  ShardContent content = read_shard(path_);
+  std::string differs = difference(content.header.identity, header.identity);
+  if (differs.empty() && to_string(content.header.shard) != to_string(header.shard))
+    differs = fmt::format("shard is {}, not {}", to_string(content.header.shard), to_string(header.shard));
+  if (!differs.empty())
+    fail(path_, fmt::format("it is of another run: {}; name another file, or delete this one", differs));
+  if (ftruncate(file_, static_cast<off_t>(content.size_bytes)) != 0)
+    fail(path_, fmt::format("cannot be cut to its whole records: {}", std::strerror(errno)));
+  done_ = std::move(content.done);
+  dropped_bytes_ = content.dropped_bytes;
+}
+
+void ShardWriter::append(std::size_t run, const SequenceResult& result) {
+  const auto frames = static_cast<std::uint32_t>(runs_[run].scenario.frames);
+  const std::vector<std::uint8_t> bytes = to_record(static_cast<std::uint32_t>(run), result, frames);
+  if (write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+    fail(path_, fmt::format("cannot be written: {}; free space, then run the same command again: it goes on "
+                            "where it stopped",
+                            std::strerror(errno)));
+}
+
+void ShardWriter::finish() {
+  if (fsync(file_) != 0) fail(path_, fmt::format("cannot be written: {}", std::strerror(errno)));
+}
+
+ShardContent read_shard(const std::string& path) {
+  std::ifstream probe(path, std::ios::binary);
+  if (!probe || std::filesystem::is_directory(path))
+    fail(path, fmt::format("cannot be read: {}", std::strerror(errno != 0 ? errno : EISDIR)));
+  ShardContent content;
+  content.header = read_header(path, probe);
+  const std::vector<ExperimentRun> runs = runs_of(content.header.identity.settings);
+  content.done.resize(runs.size());
+  content.size_bytes = static_cast<std::uint64_t>(probe.tellg());
+  Records records(path, frames_of(runs));
+  records.file().seekg(static_cast<std::streamoff>(content.size_bytes));
+  while (const std::optional<SequenceResult> result = records.next()) {
+    content.done[records.run()].insert(result->sequence);
+    content.size_bytes = static_cast<std::uint64_t>(records.file().tellg());
+  }
+  content.dropped_bytes = std::filesystem::file_size(path) - content.size_bytes;
+  return content;
+}
+
+void read_run(const std::string& path, const ShardContent& content, std::size_t run,
+              const std::function<void(SequenceResult&&)>& take) {
+  Records records(path, frames_of(runs_of(content.header.identity.settings)));
+  (void)read_header(path, records.file());
+  std::size_t left = content.done[run].size();
+  while (left > 0) {
+    std::optional<SequenceResult> result = records.next();
+    if (!result) fail(path, "it has changed while it was read");
+    if (records.run() != run) continue;
+    take(std::move(*result));
+    --left;
+  }
+}
+
+std::uint64_t records_in(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t size_bytes = std::filesystem::file_size(path, error);
+  std::ifstream file(path, std::ios::binary);
+  if (error || !file) return 0;
+  try {
+    const ShardHeader header = read_header(path, file);
+    const auto start_bytes = static_cast<std::uintmax_t>(file.tellg());
+    return (size_bytes - start_bytes) / record_size_bytes(header.identity.settings.frames);
+  } catch (const std::runtime_error&) {
+    return 0;  // just begun, or no shard file: whoever opens it says so
+  }
+}
+
+bool is_in_use(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool taken = flock(file, LOCK_EX | LOCK_NB) != 0;
+  close(file);
+  return taken;
+}
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,36 @@
+// Shards: an evaluation run in parts, and the parts put together again. The figures are those of one process,
+// bit for bit, whatever the number of parts and whatever their order.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim/campaign/shard_file.hpp"
+
+namespace tumblesight::sim {
+
+// Steps of the sequences of a shard, see steps_of(), out of which run_shard() counts.
+std::uint64_t steps_of(const ExperimentSettings& settings, const Shard& shard);
+
+// Runs the sequences of the shard that `file` does not hold yet. `progress`: steps done, of the whole shard.
+// Throws as run_chosen() and ShardWriter do.
+void run_shard(const Subject& subject, const ExperimentSettings& settings, const Shard& shard,
+               ShardWriter& file, const std::function<void(std::uint64_t)>& progress);
+
+// Of one evaluation.
+struct MergedShards {
+  ExperimentIdentity identity;
+  std::string command;             // of the evaluation in one process
+  std::vector<std::string> notes;  // what a reader of the figures has to know
+  SubjectResult figures;
+};
+
+// kPartial: figures of the sequences that there are, with a note of how many are missing.
+enum class MergeMode { kComplete, kPartial };
+
+// Throws std::runtime_error that names the files and the remedy if one cannot be read or is no shard file, if
+// they are of different evaluations, if a sequence is in two of them, or, but for kPartial, in none.
+MergedShards merge_shards(const std::vector<std::string>& paths, MergeMode mode = MergeMode::kComplete);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,347 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <thread>
+
+#include "sim/campaign/campaign_results.hpp"
+#include "sim/campaign/campaign_worker.hpp"
+#include "sim/campaign/launcher.hpp"
+#include "sim/cli/evaluate_arguments.hpp"
+#include "sim/cli/evaluation_output.hpp"
+#include "sim/cli/exit_status.hpp"
+#include "sim/cli/verbs.hpp"
+#include "sim/report/results_files.hpp"
+#include "sim/report/results_tables.hpp"
+#include "sim/terminal/progress.hpp"
+#include "sim/terminal/text.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds kLook{1};  // between two looks at the shard files
+
+struct CampaignArguments {
+  std::string file;
+  std::string out;  // empty: the file's path without its extension
+  std::string on = "local";
+  std::uint32_t jobs = 0;
+  std::string options;
+  bool no_wait = false;
+  bool dry_run = false;
+  bool partial = false;
+  std::string part;
+  bool supervised = false;
+  std::string command_line;
+};
+
+// A campaign and where it stands.
+struct OpenCampaign {
+  Campaign campaign;
+  std::string out;
+  std::vector<CampaignTask> tasks;
+
+  std::uint64_t sequences() const {
+    std::uint64_t all = 0;
+    for (const CampaignTask& task : tasks) all += task.sequences;
+    return all;
+  }
+};
+
+// Paths in the file are relative to its folder, so that is where we go.
+OpenCampaign open_campaign(const CampaignArguments& arguments) {
+  OpenCampaign open{read_campaign(arguments.file), {}, {}};
+  const fs::path beside = fs::path(open.campaign.folder) / open.campaign.name;
+  open.out = arguments.out.empty() ? beside.string() : full_path(arguments.out);
+  open.tasks = tasks_of(open.campaign, open.out);
+  fs::current_path(open.campaign.folder);
+  return open;
+}
+
+std::string joined_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += " " + word;
+  return text;
+}
+
+EvaluateArguments arguments_of(const OpenCampaign& open, const CampaignTask& task) {
+  EvaluateArguments arguments = parsed_evaluate(options_of(open.campaign, task));
+  arguments.command_line =
+      "tumblesight evaluate --no-baseline" + joined_words(open.campaign.runs[task.run].options);
+  arguments.quiet = true;
+  return arguments;
+}
+
+// Every run, before the first one starts.
+void check(const OpenCampaign& open) {
+  ProgressBar bar("checking", "runs", open.campaign.runs.size());
+  std::vector<bool> seen(open.campaign.runs.size());
+  std::size_t done = 0;
+  for (const CampaignTask& task : open.tasks) {
+    if (seen[task.run]) continue;
+    seen[task.run] = true;
+    const CampaignRun& run = open.campaign.runs[task.run];
+    try {
+      const EvaluateArguments arguments = arguments_of(open, task);
+      (void)checked_subject(arguments, checked_settings(arguments));
+    } catch (const std::exception& error) {
+      throw std::invalid_argument(
+          fmt::format("{}, line {}: run {}: {}", open.campaign.file, run.line, run.name, error.what()));
+    }
+    bar.update(++done);
+  }
+  bar.finish();
+}
+
+void print_state(const OpenCampaign& open) {
+  DataTable table{{"run", "sequences", "tasks", "done"}, {}};
+  for (std::size_t i = 0; i < open.campaign.runs.size(); ++i) {
+    std::uint64_t done = 0;
+    std::size_t tasks = 0;
+    for (const CampaignTask& task : open.tasks) {
+      if (task.run != i) continue;
+      ++tasks;
+      done += sequences_done(task);
+    }
+    const CampaignRun& run = open.campaign.runs[i];
+    table.rows.push_back({{run.name},
+                          {std::to_string(run.sequences)},
+                          {std::to_string(tasks)},
+                          {fmt::format("{:.1f} %", 100.0 * static_cast<double>(done) / run.sequences)}});
+  }
+  fmt::print("\n{}\n  {} of {} in {}, folder {}\n\n", terminal_text(table), sequences_done(open.tasks),
+             counted(open.sequences(), "sequence"), counted(open.tasks.size(), "task"), open.out);
+  std::fflush(stdout);
+}
+
+void report(const CampaignArguments& arguments, const OpenCampaign& open) {
+  ProgressBar bar("merging", "runs", open.campaign.runs.size());
+  const MergeMode mode = arguments.partial ? MergeMode::kPartial : MergeMode::kComplete;
+  Results results =
+      campaign_results(open.campaign, open.tasks, mode, [&](std::size_t done) { bar.update(done); });
+  bar.finish();
+  if (results.subjects.empty())
+    throw std::runtime_error(fmt::format("campaign '{}': no sequence is done yet", open.campaign.name));
+  results.command = arguments.command_line;
+  results.generated = local_time_text();
+  for (const std::string& note : results.notes) fmt::print(stderr, "  note: {}\n", note);
+  print_campaign(results);
+  write_results_files(open.out, results);
+  fmt::print("  report               {}\n\n", full_path(open.out + "/report.html"));
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+std::unique_ptr<Launcher> launch(const CampaignArguments& arguments, const OpenCampaign& open) {
+  LaunchSettings settings;
+  settings.program = fs::read_symlink("/proc/self/exe").string();
+  settings.campaign = open.campaign;
+  settings.out = open.out;
+  settings.jobs = arguments.jobs;
+  settings.options = words_of(arguments.options);
+  settings.tasks = open.tasks;
+  fs::create_directories(log_folder(settings));
+  for (const LauncherRow& row : launcher_table())
+    if (arguments.on == row.name) return row.launch(settings);
+  throw std::logic_error("no such launcher");  // the option knows the names
+}
+
+// Until the work is done, or goes on no longer. The shard files tell how far it is.
+void follow(const OpenCampaign& open, Launcher& launcher) {
+  ProgressBar bar(open.campaign.name, "sequences", open.sequences(), stderr, sequences_done(open.tasks));
+  bool running = true;
+  while (running) {
+    std::this_thread::sleep_for(kLook);
+    running = launcher.running();
+    bar.update(sequences_done(open.tasks));
+  }
+  bar.finish();
+}
+
+void require_all_done(const OpenCampaign& open, const Launcher& launcher) {
+  const std::vector<std::size_t> left = tasks_left(open.tasks);
+  if (left.empty()) return;
+  throw std::runtime_error(
+      fmt::format("campaign '{}': {} of {} are not done, the first: {}. {}{}Run the same command again: it "
+                  "goes on where it "
+                  "stopped",
+                  open.campaign.name, left.size(), counted(open.tasks.size(), "task"),
+                  name_of(open.campaign, open.tasks[left.front()]), launcher.fault(),
+                  launcher.fault().empty() ? "" : ". "));
+}
+
+void run(const CampaignArguments& arguments) {
+  const OpenCampaign open = open_campaign(arguments);
+  check(open);
+  print_state(open);
+  if (arguments.dry_run) return;
+  if (!tasks_left(open.tasks).empty()) {
+    const std::unique_ptr<Launcher> launcher = launch(arguments, open);
+    fmt::print("  started              {}\n", launcher->started());
+    if (arguments.no_wait) return;
+    fmt::print("  Ctrl-C               {}\n\n",
+               launcher->outlives_us() ? "ends only the progress bar; the jobs go on"
+                                       : "stops the work; the same command goes on where it stopped");
+    std::fflush(stdout);
+    follow(open, *launcher);
+    require_all_done(open, *launcher);
+  }
+  report(arguments, open);
+}
+
+// Nothing of a worker is left when its starter is gone.
+void end_with_starter() {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+}
+
+void work(const CampaignArguments& arguments) {
+  if (arguments.supervised) end_with_starter();
+  const OpenCampaign open = open_campaign(arguments);
+  const std::optional<Shard> part =
+      arguments.part.empty() ? std::nullopt : std::optional<Shard>(shard_from(arguments.part));
+  const WorkerOutcome outcome = work(
+      open.campaign, open.tasks, part,
+      [&](const CampaignTask& task) { evaluate_shard(arguments_of(open, task)); },
+      [](const std::string& text) {
+        fmt::print("  {}\n", text);
+        std::fflush(stdout);
+      });
+  fmt::print("  {}, {} failed\n", counted(outcome.done, "task") + " done", outcome.failures.size());
+  // Whoever started us finds what is not done, and mpirun would end all other workers.
+  const bool tell = !arguments.supervised || part;
+  if (tell && !outcome.failures.empty()) throw CLI::RuntimeError(kFailed);
+}
+
+void add_file(CLI::App& command, CampaignArguments& arguments) {
+  command.add_option("file", arguments.file, "the campaign, a TOML file")
+      ->required()
+      ->check(existing_file())
+      ->type_name("FILE");
+  command
+      .add_option("--out", arguments.out,
+                  "folder of shard files, logs and report [the file's path without .toml]")
+      ->check(file_path())
+      ->type_name("DIR");
+}
+
+std::string explanations_of_launchers() {
+  std::string text;
+  for (const LauncherRow& row : launcher_table())
+    text += fmt::format("  {:<7} {}\n", row.name, row.explanation);
+  return text;
+}
+
+std::vector<std::string> launcher_names() {
+  std::vector<std::string> names;
+  for (const LauncherRow& row : launcher_table()) names.emplace_back(row.name);
+  return names;
+}
+
+void add_run(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments) {
+  CLI::App* command =
+      verb.add_subcommand("run", "Run what is not done yet, with progress, and make the report");
+  add_file(*command, *arguments);
+  command->add_option("--on", arguments->on, "how the workers are started")
+      ->check(one_of(launcher_names()))
+      ->type_name("WAY")
+      ->capture_default_str();
+  limit_whole_number(command->add_option("--jobs", arguments->jobs,
+                                         "workers at a time, 0: one per core, or as many as Slurm starts"),
+                     0, 100'000)
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--options", arguments->options,
+                   "further options of sbatch or mpirun, one text: \"--partition=long --time=2:00:00\"")
+      ->type_name("TEXT");
+  command->add_flag("--no-wait", arguments->no_wait, "end when the Slurm jobs are submitted");
+  command->add_flag("--dry-run", arguments->dry_run, "only check the file and show the runs");
+  command->footer("\nWays to start workers\n" + explanations_of_launchers());
+  command->callback([arguments] {
+    if (arguments->no_wait && arguments->on != "slurm")
+      throw CLI::ValidationError("--no-wait", "is for --on slurm; other workers end with this program");
+    if (!arguments->options.empty() && arguments->on == "local")
+      throw CLI::ValidationError("--options", "are those of sbatch or mpirun; give --on slurm or --on mpi");
+    run(*arguments);
+  });
+}
+
+void add_work(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments) {
+  CLI::App* command = verb.add_subcommand(
+      "work", "Be one worker: run tasks until none is left. `run` starts these; so can you, on any machine");
+  add_file(*command, *arguments);
+  command
+      ->add_option("--part", arguments->part,
+                   "only the tasks of part I of N, I from 0; otherwise the next one that nobody runs")
+      ->check(shard_text())
+      ->type_name("I/N");
+  command->add_flag("--supervised", arguments->supervised,
+                    "end with the program that started it; the exit status is 0 if tasks failed");
+  command->callback([arguments] { work(*arguments); });
+}
+
+void add_status(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments) {
+  CLI::App* command = verb.add_subcommand("status", "Show how far each run is");
+  add_file(*command, *arguments);
+  command->callback([arguments] { print_state(open_campaign(*arguments)); });
+}
+
+void add_report(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments) {
+  CLI::App* command =
+      verb.add_subcommand("report", "Make tables, JSON, CSV and report.html of the shard files");
+  add_file(*command, *arguments);
+  command->add_flag("--partial", arguments->partial, "of the sequences that are done, if not all are");
+  command->callback([arguments] { report(*arguments, open_campaign(*arguments)); });
+}
+
+}  // namespace
+
+void add_campaign_command(CLI::App& app, const std::string& command_line) {
+  CLI::App* command = app.add_subcommand(
+      "campaign", "Run many evaluations on all cores of this machine, by mpirun, or on a Slurm cluster");
+  command->require_subcommand(1);
+  auto arguments = std::make_shared<CampaignArguments>();
+  arguments->command_line = command_line;
+  add_run(*command, arguments);
+  add_work(*command, arguments);
+  add_status(*command, arguments);
+  add_report(*command, arguments);
+  command->footer(
+      "\nA campaign is a TOML file. A [[run]] has options of `tumblesight evaluate` without\n"
+      "their dashes; a list makes a run for each of its values. Paths are relative to the\n"
+      "folder of the file.\n\n"
+      "  seed = 22\n"
+      "  sequences_per_task = 5000   # of a shard; a task should take some minutes\n\n"
+      "  [[run]]\n"
+      "  target = \"near_shoemaker\"\n"
+      "  condition = [\"nominal\", \"degraded\"]\n"
+      "  sequences = 400000\n\n"
+      "  [[run]]\n"
+      "  target = \"near_shoemaker\"\n"
+      "  effect = [\"noise=5\", \"background=0.5\", \"rays=32,noise=2\"]\n"
+      "  sequences = 15000\n\n"
+      "The work can be stopped at any time; the same command goes on. The report has\n"
+      "bounds of all rates, and the worst sequences with the command that shows each.\n\n"
+      "Example\n"
+      "  tumblesight campaign run near.toml\n"
+      "  tumblesight campaign run near.toml --on slurm --options \"--partition=long\"\n"
+      "  tumblesight campaign report near.toml --partial\n\n"
+      "Clusters, costs and limits: docs/cluster.md\n");
+}
+
+}  // namespace tumblesight::sim

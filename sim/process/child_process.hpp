@@ -1,0 +1,45 @@
+// ChildProcess: another program that runs beside this one, and ends with this object at the latest.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace tumblesight::sim {
+
+class ChildProcess {
+ public:
+  // `program`: a path, or a name that is looked for in PATH. `log_path`: file for its messages; empty: our
+  // own output. `inherited_file`: descriptor that the child inherits under the same number; -1: none.
+  // `environment`: "NAME=value" entries added to ours. Throws std::runtime_error if it cannot be started.
+  ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
+               const std::string& log_path, int inherited_file = -1,
+               const std::vector<std::string>& environment = {});
+  // Sends SIGTERM, and after two seconds SIGKILL.
+  virtual ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  bool running();
+  // Waits until it has ended (true) or the timeout is over (false).
+  bool wait_for_end(double timeout_s);
+  bool ended() const { return ended_; }
+  bool ended_well() const;           // ended with exit status 0
+  int exit_status() const;           // -1: it has not ended by itself
+  std::string how_it_ended() const;  // "ended with exit status 4", "was ended by signal 9 (Killed)"
+  pid_t pid() const { return pid_; }
+
+ private:
+  pid_t pid_ = 0;
+  bool ended_ = false;
+  bool status_lost_ = false;  // it ended, but the exit status is unknown
+  int status_ = 0;
+};
+
+// What a program prints on its standard output, without the last line break. Throws std::runtime_error with
+// the end of what it printed if it cannot be started, fails, or takes longer than `timeout_s`.
+std::string output_of(const std::string& program, const std::vector<std::string>& arguments,
+                      double timeout_s);
+
+}  // namespace tumblesight::sim

@@ -1,0 +1,96 @@
+#include "sim/campaign/shard_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/unit/sim/campaign/campaign_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(Shard, IsReadFromItsText) {
+  EXPECT_EQ(to_string(shard_from("0/1")), "0/1");
+  EXPECT_EQ(to_string(shard_from("15/16")), "15/16");
+  for (const char* text : {"", "/", "1", "1/", "/2", "2/2", "-1/2", "1/2/3", "0/0", "a/2", "1/ 2", "0/100001",
+                           "0/99999999999", "1.0/2"}) {
+    const std::string error = error_of([&] { (void)shard_from(text); });
+    EXPECT_NE(error.find("N is a whole number from 1 to 100000, I from 0 to N - 1"), std::string::npos)
+        << text;
+  }
+}
+
+TEST(Shard, AllPartsTogetherHaveEverySequenceOnce) {
+  for (std::uint32_t count = 1; count <= 20; ++count) {
+    std::vector<int> seen(17);
+    for (std::uint32_t index = 0; index < count; ++index)
+      for (const std::uint32_t sequence : sequences_of({index, count}, 17)) ++seen[sequence];
+    EXPECT_EQ(seen, std::vector<int>(17, 1)) << count;
+  }
+}
+
+class ShardFile : public ::testing::Test {
+ protected:
+  SmallEvaluation small_;
+  TemporaryFolder folder_;
+};
+
+TEST_F(ShardFile, BelongsToOneWriterAtATime) {
+  const std::string path = folder_.path("a");
+  EXPECT_FALSE(is_in_use(path));
+  {
+    const ShardWriter first(path, small_.header({0, 2}));
+    EXPECT_TRUE(is_in_use(path));
+    EXPECT_THROW(ShardWriter(path, small_.header({0, 2})), ShardInUse);
+  }
+  EXPECT_FALSE(is_in_use(path));
+  EXPECT_NO_THROW(ShardWriter(path, small_.header({0, 2})));
+}
+
+TEST_F(ShardFile, OfAnotherShardOrEvaluationIsNotContinued) {
+  const std::string path = folder_.path("a");
+  { const ShardWriter first(path, small_.header({0, 2})); }
+  const std::string of_shard = error_of([&] { ShardWriter(path, small_.header({1, 2})); });
+  EXPECT_NE(
+      of_shard.find("it is of another run: shard is 0/2, not 1/2; name another file, or delete this one"),
+      std::string::npos)
+      << of_shard;
+  small_.settings.seed = 1;
+  const std::string of_seed = error_of([&] { ShardWriter(path, small_.header({0, 2})); });
+  EXPECT_NE(of_seed.find("seed is 12345678901234567890, not 1"), std::string::npos) << of_seed;
+}
+
+TEST_F(ShardFile, AnyOtherFileIsRefusedAndLeftAsItIs) {
+  const std::string path = folder_.put("notes.txt", {'h', 'e', 'l', 'l', 'o'});
+  EXPECT_NE(error_of([&] { (void)read_shard(path); }).find("it is no shard file"), std::string::npos);
+  EXPECT_NE(error_of([&] {
+              ShardWriter(path, small_.header({0, 2}));
+            }).find("it is no shard file"),
+            std::string::npos);
+  EXPECT_EQ(std::filesystem::file_size(path), 5U);
+  EXPECT_NE(error_of([&] { (void)read_shard(folder_.path("none")); }).find("No such file"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { (void)read_shard(folder_.path("")); }).find("cannot be read"), std::string::npos);
+}
+
+TEST_F(ShardFile, AFileThatCannotBeWrittenIsNamed) {
+  const std::string error = error_of([&] { ShardWriter(folder_.path(""), small_.header({0, 2})); });
+  EXPECT_NE(error.find("Is a directory"), std::string::npos) << error;
+}
+
+TEST_F(ShardFile, MissingFoldersAreMade) {
+  EXPECT_NO_THROW(ShardWriter(folder_.path("a/b/c"), small_.header({0, 2})));
+}
+
+TEST_F(ShardFile, ItsSizeTellsTheNumberOfItsRecords) {
+  const std::string path = small_.run({0, 4}, folder_);
+  EXPECT_EQ(records_in(path), 4U);
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+  EXPECT_EQ(records_in(path), 3U);
+  EXPECT_EQ(records_in(folder_.path("none")), 0U);
+  EXPECT_EQ(records_in(folder_.put("other", {1, 2, 3})), 0U);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

@@ -1,0 +1,142 @@
+// `tumblesight evaluate --shard`, `merge` and `campaign` as a user runs them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/unit/sim/cli/run_tumblesight.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+class CampaignCommand : public ::testing::Test {
+ protected:
+  void put_campaign(const std::string& more = "") const {
+    std::ofstream(here.path("c.toml"))
+        << "seed = 5\nsequences_per_task = 3\n[[run]]\nsequences = 8\nframes = 2\n"
+        << "target = \"near_shoemaker\"\nmodel = \"model.tsm\"\n"
+        << "condition = [\"nominal\", \"degraded\"]\n"
+        << more;
+  }
+  static std::string crc_in(const std::string& output) {
+    const std::size_t at = output.find("figures, CRC-32");
+    return at == std::string::npos ? "none" : output.substr(at, 29);
+  }
+  void expect_refused(const Outcome& outcome, const std::string& message) const {
+    EXPECT_NE(outcome.exit_code, 0);
+    EXPECT_NE(outcome.errors.find(message), std::string::npos) << outcome.errors;
+  }
+
+  const Workplace here{};
+  const std::string evaluate =
+      "evaluate --no-baseline --sequences 8 --frames 2 --seed 5 --model " + here.model();
+};
+
+// Verifies TS-SIL-460.
+TEST_F(CampaignCommand, MergedShardsAreTheFileOfOneProcess) {
+  EXPECT_EQ(here.run(evaluate + " --json one.json --csv one.csv").exit_code, kGuessed);
+  for (const char* shard : {"2/3", "0/3", "1/3"}) {
+    const Outcome outcome =
+        here.run(evaluate + " --shard " + shard + " --shard-file s" + shard[0] + ".shard");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  }
+  const Outcome merged =
+      here.run("merge s1.shard s2.shard s0.shard --json all.json --csv all.csv --report r.html");
+  EXPECT_EQ(merged.exit_code, kGuessed) << merged.errors;
+  EXPECT_EQ(content(here.path("all.json")), content(here.path("one.json")));
+  EXPECT_EQ(content(here.path("all.csv")), content(here.path("one.csv")));
+  EXPECT_NE(content(here.path("r.html")).find("Worst sequences, nominal"), std::string::npos);
+}
+
+TEST_F(CampaignCommand, ShardsRefuseWhatBelongsToTheirMerge) {
+  expect_refused(here.run(evaluate + " --shard 0/2"), "--shard requires --shard-file");
+  expect_refused(here.run(evaluate + " --shard-file a"), "--shard-file requires --shard");
+  expect_refused(here.run(evaluate + " --shard 2/2 --shard-file a"), "'2/2' is no part I/N of the sequences");
+  expect_refused(here.run(evaluate + " --shard 0/9 --shard-file a"),
+                 "'0/9' are more parts than the 8 sequences");
+  expect_refused(here.run(evaluate + " --shard 0/2 --shard-file a --json j"),
+                 "give --json to `tumblesight merge`, which does");
+  expect_refused(here.run(evaluate + " --shard 0/2 --shard-file a --effect-limit noise"),
+                 "leave --shard out");
+  expect_refused(here.run("merge model.tsm"), "it is no shard file");
+  expect_refused(here.run("merge"), "shards is required");
+}
+
+// Verifies TS-SIL-470.
+TEST_F(CampaignCommand, ALocalCampaignHasTheFiguresOfItsEvaluations) {
+  put_campaign();
+  const Outcome outcome = here.run("campaign run c.toml --jobs 2");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(here.run(evaluate + " --condition nominal,degraded --json one.json").exit_code, kGuessed);
+  EXPECT_EQ(content(here.path("c/results.json")), content(here.path("one.json")));
+  EXPECT_NE(outcome.output.find("simulate --seed 5 --target near_shoemaker --model model.tsm --frames 2 "
+                                "--condition degraded --only N"),
+            std::string::npos)
+      << outcome.output;
+  const Outcome again = here.run("campaign run c.toml");
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(again.output.find("started"), std::string::npos) << "nothing is left to do";
+  EXPECT_EQ(crc_in(again.output), crc_in(outcome.output));
+}
+
+TEST_F(CampaignCommand, WorkersTogetherLeaveNothing) {
+  put_campaign();
+  const Outcome none = here.run("campaign report c.toml --partial");
+  expect_refused(none, "no sequence is done yet");
+  EXPECT_EQ(here.run("campaign work c.toml --part 1/2").exit_code, 0);
+  expect_refused(here.run("campaign report c.toml"), "cannot be read");
+  const Outcome partial = here.run("campaign report c.toml --partial");
+  EXPECT_EQ(partial.exit_code, 0) << partial.errors;
+  EXPECT_NE(partial.errors.find("near_shoemaker-model_model.tsm-nominal-frames_2: no sequence is done"),
+            std::string::npos)
+      << partial.errors;
+  EXPECT_NE(here.run("campaign status c.toml").output.find("8 of 16 sequences in 6 tasks"),
+            std::string::npos);
+  EXPECT_EQ(here.run("campaign work c.toml").exit_code, 0);
+  EXPECT_EQ(here.run("campaign report c.toml").exit_code, 0);
+}
+
+TEST_F(CampaignCommand, EveryRunIsCheckedBeforeTheFirstStarts) {
+  put_campaign("[[run]]\nsequences = 1\ntarget = \"near_shoemaker\"\neffect = \"noize=5\"\n");
+  const Outcome outcome = here.run("campaign run c.toml");
+  expect_refused(outcome, "c.toml, line 9: run near_shoemaker-noize_5: --effect: ");
+  EXPECT_FALSE(std::filesystem::exists(here.path("c")));
+  put_campaign("[[run]]\nsequences = 1\nmodel = \"none.tsm\"\n");
+  expect_refused(here.run("campaign run c.toml"), "line 9: run model_none.tsm: ");
+  put_campaign("[[run]]\nsequences = 1\nmoddel = \"none.tsm\"\n");
+  expect_refused(here.run("campaign run c.toml"), "line 9: run moddel_none.tsm: ");
+}
+
+TEST_F(CampaignCommand, ADryRunOnlyShowsTheRuns) {
+  put_campaign();
+  const Outcome outcome = here.run("campaign run c.toml --dry-run");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("0 of 16 sequences in 6 tasks"), std::string::npos) << outcome.output;
+  EXPECT_FALSE(std::filesystem::exists(here.path("c")));
+}
+
+// The task fails in every worker; the others are done.
+TEST_F(CampaignCommand, WhatIsNotDoneIsNamedWithTheMessagesOfTheWorker) {
+  put_campaign();
+  std::filesystem::create_directories(here.path("c/near_shoemaker-model_model.tsm-nominal-frames_2"));
+  here.put("c/near_shoemaker-model_model.tsm-nominal-frames_2/0001_of_0003.shard", {1, 2, 3});
+  const Outcome outcome = here.run("campaign run c.toml --jobs 1");
+  expect_refused(outcome, "1 of 6 tasks are not done, the first: near_shoemaker-model_model.tsm-nominal");
+  EXPECT_NE(content(here.path("c/logs/local_0.log")).find("it is no shard file"), std::string::npos);
+}
+
+TEST_F(CampaignCommand, WaysThatAreNotThereAreNamed) {
+  put_campaign();
+  expect_refused(
+      here.run_command("env PATH=/nowhere " TUMBLESIGHT_BINARY " campaign run c.toml --on slurm", "a"),
+      "sbatch cannot be started: No such file or directory; the machine must be one from which jobs");
+  expect_refused(
+      here.run_command("env PATH=/nowhere " TUMBLESIGHT_BINARY " campaign run c.toml --on mpi", "a"),
+      "mpirun cannot be started: No such file or directory; install an MPI (Debian: openmpi-bin)");
+  expect_refused(here.run("campaign run c.toml --on lsf"), "local, mpi");
+  expect_refused(here.run("campaign run c.toml --options x"), "give --on slurm or --on mpi");
+  expect_refused(here.run("campaign run c.toml --no-wait"), "is for --on slurm");
+}
+
+}  // namespace
+}  // namespace tumblesight::sim

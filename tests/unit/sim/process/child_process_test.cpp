@@ -1,0 +1,70 @@
+#include "sim/process/child_process.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <stdexcept>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+TEST(ChildProcess, IsFoundInThePathAndTellsHowItEnded) {
+  ChildProcess good("true", {}, "");
+  ChildProcess bad("sh", {"-c", "exit 7"}, "");
+  ASSERT_TRUE(good.wait_for_end(10.0));
+  ASSERT_TRUE(bad.wait_for_end(10.0));
+  EXPECT_TRUE(good.ended_well());
+  EXPECT_FALSE(bad.ended_well());
+  EXPECT_EQ(bad.how_it_ended(), "ended with exit status 7");
+}
+
+TEST(ChildProcess, EndsWithItsObject) {
+  pid_t pid = 0;
+  {
+    ChildProcess sleeper("sleep", {"1000"}, "");
+    pid = sleeper.pid();
+    EXPECT_TRUE(sleeper.running());
+  }
+  EXPECT_NE(kill(pid, 0), 0);
+}
+
+TEST(ChildProcess, ASignalIsNamed) {
+  ChildProcess sleeper("sleep", {"1000"}, "");
+  kill(sleeper.pid(), SIGKILL);
+  ASSERT_TRUE(sleeper.wait_for_end(10.0));
+  EXPECT_EQ(sleeper.how_it_ended(), "was ended by signal 9 (Killed)");
+  EXPECT_EQ(sleeper.exit_status(), -1);
+}
+
+TEST(ChildProcess, AMissingProgramIsNamed) {
+  try {
+    ChildProcess process("no_such_program_of_ours", {}, "");
+    FAIL() << "no exception";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("no_such_program_of_ours cannot be started: No such file"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(OutputOf, GivesBothStreamsWithoutTheLastLineBreak) {
+  EXPECT_EQ(output_of("sh", {"-c", "echo one; echo two >&2"}, 10.0), "one\ntwo");
+}
+
+TEST(OutputOf, AFailureComesWithTheOutputAndATimeoutWithItsLimit) {
+  const auto fault_of = [](const std::string& script, double timeout_s) -> std::string {
+    try {
+      output_of("sh", {"-c", script}, timeout_s);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "no exception";
+  };
+  EXPECT_EQ(fault_of("echo no such queue; exit 3", 10.0), "sh ended with exit status 3: no such queue");
+  EXPECT_EQ(fault_of("exec sleep 1000", 1.0), "sh takes longer than 1 s");
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
