@@ -21,7 +21,7 @@ packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev c
 packages_to_watch=("${packages_to_run[@]}" libcivetweb-dev libjs-dygraphs libjs-three)
 packages_to_train=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread)
 packages_to_test=("${packages_to_train[@]}" "${packages_to_watch[@]}" libdnnl-dev libgtest-dev libgmock-dev
-  chromium clang clang-format git python3 valgrind)
+  chromium clang clang-format git openmpi-bin python3 slurm-wlm valgrind)
 packages_to_fuzz=("${packages_to_run[@]}" clang libcivetweb-dev libclang-rt-dev python3)
 # The flight side only, with GCC's branch counts.
 packages_to_cover=(g++ cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev gcovr python3)

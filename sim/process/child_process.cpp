@@ -42,6 +42,26 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_;
 };
 
+class TemporaryFile {
+ public:
+  TemporaryFile() {
+    const int file = mkstemp(path_.data());
+    if (file < 0) throw std::runtime_error(path_ + " cannot be made: " + strerror(errno));
+    close(file);
+  }
+  ~TemporaryFile() { unlink(path_.c_str()); }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const std::string& path() const { return path_; }
+  std::string content() const {
+    std::ifstream file(path_);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+ private:
+  std::string path_ = (std::filesystem::temp_directory_path() / "tumblesight_output_XXXXXX").string();
+};
+
 // The additional entries come first: of two entries with one name the first one counts.
 std::vector<char*> with_our_environment(const std::vector<std::string>& additional) {
   std::vector<char*> entries;
@@ -108,23 +128,14 @@ std::string ChildProcess::how_it_ended() const {
 
 std::string output_of(const std::string& program, const std::vector<std::string>& arguments,
                       double timeout_s) {
-  namespace fs = std::filesystem;
-  std::string path = (fs::temp_directory_path() / "tumblesight_output_XXXXXX").string();
-  const int file = mkstemp(path.data());
-  if (file < 0) throw std::runtime_error(path + " cannot be made: " + strerror(errno));
-  close(file);
-  std::string output;
+  const TemporaryFile file;
   std::string fault;
-  {
-    ChildProcess process(program, arguments, path);
-    if (!process.wait_for_end(timeout_s))
-      fault = "takes longer than " + std::to_string(static_cast<int>(timeout_s)) + " s";
-    else if (!process.ended_well())
-      fault = process.how_it_ended();
-    std::ifstream text(path);
-    output.assign(std::istreambuf_iterator<char>(text), {});
-  }
-  fs::remove(path);
+  ChildProcess process(program, arguments, file.path());
+  if (!process.wait_for_end(timeout_s))
+    fault = "takes longer than " + std::to_string(static_cast<int>(timeout_s)) + " s";
+  else if (!process.ended_well())
+    fault = process.how_it_ended();
+  std::string output = file.content();
   while (!output.empty() && output.back() == '\n') output.pop_back();
   if (!fault.empty()) throw std::runtime_error(program + " " + fault + (output.empty() ? "" : ": " + output));
   return output;
