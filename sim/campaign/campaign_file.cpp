@@ -94,13 +94,13 @@ std::string word_of(const std::string& text) {
   return word;
 }
 
-// Target and condition are plain words; other values follow their key.
+// What is observed, conditions and effects are plain words, files by their stems; other values follow their
+// key.
 std::string words_of(const Option& option, const std::string& value) {
   if (option.is_flag) return option.key;
-  const std::string word = word_of(value);
-  const bool plain = option.key == "target" || option.key == "condition" || option.key == "effect" ||
-                     option.key == "mission" || option.key == "mesh";
-  return plain ? word : option.key + "_" + word;
+  if (option.key == "target" || option.key == "condition" || option.key == "effect") return word_of(value);
+  if (option.key == "mission" || option.key == "mesh") return word_of(fs::path(value).stem().string());
+  return option.key + "_" + word_of(value);
 }
 
 // All combinations, the last option fastest.
@@ -116,7 +116,9 @@ void expand(const std::vector<Option>& options, std::size_t from, const Campaign
     if (!value.empty()) {
       run.options.push_back("--" + option.key);
       if (!option.is_flag) run.options.push_back(value);
-      run.name += (run.name.empty() ? "" : "-") + words_of(option, value);
+      const std::string words = words_of(option, value);
+      if (words != run.name)
+        run.name += (run.name.empty() ? "" : "-") + words;  // a mesh named for its target
     }
     expand(options, from + 1, run, runs);
   }

@@ -16,6 +16,7 @@ namespace {
 struct MergeArguments {
   std::vector<std::string> shards;
   ResultsFiles files;
+  bool partial = false;
 };
 
 OptionFiles files_read(const std::vector<std::string>& shards) {
@@ -26,7 +27,8 @@ OptionFiles files_read(const std::vector<std::string>& shards) {
 
 void merge(const MergeArguments& arguments) {
   require_usable_files(files_read(arguments.shards), files_written(arguments.files));
-  MergedShards merged = merge_shards(arguments.shards);
+  MergedShards merged =
+      merge_shards(arguments.shards, arguments.partial ? MergeMode::kPartial : MergeMode::kComplete);
   announce(merged.identity.subject, merged.identity.settings);
   Results results;
   results.seed = merged.identity.settings.seed;
@@ -52,6 +54,7 @@ void add_merge_command(CLI::App& app) {
       ->required()
       ->check(existing_file())
       ->type_name("FILE");
+  command->add_flag("--partial", arguments->partial, "of the sequences that are done, if not all are");
   add_results_options(*command, arguments->files);
   command->footer(
       "\nTables, JSON, CSV and report are those of one process, bit for bit, whatever the\n"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "sim/world/math/angles.hpp"
 
@@ -50,6 +51,13 @@ WorstSequence worst_of(const FrameResult& result) {
           result.pose.verified, result.range_m, kDegPerRad * result.rate_rad_s};
 }
 
+// What is wrong and vouched for is worse than what is only wrong.
+int badness_of(const WorstSequence& one) {
+  if (one.pose_verified && one.pose_deg > kPoseWrong_deg) return 3;
+  if (one.valid && one.error_deg > kWrong_deg) return 2;
+  return one.pose_deg > kWrong_deg ? 1 : 0;
+}
+
 // Two significant digits, without an exponent.
 std::string percent(double share) {
   if (share <= 0.0) return "0";
@@ -88,7 +96,8 @@ RareEvents rare_events(const std::vector<FrameResult>& last) {
     events.counts.push_back(static_cast<std::size_t>(std::count_if(last.begin(), last.end(), row.happened)));
   for (const FrameResult& result : last) events.worst.push_back(worst_of(result));
   const auto worse = [](const WorstSequence& a, const WorstSequence& b) {
-    return a.error_deg != b.error_deg ? a.error_deg > b.error_deg : a.sequence < b.sequence;
+    return std::make_tuple(badness_of(b), b.error_deg, a.sequence) <
+           std::make_tuple(badness_of(a), a.error_deg, b.sequence);
   };
   const std::size_t kept = std::min(events.worst.size(), kWorstSequences);
   std::partial_sort(events.worst.begin(), events.worst.begin() + static_cast<std::ptrdiff_t>(kept),

@@ -44,9 +44,11 @@ struct WorstSequence {
 inline constexpr std::size_t kWorstSequences = 20;
 
 struct RareEvents {
-  std::size_t of = 0;                // last frames
-  std::vector<std::size_t> counts;   // in the order of rare_event_table()
-  std::vector<WorstSequence> worst;  // by the error of the RCNN, at most kWorstSequences
+  std::size_t of = 0;               // last frames
+  std::vector<std::size_t> counts;  // in the order of rare_event_table()
+  // At most kWorstSequences: verified poses more than 5° off first, then wrong attitudes that are valid,
+  // poses more than 20° off, and the rest; each by the error of the RCNN.
+  std::vector<WorstSequence> worst;
 };
 // `last`: last frames, see last_frames().
 RareEvents rare_events(const std::vector<FrameResult>& last);

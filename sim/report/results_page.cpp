@@ -67,10 +67,11 @@ std::string rare_events_section(const Results& results) {
   }
   return text +
          "<p class=sub>Last frames that went wrong, of all last frames, with exact (Clopper-Pearson) bounds: "
-         "the "
-         "true rate is above the lower one with probability 97.5 %, and below the upper one likewise. Worst: "
-         "by "
-         "the error of the network's attitude.</p>\n";
+         "the true rate is above the lower one with probability 97.5 %, and below the upper one likewise. "
+         "Worst: "
+         "first verified poses more than 5° off, then wrong attitudes that are called valid, then poses more "
+         "than "
+         "20° off, then the others; each by the error of the network's attitude.</p>\n";
 }
 
 // Nothing without runs that have a goal.

@@ -74,7 +74,7 @@ mesh = "elsewhere/mesh.stl"
 [[run]]
 sequences = 3
 )"),
-            (std::vector<std::string>{"mesh.stl", "mesh.stl-2", "default"}));
+            (std::vector<std::string>{"mesh", "mesh-2", "default"}));
 }
 
 TEST_F(CampaignFile, ARunCanHaveItsOwnSeed) {
