@@ -19,7 +19,10 @@
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/target_surface.hpp"
 #include "sim/training/export_model.hpp"
+#include "sim/training/join_ranks.hpp"
+#include "sim/training/local_ranks.hpp"
 #include "sim/training/mission_training.hpp"
+#include "sim/training/rank_output.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
 #include "sim/world/math/angles.hpp"
@@ -42,6 +45,9 @@ struct TrainOptions {
   std::string precision = "auto";
   std::vector<double> inertia;  // six elements; empty: that of a known target
   std::optional<Mission> mission;
+  int ranks = 1;
+  bool ranks_given = false, workers_given = false;
+  double rank_timeout_s = 120.0;
   double minutes = 0.0;  // of wall-clock time in place of numbers of samples; 0: none
   TrainingSettings settings;
 };
@@ -172,6 +178,36 @@ void write_images_so_far(const std::string& stem, const std::vector<TriangleMesh
   write_images(stem, meshes, targets, model_of(cnn, recurrent, options.target, targets), kQuickly);
 }
 
+// Each part of a batch has the same number of rows.
+void require_equal_parts(const TrainingSettings& settings, int ranks) {
+  const int parts = ranks * settings.trainers;
+  for (const int batch : {settings.cnn_batch, settings.rcnn_batch}) {
+    if (batch % parts == 0) continue;
+    throw CLI::ValidationError(
+        "--ranks", fmt::format("{} ranks with {} trainers each do not divide a batch of {} without a "
+                               "remainder; use ranks and trainers whose product is a power of two up to {}",
+                               ranks, settings.trainers, batch, settings.cnn_batch));
+  }
+}
+
+// The place among the ranks that a launcher has started; alone without one.
+RankPlace place_of(const TrainOptions& options) {
+  const RankPlace place = rank_place();
+  if (place.count > 1 && options.ranks_given && options.ranks != place.count) {
+    throw CLI::ValidationError(
+        "--ranks", fmt::format("is {}, but this process was started as one of {} ranks (by Slurm, mpirun or "
+                               "RANK and WORLD_SIZE); leave --ranks out",
+                               options.ranks, place.count));
+  }
+  return place;
+}
+
+// Ranks on the same cores share them: of each rank's part one core is for its trainers.
+int workers_of(int sharing_ranks) {
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::max(1, cores / sharing_ranks - 1);
+}
+
 int train(TrainOptions& options) {
   if (options.minutes > 0.0) share_out_time(options);
   for (const EffectRanges& effects : effect_sets_of(options)) {
@@ -184,9 +220,6 @@ int train(TrainOptions& options) {
   // Beside the checkpoints and the images that follow.
   const std::string stem = options.settings.folder + "/" + options.target;
   require_usable_folder(options, stem);
-  std::signal(SIGINT, [](int) { stop_requested = true; });
-  std::signal(SIGTERM, [](int) { stop_requested = true; });
-
   (void)check_sensor_of_model(stem + ".tsm", options.sensor.sensor);
   const std::vector<TriangleMesh> meshes = load_meshes(options.meshes, options.target);
   print_mesh_warnings(options.meshes, meshes);
@@ -195,7 +228,8 @@ int train(TrainOptions& options) {
   // Now rather than after hours of training: a mesh whose surface the image that flies cannot have.
   (void)target_surface(meshes.front(),
                        1e-3 * model_header(options.target, targets).projection.target_radius_mm);
-  if (!is_same_file(sensor_file_of(stem + ".tsm"), options.sensor.file))
+  const bool leads = options.settings.ranks->leads();
+  if (leads && !is_same_file(sensor_file_of(stem + ".tsm"), options.sensor.file))
     write_sensor_file(stem + ".tsm", options.sensor.sensor);
   print_sensor(options.sensor.sensor, targets.ranges);
 
@@ -207,6 +241,7 @@ int train(TrainOptions& options) {
   const bool finished = train_cnn(targets, options.settings, cnn, stop_requested) &&
                         train_rcnn(targets, options.settings, cnn, recurrent, stop_requested);
 
+  if (!leads) return finished ? 0 : kStopped;
   const std::string& folder = options.settings.folder;
   if (!finished) {
     write_images_so_far(stem, meshes, targets, options, cnn, recurrent, latest);
@@ -216,6 +251,29 @@ int train(TrainOptions& options) {
   std::printf("Training finished. Log: %s/log.csv, error curve: curve.svg.\n", folder.c_str());
   write_images(stem, meshes, targets, model_of(cnn, recurrent, options.target, targets));
   return 0;
+}
+
+// As one of the ranks, or alone.
+int train_as_rank(TrainOptions& options, const RankPlace& place) {
+  std::signal(SIGINT, [](int) { stop_requested = true; });
+  std::signal(SIGTERM, [](int) { stop_requested = true; });
+  options.settings.ranks = join_ranks(place, options.settings.folder, options.rank_timeout_s);
+  if (place.count > 1 && !options.workers_given)
+    options.settings.workers = workers_of(options.settings.ranks->sharing_cores());
+  return train(options);
+}
+
+int start_training(TrainOptions& options) {
+  const RankPlace place = place_of(options);
+  const int ranks = std::max(place.count, options.ranks);
+  require_equal_parts(options.settings, ranks);
+  if (ranks > 1 && !can_have_several_ranks()) {
+    throw CLI::ValidationError("--ranks",
+                               "several ranks need a build with Gloo: install libgloo-dev, then configure "
+                               "and build again");
+  }
+  if (ranks > place.count) return run_local_ranks(ranks);
+  return run_quietly_unless_first(place.rank, [&] { return train_as_rank(options, place); });
 }
 
 void add_length_options(CLI::App& command, TrainOptions& options) {
@@ -251,11 +309,26 @@ void add_length_options(CLI::App& command, TrainOptions& options) {
     minutes->excludes(command.get_option(number));
 }
 
+void add_rank_options(CLI::App& command, TrainOptions& options) {
+  limit_whole_number(
+      command.add_option("--ranks", options.ranks,
+                         "processes on this machine that train one network together; each has its own "
+                         "trainers and rendering threads"),
+      1, 64)
+      ->type_name("N")
+      ->capture_default_str();
+  limit_number(command.add_option("--rank-timeout", options.rank_timeout_s,
+                                  "seconds without an answer after which a rank counts as lost"),
+               1.0, 86'400.0)
+      ->type_name("X")
+      ->capture_default_str();
+}
+
 void add_machine_options(CLI::App& command, TrainOptions& options) {
   TrainingSettings& settings = options.settings;
   limit_whole_number(
       command.add_option("--trainers", settings.trainers,
-                         "threads that share the batches of the CNN, beside the rendering ones: 1, 2, 4, 8"),
+                         "threads that share the batches, beside the rendering ones: 1, 2, 4, 8"),
       1, 8)
       ->check(one_of({"1", "2", "4", "8"}))
       ->type_name("N")
@@ -287,7 +360,8 @@ void add_train_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("train", "Train a network for a target and write its model images");
   command->footer(
       "\nA run may be interrupted at any time: the same command continues from the last\n"
-      "checkpoint.\n\n"
+      "checkpoint. Several processes train together with --ranks, srun, mpirun or torchrun:\n"
+      "docs/training.md.\n\n"
       "Example: train for NEAR Shoemaker on the shipped mesh and on a CAD file\n"
       "  tumblesight train --target near_shoemaker --mesh parametric --mesh near.stl \\\n"
       "      --out out/near\n");
@@ -319,11 +393,14 @@ void add_train_command(CLI::App& app) {
       ->type_name("FILE");
   add_length_options(*command, *options);
   add_machine_options(*command, *options);
+  add_rank_options(*command, *options);
   command->callback([options, command] {
     require_a_name(*command, options->meshes.meshes);
     options->conditions_given = command->count("--condition") > 0;
     options->effects_given = command->count("--effect") > 0 || command->count("--effect-set") > 0;
-    throw CLI::RuntimeError(train(*options));
+    options->ranks_given = command->count("--ranks") > 0;
+    options->workers_given = command->count("--workers") > 0;
+    throw CLI::RuntimeError(start_training(*options));
   });
 }
 

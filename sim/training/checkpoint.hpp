@@ -5,6 +5,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -40,17 +43,26 @@ void save_checkpoint(const std::string& path, const Module& module, const torch:
   std::filesystem::rename(path + ".new", path);
 }
 
-// Restores all arguments. Returns false if there is no checkpoint. Throws std::runtime_error that names the
-// file if it cannot be read or if its fingerprint differs from position.fingerprint: continuing would mix two
-// runs.
+// The file's content; empty if there is no checkpoint.
+inline std::string read_checkpoint(const std::string& path) {
+  if (!std::filesystem::exists(path)) return {};
+  std::ifstream file(path, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(file), {}};
+  return content.empty() ? "empty" : content;
+}
+
+// Restores all arguments from read_checkpoint(path). Returns false if there was none. Throws std::runtime_error
+// that names the file if it is no checkpoint or if its fingerprint differs from position.fingerprint: continuing
+// would mix two runs.
 template <typename Module>
-bool load_checkpoint(const std::string& path, Module& module, torch::optim::Optimizer& optimizer,
-                     CheckpointPosition& position) {
-  if (!std::filesystem::exists(path)) return false;
+bool load_checkpoint(const std::string& path, const std::string& content, Module& module,
+                     torch::optim::Optimizer& optimizer, CheckpointPosition& position) {
+  if (content.empty()) return false;
   torch::serialize::InputArchive archive, module_archive, optimizer_archive;
   torch::Tensor iteration, seconds, fingerprint;
   try {
-    archive.load_from(path);
+    std::istringstream file(content);
+    archive.load_from(file);
     archive.read("fingerprint", fingerprint, true);
     archive.read("iteration", iteration, true);
     archive.read("seconds", seconds, true);

@@ -166,15 +166,20 @@ ScenarioSettings scenario_of(const TrainingTargets& targets, Condition condition
   return scenario;
 }
 
-FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch) {
+FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch,
+                         Share rows) {
   thread_local Workspace work;
-  FrameBatch result{torch::empty({batch, 1, kSide, kSide}), torch::empty({batch, 3, 3})};
-  for (int i = 0; i < batch; ++i) {
-    const FrameTruth truth = render(targets, seed, group * batch + i, work);
+  FrameBatch result{torch::empty({rows.count, 1, kSide, kSide}), torch::empty({rows.count, 3, 3})};
+  for (std::int64_t i = 0; i < rows.count; ++i) {
+    const FrameTruth truth = render(targets, seed, group * batch + rows.first + i, work);
     result.images[i].copy_(image_tensor(work.image));
     result.r_view_trf[i].copy_(rotation_tensor(truth, gnc::converted<float>(work.image.r_lrf_view)));
   }
   return result;
+}
+
+FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch) {
+  return render_frames(targets, seed, group, batch, {0, batch});
 }
 
 FrameBatch turned(const FrameBatch& batch, std::int64_t quarter_turns) {
@@ -183,8 +188,13 @@ FrameBatch turned(const FrameBatch& batch, std::int64_t quarter_turns) {
 }
 
 FrameStream::FrameStream(const TrainingTargets& targets, std::uint64_t seed, int batch,
-                         std::uint64_t first_batch, int workers)
-    : targets_(targets), seed_(seed), batch_(batch), claimed_(first_batch / kUses), wanted_(first_batch) {
+                         std::uint64_t first_batch, int workers, std::optional<Share> rows)
+    : targets_(targets),
+      seed_(seed),
+      batch_(batch),
+      rows_(rows.value_or(Share{0, batch})),
+      claimed_(first_batch / kUses),
+      wanted_(first_batch) {
   for (int i = 0; i < workers; ++i) workers_.emplace_back([this] { work(); });
 }
 
@@ -206,7 +216,7 @@ void FrameStream::work() {
       if (stop_) return;
       group = claimed_++;
     }
-    const FrameBatch batch = render_frames(targets_, seed_, group, batch_);
+    const FrameBatch batch = render_frames(targets_, seed_, group, batch_, rows_);
     for (std::uint64_t use = 0; use < kUses; ++use) {
       FrameBatch copy = turned(batch, static_cast<std::int64_t>(use));
       const std::lock_guard<std::mutex> lock(mutex_);

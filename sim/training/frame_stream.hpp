@@ -10,12 +10,14 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
+#include "sim/training/ranks.hpp"
 #include "sim/training/training_conditions.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
@@ -70,8 +72,9 @@ struct FrameBatch {
 // that these are exact new views at no rendering cost.
 class FrameStream {
  public:
+  // `rows`: of each batch, and no others are rendered; none: all.
   FrameStream(const TrainingTargets& targets, std::uint64_t seed, int batch, std::uint64_t first_batch,
-              int workers);
+              int workers, std::optional<Share> rows = {});
   ~FrameStream();
   FrameBatch next();  // the next batch; the order does not depend on the number of workers
 
@@ -81,6 +84,7 @@ class FrameStream {
   const TrainingTargets& targets_;
   const std::uint64_t seed_;
   const int batch_;
+  const Share rows_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::uint64_t, FrameBatch> ready_;
@@ -90,7 +94,10 @@ class FrameStream {
   std::vector<std::thread> workers_;
 };
 
-// Group `group` of the same supply, rendered by the calling thread. Validation data uses another seed.
+// Rows of group `group` of the same supply, rendered by the calling thread. Validation data uses another seed.
+FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch,
+                         Share rows);
+// All of them.
 FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch);
 // The same frames, turned about the view axis counter-clockwise in the image.
 FrameBatch turned(const FrameBatch& batch, std::int64_t quarter_turns);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "gnc/rcnn/hypotheses.hpp"
@@ -143,16 +144,20 @@ bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t in
 
 SequenceFeatures::SequenceFeatures(const TrainingTargets& targets,
                                    const gnc::NetworkWeights<gnc::Float32>& weights, std::uint64_t seed,
-                                   std::int64_t count, int workers)
+                                   std::int64_t count, int workers, std::shared_ptr<Ranks> ranks)
     : targets_(targets),
       weights_(weights),
       seed_(seed),
       count_(count),
-      all_{{torch::empty({count, kFrames, shape::kDense2}),
-            torch::empty({count, kFrames, shape::kHypotheses, 3, 3}),
-            torch::empty({count, kFrames, shape::kHypotheses}), torch::empty({count, kFrames})},
-           torch::empty({count, kFrames, 3, 3})},
-      done_(static_cast<std::size_t>(count), false) {
+      ranks_(std::move(ranks)),
+      all_{{torch::zeros({count, kFrames, shape::kDense2}),
+            torch::zeros({count, kFrames, shape::kHypotheses, 3, 3}),
+            torch::zeros({count, kFrames, shape::kHypotheses}), torch::zeros({count, kFrames})},
+           torch::zeros({count, kFrames, 3, 3})},
+      done_(static_cast<std::size_t>(count), true),
+      claimed_(ranks_->rank()) {
+  for (std::int64_t i = claimed_; i < count; i += ranks_->count()) done_[static_cast<std::size_t>(i)] = false;
+  pass_over_done();
   for (int i = 0; i < workers; ++i) workers_.emplace_back([this] { work(); });
 }
 
@@ -170,18 +175,23 @@ void SequenceFeatures::work() {
     std::int64_t index = 0;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      if (stop_ || claimed_ == count_) return;
-      index = claimed_++;
+      if (stop_ || claimed_ >= count_) return;
+      index = claimed_;
+      claimed_ += ranks_->count();
     }
     for (std::uint64_t attempt = 0; !compute(targets_, mix(seed_, attempt), index, *work, all_); ++attempt) {
     }
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       done_[static_cast<std::size_t>(index)] = true;
-      while (prefix_ < count_ && done_[static_cast<std::size_t>(prefix_)]) ++prefix_;
+      pass_over_done();
     }
     changed_.notify_all();
   }
+}
+
+void SequenceFeatures::pass_over_done() {
+  while (prefix_ < count_ && done_[static_cast<std::size_t>(prefix_)]) ++prefix_;
 }
 
 std::int64_t SequenceFeatures::ready() {
@@ -190,9 +200,22 @@ std::int64_t SequenceFeatures::ready() {
 }
 
 FeatureSet SequenceFeatures::first(std::int64_t count) {
-  std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [&] { return prefix_ >= count; });
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [&] { return prefix_ >= count; });
+  }
+  exchange_until(count);
   return first_of(all_, count);
+}
+
+// The rows of the other ranks are zero before. The workers write further rows meanwhile.
+void SequenceFeatures::exchange_until(std::int64_t count) {
+  if (count <= exchanged_) return;
+  const auto rows = [&](const torch::Tensor& t) { return t.narrow(0, exchanged_, count - exchanged_); };
+  const SequenceHypotheses& own = all_.hypotheses;
+  ranks_->sum({rows(own.features), rows(own.r_lrf_trf), rows(own.logits), rows(own.periods),
+               rows(all_.r_lrf_trf)});
+  exchanged_ = count;
 }
 
 FeatureSet first_of(const FeatureSet& data, std::int64_t count) {

@@ -7,6 +7,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -35,27 +36,34 @@ class SequenceFeatures {
   // effects are drawn in turn. A sequence keeps the strengths that it draws within the ranges of its set.
   // Half of the tumbling bodies have a random inertia instead of the target's, so that the network does not
   // rely on it. Half of the sequences come in the sensor's period, the others at other times or with single
-  // frames lost. `targets` and `weights` must outlive this object.
+  // frames lost. Several ranks take turns, too: each sequence is computed by one of them. `targets` and `weights`
+  // must outlive this object.
   SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights<gnc::Float32>& weights,
-                   std::uint64_t seed, std::int64_t count, int workers);
+                   std::uint64_t seed, std::int64_t count, int workers,
+                   std::shared_ptr<Ranks> ranks = std::make_shared<Ranks>());
   ~SequenceFeatures();
 
-  std::int64_t ready();  // number of sequences computed without a gap, from the first one
-  // The first `count` sequences. Waits until they are computed.
+  // Number of sequences, from the first one, of which none that this rank computes is missing.
+  std::int64_t ready();
+  // The first `count` sequences. Waits until they are computed. All ranks call it together.
   FeatureSet first(std::int64_t count);
 
  private:
   void work();
+  void pass_over_done();
+  void exchange_until(std::int64_t count);
   const TrainingTargets& targets_;
   const gnc::NetworkWeights<gnc::Float32>& weights_;
   const std::uint64_t seed_;
   const std::int64_t count_;
+  const std::shared_ptr<Ranks> ranks_;
   FeatureSet all_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<bool> done_;
-  std::int64_t claimed_ = 0;
-  std::int64_t prefix_ = 0;  // sequences 0 .. prefix-1 are done
+  std::vector<bool> done_;       // or computed by another rank
+  std::int64_t claimed_;         // the next sequence to compute
+  std::int64_t prefix_ = 0;      // sequences 0 .. prefix-1 are done
+  std::int64_t exchanged_ = 0;   // of sequences 0 .. exchanged-1 those of the other ranks are here, too
   bool stop_ = false;
   std::vector<std::thread> workers_;
 };

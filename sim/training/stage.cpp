@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "gnc/numerics/crc.hpp"
 #include "sim/world/math/angles.hpp"
@@ -47,10 +49,25 @@ std::uint64_t bits_of(double setting) {
   return bits;
 }
 
+Stage::Stage(const StageSettings& settings) : settings_(settings) {
+  position_.fingerprint = settings.fingerprint;
+  // Of a timed stage the fingerprint leaves the time open.
+  const std::vector<std::int64_t> all = settings_.ranks->gather(
+      fingerprint({static_cast<std::uint64_t>(settings.fingerprint), bits_of(settings.seconds),
+                   static_cast<std::uint64_t>(settings.trainers)}));
+  for (std::size_t rank = 1; rank < all.size(); ++rank) {
+    if (all[rank] == all[0]) continue;
+    throw std::runtime_error("rank " + std::to_string(rank) +
+                             " was started with other settings (meshes, target, conditions, effects, sensor, "
+                             "ranges, seed, rates, precision, time, trainers, numbers of samples) than rank 0");
+  }
+}
+
 void Stage::start() {
-  log_ = std::make_unique<TrainingLog>(settings_.folder, settings_.name, position_.iteration);
   last_save_ = Clock::now();
   if (start_ == Clock::time_point{}) start_ = last_save_;
+  if (!leads()) return;
+  log_ = std::make_unique<TrainingLog>(settings_.folder, settings_.name, position_.iteration);
   const bool timed = settings_.seconds > 0.0;
   progress_ = std::make_unique<ProgressBar>(
       settings_.name, timed ? "s" : settings_.unit,
@@ -82,9 +99,11 @@ void Stage::advance(double loss) {
   ++position_.iteration;
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   position_.seconds = seconds_before_ + seconds;
+  // Where it decides on the learning rate and the end.
+  if (settings_.seconds > 0.0) position_.seconds = settings_.ranks->of_first(position_.seconds);
   loss_sum_ += loss;
   ++losses_;
-  progress_->update(done(), progress_note(latest_));
+  if (progress_) progress_->update(done(), progress_note(latest_));
 }
 
 std::string progress_note(const std::optional<TrainingPoint>& latest) {
@@ -111,8 +130,8 @@ TrainingPoint Stage::new_point() {
 
 bool Stage::add_point(const TrainingPoint& point) {
   latest_ = point;
-  log_->add(point);
-  progress_->update(done(), progress_note(latest_));
+  if (log_) log_->add(point);
+  if (progress_) progress_->update(done(), progress_note(latest_));
   if (point.mean_deg >= position_.least_mean_deg) {
     skip_if_nothing_improves();
     return false;

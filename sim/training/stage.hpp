@@ -11,6 +11,7 @@
 
 #include "sim/terminal/progress.hpp"
 #include "sim/training/checkpoint.hpp"
+#include "sim/training/ranks.hpp"
 #include "sim/training/training_log.hpp"
 
 namespace tumblesight::sim {
@@ -35,6 +36,8 @@ struct StageSettings {
   std::int64_t iterations_per_point = 0;  // between points of the log
   double checkpoint_s = 0.0;              // wall-clock time between checkpoints
   std::int64_t fingerprint = 0;
+  int trainers = 1;  // of each rank; not part of the fingerprint
+  std::shared_ptr<Ranks> ranks = std::make_shared<Ranks>();
 };
 
 // Hash of the settings that affect a stage's result. A checkpoint of other settings is refused.
@@ -48,16 +51,24 @@ std::string progress_note(const std::optional<TrainingPoint>& latest);
 
 class Stage {
  public:
-  explicit Stage(const StageSettings& settings) : settings_(settings) {
-    position_.fingerprint = settings.fingerprint;
-  }
+  // Throws std::runtime_error if the ranks have different settings.
+  explicit Stage(const StageSettings& settings);
 
-  // Restores module, optimizer and position from the checkpoint. Returns false if there is none.
+  // Restores module, optimizer and position from the checkpoint of rank 0. Returns false if there is none; then
+  // all ranks have the module of rank 0.
   template <typename Module>
   bool resume(Module& module, torch::optim::Optimizer& optimizer) {
-    const bool found = load_checkpoint(path(), module, optimizer, position_);
+    const std::string content = settings_.ranks->of_first(leads() ? read_checkpoint(path()) : "");
+    const bool found = load_checkpoint(path(), content, module, optimizer, position_);
     seconds_before_ = position_.seconds;
+    equalize(module);
     return found;
+  }
+  // Gives all ranks the module of rank 0: ranks on different processors may differ in rounding.
+  template <typename Module>
+  void equalize(const Module& module) {
+    settings_.ranks->copy_from_first(module->parameters());
+    settings_.ranks->copy_from_first(module->buffers());
   }
   // Starts the clock of a stage with a time of its own, for what it prepares before start().
   void start_clock() { start_ = Clock::now(); }
@@ -76,12 +87,12 @@ class Stage {
 
   template <typename Module>
   void save_if_due(const Module& module, const torch::optim::Optimizer& optimizer) {
-    if (Clock::now() - last_save_ > std::chrono::duration<double>(settings_.checkpoint_s))
+    if (leads() && Clock::now() - last_save_ > std::chrono::duration<double>(settings_.checkpoint_s))
       save(module, optimizer);
   }
   template <typename Module>
   void save(const Module& module, const torch::optim::Optimizer& optimizer) {
-    save_checkpoint(path(), module, optimizer, position_);
+    if (leads()) save_checkpoint(path(), module, optimizer, position_);
     last_save_ = Clock::now();
   }
   void finish_progress() {
@@ -94,6 +105,7 @@ class Stage {
   // rates of the end of a stage.
   static constexpr double kPatience = 0.35;
   static constexpr double kLastPart = 0.8;
+  bool leads() const { return settings_.ranks->leads(); }
   void skip_if_nothing_improves();
   std::uint64_t units(std::int64_t iterations) const {
     return static_cast<std::uint64_t>(iterations * settings_.units_per_batch);

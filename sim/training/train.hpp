@@ -5,10 +5,12 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "sim/training/frame_stream.hpp"
+#include "sim/training/ranks.hpp"
 #include "sim/training/rcnn_module.hpp"
 #include "sim/training/training_log.hpp"
 
@@ -19,9 +21,10 @@ struct TrainingSettings {
   std::string start_from;  // model image whose CNN is the starting point; empty: random weights
   std::uint64_t seed = 1;
   int workers = 1;  // rendering threads
-  // Threads that share a batch, which they divide without a remainder; each normalizes its own part. Their
-  // number is part of the checkpoint's fingerprint.
+  // Threads of each rank that share its part of a batch: parts.hpp. Batches are multiples of ranks times trainers.
   int trainers = 1;
+  // The processes that train together. A checkpoint does not depend on their number, nor on that of trainers.
+  std::shared_ptr<Ranks> ranks = std::make_shared<Ranks>();
   bool bfloat16 = false;  // convolutions in bfloat16
   torch::Device device{torch::kCPU};
   double checkpoint_s = 180.0;  // wall-clock seconds between checkpoints
@@ -43,8 +46,9 @@ struct TrainingSettings {
 
 // Each stage resumes from the checkpoint in `settings.folder` if there is one, and returns at once if that
 // stage was finished. When `stop` becomes true, it saves a checkpoint and returns. Returns whether the stage
-// is finished. Throws std::runtime_error if a file cannot be read or written, or if a checkpoint is of other
-// settings.
+// is finished. Throws std::runtime_error if a file cannot be read or written, or if a checkpoint or another rank
+// is of other settings, and RankLost. With several ranks all call these functions together; rank 0 reads and
+// writes the files of the folder.
 bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn,
                const std::atomic<bool>& stop);
 bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings, const Cnn& cnn,
@@ -53,5 +57,8 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
 // Fills in the validation figures of a log point from the errors [N] of the best and of the chosen
 // hypothesis.
 void fill_errors(TrainingPoint& point, const torch::Tensor& best_rad, const torch::Tensor& chosen_rad);
+// The same from pieces of the rank's share of N = `count` errors, together with those of the other ranks.
+void fill_errors(TrainingPoint& point, Ranks& ranks, std::int64_t count,
+                 const std::vector<torch::Tensor>& best_rad, const std::vector<torch::Tensor>& chosen_rad);
 
 }  // namespace tumblesight::sim

@@ -1,12 +1,11 @@
-#include <ATen/Parallel.h>
-
-#include <future>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
 #include "sim/model/model_file.hpp"
 #include "sim/training/import_model.hpp"
 #include "sim/training/loss.hpp"
+#include "sim/training/parts.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
 #include "sim/world/math/angles.hpp"
@@ -29,6 +28,11 @@ double spread_at(const TrainingSettings& settings, double fraction) {
   return done >= 1.0 ? 0.02 : 0.3 + (0.02 - 0.3) * done;
 }
 
+int validation_frames(const TrainingSettings& settings) {
+  return static_cast<int>(std::min<std::int64_t>(kValidationFrames, settings.cnn_images));
+}
+
+// `data`: the rank's share of the validation frames.
 void validate(Cnn& cnn, const FrameBatch& data, const TrainingSettings& settings, TrainingPoint& point) {
   torch::NoGradGuard guard;
   cnn->eval();
@@ -40,7 +44,7 @@ void validate(Cnn& cnn, const FrameBatch& data, const TrainingSettings& settings
     best.push_back(errors.best_rad.cpu());
     chosen.push_back(errors.chosen_rad.cpu());
   }
-  fill_errors(point, torch::cat(best), torch::cat(chosen));
+  fill_errors(point, *settings.ranks, validation_frames(settings), best, chosen);
   cnn->train();
 }
 
@@ -54,60 +58,16 @@ double backward(Cnn& cnn, const FrameBatch& batch, const TrainingSettings& setti
   return loss.item<double>();
 }
 
-// Threads that share the batches of one network: its own and replicas, which use its weights.
-class Trainers {
- public:
-  Trainers(Cnn& cnn, const TrainingSettings& settings) : cnn_(cnn), settings_(settings) {
-    for (int i = 1; i < settings.trainers; ++i) {
-      Cnn replica;
-      replica->to(settings.device);
-      replica->train();
-      const std::vector<torch::Tensor> own = cnn->parameters();
-      std::vector<torch::Tensor> others = replica->parameters();
-      for (std::size_t k = 0; k < own.size(); ++k) others[k].set_data(own[k].data());
-      replicas_.push_back(replica);
-    }
-  }
+FrameBatch rows_of(const FrameBatch& batch, Share rows) {
+  return {batch.images.narrow(0, rows.first, rows.count), batch.r_view_trf.narrow(0, rows.first, rows.count)};
+}
 
-  // The gradient of the whole batch in the network's parameters. Returns the loss.
-  double backward_all(const FrameBatch& batch, double spread) {
-    if (replicas_.empty()) return backward(cnn_, batch, settings_, spread);
-    const std::int64_t part = batch.images.size(0) / settings_.trainers;
-    const auto part_of = [&](std::int64_t i) {
-      return FrameBatch{batch.images.narrow(0, i * part, part), batch.r_view_trf.narrow(0, i * part, part)};
-    };
-    std::vector<std::future<double>> others;
-    for (std::size_t i = 0; i < replicas_.size(); ++i) {
-      others.push_back(std::async(std::launch::async, [&, i] {
-        at::set_num_threads(1);  // of this thread
-        return backward(replicas_[i], part_of(static_cast<std::int64_t>(i) + 1), settings_, spread);
-      }));
-    }
-    double loss = backward(cnn_, part_of(0), settings_, spread);
-    for (std::future<double>& other : others) loss += other.get();
-    add_gradients();
-    return loss / settings_.trainers;
-  }
-
- private:
-  void add_gradients() {
-    torch::NoGradGuard guard;
-    std::vector<torch::Tensor> own = cnn_->parameters();
-    for (Cnn& replica : replicas_) {
-      const std::vector<torch::Tensor> others = replica->parameters();
-      for (std::size_t k = 0; k < own.size(); ++k) own[k].mutable_grad().add_(others[k].grad());
-    }
-    for (torch::Tensor& parameter : own) parameter.mutable_grad().div_(settings_.trainers);
-  }
-
-  Cnn& cnn_;
-  const TrainingSettings& settings_;
-  std::vector<Cnn> replicas_;
-};
-
-double train_once(Cnn& cnn, Trainers& trainers, const FrameBatch& batch, double spread,
-                  torch::optim::Optimizer& optimizer) {
-  const double loss = trainers.backward_all(batch, spread);
+// `batch`: the rank's rows of it.
+double train_once(Cnn& cnn, Parts<Cnn>& parts, const FrameBatch& batch, const TrainingSettings& settings,
+                  double spread, torch::optim::Optimizer& optimizer) {
+  const double loss = parts.mean_gradient(batch.images.size(0), [&](Cnn& module, Share rows) {
+    return backward(module, rows_of(batch, rows), settings, spread);
+  });
   torch::nn::utils::clip_grad_norm_(cnn->parameters(), kGradientNorm);
   optimizer.step();
   return loss;
@@ -137,13 +97,25 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
   stage.fingerprint = fingerprint(
       {settings.seed, settings.cnn_seconds > 0.0 ? kTimed : static_cast<std::uint64_t>(settings.cnn_images),
        static_cast<std::uint64_t>(settings.cnn_batch), targets.meshes_crc32, view_hash(targets), start_crc32,
-       bits_of(settings.cnn_learning_rate),
-       static_cast<std::uint64_t>(settings.bfloat16) +
-           2 * static_cast<std::uint64_t>(settings.trainers - 1)});
+       bits_of(settings.cnn_learning_rate), static_cast<std::uint64_t>(settings.bfloat16)});
+  stage.trainers = settings.trainers;
+  stage.ranks = settings.ranks;
   return stage;
 }
 
 }  // namespace
+
+void fill_errors(TrainingPoint& point, Ranks& ranks, std::int64_t count,
+                 const std::vector<torch::Tensor>& best_rad, const std::vector<torch::Tensor>& chosen_rad) {
+  const Share own = ranks.share(count);
+  const torch::Tensor all = torch::zeros({2, count});
+  if (own.count > 0) {
+    all[0].narrow(0, own.first, own.count).copy_(torch::cat(best_rad));
+    all[1].narrow(0, own.first, own.count).copy_(torch::cat(chosen_rad));
+  }
+  ranks.sum({all});
+  fill_errors(point, all[0], all[1]);
+}
 
 void fill_errors(TrainingPoint& point, const torch::Tensor& best_rad, const torch::Tensor& chosen_rad) {
   point.best_deg = best_rad.mean().item<double>() * kDegPerRad;
@@ -162,19 +134,21 @@ bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings,
   stage.resume(cnn, optimizer);
   if (stage.finished()) return true;
 
-  const FrameBatch validation =
-      render_frames(targets, kValidationSeed, 0,
-                    static_cast<int>(std::min<std::int64_t>(kValidationFrames, settings.cnn_images)));
+  Ranks& ranks = *settings.ranks;
+  const int frames = validation_frames(settings);
+  const FrameBatch validation = render_frames(targets, kValidationSeed, 0, frames, ranks.share(frames));
   FrameStream stream(targets, settings.seed, settings.cnn_batch,
-                     static_cast<std::uint64_t>(stage.iteration()), settings.workers);
+                     static_cast<std::uint64_t>(stage.iteration()), settings.workers,
+                     ranks.share(settings.cnn_batch));
   stage.start();
   cnn->train();
-  Trainers trainers(cnn, settings);
-  while (!stage.finished() && !stop) {
+  Parts<Cnn> parts(cnn, settings.trainers, ranks, [] { return Cnn(); });
+  while (!stage.finished() && !ranks.any(stop)) {
     stage.set_rate(optimizer);
     const double spread = spread_at(settings, stage.fraction());
-    stage.advance(train_once(cnn, trainers, stream.next(), spread, optimizer));
+    stage.advance(train_once(cnn, parts, stream.next(), settings, spread, optimizer));
     if (stage.point_due()) {
+      stage.equalize(cnn);
       TrainingPoint point = stage.new_point();
       validate(cnn, validation, settings, point);
       const bool best = stage.add_point(point);
@@ -182,6 +156,7 @@ bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings,
     }
     stage.save_if_due(cnn, optimizer);
   }
+  stage.equalize(cnn);
   stage.save(cnn, optimizer);
   stage.finish_progress();
   return stage.finished();

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <memory>
 #include <thread>
+#include <vector>
 
 #include "gnc/numerics/crc.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/loss.hpp"
+#include "sim/training/parts.hpp"
 #include "sim/training/sequence_features.hpp"
 #include "sim/training/stage.hpp"
 #include "sim/training/train.hpp"
@@ -46,27 +48,40 @@ void standardise(Recurrent& recurrent, const FeatureSet& data, const torch::Devi
 }
 
 // Errors in the last frame of the paper's sequences.
-void validate(Recurrent& recurrent, const FeatureSet& data, const torch::Device& device,
+void validate(Recurrent& recurrent, const FeatureSet& data, const TrainingSettings& settings,
               TrainingPoint& point) {
   torch::NoGradGuard guard;
-  const FeatureSet all = rows_of(data, torch::arange(data.r_lrf_trf.size(0)), device);
-  const TrackedSequences tracked = recurrent->forward(all.hypotheses);
-  const torch::Tensor truth = all.r_lrf_trf.select(1, kFramesPerSequence - 1);
+  const std::int64_t count = data.r_lrf_trf.size(0);
+  const Share own = settings.ranks->share(count);
+  if (own.count == 0) return fill_errors(point, *settings.ranks, count, {}, {});
+  const FeatureSet some =
+      rows_of(data, torch::arange(own.first, own.first + own.count), settings.device);
+  const TrackedSequences tracked = recurrent->forward(some.hypotheses);
+  const torch::Tensor truth = some.r_lrf_trf.select(1, kFramesPerSequence - 1);
   const auto last = [](const torch::Tensor& t) { return t.select(1, kFramesPerSequence - 1); };
   const torch::Tensor clusters = angle_between(last(tracked.cluster_means), truth.unsqueeze(1));
-  fill_errors(point, std::get<0>(clusters.min(-1)).cpu(),
-              angle_between(last(tracked.r_lrf_trf), truth).cpu());
+  fill_errors(point, *settings.ranks, count, {std::get<0>(clusters.min(-1)).cpu()},
+              {angle_between(last(tracked.r_lrf_trf), truth).cpu()});
 }
 
-double train_once(Recurrent& recurrent, const FeatureSet& data, const torch::Tensor& rows,
-                  const torch::Device& device, torch::optim::Optimizer& optimizer) {
-  const FeatureSet batch = rows_of(data, rows, device);
+// Computes the gradient of a batch in the module's parameters. Returns the loss.
+double backward(Recurrent& recurrent, const FeatureSet& batch) {
   const torch::Tensor loss = tracking_loss(recurrent->forward(batch.hypotheses), batch.r_lrf_trf);
-  optimizer.zero_grad();
+  recurrent->zero_grad();
   loss.backward();
+  return loss.item<double>();
+}
+
+// `rows`: the rank's rows of the batch.
+double train_once(Recurrent& recurrent, Parts<Recurrent>& parts, const FeatureSet& data,
+                  const torch::Tensor& rows, const torch::Device& device,
+                  torch::optim::Optimizer& optimizer) {
+  const double loss = parts.mean_gradient(rows.size(0), [&](Recurrent& module, Share part) {
+    return backward(module, rows_of(data, rows.narrow(0, part.first, part.count), device));
+  });
   torch::nn::utils::clip_grad_norm_(recurrent->parameters(), kGradientNorm);
   optimizer.step();
-  return loss.item<double>();
+  return loss;
 }
 
 // CRC-32 of the frozen CNN's weights. An LSTM only works with the features of its own CNN.
@@ -101,6 +116,8 @@ StageSettings stage_settings(const TrainingTargets& targets, const TrainingSetti
        settings.rcnn_seconds > 0.0 ? kTimed : static_cast<std::uint64_t>(settings.rcnn_iterations),
        static_cast<std::uint64_t>(settings.rcnn_batch), targets.meshes_crc32, view_hash(targets),
        crc32_of_cnn(weights), bits_of(settings.rcnn_learning_rate), crc32_of(targets.inertia), kTimings});
+  stage.trainers = settings.trainers;
+  stage.ranks = settings.ranks;
   return stage;
 }
 
@@ -110,15 +127,20 @@ std::int64_t first_sequences(const TrainingSettings& settings) {
   return std::min(settings.rcnn_sequences, std::clamp(affordable, kFewestFirstSequences, kFirstSequences));
 }
 
-// Returns false if `stop` became true before `count` sequences were ready.
-bool wait_for(SequenceFeatures& supply, std::int64_t count, const char* what, const std::atomic<bool>& stop) {
-  if (supply.ready() >= count) return !stop;
-  ProgressBar progress("rcnn", what, static_cast<std::uint64_t>(count));
-  for (std::int64_t ready = supply.ready(); ready < count && !stop; ready = supply.ready()) {
-    progress.update(static_cast<std::uint64_t>(ready));
+// Returns false if `stop` became true on a rank before all had their part of `count` sequences ready.
+bool wait_for(SequenceFeatures& supply, std::int64_t count, const char* what, Ranks& ranks,
+              const std::atomic<bool>& stop) {
+  constexpr std::int64_t kStop = -1;
+  std::unique_ptr<ProgressBar> progress;
+  for (;;) {
+    const std::vector<std::int64_t> all = ranks.gather(stop ? kStop : supply.ready());
+    const std::int64_t ready = *std::min_element(all.begin(), all.end());
+    if (ready == kStop || ready >= count) return ready != kStop;
+    if (ranks.leads() && !progress)
+      progress = std::make_unique<ProgressBar>("rcnn", what, static_cast<std::uint64_t>(count));
+    if (progress) progress->update(static_cast<std::uint64_t>(ready));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
-  return !stop;
 }
 
 }  // namespace
@@ -135,6 +157,7 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
   const bool resumed = stage.resume(recurrent, optimizer);
   if (stage.finished()) return true;
 
+  Ranks& ranks = *settings.ranks;
   const std::int64_t at_first = first_sequences(settings);
   const auto available_at = [&](std::int64_t iteration) {
     return std::min(settings.rcnn_sequences, at_first + kSequencesPerIteration * iteration);
@@ -142,27 +165,35 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
   // A run that goes on needs what it had; that is not time of the stage.
   if (settings.rcnn_seconds > 0.0 && !resumed) stage.start_clock();
   const std::int64_t test_count = std::min({kValidationSequences, settings.rcnn_sequences, at_first});
-  SequenceFeatures tests(targets, *weights, kValidationSeed, test_count, settings.workers + 1);
-  if (!wait_for(tests, test_count, "validation sequences", stop)) return false;
+  SequenceFeatures tests(targets, *weights, kValidationSeed, test_count, settings.workers + 1, settings.ranks);
+  if (!wait_for(tests, test_count, "validation sequences", ranks, stop)) return false;
   const FeatureSet validation = tests.first(test_count);
-  SequenceFeatures supply(targets, *weights, settings.seed, settings.rcnn_sequences, settings.workers);
-  if (!wait_for(supply, available_at(stage.iteration()), "first sequences", stop)) return false;
+  SequenceFeatures supply(targets, *weights, settings.seed, settings.rcnn_sequences, settings.workers,
+                          settings.ranks);
+  if (!wait_for(supply, available_at(stage.iteration()), "first sequences", ranks, stop)) return false;
   if (!resumed) standardise(recurrent, supply.first(at_first), settings.device);
+  stage.equalize(recurrent);
 
   stage.start();
-  while (!stage.finished() && !stop) {
+  Parts<Recurrent> parts(recurrent, settings.trainers, ranks,
+                         [&targets] { return Recurrent(targets.inertia); });
+  while (!stage.finished() && !ranks.any(stop)) {
     stage.set_rate(optimizer);
     const std::int64_t available = available_at(stage.iteration());
     const torch::Tensor rows = draw(settings.seed, stage.iteration(), available, settings.rcnn_batch);
-    stage.advance(train_once(recurrent, supply.first(available), rows, settings.device, optimizer));
+    const Share own = ranks.share(rows.size(0));
+    stage.advance(train_once(recurrent, parts, supply.first(available), rows.narrow(0, own.first, own.count),
+                             settings.device, optimizer));
     if (stage.point_due()) {
+      stage.equalize(recurrent);
       TrainingPoint point = stage.new_point();
-      validate(recurrent, validation, settings.device, point);
+      validate(recurrent, validation, settings, point);
       const bool best = stage.add_point(point);
       if (settings.after_point) settings.after_point(point, best);
     }
     stage.save_if_due(recurrent, optimizer);
   }
+  stage.equalize(recurrent);
   stage.save(recurrent, optimizer);
   stage.finish_progress();
   return stage.finished();
