@@ -19,7 +19,7 @@ packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev c
   libssl-dev libtomlplusplus-dev nlohmann-json3-dev)
 # The console in the browser: sim/run --watch.
 packages_to_watch=("${packages_to_run[@]}" libcivetweb-dev libjs-dygraphs libjs-three)
-packages_to_train=("${packages_to_run[@]}" libtorch-dev libopenblas0-pthread)
+packages_to_train=("${packages_to_run[@]}" libtorch-dev libgloo-dev libopenblas0-pthread)
 packages_to_test=("${packages_to_train[@]}" "${packages_to_watch[@]}" libdnnl-dev libgtest-dev libgmock-dev
   chromium clang clang-format git openmpi-bin python3 slurm-wlm valgrind)
 packages_to_fuzz=("${packages_to_run[@]}" clang libcivetweb-dev libclang-rt-dev python3)

@@ -51,9 +51,9 @@ inline std::string read_checkpoint(const std::string& path) {
   return content.empty() ? "empty" : content;
 }
 
-// Restores all arguments from read_checkpoint(path). Returns false if there was none. Throws std::runtime_error
-// that names the file if it is no checkpoint or if its fingerprint differs from position.fingerprint: continuing
-// would mix two runs.
+// Restores all arguments from read_checkpoint(path). Returns false if there was none. Throws
+// std::runtime_error that names the file if it is no checkpoint or if its fingerprint differs from
+// position.fingerprint: continuing would mix two runs.
 template <typename Module>
 bool load_checkpoint(const std::string& path, const std::string& content, Module& module,
                      torch::optim::Optimizer& optimizer, CheckpointPosition& position) {

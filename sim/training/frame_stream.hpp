@@ -94,7 +94,8 @@ class FrameStream {
   std::vector<std::thread> workers_;
 };
 
-// Rows of group `group` of the same supply, rendered by the calling thread. Validation data uses another seed.
+// Rows of group `group` of the same supply, rendered by the calling thread. Validation data uses another
+// seed.
 FrameBatch render_frames(const TrainingTargets& targets, std::uint64_t seed, std::uint64_t group, int batch,
                          Share rows);
 // All of them.

@@ -30,15 +30,19 @@ using c10d::ProcessGroupGloo;
 using StorePtr = c10::intrusive_ptr<c10d::Store>;
 using Device = std::shared_ptr<::gloo::transport::Device>;
 
+std::string first_line(const std::exception& error) {
+  const std::string text = error.what();
+  return text.substr(0, text.find('\n'));
+}
+
 // Runs an operation that needs the other ranks.
 template <typename Operation>
-auto together(int rank, const Operation& operation) {
+void together(int rank, const Operation& operation) {
   try {
-    return operation();
+    operation();
   } catch (const std::exception& error) {
-    const std::string reason = error.what();
-    throw RankLost("rank " + std::to_string(rank) + ": another rank has ended or cannot be reached (" +
-                   reason.substr(0, reason.find('\n')) + ")");
+    throw RankLost("rank " + std::to_string(rank) + ": another rank has ended or does not answer (" +
+                   first_line(error) + "). The same command continues from the last checkpoint");
   }
 }
 
@@ -173,7 +177,13 @@ std::shared_ptr<Ranks> join(const RankPlace& place, const std::string& folder,
 
 std::shared_ptr<Ranks> join_gloo_ranks(const RankPlace& place, const std::string& folder, double timeout_s) {
   const std::chrono::milliseconds timeout(static_cast<std::int64_t>(1e3 * timeout_s));
-  return together(place.rank, [&] { return join(place, folder, timeout); });
+  try {
+    return join(place, folder, timeout);
+  } catch (const std::exception& error) {
+    throw RankLost("rank " + std::to_string(place.rank) + ": the " + std::to_string(place.count) +
+                   " ranks have not found each other (" + first_line(error) +
+                   "). Were all of them started, and does --rank-timeout leave them enough time?");
+  }
 }
 
 }  // namespace tumblesight::sim

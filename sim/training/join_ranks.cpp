@@ -9,9 +9,13 @@
 namespace tumblesight::sim {
 
 #ifdef TUMBLESIGHT_HAS_GLOO
-bool can_have_several_ranks() { return true; }
+bool can_have_several_ranks() {
+  return true;
+}
 #else
-bool can_have_several_ranks() { return false; }
+bool can_have_several_ranks() {
+  return false;
+}
 #endif
 
 std::shared_ptr<Ranks> join_ranks(const RankPlace& place, const std::string& folder, double timeout_s) {

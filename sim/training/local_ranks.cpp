@@ -29,8 +29,7 @@ using Clock = std::chrono::steady_clock;
 class StoreFolder {
  public:
   StoreFolder() : path_((fs::temp_directory_path() / "tumblesight_ranks_XXXXXX").string()) {
-    if (mkdtemp(path_.data()) == nullptr)
-      throw std::runtime_error(path_ + ": " + std::strerror(errno));
+    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error(path_ + ": " + std::strerror(errno));
   }
   StoreFolder(const StoreFolder&) = delete;
   StoreFolder& operator=(const StoreFolder&) = delete;
@@ -72,7 +71,8 @@ struct LocalRank {
 bool has_failed(const LocalRank& rank) {
   constexpr int kStopped = 3;
   if (!rank.status) return false;
-  return WIFSIGNALED(*rank.status) || (WEXITSTATUS(*rank.status) != 0 && WEXITSTATUS(*rank.status) != kStopped);
+  return WIFSIGNALED(*rank.status) ||
+         (WEXITSTATUS(*rank.status) != 0 && WEXITSTATUS(*rank.status) != kStopped);
 }
 
 class Supervisor {
@@ -108,6 +108,7 @@ class Supervisor {
     std::vector<std::string> words = own_arguments();
     std::vector<std::string> variables = environment_of(rank, count, store_.file());
     const std::vector<char*> argv = pointers(words), envp = pointers(variables);
+    const std::string program = fs::read_symlink("/proc/self/exe");
     const pid_t supervisor = getpid();
     const pid_t child = fork();
     if (child < 0) throw std::runtime_error(std::string("cannot start a rank: ") + std::strerror(errno));
@@ -115,7 +116,7 @@ class Supervisor {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != supervisor) _exit(1);
     sigprocmask(SIG_SETMASK, &before_, nullptr);
-    execve("/proc/self/exe", argv.data(), envp.data());
+    execve(program.c_str(), argv.data(), envp.data());
     _exit(127);
   }
 
@@ -151,18 +152,19 @@ class Supervisor {
   }
 
   int report(int rank) const {
-    constexpr int kFailed = 1, kBadArguments = 2;
+    constexpr int kFailed = 1;
     const LocalRank& failed = ranks_[static_cast<std::size_t>(rank)];
-    const bool by_signal = WIFSIGNALED(*failed.status);
-    if (!by_signal && WEXITSTATUS(*failed.status) == kBadArguments) return kBadArguments;
-    const std::string how = by_signal ? "was ended by signal " + std::to_string(WTERMSIG(*failed.status)) + " (" +
-                                            strsignal(WTERMSIG(*failed.status)) + ")"
-                                      : "failed with status " + std::to_string(WEXITSTATUS(*failed.status));
-    std::fprintf(stderr,
-                 "tumblesight: rank %d (process %d) %s; the other ranks are ended, too. The same command "
-                 "continues from the last checkpoint\n",
-                 rank, static_cast<int>(failed.process), how.c_str());
-    return by_signal ? kFailed : WEXITSTATUS(*failed.status);
+    if (!WIFSIGNALED(*failed.status)) {  // it has said why
+      std::fprintf(stderr, "tumblesight: rank %d failed; the other ranks are ended, too\n", rank);
+      return WEXITSTATUS(*failed.status);
+    }
+    const int signal = WTERMSIG(*failed.status);
+    std::fprintf(
+        stderr,
+        "tumblesight: rank %d (process %d) was ended by signal %d (%s); the other ranks are ended, too. "
+        "The same command continues from the last checkpoint\n",
+        rank, static_cast<int>(failed.process), signal, strsignal(signal));
+    return kFailed;
   }
 
   StoreFolder store_;
@@ -172,6 +174,8 @@ class Supervisor {
 
 }  // namespace
 
-int run_local_ranks(int count) { return Supervisor(count).wait(); }
+int run_local_ranks(int count) {
+  return Supervisor(count).wait();
+}
 
 }  // namespace tumblesight::sim

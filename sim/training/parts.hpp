@@ -1,7 +1,8 @@
-// Parts: how the gradient of a batch comes from ranks and trainers. A batch has as many equal parts as there are
-// trainers in all ranks. Each trainer, a thread with a module of its own that shares the weights, computes the
-// gradient of its part, and normalizes it by the part's own statistics. The mean over the parts is the same, bit
-// for bit, on all ranks, and for every way of dividing 2^k parts among ranks and their trainers.
+// Parts: how the gradient of a batch comes from ranks and trainers. A batch has as many equal parts as there
+// are trainers in all ranks. Each trainer, a thread with a module of its own that shares the weights,
+// computes the gradient of its part, and normalizes it by the part's own statistics. The mean over the parts
+// is the same, bit for bit, on all ranks, and for every way of dividing 2^k parts among ranks and their
+// trainers.
 #pragma once
 
 #include <ATen/Parallel.h>
@@ -22,12 +23,15 @@ inline std::vector<torch::Tensor> running_statistics(const Cnn& cnn) {
   all.insert(all.end(), cnn->backbone->variance.begin(), cnn->backbone->variance.end());
   return all;
 }
-inline std::vector<torch::Tensor> running_statistics(const Recurrent&) { return {}; }
+inline std::vector<torch::Tensor> running_statistics(const Recurrent&) {
+  return {};
+}
 
 template <typename Module>
 class Parts {
  public:
-  // Computes the gradient of these rows of the rank's share of the batch in the module. Returns their mean loss.
+  // Computes the gradient of these rows of the rank's share of the batch in the module. Returns their mean
+  // loss.
   using Backward = std::function<double(Module&, Share)>;
 
   // `new_module`: one of the same shape, of any weights. The referenced objects must outlive this one.
@@ -78,7 +82,8 @@ class Parts {
   // Gradient, running statistics and loss of one part.
   static torch::Tensor flat_of(const Module& module, double loss) {
     std::vector<torch::Tensor> pieces;
-    for (const torch::Tensor& parameter : module->parameters()) pieces.push_back(parameter.grad().reshape(-1));
+    for (const torch::Tensor& parameter : module->parameters())
+      pieces.push_back(parameter.grad().reshape(-1));
     for (const torch::Tensor& statistic : running_statistics(module)) pieces.push_back(statistic.reshape(-1));
     pieces.push_back(torch::full({1}, loss, pieces.front().options()));
     return torch::cat(pieces);

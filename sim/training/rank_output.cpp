@@ -3,9 +3,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "sim/training/ranks.hpp"
 
@@ -45,6 +47,8 @@ int run_quietly_unless_first(int rank, const std::function<int()>& job) {
   } catch (const RankLost&) {
     throw;  // names the rank
   } catch (const std::runtime_error& error) {
+    // Rank 0 mostly fails for the same reason, and a supervisor ends this process once it has said so.
+    std::this_thread::sleep_for(std::chrono::seconds(1));
     throw std::runtime_error("rank " + std::to_string(rank) + ": " + error.what());
   }
 }

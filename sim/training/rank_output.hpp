@@ -5,8 +5,8 @@
 
 namespace tumblesight::sim {
 
-// Runs `job`. On another rank than 0 its output on stdout and stderr is dropped meanwhile. Throws as `job` does;
-// the message of a std::runtime_error then begins with the rank.
+// Runs `job`. On another rank than 0 its output on stdout and stderr is dropped meanwhile. Throws as `job`
+// does; the message of a std::runtime_error then begins with the rank.
 int run_quietly_unless_first(int rank, const std::function<int()>& job);
 
 }  // namespace tumblesight::sim

@@ -45,9 +45,8 @@ Launcher slurm(const Variables& variable) {
 }
 
 std::optional<Launcher> launcher_of(const Variables& variable) {
-  constexpr Launcher kLaunchers[] = {{kLocalRank, kLocalCount},
-                                     {"RANK", "WORLD_SIZE"},
-                                     {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}};
+  constexpr Launcher kLaunchers[] = {
+      {kLocalRank, kLocalCount}, {"RANK", "WORLD_SIZE"}, {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}};
   for (const Launcher& launcher : kLaunchers) {
     if (variable(launcher.rank) != nullptr || variable(launcher.count) != nullptr) return launcher;
   }

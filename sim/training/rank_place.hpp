@@ -1,5 +1,5 @@
-// RankPlace: which rank of how many this process is, and how the ranks find each other, as the environment that
-// their launcher has set says. Described in docs/training.md.
+// RankPlace: which rank of how many this process is, and how the ranks find each other, as the environment
+// that their launcher has set says. Described in docs/training.md.
 #pragma once
 
 #include <functional>
@@ -14,13 +14,13 @@ struct RankPlace {
   std::string store_file;   // of ranks that run_local_ranks() has started; empty: of others
   std::string master_host;  // where rank 0 listens; empty: the ranks meet in the folder of the training
   int master_port = 0;
-  std::string store_prefix;          // of the keys in the store
-  bool launcher_has_store = false;   // at master_host, in place of rank 0
+  std::string store_prefix;         // of the keys in the store
+  bool launcher_has_store = false;  // at master_host, in place of rank 0
 };
 
-// Local ranks, then RANK and WORLD_SIZE, then Open MPI, then a task of a Slurm step: the first of these that the
-// environment names. Outside all of them, or with one rank, the process is alone. Throws std::runtime_error that
-// names the variable if they do not go together.
+// Local ranks, then RANK and WORLD_SIZE, then Open MPI, then a task of a Slurm step: the first of these that
+// the environment names. Outside all of them, or with one rank, the process is alone. Throws
+// std::runtime_error that names the variable if they do not go together.
 RankPlace rank_place(const std::function<const char*(const char*)>& variable);
 RankPlace rank_place();  // of this process's environment
 

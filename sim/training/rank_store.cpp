@@ -25,7 +25,9 @@ std::string new_word() {
   return std::to_string(random()) + "." + std::to_string(random());
 }
 
-std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+std::vector<std::uint8_t> bytes_of(const std::string& text) {
+  return {text.begin(), text.end()};
+}
 
 std::string first_word(const fs::path& path) {
   std::string word;
@@ -57,8 +59,12 @@ void remove_left_files(const fs::path& folder) {
   }
 }
 
-std::string guest_key(int rank) { return "guest/" + std::to_string(rank); }
-std::string welcome_key(const std::string& word) { return "welcome/" + word; }
+std::string guest_key(int rank) {
+  return "guest/" + std::to_string(rank);
+}
+std::string welcome_key(const std::string& word) {
+  return "welcome/" + word;
+}
 
 // Rank 0 opens a new store, invites the others to it and answers each of them.
 StorePtr invite(const RankPlace& place, const fs::path& folder, std::chrono::milliseconds timeout) {
@@ -66,6 +72,7 @@ StorePtr invite(const RankPlace& place, const fs::path& folder, std::chrono::mil
   remove_left_files(folder);
   const std::string name = kStore + new_word();
   StorePtr store = file_store(folder / name, place, timeout);
+  store->set("open", bytes_of("yes"));  // creates the file
   const fs::path renewed = folder / (std::string(kInvitation) + ".new");
   std::ofstream(renewed) << name << '\n';
   fs::rename(renewed, folder / kInvitation);
@@ -77,8 +84,9 @@ StorePtr invite(const RankPlace& place, const fs::path& folder, std::chrono::mil
   return store;
 }
 
+constexpr std::chrono::milliseconds kSoon{500};
+
 bool is_welcome(c10d::Store& store, const std::string& word) {
-  constexpr std::chrono::seconds kSoon{1};
   try {
     store.wait({welcome_key(word)}, kSoon);
     return true;
@@ -97,11 +105,16 @@ StorePtr accept(const RankPlace& place, const fs::path& folder, std::chrono::mil
   while (Clock::now() < deadline) {
     const std::string name = first_word(folder / kInvitation);
     if (!name.empty() && name != opened && fs::exists(folder / name)) {
-      store = file_store(folder / name, place, timeout);
+      store.reset();
+      if (!opened.empty()) fs::remove(folder / opened);
+      store = file_store(folder / name, place, kSoon);  // its file may be gone at any moment
       store->set(guest_key(place.rank), bytes_of(word));
       opened = name;
     }
-    if (store && is_welcome(*store, word)) return store;
+    if (store && is_welcome(*store, word)) {
+      store->setTimeout(timeout);
+      return store;
+    }
     if (!store) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   throw std::runtime_error("rank 0 has not opened " + (folder / kInvitation).string());

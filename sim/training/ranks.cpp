@@ -76,6 +76,8 @@ std::string Ranks::of_first(const std::string& bytes) {
 
 void Ranks::sum_flat(torch::Tensor&) {}
 void Ranks::broadcast(torch::Tensor&) {}
-torch::Tensor Ranks::gather_rows(const torch::Tensor& row) { return row.unsqueeze(0); }
+torch::Tensor Ranks::gather_rows(const torch::Tensor& row) {
+  return row.unsqueeze(0);
+}
 
 }  // namespace tumblesight::sim

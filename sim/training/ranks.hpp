@@ -1,5 +1,6 @@
 // Ranks: the processes that train one network together. Each computes its share of every batch. What they
-// exchange is summed in a fixed order, so that all ranks hold the same bits and a repeated run gives them again.
+// exchange is summed in a fixed order, so that all ranks hold the same bits and a repeated run gives them
+// again.
 #pragma once
 
 #include <torch/torch.h>
@@ -19,8 +20,8 @@ struct Share {
 // That of `index` among `shares` of rows 0 .. rows-1. The sizes of the shares differ by one at most.
 Share share_of(std::int64_t rows, int index, int shares);
 
-// Adds up tensors of one shape into the first one, as a balanced tree: neighbours first. The sum of 2^k tensors
-// therefore has the same bits when some of them are added up beforehand, in groups of 2^j neighbours.
+// Adds up tensors of one shape into the first one, as a balanced tree: neighbours first. The sum of 2^k
+// tensors therefore has the same bits when some of them are added up beforehand, in groups of 2^j neighbours.
 void add_up(std::vector<torch::Tensor>& tensors);
 
 // Another rank has ended, or does not answer.
@@ -28,8 +29,8 @@ struct RankLost : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A rank that is alone. joined_ranks() (join_ranks.hpp) gives several. All ranks must make the same calls in the
-// same order, with tensors of the same shapes. Each call throws RankLost if a rank is lost.
+// A rank that is alone. joined_ranks() (join_ranks.hpp) gives several. All ranks must make the same calls in
+// the same order, with tensors of the same shapes. Each call throws RankLost if a rank is lost.
 class Ranks {
  public:
   Ranks() = default;
@@ -47,15 +48,14 @@ class Ranks {
   void sum(const std::vector<torch::Tensor>& tensors);
   // Replaces each tensor by that of rank 0.
   void copy_from_first(const std::vector<torch::Tensor>& tensors);
-  std::vector<double> gather(double value);           // of all ranks, by rank
+  std::vector<double> gather(double value);  // of all ranks, by rank
   std::vector<std::int64_t> gather(std::int64_t value);
-  bool any(bool value);                               // on any rank
-  double of_first(double value);                      // that of rank 0
+  bool any(bool value);           // on any rank
+  double of_first(double value);  // that of rank 0
   std::string of_first(const std::string& bytes);
 
  protected:
-  Ranks(int rank, int count, int sharing_cores)
-      : rank_(rank), count_(count), sharing_cores_(sharing_cores) {}
+  Ranks(int rank, int count, int sharing_cores) : rank_(rank), count_(count), sharing_cores_(sharing_cores) {}
 
  private:
   // Of a contiguous tensor on the CPU; called with several ranks only.

@@ -213,8 +213,8 @@ void SequenceFeatures::exchange_until(std::int64_t count) {
   if (count <= exchanged_) return;
   const auto rows = [&](const torch::Tensor& t) { return t.narrow(0, exchanged_, count - exchanged_); };
   const SequenceHypotheses& own = all_.hypotheses;
-  ranks_->sum({rows(own.features), rows(own.r_lrf_trf), rows(own.logits), rows(own.periods),
-               rows(all_.r_lrf_trf)});
+  ranks_->sum(
+      {rows(own.features), rows(own.r_lrf_trf), rows(own.logits), rows(own.periods), rows(all_.r_lrf_trf)});
   exchanged_ = count;
 }
 

@@ -36,8 +36,8 @@ class SequenceFeatures {
   // effects are drawn in turn. A sequence keeps the strengths that it draws within the ranges of its set.
   // Half of the tumbling bodies have a random inertia instead of the target's, so that the network does not
   // rely on it. Half of the sequences come in the sensor's period, the others at other times or with single
-  // frames lost. Several ranks take turns, too: each sequence is computed by one of them. `targets` and `weights`
-  // must outlive this object.
+  // frames lost. Several ranks take turns, too: each sequence is computed by one of them. `targets` and
+  // `weights` must outlive this object.
   SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights<gnc::Float32>& weights,
                    std::uint64_t seed, std::int64_t count, int workers,
                    std::shared_ptr<Ranks> ranks = std::make_shared<Ranks>());
@@ -60,10 +60,10 @@ class SequenceFeatures {
   FeatureSet all_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<bool> done_;       // or computed by another rank
-  std::int64_t claimed_;         // the next sequence to compute
-  std::int64_t prefix_ = 0;      // sequences 0 .. prefix-1 are done
-  std::int64_t exchanged_ = 0;   // of sequences 0 .. exchanged-1 those of the other ranks are here, too
+  std::vector<bool> done_;      // or computed by another rank
+  std::int64_t claimed_;        // the next sequence to compute
+  std::int64_t prefix_ = 0;     // sequences 0 .. prefix-1 are done
+  std::int64_t exchanged_ = 0;  // of sequences 0 .. exchanged-1 those of the other ranks are here, too
   bool stop_ = false;
   std::vector<std::thread> workers_;
 };

@@ -57,9 +57,10 @@ Stage::Stage(const StageSettings& settings) : settings_(settings) {
                    static_cast<std::uint64_t>(settings.trainers)}));
   for (std::size_t rank = 1; rank < all.size(); ++rank) {
     if (all[rank] == all[0]) continue;
-    throw std::runtime_error("rank " + std::to_string(rank) +
-                             " was started with other settings (meshes, target, conditions, effects, sensor, "
-                             "ranges, seed, rates, precision, time, trainers, numbers of samples) than rank 0");
+    throw std::runtime_error(
+        "the ranks have different settings: rank " + std::to_string(rank) +
+        " was started with other settings (meshes, target, conditions, effects, sensor, "
+        "ranges, seed, rates, precision, time, trainers, numbers of samples) than rank 0");
   }
 }
 

@@ -54,8 +54,8 @@ class Stage {
   // Throws std::runtime_error if the ranks have different settings.
   explicit Stage(const StageSettings& settings);
 
-  // Restores module, optimizer and position from the checkpoint of rank 0. Returns false if there is none; then
-  // all ranks have the module of rank 0.
+  // Restores module, optimizer and position from the checkpoint of rank 0. Returns false if there is none;
+  // then all ranks have the module of rank 0.
   template <typename Module>
   bool resume(Module& module, torch::optim::Optimizer& optimizer) {
     const std::string content = settings_.ranks->of_first(leads() ? read_checkpoint(path()) : "");

@@ -21,7 +21,8 @@ struct TrainingSettings {
   std::string start_from;  // model image whose CNN is the starting point; empty: random weights
   std::uint64_t seed = 1;
   int workers = 1;  // rendering threads
-  // Threads of each rank that share its part of a batch: parts.hpp. Batches are multiples of ranks times trainers.
+  // Threads of each rank that share its part of a batch: parts.hpp. Batches are multiples of ranks times
+  // trainers.
   int trainers = 1;
   // The processes that train together. A checkpoint does not depend on their number, nor on that of trainers.
   std::shared_ptr<Ranks> ranks = std::make_shared<Ranks>();
@@ -46,9 +47,9 @@ struct TrainingSettings {
 
 // Each stage resumes from the checkpoint in `settings.folder` if there is one, and returns at once if that
 // stage was finished. When `stop` becomes true, it saves a checkpoint and returns. Returns whether the stage
-// is finished. Throws std::runtime_error if a file cannot be read or written, or if a checkpoint or another rank
-// is of other settings, and RankLost. With several ranks all call these functions together; rank 0 reads and
-// writes the files of the folder.
+// is finished. Throws std::runtime_error if a file cannot be read or written, or if a checkpoint or another
+// rank is of other settings, and RankLost. With several ranks all call these functions together; rank 0 reads
+// and writes the files of the folder.
 bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings, Cnn& cnn,
                const std::atomic<bool>& stop);
 bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings, const Cnn& cnn,

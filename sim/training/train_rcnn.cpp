@@ -54,8 +54,7 @@ void validate(Recurrent& recurrent, const FeatureSet& data, const TrainingSettin
   const std::int64_t count = data.r_lrf_trf.size(0);
   const Share own = settings.ranks->share(count);
   if (own.count == 0) return fill_errors(point, *settings.ranks, count, {}, {});
-  const FeatureSet some =
-      rows_of(data, torch::arange(own.first, own.first + own.count), settings.device);
+  const FeatureSet some = rows_of(data, torch::arange(own.first, own.first + own.count), settings.device);
   const TrackedSequences tracked = recurrent->forward(some.hypotheses);
   const torch::Tensor truth = some.r_lrf_trf.select(1, kFramesPerSequence - 1);
   const auto last = [](const torch::Tensor& t) { return t.select(1, kFramesPerSequence - 1); };
@@ -165,7 +164,8 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
   // A run that goes on needs what it had; that is not time of the stage.
   if (settings.rcnn_seconds > 0.0 && !resumed) stage.start_clock();
   const std::int64_t test_count = std::min({kValidationSequences, settings.rcnn_sequences, at_first});
-  SequenceFeatures tests(targets, *weights, kValidationSeed, test_count, settings.workers + 1, settings.ranks);
+  SequenceFeatures tests(targets, *weights, kValidationSeed, test_count, settings.workers + 1,
+                         settings.ranks);
   if (!wait_for(tests, test_count, "validation sequences", ranks, stop)) return false;
   const FeatureSet validation = tests.first(test_count);
   SequenceFeatures supply(targets, *weights, settings.seed, settings.rcnn_sequences, settings.workers,
