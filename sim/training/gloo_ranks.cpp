@@ -2,6 +2,8 @@
 
 #include <netdb.h>
 #include <sched.h>
+#include <signal.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -177,6 +179,7 @@ std::shared_ptr<Ranks> join(const RankPlace& place, const std::string& folder,
 
 std::shared_ptr<Ranks> join_gloo_ranks(const RankPlace& place, const std::string& folder, double timeout_s) {
   const std::chrono::milliseconds timeout(static_cast<std::int64_t>(1e3 * timeout_s));
+  if (!place.store_file.empty()) prctl(PR_SET_PDEATHSIG, SIGTERM);  // stops with its supervisor
   try {
     return join(place, folder, timeout);
   } catch (const std::exception& error) {

@@ -1,22 +1,25 @@
 #include "sim/training/local_ranks.hpp"
 
 #include <signal.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "sim/process/child_process.hpp"
 #include "sim/training/rank_place.hpp"
 
 namespace tumblesight::sim {
@@ -24,6 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+constexpr int kFailed = 1, kStopped = 3;  // exit statuses of the tool
+constexpr int kBySignal = -1;             // of ChildProcess
+
+std::atomic<bool> stop_requested{false};
 
 // A folder of its own for the store's file.
 class StoreFolder {
@@ -43,133 +51,87 @@ class StoreFolder {
   std::string path_;
 };
 
+// Of this process, without its name.
 std::vector<std::string> own_arguments() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::vector<std::string> arguments;
   for (std::string word; std::getline(file, word, '\0');) arguments.push_back(word);
+  arguments.erase(arguments.begin());
   return arguments;
-}
-
-std::vector<char*> pointers(std::vector<std::string>& words) {
-  std::vector<char*> result;
-  for (std::string& word : words) result.push_back(word.data());
-  result.push_back(nullptr);
-  return result;
-}
-
-std::vector<std::string> environment_of(int rank, int count, const std::string& store_file) {
-  std::vector<std::string> all = local_rank_environment(rank, count, store_file);
-  for (char** variable = environ; *variable != nullptr; ++variable) all.emplace_back(*variable);
-  return all;
-}
-
-struct LocalRank {
-  pid_t process = -1;
-  std::optional<int> status;  // of waitpid(), once it has ended
-};
-
-bool has_failed(const LocalRank& rank) {
-  constexpr int kStopped = 3;
-  if (!rank.status) return false;
-  return WIFSIGNALED(*rank.status) ||
-         (WEXITSTATUS(*rank.status) != 0 && WEXITSTATUS(*rank.status) != kStopped);
 }
 
 class Supervisor {
  public:
   explicit Supervisor(int count) {
-    sigemptyset(&signals_);
-    for (const int signal : {SIGCHLD, SIGINT, SIGTERM}) sigaddset(&signals_, signal);
-    sigprocmask(SIG_BLOCK, &signals_, &before_);
-    for (int rank = 0; rank < count; ++rank) ranks_.push_back({start(rank, count), {}});
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_requested = true; });
+    const std::string program = fs::read_symlink("/proc/self/exe");
+    for (int rank = 0; rank < count; ++rank) {
+      ranks_.push_back(std::make_unique<ChildProcess>(program, own_arguments(), "", -1,
+                                                      local_rank_environment(rank, count, store_.file())));
+    }
   }
-  ~Supervisor() {
-    signal_all(SIGKILL);
-    while (!all_ended()) collect(kASecond);
-    sigprocmask(SIG_SETMASK, &before_, nullptr);
-  }
+  // At once: a rank does not end by itself while it waits for another one.
+  ~Supervisor() { signal_all(SIGKILL); }
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
   int wait() {
-    while (!all_ended() && !failed()) collect(kASecond);
-    if (!failed()) return WEXITSTATUS(*ranks_.front().status);
+    while (any_running() && !failed()) pause();
+    if (!failed()) return ranks_.front()->exit_status();
     // The first to end may have failed because of another one, whose end is noticed a little later.
     const auto deadline = Clock::now() + std::chrono::milliseconds(300);
-    while (!all_ended() && !failed_by_signal() && Clock::now() < deadline) collect(kShortly);
-    return report(failed_by_signal() ? *failed_by_signal() : *failed());
+    while (any_running() && !ended_by_signal() && Clock::now() < deadline) pause();
+    return report(ended_by_signal() ? *ended_by_signal() : *failed());
   }
 
  private:
-  static constexpr timespec kASecond{1, 0};
-  static constexpr timespec kShortly{0, 50'000'000};
-
-  pid_t start(int rank, int count) {
-    std::vector<std::string> words = own_arguments();
-    std::vector<std::string> variables = environment_of(rank, count, store_.file());
-    const std::vector<char*> argv = pointers(words), envp = pointers(variables);
-    const std::string program = fs::read_symlink("/proc/self/exe");
-    const pid_t supervisor = getpid();
-    const pid_t child = fork();
-    if (child < 0) throw std::runtime_error(std::string("cannot start a rank: ") + std::strerror(errno));
-    if (child > 0) return child;
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != supervisor) _exit(1);
-    sigprocmask(SIG_SETMASK, &before_, nullptr);
-    execve(program.c_str(), argv.data(), envp.data());
-    _exit(127);
-  }
-
   void signal_all(int signal) {
-    for (const LocalRank& rank : ranks_) {
-      if (!rank.status) kill(rank.process, signal);
+    for (const auto& rank : ranks_) {
+      if (rank->running()) kill(rank->pid(), signal);
     }
   }
 
-  // Waits for a signal, passes it on, and takes up the ranks that have ended.
-  void collect(const timespec& at_most) {
-    const int signal = sigtimedwait(&signals_, nullptr, &at_most);
-    if (signal == SIGINT || signal == SIGTERM) signal_all(SIGTERM);
-    for (LocalRank& rank : ranks_) {
-      int status = 0;
-      if (!rank.status && waitpid(rank.process, &status, WNOHANG) == rank.process) rank.status = status;
-    }
+  void pause() {
+    if (stop_requested.exchange(false)) signal_all(SIGTERM);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 
-  bool all_ended() const {
-    return std::all_of(ranks_.begin(), ranks_.end(), [](const LocalRank& rank) { return rank.status; });
+  bool any_running() {
+    bool any = false;
+    for (const auto& rank : ranks_) any = rank->running() || any;
+    return any;
   }
 
   template <typename Test>
-  std::optional<int> first_that(const Test& test) const {
-    const auto found = std::find_if(ranks_.begin(), ranks_.end(), test);
+  std::optional<std::size_t> first_that(const Test& test) const {
+    const auto found = std::find_if(ranks_.begin(), ranks_.end(),
+                                    [&](const auto& rank) { return rank->ended() && test(*rank); });
     if (found == ranks_.end()) return {};
-    return static_cast<int>(found - ranks_.begin());
+    return found - ranks_.begin();
   }
-  std::optional<int> failed() const { return first_that(has_failed); }
-  std::optional<int> failed_by_signal() const {
-    return first_that([](const LocalRank& rank) { return rank.status && WIFSIGNALED(*rank.status); });
+  std::optional<std::size_t> failed() const {
+    return first_that(
+        [](const ChildProcess& rank) { return !rank.ended_well() && rank.exit_status() != kStopped; });
+  }
+  std::optional<std::size_t> ended_by_signal() const {
+    return first_that([](const ChildProcess& rank) { return rank.exit_status() == kBySignal; });
   }
 
-  int report(int rank) const {
-    constexpr int kFailed = 1;
-    const LocalRank& failed = ranks_[static_cast<std::size_t>(rank)];
-    if (!WIFSIGNALED(*failed.status)) {  // it has said why
-      std::fprintf(stderr, "tumblesight: rank %d failed; the other ranks are ended, too\n", rank);
-      return WEXITSTATUS(*failed.status);
+  int report(std::size_t index) const {
+    const ChildProcess& rank = *ranks_[index];
+    if (rank.exit_status() != kBySignal) {  // it has said why
+      std::fprintf(stderr, "tumblesight: rank %zu failed; the other ranks are ended, too\n", index);
+      return rank.exit_status();
     }
-    const int signal = WTERMSIG(*failed.status);
-    std::fprintf(
-        stderr,
-        "tumblesight: rank %d (process %d) was ended by signal %d (%s); the other ranks are ended, too. "
-        "The same command continues from the last checkpoint\n",
-        rank, static_cast<int>(failed.process), signal, strsignal(signal));
+    std::fprintf(stderr,
+                 "tumblesight: rank %zu (process %d) %s; the other ranks are ended, too. The same command "
+                 "continues from the last checkpoint\n",
+                 index, static_cast<int>(rank.pid()), rank.how_it_ended().c_str());
     return kFailed;
   }
 
   StoreFolder store_;
-  sigset_t signals_{}, before_{};
-  std::vector<LocalRank> ranks_;
+  std::vector<std::unique_ptr<ChildProcess>> ranks_;
 };
 
 }  // namespace
