@@ -6,6 +6,7 @@
 
 #include "sim/campaign/launcher.hpp"
 #include "sim/process/child_process.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
@@ -15,16 +16,9 @@ constexpr std::size_t kMostParts = 1000;  // Slurm's usual MaxArraySize is 1001
 constexpr double kMostOfACommand_s = 60.0;
 constexpr int kMostRounds = 3;  // of the array, for parts of which a task died
 
-// For a shell.
-std::string quoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string command_line(const LaunchSettings& settings, const std::vector<std::string>& arguments) {
-  std::string line = quoted(settings.program);
-  for (const std::string& argument : arguments) line += " " + quoted(argument);
+  std::string line = shell_word(settings.program);
+  for (const std::string& argument : arguments) line += " " + shell_word(argument);
   return line;
 }
 

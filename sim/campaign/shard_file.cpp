@@ -106,6 +106,19 @@ class Records {
   std::vector<std::uint8_t> bytes_;
 };
 
+// A disk that fills up takes a part of the bytes first.
+bool write_all(int file, const void* bytes, std::size_t size_bytes) {
+  const auto* from = static_cast<const char*>(bytes);
+  while (size_bytes > 0) {
+    const ssize_t written = write(file, from, size_bytes);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    from += written;
+    size_bytes -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string to_string(const Shard& shard) {
@@ -173,7 +186,7 @@ void ShardWriter::take_file() {
 
 void ShardWriter::start_file(const ShardHeader& header) {
   const std::string bytes = header_bytes(header);
-  if (write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+  if (!write_all(file_, bytes.data(), bytes.size()))
     fail(path_, fmt::format("cannot be written: {}", std::strerror(errno)));
 }
 
@@ -193,7 +206,7 @@ void ShardWriter::continue_file(const ShardHeader& header) {
 void ShardWriter::append(std::size_t run, const SequenceResult& result) {
   const auto frames = static_cast<std::uint32_t>(runs_[run].scenario.frames);
   const std::vector<std::uint8_t> bytes = to_record(static_cast<std::uint32_t>(run), result, frames);
-  if (write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+  if (!write_all(file_, bytes.data(), bytes.size()))
     fail(path_, fmt::format("cannot be written: {}; free space, then run the same command again: it goes on "
                             "where it stopped",
                             std::strerror(errno)));

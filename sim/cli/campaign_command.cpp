@@ -70,7 +70,7 @@ OpenCampaign open_campaign(const CampaignArguments& arguments) {
 
 std::string joined_words(const std::vector<std::string>& words) {
   std::string text;
-  for (const std::string& word : words) text += " " + word;
+  for (const std::string& word : words) text += " " + shell_word(word);
   return text;
 }
 

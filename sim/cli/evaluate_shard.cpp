@@ -14,7 +14,8 @@ namespace {
 
 void remove(std::string& command, const std::string& option, const std::string& value) {
   for (const char* between : {" ", "="}) {
-    const std::string text = " " + option + between + value;
+    const std::string text =
+        " " + (*between == '=' ? shell_word(option + "=" + value) : option + " " + shell_word(value));
     if (const std::size_t at = command.find(text); at != std::string::npos) command.erase(at, text.size());
   }
 }

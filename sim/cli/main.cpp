@@ -18,6 +18,7 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/terminal/text.hpp"
 #ifdef TUMBLESIGHT_HAS_SIL
 #include "hal/dds/idl/icd_hash.hpp"
 #endif
@@ -88,7 +89,7 @@ int main(int argc, char** argv) {
   app.formatter(std::make_shared<sim::HelpFormatter>());
   try {
     std::string command_line = "tumblesight";
-    for (int i = 1; i < argc; ++i) command_line += std::string(" ") + argv[i];
+    for (int i = 1; i < argc; ++i) command_line += " " + sim::shell_word(argv[i]);
     sim::add_verbs(app, command_line);
 #ifdef TUMBLESIGHT_FULL_PROGRAM
     if (argc < 2 || !is_version_or_verb(app, argv[1])) start_full_program(argv);

@@ -20,6 +20,9 @@ std::string wrapped(const std::string& text, std::size_t columns);
 inline constexpr std::size_t kMostOfAValue = 60;
 std::string shortened(const std::string& text, std::size_t most = kMostOfAValue);
 
+// A word of a command line as a shell takes it: in quotes if it needs them.
+std::string shell_word(const std::string& word);
+
 // A number with its noun.
 // "1 frame", "2 frames".
 inline std::string counted(std::uint64_t count, const std::string& noun) {

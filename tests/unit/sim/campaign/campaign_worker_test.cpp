@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <set>
 
 #include "tests/unit/sim/campaign/campaign_test_support.hpp"
@@ -49,7 +50,10 @@ TEST_F(CampaignWorker, RunsEveryTaskOnceToTheFiguresOfOneProcess) {
 
 TEST_F(CampaignWorker, OfAPartRunsOnlyItsTasks) {
   std::multiset<std::uint32_t> seen;
-  const auto note = [&](const CampaignTask& task) { seen.insert(task.shard.index); };
+  const auto note = [&](const CampaignTask& task) {
+    seen.insert(task.shard.index);
+    run(task);
+  };
   work_on(Shard{1, 3}, note);
   EXPECT_EQ(seen, (std::multiset<std::uint32_t>{1}));
   work_on(Shard{0, 3}, note);
@@ -62,6 +66,17 @@ TEST_F(CampaignWorker, LeavesATaskToWhoeverRunsIt) {
   EXPECT_EQ(outcome.done, 3U);
   EXPECT_TRUE(outcome.failures.empty());
   EXPECT_EQ(tasks_left(tasks_), (std::vector<std::size_t>{2}));
+}
+
+// The other worker dies while this one runs its last task.
+TEST_F(CampaignWorker, TakesTheTaskOfAWorkerThatHasDied) {
+  auto other = std::make_unique<ShardWriter>(tasks_[0].path, small_.header(tasks_[0].shard));
+  const WorkerOutcome outcome = work_on(std::nullopt, [&](const CampaignTask& task) {
+    if (&task == &tasks_[3]) other.reset();
+    run(task);
+  });
+  EXPECT_EQ(outcome.done, 4U);
+  EXPECT_TRUE(tasks_left(tasks_).empty());
 }
 
 TEST_F(CampaignWorker, OneThatWasTakenMeanwhileIsNoFailure) {

@@ -20,5 +20,11 @@ TEST(ReplayCommand, OfADefaultEvaluationNamesTheCondition) {
             "tumblesight simulate --condition nominal --only ");
 }
 
+TEST(ReplayCommand, KeepsQuotedWordsWhole) {
+  EXPECT_EQ(replay_command("tumblesight evaluate --mesh 'my meshes/a --csv b.stl' --json 'out dir/x.json'",
+                           Condition::kNominal),
+            "tumblesight simulate --mesh 'my meshes/a --csv b.stl' --condition nominal --only ");
+}
+
 }  // namespace
 }  // namespace tumblesight::sim

@@ -50,6 +50,14 @@ TEST(Table, RefusesSurplusCells) {
   EXPECT_THROW(table.row({"1", "2"}), std::invalid_argument);
 }
 
+TEST(ShellWord, IsQuotedOnlyIfItNeedsTo) {
+  EXPECT_EQ(shell_word("--mesh=a/b.stl"), "--mesh=a/b.stl");
+  EXPECT_EQ(shell_word("my mesh.stl"), "'my mesh.stl'");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word("$HOME"), "'$HOME'");
+  EXPECT_EQ(shell_word(""), "''");
+}
+
 TEST(Text, IsShortenedBetweenCharactersAndWithoutControls) {
   EXPECT_EQ(shortened("abc", 3), "abc");
   EXPECT_EQ(shortened("abcd", 3), "abc...");
