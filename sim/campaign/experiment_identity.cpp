@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <stdexcept>
+
 #include "gnc/numerics/crc.hpp"
-#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -34,7 +36,7 @@ Json inertia_json(const std::optional<Eigen::Matrix3d>& inertia_kg_m2) {
 
 std::optional<Eigen::Matrix3d> inertia_from(const Json& json) {
   if (json.is_null()) return std::nullopt;
-  const auto elements = json.get<std::vector<double>>();
+  const auto elements = json.get<std::array<double, 9>>();
   return Eigen::Matrix3d(Eigen::Map<const Eigen::Matrix3d>(elements.data()));
 }
 
@@ -111,6 +113,16 @@ SubjectDescription subject_from(const Json& json) {
   return subject;
 }
 
+// Whoever wrote the header has checked it, so anything else is damage or deceit.
+void require_possible(const ExperimentSettings& settings) {
+  constexpr std::uint32_t kMostFrames = 1000;
+  constexpr std::uint32_t kMostSequences = 10'000'000;
+  const bool possible = !settings.conditions.empty() && settings.frames >= 1 &&
+                        settings.frames <= kMostFrames && settings.sequences >= 1 &&
+                        settings.sequences <= kMostSequences;
+  if (!possible) throw std::invalid_argument("conditions, frames or sequences are out of their limits");
+}
+
 ExperimentSettings settings_from(const Json& json) {
   ExperimentSettings settings;
   settings.conditions = conditions_from(json.at("conditions"));
@@ -122,6 +134,7 @@ ExperimentSettings settings_from(const Json& json) {
   settings.effects = effects_from_json(json.at("effects"));
   settings.baseline_sequences = json.at("baseline_sequences").get<std::uint32_t>();
   settings.curves = json.at("curves").get<bool>();
+  require_possible(settings);
   return settings;
 }
 

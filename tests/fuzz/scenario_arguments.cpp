@@ -33,7 +33,7 @@ bool parse(CommandLine& line, Given& given) {
     app.parse(line.argc(), line.argv());
     sim::require_supported_length(given.evaluate.scenario);
     sim::require_separate_files(sim::files_read(given.evaluate.scenario),
-                                {{"--csv", given.evaluate.csv}, {"--json", given.evaluate.scenario.json}});
+                                sim::files_written(given.evaluate.files));
     if (given.evaluate.paper) sim::refuse_options_set_by_paper(app);
     return true;
   } catch (const CLI::ParseError&) {
@@ -48,7 +48,7 @@ void check_within(Number low, Number value, Number high) {
 
 void check_numbers(const Given& given) {
   const sim::ScenarioArguments& scenario = given.evaluate.scenario;
-  check_within<std::uint32_t>(1, scenario.sequences, 100'000);
+  check_within<std::uint32_t>(1, scenario.sequences, 10'000'000);
   check_within<std::uint32_t>(1, scenario.frames, 1000);
   check_within<std::uint32_t>(1, given.evaluate.baseline_sequences, 100'000);
   check_within(0, given.evaluate.threads, 1024);
