@@ -282,8 +282,8 @@ void add_run(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments
 }
 
 void add_work(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments) {
-  CLI::App* command = verb.add_subcommand(
-      "work", "Be one worker: run tasks until none is left. `run` starts these; so can you, on any machine");
+  CLI::App* command =
+      verb.add_subcommand("work", "Be one worker: run tasks until none is left. `run` starts workers");
   add_file(*command, *arguments);
   command
       ->add_option("--part", arguments->part,
@@ -312,8 +312,8 @@ void add_report(CLI::App& verb, const std::shared_ptr<CampaignArguments>& argume
 }  // namespace
 
 void add_campaign_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command = app.add_subcommand(
-      "campaign", "Run many evaluations on all cores of this machine, by mpirun, or on a Slurm cluster");
+  CLI::App* command =
+      app.add_subcommand("campaign", "Run many evaluations on all cores, by mpirun, or on a Slurm cluster");
   command->require_subcommand(1);
   auto arguments = std::make_shared<CampaignArguments>();
   arguments->command_line = command_line;
@@ -322,9 +322,9 @@ void add_campaign_command(CLI::App& app, const std::string& command_line) {
   add_status(*command, arguments);
   add_report(*command, arguments);
   command->footer(
-      "\nA campaign is a TOML file. A [[run]] has options of `tumblesight evaluate` without\n"
-      "their dashes; a list makes a run for each of its values. Paths are relative to the\n"
-      "folder of the file.\n\n"
+      "\nA campaign is a TOML file. A [[run]] has options of `tumblesight evaluate`\n"
+      "without their dashes; a list makes a run for each of its values. Paths are\n"
+      "relative to the folder of the file.\n\n"
       "  seed = 22\n"
       "  sequences_per_task = 5000   # of a shard; a task should take some minutes\n\n"
       "  [[run]]\n"

@@ -242,8 +242,9 @@ std::size_t widest_line(const std::string& text) {
 
 TEST(Help, FitsATerminal) {
   const Workplace here;
-  for (const std::string verb :
-       {"", "simulate", "mesh", "evaluate", "quantize", "record", "bench", "export", "train", "adopt"}) {
+  for (const std::string verb : {"", "simulate", "replay", "console", "mesh", "evaluate", "merge", "campaign",
+                                 "campaign run", "campaign work", "campaign status", "campaign report",
+                                 "quantize", "record", "bench", "export", "train", "adopt"}) {
     const Outcome outcome = here.run(verb + " --help");
     EXPECT_LE(widest_line(outcome.output), 80U) << outcome.output;
   }
