@@ -59,8 +59,8 @@ void add_merge_command(CLI::App& app) {
   command->footer(
       "\nTables, JSON, CSV and report are those of one process, bit for bit, whatever the\n"
       "number of shards and their order; only times differ. Refused, by name: shards of\n"
-      "another evaluation (target, mesh, model, sensor, seed and so on), a sequence that\n"
-      "is in two files, one that is in none, and a shard that is not finished.\n\n"
+      "another evaluation (target, mesh, model, sensor, seed and so on), a sequence\n"
+      "that is in two files, one that is in none, and a shard that is not finished.\n\n"
       "The exit status is 4 if more than half of the attitudes in the last frame of a\n"
       "condition are wrong, as with `tumblesight evaluate`.\n\n"
       "Example: two machines, half of the sequences each\n"
