@@ -13,9 +13,6 @@ constexpr std::int64_t kLongestStep_ns = 3 * kNominalPeriod_ns / 2;  // between 
 constexpr RefinementSettings kFirst{3, 3, 512, 128, 1677722, 8388608};
 constexpr RefinementSettings kFirstSecond{2, 2, 512, 256, 1677722, 8388608};  // of the second attitude
 constexpr RefinementSettings kFull{3, 2, 160, 40, 1677722, 8388608};
-// Of another attitude than the track's, at the position of the track. The second from kShort on.
-constexpr RefinementSettings kShort{2, 2, 512, 256, 1677722, 8388608};
-constexpr RefinementSettings kConfirm{2, 0, 128, 64, 1677722, 8388608};
 // At the predicted pose.
 constexpr RefinementSettings kTracked{3, 1, 160, 40, 838861, 8388608};
 constexpr RefinementSettings kLongTrack{2, 1, 80, 40, 838861, 8388608};  // with a rate, and without a gap
@@ -32,13 +29,14 @@ constexpr Fixed kTraceOf20Degrees = constant<Fixed>(2.87938524);
 
 constexpr std::uint32_t kLeastOdds_ppm = 10'000;  // of a second attitude that is worth a look
 
-// Advantages [nats, Q8]. From kSettled_q8 on only the network's own choice is compared with the track.
-constexpr std::int32_t kMostOfAFrame_q8 = 16 * 256, kMostOfATrack_q8 = 32 * 256;
+// Advantages [nats, Q8].
+constexpr std::int32_t kMostOfAFrame_q8 = 16 * 256;
 constexpr std::int32_t kWithoutAlternative_q8 = 4 * 256;  // of a frame
 constexpr std::int32_t kNetworkDisagrees_q8 = 1 * 256;    // against the track, per frame
 constexpr std::int32_t kMostOfNetwork_q8 = 4 * 256;       // its odds, in the first frames
 constexpr std::int32_t kClear_q8 = 6 * 256;               // after kFirst, for the second attitude
-constexpr std::int32_t kSettled_q8 = 16 * 256;
+// One frame does not end a track that has this much; two do.
+constexpr std::int32_t kMostOfATrack_q8 = kMostOfAFrame_q8 + kNetworkDisagrees_q8;
 
 void exchange(PoseCandidate& a, PoseCandidate& b) {
   const PoseCandidate kept = a;
@@ -99,12 +97,12 @@ struct Alternative {
   bool is_network = false;  // it is the network's choice
 };
 
-// Another attitude of the network than this, if it has one: its choice, or its second attitude unless the
-// track is settled. The choice also counts if it is not quite the same: the pose may be beside the right one.
-Alternative alternative_to(const Matrix3<Fixed>& r_lrf_trf, const PoseFrame& frame, bool is_settled) {
+// Another attitude of the network than this, if it has one: its choice, or its second attitude. The choice
+// also counts if it is not quite the same: the pose may be beside the right one.
+Alternative alternative_to(const Matrix3<Fixed>& r_lrf_trf, const PoseFrame& frame) {
   const Matrix3<Fixed>& choice = frame.network.r_lrf_trf;
   if (is_another_attitude(r_lrf_trf, choice)) return {choice, true, true};
-  if (!is_settled && offers_second(r_lrf_trf, frame)) return {frame.second_r_lrf_trf, true, false};
+  if (offers_second(r_lrf_trf, frame)) return {frame.second_r_lrf_trf, true, false};
   return {choice, differs(r_lrf_trf, choice, kTraceOf6Degrees), true};
 }
 
@@ -165,15 +163,9 @@ bool follow_motion(const PoseTarget& target, const PoseFrame& frame, const PoseM
 // the frame better.
 std::int32_t compare(const PoseTarget& target, const Alternative& alternative, PoseScratch& scratch) {
   const Pose start{alternative.r_lrf_trf, scratch.best.refinement.pose.origin_lrf_um};
-  if (alternative.is_network) {
-    refine_candidate(target, start, scratch.best.evidence.fits() ? kFull : kSearch, scratch, scratch.other);
-    return advantage_q8(scratch.best, scratch.other) - kNetworkDisagrees_q8;
-  }
-  refine_candidate(target, start, kShort, scratch, scratch.other);
-  const std::int32_t short_q8 = advantage_q8(scratch.best, scratch.other);
-  if (short_q8 >= 0) return short_q8;
-  refine_candidate_further(target, kConfirm, scratch, scratch.other);
-  return advantage_q8(scratch.best, scratch.other);
+  refine_candidate(target, start, scratch.best.evidence.fits() ? kFull : kSearch, scratch, scratch.other);
+  const std::int32_t better_q8 = advantage_q8(scratch.best, scratch.other);
+  return alternative.is_network ? better_q8 - kNetworkDisagrees_q8 : better_q8;
 }
 
 }  // namespace
@@ -226,8 +218,7 @@ bool follow_track(const PoseTarget& target, const PoseFrame& frame, const PoseMo
   PoseCandidate& best = scratch.best;
   PoseCandidate& other = scratch.other;
   const bool has_tried_network = follow_motion(target, frame, predicted, scratch, state);
-  const bool is_settled = state.advantage_q8 >= kSettled_q8;
-  const Alternative alternative = alternative_to(best.refinement.pose.r_lrf_trf, frame, is_settled);
+  const Alternative alternative = alternative_to(best.refinement.pose.r_lrf_trf, frame);
   const bool was_tried = has_tried_network && alternative.is_network;
   std::int32_t more_q8 = kWithoutAlternative_q8;
   if (alternative.exists && !was_tried) {

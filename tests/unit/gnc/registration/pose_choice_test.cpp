@@ -6,6 +6,7 @@ namespace {
 
 constexpr std::int32_t kNat_q8 = 256;
 constexpr std::int32_t kWithoutAlternative_q8 = 4 * kNat_q8;
+constexpr std::int32_t kMostOfATrack_q8 = 17 * kNat_q8;
 
 class PoseAlternatives : public TrackPose {
  protected:
@@ -13,10 +14,23 @@ class PoseAlternatives : public TrackPose {
   void follow_a_wrong_attitude() {
     track_frames(4);
     truth_.r_lrf_trf = wrong();
-    state_->advantage_q8 = 32 * kNat_q8;
+    state_->advantage_q8 = kMostOfATrack_q8;
   }
   double error_deg(const PoseEstimate& estimate) const {
     return angle_deg(attitude_of(estimate), truth_.r_lrf_trf);
+  }
+  // The same of a box with a small knob, which explains the frames nearly as well.
+  void follow_a_half_turn_beside_the_right_attitude() {
+    Body box;
+    box.radius_m = 2.5;
+    box.add_box({-1.0, -0.8, -0.6}, {1.0, 0.8, 0.6});
+    box.add_box({1.0, -0.1, 0.35}, {1.25, 0.1, 0.55});
+    take(box);
+    truth_.r_lrf_trf = rotation_of({0.1, 0.2, 0.1});
+    rate_ = Eigen::Vector3d::Zero();
+    track_frames(4);
+    truth_.r_lrf_trf = rotation_of(half_turn()) * truth_.r_lrf_trf;
+    state_->advantage_q8 = kMostOfATrack_q8;
   }
   // About the boresight, far from every attitude that looks alike.
   Eigen::Matrix3d wrong() const { return rotation_of({0.0, 3.0, 0.0}) * truth_.r_lrf_trf; }
@@ -44,9 +58,9 @@ TEST_F(PoseAlternatives, ASecondAttitudeWithin20DegreesIsNone) {
   EXPECT_EQ(track({0.0, 0.0, 0.0}, second, 1'000'000).advantage_q8, kWithoutAlternative_q8);
 }
 
-TEST_F(PoseAlternatives, FramesWithoutOneAddFourNatsEachUpTo32) {
+TEST_F(PoseAlternatives, FramesWithoutOneAddFourNatsEachUpTo17) {
   for (int k = 1; k < 10; ++k)
-    EXPECT_EQ(track_next().advantage_q8, std::min(k * kWithoutAlternative_q8, 32 * kNat_q8)) << k;
+    EXPECT_EQ(track_next().advantage_q8, std::min(k * kWithoutAlternative_q8, kMostOfATrack_q8)) << k;
 }
 
 // Registered from eight degrees off it ends at the pose of the track.
@@ -176,16 +190,22 @@ TEST_F(PoseAlternatives, APoseThatIsDrawnWholeAndExplainsTheFrameIsTaken) {
   }
 }
 
-// From 16 nats on only the network's own choice is compared with the track.
-TEST_F(PoseAlternatives, ASettledTrackIsNotComparedWithTheSecondAttitude) {
-  track_frames(4);
+// The network's choice was wrong and led to the track; its second attitude is the right one. However settled
+// the track is, a frame that speaks against it leaves it unverified, and two end it. (In a campaign of
+// 224,000 sequences of NEAR 17 verified poses were wrong, since settled tracks were not compared with second
+// attitudes.)
+TEST_F(PoseAlternatives, ASettledTrackIsGivenUpForTheSecondAttitude) {
+  follow_a_half_turn_beside_the_right_attitude();
+  const Eigen::Vector3d to_the_track = -half_turn();
   see();
-  const PoseTrackerState kept = *state_;
-  state_->advantage_q8 = 16 * kNat_q8;
-  EXPECT_EQ(track({0.0, 0.0, 0.0}, wrong(), 500'000).advantage_q8, 20 * kNat_q8);
-  *state_ = kept;
-  state_->advantage_q8 = 16 * kNat_q8 - 1;
-  EXPECT_GT(track({0.0, 0.0, 0.0}, wrong(), 500'000).advantage_q8, 24 * kNat_q8);
+  const PoseEstimate first = track(to_the_track, truth_.r_lrf_trf, 10'000);
+  EXPECT_NEAR(error_deg(first), 180.0, 3.0);
+  EXPECT_TRUE(first.evidence.fits());
+  EXPECT_NE(first.doubts & kPoseAmbiguous, 0U);
+  see();
+  const PoseEstimate second = track(to_the_track, truth_.r_lrf_trf, 10'000);
+  EXPECT_LT(error_deg(second), kLargestError_deg);
+  EXPECT_EQ(second.poses, 1);
 }
 
 TEST_F(PoseAlternatives, ATrackIsNotComparedWithASecondAttitudeOfLessThanOnePercent) {
@@ -221,9 +241,9 @@ TEST_F(PoseAlternatives, ATrackWhoseAdvantageIsLostIsGivenUp) {
 TEST_F(PoseAlternatives, ATrackWithoutAdvantageIsNotGivenUpForAPoseThatCostsMore) {
   track_frames(4);
   see();
-  state_->advantage_q8 = -30 * kNat_q8;
+  state_->advantage_q8 = -kMostOfATrack_q8;
   const PoseEstimate estimate = track({0.0, 0.0, 0.0}, wrong(), 500'000);
-  EXPECT_EQ(estimate.advantage_q8, (-30 + 16) * kNat_q8);
+  EXPECT_EQ(estimate.advantage_q8, -kMostOfATrack_q8 + 16 * kNat_q8);
   EXPECT_EQ(estimate.poses, 5);
   EXPECT_LT(error_deg(estimate), kLargestError_deg);
 }
@@ -253,20 +273,11 @@ TEST_F(PoseAlternatives, ASettledTrackIsLostWhereOnlyTheNetworksAttitudeExplains
 // A box with a small knob that turns it by a half turn: the network's attitude is better, but that of the
 // track explains the frame too.
 TEST_F(PoseAlternatives, ASettledTrackThatExplainsTheFrameStays) {
-  Body box;
-  box.radius_m = 2.5;
-  box.add_box({-1.0, -0.8, -0.6}, {1.0, 0.8, 0.6});
-  box.add_box({1.0, -0.1, 0.35}, {1.25, 0.1, 0.55});
-  take(box);
-  truth_.r_lrf_trf = rotation_of({0.1, 0.2, 0.1});
-  rate_ = Eigen::Vector3d::Zero();
-  track_frames(4);
-  const Eigen::Vector3d back = -half_turn();
-  truth_.r_lrf_trf = rotation_of(half_turn()) * truth_.r_lrf_trf;
+  follow_a_half_turn_beside_the_right_attitude();
   see();
-  state_->advantage_q8 = 32 * kNat_q8;
+  const Eigen::Vector3d back = -half_turn();
   const PoseEstimate estimate = track({0.0, 0.0, 0.0}, rotation_of(back) * truth_.r_lrf_trf, 0);
-  EXPECT_LT(estimate.advantage_q8, 30 * kNat_q8);
+  EXPECT_LT(estimate.advantage_q8, kMostOfATrack_q8 - 2 * kNat_q8);
   EXPECT_NEAR(error_deg(estimate), 180.0, 3.0);
   EXPECT_EQ(estimate.poses, 5);
 }
