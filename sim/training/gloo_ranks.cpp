@@ -24,6 +24,7 @@
 #include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
 
 #include "sim/training/rank_store.hpp"
+#include "sim/training/shared_slots.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -48,24 +49,80 @@ void together(int rank, const Operation& operation) {
   }
 }
 
+// A larger tensor is sent; 16 MiB.
+constexpr std::int64_t kMostInMemory = 4'194'304;
+
 class GlooRanks final : public Ranks {
  public:
-  GlooRanks(int rank, int count, int sharing_cores, c10::intrusive_ptr<ProcessGroupGloo> group)
-      : Ranks(rank, count, sharing_cores), group_(std::move(group)) {}
+  GlooRanks(int rank, int count, int sharing_cores, bool one_machine,
+            c10::intrusive_ptr<ProcessGroupGloo> group)
+      : Ranks(rank, count, sharing_cores), group_(std::move(group)), shares_memory_(one_machine) {}
 
  private:
-  // Each rank adds up one slice of all ranks, so that what a rank sends does not grow with their number.
   void sum_flat(torch::Tensor& flat) override {
-    const std::int64_t size = flat.numel();
-    const std::int64_t slice = (size + count() - 1) / count();
-    torch::Tensor sent = torch::zeros({slice * count()});
-    sent.narrow(0, 0, size).copy_(flat);
-    torch::Tensor received = torch::empty_like(sent);
-    std::vector<std::int64_t> equal_split;
-    together(rank(), [&] { group_->alltoall_base(received, sent, equal_split, equal_split)->wait(); });
-    std::vector<torch::Tensor> slices = received.view({count(), slice}).unbind(0);
-    add_up(slices);
-    flat.copy_(gather_rows(slices.front()).view(-1).narrow(0, 0, size));
+    if (has_slots(flat.numel())) return sum_in_memory(flat);
+    sum_by_messages(flat);
+  }
+
+  // Each rank adds up one slice of all ranks, so that what a rank sends does not grow with their number. Sent
+  // from and received into place.
+  void sum_by_messages(const torch::Tensor& flat) {
+    std::vector<torch::Tensor> slices, received;
+    for (int i = 0; i < count(); ++i) {
+      const Share share = share_of(flat.numel(), i, count());
+      slices.push_back(flat.narrow(0, share.first, share.count));
+    }
+    torch::Tensor& own = slices[static_cast<std::size_t>(rank())];
+    for (int i = 0; i < count(); ++i) received.push_back(i == rank() ? own : torch::empty_like(own));
+    exchange(slices, received);
+    add_up(received);
+    if (rank() != 0) own.copy_(received.front());
+    exchange(std::vector<torch::Tensor>(slices.size(), own), slices);
+  }
+
+  // Every rank adds up everything, since the ranks then wait for each other once only. Two sets of slots take
+  // turns: a rank that is ahead does not overwrite what another one still reads.
+  void sum_in_memory(torch::Tensor& flat) {
+    turn_ = 1 - turn_;
+    const auto slot = [&](int rank) { return slots_->slot(turn_ * count() + rank, flat.numel()); };
+    slot(rank()).copy_(flat);
+    gather(std::int64_t{0});  // all have written
+    std::vector<torch::Tensor> pairs{flat};
+    torch::add_out(pairs.front(), slot(0), slot(1));
+    for (int i = 2; i + 1 < count(); i += 2) pairs.push_back(slot(i) + slot(i + 1));
+    if (count() % 2 == 1) pairs.push_back(slot(count() - 1).clone());
+    add_up(pairs);
+  }
+
+  // Whether the ranks exchange `size` numbers in memory. All of them find the same.
+  bool has_slots(std::int64_t size) {
+    if (!shares_memory_ || size > kMostInMemory) return false;
+    if (slots_ && slots_->size() >= size) return true;
+    slots_.reset();
+    const std::string own_name = "/tumblesight_" + std::to_string(getpid()) + "_" + std::to_string(size);
+    if (leads()) slots_ = SharedSlots::create(own_name, 2 * count(), size);
+    const std::string name = of_first(slots_ ? own_name : std::string());
+    if (!leads() && !name.empty()) slots_ = SharedSlots::open(name, 2 * count(), size);
+    shares_memory_ = !any(slots_ == nullptr);  // all have opened it
+    if (leads() && !name.empty()) SharedSlots::forget(name);
+    if (!shares_memory_) slots_.reset();
+    return shares_memory_;
+  }
+
+  // To each other rank the tensor at its place, and from it the one at its place.
+  void exchange(std::vector<torch::Tensor> sent, std::vector<torch::Tensor> received) {
+    constexpr int kTag = 0;
+    together(rank(), [&] {
+      std::vector<c10::intrusive_ptr<c10d::Work>> works;
+      for (int i = 0; i < count(); ++i) {
+        if (i == rank()) continue;
+        const auto at = static_cast<std::size_t>(i);
+        std::vector<torch::Tensor> from{received[at]}, to{sent[at]};
+        if (from.front().numel() > 0) works.push_back(group_->recv(from, i, kTag));
+        if (to.front().numel() > 0) works.push_back(group_->send(to, i, kTag));
+      }
+      for (const auto& work : works) work->wait();
+    });
   }
 
   void broadcast(torch::Tensor& tensor) override {
@@ -84,6 +141,9 @@ class GlooRanks final : public Ranks {
   }
 
   c10::intrusive_ptr<ProcessGroupGloo> group_;
+  bool shares_memory_;
+  std::unique_ptr<SharedSlots> slots_;
+  int turn_ = 0;
 };
 
 // Equal for two processes that reach each other through the loopback interface.
@@ -171,7 +231,7 @@ std::shared_ptr<Ranks> join(const RankPlace& place, const std::string& folder,
   const auto own = static_cast<std::size_t>(place.rank);
   const bool one_machine = std::count(machines.begin(), machines.end(), machines[own]) == place.count;
   const auto sharing = static_cast<int>(std::count(cores.begin(), cores.end(), cores[own]));
-  return std::make_shared<GlooRanks>(place.rank, place.count, sharing,
+  return std::make_shared<GlooRanks>(place.rank, place.count, sharing, one_machine,
                                      connect_all(place, store, one_machine, timeout));
 }
 

@@ -38,20 +38,22 @@ class Parts {
   Parts(Module& module, int trainers, Ranks& ranks, const std::function<Module()>& new_module)
       : module_(module), ranks_(ranks), modules_{module} {
     while (static_cast<int>(modules_.size()) < trainers) modules_.push_back(replica_of(module, new_module()));
+    if (trainers == 1 && ranks.count() == 1) return;
+    for (const Module& part : modules_) flats_.push_back(flat_of(part));
   }
 
   // Puts the mean gradient of the whole batch into the module. `rows`: of this rank. Returns the batch's mean
   // loss.
   double mean_gradient(std::int64_t rows, const Backward& backward) {
-    if (modules_.size() == 1 && ranks_.count() == 1) return backward(module_, {0, rows});
+    if (flats_.empty()) return backward(module_, {0, rows});
     const std::vector<double> losses = run_all(rows, backward);
     torch::NoGradGuard guard;
-    std::vector<torch::Tensor> flats;
-    for (std::size_t i = 0; i < modules_.size(); ++i) flats.push_back(flat_of(modules_[i], losses[i]));
-    add_up(flats);
-    ranks_.sum({flats.front()});
-    flats.front().div_(static_cast<double>(modules_.size()) * ranks_.count());
-    return take(flats.front());
+    for (std::size_t i = 0; i < modules_.size(); ++i) append(modules_[i], losses[i], flats_[i]);
+    std::vector<torch::Tensor> sums = flats_;
+    add_up(sums);
+    ranks_.sum({sums.front()});
+    sums.front().div_(static_cast<double>(modules_.size()) * ranks_.count());
+    return take_appended(sums.front());
   }
 
  private:
@@ -79,35 +81,48 @@ class Parts {
     return losses;
   }
 
-  // Gradient, running statistics and loss of one part.
-  static torch::Tensor flat_of(const Module& module, double loss) {
-    std::vector<torch::Tensor> pieces;
-    for (const torch::Tensor& parameter : module->parameters())
-      pieces.push_back(parameter.grad().reshape(-1));
-    for (const torch::Tensor& statistic : running_statistics(module)) pieces.push_back(statistic.reshape(-1));
-    pieces.push_back(torch::full({1}, loss, pieces.front().options()));
-    return torch::cat(pieces);
+  // Room for gradient, running statistics and loss of a part. From now on the module's gradients lie in it,
+  // so that nothing is copied before they are added up and sent.
+  static torch::Tensor flat_of(const Module& module) {
+    std::int64_t size = 1;
+    for (const torch::Tensor& parameter : module->parameters()) size += parameter.numel();
+    for (const torch::Tensor& statistic : running_statistics(module)) size += statistic.numel();
+    const torch::Tensor flat = torch::zeros({size}, module->parameters().front().detach().options());
+    std::int64_t at = 0;
+    for (torch::Tensor& parameter : module->parameters()) {
+      parameter.mutable_grad() = flat.narrow(0, at, parameter.numel()).view(parameter.sizes());
+      at += parameter.numel();
+    }
+    return flat;
   }
 
-  // Puts the means into the modules. Returns the loss.
-  double take(const torch::Tensor& flat) {
-    std::int64_t at = 0;
-    const auto next = [&](const torch::Tensor& shape) {
-      at += shape.numel();
-      return flat.narrow(0, at - shape.numel(), shape.numel()).view(shape.sizes());
-    };
-    for (torch::Tensor& parameter : module_->parameters()) parameter.mutable_grad().copy_(next(parameter));
+  // Statistics and loss of a part, at the end of `flat`.
+  static void append(const Module& module, double loss, torch::Tensor& flat) {
+    std::vector<torch::Tensor> pieces;
+    for (const torch::Tensor& statistic : running_statistics(module)) pieces.push_back(statistic.reshape(-1));
+    pieces.push_back(torch::full({1}, loss, flat.options()));
+    const torch::Tensor appended = torch::cat(pieces);
+    flat.narrow(0, flat.numel() - appended.numel(), appended.numel()).copy_(appended);
+  }
+
+  // Puts the mean statistics into the modules. Returns the loss.
+  double take_appended(const torch::Tensor& flat) {
+    std::int64_t at = flat.numel() - 1;
+    const double loss = flat[at].template item<double>();
     const std::size_t count = running_statistics(module_).size();
-    for (std::size_t k = 0; k < count; ++k) {
-      const torch::Tensor mean = next(running_statistics(module_)[k]);
-      for (Module& module : modules_) running_statistics(module)[k].copy_(mean);
+    for (std::size_t k = count; k-- > 0;) {
+      const torch::Tensor shape = running_statistics(module_)[k];
+      at -= shape.numel();
+      for (Module& module : modules_)
+        running_statistics(module)[k].copy_(flat.narrow(0, at, shape.numel()).view(shape.sizes()));
     }
-    return flat[at].template item<double>();
+    return loss;
   }
 
   Module& module_;
   Ranks& ranks_;
-  std::vector<Module> modules_;  // the module itself first; one per trainer
+  std::vector<Module> modules_;       // the module itself first; one per trainer
+  std::vector<torch::Tensor> flats_;  // of each module; none if there is one part only
 };
 
 }  // namespace tumblesight::sim

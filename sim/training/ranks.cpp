@@ -19,6 +19,10 @@ void add_up(std::vector<torch::Tensor>& tensors) {
 void Ranks::sum(const std::vector<torch::Tensor>& tensors) {
   if (count_ == 1) return;
   torch::NoGradGuard guard;
+  if (tensors.size() == 1 && tensors.front().is_cpu() && tensors.front().is_contiguous()) {
+    torch::Tensor in_place = tensors.front().detach().view(-1);
+    return sum_flat(in_place);
+  }
   std::vector<torch::Tensor> pieces;
   for (const torch::Tensor& tensor : tensors) pieces.push_back(tensor.detach().reshape(-1).cpu());
   torch::Tensor flat = torch::cat(pieces);

@@ -77,6 +77,12 @@ class Stage {
   std::int64_t iteration() const { return position_.iteration; }
   double fraction() const;  // of the stage that is done, 0..1
   bool finished() const { return fraction() >= 1.0; }
+  // Whether a rank shall stop. Several ranks ask each other every few iterations only, since that takes time.
+  bool stops(bool own) const {
+    constexpr std::int64_t kIterationsPerQuestion = 8;
+    if (settings_.ranks->count() > 1 && position_.iteration % kIterationsPerQuestion != 0) return false;
+    return settings_.ranks->any(own);
+  }
   void set_rate(torch::optim::Optimizer& optimizer);  // for the next iteration
 
   void advance(double loss);  // after every iteration

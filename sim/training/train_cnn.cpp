@@ -143,7 +143,7 @@ bool train_cnn(const TrainingTargets& targets, const TrainingSettings& settings,
   stage.start();
   cnn->train();
   Parts<Cnn> parts(cnn, settings.trainers, ranks, [] { return Cnn(); });
-  while (!stage.finished() && !ranks.any(stop)) {
+  while (!stage.finished() && !stage.stops(stop)) {
     stage.set_rate(optimizer);
     const double spread = spread_at(settings, stage.fraction());
     stage.advance(train_once(cnn, parts, stream.next(), settings, spread, optimizer));

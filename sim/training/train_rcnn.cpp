@@ -177,7 +177,7 @@ bool train_rcnn(const TrainingTargets& targets, const TrainingSettings& settings
   stage.start();
   Parts<Recurrent> parts(recurrent, settings.trainers, ranks,
                          [&targets] { return Recurrent(targets.inertia); });
-  while (!stage.finished() && !ranks.any(stop)) {
+  while (!stage.finished() && !stage.stops(stop)) {
     stage.set_rate(optimizer);
     const std::int64_t available = available_at(stage.iteration());
     const torch::Tensor rows = draw(settings.seed, stage.iteration(), available, settings.rcnn_batch);

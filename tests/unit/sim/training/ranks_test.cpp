@@ -2,10 +2,12 @@
 #include "sim/training/ranks.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <string>
 #include <vector>
 
+#include "sim/training/shared_slots.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/sim/training/joined_ranks.hpp"
 
@@ -87,6 +89,50 @@ TEST_P(SeveralRanks, HoldTheSameSumInTheOrderOfTheTree) {
   for (const torch::Tensor& sum : sums) EXPECT_TRUE(torch::equal(sum, sum_of(values)));
 }
 
+// Small ones in memory, whose ranks overtake each other, and one that is sent.
+TEST_P(SeveralRanks, AddUpTensorsOfAnySizeInAnyOrderOfSizes) {
+  constexpr std::int64_t kSent = 4'194'305;
+  const int count = GetParam();
+  run_ranks(count, folder.path("store"), [&](const std::shared_ptr<Ranks>& ranks) {
+    const auto value_of = [](std::int64_t size, int rank) {
+      return torch::arange(size, torch::kFloat) * 0.1F + static_cast<float>(rank) / 3.0F;
+    };
+    for (const std::int64_t size : {1000, 1, 1000, 2, 5000, 5000, 5000, 3}) {
+      std::vector<torch::Tensor> all;
+      for (int rank = 0; rank < count; ++rank) all.push_back(value_of(size, rank));
+      torch::Tensor own = value_of(size, ranks->rank());
+      ranks->sum({own});
+      EXPECT_TRUE(torch::equal(own, sum_of(all))) << size;
+    }
+    torch::Tensor large = torch::full({kSent}, 1.0F + static_cast<float>(ranks->rank()));
+    ranks->sum({large});
+    EXPECT_TRUE(torch::equal(large, torch::full({kSent}, 0.5F * static_cast<float>(count * (count + 1)))));
+  });
+}
+
+TEST(SharedSlots, AreSeenByWhoKnowsTheirNameUntilItIsForgotten) {
+  if (!can_have_several_ranks()) GTEST_SKIP() << "built without Gloo";
+  const std::string name = "/tumblesight_test_" + std::to_string(getpid());
+  const auto mine = SharedSlots::create(name, 2, 10);
+  ASSERT_NE(mine, nullptr);
+  EXPECT_EQ(SharedSlots::create(name, 2, 10), nullptr) << "of somebody else";
+  const auto other = SharedSlots::open(name, 2, 10);
+  ASSERT_NE(other, nullptr);
+  mine->slot(1, 4).copy_(torch::arange(4, torch::kFloat));
+  EXPECT_TRUE(torch::equal(other->slot(1, 4), torch::arange(4, torch::kFloat)));
+  EXPECT_TRUE(torch::equal(other->slot(0, 10), torch::zeros({10})));
+  SharedSlots::forget(name);
+  EXPECT_EQ(SharedSlots::open(name, 2, 10), nullptr);
+  EXPECT_TRUE(torch::equal(other->slot(1, 4), torch::arange(4, torch::kFloat)));
+}
+
+TEST(SharedSlots, AreNotMadeWhereThereIsNoRoom) {
+  if (!can_have_several_ranks()) GTEST_SKIP() << "built without Gloo";
+  const std::string name = "/tumblesight_test_" + std::to_string(getpid());
+  EXPECT_EQ(SharedSlots::create(name, 1, std::int64_t{1} << 50), nullptr);
+  EXPECT_EQ(SharedSlots::open(name, 1, 1), nullptr) << "nothing is left";
+}
+
 TEST_P(SeveralRanks, AgreeOnWhatOneOfThemKnows) {
   const int count = GetParam();
   run_ranks(count, folder.path("store"), [&](const std::shared_ptr<Ranks>& ranks) {
@@ -103,7 +149,7 @@ TEST_P(SeveralRanks, AgreeOnWhatOneOfThemKnows) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Ranks, SeveralRanks, testing::Values(2, 3),
+INSTANTIATE_TEST_SUITE_P(Ranks, SeveralRanks, testing::Values(2, 3, 4, 5),
                          [](const auto& test) { return std::to_string(test.param); });
 
 class RanksThatMeet : public testing::Test {
