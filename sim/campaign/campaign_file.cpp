@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -33,11 +35,12 @@ struct Option {
   bool is_list = false;
 };
 
-std::string text_of(const toml::node& node) {
+// None: it is neither a text nor a number.
+std::optional<std::string> text_of(const toml::node& node) {
   if (const auto text = node.value_exact<std::string>()) return *text;
   if (const auto whole = node.value_exact<std::int64_t>()) return std::to_string(*whole);
   if (const auto number = node.value_exact<double>()) return fmt::format("{}", *number);
-  return {};
+  return std::nullopt;
 }
 
 Option option_of(TomlFields& fields, const std::string& key) {
@@ -50,16 +53,19 @@ Option option_of(TomlFields& fields, const std::string& key) {
     option.values = {"true"};
     return option;
   }
-  if (const toml::array* list = node.as_array()) {
-    option.is_list = true;
-    for (const toml::node& element : *list) option.values.push_back(text_of(element));
-  } else {
-    option.values = {text_of(node)};
+  const auto take = [&](const toml::node& element) {
+    const std::optional<std::string> text = text_of(element);
+    // An empty text in a list is a run without the option.
+    if (!text || (text->empty() && !option.is_list)) fields.refuse(key, kLimits);
+    option.values.push_back(*text);
+  };
+  option.is_list = node.is_array();
+  if (!option.is_list) {
+    take(node);
+    return option;
   }
-  const bool has_empty = std::any_of(option.values.begin(), option.values.end(),
-                                     [](const std::string& value) { return value.empty(); });
-  // An empty text in a list is a run without the option.
-  if (option.values.empty() || (has_empty && !option.is_list)) fields.refuse(key, kLimits);
+  for (const toml::node& element : *node.as_array()) take(element);
+  if (option.values.empty()) fields.refuse(key, kLimits);
   return option;
 }
 
@@ -72,7 +78,9 @@ std::size_t rank_of(const std::string& key) {
 std::vector<Option> options_of(TomlFields& fields) {
   std::vector<Option> options;
   for (const std::string& key : fields.keys()) {
-    if (key == "sequences" || key == "seed") continue;
+    if (key == "sequences") continue;
+    if (key == "seed")
+      fields.fail(key, "one seed is for all runs: write it at the top of the file, before [[run]]");
     const auto* end = std::end(kNotForRuns);
     if (std::find(std::begin(kNotForRuns), end, key) != end)
       fields.fail(key, fmt::format("{} is not for a campaign: it makes figures of all sequences, or divides "
@@ -128,7 +136,6 @@ std::vector<CampaignRun> runs_of_table(TomlFields fields, std::int64_t seed, int
   const auto sequences = fields.whole_number("sequences", 1, kMostSequences);
   if (!sequences)
     fields.refuse("sequences", fmt::format("a whole number from 1 to {}: of each run", kMostSequences));
-  if (const auto own = fields.whole_number("seed", 0, 2'000'000'000)) seed = *own;
   CampaignRun run;
   run.sequences = static_cast<std::uint32_t>(*sequences);
   run.line = line;
@@ -136,6 +143,18 @@ std::vector<CampaignRun> runs_of_table(TomlFields fields, std::int64_t seed, int
   std::vector<CampaignRun> runs;
   expand(options_of(fields), 0, run, runs);
   return runs;
+}
+
+void refuse_equal_runs(const std::string& path, const std::vector<CampaignRun>& runs) {
+  std::map<std::vector<std::string>, const CampaignRun*> known;
+  for (const CampaignRun& run : runs) {
+    const auto [place, is_new] = known.emplace(run.options, &run);
+    if (is_new) continue;
+    throw std::invalid_argument(
+        fmt::format("{}, line {}: this run is the same as one of line {}, so its sequences would count "
+                    "twice; leave it out",
+                    path, run.line, place->second->line));
+  }
 }
 
 void make_names_unique(std::vector<CampaignRun>& runs) {
@@ -183,6 +202,7 @@ Campaign read_campaign(const std::string& path) {
     if (campaign.runs.size() > kMostRuns)
       fields.fail("run", fmt::format("more than {} runs; divide the campaign into several files", kMostRuns));
   }
+  refuse_equal_runs(path, campaign.runs);
   make_names_unique(campaign.runs);
   return campaign;
 }

@@ -37,12 +37,14 @@ void add(SubjectResult& subject, CellResult&& cell) {
 Results campaign_results(const Campaign& campaign, const std::vector<CampaignTask>& tasks, MergeMode mode,
                          const std::function<void(std::size_t)>& progress) {
   Results results;
+  std::set<std::string> commits;
   for (std::size_t run = 0; run < campaign.runs.size(); ++run) {
     const std::vector<std::string> paths = paths_of(tasks, run, mode);
     if (paths.empty()) {
       results.notes.push_back(fmt::format("{}: no sequence is done.", campaign.runs[run].name));
     } else {
       MergedShards merged = merge_shards(paths, mode);
+      commits.insert(merged.commits.begin(), merged.commits.end());
       results.seed = merged.identity.settings.seed;
       SubjectResult& subject = subject_of(results.subjects, merged.figures);
       for (CellResult& cell : merged.figures.cells) add(subject, std::move(cell));
@@ -51,6 +53,9 @@ Results campaign_results(const Campaign& campaign, const std::vector<CampaignTas
     }
     progress(run + 1);
   }
+  note_builds(commits, results.notes);
+  results.notes.push_back(
+      fmt::format("Commands that show a sequence are for the folder {}.", campaign.folder));
   return results;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "sim/campaign/launcher.hpp"
@@ -74,25 +75,43 @@ class SlurmJobs final : public Launcher {
   }
 
  private:
+  // "17", or "17;cluster" where jobs go to several clusters.
   std::string submitted(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), {"--parsable", "--job-name=" + settings_.campaign.name});
     arguments.insert(arguments.begin(), settings_.options.begin(), settings_.options.end());
-    // "17" or "17;cluster"
     const std::string answer = output_of("sbatch", arguments, kMostOfACommand_s);
-    return answer.substr(answer.rfind('\n') + 1, std::string::npos).substr(0, answer.find(';'));
+    return answer.substr(answer.rfind('\n') + 1);
   }
   void submit() {
     const std::string at_a_time = settings_.jobs > 0 ? fmt::format("%{}", settings_.jobs) : "";
     array_ = submitted({"--array=" + parts_left(settings_) + at_a_time, "--requeue", "--open-mode=append",
                         "--output=" + log_folder(settings_) + "/slurm_%a.log", script_});
-    report_ = submitted(
-        {"--dependency=afterany:" + array_, "--output=" + log_folder(settings_) + "/slurm_report.log",
-         "--wrap",
-         command_line(settings_, {"campaign", "report", settings_.campaign.file, "--out", settings_.out})});
+    try {
+      report_ = submitted(
+          {"--dependency=afterany:" + id_of(array_),
+           "--output=" + log_folder(settings_) + "/slurm_report.log", "--wrap",
+           command_line(settings_, {"campaign", "report", settings_.campaign.file, "--out", settings_.out})});
+    } catch (const std::runtime_error& error) {
+      // Nobody would know of the array.
+      (void)output_of("scancel", with_cluster(array_, {id_of(array_)}), kMostOfACommand_s);
+      throw std::runtime_error(fmt::format("{}. Job array {} was cancelled", error.what(), array_));
+    }
+  }
+  static std::string id_of(const std::string& job) { return job.substr(0, job.find(';')); }
+  static std::vector<std::string> with_cluster(const std::string& job, std::vector<std::string> arguments) {
+    if (const std::size_t at = job.find(';'); at != std::string::npos)
+      arguments.insert(arguments.begin(), {"-M", job.substr(at + 1)});
+    return arguments;
   }
   static bool is_queued(const std::string& job) {
+    const std::string id = id_of(job);
     try {
-      return !output_of("squeue", {"-h", "-j", job, "-o", "%i"}, kMostOfACommand_s).empty();
+      // A line per part, which begins with the job's number; -M adds a title.
+      std::istringstream lines(
+          output_of("squeue", with_cluster(job, {"-h", "-j", id, "-o", "%i"}), kMostOfACommand_s));
+      for (std::string line; std::getline(lines, line);)
+        if (line.rfind(id, 0) == 0) return true;
+      return false;
     } catch (const std::runtime_error& error) {
       // Slurm forgets a job some minutes after its end. Any other failure may pass.
       return std::string(error.what()).find("Invalid job id") == std::string::npos;
@@ -111,11 +130,12 @@ class SlurmJobs final : public Launcher {
 
 std::unique_ptr<Launcher> launch_slurm(const LaunchSettings& settings) {
   try {
-    return std::make_unique<SlurmJobs>(settings);
+    (void)output_of("sbatch", {"--version"}, kMostOfACommand_s);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format(
         "{}; the machine must be one from which jobs can be submitted (Debian: slurm-client)", error.what()));
   }
+  return std::make_unique<SlurmJobs>(settings);
 }
 
 }  // namespace tumblesight::sim

@@ -58,7 +58,7 @@ ShardHeader header_from(const std::string& text) {
 ShardHeader read_header(const std::string& path, std::ifstream& file) {
   constexpr char kRemedy[] =
       "it is no shard file, or its beginning is damaged; shard files are made by "
-      "`tumblesight evaluate --shard I/N --shard-file FILE`";
+      "`tumblesight evaluate --shard I/N --shard-file FILE`. Name another file, or delete this one";
   std::string magic(kMagicBytes, '\0');
   if (!file.read(magic.data(), kMagicBytes) || magic != kMagic) fail(path, kRemedy);
   std::string text;
@@ -70,6 +70,19 @@ ShardHeader read_header(const std::string& path, std::ifstream& file) {
   } catch (const std::exception& error) {
     fail(path, fmt::format("its header is of another version of tumblesight: {}", error.what()));
   }
+}
+
+// Whether a process was killed while it wrote the header: the file ends before the header does.
+bool is_begun_only(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string start(kMagicBytes + kMostHeaderBytes, '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  const std::size_t compared = std::min(start.size(), kMagicBytes);
+  if (start.compare(0, compared, kMagic, compared) != 0) return false;
+  const std::size_t end = start.find('\n', kMagicBytes);
+  if (end == std::string::npos) return start.size() < kMagicBytes + kMostHeaderBytes;
+  return start.size() < end + 1 + kCrcBytes;
 }
 
 std::vector<std::uint32_t> frames_of(const std::vector<ExperimentRun>& runs) {
@@ -155,7 +168,7 @@ ShardWriter::ShardWriter(const std::string& path, const ShardHeader& header)
     : path_(path), runs_(runs_of(header.identity.settings)), done_(runs_.size()) {
   take_file();
   try {
-    if (std::filesystem::file_size(path_) == 0)
+    if (is_begun_only(path_))
       start_file(header);
     else
       continue_file(header);
@@ -186,8 +199,7 @@ void ShardWriter::take_file() {
 
 void ShardWriter::start_file(const ShardHeader& header) {
   const std::string bytes = header_bytes(header);
-  if (!write_all(file_, bytes.data(), bytes.size()))
-    fail(path_, fmt::format("cannot be written: {}", std::strerror(errno)));
+  if (ftruncate(file_, 0) != 0 || !write_all(file_, bytes.data(), bytes.size())) fail_to_write();
 }
 
 void ShardWriter::continue_file(const ShardHeader& header) {
@@ -195,6 +207,9 @@ void ShardWriter::continue_file(const ShardHeader& header) {
   std::string differs = difference(content.header.identity, header.identity);
   if (differs.empty() && to_string(content.header.shard) != to_string(header.shard))
     differs = fmt::format("shard is {}, not {}", to_string(content.header.shard), to_string(header.shard));
+  if (differs.empty() && content.header.commit != header.commit)
+    differs =
+        fmt::format("it was begun by the build of commit {}, not {}", content.header.commit, header.commit);
   if (!differs.empty())
     fail(path_, fmt::format("it is of another run: {}; name another file, or delete this one", differs));
   if (ftruncate(file_, static_cast<off_t>(content.size_bytes)) != 0)
@@ -206,10 +221,14 @@ void ShardWriter::continue_file(const ShardHeader& header) {
 void ShardWriter::append(std::size_t run, const SequenceResult& result) {
   const auto frames = static_cast<std::uint32_t>(runs_[run].scenario.frames);
   const std::vector<std::uint8_t> bytes = to_record(static_cast<std::uint32_t>(run), result, frames);
-  if (!write_all(file_, bytes.data(), bytes.size()))
-    fail(path_, fmt::format("cannot be written: {}; free space, then run the same command again: it goes on "
-                            "where it stopped",
-                            std::strerror(errno)));
+  if (!write_all(file_, bytes.data(), bytes.size())) fail_to_write();
+}
+
+void ShardWriter::fail_to_write() const {
+  fail(path_,
+       fmt::format("cannot be written: {}; free space, then run the same command again: it goes on where "
+                   "it stopped",
+                   std::strerror(errno)));
 }
 
 void ShardWriter::finish() {
@@ -228,7 +247,16 @@ ShardContent read_shard(const std::string& path) {
   Records records(path, frames_of(runs));
   records.file().seekg(static_cast<std::streamoff>(content.size_bytes));
   while (const std::optional<SequenceResult> result = records.next()) {
-    content.done[records.run()].insert(result->sequence);
+    const Shard& shard = content.header.shard;
+    const std::uint32_t sequence = result->sequence;
+    if (sequence >= runs[records.run()].sequences || sequence % shard.count != shard.index)
+      fail(path, fmt::format("it holds sequence {}, which is not of shard {}; delete it", sequence,
+                             to_string(shard)));
+    if (!content.done[records.run()].insert(sequence).second)
+      fail(path,
+           fmt::format("it holds sequence {} twice: two processes wrote it at the same time; delete it. "
+                       "Does the file system support flock() between machines?",
+                       sequence));
     content.size_bytes = static_cast<std::uint64_t>(records.file().tellg());
   }
   content.dropped_bytes = std::filesystem::file_size(path) - content.size_bytes;
@@ -249,26 +277,42 @@ void read_run(const std::string& path, const ShardContent& content, std::size_t 
   }
 }
 
-std::uint64_t records_in(const std::string& path) {
-  std::error_code error;
-  const std::uintmax_t size_bytes = std::filesystem::file_size(path, error);
+std::optional<ShardHeader> header_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (error || !file) return 0;
+  if (!file || is_begun_only(path)) return std::nullopt;
+  return read_header(path, file);
+}
+
+std::uint64_t records_in(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return 0;
   try {
     const ShardHeader header = read_header(path, file);
     const auto start_bytes = static_cast<std::uintmax_t>(file.tellg());
+    std::error_code error;
+    // After the header: another process may be writing it.
+    const std::uintmax_t size_bytes = std::filesystem::file_size(path, error);
+    if (error || size_bytes < start_bytes) return 0;
     return (size_bytes - start_bytes) / record_size_bytes(header.identity.settings.frames);
   } catch (const std::runtime_error&) {
     return 0;  // just begun, or no shard file: whoever opens it says so
   }
 }
 
+// For writing: NFS gives an exclusive lock to no other file.
 bool is_in_use(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) return false;
-  const bool taken = flock(file, LOCK_EX | LOCK_NB) != 0;
+  const bool taken = flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(file);
   return taken;
+}
+
+std::uint64_t cut_to_whole_records(const std::string& path) {
+  const ShardContent content = read_shard(path);
+  if (content.dropped_bytes > 0 && truncate(path.c_str(), static_cast<off_t>(content.size_bytes)) != 0)
+    fail(path, fmt::format("cannot be cut to its whole records: {}", std::strerror(errno)));
+  return content.dropped_bytes;
 }
 
 }  // namespace tumblesight::sim

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -67,6 +68,7 @@ class ShardWriter {
   void take_file();
   void start_file(const ShardHeader& header);
   void continue_file(const ShardHeader& header);
+  [[noreturn]] void fail_to_write() const;
 
   std::string path_;
   std::vector<ExperimentRun> runs_;
@@ -81,12 +83,18 @@ struct ShardContent {
   std::uint64_t size_bytes = 0;     // up to the end of the last whole record
   std::uint64_t dropped_bytes = 0;  // after it
 };
-// Throws std::runtime_error that names the file if it cannot be read or is no shard file.
+// Throws std::runtime_error that names the file, and the remedy, if it cannot be read, is no shard file, or
+// has records that are not of its shard, or twice.
 ShardContent read_shard(const std::string& path);
 // Gives the records of one run, an index of runs_of(), to `take`.
 void read_run(const std::string& path, const ShardContent& content, std::size_t run,
               const std::function<void(SequenceResult&&)>& take);
 
+// None: there is no such file, or its header is not complete yet. Throws as read_shard() does.
+std::optional<ShardHeader> header_of(const std::string& path);
+// Removes what is no whole record, for a file that nobody writes: its sequences are run again. Returns its
+// size. Throws as read_shard() does.
+std::uint64_t cut_to_whole_records(const std::string& path);
 // Records in a file with a single run, from its size alone: for a progress bar. 0 if it is no shard file.
 std::uint64_t records_in(const std::string& path);
 // Whether a process is writing the file.

@@ -51,7 +51,7 @@ void require_complete(const std::vector<OpenShard>& shards, const std::vector<Ex
         fmt::format("shard file '{}' has {} of its {}; run its command again, it goes on where it stopped:\n"
                     "  {} --shard {} --shard-file {}",
                     shard.path, done, counted(wanted, "sequence"), shard.content.header.command,
-                    to_string(shard.content.header.shard), shard.path));
+                    to_string(shard.content.header.shard), shell_word(shard.path)));
   }
 }
 
@@ -72,19 +72,22 @@ void require_no_doubles(const std::vector<OpenShard>& shards, std::size_t runs) 
   }
 }
 
-// As parts of the largest count among the files, if all missing sequences can be named so.
+// As parts, if all files are parts of as many; otherwise as sequences.
 std::string missing_text(const std::vector<OpenShard>& shards, std::uint32_t sequences) {
   std::vector<bool> there(sequences);
-  std::uint32_t count = 1;
+  std::set<std::uint32_t> counts;
   for (const OpenShard& shard : shards) {
-    count = std::max(count, shard.content.header.shard.count);
+    counts.insert(shard.content.header.shard.count);
     for (const std::uint32_t sequence : shard.content.done[0]) there[sequence] = true;
   }
+  const bool as_parts = counts.size() == 1;
+  const std::uint32_t count = as_parts ? *counts.begin() : sequences;
   std::set<std::uint32_t> missing;
   for (std::uint32_t i = 0; i < sequences; ++i)
     if (!there[i]) missing.insert(i % count);
   std::vector<std::string> names;
-  for (const std::uint32_t index : missing) names.push_back(to_string(Shard{index, count}));
+  for (const std::uint32_t index : missing)
+    names.push_back(as_parts ? to_string(Shard{index, count}) : fmt::format("sequence {}", index));
   return joined_texts(names);
 }
 
@@ -99,15 +102,6 @@ void require_all(const std::vector<OpenShard>& shards, const std::vector<Experim
         there, counted(runs[run].sequences, "sequence"), missing_text(shards, runs[0].sequences),
         shards.front().content.header.command));
   }
-}
-
-// Builds of one version can differ.
-void note_builds(const std::vector<OpenShard>& shards, std::vector<std::string>& notes) {
-  std::set<std::string> commits;
-  for (const OpenShard& shard : shards) commits.insert(shard.content.header.commit);
-  if (commits.size() < 2) return;
-  notes.push_back(fmt::format("The shards were made by different builds of the program: commits {}.",
-                              joined_texts({commits.begin(), commits.end()})));
 }
 
 void note_missing(const std::vector<OpenShard>& shards, const std::vector<ExperimentRun>& runs,
@@ -129,6 +123,12 @@ std::vector<OpenShard> open_shards(const std::vector<std::string>& paths) {
 }
 
 }  // namespace
+
+void note_builds(const std::set<std::string>& commits, std::vector<std::string>& notes) {
+  if (commits.size() < 2) return;
+  notes.push_back(fmt::format("The shards were made by different builds of the program: commits {}.",
+                              joined_texts({commits.begin(), commits.end()})));
+}
 
 std::uint64_t steps_of(const ExperimentSettings& settings, const Shard& shard) {
   std::uint64_t steps = 0;
@@ -174,9 +174,9 @@ MergedShards merge_shards(const std::vector<std::string>& paths, MergeMode mode)
       read_run(shard.path, shard.content, run,
                [&](SequenceResult&& result) { figures.add(run, std::move(result)); });
   }
-  MergedShards merged{identity, shards.front().content.header.command, {}, figures.finish()};
+  MergedShards merged{identity, shards.front().content.header.command, {}, {}, figures.finish()};
   set_replay(merged.figures, merged.command);
-  note_builds(shards, merged.notes);
+  for (const OpenShard& shard : shards) merged.commits.insert(shard.content.header.commit);
   note_missing(shards, runs, merged.notes);
   return merged;
 }

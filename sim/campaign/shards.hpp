@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,12 @@ struct MergedShards {
   ExperimentIdentity identity;
   std::string command;             // of the evaluation in one process
   std::vector<std::string> notes;  // what a reader of the figures has to know
+  std::set<std::string> commits;   // of the programs that made the shards
   SubjectResult figures;
 };
+
+// Builds of one version can differ: adds a note if the commits do.
+void note_builds(const std::set<std::string>& commits, std::vector<std::string>& notes);
 
 // kPartial: figures of the sequences that there are, with a note of how many are missing.
 enum class MergeMode { kComplete, kPartial };

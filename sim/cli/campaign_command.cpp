@@ -4,14 +4,17 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <thread>
 
+#include "cmake/version.hpp"
 #include "sim/campaign/campaign_results.hpp"
 #include "sim/campaign/campaign_worker.hpp"
 #include "sim/campaign/launcher.hpp"
@@ -30,6 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kLook{1};  // between two looks at the shard files
+volatile std::sig_atomic_t told_to_stop = 0;
 
 struct CampaignArguments {
   std::string file;
@@ -62,6 +66,10 @@ struct OpenCampaign {
 OpenCampaign open_campaign(const CampaignArguments& arguments) {
   OpenCampaign open{read_campaign(arguments.file), {}, {}};
   const fs::path beside = fs::path(open.campaign.folder) / open.campaign.name;
+  if (arguments.out.empty() && beside == open.campaign.file)
+    throw std::invalid_argument(
+        fmt::format("campaign '{}' has no extension .toml, so its results would take its name; give --out",
+                    arguments.file));
   open.out = arguments.out.empty() ? beside.string() : full_path(arguments.out);
   open.tasks = tasks_of(open.campaign, open.out);
   fs::current_path(open.campaign.folder);
@@ -82,23 +90,45 @@ EvaluateArguments arguments_of(const OpenCampaign& open, const CampaignTask& tas
   return arguments;
 }
 
-// Every run, before the first one starts.
+[[noreturn]] void refuse(const OpenCampaign& open, const CampaignRun& run, const std::string& why) {
+  throw std::invalid_argument(
+      fmt::format("{}, line {}: run {}: {}", open.campaign.file, run.line, run.name, why));
+}
+
+// A file of an earlier version of the campaign must not count as done.
+void require_same_experiment(const CampaignTask& task, const ExperimentIdentity& identity) {
+  const std::optional<ShardHeader> header = header_of(task.path);
+  if (!header) return;
+  std::string differs = difference(header->identity, identity);
+  if (differs.empty() && to_string(header->shard) != to_string(task.shard))
+    differs = fmt::format("shard is {}, not {}", to_string(header->shard), to_string(task.shard));
+  if (differs.empty()) return;
+  throw std::runtime_error(fmt::format(
+      "shard file '{}' is of another experiment: {}; give another --out, or delete it", task.path, differs));
+}
+
+// Every run and what there is of it, before the first one starts.
 void check(const OpenCampaign& open) {
   ProgressBar bar("checking", "runs", open.campaign.runs.size());
-  std::vector<bool> seen(open.campaign.runs.size());
+  std::vector<std::optional<ExperimentIdentity>> identities(open.campaign.runs.size());
   std::size_t done = 0;
   for (const CampaignTask& task : open.tasks) {
-    if (seen[task.run]) continue;
-    seen[task.run] = true;
     const CampaignRun& run = open.campaign.runs[task.run];
+    std::optional<ExperimentIdentity>& identity = identities[task.run];
     try {
-      const EvaluateArguments arguments = arguments_of(open, task);
-      (void)checked_subject(arguments, checked_settings(arguments));
+      if (!identity) {
+        const EvaluateArguments arguments = arguments_of(open, task);
+        const ExperimentSettings settings = checked_settings(arguments);
+        if (runs_of(settings).size() != 1)
+          throw std::invalid_argument(
+              "it is several evaluations; write the conditions as a list: [\"a\", \"b\"]");
+        identity = identity_of(checked_subject(arguments, settings), settings, kVersion);
+        bar.update(++done);
+      }
+      require_same_experiment(task, *identity);
     } catch (const std::exception& error) {
-      throw std::invalid_argument(
-          fmt::format("{}, line {}: run {}: {}", open.campaign.file, run.line, run.name, error.what()));
+      refuse(open, run, error.what());
     }
-    bar.update(++done);
   }
   bar.finish();
 }
@@ -124,7 +154,28 @@ void print_state(const OpenCampaign& open) {
   std::fflush(stdout);
 }
 
+// The options alone, so that it needs no mesh.
+void require_same_options(const OpenCampaign& open) {
+  for (const CampaignTask& task : open.tasks) {
+    const std::optional<ShardHeader> header = header_of(task.path);
+    if (!header || header->command == arguments_of(open, task).command_line) continue;
+    refuse(open, open.campaign.runs[task.run],
+           fmt::format("shard file '{}' is of another command: {}; give another --out, or delete it",
+                       task.path, header->command));
+  }
+}
+
+void require_something_to_report(const CampaignArguments& arguments, const OpenCampaign& open) {
+  const std::size_t left = tasks_left(open.tasks).size();
+  if (left == 0 || arguments.partial) return;
+  throw std::runtime_error(fmt::format(
+      "campaign '{}': {} of {} are not done. `campaign run` goes on; --partial reports what there is",
+      open.campaign.name, left, counted(open.tasks.size(), "task")));
+}
+
 void report(const CampaignArguments& arguments, const OpenCampaign& open) {
+  require_same_options(open);
+  require_something_to_report(arguments, open);
   ProgressBar bar("merging", "runs", open.campaign.runs.size());
   const MergeMode mode = arguments.partial ? MergeMode::kPartial : MergeMode::kComplete;
   Results results =
@@ -140,20 +191,13 @@ void report(const CampaignArguments& arguments, const OpenCampaign& open) {
   fmt::print("  report               {}\n\n", full_path(open.out + "/report.html"));
 }
 
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
 std::unique_ptr<Launcher> launch(const CampaignArguments& arguments, const OpenCampaign& open) {
   LaunchSettings settings;
   settings.program = fs::read_symlink("/proc/self/exe").string();
   settings.campaign = open.campaign;
   settings.out = open.out;
   settings.jobs = arguments.jobs;
-  settings.options = words_of(arguments.options);
+  settings.options = shell_words(arguments.options);
   settings.tasks = open.tasks;
   fs::create_directories(log_folder(settings));
   for (const LauncherRow& row : launcher_table())
@@ -165,7 +209,7 @@ std::unique_ptr<Launcher> launch(const CampaignArguments& arguments, const OpenC
 void follow(const OpenCampaign& open, Launcher& launcher) {
   ProgressBar bar(open.campaign.name, "sequences", open.sequences(), stderr, sequences_done(open.tasks));
   bool running = true;
-  while (running) {
+  while (running && told_to_stop == 0) {
     std::this_thread::sleep_for(kLook);
     running = launcher.running();
     bar.update(sequences_done(open.tasks));
@@ -173,16 +217,78 @@ void follow(const OpenCampaign& open, Launcher& launcher) {
   bar.finish();
 }
 
+// The launcher ends its workers when it goes out of scope, as it would not if a signal ended us.
+void stop_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // nohup ignores SIGHUP.
+    if (std::signal(signal, [](int) { told_to_stop = 1; }) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
+}
+
+// The last "FAILED: ..." that a worker has written; empty: none.
+std::string last_failure(const std::string& folder) {
+  std::string last;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    std::ifstream log(entry.path());
+    for (std::string line; std::getline(log, line);)
+      if (const std::size_t at = line.find("FAILED: "); at != std::string::npos) last = line.substr(at);
+  }
+  return last;
+}
+
+std::string why_not_done(const OpenCampaign& open, const std::vector<std::size_t>& left,
+                         const Launcher& launcher, const std::string& logs) {
+  std::string why;
+  if (const std::string failure = last_failure(logs); !failure.empty()) why += failure + ". ";
+  if (!launcher.fault().empty()) why += launcher.fault() + ". ";
+  const bool elsewhere = std::any_of(left.begin(), left.end(),
+                                     [&](std::size_t task) { return is_in_use(open.tasks[task].path); });
+  if (elsewhere) why += "Other processes are running tasks of it: wait until they end, or end them. ";
+  return why;
+}
+
 void require_all_done(const OpenCampaign& open, const Launcher& launcher) {
   const std::vector<std::size_t> left = tasks_left(open.tasks);
   if (left.empty()) return;
-  throw std::runtime_error(
-      fmt::format("campaign '{}': {} of {} are not done, the first: {}. {}{}Run the same command again: it "
-                  "goes on where it "
-                  "stopped",
-                  open.campaign.name, left.size(), counted(open.tasks.size(), "task"),
-                  name_of(open.campaign, open.tasks[left.front()]), launcher.fault(),
-                  launcher.fault().empty() ? "" : ". "));
+  const std::string logs = open.out + "/logs";
+  throw std::runtime_error(fmt::format(
+      "campaign '{}': {} of {} are not done, the first: {}. {}Messages of the workers: {}. The same command "
+      "goes "
+      "on where it stopped",
+      open.campaign.name, left.size(), counted(open.tasks.size(), "task"),
+      name_of(open.campaign, open.tasks[left.front()]), why_not_done(open, left, launcher, logs), logs));
+}
+
+// Returns whether all was done by its size, but records were damaged: they are gone now, to be run again.
+bool has_damaged(const OpenCampaign& open) {
+  if (!tasks_left(open.tasks).empty()) return false;
+  bool any = false;
+  ProgressBar bar("verifying", "tasks", open.tasks.size());
+  for (std::size_t i = 0; i < open.tasks.size(); ++i) {
+    const std::uint64_t bytes = cut_to_whole_records(open.tasks[i].path);
+    if (bytes > 0)
+      fmt::print(stderr, "  note: the last {} of {} were no whole record and are run again\n",
+                 counted(bytes, "byte"), open.tasks[i].path);
+    any = any || bytes > 0;
+    bar.update(i + 1);
+  }
+  bar.finish();
+  return any;
+}
+
+// False: it was told to stop, or shall not wait.
+bool run_tasks(const CampaignArguments& arguments, const OpenCampaign& open) {
+  const std::unique_ptr<Launcher> launcher = launch(arguments, open);
+  fmt::print("  started              {}\n", launcher->started());
+  if (arguments.no_wait) return false;
+  fmt::print("  Ctrl-C               {}\n\n",
+             launcher->outlives_us() ? "ends only the progress bar; the jobs go on"
+                                     : "stops the work; the same command goes on where it stopped");
+  std::fflush(stdout);
+  follow(open, *launcher);
+  if (told_to_stop != 0) return false;
+  require_all_done(open, *launcher);
+  return true;
 }
 
 void run(const CampaignArguments& arguments) {
@@ -190,18 +296,11 @@ void run(const CampaignArguments& arguments) {
   check(open);
   print_state(open);
   if (arguments.dry_run) return;
-  if (!tasks_left(open.tasks).empty()) {
-    const std::unique_ptr<Launcher> launcher = launch(arguments, open);
-    fmt::print("  started              {}\n", launcher->started());
-    if (arguments.no_wait) return;
-    fmt::print("  Ctrl-C               {}\n\n",
-               launcher->outlives_us() ? "ends only the progress bar; the jobs go on"
-                                       : "stops the work; the same command goes on where it stopped");
-    std::fflush(stdout);
-    follow(open, *launcher);
-    require_all_done(open, *launcher);
-  }
-  report(arguments, open);
+  stop_on_signals();
+  bool is_done = tasks_left(open.tasks).empty() && !has_damaged(open);
+  if (!is_done) is_done = run_tasks(arguments, open);
+  if (told_to_stop != 0) throw CLI::RuntimeError(kStopped);
+  if (is_done) report(arguments, open);
 }
 
 // Nothing of a worker is left when its starter is gone.

@@ -35,6 +35,7 @@ void merge(const MergeArguments& arguments) {
   results.command = merged.command;
   results.generated = local_time_text();
   results.notes = merged.notes;
+  note_builds(merged.commits, results.notes);
   results.subjects.push_back(std::move(merged.figures));
   for (const std::string& note : results.notes) fmt::print(stderr, "  note: {}\n", note);
   print_results(results);

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <vector>
 
+#include "sim/terminal/text.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -18,34 +20,19 @@ bool is_in(const char* const (&names)[count], const std::string& name) {
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-// At the spaces outside of quotes.
-std::vector<std::string> words_of(const std::string& command) {
-  std::vector<std::string> words{""};
-  bool is_quoted = false;
-  for (const char c : command) {
-    if (c == '\'') is_quoted = !is_quoted;
-    if (c == ' ' && !is_quoted)
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  return words;
-}
-
 }  // namespace
 
 std::string replay_command(const std::string& evaluate_command, Condition condition) {
   std::string command = "tumblesight simulate";
-  const std::vector<std::string> words = words_of(evaluate_command);
+  const std::vector<std::string> words = shell_words(evaluate_command);
+  bool is_left_out = false;  // an option, and the values that follow it
   for (std::size_t i = 2; i < words.size(); ++i) {
     const std::string& word = words[i];
-    const std::string name = word.rfind("--", 0) == 0 ? word.substr(0, word.find('=')) : word;
-    if (is_in(kFlags, name)) continue;
-    if (!is_in(kWithValue, name)) {
-      command += " " + word;
-    } else if (name == word) {
-      ++i;  // its value
+    if (word.rfind("--", 0) == 0) {
+      const std::string name = word.substr(0, word.find('='));
+      is_left_out = is_in(kWithValue, name) || is_in(kFlags, name);
     }
+    if (!is_left_out) command += " " + shell_word(word);
   }
   return command + " --condition " + to_string(condition) + " --only ";
 }

@@ -24,14 +24,18 @@ constexpr double kGrace_s = 2.0;
 
 class SpawnActions {
  public:
-  SpawnActions(const std::string& log_path, int inherited_file) {
+  SpawnActions(const std::string& log_path, const std::string& output_path, int inherited_file) {
     posix_spawn_file_actions_init(&actions_);
     // dup2 onto itself clears the close-on-exec flag.
     if (inherited_file >= 0) posix_spawn_file_actions_adddup2(&actions_, inherited_file, inherited_file);
     if (log_path.empty()) return;
     posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
                                      0644);
-    posix_spawn_file_actions_adddup2(&actions_, STDERR_FILENO, STDOUT_FILENO);
+    if (output_path.empty())
+      posix_spawn_file_actions_adddup2(&actions_, STDERR_FILENO, STDOUT_FILENO);
+    else
+      posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, output_path.c_str(),
+                                       O_WRONLY | O_CREAT | O_TRUNC, 0644);
   }
   ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
   SpawnActions(const SpawnActions&) = delete;
@@ -53,9 +57,12 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   const std::string& path() const { return path_; }
+  // Without the last line break.
   std::string content() const {
     std::ifstream file(path_);
-    return {std::istreambuf_iterator<char>(file), {}};
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    return text;
   }
 
  private:
@@ -75,11 +82,11 @@ std::vector<char*> with_our_environment(const std::vector<std::string>& addition
 
 ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
                            const std::string& log_path, int inherited_file,
-                           const std::vector<std::string>& environment) {
+                           const std::vector<std::string>& environment, const std::string& output_path) {
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  const SpawnActions actions(log_path, inherited_file);
+  const SpawnActions actions(log_path, output_path, inherited_file);
   const int error = posix_spawnp(&pid_, program.c_str(), actions.get(), nullptr, argv.data(),
                                  with_our_environment(environment).data());
   if (error != 0) throw std::runtime_error(program + " cannot be started: " + strerror(error));
@@ -128,17 +135,17 @@ std::string ChildProcess::how_it_ended() const {
 
 std::string output_of(const std::string& program, const std::vector<std::string>& arguments,
                       double timeout_s) {
-  const TemporaryFile file;
+  const TemporaryFile output, messages;
   std::string fault;
-  ChildProcess process(program, arguments, file.path());
+  ChildProcess process(program, arguments, messages.path(), -1, {}, output.path());
   if (!process.wait_for_end(timeout_s))
     fault = "takes longer than " + std::to_string(static_cast<int>(timeout_s)) + " s";
   else if (!process.ended_well())
     fault = process.how_it_ended();
-  std::string output = file.content();
-  while (!output.empty() && output.back() == '\n') output.pop_back();
-  if (!fault.empty()) throw std::runtime_error(program + " " + fault + (output.empty() ? "" : ": " + output));
-  return output;
+  if (fault.empty()) return output.content();
+  for (const std::string& text : {output.content(), messages.content()})
+    if (!text.empty()) fault += ": " + text;
+  throw std::runtime_error(program + " " + fault);
 }
 
 }  // namespace tumblesight::sim

@@ -11,11 +11,12 @@ namespace tumblesight::sim {
 class ChildProcess {
  public:
   // `program`: a path, or a name that is looked for in PATH. `log_path`: file for its messages; empty: our
-  // own output. `inherited_file`: descriptor that the child inherits under the same number; -1: none.
-  // `environment`: "NAME=value" entries added to ours. Throws std::runtime_error if it cannot be started.
+  // own output. `output_path`: file for its standard output, if that is another one. `inherited_file`:
+  // descriptor that the child inherits under the same number; -1: none. `environment`: "NAME=value" entries
+  // added to ours. Throws std::runtime_error if it cannot be started.
   ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
                const std::string& log_path, int inherited_file = -1,
-               const std::vector<std::string>& environment = {});
+               const std::vector<std::string>& environment = {}, const std::string& output_path = "");
   // Sends SIGTERM, and after two seconds SIGKILL.
   virtual ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
@@ -38,7 +39,7 @@ class ChildProcess {
 };
 
 // What a program prints on its standard output, without the last line break. Throws std::runtime_error with
-// the end of what it printed if it cannot be started, fails, or takes longer than `timeout_s`.
+// all that it printed if it cannot be started, fails, or takes longer than `timeout_s`.
 std::string output_of(const std::string& program, const std::vector<std::string>& arguments,
                       double timeout_s);
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace tumblesight::sim {
 
@@ -22,6 +23,8 @@ std::string shortened(const std::string& text, std::size_t most = kMostOfAValue)
 
 // A word of a command line as a shell takes it: in quotes if it needs them.
 std::string shell_word(const std::string& word);
+// The words of a line as a POSIX shell divides it: at spaces outside of quotes. Nothing is expanded.
+std::vector<std::string> shell_words(const std::string& line);
 
 // A number with its noun.
 // "1 frame", "2 frames".

@@ -133,11 +133,13 @@ bool Stage::add_point(const TrainingPoint& point) {
   latest_ = point;
   if (log_) log_->add(point);
   if (progress_) progress_->update(done(), progress_note(latest_));
-  if (point.mean_deg >= position_.least_mean_deg) {
+  // Ranks on different processors may differ in its last bits, and would end at different iterations.
+  const double mean_deg = settings_.ranks->of_first(point.mean_deg);
+  if (mean_deg >= position_.least_mean_deg) {
     skip_if_nothing_improves();
     return false;
   }
-  position_.least_mean_deg = point.mean_deg;
+  position_.least_mean_deg = mean_deg;
   position_.fraction_of_best = fraction();
   return true;
 }

@@ -128,7 +128,7 @@ def check(way, program, folder):
     if way == "slurm":
         expect(watcher.requeued, "Slurm has not requeued the task that was killed", outcome)
     if way == "mpi":  # mpirun ends all workers when one dies
-        expect(outcome.returncode == 1 and "Run the same command again" in outcome.stderr,
+        expect(outcome.returncode == 1 and "The same command goes on where it stopped" in outcome.stderr,
                "the campaign does not say that it is not done", outcome)
         outcome = run(command_of(way, program, campaign), env=environment)
     expect(outcome.returncode == 0, "the campaign failed", outcome)

@@ -77,10 +77,15 @@ sequences = 3
             (std::vector<std::string>{"mesh", "mesh-2", "default"}));
 }
 
-TEST_F(CampaignFile, ARunCanHaveItsOwnSeed) {
-  const Campaign campaign = read("[[run]]\nsequences = 1\nseed = 3\n[[run]]\nsequences = 1\n");
-  EXPECT_EQ(campaign.runs[0].options[3], "3");
-  EXPECT_EQ(campaign.runs[1].options[3], "1");
+TEST_F(CampaignFile, EqualRunsAreRefusedSinceTheirSequencesWouldCountTwice) {
+  expect_refused("[[run]]\nsequences = 1\n[[run]]\nsequences = 1\n",
+                 "line 3: this run is the same as one of line 1");
+  expect_refused("[[run]]\nsequences = 1\nframes = [2, 3, 2]\n",
+                 "line 1: this run is the same as one of line 1");
+}
+
+TEST_F(CampaignFile, ThereIsOneSeed) {
+  expect_refused("[[run]]\nsequences = 1\nseed = 3\n", "line 3: one seed is for all runs");
 }
 
 TEST_F(CampaignFile, WhatIsWrongIsNamedWithItsLine) {
@@ -98,6 +103,8 @@ TEST_F(CampaignFile, WhatIsWrongIsNamedWithItsLine) {
   expect_refused("[[run]]\nsequences = 1\ncondition = \"\"\n", "line 3: run.condition");
   expect_refused("[[run]]\nsequences = 1\nno-ego-motion = false\n", "true; leave it out for false");
   expect_refused("[[run]]\nsequences = 1\nrange = { near = 1 }\n", "line 3: run.range");
+  expect_refused("[[run]]\nsequences = 1\nrange = [[20, 60], [60, 100]]\n", "line 3: run.range");
+  expect_refused("[[run]]\nsequences = 1\nno-ego-motion = [true]\n", "line 3: run.no-ego-motion");
   expect_refused("[[run]\n", "line 1");
   EXPECT_NE(error_of([&] { (void)read_campaign(folder_.path("none.toml")); }).find("there is no such file"),
             std::string::npos);

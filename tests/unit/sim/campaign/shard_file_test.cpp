@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
+#include "sim/campaign/sequence_record.hpp"
 #include "tests/unit/sim/campaign/campaign_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -32,6 +34,11 @@ TEST(Shard, AllPartsTogetherHaveEverySequenceOnce) {
 
 class ShardFile : public ::testing::Test {
  protected:
+  static std::string read_text(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
   SmallEvaluation small_;
   TemporaryFolder folder_;
 };
@@ -81,6 +88,56 @@ TEST_F(ShardFile, AFileThatCannotBeWrittenIsNamed) {
 
 TEST_F(ShardFile, MissingFoldersAreMade) {
   EXPECT_NO_THROW(ShardWriter(folder_.path("a/b/c"), small_.header({0, 2})));
+}
+
+TEST_F(ShardFile, OfAnotherBuildIsNotContinued) {
+  const std::string path = folder_.path("a");
+  { const ShardWriter first(path, small_.header({0, 2})); }
+  ShardHeader header = small_.header({0, 2});
+  header.commit = "def";
+  const std::string error = error_of([&] { ShardWriter(path, header); });
+  EXPECT_NE(error.find("it was begun by the build of commit abc, not def"), std::string::npos) << error;
+}
+
+TEST_F(ShardFile, KilledAtAnyByteOfItsHeaderIsBegunAnew) {
+  const std::string path = folder_.path("a");
+  { const ShardWriter whole(path, small_.header({0, 2})); }
+  const std::string bytes = read_text(path);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    std::ofstream(path, std::ios::binary) << bytes.substr(0, size);
+    EXPECT_FALSE(header_of(path)) << size;
+    EXPECT_EQ(records_in(path), 0U);
+    { const ShardWriter again(path, small_.header({0, 2})); }
+    ASSERT_EQ(read_text(path), bytes) << size;
+  }
+  EXPECT_TRUE(header_of(path));
+}
+
+TEST_F(ShardFile, WithRecordsThatAreNotItsOwnOrTwiceIsRefused) {
+  const std::string path = small_.run({0, 4}, folder_), other = small_.run({1, 4}, folder_);
+  const std::string bytes = read_text(path);
+  const std::size_t record_bytes = record_size_bytes(small_.settings.frames);
+  const auto last_of = [&](const std::string& file) {
+    const std::string all = read_text(file);
+    return all.substr(all.size() - record_bytes);
+  };
+  std::ofstream(path, std::ios::binary) << bytes << last_of(path);
+  EXPECT_NE(error_of([&] { (void)read_shard(path); }).find("it holds sequence 12 twice"), std::string::npos);
+  std::ofstream(path, std::ios::binary) << bytes << last_of(other);
+  EXPECT_NE(error_of([&] { (void)read_shard(path); }).find("it holds sequence 9, which is not of shard 0/4"),
+            std::string::npos);
+}
+
+TEST_F(ShardFile, IsCutToItsWholeRecords) {
+  const std::string path = small_.run({0, 4}, folder_);
+  EXPECT_EQ(cut_to_whole_records(path), 0U);
+  const std::size_t record_bytes = record_size_bytes(small_.settings.frames);
+  std::string bytes = read_text(path);
+  bytes[bytes.size() - record_bytes - 1] ^= 1;  // of the last but one
+  std::ofstream(path, std::ios::binary) << bytes;
+  EXPECT_EQ(records_in(path), 4U) << "by its size";
+  EXPECT_EQ(cut_to_whole_records(path), 2 * record_bytes);
+  EXPECT_EQ(records_in(path), 2U);
 }
 
 TEST_F(ShardFile, ItsSizeTellsTheNumberOfItsRecords) {

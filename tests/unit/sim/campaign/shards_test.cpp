@@ -175,10 +175,19 @@ TEST_F(Shards, OfDifferentBuildsAreNoted) {
     ShardWriter file(paths[1], header);
     run_shard(small_.subject, small_.settings, {1, 2}, file, [](std::uint64_t) {});
   }
-  const MergedShards merged = merge_shards(paths);
-  ASSERT_EQ(merged.notes.size(), 1U);
-  EXPECT_NE(merged.notes[0].find("different builds"), std::string::npos);
-  EXPECT_NE(merged.notes[0].find("abc, def"), std::string::npos);
+  std::vector<std::string> notes;
+  note_builds({"abc"}, notes);
+  EXPECT_TRUE(notes.empty());
+  note_builds(merge_shards(paths).commits, notes);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("different builds"), std::string::npos);
+  EXPECT_NE(notes[0].find("abc, def"), std::string::npos);
+}
+
+// Parts of different counts overlap, so that missing sequences have no names as parts.
+TEST_F(Shards, OfMixedCountsNameWhatIsMissingBySequence) {
+  const std::vector<std::string> paths{small_.run({0, 2}, folder_), small_.run({1, 6}, folder_)};
+  expect_refused(paths, {"9 of 13 sequences", "missing: sequence 3, sequence 5, sequence 9, sequence 11."});
 }
 
 TEST_F(Shards, NothingToMergeIsRefused) {

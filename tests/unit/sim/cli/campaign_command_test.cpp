@@ -84,7 +84,7 @@ TEST_F(CampaignCommand, WorkersTogetherLeaveNothing) {
   const Outcome none = here.run("campaign report c.toml --partial");
   expect_refused(none, "no sequence is done yet");
   EXPECT_EQ(here.run("campaign work c.toml --part 1/2").exit_code, 0);
-  expect_refused(here.run("campaign report c.toml"), "cannot be read");
+  expect_refused(here.run("campaign report c.toml"), "--partial reports what there is");
   const Outcome partial = here.run("campaign report c.toml --partial");
   EXPECT_EQ(partial.exit_code, 0) << partial.errors;
   EXPECT_NE(partial.errors.find("near_shoemaker-model_model.tsm-nominal-frames_2: no sequence is done"),
@@ -115,14 +115,86 @@ TEST_F(CampaignCommand, ADryRunOnlyShowsTheRuns) {
   EXPECT_FALSE(std::filesystem::exists(here.path("c")));
 }
 
-// The task fails in every worker; the others are done.
-TEST_F(CampaignCommand, WhatIsNotDoneIsNamedWithTheMessagesOfTheWorker) {
+// A task fails in every worker, since a folder has the name of its file; the others are done.
+TEST_F(CampaignCommand, WhatIsNotDoneIsNamedWithTheReasonAndTheMessagesOfTheWorkers) {
   put_campaign();
-  std::filesystem::create_directories(here.path("c/near_shoemaker-model_model.tsm-nominal-frames_2"));
-  here.put("c/near_shoemaker-model_model.tsm-nominal-frames_2/0001_of_0003.shard", {1, 2, 3});
+  std::filesystem::create_directories(
+      here.path("c/near_shoemaker-model_model.tsm-nominal-frames_2/0001_of_0003.shard"));
   const Outcome outcome = here.run("campaign run c.toml --jobs 1");
   expect_refused(outcome, "1 of 6 tasks are not done, the first: near_shoemaker-model_model.tsm-nominal");
-  EXPECT_NE(content(here.path("c/logs/local_0.log")).find("it is no shard file"), std::string::npos);
+  expect_refused(outcome, "FAILED: near_shoemaker-model_model.tsm-nominal-frames_2 1/3: shard file");
+  expect_refused(outcome, "c/logs");
+}
+
+TEST_F(CampaignCommand, WhatIsThereOfAnotherExperimentIsNotCounted) {
+  put_campaign();
+  const std::string shard = "near_shoemaker-model_model.tsm-nominal-frames_2/0001_of_0003.shard";
+  EXPECT_EQ(here.run("campaign work c.toml").exit_code, 0);
+  const std::string campaign = content(here.path("c.toml"));
+  std::ofstream(here.path("c.toml")) << "seed = 6" << campaign.substr(8);
+  expect_refused(here.run("campaign run c.toml"),
+                 "is of another experiment: seed is 5, not 6; give another --out");
+  expect_refused(here.run("campaign report c.toml"), "is of another command: ");
+  std::ofstream(here.path("c.toml")) << campaign;
+  here.put("c/" + shard, {1, 2, 3});
+  expect_refused(here.run("campaign run c.toml"), "it is no shard file");
+}
+
+TEST_F(CampaignCommand, ADamagedRecordIsRunAgain) {
+  put_campaign();
+  const Outcome first = here.run("campaign run c.toml");
+  const std::string path = here.path("c/near_shoemaker-model_model.tsm-nominal-frames_2/0001_of_0003.shard");
+  std::string bytes = content(path);
+  bytes[bytes.size() - 1] ^= 1;
+  std::ofstream(path, std::ios::binary) << bytes;
+  const Outcome again = here.run("campaign run c.toml");
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_NE(again.errors.find("were no whole record and are run again"), std::string::npos) << again.errors;
+  EXPECT_EQ(crc_in(again.output), crc_in(first.output));
+}
+
+TEST_F(CampaignCommand, ARunIsOneEvaluationAndResultsDoNotReplaceTheCampaign) {
+  std::ofstream(here.path("two.toml")) << "[[run]]\nsequences = 2\ncondition = \"nominal,degraded\"\n";
+  expect_refused(here.run("campaign run two.toml"),
+                 "it is several evaluations; write the conditions as a list");
+  std::ofstream(here.path("plain")) << "[[run]]\nsequences = 2\n";
+  expect_refused(here.run("campaign run plain"),
+                 "has no extension .toml, so its results would take its name");
+}
+
+// Slurm's commands as they answer on a federation of clusters, with warnings.
+class FakeSlurm : public CampaignCommand {
+ protected:
+  FakeSlurm() {
+    std::filesystem::create_directories(here.path("bin"));
+    put_program("squeue", "echo 'squeue: warning: slow' >&2; echo 'CLUSTER: big'; echo \"$*\" >> asked\n");
+    put_program("scancel", "echo \"$*\" > cancelled\n");
+    put_campaign();
+  }
+  void put_program(const std::string& name, const std::string& script) const {
+    const std::string path = here.path("bin/" + name);
+    std::ofstream(path) << "#!/bin/sh\ncd " << here.path("") << "\n" << script;
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  }
+  Outcome run() const {
+    return here.run_command("env PATH=bin:$PATH " TUMBLESIGHT_BINARY " campaign run c.toml --on slurm", "a");
+  }
+};
+
+TEST_F(FakeSlurm, AnArrayWithoutItsReportIsCancelled) {
+  put_program("sbatch",
+              "case \"$*\" in *--version*) ;; *--wrap*) echo 'QOSMaxSubmitJobPerUserLimit' >&2; exit 1;; "
+              "*) echo 'sbatch: note; nothing' >&2; echo '17;big';; esac\n");
+  const Outcome outcome = run();
+  expect_refused(outcome, "QOSMaxSubmitJobPerUserLimit. Job array 17;big was cancelled");
+  EXPECT_EQ(outcome.errors.find("slurm-client"), std::string::npos);
+  EXPECT_EQ(content(here.path("cancelled")), "-M big 17\n");
+}
+
+TEST_F(FakeSlurm, JobsThatEndWithoutResultsAreNotWaitedForForever) {
+  put_program("sbatch", "case \"$*\" in *--version*) ;; *) echo '17;big';; esac\n");
+  expect_refused(run(), "parts 0,1,2,3,4,5 of the array are not done");
+  EXPECT_EQ(content(here.path("asked")).rfind("-M big -h -j 17 -o %i\n", 0), 0U);
 }
 
 TEST_F(CampaignCommand, WaysThatAreNotThereAreNamed) {

@@ -26,5 +26,12 @@ TEST(ReplayCommand, KeepsQuotedWordsWhole) {
             "tumblesight simulate --mesh 'my meshes/a --csv b.stl' --condition nominal --only ");
 }
 
+TEST(ReplayCommand, KeepsApostrophesAndLeavesOutListsOfValues) {
+  EXPECT_EQ(replay_command("tumblesight evaluate --model 'o'\\''brien x/m.tsm' --condition nominal degraded "
+                           "--sequences 3 --json 'bob'\\''s own.json' --frames 5",
+                           Condition::kDegraded),
+            "tumblesight simulate --model 'o'\\''brien x/m.tsm' --frames 5 --condition degraded --only ");
+}
+
 }  // namespace
 }  // namespace tumblesight::sim

@@ -49,8 +49,8 @@ TEST(ChildProcess, AMissingProgramIsNamed) {
   }
 }
 
-TEST(OutputOf, GivesBothStreamsWithoutTheLastLineBreak) {
-  EXPECT_EQ(output_of("sh", {"-c", "echo one; echo two >&2"}, 10.0), "one\ntwo");
+TEST(OutputOf, GivesStandardOutputAloneWithoutTheLastLineBreak) {
+  EXPECT_EQ(output_of("sh", {"-c", "echo one; echo two >&2"}, 10.0), "one");
 }
 
 TEST(OutputOf, AFailureComesWithTheOutputAndATimeoutWithItsLimit) {
@@ -63,6 +63,7 @@ TEST(OutputOf, AFailureComesWithTheOutputAndATimeoutWithItsLimit) {
     return "no exception";
   };
   EXPECT_EQ(fault_of("echo no such queue; exit 3", 10.0), "sh ended with exit status 3: no such queue");
+  EXPECT_EQ(fault_of("echo 17; echo no room >&2; exit 3", 10.0), "sh ended with exit status 3: 17: no room");
   EXPECT_EQ(fault_of("exec sleep 1000", 1.0), "sh takes longer than 1 s");
 }
 

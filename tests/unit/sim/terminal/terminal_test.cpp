@@ -58,6 +58,17 @@ TEST(ShellWord, IsQuotedOnlyIfItNeedsTo) {
   EXPECT_EQ(shell_word(""), "''");
 }
 
+TEST(Text, ShellWordsAreThoseThatWereJoined) {
+  const std::vector<std::string> words{"--mesh=a/b.stl", "my mesh.stl", "it's", "$HOME", "",
+                                       "a\"b",           "c\\d",        "'"};
+  std::string line;
+  for (const std::string& word : words) line += "  " + shell_word(word);
+  EXPECT_EQ(shell_words(line), words);
+  EXPECT_EQ(shell_words("--hostfile \"my hosts\" a\\ b"),
+            (std::vector<std::string>{"--hostfile", "my hosts", "a b"}));
+  EXPECT_TRUE(shell_words("  ").empty());
+}
+
 TEST(Text, IsShortenedBetweenCharactersAndWithoutControls) {
   EXPECT_EQ(shortened("abc", 3), "abc");
   EXPECT_EQ(shortened("abcd", 3), "abc...");
