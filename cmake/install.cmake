@@ -1,5 +1,5 @@
 # cmake --install: the flight side as static libraries, headers and shipped models, for find_package(tumblesight).
-# The package holds gnc, fsw/app, the HAL interfaces, messages and packets, and the platforms hal/replay and hal/posix. Each
+# The package holds gnc, fsw/app and its C interface, the HAL interfaces, messages and packets, and the platforms hal/replay and hal/posix. Each
 # library has the name that it has here, with the prefix tumblesight::. Programs are not installed.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -24,7 +24,7 @@ function(collect_project_libraries library result)
 endfunction()
 
 set(package_libraries "")
-foreach(library fsw_app hal_interfaces hal_packets hal_replay hal_posix)
+foreach(library fsw_app fsw_c hal_interfaces hal_packets hal_replay hal_posix)
   if(TARGET ${library})
     collect_project_libraries(${library} package_libraries)
   endif()
@@ -38,7 +38,7 @@ set(package_models_dir ${CMAKE_INSTALL_DATADIR}/tumblesight/models)
 install(TARGETS ${package_libraries} EXPORT tumblesight ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT tumblesight NAMESPACE tumblesight:: FILE tumblesight_targets.cmake DESTINATION ${package_folder})
 # Includes are written from the project's root, so the headers keep their folders.
-install(DIRECTORY gnc fsw hal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight FILES_MATCHING PATTERN "*.hpp" PATTERN "*.inc"
+install(DIRECTORY gnc fsw hal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "*.inc"
   PATTERN programs EXCLUDE PATTERN models EXCLUDE PATTERN bare_metal EXCLUDE PATTERN dds EXCLUDE PATTERN fake EXCLUDE)
 install(FILES ${PROJECT_BINARY_DIR}/hal/messages/message_fields.inc
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight/hal/messages)

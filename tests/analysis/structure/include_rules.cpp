@@ -69,6 +69,7 @@ Verdict verdict_on_fsw(const std::string& file, const std::string& path) {
             !starts_with(path, "hal/fake/"),
         "a flight program may include fsw, gnc and platforms that fly; no other program and no ground code"};
   }
+  if (starts_with(file, "fsw/c/") && starts_with(path, "hal/packets/")) return {true, ""};
   return {(starts_with_any(path, {"fsw/", "gnc/", "hal/messages/"}) || is_interface(path)) &&
               !starts_with(path, "fsw/programs/"),
           "the application may include only itself, gnc, the hal interfaces and messages"};

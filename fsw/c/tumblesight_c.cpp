@@ -1,0 +1,185 @@
+#include "fsw/c/tumblesight_c.h"
+
+#include <algorithm>
+#include <iterator>
+#include <new>
+
+#include "fsw/app/attitude_init_app.hpp"
+#include "fsw/app/cycle.hpp"
+#include "fsw/c/inputs_hal.hpp"
+#include "hal/packets/telemetry_encoder.hpp"
+
+using namespace tumblesight;
+
+struct tumblesight_app {
+  explicit tumblesight_app(const tumblesight_settings& given) : settings(given) {}
+
+  void boot();
+  void step(const tumblesight_inputs& inputs);
+  const hal::packets::TelemetryPacket* next_packet();
+
+  tumblesight_settings settings;
+  tumblesight_outputs outputs{};
+  fsw::c::InputsLidar lidar;
+  fsw::c::InputsNavigation navigation;
+  fsw::c::InputsLink link;
+  fsw::c::OutputsWatchdog watchdog{outputs};
+  fsw::c::CallerStopwatch stopwatch{settings};
+  fsw::c::CallerModelStore models{settings};
+  fsw::c::CallerPersistentStore store{settings};
+  hal::packets::TelemetryEncoder encoder;
+  bool has_stepped = false;
+  std::size_t packets_taken = 0;
+  fsw::CycleWorkspace workspace;
+  fsw::AttitudeInitApp app;
+};
+
+static_assert(sizeof(tumblesight_app) + alignof(tumblesight_app) <= TUMBLESIGHT_MEMORY_BYTES);
+static_assert(TUMBLESIGHT_PERIOD_NS == fsw::config::kFramePeriod_ns);
+static_assert(TUMBLESIGHT_MAX_RAYS == gnc::RangeImage::kMaxRays);
+static_assert(TUMBLESIGHT_MAX_FRAMES == fsw::config::kMaxDeliveriesPerCycle);
+static_assert(TUMBLESIGHT_MAX_COMMANDS == fsw::config::kMaxCommandsPerStep);
+static_assert(TUMBLESIGHT_MAX_COMMAND_BYTES == hal::CommandPacket::kMaxBytes);
+static_assert(TUMBLESIGHT_MAX_EVENTS == fsw::config::kMaxEventsPerStep);
+static_assert(TUMBLESIGHT_MAX_PACKET_BYTES == hal::packets::TelemetryPacket::kMaxBytes);
+static_assert(TUMBLESIGHT_STORED_BYTES == hal::kStoredBytes);
+static_assert(TUMBLESIGHT_KEY_SLOTS == hal::kCommandKeySlots);
+static_assert(TUMBLESIGHT_KEY_BYTES == std::tuple_size_v<hal::CommandKey>);
+static_assert(TUMBLESIGHT_RESET_OTHER == static_cast<int>(hal::ResetCause::kOther));
+static_assert(TUMBLESIGHT_STORE_DAMAGED == static_cast<int>(hal::StoreStatus::kDamaged));
+static_assert(TUMBLESIGHT_PASSED_OVER == static_cast<int>(hal::Validity::kPassedOver));
+
+void tumblesight_app::boot() {
+  hal::CommandKeys keys;
+  hal::Platform platform;
+  platform.stopwatch = &stopwatch;
+  platform.models = &models;
+  platform.reset_cause = static_cast<hal::ResetCause>(settings.reset_cause);
+  if (settings.read_stored != nullptr) platform.persistent = &store;
+  if (settings.command_keys != nullptr) {
+    for (std::size_t slot = 0; slot < keys.slots.size(); ++slot)
+      std::copy_n(settings.command_keys->slots[slot], keys.slots[slot].size(), keys.slots[slot].begin());
+    keys.spacecraft_id = settings.command_keys->spacecraft_id;
+    platform.command_keys = &keys;
+  }
+  app.init(platform, settings.expected_target);
+  // Both are copied now, and need not stay valid.
+  settings.command_keys = nullptr;
+  settings.expected_target = nullptr;
+}
+
+void tumblesight_app::step(const tumblesight_inputs& inputs) {
+  lidar.begin(inputs);
+  navigation.begin(inputs);
+  link.begin(inputs, outputs);
+  fsw::run_cycle(app, {lidar, link, watchdog, &navigation}, inputs.now_ns, inputs.slips, workspace);
+  has_stepped = true;
+  packets_taken = 0;
+}
+
+const hal::packets::TelemetryPacket* tumblesight_app::next_packet() {
+  if (!has_stepped) return nullptr;
+  const fsw::StepOutputs& messages = workspace.outputs;
+  const std::size_t index = packets_taken++;
+  if (index == 0) return &encoder.encode(messages.attitude);
+  if (index == 1) return &encoder.encode(messages.telemetry);
+  const std::size_t event = index - 2;
+  if (event < outputs.event_count) return &encoder.encode(messages.events[event]);
+  if (event == outputs.event_count && outputs.has_dump) return &encoder.encode(messages.dump);
+  packets_taken = index;
+  return nullptr;
+}
+
+namespace {
+
+constexpr std::size_t kImageAlignment_bytes = 64;
+
+// Up to the next multiple of `alignment_bytes`.
+std::size_t bytes_to_aligned(const void* address, std::size_t alignment_bytes) {
+  const std::size_t beyond = reinterpret_cast<std::uintptr_t>(address) % alignment_bytes;
+  return beyond == 0 ? 0 : alignment_bytes - beyond;
+}
+
+bool are_aligned(const tumblesight_settings& settings) {
+  return std::all_of(std::begin(settings.bank), std::end(settings.bank), [](const tumblesight_bank& bank) {
+    return bytes_to_aligned(bank.image, kImageAlignment_bytes) == 0;
+  });
+}
+
+// What is wrong with the arguments of init().
+tumblesight_status check(const void* memory, std::size_t memory_bytes, const tumblesight_settings* settings) {
+  if (memory == nullptr || settings == nullptr) return TUMBLESIGHT_NULL_ARGUMENT;
+  if (memory_bytes < tumblesight_memory_bytes(memory)) return TUMBLESIGHT_TOO_LITTLE_MEMORY;
+  if ((settings->read_stored == nullptr) != (settings->write_stored == nullptr))
+    return TUMBLESIGHT_NULL_ARGUMENT;
+  if (settings->reset_cause < TUMBLESIGHT_RESET_POWER_ON || settings->reset_cause > TUMBLESIGHT_RESET_OTHER)
+    return TUMBLESIGHT_BAD_RESET_CAUSE;
+  for (const tumblesight_bank& bank : settings->bank)
+    if (bank.writable != nullptr && bank.writable != bank.image) return TUMBLESIGHT_OTHER_ADDRESS;
+  return are_aligned(*settings) ? TUMBLESIGHT_OK : TUMBLESIGHT_MISALIGNED_IMAGE;
+}
+
+}  // namespace
+
+const char* tumblesight_status_text(tumblesight_status status) {
+  switch (status) {
+    case TUMBLESIGHT_OK:
+      return "ok";
+    case TUMBLESIGHT_NO_MODEL:
+      return "no bank holds a model image that passes every check; the mode is SAFE";
+    case TUMBLESIGHT_NULL_ARGUMENT:
+      return "a pointer that is needed is null";
+    case TUMBLESIGHT_TOO_LITTLE_MEMORY:
+      return "less memory than tumblesight_memory_bytes() says";
+    case TUMBLESIGHT_MISALIGNED_IMAGE:
+      return "the address of a model image is not a multiple of 64";
+    case TUMBLESIGHT_OTHER_ADDRESS:
+      return "the writable address of a bank is not that of its image";
+    case TUMBLESIGHT_BAD_RESET_CAUSE:
+      return "the reset cause is none of enum tumblesight_reset_cause";
+    case TUMBLESIGHT_TOO_MANY:
+      return "more frames or commands than one step takes";
+  }
+  return "unknown status";
+}
+
+std::size_t tumblesight_memory_bytes(const void* memory) {
+  return bytes_to_aligned(memory, alignof(tumblesight_app)) + sizeof(tumblesight_app);
+}
+
+tumblesight_status tumblesight_init(void* memory, std::size_t memory_bytes,
+                                    const tumblesight_settings* settings, tumblesight_app** app) {
+  if (app == nullptr) return TUMBLESIGHT_NULL_ARGUMENT;
+  *app = nullptr;
+  const tumblesight_status status = check(memory, memory_bytes, settings);
+  if (status != TUMBLESIGHT_OK) return status;
+  auto* const place = static_cast<std::uint8_t*>(memory) + bytes_to_aligned(memory, alignof(tumblesight_app));
+  *app = new (place) tumblesight_app(*settings);
+  (*app)->boot();
+  return (*app)->app.estimator().has_model() ? TUMBLESIGHT_OK : TUMBLESIGHT_NO_MODEL;
+}
+
+tumblesight_status tumblesight_step(tumblesight_app* app, const tumblesight_inputs* inputs,
+                                    const tumblesight_outputs** outputs) {
+  if (outputs != nullptr) *outputs = nullptr;
+  if (app == nullptr || inputs == nullptr) return TUMBLESIGHT_NULL_ARGUMENT;
+  if (inputs->frames == nullptr && inputs->frame_count > 0) return TUMBLESIGHT_NULL_ARGUMENT;
+  if (inputs->commands == nullptr && inputs->command_count > 0) return TUMBLESIGHT_NULL_ARGUMENT;
+  if (inputs->frame_count > TUMBLESIGHT_MAX_FRAMES || inputs->command_count > TUMBLESIGHT_MAX_COMMANDS)
+    return TUMBLESIGHT_TOO_MANY;
+  app->step(*inputs);
+  if (outputs != nullptr) *outputs = &app->outputs;
+  return TUMBLESIGHT_OK;
+}
+
+std::size_t tumblesight_take_packet(tumblesight_app* app, std::uint8_t* bytes, std::size_t capacity_bytes) {
+  if (app == nullptr || bytes == nullptr || capacity_bytes < TUMBLESIGHT_MAX_PACKET_BYTES) return 0;
+  const hal::packets::TelemetryPacket* const packet = app->next_packet();
+  if (packet == nullptr) return 0;
+  std::copy_n(packet->bytes.begin(), packet->size, bytes);
+  return packet->size;
+}
+
+std::uint32_t tumblesight_state_crc32(const tumblesight_app* app) {
+  return app->app.state_crc32();
+}
