@@ -1,5 +1,5 @@
-/* The flight application for C, and for languages that call C (Ada, Rust): one object in memory of the caller,
- * tumblesight_init() at start-up and tumblesight_step() once per period.
+/* The flight application for C, and for languages that call C (Ada, Rust): one object in memory of the
+ * caller, tumblesight_init() at start-up and tumblesight_step() once per period.
  *
  *   static uint64_t memory[TUMBLESIGHT_MEMORY_BYTES / 8];
  *   struct tumblesight_app *app;
@@ -10,14 +10,15 @@
  *     ... send *outputs ...
  *   }
  *
- * docs/examples/smallest.c is a whole program. Link tumblesight::fsw_c, or the static libraries of the package.
+ * docs/examples/smallest.c is a whole program. Link tumblesight::fsw_c, or the static libraries of the
+ * package.
  *
- * Nothing is allocated, nothing blocks, and no function keeps a pointer into `inputs`. Call all functions of one
- * object from one thread, which needs 8 KiB of stack. Several objects are independent of each other.
+ * Nothing is allocated, nothing blocks, and no function keeps a pointer into `inputs`. Call all functions of
+ * one object from one thread, which needs 8 KiB of stack. Several objects are independent of each other.
  *
- * Frames: the target's (TRF), the LiDAR's (LRF: x right, y boresight, z up). Quaternions: Hamilton, scalar first,
- * Q30. Times: nanoseconds of the platform's clock, which must not go back. docs/icd.md explains every field, event
- * and command. */
+ * Frames: the target's (TRF), the LiDAR's (LRF: x right, y boresight, z up). Quaternions: Hamilton, scalar
+ * first, Q30. Times: nanoseconds of the platform's clock, which must not go back. docs/icd.md explains every
+ * field, event and command. */
 #ifndef TUMBLESIGHT_C_H
 #define TUMBLESIGHT_C_H
 
@@ -38,11 +39,11 @@ extern "C" {
 
 #define TUMBLESIGHT_PERIOD_NS 2700000000LL
 #define TUMBLESIGHT_MAX_RAYS 128
-#define TUMBLESIGHT_MAX_FRAMES 32        /* per step */
-#define TUMBLESIGHT_MAX_COMMANDS 8       /* per step */
+#define TUMBLESIGHT_MAX_FRAMES 32  /* per step */
+#define TUMBLESIGHT_MAX_COMMANDS 8 /* per step */
 #define TUMBLESIGHT_MAX_COMMAND_BYTES 1060
-#define TUMBLESIGHT_COMMAND_REFUSALS 17  /* reasons to refuse a command */
-#define TUMBLESIGHT_MAX_EVENTS 16        /* per step */
+#define TUMBLESIGHT_COMMAND_REFUSALS 17 /* reasons to refuse a command */
+#define TUMBLESIGHT_MAX_EVENTS 16       /* per step */
 #define TUMBLESIGHT_MAX_PACKET_BYTES 1055
 #define TUMBLESIGHT_BANKS 2
 #define TUMBLESIGHT_STEP_TIME_BINS 8
@@ -53,18 +54,18 @@ extern "C" {
 
 enum tumblesight_status {
   TUMBLESIGHT_OK = 0,
-  /* init: no bank holds an image that passes every check. The object works: it is in mode SAFE, reports telemetry,
-   * and a new image can be loaded. */
+  /* init: no bank holds an image that passes every check. The object works: it is in mode SAFE, reports
+   * telemetry, and a new image can be loaded. */
   TUMBLESIGHT_NO_MODEL = 1,
-  TUMBLESIGHT_NULL_ARGUMENT = 2,      /* a pointer that is needed is null */
-  TUMBLESIGHT_TOO_LITTLE_MEMORY = 3,  /* less than tumblesight_memory_bytes(memory) */
-  TUMBLESIGHT_MISALIGNED_IMAGE = 4,   /* the address of a bank is no multiple of 64 */
-  TUMBLESIGHT_OTHER_ADDRESS = 5,      /* the writable address of a bank is not that of its image */
-  TUMBLESIGHT_BAD_RESET_CAUSE = 6,    /* no value of enum tumblesight_reset_cause */
-  TUMBLESIGHT_TOO_MANY = 7            /* more frames or commands than one step takes; nothing was done */
+  TUMBLESIGHT_NULL_ARGUMENT = 2,     /* a pointer that is needed is null */
+  TUMBLESIGHT_TOO_LITTLE_MEMORY = 3, /* less than tumblesight_memory_bytes(memory) */
+  TUMBLESIGHT_MISALIGNED_IMAGE = 4,  /* the address of a bank is no multiple of 64 */
+  TUMBLESIGHT_OTHER_ADDRESS = 5,     /* the writable address of a bank is not that of its image */
+  TUMBLESIGHT_BAD_RESET_CAUSE = 6,   /* no value of enum tumblesight_reset_cause */
+  TUMBLESIGHT_TOO_MANY = 7           /* more frames or commands than one step takes; nothing was done */
 };
 /* One line for a log. Any value. */
-const char *tumblesight_status_text(enum tumblesight_status status);
+const char* tumblesight_status_text(enum tumblesight_status status);
 
 /* --- start-up --- */
 
@@ -78,17 +79,17 @@ enum tumblesight_reset_cause {
 /* Results of the functions of a persistent store. */
 enum tumblesight_store_status {
   TUMBLESIGHT_STORE_OK = 0,
-  TUMBLESIGHT_STORE_BLANK = 1,   /* read: nothing has ever been written */
-  TUMBLESIGHT_STORE_FAILED = 2,  /* the memory could not be read or written */
-  TUMBLESIGHT_STORE_DAMAGED = 3  /* read: the memory knows that its content is wrong */
+  TUMBLESIGHT_STORE_BLANK = 1,  /* read: nothing has ever been written */
+  TUMBLESIGHT_STORE_FAILED = 2, /* the memory could not be read or written */
+  TUMBLESIGHT_STORE_DAMAGED = 3 /* read: the memory knows that its content is wrong */
 };
 
 /* Memory of a model image. It stays valid as long as the object, at an address that is a multiple of 64. */
 struct tumblesight_bank {
-  const uint8_t *image;     /* null: the bank does not exist */
-  size_t image_bytes;       /* of the image at start; 0: none */
-  uint8_t *writable;        /* the same address if the ground may load images into it, else null */
-  size_t capacity_bytes;    /* of `writable` */
+  const uint8_t* image;  /* null: the bank does not exist */
+  size_t image_bytes;    /* of the image at start; 0: none */
+  uint8_t* writable;     /* the same address if the ground may load images into it, else null */
+  size_t capacity_bytes; /* of `writable` */
 };
 
 /* For commands with a security trailer (docs/icd.md). */
@@ -100,26 +101,28 @@ struct tumblesight_command_keys {
 /* All of it may be zero, except bank[0]. */
 struct tumblesight_settings {
   struct tumblesight_bank bank[TUMBLESIGHT_BANKS];
-  const char *expected_target; /* refuse the model of another target; null: any */
+  const char* expected_target; /* refuse the model of another target; null: any */
   enum tumblesight_reset_cause reset_cause;
-  const struct tumblesight_command_keys *command_keys; /* copied; null: the caller authenticates all commands */
-  void *context;                                       /* first argument of the functions below */
-  uint64_t (*stopwatch_ns)(void *context); /* monotonic, for durations in telemetry; null: they are 0 */
-  /* A store that survives a reset, with two copies (0 and 1) of TUMBLESIGHT_STORED_BYTES. Both null: none. Each call
-   * takes a few milliseconds at most. A write that fails must not change the other copy. */
-  enum tumblesight_store_status (*read_stored)(void *context, int copy, uint8_t *bytes);
-  enum tumblesight_store_status (*write_stored)(void *context, int copy, const uint8_t *bytes);
+  const struct tumblesight_command_keys*
+      command_keys;                        /* copied; null: the caller authenticates all commands */
+  void* context;                           /* first argument of the functions below */
+  uint64_t (*stopwatch_ns)(void* context); /* monotonic, for durations in telemetry; null: they are 0 */
+  /* A store that survives a reset, with two copies (0 and 1) of TUMBLESIGHT_STORED_BYTES. Both null: none.
+   * Each call takes a few milliseconds at most. A write that fails must not change the other copy. */
+  enum tumblesight_store_status (*read_stored)(void* context, int copy, uint8_t* bytes);
+  enum tumblesight_store_status (*write_stored)(void* context, int copy, const uint8_t* bytes);
 };
 
 struct tumblesight_app; /* the object */
 
 /* What the object needs at this address, at most TUMBLESIGHT_MEMORY_BYTES. */
-size_t tumblesight_memory_bytes(const void *memory);
+size_t tumblesight_memory_bytes(const void* memory);
 
-/* Makes the object in `memory`, which stays its own as long as it is used, and boots it. `*app`: for all other
- * functions; set for TUMBLESIGHT_OK and TUMBLESIGHT_NO_MODEL, else null. May be called again. */
-enum tumblesight_status tumblesight_init(void *memory, size_t memory_bytes,
-                                         const struct tumblesight_settings *settings, struct tumblesight_app **app);
+/* Makes the object in `memory`, which stays its own as long as it is used, and boots it. `*app`: for all
+ * other functions; set for TUMBLESIGHT_OK and TUMBLESIGHT_NO_MODEL, else null. May be called again. */
+enum tumblesight_status tumblesight_init(void* memory, size_t memory_bytes,
+                                         const struct tumblesight_settings* settings,
+                                         struct tumblesight_app** app);
 
 /* --- one step --- */
 
@@ -130,39 +133,39 @@ struct tumblesight_chaser {
   bool is_known;
 };
 
-/* A frame of rays x rays ranges, row by row from the top left. Ray (row, column) points along (u, 1, v) of the LRF:
- * u = tan(fov / 2) ((2 column + 1) / rays - 1), v = tan(fov / 2) (1 - (2 row + 1) / rays). */
+/* A frame of rays x rays ranges, row by row from the top left. Ray (row, column) points along (u, 1, v) of
+ * the LRF: u = tan(fov / 2) ((2 column + 1) / rays - 1), v = tan(fov / 2) (1 - (2 row + 1) / rays). */
 struct tumblesight_frame {
   int64_t exposure_time_ns;
   uint32_t sequence_number;
-  uint32_t fov_urad;       /* full field of view of both axes */
-  uint16_t rays;           /* per side, at most TUMBLESIGHT_MAX_RAYS */
-  const uint16_t *ranges;  /* along the ray [1/128 m]; 0: no return */
+  uint32_t fov_urad;                /* full field of view of both axes */
+  uint16_t rays;                    /* per side, at most TUMBLESIGHT_MAX_RAYS */
+  const uint16_t* ranges;           /* along the ray [1/128 m]; 0: no return */
   struct tumblesight_chaser chaser; /* at the exposure */
 };
 
 /* A telecommand: a CCSDS packet with cFS's secondary header (docs/icd.md). */
 struct tumblesight_command {
-  const uint8_t *bytes;
+  const uint8_t* bytes;
   size_t size_bytes;
 };
 
 /* What has arrived since the last step. A step without frames and commands is normal. */
 struct tumblesight_inputs {
-  int64_t now_ns;                           /* later than in the last step */
-  uint32_t slips;                           /* periods that were missed since then */
-  const struct tumblesight_frame *frames;   /* the oldest first; the step uses the newest good one */
-  size_t frame_count;                       /* at most TUMBLESIGHT_MAX_FRAMES */
-  uint32_t frames_dropped;                  /* by the caller, for lack of room */
-  const struct tumblesight_command *commands;
-  size_t command_count;                     /* at most TUMBLESIGHT_MAX_COMMANDS */
-  uint32_t commands_dropped;                /* by the caller, for lack of room */
-  struct tumblesight_chaser chaser;         /* at now_ns */
+  int64_t now_ns;                         /* later than in the last step */
+  uint32_t slips;                         /* periods that were missed since then */
+  const struct tumblesight_frame* frames; /* the oldest first; the step uses the newest good one */
+  size_t frame_count;                     /* at most TUMBLESIGHT_MAX_FRAMES */
+  uint32_t frames_dropped;                /* by the caller, for lack of room */
+  const struct tumblesight_command* commands;
+  size_t command_count;             /* at most TUMBLESIGHT_MAX_COMMANDS */
+  uint32_t commands_dropped;        /* by the caller, for lack of room */
+  struct tumblesight_chaser chaser; /* at now_ns */
 };
 
 enum tumblesight_validity {
   TUMBLESIGHT_VALID = 0,
-  TUMBLESIGHT_STANDBY = 1,       /* the mode is not RUN */
+  TUMBLESIGHT_STANDBY = 1, /* the mode is not RUN */
   TUMBLESIGHT_NO_FRAME = 2,
   TUMBLESIGHT_FRAME_REFUSED = 3, /* an event gives the reason */
   TUMBLESIGHT_DOUBTFUL = 4,      /* `doubts` gives the reasons */
@@ -296,21 +299,21 @@ struct tumblesight_outputs {
   struct tumblesight_event events[TUMBLESIGHT_MAX_EVENTS];
   size_t event_count;
   struct tumblesight_memory_dump dump;
-  bool has_dump;     /* `dump` answers a command of this step */
-  bool duties_done;  /* kick the watchdog after the outputs are sent */
+  bool has_dump;    /* `dump` answers a command of this step */
+  bool duties_done; /* kick the watchdog after the outputs are sent */
 };
 
 /* Runs one cycle. `*outputs` stays valid until the next call. */
-enum tumblesight_status tumblesight_step(struct tumblesight_app *app, const struct tumblesight_inputs *inputs,
-                                         const struct tumblesight_outputs **outputs);
+enum tumblesight_status tumblesight_step(struct tumblesight_app* app, const struct tumblesight_inputs* inputs,
+                                         const struct tumblesight_outputs** outputs);
 
-/* The outputs of the last step as CCSDS telemetry packets (docs/icd.md), one per call: attitude, telemetry, events, dump.
- * Returns the size of the packet in `bytes`, and 0 after the last one. `capacity_bytes`: at least
- * TUMBLESIGHT_MAX_PACKET_BYTES; with less nothing is written, and 0 returned. */
-size_t tumblesight_take_packet(struct tumblesight_app *app, uint8_t *bytes, size_t capacity_bytes);
+/* The outputs of the last step as CCSDS telemetry packets (docs/icd.md), one per call: attitude, telemetry,
+ * events, dump. Returns the size of the packet in `bytes`, and 0 after the last one. `capacity_bytes`: at
+ * least TUMBLESIGHT_MAX_PACKET_BYTES; with less nothing is written, and 0 returned. */
+size_t tumblesight_take_packet(struct tumblesight_app* app, uint8_t* bytes, size_t capacity_bytes);
 
 /* Of everything that the next step depends on, to compare runs: the same on every processor. */
-uint32_t tumblesight_state_crc32(const struct tumblesight_app *app);
+uint32_t tumblesight_state_crc32(const struct tumblesight_app* app);
 
 #ifdef __cplusplus
 }

@@ -161,7 +161,6 @@ std::string run_name(const CellResult& cell) {
   std::string name = to_string(cell.condition);
   for (const std::string& other : {differences_from_paper(cell), to_string(cell.disturbances)})
     if (!other.empty()) name += ", " + other;
-  if (cell.frames != kFramesPerSequence) name += ", " + counted(cell.frames, "frame");
   return name;
 }
 
