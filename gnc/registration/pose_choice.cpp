@@ -35,8 +35,7 @@ constexpr std::int32_t kWithoutAlternative_q8 = 4 * 256;  // of a frame
 constexpr std::int32_t kNetworkDisagrees_q8 = 1 * 256;    // against the track, per frame
 constexpr std::int32_t kMostOfNetwork_q8 = 4 * 256;       // its odds, in the first frames
 constexpr std::int32_t kClear_q8 = 6 * 256;               // after kFirst, for the second attitude
-// One frame does not end a track that has this much; two do.
-constexpr std::int32_t kMostOfATrack_q8 = kMostOfAFrame_q8 + kNetworkDisagrees_q8;
+constexpr std::int32_t kMostOfATrack_q8 = 2 * kMostOfAFrame_q8;
 
 void exchange(PoseCandidate& a, PoseCandidate& b) {
   const PoseCandidate kept = a;

@@ -17,6 +17,7 @@ constexpr std::int64_t kDisagreement_q8 = 90;  // from here on another law is tr
 constexpr int kVerifiedPoses = 3;
 constexpr std::int64_t kLongestToTellRate_ns = 7'500'000'000;  // between poses; as of the network's track
 constexpr std::int32_t kLeastAdvantage_q8 = 8 * 256;           // of the track
+constexpr std::int32_t kMostAgainstTrack_q8 = 6 * 256;         // in a frame
 constexpr std::int64_t kMostDisagreement_q8 = 3 * 256;
 constexpr std::uint32_t kLargestSigma_urad = 17'453;  // a degree
 
@@ -177,6 +178,7 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   const PoseMotion predicted = later_pose(state, frame.laws, frame.elapsed_ns, frame.r_now_last);
   state.history.advance(frame.elapsed_ns, frame.r_now_last);
   state.motion = predicted;
+  const std::int32_t advantage_before_q8 = state.advantage_q8;
   bool is_tracked = state.history.count >= kTrackedPoses;
   const std::int32_t depth_um = is_tracked ? predicted.origin_lrf_um[1] : frame.centroid_lrf_mm[1] * 1000;
   if (!target.mesh.is_known() ||
@@ -212,6 +214,7 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
     make_coasting_covariance(frame, state, scratch, estimate.covariance);
   }
   if (!tells_rate(state.history)) estimate.doubts |= kPoseMotion;
+  if (advantage_before_q8 - state.advantage_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
   estimate.poses = state.history.count;
   estimate.state = pose_state(state.motion);
   estimate.doubts |= doubts_of(frame, state.motion.turning.r_lrf_trf, estimate);

@@ -26,6 +26,7 @@ _DOCUMENT = re.compile(r"(?<![\w/])(?:docs|fsw|gnc|hal|sim|tests)/[\w./-]*\w")
 _SOURCES = {".cpp", ".hpp", ".c", ".py", ".cmake", ".txt", ".sh", ""}
 _COMMENT = {"C++": re.compile(r"\s*//(.*)"), "other": re.compile(r"\s*#(.*)")}
 _VERIFIES = re.compile(r"\s*Verifies\b(.*)")
+_BESIDE = re.compile(r"\bVerifies TS-")
 _TEST = re.compile(r"\s*(?:TEST|TEST_F|TEST_P|TYPED_TEST)\(\s*(\w+),\s*(\w+)\)")
 _INSTANTIATED = re.compile(r"\s*INSTANTIATE_TEST_SUITE_P\(\s*(\w+),\s*(\w+)")
 _ADDED = re.compile(r"\s*add_test\(NAME\s+(\S+)")
@@ -96,8 +97,12 @@ def claims_in(root, path, wrong):
     name, comment = path.relative_to(root).as_posix(), comment_of(path)
     claims = []
     for number, line in enumerate(lines):
-        claim = comment.match(line) and _VERIFIES.match(comment.match(line)[1])
+        text = comment.match(line)
+        claim = text and _VERIFIES.match(text[1])
         if not claim:
+            if _BESIDE.search(line):
+                wrong.append(f"{name}:{number + 1}: 'Verifies' is not at the beginning of a comment and would not count: "
+                             "put it on a line of its own")
             continue
         at, words, end = f"{name}:{number + 1}", claim[1], number + 1
         while "." not in words and end < len(lines) and comment.match(lines[end]):

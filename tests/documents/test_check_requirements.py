@@ -87,6 +87,12 @@ class Tests(Tree):
                 self.put("tests/other_test.cpp", f"// Verifies {words}.\n")
                 self.expect_one("tests/other_test.cpp:1", "is not an id")
 
+    def test_a_claim_in_the_middle_of_a_comment(self):
+        for line in ("// Why. Verifies TS-NUM-010.", "int a;  // Verifies TS-NUM-010.", '"""Words. Verifies TS-NUM-010."""'):
+            with self.subTest(line):
+                self.put("tests/other_test.cpp", line + "\n")
+                self.expect_one("tests/other_test.cpp:1", "put it on a line of its own")
+
     def test_a_comment_above_something_else(self):
         self.put("tests/unit/sum_test.cpp", CPP.replace("TEST(Sum, IsRight)", "class Sum"))
         self.expect_one("tests/unit/sum_test.cpp:3", "neither above a test nor at the file's head")

@@ -1,7 +1,8 @@
-"""The console's page in a browser: a run while it goes on, and a recording of one. Verifies TS-SIL-195.
+"""The console's page in a browser: a run while it goes on, and a recording of one.
 
 Usage: test_console_page.py TUMBLESIGHT [FOLDER]     FOLDER keeps the screenshots
 """
+# Verifies TS-SIL-195.
 
 import collections
 import json

@@ -468,7 +468,8 @@ TEST(AttitudeTrack, GivesUnitQuaternionsForAnyInput) {
 }
 
 // The head may select the prediction while one law has lost the target. The result of that law then equals
-// its prediction, which must not count as a match. Verifies TS-EST-140.
+// its prediction, which must not count as a match.
+// Verifies TS-EST-140.
 TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
   const Inertia<float> inertia = slender_body();
   Motion<float> truth{kStart.cast<float>(),

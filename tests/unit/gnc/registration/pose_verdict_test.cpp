@@ -74,7 +74,8 @@ TEST_F(PoseVerdict, FewerThanThreePosesAreADoubt) {
 }
 
 // A target that is pushed up and down by a centimetre beside its motion, as by thrusters. No single pose is
-// far from the motion, but together they do not follow it. Verifies TS-EST-202.
+// far from the motion, but together they do not follow it.
+// Verifies TS-EST-202.
 TEST_F(PoseVerdict, PosesThatDoNotFollowOneMotionAreADoubt) {
   see_more_sharply();
   track_frames(10);

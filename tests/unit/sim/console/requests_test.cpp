@@ -1,4 +1,5 @@
-// The answers to the page's requests, and who gets none. Verifies TS-SIL-195.
+// The answers to the page's requests, and who gets none.
+// Verifies TS-SIL-195.
 #include "sim/console/requests.hpp"
 
 #include <gtest/gtest.h>
