@@ -2,7 +2,10 @@
 // as long as the application.
 #pragma once
 
+#include <cstdint>
+
 #include "hal/messages/command_key.hpp"
+#include "hal/messages/command_packet.hpp"
 #include "hal/messages/reset_cause.hpp"
 #include "hal/model_store.hpp"
 #include "hal/persistent_store.hpp"
@@ -20,6 +23,8 @@ struct Platform {
   PersistentStore* persistent = nullptr;
   // Unknown is abnormal: the application then starts in STANDBY.
   ResetCause reset_cause = ResetCause::kOther;
+  // A packet with another one is no telecommand. At most 0x7FF.
+  std::uint16_t command_apid = kCommandApid;
 };
 
 }  // namespace tumblesight::hal

@@ -92,7 +92,7 @@ void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_t
   ModeManager modes(state, estimator_, report);
   state.platform = platform;
   state.platform.command_keys = nullptr;
-  state.authority.set(platform.command_keys);
+  state.authority.set(platform.command_keys, platform.command_apid);
   state.expected_target.set(expected_target);
   estimator_.reset();
   if (TUMBLESIGHT_ASSERT(state.assertions, is_complete(platform))) {
@@ -105,6 +105,16 @@ void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_t
   }
   guard_.keep(estimator_, state);
   state_.commit();
+}
+
+bool AttitudeInitApp::use(const ParameterTable& table) {
+  if (first_wrong_field(table) < kTableFields) return false;
+  const std::uint32_t corrected_words = state_.vote();
+  AppState& state = *state_;
+  count(state.counters.memory_corrections, corrected_words);
+  state.table = table;
+  state_.commit();
+  return true;
 }
 
 void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) {

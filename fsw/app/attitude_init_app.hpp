@@ -57,6 +57,9 @@ class AttitudeInitApp final {
   // One cycle. `now_ns`: time of this cycle, which must be later than that of the previous one. All of
   // `outputs` is overwritten, except the content of `dump` where has_dump is false.
   void step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs);
+  // Between two steps: makes the table the active one, as TABLE_ACTIVATE does, for platforms that keep tables
+  // themselves. False: a field has a value that is not allowed, and nothing changes.
+  [[nodiscard]] bool use(const ParameterTable& table);
 
   // Whether a frame passes the rules for time and order in a cycle at `now_ns`. For the choice of the frame
   // that a step gets; the step judges it again.

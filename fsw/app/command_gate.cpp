@@ -6,28 +6,28 @@
 namespace tumblesight::fsw {
 namespace {
 
-constexpr std::uint16_t kPacketIdentification =
-    0x1800 | hal::kCommandApid;  // version 0, telecommand, secondary header
+constexpr std::uint16_t kTelecommand = 0x1800;  // version 0, telecommand, secondary header
 constexpr int kLengthOffset = 4;
 
 std::uint16_t u16(const std::uint8_t* at) {
   return static_cast<std::uint16_t>(at[0] << 8 | at[1]);
 }
 
-bool is_well_formed(const std::uint8_t* packet) {
+bool is_well_formed(const std::uint8_t* packet, std::uint16_t apid) {
   constexpr int kUnsegmented = 3, kReservedBit = 0x80;
-  return u16(packet) == kPacketIdentification && packet[2] >> 6 == kUnsegmented &&
+  return u16(packet) == (kTelecommand | apid) && packet[2] >> 6 == kUnsegmented &&
          (packet[hal::kCommandFunctionOffset] & kReservedBit) == 0;
 }
 
 // The checks of an authentic packet. `trailer_bytes`: at the end of the packet.
-bool refuses(const hal::CommandPacket& packet, int trailer_bytes, Mode mode, Admission& admission) {
+bool refuses(const hal::CommandPacket& packet, std::uint16_t apid, int trailer_bytes, Mode mode,
+             Admission& admission) {
   const auto refused = [&admission](CommandRefusal why) {
     admission.why = why;
     return true;
   };
   const std::uint8_t* const bytes = packet.bytes.data();
-  if (packet.size < hal::kCommandHeaderBytes || !is_well_formed(bytes))
+  if (packet.size < hal::kCommandHeaderBytes || !is_well_formed(bytes, apid))
     return refused(CommandRefusal::kMalformed);
   admission.function = bytes[hal::kCommandFunctionOffset];
   if (u16(bytes + kLengthOffset) != packet.size - hal::kCommandPrimaryHeaderBytes - 1)
@@ -64,11 +64,11 @@ Admission judge(const hal::CommandPacket& packet, const CommandAuthority& author
   const hal::CommandKeys* const keys = authority.keys();
   if (keys != nullptr) {
     if (!takes_trailer(packet, *keys, authority.slot(), last_counter, admission)) return admission;
-    admission.admitted = !refuses(packet, hal::kCommandTrailerBytes, mode, admission);
+    admission.admitted = !refuses(packet, authority.apid(), hal::kCommandTrailerBytes, mode, admission);
   } else if (packet.size > packet.bytes.size()) {
     admission.why = CommandRefusal::kWrongLength;
   } else {
-    admission.admitted = !refuses(packet, 0, mode, admission);
+    admission.admitted = !refuses(packet, authority.apid(), 0, mode, admission);
   }
   return admission;
 }

@@ -6,13 +6,17 @@
 
 #include "fsw/app/attitude_init_app.hpp"
 #include "fsw/app/cycle.hpp"
+#include "fsw/c/apids.hpp"
 #include "fsw/c/inputs_hal.hpp"
+#include "fsw/c/parameters.hpp"
+#include "hal/messages/event_text.hpp"
 #include "hal/packets/telemetry_encoder.hpp"
 
 using namespace tumblesight;
 
 struct tumblesight_app {
-  explicit tumblesight_app(const tumblesight_settings& given) : settings(given) {}
+  explicit tumblesight_app(const tumblesight_settings& given)
+      : settings(given), encoder(fsw::c::apids_of(given.apids).telemetry) {}
 
   void boot();
   void step(const tumblesight_inputs& inputs);
@@ -54,6 +58,7 @@ void tumblesight_app::boot() {
   hal::Platform platform;
   platform.stopwatch = &stopwatch;
   platform.models = &models;
+  platform.command_apid = fsw::c::apids_of(settings.apids).command;
   platform.reset_cause = static_cast<hal::ResetCause>(settings.reset_cause);
   if (settings.read_stored != nullptr) platform.persistent = &store;
   if (settings.command_keys != nullptr) {
@@ -114,6 +119,7 @@ tumblesight_status check(const void* memory, std::size_t memory_bytes, const tum
     return TUMBLESIGHT_NULL_ARGUMENT;
   if (settings->reset_cause < TUMBLESIGHT_RESET_POWER_ON || settings->reset_cause > TUMBLESIGHT_RESET_OTHER)
     return TUMBLESIGHT_BAD_RESET_CAUSE;
+  if (!fsw::c::apids_of(settings->apids).are_valid()) return TUMBLESIGHT_BAD_APIDS;
   for (const tumblesight_bank& bank : settings->bank)
     if (bank.writable != nullptr && bank.writable != bank.image) return TUMBLESIGHT_OTHER_ADDRESS;
   return are_aligned(*settings) ? TUMBLESIGHT_OK : TUMBLESIGHT_MISALIGNED_IMAGE;
@@ -139,6 +145,10 @@ const char* tumblesight_status_text(tumblesight_status status) {
       return "the reset cause is none of enum tumblesight_reset_cause";
     case TUMBLESIGHT_TOO_MANY:
       return "more frames or commands than one step takes";
+    case TUMBLESIGHT_BAD_APIDS:
+      return "an APID is above 0x7FE, or two are equal";
+    case TUMBLESIGHT_BAD_PARAMETER:
+      return "a parameter has a value that is not allowed";
   }
   return "unknown status";
 }
@@ -170,6 +180,20 @@ tumblesight_status tumblesight_step(tumblesight_app* app, const tumblesight_inpu
   app->step(*inputs);
   if (outputs != nullptr) *outputs = &app->outputs;
   return TUMBLESIGHT_OK;
+}
+
+tumblesight_status tumblesight_set_parameters(tumblesight_app* app,
+                                              const tumblesight_parameters* parameters) {
+  if (app == nullptr || parameters == nullptr) return TUMBLESIGHT_NULL_ARGUMENT;
+  return app->app.use(fsw::c::table_of(*parameters)) ? TUMBLESIGHT_OK : TUMBLESIGHT_BAD_PARAMETER;
+}
+
+const char* tumblesight_version() {
+  return TUMBLESIGHT_VERSION;
+}
+
+const char* tumblesight_event_text(std::uint16_t event_id) {
+  return hal::text_of(static_cast<hal::EventId>(event_id));
 }
 
 std::size_t tumblesight_take_packet(tumblesight_app* app, std::uint8_t* bytes, std::size_t capacity_bytes) {

@@ -51,6 +51,8 @@ extern "C" {
 #define TUMBLESIGHT_STORED_BYTES 256
 #define TUMBLESIGHT_KEY_SLOTS 4
 #define TUMBLESIGHT_KEY_BYTES 32
+#define TUMBLESIGHT_FAULTS 10
+#define TUMBLESIGHT_MAX_APID 0x7FE
 
 enum tumblesight_status {
   TUMBLESIGHT_OK = 0,
@@ -62,7 +64,9 @@ enum tumblesight_status {
   TUMBLESIGHT_MISALIGNED_IMAGE = 4,  /* the address of a bank is no multiple of 64 */
   TUMBLESIGHT_OTHER_ADDRESS = 5,     /* the writable address of a bank is not that of its image */
   TUMBLESIGHT_BAD_RESET_CAUSE = 6,   /* no value of enum tumblesight_reset_cause */
-  TUMBLESIGHT_TOO_MANY = 7           /* more frames or commands than one step takes; nothing was done */
+  TUMBLESIGHT_TOO_MANY = 7,          /* more frames or commands than one step takes; nothing was done */
+  TUMBLESIGHT_BAD_APIDS = 8,         /* an APID is above TUMBLESIGHT_MAX_APID, or two are equal */
+  TUMBLESIGHT_BAD_PARAMETER = 9      /* a parameter has a value that is not allowed; nothing was done */
 };
 /* One line for a log. Any value. */
 const char* tumblesight_status_text(enum tumblesight_status status);
@@ -98,11 +102,21 @@ struct tumblesight_command_keys {
   uint16_t spacecraft_id;
 };
 
+/* The APIDs of the packets. All zero: 0x1F0 to 0x1F4, in this order. */
+struct tumblesight_apids {
+  uint16_t command;
+  uint16_t attitude_report;
+  uint16_t telemetry;
+  uint16_t event;
+  uint16_t memory_dump;
+};
+
 /* All of it may be zero, except bank[0]. */
 struct tumblesight_settings {
   struct tumblesight_bank bank[TUMBLESIGHT_BANKS];
   const char* expected_target; /* refuse the model of another target; null: any */
   enum tumblesight_reset_cause reset_cause;
+  struct tumblesight_apids apids;
   const struct tumblesight_command_keys*
       command_keys;                        /* copied; null: the caller authenticates all commands */
   void* context;                           /* first argument of the functions below */
@@ -123,6 +137,58 @@ size_t tumblesight_memory_bytes(const void* memory);
 enum tumblesight_status tumblesight_init(void* memory, size_t memory_bytes,
                                          const struct tumblesight_settings* settings,
                                          struct tumblesight_app** app);
+
+/* --- parameters --- */
+
+enum tumblesight_response {
+  TUMBLESIGHT_RESPONSE_IGNORE = 0,
+  TUMBLESIGHT_RESPONSE_FLAG = 1,           /* an event */
+  TUMBLESIGHT_RESPONSE_RESET_SEQUENCE = 2, /* an event, and the estimator is reset */
+  TUMBLESIGHT_RESPONSE_SWITCH_BANK = 3,    /* an event, and the other bank's model is activated */
+  TUMBLESIGHT_RESPONSE_SAFE = 4            /* an event, and the mode becomes SAFE */
+};
+
+/* A fault persists when it was present in `cycles` of the last `window_cycles` cycles. It is over after
+ * `good_cycles` consecutive cycles without it. */
+struct tumblesight_fault_rule {
+  uint8_t cycles;        /* 1 ... window_cycles */
+  uint8_t window_cycles; /* at most 32 */
+  uint8_t good_cycles;   /* at least 1 */
+  uint8_t response;      /* enum tumblesight_response */
+};
+
+/* What the ground can change without new software; also by the telecommands SET_PARAMETER and TABLE_LOAD.
+ * docs/icd.md gives the meaning, the limits and the initial value of each field, and the faults by number. */
+struct tumblesight_parameters {
+  uint32_t predicted_error_urad;
+  uint32_t attitude_jump_urad;
+  uint32_t step_budget_us;
+  uint32_t scrub_blocks;
+  uint32_t future_tolerance_us;
+  uint32_t max_frame_age_ms;
+  uint32_t longest_coast_ms;
+  uint32_t chaser_time_tolerance_us;
+  uint32_t events_of_a_kind;
+  uint32_t event_window_cycles;
+  uint32_t longest_without_chaser_ms;
+  struct tumblesight_fault_rule fault_rules[TUMBLESIGHT_FAULTS];
+};
+
+/* A field that is not allowed. */
+struct tumblesight_wrong_parameter {
+  const char* name;
+  uint32_t value;   /* a rule: its four bytes, cycles first */
+  uint32_t lowest;  /* of a rule 0 */
+  uint32_t highest; /* of a rule 0 */
+};
+
+/* The values after a first start. */
+void tumblesight_initial_parameters(struct tumblesight_parameters* parameters);
+
+/* Whether tumblesight_set_parameters() takes them: TUMBLESIGHT_OK or TUMBLESIGHT_BAD_PARAMETER. `wrong` may
+ * be null; else it is set to the first field that is not allowed. */
+enum tumblesight_status tumblesight_check_parameters(const struct tumblesight_parameters* parameters,
+                                                     struct tumblesight_wrong_parameter* wrong);
 
 /* --- one step --- */
 
@@ -306,6 +372,16 @@ struct tumblesight_outputs {
 /* Runs one cycle. `*outputs` stays valid until the next call. */
 enum tumblesight_status tumblesight_step(struct tumblesight_app* app, const struct tumblesight_inputs* inputs,
                                          const struct tumblesight_outputs** outputs);
+
+/* Between two steps: replaces all parameters. The next step stores them like those of a telecommand. */
+enum tumblesight_status tumblesight_set_parameters(struct tumblesight_app* app,
+                                                   const struct tumblesight_parameters* parameters);
+
+/* The version of the library, as "0.1.0". */
+const char* tumblesight_version(void);
+
+/* What an event means, in a few words. Any number. */
+const char* tumblesight_event_text(uint16_t event_id);
 
 /* The outputs of the last step as CCSDS telemetry packets (docs/icd.md), one per call: attitude, telemetry,
  * events, dump. Returns the size of the packet in `bytes`, and 0 after the last one. `capacity_bytes`: at

@@ -3,7 +3,8 @@
 // big-endian. Bit by bit: docs/icd.md.
 //
 //   offset  bytes  field
-//        0      2  packet version 0 (3 bits), type 1 (1), secondary header flag 1 (1), APID 0x1F0 (11)
+//        0      2  packet version 0 (3 bits), type 1 (1), secondary header flag 1 (1), APID (11): 0x1F0
+//                  unless the platform has another one
 //        2      2  sequence flags 3 (2 bits), sequence count (14)
 //        4      2  data length: number of bytes from offset 6 to the end of the trailer, minus one
 //        6      1  reserved, 0 (1 bit), function code (7)

@@ -4,8 +4,8 @@
 
 #include "hal/dds/idl/hello.hpp"
 #include "hal/dds/idl/sample_fields.hpp"
+#include "hal/messages/event_text.hpp"
 #include "sim/console/step_json.hpp"
-#include "sim/sil/event_texts.hpp"
 #include "sim/sil/sil_run.hpp"
 
 namespace tumblesight::sim {
@@ -254,8 +254,8 @@ Json StepLog::rows(std::uint64_t from) const {
     const auto& a = at->event.arguments;
     events.push_back({at->step, seconds_of(at->event.time_ns), static_cast<int>(at->event.severity),
                       static_cast<int>(at->event.id),
-                      text_of(at->event.id) + " [" + std::to_string(a[0]) + ", " + std::to_string(a[1]) +
-                          ", " + std::to_string(a[2]) + "]"});
+                      std::string(text_of(at->event.id)) + " [" + std::to_string(a[0]) + ", " +
+                          std::to_string(a[1]) + ", " + std::to_string(a[2]) + "]"});
   }
   for (auto at = from_step(commands_, first); at != commands_.end() && at->step < last; ++at)
     commands.push_back({at->step, seconds_of(steps_[at->step - first_step_].time_ns), at->text, at->outcome});

@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "hal/dds/idl/topics.hpp"
+#include "hal/messages/event_text.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_json.hpp"
-#include "sim/sil/event_texts.hpp"
 #include "sim/sil/fault_names.hpp"
 #include "sim/terminal/text.hpp"
 

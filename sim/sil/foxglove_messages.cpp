@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "sim/sil/event_texts.hpp"
+#include "hal/messages/event_text.hpp"
 #include "sim/sil/sil_run.hpp"
 #include "sim/sil/viewed_frame.hpp"
 
@@ -141,8 +141,8 @@ std::string transforms_json(const hal::AttitudeReport& report, const FrameTruth*
 
 std::string log_json(const hal::Event& event, std::int64_t time_ns) {
   const auto& a = event.arguments;
-  const std::string message = text_of(event.id) + " [" + std::to_string(a[0]) + ", " + std::to_string(a[1]) +
-                              ", " + std::to_string(a[2]) + "]";
+  const std::string message = std::string(text_of(event.id)) + " [" + std::to_string(a[0]) + ", " +
+                              std::to_string(a[1]) + ", " + std::to_string(a[2]) + "]";
   return Json{{"timestamp", timestamp(time_ns)},
               {"level", kLevels[std::min(static_cast<std::size_t>(event.severity), kLevels.size() - 1)]},
               {"message", message},

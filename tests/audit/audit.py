@@ -19,6 +19,7 @@ DOCUMENT, DATA, README = ROOT / "docs/audit.md", ROOT / "docs/audit.json", ROOT 
 PROGRAMS = (("fixed", "flight_replay"), ("float32", "flight_replay_float32"))
 IMAGE = ROOT / "fsw/models/near_shoemaker.tsm"
 LONGEST_STEPS = "flight_worst_step"  # in fixed point
+CFS_APP = "cfs_app"  # needs an operating system
 # Verifies TS-MEM-030, TS-MEM-060.
 BUDGETS = {"ram": 192 * 1024, "stack": 6656, "text": 224 * 1024, "read_only": 24 * 1024}
 
@@ -28,7 +29,7 @@ def programs(processor):
 
 
 def build(processor):
-    targets = [name for _, name in programs(processor)] + [LONGEST_STEPS]
+    targets = [name for _, name in programs(processor)] + [LONGEST_STEPS] + ([] if processor.bare_metal else [CFS_APP])
     for command in (["cmake", "--preset", processor.name],
                     ["cmake", "--build", f"build/{processor.name}", "--target", *targets]):
         run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
@@ -70,7 +71,8 @@ def measure(processor, numerics, program, plugin, folder):
             "equal_counts": not unequal or numerics == "float32", "unequal": unequal,
             "text": sizes["text"], "read_only": sizes["read_only"], "ram": sizes["data"] + sizes["bss"] + stack_bytes,
             "stack": stack_bytes, "path": path, "forbidden": image.forbidden(processor, program.parents[1], program),
-            "floating_point": image.floating_point(processor, program) if numerics == "fixed" else []}
+            "floating_point": image.floating_point(processor, program) if numerics == "fixed" else [],
+            "cfs_app": {} if processor.bare_metal else image.sizes_of_cfs_app(processor, program.parents[1])}
 
 
 def print_result(processor, numerics, r):

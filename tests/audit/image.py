@@ -3,6 +3,7 @@ import re
 import subprocess
 
 _KINDS = {"t": "text", "w": "text", "v": "read_only", "r": "read_only", "d": "data", "b": "bss"}
+_SECTIONS = {".text": "text", ".rodata": "text", ".data": "data", ".bss": "data", ".sdata": "data", ".sbss": "data", ".srodata": "text"}
 _FORBIDDEN = {
     "heap": r"(malloc|calloc|realloc|free|_Zn[wa][jm]\w*|_Zd[la]Pv\w*|_sbrk)",
     "exceptions": r"(__cxa_(throw|allocate_exception|begin_catch|rethrow)|_Unwind_\w+|__gxx_personality\w*)",
@@ -29,6 +30,21 @@ def sizes(processor, program):
         if match and "tumblesight::" in match[3] and match[2].lower() in _KINDS:
             total[_KINDS[match[2].lower()]] += int(match[1], 16)
     return total
+
+
+def sizes_of_cfs_app(processor, build):
+    """Bytes of the cFS app without the flight application that it links: its code with constants, its data without the memory of the
+    model banks, and that of one bank."""
+    objects = sorted((build / "fsw/programs/cfs/CMakeFiles/cfs_app.dir").rglob("*.o"))
+    listing = subprocess.run([processor.tool("size"), "-A", *map(str, objects)], check=True, capture_output=True, text=True).stdout
+    total = {"text": 0, "data": 0}
+    for line in listing.splitlines():
+        match = re.match(r"(\.\w+)\S*\s+(\d+)\s+\d+$", line)
+        if match and match[1] in _SECTIONS:
+            total[_SECTIONS[match[1]]] += int(match[2])
+    symbols = subprocess.run([processor.tool("nm"), "-S", *map(str, objects)], check=True, capture_output=True, text=True).stdout
+    banks = int(re.search(r"\w+ (\w+) [bB] TUMBLESIGHT_APP_Models$", symbols, re.MULTILINE)[1], 16)
+    return {"text": total["text"], "data": total["data"] - banks, "banks": banks}
 
 
 # Verifies TS-MEM-010.

@@ -4,6 +4,7 @@ from processors import CYCLES_PER_INSTRUCTION
 PERIOD_S = 2.7
 GROWTH = 0.02
 SHARE_OF_LONGEST_STEP = 0.75
+CFS_APP_LIMITS = {"text": 16 * 1024, "data": 512 * 1024}
 BOOT = "boot"  # before the first step, so it has no limit
 
 
@@ -38,6 +39,9 @@ def failures(results, committed, budgets, macs):
             for name, limit in budgets.items():
                 if r[name] > limit:
                     wrong.append(f"{at}: {name} {r[name]} bytes, limit {limit}")
+            for name, limit in CFS_APP_LIMITS.items():
+                if r["cfs_app"].get(name, 0) > limit:
+                    wrong.append(f"{at}: {name} of the cFS app {r['cfs_app'][name]} bytes, limit {limit}")
         for name, instructions in committed.get(processor.name, {}).get(numerics, {}).get("longest_steps", {}).items():
             now = r["longest_steps"].get(name, 0)
             if now > instructions * (1 + GROWTH):
@@ -55,7 +59,7 @@ def failures(results, committed, budgets, macs):
 def as_data(results, macs):
     data = {"macs": macs, "processors": {}}
     for processor, numerics, r in results:
-        keep = {k: r[k] for k in ("digest", "instructions", "stages", "longest_steps", "text", "read_only", "ram", "stack")}
+        keep = {k: r[k] for k in ("digest", "instructions", "stages", "longest_steps", "text", "read_only", "ram", "stack", "cfs_app")}
         data["processors"].setdefault(processor.name, {})[numerics] = keep
     return data
 
@@ -92,7 +96,7 @@ def as_document(results, macs, budgets, model, image_bytes, frames):
     fixed = [(p, r) for p, numerics, r in results if numerics == "fixed"]
     floats = [(p, r) for p, numerics, r in results if numerics == "float32"]
     return "\n".join(_introduction(model, frames) + _steps(fixed, macs) + _longest_steps(fixed) + _stages(fixed) + _memory(fixed, budgets, image_bytes)
-                     + _float32(floats, macs)) + "\n"
+                     + _cfs_app(fixed) + _float32(floats, macs)) + "\n"
 
 
 def _introduction(model, frames):
@@ -174,6 +178,15 @@ def _memory(fixed, budgets, image_bytes):
                       _thousands(r["stack"]), _thousands(r["ram"]), _thousands(budgets["ram"])] for p, r in fixed])
     return lines + ["", "The flight libraries need no symbol of the heap, exceptions, stdio or libm's transcendental functions, and a bare-metal",
                     "program contains none. No function of the fixed-point program uses floating-point arithmetic (disassembly).", ""]
+
+
+def _cfs_app(fixed):
+    rows = [[p.title, _thousands(r["cfs_app"]["text"]), _thousands(CFS_APP_LIMITS["text"]), _thousands(r["cfs_app"]["data"]),
+             _thousands(CFS_APP_LIMITS["data"]), _thousands(r["cfs_app"]["banks"])] for p, r in fixed if r["cfs_app"]]
+    return ["## The cFS app", "",
+            "What the app of [cfs.md](cfs.md) adds to the text above. Its data is static: the flight application's whole state with the",
+            "largest `TUMBLESIGHT_MEMORY_BYTES`, three frame buffers of 32 KiB, waiting commands and outputs. The model banks are apart.", "",
+            *_table(["processor", "text", "≤", "data + bss", "≤", "two model banks"], rows), ""]
 
 
 def _float32(floats, macs):

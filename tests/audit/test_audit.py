@@ -19,7 +19,7 @@ PROCESSOR = processors.by_name("cortex-m7")
 
 def result(**changes):
     good = {"digest": "0", "digest_is_golden": True, "equal_counts": True, "unequal": {}, "forbidden": {}, "floating_point": [],
-            "instructions": 1000, "longest_steps": {}, "text": 50, "read_only": 50, "ram": 50, "stack": 5}
+            "instructions": 1000, "longest_steps": {}, "text": 50, "read_only": 50, "ram": 50, "stack": 5, "cfs_app": {}}
     return [(PROCESSOR, "fixed", {**good, **changes})]
 
 
@@ -34,7 +34,8 @@ class Failures(unittest.TestCase):
     def test_each_limit_is_reported(self):
         for changes, words in (({"digest_is_golden": False}, "digest"), ({"equal_counts": False}, "depends on the frame"),
                                ({"forbidden": {"heap": ["malloc"]}}, "malloc"), ({"floating_point": ["f()"]}, "floating point"),
-                               ({"instructions": 80_000_001}, "per step"), ({"ram": 101}, "ram"), ({"stack": 11}, "stack")):
+                               ({"instructions": 80_000_001}, "per step"), ({"ram": 101}, "ram"), ({"stack": 11}, "stack"),
+                               ({"cfs_app": {"text": report.CFS_APP_LIMITS["text"] + 1}}, "text of the cFS app")):
             with self.subTest(changes):
                 wrong = self.of(**changes)
                 self.assertEqual(len(wrong), 1)
@@ -148,9 +149,10 @@ class Documents(unittest.TestCase):
         report.with_table((processors.ROOT / "README.md").read_text(), "new")
 
     def test_document_and_summary_name_every_processor(self):
-        results = result(**self.FIGURES)
+        results = result(**self.FIGURES, cfs_app={"text": 4321, "data": 1, "banks": 2})
         for text in (report.as_document(results, MACS, BUDGETS, "of x", 1_000_000, "20 frames"), report.as_summary(results, MACS)):
             self.assertIn("| Cortex-M7, bare metal", text)
+        self.assertIn("| Cortex-M7, bare metal | 4 321 |", report.as_document(results, MACS, BUDGETS, "of x", 1_000_000, "20 frames"))
 
 
 if __name__ == "__main__":

@@ -32,4 +32,16 @@ list(LENGTH cycles count)
 if(NOT count EQUAL 10)
   message(FATAL_ERROR "expected 10 cycles in RUN without a frame from the program in C, found ${count}:\n${output}")
 endif()
+# Without CMake's package: one archive, the C compiler, no C++ run-time library.
+file(GLOB_RECURSE archive ${prefix}_elsewhere/libtumblesight.a)
+get_filename_component(archive_folder "${archive}" DIRECTORY)
+run_or_fail(${CC} -std=c99 -pedantic -Wall -Wextra -Werror -I${prefix}_elsewhere/include/tumblesight
+  -DMODEL_IMAGE="${prefix}_elsewhere/share/tumblesight/models/near_shoemaker.tsm" ${EXAMPLES}/smallest.c ${EXAMPLES}/board.c
+  ${EXAMPLES}/model_image.S -L${archive_folder} -ltumblesight -o ${examples}/smallest_by_hand)
+run_or_fail(${examples}/smallest_by_hand)
+string(REGEX MATCHALL "cycle [0-9]+: mode 2, validity 2, state" cycles "${output}")
+list(LENGTH cycles count)
+if(NOT count EQUAL 10)
+  message(FATAL_ERROR "expected 10 cycles from the program that the C compiler alone made, found ${count}:\n${output}")
+endif()
 message(STATUS "the installed package builds the examples; all of them run")

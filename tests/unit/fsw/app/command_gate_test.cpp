@@ -123,6 +123,20 @@ TEST(CommandGate, KeySlotAndSpacecraftMustBeThoseOfThisApplication) {
   EXPECT_FALSE(admission.authentic) << "its counter is not spent";
 }
 
+TEST(CommandGate, ApidMustBeThatOfThePlatform) {
+  CommandAuthority authority;
+  for (const std::uint16_t apid : {hal::kCommandApid, std::uint16_t{0x000}, std::uint16_t{0x7FE}}) {
+    authority.set(&kTestKeys, apid);
+    std::vector<std::uint8_t> packet = packet_of(kNoop);
+    packet[0] = static_cast<std::uint8_t>(0x18 | apid >> 8);
+    packet[1] = static_cast<std::uint8_t>(apid & 0xFF);
+    EXPECT_TRUE(judge(signed_with(kTestKey, 5, packet), authority, 4, Mode::kRun).admitted) << apid;
+    packet[1] ^= 1;
+    EXPECT_EQ(judge(signed_with(kTestKey, 5, packet), authority, 4, Mode::kRun).why,
+              CommandRefusal::kMalformed);
+  }
+}
+
 TEST(CommandGate, EmptyOrUnknownKeySlotAuthenticatesNothing) {
   CommandAuthority authority = test_authority();
   EXPECT_FALSE(authority.use(2));

@@ -9,9 +9,11 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "fsw/app/parameter_table.hpp"
 #include "fsw/config/limits.hpp"
 #include "hal/messages/command_refusal.hpp"
 #include "hal/messages/event_id.hpp"
@@ -216,7 +218,7 @@ TEST_F(CInterface, RefusesWrongInputs) {
 
 TEST_F(CInterface, EveryStatusHasItsText) {
   std::vector<std::string> texts;
-  for (int status = TUMBLESIGHT_OK; status <= TUMBLESIGHT_TOO_MANY; ++status)
+  for (int status = TUMBLESIGHT_OK; status <= TUMBLESIGHT_BAD_PARAMETER; ++status)
     texts.emplace_back(tumblesight_status_text(static_cast<tumblesight_status>(status)));
   std::sort(texts.begin(), texts.end());
   EXPECT_EQ(std::unique(texts.begin(), texts.end()), texts.end());
@@ -297,6 +299,126 @@ TEST_F(CInterface, ChecksSignedCommandsIfItHasKeys) {
   EXPECT_EQ(step_command(standby).telemetry.mode, static_cast<int>(hal::Mode::kStandby));
   EXPECT_EQ(refused(step_command(standby), hal::CommandRefusal::kReplayed), 1U);
   EXPECT_EQ(refused(step_command(set_mode(hal::Mode::kRun)), hal::CommandRefusal::kForged), 1U);
+}
+
+// Its checksum stays right.
+std::vector<std::uint8_t> with_apid(std::uint16_t apid, std::vector<std::uint8_t> packet) {
+  const auto first = static_cast<std::uint8_t>(0x18 | apid >> 8),
+             second = static_cast<std::uint8_t>(apid & 0xFF);
+  packet[7] = static_cast<std::uint8_t>(packet[7] ^ packet[0] ^ packet[1] ^ first ^ second);
+  packet[0] = first;
+  packet[1] = second;
+  return packet;
+}
+
+TEST_F(CInterface, UsesTheCallersApids) {
+  constexpr tumblesight_apids kApids{0x2A0, 0x2A1, 0x2A2, 0x2A3, TUMBLESIGHT_MAX_APID};
+  settings.apids = kApids;
+  ASSERT_EQ(init(), TUMBLESIGHT_OK);
+  EXPECT_EQ(step_command(with_apid(0x2A0, set_mode(hal::Mode::kStandby))).telemetry.mode,
+            static_cast<int>(hal::Mode::kStandby));
+  EXPECT_EQ(refused(step_command(set_mode(hal::Mode::kRun)), hal::CommandRefusal::kMalformed), 1U);
+  const auto dump =
+      packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kMemoryDump), {0, 0, 0, 0, 0, 0, 16});
+  EXPECT_TRUE(step_command(with_apid(0x2A0, dump)).has_dump);
+  std::array<std::uint8_t, TUMBLESIGHT_MAX_PACKET_BYTES> packet{};
+  std::set<int> apids;
+  while (tumblesight_take_packet(app, packet.data(), packet.size()) > 0)
+    apids.insert((packet[0] & 7) * 256 + packet[1]);
+  EXPECT_EQ(apids, (std::set<int>{0x2A1, 0x2A2, 0x2A3, TUMBLESIGHT_MAX_APID}));
+}
+
+TEST_F(CInterface, RefusesApidsThatAreEqualOrTooLarge) {
+  constexpr tumblesight_apids kGood{1, 2, 3, 4, 5};
+  constexpr std::uint16_t tumblesight_apids::*kAll[] = {
+      &tumblesight_apids::command, &tumblesight_apids::attitude_report, &tumblesight_apids::telemetry,
+      &tumblesight_apids::event, &tumblesight_apids::memory_dump};
+  for (const auto one : kAll) {
+    settings.apids = kGood;
+    settings.apids.*one = TUMBLESIGHT_MAX_APID + 1;
+    EXPECT_EQ(init(), TUMBLESIGHT_BAD_APIDS);
+    for (const auto other : kAll) {
+      settings.apids = kGood;
+      settings.apids.*one = kGood.*other;
+      EXPECT_EQ(init(), one == other ? TUMBLESIGHT_OK : TUMBLESIGHT_BAD_APIDS);
+    }
+  }
+}
+
+TEST_F(CInterface, InitialParametersAreAllowedAndThoseOfTheFirstStart) {
+  tumblesight_parameters parameters{};
+  tumblesight_initial_parameters(nullptr);
+  tumblesight_initial_parameters(&parameters);
+  tumblesight_wrong_parameter wrong{};
+  EXPECT_EQ(tumblesight_check_parameters(&parameters, &wrong), TUMBLESIGHT_OK);
+  EXPECT_EQ(tumblesight_check_parameters(nullptr, &wrong), TUMBLESIGHT_NULL_ARGUMENT);
+  ASSERT_EQ(init(), TUMBLESIGHT_OK);
+  EXPECT_EQ(tumblesight_set_parameters(app, &parameters), TUMBLESIGHT_OK);
+  EXPECT_EQ(tumblesight_set_parameters(nullptr, &parameters), TUMBLESIGHT_NULL_ARGUMENT);
+  EXPECT_EQ(tumblesight_set_parameters(app, nullptr), TUMBLESIGHT_NULL_ARGUMENT);
+  EXPECT_EQ(step().telemetry.table_crc32, crc32_of(kInitialTable));
+}
+
+// Each field is at its place: its lowest value less one, or its highest plus one, is refused with its name.
+TEST_F(CInterface, EveryParameterIsCheckedAndNamed) {
+  tumblesight_parameters initial{};
+  tumblesight_initial_parameters(&initial);
+  const std::vector<std::string> names = {"PredictedError_urad", "AttitudeJump_urad",      "StepBudget_us",
+                                          "ScrubBlocks",         "FutureTolerance_us",     "MaxFrameAge_ms",
+                                          "LongestCoast_ms",     "ChaserTimeTolerance_us", "EventsOfAKind",
+                                          "EventWindow_cycles",  "LongestWithoutChaser_ms"};
+  for (std::size_t i = 0; i < kParameters; ++i) {
+    tumblesight_parameters parameters = initial;
+    const std::uint32_t highest = config::kParameterRules[i].highest, beyond = highest + 1;
+    auto* const field = reinterpret_cast<std::uint8_t*>(&parameters) + i * sizeof beyond;
+    std::memcpy(field, &highest, sizeof highest);
+    EXPECT_EQ(tumblesight_check_parameters(&parameters, nullptr), TUMBLESIGHT_OK) << i;
+    std::memcpy(field, &beyond, sizeof beyond);
+    EXPECT_EQ(tumblesight_check_parameters(&parameters, nullptr), TUMBLESIGHT_BAD_PARAMETER) << i;
+    tumblesight_wrong_parameter wrong{};
+    EXPECT_EQ(tumblesight_check_parameters(&parameters, &wrong), TUMBLESIGHT_BAD_PARAMETER);
+    EXPECT_EQ(wrong.name, names[i]);
+    EXPECT_EQ(wrong.value, beyond);
+    EXPECT_EQ(wrong.lowest, config::kParameterRules[i].lowest);
+    EXPECT_EQ(wrong.highest, highest);
+  }
+  for (int fault = 0; fault < TUMBLESIGHT_FAULTS; ++fault) {
+    tumblesight_parameters parameters = initial;
+    parameters.fault_rules[fault].good_cycles = 0;
+    tumblesight_wrong_parameter wrong{};
+    EXPECT_EQ(tumblesight_check_parameters(&parameters, &wrong), TUMBLESIGHT_BAD_PARAMETER);
+    EXPECT_EQ(wrong.name, "rule of fault " + std::to_string(fault));
+    EXPECT_EQ(wrong.value >> 24, initial.fault_rules[fault].cycles);
+  }
+}
+
+TEST_F(CInterface, ParametersAreUsedAndStored) {
+  use_store();
+  ASSERT_EQ(init(), TUMBLESIGHT_OK);
+  step();
+  tumblesight_parameters parameters{};
+  tumblesight_initial_parameters(&parameters);
+  parameters.max_frame_age_ms = 100;
+  parameters.fault_rules[5] = {2, 4, 7, TUMBLESIGHT_RESPONSE_SAFE};  // an outage
+  ASSERT_EQ(tumblesight_set_parameters(app, &parameters), TUMBLESIGHT_OK);
+  const std::uint32_t crc32 = step().telemetry.table_crc32;
+  EXPECT_NE(crc32, crc32_of(kInitialTable));
+  EXPECT_EQ(step().telemetry.mode, static_cast<int>(hal::Mode::kSafe)) << "two cycles without a frame";
+  parameters.scrub_blocks = 0;
+  EXPECT_EQ(tumblesight_set_parameters(app, &parameters), TUMBLESIGHT_BAD_PARAMETER);
+  EXPECT_EQ(step().telemetry.table_crc32, crc32) << "nothing changed";
+  settings.reset_cause = TUMBLESIGHT_RESET_COMMANDED;
+  ASSERT_EQ(init(), TUMBLESIGHT_OK);
+  EXPECT_EQ(step().telemetry.table_crc32, crc32) << "resumed from the store";
+}
+
+TEST_F(CInterface, VersionIsTheProjects) {
+  EXPECT_STREQ(tumblesight_version(), TUMBLESIGHT_TEST_VERSION);
+}
+
+TEST_F(CInterface, EventsHaveTexts) {
+  EXPECT_STREQ(tumblesight_event_text(33), "frame too old");
+  EXPECT_STREQ(tumblesight_event_text(0), "unknown");
 }
 
 TEST_F(CInterface, ResumesFromItsStore) {

@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <set>
 #include <sstream>
 
 #include "sim/evaluation/curves.hpp"
-#include "sim/sil/event_texts.hpp"
 #include "sim/sil/fault_names.hpp"
 #include "tests/unit/sim/report/markup_checks.hpp"
 
@@ -250,15 +248,6 @@ TEST(RunReport, CountsWarningsAndErrorsByEvent) {
   ASSERT_EQ(facts.size(), 1U);
   EXPECT_EQ(facts[0].first, "frame from the future (event 34)");
   EXPECT_EQ(facts[0].second, "2 times, first in step 1");
-}
-
-// No two events have the same text, and none is without.
-TEST(EventTexts, AreOneForEachEvent) {
-  std::set<std::string> texts;
-  for (const hal::EventRule& rule : hal::kEventRules) texts.insert(text_of(rule.id));
-  EXPECT_EQ(texts.size(), hal::kEventRules.size());
-  EXPECT_EQ(texts.count("unknown"), 0U);
-  EXPECT_EQ(text_of(static_cast<hal::EventId>(999)), "unknown");
 }
 
 // Verifies TS-SIL-390.

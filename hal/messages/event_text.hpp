@@ -1,140 +1,144 @@
-#include "sim/sil/event_texts.hpp"
+// What the events of the flight application mean, for logs and reports.
+#pragma once
 
-namespace tumblesight::sim {
+#include "hal/messages/event_id.hpp"
 
-std::string text_of(hal::EventId id) {
+namespace tumblesight::hal {
+
+// "no frame". "unknown" for a number that is not of an event.
+constexpr const char* text_of(EventId id) {
   // Without a default, so that the compiler finds an event that lacks its text.
   switch (id) {
-    case hal::EventId::kModelActivated:
+    case EventId::kModelActivated:
       return "model activated";
-    case hal::EventId::kModelRefused:
+    case EventId::kModelRefused:
       return "model image refused";
-    case hal::EventId::kUploadFailed:
+    case EventId::kUploadFailed:
       return "model image not written";
-    case hal::EventId::kCommandAccepted:
+    case EventId::kCommandAccepted:
       return "telecommand accepted";
-    case hal::EventId::kCycleTimeNotAdvancing:
+    case EventId::kCycleTimeNotAdvancing:
       return "cycle time does not advance";
-    case hal::EventId::kCycleSlipped:
+    case EventId::kCycleSlipped:
       return "cycle missed";
-    case hal::EventId::kDeadlineOverrun:
+    case EventId::kDeadlineOverrun:
       return "deadline overrun";
-    case hal::EventId::kTimingFaultPersists:
+    case EventId::kTimingFaultPersists:
       return "timing fault persists";
-    case hal::EventId::kTimingFaultOver:
+    case EventId::kTimingFaultOver:
       return "timing fault over";
-    case hal::EventId::kTimingEventsSuppressed:
+    case EventId::kTimingEventsSuppressed:
       return "timing events suppressed";
-    case hal::EventId::kFrameMissing:
+    case EventId::kFrameMissing:
       return "no frame";
-    case hal::EventId::kFrameDuplicate:
+    case EventId::kFrameDuplicate:
       return "frame with a number already used";
-    case hal::EventId::kFrameExposureBackwards:
+    case EventId::kFrameExposureBackwards:
       return "frame exposed before the last one";
-    case hal::EventId::kFrameStale:
+    case EventId::kFrameStale:
       return "frame too old";
-    case hal::EventId::kFrameFromFuture:
+    case EventId::kFrameFromFuture:
       return "frame from the future";
-    case hal::EventId::kFrameBad:
+    case EventId::kFrameBad:
       return "frame with bad content";
-    case hal::EventId::kFrameWrongSize:
+    case EventId::kFrameWrongSize:
       return "frame of a wrong size";
-    case hal::EventId::kSequenceSkipped:
+    case EventId::kSequenceSkipped:
       return "frame numbers skipped";
-    case hal::EventId::kFrameTooSoon:
+    case EventId::kFrameTooSoon:
       return "frame too soon after the last one";
-    case hal::EventId::kFrameRepeated:
+    case EventId::kFrameRepeated:
       return "frame repeated, the sensor is frozen";
-    case hal::EventId::kEstimatorResetByGap:
+    case EventId::kEstimatorResetByGap:
       return "new sequence after a gap";
-    case hal::EventId::kEstimatorResetByFault:
+    case EventId::kEstimatorResetByFault:
       return "new sequence after a fault";
-    case hal::EventId::kAttitudeDoubtful:
+    case EventId::kAttitudeDoubtful:
       return "attitude doubtful";
-    case hal::EventId::kFrameWithoutChaser:
+    case EventId::kFrameWithoutChaser:
       return "frame without the attitude of the chaser";
-    case hal::EventId::kPoseVerified:
+    case EventId::kPoseVerified:
       return "pose verified";
-    case hal::EventId::kPoseDoubtful:
+    case EventId::kPoseDoubtful:
       return "pose doubtful";
-    case hal::EventId::kAssertion:
+    case EventId::kAssertion:
       return "assertion failed, the mode is SAFE";
-    case hal::EventId::kFaultPersists:
+    case EventId::kFaultPersists:
       return "fault persists";
-    case hal::EventId::kFaultOver:
+    case EventId::kFaultOver:
       return "fault over";
-    case hal::EventId::kSafeEntered:
+    case EventId::kSafeEntered:
       return "the mode became SAFE";
-    case hal::EventId::kCommandForged:
+    case EventId::kCommandForged:
       return "telecommand with a wrong signature";
-    case hal::EventId::kCommandReplayed:
+    case EventId::kCommandReplayed:
       return "telecommand repeated";
-    case hal::EventId::kCommandMalformed:
+    case EventId::kCommandMalformed:
       return "telecommand malformed";
-    case hal::EventId::kCommandWrongLength:
+    case EventId::kCommandWrongLength:
       return "telecommand of a wrong length";
-    case hal::EventId::kCommandWrongChecksum:
+    case EventId::kCommandWrongChecksum:
       return "telecommand with a wrong checksum";
-    case hal::EventId::kCommandUnknown:
+    case EventId::kCommandUnknown:
       return "telecommand unknown";
-    case hal::EventId::kCommandWrongMode:
+    case EventId::kCommandWrongMode:
       return "telecommand not possible in this mode";
-    case hal::EventId::kCommandWrongArgument:
+    case EventId::kCommandWrongArgument:
       return "telecommand with a wrong argument";
-    case hal::EventId::kCommandNoModel:
+    case EventId::kCommandNoModel:
       return "telecommand without a model to act on";
-    case hal::EventId::kCommandBusy:
+    case EventId::kCommandBusy:
       return "telecommand while another one is carried out";
-    case hal::EventId::kMemoryCorrected:
+    case EventId::kMemoryCorrected:
       return "memory errors corrected";
-    case hal::EventId::kStateRestored:
+    case EventId::kStateRestored:
       return "state of the estimator restored";
-    case hal::EventId::kConstantsReloaded:
+    case EventId::kConstantsReloaded:
       return "copy of the model data reloaded";
-    case hal::EventId::kModelRepaired:
+    case EventId::kModelRepaired:
       return "model image repaired";
-    case hal::EventId::kModelBlockLost:
+    case EventId::kModelBlockLost:
       return "block of the model image lost";
-    case hal::EventId::kModelTableRebuilt:
+    case EventId::kModelTableRebuilt:
       return "checksums of the model image rebuilt";
-    case hal::EventId::kBankSwitched:
+    case EventId::kBankSwitched:
       return "changed to the other model bank";
-    case hal::EventId::kFallbackLost:
+    case EventId::kFallbackLost:
       return "image of the other model bank lost";
-    case hal::EventId::kStateResumed:
+    case EventId::kStateResumed:
       return "state of before the reset resumed";
-    case hal::EventId::kStoredStateLost:
+    case EventId::kStoredStateLost:
       return "stored state lost, the mode is SAFE";
-    case hal::EventId::kStateNotStored:
+    case EventId::kStateNotStored:
       return "state not stored";
-    case hal::EventId::kStoredCopyUnusable:
+    case EventId::kStoredCopyUnusable:
       return "a copy of the stored state is unusable";
-    case hal::EventId::kStoreGivenUp:
+    case EventId::kStoreGivenUp:
       return "store given up";
-    case hal::EventId::kStoreUsable:
+    case EventId::kStoreUsable:
       return "store usable again";
-    case hal::EventId::kChangeNotStored:
+    case EventId::kChangeNotStored:
       return "a change was not stored";
-    case hal::EventId::kEventsSuppressed:
+    case EventId::kEventsSuppressed:
       return "events suppressed";
-    case hal::EventId::kCommandOutOfWindow:
+    case EventId::kCommandOutOfWindow:
       return "telecommand with a counter too far ahead";
-    case hal::EventId::kCommandOtherKey:
+    case EventId::kCommandOtherKey:
       return "telecommand for another key";
-    case hal::EventId::kCommandOtherSpacecraft:
+    case EventId::kCommandOtherSpacecraft:
       return "telecommand for another spacecraft";
-    case hal::EventId::kCommandNotStored:
+    case EventId::kCommandNotStored:
       return "telecommand refused, its counter could not be stored";
-    case hal::EventId::kCommandStoreFailed:
+    case EventId::kCommandStoreFailed:
       return "telecommand failed, the store cannot be written";
-    case hal::EventId::kCommandNoRoom:
+    case EventId::kCommandNoRoom:
       return "telecommand without room for it";
-    case hal::EventId::kCommandIncomplete:
+    case EventId::kCommandIncomplete:
       return "telecommand for an image that lacks segments";
-    case hal::EventId::kKeyActivated:
+    case EventId::kKeyActivated:
       return "another command key activated";
   }
   return "unknown";
 }
 
-}  // namespace tumblesight::sim
+}  // namespace tumblesight::hal

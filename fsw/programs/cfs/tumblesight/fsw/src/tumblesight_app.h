@@ -1,0 +1,44 @@
+/* The data of the app. All of it is static. */
+#ifndef TUMBLESIGHT_APP_H
+#define TUMBLESIGHT_APP_H
+
+#include "cfe.h"
+#include "fsw/c/tumblesight_c.h"
+#include "tumblesight_app_frames.h"
+#include "tumblesight_app_msg.h"
+#include "tumblesight_app_platform_cfg.h"
+
+/* A telecommand that waits for the next cycle. */
+typedef struct {
+  uint8 Bytes[TUMBLESIGHT_MAX_COMMAND_BYTES];
+  size_t Size; /* of the message, which may be larger than Bytes: it is then refused */
+} TUMBLESIGHT_APP_Command_t;
+
+typedef struct {
+  uint32 RunStatus;
+  CFE_SB_PipeId_t Pipe;
+  CFE_TBL_Handle_t Table;
+  bool HasTable;
+
+  struct tumblesight_app* App;
+  int64 LastCycle_ns; /* 0: there was none */
+
+  TUMBLESIGHT_APP_Frames_t Frames;
+  TUMBLESIGHT_APP_Command_t Commands[TUMBLESIGHT_MAX_COMMANDS];
+  struct tumblesight_command CommandList[TUMBLESIGHT_MAX_COMMANDS]; /* of this cycle */
+  uint32 CommandCount;
+  uint32 CommandsDropped;           /* since the last cycle */
+  struct tumblesight_chaser Chaser; /* the newest one */
+  TUMBLESIGHT_APP_HkTlm_t HkTlm;
+  uint64 Memory[TUMBLESIGHT_MEMORY_BYTES / sizeof(uint64)]; /* of App */
+} TUMBLESIGHT_APP_Data_t;
+
+extern TUMBLESIGHT_APP_Data_t TUMBLESIGHT_APP_Data;
+
+/* The counters of the housekeeping. */
+#define TUMBLESIGHT_APP_COUNTERS (TUMBLESIGHT_APP_Data.HkTlm.Payload)
+
+/* The task. Named in cfe_es_startup.scr. */
+void TUMBLESIGHT_Main(void);
+
+#endif /* TUMBLESIGHT_APP_H */
