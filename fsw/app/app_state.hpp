@@ -98,6 +98,7 @@ struct alignas(8) AppState {
   std::uint32_t faults_seen = 0;      // in this cycle; bit n: Fault n
   std::uint32_t estimator_crc32 = 0;  // of the estimator's state at the end of the last cycle
   std::uint32_t constants_crc32 = 0;  // of the estimator's copy of model data
+  std::uint32_t words_corrected = 0;  // by the vote of AttitudeInitApp::use(), and not yet reported
   std::uint32_t frames_unused = 0;    // superseded, passed over or overflowed since the last used one
   std::array<gnc::ModelStatus, hal::kModelBanks> boot_status{};
   Mode mode = Mode::kBoot;
@@ -106,6 +107,7 @@ struct alignas(8) AppState {
   bool outage = false;            // the previous cycle had no frame
   bool long_task = false;         // this cycle has one: begin_long_task()
   bool pose_is_verified = false;  // the last one that was reported
+  bool table_is_given = false;    // by AttitudeInitApp::use(), so that a stored one is older
 
   gnc::FrameTimeLimits time_limits() const;
   gnc::FrameTrackerLimits tracker_limits() const;

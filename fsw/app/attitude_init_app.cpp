@@ -52,6 +52,8 @@ bool begin_cycle(AppState& state, std::int64_t now_ns) {
 }
 
 void report_corrections(std::uint32_t corrected_words, AppState& state, const Reporter& report) {
+  count(corrected_words, state.words_corrected);
+  state.words_corrected = 0;
   if (corrected_words == 0) return;
   count(state.counters.memory_corrections, corrected_words);
   report(EventId::kMemoryCorrected, clamp_to_int32(corrected_words));
@@ -111,8 +113,10 @@ bool AttitudeInitApp::use(const ParameterTable& table) {
   if (first_wrong_field(table) < kTableFields) return false;
   const std::uint32_t corrected_words = state_.vote();
   AppState& state = *state_;
-  count(state.counters.memory_corrections, corrected_words);
+  count(state.words_corrected, corrected_words);
+  if (table.fields != state.table.fields) state.stored.has_unstored_change = true;
   state.table = table;
+  state.table_is_given = true;
   state_.commit();
   return true;
 }

@@ -113,7 +113,7 @@ void StateKeeper::resume() {
 
 void StateKeeper::take(const StoredState& stored) {
   state_.counters.command_counter = stored.command_counter;
-  state_.table = stored.table;
+  if (!state_.table_is_given) state_.table = stored.table;
   for (std::uint8_t fault = 0; fault < kFaults; ++fault) {
     if ((stored.responses_disabled & bit_of(static_cast<Fault>(fault))) != 0)
       (void)state_.faults.enable(fault, false);

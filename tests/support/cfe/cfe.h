@@ -57,6 +57,7 @@ typedef int32 CFE_Status_t;
 #define CFE_ES_CDS_INSUFFICIENT_MEMORY ((CFE_Status_t)0xc400000e)
 #define CFE_ES_CDS_ACCESS_ERROR ((CFE_Status_t)0xc4000013)
 #define CFE_ES_CDS_BLOCK_CRC_ERR ((CFE_Status_t)0xc400001a)
+#define CFE_ES_OPERATION_TIMED_OUT ((CFE_Status_t)0xc4000027)
 #define CFE_EVS_UNKNOWN_FILTER ((CFE_Status_t)0xc2000001)
 #define CFE_SB_PIPE_CR_ERR ((CFE_Status_t)0xca000005)
 #define CFE_SB_PIPE_RD_ERR ((CFE_Status_t)0xca000006)
@@ -142,6 +143,8 @@ void CFE_ES_PerfLogExit(uint32 Marker);
 bool CFE_ES_RunLoop(uint32* RunStatus);
 void CFE_ES_ExitApp(uint32 ExitStatus);
 int32 CFE_ES_GetResetType(uint32* Subtype);
+#define CFE_ES_SystemState_APPS_INIT 4
+CFE_Status_t CFE_ES_WaitForSystemState(uint32 State, uint32 Timeout_ms);
 CFE_Status_t CFE_ES_WriteToSysLog(const char* Format, ...) __attribute__((format(printf, 1, 2)));
 CFE_Status_t CFE_ES_RegisterCDS(CFE_ES_CDSHandle_t* Handle, size_t Size, const char* Name);
 CFE_Status_t CFE_ES_CopyToCDS(CFE_ES_CDSHandle_t Handle, const void* From);

@@ -233,6 +233,10 @@ int32 CFE_ES_GetResetType(uint32* Subtype) {
   return the_cfe().reset_type;
 }
 
+CFE_Status_t CFE_ES_WaitForSystemState(uint32, uint32) {
+  return the_cfe().is_operational ? CFE_SUCCESS : CFE_ES_OPERATION_TIMED_OUT;
+}
+
 CFE_Status_t CFE_ES_WriteToSysLog(const char* Format, ...) {
   va_list arguments;
   va_start(arguments, Format);

@@ -60,6 +60,7 @@ struct Cfe {
   std::map<std::string, int> calls;
   bool has_buffers = true;
   std::int64_t met_ns = 0;
+  bool is_operational = false;  // before this app was started
   int reset_type = CFE_PSP_RST_TYPE_POWERON;
   std::uint32_t reset_subtype = CFE_PSP_RST_SUBTYPE_POWER_CYCLE;
   std::map<std::string, Bytes> files;  // by path

@@ -130,8 +130,10 @@ TEST(CommandGate, ApidMustBeThatOfThePlatform) {
     std::vector<std::uint8_t> packet = packet_of(kNoop);
     packet[0] = static_cast<std::uint8_t>(0x18 | apid >> 8);
     packet[1] = static_cast<std::uint8_t>(apid & 0xFF);
+    set_checksum(packet);
     EXPECT_TRUE(judge(signed_with(kTestKey, 5, packet), authority, 4, Mode::kRun).admitted) << apid;
     packet[1] ^= 1;
+    set_checksum(packet);
     EXPECT_EQ(judge(signed_with(kTestKey, 5, packet), authority, 4, Mode::kRun).why,
               CommandRefusal::kMalformed);
   }

@@ -225,6 +225,43 @@ TEST_F(Tables, ActiveTableStaysThroughAReset) {
   EXPECT_EQ(active().fields, table.fields);
 }
 
+// Of a platform that keeps tables itself.
+TEST_F(Tables, GivenTableIsUsedAndStoredUnlessAFieldIsNotAllowed) {
+  step_good();
+  ParameterTable table = another_table();
+  ASSERT_TRUE(app->use(table));
+  step_good();
+  EXPECT_EQ(active().fields, table.fields);
+  table[Parameter::kScrubBlocks] = 17;
+  EXPECT_FALSE(app->use(table));
+  init(store);
+  step(StepInputs{});
+  EXPECT_EQ(active().fields, another_table().fields) << "from the store";
+}
+
+// Memory may need some time after power-on: what is read later is older than the table that was given.
+TEST_F(Tables, GivenTableIsNotReplacedByAStoredOneThatIsReadLate) {
+  step_commands({set(static_cast<std::size_t>(Parameter::kScrubBlocks), 5)});
+  kept.unreadable = {true, true};
+  init(store);
+  const ParameterTable table = another_table();
+  ASSERT_TRUE(app->use(table));
+  kept.unreadable = {};
+  step(StepInputs{});
+  EXPECT_EQ(active().fields, table.fields);
+}
+
+TEST_F(Tables, BitFlipsThatAreFoundWhenATableIsGivenAreReported) {
+  step_good();
+  AppMemory::voted_state(*app).flip(8 * sizeof(AppState) + 3);  // in the second copy
+  ASSERT_TRUE(app->use(another_table()));
+  step_good();
+  EXPECT_EQ(argument(EventId::kMemoryCorrected, 0), 1);
+  EXPECT_EQ(out->telemetry.memory_corrections, 1U);
+  step_good();
+  EXPECT_EQ(events(EventId::kMemoryCorrected), 0);
+}
+
 TEST_F(Tables, AgesTolerancesAndCoastAreThoseOfTheTable) {
   step_good();
   step_commands({set(static_cast<std::size_t>(Parameter::kMaxFrameAge_ms), 500)});

@@ -7,6 +7,7 @@
 #include "hal/command_authentication.hpp"
 #include "hal/fake/fake_persistent_store.hpp"
 #include "tests/support/test_models.hpp"
+#include "tests/support/app_memory.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
 namespace tumblesight::fsw {
@@ -337,6 +338,14 @@ TEST_F(Reset, ChangeWhileTheStoreIsGivenUpIsReportedSinceAResetUndoesIt) {
   step_commands({command(FunctionCode::kSetParameter, {3, 0, 0, 0, 5})});
   EXPECT_EQ(events(EventId::kChangeNotStored), 1);
   step_commands({command(FunctionCode::kDisableResponse, {fault})});
+  EXPECT_EQ(events(EventId::kChangeNotStored), 1);
+  ParameterTable given = AppMemory::state(*app).table;
+  ASSERT_TRUE(app->use(given));
+  step_good();
+  EXPECT_EQ(events(EventId::kChangeNotStored), 0) << "nothing changed";
+  given[Parameter::kScrubBlocks] = 6;
+  ASSERT_TRUE(app->use(given));
+  step_good();
   EXPECT_EQ(events(EventId::kChangeNotStored), 1);
   StepInputs bug_of_the_caller;
   step_commands({set_mode(Mode::kStandby), set_mode(Mode::kRun)});

@@ -19,6 +19,11 @@
 
 #define TUMBLESIGHT_APP_TABLE_FILE "/cf/tumblesight_tbl.tbl"
 
+/* 1: after a processor reset with the subtype RESET_COMMAND the mode RUN goes on. 0: RUN becomes STANDBY, as
+ * after every other reset but power-on. Many platform support packages report this subtype after an
+ * exception, too. */
+#define TUMBLESIGHT_APP_TRUSTS_RESET_COMMAND 0
+
 /* Frames that are assembled or wait for the next cycle, 32 KiB each. At least 2. */
 #define TUMBLESIGHT_APP_FRAME_BUFFERS 3
 

@@ -11,12 +11,24 @@
 #include "tumblesight_app_platform.h"
 #include "tumblesight_app_table.h"
 
-/* Function code of RESET_COUNTERS, id of the event COMMAND_ACCEPTED (docs/icd.md). */
-#define TUMBLESIGHT_APP_RESET_COUNTERS 2
-#define TUMBLESIGHT_APP_COMMAND_ACCEPTED 10
-
 /* The packets of docs/icd.md have the primary header of CCSDS version 1 only. */
 CompileTimeAssert(sizeof(CFE_MSG_Message_t) == 6, TUMBLESIGHT_APP_NEEDS_CFE_WITHOUT_EXTENDED_HEADERS);
+/* The ids of packets are their first two bytes: without the APID, those of a command or of telemetry with a
+ * secondary header. */
+#define TUMBLESIGHT_APP_IS_COMMAND(Mid) (((Mid) & ~0x7FF) == 0x1800)
+#define TUMBLESIGHT_APP_IS_TELEMETRY(Mid) (((Mid) & ~0x7FF) == 0x0800)
+CompileTimeAssert(TUMBLESIGHT_APP_IS_COMMAND(TUMBLESIGHT_APP_CMD_MID),
+                  TUMBLESIGHT_APP_CMD_MID_IS_THAT_OF_A_COMMAND);
+CompileTimeAssert(TUMBLESIGHT_APP_IS_TELEMETRY(TUMBLESIGHT_APP_ATTITUDE_MID) &&
+                      TUMBLESIGHT_APP_IS_TELEMETRY(TUMBLESIGHT_APP_TLM_MID) &&
+                      TUMBLESIGHT_APP_IS_TELEMETRY(TUMBLESIGHT_APP_EVENT_MID) &&
+                      TUMBLESIGHT_APP_IS_TELEMETRY(TUMBLESIGHT_APP_DUMP_MID),
+                  TUMBLESIGHT_APP_PACKET_MIDS_ARE_THOSE_OF_TELEMETRY);
+CompileTimeAssert(TUMBLESIGHT_APP_HK_TLM_MID != TUMBLESIGHT_APP_ATTITUDE_MID &&
+                      TUMBLESIGHT_APP_HK_TLM_MID != TUMBLESIGHT_APP_TLM_MID &&
+                      TUMBLESIGHT_APP_HK_TLM_MID != TUMBLESIGHT_APP_EVENT_MID &&
+                      TUMBLESIGHT_APP_HK_TLM_MID != TUMBLESIGHT_APP_DUMP_MID,
+                  TUMBLESIGHT_APP_HK_TLM_MID_IS_THAT_OF_NO_PACKET);
 CompileTimeAssert(TUMBLESIGHT_APP_WAKEUP_LIMIT + TUMBLESIGHT_APP_SEND_HK_LIMIT + TUMBLESIGHT_APP_CMD_LIMIT +
                           TUMBLESIGHT_APP_FRAME_LIMIT + TUMBLESIGHT_APP_NAV_LIMIT <=
                       TUMBLESIGHT_APP_PIPE_DEPTH,
@@ -35,7 +47,7 @@ static CFE_Status_t Subscribe(CFE_SB_MsgId_Atom_t Mid, uint16 Limit) {
   if (Status != CFE_SUCCESS)
     CFE_EVS_SendEvent(TUMBLESIGHT_APP_PIPE_ERR_EID, CFE_EVS_EventType_ERROR,
                       "TUMBLESIGHT: no subscription to 0x%04lX, RC = 0x%08lX", (unsigned long)Mid,
-                      (unsigned long)Status);
+                      TUMBLESIGHT_APP_RC(Status));
   return Status;
 }
 
@@ -45,7 +57,7 @@ static CFE_Status_t SetUpPipe(void) {
   if (Status != CFE_SUCCESS) {
     CFE_EVS_SendEvent(TUMBLESIGHT_APP_PIPE_ERR_EID, CFE_EVS_EventType_ERROR,
                       "TUMBLESIGHT: no pipe of depth %d, RC = 0x%08lX", TUMBLESIGHT_APP_PIPE_DEPTH,
-                      (unsigned long)Status);
+                      TUMBLESIGHT_APP_RC(Status));
     return Status;
   }
   Status = Subscribe(TUMBLESIGHT_APP_CMD_MID, TUMBLESIGHT_APP_CMD_LIMIT);
@@ -94,7 +106,7 @@ static CFE_Status_t RegisterEvents(void) {
   const CFE_Status_t Status =
       CFE_EVS_Register(Filters, sizeof Filters / sizeof Filters[0], CFE_EVS_EventFilter_BINARY);
   if (Status != CFE_SUCCESS)
-    CFE_ES_WriteToSysLog("TUMBLESIGHT: no event services, RC = 0x%08lX\n", (unsigned long)Status);
+    CFE_ES_WriteToSysLog("TUMBLESIGHT: no event services, RC = 0x%08lX\n", TUMBLESIGHT_APP_RC(Status));
   return Status;
 }
 
@@ -120,6 +132,12 @@ static void RefuseLength(CFE_SB_MsgId_t Mid, size_t Size) {
   CFE_EVS_SendEvent(TUMBLESIGHT_APP_LENGTH_ERR_EID, CFE_EVS_EventType_ERROR,
                     "TUMBLESIGHT: message 0x%04lX of a wrong length, %lu bytes",
                     (unsigned long)CFE_SB_MsgIdToValue(Mid), (unsigned long)Size);
+}
+
+static bool HasNoArguments(CFE_SB_MsgId_t Mid, size_t Size) {
+  if (Size == sizeof(TUMBLESIGHT_APP_NoArgs_t)) return true;
+  RefuseLength(Mid, Size);
+  return false;
 }
 
 /* The flight application checks the packet in the next cycle. */
@@ -190,13 +208,10 @@ static void EndInputs(int64 Now_ns) {
   TUMBLESIGHT_APP_EndFrames();
 }
 
-/* The command resets the counters of the flight application, and these. */
+/* RESET_COUNTERS resets the counters of the flight application, and these: no other cycle ends as number 0.
+ */
 static void ResetCountersOnCommand(const struct tumblesight_outputs* Outputs) {
-  size_t i;
-  for (i = 0; i < Outputs->event_count; ++i)
-    if (Outputs->events[i].id == TUMBLESIGHT_APP_COMMAND_ACCEPTED &&
-        Outputs->events[i].arguments[0] == TUMBLESIGHT_APP_RESET_COUNTERS)
-      memset(&TUMBLESIGHT_APP_COUNTERS, 0, sizeof TUMBLESIGHT_APP_COUNTERS);
+  if (Outputs->telemetry.cycles == 0) memset(&TUMBLESIGHT_APP_COUNTERS, 0, sizeof TUMBLESIGHT_APP_COUNTERS);
 }
 
 static void RunCycle(void) {
@@ -230,10 +245,10 @@ static void TakeMessage(const CFE_SB_Buffer_t* Buffer) {
       TakeNavigation((const void*)Buffer, Mid, Size);
       break;
     case TUMBLESIGHT_APP_WAKEUP_MID:
-      RunCycle();
+      if (HasNoArguments(Mid, Size)) RunCycle();
       break;
     case TUMBLESIGHT_APP_SEND_HK_MID:
-      TUMBLESIGHT_APP_SendHk();
+      if (HasNoArguments(Mid, Size)) TUMBLESIGHT_APP_SendHk();
       break;
     default:
       ++TUMBLESIGHT_APP_COUNTERS.MessagesRefused;
@@ -258,7 +273,7 @@ void TUMBLESIGHT_Main(void) {
       continue;
     }
     CFE_EVS_SendEvent(TUMBLESIGHT_APP_RECEIVE_ERR_EID, CFE_EVS_EventType_ERROR,
-                      "TUMBLESIGHT: the pipe cannot be read, RC = 0x%08lX", (unsigned long)Status);
+                      "TUMBLESIGHT: the pipe cannot be read, RC = 0x%08lX", TUMBLESIGHT_APP_RC(Status));
     TUMBLESIGHT_APP_Data.RunStatus = CFE_ES_RunStatus_APP_ERROR;
   }
   CFE_ES_PerfLogExit(TUMBLESIGHT_APP_PERF_ID);

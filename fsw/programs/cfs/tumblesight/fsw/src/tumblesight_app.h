@@ -38,6 +38,9 @@ extern TUMBLESIGHT_APP_Data_t TUMBLESIGHT_APP_Data;
 /* The counters of the housekeeping. */
 #define TUMBLESIGHT_APP_COUNTERS (TUMBLESIGHT_APP_Data.HkTlm.Payload)
 
+/* A status of cFE for a format with 0x%08lX: without the sign, which would take 64 bits. */
+#define TUMBLESIGHT_APP_RC(Status) ((unsigned long)(uint32)(Status))
+
 /* The task. Named in cfe_es_startup.scr. */
 void TUMBLESIGHT_Main(void);
 

@@ -39,6 +39,24 @@ static bool IsSameFrame(const TUMBLESIGHT_APP_FrameSegment_Payload_t* A,
   return A->SequenceNumber == B->SequenceNumber && IsSameTime(A->Exposure, B->Exposure);
 }
 
+static bool WasAssembled(const TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment) {
+  const TUMBLESIGHT_APP_Frames_t* Frames = &TUMBLESIGHT_APP_Data.Frames;
+  uint32 i;
+  for (i = 0; i < TUMBLESIGHT_APP_REMEMBERED_FRAMES && i < Frames->AssembledCount; ++i)
+    if (Frames->Assembled[i].SequenceNumber == Segment->SequenceNumber &&
+        IsSameTime(Frames->Assembled[i].Exposure, Segment->Exposure))
+      return true;
+  return false;
+}
+
+static void RememberAssembled(const TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment) {
+  TUMBLESIGHT_APP_Frames_t* Frames = &TUMBLESIGHT_APP_Data.Frames;
+  TUMBLESIGHT_APP_FrameId_t* Id =
+      &Frames->Assembled[Frames->AssembledCount++ % TUMBLESIGHT_APP_REMEMBERED_FRAMES];
+  Id->SequenceNumber = Segment->SequenceNumber;
+  Id->Exposure = Segment->Exposure;
+}
+
 static bool AreAlike(const TUMBLESIGHT_APP_FrameSegment_Payload_t* A,
                      const TUMBLESIGHT_APP_FrameSegment_Payload_t* B) {
   return A->Fov_urad == B->Fov_urad && A->Rays == B->Rays && IsSameAttitude(&A->Chaser, &B->Chaser);
@@ -49,8 +67,7 @@ static void Free(TUMBLESIGHT_APP_FrameBuffer_t* Buffer) {
   Buffer->Missing = 0;
 }
 
-/* The buffer of a frame that is not yet complete; NULL: this is its first segment. A frame that the sensor
- * sends twice is assembled twice: the flight application counts it as a duplicate. */
+/* The buffer of a frame that is not yet complete; NULL: this is its first segment. */
 static TUMBLESIGHT_APP_FrameBuffer_t* FindBuffer(const TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment) {
   TUMBLESIGHT_APP_FrameBuffer_t* Buffers = TUMBLESIGHT_APP_Data.Frames.Buffers;
   uint32 i;
@@ -59,21 +76,38 @@ static TUMBLESIGHT_APP_FrameBuffer_t* FindBuffer(const TUMBLESIGHT_APP_FrameSegm
   return NULL;
 }
 
-/* A free buffer, or else the one of the frame that came first: newer frames are worth more. */
-static TUMBLESIGHT_APP_FrameBuffer_t* TakeBuffer(void) {
-  TUMBLESIGHT_APP_Frames_t* Frames = &TUMBLESIGHT_APP_Data.Frames;
-  TUMBLESIGHT_APP_FrameBuffer_t* Oldest = &Frames->Buffers[0];
-  uint32 i;
-  for (i = 1; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i)
-    if (Frames->Buffers[i].Age < Oldest->Age) Oldest = &Frames->Buffers[i];
-  if (Oldest->Age != 0) {
-    ++Frames->Dropped;
-    if (Oldest->Missing == 0)
-      ++TUMBLESIGHT_APP_COUNTERS.FramesSuperseded;
-    else
-      ++TUMBLESIGHT_APP_COUNTERS.FramesIncomplete;
+/* A frame that does not reach the flight application. Repeated parts of one that did are no frame. */
+static void Drop(const TUMBLESIGHT_APP_FrameBuffer_t* Buffer, const char* Why) {
+  if (Buffer->IsRepeat) return;
+  ++TUMBLESIGHT_APP_Data.Frames.Dropped;
+  if (Buffer->Missing == 0) {
+    ++TUMBLESIGHT_APP_COUNTERS.FramesSuperseded;
+    return;
   }
-  return Oldest;
+  ++TUMBLESIGHT_APP_COUNTERS.FramesIncomplete;
+  CFE_EVS_SendEvent(TUMBLESIGHT_APP_FRAME_ERR_EID, CFE_EVS_EventType_ERROR,
+                    "TUMBLESIGHT: frame %lu dropped without its segments 0x%02lx: %s",
+                    (unsigned long)Buffer->First.SequenceNumber, (unsigned long)Buffer->Missing, Why);
+}
+
+/* What a buffer is worth: nothing if it is free, and more if its frame is complete. */
+static int RankOf(const TUMBLESIGHT_APP_FrameBuffer_t* Buffer) {
+  if (Buffer->Age == 0) return 0;
+  if (Buffer->IsRepeat) return 1;
+  return Buffer->Missing == 0 ? 3 : 2;
+}
+
+/* The buffer that is worth least, and of several the one whose frame came first. */
+static TUMBLESIGHT_APP_FrameBuffer_t* TakeBuffer(void) {
+  TUMBLESIGHT_APP_FrameBuffer_t* Buffers = TUMBLESIGHT_APP_Data.Frames.Buffers;
+  TUMBLESIGHT_APP_FrameBuffer_t* Least = &Buffers[0];
+  uint32 i;
+  for (i = 1; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i) {
+    const int Rank = RankOf(&Buffers[i]), LeastRank = RankOf(Least);
+    if (Rank < LeastRank || (Rank == LeastRank && Buffers[i].Age < Least->Age)) Least = &Buffers[i];
+  }
+  if (Least->Age != 0) Drop(Least, "no buffer is free");
+  return Least;
 }
 
 static TUMBLESIGHT_APP_FrameBuffer_t* BeginFrame(const TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment) {
@@ -82,6 +116,7 @@ static TUMBLESIGHT_APP_FrameBuffer_t* BeginFrame(const TUMBLESIGHT_APP_FrameSegm
   memcpy(&Buffer->First, Segment, offsetof(TUMBLESIGHT_APP_FrameSegment_Payload_t, Ranges));
   Buffer->Missing = (1U << Segments) - 1;
   Buffer->Cycles = 0;
+  Buffer->IsRepeat = WasAssembled(Segment);
   Buffer->Age = ++TUMBLESIGHT_APP_Data.Frames.Arrivals;
   return Buffer;
 }
@@ -91,6 +126,13 @@ static void Refuse(const TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment) {
   CFE_EVS_SendEvent(TUMBLESIGHT_APP_SEGMENT_ERR_EID, CFE_EVS_EventType_ERROR,
                     "TUMBLESIGHT: frame segment refused: frame %lu, %u rays per side, %u ranges from %u",
                     (unsigned long)Segment->SequenceNumber, Segment->Rays, Segment->Count, Segment->Offset);
+}
+
+/* A frame that the sensor sends twice is assembled twice: the flight application counts the second one. */
+static void Complete(TUMBLESIGHT_APP_FrameBuffer_t* Buffer) {
+  Buffer->IsRepeat = false;
+  ++TUMBLESIGHT_APP_COUNTERS.FramesAssembled;
+  RememberAssembled(&Buffer->First);
 }
 
 void TUMBLESIGHT_APP_TakeSegment(const TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment) {
@@ -107,13 +149,11 @@ void TUMBLESIGHT_APP_TakeSegment(const TUMBLESIGHT_APP_FrameSegment_Payload_t* S
     return;
   }
   ++TUMBLESIGHT_APP_COUNTERS.SegmentsTaken;
-  if ((Buffer->Missing & Bit) == 0) {
-    ++TUMBLESIGHT_APP_COUNTERS.SegmentsRepeated;
-    return;
-  }
+  if (Buffer->IsRepeat || (Buffer->Missing & Bit) == 0) ++TUMBLESIGHT_APP_COUNTERS.SegmentsRepeated;
+  if ((Buffer->Missing & Bit) == 0) return;
   memcpy(&Buffer->Ranges[Segment->Offset], Segment->Ranges, Segment->Count * sizeof Segment->Ranges[0]);
   Buffer->Missing &= ~Bit;
-  if (Buffer->Missing == 0) ++TUMBLESIGHT_APP_COUNTERS.FramesAssembled;
+  if (Buffer->Missing == 0) Complete(Buffer);
 }
 
 static bool IsComplete(const TUMBLESIGHT_APP_FrameBuffer_t* Buffer) {
@@ -151,23 +191,15 @@ size_t TUMBLESIGHT_APP_ListFrames(void) {
   return Listed;
 }
 
-static void DropIncomplete(TUMBLESIGHT_APP_FrameBuffer_t* Buffer) {
-  ++TUMBLESIGHT_APP_Data.Frames.Dropped;
-  ++TUMBLESIGHT_APP_COUNTERS.FramesIncomplete;
-  CFE_EVS_SendEvent(TUMBLESIGHT_APP_FRAME_ERR_EID, CFE_EVS_EventType_ERROR,
-                    "TUMBLESIGHT: frame %lu dropped: segments 0x%02lx did not arrive within %d cycles",
-                    (unsigned long)Buffer->First.SequenceNumber, (unsigned long)Buffer->Missing,
-                    TUMBLESIGHT_APP_FRAME_CYCLES);
-  Free(Buffer);
-}
-
 void TUMBLESIGHT_APP_EndFrames(void) {
   TUMBLESIGHT_APP_FrameBuffer_t* Buffers = TUMBLESIGHT_APP_Data.Frames.Buffers;
   uint32 i;
   for (i = 0; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i) {
-    if (IsComplete(&Buffers[i]))
+    if (IsComplete(&Buffers[i])) {
       Free(&Buffers[i]);
-    else if (Buffers[i].Age != 0 && ++Buffers[i].Cycles >= TUMBLESIGHT_APP_FRAME_CYCLES)
-      DropIncomplete(&Buffers[i]);
+    } else if (Buffers[i].Age != 0 && ++Buffers[i].Cycles >= TUMBLESIGHT_APP_FRAME_CYCLES) {
+      Drop(&Buffers[i], "two cycles have passed");
+      Free(&Buffers[i]);
+    }
   }
 }

@@ -8,7 +8,7 @@
 static void CountLost(const char* Why, CFE_Status_t Status) {
   ++TUMBLESIGHT_APP_COUNTERS.PacketsLost;
   CFE_EVS_SendEvent(TUMBLESIGHT_APP_BUFFER_ERR_EID, CFE_EVS_EventType_ERROR,
-                    "TUMBLESIGHT: packet not sent: %s, RC = 0x%08lX", Why, (unsigned long)Status);
+                    "TUMBLESIGHT: packet not sent: %s, RC = 0x%08lX", Why, TUMBLESIGHT_APP_RC(Status));
 }
 
 /* Headers and sequence counts are those of the packet: the bus must not write its own. */

@@ -84,33 +84,41 @@ static CFE_Status_t RegisterCopy(int Copy, bool* Existed) {
   return Status;
 }
 
-/* `*Existed`: this is not the first start since the last power-on. */
-static void SetUpStore(struct tumblesight_settings* Settings, bool* Existed) {
+/* `*MayHaveRun`: the app has run before, since the store was cleared, or that is not known. */
+static void SetUpStore(struct tumblesight_settings* Settings, bool* MayHaveRun) {
   CFE_Status_t Status = CFE_SUCCESS;
   int Copy;
   for (Copy = 0; Copy < TUMBLESIGHT_APP_STORED_COPIES && Status == CFE_SUCCESS; ++Copy)
-    Status = RegisterCopy(Copy, Existed);
+    Status = RegisterCopy(Copy, MayHaveRun);
   if (Status == CFE_SUCCESS) {
     Settings->read_stored = ReadStored;
     Settings->write_stored = WriteStored;
     return;
   }
+  *MayHaveRun = true;
   ++TUMBLESIGHT_APP_COUNTERS.StoreErrors;
   CFE_EVS_SendEvent(
       TUMBLESIGHT_APP_CDS_ERR_EID, CFE_EVS_EventType_ERROR,
       "TUMBLESIGHT: no critical data store, RC = 0x%08lX: a reset will lose mode, bank and parameters",
-      (unsigned long)Status);
+      TUMBLESIGHT_APP_RC(Status));
 }
 
-/* An app that starts again without a reset of the processor was restarted: by command or after an exception.
- */
-static enum tumblesight_reset_cause ResetCause(bool Existed) {
+/* Whether cFE has started before this app, so that the app alone starts now. */
+static bool IsStartedAlone(void) {
+  return CFE_ES_WaitForSystemState(CFE_ES_SystemState_APPS_INIT, 0) == CFE_SUCCESS;
+}
+
+/* cFE gives the type and subtype with which the processor started, also to an app that is started again
+ * later: by command or after an exception. */
+static enum tumblesight_reset_cause ResetCause(bool MayHaveRun) {
   uint32 Subtype = 0;
   const int32 Type = CFE_ES_GetResetType(&Subtype);
-  if (Type == CFE_PSP_RST_TYPE_POWERON) return Existed ? TUMBLESIGHT_RESET_OTHER : TUMBLESIGHT_RESET_POWER_ON;
-  if (Subtype == CFE_PSP_RST_SUBTYPE_RESET_COMMAND || Subtype == CFE_PSP_RST_SUBTYPE_HW_SPECIAL_COMMAND)
+  if (IsStartedAlone()) return MayHaveRun ? TUMBLESIGHT_RESET_OTHER : TUMBLESIGHT_RESET_POWER_ON;
+  if (Type == CFE_PSP_RST_TYPE_POWERON) return TUMBLESIGHT_RESET_POWER_ON;
+  if (Subtype == CFE_PSP_RST_SUBTYPE_HW_WATCHDOG) return TUMBLESIGHT_RESET_WATCHDOG;
+  if (TUMBLESIGHT_APP_TRUSTS_RESET_COMMAND && Subtype == CFE_PSP_RST_SUBTYPE_RESET_COMMAND)
     return TUMBLESIGHT_RESET_COMMANDED;
-  return Subtype == CFE_PSP_RST_SUBTYPE_HW_WATCHDOG ? TUMBLESIGHT_RESET_WATCHDOG : TUMBLESIGHT_RESET_OTHER;
+  return TUMBLESIGHT_RESET_OTHER;
 }
 
 /* --- model files --- */
@@ -145,13 +153,13 @@ void TUMBLESIGHT_APP_SetUpPlatform(struct tumblesight_settings* Settings) {
   static const char* const Paths[TUMBLESIGHT_BANKS] = {TUMBLESIGHT_APP_MODEL_FILE_0,
                                                        TUMBLESIGHT_APP_MODEL_FILE_1};
   static const char Target[] = TUMBLESIGHT_APP_EXPECTED_TARGET;
-  bool Existed = false;
+  bool MayHaveRun = false;
   int Bank;
   for (Bank = 0; Bank < TUMBLESIGHT_APP_BANKS; ++Bank)
     LoadBank(Paths[Bank], TUMBLESIGHT_APP_Models.Bytes[Bank], &Settings->bank[Bank]);
-  SetUpStore(Settings, &Existed);
+  SetUpStore(Settings, &MayHaveRun);
   Settings->expected_target = sizeof Target > 1 ? Target : NULL;
-  Settings->reset_cause = ResetCause(Existed);
+  Settings->reset_cause = ResetCause(MayHaveRun);
   Settings->apids.command = TUMBLESIGHT_APP_CMD_MID & TUMBLESIGHT_APP_APID_MASK;
   Settings->apids.attitude_report = TUMBLESIGHT_APP_ATTITUDE_MID & TUMBLESIGHT_APP_APID_MASK;
   Settings->apids.telemetry = TUMBLESIGHT_APP_TLM_MID & TUMBLESIGHT_APP_APID_MASK;

@@ -24,8 +24,8 @@ static CFE_Status_t LoadTable(void) {
   const CFE_Status_t Status = CFE_TBL_Load(Table, CFE_TBL_SRC_FILE, TUMBLESIGHT_APP_TABLE_FILE);
   if (Status >= CFE_SUCCESS) return CFE_SUCCESS;
   CFE_EVS_SendEvent(TUMBLESIGHT_APP_TBL_ERR_EID, CFE_EVS_EventType_ERROR,
-                    "TUMBLESIGHT: table file %s cannot be loaded, RC = 0x%08lX: initial parameters",
-                    TUMBLESIGHT_APP_TABLE_FILE, (unsigned long)Status);
+                    "TUMBLESIGHT: RC = 0x%08lX, initial parameters in place of table file %s",
+                    TUMBLESIGHT_APP_RC(Status), TUMBLESIGHT_APP_TABLE_FILE);
   tumblesight_initial_parameters(&Initial);
   return CFE_TBL_Load(Table, CFE_TBL_SRC_ADDRESS, &Initial);
 }
@@ -39,7 +39,7 @@ void TUMBLESIGHT_APP_RegisterTable(void) {
   if (!TUMBLESIGHT_APP_Data.HasTable)
     CFE_EVS_SendEvent(TUMBLESIGHT_APP_TBL_ERR_EID, CFE_EVS_EventType_ERROR,
                       "TUMBLESIGHT: no parameter table, RC = 0x%08lX: parameters stay as they are",
-                      (unsigned long)Status);
+                      TUMBLESIGHT_APP_RC(Status));
 }
 
 static void UseTable(struct tumblesight_parameters* Parameters) {

@@ -64,7 +64,7 @@ static void Send(CFE_MSG_Message_t* Message) {
   const CFE_Status_t Status = CFE_SB_TransmitMsg(Message, true);
   if (Status != CFE_SUCCESS)
     CFE_EVS_SendEvent(TUMBLESIGHT_PLAY_SEND_ERR_EID, CFE_EVS_EventType_ERROR,
-                      "TUMBLESIGHT_PLAY: message not sent, RC = 0x%08lX", (unsigned long)Status);
+                      "TUMBLESIGHT_PLAY: message not sent, RC = 0x%08lX", (unsigned long)(uint32)Status);
 }
 
 static void SendFrame(CFE_TIME_SysTime_t Exposure) {
@@ -102,7 +102,9 @@ static uint64 Met_ms(CFE_TIME_SysTime_t Met) {
  * out. */
 static void WaitForPeriod(void) {
   const uint64 Now_ms = Met_ms(CFE_TIME_GetMET());
-  if (Data.Next_ms == 0 || Now_ms > Data.Next_ms + TUMBLESIGHT_PLAY_PERIOD_MS)
+  const bool IsLate = Now_ms > Data.Next_ms + TUMBLESIGHT_PLAY_PERIOD_MS;
+  const bool WasSetBack = Now_ms + 2 * TUMBLESIGHT_PLAY_PERIOD_MS < Data.Next_ms;
+  if (Data.Next_ms == 0 || IsLate || WasSetBack)
     Data.Next_ms = (Now_ms / TUMBLESIGHT_PLAY_PERIOD_MS + 1) * TUMBLESIGHT_PLAY_PERIOD_MS;
   if (Now_ms < Data.Next_ms) OS_TaskDelay((uint32)(Data.Next_ms - Now_ms));
   Data.Next_ms += TUMBLESIGHT_PLAY_PERIOD_MS;

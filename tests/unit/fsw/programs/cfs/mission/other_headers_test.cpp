@@ -35,5 +35,26 @@ TEST(CfsAppWithOtherHeaders, UsesTheMissionsIdsFilesAndTarget) {
   EXPECT_EQ(the.sent[2].message_id(), static_cast<std::uint32_t>(TUMBLESIGHT_APP_EVENT_MID));
 }
 
+// This mission's support package tells a command from an exception.
+TEST(CfsAppWithOtherHeaders, GoesOnInRunAfterACommandedReset) {
+  for (const auto& [subtype, mode] :
+       {std::pair{CFE_PSP_RST_SUBTYPE_RESET_COMMAND, 2}, std::pair{CFE_PSP_RST_SUBTYPE_EXCEPTION, 1}}) {
+    cfe::restart_cfe();
+    cfe::Cfe& the = cfe::the_cfe();
+    the.files[TUMBLESIGHT_APP_MODEL_FILE_0] = test_model_image();
+    the.failing["CFE_TBL_Load:" TUMBLESIGHT_APP_TABLE_FILE] = CFE_TBL_ERR_ACCESS;
+    for (const int type : {CFE_PSP_RST_TYPE_POWERON, CFE_PSP_RST_TYPE_PROCESSOR}) {
+      the.reset_type = type;
+      the.reset_subtype = static_cast<std::uint32_t>(subtype);
+      the.stored_names.clear();
+      the.sent.clear();
+      the.deliver(cfe::make_message(TUMBLESIGHT_APP_WAKEUP_MID, 8), [&the] { the.met_ns += kStart_ns; });
+      TUMBLESIGHT_Main();
+    }
+    constexpr std::size_t kModeOffset = 14 + 8;  // behind the header and time_ns
+    EXPECT_EQ(the.sent[1].bytes[kModeOffset], mode) << "after subtype " << subtype;
+  }
+}
+
 }  // namespace
 }  // namespace tumblesight::fsw

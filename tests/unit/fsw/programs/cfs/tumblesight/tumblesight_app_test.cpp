@@ -313,14 +313,50 @@ TEST_F(CfsApp, SegmentsComeInAnyOrderMixedAndTwice) {
   for (std::size_t i = a.size(); i > 0; --i) {
     send(a[i - 1]);
     send(b[(i + 2) % b.size()]);
-    if (i > 1) send(a[i - 1]);  // a repeated segment of a frame that is not complete
+    send(a[i - 1]);  // again, the last time when the frame is complete
   }
   wake_up([this] { the.met_ns += TUMBLESIGHT_PERIOD_NS; });
   run();
   EXPECT_EQ(attitude().sequence_number, 2U);
   EXPECT_EQ(telemetry().frames_superseded, 1U);
   EXPECT_EQ(counters().FramesAssembled, 2U);
-  EXPECT_EQ(counters().SegmentsRepeated, a.size() - 1);
+  EXPECT_EQ(counters().SegmentsRepeated, a.size());
+  EXPECT_EQ(counters().FramesIncomplete, 0U);
+}
+
+// They begin no new frame, so that no frame is missed or reported in their place.
+TEST_F(CfsApp, RepeatedSegmentsOfACompleteFrameAreNoFrame) {
+  constexpr int kFrames = 6;
+  for (int i = 1; i <= kFrames; ++i) {
+    const unsigned number =
+        i < 4 ? static_cast<unsigned>(i) : static_cast<unsigned>(i) + 1U;  // number 4 is missing
+    const gnc::RangeImage image = frame(number, i);
+    send(image);
+    send(segment_of(image, 2048));
+    send(segment_of(image, 0));
+    wake_up();
+    send(segment_of(image, 4096));
+  }
+  run();
+  EXPECT_EQ(telemetry().frames_used, static_cast<std::uint32_t>(kFrames));
+  EXPECT_EQ(telemetry().frames_overflowed, 0U);
+  EXPECT_EQ(telemetry().sequence_gaps, 1U) << "the one that there is";
+  EXPECT_EQ(counters().FramesIncomplete, 0U);
+  EXPECT_EQ(counters().SegmentsRepeated, 3U * kFrames);
+  EXPECT_EQ(the.count_events(TUMBLESIGHT_APP_FRAME_ERR_EID), 0);
+}
+
+TEST_F(CfsApp, PartsOfFramesDoNotTakeThePlaceOfAWholeOne) {
+  send(frame(1));
+  for (unsigned number = 2; number < 9; ++number) send(segments_of(frame(number))[0]);
+  wake_up();
+  run();
+  EXPECT_EQ(attitude().sequence_number, 1U);
+  EXPECT_EQ(telemetry().frames_used, 1U);
+  EXPECT_EQ(counters().FramesIncomplete, 7U - (TUMBLESIGHT_APP_FRAME_BUFFERS - 1U));
+  EXPECT_EQ(the.count_events(TUMBLESIGHT_APP_FRAME_ERR_EID), static_cast<int>(counters().FramesIncomplete));
+  EXPECT_EQ(the.text_of(TUMBLESIGHT_APP_FRAME_ERR_EID),
+            "TUMBLESIGHT: frame 6 dropped without its segments 0x1e: no buffer is free");
 }
 
 TEST_F(CfsApp, AFrameThatIsSentTwiceIsADuplicate) {
@@ -443,11 +479,14 @@ TEST_F(CfsApp, MessagesOfAWrongLengthAreRefused) {
   longer = make_message(TUMBLESIGHT_APP_FRAME_MID, longer.size() + 1);
   the.deliver(longer);
   the.deliver(make_message(TUMBLESIGHT_APP_NAV_MID, sizeof(TUMBLESIGHT_APP_Navigation_t) - 1));
+  the.deliver(make_message(TUMBLESIGHT_APP_WAKEUP_MID, 12));
+  the.deliver(make_message(TUMBLESIGHT_APP_SEND_HK_MID, 7));
   the.deliver(make_message(0x0801, 12));
   run();
-  EXPECT_EQ(the.count_events(kLengthError), 4);
+  EXPECT_EQ(the.count_events(kLengthError), 6);
+  EXPECT_EQ(the.sent.size(), 0U);
   EXPECT_EQ(the.count_events(TUMBLESIGHT_APP_MID_ERR_EID), 1);
-  EXPECT_EQ(counters().MessagesRefused, 5U);
+  EXPECT_EQ(counters().MessagesRefused, 7U);
 }
 
 TEST_F(CfsApp, NavigationIsTheChasersAttitudeOfTheCycle) {
@@ -504,13 +543,13 @@ TEST_F(CfsApp, RefusedCommandsAreEventsOfTheirOwn) {
   EXPECT_EQ(text, "TUMBLESIGHT: telecommand with a wrong checksum [1, 8, 0]");
 }
 
+// Also when so many commands were accepted that its event is suppressed.
 TEST_F(CfsApp, ResetCountersResetsThoseOfTheAppToo) {
-  EXPECT_EQ(static_cast<int>(hal::FunctionCode::kResetCounters), 2) << "as tumblesight_app.c has it";
-  EXPECT_EQ(static_cast<int>(hal::EventId::kCommandAccepted), 10);
   wake_up();
-  command(packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kNoop)));
+  for (int i = 0; i < 8; ++i) command(packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kNoop)));
+  wake_up([] { EXPECT_EQ(counters().Cycles, 1U); });
   command(packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kResetCounters)));
-  wake_up();
+  wake_up([] { EXPECT_EQ(counters().CommandsTaken, 9U); });
   run();
   EXPECT_EQ(counters().Cycles, 0U);
   EXPECT_EQ(counters().CommandsTaken, 0U);
@@ -626,7 +665,7 @@ TEST_F(CfsApp, StateSurvivesAReset) {
   run();
   EXPECT_EQ(telemetry().mode, hal::Mode::kStandby);
   EXPECT_EQ(the.text_of(static_cast<int>(hal::EventId::kStateResumed)),
-            "TUMBLESIGHT: state of before the reset resumed [1, 1, 0]");
+            "TUMBLESIGHT: state of before the reset resumed [3, 1, 0]");
   EXPECT_EQ(counters().StoreErrors, 0U);
 }
 
@@ -636,7 +675,7 @@ TEST_F(CfsApp, ResetBeforeTheFirstCycleLosesNothing) {
   restart_processor(CFE_PSP_RST_TYPE_PROCESSOR, CFE_PSP_RST_SUBTYPE_HW_SPECIAL_COMMAND);
   wake_up();
   run();
-  EXPECT_EQ(telemetry().mode, hal::Mode::kRun);
+  EXPECT_EQ(telemetry().mode, hal::Mode::kStandby) << "not SAFE";
   EXPECT_EQ(telemetry().states_lost, 0U);
 }
 
@@ -644,19 +683,22 @@ TEST_F(CfsApp, CausesOfResetsDecideTheMode) {
   const struct {
     int type;
     std::uint32_t subtype;
+    bool is_operational;
     hal::Mode mode;
     int cause;
   } kCases[] = {
-      {CFE_PSP_RST_TYPE_PROCESSOR, CFE_PSP_RST_SUBTYPE_RESET_COMMAND, hal::Mode::kRun,
-       TUMBLESIGHT_RESET_COMMANDED},
-      {CFE_PSP_RST_TYPE_PROCESSOR, CFE_PSP_RST_SUBTYPE_HW_SPECIAL_COMMAND, hal::Mode::kRun,
-       TUMBLESIGHT_RESET_COMMANDED},
-      {CFE_PSP_RST_TYPE_PROCESSOR, CFE_PSP_RST_SUBTYPE_HW_WATCHDOG, hal::Mode::kStandby,
-       TUMBLESIGHT_RESET_WATCHDOG},
-      {CFE_PSP_RST_TYPE_PROCESSOR, CFE_PSP_RST_SUBTYPE_EXCEPTION, hal::Mode::kStandby,
+      {CFE_PSP_RST_TYPE_POWERON, CFE_PSP_RST_SUBTYPE_POWER_CYCLE, false, hal::Mode::kRun,
+       TUMBLESIGHT_RESET_POWER_ON},
+      {CFE_PSP_RST_TYPE_PROCESSOR, CFE_PSP_RST_SUBTYPE_RESET_COMMAND, false, hal::Mode::kStandby,
        TUMBLESIGHT_RESET_OTHER},
-      // The app alone was started again.
-      {CFE_PSP_RST_TYPE_POWERON, CFE_PSP_RST_SUBTYPE_POWER_CYCLE, hal::Mode::kStandby,
+      {CFE_PSP_RST_TYPE_PROCESSOR, CFE_PSP_RST_SUBTYPE_HW_WATCHDOG, false, hal::Mode::kStandby,
+       TUMBLESIGHT_RESET_WATCHDOG},
+      {CFE_PSP_RST_TYPE_PROCESSOR, CFE_PSP_RST_SUBTYPE_POWER_CYCLE, false, hal::Mode::kStandby,
+       TUMBLESIGHT_RESET_OTHER},
+      // The app alone was started again: cFE still gives the cause of the processor's start.
+      {CFE_PSP_RST_TYPE_POWERON, CFE_PSP_RST_SUBTYPE_POWER_CYCLE, true, hal::Mode::kStandby,
+       TUMBLESIGHT_RESET_OTHER},
+      {CFE_PSP_RST_TYPE_PROCESSOR, CFE_PSP_RST_SUBTYPE_RESET_COMMAND, true, hal::Mode::kStandby,
        TUMBLESIGHT_RESET_OTHER},
   };
   for (const auto& one : kCases) {
@@ -667,6 +709,7 @@ TEST_F(CfsApp, CausesOfResetsDecideTheMode) {
     run();
     EXPECT_EQ(telemetry().mode, hal::Mode::kRun);
     restart_processor(one.type, one.subtype);
+    the.is_operational = one.is_operational;
     wake_up();
     run();
     EXPECT_EQ(telemetry().mode, one.mode) << one.subtype;
@@ -674,6 +717,22 @@ TEST_F(CfsApp, CausesOfResetsDecideTheMode) {
                   .find("[" + std::to_string(one.cause) + ","),
               std::string::npos);
   }
+}
+
+// An app that the ground starts later has no state that it could have lost. Without a store that is not
+// known.
+TEST_F(CfsApp, FirstStartInARunningSystemIsAFirstStart) {
+  the.is_operational = true;
+  wake_up();
+  run();
+  EXPECT_EQ(telemetry().mode, hal::Mode::kRun);
+  cfe::restart_cfe();
+  the.files[TUMBLESIGHT_APP_MODEL_FILE_0] = test_model_image();
+  the.is_operational = true;
+  the.failing["CFE_ES_RegisterCDS:State0"] = CFE_ES_CDS_INSUFFICIENT_MEMORY;
+  wake_up();
+  run();
+  EXPECT_EQ(telemetry().mode, hal::Mode::kStandby);
 }
 
 TEST_F(CfsApp, WithoutCriticalDataStoreItWorksAndSaysSo) {
@@ -685,7 +744,9 @@ TEST_F(CfsApp, WithoutCriticalDataStoreItWorksAndSaysSo) {
     run();
     EXPECT_EQ(telemetry().mode, hal::Mode::kRun);
     EXPECT_EQ(telemetry().store_health, hal::StoreHealth::kNone);
-    EXPECT_EQ(the.count_events(TUMBLESIGHT_APP_CDS_ERR_EID), 1);
+    EXPECT_EQ(
+        the.text_of(TUMBLESIGHT_APP_CDS_ERR_EID),
+        "TUMBLESIGHT: no critical data store, RC = 0xC400000E: a reset will lose mode, bank and parameters");
     EXPECT_EQ(counters().StoreErrors, 1U);
   }
 }

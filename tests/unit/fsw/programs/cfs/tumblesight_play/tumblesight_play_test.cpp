@@ -121,6 +121,13 @@ TEST_F(CfsPlayer, LeavesOutPeriodsThatItMissed) {
   EXPECT_EQ(the.delays_ms, (std::vector<std::uint32_t>{1467, 1900, 1799, 2702}));
 }
 
+TEST_F(CfsPlayer, GoesOnWhenTheClockIsSetBack) {
+  the.met_ns = 1'000'000'000'000;
+  the.late_ns = {-999'000'000'000};
+  play(3);
+  EXPECT_LE(the.delays_ms[1], static_cast<std::uint32_t>(TUMBLESIGHT_PLAY_PERIOD_MS));
+}
+
 TEST_F(CfsPlayer, WithoutARecordingItEndsAndNamesTheFile) {
   Bytes other = recorded_file(), old = recorded_file(), wide = recorded_file();
   other[0] = 'X';
