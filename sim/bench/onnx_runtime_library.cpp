@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "sim/process/program_files.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -58,8 +60,8 @@ constexpr const char* kNodeArchitecture = "x64";
 void add_npm_libraries(std::vector<std::string>& candidates) {
   namespace fs = std::filesystem;
   std::error_code none;
-  for (const auto& entry : fs::directory_iterator(
-           fs::path(TUMBLESIGHT_SOURCE_DIR) / "build/node_modules/onnxruntime-node/bin", none)) {
+  for (const auto& entry :
+       fs::directory_iterator(program_files().root + "/build/node_modules/onnxruntime-node/bin", none)) {
     const fs::path library = entry.path() / "linux" / kNodeArchitecture / "libonnxruntime.so.1";
     if (fs::exists(library, none)) candidates.push_back(library.string());
   }

@@ -20,6 +20,7 @@
 #include "sim/cli/mission_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/training/mission_training.hpp"
 #include "sim/world/scenario/condition.hpp"
@@ -97,7 +98,7 @@ AdoptionSettings settings_of(const AdoptArguments& arguments, const std::string&
   settings.threads = arguments.threads > 0
                          ? arguments.threads
                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  settings.program = fs::read_symlink("/proc/self/exe").string();
+  settings.program = program_path().string();
   settings.command = command_line;
   require_programs(settings.program);
   return settings;

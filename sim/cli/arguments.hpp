@@ -35,8 +35,8 @@ struct ScenarioArguments {
   TargetSymmetry symmetry;
   SensorArguments sensor;
   std::string numerics = "fixed";  // or "float32": which of the shipped models
-  std::string model;  // empty: fsw/models/<target>.tsm or <target>.float32.tsm of the source tree
-  std::string json;   // empty: none
+  std::string model;               // empty: the shipped <target>.tsm or <target>.float32.tsm
+  std::string json;                // empty: none
   std::optional<Mission> mission;  // of --mission
 };
 

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/model/model_file.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/terminal/table.hpp"
 #include "sim/terminal/write_file.hpp"
 #include "sim/world/frame_renderer.hpp"
@@ -21,8 +21,6 @@
 
 namespace tumblesight::sim {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::uint64_t kSequences = 5;
 
@@ -119,7 +117,7 @@ nlohmann::ordered_json json_of(const std::vector<BenchRow>& rows) {
 }
 
 void bench(const BenchArguments& arguments) {
-  const std::string model_folder = fs::path(shipped_model_path("any")).parent_path().string();
+  const std::string model_folder = program_files().models;
   require_usable_files({{"--onnxruntime", arguments.onnxruntime},
                         {"--target (its model)", shipped_model_path(arguments.target)},
                         {"--target (its model)", shipped_model_path(arguments.target + ".float32")}},

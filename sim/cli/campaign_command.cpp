@@ -22,6 +22,7 @@
 #include "sim/cli/evaluation_output.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/terminal/progress.hpp"
@@ -193,7 +194,7 @@ void report(const CampaignArguments& arguments, const OpenCampaign& open) {
 
 std::unique_ptr<Launcher> launch(const CampaignArguments& arguments, const OpenCampaign& open) {
   LaunchSettings settings;
-  settings.program = fs::read_symlink("/proc/self/exe").string();
+  settings.program = program_path().string();
   settings.campaign = open.campaign;
   settings.out = open.out;
   settings.jobs = arguments.jobs;

@@ -9,6 +9,7 @@
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/symmetry_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
+#include "sim/process/program_files.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -72,10 +73,17 @@ void add_effect_limit_option(CLI::App& command, EvaluateArguments& arguments) {
       ->type_name("NAME");
 }
 
+// For the help text.
+std::string default_paper_folder() {
+  const ProgramFiles& files = program_files();
+  const std::string quick = "out/paper of " + files.output_parent;
+  return files.installed ? quick : "docs, or with --sequences " + quick;
+}
+
 void add_paper_options(CLI::App& command, EvaluateArguments& arguments) {
   CLI::Option* paper =
       command.add_flag("--paper", arguments.paper,
-                       "all tables and figures of the paper, for every target with a model in fsw/models");
+                       "all tables and figures of the paper, for every target with a model that ships");
   command
       .add_option("--mesh-folder", arguments.mesh_folder,
                   "folder with <target>.stl, y up: meshes to measure in addition to the shipped ones")
@@ -83,9 +91,8 @@ void add_paper_options(CLI::App& command, EvaluateArguments& arguments) {
       ->type_name("DIR")
       ->needs(paper);
   command
-      .add_option(
-          "--out", arguments.out,
-          "folder for results.md, .csv, .json and report.html [docs, or out/paper if --sequences is given]")
+      .add_option("--out", arguments.out,
+                  "folder for results.md, .csv, .json and report.html [" + default_paper_folder() + "]")
       ->check(file_path())
       ->type_name("DIR")
       ->needs(paper);
@@ -136,8 +143,8 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
                  "Example: a tumbling spacecraft of your own, with a network trained for it\n"
                  "  tumblesight evaluate --target mine --mesh mine.glb --model mine.tsm \\\n"
                  "      --condition tumbling --inertia 410,380,300,0,-2,5\n\n"
-                 "Example: everything in the paper, for all targets; writes docs/results.md. For a\n"
-                 "quick look add --sequences 20: then it writes to out/paper of the source tree.\n"
+                 "Example: everything in the paper, for all targets. For a quick look add\n"
+                 "--sequences 20.\n"
                  "  tumblesight evaluate --paper --mesh-folder meshes\n" +
                  disturbance_examples("evaluate"));
 }

@@ -8,6 +8,7 @@
 #include "sim/cli/evaluate_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/evaluation/paper_plan.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/terminal/progress.hpp"
@@ -54,7 +55,8 @@ std::string command_of(const EvaluateArguments& arguments) {
 
 std::string folder_of(const EvaluateArguments& arguments) {
   if (!arguments.out.empty()) return arguments.out;
-  return std::string(TUMBLESIGHT_SOURCE_DIR) + (arguments.sequences_given ? "/out/paper" : "/docs");
+  const ProgramFiles& files = program_files();
+  return arguments.sequences_given || files.installed ? files.output + "/paper" : files.root + "/docs";
 }
 
 void announce(const PaperPlan& plan, const EvaluateArguments& arguments, const std::string& folder) {
@@ -74,8 +76,7 @@ void announce(const PaperPlan& plan, const EvaluateArguments& arguments, const s
 
 void evaluate_paper(const EvaluateArguments& arguments) {
   const std::string folder = folder_of(arguments);
-  const PaperPlan plan =
-      plan_paper(arguments.mesh_folder, fs::path(shipped_model_path("any")).parent_path().string());
+  const PaperPlan plan = plan_paper(arguments.mesh_folder, program_files().models);
   announce(plan, arguments, folder);
   // All meshes and models first, so that a fault in one of them shows now and not after an hour.
   std::vector<Job> jobs;

@@ -16,6 +16,7 @@
 #include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/sil/interruption.hpp"
 #include "sim/sil/signed_telecommand.hpp"
 #include "sim/terminal/write_file.hpp"
@@ -42,7 +43,7 @@ CLI::Validator speed() {
 }
 
 fs::path shipped_flight() {
-  return fs::read_symlink("/proc/self/exe").parent_path() / "flight";
+  return program_path().parent_path() / "flight";
 }
 
 std::string flight_path(const std::string& given) {
@@ -186,7 +187,7 @@ void require_usable_outputs(const FlightArguments& arguments, OptionFiles read, 
 }
 
 std::string default_report_path(const std::string& name) {
-  return fmt::format("{}/out/{}", TUMBLESIGHT_SOURCE_DIR, name);
+  return program_files().output + "/" + name;
 }
 
 void announce_flight(const SilSettings& settings, const TargetSetup& setup) {

@@ -38,7 +38,7 @@ FlightSetup flight_setup(const std::string& target, const TargetSetup& setup, co
 // Throws as require_usable_files() does for the report and the figures. `read`: the files that the verb reads
 // beside those of `arguments`. `json` empty: no figures.
 void require_usable_outputs(const FlightArguments& arguments, OptionFiles read, const std::string& json);
-// <folder of the source tree>/out/<name>.
+// <name> in the folder that a program writes to by default.
 std::string default_report_path(const std::string& name);
 
 // Prints what the user has to start (--flight none), and the remarks of the setup on the standard error

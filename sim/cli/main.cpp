@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -18,6 +17,7 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/terminal/text.hpp"
 #ifdef TUMBLESIGHT_HAS_SIL
 #include "hal/dds/idl/icd_hash.hpp"
@@ -65,7 +65,7 @@ std::string version_text() {
 #ifdef TUMBLESIGHT_FULL_PROGRAM
 // Goes on in the program with all verbs, which lists them in its help and refuses those that do not exist.
 void start_full_program(char** argv) {
-  const auto full = std::filesystem::read_symlink("/proc/self/exe").parent_path() / TUMBLESIGHT_FULL_PROGRAM;
+  const auto full = tumblesight::sim::program_path().parent_path() / TUMBLESIGHT_FULL_PROGRAM;
   execv(full.c_str(), argv);
   throw std::runtime_error(full.string() + ": " + std::strerror(errno) +
                            "; build the target tumblesight again");

@@ -14,6 +14,7 @@
 #include "sim/cli/mission_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/recording/recording_file.hpp"
 #include "sim/report/replay_report.hpp"
 #include "sim/report/sil_report.hpp"
@@ -273,7 +274,8 @@ void add_replay_command(CLI::App& app, const std::string& command_line) {
   add_model_options(*command, arguments->scenario);
   add_json_option(*command, arguments->scenario.json);
   add_flight_options(*command, *arguments);
-  add_report_option(*command, arguments->report, " [out/<recording>_replay.html of the source tree]");
+  add_report_option(*command, arguments->report,
+                    fmt::format(" [out/<recording>_replay.html of {}]", program_files().output_parent));
   command->footer(
       "\nThe flight program gets one cycle per frame, at its exposure time, and a cycle\n"
       "without a frame wherever one is missing for 2.7 s. It sees nothing of the truth.\n"

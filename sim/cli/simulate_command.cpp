@@ -18,6 +18,7 @@
 #include "sim/evaluation/experiment.hpp"
 #include "sim/evaluation/float32_reference.hpp"
 #include "sim/evaluation/statistics.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/sil_report.hpp"
 #include "sim/sil/interruption.hpp"
@@ -210,9 +211,11 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
   command->add_flag(
       "--free-running", arguments->free_running,
       "the flight program runs on its own timer, not in lockstep; needs --speed N (1: as in flight)");
-  add_report_option(*command, arguments->report,
-                    " [out/<target>_<condition>_seed<seed>.html of the source tree, plus every option that "
-                    "is not at its default]");
+  add_report_option(
+      *command, arguments->report,
+      fmt::format(
+          " [out/<target>_<condition>_seed<seed>.html of {}, plus every option that is not at its default]",
+          program_files().output_parent));
   command->footer(
       "\nExample: 100 sequences with a degraded sensor, figures to a file\n"
       "  tumblesight simulate --condition degraded --sequences 100 --seed 7 \\\n"

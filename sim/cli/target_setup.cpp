@@ -13,6 +13,7 @@
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/model/model_file.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -119,7 +120,7 @@ void set_up_model(const ScenarioArguments& arguments, TargetSetup& setup) {
 }  // namespace
 
 std::string shipped_model_path(const std::string& name) {
-  return std::string(TUMBLESIGHT_SOURCE_DIR) + "/fsw/models/" + name + ".tsm";
+  return program_files().models + "/" + name + ".tsm";
 }
 
 OptionFiles files_read(const ScenarioArguments& arguments) {

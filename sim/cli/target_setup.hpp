@@ -27,7 +27,7 @@ struct TargetSetup {
   std::vector<std::string> warnings;
 };
 
-// fsw/models/<name>.tsm of the source tree.
+// <name>.tsm in the folder of the models that ship.
 std::string shipped_model_path(const std::string& name);
 
 // Mesh, model image, the description of the sensor beside it, and that of --sensor.

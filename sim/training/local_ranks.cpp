@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "sim/process/child_process.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/training/rank_place.hpp"
 
 namespace tumblesight::sim {
@@ -64,7 +65,7 @@ class Supervisor {
  public:
   explicit Supervisor(int count) {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_requested = true; });
-    const std::string program = fs::read_symlink("/proc/self/exe");
+    const std::string program = program_path();
     for (int rank = 0; rank < count; ++rank) {
       ranks_.push_back(std::make_unique<ChildProcess>(program, own_arguments(), "", -1,
                                                       local_rank_environment(rank, count, store_.file())));

@@ -15,22 +15,24 @@ namespace {
 static_assert(gnc::kModelImageSize<gnc::Float32> <= fsw::config::kMaxModelImageBytes,
               "the limit would refuse every image");
 
-// Looks in the source tree around the build folder that this program is in, then in the source tree it was
-// built from.
+// Writes the path of a folder that is named as seen from the folder of this program. Returns false if there
+// is no such folder.
+bool find_from_program(const char* name, char* path, std::size_t size) {
+  char own[FlightOptions::kMaxPath];
+  if (!program_folder(own, sizeof own)) return false;
+  const int length = std::snprintf(path, size, "%s/%s", own, name);
+  return length > 0 && static_cast<std::size_t>(length) < size && access(path, X_OK) == 0;
+}
+
+// Looks in the data of an installed program, in the source tree around the build folder that this program is
+// in, then in the source tree it was built from.
 void find_shipped_model(FlightOptions& options) {
-  char folder[FlightOptions::kMaxPath];
-  char path[FlightOptions::kMaxPath + 128];
-  const char* const kind = options.float32 ? ".float32" : "";
-  if (program_folder(folder, sizeof folder)) {
-    const int length =
-        std::snprintf(path, sizeof path, "%s/../../../fsw/models/%s%s.tsm", folder, options.target, kind);
-    if (length > 0 && length < FlightOptions::kMaxPath && access(path, R_OK) == 0) {
-      std::memcpy(options.model_path, path, static_cast<std::size_t>(length) + 1);
-      return;
-    }
-  }
-  std::snprintf(options.model_path, sizeof options.model_path, "%s/fsw/models/%s%s.tsm",
-                TUMBLESIGHT_SOURCE_DIR, options.target, kind);
+  char folder[FlightOptions::kMaxPath - 128];  // room for the name of the image
+  const bool found = find_from_program(TUMBLESIGHT_INSTALLED_DATA "/models", folder, sizeof folder) ||
+                     find_from_program("../../../fsw/models", folder, sizeof folder);
+  std::snprintf(options.model_path, sizeof options.model_path, "%s/%s%s.tsm",
+                found ? folder : TUMBLESIGHT_SOURCE_DIR "/fsw/models", options.target,
+                options.float32 ? ".float32" : "");
 }
 
 // Writes the end of the message about a missing image into `text`. The images that only the repository's

@@ -16,6 +16,7 @@
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/lidar/frame_rays.hpp"
 #include "gnc/numerics/crc.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/world/math/angles.hpp"
 
@@ -194,7 +195,7 @@ Json behaviour_json(const SensorDescription& sensor) {
 }
 
 std::string path_of_shipped(const std::string& name) {
-  return std::string(TUMBLESIGHT_SOURCE_DIR) + "/sim/world/sensor/descriptions/" + name + ".json";
+  return program_files().sensors + "/" + name + ".json";
 }
 
 SensorDescription read_sensor(const std::string& path) {

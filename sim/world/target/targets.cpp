@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "gnc/numerics/crc.hpp"
+#include "sim/process/program_files.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
@@ -19,8 +20,7 @@ constexpr JointLimits kWholeTurn = {-180.0, 180.0};
 
 std::vector<Mission> read_shipped_missions() {
   std::vector<std::string> files;
-  for (const fs::directory_entry& entry :
-       fs::directory_iterator(TUMBLESIGHT_SOURCE_DIR "/sim/world/target/missions"))
+  for (const fs::directory_entry& entry : fs::directory_iterator(program_files().missions))
     if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
   std::vector<Mission> missions;
@@ -92,7 +92,7 @@ std::vector<std::string> target_names() {
 
 const std::string& default_target() {
   if (shipped_missions().empty())
-    throw std::runtime_error("there is no mission in " TUMBLESIGHT_SOURCE_DIR "/sim/world/target/missions");
+    throw std::runtime_error("there is no mission in " + program_files().missions);
   return shipped_missions().front().name;
 }
 
