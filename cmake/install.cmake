@@ -1,7 +1,8 @@
 # cmake --install: the flight side as static libraries, headers and shipped models, for find_package(tumblesight).
 # The package holds gnc, fsw/app and its C interface, the HAL interfaces, messages and packets, and the platforms hal/replay and hal/posix. Each
-# library has the name that it has here, with the prefix tumblesight::. Programs are not installed.
+# library has the name that it has here, with the prefix tumblesight::. The programs: package.cmake.
 include(GNUInstallDirs)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME tumblesight-dev)
 include(CMakePackageConfigHelpers)
 
 # Appends the library and the project's own libraries that it links to `result`.
@@ -56,8 +57,9 @@ install(DIRECTORY gnc fsw hal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesigh
   PATTERN programs EXCLUDE PATTERN models EXCLUDE PATTERN bare_metal EXCLUDE PATTERN dds EXCLUDE PATTERN fake EXCLUDE)
 install(FILES ${PROJECT_BINARY_DIR}/hal/messages/message_fields.inc
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tumblesight/hal/messages)
-install(DIRECTORY fsw/models/ DESTINATION ${package_models_dir} FILES_MATCHING PATTERN "*.tsm"
-  PATTERN "*.float32.tsm" EXCLUDE)
+# Without the images that fsw/models/fetch_images writes.
+install(DIRECTORY fsw/models/ DESTINATION ${package_models_dir} COMPONENT tumblesight FILES_MATCHING PATTERN "*.tsm"
+  PATTERN "*.float32.tsm" EXCLUDE PATTERN "*_paper_rule.tsm" EXCLUDE)
 configure_package_config_file(cmake/tumblesight-config.cmake.in ${PROJECT_BINARY_DIR}/cmake/tumblesight-config.cmake
   INSTALL_DESTINATION ${package_folder} PATH_VARS package_models_dir)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/tumblesight-config-version.cmake

@@ -2,14 +2,7 @@
 # Installs the package, builds the examples against it and runs the first one.
 cmake_minimum_required(VERSION 3.25)
 
-function(run_or_fail)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT result EQUAL 0)
-    list(JOIN ARGN " " command)
-    message(FATAL_ERROR "${command}: ${result}\n${output}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run_or_fail.cmake)
 
 set(prefix ${BUILD}/installed)
 set(examples ${BUILD}/installed_examples)
