@@ -102,8 +102,8 @@ void expect_same_attitude(const hal::AttitudeReport& a, const hal::AttitudeRepor
   EXPECT_EQ(a.centroid_lrf_mm, b.centroid_lrf_mm);
 }
 
-// With lost frames and a chaser that turns, so that gaps, attitudes of the chaser and pauses have to be
-// right. Verifies TS-SIL-140.
+// With lost frames and a chaser that turns: gaps, attitudes of the chaser and pauses have to be right.
+// Verifies TS-SIL-140.
 TEST(Replay, GivesTheAttitudesOfTheSimulatedRunBitForBit) {
   RecordingSettings recorded;
   recorded.sequences = 3;

@@ -6,8 +6,8 @@
 #include "gnc/numerics/crc.hpp"
 #include "hal/command_authentication.hpp"
 #include "hal/fake/fake_persistent_store.hpp"
-#include "tests/support/test_models.hpp"
 #include "tests/support/app_memory.hpp"
+#include "tests/support/test_models.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
 namespace tumblesight::fsw {
