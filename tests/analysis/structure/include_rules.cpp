@@ -135,6 +135,11 @@ std::string library_objection(const std::string& file, const std::string& path) 
   return {};
 }
 
+bool is_mission_header(const std::string& path) {
+  static const std::regex kHeader(R"((cfe|cfe_tbl_filedef|tumblesight_(app|play)\w*)\.h)");
+  return std::regex_match(path, kHeader);
+}
+
 }  // namespace
 
 std::vector<Include> includes_of(const std::string& text) {
@@ -151,6 +156,9 @@ std::vector<Include> includes_of(const std::string& text) {
 
 std::string objection(const std::string& file, const Include& include) {
   if (is_project(include.path)) return project_objection(file, include.path);
+  // As in a cFS mission, whose build lists the folders of headers.
+  if (include.quoted && starts_with(file, "fsw/programs/cfs/"))
+    return is_mission_header(include.path) ? "" : "neither a header of cFE nor of a cFS app";
   if (include.quoted && !starts_with_any(file, {"hal/dds/", "sim/", "tests/"}))
     return "not written from the root";
   return library_objection(file, include.path);

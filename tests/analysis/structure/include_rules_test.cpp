@@ -170,6 +170,9 @@ TEST(IncludeRule, CatchesEveryForbiddenInclude) {
       {"sim/sil/a.cpp", "#include \"hal/posix/realtime.hpp\""},
       {"sim/evaluation/a.cpp", "#include <dds/dds.h>"},
       {"sim/console/bus_run.cpp", "#include <dds/dds.h>"},
+      {"fsw/programs/cfs/tumblesight/fsw/src/tumblesight_app.c", "#include \"sample_app.h\""},
+      {"fsw/programs/cfs/tumblesight/fsw/src/tumblesight_app.c", "#include \"sim/sil/hello.hpp\""},
+      {"fsw/programs/replay/main.cpp", "#include \"cfe.h\""},
   };
   for (const auto& [file, line] : forbidden) EXPECT_NE(objection_to(file, line), "") << file << ": " << line;
 }
