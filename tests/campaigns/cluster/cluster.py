@@ -1,5 +1,7 @@
 """A campaign of 16 tasks, of which one is killed, has the figures of one process, byte for byte.
 
+On Slurm the command is interrupted, too, and started again: it follows the jobs that it has submitted.
+
   cluster.py --on local|mpi --program TUMBLESIGHT
   with_slurm cluster.py --on slurm --program TUMBLESIGHT
 
@@ -20,6 +22,7 @@ CONDITIONS = ["nominal", "degraded"]
 SEQUENCES = 320  # of each run, 8 tasks of 40: each takes about a second
 LIMIT_S = 150
 SKIPPED = 77
+STOPPED = 3
 # OpenMPI as root, and more processes than cores, as in a container; its traffic on loopback.
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
        "OMPI_MCA_oob_tcp_if_include": "lo", "OMPI_MCA_btl": "self,vader", "OMPI_MCA_plm_rsh_agent": "false"}
@@ -113,6 +116,15 @@ def command_of(way, program, campaign):
     return words if way == "slurm" else words + ["--jobs", "2"]
 
 
+def interrupted(words, environment):
+    """Starts the campaign as a user does who presses Ctrl-C as soon as the jobs are submitted."""
+    process = subprocess.Popen(words, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    for line in process.stdout:
+        if "Ctrl-C" in line:
+            process.send_signal(signal.SIGINT)
+    expect(process.wait(timeout=30) == STOPPED, "Ctrl-C does not end the command")
+
+
 def check(way, program, folder):
     campaign = write_campaign(folder)
     out = campaign.with_suffix("")
@@ -122,10 +134,12 @@ def check(way, program, folder):
     watcher = Watcher()
     if way == "slurm":
         watcher.start()
+        interrupted(command_of(way, program, campaign), environment)
     outcome = run(command_of(way, program, campaign), env=environment)
     killer.join(1)
     expect(killer.killed, "no worker was killed, so that the test says nothing", outcome)
     if way == "slurm":
+        expect("of an earlier call" in outcome.stdout, "the jobs that were submitted are not followed", outcome)
         expect(watcher.requeued, "Slurm has not requeued the task that was killed", outcome)
     if way == "mpi":  # mpirun ends all workers when one dies
         expect(outcome.returncode == 1 and "The same command goes on where it stopped" in outcome.stderr,

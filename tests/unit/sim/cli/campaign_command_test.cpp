@@ -176,8 +176,20 @@ class FakeSlurm : public CampaignCommand {
     std::ofstream(path) << "#!/bin/sh\ncd " << here.path("") << "\n" << script;
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
   }
-  Outcome run() const {
-    return here.run_command("env PATH=bin:$PATH " TUMBLESIGHT_BINARY " campaign run c.toml --on slurm", "a");
+  // Submitted jobs are in the file `submitted`, a line each.
+  void put_sbatch() const {
+    put_program("sbatch",
+                "case \"$*\" in *--version*) ;; *) echo \"$*\" >> submitted; echo '17;big';; esac\n");
+  }
+  Outcome run(const std::string& options = "") const {
+    return here.run_command(
+        "env PATH=bin:$PATH " TUMBLESIGHT_BINARY " campaign run c.toml --on slurm " + options, "a");
+  }
+  std::size_t arrays() const {
+    const std::string submitted = content(here.path("submitted"));
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = submitted.find("--array=", at)) != std::string::npos; ++at) ++count;
+    return count;
   }
 };
 
@@ -192,9 +204,36 @@ TEST_F(FakeSlurm, AnArrayWithoutItsReportIsCancelled) {
 }
 
 TEST_F(FakeSlurm, JobsThatEndWithoutResultsAreNotWaitedForForever) {
-  put_program("sbatch", "case \"$*\" in *--version*) ;; *) echo '17;big';; esac\n");
+  put_sbatch();
   expect_refused(run(), "parts 0,1,2,3,4,5 of the array are not done");
-  EXPECT_EQ(content(here.path("asked")).rfind("-M big -h -j 17 -o %i\n", 0), 0U);
+  EXPECT_EQ(content(here.path("asked")).rfind("-M big -h -j 17 -o %i %j\n", 0), 0U);
+  EXPECT_EQ(arrays(), 3U);
+}
+
+// Ctrl-C or a lost terminal ends only the progress. The fake squeue does the work when it is asked again.
+TEST_F(FakeSlurm, JobsOfAnEarlierCallAreFollowedToTheEnd) {
+  put_sbatch();
+  EXPECT_NE(run("--no-wait").output.find("Slurm job array 17;big, and job 17;big"), std::string::npos);
+  put_program("squeue",
+              "[ -e worked ] && exit; [ -e asked ] && " TUMBLESIGHT_BINARY
+              " campaign work c.toml >worked; echo >> asked; echo 'CLUSTER: big'; echo '17_[0-5] c'\n");
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_NE(outcome.output.find("it follows the Slurm jobs 17;big and 17;big of an earlier call"),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_EQ(arrays(), 1U);
+  EXPECT_TRUE(std::filesystem::exists(here.path("c/report.html")));
+}
+
+TEST_F(FakeSlurm, JobsOfAnEarlierCallThatHaveEndedAreSubmittedAgain) {
+  put_sbatch();
+  run("--no-wait");
+  EXPECT_EQ(run("--no-wait").output.find("an earlier call"), std::string::npos);
+  EXPECT_EQ(arrays(), 2U);
+  put_program("squeue", "echo '17_[0-5] another'\n");
+  run("--no-wait");
+  EXPECT_EQ(arrays(), 3U) << "another job has the number";
 }
 
 TEST_F(CampaignCommand, WaysThatAreNotThereAreNamed) {
