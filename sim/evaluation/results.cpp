@@ -48,7 +48,8 @@ std::string title_of(const SubjectResult& subject) {
                                ? ", trained as in the paper"
                                : fmt::format(", model {}", subject.model);
   const std::string mesh = subject.mesh == kParametricMesh ? "parametric mesh" : subject.mesh;
-  return fmt::format("{}, {}{}", display_name(subject.target), mesh, own_model ? "" : rule);
+  const std::string variant = subject.variant.empty() ? "" : ", " + subject.variant;
+  return fmt::format("{}, {}{}{}", display_name(subject.target), mesh, own_model ? "" : rule, variant);
 }
 
 }  // namespace tumblesight::sim

@@ -73,13 +73,14 @@ struct Sweeps {
 // One network on one mesh.
 struct SubjectResult {
   std::string target;  // key
-  std::string mesh;    // kParametricMesh or the name of the file
+  std::string mesh;    // kParametricMesh, or the name of the file, with its folder where names are equal
   std::string model;   // file name without its extension
   std::uint32_t model_crc32 = 0;
   std::vector<CellResult> cells;
   std::optional<Sweeps> sweeps;
   std::vector<CellResult> disturbed;    // disturbed_runs(), or none
   std::vector<CellResult> sensor_runs;  // sensor_runs() of pose_goals.hpp, or none
+  std::string variant{};                // tells it from a subject with the same names; empty: not needed
 };
 
 struct Results {
@@ -105,7 +106,7 @@ const CellResult* cell_of(const SubjectResult& subject, Condition condition);
 std::vector<DetectionPoint> detection_of(const SubjectResult& subject);
 
 // "NEAR Shoemaker, parametric mesh" or "NEAR Shoemaker, near.stl". A model that is not the target's own is
-// named too.
+// named too, and so is the variant.
 std::string title_of(const SubjectResult& subject);
 
 }  // namespace tumblesight::sim
