@@ -2,6 +2,7 @@
 
 #include "sim/campaign/launcher.hpp"
 #include "sim/process/child_process.hpp"
+#include "sim/process/end_with_starter.hpp"
 #include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
@@ -44,8 +45,9 @@ class LocalWorkers final : public Launcher {
  private:
   void start() {
     const std::string log = fmt::format("{}/local_{}.log", log_folder(settings_), workers_.size());
-    workers_.push_back(
-        {std::make_unique<ChildProcess>(settings_.program, worker_arguments(settings_), log), log});
+    workers_.push_back({std::make_unique<ChildProcess>(settings_.program, worker_arguments(settings_), log,
+                                                       -1, std::vector<std::string>{starter_environment()}),
+                        log});
   }
 
   const LaunchSettings settings_;

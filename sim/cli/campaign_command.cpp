@@ -1,7 +1,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +21,7 @@
 #include "sim/cli/evaluation_output.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/process/end_with_starter.hpp"
 #include "sim/process/program_files.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
@@ -304,13 +304,8 @@ void run(const CampaignArguments& arguments) {
   if (is_done) report(arguments, open);
 }
 
-// Nothing of a worker is left when its starter is gone.
-void end_with_starter() {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-}
-
 void work(const CampaignArguments& arguments) {
-  if (arguments.supervised) end_with_starter();
+  if (arguments.supervised) end_with_starter();  // nothing of a worker is left when its starter is gone
   const OpenCampaign open = open_campaign(arguments);
   const std::optional<Shard> part =
       arguments.part.empty() ? std::nullopt : std::optional<Shard>(shard_from(arguments.part));

@@ -2,8 +2,6 @@
 
 #include <netdb.h>
 #include <sched.h>
-#include <signal.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -23,6 +21,7 @@
 #endif
 #include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
 
+#include "sim/process/end_with_starter.hpp"
 #include "sim/training/rank_store.hpp"
 #include "sim/training/shared_slots.hpp"
 
@@ -239,7 +238,7 @@ std::shared_ptr<Ranks> join(const RankPlace& place, const std::string& folder,
 
 std::shared_ptr<Ranks> join_gloo_ranks(const RankPlace& place, const std::string& folder, double timeout_s) {
   const std::chrono::milliseconds timeout(static_cast<std::int64_t>(1e3 * timeout_s));
-  if (!place.store_file.empty()) prctl(PR_SET_PDEATHSIG, SIGTERM);  // stops with its supervisor
+  if (!place.store_file.empty()) end_with_starter();  // its supervisor
   try {
     return join(place, folder, timeout);
   } catch (const std::exception& error) {

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "sim/process/child_process.hpp"
+#include "sim/process/end_with_starter.hpp"
 #include "sim/process/program_files.hpp"
 #include "sim/training/rank_place.hpp"
 
@@ -67,8 +68,9 @@ class Supervisor {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_requested = true; });
     const std::string program = program_path();
     for (int rank = 0; rank < count; ++rank) {
-      ranks_.push_back(std::make_unique<ChildProcess>(program, own_arguments(), "", -1,
-                                                      local_rank_environment(rank, count, store_.file())));
+      std::vector<std::string> environment = local_rank_environment(rank, count, store_.file());
+      environment.push_back(starter_environment());
+      ranks_.push_back(std::make_unique<ChildProcess>(program, own_arguments(), "", -1, environment));
     }
   }
   // At once: a rank does not end by itself while it waits for another one.
