@@ -1,7 +1,8 @@
 #include "sim/training/local_ranks.hpp"
 
 #include <signal.h>
-#include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -10,7 +11,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -27,7 +27,6 @@
 namespace tumblesight::sim {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kFailed = 1, kStopped = 3;  // exit statuses of the tool
@@ -35,22 +34,22 @@ constexpr int kBySignal = -1;             // of ChildProcess
 
 std::atomic<bool> stop_requested{false};
 
-// A folder of its own for the store's file.
-class StoreFolder {
+// The store's file: in memory, so that nothing of it stays behind if all processes are killed.
+class StoreFile {
  public:
-  StoreFolder() : path_((fs::temp_directory_path() / "tumblesight_ranks_XXXXXX").string()) {
-    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error(path_ + ": " + std::strerror(errno));
+  StoreFile() {
+    if (descriptor_ < 0)
+      throw std::runtime_error(std::string("no file in memory for the ranks: ") + std::strerror(errno));
   }
-  StoreFolder(const StoreFolder&) = delete;
-  StoreFolder& operator=(const StoreFolder&) = delete;
-  ~StoreFolder() {
-    std::error_code none;
-    fs::remove_all(path_, none);
-  }
-  std::string file() const { return path_ + "/store"; }
+  ~StoreFile() { close(descriptor_); }
+  StoreFile(const StoreFile&) = delete;
+  StoreFile& operator=(const StoreFile&) = delete;
+  int descriptor() const { return descriptor_; }
+  // In every process that inherits the descriptor.
+  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
  private:
-  std::string path_;
+  int descriptor_ = memfd_create("tumblesight_ranks", MFD_CLOEXEC);
 };
 
 // Of this process, without its name.
@@ -68,9 +67,10 @@ class Supervisor {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_requested = true; });
     const std::string program = program_path();
     for (int rank = 0; rank < count; ++rank) {
-      std::vector<std::string> environment = local_rank_environment(rank, count, store_.file());
+      std::vector<std::string> environment = local_rank_environment(rank, count, store_.path());
       environment.push_back(starter_environment());
-      ranks_.push_back(std::make_unique<ChildProcess>(program, own_arguments(), "", -1, environment));
+      ranks_.push_back(
+          std::make_unique<ChildProcess>(program, own_arguments(), "", store_.descriptor(), environment));
     }
   }
   // At once: a rank does not end by itself while it waits for another one.
@@ -133,7 +133,7 @@ class Supervisor {
     return kFailed;
   }
 
-  StoreFolder store_;
+  StoreFile store_;
   std::vector<std::unique_ptr<ChildProcess>> ranks_;
 };
 

@@ -45,6 +45,12 @@ pid_t process_of_rank(pid_t supervisor, int rank) {
   return 0;
 }
 
+// Adopted by a process that does not wait for it.
+bool is_zombie(pid_t process) {
+  const std::string status = content("/proc/" + std::to_string(process) + "/stat");
+  return status.find(") Z ") != std::string::npos;
+}
+
 class LocalRanks : public testing::Test {
  protected:
   void SetUp() override {
@@ -52,9 +58,9 @@ class LocalRanks : public testing::Test {
   }
 
   // The shell becomes the program, so that the process is the supervisor.
-  pid_t start(const std::string& arguments) const {
-    const std::string line = "cd " + here.path("") + " && exec " + TUMBLESIGHT_BINARY + " " + arguments +
-                             " >run.out 2>run.err </dev/null";
+  pid_t start(const std::string& arguments, const std::string& variable = "") const {
+    const std::string line = "cd " + here.path("") + " && exec env " + variable + " " + TUMBLESIGHT_BINARY +
+                             " " + arguments + " >run.out 2>run.err </dev/null";
     const char* words[] = {"sh", "-c", line.c_str(), nullptr};
     pid_t child = -1;
     EXPECT_EQ(posix_spawn(&child, "/bin/sh", nullptr, nullptr, const_cast<char**>(words), environ), 0);
@@ -93,6 +99,21 @@ TEST_F(LocalRanks, EndWithOneThatIsKilledAndAreContinuedToTheSameImage) {
   kill(process_of_rank(through, 0), SIGKILL);
   wait_for(through);
   EXPECT_TRUE(image == content(again));
+}
+
+TEST_F(LocalRanks, EndWithTheirSupervisorAndLeaveNothingBehind) {
+  fs::create_directory(here.path("tmp"));
+  const pid_t supervisor = start(
+      "train --cnn-images 1000000 --checkpoint-seconds 0 --workers 1 --ranks 2 --out left", "TMPDIR=tmp");
+  ASSERT_TRUE(wait_until([&] { return fs::exists(here.path("left/cnn.ckpt")); }));
+  const pid_t ranks[] = {process_of_rank(supervisor, 0), process_of_rank(supervisor, 1)};
+  kill(supervisor, SIGKILL);
+  wait_for(supervisor);
+  for (const pid_t rank : ranks) {
+    ASSERT_NE(rank, 0);
+    EXPECT_TRUE(wait_until([&] { return kill(rank, 0) != 0 || is_zombie(rank); })) << rank;
+  }
+  EXPECT_TRUE(fs::is_empty(here.path("tmp")));
 }
 
 TEST_F(LocalRanks, StopTogetherWithACheckpoint) {
