@@ -115,6 +115,7 @@ template <class Sample>
 void BusRun::show(const Sample& sample) {
   if constexpr (std::is_same_v<Sample, hal::dds::LidarFrameSample>) {
     keep(sample);
+    log_.add(sample);
   } else if constexpr (!std::is_same_v<Sample, hal::dds::NavigationSample> &&
                        !std::is_same_v<Sample, hal::dds::MemoryDumpSample>) {
     log_.add(sample);
@@ -137,7 +138,7 @@ bool BusRun::take_samples(const Connection& connection) {
 
 void BusRun::keep(const hal::dds::LidarFrameSample& sample) {
   const bool is_possible = sample.rays > 0 && sample.rays <= gnc::RangeImage::kMaxRays;
-  if (!is_possible || sample.run_id != log_.state().run_id) return;
+  if (!is_possible || sample.run_id != followed_run_) return;
   const std::lock_guard lock(mutex_);
   if (sample.run_id != run_of_frames_) frames_.clear();
   run_of_frames_ = sample.run_id;
@@ -194,7 +195,7 @@ void BusRun::look_for_runs() {
   while (!is_stopping_) {
     const std::optional<AnnouncedRun> run = announced_run(domain_);
     if (run && run->secret.run_id != last_run) {
-      last_run = run->secret.run_id;
+      last_run = followed_run_ = run->secret.run_id;
       try {
         const std::unique_ptr<Connection> connection = connect(*run);
         join(run->domain);

@@ -72,6 +72,7 @@ class BusRun final : public RunSource {
   StepLog log_;
   int domain_;
   std::string mcap_path_;                       // of a recording that is to begin
+  std::uint32_t followed_run_ = 0;              // of the thread: the run that it has joined
   std::unique_ptr<JoinedRecording> recording_;  // of the thread
   std::unique_ptr<hal::dds::SecurityElement> security_;
   std::unique_ptr<hal::dds::LidarFrameSample> frame_sample_;

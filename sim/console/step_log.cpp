@@ -31,6 +31,7 @@ auto from_step(const List& list, std::uint64_t step) {
 
 bool StepLog::is_complete(const Pending& pending) const {
   const auto& done = pending.done;
+  if (has_frames_ && pending.has_step && pending.frames < pending.step.frames) return false;
   if (!expects_answers_) return pending.has_step && (!has_truth_ || pending.step.truth);
   if ((has_steps_ && !pending.has_step) || (has_truth_ && !pending.step.truth)) return false;
   return done && pending.attitudes >= done->attitudes && pending.telemetries >= done->telemetries &&
@@ -42,7 +43,7 @@ void StepLog::add(const hal::dds::HelloSample& hello) {
   const std::lock_guard lock(mutex_);
   if (is_bound_ && hello.run_id == run_id_) return;
   is_bound_ = true;
-  has_ended_ = has_steps_ = has_truth_ = false;
+  has_ended_ = has_steps_ = has_frames_ = has_truth_ = false;
   run_id_ = hello.run_id;
   target_ = hal::dds::target_of(hello).text;
   pending_.clear();
@@ -102,6 +103,16 @@ void StepLog::add(const hal::dds::StepSample& sample) {
   pending->step.time_ns = sample.time_ns;
   pending->step.frames = sample.frames;
   pending->has_step = has_steps_ = true;
+  take_complete(kMostWaiting);
+}
+
+// Its picture is kept elsewhere. A step is shown once there is one to show with it.
+void StepLog::add(const hal::dds::LidarFrameSample& sample) {
+  const std::lock_guard lock(mutex_);
+  Pending* const pending = pending_of(sample);
+  if (pending == nullptr) return;
+  has_frames_ = true;
+  ++pending->frames;
   take_complete(kMostWaiting);
 }
 

@@ -44,6 +44,7 @@ class StepLog {
   void add(const hal::dds::HelloSample& hello);
   void add(const hal::dds::TruthSample& sample);
   void add(const hal::dds::StepSample& sample);
+  void add(const hal::dds::LidarFrameSample& sample);
   void add(const hal::dds::CommandSample& sample);
   void add(const hal::dds::AttitudeSample& sample);
   void add(const hal::dds::TelemetrySample& sample);
@@ -81,7 +82,7 @@ class StepLog {
  private:
   struct Pending {
     LoggedStep step;
-    std::uint32_t attitudes = 0, telemetries = 0, events = 0;
+    std::uint32_t frames = 0, attitudes = 0, telemetries = 0, events = 0;
     std::vector<hal::Event> event_list;
     std::vector<std::string> commands;
     std::optional<hal::dds::StepDoneSample> done;
@@ -112,7 +113,7 @@ class StepLog {
   std::uint32_t run_id_ = 0;
   bool is_bound_ = false;  // to a run
   // In which there are samples of these topics: a step waits for its own.
-  bool has_steps_ = false, has_truth_ = false;
+  bool has_steps_ = false, has_frames_ = false, has_truth_ = false;
   bool has_ended_ = false;
   bool expects_answers_ = true;
   std::string target_;

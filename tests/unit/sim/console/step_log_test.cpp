@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <memory>
 
 #include "hal/dds/idl/hello.hpp"
 #include "sim/console/step_json.hpp"
@@ -96,6 +97,26 @@ TEST_F(Log, TheTruthOfTheFirstStepMayComeAfterIt) {
   EXPECT_EQ(log_.state().steps, 1U);
   log_.add(truth_of(0));
   EXPECT_FALSE(value(log_.rows(0)["rows"][0], "network_error_deg").is_null());
+}
+
+// A page that asks for the frame of a step as soon as it knows the step must get it.
+TEST_F(Log, AStepWaitsForItsFrames) {
+  const auto add_announced = [this](std::uint32_t k, std::uint8_t frames) {
+    auto announced = sample_of<hal::dds::StepSample>(k);
+    announced.frames = frames;
+    log_.add(announced);
+    add_step(k);
+  };
+  const auto frame = std::make_unique<hal::dds::LidarFrameSample>(sample_of<hal::dds::LidarFrameSample>(1));
+  add_announced(0, 1);
+  EXPECT_EQ(log_.state().steps, 1U) << "a late console may never get the first one";
+  log_.add(*frame);
+  add_announced(1, 2);
+  EXPECT_EQ(log_.state().steps, 1U);
+  log_.add(*frame);
+  EXPECT_EQ(log_.state().steps, 2U);
+  add_announced(2, 0);
+  EXPECT_EQ(log_.state().steps, 3U) << "a step without a frame waits for none";
 }
 
 TEST_F(Log, RowsHaveANumberOrNullForEachField) {
