@@ -30,7 +30,7 @@ TEST(ProgramFiles, OfAnyOtherProgramAreInTheSourceTree) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path("share"));
   std::ofstream(folder.path("share/tumblesight")) << "not a folder";
-  for (const std::string program : {folder.path("bin/tumblesight"), std::string()}) {
+  for (const std::string& program : {folder.path("bin/tumblesight"), std::string()}) {
     const ProgramFiles files = files_of_program(program);
     EXPECT_FALSE(files.installed) << program;
     EXPECT_EQ(files.root, TUMBLESIGHT_SOURCE_DIR);
