@@ -4,9 +4,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "hal/messages/message_fields.hpp"
 #include "hal/packets/telemetry_encoder.hpp"
 #include "hal/replay/text_line.hpp"
+#include "tests/support/read_packet.hpp"
 
 namespace tumblesight::test {
 namespace {
@@ -15,35 +15,6 @@ namespace {
 std::vector<std::uint8_t> bytes_of(const std::string& file) {
   std::ifstream in(std::string(TUMBLESIGHT_SOURCE_DIR) + "/" + file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// Reads the fields of a message, big-endian.
-class FieldReader {
- public:
-  explicit FieldReader(const std::uint8_t* at) : at_(at) {}
-
-  template <class Field>
-  void operator()(Field& field) {
-    if constexpr (std::is_integral_v<Field> || std::is_enum_v<Field>) {
-      std::uint64_t bits = 0;
-      for (std::size_t i = 0; i < sizeof(Field); ++i) bits = bits << 8 | *at_++;
-      field = static_cast<Field>(bits);
-    } else {
-      for (auto& element : field) (*this)(element);
-    }
-  }
-
- private:
-  const std::uint8_t* at_;
-};
-
-template <class Message>
-Message message_in(const std::uint8_t* packet, std::size_t size) {
-  Message message;
-  if (size != hal::packets::packet_bytes<Message>()) return message;
-  hal::MessageFields<Message>::visit(
-      FieldReader(packet + hal::packets::kPrimaryHeaderBytes + hal::packets::kTimeBytes), message);
-  return message;
 }
 
 }  // namespace
@@ -59,9 +30,9 @@ GoldenReplay::GoldenReplay() : recorded_(bytes_of("tests/audit/near_shoemaker.ts
 void GoldenReplay::take(const std::uint8_t* packet, std::size_t size) {
   const hal::packets::PacketApids apids;
   const int apid = (packet[0] & 7) * 256 + packet[1];
-  if (apid == apids.attitude_report) link_.publish(message_in<hal::AttitudeReport>(packet, size));
-  if (apid == apids.telemetry) telemetry_ = message_in<hal::Telemetry>(packet, size);
-  if (apid == apids.event) link_.publish(message_in<hal::Event>(packet, size));
+  if (apid == apids.attitude_report) link_.publish(read_packet<hal::AttitudeReport>(packet, size));
+  if (apid == apids.telemetry) telemetry_ = read_packet<hal::Telemetry>(packet, size);
+  if (apid == apids.event) link_.publish(read_packet<hal::Event>(packet, size));
 }
 
 std::string GoldenReplay::digest() const {

@@ -1,7 +1,7 @@
 // The cFS app with message ids that cannot be.
 #include <gtest/gtest.h>
 
-#include "tests/support/cfe/cfe_stub.hpp"
+#include "tests/support/stubs/cfe/cfe_stub.hpp"
 
 extern "C" {
 #include "tumblesight_app.h"

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "hal/messages/function_code.hpp"
-#include "tests/support/cfe/cfe_stub.hpp"
 #include "tests/support/make_packet.hpp"
+#include "tests/support/stubs/cfe/cfe_stub.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
 extern "C" {

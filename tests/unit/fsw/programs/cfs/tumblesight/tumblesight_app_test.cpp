@@ -6,7 +6,6 @@
 #include <array>
 #include <cstring>
 #include <fstream>
-#include <iomanip>
 #include <iterator>
 #include <sstream>
 
@@ -14,12 +13,11 @@
 #include "gnc/lidar/range_image.hpp"
 #include "hal/messages/event_id.hpp"
 #include "hal/messages/function_code.hpp"
-#include "hal/messages/message_fields.hpp"
 #include "hal/messages/mode.hpp"
-#include "hal/replay/console_link.hpp"
-#include "hal/replay/recording.hpp"
-#include "tests/support/cfe/cfe_stub.hpp"
+#include "tests/support/golden_replay.hpp"
 #include "tests/support/make_packet.hpp"
+#include "tests/support/read_packet.hpp"
+#include "tests/support/stubs/cfe/cfe_stub.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
 extern "C" {
@@ -38,37 +36,9 @@ using cfe::Bytes;
 using cfe::make_message;
 using cfe::message_of;
 
-constexpr std::uint32_t kLengthError = TUMBLESIGHT_APP_LENGTH_ERR_EID;
-
 Bytes read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-// Reads the fields of a packet.
-class FieldReader {
- public:
-  explicit FieldReader(const Bytes& packet) : at_(packet.data() + 14) {}
-  template <class Field>
-  void operator()(Field& field) {
-    if constexpr (std::is_integral_v<Field> || std::is_enum_v<Field>) {
-      std::uint64_t bits = 0;
-      for (std::size_t i = 0; i < sizeof(Field); ++i) bits = bits << 8 | *at_++;
-      field = static_cast<Field>(bits);
-    } else {
-      for (auto& element : field) (*this)(element);
-    }
-  }
-
- private:
-  const std::uint8_t* at_;
-};
-
-template <class Message>
-Message read_packet(const Bytes& packet) {
-  Message message;
-  hal::MessageFields<Message>::visit(FieldReader(packet), message);
-  return message;
 }
 
 class CfsApp : public ::testing::Test {
@@ -154,10 +124,12 @@ class CfsApp : public ::testing::Test {
     return found;
   }
   hal::Telemetry telemetry() const {
-    return read_packet<hal::Telemetry>(packets(TUMBLESIGHT_APP_TLM_MID).back());
+    const Bytes packet = packets(TUMBLESIGHT_APP_TLM_MID).back();
+    return test::read_packet<hal::Telemetry>(packet.data(), packet.size());
   }
   hal::AttitudeReport attitude() const {
-    return read_packet<hal::AttitudeReport>(packets(TUMBLESIGHT_APP_ATTITUDE_MID).back());
+    const Bytes packet = packets(TUMBLESIGHT_APP_ATTITUDE_MID).back();
+    return test::read_packet<hal::AttitudeReport>(packet.data(), packet.size());
   }
   static const TUMBLESIGHT_APP_HkTlm_Payload_t& counters() { return TUMBLESIGHT_APP_COUNTERS; }
 
@@ -483,7 +455,7 @@ TEST_F(CfsApp, MessagesOfAWrongLengthAreRefused) {
   the.deliver(make_message(TUMBLESIGHT_APP_SEND_HK_MID, 7));
   the.deliver(make_message(0x0801, 12));
   run();
-  EXPECT_EQ(the.count_events(kLengthError), 6);
+  EXPECT_EQ(the.count_events(TUMBLESIGHT_APP_LENGTH_ERR_EID), 6);
   EXPECT_EQ(the.sent.size(), 0U);
   EXPECT_EQ(the.count_events(TUMBLESIGHT_APP_MID_ERR_EID), 1);
   EXPECT_EQ(counters().MessagesRefused, 7U);
@@ -865,45 +837,34 @@ TEST_F(CfsApp, WithoutATableItKeepsItsParameters) {
 // The frames of flight_replay with the network that ships: all attitudes, events and states.
 // Verifies TS-IFC-120.
 TEST_F(CfsApp, RecordedFramesGiveTheGoldenDigest) {
-  const Bytes recorded = read_file(TUMBLESIGHT_SOURCE_DIR "/tests/audit/near_shoemaker.tslr");
-  hal::replay::Recording recording;
-  ASSERT_EQ(recording.open(recorded.data(), recorded.size()), hal::replay::RecordingStatus::kOk);
+  test::GoldenReplay replay;
   the.most_bytes_per_read = 1 << 20;
   the.failing["CFE_ES_RegisterCDS:State0"] = CFE_ES_CDS_INSUFFICIENT_MEMORY;  // flight_replay has no store
-  the.files[TUMBLESIGHT_APP_MODEL_FILE_0] =
-      read_file(TUMBLESIGHT_SOURCE_DIR "/fsw/models/near_shoemaker.tsm");
-  hal::replay::ConsoleLink link;
-  const auto digest_cycle = [&] {
-    for (const cfe::SentMessage& sent : the.sent) {
-      if (sent.message_id() == TUMBLESIGHT_APP_ATTITUDE_MID)
-        link.publish(read_packet<hal::AttitudeReport>(sent.bytes));
-      if (sent.message_id() == TUMBLESIGHT_APP_EVENT_MID) link.publish(read_packet<hal::Event>(sent.bytes));
-    }
-    if (!the.sent.empty()) link.digest(tumblesight_state_crc32(TUMBLESIGHT_APP_Data.App));
+  the.files[TUMBLESIGHT_APP_MODEL_FILE_0] = Bytes(replay.model(), replay.model() + replay.model_bytes());
+  const auto end_cycle = [&] {
+    for (const cfe::SentMessage& sent : the.sent) replay.take(sent.bytes.data(), sent.bytes.size());
+    if (!the.sent.empty()) replay.end_cycle(tumblesight_state_crc32(TUMBLESIGHT_APP_Data.App));
     the.sent.clear();
   };
   gnc::RangeImage image;
-  while (recording.has_next()) {
-    recording.read_next(image);
-    std::vector<TUMBLESIGHT_APP_FrameSegment_t> segments = segments_of(image, recording.chaser_attitude());
+  while (replay.recording.has_next()) {
+    replay.recording.read_next(image);
+    std::vector<TUMBLESIGHT_APP_FrameSegment_t> segments =
+        segments_of(image, replay.recording.chaser_attitude());
     std::reverse(segments.begin(), segments.end());
     for (const auto& segment : segments) send(segment);
     TUMBLESIGHT_APP_Navigation_t navigation{};
     navigation.Attitude = segments[0].Payload.Chaser;
     the.deliver(message_of(TUMBLESIGHT_APP_NAV_MID, navigation));
     the.deliver(make_message(TUMBLESIGHT_APP_WAKEUP_MID, 8),
-                [this, digest_cycle, now_ns = image.exposure_time_ns] {
-                  digest_cycle();
+                [this, end_cycle, now_ns = image.exposure_time_ns] {
+                  end_cycle();
                   the.met_ns = now_ns;
                 });
   }
   run();
-  digest_cycle();
-  std::ostringstream digest;
-  digest << "flight_replay fixed " << std::hex << std::setw(8) << std::setfill('0') << link.digest();
-  std::ostringstream golden;
-  golden << std::ifstream(TUMBLESIGHT_SOURCE_DIR "/tests/audit/golden.txt").rdbuf();
-  EXPECT_NE(golden.str().find(digest.str()), std::string::npos) << digest.str() << "\n" << golden.str();
+  end_cycle();
+  EXPECT_EQ(replay.digest(), test::GoldenReplay::golden_digest());
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "hal/replay/recording.hpp"
-#include "tests/support/cfe/cfe_stub.hpp"
+#include "tests/support/stubs/cfe/cfe_stub.hpp"
 
 extern "C" {
 #include "tumblesight_app_msg.h"

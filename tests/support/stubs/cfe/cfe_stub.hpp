@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/cfe/cfe.h"
+#include "tests/support/stubs/cfe/cfe.h"
 
 namespace tumblesight::cfe {
 

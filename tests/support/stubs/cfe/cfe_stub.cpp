@@ -1,4 +1,4 @@
-#include "tests/support/cfe/cfe_stub.hpp"
+#include "tests/support/stubs/cfe/cfe_stub.hpp"
 
 #include <algorithm>
 #include <cstdarg>
