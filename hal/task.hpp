@@ -7,8 +7,8 @@ namespace tumblesight::hal {
 
 class PeriodicTask {
  public:
-  // Blocks until the next release and returns its nominal time. Adds the releases missed since the last call
-  // to `slips`.
+  // Blocks until the next release. Adds the releases missed since the last call to `slips`. Returns the
+  // release's nominal time, or the clock's time at the wake-up if the system's ticks drift from its clock.
   virtual std::int64_t wait_next_release_ns(std::uint32_t& slips) = 0;
 
  protected:

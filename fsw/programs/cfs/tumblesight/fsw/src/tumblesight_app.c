@@ -208,8 +208,8 @@ static void EndInputs(int64 Now_ns) {
   TUMBLESIGHT_APP_EndFrames();
 }
 
-/* RESET_COUNTERS resets the counters of the flight application, and these: no other cycle ends as number 0.
- */
+/* RESET_COUNTERS resets the counters of the flight application. Those of the app follow: a cycle that
+ * ends as number 0 had this command. */
 static void ResetCountersOnCommand(const struct tumblesight_outputs* Outputs) {
   if (Outputs->telemetry.cycles == 0) memset(&TUMBLESIGHT_APP_COUNTERS, 0, sizeof TUMBLESIGHT_APP_COUNTERS);
 }

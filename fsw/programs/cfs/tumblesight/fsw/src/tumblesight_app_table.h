@@ -2,9 +2,8 @@
 #ifndef TUMBLESIGHT_APP_TABLE_H
 #define TUMBLESIGHT_APP_TABLE_H
 
-/* Registers the table and loads its file. Initial parameters take the place of a
- * file that cannot be loaded. Without a table the flight application keeps its parameters.
- */
+/* Registers the table and loads its file. If the file cannot be loaded, the initial parameters become the
+ * table. Without a table the flight application keeps its parameters. */
 void TUMBLESIGHT_APP_RegisterTable(void);
 
 /* Carries out what the table services ask for. A new table is used from the next cycle on. */
