@@ -2,8 +2,6 @@
 // topic until it is ended, at most half a minute. Arguments: DDS domain, what to forge, "observed" or
 // "guessed" run id, "observed" or "guessed" step, and the step of the run from which on it has a writer
 // (0: from the start). It writes "ready" to the standard output when it listens.
-#include <signal.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +18,7 @@
 #include "hal/dds/idl/icd_hash.hpp"
 #include "hal/dds/idl/step_content.hpp"
 #include "hal/dds/idl/topics.hpp"
+#include "sim/process/end_with_starter.hpp"
 #include "sim/sil/signed_telecommand.hpp"
 
 namespace {
@@ -234,7 +233,7 @@ int attack(const Plan& plan) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  sim::end_with_starter();
   if (argc != 6) return 2;
   Plan plan;
   plan.domain = static_cast<std::uint32_t>(std::atoi(argv[1]));
