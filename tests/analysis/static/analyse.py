@@ -25,6 +25,9 @@ STRICT_CLANG = ["-Wcomma", "-Wconditional-uninitialized", "-Wloop-analysis", "-W
                 "-Wunreachable-code"]
 # No code runs before main(), except the constructors of a program's own objects (fsw/programs/).
 LIBRARIES_CLANG = ["-Wexit-time-destructors", "-Wglobal-constructors"]
+# Not for C, the apps of cFS: warnings about C++, and cFE finds a table by a variable that no header declares.
+NOT_IN_C = ["-Wextra-semi", "-Wnon-virtual-dtor", "-Wold-style-cast", "-Woverloaded-virtual", "-Wsuggest-override",
+            "-Wzero-as-null-pointer-constant", "-Wmissing-variable-declarations"]
 # Not used:
 #   -Wsign-conversion    indexes are int and the standard library's sizes are not; a cast at each would hide more than it shows
 #   -Wuseless-cast       whether a cast to time_t or long is useless depends on the processor
@@ -33,8 +36,7 @@ LIBRARIES_CLANG = ["-Wexit-time-destructors", "-Wglobal-constructors"]
 #   -Wfloat-equal        the entries of a symmetric matrix are compared on purpose
 #   of -Weverything      padding, templates instantiated elsewhere, vtables: not defects
 
-CPPCHECK = ["cppcheck", "--enable=warning,performance,portability", "--std=c++17", "--language=c++", "--inline-suppr",
-            "--quiet", "--error-exitcode=1", "--template={file}:{line}: {message} [{id}]",
+CPPCHECK = ["cppcheck", "--enable=warning,performance,portability", "--inline-suppr", "--quiet", "--error-exitcode=1", "--template={file}:{line}: {message} [{id}]",
             "--suppress=*:/usr/*", "--suppress=*:*/build/static/*",
             "--suppress=shiftTooManyBitsSigned", "--suppress=shiftNegativeLHS"]  # right shifts are arithmetic, as gnc/numerics/fixed.hpp asserts
 
@@ -46,6 +48,12 @@ class Source:
     def is_flight(self):
         return self.path.startswith(FLIGHT)
 
+    def is_c(self):
+        return self.path.endswith(".c")
+
+    def strict(self, warnings):
+        return [warning for warning in warnings if not (self.is_c() and warning in NOT_IN_C)]
+
 
 def sources():
     """One compile command per source file of the project."""
@@ -54,7 +62,7 @@ def sources():
         path = pathlib.Path(entry["file"])
         # The second compilation of the same sources, which shows that they need no floating point.
         again = "flight_in_integers" in entry["command"]
-        if again or path.suffix != ".cpp" or (ROOT / "build") in path.parents:
+        if again or path.suffix not in (".cpp", ".c") or (ROOT / "build") in path.parents:
             continue
         arguments = shlex.split(entry["command"])
         output = arguments.index("-o")
@@ -66,14 +74,14 @@ def sources():
 
 def gcc(source):
     # Optimized, since GCC checks null pointers and array bounds only then.
-    return source.arguments + STRICT + STRICT_GCC + ["-O2", "-o", "/dev/null"]
+    return source.arguments + source.strict(STRICT + STRICT_GCC) + ["-O2", "-o", "/dev/null"]
 
 
 def clang(source):
     strict = []
     if source.is_flight():
-        strict = STRICT + STRICT_CLANG + ([] if source.path.startswith("fsw/programs/") else LIBRARIES_CLANG)
-    return ["clang++"] + source.arguments[1:] + strict + ["-fsyntax-only", "-Wno-ignored-optimization-argument"]
+        strict = source.strict(STRICT + STRICT_CLANG) + ([] if source.path.startswith("fsw/programs/") else LIBRARIES_CLANG)
+    return ["clang" if source.is_c() else "clang++"] + source.arguments[1:] + strict + ["-fsyntax-only", "-Wno-ignored-optimization-argument"]
 
 
 def clang_tidy(source):
@@ -81,7 +89,8 @@ def clang_tidy(source):
 
 
 def cppcheck(source):
-    return CPPCHECK + [a for a in source.arguments if a.startswith(("-I", "-D"))] + [str(ROOT / source.path)]
+    language = ["--std=c99", "--language=c"] if source.is_c() else ["--std=c++17", "--language=c++"]
+    return CPPCHECK + language + [a for a in source.arguments if a.startswith(("-I", "-D"))] + [str(ROOT / source.path)]
 
 
 TOOLS = {"gcc": gcc, "clang": clang, "cppcheck": cppcheck, "clang-tidy": clang_tidy}

@@ -23,6 +23,7 @@ typedef int64_t int64;
 /* --- OSAL and PSP --- */
 
 typedef uint32 osal_id_t;
+#define OS_OBJECT_ID_UNDEFINED ((osal_id_t){0})
 typedef struct {
   int64 ticks; /* of 100 ns */
 } OS_time_t;

@@ -75,11 +75,10 @@ static const char* CauseText(enum tumblesight_reset_cause Cause) {
 
 static CFE_Status_t SetUpFlightApplication(void) {
   struct tumblesight_settings Settings;
-  enum tumblesight_status Status;
   memset(&Settings, 0, sizeof Settings);
   TUMBLESIGHT_APP_SetUpPlatform(&Settings);
-  Status = tumblesight_init(TUMBLESIGHT_APP_Data.Memory, sizeof TUMBLESIGHT_APP_Data.Memory, &Settings,
-                            &TUMBLESIGHT_APP_Data.App);
+  const enum tumblesight_status Status = tumblesight_init(
+      TUMBLESIGHT_APP_Data.Memory, sizeof TUMBLESIGHT_APP_Data.Memory, &Settings, &TUMBLESIGHT_APP_Data.App);
   if (TUMBLESIGHT_APP_Data.App == NULL) {
     CFE_EVS_SendEvent(TUMBLESIGHT_APP_INIT_ERR_EID, CFE_EVS_EventType_ERROR, "TUMBLESIGHT: not started: %s",
                       tumblesight_status_text(Status));
@@ -111,13 +110,12 @@ static CFE_Status_t RegisterEvents(void) {
 }
 
 static CFE_Status_t Initialize(void) {
-  CFE_Status_t Status;
   memset(&TUMBLESIGHT_APP_Data, 0, sizeof TUMBLESIGHT_APP_Data);
   TUMBLESIGHT_APP_Data.RunStatus = CFE_ES_RunStatus_APP_RUN;
   /* Clears the counters, so it comes before anything that counts. */
   CFE_MSG_Init(CFE_MSG_PTR(TUMBLESIGHT_APP_Data.HkTlm.TelemetryHeader),
                CFE_SB_ValueToMsgId(TUMBLESIGHT_APP_HK_TLM_MID), sizeof TUMBLESIGHT_APP_Data.HkTlm);
-  Status = RegisterEvents();
+  CFE_Status_t Status = RegisterEvents();
   if (Status == CFE_SUCCESS) Status = SetUpPipe();
   if (Status == CFE_SUCCESS) Status = SetUpFlightApplication();
   if (Status != CFE_SUCCESS) return Status;
@@ -142,13 +140,13 @@ static bool HasNoArguments(CFE_SB_MsgId_t Mid, size_t Size) {
 
 /* The flight application checks the packet in the next cycle. */
 static void TakeCommand(const void* Bytes, size_t Size) {
-  TUMBLESIGHT_APP_Command_t* Command;
   if (TUMBLESIGHT_APP_Data.CommandCount == TUMBLESIGHT_MAX_COMMANDS) {
     ++TUMBLESIGHT_APP_Data.CommandsDropped;
     ++TUMBLESIGHT_APP_COUNTERS.CommandsDropped;
     return;
   }
-  Command = &TUMBLESIGHT_APP_Data.Commands[TUMBLESIGHT_APP_Data.CommandCount++];
+  TUMBLESIGHT_APP_Command_t* const Command =
+      &TUMBLESIGHT_APP_Data.Commands[TUMBLESIGHT_APP_Data.CommandCount++];
   Command->Size = Size;
   memcpy(Command->Bytes, Bytes, Size < sizeof Command->Bytes ? Size : sizeof Command->Bytes);
   ++TUMBLESIGHT_APP_COUNTERS.CommandsTaken;
@@ -176,20 +174,18 @@ static void TakeNavigation(const TUMBLESIGHT_APP_Navigation_t* Message, CFE_SB_M
 /* Periods that passed without a cycle. */
 static uint32 SlipsUntil(int64 Now_ns) {
   const int64 Last_ns = TUMBLESIGHT_APP_Data.LastCycle_ns;
-  int64 Periods;
   if (Last_ns == 0 || Now_ns <= Last_ns) return 0;
-  Periods = (Now_ns - Last_ns + TUMBLESIGHT_PERIOD_NS / 2) / TUMBLESIGHT_PERIOD_NS;
+  const int64 Periods = (Now_ns - Last_ns + TUMBLESIGHT_PERIOD_NS / 2) / TUMBLESIGHT_PERIOD_NS;
   return Periods > 1 ? (uint32)(Periods - 1) : 0;
 }
 
 static void CollectInputs(struct tumblesight_inputs* Inputs) {
-  uint32 i;
   memset(Inputs, 0, sizeof *Inputs);
   Inputs->now_ns = TUMBLESIGHT_APP_ToNanoseconds(CFE_TIME_GetMET());
   Inputs->slips = SlipsUntil(Inputs->now_ns);
   Inputs->frame_count = TUMBLESIGHT_APP_ListFrames();
   Inputs->frames = TUMBLESIGHT_APP_Data.Frames.List;
-  for (i = 0; i < TUMBLESIGHT_APP_Data.CommandCount; ++i) {
+  for (uint32 i = 0; i < TUMBLESIGHT_APP_Data.CommandCount; ++i) {
     TUMBLESIGHT_APP_Data.CommandList[i].bytes = TUMBLESIGHT_APP_Data.Commands[i].Bytes;
     TUMBLESIGHT_APP_Data.CommandList[i].size_bytes = TUMBLESIGHT_APP_Data.Commands[i].Size;
   }
@@ -231,7 +227,7 @@ static void RunCycle(void) {
 
 static void TakeMessage(const CFE_SB_Buffer_t* Buffer) {
   CFE_SB_MsgId_t Mid;
-  CFE_MSG_Size_t Size;
+  CFE_MSG_Size_t Size = 0;
   CFE_MSG_GetMsgId(&Buffer->Msg, &Mid);
   CFE_MSG_GetSize(&Buffer->Msg, &Size);
   switch (CFE_SB_MsgIdToValue(Mid)) {
@@ -261,12 +257,11 @@ static void TakeMessage(const CFE_SB_Buffer_t* Buffer) {
 
 void TUMBLESIGHT_Main(void) {
   CFE_SB_Buffer_t* Buffer = NULL;
-  CFE_Status_t Status;
   CFE_ES_PerfLogEntry(TUMBLESIGHT_APP_PERF_ID);
   if (Initialize() != CFE_SUCCESS) TUMBLESIGHT_APP_Data.RunStatus = CFE_ES_RunStatus_APP_ERROR;
   while (CFE_ES_RunLoop(&TUMBLESIGHT_APP_Data.RunStatus)) {
     CFE_ES_PerfLogExit(TUMBLESIGHT_APP_PERF_ID);
-    Status = CFE_SB_ReceiveBuffer(&Buffer, TUMBLESIGHT_APP_Data.Pipe, CFE_SB_PEND_FOREVER);
+    const CFE_Status_t Status = CFE_SB_ReceiveBuffer(&Buffer, TUMBLESIGHT_APP_Data.Pipe, CFE_SB_PEND_FOREVER);
     CFE_ES_PerfLogEntry(TUMBLESIGHT_APP_PERF_ID);
     if (Status == CFE_SUCCESS) {
       TakeMessage(Buffer);

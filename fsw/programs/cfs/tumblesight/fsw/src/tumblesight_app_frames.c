@@ -41,8 +41,7 @@ static bool IsSameFrame(const TUMBLESIGHT_APP_FrameSegment_Payload_t* A,
 
 static bool WasAssembled(const TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment) {
   const TUMBLESIGHT_APP_Frames_t* Frames = &TUMBLESIGHT_APP_Data.Frames;
-  uint32 i;
-  for (i = 0; i < TUMBLESIGHT_APP_REMEMBERED_FRAMES && i < Frames->AssembledCount; ++i)
+  for (uint32 i = 0; i < TUMBLESIGHT_APP_REMEMBERED_FRAMES && i < Frames->AssembledCount; ++i)
     if (Frames->Assembled[i].SequenceNumber == Segment->SequenceNumber &&
         IsSameTime(Frames->Assembled[i].Exposure, Segment->Exposure))
       return true;
@@ -70,8 +69,7 @@ static void Free(TUMBLESIGHT_APP_FrameBuffer_t* Buffer) {
 /* The buffer of a frame that is not yet complete; NULL: this is its first segment. */
 static TUMBLESIGHT_APP_FrameBuffer_t* FindBuffer(const TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment) {
   TUMBLESIGHT_APP_FrameBuffer_t* Buffers = TUMBLESIGHT_APP_Data.Frames.Buffers;
-  uint32 i;
-  for (i = 0; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i)
+  for (uint32 i = 0; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i)
     if (Buffers[i].Missing != 0 && IsSameFrame(&Buffers[i].First, Segment)) return &Buffers[i];
   return NULL;
 }
@@ -101,8 +99,7 @@ static int RankOf(const TUMBLESIGHT_APP_FrameBuffer_t* Buffer) {
 static TUMBLESIGHT_APP_FrameBuffer_t* TakeBuffer(void) {
   TUMBLESIGHT_APP_FrameBuffer_t* Buffers = TUMBLESIGHT_APP_Data.Frames.Buffers;
   TUMBLESIGHT_APP_FrameBuffer_t* Least = &Buffers[0];
-  uint32 i;
-  for (i = 1; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i) {
+  for (uint32 i = 1; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i) {
     const int Rank = RankOf(&Buffers[i]), LeastRank = RankOf(Least);
     if (Rank < LeastRank || (Rank == LeastRank && Buffers[i].Age < Least->Age)) Least = &Buffers[i];
   }
@@ -136,13 +133,12 @@ static void Complete(TUMBLESIGHT_APP_FrameBuffer_t* Buffer) {
 }
 
 void TUMBLESIGHT_APP_TakeSegment(const TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment) {
-  TUMBLESIGHT_APP_FrameBuffer_t* Buffer;
   const uint32 Bit = 1U << (Segment->Offset / TUMBLESIGHT_APP_SEGMENT_RAYS);
   if (!IsPossible(Segment)) {
     Refuse(Segment);
     return;
   }
-  Buffer = FindBuffer(Segment);
+  TUMBLESIGHT_APP_FrameBuffer_t* Buffer = FindBuffer(Segment);
   if (Buffer == NULL) Buffer = BeginFrame(Segment);
   if (!AreAlike(&Buffer->First, Segment)) {
     Refuse(Segment);
@@ -173,13 +169,12 @@ static struct tumblesight_frame FrameOf(const TUMBLESIGHT_APP_FrameBuffer_t* Buf
 
 size_t TUMBLESIGHT_APP_ListFrames(void) {
   TUMBLESIGHT_APP_Frames_t* Frames = &TUMBLESIGHT_APP_Data.Frames;
-  const TUMBLESIGHT_APP_FrameBuffer_t* Next;
+  const TUMBLESIGHT_APP_FrameBuffer_t* Next = NULL;
   uint32 Age = 0;
   size_t Listed = 0;
-  uint32 i;
   do {
     Next = NULL;
-    for (i = 0; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i)
+    for (uint32 i = 0; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i)
       if (IsComplete(&Frames->Buffers[i]) && Frames->Buffers[i].Age > Age &&
           (Next == NULL || Frames->Buffers[i].Age < Next->Age))
         Next = &Frames->Buffers[i];
@@ -193,8 +188,7 @@ size_t TUMBLESIGHT_APP_ListFrames(void) {
 
 void TUMBLESIGHT_APP_EndFrames(void) {
   TUMBLESIGHT_APP_FrameBuffer_t* Buffers = TUMBLESIGHT_APP_Data.Frames.Buffers;
-  uint32 i;
-  for (i = 0; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i) {
+  for (uint32 i = 0; i < TUMBLESIGHT_APP_FRAME_BUFFERS; ++i) {
     if (IsComplete(&Buffers[i])) {
       Free(&Buffers[i]);
     } else if (Buffers[i].Age != 0 && ++Buffers[i].Cycles >= TUMBLESIGHT_APP_FRAME_CYCLES) {

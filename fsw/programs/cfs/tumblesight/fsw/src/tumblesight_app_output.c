@@ -13,14 +13,13 @@ static void CountLost(const char* Why, CFE_Status_t Status) {
 
 /* Headers and sequence counts are those of the packet: the bus must not write its own. */
 static void SendPacket(const uint8* Bytes, size_t Size) {
-  CFE_Status_t Status;
   CFE_SB_Buffer_t* const Buffer = CFE_SB_AllocateMessageBuffer(Size);
   if (Buffer == NULL) {
     CountLost("the software bus has no buffer", CFE_SB_BUF_ALOC_ERR);
     return;
   }
   memcpy(Buffer, Bytes, Size);
-  Status = CFE_SB_TransmitBuffer(Buffer, false);
+  const CFE_Status_t Status = CFE_SB_TransmitBuffer(Buffer, false);
   if (Status == CFE_SUCCESS) {
     ++TUMBLESIGHT_APP_COUNTERS.PacketsSent;
     return;
@@ -45,8 +44,7 @@ static uint16 TypeOf(uint8_t Severity) {
 }
 
 void TUMBLESIGHT_APP_SendEvents(const struct tumblesight_outputs* Outputs) {
-  size_t i;
-  for (i = 0; i < Outputs->event_count; ++i) {
+  for (size_t i = 0; i < Outputs->event_count; ++i) {
     const struct tumblesight_event* Event = &Outputs->events[i];
     CFE_EVS_SendEvent(Event->id, TypeOf(Event->severity), "TUMBLESIGHT: %s [%ld, %ld, %ld]",
                       tumblesight_event_text(Event->id), (long)Event->arguments[0], (long)Event->arguments[1],
@@ -56,8 +54,7 @@ void TUMBLESIGHT_APP_SendEvents(const struct tumblesight_outputs* Outputs) {
 
 void TUMBLESIGHT_APP_SendHk(void) {
   CFE_MSG_Message_t* const Message = CFE_MSG_PTR(TUMBLESIGHT_APP_Data.HkTlm.TelemetryHeader);
-  CFE_Status_t Status;
   CFE_SB_TimeStampMsg(Message);
-  Status = CFE_SB_TransmitMsg(Message, true);
+  const CFE_Status_t Status = CFE_SB_TransmitMsg(Message, true);
   if (Status != CFE_SUCCESS) CountLost("the software bus refused the housekeeping", Status);
 }

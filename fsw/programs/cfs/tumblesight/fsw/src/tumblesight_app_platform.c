@@ -48,8 +48,7 @@ static uint64_t Stopwatch_ns(void* Context) {
 /* --- the critical data store: two blocks, one a copy --- */
 
 static bool IsBlank(const uint8_t* Bytes) {
-  size_t i;
-  for (i = 0; i < TUMBLESIGHT_STORED_BYTES; ++i)
+  for (size_t i = 0; i < TUMBLESIGHT_STORED_BYTES; ++i)
     if (Bytes[i] != 0) return false;
   return true;
 }
@@ -87,8 +86,7 @@ static CFE_Status_t RegisterCopy(int Copy, bool* Existed) {
 /* `*MayHaveRun`: the app has run before, since the store was cleared, or that is not known. */
 static void SetUpStore(struct tumblesight_settings* Settings, bool* MayHaveRun) {
   CFE_Status_t Status = CFE_SUCCESS;
-  int Copy;
-  for (Copy = 0; Copy < TUMBLESIGHT_APP_STORED_COPIES && Status == CFE_SUCCESS; ++Copy)
+  for (int Copy = 0; Copy < TUMBLESIGHT_APP_STORED_COPIES && Status == CFE_SUCCESS; ++Copy)
     Status = RegisterCopy(Copy, MayHaveRun);
   if (Status == CFE_SUCCESS) {
     Settings->read_stored = ReadStored;
@@ -125,7 +123,7 @@ static enum tumblesight_reset_cause ResetCause(bool MayHaveRun) {
 
 /* Returns the size of the file, or a negative status of OSAL. A file that is larger than a bank fills it. */
 static int32 ReadFile(const char* Path, uint8* Bytes) {
-  osal_id_t File;
+  osal_id_t File = OS_OBJECT_ID_UNDEFINED;
   int32 Size = 0;
   int32 Status = OS_OpenCreate(&File, Path, OS_FILE_FLAG_NONE, OS_READ_ONLY);
   if (Status < 0) return Status;
@@ -154,8 +152,7 @@ void TUMBLESIGHT_APP_SetUpPlatform(struct tumblesight_settings* Settings) {
                                                        TUMBLESIGHT_APP_MODEL_FILE_1};
   static const char Target[] = TUMBLESIGHT_APP_EXPECTED_TARGET;
   bool MayHaveRun = false;
-  int Bank;
-  for (Bank = 0; Bank < TUMBLESIGHT_APP_BANKS; ++Bank)
+  for (int Bank = 0; Bank < TUMBLESIGHT_APP_BANKS; ++Bank)
     LoadBank(Paths[Bank], TUMBLESIGHT_APP_Models.Bytes[Bank], &Settings->bank[Bank]);
   SetUpStore(Settings, &MayHaveRun);
   Settings->expected_target = sizeof Target > 1 ? Target : NULL;

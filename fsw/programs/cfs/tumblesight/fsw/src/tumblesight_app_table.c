@@ -54,10 +54,9 @@ static void UseTable(struct tumblesight_parameters* Parameters) {
 
 void TUMBLESIGHT_APP_ManageTable(void) {
   void* Table = NULL;
-  CFE_Status_t Status;
   if (!TUMBLESIGHT_APP_Data.HasTable) return;
   (void)CFE_TBL_Manage(TUMBLESIGHT_APP_Data.Table);
-  Status = CFE_TBL_GetAddress(&Table, TUMBLESIGHT_APP_Data.Table);
+  const CFE_Status_t Status = CFE_TBL_GetAddress(&Table, TUMBLESIGHT_APP_Data.Table);
   if (Status < CFE_SUCCESS) return; /* nothing was loaded */
   if (Status == CFE_TBL_INFO_UPDATED) UseTable(Table);
   (void)CFE_TBL_ReleaseAddress(TUMBLESIGHT_APP_Data.Table);

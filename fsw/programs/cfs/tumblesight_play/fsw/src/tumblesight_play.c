@@ -27,7 +27,7 @@ static TUMBLESIGHT_PLAY_Data_t Data;
 void TUMBLESIGHT_Player(void);
 
 static int32 ReadFile(void) {
-  osal_id_t File;
+  osal_id_t File = OS_OBJECT_ID_UNDEFINED;
   int32 Size = 0;
   int32 Status = OS_OpenCreate(&File, TUMBLESIGHT_PLAY_FILE, OS_FILE_FLAG_NONE, OS_READ_ONLY);
   if (Status < 0) return Status;
@@ -40,10 +40,9 @@ static int32 ReadFile(void) {
 }
 
 static bool Initialize(void) {
-  int32 Size;
   memset(&Data, 0, sizeof Data);
   if (CFE_EVS_Register(NULL, 0, CFE_EVS_EventFilter_BINARY) != CFE_SUCCESS) return false;
-  Size = ReadFile();
+  const int32 Size = ReadFile();
   if (Size < 0 || !TUMBLESIGHT_PLAY_Open(&Data.Recording, Data.Bytes, (size_t)Size)) {
     CFE_EVS_SendEvent(TUMBLESIGHT_PLAY_FILE_ERR_EID, CFE_EVS_EventType_ERROR,
                       "TUMBLESIGHT_PLAY: %s is no recording that can be read, RC = %ld",
@@ -70,7 +69,6 @@ static void Send(CFE_MSG_Message_t* Message) {
 static void SendFrame(CFE_TIME_SysTime_t Exposure) {
   TUMBLESIGHT_APP_FrameSegment_Payload_t* Segment = &Data.Segment.Payload;
   const uint32 Rays = (uint32)Data.Frame.Rays * Data.Frame.Rays;
-  uint32 Offset;
   Segment->Exposure = Exposure;
   Segment->SequenceNumber = ++Data.SequenceNumber;
   Segment->Fov_urad = Data.Frame.Fov_urad;
@@ -78,7 +76,7 @@ static void SendFrame(CFE_TIME_SysTime_t Exposure) {
   Segment->Chaser.Time = Exposure;
   Segment->Chaser.IsKnown = Data.Frame.ChaserIsKnown ? 1 : 0;
   memcpy(Segment->Chaser.Q_Inertial_Lrf, Data.Frame.Q_Inertial_Lrf, sizeof Segment->Chaser.Q_Inertial_Lrf);
-  for (Offset = 0; Offset < Rays; Offset += TUMBLESIGHT_APP_SEGMENT_RAYS) {
+  for (uint32 Offset = 0; Offset < Rays; Offset += TUMBLESIGHT_APP_SEGMENT_RAYS) {
     const uint32 Left = Rays - Offset;
     Segment->Offset = (uint16)Offset;
     Segment->Count = (uint16)(Left < TUMBLESIGHT_APP_SEGMENT_RAYS ? Left : TUMBLESIGHT_APP_SEGMENT_RAYS);
