@@ -5,14 +5,18 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "sim/campaign/launcher.hpp"
 #include "sim/process/child_process.hpp"
+#include "sim/process/end_with_starter.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 
@@ -20,9 +24,11 @@ namespace tumblesight::sim {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostParts = 1000;  // Slurm's usual MaxArraySize is 1001
-constexpr double kMostOfACommand_s = 60.0;
+constexpr double kMostOfAQuestion_s = 60.0, kMostOfASubmission_s = 180.0;
+constexpr std::chrono::minutes kMostWithoutAnAnswer{10};
 constexpr int kMostSubmissions = 3;  // of the array, for parts of which a task died
 
 std::string command_line(const LaunchSettings& settings, const std::vector<std::string>& arguments) {
@@ -40,13 +46,13 @@ std::string script_of(const LaunchSettings& settings) {
   return fmt::format(
       "#!/bin/sh\n"
       "# One part of the tasks of a campaign, for a Slurm job array. Made by `tumblesight campaign run`.\n"
-      "{} --part \"$SLURM_ARRAY_TASK_ID/{}\" && exit 0\n"
+      "{}=$$ {} --part \"$SLURM_ARRAY_TASK_ID/{}\" && exit 0\n"
       "status=$?\n"
       "if [ \"${{SLURM_RESTART_COUNT:-0}}\" -lt 2 ]; then\n"
       "  scontrol requeue \"${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID\"\n"
       "fi\n"
       "exit $status\n",
-      command_line(settings, worker_arguments(settings)), parts_of(settings));
+      kStarterVariable, command_line(settings, worker_arguments(settings)), parts_of(settings));
 }
 
 // The parts with a task that is not done: "0,3,7".
@@ -72,6 +78,14 @@ std::vector<std::string> with_cluster(const std::string& job, std::vector<std::s
 struct Jobs {
   std::string array;
   std::string report;
+
+  std::string text() const { return report.empty() ? array : array + " and " + report; }
+  // What cancels them, as the user types it.
+  std::string cancel_command() const {
+    std::string line = "scancel";
+    for (const std::string& word : with_cluster(array, {id_of(array)})) line += " " + word;
+    return report.empty() ? line : line + " " + id_of(report);
+  }
 };
 
 // The jobs that a campaign has submitted last, in a file of its folder. It is locked meanwhile, so that of
@@ -80,16 +94,27 @@ class JobsFile {
  public:
   explicit JobsFile(const std::string& path)
       : path_(path), file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-    if (file_ < 0 || flock(file_, LOCK_EX) != 0) {
-      const std::string reason = std::strerror(errno);
-      if (file_ >= 0) close(file_);
-      throw std::runtime_error(fmt::format("the jobs file '{}' cannot be locked: {}", path, reason));
-    }
+    if (file_ < 0)
+      throw std::runtime_error(
+          fmt::format("the jobs file '{}' cannot be opened: {}", path, std::strerror(errno)));
   }
   ~JobsFile() { close(file_); }
   JobsFile(const JobsFile&) = delete;
   JobsFile& operator=(const JobsFile&) = delete;
 
+  // Waits for another call of the program. False: told to stop.
+  bool lock(const std::function<bool()>& told_to_stop) const {
+    for (bool is_waiting = false; !told_to_stop(); is_waiting = true) {
+      if (flock(file_, LOCK_EX | LOCK_NB) == 0) return true;
+      if (errno != EWOULDBLOCK && errno != EINTR)
+        throw std::runtime_error(
+            fmt::format("the jobs file '{}' cannot be locked: {}; give an --out on a file system with locks",
+                        path_, std::strerror(errno)));
+      if (!is_waiting) fmt::print(stderr, "  note: waiting for another call that submits these jobs\n");
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+  }
   // No array: nothing was submitted.
   Jobs read() const {
     char bytes[256];
@@ -117,18 +142,29 @@ class SlurmJobs final : public Launcher {
   explicit SlurmJobs(const LaunchSettings& settings) : settings_(settings) {
     fs::create_directories(settings.out + "/slurm");
     attach_or_submit();
-    started_ = submissions_ > 0 ? fmt::format("Slurm job array {}, and job {} that makes the report after it",
-                                              jobs_.array, jobs_.report)
-                                : attached_text();
+    if (submissions_ > 0)
+      started_ = fmt::format("Slurm job array {}, and job {} that makes the report after it", jobs_.array,
+                             jobs_.report);
+    else if (jobs_.array.empty())
+      started_ = "nothing";
+    else
+      started_ = fmt::format(
+          "nothing new: the Slurm jobs {} of an earlier call go on, with the options of that call. To submit "
+          "others: {}, and then the same command",
+          jobs_.text(), jobs_.cancel_command());
   }
 
   std::string started() const override { return started_; }
   bool outlives_us() const override { return true; }
   std::string fault() const override { return fault_; }
   bool running() override {
-    if (is_queued(jobs_.array)) return true;
+    const State array = state_of(jobs_.array);
     const std::string left = parts_left(settings_);
-    if (left.empty()) return is_queued(jobs_.report);
+    const State state = array == State::kGone && left.empty() ? state_of(jobs_.report) : array;
+    if (state == State::kUnknown) return may_answer_later();
+    last_answer_ = Clock::now();
+    if (state == State::kQueued) return true;
+    if (left.empty()) return false;
     fault_ =
         fmt::format("parts {} of the array are not done; their messages: {}", left, log_folder(settings_));
     if (submissions_ >= kMostSubmissions) return false;
@@ -139,27 +175,36 @@ class SlurmJobs final : public Launcher {
  private:
   // An earlier call may have submitted the jobs and ended: Ctrl-C ends only the progress.
   void attach_or_submit() {
-    const JobsFile file(settings_.out + "/slurm/jobs");
+    const std::string path = settings_.out + "/slurm/jobs";
+    const JobsFile file(path);
+    if (!file.lock(settings_.told_to_stop)) return;
     const Jobs earlier = file.read();
-    if (!earlier.array.empty() && is_queued(earlier.array)) {
+    const State state = state_of(earlier.array);
+    if (state == State::kUnknown)
+      throw std::runtime_error(
+          fmt::format("whether the Slurm jobs {} of an earlier call go on is not known: {}. Try again later, "
+                      "or delete '{}' to submit new ones",
+                      earlier.text(), no_answer_, path));
+    if (state == State::kQueued) {
       jobs_ = earlier;
       return;
     }
     ++submissions_;
     submit(file);
   }
-  std::string attached_text() const {
-    std::string all = jobs_.array;
-    if (!jobs_.report.empty()) all += " and " + jobs_.report;
-    return fmt::format(
-        "nothing new: it follows the Slurm jobs {} of an earlier call, with the options of that call", all);
-  }
   // "17", or "17;cluster" where jobs go to several clusters.
   std::string submitted(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), {"--parsable", "--job-name=" + settings_.campaign.name});
     arguments.insert(arguments.begin(), settings_.options.begin(), settings_.options.end());
-    const std::string answer = output_of("sbatch", arguments, kMostOfACommand_s);
-    return answer.substr(answer.rfind('\n') + 1);
+    try {
+      const std::string answer = output_of("sbatch", arguments, kMostOfASubmission_s);
+      return answer.substr(answer.rfind('\n') + 1);
+    } catch (const std::runtime_error& error) {
+      if (std::string(error.what()).find("takes longer") == std::string::npos) throw;
+      throw std::runtime_error(fmt::format(
+          "{}. Slurm may have taken the job: end what `squeue --name={}` shows before the next try",
+          error.what(), settings_.campaign.name));
+    }
   }
   void submit(const JobsFile& file) {
     const std::string script = settings_.out + "/slurm/part.sh";
@@ -177,31 +222,44 @@ class SlurmJobs final : public Launcher {
       file.write(jobs_);
     } catch (const std::runtime_error& error) {
       // Nobody would know of the array.
-      (void)output_of("scancel", with_cluster(jobs_.array, {id_of(jobs_.array)}), kMostOfACommand_s);
+      (void)output_of("scancel", with_cluster(jobs_.array, {id_of(jobs_.array)}), kMostOfAQuestion_s);
       throw std::runtime_error(fmt::format("{}. Job array {} was cancelled", error.what(), jobs_.array));
     }
   }
-  // Slurm may have given the number to another job, after it has lost its state.
-  bool is_queued(const std::string& job) const {
+  // A failure of squeue may pass, but not every one does.
+  bool may_answer_later() {
+    if (Clock::now() - last_answer_ < kMostWithoutAnAnswer) return true;
+    fault_ = fmt::format("for {} minutes the state of the Slurm jobs {} was not known: {}",
+                         kMostWithoutAnAnswer.count(), jobs_.text(), no_answer_);
+    return false;
+  }
+  // Queued or running; no job of ours; squeue does not tell. Slurm may have given the number to another job,
+  // after it has lost its state.
+  enum class State { kQueued, kGone, kUnknown };
+  State state_of(const std::string& job) {
     const std::string id = id_of(job);
-    if (id.empty()) return false;
+    if (id.empty()) return State::kGone;
     try {
       // A line per part, which begins with the job's number; -M adds a title.
       std::istringstream lines(
-          output_of("squeue", with_cluster(job, {"-h", "-j", id, "-o", "%i %j"}), kMostOfACommand_s));
+          output_of("squeue", with_cluster(job, {"-h", "-j", id, "-o", "%i %j"}), kMostOfAQuestion_s));
       for (std::string line; std::getline(lines, line);)
-        if (line.rfind(id, 0) == 0 && line.substr(line.find(' ') + 1) == settings_.campaign.name) return true;
-      return false;
+        if (line.rfind(id, 0) == 0 && line.substr(line.find(' ') + 1) == settings_.campaign.name)
+          return State::kQueued;
+      return State::kGone;
     } catch (const std::runtime_error& error) {
-      // Slurm forgets a job some minutes after its end. Any other failure may pass.
-      return std::string(error.what()).find("Invalid job id") == std::string::npos;
+      no_answer_ = error.what();
+      // Slurm forgets a job some minutes after its end.
+      return no_answer_.find("Invalid job id") == std::string::npos ? State::kUnknown : State::kGone;
     }
   }
 
   const LaunchSettings settings_;
   std::string started_;
   Jobs jobs_;
-  int submissions_ = 0;  // by this call
+  int submissions_ = 0;    // by this call
+  std::string no_answer_;  // the last failure of squeue
+  Clock::time_point last_answer_ = Clock::now();
   std::string fault_;
 };
 
@@ -209,7 +267,7 @@ class SlurmJobs final : public Launcher {
 
 std::unique_ptr<Launcher> launch_slurm(const LaunchSettings& settings) {
   try {
-    (void)output_of("sbatch", {"--version"}, kMostOfACommand_s);
+    (void)output_of("sbatch", {"--version"}, kMostOfAQuestion_s);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format(
         "{}; the machine must be one from which jobs can be submitted (Debian: slurm-client)", error.what()));

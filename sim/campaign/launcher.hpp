@@ -21,6 +21,8 @@ struct LaunchSettings {
   std::uint32_t jobs = 0;            // workers at a time; 0: one per core of this machine, or Slurm decides
   std::vector<std::string> options;  // further ones of mpirun or sbatch
   std::vector<CampaignTask> tasks;
+  // Whether the user wants this program to end: nothing is started any more.
+  std::function<bool()> told_to_stop = [] { return false; };
 };
 
 class Launcher {

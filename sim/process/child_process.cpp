@@ -46,6 +46,23 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_;
 };
 
+class SpawnAttributes {
+ public:
+  explicit SpawnAttributes(ProcessGroup group) {
+    posix_spawnattr_init(&attributes_);
+    if (group == ProcessGroup::kOurs) return;
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP);
+  }
+  ~SpawnAttributes() { posix_spawnattr_destroy(&attributes_); }
+  SpawnAttributes(const SpawnAttributes&) = delete;
+  SpawnAttributes& operator=(const SpawnAttributes&) = delete;
+  const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_;
+};
+
 class TemporaryFile {
  public:
   TemporaryFile() {
@@ -82,12 +99,14 @@ std::vector<char*> with_our_environment(const std::vector<std::string>& addition
 
 ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
                            const std::string& log_path, int inherited_file,
-                           const std::vector<std::string>& environment, const std::string& output_path) {
+                           const std::vector<std::string>& environment, const std::string& output_path,
+                           ProcessGroup group) {
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const SpawnActions actions(log_path, output_path, inherited_file);
-  const int error = posix_spawnp(&pid_, program.c_str(), actions.get(), nullptr, argv.data(),
+  const SpawnAttributes attributes(group);
+  const int error = posix_spawnp(&pid_, program.c_str(), actions.get(), attributes.get(), argv.data(),
                                  with_our_environment(environment).data());
   if (error != 0) throw std::runtime_error(program + " cannot be started: " + strerror(error));
 }
@@ -124,6 +143,10 @@ int ChildProcess::exit_status() const {
   return ended_ && !status_lost_ && WIFEXITED(status_) ? WEXITSTATUS(status_) : -1;
 }
 
+int ChildProcess::ending_signal() const {
+  return ended_ && !status_lost_ && WIFSIGNALED(status_) ? WTERMSIG(status_) : 0;
+}
+
 std::string ChildProcess::how_it_ended() const {
   if (status_lost_) return "ended, but its exit status is lost (is SIGCHLD ignored?)";
   if (WIFSIGNALED(status_)) {
@@ -137,7 +160,7 @@ std::string output_of(const std::string& program, const std::vector<std::string>
                       double timeout_s) {
   const TemporaryFile output, messages;
   std::string fault;
-  ChildProcess process(program, arguments, messages.path(), -1, {}, output.path());
+  ChildProcess process(program, arguments, messages.path(), -1, {}, output.path(), ProcessGroup::kOwn);
   if (!process.wait_for_end(timeout_s))
     fault = "takes longer than " + std::to_string(static_cast<int>(timeout_s)) + " s";
   else if (!process.ended_well())

@@ -5,12 +5,15 @@
 
 namespace tumblesight::sim {
 
+// Holds the process number of the starter.
+constexpr char kStarterVariable[] = "TUMBLESIGHT_STARTER";
+
 // "NAME=value" for the environment of a ChildProcess that calls end_with_starter(): this process starts it.
 std::string starter_environment();
 
-// Sends this process SIGTERM when its parent ends, and at once if it has ended before this call. Whether it
-// has is certain with starter_environment(); without it the parent counts as ended if process 1 has adopted
-// us.
+// Sends this process SIGTERM when its parent ends, and at once if the starter has ended before this call. The
+// latter is not noticed without kStarterVariable. So call it before SIGTERM has another effect than to end
+// the process.
 void end_with_starter();
 
 }  // namespace tumblesight::sim

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <stdexcept>
+#include <string>
 
 #include "tests/support/temporary_folder.hpp"
 
@@ -18,6 +20,7 @@ TEST(ChildProcess, IsFoundInThePathAndTellsHowItEnded) {
   EXPECT_TRUE(good.ended_well());
   EXPECT_FALSE(bad.ended_well());
   EXPECT_EQ(bad.how_it_ended(), "ended with exit status 7");
+  EXPECT_EQ(bad.ending_signal(), 0);
 }
 
 TEST(ChildProcess, EndsWithItsObject) {
@@ -36,6 +39,7 @@ TEST(ChildProcess, ASignalIsNamed) {
   ASSERT_TRUE(sleeper.wait_for_end(10.0));
   EXPECT_EQ(sleeper.how_it_ended(), "was ended by signal 9 (Killed)");
   EXPECT_EQ(sleeper.exit_status(), -1);
+  EXPECT_EQ(sleeper.ending_signal(), SIGKILL);
 }
 
 TEST(ChildProcess, AMissingProgramIsNamed) {
@@ -51,6 +55,13 @@ TEST(ChildProcess, AMissingProgramIsNamed) {
 
 TEST(OutputOf, GivesStandardOutputAloneWithoutTheLastLineBreak) {
   EXPECT_EQ(output_of("sh", {"-c", "echo one; echo two >&2"}, 10.0), "one");
+}
+
+// Ctrl-C in a terminal signals a process group. What asks another program waits for its answer.
+TEST(OutputOf, IsOfAProgramInAGroupOfItsOwn) {
+  const std::string group = output_of("sh", {"-c", "cut -d ' ' -f 5 /proc/$$/stat"}, 10.0);
+  EXPECT_NE(group, std::to_string(getpgrp()));
+  EXPECT_GT(std::stoi(group), 0);
 }
 
 TEST(OutputOf, AFailureComesWithTheOutputAndATimeoutWithItsLimit) {

@@ -1,6 +1,7 @@
 #include "sim/process/end_with_starter.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -12,7 +13,7 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr int kSurvived = 5;
+constexpr int kSurvived = 5, kNotAllowed = 6;
 constexpr unsigned kLongest_s = 10;
 
 int status_of(pid_t process) {
@@ -90,6 +91,34 @@ TEST(EndWithStarter, LeavesAProcessThatDoesNotKnowItsStarter) {
   }
   const int status = status_of(child);
   ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), kSurvived);
+}
+
+// mpirun or a batch script as the first process of a container.
+TEST(EndWithStarter, LeavesAProcessWhoseStarterIsProcessOne) {
+  const pid_t namespace_of_its_own = fork();
+  if (namespace_of_its_own == 0) {
+    if (unshare(CLONE_NEWUSER | CLONE_NEWPID) != 0) _exit(kNotAllowed);
+    const pid_t first = fork();
+    if (first == 0) {
+      const pid_t worker = fork();
+      if (worker == 0) {
+        if (getppid() != 1) _exit(1);
+        unsetenv("TUMBLESIGHT_STARTER");
+        end_with_starter();
+        _exit(kSurvived);
+      }
+      int status = -1;
+      waitpid(worker, &status, 0);
+      _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 1);
+    }
+    int status = -1;
+    waitpid(first, &status, 0);
+    _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 1);
+  }
+  const int status = status_of(namespace_of_its_own);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == kNotAllowed) GTEST_SKIP() << "no namespace may be made here";
   EXPECT_EQ(WEXITSTATUS(status), kSurvived);
 }
 
