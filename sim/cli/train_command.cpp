@@ -255,9 +255,10 @@ int train(TrainOptions& options) {
 
 // As one of the ranks, or alone.
 int train_as_rank(TrainOptions& options, const RankPlace& place) {
+  // Before this there is nothing to save, and a signal ends the process also while it waits for the others.
+  options.settings.ranks = join_ranks(place, options.settings.folder, options.rank_timeout_s);
   std::signal(SIGINT, [](int) { stop_requested = true; });
   std::signal(SIGTERM, [](int) { stop_requested = true; });
-  options.settings.ranks = join_ranks(place, options.settings.folder, options.rank_timeout_s);
   if (place.count > 1 && !options.workers_given)
     options.settings.workers = workers_of(options.settings.ranks->sharing_cores());
   return train(options);

@@ -84,6 +84,10 @@ class Supervisor {
     // The first to end may have failed because of another one, whose end is noticed a little later.
     const auto deadline = Clock::now() + std::chrono::milliseconds(300);
     while (any_running() && !ended_by_signal() && Clock::now() < deadline) pause();
+    if (is_stopped()) {
+      std::printf("Stopped before the ranks had found each other.\n");
+      return kStopped;
+    }
     return report(ended_by_signal() ? *ended_by_signal() : *failed());
   }
 
@@ -95,7 +99,10 @@ class Supervisor {
   }
 
   void pause() {
-    if (stop_requested.exchange(false)) signal_all(SIGTERM);
+    if (stop_requested.exchange(false)) {
+      is_stopping_ = true;
+      signal_all(SIGTERM);
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 
@@ -120,6 +127,14 @@ class Supervisor {
     return first_that([](const ChildProcess& rank) { return rank.exit_status() == kBySignal; });
   }
 
+  // Until a rank has joined the others, the signal that stops it ends it at once. Ctrl-C reaches it directly.
+  bool is_stopped() const {
+    const std::optional<std::size_t> rank = ended_by_signal();
+    if (!rank || !(is_stopping_ || stop_requested)) return false;
+    const int signal = ranks_[*rank]->ending_signal();
+    return signal == SIGINT || signal == SIGTERM;
+  }
+
   int report(std::size_t index) const {
     const ChildProcess& rank = *ranks_[index];
     if (rank.exit_status() != kBySignal) {  // it has said why
@@ -133,6 +148,7 @@ class Supervisor {
     return kFailed;
   }
 
+  bool is_stopping_ = false;
   StoreFile store_;
   std::vector<std::unique_ptr<ChildProcess>> ranks_;
 };

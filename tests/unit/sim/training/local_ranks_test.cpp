@@ -116,6 +116,30 @@ TEST_F(LocalRanks, EndWithTheirSupervisorAndLeaveNothingBehind) {
   EXPECT_TRUE(fs::is_empty(here.path("tmp")));
 }
 
+// As one whose supervisor is killed while it starts. It must not wait for the others until --rank-timeout.
+TEST_F(LocalRanks, ARankThatHasNoSupervisorEndsBeforeItFindsTheOthers) {
+  const pid_t rank = start(std::string(kTraining) + "alone --rank-timeout 3600",
+                           "TUMBLESIGHT_RANK=0 TUMBLESIGHT_RANKS=2 TUMBLESIGHT_RANK_STORE=store "
+                           "TUMBLESIGHT_STARTER=1");
+  int status = 0;
+  pid_t ended = 0;
+  EXPECT_TRUE(wait_until([&] { return ended == rank || (ended = waitpid(rank, &status, WNOHANG)) == rank; }));
+  EXPECT_TRUE(WIFSIGNALED(status)) << status;
+  EXPECT_EQ(WTERMSIG(status), SIGTERM);
+  EXPECT_NE(content(here.path("run.err")).find("the process that started this one has ended"),
+            std::string::npos);
+}
+
+TEST_F(LocalRanks, StopBeforeTheyHaveFoundEachOther) {
+  const pid_t supervisor = start(std::string(kTraining) + "early --ranks 2");
+  ASSERT_TRUE(wait_until([&] { return process_of_rank(supervisor, 1) != 0; }));
+  kill(process_of_rank(supervisor, 1), SIGSTOP);  // so that rank 0 waits for it
+  kill(supervisor, SIGTERM);
+  EXPECT_EQ(wait_for(supervisor), kStopped);
+  EXPECT_NE(content(here.path("run.out")).find("Stopped before the ranks had found each other"),
+            std::string::npos);
+}
+
 TEST_F(LocalRanks, StopTogetherWithACheckpoint) {
   const pid_t supervisor =
       start("train --cnn-images 1000000 --checkpoint-seconds 0 --workers 1 --ranks 2 --out stopped");
