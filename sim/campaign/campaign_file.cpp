@@ -145,21 +145,6 @@ std::vector<CampaignRun> runs_of_table(TomlFields fields, std::int64_t seed, int
   return runs;
 }
 
-// Runs with one seed begin with the same sequences, however many they have.
-void refuse_equal_runs(const std::string& path, const std::vector<CampaignRun>& runs) {
-  std::map<std::vector<std::string>, const CampaignRun*> known;
-  for (const CampaignRun& run : runs) {
-    const std::vector<std::string> but_sequences(run.options.begin() + 2, run.options.end());
-    const auto [place, is_new] = known.emplace(but_sequences, &run);
-    if (is_new) continue;
-    const bool equal = run.sequences == place->second->sequences;
-    throw std::invalid_argument(
-        fmt::format("{}, line {}: this run is the same as one of line {}{}, so its sequences would count "
-                    "twice; leave it out",
-                    path, run.line, place->second->line, equal ? "" : " but for their number of sequences"));
-  }
-}
-
 void make_names_unique(std::vector<CampaignRun>& runs) {
   std::set<std::string> names;
   for (CampaignRun& run : runs) {
@@ -205,7 +190,6 @@ Campaign read_campaign(const std::string& path) {
     if (campaign.runs.size() > kMostRuns)
       fields.fail("run", fmt::format("more than {} runs; divide the campaign into several files", kMostRuns));
   }
-  refuse_equal_runs(path, campaign.runs);
   make_names_unique(campaign.runs);
   return campaign;
 }

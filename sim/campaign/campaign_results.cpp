@@ -35,21 +35,30 @@ void add_variant(Entry& entry, const std::string& text) {
   variant += (variant.empty() ? "" : ", ") + text;
 }
 
+std::string option_of(const CampaignRun& run, const std::string& name) {
+  const auto option = std::find(run.options.begin(), run.options.end(), name);
+  return option == run.options.end() || option + 1 == run.options.end() ? std::string() : *(option + 1);
+}
+
+void tell_mesh_crc32(Entry& entry) {
+  add_variant(entry, fmt::format("mesh with CRC-32 {:08x}", entry.identity.mesh_crc32));
+}
+
 // As the campaign file names it. A mission names its mesh itself.
 void tell_mesh(Entry& entry) {
-  const std::vector<std::string>& options = entry.run->options;
-  const auto option = std::find(options.begin(), options.end(), "--mesh");
-  if (option != options.end() && option + 1 != options.end())
-    entry.subject.mesh = *(option + 1);
-  else
-    add_variant(entry, fmt::format("mesh with CRC-32 {:08x}", entry.identity.mesh_crc32));
+  const std::string path = option_of(*entry.run, "--mesh");
+  if (path.empty()) return tell_mesh_crc32(entry);
+  entry.subject.mesh = path;
+  for (const char* option : {"--mesh-scale", "--mesh-up"})
+    if (const std::string value = option_of(*entry.run, option); !value.empty())
+      add_variant(entry, fmt::format("{} {}", option + 2, value));
 }
 
 void tell_inertia(Entry& entry) {
   const Eigen::Matrix3d inertia =
       entry.identity.subject.inertia_kg_m2.value_or(Eigen::Matrix3d(Eigen::Matrix3d::Zero()));
-  add_variant(entry, fmt::format("inertia {:g},{:g},{:g},{:g},{:g},{:g}", inertia(0, 0), inertia(1, 1),
-                                 inertia(2, 2), inertia(0, 1), inertia(0, 2), inertia(1, 2)));
+  add_variant(entry, fmt::format("inertia {},{},{},{},{},{}", inertia(0, 0), inertia(1, 1), inertia(2, 2),
+                                 inertia(0, 1), inertia(0, 2), inertia(1, 2)));
 }
 
 constexpr Distinction kDistinctions[] = {
@@ -69,6 +78,15 @@ bool is_one_subject(const ExperimentIdentity& a, const ExperimentIdentity& b) {
                       [&](const Distinction& distinction) { return distinction.differs(a, b); });
 }
 
+// As before a run begins: workers can also be started by hand.
+void require_new(const std::vector<std::pair<const CampaignRun*, ExperimentIdentity>>& runs) {
+  for (std::size_t i = 0; i + 1 < runs.size(); ++i)
+    if (has_same_sequences(runs[i].second, runs.back().second))
+      throw std::runtime_error(fmt::format(
+          "runs {} and {} have the same sequences, which would count twice; leave out one of them",
+          runs[i].first->name, runs.back().first->name));
+}
+
 SubjectResult& subject_of(std::vector<Entry>& entries, const MergedShards& merged, const CampaignRun& run) {
   for (Entry& entry : entries)
     if (is_one_subject(entry.identity, merged.identity)) return entry.subject;
@@ -79,9 +97,14 @@ SubjectResult& subject_of(std::vector<Entry>& entries, const MergedShards& merge
   return entries.back().subject;
 }
 
-void make_titles_distinct(std::vector<Entry>& entries) {
+std::vector<std::string> titles_of(const std::vector<Entry>& entries) {
   std::vector<std::string> titles;
   for (const Entry& entry : entries) titles.push_back(title_of(entry.subject));
+  return titles;
+}
+
+void make_titles_distinct(std::vector<Entry>& entries) {
+  const std::vector<std::string> titles = titles_of(entries);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     for (const Distinction& distinction : kDistinctions) {
       bool needed = false;
@@ -91,6 +114,10 @@ void make_titles_distinct(std::vector<Entry>& entries) {
       if (needed) distinction.tell(entries[i]);
     }
   }
+  // A file that has changed between two runs has one name, too.
+  const std::vector<std::string> told = titles_of(entries);
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    if (std::count(told.begin(), told.end(), told[i]) > 1) tell_mesh_crc32(entries[i]);
 }
 
 void add(SubjectResult& subject, CellResult&& cell) {
@@ -107,6 +134,7 @@ Results campaign_results(const Campaign& campaign, const std::vector<CampaignTas
                          const std::function<void(std::size_t)>& progress) {
   Results results;
   std::vector<Entry> entries;
+  std::vector<std::pair<const CampaignRun*, ExperimentIdentity>> runs;
   std::set<std::string> commits;
   for (std::size_t run = 0; run < campaign.runs.size(); ++run) {
     const std::vector<std::string> paths = paths_of(tasks, run, mode);
@@ -114,6 +142,8 @@ Results campaign_results(const Campaign& campaign, const std::vector<CampaignTas
       results.notes.push_back(fmt::format("{}: no sequence is done.", campaign.runs[run].name));
     } else {
       MergedShards merged = merge_shards(paths, mode);
+      runs.emplace_back(&campaign.runs[run], merged.identity);
+      require_new(runs);
       commits.insert(merged.commits.begin(), merged.commits.end());
       results.seed = merged.identity.settings.seed;
       SubjectResult& subject = subject_of(entries, merged, campaign.runs[run]);

@@ -175,6 +175,16 @@ ExperimentIdentity identity_from(const nlohmann::ordered_json& json) {
           json.at("version").get<std::string>()};
 }
 
+bool has_same_sequences(const ExperimentIdentity& one, const ExperimentIdentity& other) {
+  const auto without_names = [](const ExperimentIdentity& identity) {
+    Json json = to_json(identity);
+    for (const char* key : {"sequences", "mesh", "model"}) json.erase(key);
+    for (const char* key : {"name", "source"}) json["sensor"].erase(key);
+    return json;
+  };
+  return without_names(one) == without_names(other);
+}
+
 std::string difference(const ExperimentIdentity& other, const ExperimentIdentity& first) {
   const Json of_other = to_json(other);
   const Json of_first = to_json(first);

@@ -26,6 +26,9 @@ ExperimentIdentity identity_of(const Subject& subject, const ExperimentSettings&
 nlohmann::ordered_json to_json(const ExperimentIdentity& identity);
 ExperimentIdentity identity_from(const nlohmann::ordered_json& json);
 
+// Whether the sequences of one are the first ones of the other. Names of files say nothing.
+bool has_same_sequences(const ExperimentIdentity& one, const ExperimentIdentity& other);
+
 // "model_crc32 is 1a2b3c4d, not 5e6f7a8b"; empty if they are equal.
 std::string difference(const ExperimentIdentity& other, const ExperimentIdentity& first);
 

@@ -108,6 +108,26 @@ void require_same_experiment(const CampaignTask& task, const ExperimentIdentity&
       "shard file '{}' is of another experiment: {}; give another --out, or delete it", task.path, differs));
 }
 
+// Against the runs before it. One experiment can be written in several ways.
+void require_new(const OpenCampaign& open, std::size_t run,
+                 const std::vector<std::optional<ExperimentIdentity>>& identities) {
+  for (std::size_t i = 0; i < identities.size(); ++i) {
+    if (i == run || !identities[i]) continue;
+    const CampaignRun& other = open.campaign.runs[i];
+    if (has_same_sequences(*identities[run], *identities[i]))
+      throw std::invalid_argument(fmt::format(
+          "has the sequences of run {} of line {}, which would count twice; leave out one of them",
+          other.name, other.line));
+    const SensorDescription &own_sensor = identities[run]->subject.sensor,
+                            &other_sensor = identities[i]->subject.sensor;
+    if (own_sensor.name == other_sensor.name && crc32_of(own_sensor) != crc32_of(other_sensor))
+      throw std::invalid_argument(
+          fmt::format("its sensor has the name '{}' and is another one than that of run {} of line {}; give "
+                      "one of them another name, in its file",
+                      own_sensor.name, other.name, other.line));
+  }
+}
+
 // Every run and what there is of it, before the first one starts.
 void check(const OpenCampaign& open) {
   ProgressBar bar("checking", "runs", open.campaign.runs.size());
@@ -124,6 +144,7 @@ void check(const OpenCampaign& open) {
           throw std::invalid_argument(
               "it is several evaluations; write the conditions as a list: [\"a\", \"b\"]");
         identity = identity_of(checked_subject(arguments, settings), settings, kVersion);
+        require_new(open, task.run, identities);
         bar.update(++done);
       }
       require_same_experiment(task, *identity);
@@ -200,6 +221,7 @@ std::unique_ptr<Launcher> launch(const CampaignArguments& arguments, const OpenC
   settings.jobs = arguments.jobs;
   settings.options = shell_words(arguments.options);
   settings.tasks = open.tasks;
+  settings.told_to_stop = [] { return told_to_stop != 0; };
   fs::create_directories(log_folder(settings));
   for (const LauncherRow& row : launcher_table())
     if (arguments.on == row.name) return row.launch(settings);

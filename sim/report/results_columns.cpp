@@ -99,7 +99,7 @@ void add_pose_columns(std::vector<CsvColumn>& columns, const std::string& prefix
                          return none || std::isnan(value) ? std::string{}
                                                           : fmt::format("{:.{}f}", value, figure.decimals);
                        },
-                       [](const CellResult& cell) { return cell.pose.known > 0.0; }});
+                       [](const EstimatorRow& row) { return row.cell.pose.known > 0.0; }});
   }
 }
 
@@ -110,6 +110,8 @@ std::vector<CsvColumn> make_csv_columns() {
       {"mesh", [](const Row& row) { return csv_text(row.subject.mesh); }},
       {"model", [](const Row& row) { return csv_text(row.subject.model); }},
       {"model_crc32", [](const Row& row) { return fmt::format("{:08x}", row.subject.model_crc32); }},
+      {"variant", [](const Row& row) { return csv_text(row.subject.variant); },
+       [](const Row& row) { return !row.subject.variant.empty(); }},
       {"condition", [](const Row& row) { return to_string(row.cell.condition); }},
       {"frames", [](const Row& row) { return std::to_string(row.cell.frames); }},
       {"seed", [](const Row& row) { return std::to_string(row.results.seed); }},
@@ -137,17 +139,17 @@ std::vector<CsvColumn> make_csv_columns() {
   columns.push_back(
       {"disturbances", [](const Row& row) { return csv_text(to_string(row.cell.disturbances)); }});
   columns.push_back({"effect", [](const Row& row) { return csv_text(to_string(row.cell.effects)); },
-                     [](const CellResult& cell) { return !to_string(cell.effects).empty(); }});
+                     [](const Row& row) { return !to_string(row.cell.effects).empty(); }});
   columns.push_back({"sensor", [](const Row& row) { return csv_text(to_string(row.cell.sensor)); },
-                     [](const CellResult& cell) { return !cell.sensor.is_the_papers(); }});
+                     [](const Row& row) { return !row.cell.sensor.is_the_papers(); }});
   columns.push_back({"ranges_m",
                      [](const Row& row) {
                        const RangeLimits& ranges = row.cell.ranges;
                        return fmt::format("{} to {}", ranges.nearest_m, ranges.farthest_m);
                      },
-                     [](const CellResult& cell) { return !cell.ranges.are_the_papers(); }});
+                     [](const Row& row) { return !row.cell.ranges.are_the_papers(); }});
   columns.push_back({"symmetry", [](const Row& row) { return csv_text(to_string(row.cell.symmetry)); },
-                     [](const CellResult& cell) { return !cell.symmetry.is_none(); }});
+                     [](const Row& row) { return !row.cell.symmetry.is_none(); }});
   add_pose_columns(columns, "pose_", &CellResult::pose);
   add_pose_columns(columns, "pose_first_", &CellResult::pose_first);
   return columns;

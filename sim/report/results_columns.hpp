@@ -67,7 +67,7 @@ struct CsvColumn {
   std::function<std::string(const EstimatorRow&)> field;  // empty text: there is no such figure
   // Whether a line has something in it; a file without such a line leaves the column out. nullptr: every file
   // has it.
-  bool (*used)(const CellResult&) = nullptr;
+  bool (*used)(const EstimatorRow&) = nullptr;
 };
 const std::vector<CsvColumn>& csv_columns();
 

@@ -12,9 +12,8 @@ namespace {
 std::vector<CsvColumn> columns_of(const std::vector<EstimatorRow>& rows) {
   std::vector<CsvColumn> columns = csv_columns();
   const auto unused = [&](const CsvColumn& column) {
-    return column.used != nullptr && std::none_of(rows.begin(), rows.end(), [&](const EstimatorRow& row) {
-             return column.used(row.cell);
-           });
+    return column.used != nullptr &&
+           std::none_of(rows.begin(), rows.end(), [&](const EstimatorRow& row) { return column.used(row); });
   };
   columns.erase(std::remove_if(columns.begin(), columns.end(), unused), columns.end());
   return columns;

@@ -107,6 +107,7 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
             {"confusion", confusion_json(cell.rcnn_confusion)},
             {"rare_events", rare_events_json(cell.rare)},
             {"worst", worst_json(cell.rare)}};
+  if (!subject.variant.empty()) json["variant"] = subject.variant;
   if (!cell.symmetry.is_none()) json["symmetry"] = to_string(cell.symmetry);
   if (is_mostly_wrong(cell)) json["mostly_wrong"] = true;
   if (!cell.peers.empty()) json["peers"] = peers_json(cell);

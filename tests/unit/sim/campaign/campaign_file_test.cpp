@@ -77,15 +77,6 @@ sequences = 3
             (std::vector<std::string>{"mesh", "mesh-2", "default"}));
 }
 
-TEST_F(CampaignFile, EqualRunsAreRefusedSinceTheirSequencesWouldCountTwice) {
-  expect_refused("[[run]]\nsequences = 1\n[[run]]\nsequences = 1\n",
-                 "line 3: this run is the same as one of line 1");
-  expect_refused("[[run]]\nsequences = 1\n[[run]]\nsequences = 2\n",
-                 "line 3: this run is the same as one of line 1 but for their number of sequences");
-  expect_refused("[[run]]\nsequences = 1\nframes = [2, 3, 2]\n",
-                 "line 1: this run is the same as one of line 1");
-}
-
 TEST_F(CampaignFile, ThereIsOneSeed) {
   expect_refused("[[run]]\nsequences = 1\nseed = 3\n", "line 3: one seed is for all runs");
 }

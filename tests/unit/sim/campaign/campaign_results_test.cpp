@@ -5,6 +5,8 @@
 #include <functional>
 #include <set>
 
+#include "sim/report/results_files.hpp"
+#include "sim/report/results_json.hpp"
 #include "tests/unit/sim/campaign/campaign_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -76,6 +78,53 @@ TEST_F(CampaignResults, RunsWithOtherFramesAreAnotherSubject) {
   for (const SubjectResult& subject : results().subjects) {
     ASSERT_EQ(subject.cells.size(), 1U);
     EXPECT_EQ(subject.cells[0].by_frame.size(), subject.cells[0].frames);
+  }
+}
+
+TEST_F(CampaignResults, MeshesOfOneFileAreToldApart) {
+  const auto mesh_changed_by = [](float change_m) {
+    return [change_m](SmallEvaluation& other) { other.subject.mesh.vertices_trf_m[0].x() += change_m; };
+  };
+  add_run([](SmallEvaluation&) {}, {"--mesh", "near.stl"});
+  add_run(mesh_changed_by(1e-3F), {"--mesh", "near.stl", "--mesh-scale", "1.1"});
+  add_run(mesh_changed_by(2e-3F), {"--mesh", "near.stl", "--mesh-up", "z"});
+  add_run(mesh_changed_by(3e-3F), {"--mesh", "near.stl"});  // the file has changed since
+  const std::vector<std::string> all = titles();
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_EQ(all[1], "NEAR Shoemaker, near.stl, model arbitrary, mesh-scale 1.1");
+  EXPECT_EQ(all[2], "NEAR Shoemaker, near.stl, model arbitrary, mesh-up z");
+  EXPECT_NE(all[0].find("mesh with CRC-32"), std::string::npos) << all[0];
+  EXPECT_EQ(std::set<std::string>(all.begin(), all.end()).size(), 4U);
+}
+
+TEST_F(CampaignResults, InertiasThatDifferALittleAreToldApart) {
+  for (const double inertia : {500.0001, 500.0002})
+    add_run([inertia](SmallEvaluation& other) {
+      other.subject.inertia_kg_m2 = Eigen::Vector3d(inertia, 300.0, 400.0).asDiagonal();
+    });
+  EXPECT_NE(titles().at(0).find("inertia 500.0001,300,400,0,0,0"), std::string::npos) << titles()[0];
+  EXPECT_NE(titles().at(1).find("inertia 500.0002,300,400,0,0,0"), std::string::npos);
+  // A script can tell the rows apart.
+  const std::string json = results_json(results()).dump(), csv = results_csv(results());
+  for (const char* variant : {"500.0001,300", "500.0002,300"}) {
+    EXPECT_NE(json.find(variant), std::string::npos) << json;
+    EXPECT_NE(csv.find(variant), std::string::npos) << csv;
+  }
+}
+
+TEST_F(CampaignResults, SequencesThatWouldCountTwiceAreRefused) {
+  add_run([](SmallEvaluation&) {});
+  add_run([](SmallEvaluation& other) {
+    other.subject.mesh_name = "copy.stl";
+    other.settings.sequences = 3;
+  });
+  try {
+    results();
+    FAIL() << "not refused";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "runs run0 and run1 have the same sequences, which would count twice; leave out one of them");
   }
 }
 

@@ -162,6 +162,32 @@ TEST_F(CampaignCommand, ARunIsOneEvaluationAndResultsDoNotReplaceTheCampaign) {
                  "has no extension .toml, so its results would take its name");
 }
 
+// One experiment can be written in several ways.
+TEST_F(CampaignCommand, RunsWithTheSameSequencesAreRefused) {
+  for (const std::string two : {"condition = [\"nominal\", \"nominal\"]\n", "frames = [2, 3, 2]\n",
+                                "effect = [\"rays=32,noise=2\", \"noise=2.0,rays=32\"]\n",
+                                "[[run]]\nsequences = 3\ncondition = \"nominal\"\n",
+                                "[[run]]\nsequences = 2\nmesh = \"parametric\"\n"}) {
+    std::ofstream(here.path("twice.toml")) << "[[run]]\nsequences = 2\n" << two;
+    expect_refused(here.run("campaign run twice.toml --dry-run"),
+                   "which would count twice; leave out one of them");
+  }
+}
+
+TEST_F(CampaignCommand, SensorsOfOneNameAreRefused) {
+  for (const char* folder : {"a", "b"}) std::filesystem::create_directory(here.path(folder));
+  const std::string sensor = content(TUMBLESIGHT_SOURCE_DIR "/sim/world/sensor/descriptions/flash_256.json");
+  std::ofstream(here.path("a/s.json")) << sensor;
+  const std::size_t at = sensor.find("\"noise\"");
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t digit = sensor.find_first_of("123456789", at);
+  std::ofstream(here.path("b/s.json"))
+      << std::string(sensor).replace(digit, 1, sensor[digit] == '5' ? "4" : "5");
+  std::ofstream(here.path("two.toml")) << "[[run]]\nsequences = 2\nsensor = [\"a/s.json\", \"b/s.json\"]\n";
+  expect_refused(here.run("campaign run two.toml --dry-run"),
+                 "its sensor has the name 'flash_256' and is another one");
+}
+
 // Slurm's commands as they answer on a federation of clusters, with warnings.
 class FakeSlurm : public CampaignCommand {
  protected:
@@ -219,8 +245,10 @@ TEST_F(FakeSlurm, JobsOfAnEarlierCallAreFollowedToTheEnd) {
               " campaign work c.toml >worked; echo >> asked; echo 'CLUSTER: big'; echo '17_[0-5] c'\n");
   const Outcome outcome = run();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_NE(outcome.output.find("it follows the Slurm jobs 17;big and 17;big of an earlier call"),
-            std::string::npos)
+  EXPECT_NE(
+      outcome.output.find("nothing new: the Slurm jobs 17;big and 17;big of an earlier call go on, with "
+                          "the options of that call. To submit others: scancel -M big 17 17"),
+      std::string::npos)
       << outcome.output;
   EXPECT_EQ(arrays(), 1U);
   EXPECT_TRUE(std::filesystem::exists(here.path("c/report.html")));
@@ -234,6 +262,47 @@ TEST_F(FakeSlurm, JobsOfAnEarlierCallThatHaveEndedAreSubmittedAgain) {
   put_program("squeue", "echo '17_[0-5] another'\n");
   run("--no-wait");
   EXPECT_EQ(arrays(), 3U) << "another job has the number";
+}
+
+// A controller that does not answer, a cluster that has another name now.
+TEST_F(FakeSlurm, WithoutAnAnswerNothingIsSubmittedTwice) {
+  put_sbatch();
+  run("--no-wait");
+  put_program("squeue", "echo 'slurm_load_jobs error: Unable to contact slurm controller' >&2; exit 1\n");
+  const Outcome outcome = run("--no-wait");
+  expect_refused(outcome, "whether the Slurm jobs 17;big and 17;big of an earlier call go on is not known");
+  EXPECT_NE(outcome.errors.find("Unable to contact slurm controller"), std::string::npos);
+  EXPECT_NE(outcome.errors.find("slurm/jobs' to submit new ones"), std::string::npos);
+  EXPECT_EQ(arrays(), 1U);
+  std::filesystem::remove(here.path("c/slurm/jobs"));
+  EXPECT_EQ(run("--no-wait").exit_code, 0);
+  EXPECT_EQ(arrays(), 2U);
+}
+
+// Ctrl-C reaches the foreground process group. A shell starts background processes without SIGINT.
+TEST_F(FakeSlurm, ASubmissionIsFinishedBeforeTheCommandStops) {
+  put_program("sbatch",
+              "case \"$*\" in *--version*) ;; *) touch asked_to; sleep 1; echo \"$*\" >> submitted; "
+              "echo '17;big';; esac\n");
+  const Outcome outcome = here.run_command("sh -c 'PATH=bin:$PATH setsid " TUMBLESIGHT_BINARY
+                                           " campaign run c.toml --on slurm & while [ ! -e asked_to ]; do "
+                                           "sleep 0.01; done; env kill -TERM -- -$!; "
+                                           "wait $!'",
+                                           "a");
+  EXPECT_EQ(outcome.exit_code, kStopped) << outcome.errors;
+  EXPECT_EQ(content(here.path("c/slurm/jobs")), "17;big 17;big\n");
+}
+
+TEST_F(FakeSlurm, WaitsForAnotherCallThatSubmitsUntilItIsStopped) {
+  put_sbatch();
+  std::filesystem::create_directories(here.path("c/slurm"));
+  const Outcome outcome = here.run_command(
+      "sh -c 'flock c/slurm/jobs sleep 5 & sleep 0.3; PATH=bin:$PATH timeout --preserve-status -s INT "
+      "1.5 " TUMBLESIGHT_BINARY " campaign run c.toml --on slurm'",
+      "a");
+  EXPECT_EQ(outcome.exit_code, kStopped);
+  EXPECT_NE(outcome.errors.find("waiting for another call"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(arrays(), 0U);
 }
 
 TEST_F(CampaignCommand, WaysThatAreNotThereAreNamed) {
