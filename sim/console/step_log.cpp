@@ -109,9 +109,9 @@ void StepLog::add(const hal::dds::StepSample& sample) {
 // Its picture is kept elsewhere. A step is shown once there is one to show with it.
 void StepLog::add(const hal::dds::LidarFrameSample& sample) {
   const std::lock_guard lock(mutex_);
+  if (is_bound_ && sample.run_id == run_id_) has_frames_ = true;
   Pending* const pending = pending_of(sample);
   if (pending == nullptr) return;
-  has_frames_ = true;
   ++pending->frames;
   take_complete(kMostWaiting);
 }

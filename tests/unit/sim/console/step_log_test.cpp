@@ -107,11 +107,14 @@ TEST_F(Log, AStepWaitsForItsFrames) {
     log_.add(announced);
     add_step(k);
   };
-  const auto frame = std::make_unique<hal::dds::LidarFrameSample>(sample_of<hal::dds::LidarFrameSample>(1));
+  const auto frame = std::make_unique<hal::dds::LidarFrameSample>(sample_of<hal::dds::LidarFrameSample>(0));
   add_announced(0, 1);
   EXPECT_EQ(log_.state().steps, 1U) << "a late console may never get the first one";
   log_.add(*frame);
+  frame->k = 1;
   add_announced(1, 2);
+  EXPECT_EQ(log_.state().steps, 1U) << "but the run has frames";
+  log_.add(*frame);
   EXPECT_EQ(log_.state().steps, 1U);
   log_.add(*frame);
   EXPECT_EQ(log_.state().steps, 2U);
