@@ -30,9 +30,9 @@ constexpr const char* kReadingNotes = R"md(
 std::string introduction(const Results& results) {
   std::string text = fmt::format(
       "# Results\n\nMade by\n\n```\n{}\n```\n\nwith seed {}. Every figure below comes from that run. "
-      "Another run gives the same figures, except for the times. On another kind of processor they may "
-      "differ in\nthe "
-      "fourth digit: docs/cluster.md.\n{}",
+      "Another run gives the same figures, except for the times.\nOn another kind of processor they may "
+      "differ "
+      "in the [fourth digit](cluster.md#by-hand).\n{}",
       results.command, results.seed, kReadingNotes);
   for (const std::string& note : results.notes) text += "- Note: " + note + "\n";
   return text + "\n";
