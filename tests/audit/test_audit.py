@@ -84,6 +84,17 @@ class WorstCaseStack(unittest.TestCase):
         total, _ = self.of([("step", "__aeabi_uldivmod")], [("step", self.STEP, 100)])
         self.assertEqual(total, 100 + stack.LIBRARY_BYTES)
 
+    # An audit after the tests of a processor failed: they build the C interface, whose stopwatch calls through a pointer.
+    def test_leaves_out_the_c_interface(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for library, text in (("fsw_app.dir", f'node: {{ title: "step" label: "{self.STEP}\\n100 bytes (static)" }}\n'
+                                                  'edge: { sourcename: "step" targetname: "__indirect_call" }\n'),
+                                  ("fsw_c.dir", 'node: { title: "clock" label: "CallerStopwatch::now_ns()\\n900 bytes (static)" }\n'
+                                                'edge: { sourcename: "clock" targetname: "__indirect_call" }\n')):
+                pathlib.Path(folder, library).mkdir()
+                pathlib.Path(folder, library, "a.ci").write_text(text)
+            self.assertEqual(stack.worst_case(pathlib.Path(folder), "fixed")[0], 100)
+
     # Verifies TS-MEM-040.
     def test_refuses_recursion(self):
         with self.assertRaises(SystemExit):
