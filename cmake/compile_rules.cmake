@@ -1,4 +1,4 @@
-# Two sets of compile rules. Each is an interface target that the libraries link.
+# Compile rules. Each set is an interface target that the libraries link.
 
 # project_rules: for every source of the project (PUBLIC). Eigen's vector code is off: its order of summation and the
 # layout of its types depend on the vector width. Contraction into fused multiply-add is off. Both are needed for equal
@@ -24,3 +24,15 @@ target_compile_definitions(flight_rules INTERFACE EIGEN_NO_MALLOC EIGEN_NO_IO)
 if(CMAKE_CROSSCOMPILING AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(flight_rules INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fcallgraph-info=su>)
 endif()
+
+# tool_rules: for code of the ground whose speed does not matter, in addition. Less optimization: the command line compiles in two
+# thirds of the time. PRIVATE.
+add_library(tool_rules INTERFACE)
+target_compile_options(tool_rules INTERFACE $<$<CONFIG:Release>:-O1>)
+
+# Headers that take longer to read than the sources of the library to compile: precompile_headers(<target> <header>...)
+function(precompile_headers target)
+  target_precompile_headers(${target} PRIVATE ${ARGN})
+  # ccache takes a precompiled header's includes from the output of the preprocessor.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+endfunction()

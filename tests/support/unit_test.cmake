@@ -8,9 +8,7 @@ add_library(test_rules INTERFACE)
 target_compile_options(test_rules INTERFACE $<$<CONFIG:Release>:-O1> $<$<CONFIG:RelWithDebInfo>:-O0>)
 target_compile_definitions(test_rules INTERFACE TUMBLESIGHT_FEW_TRIALS=$<BOOL:${TUMBLESIGHT_FEW_TRIALS}>)
 target_link_libraries(test_precompiled PRIVATE test_rules)
-target_precompile_headers(test_precompiled PRIVATE <gtest/gtest.h> <Eigen/Geometry>)
-# ccache takes a precompiled header's includes from the output of the preprocessor.
-target_compile_options(test_precompiled PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+precompile_headers(test_precompiled <gtest/gtest.h> <Eigen/Geometry>)
 
 # One program of unit tests, and a ctest test for each of its tests. In an emulator, where a process takes long to start, a
 # ctest test is the whole program or one of its PARTS, so that two of them share the work.
