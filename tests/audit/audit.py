@@ -91,7 +91,7 @@ def write_documents(results):
 
 def main():
     parser = argparse.ArgumentParser(prog="tests/audit/run", description=__doc__)
-    parser.add_argument("--processor", metavar="NAME", help="only this processor")
+    parser.add_argument("--processor", metavar="NAME", action="append", help="only this processor, and those of further --processor")
     parser.add_argument("--write", action="store_true", help="renew the documents, also with figures that have grown")
     parser.add_argument("--list", action="store_true", help="print the names of the processors and exit")
     arguments = parser.parse_args()
@@ -100,7 +100,7 @@ def main():
         return 0
     if arguments.write and arguments.processor:
         parser.error("--write needs the figures of all processors: leave out --processor")
-    wanted = [processors.by_name(arguments.processor)] if arguments.processor else processors.ALL
+    wanted = [processors.by_name(name) for name in arguments.processor] if arguments.processor else processors.ALL
     folder = ROOT / "build/audit"
     folder.mkdir(parents=True, exist_ok=True)
     plugin = instruction_count.build_plugin(folder)
