@@ -122,6 +122,7 @@ void add_to(Crc32& crc, const PoseTrackerState& state) {
   crc.add_u32(static_cast<std::uint32_t>(state.law));
   crc.add_u32(static_cast<std::uint32_t>(state.challenger));
   crc.add_u32(static_cast<std::uint32_t>(state.advantage_q8));
+  crc.add_u32(static_cast<std::uint32_t>(state.proven_q8));
 }
 
 }  // namespace

@@ -37,6 +37,11 @@ constexpr std::int32_t kMostOfNetwork_q8 = 4 * 256;       // its odds, in the fi
 constexpr std::int32_t kClear_q8 = 6 * 256;               // after kFirst, for the second attitude
 constexpr std::int32_t kMostOfATrack_q8 = 2 * kMostOfAFrame_q8;
 
+// What of an advantage is proven, see proven_q8(): all of it, a 16th after kFirstSecond, and a 32nd.
+constexpr std::int32_t kMostProvenByAFit_q8 = 6 * 256;
+constexpr int kFitShift = 0, kShortFitShift = 4, kMisfitShift = 5;
+constexpr std::int32_t kDisprovenByNetwork_q8 = 4 * 256;  // where it disagrees, per frame
+
 void exchange(PoseCandidate& a, PoseCandidate& b) {
   const PoseCandidate kept = a;
   a = b;
@@ -123,8 +128,29 @@ std::int32_t advantage_q8(const PoseCandidate& first, const PoseCandidate& secon
   return explains(second) ? -kMostOfAFrame_q8 : 0;
 }
 
-void add_advantage(std::int32_t more_q8, PoseTrackerState& state) {
-  state.advantage_q8 = limited_advantage_q8(state.advantage_q8 + more_q8);
+// What a frame says for the pose of the track against the alternatives [nats, Q8].
+struct Advantage {
+  std::int32_t more_q8;    // by the costs: which of them the track follows
+  std::int32_t proven_q8;  // of that, how much is proven: whether it is verified
+};
+constexpr Advantage kWithoutAlternative{kWithoutAlternative_q8, kWithoutAlternative_q8};
+
+// What speaks against the first pose counts in full. What speaks for it, the difference of the costs, counts
+// up to six nats if the second pose explains the frame; shifted by `fit_shift`, less if it was registered
+// shortly. Otherwise a 32nd counts: the second pose may be the right attitude, whose refinement went astray.
+// The more rays there are, the larger is its misfit then, and the more certainly the first pose would be a
+// misfit, too, if it were wrong.
+std::int32_t proven_q8(const PoseCandidate& first, const PoseCandidate& second, int fit_shift) {
+  const std::int32_t better_q8 = advantage_q8(first, second);
+  if (better_q8 <= 0) return better_q8;
+  const std::int32_t difference_q8 = second.evidence.cost_q8() - first.evidence.cost_q8();
+  return second.evidence.fits() ? min(difference_q8 >> fit_shift, kMostProvenByAFit_q8)
+                                : min(difference_q8 >> kMisfitShift, kMostOfAFrame_q8);
+}
+
+void add_advantage(const Advantage& advantage, PoseTrackerState& state) {
+  state.advantage_q8 = limited_advantage_q8(state.advantage_q8 + advantage.more_q8);
+  state.proven_q8 = limited_advantage_q8(state.proven_q8 + advantage.proven_q8);
 }
 
 // What the network's odds say for its first attitude against its second one [nats, Q8], limited.
@@ -132,6 +158,13 @@ std::int32_t network_advantage_q8(std::uint32_t second_odds_ppm) {
   constexpr std::int32_t kNatsPerBit_q8 = 177;
   const int bits_below_one = 20 - highest_bit(second_odds_ppm);
   return clamp<std::int32_t>(bits_below_one * kNatsPerBit_q8, -kMostOfNetwork_q8, kMostOfNetwork_q8);
+}
+
+// Of the first frames, whose second attitude is registered shortly. `network_q8`: what the network says for
+// the first pose.
+Advantage first_advantage(const PoseCandidate& first, const PoseCandidate& second, std::int32_t network_q8) {
+  const std::int32_t more_q8 = advantage_q8(first, second) + network_q8;
+  return {more_q8, min(more_q8, proven_q8(first, second, kShortFitShift) + network_q8)};
 }
 
 // Registers the frame at the pose that the motion of the track predicts. After a gap, or if a short
@@ -158,13 +191,17 @@ bool follow_motion(const PoseTarget& target, const PoseFrame& frame, const PoseM
   return true;
 }
 
-// Registers an attitude of the network at the position of the track. Returns by how much the track explains
-// the frame better.
-std::int32_t compare(const PoseTarget& target, const Alternative& alternative, PoseScratch& scratch) {
+// Registers an attitude of the network at the position of the track. Returns the advantage of the track.
+Advantage compare(const PoseTarget& target, const Alternative& alternative, PoseScratch& scratch) {
   const Pose start{alternative.r_lrf_trf, scratch.best.refinement.pose.origin_lrf_um};
   refine_candidate(target, start, scratch.best.evidence.fits() ? kFull : kSearch, scratch, scratch.other);
-  const std::int32_t better_q8 = advantage_q8(scratch.best, scratch.other);
-  return alternative.is_network ? better_q8 - kNetworkDisagrees_q8 : better_q8;
+  Advantage advantage{advantage_q8(scratch.best, scratch.other),
+                      proven_q8(scratch.best, scratch.other, kFitShift)};
+  if (alternative.is_network) {
+    advantage.more_q8 -= kNetworkDisagrees_q8;
+    advantage.proven_q8 -= kDisprovenByNetwork_q8;
+  }
+  return advantage;
 }
 
 }  // namespace
@@ -186,11 +223,13 @@ void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& 
     refine_candidate(target, placed(target, frame, frame.second_r_lrf_trf, scratch), kFirstSecond, scratch,
                      other);
   refine_candidate(target, placed(target, frame, frame.network.r_lrf_trf, scratch), kFirst, scratch, best);
-  std::int32_t more_q8 = kWithoutAlternative_q8;
-  if (has_second) more_q8 = advantage_q8(best, other) + network_advantage_q8(frame.second_odds_ppm);
-  const bool is_second = more_q8 < -kClear_q8;
+  Advantage advantage = kWithoutAlternative;
+  if (has_second) advantage = first_advantage(best, other, network_advantage_q8(frame.second_odds_ppm));
+  const bool is_second = advantage.more_q8 < -kClear_q8;
   if (is_second) {
-    if (!are_whole(best, other)) more_q8 = 0;
+    advantage = {0, 0};
+    if (are_whole(best, other))
+      advantage = first_advantage(other, best, -network_advantage_q8(frame.second_odds_ppm));
     best = other;
     // The pose before, if any, is of the other attitude.
     state.history.count = 0;
@@ -198,8 +237,8 @@ void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& 
   // What spoke for another attitude does not speak for this one.
   const bool goes_on = state.history.count > 0 &&
                        !is_another_attitude(best.refinement.pose.r_lrf_trf, state.motion.turning.r_lrf_trf);
-  if (!goes_on) state.advantage_q8 = 0;
-  add_advantage(more_q8 < 0 && more_q8 >= -kClear_q8 ? more_q8 : abs(more_q8), state);
+  if (!goes_on) state.advantage_q8 = state.proven_q8 = 0;
+  add_advantage(advantage, state);
   // Where surfaces are dark and the frame is not explained, the attitude may be far off: the search follows
   // at once, so that the first frame with dark surfaces takes no more steps than one without.
   const bool is_dark = best.evidence.dark_surfaces > 0, is_explained = best.evidence.fits();
@@ -219,21 +258,23 @@ bool follow_track(const PoseTarget& target, const PoseFrame& frame, const PoseMo
   const bool has_tried_network = follow_motion(target, frame, predicted, scratch, state);
   const Alternative alternative = alternative_to(best.refinement.pose.r_lrf_trf, frame);
   const bool was_tried = has_tried_network && alternative.is_network;
-  std::int32_t more_q8 = kWithoutAlternative_q8;
+  Advantage advantage = kWithoutAlternative;
   if (alternative.exists && !was_tried) {
-    const std::int32_t compared_q8 = compare(target, alternative, scratch);
+    const Advantage compared = compare(target, alternative, scratch);
     const bool is_another =
         differs(best.refinement.pose.r_lrf_trf, other.refinement.pose.r_lrf_trf, kTraceOf2Degrees);
-    if (is_another) more_q8 = compared_q8;
+    if (is_another) advantage = compared;
   }
-  add_advantage(more_q8, state);
+  if (!explains(best)) advantage.proven_q8 = min(advantage.proven_q8, 0);
+  add_advantage(advantage, state);
   // A pose that this frame speaks against is not taken, whatever spoke against the track before.
-  if (more_q8 >= 0) return true;
+  if (advantage.more_q8 >= 0) return true;
   const bool were_compared = are_whole(best, other);
   const bool is_lost = !explains(best) && explains(other);
   if (state.advantage_q8 >= 0 && !is_lost) return true;
   best = other;
   state.advantage_q8 = were_compared ? abs(state.advantage_q8) : 0;
+  state.proven_q8 = 0;
   state.history.count = 0;
   return false;
 }

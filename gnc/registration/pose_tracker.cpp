@@ -16,7 +16,7 @@ constexpr std::int64_t kDisagreement_q8 = 90;  // from here on another law is tr
 // Limits of the verdict.
 constexpr int kVerifiedPoses = 3;
 constexpr std::int64_t kLongestToTellRate_ns = 7'500'000'000;  // between poses; as of the network's track
-constexpr std::int32_t kLeastAdvantage_q8 = 8 * 256;           // of the track
+constexpr std::int32_t kLeastProven_q8 = 8 * 256;              // advantage of the track
 constexpr std::int32_t kMostAgainstTrack_q8 = 6 * 256;         // in a frame
 constexpr std::int64_t kMostDisagreement_q8 = 3 * 256;
 constexpr std::uint32_t kLargestSigma_urad = 17'453;  // a degree
@@ -40,7 +40,7 @@ PoseDoubts doubts_of(const PoseFrame& frame, const Matrix3<Fixed>& r_lrf_trf, co
   PoseDoubts doubts = 0;
   if (!evidence.fits_ranges()) doubts |= kPoseRanges;
   if (!evidence.fits_returns() || !evidence.fits_outline()) doubts |= kPoseOutline;
-  if (estimate.advantage_q8 < kLeastAdvantage_q8) doubts |= kPoseAmbiguous;
+  if (estimate.proven_q8 < kLeastProven_q8) doubts |= kPoseAmbiguous;
   if (estimate.poses < kVerifiedPoses || estimate.disagreement_q8 > kMostDisagreement_q8)
     doubts |= kPoseMotion;
   for (std::size_t i = 0; i < 3; ++i)
@@ -174,6 +174,7 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   // Memory may be damaged.
   state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);
   state.advantage_q8 = limited_advantage_q8(state.advantage_q8);
+  state.proven_q8 = min(limited_advantage_q8(state.proven_q8), state.advantage_q8);
   if (state.history.count == 0) state.motion = {};
   const PoseMotion predicted = later_pose(state, frame.laws, frame.elapsed_ns, frame.r_now_last);
   state.history.advance(frame.elapsed_ns, frame.r_now_last);
@@ -184,7 +185,7 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   if (!target.mesh.is_known() ||
       !make_frame_view(frame.image, frame.mask, depth_um, target.radius_mm, target.noise, scratch.view)) {
     state.history.count = 0;
-    state.advantage_q8 = 0;
+    state.advantage_q8 = state.proven_q8 = 0;
     return;
   }
   if (is_tracked) {
@@ -193,7 +194,7 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
     start_track(target, frame, scratch, state);
   }
   estimate.evidence = scratch.best.evidence;
-  estimate.advantage_q8 = state.advantage_q8;
+  estimate.proven_q8 = state.proven_q8;
   estimate.doubts = 0;
   const bool is_measured = scratch.best.refinement.is_complete && scratch.best.evidence.blocks > 0;
   if (is_measured) {

@@ -6,10 +6,11 @@
 //   explain the frame, the network's attitude is registered as well. Another one that the network offers is
 //   registered shortly.
 // - Advantage: by how much the pose of the track explains the frames better than the alternatives, summed
-//   over the frames. If it is lost, the track starts anew at the alternative.
+//   over the frames. If it is lost, the track starts anew at the alternative. What is proven of it is summed
+//   apart: less where an alternative does not explain a frame, since its registration may have gone astray.
 // - Motion: fitted to the last ten poses (pose_fit.hpp).
-// - Verdict: the frame must agree with the pose in ranges and outline, the track must have an advantage, and
-//   the poses must agree with one motion.
+// - Verdict: the frame must agree with the pose in ranges and outline, the advantage must be proven, and the
+//   poses must agree with one motion.
 //
 // Specification: docs/numerics.md.
 #pragma once
@@ -32,7 +33,7 @@ inline constexpr PoseDoubts kPoseCoasts = 2;   // predicted: the frame could not
 inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the surface
 inline constexpr PoseDoubts kPoseOutline =
     8;  // returns beside it, too many missing, or its outline elsewhere
-inline constexpr PoseDoubts kPoseAmbiguous = 16;  // an alternative explains the frames about as well
+inline constexpr PoseDoubts kPoseAmbiguous = 16;  // the advantage over the alternatives is not proven
 // Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
 inline constexpr PoseDoubts kPoseMotion = 32;
 inline constexpr PoseDoubts kPoseUncertain = 64;  // the attitude is known to a degree at best
@@ -52,7 +53,7 @@ struct PoseEstimate {
   PoseState state;                   // at the exposure, in the LRF of the exposure
   PoseCovariance covariance;
   PoseEvidence evidence;             // of this frame at its registered pose
-  std::int32_t advantage_q8 = 0;     // over the best alternative, from all frames of the track [nats]
+  std::int32_t proven_q8 = 0;        // advantage over the alternatives, as far as it is proven [nats]
   std::int64_t disagreement_q8 = 0;  // PoseFitResult
   int poses = 0;                     // that the motion was fitted to
 
@@ -82,10 +83,11 @@ struct PoseFrame {
 
 struct PoseTrackerState {
   PoseHistory history;
-  PoseMotion motion;            // at the last frame; valid if there is a pose
-  int law = kSpinLaw;           // under which the poses agree best, so far
-  int challenger = kTumbleLaw;  // the law that is compared with it next
-  std::int32_t advantage_q8 = 0;
+  PoseMotion motion;              // at the last frame; valid if there is a pose
+  int law = kSpinLaw;             // under which the poses agree best, so far
+  int challenger = kTumbleLaw;    // the law that is compared with it next
+  std::int32_t advantage_q8 = 0;  // of the attitude that it follows, over the others [nats]
+  std::int32_t proven_q8 = 0;     // of that, how much is proven; never more [nats]
 };
 
 // A pose with what speaks for it.

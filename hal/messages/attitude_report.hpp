@@ -41,8 +41,9 @@ inline constexpr std::uint8_t kPoseDoubtRanges = 4;
 // More than 3 % of the returns are beside the target, more than 69 % of its rays have no return or meet a
 // dark surface, or more than an eighth of the rays next to its outline are not as drawn.
 inline constexpr std::uint8_t kPoseDoubtOutline = 8;
-// The advantage over other attitudes is less than 8 nats: one explains the frames about as well, or the track
-// is too new. Or another attitude explains this frame better by more than 6 nats.
+// The proven advantage over other attitudes is less than 8 nats: one explains the frames about as well, none
+// could be compared fairly, or the track is too new. Or another attitude explains this frame better by more
+// than 6 nats.
 inline constexpr std::uint8_t kPoseDoubtAmbiguous = 16;
 // There are fewer than three poses, they or the newest of them do not follow one motion, or no two
 // consecutive ones are within 7.5 s, so that the rate may be one turn more or less.
@@ -98,8 +99,8 @@ struct AttitudeReport {
   std::array<std::int32_t, 3> pose_rate_lrf_now_urad_s{};
   std::array<std::int32_t, 3> pose_velocity_lrf_now_um_s{};
   // What verifies it: mean squared difference of the ranges over their variance, Q8; shares of the returns
-  // beside the target and of the target's rays that have no return or meet a dark surface; advantage over the
-  // best alternative [nats], Q8.
+  // beside the target and of the target's rays that have no return or meet a dark surface; proven advantage
+  // over the alternatives [nats], Q8.
   std::uint32_t pose_mean_square_q8 = 0;
   std::uint32_t pose_unexplained_ppm = 0;
   std::uint32_t pose_missing_ppm = 0;

@@ -90,7 +90,7 @@ std::vector<std::string> doubts_of_pose(unsigned doubts) {
                                 {hal::kPoseDoubtCoasts, "predicted, not registered"},
                                 {hal::kPoseDoubtRanges, "ranges beside the surface"},
                                 {hal::kPoseDoubtOutline, "outline does not fit"},
-                                {hal::kPoseDoubtAmbiguous, "another attitude explains it too"},
+                                {hal::kPoseDoubtAmbiguous, "other attitudes are not ruled out"},
                                 {hal::kPoseDoubtMotion, "no motion fits yet"},
                                 {hal::kPoseDoubtUncertain, "standard deviation above 1°"},
                                 {hal::kPoseDoubtNetwork, "the network disagrees"}});

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iostream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/model/model_file.hpp"
@@ -109,6 +111,25 @@ void expect_verified_poses(const SilRunResult& run) {
   EXPECT_EQ(run.steps.back().telemetry.poses_verified, verified);
 }
 
+struct VerifiedPoses {
+  std::size_t all = 0;
+  std::size_t wrong = 0;  // more than 5 degrees off
+};
+VerifiedPoses verified_poses(const SilRunResult& run) {
+  constexpr double kWrong_rad = 0.0873;
+  VerifiedPoses poses;
+  for (const StepResult& step : run.steps) {
+    if (!gives_attitude(step.attitude) || step.attitude.pose_doubts != 0) continue;
+    const double error_rad =
+        angular_error_rad(step.truth.q_lrf_trf, gnc::to_double(step.attitude.pose_q_lrf_trf));
+    ++poses.all;
+    if (error_rad <= kWrong_rad) continue;
+    ++poses.wrong;
+    std::cout << "verified and wrong: sequence " << step.sequence << ", frame " << step.frame_index << '\n';
+  }
+  return poses;
+}
+
 // Verifies TS-SIL-100, TS-EST-200, TS-EST-202.
 TEST(ShippedNetwork, ReportsVerifiedPoses) {
   expect_verified_poses(run_with({}));
@@ -123,15 +144,39 @@ TEST(ShippedNetwork, DoesNotVerifyAPoseWhileItsSecondAttitudeIsBetter) {
   std::vector<Sequence> sequences;
   for (const std::uint64_t index : {112, 210, 810, 1515, 1685, 1842, 2000, 2629, 4396, 5321, 5363, 5677})
     sequences.push_back(make_sequence(scenario, kSeed, index));
-  std::size_t verified = 0;
-  const SilRunResult run = run_of(sequences);
-  for (const StepResult& step : run.steps) {
-    if (!gives_attitude(step.attitude) || step.attitude.pose_doubts != 0) continue;
-    ++verified;
-    EXPECT_LT(angular_error_rad(step.truth.q_lrf_trf, gnc::to_double(step.attitude.pose_q_lrf_trf)), 0.0873)
-        << "sequence " << step.sequence << ", frame " << step.frame_index;
-  }
-  EXPECT_GE(verified, sequences.size());
+  const VerifiedPoses poses = verified_poses(run_of(sequences));
+  EXPECT_EQ(poses.wrong, 0U);
+  EXPECT_GE(poses.all, sequences.size());
+}
+
+std::vector<Sequence> sequences_of_few_rays(const std::vector<std::uint64_t>& indices) {
+  constexpr std::uint64_t kSeed = 22;
+  Effects few_rays;
+  few_rays.rays = 32;
+  ScenarioSettings scenario{Condition::kNominal, static_cast<int>(kFrames)};
+  scenario.effects = few_rays;
+  std::vector<Sequence> sequences;
+  for (const std::uint64_t index : indices) sequences.push_back(make_sequence(scenario, kSeed, index));
+  return sequences;
+}
+
+// Verifies TS-EST-202.
+// With 32 rays single frames hardly tell half a turn. In these sequences, the worst of 2,000, 74 poses were
+// verified and wrong when an alternative that does not explain a frame counted as much as one that does. Now
+// 19 are, and at most a third shall be.
+TEST(ShippedNetwork, VerifiesFewerWrongPosesOfFewRays) {
+  const std::vector<std::uint64_t> worst{136, 485,  523,  532,  576,  599,  614,  652,  755, 827,
+                                         915, 1125, 1228, 1426, 1533, 1902, 1941, 1957, 1962};
+  EXPECT_LE(verified_poses(run_of(sequences_of_few_rays(worst))).wrong, 74U / 3);
+}
+
+// Verifies TS-EST-202.
+TEST(ShippedNetwork, VerifiesPosesOfFewRays) {
+  std::vector<std::uint64_t> first(20);
+  std::iota(first.begin(), first.end(), 0);
+  const VerifiedPoses poses = verified_poses(run_of(sequences_of_few_rays(first)));
+  EXPECT_GE(poses.all, 1.5 * first.size());
+  EXPECT_LE(poses.wrong, 1U);
 }
 
 // Verifies TS-SIL-100, TS-EST-330.

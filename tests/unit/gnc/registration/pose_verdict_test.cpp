@@ -56,13 +56,13 @@ TEST_F(PoseVerdict, TooManyMissingReturnsAreADoubt) {
   EXPECT_EQ(track_next().doubts, 0U);
 }
 
-// Four nats a frame without an alternative: 7, then 8 of the 8 that are needed.
+// Four nats a frame without an alternative: just below 8, then 8 of the 8 that are needed.
 // Verifies TS-EST-202.
-TEST_F(PoseVerdict, TooSmallAnAdvantageIsADoubt) {
+TEST_F(PoseVerdict, TooSmallAProvenAdvantageIsADoubt) {
   verify();
-  state_->advantage_q8 = 4 * 256 - 1;
+  state_->proven_q8 = 4 * 256 - 1;
   EXPECT_EQ(track_next().doubts, kPoseAmbiguous);
-  state_->advantage_q8 = 4 * 256;
+  state_->proven_q8 = 4 * 256;
   EXPECT_EQ(track_next().doubts, 0U);
 }
 

@@ -307,7 +307,7 @@ TEST_F(Log, ADetailHasTheAttitudesThePoseAndEveryCounter) {
   log_.add(telemetry);
   log_.add(done_of(0));
   const Json step = log_.step(0);
-  EXPECT_EQ(step["pose"]["doubts"][0], "another attitude explains it too");
+  EXPECT_EQ(step["pose"]["doubts"][0], "other attitudes are not ruled out");
   EXPECT_NEAR(step["second"]["odds"].get<double>(), 0.25, 1e-9);
   EXPECT_EQ(step["telemetry"]["cycles"], 12);
   bool has_mode = false, has_fault = false;
