@@ -37,7 +37,7 @@ constexpr std::int32_t kMostOfNetwork_q8 = 4 * 256;       // its odds, in the fi
 constexpr std::int32_t kClear_q8 = 6 * 256;               // after kFirst, for the second attitude
 constexpr std::int32_t kMostOfATrack_q8 = 2 * kMostOfAFrame_q8;
 
-// What of an advantage is proven, see proven_q8(): all of it, a 16th after kFirstSecond, and a 32nd.
+// Which part of a difference is proven, see proven_q8(): all of it, a 16th after kFirstSecond, or a 32nd.
 constexpr std::int32_t kMostProvenByAFit_q8 = 6 * 256;
 constexpr int kFitShift = 0, kShortFitShift = 4, kMisfitShift = 5;
 constexpr std::int32_t kDisprovenByNetwork_q8 = 4 * 256;  // where it disagrees, per frame
@@ -135,11 +135,11 @@ struct Advantage {
 };
 constexpr Advantage kWithoutAlternative{kWithoutAlternative_q8, kWithoutAlternative_q8};
 
-// What speaks against the first pose counts in full. What speaks for it, the difference of the costs, counts
-// up to six nats if the second pose explains the frame; shifted by `fit_shift`, less if it was registered
-// shortly. Otherwise a 32nd counts: the second pose may be the right attitude, whose refinement went astray.
-// The more rays there are, the larger is its misfit then, and the more certainly the first pose would be a
-// misfit, too, if it were wrong.
+// How much of the advantage of the first pose is proven. A negative one counts in full. If the second pose
+// explains the frame, the difference of the costs counts up to six nats. It is divided by 2^fit_shift before
+// that, since a pose that was registered shortly costs more. If the second pose does not explain the frame,
+// it may be the right attitude whose refinement went astray, so only a 32nd counts. With more rays its misfit
+// is larger, but then a wrong first pose would be a misfit, too.
 std::int32_t proven_q8(const PoseCandidate& first, const PoseCandidate& second, int fit_shift) {
   const std::int32_t better_q8 = advantage_q8(first, second);
   if (better_q8 <= 0) return better_q8;
