@@ -163,8 +163,7 @@ std::int32_t network_advantage_q8(std::uint32_t second_odds_ppm) {
 // Of the first frames, whose second attitude is registered shortly. `network_q8`: what the network says for
 // the first pose.
 Advantage first_advantage(const PoseCandidate& first, const PoseCandidate& second, std::int32_t network_q8) {
-  const std::int32_t more_q8 = advantage_q8(first, second) + network_q8;
-  return {more_q8, min(more_q8, proven_q8(first, second, kShortFitShift) + network_q8)};
+  return {advantage_q8(first, second) + network_q8, proven_q8(first, second, kShortFitShift) + network_q8};
 }
 
 // Registers the frame at the pose that the motion of the track predicts. After a gap, or if a short
