@@ -104,7 +104,7 @@ std::vector<std::uint8_t> to_record(std::uint32_t run, const SequenceResult& res
     writer(delivered);
     serialise_frame(writer, delivered ? result.frames[next++] : lost);
   }
-  writer(result.network_ms);
+  writer(result.step_ms);
   writer(result.baseline_ms);
   writer(crc_of(writer.bytes_.data(), writer.bytes_.size()));
   return std::move(writer.bytes_);
@@ -136,7 +136,7 @@ std::optional<SequenceResult> from_record(const std::uint8_t* bytes, std::uint32
     frame.frame = k;
     if (delivered) result.frames.push_back(frame);
   }
-  reader(result.network_ms);
+  reader(result.step_ms);
   reader(result.baseline_ms);
   return result;
 }

@@ -31,7 +31,7 @@ void evaluate(const EvaluateArguments& arguments) {
       settings.peers ? missing_peers(pose_peers()) : std::vector<std::string>{};
   const Subject subject = checked_subject(arguments, settings);
   announce(subject, settings);
-  for (const std::string& line : left_out) fmt::print(stderr, "  left out: {}\n", line);
+  for (const std::string& line : left_out) print_note("left out: " + line);
 
   Results results;
   results.seed = settings.seed;
@@ -42,10 +42,10 @@ void evaluate(const EvaluateArguments& arguments) {
       run_experiment(subject, settings, [&](std::uint64_t done) { bar.update(done); }));
   bar.finish();
   set_replay(results.subjects.back(), arguments.command_line);
+  write_files(arguments.files, results);  // first: what is printed may have no reader any more
   print_results(results);
   const bool wrong = print_what_is_wrong(arguments, subject, results.subjects.front());
-  write_files(arguments.files, results);
-  fmt::print("\n");
+  print_report_path(arguments.files);
   if (wrong) throw CLI::RuntimeError(kOfNoUse);
 }
 

@@ -34,7 +34,7 @@ void print_cell(const SubjectResult& subject, const CellResult& cell) {
   if (subject.cells.size() > 1) fmt::print("\n  {}\n", to_string(cell.condition));
   fmt::print("\n{}\n{}\n", terminal_text(transposed(cell_table(subject.target, cell))),
              terminal_text(by_frame_table(cell.by_frame)));
-  fmt::print("  network              {:.2f} ms per frame (median, one thread)\n", cell.network_ms);
+  fmt::print("  step                 {:.2f} ms per frame (median, one thread)\n", cell.step_ms);
   if (cell.baseline) {
     fmt::print(
         "  template matching    {:.0f} ms per frame; templates of the same mesh as the frames, last {} "
@@ -128,9 +128,12 @@ const CellResult* print_mostly_wrong(const SubjectResult& result) {
 void write_files(const ResultsFiles& files, const Results& results) {
   if (!files.json.empty()) write_file(files.json, json_text(results));
   if (!files.csv.empty()) write_file(files.csv, results_csv(results));
-  if (files.report.empty()) return;
-  write_file(files.report, results_page(results));
-  fmt::print("  report               {}\n", full_path(files.report));
+  if (!files.report.empty()) write_file(files.report, results_page(results));
+}
+
+void print_report_path(const ResultsFiles& files) {
+  if (!files.report.empty()) fmt::print("  report               {}\n", full_path(files.report));
+  fmt::print("\n");
 }
 
 }  // namespace tumblesight::sim

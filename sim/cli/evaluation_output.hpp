@@ -29,5 +29,7 @@ void print_campaign(const Results& results);
 // Says of each condition with mostly wrong attitudes what they are. Returns the first such cell, or nullptr.
 const CellResult* print_mostly_wrong(const SubjectResult& result);
 void write_files(const ResultsFiles& files, const Results& results);
+// Prints where the report is, if there is one, and an empty line.
+void print_report_path(const ResultsFiles& files);
 
 }  // namespace tumblesight::sim

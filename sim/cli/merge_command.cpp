@@ -37,11 +37,11 @@ void merge(const MergeArguments& arguments) {
   results.notes = merged.notes;
   note_builds(merged.commits, results.notes);
   results.subjects.push_back(std::move(merged.figures));
-  for (const std::string& note : results.notes) fmt::print(stderr, "  note: {}\n", note);
+  for (const std::string& note : results.notes) print_note(note);
+  write_files(arguments.files, results);  // first: what is printed may have no reader any more
   print_results(results);
   const bool wrong = print_mostly_wrong(results.subjects.front()) != nullptr;
-  write_files(arguments.files, results);
-  fmt::print("\n");
+  print_report_path(arguments.files);
   if (wrong) throw CLI::RuntimeError(kOfNoUse);
 }
 
@@ -55,7 +55,8 @@ void add_merge_command(CLI::App& app) {
       ->required()
       ->check(existing_file())
       ->type_name("FILE");
-  command->add_flag("--partial", arguments->partial, "of the sequences that are done, if not all are");
+  command->add_flag("--partial", arguments->partial,
+                    "make the figures from the sequences that are done, although some are missing");
   add_results_options(*command, arguments->files);
   command->footer(
       "\nTables, JSON, CSV and report are those of one process, bit for bit, whatever the\n"

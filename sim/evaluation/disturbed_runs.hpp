@@ -10,12 +10,13 @@
 
 namespace tumblesight::sim {
 
-// A limit that is not given does not apply. Shares are 0..1.
+// What the attitudes of the network must reach, compared with those of the undisturbed run on the same
+// sequences. A limit that is not given does not apply. Shares are 0..1.
 struct DisturbedBar {
-  std::optional<double> most_mean_within_20_deg{};
-  std::optional<double> least_within_20deg{};
-  std::optional<double> least_right_and_valid{};
-  bool not_more_wrong_and_valid = false;  // than in the undisturbed run on the same sequences
+  std::optional<double> most_times_the_mean{};      // of the errors within 20 degrees
+  std::optional<double> most_fewer_within_20deg{};  // of all sequences
+  std::optional<double> least_right_and_valid{};    // itself
+  bool not_more_wrong_and_valid = false;
 };
 
 struct DisturbedRun {
@@ -33,7 +34,7 @@ const DisturbedRun* disturbed_run_of(const CellResult& cell);
 // Whether the RCNN of `cell` meets the bar. `undisturbed`: the cell of the same condition, or nullptr;
 // without it a comparison with it is not met.
 bool meets(const DisturbedBar& bar, const CellResult& cell, const CellResult* undisturbed);
-// "1.35°, 99.8 % within 20°"; empty without a bar.
+// "1.15 times the mean, 0.2 % fewer within 20°"; empty without a bar.
 std::string text_of(const DisturbedBar& bar);
 
 }  // namespace tumblesight::sim

@@ -52,7 +52,7 @@ CellResult cell_result(const ExperimentRun& run, const SubjectDescription& subje
     cell.baseline = last_frame_summary(result.frames, frames, Estimator::kBaseline);
     cell.baseline_histogram = histogram(errors(Estimator::kBaseline));
   }
-  cell.network_ms = result.network_ms;
+  cell.step_ms = result.step_ms;
   cell.baseline_ms = result.baseline_ms;
   for (std::size_t i = 0; i < run.peers.size(); ++i)
     cell.peers.push_back(peer_errors(run.peers[i], result.peers[i]));

@@ -113,7 +113,7 @@ SequenceResult run_sequence(Job& job, std::uint32_t index, HostEstimator& estima
   SequenceResult made;
   made.sequence = index;
   made.frames.reserve(frames);
-  double network_ms = 0.0;
+  double step_ms = 0.0;
   estimator.reset();
   for (std::uint32_t k = 0; k < frames; ++k) {
     const FrameTruth& truth = sequence.frames[k];
@@ -123,14 +123,14 @@ SequenceResult run_sequence(Job& job, std::uint32_t index, HostEstimator& estima
         chaser_attitude(truth, frame.exposure_time_ns, !job.settings.scenario.disturbances.no_ego_motion);
     const Stopwatch stopwatch;
     const gnc::FrameOutcome outcome = estimator.step(frame, chaser);
-    network_ms += stopwatch.ms();
+    step_ms += stopwatch.ms();
     FrameResult& result =
         made.frames.emplace_back(frame_result(truth, outcome, job.renderer.swath_m(), job.settings.symmetry));
     result.sequence = index;
     result.frame = k;
   }
   if (made.frames.empty()) return made;
-  made.network_ms = network_ms / static_cast<double>(made.frames.size());
+  made.step_ms = step_ms / static_cast<double>(made.frames.size());
   const bool matched = index < job.settings.baseline_sequences && !sequence.frames.back().lost;
   if (matched && job.matcher != nullptr) run_baseline(job, frame, made);
   if (matched) run_peers(job, frame, made);
@@ -185,13 +185,13 @@ MonteCarloResult joined(std::vector<SequenceResult> results, const TargetSymmetr
             [](const SequenceResult& a, const SequenceResult& b) { return a.sequence < b.sequence; });
   MonteCarloResult all;
   all.peers = peer_runs(results);
-  std::vector<double> network_ms;
+  std::vector<double> step_ms;
   std::vector<double> baseline_ms;
   std::size_t frames = 0;
   for (const SequenceResult& result : results) frames += result.frames.size();
   all.frames.reserve(frames);
   for (SequenceResult& result : results) {
-    if (!result.frames.empty()) network_ms.push_back(result.network_ms);
+    if (!result.frames.empty()) step_ms.push_back(result.step_ms);
     if (result.baseline_ms > 0.0) baseline_ms.push_back(result.baseline_ms);
     for (FrameResult& frame : result.frames) {
       take_nearest_equivalents(frame, symmetry);
@@ -199,7 +199,7 @@ MonteCarloResult joined(std::vector<SequenceResult> results, const TargetSymmetr
     }
     std::vector<FrameResult>().swap(result.frames);  // a million sequences are a few gigabytes
   }
-  all.network_ms = median(std::move(network_ms));
+  all.step_ms = median(std::move(step_ms));
   all.baseline_ms = median(std::move(baseline_ms));
   return all;
 }

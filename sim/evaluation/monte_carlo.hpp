@@ -50,7 +50,7 @@ struct PeerRun {
 
 struct MonteCarloResult {
   std::vector<FrameResult> frames;  // ordered by sequence and frame; lost frames have none
-  double network_ms = 0.0;          // median over the sequences of the mean time per frame, one thread
+  double step_ms = 0.0;             // median over the sequences of the mean time per frame, one thread
   double baseline_ms = 0.0;         // median time per frame of the baseline; 0 if it was not run
   std::vector<PeerRun> peers;       // in the order of the settings
 };

@@ -73,6 +73,15 @@ bool is_of(const SensorRun& run, const CellResult& cell) {
          to_string(run.ranges) == to_string(cell.ranges);
 }
 
+bool has_pose_goal(const SubjectResult& subject, const CellResult& cell) {
+  return pose_goal(subject.target, cell).has_value() && cell.pose.known > 0.0;
+}
+
+// Of the last frames of a run.
+std::size_t count_of(const CellResult& cell, double share) {
+  return static_cast<std::size_t>(std::lround(share * static_cast<double>(cell.rcnn.count)));
+}
+
 }  // namespace
 
 const std::vector<SensorRun>& sensor_runs() {
@@ -128,15 +137,26 @@ std::string missed_trust(const CellResult& cell) {
 
 WrongAndValid wrong_and_valid(const std::vector<SubjectResult>& subjects) {
   WrongAndValid sum;
-  const auto add = [&sum](const SubjectResult& subject, const CellResult& cell) {
-    if (!pose_goal(subject.target, cell) || !(cell.pose.known > 0.0)) return;
-    const auto count = static_cast<double>(cell.rcnn.count);
-    sum.wrong += static_cast<std::size_t>(std::lround(cell.rcnn.wrong_and_valid * count));
-    sum.frames += cell.rcnn.count;
-  };
   for (const SubjectResult& subject : subjects) {
-    for (const CellResult& cell : subject.cells) add(subject, cell);
-    for (const CellResult& cell : subject.sensor_runs) add(subject, cell);
+    for (const auto* cells : {&subject.cells, &subject.sensor_runs}) {
+      for (const CellResult& cell : *cells) {
+        if (!has_pose_goal(subject, cell)) continue;
+        sum.wrong += count_of(cell, cell.rcnn.wrong_and_valid);
+        sum.frames += cell.rcnn.count;
+      }
+    }
+  }
+  return sum;
+}
+
+RightAndValid right_and_valid(const std::vector<SubjectResult>& subjects) {
+  RightAndValid sum;
+  for (const SubjectResult& subject : subjects) {
+    for (const CellResult& cell : subject.cells) {
+      if (!has_pose_goal(subject, cell)) continue;
+      sum.valid += count_of(cell, cell.rcnn.right_and_valid);
+      sum.right += count_of(cell, cell.rcnn.within_20deg);
+    }
   }
   return sum;
 }

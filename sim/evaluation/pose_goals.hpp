@@ -54,4 +54,13 @@ struct WrongAndValid {
 inline constexpr double kMostWrongAndValid = 0.002;
 WrongAndValid wrong_and_valid(const std::vector<SubjectResult>& subjects);
 
+// Last frames that are within 20° and called valid, over the runs under the paper's conditions.
+struct RightAndValid {
+  std::size_t valid = 0;
+  std::size_t right = 0;  // within 20°, valid or not
+  double share() const { return right == 0 ? 0.0 : static_cast<double>(valid) / static_cast<double>(right); }
+};
+inline constexpr double kLeastRightAndValid = 0.99;
+RightAndValid right_and_valid(const std::vector<SubjectResult>& subjects);
+
 }  // namespace tumblesight::sim

@@ -46,9 +46,16 @@ bool pose_is_off(const FrameResult& result, double limit_deg) {
   return result.pose.turn_deg > limit_deg;
 }
 
-WorstSequence worst_of(const FrameResult& result) {
-  return {result.sequence,      result.trusted, error_deg(result, Estimator::kRcnn), result.pose.turn_deg,
-          result.pose.verified, result.range_m, kDegPerRad * result.rate_rad_s};
+WorstSequence worst_of(const FrameResult& result, bool has_poses) {
+  WorstSequence one;
+  one.sequence = result.sequence;
+  one.valid = result.trusted;
+  one.error_deg = error_deg(result, Estimator::kRcnn);
+  one.pose_deg = has_poses ? result.pose.turn_deg : std::nan("");
+  one.pose_verified = result.pose.verified;
+  one.range_m = result.range_m;
+  one.rate_deg_s = kDegPerRad * result.rate_rad_s;
+  return one;
 }
 
 // What is wrong and vouched for is worse than what is only wrong.
@@ -75,17 +82,17 @@ ShareBounds share_bounds_95(std::size_t count, std::size_t of) {
 const std::vector<RareEventRow>& rare_event_table() {
   static const std::vector<RareEventRow> table{
       {RareEvent::kWrong, "wrong", "wrong: over 20°",
-       [](const FrameResult& result) { return error_deg(result, Estimator::kRcnn) > kWrong_deg; }},
+       [](const FrameResult& result) { return error_deg(result, Estimator::kRcnn) > kWrong_deg; }, false},
       {RareEvent::kWrongAndValid, "wrong_and_valid", "wrong and valid",
        [](const FrameResult& result) {
          return result.trusted && error_deg(result, Estimator::kRcnn) > kWrong_deg;
-       }},
+       },
+       false},
       {RareEvent::kPoseWrong, "pose_wrong", "pose over 20°",
-       [](const FrameResult& result) { return pose_is_off(result, kWrong_deg); }},
+       [](const FrameResult& result) { return pose_is_off(result, kWrong_deg); }, true},
       {RareEvent::kPoseVerifiedWrong, "pose_verified_wrong", "pose verified and over 5°",
-       [](const FrameResult& result) {
-         return result.pose.verified && pose_is_off(result, kPoseWrong_deg);
-       }}};
+       [](const FrameResult& result) { return result.pose.verified && pose_is_off(result, kPoseWrong_deg); },
+       true}};
   return table;
 }
 
@@ -94,7 +101,9 @@ RareEvents rare_events(const std::vector<FrameResult>& last) {
   events.of = last.size();
   for (const RareEventRow& row : rare_event_table())
     events.counts.push_back(static_cast<std::size_t>(std::count_if(last.begin(), last.end(), row.happened)));
-  for (const FrameResult& result : last) events.worst.push_back(worst_of(result));
+  events.has_poses =
+      std::any_of(last.begin(), last.end(), [](const FrameResult& result) { return result.pose.known; });
+  for (const FrameResult& result : last) events.worst.push_back(worst_of(result, events.has_poses));
   const auto worse = [](const WorstSequence& a, const WorstSequence& b) {
     return std::make_tuple(badness_of(b), b.error_deg, a.sequence) <
            std::make_tuple(badness_of(a), a.error_deg, b.sequence);

@@ -27,6 +27,7 @@ struct RareEventRow {
   const char* key;   // in JSON
   const char* name;  // in tables
   bool (*happened)(const FrameResult&);
+  bool of_pose;  // says nothing where the model image has no surface to register
 };
 const std::vector<RareEventRow>& rare_event_table();
 
@@ -35,7 +36,7 @@ struct WorstSequence {
   std::uint32_t sequence = 0;  // index for the seed of the run: `simulate --only` replays it
   bool valid = false;          // the report calls the attitude valid
   double error_deg = 0.0;      // of the RCNN
-  double pose_deg = 0.0;       // of the registered pose; 180 without one
+  double pose_deg = 0.0;       // of the registered pose; 180 without one, NaN if no sequence has one
   bool pose_verified = false;
   double range_m = 0.0;
   double rate_deg_s = 0.0;
@@ -46,6 +47,7 @@ inline constexpr std::size_t kWorstSequences = 20;
 struct RareEvents {
   std::size_t of = 0;               // last frames
   std::vector<std::size_t> counts;  // in the order of rare_event_table()
+  bool has_poses = false;           // false: no sequence has a registered pose, and their counts say nothing
   // At most kWorstSequences: verified poses more than 5° off first, then wrong attitudes that are valid,
   // poses more than 20° off, and the rest; each by the error of the RCNN.
   std::vector<WorstSequence> worst;

@@ -45,7 +45,7 @@ struct CellResult {
   RareEvents rare;
   std::string replay;  // the command that shows a sequence, up to its index; empty: not known
   std::optional<ErrorSummary> baseline;  // over the first sequences only, see its count
-  double network_ms = 0.0;               // per frame, one thread
+  double step_ms = 0.0;                  // per frame, one thread
   double baseline_ms = 0.0;
   std::vector<PeerErrors> peers;  // empty unless they were asked for
   Curve by_frame;

@@ -214,9 +214,8 @@ std::vector<ConditionColumn> make_condition_columns() {
   columns.push_back({kOthers, "templates on sequences", [](const Row& row) -> TableCell {
                        return {row.cell.baseline ? std::to_string(row.cell.baseline->count) : "-"};
                      }});
-  columns.push_back({kOthers, "network ms", [](const Row& row) -> TableCell {
-                       return {fmt::format("{:.2f}", row.cell.network_ms)};
-                     }});
+  columns.push_back({kOthers, "step ms",
+                     [](const Row& row) -> TableCell { return {fmt::format("{:.2f}", row.cell.step_ms)}; }});
   columns.push_back({kOthers, "templates ms", [](const Row& row) -> TableCell {
                        return {row.cell.baseline ? fmt::format("{:.0f}", row.cell.baseline_ms) : "-"};
                      }});

@@ -64,6 +64,10 @@ Json rare_events_json(const RareEvents& events) {
   Json json = Json::object();
   const std::vector<RareEventRow>& table = rare_event_table();
   for (std::size_t i = 0; i < events.counts.size(); ++i) {
+    if (table[i].of_pose && !events.has_poses) {
+      json[table[i].key] = nullptr;
+      continue;
+    }
     const ShareBounds bounds = share_bounds_95(events.counts[i], events.of);
     json[table[i].key] = {
         {"count", events.counts[i]}, {"of", events.of}, {"low_95", bounds.low}, {"high_95", bounds.high}};
@@ -77,8 +81,8 @@ Json worst_json(const RareEvents& events) {
     json.push_back({{"sequence", one.sequence},
                     {"error_deg", one.error_deg},
                     {"valid", one.valid},
-                    {"pose_deg", one.pose_deg},
-                    {"pose_verified", one.pose_verified},
+                    {"pose_deg", events.has_poses ? Json(one.pose_deg) : Json()},
+                    {"pose_verified", events.has_poses ? Json(one.pose_verified) : Json()},
                     {"range_m", one.range_m},
                     {"rate_deg_s", one.rate_deg_s}});
   return json;

@@ -220,7 +220,7 @@ std::string figures_of(const SubjectResult& subject) {
 }
 
 std::string times_text(const CellResult& cell) {
-  std::string text = fmt::format("network {:.2f} ms per frame", cell.network_ms);
+  std::string text = fmt::format("step {:.2f} ms per frame", cell.step_ms);
   if (cell.baseline) text += fmt::format(", template matching {:.0f} ms", cell.baseline_ms);
   return text + " (median, one thread)";
 }

@@ -192,7 +192,10 @@ DataTable rare_events_table(const SubjectResult& subject) {
   for (const RareEventRow& row : rare_event_table()) table.header.emplace_back(row.name);
   for (const CellResult* cell : all_cells(subject)) {
     Cells line{{run_name(*cell)}, {std::to_string(cell->rare.of)}};
-    for (const std::size_t count : cell->rare.counts) line.push_back({count_text(count, cell->rare.of)});
+    for (std::size_t i = 0; i < cell->rare.counts.size(); ++i) {
+      const bool is_known = cell->rare.has_poses || !rare_event_table()[i].of_pose;
+      line.push_back({is_known ? count_text(cell->rare.counts[i], cell->rare.of) : "-"});
+    }
     table.rows.push_back(line);
   }
   return table;
@@ -205,8 +208,8 @@ DataTable worst_sequences_table(const CellResult& cell) {
     table.rows.push_back({{std::to_string(one.sequence)},
                           {degrees_text(one.error_deg)},
                           {one.valid ? "yes" : "no"},
-                          {degrees_text(one.pose_deg)},
-                          {one.pose_verified ? "yes" : "no"},
+                          {text_or_dash(one.pose_deg, degrees_text)},
+                          {cell.rare.has_poses ? one.pose_verified ? "yes" : "no" : "-"},
                           {fmt::format("{:.1f}", one.range_m)},
                           {fmt::format("{:.1f}", one.rate_deg_s)}});
   }
@@ -310,9 +313,10 @@ DataTable detection_table(const SubjectResult& subject) {
 }
 
 DataTable disturbed_table(const SubjectResult& subject) {
-  DataTable table{{"condition", "disturbed by", "mean within 20°", "within 20°", "wrong and valid",
-                   "right and valid", "bar", "met"},
-                  {}};
+  DataTable table{
+      {"condition", "disturbed by", "mean within 20°", "within 20°", "wrong and valid", "right and valid",
+       "bar", "met", "pose, mean within 20°", "pose within 20°", "verified, wrong"},
+      {}};
   const auto share = [](const CellResult& cell, double value) {
     return TableCell{percent_text(value, cell.rcnn.count)};
   };
@@ -329,6 +333,10 @@ DataTable disturbed_table(const SubjectResult& subject) {
     cells.push_back({bar.empty() ? "-" : bar});
     cells.push_back(bar.empty() ? TableCell{""}
                                 : TableCell{met ? "yes" : "no", met ? Mark::kMet : Mark::kMissed});
+    const bool has_poses = cell.pose.known > 0.0;
+    cells.push_back({has_poses ? pose_error_text(cell.pose.mean_within_20_deg) : "-"});
+    cells.push_back({has_poses ? percent_text(cell.pose.within_20deg, cell.pose.count) : "-"});
+    cells.push_back({has_poses ? percent_text(cell.pose.verified_wrong) : "-"});
     table.rows.push_back(cells);
   }
   return table;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <ctime>
 #include <sstream>
 
@@ -13,6 +14,14 @@ namespace tumblesight::sim {
 std::size_t columns_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+void print_message(const std::string& line) {
+  std::fputs((line + "\n").c_str(), stderr);
+}
+
+void print_note(const std::string& text) {
+  print_message("  note: " + text);
 }
 
 std::string wrapped(const std::string& text, std::size_t columns) {
@@ -63,6 +72,15 @@ std::string shortened(const std::string& text, std::size_t most) {
     at += step;
   }
   return result;
+}
+
+bool is_utf8(const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t size = size_of_character(text, at);
+    if (size == 0) return false;
+    at += size;
+  }
+  return true;
 }
 
 std::string local_time_text() {

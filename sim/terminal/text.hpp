@@ -32,6 +32,12 @@ inline std::string counted(std::uint64_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
+// A line on standard error. One that cannot be shown, as on a full disk, is no failure.
+void print_message(const std::string& line);
+void print_note(const std::string& text);  // "  note: ..."
+// Whether a text is UTF-8.
+bool is_utf8(const std::string& text);
+
 // The time of day, for reports.
 // Now, in the local time zone: "2026-03-14 09:26 CET".
 std::string local_time_text();

@@ -47,7 +47,7 @@ inline CellResult sample_cell(Condition condition, double rcnn_deg, bool baselin
     cell.baseline = summarise({1.0, 2.0, 90.0});
     cell.baseline_histogram = histogram({1.0, 2.0, 90.0});
   }
-  cell.network_ms = 0.5;
+  cell.step_ms = 0.5;
   cell.baseline_ms = 123.0;
   cell.by_frame = errors_by_frame(frames, 2);
   cell.by_range = errors_by_range(last);

@@ -128,5 +128,26 @@ TEST(WrongAndValid, IsSummedOverTheRunsThatShowTheTarget) {
   EXPECT_EQ(wrong_and_valid({}).share(), 0.0);
 }
 
+TEST(RightAndValid, IsSummedOverThePapersConditions) {
+  SubjectResult subject;
+  subject.target = "magellan";
+  subject.cells.resize(3);
+  for (CellResult& cell : subject.cells) {
+    cell.pose.known = 1.0;
+    cell.rcnn.count = 900;
+    cell.rcnn.within_20deg = 800.0 / 900.0;
+    cell.rcnn.right_and_valid = 780.0 / 900.0;
+  }
+  subject.cells[1].condition = Condition::kStress;  // without a goal
+  subject.cells[2].condition = Condition::kOccluded;
+  subject.cells[2].rcnn.right_and_valid = 700.0 / 900.0;
+  subject.sensor_runs = {trusted_cell()};  // not the paper's
+  const RightAndValid sum = right_and_valid({subject});
+  EXPECT_EQ(sum.right, 1600U);
+  EXPECT_EQ(sum.valid, 1480U);
+  EXPECT_DOUBLE_EQ(sum.share(), 1480.0 / 1600.0);
+  EXPECT_EQ(right_and_valid({}).share(), 0.0);
+}
+
 }  // namespace
 }  // namespace tumblesight::sim

@@ -62,9 +62,11 @@ TEST(RareEvents, CountsEachKindAndKeepsTheWorstInOrder) {
     last.back().trusted = i % 2 == 0;
     last.back().pose.turn_deg = i < 3 ? 6.0 : 1.0;
     last.back().pose.verified = i != 1;
+    last.back().pose.known = true;
   }
   const RareEvents events = rare_events(last);
   EXPECT_EQ(events.of, 30U);
+  EXPECT_TRUE(events.has_poses);
   // More than 20 degrees: 20 to 29. Of these 20, 22, 24, 26 and 28 are valid. No pose is 20 degrees off; two
   // of the three that are 6 degrees off are verified.
   EXPECT_EQ(events.counts, (std::vector<std::size_t>{10, 5, 0, 2}));
@@ -74,6 +76,16 @@ TEST(RareEvents, CountsEachKindAndKeepsTheWorstInOrder) {
   EXPECT_EQ(order, (std::vector<std::uint32_t>{2,  0,  28, 26, 24, 22, 20, 29, 27, 25,
                                                23, 21, 19, 18, 17, 16, 15, 14, 13, 12}));
   EXPECT_NEAR(events.worst[2].error_deg, 28.5, 1e-9);
+}
+
+// The model image has no surface, or is in float32.
+TEST(RareEvents, SayNothingOfPosesWhereNoneIsRegistered) {
+  std::vector<FrameResult> last{result_with(0, 0, 3.0, 0.0), result_with(1, 0, 25.0, 0.0)};
+  last[1].trusted = true;
+  const RareEvents events = rare_events(last);
+  EXPECT_FALSE(events.has_poses);
+  EXPECT_EQ(events.worst[0].sequence, 1U) << "by the attitude";
+  EXPECT_TRUE(std::isnan(events.worst[0].pose_deg));
 }
 
 TEST(RareEvents, EqualErrorsAreInTheOrderOfTheSequences) {

@@ -285,12 +285,15 @@ TEST(ResultsMarkdown, ShowsDisturbedRunsWithTheirBars) {
   cell.disturbances.lost_frames = 1;
   cell.rcnn.mean_within_20_deg = 1.4;
   results.subjects[0].disturbed = {cell};
+  cell.pose = sample_poses();
   cell.disturbances.lost_frames = 9;
   results.subjects[0].disturbed.push_back(cell);
   const std::string text = results_markdown(results);
   EXPECT_NE(text.find("| nominal | lost-frames 1 | 1.40"), std::string::npos) << text;
-  EXPECT_NE(text.find("| 1.35°, 99.8 % within 20° | "), std::string::npos) << text;
+  EXPECT_NE(text.find("| 1.15 times the mean, 0.2 % fewer within 20° | "), std::string::npos) << text;
+  EXPECT_NE(text.find("yes | - | - | - |"), std::string::npos) << "no poses";
   EXPECT_NE(text.find("| nominal | lost-frames 9 | 1.40"), std::string::npos) << "no bar";
+  EXPECT_NE(text.find(" - |  | 0.250° | 97.5"), std::string::npos) << text;
   EXPECT_EQ(results_json(results)["rows"].size(), 5U);
   EXPECT_EQ(lines_of(results_csv(results)).size(), 1U + 3U + 3U + 2U + 4U);
 }
