@@ -124,11 +124,22 @@ void expand(const std::vector<Option>& options, std::size_t from, const Campaign
     if (!value.empty()) {
       run.options.push_back("--" + option.key);
       if (!option.is_flag) run.options.push_back(value);
+      run.keys.emplace_back(option.key, option.is_flag ? std::nullopt : std::optional<std::string>(value));
       const std::string words = words_of(option, value);
       if (words != run.name)
         run.name += (run.name.empty() ? "" : "-") + words;  // a mesh named for its target
     }
     expand(options, from + 1, run, runs);
+  }
+}
+
+// Before there are any: six lists of twenty values are 64 million.
+void require_not_too_many(const TomlFields& fields, const std::vector<Option>& options) {
+  std::size_t runs = 1;
+  for (const Option& option : options) {
+    runs *= option.values.size();
+    if (runs > kMostRuns)
+      fields.fail("run", fmt::format("more than {} runs; divide the campaign into several files", kMostRuns));
   }
 }
 
@@ -140,8 +151,10 @@ std::vector<CampaignRun> runs_of_table(TomlFields fields, std::int64_t seed, int
   run.sequences = static_cast<std::uint32_t>(*sequences);
   run.line = line;
   run.options = {"--sequences", std::to_string(run.sequences), "--seed", std::to_string(seed)};
+  const std::vector<Option> options = options_of(fields);
+  require_not_too_many(fields, options);
   std::vector<CampaignRun> runs;
-  expand(options_of(fields), 0, run, runs);
+  expand(options, 0, run, runs);
   return runs;
 }
 

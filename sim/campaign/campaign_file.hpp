@@ -11,7 +11,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tumblesight::sim {
@@ -20,6 +22,8 @@ namespace tumblesight::sim {
 struct CampaignRun {
   std::string name;                  // of its folder: a-z, 0-9, "_", "-" and "."; unique
   std::vector<std::string> options;  // of `tumblesight evaluate`, with sequences and seed
+  // What the file says of them: option without its dashes, and value; none: true.
+  std::vector<std::pair<std::string, std::optional<std::string>>> keys;
   std::uint32_t sequences = 0;
   int line = 0;  // of its [[run]] in the file
 };

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 namespace tumblesight::sim {
 namespace {
@@ -34,6 +36,20 @@ std::vector<CampaignTask> tasks_of(const Campaign& campaign, const std::string& 
   std::stable_sort(tasks.begin(), tasks.end(),
                    [](const CampaignTask& a, const CampaignTask& b) { return place_of(a) < place_of(b); });
   return tasks;
+}
+
+std::string other_division(const CampaignTask& task) {
+  namespace fs = std::filesystem;
+  const std::string of_ours = fmt::format("_of_{:04}.shard", task.shard.count);
+  std::error_code no_folder;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(fs::path(task.path).parent_path(), no_folder)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t of = name.find("_of_");
+    if (of != std::string::npos && entry.path().extension() == ".shard" && name.substr(of) != of_ours)
+      return entry.path().string();
+  }
+  return {};
 }
 
 std::string name_of(const Campaign& campaign, const CampaignTask& task) {

@@ -21,6 +21,9 @@ struct CampaignTask {
 // In the order in which they are best run: those of all runs side by side, so that every run has figures
 // early. `out`: folder of the shard files.
 std::vector<CampaignTask> tasks_of(const Campaign& campaign, const std::string& out);
+// A shard file in the folder of the task's run that divides it into another number of shards, as after a
+// change of its sequences or of sequences_per_task; empty: there is none.
+std::string other_division(const CampaignTask& task);
 // "near_shoemaker-nominal 3/16"
 std::string name_of(const Campaign& campaign, const CampaignTask& task);
 

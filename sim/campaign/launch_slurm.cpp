@@ -64,6 +64,12 @@ std::string parts_left(const LaunchSettings& settings) {
   return text;
 }
 
+// "17", or "17;cluster".
+bool is_job(const std::string& text) {
+  const std::string id = text.substr(0, text.find(';'));
+  return !id.empty() && id.find_first_not_of("0123456789") == std::string::npos;
+}
+
 // A job with the name of its cluster, where jobs go to several: "17", or "17;cluster".
 std::string id_of(const std::string& job) {
   return job.substr(0, job.find(';'));
@@ -110,7 +116,7 @@ class JobsFile {
         throw std::runtime_error(
             fmt::format("the jobs file '{}' cannot be locked: {}; give an --out on a file system with locks",
                         path_, std::strerror(errno)));
-      if (!is_waiting) fmt::print(stderr, "  note: waiting for another call that submits these jobs\n");
+      if (!is_waiting) print_note("waiting for another call that submits these jobs");
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     return false;
@@ -198,12 +204,28 @@ class SlurmJobs final : public Launcher {
     arguments.insert(arguments.begin(), settings_.options.begin(), settings_.options.end());
     try {
       const std::string answer = output_of("sbatch", arguments, kMostOfASubmission_s);
-      return answer.substr(answer.rfind('\n') + 1);
+      const std::string job = answer.substr(answer.rfind('\n') + 1);
+      if (!is_job(job))
+        throw std::runtime_error(fmt::format("sbatch has answered '{}' in place of a job's number. {}",
+                                             shortened(job), may_be_taken()));
+      return job;
     } catch (const std::runtime_error& error) {
       if (std::string(error.what()).find("takes longer") == std::string::npos) throw;
-      throw std::runtime_error(fmt::format(
-          "{}. Slurm may have taken the job: end what `squeue --name={}` shows before the next try",
-          error.what(), settings_.campaign.name));
+      throw std::runtime_error(fmt::format("{}. {}", error.what(), may_be_taken()));
+    }
+  }
+  std::string may_be_taken() const {
+    return fmt::format("Slurm may have taken the job: end what `squeue --name={}` shows before the next try",
+                       settings_.campaign.name);
+  }
+  // What has become of the array after a failure.
+  std::string end_array() const {
+    try {
+      (void)output_of("scancel", with_cluster(jobs_.array, {id_of(jobs_.array)}), kMostOfAQuestion_s);
+      return fmt::format("Job array {} was cancelled", jobs_.array);
+    } catch (const std::runtime_error& error) {
+      return fmt::format("Job array {} goes on, since {}; to end it: {}", jobs_.array, error.what(),
+                         Jobs{jobs_.array, ""}.cancel_command());
     }
   }
   void submit(const JobsFile& file) {
@@ -222,8 +244,7 @@ class SlurmJobs final : public Launcher {
       file.write(jobs_);
     } catch (const std::runtime_error& error) {
       // Nobody would know of the array.
-      (void)output_of("scancel", with_cluster(jobs_.array, {id_of(jobs_.array)}), kMostOfAQuestion_s);
-      throw std::runtime_error(fmt::format("{}. Job array {} was cancelled", error.what(), jobs_.array));
+      throw std::runtime_error(fmt::format("{}. {}", error.what(), end_array()));
     }
   }
   // A failure of squeue may pass, but not every one does.
@@ -268,7 +289,7 @@ class SlurmJobs final : public Launcher {
 std::unique_ptr<Launcher> launch_slurm(const LaunchSettings& settings) {
   try {
     (void)output_of("sbatch", {"--version"}, kMostOfAQuestion_s);
-  } catch (const std::runtime_error& error) {
+  } catch (const ProgramFailure& error) {
     throw std::runtime_error(fmt::format(
         "{}; the machine must be one from which jobs can be submitted (Debian: slurm-client)", error.what()));
   }

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 
 #include "gnc/numerics/crc.hpp"
 #include "sim/campaign/sequence_record.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -70,6 +72,23 @@ ShardHeader read_header(const std::string& path, std::ifstream& file) {
   } catch (const std::exception& error) {
     fail(path, fmt::format("its header is of another version of tumblesight: {}", error.what()));
   }
+}
+
+// Of a file that is there. None: there is no file.
+std::optional<std::ifstream> opened(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (file) return file;
+  const int reason = errno;
+  std::error_code unknown;
+  if (!std::filesystem::exists(path, unknown)) return std::nullopt;
+  fail(path, fmt::format("cannot be read: {}", std::strerror(reason)));
+}
+
+// A pipe would keep us waiting, and a device keeps nothing.
+void require_plain_file(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    fail(path, "it is no plain file; name another one");
 }
 
 // Whether a process was killed while it wrote the header: the file ends before the header does.
@@ -185,6 +204,7 @@ ShardWriter::~ShardWriter() {
 void ShardWriter::take_file() {
   const std::filesystem::path parent = std::filesystem::path(path_).parent_path();
   if (!parent.empty()) std::filesystem::create_directories(parent);
+  require_plain_file(path_);
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0) fail(path_, fmt::format("cannot be written: {}", std::strerror(errno)));
   if (flock(file_, LOCK_EX | LOCK_NB) == 0) return;
@@ -260,6 +280,11 @@ ShardContent read_shard(const std::string& path) {
     content.size_bytes = static_cast<std::uint64_t>(records.file().tellg());
   }
   content.dropped_bytes = std::filesystem::file_size(path) - content.size_bytes;
+  const auto is_whole_record = [&](std::uint32_t frames) {
+    return content.dropped_bytes >= record_size_bytes(frames);
+  };
+  const std::vector<std::uint32_t> frames = frames_of(runs);
+  content.is_damaged = std::any_of(frames.begin(), frames.end(), is_whole_record);
   return content;
 }
 
@@ -278,17 +303,17 @@ void read_run(const std::string& path, const ShardContent& content, std::size_t 
 }
 
 std::optional<ShardHeader> header_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::optional<std::ifstream> file = opened(path);
   if (!file || is_begun_only(path)) return std::nullopt;
-  return read_header(path, file);
+  return read_header(path, *file);
 }
 
 std::uint64_t records_in(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::optional<std::ifstream> file = opened(path);
   if (!file) return 0;
   try {
-    const ShardHeader header = read_header(path, file);
-    const auto start_bytes = static_cast<std::uintmax_t>(file.tellg());
+    const ShardHeader header = read_header(path, *file);
+    const auto start_bytes = static_cast<std::uintmax_t>(file->tellg());
     std::error_code error;
     // After the header: another process may be writing it.
     const std::uintmax_t size_bytes = std::filesystem::file_size(path, error);
@@ -306,6 +331,12 @@ bool is_in_use(const std::string& path) {
   const bool taken = flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(file);
   return taken;
+}
+
+std::string dropped_text(const std::string& path, std::uint64_t dropped_bytes) {
+  return fmt::format(
+      "the last {} of '{}' are cut off, or follow a damaged record; what they held is run again",
+      counted(dropped_bytes, "byte"), path);
 }
 
 std::uint64_t cut_to_whole_records(const std::string& path) {

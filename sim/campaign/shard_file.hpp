@@ -82,6 +82,7 @@ struct ShardContent {
   SequenceSet done;
   std::uint64_t size_bytes = 0;     // up to the end of the last whole record
   std::uint64_t dropped_bytes = 0;  // after it
+  bool is_damaged = false;  // what follows is more than a record that is being written, or was cut off
 };
 // Throws std::runtime_error that names the file, and the remedy, if it cannot be read, is no shard file, or
 // has records that are not of its shard, or twice.
@@ -92,10 +93,13 @@ void read_run(const std::string& path, const ShardContent& content, std::size_t 
 
 // None: there is no such file, or its header is not complete yet. Throws as read_shard() does.
 std::optional<ShardHeader> header_of(const std::string& path);
-// Removes what is no whole record, for a file that nobody writes: its sequences are run again. Returns its
-// size. Throws as read_shard() does.
+// "the last 12 bytes of 'a.shard' are cut off or damaged; what they held is run again"
+std::string dropped_text(const std::string& path, std::uint64_t dropped_bytes);
+// Removes what follows the last whole record, for a file that nobody writes: its sequences are run again.
+// Returns its size. Throws as read_shard() does.
 std::uint64_t cut_to_whole_records(const std::string& path);
 // Records in a file with a single run, from its size alone: for a progress bar. 0 if it is no shard file.
+// Throws std::runtime_error that names a file that is there and cannot be read.
 std::uint64_t records_in(const std::string& path);
 // Whether a process is writing the file.
 bool is_in_use(const std::string& path);

@@ -116,6 +116,25 @@ void note_missing(const std::vector<OpenShard>& shards, const std::vector<Experi
                               all - there));
 }
 
+void note_damaged(const std::vector<OpenShard>& shards, std::vector<std::string>& notes) {
+  for (const OpenShard& shard : shards)
+    if (shard.content.is_damaged)
+      notes.push_back(
+          fmt::format("A record of shard file {} is damaged. The {} from there on are left out; its command "
+                      "runs again what they held.",
+                      shard.path, counted(shard.content.dropped_bytes, "byte")));
+}
+
+void require_a_sequence(const std::vector<OpenShard>& shards) {
+  for (const OpenShard& shard : shards)
+    for (const auto& done : shard.content.done)
+      if (!done.empty()) return;
+  throw std::runtime_error(fmt::format(
+      "no sequence is done in {}; run the command of the shards first:\n  {} --shard I/N --shard-file FILE",
+      shards.size() == 1 ? "shard file '" + shards.front().path + "'" : "any of the shard files",
+      shards.front().content.header.command));
+}
+
 std::vector<OpenShard> open_shards(const std::vector<std::string>& paths) {
   std::vector<OpenShard> shards;
   for (const std::string& path : paths) shards.push_back({path, read_shard(path)});
@@ -168,6 +187,7 @@ MergedShards merge_shards(const std::vector<std::string>& paths, MergeMode mode)
     require_complete(shards, runs);
     require_all(shards, runs);
   }
+  require_a_sequence(shards);
   ExperimentFigures figures(identity.subject, identity.settings);
   for (std::size_t run = 0; run < runs.size(); ++run) {
     for (const OpenShard& shard : shards)
@@ -178,6 +198,7 @@ MergedShards merge_shards(const std::vector<std::string>& paths, MergeMode mode)
   set_replay(merged.figures, merged.command);
   for (const OpenShard& shard : shards) merged.commits.insert(shard.content.header.commit);
   note_missing(shards, runs, merged.notes);
+  note_damaged(shards, merged.notes);
   return merged;
 }
 

@@ -79,7 +79,7 @@ AdoptionSettings settings_of(const AdoptArguments& arguments, const std::string&
     std::vector<std::string> warnings;
     try {
       const RangeLimits ranges = ranges_of(sensor, swath_m, warnings);
-      for (const std::string& warning : warnings) fmt::print(stderr, "  note: {}\n", warning);
+      for (const std::string& warning : warnings) print_note(warning);
       return ranges;
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(std::string(error.what()) +

@@ -16,6 +16,7 @@
 
 #include "sim/cli/mission_arguments.hpp"
 #include "sim/model/model_file.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/targets.hpp"
@@ -369,7 +370,7 @@ std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std:
   for (const std::string& mesh : arguments.meshes) {
     meshes.push_back(target_mesh(target, mesh, mesh_file_options(arguments)));
     const std::string left_out = left_out_note(meshes.back());
-    if (!left_out.empty()) fmt::print(stderr, "  note: mesh '{}': {}\n", mesh, left_out);
+    if (!left_out.empty()) print_note(fmt::format("mesh '{}': {}", mesh, left_out));
   }
   return meshes;
 }

@@ -15,6 +15,7 @@
 #include "sim/model/model_file.hpp"
 #include "sim/process/program_files.hpp"
 #include "sim/terminal/table.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/target/targets.hpp"
@@ -45,7 +46,7 @@ std::vector<gnc::RangeImage> rendered_frames(const std::string& target) {
 }
 
 void print_measuring(const std::string& what) {
-  fmt::print(stderr, "  measuring {}\n", what);
+  print_message("  measuring " + what);
 }
 
 // The fixed-point model whose weights are read from `image`.
@@ -62,7 +63,7 @@ template <class Model>
 void bench_one_peer(const std::unique_ptr<Peer>& peer, const std::string& reason, const Model& model,
                     const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
   if (peer == nullptr) {
-    fmt::print(stderr, "  left out: {}\n", reason);
+    print_note("left out: " + reason);
     return;
   }
   print_measuring(peer->name() + (peer->is_int8() ? ", int8" : ", float32"));

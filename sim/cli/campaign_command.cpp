@@ -13,20 +13,22 @@
 #include <optional>
 #include <thread>
 
-#include "cmake/version.hpp"
 #include "sim/campaign/campaign_results.hpp"
 #include "sim/campaign/campaign_worker.hpp"
 #include "sim/campaign/launcher.hpp"
+#include "sim/cli/campaign_check.hpp"
 #include "sim/cli/evaluate_arguments.hpp"
 #include "sim/cli/evaluation_output.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/process/end_with_starter.hpp"
 #include "sim/process/program_files.hpp"
+#include "sim/report/campaign_markdown.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -50,19 +52,6 @@ struct CampaignArguments {
   std::string command_line;
 };
 
-// A campaign and where it stands.
-struct OpenCampaign {
-  Campaign campaign;
-  std::string out;
-  std::vector<CampaignTask> tasks;
-
-  std::uint64_t sequences() const {
-    std::uint64_t all = 0;
-    for (const CampaignTask& task : tasks) all += task.sequences;
-    return all;
-  }
-};
-
 // Paths in the file are relative to its folder, so that is where we go.
 OpenCampaign open_campaign(const CampaignArguments& arguments) {
   OpenCampaign open{read_campaign(arguments.file), {}, {}};
@@ -75,84 +64,6 @@ OpenCampaign open_campaign(const CampaignArguments& arguments) {
   open.tasks = tasks_of(open.campaign, open.out);
   fs::current_path(open.campaign.folder);
   return open;
-}
-
-std::string joined_words(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += " " + shell_word(word);
-  return text;
-}
-
-EvaluateArguments arguments_of(const OpenCampaign& open, const CampaignTask& task) {
-  EvaluateArguments arguments = parsed_evaluate(options_of(open.campaign, task));
-  arguments.command_line =
-      "tumblesight evaluate --no-baseline" + joined_words(open.campaign.runs[task.run].options);
-  arguments.quiet = true;
-  return arguments;
-}
-
-[[noreturn]] void refuse(const OpenCampaign& open, const CampaignRun& run, const std::string& why) {
-  throw std::invalid_argument(
-      fmt::format("{}, line {}: run {}: {}", open.campaign.file, run.line, run.name, why));
-}
-
-// A file of an earlier version of the campaign must not count as done.
-void require_same_experiment(const CampaignTask& task, const ExperimentIdentity& identity) {
-  const std::optional<ShardHeader> header = header_of(task.path);
-  if (!header) return;
-  std::string differs = difference(header->identity, identity);
-  if (differs.empty() && to_string(header->shard) != to_string(task.shard))
-    differs = fmt::format("shard is {}, not {}", to_string(header->shard), to_string(task.shard));
-  if (differs.empty()) return;
-  throw std::runtime_error(fmt::format(
-      "shard file '{}' is of another experiment: {}; give another --out, or delete it", task.path, differs));
-}
-
-// Against the runs before it. One experiment can be written in several ways.
-void require_new(const OpenCampaign& open, std::size_t run,
-                 const std::vector<std::optional<ExperimentIdentity>>& identities) {
-  for (std::size_t i = 0; i < identities.size(); ++i) {
-    if (i == run || !identities[i]) continue;
-    const CampaignRun& other = open.campaign.runs[i];
-    if (has_same_sequences(*identities[run], *identities[i]))
-      throw std::invalid_argument(fmt::format(
-          "has the sequences of run {} of line {}, which would count twice; leave out one of them",
-          other.name, other.line));
-    const SensorDescription &own_sensor = identities[run]->subject.sensor,
-                            &other_sensor = identities[i]->subject.sensor;
-    if (own_sensor.name == other_sensor.name && crc32_of(own_sensor) != crc32_of(other_sensor))
-      throw std::invalid_argument(
-          fmt::format("its sensor has the name '{}' and is another one than that of run {} of line {}; give "
-                      "one of them another name, in its file",
-                      own_sensor.name, other.name, other.line));
-  }
-}
-
-// Every run and what there is of it, before the first one starts.
-void check(const OpenCampaign& open) {
-  ProgressBar bar("checking", "runs", open.campaign.runs.size());
-  std::vector<std::optional<ExperimentIdentity>> identities(open.campaign.runs.size());
-  std::size_t done = 0;
-  for (const CampaignTask& task : open.tasks) {
-    const CampaignRun& run = open.campaign.runs[task.run];
-    std::optional<ExperimentIdentity>& identity = identities[task.run];
-    try {
-      if (!identity) {
-        const EvaluateArguments arguments = arguments_of(open, task);
-        const ExperimentSettings settings = checked_settings(arguments);
-        if (runs_of(settings).size() != 1)
-          throw std::invalid_argument(
-              "it is several evaluations; write the conditions as a list: [\"a\", \"b\"]");
-        identity = identity_of(checked_subject(arguments, settings), settings, kVersion);
-        require_new(open, task.run, identities);
-        bar.update(++done);
-      }
-      require_same_experiment(task, *identity);
-    } catch (const std::exception& error) {
-      refuse(open, run, error.what());
-    }
-  }
-  bar.finish();
 }
 
 void print_state(const OpenCampaign& open) {
@@ -176,23 +87,24 @@ void print_state(const OpenCampaign& open) {
   std::fflush(stdout);
 }
 
-// The options alone, so that it needs no mesh.
-void require_same_options(const OpenCampaign& open) {
-  for (const CampaignTask& task : open.tasks) {
-    const std::optional<ShardHeader> header = header_of(task.path);
-    if (!header || header->command == arguments_of(open, task).command_line) continue;
-    refuse(open, open.campaign.runs[task.run],
-           fmt::format("shard file '{}' is of another command: {}; give another --out, or delete it",
-                       task.path, header->command));
-  }
-}
-
 void require_something_to_report(const CampaignArguments& arguments, const OpenCampaign& open) {
   const std::size_t left = tasks_left(open.tasks).size();
   if (left == 0 || arguments.partial) return;
   throw std::runtime_error(fmt::format(
       "campaign '{}': {} of {} are not done. `campaign run` goes on; --partial reports what there is",
       open.campaign.name, left, counted(open.tasks.size(), "task")));
+}
+
+// A report of one campaign must not replace that of another one.
+void claim_folder(const OpenCampaign& open) {
+  const std::string path = open.out + "/campaign";
+  std::ifstream file(path);
+  std::string name;
+  std::getline(file, name);
+  if (!name.empty() && name != open.campaign.name)
+    throw std::runtime_error(
+        fmt::format("folder '{}' is of the campaign '{}'; give another --out", open.out, name));
+  if (name.empty()) write_file(path, open.campaign.name + "\n");
 }
 
 void report(const CampaignArguments& arguments, const OpenCampaign& open) {
@@ -207,9 +119,10 @@ void report(const CampaignArguments& arguments, const OpenCampaign& open) {
     throw std::runtime_error(fmt::format("campaign '{}': no sequence is done yet", open.campaign.name));
   results.command = arguments.command_line;
   results.generated = local_time_text();
-  for (const std::string& note : results.notes) fmt::print(stderr, "  note: {}\n", note);
+  claim_folder(open);
+  write_results_files(open.out, results, campaign_markdown(results));
+  for (const std::string& note : results.notes) print_note(note);
   print_campaign(results);
-  write_results_files(open.out, results);
   fmt::print("  report               {}\n\n", full_path(open.out + "/report.html"));
 }
 
@@ -222,7 +135,12 @@ std::unique_ptr<Launcher> launch(const CampaignArguments& arguments, const OpenC
   settings.options = shell_words(arguments.options);
   settings.tasks = open.tasks;
   settings.told_to_stop = [] { return told_to_stop != 0; };
-  fs::create_directories(log_folder(settings));
+  std::error_code error;
+  fs::create_directories(log_folder(settings), error);
+  if (error)
+    throw std::runtime_error(fmt::format("folder '{}' cannot be made: {}; give another --out",
+                                         log_folder(settings), error.message()));
+  claim_folder(open);
   for (const LauncherRow& row : launcher_table())
     if (arguments.on == row.name) return row.launch(settings);
   throw std::logic_error("no such launcher");  // the option knows the names
@@ -248,21 +166,28 @@ void stop_on_signals() {
   }
 }
 
-// The last "FAILED: ..." that a worker has written; empty: none.
-std::string last_failure(const std::string& folder) {
+// The "FAILED: ..." that a worker has written last, `since` then; empty: none. Logs of earlier calls stay.
+std::string last_failure(const std::string& folder, fs::file_time_type since) {
   std::string last;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    std::error_code gone;
+    const fs::file_time_type written = entry.last_write_time(gone);
+    if (gone || written < since) continue;
     std::ifstream log(entry.path());
-    for (std::string line; std::getline(log, line);)
-      if (const std::size_t at = line.find("FAILED: "); at != std::string::npos) last = line.substr(at);
+    for (std::string line; std::getline(log, line);) {
+      const std::size_t at = line.find("FAILED: ");
+      if (at == std::string::npos) continue;
+      last = line.substr(at);
+      since = written;
+    }
   }
   return last;
 }
 
 std::string why_not_done(const OpenCampaign& open, const std::vector<std::size_t>& left,
-                         const Launcher& launcher, const std::string& logs) {
+                         const Launcher& launcher, const std::string& failure) {
   std::string why;
-  if (const std::string failure = last_failure(logs); !failure.empty()) why += failure + ". ";
+  if (!failure.empty()) why += failure + ". ";
   if (!launcher.fault().empty()) why += launcher.fault() + ". ";
   const bool elsewhere = std::any_of(left.begin(), left.end(),
                                      [&](std::size_t task) { return is_in_use(open.tasks[task].path); });
@@ -270,7 +195,7 @@ std::string why_not_done(const OpenCampaign& open, const std::vector<std::size_t
   return why;
 }
 
-void require_all_done(const OpenCampaign& open, const Launcher& launcher) {
+void require_all_done(const OpenCampaign& open, const Launcher& launcher, fs::file_time_type start) {
   const std::vector<std::size_t> left = tasks_left(open.tasks);
   if (left.empty()) return;
   const std::string logs = open.out + "/logs";
@@ -279,19 +204,17 @@ void require_all_done(const OpenCampaign& open, const Launcher& launcher) {
       "goes "
       "on where it stopped",
       open.campaign.name, left.size(), counted(open.tasks.size(), "task"),
-      name_of(open.campaign, open.tasks[left.front()]), why_not_done(open, left, launcher, logs), logs));
+      name_of(open.campaign, open.tasks[left.front()]),
+      why_not_done(open, left, launcher, last_failure(logs, start)), logs));
 }
 
-// Returns whether all was done by its size, but records were damaged: they are gone now, to be run again.
+// Returns whether all is done by its size, but records are damaged: they are removed, to be run again.
 bool has_damaged(const OpenCampaign& open) {
-  if (!tasks_left(open.tasks).empty()) return false;
   bool any = false;
   ProgressBar bar("verifying", "tasks", open.tasks.size());
   for (std::size_t i = 0; i < open.tasks.size(); ++i) {
     const std::uint64_t bytes = cut_to_whole_records(open.tasks[i].path);
-    if (bytes > 0)
-      fmt::print(stderr, "  note: the last {} of {} were no whole record and are run again\n",
-                 counted(bytes, "byte"), open.tasks[i].path);
+    if (bytes > 0) print_note(dropped_text(open.tasks[i].path, bytes));
     any = any || bytes > 0;
     bar.update(i + 1);
   }
@@ -301,6 +224,7 @@ bool has_damaged(const OpenCampaign& open) {
 
 // False: it was told to stop, or shall not wait.
 bool run_tasks(const CampaignArguments& arguments, const OpenCampaign& open) {
+  const fs::file_time_type start = fs::file_time_type::clock::now() - kLook;  // clocks of files are coarse
   const std::unique_ptr<Launcher> launcher = launch(arguments, open);
   fmt::print("  started              {}\n", launcher->started());
   if (arguments.no_wait) return false;
@@ -310,7 +234,7 @@ bool run_tasks(const CampaignArguments& arguments, const OpenCampaign& open) {
   std::fflush(stdout);
   follow(open, *launcher);
   if (told_to_stop != 0) return false;
-  require_all_done(open, *launcher);
+  require_all_done(open, *launcher, start);
   return true;
 }
 
@@ -320,8 +244,13 @@ void run(const CampaignArguments& arguments) {
   print_state(open);
   if (arguments.dry_run) return;
   stop_on_signals();
-  bool is_done = tasks_left(open.tasks).empty() && !has_damaged(open);
-  if (!is_done) is_done = run_tasks(arguments, open);
+  bool is_done = tasks_left(open.tasks).empty();
+  constexpr int kMostRounds = 3;  // a disk that damages what it keeps is not read forever
+  for (int round = 0; round < kMostRounds && told_to_stop == 0; ++round) {
+    if (!is_done && !run_tasks(arguments, open)) break;
+    is_done = !has_damaged(open);
+    if (is_done) break;
+  }
   if (told_to_stop != 0) throw CLI::RuntimeError(kStopped);
   if (is_done) report(arguments, open);
 }
@@ -422,7 +351,8 @@ void add_report(CLI::App& verb, const std::shared_ptr<CampaignArguments>& argume
   CLI::App* command =
       verb.add_subcommand("report", "Make tables, JSON, CSV and report.html of the shard files");
   add_file(*command, *arguments);
-  command->add_flag("--partial", arguments->partial, "of the sequences that are done, if not all are");
+  command->add_flag("--partial", arguments->partial,
+                    "make the figures from the sequences that are done, although some are missing");
   command->callback([arguments] { report(*arguments, open_campaign(*arguments)); });
 }
 
@@ -454,6 +384,8 @@ void add_campaign_command(CLI::App& app, const std::string& command_line) {
       "  sequences = 15000\n\n"
       "The work can be stopped at any time; the same command goes on. The report has\n"
       "bounds of all rates, and the worst sequences with the command that shows each.\n\n"
+      "The exit status of `run` is 0 if all is done and reported, or submitted with\n"
+      "--no-wait; 1 if something failed, 2 for wrong arguments, 3 if it was stopped.\n\n"
       "Example\n"
       "  tumblesight campaign run near.toml\n"
       "  tumblesight campaign run near.toml --on slurm --options \"--partition=long\"\n"

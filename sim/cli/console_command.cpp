@@ -19,6 +19,7 @@
 #include "sim/console/recorded_run.hpp"
 #include "sim/console/ros2_bridge.hpp"
 #include "sim/sil/interruption.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -56,7 +57,7 @@ std::unique_ptr<Ros2Bridge> open_ros2(const ConsoleArguments& arguments, const R
 
 // Notes a failure that has not been told yet.
 void tell(const std::string& failure, std::string& told) {
-  if (failure != told && !failure.empty()) fmt::print(stderr, "tumblesight: {}\n", failure);
+  if (failure != told && !failure.empty()) print_message("tumblesight: " + failure);
   told = failure;
 }
 

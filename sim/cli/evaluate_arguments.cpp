@@ -138,7 +138,7 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
                  "      --json near.json --report near.html\n\n"
                  "Example: beside other libraries, on the last of ten frames\n"
                  "  tumblesight evaluate --peers --sequences 30 --baseline-sequences 30\n\n"
-                 "Example: how much noise the network stands\n"
+                 "Example: how much noise the network tolerates\n"
                  "  tumblesight evaluate --effect-limit noise --sequences 300 --json noise.json\n\n"
                  "Example: a tumbling spacecraft of your own, with a network trained for it\n"
                  "  tumblesight evaluate --target mine --mesh mine.glb --model mine.tsm \\\n"

@@ -69,7 +69,7 @@ void announce(const PaperPlan& plan, const EvaluateArguments& arguments, const s
   }
   fmt::print("\n");
   std::fflush(stdout);
-  for (const std::string& note : plan.notes) fmt::print(stderr, "  note: {}\n", note);
+  for (const std::string& note : plan.notes) print_note(note);
 }
 
 }  // namespace
@@ -100,7 +100,7 @@ void evaluate_paper(const EvaluateArguments& arguments) {
     results.subjects.push_back(run_experiment(
         job.subject, job.settings, [&](std::uint64_t steps_done) { bar.update(done + steps_done); }));
     done += steps_of(job.settings);
-    write_results_files(folder, results);
+    write_results_files(folder, results, results_markdown(results));
   }
   bar.finish();
   fmt::print("\n{}\n  results              {}/results.md, .csv, .json and report.html\n\n",

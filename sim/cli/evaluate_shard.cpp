@@ -49,9 +49,7 @@ std::size_t done_in(const ShardWriter& file) {
 }
 
 void print_dropped(const EvaluateArguments& arguments, const ShardWriter& file) {
-  if (file.dropped_bytes() == 0) return;
-  fmt::print(stderr, "  note: the last {} of {} were no whole record and are run again\n",
-             counted(file.dropped_bytes(), "byte"), arguments.shard_file);
+  if (file.dropped_bytes() > 0) print_note(dropped_text(arguments.shard_file, file.dropped_bytes()));
 }
 
 void run_with_progress(const Subject& subject, const ExperimentSettings& settings, const Shard& shard,

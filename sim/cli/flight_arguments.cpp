@@ -19,6 +19,7 @@
 #include "sim/process/program_files.hpp"
 #include "sim/sil/interruption.hpp"
 #include "sim/sil/signed_telecommand.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 #include "sim/world/scenario/disturbance.hpp"
 
@@ -197,7 +198,7 @@ void announce_flight(const SilSettings& settings, const TargetSetup& setup) {
         settings.step_timeout_s, flight_command_line(settings));
   }
   std::fflush(stdout);
-  for (const std::string& warning : setup.warnings) fmt::print(stderr, "  note: {}\n", warning);
+  for (const std::string& warning : setup.warnings) print_note(warning);
 }
 
 void finish_flight(const FlightArguments& arguments, const std::string& page, const std::string& json,
@@ -221,7 +222,7 @@ void finish_flight(const FlightArguments& arguments, const std::string& page, co
   });
   fmt::print("\n");
   std::fflush(stdout);
-  for (const std::string& fault : faults) fmt::print(stderr, "tumblesight: {}\n", fault);
+  for (const std::string& fault : faults) print_message("tumblesight: " + fault);
   if (Interruption::signal() != 0) throw CLI::RuntimeError(kInterrupted + Interruption::signal());
   if (!faults.empty()) throw CLI::RuntimeError(kFailed);
   if (mostly_wrong) throw CLI::RuntimeError(kOfNoUse);

@@ -1,4 +1,6 @@
 // tumblesight: the ground tool, with one subcommand per job.
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -41,6 +43,22 @@ int report(const CLI::App& app, const CLI::ParseError& error, int argc, char** a
   return kBadArguments;
 }
 
+// A file that is opened later must not take the place of a standard stream that is closed, and get its text.
+// It is opened for reading, so that writing to it still fails.
+void reserve_standard_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+    if (fcntl(stream, F_GETFD) < 0) (void)open("/dev/null", O_RDONLY);  // takes the lowest number
+}
+
+// Arguments end up in reports and JSON.
+void require_utf8(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (!tumblesight::sim::is_utf8(argv[i]))
+      throw CLI::ValidationError(
+          fmt::format("argument '{}'", tumblesight::sim::shortened(argv[i])),
+          "is not UTF-8, which reports and JSON are written in; if it is a file, give it another name");
+}
+
 // A failure of the output makes a success a failure.
 int finish_output(int status) {
   const bool written = std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
@@ -81,6 +99,7 @@ bool is_version_or_verb(const CLI::App& app, const std::string& argument) {
 
 int main(int argc, char** argv) {
   using namespace tumblesight;
+  reserve_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a limit of file sizes is an error of the file, as a full disk is
   CLI::App app{"Tumblesight: attitude of tumbling spacecraft from flash-LiDAR frames."};
   app.name("tumblesight");
@@ -88,6 +107,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.formatter(std::make_shared<sim::HelpFormatter>());
   try {
+    require_utf8(argc, argv);
     std::string command_line = "tumblesight";
     for (int i = 1; i < argc; ++i) command_line += " " + sim::shell_word(argv[i]);
     sim::add_verbs(app, command_line);
@@ -103,7 +123,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return finish_output(report(app, error, argc, argv));
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "tumblesight: %s\n", error.what());
+    const char* const of_what = std::ferror(stdout) != 0 ? "standard output: " : "";
+    std::fprintf(stderr, "tumblesight: %s%s\n", of_what, error.what());
     return kFailed;
   }
   return finish_output(0);

@@ -121,7 +121,7 @@ void add_mesh_of_mission_option(CLI::App& command, MeshCommandArguments& argumen
 void add_mesh_command(CLI::App& app, const std::string& command_line) {
   auto arguments = std::make_shared<MeshCommandArguments>();
   CLI::App* command =
-      app.add_subcommand("mesh", "Show what a mesh file holds, and what to mend before training");
+      app.add_subcommand("mesh", "Show what a mesh file holds, and what to correct before training");
   command->footer(
       "\nReads STL, OBJ, glTF and GLB, also compressed with Draco. Exits with 0, or with\n"
       "4 if the mesh is of no use as it is. docs/own_spacecraft.md explains each\n"

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "sim/inspection/mesh_inspection.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
@@ -16,13 +17,13 @@ void print_mesh_warnings(const MeshArguments& arguments, const std::vector<Trian
     bool any = false;
     for (const Finding& finding : inspect(meshes[i], options).findings) {
       if (finding.severity == Severity::kNote) continue;
-      fmt::print(stderr, "warning: mesh '{}': {}\n", arguments.meshes[i], finding.text);
+      print_message(fmt::format("warning: mesh '{}': {}", arguments.meshes[i], finding.text));
       any = true;
     }
     if (any)
-      fmt::print(stderr,
-                 "warning: `tumblesight mesh {} --mesh-up {} --mesh-scale {:g}` shows more, and what to do\n",
-                 arguments.meshes[i], arguments.mesh_up, arguments.mesh_scale);
+      print_message(fmt::format(
+          "warning: `tumblesight mesh {} --mesh-up {} --mesh-scale {:g}` shows more, and what to do",
+          arguments.meshes[i], arguments.mesh_up, arguments.mesh_scale));
   }
 }
 

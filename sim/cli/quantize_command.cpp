@@ -20,6 +20,7 @@
 #include "sim/quantization/surface_samples.hpp"
 #include "sim/quantization/target_surface.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
@@ -220,7 +221,7 @@ void quantize_file(QuantizeArguments arguments) {
   const std::vector<TriangleMesh> meshes = load_meshes(arguments.meshes, model->header.target.data());
   notes.push_back(fault_of_size(meshes.front(), model->header));
   for (const std::string& note : notes) {
-    if (!note.empty()) fmt::print(stderr, "  note: {}\n", note);
+    if (!note.empty()) print_note(note);
   }
   print_sensor(arguments.sensor.sensor, seen.ranges);
   const QuantizationReport report =
@@ -302,7 +303,7 @@ void add_quantize_command(CLI::App& app) {
   add_float32_model_option(*command, arguments->model);
   CLI::Option* model = command->get_option("--model");
   model->description(model->get_description() +
-                     "; with --surface-only one in fixed point, as with --to-float32");
+                     "; with --surface-only or --to-float32: a model image in fixed point");
   command
       ->add_option("--out", arguments->out,
                    "model image to write [--model without .float32; --surface-only has no default, nor has "

@@ -70,7 +70,7 @@ void record(const RecordArguments& arguments) {
   require_usable_files(files_read(wanted),
                        {{"--out", arguments.out}, {"--truth", truth}, {"--mcap", arguments.mcap}});
   const TargetSetup target = set_up_target_without_model(wanted);
-  for (const std::string& warning : target.warnings) fmt::print(stderr, "  note: {}\n", warning);
+  for (const std::string& warning : target.warnings) print_note(warning);
   RecordingSettings settings;
   settings.scenario =
       scenario_settings(condition_from(wanted.condition), wanted.frames, wanted.target, target.inertia_kg_m2);

@@ -227,7 +227,7 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "Otherwise it is 1, or 2 for wrong arguments. It is 4 if all that holds and more\n"
       "than half of the attitudes in the last frame are more than 20° off, except with\n"
       "the effects that show another body.\n"
-      "Ctrl-C ends the run, and the report covers what was done.\n"
+      "After Ctrl-C or SIGTERM it is 130 or 143, and the report covers what was done.\n"
       "With --free-running and a sensor that is faster than the cycle, the newest frame\n"
       "of each cycle is used. The frames that it supersedes are counted.\n" +
       disturbance_examples("simulate"));

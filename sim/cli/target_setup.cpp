@@ -14,6 +14,7 @@
 #include "sim/evaluation/results.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/process/program_files.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -166,7 +167,7 @@ TargetSetup set_up_target_without_model(const ScenarioArguments& arguments) {
 
 Subject set_up_subject(const ScenarioArguments& arguments) {
   TargetSetup setup = set_up_target(arguments);
-  for (const std::string& warning : setup.warnings) fmt::print(stderr, "  note: {}\n", warning);
+  for (const std::string& warning : setup.warnings) print_note(warning);
   Subject subject;
   subject.target = arguments.target;
   subject.mesh_name = setup.mesh_name;

@@ -361,8 +361,8 @@ void add_train_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("train", "Train a network for a target and write its model images");
   command->footer(
       "\nA run may be interrupted at any time: the same command continues from the last\n"
-      "checkpoint. Several processes train together with --ranks, by srun or mpirun:\n"
-      "docs/training.md.\n\n"
+      "checkpoint, and the exit status is 3. Several processes train together with\n"
+      "--ranks, by srun or mpirun: docs/training.md.\n\n"
       "Example: train for NEAR Shoemaker on the shipped mesh and on a CAD file\n"
       "  tumblesight train --target near_shoemaker --mesh parametric --mesh near.stl \\\n"
       "      --out out/near\n");

@@ -22,20 +22,35 @@ namespace {
 
 constexpr double kGrace_s = 2.0;
 
+// Opened here: a failure of posix_spawn() does not tell the program from its files.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::string& path) {
+    if (path.empty()) return;
+    file_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (file_ < 0) throw std::runtime_error("file '" + path + "' cannot be written: " + strerror(errno));
+  }
+  ~OutputFile() {
+    if (file_ >= 0) close(file_);
+  }
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  int file() const { return file_; }  // -1: none
+
+ private:
+  int file_ = -1;
+};
+
 class SpawnActions {
  public:
-  SpawnActions(const std::string& log_path, const std::string& output_path, int inherited_file) {
+  SpawnActions(const OutputFile& log, const OutputFile& output, int inherited_file) {
     posix_spawn_file_actions_init(&actions_);
     // dup2 onto itself clears the close-on-exec flag.
     if (inherited_file >= 0) posix_spawn_file_actions_adddup2(&actions_, inherited_file, inherited_file);
-    if (log_path.empty()) return;
-    posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                     0644);
-    if (output_path.empty())
-      posix_spawn_file_actions_adddup2(&actions_, STDERR_FILENO, STDOUT_FILENO);
-    else
-      posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, output_path.c_str(),
-                                       O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    if (log.file() < 0) return;
+    posix_spawn_file_actions_adddup2(&actions_, log.file(), STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&actions_, output.file() < 0 ? log.file() : output.file(),
+                                     STDOUT_FILENO);
   }
   ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
   SpawnActions(const SpawnActions&) = delete;
@@ -104,11 +119,12 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  const SpawnActions actions(log_path, output_path, inherited_file);
+  const OutputFile log(log_path), output(output_path);
+  const SpawnActions actions(log, output, inherited_file);
   const SpawnAttributes attributes(group);
   const int error = posix_spawnp(&pid_, program.c_str(), actions.get(), attributes.get(), argv.data(),
                                  with_our_environment(environment).data());
-  if (error != 0) throw std::runtime_error(program + " cannot be started: " + strerror(error));
+  if (error != 0) throw ProgramFailure(program + " cannot be started: " + strerror(error));
 }
 
 ChildProcess::~ChildProcess() {
@@ -168,7 +184,7 @@ std::string output_of(const std::string& program, const std::vector<std::string>
   if (fault.empty()) return output.content();
   for (const std::string& text : {output.content(), messages.content()})
     if (!text.empty()) fault += ": " + text;
-  throw std::runtime_error(program + " " + fault);
+  throw ProgramFailure(program + " " + fault);
 }
 
 }  // namespace tumblesight::sim

@@ -3,10 +3,16 @@
 
 #include <sys/types.h>
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace tumblesight::sim {
+
+// A program that cannot be started, or has failed. Its files are another matter: std::runtime_error.
+struct ProgramFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 // Of the terminal: Ctrl-C reaches the processes of its foreground group.
 enum class ProcessGroup { kOurs, kOwn };
@@ -16,8 +22,8 @@ class ChildProcess {
   // `program`: a path, or a name that is looked for in PATH. `log_path`: file for its messages; empty: our
   // own output. `output_path`: file for its standard output, if that is another one. `inherited_file`:
   // descriptor that the child inherits under the same number; -1: none. `environment`: "NAME=value" entries
-  // added to ours. `group`: kOwn lets it finish when the user presses Ctrl-C. Throws std::runtime_error if it
-  // cannot be started.
+  // added to ours. `group`: kOwn lets it finish when the user presses Ctrl-C. Throws ProgramFailure if it
+  // cannot be started, and std::runtime_error that names a file that cannot be written.
   ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
                const std::string& log_path, int inherited_file = -1,
                const std::vector<std::string>& environment = {}, const std::string& output_path = "",
@@ -45,8 +51,7 @@ class ChildProcess {
 };
 
 // What a program prints on its standard output, without the last line break. Ctrl-C does not reach it. Throws
-// std::runtime_error with all that it printed if it cannot be started, fails, or takes longer than
-// `timeout_s`.
+// ProgramFailure with all that it printed if it cannot be started, fails, or takes longer than `timeout_s`.
 std::string output_of(const std::string& program, const std::vector<std::string>& arguments,
                       double timeout_s);
 

@@ -40,8 +40,8 @@ std::string results_csv(const Results& results) {
   return csv + "\n";
 }
 
-void write_results_files(const std::string& folder, const Results& results) {
-  write_file(folder + "/results.md", results_markdown(results));
+void write_results_files(const std::string& folder, const Results& results, const std::string& markdown) {
+  write_file(folder + "/results.md", markdown);
   write_file(folder + "/results.csv", results_csv(results));
   write_file(folder + "/results.json", results_json(results).dump(2) + "\n");
   write_file(folder + "/report.html", results_page(results));

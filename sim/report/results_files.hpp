@@ -19,7 +19,8 @@ std::string results_markdown(const Results& results);
 // Results as an HTML page: one self-contained file, figures as inline SVG, no scripts, nothing loaded.
 std::string results_page(const Results& results);
 
-// Writes results.md, results.csv, results.json and report.html into `folder`. Throws as write_file does.
-void write_results_files(const std::string& folder, const Results& results);
+// Writes results.md with the text `markdown`, results.csv, results.json and report.html into `folder`. Throws
+// as write_file does.
+void write_results_files(const std::string& folder, const Results& results, const std::string& markdown);
 
 }  // namespace tumblesight::sim

@@ -55,6 +55,28 @@ def words_of(pid):
         return []
 
 
+def processes_of(out):
+    """What works on a campaign: its words name the folder."""
+    return [int(pid) for pid in filter(str.isdigit, os.listdir("/proc")) if str(out) in words_of(pid)]
+
+
+def until(holds, seconds):
+    end = time.monotonic() + seconds
+    while not holds() and time.monotonic() < end:
+        time.sleep(0.05)
+    return holds()
+
+
+def expect_nothing_left_after_kill(words, out, environment):
+    """The workers, and mpirun, end with the program that has started them."""
+    process = subprocess.Popen(words, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    started = until(lambda: processes_of(out), 30)
+    process.kill()
+    process.wait()
+    expect(started, "no worker was started before the kill")
+    expect(until(lambda: not processes_of(out), 20), f"processes {processes_of(out)} go on without their starter")
+
+
 class Killer(threading.Thread):
     """Kills one worker of the campaign while it runs a task: the first that has written a part of its file."""
 
@@ -129,6 +151,8 @@ def check(way, program, folder):
     campaign = write_campaign(folder)
     out = campaign.with_suffix("")
     environment = {**os.environ, **MPI}
+    if way != "slurm":
+        expect_nothing_left_after_kill(command_of(way, program, campaign), out, environment)
     killer = Killer(program, out)
     killer.start()
     watcher = Watcher()

@@ -111,6 +111,14 @@ TEST_F(CampaignFile, TooManyRunsAreRefused) {
     text += "]\n";
   }
   expect_refused(text, "more than 1000 runs; divide the campaign into several files");
+  // 64 million: counted before they are made.
+  std::string many = "[[run]]\nsequences = 1\n";
+  for (const char* key : {"a", "b", "c", "d", "e", "f"}) {
+    many += std::string(key) + " = [";
+    for (int i = 1; i <= 20; ++i) many += std::to_string(i) + ", ";
+    many += "]\n";
+  }
+  expect_refused(many, "more than 1000 runs; divide the campaign into several files");
 }
 
 }  // namespace

@@ -132,7 +132,22 @@ TEST_F(Shards, AnUnfinishedOneIsNamedWithItsCommand) {
   EXPECT_EQ(partial.figures.cells.at(0).sequences, 12U);
   EXPECT_EQ(partial.figures.cells.at(0).rcnn.count, 12U);
   ASSERT_EQ(partial.notes.size(), 1U);
-  EXPECT_EQ(partial.notes[0], "These are figures of 12 sequences; 1 of the evaluation are not done.");
+  EXPECT_EQ(partial.notes[0], "These are figures of 12 sequences; 1 of the evaluation are not done.")
+      << "a record that is being written is no damage";
+}
+
+TEST_F(Shards, ADamagedOneIsNoted) {
+  const std::vector<std::string> paths = run_all(2);
+  {
+    std::fstream file(paths[0], std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(-1, std::ios::end);
+    file.put('\x5a');
+  }
+  expect_refused(paths, {"s0_2' has 6 of its 7 sequences"});
+  const MergedShards partial = merge_shards(paths, MergeMode::kPartial);
+  ASSERT_EQ(partial.notes.size(), 2U);
+  EXPECT_EQ(partial.notes[1].rfind("A record of shard file " + paths[0] + " is damaged. The ", 0), 0U)
+      << partial.notes[1];
 }
 
 TEST_F(Shards, EachKindOfForeignOneIsNamedWithWhatDiffers) {

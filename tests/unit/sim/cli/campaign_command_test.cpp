@@ -133,7 +133,7 @@ TEST_F(CampaignCommand, WhatIsThereOfAnotherExperimentIsNotCounted) {
   const std::string campaign = content(here.path("c.toml"));
   std::ofstream(here.path("c.toml")) << "seed = 6" << campaign.substr(8);
   expect_refused(here.run("campaign run c.toml"),
-                 "is of another experiment: seed is 5, not 6; give another --out");
+                 "is of another experiment: seed is 5, not 6; write the file as it was, give another --out");
   expect_refused(here.run("campaign report c.toml"), "is of another command: ");
   std::ofstream(here.path("c.toml")) << campaign;
   here.put("c/" + shard, {1, 2, 3});
@@ -149,8 +149,146 @@ TEST_F(CampaignCommand, ADamagedRecordIsRunAgain) {
   std::ofstream(path, std::ios::binary) << bytes;
   const Outcome again = here.run("campaign run c.toml");
   EXPECT_EQ(again.exit_code, 0) << again.errors;
-  EXPECT_NE(again.errors.find("were no whole record and are run again"), std::string::npos) << again.errors;
+  EXPECT_NE(again.errors.find("or follow a damaged record; what they held is run again"), std::string::npos)
+      << again.errors;
   EXPECT_EQ(crc_in(again.output), crc_in(first.output));
+}
+
+// While another task is left to do, too: one call does both.
+TEST_F(CampaignCommand, ADamagedRecordIsRunAgainBesideWhatIsLeft) {
+  put_campaign();
+  const Outcome first = here.run("campaign run c.toml");
+  const std::string folder = here.path("c/near_shoemaker-model_model.tsm-nominal-frames_2/");
+  std::string bytes = content(folder + "0001_of_0003.shard");
+  bytes[bytes.size() - 1] ^= 1;
+  std::ofstream(folder + "0001_of_0003.shard", std::ios::binary) << bytes;
+  std::filesystem::remove(folder + "0002_of_0003.shard");
+  const Outcome partial = here.run("campaign report c.toml --partial");
+  EXPECT_NE(partial.errors.find("0001_of_0003.shard is damaged. The "), std::string::npos) << partial.errors;
+  const Outcome again = here.run("campaign run c.toml");
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_EQ(crc_in(again.output), crc_in(first.output));
+}
+
+// Its commands would differ from those of what is done, and the report has room for one.
+TEST_F(CampaignCommand, AnotherSpellingOfAPathIsNotedBeforeTheWork) {
+  const std::string toml =
+      "sequences_per_task = 1\n[[run]]\nsequences = 2\nframes = 1\ntarget = \"near_shoemaker\"\n";
+  std::ofstream(here.path("c.toml")) << toml << "model = \"model.tsm\"\n";
+  EXPECT_EQ(here.run("campaign work c.toml --part 0/2").exit_code, 0);
+  std::ofstream(here.path("c.toml")) << toml << "model = \"./model.tsm\"\n";
+  const Outcome outcome = here.run("campaign run c.toml");
+  expect_refused(outcome, "is of another command: tumblesight evaluate --no-baseline --sequences 2 --seed 1");
+  expect_refused(outcome, "write the file as it was, give another --out");
+}
+
+TEST_F(CampaignCommand, WhatWasDoneWithAnotherDivisionIsNamed) {
+  put_campaign();
+  EXPECT_EQ(here.run("campaign work c.toml --part 0/6").exit_code, 0);
+  const std::string campaign = content(here.path("c.toml"));
+  std::ofstream(here.path("c.toml")) << std::string(campaign).replace(campaign.find("task = 3"), 8,
+                                                                      "task = 4");
+  const Outcome outcome = here.run("campaign run c.toml");
+  expect_refused(outcome,
+                 "_of_0003.shard' is of a campaign with other sequences or sequences_per_task, which divide "
+                 "the run into 2 shards now");
+}
+
+TEST_F(CampaignCommand, KeysThatAreNoOptionsAreNamedWithTheRemedy) {
+  const std::pair<const char*, const char*> kRows[] = {
+      {"sequences_per_task = 2", "sequences_per_task is for all runs: write it at the top, before [[run]]"},
+      {"mesh_scale = 2", "there is no option 'mesh_scale'"},
+      {"help = true", "there is no option 'help'"},
+      {"mesh = true", "mesh: needs a value, not true"},
+      {"frames = true", "frames: needs a value, not true"},
+      {"free-attitude = \"yes\"", "there is no option 'free-attitude'"},
+      {"no-ego-motion = \"yes\"", "no-ego-motion: must be true, not 'yes'"},
+      {"sensor = \"list\"", "sensor: 'list' shows what there is"},
+      {"effect = \"list\"", "effect: 'list' shows what there is"},
+      {"inertia = [1, 2, 3, 0, 0, 0]",
+       "inertia: a list makes a run for each of its values; write its 6 numbers"}};
+  for (const auto& [line, message] : kRows) {
+    std::ofstream(here.path("k.toml")) << "[[run]]\nsequences = 2\n" << line << "\n";
+    const Outcome outcome = here.run("campaign run k.toml --dry-run");
+    expect_refused(outcome, message);
+    expect_refused(outcome, "k.toml, line 1: run ");
+  }
+}
+
+TEST_F(CampaignCommand, TwoCampaignsDoNotShareAFolder) {
+  for (const char* name : {"a.toml", "b.toml"})
+    std::ofstream(here.path(name)) << "[[run]]\nsequences = 1\nframes = 1\nmodel = \"model.tsm\"\n";
+  EXPECT_EQ(here.run("campaign run a.toml --out both").exit_code, 0);
+  expect_refused(here.run("campaign run b.toml --out both"),
+                 "both' is of the campaign 'a'; give another --out");
+  expect_refused(here.run("campaign report b.toml --out both"), "both' is of the campaign 'a'");
+}
+
+TEST_F(CampaignCommand, ItsMarkdownHasEveryRunWithBoundsAndTheWorst) {
+  std::ofstream(here.path("e.toml")) << "[[run]]\nsequences = 2\nframes = 1\nmodel = \"model.tsm\"\n"
+                                     << "effect = [\"noise=4\", \"rays=32,noise=2\"]\n";
+  EXPECT_EQ(here.run("campaign run e.toml").exit_code, 0);
+  const std::string text = content(here.path("e/results.md"));
+  for (const char* part : {"| nominal, noise=4 | 2 |", "| nominal, rays=32,noise=2 | 2 |", "%) |",
+                           "### Worst sequences, nominal, noise=4", " --only "})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+}
+
+TEST_F(CampaignCommand, AFolderThatCannotBeMadeIsNamed) {
+  put_campaign();
+  std::ofstream(here.path("c")) << "a file";
+  expect_refused(here.run("campaign run c.toml"), "c/logs' cannot be made: ");
+}
+
+// Of a closed stream the number is free for the next file, which would get what is meant for the stream.
+TEST_F(CampaignCommand, AClosedStreamDoesNotEndUpInAShardFile) {
+  const std::string line = evaluate + " --shard 0/1 --shard-file s.shard";
+  EXPECT_EQ(here.run_command("(" TUMBLESIGHT_BINARY " " + line + " 2>&-)", "closed").exit_code, 0);
+  EXPECT_EQ(here.run("merge s.shard").exit_code, kGuessed) << "all sequences are there";
+  EXPECT_EQ(content(here.path("s.shard")).find("shard 0/1 "), std::string::npos);
+}
+
+TEST_F(CampaignCommand, NotesThatCannotBeShownAreNoFailure) {
+  put_campaign();
+  const Outcome outcome =
+      here.run_command("(" TUMBLESIGHT_BINARY " campaign run c.toml 2>/dev/full)", "full");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(here.path("c/report.html")));
+}
+
+TEST_F(CampaignCommand, FilesAreWrittenThoughNobodyReadsTheTables) {
+  const Outcome outcome = here.run_command("(" TUMBLESIGHT_BINARY " " + evaluate +
+                                               " --condition nominal,degraded,occluded,tumbling --json "
+                                               "j.json --csv c.csv --report r.html >/dev/full)",
+                                           "full");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_NE(outcome.errors.find("standard output: "), std::string::npos) << outcome.errors;
+  for (const char* file : {"j.json", "c.csv", "r.html"})
+    EXPECT_TRUE(std::filesystem::exists(here.path(file))) << file;
+}
+
+TEST_F(CampaignCommand, WhatIsNotUtf8IsRefusedBeforeTheWork) {
+  const Outcome outcome = here.run("evaluate --sequences 1 --model 'sonde_\xe4.tsm'");
+  EXPECT_EQ(outcome.exit_code, kBadArguments);
+  EXPECT_NE(outcome.errors.find("'sonde_?.tsm': is not UTF-8"), std::string::npos) << outcome.errors;
+}
+
+TEST_F(CampaignCommand, AShardFileIsAPlainFile) {
+  ASSERT_EQ(here.run_command("mkfifo pipe", "mkfifo").exit_code, 0);
+  expect_refused(here.run(evaluate + " --shard 0/2 --shard-file pipe"),
+                 "it is no plain file; name another one");
+  expect_refused(here.run(evaluate + " --shard 0/2 --shard-file /dev/null"), "it is no plain file");
+}
+
+TEST_F(CampaignCommand, ShardsWithoutASequenceAreNotMerged) {
+  EXPECT_EQ(here.run(evaluate + " --shard 0/2 --shard-file s.shard").exit_code, 0);
+  const std::string bytes = content(here.path("s.shard"));
+  const std::size_t end = bytes.find("}\n");
+  ASSERT_NE(end, std::string::npos);
+  std::ofstream(here.path("s.shard"), std::ios::binary) << bytes.substr(0, end + 2 + 4);
+  expect_refused(here.run("merge --partial s.shard --json j.json"),
+                 "no sequence is done in shard file 's.shard'");
+  EXPECT_FALSE(std::filesystem::exists(here.path("j.json")));
 }
 
 TEST_F(CampaignCommand, ARunIsOneEvaluationAndResultsDoNotReplaceTheCampaign) {
@@ -227,6 +365,30 @@ TEST_F(FakeSlurm, AnArrayWithoutItsReportIsCancelled) {
   expect_refused(outcome, "QOSMaxSubmitJobPerUserLimit. Job array 17;big was cancelled");
   EXPECT_EQ(outcome.errors.find("slurm-client"), std::string::npos);
   EXPECT_EQ(content(here.path("cancelled")), "-M big 17\n");
+}
+
+TEST_F(FakeSlurm, AnArrayThatCannotBeCancelledIsNamedBesideTheCause) {
+  put_program("sbatch",
+              "case \"$*\" in *--version*) ;; *--wrap*) echo 'QOSMaxSubmitJobPerUserLimit' >&2; exit 1;; "
+              "*) echo 17;; esac\n");
+  put_program("scancel", "echo 'Access denied' >&2; exit 1\n");
+  const Outcome outcome = run();
+  expect_refused(outcome, "QOSMaxSubmitJobPerUserLimit. Job array 17 goes on, since scancel");
+  expect_refused(outcome, "Access denied; to end it: scancel 17");
+}
+
+// Its text would be taken for a number, the jobs for gone, and others submitted.
+TEST_F(FakeSlurm, AnAnswerThatIsNoNumberIsQuotedAndNothingSubmittedAgain) {
+  for (const char* answer : {"", "17\\nNOTE: your quota is 90%%", ";big"}) {
+    std::filesystem::remove(here.path("submitted"));
+    put_program("sbatch",
+                std::string("case \"$*\" in *--version*) ;; *) echo \"$*\" >> submitted; printf '") + answer +
+                    "\\n';; esac\n");
+    const Outcome outcome = run();
+    expect_refused(outcome,
+                   "in place of a job's number. Slurm may have taken the job: end what `squeue --name=c`");
+    EXPECT_EQ(arrays(), 1U) << answer;
+  }
 }
 
 TEST_F(FakeSlurm, JobsThatEndWithoutResultsAreNotWaitedForForever) {

@@ -56,7 +56,7 @@ TEST_F(MissionFile, NeedsOnlyNameAndMesh) {
   EXPECT_EQ(mission.sensor, "paper");
   EXPECT_FALSE(mission.ranges_m);
   EXPECT_EQ(mission.minutes, 60.0);
-  EXPECT_EQ(mission.goals.at("nominal").network_mean_deg, 2.0);
+  EXPECT_EQ(mission.goals.at("nominal").network_mean_deg, 3.0);
   EXPECT_EQ(mission.goals.at("degraded").pose_mean_deg, 0.6);
 }
 
@@ -83,7 +83,7 @@ TEST_F(MissionFile, TakesEveryKey) {
   EXPECT_EQ(mission.panels->lowest_deg, -90.0);
   EXPECT_EQ(mission.conditions.at("occluded"), 3);
   EXPECT_EQ(mission.goals.at("nominal").pose_mean_deg, 0.1);
-  EXPECT_EQ(mission.goals.at("nominal").network_mean_deg, 2.0) << "the default stays";
+  EXPECT_EQ(mission.goals.at("nominal").network_mean_deg, 3.0) << "the default stays";
   EXPECT_EQ(mission.goals.at("occluded").verified, 0.9);
 }
 

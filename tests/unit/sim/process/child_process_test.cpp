@@ -53,6 +53,22 @@ TEST(ChildProcess, AMissingProgramIsNamed) {
   }
 }
 
+TEST(ChildProcess, AFileThatCannotBeWrittenIsNamedAndNotTheProgram) {
+  const TemporaryFolder folder;
+  for (const bool is_log : {true, false}) {
+    try {
+      ChildProcess process("true", {}, is_log ? folder.path("") : folder.path("log"), -1, {},
+                           is_log ? "" : folder.path(""));
+      FAIL() << "no exception";
+    } catch (const ProgramFailure& error) {
+      FAIL() << error.what();
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("' cannot be written: Is a directory"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST(OutputOf, GivesStandardOutputAloneWithoutTheLastLineBreak) {
   EXPECT_EQ(output_of("sh", {"-c", "echo one; echo two >&2"}, 10.0), "one");
 }
