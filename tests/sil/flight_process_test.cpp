@@ -3,6 +3,11 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "hal/dds/idl/run_secret.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -24,6 +29,32 @@ TEST(FlightProcess, EndWithoutAStatusIsAFailure) {
   signal(SIGCHLD, before);
   EXPECT_FALSE(process.ended_well());
   EXPECT_NE(process.how_it_ended().find("status is lost"), std::string::npos) << process.how_it_ended();
+}
+
+// Starts the flight program as the simulator has asked for it, and leaves both texts in files.
+std::string program_that_notes_how_it_was_started(const std::string& arguments, const std::string& secret) {
+  const std::string path = test::temporary_path("noting_flight");
+  std::ofstream(path) << "#!/bin/sh\nprintf '%s ' \"$@\" > '" << arguments << "'\nprintf %s \"$"
+                      << hal::dds::kRunSecretVariable << "\" > '" << secret << "'\nexec '"
+                      << TUMBLESIGHT_FLIGHT << "' \"$@\"\n";
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  return path;
+}
+
+// Verifies TS-SIL-095.
+TEST(FlightProcess, LearnsTheRunsSecretFromItsEnvironmentOnly) {
+  const std::string arguments_path = test::temporary_path("arguments");
+  const std::string secret_path = test::temporary_path("secret");
+  SilSettings settings = test::settings();
+  settings.flight_path = program_that_notes_how_it_was_started(arguments_path, secret_path);
+  const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(1, 1), {});
+  EXPECT_EQ(run.failure, "");
+  hal::dds::RunSecret secret;
+  ASSERT_TRUE(hal::dds::read_run_secret(test::read_file(secret_path).c_str(), secret));
+  const std::string arguments = test::read_file(arguments_path);
+  EXPECT_NE(arguments.find("--target"), std::string::npos) << arguments;
+  EXPECT_EQ(arguments.find(std::to_string(secret.run_id)), std::string::npos) << arguments;
+  EXPECT_EQ(arguments.find(secret.partition), std::string::npos) << arguments;
 }
 
 // Verifies TS-MEM-020.
