@@ -35,7 +35,9 @@ int main(int argc, char** argv) {
 
   for (std::int64_t last_exposure_ns = 0; recording.has_next(); last_exposure_ns = frame.exposure_time_ns) {
     recording.read_next(frame);
-    // The estimator expects a frame every 2.7 s. After a gap it starts again.
+    // This example assumes frames 2.7 s apart and a chaser that does not turn, and starts again after a gap.
+    // With step(frame, FrameInterval, estimate) the track lasts through gaps and turns:
+    // gnc/tracking/frame_tracker.hpp.
     if (frame.exposure_time_ns - last_exposure_ns > 3'000'000'000) estimator.reset();
     gnc::AttitudeEstimate estimate;
     if (estimator.step(frame, estimate) != gnc::FrameStatus::kOk) continue;  // refused: nothing has changed

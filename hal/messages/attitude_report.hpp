@@ -98,12 +98,13 @@ struct AttitudeReport {
   std::array<std::int32_t, 3> pose_origin_lrf_now_um{};
   std::array<std::int32_t, 3> pose_rate_lrf_now_urad_s{};
   std::array<std::int32_t, 3> pose_velocity_lrf_now_um_s{};
-  // What verifies it: mean squared difference of the ranges over their variance, Q8; shares of the returns
-  // beside the target and of the target's rays that have no return or meet a dark surface; proven advantage
-  // over the alternatives [nats], Q8.
+  // What verifies it. The mean squared difference of the ranges over their variance, Q8.
   std::uint32_t pose_mean_square_q8 = 0;
+  // The share of the returns beside the target.
   std::uint32_t pose_unexplained_ppm = 0;
+  // The share of the target's rays that have no return or meet a dark surface.
   std::uint32_t pose_missing_ppm = 0;
+  // Proven advantage over other attitudes [nats], Q8: -32 to 32 nats, 8 or more in a verified pose.
   std::int32_t pose_advantage_q8 = 0;
 };
 

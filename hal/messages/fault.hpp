@@ -16,7 +16,7 @@ enum class Fault : std::uint8_t {
   kOutage = 5,           // no usable frame in RUN
   kDeadline = 6,         // a step that took longer than its budget
   kSlip = 7,             // the task missed one or more releases
-  kFrameFrozen = 8,      // the same ranges as the last used frame, with a new sequence number
+  kFrameFrozen = 8,      // ranges like those of one of the last eight used frames, with a new sequence number
   kTrackRestarts = 9,    // the estimator was reset in this cycle, and not by command
 };
 inline constexpr int kFaults = 10;

@@ -191,7 +191,7 @@ def _cfs_app(fixed):
 
 def _float32(floats, macs):
     lines = ["## A step in float32", "",
-             "The reference. Its weights take 4.6 MB; a Cortex-M7 does not have the memory for them.", ""]
+             "The reference. Its weights take 3.4 MB; a Cortex-M7 does not have the memory for them.", ""]
     return lines + _table(["processor", "kernels", "digest", "instructions", "per MAC"],
                           [[p.title, r["set"], f"`{r['digest']}`", _thousands(r["instructions"]), f"{r['instructions'] / macs:.3f}"]
                            for p, r in floats])
