@@ -20,6 +20,7 @@
 #include "sim/evaluation/experiment.hpp"
 #include "sim/sil/flight_process.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/mission_training.hpp"
@@ -132,10 +133,10 @@ class Adoption {
     outcome_.mesh = inspect(mesh_, options);
     const MeshGate gate = mesh_gate(mission_, outcome_.mesh);
     for (const std::string& doubt : gate.doubts) {
-      fmt::print(stderr, "  warning: {}\n", doubt);
+      print_message("  warning: " + doubt);
       steps_.remark(doubt);
     }
-    for (const std::string& remark : gate.remarks) fmt::print(stderr, "  note: {}\n", remark);
+    for (const std::string& remark : gate.remarks) print_note(remark);
     outcome_.remarks = gate.remarks;
     outcome_.reasons = gate.faults;
     outcome_.reasons.insert(outcome_.reasons.end(), gate.doubts.begin(), gate.doubts.end());

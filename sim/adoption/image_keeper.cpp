@@ -1,13 +1,12 @@
 #include "sim/adoption/image_keeper.hpp"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <cstdio>
 #include <exception>
 #include <utility>
 
 #include "sim/quantization/target_surface.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -44,7 +43,7 @@ void ImageKeeper::begin(std::shared_ptr<Float32Model> model) {
     try {
       (void)write_fixed(*kept, kQuickSequences);
     } catch (const std::exception& error) {
-      fmt::print(stderr, "\n  warning: no image of the network so far: {}\n", error.what());
+      print_message(std::string("\n  warning: no image of the network so far: ") + error.what());
     }
   });
 }
@@ -53,7 +52,7 @@ void ImageKeeper::keep(std::unique_ptr<Float32Model> model) {
   try {
     write_model_file<gnc::Float32>(float32_path(), model->header, model->weights);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "\n  warning: no image of the network so far: {}\n", error.what());
+    print_message(std::string("\n  warning: no image of the network so far: ") + error.what());
   }
   waiting_ = std::move(model);
   if (!is_busy()) begin(std::move(waiting_));

@@ -137,11 +137,8 @@ Results campaign_results(const Campaign& campaign, const std::vector<CampaignTas
   std::vector<std::pair<const CampaignRun*, ExperimentIdentity>> runs;
   std::set<std::string> commits;
   for (std::size_t run = 0; run < campaign.runs.size(); ++run) {
-    const std::vector<std::string> paths = paths_of(tasks, run, mode);
-    if (paths.empty()) {
-      results.notes.push_back(fmt::format("{}: no sequence is done.", campaign.runs[run].name));
-    } else {
-      MergedShards merged = merge_shards(paths, mode);
+    try {
+      MergedShards merged = merge_shards(paths_of(tasks, run, mode), mode);
       runs.emplace_back(&campaign.runs[run], merged.identity);
       require_new(runs);
       commits.insert(merged.commits.begin(), merged.commits.end());
@@ -150,6 +147,8 @@ Results campaign_results(const Campaign& campaign, const std::vector<CampaignTas
       for (CellResult& cell : merged.figures.cells) add(subject, std::move(cell));
       for (const std::string& note : merged.notes)
         results.notes.push_back(fmt::format("{}: {}", campaign.runs[run].name, note));
+    } catch (const NothingDone&) {
+      results.notes.push_back(fmt::format("{}: no sequence is done.", campaign.runs[run].name));
     }
     progress(run + 1);
   }

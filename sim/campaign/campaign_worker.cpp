@@ -20,13 +20,22 @@ class Worker {
     const std::size_t before = outcome_.done;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       const bool is_ours = !part || i % part->count == part->index;
-      if (is_ours && !has_failed_[i] && !is_done(tasks_[i]) && !is_in_use(tasks_[i].path)) try_task(i);
+      if (is_ours && !has_failed_[i] && is_left(tasks_[i]) && !is_in_use(tasks_[i].path)) try_task(i);
     }
     return outcome_.done > before;
   }
   const WorkerOutcome& outcome() const { return outcome_; }
 
  private:
+  // A file that cannot be read is tried, which says why.
+  static bool is_left(const CampaignTask& task) {
+    try {
+      return !is_done(task);
+    } catch (const std::runtime_error&) {
+      return true;
+    }
+  }
+
   void try_task(std::size_t i) {
     const std::string name = name_of(campaign_, tasks_[i]);
     try {

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 
 #include "gnc/numerics/crc.hpp"
@@ -74,13 +75,13 @@ ShardHeader read_header(const std::string& path, std::ifstream& file) {
   }
 }
 
-// Of a file that is there. None: there is no file.
+// None: there is no such file. Throws if there is one that cannot be read.
 std::optional<std::ifstream> opened(const std::string& path) {
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (file) return file;
   const int reason = errno;
-  std::error_code unknown;
-  if (!std::filesystem::exists(path, unknown)) return std::nullopt;
+  if (reason == ENOENT || reason == ENOTDIR) return std::nullopt;
   fail(path, fmt::format("cannot be read: {}", std::strerror(reason)));
 }
 
@@ -136,6 +137,25 @@ class Records {
   std::ifstream file_;
   std::vector<std::uint32_t> frames_;
   std::vector<std::uint8_t> bytes_;
+};
+
+// A shard file that no other process writes meanwhile.
+class LockedFile {
+ public:
+  explicit LockedFile(const std::string& path) : file_(open(path.c_str(), O_RDWR | O_CLOEXEC)) {
+    if (file_ < 0) fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    if (flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+    close(file_);
+    throw ShardInUse(
+        fmt::format("shard file '{}': another process is writing it; wait until it ends, or end it", path));
+  }
+  ~LockedFile() { close(file_); }
+  LockedFile(const LockedFile&) = delete;
+  LockedFile& operator=(const LockedFile&) = delete;
+  int number() const { return file_; }
+
+ private:
+  int file_;
 };
 
 // A disk that fills up takes a part of the bytes first.
@@ -264,6 +284,7 @@ ShardContent read_shard(const std::string& path) {
   const std::vector<ExperimentRun> runs = runs_of(content.header.identity.settings);
   content.done.resize(runs.size());
   content.size_bytes = static_cast<std::uint64_t>(probe.tellg());
+  const std::uint64_t file_bytes = std::filesystem::file_size(path);  // it may grow while it is read
   Records records(path, frames_of(runs));
   records.file().seekg(static_cast<std::streamoff>(content.size_bytes));
   while (const std::optional<SequenceResult> result = records.next()) {
@@ -279,12 +300,8 @@ ShardContent read_shard(const std::string& path) {
                        sequence));
     content.size_bytes = static_cast<std::uint64_t>(records.file().tellg());
   }
-  content.dropped_bytes = std::filesystem::file_size(path) - content.size_bytes;
-  const auto is_whole_record = [&](std::uint32_t frames) {
-    return content.dropped_bytes >= record_size_bytes(frames);
-  };
-  const std::vector<std::uint32_t> frames = frames_of(runs);
-  content.is_damaged = std::any_of(frames.begin(), frames.end(), is_whole_record);
+  content.dropped_bytes = std::max(file_bytes, content.size_bytes) - content.size_bytes;
+  content.is_damaged = !records.file().eof();
   return content;
 }
 
@@ -335,13 +352,14 @@ bool is_in_use(const std::string& path) {
 
 std::string dropped_text(const std::string& path, std::uint64_t dropped_bytes) {
   return fmt::format(
-      "the last {} of '{}' are cut off, or follow a damaged record; what they held is run again",
+      "the last {} of '{}' begin with an incomplete or damaged record; what they held is run again",
       counted(dropped_bytes, "byte"), path);
 }
 
 std::uint64_t cut_to_whole_records(const std::string& path) {
+  const LockedFile file(path);
   const ShardContent content = read_shard(path);
-  if (content.dropped_bytes > 0 && truncate(path.c_str(), static_cast<off_t>(content.size_bytes)) != 0)
+  if (content.dropped_bytes > 0 && ftruncate(file.number(), static_cast<off_t>(content.size_bytes)) != 0)
     fail(path, fmt::format("cannot be cut to its whole records: {}", std::strerror(errno)));
   return content.dropped_bytes;
 }

@@ -93,10 +93,10 @@ void read_run(const std::string& path, const ShardContent& content, std::size_t 
 
 // None: there is no such file, or its header is not complete yet. Throws as read_shard() does.
 std::optional<ShardHeader> header_of(const std::string& path);
-// "the last 12 bytes of 'a.shard' are cut off or damaged; what they held is run again"
+// "the last 12 bytes of 'a.shard' begin with an incomplete or damaged record; what they held is run again"
 std::string dropped_text(const std::string& path, std::uint64_t dropped_bytes);
-// Removes what follows the last whole record, for a file that nobody writes: its sequences are run again.
-// Returns its size. Throws as read_shard() does.
+// Removes what follows the last whole record, so that its sequences are run again. Returns its size. Throws
+// as read_shard() does, and ShardInUse if another process writes the file.
 std::uint64_t cut_to_whole_records(const std::string& path);
 // Records in a file with a single run, from its size alone: for a progress bar. 0 if it is no shard file.
 // Throws std::runtime_error that names a file that is there and cannot be read.

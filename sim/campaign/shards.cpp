@@ -129,7 +129,7 @@ void require_a_sequence(const std::vector<OpenShard>& shards) {
   for (const OpenShard& shard : shards)
     for (const auto& done : shard.content.done)
       if (!done.empty()) return;
-  throw std::runtime_error(fmt::format(
+  throw NothingDone(fmt::format(
       "no sequence is done in {}; run the command of the shards first:\n  {} --shard I/N --shard-file FILE",
       shards.size() == 1 ? "shard file '" + shards.front().path + "'" : "any of the shard files",
       shards.front().content.header.command));
@@ -177,7 +177,7 @@ void run_shard(const Subject& subject, const ExperimentSettings& settings, const
 }
 
 MergedShards merge_shards(const std::vector<std::string>& paths, MergeMode mode) {
-  if (paths.empty()) throw std::runtime_error("there are no shard files to merge");
+  if (paths.empty()) throw NothingDone("there are no shard files to merge");
   const std::vector<OpenShard> shards = open_shards(paths);
   require_one_evaluation(shards);
   const ExperimentIdentity& identity = shards.front().content.header.identity;

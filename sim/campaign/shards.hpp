@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,14 @@ void note_builds(const std::set<std::string>& commits, std::vector<std::string>&
 // kPartial: figures of the sequences that there are, with a note of how many are missing.
 enum class MergeMode { kComplete, kPartial };
 
-// Throws std::runtime_error that names the files and the remedy if one cannot be read or is no shard file, if
-// they are of different evaluations, if a sequence is in two of them, or, but for kPartial, in none.
+// No sequence is done in any of the files.
+struct NothingDone : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Throws NothingDone, and std::runtime_error that names the files and the remedy if one cannot be read or is
+// no shard file, if they are of different evaluations, if a sequence is in two of them, or, but for kPartial,
+// in none.
 MergedShards merge_shards(const std::vector<std::string>& paths, MergeMode mode = MergeMode::kComplete);
 
 }  // namespace tumblesight::sim

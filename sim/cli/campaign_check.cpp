@@ -28,39 +28,36 @@ std::string command_of(const OpenCampaign& open, const CampaignTask& task) {
       fmt::format("{}, line {}: run {}: {}", open.campaign.file, run.line, run.name, why));
 }
 
-constexpr const char* kRemedyForOtherFiles =
-    "write the file as it was, give another --out, or delete the shard file";
+constexpr const char* kRemedy =
+    "restore the file, mesh, model or program that it was begun with, or give another --out";
 
 // A file of an earlier version of the campaign must not count as done.
-void require_same_experiment(const CampaignTask& task, const ExperimentIdentity& identity) {
-  const std::optional<ShardHeader> header = header_of(task.path);
-  if (!header) return;
-  std::string differs = difference(header->identity, identity);
-  if (differs.empty() && to_string(header->shard) != to_string(task.shard))
-    differs = fmt::format("shard is {}, not {}", to_string(header->shard), to_string(task.shard));
+void require_same_experiment(const CampaignTask& task, const ShardHeader& header,
+                             const ExperimentIdentity& identity) {
+  std::string differs = difference(header.identity, identity);
+  if (differs.empty() && to_string(header.shard) != to_string(task.shard))
+    differs = fmt::format("shard is {}, not {}", to_string(header.shard), to_string(task.shard));
   if (differs.empty()) return;
-  throw std::runtime_error(fmt::format("shard file '{}' is of another experiment: {}; {}", task.path, differs,
-                                       kRemedyForOtherFiles));
+  throw std::runtime_error(
+      fmt::format("shard file '{}' is of another experiment: {}; {}", task.path, differs, kRemedy));
 }
 
 // The report names one command for all sequences of a run.
-void require_same_command(const OpenCampaign& open, const CampaignTask& task) {
-  const std::optional<ShardHeader> header = header_of(task.path);
-  if (!header) return;
+void require_same_command(const OpenCampaign& open, const CampaignTask& task, const ShardHeader& header) {
   const std::string command = command_of(open, task);
-  if (header->command != command)
+  if (header.command != command)
     throw std::runtime_error(fmt::format("shard file '{}' is of another command: {}, not {}; {}", task.path,
-                                         header->command, command, kRemedyForOtherFiles));
+                                         header.command, command, kRemedy));
 }
 
 // Nobody would miss what was done with another number of shards.
 void require_same_division(const CampaignTask& task) {
+  constexpr const char* kMessage =
+      "shard file '{}' is of a campaign with other sequences or sequences_per_task, which divide the run "
+      "into {} now; "
+      "restore them, give another --out, or delete the folder of the run";
   if (const std::string other = other_division(task); !other.empty())
-    throw std::runtime_error(
-        fmt::format("shard file '{}' is of a campaign with other sequences or sequences_per_task, which "
-                    "divide the run into {} "
-                    "now; {}",
-                    other, counted(task.shard.count, "shard"), kRemedyForOtherFiles));
+    throw std::runtime_error(fmt::format(kMessage, other, counted(task.shard.count, "shard")));
 }
 
 // A value that the option does not take, or one that takes more than it looks like; empty: none.
@@ -147,8 +144,10 @@ void check(const OpenCampaign& open) {
         require_new(open, task.run, identities);
         bar.update(++done);
       }
-      require_same_experiment(task, *identity);
-      require_same_command(open, task);
+      if (const std::optional<ShardHeader> header = header_of(task.path)) {
+        require_same_experiment(task, *header, *identity);
+        require_same_command(open, task, *header);
+      }
     } catch (const std::exception& error) {
       refuse(open, run, error.what());
     }
@@ -159,7 +158,8 @@ void check(const OpenCampaign& open) {
 void require_same_options(const OpenCampaign& open) {
   for (const CampaignTask& task : open.tasks) {
     try {
-      require_same_command(open, task);
+      if (const std::optional<ShardHeader> header = header_of(task.path))
+        require_same_command(open, task, *header);
     } catch (const std::exception& error) {
       refuse(open, open.campaign.runs[task.run], error.what());
     }

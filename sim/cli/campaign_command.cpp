@@ -1,7 +1,5 @@
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -95,19 +93,31 @@ void require_something_to_report(const CampaignArguments& arguments, const OpenC
       open.campaign.name, left, counted(open.tasks.size(), "task")));
 }
 
-// A report of one campaign must not replace that of another one.
-void claim_folder(const OpenCampaign& open) {
-  const std::string path = open.out + "/campaign";
-  std::ifstream file(path);
+// Names the campaign to which the folder belongs: a report of one must not replace that of another one.
+std::string owner_path(const OpenCampaign& open) {
+  return open.out + "/.campaign";
+}
+
+void require_own_folder(const OpenCampaign& open) {
+  std::ifstream file(owner_path(open));
   std::string name;
   std::getline(file, name);
-  if (!name.empty() && name != open.campaign.name)
-    throw std::runtime_error(
-        fmt::format("folder '{}' is of the campaign '{}'; give another --out", open.out, name));
-  if (name.empty()) write_file(path, open.campaign.name + "\n");
+  if (name.empty() || name == open.campaign.name) return;
+  throw std::runtime_error(
+      fmt::format("folder '{}' is of the campaign '{}'; give another --out, or delete '{}' if this is the "
+                  "same campaign under "
+                  "another name",
+                  open.out, name, owner_path(open)));
+}
+
+// Returns the time of the file system, which may be on another machine.
+fs::file_time_type claim_folder(const OpenCampaign& open) {
+  write_file(owner_path(open), open.campaign.name + "\n");
+  return fs::last_write_time(owner_path(open));
 }
 
 void report(const CampaignArguments& arguments, const OpenCampaign& open) {
+  require_own_folder(open);
   require_same_options(open);
   require_something_to_report(arguments, open);
   ProgressBar bar("merging", "runs", open.campaign.runs.size());
@@ -119,11 +129,19 @@ void report(const CampaignArguments& arguments, const OpenCampaign& open) {
     throw std::runtime_error(fmt::format("campaign '{}': no sequence is done yet", open.campaign.name));
   results.command = arguments.command_line;
   results.generated = local_time_text();
-  claim_folder(open);
+  (void)claim_folder(open);
   write_results_files(open.out, results, campaign_markdown(results));
   for (const std::string& note : results.notes) print_note(note);
   print_campaign(results);
   fmt::print("  report               {}\n\n", full_path(open.out + "/report.html"));
+}
+
+void make_log_folder(const OpenCampaign& open) {
+  std::error_code error;
+  fs::create_directories(open.out + "/logs", error);
+  if (error)
+    throw std::runtime_error(
+        fmt::format("folder '{}/logs' cannot be made: {}; give another --out", open.out, error.message()));
 }
 
 std::unique_ptr<Launcher> launch(const CampaignArguments& arguments, const OpenCampaign& open) {
@@ -135,12 +153,6 @@ std::unique_ptr<Launcher> launch(const CampaignArguments& arguments, const OpenC
   settings.options = shell_words(arguments.options);
   settings.tasks = open.tasks;
   settings.told_to_stop = [] { return told_to_stop != 0; };
-  std::error_code error;
-  fs::create_directories(log_folder(settings), error);
-  if (error)
-    throw std::runtime_error(fmt::format("folder '{}' cannot be made: {}; give another --out",
-                                         log_folder(settings), error.message()));
-  claim_folder(open);
   for (const LauncherRow& row : launcher_table())
     if (arguments.on == row.name) return row.launch(settings);
   throw std::logic_error("no such launcher");  // the option knows the names
@@ -153,7 +165,11 @@ void follow(const OpenCampaign& open, Launcher& launcher) {
   while (running && told_to_stop == 0) {
     std::this_thread::sleep_for(kLook);
     running = launcher.running();
-    bar.update(sequences_done(open.tasks));
+    try {
+      bar.update(sequences_done(open.tasks));
+    } catch (const std::runtime_error&) {
+      // A file system that does not answer for a moment is no reason to end the workers.
+    }
   }
   bar.finish();
 }
@@ -208,11 +224,11 @@ void require_all_done(const OpenCampaign& open, const Launcher& launcher, fs::fi
       why_not_done(open, left, launcher, last_failure(logs, start)), logs));
 }
 
-// Returns whether all is done by its size, but records are damaged: they are removed, to be run again.
-bool has_damaged(const OpenCampaign& open) {
+// What is done by its size may be damaged: that is removed, to be run again. Returns whether there was any.
+bool cut_damaged_records(const OpenCampaign& open) {
   bool any = false;
   ProgressBar bar("verifying", "tasks", open.tasks.size());
-  for (std::size_t i = 0; i < open.tasks.size(); ++i) {
+  for (std::size_t i = 0; i < open.tasks.size() && told_to_stop == 0; ++i) {
     const std::uint64_t bytes = cut_to_whole_records(open.tasks[i].path);
     if (bytes > 0) print_note(dropped_text(open.tasks[i].path, bytes));
     any = any || bytes > 0;
@@ -224,7 +240,8 @@ bool has_damaged(const OpenCampaign& open) {
 
 // False: it was told to stop, or shall not wait.
 bool run_tasks(const CampaignArguments& arguments, const OpenCampaign& open) {
-  const fs::file_time_type start = fs::file_time_type::clock::now() - kLook;  // clocks of files are coarse
+  make_log_folder(open);
+  const fs::file_time_type start = claim_folder(open);
   const std::unique_ptr<Launcher> launcher = launch(arguments, open);
   fmt::print("  started              {}\n", launcher->started());
   if (arguments.no_wait) return false;
@@ -234,23 +251,31 @@ bool run_tasks(const CampaignArguments& arguments, const OpenCampaign& open) {
   std::fflush(stdout);
   follow(open, *launcher);
   if (told_to_stop != 0) return false;
-  require_all_done(open, *launcher, start);
+  // Jobs of an earlier call may be followed.
+  require_all_done(open, *launcher, launcher->outlives_us() ? fs::file_time_type::min() : start);
   return true;
+}
+
+// Until everything is done and whole. False: it was told to stop, or shall not wait.
+bool finish_tasks(const CampaignArguments& arguments, const OpenCampaign& open) {
+  constexpr int kMostRounds = 3;
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (!tasks_left(open.tasks).empty() && !run_tasks(arguments, open)) return false;
+    if (!cut_damaged_records(open)) return told_to_stop == 0;
+  }
+  throw std::runtime_error(fmt::format(
+      "campaign '{}': records are damaged again and again; check the disk, or the file system, of '{}'",
+      open.campaign.name, open.out));
 }
 
 void run(const CampaignArguments& arguments) {
   const OpenCampaign open = open_campaign(arguments);
+  require_own_folder(open);
   check(open);
   print_state(open);
   if (arguments.dry_run) return;
   stop_on_signals();
-  bool is_done = tasks_left(open.tasks).empty();
-  constexpr int kMostRounds = 3;  // a disk that damages what it keeps is not read forever
-  for (int round = 0; round < kMostRounds && told_to_stop == 0; ++round) {
-    if (!is_done && !run_tasks(arguments, open)) break;
-    is_done = !has_damaged(open);
-    if (is_done) break;
-  }
+  const bool is_done = finish_tasks(arguments, open);
   if (told_to_stop != 0) throw CLI::RuntimeError(kStopped);
   if (is_done) report(arguments, open);
 }

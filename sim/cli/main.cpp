@@ -13,6 +13,8 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <system_error>
+#include <typeinfo>
 
 #include "cmake/version.hpp"
 #include "gnc/rcnn/model_image.hpp"
@@ -123,8 +125,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return finish_output(report(app, error, argc, argv));
   } catch (const std::exception& error) {
-    const char* const of_what = std::ferror(stdout) != 0 ? "standard output: " : "";
-    std::fprintf(stderr, "tumblesight: %s%s\n", of_what, error.what());
+    // fmt::print() does not say to what it could not write.
+    const bool is_of_output = typeid(error) == typeid(std::system_error) && std::ferror(stdout) != 0;
+    std::fprintf(stderr, "tumblesight: %s%s\n", is_of_output ? "standard output: " : "", error.what());
     return kFailed;
   }
   return finish_output(0);

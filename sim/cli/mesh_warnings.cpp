@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "sim/inspection/mesh_inspection.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/world/target/targets.hpp"

@@ -26,11 +26,15 @@ ExperimentRun plain_run(const ExperimentSettings& settings, Condition condition)
   return run;
 }
 
+std::uint32_t sequences_of(const ExperimentSettings& settings, Condition condition) {
+  return condition == Condition::kTumbling ? settings.tumbling_sequences : settings.sequences;
+}
+
 std::vector<ExperimentRun> cells_of(const ExperimentSettings& settings) {
   std::vector<ExperimentRun> runs;
   for (const Condition condition : settings.conditions) {
     ExperimentRun& run = runs.emplace_back(plain_run(settings, condition));
-    if (condition == Condition::kTumbling) run.sequences = settings.tumbling_sequences;
+    run.sequences = sequences_of(settings, condition);
     run.baseline_sequences = std::min(settings.baseline_sequences, run.sequences);
     run.peers = peers_of(settings);
   }
@@ -61,6 +65,7 @@ std::vector<ExperimentRun> disturbed_runs_of(const ExperimentSettings& settings)
   for (const DisturbedRun& disturbed : disturbed_runs()) {
     ExperimentRun& run = runs.emplace_back(plain_run(settings, disturbed.condition));
     run.kind = ExperimentRun::Kind::kDisturbed;
+    run.sequences = sequences_of(settings, disturbed.condition);  // those of the run without the disturbance
     run.scenario.disturbances = disturbed.disturbances;
   }
   return runs;

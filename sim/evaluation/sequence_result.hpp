@@ -19,7 +19,7 @@ struct PeerMatch {
 struct SequenceResult {
   std::uint32_t sequence = 0;
   std::vector<FrameResult> frames;  // those that were delivered, in their order
-  double step_ms = 0.0;             // mean time per frame from ranges to attitude, one thread
+  double step_ms = 0.0;             // mean time per frame from ranges to attitude and pose, one thread
   double baseline_ms = 0.0;         // of the baseline on the last frame; 0: not run
   std::vector<PeerMatch> peers{};   // in the order of the settings; empty: not run
 };

@@ -11,8 +11,10 @@ FlightProcess::FlightProcess(const std::string& program, const std::vector<std::
                              const std::string& log_path, int inherited_file,
                              const std::vector<std::string>& environment) try
     : ChildProcess(program, arguments, log_path, inherited_file, environment) {
-} catch (const std::runtime_error& error) {
+} catch (const ProgramFailure& error) {
   throw SilFailure(std::string("the flight program ") + error.what());
+} catch (const std::runtime_error& error) {
+  throw SilFailure(error.what());
 }
 
 std::string FlightProcess::how_it_ended() const {

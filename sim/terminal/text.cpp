@@ -57,7 +57,12 @@ std::size_t size_of_character(const std::string& text, std::size_t at) {
   for (std::size_t i = 1; i < size; ++i) {
     if (!continues_a_character(text[at + i])) return 0;
   }
-  return size;
+  // The second byte tells longer forms of shorter characters, halves of pairs, and what is beyond the last
+  // one.
+  const auto second = static_cast<unsigned char>(size > 1 ? text[at + 1] : '\0');
+  const bool is_character = !(first == 0xE0U && second < 0xA0U) && !(first == 0xEDU && second > 0x9FU) &&
+                            !(first == 0xF0U && second < 0x90U) && !(first == 0xF4U && second > 0x8FU);
+  return is_character ? size : 0;
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ SEQUENCES = 320  # of each run, 8 tasks of 40: each takes about a second
 LIMIT_S = 150
 SKIPPED = 77
 STOPPED = 3
-# OpenMPI as root, and more processes than cores, as in a container; its traffic on loopback.
+#OpenMPI as root, and more processes than cores, as in a container; its traffic on loopback.
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
        "OMPI_MCA_oob_tcp_if_include": "lo", "OMPI_MCA_btl": "self,vader", "OMPI_MCA_plm_rsh_agent": "false"}
 
@@ -32,24 +32,20 @@ def run(words, **more):
     """As subprocess.run, but a program that takes too long is asked to end, so that it can end what it started."""
     process = subprocess.Popen(words, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **more)
     try:
-        output, errors = process.communicate(timeout=LIMIT_S)
-    except subprocess.TimeoutExpired:
-        process.terminate()
-        output, errors = process.communicate(timeout=30)
-        errors += f"\ntook longer than {LIMIT_S} s"
-    return subprocess.CompletedProcess(words, process.returncode, output, errors)
+        output, errors
+  = process.communicate(timeout = LIMIT_S) except subprocess.TimeoutExpired : process.terminate() output,
+      errors = process.communicate(timeout = 30) errors +=
+      f "\ntook longer than {LIMIT_S} s" return subprocess.CompletedProcess(words, process.returncode, output,
+                                                                            errors)
 
+          def
+          expect(holds, message, outcome = None)
+      : if holds : return if outcome is not None : message +=
+      f "\nstatus {outcome.returncode}\n{outcome.stdout}\n{outcome.stderr}" sys.exit("cluster.py: " + message)
 
-def expect(holds, message, outcome=None):
-    if holds:
-        return
-    if outcome is not None:
-        message += f"\nstatus {outcome.returncode}\n{outcome.stdout}\n{outcome.stderr}"
-    sys.exit("cluster.py: " + message)
-
-
-def words_of(pid):
-    try:
+          def
+          words_of(pid)
+      : try:
         return pathlib.Path(f"/proc/{pid}/cmdline").read_bytes().decode().split("\0")
     except OSError:  # it has ended
         return []
@@ -67,10 +63,16 @@ def until(holds, seconds):
     return holds()
 
 
-def expect_nothing_left_after_kill(words, out, environment):
+def workers_of(program, out):
+    for pid in processes_of(out):
+        if words_of(pid)[:3] == [program, "campaign", "work"]:
+            yield pid
+
+
+def expect_nothing_left_after_kill(words, program, out, environment):
     """The workers, and mpirun, end with the program that has started them."""
     process = subprocess.Popen(words, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    started = until(lambda: processes_of(out), 30)
+    started = until(lambda: list(workers_of(program, out)), 30)
     process.kill()
     process.wait()
     expect(started, "no worker was started before the kill")
@@ -84,17 +86,11 @@ class Killer(threading.Thread):
         super().__init__(daemon=True)
         self.program, self.out, self.killed = program, out, None
 
-    def workers(self):
-        for pid in filter(str.isdigit, os.listdir("/proc")):
-            words = words_of(pid)
-            if words[:3] == [self.program, "campaign", "work"] and str(self.out) in words:
-                yield int(pid)
-
     def run(self):
         end = time.monotonic() + LIMIT_S
         while time.monotonic() < end:
             begun = [path for path in self.out.glob("*/*.shard") if path.stat().st_size > 10_000]
-            workers = list(self.workers())
+            workers = list(workers_of(self.program, self.out))
             if begun and workers:
                 os.kill(workers[0], signal.SIGKILL)
                 self.killed = workers[0]
@@ -152,7 +148,7 @@ def check(way, program, folder):
     out = campaign.with_suffix("")
     environment = {**os.environ, **MPI}
     if way != "slurm":
-        expect_nothing_left_after_kill(command_of(way, program, campaign), out, environment)
+        expect_nothing_left_after_kill(command_of(way, program, campaign), program, out, environment)
     killer = Killer(program, out)
     killer.start()
     watcher = Watcher()

@@ -86,6 +86,12 @@ TEST_F(ShardFile, AFileThatCannotBeWrittenIsNamed) {
   EXPECT_NE(error.find("it is no plain file"), std::string::npos) << error;
 }
 
+TEST_F(ShardFile, OneThatIsBeingWrittenIsNotCut) {
+  const std::string path = folder_.path("s");
+  const ShardWriter writer(path, small_.header({0, 2}));
+  EXPECT_THROW((void)cut_to_whole_records(path), ShardInUse);
+}
+
 TEST_F(ShardFile, MissingFoldersAreMade) {
   EXPECT_NO_THROW(ShardWriter(folder_.path("a/b/c"), small_.header({0, 2})));
 }

@@ -133,7 +133,8 @@ TEST_F(CampaignCommand, WhatIsThereOfAnotherExperimentIsNotCounted) {
   const std::string campaign = content(here.path("c.toml"));
   std::ofstream(here.path("c.toml")) << "seed = 6" << campaign.substr(8);
   expect_refused(here.run("campaign run c.toml"),
-                 "is of another experiment: seed is 5, not 6; write the file as it was, give another --out");
+                 "is of another experiment: seed is 5, not 6; restore the file, mesh, model or program that "
+                 "it was begun with, or give another --out");
   expect_refused(here.run("campaign report c.toml"), "is of another command: ");
   std::ofstream(here.path("c.toml")) << campaign;
   here.put("c/" + shard, {1, 2, 3});
@@ -149,7 +150,8 @@ TEST_F(CampaignCommand, ADamagedRecordIsRunAgain) {
   std::ofstream(path, std::ios::binary) << bytes;
   const Outcome again = here.run("campaign run c.toml");
   EXPECT_EQ(again.exit_code, 0) << again.errors;
-  EXPECT_NE(again.errors.find("or follow a damaged record; what they held is run again"), std::string::npos)
+  EXPECT_NE(again.errors.find("begin with an incomplete or damaged record; what they held is run again"),
+            std::string::npos)
       << again.errors;
   EXPECT_EQ(crc_in(again.output), crc_in(first.output));
 }
@@ -170,6 +172,23 @@ TEST_F(CampaignCommand, ADamagedRecordIsRunAgainBesideWhatIsLeft) {
   EXPECT_EQ(crc_in(again.output), crc_in(first.output));
 }
 
+// The other runs have figures all the same.
+TEST_F(CampaignCommand, ARunOfWhichNothingIsWholeDoesNotPreventAPartialReport) {
+  put_campaign();
+  const std::string folder = here.path("c/near_shoemaker-model_model.tsm-nominal-frames_2/");
+  EXPECT_EQ(here.run("campaign work c.toml").exit_code, 0);
+  for (const char* shard : {"0001_of_0003.shard", "0002_of_0003.shard"})
+    std::filesystem::remove(folder + shard);
+  std::string bytes = content(folder + "0000_of_0003.shard");
+  const std::size_t header = bytes.find("}\n") + 2 + 4;
+  bytes[header + 20] ^= 1;
+  std::ofstream(folder + "0000_of_0003.shard", std::ios::binary) << bytes;
+  const Outcome partial = here.run("campaign report c.toml --partial");
+  EXPECT_EQ(partial.exit_code, 0) << partial.errors;
+  EXPECT_NE(partial.errors.find("nominal-frames_2: no sequence is done."), std::string::npos)
+      << partial.errors;
+}
+
 // Its commands would differ from those of what is done, and the report has room for one.
 TEST_F(CampaignCommand, AnotherSpellingOfAPathIsNotedBeforeTheWork) {
   const std::string toml =
@@ -179,7 +198,8 @@ TEST_F(CampaignCommand, AnotherSpellingOfAPathIsNotedBeforeTheWork) {
   std::ofstream(here.path("c.toml")) << toml << "model = \"./model.tsm\"\n";
   const Outcome outcome = here.run("campaign run c.toml");
   expect_refused(outcome, "is of another command: tumblesight evaluate --no-baseline --sequences 2 --seed 1");
-  expect_refused(outcome, "write the file as it was, give another --out");
+  expect_refused(outcome,
+                 "restore the file, mesh, model or program that it was begun with, or give another --out");
 }
 
 TEST_F(CampaignCommand, WhatWasDoneWithAnotherDivisionIsNamed) {
@@ -220,7 +240,7 @@ TEST_F(CampaignCommand, TwoCampaignsDoNotShareAFolder) {
     std::ofstream(here.path(name)) << "[[run]]\nsequences = 1\nframes = 1\nmodel = \"model.tsm\"\n";
   EXPECT_EQ(here.run("campaign run a.toml --out both").exit_code, 0);
   expect_refused(here.run("campaign run b.toml --out both"),
-                 "both' is of the campaign 'a'; give another --out");
+                 "both' is of the campaign 'a'; give another --out, or delete '");
   expect_refused(here.run("campaign report b.toml --out both"), "both' is of the campaign 'a'");
 }
 

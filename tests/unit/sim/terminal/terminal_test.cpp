@@ -76,6 +76,13 @@ TEST(Text, IsShortenedBetweenCharactersAndWithoutControls) {
   EXPECT_EQ(shortened("ab°d", 4), "ab°...");
   EXPECT_EQ(shortened("\033[2J\n"), "?[2J?");
   EXPECT_EQ(shortened("\xff\xb0 \xc2 \xe2\x82"), "?? ? ??") << "not UTF-8";
+  for (const char* good :
+       {"", "a°", "\xed\x9f\xbf", "\xee\x80\x80", "\xe0\xa0\x80", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"})
+    EXPECT_TRUE(is_utf8(good)) << good;
+  // Halves of pairs, longer forms of shorter characters, beyond the last one, cut off.
+  for (const char* bad : {"\xed\xa0\x80", "\xed\xbf\xbf", "\xe0\x9f\xbf", "\xf0\x8f\xbf\xbf",
+                          "\xf4\x90\x80\x80", "\xc0\x80", "\xf5\x80\x80\x80", "\xe2\x82", "\xb0"})
+    EXPECT_FALSE(is_utf8(bad)) << bad;
 }
 
 TEST(Progress, ShowsRateAndTimeLeft) {
