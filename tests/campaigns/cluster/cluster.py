@@ -23,7 +23,7 @@ SEQUENCES = 320  # of each run, 8 tasks of 40: each takes about a second
 LIMIT_S = 150
 SKIPPED = 77
 STOPPED = 3
-#OpenMPI as root, and more processes than cores, as in a container; its traffic on loopback.
+# OpenMPI as root, and more processes than cores, as in a container; its traffic on loopback.
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
        "OMPI_MCA_oob_tcp_if_include": "lo", "OMPI_MCA_btl": "self,vader", "OMPI_MCA_plm_rsh_agent": "false"}
 
@@ -32,20 +32,24 @@ def run(words, **more):
     """As subprocess.run, but a program that takes too long is asked to end, so that it can end what it started."""
     process = subprocess.Popen(words, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **more)
     try:
-        output, errors
-  = process.communicate(timeout = LIMIT_S) except subprocess.TimeoutExpired : process.terminate() output,
-      errors = process.communicate(timeout = 30) errors +=
-      f "\ntook longer than {LIMIT_S} s" return subprocess.CompletedProcess(words, process.returncode, output,
-                                                                            errors)
+        output, errors = process.communicate(timeout=LIMIT_S)
+    except subprocess.TimeoutExpired:
+        process.terminate()
+        output, errors = process.communicate(timeout=30)
+        errors += f"\ntook longer than {LIMIT_S} s"
+    return subprocess.CompletedProcess(words, process.returncode, output, errors)
 
-          def
-          expect(holds, message, outcome = None)
-      : if holds : return if outcome is not None : message +=
-      f "\nstatus {outcome.returncode}\n{outcome.stdout}\n{outcome.stderr}" sys.exit("cluster.py: " + message)
 
-          def
-          words_of(pid)
-      : try:
+def expect(holds, message, outcome=None):
+    if holds:
+        return
+    if outcome is not None:
+        message += f"\nstatus {outcome.returncode}\n{outcome.stdout}\n{outcome.stderr}"
+    sys.exit("cluster.py: " + message)
+
+
+def words_of(pid):
+    try:
         return pathlib.Path(f"/proc/{pid}/cmdline").read_bytes().decode().split("\0")
     except OSError:  # it has ended
         return []
