@@ -54,8 +54,7 @@ void require_same_command(const OpenCampaign& open, const CampaignTask& task, co
 void require_same_division(const CampaignTask& task) {
   constexpr const char* kMessage =
       "shard file '{}' is of a campaign with other sequences or sequences_per_task, which divide the run "
-      "into {} now; "
-      "restore them, give another --out, or delete the folder of the run";
+      "into {} now; restore them, give another --out, or delete the folder of the run";
   if (const std::string other = other_division(task); !other.empty())
     throw std::runtime_error(fmt::format(kMessage, other, counted(task.shard.count, "shard")));
 }

@@ -105,8 +105,7 @@ void require_own_folder(const OpenCampaign& open) {
   if (name.empty() || name == open.campaign.name) return;
   throw std::runtime_error(
       fmt::format("folder '{}' is of the campaign '{}'; give another --out, or delete '{}' if this is the "
-                  "same campaign under "
-                  "another name",
+                  "same campaign under another name",
                   open.out, name, owner_path(open)));
 }
 
@@ -215,13 +214,12 @@ void require_all_done(const OpenCampaign& open, const Launcher& launcher, fs::fi
   const std::vector<std::size_t> left = tasks_left(open.tasks);
   if (left.empty()) return;
   const std::string logs = open.out + "/logs";
-  throw std::runtime_error(fmt::format(
-      "campaign '{}': {} of {} are not done, the first: {}. {}Messages of the workers: {}. The same command "
-      "goes "
-      "on where it stopped",
-      open.campaign.name, left.size(), counted(open.tasks.size(), "task"),
-      name_of(open.campaign, open.tasks[left.front()]),
-      why_not_done(open, left, launcher, last_failure(logs, start)), logs));
+  throw std::runtime_error(
+      fmt::format("campaign '{}': {} of {} are not done, the first: {}. {}Messages of the workers: {}. The "
+                  "same command goes on where it stopped",
+                  open.campaign.name, left.size(), counted(open.tasks.size(), "task"),
+                  name_of(open.campaign, open.tasks[left.front()]),
+                  why_not_done(open, left, launcher, last_failure(logs, start)), logs));
 }
 
 // What is done by its size may be damaged: that is removed, to be run again. Returns whether there was any.

@@ -28,8 +28,7 @@ std::string worst_section(const CellResult& cell) {
 std::string subject_section(const SubjectResult& subject) {
   std::string text = fmt::format(
       "## {}\n\n`{}.tsm`, CRC-32 `{:08x}`\n\n{}**Last frames that went wrong, of all last frames.** The true "
-      "rate is "
-      "above the lower bound with probability 97.5 %, and below the upper one likewise "
+      "rate is above the lower bound with probability 97.5 %, and below the upper one likewise "
       "(Clopper-Pearson).\n\n{}",
       title_of(subject), subject.model, subject.model_crc32, markdown_text(accuracy_table(subject)),
       markdown_text(rare_events_table(subject)));

@@ -29,10 +29,9 @@ constexpr const char* kReadingNotes = R"md(
 
 std::string introduction(const Results& results) {
   std::string text = fmt::format(
-      "# Results\n\nMade by\n\n```\n{}\n```\n\nwith seed {}. Every figure below comes from that run. "
-      "Another run gives the same figures, except for the times.\nOn another kind of processor they may "
-      "differ "
-      "in the [fourth digit](cluster.md#by-hand).\n{}",
+      "# Results\n\nMade by\n\n```\n{}\n```\n\nwith seed {}. Every figure below comes from that run. Another "
+      "run gives the same figures, except for the times.\nOn another kind of processor they may differ in "
+      "the [fourth digit](cluster.md#by-hand).\n{}",
       results.command, results.seed, kReadingNotes);
   for (const std::string& note : results.notes) text += "- Note: " + note + "\n";
   return text + "\n";
@@ -60,9 +59,9 @@ std::string accuracy_section(const Results& results) {
 }
 
 std::string others_section(const Results& results) {
-  return "## Other estimators in the same run\n\nTimes: milliseconds per frame on one thread, median. A "
-         "step is everything that flies: target selection, network and registration. It was measured "
-         "while all cores evaluated; docs/numerics.md has times without other work.\n\n" +
+  return "## Other estimators in the same run\n\nTimes: milliseconds per frame on one thread, median. A step "
+         "is everything that flies: target selection, network and registration. It was measured while all "
+         "cores evaluated; docs/numerics.md has times without other work.\n\n" +
          markdown_text(conditions_table(results.subjects, kOtherEstimatorsTable));
 }
 
@@ -103,14 +102,12 @@ std::string pooled_text(const std::vector<SubjectResult>& subjects) {
   const RightAndValid right = right_and_valid(subjects);
   return fmt::format(
              "**More than 20° off and valid, over all lines above (TS-EST-194):** {} of {} last frames, "
-             "{:.2f} %; goal: at most "
-             "{:.1f} %, {}.\n\n",
+             "{:.2f} %; goal: at most {:.1f} %, {}.\n\n",
              wrong.wrong, wrong.frames, 100.0 * wrong.share(), 100.0 * kMostWrongAndValid,
              wrong.share() <= kMostWrongAndValid ? "met" : "missed") +
          fmt::format(
              "**Valid of those within 20°, over the paper's conditions (TS-EST-194):** {} of {} last frames, "
-             "{:.1f} %; goal: at "
-             "least {:.0f} %, {}.\n\n",
+             "{:.1f} %; goal: at least {:.0f} %, {}.\n\n",
              right.valid, right.right, 100.0 * right.share(), 100.0 * kLeastRightAndValid,
              right.share() >= kLeastRightAndValid ? "met" : "missed");
 }
@@ -129,9 +126,9 @@ constexpr const char* kDisturbedNotes = R"md(## Disturbed sequences
 
 The options of `tumblesight evaluate --help` under the same names. Seed and sequences are those of the tables above, so
 that a run with a disturbance and the run without it show the same targets, motions and noise. Valid: the attitude
-passes the checks of the flight program; wrong: more than 20° off. Shares are of all sequences. The bars are those of the
-requirements TS-EST-300, TS-EST-310, TS-EST-320 and TS-EST-330. They limit what a disturbance adds to the errors of the
-network, on the same sequences without it. Pose: the registered one; verified, wrong: more than 5° off.
+passes the checks of the flight program; wrong: more than 20° off. Shares are of all sequences. The bars are those of
+the requirements TS-EST-300, TS-EST-310, TS-EST-320 and TS-EST-330. They limit what a disturbance adds to the errors of
+the network, on the same sequences without it. Pose: the registered one; verified, wrong: more than 5° off.
 
 )md";
 
