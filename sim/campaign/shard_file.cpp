@@ -139,16 +139,24 @@ class Records {
   std::vector<std::uint8_t> bytes_;
 };
 
-// A shard file that no other process writes meanwhile.
-class LockedFile {
- public:
-  explicit LockedFile(const std::string& path) : file_(open(path.c_str(), O_RDWR | O_CLOEXEC)) {
-    if (file_ < 0) fail(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
-    if (flock(file_, LOCK_EX | LOCK_NB) == 0) return;
-    close(file_);
+// Opens a file that no other process writes until it is closed.
+int opened_alone(const std::string& path, int flags) {
+  const int file = open(path.c_str(), flags | O_CLOEXEC, 0666);
+  if (file < 0) fail(path, fmt::format("cannot be written: {}", std::strerror(errno)));
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+  const bool is_taken = errno == EWOULDBLOCK;
+  const std::string reason = std::strerror(errno);
+  close(file);
+  if (is_taken)
     throw ShardInUse(
         fmt::format("shard file '{}': another process is writing it; wait until it ends, or end it", path));
-  }
+  fail(path, reason);
+}
+
+// As long as this object lives.
+class LockedFile {
+ public:
+  explicit LockedFile(const std::string& path) : file_(opened_alone(path, O_RDWR)) {}
   ~LockedFile() { close(file_); }
   LockedFile(const LockedFile&) = delete;
   LockedFile& operator=(const LockedFile&) = delete;
@@ -225,16 +233,7 @@ void ShardWriter::take_file() {
   const std::filesystem::path parent = std::filesystem::path(path_).parent_path();
   if (!parent.empty()) std::filesystem::create_directories(parent);
   require_plain_file(path_);
-  file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (file_ < 0) fail(path_, fmt::format("cannot be written: {}", std::strerror(errno)));
-  if (flock(file_, LOCK_EX | LOCK_NB) == 0) return;
-  const bool taken = errno == EWOULDBLOCK;
-  const std::string reason = std::strerror(errno);
-  close(file_);
-  if (taken)
-    throw ShardInUse(
-        fmt::format("shard file '{}': another process is writing it; wait until it ends, or end it", path_));
-  fail(path_, reason);
+  file_ = opened_alone(path_, O_WRONLY | O_CREAT | O_APPEND);
 }
 
 void ShardWriter::start_file(const ShardHeader& header) {
