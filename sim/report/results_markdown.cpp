@@ -23,15 +23,15 @@ constexpr const char* kReadingNotes = R"md(
 - Paper: DOI 10.1016/j.conengprac.2026.107134. Goal: what this project demands of the registered pose.
 - These figures decide whether the [requirements](requirements.csv) TS-EST-010 to TS-EST-090 are met: TS-EST-010,
   TS-EST-020 and TS-EST-030 by the poses in the tables of goals, TS-EST-040 and TS-EST-050 by the paper's figures,
-  TS-EST-060, TS-EST-070, TS-EST-080 and TS-EST-090 by the checks of each spacecraft. Where a goal is higher than
-  its requirement, the requirement's rationale says so.
+  TS-EST-060, TS-EST-070 and TS-EST-080 by the checks of each spacecraft, TS-EST-090 by the tables on the detection
+  of wrong estimates. Where a goal is higher than its requirement, the requirement says so.
 )md";
 
 std::string introduction(const Results& results) {
   std::string text = fmt::format(
       "# Results\n\nMade by\n\n```\n{}\n```\n\nwith seed {}. Every figure below comes from that run. Another "
-      "run gives the same figures, except for the times.\nOn another kind of processor they may differ in "
-      "the [fourth digit](cluster.md#by-hand).\n{}",
+      "run gives the same figures, except for the times.\nOn another kind of processor most agree to three "
+      "digits, and a mean differs more\nwhere a sequence ends on [another attitude](cluster.md#by-hand).\n{}",
       results.command, results.seed, kReadingNotes);
   for (const std::string& note : results.notes) text += "- Note: " + note + "\n";
   return text + "\n";
@@ -101,7 +101,8 @@ std::string pooled_text(const std::vector<SubjectResult>& subjects) {
   const WrongAndValid wrong = wrong_and_valid(subjects);
   const RightAndValid right = right_and_valid(subjects);
   return fmt::format(
-             "**More than 20° off and valid, over all lines above (TS-EST-194):** {} of {} last frames, "
+             "**More than 20° off and valid, over all lines above but those of another object "
+             "(TS-EST-194):** {} of {} last frames, "
              "{:.2f} %; goal: at most {:.1f} %, {}.\n\n",
              wrong.wrong, wrong.frames, 100.0 * wrong.share(), 100.0 * kMostWrongAndValid,
              wrong.share() <= kMostWrongAndValid ? "met" : "missed") +
