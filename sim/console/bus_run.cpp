@@ -17,7 +17,6 @@ namespace {
 constexpr dds_duration_t kPoll = DDS_MSECS(50);
 constexpr auto kBetweenLooks = std::chrono::milliseconds(30);
 constexpr int kAnswerTimeout_ms = 5000;  // a run at the speed of flight takes requests every 2.7 s
-constexpr auto kLongestWait = std::chrono::seconds(10);  // for a simulator that has announced its run
 
 dds_entity_t checked(dds_entity_t entity) {
   if (entity < 0)
@@ -31,6 +30,11 @@ dds_entity_t reader_of(const Readers& readers) {
   return std::find_if(readers.begin(), readers.end(),
                       [topic](const auto& reader) { return reader.first == topic; })
       ->second;
+}
+
+bool is_announced(std::uint32_t domain, std::uint32_t run_id) {
+  const std::optional<AnnouncedRun> run = announced_run(static_cast<int>(domain));
+  return run && run->secret.run_id == run_id;
 }
 
 }  // namespace
@@ -148,10 +152,10 @@ void BusRun::keep(const hal::dds::LidarFrameSample& sample) {
   if (frames_.size() > kFramesKept) frames_.pop_front();
 }
 
-// Until the simulator has left, and nothing has come since.
-void BusRun::follow(const Connection& connection) {
+// Until the simulator has left, and nothing has come since. One that was never seen has left when its
+// announcement is gone.
+void BusRun::follow(const Connection& connection, std::uint32_t domain) {
   const dds_entity_t steps = reader_of<hal::dds::StepSample>(connection.readers);
-  const auto give_up = std::chrono::steady_clock::now() + kLongestWait;
   bool had_simulator = false;
   while (!is_stopping_) {
     dds_attach_t triggered[1];
@@ -160,7 +164,7 @@ void BusRun::follow(const Connection& connection) {
     record([](JoinedRecording& recording) { recording.poll(); });
     const bool has_simulator = dds_get_matched_publications(steps, nullptr, 0) > 0;
     had_simulator |= has_simulator;
-    if (had_simulator ? !has_simulator && !any : std::chrono::steady_clock::now() > give_up) break;
+    if (had_simulator ? !has_simulator && !any : !is_announced(domain, connection.secret.run_id)) break;
   }
   log_.end();
 }
@@ -200,7 +204,7 @@ void BusRun::look_for_runs() {
         const std::unique_ptr<Connection> connection = connect(*run);
         join(run->domain);
         begin_recording();
-        follow(*connection);
+        follow(*connection, run->domain);
         end_recording();
       } catch (const std::exception& failure) {  // of the bus
         note(failure.what());

@@ -60,7 +60,7 @@ class BusRun final : public RunSource {
   void show(const Sample& sample);
   bool take_samples(const Connection& connection);
   void keep(const hal::dds::LidarFrameSample& sample);
-  void follow(const Connection& connection);
+  void follow(const Connection& connection, std::uint32_t domain);
   void join(std::optional<std::uint32_t> domain);
   template <class Action>
   void record(const Action& action);

@@ -1,5 +1,6 @@
 #include "sim/sil/run_announcement.hpp"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -26,12 +27,8 @@ std::string announcement_of(std::uint32_t domain) {
 }
 
 // A killed run leaves its file, but not its lock.
-bool is_going_on(std::uint32_t domain) {
-  const int file = open(path_of(domain, ".lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-  if (file < 0) return false;
-  const bool is_free = flock(file, LOCK_SH | LOCK_NB) == 0;
-  close(file);
-  return !is_free;
+bool is_locked_by_run(int file) {
+  return flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
 struct Found {
@@ -45,7 +42,7 @@ std::optional<Found> read_announcement(std::uint32_t domain) {
   char text[sizeof(hal::dds::RunSecretText) + 1] = {};
   Found found;
   const bool is_ours = fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid();
-  const bool is_read = is_ours && read(file, text, sizeof text - 1) > 0;
+  const bool is_read = is_ours && read(file, text, sizeof text - 1) > 0 && is_locked_by_run(file);
   close(file);
   if (!is_read) return std::nullopt;
   // The default partition has no name, which read_run_secret() does not accept.
@@ -68,16 +65,18 @@ RunAnnouncement::RunAnnouncement(std::uint32_t domain, const hal::dds::RunSecret
     : path_(announcement_of(domain)) {
   if (path_.empty()) return;
   unlink(path_.c_str());  // of a run that was killed
-  const int file = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
+  file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
   const hal::dds::RunSecretText text = to_text(secret);
-  const std::size_t length = std::strlen(text.text);
-  const bool is_written = file >= 0 && write(file, text.text, length) == static_cast<ssize_t>(length);
-  if (file >= 0) close(file);
+  const auto length = static_cast<ssize_t>(std::strlen(text.text));
+  // Locked before it has its text: text without a lock is that of a killed run.
+  const bool is_written = file_ >= 0 && flock(file_, LOCK_EX) == 0 &&
+                          write(file_, text.text, static_cast<std::size_t>(length)) == length;
   if (!is_written) path_.clear();
 }
 
 RunAnnouncement::~RunAnnouncement() {
   if (!path_.empty()) unlink(path_.c_str());
+  if (file_ >= 0) close(file_);
 }
 
 std::optional<AnnouncedRun> announced_run(int domain) {
@@ -87,7 +86,7 @@ std::optional<AnnouncedRun> announced_run(int domain) {
   const std::uint32_t last = domain < 0 ? hal::dds::kMaxDomain : first;
   for (std::uint32_t at = first; at <= last; ++at) {
     const std::optional<Found> found = read_announcement(at);
-    if (!found || !is_going_on(at) || (newest && !is_later(found->written, written))) continue;
+    if (!found || (newest && !is_later(found->written, written))) continue;
     newest = AnnouncedRun{at, found->secret};
     written = found->written;
   }

@@ -1,6 +1,7 @@
 // RunAnnouncement: tells the user's other programs on this machine how to join a run: its DDS domain and
-// partition. It is a file in the temporary folder that only its owner can read, beside the lock file of the
-// domain (DomainLease). Programs that only read the bus, as the console, find the run by it.
+// partition. It is a file in the temporary folder that only its owner can read, and that the simulator keeps
+// locked. The system releases the lock however the simulator ends, so that the file of a killed run is not
+// taken for the next run in its domain. Programs that only read the bus, as the console, find the run by it.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +22,7 @@ class RunAnnouncement {
 
  private:
   std::string path_;
+  int file_ = -1;  // locked until the end of the run
 };
 
 struct AnnouncedRun {

@@ -14,6 +14,7 @@
 #include "sim/console/console_server.hpp"
 #include "sim/console/foxglove_session.hpp"
 #include "sim/console/recorded_run.hpp"
+#include "sim/sil/domain_lease.hpp"
 #include "sim/sil/frames_file.hpp"
 #include "sim/sil/simulated_steps.hpp"
 #include "tests/sil/sil_test_support.hpp"
@@ -184,6 +185,20 @@ TEST(Console, FollowsARunWithoutChangingIt) {
     EXPECT_TRUE(shown.frame(i, frame)) << i;
     EXPECT_FALSE(rows[i][6].is_null()) << i;  // the error needs attitude and truth
   }
+}
+
+// While a run prepares its topics, the file of the one that was killed in its domain is still there.
+TEST(Console, WaitsForTheRunAfterAKilledOne) {
+  const int domain = test::spare_domain();
+  test::leave_announcement_of_killed_run(domain);
+  const BusRun shown(domain, "");
+  {
+    const DomainLease prepared(domain);
+    std::this_thread::sleep_for(300ms);
+  }
+  test::simulate("--speed 20 --domain " + std::to_string(domain));
+  ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
+  EXPECT_GE(shown.log().state().steps, kSteps / 2);
 }
 
 // Topics are joined one after the other: of the first steps a part may be in the recording only, or missing.

@@ -55,12 +55,15 @@ TEST_F(Announcement, EndsWithTheRun) {
   EXPECT_FALSE(announced_run(domain()));
 }
 
-// It could not remove its file, and the system released its lock.
-TEST_F(Announcement, OfAKilledRunIsIgnored) {
+// It could not remove its file. The next run has the domain, and has not announced itself yet.
+TEST_F(Announcement, OfAKilledRunIsNotTakenForTheNextRun) {
+  test::leave_announcement_of_killed_run(domain());
+  ASSERT_TRUE(std::filesystem::exists(path_));
+  EXPECT_FALSE(announced_run(domain()));
   const RunAnnouncement announcement(lease_->domain(), secret_);
-  const int before = domain();
-  lease_.reset();
-  EXPECT_FALSE(announced_run(before));
+  const std::optional<AnnouncedRun> run = announced_run(domain());
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->secret.run_id, secret_.run_id);
 }
 
 TEST_F(Announcement, ThatIsDamagedOrALinkIsIgnored) {

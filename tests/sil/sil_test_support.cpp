@@ -1,8 +1,12 @@
 #include "tests/sil/sil_test_support.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,7 +14,9 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/math/random.hpp"
@@ -50,6 +56,25 @@ pid_t parent_of(pid_t pid) {
   const std::string stat = read_file("/proc/" + std::to_string(pid) + "/stat");
   const std::size_t end = stat.rfind(") ");
   return end == std::string::npos ? 0 : static_cast<pid_t>(std::atol(stat.c_str() + end + 4));
+}
+
+// For this process until its end, so that concurrent tests do not meet. DomainLease is the run's own.
+bool reserve(int domain) {
+  const std::string path =
+      fs::temp_directory_path() / ("tumblesight-test-domain-" + std::to_string(domain) + ".lock");
+  const int file = open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644);
+  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return true;
+  if (file >= 0) close(file);
+  return false;
+}
+
+bool is_free(int domain) {
+  try {
+    const DomainLease lease(domain);
+    return true;
+  } catch (const SilFailure&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -178,14 +203,31 @@ int spare_domain() {
   // The ports of domains from 215 on are above Linux's ephemeral ports.
   constexpr int kFirst = 215;
   constexpr int kCount = static_cast<int>(hal::dds::kMaxDomain) - kFirst + 1;
-  for (int i = 0; i < kCount; ++i) {
-    try {
-      // Concurrent processes start at different domains.
-      return static_cast<int>(DomainLease(kFirst + (getpid() + i) % kCount).domain());
-    } catch (const SilFailure&) {
+  static std::set<int> ours;
+  for (const int domain : ours)
+    if (is_free(domain)) return domain;
+  for (int attempt = 0; attempt < 600; ++attempt) {
+    for (int domain = kFirst; domain < kFirst + kCount; ++domain) {
+      if (ours.count(domain) > 0 || !reserve(domain)) continue;
+      ours.insert(domain);
+      if (is_free(domain)) return domain;
     }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
-  throw SilFailure("no spare DDS domain");
+  throw SilFailure("no spare DDS domain: other tests have reserved all");
+}
+
+void leave_announcement_of_killed_run(int domain) {
+  const pid_t child = fork();
+  if (child == 0) {
+    hal::dds::RunSecret secret;
+    const bool is_made = hal::dds::make_run_secret(secret);
+    const RunAnnouncement announcement(static_cast<std::uint32_t>(domain), secret);
+    _exit(is_made ? 0 : 1);
+  }
+  int status = -1;
+  if (child < 0 || waitpid(child, &status, 0) != child || status != 0)
+    throw SilFailure("no announcement of a killed run");
 }
 
 Environment::Environment(const char* name, const std::string& value) : name_(name) {

@@ -61,8 +61,12 @@ class Conversation {
   std::uint32_t k = 0;  // of the next step
 };
 
-// A free domain that no run selects by itself, for tests that need its number before the run.
+// A free domain that no run selects by itself, for tests that need its number before the run. No other test
+// process gets it while this one lives.
 int spare_domain();
+
+// The file that a killed simulator leaves.
+void leave_announcement_of_killed_run(int domain);
 
 // Sets an environment variable during its lifetime, for this process and its children.
 class Environment {
