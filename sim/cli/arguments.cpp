@@ -1,15 +1,11 @@
 #include "sim/cli/arguments.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
@@ -17,7 +13,6 @@
 #include "sim/cli/mission_arguments.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -70,27 +65,6 @@ void describe_limits(CLI::Option& option, const std::string& limits) {
   std::string description = option.get_description();
   const std::size_t bracket = description.rfind(" [");
   option.description(description.insert(std::min(bracket, description.size()), limits));
-}
-
-// Why the file cannot be written beside an existing `path`, or in its place. Empty if it can.
-std::string fault_of_new_file(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  std::string made = partial_path(path);
-  if (made.empty() && fs::exists(path, error)) return {};
-  if (made.empty()) made = path;
-  // The end of a chain of links that leads to no file yet.
-  constexpr int kMostLinks = 40;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(made, error); ++i)
-    made = (fs::absolute(made).parent_path() / fs::read_symlink(made, error)).string();
-  if (fs::exists(made, error) && access(made.c_str(), W_OK) == 0) return {};
-  const int file = open(made.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
-  if (file < 0 && errno == ENAMETOOLONG) return "the name is too long to be written; give a shorter one";
-  if (file < 0)
-    return fmt::format("no file can be made in its folder: {}; choose another folder", std::strerror(errno));
-  close(file);
-  unlink(made.c_str());
-  return {};
 }
 
 MeshFileOptions mesh_file_options(const MeshArguments& arguments) {
@@ -382,76 +356,6 @@ void require_supported_length(const ScenarioArguments& arguments, const std::str
       "--sequences, --frames",
       fmt::format("{} x {} are {} frames in all; a run has at most {}{}", arguments.sequences,
                   arguments.frames, frames, kMaxRunFrames, remedy));
-}
-
-std::string full_path(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  fs::path absolute = fs::absolute(path, error);
-  // weakly_canonical() leaves a link to a file that does not exist yet as it is.
-  constexpr int kMostLinks = 40;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(absolute, error) && !fs::exists(absolute, error); ++i)
-    absolute = absolute.parent_path() / fs::read_symlink(absolute, error);
-  const fs::path full = fs::weakly_canonical(absolute, error);
-  return (error ? absolute.lexically_normal() : full).string();
-}
-
-bool is_same_file(const std::string& path, const std::string& other) {
-  std::error_code error;
-  return !path.empty() && !other.empty() &&
-         (full_path(path) == full_path(other) || std::filesystem::equivalent(path, other, error));
-}
-
-void require_separate_files(const OptionFiles& read, const OptionFiles& written) {
-  OptionFiles others = read;
-  for (const OptionFile& file : written) {
-    for (const OptionFile& other : others) {
-      if (!is_same_file(file.path, other.path)) continue;
-      throw CLI::ValidationError(
-          file.option,
-          fmt::format("'{}' is also the file of {}; give two different files", file.path, other.option));
-    }
-    others.push_back(file);
-  }
-}
-
-void require_usable_files(const OptionFiles& read, const OptionFiles& written) {
-  require_separate_files(read, written);
-  for (const auto& [option, path] : written) {
-    if (!path.empty()) require_writable(option, path);
-  }
-}
-
-void require_folder(const std::string& option, const std::string& path) {
-  namespace fs = std::filesystem;
-  const auto refuse = [&](const std::string& reason) {
-    throw std::runtime_error(fmt::format("{} {}: {}", option, path, reason));
-  };
-  std::error_code error;
-  if (fs::exists(path, error) && !fs::is_directory(path, error)) refuse("is a file; give a folder");
-  fs::create_directories(path, error);
-  if (error) refuse("cannot be created: " + error.message());
-  if (access(path.c_str(), W_OK) != 0)
-    refuse(fmt::format("cannot be written: {}; choose another folder", std::strerror(errno)));
-}
-
-void require_writable(const std::string& option, const std::string& path) {
-  namespace fs = std::filesystem;
-  const auto refuse = [&](const std::string& reason) {
-    throw std::runtime_error(fmt::format("{} {}: {}", option, path, reason));
-  };
-  std::error_code error;
-  if (fs::is_directory(path, error)) refuse("is a folder; give a file name");
-  const fs::path name = fs::path(path).filename();
-  if (name.empty() || name == "." || name == "..") refuse("ends as a folder does; add a file name");
-  const fs::path parent = fs::absolute(path).parent_path();
-  fs::create_directories(parent, error);
-  if (error) refuse("cannot create its folder: " + error.message() + "; choose another folder");
-  const bool exists = fs::exists(path, error);
-  if (exists && access(path.c_str(), W_OK) != 0)
-    refuse(fmt::format("cannot be written: {}; choose another file", std::strerror(errno)));
-  const std::string fault = fault_of_new_file(path);
-  if (!fault.empty()) refuse(fault);
 }
 
 }  // namespace tumblesight::sim

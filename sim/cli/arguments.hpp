@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/cli/option_files.hpp"
 #include "sim/cli/sensor_arguments.hpp"
 #include "sim/evaluation/target_symmetry.hpp"
 #include "sim/mission/mission.hpp"
@@ -47,13 +48,6 @@ struct MeshArguments {
   double mesh_scale = 1.0;
   Eigen::Vector3d origin_trf_m = Eigen::Vector3d::Zero();  // of --mission
 };
-
-// A file that a run reads or writes, and the option that names it. An empty path: none.
-struct OptionFile {
-  std::string option;
-  std::string path;
-};
-using OptionFiles = std::vector<OptionFile>;
 
 enum class TargetChoice {
   kShipped,    // only targets that ship
@@ -124,25 +118,6 @@ existing_file();  // a regular one: a pipe gives its content once, and both prog
 CLI::Validator one_of(const std::vector<std::string>& names);
 // 1 to 31 characters of a-z, 0-9 and _: the name becomes part of a file name and of the model image.
 CLI::Validator target_name();
-
-// Absolute; links, "." and ".." are resolved as far as the path exists.
-std::string full_path(const std::string& path);
-
-// However the paths are spelled, and through links as well. False if one of them is empty.
-bool is_same_file(const std::string& path, const std::string& other);
-// Throws CLI::ValidationError that names both options if a file that is written is also read, or is written
-// twice.
-void require_separate_files(const OptionFiles& read, const OptionFiles& written);
-// Every verb calls it before it writes. The same, and throws as require_writable() does.
-void require_usable_files(const OptionFiles& read, const OptionFiles& written);
-
-// Creates the folder if it does not exist. Throws std::runtime_error that names option, folder and reason if
-// that fails or no file can be written into it.
-void require_folder(const std::string& option, const std::string& path);
-
-// Throws std::runtime_error that names option, file, reason and remedy if write_file() could not write
-// `path`. Leaves no file behind.
-void require_writable(const std::string& option, const std::string& path);
 
 // The layout of help texts (help_formatter.cpp): descriptions are wrapped to a terminal of 80 columns.
 inline constexpr std::size_t kHelpWidth = 80;  // columns
