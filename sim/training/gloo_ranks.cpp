@@ -54,8 +54,11 @@ constexpr std::int64_t kMostInMemory = 4'194'304;
 class GlooRanks final : public Ranks {
  public:
   GlooRanks(int rank, int count, int sharing_cores, bool one_machine,
-            c10::intrusive_ptr<ProcessGroupGloo> group)
-      : Ranks(rank, count, sharing_cores), group_(std::move(group)), shares_memory_(one_machine) {}
+            c10::intrusive_ptr<ProcessGroupGloo> group, std::chrono::milliseconds timeout)
+      : Ranks(rank, count, sharing_cores),
+        group_(std::move(group)),
+        timeout_(timeout),
+        shares_memory_(one_machine) {}
 
  private:
   void sum_flat(torch::Tensor& flat) override {
@@ -79,13 +82,12 @@ class GlooRanks final : public Ranks {
     exchange(std::vector<torch::Tensor>(slices.size(), own), slices);
   }
 
-  // Every rank adds up everything, since the ranks then wait for each other once only. Two sets of slots take
-  // turns: a rank that is ahead does not overwrite what another one still reads.
+  // Every rank adds up everything, since the ranks then wait for each other once only.
   void sum_in_memory(torch::Tensor& flat) {
-    turn_ = 1 - turn_;
-    const auto slot = [&](int rank) { return slots_->slot(turn_ * count() + rank, flat.numel()); };
+    slots_->begin_turn();
+    const auto slot = [&](int rank) { return slots_->slot(rank, flat.numel()); };
     slot(rank()).copy_(flat);
-    gather(std::int64_t{0});  // all have written
+    together(rank(), [&] { slots_->meet(timeout_); });
     std::vector<torch::Tensor> pairs{flat};
     torch::add_out(pairs.front(), slot(0), slot(1));
     for (int i = 2; i + 1 < count(); i += 2) pairs.push_back(slot(i) + slot(i + 1));
@@ -99,9 +101,9 @@ class GlooRanks final : public Ranks {
     if (slots_ && slots_->size() >= size) return true;
     slots_.reset();
     const std::string own_name = "/tumblesight_" + std::to_string(getpid()) + "_" + std::to_string(size);
-    if (leads()) slots_ = SharedSlots::create(own_name, 2 * count(), size);
+    if (leads()) slots_ = SharedSlots::create(own_name, count(), size);
     const std::string name = of_first(slots_ ? own_name : std::string());
-    if (!leads() && !name.empty()) slots_ = SharedSlots::open(name, 2 * count(), size);
+    if (!leads() && !name.empty()) slots_ = SharedSlots::open(name, rank(), count(), size);
     shares_memory_ = !any(slots_ == nullptr);  // all have opened it
     if (leads() && !name.empty()) SharedSlots::forget(name);
     if (!shares_memory_) slots_.reset();
@@ -140,9 +142,9 @@ class GlooRanks final : public Ranks {
   }
 
   c10::intrusive_ptr<ProcessGroupGloo> group_;
+  std::chrono::milliseconds timeout_;
   bool shares_memory_;
   std::unique_ptr<SharedSlots> slots_;
-  int turn_ = 0;
 };
 
 // Equal for two processes that reach each other through the loopback interface.
@@ -231,7 +233,7 @@ std::shared_ptr<Ranks> join(const RankPlace& place, const std::string& folder,
   const bool one_machine = std::count(machines.begin(), machines.end(), machines[own]) == place.count;
   const auto sharing = static_cast<int>(std::count(cores.begin(), cores.end(), cores[own]));
   return std::make_shared<GlooRanks>(place.rank, place.count, sharing, one_machine,
-                                     connect_all(place, store, one_machine, timeout));
+                                     connect_all(place, store, one_machine, timeout), timeout);
 }
 
 }  // namespace
