@@ -16,6 +16,7 @@ namespace {
 
 constexpr dds_duration_t kPoll = DDS_MSECS(50);
 constexpr auto kBetweenLooks = std::chrono::milliseconds(30);
+constexpr auto kUsualWait = std::chrono::seconds(5);  // until topics of an announced run are found
 constexpr int kAnswerTimeout_ms = 5000;  // a run at the speed of flight takes requests every 2.7 s
 
 dds_entity_t checked(dds_entity_t entity) {
@@ -30,11 +31,6 @@ dds_entity_t reader_of(const Readers& readers) {
   return std::find_if(readers.begin(), readers.end(),
                       [topic](const auto& reader) { return reader.first == topic; })
       ->second;
-}
-
-bool is_announced(std::uint32_t domain, std::uint32_t run_id) {
-  const std::optional<AnnouncedRun> run = announced_run(static_cast<int>(domain));
-  return run && run->secret.run_id == run_id;
 }
 
 }  // namespace
@@ -152,21 +148,31 @@ void BusRun::keep(const hal::dds::LidarFrameSample& sample) {
   if (frames_.size() > kFramesKept) frames_.pop_front();
 }
 
-// Until the simulator has left, and nothing has come since. One that was never seen has left when its
-// announcement is gone.
+// Until the simulator has left, and nothing has come since. One that was never seen on the bus is waited for
+// until its announcement is gone, or that of a newer run is there.
 void BusRun::follow(const Connection& connection, std::uint32_t domain) {
   const dds_entity_t steps = reader_of<hal::dds::StepSample>(connection.readers);
-  bool had_simulator = false;
+  const auto late = std::chrono::steady_clock::now() + kUsualWait;
+  bool had_simulator = false, is_noted = false;
   while (!is_stopping_) {
     dds_attach_t triggered[1];
     dds_waitset_wait(connection.waitset, triggered, 1, kPoll);
+    const bool has_simulator = dds_get_matched_publications(steps, nullptr, 0) > 0;
     const bool any = take_samples(connection);
     record([](JoinedRecording& recording) { recording.poll(); });
-    const bool has_simulator = dds_get_matched_publications(steps, nullptr, 0) > 0;
-    had_simulator |= has_simulator;
-    if (had_simulator ? !has_simulator && !any : !is_announced(domain, connection.secret.run_id)) break;
+    had_simulator |= has_simulator || any;
+    if (had_simulator ? !has_simulator && !any : !is_newest(connection.secret.run_id)) break;
+    if (had_simulator || is_noted || std::chrono::steady_clock::now() < late) continue;
+    is_noted = true;
+    note("the run in DDS domain " + std::to_string(domain) +
+         " is announced, but its topics are not on the bus; was it started with another --dds-security?");
   }
   log_.end();
+}
+
+bool BusRun::is_newest(std::uint32_t run_id) const {
+  const std::optional<AnnouncedRun> run = announced_run(domain_);
+  return run && run->secret.run_id == run_id;
 }
 
 // Of the first run that is seen.

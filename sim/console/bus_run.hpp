@@ -61,6 +61,7 @@ class BusRun final : public RunSource {
   bool take_samples(const Connection& connection);
   void keep(const hal::dds::LidarFrameSample& sample);
   void follow(const Connection& connection, std::uint32_t domain);
+  bool is_newest(std::uint32_t run_id) const;
   void join(std::optional<std::uint32_t> domain);
   template <class Action>
   void record(const Action& action);

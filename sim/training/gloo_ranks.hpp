@@ -1,4 +1,5 @@
-// Several ranks, connected by LibTorch's c10d with Gloo over TCP.
+// Several ranks, connected by LibTorch's c10d with Gloo over TCP. Those of one machine add up gradients in
+// shared memory.
 #pragma once
 
 #include <memory>

@@ -84,8 +84,34 @@ torch::Tensor SharedSlots::slot(int rank, std::int64_t size) const {
 void SharedSlots::meet(std::chrono::milliseconds timeout) {
   ++meetings_;
   static_cast<Arrival*>(memory_)[rank_].meetings.store(meetings_, std::memory_order_release);
-  const Time deadline = std::chrono::steady_clock::now() + timeout;
-  for (int rank = 0; rank < ranks_; ++rank) wait_for(rank, deadline);
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  // The others are mostly there within microseconds. Then the core is left to the rendering threads.
+  constexpr int kLooksInARow = 1'000, kLooksPerCheck = 2'000;
+  constexpr auto kBetweenLooks = std::chrono::microseconds(20);
+  for (int look = 1; first_missing() < ranks_; ++look) {
+    if (look < kLooksInARow) continue;
+    std::this_thread::sleep_for(kBetweenLooks);
+    if (look % kLooksPerCheck != 0) continue;
+    require_living();
+    const int missing = first_missing();
+    if (missing < ranks_ && std::chrono::steady_clock::now() > deadline)
+      throw std::runtime_error("rank " + std::to_string(missing) + " does not answer");
+  }
+}
+
+// The number of ranks: none is missing.
+int SharedSlots::first_missing() const {
+  int rank = 0;
+  while (rank < ranks_ && has_arrived(rank)) ++rank;
+  return rank;
+}
+
+// Throws if a rank has ended instead of coming.
+void SharedSlots::require_living() const {
+  for (int rank = 0; rank < ranks_; ++rank) {
+    if (has_arrived(rank) || is_alive(rank) || has_arrived(rank)) continue;  // it may have come and ended
+    throw std::runtime_error("rank " + std::to_string(rank) + " has ended");
+  }
 }
 
 // It may have come to the next meeting already.
@@ -98,21 +124,6 @@ bool SharedSlots::has_arrived(int rank) const {
 bool SharedSlots::is_alive(int rank) const {
   struct flock lock = lock_of(rank, F_WRLCK);
   return rank == rank_ || (fcntl(file_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK);
-}
-
-void SharedSlots::wait_for(int rank, Time deadline) const {
-  // The other one is mostly there within microseconds. Then the core is left to the rendering threads.
-  constexpr int kLooksInARow = 1'000, kLooksPerCheck = 2'000;
-  constexpr auto kBetweenLooks = std::chrono::microseconds(20);
-  for (int look = 1; !has_arrived(rank); ++look) {
-    if (look < kLooksInARow) continue;
-    std::this_thread::sleep_for(kBetweenLooks);
-    if (look % kLooksPerCheck != 0) continue;
-    const bool is_late = std::chrono::steady_clock::now() > deadline;
-    if (is_late) throw std::runtime_error("rank " + std::to_string(rank) + " does not answer");
-    if (!is_alive(rank) && !has_arrived(rank))
-      throw std::runtime_error("rank " + std::to_string(rank) + " has ended");
-  }
 }
 
 }  // namespace tumblesight::sim

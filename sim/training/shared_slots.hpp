@@ -36,14 +36,13 @@ class SharedSlots {
   void meet(std::chrono::milliseconds timeout);
 
  private:
-  using Time = std::chrono::steady_clock::time_point;
-
   SharedSlots(int file, int rank, int ranks, std::int64_t size);
   std::size_t bytes() const;
   bool map();
   bool has_arrived(int rank) const;
   bool is_alive(int rank) const;
-  void wait_for(int rank, Time deadline) const;
+  int first_missing() const;
+  void require_living() const;
 
   int file_;
   int rank_, ranks_;

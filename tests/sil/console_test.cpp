@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <thread>
 
@@ -198,6 +199,27 @@ TEST(Console, WaitsForTheRunAfterAKilledOne) {
   }
   test::simulate("--speed 20 --domain " + std::to_string(domain));
   ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
+  EXPECT_GE(shown.log().state().steps, kSteps / 2);
+}
+
+TEST(Console, LeavesARunThatItCannotReachForANewerOne) {
+  const int domain = test::spare_domain();
+  const DomainLease lease(domain);
+  const int other_domain = test::spare_domain();
+  // The announcements of this test are in a folder of their own, so that no other run is newer.
+  const std::string folder = test::temporary_path("runs");
+  std::filesystem::create_directories(folder);
+  const test::Environment runs("TMPDIR", folder);
+  hal::dds::RunSecret secret;
+  ASSERT_TRUE(hal::dds::make_run_secret(secret));
+  const RunAnnouncement unreachable(static_cast<std::uint32_t>(domain), secret);
+  const BusRun shown(-1, "");
+  ASSERT_TRUE(wait_until([&] { return !shown.failure().empty(); }));
+  EXPECT_NE(shown.failure().find("the run in DDS domain " + std::to_string(domain) + " is announced, but"),
+            std::string::npos)
+      << shown.failure();
+  test::simulate("--speed 20 --domain " + std::to_string(other_domain));
+  ASSERT_TRUE(wait_until([&] { return shown.log().state().steps > 0 && shown.log().state().has_ended; }));
   EXPECT_GE(shown.log().state().steps, kSteps / 2);
 }
 

@@ -1,8 +1,11 @@
 // How the console finds a run, and that nobody else does.
 #include "sim/sil/run_announcement.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <optional>
@@ -66,18 +69,41 @@ TEST_F(Announcement, OfAKilledRunIsNotTakenForTheNextRun) {
   EXPECT_EQ(run->secret.run_id, secret_.run_id);
 }
 
-TEST_F(Announcement, ThatIsDamagedOrALinkIsIgnored) {
+// As a simulator locks its own.
+class Locked {
+ public:
+  explicit Locked(const std::string& path) : file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    EXPECT_EQ(flock(file_, LOCK_EX | LOCK_NB), 0) << path;
+  }
+  ~Locked() { close(file_); }
+  Locked(const Locked&) = delete;
+  Locked& operator=(const Locked&) = delete;
+
+ private:
+  int file_;
+};
+
+TEST_F(Announcement, ThatIsDamagedIsIgnored) {
   for (const std::string text :
        {"", "x", "12", "12:xyz", ":", "99999999999:0123456789abcdef0123456789abcdef"}) {
     test::write_file(path_, {text.begin(), text.end()});
+    const Locked by_its_run(path_);
     EXPECT_FALSE(announced_run(domain())) << text;
   }
   std::filesystem::remove(path_);
+}
+
+TEST_F(Announcement, ThatIsALinkIsIgnored) {
   const std::string elsewhere = test::temporary_path("elsewhere");
-  const hal::dds::RunSecretText text = to_text(secret_);
-  test::write_file(elsewhere, {std::begin(text.text), std::begin(text.text) + std::string(text.text).size()});
+  const std::string text = to_text(secret_).text;
+  test::write_file(elsewhere, {text.begin(), text.end()});
+  const Locked by_its_run(elsewhere);
   std::filesystem::create_symlink(elsewhere, path_);
   EXPECT_FALSE(announced_run(domain()));
+  // Without the link it would be taken.
+  std::filesystem::remove(path_);
+  std::filesystem::create_hard_link(elsewhere, path_);
+  EXPECT_TRUE(announced_run(domain()));
   std::filesystem::remove(path_);
 }
 

@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -62,9 +64,12 @@ pid_t parent_of(pid_t pid) {
 bool reserve(int domain) {
   const std::string path =
       fs::temp_directory_path() / ("tumblesight-test-domain-" + std::to_string(domain) + ".lock");
-  const int file = open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644);
-  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return true;
-  if (file >= 0) close(file);
+  // As in DomainLease: in a sticky directory Linux may refuse to "create" a file of another user.
+  int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) file = open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644);
+  if (file < 0) throw SilFailure(path + " cannot be opened: " + std::strerror(errno));
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) return true;
+  close(file);
   return false;
 }
 
@@ -204,9 +209,9 @@ int spare_domain() {
   constexpr int kFirst = 215;
   constexpr int kCount = static_cast<int>(hal::dds::kMaxDomain) - kFirst + 1;
   static std::set<int> ours;
-  for (const int domain : ours)
-    if (is_free(domain)) return domain;
   for (int attempt = 0; attempt < 600; ++attempt) {
+    for (const int domain : ours)
+      if (is_free(domain)) return domain;
     for (int domain = kFirst; domain < kFirst + kCount; ++domain) {
       if (ours.count(domain) > 0 || !reserve(domain)) continue;
       ours.insert(domain);
@@ -226,7 +231,10 @@ void leave_announcement_of_killed_run(int domain) {
     _exit(is_made ? 0 : 1);
   }
   int status = -1;
-  if (child < 0 || waitpid(child, &status, 0) != child || status != 0)
+  const bool has_ended = child > 0 && waitpid(child, &status, 0) == child && status == 0;
+  const fs::path file = fs::temp_directory_path() / ("tumblesight-domain-" + std::to_string(domain) + ".run");
+  std::error_code none;
+  if (!has_ended || fs::file_size(file, none) == 0 || none)
     throw SilFailure("no announcement of a killed run");
 }
 

@@ -157,6 +157,7 @@ TEST_F(SharedSlotsTest, AreNotMadeWhereThereIsNoRoom) {
 TEST_F(SharedSlotsTest, HaveOneProcessPerRank) {
   const auto first = SharedSlots::create(name, 2, 1);
   const auto second = SharedSlots::open(name, 1, 2, 1);
+  ASSERT_NE(first, nullptr);
   EXPECT_NE(second, nullptr);
   EXPECT_EQ(SharedSlots::open(name, 1, 2, 1), nullptr);
   SharedSlots::forget(name);
@@ -167,6 +168,7 @@ TEST_F(SharedSlotsTest, KeepATurnUntilAllHaveMetAgain) {
   const auto first = SharedSlots::create(name, 2, 1);
   const auto second = SharedSlots::open(name, 1, 2, 1);
   SharedSlots::forget(name);
+  ASSERT_NE(first, nullptr);
   ASSERT_NE(second, nullptr);
   const auto write = [](SharedSlots& slots, int rank, float value) {
     slots.begin_turn();
@@ -187,6 +189,7 @@ TEST_F(SharedSlotsTest, NoRankLeavesAMeetingBeforeAllHaveCome) {
   all.push_back(SharedSlots::create(name, kRanks, 1));
   for (int rank = 1; rank < kRanks; ++rank) all.push_back(SharedSlots::open(name, rank, kRanks, 1));
   SharedSlots::forget(name);
+  for (const auto& slots : all) ASSERT_NE(slots, nullptr);
   std::atomic<int> come{0};
   std::vector<std::thread> threads;
   for (int rank = 0; rank < kRanks; ++rank) {
@@ -202,10 +205,24 @@ TEST_F(SharedSlotsTest, NoRankLeavesAMeetingBeforeAllHaveCome) {
   for (std::thread& thread : threads) thread.join();
 }
 
+// While another one is still waited for, too.
+TEST_F(SharedSlotsTest, NoticeTheEndOfAnyRank) {
+  const auto first = SharedSlots::create(name, 3, 1);
+  const auto second = SharedSlots::open(name, 1, 3, 1);
+  auto third = SharedSlots::open(name, 2, 3, 1);
+  SharedSlots::forget(name);
+  ASSERT_NE(first, nullptr);
+  ASSERT_NE(second, nullptr);
+  ASSERT_NE(third, nullptr);
+  third.reset();
+  EXPECT_EQ(failure_of_meeting(*first), "rank 2 has ended");
+}
+
 TEST_F(SharedSlotsTest, NoticeARankThatHasEndedAndOneThatDoesNotAnswer) {
   const auto first = SharedSlots::create(name, 2, 1);
   auto second = SharedSlots::open(name, 1, 2, 1);
   SharedSlots::forget(name);
+  ASSERT_NE(first, nullptr);
   ASSERT_NE(second, nullptr);
   EXPECT_EQ(failure_of_meeting(*first, 1ms), "rank 1 does not answer");
   second.reset();
@@ -287,6 +304,8 @@ TEST_F(RanksThatMeet, NoticeTheEndOfAnother) {
       lost = error.what();
     }
     EXPECT_EQ(lost.rfind("rank 0: another rank has ended or does not answer", 0), 0U) << lost;
+    const bool in_memory = i == 1;
+    EXPECT_EQ(lost.find("(rank 1 has ended)") != std::string::npos, in_memory) << lost;
   }
 }
 
