@@ -78,6 +78,7 @@ bool BusRun::take(const Connection& connection, Sample& sample) {
   bool any = false;
   while (take_cdr(reader, bytes)) {
     any = true;
+    begin_recording();
     if (!read_cdr(bytes.data(), bytes.size(), sample)) continue;
     show(sample);
     record([&](JoinedRecording& recording) {
@@ -175,7 +176,7 @@ bool BusRun::is_newest(std::uint32_t run_id) const {
   return run && run->secret.run_id == run_id;
 }
 
-// Of the first run that is seen.
+// With the first sample of the first run that is seen.
 void BusRun::begin_recording() {
   const std::string path = std::exchange(mcap_path_, {});
   if (path.empty()) return;
@@ -209,7 +210,6 @@ void BusRun::look_for_runs() {
       try {
         const std::unique_ptr<Connection> connection = connect(*run);
         join(run->domain);
-        begin_recording();
         follow(*connection, run->domain);
         end_recording();
       } catch (const std::exception& failure) {  // of the bus
