@@ -1,5 +1,5 @@
-// The files that options name: whether two of them are the same file, and whether a file can be written. They
-// are checked before the work begins, so that hours of it are not lost at its end.
+// The files that options name: whether two of them are the same file, and whether a file can be written. The
+// verbs check this before they begin, because their work may take hours.
 #pragma once
 
 #include <string>
