@@ -2,9 +2,9 @@
 
 #include "fsw/app/command_handler.hpp"
 #include "fsw/app/counter.hpp"
+#include "fsw/app/state_digest.hpp"
 #include "fsw/app/state_keeper.hpp"
 #include "fsw/app/supervisor.hpp"
-#include "gnc/numerics/crc.hpp"
 
 namespace tumblesight::fsw {
 namespace {
@@ -199,60 +199,7 @@ gnc::FrameVerdict AttitudeInitApp::judge(const gnc::RangeImage& frame, std::int6
 }
 
 std::uint32_t AttitudeInitApp::state_crc32() const {
-  const AppState& state = *state_.operator->();
-  gnc::Crc32 crc;
-  const auto add_time = [&crc](std::int64_t time_ns) {
-    crc.add_u32(static_cast<std::uint32_t>(static_cast<std::uint64_t>(time_ns)));
-    crc.add_u32(static_cast<std::uint32_t>(static_cast<std::uint64_t>(time_ns) >> 32));
-  };
-  crc.add_u32(estimator_.state_crc32());
-  crc.add_u32(estimator_.model().crc32);
-  crc.add_u32(static_cast<std::uint32_t>(state.mode));
-  const gnc::FrameTrackerState& tracking = state.tracking;
-  for (const bool flag :
-       {state.has_model(), state.has_cycle, tracking.gate.has_last(), state.outage, state.boot_to_report,
-        tracking.has_jumped, tracking.has_found_rate, tracking.has_chaser_attitude}) {
-    crc.add_u32(flag ? 1U : 0U);
-  }
-  add_time(state.now_ns);
-  add_time(tracking.gate.last_exposure_time_ns());
-  for (const std::int32_t part : tracking.q_inertial_lrf) crc.add_u32(static_cast<std::uint32_t>(part));
-  for (const gnc::FrameSignature& signature : tracking.history.signatures())
-    crc.add(signature.data(), signature.size());
-  const hal::Telemetry& c = state.counters;
-  for (const std::uint32_t number :
-       {tracking.gate.last_sequence_number(),
-        tracking.history.next(),
-        state.authority.slot(),
-        state.frames_unused,
-        state.assertions.count(),
-        c.command_counter,
-        state.faults.persisting() & ~(bit_of(Fault::kDeadline) | bit_of(Fault::kSlip)),
-        state.faults.disabled(),
-        state.banks.in_use,
-        state.banks.segments_missing,
-        crc32_of(state.table),
-        c.cycles,
-        c.commands_accepted,
-        c.commands_refused,
-        c.frames_used,
-        c.frames_missing,
-        c.frames_refused,
-        c.frames_duplicate,
-        c.frames_stale,
-        c.frames_bad,
-        c.frames_repeated,
-        c.frames_without_chaser,
-        c.frames_superseded,
-        c.frames_overflowed,
-        c.frames_passed_over,
-        c.sequence_gaps,
-        c.estimator_resets,
-        c.attitudes_doubtful,
-        c.model_passes}) {
-    crc.add_u32(number);
-  }
-  return crc.value();
+  return digest_of(*state_.operator->(), estimator_);
 }
 
 }  // namespace tumblesight::fsw

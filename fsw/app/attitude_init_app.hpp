@@ -71,8 +71,7 @@ class AttitudeInitApp final {
   [[nodiscard]] bool has_used(const gnc::FrameSignature& signature) const {
     return state_->tracking.history.contains(signature);
   }
-  // To compare runs: CRC-32 over the estimator's state, the active model's CRC, mode, key slot, times, last
-  // frames, limits, persisting faults and counters. It excludes everything that depends on the wall clock.
+  // To compare runs: the digest of the state (state_digest.hpp), without what depends on the wall clock.
   std::uint32_t state_crc32() const;
   Mode mode() const { return state_->mode; }
   // For a link that authenticates commands before it queues them: the key slot in use, and the counter of the

@@ -1,7 +1,7 @@
 #include "hal/replay/console_link.hpp"
 
 #include "hal/board.hpp"
-#include "hal/messages/message_fields.hpp"
+#include "hal/messages/message_digest.hpp"
 #include "hal/replay/text_line.hpp"
 
 namespace tumblesight::hal::replay {
@@ -18,15 +18,9 @@ std::int64_t hundredths_of_degree(std::uint32_t urad) {
 
 }  // namespace
 
-void ConsoleLink::digest_number(std::int64_t number) {
-  const auto bits = static_cast<std::uint64_t>(number);
-  crc_.add_u32(static_cast<std::uint32_t>(bits));
-  crc_.add_u32(static_cast<std::uint32_t>(bits >> 32));
-}
-
 void ConsoleLink::publish(const AttitudeReport& report) {
   report_ = report;
-  MessageFields<AttitudeReport>::visit([this](const auto& field) { digest_field(field); }, report);
+  add_to_digest(crc_, report);
 }
 
 void ConsoleLink::publish(const Telemetry& telemetry) {
@@ -45,11 +39,7 @@ void ConsoleLink::publish(const Event& event) {
   line.text("        event ").number(static_cast<std::int64_t>(event.id));
   for (const std::int32_t argument : event.arguments) line.text(" ").number(argument);
   board::write(line.text("\n").c_str());
-  if (depends_on_wall_clock(event.id)) return;
-  digest_number(event.time_ns);
-  crc_.add_u32(static_cast<std::uint32_t>(event.id));
-  crc_.add_u32(static_cast<std::uint32_t>(event.severity));
-  for (const std::int32_t argument : event.arguments) crc_.add_u32(static_cast<std::uint32_t>(argument));
+  add_to_digest(crc_, event);
 }
 
 }  // namespace tumblesight::hal::replay

@@ -2,8 +2,6 @@
 // same on every processor. It delivers no commands.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "gnc/numerics/crc.hpp"
@@ -19,23 +17,13 @@ class ConsoleLink final : public Link {
   void publish(const Event& event) override;
   void publish(const MemoryDump&) override {}  // only a command requests a dump
 
-  // Of every report and event so far, without what the stopwatch measured; `state_crc32` joins it.
+  // Of every report and event so far; `state_crc32` joins it.
   void digest(std::uint32_t state_crc32) { crc_.add_u32(state_crc32); }
   std::uint32_t digest() const { return crc_.value(); }
   // The next report belongs to this frame. The report of a refused frame does not tell which one it is.
   void announce(std::uint32_t sequence_number) { announced_ = sequence_number; }
 
  private:
-  void digest_number(std::int64_t number);
-  template <class Field>
-  void digest_field(const Field& field) {
-    digest_number(static_cast<std::int64_t>(field));
-  }
-  template <class Element, std::size_t kSize>
-  void digest_field(const std::array<Element, kSize>& field) {
-    for (const Element& element : field) digest_field(element);
-  }
-
   gnc::Crc32 crc_;
   AttitudeReport report_;
   std::uint32_t announced_ = 0;

@@ -60,6 +60,8 @@ def documented(body):
 def enum(path, name):
     """[(enumerator, value, comment)]"""
     body = re.search(rf"enum class {name} [^{{]*\{{(.*?)\}};", source(path), re.S)[1]
+    if "events.inc" in body:
+        return [(entry, number, comment) for entry, number, _, comment in event_rows()]
     values, value = [], -1
     for statement, comment in documented(body if "\n" in body else body.strip().replace(", ", ",\n") + ","):
         entry, number = re.fullmatch(r"(k\w+)(?: = (\d+))?,", statement).groups()
@@ -130,7 +132,7 @@ def functions():
 
 
 def refusals():
-    events = {value: name for name, value, _ in enum(MESSAGES + "event_id.hpp", "EventId")}
+    events = {value: name for name, value, _, _ in event_rows()}
     return table(["number", "event", "refused because"],
                  [[value, event, f"{upper(name)}{': ' + comment if comment else ''}"]
                   for name, value, comment in enum(MESSAGES + "command_refusal.hpp", "CommandRefusal")
@@ -201,13 +203,22 @@ def responses():
                  [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "fault.hpp", "Response")])
 
 
+def event_rows():
+    """[(name, number, severity, comment)]"""
+    path = MESSAGES + "events.inc"
+    rows = [line for line in source(path).splitlines() if line.startswith("TUMBLESIGHT_EVENT")]
+    found = [re.fullmatch(r'TUMBLESIGHT_EVENT\((\w+), (\d+), (\w+), "[^"]+"\)(?:  // (.+))?', row) for row in rows]
+    wrong = [row for row, match in zip(rows, found) if not match]
+    if wrong:
+        raise SystemExit(f"{path}: '{wrong[0]}' is not NAME, NUMBER, SEVERITY, \"TEXT\" and a comment in the same line")
+    return [("k" + match[1], int(match[2]), match[3], match[4] or "") for match in found]
+
+
 def events():
-    ids = {name: (value, comment) for name, value, comment in enum(MESSAGES + "event_id.hpp", "EventId")}
     rows = []
-    for name, severity in array_rows(MESSAGES + "event_id.hpp", "kEventRules"):
-        value, comment = ids[last(name)]
+    for name, value, severity, comment in event_rows():
         arguments = re.search(r"\[(.*?)\]", comment)
-        rows.append([value, last(severity)[1:].lower(), upper(last(name)), arguments[1] if arguments else "as 60"])
+        rows.append([value, severity.lower(), upper(name), arguments[1] if arguments else "as 60"])
     return table(["id", "severity", "event", "arguments"], rows)
 
 
