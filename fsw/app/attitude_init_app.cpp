@@ -109,11 +109,17 @@ void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_t
   state_.commit();
 }
 
+void AttitudeInitApp::correct_state() {
+  const std::uint32_t corrected_words = state_.vote();
+  if (corrected_words == 0) return;
+  count(state_->words_corrected, corrected_words);
+  state_.commit();
+}
+
 bool AttitudeInitApp::use(const ParameterTable& table) {
   if (first_wrong_field(table) < kTableFields) return false;
-  const std::uint32_t corrected_words = state_.vote();
+  correct_state();
   AppState& state = *state_;
-  count(state.words_corrected, corrected_words);
   if (table.fields != state.table.fields) state.stored.has_unstored_change = true;
   state.table = table;
   state.table_is_given = true;

@@ -61,8 +61,12 @@ class AttitudeInitApp final {
   // themselves. False: a field has a value that is not allowed, and nothing changes.
   [[nodiscard]] bool use(const ParameterTable& table);
 
+  // Before the frames of a cycle are chosen: corrects flipped bits, so that the three functions below decide
+  // by a voted state. The next step reports the corrections.
+  void correct_state();
   // Whether a frame passes the rules for time and order in a cycle at `now_ns`. For the choice of the frame
-  // that a step gets; the step judges it again.
+  // that a step gets. The step judges it again, after the cycle's commands: they may change the limits, or
+  // reset the sequence, and a step must not depend on what its caller has checked.
   [[nodiscard]] gnc::FrameVerdict judge(const gnc::RangeImage& frame, std::int64_t now_ns) const;
   // Whether a frame begins like one of the last used ones, and whether it repeats one. For the same choice.
   [[nodiscard]] bool has_used_alike(const gnc::SignatureStart& start) const {

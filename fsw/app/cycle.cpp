@@ -143,6 +143,7 @@ void receive_commands(hal::Link& link, StepInputs& inputs) {
 
 void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int64_t now_ns,
                std::uint32_t cycle_slips, CycleWorkspace& workspace) {
+  app.correct_state();
   receive_frames(app, interfaces.lidar, now_ns, workspace);
   receive_chaser(interfaces.navigation, now_ns, workspace.inputs);
   receive_commands(interfaces.link, workspace.inputs);

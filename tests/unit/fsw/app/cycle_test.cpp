@@ -3,6 +3,7 @@
 #include "hal/fake/fake_lidar.hpp"
 #include "hal/fake/fake_link.hpp"
 #include "hal/fake/fake_platform.hpp"
+#include "tests/support/app_memory.hpp"
 #include "tests/support/trials.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
@@ -87,6 +88,50 @@ TEST_F(Cycle, CommandsBeyondTheLimitWaitForTheNextCycle) {
   EXPECT_EQ(link.telemetry.back().commands_accepted, static_cast<unsigned>(config::kMaxCommandsPerStep));
   run();
   EXPECT_EQ(link.telemetry.back().commands_accepted, static_cast<unsigned>(config::kMaxCommandsPerStep + 3));
+}
+
+// A frame is chosen before the step, by a state that is voted already: a flip of any bit of one copy of what
+// it is judged by, that is the last frames and the parameters, is corrected first, and counted once.
+TEST_F(Cycle, AFlippedBitDoesNotChangeTheChoiceOfTheFrame) {
+  const auto choose = [this](Region (*region)(AppState&), std::size_t bit) {
+    lidar.add(good_frame(sequence_number + 1, next_time_ns() - 1'000'000'000, sequence_number));
+    lidar.add(good_frame(sequence_number + 2, next_time_ns(), sequence_number + 1));
+    sequence_number += 2;
+    region(AppMemory::state(*app)).flip(bit);
+    const hal::Telemetry before = workspace->outputs.telemetry;
+    run();
+    const hal::Telemetry& after = workspace->outputs.telemetry;
+    return link.attitudes.back().sequence_number == sequence_number &&
+           after.frames_superseded == before.frames_superseded + 1 &&
+           after.memory_corrections == before.memory_corrections + 1;
+  };
+  const auto gate = [](AppState& state) { return AppMemory::region_of(state.tracking.gate); };
+  const auto history = [](AppState& state) { return AppMemory::region_of(state.tracking.history); };
+  const auto table = [](AppState& state) { return AppMemory::region_of(state.table); };
+  for (Region (*const region)(AppState&) :
+       {static_cast<Region (*)(AppState&)>(gate), static_cast<Region (*)(AppState&)>(history),
+        static_cast<Region (*)(AppState&)>(table)}) {
+    init_with_model();
+    run();
+    const std::size_t bits = 8 * region(AppMemory::state(*app)).size;
+    const std::size_t apart = bits / 200 + 1;
+    for (std::size_t bit = 0; bit < bits; bit += apart)
+      ASSERT_TRUE(choose(region, bit)) << bit << " of " << bits;
+  }
+}
+
+// The driver's frames are judged by the sequence number alone here: one flip makes the next one a duplicate.
+TEST_F(Cycle, AFlippedSequenceNumberMakesNoFrameADuplicate) {
+  lidar.add(next_frame());
+  run();
+  const gnc::RangeImage next = good_frame(workspace->frames[0].sequence_number ^ 1U, next_time_ns(), 7);
+  lidar.add(next);
+  auto* const gate = AppMemory::region_of(AppMemory::state(*app).tracking.gate).data;
+  gate[sizeof(std::int64_t)] ^= 1U;
+  run();
+  EXPECT_EQ(link.telemetry.back().frames_duplicate, 0U);
+  EXPECT_EQ(link.telemetry.back().frames_used, 2U);
+  EXPECT_EQ(link.telemetry.back().memory_corrections, 1U);
 }
 
 // Verifies TS-LID-052.
