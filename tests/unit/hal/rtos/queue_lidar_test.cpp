@@ -56,9 +56,48 @@ TYPED_TEST(QueueLidarTest, DropsTheOldestFramesAndCountsThem) {
 
 TYPED_TEST(QueueLidarTest, ABufferHasOneUserAtATime) {
   std::set<gnc::RangeImage*> buffers;
-  for (std::size_t i = 0; i < TestFixture::Lidar::kBuffers; ++i) buffers.insert(this->lidar->begin_frame());
+  for (std::size_t i = 0; i < TestFixture::Lidar::kBuffers; ++i) {
+    gnc::RangeImage* const buffer = this->lidar->begin_frame();
+    buffers.insert(buffer);
+    buffer->rays = 16;
+    this->lidar->end_frame(buffer);
+  }
   EXPECT_EQ(buffers.size(), TestFixture::Lidar::kBuffers);
-  EXPECT_EQ(this->lidar->begin_frame(), nullptr);
+}
+
+// More often than there are buffers: none is lost.
+TYPED_TEST(QueueLidarTest, AFrameThatIsNotEndedIsGivenUp) {
+  gnc::RangeImage* const first = this->lidar->begin_frame();
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(this->lidar->begin_frame(), first) << i;
+  for (std::uint32_t number = 0; number < 20; ++number) {
+    ASSERT_NE(this->lidar->begin_frame(), nullptr);  // given up
+    this->deliver(number);
+    ASSERT_EQ(this->lidar->receive(*this->frame), LidarStatus::kFrame);
+    EXPECT_EQ(this->frame->sequence_number, number);
+    EXPECT_EQ(this->lidar->receive(*this->frame), LidarStatus::kNoFrame);
+  }
+  EXPECT_EQ(this->lidar->take_dropped(), 0U);
+  for (std::uint32_t number = 0; number < TestFixture::Lidar::kBuffers; ++number) this->deliver(number);
+  EXPECT_EQ(this->lidar->take_dropped(), 0U) << "all buffers are still there";
+}
+
+TYPED_TEST(QueueLidarTest, EndsOnlyTheFrameThatWasBegun) {
+  gnc::RangeImage foreign;
+  this->lidar->end_frame(nullptr);
+  this->lidar->end_frame(&foreign);
+  EXPECT_EQ(this->lidar->receive(*this->frame), LidarStatus::kNoFrame) << "none was begun";
+  gnc::RangeImage* const buffer = this->lidar->begin_frame();
+  buffer->rays = 16;
+  this->lidar->end_frame(nullptr);
+  this->lidar->end_frame(buffer + 1);
+  this->lidar->end_frame(&foreign);
+  EXPECT_EQ(this->lidar->receive(*this->frame), LidarStatus::kNoFrame) << "not this one";
+  this->lidar->end_frame(buffer);
+  this->lidar->end_frame(buffer);
+  EXPECT_EQ(this->lidar->receive(*this->frame), LidarStatus::kFrame);
+  EXPECT_EQ(this->lidar->receive(*this->frame), LidarStatus::kNoFrame) << "once";
+  for (std::uint32_t number = 0; number < 8; ++number) this->deliver(number);
+  EXPECT_EQ(this->lidar->take_dropped(), 8U - TestFixture::Lidar::kBuffers);
 }
 
 TYPED_TEST(QueueLidarTest, SaysThatAFrameHasAWrongSize) {
@@ -86,6 +125,22 @@ TEST_F(RtemsLidarTest, CountsAFrameThatTheSystemRefuses) {
   lidar->end_frame(buffer);
   test::rtems().refusals.clear();
   EXPECT_EQ(lidar->receive(*frame), LidarStatus::kNoFrame);
+  static_cast<void>(lidar->take_dropped());  // the queue of this count may refuse, too
+  for (std::uint32_t number = 0; number < Lidar::kBuffers; ++number) deliver(number);
+  EXPECT_EQ(lidar->take_dropped(), 0U) << "its buffer is not lost";
+}
+
+TEST_F(RtemsLidarTest, ABufferThatTheSystemDoesNotTakeBackIsGivenBackLater) {
+  for (std::uint32_t round = 0; round < 2 * Lidar::kBuffers; ++round) {
+    deliver(round);
+    test::rtems().refusals["rtems_message_queue_send"] = RTEMS_INVALID_ID;
+    EXPECT_EQ(lidar->receive(*frame), LidarStatus::kFrame);
+    EXPECT_EQ(lidar->receive(*frame), LidarStatus::kNoFrame);
+    test::rtems().refusals.clear();
+    EXPECT_EQ(lidar->receive(*frame), LidarStatus::kNoFrame) << "the buffer is given back";
+  }
+  for (std::uint32_t number = 0; number < Lidar::kBuffers; ++number) deliver(number);
+  EXPECT_EQ(lidar->take_dropped(), 0U);
 }
 
 }  // namespace
