@@ -1,5 +1,7 @@
 // CommandFilter: what a link asks before it queues a telecommand. Forged and replayed packets never take a
-// place in the queue, so a flood of them cannot keep genuine commands out. Every drop is counted.
+// place in the queue, so a flood of them cannot keep genuine commands out. The last places of the queue are
+// kept: a load of a model cannot keep other commands out, and nothing can keep SET_MODE SAFE out. Every drop
+// is counted.
 //
 // The filter keeps three copies of the keys and outvotes a bit flip at each use.
 #pragma once
@@ -12,6 +14,7 @@
 #include "hal/command_authentication.hpp"
 #include "hal/link.hpp"
 #include "hal/messages/function_code.hpp"
+#include "hal/messages/mode.hpp"
 
 namespace tumblesight::hal {
 
@@ -31,13 +34,13 @@ class CommandFilter {
   }
 
   // Whether the packet may take a place in a queue with `room` free places. The last kReserved places are not
-  // for segments of a model, so a load of a model cannot keep other commands out.
+  // for segments of a model. The last kReservedForSafe are for SET_MODE SAFE alone.
   bool passes(const CommandPacket& packet, std::size_t room) {
     State state = vote();
     CommandOrigin origin{true, CommandRefusal::kNoRoom, 0};
     if (state.authenticates != 0) origin = origin_of(packet, state.keys, state.slot, state.last_counter);
-    const std::size_t reserved = is_model_segment(packet) ? kReserved : 0;
-    if (origin.authentic && room <= reserved) origin = {false, CommandRefusal::kNoRoom, 0};
+    if (origin.authentic && room <= places_kept_from(packet, state.authenticates != 0))
+      origin = {false, CommandRefusal::kNoRoom, 0};
     if (!origin.authentic) {
       ++dropped_.by[static_cast<std::size_t>(origin.why)];
       return false;
@@ -54,6 +57,7 @@ class CommandFilter {
   }
 
   static constexpr std::size_t kReserved = 4;
+  static constexpr std::size_t kReservedForSafe = 1;  // of these
 
  private:
   friend struct CommandFilterMemory;  // tests: the place where they flip bits
@@ -66,8 +70,25 @@ class CommandFilter {
   };
   static_assert(sizeof(State) == 144, "padding would not be voted on");
 
-  static bool is_model_segment(const CommandPacket& packet) {
-    return packet.bytes[kCommandFunctionOffset] == static_cast<std::uint8_t>(FunctionCode::kModelLoad);
+  static std::size_t places_kept_from(const CommandPacket& packet, bool has_trailer) {
+    const bool is_segment =
+        packet.size > kCommandFunctionOffset &&
+        packet.bytes[kCommandFunctionOffset] == static_cast<std::uint8_t>(FunctionCode::kModelLoad);
+    if (is_segment) return kReserved;
+    return is_set_mode_safe(packet, has_trailer) ? 0 : kReservedForSafe;
+  }
+
+  // A whole SET_MODE SAFE: nothing that the application refuses as damaged takes its place.
+  static bool is_set_mode_safe(const CommandPacket& packet, bool has_trailer) {
+    constexpr std::uint8_t kTelecommand = 0x18, kUnsegmented = 0xC0;
+    constexpr std::size_t kSize = kCommandHeaderBytes + 1;
+    const std::size_t size = kSize + (has_trailer ? kCommandTrailerBytes : 0);
+    const std::uint8_t* const bytes = packet.bytes.data();
+    return packet.size == size && (bytes[0] & 0xF8) == kTelecommand && (bytes[2] & 0xC0) == kUnsegmented &&
+           bytes[4] == 0 && bytes[5] == size - kCommandPrimaryHeaderBytes - 1 &&
+           bytes[kCommandFunctionOffset] == static_cast<std::uint8_t>(FunctionCode::kSetMode) &&
+           bytes[kCommandHeaderBytes] == static_cast<std::uint8_t>(Mode::kSafe) &&
+           command_checksum(bytes, size) == 0;
   }
 
   State vote() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "fsw/c/arguments.hpp"
 #include "hal/messages/message_fields.hpp"
 
 namespace tumblesight::fsw::c {
@@ -54,7 +55,9 @@ std::uint64_t apart_ns(std::int64_t a, std::int64_t b) {
 hal::LidarStatus InputsLidar::receive(gnc::RangeImage& frame) {
   if (next_ == inputs_->frame_count) return hal::LidarStatus::kNoFrame;
   const tumblesight_frame& given = inputs_->frames[next_++];
-  if (given.ranges == nullptr || given.rays > gnc::RangeImage::kMaxRays) return hal::LidarStatus::kWrongSize;
+  // Processors without unaligned loads cannot read ranges at an odd address.
+  if (given.ranges == nullptr || !is_aligned(given.ranges) || given.rays > gnc::RangeImage::kMaxRays)
+    return hal::LidarStatus::kWrongSize;
   frame.exposure_time_ns = given.exposure_time_ns;
   frame.sequence_number = given.sequence_number;
   frame.fov_urad = given.fov_urad;
@@ -75,18 +78,26 @@ gnc::ChaserAttitude InputsNavigation::attitude_at(std::int64_t time_ns) {
   return attitude_of(*nearest);
 }
 
+void InputsLink::begin(const tumblesight_inputs& inputs, tumblesight_outputs& outputs) {
+  outputs_ = &outputs;
+  outputs.event_count = 0;
+  outputs.has_dump = outputs.duties_done = false;
+  dropped_by_caller_ = inputs.commands_dropped;
+  for (std::size_t i = 0; i < inputs.command_count; ++i) {
+    const tumblesight_command& given = inputs.commands[i];
+    static_cast<void>(put(given.bytes, given.size_bytes));
+  }
+}
+
 bool InputsLink::receive(hal::CommandPacket& command) {
-  if (next_ == inputs_->command_count) return false;
-  const tumblesight_command& given = inputs_->commands[next_++];
-  const std::size_t size = given.bytes == nullptr ? 0 : given.size_bytes;
-  command.size = static_cast<std::uint16_t>(std::min<std::size_t>(size, UINT16_MAX));
-  std::copy_n(given.bytes, std::min(size, command.bytes.size()), command.bytes.begin());
-  return true;
+  return queue_.receive(command);
 }
 
 hal::DroppedCommands InputsLink::take_dropped() {
-  hal::DroppedCommands dropped;
-  dropped.by[static_cast<std::size_t>(hal::CommandRefusal::kNoRoom)] = inputs_->commands_dropped;
+  hal::DroppedCommands dropped = queue_.take_dropped();
+  std::uint32_t& no_room = dropped.by[static_cast<std::size_t>(hal::CommandRefusal::kNoRoom)];
+  const std::uint32_t left = UINT32_MAX - no_room;
+  no_room += std::min(dropped_by_caller_, left);
   return dropped;
 }
 
@@ -94,6 +105,7 @@ void InputsLink::publish(const hal::AttitudeReport& report) {
   copy(report, outputs_->attitude);
 }
 void InputsLink::publish(const hal::Telemetry& telemetry) {
+  queue_.follow(telemetry.key_slot, telemetry.command_counter);
   copy(telemetry, outputs_->telemetry);
 }
 void InputsLink::publish(const hal::Event& event) {
@@ -107,6 +119,7 @@ void InputsLink::publish(const hal::MemoryDump& dump) {
 hal::ModelBank CallerModelStore::bank(int index) {
   if (index < 0 || index >= hal::kModelBanks) return {};
   const tumblesight_bank& bank = settings_.bank[index];
+  if (bank.image == nullptr) return {};
   if (bank.writable == nullptr)
     return {bank.image, hal::BankWriting::kReadOnly, bank.image_bytes, bank.image_bytes};
   return {bank.image, hal::BankWriting::kAtOnce, bank.image_bytes, bank.capacity_bytes};

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "fsw/c/tumblesight_c.h"
+#include "hal/command_queue.hpp"
 #include "hal/lidar.hpp"
 #include "hal/link.hpp"
 #include "hal/model_store.hpp"
@@ -38,16 +39,17 @@ class InputsNavigation final : public hal::Navigation {
   const tumblesight_inputs* inputs_ = nullptr;
 };
 
-// Commands in, messages out. `has_kicked` of the watchdog is duties_done.
+// Commands in, messages out.
 class InputsLink final : public hal::Link {
  public:
-  void begin(const tumblesight_inputs& inputs, tumblesight_outputs& outputs) {
-    inputs_ = &inputs;
-    outputs_ = &outputs;
-    next_ = 0;
-    outputs.event_count = 0;
-    outputs.has_dump = outputs.duties_done = false;
+  // From now on only authentic commands are queued.
+  void authenticate_with(const hal::CommandKeys& keys, std::uint32_t slot, std::uint32_t last_counter) {
+    queue_.authenticate_with(keys, slot, last_counter);
   }
+  // Queues the command, or drops and counts it: false.
+  bool put(const std::uint8_t* bytes, std::size_t size_bytes) { return queue_.put(bytes, size_bytes); }
+  // Queues the commands of the inputs, too.
+  void begin(const tumblesight_inputs& inputs, tumblesight_outputs& outputs);
   bool receive(hal::CommandPacket& command) override;
   hal::DroppedCommands take_dropped() override;
   void publish(const hal::AttitudeReport& report) override;
@@ -56,9 +58,9 @@ class InputsLink final : public hal::Link {
   void publish(const hal::MemoryDump& dump) override;
 
  private:
-  const tumblesight_inputs* inputs_ = nullptr;
+  hal::CommandQueue<TUMBLESIGHT_COMMAND_PLACES> queue_;
   tumblesight_outputs* outputs_ = nullptr;
-  std::size_t next_ = 0;
+  std::uint32_t dropped_by_caller_ = 0;
 };
 
 class OutputsWatchdog final : public hal::Watchdog {

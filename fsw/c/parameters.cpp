@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "fsw/c/arguments.hpp"
+
 using namespace tumblesight;
 
 namespace tumblesight::fsw::c {
@@ -57,7 +59,7 @@ ParameterTable table_of(const tumblesight_parameters& parameters) {
 }  // namespace tumblesight::fsw::c
 
 void tumblesight_initial_parameters(tumblesight_parameters* parameters) {
-  if (parameters == nullptr) return;
+  if (fsw::c::status_of(parameters) != TUMBLESIGHT_OK) return;
   for (std::size_t i = 0; i < fsw::kParameters; ++i)
     parameters->*fsw::c::kFields[i] = fsw::kInitialTable.fields[i];
   for (std::size_t i = 0; i < TUMBLESIGHT_FAULTS; ++i)
@@ -66,7 +68,9 @@ void tumblesight_initial_parameters(tumblesight_parameters* parameters) {
 
 tumblesight_status tumblesight_check_parameters(const tumblesight_parameters* parameters,
                                                 tumblesight_wrong_parameter* wrong) {
-  if (parameters == nullptr) return TUMBLESIGHT_NULL_ARGUMENT;
+  const tumblesight_status status =
+      fsw::c::first_wrong({fsw::c::status_of(parameters), fsw::c::status_of_optional(wrong)});
+  if (status != TUMBLESIGHT_OK) return status;
   const fsw::ParameterTable table = fsw::c::table_of(*parameters);
   const std::size_t field = fsw::first_wrong_field(table);
   if (field >= fsw::kTableFields) return TUMBLESIGHT_OK;

@@ -32,15 +32,16 @@ extern "C" {
 
 /* Enough for the object on every processor, at any address. */
 #if defined(__x86_64__)
-#define TUMBLESIGHT_MEMORY_BYTES (360 * 1024)
+#define TUMBLESIGHT_MEMORY_BYTES (376 * 1024)
 #else
-#define TUMBLESIGHT_MEMORY_BYTES (190 * 1024)
+#define TUMBLESIGHT_MEMORY_BYTES (210 * 1024)
 #endif
 
 #define TUMBLESIGHT_PERIOD_NS 2700000000LL
 #define TUMBLESIGHT_MAX_RAYS 128
-#define TUMBLESIGHT_MAX_FRAMES 32  /* per step */
-#define TUMBLESIGHT_MAX_COMMANDS 8 /* per step */
+#define TUMBLESIGHT_MAX_FRAMES 32     /* per step */
+#define TUMBLESIGHT_MAX_COMMANDS 8    /* per step */
+#define TUMBLESIGHT_COMMAND_PLACES 16 /* for commands that wait */
 #define TUMBLESIGHT_MAX_COMMAND_BYTES 1060
 #define TUMBLESIGHT_COMMAND_REFUSALS 17 /* reasons to refuse a command */
 #define TUMBLESIGHT_MAX_EVENTS 16       /* per step */
@@ -66,7 +67,13 @@ enum tumblesight_status {
   TUMBLESIGHT_BAD_RESET_CAUSE = 6,   /* no value of enum tumblesight_reset_cause */
   TUMBLESIGHT_TOO_MANY = 7,          /* more frames or commands than one step takes; nothing was done */
   TUMBLESIGHT_BAD_APIDS = 8,         /* an APID is above TUMBLESIGHT_MAX_APID, or two are equal */
-  TUMBLESIGHT_BAD_PARAMETER = 9      /* a parameter has a value that is not allowed; nothing was done */
+  TUMBLESIGHT_BAD_PARAMETER = 9,     /* a parameter has a value that is not allowed; nothing was done */
+  TUMBLESIGHT_COMMAND_DROPPED = 10,  /* not authentic, or no place is free for it; telemetry counts it */
+  /* init: the object, its settings, keys and target, the two banks and the pointer to it share memory.
+   * step: the pointer to the outputs lies in the object. Nothing was done. */
+  TUMBLESIGHT_OVERLAP = 11,
+  TUMBLESIGHT_IMAGE_TOO_LARGE = 12,    /* the image of a bank is larger than the bank's capacity */
+  TUMBLESIGHT_MISALIGNED_ARGUMENT = 13 /* a pointer is not aligned for its type; nothing was done */
 };
 /* One line for a log. Any value. */
 const char* tumblesight_status_text(enum tumblesight_status status);
@@ -218,15 +225,15 @@ struct tumblesight_command {
 
 /* What has arrived since the last step. A step without frames and commands is normal. */
 struct tumblesight_inputs {
-  int64_t now_ns;                         /* later than in the last step */
-  uint32_t slips;                         /* periods that were missed since then */
-  const struct tumblesight_frame* frames; /* the oldest first; the step uses the newest good one */
-  size_t frame_count;                     /* at most TUMBLESIGHT_MAX_FRAMES */
-  uint32_t frames_dropped;                /* by the caller, for lack of room */
-  const struct tumblesight_command* commands;
-  size_t command_count;             /* at most TUMBLESIGHT_MAX_COMMANDS */
-  uint32_t commands_dropped;        /* by the caller, for lack of room */
-  struct tumblesight_chaser chaser; /* at now_ns */
+  int64_t now_ns;                             /* later than in the last step */
+  uint32_t slips;                             /* periods that were missed since then */
+  const struct tumblesight_frame* frames;     /* the oldest first; the step uses the newest good one */
+  size_t frame_count;                         /* at most TUMBLESIGHT_MAX_FRAMES */
+  uint32_t frames_dropped;                    /* by the caller, for lack of room */
+  const struct tumblesight_command* commands; /* joins those of tumblesight_put_command() */
+  size_t command_count;                       /* at most TUMBLESIGHT_MAX_COMMANDS */
+  uint32_t commands_dropped;                  /* by the caller, for lack of room */
+  struct tumblesight_chaser chaser;           /* at now_ns */
 };
 
 enum tumblesight_validity {
@@ -369,6 +376,14 @@ struct tumblesight_outputs {
   bool duties_done; /* kick the watchdog after the outputs are sent */
 };
 
+/* Queues a telecommand for the next steps, each of which carries out the TUMBLESIGHT_MAX_COMMANDS oldest.
+ * Call it whenever a command has arrived, or give commands to the step, which queues them in the same way.
+ * With command keys, what is not authentic takes no place. The last four of TUMBLESIGHT_COMMAND_PLACES are
+ * not for segments of a model, and the last one is for SET_MODE SAFE alone: so no upload and no other
+ * commands keep it out. A size beyond TUMBLESIGHT_MAX_COMMAND_BYTES is refused by the step. */
+enum tumblesight_status tumblesight_put_command(struct tumblesight_app* app, const uint8_t* bytes,
+                                                size_t size_bytes);
+
 /* Runs one cycle. `*outputs` stays valid until the next call. */
 enum tumblesight_status tumblesight_step(struct tumblesight_app* app, const struct tumblesight_inputs* inputs,
                                          const struct tumblesight_outputs** outputs);
@@ -388,7 +403,7 @@ const char* tumblesight_event_text(uint16_t event_id);
  * least TUMBLESIGHT_MAX_PACKET_BYTES; with less nothing is written, and 0 returned. */
 size_t tumblesight_take_packet(struct tumblesight_app* app, uint8_t* bytes, size_t capacity_bytes);
 
-/* Of everything that the next step depends on, to compare runs: the same on every processor. */
+/* Of everything that the next step depends on, to compare runs: the same on every processor. 0 for null. */
 uint32_t tumblesight_state_crc32(const struct tumblesight_app* app);
 
 #ifdef __cplusplus

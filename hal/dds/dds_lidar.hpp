@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "gnc/lidar/range_image.hpp"
-#include "hal/dds/fixed_queue.hpp"
 #include "hal/dds/idl/topics.hpp"
 #include "hal/dds/mailbox_lock.hpp"
+#include "hal/fixed_queue.hpp"
 #include "hal/lidar.hpp"
 
 namespace tumblesight::hal::dds {

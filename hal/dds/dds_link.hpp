@@ -7,9 +7,9 @@
 #include <cstdint>
 
 #include "hal/command_filter.hpp"
-#include "hal/dds/fixed_queue.hpp"
 #include "hal/dds/idl/topics.hpp"
 #include "hal/dds/mailbox_lock.hpp"
+#include "hal/fixed_queue.hpp"
 #include "hal/link.hpp"
 
 namespace tumblesight::hal::dds {

@@ -55,7 +55,7 @@ TEST_F(CommandFilterTest, DropsAndCountsEverythingElse) {
 TEST_F(CommandFilterTest, FullQueueDropsWithoutSpendingTheCounter) {
   EXPECT_FALSE(filter.passes(noop(11), 0));
   EXPECT_EQ(dropped_by(CommandRefusal::kNoRoom), 1U);
-  EXPECT_TRUE(filter.passes(noop(11), 1)) << "the ground may send it again";
+  EXPECT_TRUE(filter.passes(noop(11), 2)) << "the ground may send it again";
 }
 
 TEST_F(CommandFilterTest, LastPlacesAreNotForSegmentsOfAModel) {
@@ -65,6 +65,41 @@ TEST_F(CommandFilterTest, LastPlacesAreNotForSegmentsOfAModel) {
   EXPECT_FALSE(filter.passes(segment, CommandFilter::kReserved));
   EXPECT_EQ(dropped_by(CommandRefusal::kNoRoom), 1U);
   EXPECT_TRUE(filter.passes(segment, CommandFilter::kReserved + 1));
+}
+
+constexpr std::uint8_t kSetMode = 3, kSafe = 3;
+
+// Nothing but a whole SET_MODE SAFE takes the last place.
+TEST_F(CommandFilterTest, LastPlaceIsForSetModeSafeAlone) {
+  constexpr std::size_t kPlace = CommandFilter::kReservedForSafe;
+  for (std::uint8_t function = 0; function < 0x80; ++function) {
+    for (const std::uint8_t argument : std::vector<std::uint8_t>{0, 1, 2, 4, 255}) {
+      const auto other = fsw::signed_with(fsw::kTestKey, 11, fsw::packet_of(function, {argument}));
+      EXPECT_FALSE(filter.passes(other, kPlace)) << int{function} << ' ' << int{argument};
+    }
+  }
+  EXPECT_FALSE(
+      filter.passes(fsw::signed_with(fsw::kTestKey, 11, fsw::packet_of(kSetMode, {kSafe, 0})), kPlace));
+  EXPECT_FALSE(filter.passes(fsw::unsigned_packet(fsw::packet_of(kSetMode, {kSafe})), kPlace)) << "forged";
+  const auto safe = fsw::signed_with(fsw::kTestKey, 11, fsw::packet_of(kSetMode, {kSafe}));
+  EXPECT_FALSE(filter.passes(safe, 0));
+  EXPECT_TRUE(filter.passes(safe, kPlace));
+  EXPECT_FALSE(filter.passes(safe, kPlace)) << "a replay";
+}
+
+TEST_F(CommandFilterTest, ADamagedSetModeSafeDoesNotTakeItsPlaceOnATrustedLink) {
+  CommandFilter trusting;
+  const std::vector<std::uint8_t> whole = fsw::packet_of(kSetMode, {kSafe});
+  EXPECT_TRUE(trusting.passes(fsw::unsigned_packet(whole), 1));
+  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+    std::vector<std::uint8_t> damaged = whole;
+    damaged[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+    EXPECT_FALSE(trusting.passes(fsw::unsigned_packet(damaged), 1)) << bit;
+  }
+  CommandPacket longer = fsw::unsigned_packet(whole);
+  ++longer.size;
+  EXPECT_FALSE(trusting.passes(longer, 1));
+  EXPECT_FALSE(trusting.passes(CommandPacket{}, 1));
 }
 
 TEST_F(CommandFilterTest, FollowsTheKeySlotAndTheCounterOfTheApplication) {
@@ -84,7 +119,7 @@ TEST_F(CommandFilterTest, FollowsTheKeySlotAndTheCounterOfTheApplication) {
 
 TEST_F(CommandFilterTest, WithoutKeysTheLinkIsTrusted) {
   CommandFilter trusting;
-  EXPECT_TRUE(trusting.passes(fsw::unsigned_packet(fsw::packet_of(1)), 1));
+  EXPECT_TRUE(trusting.passes(fsw::unsigned_packet(fsw::packet_of(1)), 2));
   EXPECT_FALSE(trusting.passes(fsw::unsigned_packet(fsw::packet_of(1)), 0));
 }
 

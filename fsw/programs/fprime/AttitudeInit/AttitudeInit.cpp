@@ -9,6 +9,8 @@ namespace {
 // Of docs/icd.md.
 constexpr U8 kInformation = 0;
 constexpr U8 kWarning = 1;
+// That one cycle takes from its queue.
+constexpr int kMostMessages = 256;
 
 // nullptr: the buffer does not hold a frame of this size. The application counts the frame as bad.
 const U16* ranges_in(const Fw::Buffer& buffer, U16 rays) {
@@ -37,18 +39,17 @@ void AttitudeInit::schedIn_handler(FwIndexType, U32) {
   return_buffers();
 }
 
-// What does not fit into one step stays in the queue.
+// Frames that do not fit into one step stay in the queue, and so does what came after them. Commands do not:
+// the application keeps places for others than segments of a model, and this queue does not.
 void AttitudeInit::take_messages() {
-  while (!frames_.is_full() && !commands_.is_full()) {
+  for (int i = 0; i < kMostMessages && !frames_.is_full(); ++i) {
     if (doDispatch() != MSG_DISPATCH_OK) return;
   }
 }
 
 void AttitudeInit::return_buffers() {
   for (std::size_t i = 0; i < frame_buffers_.count; ++i) frameReturnOut_out(0, frame_buffers_.elements[i]);
-  for (std::size_t i = 0; i < command_buffers_.count; ++i)
-    commandReturnOut_out(0, command_buffers_.elements[i]);
-  frames_.count = frame_buffers_.count = commands_.count = command_buffers_.count = 0;
+  frames_.count = frame_buffers_.count = 0;
 }
 
 void AttitudeInit::frameIn_handler(FwIndexType, I64 exposureTime_ns, U32 sequenceNumber, U32 fov_urad,
@@ -64,8 +65,9 @@ void AttitudeInit::frameIn_overflowHook(FwIndexType, I64, U32, U32, U16, Fw::Buf
 }
 
 void AttitudeInit::commandIn_handler(FwIndexType, Fw::Buffer& packet) {
-  commands_.add({packet.getData(), packet.getSize()});
-  command_buffers_.add(packet);
+  // The application counts what it drops. Before the boot there is none.
+  static_cast<void>(tumblesight_put_command(app_, packet.getData(), packet.getSize()));
+  commandReturnOut_out(0, packet);
 }
 
 void AttitudeInit::commandIn_overflowHook(FwIndexType, Fw::Buffer& packet) {
@@ -82,8 +84,6 @@ tumblesight_inputs AttitudeInit::inputs_now() {
   inputs.frames = frames_.elements.data();
   inputs.frame_count = frames_.count;
   inputs.frames_dropped = frames_dropped_.exchange(0);
-  inputs.commands = commands_.elements.data();
-  inputs.command_count = commands_.count;
   inputs.commands_dropped = commands_dropped_.exchange(0);
   inputs.chaser = chaser_at(inputs.now_ns);
   return inputs;

@@ -30,7 +30,7 @@ module Tumblesight {
     async input port frameIn: LidarFrame hook
     output port frameReturnOut: Fw.BufferSend
 
-    @ Telecommand packets of docs/icd.md. The buffer is returned after the step
+    @ Telecommand packets of docs/icd.md. The cycle copies them and returns their buffers
     async input port commandIn: Fw.BufferSend hook
     output port commandReturnOut: Fw.BufferSend
 

@@ -47,11 +47,9 @@ class AttitudeInit final : public AttitudeInitComponentBase {
 
   alignas(8) U8 memory_[TUMBLESIGHT_MEMORY_BYTES] = {};
   tumblesight_app* app_ = nullptr;
-  // What this cycle's step gets, and the buffers that it is in.
+  // The frames that this cycle's step gets, and the buffers that they are in.
   List<tumblesight_frame, TUMBLESIGHT_MAX_FRAMES> frames_;
   List<Fw::Buffer, TUMBLESIGHT_MAX_FRAMES> frame_buffers_;
-  List<tumblesight_command, TUMBLESIGHT_MAX_COMMANDS> commands_;
-  List<Fw::Buffer, TUMBLESIGHT_MAX_COMMANDS> command_buffers_;
   // For lack of room in the queue. The senders' threads count.
   std::atomic<U32> frames_dropped_{0};
   std::atomic<U32> commands_dropped_{0};

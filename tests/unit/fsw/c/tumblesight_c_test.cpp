@@ -218,7 +218,7 @@ TEST_F(CInterface, RefusesWrongInputs) {
 
 TEST_F(CInterface, EveryStatusHasItsText) {
   std::vector<std::string> texts;
-  for (int status = TUMBLESIGHT_OK; status <= TUMBLESIGHT_BAD_PARAMETER; ++status)
+  for (int status = TUMBLESIGHT_OK; status <= TUMBLESIGHT_MISALIGNED_ARGUMENT; ++status)
     texts.emplace_back(tumblesight_status_text(static_cast<tumblesight_status>(status)));
   std::sort(texts.begin(), texts.end());
   EXPECT_EQ(std::unique(texts.begin(), texts.end()), texts.end());

@@ -100,6 +100,22 @@ TEST_F(CommandFlood, ALoadOfAModelKeepsNoOtherCommandOut) {
   EXPECT_GT(by(telemetry, CommandRefusal::kNoRoom), 0U);
 }
 
+// In the same cycle or the next one, whatever genuine commands fill the queue before it: segments of a model,
+// NOOP, a change of the mode, dumps, a command that is unknown.
+TEST_F(CommandFlood, NothingKeepsSetModeSafeOut) {
+  const std::vector<std::uint8_t> segment(4 + fsw::kSegmentBytes);
+  for (const std::vector<std::uint8_t>& flood :
+       {fsw::packet_of(kModelLoad, segment), fsw::packet_of(kNoop), fsw::packet_of(kSetMode, {1}),
+        fsw::packet_of(8, {0, 0, 0, 0, 0, 0, 4}), fsw::packet_of(99)}) {
+    put(genuine(fsw::packet_of(kSetMode, {1})));
+    ASSERT_EQ(cycle().mode, Mode::kStandby);
+    for (int i = 0; i < 40; ++i) put(genuine(flood));
+    put(genuine(fsw::packet_of(kSetMode, {3})));
+    const bool at_once = cycle().mode == Mode::kSafe;
+    EXPECT_TRUE(at_once || cycle().mode == Mode::kSafe) << int{flood[kCommandFunctionOffset]};
+  }
+}
+
 TEST_F(CommandFlood, LinkFollowsARollOverOfTheKey) {
   CommandPacket activate = genuine([this] {
     std::vector<std::uint8_t> arguments{1};

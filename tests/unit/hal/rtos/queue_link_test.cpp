@@ -8,7 +8,7 @@
 namespace tumblesight::hal::rtos {
 namespace {
 
-constexpr std::uint8_t kNoop = 1, kModelLoad = 5;
+constexpr std::uint8_t kNoop = 1, kSetMode = 3, kModelLoad = 5;
 
 template <class System>
 class QueueLinkTest : public ::testing::Test {
@@ -49,8 +49,25 @@ TYPED_TEST(QueueLinkTest, DeliversCommandsInOrder) {
 
 TYPED_TEST(QueueLinkTest, CountsCommandsForWhichThereIsNoRoomOnce) {
   for (int i = 0; i < 20; ++i) this->link->put(this->command(0));
-  EXPECT_EQ(this->dropped_by(CommandRefusal::kNoRoom), 4U);
+  EXPECT_EQ(this->dropped_by(CommandRefusal::kNoRoom), 4U + CommandFilter::kReservedForSafe);
   EXPECT_EQ(this->dropped_by(CommandRefusal::kNoRoom), 0U);
+}
+
+// Each flood fills the queue as far as it can. The application takes eight commands per cycle.
+TYPED_TEST(QueueLinkTest, NothingKeepsSetModeSafeOut) {
+  const std::vector<std::uint8_t> segment(4 + 1024);
+  for (const std::vector<std::uint8_t>& flood :
+       {fsw::packet_of(kModelLoad, segment), fsw::packet_of(kNoop), fsw::packet_of(kSetMode, {2}),
+        std::vector<std::uint8_t>(12)}) {
+    for (int i = 0; i < 40; ++i) this->link->put(fsw::unsigned_packet(flood));
+    const CommandPacket safe = fsw::unsigned_packet(fsw::packet_of(kSetMode, {3}));
+    this->link->put(safe);
+    bool arrived = false;
+    for (int i = 0; i < 2 * 8 && this->link->receive(this->received); ++i)
+      arrived |= this->received.size == safe.size && this->received.bytes == safe.bytes;
+    EXPECT_TRUE(arrived) << int{flood[6]};
+    EXPECT_FALSE(this->link->receive(this->received));
+  }
 }
 
 TYPED_TEST(QueueLinkTest, KeepsPlacesForOtherCommandsThanSegmentsOfAModel) {

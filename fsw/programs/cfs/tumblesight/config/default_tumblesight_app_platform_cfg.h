@@ -29,10 +29,10 @@
 
 /* Messages that may wait while a cycle runs. The sum must not exceed the pipe's depth, and that must not
  * exceed OSAL's OS_QUEUE_MAX_DEPTH. */
-#define TUMBLESIGHT_APP_PIPE_DEPTH 40
+#define TUMBLESIGHT_APP_PIPE_DEPTH 48
 #define TUMBLESIGHT_APP_WAKEUP_LIMIT 1
 #define TUMBLESIGHT_APP_SEND_HK_LIMIT 2
-#define TUMBLESIGHT_APP_CMD_LIMIT 8
+#define TUMBLESIGHT_APP_CMD_LIMIT 16
 #define TUMBLESIGHT_APP_FRAME_LIMIT 24 /* a frame of 128 x 128 rays has 8 segments */
 #define TUMBLESIGHT_APP_NAV_LIMIT 5
 

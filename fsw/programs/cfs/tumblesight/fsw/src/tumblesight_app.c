@@ -138,18 +138,12 @@ static bool HasNoArguments(CFE_SB_MsgId_t Mid, size_t Size) {
   return false;
 }
 
-/* The flight application checks the packet in the next cycle. */
+/* The flight application queues the packet, and checks it in the next cycle. */
 static void TakeCommand(const void* Bytes, size_t Size) {
-  if (TUMBLESIGHT_APP_Data.CommandCount == TUMBLESIGHT_MAX_COMMANDS) {
-    ++TUMBLESIGHT_APP_Data.CommandsDropped;
+  if (tumblesight_put_command(TUMBLESIGHT_APP_Data.App, Bytes, Size) == TUMBLESIGHT_OK)
+    ++TUMBLESIGHT_APP_COUNTERS.CommandsTaken;
+  else
     ++TUMBLESIGHT_APP_COUNTERS.CommandsDropped;
-    return;
-  }
-  TUMBLESIGHT_APP_Command_t* const Command =
-      &TUMBLESIGHT_APP_Data.Commands[TUMBLESIGHT_APP_Data.CommandCount++];
-  Command->Size = Size;
-  memcpy(Command->Bytes, Bytes, Size < sizeof Command->Bytes ? Size : sizeof Command->Bytes);
-  ++TUMBLESIGHT_APP_COUNTERS.CommandsTaken;
 }
 
 /* A segment may end behind its last range. */
@@ -185,21 +179,12 @@ static void CollectInputs(struct tumblesight_inputs* Inputs) {
   Inputs->slips = SlipsUntil(Inputs->now_ns);
   Inputs->frame_count = TUMBLESIGHT_APP_ListFrames();
   Inputs->frames = TUMBLESIGHT_APP_Data.Frames.List;
-  for (uint32 i = 0; i < TUMBLESIGHT_APP_Data.CommandCount; ++i) {
-    TUMBLESIGHT_APP_Data.CommandList[i].bytes = TUMBLESIGHT_APP_Data.Commands[i].Bytes;
-    TUMBLESIGHT_APP_Data.CommandList[i].size_bytes = TUMBLESIGHT_APP_Data.Commands[i].Size;
-  }
-  Inputs->commands = TUMBLESIGHT_APP_Data.CommandList;
-  Inputs->command_count = TUMBLESIGHT_APP_Data.CommandCount;
-  Inputs->commands_dropped = TUMBLESIGHT_APP_Data.CommandsDropped;
   Inputs->frames_dropped = TUMBLESIGHT_APP_Data.Frames.Dropped;
   Inputs->chaser = TUMBLESIGHT_APP_Data.Chaser;
 }
 
 static void EndInputs(int64 Now_ns) {
   TUMBLESIGHT_APP_Data.LastCycle_ns = Now_ns;
-  TUMBLESIGHT_APP_Data.CommandCount = 0;
-  TUMBLESIGHT_APP_Data.CommandsDropped = 0;
   TUMBLESIGHT_APP_Data.Frames.Dropped = 0;
   TUMBLESIGHT_APP_EndFrames();
 }

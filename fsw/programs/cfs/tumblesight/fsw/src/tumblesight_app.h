@@ -8,12 +8,6 @@
 #include "tumblesight_app_msg.h"
 #include "tumblesight_app_platform_cfg.h"
 
-/* A telecommand that waits for the next cycle. */
-typedef struct {
-  uint8 Bytes[TUMBLESIGHT_MAX_COMMAND_BYTES];
-  size_t Size; /* of the message, which may be larger than Bytes: it is then refused */
-} TUMBLESIGHT_APP_Command_t;
-
 typedef struct {
   uint32 RunStatus;
   CFE_SB_PipeId_t Pipe;
@@ -24,10 +18,6 @@ typedef struct {
   int64 LastCycle_ns; /* 0: there was none */
 
   TUMBLESIGHT_APP_Frames_t Frames;
-  TUMBLESIGHT_APP_Command_t Commands[TUMBLESIGHT_MAX_COMMANDS];
-  struct tumblesight_command CommandList[TUMBLESIGHT_MAX_COMMANDS]; /* of this cycle */
-  uint32 CommandCount;
-  uint32 CommandsDropped;           /* since the last cycle */
   struct tumblesight_chaser Chaser; /* the newest one */
   TUMBLESIGHT_APP_HkTlm_t HkTlm;
   uint64 Memory[TUMBLESIGHT_MEMORY_BYTES / sizeof(uint64)]; /* of App */

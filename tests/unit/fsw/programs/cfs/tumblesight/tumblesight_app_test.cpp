@@ -180,6 +180,8 @@ TEST_F(CfsApp, PipeHoldsWhatItsSubscriptionsAllow) {
   run();
   int sum = 0;
   for (const auto& [id, limit] : the.message_limits) sum += limit;
+  EXPECT_GE(the.message_limits[TUMBLESIGHT_APP_CMD_MID], TUMBLESIGHT_COMMAND_PLACES)
+      << "more than an upload of eight segments per cycle";
   EXPECT_EQ(the.message_limits.size(), 5U);
   EXPECT_LE(sum, the.pipe_depth);
   EXPECT_GE(the.message_limits[TUMBLESIGHT_APP_FRAME_MID], 16) << "two frames of 128 x 128 rays";
@@ -493,13 +495,57 @@ TEST_F(CfsApp, CommandsAreCarriedOutInTheNextCycle) {
   EXPECT_EQ(counters().CommandsTaken, 1U);
 }
 
-TEST_F(CfsApp, MoreThanEightCommandsPerCycleAreDroppedAndCounted) {
-  for (int i = 0; i < 10; ++i) command(packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kNoop)));
+TEST_F(CfsApp, CommandsWithoutAPlaceAreDroppedAndCounted) {
+  for (int i = 0; i < 20; ++i) command(packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kNoop)));
+  wake_up([this] { EXPECT_EQ(counters().CommandsTaken, 15U); });
+  wake_up([this] { EXPECT_EQ(telemetry().commands_accepted, 8U) << "in one cycle"; });
+  run();
+  EXPECT_EQ(telemetry().commands_accepted, 15U);
+  EXPECT_EQ(counters().CommandsDropped, 5U);
+  EXPECT_EQ(telemetry().commands_refused_by[static_cast<std::size_t>(hal::CommandRefusal::kNoRoom)], 5U);
+}
+
+// Whatever waits before it: segments of a model, NOOP, dumps, a command that is unknown, one that is damaged.
+TEST_F(CfsApp, NothingKeepsSetModeSafeOut) {
+  const std::vector<std::uint8_t> segment(4 + 1024);
+  Bytes damaged = packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kNoop));
+  damaged[7] ^= 1;
+  for (const Bytes& flood :
+       {packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kModelLoad), segment),
+        packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kNoop)),
+        packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kMemoryDump), {0, 0, 0, 0, 0, 0, 16}),
+        packet_of(99), damaged}) {
+    for (const int waiting : {8, 40}) {
+      cfe::restart_cfe();
+      the.files[TUMBLESIGHT_APP_MODEL_FILE_0] = test_model_image();
+      for (int i = 0; i < waiting; ++i) command(flood);
+      set_mode(hal::Mode::kSafe);
+      wake_up();
+      wake_up();
+      run();
+      EXPECT_EQ(telemetry().mode, hal::Mode::kSafe) << int{flood[6]} << ' ' << waiting;
+    }
+  }
+}
+
+// As many as may wait in the pipe arrive while each cycle runs.
+TEST_F(CfsApp, SetModeSafeGetsThroughWhileAModelIsLoaded) {
+  const std::vector<std::uint8_t> segment(4 + 1024);
+  command(packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kModelBegin), {0}));
+  constexpr int kCycles = 10;
+  for (int cycle = 0; cycle < kCycles; ++cycle) {
+    for (int i = 1; i < TUMBLESIGHT_APP_CMD_LIMIT; ++i)
+      command(packet_of(static_cast<std::uint8_t>(hal::FunctionCode::kModelLoad), segment));
+    set_mode(cycle % 2 == 0 ? hal::Mode::kSafe : hal::Mode::kStandby);
+    wake_up();
+  }
   wake_up();
   run();
-  EXPECT_EQ(telemetry().commands_accepted, 8U);
-  EXPECT_EQ(counters().CommandsDropped, 2U);
-  EXPECT_EQ(telemetry().commands_refused_by[static_cast<std::size_t>(hal::CommandRefusal::kNoRoom)], 2U);
+  const auto modes = packets(TUMBLESIGHT_APP_TLM_MID);
+  int in_safe = 0;
+  for (const Bytes& packet : modes)
+    in_safe += test::read_packet<hal::Telemetry>(packet.data(), packet.size()).mode == hal::Mode::kSafe;
+  EXPECT_EQ(in_safe, kCycles / 2) << "each of them in the same cycle or the next one";
 }
 
 TEST_F(CfsApp, RefusedCommandsAreEventsOfTheirOwn) {

@@ -1,8 +1,8 @@
-#include "hal/dds/fixed_queue.hpp"
+#include "hal/fixed_queue.hpp"
 
 #include <gtest/gtest.h>
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::hal {
 namespace {
 
 TEST(FixedQueue, ReturnsEntriesInOrder) {
@@ -27,4 +27,4 @@ TEST(FixedQueue, DropsTheOldestEntryWhenFull) {
 }
 
 }  // namespace
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::hal

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tumblesight::hal::dds {
+namespace tumblesight::hal {
 
 template <class T, std::size_t N>
 class FixedQueue {
@@ -45,4 +45,4 @@ class FixedQueue {
   std::uint32_t dropped_ = 0;
 };
 
-}  // namespace tumblesight::hal::dds
+}  // namespace tumblesight::hal
