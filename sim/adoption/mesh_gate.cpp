@@ -18,7 +18,8 @@ bool is_likely_mistake(const Finding& finding, const MeshInspection& found) {
   if (finding.severity == Severity::kNote) return false;
   if (finding.key == "origin")
     return found.centred_radius_m < (1.0 - kLargestLossByOrigin) * found.core_radius_m;
-  return finding.key == "unit" || finding.key == "up" || finding.key == "strays";
+  return finding.key == "unit" || finding.key == "up" || finding.key == "strays" || finding.key == "marker" ||
+         finding.key == "hidden";
 }
 
 std::string how_to_accept(const std::string& key) {

@@ -18,6 +18,7 @@
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 #include "sim/world/scenario/condition.hpp"
+#include "sim/world/target/gltf_surface.hpp"
 #include "sim/world/target/mesh_file.hpp"
 #include "sim/world/target/targets.hpp"
 
@@ -73,6 +74,8 @@ int show_mesh(const MeshCommandArguments& arguments, const std::string& command_
   report.generated = local_time_text();
   const TriangleMesh mesh = read_mesh_file(arguments.file, report.options);
   report.found = inspect(mesh, report.options);
+  const std::string remark = gltf_remark(arguments.file);
+  if (!remark.empty()) report.found.findings.push_back({"file", Severity::kNote, remark, ""});
   fmt::print("{}", mesh_text(report, six_views(mesh, kSketchPixels)));
   if (!arguments.html.empty()) {
     write_file(arguments.html, mesh_page(report, six_views(mesh, kPagePixels)));

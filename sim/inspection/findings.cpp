@@ -27,6 +27,10 @@ std::string length_text(double length_m) {
   return length_m < 100.0 ? fmt::format("{:.3g} m", length_m) : fmt::format("{:.0f} m", length_m);
 }
 
+std::string area_text(double area_m2) {
+  return fmt::format("{:.4g} m2", area_m2);
+}
+
 double percent(double part, double whole) {
   return 100.0 * part / whole;
 }
@@ -50,6 +54,7 @@ class Findings {
     origin();
     thin_reach();
     few_triangles();
+    hiding();
     marker();
     notes();
     std::stable_sort(list_.begin(), list_.end(),
@@ -234,8 +239,37 @@ class Findings {
         "Export the surface with its details.");
   }
 
+  void hiding() {
+    if (!found_.hiding) return;
+    const HidingPart& part = *found_.hiding;
+    const std::string triangles = counted(part.triangles.size(), "triangle");
+    if (part.is_plane) {
+      add("hidden", Severity::kWarning,
+          fmt::format(
+              "A plane that is {} wide ({}) lies below all the rest, as the ground of a scene: the sensor "
+              "would see it, and nothing of the spacecraft from the other side.",
+              length_text(part.width_m), triangles),
+          "Remove it in the modelling tool, if it is not of the spacecraft.");
+      return;
+    }
+    add(part.is_marker ? "marker" : "hidden", Severity::kWarning,
+        fmt::format(
+            "{} ({}, {} wide) stands around {:.0f} % of the surface of all other parts ({} of {}) and hides "
+            "it: the sensor would see this part in place of the spacecraft.",
+            part.is_marker ? "A cube about the origin, as exporters add it to mark the origin,"
+                           : "A closed part",
+            triangles, length_text(part.width_m), 100.0 * part.hidden, area_text(part.hidden * rest_m2()),
+            area_text(rest_m2())),
+        part.is_marker
+            ? "--fix removes it."
+            : "Remove it in the modelling tool, if it is a marker or a backdrop and not the hull of "
+              "the spacecraft.");
+  }
+
+  double rest_m2() const { return found_.hiding->rest_m2; }
+
   void marker() {
-    if (!found_.marker) return;
+    if (!found_.marker || (found_.hiding && found_.hiding->is_marker)) return;
     add("marker", Severity::kNote,
         fmt::format("A cube with a side of {} stands about the origin. Some exporters add such a cube "
                     "to mark it.",

@@ -111,6 +111,7 @@ MeshInspection inspect(const TriangleMesh& mesh, const MeshFileOptions& options)
   for (const SeparatePart& part : found.parts) found.area_m2 += part.area_m2;
   found.strays = strays_of(found.parts);
   found.marker = marker_cube(mesh);
+  found.hiding = hiding_part(mesh, found.marker);
   const TriangleMesh core = without(mesh, triangles_of_strays(found));
   found.core_radius_m = core.radius_m();
   look_from_outside(core, found);

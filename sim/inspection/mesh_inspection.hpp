@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/inspection/hiding_part.hpp"
 #include "sim/inspection/likely_unit.hpp"
 #include "sim/inspection/mesh_edges.hpp"
 #include "sim/inspection/mesh_symmetry.hpp"
@@ -49,6 +50,7 @@ struct MeshInspection {
   std::vector<SeparatePart> parts;
   std::vector<std::size_t> strays;  // numbers of parts
   std::optional<MarkerCube> marker;
+  std::optional<HidingPart> hiding;
   SurfaceSymmetry symmetry;  // of the outer surface, without strays
   Roundness roundness = Roundness::kNone;
   Eigen::Vector3d round_axis_trf = Eigen::Vector3d::UnitZ();

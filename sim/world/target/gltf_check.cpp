@@ -1,81 +1,19 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
-#include <set>
-#include <stdexcept>
+#include <string>
 #include <vector>
 
-#include "sim/terminal/text.hpp"
+#include "sim/world/target/gltf_data.hpp"
+#include "sim/world/target/gltf_file.hpp"
+#include "sim/world/target/gltf_nodes.hpp"
 #include "sim/world/target/mesh_file.hpp"
 
 namespace tumblesight::sim {
+namespace gltf {
 namespace {
 
-using nlohmann::json;
-
-constexpr int kMaxDepth = 32;
 constexpr std::uint64_t kMaxElements = 100'000'000;
-constexpr std::size_t kGlbHeaderBytes = 20;  // 12 of the file and 8 of its first chunk
-
-[[noreturn]] void fail(const std::string& why) {
-  throw std::runtime_error("cannot be read: " + why + "; export it again");
-}
-
-// Refuses duplicate keys, which parsers interpret differently, and deep nesting, which exhausts the stack.
-class Strict {
- public:
-  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
-    if (depth > kMaxDepth) fail("its JSON is nested more than " + std::to_string(kMaxDepth) + " deep");
-    if (event == json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == json::parse_event_t::object_end) keys_.pop_back();
-    if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second) {
-      fail("its JSON holds " + shortened(parsed.dump()) + " twice in one object");
-    }
-    return true;
-  }
-
- private:
-  std::vector<std::set<std::string>> keys_;
-};
-
-json parse(const std::string& text) {
-  Strict strict;
-  try {
-    return json::parse(text, [&strict](int depth, json::parse_event_t event, const json& parsed) {
-      return strict(depth, event, parsed);
-    });
-  } catch (const json::exception&) {
-    fail("its JSON is damaged");
-  }
-}
-
-const json& member(const json& object, const char* key, const std::string& where) {
-  if (!object.is_object()) fail(where + " is not an object");
-  const auto found = object.find(key);
-  if (found == object.end()) fail(where + " has no \"" + key + "\"");
-  return *found;
-}
-
-// An optional array; empty if absent.
-const json& list(const json& object, const char* key) {
-  static const json kNone = json::array();
-  const auto found = object.find(key);
-  if (found == object.end()) return kNone;
-  if (!found->is_array()) fail(std::string("\"") + key + "\" is not a list");
-  return *found;
-}
-
-std::uint64_t whole(const json& value, std::uint64_t limit, const std::string& where) {
-  if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= limit) {
-    fail(where + " is " + shortened(value.dump(-1, ' ', true, json::error_handler_t::replace)) +
-         ", not a whole number below " + std::to_string(limit));
-  }
-  return value.get<std::uint64_t>();
-}
 
 using Counts = std::vector<std::uint64_t>;  // elements per accessor
 
@@ -92,61 +30,138 @@ std::uint64_t count_of(const json& accessor, const Counts& counts, const std::st
   return counts[whole(accessor, counts.size(), where)];
 }
 
-// What changes the surface and is not read. Other extensions concern materials, lights or animations.
+// What changes the surface and is not read.
 struct UnreadExtension {
   const char* name;
   const char* remedy;
 };
 constexpr UnreadExtension kUnread[] = {
     {"EXT_meshopt_compression", "is compressed with meshoptimizer; export it without compression"},
+    {"KHR_meshopt_compression", "is compressed with meshoptimizer; export it without compression"},
     {"EXT_mesh_gpu_instancing", "repeats its parts by instancing; export it with every part written out"},
 };
 
+// What a file may require and is still read as it is meant: its surface does not depend on them. Positions in
+// whole numbers (KHR_mesh_quantization) are refused where they are.
+constexpr const char* kReadPrefixes[] = {"KHR_draco_mesh_compression",
+                                         "KHR_mesh_quantization",
+                                         "KHR_materials_",
+                                         "KHR_texture_",
+                                         "EXT_texture_",
+                                         "MSFT_texture_dds",
+                                         "KHR_lights_",
+                                         "EXT_lights_",
+                                         "KHR_xmp",
+                                         "KHR_animation_pointer"};
+
+bool is_read(const std::string& extension) {
+  return std::any_of(std::begin(kReadPrefixes), std::end(kReadPrefixes),
+                     [&](const char* prefix) { return extension.rfind(prefix, 0) == 0; });
+}
+
 void check_extensions(const json& file) {
-  for (const json& used : list(file, "extensionsUsed")) {
-    for (const auto& [name, remedy] : kUnread) {
-      if (used == name)
-        throw std::runtime_error(std::string("uses ") + name + ", which is not read: it " + remedy);
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    for (const json& used : list(file, key)) {
+      for (const auto& [name, remedy] : kUnread) {
+        if (used == name) refuse(std::string("uses ") + name + ", which is not read: it " + remedy);
+      }
     }
+  }
+  for (const json& required : list(file, "extensionsRequired")) {
+    if (!required.is_string())
+      fail("\"extensionsRequired\" holds " + shown(required) + ", which is not a name");
+    if (is_read(required.get_ref<const std::string&>())) continue;
+    refuse(
+        "requires the extension " + shown_text(required.get_ref<const std::string&>()) +
+        ", which is not read: its surface could be another one without it; export it without this extension. "
+        "Read are KHR_draco_mesh_compression and extensions for materials, textures and lights");
   }
 }
 
-// Assimp takes other numbers for single precision.
-void check_positions(const json& file, const json& accessor) {
-  constexpr unsigned kFloat = 5126;
-  const auto& accessors = list(file, "accessors");
-  const json& positions = accessors[accessor.get<std::size_t>()];
-  if (positions.value("componentType", json(kFloat)) == kFloat) return;
-  throw std::runtime_error(
+const json& accessor_at(const json& file, const json& number) {
+  return list(file, "accessors")[number.get<std::size_t>()];
+}
+
+void check_type(const json& accessor, const char* expected, const std::string& where) {
+  const json& type = member(accessor, "type", where);
+  if (type != expected) fail(where + " is " + shown(type) + ", not " + expected);
+}
+
+std::uint64_t component_type(const json& accessor, const std::string& where) {
+  const std::uint64_t type =
+      whole(member(accessor, "componentType", where), kMaxElements, where + "'s componentType");
+  if (bytes_of(type) == 0)
+    fail(where + "'s componentType is " + std::to_string(type) + ", which glTF does not have");
+  return type;
+}
+
+// Of a primitive or of one of its morph targets.
+void check_positions(const json& accessor, const std::string& where) {
+  check_type(accessor, "VEC3", where);
+  if (component_type(accessor, where) == kFloat) return;
+  refuse(
       "has positions in whole numbers (KHR_mesh_quantization), which are not read; export it without "
       "quantization");
+}
+
+void check_indices(const json& accessor, const std::string& where) {
+  check_type(accessor, "SCALAR", where);
+  const std::uint64_t type = component_type(accessor, where);
+  if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt) {
+    fail(where + "'s componentType is " + std::to_string(type) + ", not an unsigned whole number's");
+  }
 }
 
 // By primitive mode: points, lines, line loop, line strip, triangles, triangle strip, triangle fan.
 constexpr std::array<std::uint64_t, 7> kMinCorners{1, 2, 2, 2, 3, 3, 3};
 
+void check_corners(const json& primitive, std::uint64_t corners, const std::string& where) {
+  const std::uint64_t mode =
+      whole(primitive.value("mode", json(kTriangles)), kMinCorners.size(), where + "'s mode");
+  if (corners < kMinCorners[mode]) {
+    fail(where + " of mode " + std::to_string(mode) + " has " + std::to_string(corners) +
+         " corners, fewer than " + std::to_string(kMinCorners[mode]));
+  }
+  if (mode == kTriangles && corners % 3 != 0) {
+    fail(where + " has " + std::to_string(corners) + " corners, which are no whole number of triangles");
+  }
+}
+
+void check_targets(const json& file, const json& primitive, std::uint64_t vertices, const Counts& counts,
+                   const std::string& where) {
+  std::size_t number = 0;
+  for (const json& target : list(primitive, "targets")) {
+    const std::string name = where + "'s morph target " + std::to_string(number++);
+    const json& moved = optional(target, "POSITION");
+    if (moved.is_null()) continue;
+    if (count_of(moved, counts, name) != vertices) fail(name + " has another count than its vertices");
+    check_positions(accessor_at(file, moved), name);
+  }
+}
+
 void check_primitive(const json& file, const json& primitive, const Counts& counts,
                      const std::string& where) {
   const json& attributes = member(primitive, "attributes", where);
   const json& positions = member(attributes, "POSITION", where + "'s attributes");
-  std::uint64_t elements = count_of(positions, counts, where + "'s POSITION");
-  check_positions(file, positions);
+  const std::uint64_t vertices = count_of(positions, counts, where + "'s POSITION");
+  check_positions(accessor_at(file, positions), where + "'s POSITION");
   for (const auto& [name, accessor] : attributes.items()) {
-    if (count_of(accessor, counts, where + "'s attribute") != elements) {
+    if (count_of(accessor, counts, where + "'s attribute") != vertices) {
       fail(where + " has attributes of different counts");
     }
   }
+  std::uint64_t corners = vertices;
   const auto indices = primitive.find("indices");
-  if (indices != primitive.end()) elements = count_of(*indices, counts, where + "'s indices");
-  const std::uint64_t mode = whole(primitive.value("mode", json(4U)), kMinCorners.size(), where + "'s mode");
-  if (elements < kMinCorners[mode]) {
-    fail(where + " of mode " + std::to_string(mode) + " has " + std::to_string(elements) +
-         " corners, fewer than " + std::to_string(kMinCorners[mode]));
+  if (indices != primitive.end()) {
+    corners = count_of(*indices, counts, where + "'s indices");
+    check_indices(accessor_at(file, *indices), where + "'s indices");
   }
+  check_corners(primitive, corners, where);
+  (void)whole_or(primitive, "material", 0, list(file, "materials").size(), where);
+  check_targets(file, primitive, vertices, counts, where);
 }
 
-void check_json(const std::string& text) {
-  const json file = parse(text);
+void check_scene(const json& file) {
   const json& version = member(member(file, "asset", "its JSON"), "version", "its asset");
   if (!version.is_string() || version.get_ref<const std::string&>().rfind("2.", 0) != 0)
     fail("it is not glTF 2");
@@ -161,36 +176,18 @@ void check_json(const std::string& text) {
       check_primitive(file, primitive, counts, where + "'s primitive " + std::to_string(number++));
     }
   }
+  check_nodes(file);
 }
 
 }  // namespace
+}  // namespace gltf
 
 void check_gltf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos || text[first] != '{') fail("it does not begin with {, as a glTF file does");
-  check_json(text);
+  gltf::guarded([&] { gltf::check_scene(gltf::read_gltf(path).scene); });
 }
 
 void check_glb(const std::string& path) {
-  std::array<std::uint8_t, kGlbHeaderBytes> header{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(header.data()), header.size());
-  if (!file.good() || !std::equal(header.begin(), header.begin() + 4, "glTF")) {
-    fail("it does not begin as a GLB file does");
-  }
-  const auto u32 = [&header](std::size_t at) {
-    return std::uint32_t{header[at]} | std::uint32_t{header[at + 1]} << 8 |
-           std::uint32_t{header[at + 2]} << 16 | std::uint32_t{header[at + 3]} << 24;
-  };
-  const std::uintmax_t size = std::filesystem::file_size(path);
-  if (u32(8) > size || u32(12) > size - header.size()) fail("its parts are larger than the file");
-  if (!std::equal(header.begin() + 16, header.end(), "JSON")) fail("its first part is not JSON");
-  std::string text(u32(12), '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.erase(text.find_last_not_of('\0') + 1);  // padding of some exporters
-  check_json(text);
+  gltf::guarded([&] { gltf::check_scene(gltf::read_glb(path).scene); });
 }
 
 }  // namespace tumblesight::sim

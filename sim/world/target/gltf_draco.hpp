@@ -1,17 +1,27 @@
-// glTF files whose meshes are compressed with Draco (extension KHR_draco_mesh_compression), as most public
+// Parts of glTF files that are compressed with Draco (extension KHR_draco_mesh_compression), as most public
 // models of spacecraft are. Assimp reads them in some builds only, and none with more than 65,536 vertices in
 // a part.
 #pragma once
 
-#include <string>
+#include <cstdint>
+#include <vector>
 
-namespace tumblesight::sim {
+#include "sim/world/target/gltf_data.hpp"
 
-// The surface of a compressed .gltf or .glb file as a GLB file without compression: positions, triangles,
-// nodes, names of materials. Empty if the file is of another format or holds no compressed mesh.
-//
-// The file has passed check_gltf() or check_glb(). Throws std::runtime_error that says what is wrong and what
-// to do, without the name of the file.
-std::string without_draco(const std::string& path);
+namespace tumblesight::sim::gltf {
 
-}  // namespace tumblesight::sim
+// The extension's object of a primitive; null if the primitive is not compressed.
+const json& draco_of(const json& primitive);
+
+struct DracoPart {
+  std::vector<float> positions;        // three per vertex
+  std::vector<std::uint32_t> corners;  // three per triangle
+};
+
+// Throws std::runtime_error that says what is wrong and what to do, without the name of the file.
+DracoPart decode_draco(const json& extension, const Data& data);
+
+// One of its other attributes, such as "JOINTS_0": four numbers per vertex. Empty if there is none.
+std::vector<float> draco_attribute(const json& extension, const Data& data, const char* name);
+
+}  // namespace tumblesight::sim::gltf

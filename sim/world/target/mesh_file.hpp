@@ -36,7 +36,7 @@ inline constexpr std::size_t kMaxTriangles = 5'000'000;
 // The triangles of the file in the TRF, in metres, with node transforms applied, equal vertices joined and
 // meshes decompressed (Draco). The origin of the file becomes the origin of the TRF, unless `origin_trf_m`
 // moves it. Left out are triangles without area, which TriangleMesh::left_out counts, and what Assimp skips:
-// points, lines, glTF faces with an index out of range. Nothing else is repaired.
+// points and lines. Nothing else is repaired.
 //
 // Throws std::runtime_error that names the file, the fault, the value, the limit and the remedy for: a scale
 // that is not positive and finite; a file that is missing, unreadable, or not of the format that its
@@ -64,10 +64,9 @@ std::string decoded_uri(const std::string& uri);
 // "y" or "z"; throws std::invalid_argument otherwise.
 MeshUp mesh_up_from(const std::string& name);
 
-// Checks of glTF 2.0 files before Assimp reads them (gltf_check.cpp). Assimp trusts their counts: it turns a
-// strip without points into four billion triangles and reserves as much memory as a header claims. They check
-// the JSON of the file (in a GLB file: its first chunk) and throw std::runtime_error that says what is wrong,
-// without the name of the file.
+// Checks of the structure of glTF 2.0 files (gltf_check.cpp): of a GLB file's parts, of the JSON's depth, of
+// extensions, types and numbers, and of the tree of nodes. They throw std::runtime_error that says what is
+// wrong, without the name of the file. gltf_surface() checks the data.
 void check_gltf(const std::string& path);
 void check_glb(const std::string& path);
 

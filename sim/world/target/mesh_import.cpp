@@ -11,7 +11,7 @@
 #include <cctype>
 #include <cstdint>
 
-#include "sim/world/target/gltf_draco.hpp"
+#include "sim/world/target/gltf_surface.hpp"
 #endif
 
 namespace tumblesight::sim {
@@ -67,13 +67,17 @@ TriangleMesh import_mesh(const std::string& path, const MeshFileOptions& options
   importer.SetPropertyBool(AI_CONFIG_PP_PTV_KEEP_HIERARCHY, false);
   const unsigned steps = aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_PreTransformVertices |
                          aiProcess_SortByPType | aiProcess_ValidateDataStructure;
-  const std::string decoded = without_draco(path);  // empty unless the file is compressed
+  const std::string surface = is_gltf_name(path) ? gltf_surface(path) : std::string();
   const aiScene* scene = nullptr;
   try {
-    scene = decoded.empty() ? importer.ReadFile(path, steps)
-                            : importer.ReadFileFromMemory(decoded.data(), decoded.size(), steps, "glb");
+    scene = surface.empty() ? importer.ReadFile(path, steps)
+                            : importer.ReadFileFromMemory(surface.data(), surface.size(), steps, "glb");
   } catch (const std::exception& error) {  // for instance out of memory
     throw std::runtime_error(std::string("cannot be read: ") + error.what());
+  }
+  // Assimp's own words would be about the GLB file that it was given.
+  if (!surface.empty() && scene == nullptr) {
+    throw std::runtime_error("cannot be read: its parts cannot be put together; export it again");
   }
   if (scene == nullptr || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0U) {
     throw std::runtime_error(std::string("cannot be read as STL, OBJ, glTF or GLB: ") +

@@ -2,9 +2,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "sim/world/target/gltf_file.hpp"
 #include "sim/world/target/mesh_file.hpp"
 
 namespace tumblesight::sim {
@@ -42,10 +42,13 @@ std::vector<std::string> libraries_of_obj(const fs::path& path) {
 }
 
 std::vector<std::string> parts_of_gltf(const fs::path& path) {
-  std::ifstream file(path);
-  const auto json = nlohmann::json::parse(file, nullptr, false);
   std::vector<std::string> files;
-  if (!json.is_object()) return files;
+  gltf::json json;
+  try {
+    json = gltf::read_gltf(path.string()).scene;
+  } catch (const std::exception&) {  // the reader of the surface says what is wrong
+    return files;
+  }
   for (const char* list : {"buffers", "images"}) {
     const auto found = json.find(list);
     if (found == json.end() || !found->is_array()) continue;
@@ -53,7 +56,7 @@ std::vector<std::string> parts_of_gltf(const fs::path& path) {
       const auto uri = part.is_object() ? part.find("uri") : part.end();
       if (uri == part.end() || !uri->is_string()) continue;
       const auto text = uri->get<std::string>();
-      if (text.rfind("data:", 0) != 0) files.push_back((path.parent_path() / decoded_uri(text)).string());
+      if (text.rfind("data:", 0) != 0) files.push_back(gltf::side_file(path.parent_path(), text).string());
     }
   }
   return files;

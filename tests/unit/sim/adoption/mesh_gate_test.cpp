@@ -17,7 +17,7 @@ MeshInspection found_with(const std::string& key, Severity severity) {
 TEST(MeshGate, FaultsStopAndLikelyMistakesSpeakAgainstGo) {
   const Mission mission;
   EXPECT_EQ(mesh_gate(mission, found_with("sphere", Severity::kFault)).faults.size(), 1U);
-  for (const char* key : {"unit", "up", "strays"}) {
+  for (const char* key : {"unit", "up", "strays", "marker", "hidden"}) {
     const MeshGate gate = mesh_gate(mission, found_with(key, Severity::kWarning));
     ASSERT_EQ(gate.doubts.size(), 1U) << key;
     EXPECT_NE(gate.doubts.front().find(std::string("accept = [\"") + key + "\"]"), std::string::npos);

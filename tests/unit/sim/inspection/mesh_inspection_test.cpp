@@ -38,11 +38,11 @@ TriangleMesh drum() {
   return mesh;
 }
 
-TriangleMesh ball() {
+TriangleMesh ball_of(float radius) {
   Outline profile;
   for (int i = 0; i <= 32; ++i) {
     const float angle = 3.14159265F * static_cast<float>(i) / 32.0F;
-    profile.push_back({i == 0 || i == 32 ? 0.0F : 2.0F * std::sin(angle), -2.0F * std::cos(angle)});
+    profile.push_back({i == 0 || i == 32 ? 0.0F : radius * std::sin(angle), -radius * std::cos(angle)});
   }
   return revolve(profile, 64);
 }
@@ -115,6 +115,22 @@ std::vector<Case> cases() {
        "marker",
        Severity::kNote,
        {"side of 1 m", "--fix"}},
+      {"a root cube around the body",
+       with(sound, box({2.0F, 2.0F, 2.0F})),
+       "marker",
+       Severity::kWarning,
+       {"2 m wide", "% of the surface of all other parts", "in place of the spacecraft", "--fix"}},
+      {"a box around everything",
+       with(sound, box_at(0.2F, 0.0F, 0.1F, {4.6F, 3.0F, 3.0F})),
+       "hidden",
+       Severity::kWarning,
+       {"100 % of the surface", "backdrop"}},
+      {"a sky dome", with(sound, ball_of(8.0F)), "hidden", Severity::kWarning, {"16 m wide", "100 %"}},
+      {"a ground plane",
+       with(sound, box_between({-4.0F, -4.0F, -1.0F}, {4.0F, 4.0F, -0.999F})),
+       "hidden",
+       Severity::kWarning,
+       {"8 m wide", "ground"}},
       {"doubled", doubled(sound), "repeated", Severity::kNote, {"both sides"}},
       {"flipped", flipped(sound), "turned", Severity::kNote, {"both sides"}},
       {"half open", half_open(sound), "open", Severity::kNote, {"not closed"}},
@@ -130,7 +146,7 @@ std::vector<Case> cases() {
        Severity::kWarning,
        {"1/4 of a turn about z", "mm on average"}},
       {"a drum", drum(), "revolution", Severity::kFault, {"about z"}},
-      {"a ball", ball(), "sphere", Severity::kFault, {"no network"}},
+      {"a ball", ball_of(2.0F), "sphere", Severity::kFault, {"no network"}},
       {"a whip antenna",
        with(sound, tube({0.0F, 0.0F, 0.5F}, {0.0F, 0.0F, 9.0F}, 0.01F, 0.01F, 8)),
        "reach",

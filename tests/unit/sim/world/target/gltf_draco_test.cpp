@@ -65,11 +65,6 @@ class GltfDraco : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(GltfDraco, OtherFilesAreLeftAsTheyAre) {
-  EXPECT_EQ(without_draco(write("a.stl", "solid")), "");
-  EXPECT_EQ(without_draco(write("a.gltf", R"({"asset":{"version":"2.0"}})")), "");
-}
-
 #ifndef TUMBLESIGHT_HAS_DRACO
 
 TEST_F(GltfDraco, WithoutADecoderTheErrorSaysWhatToInstall) {

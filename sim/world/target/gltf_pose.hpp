@@ -1,0 +1,32 @@
+// The vertices of a part as its morph targets and its skin place them.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sim/world/target/gltf_data.hpp"
+#include "sim/world/target/gltf_nodes.hpp"
+
+namespace tumblesight::sim::gltf {
+
+// A primitive of a mesh at a node. `where` names it in messages.
+struct Part {
+  const json& mesh;
+  const json& primitive;
+  std::string where;
+};
+
+// The weights of a node's morph targets: its own, or those of its mesh. All zero: none.
+std::vector<double> morph_weights(const json& node, const json& mesh, const std::string& where);
+
+// Adds the targets to the positions, three numbers per vertex.
+void morph(const Part& part, const std::vector<double>& weights, const Data& data,
+           std::vector<float>& positions);
+
+// Puts the positions where the joints have them, in the axes of the scene. The placement of the node itself
+// does not count for a part with a skin, by the standard.
+void apply_skin(const json& scene, std::size_t node, const Part& part, const Data& data,
+                std::vector<float>& positions);
+
+}  // namespace tumblesight::sim::gltf
