@@ -21,35 +21,57 @@ namespace fs = std::filesystem;
 constexpr std::size_t kHeaderBytes = 12;  // of a GLB file
 constexpr std::size_t kChunkBytes = 8;    // of the header of a chunk
 
-// Refuses duplicate keys, which parsers interpret differently, and deep nesting, which exhausts the stack.
-class Strict {
+// Refuses duplicate keys, which parsers interpret differently, and deep nesting, which exhausts the stack. A
+// pass of its own: the library's parser with a callback looks through a list again after each of its
+// elements.
+class Strict : public nlohmann::json_sax<json> {
  public:
-  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
-    if (depth > kMaxJsonDepth)
-      fail("its JSON is nested more than " + std::to_string(kMaxJsonDepth) + " deep");
-    if (event == json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == json::parse_event_t::object_end) keys_.pop_back();
-    if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second) {
-      fail("its JSON holds " + shown(parsed) + " twice in one object");
-    }
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override {
+    keys_.emplace_back();
+    return deeper();
+  }
+  bool end_object() override {
+    keys_.pop_back();
+    --depth_;
     return true;
+  }
+  bool start_array(std::size_t) override { return deeper(); }
+  bool end_array() override {
+    --depth_;
+    return true;
+  }
+  bool key(string_t& name) override {
+    if (!keys_.back().insert(name).second) fail("its JSON holds " + shown(name) + " twice in one object");
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override {
+    fail("its JSON is damaged");
   }
 
  private:
+  bool deeper() {
+    if (++depth_ > kMaxJsonDepth + 1)
+      fail("its JSON is nested more than " + std::to_string(kMaxJsonDepth) + " deep");
+    return true;
+  }
+
+  int depth_ = 0;
   std::vector<std::set<std::string>> keys_;
 };
 
 json parse(const std::string& text) {
   Strict strict;
-  try {
-    json parsed = json::parse(text, [&strict](int depth, json::parse_event_t event, const json& value) {
-      return strict(depth, event, value);
-    });
-    if (!parsed.is_object()) fail("its JSON is not an object");
-    return parsed;
-  } catch (const json::exception&) {
-    fail("its JSON is damaged");
-  }
+  (void)json::sax_parse(text, &strict);
+  json parsed = json::parse(text, nullptr, false);
+  if (!parsed.is_object()) fail("its JSON is damaged");
+  return parsed;
 }
 
 void check_size(std::uint64_t bytes) {
