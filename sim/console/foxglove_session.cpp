@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "sim/console/little_endian.hpp"
+#include "sim/json/json_text.hpp"
 #include "sim/sil/foxglove_messages.hpp"
 #include "sim/sil/sil_run.hpp"
 
@@ -105,7 +106,12 @@ std::vector<Outgoing> FoxgloveSession::begin() {
 
 std::vector<Outgoing> FoxgloveSession::receive(std::string_view text) {
   if (text.size() > kMostBytes) return {status(kWarning, "the message has more than 64 KiB")};
-  const Message message = Message::parse(text, nullptr, false);
+  Message message;
+  try {
+    message = parse_json(text, {kMostDepth});
+  } catch (const std::invalid_argument& refusal) {
+    return {status(kWarning, std::string("the message is not taken: ") + refusal.what())};
+  }
   if (!message.is_object() || !message.contains("op") || !message.at("op").is_string())
     return {status(kWarning, "the message is no JSON object with an op: this server only sends")};
   const std::string op = message.at("op").get<std::string>();

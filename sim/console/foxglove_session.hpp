@@ -17,6 +17,7 @@ namespace tumblesight::sim {
 class FoxgloveSession {
  public:
   static constexpr std::size_t kMostBytes = 65'536;      // of a message of the client
+  static constexpr std::size_t kMostDepth = 16;          // of lists and objects in it
   static constexpr std::size_t kMostSubscriptions = 64;  // in one message; the client has one per channel
   static constexpr std::uint64_t kStepsPerPoll = 64;     // what a slow client has missed comes in parts
 

@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "hal/messages/command_packet.hpp"
+#include "sim/json/json_text.hpp"
 #include "sim/sil/failure.hpp"
 #include "sim/sil/telecommand_table.hpp"
 
@@ -25,6 +26,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kMostWaiting = 8;  // connections
+constexpr std::size_t kMostDepth = 4;
 constexpr const char* kNotAnswered =
     "the run has not taken the request in time, and will not carry it out: it is paused, or its steps take "
     "longer than that";
@@ -49,6 +51,16 @@ bool is_own_user(int socket) {
   ucred peer{};
   socklen_t size = sizeof peer;
   return getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == geteuid();
+}
+
+// False: the run has ended.
+bool is_listening(const sockaddr_un& address) {
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (socket < 0) return false;
+  const bool is_taken = connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
+                        errno == EAGAIN;  // as many wait as can
+  close(socket);
+  return is_taken;
 }
 
 // One that does not fit is beyond every limit here.
@@ -131,7 +143,7 @@ RunRequests RunControl::take(std::uint32_t step, FrameFaults& frames, StepSource
 
 // Throws std::invalid_argument or a JSON exception.
 void RunControl::take_request(const std::string& line, Step& step) {
-  const Json request = Json::parse(line);
+  const Json request = parse_json(line, {kMostDepth});
   if (request.contains("fault")) {
     const InjectedFault fault = fault_of(request);
     if (step.requests.faults.size() >= kMostFaults)
@@ -188,6 +200,9 @@ bool RunControl::serve(Client& client, Step& step) {
 }
 
 std::string ask_run(std::uint32_t domain, const std::string& request, int timeout_ms) {
+  if (request.size() >= RunControl::kMostBytes)
+    throw std::invalid_argument("the request has " + std::to_string(request.size()) +
+                                " bytes; a run takes at most " + std::to_string(RunControl::kMostBytes - 1));
   sockaddr_un address;
   const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   struct Closer {
@@ -211,7 +226,10 @@ std::string ask_run(std::uint32_t domain, const std::string& request, int timeou
     char buffer[1024];
     if (poll(&readable, 1, timeout_ms) <= 0) throw SilFailure(kNotAnswered);
     const ssize_t count = read(socket, buffer, sizeof buffer);
-    if (count <= 0) throw SilFailure("the run ended before it answered");
+    if (count <= 0)
+      throw SilFailure(is_listening(address)
+                           ? "the run closed the connection without an answer: send it again"
+                           : "the run ended before it answered");
     answer.append(buffer, static_cast<std::size_t>(count));
   }
   answer.pop_back();

@@ -64,7 +64,7 @@ class RunControl {
 };
 
 // Sends a request to the run in a domain and waits for its answer, at most `timeout_ms`. Throws SilFailure
-// that says why there is none.
+// that says why there is none, and std::invalid_argument for a request that no run would read.
 std::string ask_run(std::uint32_t domain, const std::string& request, int timeout_ms);
 
 }  // namespace tumblesight::sim

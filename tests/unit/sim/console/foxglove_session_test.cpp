@@ -74,6 +74,17 @@ TEST_F(Foxglove, BeginsWithTheServerAndItsChannels) {
   EXPECT_EQ(topics, (std::set<std::string>{"/lidar/points", "/tf", "/events", "/figures"}));
 }
 
+TEST_F(Foxglove, ADeepMessageIsRefused) {
+  for (const std::size_t depth : {std::size_t{1'000}, std::size_t{30'000}}) {
+    std::string objects;
+    for (std::size_t i = 0; i < depth && objects.size() < 60'000; ++i) objects += "{\"op\":";
+    for (const std::string& message :
+         {std::string(depth, '[') + std::string(depth, ']'), std::string(depth, '['), objects,
+          R"({"op":"subscribe","subscriptions":)" + std::string(depth, '[') + std::string(depth, ']') + "}"})
+      EXPECT_EQ(warning_of(message), "the message is not taken: its JSON is nested more than 16 deep");
+  }
+}
+
 TEST_F(Foxglove, AMessageHasItsSubscriptionAndTheTimeOfItsStep) {
   run_.add_step();
   EXPECT_TRUE(session_.poll().empty());
