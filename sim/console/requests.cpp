@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -11,24 +12,43 @@
 #include "sim/console/little_endian.hpp"
 #include "sim/console/page_files.hpp"
 #include "sim/console/step_json.hpp"
+#include "sim/json/json_text.hpp"
 #include "sim/sil/fault_table.hpp"
 #include "sim/sil/function_names.hpp"
 #include "sim/sil/telecommand_table.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 constexpr const char* kBytes = "application/octet-stream";
+constexpr std::size_t kMostDepth = 8;
 constexpr const char* kNoToken =
     "this address lacks the token: open the whole address that tumblesight console has printed";
 
 Answer text(int status, const std::string& what) {
-  return {status, "text/plain; charset=utf-8", what + "\n"};
+  return {status, "text/plain; charset=utf-8", what + "\n", ""};
+}
+
+Answer wrong_method(const Request& request, const char* allowed) {
+  Answer answer = text(405, request.path + " takes " + allowed + ", not " + shortened(request.method));
+  answer.allow = allowed;
+  return answer;
+}
+
+// A name that is mistyped would otherwise have no effect, and nobody would be told.
+void require_only(const Json& wanted, std::initializer_list<const char*> names) {
+  for (const auto& [name, value] : wanted.items()) {
+    const auto is_it = [&name = name](const char* known) { return name == known; };
+    if (std::none_of(names.begin(), names.end(), is_it))
+      throw std::invalid_argument("the request has a field '" + shortened(name) +
+                                  "', which is not known here");
+  }
 }
 
 // Names come from files that anyone may have written, so that they need not be UTF-8.
 Answer json_answer(const Json& json) {
-  return {200, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+  return {200, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace), ""};
 }
 
 std::optional<std::uint64_t> number_of(const std::string& query, const std::string& name) {
@@ -155,18 +175,21 @@ std::string Requests::state_text() const {
 Answer Requests::answer(const Request& request, int port) const {
   const std::string refusal = refusal_of(request, port);
   if (!refusal.empty()) return text(403, refusal);
+  const bool is_sent_to = request.path == "/api/command" || request.path == "/api/fault";
+  const bool is_read = request.method == "GET" || request.method == "HEAD";
+  if (is_sent_to && request.method != "POST") return wrong_method(request, "POST");
   try {
-    return request.method == "POST" ? post_answer(request) : get_answer(request);
+    if (is_sent_to) return post_answer(request);
+    Answer answer = get_answer(request);
+    return is_read || answer.status == 404 ? answer : wrong_method(request, "GET, HEAD");
   } catch (const std::exception& error) {  // a recording that is damaged
     return text(500, error.what());
   }
 }
 
 Answer Requests::get_answer(const Request& request) const {
-  if (request.method != "GET" && request.method != "HEAD")
-    return text(405, "only GET and POST are answered here");
   if (const PageFile* const file = page_file(request.path))
-    return {200, file->type, std::string(file->content)};
+    return {200, file->type, std::string(file->content), ""};
   if (request.path == "/api/run") return run_answer();
   if (request.path == "/api/mesh") return mesh_answer();
   if (request.path == "/api/commands") return commands_answer();
@@ -188,9 +211,11 @@ Answer Requests::get_answer(const Request& request) const {
 }
 
 Answer Requests::post_answer(const Request& request) const {
-  const Json wanted = Json::parse(request.body, nullptr, false);
-  if (!wanted.is_object()) return text(400, "the request has no JSON object");
+  if (request.body.size() > kMostBody)
+    return text(413, "the request has more than " + std::to_string(kMostBody) + " bytes");
   try {
+    const Json wanted = parse_json<Json>(request.body, {kMostDepth});
+    if (!wanted.is_object()) return text(400, "the request has no JSON object");
     if (request.path == "/api/command") return command_answer(wanted);
     if (request.path == "/api/fault") return fault_answer(wanted);
   } catch (const std::invalid_argument& error) {
@@ -200,30 +225,42 @@ Answer Requests::post_answer(const Request& request) const {
   } catch (const std::runtime_error& error) {
     return text(409, error.what());
   }
-  return text(404, "nothing can be sent to " + request.path);
+  return text(404, "there is no " + request.path + " here");
 }
 
 // {"name": "SET_MODE", "arguments": {"mode": "2"}}, or unchecked {"function": 3, "bytes": "09"}.
 Answer Requests::command_answer(const Json& wanted) const {
   Json request;
   if (wanted.contains("function")) {
+    require_only(wanted, {"function", "bytes"});
     request = {{"function", number_in(wanted, "function")},
                {"arguments", wanted.at("bytes").get<std::string>()}};
   } else {
+    require_only(wanted, {"name", "arguments"});
+    if (!wanted.at("arguments").is_object()) throw std::invalid_argument("arguments must be an object");
     std::map<std::string, std::string> values;
     for (const auto& [name, value] : wanted.at("arguments").items()) values[name] = value.get<std::string>();
     const Telecommand command = telecommand_of(wanted.at("name").get<std::string>(), values);
     request = {{"function", static_cast<int>(command.function)}, {"arguments", hex_of(command.arguments)}};
   }
-  return {200, "application/json", run_.ask(request.dump())};
+  return run_answer_to(request);
 }
 
 // {"fault": "freeze", "steps": 5}, {"fault": "debris", "strength": 1.5, "steps": 5}
 Answer Requests::fault_answer(const Json& wanted) const {
+  require_only(wanted, {"fault", "strength", "steps"});
   // The run checks the numbers.
   Json request{{"fault", wanted.at("fault").get<std::string>()}, {"steps", number_in(wanted, "steps")}};
   if (wanted.contains("strength")) request["strength"] = number_in(wanted, "strength");
-  return {200, "application/json", run_.ask(request.dump())};
+  return run_answer_to(request);
+}
+
+// The run says itself why it has not taken a request.
+Answer Requests::run_answer_to(const Json& request) const {
+  const std::string answer = run_.ask(request.dump());
+  const Json said = parse_json<Json>(answer, {kMostDepth});
+  if (said.contains("error")) return text(409, said.at("error").get<std::string>());
+  return {200, "application/json", answer, ""};
 }
 
 Answer Requests::run_answer() const {
@@ -255,7 +292,7 @@ Answer Requests::step_answer(std::uint64_t step) const {
 Answer Requests::frame_answer(std::uint64_t step) const {
   const auto frame = std::make_unique<gnc::RangeImage>();
   if (!run_.frame(step, *frame)) return no_frame(step);
-  return {200, kBytes, bytes_of(*frame)};
+  return {200, kBytes, bytes_of(*frame), ""};
 }
 
 Answer Requests::depth_answer(std::uint64_t step) const {
@@ -265,14 +302,14 @@ Answer Requests::depth_answer(std::uint64_t step) const {
   if (!drawn) return text(404, "the target's model image is not known: give the console --model FILE");
   std::string depth = drawn->depth(*frame);
   if (depth.empty()) return text(404, "the network sees no target in this frame");
-  return {200, kBytes, std::move(depth)};
+  return {200, kBytes, std::move(depth), ""};
 }
 
 Answer Requests::mesh_answer() const {
   const auto drawn = target();
   if (!drawn) return text(404, "the target's model image is not known: give the console --model FILE");
   if (drawn->mesh().empty()) return text(404, "the model image has no surface of the target");
-  return {200, kBytes, drawn->mesh()};
+  return {200, kBytes, drawn->mesh(), ""};
 }
 
 std::shared_ptr<const ConsoleTarget> Requests::target() const {

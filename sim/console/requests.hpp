@@ -1,6 +1,7 @@
 // The answers of the console to the requests of its page (docs/console.md, section API), without the network.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -15,6 +16,7 @@ struct Answer {
   int status = 200;
   std::string type = "application/json";
   std::string body;
+  std::string allow;  // methods, with status 405
 };
 
 // What a request says of itself. Empty: it does not.
@@ -24,6 +26,7 @@ struct Request {
 
 class Requests {
  public:
+  static constexpr std::size_t kMostBody = 16'384;  // bytes
   // The model image of a target by its name; empty: it is not known.
   using ModelOf = std::function<std::string(const std::string& target)>;
 
@@ -51,6 +54,7 @@ class Requests {
   Answer mesh_answer() const;
   // Of requests that change the run.
   Answer post_answer(const Request& request) const;
+  Answer run_answer_to(const Json& request) const;
   Answer command_answer(const Json& wanted) const;
   Answer fault_answer(const Json& wanted) const;
   // Null: the target or its image is not known.

@@ -7,8 +7,10 @@
 
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/fault.hpp"
+#include "hal/messages/memory_dump.hpp"
 #include "sim/sil/fault_names.hpp"
 #include "sim/sil/function_names.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -29,6 +31,7 @@ ArgumentField fault() {
 
 std::vector<TelecommandRow> make_table() {
   const ArgumentField offset{"offset", 4, 0, kAny32, "in bytes"};
+  constexpr auto kLastMemory = static_cast<std::uint32_t>(hal::DumpedMemory::kLoadedTable);
   constexpr auto kSegment = static_cast<std::uint32_t>(hal::kMaxModelSegmentBytes);
   constexpr auto kMost = static_cast<std::uint32_t>(hal::kMaxCommandArgumentBytes);
   return {
@@ -41,7 +44,10 @@ std::vector<TelecommandRow> make_table() {
        {{"size", 4, 0, kAny32, "in bytes"}, crc32_of("in the header of the loaded image")}},
       {FunctionCode::kModelActivate, {crc32_of("in the header of the validated image")}},
       {FunctionCode::kMemoryDump,
-       {{"memory", 1, 0, 1, "0 bank 0, 1 bank 1"}, offset, {"size", 2, 1, kAny16, "in bytes"}}},
+       {{"memory", 1, 0, kLastMemory,
+         "0 bank 0, 1 bank 1, 2 missing segments, 3 active table, 4 loaded table"},
+        offset,
+        {"size", 2, 1, hal::MemoryDump::kMaxBytes, "in bytes"}}},
       {FunctionCode::kSetParameter,
        {{"field", 1, 0, kAny8, "of the active table"}, {"value", 4, 0, kAny32, "new value"}}},
       {FunctionCode::kEnableResponse, {fault()}},
@@ -54,6 +60,14 @@ std::vector<TelecommandRow> make_table() {
       {FunctionCode::kTableValidate, {crc32_of("at the end of the table that was loaded")}},
       {FunctionCode::kTableActivate, {crc32_of("at the end of the table that was validated")}},
   };
+}
+
+// "it takes mode"
+std::string arguments_of(const TelecommandRow& row) {
+  if (row.fields.empty()) return "it takes none";
+  std::string names;
+  for (const ArgumentField& field : row.fields) names += (names.empty() ? "" : ", ") + field.name;
+  return "it takes " + names;
 }
 
 [[noreturn]] void refuse(const TelecommandRow& row, const ArgumentField& field, const std::string& value,
@@ -102,6 +116,12 @@ Telecommand telecommand_of(const std::string& function, const std::map<std::stri
     return name_of(candidate.function) == function;
   });
   if (row == table.end()) throw std::invalid_argument("there is no telecommand '" + function + "'");
+  for (const auto& [name, value] : values) {
+    const auto is_it = [&name = name](const ArgumentField& field) { return field.name == name; };
+    if (std::none_of(row->fields.begin(), row->fields.end(), is_it))
+      throw std::invalid_argument(function + ": there is no argument '" + shortened(name) + "'; " +
+                                  arguments_of(*row));
+  }
   Telecommand command{row->function, {}};
   for (const ArgumentField& field : row->fields) {
     const auto value = values.find(field.name);

@@ -34,7 +34,7 @@ class OneStep final : public RunSource {
   std::string ask(const std::string& request) const override {
     if (!answers) throw std::runtime_error("there is no run to ask");
     asked = request;
-    return R"({"step":1})";
+    return said;
   }
   bool frame(std::uint64_t step, gnc::RangeImage& frame) const override {
     if (is_damaged) throw std::runtime_error("'run.mcap' is damaged");
@@ -47,6 +47,7 @@ class OneStep final : public RunSource {
   }
 
   mutable std::string asked;
+  std::string said = R"({"step":1})";
   bool answers = true, is_damaged = false;
   std::string shown_title = "near_shoemaker";
 
@@ -239,12 +240,83 @@ TEST_F(ConsoleRequests, ATelecommandIsCheckedAndSentAsBytes) {
   EXPECT_EQ(wrong.body, "SET_MODE: mode '9' must be a whole number from 1 to 3\n");
   for (const char* body : {"", "x", "[]", "{}", R"({"name":3,"arguments":{}})", R"({"name":"NOOP"})"})
     EXPECT_EQ(status(post("/api/command", body)), 400) << body;
-  EXPECT_EQ(status(post("/api/run", "{}")), 404);
+  EXPECT_EQ(status(post("/api/run", "{}")), 405);
   run_.answers = false;
   EXPECT_EQ(status(post("/api/fault", R"({"fault":"freeze","steps":5})")), 409);
   Request foreign = post("/api/command", R"({"name":"NOOP","arguments":{}})");
   foreign.origin = "http://evil";
   EXPECT_EQ(status(foreign), 403);
+}
+
+TEST_F(ConsoleRequests, WhatTheRunRefusesIsNoSuccess) {
+  run_.said = R"({"error":"a step takes at most 16 telecommands: send it again"})";
+  Request request = get("/api/command");
+  request.method = "POST";
+  request.body = R"({"name":"NOOP","arguments":{}})";
+  const Answer answer = requests_.answer(request, kPort);
+  EXPECT_EQ(answer.status, 409);
+  EXPECT_EQ(answer.body, "a step takes at most 16 telecommands: send it again\n");
+}
+
+TEST_F(ConsoleRequests, EveryPathHasItsMethods) {
+  for (const char* path :
+       {"/", "/main.js", "/api/run", "/api/steps", "/api/step", "/api/frame", "/api/depth", "/api/mesh",
+        "/api/commands", "/api/faults", "/api/command", "/api/fault", "/none", "/api", "/api/run/"}) {
+    const bool is_sent_to = std::string(path) == "/api/command" || std::string(path) == "/api/fault";
+    for (const char* method : {"POST", "PUT", "DELETE", "PATCH", "OPTIONS", "get", ""}) {
+      Request request = get(path, "k=0&from=0");
+      request.method = method;
+      request.body = "{}";
+      const Answer answer = requests_.answer(request, kPort);
+      if (is_sent_to && request.method == "POST") {
+        EXPECT_EQ(answer.status, 400) << path;
+      } else if (answer.status != 404) {
+        EXPECT_EQ(answer.status, 405) << method << " " << path;
+        EXPECT_EQ(answer.allow, is_sent_to ? "POST" : "GET, HEAD") << path;
+      }
+    }
+    if (is_sent_to) EXPECT_EQ(status(get(path)), 405) << path;
+  }
+  EXPECT_EQ(status(get("/none")), 404);
+}
+
+TEST_F(ConsoleRequests, ABodyThatIsDeepOrLargeIsRefused) {
+  const auto answer = [this](const std::string& body) {
+    Request request = get("/api/command");
+    request.method = "POST";
+    request.body = body;
+    return requests_.answer(request, kPort);
+  };
+  EXPECT_EQ(answer(std::string(8'000, '[') + std::string(8'000, ']')).body,
+            "its JSON is nested more than 8 deep\n");
+  EXPECT_EQ(answer(std::string(16'000, '[')).status, 400);
+  EXPECT_EQ(answer("{\"arguments\":" + std::string(8'000, '[') + std::string(8'000, ']') + "}").status, 400);
+  EXPECT_EQ(answer(std::string(Requests::kMostBody + 1, ' ')).status, 413);
+  EXPECT_EQ(answer("[" + std::string(100, ' ') + "]").status, 400);
+  EXPECT_EQ(run_.asked, "");
+}
+
+TEST_F(ConsoleRequests, AFieldOrAnArgumentThatIsNotKnownIsRefusedByName) {
+  const auto refusal = [this](const std::string& path, const std::string& body) {
+    Request request = get(path);
+    request.method = "POST";
+    request.body = body;
+    const Answer answer = requests_.answer(request, kPort);
+    EXPECT_EQ(answer.status, 400) << body;
+    return answer.body;
+  };
+  EXPECT_EQ(refusal("/api/command", R"({"name":"NOOP","arguments":{"mode":"2"}})"),
+            "NOOP: there is no argument 'mode'; it takes none\n");
+  EXPECT_EQ(refusal("/api/command", R"({"name":"SET_MODE","arguments":{"mode":"2","Mode":"3"}})"),
+            "SET_MODE: there is no argument 'Mode'; it takes mode\n");
+  EXPECT_NE(refusal("/api/command", R"({"name":"NOOP","arguments":{},"step":4})").find("'step'"),
+            std::string::npos);
+  EXPECT_NE(refusal("/api/command", R"({"function":1,"bytes":"","arguments":{}})").find("'arguments'"),
+            std::string::npos);
+  EXPECT_NE(refusal("/api/fault", R"({"fault":"drop","steps":1,"strenght":2})").find("'strenght'"),
+            std::string::npos);
+  EXPECT_NE(refusal("/api/command", R"({"name":"NOOP","arguments":[]})").find("object"), std::string::npos);
+  EXPECT_EQ(run_.asked, "");
 }
 
 TEST_F(ConsoleRequests, ThePageComesWithItsFilesAndLibraries) {
