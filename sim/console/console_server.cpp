@@ -21,8 +21,14 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kBetweenNews = 50ms;
-// Threads of the server. Each open connection takes one: browsers open up to six beside their WebSocket.
-constexpr const char* kThreads = "48";
+// Threads of the server. Each open connection takes one, also one whose request never comes: there are more
+// than the connections that wait for a thread (kWaiting and a queue of 20), so that those wait for one
+// time-out at most. A thread that waits costs some 30 KB.
+constexpr const char* kThreads = "512";
+constexpr const char* kWaiting = "200";
+// Until the head of a request is there, and while nothing can be written.
+constexpr const char* kRequestTimeout_ms = "3000";
+constexpr auto kBodyTimeout = 2s;
 
 std::string text_or_empty(const char* text) {
   return text == nullptr ? std::string() : std::string(text);
@@ -38,17 +44,15 @@ Request request_of(const mg_connection* connection) {
           {}};
 }
 
-// At most as much as any request has; a longer one is cut, and then is no JSON.
+// At most a byte more than any request has. One that comes byte by byte is cut after a while, and then is no
+// JSON: civetweb has no limit for the time of a whole body, so that it is asked for single bytes.
 std::string body_of(mg_connection* connection) {
-  constexpr std::size_t kMost = 16'384;
-  std::string body(kMost, '\0');
-  std::size_t size = 0;
-  while (size < kMost) {
-    const int count = mg_read(connection, body.data() + size, kMost - size);
-    if (count <= 0) break;
-    size += static_cast<std::size_t>(count);
-  }
-  body.resize(size);
+  const auto end = std::chrono::steady_clock::now() + kBodyTimeout;
+  std::string body;
+  char byte = 0;
+  while (body.size() <= Requests::kMostBody && std::chrono::steady_clock::now() < end &&
+         mg_read(connection, &byte, 1) == 1)
+    body += byte;
   return body;
 }
 
@@ -57,6 +61,7 @@ void send_answer(mg_connection* connection, const Answer& answer, bool with_body
       "HTTP/1.1 " + std::to_string(answer.status) + " " +
       mg_get_response_code_text(connection, answer.status) + "\r\nContent-Type: " + answer.type +
       "\r\nContent-Length: " + std::to_string(answer.body.size()) +
+      (answer.allow.empty() ? "" : "\r\nAllow: " + answer.allow) +
       "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer"
       "\r\nContent-Security-Policy: default-src 'self'; style-src 'self' 'unsafe-inline'; "
       "img-src 'self' data: blob:; connect-src 'self' ws:; frame-ancestors 'none'\r\n\r\n";
@@ -178,14 +183,25 @@ struct ConsoleServer::Handlers {
 
   static int request(mg_connection* connection, void* self) {
     Request request = request_of(connection);
-    if (request.method == "POST") request.body = body_of(connection);
-    const Answer answer = server(self).requests_.answer(request, server(self).port_);
+    const ConsoleServer& own = server(self);
+    // Nobody is waited for who gets no answer.
+    if (request.method == "POST" && own.requests_.refusal_of(request, own.port_).empty())
+      request.body = body_of(connection);
+    const Answer answer = own.requests_.answer(request, own.port_);
+    // What is left of a body would be read without an end.
+    if (answer.status >= 400) mg_disable_connection_keep_alive(connection);
     send_answer(connection, answer, request.method != "HEAD");
     return answer.status;
+  }
+  // Civetweb sets it only if the client names one, and a thread uses the same object for all its connections:
+  // a page would get the subprotocol of a client before, and a browser refuses that.
+  static void forget_subprotocol(const mg_connection* connection) {
+    const_cast<mg_request_info*>(mg_get_request_info(connection))->acceptedWebSocketSubprotocol = nullptr;
   }
   // Not 0: the connection is refused.
   static int connect_page(const mg_connection* connection, void* self) {
     ConsoleServer& own = server(self);
+    forget_subprotocol(connection);  // civetweb would take any
     return own.clients() >= kMostClients ||
                    !own.requests_.refusal_of(request_of(connection), own.port_).empty()
                ? 1
@@ -194,7 +210,7 @@ struct ConsoleServer::Handlers {
   static int connect_foxglove(const mg_connection* connection, void* self) {
     ConsoleServer& own = server(self);
     Answer refusal{403, "text/plain; charset=utf-8",
-                   own.requests_.refusal_of_foxglove(request_of(connection), own.port_)};
+                   own.requests_.refusal_of_foxglove(request_of(connection), own.port_), ""};
     if (refusal.body.empty() && mg_get_request_info(connection)->acceptedWebSocketSubprotocol == nullptr) {
       refusal.status = 400;
       refusal.body = "the subprotocol here is foxglove.sdk.v1 or foxglove.websocket.v1";
@@ -254,12 +270,14 @@ ConsoleServer::ConsoleServer(const Requests& requests, int port) : requests_(req
   if (!missing.empty()) throw std::runtime_error("the console cannot show its page: " + missing);
   mg_init_library(0);
   const std::string address = "127.0.0.1:" + std::to_string(port);
-  const std::array<const char*, 13> options{"listening_ports",
+  const std::array<const char*, 15> options{"listening_ports",
                                             address.c_str(),
                                             "num_threads",
                                             kThreads,
+                                            "listen_backlog",
+                                            kWaiting,
                                             "request_timeout_ms",
-                                            "10000",
+                                            kRequestTimeout_ms,
                                             "keep_alive_timeout_ms",
                                             "2000",
                                             "enable_keep_alive",
@@ -270,6 +288,10 @@ ConsoleServer::ConsoleServer(const Requests& requests, int port) : requests_(req
   mg_callbacks callbacks;
   std::memset(&callbacks, 0, sizeof callbacks);
   callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // no log on the terminal
+  callbacks.begin_request = [](mg_connection* connection) {
+    Handlers::forget_subprotocol(connection);
+    return 0;  // the handlers answer
+  };
   server_ = mg_start(&callbacks, this, const_cast<const char**>(options.data()));
   if (server_ == nullptr)
     throw std::runtime_error(

@@ -1,0 +1,211 @@
+// What the console's server does with connections that no browser makes: it stays there for those that are.
+// Verifies TS-SIL-195.
+#include "sim/console/console_server.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/support/growing_run.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+class RawClient {
+ public:
+  explicit RawClient(int port) : port_(port), socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval limit{10, 0};
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    EXPECT_EQ(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  }
+  RawClient(RawClient&& other) noexcept : port_(other.port_), socket_(std::exchange(other.socket_, -1)) {}
+  ~RawClient() {
+    if (socket_ >= 0) close(socket_);
+  }
+  RawClient& send(const std::string& bytes) {
+    (void)!::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    return *this;
+  }
+  RawClient& get(const std::string& target, const std::string& headers = "",
+                 const std::string& method = "GET") {
+    return send(method + " " + target + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port_) + "\r\n" +
+                headers + "\r\n");
+  }
+  std::string read_until(const std::string& text) {
+    std::string received;
+    char buffer[4096];
+    while (received.find(text) == std::string::npos) {
+      const ssize_t count = recv(socket_, buffer, sizeof buffer, 0);
+      if (count <= 0) break;
+      received.append(buffer, static_cast<std::size_t>(count));
+    }
+    return received;
+  }
+  std::string head() { return read_until("\r\n\r\n"); }
+  // 0 if the server keeps the connection for all of this time.
+  bool is_closed_within(std::chrono::milliseconds time) {
+    const auto end = Clock::now() + time;
+    char buffer[4096];
+    for (pollfd readable{socket_, POLLIN, 0}; Clock::now() < end;) {
+      if (poll(&readable, 1, 50) > 0 && recv(socket_, buffer, sizeof buffer, 0) <= 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  int port_;
+  int socket_;
+};
+
+class ConsoleServerOnLoopback : public testing::Test {
+ protected:
+  RawClient client() const { return RawClient(server_.port()); }
+  std::string head_of(const std::string& target, const std::string& headers = "") const {
+    return client().get(target, headers).head();
+  }
+  void expect_served() const {
+    const auto begin = Clock::now();
+    EXPECT_EQ(head_of("/?token=abc").find("HTTP/1.1 200"), 0U);
+    EXPECT_LT(Clock::now() - begin, 2s);
+  }
+  bool wait_for_clients(int count) const {
+    for (const auto end = Clock::now() + 5s; Clock::now() < end; std::this_thread::sleep_for(2ms))
+      if (server_.clients() == count) return true;
+    return false;
+  }
+
+  test::GrowingRun run_;
+  Requests requests_{run_, [](const std::string&) { return ""; }, "abc"};
+  ConsoleServer server_{requests_, 0};
+};
+
+std::string upgrade(const std::string& subprotocol = "") {
+  return "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+         (subprotocol.empty() ? "" : "Sec-WebSocket-Protocol: " + subprotocol + "\r\n");
+}
+
+// A thread of the server has many connections one after another. Chromium refuses a subprotocol that the page
+// has not asked for.
+TEST_F(ConsoleServerOnLoopback, GivesEveryWebSocketTheSubprotocolThatItAsksForOrNone) {
+  for (int i = 0; i < 100; ++i) {
+    for (const std::string name : {"foxglove.sdk.v1", "", "foxglove.websocket.v1", ""}) {
+      RawClient socket = client();
+      const std::string head =
+          socket.get(name.empty() ? "/ws?token=abc" : "/?token=abc", upgrade(name)).head();
+      ASSERT_EQ(head.find("HTTP/1.1 101"), 0U) << i << " " << head;
+      const std::size_t at = head.find("Sec-WebSocket-Protocol: ");
+      if (name.empty())
+        ASSERT_EQ(at, std::string::npos) << i << " " << head;
+      else
+        ASSERT_NE(head.find("Sec-WebSocket-Protocol: " + name + "\r\n"), std::string::npos)
+            << i << " " << head;
+    }
+    ASSERT_TRUE(wait_for_clients(0)) << i;
+  }
+  // A Foxglove path without a subprotocol is refused, whatever the thread had before.
+  for (int i = 0; i < 100; ++i)
+    ASSERT_EQ(head_of("/ws/foxglove?token=abc", upgrade()).find("HTTP/1.1 400"), 0U) << i;
+}
+
+// The connection was another one's before, and is used again after a plain request.
+TEST_F(ConsoleServerOnLoopback, APageThatKeepsItsConnectionGetsNoSubprotocol) {
+  for (int i = 0; i < 20; ++i) {
+    RawClient socket = client();
+    EXPECT_EQ(socket.get("/api/run?token=abc").read_until("}").find("HTTP/1.1 200"), 0U);
+    const std::string head = socket.get("/ws?token=abc", upgrade()).head();
+    EXPECT_NE(head.find("HTTP/1.1 101"), std::string::npos) << head;
+    EXPECT_EQ(head.find("Sec-WebSocket-Protocol"), std::string::npos) << head;
+  }
+}
+
+TEST_F(ConsoleServerOnLoopback, AnswersWhileRequestsOfAllKindsAreNotComplete) {
+  const std::string host = "Host: 127.0.0.1:" + std::to_string(server_.port()) + "\r\n";
+  const std::vector<std::string> halves = {
+      "",
+      "G",
+      "GET /?token=abc HT",
+      "GET /?token=abc HTTP/1.1\r\n" + host,
+      "POST /api/command?token=abd HTTP/1.1\r\n" + host + "Content-Length: 100\r\n\r\n{",
+      "POST /api/command?token=abc HTTP/1.1\r\n" + host + "Content-Length: 100\r\n\r\n{",
+      "POST /api/command?token=abc HTTP/1.1\r\n" + host + "Transfer-Encoding: chunked\r\n\r\n5",
+  };
+  for (const std::string& half : halves) {
+    std::vector<RawClient> open;
+    for (int i = 0; i < 200; ++i) open.push_back(std::move(client().send(half)));
+    for (int i = 0; i < 3; ++i) expect_served();
+  }
+}
+
+TEST_F(ConsoleServerOnLoopback, EndsConnectionsThatSendTooSlowly) {
+  RawClient silent = client(), line = client(), dribbling = client(), body = client(), refused = client();
+  line.send("GET / HTTP/1.1\r\n");
+  body.get("/api/command?token=abc", "Content-Length: 16000\r\n", "POST");
+  refused.get("/api/command?token=abd", "Content-Length: 16000\r\n", "POST");
+  EXPECT_EQ(refused.head().find("HTTP/1.1 403"), 0U) << "at once: its body is not read";
+  const auto begin = Clock::now();
+  dribbling.send("GET / HTTP/1.1\r\nX: ");
+  std::string answer;
+  while (Clock::now() - begin < 4s) {
+    dribbling.send("x");
+    body.send("x");
+    std::this_thread::sleep_for(50ms);
+  }
+  EXPECT_EQ(body.head().find("HTTP/1.1 400"), 0U);
+  for (RawClient* one : {&silent, &line, &dribbling, &body, &refused}) EXPECT_TRUE(one->is_closed_within(4s));
+}
+
+TEST_F(ConsoleServerOnLoopback, AnswersWhatIsNoRequestWithAStatus) {
+  const auto status_of = [this](const std::string& bytes) {
+    return client().send(bytes).head().substr(0, 12);
+  };
+  EXPECT_EQ(status_of("\r\n\r\nHELLO\r\n\r\n"), "HTTP/1.1 400");
+  EXPECT_EQ(status_of("GET / HTTP/9.9\r\n\r\n"), "HTTP/1.1 505");
+  EXPECT_EQ(status_of("GET / HTTP/1.1\r\n\r\n"), "HTTP/1.1 403");
+  EXPECT_EQ(head_of("/none?token=abc").find("HTTP/1.1 404"), 0U);
+  const std::string wrong = client().get("/api/command?token=abc").head();
+  EXPECT_EQ(wrong.find("HTTP/1.1 405"), 0U);
+  EXPECT_NE(wrong.find("Allow: POST\r\n"), std::string::npos);
+  RawClient large = client();
+  large.get("/api/command?token=abc", "Content-Length: 20000\r\n", "POST").send(std::string(20'000, ' '));
+  EXPECT_EQ(large.head().find("HTTP/1.1 413"), 0U);
+  expect_served();
+}
+
+// In a thread of the server, whose stack is small.
+TEST_F(ConsoleServerOnLoopback, DeepJsonIsRefused) {
+  const std::string deep = "{\"arguments\":" + std::string(8'000, '[') + std::string(8'000, ']') + "}";
+  RawClient sent = client();
+  sent.get("/api/command?token=abc", "Content-Length: " + std::to_string(deep.size()) + "\r\n", "POST")
+      .send(deep);
+  EXPECT_NE(sent.read_until("deep").find("HTTP/1.1 400"), std::string::npos);
+  RawClient socket = client();
+  socket.get("/?token=abc", upgrade("foxglove.sdk.v1")).read_until("\"/figures\"");
+  const std::string brackets(60'000, '[');
+  socket.send(
+      "\x81\xFE" +
+      std::string{static_cast<char>(brackets.size() >> 8), static_cast<char>(brackets.size() & 0xFF)} +
+      std::string(4, '\0') + brackets);
+  EXPECT_NE(socket.read_until(" deep\"").find("nested more than 16"), std::string::npos);
+  expect_served();
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
