@@ -275,7 +275,9 @@ TEST_F(ConsoleRequests, EveryPathHasItsMethods) {
         EXPECT_EQ(answer.allow, is_sent_to ? "POST" : "GET, HEAD") << path;
       }
     }
-    if (is_sent_to) EXPECT_EQ(status(get(path)), 405) << path;
+    if (is_sent_to) {
+      EXPECT_EQ(status(get(path)), 405) << path;
+    }
   }
   EXPECT_EQ(status(get("/none")), 404);
 }
