@@ -5,18 +5,16 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "sim/mission/toml_fields.hpp"
+#include "sim/mission/toml_text.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxBytes = 1'000'000;
 constexpr double kNearest_m = 10.0;
 constexpr double kFarthest_m = 500.0;
 constexpr double kSlowest_deg_s = 0.1;
@@ -239,17 +237,6 @@ Mission mission_of(const toml::table& root, const std::string& file, const std::
   return mission;
 }
 
-std::string content_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in || fs::is_directory(path)) throw std::invalid_argument("mission '" + path + "' cannot be read");
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (text.size() > kMaxBytes)
-    throw std::invalid_argument(
-        fmt::format("mission '{}' has {} bytes, and a mission has at most {}: is it a TOML file?", path,
-                    text.size(), kMaxBytes));
-  return text;
-}
-
 }  // namespace
 
 const char* const kFirstMission =
@@ -261,16 +248,11 @@ const char* const kFirstMission =
 
 Mission mission_from_toml(const std::string& text, const std::string& file,
                           const std::vector<std::string>& conditions) {
-  try {
-    return mission_of(toml::parse(text, file), file, conditions);
-  } catch (const toml::parse_error& error) {
-    throw std::invalid_argument(
-        fmt::format("{}, line {}: {}", file, error.source().begin.line, std::string(error.description())));
-  }
+  return mission_of(parse_toml(text, file), file, conditions);
 }
 
 Mission read_mission(const std::string& path, const std::vector<std::string>& conditions) {
-  return mission_from_toml(content_of(path), path, conditions);
+  return mission_from_toml(read_toml(path, "mission"), path, conditions);
 }
 
 }  // namespace tumblesight::sim

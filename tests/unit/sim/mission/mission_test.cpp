@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/hostile_files.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -150,6 +152,10 @@ TEST_F(MissionFile, TheFirstMissionOfTheHelpCanBeRead) {
 TEST(Mission, AFileThatCannotBeReadIsNamed) {
   EXPECT_THROW((void)read_mission("/no/such.toml", {}), std::invalid_argument);
   EXPECT_THROW((void)read_mission("/", {}), std::invalid_argument);
+}
+
+TEST(Mission, IsRefusedUnreadIfItIsNoFileOrTooLarge) {
+  expect_all_refused(".toml", [](const std::string& path) { (void)read_mission(path, {}); });
 }
 
 }  // namespace
