@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "gnc/rcnn/model_format.hpp"
+#include "sim/process/input_file.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
@@ -14,6 +13,9 @@ namespace {
 
 using gnc::FixedPoint;
 using gnc::Float32;
+
+constexpr InputKind kModelImage{"model image",
+                                std::max(gnc::kModelImageSize<FixedPoint>, gnc::kModelImageSize<Float32>)};
 
 // Reads the image back as the flight program would.
 template <class N>
@@ -132,15 +134,13 @@ std::string fault_of_model_path(const std::string& path) {
   const std::string image = "model image '" + path + "' ";
   if (std::filesystem::is_directory(path, error)) return image + "is a folder; give a file";
   if (!std::filesystem::exists(path, error)) return image + "does not exist" + remedy_for_missing_image(path);
-  return {};
+  return fault_of_input(path, kModelImage);
 }
 
 std::vector<std::uint8_t> read_model_bytes(const std::string& path) {
   const std::string fault = fault_of_model_path(path);
   if (!fault.empty()) throw std::runtime_error(fault);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("model image '" + path + "' cannot be read");
-  std::vector<std::uint8_t> image{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::vector<std::uint8_t> image = read_bytes(path, kModelImage);
   upgrade(image);
   return image;
 }

@@ -18,7 +18,8 @@ std::string remedy_for_missing_image(const std::string& path);
 // stays.
 std::string model_stem(std::string path);
 
-// Empty for an existing file. Otherwise what is wrong, with that remedy: "model image 'PATH' is a folder".
+// Empty for an existing file that is not larger than an image. Otherwise what is wrong, with that remedy:
+// "model image 'PATH' is a folder".
 std::string fault_of_model_path(const std::string& path);
 
 // The bytes of a file, not checked: for the estimators, which check the image themselves and read fixed-point

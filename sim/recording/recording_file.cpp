@@ -1,11 +1,14 @@
 #include "sim/recording/recording_file.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <memory>
 #include <set>
 #include <stdexcept>
+
+#include "gnc/numerics/crc.hpp"
+#include "sim/process/input_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -18,15 +21,49 @@ using hal::replay::RecordingStatus;
                            "; write it with `tumblesight record` or as docs/icd.md describes");
 }
 
-}  // namespace
+// As long as its frames make it: the checks below are made before it is loaded.
+constexpr InputKind kRecording{"recording", std::numeric_limits<std::uint64_t>::max()};
+constexpr std::size_t kBlockBytes = 1U << 20;
 
-std::vector<std::uint8_t> read_bytes(const std::string& path) {
-  std::error_code error;
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path, error))
-    throw std::runtime_error("'" + path + "' cannot be read; give an existing file");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+// The checks of Recording::open() that need no frame in memory, and the size that the header allows.
+RecordingStatus status_of_start(const InputFile& file, const std::string& path) {
+  std::array<std::uint8_t, hal::replay::kRecordingHeaderSize + hal::replay::kRecordingCrcSize> start{};
+  Recording recording;
+  if (file.read_at(0, start.data(), start.size()) < start.size()) return RecordingStatus::kTooShort;
+  // Alone with its own CRC, a valid header is a recording.
+  hal::replay::write_recording_crc(start.data(), hal::replay::kRecordingHeaderSize,
+                                   start.data() + hal::replay::kRecordingHeaderSize);
+  const RecordingStatus status = recording.open(start.data(), start.size());
+  if (status != RecordingStatus::kOk) return status;
+  const std::uint64_t most =
+      start.size() + recording.frames() * std::uint64_t{hal::replay::kRecordedFrameSize};
+  if (file.size() > most)
+    refuse(path, "it has " + std::to_string(file.size()) + " bytes, and its " +
+                     std::to_string(recording.frames()) + " frames have at most " + std::to_string(most));
+  return status;
 }
+
+std::array<std::uint8_t, 4> little_endian(std::uint32_t value) {
+  return {static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8),
+          static_cast<std::uint8_t>(value >> 16), static_cast<std::uint8_t>(value >> 24)};
+}
+
+// Block by block.
+bool fits_its_checksum(const InputFile& file) {
+  std::vector<std::uint8_t> block(kBlockBytes);
+  gnc::Crc32 crc;
+  const std::uint64_t end = file.size() - hal::replay::kRecordingCrcSize;
+  for (std::uint64_t at = 0; at < end; at += block.size()) {
+    const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), end - at));
+    if (file.read_at(at, block.data(), wanted) < wanted) return false;
+    crc.add(block.data(), wanted);
+  }
+  std::array<std::uint8_t, hal::replay::kRecordingCrcSize> stored{};
+  (void)file.read_at(end, stored.data(), stored.size());
+  return stored == little_endian(crc.value());
+}
+
+}  // namespace
 
 Recording RecordingFile::open() const {
   Recording recording;
@@ -36,7 +73,11 @@ Recording RecordingFile::open() const {
 }
 
 RecordingFile read_recording(const std::string& path) {
-  return recording_of(read_bytes(path), path);
+  const InputFile file(path, kRecording);
+  const RecordingStatus status = status_of_start(file, path);
+  if (status != RecordingStatus::kOk) refuse(path, to_string(status));
+  if (!fits_its_checksum(file)) refuse(path, to_string(RecordingStatus::kBadCrc));
+  return recording_of(file.bytes(), path);
 }
 
 RecordingFile recording_of(std::vector<std::uint8_t> bytes, const std::string& path) {

@@ -12,9 +12,6 @@
 
 namespace tumblesight::sim {
 
-// Throws std::runtime_error that names the file if it cannot be read.
-std::vector<std::uint8_t> read_bytes(const std::string& path);
-
 struct RecordingFile {
   std::vector<std::uint8_t> bytes;
   std::vector<FrameStamp> frames;  // in the order of the file
@@ -24,7 +21,8 @@ struct RecordingFile {
 };
 
 // Reads the file and every frame in it. Throws std::runtime_error that names file, reason and remedy if it is
-// no recording, is damaged, has no frame, or has fewer frames than its header says.
+// no recording, is damaged, has no frame, or has fewer frames than its header says. What is no recording, and
+// one that is damaged, is not loaded into memory.
 RecordingFile read_recording(const std::string& path);
 // The same of bytes that are to be written to `path`, or were read from it.
 RecordingFile recording_of(std::vector<std::uint8_t> bytes, const std::string& path);

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "sim/recording/recording_file.hpp"
+#include "sim/process/input_file.hpp"
 #include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
@@ -277,8 +277,8 @@ TruthTable parse_truth(const std::string& text, const std::string& name) {
 }
 
 TruthTable read_truth(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_bytes(path);
-  return parse_truth({bytes.begin(), bytes.end()}, path);
+  constexpr InputKind kTruth{"file of truth", 256U << 20};  // a million frames and more
+  return parse_truth(read_text(path, kTruth), path);
 }
 
 }  // namespace tumblesight::sim

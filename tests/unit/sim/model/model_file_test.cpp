@@ -9,6 +9,7 @@
 
 #include "gnc/rcnn/model_format.hpp"
 #include "tests/support/former_model_image.hpp"
+#include "tests/support/hostile_files.hpp"
 #include "tests/support/sim_models.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -21,6 +22,16 @@ TEST(ModelFile, ThatIsNoModelImageIsRefusedByName) {
     FAIL() << "an empty file was accepted";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("/dev/null"), std::string::npos);
+  }
+}
+
+TEST(ModelFile, IsRefusedUnreadIfItIsNoFileOrLargerThanAnImage) {
+  expect_all_refused(".tsm", [](const std::string& path) { (void)read_float32_model(path); });
+  expect_all_refused(".tsm", [](const std::string& path) { (void)read_fixed_point_header(path); });
+  const HostileFiles hostile(".tsm");
+  for (const HostileFile& file : hostile.files()) {
+    const std::string fault = fault_of_model_path(file.path);
+    EXPECT_EQ(fault.find(file.path) == std::string::npos, file.kind == "empty") << file.kind << fault;
   }
 }
 

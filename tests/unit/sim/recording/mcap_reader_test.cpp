@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "gnc/numerics/crc.hpp"
+#include "tests/support/hostile_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {
@@ -521,6 +522,10 @@ TEST_F(McapReading, OfWhatIsNoRecordingNamesIt) {
   EXPECT_NE(refusal("/dev/null").find("is not a file"), std::string::npos);
   expect_refusal(std::string("\x89MCAP1\r\n", 8), "is not an MCAP file: it begins with '?MCAP1");
   expect_refusal(kMagic + schema(), "a record before the header");
+}
+
+TEST(McapReader, RefusesWhatIsNoFileOrNoRecordingAtOnce) {
+  expect_all_refused(".mcap", [](const std::string& path) { McapReader reader(path); });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "sim/recording/make_recording.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
+#include "tests/support/hostile_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {
@@ -96,6 +97,21 @@ TEST(RecordingFile, IsRefusedWithItsNameReasonAndRemedy) {
   EXPECT_NE(refusal_of(folder.path("none")).find("none' cannot be read; give an existing file"),
             std::string::npos);
   EXPECT_NE(refusal_of(folder.path("")).find("cannot be read"), std::string::npos);
+}
+
+TEST(RecordingFile, IsRefusedBeforeItIsLoaded) {
+  expect_all_refused(".tslr", [](const std::string& path) { (void)read_recording(path); });
+}
+
+TEST(RecordingFile, ThatIsLargerThanItsFramesIsNotLoaded) {
+  const TemporaryFolder folder;
+  const std::string path = folder.put("a.tslr", made({}).bytes);
+  std::filesystem::resize_file(path, 3ULL << 30);
+  const Outcome outcome = outcome_of([&] { (void)read_recording(path); });
+  EXPECT_NE(outcome.message.find("a.tslr': it has 3221225472 bytes, and its 10 frames have at most"),
+            std::string::npos)
+      << outcome.message;
+  EXPECT_LT(outcome.peak_kib, own_peak_kib() + 100 * 1024);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/support/hostile_files.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -136,6 +138,10 @@ TEST(TruthFile, HasThePathOfItsRecording) {
   EXPECT_EQ(truth_path_of("a.b/frames"), "a.b/frames.truth.csv");
   EXPECT_EQ(truth_path_of("run.1"), "run.1.truth.csv") << "run.2 has another truth";
   EXPECT_EQ(truth_path_of("run.tslr.old"), "run.tslr.old.truth.csv");
+}
+
+TEST(TruthFile, IsRefusedUnreadIfItIsNoFileOrTooLarge) {
+  expect_all_refused(".csv", [](const std::string& path) { (void)read_truth(path); });
 }
 
 }  // namespace
