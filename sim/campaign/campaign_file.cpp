@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "sim/mission/toml_fields.hpp"
+#include "sim/mission/toml_text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -170,14 +171,8 @@ void make_names_unique(std::vector<CampaignRun>& runs) {
 }
 
 toml::table parsed(const std::string& path) {
-  if (!fs::is_regular_file(path))
-    throw std::runtime_error(fmt::format("campaign '{}': there is no such file", path));
-  try {
-    return toml::parse_file(path);
-  } catch (const toml::parse_error& error) {
-    throw std::invalid_argument(
-        fmt::format("{}, line {}: {}", path, error.source().begin.line, error.description()));
-  }
+  if (!fs::exists(path)) throw std::runtime_error(fmt::format("campaign '{}': there is no such file", path));
+  return parse_toml(read_toml(path, "campaign"), path);
 }
 
 }  // namespace

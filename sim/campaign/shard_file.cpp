@@ -11,12 +11,14 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
 #include "gnc/numerics/crc.hpp"
 #include "sim/campaign/sequence_record.hpp"
+#include "sim/json/json_text.hpp"
+#include "sim/process/input_file.hpp"
 #include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
@@ -28,6 +30,8 @@ constexpr char kMagic[] = "tumblesight shard 1\n";
 constexpr std::size_t kMagicBytes = sizeof kMagic - 1;
 constexpr std::size_t kCrcBytes = 4;
 constexpr std::size_t kMostHeaderBytes = 1 << 16;
+constexpr InputKind kShardFile{"shard file",
+                               std::numeric_limits<std::uint64_t>::max()};  // read record by record
 
 std::uint32_t crc_of(const std::string& text) {
   return gnc::crc32(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
@@ -48,7 +52,7 @@ std::string header_bytes(const ShardHeader& header) {
 }
 
 ShardHeader header_from(const std::string& text) {
-  const Json json = Json::parse(text);
+  const Json json = parse_json<Json>(text);
   return {identity_from(json.at("evaluation")), shard_from(json.at("shard").get<std::string>()),
           json.at("command").get<std::string>(), json.at("commit").get<std::string>()};
 }
@@ -77,12 +81,12 @@ ShardHeader read_header(const std::string& path, std::ifstream& file) {
 
 // None: there is no such file. Throws if there is one that cannot be read.
 std::optional<std::ifstream> opened(const std::string& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (file) return file;
-  const int reason = errno;
-  if (reason == ENOENT || reason == ENOTDIR) return std::nullopt;
-  fail(path, fmt::format("cannot be read: {}", std::strerror(reason)));
+  try {
+    return InputFile(path, kShardFile).stream();
+  } catch (const InputRefused& refusal) {
+    if (refusal.is_missing()) return std::nullopt;
+    throw;
+  }
 }
 
 // A pipe would keep us waiting, and a device keeps nothing.
@@ -94,7 +98,7 @@ void require_plain_file(const std::string& path) {
 
 // Whether a process was killed while it wrote the header: the file ends before the header does.
 bool is_begun_only(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = InputFile(path, kShardFile).stream();
   std::string start(kMagicBytes + kMostHeaderBytes, '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(file.gcount()));
@@ -115,7 +119,7 @@ std::vector<std::uint32_t> frames_of(const std::vector<ExperimentRun>& runs) {
 class Records {
  public:
   Records(const std::string& path, std::vector<std::uint32_t> frames)
-      : file_(path, std::ios::binary), frames_(std::move(frames)) {}
+      : file_(InputFile(path, kShardFile).stream()), frames_(std::move(frames)) {}
 
   std::ifstream& file() { return file_; }
   std::uint32_t run() const { return run_of_record(bytes_.data()); }
@@ -275,9 +279,7 @@ void ShardWriter::finish() {
 }
 
 ShardContent read_shard(const std::string& path) {
-  std::ifstream probe(path, std::ios::binary);
-  if (!probe || std::filesystem::is_directory(path))
-    fail(path, fmt::format("cannot be read: {}", std::strerror(errno != 0 ? errno : EISDIR)));
+  std::ifstream probe = InputFile(path, kShardFile).stream();
   ShardContent content;
   content.header = read_header(path, probe);
   const std::vector<ExperimentRun> runs = runs_of(content.header.identity.settings);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sim/evaluation/statistics.hpp"
+#include "sim/json/json_text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -71,7 +72,7 @@ double difference_error(double shipped_error, std::size_t shipped_count, std::si
 std::vector<ShippedFigures> read_shipped_figures(const std::string& json, const std::string& name) {
   try {
     std::vector<ShippedFigures> all;
-    const Json file = Json::parse(json);
+    const Json file = parse_json<Json>(json);
     for (const Json& row : file.at("rows")) all.push_back(figures_from(row));
     return all;
   } catch (const std::exception& error) {

@@ -1,10 +1,9 @@
 #include "sim/sil/run_file.hpp"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 
 #include "hal/dds/idl/icd_hash.hpp"
+#include "sim/process/input_file.hpp"
 
 namespace tumblesight::sim {
 
@@ -29,9 +28,7 @@ bool RunFile::has_messages() const {
 }
 
 bool RunFile::is_one(const std::string& path) {
-  std::array<char, 5> begin{};
-  return std::ifstream(path, std::ios::binary).read(begin.data(), begin.size()) &&
-         std::string(begin.begin() + 1, begin.end()) == "MCAP";
+  return begins_with(path, "\x89MCAP");
 }
 
 const McapReader::Channel& RunFile::channel_of(const std::string& topic) const {

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <stdexcept>
 #include <string>
+
+#include "sim/process/input_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -31,9 +32,9 @@ Telecommand reset_sequence() {
 }
 
 hal::CommandKey read_command_key(const std::string& path) {
-  std::ifstream file(path);
+  constexpr InputKind kKeyFile{"command key", 4096};
   std::string digits;
-  for (char c; file.get(c);) {
+  for (const char c : read_text(path, kKeyFile)) {
     if (std::isspace(static_cast<unsigned char>(c)) == 0) digits += c;
   }
   hal::CommandKey key{};

@@ -1,5 +1,9 @@
 #include "hal/dds/idl/domain.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cstdio>
 
 namespace tumblesight::hal::dds {
@@ -31,11 +35,15 @@ constexpr std::size_t kMaxConfiguration = 2048;  // without the further elements
 }  // namespace
 
 bool read_security(const char* path, SecurityElement& security) {
-  std::FILE* const file = std::fopen(path, "r");
-  if (file == nullptr) return false;
-  const std::size_t size = std::fread(security.text, 1, sizeof security.text, file);
-  const bool complete = std::ferror(file) == 0 && size > 0 && size < sizeof security.text;
-  std::fclose(file);
+  // Non-blocking, so that a named pipe in its place does not block the start-up.
+  const int file = ::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return false;
+  struct stat found {};
+  const bool fits = fstat(file, &found) == 0 && S_ISREG(found.st_mode) && found.st_size > 0 &&
+                    found.st_size < static_cast<off_t>(sizeof security.text);
+  const auto size = static_cast<std::size_t>(fits ? found.st_size : 0);
+  const bool complete = fits && ::read(file, security.text, size) == static_cast<ssize_t>(size);
+  (void)::close(file);
   if (complete) security.text[size] = '\0';
   return complete;
 }

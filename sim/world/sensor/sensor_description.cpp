@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -16,6 +14,7 @@
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/lidar/frame_rays.hpp"
 #include "gnc/numerics/crc.hpp"
+#include "sim/process/input_file.hpp"
 #include "sim/process/program_files.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/world/math/angles.hpp"
@@ -199,9 +198,12 @@ std::string path_of_shipped(const std::string& name) {
 }
 
 SensorDescription read_sensor(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw std::invalid_argument("sensor description " + path + " cannot be read");
-  return sensor_from_json({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, path);
+  constexpr InputKind kDescription{"sensor description", 1'000'000};
+  try {
+    return sensor_from_json(read_text(path, kDescription), path);
+  } catch (const InputRefused& refusal) {
+    throw std::invalid_argument(refusal.what());
+  }
 }
 
 std::string summary_of(const SensorDescription& sensor) {
@@ -285,7 +287,7 @@ std::string sensor_path(const std::string& name_or_file) {
 SensorDescription sensor_named(const std::string& name_or_file) {
   const std::string path = sensor_path(name_or_file);
   std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) return read_sensor(path);
+  if (std::filesystem::exists(path, error)) return read_sensor(path);
   throw std::invalid_argument(fmt::format("'{}' is neither a file nor a sensor that ships; those are: {}",
                                           name_or_file, fmt::join(sensor_names(), ", ")));
 }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
 #include "gnc/numerics/crc.hpp"
+#include "sim/process/input_file.hpp"
 #include "sim/process/program_files.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
 
@@ -57,9 +57,15 @@ void add_number(gnc::Crc32& crc, double number) {
 }
 
 void add_file(gnc::Crc32& crc, const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error("mesh '" + path + "' cannot be read");
-  add_text(crc, std::string{std::istreambuf_iterator<char>(in), {}});
+  const InputFile file(path, {"mesh", std::numeric_limits<std::uint32_t>::max()});
+  crc.add_u32(static_cast<std::uint32_t>(file.size()));
+  std::vector<std::uint8_t> block(1U << 20);
+  for (std::uint64_t at = 0; at < file.size();) {
+    const std::size_t count = file.read_at(at, block.data(), block.size());
+    if (count == 0) return;  // it has become shorter
+    crc.add(block.data(), count);
+    at += count;
+  }
 }
 
 void add_mesh(gnc::Crc32& crc, const Mission& mission) {
@@ -104,7 +110,7 @@ std::string mission_path(const std::string& name_or_file) {
 Mission mission_named(const std::string& name_or_file, const std::vector<std::string>& conditions) {
   const std::string path = mission_path(name_or_file);
   std::error_code error;
-  if (!fs::is_regular_file(path, error))
+  if (!fs::exists(path, error))
     throw std::invalid_argument("there is no mission '" + name_or_file + "'; give a TOML file, or one of " +
                                 list_of_names());
   return read_mission(path, conditions);

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "tests/support/hostile_files.hpp"
 #include "tests/unit/sim/campaign/campaign_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -119,6 +120,15 @@ TEST_F(CampaignFile, TooManyRunsAreRefused) {
     many += "]\n";
   }
   expect_refused(many, "more than 1000 runs; divide the campaign into several files");
+}
+
+TEST_F(CampaignFile, IsRefusedUnreadIfItIsNoFileOrTooLarge) {
+  expect_all_refused(".toml", [](const std::string& path) { (void)read_campaign(path); });
+}
+
+TEST_F(CampaignFile, ThatIsNestedDeeplyIsRefused) {
+  expect_refused("[[run]]\nsequences = 1\nrange = " + std::string(100'000, '['),
+                 "line 3: lists and tables are nested more than 16 deep");
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "gnc/numerics/crc.hpp"
 #include "sim/campaign/sequence_record.hpp"
+#include "tests/support/hostile_files.hpp"
 #include "tests/unit/sim/campaign/campaign_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -153,6 +155,29 @@ TEST_F(ShardFile, ItsSizeTellsTheNumberOfItsRecords) {
   EXPECT_EQ(records_in(path), 3U);
   EXPECT_EQ(records_in(folder_.path("none")), 0U);
   EXPECT_EQ(records_in(folder_.put("other", {1, 2, 3})), 0U);
+}
+
+TEST_F(ShardFile, IsRefusedIfItIsNoFileOrNoShard) {
+  expect_all_refused(".shard", [](const std::string& path) { (void)read_shard(path); });
+  // An empty file is one that was begun.
+  const HostileFiles hostile(".shard");
+  for (const HostileFile& file : hostile.files()) {
+    const Outcome header = outcome_of([&] { (void)header_of(file.path); });
+    const Outcome writer = outcome_of([&] { const ShardWriter begun(file.path, small_.header({0, 2})); });
+    for (const Outcome& outcome : {header, writer}) {
+      EXPECT_EQ(outcome.signal, 0) << file.kind;
+      EXPECT_EQ(outcome.message.empty(), file.kind == "empty") << file.kind << outcome.message;
+    }
+  }
+}
+
+TEST_F(ShardFile, WhoseHeaderIsNestedDeeplyIsRefused) {
+  const std::string json = R"({"shard": "0/1", "command": )" + std::string(30'000, '[');
+  const std::uint32_t crc = gnc::crc32(reinterpret_cast<const std::uint8_t*>(json.data()), json.size());
+  std::string bytes = "tumblesight shard 1\n" + json + "\n";
+  bytes.append(reinterpret_cast<const char*>(&crc), sizeof crc);
+  const std::string path = folder_.put("deep", {bytes.begin(), bytes.end()});
+  EXPECT_NE(error_of([&] { (void)read_shard(path); }).find("nested more than 32 deep"), std::string::npos);
 }
 
 }  // namespace

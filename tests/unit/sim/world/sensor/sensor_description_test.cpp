@@ -13,6 +13,7 @@
 #include "sim/world/math/angles.hpp"
 #include "sim/world/sensor/ray_effects.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
+#include "tests/support/hostile_files.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -252,6 +253,10 @@ TEST(SensorDescription, ATargetFillsTheViewWhereItsSwathDoes) {
   settings.fov_deg = 20.0;
   const double range_m = filling_range_m(settings, kSwath_m);
   EXPECT_NEAR(2.0 * range_m * std::tan(10.0 * kRadPerDeg), kSwath_m, 1e-9);
+}
+
+TEST(SensorDescription, IsRefusedUnreadIfItIsNoFileOrTooLarge) {
+  expect_all_refused(".json", [](const std::string& path) { (void)sensor_named(path); });
 }
 
 }  // namespace
