@@ -73,7 +73,7 @@ StoreFileCheck check_record(const char* path, const std::uint8_t* magic, std::si
 StoreFileCheck check_temporary(const char* temporary, const char* path) {
   const StoreFileCheck kind = check_kind(temporary);
   if (kind.status != StoreFileStatus::kUsable) return kind;
-  const int file = open(temporary, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  const int file = open(temporary, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600);
   if (file < 0) return {StoreFileStatus::kFailed, path, errno};
   (void)close(file);
   (void)unlink(temporary);
@@ -142,7 +142,8 @@ StoreStatus FilePersistentStore::read(int copy, StoredBytes& bytes) {
 
 StoreStatus FilePersistentStore::write(int copy, const StoredBytes& bytes) {
   const char* const temporary = temporaries_[copy];
-  const int file = open(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
+  // Non-blocking: a named pipe that has taken this name since it was checked has no reader.
+  const int file = open(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600);
   if (file < 0) return StoreStatus::kFailed;
   bool written = transfer_whole(file, bytes.data(), bytes.size(), ::write) && fsync(file) == 0;
   written = close(file) == 0 && written;

@@ -27,7 +27,7 @@ bool is_first_header(const std::uint8_t* bytes) {
 int check_overwriting(const char* path) {
   struct stat found {};
   if (stat(path, &found) != 0 || !S_ISREG(found.st_mode) || found.st_size == 0) return 0;
-  const int file = ::open(path, O_RDONLY | O_CLOEXEC);
+  const int file = ::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) return errno;
   std::uint8_t header[kHeaderBytes] = {};
   const ssize_t count = ::read(file, header, sizeof header);

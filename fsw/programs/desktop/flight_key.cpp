@@ -1,5 +1,9 @@
 #include "fsw/programs/desktop/flight_key.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cctype>
 #include <cerrno>
 #include <cstdio>
@@ -11,6 +15,7 @@
 namespace tumblesight::fsw::desktop {
 namespace {
 
+constexpr off_t kMostBytes = 4096;  // of a key's file: digits, and spaces between them
 constexpr std::size_t kDigits = 2 * std::tuple_size_v<hal::CommandKey>;
 
 // -1 if it is not a hexadecimal digit.
@@ -34,6 +39,23 @@ bool read_digits(std::FILE* file, hal::CommandKey& key) {
   return digits == kDigits;
 }
 
+// Null, with the reason, if it is no regular file. Does not wait for the writer of a pipe.
+std::FILE* opened(const char* path, const char*& reason) {
+  const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  struct stat found {};
+  if (file < 0 || fstat(file, &found) != 0) {
+    reason = strerrordesc_np(errno);
+  } else if (!S_ISREG(found.st_mode)) {
+    reason = "it is not a regular file; give a file";
+  } else if (found.st_size > kMostBytes) {
+    reason = "it has more than 4096 bytes, and a key has 64 hexadecimal digits: is it another file?";
+  } else {
+    return fdopen(file, "r");
+  }
+  if (file >= 0) (void)close(file);
+  return nullptr;
+}
+
 }  // namespace
 
 bool read_command_key(const char* path, hal::CommandKey& key) {
@@ -45,9 +67,10 @@ bool read_command_key(const char* path, hal::CommandKey& key) {
                  kProgramName);
     return true;
   }
-  std::FILE* const file = std::fopen(path, "r");
+  const char* reason = "no memory";
+  std::FILE* const file = opened(path, reason);
   if (file == nullptr) {
-    std::fprintf(stderr, "%s: --command-key %s: %s\n", kProgramName, path, strerrordesc_np(errno));
+    std::fprintf(stderr, "%s: --command-key %s: %s\n", kProgramName, path, reason);
     return false;
   }
   hal::CommandKey read{};
