@@ -2,13 +2,28 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "sim/json/json_text.hpp"
+#include "sim/process/input_file.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
+namespace {
+
+// None: there is no such file.
+std::optional<std::string> content_of(const std::string& path) {
+  constexpr InputKind kPlan{"plan of an adoption", 1'000'000};
+  try {
+    return read_text(path, kPlan);
+  } catch (const InputRefused& refusal) {
+    if (refusal.is_missing()) return std::nullopt;
+    throw;
+  }
+}
+
+}  // namespace
 
 void write_plan(const std::string& path, const AdoptionPlan& plan) {
   const nlohmann::ordered_json json{{"mission_crc32", plan.mission_crc32},
@@ -27,11 +42,11 @@ void write_plan(const std::string& path, const AdoptionPlan& plan) {
 
 std::optional<AdoptionPlan> read_plan(const std::string& path, std::uint32_t mission_crc32, double minutes,
                                       std::uint64_t seed) {
-  std::ifstream in(path);
-  if (!in) return std::nullopt;
+  const std::optional<std::string> text = content_of(path);
+  if (!text) return std::nullopt;
   AdoptionPlan plan;
   try {
-    const nlohmann::json json = nlohmann::json::parse(in);
+    const nlohmann::json json = parse_json(*text);
     plan.mission_crc32 = json.at("mission_crc32");
     plan.minutes = json.at("minutes");
     plan.seed = json.at("seed");
@@ -40,7 +55,7 @@ std::optional<AdoptionPlan> read_plan(const std::string& path, std::uint32_t mis
     plan.time = {json.at("cnn_s"), json.at("rcnn_s"), json.at("after_s"), json.at("sequences"),
                  json.at("calibration_sequences")};
     plan.elapsed_s = json.at("elapsed_s");
-  } catch (const nlohmann::json::exception&) {
+  } catch (const std::exception&) {
     throw std::runtime_error("'" + path +
                              "' is not the plan of an adoption; remove it, or choose another --out");
   }

@@ -3,21 +3,20 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "hal/dds/idl/development_key.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
+#include "sim/process/input_file.hpp"
 #include "sim/process/program_files.hpp"
 #include "sim/sil/interruption.hpp"
+#include "sim/sil/run_file.hpp"
 #include "sim/sil/signed_telecommand.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
@@ -64,8 +63,9 @@ std::string flight_path(const std::string& given) {
 
 // Keys and certificates, as in <PrivateKey>file:/path/key.pem</PrivateKey>.
 std::vector<std::string> files_of_security(const std::string& path) {
-  std::ifstream file(path);
-  const std::string text{std::istreambuf_iterator<char>(file), {}}, scheme = ">file:";
+  if (path.empty()) return {};
+  constexpr InputKind kSecurity{"file of --dds-security", sizeof hal::dds::SecurityElement::text};
+  const std::string text = read_text(path, kSecurity), scheme = ">file:";
   std::vector<std::string> files;
   for (std::size_t at = text.find(scheme); at != std::string::npos; at = text.find(scheme, at)) {
     at += scheme.size();
@@ -96,9 +96,7 @@ std::string flight_command_line(const SilSettings& settings) {
 
 // False also if the file could not be written, whatever else is there.
 bool is_recording_of_a_run(const std::string& path) {
-  std::array<char, 5> begin{};
-  return !path.empty() && std::ifstream(path, std::ios::binary).read(begin.data(), begin.size()) &&
-         std::string(begin.begin() + 1, begin.end()) == "MCAP";
+  return !path.empty() && RunFile::is_one(path);
 }
 
 }  // namespace
