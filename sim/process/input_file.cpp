@@ -28,7 +28,7 @@ InputFile::InputFile(const std::string& path, const InputKind& kind) : path_(pat
     const int reason = errno;
     if (reason == ENXIO) refuse("it is a socket or has no device; give a file");
     const bool is_missing = reason == ENOENT || reason == ENOTDIR;
-    refuse(is_missing ? "" : std::strerror(reason), is_missing);
+    refuse(std::strerror(reason), is_missing);
   }
   struct stat found {};
   const bool is_known = fstat(file_, &found) == 0;
@@ -49,7 +49,8 @@ InputFile::~InputFile() {
 
 void InputFile::refuse(const std::string& what, bool is_missing) const {
   const std::string start = name_ + " '" + path_ + "' cannot be read";
-  throw InputRefused(start + (is_missing ? "; give an existing file" : ": " + what), is_missing);
+  throw InputRefused(start + (is_missing ? "; give an existing file (" + what + ")" : ": " + what),
+                     is_missing);
 }
 
 std::size_t InputFile::read_at(std::uint64_t offset, void* bytes, std::size_t size) const {

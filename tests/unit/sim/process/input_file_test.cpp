@@ -73,7 +73,8 @@ TEST(InputFile, TellsAMissingFile) {
     FAIL() << "accepted";
   } catch (const InputRefused& refusal) {
     EXPECT_TRUE(refusal.is_missing());
-    EXPECT_STREQ(refusal.what(), "note '/no/such/file' cannot be read; give an existing file");
+    EXPECT_STREQ(refusal.what(),
+                 "note '/no/such/file' cannot be read; give an existing file (No such file or directory)");
   }
 }
 
