@@ -126,7 +126,7 @@ bool FlightBus::must_end(FlightEnd& end) {
   end = stop_reason();
   if (stop_requested()) return true;
   end = FlightEnd::kSilence;
-  if (stopwatch_.now_ns() - last_heard_ns_ > timeout_ns_) return true;
+  if (silence_.is_over(stopwatch_.now_ns())) return true;
   end = FlightEnd::kSimulatorGone;
   return endpoints_.simulator_gone();
 }

@@ -10,6 +10,7 @@
 #include "hal/dds/flight_endpoints.hpp"
 #include "hal/dds/idl/flight_end.hpp"
 #include "hal/dds/idl/step_content.hpp"
+#include "hal/dds/idl/wait_limit.hpp"
 #include "hal/dds/packet_output.hpp"
 #include "hal/stopwatch.hpp"
 
@@ -59,7 +60,7 @@ class FlightBus {
   void carry_commands(std::uint32_t k, StepContent* content);
   bool belongs(std::uint32_t run_id, std::uint32_t sample_k, std::uint32_t k, const StepContent* content);
   [[nodiscard]] bool check_writers(FlightEnd& end);
-  void heard_something() { last_heard_ns_ = stopwatch_.now_ns(); }
+  void heard_something() { silence_ = WaitLimit(stopwatch_.now_ns(), timeout_ns_); }
 
   FlightEndpoints& endpoints_;
   DdsLidar& lidar_;
@@ -69,7 +70,7 @@ class FlightBus {
   PacketOutput* packets_ = nullptr;
   LidarFrameSample frame_{};
   CycleOutput output_{};
-  std::uint64_t last_heard_ns_ = 0;
+  WaitLimit silence_;
   std::uint64_t timeout_ns_ = 0;
   std::uint32_t run_id_ = 0;
   std::uint32_t latest_frame_k_ = 0;

@@ -5,6 +5,7 @@
 namespace tumblesight::hal::dds {
 
 dds_return_t FlightEndpoints::open(const Domain& domain) {
+  domain_ = domain.id();
   waitset_ = dds_create_waitset(domain.participant());
   if (waitset_ < 0) return waitset_;
   dds_return_t result = hello_in.open(domain);

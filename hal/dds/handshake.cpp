@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include "hal/dds/idl/wait_limit.hpp"
 #include "hal/dds/stop_request.hpp"
 
 namespace tumblesight::hal::dds {
@@ -75,7 +76,9 @@ bool meet(FlightEndpoints& endpoints, std::uint32_t run_id, HandshakeResult& res
 bool ends_without_hello(const FlightEndpoints& endpoints, bool late, HandshakeResult& result) {
   // The hello of another release can be of another type. It never arrives then, but DDS reports the
   // mismatch.
-  if (endpoints.hello_in.saw_incompatible()) {
+  const Mismatch mismatch = endpoints.hello_in.latest_mismatch();
+  result.saw_other_run |= mismatch == Mismatch::kPartition;
+  if (mismatch == Mismatch::kInterface) {
     result.end = FlightEnd::kIcdUnequal;
     return true;
   }
@@ -98,26 +101,29 @@ HandshakeResult shake_hands(FlightEndpoints& endpoints, const HandshakeSettings&
                             Stopwatch& stopwatch) {
   HandshakeResult result;
   result.run_id = settings.run_id;
+  endpoints.life.show(endpoints.domain(), hello_of(settings, 0));
   if (!announce(endpoints, settings, 0)) {
     result.end = FlightEnd::kTransport;
     return result;
   }
   bool met = false;
-  const std::uint64_t begin_ns = stopwatch.now_ns();
+  WaitLimit limit(stopwatch.now_ns(), static_cast<std::uint64_t>(settings.timeout_ns));
   while (!met || !endpoints.bind(result.simulator)) {
-    if (!met) met = meet(endpoints, settings.run_id, result);
+    if (!met) {
+      met = meet(endpoints, settings.run_id, result);
+      if (met) endpoints.life.watch(endpoints.domain(), result.hello);
+    }
     if (met) result.fit = fit(hello_of(settings, 0), result.hello);
     if (result.fit != HelloFit::kFits) {
       wait_until_hello_is_read(endpoints, result.simulator, stopwatch);
       result.end = end_of(result.fit);
       return result;
     }
-    if (met && !endpoints.hello_in.bind(result.simulator)) {
+    if (met && (!endpoints.hello_in.bind(result.simulator) || endpoints.life.peer_ended())) {
       result.end = FlightEnd::kSimulatorGone;
       return result;
     }
-    const bool late = stopwatch.now_ns() - begin_ns > static_cast<std::uint64_t>(settings.timeout_ns);
-    if (ends_without_hello(endpoints, late, result)) return result;
+    if (ends_without_hello(endpoints, limit.is_over(stopwatch.now_ns()), result)) return result;
     usleep(kPoll_ns / 1000);
   }
   if (!announce(endpoints, settings, result.run_id)) result.end = FlightEnd::kTransport;

@@ -29,6 +29,7 @@ struct HandshakeResult {
   HelloSample hello{};                   // the simulator's
   HelloFit fit = HelloFit::kFits;        // what differs, if the two hellos were compared
   PeerKey simulator{};                   // all readers are bound to it
+  bool saw_other_run = false;            // in the same domain, in a partition of its own
   Foreigner foreigner{};                 // kForeign, kSecondFlight: who else announced itself
 };
 

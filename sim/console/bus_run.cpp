@@ -21,7 +21,7 @@ constexpr int kAnswerTimeout_ms = 5000;  // a run at the speed of flight takes r
 
 dds_entity_t checked(dds_entity_t entity) {
   if (entity < 0)
-    throw SilFailure(std::string("the console could not join the bus: ") + dds_strretcode(entity));
+    throw SilFailure(std::string("the console could not join the bus: ") + hal::dds::text_of_failure(entity));
   return entity;
 }
 
@@ -71,7 +71,7 @@ void BusRun::open(Connection& connection) {
 
 // Takes every sample of a topic. True: there was one.
 template <class Sample>
-bool BusRun::take(const Connection& connection, Sample& sample) {
+bool BusRun::take(Connection& connection, Sample& sample) {
   const hal::dds::Topic& topic = hal::dds::topic_of<Sample>();
   const dds_entity_t reader = reader_of<Sample>(connection.readers);
   std::vector<std::uint8_t> bytes;
@@ -80,6 +80,7 @@ bool BusRun::take(const Connection& connection, Sample& sample) {
     any = true;
     begin_recording();
     if (!read_cdr(bytes.data(), bytes.size(), sample)) continue;
+    if constexpr (std::is_same_v<Sample, hal::dds::HelloSample>) connection.watch_life(sample);
     show(sample);
     record([&](JoinedRecording& recording) {
       if constexpr (std::is_same_v<Sample, hal::dds::HelloSample>) {
@@ -123,7 +124,13 @@ void BusRun::show(const Sample& sample) {
   }
 }
 
-bool BusRun::take_samples(const Connection& connection) {
+// DDS tells late that the simulator was killed.
+void BusRun::Connection::watch_life(const hal::dds::HelloSample& hello) {
+  const bool is_simulator = hello.role == static_cast<std::uint8_t>(hal::dds::Role::kSimulator);
+  if (is_simulator && hello.run_id == secret.run_id) simulator_life.watch(domain.id(), hello);
+}
+
+bool BusRun::take_samples(Connection& connection) {
   bool any = false;
   each_topic([&](auto type, const char*) {
     using Sample = typename decltype(type)::type;
@@ -151,14 +158,15 @@ void BusRun::keep(const hal::dds::LidarFrameSample& sample) {
 
 // Until the simulator has left, and nothing has come since. One that was never seen on the bus is waited for
 // until its announcement is gone, or that of a newer run is there.
-void BusRun::follow(const Connection& connection, std::uint32_t domain) {
+void BusRun::follow(Connection& connection, std::uint32_t domain) {
   const dds_entity_t steps = reader_of<hal::dds::StepSample>(connection.readers);
   const auto late = std::chrono::steady_clock::now() + kUsualWait;
   bool had_simulator = false, is_noted = false;
   while (!is_stopping_) {
     dds_attach_t triggered[1];
     dds_waitset_wait(connection.waitset, triggered, 1, kPoll);
-    const bool has_simulator = dds_get_matched_publications(steps, nullptr, 0) > 0;
+    const bool has_simulator =
+        dds_get_matched_publications(steps, nullptr, 0) > 0 && !connection.simulator_life.peer_ended();
     const bool any = take_samples(connection);
     record([](JoinedRecording& recording) { recording.poll(); });
     had_simulator |= has_simulator || any;
@@ -171,8 +179,17 @@ void BusRun::follow(const Connection& connection, std::uint32_t domain) {
   log_.end();
 }
 
-bool BusRun::is_newest(std::uint32_t run_id) const {
-  const std::optional<AnnouncedRun> run = announced_run(domain_);
+std::optional<AnnouncedRun> BusRun::newest_run() {
+  try {
+    return announced_run(domain_);
+  } catch (const SilFailure& failure) {  // of the folder
+    note(failure.what());
+    return std::nullopt;
+  }
+}
+
+bool BusRun::is_newest(std::uint32_t run_id) {
+  const std::optional<AnnouncedRun> run = newest_run();
   return run && run->secret.run_id == run_id;
 }
 
@@ -204,7 +221,7 @@ void BusRun::join(std::optional<std::uint32_t> domain) {
 void BusRun::look_for_runs() {
   std::uint32_t last_run = 0;
   while (!is_stopping_) {
-    const std::optional<AnnouncedRun> run = announced_run(domain_);
+    const std::optional<AnnouncedRun> run = newest_run();
     if (run && run->secret.run_id != last_run) {
       last_run = followed_run_ = run->secret.run_id;
       try {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hal/dds/idl/domain.hpp"
+#include "hal/dds/idl/peer_life.hpp"
 #include "hal/dds/idl/topics.hpp"
 #include "sim/console/joined_recording.hpp"
 #include "sim/console/run_source.hpp"
@@ -48,20 +49,23 @@ class BusRun final : public RunSource {
   struct Connection {
     hal::dds::RunSecret secret;
     hal::dds::Domain domain;
+    hal::dds::PeerLife simulator_life;
     dds_entity_t participant = 0, waitset = 0;
     std::vector<std::pair<const hal::dds::Topic*, dds_entity_t>> readers;
+    void watch_life(const hal::dds::HelloSample& hello);
   };
   std::unique_ptr<Connection> connect(const AnnouncedRun& run) const;
   template <class Sample>
   static void open(Connection& connection);
   template <class Sample>
-  bool take(const Connection& connection, Sample& sample);
+  bool take(Connection& connection, Sample& sample);
   template <class Sample>
   void show(const Sample& sample);
-  bool take_samples(const Connection& connection);
+  bool take_samples(Connection& connection);
   void keep(const hal::dds::LidarFrameSample& sample);
-  void follow(const Connection& connection, std::uint32_t domain);
-  bool is_newest(std::uint32_t run_id) const;
+  void follow(Connection& connection, std::uint32_t domain);
+  std::optional<AnnouncedRun> newest_run();
+  bool is_newest(std::uint32_t run_id);
   void join(std::optional<std::uint32_t> domain);
   template <class Action>
   void record(const Action& action);

@@ -16,6 +16,9 @@ constexpr const char* kTopicPrefix = "rt/";
 // domain has a number beyond those of the protocol inside the process, and the external one on the bus.
 constexpr std::uint32_t kFirstInternalId = 1000;
 
+// ROS 2 nodes soon forget a console that was killed.
+constexpr const char* kLease = "3s";
+
 // The watermark is above the size of ten point clouds, so that a program that does not read delays nobody.
 std::string elements(std::uint32_t id) {
   return "<Discovery><ExternalDomainId>" + std::to_string(id) +
@@ -44,7 +47,7 @@ dds_qos_t* default_profile(const std::string& user_data) {
 Ros2Domain::Ros2Domain(std::uint32_t id) {
   const std::string problem = "ROS domain " + std::to_string(id) +
                               " cannot be joined on 127.0.0.1: there may be more than 33 programs in it";
-  check(domain_.open(kFirstInternalId + id, "", elements(id).c_str()), problem);
+  check(domain_.open(kFirstInternalId + id, "", elements(id).c_str(), kLease), problem);
 }
 
 Ros2Endpoint::Ros2Endpoint(const Ros2Domain& domain, const dds_topic_descriptor_t& type,

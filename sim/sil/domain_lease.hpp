@@ -1,32 +1,28 @@
-// DomainLease: a DDS domain for one run only, so that concurrent runs on a machine do not interfere. It is
-// held by a lock on a file in the temporary folder. The flight program inherits the file, so that the domain
-// stays reserved while either process lives. The system releases the lock however they end.
+// DomainLease: a DDS domain for one run only, so that concurrent runs on a machine do not interfere, whoever
+// starts them in whatever environment. It is held by a name of the machine (MachineName). The flight program
+// inherits it, so that the domain stays reserved while either process lives. The system frees it however they
+// end. Another user can hold domains, which then are taken, and no more.
 #pragma once
 
 #include <cstdint>
-#include <string>
+
+#include "hal/dds/idl/machine_name.hpp"
 
 namespace tumblesight::sim {
 
 class DomainLease {
  public:
-  // `wanted`: a domain, or -1 for a free one. Throws SilFailure if it is taken, none is free, or the lock
-  // file cannot be opened.
+  // `wanted`: a domain, or -1 for a free one. Throws SilFailure if it is taken, or none is free.
   explicit DomainLease(int wanted);
-  ~DomainLease();
-  DomainLease(const DomainLease&) = delete;
-  DomainLease& operator=(const DomainLease&) = delete;
 
   std::uint32_t domain() const { return domain_; }
-  // The lock file, which FlightProcess lets the child inherit.
-  int file() const { return file_; }
+  // The name's descriptor, which FlightProcess lets the child inherit.
+  int file() const { return name_.descriptor(); }
 
  private:
-  enum class Lock { kOurs, kTaken, kNoFile };
-  // errno holds the reason of kNoFile.
-  Lock try_lock(const std::string& folder, std::uint32_t domain);
+  bool take(std::uint32_t domain);  // false: it is taken
 
-  int file_ = -1;
+  hal::dds::MachineName name_;
   std::uint32_t domain_ = 0;
 };
 

@@ -1,7 +1,8 @@
 // RunAnnouncement: tells the user's other programs on this machine how to join a run: its DDS domain and
-// partition. It is a file in the temporary folder that only its owner can read, and that the simulator keeps
-// locked. The system releases the lock however the simulator ends, so that the file of a killed run is not
-// taken for the next run in its domain. Programs that only read the bus, as the console, find the run by it.
+// partition. It is a file in the user's RuntimeFolder that only its owner can read, and that the simulator
+// keeps locked. The system releases the lock however the simulator ends, so that the file of a killed run is
+// not taken for the next run in its domain. Programs that only read the bus, as the console, find the run by
+// it.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "hal/dds/idl/run_secret.hpp"
+#include "sim/sil/runtime_folder.hpp"
 
 namespace tumblesight::sim {
 
@@ -20,8 +22,15 @@ class RunAnnouncement {
   RunAnnouncement(const RunAnnouncement&) = delete;
   RunAnnouncement& operator=(const RunAnnouncement&) = delete;
 
+  // Why the run cannot be joined, with the file and the remedy; empty: it can.
+  const std::string& failure() const { return failure_; }
+
  private:
-  std::string path_;
+  void write(const RuntimeFolder& folder, const hal::dds::RunSecret& secret);
+  bool is_still_ours() const;
+
+  std::string name_, failure_;
+  std::optional<RuntimeFolder> folder_;
   int file_ = -1;  // locked until the end of the run
 };
 
@@ -29,7 +38,8 @@ struct AnnouncedRun {
   std::uint32_t domain;
   hal::dds::RunSecret secret;
 };
-// The newest run of this user that is going on, or the one in this domain. `domain`: -1: any.
+// The newest run of this user that is going on, or the one in this domain. `domain`: -1: any. Throws
+// SilFailure that names the RuntimeFolder if it cannot be used.
 std::optional<AnnouncedRun> announced_run(int domain);
 
 }  // namespace tumblesight::sim

@@ -10,14 +10,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <system_error>
 
 #include "hal/messages/command_packet.hpp"
 #include "sim/json/json_text.hpp"
 #include "sim/sil/failure.hpp"
+#include "sim/sil/runtime_folder.hpp"
 #include "sim/sil/telecommand_table.hpp"
 
 namespace tumblesight::sim {
@@ -31,11 +30,17 @@ constexpr const char* kNotAnswered =
     "the run has not taken the request in time, and will not carry it out: it is paused, or its steps take "
     "longer than that";
 
+std::string name_of(std::uint32_t domain) {
+  return "domain-" + std::to_string(domain) + ".control";
+}
+
+// Empty: the user has no folder for it.
 std::string path_of(std::uint32_t domain) {
-  std::error_code no_folder;
-  const std::string folder = std::filesystem::temp_directory_path(no_folder);
-  if (no_folder) return {};
-  return folder + "/tumblesight-domain-" + std::to_string(domain) + ".control";
+  try {
+    return RuntimeFolder().path_of(name_of(domain));
+  } catch (const SilFailure&) {
+    return {};
+  }
 }
 
 // False: the path is too long for a socket.
@@ -100,11 +105,10 @@ RunControl::RunControl(std::uint32_t domain) : path_(path_of(domain)) {
   if (!address_of(path_, address)) return;
   socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   unlink(path_.c_str());  // of a run that was killed
-  const mode_t before = umask(0177);
+  // Nobody can connect before listen(). umask() would also change that of the other threads.
   const bool is_bound =
       socket_ >= 0 && bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  umask(before);
-  if (is_bound && listen(socket_, kMostWaiting) == 0) return;
+  if (is_bound && chmod(path_.c_str(), 0600) == 0 && listen(socket_, kMostWaiting) == 0) return;
   if (socket_ >= 0) close(socket_);
   socket_ = -1;
 }
@@ -211,7 +215,8 @@ std::string ask_run(std::uint32_t domain, const std::string& request, int timeou
       if (socket >= 0) close(socket);
     }
   } closer{socket};
-  if (socket < 0 || !address_of(path_of(domain), address))
+  const std::string path = RuntimeFolder().path_of(name_of(domain));
+  if (socket < 0 || !address_of(path, address))
     throw SilFailure("the run takes no requests: it has ended, or is of another version");
   const int connected = connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address);
   if (connected != 0 && errno == EAGAIN) throw SilFailure(kNotAnswered);  // too many wait before

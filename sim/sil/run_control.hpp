@@ -1,6 +1,6 @@
 // RunControl: takes requests of the user's other programs into a run that goes on: telecommands, which the
-// run numbers and signs, and faults of the sensor. It is a socket in the temporary folder that only its owner
-// can use, beside the announcement of the run (RunAnnouncement).
+// run numbers and signs, and faults of the sensor. It is a socket in the user's RuntimeFolder that only its
+// owner can use, beside the announcement of the run (RunAnnouncement).
 //
 // A request is a line of JSON, and so is its answer:
 //   {"function": 3, "arguments": "02"}      a function code and its arguments as hexadecimal digits

@@ -20,7 +20,8 @@ constexpr std::size_t kTruthsKept = 16;  // a free-running flight program answer
 
 void check(dds_return_t result) {
   if (result < 0)
-    throw SilFailure(std::string("the recording could not join the bus: ") + dds_strretcode(result));
+    throw SilFailure(std::string("the recording could not join the bus: ") +
+                     hal::dds::text_of_failure(result));
 }
 
 template <class Sample>

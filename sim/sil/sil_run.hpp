@@ -27,7 +27,7 @@ struct SilSettings {
   double speed = 0.0;            // times real time; 0: as fast as possible
   bool free_running = false;     // flight on its own timer, 2.7 s divided by speed, not in lockstep
   bool ego_motion = true;        // the flight program is told the chaser's attitude at each exposure
-  double step_timeout_s = 10.0;  // wall clock; a step without an answer by then ends the run
+  double step_timeout_s = 60.0;  // wall clock; a step without an answer by then ends the run
   std::string flight_log_path;   // file for the flight program's messages; empty: our own output
   std::string mcap_path;         // file for a recording of the run; empty: none
   double swath_m = 0.0;          // of the truth's displacement from the boresight, for the recording

@@ -9,17 +9,40 @@
 
 #include "hal/dds/idl/icd_hash.hpp"
 #include "hal/dds/idl/step_content.hpp"
+#include "hal/dds/idl/wait_limit.hpp"
 #include "sim/sil/interruption.hpp"
 #include "sim/sil/step_samples.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 using namespace std::chrono_literals;
 using hal::dds::Role;
+using hal::dds::WaitLimit;
 
 constexpr auto kPoll = 20ms;
+constexpr auto kLook = 200ms;
 constexpr double kEndGrace_s = 3.0;
+
+std::uint64_t now_ns() {
+  return static_cast<std::uint64_t>(
+      std::chrono::nanoseconds(SilSession::Clock::now().time_since_epoch()).count());
+}
+
+WaitLimit limit_of(double limit_s) {
+  return {now_ns(), static_cast<std::uint64_t>(1e9 * limit_s)};
+}
+
+// As Ctrl-Z and a debugger stop a program.
+bool is_stopped(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  // "pid (name) state ...": the name can hold any character; the last ')' ends it.
+  const std::size_t end = text.rfind(") ");
+  return end != std::string::npos && end + 2 < text.size() && (text[end + 2] == 'T' || text[end + 2] == 't');
+}
 
 // A flight program that the user starts does not know a secret, so it meets us in the default partition.
 hal::dds::RunSecret make_secret(bool with_partition) {
@@ -74,18 +97,20 @@ SilSession::SilSession(const SilSettings& settings)
                      std::to_string(sizeof security->text) + " bytes or more");
   const dds_return_t result = domain_.open(lease_.domain(), secret_.partition, security->text);
   if (result != 0) {
-    throw SilFailure(
-        "DDS domain " + std::to_string(lease_.domain()) + " could not be opened: " + dds_strretcode(result) +
-        (settings_.security_path.empty()
-             ? ""
-             : "; is --dds-security " + settings_.security_path + " a file of hal/dds/make_security?"));
+    throw SilFailure("DDS domain " + std::to_string(lease_.domain()) +
+                     " could not be opened: " + hal::dds::text_of_failure(result) +
+                     (settings_.security_path.empty() ? ""
+                                                      : "; is --dds-security " + settings_.security_path +
+                                                            " a file of hal/dds/make_security?"));
   }
   endpoints_ = std::make_unique<SimulatorEndpoints>(domain_);
   answers_ = std::make_unique<AnswerCollector>(*endpoints_, secret_.run_id);
   announcement_ = std::make_unique<RunAnnouncement>(lease_.domain(), secret_);
+  if (!announcement_->failure().empty()) print_note(announcement_->failure());
   // Before the flight program starts, so that it finds the recording as early as the other endpoints.
   if (!settings_.mcap_path.empty())
     recorder_ = std::make_unique<RunRecorder>(domain_, settings_.mcap_path, settings_.swath_m);
+  life_.show(lease_.domain(), hello());
   write(endpoints_->hello_out, hello());
   if (!settings_.flight_path.empty()) start_flight();
   shake_hands();
@@ -182,16 +207,19 @@ void SilSession::bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKe
   if (flight_ && !hal::dds::same_peer(*flight_, from))
     throw SilFailure("two flight programs are on DDS domain " + std::to_string(lease_.domain()) +
                      ": end one of them, or give this run and its flight program another --domain");
+  if (!process_ && !flight_) life_.watch(lease_.domain(), hello);
   flight_ = from;
 }
 
 void SilSession::shake_hands() {
-  const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.step_timeout_s);
+  WaitLimit limit = limit_of(settings_.step_timeout_s);
   while (!flight_ready_ || !endpoints_->bind(*flight_) || (recorder_ && !recorder_->has_writers())) {
     require_not_interrupted();
     read_hello();
     require_no_foreigner();
-    if (endpoints_->hello_in.saw_incompatible()) {
+    const hal::dds::Mismatch mismatch = endpoints_->hello_in.latest_mismatch();
+    other_run_seen_ |= mismatch == hal::dds::Mismatch::kPartition;
+    if (mismatch == hal::dds::Mismatch::kInterface) {
       throw SilFailure(
           "the hello of the flight program has another type: build both from the same tumblesight.idl");
     }
@@ -199,15 +227,24 @@ void SilSession::shake_hands() {
       read_hello();  // the last one may have arrived in between
       fail("the flight program " + process_->how_it_ended());
     }
-    if (Clock::now() > deadline) {
+    if (!process_ && life_.peer_ended()) fail_flight_ended();
+    if (limit.is_over(now_ns())) {
       if (flight_ready_ && endpoints_->bind(*flight_))
         fail("the recording of --mcap does not find the topics of the run on the bus");
-      fail(process_ ? "the flight program was started but did not announce itself"
-                    : "no flight program announced itself in DDS domain " + std::to_string(lease_.domain()) +
-                          "; start one with --domain " + std::to_string(lease_.domain()));
+      fail_without_hello();
     }
     endpoints_->wait_for_data(1'000'000);
   }
+}
+
+void SilSession::fail_without_hello() const {
+  const std::string domain = std::to_string(lease_.domain());
+  const std::string other_run =
+      other_run_seen_ ? "; another run is in DDS domain " + domain + ": give this one another --domain" : "";
+  fail((process_ ? "the flight program was started but did not announce itself"
+                 : "no flight program announced itself in DDS domain " + domain +
+                       "; start one with --domain " + domain) +
+       other_run);
 }
 
 // The run must not go on: who writes to our topics could also delay or suppress what flight writes.
@@ -223,7 +260,7 @@ void SilSession::fail(const std::string& what) const {
 }
 
 bool SilSession::flight_ended() {
-  return (process_ && !process_->running()) || endpoints_->flight_gone();
+  return (process_ && !process_->running()) || endpoints_->flight_gone() || life_.peer_ended();
 }
 
 // The exit status is known only of a flight program that we started.
@@ -235,8 +272,11 @@ bool SilSession::flight_ended_after_last_step() {
 void SilSession::fail_flight_ended() const {
   require_not_interrupted();  // a terminal sends the signal to both programs
   const std::string step = next_k_ == 0 ? "before step 0" : "at step " + std::to_string(next_k_ - 1);
+  if (!process_ && life_.peer_ended())
+    fail("the flight program has ended " + step + "; see its messages, and start both again");
   if (!process_ || !process_->ended())
-    fail("the connection to the flight program was lost " + step + "; start both again");
+    fail("the connection to the flight program was lost " + step +
+         ": it has left the bus, or one of the two programs was paused for an hour; start both again");
   fail("the flight program " + process_->how_it_ended() + ", " + step + "; see its messages, and run again");
 }
 
@@ -285,13 +325,16 @@ void SilSession::send(const StepInput& input) {
   if (recorder_) recorder_->add(input.frames, input.time_ns);
 }
 
+// Lockstep has no reason to end with a pause of this program, which therefore does not count.
 StepAnswer SilSession::wait_for_answer(std::uint32_t k) {
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                           std::chrono::duration<double>(settings_.step_timeout_s));
-  if (const std::optional<StepAnswer> answer = next_answer(deadline)) return *answer;
-  if (flight_ended()) fail_flight_ended();
+  WaitLimit limit = limit_of(settings_.step_timeout_s);
+  do {
+    if (const std::optional<StepAnswer> answer = next_answer(Clock::now() + kLook)) return *answer;
+    if (flight_ended()) fail_flight_ended();
+  } while (!limit.is_over(now_ns()));
   fail("the flight program did not answer step " + std::to_string(k) + " within " +
-       std::to_string(settings_.step_timeout_s) + " s of wall-clock time");
+       std::to_string(settings_.step_timeout_s) + " s of wall-clock time" +
+       (process_ && is_stopped(process_->pid()) ? ": it is stopped, by a signal or a debugger" : ""));
 }
 
 std::optional<StepAnswer> SilSession::collect_answer() {

@@ -14,6 +14,7 @@
 #include "gnc/tracking/chaser_attitude.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/hello.hpp"
+#include "hal/dds/idl/peer_life.hpp"
 #include "hal/dds/idl/run_secret.hpp"
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/mode.hpp"
@@ -74,6 +75,7 @@ class SilSession {
   void start_flight();
   void shake_hands();
   void read_hello();
+  [[noreturn]] void fail_without_hello() const;
   std::string difference_to(const hal::dds::HelloSample& flight) const;
   void wait_for_refusal_of(const hal::dds::PeerKey& flight);
   void bind(const hal::dds::HelloSample& hello, const hal::dds::PeerKey& from);
@@ -91,6 +93,7 @@ class SilSession {
   hal::dds::Domain domain_;
   std::unique_ptr<SimulatorEndpoints> endpoints_;
   std::unique_ptr<AnswerCollector> answers_;
+  hal::dds::PeerLife life_;  // of a flight program that is not our child process
   std::unique_ptr<RunAnnouncement> announcement_;
   std::unique_ptr<RunRecorder> recorder_;  // none: the run is not recorded
   AnswerCheck check_;
@@ -101,6 +104,7 @@ class SilSession {
   bool last_sent_ = false;
   std::optional<hal::dds::PeerKey> flight_;  // of the first hello
   bool flight_ready_ = false;                // it has found this run
+  bool other_run_seen_ = false;              // in the domain, in another partition
   hal::Mode flight_mode_ = hal::Mode::kBoot;
 };
 

@@ -209,7 +209,8 @@ TEST(Console, LeavesARunThatItCannotReachForANewerOne) {
   // The announcements of this test are in a folder of their own, so that no other run is newer.
   const std::string folder = test::temporary_path("runs");
   std::filesystem::create_directories(folder);
-  const test::Environment runs("TMPDIR", folder);
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
+  const test::Environment runs("XDG_RUNTIME_DIR", folder);
   hal::dds::RunSecret secret;
   ASSERT_TRUE(hal::dds::make_run_secret(secret));
   const RunAnnouncement unreachable(static_cast<std::uint32_t>(domain), secret);

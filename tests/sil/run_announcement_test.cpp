@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "sim/sil/domain_lease.hpp"
+#include "sim/sil/runtime_folder.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -21,8 +22,7 @@ class Announcement : public testing::Test {
   Announcement() {
     EXPECT_TRUE(hal::dds::make_run_secret(secret_));
     lease_.emplace(test::spare_domain());
-    path_ = std::filesystem::temp_directory_path().string() + "/tumblesight-domain-" +
-            std::to_string(lease_->domain()) + ".run";
+    path_ = RuntimeFolder().path_of("domain-" + std::to_string(lease_->domain()) + ".run");
   }
   int domain() const { return static_cast<int>(lease_->domain()); }
 
@@ -67,6 +67,58 @@ TEST_F(Announcement, OfAKilledRunIsNotTakenForTheNextRun) {
   const std::optional<AnnouncedRun> run = announced_run(domain());
   ASSERT_TRUE(run);
   EXPECT_EQ(run->secret.run_id, secret_.run_id);
+}
+
+// In a folder that only the user can write to, so by the user's own mistake. The console does not wait for
+// it.
+TEST_F(Announcement, WhoseNameIsTakenByAFifoOrALinkIsMadeAllTheSame) {
+  const std::string elsewhere = test::temporary_path("elsewhere");
+  for (const bool is_fifo : {true, false}) {
+    if (is_fifo) {
+      ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
+    } else {
+      std::filesystem::create_symlink(elsewhere, path_);
+    }
+    EXPECT_FALSE(announced_run(domain()));
+    const RunAnnouncement announcement(lease_->domain(), secret_);
+    EXPECT_EQ(announcement.failure(), "");
+    EXPECT_TRUE(announced_run(domain()));
+    EXPECT_FALSE(std::filesystem::exists(elsewhere));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+TEST_F(Announcement, WhoseNameIsTakenByAFolderIsMissedWithTheReason) {
+  ASSERT_EQ(mkdir(path_.c_str(), 0700), 0);
+  EXPECT_FALSE(announced_run(domain()));
+  {
+    const RunAnnouncement announcement(lease_->domain(), secret_);
+    EXPECT_NE(announcement.failure().find(path_ + " cannot be written"), std::string::npos)
+        << announcement.failure();
+    EXPECT_FALSE(announced_run(domain()));
+  }
+  EXPECT_TRUE(std::filesystem::remove(path_));
+}
+
+TEST_F(Announcement, OfAnotherUserIsIgnored) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give a file to another user";
+  const std::string text = to_text(secret_).text;
+  test::write_file(path_, {text.begin(), text.end()});
+  const int file = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(flock(file, LOCK_EX | LOCK_NB), 0);
+  EXPECT_TRUE(announced_run(domain()));
+  ASSERT_EQ(chown(path_.c_str(), 65534, 65534), 0);
+  EXPECT_FALSE(announced_run(domain()));
+  close(file);
+  std::filesystem::remove(path_);
+}
+
+// The file of a run in another network namespace may have the same name.
+TEST_F(Announcement, RemovesNoFileButItsOwn) {
+  std::optional<RunAnnouncement> first(std::in_place, lease_->domain(), secret_);
+  const RunAnnouncement second(lease_->domain(), secret_);
+  first.reset();
+  EXPECT_TRUE(announced_run(domain()));
 }
 
 // As a simulator locks its own.

@@ -14,6 +14,7 @@
 
 #include "sim/sil/domain_lease.hpp"
 #include "sim/sil/failure.hpp"
+#include "sim/sil/runtime_folder.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -38,8 +39,7 @@ class Control : public testing::Test {
  protected:
   Control() : lease_(test::spare_domain()), control_(std::make_unique<RunControl>(lease_.domain())) {}
   std::string path() const {
-    return std::filesystem::temp_directory_path().string() + "/tumblesight-domain-" +
-           std::to_string(lease_.domain()) + ".control";
+    return RuntimeFolder().path_of("domain-" + std::to_string(lease_.domain()) + ".control");
   }
   // As a console asks while the run goes on.
   std::string ask(const std::string& request) {
@@ -171,6 +171,15 @@ TEST_F(Control, EndsWithTheRun) {
   control_.reset();
   EXPECT_FALSE(std::filesystem::exists(path()));
   EXPECT_THROW(ask_run(lease_.domain(), "{}", 100), SilFailure);
+}
+
+// Nobody waits for what is no socket.
+TEST_F(Control, WhoseNameIsTakenByAFifoIsMadeAllTheSame) {
+  control_.reset();
+  ASSERT_EQ(mkfifo(path().c_str(), 0600), 0);
+  EXPECT_THROW(ask_run(lease_.domain(), "{}", 100), SilFailure);
+  control_ = std::make_unique<RunControl>(lease_.domain());
+  EXPECT_EQ(ask(R"({"function":1,"arguments":""})"), R"({"step":41})");
 }
 
 TEST_F(Control, AnAnswerIsNotWaitedForWithoutEnd) {

@@ -1,7 +1,5 @@
 #include "tests/sil/sil_test_support.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -20,6 +19,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "hal/dds/idl/machine_name.hpp"
+#include "sim/sil/runtime_folder.hpp"
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/math/random.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
@@ -62,14 +63,11 @@ pid_t parent_of(pid_t pid) {
 
 // For this process until its end, so that concurrent tests do not meet. DomainLease is the run's own.
 bool reserve(int domain) {
-  const std::string path =
-      fs::temp_directory_path() / ("tumblesight-test-domain-" + std::to_string(domain) + ".lock");
-  // As in DomainLease: in a sticky directory Linux may refuse to "create" a file of another user.
-  int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) file = open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644);
-  if (file < 0) throw SilFailure(path + " cannot be opened: " + std::strerror(errno));
-  if (flock(file, LOCK_EX | LOCK_NB) == 0) return true;
-  close(file);
+  static std::deque<hal::dds::MachineName> held;
+  const int error = held.emplace_back().hold(("tumblesight-test-domain-" + std::to_string(domain)).c_str());
+  if (error == 0) return true;
+  held.pop_back();
+  if (error != EADDRINUSE) throw SilFailure(std::string("no test domain: ") + std::strerror(error));
   return false;
 }
 
@@ -232,7 +230,7 @@ void leave_announcement_of_killed_run(int domain) {
   }
   int status = -1;
   const bool has_ended = child > 0 && waitpid(child, &status, 0) == child && status == 0;
-  const fs::path file = fs::temp_directory_path() / ("tumblesight-domain-" + std::to_string(domain) + ".run");
+  const fs::path file = RuntimeFolder().path_of("domain-" + std::to_string(domain) + ".run");
   std::error_code none;
   if (!has_ended || fs::file_size(file, none) == 0 || none)
     throw SilFailure("no announcement of a killed run");

@@ -95,7 +95,8 @@ FlightEnd connect(const FlightOptions& options) {
   dds_return_t result = domain.open(options.domain, options.partition, security.text);
   if (result == 0) result = endpoints.open(domain);
   if (result == 0) return FlightEnd::kComplete;
-  std::fprintf(stderr, "%s: DDS domain %u: %s\n", kProgramName, options.domain, dds_strretcode(result));
+  std::fprintf(stderr, "%s: DDS domain %u: %s\n", kProgramName, options.domain,
+               hal::dds::text_of_failure(result));
   return FlightEnd::kTransport;
 }
 
@@ -134,6 +135,12 @@ hal::dds::HandshakeResult meet_simulator(const FlightOptions& options, std::int6
   settings.timeout_ns = timeout_ns;
   const hal::dds::HandshakeResult met = hal::dds::shake_hands(endpoints, settings, stopwatch);
   report_difference(options, met);
+  if (met.end == FlightEnd::kSilence && met.saw_other_run)
+    std::fprintf(
+        stderr,
+        "%s: note: another run is in DDS domain %u, with a flight program of its own; give this program "
+        "and its simulator another --domain\n",
+        kProgramName, options.domain);
   return met;
 }
 

@@ -1,6 +1,9 @@
 #include "hal/dds/idl/domain.hpp"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -24,13 +27,25 @@ constexpr const char* kConfiguration = R"(
     <ParticipantIndex>auto</ParticipantIndex>
     <MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
     <Peers><Peer address="127.0.0.1"/></Peers>
-    <LeaseDuration>3s</LeaseDuration>
+    <LeaseDuration>%s</LeaseDuration>
     <SPDPInterval>500ms</SPDPInterval>
   </Discovery>
   <Internal><WriterLingerDuration>100ms</WriterLingerDuration></Internal>
 )";
 constexpr const char* kConfigurationEnd = "</Domain></CycloneDDS>";
 constexpr std::size_t kMaxConfiguration = 2048;  // without the further elements
+
+// A port of 127.0.0.1 can be had only while the interface is up and has the address.
+bool has_loopback() {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket < 0) return false;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const bool is_bound = bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  close(socket);
+  return is_bound;
+}
 
 }  // namespace
 
@@ -48,14 +63,20 @@ bool read_security(const char* path, SecurityElement& security) {
   return complete;
 }
 
-dds_return_t Domain::open(std::uint32_t id, const char* partition, const char* further) {
+const char* text_of_failure(dds_return_t code) {
+  if (has_loopback()) return dds_strretcode(code);
+  return "the loopback interface lo is down, or has no address 127.0.0.1; as root: ip link set lo up";
+}
+
+dds_return_t Domain::open(std::uint32_t id, const char* partition, const char* further, const char* lease) {
   id_ = id;
   partition_ = partition;
   char configuration[kMaxConfiguration + sizeof(SecurityElement)];
-  const int length = std::snprintf(configuration, sizeof configuration, "%s%s%s", kConfiguration, further,
-                                   kConfigurationEnd);
-  if (length < 0 || static_cast<std::size_t>(length) >= sizeof configuration)
-    return DDS_RETCODE_BAD_PARAMETER;
+  const int begin = std::snprintf(configuration, kMaxConfiguration, kConfiguration, lease);
+  if (begin < 0 || static_cast<std::size_t>(begin) >= kMaxConfiguration) return DDS_RETCODE_BAD_PARAMETER;
+  const std::size_t left = sizeof configuration - static_cast<std::size_t>(begin);
+  const int length = std::snprintf(configuration + begin, left, "%s%s", further, kConfigurationEnd);
+  if (length < 0 || static_cast<std::size_t>(length) >= left) return DDS_RETCODE_BAD_PARAMETER;
   domain_ = dds_create_domain(id, configuration);
   if (domain_ < 0) return domain_;
   participant_ = dds_create_participant(id, nullptr, nullptr);

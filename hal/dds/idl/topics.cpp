@@ -132,9 +132,11 @@ bool BoundReader::take_untyped(void* sample, dds_instance_handle_t& writer) {
   return false;
 }
 
-bool saw_incompatible_writer(dds_entity_t reader) {
+Mismatch latest_mismatch(dds_entity_t reader) {
   dds_requested_incompatible_qos_status_t status{};
-  return dds_get_requested_incompatible_qos_status(reader, &status) == 0 && status.total_count > 0;
+  if (dds_get_requested_incompatible_qos_status(reader, &status) != 0 || status.total_count == 0)
+    return Mismatch::kNone;
+  return status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID ? Mismatch::kPartition : Mismatch::kInterface;
 }
 
 bool wait_for_acknowledgment(dds_entity_t writer, std::int64_t timeout_ns) {

@@ -70,8 +70,13 @@ dds_entity_t create_writer(const Domain& domain, const Topic& topic);
 dds_entity_t create_reader(const Domain& domain, const Topic& topic);
 // Of another participant of the domain (Domain::join()).
 dds_entity_t create_reader(const Domain& domain, dds_entity_t participant, const Topic& topic);
-// Whether a peer has the topic with another type or quality of service; such endpoints never match.
-bool saw_incompatible_writer(dds_entity_t reader);
+// What kept a writer of the topic from a reader. Such endpoints never match.
+enum class Mismatch {
+  kNone,
+  kPartition,  // it belongs to another run in the domain
+  kInterface,  // another type or quality of service: it was built from another interface definition
+};
+Mismatch latest_mismatch(dds_entity_t reader);
 // Waits until all readers have acknowledged all samples. False: timeout.
 bool wait_for_acknowledgment(dds_entity_t writer, std::int64_t timeout_ns);
 
@@ -105,7 +110,7 @@ class BoundReader {
     return describe_foreigner(name_, entity_, participant);
   }
 
-  bool saw_incompatible() const { return saw_incompatible_writer(entity_); }
+  Mismatch latest_mismatch() const { return dds::latest_mismatch(entity_); }
   dds_entity_t entity() const { return entity_; }
 
  protected:

@@ -1,0 +1,156 @@
+// A pause of a program, as Ctrl-Z, a debugger or a frozen container makes it, ends no run in lockstep.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <initializer_list>
+#include <thread>
+
+#include "sim/process/child_process.hpp"
+#include "sim/sil/flight_process.hpp"
+#include "tests/sil/sil_test_support.hpp"
+
+namespace tumblesight::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+// The time after which DDS formerly gave up a program was 3 s.
+constexpr auto kPause = 4500ms;
+
+void pause(std::initializer_list<pid_t> processes) {
+  for (const pid_t process : processes) ASSERT_EQ(kill(process, SIGSTOP), 0);
+  std::this_thread::sleep_for(kPause);
+  for (const pid_t process : processes) ASSERT_EQ(kill(process, SIGCONT), 0);
+}
+
+void expect_goes_on(test::Conversation& conversation) {
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(conversation.step().k, conversation.k - 1);
+  EXPECT_EQ(conversation.finish().telemetry.heap_allocations, 0U);
+}
+
+// Verifies TS-SIL-010.
+TEST(Pause, OfFlightBetweenStepsEndsNoRun) {
+  test::Conversation conversation(test::settings());
+  conversation.step();
+  pause({conversation.session.flight_pid()});
+  expect_goes_on(conversation);
+}
+
+// Verifies TS-SIL-010.
+TEST(Pause, OfFlightWithinAStepEndsNoRun) {
+  test::Conversation conversation(test::settings());
+  conversation.step();
+  std::thread pausing([&] { pause({conversation.session.flight_pid()}); });
+  std::this_thread::sleep_for(50ms);
+  conversation.step();
+  pausing.join();
+  expect_goes_on(conversation);
+}
+
+// `tumblesight simulate` with its flight program, in a process group of their own as a shell starts it.
+class Simulation {
+ public:
+  Simulation()
+      : log_(test::temporary_path("simulate.log")),
+        process_(TUMBLESIGHT_PROGRAM,
+                 {"simulate", "--sequences", "3", "--speed", "10", "--domain",
+                  std::to_string(test::spare_domain()), "--report", test::temporary_path("report.html")},
+                 log_, -1, {}, "", ProcessGroup::kOwn) {}
+  pid_t pid() const { return process_.pid(); }
+  // Which simulates: `tumblesight` starts it, or becomes it.
+  void let_run() { std::this_thread::sleep_for(3s); }
+  void expect_complete() {
+    EXPECT_TRUE(process_.wait_for_end(20.0));
+    EXPECT_TRUE(process_.ended_well()) << test::read_file(log_);
+  }
+
+ private:
+  std::string log_;
+  ChildProcess process_;
+};
+
+// Ctrl-Z stops the whole group. Verifies TS-SIL-010.
+TEST(Pause, OfBothEndsNoRun) {
+  Simulation simulation;
+  simulation.let_run();
+  pause({-simulation.pid()});
+  simulation.expect_complete();
+}
+
+// Verifies TS-SIL-010.
+TEST(Pause, OfTheSimulatorEndsNoRun) {
+  Simulation simulation;
+  simulation.let_run();
+  pause({simulation.pid()});
+  simulation.expect_complete();
+}
+
+// It misses releases, which it counts.
+TEST(Pause, OfAFlightProgramThatRunsFreelyIsCounted) {
+  SilSettings settings = test::shipped_settings();
+  settings.free_running = true;
+  settings.speed = 10.0;
+  std::thread pausing;
+  const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, test::sequences(3, 1),
+                                   [&](std::uint32_t done, std::uint32_t) {
+                                     if (done == 3)
+                                       pausing = std::thread([] { pause({test::flight_child()}); });
+                                   });
+  if (pausing.joinable()) pausing.join();
+  EXPECT_EQ(run.failure, "");
+  EXPECT_GT(run.steps_missed + run.frames_superseded, 0U);
+  EXPECT_NE(test::read_file(settings.flight_log_path).find("releases of the flight task slipped"),
+            std::string::npos);
+}
+
+// A flight program that the user has started is no child of the simulator.
+struct ByHand {
+  SilSettings settings = test::settings();
+  FlightProcess flight;
+  ByHand()
+      : settings(with_domain()),
+        flight(settings.flight_path,
+               {"--domain", std::to_string(settings.domain), "--target", settings.target, "--model",
+                settings.model_path},
+               settings.flight_log_path) {
+    settings.flight_path.clear();
+  }
+  static SilSettings with_domain() {
+    SilSettings result = test::settings();
+    result.domain = test::spare_domain();
+    return result;
+  }
+};
+
+// Verifies TS-SIL-010.
+TEST(Pause, OfAFlightProgramOfTheUserEndsNoRun) {
+  ByHand by_hand;
+  test::Conversation conversation(by_hand.settings);
+  conversation.step();
+  pause({by_hand.flight.pid()});
+  expect_goes_on(conversation);
+}
+
+// Verifies TS-SIL-040.
+TEST(Pause, IsToldFromTheDeathOfAFlightProgramOfTheUser) {
+  ByHand by_hand;
+  test::Conversation conversation(by_hand.settings);
+  conversation.step();
+  kill(by_hand.flight.pid(), SIGKILL);
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    conversation.step();
+    ADD_FAILURE() << "the flight program is dead";
+  } catch (const SilFailure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("the flight program has ended at step 1"), std::string::npos)
+        << failure.what();
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s);
+}
+
+}  // namespace
+}  // namespace tumblesight::sim
