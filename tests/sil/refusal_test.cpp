@@ -151,6 +151,39 @@ TEST(Refusal, ASecondFlightProgramOnTheDomainIsNamedWithTheRemedy) {
   EXPECT_EQ(flight.messages().find("interface"), std::string::npos) << flight.messages();
 }
 
+// Verifies TS-SIL-040. Its topics do not fit either, but because of the partition.
+TEST(Refusal, AnotherRunOnTheDomainIsNotTakenForAnotherInterface) {
+  SilSettings settings = test::settings();
+  settings.domain = test::spare_domain();
+  test::Conversation conversation(settings);
+  OwnFlight flight({"--timeout-s", "3"}, settings.domain);
+  expect_ended(flight, hal::dds::FlightEnd::kSilence);
+  expect_all_in(flight.messages(),
+                {"another run is in DDS domain " + std::to_string(settings.domain), "another --domain"});
+  EXPECT_EQ(flight.messages().find("interface"), std::string::npos) << flight.messages();
+  conversation.step();
+  conversation.finish();
+}
+
+// Verifies TS-SIL-040.
+TEST(Refusal, AMissingLoopbackInterfaceIsNamedByBothSides) {
+  const auto alone = [](const std::string& program, const std::string& arguments) {
+    return "unshare -rn " + program + " " + arguments;
+  };
+  if (std::system("unshare -rn true 2>/dev/null") != 0)
+    GTEST_SKIP() << "no network namespace can be made here";
+  const std::string log = test::temporary_path("alone.log");
+  for (const std::string& command :
+       {alone(TUMBLESIGHT_FLIGHT,
+              "--domain 1 --timeout-s 1 --target test_target --model " + test::model_path()),
+        alone(TUMBLESIGHT_SIMULATOR_TO_KILL,
+              test::model_path() + " " + TUMBLESIGHT_FLIGHT + " " + log + " 1")}) {
+    EXPECT_NE(std::system((command + " > " + log + " 2>&1").c_str()), 0);
+    expect_all_in(test::read_file(log),
+                  {"DDS domain 1", "loopback interface lo is down", "ip link set lo up"});
+  }
+}
+
 struct BadModel {
   const char* name;
   const char* message;
