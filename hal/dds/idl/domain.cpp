@@ -2,6 +2,8 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -35,16 +37,18 @@ constexpr const char* kConfiguration = R"(
 constexpr const char* kConfigurationEnd = "</Domain></CycloneDDS>";
 constexpr std::size_t kMaxConfiguration = 2048;  // without the further elements
 
-// A port of 127.0.0.1 can be had only while the interface is up and has the address.
+// Linux lets a program bind to 127.0.0.1 even while the interface is down.
 bool has_loopback() {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (socket < 0) return false;
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const bool is_bound = bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  close(socket);
-  return is_bound;
+  ifaddrs* interfaces = nullptr;
+  if (getifaddrs(&interfaces) != 0) return true;  // not known to be missing
+  bool found = false;
+  for (const ifaddrs* at = interfaces; at != nullptr && !found; at = at->ifa_next) {
+    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET || (at->ifa_flags & IFF_UP) == 0)
+      continue;
+    found = reinterpret_cast<const sockaddr_in*>(at->ifa_addr)->sin_addr.s_addr == htonl(INADDR_LOOPBACK);
+  }
+  freeifaddrs(interfaces);
+  return found;
 }
 
 }  // namespace
