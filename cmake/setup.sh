@@ -93,11 +93,53 @@ install_missing() { # package...
     fail "apt-get install failed (see above; the whole log: build/log/apt_install.log)"
 }
 
-# Configures a preset of CMakePresets.json unless that is done.
+# What a configuration rests on: the packages that are installed, the presets, and CMake's cache as it was left.
+basis_of_configuration() { # folder
+  {
+    dpkg-query -W -f='${db:Status-Status} ${Package} ${Architecture} ${Version}\n' 2>/dev/null || true
+    cat "$root/CMakePresets.json"
+    cat "$1/CMakeCache.txt"
+  } | cksum
+}
+
+cached() { # folder, name
+  sed -nE "s/^$2:[A-Z]+=//p" "$1/CMakeCache.txt"
+}
+
+# Whether CMake can go on from a cache: not from one of a folder that was moved or copied, of a program that is gone, or of
+# a configuration that was interrupted or made for another build program.
+is_usable_cache() { # folder
+  [ -f "$1/build.ninja" ] && [ -f "$1/CMakeCache.txt" ] || return 1
+  [ "$(cached "$1" CMAKE_HOME_DIRECTORY)" -ef "$root" ] && [ "$(cached "$1" CMAKE_CACHEFILE_DIR)" -ef "$1" ] || return 1
+  local variable program
+  for variable in CMAKE_C_COMPILER CMAKE_CXX_COMPILER CMAKE_MAKE_PROGRAM; do
+    program=$(cached "$1" "$variable")
+    [ -z "$program" ] || command -v "$program" >/dev/null || return 1
+  done
+}
+
+# The variables of a cache that name a file or folder of a package that is gone. CMake looks again for what it did not find,
+# but not for what it found once.
+gone_from_cache() { # folder
+  local line name
+  sed -nE '/^(CMAKE|TUMBLESIGHT)_/d; s/^([A-Za-z0-9_]+):(FILEPATH|PATH)=(\/.*)$/\1 \3/p' "$1/CMakeCache.txt" |
+    while read -r name line; do [ -e "$line" ] || echo "$name"; done
+}
+
+# Configures a preset of CMakePresets.json, unless that is done and nothing that it rests on has changed since: a package that
+# has come adds what could not be built without it.
 configure_preset() { # preset
-  [ -f "$root/build/$1/build.ninja" ] && return 0
-  quietly "configuring" "$root/build/log/configure_$1.log" cmake -S "$root" --preset "$1" ||
+  local folder=$root/build/$1 stamp=$root/build/$1/.configured options=() name
+  if ! is_usable_cache "$folder"; then
+    [ ! -f "$folder/CMakeCache.txt" ] || options=(--fresh)
+  else
+    [ "$(cat "$stamp" 2>/dev/null)" != "$(basis_of_configuration "$folder")" ] || return 0
+    for name in $(gone_from_cache "$folder"); do options+=(-U "$name"); done
+  fi
+  rm -f "$stamp"
+  quietly "configuring" "$root/build/log/configure_$1.log" cmake -S "$root" --preset "$1" "${options[@]}" ||
     fail "cmake failed (see above; the whole log: build/log/configure_$1.log)"
+  basis_of_configuration "$folder" >"$stamp"
 }
 
 # Configures and builds a preset, or some targets of it. Prints nothing if all is up to date.
