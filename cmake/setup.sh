@@ -6,6 +6,43 @@ fail() {
   exit 1
 }
 
+# Arguments are checked before anything is installed or built, which can take an hour.
+refuse() {
+  echo "$(basename "$(dirname "$0")")/$(basename "$0"): $* (see --help)" >&2
+  exit 2
+}
+
+require_file() { # what it is, path
+  [ -e "$2" ] || refuse "$1: '$2' does not exist"
+  [ ! -d "$2" ] || refuse "$1: '$2' is a folder; give a file"
+  [ -r "$2" ] || refuse "$1: '$2' cannot be read; its permissions are $(stat -Lc %A "$2")"
+}
+
+# Missions and sensors that ship may be given by their names.
+require_mission() { # what it is, file or name
+  [ -z "$(find "$root/sim/world/target/missions" -name "[0-9]_$2.toml" 2>/dev/null)" ] || return 0
+  require_file "$1" "$2"
+  local mesh
+  mesh=$(sed -nE 's/^[[:space:]]*mesh[[:space:]]*=[[:space:]]*"([^"]*)".*/\1/p' "$2" | head -n 1)
+  case $mesh in '' | parametric) return 0 ;; /*) ;; *) mesh=$(dirname "$2")/$mesh ;; esac
+  require_file "the mesh of $2" "$mesh"
+}
+
+require_sensor() { # what it is, file or name
+  [ "$2" = list ] || [ -f "$root/sim/world/sensor/descriptions/$2.json" ] || require_file "$1" "$2"
+}
+
+# "--name VALUE" and "--name=VALUE" as VALUE.
+value_in() { # name, arguments from the option on
+  case $2 in "$1="*) echo "${2#*=}" ;; *) echo "${3-}" ;; esac
+}
+
+# With the program's own check of its arguments, where Python is there already.
+require_arguments_of() { # Python program, arguments...
+  command -v python3 >/dev/null || return 0
+  python3 -B "$@" --check-arguments || exit 2
+}
+
 # The Debian packages that the toolchain files name: require_program(VARIABLE PROGRAM PACKAGES).
 packages_of_toolchains() {
   [ -d "${root-}/toolchains" ] || return 0

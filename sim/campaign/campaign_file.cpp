@@ -11,6 +11,8 @@
 
 #include "sim/mission/toml_fields.hpp"
 #include "sim/mission/toml_text.hpp"
+#include "sim/terminal/nearest_name.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -144,8 +146,18 @@ void require_not_too_many(const TomlFields& fields, const std::vector<Option>& o
   }
 }
 
+// A key that every run needs is missing: one that is near it names what is wrong.
+void require_not_misspelt(const TomlFields& fields, const std::string& missing) {
+  for (const std::string& key : fields.keys()) {
+    const std::string meant = did_you_mean(key, {missing});
+    if (!meant.empty())
+      fields.fail(key, fmt::format("there is no key '{}'{}", fields.full(shortened(key)), meant));
+  }
+}
+
 std::vector<CampaignRun> runs_of_table(TomlFields fields, std::int64_t seed, int line) {
   const auto sequences = fields.whole_number("sequences", 1, kMostSequences);
+  if (!sequences) require_not_misspelt(fields, "sequences");
   if (!sequences)
     fields.refuse("sequences", fmt::format("a whole number from 1 to {}: of each run", kMostSequences));
   CampaignRun run;
@@ -184,13 +196,13 @@ Campaign read_campaign(const std::string& path) {
   campaign.folder = fs::path(campaign.file).parent_path().string();
   campaign.name = fs::path(path).stem().string();
   TomlFields fields(table, path, "");
+  fields.require_known({{"seed", "sequences_per_task"}, {"[[run]]"}});
   const auto seed = fields.whole_number("seed", 0, 2'000'000'000);
   const auto per_task = fields.whole_number("sequences_per_task", kFewestPerTask, kMostPerTask);
   campaign.sequences_per_task = static_cast<std::uint32_t>(per_task.value_or(kUsualPerTask));
   const toml::node* runs = fields.node("run");
   if (runs == nullptr || !runs->is_array_of_tables() || runs->as_array()->empty())
     fields.refuse("run", "one or more tables [[run]] with the options of `tumblesight evaluate`");
-  fields.require_all_taken("seed, sequences_per_task and the tables [[run]]");
   for (const toml::node& run : *runs->as_array()) {
     const int line = static_cast<int>(run.source().begin.line);
     for (CampaignRun& one : runs_of_table(TomlFields(*run.as_table(), path, "run"), seed.value_or(1), line))

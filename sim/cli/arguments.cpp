@@ -12,6 +12,7 @@
 
 #include "sim/cli/mission_arguments.hpp"
 #include "sim/model/model_file.hpp"
+#include "sim/terminal/nearest_name.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/targets.hpp"
@@ -124,7 +125,7 @@ CLI::Validator one_of(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
       if (name == text) return {};
     }
-    return fmt::format("must be one of {}, not '{}'", joined(names), text);
+    return fmt::format("must be one of {}, not '{}'{}", joined(names), text, did_you_mean(text, names));
   };
   return CLI::Validator(check, "", "choice");
 }

@@ -7,6 +7,7 @@
 
 #include "cmake/version.hpp"
 #include "sim/campaign/experiment_identity.hpp"
+#include "sim/terminal/nearest_name.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"
 
@@ -73,6 +74,13 @@ std::string fault_of(const CLI::Option& option, const std::string& key,
   return {};
 }
 
+std::vector<std::string> long_names_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
+  return names;
+}
+
 // The keys of a run, before their values become a command line in which one may take another for its value.
 void require_known_options(const CampaignRun& run) {
   CLI::App command;
@@ -84,8 +92,8 @@ void require_known_options(const CampaignRun& run) {
     const CLI::Option* option = command.get_option_no_throw("--" + key);
     if (option == nullptr || key == "help")
       throw std::invalid_argument(fmt::format(
-          "there is no option '{}'; `tumblesight evaluate --help` lists them, write them without dashes",
-          key));
+          "there is no option '{}'; `tumblesight evaluate --help` lists them, write them without dashes{}",
+          key, did_you_mean(key, long_names_of(command))));
     if (const std::string fault = fault_of(*option, key, value); !fault.empty())
       throw std::invalid_argument(key + ": " + fault);
   }

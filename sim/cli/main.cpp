@@ -18,8 +18,10 @@
 
 #include "cmake/version.hpp"
 #include "gnc/rcnn/model_image.hpp"
+#include "sim/cli/absent_verbs.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
+#include "sim/cli/parse_faults.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/process/program_files.hpp"
 #include "sim/terminal/text.hpp"
@@ -32,16 +34,10 @@ namespace {
 using tumblesight::sim::kBadArguments;
 using tumblesight::sim::kFailed;
 
-int report(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+int report(const CLI::App& app, const CLI::ParseError& error) {
   // --help, and commands that have already reported their failure.
   if (error.get_exit_code() == 0 || error.get_name() == "RuntimeError") return app.exit(error);
-  if (error.get_name() == "RequiredError" && argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
-    std::fprintf(stderr, "tumblesight: there is no subcommand '%s' (see tumblesight --help)\n", argv[1]);
-    return kBadArguments;
-  }
-  std::string help = "tumblesight";
-  for (const CLI::App* command : app.get_subcommands()) help += " " + command->get_name();
-  std::fprintf(stderr, "tumblesight: %s (see %s --help)\n", error.what(), help.c_str());
+  std::fprintf(stderr, "tumblesight: %s\n", tumblesight::sim::fault_of_parsing(app, error).c_str());
   return kBadArguments;
 }
 
@@ -120,10 +116,15 @@ int main(int argc, char** argv) {
 #endif
     app.footer(
         "\nStart with\n  tumblesight simulate\n"
-        "and see `tumblesight SUBCOMMAND --help` for the options of each.\n");
+        "and see `tumblesight SUBCOMMAND --help` for the options of each.\n" +
+        sim::absent_verbs_text(app));
+    if (const std::string fault = argc > 1 ? sim::fault_of_absent_verb(app, argv[1]) : ""; !fault.empty()) {
+      std::fprintf(stderr, "tumblesight: %s\n", fault.c_str());
+      return finish_output(kBadArguments);
+    }
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return finish_output(report(app, error, argc, argv));
+    return finish_output(report(app, error));
   } catch (const std::exception& error) {
     // fmt::print() does not say to what it could not write.
     const bool is_of_output = typeid(error) == typeid(std::system_error) && std::ferror(stdout) != 0;

@@ -9,6 +9,7 @@
 
 #include "sim/mission/toml_fields.hpp"
 #include "sim/mission/toml_text.hpp"
+#include "sim/terminal/nearest_name.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -20,12 +21,12 @@ constexpr double kFarthest_m = 500.0;
 constexpr double kSlowest_deg_s = 0.1;
 constexpr double kFastest_deg_s =
     20.0;  // the paper's limit; at more, a turn between two frames is not unique
-constexpr const char* kKeys =
-    "name, title, mesh, up, scale, unit, origin, inertia, inertia_axes, symmetry, accept, sensor, ranges_m, "
-    "largest_rate_deg_s, minutes, paper_target, quasi_symmetry_about_z and the tables [panels], [conditions] "
-    "and [goals]";
-constexpr const char* kGoalKeys =
-    "network_mean_deg, pose_mean_deg, pose_within_20deg, verified, verified_wrong";
+const KnownKeys kKeys{{"name", "title", "mesh", "up", "scale", "unit", "origin", "inertia", "inertia_axes",
+                       "symmetry", "accept", "sensor", "ranges_m", "largest_rate_deg_s", "minutes",
+                       "paper_target", "quasi_symmetry_about_z"},
+                      {"[panels]", "[conditions]", "[goals]"}};
+const KnownKeys kGoalKeys{
+    {"network_mean_deg", "pose_mean_deg", "pose_within_20deg", "verified", "verified_wrong"}};
 
 // The goals of a mission that states none. What counts is the registered pose; the network alone must be good
 // enough for registration to start from, as the networks that ship are.
@@ -140,19 +141,20 @@ std::optional<InertiaElements> inertia_of(TomlFields& fields, const MissionMesh&
 std::optional<JointLimits> panels_of(TomlFields& fields) {
   std::optional<TomlFields> panels = fields.table("panels");
   if (!panels) return std::nullopt;
+  panels->require_known({{"turn_deg"}});
   const std::string limits =
       "[lowest, highest] in degrees, from -180 to 180, with 0 (as in the mesh) between";
   const auto turn = panels->numbers("turn_deg", -180.0, 180.0);
   if (!turn || turn->size() != 2 || !((*turn)[0] <= 0.0 && (*turn)[1] >= 0.0))
     panels->refuse("turn_deg", limits);
-  panels->require_all_taken("turn_deg");
   return JointLimits{(*turn)[0], (*turn)[1]};
 }
 
 void require_condition(const TomlFields& fields, const std::string& name,
                        const std::vector<std::string>& conditions) {
   if (std::find(conditions.begin(), conditions.end(), name) != conditions.end()) return;
-  fields.fail(name, fmt::format("{}: the conditions are {}", fields.full(name), fmt::join(conditions, ", ")));
+  fields.fail(name, fmt::format("{}: the conditions are {}{}", fields.full(name), fmt::join(conditions, ", "),
+                                did_you_mean(name, conditions)));
 }
 
 std::map<std::string, int> conditions_of(TomlFields& fields, const std::vector<std::string>& known) {
@@ -175,6 +177,7 @@ std::map<std::string, MissionGoal> goals_of(TomlFields& fields, const std::vecto
   for (const std::string& name : table->keys()) {
     require_condition(*table, name, known);
     TomlFields of_one = *table->table(name);
+    of_one.require_known(kGoalKeys);
     MissionGoal& goal = goals[name];
     const auto take = [&of_one](const char* key, double highest, std::optional<double>& value) {
       if (const auto given = of_one.number(key, 0.0, highest)) value = given;
@@ -184,7 +187,6 @@ std::map<std::string, MissionGoal> goals_of(TomlFields& fields, const std::vecto
     take("pose_within_20deg", 1.0, goal.pose_within_20deg);
     take("verified", 1.0, goal.verified);
     take("verified_wrong", 1.0, goal.verified_wrong);
-    of_one.require_all_taken(kGoalKeys);
   }
   return goals;
 }
@@ -217,6 +219,7 @@ void take_sensor(TomlFields& fields, Mission& mission) {
 
 Mission mission_of(const toml::table& root, const std::string& file, const std::vector<std::string>& known) {
   TomlFields fields(root, file, "");
+  fields.require_known(kKeys);
   Mission mission;
   mission.file = file;
   mission.name = fields.text("name").value_or("");
@@ -233,7 +236,6 @@ Mission mission_of(const toml::table& root, const std::string& file, const std::
   mission.minutes = fields.number("minutes", 0.5, 10'000.0).value_or(mission.minutes);
   mission.paper_target = fields.text("paper_target").value_or("");
   mission.quasi_symmetry_about_z = fields.whole_number("quasi_symmetry_about_z", 1, 12).value_or(1);
-  fields.require_all_taken(kKeys);
   return mission;
 }
 

@@ -1,8 +1,12 @@
 #include "sim/mission/toml_fields.hpp"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "sim/terminal/nearest_name.hpp"
 #include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
@@ -22,10 +26,20 @@ std::optional<double> number_of(const toml::node& node, double lowest, double hi
   return value;
 }
 
+std::string name_of_table(const std::string& table) {
+  const std::size_t first = table.find_first_not_of('[');
+  return table.substr(first, table.find_first_of(']') - first);
+}
+
+std::string text_of(const KnownKeys& known) {
+  std::string text = fmt::format("{}", fmt::join(known.keys, ", "));
+  if (!known.tables.empty()) text += fmt::format(" and the tables {}", fmt::join(known.tables, ", "));
+  return text;
+}
+
 }  // namespace
 
-const toml::node* TomlFields::node(std::string_view key) {
-  taken_.emplace(key);
+const toml::node* TomlFields::node(std::string_view key) const {
   return table_.get(key);
 }
 
@@ -121,11 +135,15 @@ std::vector<std::string> TomlFields::keys() const {
   return names;
 }
 
-void TomlFields::require_all_taken(const std::string& known) const {
-  for (const auto& [key, value] : table_) {
-    if (taken_.count(key.str()) > 0) continue;
-    fail(key.str(), fmt::format("there is no key '{}'; {} has {}", full(shortened(std::string(key.str()))),
-                                path_.empty() ? "the file" : fmt::format("[{}]", path_), known));
+void TomlFields::require_known(const KnownKeys& known) const {
+  std::vector<std::string> names = known.keys;
+  for (const std::string& table : known.tables) names.push_back(name_of_table(table));
+  for (const auto& [node_key, value] : table_) {
+    const std::string key(node_key.str());
+    if (std::find(names.begin(), names.end(), key) != names.end()) continue;
+    const std::string has =
+        fmt::format("{} has {}", path_.empty() ? "the file" : fmt::format("[{}]", path_), text_of(known));
+    fail(key, fmt::format("there is no key '{}'; {}{}", full(shortened(key)), has, did_you_mean(key, names)));
   }
 }
 

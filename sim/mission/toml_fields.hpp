@@ -1,18 +1,23 @@
 // TomlFields: one table of a TOML file. Takes its keys one by one and refuses what is not as it must be, by
-// file, line, key, value and limits. Keys that nobody takes are refused at the end.
+// file, line, key, value and limits. Keys that are not known are refused first: one that is missing may be
+// misspelt.
 #pragma once
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tumblesight::sim {
+
+struct KnownKeys {
+  std::vector<std::string> keys;
+  std::vector<std::string> tables{};  // as they are written in the file: "[goals]", "[[run]]"
+};
 
 class TomlFields {
  public:
@@ -29,12 +34,12 @@ class TomlFields {
   std::optional<std::string> choice(std::string_view key, const std::vector<std::string>& choices);
   std::optional<std::vector<double>> numbers(std::string_view key, double lowest, double highest);
   std::vector<std::string> texts(std::string_view key);
-  const toml::node* node(std::string_view key);  // nullptr if it is not there
+  const toml::node* node(std::string_view key) const;  // nullptr if it is not there
   std::optional<TomlFields> table(std::string_view key);
   std::vector<std::string> keys() const;
 
-  // Refuses keys that were not taken.
-  void require_all_taken(const std::string& known) const;
+  // Refuses other keys, with the known one that was probably meant. To be called before any key is taken.
+  void require_known(const KnownKeys& known) const;
 
   // "mission.toml, line 3: goals.nominal.mean is 'x'; it must be LIMITS"
   [[noreturn]] void refuse(std::string_view key, const std::string& limits) const;
@@ -44,7 +49,6 @@ class TomlFields {
  private:
   const toml::table& table_;
   std::string file_, path_;
-  std::set<std::string, std::less<>> taken_;
 };
 
 }  // namespace tumblesight::sim

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "sim/terminal/nearest_name.hpp"
 #include "sim/world/sensor/effect_functions.hpp"
 #include "sim/world/sensor/frame_truth.hpp"
 #include "sim/world/sensor/sensor_settings.hpp"
@@ -187,11 +188,14 @@ const std::vector<EffectRow>& effect_table() {
 
 const EffectRow& effect_named(const std::string& name) {
   std::string known;
+  std::vector<std::string> names;
   for (const EffectRow& row : effect_table()) {
     if (name == row.name) return row;
     known += (known.empty() ? "" : ", ") + std::string(row.name);
+    names.emplace_back(row.name);
   }
-  throw std::invalid_argument("effect '" + name + "' is unknown; the effects are: " + known);
+  throw std::invalid_argument("effect '" + name + "' is unknown; the effects are: " + known +
+                              did_you_mean(name, names));
 }
 
 bool must_be_whole(const EffectRow& row) {

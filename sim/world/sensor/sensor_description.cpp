@@ -16,6 +16,7 @@
 #include "gnc/numerics/crc.hpp"
 #include "sim/process/input_file.hpp"
 #include "sim/process/program_files.hpp"
+#include "sim/terminal/nearest_name.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/world/math/angles.hpp"
 
@@ -63,7 +64,8 @@ class Fields {
     if (!object.is_object()) fail(fmt::format("{} must be an object with {}", whole, names));
     for (const auto& [name, value] : object.items()) {
       if (std::find(known.begin(), known.end(), name) == known.end())
-        fail(fmt::format("field '{}' is unknown; {} has {}", full(shortened(name)), whole, names));
+        fail(fmt::format("field '{}' is unknown; {} has {}{}", full(shortened(name)), whole, names,
+                         did_you_mean(name, known)));
     }
     for (const std::string& name : known) {
       if (!object.contains(name))
@@ -288,8 +290,9 @@ SensorDescription sensor_named(const std::string& name_or_file) {
   const std::string path = sensor_path(name_or_file);
   std::error_code error;
   if (std::filesystem::exists(path, error)) return read_sensor(path);
-  throw std::invalid_argument(fmt::format("'{}' is neither a file nor a sensor that ships; those are: {}",
-                                          name_or_file, fmt::join(sensor_names(), ", ")));
+  throw std::invalid_argument(fmt::format("'{}' is neither a file nor a sensor that ships; those are: {}{}",
+                                          name_or_file, fmt::join(sensor_names(), ", "),
+                                          did_you_mean(name_or_file, sensor_names())));
 }
 
 std::string sensor_explanations() {

@@ -9,6 +9,7 @@
 #include "gnc/numerics/crc.hpp"
 #include "sim/process/input_file.hpp"
 #include "sim/process/program_files.hpp"
+#include "sim/terminal/nearest_name.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {
@@ -132,7 +133,8 @@ std::string display_name(const std::string& target) {
 
 TriangleMesh target_by_name(const std::string& name) {
   if (std::optional<TriangleMesh> mesh = shipped_mesh(name)) return std::move(*mesh);
-  throw std::invalid_argument("target '" + name + "' is unknown; the targets are: " + list_of_names());
+  throw std::invalid_argument("target '" + name + "' is unknown; the targets are: " + list_of_names() +
+                              did_you_mean(name, target_names()));
 }
 
 std::optional<Eigen::Matrix3d> known_inertia_kg_m2(const std::string& target) {
@@ -160,7 +162,7 @@ TriangleMesh target_mesh(const std::string& target, const std::string& source,
     throw std::invalid_argument("target '" + target +
                                 "' does not ship, so there is no mesh of it here; give its file with --mesh, "
                                 "or one of the targets that ship: " +
-                                list_of_names());
+                                list_of_names() + did_you_mean(target, target_names()));
   return target_by_name(target);
 }
 

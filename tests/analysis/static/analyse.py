@@ -146,7 +146,13 @@ def main():
     parser.add_argument("--flight", action="store_true")
     parser.add_argument("--tool", action="append", choices=TOOLS)
     parser.add_argument("paths", nargs="*")
+    parser.add_argument("--check-arguments", action="store_true", help=argparse.SUPPRESS)  # and do nothing else
     options = parser.parse_args()
+    for path in options.paths:
+        if not (ROOT / path).exists():
+            parser.error(f"there is no '{path}' in {ROOT}")
+    if options.check_arguments:
+        return 0
 
     everything = sources()
     flight = [s for s in everything if s.is_flight()]

@@ -191,13 +191,16 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--program", default=ROOT / "build/test/bin/fault_campaign")
+    parser.add_argument("--check-arguments", action="store_true", help=argparse.SUPPRESS)  # and do nothing else
     arguments = parser.parse_args()
-    flips = 100 if arguments.quick else arguments.flips
-    folder = ROOT / "build/fault"
-    folder.mkdir(parents=True, exist_ok=True)
     rows = rows_of(arguments)
     if not rows:
         parser.error(f"'{TWO}' has no row without the protections")
+    if arguments.check_arguments:
+        return 0
+    flips = 100 if arguments.quick else arguments.flips
+    folder = ROOT / "build/fault"
+    folder.mkdir(parents=True, exist_ok=True)
     wanted = [(place, on, first) for first in range(0, flips, PART) for place, on in rows]
     parts = []
     progress = Progress(len(wanted))

@@ -89,6 +89,9 @@ TEST_F(CampaignFile, WhatIsWrongIsNamedWithItsLine) {
   expect_refused("[[run]]\nsequences = 0\n", "line 2: run.sequences is 0; it must be");
   expect_refused("seeds = 3\n[[run]]\nsequences = 1\n",
                  "line 1: there is no key 'seeds'; the file has seed, sequences_per_task");
+  expect_refused("seeds = 3\n[[run]]\nsequences = 1\n", "did you mean 'seed'?");
+  expect_refused("[[run]]\nsequencs = 1\n",
+                 "line 2: there is no key 'run.sequencs'; did you mean 'sequences'?");
   expect_refused("seed = -1\n[[run]]\nsequences = 1\n",
                  "line 1: seed is -1; it must be a whole number from 0");
   expect_refused("sequences_per_task = 0\n[[run]]\nsequences = 1\n", "line 1: sequences_per_task is 0");

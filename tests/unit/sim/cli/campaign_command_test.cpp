@@ -218,6 +218,7 @@ TEST_F(CampaignCommand, KeysThatAreNoOptionsAreNamedWithTheRemedy) {
   const std::pair<const char*, const char*> kRows[] = {
       {"sequences_per_task = 2", "sequences_per_task is for all runs: write it at the top, before [[run]]"},
       {"mesh_scale = 2", "there is no option 'mesh_scale'"},
+      {"mesh_scale = 2", "did you mean 'mesh-scale'?"},
       {"help = true", "there is no option 'help'"},
       {"mesh = true", "mesh: needs a value, not true"},
       {"frames = true", "frames: needs a value, not true"},

@@ -132,7 +132,12 @@ TEST_F(MissionFile, WhatIsWrongIsNamedWithLineLimitsAndRemedy) {
       {with("[goals.nominal]\nverified = 2\n"), {"goals.nominal.verified is 2", "from 0 to 1"}},
       {with("accept = [\"orgin\"]\n"), {"accept", "unit, up, origin"}},
       {with("largest_rate_deg_s = 0\n"), {"largest_rate_deg_s is 0", "from 0.1 to 20"}},
-      {with("inertias = [1]\n"), {"line 3", "no key 'inertias'", "the file has name, title"}},
+      {with("inertias = [1]\n"),
+       {"line 3", "no key 'inertias'", "the file has name, title", "did you mean 'inertia'?"}},
+      {"name = \"craft\"\nmehs = \"craft.stl\"\n", {"line 2", "no key 'mehs'", "did you mean 'mesh'?"}},
+      {with("[goal]\n"), {"line 3", "no key 'goal'", "did you mean 'goals'?"}},
+      {with("[goals.nominal]\nnetwork_mean = 3\n"), {"no key 'goals.nominal.network_mean'"}},
+      {with("[conditions]\nnominl = 3\n"), {"did you mean 'nominal'?"}},
       {with("name = 3"), {"craft.toml, line 3"}},
       {"name = \"craft\"\nmesh = \"parametric\"\nup = \"z\"\n", {"up is for mesh files"}},
   };
