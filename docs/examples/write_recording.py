@@ -17,11 +17,12 @@ Q30 = 1 << 30
 
 def ranges_of_points(points_lrf_m, rays, fov_rad):
     """Points in the LiDAR frame (LRF: +x right, +y boresight, +z up) as ranges, row by row from the top and each
-    row from the left: the nearest point along each ray, 0 where there is none."""
+    row from the left: the nearest point along each ray, 0 where there is none. Points that are not finite, as organised
+    clouds have them where nothing returned, are no return."""
     tan_half = math.tan(fov_rad / 2)
     ranges_m = [[0.0] * rays for _ in range(rays)]
     for x, y, z in points_lrf_m:
-        if y <= 0:
+        if not (y > 0 and math.isfinite(x) and math.isfinite(y) and math.isfinite(z)):
             continue
         column = math.floor((x / y / tan_half + 1) / 2 * rays)
         row = math.floor((1 - z / y / tan_half) / 2 * rays)
@@ -33,7 +34,7 @@ def ranges_of_points(points_lrf_m, rays, fov_rad):
 
 
 def encoded_row(ranges_m):
-    counts = [round(COUNTS_PER_METRE * m) for m in ranges_m]
+    counts = [round(COUNTS_PER_METRE * m) if math.isfinite(m) else 0 for m in ranges_m]
     if not all(0 <= count <= 0xFFFF for count in counts):
         raise ValueError("ranges must be from 0 to 511.99 m; 0 is no return")
     hit = [column for column, count in enumerate(counts) if count]

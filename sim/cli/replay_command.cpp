@@ -157,7 +157,8 @@ void run_and_report(const ReplayArguments& arguments, const SilSettings& setting
   print_results(report, run);
   std::vector<std::string> faults = flight_faults(run);
   for (std::string& fault : check(run)) faults.push_back(std::move(fault));
-  const std::string wrong = mostly_wrong_text(report);
+  std::string wrong = mostly_wrong_text(report);
+  if (wrong.empty()) wrong = nothing_accepted_text(report);
   if (!wrong.empty()) fmt::print("\n{}\n", paragraph(wrong));
   finish_flight(arguments, replay_page(report), arguments.scenario.json, replay_json(report, run),
                 std::move(faults), !wrong.empty());
@@ -290,9 +291,10 @@ void add_replay_command(CLI::App& app, const std::string& command_line) {
       "The exit status is 0 if every cycle was answered, the flight task allocated no\n"
       "heap memory and the files were written: refused frames and doubtful attitudes\n"
       "are results. It is 4 if more than half of the attitudes whose truth is known are\n"
-      "more than 20° off, except where the recording is known to show another body. It\n"
-      "is 1 if the run or a file failed, 2 for wrong arguments, and 130 or 143 after\n"
-      "Ctrl-C or SIGTERM; then the report covers what was done.\n");
+      "more than 20° off, or if all frames were refused for what they hold, except\n"
+      "where the recording is known to show another body. It is 1 if the run or a\n"
+      "file failed, 2 for wrong arguments, and 130 or 143 after Ctrl-C or SIGTERM; then\n"
+      "the report covers what was done.\n");
   command->callback([arguments, command] {
     arguments->is_target_given = command->count("--target") > 0;
     replay(*arguments);

@@ -65,6 +65,8 @@ std::string lead_sentence(const ReplayReport& report) {
   const auto attitudes = std::count_if(report.rows.begin(), report.rows.end(), has_attitude);
   std::string text = mostly_wrong_text(report);
   if (!text.empty()) text = not_known_sentence(report.setup.target) + " " + text + " ";
+  const std::string nothing = nothing_accepted_text(report);
+  if (!nothing.empty()) text += nothing + " ";
   text += fmt::format("The flight program gave {} to {} of the recording.",
                       counted(static_cast<std::uint64_t>(attitudes), "attitude"),
                       counted(report.setup.frames, "frame"));

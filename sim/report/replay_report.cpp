@@ -7,6 +7,7 @@
 #include <array>
 #include <functional>
 
+#include "gnc/lidar/target_selection.hpp"
 #include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_json.hpp"
@@ -39,7 +40,17 @@ std::optional<Refusal> refusal_of(const hal::Telemetry& now, const hal::Telemetr
   return std::nullopt;
 }
 
-std::string bad_content(std::int32_t status) {
+// Returns that count as none are why a frame with many has too few.
+std::string too_few_returns(const ReplayedFrame* frame) {
+  std::string text = "too few returns";
+  if (frame == nullptr) return text;
+  if (frame->nearer > 0)
+    text += fmt::format(", {} nearer than {} m left out", frame->nearer, gnc::kMinRange_m);
+  if (frame->farther > 0) text += fmt::format(", {} beyond {} m left out", frame->farther, gnc::kMaxRange_m);
+  return text;
+}
+
+std::string bad_content(std::int32_t status, const ReplayedFrame* frame) {
   switch (static_cast<gnc::FrameStatus>(status)) {
     case gnc::FrameStatus::kOk:
       break;
@@ -48,7 +59,7 @@ std::string bad_content(std::int32_t status) {
     case gnc::FrameStatus::kBadFov:
       return "bad field of view";
     case gnc::FrameStatus::kEmpty:
-      return "too few returns";
+      return too_few_returns(frame);
     case gnc::FrameStatus::kFlat:
       return "all returns at one range";
   }
@@ -56,7 +67,7 @@ std::string bad_content(std::int32_t status) {
 }
 
 // The event says more than the counter, but events that come too often are suppressed.
-std::string reason(const StepResult& step, Refusal refusal) {
+std::string reason(const StepResult& step, Refusal refusal, const ReplayedFrame* frame) {
   for (const hal::Event& event : step.events) {
     switch (event.id) {
       case hal::EventId::kFrameExposureBackwards:
@@ -70,7 +81,7 @@ std::string reason(const StepResult& step, Refusal refusal) {
       case hal::EventId::kFrameWithoutChaser:
         return "chaser unknown";
       case hal::EventId::kFrameBad:
-        return bad_content(event.arguments[1]);
+        return bad_content(event.arguments[1], frame);
       default:
         break;
     }
@@ -86,7 +97,8 @@ std::string doubts_text(std::uint8_t doubts) {
   return text.empty() ? text : ": " + text.substr(2);
 }
 
-std::string status_text(const StepResult& step, const std::optional<Refusal>& refusal) {
+std::string status_text(const StepResult& step, const std::optional<Refusal>& refusal,
+                        const ReplayedFrame* frame) {
   switch (step.attitude.validity) {
     case hal::Validity::kValid:
       return "valid";
@@ -95,7 +107,7 @@ std::string status_text(const StepResult& step, const std::optional<Refusal>& re
     case hal::Validity::kNoFrame:
       return "no frame";
     case hal::Validity::kFrameRefused:
-      return "refused" + (refusal ? ": " + reason(step, *refusal) : "");
+      return "refused" + (refusal ? ": " + reason(step, *refusal, frame) : "");
     case hal::Validity::kPassedOver:
       return "passed over";
     case hal::Validity::kStandby:
@@ -108,7 +120,7 @@ double angle_deg(const FrameTruth& truth, const std::array<std::int32_t, 4>& q) 
   return kDegPerRad * angular_error_rad(truth.q_lrf_trf, gnc::to_double(q));
 }
 
-ReplayRow row_of(const StepResult& step, const hal::Telemetry& before) {
+ReplayRow row_of(const StepResult& step, const hal::Telemetry& before, const ReplayedFrame* frame) {
   ReplayRow row;
   row.time_ns = step.time_ns;
   row.attitude = step.attitude;
@@ -116,7 +128,8 @@ ReplayRow row_of(const StepResult& step, const hal::Telemetry& before) {
   row.truth_known = step.truth_known;
   if (step.attitude.validity == hal::Validity::kFrameRefused)
     row.refusal = refusal_of(step.telemetry, before);
-  row.status = status_text(step, row.refusal);
+  row.status = status_text(step, row.refusal, frame);
+  if (frame != nullptr) row.frame = *frame;
   if (row.has_attitude && step.truth_known) {
     row.error_deg = angle_deg(step.truth, step.attitude.q_lrf_trf);
     row.single_frame_error_deg = angle_deg(step.truth, step.attitude.q_lrf_trf_single_frame);
@@ -132,9 +145,8 @@ std::vector<ReplayRow> rows_of(const SilRunResult& run, const std::vector<Replay
     const StepResult& step = run.steps[k];
     const bool sent = frame != frames.end() && frame->cycle_time_ns == step.time_ns;
     if (step.answered) {
-      rows.push_back(row_of(step, before));
+      rows.push_back(row_of(step, before, sent ? &*frame : nullptr));
       rows.back().cycle = k;
-      if (sent) rows.back().frame = *frame;
       before = step.telemetry;
     }
     if (sent) ++frame;
@@ -308,9 +320,14 @@ const char* to_string(Refusal refusal) {
 
 ReplayedFrame replayed_frame(const StepResult& step, const gnc::RangeImage& frame) {
   const auto end = frame.ranges.begin() + std::ptrdiff_t{frame.rays} * frame.rays;
-  const auto returns =
-      std::count_if(frame.ranges.begin(), end, [](std::uint16_t range) { return range > 0; });
-  return {step.time_ns, {frame.sequence_number, frame.exposure_time_ns}, static_cast<std::uint32_t>(returns)};
+  ReplayedFrame replayed{step.time_ns, {frame.sequence_number, frame.exposure_time_ns}};
+  for (auto range = frame.ranges.begin(); range != end; ++range) {
+    if (*range == 0) continue;
+    ++replayed.returns;
+    if (*range < gnc::kMinRange_counts) ++replayed.nearer;
+    if (*range > gnc::kMaxRange_counts) ++replayed.farther;
+  }
+  return replayed;
 }
 
 ReplayReport replay_report(const ReplaySetup& setup, const SilRunResult& run,
@@ -392,6 +409,34 @@ DataTable replay_errors_table(const ReplayReport& report) {
 
 std::string mostly_wrong_text(const ReplayReport& report) {
   return report.setup.shows_target ? mostly_wrong_text(summarise(errors_of_all(report))) : std::string{};
+}
+
+std::string nothing_accepted_text(const ReplayReport& report) {
+  std::uint64_t frames = 0, returns = 0, nearer = 0, farther = 0;
+  for (const ReplayRow& row : report.rows) {
+    if (!row.frame) continue;
+    if (row.refusal != Refusal::kBad) return {};
+    ++frames;
+    returns += row.frame->returns;
+    nearer += row.frame->nearer;
+    farther += row.frame->farther;
+  }
+  if (frames == 0 || !report.setup.shows_target) return {};
+  std::string text =
+      "No frame of the recording was accepted. Likely mistakes: points with other axes than the LiDAR "
+      "frame's (+x to "
+      "the right, +y along the boresight, +z up; in ROS, x is forward), a field of view in degrees where "
+      "radians are "
+      "expected, and coordinates in another unit than metres.";
+  if (2 * nearer > returns)
+    text += fmt::format(
+        " Most returns are nearer than {} m, where the flight program takes them for parts of the chaser.",
+        gnc::kMinRange_m);
+  else if (2 * farther > returns)
+    text += fmt::format(" Most returns are beyond {} m.", gnc::kMaxRange_m);
+  else
+    text += fmt::format(" The frames have {} returns on average.", returns / frames);
+  return text;
 }
 
 Json replay_json(const ReplayReport& report, const SilRunResult& run) {

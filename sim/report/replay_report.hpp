@@ -27,6 +27,8 @@ struct ReplayedFrame {
   std::int64_t cycle_time_ns = 0;  // of the step
   FrameStamp stamp;
   std::uint32_t returns = 0;  // rays with a range
+  std::uint32_t nearer = 0;   // of them, those that the flight program leaves out as too near
+  std::uint32_t farther = 0;  // and as too far
 };
 ReplayedFrame replayed_frame(const StepResult& step, const gnc::RangeImage& frame);
 
@@ -71,6 +73,9 @@ DataTable replay_errors_table(const ReplayReport& report);
 // What the reader must know if most of the attitudes whose truth is known are wrong, see mostly_wrong_text().
 // Empty otherwise, and if the frames show another body.
 std::string mostly_wrong_text(const ReplayReport& report);
+// What the reader must know if frames were sent and all of them were refused for what they hold, with the
+// likely mistakes. Empty otherwise, and if the frames show another body.
+std::string nothing_accepted_text(const ReplayReport& report);
 nlohmann::ordered_json replay_json(const ReplayReport& report, const SilRunResult& run);
 std::string replay_page(const ReplayReport& report);
 

@@ -187,5 +187,39 @@ TEST(WriteRecording, WritesWhatReplayReads) {
   EXPECT_EQ(corners.output, "[(0, 15), (13, 2)]\n") << corners.errors;
 }
 
+// Organised clouds, as of PCD and ROS, have NaN where nothing returned.
+TEST(WriteRecording, TakesPointsAndRangesThatAreNotFiniteForNoReturn) {
+  const Workplace here{};
+  const Outcome outcome = here.run_command(
+      "PYTHONPATH=" TUMBLESIGHT_SOURCE_DIR "/docs/examples " PYTHON
+      " -B -c '"
+      "import write_recording as w\n"
+      "nan, inf = float(\"nan\"), float(\"inf\")\n"
+      "points = [(nan, nan, nan), (nan, 20, 0), (0, 20, nan), (0, inf, 0), (inf, 20, 0), (0, 20, 0)]\n"
+      "print(sum(map(bool, sum(w.ranges_of_points(points, 16, 0.2), []))))\n"
+      "print(w.encoded_row([nan, inf, 20.0, nan]) == w.encoded_row([0, 0, 20.0, 0]))'",
+      "not_finite");
+  EXPECT_EQ(outcome.output, "1\nTrue\n") << outcome.errors;
+}
+
+// A target that is nearer than the flight program looks has many returns, and none that counts.
+TEST_F(Replay, SaysWhyNoFrameIsAccepted) {
+  const Outcome written = here.run_command(
+      "PYTHONPATH=" TUMBLESIGHT_SOURCE_DIR "/docs/examples " PYTHON
+      " -B -c '"
+      "import write_recording as w\n"
+      "points = [(0.01 * x, 8 + 0.02 * x, 0.01 * z) for x in range(-50, 50) for z in range(-50, 50)]\n"
+      "w.write_recording(\"near.tslr\", 64, [dict(sequence_number=1, exposure_time_ns=0, fov_rad=0.3,"
+      " ranges_m=w.ranges_of_points(points, 64, 0.3))])'",
+      "near");
+  ASSERT_EQ(written.exit_code, 0) << written.errors;
+  const Outcome outcome = here.run("replay near.tslr --report r.html --json r.json --model " + here.model());
+  EXPECT_EQ(outcome.exit_code, kOfNoUse) << outcome.errors;
+  EXPECT_NE(outcome.output.find("nearer than 10 m left out"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("No frame of the recording was accepted"), std::string::npos)
+      << outcome.output;
+  EXPECT_NE(content(here.path("r.html")).find("No frame of the recording was accepted"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tumblesight::sim

@@ -105,6 +105,42 @@ TEST(ReplayReport, NamesTheKindOfARefusalWhoseEventWasSuppressed) {
   EXPECT_EQ(report_of(made, "").rows[4].status, "refused: bad");
 }
 
+SilRunResult run_of_bad_frames(ReplayedFrame& frame) {
+  SilRunResult made = run();
+  made.steps = {made.steps[4]};
+  frame.cycle_time_ns = made.steps[0].time_ns;
+  return made;
+}
+
+TEST(ReplayReport, NamesTheReturnsThatAFrameWithTooFewLacks) {
+  ReplayedFrame frame;
+  frame.returns = frame.nearer = 1681;
+  const SilRunResult made = run_of_bad_frames(frame);
+  EXPECT_EQ(replay_report({}, made, {frame}).rows[0].status,
+            "refused: too few returns, 1681 nearer than 10 m left out");
+  frame.nearer = 0;
+  frame.farther = 7;
+  EXPECT_EQ(replay_report({}, made, {frame}).rows[0].status,
+            "refused: too few returns, 7 beyond 500 m left out");
+}
+
+// Other axes, units or angles than the recording's leave no frame that can be used.
+TEST(ReplayReport, SaysWhatIsLikelyIfNoFrameIsAccepted) {
+  ReplayedFrame frame;
+  frame.returns = frame.nearer = 1681;
+  const SilRunResult made = run_of_bad_frames(frame);
+  ReplayReport report = replay_report({}, made, {frame});
+  const std::string text = nothing_accepted_text(report);
+  for (const char* part : {"No frame of the recording was accepted", "axes", "in ROS, x is forward",
+                           "radians", "metres", "nearer than 10 m"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  EXPECT_NE(replay_page(report).find("No frame of the recording was accepted"), std::string::npos);
+  report.setup.shows_target = false;
+  EXPECT_EQ(nothing_accepted_text(report), "");
+  SilRunResult other = run();
+  EXPECT_EQ(nothing_accepted_text(report_of(other, "")), "") << "some frames have attitudes";
+}
+
 // Verifies TS-SIL-380.
 TEST(ReplayReport, SaysThatMostOfItsAttitudesAreWrong) {
   SilRunResult made = run();
