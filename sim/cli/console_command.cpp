@@ -32,6 +32,7 @@ struct ConsoleArguments {
   int port = kDefaultPort;
   std::optional<std::uint32_t> ros2_domain;  // without: not published to ROS 2
   std::string security, model, mcap;
+  bool is_of_run = false;  // sim/run --watch started it, with the run
 };
 
 std::string make_token() {
@@ -72,6 +73,12 @@ Requests::ModelOf model_of(const ConsoleArguments& arguments) {
   };
 }
 
+// After "Ctrl-C ends the console".
+const char* what_goes_on(const ConsoleArguments& arguments) {
+  if (arguments.is_of_run) return " and the run";
+  return arguments.recording.empty() ? "; the run goes on" : "";
+}
+
 void show(const ConsoleArguments& arguments) {
   if (!arguments.model.empty()) ConsoleTarget{arguments.model};  // throws what is wrong with it
   if (!arguments.mcap.empty()) require_usable_files({}, {{"--mcap", arguments.mcap}});
@@ -84,7 +91,7 @@ void show(const ConsoleArguments& arguments) {
   fmt::print(
       "\n  {}\n\n  http://127.0.0.1:{}/?token={}\n\n  Open this address in a browser. Ctrl-C ends the "
       "console{}.\n",
-      run->title(), server.port(), token, arguments.recording.empty() ? "; the run goes on" : "");
+      run->title(), server.port(), token, what_goes_on(arguments));
   if (ros2) fmt::print("  ROS 2 nodes see the run in ROS domain {}.\n", *arguments.ros2_domain);
   if (!run->is_whole())
     fmt::print("  The recording has no end: its writer was killed, or has not ended yet.\n");
@@ -137,6 +144,7 @@ void add_console_command(CLI::App& app) {
       ->add_option("--dds-security", arguments->security,
                    "of a secured bus; hal/dds/make_security writes the file")
       ->check(CLI::ExistingFile);
+  command->add_flag("--of-run", arguments->is_of_run)->group("");
   command->footer(
       "\nExample: in one terminal a run at the speed of flight, in another the console\n"
       "  tumblesight simulate --sequences 30 --speed 10\n"

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gnc/numerics/crc.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/flight_arguments.hpp"
 #include "sim/cli/mesh_advice.hpp"
@@ -219,10 +220,16 @@ void replay_run(const ReplayArguments& given) {
   });
 }
 
+// Recordings of one name in two folders have two reports.
+std::string replay_report_name(const std::string& recording) {
+  const std::string path = full_path(recording);
+  return fmt::format("{}_{:08x}_replay.html", recording_stem(fs::path(path).filename().string()),
+                     gnc::crc32(reinterpret_cast<const std::uint8_t*>(path.data()), path.size()));
+}
+
 void replay(ReplayArguments arguments) {
   if (arguments.report.empty())
-    arguments.report = default_report_path(recording_stem(fs::path(arguments.recording).filename().string()) +
-                                           "_replay.html");
+    arguments.report = default_report_path(replay_report_name(arguments.recording));
   if (RunFile::is_one(arguments.recording)) return replay_run(arguments);
   const std::string truth_file = truth_path(arguments);
   require_usable_outputs(arguments, files_read(arguments, truth_file), arguments.scenario.json);
@@ -276,7 +283,8 @@ void add_replay_command(CLI::App& app, const std::string& command_line) {
   add_json_option(*command, arguments->scenario.json);
   add_flight_options(*command, *arguments);
   add_report_option(*command, arguments->report,
-                    fmt::format(" [out/<recording>_replay.html of {}]", program_files().output_parent));
+                    fmt::format(" [out/<recording>_<CRC-32 of its path>_replay.html of {}]",
+                                program_files().output_parent));
   command->footer(
       "\nThe flight program gets one cycle per frame, at its exposure time, and a cycle\n"
       "without a frame wherever one is missing for 2.7 s. It sees nothing of the truth.\n"

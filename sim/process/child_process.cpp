@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -78,6 +79,16 @@ class SpawnAttributes {
   posix_spawnattr_t attributes_;
 };
 
+std::string temporary_folder() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (!error) return folder.string();
+  const char* const named = std::getenv("TMPDIR");
+  throw std::runtime_error(
+      "the folder for temporary files, '" + std::string(named != nullptr ? named : "/tmp") +
+      "', is not there: " + error.message() + "; make it, or set TMPDIR to one that exists");
+}
+
 class TemporaryFile {
  public:
   TemporaryFile() {
@@ -98,7 +109,7 @@ class TemporaryFile {
   }
 
  private:
-  std::string path_ = (std::filesystem::temp_directory_path() / "tumblesight_output_XXXXXX").string();
+  std::string path_ = temporary_folder() + "/tumblesight_output_XXXXXX";
 };
 
 // The additional entries come first: of two entries with one name the first one counts.

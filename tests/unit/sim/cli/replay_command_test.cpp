@@ -6,6 +6,8 @@
 #include <csignal>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 #include <thread>
 
 #include "sim/cli/sensor_arguments.hpp"
@@ -185,6 +187,22 @@ TEST(WriteRecording, WritesWhatReplayReads) {
       "print([(row, column) for row in range(16) for column in range(16) if r[row][column]])'",
       "corners");
   EXPECT_EQ(corners.output, "[(0, 15), (13, 2)]\n") << corners.errors;
+}
+
+TEST_F(Replay, OfTwoRecordingsOfOneNameHasTwoReports) {
+  std::set<std::string> reports;
+  for (const char* folder : {"a", "b"}) {
+    std::filesystem::create_directory(here.path(folder));
+    std::filesystem::copy_file(here.path("frames.tslr"), here.path(std::string(folder) + "/run.tslr"));
+    const Outcome outcome =
+        here.run(std::string("replay ") + folder + "/run.tslr --json r.json --model " + here.model());
+    const std::size_t name = outcome.output.find("/run_");
+    ASSERT_NE(name, std::string::npos) << outcome.output;
+    const std::size_t line = outcome.output.find_last_of(" \n", name) + 1;
+    reports.insert(outcome.output.substr(line, outcome.output.find('\n', name) - line));
+  }
+  EXPECT_EQ(reports.size(), 2U);
+  for (const std::string& report : reports) EXPECT_TRUE(std::filesystem::remove(report)) << report;
 }
 
 // Organised clouds, as of PCD and ROS, have NaN where nothing returned.

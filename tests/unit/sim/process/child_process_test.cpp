@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 
@@ -74,6 +75,24 @@ TEST(OutputOf, GivesStandardOutputAloneWithoutTheLastLineBreak) {
 }
 
 // Ctrl-C in a terminal signals a process group. What asks another program waits for its answer.
+// The system's message alone names no folder.
+TEST(OutputOf, NamesAFolderForTemporaryFilesThatIsNotThere) {
+  const char* const before = getenv("TMPDIR");
+  const std::string former = before != nullptr ? before : "";
+  setenv("TMPDIR", "/no/such/folder", 1);
+  try {
+    output_of("true", {}, 10.0);
+    ADD_FAILURE() << "not refused";
+  } catch (const std::runtime_error& error) {
+    for (const char* part : {"'/no/such/folder'", "set TMPDIR to one that exists"})
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+  if (before != nullptr)
+    setenv("TMPDIR", former.c_str(), 1);
+  else
+    unsetenv("TMPDIR");
+}
+
 TEST(OutputOf, IsOfAProgramInAGroupOfItsOwn) {
   const std::string group = output_of("sh", {"-c", "cut -d ' ' -f 5 /proc/$$/stat"}, 10.0);
   EXPECT_NE(group, std::to_string(getpgrp()));
