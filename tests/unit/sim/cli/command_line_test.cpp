@@ -257,6 +257,24 @@ TEST(Help, FitsATerminal) {
   }
 }
 
+// What is done is shown, and marked as a part.
+TEST(Evaluate, ShowsTheFiguresSoFarWhenItIsInterrupted) {
+  const Workplace here;
+  here.model();
+  // A shell's background jobs ignore SIGINT, and a script cannot undo that. `env` can.
+  const std::string line =
+      std::string("timeout 100 sh -c 'env --default-signal=INT ") + TUMBLESIGHT_BINARY +
+      " evaluate --sequences 50000 --no-baseline --model model.tsm --json figures.json & "
+      "n=0; while ! grep -q seed interrupted.out && [ $n -lt 300 ]; do sleep 0.1; "
+      "n=$((n+1)); done; sleep 2; kill -INT $!; wait $!'";
+  const Outcome outcome = here.run_command(line, "interrupted");
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;
+  EXPECT_NE(outcome.output.find("The figures so far, of "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("of the 50000 sequences:"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.errors.find("interrupted by signal 2 after "), std::string::npos) << outcome.errors;
+  EXPECT_FALSE(std::filesystem::exists(here.path("figures.json")));
+}
+
 // Verifies TS-SIL-060.
 TEST(Evaluate, GivesTheSameFiguresWithOneAndTwoThreads) {
   const Workplace here;
