@@ -288,7 +288,7 @@ void add_target_options(CLI::App& command, ScenarioArguments& arguments) {
   add_target_option(command, arguments.target, TargetChoice::kAny);
   add_mesh_file_options(
       command, arguments.mesh, arguments.mesh_up, arguments.mesh_scale,
-      "surface of the target: a file (STL, OBJ, glTF), or parametric for the mesh that ships [parametric]");
+      "surface of the target: a file (STL, OBJ, PLY, glTF), or parametric for the mesh that ships [parametric]");
   add_inertia_option(command, arguments.inertia);
   add_mission_option(command, arguments);
 }
@@ -296,7 +296,7 @@ void add_target_options(CLI::App& command, ScenarioArguments& arguments) {
 void add_mesh_options(CLI::App& command, MeshArguments& arguments) {
   add_mesh_file_options(
       command, arguments.meshes, arguments.mesh_up, arguments.mesh_scale,
-      "surface of the target: a file (STL, OBJ, glTF), or parametric for the mesh that ships; "
+      "surface of the target: a file (STL, OBJ, PLY, glTF), or parametric for the mesh that ships; "
       "may be repeated [parametric]");
 }
 

@@ -126,8 +126,8 @@ void add_mesh_command(CLI::App& app, const std::string& command_line) {
   CLI::App* command =
       app.add_subcommand("mesh", "Show what a mesh file holds, and what to correct before training");
   command->footer(
-      "\nReads STL, OBJ, glTF and GLB, also compressed with Draco. Exits with 0, or with\n"
-      "4 if the mesh is of no use as it is. docs/own_spacecraft.md explains each\n"
+      "\nReads STL, OBJ, PLY, glTF and GLB, also compressed with Draco. Exits with 0, or\n"
+      "with 4 if the mesh is of no use as it is. docs/own_spacecraft.md explains each\n"
       "finding.\n\n"
       "Example: a mesh in millimetres, looked at, and written about its centre of mass\n"
       "  tumblesight mesh craft.glb --mesh-scale 0.001 --html craft.html\n"

@@ -68,7 +68,7 @@ MissionMesh mesh_of(TomlFields& fields, const std::string& file) {
   MissionMesh mesh;
   const std::optional<std::string> path = fields.text("mesh");
   if (!path)
-    fields.refuse("mesh", "the file of its surface (STL, OBJ, glTF), relative to the mission's folder");
+    fields.refuse("mesh", "the file of its surface (STL, OBJ, PLY, glTF), relative to the mission's folder");
   mesh.file = *path == kParametricMesh ? *path : relative_to(file, *path);
   std::error_code error;
   if (mesh.file != kParametricMesh && !fs::is_regular_file(mesh.file, error))
@@ -243,7 +243,7 @@ Mission mission_of(const toml::table& root, const std::string& file, const std::
 
 const char* const kFirstMission =
     "name    = \"craft\"          # 1 to 31 characters of a-z, 0-9 and _\n"
-    "mesh    = \"craft.glb\"      # STL, OBJ or glTF, beside this file\n"
+    "mesh    = \"craft.glb\"      # STL, OBJ, PLY or glTF, beside this file\n"
     "up      = \"y\"              # axis of the file that becomes z of the target frame\n"
     "unit    = \"m\"              # or mm, cm, in, ft; or scale = metres per unit\n"
     "inertia = [410, 380, 300, 0, -2, 5]  # Ixx, Iyy, Izz, Ixy, Ixz, Iyz in kg m2\n";

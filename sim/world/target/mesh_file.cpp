@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -13,7 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "sim/process/input_file.hpp"
+#include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/mesh_import.hpp"
+#include "sim/world/target/obj_file.hpp"
+#include "sim/world/target/ply_file.hpp"
+#include "sim/world/target/stl_file.hpp"
 
 namespace tumblesight::sim {
 
@@ -34,19 +38,71 @@ std::string number(double value) {
 }
 
 std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  return in_lower_case(std::filesystem::path(path).extension().string());
 }
 
-// Assimp reads more formats. Only these are supported and tested with damaged files (tests/fuzz); damaged
-// files of other formats can crash it.
+// What turns a file of another format into one that is read.
+struct OtherFormat {
+  const char* extension;
+  const char* name;
+  const char* remedy;
+};
+constexpr const char* kByBlender = "open it in Blender and use File > Export > glTF 2.0 or STL";
+constexpr const char* kByCad =
+    "open it in FreeCAD or CAD Assistant and export it as STL or glTF, with an angular deflection of a few "
+    "degrees";
+constexpr OtherFormat kOtherFormats[] = {
+    {".fbx", "FBX", kByBlender},
+    {".dae", "COLLADA", kByBlender},
+    {".3ds", "3DS", kByBlender},
+    {".blend", "Blender", kByBlender},
+    {".x3d", "X3D", kByBlender},
+    {".wrl", "VRML", kByBlender},
+    {".usd", "USD", kByBlender},
+    {".usda", "USD", kByBlender},
+    {".usdc", "USD", kByBlender},
+    {".usdz", "USD", kByBlender},
+    {".abc", "Alembic", kByBlender},
+    {".max", "3ds Max", "export it from 3ds Max as glTF or STL"},
+    {".lwo", "LightWave", "export it from LightWave as OBJ or STL"},
+    {".3mf", "3MF", "open it in a slicer or in FreeCAD and export it as STL"},
+    {".amf", "AMF", "open it in a slicer or in FreeCAD and export it as STL"},
+    {".off", "OFF", "open it in MeshLab and use File > Export Mesh As > STL or PLY"},
+    {".step", "STEP", kByCad},
+    {".stp", "STEP", kByCad},
+    {".iges", "IGES", kByCad},
+    {".igs", "IGES", kByCad},
+    {".brep", "BREP", kByCad},
+    {".fcstd", "FreeCAD", kByCad},
+    {".dxf", "DXF", kByCad},
+    {".dwg", "DWG", "export it from the CAD program as STL"},
+    {".sldprt", "SolidWorks", "export it from SolidWorks as STL"},
+    {".sldasm", "SolidWorks", "export it from SolidWorks as STL"},
+    {".catpart", "CATIA", "export it from CATIA as STL"},
+    {".catproduct", "CATIA", "export it from CATIA as STL"},
+    {".ipt", "Inventor", "export it from Inventor as STL"},
+    {".iam", "Inventor", "export it from Inventor as STL"},
+    {".prt", "part", "export it from the CAD program as STL"},
+    {".skp", "SketchUp", "export it from SketchUp as STL or glTF"},
+    {".pcd", "point cloud", "make a surface of it in CloudCompare or MeshLab and export this as PLY"},
+    {".las", "point cloud", "make a surface of it in CloudCompare or MeshLab and export this as PLY"},
+    {".xyz", "point cloud", "make a surface of it in CloudCompare or MeshLab and export this as PLY"},
+    {".zip", "archive", "unpack it and give the mesh in it"},
+    {".gz", "archive", "unpack it and give the mesh in it"},
+};
+
+// The files that are supported and tested with damaged content (tests/fuzz).
 void check_format(const std::string& path) {
   const std::string extension = extension_of(path);
-  for (const char* known : {".stl", ".obj", ".gltf", ".glb"}) {
+  for (const char* known : {".stl", ".obj", ".ply", ".gltf", ".glb"}) {
     if (extension == known) return;
   }
-  refuse(path, "cannot be read: its name must end in .stl, .obj, .gltf or .glb; export it as one of these");
+  const std::string start = "cannot be read: its name must end in .stl, .obj, .ply, .gltf or .glb; ";
+  for (const OtherFormat& other : kOtherFormats) {
+    if (extension == other.extension)
+      refuse(path, start + other.name + " files are not read: " + other.remedy);
+  }
+  refuse(path, start + "export it as one of these");
 }
 
 void check_readable(const std::string& path) {
@@ -56,7 +112,7 @@ void check_readable(const std::string& path) {
     refuse(path, "no such file; check its path");
   }
   if (!std::filesystem::is_regular_file(status)) {
-    refuse(path, "is not a file; give one STL, OBJ, glTF or GLB file");
+    refuse(path, "is not a file; give one STL, OBJ, PLY, glTF or GLB file");
   }
   if (std::filesystem::file_size(path, error) == 0 && !error) {
     refuse(path, "the file is empty (0 bytes); export it again");
@@ -74,6 +130,22 @@ void check_start(const std::string& path) {
   if (extension == ".gltf") check_gltf(path);
 }
 
+// 5,000,000 triangles take 250 MB in binary STL and about 1.4 GB in text.
+constexpr InputKind kMesh{"mesh", std::uint64_t{2} << 30U};
+
+TriangleMesh read_by_format(const std::string& path, const MeshFileOptions& options) {
+  const std::string extension = extension_of(path);
+  if (extension == ".glb" || extension == ".gltf") {
+    check_start(path);
+    return import_mesh(path, options);
+  }
+  const std::string content = read_text(path, kMesh);
+  const std::string_view bytes = without_byte_order_mark(content);
+  if (extension == ".obj") return read_obj(bytes, path, options);
+  if (extension == ".ply") return read_ply(bytes, options);
+  return read_stl(bytes, options);
+}
+
 void check_vertices(const std::string& path, const std::vector<Eigen::Vector3f>& vertices) {
   const auto bad = [](const Eigen::Vector3f& v) { return !v.allFinite(); };
   const auto first = std::find_if(vertices.begin(), vertices.end(), bad);
@@ -84,6 +156,24 @@ void check_vertices(const std::string& path, const std::vector<Eigen::Vector3f>&
                    std::to_string(vertices.size()) + " vertices are not finite, the first is vertex " +
                    std::to_string(first - vertices.begin()) + " (" + number(first->x()) + ", " +
                    number(first->y()) + ", " + number(first->z()) + "); repair the mesh and export it again");
+}
+
+// Sizes that no unit makes a spacecraft of would leave the range of single precision in what follows.
+constexpr double kLargestExtent_m = 1e9, kSmallestExtent_m = 1e-9;
+
+void check_extent(const std::string& path, const std::vector<Eigen::Vector3f>& vertices, double scale) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : vertices) box.extend(vertex.cast<double>());
+  const double size_m = box.sizes().maxCoeff();
+  const double farthest_m = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  const std::string remedy =
+      "; give the unit of the file with --mesh-scale (now " + number(scale) + "), or repair the mesh";
+  if (farthest_m > kLargestExtent_m)
+    refuse(path, "its farthest vertex is " + number(farthest_m) + " m from the origin, at most " +
+                     number(kLargestExtent_m) + " m are read" + remedy);
+  if (size_m < kSmallestExtent_m)
+    refuse(path, "its surface is " + number(size_m) + " m long, at least " + number(kSmallestExtent_m) +
+                     " m are needed" + remedy);
 }
 
 // For each vertex the first one at exactly the same place.
@@ -171,13 +261,17 @@ TriangleMesh read_mesh_file(const std::string& path, const MeshFileOptions& opti
   check_format(path);
   TriangleMesh mesh;
   try {
-    check_start(path);
-    mesh = import_mesh(path, options);
+    mesh = read_by_format(path, options);
+  } catch (const InputRefused& error) {
+    throw std::runtime_error(error.what());  // names the file
   } catch (const std::exception& error) {
     refuse(path, error.what());
   }
+  mesh.name = path;
   if (mesh.triangles.empty()) {
-    refuse(path, "holds no triangles; export the surface as a triangle mesh");
+    const std::string others = mesh.losses.empty() ? reading_note(mesh) : mesh.losses.front();
+    refuse(path, "holds no triangles" + (others.empty() ? "" : " (" + others + ")") +
+                     "; export the surface as a triangle mesh");
   }
   if (mesh.triangles.size() > kMaxTriangles) {
     refuse(path, "has " + std::to_string(mesh.triangles.size()) + " triangles, at most " +
@@ -186,6 +280,7 @@ TriangleMesh read_mesh_file(const std::string& path, const MeshFileOptions& opti
                      "sensor can");
   }
   check_vertices(path, mesh.vertices_trf_m);
+  check_extent(path, mesh.vertices_trf_m, options.scale);
   leave_out_triangles_without_area(path, mesh);
   join_equal_vertices(mesh);
   return mesh;
@@ -214,11 +309,21 @@ TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& opti
   return mesh;
 }
 
+std::string reading_note(const TriangleMesh& mesh) {
+  std::string note;
+  for (const std::string& text : mesh.notes) note += (note.empty() ? "" : "; ") + text;
+  return note;
+}
+
 std::string left_out_note(const TriangleMesh& mesh) {
-  if (mesh.left_out == 0) return {};
-  return share_text(mesh.left_out, mesh.triangles.size() + mesh.left_out) +
-         (mesh.left_out == 1 ? " has" : " have") + " no area and " + (mesh.left_out == 1 ? "is" : "are") +
-         " left out: no ray hits " + (mesh.left_out == 1 ? "it" : "them");
+  std::string note;
+  if (mesh.left_out > 0)
+    note = share_text(mesh.left_out, mesh.triangles.size() + mesh.left_out) +
+           (mesh.left_out == 1 ? " has" : " have") + " no area and " + (mesh.left_out == 1 ? "is" : "are") +
+           " left out: no ray hits " + (mesh.left_out == 1 ? "it" : "them");
+  for (const std::string& loss : mesh.losses) note += (note.empty() ? "" : "; ") + loss;
+  const std::string others = reading_note(mesh);
+  return note + (note.empty() || others.empty() ? "" : "; ") + others;
 }
 
 MeshUp mesh_up_from(const std::string& name) {

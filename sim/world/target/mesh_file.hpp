@@ -1,4 +1,4 @@
-// Mesh files: a target's surface from a CAD file (STL, OBJ, glTF, GLB), through Assimp.
+// Mesh files: a target's surface from a CAD file or a scan (STL, OBJ, PLY; glTF and GLB through Assimp).
 #pragma once
 
 #include <Eigen/Core>
@@ -35,13 +35,14 @@ inline constexpr std::size_t kMaxTriangles = 5'000'000;
 
 // The triangles of the file in the TRF, in metres, with node transforms applied, equal vertices joined and
 // meshes decompressed (Draco). The origin of the file becomes the origin of the TRF, unless `origin_trf_m`
-// moves it. Left out are triangles without area, which TriangleMesh::left_out counts, and what Assimp skips:
-// points and lines. Nothing else is repaired.
+// moves it. Left out are triangles without area, which TriangleMesh::left_out counts, points and lines. Polygons
+// are divided into triangles. Nothing else is repaired. TriangleMesh::notes and losses say what else was left
+// out.
 //
 // Throws std::runtime_error that names the file, the fault, the value, the limit and the remedy for: a scale
 // that is not positive and finite; a file that is missing, unreadable, or not of the format that its
-// extension .stl, .obj, .gltf or .glb names; a compression that this build cannot read; no triangles, or more
-// than kMaxTriangles; vertices that are not finite; too many triangles without area.
+// extension .stl, .obj, .ply, .gltf or .glb names, or cut off; a compression that this build cannot read; no
+// triangles, or more than kMaxTriangles; vertices that are not finite; too many triangles without area.
 TriangleMesh read_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 
 // Empty if the sensor can see a target of this size; otherwise the size, the limit and the remedies.
@@ -52,6 +53,9 @@ TriangleMesh load_mesh_file(const std::string& path, const MeshFileOptions& opti
 
 // "6 of 9312 triangles (0.06 %) have no area and are left out: no ray hits them". Empty if none was left out.
 std::string left_out_note(const TriangleMesh& mesh);
+
+// What else of the file was left out (TriangleMesh::notes), in one line. Empty if nothing was.
+std::string reading_note(const TriangleMesh& mesh);
 
 // The files that belong to a mesh file: an OBJ's materials, a glTF's buffers and images
 // (mesh_side_files.cpp). They need not exist. Empty for other formats, and for a file that is missing or

@@ -8,10 +8,11 @@
 
 #include <Eigen/Core>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cstdint>
 
 #include "sim/world/target/gltf_surface.hpp"
+#include "sim/world/target/mesh_axes.hpp"
+#include "sim/world/target/mesh_builder.hpp"
 #endif
 
 namespace tumblesight::sim {
@@ -19,23 +20,6 @@ namespace tumblesight::sim {
 #ifdef TUMBLESIGHT_HAS_ASSIMP
 
 namespace {
-
-// Rotation from the axes of the file to the TRF.
-Eigen::Matrix3d axes_trf_file(MeshUp up) {
-  if (up == MeshUp::kZ) {
-    return Eigen::Matrix3d::Identity();
-  }
-  Eigen::Matrix3d axes;
-  axes << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  return axes;
-}
-
-// Whether the name of its material says so. The names of nodes are lost when their transforms are applied.
-bool is_named_panel(const aiMaterial& material) {
-  std::string name = material.GetName().C_Str();
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name.find("panel") != std::string::npos || name.find("solar") != std::string::npos;
-}
 
 void append_faces(const aiMesh& part, const MeshFileOptions& options, TriangleMesh& mesh) {
   const Eigen::Matrix3d to_trf_m = options.scale * axes_trf_file(options.up);
@@ -72,24 +56,20 @@ TriangleMesh import_mesh(const std::string& path, const MeshFileOptions& options
   try {
     scene = surface.empty() ? importer.ReadFile(path, steps)
                             : importer.ReadFileFromMemory(surface.data(), surface.size(), steps, "glb");
-  } catch (const std::exception& error) {  // for instance out of memory
-    throw std::runtime_error(std::string("cannot be read: ") + error.what());
+  } catch (const std::exception&) {  // for instance out of memory
+    scene = nullptr;
   }
-  // Assimp's own words would be about the GLB file that it was given.
-  if (!surface.empty() && scene == nullptr) {
+  // Assimp's own words name its sources, and can be as long as the file.
+  if (scene == nullptr || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0U)
     throw std::runtime_error("cannot be read: its parts cannot be put together; export it again");
-  }
-  if (scene == nullptr || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0U) {
-    throw std::runtime_error(std::string("cannot be read as STL, OBJ, glTF or GLB: ") +
-                             importer.GetErrorString() + "; export it again");
-  }
   TriangleMesh mesh;
   mesh.name = path;
   bool named = false;  // a part is named as a panel
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
     if ((scene->mMeshes[i]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0U) {
       append_faces(*scene->mMeshes[i], options, mesh);
-      const bool panel = is_named_panel(*scene->mMaterials[scene->mMeshes[i]->mMaterialIndex]);
+      const bool panel =
+          names_a_panel(scene->mMaterials[scene->mMeshes[i]->mMaterialIndex]->GetName().C_Str());
       named = named || panel;
       mesh.is_panel.resize(mesh.triangles.size(), panel ? 1 : 0);
     }
@@ -102,7 +82,9 @@ TriangleMesh import_mesh(const std::string& path, const MeshFileOptions& options
 
 TriangleMesh import_mesh(const std::string&, const MeshFileOptions&) {
   throw std::runtime_error(
-      "this build has no Assimp and reads no mesh files; install libassimp-dev, configure and build again");
+      "this build has no Assimp and reads no glTF; install libassimp-dev, configure and build again, or "
+      "export "
+      "the mesh as STL, OBJ or PLY");
 }
 
 #endif

@@ -19,6 +19,9 @@ struct TriangleMesh {
   std::vector<std::uint8_t> is_panel{};
   // Triangles of the file that are not among these, because they have no area.
   std::size_t left_out = 0;
+  // What else of the file is not among them, a phrase each. `losses` are those by which surface is missing.
+  std::vector<std::string> notes{};
+  std::vector<std::string> losses{};
 
   // Largest distance of a vertex from the TRF's origin.
   float radius_m() const {

@@ -1,6 +1,7 @@
 #include "sim/world/target/mesh_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -155,10 +156,41 @@ TEST_F(MeshFile, AMissingOrEmptyFileAndAFolderAreRefused) {
   expect_refused(write("empty.stl", ""), {"empty", "0 bytes"});
 }
 
-// Assimp reads PLY too, and crashes on a damaged one.
-TEST_F(MeshFile, OtherFormatsAreRefusedByName) {
-  expect_refused(write("wedge.ply", "ply\n"), {".stl, .obj, .gltf or .glb"});
-  expect_refused(write("wedge", "v 0 0 0\n"), {".stl, .obj, .gltf or .glb"});
+TEST_F(MeshFile, OtherFormatsAreRefusedByNameWithAProgramThatConvertsThem) {
+  const char* const known = ".stl, .obj, .ply, .gltf or .glb";
+  expect_refused(write("wedge", "v 0 0 0\n"), {known});
+  for (const char* name : {"wedge.FBX", "wedge.dae", "wedge.3ds", "wedge.blend"})
+    expect_refused(write(name, "x"), {known, "Blender", "File > Export > glTF 2.0"});
+  for (const char* name : {"wedge.step", "wedge.STP", "wedge.iges", "wedge.igs"})
+    expect_refused(write(name, "x"), {known, "FreeCAD", "CAD Assistant"});
+}
+
+TEST_F(MeshFile, APipeIsRefusedAndNotWaitedFor) {
+  const std::string path = (folder_ / "pipe.stl").string();
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  expect_refused(path, {"not a file"});
+}
+
+// Nothing behind the door has to cope with lengths whose squares leave single precision.
+TEST_F(MeshFile, ExtentsThatNoUnitExplainsAreRefused) {
+  expect_refused(write("huge.stl", stl(wedge_triangles(1e30F))), {"3e+30 m", "1e+09 m", "--mesh-scale"});
+  expect_refused(write("tiny.stl", stl(wedge_triangles(1e-40F))), {"m long", "1e-09 m", "--mesh-scale"});
+}
+
+TEST_F(MeshFile, TheFormatsOfTextAndOfScannersGiveTheSameMesh) {
+  const TriangleMesh of_stl = load_mesh_file(write("wedge.stl", stl(wedge_triangles())));
+  std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const auto& v : kWedge)
+    ply += std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + "\n";
+  for (const auto& f : kFaces)
+    ply += "3 " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " + std::to_string(f[2]) + "\n";
+  for (const TriangleMesh& other :
+       {load_mesh_file(write("w.obj", obj())), load_mesh_file(write("w.ply", ply))}) {
+    EXPECT_EQ(other.vertices_trf_m, of_stl.vertices_trf_m);
+    EXPECT_EQ(other.triangles, of_stl.triangles);
+  }
 }
 
 TEST(MeshUpAxis, IsYOrZ) {
@@ -346,7 +378,8 @@ TEST_F(MeshFile, SizeBeyondTheSensorIsRefusedWithTheLimit) {
 #else
 
 TEST_F(MeshFile, WithoutAssimpTheErrorSaysWhatToInstall) {
-  expect_refused(write("wedge.stl", stl(wedge_triangles())), {"libassimp-dev"});
+  (void)write("wedge.bin", gltf_buffer());
+  expect_refused(write("wedge.gltf", gltf("wedge.bin")), {"libassimp-dev"});
 }
 
 #endif
