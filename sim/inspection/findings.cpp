@@ -82,20 +82,21 @@ class Findings {
 
   // Whether the size is plausible as it stands.
   bool is_plausible() const {
-    return found_.core_radius_m >= kSmallestPlausibleRadius_m &&
-           found_.core_radius_m <= kLargestPlausibleRadius_m;
+    return found_.centred_radius_m >= kSmallestPlausibleRadius_m &&
+           found_.centred_radius_m <= kLargestPlausibleRadius_m;
   }
 
   void unit() {
     if (is_plausible()) return;
     std::string sizes;
     for (const Unit& unit : found_.likely_units) {
-      sizes += fmt::format("{}in {} (--mesh-scale {:g}) it is {}", sizes.empty() ? "" : ", ", unit.name,
-                           unit.length_m, length_text(unit.length_m * found_.core_radius_m / options_.scale));
+      sizes +=
+          fmt::format("{}in {} (--mesh-scale {:g}) it is {}", sizes.empty() ? "" : ", ", unit.name,
+                      unit.length_m, length_text(unit.length_m * found_.centred_radius_m / options_.scale));
     }
     add("unit", Severity::kWarning,
         fmt::format("A radius of {} is unusual for a spacecraft: the unit of the file is perhaps not {:g} m.",
-                    length_text(found_.core_radius_m), options_.scale),
+                    length_text(found_.centred_radius_m), options_.scale),
         sizes.empty() ? "Find out the unit of the file and give it in metres with --mesh-scale."
                       : "Compare with a known length, and give the right unit: " + sizes + ".");
   }
@@ -191,13 +192,17 @@ class Findings {
       triangles += found_.parts[stray].triangles.size();
       area_m2 += found_.parts[stray].area_m2;
     }
+    const std::string what =
+        fmt::format("{} of {} ({:.2g} % of the area) lie apart", counted(found_.strays.size(), "part"),
+                    counted(triangles, "triangle"), percent(area_m2, found_.area_m2));
+    const bool enlarge = found_.radius_m > found_.core_radius_m;  // not with an origin far away
     add("strays", Severity::kWarning,
-        fmt::format(
-            "{} of {} ({:.2g} % of the area) lie apart and enlarge the radius from {} to {}: the "
-            "target covers {:.0f} % of the width of the image, and the rest of its resolution is lost.",
-            counted(found_.strays.size(), "part"), counted(triangles, "triangle"),
-            percent(area_m2, found_.area_m2), length_text(found_.core_radius_m), length_text(found_.radius_m),
-            percent(found_.core_radius_m, found_.radius_m)),
+        enlarge ? fmt::format(
+                      "{} and enlarge the radius from {} to {}: the target covers {:.0f} % of the width of "
+                      "the image, and the rest of its resolution is lost.",
+                      what, length_text(found_.core_radius_m), length_text(found_.radius_m),
+                      percent(found_.core_radius_m, found_.radius_m))
+                : what + " from the rest, by more than three of its radii.",
         "If they are not of the spacecraft, --fix removes them.");
   }
 

@@ -18,10 +18,23 @@ using Points = std::vector<Eigen::Vector3f>;
 constexpr double kRound = 0.01;        // of the radius
 constexpr double kAboutOneAxis = 0.9;  // cosine
 
-// The sensor model sees at most 500 m; a mesh in millimetres is larger.
-TriangleMesh of_radius_1(TriangleMesh mesh, double radius_m) {
-  for (Eigen::Vector3f& vertex : mesh.vertices_trf_m) vertex /= static_cast<float>(radius_m);
+constexpr std::size_t kFewestPoints = 3;
+
+// About its own centre: rays that are spread over the radius about an origin far away miss it. The sensor
+// model sees at most 500 m; a mesh in millimetres is larger.
+TriangleMesh of_radius_1(TriangleMesh mesh, const Vector3d& centre_trf_m, double radius_m) {
+  for (Eigen::Vector3f& vertex : mesh.vertices_trf_m)
+    vertex = ((vertex.cast<double>() - centre_trf_m) / radius_m).cast<float>();
   return mesh;
+}
+
+// A surface so thin that the rays miss it is judged by its corners and the middles of its triangles.
+Points points_of(const TriangleMesh& mesh, const OuterSurface& outer) {
+  if (outer.points_trf_m.size() >= kFewestPoints) return outer.points_trf_m;
+  Points points = mesh.vertices_trf_m;
+  for (const auto& [a, b, c] : mesh.triangles)
+    points.push_back((mesh.vertices_trf_m[a] + mesh.vertices_trf_m[b] + mesh.vertices_trf_m[c]) / 3.0F);
+  return points;
 }
 
 double radius_about(const TriangleMesh& mesh, const Vector3d& centre) {
@@ -46,8 +59,8 @@ double radius_of_share(const Points& points, const Vector3d& centre, double shar
   return *at;
 }
 
-SurfaceSymmetry scaled(SurfaceSymmetry symmetry, double factor) {
-  symmetry.centre_trf_m *= factor;
+SurfaceSymmetry placed(SurfaceSymmetry symmetry, const Vector3d& centre_trf_m, double factor) {
+  symmetry.centre_trf_m = centre_trf_m + factor * symmetry.centre_trf_m;
   symmetry.extent_m *= factor;
   for (SymmetryAxis& axis : symmetry.axes) {
     for (double& moved_m : axis.moved_m) moved_m *= factor;
@@ -73,14 +86,15 @@ void set_roundness(MeshInspection& found) {
 
 // What the views from outside show of the mesh without its strays.
 void look_from_outside(const TriangleMesh& core, MeshInspection& found) {
-  const TriangleMesh unit = of_radius_1(core, found.core_radius_m);
-  const OuterSurface outer = outer_surface(unit);
-  found.symmetry = scaled(symmetry_of(unit, outer.points_trf_m), found.core_radius_m);
-  found.centred_radius_m = std::min({found.core_radius_m, radius_about(core, found.symmetry.centre_trf_m),
-                                     radius_about(core, box_of(core).center())});
-  found.radius_of_95_m =
-      found.core_radius_m *
-      radius_of_share(outer.points_trf_m, found.symmetry.centre_trf_m / found.core_radius_m, 0.95);
+  const Vector3d centre_trf_m = box_of(core).center();
+  const double radius_m = radius_about(core, centre_trf_m);
+  const TriangleMesh unit = of_radius_1(core, centre_trf_m, radius_m);
+  const Points points = points_of(unit, outer_surface(unit));
+  const SurfaceSymmetry symmetry = symmetry_of(unit, points);
+  found.radius_of_95_m = radius_m * radius_of_share(points, symmetry.centre_trf_m, 0.95);
+  found.symmetry = placed(symmetry, centre_trf_m, radius_m);
+  found.centred_radius_m =
+      std::min({found.core_radius_m, radius_about(core, found.symmetry.centre_trf_m), radius_m});
   set_roundness(found);
 }
 
@@ -93,6 +107,17 @@ void count(const TriangleMesh& mesh, MeshInspection& found) {
   found.edges = edges_of(mesh);
   found.panels = find_panels(mesh).size();
   found.panels_are_named = !mesh.is_panel.empty();
+}
+
+// The gravest findings come first.
+void add_what_was_not_read(const TriangleMesh& mesh, MeshInspection& found) {
+  const auto note = std::find_if(found.findings.begin(), found.findings.end(),
+                                 [](const Finding& finding) { return finding.severity == Severity::kNote; });
+  std::vector<Finding> losses;
+  for (const std::string& loss : mesh.losses) losses.push_back({"lost", Severity::kWarning, loss + ".", ""});
+  found.findings.insert(note, losses.begin(), losses.end());
+  for (const std::string& text : mesh.notes)
+    found.findings.push_back({"not_read", Severity::kNote, text + ".", ""});
 }
 
 }  // namespace
@@ -115,8 +140,9 @@ MeshInspection inspect(const TriangleMesh& mesh, const MeshFileOptions& options)
   const TriangleMesh core = without(mesh, triangles_of_strays(found));
   found.core_radius_m = core.radius_m();
   look_from_outside(core, found);
-  found.likely_units = likely_units(found.core_radius_m / options.scale);
+  found.likely_units = likely_units(found.centred_radius_m / options.scale);
   found.findings = findings_of(mesh.name, found, options);
+  add_what_was_not_read(mesh, found);
   return found;
 }
 

@@ -18,6 +18,7 @@ using Eigen::Vector3f;
 constexpr float kCellShare = 0.01F;      // of the diagonal of the mesh's box
 constexpr double kMaxStrayArea = 0.05;   // of the whole area
 constexpr double kMinStrayReach = 1.05;  // its reach over that of the rest
+constexpr double kFarReach = 3.0;        // the same about the centre of the rest
 constexpr double kCubeTolerance = 1e-3;  // of its side
 constexpr std::size_t kCubeTriangles = 12;
 
@@ -86,15 +87,14 @@ std::size_t add_triangle(const Vector3f& a, const Vector3f& b, const Vector3f& c
 SeparatePart part_of(const TriangleMesh& mesh, std::vector<std::size_t> triangles) {
   SeparatePart part;
   part.area_m2 = area_m2(mesh, triangles);
-  Eigen::AlignedBox3d box;
   for (const std::size_t triangle : triangles) {
     for (const std::uint32_t corner : mesh.triangles[triangle]) {
       const Eigen::Vector3d place = mesh.vertices_trf_m[corner].cast<double>();
       part.reach_m = std::max(part.reach_m, place.norm());
-      box.extend(place);
+      part.box_trf_m.extend(place);
     }
   }
-  part.centre_trf_m = box.center();
+  part.centre_trf_m = part.box_trf_m.center();
   part.triangles = std::move(triangles);
   return part;
 }
@@ -131,12 +131,20 @@ std::vector<std::size_t> strays_of(const std::vector<SeparatePart>& parts) {
     return part.area_m2 < kMaxStrayArea * area_m2;
   };
   double reach_m = 0.0;  // of what cannot be a stray
+  Eigen::AlignedBox3d rest;
   for (const SeparatePart& part : parts) {
-    if (!is_small(part)) reach_m = std::max(reach_m, part.reach_m);
+    if (is_small(part)) continue;
+    reach_m = std::max(reach_m, part.reach_m);
+    rest.extend(part.box_trf_m);
   }
+  // With an origin far away, a part that lies apart enlarges the radius about it by little or not at all.
+  const auto is_far = [&rest](const SeparatePart& part) {
+    return (part.box_trf_m.center() - rest.center()).norm() > kFarReach * 0.5 * rest.diagonal().norm();
+  };
   std::vector<std::size_t> strays;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (is_small(parts[i]) && parts[i].reach_m > kMinStrayReach * reach_m) strays.push_back(i);
+    if (is_small(parts[i]) && (parts[i].reach_m > kMinStrayReach * reach_m || is_far(parts[i])))
+      strays.push_back(i);
   }
   return reach_m > 0.0 ? strays : std::vector<std::size_t>{};
 }

@@ -2,7 +2,7 @@
 // behind, and parts whose support the model lacks.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -15,7 +15,8 @@ struct SeparatePart {
   std::vector<std::size_t> triangles;
   double area_m2 = 0.0;
   double reach_m = 0.0;  // of its farthest vertex, from the origin
-  Eigen::Vector3d centre_trf_m = Eigen::Vector3d::Zero();
+  Eigen::AlignedBox3d box_trf_m;
+  Eigen::Vector3d centre_trf_m = Eigen::Vector3d::Zero();  // of the box
 };
 
 // The parts that are more than about 2 % of the size of the mesh away from each other, the largest in area
@@ -23,8 +24,8 @@ struct SeparatePart {
 // piece gives one part.
 std::vector<SeparatePart> separate_parts(const TriangleMesh& mesh);
 
-// Of parts as above, those that enlarge the radius by more than 5 % and have less than 5 % of the area: the
-// numbers of the parts. They cost resolution, since the image shows the whole radius.
+// Of parts as above, those that have less than 5 % of the area and enlarge the radius by more than 5 %, or lie
+// more than three radii of the rest from its centre: the numbers of the parts. They cost resolution, since the image shows the whole radius.
 std::vector<std::size_t> strays_of(const std::vector<SeparatePart>& parts);
 
 // The cube of 12 triangles about the origin that some exporters add to mark it (NASA's name it `_root`).

@@ -10,6 +10,7 @@
 namespace tumblesight::sim {
 namespace {
 
+constexpr double kFar = 20.0;      // radii of the mesh about its own centre
 constexpr float kDarkest = 0.25F;  // of a surface that is seen edge-on
 
 // "-x" -> (-1, 0, 0)
@@ -25,9 +26,24 @@ FrameTruth truth_of(const ViewSide& side, double radius_m) {
   return {Eigen::Quaterniond(r_lrf_trf), Eigen::Vector3d::Zero(), kOutsideDistance_radii * radius_m};
 }
 
+Eigen::Vector3d middle_of(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : mesh.vertices_trf_m) box.extend(vertex.cast<double>());
+  const bool is_far = mesh.radius_m() > kFar * 0.5 * box.diagonal().norm();
+  if (!is_far) return Eigen::Vector3d::Zero();
+  return box.center();
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
+  for (Eigen::Vector3f& vertex : mesh.vertices_trf_m) vertex = (vertex.cast<double>() + by).cast<float>();
+  return mesh;
+}
+
 }  // namespace
 
-std::array<SideView, 6> six_views(const TriangleMesh& mesh, int pixels) {
+std::array<SideView, 6> six_views(const TriangleMesh& whole, int pixels) {
+  const Eigen::Vector3d middle_trf_m = middle_of(whole);
+  const TriangleMesh mesh = moved(whole, -middle_trf_m);
   const FlashLidar lidar(mesh);
   const double radius_m = mesh.radius_m();
   std::array<SideView, 6> views;
@@ -35,6 +51,7 @@ std::array<SideView, 6> six_views(const TriangleMesh& mesh, int pixels) {
     SideView& view = views[i];
     view.side = kViewSides[i];
     view.pixels = pixels;
+    view.middle_trf_m = middle_trf_m;
     view.swath_m = swath_m(mesh);
     const FrameTruth truth = truth_of(view.side, radius_m);
     const RangeGrid grid = lidar.true_surfaces(truth, pixels, view.swath_m);

@@ -1,6 +1,7 @@
 // The six sides of a mesh, each seen along an axis of the TRF from far away.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <vector>
 
@@ -23,7 +24,9 @@ inline constexpr std::array<ViewSide, 6> kViewSides{{{"+x", "+y", "+z"},
 
 struct SideView {
   ViewSide side;
-  int pixels = 0;  // per side; the picture is as wide as the mesh's diameter, its middle is the TRF's origin
+  int pixels = 0;  // per side; the picture is as wide as the mesh's diameter about its middle
+  // The TRF's origin, or the centre of a mesh that is far from it: about the origin nothing would be seen.
+  Eigen::Vector3d middle_trf_m = Eigen::Vector3d::Zero();
   double swath_m = 0.0;           // width of the picture
   std::vector<float> brightness;  // 0..1, from the top left; 0: nothing is there. Lit from the viewer
   std::vector<float> nearness;    // 0 at the far end of the mesh's ball, 1 at its near end

@@ -71,14 +71,21 @@ std::vector<std::string> texts_of(const MeshInspection& found, bool notes) {
   return texts;
 }
 
+std::string middle_of(const SideView& view) {
+  const Eigen::Vector3d& middle_m = view.middle_trf_m;
+  if (middle_m.isZero()) return "the origin of the target frame";
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) m of the target frame", middle_m.x(), middle_m.y(),
+                     middle_m.z());
+}
+
 }  // namespace
 
 std::string mesh_page(const MeshReport& report, const std::array<SideView, 6>& views) {
   const std::string name = std::filesystem::path(report.file).filename().string();
   std::string body = fmt::format(
-      "<h1>Mesh {}</h1>\n<p class=sub>{:.3g} m wide pictures; the origin of the target frame "
+      "<h1>Mesh {}</h1>\n<p class=sub>{:.3g} m wide pictures; {} "
       "is in their middle</p>\n",
-      escape_markup(name), views.front().swath_m);
+      escape_markup(name), views.front().swath_m, middle_of(views.front()));
   body += html_notices(texts_of(report.found, false), texts_of(report.found, true));
   body += "<div class=facts>\n";
   for (const SideView& view : views) body += side_figure(view);

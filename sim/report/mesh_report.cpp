@@ -36,7 +36,7 @@ std::string place_text(const Eigen::Vector3d& place) {
 }
 
 std::string units_text(const MeshReport& report) {
-  const double radius_m = report.found.core_radius_m;
+  const double radius_m = report.found.centred_radius_m;
   if (radius_m >= kSmallestPlausibleRadius_m && radius_m <= kLargestPlausibleRadius_m) return "plausible";
   const double radius = radius_m / report.options.scale;
   std::string text;
@@ -72,6 +72,10 @@ char shade_at(const SideView& view, int row, int column) {
   const float mean = sum / static_cast<float>(high * wide);
   if (mean <= 0.0F) return kShades[0];
   return kShades[std::clamp(static_cast<int>(mean * (kLastShade + 1)), 1, kLastShade)];
+}
+
+std::string middle_text(const SideView& view) {
+  return view.middle_trf_m.isZero() ? "the origin" : place_text(view.middle_trf_m) + " m";
 }
 
 std::string title_of(const ViewSide& side) {
@@ -202,9 +206,8 @@ std::string mesh_text(const MeshReport& report, const std::array<SideView, 6>& v
   text +=
       "\n  How far parts of a turn move the outer surface on average, in % of the radius and at least:\n\n";
   text += terminal_text(symmetry_table(report));
-  text +=
-      fmt::format("\n  The six sides in axes of the target frame, {} m wide, the origin in the middle:\n\n",
-                  metres(views.front().swath_m));
+  text += fmt::format("\n  The six sides in axes of the target frame, {} m wide, {} in the middle:\n\n",
+                      metres(views.front().swath_m), middle_text(views.front()));
   return text + sketches(views) + findings_text(report.found) + "\n";
 }
 

@@ -201,6 +201,78 @@ TEST(MeshInspection, StraysDoNotCountForCentreAndSymmetry) {
   EXPECT_NEAR(found.radius_m, 6.025, 1e-3);
 }
 
+const Finding* finding_of(const MeshInspection& found, const std::string& key) {
+  const auto finding = std::find_if(found.findings.begin(), found.findings.end(),
+                                    [&](const Finding& f) { return f.key == key; });
+  return finding == found.findings.end() ? nullptr : &*finding;
+}
+
+// The rays of the views are spread over the mesh, wherever its origin is.
+TEST(MeshInspection, AnOriginFarAwayChangesNothingButTheOrigin) {
+  const MeshInspection alone = inspect(sound_mesh(), {});
+  for (const float scale : {1.0F, 1000.0F}) {
+    const Eigen::Vector3f off = scale * Eigen::Vector3f(450.0F, -30.0F, 0.0F);
+    const MeshInspection found = inspect(moved(times(sound_mesh(), scale), off), {MeshUp::kY, 1.0});
+    EXPECT_NEAR(found.centred_radius_m, scale * alone.centred_radius_m, 0.01 * scale);
+    const Eigen::Vector3d centre = scale * alone.symmetry.centre_trf_m + off.cast<double>();
+    EXPECT_LT((found.symmetry.centre_trf_m - centre).norm(), 0.01 * scale);
+    EXPECT_TRUE(finding_of(found, "size") != nullptr && finding_of(found, "origin") != nullptr);
+    EXPECT_EQ(finding_of(found, "unit") != nullptr, scale > 1.0F)
+        << "the unit is judged by the surface's own size";
+    EXPECT_STREQ(found.likely_units.front().name, scale > 1.0F ? "millimetres" : "metres");
+    const CleanedMesh clean = cleaned(moved(times(sound_mesh(), scale), off), found, {});
+    EXPECT_LT(inspect(clean.mesh, {}).centre_distance_m(), 0.02 * scale);
+  }
+}
+
+TEST(MeshInspection, APartFarAwayIsAStray) {
+  const TriangleMesh far_part = with(sound_mesh(), box_at(800.0F, 0.0F, 0.0F, {0.1F, 0.1F, 0.1F}));
+  const MeshInspection found = inspect(far_part, {});
+  EXPECT_EQ(found.strays.size(), 1U);
+  EXPECT_NEAR(found.core_radius_m, inspect(sound_mesh(), {}).radius_m, 1e-6);
+  // What marks an origin that is far from the craft.
+  const MeshInspection marked = inspect(moved(far_part, {-800.0F, 0.0F, 0.0F}), {});
+  ASSERT_EQ(marked.strays.size(), 1U);
+  EXPECT_NE(finding_of(marked, "strays")->text.find("lie apart"), std::string::npos);
+}
+
+// Surfaces that give the rays little or nothing to meet.
+TEST(MeshInspection, OddSurfacesAreJudgedAndDoNotCrash) {
+  const auto triangle = [](const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
+    TriangleMesh mesh;
+    mesh.name = "odd.stl";
+    mesh.vertices_trf_m = {Eigen::Vector3f::Zero(), b, c};
+    mesh.triangles = {{0, 1, 2}};
+    return mesh;
+  };
+  const TriangleMesh needle = triangle({1.0F, 0.0F, 0.0F}, {0.0F, 1e-6F, 0.0F});
+  for (const TriangleMesh& mesh :
+       {triangle({1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}), needle, moved(needle, {300.0F, 0.0F, 0.0F}),
+        with(needle, moved(needle, {900.0F, 0.0F, 0.0F})), times(sound_mesh(), 1e8F),
+        times(sound_mesh(), 1e-8F),
+        with(box({1.0F, 1.0F, 1.0F}), box_at(9e8F, 0.0F, 0.0F, {500.0F, 500.0F, 500.0F}))}) {
+    const MeshInspection found = inspect(mesh, {});
+    EXPECT_TRUE(found.symmetry.centre_trf_m.allFinite());
+    EXPECT_TRUE(std::isfinite(found.centred_radius_m) && found.centred_radius_m > 0.0);
+    EXPECT_TRUE(std::isfinite(found.radius_of_95_m));
+    for (const SymmetryAxis& axis : found.symmetry.axes) EXPECT_TRUE(std::isfinite(axis.any_turn_m));
+    EXPECT_FALSE(found.findings.empty());
+    EXPECT_TRUE(cleaned(mesh, found, {}).moved_m.allFinite());
+  }
+}
+
+TEST(MeshInspection, WhatTheFileHadBesidesIsFound) {
+  TriangleMesh mesh = sound_mesh();
+  mesh.notes = {"3 lines left out"};
+  mesh.losses = {"2 polygons cannot be divided"};
+  const MeshInspection found = inspect(mesh, {});
+  ASSERT_NE(finding_of(found, "lost"), nullptr);
+  EXPECT_EQ(finding_of(found, "lost")->severity, Severity::kWarning);
+  ASSERT_NE(finding_of(found, "not_read"), nullptr);
+  EXPECT_TRUE(std::is_sorted(found.findings.begin(), found.findings.end(),
+                             [](const Finding& a, const Finding& b) { return a.severity < b.severity; }));
+}
+
 TEST(LikelyUnits, AreThoseInWhichASpacecraftHasAUsualSize) {
   EXPECT_STREQ(likely_units(2.8).front().name, "metres");
   EXPECT_STREQ(likely_units(2800.0).front().name, "millimetres");

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "tests/unit/sim/inspection/faulty_meshes.hpp"
@@ -43,6 +45,17 @@ TEST(SixViews, ShowEachAxisWhereTheySay) {
       EXPECT_NEAR(up_m, 2.0F * axis.dot(direction(view.side.up)), 0.2) << view.side.from << " axis " << i;
     }
   }
+}
+
+TEST(SixViews, OfAMeshFarFromItsOriginAreAboutItsCentre) {
+  for (const SideView& view : six_views(moved(sound_mesh(), {450.0F, 0.0F, 0.0F}), kPixels)) {
+    EXPECT_NEAR(view.middle_trf_m.x(), 450.0, 3.0);
+    EXPECT_LT(view.swath_m, 10.0);
+    EXPECT_GT(std::count_if(view.brightness.begin(), view.brightness.end(), [](float b) { return b > 0.0F; }),
+              kPixels * kPixels / 50);
+  }
+  for (const SideView& view : six_views(moved(sound_mesh(), {4.0F, 0.0F, 0.0F}), kPixels))
+    EXPECT_TRUE(view.middle_trf_m.isZero());
 }
 
 TEST(SixViews, AreBrightWhereTheSurfaceFacesTheViewerAndNearWhereItIsNear) {
