@@ -286,9 +286,9 @@ void add_inertia_option(CLI::App& command, std::vector<double>& inertia) {
 
 void add_target_options(CLI::App& command, ScenarioArguments& arguments) {
   add_target_option(command, arguments.target, TargetChoice::kAny);
-  add_mesh_file_options(
-      command, arguments.mesh, arguments.mesh_up, arguments.mesh_scale,
-      "surface of the target: a file (STL, OBJ, PLY, glTF), or parametric for the mesh that ships [parametric]");
+  add_mesh_file_options(command, arguments.mesh, arguments.mesh_up, arguments.mesh_scale,
+                        "surface of the target: a file (STL, OBJ, PLY, glTF), or parametric for the mesh "
+                        "that ships [parametric]");
   add_inertia_option(command, arguments.inertia);
   add_mission_option(command, arguments);
 }

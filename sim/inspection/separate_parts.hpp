@@ -24,8 +24,9 @@ struct SeparatePart {
 // piece gives one part.
 std::vector<SeparatePart> separate_parts(const TriangleMesh& mesh);
 
-// Of parts as above, those that have less than 5 % of the area and enlarge the radius by more than 5 %, or lie
-// more than three radii of the rest from its centre: the numbers of the parts. They cost resolution, since the image shows the whole radius.
+// Of parts as above, those that have less than 5 % of the area and enlarge the radius by more than 5 %, or
+// lie more than three radii of the rest from its centre: the numbers of the parts. They cost resolution,
+// since the image shows the whole radius.
 std::vector<std::size_t> strays_of(const std::vector<SeparatePart>& parts);
 
 // The cube of 12 triangles about the origin that some exporters add to mark it (NASA's name it `_root`).

@@ -193,7 +193,8 @@ std::map<std::string, MissionGoal> goals_of(TomlFields& fields, const std::vecto
 
 // Warnings of `tumblesight mesh` that may be as they should be. A fault cannot be accepted.
 std::vector<std::string> accepted_findings(TomlFields& fields) {
-  const std::vector<std::string> known{"unit", "up", "origin", "strays", "reach", "triangles", "marker", "hidden"};
+  const std::vector<std::string> known{"unit",  "up",        "origin", "strays",
+                                       "reach", "triangles", "marker", "hidden"};
   const std::vector<std::string> keys = fields.texts("accept");
   for (const std::string& key : keys) {
     if (std::find(known.begin(), known.end(), key) == known.end())

@@ -80,7 +80,8 @@ class Simulation {
   ChildProcess process_;
 };
 
-// Ctrl-Z stops the whole group. Verifies TS-SIL-010.
+// Ctrl-Z stops the whole group.
+// Verifies TS-SIL-010.
 TEST(Pause, OfBothEndsNoRun) {
   Simulation simulation;
   simulation.wait_for_first_step();

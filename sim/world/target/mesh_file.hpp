@@ -35,9 +35,9 @@ inline constexpr std::size_t kMaxTriangles = 5'000'000;
 
 // The triangles of the file in the TRF, in metres, with node transforms applied, equal vertices joined and
 // meshes decompressed (Draco). The origin of the file becomes the origin of the TRF, unless `origin_trf_m`
-// moves it. Left out are triangles without area, which TriangleMesh::left_out counts, points and lines. Polygons
-// are divided into triangles. Nothing else is repaired. TriangleMesh::notes and losses say what else was left
-// out.
+// moves it. Left out are triangles without area, which TriangleMesh::left_out counts, points and lines.
+// Polygons are divided into triangles. Nothing else is repaired. TriangleMesh::notes and losses say what else
+// was left out.
 //
 // Throws std::runtime_error that names the file, the fault, the value, the limit and the remedy for: a scale
 // that is not positive and finite; a file that is missing, unreadable, or not of the format that its
