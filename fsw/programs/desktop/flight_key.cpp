@@ -1,6 +1,7 @@
 #include "fsw/programs/desktop/flight_key.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -15,7 +16,8 @@
 namespace tumblesight::fsw::desktop {
 namespace {
 
-constexpr off_t kMostBytes = 4096;  // of a key's file: digits, and spaces between them
+constexpr int kLongestWait_ms = 2000;  // for the writer of a pipe
+constexpr off_t kMostBytes = 4096;     // of a key's file: digits, and spaces between them
 constexpr std::size_t kDigits = 2 * std::tuple_size_v<hal::CommandKey>;
 
 // -1 if it is not a hexadecimal digit.
@@ -39,14 +41,22 @@ bool read_digits(std::FILE* file, hal::CommandKey& key) {
   return digits == kDigits;
 }
 
-// Null, with the reason, if it is no regular file. Does not wait for the writer of a pipe.
+// A pipe gives its content once, as the shell's <(command) does.
+bool is_written(int pipe) {
+  pollfd waiting{pipe, POLLIN, 0};
+  return poll(&waiting, 1, kLongestWait_ms) > 0;
+}
+
+// Null, with the reason, if it is neither a regular file nor a pipe that somebody writes.
 std::FILE* opened(const char* path, const char*& reason) {
   const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat found {};
   if (file < 0 || fstat(file, &found) != 0) {
     reason = strerrordesc_np(errno);
-  } else if (!S_ISREG(found.st_mode)) {
+  } else if (!S_ISREG(found.st_mode) && !S_ISFIFO(found.st_mode)) {
     reason = "it is not a regular file; give a file";
+  } else if (S_ISFIFO(found.st_mode) && !is_written(file)) {
+    reason = "nobody has written to this pipe within 2 s; give a file, or start its writer first";
   } else if (found.st_size > kMostBytes) {
     reason = "it has more than 4096 bytes, and a key has 64 hexadecimal digits: is it another file?";
   } else {

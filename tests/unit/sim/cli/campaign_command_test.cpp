@@ -118,8 +118,9 @@ TEST_F(CampaignCommand, ADryRunOnlyShowsTheRuns) {
 // A task fails in every worker, since a folder has the name of its file; the others are done.
 TEST_F(CampaignCommand, WhatIsNotDoneIsNamedWithTheReasonAndTheMessagesOfTheWorkers) {
   put_campaign();
-  std::filesystem::create_directories(
-      here.path("c/near_shoemaker-model_model.tsm-nominal-frames_2/0001_of_0003.shard"));
+  const std::string run = here.path("c/near_shoemaker-model_model.tsm-nominal-frames_2");
+  std::filesystem::create_directories(run);
+  std::filesystem::create_symlink(here.path("nowhere/x"), run + "/0001_of_0003.shard");  // cannot be written
   const Outcome outcome = here.run("campaign run c.toml --jobs 1");
   expect_refused(outcome, "1 of 6 tasks are not done, the first: near_shoemaker-model_model.tsm-nominal");
   expect_refused(outcome, "FAILED: near_shoemaker-model_model.tsm-nominal-frames_2 1/3: shard file");
