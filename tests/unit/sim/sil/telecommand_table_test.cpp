@@ -24,11 +24,18 @@ class GroundTable : public AppFixture {
  protected:
   GroundTable() { init_with_model(); }
 
-  // A parameter has its own limits: the value that it has now is within them.
+  // A parameter has its own limits: the value that it has after init() is within them.
   std::uint32_t usual(const TelecommandRow& row, const ArgumentField& field, std::uint32_t parameter) const {
     if (row.function != FunctionCode::kSetParameter || field.name != "value") return field.least;
-    if (parameter >= kParameters) return 1;  // a response: on
-    return static_cast<std::uint32_t>(config::kParameterRules[parameter].initial);
+    return parameter < kTableFields ? kInitialTable.fields[parameter] : 0;
+  }
+  // Flight also refuses to disable what no attitude can be trusted with; the ground leaves that to it.
+  static bool is_protected(const TelecommandRow& row, std::uint32_t fault) {
+    return row.function == FunctionCode::kDisableResponse && fault < config::kFaultRules.size() &&
+           !config::kFaultRules[fault].can_be_disabled;
+  }
+  std::uint32_t refused() const {
+    return out->telemetry.commands_refused_by[static_cast<std::size_t>(hal::CommandRefusal::kWrongArgument)];
   }
   // With this value in a field and usual ones in the others.
   bool takes(const TelecommandRow& row, const ArgumentField& probed, std::uint32_t value) {
@@ -39,8 +46,10 @@ class GroundTable : public AppFixture {
       else
         append(arguments, field.name == probed.name ? value : usual(row, field, value), field.bytes);
     }
+    // The count: events of a kind are suppressed when there are many.
+    const std::uint32_t before = refused();
     step_commands({command(row.function, arguments)});
-    return events(EventId::kCommandWrongArgument) == 0;
+    return refused() == before;
   }
 };
 
@@ -59,7 +68,7 @@ TEST_F(GroundTable, HasTheLimitsOfFlightForEveryNumber) {
         values = {0, field.least, field.most, field.most + 1, highest};
       }
       for (const std::uint32_t value : values) {
-        if (value > highest) continue;
+        if (value > highest || is_protected(row, value)) continue;
         EXPECT_EQ(takes(row, field, value), value >= field.least && value <= field.most)
             << sim::name_of(row.function) << " " << field.name << " " << value;
       }
