@@ -95,13 +95,15 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --paper --effect noise=5", 2, "--paper: sets --effect itself"},
         Refusal{"evaluate --sensor sonar", 2,
                 "--sensor: 'sonar' is neither a file nor a sensor that ships; those are: paper, flash_256, "},
-        Refusal{"record --out x.tslr --sensor /dev", 2, "--sensor: '/dev' is neither a file nor "},
+        Refusal{"record --out x.tslr --sensor /dev", 2,
+                "sensor description '/dev' cannot be read: it is a folder"},
         Refusal{"evaluate --range 20", 2,
                 "--range: must be NEAREST,FARTHEST, two ascending ranges from 10 to "},
         Refusal{"evaluate --range 100,20", 2, "not '100,20'"},
         Refusal{"simulate --range 9,20", 2, "from 10 to 500 m, not '9,20'"},
-        Refusal{"quantize --model /dev/null --range 20,nan", 2,
-                "--range: must be NEAREST,FARTHEST, two ascending ranges from 10 to 500 m, not '20,nan'"},
+        Refusal{"quantize --model " TUMBLESIGHT_SOURCE_DIR
+                "/fsw/models/near_shoemaker.float32.tsm --range 20,nan",
+                2, "--range: must be NEAREST,FARTHEST, two ascending ranges from 10 to 500 m, not '20,nan'"},
         Refusal{"evaluate --paper --sensor flash_256", 2, "--paper: sets --sensor itself"},
         Refusal{"evaluate --paper --range 20,50", 2, "--paper: sets --range itself"},
         Refusal{"evaluate --paper --frozen 1", 2, "--paper: sets --frozen itself"},
@@ -125,7 +127,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --mesh parametric --mesh-up z", 2, "--mesh-up: is for mesh files"},
         Refusal{"evaluate --mesh parametric --mesh-scale 2", 2, "or give a file with --mesh"},
         Refusal{"record --out x --mesh parametric --mesh-scale 2", 2, "--mesh-scale: is for mesh files"},
-        Refusal{"quantize --model /dev/null --mesh parametric --mesh-scale 2", 2, "leave --mesh-scale out"},
+        Refusal{"quantize --model " TUMBLESIGHT_SOURCE_DIR
+                "/fsw/models/near_shoemaker.float32.tsm --mesh parametric --mesh-scale 2",
+                2, "leave --mesh-scale out"},
         Refusal{"evaluate --colour", 2, "--colour"},
         Refusal{"evalute", 2, "there is no subcommand 'evalute'; did you mean 'evaluate'? (see"},
         Refusal{"evaluate --sequencs 5", 2, "there is no option '--sequencs'; did you mean '--sequences'?"},
@@ -147,10 +151,14 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --model /dev", 1, "'/dev' is a folder; give a file"},
         Refusal{"quantize --model /dev", 2, "'/dev' is a folder; give a file"},
         Refusal{"quantize --model /no/such.tsm", 2, "'/no/such.tsm' does not exist"},
-        Refusal{"quantize --model /dev/null --effect noise=50", 2, "from 0.01 to 20 times, not '50'"},
-        Refusal{"quantize --model /dev/null --effect sphere=1", 2,
-                "--effect: wrong_object and sphere are for tests only"},
-        Refusal{"evaluate --model /dev/null", 1, "'/dev/null' is refused: too short"},
+        Refusal{"quantize --model " TUMBLESIGHT_SOURCE_DIR
+                "/fsw/models/near_shoemaker.float32.tsm --effect noise=50",
+                2, "from 0.01 to 20 times, not '50'"},
+        Refusal{"quantize --model " TUMBLESIGHT_SOURCE_DIR
+                "/fsw/models/near_shoemaker.float32.tsm --effect sphere=1",
+                2, "--effect: wrong_object and sphere are for tests only"},
+        Refusal{"evaluate --model /dev/null", 1,
+                "model image '/dev/null' cannot be read: it is a device; give a file"},
         Refusal{"evaluate --json /proc/none/x.json", 1, "--json /proc/none/x.json"}));
 
 // `count` times the letter.
