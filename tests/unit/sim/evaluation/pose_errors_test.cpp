@@ -8,7 +8,7 @@
 
 #include "sim/evaluation/experiment.hpp"
 #include "sim/evaluation/monte_carlo.hpp"
-#include "sim/recording/recording_file.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 
@@ -242,7 +242,7 @@ class ShippedPoses : public ::testing::Test {
   }
   CellResult cell_with(const char* image) {
     subject_.model_name = image;
-    subject_.model = read_bytes(std::string(TUMBLESIGHT_SOURCE_DIR "/fsw/models/") + image);
+    subject_.model = read_model_bytes(std::string(TUMBLESIGHT_SOURCE_DIR "/fsw/models/") + image);
     return run_experiment(subject_, settings_, [](std::uint64_t) {}).cells.front();
   }
 
