@@ -60,6 +60,10 @@ MeshGate mesh_gate(const Mission& mission, const MeshInspection& found) {
         "The mission has panels that turn, and none is found in the mesh: name their material solar or panel "
         "(OBJ, glTF), "
         "separate them from the body, or leave [panels] out.");
+  if (mission.inertia) {
+    const std::string fault = fault_of_inertia_in_mesh(tensor_of(*mission.inertia), found.radius_m);
+    if (!fault.empty()) gate.faults.push_back("In the mission " + fault + ".");
+  }
   if (found.panels > 0 && !mission.panels) gate.remarks.push_back(panels_remark(found));
   return gate;
 }

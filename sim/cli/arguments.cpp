@@ -273,6 +273,11 @@ Eigen::Matrix3d checked_inertia(const std::vector<double>& i) {
   return inertia;
 }
 
+void require_possible_inertia(const Eigen::Matrix3d& inertia_kg_m2, double radius_m) {
+  const std::string fault = fault_of_inertia_in_mesh(inertia_kg_m2, radius_m);
+  if (!fault.empty()) throw std::invalid_argument(fault);
+}
+
 void add_inertia_option(CLI::App& command, std::vector<double>& inertia) {
   command
       .add_option(

@@ -89,6 +89,8 @@ void add_model_options(CLI::App& command, ScenarioArguments& arguments);  // --m
 // The tensor of --inertia's six elements. Throws std::invalid_argument that names the limits if no rigid body
 // has it.
 Eigen::Matrix3d checked_inertia(const std::vector<double>& elements);
+// Throws std::invalid_argument if no body within this radius can have it.
+void require_possible_inertia(const Eigen::Matrix3d& inertia_kg_m2, double radius_m);
 void add_inertia_option(CLI::App& command, std::vector<double>& inertia);
 
 // A mesh file and the files that belong to it; none for the mesh that ships.

@@ -1,16 +1,12 @@
 #include <fmt/format.h>
 
-#include <csignal>
-#include <exception>
-#include <functional>
 #include <memory>
-#include <numeric>
-#include <utility>
 #include <vector>
 
 #include "sim/cli/evaluate_arguments.hpp"
 #include "sim/cli/evaluation_output.hpp"
 #include "sim/cli/exit_status.hpp"
+#include "sim/cli/interruptible_experiment.hpp"
 #include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/terminal/progress.hpp"
@@ -20,66 +16,12 @@
 namespace tumblesight::sim {
 namespace {
 
-volatile std::sig_atomic_t signal_that_came = 0;
-
-// While an object lives, SIGINT and SIGTERM end the evaluation after the sequences that are under way. A
-// second one ends the program at once. Signals that are ignored stay ignored.
-class SignalNote {
- public:
-  SignalNote() {
-    signal_that_came = 0;
-    for (const int signal : {SIGINT, SIGTERM}) note(signal);
-  }
-  ~SignalNote() {
-    for (const int signal : {SIGINT, SIGTERM})
-      if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
-  }
-  SignalNote(const SignalNote&) = delete;
-  SignalNote& operator=(const SignalNote&) = delete;
-
- private:
-  static void note(int signal) {
-    const auto before = std::signal(signal, [](int came) {
-      signal_that_came = came;
-      std::signal(came, SIG_DFL);
-    });
-    if (before == SIG_IGN) std::signal(signal, SIG_IGN);
-  }
-};
-
-struct Interrupted : std::exception {
-  const char* what() const noexcept override { return "interrupted"; }
-};
-
-std::size_t sequences_of(const ExperimentSettings& settings) {
-  std::size_t sequences = 0;
-  for (const ExperimentRun& run : runs_of(settings)) sequences += run.sequences;
-  return sequences;
-}
-
-// As run_experiment(), until a signal comes.
-void run_all(const Subject& subject, const ExperimentSettings& settings, ExperimentFigures& figures,
-             std::size_t& sequences, const std::function<void(std::uint64_t)>& progress) {
-  const auto all = [](std::size_t, const ExperimentRun& run) {
-    std::vector<std::uint32_t> indices(run.sequences);
-    std::iota(indices.begin(), indices.end(), 0U);
-    return indices;
-  };
-  const std::size_t wanted = sequences_of(settings);
-  const auto take = [&](std::size_t run, SequenceResult&& result) {
-    figures.add(run, std::move(result));
-    ++sequences;
-    if (signal_that_came != 0 && sequences < wanted) throw Interrupted();
-  };
-  run_chosen(subject, settings, all, take, progress);
-}
-
 // With the figures so far if they are of one condition: those of several are of unlike numbers of sequences.
 // No file is written.
 [[noreturn]] void report_interruption(const EvaluateArguments& arguments, const ExperimentSettings& settings,
                                       ExperimentFigures& figures, Results& results, std::size_t sequences) {
   const std::size_t wanted = sequences_of(settings);
-  const int signal = signal_that_came;
+  const int signal = SignalNote::signal();
   if (runs_of(settings).size() == 1) {
     fmt::print("\n  The figures so far, of {} of the {}:\n", sequences, counted(wanted, "sequence"));
     results.subjects.push_back(figures.finish());
@@ -121,7 +63,7 @@ void evaluate(const EvaluateArguments& arguments) {
   std::size_t sequences = 0;
   const SignalNote note;
   try {
-    run_all(subject, settings, figures, sequences, [&](std::uint64_t done) { bar.update(done); });
+    run_until_signal(subject, settings, figures, sequences, [&](std::uint64_t done) { bar.update(done); });
   } catch (const Interrupted&) {
     bar.finish();
     report_interruption(arguments, settings, figures, results, sequences);

@@ -6,9 +6,11 @@
 
 #include "sim/cli/evaluate_arguments.hpp"
 #include "sim/cli/evaluation_output.hpp"
+#include "sim/cli/interruptible_experiment.hpp"
 #include "sim/evaluation/curves.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/terminal/progress.hpp"
+#include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
@@ -55,6 +57,14 @@ nlohmann::ordered_json effect_limits_json(const Subject& subject, const Experime
   return json;
 }
 
+[[noreturn]] void report_interruption() {
+  print_message(fmt::format(
+      "tumblesight: interrupted by signal {}; what was found of the strengths so far stands above, "
+      "no file was written, and the same command begins anew",
+      SignalNote::signal()));
+  throw CLI::RuntimeError(128 + SignalNote::signal());
+}
+
 }  // namespace
 
 void evaluate_effect_limit(const EvaluateArguments& arguments) {
@@ -68,12 +78,20 @@ void evaluate_effect_limit(const EvaluateArguments& arguments) {
         "--effect-limit", fmt::format("searches the strength of {0}; leave {0} out of --effect", row.name));
   const Subject subject = checked_subject(arguments, settings);
   announce(subject, settings);
+  const SignalNote note;
   const auto limits = effect_limits(row, [&](double strength) {
     ExperimentSettings trial = settings;
     trial.effects.*row.strength = strength;
     ProgressBar bar(fmt::format("{}={:g}", row.name, strength), "steps", steps_of(trial));
-    const SubjectResult result =
-        run_experiment(subject, trial, [&](std::uint64_t done) { bar.update(done); });
+    ExperimentFigures figures(subject, trial);
+    std::size_t sequences = 0;
+    try {
+      run_until_signal(subject, trial, figures, sequences, [&](std::uint64_t done) { bar.update(done); });
+    } catch (const Interrupted&) {
+      bar.finish();
+      report_interruption();
+    }
+    const SubjectResult result = figures.finish();
     bar.finish();
     const double share = result.cells.front().rcnn.within_20deg;
     fmt::print("  {}={:g}: {:.1f} % within 20°\n", row.name, strength, 100.0 * share);

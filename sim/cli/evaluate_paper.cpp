@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/cli/evaluate_arguments.hpp"
+#include "sim/cli/interruptible_experiment.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/evaluation/paper_plan.hpp"
 #include "sim/process/program_files.hpp"
@@ -72,6 +73,18 @@ void announce(const PaperPlan& plan, const EvaluateArguments& arguments, const s
   for (const std::string& note : plan.notes) print_note(note);
 }
 
+[[noreturn]] void report_interruption(std::size_t finished, std::size_t all, const std::string& folder) {
+  const std::string kept =
+      finished == 0
+          ? "no file was written"
+          : fmt::format("results.md, .csv, .json and report.html in {} hold those", full_path(folder));
+  print_message(
+      fmt::format("tumblesight: interrupted by signal {} after {} of the {}; {}, and the same command begins "
+                  "anew. A campaign can be continued: see tumblesight campaign --help",
+                  SignalNote::signal(), finished, counted(all, "subject"), kept));
+  throw CLI::RuntimeError(128 + SignalNote::signal());
+}
+
 }  // namespace
 
 void evaluate_paper(const EvaluateArguments& arguments) {
@@ -96,9 +109,18 @@ void evaluate_paper(const EvaluateArguments& arguments) {
   Results results{arguments.scenario.seed, command_of(arguments), local_time_text(), plan.notes, {}};
   ProgressBar bar("evaluating", "steps", steps);
   std::uint64_t done = 0;
+  const SignalNote note;
   for (const Job& job : jobs) {
-    results.subjects.push_back(run_experiment(
-        job.subject, job.settings, [&](std::uint64_t steps_done) { bar.update(done + steps_done); }));
+    ExperimentFigures figures(job.subject, job.settings);
+    std::size_t sequences = 0;
+    try {
+      run_until_signal(job.subject, job.settings, figures, sequences,
+                       [&](std::uint64_t steps_done) { bar.update(done + steps_done); });
+    } catch (const Interrupted&) {
+      bar.finish();
+      report_interruption(results.subjects.size(), jobs.size(), folder);
+    }
+    results.subjects.push_back(figures.finish());
     done += steps_of(job.settings);
     write_results_files(folder, results, results_markdown(results));
   }

@@ -69,6 +69,7 @@ TargetSetup set_up_body(const ScenarioArguments& arguments) {
   setup.mesh_name =
       arguments.mesh.empty() ? kParametricMesh : std::filesystem::path(arguments.mesh).filename().string();
   setup.inertia_kg_m2 = inertia_of(arguments);
+  if (setup.inertia_kg_m2) require_possible_inertia(*setup.inertia_kg_m2, setup.mesh.radius_m());
   return setup;
 }
 

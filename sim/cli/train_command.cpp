@@ -52,9 +52,13 @@ struct TrainOptions {
   TrainingSettings settings;
 };
 
-Eigen::Matrix3d inertia_of(const TrainOptions& options) {
-  if (!options.inertia.empty()) return checked_inertia(options.inertia);
-  if (const std::optional<Eigen::Matrix3d> known = known_inertia_kg_m2(options.target)) return *known;
+Eigen::Matrix3d inertia_of(const TrainOptions& options, const TriangleMesh& mesh) {
+  std::optional<Eigen::Matrix3d> inertia = known_inertia_kg_m2(options.target);
+  if (!options.inertia.empty()) inertia = checked_inertia(options.inertia);
+  if (inertia) {
+    require_possible_inertia(*inertia, mesh.radius_m());
+    return *inertia;
+  }
   std::fprintf(
       stderr,
       "warning: the inertia of '%s' is not known, so the network learns the free rotation of a sphere, a "
@@ -143,8 +147,8 @@ TrainingTargets targets_of(const TrainOptions& options, const std::vector<Triang
     for (const std::string& warning : warnings) std::printf("note: %s\n", warning.c_str());
     return limits;
   };
-  return make_training_targets(meshes, conditions_of(options), inertia_of(options), effect_sets_of(options),
-                               options.target, options.sensor.sensor, ranges);
+  return make_training_targets(meshes, conditions_of(options), inertia_of(options, meshes.front()),
+                               effect_sets_of(options), options.target, options.sensor.sensor, ranges);
 }
 
 // Of the sensor's file in the folder it is enough that it is the one of --sensor: it is then left as it is.

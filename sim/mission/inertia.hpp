@@ -17,4 +17,8 @@ Eigen::Matrix3d tensor_of(const InertiaElements& elements);
 // Empty if a rigid body can have this inertia and a model image can hold it; otherwise the limits.
 std::string fault_of_inertia(const Eigen::Matrix3d& inertia_kg_m2);
 
+// Empty if a body within this radius of the centre of mass can have the inertia: one that is not denser than
+// iron. Otherwise what is wrong, with what may have been meant.
+std::string fault_of_inertia_in_mesh(const Eigen::Matrix3d& inertia_kg_m2, double radius_m);
+
 }  // namespace tumblesight::sim

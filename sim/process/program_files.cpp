@@ -29,7 +29,9 @@ ProgramFiles files_of_program(const fs::path& program) {
   const fs::path data = (program.parent_path() / TUMBLESIGHT_INSTALLED_DATA).lexically_normal();
   std::error_code error;
   if (fs::is_directory(data, error)) return of_installation(data.string());
-  return of_source_tree(TUMBLESIGHT_SOURCE_DIR);
+  const fs::path source_tree = fs::canonical(program.parent_path() / TUMBLESIGHT_SOURCE_LINK, error);
+  // Without either, messages name the data folder that is missing.
+  return error ? of_installation(data.string()) : of_source_tree(source_tree.string());
 }
 
 const ProgramFiles& program_files() {

@@ -74,6 +74,8 @@ void McapWriter::open_alone(const std::string& path) {
     fail("is a pipe, which cannot be a recording; give the path of a file");
   file_.reset(std::fopen(path.c_str(), "ab"));
   if (!file_) fail(std::string("cannot be written: ") + std::strerror(errno));
+  // Every record goes to the file at once, so that none is left over for the end after an error.
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
   if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     fail("another program is writing it; give another name");
 }
@@ -100,10 +102,14 @@ void McapWriter::fail(const std::string& what) const {
 void McapWriter::put(const Bytes& bytes) {
   // After a part of a record nothing may follow, or every offset behind it is wrong.
   if (has_failed_) fail("an earlier part of it could not be written");
-  has_failed_ = std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size() ||
-                std::fflush(file_.get()) != 0;
-  if (has_failed_)
-    fail(std::string("cannot be written: ") + std::strerror(errno) + "; is there space on the disk?");
+  has_failed_ = std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size();
+  if (has_failed_) {
+    const std::string cause = std::strerror(errno);
+    // A part of a record is of no use. What is before it can be read.
+    const bool is_whole = ftruncate(fileno(file_.get()), static_cast<off_t>(position_)) == 0;
+    fail("cannot be written: " + cause + "; free space on the disk and run again" +
+         (is_whole && !chunks_.empty() ? " (what was written until then can be read)" : ""));
+  }
   crc_.add(bytes.data(), bytes.size());
   position_ += bytes.size();
 }

@@ -18,6 +18,13 @@ set(prefix ${BUILD}/installed)
 set(examples ${BUILD}/installed_examples)
 file(REMOVE_RECURSE ${prefix} ${examples} ${prefix}_elsewhere)
 run_or_fail(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
+# Nothing in it tells where it was built.
+get_filename_component(source ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
+execute_process(COMMAND grep -rlF -e ${source}/fsw -e ${source}/gnc -e ${source}/hal -e ${source}/sim ${prefix}
+  OUTPUT_VARIABLE with_path)
+if(with_path)
+  message(FATAL_ERROR "these files contain a path of the source tree:\n${with_path}")
+endif()
 # The package must not depend on the folder that it was installed to.
 file(RENAME ${prefix} ${prefix}_elsewhere)
 run_or_fail(${CMAKE_COMMAND} -S ${EXAMPLES} -B ${examples} -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release

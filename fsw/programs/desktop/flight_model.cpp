@@ -24,15 +24,14 @@ bool find_from_program(const char* name, char* path, std::size_t size) {
   return length > 0 && static_cast<std::size_t>(length) < size && access(path, X_OK) == 0;
 }
 
-// Looks in the data of an installed program, in the source tree around the build folder that this program is
-// in, then in the source tree it was built from.
+// Looks in the data of an installed program, then in the source tree of the build folder that this program
+// is in.
 void find_shipped_model(FlightOptions& options) {
   char folder[FlightOptions::kMaxPath - 128];  // room for the name of the image
   const bool found = find_from_program(TUMBLESIGHT_INSTALLED_DATA "/models", folder, sizeof folder) ||
-                     find_from_program("../../../fsw/models", folder, sizeof folder);
-  std::snprintf(options.model_path, sizeof options.model_path, "%s/%s%s.tsm",
-                found ? folder : TUMBLESIGHT_SOURCE_DIR "/fsw/models", options.target,
-                options.float32 ? ".float32" : "");
+                     find_from_program(TUMBLESIGHT_SOURCE_LINK "/fsw/models", folder, sizeof folder);
+  std::snprintf(options.model_path, sizeof options.model_path, "%s/%s%s.tsm", found ? folder : "models",
+                options.target, options.float32 ? ".float32" : "");
 }
 
 // Writes the end of the message about a missing image into `text`. The images that only the repository's

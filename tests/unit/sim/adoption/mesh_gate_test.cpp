@@ -60,6 +60,20 @@ TEST(MeshGate, PanelsOfWhichTheMissionSaysNothingAreRemarkedUpon) {
   EXPECT_TRUE(mesh_gate(mission, found).remarks.empty());
 }
 
+// Of a ball of iron of a radius of 2 m: 0.4 * 7870 * 4/3 pi 2^3 * 2^2.
+TEST(MeshGate, AnInertiaOfMoreThanABallOfIronIsAFault) {
+  MeshInspection found;
+  found.radius_m = 2.0;
+  Mission mission;
+  mission.inertia = InertiaElements{400.0, 380.0, 300.0, 0.0, 0.0, 0.0};
+  EXPECT_TRUE(mesh_gate(mission, found).faults.empty());
+  mission.inertia = InertiaElements{4.21e5, 4.21e5, 4.21e5, 0.0, 0.0, 0.0};
+  EXPECT_TRUE(mesh_gate(mission, found).faults.empty());
+  mission.inertia = InertiaElements{4.23e5, 4.21e5, 4.21e5, 0.0, 0.0, 0.0};
+  ASSERT_EQ(mesh_gate(mission, found).faults.size(), 1U);
+  EXPECT_NE(mesh_gate(mission, found).faults.front().find("give it in kg m2"), std::string::npos);
+}
+
 TEST(MeshGate, PanelsThatTurnMustBeFoundInTheMesh) {
   Mission mission;
   mission.panels = JointLimits{-90.0, 90.0};

@@ -64,6 +64,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"evaluate --inertia 1,2,3", 2, "--inertia"},
         Refusal{"evaluate --inertia 1,1,3,0,0,0", 1, "--inertia 1,1,3,0,0,0: no rigid body has this inertia"},
         Refusal{"evaluate --inertia 1,1,nan,0,0,0", 1, "no rigid body has this inertia"},
+        Refusal{"evaluate --inertia 4.1e8,3.8e8,3e8,0,0,0", 1,
+                "one in kg mm2 is a million times as large"},
         Refusal{"evaluate --inertia 1e-300,1e-300,1e-300,0,0,0", 1, "must be 1e-06 to 1e+12 kg m2"},
         Refusal{"evaluate --inertia 1e300,1e300,1e300,0,0,0", 1, "must be 1e-06 to 1e+12 kg m2"},
         Refusal{"evaluate --inertia 0.001,1,1,0,0,0", 1, "none below 0.01 of their mean"},
@@ -265,22 +267,38 @@ TEST(Help, FitsATerminal) {
   }
 }
 
+// Two seconds after it has shown what it is going to do.
+Outcome interrupted(const Workplace& here, const std::string& arguments) {
+  // A shell's background jobs ignore SIGINT, and a script cannot undo that. `env` can.
+  return here.run_command(std::string("timeout 100 sh -c 'env --default-signal=INT ") + TUMBLESIGHT_BINARY +
+                              " " + arguments +
+                              " & n=0; while ! grep -q seed interrupted.out && [ $n -lt 300 ]; do sleep 0.1; "
+                              "n=$((n+1)); done; sleep 2; kill -INT $!; wait $!'",
+                          "interrupted");
+}
+
 // What is done is shown, and marked as a part.
 TEST(Evaluate, ShowsTheFiguresSoFarWhenItIsInterrupted) {
   const Workplace here;
   here.model();
-  // A shell's background jobs ignore SIGINT, and a script cannot undo that. `env` can.
-  const std::string line =
-      std::string("timeout 100 sh -c 'env --default-signal=INT ") + TUMBLESIGHT_BINARY +
-      " evaluate --sequences 50000 --no-baseline --model model.tsm --json figures.json & "
-      "n=0; while ! grep -q seed interrupted.out && [ $n -lt 300 ]; do sleep 0.1; "
-      "n=$((n+1)); done; sleep 2; kill -INT $!; wait $!'";
-  const Outcome outcome = here.run_command(line, "interrupted");
+  const Outcome outcome =
+      interrupted(here, "evaluate --sequences 50000 --no-baseline --model model.tsm --json figures.json");
   EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;
   EXPECT_NE(outcome.output.find("The figures so far, of "), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("of the 50000 sequences:"), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.errors.find("interrupted by signal 2 after "), std::string::npos) << outcome.errors;
   EXPECT_FALSE(std::filesystem::exists(here.path("figures.json")));
+}
+
+TEST(Evaluate, SaysThatNothingWasWrittenWhenItsOtherKindsAreInterrupted) {
+  const Workplace here;
+  here.model();
+  for (const std::string kind : {"--paper --out tables", "--effect-limit footprint --model model.tsm"}) {
+    const Outcome outcome = interrupted(here, "evaluate --sequences 50000 --no-baseline " + kind);
+    EXPECT_EQ(outcome.exit_code, 130) << kind << outcome.output << outcome.errors;
+    EXPECT_NE(outcome.errors.find("interrupted by signal 2"), std::string::npos) << outcome.errors;
+    EXPECT_NE(outcome.errors.find("no file was written"), std::string::npos) << outcome.errors;
+  }
 }
 
 // Verifies TS-SIL-060.

@@ -28,22 +28,33 @@ TEST(ProgramFiles, OfAnInstalledProgramAreInTheDataFolderBesideIt) {
 
 TEST(ProgramFiles, OfAnyOtherProgramAreInTheSourceTree) {
   const TemporaryFolder folder;
-  fs::create_directories(folder.path("share"));
+  for (const char* made : {"share", "source", "bin"}) fs::create_directories(folder.path(made));
   std::ofstream(folder.path("share/tumblesight")) << "not a folder";
-  for (const std::string& program : {folder.path("bin/tumblesight"), std::string()}) {
-    const ProgramFiles files = files_of_program(program);
-    EXPECT_FALSE(files.installed) << program;
-    EXPECT_EQ(files.root, TUMBLESIGHT_SOURCE_DIR);
-    EXPECT_EQ(files.output, TUMBLESIGHT_SOURCE_DIR "/out");
-    EXPECT_EQ(files.output_parent, "the source tree");
-    for (const std::string& data : {files.models, files.missions, files.sensors})
-      EXPECT_TRUE(fs::is_directory(data)) << data;
-  }
+  fs::create_directory_symlink(folder.path("source"), folder.path("source_tree"));
+  const ProgramFiles files = files_of_program(folder.path("bin/tumblesight"));
+  EXPECT_FALSE(files.installed);
+  const std::string root = fs::canonical(folder.path("source")).string();
+  EXPECT_EQ(files.root, root);
+  EXPECT_EQ(files.output, root + "/out");
+  EXPECT_EQ(files.output_parent, "the source tree");
+}
+
+// What is missing is named by where it would be.
+TEST(ProgramFiles, OfAProgramThatWasCopiedAwayAreWhereThoseOfAnInstalledOneWouldBe) {
+  const TemporaryFolder folder;
+  const ProgramFiles files = files_of_program(folder.path("bin/tumblesight"));
+  EXPECT_TRUE(files.installed);
+  EXPECT_EQ(files.models, folder.path("share/tumblesight/models"));
 }
 
 TEST(ProgramFiles, OfThisTestAreThoseOfItsPath) {
   EXPECT_TRUE(fs::equivalent(program_path(), "/proc/self/exe"));
-  EXPECT_EQ(program_files().root, files_of_program(program_path()).root);
+  const ProgramFiles files = files_of_program(program_path());
+  EXPECT_EQ(program_files().root, files.root);
+  EXPECT_FALSE(files.installed);
+  EXPECT_TRUE(fs::is_regular_file(files.root + "/CMakePresets.json"));
+  for (const std::string& data : {files.models, files.missions, files.sensors})
+    EXPECT_TRUE(fs::is_directory(data)) << data;
 }
 
 }  // namespace

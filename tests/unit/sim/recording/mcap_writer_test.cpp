@@ -1,9 +1,11 @@
 #include "sim/recording/mcap_writer.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -108,6 +110,58 @@ TEST_F(Mcap, ThatCannotBeWrittenIsNamed) {
 // Every write to this device fails as on a full disk.
 TEST_F(Mcap, AFullDiskIsAnError) {
   EXPECT_THROW(McapWriter("/dev/full", "test"), std::runtime_error);
+}
+
+// Files may not grow beyond a limit, as on a disk without more space.
+class LimitedFiles {
+ public:
+  explicit LimitedFiles(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limited{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limited);
+    signal_ = std::signal(SIGXFSZ, SIG_IGN);
+  }
+  ~LimitedFiles() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*signal_)(int) = SIG_DFL;
+};
+
+// Records have an opcode, the length of their content in eight bytes, and the content.
+bool ends_with_a_record(const std::string& file) {
+  std::size_t at = 8;
+  while (at + 9 <= file.size()) {
+    std::size_t length = 0;
+    for (std::size_t i = 8; i > 0; --i) length = length << 8 | static_cast<std::uint8_t>(file[at + i]);
+    at += 9 + length;
+  }
+  return at == file.size();
+}
+
+// The file ends with a whole record, however much of the next one there was space for.
+TEST_F(Mcap, HasWhatWasWrittenBeforeTheDiskWasFull) {
+  for (const rlim_t bytes : {1'300'000U, 2'000'000U, 2'400'000U}) {
+    const LimitedFiles limit(bytes);
+    McapWriter writer(path_, "test");
+    const McapId channel = writer.add_channel("/a", "json", writer.add_schema("A", "jsonschema", "{}"));
+    const std::string large(600'000, 'x');
+    try {
+      for (int i = 0; i < 9; ++i) writer.write(channel, i, large);
+      FAIL();
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("free space on the disk and run again (what was written"),
+                std::string::npos)
+          << error.what();
+    }
+    EXPECT_THROW(writer.close(), std::runtime_error);
+    const std::string file = bytes_of(path_);
+    EXPECT_EQ(McapReader(file, false).messages.size(), 2U) << bytes;
+    EXPECT_TRUE(ends_with_a_record(file)) << bytes;
+  }
 }
 
 TEST_F(Mcap, AMessageOfAnUnknownChannelOrBeforeTimeZeroIsAMistakeOfTheCaller) {
