@@ -7,8 +7,8 @@
 
 namespace tumblesight::sim {
 
-// An installed program lies in <prefix>/bin beside <prefix>/share/tumblesight, its data. Any other one lies in
-// <build folder>/bin and uses the source tree that it was built from, by a link in the build folder.
+// An installed program lies in <prefix>/bin beside <prefix>/share/tumblesight, its data. Any other one lies
+// in <build folder>/bin and uses the source tree that it was built from, by a link in the build folder.
 struct ProgramFiles {
   bool installed;
   std::string root;      // the data folder or the source tree
