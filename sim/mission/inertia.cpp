@@ -49,9 +49,8 @@ std::string fault_of_inertia_in_mesh(const Eigen::Matrix3d& inertia_kg_m2, doubl
   if (largest_kg_m2 <= of_ball_kg_m2) return {};
   return fmt::format(
       "the inertia of {:.3g} kg m2 is larger than that of a ball of iron with the mesh's radius of {:.3g} m, "
-      "{:.3g} kg m2; give it in kg m2 (one in kg mm2 is a million times as large), or correct the unit of "
-      "the "
-      "mesh",
+      "{:.3g} kg m2; give it in kg m2 (one in kg mm2 is a million times as large), or correct the unit "
+      "of the mesh",
       largest_kg_m2, radius_m, of_ball_kg_m2);
 }
 
