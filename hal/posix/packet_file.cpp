@@ -42,8 +42,10 @@ int PacketFile::open(const char* path) {
   const int refusal = check_overwriting(path);
   if (refusal != 0) return refusal;
   constexpr mode_t kReadableByAll = 0644;
-  file_ = ::open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kReadableByAll);
-  return file_ < 0 ? errno : 0;
+  // A pipe that nobody reads is refused (ENXIO), where opening it would wait for a reader.
+  file_ = ::open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, kReadableByAll);
+  if (file_ < 0) return errno;
+  return fcntl(file_, F_SETFL, fcntl(file_, F_GETFL) & ~O_NONBLOCK) == 0 ? 0 : errno;
 }
 
 bool PacketFile::put(const packets::TelemetryPacket& packet) {

@@ -20,6 +20,8 @@ namespace {
 std::string fault_of_new_file(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
+  const std::string fault = fault_of_place(path);
+  if (!fault.empty()) return fault;
   std::string made = partial_path(path);
   if (made.empty() && fs::exists(path, error)) return {};
   if (made.empty()) made = path;

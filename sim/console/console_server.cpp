@@ -1,7 +1,9 @@
 #include "sim/console/console_server.hpp"
 
 #include <civetweb.h>
+#include <strings.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -21,14 +23,17 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kBetweenNews = 50ms;
-// Threads of the server. Each open connection takes one, also one whose request never comes: there are more
-// than the connections that wait for a thread (kWaiting and a queue of 20), so that those wait for one
-// time-out at most. A thread that waits costs some 30 KB.
+// Threads of the server. Each open connection takes one, also one whose request never comes or whose answer
+// is not read, for some seconds. A connection has one request, so that it cannot hold its thread longer. A
+// thread that waits costs some 30 KB. Beyond so many connections at a time others wait for a time-out or
+// more.
 constexpr const char* kThreads = "512";
 constexpr const char* kWaiting = "200";
 // Until the head of a request is there, and while nothing can be written.
 constexpr const char* kRequestTimeout_ms = "3000";
 constexpr auto kBodyTimeout = 2s;
+// Of a whole answer, however slowly it is read.
+constexpr auto kAnswerTimeout = 3s;
 
 std::string text_or_empty(const char* text) {
   return text == nullptr ? std::string() : std::string(text);
@@ -44,8 +49,21 @@ Request request_of(const mg_connection* connection) {
           {}};
 }
 
-// At most a byte more than any request has. One that comes byte by byte is cut after a while, and then is no
-// JSON: civetweb has no limit for the time of a whole body, so that it is asked for single bytes.
+// Empty if the body of a request has one length that all programs on its way agree upon.
+std::string fault_of_length(const mg_connection* connection) {
+  const mg_request_info* const info = mg_get_request_info(connection);
+  int lengths = 0;
+  for (int i = 0; i < info->num_headers; ++i) {
+    if (strcasecmp(info->http_headers[i].name, "Transfer-Encoding") == 0)
+      return "a body in chunks is not taken; send Content-Length";
+    lengths += strcasecmp(info->http_headers[i].name, "Content-Length") == 0 ? 1 : 0;
+  }
+  if (lengths > 1) return "more than one Content-Length";
+  return lengths == 1 && info->content_length >= 0 ? "" : "there is no sound Content-Length";
+}
+
+// At most a byte more than any request has. One that comes byte by byte is cut after a while: civetweb has no
+// limit for the time of a whole body, so that it is asked for single bytes.
 std::string body_of(mg_connection* connection) {
   const auto end = std::chrono::steady_clock::now() + kBodyTimeout;
   std::string body;
@@ -56,17 +74,35 @@ std::string body_of(mg_connection* connection) {
   return body;
 }
 
+// In parts, since civetweb waits anew for every byte that is taken. False: it did not go out whole.
+bool send_in_time(mg_connection* connection, std::string_view bytes) {
+  constexpr std::size_t kPart = 16'384;
+  const auto end = std::chrono::steady_clock::now() + kAnswerTimeout;
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(kPart, bytes.size()))) {
+    const std::size_t part = std::min(kPart, bytes.size());
+    if (std::chrono::steady_clock::now() > end ||
+        mg_write(connection, bytes.data(), part) != static_cast<int>(part))
+      return false;
+  }
+  return true;
+}
+
 void send_answer(mg_connection* connection, const Answer& answer, bool with_body) {
-  const std::string head =
-      "HTTP/1.1 " + std::to_string(answer.status) + " " +
-      mg_get_response_code_text(connection, answer.status) + "\r\nContent-Type: " + answer.type +
-      "\r\nContent-Length: " + std::to_string(answer.body.size()) +
-      (answer.allow.empty() ? "" : "\r\nAllow: " + answer.allow) +
-      "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer"
-      "\r\nContent-Security-Policy: default-src 'self'; style-src 'self' 'unsafe-inline'; "
-      "img-src 'self' data: blob:; connect-src 'self' ws:; frame-ancestors 'none'\r\n\r\n";
-  mg_write(connection, head.data(), head.size());
-  if (with_body) mg_write(connection, answer.body.data(), answer.body.size());
+  std::string whole = "HTTP/1.1 " + std::to_string(answer.status) + " " +
+                      mg_get_response_code_text(connection, answer.status) +
+                      "\r\nContent-Type: " + answer.type +
+                      "\r\nContent-Length: " + std::to_string(answer.body.size()) +
+                      (answer.allow.empty() ? "" : "\r\nAllow: " + answer.allow) +
+                      "\r\nConnection: close\r\nCache-Control: no-store\r\nX-Content-Type-Options: "
+                      "nosniff\r\nReferrer-Policy: no-referrer"
+                      "\r\nContent-Security-Policy: default-src 'self'; style-src 'self' 'unsafe-inline'; "
+                      "img-src 'self' data: blob:; connect-src 'self' ws:; frame-ancestors 'none'\r\n\r\n";
+  if (with_body) whole += answer.body;
+  send_in_time(connection, whole);
+}
+
+Answer plain(int status, std::string text) {
+  return {status, "text/plain; charset=utf-8", std::move(text), ""};
 }
 
 // False: it did not go out whole.
@@ -185,11 +221,15 @@ struct ConsoleServer::Handlers {
     Request request = request_of(connection);
     const ConsoleServer& own = server(self);
     // Nobody is waited for who gets no answer.
-    if (request.method == "POST" && own.requests_.refusal_of(request, own.port_).empty())
+    const bool has_body = request.method == "POST" && own.requests_.refusal_of(request, own.port_).empty();
+    std::string fault = has_body ? fault_of_length(connection) : "";
+    if (has_body && fault.empty()) {
       request.body = body_of(connection);
-    const Answer answer = own.requests_.answer(request, own.port_);
-    // What is left of a body would be read without an end.
-    if (answer.status >= 400) mg_disable_connection_keep_alive(connection);
+      const long long length = mg_get_request_info(connection)->content_length;
+      if (static_cast<long long>(request.body.size()) < std::min<long long>(length, Requests::kMostBody))
+        fault = "the body ended before its Content-Length";
+    }
+    const Answer answer = fault.empty() ? own.requests_.answer(request, own.port_) : plain(400, fault);
     send_answer(connection, answer, request.method != "HEAD");
     return answer.status;
   }
@@ -202,23 +242,21 @@ struct ConsoleServer::Handlers {
   static int connect_page(const mg_connection* connection, void* self) {
     ConsoleServer& own = server(self);
     forget_subprotocol(connection);  // civetweb would take any
-    return own.clients() >= kMostClients ||
-                   !own.requests_.refusal_of(request_of(connection), own.port_).empty()
-               ? 1
-               : 0;
+    return end_of(own, connection, plain(403, own.requests_.refusal_of(request_of(connection), own.port_)));
   }
   static int connect_foxglove(const mg_connection* connection, void* self) {
     ConsoleServer& own = server(self);
-    Answer refusal{403, "text/plain; charset=utf-8",
-                   own.requests_.refusal_of_foxglove(request_of(connection), own.port_), ""};
+    Answer refusal = plain(403, own.requests_.refusal_of_foxglove(request_of(connection), own.port_));
     if (refusal.body.empty() && mg_get_request_info(connection)->acceptedWebSocketSubprotocol == nullptr) {
       refusal.status = 400;
       refusal.body = "the subprotocol here is foxglove.sdk.v1 or foxglove.websocket.v1";
     }
-    if (refusal.body.empty() && own.clients() >= kMostClients) {
-      refusal.status = 503;
-      refusal.body = "this console has as many clients as it takes";
-    }
+    return end_of(own, connection, std::move(refusal));
+  }
+  // `refusal`: empty without a reason.
+  static int end_of(const ConsoleServer& own, const mg_connection* connection, Answer refusal) {
+    if (refusal.body.empty() && own.clients() >= kMostClients)
+      refusal = plain(503, "this console has as many clients as it takes");
     if (refusal.body.empty()) return 0;
     // Civetweb itself gives no reason. Nothing else uses the connection now.
     send_answer(const_cast<mg_connection*>(connection), refusal, true);
@@ -270,7 +308,7 @@ ConsoleServer::ConsoleServer(const Requests& requests, int port) : requests_(req
   if (!missing.empty()) throw std::runtime_error("the console cannot show its page: " + missing);
   mg_init_library(0);
   const std::string address = "127.0.0.1:" + std::to_string(port);
-  const std::array<const char*, 15> options{"listening_ports",
+  const std::array<const char*, 13> options{"listening_ports",
                                             address.c_str(),
                                             "num_threads",
                                             kThreads,
@@ -278,10 +316,8 @@ ConsoleServer::ConsoleServer(const Requests& requests, int port) : requests_(req
                                             kWaiting,
                                             "request_timeout_ms",
                                             kRequestTimeout_ms,
-                                            "keep_alive_timeout_ms",
-                                            "2000",
                                             "enable_keep_alive",
-                                            "yes",
+                                            "no",
                                             "websocket_timeout_ms",
                                             "30000",
                                             nullptr};

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "sim/recording/mcap_format.hpp"
+#include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -69,6 +70,8 @@ McapWriter::McapWriter(std::string path, const std::string& library)
 
 // Not emptied before it is ours alone. A device can be neither locked nor emptied.
 void McapWriter::open_alone(const std::string& path) {
+  const std::string fault = fault_of_place(path);
+  if (!fault.empty()) fail(fault);
   struct stat status {};
   if (stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode))
     fail("is a pipe, which cannot be a recording; give the path of a file");

@@ -24,12 +24,25 @@ DomainLease::DomainLease(int wanted) {
   }
   if (wanted >= 0) {
     if (take(static_cast<std::uint32_t>(wanted))) return;
-    throw SilFailure("DDS domain " + std::to_string(wanted) + " is in use by another run on this machine");
+    throw SilFailure("DDS domain " + std::to_string(wanted) +
+                     " is in use: another run, or another program, on this machine has reserved it; give "
+                     "another --domain");
   }
-  for (std::uint32_t domain = kFirstFree; domain <= kLastFree; ++domain)
-    if (take(domain)) return;
-  throw SilFailure("no free DDS domain from " + std::to_string(kFirstFree) + " to " +
-                   std::to_string(kLastFree) + ": other runs on this machine use them");
+  if (take_from(kFirstFree)) return;
+  throw SilFailure(
+      "no free DDS domain from " + std::to_string(kFirstFree) + " to " + std::to_string(kLastFree) +
+      ": other runs, or other programs, on this machine have reserved them; give a --domain up to " +
+      std::to_string(hal::dds::kMaxDomain));
+}
+
+bool DomainLease::take_next() {
+  return take_from(domain_ + 1);
+}
+
+bool DomainLease::take_from(std::uint32_t first) {
+  for (std::uint32_t domain = first; domain <= kLastFree; ++domain)
+    if (take(domain)) return true;
+  return false;
 }
 
 bool DomainLease::take(std::uint32_t domain) {

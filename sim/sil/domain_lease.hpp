@@ -15,12 +15,16 @@ class DomainLease {
   // `wanted`: a domain, or -1 for a free one. Throws SilFailure if it is taken, or none is free.
   explicit DomainLease(int wanted);
 
+  // Gives the domain back for the next free one. False: there is none.
+  bool take_next();
+
   std::uint32_t domain() const { return domain_; }
   // The name's descriptor, which FlightProcess lets the child inherit.
   int file() const { return name_.descriptor(); }
 
  private:
   bool take(std::uint32_t domain);  // false: it is taken
+  bool take_from(std::uint32_t first);
 
   hal::dds::MachineName name_;
   std::uint32_t domain_ = 0;

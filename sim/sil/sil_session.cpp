@@ -95,14 +95,7 @@ SilSession::SilSession(const SilSettings& settings)
       !hal::dds::read_security(settings_.security_path.c_str(), *security))
     throw SilFailure("--dds-security " + settings_.security_path + ": cannot be read, is empty, or has " +
                      std::to_string(sizeof security->text) + " bytes or more");
-  const dds_return_t result = domain_.open(lease_.domain(), secret_.partition, security->text);
-  if (result != 0) {
-    throw SilFailure("DDS domain " + std::to_string(lease_.domain()) +
-                     " could not be opened: " + hal::dds::text_of_failure(result) +
-                     (settings_.security_path.empty() ? ""
-                                                      : "; is --dds-security " + settings_.security_path +
-                                                            " a file of hal/dds/make_security?"));
-  }
+  open_domain(security->text);
   endpoints_ = std::make_unique<SimulatorEndpoints>(domain_);
   answers_ = std::make_unique<AnswerCollector>(*endpoints_, secret_.run_id);
   announcement_ = std::make_unique<RunAnnouncement>(lease_.domain(), secret_);
@@ -114,6 +107,24 @@ SilSession::SilSession(const SilSettings& settings)
   write(endpoints_->hello_out, hello());
   if (!settings_.flight_path.empty()) start_flight();
   shake_hands();
+}
+
+// Another program may have the UDP ports of a domain that no run uses: then the next one is tried.
+void SilSession::open_domain(const char* security) {
+  constexpr int kTries = 10;
+  dds_return_t result = domain_.open(lease_.domain(), secret_.partition, security);
+  for (int i = 1; result != 0 && settings_.domain < 0 && i < kTries && lease_.take_next(); ++i)
+    result = domain_.open(lease_.domain(), secret_.partition, security);
+  if (result == 0) return;
+  constexpr std::uint32_t kFirstPort = 7400, kPortsPerDomain = 250;
+  const std::uint32_t port = kFirstPort + kPortsPerDomain * lease_.domain();
+  throw SilFailure(
+      "DDS domain " + std::to_string(lease_.domain()) +
+      " could not be opened: " + hal::dds::text_of_failure(result) +
+      (settings_.security_path.empty()
+           ? "; another program may have its UDP ports, " + std::to_string(port) + " to " +
+                 std::to_string(port + kPortsPerDomain - 1) + ": give another --domain"
+           : "; is --dds-security " + settings_.security_path + " a file of hal/dds/make_security?"));
 }
 
 hal::dds::HelloSample SilSession::hello() const {

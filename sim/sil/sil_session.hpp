@@ -71,6 +71,7 @@ class SilSession {
   std::uint32_t domain() const { return lease_.domain(); }
 
  private:
+  void open_domain(const char* security);
   hal::dds::HelloSample hello() const;
   void start_flight();
   void shake_hands();

@@ -10,12 +10,16 @@ namespace tumblesight::sim {
 
 // Replaces the file as a whole: a reader never finds a part of it, and a failure leaves the old file. A path
 // that is neither missing nor a plain file, such as /dev/stdout or a link, is written to directly. Creates
-// missing folders. Throws std::runtime_error that names the file and the reason.
+// missing folders. A link or pipe that another user has put there is refused. Throws std::runtime_error that
+// names the file and the reason.
 void write_file(const std::string& path, std::string_view content);
 void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes);
 
-// The name beside `path` under which write_file() writes before it renames. Empty if it writes to `path`
-// directly.
+// The name beside `path` under which write_file() writes before it renames, or that and a number if there is
+// such a file. Empty if it writes to `path` directly.
 std::string partial_path(const std::string& path);
+
+// Empty if nothing is there that write_file() refuses since it is another user's. Otherwise what it is.
+std::string fault_of_place(const std::string& path);
 
 }  // namespace tumblesight::sim

@@ -1,6 +1,7 @@
 // GrowingRun: a run for the console to which a test adds steps.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -47,7 +48,11 @@ class GrowingRun final : public RunSource {
   const char* kind() const override { return "bus"; }
   std::string title() const override { return "near_shoemaker"; }
   std::uint64_t first_frame() const override { return 0; }
-  std::string ask(const std::string&) const override { return {}; }
+  std::string ask(const std::string&) const override {
+    ++asked;
+    return R"({"step":0})";
+  }
+  mutable std::atomic<int> asked{0};  // requests that reached the run
   bool frame(std::uint64_t step, gnc::RangeImage& frame) const override {
     if (is_damaged) throw std::runtime_error("damaged");
     frame = {};

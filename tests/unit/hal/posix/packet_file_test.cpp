@@ -55,6 +55,21 @@ TEST(PacketFile, ReportsAFileThatCannotBeCreated) {
   EXPECT_EQ(file.open("/no/such/folder/packets"), ENOENT);
 }
 
+// Opening one for writing waits for a reader.
+TEST(PacketFile, APipeThatNobodyReadsIsRefusedAtOnce) {
+  const std::string path = ::testing::TempDir() + "pipe_" + std::to_string(getpid());
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  PacketFile file;
+  EXPECT_EQ(file.open(path.c_str()), ENXIO);
+  const int reader = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(reader, 0);
+  EXPECT_EQ(file.open(path.c_str()), 0);
+  packets::TelemetryEncoder encoder;
+  EXPECT_TRUE(file.put(encoder.encode(Event{})));
+  close(reader);
+  std::filesystem::remove(path);
+}
+
 TEST(PacketFile, CountsLostPacketsAndNamesTheReason) {
   packets::TelemetryEncoder encoder;
   PacketFile file;

@@ -59,6 +59,16 @@ class RawClient {
     return received;
   }
   std::string head() { return read_until("\r\n\r\n"); }
+  // Nothing more is sent.
+  RawClient& finish() {
+    shutdown(socket_, SHUT_WR);
+    return *this;
+  }
+  // Whether the server ends it though nothing of its answers is read.
+  bool is_ended_within(std::chrono::milliseconds time) {
+    pollfd ended{socket_, POLLRDHUP, 0};
+    return poll(&ended, 1, static_cast<int>(time.count())) > 0;
+  }
   bool is_closed_within(std::chrono::milliseconds time) {
     const auto end = Clock::now() + time;
     char buffer[4096];
@@ -124,15 +134,49 @@ TEST_F(ConsoleServerOnLoopback, GivesEveryWebSocketTheSubprotocolThatItAsksForOr
     ASSERT_EQ(head_of("/ws/foxglove?token=abc", upgrade()).find("HTTP/1.1 400"), 0U) << i;
 }
 
-// The connection was another one's before, and is used again after a plain request.
-TEST_F(ConsoleServerOnLoopback, APageThatKeepsItsConnectionGetsNoSubprotocol) {
-  for (int i = 0; i < 20; ++i) {
+// So that a client that goes on with requests, and reads no answers, cannot hold a thread of the server.
+TEST_F(ConsoleServerOnLoopback, AConnectionHasOneRequest) {
+  RawClient many = client();
+  for (int i = 0; i < 20; ++i) many.get("/api/run?token=abc");
+  const std::string answers = many.read_until("no such end");
+  EXPECT_EQ(answers.find("HTTP/1.1 200"), 0U);
+  EXPECT_NE(answers.find("\r\nConnection: close\r\n"), std::string::npos);
+  EXPECT_EQ(answers.find("HTTP/1.1", 1), std::string::npos);
+  RawClient unread = client();
+  for (int i = 0; i < 20; ++i) unread.get("/three.js?token=abc");
+  EXPECT_TRUE(unread.is_ended_within(7s));
+}
+
+// What a proxy and the server may understand differently, or what has not come whole, is not carried out.
+TEST_F(ConsoleServerOnLoopback, ABodyWithoutOneSoundLengthIsRefused) {
+  const std::string command = R"({"name":"NOOP"})";
+  const std::string length = "Content-Length: " + std::to_string(command.size()) + "\r\n";
+  const auto answer = [&](const std::string& headers, const std::string& body) {
     RawClient socket = client();
-    EXPECT_EQ(socket.get("/api/run?token=abc").read_until("}").find("HTTP/1.1 200"), 0U);
-    const std::string head = socket.get("/ws?token=abc", upgrade()).head();
-    EXPECT_NE(head.find("HTTP/1.1 101"), std::string::npos) << head;
-    EXPECT_EQ(head.find("Sec-WebSocket-Protocol"), std::string::npos) << head;
+    return socket.get("/api/command?token=abc", headers, "POST")
+        .send(body)
+        .finish()
+        .read_until("no such end");
+  };
+  EXPECT_EQ(answer(length, command).find("HTTP/1.1 200"), 0U);
+  for (const std::string& headers :
+       {std::string("Content-Length: 100\r\n"), length + "Content-Length: 100\r\n", std::string(),
+        length + "Transfer-Encoding: chunked\r\n", std::string("Content-Length: -1\r\n")}) {
+    const std::string refused = answer(headers, command);
+    EXPECT_EQ(refused.find("HTTP/1.1 400"), 0U) << headers << refused;
   }
+  EXPECT_EQ(run_.asked, 1);
+}
+
+TEST_F(ConsoleServerOnLoopback, SaysWhyAPageIsRefused) {
+  EXPECT_EQ(head_of("/ws?token=abd", upgrade()).find("HTTP/1.1 403"), 0U);
+  std::vector<RawClient> all;
+  for (int i = 0; i < ConsoleServer::kMostClients; ++i) {
+    all.push_back(client());
+    ASSERT_EQ(all.back().get("/ws?token=abc", upgrade()).head().find("HTTP/1.1 101"), 0U) << i;
+  }
+  ASSERT_TRUE(wait_for_clients(ConsoleServer::kMostClients));
+  EXPECT_EQ(head_of("/ws?token=abc", upgrade()).find("HTTP/1.1 503"), 0U);
 }
 
 TEST_F(ConsoleServerOnLoopback, AnswersWhileRequestsOfAllKindsAreNotComplete) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -16,6 +18,7 @@
 #include "sim/terminal/table.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -164,6 +167,38 @@ TEST(WriteFile, WritesThroughALinkAndKeepsIt) {
   std::ifstream file(folder / "file");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "new");
   std::filesystem::remove_all(folder);
+}
+
+// As in a shared folder, where every user can make files with names that are known beforehand.
+TEST(WriteFile, IsNotLedAstrayByWhatAnotherUserHasPutThere) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can make files of another user";
+  const TemporaryFolder folder;
+  const std::string path = folder.path("report.html"), own = folder.path("own");
+  write_file(own, "precious");
+  const std::string partial = partial_path(path);
+  // Under the name of the partial file: a link to a file of this user, then a pipe.
+  std::filesystem::create_symlink(own, partial);
+  write_file(path, "new");
+  std::filesystem::remove(partial);
+  ASSERT_EQ(mkfifo(partial.c_str(), 0666), 0);
+  write_file(path, "newer");
+  std::ifstream file(path);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "newer");
+  // In place of the file itself.
+  constexpr uid_t kOther = 65534;
+  for (const bool is_link : {true, false}) {
+    std::filesystem::remove(path);
+    if (is_link)
+      std::filesystem::create_symlink(own, path);
+    else
+      ASSERT_EQ(mkfifo(path.c_str(), 0666), 0);
+    ASSERT_EQ(lchown(path.c_str(), kOther, kOther), 0);
+    EXPECT_NE(fault_of_place(path), "");
+    EXPECT_THROW(write_file(path, "led astray"), std::runtime_error);
+  }
+  std::ifstream precious(own);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(precious), {}), "precious");
+  EXPECT_EQ(fault_of_place("/dev/stdout"), "");
 }
 
 TEST(WriteFile, SaysWhichFileCannotBeWritten) {
