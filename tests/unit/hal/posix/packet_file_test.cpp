@@ -1,7 +1,9 @@
 // Verifies TS-TLM-090.
 #include "hal/posix/packet_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
