@@ -139,17 +139,22 @@ std::uint32_t dark_angles_of(const DarkSurfaces& dark) {
 }
 
 // Counts the rays of all triangles of `surface` into `dark`. `bright` and `dark_angles`: by which a triangle
-// is judged. `takes_out`: the same surface if what is dark is taken out, or null.
+// is judged. `takes_out`: the same surface if what is dark is taken out, or null. It ends with the budget.
 void look_at_triangles(const SurfaceMesh& mesh, const FrameView& view, const RenderedSurface& surface,
                        const RayCount& bright, std::uint32_t dark_angles, DarkSurfaces& dark,
-                       RenderedSurface* takes_out) {
+                       RenderedSurface* takes_out, WorkBudget& budget) {
+  if (!budget.spend(work::kDarkLook + mesh.triangles() * work::kDarkTriangle)) return;
   const RayCount all = all_rays(view, surface);
   const std::int32_t slope_q24 = slope_per_half_ray_q24(view);
   visit_front(mesh, view.rays, *surface.vertices, true,
               [&](const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
                   const Bounds& rows, const Bounds& columns) {
                 Counter counter(view, surface);
-                visit_spans(a, b, c, whole, rows, columns, counter);
+                const int looked_at = visit_spans(a, b, c, whole, rows, columns, counter);
+                const int height = rows.last - rows.first + 1;
+                const int in_triangle = looked_at - height;  // rays
+                if (!budget.spend(work::kDarkFront + height * work::kDarkRow + in_triangle * work::kDarkRay))
+                  return false;
                 const RayCount& rays = counter.rays();
                 if (rays.drawn == 0) return true;
                 if (return_as_much(rays, all)) dark.bright.add(rays);
@@ -163,26 +168,27 @@ void look_at_triangles(const SurfaceMesh& mesh, const FrameView& view, const Ren
                 if (takes_out == nullptr || !is_dark) return true;
                 dark.surfaces += is_alone ? 1 : 0;
                 visit_spans(a, b, c, whole, rows, columns, Remover(*takes_out));
-                return true;
+                return budget.spend(height * work::kTakenRow + in_triangle * work::kTakenRay);
               });
 }
 
 }  // namespace
 
 void measure_brightness(const SurfaceMesh& mesh, const FrameView& view, const RenderedSurface& surface,
-                        DarkSurfaces& dark) {
+                        DarkSurfaces& dark, WorkBudget& budget) {
   dark = {};
-  if (surface.is_complete) look_at_triangles(mesh, view, surface, all_rays(view, surface), 0, dark, nullptr);
+  if (surface.is_complete)
+    look_at_triangles(mesh, view, surface, all_rays(view, surface), 0, dark, nullptr, budget);
 }
 
 void take_out_dark_surfaces(const SurfaceMesh& mesh, const FrameView& view, DarkSurfaces& dark,
-                            RenderedSurface& surface) {
+                            RenderedSurface& surface, WorkBudget& budget) {
   const RayCount bright = dark.bright;
   const std::uint32_t dark_angles = dark_angles_of(dark);
   dark = {};
   if (!surface.is_complete) return;
   dark.surfaces = count_ones(dark_angles);
-  look_at_triangles(mesh, view, surface, bright, dark_angles, dark, &surface);
+  look_at_triangles(mesh, view, surface, bright, dark_angles, dark, &surface, budget);
   surface.has_dark = dark.surfaces > 0;
 }
 

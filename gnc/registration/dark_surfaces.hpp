@@ -31,12 +31,12 @@ struct DarkSurfaces {
 
 // The first time at a pose: what is bright. `surface`: as render() left it.
 void measure_brightness(const SurfaceMesh& mesh, const FrameView& view, const RenderedSurface& surface,
-                        DarkSurfaces& dark);
+                        DarkSurfaces& dark, WorkBudget& budget);
 
 // `surface`: as render() left it; `dark`: of a pose nearby. Finds what is dark and moves its rays from
 // surface.filled to surface.dark; they keep their nearness. Sets surface.has_dark. Of a surface that was not
 // drawn whole nothing is dark. About the work of a rendering.
 void take_out_dark_surfaces(const SurfaceMesh& mesh, const FrameView& view, DarkSurfaces& dark,
-                            RenderedSurface& surface);
+                            RenderedSurface& surface, WorkBudget& budget);
 
 }  // namespace tumblesight::gnc

@@ -79,8 +79,9 @@ class Across {
   // The whole look, in three parts: the rays next to the outline must agree with it, then outwards and
   // inwards until the rendering changes. `place`: where the outline crosses the line, in 1/64 of a ray;
   // `cosine_q14`: of its angle to the perpendicular of the line.
+  // `looked_at` grows by the rays.
   bool look_across(const OutlineEdge& edge, int line, std::int32_t place, std::int32_t nearness,
-                   std::int32_t cosine_q14, Rays& rays) const {
+                   std::int32_t cosine_q14, Rays& rays, int& looked_at) const {
     const Line at{edge.is_steep, line, view_.rays};
     const int outer = edge.outward > 0 ? (place + kScreenRay / 2 - 1) >> kScreenBits
                                        : (place - kScreenRay / 2) >> kScreenBits;
@@ -98,13 +99,13 @@ class Across {
     if (is_inner_filled && surface_.nearness[at.ray(inner)] > nearness + behind_) return false;
     rays = {};
     std::int32_t distance = outer_distance;
-    for (int k = 0; k < kMaxAcross && distance <= reach_; ++k, distance += step) {
+    for (int k = 0; k < kMaxAcross && distance <= reach_; ++k, ++looked_at, distance += step) {
       const int ray = outer + k * edge.outward;
       if (ray < 0 || ray >= view_.rays || (k > 1 && is_filled(at, ray))) break;
       if (!add(at, ray, distance, rays)) return false;
     }
     distance = inner_distance;
-    for (int k = 0; k < kMaxAcross && distance >= -reach_; ++k, distance -= step) {
+    for (int k = 0; k < kMaxAcross && distance >= -reach_; ++k, ++looked_at, distance -= step) {
       const int ray = inner - k * edge.outward;
       if (ray < 0 || ray >= view_.rays || (k > 0 && !is_filled(at, ray))) break;
       if (!add(at, ray, distance, rays)) return false;
@@ -186,7 +187,7 @@ class OutlineRows {
 // Adds the places where an edge crosses the middles of the lines, of `every` line one; returns the number of
 // lines. `found`: whether one was added.
 int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const OutlineRows& equation_rows,
-             const Across& across, int rays, OutlineFit& fit, bool& found) {
+             const Across& across, int rays, OutlineFit& fit, WorkBudget& budget, bool& found) {
   // Between the first end and before the second one: a line through both of two edges is of one of them.
   int first = max_small(0, (edge.line(edge.from) + kScreenRay / 2 - 1) >> kScreenBits);
   const int end = min_small(rays, (edge.line(edge.to) + kScreenRay / 2 - 1) >> kScreenBits);
@@ -205,6 +206,7 @@ int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const 
 
   Rays sum;
   std::int32_t parts_q15 = 0, places = 0;
+  int looked_at = 0, equations = 0;
   const auto add_row = [&] {
     constexpr std::array<std::int32_t, kMostPerRow + 1> kInverse_q14{0, 16384, 8192, 5461, 4096};
     const std::int32_t part_q14 = ((parts_q15 >> 1) * kInverse_q14[static_cast<std::size_t>(places)]) >> 14;
@@ -222,6 +224,7 @@ int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const 
     fit.length_q8 += places * length_q8;
     sum = {};
     parts_q15 = places = 0;
+    ++equations;
     found = true;
   };
   for (int line = first; line < end; line += every) {
@@ -231,14 +234,16 @@ int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const 
     const std::int32_t nearness =
         edge.from.nearness + ((((edge.to.nearness - edge.from.nearness) >> 1) * part_q15) >> 14);
     Rays rays_across;
-    if (!across.look_across(edge, line, place, nearness, cosine, rays_across)) continue;
+    if (!across.look_across(edge, line, place, nearness, cosine, rays_across, looked_at)) continue;
     sum.derivative += rays_across.derivative;
     sum.information += rays_across.information;
     parts_q15 += part_q15;
     if (++places == kMostPerRow) add_row();
   }
   if (places > 0) add_row();
-  return (end - first + every - 1) / every;
+  const int lines = (end - first + every - 1) / every;
+  budget.spend(lines * work::kPlace + looked_at * work::kAcross + equations * work::kEquation);
+  return lines;
 }
 
 // The triangles on both sides of an edge.
@@ -299,30 +304,34 @@ void make_outline_table(std::uint32_t fill_q16, OutlineTable& table) {
 
 void fit_outline(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose,
                  const RenderedSurface& surface, const OutlineTable& table, std::int32_t sigma_q8,
-                 OutlineFit& fit, int every) {
+                 OutlineFit& fit, WorkBudget& budget, int every) {
   fit = {};
+  budget.spend(work::kOutline + mesh.edges() * work::kEdge);
   const Across across(view, surface, table, sigma_q8);
   const OutlineRows rows(view, pose);
+  const auto follow = [&](const OutlineEdge& edge, bool& found) {
+    return add_edge(mesh, edge, every, rows, across, view.rays, fit, budget, found);
+  };
   int silhouettes = 0, between = 0;  // places
-  for (int i = 0; i < mesh.edges(); ++i) {
+  for (int i = 0; i < mesh.edges() && !budget.is_exhausted(); ++i) {
     const SurfaceMesh::Edge edge = mesh.edge(i);
     const Sides sides = sides_of(mesh, surface, edge);
     // Between a dark surface and another one is an outline, too.
     if (!sides.are_drawn || (!sides.are_on_one_side && !surface.has_dark)) continue;
     OutlineEdge outline = outline_edge(*surface.vertices, edge, sides.first_is_right);
+    budget.spend(work::kOutlineEdge);
     bool found = false;
     if (!sides.are_on_one_side) {
       outline.outward = across.dark_side(outline);
-      if (outline.outward != 0 && between < kMaxPlaces)
-        between += add_edge(mesh, outline, every, rows, across, view.rays, fit, found);
+      if (outline.outward != 0 && between < kMaxPlaces) between += follow(outline, found);
       continue;
     }
     if (silhouettes >= kMaxPlaces) continue;
-    silhouettes += add_edge(mesh, outline, every, rows, across, view.rays, fit, found);
+    silhouettes += follow(outline, found);
     if (found || !surface.has_dark) continue;
     // A dark surface before a bright one.
     outline.outward = -outline.outward;
-    silhouettes += add_edge(mesh, outline, every, rows, across, view.rays, fit, found);
+    silhouettes += follow(outline, found);
   }
 }
 

@@ -34,9 +34,10 @@ struct OutlineFit {
 };
 
 // sigma_q8: in 1/256 of a ray, at least 16. every: 1, or 2 to look at every second row and column only and
-// count each twice: half the work, for steps that later ones correct.
+// count each twice: half the work, for steps that later ones correct. When the budget is exhausted, no more
+// edge is followed.
 void fit_outline(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose,
                  const RenderedSurface& surface, const OutlineTable& table, std::int32_t sigma_q8,
-                 OutlineFit& fit, int every = 1);
+                 OutlineFit& fit, WorkBudget& budget, int every = 1);
 
 }  // namespace tumblesight::gnc

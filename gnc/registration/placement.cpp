@@ -122,8 +122,9 @@ std::int32_t nearer_by(const FrameView& view, const RenderedSurface& surface, Sh
 }  // namespace
 
 void place(const SurfaceMesh& mesh, const FrameView& view, RenderedSurface& surface,
-           PlacementScratch& scratch, Pose& pose) {
-  render(mesh, view, pose, surface);
+           PlacementScratch& scratch, Pose& pose, WorkBudget& budget) {
+  render(mesh, view, pose, surface, budget);
+  if (!budget.spend(work::kPlacement)) return;
   Middle seen, drawn;
   for (int row = 0; row + 1 < view.rays; row += 2) {
     for (int column = 0; column + 1 < view.rays; column += 2) {
@@ -149,6 +150,7 @@ void place(const SurfaceMesh& mesh, const FrameView& view, RenderedSurface& surf
   // No shift explains more than all returns, or than there are rays of the target.
   const auto most = static_cast<std::int32_t>(min(seen.rays, rays_of(scratch.drawn)));
   if (is_clearly_more(most, by_middles)) {
+    if (!budget.spend(work::kSearch)) return;
     try_around(scratch, of_middles, kReach, kStride, found);
     try_around(scratch, found.shift, kStride - 1, 1, found);
   }

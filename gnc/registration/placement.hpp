@@ -17,8 +17,8 @@ struct PlacementScratch {
 };
 
 // `pose`: the attitude, and the origin of the TRF within a radius of its place; the origin is replaced.
-// `surface` is drawn on.
+// `surface` is drawn on. It stays if the budget is exhausted.
 void place(const SurfaceMesh& mesh, const FrameView& view, RenderedSurface& surface,
-           PlacementScratch& scratch, Pose& pose);
+           PlacementScratch& scratch, Pose& pose, WorkBudget& budget);
 
 }  // namespace tumblesight::gnc

@@ -171,6 +171,7 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
                 ScreenVertices& vertices, PoseTrackerState& state, PoseEstimate& estimate) {
   estimate = {};
   scratch.refinement.surface.vertices = &vertices;
+  scratch.refinement.budget.begin();
   // Memory may be damaged.
   state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);
   state.advantage_q8 = limited_advantage_q8(state.advantage_q8);
@@ -214,6 +215,7 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
     estimate.doubts = kPoseCoasts;
     make_coasting_covariance(frame, state, scratch, estimate.covariance);
   }
+  if (scratch.refinement.budget.is_exhausted()) estimate.doubts |= kPoseAmbiguous;
   if (!tells_rate(state.history)) estimate.doubts |= kPoseMotion;
   if (advantage_before_q8 - state.advantage_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
   estimate.poses = state.history.count;

@@ -161,10 +161,13 @@ std::uint32_t shifted(const RayMask::Row& row, int word, int by) {
 }  // namespace
 
 void fit_ranges(const FrameView& view, const Pose& pose, const RenderedSurface& surface, RangeFit& fit,
-                int every) {
+                WorkBudget& budget, int every) {
   fit = {};
+  if (!budget.spend(work::kRanges)) return;
   const RangeRows rows(view, pose);
   for (int row = 0; row + 1 < view.rays; row += 2) {
+    int looked_at = 0;  // blocks
+    const std::int32_t compared_before = fit.blocks;
     const std::int32_t up = -rows.slope_q14(row + 1);
     const RayMask::Row& upper = surface.filled.rows[static_cast<std::size_t>(row)];
     const RayMask::Row& lower = surface.filled.rows[static_cast<std::size_t>(row) + 1];
@@ -177,11 +180,13 @@ void fit_ranges(const FrameView& view, const Pose& pose, const RenderedSurface& 
       std::uint32_t pairs = both & (both << 1) & wanted;
       for (int column = word * RayMask::kColumnsPerWord; pairs != 0; column += 2, pairs <<= 2) {
         if ((pairs >> 31) == 0) continue;
+        ++looked_at;
         Block block{};
         if (!take_block(view, surface, row, column, block)) continue;
         add_block(rows, block, rows.slope_q14(column + 1), up, every, fit);
       }
     }
+    if (!budget.spend(looked_at * work::kBlock + (fit.blocks - compared_before) * work::kCompared)) return;
   }
 }
 

@@ -21,7 +21,7 @@ struct RangeFit {
 // every: 2 compares every second block of a row and counts each twice in the equations: half the work, for
 // steps that later ones correct.
 void fit_ranges(const FrameView& view, const Pose& pose, const RenderedSurface& surface, RangeFit& fit,
-                int every = 1);
+                WorkBudget& budget, int every = 1);
 
 // Share of the rays well inside the target that return, Q16; 1 without such rays.
 std::uint32_t fill_share(const FrameView& view, const RenderedSurface& surface);

@@ -76,22 +76,24 @@ void limit(Motion6& step) {
 void refine(const SurfaceMesh& mesh, const FrameView& view, const Pose& start,
             const RefinementSettings& settings, RefinementScratch& scratch, Refinement& result) {
   result.pose = start;
-  render(mesh, view, start, scratch.surface);
+  render(mesh, view, start, scratch.surface, scratch.budget);
   refine_further(mesh, view, settings, scratch, result);
 }
 
 void refine_further(const SurfaceMesh& mesh, const FrameView& view, const RefinementSettings& settings,
                     RefinementScratch& scratch, Refinement& result) {
   RenderedSurface& surface = scratch.surface;
-  result.is_complete = surface.is_complete;
+  WorkBudget& budget = scratch.budget;
+  result.is_complete = surface.is_complete && budget.spend(work::kRefinement);
+  if (budget.is_exhausted()) return;
   result.fill_q16 = fill_share(view, surface);
   const bool may_be_dark = surface.has_dark || result.fill_q16 < kLeastFill_q16;
   const auto take_out_dark = [&] {
-    take_out_dark_surfaces(mesh, view, scratch.dark, surface);
+    take_out_dark_surfaces(mesh, view, scratch.dark, surface, budget);
     result.fill_q16 = fill_share(view, surface);
   };
   if (may_be_dark && !surface.has_dark) {
-    measure_brightness(mesh, view, surface, scratch.dark);
+    measure_brightness(mesh, view, surface, scratch.dark, budget);
     take_out_dark();
   }
   Motion6 since_start{};
@@ -99,10 +101,13 @@ void refine_further(const SurfaceMesh& mesh, const FrameView& view, const Refine
   std::int32_t sigma_q8 = max(settings.first_sigma_q8, last_sigma_q8);
   const int steps = clamp(settings.steps, 1, RefinementSettings::kMaxSteps);
   const auto every = [&](int step) { return step < settings.thinned_steps && step < steps ? 2 : 1; };
-  fit_ranges(view, result.pose, surface, scratch.ranges, every(0));
-  for (int i = 0; i < steps; ++i) {
-    if (i == 0 || may_be_dark) make_outline_table(result.fill_q16, scratch.table);
-    fit_outline(mesh, view, result.pose, surface, scratch.table, sigma_q8, scratch.outline, every(i));
+  fit_ranges(view, result.pose, surface, scratch.ranges, budget, every(0));
+  for (int i = 0; i < steps && budget.spend(work::kStep); ++i) {
+    if (i == 0 || may_be_dark) {
+      budget.spend(work::kTable);
+      make_outline_table(result.fill_q16, scratch.table);
+    }
+    fit_outline(mesh, view, result.pose, surface, scratch.table, sigma_q8, scratch.outline, budget, every(i));
     result.equations = together(view, scratch.outline, scratch.ranges, sigma_q8);
     NormalEquations damped = result.equations;
     add_prior(settings, since_start, damped);
@@ -111,11 +116,12 @@ void refine_further(const SurfaceMesh& mesh, const FrameView& view, const Refine
     move(view, step, result.pose);
     for (std::size_t k = 0; k < step.size(); ++k) since_start[k] += step[k];
     sigma_q8 = max(last_sigma_q8, sigma_q8 / 2);
-    render(mesh, view, result.pose, surface);
+    render(mesh, view, result.pose, surface, budget);
     result.is_complete = result.is_complete && surface.is_complete;
     if (may_be_dark) take_out_dark();
-    fit_ranges(view, result.pose, surface, scratch.ranges, every(i + 1));
+    fit_ranges(view, result.pose, surface, scratch.ranges, budget, every(i + 1));
   }
+  result.is_complete = result.is_complete && !budget.is_exhausted();
 }
 
 }  // namespace tumblesight::gnc

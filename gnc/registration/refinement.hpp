@@ -10,6 +10,7 @@
 namespace tumblesight::gnc {
 
 struct RefinementScratch {
+  WorkBudget budget;  // of the frame
   RenderedSurface surface;
   DarkSurfaces dark;
   OutlineTable table;
@@ -31,7 +32,8 @@ struct Refinement {
   Pose pose;
   NormalEquations equations;  // of the last step, 12 fraction bits
   std::uint32_t fill_q16 = 0;
-  bool is_complete = true;  // false: the surface was not drawn whole, and the pose means nothing
+  // False: the surface was not drawn whole, or the budget was exhausted, and the pose means nothing.
+  bool is_complete = true;
 };
 
 // `start`: within a few rays of the pose; less than 1 km away. Afterwards `scratch` holds the surface drawn

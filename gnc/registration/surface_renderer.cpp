@@ -11,7 +11,7 @@ namespace {
 // From the middle of the screen to either side; what lies farther out is not drawn. Products of two
 // differences fit into 32 bits.
 constexpr std::int32_t kFarthest = RangeImage::kMaxRays * kScreenRay;
-constexpr int kMaxWork = 3 << 14;  // rays and rows of all triangles together
+constexpr int kMostDrawn = 3 << 14;  // rays and rows of all triangles together
 
 // What takes a point of the target to the screen, in 32 bits.
 class Camera {
@@ -115,10 +115,14 @@ Turn::Turn(const Matrix3<Fixed>& r_lrf_trf) {
   }
 }
 
-void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, RenderedSurface& surface) {
+void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, RenderedSurface& surface,
+            WorkBudget& budget) {
   surface.rays = view.rays;
   surface.has_dark = false;
   clear(surface);
+  surface.is_complete =
+      budget.spend(work::kDrawing + mesh.vertices() * work::kVertex + mesh.triangles() * work::kTriangle);
+  if (!surface.is_complete) return;
   const Camera camera(view, pose);
   ScreenVertices& vertices = *surface.vertices;
   bool all_inside = true;
@@ -127,18 +131,21 @@ void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, Re
     point = camera.project(mesh.vertex(i));
     all_inside = all_inside && !point.is_outside();
   }
-  int work = 0;
-  surface.is_complete = visit_front(
-      mesh, view.rays, vertices, all_inside,
-      [&](const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
-          const Bounds& rows, const Bounds& columns) {
-        if (work > kMaxWork) return false;
-        work += visit_spans(a, b, c, whole, rows, columns,
-                            [&](int row, int first, int last, std::int32_t nearness, const Plane& plane) {
-                              fill_row(row, first, last, nearness, plane, surface);
-                            });
-        return true;
-      });
+  int drawn = 0;
+  surface.is_complete =
+      visit_front(mesh, view.rays, vertices, all_inside,
+                  [&](const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
+                      const Bounds& rows, const Bounds& columns) {
+                    if (drawn > kMostDrawn) return false;
+                    const int here = visit_spans(
+                        a, b, c, whole, rows, columns,
+                        [&](int row, int first, int last, std::int32_t nearness, const Plane& plane) {
+                          fill_row(row, first, last, nearness, plane, surface);
+                        });
+                    drawn += here;
+                    const int height = rows.last - rows.first + 1;
+                    return budget.spend(work::kFront + height * work::kRow + (here - height) * work::kRay);
+                  });
 }
 
 }  // namespace tumblesight::gnc

@@ -7,6 +7,7 @@
 #include "gnc/attitude/rotation.hpp"
 #include "gnc/registration/frame_view.hpp"
 #include "gnc/registration/surface_mesh.hpp"
+#include "gnc/registration/work_budget.hpp"
 
 namespace tumblesight::gnc {
 
@@ -36,7 +37,7 @@ struct RenderedSurface {
   static constexpr std::int16_t kEmpty = -32768;
   int rays = 0;
   // False: a part was not drawn, since it is more than 128 rays from the middle of the screen or behind the
-  // sensor, or since the work was more than the limit of a rendering.
+  // sensor, or since the work was more than the limit of a rendering, or than the budget.
   bool is_complete = true;
   bool has_dark = false;               // surfaces are dark (dark_surfaces.hpp)
   ScreenVertices* vertices = nullptr;  // of the mesh; memory that the caller lends
@@ -79,6 +80,7 @@ class Turn {
   std::array<std::int32_t, 9> r_q15_{};
 };
 
-void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, RenderedSurface& surface);
+void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, RenderedSurface& surface,
+            WorkBudget& budget);
 
 }  // namespace tumblesight::gnc

@@ -5,14 +5,17 @@
 // prepare the next one are "quiet".
 #include <array>
 #include <cstring>
+#include <new>
 
 #include "fsw/app/cycle.hpp"
 #include "fsw/app/telecommand.hpp"
 #include "gnc/numerics/hmac_sha256.hpp"
+#include "gnc/rcnn/model_format.hpp"
 #include "hal/board.hpp"
 #include "hal/replay/recording.hpp"
 #include "hal/replay/text_line.hpp"
 #include "tests/support/app_memory.hpp"
+#include "tests/support/expensive_mesh.hpp"
 
 extern "C" {
 extern const std::uint8_t tumblesight_model_image[], tumblesight_model_image_end[];
@@ -53,14 +56,29 @@ class TwoBanks final : public hal::ModelStore {
     return hal::write_at_once(memory, kImageBytes, offset, bytes, count);
   }
   void fill() {
-    for (auto& bytes : banks) std::memcpy(bytes.data(), tumblesight_model_image, kImageBytes);
+    for (auto& bytes : banks) {
+      std::memcpy(bytes.data(), tumblesight_model_image, kImageBytes);
+      if (is_expensive) make_expensive(bytes.data());
+    }
   }
   void damage(std::size_t bank, std::size_t block) { banks[bank][block * config::kModelBlockBytes + 9] ^= 1; }
 
   bool read_only = false;
+  bool is_expensive = false;  // the surface has the format's limits
   // Their addresses are aligned as the application requires it.
   static constexpr std::size_t kBankBytes = (kImageBytes + 63) / 64 * 64;
   alignas(64) std::array<std::array<std::uint8_t, kBankBytes>, hal::kModelBanks> banks;
+
+ private:
+  static void make_expensive(std::uint8_t* image) {
+    using gnc::model_format::put_u32;
+    constexpr std::size_t kSections = gnc::kModelSections<Numerics>;
+    std::uint8_t* const mesh = image + kImageBytes - gnc::SurfaceMesh::kMaxBytes;
+    gnc::make_expensive_mesh({}, mesh);
+    std::uint8_t* const entry = image + gnc::kModelHeaderSize + (kSections - 1) * gnc::kModelSectionEntrySize;
+    put_u32(entry + 12, gnc::crc32(mesh, gnc::SurfaceMesh::kMaxBytes));
+    put_u32(image + gnc::model_format::kOffsetHeaderCrc, gnc::model_format::header_crc(image, kSections));
+  }
 };
 
 // Every command of a step is stored before it is carried out.
@@ -252,8 +270,12 @@ void load_commands(Upload upload = Upload::kBegins) {
   }
 }
 
+const char* of_image = "";  // behind the names of steps
 void begin(const char* name) {
-  board::write(hal::replay::TextLine().text("step ").text(name).text("\n").c_str());
+  board::write("step ");
+  board::write(name);
+  board::write(std::strcmp(name, "quiet") == 0 ? "" : of_image);
+  board::write("\n");
 }
 
 // `periods`: since the step before.
@@ -384,6 +406,7 @@ void steps_with_dark_surfaces() {
     frame = recorded;
   };
   const auto expect_dark = [] {
+    if (store.is_expensive) return;
     expect(outputs.attitude.pose_missing_ppm > kHalfMissing_ppm, "no surface is missing");
   };
   lose_right_half();
@@ -402,7 +425,8 @@ void steps_with_dark_surfaces() {
   load_commands();
   step("frame with dark surfaces, full command load, largest scrub with repairs");
   expect_dark();
-  expect(outputs.attitude.pose_advantage_q8 != kWithoutAlternative_q8, "no other attitude was compared");
+  expect(store.is_expensive || outputs.attitude.pose_advantage_q8 != kWithoutAlternative_q8,
+         "no other attitude was compared");
   expect(outputs.attitude.frames_since_reset > 4, "the track was given up");
   load_as_second_copy();
   restore();
@@ -475,6 +499,29 @@ void bank_switches() {
   expect(outputs.telemetry.bank_switches == 2, "the bank was not switched again");
 }
 
+// Registration ends at its budget (gnc/registration/work_budget.hpp).
+void steps_with_the_most_expensive_image() {
+  hal::Platform platform;
+  platform.stopwatch = &stopwatch;
+  platform.models = &store;
+  platform.command_keys = &kKeys;
+  platform.reset_cause = hal::ResetCause::kPowerOn;
+  app.~AttitudeInitApp();
+  new (&app) AttitudeInitApp;
+  store.read_only = false;
+  store.is_expensive = true;
+  store.fill();
+  app.init(platform, nullptr);
+  of_image = "; the most expensive image";
+  for (int i = 0; i < 4; ++i) step("quiet");
+  expect(app.mode() == Mode::kRun, "the most expensive image was refused");
+  set_parameter(Parameter::kScrubBlocks, kMostScrubbed);
+  step("quiet");
+  for (const Rate rate : {Rate::kKnown, Rate::kUnknown})
+    step_after_the_longest_coast(rate, Scene::kFillsTheView);
+  steps_with_dark_surfaces();
+}
+
 int run() {
   store.fill();
   hal::replay::Recording recording;
@@ -501,6 +548,7 @@ int run() {
   repairs();
   model_commands();
   bank_switches();
+  steps_with_the_most_expensive_image();
   board::write(
       hal::replay::TextLine().text(failure == nullptr ? "all steps done" : failure).text("\n").c_str());
   return failure == nullptr ? 0 : 1;

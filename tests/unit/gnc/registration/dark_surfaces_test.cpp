@@ -40,13 +40,13 @@ class Dark : public testing::Test {
     }
     view_ = view_of(frame, kDepth_m, body_.radius_m, {30, 0});
     const MeshSection section(body_);
-    render(section.mesh(), *view_, fixed(truth_), surface_);
+    render(section.mesh(), *view_, fixed(truth_), surface_, surface_.budget);
     drawn_ = surface_.filled;
     take_out(section.mesh());
   }
   void take_out(const SurfaceMesh& mesh) {
-    measure_brightness(mesh, *view_, surface_, dark_);
-    take_out_dark_surfaces(mesh, *view_, dark_, surface_);
+    measure_brightness(mesh, *view_, surface_, dark_, surface_.budget);
+    take_out_dark_surfaces(mesh, *view_, dark_, surface_, surface_.budget);
   }
   int dark_rays() const {
     return count([this](int row, int column) { return surface_.dark.has(row, column); });
@@ -140,7 +140,7 @@ TEST_F(Dark, RaysThatSomethingHidesDoNotCount) {
   }
   view_ = view_of(frame, kDepth_m, body_.radius_m, {30, 0});
   const MeshSection section(body_);
-  render(section.mesh(), *view_, fixed(truth_), surface_);
+  render(section.mesh(), *view_, fixed(truth_), surface_, surface_.budget);
   take_out(section.mesh());
   EXPECT_EQ(dark_.surfaces, 0);
 }
@@ -230,8 +230,9 @@ double outline_length(const SurfaceMesh& mesh, const FrameView& view, const Exac
                       const RenderedSurface& surface) {
   OutlineTable table;
   OutlineFit fit;
+  WorkBudget budget;
   make_outline_table(65'000, table);
-  fit_outline(mesh, view, fixed(truth), surface, table, 128, fit);
+  fit_outline(mesh, view, fixed(truth), surface, table, 128, fit, budget);
   return static_cast<double>(fit.length_q8) / 256.0;
 }
 double rays_per_m(double depth_m) {
@@ -277,7 +278,7 @@ TEST_F(Dark, NothingIsOfASurfaceThatIsNotDrawnWhole) {
   surface_.is_complete = false;
   const MeshSection section(body_);
   surface_.has_dark = false;
-  take_out_dark_surfaces(section.mesh(), *view_, dark_, surface_);
+  take_out_dark_surfaces(section.mesh(), *view_, dark_, surface_, surface_.budget);
   EXPECT_EQ(dark_.surfaces, 0);
   EXPECT_FALSE(surface_.has_dark);
 }

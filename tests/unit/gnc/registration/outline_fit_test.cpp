@@ -49,11 +49,11 @@ OutlineFit fit_of(const Body& body, const FrameView& view, const Pose& pose,
                   std::int32_t sigma_q8 = kSigma_q8, int every = 1) {
   const MeshSection section(body);
   const auto surface = std::make_unique<Rendering>();
-  render(section.mesh(), view, pose, *surface);
+  render(section.mesh(), view, pose, *surface, surface->budget);
   OutlineTable table;
   make_outline_table(static_cast<std::uint32_t>(std::lround(kFill * 65536.0)), table);
   OutlineFit fit;
-  fit_outline(section.mesh(), view, pose, *surface, table, sigma_q8, fit, every);
+  fit_outline(section.mesh(), view, pose, *surface, table, sigma_q8, fit, surface->budget, every);
   return fit;
 }
 Fit in_units(const OutlineFit& fit, const FrameView& view, std::int32_t sigma_q8 = kSigma_q8) {
@@ -370,9 +370,9 @@ TEST(OutlineFit, ConcaveEdgesAddNothing) {
   for (int i = 0; i < trials(100); ++i) {
     const Pose pose = fixed({random.rotation(), {0.0, kDepth_m, 0.0}});
     OutlineFit with_edge, without_edge;
-    render(section.mesh(), *view, pose, *surface);
-    fit_outline(section.mesh(), *view, pose, *surface, table, kSigma_q8, with_edge);
-    fit_outline(without.mesh(), *view, pose, *surface, table, kSigma_q8, without_edge);
+    render(section.mesh(), *view, pose, *surface, surface->budget);
+    fit_outline(section.mesh(), *view, pose, *surface, table, kSigma_q8, with_edge, surface->budget);
+    fit_outline(without.mesh(), *view, pose, *surface, table, kSigma_q8, without_edge, surface->budget);
     ASSERT_GT(with_edge.length_q8, 0);
     ASSERT_TRUE(equal(with_edge, without_edge)) << i;
   }
@@ -401,10 +401,10 @@ TEST(OutlineFit, IsEmptyWithoutAnOutline) {
   OutlineTable table;
   make_outline_table(60'000, table);
   const Pose pose = fixed({Eigen::Matrix3d::Identity(), {0.0, kDepth_m, 0.0}});
-  render(SurfaceMesh(), *view, pose, *surface);
+  render(SurfaceMesh(), *view, pose, *surface, surface->budget);
   OutlineFit fit;
   fit.length_q8 = 1;
-  fit_outline(SurfaceMesh(), *view, pose, *surface, table, kSigma_q8, fit);
+  fit_outline(SurfaceMesh(), *view, pose, *surface, table, kSigma_q8, fit, surface->budget);
   EXPECT_TRUE(equal(fit, OutlineFit()));
   const Pose behind = fixed({Eigen::Matrix3d::Identity(), {0.0, -kDepth_m, 0.0}});
   EXPECT_TRUE(equal(fit_of(plate(), *view, behind), OutlineFit()));

@@ -21,7 +21,7 @@ class Placement : public testing::Test {
   Eigen::Vector3d placed_m(const Eigen::Vector3d& guess_m) {
     const auto view = view_of(frame_, kDepth_m, body_.radius_m, {30, 0});
     Pose pose = fixed({truth_.r_lrf_trf, guess_m});
-    place(MeshSection(body_).mesh(), *view, surface_, *scratch_, pose);
+    place(MeshSection(body_).mesh(), *view, surface_, *scratch_, pose, surface_.budget);
     EXPECT_TRUE(pose.r_lrf_trf == fixed(truth_).r_lrf_trf);
     return exact(pose).origin_m;
   }

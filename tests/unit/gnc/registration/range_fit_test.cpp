@@ -20,7 +20,7 @@ class RangeFitOfAPlate : public testing::Test {
   void use(const ExactPose& pose, const RangeNoise& noise = {}) {
     pose_ = fixed(pose);
     view_ = view_of(Frame(kSensor), kDepth_m, plate().radius_m, noise);
-    render(section_.mesh(), *view_, pose_, *surface_);
+    render(section_.mesh(), *view_, pose_, *surface_, surface_->budget);
     rays_.assign(std::size_t{kSensor.rays} * kSensor.rays, kMissed);
     show(rays_, *view_);
   }
@@ -38,7 +38,7 @@ class RangeFitOfAPlate : public testing::Test {
   }
   RangeFit fit(int every = 1) const {
     RangeFit result;
-    fit_ranges(*view_, pose_, *surface_, result, every);
+    fit_ranges(*view_, pose_, *surface_, result, surface_->budget, every);
     return result;
   }
   // Nearness of the plate, moved, on a ray in standard deviations.

@@ -165,10 +165,11 @@ TEST_F(Refine, LeavesTheSurfaceAtThePose) {
   const auto drawn = std::make_unique<RenderedSurface>();
   const auto vertices = std::make_unique<ScreenVertices>();
   drawn->vertices = vertices.get();
-  render(section_.mesh(), *scene.view, found.pose, *drawn);
+  WorkBudget budget;
+  render(section_.mesh(), *scene.view, found.pose, *drawn, budget);
   EXPECT_EQ(scratch_->surface.filled.rows, drawn->filled.rows);
   RangeFit ranges;
-  fit_ranges(*scene.view, found.pose, *drawn, ranges);
+  fit_ranges(*scene.view, found.pose, *drawn, ranges, budget);
   EXPECT_EQ(scratch_->ranges.squares_q8, ranges.squares_q8);
   EXPECT_GT(ranges.blocks, 0);
 }

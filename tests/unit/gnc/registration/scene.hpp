@@ -118,6 +118,7 @@ std::unique_ptr<FrameView> view_of(const Frame& frame, double reference_depth_m,
 std::unique_ptr<FrameView> empty_view(const Sensor& sensor, double reference_depth_m, double radius_m);
 // A rendering with the memory that it needs.
 struct Rendering : RenderedSurface {
+  WorkBudget budget;  // without a limit
   ScreenVertices memory;
   Rendering() { vertices = &memory; }
 };

@@ -20,7 +20,7 @@ std::unique_ptr<Rendering> rendered(const Body& body, const FrameView& view, con
                                     MeshSection::Sides sides = MeshSection::Sides::kBoth) {
   const MeshSection section(body, sides);
   auto surface = std::make_unique<Rendering>();
-  render(section.mesh(), view, pose, *surface);
+  render(section.mesh(), view, pose, *surface, surface->budget);
   return surface;
 }
 
@@ -369,7 +369,7 @@ TEST(SurfaceRenderer, NothingIsDrawnOfAMeshWithoutTrianglesOrWithFlatOnes) {
   const auto view = empty_view({64, 20.0}, 20.0, 2.0);
   const Pose pose = fixed({Eigen::Matrix3d::Identity(), {0.0, 20.0, 0.0}});
   auto surface = std::make_unique<Rendering>();
-  render(SurfaceMesh(), *view, pose, *surface);
+  render(SurfaceMesh(), *view, pose, *surface, surface->budget);
   EXPECT_FALSE(is_filled(*surface));
   Body body;
   body.radius_m = 2.0;
