@@ -16,8 +16,8 @@ struct PlacementScratch {
   Blocks seen, drawn;
 };
 
-// `pose`: the attitude, and the origin of the TRF within a radius of its place; the origin is replaced.
-// `surface` is drawn on. It stays if the budget is exhausted.
+// `pose`: the attitude, and the origin of the TRF within a radius of its place; the origin is replaced,
+// unless the budget is exhausted. `surface` is drawn on.
 void place(const SurfaceMesh& mesh, const FrameView& view, RenderedSurface& surface,
            PlacementScratch& scratch, Pose& pose, WorkBudget& budget);
 

@@ -84,7 +84,7 @@ void refine_further(const SurfaceMesh& mesh, const FrameView& view, const Refine
                     RefinementScratch& scratch, Refinement& result) {
   RenderedSurface& surface = scratch.surface;
   WorkBudget& budget = scratch.budget;
-  result.is_complete = surface.is_complete && budget.spend(work::kRefinement);
+  result.is_complete = budget.spend(work::kRefinement) && surface.is_complete;
   if (budget.is_exhausted()) return;
   result.fill_q16 = fill_share(view, surface);
   const bool may_be_dark = surface.has_dark || result.fill_q16 < kLeastFill_q16;

@@ -65,6 +65,7 @@ class WorkOfAFrame : public TrackPose {
   int exhausted_ = 0;
 };
 
+// Verifies TS-TIM-120.
 // A random search among images at the limits of the format and frames of them.
 TEST_F(WorkOfAFrame, NoImageAndFrameTakeMoreThanTheBudget) {
   std::int32_t most = 0;
