@@ -146,30 +146,33 @@ void look_at_triangles(const SurfaceMesh& mesh, const FrameView& view, const Ren
   if (!budget.spend(work::kDarkLook + mesh.triangles() * work::kDarkTriangle)) return;
   const RayCount all = all_rays(view, surface);
   const std::int32_t slope_q24 = slope_per_half_ray_q24(view);
-  visit_front(mesh, view.rays, *surface.vertices, true,
-              [&](const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
-                  const Bounds& rows, const Bounds& columns) {
-                Counter counter(view, surface);
-                const int looked_at = visit_spans(a, b, c, whole, rows, columns, counter);
-                const int height = rows.last - rows.first + 1;
-                const int in_triangle = looked_at - height;  // rays
-                if (!budget.spend(work::kDarkFront + height * work::kDarkRow + in_triangle * work::kDarkRay))
-                  return false;
-                const RayCount& rays = counter.rays();
-                if (rays.drawn == 0) return true;
-                if (return_as_much(rays, all)) dark.bright.add(rays);
-                bool is_dark = are_dark(rays, bright);
-                const bool is_alone = are_enough(rays, bright);
-                if (!is_alone) {
-                  const std::size_t angle = counter.angle(slope_q24);
-                  dark.of_angle[angle].add(rays);
-                  is_dark = ((dark_angles >> angle) & 1U) != 0;
-                }
-                if (takes_out == nullptr || !is_dark) return true;
-                dark.surfaces += is_alone ? 1 : 0;
-                visit_spans(a, b, c, whole, rows, columns, Remover(*takes_out));
-                return budget.spend(height * work::kTakenRow + in_triangle * work::kTakenRay);
-              });
+  visit_front(
+      mesh, view.rays, *surface.vertices, true,
+      [&](const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
+          const Bounds& rows, const Bounds& columns) {
+        Counter counter(view, surface);
+        const int looked_at = visit_spans(a, b, c, whole, rows, columns, counter);
+        const int height = rows.last - rows.first + 1;
+        const int in_triangle = looked_at - height;  // rays
+        if (!budget.spend(work::kDarkFront + height * work::kDarkRow + in_triangle * work::kDarkRay))
+          return false;
+        const RayCount& rays = counter.rays();
+        if (rays.drawn == 0) return true;
+        budget.spend(work::kDarkSeen);
+        if (return_as_much(rays, all)) dark.bright.add(rays);
+        bool is_dark = are_dark(rays, bright);
+        const bool is_alone = are_enough(rays, bright);
+        if (!is_alone) {
+          budget.spend(work::kDarkAngle);
+          const std::size_t angle = counter.angle(slope_q24);
+          dark.of_angle[angle].add(rays);
+          is_dark = ((dark_angles >> angle) & 1U) != 0;
+        }
+        if (takes_out == nullptr || !is_dark) return true;
+        dark.surfaces += is_alone ? 1 : 0;
+        visit_spans(a, b, c, whole, rows, columns, Remover(*takes_out));
+        return budget.spend(work::kTakenOut + height * work::kTakenRow + in_triangle * work::kTakenRay);
+      });
 }
 
 }  // namespace

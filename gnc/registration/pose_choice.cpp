@@ -150,10 +150,7 @@ std::int32_t proven_q8(const PoseCandidate& first, const PoseCandidate& second, 
                                 : min(difference_q8 >> kMisfitShift, kMostOfAFrame_q8);
 }
 
-// A frame whose registration the budget ended speaks for no pose: the alternatives were not compared.
-void add_advantage(Advantage advantage, const PoseScratch& scratch, PoseTrackerState& state) {
-  if (scratch.refinement.budget.is_exhausted())
-    advantage = {min(advantage.more_q8, 0), min(advantage.proven_q8, 0)};
+void add_advantage(const Advantage& advantage, PoseTrackerState& state) {
   state.advantage_q8 = limited_advantage_q8(state.advantage_q8 + advantage.more_q8);
   state.proven_q8 = limited_advantage_q8(state.proven_q8 + advantage.proven_q8);
 }
@@ -229,7 +226,7 @@ void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& 
   refine_candidate(target, placed(target, frame, frame.network.r_lrf_trf, scratch), kFirst, scratch, best);
   Advantage advantage = kWithoutAlternative;
   if (has_second) advantage = first_advantage(best, other, network_advantage_q8(frame.second_odds_ppm));
-  const bool is_second = advantage.more_q8 < -kClear_q8 && !scratch.refinement.budget.is_exhausted();
+  const bool is_second = advantage.more_q8 < -kClear_q8;
   if (is_second) {
     advantage = {0, 0};
     if (are_whole(best, other))
@@ -242,7 +239,7 @@ void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& 
   const bool goes_on = state.history.count > 0 &&
                        !is_another_attitude(best.refinement.pose.r_lrf_trf, state.motion.turning.r_lrf_trf);
   if (!goes_on) state.advantage_q8 = state.proven_q8 = 0;
-  add_advantage(advantage, scratch, state);
+  add_advantage(advantage, state);
   // Where surfaces are dark and the frame is not explained, the attitude may be far off: the search follows
   // at once, so that the first frame with dark surfaces takes no more steps than one without.
   const bool is_dark = best.evidence.dark_surfaces > 0, is_explained = best.evidence.fits();
@@ -270,7 +267,7 @@ bool follow_track(const PoseTarget& target, const PoseFrame& frame, const PoseMo
     if (is_another) advantage = compared;
   }
   if (!explains(best)) advantage.proven_q8 = min(advantage.proven_q8, 0);
-  add_advantage(advantage, scratch, state);
+  add_advantage(advantage, state);
   // A pose that this frame speaks against is not taken, whatever spoke against the track before.
   if (advantage.more_q8 >= 0) return true;
   const bool were_compared = are_whole(best, other);

@@ -199,6 +199,24 @@ PoseMotion later_motion(const PoseMotion& motion, const Inertia<Fixed>& inertia,
   return later;
 }
 
+std::int32_t work_of_fit(const PoseHistory& history, bool with_now, int iterations) {
+  const int known = clamp(history.count, 0, PoseHistory::kMost);
+  int periods = 0;  // that are begun between two poses
+  for (int i = 0; i < known; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (i + 1 == known && !with_now) break;
+    const std::int64_t gap_ns =
+        i + 1 == known ? clamp<std::int64_t>(history.poses[at].age_ns, 0, PoseHistory::kOldest_ns)
+                       : time_between(history.poses[at], history.poses[at + 1]);
+    periods += 1 + static_cast<int>(divide(gap_ns, kNominalPeriod_ns));
+  }
+  const int poses = clamp(known + (with_now ? 1 : 0), 1, PoseHistory::kMost);
+  const std::int32_t per_iteration =
+      work::kIteration + poses * work::kIterationPose + periods * work::kIterationPeriod;
+  return work::kFit + poses * work::kFitPose + periods * work::kFitPeriod +
+         (clamp(iterations, 1, kMostIterations) + 1) * per_iteration;
+}
+
 void fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::int32_t target_radius_um,
                 const PoseMotion& start, int iterations, PoseFitResult& result) {
   result.motion = start;

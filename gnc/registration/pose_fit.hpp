@@ -11,6 +11,7 @@
 
 #include "gnc/attitude/motion.hpp"
 #include "gnc/registration/pose_history.hpp"
+#include "gnc/registration/work_budget.hpp"
 
 namespace tumblesight::gnc {
 
@@ -42,6 +43,8 @@ struct PoseFitResult {
 // approximate motion at the last pose; its rate decides among rates that lead to the same attitudes, and has
 // to lead back to each of them within 60 degrees. `iterations`: 1 ... kMostIterations.
 inline constexpr int kMostIterations = 3;  // enough for a start that is a degree off
+// The most that a fit takes (work_budget.hpp), of the poses and, `with_now`, another one of now.
+std::int32_t work_of_fit(const PoseHistory& history, bool with_now, int iterations);
 void fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::int32_t target_radius_um,
                 const PoseMotion& start, int iterations, PoseFitResult& result);
 

@@ -80,6 +80,15 @@ Vector3<Fixed> rate_between(const PoseMeasurement& first, const PoseMeasurement&
   return rate;
 }
 
+// For a fit that can be left out. False: it has to be.
+bool spend_on_fit(int iterations, const PoseTrackerState& state, PoseScratch& scratch) {
+  return scratch.refinement.budget.spend(work_of_fit(state.history, false, iterations));
+}
+
+int iterations_for(int poses) {
+  return poses >= kPosesOfALongTrack ? 1 : poses >= kPosesOfARate ? 2 : kMostIterations;
+}
+
 // Under the law of the track. If the rate at the start does not lead back to the pose before, the rate
 // between these two is tried.
 void fit_under_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
@@ -87,9 +96,9 @@ void fit_under_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch&
   const std::int32_t radius_um = scratch.view.target_radius_um;
   const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
   const int count = state.history.count;
-  const int iterations = count >= kPosesOfALongTrack ? 1 : count >= kPosesOfARate ? 2 : kMostIterations;
-  fit_motion(state.history, frame.laws[law], radius_um, start, iterations, scratch.fit);
+  fit_motion(state.history, frame.laws[law], radius_um, start, iterations_for(count), scratch.fit);
   if (count < 2 || ((scratch.fit.against >> (count - 2)) & 1U) == 0) return;
+  if (!spend_on_fit(kMostIterations, state, scratch)) return;
   const auto newest = static_cast<std::size_t>(count - 1);
   PoseMotion other_start = start;
   other_start.turning.rate_lrf = rate_between(state.history.poses[newest - 1], state.history.poses[newest]);
@@ -101,6 +110,7 @@ void fit_under_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch&
 void try_other_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
                    PoseTrackerState& state) {
   if (state.history.count < kPosesOfALaw || scratch.fit.disagreement_q8 <= kDisagreement_q8) return;
+  if (!spend_on_fit(kMostIterations, state, scratch)) return;
   const int law = challenger_of(frame, state);
   fit_motion(state.history, frame.laws[static_cast<std::size_t>(law)], scratch.view.target_radius_um, start,
              kMostIterations, scratch.other_fit);
@@ -117,7 +127,7 @@ bool fit_track(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scr
   try_other_law(frame, start, scratch, state);
   const std::uint32_t newest = std::uint32_t{1} << (state.history.count - 1);
   const bool newest_agrees = (scratch.fit.against & newest) == 0;
-  if ((scratch.fit.against & ~newest) != 0) {
+  if ((scratch.fit.against & ~newest) != 0 && spend_on_fit(1, state, scratch)) {
     state.history.remove(scratch.fit.against & ~newest);
     const PoseMotion found = scratch.fit.motion;
     const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
@@ -168,10 +178,10 @@ PoseMotion later_pose(const PoseTrackerState& state, const MotionLaws<Fixed>& la
 }
 
 void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
-                ScreenVertices& vertices, PoseTrackerState& state, PoseEstimate& estimate) {
+                ScreenVertices& vertices, PoseTrackerState& state, PoseEstimate& estimate,
+                std::int32_t budget) {
   estimate = {};
   scratch.refinement.surface.vertices = &vertices;
-  scratch.refinement.budget.begin();
   // Memory may be damaged.
   state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);
   state.advantage_q8 = limited_advantage_q8(state.advantage_q8);
@@ -180,7 +190,12 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   const PoseMotion predicted = later_pose(state, frame.laws, frame.elapsed_ns, frame.r_now_last);
   state.history.advance(frame.elapsed_ns, frame.r_now_last);
   state.motion = predicted;
-  const std::int32_t advantage_before_q8 = state.advantage_q8;
+  const int poses_before = state.history.count;
+  const std::int32_t advantage_before_q8 = state.advantage_q8, proven_before_q8 = state.proven_q8;
+  // One fit is always made: of the pose of this frame, or of a track that coasts.
+  WorkBudget& work_left = scratch.refinement.budget;
+  work_left.begin(budget);
+  work_left.spend(work_of_fit(state.history, true, iterations_for(poses_before + 1)));
   bool is_tracked = state.history.count >= kTrackedPoses;
   const std::int32_t depth_um = is_tracked ? predicted.origin_lrf_um[1] : frame.centroid_lrf_mm[1] * 1000;
   if (!target.mesh.is_known() ||
@@ -194,9 +209,17 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   } else {
     start_track(target, frame, scratch, state);
   }
+  // Not all was compared: such a frame says nothing.
+  const bool is_cut_short = work_left.is_exhausted();
+  if (is_cut_short) {
+    scratch.best.evidence = {};
+    state.history.count = poses_before;
+    state.advantage_q8 = advantage_before_q8;
+    state.proven_q8 = proven_before_q8;
+  }
   estimate.evidence = scratch.best.evidence;
   estimate.proven_q8 = state.proven_q8;
-  estimate.doubts = 0;
+  estimate.doubts = is_cut_short ? kPoseAmbiguous : 0;
   const bool is_measured = scratch.best.refinement.is_complete && scratch.best.evidence.blocks > 0;
   if (is_measured) {
     const Pose& pose = scratch.best.refinement.pose;
@@ -204,18 +227,18 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
     discount(scratch.best.evidence, measurement);
     state.history.add(measurement);
     if (!fit_track(frame, start_of_fit(frame, predicted, pose, is_tracked), scratch, state))
-      estimate.doubts = kPoseMotion;
+      estimate.doubts |= kPoseMotion;
     estimate.disagreement_q8 = scratch.fit.disagreement_q8;
     make_covariance(scratch.fit, max(1, state.history.count), scratch.view.target_radius_um,
                     estimate.covariance);
   } else if (state.history.count == 0) {
-    estimate.doubts = kPoseUnknown;
+    estimate.doubts |= kPoseUnknown;
     return;
   } else {
-    estimate.doubts = kPoseCoasts;
+    estimate.doubts |= kPoseCoasts;
     make_coasting_covariance(frame, state, scratch, estimate.covariance);
   }
-  if (scratch.refinement.budget.is_exhausted()) estimate.doubts |= kPoseAmbiguous;
+  if (work_left.is_exhausted()) estimate.doubts |= kPoseAmbiguous;
   if (!tells_rate(state.history)) estimate.doubts |= kPoseMotion;
   if (advantage_before_q8 - state.advantage_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
   estimate.poses = state.history.count;

@@ -109,8 +109,10 @@ struct PoseScratch {
 PoseMotion later_pose(const PoseTrackerState& state, const MotionLaws<Fixed>& laws, std::int64_t elapsed_ns,
                       const Matrix3<Fixed>& r_now_last);
 
-// Advances the track to a frame. `state` of a new track: PoseTrackerState().
+// Advances the track to a frame. `state` of a new track: PoseTrackerState(). A frame whose registration
+// exhausts `budget` counts as one that could not be registered.
 void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
-                ScreenVertices& vertices, PoseTrackerState& state, PoseEstimate& estimate);
+                ScreenVertices& vertices, PoseTrackerState& state, PoseEstimate& estimate,
+                std::int32_t budget = WorkBudget::kOfAFrame);
 
 }  // namespace tumblesight::gnc

@@ -9,6 +9,8 @@
 
 #include <cstdint>
 
+#include "gnc/numerics/select.hpp"
+
 namespace tumblesight::gnc {
 
 // Prices in instructions.
@@ -16,42 +18,46 @@ namespace work {
 
 // A rendering: once, per vertex, per triangle of the mesh, per one that shows its front, per its rows and
 // rays.
-inline constexpr std::int32_t kDrawing = 16'000, kVertex = 125, kTriangle = 125, kFront = 495, kRow = 74,
+inline constexpr std::int32_t kDrawing = 45'000, kVertex = 125, kTriangle = 125, kFront = 495, kRow = 74,
                               kRay = 15;
-// A look at what is dark, likewise, and per row and ray of a triangle that is taken out.
-inline constexpr std::int32_t kDarkLook = 10'000, kDarkTriangle = 107, kDarkFront = 600, kDarkRow = 82,
-                              kDarkRay = 36, kTakenRow = 122, kTakenRay = 20;
+// A look at what is dark, likewise, and per triangle that is the nearest at a ray, per one of them that is
+// judged by its angle of incidence, per triangle that is taken out and its rows and rays.
+inline constexpr std::int32_t kDarkLook = 50'000, kDarkTriangle = 130, kDarkFront = 360, kDarkRow = 85,
+                              kDarkRay = 40, kDarkSeen = 300, kDarkAngle = 400, kTakenOut = 260,
+                              kTakenRow = 122, kTakenRay = 20;
 // The fit of the ranges: once, per block of rays that is looked at, per one that is compared.
 inline constexpr std::int32_t kRanges = 40'000, kBlock = 130, kCompared = 600;
 // The fit of the outline: once, per edge, per edge that is followed, per place where it crosses a row or
 // column, per ray to either side of a place.
-inline constexpr std::int32_t kOutline = 60'000, kEdge = 87, kOutlineEdge = 190, kPlace = 120, kAcross = 85,
+inline constexpr std::int32_t kOutline = 60'000, kEdge = 87, kOutlineEdge = 190, kPlace = 185, kAcross = 85,
                               kEquation = 570;
 // What a step takes besides, and a table of the outline; a refinement, with the evidence at its end.
 inline constexpr std::int32_t kStep = 100'000, kTable = 251'000, kRefinement = 270'000;
 // A placement besides its rendering, and its search.
 inline constexpr std::int32_t kPlacement = 600'000, kSearch = 1'100'000;
+// A fit of the motion: once, per pose, per period between two poses that is begun; the same per iteration.
+inline constexpr std::int32_t kFit = 30'000, kFitPose = 46'000, kFitPeriod = 195'000, kIteration = 60'000,
+                              kIterationPose = 39'000, kIterationPeriod = 131'000;
 
 }  // namespace work
 
 class WorkBudget {
  public:
-  static constexpr std::int32_t kOfAFrame = 80'000'000;
-  // The largest single charge: vertices and triangles of the largest mesh. Most charges come before the work,
-  // which is then not begun.
-  static constexpr std::int32_t kMostBeyond = 1'200'000;
+  static constexpr std::int32_t kOfAFrame = 84'000'000;
 
   // Until it begins, there is no limit that a frame could reach.
-  void begin(std::int32_t budget = kOfAFrame) { left_ = budget; }
-  // False: nothing is left.
+  void begin(std::int32_t budget) { left_ = max(budget, 0); }
+  // False: so much is not left, and from now on nothing is. Most work is charged before it is begun. What is
+  // charged afterwards exceeds the budget by one triangle or edge at most, 1 M.
   bool spend(std::int32_t work) {
-    if (left_ >= 0) left_ -= work;
-    return left_ >= 0;
+    left_ = work > left_ ? kExhausted : left_ - work;
+    return !is_exhausted();
   }
-  bool is_exhausted() const { return left_ < 0; }
-  std::int32_t left() const { return left_; }  // negative: exhausted
+  bool is_exhausted() const { return left_ == kExhausted; }
+  std::int32_t left() const { return max(left_, 0); }
 
  private:
+  static constexpr std::int32_t kExhausted = -1;
   std::int32_t left_ = 0x7FFF'FFFF;
 };
 

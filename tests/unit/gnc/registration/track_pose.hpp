@@ -135,10 +135,10 @@ class TrackPose : public testing::Test {
         laws_,
         network_law_};
     // In flight other stages use this memory between the frames.
-    std::memset(static_cast<void*>(scratch_.get()), 0xA5, sizeof *scratch_);
+    std::memset(static_cast<void*>(scratch_.get()), left_in_scratch_, sizeof *scratch_);
     PoseEstimate estimate;
     track_pose({has_mesh_ ? section_.mesh() : SurfaceMesh(), radius_mm_, stated_noise_}, frame, *scratch_,
-               *vertices_, *state_, estimate);
+               *vertices_, *state_, estimate, budget_);
     return estimate;
   }
   // Another target than the lopsided body; before the first frame.
@@ -182,6 +182,8 @@ class TrackPose : public testing::Test {
   std::optional<Frame> frame_;
   int frames_ = 0;
   std::int64_t period_ns_ = kNominalPeriod_ns;
+  std::int32_t budget_ = WorkBudget::kOfAFrame;
+  int left_in_scratch_ = 0xA5;
   int network_law_ = kSpinLaw;
   MotionLaws<Fixed> laws_ = motion_laws<Fixed>(Inertia<Fixed>());
   std::unique_ptr<PoseScratch> scratch_ = std::make_unique<PoseScratch>();

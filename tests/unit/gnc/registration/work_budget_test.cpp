@@ -1,6 +1,8 @@
 #include "gnc/registration/work_budget.hpp"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include "tests/support/expensive_mesh.hpp"
 #include "tests/support/trials.hpp"
@@ -9,18 +11,19 @@
 namespace tumblesight::gnc {
 namespace {
 
-TEST(WorkBudget, IsExhaustedWhenMoreIsSpentThanItHad) {
+TEST(WorkBudget, IsExhaustedWhenMoreIsWantedThanIsLeft) {
   WorkBudget budget;
   budget.begin(100);
   EXPECT_TRUE(budget.spend(60));
   EXPECT_EQ(budget.left(), 40);
   EXPECT_TRUE(budget.spend(40));
+  EXPECT_TRUE(budget.spend(0));
   EXPECT_FALSE(budget.is_exhausted());
-  EXPECT_FALSE(budget.spend(5));
+  EXPECT_FALSE(budget.spend(1));
   EXPECT_TRUE(budget.is_exhausted());
-  EXPECT_FALSE(budget.spend(0));
-  EXPECT_FALSE(budget.spend(WorkBudget::kMostBeyond)) << "and stays so";
-  EXPECT_EQ(budget.left(), -5);
+  EXPECT_FALSE(budget.spend(0)) << "and stays so";
+  EXPECT_FALSE(budget.spend(0x7FFF'FFFF));
+  EXPECT_EQ(budget.left(), 0);
   budget.begin(100);
   EXPECT_FALSE(budget.is_exhausted());
 }
@@ -54,7 +57,6 @@ class WorkOfAFrame : public TrackPose {
     const PoseEstimate estimate =
         track(random_.vector(0.1), rotation_of(random_.vector(1.0)) * truth_.r_lrf_trf, 900'000);
     const WorkBudget& budget = scratch_->refinement.budget;
-    EXPECT_GE(budget.left(), -WorkBudget::kMostBeyond);
     if (budget.is_exhausted()) {
       ++exhausted_;
       EXPECT_FALSE(estimate.is_verified());
@@ -100,17 +102,6 @@ TEST_F(WorkOfAFrame, ABodyOfAFewTrianglesExhaustsNothing) {
   EXPECT_EQ(exhausted_, 0);
 }
 
-// The same frames give the same work.
-TEST_F(WorkOfAFrame, IsTheSameForTheSameFrame) {
-  see();
-  const Eigen::Matrix3d second = rotation_of({0.0, 0.0, 1.0}) * truth_.r_lrf_trf;
-  track({0.0, 0.02, 0.0}, second, 500'000);
-  const std::int32_t left = scratch_->refinement.budget.left();
-  *state_ = {};
-  track({0.0, 0.02, 0.0}, second, 500'000);
-  EXPECT_EQ(scratch_->refinement.budget.left(), left);
-}
-
 // A budget that is enough does not change the result; any smaller one gives no pose.
 TEST_F(WorkOfAFrame, EndsARefinementThatItDoesNotCover) {
   see();
@@ -133,29 +124,99 @@ TEST_F(WorkOfAFrame, EndsARefinementThatItDoesNotCover) {
   for (std::int32_t budget = work - 1; budget >= 0; budget -= work / 50) {
     EXPECT_FALSE(refined(budget).is_complete) << budget;
     EXPECT_TRUE(scratch.budget.is_exhausted()) << budget;
-    EXPECT_GE(scratch.budget.left(), -WorkBudget::kMostBeyond) << budget;
   }
 }
 
-// The frame says nothing of the pose then: what was known goes on, with a doubt.
-TEST_F(WorkOfAFrame, LeavesATrackAsItWas) {
-  for (int frame = 0; frame < 6; ++frame) {
-    see();
-    track_hard();
+// What a track knows.
+struct Known {
+  explicit Known(const PoseTrackerState& state)
+      : advantage_q8(state.advantage_q8), proven_q8(state.proven_q8), origin_um(state.motion.origin_lrf_um) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(state.history.count); ++i)
+      ages_ns.push_back(state.history.poses[i].age_ns);
   }
-  const std::int32_t proven_q8 = state_->proven_q8;
-  const int poses = state_->history.count;
-  ASSERT_GT(poses, 2);
-  take_expensive({30, 19'000, false});
-  see();
-  const PoseEstimate estimate =
-      track({0.0, 0.02, 0.0}, rotation_of({0.0, 0.0, 1.0}) * truth_.r_lrf_trf, 900'000);
-  ASSERT_TRUE(scratch_->refinement.budget.is_exhausted());
-  EXPECT_NE(estimate.doubts & kPoseCoasts, 0U);
-  EXPECT_NE(estimate.doubts & kPoseAmbiguous, 0U);
-  EXPECT_FALSE(estimate.is_verified());
-  EXPECT_EQ(state_->history.count, poses);
-  EXPECT_LE(state_->proven_q8, proven_q8);
+  bool operator==(const Known& other) const {
+    return advantage_q8 == other.advantage_q8 && proven_q8 == other.proven_q8 &&
+           origin_um == other.origin_um && ages_ns == other.ages_ns;
+  }
+  std::int32_t advantage_q8, proven_q8;
+  std::array<std::int32_t, 3> origin_um;
+  std::vector<std::int64_t> ages_ns;
+};
+
+// One frame, again and again with another budget. `begun`: how many frames the track has had before.
+class EveryBudget : public WorkOfAFrame, public testing::WithParamInterface<int> {
+ protected:
+  void begin_track(int frames) {
+    lost_ = 0.2;
+    for (int i = 0; i < frames; ++i) track_next();
+    see();
+    if (frames % 2 != 0) lose_right_of(60);
+    second_ = rotation_of({0.3, -0.4, 0.2}) * truth_.r_lrf_trf;
+    begun_ = *state_;
+  }
+  // With a network that disagrees with the track.
+  PoseEstimate track_with(std::int32_t budget, int left_in_scratch = 0xA5) {
+    *state_ = begun_;
+    budget_ = budget;
+    left_in_scratch_ = left_in_scratch;
+    return track({0.5, 0.2, 0.0}, second_, 900'000);
+  }
+  PoseTrackerState begun_;
+  Eigen::Matrix3d second_;
+};
+
+TEST_P(EveryBudget, GivesAWholeFrameOrNone) {
+  begin_track(GetParam());
+  const PoseEstimate whole = track_with(WorkBudget::kOfAFrame);
+  ASSERT_FALSE(scratch_->refinement.budget.is_exhausted());
+  const std::int32_t work = WorkBudget::kOfAFrame - scratch_->refinement.budget.left();
+  const Known with_frame(*state_);
+  const PoseEstimate none = track_with(0);
+  const Known without_frame(*state_);
+  EXPECT_EQ(without_frame.ages_ns.size(), static_cast<std::size_t>(begun_.history.count));
+  EXPECT_EQ(without_frame.advantage_q8, begun_.advantage_q8);
+  EXPECT_EQ(none.doubts & kPoseAmbiguous, kPoseAmbiguous);
+  EXPECT_NE(none.doubts & (kPoseCoasts | kPoseUnknown), 0U);
+  EXPECT_EQ(track_with(work).doubts, whole.doubts);
+  EXPECT_EQ(Known(*state_), with_frame);
+  for (std::int32_t budget = work - 1; budget > 0; budget -= work / 60) {
+    const PoseEstimate estimate = track_with(budget);
+    EXPECT_TRUE(scratch_->refinement.budget.is_exhausted()) << budget;
+    EXPECT_EQ(estimate.doubts & kPoseAmbiguous, kPoseAmbiguous) << budget;
+    const Known known(*state_);
+    // At the end only fits of the motion are left out.
+    const bool is_measured = (estimate.doubts & (kPoseCoasts | kPoseUnknown)) == 0;
+    if (is_measured) {
+      EXPECT_EQ(known.advantage_q8, with_frame.advantage_q8) << budget;
+      EXPECT_EQ(estimate.evidence.cost_q8(), whole.evidence.cost_q8()) << budget;
+    } else {
+      EXPECT_EQ(known, without_frame) << budget;
+    }
+    // Nothing depends on what other stages left in the memory.
+    const PoseEstimate again = track_with(budget, 0x3C);
+    EXPECT_EQ(again.doubts, estimate.doubts) << budget;
+    EXPECT_EQ(again.state.origin_lrf_um, estimate.state.origin_lrf_um) << budget;
+    EXPECT_EQ(Known(*state_), known) << budget;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(AfterFrames, EveryBudget, testing::Values(0, 1, 2, 3, 5, 8, 11));
+
+// A track outlives frames that exhaust the budget, and what was proven does not grow by them.
+TEST_F(WorkOfAFrame, ATrackCoastsOverExhaustedFrames) {
+  track_frames(6);
+  const Known before(*state_);
+  ASSERT_GT(before.ages_ns.size(), 3U);
+  budget_ = 10'000'000;
+  for (int i = 0; i < 4; ++i) {
+    see();
+    const PoseEstimate estimate = track({0.5, 0.2, 0.0}, truth_.r_lrf_trf, 900'000);
+    EXPECT_EQ(estimate.doubts & (kPoseCoasts | kPoseAmbiguous), kPoseCoasts | kPoseAmbiguous);
+    EXPECT_EQ(state_->advantage_q8, before.advantage_q8);
+    EXPECT_EQ(state_->proven_q8, before.proven_q8);
+    EXPECT_EQ(static_cast<std::size_t>(state_->history.count), before.ages_ns.size());
+  }
+  budget_ = WorkBudget::kOfAFrame;
+  EXPECT_EQ(track_next().doubts & kPoseCoasts, 0U);
 }
 
 }  // namespace
