@@ -517,8 +517,10 @@ void steps_with_the_most_expensive_image() {
   expect(app.mode() == Mode::kRun, "the most expensive image was refused");
   set_parameter(Parameter::kScrubBlocks, kMostScrubbed);
   step("quiet");
-  for (const Rate rate : {Rate::kKnown, Rate::kUnknown})
+  for (const Rate rate : {Rate::kKnown, Rate::kUnknown}) {
     step_after_the_longest_coast(rate, Scene::kFillsTheView);
+    expect((outputs.attitude.pose_doubts & hal::kPoseDoubtAmbiguous) != 0, "the budget was not exhausted");
+  }
   steps_with_dark_surfaces();
 }
 
