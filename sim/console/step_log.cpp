@@ -32,6 +32,7 @@ auto from_step(const List& list, std::uint64_t step) {
 bool StepLog::is_complete(const Pending& pending) const {
   const auto& done = pending.done;
   if (has_frames_ && pending.has_step && pending.frames < pending.step.frames) return false;
+  if (pending.has_step && pending.commands.size() < pending.announced_commands) return false;
   if (!expects_answers_) return pending.has_step && (!has_truth_ || pending.step.truth);
   if ((has_steps_ && !pending.has_step) || (has_truth_ && !pending.step.truth)) return false;
   return done && pending.attitudes >= done->attitudes && pending.telemetries >= done->telemetries &&
@@ -102,6 +103,7 @@ void StepLog::add(const hal::dds::StepSample& sample) {
   if (pending == nullptr) return;
   pending->step.time_ns = sample.time_ns;
   pending->step.frames = sample.frames;
+  pending->announced_commands = sample.commands;
   pending->has_step = has_steps_ = true;
   take_complete(kMostWaiting);
 }
@@ -118,7 +120,10 @@ void StepLog::add(const hal::dds::LidarFrameSample& sample) {
 
 void StepLog::add(const hal::dds::CommandSample& sample) {
   const std::lock_guard lock(mutex_);
-  if (Pending* const pending = pending_of(sample)) pending->commands.push_back(text_of(sample));
+  Pending* const pending = pending_of(sample);
+  if (pending == nullptr) return;
+  pending->commands.push_back(text_of(sample));
+  take_complete(kMostWaiting);
 }
 
 void StepLog::add(const hal::dds::AttitudeSample& sample) {

@@ -83,6 +83,7 @@ class StepLog {
   struct Pending {
     LoggedStep step;
     std::uint32_t frames = 0, attitudes = 0, telemetries = 0, events = 0;
+    std::uint32_t announced_commands = 0;
     std::vector<hal::Event> event_list;
     std::vector<std::string> commands;
     std::optional<hal::dds::StepDoneSample> done;

@@ -122,6 +122,33 @@ TEST_F(Log, AStepWaitsForItsFrames) {
   EXPECT_EQ(log_.state().steps, 3U) << "a step without a frame waits for none";
 }
 
+// The answers of a step may be read before its command: a page that shows the step has no second look at it.
+TEST_F(Log, AStepWaitsForItsCommands) {
+  auto announced = sample_of<hal::dds::StepSample>(0);
+  announced.commands = 2;
+  log_.add(announced);
+  add_step(0);
+  EXPECT_EQ(log_.state().steps, 0U);
+  const auto command = sample_of<hal::dds::CommandSample>(0);
+  log_.add(command);
+  EXPECT_EQ(log_.state().steps, 0U);
+  log_.add(command);
+  EXPECT_EQ(log_.state().steps, 1U);
+  EXPECT_EQ(log_.rows(0)["commands"].size(), 2U);
+}
+
+TEST_F(Log, ACommandThatIsLostDelaysItsStepByFourOthers) {
+  auto announced = sample_of<hal::dds::StepSample>(0);
+  announced.commands = 1;
+  log_.add(announced);
+  for (std::uint32_t k = 0; k <= 4; ++k) {
+    EXPECT_EQ(log_.state().steps, 0U);
+    add_step(k);
+  }
+  EXPECT_EQ(log_.state().steps, 5U);
+  EXPECT_TRUE(log_.rows(0)["commands"].empty());
+}
+
 TEST_F(Log, RowsHaveANumberOrNullForEachField) {
   log_.add(truth_of(0));
   add_step(0);
