@@ -2,6 +2,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include "tests/unit/sim/cli/run_tumblesight.hpp"
 
 namespace tumblesight::sim {
@@ -50,6 +56,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Refused{"sim/run --mesh nothere.stl", "--mesh: 'nothere.stl' does not exist"},
         Refused{"sim/run --watch --mesh=nothere.stl", "--mesh: 'nothere.stl' does not exist"},
+        Refused{"sim/run --sequenes 3", "there is no option '--sequenes'"},
+        Refused{"sim/run --watch --seed=3 --condiion=nominal", "there is no option '--condiion'"},
+        Refused{"sim/run --seed 3 --watch", "--watch must be the first argument"},
         Refused{"sim/run --model programs", "--model: 'programs' is a folder; give a file"},
         Refused{"sim/run --mission nothere.toml", "--mission: 'nothere.toml' does not exist"},
         Refused{"sim/run --mission craft.toml", "the mesh of craft.toml: './nothere.stl' does not exist"},
@@ -90,21 +99,36 @@ TEST_F(ScriptArguments, ThatAreSoundAreAccepted) {
   for (const char* command :
        {"sim/adopt sound.toml --minutes 0.5 --seed 3 --out new", "sim/adopt magellan --minutes=60",
         "sim/run --mission magellan --sensor flash_256 --mesh parametric",
-        "sim/run --mesh craft.stl --sequences 3"}) {
+        "sim/run --mesh craft.stl --sequences 3 --seed=-1 --chaser-rate 5 --speed max --free-running"}) {
     std::filesystem::remove(here_.path("called"));
     EXPECT_NE(run(command).exit_code, 2) << command;
     EXPECT_NE(content(here_.path("called")), "") << command;
   }
 }
 
+std::vector<std::string> options_in(const std::string& help) {
+  std::vector<std::string> options;
+  for (std::size_t at = help.find("\n  --"); at != std::string::npos; at = help.find("\n  --", at + 1))
+    options.push_back(help.substr(at + 3, help.find_first_of(" ,\n", at + 3) - at - 3));
+  return options;
+}
+
 // sim/adopt knows the options that the program has.
 TEST_F(ScriptArguments, OfAdoptAreThoseOfTheProgram) {
-  const std::string help = here_.run("adopt --help").output;
   const std::string script = content(std::string(TUMBLESIGHT_SOURCE_DIR) + "/sim/adopt");
-  for (std::size_t at = help.find("\n  --"); at != std::string::npos; at = help.find("\n  --", at + 1)) {
-    const std::string option = help.substr(at + 3, help.find_first_of(" ,\n", at + 3) - at - 3);
-    EXPECT_NE(script.find(option), std::string::npos) << option;
-  }
+  const std::vector<std::string> options = options_in(here_.run("adopt --help").output);
+  EXPECT_GT(options.size(), 3U);
+  for (const std::string& option : options) EXPECT_NE(script.find(option), std::string::npos) << option;
+}
+
+TEST_F(ScriptArguments, OfRunAreThoseOfTheProgram) {
+  const std::string script = content(std::string(TUMBLESIGHT_SOURCE_DIR) + "/sim/run");
+  const std::size_t begin = script.find("\noptions=(") + 10;
+  std::istringstream list(script.substr(begin, script.find(')', begin) - begin));
+  std::vector<std::string> known{std::istream_iterator<std::string>(list), {}};
+  std::vector<std::string> options = options_in(here_.run("simulate --help").output);
+  std::sort(options.begin(), options.end());
+  EXPECT_EQ(known, options);
 }
 
 }  // namespace

@@ -138,11 +138,11 @@ TEST_F(Log, AStepWaitsForItsCommands) {
 }
 
 TEST_F(Log, ACommandThatIsLostDelaysItsStepByFourOthers) {
-  auto announced = sample_of<hal::dds::StepSample>(0);
-  announced.commands = 1;
-  log_.add(announced);
   for (std::uint32_t k = 0; k <= 4; ++k) {
     EXPECT_EQ(log_.state().steps, 0U);
+    auto announced = sample_of<hal::dds::StepSample>(k);
+    announced.commands = k == 0 ? 1 : 0;
+    log_.add(announced);
     add_step(k);
   }
   EXPECT_EQ(log_.state().steps, 5U);
