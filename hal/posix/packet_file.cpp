@@ -45,7 +45,11 @@ int PacketFile::open(const char* path) {
   // A pipe that nobody reads is refused (ENXIO), where opening it would wait for a reader.
   file_ = ::open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, kReadableByAll);
   if (file_ < 0) return errno;
-  return fcntl(file_, F_SETFL, fcntl(file_, F_GETFL) & ~O_NONBLOCK) == 0 ? 0 : errno;
+  const int flags = fcntl(file_, F_GETFL);
+  if (flags >= 0 && fcntl(file_, F_SETFL, flags & ~O_NONBLOCK) == 0) return 0;
+  const int error = errno;
+  close();
+  return error;
 }
 
 bool PacketFile::put(const packets::TelemetryPacket& packet) {

@@ -1,6 +1,5 @@
 #include "sim/cli/option_files.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -22,21 +21,13 @@ std::string fault_of_new_file(const std::string& path) {
   std::error_code error;
   const std::string fault = fault_of_place(path);
   if (!fault.empty()) return fault;
-  std::string made = partial_path(path);
-  if (made.empty() && fs::exists(path, error)) return {};
-  if (made.empty()) made = path;
+  if (partial_path(path).empty() && fs::exists(path, error)) return {};
   // The end of a chain of links that leads to no file yet.
   constexpr int kMostLinks = 40;
+  std::string made = path;
   for (int i = 0; i < kMostLinks && fs::is_symlink(made, error); ++i)
     made = (fs::absolute(made).parent_path() / fs::read_symlink(made, error)).string();
-  if (fs::exists(made, error) && access(made.c_str(), W_OK) == 0) return {};
-  const int file = open(made.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
-  if (file < 0 && errno == ENAMETOOLONG) return "the name is too long to be written; give a shorter one";
-  if (file < 0)
-    return fmt::format("no file can be made in its folder: {}; choose another folder", std::strerror(errno));
-  close(file);
-  unlink(made.c_str());
-  return {};
+  return fault_of_partial_file(made);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -32,8 +33,10 @@ constexpr const char* kWaiting = "200";
 // Until the head of a request is there, and while nothing can be written.
 constexpr const char* kRequestTimeout_ms = "3000";
 constexpr auto kBodyTimeout = 2s;
-// Of a whole answer, however slowly it is read.
+// Of a whole answer: so long, and longer the larger it is. What fits into the buffers of the connection, some
+// 3 MB, is not waited for.
 constexpr auto kAnswerTimeout = 3s;
+constexpr int kSlowestReader_bytes_per_s = 128 * 1024;
 
 std::string text_or_empty(const char* text) {
   return text == nullptr ? std::string() : std::string(text);
@@ -52,14 +55,22 @@ Request request_of(const mg_connection* connection) {
 // Empty if the body of a request has one length that all programs on its way agree upon.
 std::string fault_of_length(const mg_connection* connection) {
   const mg_request_info* const info = mg_get_request_info(connection);
+  const std::string remedy = "; send one Content-Length, in digits";
+  // Of more civetweb keeps the first ones.
+  if (info->num_headers >= static_cast<int>(std::size(info->http_headers)))
+    return "the request has too many header fields";
   int lengths = 0;
   for (int i = 0; i < info->num_headers; ++i) {
-    if (strcasecmp(info->http_headers[i].name, "Transfer-Encoding") == 0)
-      return "a body in chunks is not taken; send Content-Length";
-    lengths += strcasecmp(info->http_headers[i].name, "Content-Length") == 0 ? 1 : 0;
+    const mg_header& header = info->http_headers[i];
+    if (strcasecmp(header.name, "Transfer-Encoding") == 0) return "a body in chunks is not taken" + remedy;
+    if (strcasecmp(header.name, "Content-Length") != 0) continue;
+    const std::string_view digits = header.value;
+    if (digits.empty() || digits.find_first_not_of("0123456789") != std::string_view::npos)
+      return "the Content-Length is no number" + remedy;
+    ++lengths;
   }
-  if (lengths > 1) return "more than one Content-Length";
-  return lengths == 1 && info->content_length >= 0 ? "" : "there is no sound Content-Length";
+  if (lengths == 1 && info->content_length >= 0) return {};
+  return (lengths > 1 ? "more than one Content-Length" : "no Content-Length") + remedy;
 }
 
 // At most a byte more than any request has. One that comes byte by byte is cut after a while: civetweb has no
@@ -76,8 +87,9 @@ std::string body_of(mg_connection* connection) {
 
 // In parts, since civetweb waits anew for every byte that is taken. False: it did not go out whole.
 bool send_in_time(mg_connection* connection, std::string_view bytes) {
-  constexpr std::size_t kPart = 16'384;
-  const auto end = std::chrono::steady_clock::now() + kAnswerTimeout;
+  constexpr std::size_t kPart = 4096;
+  const std::chrono::seconds for_size(static_cast<int>(bytes.size()) / kSlowestReader_bytes_per_s);
+  const auto end = std::chrono::steady_clock::now() + kAnswerTimeout + for_size;
   for (; !bytes.empty(); bytes.remove_prefix(std::min(kPart, bytes.size()))) {
     const std::size_t part = std::min(kPart, bytes.size());
     if (std::chrono::steady_clock::now() > end ||
@@ -221,16 +233,18 @@ struct ConsoleServer::Handlers {
     Request request = request_of(connection);
     const ConsoleServer& own = server(self);
     // Nobody is waited for who gets no answer.
-    const bool has_body = request.method == "POST" && own.requests_.refusal_of(request, own.port_).empty();
+    const bool has_body = own.requests_.takes_body_of(request, own.port_);
     std::string fault = has_body ? fault_of_length(connection) : "";
     if (has_body && fault.empty()) {
       request.body = body_of(connection);
       const long long length = mg_get_request_info(connection)->content_length;
-      if (static_cast<long long>(request.body.size()) < std::min<long long>(length, Requests::kMostBody))
-        fault = "the body ended before its Content-Length";
+      if (static_cast<long long>(request.body.size()) < std::min<long long>(length, Requests::kMostBody + 1))
+        fault = "the body ended before its Content-Length; send all of it";
     }
     const Answer answer = fault.empty() ? own.requests_.answer(request, own.port_) : plain(400, fault);
     send_answer(connection, answer, request.method != "HEAD");
+    // Or civetweb would wait for the rest of a body that was not read.
+    mg_disable_connection_keep_alive(connection);
     return answer.status;
   }
   // Civetweb sets it only if the client names one, and a thread uses the same object for all its connections:
@@ -259,7 +273,9 @@ struct ConsoleServer::Handlers {
       refusal = plain(503, "this console has as many clients as it takes");
     if (refusal.body.empty()) return 0;
     // Civetweb itself gives no reason. Nothing else uses the connection now.
-    send_answer(const_cast<mg_connection*>(connection), refusal, true);
+    auto* const answered = const_cast<mg_connection*>(connection);
+    send_answer(answered, refusal, true);
+    mg_disable_connection_keep_alive(answered);
     return 1;
   }
   static void ready_page(mg_connection* connection, void* self) {

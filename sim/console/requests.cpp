@@ -122,6 +122,10 @@ Answer faults_answer() {
   return json_answer({{"most_steps", kMostFaultSteps}, {"faults", faults}});
 }
 
+bool is_sent_to(const std::string& path) {
+  return path == "/api/command" || path == "/api/fault";
+}
+
 // Not a name of another host that leads here.
 std::string refusal_of_host(const std::string& host, int port) {
   const std::string by_number = "127.0.0.1:" + std::to_string(port);
@@ -172,14 +176,17 @@ std::string Requests::state_text() const {
   return Json{{"run", state.run_id}, {"steps", state.steps}, {"ended", state.has_ended}}.dump();
 }
 
+bool Requests::takes_body_of(const Request& request, int port) const {
+  return request.method == "POST" && is_sent_to(request.path) && refusal_of(request, port).empty();
+}
+
 Answer Requests::answer(const Request& request, int port) const {
   const std::string refusal = refusal_of(request, port);
   if (!refusal.empty()) return text(403, refusal);
-  const bool is_sent_to = request.path == "/api/command" || request.path == "/api/fault";
   const bool is_read = request.method == "GET" || request.method == "HEAD";
-  if (is_sent_to && request.method != "POST") return wrong_method(request, "POST");
+  if (is_sent_to(request.path) && request.method != "POST") return wrong_method(request, "POST");
   try {
-    if (is_sent_to) return post_answer(request);
+    if (is_sent_to(request.path)) return post_answer(request);
     Answer answer = get_answer(request);
     return is_read || answer.status == 404 ? answer : wrong_method(request, "GET, HEAD");
   } catch (const std::exception& error) {  // a recording that is damaged

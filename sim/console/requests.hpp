@@ -41,6 +41,8 @@ class Requests {
   // The same of a client of the Foxglove WebSocket protocol. Those in a browser have an origin of their own,
   // so that the token alone tells whom the user has let in.
   std::string refusal_of_foxglove(const Request& request, int port) const;
+  // Whether the body of a request matters to its answer.
+  bool takes_body_of(const Request& request, int port) const;
   const RunSource& run() const { return run_; }
   // What the page is told whenever it changes.
   std::string state_text() const;

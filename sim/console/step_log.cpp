@@ -32,7 +32,9 @@ auto from_step(const List& list, std::uint64_t step) {
 bool StepLog::is_complete(const Pending& pending) const {
   const auto& done = pending.done;
   if (has_frames_ && pending.has_step && pending.frames < pending.step.frames) return false;
-  if (pending.has_step && pending.commands.size() < pending.announced_commands) return false;
+  // Those of the first step that a late console sees may have come before it.
+  const bool is_late = next_k_ == 0 && pending.step.k > 0;
+  if (pending.has_step && !is_late && pending.commands.size() < pending.announced_commands) return false;
   if (!expects_answers_) return pending.has_step && (!has_truth_ || pending.step.truth);
   if ((has_steps_ && !pending.has_step) || (has_truth_ && !pending.step.truth)) return false;
   return done && pending.attitudes >= done->attitudes && pending.telemetries >= done->telemetries &&

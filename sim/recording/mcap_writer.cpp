@@ -1,5 +1,6 @@
 #include "sim/recording/mcap_writer.hpp"
 
+#include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -75,7 +76,10 @@ void McapWriter::open_alone(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode))
     fail("is a pipe, which cannot be a recording; give the path of a file");
-  file_.reset(std::fopen(path.c_str(), "ab"));
+  const bool is_link = lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode);
+  const int file =
+      open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | (is_link ? 0 : O_NOFOLLOW), 0666);
+  file_.reset(file < 0 ? nullptr : fdopen(file, "ab"));
   if (!file_) fail(std::string("cannot be written: ") + std::strerror(errno));
   // Every record goes to the file at once, so that none is left over for the end after an error.
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);

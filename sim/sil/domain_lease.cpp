@@ -49,7 +49,7 @@ bool DomainLease::take(std::uint32_t domain) {
   const int error = name_.hold(("tumblesight-domain-" + std::to_string(domain)).c_str());
   if (error != 0 && error != EADDRINUSE)
     throw SilFailure(std::string("no DDS domain can be reserved: ") + strerror(error));
-  domain_ = domain;
+  if (error == 0) domain_ = domain;
   return error == 0;
 }
 

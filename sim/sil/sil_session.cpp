@@ -112,19 +112,24 @@ SilSession::SilSession(const SilSettings& settings)
 // Another program may have the UDP ports of a domain that no run uses: then the next one is tried.
 void SilSession::open_domain(const char* security) {
   constexpr int kTries = 10;
-  dds_return_t result = domain_.open(lease_.domain(), secret_.partition, security);
-  for (int i = 1; result != 0 && settings_.domain < 0 && i < kTries && lease_.take_next(); ++i)
-    result = domain_.open(lease_.domain(), secret_.partition, security);
-  if (result == 0) return;
   constexpr std::uint32_t kFirstPort = 7400, kPortsPerDomain = 250;
-  const std::uint32_t port = kFirstPort + kPortsPerDomain * lease_.domain();
-  throw SilFailure(
-      "DDS domain " + std::to_string(lease_.domain()) +
-      " could not be opened: " + hal::dds::text_of_failure(result) +
-      (settings_.security_path.empty()
-           ? "; another program may have its UDP ports, " + std::to_string(port) + " to " +
-                 std::to_string(port + kPortsPerDomain - 1) + ": give another --domain"
-           : "; is --dds-security " + settings_.security_path + " a file of hal/dds/make_security?"));
+  const std::uint32_t first = lease_.domain();
+  const dds_return_t result = domain_.open(first, secret_.partition, security);
+  if (result == 0) return;
+  const std::string domain =
+      "DDS domain " + std::to_string(first) + " could not be opened: " + hal::dds::text_of_failure(result);
+  if (!settings_.security_path.empty())
+    throw SilFailure(domain + "; is --dds-security " + settings_.security_path +
+                     " a file of hal/dds/make_security?");
+  const std::uint32_t port = kFirstPort + kPortsPerDomain * first;
+  const std::string reason = "; another program may have its UDP ports, " + std::to_string(port) + " to " +
+                             std::to_string(port + kPortsPerDomain - 1);
+  for (int i = 1; settings_.domain < 0 && i < kTries && lease_.take_next(); ++i) {
+    if (domain_.open(lease_.domain(), secret_.partition, security) != 0) continue;
+    print_note(domain + reason + "; the run is in domain " + std::to_string(lease_.domain()));
+    return;
+  }
+  throw SilFailure(domain + reason + ": give another --domain");
 }
 
 hal::dds::HelloSample SilSession::hello() const {

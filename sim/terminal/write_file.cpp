@@ -23,17 +23,38 @@ bool replaceable(const std::string& path) {
   return type == fs::file_type::not_found || type == fs::file_type::regular;
 }
 
-// A file of this process alone, whatever another user has put under names like it. Throws if there is none.
+constexpr int kPartialNames = 16;
+
+struct Partial {
+  std::string name;
+  int file = -1;  // below 0: there is none, and errno says why
+};
+
+// A file of this process alone, whatever another user has put under names like it.
+Partial open_partial(const std::string& path) {
+  const std::string name = partial_path(path);
+  Partial made;
+  for (int i = 0; i < kPartialNames; ++i) {
+    made.name = name + (i == 0 ? "" : std::to_string(i));
+    made.file = open(made.name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (made.file >= 0 || errno != EEXIST) break;
+  }
+  return made;
+}
+
+std::string text_of_partial_error(const std::string& path, int error) {
+  if (error != EEXIST) return std::strerror(error);
+  return "all names for the file that is written first are taken; delete " + partial_path(path) + "*";
+}
+
 class PartialFile {
  public:
+  // Throws std::runtime_error if it cannot be made.
   explicit PartialFile(const std::string& path) {
-    constexpr int kTries = 16;
-    for (int i = 0; i < kTries && file_ < 0; ++i) {
-      name_ = partial_path(path) + (i == 0 ? "" : std::to_string(i));
-      file_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-      if (file_ < 0 && errno != EEXIST) break;
-    }
-    if (file_ < 0) fail(path);
+    Partial made = open_partial(path);
+    if (made.file < 0) fail(path, text_of_partial_error(path, errno));
+    name_ = std::move(made.name);
+    file_ = made.file;
   }
   ~PartialFile() {
     if (file_ >= 0) close(file_);
@@ -46,16 +67,17 @@ class PartialFile {
     while (!content.empty()) {
       const ssize_t count = ::write(file_, content.data(), content.size());
       if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) fail(path);
+      if (count <= 0) fail(path, count == 0 ? "nothing more is taken" : std::strerror(errno));
       content.remove_prefix(static_cast<std::size_t>(count));
     }
-    if (close(std::exchange(file_, -1)) != 0 || std::rename(name_.c_str(), path.c_str()) != 0) fail(path);
+    if (close(std::exchange(file_, -1)) != 0 || std::rename(name_.c_str(), path.c_str()) != 0)
+      fail(path, std::strerror(errno));
     name_.clear();
   }
 
  private:
-  [[noreturn]] static void fail(const std::string& path) {
-    throw std::runtime_error("cannot write '" + path + "': " + std::strerror(errno));
+  [[noreturn]] static void fail(const std::string& path, const std::string& reason) {
+    throw std::runtime_error("cannot write '" + path + "': " + reason);
   }
   std::string name_;
   int file_ = -1;
@@ -72,14 +94,35 @@ void write_to_what_is_there(const std::string& path, std::string_view content) {
 
 }  // namespace
 
+// As Linux's protected_symlinks and protected_fifos, which are not switched on everywhere.
 std::string fault_of_place(const std::string& path) {
-  struct stat status {};
-  if (lstat(path.c_str(), &status) != 0 || status.st_uid == geteuid()) return {};
-  const bool is_link = S_ISLNK(status.st_mode),
-             is_pipe = S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode);
-  // It leads where the other user wants, or nowhere. Those of root, as /dev/stdout, are the system's.
-  if (status.st_uid == 0 || (!is_link && !is_pipe)) return {};
-  return std::string("it is a ") + (is_link ? "link" : "pipe") + " of another user; give another path";
+  const fs::path parent = fs::path(path).parent_path();
+  struct stat place {};
+  struct stat folder {};
+  if (lstat(path.c_str(), &place) != 0 || stat(parent.empty() ? "." : parent.c_str(), &folder) != 0)
+    return {};
+  // Those of root, as /dev/stdout, are the system's.
+  if (place.st_uid == geteuid() || place.st_uid == 0) return {};
+  const bool is_shared = (folder.st_mode & (S_ISVTX | S_IWOTH)) != 0;
+  const bool is_link = S_ISLNK(place.st_mode), is_pipe = S_ISFIFO(place.st_mode) || S_ISSOCK(place.st_mode);
+  const std::string remedy = " of another user; give another path";
+  // It leads where the other user wants, or nowhere.
+  if ((is_link || is_pipe) && is_shared && place.st_uid != folder.st_uid)
+    return std::string("it is a ") + (is_link ? "link" : "pipe") + remedy;
+  const bool is_kept = (folder.st_mode & S_ISVTX) != 0 && folder.st_uid != geteuid() && geteuid() != 0;
+  return S_ISREG(place.st_mode) && is_kept ? "it is a file" + remedy : "";
+}
+
+std::string fault_of_partial_file(const std::string& path) {
+  const Partial made = open_partial(path);
+  const int error = errno;
+  if (made.file < 0 && error == ENAMETOOLONG) return "the name is too long to be written; give a shorter one";
+  if (made.file < 0)
+    return "no file can be made in its folder: " + text_of_partial_error(path, error) +
+           "; choose another folder";
+  close(made.file);
+  unlink(made.name.c_str());
+  return {};
 }
 
 std::string partial_path(const std::string& path) {

@@ -1,7 +1,10 @@
 // That no two runs on the machine have the same DDS domain.
 #include "sim/sil/domain_lease.hpp"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -87,6 +90,36 @@ TEST(DomainLease, ThatIsTakenIsNamed) {
                         " is in use: another run, or another program, on this machine"),
               0U);
   }
+}
+
+// All UDP ports of a domain that DDS participants try, as another program may have them.
+std::vector<int> occupy_ports_of(std::uint32_t domain) {
+  constexpr int kFirst = 7400, kPerDomain = 250, kPorts = 100;
+  std::vector<int> sockets;
+  for (int i = 0; i < kPorts; ++i) {
+    sockets.push_back(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(kFirst + kPerDomain * static_cast<int>(domain) + i));
+    (void)bind(sockets.back(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  }
+  return sockets;
+}
+
+// Verifies TS-SIL-050.
+TEST(DomainLease, WhosePortsAnotherProgramHasIsGivenBackForTheNext) {
+  const std::uint32_t domain = DomainLease(-1).domain();
+  const std::vector<int> sockets = occupy_ports_of(domain);
+  const std::string number = std::to_string(domain);
+  const std::string printed = test::simulate("--frames 3");
+  // Unless a test beside this one has taken the domain in between.
+  if (printed.find("Failed to find a free participant index for domain " + number) != std::string::npos) {
+    EXPECT_NE(printed.find("note: DDS domain " + number + " could not be opened: "), std::string::npos)
+        << printed;
+    EXPECT_NE(printed.find("; the run is in domain "), std::string::npos) << printed;
+  }
+  EXPECT_EQ(printed.find("give another --domain"), std::string::npos) << printed;
+  for (const int one : sockets) close(one);
 }
 
 }  // namespace

@@ -66,10 +66,10 @@ bool open_packets(const char* path) {
   if (path[0] == '\0') return true;
   const int error = packet_file.open(path);
   if (error != 0) {
-    const char* const reason =
-        error == EEXIST
-            ? "the file holds something other than telemetry packets; give another path, or delete it"
-            : strerrordesc_np(error);
+    const char* reason = strerrordesc_np(error);
+    if (error == EEXIST)
+      reason = "the file holds something other than telemetry packets; give another path, or delete it";
+    if (error == ENXIO) reason = "nobody reads this pipe; start its reader first, or give a file";
     std::fprintf(stderr, "%s: --packets %s: %s\n", kProgramName, path, reason);
     return false;
   }

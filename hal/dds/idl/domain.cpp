@@ -73,6 +73,7 @@ const char* text_of_failure(dds_return_t code) {
 }
 
 dds_return_t Domain::open(std::uint32_t id, const char* partition, const char* further, const char* lease) {
+  close();
   id_ = id;
   partition_ = partition;
   char configuration[kMaxConfiguration + sizeof(SecurityElement)];

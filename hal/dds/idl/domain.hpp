@@ -29,11 +29,11 @@ class Domain {
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
-  // Creates domain and participant. Endpoints meet those of the same `partition` only; empty: the default
-  // one; it must outlive the domain. `further`: elements of Cyclone's configuration beside those of every
-  // domain, such as <Security>, without which the bus is not secured. `lease`: after which other programs
-  // notice that this one was killed; kPatientLease is for those that a pause must not end. Returns 0 or a
-  // negative DDS return code; text_of_failure() gives its text.
+  // Creates domain and participant, in place of those of an earlier call. Endpoints meet those of the same
+  // `partition` only; empty: the default one; it must outlive the domain. `further`: elements of Cyclone's
+  // configuration beside those of every domain, such as <Security>, without which the bus is not secured.
+  // `lease`: after which other programs notice that this one was killed; kPatientLease is for those that a
+  // pause must not end. Returns 0 or a negative DDS return code; text_of_failure() gives its text.
   [[nodiscard]] dds_return_t open(std::uint32_t id, const char* partition = "", const char* further = "",
                                   const char* lease = kPatientLease);
   // Deletes the domain with all its readers and writers.

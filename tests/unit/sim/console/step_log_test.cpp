@@ -137,6 +137,14 @@ TEST_F(Log, AStepWaitsForItsCommands) {
   EXPECT_EQ(log_.rows(0)["commands"].size(), 2U);
 }
 
+TEST_F(Log, ALateConsoleDoesNotWaitForTheCommandsOfItsFirstStep) {
+  auto announced = sample_of<hal::dds::StepSample>(40);
+  announced.commands = 1;
+  log_.add(announced);
+  add_step(40);
+  EXPECT_EQ(log_.state().steps, 1U);
+}
+
 TEST_F(Log, ACommandThatIsLostDelaysItsStepByFourOthers) {
   for (std::uint32_t k = 0; k <= 4; ++k) {
     EXPECT_EQ(log_.state().steps, 0U);

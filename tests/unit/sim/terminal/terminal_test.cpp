@@ -169,23 +169,36 @@ TEST(WriteFile, WritesThroughALinkAndKeepsIt) {
   std::filesystem::remove_all(folder);
 }
 
-// As in a shared folder, where every user can make files with names that are known beforehand.
-TEST(WriteFile, IsNotLedAstrayByWhatAnotherUserHasPutThere) {
-  if (geteuid() != 0) GTEST_SKIP() << "only root can make files of another user";
+// Under the name of the partial file, which can be known beforehand: a link to a file of this user, a pipe,
+// and a file that is left over.
+TEST(WriteFile, IsNotLedAstrayByWhatHasTheNameOfItsPartialFile) {
   const TemporaryFolder folder;
   const std::string path = folder.path("report.html"), own = folder.path("own");
   write_file(own, "precious");
   const std::string partial = partial_path(path);
-  // Under the name of the partial file: a link to a file of this user, then a pipe.
   std::filesystem::create_symlink(own, partial);
+  ASSERT_EQ(mkfifo((partial + "1").c_str(), 0666), 0);
+  std::ofstream(partial + "2") << "left over";
+  EXPECT_EQ(fault_of_partial_file(path), "");
   write_file(path, "new");
-  std::filesystem::remove(partial);
-  ASSERT_EQ(mkfifo(partial.c_str(), 0666), 0);
-  write_file(path, "newer");
-  std::ifstream file(path);
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "newer");
-  // In place of the file itself.
-  constexpr uid_t kOther = 65534;
+  std::ifstream file(path), precious(own);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "new");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(precious), {}), "precious");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path("")), {}), 5);
+  for (int i = 3; i < 16; ++i) std::ofstream(partial + std::to_string(i)) << "left over";
+  EXPECT_NE(fault_of_partial_file(path).find("delete " + partial + "*"), std::string::npos);
+  EXPECT_THROW(write_file(path, "newer"), std::runtime_error);
+}
+
+constexpr uid_t kOther = 65534;
+
+// As /tmp, where every user may make files and only the owner may delete one.
+TEST(WriteFile, RefusesWhatAnotherUserHasPutIntoASharedFolder) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can make files of another user";
+  const TemporaryFolder folder;
+  const std::string path = folder.path("report.html"), own = folder.path("own");
+  write_file(own, "precious");
+  ASSERT_EQ(chmod(folder.path("").c_str(), 01777), 0);
   for (const bool is_link : {true, false}) {
     std::filesystem::remove(path);
     if (is_link)
@@ -198,7 +211,29 @@ TEST(WriteFile, IsNotLedAstrayByWhatAnotherUserHasPutThere) {
   }
   std::ifstream precious(own);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(precious), {}), "precious");
+  std::filesystem::remove(path);
+  std::ofstream(path) << "of somebody else";
+  ASSERT_EQ(chown(path.c_str(), kOther, kOther), 0);
+  EXPECT_EQ(fault_of_place(path), "") << "root may replace it";
+  ASSERT_EQ(seteuid(kOther - 1), 0);
+  EXPECT_NE(fault_of_place(path), "") << "found out before the run, not by rename() after it";
+  ASSERT_EQ(seteuid(0), 0);
+}
+
+// A container's root, in a folder of the user outside it.
+TEST(WriteFile, TakesALinkOfTheOneWhoOwnsTheFolder) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can make files of another user";
+  const TemporaryFolder folder;
+  const std::string link = folder.path("latest.html"), file = folder.path("report.html");
+  write_file(file, "old");
+  std::filesystem::create_symlink("report.html", link);
+  for (const std::string& path : {folder.path(""), link, file})
+    ASSERT_EQ(lchown(path.c_str(), kOther, kOther), 0);
+  write_file(link, "new");
+  std::ifstream written(file);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(written), {}), "new");
   EXPECT_EQ(fault_of_place("/dev/stdout"), "");
+  EXPECT_EQ(fault_of_place("/dev/null"), "");
 }
 
 TEST(WriteFile, SaysWhichFileCannotBeWritten) {
