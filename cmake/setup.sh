@@ -22,6 +22,8 @@ require_file() { # what it is, path
 require_mission() { # what it is, file or name
   [ -z "$(find "$root/sim/world/target/missions" -name "[0-9]_$2.toml" 2>/dev/null)" ] || return 0
   require_file "$1" "$2"
+  grep -qE '^[[:space:]]*mesh[[:space:]]*=' "$2" ||
+    refuse "$1: '$2' has no line like mesh = \"craft.stl\"; docs/own_spacecraft.md shows a mission file"
   local mesh
   mesh=$(sed -nE 's/^[[:space:]]*mesh[[:space:]]*=[[:space:]]*"([^"]*)".*/\1/p' "$2" | head -n 1)
   case $mesh in '' | parametric) return 0 ;; /*) ;; *) mesh=$(dirname "$2")/$mesh ;; esac
@@ -30,6 +32,25 @@ require_mission() { # what it is, file or name
 
 require_sensor() { # what it is, file or name
   [ "$2" = list ] || [ -f "$root/sim/world/sensor/descriptions/$2.json" ] || require_file "$1" "$2"
+}
+
+is_number() { [[ $1 =~ ^[+-]?[0-9]*\.?[0-9]+([eE][+-]?[0-9]+)?$ ]]; }
+is_whole() { [[ $1 =~ ^(0|[1-9][0-9]*)$ ]]; }
+
+is_one_of() { [[ " ${*:2} " == *" $1 "* ]]; } # word, list
+
+# That an option has one value, of the kind that it needs. The limits are the program's, which checks them before it begins.
+require_value() { # number, whole, folder or another; option, arguments from the option on
+  local kind=$1 option=$2 value
+  shift 2
+  [ "$1" != "$option" ] || [ $# -gt 1 ] || refuse "$option needs a value"
+  value=$(value_in "$option" "$@")
+  [ -n "$value" ] || refuse "$option needs a value"
+  case $kind in
+    number) is_number "$value" || refuse "$option: must be a number, not '$value'" ;;
+    whole) is_whole "$value" || refuse "$option: must be a whole number, not '$value'" ;;
+    folder) [ ! -e "$value" ] || [ -d "$value" ] || refuse "$option: '$value' is not a folder" ;;
+  esac
 }
 
 # "--name VALUE" and "--name=VALUE" as VALUE.

@@ -49,6 +49,22 @@ void require_usable(const MeshCommandArguments& arguments) {
   require_usable_files(read, written);
 }
 
+// Farther away it is a slip of the pen or of the unit, and no spacecraft's centre of mass.
+void require_origin_near(const MeshCommandArguments& arguments, const MeshInspection& found) {
+  constexpr double kMost_radii = 10.0;
+  if (arguments.origin.empty()) return;
+  const Eigen::Vector3d origin_trf_m(arguments.origin[0], arguments.origin[1], arguments.origin[2]);
+  const Eigen::Vector3d& centre_trf_m = found.symmetry.centre_trf_m;
+  const double distance_m = (origin_trf_m - centre_trf_m).norm();
+  if (distance_m <= kMost_radii * found.centred_radius_m) return;
+  throw CLI::ValidationError(
+      "--origin",
+      fmt::format("is {:.4g} m from the middle of the surface, ({:.4g}, {:.4g}, {:.4g}) m, whose radius is "
+                  "{:.3g} m; give a place within {:g} radii, best the centre of mass",
+                  distance_m, centre_trf_m.x(), centre_trf_m.y(), centre_trf_m.z(), found.centred_radius_m,
+                  kMost_radii));
+}
+
 void fix(const MeshCommandArguments& arguments, const TriangleMesh& mesh, const MeshInspection& found) {
   CleaningOptions options;
   options.keep_strays = arguments.keep_strays;
@@ -74,6 +90,7 @@ int show_mesh(const MeshCommandArguments& arguments, const std::string& command_
   report.generated = local_time_text();
   const TriangleMesh mesh = read_mesh_file(arguments.file, report.options);
   report.found = inspect(mesh, report.options);
+  require_origin_near(arguments, report.found);
   const std::string remark = gltf_remark(arguments.file);
   if (!remark.empty()) report.found.findings.push_back({"file", Severity::kNote, remark, ""});
   fmt::print("{}", mesh_text(report, six_views(mesh, kSketchPixels)));
@@ -155,6 +172,7 @@ void add_mesh_command(CLI::App& app, const std::string& command_line) {
           "it [the centre of the outer surface]")
       ->delimiter(',')
       ->expected(3)
+      ->check(number(-1e9, 1e9))
       ->type_name("X,Y,Z")
       ->needs(fix_option);
   command->add_flag("--keep-strays", arguments->keep_strays, "leave parts that lie apart in the cleaned copy")

@@ -93,12 +93,16 @@ std::string read_toml(const std::string& path, const char* kind) {
 }
 
 toml::table parse_toml(const std::string& text, const std::string& file) {
+  if (text.find('\0') != std::string::npos)
+    throw std::invalid_argument(file + ": it is no text, as it has bytes of value 0; is it another file?");
   Nesting(text, file).require_shallow();
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
-    throw std::invalid_argument(fmt::format("{}, line {}: {}", file, error.source().begin.line,
-                                            shortened(std::string(error.description()), kMostOfAFault)));
+    const std::string fault = shortened(std::string(error.description()), kMostOfAFault);
+    const bool is_bare = fault.find("could not determine value type") != std::string::npos;
+    throw std::invalid_argument(fmt::format("{}, line {}: {}{}", file, error.source().begin.line, fault,
+                                            is_bare ? "; a text stands in quotes: name = \"craft\"" : ""));
   }
 }
 

@@ -245,6 +245,10 @@ SensorDescription sensor_from_json(const std::string& text, const std::string& f
   Json json;
   try {
     json = Json::parse(text, check);
+  } catch (const Json::parse_error& error) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+    refuse(fmt::format("not JSON in line {}; correct it, or give the file of a sensor",
+                       1 + std::count(text.begin(), end, '\n')));
   } catch (const Json::out_of_range& error) {
     refuse("a number is too large: " + shortened(error.what(), kMaxFault));
   } catch (const Json::exception& error) {

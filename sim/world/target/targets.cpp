@@ -21,7 +21,12 @@ constexpr JointLimits kWholeTurn = {-180.0, 180.0};
 
 std::vector<Mission> read_shipped_missions() {
   std::vector<std::string> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(program_files().missions))
+  const std::string& folder = program_files().missions;
+  if (!fs::is_directory(folder))
+    throw std::runtime_error("the folder '" + folder +
+                             "' is missing, which belongs to tumblesight: install the package, or run the "
+                             "program where it was built");
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ".toml") files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
   std::vector<Mission> missions;

@@ -1106,6 +1106,19 @@ TEST(Bench, ReadsBothImagesBeforeItMeasures) {
   }
 }
 
+// Taken out of its folder, without the files that belong to it.
+TEST(Program, ThatLacksItsFilesSaysWhatToDo) {
+  const Workplace here;
+  std::filesystem::create_directory(here.path("bin"));
+  std::filesystem::copy_file(TUMBLESIGHT_BINARY, here.path("bin/tumblesight"));
+  const Outcome outcome = here.run_command("bin/tumblesight mesh craft.stl", "copied");
+  EXPECT_EQ(outcome.exit_code, kFailed);
+  EXPECT_NE(outcome.errors.find("/share/tumblesight/missions' is missing, which belongs to tumblesight"),
+            std::string::npos)
+      << outcome.errors;
+  EXPECT_NE(outcome.errors.find("install the package"), std::string::npos) << outcome.errors;
+}
+
 TEST(ModelImage, ThatIsInTheHistoryOnlyIsRefusedWithTheCommandThatGetsIt) {
   const Workplace here;
   const std::string image = TUMBLESIGHT_SOURCE_DIR "/fsw/models/none.float32.tsm";

@@ -68,6 +68,22 @@ TEST(Mesh, AMeshInMillimetresIsOfNoUseUntilItsUnitIsGiven) {
   EXPECT_NEAR(mesh.radius_m(), sound_mesh().radius_m(), 1e-3);
 }
 
+TEST(Mesh, AnOriginFarFromTheSurfaceIsRefused) {
+  const Workplace here;
+  write_mesh(here.path("craft.stl"), sound_mesh());
+  for (const auto& [origin, message] : {std::pair{"nan,0,0", "--origin"},
+                                        {"0,inf,0", "--origin"},
+                                        {"0,1e30,0", "--origin"},
+                                        {"1000,0,0", "m from the middle of the surface"},
+                                        {"0,0", "--origin"}}) {
+    const Outcome outcome =
+        here.run(std::string("mesh craft.stl --mesh-up z --fix fixed.stl --origin ") + origin);
+    EXPECT_EQ(outcome.exit_code, 2) << origin;
+    EXPECT_NE(outcome.errors.find(message), std::string::npos) << origin << outcome.errors;
+    EXPECT_FALSE(std::filesystem::exists(here.path("fixed.stl"))) << origin;
+  }
+}
+
 std::string warnings_of(const TriangleMesh& mesh, const MeshArguments& arguments) {
   ::testing::internal::CaptureStderr();
   print_mesh_warnings(arguments, {mesh});

@@ -59,11 +59,22 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"sim/run --sequenes 3", "there is no option '--sequenes'"},
         Refused{"sim/run --watch --seed=3 --condiion=nominal", "there is no option '--condiion'"},
         Refused{"sim/run --seed 3 --watch", "--watch must be the first argument"},
+        Refused{"sim/run --watch --watch", "once and without a value"},
+        Refused{"sim/run --watch=yes", "once and without a value"},
+        Refused{"sim/run magellan", "'magellan' belongs to no option"},
+        Refused{"sim/run --sequences 3 4", "'4' belongs to no option"},
+        Refused{"sim/run -x", "'-x' belongs to no option"}, Refused{"sim/run ''", "'' belongs to no option"},
+        Refused{"sim/run --sequences", "--sequences needs a value"},
+        Refused{"sim/run --mesh=", "--mesh needs a value"},
+        Refused{"sim/run --frames=ten", "--frames: must be a whole number, not 'ten'"},
+        Refused{"sim/run --period fast", "--period: must be a number, not 'fast'"},
         Refused{"sim/run --model programs", "--model: 'programs' is a folder; give a file"},
         Refused{"sim/run --mission nothere.toml", "--mission: 'nothere.toml' does not exist"},
         Refused{"sim/run --mission craft.toml", "the mesh of craft.toml: './nothere.stl' does not exist"},
         Refused{"sim/run --sensor nothere.json", "--sensor: 'nothere.json' does not exist"},
         Refused{"sim/adopt nothere.toml", "MISSION: 'nothere.toml' does not exist"},
+        Refused{"sim/adopt craft.stl", "has no line like mesh ="},
+        Refused{"sim/run --mission craft.stl", "has no line like mesh ="},
         Refused{"sim/adopt programs", "MISSION: 'programs' is a folder; give a file"},
         Refused{"sim/adopt craft.toml", "'./nothere.stl' does not exist"},
         Refused{"sim/adopt --minutes 5", "MISSION is missing"},
@@ -99,7 +110,8 @@ TEST_F(ScriptArguments, ThatAreSoundAreAccepted) {
   for (const char* command :
        {"sim/adopt sound.toml --minutes 0.5 --seed 3 --out new", "sim/adopt magellan --minutes=60",
         "sim/run --mission magellan --sensor flash_256 --mesh parametric",
-        "sim/run --mesh craft.stl --sequences 3 --seed=-1 --chaser-rate 5 --speed max --free-running"}) {
+        "sim/run --mesh craft.stl --sequences 3 --chaser-rate 5 --speed max --free-running --range 20 60 "
+        "--only 1 2"}) {
     std::filesystem::remove(here_.path("called"));
     EXPECT_NE(run(command).exit_code, 2) << command;
     EXPECT_NE(content(here_.path("called")), "") << command;
@@ -123,9 +135,13 @@ TEST_F(ScriptArguments, OfAdoptAreThoseOfTheProgram) {
 
 TEST_F(ScriptArguments, OfRunAreThoseOfTheProgram) {
   const std::string script = content(std::string(TUMBLESIGHT_SOURCE_DIR) + "/sim/run");
-  const std::size_t begin = script.find("\noptions=(") + 10;
-  std::istringstream list(script.substr(begin, script.find(')', begin) - begin));
-  std::vector<std::string> known{std::istream_iterator<std::string>(list), {}};
+  std::vector<std::string> known;
+  for (const char* name : {"\nflags=(", "\nwhole_numbers=(", "\nnumbers=(", "\ntexts=(", "\nlists=("}) {
+    const std::size_t begin = script.find(name) + std::string(name).size();
+    std::istringstream list(script.substr(begin, script.find(')', begin) - begin));
+    known.insert(known.end(), std::istream_iterator<std::string>(list), {});
+  }
+  std::sort(known.begin(), known.end());
   std::vector<std::string> options = options_in(here_.run("simulate --help").output);
   std::sort(options.begin(), options.end());
   EXPECT_EQ(known, options);

@@ -54,6 +54,14 @@ TEST(TomlText, ThatIsNotNestedIsParsed) {
   for (const std::string& text : texts) EXPECT_EQ(refusal_of(text), "") << text.substr(0, 40);
 }
 
+TEST(TomlText, ThatIsNoneIsToldApart) {
+  EXPECT_EQ(refusal_of(std::string("solid\0craft", 11)),
+            "a.toml: it is no text, as it has bytes of value 0; is it another file?");
+  EXPECT_NE(refusal_of("a = 1\nname = craft\n").find("line 2: "), std::string::npos);
+  EXPECT_NE(refusal_of("a = 1\nname = craft\n").find("; a text stands in quotes: name = \"craft\""),
+            std::string::npos);
+}
+
 // The bound is a hundred times what they need.
 TEST(TomlText, OfTheLargestSizeIsParsedOrRefusedInBoundedTime) {
   constexpr int kMost = 100'000;

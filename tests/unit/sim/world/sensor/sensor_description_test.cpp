@@ -115,7 +115,8 @@ TEST(SensorDescription, RefusesWhatIsNotAsItMustBe) {
       {"\"scan_time_s\": 0.0,\n  \"period_s\": 2.7", "\"scan_time_s\": 1.5, \"period_s\": 1",
        "field 'scan_time_s' is 1.5; it must be at most period_s, 1"},
       {"\"constant_m\": 0.05", "\"constant_m\": 1e999", "a number is too large: "},
-      {"{", "", "not JSON"},
+      {"{", "", "my.json: not JSON in line "},
+      {"0.05", "0.05.1", "not JSON in line "},
   };
   for (const auto& wrong : kWrong) {
     const std::string message = refusal(replaced(good, wrong.from, wrong.to));
