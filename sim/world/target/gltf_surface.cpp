@@ -114,41 +114,50 @@ class Surface {
     }
   }
 
-  // In the axes of the scene.
-  std::vector<Eigen::Vector3d> places_of(std::size_t number, const Part& part, const Shape& shape,
-                                         const std::vector<double>& weights) {
+  // The positions that morph targets and a skin give; empty if the part has neither.
+  std::vector<double> posed(std::size_t number, const Part& part, const Shape& shape,
+                            const std::vector<double>& weights) {
     const json& skin = optional(scene_["nodes"][number], "skin");
+    if (weights.empty() && skin.is_null()) return {};
     std::vector<double> values(shape.positions->begin(), shape.positions->end());
     if (!weights.empty()) morph(part, weights, data_, values);
     if (!skin.is_null()) apply_skin(scene_, joints(skin.get<std::size_t>()), part, data_, values);
-    const Eigen::Matrix4d placement = skin.is_null() ? placements_.of(number) : Eigen::Matrix4d::Identity();
-    std::vector<Eigen::Vector3d> places;
-    places.reserve(shape.vertices());
-    for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-      const Eigen::Vector4d place(values[i], values[i + 1], values[i + 2], 1.0);
-      places.emplace_back((placement * place).head<3>());
-    }
-    return places;
+    return values;
   }
 
   void add_part(std::size_t number, const Part& part, const Shape& shape,
                 const std::vector<double>& weights) {
-    const std::vector<Eigen::Vector3d> places = places_of(number, part, shape, weights);
-    std::uint32_t first = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const std::uint32_t vertex = builder_.add_vertex(places[i], number);
-      if (i == 0) first = vertex;
-    }
-    const bool has_skin = scene_["nodes"][number].contains("skin");
-    const Eigen::Matrix4d& placement = placements_.of(number);
-    const bool is_flat = !has_skin && is_singular(placement);
+    const std::vector<double> values = posed(number, part, shape, weights);
+    // A skin puts its part into the axes of the scene.
+    const Eigen::Matrix4d placement =
+        scene_["nodes"][number].contains("skin") ? Eigen::Matrix4d::Identity() : placements_.of(number);
+    const auto place = [&](std::size_t vertex) -> Eigen::Vector3d {
+      Eigen::Vector4d at = Eigen::Vector4d::UnitW();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t value = 3 * vertex + k;
+        at[static_cast<Eigen::Index>(k)] =
+            values.empty() ? static_cast<double>((*shape.positions)[value]) : values[value];
+      }
+      return (placement * at).head<3>();
+    };
+    std::uint32_t last = 0;
+    for (std::size_t i = 0; i < shape.vertices(); ++i) last = builder_.add_vertex(place(i), number);
+    add_triangles(number, part, shape, placement, last + 1 - static_cast<std::uint32_t>(shape.vertices()),
+                  place);
+  }
+
+  // `first`: the number of the part's first vertex.
+  template <typename Place>
+  void add_triangles(std::size_t number, const Part& part, const Shape& shape,
+                     const Eigen::Matrix4d& placement, std::uint32_t first, const Place& place) {
+    const bool is_flat = is_singular(placement);
     // A node that mirrors its parts turns their triangles round, by the standard.
-    const bool is_mirrored = !has_skin && placement.topLeftCorner<3, 3>().determinant() < 0.0;
+    const bool is_mirrored = placement.topLeftCorner<3, 3>().determinant() < 0.0;
     const bool is_panel = names_a_panel(material_of(part));
     for (std::size_t i = 0; i < shape.triangles(); ++i) {
       std::array<std::size_t, 3> corners = corners_of_triangle(shape.mode, i);
       for (std::size_t& corner : corners) corner = shape.vertex(corner);
-      if (is_flat && !has_area(places[corners[0]], places[corners[1]], places[corners[2]]) && flat_++ == 0)
+      if (is_flat && !has_area(place(corners[0]), place(corners[1]), place(corners[2])) && flat_++ == 0)
         flat_node_ = number;
       if (is_mirrored) std::swap(corners[1], corners[2]);
       builder_.add_triangle(first + static_cast<std::uint32_t>(corners[0]),
