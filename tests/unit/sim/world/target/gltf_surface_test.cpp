@@ -109,15 +109,14 @@ class GltfSurface : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-[[maybe_unused]] void expect_box(const TriangleMesh& mesh, const Eigen::Vector3f& min,
-                                 const Eigen::Vector3f& max) {
+void expect_box(const TriangleMesh& mesh, const Eigen::Vector3f& min, const Eigen::Vector3f& max) {
   const Eigen::AlignedBox3f box = bounding_box(mesh);
   EXPECT_LT((box.min() - min).norm(), 1e-5F) << box.min().transpose();
   EXPECT_LT((box.max() - max).norm(), 1e-5F) << box.max().transpose();
 }
 
 // Negative if the sides that the triangles show are inside.
-[[maybe_unused]] double signed_volume_m3(const TriangleMesh& mesh) {
+double signed_volume_m3(const TriangleMesh& mesh) {
   double volume = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {
     const auto& v = mesh.vertices_trf_m;
@@ -127,8 +126,6 @@ class GltfSurface : public ::testing::Test {
 }
 
 #define EXPECT_SAYS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << (text)
-
-#ifdef TUMBLESIGHT_HAS_ASSIMP
 
 // The node of a part with a skin does not place it.
 TEST_F(GltfSurface, JointsPlaceThePartsWithASkin) {
@@ -447,8 +444,6 @@ TEST_F(GltfSurface, WhatIsLeftOutIsSaid) {
   EXPECT_SAYS(remark, "scene 0 of 2");
   EXPECT_SAYS(remark, "nimation");
 }
-
-#endif
 
 }  // namespace
 }  // namespace tumblesight::sim
