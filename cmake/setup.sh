@@ -73,7 +73,7 @@ packages_of_toolchains() {
 # What the programs need; the tests and the training add theirs.
 # Debian 12's packages. What each is for, and its name on other systems: docs/packages.md. A change here belongs there too.
 packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
-  libassimp-dev libcli11-dev libdraco-dev libfmt-dev libmeshoptimizer-dev libonnx-dev libpng-dev libprotobuf-dev
+  libcli11-dev libdraco-dev libfmt-dev libmeshoptimizer-dev libonnx-dev libpng-dev libprotobuf-dev
   libssl-dev libtomlplusplus-dev nlohmann-json3-dev)
 # The console in the browser: sim/run --watch.
 packages_to_watch=("${packages_to_run[@]}" libcivetweb-dev libjs-dygraphs libjs-three)

@@ -41,10 +41,11 @@ constexpr UnreadExtension kUnread[] = {
     {"EXT_mesh_gpu_instancing", "repeats its parts by instancing; export it with every part written out"},
 };
 
-// What a file may require and is still read as it is meant: its surface does not depend on them. Positions in
-// whole numbers (KHR_mesh_quantization) are refused where they are.
+// What a file may require and is still read as it is meant: it is applied, or its surface does not depend on
+// it. Positions in whole numbers (KHR_mesh_quantization) are refused where they are.
 constexpr const char* kReadPrefixes[] = {"KHR_draco_mesh_compression",
                                          "KHR_mesh_quantization",
+                                         "KHR_node_visibility",
                                          "KHR_materials_",
                                          "KHR_texture_",
                                          "EXT_texture_",
@@ -59,14 +60,30 @@ bool is_read(const std::string& extension) {
                      [&](const char* prefix) { return extension.rfind(prefix, 0) == 0; });
 }
 
+[[noreturn]] void refuse_unread(const UnreadExtension& extension) {
+  refuse(std::string("uses ") + extension.name + ", which is not read: it " + extension.remedy);
+}
+
+// Some exporters forget to declare an extension that they use.
+void check_undeclared(const json& file, const char* key) {
+  for (const json& object : list(file, key)) {
+    const json& extensions = optional(object, "extensions");
+    if (extensions.is_null()) continue;
+    for (const UnreadExtension& unread : kUnread) {
+      if (!optional(extensions, unread.name).is_null()) refuse_unread(unread);
+    }
+  }
+}
+
 void check_extensions(const json& file) {
   for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
     for (const json& used : list(file, key)) {
-      for (const auto& [name, remedy] : kUnread) {
-        if (used == name) refuse(std::string("uses ") + name + ", which is not read: it " + remedy);
+      for (const UnreadExtension& unread : kUnread) {
+        if (used == unread.name) refuse_unread(unread);
       }
     }
   }
+  for (const char* key : {"nodes", "bufferViews"}) check_undeclared(file, key);
   for (const json& required : list(file, "extensionsRequired")) {
     if (!required.is_string())
       fail("\"extensionsRequired\" holds " + shown(required) + ", which is not a name");
@@ -74,7 +91,8 @@ void check_extensions(const json& file) {
     refuse(
         "requires the extension " + shown_text(required.get_ref<const std::string&>()) +
         ", which is not read: its surface could be another one without it; export it without this extension. "
-        "Read are KHR_draco_mesh_compression and extensions for materials, textures and lights");
+        "Read are KHR_draco_mesh_compression, KHR_node_visibility and extensions for materials, textures and "
+        "lights");
   }
 }
 

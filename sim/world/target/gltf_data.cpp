@@ -4,8 +4,10 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 #include <system_error>
 
+#include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/mesh_file.hpp"
 
 namespace tumblesight::sim::gltf {
@@ -45,13 +47,16 @@ std::string from_base64(const std::string& text, std::size_t begin, const std::s
 std::string content_of(const fs::path& folder, const std::string& uri, std::uint64_t size,
                        const std::string& where) {
   const std::string named = where + " is the file " + shown_text(decoded_uri(uri)) + ", ";
-  std::error_code error;
-  const fs::path path = side_file(folder, uri);
+  if (decoded_uri(uri).find('\0') != std::string::npos)
+    refuse(where + " is at " + shown_text(uri) +
+           ", and no file has a zero byte in its name; export it again");
   if (is_outside_address(uri)) {
     refuse(where + " is at " + shown_text(uri) +
-           ": only files named relative to this one are read; put it beside this "
+           ": only files named relative to this one, in its folder or below, are read; put it beside this "
            "file and name it without a folder, or export one .glb file");
   }
+  std::error_code error;
+  const fs::path path = side_file(folder, uri);
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) refuse(named + "which is missing; put it there, or export one .glb file");
   if (!fs::is_regular_file(status)) refuse(named + "which is not a file; put the file there");
@@ -66,11 +71,13 @@ std::string content_of(const fs::path& folder, const std::string& uri, std::uint
 
 std::string content_of_uri(const fs::path& folder, const std::string& uri, std::uint64_t size,
                            const std::string& where) {
-  if (uri.rfind("data:", 0) != 0) return content_of(folder, uri, size, where);
-  const std::string kBase64 = ";base64,";
-  const std::size_t mark = uri.find(kBase64);
-  if (mark == std::string::npos || mark > uri.find(',')) fail(where + "'s data is not base64");
-  return from_base64(uri, mark + kBase64.size(), where);
+  if (!is_data_uri(uri)) return content_of(folder, uri, size, where);
+  const std::string kBase64 = ";base64";
+  const std::size_t comma = std::min(uri.find(','), uri.size());
+  const std::size_t mark = comma - std::min(comma, kBase64.size());
+  if (comma == uri.size() || in_lower_case(std::string_view(uri).substr(mark, comma - mark)) != kBase64)
+    fail(where + "'s data is not base64");
+  return from_base64(uri, comma + 1, where);
 }
 
 template <typename T>

@@ -16,6 +16,7 @@ inline constexpr std::uint64_t kByte = 5120, kUnsignedByte = 5121, kShort = 5122
 
 // Of primitives: the mode that stands if none is given.
 inline constexpr std::uint64_t kTriangles = 4;
+inline constexpr std::uint64_t kTriangleFan = 6;
 
 // Numbers of one element: 3 of "VEC3"; 0 if the type is unknown.
 std::size_t components_of(const json& type);

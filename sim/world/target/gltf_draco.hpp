@@ -1,6 +1,5 @@
 // Parts of glTF files that are compressed with Draco (extension KHR_draco_mesh_compression), as most public
-// models of spacecraft are. Assimp reads them in some builds only, and none with more than 65,536 vertices in
-// a part.
+// models of spacecraft are.
 #pragma once
 
 #include <cstdint>

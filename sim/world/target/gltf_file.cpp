@@ -7,10 +7,12 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "sim/terminal/text.hpp"
+#include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/mesh_file.hpp"
 
 namespace tumblesight::sim::gltf {
@@ -66,7 +68,7 @@ class Strict : public nlohmann::json_sax<json> {
   std::vector<std::set<std::string>> keys_;
 };
 
-json parse(const std::string& text) {
+json parse(std::string_view text) {
   Strict strict;
   (void)json::sax_parse(text, &strict);
   json parsed = json::parse(text, nullptr, false);
@@ -165,10 +167,12 @@ File read_glb(const std::string& path) {
 File read_gltf(const std::string& path) {
   check_size(fs::file_size(path));
   std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string content{std::istreambuf_iterator<char>(file), {}};
+  const std::string_view text = without_byte_order_mark(content);
   if (text.compare(0, 4, "glTF") == 0) refuse("is a GLB file by its content; give its name the ending .glb");
   const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos || text[first] != '{') fail("it does not begin with {, as a glTF file does");
+  if (first == std::string_view::npos || text[first] != '{')
+    fail("it does not begin with {, as a glTF file does");
   return {parse(text), {}, fs::path(path).parent_path()};
 }
 
@@ -214,9 +218,15 @@ std::uint64_t whole_or(const json& object, const char* key, std::uint64_t absent
   return value.is_null() ? absent : whole(value, limit, where + "'s " + key);
 }
 
+bool is_data_uri(const std::string& uri) {
+  return in_lower_case(std::string_view(uri).substr(0, 5)) == "data:";
+}
+
 bool is_outside_address(const std::string& uri) {
   const std::string decoded = decoded_uri(uri);
   if (decoded.empty() || decoded[0] == '/' || decoded[0] == '\\') return true;
+  const fs::path place = fs::path(decoded).lexically_normal();
+  if (place.begin() != place.end() && *place.begin() == "..") return true;
   const std::size_t colon = uri.find(':');
   return colon != std::string::npos && std::isalpha(static_cast<unsigned char>(uri[0])) != 0 &&
          std::all_of(uri.begin(), uri.begin() + static_cast<std::ptrdiff_t>(colon), [](unsigned char c) {

@@ -42,7 +42,9 @@ const json& list(const json& object, const char* key);
 std::uint64_t whole(const json& value, std::uint64_t limit, const std::string& where);
 std::uint64_t whole_or(const json& object, const char* key, std::uint64_t absent, std::uint64_t limit,
                        const std::string& where);
-// Whether a URI leads elsewhere than to a place relative to the file: "https://...", "/absolute".
+// Whether a URI is data itself ("data:..."), and whether it leads elsewhere than into the folder of the file
+// and those below it: "https://...", "/absolute", "../other".
+bool is_data_uri(const std::string& uri);
 bool is_outside_address(const std::string& uri);
 // The file that a relative URI names. URIs are percent-encoded; some exporters forget it, so the name as it
 // is written counts if only that file is there.

@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 constexpr double kUnitTolerance = 0.01;  // of the length of a rotation's quaternion
 constexpr double kRowTolerance = 1e-6;   // of the last row of a matrix
+constexpr double kFlatShare = 1e-7;      // of a determinant, of the cube of the matrix's norm
 
 std::string name_of(std::size_t node) {
   return "node " + std::to_string(node);
@@ -85,19 +86,28 @@ Eigen::Matrix4d local_placement(const json& node, const std::string& where) {
   return (placement * Eigen::Scaling(s[0], s[1], s[2])).matrix();
 }
 
+bool is_hidden(const json& node, const std::string& where) {
+  const json& visibility = optional(optional(node, "extensions"), "KHR_node_visibility");
+  const json& visible = optional(visibility, "visible");
+  if (visible.is_null()) return false;
+  if (!visible.is_boolean())
+    fail(where + "'s KHR_node_visibility is " + shown(visible) + ", neither true nor false");
+  return !visible.get<bool>();
+}
+
 void check_scenes(const json& scene, const std::vector<std::size_t>& parents) {
   const json& scenes = list(scene, "scenes");
+  std::vector<std::size_t> named_by(parents.size(), kNone);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const std::string where = "scene " + std::to_string(i);
-    std::vector<bool> named(parents.size(), false);
     for (const json& number : list(scenes[i], "nodes")) {
       const std::size_t root = whole(number, parents.size(), where + "'s node");
-      if (named[root]) fail(where + " names " + name_of(root) + " twice");
+      if (named_by[root] == i) fail(where + " names " + name_of(root) + " twice");
       if (parents[root] != kNone) {
         fail(where + " names " + name_of(root) + ", which is a child of node " +
              std::to_string(parents[root]) + " and no root");
       }
-      named[root] = true;
+      named_by[root] = i;
     }
   }
 }
@@ -112,6 +122,7 @@ void check_nodes(const json& scene) {
   const std::size_t meshes = list(scene, "meshes").size(), skins = list(scene, "skins").size();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     (void)local_placement(nodes[i], name_of(i));
+    (void)is_hidden(nodes[i], name_of(i));
     (void)whole_or(nodes[i], "mesh", 0, meshes, name_of(i));
     (void)whole_or(nodes[i], "skin", 0, skins, name_of(i));
   }
@@ -127,29 +138,55 @@ std::size_t chosen_scene(const json& scene) {
   return whole_or(scene, "scene", 0, scenes.size(), "the file");
 }
 
-std::vector<std::size_t> nodes_of_scene(const json& scene) {
-  const json& nodes = list(scene, "nodes");
-  std::vector<std::size_t> found, open;
-  const auto push = [&open](const json& numbers) {
-    for (auto number = numbers.rbegin(); number != numbers.rend(); ++number)
-      open.push_back(number->get<std::size_t>());
+SceneNodes nodes_of_scene(const json& scene) {
+  struct Open {
+    std::size_t node;
+    bool below_hidden;
   };
-  push(list(list(scene, "scenes")[chosen_scene(scene)], "nodes"));
+  const json& nodes = list(scene, "nodes");
+  SceneNodes found;
+  std::vector<Open> open;
+  const auto push = [&open](const json& numbers, bool below_hidden) {
+    for (auto number = numbers.rbegin(); number != numbers.rend(); ++number)
+      open.push_back({number->get<std::size_t>(), below_hidden});
+  };
+  push(list(list(scene, "scenes")[chosen_scene(scene)], "nodes"), false);
   while (!open.empty()) {
-    found.push_back(open.back());
+    const Open next = open.back();
     open.pop_back();
-    push(list(nodes[found.back()], "children"));
+    const bool hidden = next.below_hidden || is_hidden(nodes[next.node], name_of(next.node));
+    (hidden ? found.hidden : found.visible).push_back(next.node);
+    push(list(nodes[next.node], "children"), hidden);
   }
   return found;
 }
 
-Placements::Placements(const json& scene) : nodes_(list(scene, "nodes")), parents_(parents_of(scene)) {}
+bool is_singular(const Eigen::Matrix4d& placement) {
+  const Eigen::Matrix3d axes = placement.topLeftCorner<3, 3>();
+  return std::abs(axes.determinant()) <= kFlatShare * std::pow(axes.norm(), 3);
+}
 
-Eigen::Matrix4d Placements::of(std::size_t node) const {
-  Eigen::Matrix4d placement = Eigen::Matrix4d::Identity();
-  for (std::size_t at = node; at != kNone; at = parents_[at])
-    placement = local_placement(nodes_[at], name_of(at)) * placement;
-  return placement;
+Placements::Placements(const json& scene) : parents_(parents_of(scene)) {
+  const json& nodes = list(scene, "nodes");
+  for (std::size_t i = 0; i < nodes.size(); ++i) locals_.push_back(local_placement(nodes[i], name_of(i)));
+  placements_ = locals_;
+  std::vector<bool> is_placed(nodes.size(), false);
+  std::vector<std::size_t> open;  // ancestors that are not placed yet, the highest last
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (std::size_t at = i; at != kNone && !is_placed[at]; at = parents_[at]) open.push_back(at);
+    for (; !open.empty(); open.pop_back()) {
+      const std::size_t at = open.back();
+      if (parents_[at] != kNone) placements_[at] = placements_[parents_[at]] * locals_[at];
+      is_placed[at] = true;
+    }
+  }
+}
+
+std::size_t Placements::flattening(std::size_t node) const {
+  for (std::size_t at = node; at != kNone; at = parents_[at]) {
+    if (is_singular(locals_[at])) return at;
+  }
+  return node;
 }
 
 }  // namespace tumblesight::sim::gltf

@@ -10,12 +10,37 @@
 namespace tumblesight::sim::gltf {
 namespace {
 
-using Matrices = std::vector<Eigen::Matrix4d>;
-
 constexpr std::size_t kPerVertex = 4;  // joints of one set
 
-// From the axes of the part to those of the scene, by joint.
-Matrices joints_of(const json& scene, std::size_t number, const Data& data) {
+// Joints or weights of one set, four per vertex; empty if there is none.
+std::vector<float> of_set(const json& scene, const Part& part, const std::string& name, const Data& data) {
+  const json& extension = draco_of(part.primitive);
+  if (extension.is_object()) {
+    std::vector<float> values = draco_attribute(extension, data, name.c_str());
+    if (!values.empty()) return values;
+  }
+  const json& number = optional(optional(part.primitive, "attributes"), name.c_str());
+  if (number.is_null()) return {};
+  const std::string what = part.where + "'s " + name;
+  if (optional(list(scene, "accessors")[number.get<std::size_t>()], "type") != "VEC4")
+    fail(what + " is not VEC4");
+  return data.floats(number.get<std::size_t>(), what);
+}
+
+void add_weighted(const Joints& joints, float joint, double weight, const Part& part, std::size_t vertex,
+                  Eigen::Matrix4d& sum) {
+  if (weight == 0.0) return;
+  if (!(joint >= 0.0F && joint < static_cast<float>(joints.size()))) {
+    fail(part.where + "'s vertex " + std::to_string(vertex) + " names joint " +
+         std::to_string(static_cast<long long>(joint)) + ", and its skin has " +
+         std::to_string(joints.size()));
+  }
+  sum += weight * joints[static_cast<std::size_t>(joint)];
+}
+
+}  // namespace
+
+Joints joints_of(const json& scene, std::size_t number, const Data& data, const Placements& placements) {
   const std::string where = "skin " + std::to_string(number);
   const json& skin = list(scene, "skins")[number];
   const json& joints = list(skin, "joints");
@@ -34,8 +59,7 @@ Matrices joints_of(const json& scene, std::size_t number, const Data& data) {
       fail(what + " are " + std::to_string(inverse.size() / 16) + ", fewer than its " +
            std::to_string(joints.size()) + " joints");
   }
-  const Placements placements(scene);
-  Matrices found;
+  Joints found;
   for (const json& joint : joints) {
     Eigen::Matrix4d matrix = placements.of(whole(joint, list(scene, "nodes").size(), where + "'s joint"));
     if (!inverse.empty())
@@ -44,34 +68,6 @@ Matrices joints_of(const json& scene, std::size_t number, const Data& data) {
   }
   return found;
 }
-
-// Joints or weights of one set, four per vertex; empty if there is none.
-std::vector<float> of_set(const json& scene, const Part& part, const std::string& name, const Data& data) {
-  const json& extension = draco_of(part.primitive);
-  if (extension.is_object()) {
-    std::vector<float> values = draco_attribute(extension, data, name.c_str());
-    if (!values.empty()) return values;
-  }
-  const json& number = optional(optional(part.primitive, "attributes"), name.c_str());
-  if (number.is_null()) return {};
-  const std::string what = part.where + "'s " + name;
-  if (optional(list(scene, "accessors")[number.get<std::size_t>()], "type") != "VEC4")
-    fail(what + " is not VEC4");
-  return data.floats(number.get<std::size_t>(), what);
-}
-
-void add_weighted(const Matrices& joints, float joint, double weight, const Part& part, std::size_t vertex,
-                  Eigen::Matrix4d& sum) {
-  if (weight == 0.0) return;
-  if (!(joint >= 0.0F && joint < static_cast<float>(joints.size()))) {
-    fail(part.where + "'s vertex " + std::to_string(vertex) + " names joint " +
-         std::to_string(static_cast<long long>(joint)) + ", and its skin has " +
-         std::to_string(joints.size()));
-  }
-  sum += weight * joints[static_cast<std::size_t>(joint)];
-}
-
-}  // namespace
 
 std::vector<double> morph_weights(const json& node, const json& mesh, const std::string& where) {
   const json& chosen = optional(node, "weights").is_null() ? list(mesh, "weights") : list(node, "weights");
@@ -85,32 +81,28 @@ std::vector<double> morph_weights(const json& node, const json& mesh, const std:
 }
 
 void morph(const Part& part, const std::vector<double>& weights, const Data& data,
-           std::vector<float>& positions) {
+           std::vector<double>& positions) {
   const json& targets = list(part.primitive, "targets");
   if (targets.size() != weights.size()) {
     fail(part.where + " has " + std::to_string(targets.size()) + " morph targets, and its mesh or node has " +
          std::to_string(weights.size()) + " weights");
   }
-  std::vector<double> sum(positions.begin(), positions.end());
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const json& accessor = optional(targets[i], "POSITION");
     if (weights[i] == 0.0 || accessor.is_null()) continue;
     const std::vector<float> moved =
         data.floats(accessor.get<std::size_t>(), part.where + "'s morph target " + std::to_string(i));
-    if (moved.size() != sum.size())
+    if (moved.size() != positions.size())
       fail(part.where + "'s morph targets have another count than its vertices");
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weights[i] * static_cast<double>(moved[k]);
+    for (std::size_t k = 0; k < positions.size(); ++k)
+      positions[k] += weights[i] * static_cast<double>(moved[k]);
   }
-  std::transform(sum.begin(), sum.end(), positions.begin(),
-                 [](double value) { return static_cast<float>(value); });
 }
 
-void apply_skin(const json& scene, std::size_t node, const Part& part, const Data& data,
-                std::vector<float>& positions) {
-  const json& of_node = list(scene, "nodes")[node];
-  const Matrices joints = joints_of(scene, of_node["skin"].get<std::size_t>(), data);
+void apply_skin(const json& scene, const Joints& joints, const Part& part, const Data& data,
+                std::vector<double>& positions) {
   const std::size_t vertices = positions.size() / 3;
-  Matrices sums(vertices, Eigen::Matrix4d::Zero());
+  Joints sums(vertices, Eigen::Matrix4d::Zero());
   std::vector<double> whole_weight(vertices, 0.0);
   for (std::size_t set = 0;; ++set) {
     const std::string suffix = "_" + std::to_string(set);
@@ -132,8 +124,7 @@ void apply_skin(const json& scene, std::size_t node, const Part& part, const Dat
       fail(part.where + "'s vertex " + std::to_string(i) + " hangs on no joint of its skin");
     const Eigen::Vector4d place(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2], 1.0);
     const Eigen::Vector4d moved = sums[i] * place / whole_weight[i];
-    for (std::size_t k = 0; k < 3; ++k)
-      positions[3 * i + k] = static_cast<float>(moved[static_cast<Eigen::Index>(k)]);
+    for (std::size_t k = 0; k < 3; ++k) positions[3 * i + k] = moved[static_cast<Eigen::Index>(k)];
   }
 }
 

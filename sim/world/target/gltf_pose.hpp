@@ -1,6 +1,7 @@
 // The vertices of a part as its morph targets and its skin place them.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -22,11 +23,15 @@ std::vector<double> morph_weights(const json& node, const json& mesh, const std:
 
 // Adds the targets to the positions, three numbers per vertex.
 void morph(const Part& part, const std::vector<double>& weights, const Data& data,
-           std::vector<float>& positions);
+           std::vector<double>& positions);
+
+// By joint of a skin, from the axes of a part to those of the scene.
+using Joints = std::vector<Eigen::Matrix4d>;
+Joints joints_of(const json& scene, std::size_t skin, const Data& data, const Placements& placements);
 
 // Puts the positions where the joints have them, in the axes of the scene. The placement of the node itself
 // does not count for a part with a skin, by the standard.
-void apply_skin(const json& scene, std::size_t node, const Part& part, const Data& data,
-                std::vector<float>& positions);
+void apply_skin(const json& scene, const Joints& joints, const Part& part, const Data& data,
+                std::vector<double>& positions);
 
 }  // namespace tumblesight::sim::gltf

@@ -1,20 +1,21 @@
 #include "sim/world/target/gltf_surface.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "sim/terminal/text.hpp"
-#include "sim/world/target/glb_writer.hpp"
 #include "sim/world/target/gltf_data.hpp"
 #include "sim/world/target/gltf_draco.hpp"
 #include "sim/world/target/gltf_nodes.hpp"
 #include "sim/world/target/gltf_pose.hpp"
+#include "sim/world/target/mesh_builder.hpp"
 #include "sim/world/target/mesh_file.hpp"
 
 namespace tumblesight::sim {
@@ -22,6 +23,7 @@ namespace gltf {
 namespace {
 
 constexpr std::size_t kMaxVertices = 60'000'000;  // of all parts, each as often as a node repeats it
+constexpr double kNoAreaShare = 1e-7;             // of a triangle's longest edge squared: it has no area
 
 std::uint64_t mode_of(const json& primitive) {
   return whole_or(primitive, "mode", kTriangles, 7, "a primitive");
@@ -32,100 +34,159 @@ std::size_t triangles_of(std::uint64_t mode, std::size_t corners) {
   return mode == kTriangles ? corners / 3 : corners - 2;
 }
 
-// An accessor of the GLB file.
-struct Written {
-  std::size_t accessor = 0, count = 0;
-  std::uint32_t largest = 0;  // of corners: the largest vertex
-  std::size_t largest_at = 0;
+// The corners of a triangle among those of a list of triangles, a strip or a fan.
+std::array<std::size_t, 3> corners_of_triangle(std::uint64_t mode, std::size_t i) {
+  if (mode == kTriangles) return {3 * i, 3 * i + 1, 3 * i + 2};
+  if (mode == kTriangleFan) return {0, i + 1, i + 2};
+  return {i, i + 1 + i % 2, i + 2 - i % 2};  // of a strip every second one is turned round
+}
+
+bool has_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  return 0.5 * (b - a).cross(c - a).norm() > kNoAreaShare * longest;
+}
+
+// The numbers of a primitive as the file has them.
+struct Shape {
+  std::uint64_t mode = kTriangles;
+  const std::vector<float>* positions = nullptr;
+  const std::vector<std::uint32_t>* listed = nullptr;  // its corners; without: every vertex once
+
+  std::size_t vertices() const { return positions->size() / 3; }
+  std::size_t corners() const { return listed == nullptr ? vertices() : listed->size(); }
+  std::size_t triangles() const { return triangles_of(mode, corners()); }
+  std::size_t vertex(std::size_t corner) const { return listed == nullptr ? corner : (*listed)[corner]; }
 };
 
 class Surface {
  public:
-  explicit Surface(const File& file) : file_(file), scene_(file.scene), data_(file) {}
+  Surface(const File& file, const MeshFileOptions& options)
+      : scene_(file.scene), data_(file), placements_(file.scene), builder_(options, "node") {}
 
-  std::string bytes() {
-    start_nodes();
-    const std::vector<std::size_t> nodes = nodes_of_scene(scene_);
-    for (const std::size_t node : nodes) {
+  TriangleMesh mesh() {
+    const SceneNodes nodes = nodes_of_scene(scene_);
+    for (const std::size_t node : nodes.visible) {
       if (scene_["nodes"][node].contains("mesh")) add_node(node);
     }
-    if (parts_ == 0) refuse_empty(nodes.size());
-    if (triangles_ == 0) {
+    if (parts_ == 0) refuse_empty(nodes);
+    if (builder_.triangles() == 0) {
       refuse("holds no triangles: its scene has " + std::to_string(parts_) +
              " parts, all of points or lines; export the surface as a triangle mesh");
     }
-    return glb_.bytes();
+    check_flat();
+    return builder_.finish();
   }
 
  private:
-  void start_nodes() {
-    json& to = glb_.scene();
-    to["scene"] = 0;
-    to["scenes"] = json::array({{{"nodes", list(list(scene_, "scenes").at(chosen_scene(scene_)), "nodes")}}});
-    for (const json& node : list(scene_, "nodes")) {
-      json kept = json::object();
-      for (const char* key : {"children", "matrix", "translation", "rotation", "scale"}) {
-        if (node.contains(key)) kept[key] = node[key];
-      }
-      if (kept.contains("matrix")) {
-        for (const char* key : {"translation", "rotation", "scale"}) kept.erase(key);
-      }
-      to["nodes"].push_back(std::move(kept));
-    }
-    for (const json& material : list(scene_, "materials")) {
-      const json& name = optional(material, "name");
-      to["materials"].push_back({{"name", name.is_string() ? name : json("")}});
-    }
-  }
-
-  [[noreturn]] void refuse_empty(std::size_t nodes) const {
+  [[noreturn]] void refuse_empty(const SceneNodes& nodes) const {
     const std::size_t meshes = list(scene_, "meshes").size();
     if (meshes == 0) fail("its scene holds no parts: the file has no meshes");
+    const auto has_mesh = [this](std::size_t node) { return scene_["nodes"][node].contains("mesh"); };
+    const auto shown = std::find_if(nodes.visible.begin(), nodes.visible.end(), has_mesh);
+    if (shown != nodes.visible.end()) {
+      fail("its scene holds no parts: mesh " + scene_["nodes"][*shown]["mesh"].dump() +
+           ", which stands in node " + std::to_string(*shown) + ", has no primitives");
+    }
+    const auto hidden = std::count_if(nodes.hidden.begin(), nodes.hidden.end(), has_mesh);
+    if (hidden > 0) {
+      refuse("its scene shows no parts: KHR_node_visibility hides all " + std::to_string(hidden) +
+             " nodes that have one; make them visible and export it again");
+    }
     refuse("its scene holds no parts: none of the " + std::to_string(meshes) +
            " meshes of the file stands in scene " + std::to_string(chosen_scene(scene_)) + ", which has " +
-           std::to_string(nodes) + " nodes; put the parts into this scene and export it again");
+           std::to_string(nodes.visible.size() + nodes.hidden.size()) +
+           " nodes; put the parts into this scene and export it again");
   }
 
-  // A part that a skin or morph targets change becomes a mesh of its own.
   void add_node(std::size_t number) {
     const json& node = scene_["nodes"][number];
     const auto mesh_number = node["mesh"].get<std::size_t>();
     const json& mesh = scene_["meshes"][mesh_number];
     const std::vector<double> weights = morph_weights(node, mesh, "mesh " + std::to_string(mesh_number));
-    const bool has_skin = node.contains("skin");
-    if (weights.empty() && !has_skin) {
-      const auto [known, is_new] = meshes_.try_emplace(mesh_number, 0);
-      if (is_new) known->second = add_mesh(number, mesh_number, {});
-      count(known->second);
-      if (!counts_[known->second].is_empty) glb_.scene()["nodes"][number]["mesh"] = known->second;
-      return;
+    const std::size_t primitives = list(mesh, "primitives").size();
+    for (std::size_t i = 0; i < primitives; ++i) {
+      const Part part{mesh, mesh["primitives"][i],
+                      "mesh " + std::to_string(mesh_number) + "'s primitive " + std::to_string(i)};
+      const Shape shape = shape_of(part, {mesh_number, i});
+      check_vertices(part, shape);
+      count(shape);
+      if (shape.mode >= kTriangles && shape.corners() > 0) add_part(number, part, shape, weights);
     }
-    const std::size_t added = add_mesh(number, mesh_number, weights);
-    count(added);
-    if (counts_[added].is_empty) return;
-    if (!has_skin) {
-      glb_.scene()["nodes"][number]["mesh"] = added;
-      return;
-    }
-    json& nodes = glb_.scene()["nodes"];
-    nodes.push_back({{"mesh", added}});
-    glb_.scene()["scenes"][0]["nodes"].push_back(nodes.size() - 1);
   }
 
-  struct Counts {
-    std::size_t parts = 0, triangles = 0, vertices = 0;
-    bool is_empty = true;
-  };
+  // The positions that morph targets and a skin give; empty if the part has neither.
+  std::vector<double> posed(std::size_t number, const Part& part, const Shape& shape,
+                            const std::vector<double>& weights) {
+    const json& skin = optional(scene_["nodes"][number], "skin");
+    if (weights.empty() && skin.is_null()) return {};
+    std::vector<double> values(shape.positions->begin(), shape.positions->end());
+    if (!weights.empty()) morph(part, weights, data_, values);
+    if (!skin.is_null()) apply_skin(scene_, joints(skin.get<std::size_t>()), part, data_, values);
+    return values;
+  }
 
-  void count(std::size_t mesh) {
-    parts_ += counts_[mesh].parts;
-    triangles_ += counts_[mesh].triangles;
-    vertices_ += counts_[mesh].vertices;
+  void add_part(std::size_t number, const Part& part, const Shape& shape,
+                const std::vector<double>& weights) {
+    const std::vector<double> values = posed(number, part, shape, weights);
+    // A skin puts its part into the axes of the scene.
+    const Eigen::Matrix4d placement =
+        scene_["nodes"][number].contains("skin") ? Eigen::Matrix4d::Identity() : placements_.of(number);
+    const auto place = [&](std::size_t vertex) -> Eigen::Vector3d {
+      Eigen::Vector4d at = Eigen::Vector4d::UnitW();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t value = 3 * vertex + k;
+        at[static_cast<Eigen::Index>(k)] =
+            values.empty() ? static_cast<double>((*shape.positions)[value]) : values[value];
+      }
+      return (placement * at).head<3>();
+    };
+    std::uint32_t last = 0;
+    for (std::size_t i = 0; i < shape.vertices(); ++i) last = builder_.add_vertex(place(i), number);
+    add_triangles(number, part, shape, placement, last + 1 - static_cast<std::uint32_t>(shape.vertices()),
+                  place);
+  }
+
+  // `first`: the number of the part's first vertex.
+  template <typename Place>
+  void add_triangles(std::size_t number, const Part& part, const Shape& shape,
+                     const Eigen::Matrix4d& placement, std::uint32_t first, const Place& place) {
+    const bool is_flat = is_singular(placement);
+    // A node that mirrors its parts turns their triangles round, by the standard.
+    const bool is_mirrored = placement.topLeftCorner<3, 3>().determinant() < 0.0;
+    const bool is_panel = names_a_panel(material_of(part));
+    for (std::size_t i = 0; i < shape.triangles(); ++i) {
+      std::array<std::size_t, 3> corners = corners_of_triangle(shape.mode, i);
+      for (std::size_t& corner : corners) corner = shape.vertex(corner);
+      if (is_flat && !has_area(place(corners[0]), place(corners[1]), place(corners[2])) && flat_++ == 0)
+        flat_node_ = number;
+      if (is_mirrored) std::swap(corners[1], corners[2]);
+      builder_.add_triangle(first + static_cast<std::uint32_t>(corners[0]),
+                            first + static_cast<std::uint32_t>(corners[1]),
+                            first + static_cast<std::uint32_t>(corners[2]), is_panel);
+    }
+  }
+
+  std::string material_of(const Part& part) const {
+    const json& number = optional(part.primitive, "material");
+    if (number.is_null()) return {};
+    const json& name = optional(scene_["materials"][number.get<std::size_t>()], "name");
+    return name.is_string() ? name.get<std::string>() : std::string();
+  }
+
+  const Joints& joints(std::size_t skin) {
+    const auto [known, is_new] = joints_.try_emplace(skin);
+    if (is_new) known->second = joints_of(scene_, skin, data_, placements_);
+    return known->second;
+  }
+
+  void count(const Shape& shape) {
+    ++parts_;
+    triangles_ += shape.triangles();
+    vertices_ += shape.vertices();
     if (triangles_ > kMaxTriangles) {
       refuse("has more than " + std::to_string(kMaxTriangles) +
              " triangles, counted as often as its scene repeats them; simplify it in the modelling tool: "
-             "100000 show "
-             "every detail that the sensor can");
+             "100000 show every detail that the sensor can");
     }
     if (vertices_ > kMaxVertices) {
       refuse("has more than " + std::to_string(kMaxVertices) +
@@ -133,121 +194,90 @@ class Surface {
     }
   }
 
-  // The number of the mesh in the GLB file.
-  std::size_t add_mesh(std::size_t node, std::size_t number, const std::vector<double>& weights) {
-    const json& mesh = scene_["meshes"][number];
-    json primitives = json::array();
-    Counts counts;
-    for (std::size_t i = 0; i < list(mesh, "primitives").size(); ++i) {
-      const Part part{mesh, mesh["primitives"][i],
-                      "mesh " + std::to_string(number) + "'s primitive " + std::to_string(i)};
-      ++counts.parts;
-      json plain = add_primitive(node, part, weights, counts);
-      if (!plain.is_null()) primitives.push_back(std::move(plain));
-    }
-    counts.is_empty = primitives.empty();
-    json& meshes = glb_.scene()["meshes"];
-    meshes.push_back({{"primitives", std::move(primitives)}});
-    counts_.push_back(counts);
-    return counts_.size() - 1;
+  // What has no area is left out later, and too much of it is refused. Here the reason is known.
+  void check_flat() const {
+    if (static_cast<double>(flat_) <= kMaxShareWithoutArea * static_cast<double>(builder_.triangles()))
+      return;
+    const std::size_t culprit = placements_.flattening(flat_node_);
+    const json& node = scene_["nodes"][culprit];
+    const bool by_scale = !node.contains("matrix") && node.contains("scale");
+    refuse(std::to_string(flat_) + " of " + std::to_string(builder_.triangles()) +
+           " triangles have no area, because node " + std::to_string(culprit) + " makes them flat: its " +
+           (by_scale ? "scale is " + shown(node["scale"]) : std::string("matrix is singular")) +
+           "; correct this node in the modelling tool and export it again");
   }
 
-  // Null if it has no corners.
-  json add_primitive(std::size_t node, const Part& part, const std::vector<double>& weights, Counts& counts) {
+  // `number`: of the mesh and of its primitive. Numbers are often shared between parts and repeated by nodes;
+  // all are read once.
+  Shape shape_of(const Part& part, const std::pair<std::size_t, std::size_t>& number) {
     const json& draco = draco_of(part.primitive);
-    const bool has_pose = !weights.empty() || scene_["nodes"][node].contains("skin");
-    std::optional<Written> corners;
-    Written positions;
+    Shape shape;
     if (draco.is_object()) {
-      DracoPart decoded = decode_draco(draco, data_);
-      if (decoded.corners.empty()) return nullptr;
-      if (has_pose) place(node, part, weights, decoded.positions);
-      positions = add_positions(decoded.positions);
-      corners = add_corners(decoded.corners);
-    } else {
-      const auto accessor = part.primitive["attributes"]["POSITION"].get<std::size_t>();
-      positions = has_pose ? add_placed(node, part, weights, accessor) : positions_of(part, accessor);
-      if (part.primitive.contains("indices"))
-        corners = corners_of(part, part.primitive["indices"].get<std::size_t>());
+      const auto [known, is_new] = draco_.try_emplace(number);
+      if (is_new) known->second = decode_draco(draco, data_);
+      shape.positions = &known->second.positions;
+      shape.listed = &known->second.corners;
+      return shape;
     }
-    check_corners(part, positions, corners);
-    const std::uint64_t mode = draco.is_object() ? kTriangles : mode_of(part.primitive);
-    counts.vertices += positions.count;
-    counts.triangles += triangles_of(mode, corners ? corners->count : positions.count);
-    json plain = {{"attributes", {{"POSITION", positions.accessor}}}, {"mode", mode}};
-    if (corners) plain["indices"] = corners->accessor;
-    if (part.primitive.contains("material")) plain["material"] = part.primitive["material"];
-    return plain;
+    shape.mode = mode_of(part.primitive);
+    shape.positions = &positions_of(part, part.primitive["attributes"]["POSITION"].get<std::size_t>());
+    if (part.primitive.contains("indices"))
+      shape.listed = &corners_of(part, part.primitive["indices"].get<std::size_t>());
+    return shape;
   }
 
-  void place(std::size_t node, const Part& part, const std::vector<double>& weights,
-             std::vector<float>& positions) {
-    if (!weights.empty()) morph(part, weights, data_, positions);
-    if (scene_["nodes"][node].contains("skin")) apply_skin(scene_, node, part, data_, positions);
-  }
-
-  Written add_placed(std::size_t node, const Part& part, const std::vector<double>& weights,
-                     std::size_t accessor) {
-    std::vector<float> positions = read_positions(part, accessor);
-    place(node, part, weights, positions);
-    return add_positions(positions);
-  }
-
-  std::vector<float> read_positions(const Part& part, std::size_t accessor) const {
+  void check_data(std::size_t accessor, const std::string& what, const char* names) const {
     const json& description = scene_["accessors"][accessor];
     if (!description.contains("bufferView") && !description.contains("sparse"))
-      fail(part.where + "'s POSITION (accessor " + std::to_string(accessor) + ") names no data");
-    return data_.floats(accessor, part.where + "'s POSITION");
+      fail(what + " (accessor " + std::to_string(accessor) + ") " + names + " no data");
   }
 
-  // Accessors are often shared between parts; each is written once.
-  const Written& positions_of(const Part& part, std::size_t accessor) {
+  const std::vector<float>& positions_of(const Part& part, std::size_t accessor) {
     const auto [known, is_new] = positions_.try_emplace(accessor);
-    if (is_new) known->second = add_positions(read_positions(part, accessor));
-    return known->second;
+    if (!is_new) return known->second;
+    check_data(accessor, part.where + "'s POSITION", "names");
+    return known->second = data_.floats(accessor, part.where + "'s POSITION");
   }
 
-  const Written& corners_of(const Part& part, std::size_t accessor) {
+  const std::vector<std::uint32_t>& corners_of(const Part& part, std::size_t accessor) {
     const auto [known, is_new] = corners_.try_emplace(accessor);
     if (!is_new) return known->second;
-    const json& description = scene_["accessors"][accessor];
-    if (!description.contains("bufferView") && !description.contains("sparse"))
-      fail(part.where + "'s indices (accessor " + std::to_string(accessor) + ") name no data");
-    return known->second = add_corners(data_.wholes(accessor, part.where + "'s indices"));
+    check_data(accessor, part.where + "'s indices", "name");
+    return known->second = data_.wholes(accessor, part.where + "'s indices");
   }
 
-  Written add_positions(const std::vector<float>& values) {
-    return {glb_.add_accessor(values, kFloat, "VEC3", values.size() / 3), values.size() / 3, 0, 0};
+  static void check_vertices(const Part& part, const Shape& shape) {
+    if (shape.listed == nullptr || shape.listed->empty()) return;
+    const auto largest = std::max_element(shape.listed->begin(), shape.listed->end());
+    if (*largest < shape.vertices()) return;
+    fail(part.where + " names vertex " + std::to_string(*largest) + " (index " +
+         std::to_string(largest - shape.listed->begin()) + "), and it has " +
+         std::to_string(shape.vertices()) + " vertices");
   }
 
-  Written add_corners(const std::vector<std::uint32_t>& values) {
-    const auto largest = std::max_element(values.begin(), values.end());
-    return {glb_.add_accessor(values, kUnsignedInt, "SCALAR", values.size()), values.size(),
-            largest == values.end() ? 0 : *largest, static_cast<std::size_t>(largest - values.begin())};
-  }
-
-  static void check_corners(const Part& part, const Written& positions,
-                            const std::optional<Written>& corners) {
-    if (!corners || corners->largest < positions.count) return;
-    fail(part.where + " names vertex " + std::to_string(corners->largest) + " (index " +
-         std::to_string(corners->largest_at) + "), and it has " + std::to_string(positions.count) +
-         " vertices");
-  }
-
-  const File& file_;
   const json& scene_;
   Data data_;
-  GlbWriter glb_;
-  std::map<std::size_t, std::size_t> meshes_;  // numbers in the file to those in the GLB file
-  std::map<std::size_t, Written> positions_, corners_;
-  std::vector<Counts> counts_;  // of each mesh in the GLB file
+  Placements placements_;
+  MeshBuilder builder_;
+  std::map<std::size_t, std::vector<float>> positions_;  // by accessor
+  std::map<std::size_t, std::vector<std::uint32_t>> corners_;
+  std::map<std::pair<std::size_t, std::size_t>, DracoPart> draco_;
+  std::map<std::size_t, Joints> joints_;  // by skin
   std::size_t parts_ = 0, triangles_ = 0, vertices_ = 0;
+  std::size_t flat_ = 0, flat_node_ = 0;  // triangles without area below singular placements; the first node
 };
 
 std::string remark_on(const json& scene) {
   std::vector<bool> stands(list(scene, "meshes").size(), false);
-  std::size_t parts = 0, without_triangles = 0, posed = 0;
-  for (const std::size_t number : nodes_of_scene(scene)) {
+  std::size_t parts = 0, without_triangles = 0, posed = 0, hidden = 0;
+  const SceneNodes nodes = nodes_of_scene(scene);
+  for (const std::size_t number : nodes.hidden) {
+    const json& mesh = optional(scene["nodes"][number], "mesh");
+    if (mesh.is_null()) continue;
+    stands[mesh.get<std::size_t>()] = true;
+    ++hidden;
+  }
+  for (const std::size_t number : nodes.visible) {
     const json& node = scene["nodes"][number];
     if (!node.contains("mesh")) continue;
     const auto mesh = node["mesh"].get<std::size_t>();
@@ -267,6 +297,8 @@ std::string remark_on(const json& scene) {
   if (without_triangles > 0)
     text += of(without_triangles, parts) +
             " parts of the file are points or lines and left out: no ray hits them. ";
+  if (hidden > 0)
+    text += "The parts of " + counted(hidden, "node") + " are hidden (KHR_node_visibility) and left out. ";
   if (unused > 0) text += of(unused, stands.size()) + " meshes of the file stand in no node of its scene. ";
   if (scenes > 1) text += "Only scene " + of(chosen_scene(scene), scenes) + " is read, the file's default. ";
   if (posed > 0) text += "The skins and morph targets of " + counted(posed, "node") + " are applied. ";
@@ -291,10 +323,10 @@ std::string gltf_remark(const std::string& path) {
   return gltf::guarded([&] { return gltf::remark_on(gltf::read_file(path).scene); });
 }
 
-std::string gltf_surface(const std::string& path) {
+TriangleMesh gltf_surface(const std::string& path, const MeshFileOptions& options) {
   return gltf::guarded([&] {
     const gltf::File file = gltf::read_file(path);
-    return gltf::Surface(file).bytes();
+    return gltf::Surface(file, options).mesh();
   });
 }
 

@@ -14,7 +14,7 @@
 
 #include "sim/process/input_file.hpp"
 #include "sim/world/target/file_lines.hpp"
-#include "sim/world/target/mesh_import.hpp"
+#include "sim/world/target/gltf_surface.hpp"
 #include "sim/world/target/obj_file.hpp"
 #include "sim/world/target/ply_file.hpp"
 #include "sim/world/target/stl_file.hpp"
@@ -137,7 +137,7 @@ TriangleMesh read_by_format(const std::string& path, const MeshFileOptions& opti
   const std::string extension = extension_of(path);
   if (extension == ".glb" || extension == ".gltf") {
     check_start(path);
-    return import_mesh(path, options);
+    return gltf_surface(path, options);
   }
   const std::string content = read_text(path, kMesh);
   const std::string_view bytes = without_byte_order_mark(content);
@@ -194,8 +194,7 @@ std::vector<std::uint32_t> first_at_same_place(const std::vector<Eigen::Vector3f
 }
 
 // Gives vertices at exactly the same place the same index, and leaves out those of no triangle, which would
-// count for the radius. (The step of Assimp joins within a tolerance in the unit of the file, which can make
-// small triangles degenerate, and treats not-a-number as equal to anything.)
+// count for the radius.
 void join_equal_vertices(TriangleMesh& mesh) {
   const std::vector<std::uint32_t> first = first_at_same_place(mesh.vertices_trf_m);
   std::vector<std::uint8_t> used(first.size(), 0);

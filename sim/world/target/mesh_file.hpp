@@ -1,4 +1,4 @@
-// Mesh files: a target's surface from a CAD file or a scan (STL, OBJ, PLY; glTF and GLB through Assimp).
+// Mesh files: a target's surface from a CAD file or a scan (STL, OBJ, PLY, glTF, GLB).
 #pragma once
 
 #include <Eigen/Core>

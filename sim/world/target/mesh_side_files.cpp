@@ -56,7 +56,9 @@ std::vector<std::string> parts_of_gltf(const fs::path& path) {
       const auto uri = part.is_object() ? part.find("uri") : part.end();
       if (uri == part.end() || !uri->is_string()) continue;
       const auto text = uri->get<std::string>();
-      if (text.rfind("data:", 0) != 0) files.push_back(gltf::side_file(path.parent_path(), text).string());
+      // What leads out of the folder is not opened.
+      if (!gltf::is_data_uri(text) && !gltf::is_outside_address(text))
+        files.push_back(gltf::side_file(path.parent_path(), text).string());
     }
   }
   return files;

@@ -21,8 +21,6 @@ TEST(WriteMesh, NamesItsFileOfMaterials) {
   EXPECT_EQ(materials_of("out/mesh.obj"), "out/mesh.mtl");
 }
 
-#ifdef TUMBLESIGHT_HAS_ASSIMP
-
 TEST(WriteMesh, IsReadAgainWithZUpInMetres) {
   const TemporaryFolder folder;
   const TriangleMesh mesh = sound_mesh();
@@ -46,8 +44,6 @@ TEST(WriteMesh, AnObjKeepsTheMarksOfPanels) {
   ASSERT_EQ(again.is_panel.size(), mesh.triangles.size());
   EXPECT_EQ(std::count(again.is_panel.begin(), again.is_panel.end(), 1), 12);
 }
-
-#endif
 
 }  // namespace
 }  // namespace tumblesight::sim

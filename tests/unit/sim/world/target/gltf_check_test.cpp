@@ -64,13 +64,14 @@ std::string glb(const std::string& kind, const std::string& json) {
 TEST_F(GltfCheck, WholeFilesPass) {
   EXPECT_NO_THROW(check_gltf(write(kTriangle)));
   EXPECT_NO_THROW(check_gltf(write(" \n" + kTriangle + "\n")));
+  EXPECT_NO_THROW(check_gltf(write("\xEF\xBB\xBF" + kTriangle))) << "a byte order mark";
   EXPECT_NO_THROW(check_glb(write(glb("JSON", kTriangle + "  "))));
   EXPECT_NO_THROW(check_glb(write(glb("JSON", kTriangle + std::string(2, '\0'))))) << "padded with zeros";
   EXPECT_EQ(said_with(R"(,"indices":2,"mode":4)", ""), "") << "triangles without indices";
   EXPECT_EQ(said_with(R"("mode":4)", R"("mode":5)"), "") << "a strip";
 }
 
-// Found by fuzzing: a strip without corners is 2^32 - 2 triangles to Assimp.
+// Found by fuzzing: a strip without corners is 2^32 - 2 triangles if nobody checks.
 TEST_F(GltfCheck, PrimitivesHaveCorners) {
   EXPECT_NE(
       said_with(R"("attributes":{"POSITION":0,"NORMAL":1})", R"("attributes":{"NORMAL":1})").find("POSITION"),
@@ -131,6 +132,20 @@ TEST_F(GltfCheck, RequiredExtensionsAreReadOrRefusedByName) {
   const std::string hostile = with(R"("extensionsRequired":["\u001b[31m)" + std::string(5000, 'x') + "\"]");
   EXPECT_LT(hostile.size(), 400U);
   EXPECT_EQ(hostile.find('\x1b'), std::string::npos);
+}
+
+// Without its instances or its data such a file would be another body.
+TEST_F(GltfCheck, ExtensionsThatAreUsedAndNotDeclaredAreRefusedToo) {
+  const auto with = [this](const std::string& members) {
+    return said_with(R"("meshes")", members + R"(,"meshes")");
+  };
+  EXPECT_NE(with(R"("nodes":[{},{"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{}}}}])")
+                .find("uses EXT_mesh_gpu_instancing"),
+            std::string::npos);
+  EXPECT_NE(
+      with(R"("bufferViews":[{"extensions":{"EXT_meshopt_compression":{}}}])").find("without compression"),
+      std::string::npos);
+  EXPECT_EQ(with(R"("nodes":[{"extensions":{"ACME_names":{}}}])"), "");
 }
 
 TEST_F(GltfCheck, PositionsAndIndicesAreOfTheTypesThatTheStandardGivesThem) {

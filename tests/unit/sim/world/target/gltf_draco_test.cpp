@@ -106,7 +106,7 @@ TEST_F(GltfDraco, IsReadWithNodesAndNamesOfMaterials) {
   EXPECT_LT((box.max() - Eigen::Vector3f(2.5F, 0.0F, 4.0F)).norm(), 1e-3F) << box.max().transpose();
 }
 
-// Assimp's own reader gives up beyond 65,536 vertices in a part.
+// Some readers give up beyond 65,536 vertices in a part.
 // Verifies TS-SIL-350.
 TEST_F(GltfDraco, LargePartsAreRead) {
   std::vector<std::array<Corner, 3> > strip;

@@ -3,14 +3,18 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/world/target/mesh_file.hpp"
@@ -105,16 +109,23 @@ class GltfSurface : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-[[maybe_unused]] void expect_box(const TriangleMesh& mesh, const Eigen::Vector3f& min,
-                                 const Eigen::Vector3f& max) {
+void expect_box(const TriangleMesh& mesh, const Eigen::Vector3f& min, const Eigen::Vector3f& max) {
   const Eigen::AlignedBox3f box = bounding_box(mesh);
   EXPECT_LT((box.min() - min).norm(), 1e-5F) << box.min().transpose();
   EXPECT_LT((box.max() - max).norm(), 1e-5F) << box.max().transpose();
 }
 
-#define EXPECT_SAYS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << (text)
+// Negative if the sides that the triangles show are inside.
+double signed_volume_m3(const TriangleMesh& mesh) {
+  double volume = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto& v = mesh.vertices_trf_m;
+    volume += v[a].cast<double>().dot(v[b].cast<double>().cross(v[c].cast<double>())) / 6.0;
+  }
+  return volume;
+}
 
-#ifdef TUMBLESIGHT_HAS_ASSIMP
+#define EXPECT_SAYS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << (text)
 
 // The node of a part with a skin does not place it.
 TEST_F(GltfSurface, JointsPlaceThePartsWithASkin) {
@@ -161,6 +172,70 @@ TEST_F(GltfSurface, MorphTargetsAreAppliedWithTheirDefaultWeights) {
   EXPECT_SAYS(said(craft), "1 morph targets, and its mesh or node has 2 weights");
 }
 
+// Parts of one assembly would shift against each other.
+TEST_F(GltfSurface, LargeTranslationsOfAChainOfNodesCancelExactly) {
+  Craft craft;
+  craft.scene["nodes"] = json::parse(
+      R"([{"children":[1],"translation":[-5411932.681,0,0]},{"mesh":0,"translation":[5411932.981,0,0]}])");
+  expect_box(mesh_of(craft), {0.3F, 0, 0}, {1.3F, 2, 3});
+  craft.scene["nodes"][1]["translation"] = {5411932.701, 0, 0};
+  expect_box(mesh_of(craft), {0.02F, 0, 0}, {1.02F, 2, 3});
+}
+
+TEST_F(GltfSurface, LargePositionsAndTheTranslationThatBringsThemBackCancelExactly) {
+  Craft craft;
+  craft.primitive()["attributes"]["POSITION"] =
+      craft.add<float>({5411932, 0, 0, 5411933, 0, 0, 5411932, 2, 0, 5411932, 0, 3}, kFloat, "VEC3", 4);
+  craft.scene["nodes"][0]["translation"] = {-5411931.7, 0, 0};
+  expect_box(mesh_of(craft), {0.3F, 0, 0}, {1.3F, 2, 3});
+}
+
+TEST_F(GltfSurface, TheOriginIsMovedBeforeAnythingIsRounded) {
+  Craft craft;
+  craft.scene["nodes"][0]["translation"] = {5411932.681, 0, 0};
+  const std::string path = write("craft.glb", craft.glb());
+  expect_box(load_mesh_file(path, {MeshUp::kZ, 1.0, Eigen::Vector3d(5411932.381, 0, 0)}), {0.3F, 0, 0},
+             {1.3F, 2, 3});
+}
+
+TEST_F(GltfSurface, MorphTargetsAndJointsCancelExactlyToo) {
+  Craft craft;
+  const std::vector<float> far{4e6F, 0, 0, 4e6F, 0, 0, 4e6F, 0, 0, 4e6F, 0, 0};
+  craft.primitive()["targets"] = json::array({{{"POSITION", craft.add<float>(far, kFloat, "VEC3", 4)}}});
+  craft.scene["meshes"][0]["weights"] = {0.3};
+  craft.scene["nodes"][0]["translation"] = {-1199999.7, 0, 0};
+  expect_box(mesh_of(craft), {0.3F, 0, 0}, {1.3F, 2, 3});
+  craft.hang_on_a_joint();
+  craft.scene["nodes"][1]["translation"] = {-1199999.7, 0, 0};
+  expect_box(mesh_of(craft), {0.3F, 0, 0}, {1.3F, 2, 3});
+}
+
+// By the standard, triangles below a mirroring node are turned round.
+TEST_F(GltfSurface, MirroredPartsKeepTheirOutside) {
+  Craft craft;
+  const double plain_m3 = signed_volume_m3(mesh_of(craft));
+  EXPECT_NEAR(std::abs(plain_m3), 1.0, 1e-6);
+  craft.scene["nodes"][0]["scale"] = {-1, 1, 1};
+  EXPECT_NEAR(signed_volume_m3(mesh_of(craft)), plain_m3, 1e-6);
+}
+
+// A loop over all nodes for each node would take minutes.
+TEST_F(GltfSurface, ManyNodesAndJointsTakeTimeInProportion) {
+  Craft craft;
+  craft.hang_on_a_joint();
+  constexpr std::size_t kNodes = 3000;
+  json roots = json::array(), joints = json::array();
+  for (std::size_t i = 0; i < kNodes; ++i) {
+    craft.scene["nodes"][i] = {{"mesh", 0}, {"skin", 0}};
+    roots.push_back(i);
+    joints.push_back(i);
+  }
+  craft.scene["scenes"] = json::array({{{"nodes", roots}}});
+  for (std::size_t i = 0; i < kNodes; ++i) craft.scene["scenes"].push_back({{"nodes", json::array()}});
+  craft.scene["skins"][0]["joints"] = joints;
+  EXPECT_EQ(mesh_of(craft).triangles.size(), 4 * kNodes);
+}
+
 TEST_F(GltfSurface, SparseAccessorsAreApplied) {
   Craft craft;
   const std::size_t place = craft.add<std::uint16_t>({1}, kUnsignedShort, "SCALAR", 1);
@@ -177,9 +252,11 @@ TEST_F(GltfSurface, SparseAccessorsAreApplied) {
 TEST_F(GltfSurface, StripsFansAndInterleavedPositionsAreRead) {
   Craft craft;
   craft.primitive().erase("indices");
-  for (const int mode : {5, 6}) {
+  const double slope_m2 = 3.5;  // of the side that no edge of the axes bounds
+  for (const auto& [mode, area] : {std::pair{5, 1.0 + slope_m2}, std::pair{6, 1.0 + 3.0}}) {
     craft.primitive()["mode"] = mode;
     EXPECT_EQ(mesh_of(craft).triangles.size(), 2U) << mode;
+    EXPECT_NEAR(area_m2(mesh_of(craft)), area, 1e-6) << mode;
   }
   Craft interleaved;
   const std::vector<float> with_normals{0, 0, 0, 9, 9, 9, 1, 0, 0, 9, 9, 9,
@@ -197,6 +274,65 @@ TEST_F(GltfSurface, AddressesOfBuffersAreDecoded) {
   (void)write("a%20b.bin", craft.binary);
   for (const char* uri : {"my%20craft.bin", "my craft.bin", "a%20b.bin", "./my%20craft.bin"})
     EXPECT_EQ(said(write("craft.gltf", craft.gltf(uri))), "") << uri;
+}
+
+TEST_F(GltfSurface, BuffersMayLieBelowTheFolderAndNotOutside) {
+  Craft craft;
+  std::filesystem::create_directories(folder_.path("here/textures"));
+  for (const char* name : {"a.bin", "here/a.bin", "here/textures/a.bin", "here/..a.bin"})
+    (void)write(name, craft.binary);
+  for (const char* uri : {"textures/a.bin", "textures/../a.bin", "./a.bin", "..a.bin"})
+    EXPECT_EQ(said(write("here/craft.gltf", craft.gltf(uri))), "") << uri;
+  for (const char* uri :
+       {"../a.bin", "%2E%2E/a.bin", "..%2Fa.bin", "textures/../../a.bin", "./../here/a.bin", ".."})
+    EXPECT_SAYS(said(write("here/craft.gltf", craft.gltf(uri))), "in its folder or below") << uri;
+  EXPECT_SAYS(said(write("here/craft.gltf", craft.gltf("a.bin%00"))), "a zero byte");
+}
+
+// RFC 2397 and RFC 3986: the case of a scheme does not matter.
+TEST_F(GltfSurface, DataInTheAddressIsReadInAnyCase) {
+  Craft craft;
+  craft.scene["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 48}});
+  craft.primitive().erase("indices");
+  craft.primitive()["mode"] = 5;
+  const std::string zeros(64, 'A');
+  for (const char* start : {"data:;base64,", "DATA:application/octet-stream;BASE64,"}) {
+    craft.scene["buffers"] =
+        json::array({{{"byteLength", 72}, {"uri", "a.bin"}}, {{"byteLength", 48}, {"uri", start + zeros}}});
+    (void)write("a.bin", craft.binary);
+    EXPECT_EQ(said(write("a.gltf", craft.scene.dump())), "") << start;
+  }
+}
+
+TEST_F(GltfSurface, PartsThatAreHiddenAreLeftOutAndSaid) {
+  Craft craft;
+  craft.scene["extensionsUsed"] = craft.scene["extensionsRequired"] = {"KHR_node_visibility"};
+  craft.scene["nodes"] = json::parse(R"([{"mesh":0},
+      {"extensions":{"KHR_node_visibility":{"visible":false}},"children":[2]},{"mesh":0,"translation":[5,0,0]},
+      {"extensions":{"KHR_node_visibility":{"visible":true}},"mesh":0,"translation":[0,5,0]}])");
+  craft.scene["scenes"][0]["nodes"] = {0, 1, 3};
+  EXPECT_EQ(mesh_of(craft).triangles.size(), 8U);
+  expect_box(mesh_of(craft), {0, 0, 0}, {1, 7, 3});
+  EXPECT_SAYS(gltf_remark(write("craft.glb", craft.glb())), "The parts of 1 node are hidden");
+  craft.scene["scenes"][0]["nodes"] = {1};
+  EXPECT_SAYS(said(craft), "KHR_node_visibility hides all 1 nodes");
+  craft.scene["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = "no";
+  EXPECT_SAYS(said(craft), "node 1's KHR_node_visibility");
+}
+
+TEST_F(GltfSurface, NodesThatFlattenTheirPartsAreNamed) {
+  Craft craft;
+  craft.scene["nodes"] = json::parse(R"([{"children":[1]},{"mesh":0}])");
+  for (const json& scale : {json{0, 0, 0}, json{1, 1, 0}, json{1, 0, 0}}) {
+    craft.scene["nodes"][0]["scale"] = scale;
+    EXPECT_SAYS(said(craft), "because node 0 makes them flat: its scale is " + scale.dump());
+  }
+  craft.scene["nodes"][0] = {{"children", {1}}, {"matrix", {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
+  EXPECT_SAYS(said(craft), "because node 0 makes them flat: its matrix is singular");
+  Craft plane;  // a scale of zero across a plane changes nothing
+  plane.primitive()["indices"] = plane.add<std::uint16_t>({0, 1, 2}, kUnsignedShort, "SCALAR", 3);
+  plane.scene["nodes"][0]["scale"] = {1, 1, 0};
+  EXPECT_EQ(mesh_of(plane).triangles.size(), 1U);
 }
 
 TEST_F(GltfSurface, BuffersThatCannotBeReadAreNamed) {
@@ -273,6 +409,9 @@ TEST_F(GltfSurface, ASceneWithoutPartsIsRefusedWithTheReason) {
   EXPECT_SAYS(said(craft), "the file's scene is 1");
   craft.scene.erase("scenes");
   EXPECT_SAYS(said(craft), "has no scene");
+  Craft empty;
+  empty.scene["meshes"][0].erase("primitives");
+  EXPECT_SAYS(said(empty), "mesh 0, which stands in node 0, has no primitives");
   Craft lines;
   lines.primitive()["mode"] = 1;
   EXPECT_SAYS(said(lines), "all of points or lines");
@@ -305,8 +444,6 @@ TEST_F(GltfSurface, WhatIsLeftOutIsSaid) {
   EXPECT_SAYS(remark, "scene 0 of 2");
   EXPECT_SAYS(remark, "nimation");
 }
-
-#endif
 
 }  // namespace
 }  // namespace tumblesight::sim

@@ -34,6 +34,15 @@ TEST(MeshSideFiles, AreBuffersAndImagesOfAGltf) {
   EXPECT_EQ(files, expected);
 }
 
+// The reader does not open them.
+TEST(MeshSideFiles, AreNoneOutsideOfTheFolder) {
+  const TemporaryFolder here;
+  EXPECT_TRUE(
+      side_files_of(here, "mine.gltf",
+                    R"({"buffers": [{"uri": "DATA:,x"}, {"uri": "../a.bin"}, {"uri": "/etc/passwd"}]})")
+          .empty());
+}
+
 TEST(MeshSideFiles, OfOtherAndOfDamagedFilesAreNone) {
   const TemporaryFolder here;
   EXPECT_TRUE(side_files_of(here, "mine.stl", "mtllib a.mtl\n").empty());
