@@ -19,8 +19,6 @@ constexpr float kCellShare = 0.01F;      // of the diagonal of the mesh's box
 constexpr double kMaxStrayArea = 0.05;   // of the whole area
 constexpr double kMinStrayReach = 1.05;  // its reach over that of the rest
 constexpr double kFarReach = 3.0;        // the same about the centre of the rest
-constexpr double kCubeTolerance = 1e-3;  // of its side
-constexpr std::size_t kCubeTriangles = 12;
 
 // The cells of a grid that the surface passes through. Cells side by side belong to one group.
 class Cells {
@@ -147,30 +145,6 @@ std::vector<std::size_t> strays_of(const std::vector<SeparatePart>& parts) {
       strays.push_back(i);
   }
   return reach_m > 0.0 ? strays : std::vector<std::size_t>{};
-}
-
-std::optional<MarkerCube> marker_cube(const TriangleMesh& mesh) {
-  const std::vector<std::vector<std::size_t>> parts = connected_parts(mesh);
-  if (parts.size() < 2) return std::nullopt;
-  for (const std::vector<std::size_t>& part : parts) {
-    if (part.size() != kCubeTriangles) continue;
-    Eigen::AlignedBox3d box;
-    double nearest_m = INFINITY, farthest_m = 0.0;
-    for (const std::size_t triangle : part) {
-      for (const std::uint32_t corner : mesh.triangles[triangle]) {
-        const Eigen::Vector3d place = mesh.vertices_trf_m[corner].cast<double>();
-        box.extend(place);
-        nearest_m = std::min(nearest_m, place.norm());
-        farthest_m = std::max(farthest_m, place.norm());
-      }
-    }
-    const double side_m = box.sizes().maxCoeff();
-    const bool is_cube = farthest_m - nearest_m < kCubeTolerance * side_m &&
-                         side_m - box.sizes().minCoeff() < kCubeTolerance * side_m &&
-                         box.center().norm() < kCubeTolerance * side_m;
-    if (is_cube) return MarkerCube{part, side_m};
-  }
-  return std::nullopt;
 }
 
 }  // namespace tumblesight::sim
