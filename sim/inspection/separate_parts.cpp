@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 
 #include "sim/world/target/groups.hpp"
 #include "sim/world/target/panels.hpp"
@@ -66,18 +67,24 @@ Eigen::AlignedBox3f box_of(const TriangleMesh& mesh) {
   return box;
 }
 
-// Marks the cells that a triangle passes through, with a point per cell; returns one of them.
-std::size_t add_triangle(const Vector3f& a, const Vector3f& b, const Vector3f& c, float cell_m,
-                         Cells& cells) {
-  const float longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  const int steps = std::max(1, static_cast<int>(std::ceil(longest / cell_m)));
+int steps_of(float length_m, float cell_m) {
+  return std::max(1, static_cast<int>(std::ceil(length_m / cell_m)));
+}
+
+// Marks the cells that a triangle passes through, with a point per cell, in rows along its shortest side: a
+// thin triangle has few per row. Returns one of the cells.
+std::size_t add_triangle(Vector3f a, Vector3f b, Vector3f c, float cell_m, Cells& cells) {
+  if ((c - a).norm() < (c - b).norm()) std::swap(a, b);
+  if ((b - a).norm() < (c - b).norm()) std::swap(a, c);
+  const float shortest_m = (c - b).norm();
+  const int rows = steps_of(std::max((b - a).norm(), (c - a).norm()), cell_m);
   const std::size_t first = cells.at(a);
-  for (int i = 0; i <= steps; ++i) {
-    for (int j = 0; j <= steps - i; ++j) {
-      const float u = static_cast<float>(i) / static_cast<float>(steps);
-      const float v = static_cast<float>(j) / static_cast<float>(steps);
-      cells.join(first, cells.at(a + u * (b - a) + v * (c - a)));
-    }
+  for (int i = 1; i <= rows; ++i) {
+    const float u = static_cast<float>(i) / static_cast<float>(rows);
+    const Vector3f from = a + u * (b - a), across = u * (c - b);
+    const int steps = steps_of(u * shortest_m, cell_m);
+    for (int j = 0; j <= steps; ++j)
+      cells.join(first, cells.at(from + static_cast<float>(j) / static_cast<float>(steps) * across));
   }
   return first;
 }
