@@ -52,7 +52,7 @@ CleanedMesh cleaned(const TriangleMesh& mesh, const MeshInspection& found, const
   std::vector<std::size_t> left_out;
   if (!options.keep_strays) left_out = triangles_of_strays(found);
   result.strays = left_out.size();
-  if (found.marker) {
+  if (found.marker_can_go()) {
     left_out.insert(left_out.end(), found.marker->triangles.begin(), found.marker->triangles.end());
     result.marker = found.marker->triangles.size();
   }

@@ -257,29 +257,44 @@ class Findings {
           "Remove it in the modelling tool, if it is not of the spacecraft.");
       return;
     }
+    const char* what = !part.is_marker ? "A closed part"
+                       : found_.marker_can_go()
+                           ? "A cube about the origin, as exporters add it to mark the origin,"
+                           : "A cube about the origin, the body or what an exporter marks the origin with,";
+    const char* remedy = !part.is_marker
+                             ? "Remove it in the modelling tool, if it is a marker or a backdrop and not the "
+                               "hull of the spacecraft."
+                         : found_.marker_can_go()
+                             ? "--fix removes it. If it is the hull with all the equipment inside, use the "
+                               "file as it is."
+                             : "--fix keeps it, since it may be the body of the spacecraft. If it is not, "
+                               "remove it in the modelling tool.";
     add(part.is_marker ? "marker" : "hidden", Severity::kWarning,
         fmt::format(
             "{} ({}, {} wide) stands around {:.0f} % of the surface of all other parts ({} of {}) and hides "
             "it: the sensor would see this part in place of the spacecraft.",
-            part.is_marker ? "A cube about the origin, as exporters add it to mark the origin,"
-                           : "A closed part",
-            triangles, length_text(part.width_m), 100.0 * part.hidden, area_text(part.hidden * rest_m2()),
-            area_text(rest_m2())),
-        part.is_marker
-            ? "--fix removes it."
-            : "Remove it in the modelling tool, if it is a marker or a backdrop and not the hull of "
-              "the spacecraft.");
+            what, triangles, length_text(part.width_m), 100.0 * part.hidden,
+            area_text(part.hidden * part.rest_m2), area_text(part.rest_m2)),
+        remedy);
   }
-
-  double rest_m2() const { return found_.hiding->rest_m2; }
 
   void marker() {
     if (!found_.marker || (found_.hiding && found_.hiding->is_marker)) return;
+    if (found_.marker_can_go()) {
+      add("marker", Severity::kNote,
+          fmt::format("A cube with a side of {} stands about the origin. Some exporters add such a cube "
+                      "to mark it.",
+                      length_text(found_.marker->side_m)),
+          "--fix removes it.");
+      return;
+    }
     add("marker", Severity::kNote,
-        fmt::format("A cube with a side of {} stands about the origin. Some exporters add such a cube "
-                    "to mark it.",
-                    length_text(found_.marker->side_m)),
-        "--fix removes it.");
+        fmt::format(
+            "A cube with a side of {} stands about the origin and is {:.0f} % of the outer surface. It "
+            "may be the body, or a cube that an exporter has added to mark the origin.",
+            length_text(found_.marker->side_m), 100.0 * found_.marker->outer_share),
+        "Look at the six sides. --fix keeps it; if it is not of the spacecraft, remove it in the modelling "
+        "tool.");
   }
 
   void notes() {

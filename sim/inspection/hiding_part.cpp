@@ -2,12 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
+#include <numeric>
 #include <utility>
 
+#include "sim/inspection/convex_part.hpp"
 #include "sim/quantization/outside_views.hpp"
 #include "sim/world/target/panels.hpp"
 
@@ -17,18 +17,12 @@ namespace {
 using Eigen::Vector3d;
 using Triangles = std::vector<std::size_t>;
 
-constexpr double kTolerance = 1e-4;            // of the width of a part
-constexpr double kFlat = 1e-3;                 // thickness over width
-constexpr double kPlaneArea = 0.5;             // of the whole
-constexpr double kSeen = 0.5;                  // of the triangles of a part
-constexpr std::size_t kMostOfACover = 20'000;  // of a cover: domes have a few thousand
-constexpr int kSteps = 4;                      // of the points on a triangle, per side
-
-struct Plane {
-  Vector3d normal;
-  double offset = 0.0;
-  double outside_by(const Vector3d& point) const { return normal.dot(point) - offset; }
-};
+constexpr double kTolerance = 1e-4;      // of the width of a part
+constexpr double kFlat = 1e-3;           // thickness over width
+constexpr double kPlaneArea = 0.5;       // of the whole
+constexpr double kSeen = 0.5;            // of the triangles of a part
+constexpr std::size_t kMostBoxes = 256;  // compared with those of all other parts, the largest first
+constexpr std::size_t kPoints = 4000;    // over all other parts, to see how much of them is inside one
 
 Vector3d corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t which) {
   return mesh.vertices_trf_m[mesh.triangles[triangle][which]].cast<double>();
@@ -42,42 +36,27 @@ Eigen::AlignedBox3d box_of(const TriangleMesh& mesh, const Triangles& triangles)
   return box;
 }
 
-// Every edge belongs to two triangles, by the places of its ends.
-bool is_closed(const TriangleMesh& mesh, const Triangles& part) {
-  using Place = std::array<float, 3>;
-  std::map<std::pair<Place, Place>, int> edges;
-  const auto place = [&](std::size_t triangle, std::size_t which) {
-    const Eigen::Vector3f& v = mesh.vertices_trf_m[mesh.triangles[triangle][which]];
-    return Place{v.x(), v.y(), v.z()};
-  };
-  for (const std::size_t triangle : part) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Place a = place(triangle, i), b = place(triangle, (i + 1) % 3);
-      ++edges[{std::min(a, b), std::max(a, b)}];
-    }
-  }
-  return std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second % 2 == 0; });
+struct PartBox {
+  Eigen::AlignedBox3d box;
+  double area_m2 = 0.0;
+};
+
+std::vector<PartBox> boxes_of(const TriangleMesh& mesh, const std::vector<Triangles>& parts) {
+  std::vector<PartBox> boxes;
+  boxes.reserve(parts.size());
+  for (const Triangles& part : parts) boxes.push_back({box_of(mesh, part), area_m2(mesh, part)});
+  return boxes;
 }
 
-// The planes of its triangles, normals outwards; empty if the part is not convex.
-std::vector<Plane> planes_if_convex(const TriangleMesh& mesh, const Triangles& part, double tolerance_m) {
-  std::vector<Plane> planes;
-  const Vector3d middle = box_of(mesh, part).center();
-  for (const std::size_t triangle : part) {
-    const Vector3d a = corner(mesh, triangle, 0);
-    const Vector3d across = (corner(mesh, triangle, 1) - a).cross(corner(mesh, triangle, 2) - a);
-    if (!(across.norm() > 0.0)) continue;
-    Plane plane{across.normalized(), 0.0};
-    plane.offset = plane.normal.dot(a);
-    if (plane.outside_by(middle) > 0.0) plane = {-plane.normal, -plane.offset};
-    for (const std::size_t other : part) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        if (plane.outside_by(corner(mesh, other, i)) > tolerance_m) return {};
-      }
-    }
-    planes.push_back(plane);
+// Of the area of all other parts, the share of those whose boxes meet the box of this one.
+double largest_share(const std::vector<PartBox>& boxes, std::size_t part) {
+  double met_m2 = 0.0, rest_m2 = 0.0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (i == part) continue;
+    rest_m2 += boxes[i].area_m2;
+    if (boxes[part].box.intersects(boxes[i].box)) met_m2 += boxes[i].area_m2;
   }
-  return planes;
+  return rest_m2 > 0.0 ? met_m2 / rest_m2 : 0.0;
 }
 
 double area_of(const TriangleMesh& mesh, std::size_t triangle) {
@@ -85,53 +64,68 @@ double area_of(const TriangleMesh& mesh, std::size_t triangle) {
   return 0.5 * (corner(mesh, triangle, 1) - a).cross(corner(mesh, triangle, 2) - a).norm();
 }
 
-// Of points spread over a triangle, the share that is inside all planes.
-double share_inside(const TriangleMesh& mesh, std::size_t triangle, const std::vector<Plane>& planes,
-                    double tolerance_m) {
-  const Vector3d a = corner(mesh, triangle, 0), b = corner(mesh, triangle, 1), c = corner(mesh, triangle, 2);
-  int inside = 0, points = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    for (int j = 0; j < kSteps - i; ++j, ++points) {
-      const Vector3d point = a + (i + 1.0 / 3.0) / kSteps * (b - a) + (j + 1.0 / 3.0) / kSteps * (c - a);
-      const bool is_inside = std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
-        return plane.outside_by(point) < -tolerance_m;
-      });
-      if (is_inside) ++inside;
-    }
+// The golden ratio's kin spread points over a triangle so that any number of them in a row is even.
+Vector3d point_on(const TriangleMesh& mesh, std::size_t triangle, std::size_t number) {
+  double whole = 0.0;
+  double u = std::modf(0.5 + 0.7548776662466927 * static_cast<double>(number), &whole);
+  double v = std::modf(0.5 + 0.5698402909980532 * static_cast<double>(number), &whole);
+  if (u + v > 1.0) {
+    u = 1.0 - u;
+    v = 1.0 - v;
   }
-  return static_cast<double>(inside) / points;
+  const Vector3d a = corner(mesh, triangle, 0);
+  return a + u * (corner(mesh, triangle, 1) - a) + v * (corner(mesh, triangle, 2) - a);
 }
 
-struct Shares {
-  double rest_m2 = 0.0, inside_m2 = 0.0;
+// All triangles except those of a part.
+struct Rest {
+  Triangles triangles;
+  double area_m2 = 0.0;
 };
 
-Shares shares_of(const TriangleMesh& mesh, const Triangles& part, const std::vector<Plane>& planes,
-                 double tolerance_m) {
+Rest rest_of(const TriangleMesh& mesh, const Triangles& part) {
   std::vector<std::uint8_t> is_of_part(mesh.triangles.size(), 0);
   for (const std::size_t triangle : part) is_of_part[triangle] = 1;
-  Shares shares;
+  Rest rest;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (is_of_part[i] != 0) continue;
-    const double area_m2 = area_of(mesh, i);
-    shares.rest_m2 += area_m2;
-    shares.inside_m2 += area_m2 * share_inside(mesh, i, planes, tolerance_m);
+    rest.triangles.push_back(i);
+    rest.area_m2 += area_of(mesh, i);
   }
-  return shares;
+  return rest;
 }
 
-// How much of the rest a closed convex part hides; nothing for other parts.
-Shares hidden_by(const TriangleMesh& mesh, const Triangles& part, double width_m) {
-  constexpr std::size_t kTetrahedron = 4;
-  if (part.size() < kTetrahedron || part.size() > kMostOfACover) return {};
-  const std::vector<Plane> planes = planes_if_convex(mesh, part, kTolerance * width_m);
-  if (planes.size() < kTetrahedron || !is_closed(mesh, part)) return {};
-  return shares_of(mesh, part, planes, kTolerance * width_m);
+// By points that are spread evenly over the area.
+double share_inside(const TriangleMesh& mesh, const Rest& rest, const ConvexPart& cover) {
+  const double step_m2 = rest.area_m2 / static_cast<double>(kPoints);
+  double passed_m2 = 0.0;
+  std::size_t points = 0, inside = 0;
+  for (const std::size_t triangle : rest.triangles) {
+    passed_m2 += area_of(mesh, triangle);
+    for (; points < kPoints && (static_cast<double>(points) + 0.5) * step_m2 < passed_m2; ++points) {
+      if (cover.holds(point_on(mesh, triangle, points))) ++inside;
+    }
+  }
+  return points > 0 ? static_cast<double>(inside) / static_cast<double>(points) : 0.0;
+}
+
+// Nothing is hidden by parts that are open or not convex.
+HidingPart hidden_by(const TriangleMesh& mesh, const Triangles& part) {
+  HidingPart found;
+  found.triangles = part;
+  found.width_m = box_of(mesh, part).sizes().maxCoeff();
+  const std::optional<ConvexPart> cover = ConvexPart::of(mesh, part, kTolerance * found.width_m);
+  if (!cover) return found;
+  const Rest rest = rest_of(mesh, part);
+  found.rest_m2 = rest.area_m2;
+  found.hidden = share_inside(mesh, rest, *cover);
+  return found;
 }
 
 bool is_seen(const TriangleMesh& mesh, const Triangles& part) {
   TriangleMesh unit = mesh;  // the sensor model does not see far
-  for (Eigen::Vector3f& vertex : unit.vertices_trf_m) vertex /= mesh.radius_m();
+  const auto radius_m = static_cast<float>(mesh.radius_m());
+  for (Eigen::Vector3f& vertex : unit.vertices_trf_m) vertex /= radius_m;
   const OuterSurface outer = outer_surface(unit);
   const auto seen = std::count_if(part.begin(), part.end(),
                                   [&](std::size_t triangle) { return outer.is_seen[triangle] != 0; });
@@ -158,19 +152,34 @@ bool is_ground(const TriangleMesh& mesh, const Triangles& part, const Triangles&
 
 }  // namespace
 
+std::vector<std::size_t> possible_covers(const TriangleMesh& mesh, const std::vector<Triangles>& parts,
+                                         const std::optional<MarkerCube>& marker) {
+  const std::vector<PartBox> boxes = boxes_of(mesh, parts);
+  const auto is_marker = [&](std::size_t part) { return marker && marker->triangles == parts[part]; };
+  std::vector<std::size_t> order(parts.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return boxes[a].box.volume() > boxes[b].box.volume();
+  });
+  std::stable_partition(order.begin(), order.end(), is_marker);
+  order.resize(std::min(order.size(), kMostBoxes));
+  std::vector<std::size_t> covers;
+  for (const std::size_t part : order) {
+    const double enough = is_marker(part) ? kHiddenByMarker : kHiddenByCover;
+    if (covers.size() < kMostCovers && largest_share(boxes, part) > enough) covers.push_back(part);
+  }
+  return covers;
+}
+
 std::optional<HidingPart> hiding_part(const TriangleMesh& mesh, const std::optional<MarkerCube>& marker) {
   const std::vector<Triangles> parts = connected_parts(mesh);
   if (parts.size() < 2) return std::nullopt;
   HidingPart most;
-  for (const Triangles& part : parts) {
-    HidingPart found{part, box_of(mesh, part).sizes().maxCoeff(), 0.0,
-                     0.0,  marker && marker->triangles == part,   false};
-    const Shares shares = hidden_by(mesh, part, found.width_m);
-    if (!(shares.rest_m2 > 0.0)) continue;
-    found.rest_m2 = shares.rest_m2;
-    found.hidden = shares.inside_m2 / shares.rest_m2;
+  for (const std::size_t part : possible_covers(mesh, parts, marker)) {
+    HidingPart found = hidden_by(mesh, parts[part]);
+    found.is_marker = marker && marker->triangles == parts[part];
     if (found.hidden > std::max(most.hidden, found.is_marker ? kHiddenByMarker : kHiddenByCover))
-      most = found;
+      most = std::move(found);
   }
   if (most.hidden > 0.0 && is_seen(mesh, most.triangles)) return most;
   const auto largest = std::max_element(

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim/inspection/separate_parts.hpp"
+#include "sim/inspection/marker_cube.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
@@ -24,6 +24,14 @@ struct HidingPart {
 // hull of a body hides what is inside, too, but the antennas and panels outside are most of the rest.
 inline constexpr double kHiddenByMarker = 0.05;
 inline constexpr double kHiddenByCover = 0.5;
+
+// The parts whose boxes meet enough of the area of the others for them to be a cover, the largest box first;
+// the first of them is the marker, if it is one. The parts are numbered as connected_parts() gives them. At
+// most kMostCovers: a mesh of many thousand bolts has a handful. The tests that follow take long.
+inline constexpr std::size_t kMostCovers = 32;
+std::vector<std::size_t> possible_covers(const TriangleMesh& mesh,
+                                         const std::vector<std::vector<std::size_t>>& parts,
+                                         const std::optional<MarkerCube>& marker);
 
 // Of closed convex parts that hide more than that, the one that hides most; otherwise a plane. Empty if there
 // is none. Only parts that are seen from outside count.

@@ -127,6 +127,12 @@ std::size_t best_fold(const SymmetryAxis& axis) {
                                   axis.moved_m.begin());
 }
 
+bool MeshInspection::marker_can_go() const {
+  if (!marker) return false;
+  const bool hides_most = hiding && hiding->is_marker && hiding->hidden > kHiddenByCover;
+  return hides_most || marker->outer_share < kNoLoss;
+}
+
 MeshInspection inspect(const TriangleMesh& mesh, const MeshFileOptions& options) {
   MeshInspection found;
   count(mesh, found);
@@ -139,6 +145,10 @@ MeshInspection inspect(const TriangleMesh& mesh, const MeshFileOptions& options)
   found.hiding = hiding_part(mesh, found.marker);
   const TriangleMesh core = without(mesh, triangles_of_strays(found));
   found.core_radius_m = core.radius_m();
+  if (found.marker) {
+    const std::optional<MarkerCube> of_core = marker_cube(core);  // none: the marker is a stray
+    found.marker->outer_share = of_core ? outer_share_of(core, *of_core) : 0.0;
+  }
   look_from_outside(core, found);
   found.likely_units = likely_units(found.centred_radius_m / options.scale);
   found.findings = findings_of(mesh.name, found, options);

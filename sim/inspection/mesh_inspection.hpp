@@ -9,6 +9,7 @@
 
 #include "sim/inspection/hiding_part.hpp"
 #include "sim/inspection/likely_unit.hpp"
+#include "sim/inspection/marker_cube.hpp"
 #include "sim/inspection/mesh_edges.hpp"
 #include "sim/inspection/mesh_symmetry.hpp"
 #include "sim/inspection/separate_parts.hpp"
@@ -60,6 +61,9 @@ struct MeshInspection {
   std::vector<Finding> findings;   // the gravest first
 
   double centre_distance_m() const { return symmetry.centre_trf_m.norm(); }
+  // Whether the marker cube is surely not of the spacecraft, or no loss: it hides most of the rest, or nearly
+  // nothing of the outer surface is lost without it. Any other may be the body.
+  bool marker_can_go() const;
 };
 
 // A mesh of any size, as read_mesh_file() gives it. Deterministic; takes a few seconds. Throws
@@ -70,6 +74,9 @@ MeshInspection inspect(const TriangleMesh& mesh, const MeshFileOptions& options)
 inline constexpr double kSameSurface = 0.001;
 // Below this share a network has to tell the attitudes apart by small parts alone.
 inline constexpr double kNearlySameSurface = 0.02;
+
+// Below this share of the outer surface a marker cube is no loss.
+inline constexpr double kNoLoss = 0.01;
 
 // The fold after which the surface is most nearly the same about this axis: its number in kFolds.
 std::size_t best_fold(const SymmetryAxis& axis);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 
 #include "sim/world/target/groups.hpp"
 #include "sim/world/target/panels.hpp"
@@ -19,8 +20,6 @@ constexpr float kCellShare = 0.01F;      // of the diagonal of the mesh's box
 constexpr double kMaxStrayArea = 0.05;   // of the whole area
 constexpr double kMinStrayReach = 1.05;  // its reach over that of the rest
 constexpr double kFarReach = 3.0;        // the same about the centre of the rest
-constexpr double kCubeTolerance = 1e-3;  // of its side
-constexpr std::size_t kCubeTriangles = 12;
 
 // The cells of a grid that the surface passes through. Cells side by side belong to one group.
 class Cells {
@@ -68,18 +67,24 @@ Eigen::AlignedBox3f box_of(const TriangleMesh& mesh) {
   return box;
 }
 
-// Marks the cells that a triangle passes through, with a point per cell; returns one of them.
-std::size_t add_triangle(const Vector3f& a, const Vector3f& b, const Vector3f& c, float cell_m,
-                         Cells& cells) {
-  const float longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  const int steps = std::max(1, static_cast<int>(std::ceil(longest / cell_m)));
+int steps_of(float length_m, float cell_m) {
+  return std::max(1, static_cast<int>(std::ceil(length_m / cell_m)));
+}
+
+// Marks the cells that a triangle passes through, with a point per cell, in rows along its shortest side: a
+// thin triangle has few per row. Returns one of the cells.
+std::size_t add_triangle(Vector3f a, Vector3f b, Vector3f c, float cell_m, Cells& cells) {
+  if ((c - a).norm() < (c - b).norm()) std::swap(a, b);
+  if ((b - a).norm() < (c - b).norm()) std::swap(a, c);
+  const float shortest_m = (c - b).norm();
+  const int rows = steps_of(std::max((b - a).norm(), (c - a).norm()), cell_m);
   const std::size_t first = cells.at(a);
-  for (int i = 0; i <= steps; ++i) {
-    for (int j = 0; j <= steps - i; ++j) {
-      const float u = static_cast<float>(i) / static_cast<float>(steps);
-      const float v = static_cast<float>(j) / static_cast<float>(steps);
-      cells.join(first, cells.at(a + u * (b - a) + v * (c - a)));
-    }
+  for (int i = 1; i <= rows; ++i) {
+    const float u = static_cast<float>(i) / static_cast<float>(rows);
+    const Vector3f from = a + u * (b - a), across = u * (c - b);
+    const int steps = steps_of(u * shortest_m, cell_m);
+    for (int j = 0; j <= steps; ++j)
+      cells.join(first, cells.at(from + static_cast<float>(j) / static_cast<float>(steps) * across));
   }
   return first;
 }
@@ -147,30 +152,6 @@ std::vector<std::size_t> strays_of(const std::vector<SeparatePart>& parts) {
       strays.push_back(i);
   }
   return reach_m > 0.0 ? strays : std::vector<std::size_t>{};
-}
-
-std::optional<MarkerCube> marker_cube(const TriangleMesh& mesh) {
-  const std::vector<std::vector<std::size_t>> parts = connected_parts(mesh);
-  if (parts.size() < 2) return std::nullopt;
-  for (const std::vector<std::size_t>& part : parts) {
-    if (part.size() != kCubeTriangles) continue;
-    Eigen::AlignedBox3d box;
-    double nearest_m = INFINITY, farthest_m = 0.0;
-    for (const std::size_t triangle : part) {
-      for (const std::uint32_t corner : mesh.triangles[triangle]) {
-        const Eigen::Vector3d place = mesh.vertices_trf_m[corner].cast<double>();
-        box.extend(place);
-        nearest_m = std::min(nearest_m, place.norm());
-        farthest_m = std::max(farthest_m, place.norm());
-      }
-    }
-    const double side_m = box.sizes().maxCoeff();
-    const bool is_cube = farthest_m - nearest_m < kCubeTolerance * side_m &&
-                         side_m - box.sizes().minCoeff() < kCubeTolerance * side_m &&
-                         box.center().norm() < kCubeTolerance * side_m;
-    if (is_cube) return MarkerCube{part, side_m};
-  }
-  return std::nullopt;
 }
 
 }  // namespace tumblesight::sim

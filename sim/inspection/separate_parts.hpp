@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "sim/world/target/triangle_mesh.hpp"
@@ -28,12 +27,5 @@ std::vector<SeparatePart> separate_parts(const TriangleMesh& mesh);
 // lie more than three radii of the rest from its centre: the numbers of the parts. They cost resolution,
 // since the image shows the whole radius.
 std::vector<std::size_t> strays_of(const std::vector<SeparatePart>& parts);
-
-// The cube of 12 triangles about the origin that some exporters add to mark it (NASA's name it `_root`).
-struct MarkerCube {
-  std::vector<std::size_t> triangles;
-  double side_m = 0.0;
-};
-std::optional<MarkerCube> marker_cube(const TriangleMesh& mesh);
 
 }  // namespace tumblesight::sim

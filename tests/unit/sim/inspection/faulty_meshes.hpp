@@ -24,6 +24,17 @@ inline TriangleMesh sound_mesh() {
   return mesh;
 }
 
+// Four shells: the body, a cube of 12 triangles about the origin; two panels; an antenna.
+inline TriangleMesh cubesat() {
+  TriangleMesh mesh = box({1.0F, 1.0F, 1.0F});
+  append(mesh, box_at(0.0F, 1.1F, 0.0F, {0.8F, 1.0F, 0.02F}));
+  append(mesh, box_at(0.0F, -1.1F, 0.1F, {0.8F, 1.0F, 0.02F}));
+  append(mesh, placed(frustum(24, 0.2F, 0.05F, 0.55F, 0.95F),
+                      Eigen::Isometry3f(Eigen::Translation3f(0.2F, 0.1F, 0.0F))));
+  mesh.name = "cubesat.stl";
+  return mesh;
+}
+
 inline TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3f& by) {
   for (Eigen::Vector3f& vertex : mesh.vertices_trf_m) vertex += by;
   return mesh;
@@ -37,6 +48,12 @@ inline TriangleMesh times(TriangleMesh mesh, float factor) {
 inline TriangleMesh with(TriangleMesh mesh, const TriangleMesh& part) {
   append(mesh, part);
   return mesh;
+}
+
+inline TriangleMesh doubled(const TriangleMesh& mesh) {
+  TriangleMesh twice = mesh;
+  for (auto [a, b, c] : mesh.triangles) twice.triangles.push_back({a, c, b});
+  return twice;
 }
 
 }  // namespace tumblesight::sim
