@@ -68,18 +68,20 @@ class CornerGrid {
     std::vector<std::uint32_t>& cell = cell_of(corner);
     cell.erase(std::find(cell.begin(), cell.end(), number));
   }
-  // Calls `test` for the corners of all cells that touch the box until it is true. Counts cells and corners.
+  // The first corner of all cells that touch the box for which `test` is true. Counts cells and corners.
   template <class Test>
-  bool any(const Vector2d& low, const Vector2d& high, long& tests, const Test& test) const {
+  std::optional<std::uint32_t> find(const Vector2d& low, const Vector2d& high, long& tests,
+                                    const Test& test) const {
     const std::size_t last_row = index(high, 1), first_column = index(low, 0), last_column = index(high, 0);
     for (std::size_t row = index(low, 1); row <= last_row; ++row) {
       for (std::size_t column = first_column; column <= last_column; ++column) {
         const std::vector<std::uint32_t>& cell = cells_[row * side_ + column];
         tests -= 1 + static_cast<long>(cell.size());
-        if (std::any_of(cell.begin(), cell.end(), test)) return true;
+        const auto found = std::find_if(cell.begin(), cell.end(), test);
+        if (found != cell.end()) return *found;
       }
     }
-    return false;
+    return std::nullopt;
   }
 
  private:
@@ -101,14 +103,13 @@ class CornerGrid {
 class EarClipper {
  public:
   EarClipper(const std::vector<Vector2d>& corners, long& tests)
-      : corners_(corners), left_(corners_.size()), tests_(tests) {
+      : corners_(corners), ears_(corners.size()), left_(corners.size()), tests_(tests) {
     const auto count = static_cast<std::uint32_t>(corners_.size());
-    next_.resize(count);
-    before_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-      next_[i] = (i + 1) % count;
-      before_[i] = (i + count - 1) % count;
+      ears_[i].next = (i + 1) % count;
+      ears_[i].before = (i + count - 1) % count;
     }
+    for (std::uint32_t i = 0; i < count; ++i) renew(i);
     if (count > kFewCorners) grid_.emplace(corners_);
   }
 
@@ -116,12 +117,12 @@ class EarClipper {
     DividedPolygon polygon;
     std::uint32_t at = 0;
     while (left_ > 3) {
-      if (!find(at, &EarClipper::is_clean_ear) && !find(at, &EarClipper::is_ear)) break;
+      if (!find(at, true) && !find(at, false)) break;
       cut(at, polygon);
-      at = next_[next_[at]];  // not beside the last one, which keeps the triangles wide
+      at = ears_[ears_[at].next].next;  // not beside the last one, which keeps the triangles wide
     }
     if (left_ == 3) {
-      if (turn_at(at) >= 0.0) cut(at, polygon);
+      if (ears_[at].turn >= 0.0) cut(at, polygon);
     }
     if (left_ <= 2) return polygon;
     using Fault = DividedPolygon::Fault;
@@ -131,29 +132,36 @@ class EarClipper {
   }
 
  private:
-  using Test = bool (EarClipper::*)(std::uint32_t) const;
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  bool find(std::uint32_t& at, Test test) const {
-    for (std::size_t i = 0; i < left_ && tests_ > 0; ++i, at = next_[at]) {
-      if ((this->*test)(at)) return true;
+  struct Ear {
+    std::uint32_t next = 0, before = 0;
+    double turn =
+        0.0;  // twice the area of its triangle; below 0 where the polygon is concave, 0 where straight
+    bool is_cut = false;
+    // A corner that its triangle held, with its edges and without them: while it is left, this is no ear.
+    std::uint32_t held_with_edges = kNone, held = kNone;
+  };
+
+  // `is_clean`: no other corner lies in the triangle or on its edges, so no corner is left without a
+  // triangle.
+  bool find(std::uint32_t& at, bool is_clean) {
+    for (std::size_t i = 0; i < left_ && tests_ > 0; ++i, at = ears_[at].next) {
+      --tests_;
+      if (is_ear(at, is_clean)) return true;
     }
     return false;
   }
 
-  // Twice the area of the triangle at a corner; below 0 where the polygon is concave, 0 where it is straight.
-  double turn_at(std::uint32_t i) const {
-    --tests_;
-    const Vector2d in = corners_[i] - corners_[before_[i]], out = corners_[next_[i]] - corners_[i];
-    const double turn = cross(in, out);
-    return std::abs(turn) <= kFlat * in.norm() * out.norm() ? 0.0 : turn;
+  bool is_ear(std::uint32_t i, bool is_clean) {
+    if (!(ears_[i].turn > 0.0)) return false;
+    std::uint32_t& held = is_clean ? ears_[i].held_with_edges : ears_[i].held;
+    if (held == kNone || ears_[held].is_cut) held = corner_in(i, is_clean).value_or(kNone);
+    return held == kNone;
   }
 
-  // No other corner lies in the triangle or on its edges, so no corner is left without a triangle.
-  bool is_clean_ear(std::uint32_t i) const { return turn_at(i) > 0.0 && !holds_a_corner(i, true); }
-  bool is_ear(std::uint32_t i) const { return turn_at(i) > 0.0 && !holds_a_corner(i, false); }
-
-  bool holds_a_corner(std::uint32_t i, bool with_edges) const {
-    const Vector2d &a = corners_[before_[i]], &b = corners_[i], &c = corners_[next_[i]];
+  std::optional<std::uint32_t> corner_in(std::uint32_t i, bool with_edges) const {
+    const Vector2d &a = corners_[ears_[i].before], &b = corners_[i], &c = corners_[ears_[i].next];
     const Vector2d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
     const auto is_held = [&](std::uint32_t other) {
       const Vector2d& p = corners_[other];
@@ -162,31 +170,45 @@ class EarClipper {
       const double least = std::min({cross(b - a, p - a), cross(c - b, p - b), cross(a - c, p - c)});
       return with_edges ? least >= 0.0 : least > 0.0;
     };
-    if (grid_) return grid_->any(low, high, tests_, is_held);
-    for (std::uint32_t other = next_[next_[i]]; other != before_[i]; other = next_[other]) {
+    if (grid_) return grid_->find(low, high, tests_, is_held);
+    for (std::uint32_t other = ears_[ears_[i].next].next; other != ears_[i].before;
+         other = ears_[other].next) {
       --tests_;
-      if (is_held(other)) return true;
+      if (is_held(other)) return other;
     }
-    return false;
+    return std::nullopt;
   }
 
   void cut(std::uint32_t i, DividedPolygon& polygon) {
-    polygon.triangles.push_back({before_[i], i, next_[i]});
-    next_[before_[i]] = next_[i];
-    before_[next_[i]] = before_[i];
+    Ear& ear = ears_[i];
+    polygon.triangles.push_back({ear.before, i, ear.next});
+    ears_[ear.before].next = ear.next;
+    ears_[ear.next].before = ear.before;
+    ear.is_cut = true;
     if (grid_) grid_->remove(i, corners_[i]);
     --left_;
+    renew(ear.before);
+    renew(ear.next);
+  }
+
+  // After another corner has come beside it.
+  void renew(std::uint32_t i) {
+    Ear& ear = ears_[i];
+    const Vector2d in = corners_[i] - corners_[ear.before], out = corners_[ear.next] - corners_[i];
+    const double turn = cross(in, out);
+    ear.turn = std::abs(turn) <= kFlat * in.norm() * out.norm() ? 0.0 : turn;
+    ear.held_with_edges = ear.held = kNone;
   }
 
   double area_left(std::uint32_t first) const {
     double twice = 0.0;
-    for (std::uint32_t i = next_[first]; next_[i] != first; i = next_[i])
-      twice += cross(corners_[i] - corners_[first], corners_[next_[i]] - corners_[first]);
+    for (std::uint32_t i = ears_[first].next; ears_[i].next != first; i = ears_[i].next)
+      twice += cross(corners_[i] - corners_[first], corners_[ears_[i].next] - corners_[first]);
     return 0.5 * std::abs(twice);
   }
 
   const std::vector<Vector2d>& corners_;
-  std::vector<std::uint32_t> next_, before_;
+  std::vector<Ear> ears_;  // one a corner
   std::size_t left_;
   std::optional<CornerGrid> grid_;
   long& tests_;
