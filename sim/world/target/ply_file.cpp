@@ -56,12 +56,12 @@ class PlyNumbers {
     const std::size_t first = std::exchange(first_longer_, 0);
     if (longer == 0) return {};
     if (longer < element.count)
-      refuse_line(first, "has more numbers than the " + std::to_string(element.properties.size()) +
-                             " properties" + " of element " + quoted(element.name) + " take; so have " +
-                             std::to_string(longer) + " of its " + std::to_string(element.count) +
-                             " lines; export the mesh again");
+      refuse_line(first, "has more numbers than the header announces for element " + quoted(element.name) +
+                             " (" + std::to_string(longer) + " of its " + std::to_string(element.count) +
+                             " lines); export the mesh again");
     return "each line of element " + quoted(element.name) +
-           " has more numbers than the header announces, which are left out";
+           " has more numbers than the header announces, which are left out: what is read may be shifted. "
+           "Compare the shape with the original";
   }
 
   double next(PlyType type) { return format_ == PlyFormat::kAscii ? next_of_line() : next_of_bytes(type); }

@@ -270,6 +270,14 @@ bool is_crossed(const Corners& c) {
          is_folded(triangle_normal(c[1], c[2], c[3]), triangle_normal(c[1], c[3], c[0]));
 }
 
+// About the area by which the triangles of a polygon whose edges cross cover what it does not: of a bow tie's
+// two, a half.
+double wrong_of_crossed(const Corners& corners, const std::vector<PolygonTriangle>& triangles) {
+  double twice = 0.0;
+  for (const auto& [a, b, c] : triangles) twice += triangle_normal(corners[a], corners[b], corners[c]).norm();
+  return 0.25 * twice;
+}
+
 // A quadrangle from its concave or straight corner, if it has one.
 DividedPolygon divided_quadrangle(const Corners& corners) {
   std::uint32_t start = 0;
@@ -286,15 +294,11 @@ DividedPolygon divided_quadrangle(const Corners& corners) {
   }
   DividedPolygon polygon;
   polygon.triangles = {{start, (start + 1) % 4, (start + 2) % 4}, {start, (start + 2) % 4, (start + 3) % 4}};
-  if (is_crossed(corners)) polygon.fault = DividedPolygon::Fault::kCrossing;
+  if (is_crossed(corners)) {
+    polygon.fault = DividedPolygon::Fault::kCrossing;
+    polygon.wrong_area = wrong_of_crossed(corners, polygon.triangles);
+  }
   return polygon;
-}
-
-double area_of_triangles(const Corners& corners, const std::vector<PolygonTriangle>& triangles) {
-  double area = 0.0;
-  for (const auto& [a, b, c] : triangles)
-    area += 0.5 * triangle_normal(corners[a], corners[b], corners[c]).norm();
-  return area;
 }
 
 DividedPolygon divided_by_ears(const Corners& corners, const Vector3d& normal, long& tests) {
@@ -302,8 +306,10 @@ DividedPolygon divided_by_ears(const Corners& corners, const Vector3d& normal, l
   DividedPolygon polygon = EarClipper(flat, tests).divide();
   // Seen along the axis, an area is smaller than it is.
   polygon.wrong_area *= normal.norm() / normal.cwiseAbs().maxCoeff();
-  if (polygon.fault == DividedPolygon::Fault::kNone && edges_cross(flat, tests))
+  if (polygon.fault != DividedPolygon::Fault::kNoTestsLeft && edges_cross(flat, tests)) {
     polygon.fault = DividedPolygon::Fault::kCrossing;
+    polygon.wrong_area = std::max(polygon.wrong_area, wrong_of_crossed(corners, polygon.triangles));
+  }
   return polygon;
 }
 
@@ -325,12 +331,12 @@ DividedPolygon divided(const Corners& corners, long& tests) {
   } else if (normal.norm() > 0.0) {
     polygon = divided_by_ears(distinct, normal, tests);
   } else {
+    // The corners lie on a line, or parts that turn in either way cancel each other, as in a figure of eight.
     polygon.triangles = {{0, 1, 2}};
     polygon.fault = DividedPolygon::Fault::kCrossing;
+    for (std::size_t i = 2; i < distinct.size(); ++i)
+      polygon.wrong_area += 0.5 * triangle_normal(distinct[0], distinct[i - 1], distinct[i]).norm();
   }
-  // Of triangles that cover what the polygon does not, up to all are wrong.
-  if (polygon.fault == DividedPolygon::Fault::kCrossing)
-    polygon.wrong_area = std::max(polygon.wrong_area, 0.5 * area_of_triangles(distinct, polygon.triangles));
   for (PolygonTriangle& triangle : polygon.triangles) {
     for (std::uint32_t& corner : triangle) corner = kept[corner];
   }

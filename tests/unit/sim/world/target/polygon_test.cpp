@@ -115,6 +115,14 @@ TEST(Polygon, WhoseEdgesCrossIsKnown) {
   EXPECT_EQ(divided(pentagram).fault, kCrossing);
 }
 
+TEST(Polygon, WhosePartsCancelEachOtherLacksThem) {
+  const DividedPolygon eight = divided({{0, 0, 0}, {2, 1, 0}, {2, 0, 0}, {0, 1, 0}, {-1, 0.5, 0}, {0, 0, 0}});
+  EXPECT_EQ(eight.fault, kCrossing);
+  const DividedPolygon bow = divided({{0, 0, 0}, {1, 0.5, 0}, {2, 1, 0}, {2, 0, 0}, {1, 0.5, 0}, {0, 1, 0}});
+  EXPECT_EQ(bow.fault, kCrossing);
+  EXPECT_GT(bow.wrong_area, 0.3);
+}
+
 // As a spring of sheet metal: every corner's triangle is near the corners of the neighbouring turns.
 Corners spiral(int count, double z = 0.0) {
   Corners corners;
