@@ -6,7 +6,7 @@
 namespace tumblesight::sim {
 namespace {
 
-bool holds(const std::vector<std::uint32_t>& corners, std::uint64_t corner) {
+bool holds(const std::vector<std::uint32_t>& corners, std::uint32_t corner) {
   return std::find(corners.begin(), corners.end(), corner) != corners.end();
 }
 
@@ -73,11 +73,14 @@ void LastCorner::note(std::uint32_t from, std::uint32_t to) {
 bool LastCorner::fits_longer() const {
   if (holds(beside_before_, corner_) || holds(beside_after_, corner_)) return false;
   const std::uint64_t number = corner_ + first_;
+  std::vector<std::uint32_t> after = beside_after_;
+  std::sort(after.begin(), after.end());
   // 3: 30 to 39, 300 to 399, and so on.
   for (std::uint64_t ten = 10; number > 0 && number * ten < vertices_ + first_; ten *= 10) {
     const auto is_longer = [&](std::uint32_t corner) { return (corner + first_) / ten == number; };
     for (const std::uint32_t corner : beside_before_) {
-      if (is_longer(corner) && (is_known_ || holds(beside_after_, corner))) return true;
+      if (is_longer(corner) && (is_known_ || std::binary_search(after.begin(), after.end(), corner)))
+        return true;
     }
     if (is_known_ && std::any_of(beside_after_.begin(), beside_after_.end(), is_longer)) return true;
   }
