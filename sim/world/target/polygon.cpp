@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -110,7 +111,7 @@ class EarClipper {
       ears_[i].before = (i + count - 1) % count;
     }
     for (std::uint32_t i = 0; i < count; ++i) renew(i);
-    if (count > kFewCorners) grid_.emplace(corners_);
+    if (count > kFewCorners) grid_ = std::make_unique<CornerGrid>(corners_);
   }
 
   DividedPolygon divide() {
@@ -210,7 +211,7 @@ class EarClipper {
   const std::vector<Vector2d>& corners_;
   std::vector<Ear> ears_;  // one a corner
   std::size_t left_;
-  std::optional<CornerGrid> grid_;
+  std::unique_ptr<CornerGrid> grid_;
   long& tests_;
 };
 
