@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim/process/input_file.hpp"
+#include "sim/world/target/content_kind.hpp"
 #include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/gltf_surface.hpp"
 #include "sim/world/target/obj_file.hpp"
@@ -141,6 +142,8 @@ TriangleMesh read_by_format(const std::string& path, const MeshFileOptions& opti
   }
   const std::string content = read_text(path, kMesh);
   const std::string_view bytes = without_byte_order_mark(content);
+  const std::string other = other_content(bytes, extension);
+  if (!other.empty()) throw std::runtime_error("cannot be read: it is " + other);
   if (extension == ".obj") return read_obj(bytes, path, options);
   if (extension == ".ply") return read_ply(bytes, options);
   return read_stl(bytes, options);

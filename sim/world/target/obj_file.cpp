@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "sim/terminal/text.hpp"
+#include "sim/world/target/cut_off.hpp"
 #include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/mesh_builder.hpp"
+#include "sim/world/target/obj_statements.hpp"
 #include "sim/world/target/polygon.hpp"
 
 namespace tumblesight::sim {
@@ -21,58 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestLibrary_bytes = 64U << 20U;
 
-// Lines that a backslash joins, without their comments. A comment ends with its line, whatever is at its end.
-class Statements {
- public:
-  explicit Statements(std::string_view text) : lines_(text) {}
-
-  // False at the end. `words`: of the statement without its keyword; valid until the next call.
-  bool next(std::string_view& keyword, std::string_view& words) {
-    std::string_view line;
-    if (!lines_.next(line)) return false;
-    number_ = lines_.number();
-    std::string_view statement = without_comment(line);
-    if (is_continued(statement)) {
-      joined_.clear();
-      while (is_continued(statement)) {
-        joined_.append(statement.substr(0, statement.size() - 1)) += ' ';
-        if (!lines_.next(line)) break;
-        statement = without_comment(line);
-      }
-      if (!is_continued(statement)) joined_.append(statement);
-      statement = joined_;
-    }
-    keyword = next_word(statement);
-    words = statement;
-    return true;
-  }
-  std::size_t number() const { return number_; }  // of the statement's first line
-
- private:
-  // Names may hold a '#'.
-  static bool is_named(std::string_view line) {
-    const std::string_view keyword = next_word(line);
-    return keyword == "usemtl" || keyword == "mtllib" || keyword == "g" || keyword == "o";
-  }
-  static std::string_view without_comment(std::string_view line) {
-    for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
-      const bool begins_word = at == 0 || line[at - 1] == ' ' || line[at - 1] == '\t';
-      if (begins_word && !is_named(line.substr(0, at))) return line.substr(0, at);
-    }
-    return without_end_spaces(line);
-  }
-  static std::string_view without_end_spaces(std::string_view line) {
-    while (!line.empty() && (line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
-    return line;
-  }
-  static bool is_continued(std::string_view statement) {
-    return !statement.empty() && statement.back() == '\\';
-  }
-
-  FileLines lines_;
-  std::string joined_;
-  std::size_t number_ = 0;
-};
+// More vertices without a face than these shares tell of faces that are missing.
+constexpr double kMostUnusedWithoutLineEnd = 0.1;
+constexpr double kMostUnused = 0.5;
 
 // The names of materials, numbered in the order in which they come.
 class Materials {
@@ -108,15 +61,22 @@ struct Face {
 
 class ObjReader {
  public:
-  ObjReader(std::string_view text, const std::string& path) : statements_(text), path_(path) {
+  ObjReader(std::string_view text, const std::string& path)
+      : statements_(text), path_(path), has_line_end_(has_last_line_end(text)) {
     material_ = materials_.number_of("");  // of faces before the first name
   }
 
   TriangleMesh read(const MeshFileOptions& options) {
     std::string_view keyword, words;
-    while (statements_.next(keyword, words)) take(keyword, words);
+    while (statements_.next(keyword, words)) {
+      if (!has_line_end_ && statements_.is_last() && !is_whole_statement(keyword, words))
+        refuse_cut("the statement in its last line, line " + std::to_string(statements_.number()) +
+                   ", is not complete");
+      take(keyword, words);
+    }
     MeshBuilder builder(options, "line");
-    PolygonCount polygons;
+    check_end(builder);
+    PolygonDivider polygons;
     std::stable_sort(faces_.begin(), faces_.end(),
                      [](const Face& a, const Face& b) { return a.material < b.material; });
     for (const Face& face : faces_) add(face, builder, polygons);
@@ -130,10 +90,9 @@ class ObjReader {
       take_vertex(words);
     } else if (keyword == "f" || keyword == "fo") {
       take_face(words);
-    } else if (keyword == "l") {
-      ++lines_;
-    } else if (keyword == "p") {
-      ++points_;
+    } else if (keyword == "l" || keyword == "p") {
+      ++(keyword == "l" ? lines_ : points_);
+      take_other_corners(words);
     } else if (keyword == "usemtl") {
       const std::string name(without_outer_spaces(words));
       if (!name.empty()) material_ = materials_.number_of(name);
@@ -163,6 +122,7 @@ class ObjReader {
     const double weight = count == 4 ? numbers[3] : 1.0;
     for (double& value : numbers) value = static_cast<float>(value);  // as all that follows
     check_vertex_count(vertices_.size() + 1);
+    use_.add_vertex();
     vertices_.emplace_back(Eigen::Vector3d(numbers[0], numbers[1], numbers[2]) / weight);
     if (!vertices_.back().allFinite()) line_of_bad_.emplace(vertices_.size() - 1, statements_.number());
   }
@@ -192,10 +152,13 @@ class ObjReader {
                                  " are divided; triangulate it in the modelling tool");
     if (face.corners < 3) {
       ++(face.corners == 1 ? points_ : lines_);
+      other_corners_.insert(other_corners_.end(), corners_.begin() + static_cast<std::ptrdiff_t>(face.first),
+                            corners_.end());
       corners_.resize(face.first);
       return;
     }
     faces_.push_back(face);
+    use_.begin_face();
     check_triangle_count(faces_.size());
   }
 
@@ -203,6 +166,45 @@ class ObjReader {
     refuse_line(line, "the face names vertex " + std::string(word.substr(0, kMostOfAValue)) +
                           ", and the file has " + std::to_string(vertices_.size()) +
                           "; export the mesh again");
+  }
+
+  // Of lines and points. They are not shown, so no word is refused.
+  void take_other_corners(std::string_view words) {
+    for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
+      const std::optional<double> number = tumblesight::sim::number_of(word.substr(0, word.find('/')));
+      if (!number || !(std::abs(*number) < 4e9)) continue;
+      const auto index = static_cast<std::int64_t>(*number);
+      other_corners_.push_back(index > 0 ? index - 1 : index + static_cast<std::int64_t>(vertices_.size()));
+    }
+  }
+
+  // Whether the file ends before its mesh does.
+  void check_end(MeshBuilder& builder) {
+    if (faces_.empty()) return;
+    for (const std::uint32_t corner : corners_) use_.use(corner);
+    for (const std::int64_t corner : other_corners_) use_.use(corner);
+    if (has_line_end_) {
+      const std::string unused = use_.unused(kMostUnused, 3);
+      if (!unused.empty())
+        builder.add_loss(
+            unused +
+            ": faces may be missing, for instance since the file was cut off. Compare it with the "
+            "original");
+      return;
+    }
+    const std::string unused = use_.unused(kMostUnusedWithoutLineEnd, 1);
+    if (!unused.empty()) refuse_cut("its last line has no line end, and " + unused);
+    if (faces_.back().line == statements_.number()) check_last_corner();
+    builder.add_note("the last line has no line end: if the file was cut off there, faces are missing");
+  }
+
+  void check_last_corner() const {
+    const Face& last = faces_.back();
+    LastCorner corner(&corners_[last.first], last.corners, vertices_.size(), 1);
+    for (const Face& face : faces_) {
+      if (face.first != last.first) corner.add(&corners_[face.first], face.corners);
+    }
+    corner.check(last.line);
   }
 
   // After "mtllib": one name, which may hold spaces, or several.
@@ -221,7 +223,7 @@ class ObjReader {
     if (!any) materials_.add_library(fs::path(path_).replace_extension(".mtl"));
   }
 
-  void add(const Face& face, MeshBuilder& builder, PolygonCount& polygons) {
+  void add(const Face& face, MeshBuilder& builder, PolygonDivider& polygons) {
     places_.clear();
     bool is_finite = true;
     std::uint32_t first = 0;
@@ -236,19 +238,12 @@ class ObjReader {
       places_.push_back(place);
     }
     if (!is_finite) return;  // the builder refuses it
-    DividedPolygon polygon;
-    if (face.corners == 3) {
-      polygon.triangles = {{0, 1, 2}};
-    } else {
-      polygon = divided(places_);
-    }
-    polygons.add(places_, polygon, face.line);
     const bool is_panel = materials_.is_panel(face.material);
-    for (const auto& [a, b, c] : polygon.triangles)
+    for (const auto& [a, b, c] : polygons.divide(places_, face.line))
       builder.add_triangle(first + a, first + b, first + c, is_panel);
   }
 
-  void add_notes(MeshBuilder& builder, const PolygonCount& polygons) const {
+  void add_notes(MeshBuilder& builder, const PolygonDivider& polygons) const {
     if (lines_ + points_ > 0)
       builder.add_note(counted(lines_, "statement") + " of lines and " + std::to_string(points_) +
                        " of points left out: no ray hits them");
@@ -256,13 +251,16 @@ class ObjReader {
     if (!loss.empty()) builder.add_loss(loss);
   }
 
-  Statements statements_;
+  ObjStatements statements_;
   std::string path_;
+  bool has_line_end_;
   Materials materials_;
   std::uint32_t material_ = 0;
   std::vector<Eigen::Vector3d> vertices_;
   std::unordered_map<std::size_t, std::size_t> line_of_bad_;  // of vertices that are not finite
   std::vector<std::uint32_t> corners_;                        // of the faces
+  std::vector<std::int64_t> other_corners_;                   // of lines and points
+  VertexUse use_;
   std::vector<Face> faces_;
   std::vector<Eigen::Vector3d> places_;  // of one face
   std::size_t lines_ = 0;

@@ -6,9 +6,11 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/terminal/text.hpp"
+#include "sim/world/target/cut_off.hpp"
 #include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/mesh_builder.hpp"
 #include "sim/world/target/ply_header.hpp"
@@ -16,6 +18,10 @@
 
 namespace tumblesight::sim {
 namespace {
+
+bool holds_corners(const PlyProperty& property) {
+  return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
 
 // The numbers behind the header, in the order in which they stand.
 class PlyNumbers {
@@ -37,11 +43,41 @@ class PlyNumbers {
     } while (without_outer_spaces(line_).empty());
   }
 
+  // Numbers that no property announces are counted by element. They shift what is read, unless every entry of
+  // the element has them.
+  void end_entry() {
+    if (format_ != PlyFormat::kAscii || without_outer_spaces(line_).empty()) return;
+    line_ = {};
+    if (longer_++ == 0) first_longer_ = line_number();
+  }
+  // After the last entry of an element. The note is empty if its lines were as announced.
+  std::string end_element(const PlyElement& element) {
+    const std::uint64_t longer = std::exchange(longer_, 0);
+    const std::size_t first = std::exchange(first_longer_, 0);
+    if (longer == 0) return {};
+    if (longer < element.count)
+      refuse_line(first, "has more numbers than the header announces for element " + quoted(element.name) +
+                             " (" + std::to_string(longer) + " of its " + std::to_string(element.count) +
+                             " lines); export the mesh again");
+    return "each line of element " + quoted(element.name) +
+           " has more numbers than the header announces, which are left out: what is read may be shifted. "
+           "Compare the shape with the original";
+  }
+
   double next(PlyType type) { return format_ == PlyFormat::kAscii ? next_of_line() : next_of_bytes(type); }
 
-  std::size_t bytes_left() const {
-    return format_ == PlyFormat::kAscii ? without_outer_spaces(lines_.rest()).size() : bytes_.size();
+  // Bytes after the last element. Refuses what could be a further entry of it.
+  std::size_t check_rest() const {
+    const std::string_view rest = format_ == PlyFormat::kAscii ? without_outer_spaces(lines_.rest()) : bytes_;
+    if (is_padding(rest)) return rest.size();
+    throw std::runtime_error(
+        "the header announces " + std::to_string(element_->count) +
+        (element_->count == 1 ? " entry" : " entries") + " of element " + quoted(element_->name) + ", and " +
+        counted(rest.size(), "byte") +
+        " follow the last one: its count is wrong, or something was appended; export the "
+        "mesh again");
   }
+  std::size_t line_number() const { return lines_before_ + lines_.number(); }
   // What the rest of the file could hold at most.
   void check_count(const PlyElement& element) const {
     std::uint64_t least = 0;
@@ -67,11 +103,22 @@ class PlyNumbers {
   }
 
  private:
+  // Text that is no number, zeros, or less than another entry.
+  bool is_padding(std::string_view rest) const {
+    if (format_ == PlyFormat::kAscii) return !number_of(next_word(rest));
+    std::size_t least = 0;
+    for (const PlyProperty& property : element_->properties) {
+      if (property.is_list) least += size_of(property.count_type);
+      least += (holds_corners(property) ? 3 : property.is_list ? 0 : 1) * size_of(property.type);
+    }
+    return rest.size() < least || rest.find_first_not_of('\0') == std::string_view::npos;
+  }
+
   double next_of_line() {
     const std::string_view word = next_word(line_);
     if (word.empty() && lines_.rest().empty()) refuse_end();
     const std::optional<double> number = number_of(word);
-    if (!number) refuse_number(lines_before_ + lines_.number(), word);
+    if (!number) refuse_number(line_number(), word);
     return *number;
   }
 
@@ -118,15 +165,16 @@ class PlyNumbers {
   std::string_view line_;
   const PlyElement* element_ = nullptr;
   std::uint64_t entry_ = 0;
+  std::uint64_t longer_ = 0;      // lines of the element with more numbers than announced
+  std::size_t first_longer_ = 0;  // number of the first
 };
-
-bool holds_corners(const PlyProperty& property) {
-  return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
-}
 
 class PlyReader {
  public:
-  PlyReader(std::string_view bytes, const PlyHeader& header) : header_(header), numbers_(bytes, header) {}
+  PlyReader(std::string_view bytes, const PlyHeader& header)
+      : header_(header),
+        numbers_(bytes, header),
+        ends_within_line_(header.format == PlyFormat::kAscii && !has_last_line_end(bytes)) {}
 
   TriangleMesh read(const MeshFileOptions& options) {
     check_elements();
@@ -141,8 +189,12 @@ class PlyReader {
         } else {
           skip(element);
         }
+        numbers_.end_entry();
       }
+      const std::string surplus = numbers_.end_element(element);
+      if (!surplus.empty()) surplus_.push_back(surplus);
     }
+    if (ends_within_line_) check_last_corner();
     return built(options);
   }
 
@@ -235,9 +287,20 @@ class PlyReader {
     }
   }
 
+  // The count of entries tells whether a line is missing, but not whether the last number is whole.
+  void check_last_corner() const {
+    const PlyElement& element = header_.elements.back();
+    if (element.name != "face" || !holds_corners(element.properties.back()) || faces_.back() < 3) return;
+    const std::uint32_t* last = corners_.data() + corners_.size() - faces_.back();
+    LastCorner corner(last, faces_.back(), vertices_.size(), 0);
+    const std::uint32_t* face = corners_.data();
+    for (std::size_t i = 0; i + 1 < faces_.size(); face += faces_[i++]) corner.add(face, faces_[i]);
+    corner.check(numbers_.line_number());
+  }
+
   TriangleMesh built(const MeshFileOptions& options) {
     MeshBuilder builder(options, "face");
-    PolygonCount polygons;
+    PolygonDivider polygons;
     std::size_t first = 0, too_few = 0;
     for (std::size_t i = 0; i < faces_.size(); ++i) {
       if (faces_[i] >= 3) add(first, faces_[i], i + 1, builder, polygons);
@@ -246,15 +309,16 @@ class PlyReader {
     }
     if (too_few > 0)
       builder.add_note(counted(too_few, "face") + " of fewer than 3 corners left out: no ray hits them");
-    if (numbers_.bytes_left() > 0)
-      builder.add_note(counted(numbers_.bytes_left(), "byte") + " after the last element left out");
+    const std::size_t rest = numbers_.check_rest();
+    if (rest > 0) builder.add_note(counted(rest, "byte") + " after the last element left out");
+    for (const std::string& surplus : surplus_) builder.add_loss(surplus);
     const std::string loss = polygons.loss("face");
     if (!loss.empty()) builder.add_loss(loss);
     return builder.finish();
   }
 
   void add(std::size_t first, std::size_t count, std::size_t face, MeshBuilder& builder,
-           PolygonCount& polygons) {
+           PolygonDivider& polygons) {
     places_.clear();
     std::uint32_t first_vertex = 0;
     bool is_finite = true;
@@ -270,19 +334,14 @@ class PlyReader {
       if (i == first) first_vertex = number;
     }
     if (!is_finite) return;  // the builder refuses it
-    DividedPolygon polygon;
-    if (count == 3) {
-      polygon.triangles = {{0, 1, 2}};
-    } else {
-      polygon = divided(places_);
-    }
-    polygons.add(places_, polygon, face);
-    for (const auto& [a, b, c] : polygon.triangles)
+    for (const auto& [a, b, c] : polygons.divide(places_, face))
       builder.add_triangle(first_vertex + a, first_vertex + b, first_vertex + c);
   }
 
   const PlyHeader& header_;
   PlyNumbers numbers_;
+  bool ends_within_line_;
+  std::vector<std::string> surplus_;
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<std::uint32_t> corners_;  // of the faces
   std::vector<std::uint32_t> faces_;    // how many corners each has

@@ -143,13 +143,23 @@ class StlText {
   void skip_name() {
     for (std::string_view name = line_; !name.empty();) {
       const std::string_view before = name;
-      if (in_lower_case(next_word(name)) != "facet") continue;
-      std::string_view after = name;
-      if (in_lower_case(next_word(after)) != "normal") continue;
+      if (in_lower_case(next_word(name)) != "facet" || !is_begin_of_facet(name)) continue;
       line_ = before;
       return;
     }
     line_ = {};
+  }
+  // After "facet": the numbers of a normal, some of which may be missing, and "outer" or the end of the line.
+  // A solid may be named "facet normal", too.
+  static bool is_begin_of_facet(std::string_view words) {
+    if (in_lower_case(next_word(words)) != "normal") return false;
+    for (int numbers = 0; numbers < 3; ++numbers) {
+      const std::string_view word = next_word(words);
+      if (in_lower_case(word) == "outer") return true;
+      if (!number_of(word)) return false;
+    }
+    const std::string_view after = next_word(words);
+    return after.empty() || in_lower_case(after) == "outer";
   }
 
   void take_vertex() {

@@ -165,6 +165,28 @@ TEST_F(MeshFile, OtherFormatsAreRefusedByNameWithAProgramThatConvertsThem) {
     expect_refused(write(name, "x"), {known, "FreeCAD", "CAD Assistant"});
 }
 
+TEST_F(MeshFile, OtherContentUnderAKnownEndingIsNamed) {
+  const std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16), zip("PK\3\4\x14\0\0\0", 8);
+  const std::string more(200, '\7');
+  for (const char* ending : {".stl", ".obj", ".ply"}) {
+    const auto expect = [&](const std::string& bytes, const std::vector<std::string>& parts) {
+      expect_refused(write(std::string("content") + ending, bytes), parts);
+    };
+    expect(png + more, {"PNG image"});
+    expect(zip + more, {"ZIP archive", "unpack"});
+    expect("glTF" + more, {"GLB file", ".glb"});
+    expect("\n<!DOCTYPE html><html>404</html>\n", {"HTML page", "download"});
+    expect("<HTML><body>404 Not Found</body></HTML>\n", {"HTML page", "download"});
+    expect("version https://git-lfs.github.com/spec/v1\noid sha256:abc\nsize 12345\n", {"git lfs pull"});
+  }
+  expect_refused(write("text.obj", "solid craft\nendsolid craft\n"), {"STL file", ".stl"});
+  expect_refused(write("scan.stl", "ply\nformat ascii 1.0\n"), {"PLY file", ".ply"});
+  std::string bytes = stl(wedge_triangles());
+  bytes.replace(0, 2, "PK");
+  bytes.replace(2, 2, "\3\4");
+  EXPECT_EQ(load_mesh_file(write("title.stl", bytes)).triangles.size(), 4U) << "a title may be anything";
+}
+
 TEST_F(MeshFile, APipeIsRefusedAndNotWaitedFor) {
   const std::string path = (folder_ / "pipe.stl").string();
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);

@@ -47,7 +47,89 @@ TEST(ObjFile, ABackslashJoinsLinesAndACommentEndsWithItsLine) {
   EXPECT_EQ(read(kFour + "f 1 \\\n2 \\\r\n3\n").triangles.size(), 1U);
   EXPECT_EQ(read(kFour + "# from D:\\cad\\\nf 1 2 3\n").triangles.size(), 1U);
   EXPECT_EQ(read(kFour + "f 1 2 3 # from D:\\cad\\\nf 1 3 4\n").triangles.size(), 2U);
-  EXPECT_EQ(read(kFour + "f 1 2 3 \\").triangles.size(), 1U);
+}
+
+TEST(ObjFile, ANameMayEndInABackslash) {
+  for (const char* name : {"usemtl a\\", "g C:\\parts\\", "o C:\\parts\\", "mtllib C:\\a.mtl\\"}) {
+    EXPECT_EQ(read(kFour + name + "\nf 1 2 3\nf 1 3 4\n").triangles.size(), 2U) << name;
+    EXPECT_EQ(read(std::string(name) + "\n" + kFour + "f 1 2 3\nf 1 3 4\n").triangles.size(), 2U) << name;
+  }
+  EXPECT_EQ(read(kFour + "g front \\\nleft side\nf 1 2 3\n").triangles.size(), 1U) << "names go on";
+}
+
+TEST(ObjFile, ACommentNeedsNoBlankBeforeIt) {
+  EXPECT_EQ(read("v 0 0 0#a\nv 1 0 0#1\nv 1 1 -0.5# b\nf 1 2 3#c\n").triangles.size(), 1U);
+  EXPECT_EQ(read(kFour + "usemtl Panel#2\nf 1 2 3\n").is_panel.size(), 1U) << "names may hold one";
+  expect_refused("v 0 0 0\nv -1.#IND 0 0\nv 1 1 0\nf 1 2 3\n", {"1 of 3", "not finite", "line 2"});
+}
+
+// A grid of `side` x `side` squares, each of two triangles.
+std::string grid(int side, int first = 1) {
+  std::string text;
+  for (int i = 0; i <= side; ++i) {
+    for (int k = 0; k <= side; ++k) text += "v " + std::to_string(i) + " " + std::to_string(k) + " 0\n";
+  }
+  for (int i = 0; i < side; ++i) {
+    for (int k = 0; k < side; ++k) {
+      const int a = first + i * (side + 1) + k, b = a + side + 1;
+      text += "f " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(b + 1) + "\n";
+      text += "f " + std::to_string(a) + " " + std::to_string(a + 1) + " " + std::to_string(b + 1) + "\n";
+    }
+  }
+  return text;
+}
+
+// All but the end of the last rows, where every vertex is in use and only the missing line end tells.
+TEST(ObjFile, AFileThatIsCutOffInItsFacesIsRefused) {
+  const std::string whole = grid(20);
+  const std::size_t faces = whole.find("f "), most = faces + (whole.size() - faces) * 85 / 100;
+  for (std::size_t bytes = faces; bytes < most; bytes += 7) {
+    if (whole[bytes - 1] == '\n') continue;
+    EXPECT_THROW((void)read(whole.substr(0, bytes)), std::runtime_error) << bytes;
+  }
+  expect_refused(whole.substr(0, whole.find("\nf 200 ")),
+                 {"cut off", "no line end", "of 441 vertices", "copy or export"});
+  expect_refused(whole.substr(0, whole.size() - 4), {"cut off", "line 1241", "not complete"});
+  expect_refused(kFour + "f 1/1 2/2 3/3\nf 1/1 3/3 4", {"cut off", "line 6", "not complete"});
+  expect_refused(kFour + "f 1 2 3\nf 1 3 4\nuse", {"cut off", "line 7", "not complete"});
+  expect_refused(kFour + "f 1 2 3 \\", {"cut off", "not complete"});
+}
+
+TEST(ObjFile, ACutWithinTheLastNumberIsRefused) {
+  const std::string whole = grid(20);
+  expect_refused(whole.substr(0, whole.size() - 2), {"cut off", "vertex 44,", "line 1241"});
+  expect_refused(whole.substr(0, whole.size() - 3), {"cut off", "vertex 4,"});
+}
+
+TEST(ObjFile, AFileThatIsCutOffInALaterObjectIsRefused) {
+  const std::string first = grid(20), second = grid(3, 442);
+  for (std::size_t bytes = 1; bytes < second.size() * 3 / 4; bytes += 3) {
+    if (second[bytes - 1] == '\n') continue;
+    EXPECT_THROW((void)read(first + second.substr(0, bytes)), std::runtime_error) << bytes;
+  }
+}
+
+TEST(ObjFile, AWholeFileWithoutALastLineEndIsReadWithANote) {
+  for (std::string whole : {grid(20), grid(20) + grid(3, 442), kFour + "f 1 2 3 4\n# end\n"}) {
+    whole.pop_back();
+    const TriangleMesh mesh = read(whole);
+    EXPECT_EQ(mesh.triangles.size(), read(whole + "\n").triangles.size());
+    ASSERT_EQ(mesh.notes.size(), 1U);
+    EXPECT_NE(mesh.notes.front().find("no line end"), std::string::npos) << mesh.notes.front();
+    EXPECT_TRUE(read(whole + "\n").notes.empty());
+    EXPECT_TRUE(read(whole + "\n\x1a").notes.empty());
+  }
+}
+
+TEST(ObjFile, ManyVerticesOfNoFaceAreALoss) {
+  const std::string whole = grid(20);
+  const TriangleMesh mesh = read(whole.substr(0, whole.find("f 180 ")));
+  ASSERT_EQ(mesh.losses.size(), 1U);
+  EXPECT_NE(mesh.losses.front().find("of 441 vertices belong to no face"), std::string::npos)
+      << mesh.losses.front();
+  EXPECT_EQ(read(whole + grid(3).substr(0, grid(3).find("f "))).losses.size(), 1U) << "a second object";
+  EXPECT_TRUE(read(kFour + kFour + "l 5 6 7\np 8\nf 1 2 3\n").losses.empty()) << "lines and points";
+  EXPECT_TRUE(read(whole + "v 1 2 3\n").losses.empty());
 }
 
 TEST(ObjFile, WhatIsWrongIsNamedWithItsLine) {

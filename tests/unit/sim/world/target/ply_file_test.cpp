@@ -108,6 +108,52 @@ TEST(PlyFile, AFileThatIsCutOffAnywhereIsRefused) {
   expect_refused(header("ascii").substr(0, 60), {"end_header", "cut off"});
 }
 
+TEST(PlyFile, ACutWithinTheLastNumberIsRefused) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < 12; ++i) text += std::to_string(i) + " 0 " + std::to_string(i * i) + "\n";
+  expect_refused(text + "3 3 11 4\n3 3 4 1", {"cut off", "vertex 1,"});
+  EXPECT_EQ(read_ply(text + "3 3 11 4\n3 3 4 11", kAsIs).triangles.size(), 2U);
+  EXPECT_EQ(read_ply(text + "3 3 11 4\n3 3 4 1\n", kAsIs).triangles.size(), 2U) << "the line is whole";
+}
+
+TEST(PlyFile, MoreThanTheHeaderAnnouncesIsRefused) {
+  expect_refused(header("ascii", "float", "1") + kBody, {"announces 1 entry of element 'face'", "9 bytes"});
+  for (const bool big : {false, true}) {
+    const std::string format = big ? "binary_big_endian" : "binary_little_endian";
+    expect_refused(header(format, "float", "1") + binary_body<float>(big),
+                   {"announces 1 entry of element 'face'", "14 bytes"});
+  }
+}
+
+TEST(PlyFile, BytesThatAreNoEntryAreANote) {
+  const std::string binary = header("binary_little_endian") + binary_body<float>(false);
+  for (const std::string& whole :
+       {header("ascii") + kBody + "end of file\n", binary + "end\n", binary + std::string(512, '\0')}) {
+    const TriangleMesh mesh = read_ply(whole, kAsIs);
+    EXPECT_EQ(mesh.triangles.size(), 2U);
+    ASSERT_EQ(mesh.notes.size(), 1U);
+    EXPECT_NE(mesh.notes.front().find("after the last element"), std::string::npos) << mesh.notes.front();
+  }
+  expect_square(header("ascii") + kBody + " \n\t\n\n");
+}
+
+// Further numbers on one line shift those that are read. Those on every line are a property that the header
+// forgot.
+TEST(PlyFile, LinesWithMoreNumbersThanAnnouncedAreNotReadAsWhole) {
+  const auto with = [](const std::string& part, const std::string& other) {
+    std::string text = header("ascii") + kBody;
+    return text.replace(text.find(part), part.size(), other);
+  };
+  expect_refused(with("0 3 0 1 2\n", "0 3 0 0 1 2\n"), {"line 21", "'face'", "1 of its 2", "more numbers"});
+  expect_refused(with("1 1 255 0\n", "1 1 255 0 9\n"), {"line 18", "'vertex'", "1 of its 4"});
+  const TriangleMesh mesh = read_ply(with("0 3 0 1 2\n0 3 0 2 3\n", "0 3 0 1 2 9\n0 3 0 2 3 9\n"), kAsIs);
+  EXPECT_EQ(mesh.triangles.size(), 2U);
+  ASSERT_EQ(mesh.losses.size(), 1U);
+  EXPECT_NE(mesh.losses.front().find("'face'"), std::string::npos) << mesh.losses.front();
+}
+
 TEST(PlyFile, CountsThatTheFileCannotHoldReserveNothing) {
   expect_refused(header("ascii", "float", "4000000000") + kBody, {"4000000000", "'face'"});
   expect_refused(header("binary_big_endian", "float", "3999999999") + kBody, {"3999999999", "'face'"});

@@ -6,10 +6,20 @@
 #include <cmath>
 #include <random>
 
+#include "tests/unit/sim/world/target/refused_text.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
 using Corners = std::vector<Eigen::Vector3d>;
+
+constexpr auto kNone = DividedPolygon::Fault::kNone;
+constexpr auto kCrossing = DividedPolygon::Fault::kCrossing;
+
+DividedPolygon divided(const Corners& corners) {
+  long tests = 200'000'000;
+  return sim::divided(corners, tests);
+}
 
 double area_of_triangles(const Corners& corners, const DividedPolygon& polygon) {
   double area = 0.0;
@@ -20,7 +30,7 @@ double area_of_triangles(const Corners& corners, const DividedPolygon& polygon) 
 
 void expect_whole(const Corners& corners, const char* what) {
   const DividedPolygon polygon = divided(corners);
-  EXPECT_TRUE(polygon.is_whole) << what;
+  EXPECT_EQ(polygon.fault, kNone) << what;
   EXPECT_EQ(polygon.triangles.size(), corners.size() - 2) << what;
   EXPECT_NEAR(area_of_triangles(corners, polygon), area_of(corners), 1e-9 * area_of(corners)) << what;
 }
@@ -66,7 +76,7 @@ TEST(Polygon, WithABridgeToItsHoleIsWhole) {
 TEST(Polygon, WhoseFirstCornerComesAgainIsTheSame) {
   const Corners corners{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 0.5, 0}, {0, 2, 0}, {0, 0, 0}};
   const DividedPolygon polygon = divided(corners);
-  EXPECT_TRUE(polygon.is_whole);
+  EXPECT_EQ(polygon.fault, kNone);
   EXPECT_EQ(polygon.triangles.size(), 3U);
 }
 
@@ -86,8 +96,87 @@ TEST(Polygon, OfCrossingEdgesOrWithoutAreaEnds) {
     crossing.emplace_back(std::cos(2.0 * 6.283185307179586 * i / 7),
                           std::sin(2.0 * 6.283185307179586 * i / 7), 0.0);
   (void)divided(crossing);
-  EXPECT_FALSE(divided({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}).is_whole);
+  EXPECT_EQ(divided({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}).fault, kCrossing);
   EXPECT_EQ(divided(Corners(9, Eigen::Vector3d::Zero())).triangles.size(), 1U);
+}
+
+TEST(Polygon, WhoseEdgesCrossIsKnown) {
+  EXPECT_EQ(divided({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).fault, kCrossing) << "a bow tie";
+  EXPECT_NEAR(divided({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).wrong_area, 0.5, 1e-9);
+  EXPECT_EQ(divided({{0, 0, 0}, {1, 1, 0.1}, {1, 0, 0}, {0, 2, 0}}).fault, kCrossing)
+      << "one that is not flat";
+  EXPECT_EQ(divided({{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}}).fault, kNone) << "a saddle";
+  EXPECT_EQ(divided({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}}).fault, kNone);
+  EXPECT_EQ(divided({{0, 0, 0}, {3, 2, 0}, {4, 2, 0}, {4, 0, 0}, {3, 0, 0}, {0, 1, 0}}).fault, kCrossing);
+  Corners pentagram;
+  for (int i = 0; i < 5; ++i)
+    pentagram.emplace_back(std::cos(2.0 * 6.283185307179586 * i / 5),
+                           std::sin(2.0 * 6.283185307179586 * i / 5), 0.0);
+  EXPECT_EQ(divided(pentagram).fault, kCrossing);
+}
+
+TEST(Polygon, WhosePartsCancelEachOtherLacksThem) {
+  const DividedPolygon eight = divided({{0, 0, 0}, {2, 1, 0}, {2, 0, 0}, {0, 1, 0}, {-1, 0.5, 0}, {0, 0, 0}});
+  EXPECT_EQ(eight.fault, kCrossing);
+  const DividedPolygon bow = divided({{0, 0, 0}, {1, 0.5, 0}, {2, 1, 0}, {2, 0, 0}, {1, 0.5, 0}, {0, 1, 0}});
+  EXPECT_EQ(bow.fault, kCrossing);
+  EXPECT_GT(bow.wrong_area, 0.3);
+}
+
+// As a spring of sheet metal: every corner's triangle is near the corners of the neighbouring turns.
+Corners spiral(int count, double z = 0.0) {
+  Corners corners;
+  const auto add = [&](double from, int i) {
+    corners.emplace_back((from + 0.001 * i) * std::cos(0.1 * i), (from + 0.001 * i) * std::sin(0.1 * i), z);
+  };
+  for (int i = 0; i < count; ++i) add(0.1, i);
+  for (int i = count - 1; i >= 0; --i) add(0.13, i);
+  return corners;
+}
+
+TEST(Polygon, OfManyTurnsIsWhole) {
+  expect_whole(spiral(400), "a spiral");
+}
+
+TEST(PolygonDivider, AFileOfLongPolygonsIsWhole) {
+  PolygonDivider polygons;
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(polygons.divide(spiral(2400, i), 1).size(), 4798U);
+  EXPECT_EQ(polygons.loss("line"), "");
+}
+
+TEST(PolygonDivider, SaysWhatIsWrongAndHowMuch) {
+  PolygonDivider polygons;
+  (void)polygons.divide({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, 1);
+  (void)polygons.divide({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}, 7);
+  const std::string loss = polygons.loss("line");
+  for (const char* part : {"1 polygon of 2", "line 7", "edges cross", "3.03 %", "missing or wrong"})
+    EXPECT_NE(loss.find(part), std::string::npos) << loss;
+}
+
+TEST(PolygonDivider, RefusesAFileOfWhichMuchIsWrong) {
+  PolygonDivider polygons;
+  (void)polygons.divide({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 1);
+  (void)polygons.divide({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}, 7);
+  expect_refusal([&] { (void)polygons.loss("face"); },
+                 {"1 polygon of 2", "face 7", "33.3 %", "at most 20 %", "riangulate"});
+}
+
+// The tests are counted for the file, and the reason is the true one.
+TEST(PolygonDivider, OfTangledPolygonsEnds) {
+  PolygonDivider polygons;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 20; ++i) {
+    Corners tangle;
+    for (std::size_t k = 0; k < kMostCorners; ++k) tangle.emplace_back(uniform(random), uniform(random), 0.0);
+    (void)polygons.divide(tangle, 3);
+  }
+  expect_refusal([&] { (void)polygons.loss("line"); }, {"of 20", "line 3", "missing or wrong"});
+}
+
+TEST(Polygon, WithoutTestsLeftSaysSo) {
+  long tests = 1000;
+  EXPECT_EQ(sim::divided(spiral(400), tests).fault, DividedPolygon::Fault::kNoTestsLeft);
 }
 
 TEST(Polygon, OfTheMostCornersTakesNoTime) {

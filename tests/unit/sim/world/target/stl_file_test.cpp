@@ -65,6 +65,18 @@ TEST(StlFile, LinesMayEndInAnyWayAndWordsMayBeInCapitals) {
   EXPECT_EQ(triangles_of(solid("craft", 2) + "\x1a"), 2U);
 }
 
+TEST(StlFile, ASolidMayBeNamedAsAFacet) {
+  for (const char* name : {"facet normal", "facet", "my facet normal craft", "facet normal vertex 1 2 3"}) {
+    EXPECT_EQ(triangles_of(solid(name, 2)), 2U) << name;
+  }
+  for (const char* normal : {"0 0 1", "nan nan nan", ""}) {
+    std::string in_one_line;
+    for (const char c : "solid facet normal " + facet(normal) + facet(normal) + "endsolid\n")
+      in_one_line += c == '\n' ? ' ' : c;
+    EXPECT_EQ(triangles_of(in_one_line), 2U) << normal;
+  }
+}
+
 TEST(StlFile, NormalsAreNotUsedWhateverTheyAre) {
   for (const char* normal :
        {"nan nan nan", "-nan(ind) -nan(ind) -nan(ind)", "1.#QNAN 0 0", "0,0 0,0 1,0", ""})
