@@ -42,7 +42,8 @@ inline constexpr std::size_t kMaxTriangles = 5'000'000;
 // Throws std::runtime_error that names the file, the fault, the value, the limit and the remedy for: a scale
 // that is not positive and finite; a file that is missing, unreadable, or not of the format that its
 // extension .stl, .obj, .ply, .gltf or .glb names, or cut off; a compression that this build cannot read; no
-// triangles, or more than kMaxTriangles; vertices that are not finite; too much surface without area or crossed.
+// triangles, or more than kMaxTriangles; vertices that are not finite; too much surface without area or
+// crossed.
 TriangleMesh read_mesh_file(const std::string& path, const MeshFileOptions& options = {});
 
 // Empty if the sensor can see a target of this size; otherwise the size, the limit and the remedies.
