@@ -118,6 +118,7 @@ void SilSession::open_domain(const char* security) {
   if (result == 0) return;
   const std::string domain =
       "DDS domain " + std::to_string(first) + " could not be opened: " + hal::dds::text_of_failure(result);
+  if (!hal::dds::has_loopback()) throw SilFailure(domain);
   if (!settings_.security_path.empty())
     throw SilFailure(domain + "; is --dds-security " + settings_.security_path +
                      " a file of hal/dds/make_security?");

@@ -181,6 +181,7 @@ TEST(Refusal, AMissingLoopbackInterfaceIsNamedByBothSides) {
     EXPECT_NE(std::system((command + " > " + log + " 2>&1").c_str()), 0);
     expect_all_in(test::read_file(log),
                   {"DDS domain 1", "loopback interface lo is down", "ip link set lo up"});
+    EXPECT_EQ(test::read_file(log).find("another program"), std::string::npos) << test::read_file(log);
   }
 }
 

@@ -37,6 +37,8 @@ constexpr const char* kConfiguration = R"(
 constexpr const char* kConfigurationEnd = "</Domain></CycloneDDS>";
 constexpr std::size_t kMaxConfiguration = 2048;  // without the further elements
 
+}  // namespace
+
 // Linux lets a program bind to 127.0.0.1 even while the interface is down.
 bool has_loopback() {
   ifaddrs* interfaces = nullptr;
@@ -50,8 +52,6 @@ bool has_loopback() {
   freeifaddrs(interfaces);
   return found;
 }
-
-}  // namespace
 
 bool read_security(const char* path, SecurityElement& security) {
   // Non-blocking, so that a named pipe in its place does not block the start-up.

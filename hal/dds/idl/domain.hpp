@@ -19,6 +19,10 @@ struct SecurityElement {
 // False: the file cannot be read or is too large.
 [[nodiscard]] bool read_security(const char* path, SecurityElement& security);
 
+// Whether the machine has the interface that the bus uses, up and with its address. True if that is not
+// known.
+bool has_loopback();
+
 // Of a return code: what Domain::open() could not do. Names the loopback interface if that is the reason.
 const char* text_of_failure(dds_return_t code);
 
