@@ -119,6 +119,16 @@ void try_other_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch&
   scratch.fit = scratch.other_fit;
 }
 
+// Fits the motion to the others.
+void forget(std::uint32_t poses, const PoseFrame& frame, PoseScratch& scratch, PoseTrackerState& state) {
+  if (poses == 0) return;
+  if (!spend_on_fit(1, state, scratch)) return;
+  state.history.remove(poses);
+  const PoseMotion found = scratch.fit.motion;
+  const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
+  fit_motion(state.history, frame.laws[law], scratch.view.target_radius_um, found, 1, scratch.fit);
+}
+
 // Fits the motion to the poses and forgets those that do not agree with it, except the newest. False: the
 // newest does not agree.
 bool fit_track(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
@@ -127,12 +137,7 @@ bool fit_track(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scr
   try_other_law(frame, start, scratch, state);
   const std::uint32_t newest = std::uint32_t{1} << (state.history.count - 1);
   const bool newest_agrees = (scratch.fit.against & newest) == 0;
-  if ((scratch.fit.against & ~newest) != 0 && spend_on_fit(1, state, scratch)) {
-    state.history.remove(scratch.fit.against & ~newest);
-    const PoseMotion found = scratch.fit.motion;
-    const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
-    fit_motion(state.history, frame.laws[law], scratch.view.target_radius_um, found, 1, scratch.fit);
-  }
+  forget(scratch.fit.against & ~newest, frame, scratch, state);
   state.motion = scratch.fit.motion;
   return newest_agrees;
 }

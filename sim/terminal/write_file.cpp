@@ -20,7 +20,8 @@ namespace {
 bool replaceable(const std::string& path) {
   std::error_code ignored;
   const fs::file_type type = fs::symlink_status(path, ignored).type();
-  return type == fs::file_type::not_found || type == fs::file_type::regular;
+  // None: it cannot be told, as of a name that is too long; then nothing can be made there either.
+  return type == fs::file_type::not_found || type == fs::file_type::regular || type == fs::file_type::none;
 }
 
 constexpr int kPartialNames = 16;
