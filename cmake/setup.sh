@@ -15,6 +15,7 @@ refuse() {
 require_file() { # what it is, path
   [ -e "$2" ] || refuse "$1: '$2' does not exist"
   [ ! -d "$2" ] || refuse "$1: '$2' is a folder; give a file"
+  [ -f "$2" ] || refuse "$1: '$2' is a pipe or a device; give a plain file"
   [ -r "$2" ] || refuse "$1: '$2' cannot be read; its permissions are $(stat -Lc %A "$2")"
 }
 

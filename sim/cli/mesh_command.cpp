@@ -49,7 +49,7 @@ void require_usable(const MeshCommandArguments& arguments) {
   require_usable_files(read, written);
 }
 
-// Farther away it is a slip of the pen or of the unit, and no spacecraft's centre of mass.
+// Farther away it is a typing error or a wrong unit: no spacecraft has its centre of mass there.
 void require_origin_near(const MeshCommandArguments& arguments, const MeshInspection& found) {
   constexpr double kMost_radii = 10.0;
   if (arguments.origin.empty()) return;

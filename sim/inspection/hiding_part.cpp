@@ -64,7 +64,7 @@ double area_of(const TriangleMesh& mesh, std::size_t triangle) {
   return 0.5 * (corner(mesh, triangle, 1) - a).cross(corner(mesh, triangle, 2) - a).norm();
 }
 
-// The golden ratio's kin spread points over a triangle so that any number of them in a row is even.
+// The R2 sequence: any number of consecutive points is spread evenly over the triangle.
 Vector3d point_on(const TriangleMesh& mesh, std::size_t triangle, std::size_t number) {
   double whole = 0.0;
   double u = std::modf(0.5 + 0.7548776662466927 * static_cast<double>(number), &whole);

@@ -69,6 +69,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"sim/run --frames=ten", "--frames: must be a whole number, not 'ten'"},
         Refused{"sim/run --period fast", "--period: must be a number, not 'fast'"},
         Refused{"sim/run --model programs", "--model: 'programs' is a folder; give a file"},
+        Refused{"sim/run --model /dev/null", "--model: '/dev/null' is a pipe or a device; give a plain file"},
+        Refused{"sim/adopt /dev/zero", "MISSION: '/dev/zero' is a pipe or a device"},
         Refused{"sim/run --mission nothere.toml", "--mission: 'nothere.toml' does not exist"},
         Refused{"sim/run --mission craft.toml", "the mesh of craft.toml: './nothere.stl' does not exist"},
         Refused{"sim/run --sensor nothere.json", "--sensor: 'nothere.json' does not exist"},
