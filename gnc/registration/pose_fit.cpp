@@ -19,14 +19,19 @@ Motion<Fixed> reversed(const Motion<Fixed>& motion) {
   return {motion.r_lrf_trf, {-motion.rate_lrf.x(), -motion.rate_lrf.y(), -motion.rate_lrf.z()}};
 }
 
+// In which a time is propagated, at so many per period or part of it.
+int parts_of(std::int64_t elapsed_ns, std::int64_t parts_per_period) {
+  return static_cast<int>(
+      clamp<std::int64_t>(divide(elapsed_ns * parts_per_period + kNominalPeriod_ns - 1, kNominalPeriod_ns), 1,
+                          std::int64_t{kMaxPeriods} * kPartsOfPeriod));
+}
+
 // In parts that are short enough for the rate.
 Motion<Fixed> propagated(Motion<Fixed> motion, const Inertia<Fixed>& inertia, std::int64_t elapsed_ns) {
   std::int64_t rate = 0;
   for (int i = 0; i < 3; ++i) rate += abs(motion.rate_lrf[i].raw());
   const std::int64_t parts_per_period = clamp<std::int64_t>(divide(rate, kTurnOfPart) + 1, 1, kPartsOfPeriod);
-  const std::int64_t parts =
-      clamp<std::int64_t>(divide(elapsed_ns * parts_per_period + kNominalPeriod_ns - 1, kNominalPeriod_ns), 1,
-                          std::int64_t{kMaxPeriods} * kPartsOfPeriod);
+  const std::int64_t parts = parts_of(elapsed_ns, parts_per_period);
   const std::int64_t part_ns = divide(elapsed_ns, parts);
   for (std::int64_t i = 0; i < parts; ++i) motion = propagate<Fixed>(motion, inertia, part_ns);
   return motion;
@@ -201,19 +206,20 @@ PoseMotion later_motion(const PoseMotion& motion, const Inertia<Fixed>& inertia,
 
 std::int32_t work_of_fit(const PoseHistory& history, bool with_now, int iterations) {
   const int known = clamp(history.count, 0, PoseHistory::kMost);
-  int periods = 0;  // that are begun between two poses
+  int periods = 0, parts = 0;
   for (int i = 0; i < known; ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (i + 1 == known && !with_now) break;
     const std::int64_t gap_ns =
         i + 1 == known ? clamp<std::int64_t>(history.poses[at].age_ns, 0, PoseHistory::kOldest_ns)
                        : time_between(history.poses[at], history.poses[at + 1]);
-    periods += 1 + static_cast<int>(divide(gap_ns, kNominalPeriod_ns));
+    periods += parts_of(gap_ns, 1);
+    parts += parts_of(gap_ns, kPartsOfPeriod);
   }
   const int poses = clamp(known + (with_now ? 1 : 0), 1, PoseHistory::kMost);
   const std::int32_t per_iteration =
-      work::kIteration + poses * work::kIterationPose + periods * work::kIterationPeriod;
-  return work::kFit + poses * work::kFitPose + periods * work::kFitPeriod +
+      work::kIteration + poses * work::kIterationPose + parts * work::kIterationPart;
+  return poses * work::kFitPose + periods * work::kFitPeriod +
          (clamp(iterations, 1, kMostIterations) + 1) * per_iteration;
 }
 

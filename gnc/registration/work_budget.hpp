@@ -35,9 +35,10 @@ inline constexpr std::int32_t kOutline = 60'000, kEdge = 87, kOutlineEdge = 190,
 inline constexpr std::int32_t kStep = 100'000, kTable = 251'000, kRefinement = 270'000;
 // A placement besides its rendering, and its search.
 inline constexpr std::int32_t kPlacement = 600'000, kSearch = 1'100'000;
-// A fit of the motion: once, per pose, per period between two poses that is begun; the same per iteration.
-inline constexpr std::int32_t kFit = 30'000, kFitPose = 46'000, kFitPeriod = 195'000, kIteration = 60'000,
-                              kIterationPose = 39'000, kIterationPeriod = 131'000;
+// A fit of the motion: per pose, per period or part of it between two poses; per iteration: once, per pose,
+// per part of the propagation.
+inline constexpr std::int32_t kFitPose = 45'000, kFitPeriod = 195'000, kIteration = 60'000,
+                              kIterationPose = 38'000, kIterationPart = 33'000;
 
 }  // namespace work
 
