@@ -26,14 +26,17 @@ int parts_of(std::int64_t elapsed_ns, std::int64_t parts_per_period) {
                           std::int64_t{kMaxPeriods} * kPartsOfPeriod));
 }
 
-// In parts that are short enough for the rate.
-Motion<Fixed> propagated(Motion<Fixed> motion, const Inertia<Fixed>& inertia, std::int64_t elapsed_ns) {
+// That are short enough for the rate.
+int parts_of(std::int64_t elapsed_ns, const Vector3<Fixed>& rate_lrf) {
   std::int64_t rate = 0;
-  for (int i = 0; i < 3; ++i) rate += abs(motion.rate_lrf[i].raw());
-  const std::int64_t parts_per_period = clamp<std::int64_t>(divide(rate, kTurnOfPart) + 1, 1, kPartsOfPeriod);
-  const std::int64_t parts = parts_of(elapsed_ns, parts_per_period);
-  const std::int64_t part_ns = divide(elapsed_ns, parts);
-  for (std::int64_t i = 0; i < parts; ++i) motion = propagate<Fixed>(motion, inertia, part_ns);
+  for (int i = 0; i < 3; ++i) rate += abs(rate_lrf[i].raw());
+  return parts_of(elapsed_ns, clamp<std::int64_t>(divide(rate, kTurnOfPart) + 1, 1, kPartsOfPeriod));
+}
+
+Motion<Fixed> propagated(Motion<Fixed> motion, const Inertia<Fixed>& inertia, std::int64_t elapsed_ns,
+                         int parts) {
+  const std::int64_t part_ns = divide(elapsed_ns, std::int64_t{parts});
+  for (int i = 0; i < parts; ++i) motion = propagate<Fixed>(motion, inertia, part_ns);
   return motion;
 }
 
@@ -194,7 +197,8 @@ PoseMotion later_motion(const PoseMotion& motion, const Inertia<Fixed>& inertia,
   const std::int64_t limited_ns = clamp<std::int64_t>(elapsed_ns, 0, kLongestPropagation_ns);
   const std::int64_t periods_q24 = divide(limited_ns * (1 << 24), kNominalPeriod_ns);
   PoseMotion later;
-  later.turning = turned<Fixed>(propagated(motion.turning, inertia, limited_ns), r_now_last);
+  const int parts = parts_of(limited_ns, motion.turning.rate_lrf);
+  later.turning = turned<Fixed>(propagated(motion.turning, inertia, limited_ns, parts), r_now_last);
   std::array<std::int32_t, 3> origin_um{};
   for (std::size_t i = 0; i < 3; ++i)
     origin_um[i] = limited_sum(motion.origin_lrf_um[i], (motion.velocity_um_period[i] * periods_q24) >> 24,
@@ -204,27 +208,25 @@ PoseMotion later_motion(const PoseMotion& motion, const Inertia<Fixed>& inertia,
   return later;
 }
 
-std::int32_t work_of_fit(const PoseHistory& history, bool with_now, int iterations) {
+std::int32_t work_of_fit(const PoseHistory& history, int iterations) {
   const int known = clamp(history.count, 0, PoseHistory::kMost);
   int periods = 0, parts = 0;
   for (int i = 0; i < known; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    if (i + 1 == known && !with_now) break;
     const std::int64_t gap_ns =
         i + 1 == known ? clamp<std::int64_t>(history.poses[at].age_ns, 0, PoseHistory::kOldest_ns)
                        : time_between(history.poses[at], history.poses[at + 1]);
-    periods += parts_of(gap_ns, 1);
-    parts += parts_of(gap_ns, kPartsOfPeriod);
+    periods += parts_of(gap_ns, std::int64_t{1});
+    parts += parts_of(gap_ns, std::int64_t{kPartsOfPeriod});
   }
-  const int poses = clamp(known + (with_now ? 1 : 0), 1, PoseHistory::kMost);
-  const std::int32_t per_iteration =
-      work::kIteration + poses * work::kIterationPose + parts * work::kIterationPart;
+  const int poses = min(known + 1, PoseHistory::kMost);
   return poses * work::kFitPose + periods * work::kFitPeriod +
-         (clamp(iterations, 1, kMostIterations) + 1) * per_iteration;
+         (clamp(iterations, 1, kMostIterations) + 1) *
+             (work::kIteration + poses * work::kIterationPose + parts * work::kIterationPart);
 }
 
-void fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::int32_t target_radius_um,
-                const PoseMotion& start, int iterations, PoseFitResult& result) {
+bool fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::int32_t target_radius_um,
+                const PoseMotion& start, int iterations, WorkBudget& budget, PoseFitResult& result) {
   result.motion = start;
   const int last = clamp(iterations, 1, kMostIterations);
   const std::size_t count = static_cast<std::size_t>(clamp(history.count, 1, PoseHistory::kMost));
@@ -233,12 +235,15 @@ void fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::
   std::array<Jacobian, PoseHistory::kMost> derivatives{};
   Probes probes = probes_of(start.turning);
   for (std::size_t i = count; i-- > 0;) {
+    const std::int64_t gap_ns = i == newest ? 0 : time_between(history.poses[i], history.poses[i + 1]);
+    const int periods = i == newest ? 0 : parts_of(gap_ns, std::int64_t{1});
+    if (!budget.spend(work::kFitPose + periods * work::kFitPeriod)) return false;
     if (i != newest)
-      for (Motion<Fixed>& probe : probes)
-        probe = propagate<Fixed>(probe, inertia, time_between(history.poses[i], history.poses[i + 1]));
+      for (Motion<Fixed>& probe : probes) probe = propagate<Fixed>(probe, inertia, gap_ns);
     derivatives[i] = derivatives_of(probes);
   }
   for (int iteration = 0; iteration <= last; ++iteration) {
+    if (!budget.spend(work::kIteration)) return false;
     // Poses far from a start with a wrong rate are not wrong yet.
     const int left = last - iteration;
     const std::int64_t tolerance = left > 2 ? 4096 : left > 1 ? 16 : 1;
@@ -251,8 +256,10 @@ void fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::
     result.against = 0;
     for (std::size_t i = count; i-- > 0;) {
       const PoseMeasurement& measurement = history.poses[i];
-      if (i != newest)
-        expected = propagated(expected, inertia, time_between(measurement, history.poses[i + 1]));
+      const std::int64_t gap_ns = i == newest ? 0 : time_between(measurement, history.poses[i + 1]);
+      const int parts = i == newest ? 0 : parts_of(gap_ns, expected.rate_lrf);
+      if (!budget.spend(work::kIterationPose + parts * work::kIterationPart)) return false;
+      if (i != newest) expected = propagated(expected, inertia, gap_ns, parts);
       const std::int64_t elapsed_q24 =
           divide(time_between(measurement, history.poses[newest]) * (1 << 24), kNominalPeriod_ns);
       const PoseRow row = row_of(measurement, expected.r_lrf_trf, derivatives[i], result.motion, elapsed_q24,
@@ -265,6 +272,7 @@ void fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::
     if (iteration == last) break;
     move(solve<kMotionUnknowns>(equations.information, equations.gradient), target_radius_um, result.motion);
   }
+  return true;
 }
 
 }  // namespace tumblesight::gnc

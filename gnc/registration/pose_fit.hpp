@@ -43,9 +43,10 @@ struct PoseFitResult {
 // approximate motion at the last pose; its rate decides among rates that lead to the same attitudes, and has
 // to lead back to each of them within 60 degrees. `iterations`: 1 ... kMostIterations.
 inline constexpr int kMostIterations = 3;  // enough for a start that is a degree off
-// The most that a fit takes (work_budget.hpp), of the poses and, `with_now`, another one of now.
-std::int32_t work_of_fit(const PoseHistory& history, bool with_now, int iterations);
-void fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::int32_t target_radius_um,
-                const PoseMotion& start, int iterations, PoseFitResult& result);
+// False: the budget was exhausted, and the result means nothing.
+bool fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::int32_t target_radius_um,
+                const PoseMotion& start, int iterations, WorkBudget& budget, PoseFitResult& result);
+// The most that a fit of these poses takes, and of another one of now (work_budget.hpp).
+std::int32_t work_of_fit(const PoseHistory& history, int iterations);
 
 }  // namespace tumblesight::gnc

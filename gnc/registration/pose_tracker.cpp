@@ -80,9 +80,22 @@ Vector3<Fixed> rate_between(const PoseMeasurement& first, const PoseMeasurement&
   return rate;
 }
 
-// For a fit that can be left out. False: it has to be.
-bool spend_on_fit(int iterations, const PoseTrackerState& state, PoseScratch& scratch) {
-  return scratch.refinement.budget.spend(work_of_fit(state.history, false, iterations));
+// Fits the poses under the law of the track. What the frame has held back for it is enough, whatever the
+// rate; the rest is given back.
+void fit_by_reserve(const PoseFrame& frame, const PoseMotion& start, int iterations, PoseScratch& scratch,
+                    const PoseTrackerState& state) {
+  const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
+  fit_motion(state.history, frame.laws[law], scratch.view.target_radius_um, start, iterations,
+             scratch.fit_reserve, scratch.fit);
+  scratch.refinement.budget.give_back(scratch.fit_reserve.left());
+}
+
+// Fits the poses under a law, into scratch.other_fit. False: the budget of the frame does not cover it.
+bool fit_by_budget(const PoseFrame& frame, int law, const PoseMotion& start, int iterations,
+                   PoseScratch& scratch, const PoseTrackerState& state) {
+  return fit_motion(state.history, frame.laws[static_cast<std::size_t>(clamp(law, 0, kLaws - 1))],
+                    scratch.view.target_radius_um, start, iterations, scratch.refinement.budget,
+                    scratch.other_fit);
 }
 
 int iterations_for(int poses) {
@@ -93,16 +106,13 @@ int iterations_for(int poses) {
 // between these two is tried.
 void fit_under_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
                    const PoseTrackerState& state) {
-  const std::int32_t radius_um = scratch.view.target_radius_um;
-  const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
   const int count = state.history.count;
-  fit_motion(state.history, frame.laws[law], radius_um, start, iterations_for(count), scratch.fit);
+  fit_by_reserve(frame, start, iterations_for(count), scratch, state);
   if (count < 2 || ((scratch.fit.against >> (count - 2)) & 1U) == 0) return;
-  if (!spend_on_fit(kMostIterations, state, scratch)) return;
   const auto newest = static_cast<std::size_t>(count - 1);
   PoseMotion other_start = start;
   other_start.turning.rate_lrf = rate_between(state.history.poses[newest - 1], state.history.poses[newest]);
-  fit_motion(state.history, frame.laws[law], radius_um, other_start, kMostIterations, scratch.other_fit);
+  if (!fit_by_budget(frame, state.law, other_start, kMostIterations, scratch, state)) return;
   if (scratch.other_fit.disagreement_q8 < scratch.fit.disagreement_q8) scratch.fit = scratch.other_fit;
 }
 
@@ -110,10 +120,12 @@ void fit_under_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch&
 void try_other_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
                    PoseTrackerState& state) {
   if (state.history.count < kPosesOfALaw || scratch.fit.disagreement_q8 <= kDisagreement_q8) return;
-  if (!spend_on_fit(kMostIterations, state, scratch)) return;
+  const int challenger_before = state.challenger;
   const int law = challenger_of(frame, state);
-  fit_motion(state.history, frame.laws[static_cast<std::size_t>(law)], scratch.view.target_radius_um, start,
-             kMostIterations, scratch.other_fit);
+  if (!fit_by_budget(frame, law, start, kMostIterations, scratch, state)) {
+    state.challenger = challenger_before;  // its turn comes again
+    return;
+  }
   if (scratch.other_fit.disagreement_q8 >= scratch.fit.disagreement_q8 * 3 / 4) return;
   state.law = law;
   scratch.fit = scratch.other_fit;
@@ -122,11 +134,8 @@ void try_other_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch&
 // Fits the motion to the others.
 void forget(std::uint32_t poses, const PoseFrame& frame, PoseScratch& scratch, PoseTrackerState& state) {
   if (poses == 0) return;
-  if (!spend_on_fit(1, state, scratch)) return;
   state.history.remove(poses);
-  const PoseMotion found = scratch.fit.motion;
-  const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
-  fit_motion(state.history, frame.laws[law], scratch.view.target_radius_um, found, 1, scratch.fit);
+  if (fit_by_budget(frame, state.law, scratch.fit.motion, 1, scratch, state)) scratch.fit = scratch.other_fit;
 }
 
 // Fits the motion to the poses and forgets those that do not agree with it, except the newest. False: the
@@ -149,8 +158,7 @@ void make_coasting_covariance(const PoseFrame& frame, const PoseTrackerState& st
   PoseMotion start = state.motion;
   start.turning.r_lrf_trf = last.pose.r_lrf_trf;
   start.origin_lrf_um = last.pose.origin_lrf_um;
-  const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
-  fit_motion(state.history, frame.laws[law], scratch.view.target_radius_um, start, 1, scratch.fit);
+  fit_by_reserve(frame, start, 1, scratch, state);
   make_covariance(scratch.fit, state.history.count, scratch.view.target_radius_um, covariance);
   constexpr std::int64_t kPerMillisecond = 1'000'000;
   const std::int64_t elapsed_ms = divide(max<std::int64_t>(0, last.age_ns), kPerMillisecond);
@@ -198,9 +206,11 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   const int poses_before = state.history.count;
   const std::int32_t advantage_before_q8 = state.advantage_q8, proven_before_q8 = state.proven_q8;
   // One fit is always made: of the pose of this frame, or of a track that coasts.
+  const std::int32_t reserve = work_of_fit(state.history, iterations_for(poses_before + 1));
+  scratch.fit_reserve.begin(reserve);
   WorkBudget& work_left = scratch.refinement.budget;
   work_left.begin(budget);
-  work_left.spend(work_of_fit(state.history, true, iterations_for(poses_before + 1)));
+  work_left.spend(reserve);
   bool is_tracked = state.history.count >= kTrackedPoses;
   const std::int32_t depth_um = is_tracked ? predicted.origin_lrf_um[1] : frame.centroid_lrf_mm[1] * 1000;
   if (!target.mesh.is_known() ||

@@ -102,6 +102,7 @@ struct PoseScratch {
   RefinementScratch refinement;
   PlacementScratch placement;
   PoseCandidate best, other;
+  WorkBudget fit_reserve;  // held back for the one fit that every frame makes
   PoseFitResult fit, other_fit;
 };
 

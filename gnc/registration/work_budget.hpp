@@ -54,6 +54,10 @@ class WorkBudget {
     left_ = work > left_ ? kExhausted : left_ - work;
     return !is_exhausted();
   }
+  // What was held back and not taken. An exhausted budget remains so.
+  void give_back(std::int32_t work) {
+    if (!is_exhausted()) left_ += work;
+  }
   bool is_exhausted() const { return left_ == kExhausted; }
   std::int32_t left() const { return max(left_, 0); }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -118,6 +119,11 @@ class FitMotion : public testing::Test {
     for (PoseMeasurement& earlier : history_->poses) earlier.age_ns += elapsed_ns;
     history_->add(measurement);
   }
+  // False: the budget was exhausted.
+  bool fit(const ExactMotion& start, const Eigen::Matrix3d& inertia_trf, int iterations = kMostIterations) {
+    return fit_motion(*history_, fixed_inertia(inertia_trf), kRadius_um, fixed_motion(start), iterations,
+                      budget_, *result_);
+  }
   // Started a degree, a degree per period and some centimetres away from the truth.
   Error fitted(const Eigen::Matrix3d& inertia_trf) {
     ExactMotion start = truth_;
@@ -125,14 +131,14 @@ class FitMotion : public testing::Test {
     start.rate_lrf += random_.vector(0.01);
     start.origin_m += random_.vector(0.02);
     start.velocity_m += random_.vector(0.02);
-    fit_motion(*history_, fixed_inertia(inertia_trf), kRadius_um, fixed_motion(start), kMostIterations,
-               *result_);
+    fit(start, inertia_trf);
     return error_of(result_->motion, truth_);
   }
 
   Random random_{7};
   ExactMotion truth_;
   std::unique_ptr<PoseHistory> history_ = std::make_unique<PoseHistory>();
+  WorkBudget budget_;  // without a limit
   std::unique_ptr<PoseFitResult> result_ = std::make_unique<PoseFitResult>();
 };
 
@@ -210,7 +216,7 @@ TEST_F(FitMotion, OnePoseKeepsTheRateOfTheStart) {
   observe(1, 0.0, kSphere);
   ExactMotion start = truth_;
   start.r_lrf_trf = rotation_of({0.01, 0.0, 0.02}) * start.r_lrf_trf;
-  fit_motion(*history_, fixed_inertia(kSphere), kRadius_um, fixed_motion(start), kMostIterations, *result_);
+  fit(start, kSphere);
   const Error error = error_of(result_->motion, truth_);
   EXPECT_LT(error.turn_deg, 0.003);
   EXPECT_LT(error.rate_deg, 0.003);
@@ -244,7 +250,7 @@ TEST_F(FitMotion, RateMayBeOffByDegreesAtTheStart) {
     observe(10, 0.001, kSphere, 0.1);
     ExactMotion start = truth_;
     start.rate_lrf += 2.0 * kDegree * random_.vector(1.0).normalized();
-    fit_motion(*history_, fixed_inertia(kSphere), kRadius_um, fixed_motion(start), kMostIterations, *result_);
+    fit(start, kSphere);
     EXPECT_LT(error_of(result_->motion, truth_).rate_deg, 0.1);
   }
 }
@@ -260,7 +266,7 @@ TEST_F(FitMotion, VelocityIsRightOverLongGaps) {
   }
   ExactMotion start = truth_;
   start.velocity_m.setZero();
-  fit_motion(*history_, fixed_inertia(kSphere), kRadius_um, fixed_motion(start), kMostIterations, *result_);
+  fit(start, kSphere);
   EXPECT_LT(error_of(result_->motion, truth_).velocity_mm, 0.05);
 }
 
@@ -276,11 +282,54 @@ TEST_F(FitMotion, EndsWithARotationWhateverThePoses) {
       add(measured_pose(fixed({r, origin_m}), equations), std::int64_t{1'000'000'000} * (1 + i));
     }
     truth_ = {random_.rotation(), random_.vector(1.0), {0.0, 100.0, 0.0}, random_.vector(1.0)};
-    fit_motion(*history_, fixed_inertia(kTumbler), kRadius_um, fixed_motion(truth_), kMostIterations,
-               *result_);
+    fit(truth_, kTumbler);
     const Eigen::Matrix3d r =
         exact({result_->motion.turning.r_lrf_trf, result_->motion.origin_lrf_um}).r_lrf_trf;
     EXPECT_LT((r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-5);
+  }
+}
+
+// Verifies TS-TIM-120.
+// Whatever the poses, the gaps between them and the rate: what is held back for a fit covers it.
+TEST_F(FitMotion, TakesNoMoreThanIsHeldBackForIt) {
+  for (int i = 0; i < trials(200); ++i) {
+    const double rate = random_.happens(0.5) ? 0.02 : 1.0;
+    observe(1 + random_.below(PoseHistory::kMost), 0.01, kTumbler, rate);
+    const auto longest_gap_ms = random_.happens(0.5) ? 3'000 : 50'000;
+    for (int k = history_->count - 1; k >= 0; --k) {
+      const auto at = static_cast<std::size_t>(k);
+      const std::int64_t gap_ns = std::int64_t{1'000'000} * random_.below(longest_gap_ms);
+      history_->poses[at].age_ns =
+          k + 1 == history_->count
+              ? gap_ns
+              : std::min(history_->poses[at + 1].age_ns + gap_ns, PoseHistory::kOldest_ns);
+    }
+    const int iterations = 1 + random_.below(kMostIterations);
+    const std::int32_t reserve = work_of_fit(*history_, iterations);
+    budget_.begin(reserve);
+    EXPECT_TRUE(fit(truth_, kTumbler, iterations)) << i;
+    // With the pose of this frame, the newest, of now.
+    if (history_->count == PoseHistory::kMost) continue;
+    add(measured(truth_, 0.01), 0);
+    budget_.begin(reserve);
+    EXPECT_TRUE(fit(truth_, kTumbler, iterations)) << i;
+    EXPECT_GT(budget_.left(), 0) << i;
+  }
+}
+
+TEST_F(FitMotion, EndsWithTheBudget) {
+  observe(6, 0.01, kTumbler);
+  budget_.begin(100'000'000);
+  ASSERT_TRUE(fit(truth_, kTumbler));
+  const std::int32_t work = 100'000'000 - budget_.left();
+  const Error whole = error_of(result_->motion, truth_);
+  budget_.begin(work);
+  EXPECT_TRUE(fit(truth_, kTumbler));
+  EXPECT_EQ(error_of(result_->motion, truth_).turn_deg, whole.turn_deg);
+  for (std::int32_t budget = work - 1; budget > 0; budget -= work / 100) {
+    budget_.begin(budget);
+    EXPECT_FALSE(fit(truth_, kTumbler)) << budget;
+    EXPECT_TRUE(budget_.is_exhausted()) << budget;
   }
 }
 
