@@ -21,6 +21,11 @@ constexpr RefinementSettings kTrackedFurther{2, 1, 160, 80, 838861, 8388608};
 // dark. The first is of the first frames, the other of a track.
 constexpr RefinementSettings kLongSearch{4, 2, 512, 64, 4194304, 8388608};
 constexpr RefinementSettings kSearch{3, 2, 512, 128, 4194304, 8388608};
+constexpr RefinementSettings kShortSearch{2, 2, 512, 128, 4194304, 8388608};
+
+// A frame that has taken more than this registers an alternative shortly, so that the budget lasts for it
+// and for the fits of the motion.
+constexpr std::int32_t kMuchWork = 52'000'000;
 
 // 1 + 2 cos of the angle between two attitudes that are different ones.
 constexpr Fixed kTraceOf2Degrees = constant<Fixed>(2.99878165);
@@ -37,7 +42,8 @@ constexpr std::int32_t kMostOfNetwork_q8 = 4 * 256;       // its odds, in the fi
 constexpr std::int32_t kClear_q8 = 6 * 256;               // after kFirst, for the second attitude
 constexpr std::int32_t kMostOfATrack_q8 = 2 * kMostOfAFrame_q8;
 
-// Which part of a difference is proven, see proven_q8(): all of it, a 16th after kFirstSecond, or a 32nd.
+// Which part of a difference is proven, see proven_q8(): all of it, a 16th after a short registration, or a
+// 32nd.
 constexpr std::int32_t kMostProvenByAFit_q8 = 6 * 256;
 constexpr int kFitShift = 0, kShortFitShift = 4, kMisfitShift = 5;
 constexpr std::int32_t kDisprovenByNetwork_q8 = 4 * 256;  // where it disagrees, per frame
@@ -193,11 +199,15 @@ bool follow_motion(const PoseTarget& target, const PoseFrame& frame, const PoseM
 }
 
 // Registers an attitude of the network at the position of the track. Returns the advantage of the track.
-Advantage compare(const PoseTarget& target, const Alternative& alternative, PoseScratch& scratch) {
+// `work`: what the frame has taken so far.
+Advantage compare(const PoseTarget& target, const Alternative& alternative, std::int32_t work,
+                  PoseScratch& scratch) {
   const Pose start{alternative.r_lrf_trf, scratch.best.refinement.pose.origin_lrf_um};
-  refine_candidate(target, start, scratch.best.evidence.fits() ? kFull : kSearch, scratch, scratch.other);
+  const bool is_short = work > kMuchWork;
+  const RefinementSettings& whole = scratch.best.evidence.fits() ? kFull : kSearch;
+  refine_candidate(target, start, is_short ? kShortSearch : whole, scratch, scratch.other);
   Advantage advantage{advantage_q8(scratch.best, scratch.other),
-                      proven_q8(scratch.best, scratch.other, kFitShift)};
+                      proven_q8(scratch.best, scratch.other, is_short ? kShortFitShift : kFitShift)};
   if (alternative.is_network) {
     advantage.more_q8 -= kNetworkDisagrees_q8;
     advantage.proven_q8 -= kDisprovenByNetwork_q8;
@@ -256,12 +266,14 @@ bool follow_track(const PoseTarget& target, const PoseFrame& frame, const PoseMo
                   PoseScratch& scratch, PoseTrackerState& state) {
   PoseCandidate& best = scratch.best;
   PoseCandidate& other = scratch.other;
+  const std::int32_t left_before = scratch.refinement.budget.left();
   const bool has_tried_network = follow_motion(target, frame, predicted, scratch, state);
+  const std::int32_t work = left_before - scratch.refinement.budget.left();
   const Alternative alternative = alternative_to(best.refinement.pose.r_lrf_trf, frame);
   const bool was_tried = has_tried_network && alternative.is_network;
   Advantage advantage = kWithoutAlternative;
   if (alternative.exists && !was_tried) {
-    const Advantage compared = compare(target, alternative, scratch);
+    const Advantage compared = compare(target, alternative, work, scratch);
     const bool is_another =
         differs(best.refinement.pose.r_lrf_trf, other.refinement.pose.r_lrf_trf, kTraceOf2Degrees);
     if (is_another) advantage = compared;

@@ -44,7 +44,7 @@ inline constexpr std::int32_t kFitPose = 45'000, kFitPeriod = 195'000, kIteratio
 
 class WorkBudget {
  public:
-  static constexpr std::int32_t kOfAFrame = 84'000'000;
+  static constexpr std::int32_t kOfAFrame = 91'000'000;
 
   // Until it begins, there is no limit that a frame could reach.
   void begin(std::int32_t budget) { left_ = max(budget, 0); }
