@@ -1,7 +1,8 @@
 # The programs with the files that ship with them, and the Debian packages that CPack makes: tumblesight, and tumblesight-dev with
 # what install.cmake installs. Debian's folder for libraries needs the preset deb: its prefix is /usr.
 set(data_folder ${CMAKE_INSTALL_DATADIR}/tumblesight)
-foreach(program tumblesight tumblesight_full flight flight_float32)
+get_property(tool GLOBAL PROPERTY TUMBLESIGHT_TOOL)
+foreach(program ${tool} flight flight_float32)
   if(TARGET ${program})
     install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tumblesight)
   endif()

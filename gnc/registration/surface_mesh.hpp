@@ -1,5 +1,5 @@
 // SurfaceMesh: the outer surface of the target as triangles, which the ground makes from its mesh
-// (sim/quantization/surface_mesh.hpp). Registration renders it. It is read where it lies, in a section of its
+// (sim/surface/surface_mesh.hpp). Registration renders it. It is read where it lies, in a section of its
 // own.
 //
 // All numbers are little-endian.

@@ -1,5 +1,5 @@
 // SurfaceModel: points on the outer surface of the target, which the ground samples from its mesh
-// (sim/quantization/surface_samples.hpp). It is a section of the model image and is read where it lies.
+// (sim/surface/surface_samples.hpp). It is a section of the model image and is read where it lies.
 //
 // All numbers are little-endian. A section without points is all zeros: the target's shape is not known.
 //   offset  size  field

@@ -17,7 +17,7 @@
 #include "sim/adoption/outlook.hpp"
 #include "sim/adoption/start_choice.hpp"
 #include "sim/adoption/time_plan.hpp"
-#include "sim/evaluation/experiment.hpp"
+#include "sim/experiment/experiment.hpp"
 #include "sim/sil/flight_process.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"

@@ -5,7 +5,7 @@
 #include <exception>
 #include <utility>
 
-#include "sim/quantization/target_surface.hpp"
+#include "sim/surface/target_surface.hpp"
 #include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "sim/evaluation/experiment.hpp"
+#include "sim/experiment/experiment.hpp"
 
 namespace tumblesight::sim {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "sim/evaluation/sequence_result.hpp"
+#include "sim/experiment/sequence_result.hpp"
 
 namespace tumblesight::sim {
 

@@ -98,7 +98,7 @@ AdoptionSettings settings_of(const AdoptArguments& arguments, const std::string&
   settings.threads = arguments.threads > 0
                          ? arguments.threads
                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  settings.program = program_path().string();
+  settings.program = tool_path().string();
   settings.command = command_line;
   require_programs(settings.program);
   return settings;
@@ -178,8 +178,7 @@ int run(const AdoptArguments& arguments, const std::string& command_line) {
 
 void add_adopt_command(CLI::App& app, const std::string& command_line) {
   auto arguments = std::make_shared<AdoptArguments>();
-  CLI::App* command = app.add_subcommand(
-      "adopt", "Train, judge and fly a network for your spacecraft, from one mission file");
+  CLI::App* command = add_verb(app, "adopt");
   command->footer(
       std::string("\nChecks the mesh, trains, makes the fixed-point image, evaluates every condition\n"
                   "against the goals of the mission, flies it over DDS, all within the time, and\n"

@@ -121,14 +121,4 @@ CLI::Validator one_of(const std::vector<std::string>& names);
 // 1 to 31 characters of a-z, 0-9 and _: the name becomes part of a file name and of the model image.
 CLI::Validator target_name();
 
-// The layout of help texts (help_formatter.cpp): descriptions are wrapped to a terminal of 80 columns.
-inline constexpr std::size_t kHelpWidth = 80;  // columns
-
-class HelpFormatter final : public CLI::Formatter {
- public:
-  HelpFormatter() { column_width(26); }
-  std::string make_option_desc(const CLI::Option* option) const override;
-  std::string make_subcommand(const CLI::App* command) const override;
-};
-
 }  // namespace tumblesight::sim

@@ -140,10 +140,9 @@ void bench(const BenchArguments& arguments) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app) {
+void add_bench_command(CLI::App& app, const std::string&) {
   auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* command =
-      app.add_subcommand("bench", "Measure the speed of the flight network, compared with other runtimes");
+  CLI::App* command = add_verb(app, "bench");
   command->footer(
       "\nUses one thread, the shipped model in both numerics and every instruction set of\n"
       "this processor. A step goes from ranges to quaternion. The other runtimes run\n"

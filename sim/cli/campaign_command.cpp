@@ -145,7 +145,7 @@ void make_log_folder(const OpenCampaign& open) {
 
 std::unique_ptr<Launcher> launch(const CampaignArguments& arguments, const OpenCampaign& open) {
   LaunchSettings settings;
-  settings.program = program_path().string();
+  settings.program = tool_path().string();
   settings.campaign = open.campaign;
   settings.out = open.out;
   settings.jobs = arguments.jobs;
@@ -382,8 +382,7 @@ void add_report(CLI::App& verb, const std::shared_ptr<CampaignArguments>& argume
 }  // namespace
 
 void add_campaign_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command =
-      app.add_subcommand("campaign", "Run many evaluations on all cores, by mpirun, or on a Slurm cluster");
+  CLI::App* command = add_verb(app, "campaign");
   command->require_subcommand(1);
   auto arguments = std::make_shared<CampaignArguments>();
   arguments->command_line = command_line;

@@ -109,9 +109,8 @@ void show(const ConsoleArguments& arguments) {
 
 }  // namespace
 
-void add_console_command(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("console", "Watch a run in the browser while it goes on, or a recording of one");
+void add_console_command(CLI::App& app, const std::string&) {
+  CLI::App* command = add_verb(app, "console");
   auto arguments = std::make_shared<ConsoleArguments>();
   command
       ->add_option("RECORDING", arguments->recording,

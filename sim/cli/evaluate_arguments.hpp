@@ -9,7 +9,7 @@
 #include "sim/baseline/pose_peer.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/evaluation_output.hpp"
-#include "sim/evaluation/experiment.hpp"
+#include "sim/experiment/experiment.hpp"
 
 namespace tumblesight::sim {
 

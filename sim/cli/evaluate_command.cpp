@@ -81,8 +81,7 @@ void evaluate(const EvaluateArguments& arguments) {
 }  // namespace
 
 void add_evaluate_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command = app.add_subcommand(
-      "evaluate", "Measure the accuracy of a model over many sequences, without the flight program");
+  CLI::App* command = add_verb(app, "evaluate");
   auto arguments = std::make_shared<EvaluateArguments>();
   arguments->command_line = command_line;
   add_evaluate_options(*command, *arguments);

@@ -8,7 +8,7 @@
 #include "sim/cli/evaluate_arguments.hpp"
 #include "sim/cli/interruptible_experiment.hpp"
 #include "sim/cli/target_setup.hpp"
-#include "sim/evaluation/paper_plan.hpp"
+#include "sim/experiment/paper_plan.hpp"
 #include "sim/process/program_files.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"

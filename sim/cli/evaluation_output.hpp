@@ -5,7 +5,7 @@
 #include <string>
 
 #include "sim/cli/arguments.hpp"
-#include "sim/evaluation/experiment.hpp"
+#include "sim/experiment/experiment.hpp"
 #include "sim/evaluation/results.hpp"
 
 namespace tumblesight::sim {

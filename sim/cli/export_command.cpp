@@ -56,9 +56,9 @@ void export_model(const ExportArguments& arguments) {
 
 }  // namespace
 
-void add_export_command(CLI::App& app) {
+void add_export_command(CLI::App& app, const std::string&) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "Write a float32 model image as ONNX models");
+  CLI::App* command = add_verb(app, "export");
   command->footer("\nFiles (opset 13)\n" + explanations() + "\n" + kUseOfTheModels +
                   "\nExample\n"
                   "  tumblesight export --model out/near/near_shoemaker.float32.tsm \\\n"

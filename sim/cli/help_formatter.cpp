@@ -1,9 +1,11 @@
+#include "sim/cli/help_formatter.hpp"
+
 #include <sstream>
 
-#include "sim/cli/arguments.hpp"
 #include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
+
 std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
   return wrapped(Formatter::make_option_desc(option), kHelpWidth - column_width_);
 }

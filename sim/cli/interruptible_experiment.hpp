@@ -6,7 +6,7 @@
 #include <exception>
 #include <functional>
 
-#include "sim/evaluation/experiment.hpp"
+#include "sim/experiment/experiment.hpp"
 
 namespace tumblesight::sim {
 

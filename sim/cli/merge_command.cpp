@@ -47,9 +47,8 @@ void merge(const MergeArguments& arguments) {
 
 }  // namespace
 
-void add_merge_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "merge", "Make the figures of an evaluation from the shard files of `evaluate --shard`");
+void add_merge_command(CLI::App& app, const std::string&) {
+  CLI::App* command = add_verb(app, "merge");
   auto arguments = std::make_shared<MergeArguments>();
   command->add_option("shards", arguments->shards, "all shard files of one evaluation, in any order")
       ->required()

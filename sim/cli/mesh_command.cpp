@@ -140,8 +140,7 @@ void add_mesh_of_mission_option(CLI::App& command, MeshCommandArguments& argumen
 
 void add_mesh_command(CLI::App& app, const std::string& command_line) {
   auto arguments = std::make_shared<MeshCommandArguments>();
-  CLI::App* command =
-      app.add_subcommand("mesh", "Show what a mesh file holds, and what to correct before training");
+  CLI::App* command = add_verb(app, "mesh");
   command->footer(
       "\nReads STL, OBJ, PLY, glTF and GLB, also compressed with Draco. Exits with 0, or\n"
       "with 4 if the mesh is of no use as it is. docs/own_spacecraft.md explains each\n"

@@ -14,11 +14,12 @@
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/mission_arguments.hpp"
 #include "sim/cli/symmetry_arguments.hpp"
+#include "sim/cli/quantize_and_report.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/quantization/dequantize.hpp"
 #include "sim/quantization/quantize_file.hpp"
-#include "sim/quantization/surface_samples.hpp"
-#include "sim/quantization/target_surface.hpp"
+#include "sim/surface/surface_samples.hpp"
+#include "sim/surface/target_surface.hpp"
 #include "sim/terminal/progress.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
@@ -90,19 +91,6 @@ SensorFiles require_usable_files(const QuantizeArguments& arguments) {
 
 void copy_sensor_file(const SensorFiles& files) {
   if (!files.written.empty()) write_file(files.written, to_json(sensor_named(files.read)));
-}
-
-void print_report(const QuantizationReport& report, const std::string& path) {
-  fmt::print("\n  {:<8} {:>16} {:>12} {:>10}\n", "layer", "largest output", "saturated", "SNR");
-  for (const LayerReport& layer : report.layers) {
-    fmt::print("  {:<8} {:>16.3f} {:>10.3f} % {:>7.1f} dB\n", layer.layer, layer.largest,
-               100.0 * layer.saturated, layer.snr_db);
-  }
-  fmt::print("\n  attitudes differ from float32 by {:.3f}° (mean), {:.3f}° (median), over {} frames\n",
-             report.difference.mean_deg, report.difference.median_deg, report.difference.count);
-  if (!report.written) return;
-  fmt::print("  {}, {} bytes, CRC-32 {:08x}:\n  {}\n\n", full_path(path), report.size_bytes, report.crc32,
-             description(report.surface));
 }
 
 // With the surface of another body, or of one in another unit, the check of an attitude refuses every one or
@@ -282,23 +270,9 @@ void add_options_without_calibration(CLI::App& command, QuantizeArguments& argum
 
 }  // namespace
 
-QuantizationReport quantize_and_report(const Float32Model& model, const std::vector<TriangleMesh>& meshes,
-                                       int sequences, const std::string& out, const ScenarioSettings& seen,
-                                       const std::vector<EffectRanges>& effect_sets,
-                                       const TargetSymmetry& symmetry, bool refuse_another_network) {
-  ProgressBar bar("calibrating", "sequences", static_cast<std::uint64_t>(sequences));
-  const QuantizationReport report =
-      quantize_to_file(model, meshes, sequences, out, [&bar](std::uint64_t done) { bar.update(done); }, seen,
-                       {symmetry, refuse_another_network, effect_sets, nullptr});
-  bar.finish();
-  print_report(report, out);
-  return report;
-}
-
-void add_quantize_command(CLI::App& app) {
+void add_quantize_command(CLI::App& app, const std::string&) {
   auto arguments = std::make_shared<QuantizeArguments>();
-  CLI::App* command =
-      app.add_subcommand("quantize", "Make the fixed-point model image that flies from a float32 one");
+  CLI::App* command = add_verb(app, "quantize");
   command->footer(kFooter);
   add_float32_model_option(*command, arguments->model);
   CLI::Option* model = command->get_option("--model");

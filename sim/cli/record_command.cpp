@@ -109,11 +109,10 @@ void record(const RecordArguments& arguments) {
 
 }  // namespace
 
-void add_record_command(CLI::App& app) {
+void add_record_command(CLI::App& app, const std::string&) {
   auto arguments = std::make_shared<RecordArguments>();
   arguments->scenario.sequences = 2;
-  CLI::App* command =
-      app.add_subcommand("record", "Render frames into a recording, with their truth beside it");
+  CLI::App* command = add_verb(app, "record");
   command->footer(
       "\nThe recording holds the frames of the LiDAR, one every 2.7 s unless --period\n"
       "says otherwise, the chaser's attitude at each, and a pause between two\n"

@@ -260,8 +260,7 @@ void replay(ReplayArguments arguments) {
 }  // namespace
 
 void add_replay_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command = app.add_subcommand(
-      "replay", "Run the flight program over a recording and compare its attitudes with the truth");
+  CLI::App* command = add_verb(app, "replay");
   auto arguments = std::make_shared<ReplayArguments>();
   arguments->command_line = command_line;
   command

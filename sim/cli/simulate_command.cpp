@@ -15,7 +15,7 @@
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/evaluation/curves.hpp"
-#include "sim/evaluation/experiment.hpp"
+#include "sim/experiment/experiment.hpp"
 #include "sim/evaluation/float32_reference.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/process/program_files.hpp"
@@ -186,8 +186,7 @@ void simulate(SimulateArguments arguments) {
 }  // namespace
 
 void add_simulate_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command = app.add_subcommand(
-      "simulate", "Run the flight program with the simulated sensor over DDS and write a report");
+  CLI::App* command = add_verb(app, "simulate");
   auto arguments = std::make_shared<SimulateArguments>();
   arguments->command_line = command_line;
   add_target_options(*command, arguments->scenario);

@@ -9,7 +9,6 @@
 
 #include "gnc/rcnn/model_image.hpp"
 #include "sim/cli/arguments.hpp"
-#include "sim/evaluation/experiment.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {
@@ -43,9 +42,5 @@ TargetSetup set_up_model_alone(const ScenarioArguments& arguments);
 // The same for verbs that run no network. The model is that of --model, or the image that ships for the
 // target. Without either the fields of the model stay empty, and the swath is that of the mesh.
 TargetSetup set_up_target_without_model(const ScenarioArguments& arguments);
-
-// The subject of an experiment. Prints the warnings of set_up_target on the standard error stream. Throws as
-// set_up_target does, and std::runtime_error that names the fault of a model image that is refused.
-Subject set_up_subject(const ScenarioArguments& arguments);
 
 }  // namespace tumblesight::sim

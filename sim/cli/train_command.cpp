@@ -16,8 +16,9 @@
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/mesh_warnings.hpp"
 #include "sim/cli/mission_arguments.hpp"
+#include "sim/cli/quantize_and_report.hpp"
 #include "sim/cli/verbs.hpp"
-#include "sim/quantization/target_surface.hpp"
+#include "sim/surface/target_surface.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/join_ranks.hpp"
 #include "sim/training/local_ranks.hpp"
@@ -358,11 +359,11 @@ void add_machine_options(CLI::App& command, TrainOptions& options) {
 
 }  // namespace
 
-void add_train_command(CLI::App& app) {
+void add_train_command(CLI::App& app, const std::string&) {
   auto options = std::make_shared<TrainOptions>();
   TrainingSettings& settings = options->settings;
   settings.workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
-  CLI::App* command = app.add_subcommand("train", "Train a network for a target and write its model images");
+  CLI::App* command = add_verb(app, "train");
   command->footer(
       "\nA run may be interrupted at any time: the same command continues from the last\n"
       "checkpoint, and the exit status is 3. Several processes train together with\n"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "sim/inspection/convex_part.hpp"
-#include "sim/quantization/outside_views.hpp"
+#include "sim/surface/outside_views.hpp"
 #include "sim/world/target/panels.hpp"
 
 namespace tumblesight::sim {

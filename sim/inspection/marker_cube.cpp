@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "sim/inspection/cleaned_mesh.hpp"
-#include "sim/quantization/mesh_distance.hpp"
-#include "sim/quantization/outside_views.hpp"
+#include "sim/surface/mesh_distance.hpp"
+#include "sim/surface/outside_views.hpp"
 #include "sim/world/target/panels.hpp"
 
 namespace tumblesight::sim {

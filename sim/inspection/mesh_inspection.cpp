@@ -5,7 +5,7 @@
 
 #include "sim/inspection/cleaned_mesh.hpp"
 #include "sim/inspection/findings.hpp"
-#include "sim/quantization/outside_views.hpp"
+#include "sim/surface/outside_views.hpp"
 #include "sim/world/target/panels.hpp"
 
 namespace tumblesight::sim {

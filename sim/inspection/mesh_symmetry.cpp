@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/quantization/mesh_distance.hpp"
+#include "sim/surface/mesh_distance.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {

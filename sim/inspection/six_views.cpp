@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "sim/quantization/outside_views.hpp"
+#include "sim/surface/outside_views.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {

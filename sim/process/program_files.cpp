@@ -25,6 +25,10 @@ fs::path program_path() {
   return fs::read_symlink("/proc/self/exe");
 }
 
+fs::path tool_path() {
+  return program_path().parent_path() / "tumblesight";
+}
+
 ProgramFiles files_of_program(const fs::path& program) {
   const fs::path data = (program.parent_path() / TUMBLESIGHT_INSTALLED_DATA).lexically_normal();
   std::error_code error;

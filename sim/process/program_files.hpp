@@ -22,6 +22,8 @@ struct ProgramFiles {
 
 // Of the running program. Throws std::filesystem::filesystem_error without /proc.
 std::filesystem::path program_path();
+// `tumblesight`, in the same folder, which starts the programs of all verbs.
+std::filesystem::path tool_path();
 
 ProgramFiles files_of_program(const std::filesystem::path& program);
 const ProgramFiles& program_files();  // of the running program

@@ -6,7 +6,7 @@
 
 #include "sim/model/network_layers.hpp"
 #include "sim/quantization/scales.hpp"
-#include "sim/quantization/target_surface.hpp"
+#include "sim/surface/target_surface.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {

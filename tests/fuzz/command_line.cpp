@@ -12,8 +12,8 @@ namespace {
 std::unique_ptr<CLI::App> make_tool() {
   auto tool = std::make_unique<CLI::App>("", "tumblesight");
   tool->require_subcommand(1);
-  sim::add_verbs(*tool, "");
-  sim::add_libtorch_verbs(*tool, "");
+  using namespace sim;
+  for (AddCommand* add : {TUMBLESIGHT_ADD_COMMANDS}) add(*tool, "");
   tool->parse_complete_callback([] { throw CLI::Success(); });  // before any subcommand does its work
   return tool;
 }

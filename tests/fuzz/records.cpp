@@ -1,7 +1,7 @@
 // The figures of shipped models, the .json files in fsw/models: any JSON is read, or refused with a message.
 #include <stdexcept>
 
-#include "sim/evaluation/shipped_figures.hpp"
+#include "sim/experiment/shipped_figures.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "sim/evaluation/experiment.hpp"
-#include "sim/evaluation/monte_carlo.hpp"
+#include "sim/experiment/experiment.hpp"
+#include "sim/experiment/monte_carlo.hpp"
 #include "sim/model/model_file.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"

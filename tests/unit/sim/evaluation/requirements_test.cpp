@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "sim/evaluation/checks.hpp"
-#include "sim/evaluation/shipped_figures.hpp"
+#include "sim/experiment/shipped_figures.hpp"
 #include "sim/report/results_json.hpp"
 #include "tests/support/sample_results.hpp"
 
