@@ -76,7 +76,7 @@ void McapWriter::open_alone(const Place& place) {
   if (place.type() == S_IFIFO) fail("is a pipe, which cannot be a recording; give the path of a file");
   int file = -1;
   try {
-    file = open_place(place, O_APPEND);
+    file = open_place(place, O_WRONLY | O_APPEND);
   } catch (const std::runtime_error& error) {
     fail(std::string("cannot be written: ") + error.what());
   }

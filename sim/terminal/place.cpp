@@ -180,10 +180,10 @@ std::string text_of_open_error(const Place& place, int error) {
 
 int open_place(const Place& place, int flags) {
   if (!place.fault().empty()) throw std::runtime_error(place.fault());
-  if (place.folder() < 0) throw std::runtime_error("its folder does not exist");
+  if (place.folder() < 0) throw std::runtime_error(std::strerror(ENOENT));
   const int following = place.is_of_kernel() ? 0 : O_NOFOLLOW;
   const int file = openat(place.folder(), place.name().c_str(),
-                          O_WRONLY | O_CREAT | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | following | flags, 0666);
+                          O_CREAT | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | following | flags, 0666);
   if (file < 0) throw std::runtime_error(text_of_open_error(place, errno));
   const std::string fault = fault_of_opened(place, file);
   if (fault.empty()) return file;
@@ -197,6 +197,15 @@ int open_to_write(const std::string& path, const Place& place, int flags) {
   } catch (const std::runtime_error& error) {
     throw std::runtime_error("cannot write '" + path + "': " + error.what());
   }
+}
+
+int open_emptied(const std::string& path, const Place& place) {
+  const int file = open_to_write(path, place);
+  struct stat status {};
+  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode) || ftruncate(file, 0) == 0) return file;
+  const std::string reason = std::strerror(errno);
+  close(file);
+  throw std::runtime_error("cannot write '" + path + "': " + reason);
 }
 
 int open_to_write(const std::string& path, int flags) {

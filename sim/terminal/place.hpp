@@ -7,6 +7,7 @@
 // user is refused, and so is a file of another user that only its owner may replace.
 #pragma once
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 
@@ -50,12 +51,14 @@ class Place {
   bool is_link_ = false, is_of_kernel_ = false;
 };
 
-// Opens the place for writing with further flags, as O_APPEND, and makes a file if there is none. What is
+// Opens the place for writing, with these flags of open(), and makes a file if there is none. What is
 // open is judged again, so that nothing that was put there meanwhile is written to. Does not wait for the
 // reader of a pipe. Throws std::runtime_error with the reason.
-int open_place(const Place& place, int flags = 0);
+int open_place(const Place& place, int flags = O_WRONLY);
 // The same. The message names the path.
-int open_to_write(const std::string& path, const Place& place, int flags = 0);
-int open_to_write(const std::string& path, int flags = 0);
+int open_to_write(const std::string& path, const Place& place, int flags = O_WRONLY);
+int open_to_write(const std::string& path, int flags = O_WRONLY);
+// Empty, if it is a file.
+int open_emptied(const std::string& path, const Place& place);
 
 }  // namespace tumblesight::sim

@@ -92,18 +92,6 @@ class PartialFile {
   int file_ = -1;
 };
 
-// A device, an own pipe or a link.
-void write_to_what_is_there(const std::string& path, const Place& place, std::string_view content) {
-  const int file = open_to_write(path, place);
-  struct stat status {};
-  if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) && ftruncate(file, 0) != 0) {
-    const std::string reason = std::strerror(errno);
-    close(file);
-    fail(path, reason);
-  }
-  put(path, file, content);
-}
-
 // Held until the program ends: the reader would take the end of this look for the end of the content.
 std::string fault_of_pipe(const Place& place) {
   if (place.type() != S_IFIFO || place.is_of_kernel()) return {};
@@ -144,9 +132,13 @@ std::string partial_path(const std::string& path) {
 void write_file(const std::string& path, std::string_view content) {
   const Place place(path, Folders::kMade);
   if (!place.fault().empty()) fail(path, place.fault());
-  if (!place.is_replaceable()) return write_to_what_is_there(path, place, content);
+  if (!place.is_replaceable()) return put(path, open_emptied(path, place), content);
   // Written under another name, then renamed, so that a reader never finds a part of the file.
   PartialFile(path, place).become(content);
+}
+
+void append_to_file(const std::string& path, std::string_view content) {
+  put(path, open_to_write(path, O_WRONLY | O_APPEND), content);
 }
 
 void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes) {

@@ -15,6 +15,9 @@ namespace tumblesight::sim {
 void write_file(const std::string& path, std::string_view content);
 void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes);
 
+// Makes the file if there is none. Throws as write_file() does.
+void append_to_file(const std::string& path, std::string_view content);
+
 // The name beside `path` under which write_file() writes before it renames, or that and a number if there is
 // such a file. Empty if it writes to `path` directly.
 std::string partial_path(const std::string& path);
