@@ -109,7 +109,7 @@ void Place::step(Walk& walk) {
     if (error == ENOENT && walk.folders == Folders::kAsTheyAre) return enter(-1);  // it leads nowhere yet
     if (error == ENOENT && unmade != EEXIST)
       return fail("folder '" + name + "' of its path cannot be made", unmade);
-    fail("'" + name + "' of its path cannot be entered", error);
+    fail("'" + name + "' of its path cannot be entered; choose another folder", error);
   }
   if (found >= 0) close(found);
 }

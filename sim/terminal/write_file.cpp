@@ -34,6 +34,8 @@ struct Partial {
 Partial open_partial(const Place& place) {
   const std::string name = partial_name(place.name());
   Partial made;
+  errno = ENOENT;
+  if (place.folder() < 0) return made;
   for (int i = 0; i < kPartialNames; ++i) {
     made.name = name + (i == 0 ? "" : std::to_string(i));
     made.file =
