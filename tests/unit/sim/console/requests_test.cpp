@@ -292,6 +292,24 @@ TEST_F(ConsoleRequests, WhatTheRunRefusesIsNoSuccess) {
   EXPECT_EQ(answer.body, "a step takes at most 16 telecommands: send it again\n");
 }
 
+// It comes back to a page or a terminal.
+TEST_F(ConsoleRequests, ANameThatIsNotKnownIsShownShortenedAndWithoutControlCharacters) {
+  for (const std::string& unknown : {std::string(3000, 'a'), std::string("\\u001b[31m")}) {
+    Request request = get("/api/command");
+    request.method = "POST";
+    request.body = R"({"name":")" + unknown + R"(","arguments":{}})";
+    const Answer command = requests_.answer(request, kPort);
+    request.path = "/api/fault";
+    request.body = R"({"fault":")" + unknown + R"(","steps":1})";
+    const Answer fault = requests_.answer(request, kPort);
+    for (const Answer& answer : {command, fault}) {
+      EXPECT_EQ(answer.status, 400);
+      EXPECT_LT(answer.body.size(), 1000U);
+      EXPECT_EQ(answer.body.find('\x1b'), std::string::npos) << answer.body;
+    }
+  }
+}
+
 TEST_F(ConsoleRequests, ARunThatIsBusyIsAskedAgainLater) {
   run_.is_busy = true;
   Request request = get("/api/command");
