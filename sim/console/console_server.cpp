@@ -255,6 +255,20 @@ struct ConsoleServer::Handlers {
   static void forget_subprotocol(const mg_connection* connection) {
     const_cast<mg_request_info*>(mg_get_request_info(connection))->acceptedWebSocketSubprotocol = nullptr;
   }
+  // Civetweb closes such a connection without an answer. 0: the handlers answer; else the status.
+  static int refuse_upgrade(mg_connection* connection) {
+    if (strcasecmp(text_or_empty(mg_get_header(connection, "Upgrade")).c_str(), "websocket") != 0) return 0;
+    Answer refusal;
+    if (text_or_empty(mg_get_header(connection, "Sec-WebSocket-Version")) != "13")
+      refusal = plain(426, "this console takes WebSocket version 13 (RFC 6455)");
+    else if (text_or_empty(mg_get_header(connection, "Sec-WebSocket-Key")).empty())
+      refusal = plain(400, "a WebSocket needs a Sec-WebSocket-Key (RFC 6455)");
+    else
+      return 0;
+    send_answer(connection, refusal, true);
+    mg_disable_connection_keep_alive(connection);
+    return refusal.status;
+  }
   // Not 0: the connection is refused.
   static int connect_page(const mg_connection* connection, void* self) {
     ConsoleServer& own = server(self);
@@ -348,7 +362,7 @@ ConsoleServer::ConsoleServer(const Requests& requests, int port, std::chrono::mi
   callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // no log on the terminal
   callbacks.begin_request = [](mg_connection* connection) {
     Handlers::forget_subprotocol(connection);
-    return 0;  // the handlers answer
+    return Handlers::refuse_upgrade(connection);
   };
   server_ = mg_start(&callbacks, this, const_cast<const char**>(options.data()));
   if (server_ == nullptr)

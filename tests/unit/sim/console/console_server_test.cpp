@@ -336,6 +336,9 @@ TEST_F(ConsoleServerOnLoopback, AnswersWhatIsNoRequestWithAStatus) {
   EXPECT_EQ(status_of("GET / HTTP/9.9\r\n\r\n"), "505");
   EXPECT_EQ(status_of("GET / HTTP/1.1\r\n\r\n"), "403");
   EXPECT_EQ(head_of("/none?token=abc").find("HTTP/1.1 404"), 0U);
+  const std::string start = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: ";
+  EXPECT_EQ(head_of("/ws?token=abc", start + "8\r\nSec-WebSocket-Key: x\r\n").find("HTTP/1.1 426"), 0U);
+  EXPECT_EQ(head_of("/ws?token=abc", start + "13\r\n").find("HTTP/1.1 400"), 0U);
   const std::string wrong = client().get("/api/command?token=abc").head();
   EXPECT_EQ(wrong.find("HTTP/1.1 405"), 0U);
   EXPECT_NE(wrong.find("Allow: POST\r\n"), std::string::npos);
