@@ -17,6 +17,7 @@
 #include "sim/campaign/launcher.hpp"
 #include "sim/process/child_process.hpp"
 #include "sim/process/end_with_starter.hpp"
+#include "sim/terminal/place.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/terminal/write_file.hpp"
 
@@ -98,12 +99,7 @@ struct Jobs {
 // two calls of the program only one submits.
 class JobsFile {
  public:
-  explicit JobsFile(const std::string& path)
-      : path_(path), file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-    if (file_ < 0)
-      throw std::runtime_error(
-          fmt::format("the jobs file '{}' cannot be opened: {}", path, std::strerror(errno)));
-  }
+  explicit JobsFile(const std::string& path) : path_(path), file_(open_to_write(path, O_RDWR)) {}
   ~JobsFile() { close(file_); }
   JobsFile(const JobsFile&) = delete;
   JobsFile& operator=(const JobsFile&) = delete;

@@ -19,6 +19,7 @@
 #include "sim/campaign/sequence_record.hpp"
 #include "sim/json/json_text.hpp"
 #include "sim/process/input_file.hpp"
+#include "sim/terminal/place.hpp"
 #include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
@@ -143,9 +144,16 @@ class Records {
   std::vector<std::uint8_t> bytes_;
 };
 
-// Opens a file that no other process writes until it is closed.
-int opened_alone(const std::string& path, int flags) {
-  const int file = open(path.c_str(), flags | O_CLOEXEC, 0666);
+int opened_or_made(const std::string& path) {
+  try {
+    return open_place(Place(path), O_WRONLY | O_APPEND);
+  } catch (const std::runtime_error& error) {
+    fail(path, fmt::format("cannot be written: {}", error.what()));
+  }
+}
+
+// An open file that no other process writes until it is closed.
+int alone(const std::string& path, int file) {
   if (file < 0) fail(path, fmt::format("cannot be written: {}", std::strerror(errno)));
   if (flock(file, LOCK_EX | LOCK_NB) == 0) return file;
   const bool is_taken = errno == EWOULDBLOCK;
@@ -160,7 +168,7 @@ int opened_alone(const std::string& path, int flags) {
 // As long as this object lives.
 class LockedFile {
  public:
-  explicit LockedFile(const std::string& path) : file_(opened_alone(path, O_RDWR)) {}
+  explicit LockedFile(const std::string& path) : file_(alone(path, open(path.c_str(), O_RDWR | O_CLOEXEC))) {}
   ~LockedFile() { close(file_); }
   LockedFile(const LockedFile&) = delete;
   LockedFile& operator=(const LockedFile&) = delete;
@@ -237,7 +245,7 @@ void ShardWriter::take_file() {
   const std::filesystem::path parent = std::filesystem::path(path_).parent_path();
   if (!parent.empty()) std::filesystem::create_directories(parent);
   require_plain_file(path_);
-  file_ = opened_alone(path_, O_WRONLY | O_CREAT | O_APPEND);
+  file_ = alone(path_, opened_or_made(path_));
 }
 
 void ShardWriter::start_file(const ShardHeader& header) {

@@ -21,6 +21,7 @@
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/process/program_files.hpp"
+#include "sim/terminal/place.hpp"
 #include "sim/terminal/text.hpp"
 #include "sim/training/mission_training.hpp"
 #include "sim/world/scenario/condition.hpp"
@@ -121,8 +122,8 @@ void require_usable_folder(const AdoptionSettings& settings) {
 void lock_folder(const std::string& folder) {
   fs::create_directories(folder + "/training");
   const std::string path = folder + "/training/lock";
-  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0) return;
+  const int file = open_to_write(path, O_RDWR);
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) return;
   throw std::runtime_error("another adoption is at work in '" + folder +
                            "'; wait for it, or choose another --out");
 }

@@ -109,13 +109,26 @@ CLI::Validator file_path() {
   return CLI::Validator(check, "", "path");
 }
 
+namespace {
+
+// Of what is not a regular file: what it is, and what to do.
+const char* fault_of_type(std::filesystem::file_type type) {
+  using Type = std::filesystem::file_type;
+  if (type == Type::not_found || type == Type::none) return "does not exist";
+  if (type == Type::directory) return "is a folder; give a file";
+  if (type == Type::fifo) return "is a pipe, which cannot be read twice; write its content to a file first";
+  if (type == Type::socket) return "is a socket; give a file";
+  return "is a device; give a file";
+}
+
+}  // namespace
+
 CLI::Validator existing_file() {
   const auto check = [](std::string& text) -> std::string {
     std::error_code error;
-    if (std::filesystem::is_regular_file(text, error)) return {};
-    const bool exists = std::filesystem::exists(text, error);
-    return fmt::format("'{}' {}", text,
-                       exists ? "is not a regular file; a pipe cannot be read twice" : "does not exist");
+    const std::filesystem::file_type type = std::filesystem::status(text, error).type();
+    if (type == std::filesystem::file_type::regular) return {};
+    return fmt::format("'{}' {}", text, fault_of_type(type));
   };
   return CLI::Validator(check, "", "existing file");
 }

@@ -12,6 +12,7 @@
 
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/run_secret.hpp"
+#include "sim/cli/arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
 #include "sim/console/bus_run.hpp"
@@ -142,7 +143,7 @@ void add_console_command(CLI::App& app, const std::string&) {
   command
       ->add_option("--dds-security", arguments->security,
                    "of a secured bus; hal/dds/make_security writes the file")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   command->add_flag("--of-run", arguments->is_of_run)->group("");
   command->footer(
       "\nExample: in one terminal a run at the speed of flight, in another the console\n"

@@ -10,28 +10,10 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "sim/terminal/place.hpp"
 #include "sim/terminal/write_file.hpp"
 
 namespace tumblesight::sim {
-namespace {
-
-// Why the file cannot be written beside an existing `path`, or in its place. Empty if it can.
-std::string fault_of_new_file(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const std::string fault = fault_of_place(path);
-  if (!fault.empty()) return fault;
-  if (partial_path(path).empty() && fs::exists(path, error)) return {};
-  // The end of a chain of links that leads to no file yet.
-  constexpr int kMostLinks = 40;
-  std::string made = path;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(made, error); ++i)
-    made = (fs::absolute(made).parent_path() / fs::read_symlink(made, error)).string();
-  return fault_of_partial_file(made);
-}
-
-}  // namespace
-
 std::string full_path(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -76,6 +58,8 @@ void require_folder(const std::string& option, const std::string& path) {
     throw std::runtime_error(fmt::format("{} {}: {}", option, path, reason));
   };
   std::error_code error;
+  const std::string fault = Place(path).fault();
+  if (!fault.empty()) refuse(fault);
   if (fs::exists(path, error) && !fs::is_directory(path, error)) refuse("is a file; give a folder");
   fs::create_directories(path, error);
   if (error) refuse("cannot be created: " + error.message());
@@ -92,14 +76,17 @@ void require_writable(const std::string& option, const std::string& path) {
   if (fs::is_directory(path, error)) refuse("is a folder; give a file name");
   const fs::path name = fs::path(path).filename();
   if (name.empty() || name == "." || name == "..") refuse("ends as a folder does; add a file name");
+  // Before a folder is made where a link of another user leads.
+  const std::string fault = fault_of_place(path);
+  if (!fault.empty()) refuse(fault);
   const fs::path parent = fs::absolute(path).parent_path();
   fs::create_directories(parent, error);
   if (error) refuse("cannot create its folder: " + error.message() + "; choose another folder");
   const bool exists = fs::exists(path, error);
   if (exists && access(path.c_str(), W_OK) != 0)
     refuse(fmt::format("cannot be written: {}; choose another file", std::strerror(errno)));
-  const std::string fault = fault_of_new_file(path);
-  if (!fault.empty()) refuse(fault);
+  const std::string reason = fault_of_new_file(path);
+  if (!reason.empty()) refuse(reason);
 }
 
 }  // namespace tumblesight::sim

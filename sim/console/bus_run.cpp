@@ -41,7 +41,8 @@ BusRun::BusRun(int domain, const std::string& security_path, const std::string& 
       security_(std::make_unique<hal::dds::SecurityElement>()),
       frame_sample_(std::make_unique<hal::dds::LidarFrameSample>()) {
   if (!security_path.empty() && !hal::dds::read_security(security_path.c_str(), *security_))
-    throw SilFailure("--dds-security " + security_path + ": cannot be read, is empty, or is too large");
+    throw SilFailure("--dds-security " + security_path + ": cannot be read, is empty, or has " +
+                     std::to_string(sizeof security_->text) + " bytes or more");
   thread_ = std::thread([this] { look_for_runs(); });
 }
 

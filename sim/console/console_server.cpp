@@ -17,6 +17,7 @@
 
 #include "sim/console/foxglove_session.hpp"
 #include "sim/console/page_files.hpp"
+#include "sim/console/websocket_outlet.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -37,6 +38,9 @@ constexpr auto kBodyTimeout = 2s;
 // 3 MB, is not waited for.
 constexpr auto kAnswerTimeout = 3s;
 constexpr int kSlowestReader_bytes_per_s = 128 * 1024;
+
+// How often it is seen that nothing more can be sent to a client with a WebSocket.
+constexpr const char* kLookAtClient_ms = "1000";
 
 std::string text_or_empty(const char* text) {
   return text == nullptr ? std::string() : std::string(text);
@@ -117,12 +121,6 @@ Answer plain(int status, std::string text) {
   return {status, "text/plain; charset=utf-8", std::move(text), ""};
 }
 
-// False: it did not go out whole.
-bool write(mg_connection* connection, int opcode, std::string_view bytes) {
-  const int least = bytes.empty() ? 1 : static_cast<int>(bytes.size());
-  return mg_websocket_write(connection, opcode, bytes.data(), bytes.size()) >= least;
-}
-
 // Repeats something in a thread of its own, until it returns false or the object ends.
 class Repeating {
  public:
@@ -154,36 +152,40 @@ class ConsoleServer::Client {
 // Gets the state whenever it has changed. A page only listens.
 class ConsoleServer::PageClient final : public Client {
  public:
-  PageClient(mg_connection* connection, const Requests& requests) {
-    repeating_.start([connection, &requests, last = std::string()]() mutable {
+  PageClient(mg_connection* connection, const Requests& requests, std::chrono::milliseconds patience)
+      : outlet_(connection, patience) {
+    repeating_.start([this, &requests, last = std::string()]() mutable {
       std::string now = requests.state_text();
-      if (now != last && !write(connection, MG_WEBSOCKET_OPCODE_TEXT, now)) return false;
+      if (now != last && !outlet_.send(MG_WEBSOCKET_OPCODE_TEXT, now)) return false;
       last = std::move(now);
       return true;
     });
   }
+  ~PageClient() override { outlet_.abandon(); }
   bool receive(int, std::string_view) override { return true; }
 
  private:
-  Repeating repeating_;
+  WebSocketOutlet outlet_;
+  Repeating repeating_;  // last: ends before what it uses
 };
 
 class ConsoleServer::FoxgloveClient final : public Client {
  public:
-  FoxgloveClient(mg_connection* connection, const RunSource& run) : connection_(connection), session_(run) {
+  FoxgloveClient(mg_connection* connection, const RunSource& run, std::chrono::milliseconds patience)
+      : outlet_(connection, patience), session_(run) {
     send(session_.begin());
     repeating_.start([this] { return send_news(); });
   }
+  ~FoxgloveClient() override { outlet_.abandon(); }
   bool receive(int first_byte, std::string_view bytes) override {
     constexpr int kOpcode = 0x0F, kIsLast = 0x80;
-    // Its stream may have ended within a message.
-    if (has_failed_ || message_.size() + bytes.size() > FoxgloveSession::kMostBytes) return false;
+    if (message_.size() + bytes.size() > FoxgloveSession::kMostBytes) return false;
     switch (first_byte & kOpcode) {
       case MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE:
-        write(connection_, MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, bytes);
+        outlet_.send(MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, bytes);
         return false;
       case MG_WEBSOCKET_OPCODE_PING:
-        return write(connection_, MG_WEBSOCKET_OPCODE_PONG, bytes);
+        return outlet_.send(MG_WEBSOCKET_OPCODE_PONG, bytes);
       case MG_WEBSOCKET_OPCODE_PONG:
         return true;
       default:
@@ -202,6 +204,8 @@ class ConsoleServer::FoxgloveClient final : public Client {
     message_.clear();
     return send(answers);
   }
+  // The next news are asked for when these have gone out, so that a client that stood still gets the newest
+  // points, and all of the rest.
   bool send_news() {
     std::vector<FoxgloveSession::Outgoing> news;
     {
@@ -212,17 +216,16 @@ class ConsoleServer::FoxgloveClient final : public Client {
   }
   // Without the lock: a client that does not read makes it wait.
   bool send(const std::vector<FoxgloveSession::Outgoing>& messages) {
-    for (const auto& [is_binary, bytes] : messages)
-      if (!write(connection_, is_binary ? MG_WEBSOCKET_OPCODE_BINARY : MG_WEBSOCKET_OPCODE_TEXT, bytes))
-        has_failed_ = true;
-    return !has_failed_;
+    return std::all_of(messages.begin(), messages.end(), [this](const FoxgloveSession::Outgoing& message) {
+      return outlet_.send(message.is_binary ? MG_WEBSOCKET_OPCODE_BINARY : MG_WEBSOCKET_OPCODE_TEXT,
+                          message.bytes);
+    });
   }
 
-  mg_connection* connection_;
+  WebSocketOutlet outlet_;
   std::mutex mutex_;  // of the session
   FoxgloveSession session_;
   std::string message_;  // of which not all has come
-  std::atomic<bool> has_failed_{false};
   Repeating repeating_;  // last: ends before what it uses
 };
 
@@ -252,6 +255,20 @@ struct ConsoleServer::Handlers {
   static void forget_subprotocol(const mg_connection* connection) {
     const_cast<mg_request_info*>(mg_get_request_info(connection))->acceptedWebSocketSubprotocol = nullptr;
   }
+  // Civetweb closes such a connection without an answer. 0: the handlers answer; else the status.
+  static int refuse_upgrade(mg_connection* connection) {
+    if (strcasecmp(text_or_empty(mg_get_header(connection, "Upgrade")).c_str(), "websocket") != 0) return 0;
+    Answer refusal;
+    if (text_or_empty(mg_get_header(connection, "Sec-WebSocket-Version")) != "13")
+      refusal = plain(426, "this console takes WebSocket version 13 (RFC 6455)");
+    else if (text_or_empty(mg_get_header(connection, "Sec-WebSocket-Key")).empty())
+      refusal = plain(400, "a WebSocket needs a Sec-WebSocket-Key (RFC 6455)");
+    else
+      return 0;
+    send_answer(connection, refusal, true);
+    mg_disable_connection_keep_alive(connection);
+    return refusal.status;
+  }
   // Not 0: the connection is refused.
   static int connect_page(const mg_connection* connection, void* self) {
     ConsoleServer& own = server(self);
@@ -279,10 +296,12 @@ struct ConsoleServer::Handlers {
     return 1;
   }
   static void ready_page(mg_connection* connection, void* self) {
-    add(connection, self, std::make_unique<PageClient>(connection, server(self).requests_));
+    ConsoleServer& own = server(self);
+    add(connection, self, std::make_unique<PageClient>(connection, own.requests_, own.patience_));
   }
   static void ready_foxglove(mg_connection* connection, void* self) {
-    add(connection, self, std::make_unique<FoxgloveClient>(connection, server(self).requests_.run()));
+    ConsoleServer& own = server(self);
+    add(connection, self, std::make_unique<FoxgloveClient>(connection, own.requests_.run(), own.patience_));
   }
   static void add(const mg_connection* connection, void* self, std::unique_ptr<Client> client) {
     const std::lock_guard lock(server(self).mutex_);
@@ -319,7 +338,8 @@ struct ConsoleServer::Handlers {
   }
 };
 
-ConsoleServer::ConsoleServer(const Requests& requests, int port) : requests_(requests) {
+ConsoleServer::ConsoleServer(const Requests& requests, int port, std::chrono::milliseconds patience)
+    : requests_(requests), patience_(patience) {
   const std::string missing = missing_libraries();
   if (!missing.empty()) throw std::runtime_error("the console cannot show its page: " + missing);
   mg_init_library(0);
@@ -335,14 +355,14 @@ ConsoleServer::ConsoleServer(const Requests& requests, int port) : requests_(req
                                             "enable_keep_alive",
                                             "no",
                                             "websocket_timeout_ms",
-                                            "30000",
+                                            kLookAtClient_ms,
                                             nullptr};
   mg_callbacks callbacks;
   std::memset(&callbacks, 0, sizeof callbacks);
   callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // no log on the terminal
   callbacks.begin_request = [](mg_connection* connection) {
     Handlers::forget_subprotocol(connection);
-    return 0;  // the handlers answer
+    return Handlers::refuse_upgrade(connection);
   };
   server_ = mg_start(&callbacks, this, const_cast<const char**>(options.data()));
   if (server_ == nullptr)

@@ -3,6 +3,7 @@
 // has a thread of its own: a slow one delays nobody else.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -21,9 +22,12 @@ class ConsoleServer {
  public:
   static constexpr int kMostClients = 16;  // with a WebSocket; another one is refused
 
+  static constexpr std::chrono::seconds kPatience{30};
+
   // Port 0: a free one. Throws std::runtime_error: the port is taken, or a library of the page is missing.
-  // `requests` must outlive the object.
-  ConsoleServer(const Requests& requests, int port);
+  // `requests` must outlive the object. `patience`: how long a client with a WebSocket may stand still until
+  // it loses its connection.
+  ConsoleServer(const Requests& requests, int port, std::chrono::milliseconds patience = kPatience);
   ~ConsoleServer();
   ConsoleServer(const ConsoleServer&) = delete;
   ConsoleServer& operator=(const ConsoleServer&) = delete;
@@ -38,6 +42,7 @@ class ConsoleServer {
   struct Handlers;
 
   const Requests& requests_;
+  std::chrono::milliseconds patience_;
   int port_ = 0;
   mutable std::mutex mutex_;  // of clients_
   std::map<const mg_connection*, std::unique_ptr<Client>> clients_;

@@ -15,6 +15,8 @@
 #include "sim/json/json_text.hpp"
 #include "sim/sil/fault_table.hpp"
 #include "sim/sil/function_names.hpp"
+#include "sim/sil/request_line.hpp"
+#include "sim/sil/run_control.hpp"
 #include "sim/sil/telecommand_table.hpp"
 #include "sim/terminal/text.hpp"
 
@@ -103,7 +105,7 @@ Answer commands_answer() {
   return json_answer(commands);
 }
 
-// As it is: the run checks its limits. Nothing nested, which would be written by recursion.
+// As it is: its limits are those of the run. Nothing nested, which would be written by recursion.
 Json number_in(const Json& wanted, const char* name) {
   const Json& value = wanted.at(name);
   if (!value.is_number()) throw std::invalid_argument(std::string(name) + " must be a number");
@@ -229,6 +231,8 @@ Answer Requests::post_answer(const Request& request) const {
     return text(400, error.what());
   } catch (const Json::exception&) {
     return text(400, "the request lacks a field, or one is of another type: docs/console.md");
+  } catch (const RunIsBusy& error) {
+    return text(503, error.what());
   } catch (const std::runtime_error& error) {
     return text(409, error.what());
   }
@@ -256,15 +260,17 @@ Answer Requests::command_answer(const Json& wanted) const {
 // {"fault": "freeze", "steps": 5}, {"fault": "debris", "strength": 1.5, "steps": 5}
 Answer Requests::fault_answer(const Json& wanted) const {
   require_only(wanted, {"fault", "strength", "steps"});
-  // The run checks the numbers.
   Json request{{"fault", wanted.at("fault").get<std::string>()}, {"steps", number_in(wanted, "steps")}};
   if (wanted.contains("strength")) request["strength"] = number_in(wanted, "strength");
   return run_answer_to(request);
 }
 
-// The run says itself why it has not taken a request.
+// Throws std::invalid_argument for a request that no run would take. Of others the run says itself why it has
+// not taken them.
 Answer Requests::run_answer_to(const Json& request) const {
-  const std::string answer = run_.ask(request.dump());
+  const std::string line = request.dump();
+  read_request_line(line);
+  const std::string answer = run_.ask(line);
   const Json said = parse_json<Json>(answer, {kMostDepth});
   if (said.contains("error")) return text(409, said.at("error").get<std::string>());
   return {200, "application/json", answer, ""};

@@ -250,7 +250,8 @@ Json row_fields() {
           "events",
           "mode",
           "faults",
-          "bank"};
+          "bank",
+          "step"};
 }
 
 Json row_of(const LoggedStep& step, double seconds) {
@@ -292,21 +293,23 @@ Json row_of(const LoggedStep& step, double seconds) {
            right,
            up};
   if (!step.telemetry) {
-    while (row.size() < row_fields().size()) row.push_back(nullptr);
+    while (row.size() + 1 < row_fields().size()) row.push_back(nullptr);
+    row.push_back(step.k);
     return row;
   }
   const hal::Telemetry& t = *step.telemetry;
   for (const Json& number :
        {Json(1e-3 * t.step_us), Json(1e-3 * t.inference_us), Json(t.frames_used), Json(t.frames_refused),
         Json(t.frames_missing), Json(t.frames_repeated), Json(t.commands_accepted), Json(t.commands_refused),
-        Json(t.events), Json(static_cast<int>(t.mode)), Json(t.faults_persisting), Json(t.bank_in_use)})
+        Json(t.events), Json(static_cast<int>(t.mode)), Json(t.faults_persisting), Json(t.bank_in_use),
+        Json(step.k)})
     row.push_back(number);
   return row;
 }
 
 Json detail_of(const LoggedStep& step, double seconds) {
-  Json detail{{"k", step.k},        {"t_s", seconds},    {"frames", step.frames}, {"truth", nullptr},
-              {"network", nullptr}, {"second", nullptr}, {"pose", nullptr}};
+  Json detail{{"k", step.k},      {"step", step.k},     {"t_s", seconds},    {"frames", step.frames},
+              {"truth", nullptr}, {"network", nullptr}, {"second", nullptr}, {"pose", nullptr}};
   // At the time of what else is shown.
   const auto& truth = step.truth_of_attitude ? step.truth_of_attitude : step.truth;
   if (truth)

@@ -66,7 +66,8 @@ class StepLog {
   };
   State state() const;
   std::string target() const;  // empty: not known yet
-  // A late console numbers the steps that it has seen from 0 on, whatever their k is.
+  // A late console numbers the steps that it has seen from 0 on, whatever their k is. Rows and details have
+  // both.
   std::int64_t k_of(std::uint64_t number) const;        // -1: there is no such step
   std::int64_t time_ns_of(std::uint64_t number) const;  // -1: the same
   std::uint64_t number_of(std::uint32_t k) const;       // of the first step with this k or a later one

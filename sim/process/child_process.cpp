@@ -16,6 +16,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "sim/terminal/place.hpp"
+
 extern char** environ;
 
 namespace tumblesight::sim {
@@ -28,8 +30,7 @@ class OutputFile {
  public:
   explicit OutputFile(const std::string& path) {
     if (path.empty()) return;
-    file_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (file_ < 0) throw std::runtime_error("file '" + path + "' cannot be written: " + strerror(errno));
+    file_ = open_emptied(path, Place(path));
   }
   ~OutputFile() {
     if (file_ >= 0) close(file_);

@@ -7,13 +7,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
 
 #include "sim/recording/mcap_format.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/terminal/place.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -62,36 +61,39 @@ class Content {
 
 McapWriter::McapWriter(std::string path, const std::string& library)
     : path_(std::move(path)), file_(nullptr, &std::fclose) {
-  open_alone(path_);
+  const Place place(path_);
+  if (!place.fault().empty()) fail(place.fault());
+  open_alone(place);
   struct stat status {};
-  if (fstat(fileno(file_.get()), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0) replace();
+  if (fstat(fileno(file_.get()), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0)
+    replace(place);
   put({kMcapMagic.begin(), kMcapMagic.end()});
   put(Content().text("").text(library).as(kMcapHeader));
 }
 
 // Not emptied before it is ours alone. A device can be neither locked nor emptied.
-void McapWriter::open_alone(const std::string& path) {
-  const std::string fault = fault_of_place(path);
-  if (!fault.empty()) fail(fault);
-  struct stat status {};
-  if (stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode))
-    fail("is a pipe, which cannot be a recording; give the path of a file");
-  const bool is_link = lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode);
-  const int file =
-      open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | (is_link ? 0 : O_NOFOLLOW), 0666);
-  file_.reset(file < 0 ? nullptr : fdopen(file, "ab"));
-  if (!file_) fail(std::string("cannot be written: ") + std::strerror(errno));
+void McapWriter::open_alone(const Place& place) {
+  if (place.type() == S_IFIFO) fail("is a pipe, which cannot be a recording; give the path of a file");
+  int file = -1;
+  try {
+    file = open_place(place, O_WRONLY | O_APPEND);
+  } catch (const std::runtime_error& error) {
+    fail(std::string("cannot be written: ") + error.what());
+  }
+  file_.reset(fdopen(file, "ab"));
   // Every record goes to the file at once, so that none is left over for the end after an error.
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);
-  if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+  struct stat status {};
+  if (fstat(file, &status) == 0 && S_ISFIFO(status.st_mode)) fail("has become a pipe; give another path");
+  if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     fail("another program is writing it; give another name");
 }
 
 // Another file takes the place of the old one, which a console may still show. Where that cannot be, it is
 // emptied.
-void McapWriter::replace() {
-  const std::unique_ptr<char, void (*)(void*)> resolved(realpath(path_.c_str(), nullptr), &std::free);
-  if (resolved && unlink(resolved.get()) == 0) return open_alone(resolved.get());
+void McapWriter::replace(const Place& place) {
+  if (!place.is_of_kernel() && unlinkat(place.folder(), place.name().c_str(), 0) == 0)
+    return open_alone(place);
   if (ftruncate(fileno(file_.get()), 0) != 0) fail(std::string("cannot be emptied: ") + std::strerror(errno));
 }
 

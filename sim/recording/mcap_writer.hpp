@@ -20,6 +20,7 @@
 
 namespace tumblesight::sim {
 
+class Place;
 using McapId = std::uint16_t;  // of a schema or a channel, from 1 on
 
 class McapWriter {
@@ -61,8 +62,8 @@ class McapWriter {
   };
   using Bytes = std::vector<std::uint8_t>;
 
-  void open_alone(const std::string& path);
-  void replace();
+  void open_alone(const Place& place);
+  void replace(const Place& place);
   void put(const Bytes& bytes);
   void write_chunk();
   Bytes statistics() const;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <variant>
 
+#include "sim/terminal/text.hpp"
 #include "sim/world/sensor/effects.hpp"
 
 namespace tumblesight::sim {
@@ -29,21 +30,21 @@ std::vector<FaultRow> make_table() {
   return table;
 }
 
-bool has_strength(const FaultRow& row) {
-  return row.lowest != 0.0 || row.highest != 0.0;
-}
-
-bool takes(const FaultRow& row, double strength) {
-  if (!has_strength(row)) return strength == 0.0;
-  const bool is_within = strength >= row.lowest && strength <= row.highest && strength != 0.0;
-  return is_within && (!row.must_be_whole || strength == std::floor(strength));
-}
-
 }  // namespace
 
 const std::vector<FaultRow>& fault_table() {
   static const std::vector<FaultRow> kTable = make_table();
   return kTable;
+}
+
+bool has_strength(const FaultRow& row) {
+  return row.lowest != 0.0 || row.highest != 0.0;
+}
+
+std::string strength_limits(const FaultRow& row) {
+  return fmt::format("a {} from {:g} to {:g}{}{}{}", row.must_be_whole ? "whole number" : "number",
+                     row.lowest, row.highest, row.unit.empty() ? "" : " ", row.unit,
+                     row.lowest < 0.0 ? ", and not 0" : "");
 }
 
 const FaultRow& fault_named(const std::string& name) {
@@ -57,8 +58,19 @@ const FaultRow& fault_named(const std::string& name) {
     throw std::invalid_argument(fmt::format(
         "{} changes the target's body, which a run keeps: start one with simulate --effect {}", name, name));
   }
-  throw std::invalid_argument(fmt::format("there is no fault '{}'; the faults are: {}", name, known));
+  throw std::invalid_argument(
+      fmt::format("there is no fault '{}'; the faults are: {}", shortened(name), known));
 }
+
+namespace {
+
+bool takes(const FaultRow& row, double strength) {
+  if (!has_strength(row)) return strength == 0.0;
+  const bool is_within = strength >= row.lowest && strength <= row.highest && strength != 0.0;
+  return is_within && (!row.must_be_whole || strength == std::floor(strength));
+}
+
+}  // namespace
 
 void require_possible(const InjectedFault& fault) {
   const FaultRow& row = fault_named(fault.name);
@@ -67,11 +79,10 @@ void require_possible(const InjectedFault& fault) {
         fmt::format("fault {}: steps must be 1 to {}, not {}", fault.name, kMostFaultSteps, fault.steps));
   if (takes(row, fault.strength)) return;
   if (!has_strength(row))
-    throw std::invalid_argument(fmt::format("fault {} has no strength: leave it out", fault.name));
-  throw std::invalid_argument(fmt::format(
-      "fault {}: the strength must be a {} from {:g} to {:g}{}{}{}, not {:g}", fault.name,
-      row.must_be_whole ? "whole number" : "number", row.lowest, row.highest, row.unit.empty() ? "" : " ",
-      row.unit, row.lowest < 0.0 ? ", and not 0" : "", fault.strength));
+    throw std::invalid_argument(
+        fmt::format("fault {} has no strength: leave out {:g}", fault.name, fault.strength));
+  throw std::invalid_argument(fmt::format("fault {}: the strength must be {}, not {:g}", fault.name,
+                                          strength_limits(row), fault.strength));
 }
 
 std::string to_string(const InjectedFault& fault) {

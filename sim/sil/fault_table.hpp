@@ -12,7 +12,7 @@ struct FaultRow {
   std::string name;
   std::string explanation;  // one line
   std::string unit;         // of the strength
-  // Limits of the strength. Both 0: the fault has none.
+  // Limits of the strength. Both 0: the fault has none, has_strength().
   double lowest = 0.0, highest = 0.0;
   bool must_be_whole = false;  // the strength
   // Of what the sensor sees, so that frames have to be rendered with it: SceneFaults. Otherwise of the frames
@@ -27,6 +27,10 @@ struct InjectedFault {
   std::uint32_t steps = 1;
 };
 inline constexpr std::uint32_t kMostFaultSteps = 1000;
+
+bool has_strength(const FaultRow& row);
+// "a number from 0.1 to 10 m"
+std::string strength_limits(const FaultRow& row);
 
 // Those of the frames, an occluder and a chaser that turns, and the effects of sim/world/sensor/effects.hpp
 // but those that change the target's body.

@@ -80,7 +80,10 @@ void RunAnnouncement::write(const RuntimeFolder& folder, const hal::dds::RunSecr
     unlinkat(folder.descriptor(), made.c_str(), 0);
   }
   file_ = -1;
-  throw SilFailure(folder.path_of(name_) + " cannot be written: " + strerror(error) + "; remove it");
+  struct stat found {};
+  const bool is_there = fstatat(folder.descriptor(), name_.c_str(), &found, AT_SYMLINK_NOFOLLOW) == 0;
+  throw SilFailure(folder.path_of(name_) + " cannot be written: " + strerror(error) +
+                   (is_there ? "; remove it" : "; see whether its folder has room and can be written"));
 }
 
 // Not that of a run in another network namespace, which has DDS domains of its own.

@@ -9,15 +9,15 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <thread>
+#include <utility>
 
-#include "hal/messages/command_packet.hpp"
-#include "sim/json/json_text.hpp"
-#include "sim/sil/failure.hpp"
+#include "sim/sil/request_line.hpp"
 #include "sim/sil/runtime_folder.hpp"
-#include "sim/sil/telecommand_table.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -25,7 +25,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kMostWaiting = 8;  // connections
-constexpr std::size_t kMostDepth = 4;
 constexpr const char* kNotAnswered =
     "the run has not taken the request in time, and will not carry it out: it is paused, or its steps take "
     "longer than that";
@@ -34,23 +33,32 @@ std::string name_of(std::uint32_t domain) {
   return "domain-" + std::to_string(domain) + ".control";
 }
 
-// Empty: the user has no folder for it.
-std::string path_of(std::uint32_t domain) {
-  try {
-    return RuntimeFolder().path_of(name_of(domain));
-  } catch (const SilFailure&) {
-    return {};
-  }
+// By the descriptor of the folder where the path is too long for a socket. `folder` must stay open.
+sockaddr_un address_of(const RuntimeFolder& folder, const std::string& name) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::string path = folder.path_of(name);
+  if (path.size() >= sizeof address.sun_path)
+    path = "/proc/self/fd/" + std::to_string(folder.descriptor()) + "/" + name;
+  std::memcpy(address.sun_path, path.data(), path.size());
+  return address;
 }
 
-// False: the path is too long for a socket.
-bool address_of(const std::string& path, sockaddr_un& address) {
-  address = {};
-  address.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof address.sun_path) return false;
-  std::memcpy(address.sun_path, path.data(), path.size());
-  return true;
-}
+// A socket that is closed with the object.
+class Socket {
+ public:
+  Socket() : socket_(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {}
+  ~Socket() {
+    if (socket_ >= 0) close(socket_);
+  }
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+  operator int() const { return socket_; }
+  int release() { return std::exchange(socket_, -1); }
+
+ private:
+  int socket_;
+};
 
 bool is_own_user(int socket) {
   ucred peer{};
@@ -58,59 +66,74 @@ bool is_own_user(int socket) {
   return getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == geteuid();
 }
 
+// 0, or an errno.
+int connect_to(const sockaddr_un& address, int socket) {
+  return connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ? 0 : errno;
+}
+
 // False: the run has ended.
 bool is_listening(const sockaddr_un& address) {
-  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (socket < 0) return false;
-  const bool is_taken = connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
-                        errno == EAGAIN;  // as many wait as can
-  close(socket);
-  return is_taken;
+  const Socket socket;
+  const int error = connect_to(address, socket);
+  return error == 0 || error == EAGAIN;  // as many wait as can
 }
 
-// One that does not fit is beyond every limit here.
-std::int64_t whole_number(const Json& value) {
-  if (!value.is_number_integer()) throw std::invalid_argument("steps and function must be whole numbers");
-  if (value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX) return INT64_MAX;
-  return value.get<std::int64_t>();
+// Why nothing can be asked at a path, with the remedy.
+std::string reason_of(const std::string& path, int error) {
+  struct stat status {};
+  if (lstat(path.c_str(), &status) != 0)
+    return "there is no such socket: the run has ended, is of another version, or could not make the socket "
+           "and has "
+           "said so at its start";
+  if (!S_ISSOCK(status.st_mode)) return "this is no socket: remove it, and start the run again";
+  if (error == ECONNREFUSED) return "nobody listens: the run has ended";
+  return strerror(error);
 }
 
-InjectedFault fault_of(const Json& request) {
-  InjectedFault fault;
-  fault.name = request.at("fault").get<std::string>();
-  const std::int64_t steps = whole_number(request.at("steps"));
-  fault.steps = static_cast<std::uint32_t>(std::clamp<std::int64_t>(steps, 0, UINT32_MAX));
-  if (request.contains("strength")) {
-    if (!request.at("strength").is_number()) throw std::invalid_argument("the strength must be a number");
-    fault.strength = request.at("strength").get<double>();
+int remaining_ms(std::chrono::steady_clock::time_point end) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+  return static_cast<int>(std::max<std::int64_t>(0, left.count()));
+}
+
+// A run takes some connections in a step, and as many wait: the others try again.
+void connect_in_time(const sockaddr_un& address, int socket, const std::string& path,
+                     std::chrono::steady_clock::time_point end) {
+  constexpr auto kBetweenTries = std::chrono::milliseconds(10);
+  int error = connect_to(address, socket);
+  for (; error == EAGAIN; error = connect_to(address, socket)) {
+    if (remaining_ms(end) == 0)
+      throw RunIsBusy("too many requests wait for the run, and this one was not sent: send it again");
+    std::this_thread::sleep_for(kBetweenTries);
   }
-  require_possible(fault);
-  return fault;
-}
-
-Telecommand telecommand_of(const Json& request) {
-  const std::int64_t function = whole_number(request.at("function"));
-  if (function < 0 || function > 127) throw std::invalid_argument("a function code is 0 to 127");
-  const std::vector<std::uint8_t> arguments = bytes_of_hex(request.at("arguments").get<std::string>());
-  if (arguments.size() > hal::kMaxCommandArgumentBytes)
-    throw std::invalid_argument("a telecommand has at most " + std::to_string(hal::kMaxCommandArgumentBytes) +
-                                " bytes of arguments");
-  return {static_cast<hal::FunctionCode>(function), arguments};
+  if (error != 0) throw SilFailure("the run takes no requests at " + path + ": " + reason_of(path, error));
+  if (!is_own_user(socket))
+    throw SilFailure("the run takes no requests at " + path + ": another user listens there");
 }
 
 }  // namespace
 
-RunControl::RunControl(std::uint32_t domain) : path_(path_of(domain)) {
-  sockaddr_un address;
-  if (!address_of(path_, address)) return;
-  socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  unlink(path_.c_str());  // of a run that was killed
+RunControl::RunControl(std::uint32_t domain) {
+  try {
+    const RuntimeFolder folder;
+    path_ = folder.path_of(name_of(domain));
+    listen_in(folder, name_of(domain));
+  } catch (const SilFailure& failure) {
+    failure_ = std::string("this run takes no telecommands and faults from the console: ") + failure.what();
+  }
+}
+
+void RunControl::listen_in(const RuntimeFolder& folder, const std::string& name) {
+  const sockaddr_un address = address_of(folder, name);
+  Socket socket;
+  unlinkat(folder.descriptor(), name.c_str(), 0);  // of a run that was killed
   // Nobody can connect before listen(). umask() would also change that of the other threads.
-  const bool is_bound =
-      socket_ >= 0 && bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  if (is_bound && chmod(path_.c_str(), 0600) == 0 && listen(socket_, kMostWaiting) == 0) return;
-  if (socket_ >= 0) close(socket_);
-  socket_ = -1;
+  if (socket >= 0 && bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+      chmod(path_.c_str(), 0600) == 0 && listen(socket, kMostWaiting) == 0) {
+    socket_ = socket.release();
+    return;
+  }
+  throw SilFailure("the socket " + path_ + " cannot be made: " + strerror(errno) +
+                   (errno == EADDRINUSE ? "; remove what has its name, and start the run again" : ""));
 }
 
 RunControl::~RunControl() {
@@ -145,22 +168,10 @@ RunRequests RunControl::take(std::uint32_t step, FrameFaults& frames, StepSource
   return of.requests;
 }
 
-// Throws std::invalid_argument or a JSON exception.
+// Throws std::invalid_argument.
 void RunControl::take_request(const std::string& line, Step& step) {
-  const Json request = parse_json(line, {kMostDepth});
-  if (request.contains("fault")) {
-    const InjectedFault fault = fault_of(request);
-    if (step.requests.faults.size() >= kMostFaults)
-      throw std::invalid_argument("a step takes at most " + std::to_string(kMostFaults) +
-                                  " faults: send it again");
-    FrameFaults::Kind kind{};
-    if (read_fault(fault.name, kind))
-      step.frames.begin(kind, fault.steps);
-    else
-      step.source.begin_fault(fault);
-    step.requests.faults.push_back(fault);
-    return;
-  }
+  RequestLine request = read_request_line(line);
+  if (request.fault) return take_fault(*request.fault, step);
   if (!step.source.takes_telecommands())
     throw std::invalid_argument(
         "the telecommands of this run are recorded, with their numbers: start a run with tumblesight "
@@ -168,7 +179,19 @@ void RunControl::take_request(const std::string& line, Step& step) {
   if (step.requests.commands.size() >= kMostCommands)
     throw std::invalid_argument("a step takes at most " + std::to_string(kMostCommands) +
                                 " telecommands: send it again");
-  step.requests.commands.push_back(telecommand_of(request));
+  step.requests.commands.push_back(std::move(request.command));
+}
+
+void RunControl::take_fault(const InjectedFault& fault, Step& step) {
+  if (step.requests.faults.size() >= kMostFaults)
+    throw std::invalid_argument("a step takes at most " + std::to_string(kMostFaults) +
+                                " faults: send it again");
+  FrameFaults::Kind kind{};
+  if (read_fault(fault.name, kind))
+    step.frames.begin(kind, fault.steps);
+  else
+    step.source.begin_fault(fault);
+  step.requests.faults.push_back(fault);
 }
 
 std::string RunControl::answer_to(const std::string& line, Step& step) {
@@ -177,8 +200,6 @@ std::string RunControl::answer_to(const std::string& line, Step& step) {
     return Json{{"step", step.k}}.dump() + "\n";
   } catch (const std::invalid_argument& error) {
     return Json{{"error", error.what()}}.dump() + "\n";
-  } catch (const Json::exception&) {
-    return Json{{"error", "the request is not as RunControl knows it"}}.dump() + "\n";
   }
 }
 
@@ -207,21 +228,11 @@ std::string ask_run(std::uint32_t domain, const std::string& request, int timeou
   if (request.size() >= RunControl::kMostBytes)
     throw std::invalid_argument("the request has " + std::to_string(request.size()) +
                                 " bytes; a run takes at most " + std::to_string(RunControl::kMostBytes - 1));
-  sockaddr_un address;
-  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  struct Closer {
-    int socket;
-    ~Closer() {
-      if (socket >= 0) close(socket);
-    }
-  } closer{socket};
-  const std::string path = RuntimeFolder().path_of(name_of(domain));
-  if (socket < 0 || !address_of(path, address))
-    throw SilFailure("the run takes no requests: it has ended, or is of another version");
-  const int connected = connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address);
-  if (connected != 0 && errno == EAGAIN) throw SilFailure(kNotAnswered);  // too many wait before
-  if (connected != 0 || !is_own_user(socket))
-    throw SilFailure("the run takes no requests: it has ended, or is of another version");
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
+  const RuntimeFolder folder;
+  const sockaddr_un address = address_of(folder, name_of(domain));
+  const Socket socket;
+  connect_in_time(address, socket, folder.path_of(name_of(domain)), end);
   const std::string line = request + "\n";
   if (send(socket, line.data(), line.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(line.size()))
     throw SilFailure("the run did not take the request");
@@ -229,7 +240,7 @@ std::string ask_run(std::uint32_t domain, const std::string& request, int timeou
   pollfd readable{socket, POLLIN, 0};
   while (answer.find('\n') == std::string::npos) {
     char buffer[1024];
-    if (poll(&readable, 1, timeout_ms) <= 0) throw SilFailure(kNotAnswered);
+    if (poll(&readable, 1, remaining_ms(end)) <= 0) throw SilFailure(kNotAnswered);
     const ssize_t count = read(socket, buffer, sizeof buffer);
     if (count <= 0)
       throw SilFailure(is_listening(address)

@@ -13,7 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "sim/sil/failure.hpp"
 #include "sim/sil/frame_faults.hpp"
+#include "sim/sil/runtime_folder.hpp"
 #include "sim/sil/signed_telecommand.hpp"
 #include "sim/sil/step_source.hpp"
 
@@ -38,6 +40,8 @@ class RunControl {
   RunControl(const RunControl&) = delete;
   RunControl& operator=(const RunControl&) = delete;
 
+  // Why the run takes no requests, with the file and the remedy; empty: it does.
+  const std::string& failure() const { return failure_; }
   // What was requested since the last call. Does not wait. `step`: of the answers, the next one of `source`.
   // Faults begin in `frames` or `source`.
   RunRequests take(std::uint32_t step, FrameFaults& frames, StepSource& source);
@@ -47,6 +51,7 @@ class RunControl {
     int socket;
     std::string received;
   };
+  void listen_in(const RuntimeFolder& folder, const std::string& name);
   void accept_clients();
   struct Step {
     std::uint32_t k;
@@ -55,16 +60,24 @@ class RunControl {
     RunRequests requests;
   };
   static void take_request(const std::string& line, Step& step);
+  static void take_fault(const InjectedFault& fault, Step& step);
   static std::string answer_to(const std::string& line, Step& step);
   static bool serve(Client& client, Step& step);
 
-  std::string path_;
+  std::string path_, failure_;
   int socket_ = -1;
   std::vector<Client> clients_;
 };
 
-// Sends a request to the run in a domain and waits for its answer, at most `timeout_ms`. Throws SilFailure
-// that says why there is none, and std::invalid_argument for a request that no run would read.
+// More ask a run than it takes in time. Nothing was sent.
+class RunIsBusy : public SilFailure {
+ public:
+  using SilFailure::SilFailure;
+};
+
+// Sends a request to the run in a domain and waits for its answer, at most `timeout_ms` in all. Throws
+// SilFailure that says why there is none, RunIsBusy among them, and std::invalid_argument for a request that
+// is too long.
 std::string ask_run(std::uint32_t domain, const std::string& request, int timeout_ms);
 
 }  // namespace tumblesight::sim

@@ -28,9 +28,10 @@ std::string path_of_user() {
   return "/tmp/tumblesight-" + std::to_string(geteuid());
 }
 
-[[noreturn]] void fail(const std::string& path, const std::string& fault) {
-  throw SilFailure("the folder " + path + ", in which runs and the console meet, " + fault +
-                   "; remove it, or set XDG_RUNTIME_DIR to a folder of your own with mode 0700");
+[[noreturn]] void fail(const std::string& path, const std::string& fault,
+                       const std::string& remedy = "remove it") {
+  throw SilFailure("the folder " + path + ", in which runs and the console meet, " + fault + "; " + remedy +
+                   ", or set XDG_RUNTIME_DIR to a folder of your own with mode 0700");
 }
 
 // Empty, or why others could use the folder.
@@ -41,6 +42,12 @@ std::string fault_of(int folder) {
     return "belongs to another user (user id " + std::to_string(status.st_uid) + ")";
   if ((status.st_mode & kWriteOfOthers) != 0) return "can be written by other users";
   return {};
+}
+
+// Empty, or why its owner cannot use the folder.
+std::string fault_of_use(int folder) {
+  if (faccessat(folder, ".", R_OK | W_OK | X_OK, AT_EACCESS) == 0) return {};
+  return std::string("cannot be used: ") + strerror(errno);
 }
 
 }  // namespace
@@ -54,12 +61,16 @@ RuntimeFolder::RuntimeFolder() : path_(path_of_user()) {
   if (folder_ < 0) {
     struct stat status {};
     const bool is_of_another = lstat(path_.c_str(), &status) == 0 && status.st_uid != geteuid();
+    if (!is_of_another && error == EACCES)
+      fail(path_, std::string("cannot be used: ") + strerror(error), "chmod 700 " + path_);
     fail(path_, is_of_another ? "belongs to another user (user id " + std::to_string(status.st_uid) + ")"
                               : std::string("cannot be opened: ") + strerror(error));
   }
   const std::string fault = fault_of(folder_);
-  if (fault.empty()) return;
+  const std::string no_use = fault.empty() ? fault_of_use(folder_) : "";
+  if (fault.empty() && no_use.empty()) return;
   close(folder_);
+  if (!no_use.empty()) fail(path_, no_use, "chmod 700 " + path_);
   fail(path_, fault);
 }
 

@@ -14,6 +14,7 @@
 #include "sim/sil/sil_session.hpp"
 #include "sim/sil/simulated_steps.hpp"
 #include "sim/sil/trace.hpp"
+#include "sim/terminal/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -45,6 +46,7 @@ class SilRun {
     }
     SilSession session(settings_);
     control_.emplace(session.domain());
+    if (!control_->failure().empty()) print_note(control_->failure());
     settings_.free_running ? simulate_free_running(session) : simulate_in_lockstep(session);
     session.finish();
   }

@@ -116,7 +116,8 @@ Telecommand telecommand_of(const std::string& function, const std::map<std::stri
   const auto row = std::find_if(table.begin(), table.end(), [&function](const TelecommandRow& candidate) {
     return name_of(candidate.function) == function;
   });
-  if (row == table.end()) throw std::invalid_argument("there is no telecommand '" + function + "'");
+  if (row == table.end())
+    throw std::invalid_argument("there is no telecommand '" + shortened(function) + "'");
   for (const auto& [name, value] : values) {
     const auto is_it = [&name = name](const ArgumentField& field) { return field.name == name; };
     if (std::none_of(row->fields.begin(), row->fields.end(), is_it))

@@ -10,22 +10,24 @@ namespace tumblesight::sim {
 
 // Replaces the file as a whole: a reader never finds a part of it, and a failure leaves the old file. A path
 // that is neither missing nor a plain file, such as /dev/stdout or a link, is written to directly. Creates
-// missing folders. What fault_of_place() names is refused. Throws std::runtime_error that
-// names the file and the reason.
+// missing folders. What Place refuses is refused. Throws std::runtime_error that names the file and the
+// reason.
 void write_file(const std::string& path, std::string_view content);
 void write_file(const std::string& path, const std::vector<std::uint8_t>& bytes);
+
+// Makes the file if there is none. Throws as write_file() does.
+void append_to_file(const std::string& path, std::string_view content);
 
 // The name beside `path` under which write_file() writes before it renames, or that and a number if there is
 // such a file. Empty if it writes to `path` directly.
 std::string partial_path(const std::string& path);
 
-// Empty if nothing is there that write_file() refuses since it is another user's: in a folder where others
-// may write, a link or a pipe, or a file that only its owner may replace. Otherwise what it is, and what to
-// do.
+// Empty if write_file() may write there. Otherwise what another user has put there (sim/terminal/place.hpp),
+// or that nobody reads the pipe that is there, and what to do.
 std::string fault_of_place(const std::string& path);
 
-// Empty if write_file() can make the file beside `path` that it writes first. Otherwise why not, and what to
-// do. Only where partial_path() is not empty.
-std::string fault_of_partial_file(const std::string& path);
+// Empty if write_file() can make the file that it writes first, or needs none. Otherwise why not, and what to
+// do.
+std::string fault_of_new_file(const std::string& path);
 
 }  // namespace tumblesight::sim

@@ -10,6 +10,8 @@
 #include <torch/csrc/distributed/c10d/PrefixStore.hpp>
 #include <torch/csrc/distributed/c10d/TCPStore.hpp>
 
+#include "sim/terminal/write_file.hpp"
+
 namespace tumblesight::sim {
 namespace {
 
@@ -73,9 +75,7 @@ StorePtr invite(const RankPlace& place, const fs::path& folder, std::chrono::mil
   const std::string name = kStore + new_word();
   StorePtr store = file_store(folder / name, place, timeout);
   store->set("open", bytes_of("yes"));  // creates the file
-  const fs::path renewed = folder / (std::string(kInvitation) + ".new");
-  std::ofstream(renewed) << name << '\n';
-  fs::rename(renewed, folder / kInvitation);
+  write_file((folder / kInvitation).string(), name + '\n');
   for (int rank = 1; rank < place.count; ++rank) {
     const std::vector<std::uint8_t> word = store->get(guest_key(rank));
     store->set(welcome_key({word.begin(), word.end()}), bytes_of("welcome"));

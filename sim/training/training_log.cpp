@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 
 #include "sim/report/charts.hpp"
 #include "sim/report/colours.hpp"
@@ -84,19 +82,14 @@ TrainingLog::TrainingLog(const std::string& folder, const std::string& stage, st
   for (const TrainingPoint& point : read_training_log(folder)) {
     if (point.stage != stage || point.iteration <= last_iteration) points_.push_back(point);
   }
-  const std::string renewed =
-      folder + "/log.csv.new";  // renamed when complete: a kill leaves the old log or the new one
-  std::ofstream out(renewed);
-  if (!out) throw std::runtime_error("cannot write " + folder + "/log.csv: choose another folder with --out");
-  out << kHeader << '\n';
-  for (const TrainingPoint& p : points_) out << to_csv(p) << '\n';
-  out.close();
-  std::filesystem::rename(renewed, folder + "/log.csv");
+  std::string text = std::string(kHeader) + '\n';
+  for (const TrainingPoint& p : points_) text += to_csv(p) + '\n';
+  write_file(folder + "/log.csv", text);
 }
 
 void TrainingLog::add(const TrainingPoint& point) {
   points_.push_back(point);
-  std::ofstream(folder_ + "/log.csv", std::ios::app) << to_csv(point) << '\n';
+  append_to_file(folder_ + "/log.csv", to_csv(point) + '\n');
   write_file(folder_ + "/curve.svg", error_curve(points_));
 }
 

@@ -7,6 +7,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstring>
 #include <filesystem>
 #include <future>
@@ -14,6 +15,7 @@
 
 #include "sim/sil/domain_lease.hpp"
 #include "sim/sil/failure.hpp"
+#include "sim/sil/request_line.hpp"
 #include "sim/sil/runtime_folder.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
@@ -55,6 +57,7 @@ class Control : public testing::Test {
   FrameFaults faults_;
   Source source_;
   std::vector<Telecommand> commands_;
+  std::atomic<int> busy_{0};
 };
 
 TEST_F(Control, TakesATelecommandAndSaysInWhichStep) {
@@ -159,6 +162,110 @@ TEST_F(Control, RefusesWhatIsNoRequest) {
   EXPECT_EQ(ask(R"({"function":1,"arguments":")" + std::string(2 * 1029, '0') + "\"}").find(R"({"error":)"),
             0U);
   EXPECT_TRUE(commands_.empty());
+}
+
+// Who asks reads the same before.
+TEST_F(Control, NamesTheValueThatItRefuses) {
+  struct Wrong {
+    const char *request, *said;
+  };
+  for (const Wrong& wrong : {
+           Wrong{R"({"function":128,"arguments":""})", "from 0 to 127, not 128"},
+           Wrong{R"({"function":-1,"arguments":""})", "not -1"},
+           Wrong{R"({"function":1.5,"arguments":""})", "not 1.5"},
+           Wrong{R"({"function":18446744073709551616,"arguments":""})", "not 1.8446744073709552e+19"},
+           Wrong{R"({"function":4294967299,"arguments":""})", "not 4294967299"},
+           Wrong{R"({"function":1,"arguments":"0"})", "not '0'"},
+           Wrong{R"({"function":1,"arguments":"zz"})", "not 'zz'"},
+           Wrong{R"({"fault":"melt","steps":1})", "there is no fault 'melt'"},
+           Wrong{R"({"fault":"drop","steps":0})", "from 1 to 1000, not 0"},
+           Wrong{R"({"fault":"drop","steps":-1})", "not -1"},
+           Wrong{R"({"fault":"drop","steps":1001})", "not 1001"},
+           Wrong{R"({"fault":"drop","steps":2.5})", "not 2.5"},
+           Wrong{R"({"fault":"drop","steps":1e300})", "not 1e+300"},
+           Wrong{R"({"fault":"drop","steps":9223372036854775808})", "not 9223372036854775808"},
+           Wrong{R"({"fault":"drop","strength":7,"steps":1})", "leave out 7"},
+           Wrong{R"({"fault":"debris","steps":1})", "needs a strength, a number from 0.1 to 10 m"},
+           Wrong{R"({"fault":"debris","strength":"1","steps":1})", "not \"1\""},
+           Wrong{R"({"fault":"debris","strength":11,"steps":1})", "not 11"},
+       }) {
+    try {
+      read_request_line(wrong.request);
+      ADD_FAILURE() << wrong.request;
+    } catch (const std::invalid_argument& refusal) {
+      EXPECT_NE(std::string(refusal.what()).find(wrong.said), std::string::npos) << refusal.what();
+    }
+  }
+}
+
+// Several pages, or a script. The run takes eight in a step.
+TEST_F(Control, TakesManyRequestsAtOnce) {
+  std::vector<std::future<std::string>> all;
+  for (int i = 0; i < 40; ++i)
+    all.push_back(std::async(std::launch::async, [this] {
+      return ask_run(lease_.domain(), R"({"function":1,"arguments":""})", 5000);
+    }));
+  for (std::uint32_t step = 0; step < 400 && commands_.size() < all.size(); ++step) {
+    for (Telecommand& command : control_->take(step, faults_, source_).commands)
+      commands_.push_back(std::move(command));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  for (std::future<std::string>& one : all) EXPECT_EQ(one.get().find(R"({"step":)"), 0U);
+}
+
+TEST_F(Control, SaysWhenTooManyWait) {
+  std::vector<std::future<void>> all;
+  for (int i = 0; i < 24; ++i)
+    all.push_back(std::async(std::launch::async, [this] {
+      try {
+        ask_run(lease_.domain(), R"({"function":1,"arguments":""})", 300);
+        ADD_FAILURE() << "answered";
+      } catch (const RunIsBusy& busy) {
+        EXPECT_NE(std::string(busy.what()).find("send it again"), std::string::npos);
+        ++busy_;
+      } catch (const SilFailure& paused) {
+        EXPECT_NE(std::string(paused.what()).find("it is paused"), std::string::npos) << paused.what();
+      }
+    }));
+  all.clear();
+  EXPECT_GT(busy_, 0);
+  EXPECT_LT(busy_, 24);
+}
+
+// Nothing else removes it, and the run goes on.
+TEST_F(Control, SaysWhatStandsInTheWayOfItsSocket) {
+  control_.reset();
+  std::filesystem::create_directory(path());
+  control_ = std::make_unique<RunControl>(lease_.domain());
+  EXPECT_NE(control_->failure().find(path()), std::string::npos) << control_->failure();
+  EXPECT_NE(control_->failure().find("remove"), std::string::npos) << control_->failure();
+  EXPECT_TRUE(control_->take(0, faults_, source_).commands.empty());
+  try {
+    ask_run(lease_.domain(), "{}", 100);
+    ADD_FAILURE() << "answered";
+  } catch (const SilFailure& failure) {
+    EXPECT_NE(std::string(failure.what()).find(path() + ": this is no socket: remove it"), std::string::npos)
+        << failure.what();
+  }
+  control_.reset();
+  EXPECT_TRUE(std::filesystem::is_directory(path()));
+  std::filesystem::remove(path());
+}
+
+// A path of a socket has at most 107 bytes.
+TEST_F(Control, IsThereInAFolderWithALongName) {
+  control_.reset();
+  const std::string folder = test::temporary_path(std::string(120, 'x'));
+  std::filesystem::create_directories(folder);
+  std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
+  const test::Environment place("XDG_RUNTIME_DIR", folder);
+  control_ = std::make_unique<RunControl>(lease_.domain());
+  EXPECT_EQ(control_->failure(), "");
+  EXPECT_EQ(path().find(folder), 0U);
+  EXPECT_EQ(ask(R"({"function":1,"arguments":""})"), R"({"step":41})");
+  control_.reset();
+  EXPECT_FALSE(std::filesystem::exists(path()));
+  EXPECT_THROW(ask_run(lease_.domain(), "{}", 100), SilFailure);
 }
 
 TEST_F(Control, IsForItsOwnerAlone) {

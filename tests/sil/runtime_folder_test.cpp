@@ -87,6 +87,20 @@ TEST_F(RuntimePlace, OfAnotherUserIsRefused) {
   expect_refused("belongs to another user (user id 65534)");
 }
 
+// As after a wrong umask or chmod.
+TEST_F(RuntimePlace, ThatItsOwnerCannotUseIsRefusedWithTheRemedy) {
+  fs::create_directory(folder_);
+  if (geteuid() == 0) {  // whom no mode keeps out
+    for (const std::string& path : {given_, folder_}) ASSERT_EQ(chown(path.c_str(), 65534, 65534), 0);
+    ASSERT_EQ(seteuid(65534), 0);
+  }
+  for (const auto mode : {0500, 0300, 0600, 0000}) {
+    EXPECT_EQ(chmod(folder_.c_str(), static_cast<mode_t>(mode)), 0);
+    expect_refused("cannot be used: Permission denied; chmod 700 " + folder_);
+  }
+  if (getuid() == 0) ASSERT_EQ(seteuid(0), 0);
+}
+
 // None of them is waited for.
 TEST_F(RuntimePlace, ThatIsNoFolderIsRefused) {
   ASSERT_EQ(mkfifo(folder_.c_str(), 0600), 0);

@@ -102,12 +102,16 @@ export class Chart {
       labels, series, logscale: Boolean(isLog), dateWindow: window, legend: 'never', highlightCircleSize: 0, showLabelsOnHighlight: false,
       animatedZooms: false, rightGap: 4, pointSize: 1.2, gridLineColor: themeColour('grid'), axisLineColor: themeColour('line'),
       axes: { y: { axisLabelWidth: 36, pixelsPerLabel: 15, axisLabelFormatter: shortNumber, ...(isLog ? { ticker: decades } : {}) },
-              x: { axisLabelWidth: 44, pixelsPerLabel: 50, axisLabelFormatter: wholeStep } },
+              x: { axisLabelWidth: 44, pixelsPerLabel: 50, axisLabelFormatter: (place) => this.stepLabel(place) } },
       xAxisHeight: 14, axisLabelFontSize: 10, axisTickSize: 2,
       interactionModel: this.interaction(),
       clickCallback: (event) => this.group.choose(this.stepAt(event)),
       drawCallback: (graph, isInitial) => this.drawn(graph, isInitial),
     });
+  }
+
+  stepLabel(place) {
+    return Number.isInteger(place) ? String(this.group.store.ownStep(place)) : '';
   }
 
   interaction() {
@@ -167,9 +171,6 @@ function decades(least, greatest) {
       if (v >= least && v <= greatest) ticks.push({ v, label: shortNumber(v) });
     }
   return ticks;
-}
-function wholeStep(value) {
-  return Number.isInteger(value) ? String(value) : '';
 }
 function shortNumber(value) {
   const size = Math.abs(value);

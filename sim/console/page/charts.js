@@ -73,7 +73,7 @@ export class Charts {
   /** The fields of a run, for the menus. */
   setFields(fields) {
     this.window = null;
-    this.fields = fields.filter((field) => field !== 'k');
+    this.fields = fields.filter((field) => field !== 'k' && field !== 'step');
     const kept = this.counterMenu.value || FIRST_COUNTER;
     this.counterMenu.replaceChildren(...this.fields.map((field) => element('option', { value: field, textContent: fieldName(field) })));
     this.counterMenu.value = this.fields.includes(kept) ? kept : this.fields[0];

@@ -156,6 +156,6 @@ export class EventList {
     setText(row.severity, `${marks[event.severity]} ${severityNames[event.severity]}`);
     setText(row.when, `${figure(event.t_s, 1)} s`);
     setText(row.words, event.text);
-    row.node.title = `Step ${event.k}: ${event.text}`;
+    row.node.title = `Step ${this.store.ownStep(event.k)}: ${event.text}`;
   }
 }

@@ -85,6 +85,7 @@ const listener = {
       return;
     }
     lastSelected = -1;
+    stateLine.showMissed(0);
     loader.reset();
     playback.begin(run);
     charts.setFields(run.fields);
@@ -94,6 +95,7 @@ const listener = {
     readMesh(run);
   },
   rows() {
+    stateLine.showMissed(store.missed);
     events.update();
     timeline.schedule();
     charts.schedule();
@@ -150,7 +152,7 @@ window.console_state = () => {
     return Number.isFinite(value) ? value : null;
   };
   return {
-    steps: store.steps, selected: playback.selected, following: playback.isFollowing, playing: playback.isPlaying,
+    steps: store.steps, selected: playback.selected, step: store.ownStep(playback.selected), missed: store.missed, following: playback.isFollowing, playing: playback.isPlaying,
     connected: isConnected, settled: loader.isSettled, network_error_deg: known('network_error_deg'),
     pose_error_deg: known('pose_error_deg'), mesh: view ? view.hasMesh : false, points: view ? view.cloud.count : 0, fps: view ? view.rate.perSecond : 0,
     light_texts: { ...lights.texts }, last_event: events.last() ? { ...events.last() } : null,

@@ -10,6 +10,7 @@ export class StateLine {
     this.themeButton = document.getElementById('theme-button');
     this.run = null;
     this.failure = '';
+    this.missed = 0;
   }
 
   showConnection(isConnected, text) {
@@ -31,12 +32,20 @@ export class StateLine {
     this.showNotes();
   }
 
+  /** How many steps of the run the console has not seen. */
+  showMissed(steps) {
+    if (steps === this.missed) return;
+    this.missed = steps;
+    this.showNotes();
+  }
+
   showNotes() {
     const notes = [];
     if (this.run) {
       if (this.run.source === 'bus' && this.run.ended) notes.push('Run ended');
       if (this.run.whole === false) notes.push('Recording without an end: its writer was killed');
     }
+    if (this.missed > 0) notes.push(`${this.missed} ${this.missed === 1 ? 'step' : 'steps'} of the run not seen`);
     if (this.failure) notes.push(this.failure);
     setText(this.notes, notes.join(' · '));
     this.notes.title = this.notes.textContent;

@@ -55,6 +55,17 @@ export class StepStore {
     return index === undefined ? null : this.columns[index];
   }
 
+  /** The run's own number of the step at place `k`. A console that came late or stood still has fewer places than the run steps. */
+  ownStep(k) {
+    const own = this.value('step', k);
+    return Number.isNaN(own) ? k : own;
+  }
+
+  /** How many steps of the run, up to the newest, the console has not seen. */
+  get missed() {
+    return this.steps === 0 ? 0 : Math.max(0, this.ownStep(this.steps - 1) + 1 - this.steps);
+  }
+
   /** NaN where it is not known. */
   value(field, k) {
     const index = this.indexOf.get(field);

@@ -75,7 +75,7 @@ export class Timeline {
       return;
     }
     const value = (field, digits) => figure(this.store.value(field, selected), digits);
-    setText(this.clock, `${value('t_s', 1)} s   Step ${selected} of ${steps - 1}   Sequence ${value('sequence', 0)}, frame ${value('frame', 0)}`);
+    setText(this.clock, `${value('t_s', 1)} s   Step ${this.store.ownStep(selected)} of ${this.store.ownStep(steps - 1)}   Sequence ${value('sequence', 0)}, frame ${value('frame', 0)}`);
   }
 
   /** Draws the marks anew, at most four times a second. */

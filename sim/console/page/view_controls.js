@@ -72,7 +72,7 @@ export class ViewControls {
     this.showNotes(step);
     if (!this.view) return;
     this.showLegend();
-    this.k = step.k;
+    this.k = step.detail ? step.detail.step : step.k;
     this.showFigures();
   }
 

@@ -138,6 +138,24 @@ class Page(unittest.TestCase):
             # A console that joins while the first step is under way may never get its frame.
             self.assertEqual([error for error in page.errors if not re.search(r"/api/(frame|depth)\?k=0&", error)], [])
 
+    def test_steps_have_the_numbers_of_the_run_after_a_pause_of_the_console(self):
+        with Console("--domain", DOMAIN) as console, browser.Browser(console.address) as page:
+            page.wait_for("window.console_state && console_state().connected")
+            self.simulate("--speed", "40", "--domain", DOMAIN, sequences=ENDLESS)
+            page.wait_for("console_state().steps > 5")
+            missed = state(page, "missed")
+            console.process.send_signal(signal.SIGSTOP)
+            time.sleep(5)  # some 70 steps
+            console.process.send_signal(signal.SIGCONT)
+            page.wait_for(f"console_state().missed > {missed}")
+            self.send(page, "command-form", "NOOP: in step")
+            sent = int(re.search(r"in step (\d+)", page.value_of("document.querySelector('[data-testid=command-answer]').innerText"))[1])
+            page.wait_for(f"console_state().step >= {sent}")
+            shown = page.value_of("console_state()")
+            self.assertEqual(shown["step"], shown["selected"] + shown["missed"])
+            page.wait_for("(() => { const { step, missed } = console_state(), text = document.body.innerText;"
+                          "return text.includes(`Step ${step} of ${step} `) && text.includes(`${missed} steps of the run not seen`); })()")
+
     def check_title(self, page, console):
         target = console.get("/api/run")["target"]
         self.assertNotEqual(target, "")

@@ -124,7 +124,7 @@ TEST_F(PoseAlternatives, APoseThatIsNotDrawnWholeIsNotCompared) {
     truth_ = {is_across ? across : along, {0.0, 8.0, 0.0}};
     rate_ = {0.0, 0.0, 0.0};
     see();
-    const PoseEstimate estimate = track({0.0, 0.0, 0.0}, is_across ? along : across, kEvenOdds_ppm);
+    track({0.0, 0.0, 0.0}, is_across ? along : across, kEvenOdds_ppm);
     EXPECT_EQ(scratch_->best.refinement.is_complete, !is_across);
     EXPECT_FALSE(scratch_->other.refinement.is_complete);
     EXPECT_EQ(state_->advantage_q8, 0);

@@ -1,5 +1,6 @@
 // `tumblesight simulate` as a user runs it, flight program and DDS included.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <csignal>
@@ -211,7 +212,14 @@ TEST(Simulate, RefusesAPipeAsTheKeyThatBothProgramsRead) {
   const Outcome outcome =
       here.run("simulate --command-key /dev/stdin --model " + here.model() + " </dev/null");
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.errors.find("is not a regular file"), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("is a device; give a file"), std::string::npos) << outcome.errors;
+  ASSERT_EQ(mkfifo(here.path("key").c_str(), 0600), 0);
+  for (const char* command : {"simulate --command-key key", "console --dds-security key"}) {
+    const Outcome of_pipe = here.run(command);
+    EXPECT_EQ(of_pipe.exit_code, 2);
+    EXPECT_NE(of_pipe.errors.find("'key' is a pipe, which cannot be read twice"), std::string::npos)
+        << of_pipe.errors;
+  }
 }
 
 TEST(Simulate, SaysThatNoStepWasAnsweredAndGivesNoFigures) {

@@ -10,6 +10,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -58,7 +59,8 @@ class RawClient {
   std::string read_until(const std::string& text) {
     std::string received;
     char buffer[4096];
-    while (received.find(text) == std::string::npos) {
+    for (std::size_t from = 0; received.find(text, from) == std::string::npos;) {
+      from = received.size() - std::min(received.size(), text.size());
       const ssize_t count = recv(socket_, buffer, sizeof buffer, 0);
       if (count <= 0) break;
       received.append(buffer, static_cast<std::size_t>(count));
@@ -178,6 +180,55 @@ TEST_F(ConsoleServerOnLoopback, AnAnswerThatNobodyReadsIsGivenUp) {
   EXPECT_LT(unread.read_all().size(), whole.size());
 }
 
+std::string masked_text(const std::string& text) {
+  return "\x81" + std::string(1, static_cast<char>(0x80 | text.size())) + std::string(4, '\0') + text;
+}
+
+// 255 events a step: more than the buffers of a connection take.
+void stand_still(RawClient& app, test::GrowingRun& run, std::chrono::milliseconds time) {
+  app.get("/?token=abc", upgrade("foxglove.sdk.v1")).read_until("\"/figures\"");
+  run.add_step();
+  app.send(
+      masked_text(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":3},{"id":2,"channelId":4}]})"));
+  app.read_until("expected");  // the figures of the first step
+  for (int i = 0; i < 200; ++i) run.add_step(255);
+  std::this_thread::sleep_for(time);
+}
+
+// As in a debugger, or while a computer sleeps. A write of the server has a time-out of some seconds.
+TEST_F(ConsoleServerOnLoopback, AnAppThatStandsStillForAWhileMissesNoStep) {
+  RawClient app = client(4096);
+  stand_still(app, run_, 9s);
+  EXPECT_EQ(server_.clients(), 1);
+  run_.add_step(1);
+  const std::string missed = app.read_until("\"sec\":545");  // of that one alone
+  std::size_t events = 0;
+  for (std::size_t at = 0; (at = missed.find("\"level\"", at)) != std::string::npos; ++at) ++events;
+  EXPECT_EQ(events, 200U * 255U + 1U);
+  EXPECT_EQ(server_.clients(), 1);
+}
+
+// Its place is for another one.
+TEST_F(ConsoleServerOnLoopback, AnAppThatStandsStillForTooLongLosesItsConnection) {
+  ConsoleServer impatient(requests_, 0, 100ms);
+  RawClient app(impatient.port(), 4096);
+  stand_still(app, run_, 0s);
+  EXPECT_EQ(impatient.clients(), 1);
+  for (const auto end = Clock::now() + 30s; impatient.clients() > 0 && Clock::now() < end;)
+    std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(impatient.clients(), 0);
+}
+
+// Not for the time that it may stand still.
+TEST_F(ConsoleServerOnLoopback, AnAppThatLeavesInAMessageIsNotWaitedFor) {
+  RawClient app = client(4096);
+  stand_still(app, run_, 1s);
+  app.finish();
+  for (const auto end = Clock::now() + 30s; server_.clients() > 0 && Clock::now() < end;)
+    std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(server_.clients(), 0);
+}
+
 // What a proxy and the server may understand differently, or what has not come whole, is not carried out.
 TEST_F(ConsoleServerOnLoopback, ABodyWithoutOneSoundLengthIsRefused) {
   const std::string command = R"({"name":"NOOP","arguments":{}})";
@@ -285,6 +336,9 @@ TEST_F(ConsoleServerOnLoopback, AnswersWhatIsNoRequestWithAStatus) {
   EXPECT_EQ(status_of("GET / HTTP/9.9\r\n\r\n"), "505");
   EXPECT_EQ(status_of("GET / HTTP/1.1\r\n\r\n"), "403");
   EXPECT_EQ(head_of("/none?token=abc").find("HTTP/1.1 404"), 0U);
+  const std::string start = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: ";
+  EXPECT_EQ(head_of("/ws?token=abc", start + "8\r\nSec-WebSocket-Key: x\r\n").find("HTTP/1.1 426"), 0U);
+  EXPECT_EQ(head_of("/ws?token=abc", start + "13\r\n").find("HTTP/1.1 400"), 0U);
   const std::string wrong = client().get("/api/command?token=abc").head();
   EXPECT_EQ(wrong.find("HTTP/1.1 405"), 0U);
   EXPECT_NE(wrong.find("Allow: POST\r\n"), std::string::npos);

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "hal/dds/idl/hello.hpp"
+#include "sim/sil/run_control.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -33,6 +34,7 @@ class OneStep final : public RunSource {
   std::uint64_t first_frame() const override { return 0; }
   std::string ask(const std::string& request) const override {
     if (!answers) throw std::runtime_error("there is no run to ask");
+    if (is_busy) throw RunIsBusy("send it again");
     asked = request;
     return said;
   }
@@ -48,7 +50,7 @@ class OneStep final : public RunSource {
 
   mutable std::string asked;
   std::string said = R"({"step":1})";
-  bool answers = true, is_damaged = false;
+  bool answers = true, is_busy = false, is_damaged = false;
   std::string shown_title = "near_shoemaker";
 
  private:
@@ -116,18 +118,50 @@ TEST_F(ConsoleRequests, FaultsHaveTheirLimits) {
   EXPECT_TRUE(has_debris);
 }
 
-// The run checks them.
+// What no run would take is wrong in the request, and its number is in the answer as it was given.
+TEST_F(ConsoleRequests, WhatNoRunTakesIsRefusedAtTheDoor) {
+  struct Wrong {
+    std::string path, body, said;
+  };
+  const std::string zeros(2 * 3000, '0');
+  for (const Wrong& wrong : {
+           Wrong{"command", R"({"function":1.5,"bytes":""})", "not 1.5"},
+           Wrong{"command", R"({"function":-1,"bytes":""})", "not -1"},
+           Wrong{"command", R"({"function":128,"bytes":""})", "not 128"},
+           Wrong{"command", R"({"function":4294967299,"bytes":"02"})", "not 4294967299"},
+           Wrong{"command", R"({"function":18446744073709551616,"bytes":""})", "not 1.8446744073709552e+19"},
+           Wrong{"command", R"({"function":3,"bytes":"0"})", "not '0'"},
+           Wrong{"command", R"({"function":3,"bytes":"zz"})", "not 'zz'"},
+           Wrong{"command", R"({"function":3,"bytes":")" + zeros + "\"}", "not 3000"},
+           Wrong{"fault", R"({"fault":"nope","steps":3})", "no fault 'nope'"},
+           Wrong{"fault", R"({"fault":"drop","steps":0})", "not 0"},
+           Wrong{"fault", R"({"fault":"drop","steps":-1})", "not -1"},
+           Wrong{"fault", R"({"fault":"drop","steps":1001})", "not 1001"},
+           Wrong{"fault", R"({"fault":"drop","steps":2.5})", "not 2.5"},
+           Wrong{"fault", R"({"fault":"drop","steps":1e300})", "not 1e+300"},
+           Wrong{"fault", R"({"fault":"drop","steps":9223372036854775808})", "not 9223372036854775808"},
+           Wrong{"fault", R"({"fault":"drop","steps":3,"strength":7})", "leave out 7"},
+           Wrong{"fault", R"({"fault":"debris","steps":3})", "needs a strength"},
+           Wrong{"fault", R"({"fault":"debris","strength":-1,"steps":3})", "not -1"},
+           Wrong{"fault", R"({"fault":"debris","strength":1e308,"steps":3})", "not 1e+308"},
+       }) {
+    Request request = get("/api/" + wrong.path);
+    request.method = "POST";
+    request.body = wrong.body;
+    const Answer answer = requests_.answer(request, kPort);
+    EXPECT_EQ(answer.status, 400) << wrong.body.substr(0, 60);
+    EXPECT_NE(answer.body.find(wrong.said), std::string::npos) << answer.body;
+  }
+  EXPECT_EQ(run_.asked, "");
+}
+
 TEST_F(ConsoleRequests, NumbersOfARequestAreNotChanged) {
   Request request = get("/api/fault");
   request.method = "POST";
-  request.body = R"({"fault":"debris","strength":1.5,"steps":4294967301})";
+  request.body = R"({"fault":"debris","strength":1.5,"steps":1000})";
   EXPECT_EQ(status(request), 200);
-  EXPECT_EQ(Json::parse(run_.asked)["steps"], 4294967301);
+  EXPECT_EQ(Json::parse(run_.asked)["steps"], 1000);
   EXPECT_EQ(Json::parse(run_.asked)["strength"], 1.5);
-  request.path = "/api/command";
-  request.body = R"({"function":4294967299,"bytes":"02"})";
-  EXPECT_EQ(status(request), 200);
-  EXPECT_EQ(Json::parse(run_.asked)["function"], 4294967299);
 }
 
 // Deep nesting would take more stack than a thread of the server has.
@@ -256,6 +290,34 @@ TEST_F(ConsoleRequests, WhatTheRunRefusesIsNoSuccess) {
   const Answer answer = requests_.answer(request, kPort);
   EXPECT_EQ(answer.status, 409);
   EXPECT_EQ(answer.body, "a step takes at most 16 telecommands: send it again\n");
+}
+
+// It comes back to a page or a terminal.
+TEST_F(ConsoleRequests, ANameThatIsNotKnownIsShownShortenedAndWithoutControlCharacters) {
+  for (const std::string& unknown : {std::string(3000, 'a'), std::string("\\u001b[31m")}) {
+    Request request = get("/api/command");
+    request.method = "POST";
+    request.body = R"({"name":")" + unknown + R"(","arguments":{}})";
+    const Answer command = requests_.answer(request, kPort);
+    request.path = "/api/fault";
+    request.body = R"({"fault":")" + unknown + R"(","steps":1})";
+    const Answer fault = requests_.answer(request, kPort);
+    for (const Answer& answer : {command, fault}) {
+      EXPECT_EQ(answer.status, 400);
+      EXPECT_LT(answer.body.size(), 1000U);
+      EXPECT_EQ(answer.body.find('\x1b'), std::string::npos) << answer.body;
+    }
+  }
+}
+
+TEST_F(ConsoleRequests, ARunThatIsBusyIsAskedAgainLater) {
+  run_.is_busy = true;
+  Request request = get("/api/command");
+  request.method = "POST";
+  request.body = R"({"name":"NOOP","arguments":{}})";
+  const Answer answer = requests_.answer(request, kPort);
+  EXPECT_EQ(answer.status, 503);
+  EXPECT_EQ(answer.body, "send it again\n");
 }
 
 TEST_F(ConsoleRequests, EveryPathHasItsMethods) {

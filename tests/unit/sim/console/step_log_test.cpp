@@ -329,6 +329,20 @@ TEST_F(Log, RowsBeginWhereTheyAreAskedFor) {
   EXPECT_TRUE(log_.step(10).is_null());
 }
 
+// A console that stood still, or came late.
+TEST_F(Log, ARowAndADetailHaveTheRunsOwnNumberOfTheStep) {
+  for (const std::uint32_t k : {0U, 1U, 28U}) add_step(k);
+  log_.add(attitude_of(29));  // without telemetry
+  log_.end();
+  const Json rows = log_.rows(0)["rows"];
+  ASSERT_EQ(rows.size(), 4U);
+  for (const auto& [number, k] : {std::pair{0, 0}, {1, 1}, {2, 28}, {3, 29}}) {
+    EXPECT_EQ(value(rows[number], "k"), number);
+    EXPECT_EQ(value(rows[number], "step"), k);
+    EXPECT_EQ(log_.step(static_cast<std::uint64_t>(number))["step"], k);
+  }
+}
+
 TEST_F(Log, ADetailHasTheAttitudesThePoseAndEveryCounter) {
   log_.add(truth_of(0));
   auto attitude = attitude_of(0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -51,6 +52,21 @@ TEST_F(Mcap, ALinkToTheFileStays) {
   McapWriter(link, "the second one").close();
   EXPECT_TRUE(std::filesystem::is_symlink(link));
   EXPECT_NE(bytes_of(path_).find("the second one"), std::string::npos);
+}
+
+TEST_F(Mcap, ALinkOfAnotherUserIsNotFollowedWhoeverOwnsItsFolder) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can make files of another user";
+  constexpr uid_t kOther = 65534;
+  const std::string precious = folder_.put("precious", {'x'}), place = folder_.path("shared");
+  std::filesystem::create_directory(place);
+  std::filesystem::create_symlink(precious, place + "/link.mcap");
+  std::filesystem::create_symlink(folder_.path(""), place + "/results");
+  for (const std::string& path : {place, place + "/link.mcap", place + "/results"})
+    ASSERT_EQ(lchown(path.c_str(), kOther, kOther), 0);
+  ASSERT_EQ(chmod(place.c_str(), 0777), 0);
+  EXPECT_THROW(McapWriter(place + "/link.mcap", "test"), std::runtime_error);
+  EXPECT_THROW(McapWriter(place + "/results/precious", "test"), std::runtime_error);
+  EXPECT_EQ(bytes_of(precious), "x");
 }
 
 // Verifies TS-SIL-190.

@@ -179,14 +179,14 @@ TEST(WriteFile, IsNotLedAstrayByWhatHasTheNameOfItsPartialFile) {
   std::filesystem::create_symlink(own, partial);
   ASSERT_EQ(mkfifo((partial + "1").c_str(), 0666), 0);
   std::ofstream(partial + "2") << "left over";
-  EXPECT_EQ(fault_of_partial_file(path), "");
+  EXPECT_EQ(fault_of_new_file(path), "");
   write_file(path, "new");
   std::ifstream file(path), precious(own);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "new");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(precious), {}), "precious");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path("")), {}), 5);
   for (int i = 3; i < 16; ++i) std::ofstream(partial + std::to_string(i)) << "left over";
-  EXPECT_NE(fault_of_partial_file(path).find("delete " + partial + "*"), std::string::npos);
+  EXPECT_NE(fault_of_new_file(path).find("delete " + partial + "*"), std::string::npos);
   EXPECT_THROW(write_file(path, "newer"), std::runtime_error);
 }
 
