@@ -74,12 +74,13 @@ packages_of_toolchains() {
 # What the programs need; the tests and the training add theirs.
 # Debian 12's packages. What each is for, and its name on other systems: docs/packages.md. A change here belongs there too.
 packages_to_run=(g++ cmake ninja-build pkg-config libeigen3-dev cyclonedds-dev cyclonedds-tools libembree-dev
-  libcli11-dev libdraco-dev libfmt-dev libmeshoptimizer-dev libonnx-dev libpng-dev libprotobuf-dev
-  libssl-dev libtomlplusplus-dev nlohmann-json3-dev)
+  libcli11-dev libdraco-dev libfmt-dev libmeshoptimizer-dev libpng-dev libssl-dev libtomlplusplus-dev
+  nlohmann-json3-dev)
+packages_to_export=("${packages_to_run[@]}" libonnx-dev libprotobuf-dev)
 # The console in the browser: sim/run --watch.
 packages_to_watch=("${packages_to_run[@]}" libcivetweb-dev libjs-dygraphs libjs-three)
 packages_to_train=("${packages_to_run[@]}" libtorch-dev libgloo-dev libopenblas0-pthread)
-packages_to_test=("${packages_to_train[@]}" "${packages_to_watch[@]}" libdnnl-dev libgtest-dev libgmock-dev
+packages_to_test=("${packages_to_train[@]}" "${packages_to_watch[@]}" "${packages_to_export[@]}" libdnnl-dev libgtest-dev libgmock-dev
   chromium clang clang-format git openmpi-bin python3 slurm-wlm valgrind)
 packages_to_fuzz=("${packages_to_run[@]}" clang libcivetweb-dev libclang-rt-dev python3)
 # The flight side only, with GCC's branch counts.

@@ -2,11 +2,13 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,25 +30,39 @@ fs::path program_of(const Verb& verb) {
   return program_path().parent_path() / (std::string("tumblesight-") + verb.name);
 }
 
-bool is_there(const Verb& verb) {
+bool is_built(const Verb& verb) {
   std::error_code error;
   return fs::exists(program_of(verb), error);
 }
 
+// Whether the libraries that it needs were there when this build was configured.
+bool is_in_build(const Verb& verb) {
+  constexpr const char* kVerbsOfBuild[] = {TUMBLESIGHT_VERBS};
+  const auto is_it = [&verb](const char* name) { return std::strcmp(name, verb.name) == 0; };
+  return std::any_of(std::begin(kVerbsOfBuild), std::end(kVerbsOfBuild), is_it);
+}
+
+std::string fault_of(const Verb& verb) {
+  const std::string name = verb.name;
+  if (!is_in_build(verb)) return "this build has no " + name + ": " + remedy_for_absent(verb);
+  if (program_files().installed) return "the program tumblesight-" + name + " is missing: install the package again";
+  const std::string build = program_path().parent_path().parent_path();
+  return name + " is not built yet: " + remedy_for_unbuilt(verb, build) + ", or sim/run " + name;
+}
+
 // Returns only if it fails.
 int start(const Verb& verb, char** argv) {
-  if (!is_there(verb))
-    return report_fault(std::string("this build has no ") + verb.name + ": " + remedy_for_absent(verb));
+  if (!is_built(verb)) return report_fault(fault_of(verb));
   const fs::path program = program_of(verb);
   execv(program.c_str(), argv);
   std::fprintf(stderr, "tumblesight: %s: %s\n", program.c_str(), std::strerror(errno));
   return kFailed;
 }
 
-void add_verbs_that_are_there(CLI::App& app) {
+void add_verbs_of_build(CLI::App& app) {
   std::vector<Verb> absent;
   for (const Verb& verb : verbs()) {
-    if (is_there(verb))
+    if (is_in_build(verb))
       app.add_subcommand(verb.name, verb.summary);
     else
       absent.push_back(verb);
@@ -68,7 +84,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpFormatter>());
   try {
-    add_verbs_that_are_there(app);
+    add_verbs_of_build(app);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return finish_output(app.exit(error));

@@ -53,6 +53,10 @@ std::string remedy_for_absent(const Verb& verb) {
   return remedy;
 }
 
+std::string remedy_for_unbuilt(const Verb& verb, const std::string& build) {
+  return fmt::format("cmake --build {} --target tumblesight-{}", shell_word(build), verb.name);
+}
+
 std::string absent_verbs_text(const std::vector<Verb>& absent) {
   std::string text;
   for (const Verb& verb : absent)

@@ -1,5 +1,6 @@
 // The verbs of `tumblesight`, in the order in which --help lists them. Each is a program of its own beside it,
-// tumblesight-VERB. A build without the libraries of a verb has no such program.
+// tumblesight-VERB. A build has those whose libraries were there when it was configured, and makes the program of
+// a verb when it is asked for it.
 #pragma once
 
 #include <string>
@@ -21,6 +22,8 @@ const Verb* verb_named(const std::string& name);
 
 // What to do about a verb that a build lacks: "install libcivetweb-dev and configure again".
 std::string remedy_for_absent(const Verb& verb);
+// About one whose program is not made yet: the command that makes it. `build`: the build's folder.
+std::string remedy_for_unbuilt(const Verb& verb, const std::string& build);
 
 // A line for each verb that is absent, for the end of the help. Empty without any.
 std::string absent_verbs_text(const std::vector<Verb>& absent);

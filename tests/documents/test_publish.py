@@ -35,6 +35,12 @@ class Tables(unittest.TestCase):
         self.assertEqual(table[4], "| the paper | " + " | ".join(["3.99°, 99 %"] * 4) + " |")
         self.assertEqual(len(table), 5)
 
+    def test_summary_has_the_nominal_means_of_paper_network_and_pose(self):
+        pose = {"mean_within_20_deg": 0.061, "within_20deg": 1.0}
+        rows = [row(c, 1.16, pose) for c in self.publish.CONDITIONS] + [row("nominal", 80.0, pose, effect="plume=0.05")]
+        self.assertEqual(self.publish.summary_table(rows).splitlines()[2:], ["| Magellan | 3.99° | 1.16° | 0.06° |"])
+        self.assertEqual(len(self.publish.summary_table([row("nominal", 1.16)]).splitlines()), 2)
+
     def test_figures_of_the_tree_are_those_of_its_document(self):
         begin, end = (self.publish.MARK.format("figures", word) for word in ("begin", "end"))
         text = self.publish.README.read_text()
@@ -53,8 +59,9 @@ class Tables(unittest.TestCase):
             with self.assertRaises(SystemExit):
                 self.publish.replace_between_marks(path, "figures", "new")
 
-    def test_both_documents_have_their_marks_once(self):
-        for path, name in ((self.publish.README, "figures"), (self.publish.MAIN_README, "accuracy")):
+    def test_documents_have_their_marks_once(self):
+        for path, name in ((self.publish.README, "figures"), (self.publish.EVIDENCE, "accuracy"),
+                           (self.publish.MAIN_README, "accuracy")):
             for word in ("begin", "end"):
                 self.assertEqual(path.read_text().count(self.publish.MARK.format(name, word)), 1, path)
 
