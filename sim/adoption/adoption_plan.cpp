@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "sim/json/json_text.hpp"
-#include "sim/process/input_file.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/input_file.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

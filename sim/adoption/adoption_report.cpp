@@ -17,8 +17,8 @@
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {

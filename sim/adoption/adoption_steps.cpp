@@ -10,8 +10,8 @@
 
 #include "sim/report/page.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sim/surface/target_surface.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

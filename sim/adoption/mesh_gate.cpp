@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "sim/process/program_files.hpp"
+#include "sim/host/program_files.hpp"
 
 namespace tumblesight::sim {
 namespace {

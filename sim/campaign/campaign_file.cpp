@@ -11,8 +11,8 @@
 
 #include "sim/mission/toml_fields.hpp"
 #include "sim/mission/toml_text.hpp"
-#include "sim/terminal/nearest_name.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/nearest_name.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

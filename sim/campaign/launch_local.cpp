@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "sim/campaign/launcher.hpp"
-#include "sim/process/child_process.hpp"
-#include "sim/process/end_with_starter.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/child_process.hpp"
+#include "sim/host/end_with_starter.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "sim/campaign/launcher.hpp"
-#include "sim/process/child_process.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/child_process.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -15,11 +15,11 @@
 #include <thread>
 
 #include "sim/campaign/launcher.hpp"
-#include "sim/process/child_process.hpp"
-#include "sim/process/end_with_starter.hpp"
-#include "sim/terminal/place.hpp"
-#include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/child_process.hpp"
+#include "sim/host/end_with_starter.hpp"
+#include "sim/host/place.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -18,9 +18,9 @@
 #include "gnc/numerics/crc.hpp"
 #include "sim/campaign/sequence_record.hpp"
 #include "sim/json/json_text.hpp"
-#include "sim/process/input_file.hpp"
-#include "sim/terminal/place.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/input_file.hpp"
+#include "sim/host/place.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "sim/cli/mission_arguments.hpp"
 #include "sim/model/model_file.hpp"
-#include "sim/terminal/nearest_name.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/nearest_name.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/targets.hpp"
 

@@ -7,9 +7,9 @@
 
 #include "cmake/version.hpp"
 #include "sim/campaign/experiment_identity.hpp"
-#include "sim/terminal/nearest_name.hpp"
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/nearest_name.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -19,14 +19,14 @@
 #include "sim/cli/evaluation_output.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/verbs.hpp"
-#include "sim/process/end_with_starter.hpp"
-#include "sim/process/program_files.hpp"
+#include "sim/host/end_with_starter.hpp"
+#include "sim/host/program_files.hpp"
 #include "sim/report/campaign_markdown.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -20,7 +20,7 @@
 #include "sim/console/recorded_run.hpp"
 #include "sim/console/ros2_bridge.hpp"
 #include "sim/sil/interruption.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

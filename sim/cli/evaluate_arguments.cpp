@@ -9,7 +9,7 @@
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/symmetry_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
-#include "sim/process/program_files.hpp"
+#include "sim/host/program_files.hpp"
 
 namespace tumblesight::sim {
 namespace {

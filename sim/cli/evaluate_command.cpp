@@ -9,8 +9,8 @@
 #include "sim/cli/interruptible_experiment.hpp"
 #include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/verbs.hpp"
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 
 namespace tumblesight::sim {

@@ -9,9 +9,9 @@
 #include "sim/cli/interruptible_experiment.hpp"
 #include "sim/evaluation/curves.hpp"
 #include "sim/report/results_json.hpp"
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

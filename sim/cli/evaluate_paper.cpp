@@ -9,11 +9,11 @@
 #include "sim/cli/interruptible_experiment.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/experiment/paper_plan.hpp"
-#include "sim/process/program_files.hpp"
+#include "sim/host/program_files.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

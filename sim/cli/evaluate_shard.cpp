@@ -6,8 +6,8 @@
 #include "cmake/version.hpp"
 #include "sim/campaign/shards.hpp"
 #include "sim/cli/evaluate_arguments.hpp"
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

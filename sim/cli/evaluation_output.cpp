@@ -14,8 +14,8 @@
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_tables.hpp"
-#include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

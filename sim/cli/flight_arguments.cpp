@@ -13,13 +13,13 @@
 #include "hal/dds/idl/domain.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
-#include "sim/process/input_file.hpp"
-#include "sim/process/program_files.hpp"
+#include "sim/host/input_file.hpp"
+#include "sim/host/program_files.hpp"
 #include "sim/sil/interruption.hpp"
 #include "sim/sil/run_file.hpp"
 #include "sim/sil/signed_telecommand.hpp"
-#include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 #include "sim/world/scenario/disturbance.hpp"
 
 namespace tumblesight::sim {

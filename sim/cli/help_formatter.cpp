@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 

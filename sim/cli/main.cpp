@@ -19,7 +19,7 @@
 #include "sim/cli/verb_program.hpp"
 #include "sim/cli/verb_table.hpp"
 #include "sim/cli/version_text.hpp"
-#include "sim/process/program_files.hpp"
+#include "sim/host/program_files.hpp"
 
 namespace {
 

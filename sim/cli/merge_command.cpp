@@ -8,7 +8,7 @@
 #include "sim/cli/evaluation_output.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/cli/verbs.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

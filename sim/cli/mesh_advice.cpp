@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "sim/evaluation/chance.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/target/targets.hpp"
 

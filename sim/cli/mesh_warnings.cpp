@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/inspection/mesh_inspection.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {

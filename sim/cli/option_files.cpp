@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "sim/terminal/place.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/place.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 std::string full_path(const std::string& path) {

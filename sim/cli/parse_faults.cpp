@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "sim/terminal/nearest_name.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/nearest_name.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "sim/surface/target_surface.hpp"
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

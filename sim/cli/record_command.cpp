@@ -18,9 +18,9 @@
 #include "sim/recording/truth_file.hpp"
 #include "sim/sil/frames_file.hpp"
 #include "sim/sil/recorded_steps.hpp"
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

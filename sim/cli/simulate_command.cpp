@@ -18,12 +18,12 @@
 #include "sim/experiment/experiment.hpp"
 #include "sim/evaluation/float32_reference.hpp"
 #include "sim/evaluation/statistics.hpp"
-#include "sim/process/program_files.hpp"
+#include "sim/host/program_files.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/sil_report.hpp"
 #include "sim/sil/interruption.hpp"
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/chaser_navigation.hpp"
 
 namespace tumblesight::sim {

@@ -20,7 +20,7 @@
 #include "sim/cli/help_formatter.hpp"
 #include "sim/cli/parse_faults.hpp"
 #include "sim/cli/version_text.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/cli/help_formatter.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

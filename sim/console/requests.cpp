@@ -18,7 +18,7 @@
 #include "sim/sil/request_line.hpp"
 #include "sim/sil/run_control.hpp"
 #include "sim/sil/telecommand_table.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

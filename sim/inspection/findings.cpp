@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

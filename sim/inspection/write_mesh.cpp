@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "sim/terminal/nearest_name.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/nearest_name.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "sim/process/input_file.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/input_file.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "gnc/rcnn/model_format.hpp"
-#include "sim/process/input_file.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/input_file.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -3,7 +3,7 @@
 #include "sim/onnx/image_model.hpp"
 #include "sim/onnx/onnx_model.hpp"
 #include "sim/onnx/step_model.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 

@@ -14,7 +14,7 @@
 
 #include "gnc/numerics/crc.hpp"
 #include "sim/recording/mcap_format.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "sim/recording/mcap_format.hpp"
-#include "sim/terminal/place.hpp"
+#include "sim/host/place.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "gnc/numerics/crc.hpp"
-#include "sim/process/input_file.hpp"
+#include "sim/host/input_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "sim/report/svg.hpp"
-#include "sim/terminal/table.hpp"
+#include "sim/host/table.hpp"
 
 namespace tumblesight::sim {
 namespace {

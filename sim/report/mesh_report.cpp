@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/inspection/findings.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

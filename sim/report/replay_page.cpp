@@ -8,7 +8,7 @@
 #include "sim/report/page.hpp"
 #include "sim/report/replay_report.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {

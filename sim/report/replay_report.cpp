@@ -12,7 +12,7 @@
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/sil_report.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {

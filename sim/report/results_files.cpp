@@ -4,7 +4,7 @@
 
 #include "sim/report/results_columns.hpp"
 #include "sim/report/results_json.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

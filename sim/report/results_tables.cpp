@@ -9,7 +9,7 @@
 #include "sim/evaluation/disturbed_runs.hpp"
 #include "sim/evaluation/pose_goals.hpp"
 #include "sim/evaluation/statistics.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -11,7 +11,7 @@
 #include "sim/evaluation/statistics.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/sil/fault_names.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <variant>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/sensor/effects.hpp"
 
 namespace tumblesight::sim {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/process/child_process.hpp"
+#include "sim/host/child_process.hpp"
 
 namespace tumblesight::sim {
 

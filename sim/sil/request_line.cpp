@@ -8,7 +8,7 @@
 #include "hal/messages/command_packet.hpp"
 #include "sim/json/json_text.hpp"
 #include "sim/sil/telecommand_table.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

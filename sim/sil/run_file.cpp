@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "hal/dds/idl/icd_hash.hpp"
-#include "sim/process/input_file.hpp"
+#include "sim/host/input_file.hpp"
 
 namespace tumblesight::sim {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/process/input_file.hpp"
+#include "sim/host/input_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

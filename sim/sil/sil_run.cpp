@@ -14,7 +14,7 @@
 #include "sim/sil/sil_session.hpp"
 #include "sim/sil/simulated_steps.hpp"
 #include "sim/sil/trace.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

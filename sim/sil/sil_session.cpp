@@ -12,7 +12,7 @@
 #include "hal/dds/idl/wait_limit.hpp"
 #include "sim/sil/interruption.hpp"
 #include "sim/sil/step_samples.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -10,7 +10,7 @@
 #include "hal/messages/memory_dump.hpp"
 #include "sim/sil/fault_names.hpp"
 #include "sim/sil/function_names.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -21,7 +21,7 @@
 #endif
 #include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
 
-#include "sim/process/end_with_starter.hpp"
+#include "sim/host/end_with_starter.hpp"
 #include "sim/training/rank_store.hpp"
 #include "sim/training/shared_slots.hpp"
 

@@ -19,9 +19,9 @@
 #include <thread>
 #include <vector>
 
-#include "sim/process/child_process.hpp"
-#include "sim/process/end_with_starter.hpp"
-#include "sim/process/program_files.hpp"
+#include "sim/host/child_process.hpp"
+#include "sim/host/end_with_starter.hpp"
+#include "sim/host/program_files.hpp"
 #include "sim/training/rank_place.hpp"
 
 namespace tumblesight::sim {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/terminal/progress.hpp"
+#include "sim/host/progress.hpp"
 #include "sim/training/checkpoint.hpp"
 #include "sim/training/ranks.hpp"
 #include "sim/training/training_log.hpp"

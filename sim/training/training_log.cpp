@@ -7,7 +7,7 @@
 
 #include "sim/report/charts.hpp"
 #include "sim/report/colours.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

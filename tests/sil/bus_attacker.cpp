@@ -18,7 +18,7 @@
 #include "hal/dds/idl/icd_hash.hpp"
 #include "hal/dds/idl/step_content.hpp"
 #include "hal/dds/idl/topics.hpp"
-#include "sim/process/end_with_starter.hpp"
+#include "sim/host/end_with_starter.hpp"
 #include "sim/sil/signed_telecommand.hpp"
 
 namespace {

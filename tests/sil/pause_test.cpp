@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "hal/dds/idl/topics.hpp"
-#include "sim/process/child_process.hpp"
+#include "sim/host/child_process.hpp"
 #include "sim/sil/flight_process.hpp"
 #include "sim/sil/run_announcement.hpp"
 #include "tests/sil/sil_test_support.hpp"

@@ -9,7 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "sim/terminal/nearest_name.hpp"
+#include "sim/host/nearest_name.hpp"
 #include "sim/world/sensor/effect_functions.hpp"
 #include "sim/world/sensor/frame_truth.hpp"
 #include "sim/world/sensor/sensor_settings.hpp"

@@ -14,10 +14,10 @@
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/lidar/frame_rays.hpp"
 #include "gnc/numerics/crc.hpp"
-#include "sim/process/input_file.hpp"
-#include "sim/process/program_files.hpp"
-#include "sim/terminal/nearest_name.hpp"
-#include "sim/terminal/text.hpp"
+#include "sim/host/input_file.hpp"
+#include "sim/host/program_files.hpp"
+#include "sim/host/nearest_name.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {

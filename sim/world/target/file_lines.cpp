@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

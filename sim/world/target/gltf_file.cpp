@@ -11,7 +11,7 @@
 #include <system_error>
 #include <vector>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/mesh_file.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/target/gltf_data.hpp"
 #include "sim/world/target/gltf_draco.hpp"
 #include "sim/world/target/gltf_nodes.hpp"

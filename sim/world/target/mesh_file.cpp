@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/process/input_file.hpp"
+#include "sim/host/input_file.hpp"
 #include "sim/world/target/content_kind.hpp"
 #include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/gltf_surface.hpp"

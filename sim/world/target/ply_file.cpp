@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/target/cut_off.hpp"
 #include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/mesh_builder.hpp"

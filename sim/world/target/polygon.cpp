@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/math/angles.hpp"
 #include "sim/world/target/mesh_file.hpp"
 

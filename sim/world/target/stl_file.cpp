@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "sim/world/target/file_lines.hpp"
 #include "sim/world/target/mesh_builder.hpp"
 

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "gnc/numerics/crc.hpp"
-#include "sim/process/input_file.hpp"
-#include "sim/process/program_files.hpp"
-#include "sim/terminal/nearest_name.hpp"
+#include "sim/host/input_file.hpp"
+#include "sim/host/program_files.hpp"
+#include "sim/host/nearest_name.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {

@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 #include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {

@@ -22,7 +22,7 @@ void append_to_file(const std::string& path, std::string_view content);
 // such a file. Empty if it writes to `path` directly.
 std::string partial_path(const std::string& path);
 
-// Empty if write_file() may write there. Otherwise what another user has put there (sim/terminal/place.hpp),
+// Empty if write_file() may write there. Otherwise what another user has put there (sim/host/place.hpp),
 // or that nobody reads the pipe that is there, and what to do.
 std::string fault_of_place(const std::string& path);
 

@@ -1,4 +1,4 @@
-#include "sim/process/input_file.hpp"
+#include "sim/host/input_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/write_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/terminal/place.hpp"
+#include "sim/host/place.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/process/child_process.hpp"
+#include "sim/host/child_process.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/terminal/progress.hpp"
-#include "sim/terminal/table.hpp"
-#include "sim/terminal/text.hpp"
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/table.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {

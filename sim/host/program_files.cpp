@@ -1,4 +1,4 @@
-#include "sim/process/program_files.hpp"
+#include "sim/host/program_files.hpp"
 
 namespace tumblesight::sim {
 namespace {

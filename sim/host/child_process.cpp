@@ -1,4 +1,4 @@
-#include "sim/process/child_process.hpp"
+#include "sim/host/child_process.hpp"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "sim/terminal/place.hpp"
+#include "sim/host/place.hpp"
 
 extern char** environ;
 

@@ -1,4 +1,4 @@
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 #include <fmt/chrono.h>
 

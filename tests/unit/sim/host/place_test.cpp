@@ -1,4 +1,4 @@
-#include "sim/terminal/place.hpp"
+#include "sim/host/place.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/terminal/write_file.hpp"
+#include "sim/host/write_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace tumblesight::sim {

@@ -1,10 +1,10 @@
-#include "sim/terminal/table.hpp"
+#include "sim/host/table.hpp"
 
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
-#include "sim/terminal/text.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -1,5 +1,5 @@
 // Input files: what is refused unread, in bounded time and memory, and what counts as a file.
-#include "sim/process/input_file.hpp"
+#include "sim/host/input_file.hpp"
 
 #include <gtest/gtest.h>
 

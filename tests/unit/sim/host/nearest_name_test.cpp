@@ -1,4 +1,4 @@
-#include "sim/terminal/nearest_name.hpp"
+#include "sim/host/nearest_name.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/process/end_with_starter.hpp"
+#include "sim/host/end_with_starter.hpp"
 
 #include <signal.h>
 #include <sys/prctl.h>

@@ -1,4 +1,4 @@
-#include "sim/terminal/place.hpp"
+#include "sim/host/place.hpp"
 
 #include <fcntl.h>
 #include <linux/magic.h>
