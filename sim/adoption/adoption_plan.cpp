@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "sim/json/json_text.hpp"
 #include "sim/host/input_file.hpp"
 #include "sim/host/write_file.hpp"
+#include "sim/json/json_text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 #include "sim/inspection/six_views.hpp"
 #include "sim/report/charts.hpp"
 #include "sim/report/colours.hpp"
@@ -17,8 +19,6 @@
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/host/text.hpp"
-#include "sim/host/write_file.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {

@@ -8,10 +8,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "sim/report/page.hpp"
-#include "sim/report/svg.hpp"
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"
+#include "sim/report/page.hpp"
+#include "sim/report/svg.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <exception>
 #include <utility>
 
-#include "sim/surface/target_surface.hpp"
 #include "sim/host/text.hpp"
+#include "sim/surface/target_surface.hpp"
 
 namespace tumblesight::sim {
 namespace {

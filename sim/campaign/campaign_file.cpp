@@ -9,10 +9,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "sim/mission/toml_fields.hpp"
-#include "sim/mission/toml_text.hpp"
 #include "sim/host/nearest_name.hpp"
 #include "sim/host/text.hpp"
+#include "sim/mission/toml_fields.hpp"
+#include "sim/mission/toml_text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -17,10 +17,10 @@
 
 #include "gnc/numerics/crc.hpp"
 #include "sim/campaign/sequence_record.hpp"
-#include "sim/json/json_text.hpp"
 #include "sim/host/input_file.hpp"
 #include "sim/host/place.hpp"
 #include "sim/host/text.hpp"
+#include "sim/json/json_text.hpp"
 
 namespace tumblesight::sim {
 namespace {

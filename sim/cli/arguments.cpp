@@ -11,9 +11,9 @@
 #include <stdexcept>
 
 #include "sim/cli/mission_arguments.hpp"
-#include "sim/model/model_file.hpp"
 #include "sim/host/nearest_name.hpp"
 #include "sim/host/text.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/targets.hpp"
 

@@ -12,11 +12,11 @@
 #include "sim/cli/bench_images.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
-#include "sim/model/model_file.hpp"
 #include "sim/host/program_files.hpp"
 #include "sim/host/table.hpp"
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/target/targets.hpp"
 

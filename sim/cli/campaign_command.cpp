@@ -21,12 +21,12 @@
 #include "sim/cli/verbs.hpp"
 #include "sim/host/end_with_starter.hpp"
 #include "sim/host/program_files.hpp"
-#include "sim/report/campaign_markdown.hpp"
-#include "sim/report/results_files.hpp"
-#include "sim/report/results_tables.hpp"
 #include "sim/host/progress.hpp"
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"
+#include "sim/report/campaign_markdown.hpp"
+#include "sim/report/results_files.hpp"
+#include "sim/report/results_tables.hpp"
 
 namespace tumblesight::sim {
 namespace {

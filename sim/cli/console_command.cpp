@@ -19,7 +19,7 @@
 #include "sim/console/console_server.hpp"
 #include "sim/console/recorded_run.hpp"
 #include "sim/console/ros2_bridge.hpp"
-#include "sim/sil/interruption.hpp"
+#include "sim/host/interruption.hpp"
 #include "sim/host/text.hpp"
 
 namespace tumblesight::sim {

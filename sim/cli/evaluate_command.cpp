@@ -9,6 +9,7 @@
 #include "sim/cli/interruptible_experiment.hpp"
 #include "sim/cli/mesh_advice.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/host/interruption.hpp"
 #include "sim/host/progress.hpp"
 #include "sim/host/text.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
@@ -21,7 +22,7 @@ namespace {
 [[noreturn]] void report_interruption(const EvaluateArguments& arguments, const ExperimentSettings& settings,
                                       ExperimentFigures& figures, Results& results, std::size_t sequences) {
   const std::size_t wanted = sequences_of(settings);
-  const int signal = SignalNote::signal();
+  const int signal = Interruption::signal();
   if (runs_of(settings).size() == 1) {
     fmt::print("\n  The figures so far, of {} of the {}:\n", sequences, counted(wanted, "sequence"));
     results.subjects.push_back(figures.finish());
@@ -61,7 +62,7 @@ void evaluate(const EvaluateArguments& arguments) {
   ProgressBar bar("evaluating", "steps", steps_of(settings));
   ExperimentFigures figures(subject, settings);
   std::size_t sequences = 0;
-  const SignalNote note;
+  const Interruption interruption;
   try {
     run_until_signal(subject, settings, figures, sequences, [&](std::uint64_t done) { bar.update(done); });
   } catch (const Interrupted&) {

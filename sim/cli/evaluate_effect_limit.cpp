@@ -8,10 +8,11 @@
 #include "sim/cli/evaluation_output.hpp"
 #include "sim/cli/interruptible_experiment.hpp"
 #include "sim/evaluation/curves.hpp"
-#include "sim/report/results_json.hpp"
+#include "sim/host/interruption.hpp"
 #include "sim/host/progress.hpp"
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"
+#include "sim/report/results_json.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -61,8 +62,8 @@ nlohmann::ordered_json effect_limits_json(const Subject& subject, const Experime
   print_message(fmt::format(
       "tumblesight: interrupted by signal {}; what was found of the strengths so far stands above, "
       "no file was written, and the same command begins anew",
-      SignalNote::signal()));
-  throw CLI::RuntimeError(128 + SignalNote::signal());
+      Interruption::signal()));
+  throw CLI::RuntimeError(128 + Interruption::signal());
 }
 
 }  // namespace
@@ -78,7 +79,7 @@ void evaluate_effect_limit(const EvaluateArguments& arguments) {
         "--effect-limit", fmt::format("searches the strength of {0}; leave {0} out of --effect", row.name));
   const Subject subject = checked_subject(arguments, settings);
   announce(subject, settings);
-  const SignalNote note;
+  const Interruption interruption;
   const auto limits = effect_limits(row, [&](double strength) {
     ExperimentSettings trial = settings;
     trial.effects.*row.strength = strength;

@@ -9,11 +9,12 @@
 #include "sim/cli/interruptible_experiment.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/experiment/paper_plan.hpp"
+#include "sim/host/interruption.hpp"
 #include "sim/host/program_files.hpp"
-#include "sim/report/results_files.hpp"
-#include "sim/report/results_tables.hpp"
 #include "sim/host/progress.hpp"
 #include "sim/host/text.hpp"
+#include "sim/report/results_files.hpp"
+#include "sim/report/results_tables.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -81,8 +82,8 @@ void announce(const PaperPlan& plan, const EvaluateArguments& arguments, const s
   print_message(
       fmt::format("tumblesight: interrupted by signal {} after {} of the {}; {}, and the same command begins "
                   "anew. A campaign can be continued: see tumblesight campaign --help",
-                  SignalNote::signal(), finished, counted(all, "subject"), kept));
-  throw CLI::RuntimeError(128 + SignalNote::signal());
+                  Interruption::signal(), finished, counted(all, "subject"), kept));
+  throw CLI::RuntimeError(128 + Interruption::signal());
 }
 
 }  // namespace
@@ -109,7 +110,7 @@ void evaluate_paper(const EvaluateArguments& arguments) {
   Results results{arguments.scenario.seed, command_of(arguments), local_time_text(), plan.notes, {}};
   ProgressBar bar("evaluating", "steps", steps);
   std::uint64_t done = 0;
-  const SignalNote note;
+  const Interruption interruption;
   for (const Job& job : jobs) {
     ExperimentFigures figures(job.subject, job.settings);
     std::size_t sequences = 0;

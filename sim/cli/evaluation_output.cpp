@@ -11,11 +11,11 @@
 #include "sim/cli/symmetry_arguments.hpp"
 #include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/checks.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_tables.hpp"
-#include "sim/host/text.hpp"
-#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

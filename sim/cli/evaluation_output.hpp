@@ -5,8 +5,8 @@
 #include <string>
 
 #include "sim/cli/arguments.hpp"
-#include "sim/experiment/experiment.hpp"
 #include "sim/evaluation/results.hpp"
+#include "sim/experiment/experiment.hpp"
 
 namespace tumblesight::sim {
 

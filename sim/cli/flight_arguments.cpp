@@ -14,12 +14,12 @@
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/exit_status.hpp"
 #include "sim/host/input_file.hpp"
+#include "sim/host/interruption.hpp"
 #include "sim/host/program_files.hpp"
-#include "sim/sil/interruption.hpp"
-#include "sim/sil/run_file.hpp"
-#include "sim/sil/signed_telecommand.hpp"
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"
+#include "sim/operations/signed_telecommand.hpp"
+#include "sim/sil/run_file.hpp"
 #include "sim/world/scenario/disturbance.hpp"
 
 namespace tumblesight::sim {

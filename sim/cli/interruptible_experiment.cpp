@@ -1,39 +1,12 @@
 #include "sim/cli/interruptible_experiment.hpp"
 
-#include <csignal>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "sim/host/interruption.hpp"
+
 namespace tumblesight::sim {
-namespace {
-
-volatile std::sig_atomic_t signal_that_came = 0;
-
-void note(int signal) {
-  const auto before = std::signal(signal, [](int came) {
-    signal_that_came = came;
-    std::signal(came, SIG_DFL);
-  });
-  if (before == SIG_IGN) std::signal(signal, SIG_IGN);
-}
-
-}  // namespace
-
-SignalNote::SignalNote() {
-  signal_that_came = 0;
-  for (const int signal : {SIGINT, SIGTERM}) note(signal);
-}
-
-SignalNote::~SignalNote() {
-  for (const int signal : {SIGINT, SIGTERM})
-    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
-}
-
-int SignalNote::signal() {
-  return signal_that_came;
-}
-
 std::size_t sequences_of(const ExperimentSettings& settings) {
   std::size_t sequences = 0;
   for (const ExperimentRun& run : runs_of(settings)) sequences += run.sequences;
@@ -51,7 +24,7 @@ void run_until_signal(const Subject& subject, const ExperimentSettings& settings
   const auto take = [&](std::size_t run, SequenceResult&& result) {
     figures.add(run, std::move(result));
     ++sequences;
-    if (signal_that_came != 0 && sequences < wanted) throw Interrupted();
+    if (Interruption::signal() != 0 && sequences < wanted) throw Interrupted();
   };
   run_chosen(subject, settings, all, take, progress);
 }

@@ -10,18 +10,6 @@
 
 namespace tumblesight::sim {
 
-// While an object lives, SIGINT and SIGTERM are noted. A second one ends the program at once. Signals that
-// are ignored stay ignored. One object at a time.
-class SignalNote {
- public:
-  SignalNote();
-  ~SignalNote();
-  SignalNote(const SignalNote&) = delete;
-  SignalNote& operator=(const SignalNote&) = delete;
-
-  static int signal();  // that came last; 0 without one
-};
-
 struct Interrupted : std::exception {
   const char* what() const noexcept override { return "interrupted"; }
 };
@@ -29,7 +17,7 @@ struct Interrupted : std::exception {
 std::size_t sequences_of(const ExperimentSettings& settings);
 
 // As run_experiment(). `figures` takes every sequence, and `sequences` counts them. Throws Interrupted after
-// a sequence, except the last one, if a signal has come.
+// a sequence, except the last one, if a signal has come (Interruption).
 void run_until_signal(const Subject& subject, const ExperimentSettings& settings, ExperimentFigures& figures,
                       std::size_t& sequences, const std::function<void(std::uint64_t)>& progress);
 

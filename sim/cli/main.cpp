@@ -45,7 +45,8 @@ bool is_in_build(const Verb& verb) {
 std::string fault_of(const Verb& verb) {
   const std::string name = verb.name;
   if (!is_in_build(verb)) return "this build has no " + name + ": " + remedy_for_absent(verb);
-  if (program_files().installed) return "the program tumblesight-" + name + " is missing: install the package again";
+  if (program_files().installed)
+    return "the program tumblesight-" + name + " is missing: install the package again";
   const std::string build = program_path().parent_path().parent_path();
   return name + " is not built yet: " + remedy_for_unbuilt(verb, build) + ", or sim/run " + name;
 }

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/inspection/mesh_inspection.hpp"
 #include "sim/host/text.hpp"
+#include "sim/inspection/mesh_inspection.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "sim/surface/target_surface.hpp"
 #include "sim/host/progress.hpp"
 #include "sim/host/write_file.hpp"
+#include "sim/surface/target_surface.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -13,14 +13,14 @@
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
+#include "sim/host/write_file.hpp"
 #include "sim/recording/make_recording.hpp"
 #include "sim/recording/recording_file.hpp"
 #include "sim/recording/truth_file.hpp"
 #include "sim/sil/frames_file.hpp"
 #include "sim/sil/recorded_steps.hpp"
-#include "sim/host/progress.hpp"
-#include "sim/host/text.hpp"
-#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

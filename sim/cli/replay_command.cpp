@@ -15,15 +15,15 @@
 #include "sim/cli/mission_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/cli/verbs.hpp"
+#include "sim/host/interruption.hpp"
 #include "sim/host/program_files.hpp"
+#include "sim/host/progress.hpp"
+#include "sim/host/text.hpp"
 #include "sim/recording/recording_file.hpp"
 #include "sim/report/replay_report.hpp"
 #include "sim/report/sil_report.hpp"
-#include "sim/sil/interruption.hpp"
 #include "sim/sil/recorded_steps.hpp"
 #include "sim/sil/run_steps.hpp"
-#include "sim/host/progress.hpp"
-#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

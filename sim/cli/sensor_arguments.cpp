@@ -11,8 +11,8 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "sim/cli/arguments.hpp"
-#include "sim/model/model_file.hpp"
 #include "sim/host/write_file.hpp"
+#include "sim/model/model_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

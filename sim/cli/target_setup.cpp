@@ -12,9 +12,9 @@
 
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/evaluation/results.hpp"
-#include "sim/model/model_file.hpp"
 #include "sim/host/program_files.hpp"
 #include "sim/host/text.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 #include "sim/world/target/targets.hpp"
 

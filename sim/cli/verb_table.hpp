@@ -1,6 +1,6 @@
-// The verbs of `tumblesight`, in the order in which --help lists them. Each is a program of its own beside it,
-// tumblesight-VERB. A build has those whose libraries were there when it was configured, and makes the program of
-// a verb when it is asked for it.
+// The verbs of `tumblesight`, in the order in which --help lists them. Each is a program of its own beside
+// it, tumblesight-VERB. A build has those whose libraries were there when it was configured, and makes the
+// program of a verb when it is asked for it.
 #pragma once
 
 #include <string>

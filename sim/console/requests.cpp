@@ -12,13 +12,13 @@
 #include "sim/console/little_endian.hpp"
 #include "sim/console/page_files.hpp"
 #include "sim/console/step_json.hpp"
-#include "sim/json/json_text.hpp"
-#include "sim/sil/fault_table.hpp"
-#include "sim/sil/function_names.hpp"
-#include "sim/sil/request_line.hpp"
-#include "sim/sil/run_control.hpp"
-#include "sim/sil/telecommand_table.hpp"
 #include "sim/host/text.hpp"
+#include "sim/json/json_text.hpp"
+#include "sim/operations/fault_table.hpp"
+#include "sim/operations/function_names.hpp"
+#include "sim/operations/request_line.hpp"
+#include "sim/operations/telecommand_table.hpp"
+#include "sim/sil/run_control.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/message_fields.hpp"
-#include "sim/sil/fault_names.hpp"
-#include "sim/sil/function_names.hpp"
+#include "sim/operations/fault_names.hpp"
+#include "sim/operations/function_names.hpp"
 
 namespace tumblesight::sim {
 namespace {

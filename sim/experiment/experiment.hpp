@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/experiment/experiment_runs.hpp"
 #include "sim/evaluation/results.hpp"
+#include "sim/experiment/experiment_runs.hpp"
 #include "sim/experiment/sequence_result.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "sim/host/nearest_name.hpp"
 #include "sim/mission/toml_fields.hpp"
 #include "sim/mission/toml_text.hpp"
-#include "sim/host/nearest_name.hpp"
 
 namespace tumblesight::sim {
 namespace {

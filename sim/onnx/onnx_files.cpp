@@ -1,9 +1,9 @@
 #include "sim/onnx/onnx_files.hpp"
 
+#include "sim/host/write_file.hpp"
 #include "sim/onnx/image_model.hpp"
 #include "sim/onnx/onnx_model.hpp"
 #include "sim/onnx/step_model.hpp"
-#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 

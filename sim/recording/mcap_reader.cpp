@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "gnc/numerics/crc.hpp"
-#include "sim/recording/mcap_format.hpp"
 #include "sim/host/text.hpp"
+#include "sim/recording/mcap_format.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/recording/mcap_format.hpp"
 #include "sim/host/place.hpp"
+#include "sim/recording/mcap_format.hpp"
 
 namespace tumblesight::sim {
 namespace {

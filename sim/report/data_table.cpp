@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/report/svg.hpp"
 #include "sim/host/table.hpp"
+#include "sim/report/svg.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sim/inspection/findings.hpp"
 #include "sim/host/text.hpp"
+#include "sim/inspection/findings.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "sim/evaluation/statistics.hpp"
+#include "sim/host/text.hpp"
 #include "sim/report/charts.hpp"
 #include "sim/report/colours.hpp"
 #include "sim/report/page.hpp"
 #include "sim/report/replay_report.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/host/text.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {

@@ -10,9 +10,9 @@
 #include "gnc/lidar/target_selection.hpp"
 #include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/statistics.hpp"
+#include "sim/host/text.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/sil_report.hpp"
-#include "sim/host/text.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {

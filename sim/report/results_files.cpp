@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "sim/host/write_file.hpp"
 #include "sim/report/results_columns.hpp"
 #include "sim/report/results_json.hpp"
-#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

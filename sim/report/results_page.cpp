@@ -4,13 +4,13 @@
 #include "sim/evaluation/checks.hpp"
 #include "sim/evaluation/pose_goals.hpp"
 #include "sim/evaluation/statistics.hpp"
+#include "sim/host/text.hpp"
 #include "sim/report/colours.hpp"
 #include "sim/report/error_figures.hpp"
 #include "sim/report/page.hpp"
 #include "sim/report/results_files.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

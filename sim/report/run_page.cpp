@@ -7,10 +7,10 @@
 #include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/evaluation/statistics.hpp"
+#include "sim/host/text.hpp"
 #include "sim/report/page.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/svg.hpp"
-#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -9,9 +9,9 @@
 #include "hal/dds/idl/topics.hpp"
 #include "hal/messages/event_text.hpp"
 #include "sim/evaluation/statistics.hpp"
-#include "sim/report/results_json.hpp"
-#include "sim/sil/fault_names.hpp"
 #include "sim/host/text.hpp"
+#include "sim/operations/fault_names.hpp"
+#include "sim/report/results_json.hpp"
 
 namespace tumblesight::sim {
 namespace {

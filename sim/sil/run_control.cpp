@@ -16,7 +16,7 @@
 #include <thread>
 #include <utility>
 
-#include "sim/sil/request_line.hpp"
+#include "sim/operations/request_line.hpp"
 #include "sim/sil/runtime_folder.hpp"
 
 namespace tumblesight::sim {

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "sim/operations/signed_telecommand.hpp"
 #include "sim/sil/failure.hpp"
 #include "sim/sil/frame_faults.hpp"
 #include "sim/sil/runtime_folder.hpp"
-#include "sim/sil/signed_telecommand.hpp"
 #include "sim/sil/step_source.hpp"
 
 namespace tumblesight::sim {

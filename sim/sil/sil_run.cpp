@@ -7,14 +7,14 @@
 #include <optional>
 #include <utility>
 
-#include "sim/sil/fault_names.hpp"
+#include "sim/host/text.hpp"
+#include "sim/operations/fault_names.hpp"
+#include "sim/operations/function_names.hpp"
 #include "sim/sil/frame_faults.hpp"
-#include "sim/sil/function_names.hpp"
 #include "sim/sil/run_control.hpp"
 #include "sim/sil/sil_session.hpp"
 #include "sim/sil/simulated_steps.hpp"
 #include "sim/sil/trace.hpp"
-#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <thread>
 
 #include "hal/dds/idl/icd_hash.hpp"
 #include "hal/dds/idl/step_content.hpp"
 #include "hal/dds/idl/wait_limit.hpp"
-#include "sim/sil/interruption.hpp"
-#include "sim/sil/step_samples.hpp"
+#include "sim/host/interruption.hpp"
 #include "sim/host/text.hpp"
+#include "sim/sil/step_samples.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -24,6 +25,14 @@ using hal::dds::WaitLimit;
 constexpr auto kPoll = 20ms;
 constexpr auto kLook = 200ms;
 constexpr double kEndGrace_s = 3.0;
+
+// Throws SilFailure after a signal.
+void require_not_interrupted() {
+  const int signal = Interruption::signal();
+  if (signal == 0) return;
+  throw SilFailure(std::string("it was interrupted by signal ") + std::to_string(signal) + " (" +
+                   strsignal(signal) + ")");
+}
 
 std::uint64_t now_ns() {
   return static_cast<std::uint64_t>(

@@ -18,6 +18,7 @@
 #include "hal/dds/idl/run_secret.hpp"
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/mode.hpp"
+#include "sim/operations/signed_telecommand.hpp"
 #include "sim/sil/answer_check.hpp"
 #include "sim/sil/answer_collector.hpp"
 #include "sim/sil/domain_lease.hpp"
@@ -25,7 +26,6 @@
 #include "sim/sil/flight_process.hpp"
 #include "sim/sil/run_announcement.hpp"
 #include "sim/sil/run_recorder.hpp"
-#include "sim/sil/signed_telecommand.hpp"
 #include "sim/sil/sil_run.hpp"
 #include "sim/sil/simulator_endpoints.hpp"
 

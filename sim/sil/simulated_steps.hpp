@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
-#include "sim/sil/scene_faults.hpp"
+#include "sim/operations/scene_faults.hpp"
 #include "sim/sil/step_source.hpp"
 #include "sim/world/frame_renderer.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "sim/sil/fault_table.hpp"
+#include "sim/operations/fault_table.hpp"
 #include "sim/sil/sil_session.hpp"
 
 namespace tumblesight::sim {

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "sim/host/write_file.hpp"
 #include "sim/report/charts.hpp"
 #include "sim/report/colours.hpp"
-#include "sim/host/write_file.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -19,7 +19,7 @@
 #include "hal/dds/idl/step_content.hpp"
 #include "hal/dds/idl/topics.hpp"
 #include "sim/host/end_with_starter.hpp"
-#include "sim/sil/signed_telecommand.hpp"
+#include "sim/operations/signed_telecommand.hpp"
 
 namespace {
 

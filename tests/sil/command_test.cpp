@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "sim/sil/model_upload.hpp"
+#include "sim/operations/model_upload.hpp"
 #include "tests/sil/sil_test_support.hpp"
 #include "tests/support/depacketizer.hpp"
 #include "tests/support/test_models.hpp"

@@ -1,5 +1,5 @@
 // Faults as a person gives them.
-#include "sim/sil/fault_table.hpp"
+#include "sim/operations/fault_table.hpp"
 
 #include <gtest/gtest.h>
 

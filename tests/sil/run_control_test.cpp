@@ -13,9 +13,9 @@
 #include <future>
 #include <thread>
 
+#include "sim/operations/request_line.hpp"
 #include "sim/sil/domain_lease.hpp"
 #include "sim/sil/failure.hpp"
-#include "sim/sil/request_line.hpp"
 #include "sim/sil/runtime_folder.hpp"
 #include "tests/sil/sil_test_support.hpp"
 

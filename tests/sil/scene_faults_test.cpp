@@ -1,6 +1,6 @@
 // What the simulated sensor sees with faults that are put into a run.
 // Verifies TS-SIL-198.
-#include "sim/sil/scene_faults.hpp"
+#include "sim/operations/scene_faults.hpp"
 
 #include <gtest/gtest.h>
 

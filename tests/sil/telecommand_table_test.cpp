@@ -1,5 +1,5 @@
 // Telecommands as a person gives them.
-#include "sim/sil/telecommand_table.hpp"
+#include "sim/operations/telecommand_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "sim/sil/function_names.hpp"
+#include "sim/operations/function_names.hpp"
 
 namespace tumblesight::sim {
 namespace {

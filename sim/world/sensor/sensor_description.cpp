@@ -15,8 +15,8 @@
 #include "gnc/lidar/frame_rays.hpp"
 #include "gnc/numerics/crc.hpp"
 #include "sim/host/input_file.hpp"
-#include "sim/host/program_files.hpp"
 #include "sim/host/nearest_name.hpp"
+#include "sim/host/program_files.hpp"
 #include "sim/host/text.hpp"
 #include "sim/world/math/angles.hpp"
 

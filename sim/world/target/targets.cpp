@@ -8,8 +8,8 @@
 
 #include "gnc/numerics/crc.hpp"
 #include "sim/host/input_file.hpp"
-#include "sim/host/program_files.hpp"
 #include "sim/host/nearest_name.hpp"
+#include "sim/host/program_files.hpp"
 #include "sim/world/target/shipped_meshes.hpp"
 
 namespace tumblesight::sim {

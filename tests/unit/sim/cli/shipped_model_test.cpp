@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "sim/cli/target_setup.hpp"
-#include "sim/experiment/monte_carlo.hpp"
 #include "sim/evaluation/results.hpp"
+#include "sim/experiment/monte_carlo.hpp"
 #include "sim/experiment/shipped_figures.hpp"
 #include "sim/model/model_file.hpp"
 #include "tests/unit/sim/cli/run_tumblesight.hpp"

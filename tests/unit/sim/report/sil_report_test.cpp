@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "sim/evaluation/curves.hpp"
-#include "sim/sil/fault_names.hpp"
+#include "sim/operations/fault_names.hpp"
 #include "tests/unit/sim/report/markup_checks.hpp"
 
 namespace tumblesight::sim {

@@ -1,4 +1,4 @@
-#include "sim/sil/fault_names.hpp"
+#include "sim/operations/fault_names.hpp"
 
 #include <array>
 #include <cstddef>

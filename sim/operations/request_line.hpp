@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "sim/sil/fault_table.hpp"
-#include "sim/sil/signed_telecommand.hpp"
+#include "sim/operations/fault_table.hpp"
+#include "sim/operations/signed_telecommand.hpp"
 
 namespace tumblesight::sim {
 

@@ -1,4 +1,4 @@
-#include "sim/sil/model_upload.hpp"
+#include "sim/operations/model_upload.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,13 +1,13 @@
 // The ground's limits of a telecommand are those of flight: what flight accepts can be sent, and what the
 // ground sends is not refused for a value that the ground could have known.
-#include "sim/sil/telecommand_table.hpp"
+#include "sim/operations/telecommand_table.hpp"
 
 #include <string>
 #include <vector>
 
 #include "fsw/app/command_table.hpp"
 #include "fsw/app/parameter_table.hpp"
-#include "sim/sil/function_names.hpp"
+#include "sim/operations/function_names.hpp"
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
 namespace tumblesight::fsw {

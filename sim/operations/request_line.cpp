@@ -1,4 +1,4 @@
-#include "sim/sil/request_line.hpp"
+#include "sim/operations/request_line.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "hal/messages/command_packet.hpp"
-#include "sim/json/json_text.hpp"
-#include "sim/sil/telecommand_table.hpp"
 #include "sim/host/text.hpp"
+#include "sim/json/json_text.hpp"
+#include "sim/operations/telecommand_table.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -1,5 +1,6 @@
-// Interruption: while an object lives, SIGINT, SIGTERM and SIGHUP end the SIL run, and what was done is
-// reported. A second signal of the kind ends the program at once. Signals that are ignored stay ignored.
+// Interruption: while an object lives, SIGINT, SIGTERM and SIGHUP are noted, so that what was done can be
+// reported. A second signal of the kind ends the program at once. Signals that are ignored stay ignored. One
+// object at a time.
 #pragma once
 
 namespace tumblesight::sim {
@@ -14,8 +15,5 @@ class Interruption {
   // The signal that arrived during the lifetime of the latest object; 0: none.
   static int signal();
 };
-
-// Throws SilFailure after a signal.
-void require_not_interrupted();
 
 }  // namespace tumblesight::sim

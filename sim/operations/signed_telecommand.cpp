@@ -1,4 +1,4 @@
-#include "sim/sil/signed_telecommand.hpp"
+#include "sim/operations/signed_telecommand.hpp"
 
 #include <openssl/evp.h>
 #include <openssl/hmac.h>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hal/messages/function_code.hpp"
-#include "sim/sil/signed_telecommand.hpp"
+#include "sim/operations/signed_telecommand.hpp"
 
 namespace tumblesight::sim {
 

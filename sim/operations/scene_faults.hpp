@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/sil/fault_table.hpp"
+#include "sim/operations/fault_table.hpp"
 #include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {

@@ -1,4 +1,4 @@
-#include "sim/sil/function_names.hpp"
+#include "sim/operations/function_names.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,11 +1,6 @@
-#include "sim/sil/interruption.hpp"
+#include "sim/host/interruption.hpp"
 
 #include <signal.h>
-#include <string.h>
-
-#include <string>
-
-#include "sim/sil/failure.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -49,12 +44,6 @@ Interruption::~Interruption() {
 
 int Interruption::signal() {
   return arrived;
-}
-
-void require_not_interrupted() {
-  if (arrived == 0) return;
-  throw SilFailure(std::string("it was interrupted by signal ") + std::to_string(arrived) + " (" +
-                   strsignal(arrived) + ")");
 }
 
 }  // namespace tumblesight::sim

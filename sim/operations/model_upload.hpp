@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/sil/signed_telecommand.hpp"
+#include "sim/operations/signed_telecommand.hpp"
 
 namespace tumblesight::sim {
 

@@ -1,4 +1,4 @@
-#include "sim/sil/telecommand_table.hpp"
+#include "sim/operations/telecommand_table.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -8,9 +8,9 @@
 #include "hal/messages/command_packet.hpp"
 #include "hal/messages/fault.hpp"
 #include "hal/messages/memory_dump.hpp"
-#include "sim/sil/fault_names.hpp"
-#include "sim/sil/function_names.hpp"
 #include "sim/host/text.hpp"
+#include "sim/operations/fault_names.hpp"
+#include "sim/operations/function_names.hpp"
 
 namespace tumblesight::sim {
 namespace {

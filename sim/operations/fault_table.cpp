@@ -1,4 +1,4 @@
-#include "sim/sil/fault_table.hpp"
+#include "sim/operations/fault_table.hpp"
 
 #include <fmt/format.h>
 

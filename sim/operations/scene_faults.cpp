@@ -1,4 +1,4 @@
-#include "sim/sil/scene_faults.hpp"
+#include "sim/operations/scene_faults.hpp"
 
 #include <algorithm>
 #include <array>
