@@ -74,7 +74,7 @@ RequestLine read_request_line(const std::string& line) {
     else
       read.command = telecommand_of(request);
   } catch (const Json::exception&) {
-    throw std::invalid_argument("the request is not as RunControl knows it");
+    throw std::invalid_argument("the request lacks a field, or one is of another type");
   }
   return read;
 }

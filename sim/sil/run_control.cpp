@@ -83,8 +83,7 @@ std::string reason_of(const std::string& path, int error) {
   struct stat status {};
   if (lstat(path.c_str(), &status) != 0)
     return "there is no such socket: the run has ended, is of another version, or could not make the socket "
-           "and has "
-           "said so at its start";
+           "and said so at its start";
   if (!S_ISSOCK(status.st_mode)) return "this is no socket: remove it, and start the run again";
   if (error == ECONNREFUSED) return "nobody listens: the run has ended";
   return strerror(error);
@@ -132,8 +131,9 @@ void RunControl::listen_in(const RuntimeFolder& folder, const std::string& name)
     socket_ = socket.release();
     return;
   }
-  throw SilFailure("the socket " + path_ + " cannot be made: " + strerror(errno) +
-                   (errno == EADDRINUSE ? "; remove what has its name, and start the run again" : ""));
+  const int error = errno;
+  throw SilFailure("the socket " + path_ + " cannot be made: " + strerror(error) +
+                   (error == EADDRINUSE ? "; remove what has its name, and start the run again" : ""));
 }
 
 RunControl::~RunControl() {

@@ -62,6 +62,9 @@ class ConsoleRequests : public testing::Test {
   static Request get(const std::string& path, const std::string& query = "") {
     return {"GET", path, "token=" + kToken + (query.empty() ? "" : "&" + query), "127.0.0.1:7320", "", ""};
   }
+  static Request post(const std::string& path, const std::string& body) {
+    return {"POST", path, "token=" + kToken, "127.0.0.1:7320", "", body};
+  }
   int status(const Request& request) const { return requests_.answer(request, kPort).status; }
   Json json(const Request& request) const { return Json::parse(requests_.answer(request, kPort).body); }
 
@@ -145,9 +148,7 @@ TEST_F(ConsoleRequests, WhatNoRunTakesIsRefusedAtTheDoor) {
            Wrong{"fault", R"({"fault":"debris","strength":-1,"steps":3})", "not -1"},
            Wrong{"fault", R"({"fault":"debris","strength":1e308,"steps":3})", "not 1e+308"},
        }) {
-    Request request = get("/api/" + wrong.path);
-    request.method = "POST";
-    request.body = wrong.body;
+    Request request = post("/api/" + wrong.path, wrong.body);
     const Answer answer = requests_.answer(request, kPort);
     EXPECT_EQ(answer.status, 400) << wrong.body.substr(0, 60);
     EXPECT_NE(answer.body.find(wrong.said), std::string::npos) << answer.body;
@@ -156,9 +157,7 @@ TEST_F(ConsoleRequests, WhatNoRunTakesIsRefusedAtTheDoor) {
 }
 
 TEST_F(ConsoleRequests, NumbersOfARequestAreNotChanged) {
-  Request request = get("/api/fault");
-  request.method = "POST";
-  request.body = R"({"fault":"debris","strength":1.5,"steps":1000})";
+  Request request = post("/api/fault", R"({"fault":"debris","strength":1.5,"steps":1000})");
   EXPECT_EQ(status(request), 200);
   EXPECT_EQ(Json::parse(run_.asked)["steps"], 1000);
   EXPECT_EQ(Json::parse(run_.asked)["strength"], 1.5);
@@ -168,9 +167,7 @@ TEST_F(ConsoleRequests, NumbersOfARequestAreNotChanged) {
 TEST_F(ConsoleRequests, ANumberThatIsNoneIsRefused) {
   const std::string nested = std::string(2000, '[') + std::string(2000, ']');
   for (const std::string& wrong : {nested, std::string("\"5\""), std::string("null"), std::string("true")}) {
-    Request request = get("/api/fault");
-    request.method = "POST";
-    request.body = R"({"fault":"drop","steps":)" + wrong + "}";
+    Request request = post("/api/fault", R"({"fault":"drop","steps":)" + wrong + "}");
     EXPECT_EQ(status(request), 400) << wrong;
     request.body = R"({"fault":"debris","steps":1,"strength":)" + wrong + "}";
     EXPECT_EQ(status(request), 400) << wrong;
@@ -254,12 +251,6 @@ TEST_F(ConsoleRequests, WrongOnesSayWhatIsWrong) {
 }
 
 TEST_F(ConsoleRequests, ATelecommandIsCheckedAndSentAsBytes) {
-  const auto post = [](const std::string& path, const std::string& body) {
-    Request request = get(path);
-    request.method = "POST";
-    request.body = body;
-    return request;
-  };
   EXPECT_EQ(
       requests_.answer(post("/api/command", R"({"name":"SET_MODE","arguments":{"mode":"2"}})"), kPort).body,
       R"({"step":1})");
@@ -284,9 +275,7 @@ TEST_F(ConsoleRequests, ATelecommandIsCheckedAndSentAsBytes) {
 
 TEST_F(ConsoleRequests, WhatTheRunRefusesIsNoSuccess) {
   run_.said = R"({"error":"a step takes at most 16 telecommands: send it again"})";
-  Request request = get("/api/command");
-  request.method = "POST";
-  request.body = R"({"name":"NOOP","arguments":{}})";
+  Request request = post("/api/command", R"({"name":"NOOP","arguments":{}})");
   const Answer answer = requests_.answer(request, kPort);
   EXPECT_EQ(answer.status, 409);
   EXPECT_EQ(answer.body, "a step takes at most 16 telecommands: send it again\n");
@@ -295,9 +284,7 @@ TEST_F(ConsoleRequests, WhatTheRunRefusesIsNoSuccess) {
 // It comes back to a page or a terminal.
 TEST_F(ConsoleRequests, ANameThatIsNotKnownIsShownShortenedAndWithoutControlCharacters) {
   for (const std::string& unknown : {std::string(3000, 'a'), std::string("\\u001b[31m")}) {
-    Request request = get("/api/command");
-    request.method = "POST";
-    request.body = R"({"name":")" + unknown + R"(","arguments":{}})";
+    Request request = post("/api/command", R"({"name":")" + unknown + R"(","arguments":{}})");
     const Answer command = requests_.answer(request, kPort);
     request.path = "/api/fault";
     request.body = R"({"fault":")" + unknown + R"(","steps":1})";
@@ -312,9 +299,7 @@ TEST_F(ConsoleRequests, ANameThatIsNotKnownIsShownShortenedAndWithoutControlChar
 
 TEST_F(ConsoleRequests, ARunThatIsBusyIsAskedAgainLater) {
   run_.is_busy = true;
-  Request request = get("/api/command");
-  request.method = "POST";
-  request.body = R"({"name":"NOOP","arguments":{}})";
+  Request request = post("/api/command", R"({"name":"NOOP","arguments":{}})");
   const Answer answer = requests_.answer(request, kPort);
   EXPECT_EQ(answer.status, 503);
   EXPECT_EQ(answer.body, "send it again\n");
@@ -346,9 +331,7 @@ TEST_F(ConsoleRequests, EveryPathHasItsMethods) {
 
 TEST_F(ConsoleRequests, ABodyThatIsDeepOrLargeIsRefused) {
   const auto answer = [this](const std::string& body) {
-    Request request = get("/api/command");
-    request.method = "POST";
-    request.body = body;
+    Request request = post("/api/command", body);
     return requests_.answer(request, kPort);
   };
   EXPECT_EQ(answer(std::string(8'000, '[') + std::string(8'000, ']')).body,
@@ -362,9 +345,7 @@ TEST_F(ConsoleRequests, ABodyThatIsDeepOrLargeIsRefused) {
 
 TEST_F(ConsoleRequests, AFieldOrAnArgumentThatIsNotKnownIsRefusedByName) {
   const auto refusal = [this](const std::string& path, const std::string& body) {
-    Request request = get(path);
-    request.method = "POST";
-    request.body = body;
+    Request request = post(path, body);
     const Answer answer = requests_.answer(request, kPort);
     EXPECT_EQ(answer.status, 400) << body;
     return answer.body;
