@@ -29,10 +29,3 @@ endif()
 # thirds of the time. PRIVATE.
 add_library(tool_rules INTERFACE)
 target_compile_options(tool_rules INTERFACE $<$<CONFIG:Release>:-O1>)
-
-# Headers that take longer to read than the sources of the library to compile: precompile_headers(<target> <header>...)
-function(precompile_headers target)
-  target_precompile_headers(${target} PRIVATE ${ARGN})
-  # ccache takes a precompiled header's includes from the output of the preprocessor.
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
-endfunction()

@@ -80,8 +80,10 @@ packages_to_export=("${packages_to_run[@]}" libonnx-dev libprotobuf-dev)
 # The console in the browser: sim/run --watch.
 packages_to_watch=("${packages_to_run[@]}" libcivetweb-dev libjs-dygraphs libjs-three)
 packages_to_train=("${packages_to_run[@]}" libtorch-dev libgloo-dev libopenblas0-pthread)
-packages_to_test=("${packages_to_train[@]}" "${packages_to_watch[@]}" "${packages_to_export[@]}" libdnnl-dev libgtest-dev libgmock-dev
-  chromium clang clang-format git openmpi-bin python3 slurm-wlm valgrind)
+# The preset dev: unit tests without training.
+packages_to_develop=("${packages_to_watch[@]}" libgtest-dev libgmock-dev python3)
+packages_to_test=("${packages_to_train[@]}" "${packages_to_develop[@]}" "${packages_to_export[@]}" libdnnl-dev
+  chromium clang clang-format git openmpi-bin slurm-wlm valgrind)
 packages_to_fuzz=("${packages_to_run[@]}" clang libcivetweb-dev libclang-rt-dev python3)
 # The flight side only, with GCC's branch counts.
 packages_to_cover=(g++ cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev gcovr python3)

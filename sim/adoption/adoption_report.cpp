@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"

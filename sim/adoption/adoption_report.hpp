@@ -1,7 +1,7 @@
 // What an adoption ends with: the verdict as JSON, and the pages.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "sim/adoption/adoption.hpp"

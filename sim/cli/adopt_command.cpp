@@ -23,6 +23,7 @@
 #include "sim/host/place.hpp"
 #include "sim/host/program_files.hpp"
 #include "sim/host/text.hpp"
+#include "sim/model/model_file.hpp"
 #include "sim/training/mission_training.hpp"
 #include "sim/world/scenario/condition.hpp"
 #include "sim/world/target/targets.hpp"
@@ -71,7 +72,7 @@ AdoptionSettings settings_of(const AdoptArguments& arguments, const std::string&
     (void)training_conditions(settings.mission);
     (void)target_symmetry_from(settings.mission.symmetry);
   } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("MISSION", error.what());
+    throw ArgumentFault("MISSION", error.what());
   }
   use_mission(settings.mission);
   const SensorArguments sensor = sensor_arguments_of(settings.mission);
@@ -177,10 +178,10 @@ int run(const AdoptArguments& arguments, const std::string& command_line) {
 
 }  // namespace
 
-void add_adopt_command(CLI::App& app, const std::string& command_line) {
+void add_adopt_command(Command& app, const std::string& command_line) {
   auto arguments = std::make_shared<AdoptArguments>();
-  CLI::App* command = add_verb(app, "adopt");
-  command->footer(
+  Command command = add_verb(app, "adopt");
+  command.footer(
       std::string("\nChecks the mesh, trains, makes the fixed-point image, evaluates every condition\n"
                   "against the goals of the mission, flies it over DDS, all within the time, and\n"
                   "says GO or NO-GO with the reasons. Exit status: 0 GO, 4 NO-GO, 3 stopped (the\n"
@@ -191,38 +192,38 @@ void add_adopt_command(CLI::App& app, const std::string& command_line) {
       "Example\n"
       "  tumblesight adopt craft.toml --minutes 60\n");
   command
-      ->add_option("MISSION", arguments->mission, "mission file (TOML), or the name of a target that ships")
+      .add_option("MISSION", arguments->mission, "mission file (TOML), or the name of a target that ships")
       ->required()
       ->type_name("FILE|NAME");
-  limit_number(command->add_option("--minutes", arguments->minutes,
+  limit_number(command.add_option("--minutes", arguments->minutes,
                                    "wall-clock time for everything [that of the mission, else 60]"),
                0.5, 100'000.0)
       ->type_name("X");
-  command->add_option("--out", arguments->out, "folder for model images, report and checkpoints [out/<name>]")
+  command.add_option("--out", arguments->out, "folder for model images, report and checkpoints [out/<name>]")
       ->check(file_path())
       ->type_name("DIR");
-  add_seed_option(*command, arguments->seed);
+  add_seed_option(command, arguments->seed);
   limit_whole_number(
-      command->add_option("--sequences", arguments->sequences,
+      command.add_option("--sequences", arguments->sequences,
                           "sequences per condition of the evaluation [by the time, 20 to 900]"),
       1, 100'000)
       ->type_name("N");
   command
-      ->add_option("--start-from", arguments->start_from,
+      .add_option("--start-from", arguments->start_from,
                    "float32 model image whose CNN to start from, or random [the nearest of those in "
                    "fsw/models; in less than 20 minutes the first]")
       ->type_name("FILE|random");
-  limit_whole_number(command->add_option("--threads", arguments->threads, "worker threads, 0: one per core"),
+  limit_whole_number(command.add_option("--threads", arguments->threads, "worker threads, 0: one per core"),
                      0, 256)
       ->type_name("N")
       ->capture_default_str();
-  command->callback([arguments, command_line] {
+  command.callback([arguments, command_line] {
     if (!arguments->start_from.empty() && arguments->start_from != "random") {
       const std::string fault = fault_of_model_path(arguments->start_from);
-      if (!fault.empty()) throw CLI::ValidationError("--start-from", fault);
+      if (!fault.empty()) throw ArgumentFault("--start-from", fault);
       (void)read_float32_model(arguments->start_from);  // throws now rather than after the mesh
     }
-    throw CLI::RuntimeError(run(*arguments, command_line));
+    throw Exit(run(*arguments, command_line));
   });
 }
 

@@ -42,19 +42,19 @@ bool has_a_file(const std::vector<std::string>& meshes) {
 
 // `mesh` is one file name or a list of them.
 template <class Mesh>
-void add_mesh_file_options(CLI::App& command, Mesh& mesh, std::string& up, double& scale,
+void add_mesh_file_options(Command& command, Mesh& mesh, std::string& up, double& scale,
                            const std::string& help) {
-  CLI::Option* option = command.add_option("--mesh", mesh, help);
+  CommandOption option = command.add_option("--mesh", mesh, help);
   option->check(file_path())->type_name("FILE");
-  CLI::Option* axis =
+  CommandOption axis =
       command.add_option("--mesh-up", up, "axis of the mesh file that points along the target frame's z");
   axis->check(one_of({"y", "z"}))->type_name("y|z")->capture_default_str()->needs(option);
-  CLI::Option* unit = command.add_option("--mesh-scale", scale, "metres per unit of the mesh file");
+  CommandOption unit = command.add_option("--mesh-scale", scale, "metres per unit of the mesh file");
   limit_number(unit, 1e-6, 1e6)->type_name("X")->capture_default_str()->needs(option);
   command.parse_complete_callback([&mesh, axis, unit] {
-    for (const CLI::Option* of_files : {axis, unit}) {
+    for (const CommandOption of_files : {axis, unit}) {
       if (of_files->count() > 0 && !has_a_file(mesh))
-        throw CLI::ValidationError(of_files->get_name(),
+        throw ArgumentFault(of_files->get_name(),
                                    "is for mesh files, and --mesh parametric has its axes and unit; leave " +
                                        of_files->get_name() + " out, or give a file with --mesh");
     }
@@ -62,7 +62,7 @@ void add_mesh_file_options(CLI::App& command, Mesh& mesh, std::string& up, doubl
 }
 
 // Before the default that stands in brackets at the end.
-void describe_limits(CLI::Option& option, const std::string& limits) {
+void describe_limits(CommandOption option, const std::string& limits) {
   std::string description = option.get_description();
   const std::size_t bracket = description.rfind(" [");
   option.description(description.insert(std::min(bracket, description.size()), limits));
@@ -76,37 +76,48 @@ MeshFileOptions mesh_file_options(const MeshArguments& arguments) {
   return options;
 }
 
+std::vector<std::string> divided_at_commas(const std::string& text) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0, end = 0;
+  while ((end = text.find(',', begin)) != std::string::npos) {
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
 // "none", or effects as after --effect, whose strengths may be ranges.
 EffectRanges effect_set_from(const std::string& text) {
   if (text == "none") return {};
   try {
-    return effect_ranges_from(CLI::detail::split(text, ','));
+    return effect_ranges_from(divided_at_commas(text));
   } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("--effect-set", error.what());
+    throw ArgumentFault("--effect-set", error.what());
   }
 }
 
 }  // namespace
 
-CLI::Validator target_name() {
+ValueCheck target_name() {
   const auto check = [](std::string& text) -> std::string {
     const bool plain = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
     if (plain && !text.empty() && text.size() < 32) return {};
     return fmt::format("must be 1 to 31 characters of a-z, 0-9 and _, not '{}'", text);
   };
-  return CLI::Validator(check, "", "target name");
+  return ValueCheck{check, "target name"};
 }
 
-CLI::Validator existing_model_image() {
+ValueCheck existing_model_image() {
   const auto check = [](std::string& path) -> std::string { return fault_of_model_path(path); };
-  return CLI::Validator(check, "", "model image");
+  return ValueCheck{check, "model image"};
 }
 
-CLI::Validator file_path() {
+ValueCheck file_path() {
   const auto check = [](std::string& text) -> std::string {
     return text.empty() ? "must be a path, not ''; leave the option out for its default" : "";
   };
-  return CLI::Validator(check, "", "path");
+  return ValueCheck{check, "path"};
 }
 
 namespace {
@@ -123,27 +134,27 @@ const char* fault_of_type(std::filesystem::file_type type) {
 
 }  // namespace
 
-CLI::Validator existing_file() {
+ValueCheck existing_file() {
   const auto check = [](std::string& text) -> std::string {
     std::error_code error;
     const std::filesystem::file_type type = std::filesystem::status(text, error).type();
     if (type == std::filesystem::file_type::regular) return {};
     return fmt::format("'{}' {}", text, fault_of_type(type));
   };
-  return CLI::Validator(check, "", "existing file");
+  return ValueCheck{check, "existing file"};
 }
 
-CLI::Validator one_of(const std::vector<std::string>& names) {
+ValueCheck one_of(const std::vector<std::string>& names) {
   const auto check = [names](std::string& text) -> std::string {
     for (const std::string& name : names) {
       if (name == text) return {};
     }
     return fmt::format("must be one of {}, not '{}'{}", joined(names), text, did_you_mean(text, names));
   };
-  return CLI::Validator(check, "", "choice");
+  return ValueCheck{check, "choice"};
 }
 
-CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+ValueCheck whole_number(std::uint64_t low, std::uint64_t high) {
   const auto check = [low, high](std::string& text) -> std::string {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -153,30 +164,30 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
     return fmt::format("must be a whole number from {} to {}{}, not '{}'", low, high,
                        within ? " without leading zeros" : "", text);
   };
-  return CLI::Validator(check, "", "whole number");
+  return ValueCheck{check, "whole number"};
 }
 
-CLI::Validator number(double low, double high) {
+ValueCheck number(double low, double high) {
   const auto check = [low, high](std::string& text) -> std::string {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
     if (!text.empty() && *end == '\0' && value >= low && value <= high) return {};
     return fmt::format("must be a number from {:g} to {:g}, not '{}'", low, high, text);
   };
-  return CLI::Validator(check, "", "number");
+  return ValueCheck{check, "number"};
 }
 
-CLI::Option* limit_whole_number(CLI::Option* option, std::uint64_t low, std::uint64_t high) {
-  describe_limits(*option, fmt::format(" ({} to {})", low, high));
+CommandOption limit_whole_number(CommandOption option, std::uint64_t low, std::uint64_t high) {
+  describe_limits(option, fmt::format(" ({} to {})", low, high));
   return option->check(whole_number(low, high));
 }
 
-CLI::Option* limit_number(CLI::Option* option, double low, double high) {
-  describe_limits(*option, fmt::format(" ({:g} to {:g})", low, high));
+CommandOption limit_number(CommandOption option, double low, double high) {
+  describe_limits(option, fmt::format(" ({:g} to {:g})", low, high));
   return option->check(number(low, high));
 }
 
-void add_target_option(CLI::App& command, std::string& target, TargetChoice choice) {
+void add_target_option(Command& command, std::string& target, TargetChoice choice) {
   const std::string shipped = "spacecraft: " + joined(target_names());
   const bool any = choice != TargetChoice::kShipped;
   const std::string own = std::string(", or with ") + (choice == TargetChoice::kAny ? "--mesh" : "--model") +
@@ -187,14 +198,14 @@ void add_target_option(CLI::App& command, std::string& target, TargetChoice choi
       ->capture_default_str();
 }
 
-void add_condition_option(CLI::App& command, std::string& condition) {
+void add_condition_option(Command& command, std::string& condition) {
   command.add_option("--condition", condition, condition_help())
       ->check(one_of(condition_names()))
       ->type_name("NAME")
       ->capture_default_str();
 }
 
-void add_condition_option(CLI::App& command, std::vector<std::string>& conditions) {
+void add_condition_option(Command& command, std::vector<std::string>& conditions) {
   command.add_option("--condition", conditions, condition_help() + "; several: a,b")
       ->delimiter(',')
       ->check(one_of(condition_names()))
@@ -202,7 +213,7 @@ void add_condition_option(CLI::App& command, std::vector<std::string>& condition
       ->capture_default_str();
 }
 
-void add_seed_option(CLI::App& command, std::uint64_t& seed) {
+void add_seed_option(Command& command, std::uint64_t& seed) {
   limit_whole_number(
       command.add_option("--seed", seed, "seed of all random numbers; the same seed gives the same run"), 0,
       std::numeric_limits<std::uint64_t>::max())
@@ -210,23 +221,23 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed) {
       ->capture_default_str();
 }
 
-void add_float32_model_option(CLI::App& command, std::string& model) {
+void add_float32_model_option(Command& command, std::string& model) {
   command.add_option("--model", model, "model image in float32, as `tumblesight train` writes it")
       ->required()
       ->check(existing_model_image())
       ->type_name("FILE");
 }
 
-void add_effect_option(CLI::App& command, Effects& effects) {
+void add_effect_option(Command& command, Effects& effects) {
   const auto take = [&effects](const std::vector<std::string>& texts) {
     if (texts == std::vector<std::string>{"list"}) {
       fmt::print("Effects, each as NAME=STRENGTH\n\n{}", effect_explanations());
-      throw CLI::Success();
+      throw Exit(0);
     }
     try {
       effects = effects_from(texts);
     } catch (const std::invalid_argument& error) {
-      throw CLI::ValidationError("--effect", error.what());
+      throw ArgumentFault("--effect", error.what());
     }
   };
   command
@@ -236,7 +247,7 @@ void add_effect_option(CLI::App& command, Effects& effects) {
       ->type_name("NAME=STRENGTH,...");
 }
 
-void add_effect_set_option(CLI::App& command, std::vector<EffectRanges>& effect_sets) {
+void add_effect_set_option(Command& command, std::vector<EffectRanges>& effect_sets) {
   const auto take = [&effect_sets](const std::vector<std::string>& texts) {
     effect_sets.clear();
     for (const std::string& text : texts) effect_sets.push_back(effect_set_from(text));
@@ -250,11 +261,11 @@ void add_effect_set_option(CLI::App& command, std::vector<EffectRanges>& effect_
       ->type_name("none|NAME=STRENGTH,...");
 }
 
-void require_a_name(const CLI::App& command, const std::vector<std::string>& meshes) {
+void require_a_name(const Command& command, const std::vector<std::string>& meshes) {
   const bool named =
       command.get_option("--target")->count() > 0 || command.get_option("--mission")->count() > 0;
   if (named || !has_a_file(meshes)) return;
-  throw CLI::ValidationError(
+  throw ArgumentFault(
       "--mesh",
       "name the spacecraft of the file with --target: a name of your own, or that of a shipped target if the "
       "file is a mesh of it; or give a --mission instead of both");
@@ -262,16 +273,16 @@ void require_a_name(const CLI::App& command, const std::vector<std::string>& mes
 
 void require_the_target(const Effects& effects) {
   if (show_the_target(effects)) return;
-  throw CLI::ValidationError("--effect",
+  throw ArgumentFault("--effect",
                              "wrong_object and sphere are for tests only: a network cannot learn "
                              "the target's attitude from another body");
 }
 
-void add_json_option(CLI::App& command, std::string& json) {
+void add_json_option(Command& command, std::string& json) {
   command.add_option("--json", json, "write the figures to this file")->check(file_path())->type_name("FILE");
 }
 
-void add_report_option(CLI::App& command, std::string& report, const std::string& default_text) {
+void add_report_option(Command& command, std::string& report, const std::string& default_text) {
   command
       .add_option("--report", report,
                   "write an HTML page with figures and tables to this file" + default_text)
@@ -291,7 +302,7 @@ void require_possible_inertia(const Eigen::Matrix3d& inertia_kg_m2, double radiu
   if (!fault.empty()) throw std::invalid_argument(fault);
 }
 
-void add_inertia_option(CLI::App& command, std::vector<double>& inertia) {
+void add_inertia_option(Command& command, std::vector<double>& inertia) {
   command
       .add_option(
           "--inertia", inertia,
@@ -302,7 +313,7 @@ void add_inertia_option(CLI::App& command, std::vector<double>& inertia) {
       ->type_name("N,N,...");
 }
 
-void add_target_options(CLI::App& command, ScenarioArguments& arguments) {
+void add_target_options(Command& command, ScenarioArguments& arguments) {
   add_target_option(command, arguments.target, TargetChoice::kAny);
   add_mesh_file_options(command, arguments.mesh, arguments.mesh_up, arguments.mesh_scale,
                         "surface of the target: a file (STL, OBJ, PLY, glTF), or parametric for the mesh "
@@ -311,14 +322,14 @@ void add_target_options(CLI::App& command, ScenarioArguments& arguments) {
   add_mission_option(command, arguments);
 }
 
-void add_mesh_options(CLI::App& command, MeshArguments& arguments) {
+void add_mesh_options(Command& command, MeshArguments& arguments) {
   add_mesh_file_options(
       command, arguments.meshes, arguments.mesh_up, arguments.mesh_scale,
       "surface of the target: a file (STL, OBJ, PLY, glTF), or parametric for the mesh that ships; "
       "may be repeated [parametric]");
 }
 
-void add_sequence_options(CLI::App& command, ScenarioArguments& arguments, std::uint64_t most_sequences) {
+void add_sequence_options(Command& command, ScenarioArguments& arguments, std::uint64_t most_sequences) {
   limit_whole_number(command.add_option("--sequences", arguments.sequences, "sequences to run"), 1,
                      most_sequences)
       ->type_name("N")
@@ -329,8 +340,8 @@ void add_sequence_options(CLI::App& command, ScenarioArguments& arguments, std::
   add_seed_option(command, arguments.seed);
 }
 
-void add_model_options(CLI::App& command, ScenarioArguments& arguments) {
-  CLI::Option* model =
+void add_model_options(Command& command, ScenarioArguments& arguments) {
+  CommandOption model =
       command.add_option("--model", arguments.model, "model image [the one that ships for the target]");
   model->check(file_path())->type_name("FILE");
   command
@@ -371,7 +382,7 @@ std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std:
 void require_supported_length(const ScenarioArguments& arguments, const std::string& remedy) {
   const std::uint64_t frames = std::uint64_t{arguments.sequences} * arguments.frames;
   if (frames <= kMaxRunFrames) return;
-  throw CLI::ValidationError(
+  throw ArgumentFault(
       "--sequences, --frames",
       fmt::format("{} x {} are {} frames in all; a run has at most {}{}", arguments.sequences,
                   arguments.frames, frames, kMaxRunFrames, remedy));

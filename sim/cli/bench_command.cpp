@@ -140,10 +140,10 @@ void bench(const BenchArguments& arguments) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, const std::string&) {
+void add_bench_command(Command& app, const std::string&) {
   auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* command = add_verb(app, "bench");
-  command->footer(
+  Command command = add_verb(app, "bench");
+  command.footer(
       "\nUses one thread, the shipped model in both numerics and every instruction set of\n"
       "this processor. A step goes from ranges to quaternion. The other runtimes run\n"
       "the network alone: ONNX Runtime and LibTorch in float32, ONNX Runtime and\n"
@@ -153,15 +153,15 @@ void add_bench_command(CLI::App& app, const std::string&) {
       "fewer, it may exceed 100 %.\n\n"
       "ONNX Runtime is measured if its library is installed:\n"
       "  npm install --prefix build --ignore-scripts onnxruntime-node\n");
-  add_target_option(*command, arguments->target, TargetChoice::kShipped);
+  add_target_option(command, arguments->target, TargetChoice::kShipped);
   command
-      ->add_option(
+      .add_option(
           "--onnxruntime", arguments->onnxruntime,
           "libonnxruntime.so [that of onnxruntime-node in build/node_modules, otherwise the system's]")
       ->check(existing_file())
       ->type_name("FILE");
-  add_json_option(*command, arguments->json);
-  command->callback([arguments] {
+  add_json_option(command, arguments->json);
+  command.callback([arguments] {
     // Without a slash it would be looked for among the system's libraries.
     if (!arguments->onnxruntime.empty()) arguments->onnxruntime = full_path(arguments->onnxruntime);
     bench(*arguments);

@@ -7,6 +7,7 @@
 
 #include "cmake/version.hpp"
 #include "sim/campaign/experiment_identity.hpp"
+#include "sim/cli/command_line.hpp"
 #include "sim/host/nearest_name.hpp"
 #include "sim/host/progress.hpp"
 #include "sim/host/text.hpp"
@@ -61,7 +62,7 @@ void require_same_division(const CampaignTask& task) {
 }
 
 // A value that the option does not take, or one that takes more than it looks like; empty: none.
-std::string fault_of(const CLI::Option& option, const std::string& key,
+std::string fault_of(const CommandOption& option, const std::string& key,
                      const std::optional<std::string>& value) {
   if (value && option.get_items_expected_max() == 0) return fmt::format("must be true, not '{}'", *value);
   if (!value) return option.get_items_expected_max() > 0 ? "needs a value, not true" : "";
@@ -74,27 +75,28 @@ std::string fault_of(const CLI::Option& option, const std::string& key,
   return {};
 }
 
-std::vector<std::string> long_names_of(const CLI::App& command) {
+std::vector<std::string> long_names_of(const Command& command) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options())
+  for (const CommandOption option : command.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back(name);
   return names;
 }
 
 // The keys of a run, before their values become a command line in which one may take another for its value.
 void require_known_options(const CampaignRun& run) {
-  CLI::App command;
+  CommandLine line;
+  Command& command = line.command();
   EvaluateArguments ignored;
   add_evaluate_options(command, ignored);
   for (const auto& [key, value] : run.keys) {
     if (key == "sequences_per_task")
       throw std::invalid_argument("sequences_per_task is for all runs: write it at the top, before [[run]]");
-    const CLI::Option* option = command.get_option_no_throw("--" + key);
-    if (option == nullptr || key == "help")
+    const CommandOption option = command.get_option_no_throw("--" + key);
+    if (!option || key == "help")
       throw std::invalid_argument(fmt::format(
           "there is no option '{}'; `tumblesight evaluate --help` lists them, write them without dashes{}",
           key, did_you_mean(key, long_names_of(command))));
-    if (const std::string fault = fault_of(*option, key, value); !fault.empty())
+    if (const std::string fault = fault_of(option, key, value); !fault.empty())
       throw std::invalid_argument(key + ": " + fault);
   }
 }

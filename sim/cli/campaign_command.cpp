@@ -274,7 +274,7 @@ void run(const CampaignArguments& arguments) {
   if (arguments.dry_run) return;
   stop_on_signals();
   const bool is_done = finish_tasks(arguments, open);
-  if (told_to_stop != 0) throw CLI::RuntimeError(kStopped);
+  if (told_to_stop != 0) throw Exit(kStopped);
   if (is_done) report(arguments, open);
 }
 
@@ -293,10 +293,10 @@ void work(const CampaignArguments& arguments) {
   fmt::print("  {}, {} failed\n", counted(outcome.done, "task") + " done", outcome.failures.size());
   // Whoever started us finds what is not done, and mpirun would end all other workers.
   const bool tell = !arguments.supervised || part;
-  if (tell && !outcome.failures.empty()) throw CLI::RuntimeError(kFailed);
+  if (tell && !outcome.failures.empty()) throw Exit(kFailed);
 }
 
-void add_file(CLI::App& command, CampaignArguments& arguments) {
+void add_file(Command& command, CampaignArguments& arguments) {
   command.add_option("file", arguments.file, "the campaign, a TOML file")
       ->required()
       ->check(existing_file())
@@ -321,76 +321,76 @@ std::vector<std::string> launcher_names() {
   return names;
 }
 
-void add_run(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments) {
-  CLI::App* command =
+void add_run(Command& verb, const std::shared_ptr<CampaignArguments>& arguments) {
+  Command command =
       verb.add_subcommand("run", "Run what is not done yet, with progress, and make the report");
-  add_file(*command, *arguments);
-  command->add_option("--on", arguments->on, "how the workers are started")
+  add_file(command, *arguments);
+  command.add_option("--on", arguments->on, "how the workers are started")
       ->check(one_of(launcher_names()))
       ->type_name("WAY")
       ->capture_default_str();
-  limit_whole_number(command->add_option("--jobs", arguments->jobs,
+  limit_whole_number(command.add_option("--jobs", arguments->jobs,
                                          "workers at a time, 0: one per core, or as many as Slurm starts"),
                      0, 100'000)
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option("--options", arguments->options,
+      .add_option("--options", arguments->options,
                    "further options of sbatch or mpirun, one text: \"--partition=long --time=2:00:00\"")
       ->type_name("TEXT");
-  command->add_flag("--no-wait", arguments->no_wait, "end when the Slurm jobs are submitted");
-  command->add_flag("--dry-run", arguments->dry_run, "only check the file and show the runs");
-  command->footer("\nWays to start workers\n" + explanations_of_launchers());
-  command->callback([arguments] {
+  command.add_flag("--no-wait", arguments->no_wait, "end when the Slurm jobs are submitted");
+  command.add_flag("--dry-run", arguments->dry_run, "only check the file and show the runs");
+  command.footer("\nWays to start workers\n" + explanations_of_launchers());
+  command.callback([arguments] {
     if (arguments->no_wait && arguments->on != "slurm")
-      throw CLI::ValidationError("--no-wait", "is for --on slurm; other workers end with this program");
+      throw ArgumentFault("--no-wait", "is for --on slurm; other workers end with this program");
     if (!arguments->options.empty() && arguments->on == "local")
-      throw CLI::ValidationError("--options", "are those of sbatch or mpirun; give --on slurm or --on mpi");
+      throw ArgumentFault("--options", "are those of sbatch or mpirun; give --on slurm or --on mpi");
     run(*arguments);
   });
 }
 
-void add_work(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments) {
-  CLI::App* command =
+void add_work(Command& verb, const std::shared_ptr<CampaignArguments>& arguments) {
+  Command command =
       verb.add_subcommand("work", "Be one worker: run tasks until none is left. `run` starts workers");
-  add_file(*command, *arguments);
+  add_file(command, *arguments);
   command
-      ->add_option("--part", arguments->part,
+      .add_option("--part", arguments->part,
                    "only the tasks of part I of N, I from 0; otherwise the next one that nobody runs")
       ->check(shard_text())
       ->type_name("I/N");
-  command->add_flag("--supervised", arguments->supervised,
+  command.add_flag("--supervised", arguments->supervised,
                     "end with the program that started it; the exit status is 0 if tasks failed");
-  command->callback([arguments] { work(*arguments); });
+  command.callback([arguments] { work(*arguments); });
 }
 
-void add_status(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments) {
-  CLI::App* command = verb.add_subcommand("status", "Show how far each run is");
-  add_file(*command, *arguments);
-  command->callback([arguments] { print_state(open_campaign(*arguments)); });
+void add_status(Command& verb, const std::shared_ptr<CampaignArguments>& arguments) {
+  Command command = verb.add_subcommand("status", "Show how far each run is");
+  add_file(command, *arguments);
+  command.callback([arguments] { print_state(open_campaign(*arguments)); });
 }
 
-void add_report(CLI::App& verb, const std::shared_ptr<CampaignArguments>& arguments) {
-  CLI::App* command =
+void add_report(Command& verb, const std::shared_ptr<CampaignArguments>& arguments) {
+  Command command =
       verb.add_subcommand("report", "Make tables, JSON, CSV and report.html of the shard files");
-  add_file(*command, *arguments);
-  command->add_flag("--partial", arguments->partial,
+  add_file(command, *arguments);
+  command.add_flag("--partial", arguments->partial,
                     "make the figures from the sequences that are done, although some are missing");
-  command->callback([arguments] { report(*arguments, open_campaign(*arguments)); });
+  command.callback([arguments] { report(*arguments, open_campaign(*arguments)); });
 }
 
 }  // namespace
 
-void add_campaign_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command = add_verb(app, "campaign");
-  command->require_subcommand(1);
+void add_campaign_command(Command& app, const std::string& command_line) {
+  Command command = add_verb(app, "campaign");
+  command.require_subcommand(1);
   auto arguments = std::make_shared<CampaignArguments>();
   arguments->command_line = command_line;
-  add_run(*command, arguments);
-  add_work(*command, arguments);
-  add_status(*command, arguments);
-  add_report(*command, arguments);
-  command->footer(
+  add_run(command, arguments);
+  add_work(command, arguments);
+  add_status(command, arguments);
+  add_report(command, arguments);
+  command.footer(
       "\nA campaign is a TOML file. A [[run]] has options of `tumblesight evaluate`\n"
       "without their dashes; a list makes a run for each of its values. Paths are\n"
       "relative to the folder of the file.\n\n"

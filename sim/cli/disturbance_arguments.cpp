@@ -12,18 +12,18 @@ namespace {
 
 constexpr const char* kGroup = "Disturbances";
 
-void add_flag(CLI::App& command, const DisturbanceRow& row, Disturbances& disturbances) {
+void add_flag(Command& command, const DisturbanceRow& row, Disturbances& disturbances) {
   command
       .add_flag_function(
           std::string("--") + row.name,
-          [&row, &disturbances](std::int64_t times) { row.set(disturbances, times > 0 ? 1.0 : 0.0); },
+          [&row, &disturbances](bool on) { row.set(disturbances, on ? 1.0 : 0.0); },
           row.explanation)
       ->group(kGroup);
 }
 
-void add_value(CLI::App& command, const DisturbanceRow& row, Disturbances& disturbances) {
+void add_value(Command& command, const DisturbanceRow& row, Disturbances& disturbances) {
   const bool whole = row.kind == DisturbanceKind::kWholeNumber;
-  CLI::Option* option = command.add_option_function<std::string>(
+  CommandOption option = command.add_option_function<std::string>(
       std::string("--") + row.name,
       [&row, &disturbances](const std::string& text) {
         row.set(disturbances, std::strtod(text.c_str(), nullptr));
@@ -43,7 +43,7 @@ void add_value(CLI::App& command, const DisturbanceRow& row, Disturbances& distu
 
 }  // namespace
 
-void add_disturbance_options(CLI::App& command, Disturbances& disturbances) {
+void add_disturbance_options(Command& command, Disturbances& disturbances) {
   for (const DisturbanceRow& row : kDisturbances) {
     row.kind == DisturbanceKind::kFlag ? add_flag(command, row, disturbances)
                                        : add_value(command, row, disturbances);
@@ -68,7 +68,7 @@ void require_possible_disturbances(const Disturbances& disturbances, std::uint32
   try {
     require_possible(disturbances, frames);
   } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError(error.what());
+    throw ArgumentFault(error.what());
   }
 }
 

@@ -6,10 +6,12 @@
 #include <thread>
 
 #include "sim/campaign/shard_file.hpp"
+#include "sim/cli/command_line.hpp"
 #include "sim/cli/disturbance_arguments.hpp"
 #include "sim/cli/symmetry_arguments.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/host/program_files.hpp"
+#include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -17,11 +19,11 @@ namespace {
 constexpr int kMaxThreads = 1024;
 constexpr std::uint64_t kMostInShards = 10'000'000;  // of which each shard is in memory one by one
 
-void add_run_options(CLI::App& command, EvaluateArguments& arguments) {
+void add_run_options(Command& command, EvaluateArguments& arguments) {
   command.add_flag(
       "--curves", arguments.curves,
       "also run sweeps: rate drawn by its norm, hidden share, runs of 200 frames; takes seven times as long");
-  CLI::Option* none = command.add_flag("--no-baseline", arguments.no_baseline, "without template matching");
+  CommandOption none = command.add_flag("--no-baseline", arguments.no_baseline, "without template matching");
   limit_whole_number(
       command.add_option("--baseline-sequences", arguments.baseline_sequences,
                          "number of sequences whose last frame also goes to template matching"),
@@ -43,13 +45,13 @@ void add_run_options(CLI::App& command, EvaluateArguments& arguments) {
 }
 
 // In place of the tables, too.
-void add_shard_options(CLI::App& command, EvaluateArguments& arguments) {
-  CLI::Option* shard = command.add_option(
+void add_shard_options(Command& command, EvaluateArguments& arguments) {
+  CommandOption shard = command.add_option(
       "--shard", arguments.shard,
       "run only part I of N of the sequences, I from 0, and write their results to --shard-file; "
       "`tumblesight merge` makes the figures of all parts");
   shard->check(shard_text())->type_name("I/N");
-  CLI::Option* file =
+  CommandOption file =
       command.add_option("--shard-file", arguments.shard_file,
                          "file of the results of a shard; a run that was stopped goes on in it");
   file->check(file_path())->type_name("FILE")->needs(shard);
@@ -57,7 +59,7 @@ void add_shard_options(CLI::App& command, EvaluateArguments& arguments) {
 }
 
 // In place of the tables. What must show the target is not an effect whose limit can be searched.
-void add_effect_limit_option(CLI::App& command, EvaluateArguments& arguments) {
+void add_effect_limit_option(Command& command, EvaluateArguments& arguments) {
   std::vector<std::string> names;
   for (const EffectRow& row : effect_table()) {
     const bool shows_target = row.strength != &Effects::wrong_object && row.strength != &Effects::sphere;
@@ -80,8 +82,8 @@ std::string default_paper_folder() {
   return files.installed ? quick : "docs, or with --sequences " + quick;
 }
 
-void add_paper_options(CLI::App& command, EvaluateArguments& arguments) {
-  CLI::Option* paper =
+void add_paper_options(Command& command, EvaluateArguments& arguments) {
+  CommandOption paper =
       command.add_flag("--paper", arguments.paper,
                        "all tables and figures of the paper, for every target with a model that ships");
   command
@@ -98,7 +100,8 @@ void add_paper_options(CLI::App& command, EvaluateArguments& arguments) {
       ->needs(paper);
 }
 
-// Prints the warnings of set_up_target on the standard error stream.
+}  // namespace
+
 Subject set_up_subject(const ScenarioArguments& arguments) {
   TargetSetup setup = set_up_target(arguments);
   for (const std::string& warning : setup.warnings) print_note(warning);
@@ -117,9 +120,7 @@ Subject set_up_subject(const ScenarioArguments& arguments) {
   return subject;
 }
 
-}  // namespace
-
-void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
+void add_evaluate_options(Command& command, EvaluateArguments& arguments) {
   arguments.scenario.sequences = 900;
   add_target_options(command, arguments.scenario);
   add_condition_option(command, arguments.conditions);
@@ -169,8 +170,8 @@ void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments) {
                  disturbance_examples("evaluate"));
 }
 
-CLI::Validator shard_text() {
-  return CLI::Validator(
+ValueCheck shard_text() {
+  return ValueCheck{
       [](std::string& text) {
         try {
           (void)shard_from(text);
@@ -179,10 +180,10 @@ CLI::Validator shard_text() {
           return std::string(error.what());
         }
       },
-      "");
+      "shard"};
 }
 
-void complete(const CLI::App& command, EvaluateArguments& arguments) {
+void complete(const Command& command, EvaluateArguments& arguments) {
   take_period_of_sensor(command, arguments.scenario);
   if (!arguments.paper) require_a_name(command, {arguments.scenario.mesh});
   arguments.sequences_given = command.get_option("--sequences")->count() > 0;
@@ -190,16 +191,15 @@ void complete(const CLI::App& command, EvaluateArguments& arguments) {
 }
 
 EvaluateArguments parsed_evaluate(const std::vector<std::string>& options) {
-  CLI::App command;
+  CommandLine line;
   EvaluateArguments arguments;
-  add_evaluate_options(command, arguments);
-  // CLI11 takes the words in reverse.
-  command.parse(std::vector<std::string>(options.rbegin(), options.rend()));
-  complete(command, arguments);
+  add_evaluate_options(line.command(), arguments);
+  line.parse(options);
+  complete(line.command(), arguments);
   return arguments;
 }
 
-void refuse_options_set_by_paper(const CLI::App& command) {
+void refuse_options_set_by_paper(const Command& command) {
   std::vector<std::string> own_options{"--target",   "--mesh",     "--inertia", "--condition", "--frames",
                                        "--model",    "--numerics", "--json",    "--csv",       "--report",
                                        "--curves",   "--effect",   "--sensor",  "--range",     "--peers",
@@ -207,26 +207,26 @@ void refuse_options_set_by_paper(const CLI::App& command) {
   for (const DisturbanceRow& row : kDisturbances) own_options.push_back(std::string("--") + row.name);
   for (const std::string& own : own_options) {
     if (command.get_option(own)->count() == 0) continue;
-    throw CLI::ValidationError("--paper", "sets " + own + " itself; leave " + own + " out");
+    throw ArgumentFault("--paper", "sets " + own + " itself; leave " + own + " out");
   }
 }
 
-void refuse_options_of_tables(const CLI::App& command) {
+void refuse_options_of_tables(const Command& command) {
   for (const char* other :
        {"--paper", "--curves", "--csv", "--report", "--baseline-sequences", "--peers", "--shard"}) {
     if (command.get_option(other)->count() == 0) continue;
-    throw CLI::ValidationError("--effect-limit", fmt::format("makes no tables; leave {} out", other));
+    throw ArgumentFault("--effect-limit", fmt::format("makes no tables; leave {} out", other));
   }
 }
 
-void refuse_options_of_merge(const CLI::App& command) {
+void refuse_options_of_merge(const Command& command) {
   for (const char* other : {"--json", "--csv", "--report"}) {
     if (command.get_option(other)->count() == 0) continue;
-    throw CLI::ValidationError(
+    throw ArgumentFault(
         "--shard", fmt::format("makes no figures; give {} to `tumblesight merge`, which does", other));
   }
   if (command.get_option("--peers")->count() > 0)
-    throw CLI::ValidationError("--shard",
+    throw ArgumentFault("--shard",
                                "runs no peers: their times are those of one process; leave --peers out");
 }
 
@@ -239,7 +239,7 @@ std::vector<std::string> missing_peers(const std::vector<PosePeerRow>& peers) {
     all += "\n  " + lines.back();
   }
   if (lines.size() == peers.size())
-    throw CLI::ValidationError("--peers", "this build has none of the peers:" + all);
+    throw ArgumentFault("--peers", "this build has none of the peers:" + all);
   return lines;
 }
 
@@ -250,7 +250,7 @@ std::vector<Condition> conditions_of(const EvaluateArguments& arguments) {
   for (const std::string& name : arguments.conditions) {
     const Condition condition = condition_from(name);
     const bool known = std::find(conditions.begin(), conditions.end(), condition) != conditions.end();
-    if (known) throw CLI::ValidationError("--condition", fmt::format("'{}' is given twice", name));
+    if (known) throw ArgumentFault("--condition", fmt::format("'{}' is given twice", name));
     conditions.push_back(condition);
   }
   return conditions;

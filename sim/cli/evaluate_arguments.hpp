@@ -1,13 +1,13 @@
 // The arguments of tumblesight evaluate.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "sim/baseline/pose_peer.hpp"
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/cli/evaluation_output.hpp"
 #include "sim/experiment/experiment.hpp"
 
@@ -33,29 +33,32 @@ struct EvaluateArguments {
   bool quiet = false;  // with --shard: no output but errors
 };
 
-void add_evaluate_options(CLI::App& command, EvaluateArguments& arguments);
+void add_evaluate_options(Command& command, EvaluateArguments& arguments);
 // I/N of --shard.
-CLI::Validator shard_text();
-// What depends on which options were given; after parsing. Throws CLI::ValidationError.
-void complete(const CLI::App& command, EvaluateArguments& arguments);
-// From options as they stand on a command line, without the verb. Throws CLI::ParseError.
+ValueCheck shard_text();
+// What depends on which options were given; after parsing. Throws ArgumentFault.
+void complete(const Command& command, EvaluateArguments& arguments);
+// From options as they stand on a command line, without the verb. Throws ArgumentFault.
 EvaluateArguments parsed_evaluate(const std::vector<std::string>& options);
-// Throws CLI::ValidationError if an option was given that --paper sets itself.
-void refuse_options_set_by_paper(const CLI::App& command);
-// Throws CLI::ValidationError if an option of the tables was given, which --effect-limit does not make.
-void refuse_options_of_tables(const CLI::App& command);
-// Throws CLI::ValidationError if an option was given with --shard that belongs to the figures of all shards.
-void refuse_options_of_merge(const CLI::App& command);
+// Throws ArgumentFault if an option was given that --paper sets itself.
+void refuse_options_set_by_paper(const Command& command);
+// Throws ArgumentFault if an option of the tables was given, which --effect-limit does not make.
+void refuse_options_of_tables(const Command& command);
+// Throws ArgumentFault if an option was given with --shard that belongs to the figures of all shards.
+void refuse_options_of_merge(const Command& command);
 
-// For --peers: a line for each peer that this build is without, with the remedy. Throws CLI::ValidationError
+// For --peers: a line for each peer that this build is without, with the remedy. Throws ArgumentFault
 // with these lines if it is without all of them.
 std::vector<std::string> missing_peers(const std::vector<PosePeerRow>& peers);
 
 // All settings except the conditions.
 ExperimentSettings experiment_settings(const EvaluateArguments& arguments);
-// All settings. Throws CLI::ValidationError or std::invalid_argument if they do not fit together, and as
+// All settings. Throws ArgumentFault or std::invalid_argument if they do not fit together, and as
 // require_usable_files() does.
 ExperimentSettings checked_settings(const EvaluateArguments& arguments);
+// The target of a scenario with its model. Prints the warnings of set_up_target() on the standard error stream, and throws as
+// it does.
+Subject set_up_subject(const ScenarioArguments& arguments);
 // Throws as set_up_subject() does, and if a condition needs an inertia that is not known.
 Subject checked_subject(const EvaluateArguments& arguments, const ExperimentSettings& settings);
 

@@ -34,7 +34,7 @@ namespace {
                   "same command begins "
                   "anew. One with --shard and --shard-file can be continued: see tumblesight evaluate --help",
                   signal, sequences, counted(wanted, "sequence")));
-  throw CLI::RuntimeError(128 + signal);
+  throw Exit(128 + signal);
 }
 
 // Returns whether there is a condition with mostly wrong attitudes. Says what each has, and what it can mean.
@@ -76,23 +76,23 @@ void evaluate(const EvaluateArguments& arguments) {
   print_results(results);
   const bool wrong = print_what_is_wrong(arguments, subject, results.subjects.front());
   print_report_path(arguments.files);
-  if (wrong) throw CLI::RuntimeError(kOfNoUse);
+  if (wrong) throw Exit(kOfNoUse);
 }
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command = add_verb(app, "evaluate");
+void add_evaluate_command(Command& app, const std::string& command_line) {
+  Command command = add_verb(app, "evaluate");
   auto arguments = std::make_shared<EvaluateArguments>();
   arguments->command_line = command_line;
-  add_evaluate_options(*command, *arguments);
-  command->callback([arguments, command] {
-    complete(*command, *arguments);
+  add_evaluate_options(command, *arguments);
+  command.callback([arguments, command] {
+    complete(command, *arguments);
     if (!arguments->effect_limit.empty()) {
-      refuse_options_of_tables(*command);
+      refuse_options_of_tables(command);
       evaluate_effect_limit(*arguments);
     } else if (arguments->paper) {
-      refuse_options_set_by_paper(*command);
+      refuse_options_set_by_paper(command);
       evaluate_paper(*arguments);
     } else if (!arguments->shard.empty()) {
       evaluate_shard(*arguments);

@@ -63,7 +63,7 @@ nlohmann::ordered_json effect_limits_json(const Subject& subject, const Experime
       "tumblesight: interrupted by signal {}; what was found of the strengths so far stands above, "
       "no file was written, and the same command begins anew",
       Interruption::signal()));
-  throw CLI::RuntimeError(128 + Interruption::signal());
+  throw Exit(128 + Interruption::signal());
 }
 
 }  // namespace
@@ -72,10 +72,10 @@ void evaluate_effect_limit(const EvaluateArguments& arguments) {
   ExperimentSettings settings = checked_settings(arguments);
   settings.baseline_sequences = 0;
   if (settings.conditions.size() > 1)
-    throw CLI::ValidationError("--effect-limit", "is searched under one --condition");
+    throw ArgumentFault("--effect-limit", "is searched under one --condition");
   const EffectRow& row = effect_named(arguments.effect_limit);
   if (settings.effects.*row.strength != 0.0)
-    throw CLI::ValidationError(
+    throw ArgumentFault(
         "--effect-limit", fmt::format("searches the strength of {0}; leave {0} out of --effect", row.name));
   const Subject subject = checked_subject(arguments, settings);
   announce(subject, settings);

@@ -83,7 +83,7 @@ void announce(const PaperPlan& plan, const EvaluateArguments& arguments, const s
       fmt::format("tumblesight: interrupted by signal {} after {} of the {}; {}, and the same command begins "
                   "anew. A campaign can be continued: see tumblesight campaign --help",
                   Interruption::signal(), finished, counted(all, "subject"), kept));
-  throw CLI::RuntimeError(128 + Interruption::signal());
+  throw Exit(128 + Interruption::signal());
 }
 
 }  // namespace

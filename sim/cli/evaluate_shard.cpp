@@ -36,7 +36,7 @@ std::size_t sequences_of(const ExperimentSettings& settings, const Shard& shard)
 
 void require_a_sequence(const Shard& shard, const ExperimentSettings& settings) {
   if (shard.count <= settings.sequences) return;
-  throw CLI::ValidationError(
+  throw ArgumentFault(
       "--shard", fmt::format("'{}' are more parts than the {}; give at most as many parts as --sequences",
                              to_string(shard), counted(settings.sequences, "sequence")));
 }

@@ -58,7 +58,7 @@ void print_curves(const SubjectResult& subject) {
 
 }  // namespace
 
-void add_results_options(CLI::App& command, ResultsFiles& files) {
+void add_results_options(Command& command, ResultsFiles& files) {
   command
       .add_option("--csv", files.csv, "write the figures to this file, one line per estimator and condition")
       ->check(file_path())

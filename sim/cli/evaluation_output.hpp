@@ -1,10 +1,10 @@
 // What `evaluate`, `merge` and `campaign` show and write of an evaluation, the same for each.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "sim/cli/arguments.hpp"
+#include "sim/cli/command.hpp"
 #include "sim/evaluation/results.hpp"
 #include "sim/experiment/experiment.hpp"
 
@@ -16,7 +16,7 @@ struct ResultsFiles {
   std::string csv;
   std::string report;
 };
-void add_results_options(CLI::App& command, ResultsFiles& files);  // --csv, --json, --report
+void add_results_options(Command& command, ResultsFiles& files);  // --csv, --json, --report
 OptionFiles files_written(const ResultsFiles& files);
 
 // Prints what is measured.

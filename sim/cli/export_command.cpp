@@ -35,7 +35,7 @@ std::string explanations() {
 
 void require_a_name(const std::string& prefix) {
   if (!std::filesystem::path(prefix).filename().empty()) return;
-  throw CLI::ValidationError("--onnx", "'" + prefix + "' is a folder; add the first part of the file names");
+  throw ArgumentFault("--onnx", "'" + prefix + "' is a folder; add the first part of the file names");
 }
 
 void export_model(const ExportArguments& arguments) {
@@ -56,18 +56,18 @@ void export_model(const ExportArguments& arguments) {
 
 }  // namespace
 
-void add_export_command(CLI::App& app, const std::string&) {
+void add_export_command(Command& app, const std::string&) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = add_verb(app, "export");
-  command->footer("\nFiles (opset 13)\n" + explanations() + "\n" + kUseOfTheModels +
+  Command command = add_verb(app, "export");
+  command.footer("\nFiles (opset 13)\n" + explanations() + "\n" + kUseOfTheModels +
                   "\nExample\n"
                   "  tumblesight export --model out/near/near_shoemaker.float32.tsm \\\n"
                   "      --onnx out/near/near_shoemaker\n");
-  add_float32_model_option(*command, arguments->model);
-  command->add_option("--onnx", arguments->onnx, "first part of the file names")
+  add_float32_model_option(command, arguments->model);
+  command.add_option("--onnx", arguments->onnx, "first part of the file names")
       ->required()
       ->type_name("PREFIX");
-  command->callback([arguments] { export_model(*arguments); });
+  command.callback([arguments] { export_model(*arguments); });
 }
 
 }  // namespace tumblesight::sim

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "hal/dds/idl/development_key.hpp"
@@ -34,12 +35,12 @@ constexpr int kDefaultFlightDomain = 0;  // of a flight program without --domain
 constexpr int kInterrupted = 128;        // and the number of the signal, as a shell reports it
 constexpr const char* kNoFlight = "none";
 
-CLI::Validator speed() {
+ValueCheck speed() {
   const auto check = [](std::string& text) -> std::string {
-    if (text == kFastestPossible || number(kSlowest, kFastest)(text).empty()) return {};
+    if (text == kFastestPossible || number(kSlowest, kFastest).fault_of(text).empty()) return {};
     return fmt::format("must be max or a number from {:g} to {:g}, not '{}'", kSlowest, kFastest, text);
   };
-  return CLI::Validator(check, "", "speed");
+  return ValueCheck{check, "speed"};
 }
 
 fs::path shipped_flight() {
@@ -101,7 +102,7 @@ bool is_recording_of_a_run(const std::string& path) {
 
 }  // namespace
 
-void add_flight_options(CLI::App& command, FlightArguments& arguments) {
+void add_flight_options(Command& command, FlightArguments& arguments) {
   command
       .add_option("--speed", arguments.speed, "max: as fast as possible; or N times real time (0.1 to 1000)")
       ->check(speed())
@@ -221,9 +222,9 @@ void finish_flight(const FlightArguments& arguments, const std::string& page, co
   fmt::print("\n");
   std::fflush(stdout);
   for (const std::string& fault : faults) print_message("tumblesight: " + fault);
-  if (Interruption::signal() != 0) throw CLI::RuntimeError(kInterrupted + Interruption::signal());
-  if (!faults.empty()) throw CLI::RuntimeError(kFailed);
-  if (mostly_wrong) throw CLI::RuntimeError(kOfNoUse);
+  if (Interruption::signal() != 0) throw Exit(kInterrupted + Interruption::signal());
+  if (!faults.empty()) throw Exit(kFailed);
+  if (mostly_wrong) throw Exit(kOfNoUse);
 }
 
 }  // namespace tumblesight::sim

@@ -1,11 +1,11 @@
 // The options of the verbs that run the flight program, and what these verbs do with them: simulate, replay.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "sim/cli/command.hpp"
 #include "sim/cli/target_setup.hpp"
 #include "sim/report/run_page.hpp"
 #include "sim/sil/sil_run.hpp"
@@ -27,7 +27,7 @@ struct FlightArguments {
 };
 
 // --speed, --flight, --command-key, --dds-security, --domain, --mcap.
-void add_flight_options(CLI::App& command, FlightArguments& arguments);
+void add_flight_options(Command& command, FlightArguments& arguments);
 
 // Throws std::runtime_error that names the flight program or the key if it cannot be used.
 SilSettings sil_settings(const FlightArguments& arguments, const std::string& target,
@@ -46,7 +46,7 @@ std::string default_report_path(const std::string& name);
 void announce_flight(const SilSettings& settings, const TargetSetup& setup);
 
 // Writes report and figures, even if one of them cannot be written, and prints the faults of the run and of
-// the files. Throws CLI::RuntimeError with the exit status unless all went well: 1, or 128 and the signal
+// the files. Throws Exit with the exit status unless all went well: 1, or 128 and the signal
 // that ended the run, or kOfNoUse if nothing failed and the attitudes are mostly wrong.
 void finish_flight(const FlightArguments& arguments, const std::string& page, const std::string& json,
                    const nlohmann::ordered_json& figures, std::vector<std::string> faults, bool mostly_wrong);

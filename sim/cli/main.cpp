@@ -1,7 +1,6 @@
 // tumblesight: lists the verbs of the ground tool, and starts the program of one, tumblesight-VERB beside it.
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -9,16 +8,13 @@
 #include <exception>
 #include <filesystem>
 #include <iterator>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "sim/cli/command_line.hpp"
 #include "sim/cli/exit_status.hpp"
-#include "sim/cli/help_formatter.hpp"
-#include "sim/cli/parse_faults.hpp"
 #include "sim/cli/verb_program.hpp"
 #include "sim/cli/verb_table.hpp"
-#include "sim/cli/version_text.hpp"
 #include "sim/host/program_files.hpp"
 
 namespace {
@@ -60,15 +56,15 @@ int start(const Verb& verb, char** argv) {
   return kFailed;
 }
 
-void add_verbs_of_build(CLI::App& app) {
+void add_verbs_of_build(Command& tool) {
   std::vector<Verb> absent;
   for (const Verb& verb : verbs()) {
     if (is_in_build(verb))
-      app.add_subcommand(verb.name, verb.summary);
+      tool.add_subcommand(verb.name, verb.summary);
     else
       absent.push_back(verb);
   }
-  app.footer(
+  tool.footer(
       "\nStart with\n  tumblesight simulate\n"
       "and see `tumblesight SUBCOMMAND --help` for the options of each.\n" +
       absent_verbs_text(absent));
@@ -79,20 +75,13 @@ void add_verbs_of_build(CLI::App& app) {
 int main(int argc, char** argv) {
   prepare_program();
   if (const Verb* verb = argc > 1 ? verb_named(argv[1]) : nullptr) return start(*verb, argv);
-  CLI::App app{"Tumblesight: attitude of tumbling spacecraft from flash-LiDAR frames."};
-  app.name("tumblesight");
-  app.set_version_flag("--version", version_text(), "version, commit, model format and interface hash");
-  app.require_subcommand(1);
-  app.formatter(std::make_shared<HelpFormatter>());
+  CommandLine line("Tumblesight: attitude of tumbling spacecraft from flash-LiDAR frames.",
+                   "version, commit, model format and interface hash");
   try {
-    add_verbs_of_build(app);
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return finish_output(app.exit(error));
-    return finish_output(report_fault(fault_of_parsing(app, error)));
+    add_verbs_of_build(line.command());
+    return finish_output(line.run({argv + 1, argv + std::max(argc, 1)}));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tumblesight: %s\n", error.what());
     return kFailed;
   }
-  return finish_output(0);
 }

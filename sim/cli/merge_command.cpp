@@ -42,22 +42,22 @@ void merge(const MergeArguments& arguments) {
   print_results(results);
   const bool wrong = print_mostly_wrong(results.subjects.front()) != nullptr;
   print_report_path(arguments.files);
-  if (wrong) throw CLI::RuntimeError(kOfNoUse);
+  if (wrong) throw Exit(kOfNoUse);
 }
 
 }  // namespace
 
-void add_merge_command(CLI::App& app, const std::string&) {
-  CLI::App* command = add_verb(app, "merge");
+void add_merge_command(Command& app, const std::string&) {
+  Command command = add_verb(app, "merge");
   auto arguments = std::make_shared<MergeArguments>();
-  command->add_option("shards", arguments->shards, "all shard files of one evaluation, in any order")
+  command.add_option("shards", arguments->shards, "all shard files of one evaluation, in any order")
       ->required()
       ->check(existing_file())
       ->type_name("FILE");
-  command->add_flag("--partial", arguments->partial,
+  command.add_flag("--partial", arguments->partial,
                     "make the figures from the sequences that are done, although some are missing");
-  add_results_options(*command, arguments->files);
-  command->footer(
+  add_results_options(command, arguments->files);
+  command.footer(
       "\nTables, JSON, CSV and report are those of one process, bit for bit, whatever the\n"
       "number of shards and their order; only times differ. Refused, by name: shards of\n"
       "another evaluation (target, mesh, model, sensor, seed and so on), a sequence\n"
@@ -69,7 +69,7 @@ void add_merge_command(CLI::App& app, const std::string&) {
       "  tumblesight evaluate --sequences 10000 --shard 1/2 --shard-file half1.shard\n"
       "  tumblesight merge half0.shard half1.shard --json figures.json\n\n"
       "`tumblesight campaign` does this for many evaluations, on a cluster too.\n");
-  command->callback([arguments] { merge(*arguments); });
+  command.callback([arguments] { merge(*arguments); });
 }
 
 }  // namespace tumblesight::sim

@@ -57,7 +57,7 @@ void require_origin_near(const MeshCommandArguments& arguments, const MeshInspec
   const Eigen::Vector3d& centre_trf_m = found.symmetry.centre_trf_m;
   const double distance_m = (origin_trf_m - centre_trf_m).norm();
   if (distance_m <= kMost_radii * found.centred_radius_m) return;
-  throw CLI::ValidationError(
+  throw ArgumentFault(
       "--origin",
       fmt::format("is {:.4g} m from the middle of the surface, ({:.4g}, {:.4g}, {:.4g}) m, whose radius is "
                   "{:.3g} m; give a place within {:g} radii, best the centre of mass",
@@ -105,17 +105,17 @@ int show_mesh(const MeshCommandArguments& arguments, const std::string& command_
   return faulty ? kOfNoUse : 0;
 }
 
-CLI::Validator mesh_to_write() {
+ValueCheck mesh_to_write() {
   const auto check = [](std::string& path) -> std::string {
     for (const char* ending : {".stl", ".obj"}) {
       if (path.size() > 4 && path.compare(path.size() - 4, 4, ending) == 0) return {};
     }
     return fmt::format("must end in .stl or .obj, not '{}'", path);
   };
-  return CLI::Validator(check, "", "mesh file");
+  return ValueCheck{check, "mesh file"};
 }
 
-void add_mesh_of_mission_option(CLI::App& command, MeshCommandArguments& arguments) {
+void add_mesh_of_mission_option(Command& command, MeshCommandArguments& arguments) {
   const auto take = [&arguments](const std::string& text) {
     try {
       const Mission mission = mission_named(text, condition_names());
@@ -127,10 +127,10 @@ void add_mesh_of_mission_option(CLI::App& command, MeshCommandArguments& argumen
       arguments.mesh_scale = mission.mesh.scale;
       arguments.moved_origin_trf_m = mesh_file_options(mission.mesh).origin_trf_m;
     } catch (const std::invalid_argument& error) {
-      throw CLI::ValidationError("--mission", error.what());
+      throw ArgumentFault("--mission", error.what());
     }
   };
-  CLI::Option* option = command.add_option_function<std::string>(
+  CommandOption option = command.add_option_function<std::string>(
       "--mission", take, "the mesh of this mission file, as the mission reads it");
   option->type_name("FILE");
   for (const char* same : {"FILE", "--mesh-up", "--mesh-scale"}) option->excludes(command.get_option(same));
@@ -138,34 +138,34 @@ void add_mesh_of_mission_option(CLI::App& command, MeshCommandArguments& argumen
 
 }  // namespace
 
-void add_mesh_command(CLI::App& app, const std::string& command_line) {
+void add_mesh_command(Command& app, const std::string& command_line) {
   auto arguments = std::make_shared<MeshCommandArguments>();
-  CLI::App* command = add_verb(app, "mesh");
-  command->footer(
+  Command command = add_verb(app, "mesh");
+  command.footer(
       "\nReads STL, OBJ, PLY, glTF and GLB, also compressed with Draco. Exits with 0, or\n"
       "with 4 if the mesh is of no use as it is. docs/own_spacecraft.md explains each\n"
       "finding.\n\n"
       "Example: a mesh in millimetres, looked at, and written about its centre of mass\n"
       "  tumblesight mesh craft.glb --mesh-scale 0.001 --html craft.html\n"
       "  tumblesight mesh craft.glb --mesh-scale 0.001 --fix craft.stl --origin 0,0,0.8\n");
-  command->add_option("FILE", arguments->file, "mesh file, unless --mission names one")->check(file_path());
+  command.add_option("FILE", arguments->file, "mesh file, unless --mission names one")->check(file_path());
   command
-      ->add_option("--mesh-up", arguments->mesh_up,
+      .add_option("--mesh-up", arguments->mesh_up,
                    "axis of the mesh file that points along the target frame's z")
       ->check(one_of({"y", "z"}))
       ->type_name("y|z")
       ->capture_default_str();
-  limit_number(command->add_option("--mesh-scale", arguments->mesh_scale, "metres per unit of the mesh file"),
+  limit_number(command.add_option("--mesh-scale", arguments->mesh_scale, "metres per unit of the mesh file"),
                1e-6, 1e6)
       ->type_name("X")
       ->capture_default_str();
-  add_mesh_of_mission_option(*command, *arguments);
-  CLI::Option* fix_option = command->add_option(
+  add_mesh_of_mission_option(command, *arguments);
+  CommandOption fix_option = command.add_option(
       "--fix", arguments->fix,
       "write a cleaned copy to this file (.stl or .obj): in metres, z up, about a new origin");
   fix_option->check(mesh_to_write())->type_name("FILE");
   command
-      ->add_option(
+      .add_option(
           "--origin", arguments->origin,
           "of the cleaned copy: a place in the target frame in metres, best the centre of mass; 0,0,0 leaves "
           "it [the centre of the outer surface]")
@@ -174,15 +174,15 @@ void add_mesh_command(CLI::App& app, const std::string& command_line) {
       ->check(number(-1e9, 1e9))
       ->type_name("X,Y,Z")
       ->needs(fix_option);
-  command->add_flag("--keep-strays", arguments->keep_strays, "leave parts that lie apart in the cleaned copy")
+  command.add_flag("--keep-strays", arguments->keep_strays, "leave parts that lie apart in the cleaned copy")
       ->needs(fix_option);
-  command->add_option("--html", arguments->html, "write a page with pictures of the six sides to this file")
+  command.add_option("--html", arguments->html, "write a page with pictures of the six sides to this file")
       ->check(file_path())
       ->type_name("FILE");
-  add_json_option(*command, arguments->json);
-  command->callback([arguments, command_line] {
-    if (arguments->file.empty()) throw CLI::RequiredError("FILE (or --mission)");
-    throw CLI::RuntimeError(show_mesh(*arguments, command_line));
+  add_json_option(command, arguments->json);
+  command.callback([arguments, command_line] {
+    if (arguments->file.empty()) throw ArgumentFault("FILE (or --mission) is required");
+    throw Exit(show_mesh(*arguments, command_line));
   });
 }
 

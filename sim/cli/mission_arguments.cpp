@@ -9,12 +9,12 @@
 namespace tumblesight::sim {
 namespace {
 
-bool is_given(const CLI::App& command, const char* option) {
-  const CLI::Option* found = command.get_option_no_throw(option);
-  return found != nullptr && found->count() > 0;
+bool is_given(const Command& command, const char* option) {
+  const CommandOption found = command.get_option_no_throw(option);
+  return found && found->count() > 0;
 }
 
-void take_sensor_of(const Mission& mission, const CLI::App& command, SensorArguments& sensor) {
+void take_sensor_of(const Mission& mission, const Command& command, SensorArguments& sensor) {
   const SensorArguments wanted = sensor_arguments_of(mission);
   if (!is_given(command, "--sensor")) {
     sensor.sensor = wanted.sensor;
@@ -24,24 +24,24 @@ void take_sensor_of(const Mission& mission, const CLI::App& command, SensorArgum
   sensor.largest_rate_deg_s = wanted.largest_rate_deg_s;
 }
 
-void add_mission(CLI::App& command, const std::function<void(const Mission&)>& take) {
+void add_mission(Command& command, const std::function<void(const Mission&)>& take) {
   const auto read = [take](const std::string& text) {
     try {
       const Mission mission = mission_named(text, condition_names());
       use_mission(mission);
       take(mission);
     } catch (const std::invalid_argument& error) {
-      throw CLI::ValidationError("--mission", error.what());
+      throw ArgumentFault("--mission", error.what());
     }
   };
-  CLI::Option* option =
+  CommandOption option =
       command.add_option_function<std::string>("--mission", read,
                                                "a TOML file that says all this at once: target, mesh, axes, "
                                                "unit, inertia, sensor, ranges; or the name of "
                                                "a target that ships");
   option->type_name("FILE|NAME");
   for (const char* same : {"--target", "--mesh", "--mesh-up", "--mesh-scale", "--inertia"}) {
-    if (CLI::Option* other = command.get_option_no_throw(same)) option->excludes(other);
+    if (CommandOption other = command.get_option_no_throw(same)) option->excludes(other);
   }
 }
 
@@ -57,7 +57,7 @@ SensorArguments sensor_arguments_of(const Mission& mission) {
   return sensor;
 }
 
-void add_mission_option(CLI::App& command, ScenarioArguments& arguments) {
+void add_mission_option(Command& command, ScenarioArguments& arguments) {
   add_mission(command, [&command, &arguments](const Mission& mission) {
     arguments.mission = mission;
     arguments.target = mission.name;
@@ -70,7 +70,7 @@ void add_mission_option(CLI::App& command, ScenarioArguments& arguments) {
   });
 }
 
-void add_mission_option(CLI::App& command, std::string& target, MeshArguments& meshes,
+void add_mission_option(Command& command, std::string& target, MeshArguments& meshes,
                         SensorArguments& sensor, std::optional<Mission>& known) {
   add_mission(command, [&command, &target, &meshes, &sensor, &known](const Mission& mission) {
     known = mission;

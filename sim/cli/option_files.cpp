@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
 
+#include "sim/cli/command.hpp"
 #include "sim/host/place.hpp"
 #include "sim/host/write_file.hpp"
 
@@ -37,7 +37,7 @@ void require_separate_files(const OptionFiles& read, const OptionFiles& written)
   for (const OptionFile& file : written) {
     for (const OptionFile& other : others) {
       if (!is_same_file(file.path, other.path)) continue;
-      throw CLI::ValidationError(
+      throw ArgumentFault(
           file.option,
           fmt::format("'{}' is also the file of {}; give two different files", file.path, other.option));
     }

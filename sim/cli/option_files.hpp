@@ -19,7 +19,7 @@ std::string full_path(const std::string& path);
 
 // However the paths are spelled, and through links as well. False if one of them is empty.
 bool is_same_file(const std::string& path, const std::string& other);
-// Throws CLI::ValidationError that names both options if a file that is written is also read, or is written
+// Throws ArgumentFault that names both options if a file that is written is also read, or is written
 // twice.
 void require_separate_files(const OptionFiles& read, const OptionFiles& written);
 // Every verb calls it before it writes. The same, and throws as require_writable() does.

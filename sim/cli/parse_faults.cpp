@@ -1,5 +1,6 @@
 #include "sim/cli/parse_faults.hpp"
 
+#include <CLI/CLI.hpp>
 #include <vector>
 
 #include "sim/host/nearest_name.hpp"
@@ -62,8 +63,13 @@ std::string fault_of_parsing(const CLI::App& app, const CLI::ParseError& error) 
   const auto code = static_cast<CLI::ExitCodes>(error.get_exit_code());
   const bool may_be_misspelt = code == CLI::ExitCodes::RequiredError || code == CLI::ExitCodes::ExtrasError ||
                                code == CLI::ExitCodes::RequiresError;
-  std::string fault = may_be_misspelt ? unknown_word(app, command, typed) : "";
-  if (fault.empty()) fault = error.what();
+  const std::string fault = may_be_misspelt ? unknown_word(app, command, typed) : "";
+  return with_help(app, fault.empty() ? error.what() : fault);
+}
+
+std::string with_help(const CLI::App& app, const std::string& fault) {
+  std::string typed;
+  (void)innermost(app, typed);
   return fault + " (see " + typed + " --help)";
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/cli/option_files.hpp"
 #include "sim/host/progress.hpp"
 #include "sim/host/write_file.hpp"
 #include "sim/surface/target_surface.hpp"

@@ -145,11 +145,11 @@ void require_the_missions_target(const QuantizeArguments& arguments, const std::
 // Writes the image `--model` with the surface of the mesh.
 void replace_surface(const QuantizeArguments& arguments) {
   if (arguments.meshes.meshes.size() > 1)
-    throw CLI::ValidationError("--surface-only", "takes the surface of one mesh; give one --mesh");
+    throw ArgumentFault("--surface-only", "takes the surface of one mesh; give one --mesh");
   if (!arguments.effect_sets.empty())
-    throw CLI::ValidationError("--surface-only", "renders no frames; leave --effect-set out");
+    throw ArgumentFault("--surface-only", "renders no frames; leave --effect-set out");
   if (!arguments.symmetry.is_none())
-    throw CLI::ValidationError("--surface-only", "compares no attitudes; leave --symmetry out");
+    throw ArgumentFault("--surface-only", "compares no attitudes; leave --symmetry out");
   const SensorFiles sensor = require_usable_files(arguments);
   const gnc::ModelHeader header = read_fixed_point_header(arguments.model);
   require_the_missions_target(arguments, header.target.data());
@@ -165,11 +165,11 @@ void replace_surface(const QuantizeArguments& arguments) {
 }
 
 // All others are of the calibration or of the surface, and would have no effect.
-void require_only_files(const CLI::App& command) {
+void require_only_files(const Command& command) {
   const std::set<std::string> allowed{"--to-float32", "--model", "--out"};
-  for (const CLI::Option* option : command.get_options()) {
+  for (const CommandOption option : command.get_options()) {
     if (option->count() > 0 && allowed.count(option->get_name()) == 0)
-      throw CLI::ValidationError("--to-float32",
+      throw ArgumentFault("--to-float32",
                                  fmt::format("takes no {}; leave it out", option->get_name()));
   }
 }
@@ -224,7 +224,7 @@ void quantize_file(QuantizeArguments arguments) {
         "give the meshes, axes and unit (--mesh, --mesh-up, --mesh-scale), the sensor and the effects of "
         "its training; its target is {}\n",
         report.difference.mean_deg, kMostDifference_deg, arguments.out, model->header.target.data());
-    throw CLI::RuntimeError(kOfNoUse);
+    throw Exit(kOfNoUse);
   }
   copy_sensor_file(sensor);
 }
@@ -253,51 +253,51 @@ constexpr const char* kFooter =
     "  tumblesight quantize --to-float32 --model fsw/models/magellan.tsm \\\n"
     "      --out magellan.float32.tsm\n";
 
-void add_options_without_calibration(CLI::App& command, QuantizeArguments& arguments) {
-  CLI::Option* surface =
+void add_options_without_calibration(Command& command, QuantizeArguments& arguments) {
+  CommandOption surface =
       command.add_flag("--surface-only", arguments.surface_only,
                        "--model is in fixed point: keep its weights, and replace its surface by that of "
                        "--mesh, which must have its size");
-  surface->needs("--out");
+  surface->needs(command.get_option("--out"));
   for (const char* of_calibration : {"--effect", "--sensor", "--range", "--sequences"})
     surface->excludes(command.get_option(of_calibration));
   command
       .add_flag("--to-float32", arguments.to_float32,
                 "--model is in fixed point: write the float32 image of the same weights; takes no options "
                 "but --model and --out")
-      ->needs("--out");
+      ->needs(command.get_option("--out"));
 }
 
 }  // namespace
 
-void add_quantize_command(CLI::App& app, const std::string&) {
+void add_quantize_command(Command& app, const std::string&) {
   auto arguments = std::make_shared<QuantizeArguments>();
-  CLI::App* command = add_verb(app, "quantize");
-  command->footer(kFooter);
-  add_float32_model_option(*command, arguments->model);
-  CLI::Option* model = command->get_option("--model");
+  Command command = add_verb(app, "quantize");
+  command.footer(kFooter);
+  add_float32_model_option(command, arguments->model);
+  CommandOption model = command.get_option("--model");
   model->description(model->get_description() +
                      "; with --surface-only or --to-float32: a model image in fixed point");
   command
-      ->add_option("--out", arguments->out,
+      .add_option("--out", arguments->out,
                    "model image to write [--model without .float32; --surface-only has no default, nor has "
                    "--to-float32]")
       ->check(file_path())
       ->type_name("FILE");
-  add_mesh_options(*command, arguments->meshes);
-  add_mission_option(*command, arguments->target, arguments->meshes, arguments->sensor, arguments->mission);
-  add_effect_option(*command, arguments->effects);
-  add_effect_set_option(*command, arguments->effect_sets);
-  add_sensor_options(*command, arguments->sensor);
-  add_symmetry_option(*command, arguments->symmetry);
-  limit_whole_number(command->add_option("--sequences", arguments->sequences,
+  add_mesh_options(command, arguments->meshes);
+  add_mission_option(command, arguments->target, arguments->meshes, arguments->sensor, arguments->mission);
+  add_effect_option(command, arguments->effects);
+  add_effect_set_option(command, arguments->effect_sets);
+  add_sensor_options(command, arguments->sensor);
+  add_symmetry_option(command, arguments->symmetry);
+  limit_whole_number(command.add_option("--sequences", arguments->sequences,
                                          "sequences of ten frames to render for calibration"),
                      10, 10'000)
       ->type_name("N")
       ->capture_default_str();
-  add_options_without_calibration(*command, *arguments);
-  command->callback([command, arguments] {
-    if (arguments->to_float32) require_only_files(*command);
+  add_options_without_calibration(command, *arguments);
+  command.callback([command, arguments] {
+    if (arguments->to_float32) require_only_files(command);
     quantize_file(*arguments);
   });
 }

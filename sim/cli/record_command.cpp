@@ -109,11 +109,11 @@ void record(const RecordArguments& arguments) {
 
 }  // namespace
 
-void add_record_command(CLI::App& app, const std::string&) {
+void add_record_command(Command& app, const std::string&) {
   auto arguments = std::make_shared<RecordArguments>();
   arguments->scenario.sequences = 2;
-  CLI::App* command = add_verb(app, "record");
-  command->footer(
+  Command command = add_verb(app, "record");
+  command.footer(
       "\nThe recording holds the frames of the LiDAR, one every 2.7 s unless --period\n"
       "says otherwise, the chaser's attitude at each, and a pause between two\n"
       "sequences. The truth is a text file with the true attitude, rate and position\n"
@@ -124,37 +124,37 @@ void add_record_command(CLI::App& app, const std::string&) {
       "\nExample: a recording as the audit replays it on every processor\n"
       "  tumblesight record --target near_shoemaker --condition degraded \\\n"
       "      --out frames.tslr\n");
-  add_target_options(*command, arguments->scenario);
-  add_condition_option(*command, arguments->scenario.condition);
-  add_sequence_options(*command, arguments->scenario);
-  add_sensor_options(*command, arguments->scenario.sensor);
-  add_effect_option(*command, arguments->scenario.effects);
-  add_disturbance_options(*command, arguments->scenario.disturbances);
+  add_target_options(command, arguments->scenario);
+  add_condition_option(command, arguments->scenario.condition);
+  add_sequence_options(command, arguments->scenario);
+  add_sensor_options(command, arguments->scenario.sensor);
+  add_effect_option(command, arguments->scenario.effects);
+  add_disturbance_options(command, arguments->scenario.disturbances);
   command
-      ->add_option("--model", arguments->scenario.model,
+      .add_option("--model", arguments->scenario.model,
                    "model image that is to see the frames: its swath, its sensor [the one that ships for the "
                    "target; without one the mesh]")
       ->check(existing_model_image())
       ->type_name("FILE");
-  command->add_option("--out", arguments->out, "recording to write")
+  command.add_option("--out", arguments->out, "recording to write")
       ->required()
       ->check(file_path())
       ->type_name("FILE");
   command
-      ->add_option("--truth", arguments->truth,
+      .add_option("--truth", arguments->truth,
                    "truth to write [beside the recording: FRAMES.truth.csv]; none: no truth")
       ->check(file_path())
       ->type_name("FILE");
   command
-      ->add_option(
+      .add_option(
           "--mcap", arguments->mcap,
           "also write frames and truth as an MCAP file, for tumblesight console and replay, Foxglove, "
           "Lichtblick or PlotJuggler")
       ->check(file_path())
       ->type_name("FILE");
-  command->callback([arguments, command] {
-    take_period_of_sensor(*command, arguments->scenario);
-    require_a_name(*command, {arguments->scenario.mesh});
+  command.callback([arguments, command] {
+    take_period_of_sensor(command, arguments->scenario);
+    require_a_name(command, {arguments->scenario.mesh});
     record(*arguments);
   });
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -190,12 +191,12 @@ std::vector<std::string> compare_states(const RunSteps& steps, const SilRunResul
 void replay_run(const ReplayArguments& given) {
   ReplayArguments arguments = given;
   if (!arguments.truth.empty())
-    throw CLI::ValidationError("--truth", "is of recordings of frames; this one of a run has its own truth");
+    throw ArgumentFault("--truth", "is of recordings of frames; this one of a run has its own truth");
   require_usable_outputs(arguments, files_read(arguments, {}), arguments.scenario.json);
   RunSteps steps(arguments.recording);
   if (steps.target() != arguments.scenario.target) {
     if (arguments.is_target_given)
-      throw CLI::ValidationError("--target", fmt::format("{}: the recorded run is of {}",
+      throw ArgumentFault("--target", fmt::format("{}: the recorded run is of {}",
                                                          arguments.scenario.target, steps.target()));
     arguments.scenario.target = steps.target();
   }
@@ -259,32 +260,32 @@ void replay(ReplayArguments arguments) {
 
 }  // namespace
 
-void add_replay_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command = add_verb(app, "replay");
+void add_replay_command(Command& app, const std::string& command_line) {
+  Command command = add_verb(app, "replay");
   auto arguments = std::make_shared<ReplayArguments>();
   arguments->command_line = command_line;
   command
-      ->add_option("RECORDING", arguments->recording,
+      .add_option("RECORDING", arguments->recording,
                    "frames, as `tumblesight record` or a program of your own writes them; or an MCAP "
                    "file of simulate --mcap or record --mcap")
       ->required()
       ->check(existing_file())
       ->type_name("FILE");
   command
-      ->add_option("--truth", arguments->truth,
+      .add_option("--truth", arguments->truth,
                    "true attitudes of the frames; none: not known [FRAMES.truth.csv beside the recording, if "
                    "there is one]")
       ->check(file_path())
       ->type_name("FILE");
-  add_target_option(*command, arguments->scenario.target, TargetChoice::kWithModel);
-  add_mission_option(*command, arguments->scenario);
-  add_model_options(*command, arguments->scenario);
-  add_json_option(*command, arguments->scenario.json);
-  add_flight_options(*command, *arguments);
-  add_report_option(*command, arguments->report,
+  add_target_option(command, arguments->scenario.target, TargetChoice::kWithModel);
+  add_mission_option(command, arguments->scenario);
+  add_model_options(command, arguments->scenario);
+  add_json_option(command, arguments->scenario.json);
+  add_flight_options(command, *arguments);
+  add_report_option(command, arguments->report,
                     fmt::format(" [out/<recording>_<CRC-32 of its path>_replay.html of {}]",
                                 program_files().output_parent));
-  command->footer(
+  command.footer(
       "\nThe flight program gets one cycle per frame, at its exposure time, and a cycle\n"
       "without a frame wherever one is missing for 2.7 s. It sees nothing of the truth.\n"
       "docs/icd.md describes recording, truth, and what a frame must be like;\n"
@@ -302,8 +303,8 @@ void add_replay_command(CLI::App& app, const std::string& command_line) {
       "where the recording is known to show another body. It is 1 if the run or a\n"
       "file failed, 2 for wrong arguments, and 130 or 143 after Ctrl-C or SIGTERM; then\n"
       "the report covers what was done.\n");
-  command->callback([arguments, command] {
-    arguments->is_target_given = command->count("--target") > 0;
+  command.callback([arguments, command] {
+    arguments->is_target_given = command.count("--target") > 0;
     replay(*arguments);
   });
 }

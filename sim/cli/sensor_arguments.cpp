@@ -34,7 +34,7 @@ RangeLimits ranges_from(const std::vector<std::string>& texts) {
   const auto nearest = texts.size() == 2 ? range_from(texts[0]) : std::nullopt;
   const auto farthest = texts.size() == 2 ? range_from(texts[1]) : std::nullopt;
   if (nearest && farthest && *nearest <= *farthest) return {*nearest, *farthest};
-  throw CLI::ValidationError("--range",
+  throw ArgumentFault("--range",
                              fmt::format("must be NEAREST,FARTHEST, two ascending ranges from {:g} to {:g} "
                                          "m, not '{}'",
                                          kNearest_m, kFarthest_m, text));
@@ -43,18 +43,18 @@ RangeLimits ranges_from(const std::vector<std::string>& texts) {
 SensorDescription sensor_from_option(const std::string& text) {
   if (text == "list") {
     fmt::print("Sensors that ship\n\n{}", sensor_explanations());
-    throw CLI::Success();
+    throw Exit(0);
   }
   try {
     return sensor_named(text);
   } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("--sensor", error.what());
+    throw ArgumentFault("--sensor", error.what());
   }
 }
 
 }  // namespace
 
-void add_sensor_options(CLI::App& command, SensorArguments& arguments) {
+void add_sensor_options(Command& command, SensorArguments& arguments) {
   command
       .add_option_function<std::string>(
           "--sensor",
@@ -76,13 +76,13 @@ void add_sensor_options(CLI::App& command, SensorArguments& arguments) {
       ->type_name("NEAREST,FARTHEST");
 }
 
-void take_period_of_sensor(const CLI::App& command, ScenarioArguments& arguments) {
+void take_period_of_sensor(const Command& command, ScenarioArguments& arguments) {
   Disturbances& disturbances = arguments.disturbances;
   if (command.get_option("--period")->count() == 0) disturbances.period_s = arguments.sensor.sensor.period_s;
   const double of_effect_s = arguments.effects.scan_time;
   const double scan_s = of_effect_s != 0.0 ? of_effect_s : arguments.sensor.sensor.settings.scan_time_s;
   if (scan_s <= disturbances.period_s) return;
-  throw CLI::ValidationError(
+  throw ArgumentFault(
       "--period", fmt::format("{:g} s is shorter than a scan of {:g} s ({}); give at least --period {:g}",
                               disturbances.period_s, scan_s,
                               of_effect_s != 0.0 ? "--effect scan_time" : "--sensor", scan_s));
@@ -90,7 +90,7 @@ void take_period_of_sensor(const CLI::App& command, ScenarioArguments& arguments
 
 void require_whole_scans(const std::string& option, const Effects& effects, const SensorDescription& sensor) {
   if (effects.scan_time <= sensor.period_s) return;
-  throw CLI::ValidationError(
+  throw ArgumentFault(
       option, fmt::format("scan_time={:g} is longer than the period of sensor {}, {:g} s; give at most "
                           "scan_time={:g}, or a --sensor with a longer period",
                           effects.scan_time, sensor.name, sensor.period_s, sensor.period_s));

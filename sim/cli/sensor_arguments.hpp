@@ -1,11 +1,11 @@
 // The options that choose the sensor and the ranges of a run, and the sensor for which a network was trained.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/cli/command.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/sensor_description.hpp"
 
@@ -22,12 +22,12 @@ struct SensorArguments {
 
 // --sensor and --range. `--sensor list` prints the descriptions that ship and ends the program. `arguments`
 // must outlive the parsing.
-void add_sensor_options(CLI::App& command, SensorArguments& arguments);
-// Frames come with the period of the sensor unless --period was given. Throws CLI::ValidationError if a scan
+void add_sensor_options(Command& command, SensorArguments& arguments);
+// Frames come with the period of the sensor unless --period was given. Throws ArgumentFault if a scan
 // takes longer than that.
-void take_period_of_sensor(const CLI::App& command, ScenarioArguments& arguments);
+void take_period_of_sensor(const Command& command, ScenarioArguments& arguments);
 
-// For verbs that make a network, whose frames come with the period of the sensor. Throws CLI::ValidationError
+// For verbs that make a network, whose frames come with the period of the sensor. Throws ArgumentFault
 // that names `option` if a scan of the effects takes longer.
 void require_whole_scans(const std::string& option, const Effects& effects, const SensorDescription& sensor);
 

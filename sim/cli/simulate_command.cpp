@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -134,7 +135,7 @@ void print_what_is_wrong(const ScenarioArguments& scenario, const TargetSetup& t
 
 void require_a_speed(const SimulateArguments& arguments) {
   if (!arguments.free_running || arguments.speed != kFastestPossible) return;
-  throw CLI::ValidationError("--free-running",
+  throw ArgumentFault("--free-running",
                              "needs a speed: --speed 1 for real time, --speed N for N times real time");
 }
 
@@ -143,7 +144,7 @@ void take_only(SimulateArguments& arguments) {
   std::vector<std::uint32_t> sorted = arguments.only;
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice != sorted.end()) throw CLI::ValidationError("--only", fmt::format("{} is given twice", *twice));
+  if (twice != sorted.end()) throw ArgumentFault("--only", fmt::format("{} is given twice", *twice));
   arguments.scenario.sequences = static_cast<std::uint32_t>(arguments.only.size());
 }
 
@@ -185,37 +186,37 @@ void simulate(SimulateArguments arguments) {
 
 }  // namespace
 
-void add_simulate_command(CLI::App& app, const std::string& command_line) {
-  CLI::App* command = add_verb(app, "simulate");
+void add_simulate_command(Command& app, const std::string& command_line) {
+  Command command = add_verb(app, "simulate");
   auto arguments = std::make_shared<SimulateArguments>();
   arguments->command_line = command_line;
-  add_target_options(*command, arguments->scenario);
-  add_condition_option(*command, arguments->scenario.condition);
-  add_sequence_options(*command, arguments->scenario);
+  add_target_options(command, arguments->scenario);
+  add_condition_option(command, arguments->scenario.condition);
+  add_sequence_options(command, arguments->scenario);
   command
-      ->add_option("--only", arguments->only,
+      .add_option("--only", arguments->only,
                    "run these sequences, by their index from 0, in place of the first ones: those that "
                    "`evaluate` or a campaign lists as the worst")
       ->delimiter(',')
       ->check(whole_number(0, 9'999'999))
-      ->excludes(command->get_option("--sequences"))
+      ->excludes(command.get_option("--sequences"))
       ->type_name("I,...");
-  add_model_options(*command, arguments->scenario);
-  add_json_option(*command, arguments->scenario.json);
-  add_sensor_options(*command, arguments->scenario.sensor);
-  add_effect_option(*command, arguments->scenario.effects);
-  add_symmetry_option(*command, arguments->scenario.symmetry);
-  add_disturbance_options(*command, arguments->scenario.disturbances);
-  add_flight_options(*command, *arguments);
-  command->add_flag(
+  add_model_options(command, arguments->scenario);
+  add_json_option(command, arguments->scenario.json);
+  add_sensor_options(command, arguments->scenario.sensor);
+  add_effect_option(command, arguments->scenario.effects);
+  add_symmetry_option(command, arguments->scenario.symmetry);
+  add_disturbance_options(command, arguments->scenario.disturbances);
+  add_flight_options(command, *arguments);
+  command.add_flag(
       "--free-running", arguments->free_running,
       "the flight program runs on its own timer, not in lockstep; needs --speed N (1: as in flight)");
   add_report_option(
-      *command, arguments->report,
+      command, arguments->report,
       fmt::format(
           " [out/<target>_<condition>_seed<seed>.html of {}, plus every option that is not at its default]",
           program_files().output_parent));
-  command->footer(
+  command.footer(
       "\nExample: 100 sequences with a degraded sensor, figures to a file\n"
       "  tumblesight simulate --condition degraded --sequences 100 --seed 7 \\\n"
       "      --json figures.json\n\n"
@@ -230,9 +231,9 @@ void add_simulate_command(CLI::App& app, const std::string& command_line) {
       "With --free-running and a sensor that is faster than the cycle, the newest frame\n"
       "of each cycle is used. The frames that it supersedes are counted.\n" +
       disturbance_examples("simulate"));
-  command->callback([arguments, command] {
-    take_period_of_sensor(*command, arguments->scenario);
-    require_a_name(*command, {arguments->scenario.mesh});
+  command.callback([arguments, command] {
+    take_period_of_sensor(command, arguments->scenario);
+    require_a_name(command, {arguments->scenario.mesh});
     simulate(*arguments);
   });
 }

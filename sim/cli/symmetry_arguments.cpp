@@ -8,7 +8,7 @@
 
 namespace tumblesight::sim {
 
-void add_symmetry_option(CLI::App& command, TargetSymmetry& symmetry) {
+void add_symmetry_option(Command& command, TargetSymmetry& symmetry) {
   command
       .add_option_function<std::vector<std::string>>(
           "--symmetry",
@@ -16,7 +16,7 @@ void add_symmetry_option(CLI::App& command, TargetSymmetry& symmetry) {
             try {
               symmetry = target_symmetry_from(texts);
             } catch (const std::invalid_argument& error) {
-              throw CLI::ValidationError("--symmetry", error.what());
+              throw ArgumentFault("--symmetry", error.what());
             }
           },
           "the target looks the same after 1/FOLD of a turn about this axis of its frame, so errors are to "

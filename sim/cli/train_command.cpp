@@ -93,7 +93,7 @@ void choose_device(TrainOptions& options) {
 void require_a_cnn(const TrainingSettings& settings) {
   if (!settings.start_from.empty() || settings.cnn_seconds > 0.0 || settings.cnn_images >= settings.cnn_batch)
     return;
-  throw CLI::ValidationError("--cnn-images", "must be at least " + std::to_string(settings.cnn_batch) +
+  throw ArgumentFault("--cnn-images", "must be at least " + std::to_string(settings.cnn_batch) +
                                                  " unless --start-from names a model image");
 }
 
@@ -188,7 +188,7 @@ void require_equal_parts(const TrainingSettings& settings, int ranks) {
   const int parts = ranks * settings.trainers;
   for (const int batch : {settings.cnn_batch, settings.rcnn_batch}) {
     if (batch % parts == 0) continue;
-    throw CLI::ValidationError(
+    throw ArgumentFault(
         "--ranks", fmt::format("{} ranks with {} trainers each do not divide a batch of {} without a "
                                "remainder; use ranks and trainers whose product is a power of two up to {}",
                                ranks, settings.trainers, batch, settings.cnn_batch));
@@ -199,7 +199,7 @@ void require_equal_parts(const TrainingSettings& settings, int ranks) {
 RankPlace place_of(const TrainOptions& options) {
   const RankPlace place = rank_place();
   if (place.count > 1 && options.ranks_given && options.ranks != place.count) {
-    throw CLI::ValidationError(
+    throw ArgumentFault(
         "--ranks", fmt::format("is {}, but this process was started as one of {} ranks (by Slurm, mpirun or "
                                "RANK and WORLD_SIZE); leave --ranks out",
                                options.ranks, place.count));
@@ -274,7 +274,7 @@ int start_training(TrainOptions& options) {
   const int ranks = std::max(place.count, options.ranks);
   require_equal_parts(options.settings, ranks);
   if (ranks > 1 && !can_have_several_ranks()) {
-    throw CLI::ValidationError("--ranks",
+    throw ArgumentFault("--ranks",
                                "several ranks need a build with Gloo: install libgloo-dev, then configure "
                                "and build again");
   }
@@ -282,7 +282,7 @@ int start_training(TrainOptions& options) {
   return run_quietly_unless_first(place.rank, [&] { return train_as_rank(options, place); });
 }
 
-void add_length_options(CLI::App& command, TrainOptions& options) {
+void add_length_options(Command& command, TrainOptions& options) {
   TrainingSettings& settings = options.settings;
   limit_number(
       command.add_option("--cnn-rate", settings.cnn_learning_rate, "highest learning rate of the CNN"), 1e-6,
@@ -304,7 +304,7 @@ void add_length_options(CLI::App& command, TrainOptions& options) {
                      1, 10'000'000)
       ->type_name("N")
       ->capture_default_str();
-  CLI::Option* minutes =
+  CommandOption minutes =
       limit_number(
           command.add_option("--minutes", options.minutes,
                              "wall-clock minutes to train for, in place of numbers of images, sequences "
@@ -315,7 +315,7 @@ void add_length_options(CLI::App& command, TrainOptions& options) {
     minutes->excludes(command.get_option(number));
 }
 
-void add_rank_options(CLI::App& command, TrainOptions& options) {
+void add_rank_options(Command& command, TrainOptions& options) {
   limit_whole_number(
       command.add_option("--ranks", options.ranks,
                          "processes on this machine that train one network together; each has its own "
@@ -330,7 +330,7 @@ void add_rank_options(CLI::App& command, TrainOptions& options) {
       ->capture_default_str();
 }
 
-void add_machine_options(CLI::App& command, TrainOptions& options) {
+void add_machine_options(Command& command, TrainOptions& options) {
   TrainingSettings& settings = options.settings;
   limit_whole_number(
       command.add_option("--trainers", settings.trainers,
@@ -359,29 +359,29 @@ void add_machine_options(CLI::App& command, TrainOptions& options) {
 
 }  // namespace
 
-void add_train_command(CLI::App& app, const std::string&) {
+void add_train_command(Command& app, const std::string&) {
   auto options = std::make_shared<TrainOptions>();
   TrainingSettings& settings = options->settings;
   settings.workers = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
-  CLI::App* command = add_verb(app, "train");
-  command->footer(
+  Command command = add_verb(app, "train");
+  command.footer(
       "\nA run may be interrupted at any time: the same command continues from the last\n"
       "checkpoint, and the exit status is 3. Several processes train together with\n"
       "--ranks, by srun or mpirun: docs/training.md.\n\n"
       "Example: train for NEAR Shoemaker on the shipped mesh and on a CAD file\n"
       "  tumblesight train --target near_shoemaker --mesh parametric --mesh near.stl \\\n"
       "      --out out/near\n");
-  add_target_option(*command, options->target, TargetChoice::kAny);
-  add_mesh_options(*command, options->meshes);
-  add_inertia_option(*command, options->inertia);
-  add_mission_option(*command, options->target, options->meshes, options->sensor, options->mission);
-  add_seed_option(*command, settings.seed);
-  command->add_option("--out", settings.folder, "folder for checkpoints, log, error curve and model images")
+  add_target_option(command, options->target, TargetChoice::kAny);
+  add_mesh_options(command, options->meshes);
+  add_inertia_option(command, options->inertia);
+  add_mission_option(command, options->target, options->meshes, options->sensor, options->mission);
+  add_seed_option(command, settings.seed);
+  command.add_option("--out", settings.folder, "folder for checkpoints, log, error curve and model images")
       ->required()
       ->check(file_path())
       ->type_name("DIR");
   command
-      ->add_option(
+      .add_option(
           "--condition,--conditions", options->conditions,
           "conditions to train on in turn: all, paper (nominal and degraded), names, or a list of these; "
           "all,degraded has more degraded frames than all")
@@ -389,24 +389,24 @@ void add_train_command(CLI::App& app, const std::string&) {
       ->check(one_of(training_condition_words()))
       ->type_name("NAMES")
       ->capture_default_str();
-  add_sensor_options(*command, options->sensor);
-  add_effect_option(*command, options->effects);
-  add_effect_set_option(*command, options->effect_sets);
+  add_sensor_options(command, options->sensor);
+  add_effect_option(command, options->effects);
+  add_effect_set_option(command, options->effect_sets);
   command
-      ->add_option("--start-from", settings.start_from,
+      .add_option("--start-from", settings.start_from,
                    "model image whose CNN to start from; that of another target saves most of the time")
       ->check(existing_model_image())
       ->type_name("FILE");
-  add_length_options(*command, *options);
-  add_machine_options(*command, *options);
-  add_rank_options(*command, *options);
-  command->callback([options, command] {
-    require_a_name(*command, options->meshes.meshes);
-    options->conditions_given = command->count("--condition") > 0;
-    options->effects_given = command->count("--effect") > 0 || command->count("--effect-set") > 0;
-    options->ranks_given = command->count("--ranks") > 0;
-    options->workers_given = command->count("--workers") > 0;
-    throw CLI::RuntimeError(start_training(*options));
+  add_length_options(command, *options);
+  add_machine_options(command, *options);
+  add_rank_options(command, *options);
+  command.callback([options, command] {
+    require_a_name(command, options->meshes.meshes);
+    options->conditions_given = command.count("--condition") > 0;
+    options->effects_given = command.count("--effect") > 0 || command.count("--effect-set") > 0;
+    options->ranks_given = command.count("--ranks") > 0;
+    options->workers_given = command.count("--workers") > 0;
+    throw Exit(start_training(*options));
   });
 }
 

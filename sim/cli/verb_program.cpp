@@ -4,40 +4,31 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <system_error>
 #include <typeinfo>
 
+#include "sim/cli/command_line.hpp"
 #include "sim/cli/exit_status.hpp"
-#include "sim/cli/help_formatter.hpp"
-#include "sim/cli/parse_faults.hpp"
-#include "sim/cli/version_text.hpp"
 #include "sim/host/text.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
 // Arguments end up in reports and JSON.
-void require_utf8(const std::vector<std::string>& arguments) {
+std::string fault_of_encoding(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments)
     if (!is_utf8(argument))
-      throw CLI::ValidationError(
-          fmt::format("argument '{}'", shortened(argument)),
-          "is not UTF-8, which reports and JSON are written in; if it is a file, give it another name");
-}
-
-int report(const CLI::App& app, const CLI::ParseError& error) {
-  // --help, and commands that have already reported their failure.
-  if (error.get_exit_code() == 0 || error.get_name() == "RuntimeError") return app.exit(error);
-  return report_fault(fault_of_parsing(app, error));
+      return fmt::format("argument '{}': is not UTF-8, which reports and JSON are written in; if it is a file, give it "
+                         "another name",
+                         shortened(argument));
+  return {};
 }
 
 std::vector<std::string> arguments_of(int argc, char** argv, const std::string& verb) {
@@ -46,21 +37,13 @@ std::vector<std::string> arguments_of(int argc, char** argv, const std::string& 
   return arguments;
 }
 
-void parse(CLI::App& app, std::vector<std::string> arguments, AddCommand& add_command) {
-  require_utf8(arguments);
-  std::string command_line = "tumblesight";
-  for (const std::string& argument : arguments) command_line += " " + shell_word(argument);
-  add_command(app, command_line);
-  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-  app.parse(std::move(arguments));
+std::string command_line_of(const std::vector<std::string>& arguments) {
+  std::string text = "tumblesight";
+  for (const std::string& argument : arguments) text += " " + shell_word(argument);
+  return text;
 }
 
 }  // namespace
-
-int report_fault(const std::string& fault) {
-  std::fprintf(stderr, "tumblesight: %s\n", fault.c_str());
-  return kBadArguments;
-}
 
 void prepare_program() {
   std::signal(SIGXFSZ, SIG_IGN);
@@ -78,22 +61,21 @@ int finish_output(int status) {
 
 int run_verb_program(int argc, char** argv, const char* verb, AddCommand& add_command) {
   prepare_program();
-  CLI::App app;
-  app.name("tumblesight");
-  app.set_version_flag("--version", version_text());
-  app.require_subcommand(1);
-  app.formatter(std::make_shared<HelpFormatter>());
+  CommandLine line("", "");
+  const std::vector<std::string> arguments = arguments_of(argc, argv, verb);
+  int status = 0;
   try {
-    parse(app, arguments_of(argc, argv, verb), add_command);
-  } catch (const CLI::ParseError& error) {
-    return finish_output(report(app, error));
+    if (const std::string fault = fault_of_encoding(arguments); !fault.empty())
+      return finish_output(report_fault(fault + " (see tumblesight --help)"));
+    add_command(line.command(), command_line_of(arguments));
+    status = line.run(arguments);
   } catch (const std::exception& error) {
     // fmt::print() does not say to what it could not write.
     const bool is_of_output = typeid(error) == typeid(std::system_error) && std::ferror(stdout) != 0;
     std::fprintf(stderr, "tumblesight: %s%s\n", is_of_output ? "standard output: " : "", error.what());
     return kFailed;
   }
-  return finish_output(0);
+  return finish_output(status);
 }
 
 }  // namespace tumblesight::sim

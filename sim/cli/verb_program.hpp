@@ -12,9 +12,6 @@ int run_verb_program(int argc, char** argv, const char* verb, AddCommand& add_co
 // limit of file sizes is an error of the file, as a full disk is.
 void prepare_program();
 
-// Prints a fault of an argument and returns its exit status.
-int report_fault(const std::string& fault);
-
 // Writes what is left of the output. A failure makes a success a failure.
 int finish_output(int status);
 

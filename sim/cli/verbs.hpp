@@ -3,17 +3,15 @@
 
 #include <string>
 
-namespace CLI {
-class App;
-}
+#include "sim/cli/command.hpp"
 
 namespace tumblesight::sim {
 
 // The subcommand of a verb of verb_table.hpp, with its summary.
-CLI::App* add_verb(CLI::App& app, const char* name);
+Command add_verb(Command& app, const char* name);
 
 // `command_line`: what the user typed, for reports that name it.
-using AddCommand = void(CLI::App& app, const std::string& command_line);
+using AddCommand = void(Command& app, const std::string& command_line);
 AddCommand add_simulate_command, add_replay_command, add_console_command, add_mesh_command,
     add_evaluate_command, add_merge_command, add_campaign_command, add_quantize_command, add_record_command,
     add_export_command, add_adopt_command, add_train_command, add_bench_command;

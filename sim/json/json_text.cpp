@@ -1,5 +1,7 @@
 #include "sim/json/json_text.hpp"
 
+#include <nlohmann/json.hpp>
+
 namespace tumblesight::sim {
 namespace {
 
@@ -30,5 +32,21 @@ std::string json_refusal(std::string_view text, const JsonLimits& limits) {
     return "its JSON is nested more than " + std::to_string(limits.depth) + " deep";
   return {};
 }
+
+template <class Json>
+Json parse_json(std::string_view text, const JsonLimits& limits) {
+  const std::string refusal = json_refusal(text, limits);
+  if (!refusal.empty()) throw std::invalid_argument(refusal);
+  try {
+    return Json::parse(text);
+  } catch (const typename Json::parse_error& error) {
+    throw std::invalid_argument("its JSON is damaged at byte " + std::to_string(error.byte));
+  } catch (const typename Json::exception&) {  // a number beyond every double
+    throw std::invalid_argument("its JSON has a number that is out of range");
+  }
+}
+
+template nlohmann::json parse_json(std::string_view, const JsonLimits&);
+template nlohmann::ordered_json parse_json(std::string_view, const JsonLimits&);
 
 }  // namespace tumblesight::sim

@@ -3,8 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -22,16 +21,6 @@ std::string json_refusal(std::string_view text, const JsonLimits& limits = {});
 // Throws std::invalid_argument with json_refusal() or "its JSON is damaged at byte 17". `Json`:
 // nlohmann::json or nlohmann::ordered_json.
 template <class Json = nlohmann::json>
-Json parse_json(std::string_view text, const JsonLimits& limits = {}) {
-  const std::string refusal = json_refusal(text, limits);
-  if (!refusal.empty()) throw std::invalid_argument(refusal);
-  try {
-    return Json::parse(text);
-  } catch (const typename Json::parse_error& error) {
-    throw std::invalid_argument("its JSON is damaged at byte " + std::to_string(error.byte));
-  } catch (const typename Json::exception&) {  // a number beyond every double
-    throw std::invalid_argument("its JSON has a number that is out of range");
-  }
-}
+Json parse_json(std::string_view text, const JsonLimits& limits = {});
 
 }  // namespace tumblesight::sim

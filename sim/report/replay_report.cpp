@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "gnc/lidar/target_selection.hpp"
 #include "sim/evaluation/chance.hpp"

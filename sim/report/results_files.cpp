@@ -1,6 +1,7 @@
 #include "sim/report/results_files.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "sim/host/write_file.hpp"
 #include "sim/report/results_columns.hpp"

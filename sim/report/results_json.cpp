@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "sim/evaluation/pose_goals.hpp"
 #include "sim/report/results_columns.hpp"

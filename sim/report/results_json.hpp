@@ -2,7 +2,7 @@
 // threads.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "sim/evaluation/results.hpp"
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "hal/dds/idl/topics.hpp"
 #include "hal/messages/event_text.hpp"

@@ -13,7 +13,8 @@ std::unique_ptr<CLI::App> make_tool() {
   auto tool = std::make_unique<CLI::App>("", "tumblesight");
   tool->require_subcommand(1);
   using namespace sim;
-  for (AddCommand* add : {TUMBLESIGHT_ADD_COMMANDS}) add(*tool, "");
+  Command command(*tool);
+  for (AddCommand* add : {TUMBLESIGHT_ADD_COMMANDS}) add(command, "");
   tool->parse_complete_callback([] { throw CLI::Success(); });  // before any subcommand does its work
   return tool;
 }
@@ -22,6 +23,7 @@ std::unique_ptr<CLI::App> make_tool() {
 }  // namespace tumblesight::fuzz
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tumblesight;
   using namespace tumblesight::fuzz;
   static Reused reused(make_tool);
   CLI::App* const tool = &reused.get();
@@ -34,6 +36,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     require(!tool->get_subcommands().empty(), "there is something to do");
   } catch (const CLI::ParseError& error) {
     require(error.get_exit_code() != 0 && error.what()[0] != '\0', "a refusal says why");
+  } catch (const sim::ArgumentFault& fault) {
+    require(fault.what()[0] != '\0', "a refusal says why");
+  } catch (const sim::Exit& exit) {  // of --effect list
+    require(exit.status == 0, "a list is no failure");
   }
   return 0;
 }

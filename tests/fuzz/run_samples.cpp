@@ -2,6 +2,7 @@
 // step can be shown. The first byte of a sample chooses its topic, the next two have its size.
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <type_traits>
 #include <vector>
 

@@ -23,8 +23,9 @@ struct Given {
 bool parse(CommandLine& line, Given& given) {
   static Reused reused([&given] {
     auto app = std::make_unique<CLI::App>();
-    sim::add_evaluate_options(*app, given.evaluate);
-    app->add_option("--speed", given.speed)->check(sim::number(0.1, 1000.0));
+    sim::Command command(*app);
+    sim::add_evaluate_options(command, given.evaluate);
+    command.add_option("--speed", given.speed)->check(sim::number(0.1, 1000.0));
     return app;
   });
   CLI::App& app = reused.get();
@@ -34,9 +35,13 @@ bool parse(CommandLine& line, Given& given) {
     sim::require_supported_length(given.evaluate.scenario);
     sim::require_separate_files(sim::files_read(given.evaluate.scenario),
                                 sim::files_written(given.evaluate.files));
-    if (given.evaluate.paper) sim::refuse_options_set_by_paper(app);
+    if (given.evaluate.paper) sim::refuse_options_set_by_paper(sim::Command(app));
     return true;
   } catch (const CLI::ParseError&) {
+    return false;
+  } catch (const sim::ArgumentFault&) {
+    return false;
+  } catch (const sim::Exit&) {  // --effect list
     return false;
   }
 }

@@ -1,20 +1,17 @@
-# GoogleTest and Eigen's geometry take longer to read than most tests take to compile: they are compiled once for all tests.
-file(CONFIGURE OUTPUT precompiled.cpp CONTENT "// Only its precompiled headers are used.\n")
-add_library(test_precompiled OBJECT ${CMAKE_CURRENT_BINARY_DIR}/precompiled.cpp)
-target_link_libraries(test_precompiled PRIVATE project_rules GTest::gtest)
 # The tests' own code is optimized less than what they test: it compiles in two thirds of the time.
 option(TUMBLESIGHT_FEW_TRIALS "Fewer trials with random numbers in the tests: tests/support/trials.hpp" ${CMAKE_CROSSCOMPILING})
 add_library(test_rules INTERFACE)
 target_compile_options(test_rules INTERFACE $<$<CONFIG:Release>:-O1> $<$<CONFIG:RelWithDebInfo>:-O0>)
 target_compile_definitions(test_rules INTERFACE TUMBLESIGHT_FEW_TRIALS=$<BOOL:${TUMBLESIGHT_FEW_TRIALS}>)
-target_link_libraries(test_precompiled PRIVATE test_rules)
-precompile_headers(test_precompiled <gtest/gtest.h> <Eigen/Geometry>)
+add_precompiled_headers(test_headers RULES test_rules GTest::gtest
+  HEADERS <gtest/gtest.h> <Eigen/Geometry> <algorithm> <filesystem> <fstream> <random>)
 
 # One program of unit tests, and a ctest test for each of its tests. In an emulator, where a process takes long to start, a
 # ctest test is the whole program or one of its PARTS, so that two of them share the work.
 #   add_unit_test(<program> SOURCES <file>... LIBRARIES <target>... [TIMEOUT <seconds>] [COST <n>] [PARTS <n>]
 #     [PRECOMPILED <target>])
-# COST: ctest starts tests of a higher cost first. PRECOMPILED: the target whose precompiled headers it takes.
+# COST: ctest starts tests of a higher cost first. PRECOMPILED: the target whose precompiled headers it takes. The label of
+# its tests is the folder that they test: gnc/nn.
 function(add_unit_test program)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT;COST;PARTS;PRECOMPILED" "SOURCES;LIBRARIES")
   if(NOT arg_TIMEOUT)
@@ -24,19 +21,21 @@ function(add_unit_test program)
     set(arg_COST 0)
   endif()
   if(NOT arg_PRECOMPILED)
-    set(arg_PRECOMPILED test_precompiled)
+    set(arg_PRECOMPILED test_headers)
   endif()
   add_executable(${program} ${arg_SOURCES})
   target_link_libraries(${program} PRIVATE ${arg_LIBRARIES} project_rules GTest::gtest_main)
-  if(arg_PRECOMPILED STREQUAL test_precompiled)  # the flags of the precompiled headers
+  if(arg_PRECOMPILED STREQUAL test_headers)  # the flags of the precompiled headers
     target_link_libraries(${program} PRIVATE test_rules)
   else()  # GCC accepts precompiled headers of another optimization level, but not of none
     target_compile_options(${program} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
-  target_precompile_headers(${program} REUSE_FROM ${arg_PRECOMPILED})
-  target_compile_options(${program} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  use_precompiled_headers(${arg_PRECOMPILED} ${program})
+  tested_folder(label ${arg_SOURCES})
+  note_test_program(${program} ${label})
   if(NOT CMAKE_CROSSCOMPILING)
-    gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${arg_TIMEOUT} COST ${arg_COST})
+    gtest_discover_tests(${program} DISCOVERY_TIMEOUT 60
+      PROPERTIES TIMEOUT ${arg_TIMEOUT} COST ${arg_COST} LABELS ${label})
     return()
   endif()
   if(NOT arg_PARTS)
@@ -49,7 +48,7 @@ function(add_unit_test program)
     endif()
     math(EXPR index "${part} - 1")
     add_test(NAME ${test} COMMAND ${program} --gtest_brief=1)
-    set_tests_properties(${test} PROPERTIES TIMEOUT ${arg_TIMEOUT} COST ${arg_PARTS}
+    set_tests_properties(${test} PROPERTIES TIMEOUT ${arg_TIMEOUT} COST ${arg_PARTS} LABELS ${label}
       ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_PARTS};GTEST_SHARD_INDEX=${index}")
   endforeach()
 endfunction()

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/unit/sim/campaign/campaign_test_support.hpp"
 
 namespace tumblesight::sim {

@@ -26,7 +26,7 @@ TEST(MissingPeers, AreRefusedIfThereAreNoOthers) {
   try {
     (void)missing_peers({kAbsent, kAbsent});
     FAIL() << "no exception";
-  } catch (const CLI::ValidationError& error) {
+  } catch (const ArgumentFault& error) {
     EXPECT_NE(std::string(error.what())
                   .find("--peers: this build has none of the peers:\n  built without Gone: install"),
               std::string::npos)

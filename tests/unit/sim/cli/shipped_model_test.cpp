@@ -7,8 +7,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "sim/cli/target_setup.hpp"
+#include "sim/cli/evaluate_arguments.hpp"
 #include "sim/evaluation/results.hpp"
+#include "sim/experiment/experiment.hpp"
 #include "sim/experiment/monte_carlo.hpp"
 #include "sim/experiment/shipped_figures.hpp"
 #include "sim/model/model_file.hpp"

@@ -1,0 +1,23 @@
+# Headers that take longer to read than most sources take to compile are compiled once, for all libraries that have the same
+# rules.
+
+# add_precompiled_headers(<name> RULES <target>... HEADERS <header>...)
+# RULES: what the libraries link that decides how a header is read: their options and definitions.
+function(add_precompiled_headers name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "RULES;HEADERS")
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "// Only its precompiled headers are used.\n")
+  add_library(${name} OBJECT ${source})
+  target_link_libraries(${name} PRIVATE project_rules ${arg_RULES})
+  target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
+  # ccache takes a precompiled header's includes from the output of the preprocessor.
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+endfunction()
+
+# use_precompiled_headers(<name> <target>...)
+function(use_precompiled_headers name)
+  foreach(target ${ARGN})
+    target_precompile_headers(${target} REUSE_FROM ${name})
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  endforeach()
+endfunction()
