@@ -1,6 +1,7 @@
 // A command line: its options, and what becomes of the words that it is given.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,6 +9,8 @@
 #include "sim/cli/command.hpp"
 
 namespace tumblesight::sim {
+
+inline constexpr std::size_t kHelpWidth = 80;  // columns of help texts
 
 class CommandLine {
  public:

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "sim/cli/help_formatter.hpp"
+#include "sim/cli/command_line.hpp"
 #include "sim/host/text.hpp"
 
 namespace tumblesight::sim {

@@ -91,11 +91,11 @@ void refuse_number(std::size_t number, std::string_view word) {
   if (word.empty()) refuse_line(number, "ends before its numbers do; export the mesh again");
   const bool comma = word.find(',') != std::string_view::npos;
   refuse_line(number,
-              quoted(word) + " is no number; " +
+              in_quotes(word) + " is no number; " +
                   (comma ? "export the mesh with a decimal point, not a comma" : "export the mesh again"));
 }
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
   return "'" + shortened(std::string(word.substr(0, 4 * kMostOfAValue))) + "'";
 }
 

@@ -39,7 +39,7 @@ std::optional<double> number_of(std::string_view word);
 [[noreturn]] void refuse_number(std::size_t number, std::string_view word);
 
 // A word in quotes, short enough for a message.
-std::string quoted(std::string_view word);
+std::string in_quotes(std::string_view word);
 
 // Whether the first bytes of a file are text: they hold no NUL.
 bool looks_like_text(std::string_view bytes);

@@ -99,7 +99,7 @@ class ObjReader {
     } else if (keyword == "mtllib") {
       take_library(words);
     } else if (keyword == "surf" || keyword == "bzp" || keyword == "bsp") {
-      refuse_line(statements_.number(), "a free-form surface (" + quoted(keyword) +
+      refuse_line(statements_.number(), "a free-form surface (" + in_quotes(keyword) +
                                             ") is not read; export the surface as polygons or triangles");
     }
   }
@@ -132,7 +132,7 @@ class ObjReader {
     const std::optional<double> number = tumblesight::sim::number_of(word.substr(0, word.find('/')));
     if (!number || *number != std::floor(*number) || !(std::abs(*number) < 4e9) || *number == 0.0)
       refuse_line(statements_.number(),
-                  quoted(word) + " is no number of a vertex: they begin at 1; export the mesh again");
+                  in_quotes(word) + " is no number of a vertex: they begin at 1; export the mesh again");
     const auto index = static_cast<std::int64_t>(*number);
     return index > 0 ? index - 1 : index + static_cast<std::int64_t>(vertices_.size());
   }

@@ -56,10 +56,10 @@ class PlyNumbers {
     const std::size_t first = std::exchange(first_longer_, 0);
     if (longer == 0) return {};
     if (longer < element.count)
-      refuse_line(first, "has more numbers than the header announces for element " + quoted(element.name) +
+      refuse_line(first, "has more numbers than the header announces for element " + in_quotes(element.name) +
                              " (" + std::to_string(longer) + " of its " + std::to_string(element.count) +
                              " lines); export the mesh again");
-    return "each line of element " + quoted(element.name) +
+    return "each line of element " + in_quotes(element.name) +
            " has more numbers than the header announces, which are left out: what is read may be shifted. "
            "Compare the shape with the original";
   }
@@ -72,7 +72,7 @@ class PlyNumbers {
     if (is_padding(rest)) return rest.size();
     throw std::runtime_error(
         "the header announces " + std::to_string(element_->count) +
-        (element_->count == 1 ? " entry" : " entries") + " of element " + quoted(element_->name) + ", and " +
+        (element_->count == 1 ? " entry" : " entries") + " of element " + in_quotes(element_->name) + ", and " +
         counted(rest.size(), "byte") +
         " follow the last one: its count is wrong, or something was appended; export the "
         "mesh again");
@@ -87,7 +87,7 @@ class PlyNumbers {
     const std::uint64_t left = format_ == PlyFormat::kAscii ? lines_.rest().size() + 1 : bytes_.size();
     if (element.count * least <= left) return;
     throw std::runtime_error("the header announces " + std::to_string(element.count) +
-                             " entries of element " + quoted(element.name) + ", which take at least " +
+                             " entries of element " + in_quotes(element.name) + ", which take at least " +
                              std::to_string(element.count * least) + " bytes, and " + std::to_string(left) +
                              " of the " + std::to_string(size_) +
                              " bytes of the file are left for them: it was cut off; copy or export it again");
@@ -95,11 +95,11 @@ class PlyNumbers {
   [[noreturn]] void refuse_end() const {
     throw std::runtime_error("the file ends after " + std::to_string(size_) + " bytes within entry " +
                              std::to_string(entry_ + 1) + " of the " + std::to_string(element_->count) +
-                             " of element " + quoted(element_->name) +
+                             " of element " + in_quotes(element_->name) +
                              ": it was cut off; copy or export it again");
   }
   std::string place() const {
-    return "element " + quoted(element_->name) + ", entry " + std::to_string(entry_ + 1);
+    return "element " + in_quotes(element_->name) + ", entry " + std::to_string(entry_ + 1);
   }
 
  private:
@@ -275,7 +275,7 @@ class PlyReader {
   void take_list(const PlyProperty& property, std::vector<std::uint32_t>* list) {
     const double count = numbers_.next(property.count_type);
     if (!(count >= 0.0) || count > 4e9 || count != std::floor(count))
-      throw std::runtime_error(numbers_.place() + ": the list " + quoted(property.name) + " has " +
+      throw std::runtime_error(numbers_.place() + ": the list " + in_quotes(property.name) + " has " +
                                std::to_string(count) + " entries; export the mesh again");
     for (auto left = static_cast<std::uint64_t>(count); left > 0; --left) {
       const double number = numbers_.next(property.type);

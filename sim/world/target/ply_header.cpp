@@ -33,7 +33,7 @@ PlyType type_named(std::string_view name, std::size_t line) {
   for (const auto& [known, type] : kTypes) {
     if (known == name) return type;
   }
-  refuse_line(line, quoted(name) + " is no type of PLY; export the mesh again");
+  refuse_line(line, in_quotes(name) + " is no type of PLY; export the mesh again");
 }
 
 PlyFormat format_named(std::string_view name, std::size_t line) {
@@ -42,7 +42,7 @@ PlyFormat format_named(std::string_view name, std::size_t line) {
   if (name == "binary_big_endian") return PlyFormat::kBigEndian;
   refuse_line(
       line,
-      quoted(name) +
+      in_quotes(name) +
           " is no format of PLY: ascii, binary_little_endian or binary_big_endian; export the mesh again");
 }
 
@@ -53,7 +53,7 @@ PlyElement element_of(std::string_view words, std::size_t line) {
   const char* const end = count.data() + count.size();
   const auto [stop, error] = std::from_chars(count.data(), end, element.count);
   if (count.empty() || stop != end || error != std::errc() || element.count > 4'000'000'000U)
-    refuse_line(line, "the count of element " + quoted(element.name) + " is " + quoted(count) +
+    refuse_line(line, "the count of element " + in_quotes(element.name) + " is " + in_quotes(count) +
                           ", it must be a number from 0 to 4000000000; export the mesh again");
   return element;
 }
@@ -121,7 +121,7 @@ PlyHeader read_ply_header(std::string_view bytes) {
         refuse_line(number, "a property stands before the first element; export the mesh again");
       header.elements.back().properties.push_back(property_of(words, number));
     } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
-      refuse_line(number, quoted(keyword) + " is no word of a PLY header; export the mesh again");
+      refuse_line(number, in_quotes(keyword) + " is no word of a PLY header; export the mesh again");
     }
   }
   throw std::runtime_error("cannot be read: its header of " + std::to_string(lines.number()) +

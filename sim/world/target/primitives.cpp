@@ -20,6 +20,16 @@ std::uint32_t index(std::size_t i) {
   return static_cast<std::uint32_t>(i);
 }
 
+// The shortest turn from z to an axis: Eigen's FromTwoVectors(), whose singular value decomposition takes seconds to compile.
+Eigen::Quaternionf turn_from_z_to(const Eigen::Vector3f& axis) {
+  const Eigen::Vector3f to = axis.normalized();
+  constexpr float kOpposite = -1.0F + 1e-5F;
+  if (to.z() < kOpposite) return {0.0F, -1.0F, 0.0F, 0.0F};  // half a turn about x
+  const float s = std::sqrt((1.0F + to.z()) * 2.0F);
+  const Eigen::Vector3f vector = Eigen::Vector3f::UnitZ().cross(to) * (1.0F / s);
+  return {0.5F * s, vector.x(), vector.y(), vector.z()};
+}
+
 }  // namespace
 
 void append(TriangleMesh& whole, const TriangleMesh& part) {
@@ -195,7 +205,7 @@ TriangleMesh tube(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float 
 
 Eigen::Isometry3f frame_along(const Eigen::Vector3f& origin, const Eigen::Vector3f& axis) {
   Eigen::Isometry3f pose = Eigen::Isometry3f::Identity();
-  pose.linear() = Eigen::Quaternionf::FromTwoVectors(Eigen::Vector3f::UnitZ(), axis).toRotationMatrix();
+  pose.linear() = turn_from_z_to(axis).toRotationMatrix();
   pose.translation() = origin;
   return pose;
 }

@@ -187,7 +187,7 @@ class StlText {
 
   void take_other(const std::string& word) {
     if (in_facet_ && corners_ == 0) return;  // the normal, which is not used, whatever it is
-    if (in_facet_) refuse_here(quoted(word) + " is no word of a facet");
+    if (in_facet_) refuse_here(in_quotes(word) + " is no word of a facet");
     if (skipped_++ == 0) first_skipped_ = lines_.number();
     line_ = {};
   }
