@@ -21,6 +21,9 @@ endfunction()
 # A line "folder program" of test_programs.txt in the build folder: what tests/run FOLDER builds.
 file(WRITE ${PROJECT_BINARY_DIR}/test_programs.txt "")
 function(note_test_program program folder)
+  if(NOT IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} AND NOT IS_DIRECTORY ${PROJECT_SOURCE_DIR}/tests/unit/${folder})
+    message(FATAL_ERROR "${program} tests '${folder}', which is no folder: its sources have none in common")
+  endif()
   file(APPEND ${PROJECT_BINARY_DIR}/test_programs.txt "${folder} ${program}\n")
 endfunction()
 
