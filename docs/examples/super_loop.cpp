@@ -1,7 +1,7 @@
 // A port to a new board in one file: the flight application in a super-loop with every HAL interface
 // implemented. It compiles and links everywhere; the functions of namespace `board` stand for your drivers.
-// docs/porting.md explains each step. On RTEMS, the loop is the body of a task and wait_next_release_ns()
-// ends in rtems_rate_monotonic_period().
+// docs/porting.md explains each step. Under an executive, the loop is the body of a task and
+// wait_next_release_ns() ends in the executive's wait for a period.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
