@@ -29,7 +29,7 @@ constexpr std::size_t kLongestName = 120;
 // What the campaign sets itself, or what is not one cell of figures.
 constexpr const char* kNotForRuns[] = {
     "shard",       "shard-file", "json",         "csv",         "report", "threads", "paper",
-    "mesh-folder", "out",        "effect-limit", "no-baseline", "peers",  "curves",  "baseline-sequences"};
+    "mesh-folder", "out",        "effect-limit", "no-baseline", "curves",  "baseline-sequences"};
 
 struct Option {
   std::string key;

@@ -13,7 +13,6 @@ namespace tumblesight::sim {
 // Of a sequence with so many frames, with its CRC-32.
 std::size_t record_size_bytes(std::uint32_t frames);
 
-// `result` has no peers: their times and their random numbers belong to one process.
 std::vector<std::uint8_t> to_record(std::uint32_t run, const SequenceResult& result, std::uint32_t frames);
 
 // The run at the start of a record, of which at least four bytes are there.

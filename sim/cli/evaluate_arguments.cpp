@@ -31,11 +31,6 @@ void add_run_options(Command& command, EvaluateArguments& arguments) {
       ->type_name("N")
       ->capture_default_str()
       ->excludes(none);
-  command
-      .add_flag("--peers", arguments.peers,
-                "also run other libraries' registrations on the frames of template matching: PCL and OpenCV, "
-                "if this build has them; they take seconds per frame")
-      ->excludes(none);
   limit_whole_number(
       command.add_option("--threads", arguments.threads,
                          "worker threads, 0: one per core; the figures do not depend on their number"),
@@ -140,12 +135,6 @@ void add_evaluate_options(Command& command, EvaluateArguments& arguments) {
                  "a sequence; ± is one standard error. Template matching, the classical method,\n"
                  "uses renderings of the same mesh as the frames. A frame counts as valid if the\n"
                  "attitude passes the checks of the flight program; wrong: more than 20° off.\n\n"
-                 "Peers are what one would otherwise take for the attitude of a known shape, on\n"
-                 "the same frames, with the same mesh and one thread: PCL matches FPFH features of\n"
-                 "the surface by RANSAC, OpenCV votes with pairs of points (PPF); both refine by\n"
-                 "ICP. Like template matching they see one frame at a time. To build with them,\n"
-                 "install libpcl-dev and libopencv-contrib-dev (Debian). Settings that were tried:\n"
-                 "sim/baseline/pcl_registration.cpp and opencv_ppf.cpp.\n\n"
                  "Registered pose: attitude, position, rate and velocity after registration with\n"
                  "the surface mesh in the model image; shown where the image has one. Wrong: more\n"
                  "than 5° off. Inside 95 %: share of the verified poses within the 95 % ellipsoid\n"
@@ -157,8 +146,6 @@ void add_evaluate_options(Command& command, EvaluateArguments& arguments) {
                  "Example: two of the paper's tests, figures to a file, graphs to a page\n"
                  "  tumblesight evaluate --target near_shoemaker --condition nominal,occluded \\\n"
                  "      --json near.json --report near.html\n\n"
-                 "Example: beside other libraries, on the last of ten frames\n"
-                 "  tumblesight evaluate --peers --sequences 30 --baseline-sequences 30\n\n"
                  "Example: how much noise the network tolerates\n"
                  "  tumblesight evaluate --effect-limit noise --sequences 300 --json noise.json\n\n"
                  "Example: a tumbling spacecraft of your own, with a network trained for it\n"
@@ -202,7 +189,7 @@ EvaluateArguments parsed_evaluate(const std::vector<std::string>& options) {
 void refuse_options_set_by_paper(const Command& command) {
   std::vector<std::string> own_options{"--target",   "--mesh",     "--inertia", "--condition", "--frames",
                                        "--model",    "--numerics", "--json",    "--csv",       "--report",
-                                       "--curves",   "--effect",   "--sensor",  "--range",     "--peers",
+                                       "--curves",   "--effect",   "--sensor",  "--range",
                                        "--symmetry", "--shard"};
   for (const DisturbanceRow& row : kDisturbances) own_options.push_back(std::string("--") + row.name);
   for (const std::string& own : own_options) {
@@ -213,7 +200,7 @@ void refuse_options_set_by_paper(const Command& command) {
 
 void refuse_options_of_tables(const Command& command) {
   for (const char* other :
-       {"--paper", "--curves", "--csv", "--report", "--baseline-sequences", "--peers", "--shard"}) {
+       {"--paper", "--curves", "--csv", "--report", "--baseline-sequences", "--shard"}) {
     if (command.get_option(other)->count() == 0) continue;
     throw ArgumentFault("--effect-limit", fmt::format("makes no tables; leave {} out", other));
   }
@@ -225,22 +212,6 @@ void refuse_options_of_merge(const Command& command) {
     throw ArgumentFault(
         "--shard", fmt::format("makes no figures; give {} to `tumblesight merge`, which does", other));
   }
-  if (command.get_option("--peers")->count() > 0)
-    throw ArgumentFault("--shard",
-                               "runs no peers: their times are those of one process; leave --peers out");
-}
-
-std::vector<std::string> missing_peers(const std::vector<PosePeerRow>& peers) {
-  std::vector<std::string> lines;
-  std::string all;
-  for (const PosePeerRow& peer : peers) {
-    if (peer.missing == nullptr) continue;
-    lines.emplace_back(peer.missing);
-    all += "\n  " + lines.back();
-  }
-  if (lines.size() == peers.size())
-    throw ArgumentFault("--peers", "this build has none of the peers:" + all);
-  return lines;
 }
 
 namespace {
@@ -267,7 +238,6 @@ ExperimentSettings experiment_settings(const EvaluateArguments& arguments) {
   settings.disturbances = arguments.scenario.disturbances;
   settings.effects = arguments.scenario.effects;
   settings.baseline_sequences = arguments.no_baseline ? 0 : arguments.baseline_sequences;
-  settings.peers = arguments.peers;
   settings.curves = arguments.curves;
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   settings.threads = arguments.threads > 0 ? arguments.threads : cores;

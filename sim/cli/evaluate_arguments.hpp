@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/baseline/pose_peer.hpp"
 #include "sim/cli/arguments.hpp"
 #include "sim/cli/command.hpp"
 #include "sim/cli/evaluation_output.hpp"
@@ -22,7 +21,6 @@ struct EvaluateArguments {
   std::string effect_limit;  // name of an effect; empty: none
   bool no_baseline = false;
   std::uint32_t baseline_sequences = 100;
-  bool peers = false;
   ResultsFiles files;
   std::string shard;       // "3/16"; empty: all sequences
   std::string shard_file;  // of it
@@ -46,10 +44,6 @@ void refuse_options_set_by_paper(const Command& command);
 void refuse_options_of_tables(const Command& command);
 // Throws ArgumentFault if an option was given with --shard that belongs to the figures of all shards.
 void refuse_options_of_merge(const Command& command);
-
-// For --peers: a line for each peer that this build is without, with the remedy. Throws ArgumentFault
-// with these lines if it is without all of them.
-std::vector<std::string> missing_peers(const std::vector<PosePeerRow>& peers);
 
 // All settings except the conditions.
 ExperimentSettings experiment_settings(const EvaluateArguments& arguments);

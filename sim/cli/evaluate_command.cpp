@@ -49,11 +49,8 @@ bool print_what_is_wrong(const EvaluateArguments& arguments, const Subject& subj
 
 void evaluate(const EvaluateArguments& arguments) {
   const ExperimentSettings settings = checked_settings(arguments);
-  const std::vector<std::string> left_out =
-      settings.peers ? missing_peers(pose_peers()) : std::vector<std::string>{};
   const Subject subject = checked_subject(arguments, settings);
   announce(subject, settings);
-  for (const std::string& line : left_out) print_note("left out: " + line);
 
   Results results;
   results.seed = settings.seed;

@@ -42,7 +42,6 @@ void print_cell(const SubjectResult& subject, const CellResult& cell) {
         cell.baseline_ms, cell.baseline->count == 1 ? "frame" : "frames",
         counted(cell.baseline->count, "sequence"));
   }
-  if (!cell.peers.empty()) fmt::print("\n{}", terminal_text(transposed(peers_table(cell))));
 }
 
 void print_curves(const SubjectResult& subject) {

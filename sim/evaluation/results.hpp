@@ -18,14 +18,6 @@
 
 namespace tumblesight::sim {
 
-// Another library's registration (PosePeer) on the frames of the baseline.
-struct PeerErrors {
-  std::string key;
-  std::string name;
-  ErrorSummary summary;
-  double ms = 0.0;  // per frame, one thread
-};
-
 // The figures of one condition: of last frames unless stated otherwise.
 struct CellResult {
   Condition condition = Condition::kNominal;
@@ -47,7 +39,6 @@ struct CellResult {
   std::optional<ErrorSummary> baseline;  // over the first sequences only, see its count
   double step_ms = 0.0;                  // per frame, one thread
   double baseline_ms = 0.0;
-  std::vector<PeerErrors> peers;  // empty unless they were asked for
   Curve by_frame;
   Curve by_range;
   Curve by_rate;

@@ -12,16 +12,6 @@ namespace {
 
 constexpr std::uint32_t kFifth = 4;  // frame, by index
 
-// Every attitude of a peer counts as valid: it gives no other verdict.
-PeerErrors peer_errors(const PosePeerRow& row, const PeerRun& run) {
-  PeerErrors errors{row.key, row.name, summarise(run.errors_deg), run.ms};
-  if (errors.summary.count == 0) return errors;
-  const double found = static_cast<double>(run.found) / static_cast<double>(errors.summary.count);
-  errors.summary.right_and_valid = errors.summary.within_20deg;
-  errors.summary.wrong_and_valid = found - errors.summary.within_20deg;
-  return errors;
-}
-
 CellResult cell_result(const ExperimentRun& run, const SubjectDescription& subject,
                        const MonteCarloResult& result) {
   const auto frames = static_cast<std::uint32_t>(run.scenario.frames);
@@ -54,8 +44,6 @@ CellResult cell_result(const ExperimentRun& run, const SubjectDescription& subje
   }
   cell.step_ms = result.step_ms;
   cell.baseline_ms = result.baseline_ms;
-  for (std::size_t i = 0; i < run.peers.size(); ++i)
-    cell.peers.push_back(peer_errors(run.peers[i], result.peers[i]));
   cell.by_frame = errors_by_frame(result.frames, frames);
   cell.by_range = errors_by_range(last, run.scenario.ranges);
   cell.by_rate = errors_by_rate(last);
@@ -114,28 +102,6 @@ std::vector<ExperimentRun> complete_runs(const Subject& subject, const Experimen
   return runs;
 }
 
-// The methods to compare with, made once for all runs.
-struct Rivals {
-  std::unique_ptr<TemplateMatcher> matcher;
-  std::vector<std::unique_ptr<PosePeer>> peers;
-
-  std::vector<const PosePeer*> peers_of(const ExperimentRun& run) const {
-    std::vector<const PosePeer*> used;
-    if (run.peers.empty()) return used;
-    for (const std::unique_ptr<PosePeer>& peer : peers) used.push_back(peer.get());
-    return used;
-  }
-};
-
-Rivals make_rivals(const Subject& subject, const ExperimentSettings& settings) {
-  Rivals rivals;
-  if (settings.baseline_sequences > 0)
-    rivals.matcher = std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m);
-  for (const PosePeerRow& row : peers_of(settings))
-    rivals.peers.push_back(row.make(subject.mesh, subject.swath_m));
-  return rivals;
-}
-
 }  // namespace
 
 void set_replay(SubjectResult& figures, const std::string& command) {
@@ -179,7 +145,9 @@ void run_chosen(const Subject& subject, const ExperimentSettings& settings, cons
                 const std::function<void(std::uint64_t)>& progress) {
   const std::vector<ExperimentRun> runs = complete_runs(subject, settings);
   const FlashLidar lidar(observed_bodies(settings.effects, subject.target, subject.mesh));
-  const Rivals rivals = make_rivals(subject, settings);
+  const auto matcher = settings.baseline_sequences > 0
+                           ? std::make_unique<TemplateMatcher>(subject.mesh, subject.swath_m)
+                           : nullptr;
   std::uint64_t done = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const ExperimentRun& run = runs[i];
@@ -189,11 +157,10 @@ void run_chosen(const Subject& subject, const ExperimentSettings& settings, cons
           std::make_unique<FlashLidar>(observed_bodies(run.scenario.effects, subject.target, subject.mesh));
     const FrameRenderer renderer(own_lidar ? *own_lidar : lidar, subject.swath_m);
     const MonteCarloSettings monte_carlo{run.scenario,           settings.seed,    run.sequences,
-                                         run.baseline_sequences, settings.threads, rivals.peers_of(run),
-                                         subject.symmetry};
+                                         run.baseline_sequences, settings.threads, subject.symmetry};
     const std::vector<std::uint32_t> indices = choice(i, run);
     run_sequences(
-        renderer, subject.model, rivals.matcher.get(), monte_carlo, indices,
+        renderer, subject.model, matcher.get(), monte_carlo, indices,
         [&](SequenceResult&& result) { take(i, std::move(result)); },
         [&](std::uint32_t sequences) { progress(done + steps_of(run, sequences)); });
     done += steps_of(run, static_cast<std::uint32_t>(indices.size()));

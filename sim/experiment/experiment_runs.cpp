@@ -36,7 +36,6 @@ std::vector<ExperimentRun> cells_of(const ExperimentSettings& settings) {
     ExperimentRun& run = runs.emplace_back(plain_run(settings, condition));
     run.sequences = sequences_of(settings, condition);
     run.baseline_sequences = std::min(settings.baseline_sequences, run.sequences);
-    run.peers = peers_of(settings);
   }
   return runs;
 }
@@ -89,18 +88,9 @@ void append(std::vector<ExperimentRun>& runs, const std::vector<ExperimentRun>& 
 
 }  // namespace
 
-std::vector<PosePeerRow> peers_of(const ExperimentSettings& settings) {
-  std::vector<PosePeerRow> rows;
-  if (!settings.peers || settings.baseline_sequences == 0) return rows;
-  for (const PosePeerRow& row : pose_peers())
-    if (row.missing == nullptr) rows.push_back(row);
-  return rows;
-}
-
 std::uint64_t steps_of(const ExperimentRun& run, std::uint32_t sequences_done) {
   return std::uint64_t{sequences_done} * static_cast<std::uint64_t>(run.scenario.frames) +
-         (kStepsPerMatch + kStepsPerPeer * run.peers.size()) *
-             std::min(sequences_done, run.baseline_sequences);
+         kStepsPerMatch * std::min(sequences_done, run.baseline_sequences);
 }
 
 std::vector<ExperimentRun> runs_of(const ExperimentSettings& settings) {

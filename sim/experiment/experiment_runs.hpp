@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/baseline/pose_peer.hpp"
 #include "sim/world/scenario/sequence.hpp"
 
 namespace tumblesight::sim {
@@ -20,7 +19,6 @@ struct ExperimentSettings {
   Disturbances disturbances;               // of every run, those of the curves too
   Effects effects;                         // likewise
   std::uint32_t baseline_sequences = 100;  // per cell; 0: no baseline
-  bool peers = false;                      // run the peers of this build on the frames of the baseline
   bool curves = false;                     // run the sweeps too
   bool disturbed_runs = false;             // run disturbed_runs() too
   bool sensor_runs = false;                // run sensor_runs() too, with the paper's sensor
@@ -34,18 +32,15 @@ struct ExperimentRun {
   ScenarioSettings scenario;
   std::uint32_t sequences = 0;
   std::uint32_t baseline_sequences = 0;
-  std::vector<PosePeerRow> peers{};
 };
 
 // In a fixed order: cells, sweeps, disturbed runs, sensor runs. Throws std::invalid_argument if there are no
 // conditions.
 std::vector<ExperimentRun> runs_of(const ExperimentSettings& settings);
-std::vector<PosePeerRow> peers_of(const ExperimentSettings& settings);
 
-// The size of an experiment in steps of about equal duration: one per frame, kStepsPerMatch per match of the
-// baseline, and kStepsPerPeer per match of a peer.
+// The size of an experiment in steps of about equal duration: one per frame, and kStepsPerMatch per match
+// of the baseline.
 inline constexpr std::uint64_t kStepsPerMatch = 100;
-inline constexpr std::uint64_t kStepsPerPeer = 1000;
 std::uint64_t steps_of(const ExperimentRun& run, std::uint32_t sequences_done);
 std::uint64_t steps_of(const ExperimentSettings& settings);
 

@@ -28,7 +28,6 @@ struct Job {
   std::atomic<std::size_t> next{0};
   std::atomic<std::uint32_t> done{0};
   std::mutex take_in_turn{};
-  std::mutex peers_in_turn{};
 };
 
 class Stopwatch {
@@ -70,43 +69,6 @@ void run_baseline(const Job& job, const gnc::RangeImage& frame, SequenceResult& 
   last.baseline = match.q_lrf_trf;
 }
 
-void run_peers(Job& job, const gnc::RangeImage& frame, SequenceResult& made) {
-  const std::lock_guard<std::mutex> in_turn(job.peers_in_turn);
-  const Eigen::Quaterniond& truth = made.frames.back().truth;
-  for (const PosePeer* peer : job.settings.peers) {
-    const Stopwatch stopwatch;
-    const PosePeer::Result found = peer->match(frame);
-    PeerMatch match;
-    match.ms = stopwatch.ms();
-    match.found = found.valid;
-    const Eigen::Quaterniond nearest = nearest_equivalent(found.q_lrf_trf, truth, job.settings.symmetry);
-    if (found.valid) match.error_deg = kDegPerRad * angular_error_rad(truth, nearest);
-    made.peers.push_back(match);
-  }
-}
-
-PeerRun peer_run(const std::vector<SequenceResult>& results, std::size_t peer) {
-  PeerRun run;
-  std::vector<double> times_ms;
-  for (const SequenceResult& result : results) {
-    if (result.peers.empty()) continue;
-    const PeerMatch& match = result.peers[peer];
-    run.errors_deg.push_back(match.error_deg);
-    run.found += match.found ? 1 : 0;
-    times_ms.push_back(match.ms);
-  }
-  run.ms = median(std::move(times_ms));
-  return run;
-}
-
-std::vector<PeerRun> peer_runs(const std::vector<SequenceResult>& results) {
-  std::size_t peers = 0;
-  for (const SequenceResult& result : results) peers = std::max(peers, result.peers.size());
-  std::vector<PeerRun> runs;
-  for (std::size_t peer = 0; peer < peers; ++peer) runs.push_back(peer_run(results, peer));
-  return runs;
-}
-
 SequenceResult run_sequence(Job& job, std::uint32_t index, HostEstimator& estimator, gnc::RangeImage& frame) {
   const Sequence sequence = make_sequence(job.settings.scenario, job.settings.seed, index);
   const auto frames = static_cast<std::uint32_t>(sequence.frames.size());
@@ -133,7 +95,6 @@ SequenceResult run_sequence(Job& job, std::uint32_t index, HostEstimator& estima
   made.step_ms = step_ms / static_cast<double>(made.frames.size());
   const bool matched = index < job.settings.baseline_sequences && !sequence.frames.back().lost;
   if (matched && job.matcher != nullptr) run_baseline(job, frame, made);
-  if (matched) run_peers(job, frame, made);
   return made;
 }
 
@@ -184,7 +145,6 @@ MonteCarloResult joined(std::vector<SequenceResult> results, const TargetSymmetr
   std::sort(results.begin(), results.end(),
             [](const SequenceResult& a, const SequenceResult& b) { return a.sequence < b.sequence; });
   MonteCarloResult all;
-  all.peers = peer_runs(results);
   std::vector<double> step_ms;
   std::vector<double> baseline_ms;
   std::size_t frames = 0;

@@ -5,7 +5,6 @@
 #include <functional>
 #include <vector>
 
-#include "sim/baseline/pose_peer.hpp"
 #include "sim/baseline/template_matcher.hpp"
 #include "sim/experiment/sequence_result.hpp"
 #include "sim/world/frame_renderer.hpp"
@@ -19,8 +18,7 @@ struct MonteCarloSettings {
   std::uint32_t sequences = 900;
   std::uint32_t baseline_sequences = 0;  // the baseline runs on the last frame of the first ones
   int threads = 1;
-  std::vector<const PosePeer*> peers{};  // run on the same frames as the baseline; must outlive the run
-  TargetSymmetry symmetry{};             // errors are to the nearest attitude that looks the same
+  TargetSymmetry symmetry{};  // errors are to the nearest attitude that looks the same
 };
 
 // Takes the result of a sequence. Called by one thread at a time, in no fixed order.
@@ -28,7 +26,7 @@ using SequenceSink = std::function<void(SequenceResult&&)>;
 
 // Runs the sequences `indices`, each through the same gnc::FrameTracker as in flight. `renderer`: renders the
 // frames. `model`: a model image that AttitudeEstimator::load accepts; otherwise throws
-// std::invalid_argument. `matcher`: the baseline, or nullptr. Peers wait for each other, see PosePeer::match.
+// std::invalid_argument. `matcher`: the baseline, or nullptr.
 // `progress`: sequences done so far; called on the calling thread. The results except the times do not depend
 // on the number of threads, nor on which other sequences run. What `take` throws ends the run and is thrown
 // on.
@@ -41,18 +39,10 @@ void run_sequences(const FrameRenderer& renderer, const std::vector<std::uint8_t
                    const std::vector<std::uint32_t>& indices, const SequenceSink& take,
                    const std::function<void(std::uint32_t)>& progress);
 
-// One peer on the last frames of the first sequences.
-struct PeerRun {
-  std::vector<double> errors_deg;  // ordered by sequence; 180 without an attitude
-  std::size_t found = 0;           // frames with an attitude
-  double ms = 0.0;                 // median time per frame, one thread
-};
-
 struct MonteCarloResult {
   std::vector<FrameResult> frames;  // ordered by sequence and frame; lost frames have none
   double step_ms = 0.0;             // median over the sequences of the mean time per frame, one thread
   double baseline_ms = 0.0;         // median time per frame of the baseline; 0 if it was not run
-  std::vector<PeerRun> peers;       // in the order of the settings
 };
 
 // The results of the sequences 0 to n - 1, in any order, each once. Estimates become the nearest attitude

@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kWithValue[] = {
     "--sequences", "--condition", "--baseline-sequences", "--threads", "--csv",
     "--json",      "--report",    "--effect-limit",       "--shard",   "--shard-file"};
-constexpr const char* kFlags[] = {"--curves", "--no-baseline", "--peers"};
+constexpr const char* kFlags[] = {"--curves", "--no-baseline"};
 
 template <std::size_t count>
 bool is_in(const char* const (&names)[count], const std::string& name) {

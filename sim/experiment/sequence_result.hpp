@@ -9,19 +9,11 @@
 
 namespace tumblesight::sim {
 
-// What one peer made of the last frame of a sequence.
-struct PeerMatch {
-  double error_deg = 180.0;
-  bool found = false;
-  double ms = 0.0;
-};
-
 struct SequenceResult {
   std::uint32_t sequence = 0;
   std::vector<FrameResult> frames;  // those that were delivered, in their order
   double step_ms = 0.0;             // mean time per frame from ranges to attitude and pose, one thread
   double baseline_ms = 0.0;         // of the baseline on the last frame; 0: not run
-  std::vector<PeerMatch> peers{};   // in the order of the settings; empty: not run
 };
 
 }  // namespace tumblesight::sim

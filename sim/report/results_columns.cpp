@@ -303,8 +303,6 @@ std::vector<EstimatorRow> estimator_rows(const Results& results) {
       rows.push_back({results, subject, cell, "rcnn", cell.rcnn, paper.rcnn});
       rows.push_back({results, subject, cell, "cnn", cell.cnn, paper.cnn});
       if (cell.baseline) rows.push_back({results, subject, cell, "baseline", *cell.baseline, std::nullopt});
-      for (const PeerErrors& peer : cell.peers)
-        rows.push_back({results, subject, cell, peer.key.c_str(), peer.summary, std::nullopt});
     }
     for (const auto* further : {&subject.disturbed, &subject.sensor_runs}) {
       for (const CellResult& cell : *further) {

@@ -56,7 +56,7 @@ struct EstimatorRow {
   const Results& results;
   const SubjectResult& subject;
   const CellResult& cell;
-  const char* estimator;  // "rcnn", "cnn", "baseline", or the key of a peer
+  const char* estimator;  // "rcnn", "cnn" or "baseline"
   const ErrorSummary& summary;
   std::optional<PaperFigure> paper;
 };

@@ -39,17 +39,6 @@ Json baseline_json(const CellResult& cell) {
   return json;
 }
 
-Json peers_json(const CellResult& cell) {
-  Json json = Json::object();
-  for (const PeerErrors& peer : cell.peers) {
-    Json one = summary_json(peer.summary);
-    one["sequences"] = peer.summary.count;
-    one["ms_per_frame"] = peer.ms;
-    json[peer.key] = one;
-  }
-  return json;
-}
-
 Json curve_json(const Curve& curve) {
   Json json = Json::array();
   for (const CurvePoint& point : curve) {
@@ -115,7 +104,6 @@ Json row_json(const Results& results, const SubjectResult& subject, const CellRe
   if (!subject.variant.empty()) json["variant"] = subject.variant;
   if (!cell.symmetry.is_none()) json["symmetry"] = to_string(cell.symmetry);
   if (is_mostly_wrong(cell)) json["mostly_wrong"] = true;
-  if (!cell.peers.empty()) json["peers"] = peers_json(cell);
   if (!cell.sensor.is_the_papers()) json["sensor"] = sensor_json(cell.sensor);
   if (!cell.ranges.are_the_papers()) json["ranges_m"] = {cell.ranges.nearest_m, cell.ranges.farthest_m};
   // What an effect or a sensor costs depends on the range.

@@ -92,20 +92,6 @@ std::string goals_section(const Results& results) {
          "one, mean expected error 0.7 to 1.5 of the real one.</p>\n";
 }
 
-// Nothing without peers.
-std::string peers_section(const SubjectResult& subject) {
-  std::string text;
-  for (const CellResult& cell : subject.cells) {
-    if (cell.peers.empty()) continue;
-    text += "<h3>" + to_string(cell.condition) + "</h3>\n" + html_text(peers_table(cell), "results");
-  }
-  if (text.empty()) return text;
-  return "<h2>Other libraries</h2>\n" + text +
-         "<p class=sub>Registration by PCL (FPFH, RANSAC, ICP) and OpenCV (PPF, ICP) on the last frames of "
-         "the first sequences, each from that frame alone, with the same mesh. Times: median, one "
-         "thread.</p>\n";
-}
-
 // One network on one mesh: its error under each condition.
 std::string lead_of(const SubjectResult& subject) {
   std::string errors, wrong;
@@ -234,7 +220,7 @@ std::string chapter(const Results& results, const SubjectResult& subject) {
              escape_markup(title_of(subject)), escape_markup(subject.model), subject.model_crc32,
              results.seed, counted(base.sequences, "sequence"), counted(base.frames, "frame"),
              to_string(base.condition), times_text(base)) +
-         peers_section(subject) + html_text(checks_table(subject), "results") + figures_of(subject);
+         html_text(checks_table(subject), "results") + figures_of(subject);
 }
 
 // Among several subjects those with sweeps have a chapter; a single subject always has one.

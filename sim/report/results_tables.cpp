@@ -110,20 +110,6 @@ DataTable cell_table(const std::string& target, const CellResult& cell) {
   return estimators_table(estimators, paper.sequences);
 }
 
-DataTable peers_table(const CellResult& cell) {
-  DataTable table{{"on the same frames"}, {}};
-  if (cell.peers.empty()) return table;
-  for (const SummaryFigure& figure : summary_figures()) table.header.emplace_back(figure.heading);
-  for (const char* heading : {"sequences", "ms per frame"}) table.header.emplace_back(heading);
-  const auto add = [&](const std::string& name, const ErrorSummary& summary, double ms) {
-    table.rows.push_back(estimator_cells({name, Mark::kNone, summary, std::nullopt}));
-    table.rows.back().push_back({fmt::format("{:.0f}", ms)});
-  };
-  if (cell.baseline) add("template matching", *cell.baseline, cell.baseline_ms);
-  for (const PeerErrors& peer : cell.peers) add(peer.name, peer.summary, peer.ms);
-  return table;
-}
-
 DataTable conditions_table(const std::vector<SubjectResult>& subjects, ConditionTables table) {
   DataTable made{condition_header(table), {}};
   for (const SubjectResult& subject : subjects) {

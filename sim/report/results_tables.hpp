@@ -21,8 +21,6 @@ struct EstimatorErrors {
 DataTable estimators_table(const std::vector<EstimatorErrors>& estimators, std::uint32_t paper_sequences);
 // The same for one condition: RCNN, CNN and, where it was run, template matching.
 DataTable cell_table(const std::string& target, const CellResult& cell);
-// Template matching and the peers on the frames that they share, with their times. No lines without peers.
-DataTable peers_table(const CellResult& cell);
 
 // A line per condition, with the columns that belong to `table`; overviews have a title above each
 // subject's lines.

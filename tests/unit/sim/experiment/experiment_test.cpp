@@ -6,7 +6,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "sim/baseline/pose_peer.hpp"
 #include "sim/evaluation/pose_goals.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
@@ -113,11 +112,6 @@ TEST_F(Experiment, CountsAMatchOfTheBaselineAsSeveralSteps) {
   const std::uint64_t without = steps_of(settings_);
   settings_.baseline_sequences = 2;
   EXPECT_EQ(steps_of(settings_), without + 2 * kStepsPerMatch);
-  const auto present = static_cast<std::uint64_t>(
-      std::count_if(pose_peers().begin(), pose_peers().end(),
-                    [](const PosePeerRow& row) { return row.missing == nullptr; }));
-  settings_.peers = true;
-  EXPECT_EQ(steps_of(settings_), without + 2 * (kStepsPerMatch + present * kStepsPerPeer));
 }
 
 }  // namespace

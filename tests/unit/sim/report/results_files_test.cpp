@@ -136,19 +136,6 @@ TEST(ResultsCsv, HasALinePerEstimatorWithAsManyFieldsAsTheHeader) {
   EXPECT_EQ(fields[9], "31.0000");
 }
 
-TEST(Results, HaveThePeersWhereTheyWereRun) {
-  Results results = sample_results();
-  EXPECT_FALSE(results_json(results)["rows"][1].contains("peers"));
-  results.subjects[0].cells[1].peers.push_back({"other", "Other library", summarise({30.0, 50.0}), 812.0});
-  const nlohmann::ordered_json row = results_json(results)["rows"][1];
-  EXPECT_EQ(row["peers"]["other"]["mean_deg"], 40.0);
-  EXPECT_EQ(row["peers"]["other"]["sequences"], 2);
-  EXPECT_EQ(row["peers"]["other"]["ms_per_frame"], 812.0);
-  EXPECT_FALSE(results_json(results)["rows"][0].contains("peers"));
-  EXPECT_NE(results_csv(results).find(",other,2,40.0000,"), std::string::npos);
-  EXPECT_NE(results_page(results).find("Other library"), std::string::npos);
-}
-
 TEST(ResultsJson, HasThePosesWhereThereAreAny) {
   Results results = sample_results();
   results.subjects[0].cells[1].pose = sample_poses();

@@ -107,22 +107,6 @@ TEST(CellTable, FitsATerminalOfAHundredColumns) {
   EXPECT_GE(read, 8);
 }
 
-// Verifies TS-SIL-180.
-TEST(PeersTable, HasTemplateMatchingAndEachPeerWithItsTime) {
-  CellResult cell;
-  cell.baseline = summarise({1.0, 3.0});
-  cell.baseline_ms = 104.0;
-  EXPECT_TRUE(peers_table(cell).rows.empty());
-  cell.peers.push_back({"other", "Other library", summarise({30.0, 50.0}), 812.3});
-  const DataTable table = peers_table(cell);
-  ASSERT_EQ(table.rows.size(), 2U);
-  for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
-  EXPECT_EQ(table.header.back(), "ms per frame");
-  EXPECT_EQ(table.rows[0].back().text, "104");
-  EXPECT_EQ(table.rows[1].front().text, "Other library");
-  EXPECT_EQ(table.rows[1].back().text, "812");
-}
-
 TEST(PosesTable, HasALinePerConditionWithAPose) {
   Results results = sample_results();
   EXPECT_TRUE(poses_table(results.subjects[0]).rows.empty());
