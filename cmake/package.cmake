@@ -14,8 +14,8 @@ install(FILES fsw/models/near_shoemaker.float32.tsm DESTINATION ${data_folder}/m
 install(PROGRAMS hal/dds/make_security DESTINATION ${data_folder} COMPONENT tumblesight)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tumblesight)
 install(FILES cmake/README.installed DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME README COMPONENT tumblesight)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT tumblesight)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev RENAME copyright COMPONENT tumblesight-dev)
+install(FILES LICENSES/Apache-2.0.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT tumblesight)
+install(FILES LICENSES/Apache-2.0.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev RENAME copyright COMPONENT tumblesight-dev)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL tumblesight tumblesight-dev)
