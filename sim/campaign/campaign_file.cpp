@@ -28,8 +28,8 @@ constexpr std::size_t kLongestName = 120;
 
 // What the campaign sets itself, or what is not one cell of figures.
 constexpr const char* kNotForRuns[] = {
-    "shard",       "shard-file", "json",         "csv",         "report", "threads", "paper",
-    "mesh-folder", "out",        "effect-limit", "no-baseline", "curves",  "baseline-sequences"};
+    "shard",       "shard-file", "json",         "csv",         "report", "threads",           "paper",
+    "mesh-folder", "out",        "effect-limit", "no-baseline", "curves", "baseline-sequences"};
 
 struct Option {
   std::string key;

@@ -196,22 +196,21 @@ void add_adopt_command(Command& app, const std::string& command_line) {
       ->required()
       ->type_name("FILE|NAME");
   limit_number(command.add_option("--minutes", arguments->minutes,
-                                   "wall-clock time for everything [that of the mission, else 60]"),
+                                  "wall-clock time for everything [that of the mission, else 60]"),
                0.5, 100'000.0)
       ->type_name("X");
   command.add_option("--out", arguments->out, "folder for model images, report and checkpoints [out/<name>]")
       ->check(file_path())
       ->type_name("DIR");
   add_seed_option(command, arguments->seed);
-  limit_whole_number(
-      command.add_option("--sequences", arguments->sequences,
-                          "sequences per condition of the evaluation [by the time, 20 to 900]"),
-      1, 100'000)
+  limit_whole_number(command.add_option("--sequences", arguments->sequences,
+                                        "sequences per condition of the evaluation [by the time, 20 to 900]"),
+                     1, 100'000)
       ->type_name("N");
   command
       .add_option("--start-from", arguments->start_from,
-                   "float32 model image whose CNN to start from, or random [the nearest of those in "
-                   "fsw/models; in less than 20 minutes the first]")
+                  "float32 model image whose CNN to start from, or random [the nearest of those in "
+                  "fsw/models; in less than 20 minutes the first]")
       ->type_name("FILE|random");
   limit_whole_number(command.add_option("--threads", arguments->threads, "worker threads, 0: one per core"),
                      0, 256)

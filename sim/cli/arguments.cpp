@@ -55,8 +55,8 @@ void add_mesh_file_options(Command& command, Mesh& mesh, std::string& up, double
     for (const CommandOption of_files : {axis, unit}) {
       if (of_files->count() > 0 && !has_a_file(mesh))
         throw ArgumentFault(of_files->get_name(),
-                                   "is for mesh files, and --mesh parametric has its axes and unit; leave " +
-                                       of_files->get_name() + " out, or give a file with --mesh");
+                            "is for mesh files, and --mesh parametric has its axes and unit; leave " +
+                                of_files->get_name() + " out, or give a file with --mesh");
     }
   });
 }
@@ -274,8 +274,8 @@ void require_a_name(const Command& command, const std::vector<std::string>& mesh
 void require_the_target(const Effects& effects) {
   if (show_the_target(effects)) return;
   throw ArgumentFault("--effect",
-                             "wrong_object and sphere are for tests only: a network cannot learn "
-                             "the target's attitude from another body");
+                      "wrong_object and sphere are for tests only: a network cannot learn "
+                      "the target's attitude from another body");
 }
 
 void add_json_option(Command& command, std::string& json) {
@@ -382,10 +382,9 @@ std::vector<TriangleMesh> load_meshes(const MeshArguments& arguments, const std:
 void require_supported_length(const ScenarioArguments& arguments, const std::string& remedy) {
   const std::uint64_t frames = std::uint64_t{arguments.sequences} * arguments.frames;
   if (frames <= kMaxRunFrames) return;
-  throw ArgumentFault(
-      "--sequences, --frames",
-      fmt::format("{} x {} are {} frames in all; a run has at most {}{}", arguments.sequences,
-                  arguments.frames, frames, kMaxRunFrames, remedy));
+  throw ArgumentFault("--sequences, --frames",
+                      fmt::format("{} x {} are {} frames in all; a run has at most {}{}", arguments.sequences,
+                                  arguments.frames, frames, kMaxRunFrames, remedy));
 }
 
 }  // namespace tumblesight::sim

@@ -114,9 +114,8 @@ CommandOption limit_whole_number(CommandOption option, std::uint64_t low, std::u
 CommandOption limit_number(CommandOption option, double low, double high);
 // An existing file. The message about a missing image of fsw/models names the command that gets it.
 ValueCheck existing_model_image();
-ValueCheck file_path();  // not empty
-ValueCheck
-existing_file();  // a regular one: a pipe gives its content once, and both programs read the file
+ValueCheck file_path();      // not empty
+ValueCheck existing_file();  // a regular one: a pipe gives its content once, and both programs read the file
 ValueCheck one_of(const std::vector<std::string>& names);
 // 1 to 31 characters of a-z, 0-9 and _: the name becomes part of a file name and of the model image.
 ValueCheck target_name();

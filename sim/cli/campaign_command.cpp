@@ -330,13 +330,13 @@ void add_run(Command& verb, const std::shared_ptr<CampaignArguments>& arguments)
       ->type_name("WAY")
       ->capture_default_str();
   limit_whole_number(command.add_option("--jobs", arguments->jobs,
-                                         "workers at a time, 0: one per core, or as many as Slurm starts"),
+                                        "workers at a time, 0: one per core, or as many as Slurm starts"),
                      0, 100'000)
       ->type_name("N")
       ->capture_default_str();
   command
       .add_option("--options", arguments->options,
-                   "further options of sbatch or mpirun, one text: \"--partition=long --time=2:00:00\"")
+                  "further options of sbatch or mpirun, one text: \"--partition=long --time=2:00:00\"")
       ->type_name("TEXT");
   command.add_flag("--no-wait", arguments->no_wait, "end when the Slurm jobs are submitted");
   command.add_flag("--dry-run", arguments->dry_run, "only check the file and show the runs");
@@ -356,11 +356,11 @@ void add_work(Command& verb, const std::shared_ptr<CampaignArguments>& arguments
   add_file(command, *arguments);
   command
       .add_option("--part", arguments->part,
-                   "only the tasks of part I of N, I from 0; otherwise the next one that nobody runs")
+                  "only the tasks of part I of N, I from 0; otherwise the next one that nobody runs")
       ->check(shard_text())
       ->type_name("I/N");
   command.add_flag("--supervised", arguments->supervised,
-                    "end with the program that started it; the exit status is 0 if tasks failed");
+                   "end with the program that started it; the exit status is 0 if tasks failed");
   command.callback([arguments] { work(*arguments); });
 }
 
@@ -375,7 +375,7 @@ void add_report(Command& verb, const std::shared_ptr<CampaignArguments>& argumen
       verb.add_subcommand("report", "Make tables, JSON, CSV and report.html of the shard files");
   add_file(command, *arguments);
   command.add_flag("--partial", arguments->partial,
-                    "make the figures from the sequences that are done, although some are missing");
+                   "make the figures from the sequences that are done, although some are missing");
   command.callback([arguments] { report(*arguments, open_campaign(*arguments)); });
 }
 

@@ -154,8 +154,10 @@ template CommandOption Command::add_option(const std::string&, int&, const std::
 template CommandOption Command::add_option(const std::string&, std::uint32_t&, const std::string&);
 template CommandOption Command::add_option(const std::string&, std::uint64_t&, const std::string&);
 template CommandOption Command::add_option(const std::string&, std::int64_t&, const std::string&);
-template CommandOption Command::add_option(const std::string&, std::optional<std::uint32_t>&, const std::string&);
-template CommandOption Command::add_option(const std::string&, std::vector<std::uint32_t>&, const std::string&);
+template CommandOption Command::add_option(const std::string&, std::optional<std::uint32_t>&,
+                                           const std::string&);
+template CommandOption Command::add_option(const std::string&, std::vector<std::uint32_t>&,
+                                           const std::string&);
 template CommandOption Command::add_option(const std::string&, double&, const std::string&);
 template CommandOption Command::add_option(const std::string&, std::string&, const std::string&);
 template CommandOption Command::add_option(const std::string&, std::vector<double>&, const std::string&);

@@ -1,5 +1,5 @@
-// A command and its options, as the verbs declare them: the part of CLI11 that they use, under its names. CLI11 itself takes
-// seconds to compile, so that only the files that parse include it.
+// A command and its options, as the verbs declare them: the part of CLI11 that they use, under its names.
+// CLI11 itself takes seconds to compile, so that only the files that parse include it.
 #pragma once
 
 #include <cstddef>

@@ -22,7 +22,8 @@ class CommandLine {
 
   Command& command() { return command_; }
 
-  // Takes words, without the name of the program, and does what the callbacks do. Throws ArgumentFault if one is wrong.
+  // Takes words, without the name of the program, and does what the callbacks do. Throws ArgumentFault if one
+  // is wrong.
   void parse(const std::vector<std::string>& words);
   // The same for the words of a user. Prints help, version, or what is wrong. Returns the exit status.
   int run(const std::vector<std::string>& words);

@@ -45,10 +45,8 @@ std::string make_token() {
 std::unique_ptr<RunSource> open_run(const ConsoleArguments& arguments) {
   if (arguments.recording.empty())
     return std::make_unique<BusRun>(arguments.domain, arguments.security, arguments.mcap);
-  if (!arguments.mcap.empty())
-    throw ArgumentFault("--mcap", "records a run on the bus; this is a recording");
-  if (arguments.domain >= 0)
-    throw ArgumentFault("--domain", "is of a run on the bus; a recording has none");
+  if (!arguments.mcap.empty()) throw ArgumentFault("--mcap", "records a run on the bus; this is a recording");
+  if (arguments.domain >= 0) throw ArgumentFault("--domain", "is of a run on the bus; a recording has none");
   return std::make_unique<RecordedRun>(arguments.recording);
 }
 
@@ -115,34 +113,34 @@ void add_console_command(Command& app, const std::string&) {
   auto arguments = std::make_shared<ConsoleArguments>();
   command
       .add_option("RECORDING", arguments->recording,
-                   "file of simulate, replay or record with --mcap [the run on this machine's bus]")
+                  "file of simulate, replay or record with --mcap [the run on this machine's bus]")
       ->check(file_path());
   limit_whole_number(command.add_option("--domain", arguments->domain,
-                                         "DDS domain of the run [the newest run that you have started]"),
+                                        "DDS domain of the run [the newest run that you have started]"),
                      0, hal::dds::kMaxDomain);
   limit_whole_number(
       command.add_option("--port", arguments->port, "of 127.0.0.1; 0: a free one")->capture_default_str(), 0,
       65535);
   command
       .add_option("--mcap", arguments->mcap,
-                   "also record the run to FILE, from where the console joins it; a recording that can be "
-                   "replayed is made by simulate --mcap")
+                  "also record the run to FILE, from where the console joins it; a recording that can be "
+                  "replayed is made by simulate --mcap")
       ->check(file_path())
       ->type_name("FILE");
   limit_whole_number(
       command
           .add_option("--ros2", arguments->ros2_domain,
-                       "also publish the run to the ROS 2 nodes of this machine with this ROS_DOMAIN_ID; "
-                       "docs/console.md has their settings")
+                      "also publish the run to the ROS 2 nodes of this machine with this ROS_DOMAIN_ID; "
+                      "docs/console.md has their settings")
           ->type_name("DOMAIN"),
       0, Ros2Bridge::kMostDomain);
   command
       .add_option("--model", arguments->model,
-                   "model image that has the target's surface and scale [the one shipped for the target]")
+                  "model image that has the target's surface and scale [the one shipped for the target]")
       ->check(existing_file());
   command
       .add_option("--dds-security", arguments->security,
-                   "of a secured bus; hal/dds/make_security writes the file")
+                  "of a secured bus; hal/dds/make_security writes the file")
       ->check(existing_file());
   command.add_flag("--of-run", arguments->is_of_run)->group("");
   command.footer(

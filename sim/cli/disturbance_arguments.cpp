@@ -16,8 +16,7 @@ void add_flag(Command& command, const DisturbanceRow& row, Disturbances& disturb
   command
       .add_flag_function(
           std::string("--") + row.name,
-          [&row, &disturbances](bool on) { row.set(disturbances, on ? 1.0 : 0.0); },
-          row.explanation)
+          [&row, &disturbances](bool on) { row.set(disturbances, on ? 1.0 : 0.0); }, row.explanation)
       ->group(kGroup);
 }
 

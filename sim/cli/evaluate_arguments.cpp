@@ -158,16 +158,15 @@ void add_evaluate_options(Command& command, EvaluateArguments& arguments) {
 }
 
 ValueCheck shard_text() {
-  return ValueCheck{
-      [](std::string& text) {
-        try {
-          (void)shard_from(text);
-          return std::string();
-        } catch (const std::invalid_argument& error) {
-          return std::string(error.what());
-        }
-      },
-      "shard"};
+  return ValueCheck{[](std::string& text) {
+                      try {
+                        (void)shard_from(text);
+                        return std::string();
+                      } catch (const std::invalid_argument& error) {
+                        return std::string(error.what());
+                      }
+                    },
+                    "shard"};
 }
 
 void complete(const Command& command, EvaluateArguments& arguments) {
@@ -187,10 +186,9 @@ EvaluateArguments parsed_evaluate(const std::vector<std::string>& options) {
 }
 
 void refuse_options_set_by_paper(const Command& command) {
-  std::vector<std::string> own_options{"--target",   "--mesh",     "--inertia", "--condition", "--frames",
-                                       "--model",    "--numerics", "--json",    "--csv",       "--report",
-                                       "--curves",   "--effect",   "--sensor",  "--range",
-                                       "--symmetry", "--shard"};
+  std::vector<std::string> own_options{
+      "--target", "--mesh",   "--inertia", "--condition", "--frames", "--model", "--numerics", "--json",
+      "--csv",    "--report", "--curves",  "--effect",    "--sensor", "--range", "--symmetry", "--shard"};
   for (const DisturbanceRow& row : kDisturbances) own_options.push_back(std::string("--") + row.name);
   for (const std::string& own : own_options) {
     if (command.get_option(own)->count() == 0) continue;
@@ -199,8 +197,7 @@ void refuse_options_set_by_paper(const Command& command) {
 }
 
 void refuse_options_of_tables(const Command& command) {
-  for (const char* other :
-       {"--paper", "--curves", "--csv", "--report", "--baseline-sequences", "--shard"}) {
+  for (const char* other : {"--paper", "--curves", "--csv", "--report", "--baseline-sequences", "--shard"}) {
     if (command.get_option(other)->count() == 0) continue;
     throw ArgumentFault("--effect-limit", fmt::format("makes no tables; leave {} out", other));
   }
@@ -209,8 +206,8 @@ void refuse_options_of_tables(const Command& command) {
 void refuse_options_of_merge(const Command& command) {
   for (const char* other : {"--json", "--csv", "--report"}) {
     if (command.get_option(other)->count() == 0) continue;
-    throw ArgumentFault(
-        "--shard", fmt::format("makes no figures; give {} to `tumblesight merge`, which does", other));
+    throw ArgumentFault("--shard",
+                        fmt::format("makes no figures; give {} to `tumblesight merge`, which does", other));
   }
 }
 

@@ -50,8 +50,8 @@ ExperimentSettings experiment_settings(const EvaluateArguments& arguments);
 // All settings. Throws ArgumentFault or std::invalid_argument if they do not fit together, and as
 // require_usable_files() does.
 ExperimentSettings checked_settings(const EvaluateArguments& arguments);
-// The target of a scenario with its model. Prints the warnings of set_up_target() on the standard error stream, and throws as
-// it does.
+// The target of a scenario with its model. Prints the warnings of set_up_target() on the standard error
+// stream, and throws as it does.
 Subject set_up_subject(const ScenarioArguments& arguments);
 // Throws as set_up_subject() does, and if a condition needs an inertia that is not known.
 Subject checked_subject(const EvaluateArguments& arguments, const ExperimentSettings& settings);

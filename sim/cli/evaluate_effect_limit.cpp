@@ -75,8 +75,8 @@ void evaluate_effect_limit(const EvaluateArguments& arguments) {
     throw ArgumentFault("--effect-limit", "is searched under one --condition");
   const EffectRow& row = effect_named(arguments.effect_limit);
   if (settings.effects.*row.strength != 0.0)
-    throw ArgumentFault(
-        "--effect-limit", fmt::format("searches the strength of {0}; leave {0} out of --effect", row.name));
+    throw ArgumentFault("--effect-limit",
+                        fmt::format("searches the strength of {0}; leave {0} out of --effect", row.name));
   const Subject subject = checked_subject(arguments, settings);
   announce(subject, settings);
   const Interruption interruption;

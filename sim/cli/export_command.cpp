@@ -60,9 +60,9 @@ void add_export_command(Command& app, const std::string&) {
   auto arguments = std::make_shared<ExportArguments>();
   Command command = add_verb(app, "export");
   command.footer("\nFiles (opset 13)\n" + explanations() + "\n" + kUseOfTheModels +
-                  "\nExample\n"
-                  "  tumblesight export --model out/near/near_shoemaker.float32.tsm \\\n"
-                  "      --onnx out/near/near_shoemaker\n");
+                 "\nExample\n"
+                 "  tumblesight export --model out/near/near_shoemaker.float32.tsm \\\n"
+                 "      --onnx out/near/near_shoemaker\n");
   add_float32_model_option(command, arguments->model);
   command.add_option("--onnx", arguments->onnx, "first part of the file names")
       ->required()

@@ -55,7 +55,7 @@ void add_merge_command(Command& app, const std::string&) {
       ->check(existing_file())
       ->type_name("FILE");
   command.add_flag("--partial", arguments->partial,
-                    "make the figures from the sequences that are done, although some are missing");
+                   "make the figures from the sequences that are done, although some are missing");
   add_results_options(command, arguments->files);
   command.footer(
       "\nTables, JSON, CSV and report are those of one process, bit for bit, whatever the\n"

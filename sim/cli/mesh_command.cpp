@@ -151,7 +151,7 @@ void add_mesh_command(Command& app, const std::string& command_line) {
   command.add_option("FILE", arguments->file, "mesh file, unless --mission names one")->check(file_path());
   command
       .add_option("--mesh-up", arguments->mesh_up,
-                   "axis of the mesh file that points along the target frame's z")
+                  "axis of the mesh file that points along the target frame's z")
       ->check(one_of({"y", "z"}))
       ->type_name("y|z")
       ->capture_default_str();

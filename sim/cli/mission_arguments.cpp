@@ -70,8 +70,8 @@ void add_mission_option(Command& command, ScenarioArguments& arguments) {
   });
 }
 
-void add_mission_option(Command& command, std::string& target, MeshArguments& meshes,
-                        SensorArguments& sensor, std::optional<Mission>& known) {
+void add_mission_option(Command& command, std::string& target, MeshArguments& meshes, SensorArguments& sensor,
+                        std::optional<Mission>& known) {
   add_mission(command, [&command, &target, &meshes, &sensor, &known](const Mission& mission) {
     known = mission;
     target = mission.name;

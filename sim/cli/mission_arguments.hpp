@@ -16,8 +16,8 @@ namespace tumblesight::sim {
 // given.
 void add_mission_option(Command& command, ScenarioArguments& arguments);
 // The same for verbs that make a network.
-void add_mission_option(Command& command, std::string& target, MeshArguments& meshes,
-                        SensorArguments& sensor, std::optional<Mission>& mission);
+void add_mission_option(Command& command, std::string& target, MeshArguments& meshes, SensorArguments& sensor,
+                        std::optional<Mission>& mission);
 
 // Sensor, ranges and rates of a mission. Throws as sensor_named() does.
 SensorArguments sensor_arguments_of(const Mission& mission);

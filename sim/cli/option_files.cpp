@@ -37,9 +37,8 @@ void require_separate_files(const OptionFiles& read, const OptionFiles& written)
   for (const OptionFile& file : written) {
     for (const OptionFile& other : others) {
       if (!is_same_file(file.path, other.path)) continue;
-      throw ArgumentFault(
-          file.option,
-          fmt::format("'{}' is also the file of {}; give two different files", file.path, other.option));
+      throw ArgumentFault(file.option, fmt::format("'{}' is also the file of {}; give two different files",
+                                                   file.path, other.option));
     }
     others.push_back(file);
   }

@@ -169,8 +169,7 @@ void require_only_files(const Command& command) {
   const std::set<std::string> allowed{"--to-float32", "--model", "--out"};
   for (const CommandOption option : command.get_options()) {
     if (option->count() > 0 && allowed.count(option->get_name()) == 0)
-      throw ArgumentFault("--to-float32",
-                                 fmt::format("takes no {}; leave it out", option->get_name()));
+      throw ArgumentFault("--to-float32", fmt::format("takes no {}; leave it out", option->get_name()));
   }
 }
 
@@ -280,8 +279,8 @@ void add_quantize_command(Command& app, const std::string&) {
                      "; with --surface-only or --to-float32: a model image in fixed point");
   command
       .add_option("--out", arguments->out,
-                   "model image to write [--model without .float32; --surface-only has no default, nor has "
-                   "--to-float32]")
+                  "model image to write [--model without .float32; --surface-only has no default, nor has "
+                  "--to-float32]")
       ->check(file_path())
       ->type_name("FILE");
   add_mesh_options(command, arguments->meshes);
@@ -291,7 +290,7 @@ void add_quantize_command(Command& app, const std::string&) {
   add_sensor_options(command, arguments->sensor);
   add_symmetry_option(command, arguments->symmetry);
   limit_whole_number(command.add_option("--sequences", arguments->sequences,
-                                         "sequences of ten frames to render for calibration"),
+                                        "sequences of ten frames to render for calibration"),
                      10, 10'000)
       ->type_name("N")
       ->capture_default_str();

@@ -132,8 +132,8 @@ void add_record_command(Command& app, const std::string&) {
   add_disturbance_options(command, arguments->scenario.disturbances);
   command
       .add_option("--model", arguments->scenario.model,
-                   "model image that is to see the frames: its swath, its sensor [the one that ships for the "
-                   "target; without one the mesh]")
+                  "model image that is to see the frames: its swath, its sensor [the one that ships for the "
+                  "target; without one the mesh]")
       ->check(existing_model_image())
       ->type_name("FILE");
   command.add_option("--out", arguments->out, "recording to write")
@@ -142,7 +142,7 @@ void add_record_command(Command& app, const std::string&) {
       ->type_name("FILE");
   command
       .add_option("--truth", arguments->truth,
-                   "truth to write [beside the recording: FRAMES.truth.csv]; none: no truth")
+                  "truth to write [beside the recording: FRAMES.truth.csv]; none: no truth")
       ->check(file_path())
       ->type_name("FILE");
   command

@@ -196,8 +196,8 @@ void replay_run(const ReplayArguments& given) {
   RunSteps steps(arguments.recording);
   if (steps.target() != arguments.scenario.target) {
     if (arguments.is_target_given)
-      throw ArgumentFault("--target", fmt::format("{}: the recorded run is of {}",
-                                                         arguments.scenario.target, steps.target()));
+      throw ArgumentFault("--target", fmt::format("{}: the recorded run is of {}", arguments.scenario.target,
+                                                  steps.target()));
     arguments.scenario.target = steps.target();
   }
   const TargetSetup target = set_up_model_alone(arguments.scenario);
@@ -266,15 +266,15 @@ void add_replay_command(Command& app, const std::string& command_line) {
   arguments->command_line = command_line;
   command
       .add_option("RECORDING", arguments->recording,
-                   "frames, as `tumblesight record` or a program of your own writes them; or an MCAP "
-                   "file of simulate --mcap or record --mcap")
+                  "frames, as `tumblesight record` or a program of your own writes them; or an MCAP "
+                  "file of simulate --mcap or record --mcap")
       ->required()
       ->check(existing_file())
       ->type_name("FILE");
   command
       .add_option("--truth", arguments->truth,
-                   "true attitudes of the frames; none: not known [FRAMES.truth.csv beside the recording, if "
-                   "there is one]")
+                  "true attitudes of the frames; none: not known [FRAMES.truth.csv beside the recording, if "
+                  "there is one]")
       ->check(file_path())
       ->type_name("FILE");
   add_target_option(command, arguments->scenario.target, TargetChoice::kWithModel);

@@ -35,9 +35,9 @@ RangeLimits ranges_from(const std::vector<std::string>& texts) {
   const auto farthest = texts.size() == 2 ? range_from(texts[1]) : std::nullopt;
   if (nearest && farthest && *nearest <= *farthest) return {*nearest, *farthest};
   throw ArgumentFault("--range",
-                             fmt::format("must be NEAREST,FARTHEST, two ascending ranges from {:g} to {:g} "
-                                         "m, not '{}'",
-                                         kNearest_m, kFarthest_m, text));
+                      fmt::format("must be NEAREST,FARTHEST, two ascending ranges from {:g} to {:g} "
+                                  "m, not '{}'",
+                                  kNearest_m, kFarthest_m, text));
 }
 
 SensorDescription sensor_from_option(const std::string& text) {
@@ -82,10 +82,10 @@ void take_period_of_sensor(const Command& command, ScenarioArguments& arguments)
   const double of_effect_s = arguments.effects.scan_time;
   const double scan_s = of_effect_s != 0.0 ? of_effect_s : arguments.sensor.sensor.settings.scan_time_s;
   if (scan_s <= disturbances.period_s) return;
-  throw ArgumentFault(
-      "--period", fmt::format("{:g} s is shorter than a scan of {:g} s ({}); give at least --period {:g}",
-                              disturbances.period_s, scan_s,
-                              of_effect_s != 0.0 ? "--effect scan_time" : "--sensor", scan_s));
+  throw ArgumentFault("--period",
+                      fmt::format("{:g} s is shorter than a scan of {:g} s ({}); give at least --period {:g}",
+                                  disturbances.period_s, scan_s,
+                                  of_effect_s != 0.0 ? "--effect scan_time" : "--sensor", scan_s));
 }
 
 void require_whole_scans(const std::string& option, const Effects& effects, const SensorDescription& sensor) {

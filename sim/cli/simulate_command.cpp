@@ -136,7 +136,7 @@ void print_what_is_wrong(const ScenarioArguments& scenario, const TargetSetup& t
 void require_a_speed(const SimulateArguments& arguments) {
   if (!arguments.free_running || arguments.speed != kFastestPossible) return;
   throw ArgumentFault("--free-running",
-                             "needs a speed: --speed 1 for real time, --speed N for N times real time");
+                      "needs a speed: --speed 1 for real time, --speed N for N times real time");
 }
 
 void take_only(SimulateArguments& arguments) {
@@ -195,8 +195,8 @@ void add_simulate_command(Command& app, const std::string& command_line) {
   add_sequence_options(command, arguments->scenario);
   command
       .add_option("--only", arguments->only,
-                   "run these sequences, by their index from 0, in place of the first ones: those that "
-                   "`evaluate` or a campaign lists as the worst")
+                  "run these sequences, by their index from 0, in place of the first ones: those that "
+                  "`evaluate` or a campaign lists as the worst")
       ->delimiter(',')
       ->check(whole_number(0, 9'999'999))
       ->excludes(command.get_option("--sequences"))

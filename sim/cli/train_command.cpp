@@ -94,7 +94,7 @@ void require_a_cnn(const TrainingSettings& settings) {
   if (!settings.start_from.empty() || settings.cnn_seconds > 0.0 || settings.cnn_images >= settings.cnn_batch)
     return;
   throw ArgumentFault("--cnn-images", "must be at least " + std::to_string(settings.cnn_batch) +
-                                                 " unless --start-from names a model image");
+                                          " unless --start-from names a model image");
 }
 
 // The reference, and the image that flies.
@@ -275,8 +275,8 @@ int start_training(TrainOptions& options) {
   require_equal_parts(options.settings, ranks);
   if (ranks > 1 && !can_have_several_ranks()) {
     throw ArgumentFault("--ranks",
-                               "several ranks need a build with Gloo: install libgloo-dev, then configure "
-                               "and build again");
+                        "several ranks need a build with Gloo: install libgloo-dev, then configure "
+                        "and build again");
   }
   if (ranks > place.count) return run_local_ranks(ranks);
   return run_quietly_unless_first(place.rank, [&] { return train_as_rank(options, place); });
@@ -394,7 +394,7 @@ void add_train_command(Command& app, const std::string&) {
   add_effect_set_option(command, options->effect_sets);
   command
       .add_option("--start-from", settings.start_from,
-                   "model image whose CNN to start from; that of another target saves most of the time")
+                  "model image whose CNN to start from; that of another target saves most of the time")
       ->check(existing_model_image())
       ->type_name("FILE");
   add_length_options(command, *options);

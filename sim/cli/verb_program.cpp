@@ -25,9 +25,10 @@ namespace {
 std::string fault_of_encoding(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments)
     if (!is_utf8(argument))
-      return fmt::format("argument '{}': is not UTF-8, which reports and JSON are written in; if it is a file, give it "
-                         "another name",
-                         shortened(argument));
+      return fmt::format(
+          "argument '{}': is not UTF-8, which reports and JSON are written in; if it is a file, give it "
+          "another name",
+          shortened(argument));
   return {};
 }
 

@@ -1,6 +1,5 @@
 #include "sim/cli/verbs.hpp"
 
-
 #include "sim/cli/verb_table.hpp"
 
 namespace tumblesight::sim {

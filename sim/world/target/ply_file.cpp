@@ -72,8 +72,8 @@ class PlyNumbers {
     if (is_padding(rest)) return rest.size();
     throw std::runtime_error(
         "the header announces " + std::to_string(element_->count) +
-        (element_->count == 1 ? " entry" : " entries") + " of element " + in_quotes(element_->name) + ", and " +
-        counted(rest.size(), "byte") +
+        (element_->count == 1 ? " entry" : " entries") + " of element " + in_quotes(element_->name) +
+        ", and " + counted(rest.size(), "byte") +
         " follow the last one: its count is wrong, or something was appended; export the "
         "mesh again");
   }

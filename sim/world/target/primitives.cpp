@@ -20,7 +20,8 @@ std::uint32_t index(std::size_t i) {
   return static_cast<std::uint32_t>(i);
 }
 
-// The shortest turn from z to an axis: Eigen's FromTwoVectors(), whose singular value decomposition takes seconds to compile.
+// The shortest turn from z to an axis: Eigen's FromTwoVectors(), whose singular value decomposition takes
+// seconds to compile.
 Eigen::Quaternionf turn_from_z_to(const Eigen::Vector3f& axis) {
   const Eigen::Vector3f to = axis.normalized();
   constexpr float kOpposite = -1.0F + 1e-5F;

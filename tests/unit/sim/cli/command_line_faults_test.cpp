@@ -24,18 +24,23 @@ TEST(CommandLineFaults, NameTheWordThatWasMeant) {
   Command campaign = line.command().add_subcommand("campaign", "");
   campaign.require_subcommand(1);
   campaign.add_subcommand("status", "");
-  EXPECT_EQ(fault_of(line, {"quantise"}),
-            "tumblesight: there is no subcommand 'quantise'; did you mean 'quantize'? (see tumblesight --help)\n");
+  EXPECT_EQ(
+      fault_of(line, {"quantise"}),
+      "tumblesight: there is no subcommand 'quantise'; did you mean 'quantize'? (see tumblesight --help)\n");
   EXPECT_EQ(fault_of(line, {"fly"}), "tumblesight: there is no subcommand 'fly' (see tumblesight --help)\n");
-  EXPECT_EQ(fault_of(line, {"quantize", "--modl", "x"}),
-            "tumblesight: there is no option '--modl'; did you mean '--model'? (see tumblesight quantize --help)\n")
+  EXPECT_EQ(
+      fault_of(line, {"quantize", "--modl", "x"}),
+      "tumblesight: there is no option '--modl'; did you mean '--model'? (see tumblesight quantize --help)\n")
       << "rather than that --model is missing";
-  EXPECT_EQ(fault_of(line, {"quantize", "--model", "x", "--sede=4"}),
-            "tumblesight: there is no option '--sede'; did you mean '--seed'? (see tumblesight quantize --help)\n");
+  EXPECT_EQ(
+      fault_of(line, {"quantize", "--model", "x", "--sede=4"}),
+      "tumblesight: there is no option '--sede'; did you mean '--seed'? (see tumblesight quantize --help)\n");
   EXPECT_EQ(fault_of(line, {"campaign", "statsu"}),
-            "tumblesight: there is no subcommand 'campaign statsu'; did you mean 'status'? (see tumblesight campaign "
+            "tumblesight: there is no subcommand 'campaign statsu'; did you mean 'status'? (see tumblesight "
+            "campaign "
             "--help)\n");
-  EXPECT_EQ(fault_of(line, {"quantize"}), "tumblesight: --model is required (see tumblesight quantize --help)\n");
+  EXPECT_EQ(fault_of(line, {"quantize"}),
+            "tumblesight: --model is required (see tumblesight quantize --help)\n");
   EXPECT_NE(fault_of(line, {}).find("subcommand is required"), std::string::npos);
 }
 

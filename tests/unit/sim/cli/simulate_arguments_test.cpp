@@ -77,8 +77,7 @@ TEST(RequireSeparateFiles, SeesThroughSpellingsAndLinks) {
   std::filesystem::create_symlink(file, here.path("link"));
   std::filesystem::create_hard_link(file, here.path("name"));
   for (const std::string& path : {file, here.path("no/../in.json"), here.path("link"), here.path("name")}) {
-    EXPECT_THROW(require_separate_files({{"--mesh", file}}, {{"--json", path}}), ArgumentFault)
-        << path;
+    EXPECT_THROW(require_separate_files({{"--mesh", file}}, {{"--json", path}}), ArgumentFault) << path;
     EXPECT_THROW(require_separate_files({}, {{"--report", file}, {"--json", path}}), ArgumentFault);
   }
   EXPECT_NO_THROW(require_separate_files({{"--mesh", file}, {"--sensor", file}}, {{"--json", "out.json"}}));
