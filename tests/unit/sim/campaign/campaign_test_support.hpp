@@ -1,6 +1,7 @@
 // A small evaluation of a network with arbitrary weights, and its shards.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 

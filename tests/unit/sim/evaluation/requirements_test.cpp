@@ -2,6 +2,7 @@
 // model.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "sim/evaluation/checks.hpp"
