@@ -71,7 +71,8 @@ class CommandOption {
   CLI::Option* option_;
 };
 
-// A command or one of its subcommands. A handle, as a pointer is.
+// A command or one of its subcommands. A handle, as a pointer is: a callback that needs it takes a copy,
+// since the handle that it is given is gone when the words are parsed.
 class Command {
  public:
   explicit Command(CLI::App& app) : app_(&app) {}

@@ -58,7 +58,7 @@ SensorArguments sensor_arguments_of(const Mission& mission) {
 }
 
 void add_mission_option(Command& command, ScenarioArguments& arguments) {
-  add_mission(command, [&command, &arguments](const Mission& mission) {
+  add_mission(command, [command, &arguments](const Mission& mission) {
     arguments.mission = mission;
     arguments.target = mission.name;
     arguments.mesh = mission.mesh.file;
@@ -72,7 +72,7 @@ void add_mission_option(Command& command, ScenarioArguments& arguments) {
 
 void add_mission_option(Command& command, std::string& target, MeshArguments& meshes, SensorArguments& sensor,
                         std::optional<Mission>& known) {
-  add_mission(command, [&command, &target, &meshes, &sensor, &known](const Mission& mission) {
+  add_mission(command, [command, &target, &meshes, &sensor, &known](const Mission& mission) {
     known = mission;
     target = mission.name;
     meshes.meshes = {mission.mesh.file};
