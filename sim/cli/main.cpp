@@ -49,7 +49,10 @@ std::string fault_of(const Verb& verb) {
 
 // Returns only if it fails.
 int start(const Verb& verb, char** argv) {
-  if (!is_built(verb)) return report_fault(fault_of(verb));
+  if (!is_built(verb)) {
+    const int status = report_fault(fault_of(verb));
+    return program_files().installed ? kFailed : status;
+  }
   const fs::path program = program_of(verb);
   execv(program.c_str(), argv);
   std::fprintf(stderr, "tumblesight: %s: %s\n", program.c_str(), std::strerror(errno));
