@@ -1111,13 +1111,14 @@ TEST(Program, ThatLacksItsFilesSaysWhatToDo) {
   const Workplace here;
   std::filesystem::create_directory(here.path("bin"));
   std::filesystem::copy_file(TUMBLESIGHT_BINARY, here.path("bin/tumblesight"));
-  const Outcome without_verb = here.run_command("bin/tumblesight mesh craft.stl", "without_verb");
+  const Outcome without_verb = here.run_command("bin/tumblesight evaluate", "without_verb");
   EXPECT_EQ(without_verb.exit_code, kFailed);
-  EXPECT_NE(without_verb.errors.find("the program tumblesight-mesh is missing: install the package again"),
-            std::string::npos)
+  EXPECT_NE(
+      without_verb.errors.find("the program tumblesight-evaluate is missing: install the package again"),
+      std::string::npos)
       << without_verb.errors;
-  std::filesystem::copy_file(TUMBLESIGHT_BINARY "-mesh", here.path("bin/tumblesight-mesh"));
-  const Outcome outcome = here.run_command("bin/tumblesight mesh craft.stl", "copied");
+  std::filesystem::copy_file(TUMBLESIGHT_BINARY "-evaluate", here.path("bin/tumblesight-evaluate"));
+  const Outcome outcome = here.run_command("bin/tumblesight evaluate", "copied");
   EXPECT_EQ(outcome.exit_code, kFailed);
   EXPECT_NE(outcome.errors.find("/share/tumblesight/missions' is missing, which belongs to tumblesight"),
             std::string::npos)
