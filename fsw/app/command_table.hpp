@@ -1,5 +1,5 @@
-// The table of telecommands. Each telecommand has one row in commands.cpp, and one handler there or in
-// model_commands.cpp. The table of commands in docs/icd.md is generated from the rows.
+// The table of telecommands: the rows of hal/messages/telecommands.inc, each with a handler in commands.cpp
+// or model_commands.cpp.
 #pragma once
 
 #include <cstdint>

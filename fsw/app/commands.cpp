@@ -2,6 +2,7 @@
 // of them at the end.
 #include <array>
 #include <cstring>
+#include <initializer_list>
 #include <utility>
 
 #include "fsw/app/command_table.hpp"
@@ -184,61 +185,99 @@ bool activate_key(const Telecommand& command, const CommandContext& context, Ref
   return true;
 }
 
-struct CommandRow {
-  CommandRule rule;
-  bool (*handler)(const Telecommand&, const CommandContext&, Refusal&);
+using Handler = bool (*)(const Telecommand&, const CommandContext&, Refusal&);
+
+// No default: a telecommand without a handler does not compile.
+constexpr Handler handler_of(FunctionCode function) {
+  switch (function) {
+    case FunctionCode::kNoop:
+      return noop;
+    case FunctionCode::kResetCounters:
+      return reset_counters;
+    case FunctionCode::kSetMode:
+      return set_mode;
+    case FunctionCode::kResetSequence:
+      return reset_sequence;
+    case FunctionCode::kModelLoad:
+      return load_model;
+    case FunctionCode::kModelValidate:
+      return validate_model;
+    case FunctionCode::kModelActivate:
+      return activate_model;
+    case FunctionCode::kMemoryDump:
+      return dump_memory;
+    case FunctionCode::kSetParameter:
+      return set_parameter;
+    case FunctionCode::kEnableResponse:
+      return enable_response;
+    case FunctionCode::kDisableResponse:
+      return disable_response;
+    case FunctionCode::kKeyActivate:
+      return activate_key;
+    case FunctionCode::kModelBegin:
+      return begin_model;
+    case FunctionCode::kTableLoad:
+      return load_table;
+    case FunctionCode::kTableValidate:
+      return validate_table;
+    case FunctionCode::kTableActivate:
+      return activate_table;
+  }
+  return nullptr;
+}
+
+struct ArgumentBytes {
+  int least, most;
 };
 
-// One row per telecommand: function, least and most bytes of arguments, modes, handler. The comment above a
-// row describes its arguments in docs/icd.md. MODEL_VALIDATE and MODEL_ACTIVATE check a whole image and take
-// the time of an estimate, so they are not allowed in RUN.
-constexpr std::array kCommands{
-    CommandRow{{FunctionCode::kNoop, 0, 0, kAlways}, noop},
-    CommandRow{{FunctionCode::kResetCounters, 0, 0, kAlways}, reset_counters},
-    // mode u8: 1 STANDBY, 2 RUN, 3 SAFE
-    CommandRow{{FunctionCode::kSetMode, 1, 1, kAlways}, set_mode},
-    CommandRow{{FunctionCode::kResetSequence, 0, 0, kInStandby | kInRun}, reset_sequence},
-    // base u8: 0 nothing, 1 the bank in use, 2 what the bank to be loaded holds
-    CommandRow{{FunctionCode::kModelBegin, 1, 1, kAlways}, begin_model},
-    // offset u32, 1...1024 bytes: a segment of the image that was begun
-    CommandRow{{FunctionCode::kModelLoad, 5, hal::kMaxCommandArgumentBytes, kAlways}, load_model},
-    // size u32, CRC-32 u32 in the header of the loaded image
-    CommandRow{{FunctionCode::kModelValidate, 8, 8, kInStandby | kInSafe}, validate_model},
-    // CRC-32 u32 in the header of the validated image
-    CommandRow{{FunctionCode::kModelActivate, 4, 4, kInStandby | kInSafe}, activate_model},
-    // DumpedMemory u8, offset u32, size u16
-    CommandRow{{FunctionCode::kMemoryDump, 7, 7, kAlways}, dump_memory},
-    // field u8, value u32: of the active table
-    CommandRow{{FunctionCode::kSetParameter, 5, 5, kAlways}, set_parameter},
-    // 1...1028 bytes: a whole table
-    CommandRow{{FunctionCode::kTableLoad, 1, hal::kMaxCommandArgumentBytes, kAlways}, load_table},
-    // CRC-32 u32 at the end of the table that was loaded
-    CommandRow{{FunctionCode::kTableValidate, 4, 4, kAlways}, validate_table},
-    // CRC-32 u32 at the end of the table that was validated
-    CommandRow{{FunctionCode::kTableActivate, 4, 4, kAlways}, activate_table},
-    // Fault u8
-    CommandRow{{FunctionCode::kEnableResponse, 1, 1, kAlways}, enable_response},
-    // Fault u8
-    CommandRow{{FunctionCode::kDisableResponse, 1, 1, kAlways}, disable_response},
-    // slot u8, 16 bytes: proof that the sender holds the key of the slot
-    CommandRow{{FunctionCode::kKeyActivate, 17, 17, kAlways}, activate_key},
+constexpr CommandRule rule_of(FunctionCode function, std::uint8_t modes,
+                              std::initializer_list<ArgumentBytes> arguments) {
+  CommandRule rule{function, 0, 0, modes};
+  for (const ArgumentBytes& argument : arguments) {
+    rule.min_argument_bytes += argument.least;
+    rule.max_argument_bytes += argument.most;
+  }
+  return rule;
+}
+
+#define TUMBLESIGHT_NUMBER(name, bytes, least, most, meaning) \
+  ArgumentBytes {                                             \
+    bytes, bytes                                              \
+  }
+#define TUMBLESIGHT_ENUMERATOR(name, enumeration, least, most, meaning) \
+  ArgumentBytes {                                                       \
+    1, 1                                                                \
+  }
+#define TUMBLESIGHT_BYTES(name, least, most, meaning) \
+  ArgumentBytes {                                     \
+    least, most                                       \
+  }
+#define TUMBLESIGHT_TELECOMMAND(code, name, modes, ...) rule_of(FunctionCode::k##name, modes, {__VA_ARGS__}),
+constexpr std::array kRules{
+#include "hal/messages/telecommands.inc"
 };
+#undef TUMBLESIGHT_NUMBER
+#undef TUMBLESIGHT_ENUMERATOR
+#undef TUMBLESIGHT_BYTES
+#undef TUMBLESIGHT_TELECOMMAND
 
 constexpr bool every_function_has_one_row() {
-  for (std::size_t i = 0; i < kCommands.size(); ++i) {
+  for (std::size_t i = 0; i < kRules.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (kCommands[i].rule.function == kCommands[j].rule.function) return false;
+      if (kRules[i].function == kRules[j].function) return false;
     }
+    if (kRules[i].max_argument_bytes > hal::kMaxCommandArgumentBytes) return false;
   }
   return true;
 }
-static_assert(every_function_has_one_row(), "a function code stands in two rows: both handlers would run");
+static_assert(every_function_has_one_row(),
+              "a function code stands in two rows, or its arguments do not fit a packet");
 
 // The handler is a constant, so this is a direct call: the analysis of the worst-case stack follows no
 // pointers.
 template <std::size_t kRow>
 bool call(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
-  constexpr auto kHandler = kCommands[kRow].handler;
+  constexpr Handler kHandler = handler_of(kRules[kRow].function);
   return kHandler(command, context, refusal);
 }
 
@@ -247,7 +286,7 @@ template <std::size_t... kRow>
 bool dispatch(std::index_sequence<kRow...>, const Telecommand& command, const CommandContext& context,
               Refusal& refusal) {
   bool done = false;
-  ((kCommands[kRow].rule.function == command.function
+  ((kRules[kRow].function == command.function
         ? static_cast<void>(done = call<kRow>(command, context, refusal))
         : static_cast<void>(0)),
    ...);
@@ -257,14 +296,14 @@ bool dispatch(std::index_sequence<kRow...>, const Telecommand& command, const Co
 }  // namespace
 
 const CommandRule* find_command(std::uint8_t function) {
-  for (const CommandRow& row : kCommands) {
-    if (static_cast<std::uint8_t>(row.rule.function) == function) return &row.rule;
+  for (const CommandRule& rule : kRules) {
+    if (static_cast<std::uint8_t>(rule.function) == function) return &rule;
   }
   return nullptr;
 }
 
 bool carry_out(const Telecommand& command, const CommandContext& context, Refusal& refusal) {
-  return dispatch(std::make_index_sequence<kCommands.size()>{}, command, context, refusal);
+  return dispatch(std::make_index_sequence<kRules.size()>{}, command, context, refusal);
 }
 
 }  // namespace tumblesight::fsw

@@ -1,5 +1,4 @@
-// Function codes of the telecommands, 7 bits. The numbers are part of the interface (docs/icd.md);
-// fsw/app/commands.cpp has each function's arguments, modes and handler.
+// Function codes of the telecommands, 7 bits, out of the rows of telecommands.inc.
 #pragma once
 
 #include <cstdint>
@@ -7,22 +6,9 @@
 namespace tumblesight::hal {
 
 enum class FunctionCode : std::uint8_t {
-  kNoop = 1,
-  kResetCounters = 2,
-  kSetMode = 3,
-  kResetSequence = 4,
-  kModelLoad = 5,
-  kModelValidate = 6,
-  kModelActivate = 7,
-  kMemoryDump = 8,
-  kSetParameter = 9,
-  kEnableResponse = 10,
-  kDisableResponse = 11,
-  kKeyActivate = 12,
-  kModelBegin = 13,
-  kTableLoad = 14,
-  kTableValidate = 15,
-  kTableActivate = 16,
+#define TUMBLESIGHT_TELECOMMAND(code, name, modes, ...) k##name = (code),
+#include "hal/messages/telecommands.inc"
+#undef TUMBLESIGHT_TELECOMMAND
 };
 
 }  // namespace tumblesight::hal

@@ -1,18 +1,31 @@
 #include "sim/operations/function_names.hpp"
 
-#include <array>
-#include <cstddef>
+#include <cctype>
 
 namespace tumblesight::sim {
+namespace {
+
+// "SET_MODE" of "SetMode".
+std::string upper_case(const char* name) {
+  std::string text;
+  for (const char* c = name; *c != '\0'; ++c) {
+    if (std::isupper(*c) != 0 && !text.empty()) text += '_';
+    text += static_cast<char>(std::toupper(*c));
+  }
+  return text;
+}
+
+}  // namespace
 
 std::string name_of(hal::FunctionCode function) {
-  constexpr std::array<const char*, 16> kNames{
-      "NOOP",          "RESET_COUNTERS",  "SET_MODE",         "RESET_SEQUENCE",
-      "MODEL_LOAD",    "MODEL_VALIDATE",  "MODEL_ACTIVATE",   "MEMORY_DUMP",
-      "SET_PARAMETER", "ENABLE_RESPONSE", "DISABLE_RESPONSE", "KEY_ACTIVATE",
-      "MODEL_BEGIN",   "TABLE_LOAD",      "TABLE_VALIDATE",   "TABLE_ACTIVATE"};
-  const auto index = static_cast<std::size_t>(function) - 1;  // 0 wraps
-  return index < kNames.size() ? kNames[index] : "FUNCTION " + std::to_string(static_cast<int>(function));
+  switch (function) {
+#define TUMBLESIGHT_TELECOMMAND(code, name, modes, ...) \
+  case hal::FunctionCode::k##name:                      \
+    return upper_case(#name);
+#include "hal/messages/telecommands.inc"
+#undef TUMBLESIGHT_TELECOMMAND
+  }
+  return "FUNCTION " + std::to_string(static_cast<int>(function));
 }
 
 }  // namespace tumblesight::sim

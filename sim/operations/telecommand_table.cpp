@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <stdexcept>
 
-#include "hal/messages/command_packet.hpp"
 #include "hal/messages/fault.hpp"
-#include "hal/messages/memory_dump.hpp"
 #include "sim/host/text.hpp"
 #include "sim/operations/fault_names.hpp"
 #include "sim/operations/function_names.hpp"
@@ -17,51 +14,35 @@ namespace {
 
 using hal::FunctionCode;
 
-constexpr std::uint32_t kAny32 = 0xFFFF'FFFF;
-
-ArgumentField crc32_of(const std::string& what) {
-  return {"crc32", 4, 0, kAny32, "CRC-32 " + what};
+ArgumentField number(const char* name, int bytes, std::uint32_t least, std::uint32_t most,
+                     const char* meaning) {
+  return {name, bytes, least, most, meaning};
 }
-ArgumentField fault() {
+
+std::string names_of_faults() {
   std::string names;
   for (int i = 0; i < hal::kFaults; ++i)
     names += (i == 0 ? "" : ", ") + std::to_string(i) + " " + name_of(static_cast<hal::Fault>(i));
-  return {"fault", 1, 0, hal::kFaults - 1, names};
+  return names;
 }
 
+#define TUMBLESIGHT_NUMBER(name, bytes, least, most, meaning) number(#name, bytes, least, most, meaning)
+#define TUMBLESIGHT_ENUMERATOR(name, enumeration, least, most, meaning) number(#name, 1, least, most, meaning)
+#define TUMBLESIGHT_BYTES(name, least, most, meaning) number(#name, 0, least, most, meaning)
+#define TUMBLESIGHT_TELECOMMAND(code, name, modes, ...) {FunctionCode::k##name, {__VA_ARGS__}},
 std::vector<TelecommandRow> make_table() {
-  const ArgumentField offset{"offset", 4, 0, kAny32, "in bytes"};
-  constexpr auto kLastMemory = static_cast<std::uint32_t>(hal::DumpedMemory::kLoadedTable);
-  constexpr std::uint32_t kLastField = 20;  // docs/icd.md; a test compares it with flight
-  constexpr auto kSegment = static_cast<std::uint32_t>(hal::kMaxModelSegmentBytes);
-  constexpr auto kMost = static_cast<std::uint32_t>(hal::kMaxCommandArgumentBytes);
-  return {
-      {FunctionCode::kNoop, {}},
-      {FunctionCode::kResetCounters, {}},
-      {FunctionCode::kSetMode, {{"mode", 1, 1, 3, "1 STANDBY, 2 RUN, 3 SAFE"}}},
-      {FunctionCode::kResetSequence, {}},
-      {FunctionCode::kModelLoad, {offset, {"segment", 0, 1, kSegment, "of the image that was begun"}}},
-      {FunctionCode::kModelValidate,
-       {{"size", 4, 0, kAny32, "in bytes"}, crc32_of("in the header of the loaded image")}},
-      {FunctionCode::kModelActivate, {crc32_of("in the header of the validated image")}},
-      {FunctionCode::kMemoryDump,
-       {{"memory", 1, 0, kLastMemory,
-         "0 bank 0, 1 bank 1, 2 missing segments, 3 active table, 4 loaded table"},
-        offset,
-        {"size", 2, 1, hal::MemoryDump::kMaxBytes, "in bytes"}}},
-      {FunctionCode::kSetParameter,
-       {{"field", 1, 0, kLastField, "of the active table"}, {"value", 4, 0, kAny32, "new value"}}},
-      {FunctionCode::kEnableResponse, {fault()}},
-      {FunctionCode::kDisableResponse, {fault()}},
-      {FunctionCode::kKeyActivate,
-       {{"slot", 1, 0, 3, "0 to 3"}, {"proof", 0, 16, 16, "that the sender holds the key of the slot"}}},
-      {FunctionCode::kModelBegin,
-       {{"base", 1, 0, 2, "0 nothing, 1 the bank in use, 2 what the bank to be loaded holds"}}},
-      {FunctionCode::kTableLoad, {{"table", 0, 1, kMost, "a whole table"}}},
-      {FunctionCode::kTableValidate, {crc32_of("at the end of the table that was loaded")}},
-      {FunctionCode::kTableActivate, {crc32_of("at the end of the table that was validated")}},
+  std::vector<TelecommandRow> table{
+#include "hal/messages/telecommands.inc"
   };
+  for (TelecommandRow& row : table)
+    for (ArgumentField& field : row.fields)
+      if (field.name == "fault") field.meaning = names_of_faults();
+  return table;
 }
+#undef TUMBLESIGHT_NUMBER
+#undef TUMBLESIGHT_ENUMERATOR
+#undef TUMBLESIGHT_BYTES
+#undef TUMBLESIGHT_TELECOMMAND
 
 // "it takes mode"
 std::string arguments_of(const TelecommandRow& row) {

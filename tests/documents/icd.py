@@ -9,10 +9,12 @@ import collections
 import pathlib
 import re
 import sys
+import typing
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT = ROOT / "docs/icd.md"
 MESSAGES = "hal/messages/"
+TELECOMMANDS = MESSAGES + "telecommands.inc"
 IDL = "hal/dds/idl/tumblesight.idl"
 BYTES = {"short": 2, "octet": 1, "unsigned short": 2, "long": 4, "unsigned long": 4, "float": 4, "long long": 8}
 
@@ -108,27 +110,58 @@ def state_losses():
                  [[value, upper(name), comment] for name, value, comment in enum(MESSAGES + "store_status.hpp", "StateLoss")])
 
 
+class Argument(typing.NamedTuple):
+    """One of a telecommand. bits: of a number; None: it is data of least to most bytes."""
+    name: str
+    bits: int | None
+    enumeration: str | None
+    least: int
+    most: int
+    meaning: str
+
+    @property
+    def text(self):
+        if self.bits is None:
+            kind = f"{self.name} {self.least if self.least == self.most else f'{self.least}...{self.most}'} bytes"
+        else:
+            kind = f"{self.enumeration or self.name} u{self.bits}"
+        if not self.meaning or self.enumeration:
+            return kind
+        return kind + (" " if self.meaning.split()[0] in ("in", "at", "of") else ": ") + self.meaning
+
+
+def arguments_of(text):
+    """The arguments of a row of telecommands.inc."""
+    found = []
+    for kind, inside in re.findall(r'TUMBLESIGHT_(NUMBER|ENUMERATOR|BYTES)\(((?:[^"()]|"[^"]*")*)\)', text):
+        *values, meaning = re.fullmatch(r'(.*), "(.*)"', inside).groups()
+        values = values[0].split(", ")
+        if kind == "NUMBER":
+            found.append(Argument(values[0], 8 * int(values[1]), None, int(values[2]), int(values[3]), meaning))
+        elif kind == "ENUMERATOR":
+            found.append(Argument(values[0], 8, values[1], int(values[2]), int(values[3]), meaning))
+        else:
+            found.append(Argument(values[0], None, None, int(values[1]), int(values[2]), meaning))
+    return found
+
+
 def function_rows():
-    """[(code, name, least argument bytes, most, comment, modes)] of the telecommands."""
-    codes = {name: value for name, value, _ in enum(MESSAGES + "function_code.hpp", "FunctionCode")}
-    body = re.search(r"kCommands\{\n(.*?)\n\};", source("fsw/app/commands.cpp"), re.S)[1]
-    limits = {"hal::kMaxCommandArgumentBytes": "1028"}
+    """[(code, name, least argument bytes, most, arguments, modes)] of the telecommands."""
     rows = []
-    for statement, comment in documented(body):
-        function, least, most, modes = re.fullmatch(r"CommandRow\{\{([\w:]+), (\d+), ([\w:]+), ([\w |]+)\}, \w+\},", statement).groups()
-        most = limits.get(most, most)
-        rows.append((codes[last(function)], upper(last(function)), int(least), int(most), comment,
-                     "any" if modes == "kAlways" else ", ".join(m.strip().removeprefix("kIn").upper() for m in modes.split("|"))))
-    missing = set(codes.values()) - {row[0] for row in rows}
-    if missing:
-        raise SystemExit(f"fsw/app/commands.cpp has no row for function codes {sorted(missing)} of {MESSAGES}function_code.hpp")
+    for line in source(TELECOMMANDS).splitlines():
+        if line.startswith("TUMBLESIGHT_TELECOMMAND("):
+            code, name, modes, rest = re.fullmatch(r"TUMBLESIGHT_TELECOMMAND\((\d+), (\w+), ([\w |]+), (.*)\)", line).groups()
+            arguments = arguments_of(rest)
+            least, most = (sum(getattr(a, end) if a.bits is None else a.bits // 8 for a in arguments) for end in ("least", "most"))
+            rows.append((int(code), upper("k" + name), least, most, arguments,
+                         "any" if modes == "kAlways" else ", ".join(m.strip().removeprefix("kIn").upper() for m in modes.split("|"))))
     return rows
 
 
 def functions():
     return table(["code", "function", "argument bytes", "arguments", "modes"],
-                 [[code, name, least if least == most else f"{least}…{most}", comment or "-", modes]
-                  for code, name, least, most, comment, modes in function_rows()])
+                 [[code, name, least if least == most else f"{least}…{most}", ", ".join(a.text for a in arguments) or "-", modes]
+                  for code, name, least, most, arguments, modes in function_rows()])
 
 
 def refusals():

@@ -163,24 +163,16 @@ def telemetry(system):
         add(add(criteria, "ComparisonList"), "Comparison", parameterRef="packet_apid", value=apid)
 
 
-def command_arguments(comment, least, most):
-    """[(name, bits, enumeration or None, whether it is data)] of a telecommand; bits: None for data up to the trailer. `comment` is
-    its row's: 'bank u8, offset u32, 16 bytes: the proof'."""
-    arguments, left = [], 8 * most
-    for text in re.split(r", ", comment) if most else []:
-        number = re.match(r"([A-Za-z][\w-]*) u(\d+)\b", text)
-        data = re.match(r"(?:1\.\.\.)?(\d+) bytes", text)
-        if not number and not data:
-            continue
-        bits = int(number[2]) if number else 8 * int(data[1])
-        left -= bits
-        name = number[1].replace("-", "_").lower() if number else "data"
-        arguments.append((name, bits if number or least == most else None, number[1] if number and number[1][0].isupper() else None,
-                          not number))
-    if left:
-        raise SystemExit(f"fsw/app/commands.cpp: '{comment}' describes {8 * most - left} bits of arguments instead of {8 * most}; write "
-                         "'name u32' for a number and '16 bytes' or '1...1024 bytes' for the rest")
-    return arguments
+def command_arguments(arguments):
+    """[(name, bits, enumeration or None, whether it is data)] of a telecommand; bits: None for data up to the trailer."""
+    found = []
+    for argument in arguments:
+        if argument.bits is None:
+            found.append(("data", 8 * argument.most if argument.least == argument.most else None, None, True))
+        else:
+            name = (argument.enumeration or argument.name.replace("crc32", "crc_32")).lower()
+            found.append((name, argument.bits, argument.enumeration, False))
+    return found
 
 
 def hex_of(value, bits):
@@ -218,8 +210,9 @@ def commands(system):
     for field in header:
         entry(entries, field)
 
-    for code, name, least, most, comment, modes in icd.function_rows():
-        arguments = command_arguments(comment, least, most)
+    for code, name, _, _, rows, modes in icd.function_rows():
+        arguments = command_arguments(rows)
+        comment = ", ".join(row.text for row in rows)
         command = add(meta_commands, "MetaCommand", name=name, shortDescription="; ".join(filter(None, (comment, f"modes: {modes}"))))
         add(command, "BaseMetaCommand", metaCommandRef="Telecommand")
         if arguments:
