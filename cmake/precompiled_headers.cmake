@@ -25,3 +25,18 @@ function(use_precompiled_headers name)
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   endforeach()
 endfunction()
+
+# compile_with_headers(<library> <name> <source>...): adds sources to a library that use other precompiled headers than the rest
+# of it. After what the library links.
+function(compile_with_headers library name)
+  set(objects ${library}_with_${name})
+  add_library(${objects} OBJECT ${ARGN})
+  get_target_property(libraries ${library} LINK_LIBRARIES)
+  target_link_libraries(${objects} PRIVATE ${libraries})
+  get_target_property(definitions ${library} COMPILE_DEFINITIONS)
+  if(definitions)
+    target_compile_definitions(${objects} PRIVATE ${definitions})
+  endif()
+  use_precompiled_headers(${name} ${objects})
+  target_sources(${library} PRIVATE $<TARGET_OBJECTS:${objects}>)
+endfunction()
