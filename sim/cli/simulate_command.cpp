@@ -23,7 +23,7 @@
 #include "sim/host/program_files.hpp"
 #include "sim/host/progress.hpp"
 #include "sim/host/text.hpp"
-#include "sim/report/results_tables.hpp"
+#include "sim/report/error_tables.hpp"
 #include "sim/report/sil_report.hpp"
 #include "sim/world/chaser_navigation.hpp"
 

@@ -12,7 +12,7 @@
 #include "sim/evaluation/chance.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/host/text.hpp"
-#include "sim/report/results_json.hpp"
+#include "sim/report/error_json.hpp"
 #include "sim/report/sil_report.hpp"
 #include "sim/world/math/angles.hpp"
 

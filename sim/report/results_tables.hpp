@@ -10,31 +10,14 @@
 
 namespace tumblesight::sim {
 
-// The errors of one estimator, and the paper's figure for it.
-struct EstimatorErrors {
-  std::string name;
-  Mark mark = Mark::kNone;
-  ErrorSummary summary;
-  std::optional<PaperFigure> paper;
-};
-// One line per estimator with every figure and the number of sequences, below it the paper's.
-DataTable estimators_table(const std::vector<EstimatorErrors>& estimators, std::uint32_t paper_sequences);
-// The same for one condition: RCNN, CNN and, where it was run, template matching.
+// The errors under one condition: RCNN, CNN and, where it was run, template matching.
 DataTable cell_table(const std::string& target, const CellResult& cell);
 
 // A line per condition, with the columns that belong to `table`; overviews have a title above each
 // subject's lines.
 DataTable conditions_table(const std::vector<SubjectResult>& subjects, ConditionTables table);
 
-// The registered poses of the first and the last frames of sequences.
-struct NamedPoses {
-  std::string name;
-  PoseSummary first;
-  PoseSummary last;
-};
-// A line per entry whose last frames have poses.
-DataTable poses_table(const std::vector<NamedPoses>& poses);
-// The same for the conditions of a subject.
+// The registered poses of the conditions of a subject.
 DataTable poses_table(const SubjectResult& subject);
 
 // All runs of a subject: cells, disturbed runs, runs with effects.
@@ -48,9 +31,6 @@ DataTable rare_events_table(const SubjectResult& subject);
 // The worst sequences of a run, a line each, with what replays them.
 DataTable worst_sequences_table(const CellResult& cell);
 
-// Mean and median of RCNN and CNN, a column per frame; of more than ten frames a selection that ends with the
-// last.
-DataTable by_frame_table(const Curve& by_frame);
 // Mean of the RCNN, a line per frame, a column per condition.
 DataTable frames_table(const SubjectResult& subject);
 // A line per point with sequences. `at`: what the curve runs over; its values are multiplied by `scale`.

@@ -12,7 +12,7 @@
 #include "sim/evaluation/statistics.hpp"
 #include "sim/host/text.hpp"
 #include "sim/operations/fault_names.hpp"
-#include "sim/report/results_json.hpp"
+#include "sim/report/error_json.hpp"
 
 namespace tumblesight::sim {
 namespace {
