@@ -17,6 +17,7 @@
 #include "sim/report/mesh_report.hpp"
 #include "sim/report/page.hpp"
 #include "sim/report/results_files.hpp"
+#include "sim/report/error_json.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_tables.hpp"
 #include "sim/report/svg.hpp"

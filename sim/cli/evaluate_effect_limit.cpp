@@ -12,7 +12,7 @@
 #include "sim/host/progress.hpp"
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"
-#include "sim/report/results_json.hpp"
+#include "sim/report/error_json.hpp"
 
 namespace tumblesight::sim {
 namespace {

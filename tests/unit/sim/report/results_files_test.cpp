@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 
+#include "sim/report/error_json.hpp"
 #include "sim/report/results_json.hpp"
 #include "tests/support/sample_results.hpp"
 #include "tests/unit/sim/report/markup_checks.hpp"
