@@ -16,7 +16,7 @@ constexpr std::int64_t weight(double value) {
 // Weights of the regression, Q24. Sums are made in 64 bits, since Fixed would limit each of their terms.
 struct Weights {
   std::int64_t constant, logit, misfit, innovation, second;
-  std::int64_t few_poses, outline, far, far_explained;  // 0 where there is no pose
+  std::int64_t few_poses, silhouette, far, far_explained;  // 0 where there is no pose
 };
 // Fitted to the parametric meshes of three targets under the paper's conditions and effects.
 constexpr Weights kWithoutPose{
@@ -51,7 +51,7 @@ Fixed expected_error_rad(const ErrorEvidence& evidence) {
                            w.innovation * innovation.raw() + w.second * evidence.second_share.raw();
   const auto term = [](bool counts, std::int64_t value) { return select(counts, value, 0); };
   const std::int64_t of_pose = term(has(kPoseMotion) && !is_far, w.few_poses) +
-                               term(has(kPoseOutline) && !is_far, w.outline) + term(is_far, w.far) +
+                               term(has(kPoseOutline) && !is_far, w.silhouette) + term(is_far, w.far) +
                                term(is_far && !has(kPoseRanges | kPoseOutline), w.far_explained);
   const Fixed wrong = sigmoid(Fixed::from_raw((sum >> Fixed::kFractionBits) + w.constant + of_pose));
   const Fixed right_rad = evidence.has_pose && !is_far ? evidence.pose_error_rad : evidence.network_error_rad;

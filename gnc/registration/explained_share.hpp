@@ -5,8 +5,8 @@
 // one in front. The drawing is moved across the view to where it fits best, since the depth image shows the
 // target relative to the centroid of its returns. Then both are compared cell by cell.
 //
-// Limits: it tells another object, or an attitude with another outline; it does not tell alternatives of a
-// nearly symmetric target whose outlines differ by less than a cell. A hidden part of the target counts as
+// Limits: it tells another object, or an attitude with another silhouette; it does not tell alternatives of a
+// nearly symmetric target whose silhouettes differ by less than a cell. A hidden part of the target counts as
 // missing, so that a frame which shows less than about half of the target may count as unexplained.
 #pragma once
 
@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kWholeShare = 65536;
 
 struct ExplainedShare {
   bool is_known = false;           // false: the model image has no surface, and the shares are 0
-  std::uint32_t unexplained = 0;   // of the cells with returns: more than a cell from the target's outline
+  std::uint32_t unexplained = 0;   // of the cells with returns: more than a cell from the target's silhouette
   std::uint32_t missing = 0;       // of the target's cells: more than a cell from any return
   std::uint32_t depth_misfit = 0;  // of the cells of both: mean difference of the depths, 1 at 2.5 sigma
 };

@@ -21,7 +21,7 @@ struct PoseMeasurement {
   std::int64_t age_ns = 0;  // since its exposure
 };
 // `equations`: of Refinement, 12 fraction bits; the gradient is not used. A quarter of the information is
-// used, and no more than (0.05 degrees)^-2 about any axis: neighbouring places of an outline see the same
+// used, and no more than (0.05 degrees)^-2 about any axis: neighbouring places of a silhouette see the same
 // rays, and the mesh is not exact.
 PoseMeasurement measured_pose(const Pose& pose, const NormalEquations& equations);
 

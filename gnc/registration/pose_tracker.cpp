@@ -21,10 +21,10 @@ constexpr std::int32_t kMostAgainstTrack_q8 = 6 * 256;         // in a frame
 constexpr std::int64_t kMostDisagreement_q8 = 3 * 256;
 constexpr std::uint32_t kLargestSigma_urad = 17'453;  // a degree
 
-// A pose whose outline is not where the frame shows one is known less well.
+// A pose whose silhouette is not where the frame shows one is known less well.
 void discount(const PoseEvidence& evidence, PoseMeasurement& measurement) {
-  if (evidence.fits_outline()) return;
-  const int shift = evidence.fits_outline(3) ? 4 : 8;
+  if (evidence.fits_silhouette()) return;
+  const int shift = evidence.fits_silhouette(3) ? 4 : 8;
   for (std::int32_t& element : measurement.information) element >>= shift;
 }
 
@@ -39,7 +39,7 @@ PoseDoubts doubts_of(const PoseFrame& frame, const Matrix3<Fixed>& r_lrf_trf, co
   const PoseEvidence& evidence = estimate.evidence;
   PoseDoubts doubts = 0;
   if (!evidence.fits_ranges()) doubts |= kPoseRanges;
-  if (!evidence.fits_returns() || !evidence.fits_outline()) doubts |= kPoseOutline;
+  if (!evidence.fits_returns() || !evidence.fits_silhouette()) doubts |= kPoseOutline;
   if (estimate.proven_q8 < kLeastProven_q8) doubts |= kPoseAmbiguous;
   if (estimate.poses < kVerifiedPoses || estimate.disagreement_q8 > kMostDisagreement_q8)
     doubts |= kPoseMotion;

@@ -9,7 +9,8 @@
 //   over the frames. If it is lost, the track starts anew at the alternative. What is proven of it is summed
 //   apart: less where an alternative does not explain a frame, since its registration may have gone astray.
 // - Motion: fitted to the last ten poses (pose_fit.hpp).
-// - Verdict: the frame must agree with the pose in ranges and outline, the advantage must be proven, and the
+// - Verdict: the frame must agree with the pose in ranges and silhouette, the advantage must be proven, and
+// the
 //   poses must agree with one motion.
 //
 // Specification: docs/numerics.md.
@@ -32,7 +33,7 @@ inline constexpr PoseDoubts kPoseUnknown = 1;  // no surface in the image, the t
 inline constexpr PoseDoubts kPoseCoasts = 2;   // predicted: the frame could not be registered
 inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the surface
 inline constexpr PoseDoubts kPoseOutline =
-    8;  // returns beside it, too many missing, or its outline elsewhere
+    8;  // returns beside it, too many missing, or its silhouette elsewhere
 inline constexpr PoseDoubts kPoseAmbiguous = 16;  // the advantage over the alternatives is not proven
 // Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
 inline constexpr PoseDoubts kPoseMotion = 32;

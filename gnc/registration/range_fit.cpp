@@ -7,7 +7,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr int kMargin = 2;                   // rays between the outline and what is well inside
+constexpr int kMargin = 2;                   // rays between the silhouette and what is well inside
 constexpr std::int32_t kSteepest_q8 = 1250;  // tangent of the largest incidence that is used: 78 degrees
 
 struct Block {

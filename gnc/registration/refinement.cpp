@@ -8,11 +8,11 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr std::int32_t kLeastSigma_q8 = 16;      // of fit_outline
+constexpr std::int32_t kLeastSigma_q8 = 16;      // of fit_silhouette
 constexpr std::uint32_t kLeastFill_q16 = 57344;  // 7/8: where less returns, surfaces may be dark
 
 // Both fits together, with 12 fraction bits.
-NormalEquations together(const FrameView& view, const OutlineFit& outline, const RangeFit& ranges,
+NormalEquations together(const FrameView& view, const SilhouetteFit& silhouette, const RangeFit& ranges,
                          std::int32_t sigma_q8) {
   // (rays per radius / sigma)^2 = scale 2^shift / 2^12. Limits so that nothing overflows where a target
   // covers thousands of rays.
@@ -22,14 +22,15 @@ NormalEquations together(const FrameView& view, const OutlineFit& outline, const
   constexpr std::int64_t kMostInformation = std::int64_t{1} << 35, kMostGradient = std::int64_t{1} << 42;
   NormalEquations sum;
   for (std::size_t i = 0; i < sum.information.size(); ++i) {
-    const std::int64_t outlines =
-        clamp(outline.equations.information[i] >> 8, -kMostInformation, kMostInformation);
+    const std::int64_t silhouettes =
+        clamp(silhouette.equations.information[i] >> 8, -kMostInformation, kMostInformation);
     sum.information[i] =
-        ((outlines * (square_q12 >> shift)) >> (20 - shift)) + (ranges.equations.information[i] >> 4);
+        ((silhouettes * (square_q12 >> shift)) >> (20 - shift)) + (ranges.equations.information[i] >> 4);
   }
   for (std::size_t i = 0; i < sum.gradient.size(); ++i) {
-    const std::int64_t outlines = clamp(outline.equations.gradient[i] >> 6, -kMostGradient, kMostGradient);
-    sum.gradient[i] = ((outlines * (per_sigma_q8 >> 4)) >> 12) + (ranges.equations.gradient[i] >> 8);
+    const std::int64_t silhouettes =
+        clamp(silhouette.equations.gradient[i] >> 6, -kMostGradient, kMostGradient);
+    sum.gradient[i] = ((silhouettes * (per_sigma_q8 >> 4)) >> 12) + (ranges.equations.gradient[i] >> 8);
   }
   return sum;
 }
@@ -105,10 +106,11 @@ void refine_further(const SurfaceMesh& mesh, const FrameView& view, const Refine
   for (int i = 0; i < steps && budget.spend(work::kStep); ++i) {
     if (i == 0 || may_be_dark) {
       budget.spend(work::kTable);
-      make_outline_table(result.fill_q16, scratch.table);
+      make_silhouette_table(result.fill_q16, scratch.table);
     }
-    fit_outline(mesh, view, result.pose, surface, scratch.table, sigma_q8, scratch.outline, budget, every(i));
-    result.equations = together(view, scratch.outline, scratch.ranges, sigma_q8);
+    fit_silhouette(mesh, view, result.pose, surface, scratch.table, sigma_q8, scratch.silhouette, budget,
+                   every(i));
+    result.equations = together(view, scratch.silhouette, scratch.ranges, sigma_q8);
     NormalEquations damped = result.equations;
     add_prior(settings, since_start, damped);
     Motion6 step = solve(damped);

@@ -1,10 +1,10 @@
-// Refinement: moves a pose to where the target's outline and surface fit a frame best, by damped Gauss-Newton
-// steps.
+// Refinement: moves a pose to where the target's silhouette and surface fit a frame best, by damped
+// Gauss-Newton steps.
 #pragma once
 
 #include "gnc/registration/dark_surfaces.hpp"
-#include "gnc/registration/outline_fit.hpp"
 #include "gnc/registration/range_fit.hpp"
+#include "gnc/registration/silhouette_fit.hpp"
 #include "gnc/registration/surface_renderer.hpp"
 
 namespace tumblesight::gnc {
@@ -13,8 +13,8 @@ struct RefinementScratch {
   WorkBudget budget;  // of the frame
   RenderedSurface surface;
   DarkSurfaces dark;
-  OutlineTable table;
-  OutlineFit outline;
+  SilhouetteTable table;
+  SilhouetteFit silhouette;
   RangeFit ranges;
 };
 
@@ -22,7 +22,7 @@ struct RefinementSettings {
   static constexpr int kMaxSteps = 8;
   int steps = 4;                          // limited to 1 ... kMaxSteps
   int thinned_steps = 2;                  // of these, the first that look at half of the rays
-  std::int32_t first_sigma_q8 = 256;      // of the outline, in 1/256 of a ray; halved by every step ...
+  std::int32_t first_sigma_q8 = 256;      // of the silhouette, in 1/256 of a ray; halved by every step ...
   std::int32_t last_sigma_q8 = 40;        // ... down to this one
   std::int32_t turn_sigma_q24 = 838861;   // of the attitude at the start [rad]
   std::int32_t move_sigma_q24 = 8388608;  // of the position at the start [radii]

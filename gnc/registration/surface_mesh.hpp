@@ -11,7 +11,8 @@
 //        8   6 V  vertices: x, y, z in the TRF, signed 16 bits, in units of the target's radius / 32767
 //        -   6 T  triangles: three numbers of vertices, counterclockwise as seen from the side that reflects;
 //                 what reflects on both sides is there twice
-//        -   8 E  edges that can lie on an outline: the two ends, then the corners opposite to it of the two
+//        -   8 E  edges that can lie on a silhouette: the two ends, then the corners opposite to it of the
+//        two
 //                 triangles that share it. The same corner twice: only one triangle has it
 #pragma once
 

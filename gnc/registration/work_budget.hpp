@@ -27,11 +27,11 @@ inline constexpr std::int32_t kDarkLook = 50'000, kDarkTriangle = 130, kDarkFron
                               kTakenRow = 122, kTakenRay = 20;
 // The fit of the ranges: once, per block of rays that is looked at, per one that is compared.
 inline constexpr std::int32_t kRanges = 40'000, kBlock = 130, kCompared = 600;
-// The fit of the outline: once, per edge, per edge that is followed, per place where it crosses a row or
+// The fit of the silhouette: once, per edge, per edge that is followed, per place where it crosses a row or
 // column, per ray to either side of a place.
-inline constexpr std::int32_t kOutline = 60'000, kEdge = 87, kOutlineEdge = 190, kPlace = 185, kAcross = 85,
-                              kEquation = 570;
-// What a step takes besides, and a table of the outline; a refinement, with the evidence at its end.
+inline constexpr std::int32_t kSilhouette = 60'000, kEdge = 87, kSilhouetteEdge = 190, kPlace = 185,
+                              kAcross = 85, kEquation = 570;
+// What a step takes besides, and a table of the silhouette; a refinement, with the evidence at its end.
 inline constexpr std::int32_t kStep = 100'000, kTable = 251'000, kRefinement = 270'000;
 // A placement besides its rendering, and its search.
 inline constexpr std::int32_t kPlacement = 600'000, kSearch = 1'100'000;

@@ -39,7 +39,7 @@ inline constexpr std::uint8_t kPoseDoubtCoasts = 2;
 // The ranges do not lie on the target's surface, or none could be compared with it.
 inline constexpr std::uint8_t kPoseDoubtRanges = 4;
 // More than 3 % of the returns are beside the target, more than 69 % of its rays have no return or meet a
-// dark surface, or more than an eighth of the rays next to its outline are not as drawn.
+// dark surface, or more than an eighth of the rays next to its silhouette are not as drawn.
 inline constexpr std::uint8_t kPoseDoubtOutline = 8;
 // The proven advantage over other attitudes is less than 8 nats: one explains the frames about as well, none
 // could be compared fairly, or the track is too new. Or another attitude explains this frame better by more

@@ -11,10 +11,10 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kResidualLimit = 3.0;     // sigma
-constexpr double kDepthGate_m = 0.5;       // or 2.5 sigma if larger: pairs farther apart have little weight
-constexpr double kOutlineGate_rays = 4.0;  // the same for outlines in the last iteration
-constexpr double kFirstOutlineGate_rays = 12.0;
+constexpr double kResidualLimit = 3.0;  // sigma
+constexpr double kDepthGate_m = 0.5;    // or 2.5 sigma if larger: pairs farther apart have little weight
+constexpr double kSilhouetteGate_rays = 4.0;  // the same for silhouettes in the last iteration
+constexpr double kFirstSilhouetteGate_rays = 12.0;
 constexpr double kGrazing = 0.2;  // cosine of the incidence angle below which a pair is not used
 // Neighbours farther apart than this many ray spacings lie on two surfaces.
 constexpr double kSurfaceStep = 3.0;
@@ -137,8 +137,8 @@ void add_depth_pairs(const TargetScan& scan, const Surface& surface, Equations& 
   }
 }
 
-void add_outline_pairs(const TargetScan& scan, const OutlineField& outline, const Surface& surface,
-                       double gate_rays, Equations& equations) {
+void add_silhouette_pairs(const TargetScan& scan, const SilhouetteField& silhouette, const Surface& surface,
+                          double gate_rays, Equations& equations) {
   const double rays_to_slope = 2.0 * scan.tan_half_fov / scan.rays;
   const double half_a_cell_rays = surface.grid.tan_half_fov / surface.grid.rays / rays_to_slope;
   const double middle = 0.5 * (scan.rays - 1);
@@ -153,9 +153,9 @@ void add_outline_pairs(const TargetScan& scan, const OutlineField& outline, cons
       const Eigen::Vector3d point_m = surface.point(row, column);
       const Eigen::Vector3d lrf_m = r_lrf_view * point_m;
       const double right = lrf_m.x() / lrf_m.y(), up = lrf_m.z() / lrf_m.y();
-      OutlineField::Distance distance;
-      if (!outline.at(middle + right / rays_to_slope, middle - up / rays_to_slope, distance)) continue;
-      // The centre of the outermost cell lies half a cell inside the rendered outline.
+      SilhouetteField::Distance distance;
+      if (!silhouette.at(middle + right / rays_to_slope, middle - up / rays_to_slope, distance)) continue;
+      // The centre of the outermost cell lies half a cell inside the rendered silhouette.
       const double out_rays = distance.out_rays + half_a_cell_rays;
       const Eigen::Vector2d g = distance.outwards;
       // A motion m changes the slopes by (m_x - right m_y, m_z - up m_y) / y.
@@ -178,20 +178,20 @@ void move(TargetPose& pose, const Vector6& step, const Eigen::Matrix3d& r_view_l
 
 }  // namespace
 
-TargetPose Alignment::refine(const TargetScan& scan, const OutlineField& outline, TargetPose pose, int rays,
-                             int iterations) const {
-  double gate_rays = kFirstOutlineGate_rays;
+TargetPose Alignment::refine(const TargetScan& scan, const SilhouetteField& silhouette, TargetPose pose,
+                             int rays, int iterations) const {
+  double gate_rays = kFirstSilhouetteGate_rays;
   for (int i = 0; i < iterations; ++i) {
     const Surface surface = surface_at(lidar_, swath_m_, pose, rays);
     Equations equations;
     add_depth_pairs(scan, surface, equations);
-    if (pairs_ == AlignmentPairs::kRangesAndOutline) {
-      add_outline_pairs(scan, outline, surface, gate_rays, equations);
+    if (pairs_ == AlignmentPairs::kRangesAndSilhouette) {
+      add_silhouette_pairs(scan, silhouette, surface, gate_rays, equations);
     }
     const Vector6 step = equations.step();
     move(pose, step, surface.r_view_lrf);
     if (step.head<3>().norm() < kStill_rad && step.tail<3>().norm() < kStill_m) break;
-    gate_rays = std::max(kOutlineGate_rays, 0.7 * gate_rays);
+    gate_rays = std::max(kSilhouetteGate_rays, 0.7 * gate_rays);
   }
   return pose;
 }

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "sim/baseline/outline.hpp"
+#include "sim/baseline/silhouette.hpp"
 #include "sim/baseline/target_scan.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 
@@ -16,7 +16,7 @@ struct TargetPose {
 };
 
 enum class AlignmentPairs {
-  kRangesAndOutline,
+  kRangesAndSilhouette,
   kRangesOnly,  // as in textbook ICP, which uses points only; residual_m includes silhouettes in both cases
 };
 
@@ -24,7 +24,7 @@ enum class AlignmentPairs {
 // pose by a damped Gauss-Newton step. There are two kinds of pairs, each weighted by the accuracy of the
 // sensor:
 //   along a ray: the measured and the rendered point (point to plane), sigma = the range noise;
-//   across the rays: a point of the rendered outline and the nearest measured outline, sigma = one ray
+//   across the rays: a point of the rendered silhouette and the nearest measured silhouette, sigma = one ray
 //   spacing.
 class Alignment {
  public:
@@ -33,7 +33,7 @@ class Alignment {
       : lidar_(lidar), swath_m_(swath_m), pairs_(pairs) {}
 
   // At most `iterations` steps on renderings of rays x rays; stops earlier when the pose has converged.
-  TargetPose refine(const TargetScan& scan, const OutlineField& outline, TargetPose pose, int rays,
+  TargetPose refine(const TargetScan& scan, const SilhouetteField& silhouette, TargetPose pose, int rays,
                     int iterations) const;
 
   // Root mean square of the difference between measured and rendered range over all rays that hit the target

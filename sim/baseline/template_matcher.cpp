@@ -158,7 +158,7 @@ std::vector<TargetPose> TemplateMatcher::starts(const TargetScan& scan) const {
 TemplateMatcher::Result TemplateMatcher::match(const gnc::RangeImage& frame) const {
   const auto scan = scan_of(frame);
   if (!scan) return {};
-  const OutlineField outline(*scan);
+  const SilhouetteField silhouette(*scan);
 
   struct Refined {
     TargetPose pose;
@@ -166,14 +166,15 @@ TemplateMatcher::Result TemplateMatcher::match(const gnc::RangeImage& frame) con
   };
   std::vector<Refined> refined;
   for (const TargetPose& start : starts(*scan)) {
-    const TargetPose pose = alignment_.refine(*scan, outline, start, kCoarseRays, settings_.icp_iterations);
+    const TargetPose pose =
+        alignment_.refine(*scan, silhouette, start, kCoarseRays, settings_.icp_iterations);
     refined.push_back({pose, alignment_.residual_m(*scan, pose, kCoarseRays)});
   }
   const auto better = [](const Refined& a, const Refined& b) { return a.residual_m < b.residual_m; };
   std::stable_sort(refined.begin(), refined.end(), better);
   refined.resize(std::min<std::size_t>(refined.size(), kFinalists));
   for (Refined& finalist : refined) {
-    finalist.pose = alignment_.refine(*scan, outline, finalist.pose, kFineRays,
+    finalist.pose = alignment_.refine(*scan, silhouette, finalist.pose, kFineRays,
                                       kFinalIterations * settings_.icp_iterations);
     finalist.residual_m = alignment_.residual_m(*scan, finalist.pose, kFineRays);
   }

@@ -20,7 +20,7 @@ struct TemplateMatcherSettings {
   int rolls = 36;          // about the boresight, for each direction; a multiple of 4
   int candidates = 20;     // attitudes that are refined
   int icp_iterations = 8;  // per candidate; the best few are then refined with up to twice as many more
-  AlignmentPairs pairs = AlignmentPairs::kRangesAndOutline;
+  AlignmentPairs pairs = AlignmentPairs::kRangesAndSilhouette;
 };
 
 class TemplateMatcher {

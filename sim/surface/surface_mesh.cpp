@@ -115,7 +115,7 @@ std::uint32_t corner_opposite(const std::array<std::uint32_t, 3>& triangle, cons
   return ends.first;  // a triangle without area, of which a welded mesh has none
 }
 
-std::vector<Edge> outline_edges(const TriangleMesh& mesh) {
+std::vector<Edge> silhouette_edges(const TriangleMesh& mesh) {
   std::vector<Edge> edges;
   for (const auto& [ends, triangles] : triangles_of_edges(mesh)) {
     std::vector<std::uint32_t> corners;
@@ -155,7 +155,7 @@ Surface surface_within(const SeenSurface& seen, double error_m, double weld_m, d
                                      kReachPerError * error_m);
   // Whole units: what is closer than one is the same vertex.
   Surface surface{welded(without_flat_triangles(in_units(simple, radius_m)), 0.5), {}};
-  surface.edges = outline_edges(surface.mesh);
+  surface.edges = silhouette_edges(surface.mesh);
   return surface;
 }
 

@@ -20,8 +20,8 @@ namespace tumblesight::sim {
 //    vertices closer together than a quarter of the error become one. This ends with every mesh, even with
 //    one whose triangles share no edges.
 // 4. An edge is listed unless the two triangles on it lie within 2 degrees of a plane: a plane's inner edges
-//    are on no outline. If an edge has more than two triangles, the two that are farthest from lying folded
-//    onto each other count.
+//    are on no silhouette. If an edge has more than two triangles, the two that are farthest from lying
+//    folded onto each other count.
 // 5. A triangle is listed with its corners counterclockwise as seen from outside, which is found by the same
 //    views. A triangle is listed twice, once for each side, if each side gets at least 1 % of its rays, as
 //    those of a sheet do, or if it is too narrow for the rays. If the list exceeds its limit, the error is

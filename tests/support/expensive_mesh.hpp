@@ -49,7 +49,7 @@ inline void make_expensive_mesh(const ExpensiveMesh& wanted, std::uint8_t* secti
     put(corners[is_back ? 2 : 1]);
     put(corners[is_back ? 1 : 2]);
   }
-  // All edges are on the outline, and it is followed again and again.
+  // All edges are on the silhouette, and it is followed again and again.
   constexpr int kAround = 2 * (kRows - 1) + 2 * (kColumns - 1);
   for (int i = 0; i < SurfaceMesh::kMaxEdges; ++i) {
     const int at = i % kAround;

@@ -92,7 +92,7 @@ TEST(FrameRays, OfAPlaneAcrossTheBoresightAreExact) {
   }
 }
 
-// Within half a cell and half a ray of the true place, except where that reaches over the outline.
+// Within half a cell and half a ray of the true place, except where that reaches over the silhouette.
 TEST(FrameRays, OfASphereAreThoseOfItsSurface) {
   for (const int rays : {256, 128}) {
     const FrameWindow whole = window(128);

@@ -225,14 +225,14 @@ TEST_F(Dark, TheAngleOfIncidenceIsThatOfTheRay) {
   EXPECT_EQ(count(is_wrong), 0);
 }
 
-// The length of the outline that places were found on, in rays.
-double outline_length(const SurfaceMesh& mesh, const FrameView& view, const ExactPose& truth,
-                      const RenderedSurface& surface) {
-  OutlineTable table;
-  OutlineFit fit;
+// The length of the silhouette that places were found on, in rays.
+double silhouette_length(const SurfaceMesh& mesh, const FrameView& view, const ExactPose& truth,
+                         const RenderedSurface& surface) {
+  SilhouetteTable table;
+  SilhouetteFit fit;
   WorkBudget budget;
-  make_outline_table(65'000, table);
-  fit_outline(mesh, view, fixed(truth), surface, table, 128, fit, budget);
+  make_silhouette_table(65'000, table);
+  fit_silhouette(mesh, view, fixed(truth), surface, table, 128, fit, budget);
   return static_cast<double>(fit.length_q8) / 256.0;
 }
 double rays_per_m(double depth_m) {
@@ -240,7 +240,7 @@ double rays_per_m(double depth_m) {
 }
 
 // Two plates in one plane that share an edge: 2 x 3 m are bright.
-TEST_F(Dark, TheEdgeBetweenADarkAndABrightSurfaceIsAnOutline) {
+TEST_F(Dark, TheEdgeBetweenADarkAndABrightSurfaceIsASilhouette) {
   body_ = Body();
   body_.radius_m = 3.0;
   for (const double z : {-1.5, 1.5})
@@ -251,11 +251,11 @@ TEST_F(Dark, TheEdgeBetweenADarkAndABrightSurfaceIsAnOutline) {
   see([](int, int column) { return !is_left(column); });
   ASSERT_EQ(dark_.surfaces, 2);
   const MeshSection section(body_);
-  EXPECT_NEAR(outline_length(section.mesh(), *view_, truth_, surface_), 10.0 * rays_per_m(kDepth_m), 8.0);
+  EXPECT_NEAR(silhouette_length(section.mesh(), *view_, truth_, surface_), 10.0 * rays_per_m(kDepth_m), 8.0);
 }
 
-// Inside the outline of a bright plate lies that of a dark one before it.
-TEST_F(Dark, TheOutlineOfADarkSurfaceBeforeABrightOneIsSeenFromOutside) {
+// Inside the silhouette of a bright plate lies that of a dark one before it.
+TEST_F(Dark, TheSilhouetteOfADarkSurfaceBeforeABrightOneIsSeenFromOutside) {
   body_ = Body();
   body_.radius_m = 3.0;
   body_.add_plate(-2.0, 2.0, -1.5, 1.5, 1.0);
@@ -268,7 +268,7 @@ TEST_F(Dark, TheOutlineOfADarkSurfaceBeforeABrightOneIsSeenFromOutside) {
   });
   ASSERT_EQ(dark_.surfaces, 2);
   const MeshSection section(body_);
-  EXPECT_NEAR(outline_length(section.mesh(), *view_, truth_, surface_),
+  EXPECT_NEAR(silhouette_length(section.mesh(), *view_, truth_, surface_),
               14.0 * rays_per_m(kDepth_m + 1.0) + 7.2 * rays_per_m(kDepth_m - 1.0), 12.0);
 }
 
@@ -283,7 +283,7 @@ TEST_F(Dark, NothingIsOfASurfaceThatIsNotDrawnWhole) {
   EXPECT_FALSE(surface_.has_dark);
 }
 
-// The pose of the two plates is found by the one that returns, and the edge between them is an outline.
+// The pose of the two plates is found by the one that returns, and the edge between them is a silhouette.
 TEST_F(Dark, APoseIsFoundThoughAPlateSendsNothingBack) {
   see([](int, int column) { return !is_left(column); });
   RefinementScratch scratch;

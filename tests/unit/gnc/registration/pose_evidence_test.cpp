@@ -15,9 +15,9 @@ constexpr std::int32_t kNat_q8 = 256;
 class Evidence : public testing::Test {
  protected:
   static constexpr int kFirst = 20, kLast = 39, kSide = kLast - kFirst + 1;
-  // At the outline: the outermost rays of the square and those next to them.
+  // At the silhouette: the outermost rays of the square and those next to them.
   static constexpr int kInside = (kSide - 2) * (kSide - 2);
-  static constexpr int kOutline = (kSide + 2) * (kSide + 2) - kInside;
+  static constexpr int kSilhouette = (kSide + 2) * (kSide + 2) - kInside;
 
   Evidence() {
     surface_.rays = kSensor.rays;
@@ -59,12 +59,12 @@ TEST_F(Evidence, OfARightPoseSpeaksAgainstNothing) {
   const PoseEvidence found = evidence();
   EXPECT_EQ(found.drawn, kInside);
   EXPECT_EQ(found.returned, kSide * kSide);
-  EXPECT_EQ(found.outline_rays, kOutline);
-  EXPECT_EQ(found.missing + found.unexplained + found.outline + found.dark + found.dark_returned, 0);
+  EXPECT_EQ(found.silhouette_rays, kSilhouette);
+  EXPECT_EQ(found.missing + found.unexplained + found.silhouette + found.dark + found.dark_returned, 0);
   EXPECT_EQ(found.cost_q8(), 0);
 }
 
-// A missing return 2.3 nats, one beside the target 5, one at the outline 1.
+// A missing return 2.3 nats, one beside the target 5, one at the silhouette 1.
 TEST_F(Evidence, CostsByItsPlace) {
   clear(view_->returned, 30, 30);
   EXPECT_EQ(evidence().missing, 1);
@@ -75,7 +75,7 @@ TEST_F(Evidence, CostsByItsPlace) {
   EXPECT_EQ(evidence().cost_q8(), 5 * kNat_q8);
   clear(view_->returned, 5, 5);
   clear(view_->returned, kFirst, 30);
-  EXPECT_EQ(evidence().outline, 1);
+  EXPECT_EQ(evidence().silhouette, 1);
   EXPECT_EQ(evidence().cost_q8(), kNat_q8);
 }
 
@@ -88,7 +88,7 @@ TEST_F(Evidence, IsNotOfHiddenRays) {
   clear(view_->returned, kFirst, 30);
   const PoseEvidence found = evidence();
   EXPECT_EQ(found.drawn, kInside - 25);
-  EXPECT_EQ(found.outline_rays, kOutline - 1);
+  EXPECT_EQ(found.silhouette_rays, kSilhouette - 1);
   EXPECT_EQ(found.cost_q8(), 0);
 }
 
@@ -119,7 +119,7 @@ TEST_F(Evidence, OfAReturnFromADarkRayAddsToTheCost) {
   EXPECT_EQ(found.dark_returned, 1);
   EXPECT_EQ(found.unexplained, 1);
   EXPECT_EQ(found.cost_q8(), before_q8 + 2 * kNat_q8);
-  // Beside bright rays it is one at the outline.
+  // Beside bright rays it is one at the silhouette.
   set(view_->returned, 25, 29);
   EXPECT_EQ(evidence(1).dark_returned, 1);
   EXPECT_EQ(evidence(1).cost_q8(), before_q8 + 3 * kNat_q8);

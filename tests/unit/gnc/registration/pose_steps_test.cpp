@@ -49,7 +49,7 @@ TEST_F(PoseSteps, AfterAGapThreeAreNeeded) {
   }
 }
 
-// By noisy ranges, missing returns, returns beside the target or an outline that is too small.
+// By noisy ranges, missing returns, returns beside the target or a silhouette that is too small.
 TEST_F(PoseSteps, AFrameThatIsNotExplainedIsRegisteredInTwoMore) {
   track_frames(4);
   state_->advantage_q8 = 32 * 256;  // so that one frame does not end the track
@@ -84,9 +84,9 @@ TEST_F(PoseSteps, AFrameThatTheTrackDoesNotExplainIsAlsoRegisteredFromTheNetwork
   }
 }
 
-// A pose counts 1/16 of its information in the motion if more than an eighth of the rays next to its outline
-// are not as drawn, and 1/256 from three sixteenths on.
-TEST_F(PoseSteps, APoseThatItsOutlineContradictsCountsLess) {
+// A pose counts 1/16 of its information in the motion if more than an eighth of the rays next to its
+// silhouette are not as drawn, and 1/256 from three sixteenths on.
+TEST_F(PoseSteps, APoseThatItsSilhouetteContradictsCountsLess) {
   std::array<int, 9> poses{};  // by the shift of their information
   track_frames(4);
   const PoseTrackerState kept = *state_;
@@ -98,9 +98,9 @@ TEST_F(PoseSteps, APoseThatItsOutlineContradictsCountsLess) {
     lose_rim(share);
     const PoseEvidence evidence = track_seen().evidence;
     ASSERT_EQ(evidence.missing, 0);
-    const int shift = 8 * evidence.outline <= evidence.outline_rays        ? 0
-                      : 16 * evidence.outline <= 3 * evidence.outline_rays ? 4
-                                                                           : 8;
+    const int shift = 8 * evidence.silhouette <= evidence.silhouette_rays        ? 0
+                      : 16 * evidence.silhouette <= 3 * evidence.silhouette_rays ? 4
+                                                                                 : 8;
     const Refinement& refinement = scratch_->best.refinement;
     const PoseMeasurement whole = measured_pose(refinement.pose, refinement.equations);
     const PoseMeasurement& newest =

@@ -38,7 +38,7 @@ TEST_F(PoseVerdict, ReturnsBesideTheTargetAreADoubt) {
 }
 
 // Verifies TS-EST-202.
-TEST_F(PoseVerdict, AnOutlineThatIsTooSmallIsADoubt) {
+TEST_F(PoseVerdict, ASilhouetteThatIsTooSmallIsADoubt) {
   verify();
   see();
   lose_rim();

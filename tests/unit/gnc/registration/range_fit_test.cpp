@@ -223,14 +223,14 @@ class FillShare : public RangeFitOfAPlate {
   }
 };
 
-TEST_F(FillShare, IsTheShareOfReturnsInsideTheOutline) {
+TEST_F(FillShare, IsTheShareOfReturnsInsideTheSilhouette) {
   Random random(2);
   for (const double share : {0.0, 0.3, 0.9, 1.0}) {
     use(moved(facing(), {0.2, 0.5, -0.2}, {0.1, 0.0, -0.1}));
     int inside = 0, returned = 0;
     for (int row = 0; row < kSensor.rays; ++row) {
       for (int column = 0; column < kSensor.rays; ++column) {
-        // Near the outline and beyond it returns mean nothing.
+        // Near the silhouette and beyond it returns mean nothing.
         const bool is_hit = random.happens(is_inside(row, column) ? share : 0.5);
         const bool is_hidden = random.happens(0.2);
         rays_[static_cast<std::size_t>(row * kSensor.rays + column)] =

@@ -95,7 +95,7 @@ class Errors {
   int count_ = 0;
 };
 
-// What remains comes from the outline, which is known by whole rays of 8 cm.
+// What remains comes from the silhouette, which is known by whole rays of 8 cm.
 TEST_F(Refine, RecoversThePoseWithoutNoise) {
   Random random(1);
   Errors errors;

@@ -98,9 +98,9 @@ class Expected {
   std::vector<Eigen::Vector2d> places_;
 };
 
-// The outline is right within 1/64 of a ray and the rounding of the vertices; the nearness within 4 counts
+// The silhouette is right within 1/64 of a ray and the rounding of the vertices; the nearness within 4 counts
 // and the change over that distance. Where a plane is nearly edge on, that rounding changes its slope too,
-// and only the outline is compared.
+// and only the silhouette is compared.
 void expect_as_cast(const Body& exact_body, const Pose& pose, const Sensor& sensor, double depth_m) {
   const Body body = rounded(exact_body);
   const auto view = empty_view(sensor, depth_m, body.radius_m);
@@ -202,15 +202,15 @@ TEST(SurfaceRenderer, MeshOfManySmallTrianglesHasNoHoles) {
       body.triangles.push_back({first, first + kSide + 2, first + kSide + 1});
     }
   }
-  Body outline;
-  outline.radius_m = 3.0;
-  outline.add_plate(-2.0, 2.0, -2.0, 2.0, 0.0);
+  Body silhouette;
+  silhouette.radius_m = 3.0;
+  silhouette.add_plate(-2.0, 2.0, -2.0, 2.0, 0.0);
   const Sensor sensor{128, 20.0};
   const auto view = empty_view(sensor, 15.0, body.radius_m);
   for (int i = 0; i < trials(4); ++i) {
     const ExactPose pose =
         moved({Eigen::Matrix3d::Identity(), {0.0, 15.0, 0.0}}, random.vector(0.3), Eigen::Vector3d::Zero());
-    const auto small = rendered(body, *view, fixed(pose)), large = rendered(outline, *view, fixed(pose));
+    const auto small = rendered(body, *view, fixed(pose)), large = rendered(silhouette, *view, fixed(pose));
     ASSERT_TRUE(small->is_complete);
     int difference = 0, filled = 0;
     for (int row = 0; row < sensor.rays; ++row) {
@@ -220,7 +220,7 @@ TEST(SurfaceRenderer, MeshOfManySmallTrianglesHasNoHoles) {
       }
     }
     EXPECT_GT(filled, 4000);
-    EXPECT_LE(difference, 4) << "of the outline's rounded vertices";
+    EXPECT_LE(difference, 4) << "of the silhouette's rounded vertices";
   }
 }
 
@@ -254,7 +254,7 @@ TEST(SurfaceRenderer, FrontsOfClosedBodiesAreEnough) {
     int different = 0;
     for (std::size_t ray = 0; ray < both->nearness.size(); ++ray)
       different += std::abs(both->nearness[ray] - fronts->nearness[ray]) > 1 ? 1 : 0;
-    EXPECT_LE(different, 8) << "on the outline of a face that shows its back";
+    EXPECT_LE(different, 8) << "on the silhouette of a face that shows its back";
   }
 }
 

@@ -66,7 +66,7 @@ class TrackPose : public testing::Test {
     for (int row = 2; row < 2 + side; ++row)
       for (int column = 2; column < 2 + side; ++column) frame_->add(row, column, kDepth_m);
   }
-  // Loses a share of the outermost rays of the target in every row and column, so that its outline is too
+  // Loses a share of the outermost rays of the target in every row and column, so that its silhouette is too
   // small.
   void lose_rim(double share = 1.0) {
     const RayMask all = *frame_->mask;
@@ -85,7 +85,7 @@ class TrackPose : public testing::Test {
     }
   }
   // The next frame, which the target does not explain: by noisy ranges (0), missing returns (1), returns
-  // beside it (2) or an outline that is too small (3).
+  // beside it (2) or a silhouette that is too small (3).
   void see_unexplained(int kind) {
     noise_ = kind == 0 ? 1.5 : 1.0;
     lost_ = kind == 1 ? 0.75 : 0.0;

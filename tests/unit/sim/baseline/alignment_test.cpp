@@ -29,13 +29,13 @@ Aligned align(AlignmentPairs pairs, int iterations) {
   const Eigen::AngleAxisd off(12.0 * kDegree, Eigen::Vector3d(1.0, -2.0, 1.5).normalized());
   const TargetPose start{off * truth.q_lrf_trf, origin_m + Eigen::Vector3d(0.2, -0.3, 0.15)};
   const Alignment alignment(lidar, swath, pairs);
-  const TargetPose end = alignment.refine(*scan, OutlineField(*scan), start, 128, iterations);
+  const TargetPose end = alignment.refine(*scan, SilhouetteField(*scan), start, 128, iterations);
   return {end.q_lrf_trf.angularDistance(truth.q_lrf_trf) / kDegree, (end.origin_lrf_m - origin_m).norm(),
           alignment.residual_m(*scan, end, 128), alignment.residual_m(*scan, start, 128)};
 }
 
 TEST(Alignment, ConvergesToThePoseOfTheFrame) {
-  const Aligned aligned = align(AlignmentPairs::kRangesAndOutline, 20);
+  const Aligned aligned = align(AlignmentPairs::kRangesAndSilhouette, 20);
   EXPECT_LT(aligned.error_deg, 0.5);
   EXPECT_LT(aligned.error_m, 0.02);
   EXPECT_LT(aligned.residual_m, 0.3 * aligned.residual_before_m);

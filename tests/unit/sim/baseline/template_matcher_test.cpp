@@ -17,7 +17,7 @@ namespace tumblesight::sim {
 namespace {
 
 constexpr double kDegree = 0.017453292519943295;
-constexpr TemplateMatcherSettings kSmall{300, 24, 8, 8, AlignmentPairs::kRangesAndOutline};
+constexpr TemplateMatcherSettings kSmall{300, 24, 8, 8, AlignmentPairs::kRangesAndSilhouette};
 
 class TemplateMatcherTest : public ::testing::Test {
  protected:

@@ -1,4 +1,4 @@
-#include "gnc/registration/outline_fit.hpp"
+#include "gnc/registration/silhouette_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ constexpr double kDepth_m = 15.0;
 constexpr double kFill = 0.9;
 constexpr std::int32_t kSigma_q8 = 256;  // a ray
 
-// Of a ray at `outside` standard deviations outside of the outline.
+// Of a ray at `outside` standard deviations outside of the silhouette.
 double probability_of_return(double fill, double outside) {
   return fill / (1.0 + std::exp(outside));
 }
@@ -26,7 +26,7 @@ double log_likelihood(double fill, double outside, bool is_hit) {
   const double returns = probability_of_return(fill, outside);
   return std::log(is_hit ? returns : 1.0 - returns);
 }
-// By an outline that moves outwards.
+// By a silhouette that moves outwards.
 double derivative(double fill, double outside, bool is_hit) {
   constexpr double kStep = 1e-5;
   return (log_likelihood(fill, outside - kStep, is_hit) - log_likelihood(fill, outside + kStep, is_hit)) /
@@ -45,18 +45,18 @@ struct Fit {
   double length_rays = 0.0;
 };
 
-OutlineFit fit_of(const Body& body, const FrameView& view, const Pose& pose,
-                  std::int32_t sigma_q8 = kSigma_q8, int every = 1) {
+SilhouetteFit fit_of(const Body& body, const FrameView& view, const Pose& pose,
+                     std::int32_t sigma_q8 = kSigma_q8, int every = 1) {
   const MeshSection section(body);
   const auto surface = std::make_unique<Rendering>();
   render(section.mesh(), view, pose, *surface, surface->budget);
-  OutlineTable table;
-  make_outline_table(static_cast<std::uint32_t>(std::lround(kFill * 65536.0)), table);
-  OutlineFit fit;
-  fit_outline(section.mesh(), view, pose, *surface, table, sigma_q8, fit, surface->budget, every);
+  SilhouetteTable table;
+  make_silhouette_table(static_cast<std::uint32_t>(std::lround(kFill * 65536.0)), table);
+  SilhouetteFit fit;
+  fit_silhouette(section.mesh(), view, pose, *surface, table, sigma_q8, fit, surface->budget, every);
   return fit;
 }
-Fit in_units(const OutlineFit& fit, const FrameView& view, std::int32_t sigma_q8 = kSigma_q8) {
+Fit in_units(const SilhouetteFit& fit, const FrameView& view, std::int32_t sigma_q8 = kSigma_q8) {
   const double scale = static_cast<double>(view.rays_per_radius_q8) / sigma_q8;
   Fit result;
   for (int i = 0; i < kUnknowns; ++i) {
@@ -70,7 +70,7 @@ Fit in_units(const OutlineFit& fit, const FrameView& view, std::int32_t sigma_q8
   return result;
 }
 
-bool equal(const OutlineFit& a, const OutlineFit& b) {
+bool equal(const SilhouetteFit& a, const SilhouetteFit& b) {
   return a.equations.information == b.equations.information && a.equations.gradient == b.equations.gradient &&
          a.length_q8 == b.length_q8;
 }
@@ -96,7 +96,7 @@ std::array<PlateEdge, 4> edges_of_plate(const ExactPose& pose) {
   }
   return edges;
 }
-// From the outline of the plate, outwards [rays].
+// From the silhouette of the plate, outwards [rays].
 double distance_of(const std::array<PlateEdge, 4>& edges, int row, int column) {
   double distance = -1e9;
   for (const PlateEdge& edge : edges)
@@ -177,13 +177,14 @@ ExactPose random_plate_pose(Random& random) {
   return moved({Eigen::Matrix3d::Identity(), {0.0, kDepth_m, 0.0}}, turn_rad, move_m);
 }
 
-TEST(OutlineTable, IsTheDerivativeOfTheLogarithmOfTheProbability) {
+TEST(SilhouetteTable, IsTheDerivativeOfTheLogarithmOfTheProbability) {
   for (const double fill : {0.5, 0.7, 0.9, 0.99}) {
-    OutlineTable table{};
-    make_outline_table(static_cast<std::uint32_t>(std::lround(fill * 65536.0)), table);
-    for (int i = 0; i < OutlineTable::kSteps; ++i) {
+    SilhouetteTable table{};
+    make_silhouette_table(static_cast<std::uint32_t>(std::lround(fill * 65536.0)), table);
+    for (int i = 0; i < SilhouetteTable::kSteps; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const double outside = static_cast<double>(i - OutlineTable::kSteps / 2) / OutlineTable::kPerSigma;
+      const double outside =
+          static_cast<double>(i - SilhouetteTable::kSteps / 2) / SilhouetteTable::kPerSigma;
       EXPECT_NEAR(table.if_hit[at] / 4096.0, derivative(fill, outside, true), 1.5 / 4096.0) << i;
       EXPECT_NEAR(table.if_missed[at] / 4096.0, derivative(fill, outside, false), 1.5 / 4096.0) << i;
       EXPECT_NEAR(table.information[at] / 4096.0, fisher_information(fill, outside), 1.5 / 4096.0) << i;
@@ -191,10 +192,10 @@ TEST(OutlineTable, IsTheDerivativeOfTheLogarithmOfTheProbability) {
   }
 }
 
-TEST(OutlineTable, FillIsLimitedToHalfAnd99Percent) {
+TEST(SilhouetteTable, FillIsLimitedToHalfAnd99Percent) {
   const auto table_of = [](std::uint32_t fill_q16) {
-    OutlineTable table{};
-    make_outline_table(fill_q16, table);
+    SilhouetteTable table{};
+    make_silhouette_table(fill_q16, table);
     return table;
   };
   EXPECT_EQ(table_of(0).if_missed, table_of(32'768).if_missed);
@@ -206,7 +207,7 @@ TEST(OutlineTable, FillIsLimitedToHalfAnd99Percent) {
 
 // Relative to the standard deviation of a derivative, the root of its information. A single fit differs by
 // the places that it looks at and by those that it leaves out next to a corner; on average it does not.
-TEST(OutlineFit, IsTheDerivativeOfTheLikelihoodOfAPlate) {
+TEST(SilhouetteFit, IsTheDerivativeOfTheLikelihoodOfAPlate) {
   Random random(1);
   const auto view = empty_view(kSensor, kDepth_m, plate().radius_m);
   const int count = trials(40);
@@ -237,7 +238,7 @@ TEST(OutlineFit, IsTheDerivativeOfTheLikelihoodOfAPlate) {
 
 // In frames as the likelihood has them the gradient is 0 on average, with the information as its variance.
 // The corners, where two edges look at the same rays, are what remains.
-TEST(OutlineFit, IsZeroOnAverageAtTheTruePose) {
+TEST(SilhouetteFit, IsZeroOnAverageAtTheTruePose) {
   Random random(2);
   const auto view = empty_view(kSensor, kDepth_m, plate().radius_m);
   const int count = trials(160);
@@ -258,7 +259,7 @@ TEST(OutlineFit, IsZeroOnAverageAtTheTruePose) {
 }
 
 // Half of the rays, counted twice: the same information, and a gradient with twice its variance.
-TEST(OutlineFit, OfEverySecondLineIsThatOfAllOnAverage) {
+TEST(SilhouetteFit, OfEverySecondLineIsThatOfAllOnAverage) {
   Random random(9);
   const auto view = empty_view(kSensor, kDepth_m, plate().radius_m);
   const int count = trials(160);
@@ -282,7 +283,7 @@ TEST(OutlineFit, OfEverySecondLineIsThatOfAllOnAverage) {
   }
 }
 
-TEST(OutlineFit, PointsToWhereTheOutlineIs) {
+TEST(SilhouetteFit, PointsToWhereTheSilhouetteIs) {
   Random random(3);
   const auto view = empty_view(kSensor, kDepth_m, plate().radius_m);
   const ExactPose start{Eigen::Matrix3d::Identity(), {0.0, kDepth_m, 0.0}};
@@ -296,7 +297,7 @@ TEST(OutlineFit, PointsToWhereTheOutlineIs) {
   }
 }
 
-TEST(OutlineFit, EdgesInsideTheOutlineAddNothing) {
+TEST(SilhouetteFit, EdgesInsideTheSilhouetteAddNothing) {
   Random random(4);
   const auto view = empty_view(kSensor, kDepth_m, plate().radius_m);
   Body in_front = plate();
@@ -307,7 +308,7 @@ TEST(OutlineFit, EdgesInsideTheOutlineAddNothing) {
   for (int i = 0; i < trials(40); ++i) {
     const Pose pose = fixed(random_plate_pose(random));
     show_plate(exact(pose), 1.0, random, *view);
-    const OutlineFit alone = fit_of(plate(), *view, pose);
+    const SilhouetteFit alone = fit_of(plate(), *view, pose);
     ASSERT_GT(alone.length_q8, 50 * 256);
     EXPECT_TRUE(equal(fit_of(in_front, *view, pose), alone)) << i;
     EXPECT_NEAR(static_cast<double>(fit_of(folded, *view, pose).length_q8),
@@ -316,7 +317,7 @@ TEST(OutlineFit, EdgesInsideTheOutlineAddNothing) {
   }
 }
 
-TEST(OutlineFit, HiddenEdgesAddNothing) {
+TEST(SilhouetteFit, HiddenEdgesAddNothing) {
   Random random(5);
   const auto view = empty_view(kSensor, kDepth_m, plate().radius_m);
   Body behind = plate();
@@ -328,8 +329,9 @@ TEST(OutlineFit, HiddenEdgesAddNothing) {
   }
 }
 
-// A step: the edge between its tread and its riser is never on the outline, though the outline bends there.
-TEST(OutlineFit, ConcaveEdgesAddNothing) {
+// A step: the edge between its tread and its riser is never on the silhouette, though the silhouette bends
+// there.
+TEST(SilhouetteFit, ConcaveEdgesAddNothing) {
   Body step;
   step.radius_m = 3.0;
   for (const double x : {-1.0, 1.0})
@@ -364,54 +366,54 @@ TEST(OutlineFit, ConcaveEdgesAddNothing) {
   Random random(6);
   const auto view = empty_view(kSensor, kDepth_m, step.radius_m);
   show_random_returns(random, *view);
-  OutlineTable table;
-  make_outline_table(60'000, table);
+  SilhouetteTable table;
+  make_silhouette_table(60'000, table);
   const auto surface = std::make_unique<Rendering>();
   for (int i = 0; i < trials(100); ++i) {
     const Pose pose = fixed({random.rotation(), {0.0, kDepth_m, 0.0}});
-    OutlineFit with_edge, without_edge;
+    SilhouetteFit with_edge, without_edge;
     render(section.mesh(), *view, pose, *surface, surface->budget);
-    fit_outline(section.mesh(), *view, pose, *surface, table, kSigma_q8, with_edge, surface->budget);
-    fit_outline(without.mesh(), *view, pose, *surface, table, kSigma_q8, without_edge, surface->budget);
+    fit_silhouette(section.mesh(), *view, pose, *surface, table, kSigma_q8, with_edge, surface->budget);
+    fit_silhouette(without.mesh(), *view, pose, *surface, table, kSigma_q8, without_edge, surface->budget);
     ASSERT_GT(with_edge.length_q8, 0);
     ASSERT_TRUE(equal(with_edge, without_edge)) << i;
   }
 }
 
-TEST(OutlineFit, HiddenRaysAddNothing) {
+TEST(SilhouetteFit, HiddenRaysAddNothing) {
   Random random(7);
   const auto view = empty_view(kSensor, kDepth_m, plate().radius_m);
   const ExactPose pose{Eigen::Matrix3d::Identity(), {0.0, kDepth_m, 0.0}};
   show_plate(pose, 1.0, random, *view);
-  const OutlineFit all = fit_of(plate(), *view, fixed(pose));
+  const SilhouetteFit all = fit_of(plate(), *view, fixed(pose));
   for (int row = 0; row < kSensor.rays; ++row) {
     for (int column = kSensor.rays / 2; column < kSensor.rays; ++column) hide(row, column, *view);
   }
-  const OutlineFit half = fit_of(plate(), *view, fixed(pose));
+  const SilhouetteFit half = fit_of(plate(), *view, fixed(pose));
   EXPECT_NEAR(static_cast<double>(half.length_q8), static_cast<double>(all.length_q8) / 2.0, 3.0 * 256.0);
   // What the hidden half says does not matter, and the left edge only pulls to the right or to the left.
   show_all(kHidden, *view);
-  const OutlineFit none = fit_of(plate(), *view, fixed(pose));
-  EXPECT_TRUE(equal(none, OutlineFit()));
+  const SilhouetteFit none = fit_of(plate(), *view, fixed(pose));
+  EXPECT_TRUE(equal(none, SilhouetteFit()));
 }
 
-TEST(OutlineFit, IsEmptyWithoutAnOutline) {
+TEST(SilhouetteFit, IsEmptyWithoutASilhouette) {
   const auto view = empty_view(kSensor, kDepth_m, plate().radius_m);
   const auto surface = std::make_unique<Rendering>();
-  OutlineTable table;
-  make_outline_table(60'000, table);
+  SilhouetteTable table;
+  make_silhouette_table(60'000, table);
   const Pose pose = fixed({Eigen::Matrix3d::Identity(), {0.0, kDepth_m, 0.0}});
   render(SurfaceMesh(), *view, pose, *surface, surface->budget);
-  OutlineFit fit;
+  SilhouetteFit fit;
   fit.length_q8 = 1;
-  fit_outline(SurfaceMesh(), *view, pose, *surface, table, kSigma_q8, fit, surface->budget);
-  EXPECT_TRUE(equal(fit, OutlineFit()));
+  fit_silhouette(SurfaceMesh(), *view, pose, *surface, table, kSigma_q8, fit, surface->budget);
+  EXPECT_TRUE(equal(fit, SilhouetteFit()));
   const Pose behind = fixed({Eigen::Matrix3d::Identity(), {0.0, -kDepth_m, 0.0}});
-  EXPECT_TRUE(equal(fit_of(plate(), *view, behind), OutlineFit()));
+  EXPECT_TRUE(equal(fit_of(plate(), *view, behind), SilhouetteFit()));
 }
 
-// Parts of the outline that are out of view are not looked at, at any width of the likelihood.
-TEST(OutlineFit, OutlineOutOfViewAddsNothing) {
+// Parts of the silhouette that are out of view are not looked at, at any width of the likelihood.
+TEST(SilhouetteFit, SilhouetteOutOfViewAddsNothing) {
   Random random(8);
   const double edge_m = kDepth_m * kSensor.tan_half_fov();
   const auto view = empty_view(kSensor, kDepth_m, plate().radius_m);
@@ -429,7 +431,7 @@ TEST(OutlineFit, OutlineOutOfViewAddsNothing) {
           if (is_in_view) length_rays += 0.001 * (edge.places[1] - edge.places[0]).norm();
         }
       }
-      const OutlineFit fit = fit_of(plate(), *view, fixed(pose), sigma_q8);
+      const SilhouetteFit fit = fit_of(plate(), *view, fixed(pose), sigma_q8);
       EXPECT_LE(static_cast<double>(fit.length_q8) / 256.0, length_rays + 4.0);
     }
   }

@@ -1,4 +1,4 @@
-#include "sim/baseline/outline.hpp"
+#include "sim/baseline/silhouette.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ bool touches_blocked(const TargetScan& scan, int ray) {
 
 // Danielsson's vector distance transform: downwards with passes to the right and to the left, then upwards
 // the same way.
-void OutlineField::sweep(std::vector<Step>& steps) const {
+void SilhouetteField::sweep(std::vector<Step>& steps) const {
   const auto improve = [&](int row, int column, int step_right, int step_down) {
     const int from_row = row + step_down, from_column = column + step_right;
     if (from_row < 0 || from_row >= rays_ || from_column < 0 || from_column >= rays_) return;
@@ -41,14 +41,14 @@ void OutlineField::sweep(std::vector<Step>& steps) const {
   for (int row = rays_ - 1; row >= 0; --row) pass(row, 1);
 }
 
-std::vector<OutlineField::Step> OutlineField::nearest(const std::vector<bool>& sought) const {
+std::vector<SilhouetteField::Step> SilhouetteField::nearest(const std::vector<bool>& sought) const {
   std::vector<Step> steps(sought.size());
   for (std::size_t i = 0; i < sought.size(); ++i) steps[i] = sought[i] ? Step{0, 0} : Step{kFar, kFar};
   sweep(steps);
   return steps;
 }
 
-OutlineField::OutlineField(const TargetScan& scan)
+SilhouetteField::SilhouetteField(const TargetScan& scan)
     : rays_(scan.rays), inside_(scan.kind.size()), known_(scan.kind.size()) {
   std::vector<bool> outside(scan.kind.size());
   for (std::size_t i = 0; i < inside_.size(); ++i) {
@@ -66,7 +66,7 @@ OutlineField::OutlineField(const TargetScan& scan)
   }
 }
 
-bool OutlineField::at(double column, double row, Distance& distance) const {
+bool SilhouetteField::at(double column, double row, Distance& distance) const {
   const int c = static_cast<int>(std::lround(column)), r = static_cast<int>(std::lround(row));
   if (c < 0 || c >= rays_ || r < 0 || r >= rays_) return false;
   const int ray = r * rays_ + c;

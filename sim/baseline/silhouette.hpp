@@ -1,4 +1,4 @@
-// OutlineField: distance of every ray of a scan from the outline of the target in that scan.
+// SilhouetteField: distance of every ray of a scan from the silhouette of the target in that scan.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,21 +8,21 @@
 
 namespace tumblesight::sim {
 
-class OutlineField {
+class SilhouetteField {
  public:
   struct Distance {
     double out_rays;           // signed distance in ray spacings; negative inside the target
     Eigen::Vector2d outwards;  // its gradient, unit vector: right, up
   };
 
-  explicit OutlineField(const TargetScan& scan);
+  explicit SilhouetteField(const TargetScan& scan);
 
-  // At `column`, `row` (ray centres at integers). False where the outline is not known: outside the frame,
+  // At `column`, `row` (ray centres at integers). False where the silhouette is not known: outside the frame,
   // and where the nearest edge belongs to an object in front of the target.
   bool at(double column, double row, Distance& distance) const;
 
  private:
-  struct Step {  // offset from a ray to the nearest one on the other side of the outline
+  struct Step {  // offset from a ray to the nearest one on the other side of the silhouette
     int right = 0;
     int down = 0;
     int squared() const { return right * right + down * down; }

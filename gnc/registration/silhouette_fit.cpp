@@ -1,4 +1,4 @@
-#include "gnc/registration/outline_fit.hpp"
+#include "gnc/registration/silhouette_fit.hpp"
 
 #include "gnc/numerics/division.hpp"
 #include "gnc/numerics/functions.hpp"
@@ -7,9 +7,10 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr int kMaxAcross = 12;    // rays to either side of the outline
-constexpr int kMaxPlaces = 6144;  // of the silhouette, and as many between dark and bright surfaces
-constexpr int kMostPerRow = 4;    // places that share a row of the equations
+constexpr int kMaxAcross = 12;  // rays to either side of the silhouette
+constexpr int kMaxPlaces =
+    6144;                       // beside which nothing is drawn, and as many between dark and bright surfaces
+constexpr int kMostPerRow = 4;  // places that share a row of the equations
 constexpr std::uint32_t kLeastFill_q16 = 32'768, kWholeFill_q16 = 64'880;  // 1/2 and 99 %
 constexpr std::int32_t kBehind_um = 250'000;  // an edge this far behind another surface is hidden
 
@@ -36,9 +37,9 @@ struct Rays {
   std::int32_t information = 0;  // Q12 / sigma^2
 };
 
-// An edge that may be on the outline, in the direction in which it is followed: from row to row if it is
+// An edge that may be on the silhouette, in the direction in which it is followed: from row to row if it is
 // steep, else from column to column. `line`: that row or column; `across`: the other coordinate.
-struct OutlineEdge {
+struct SilhouetteEdge {
   bool is_steep;
   const ScreenPoint &from, &to;  // `line` grows
   int from_vertex, to_vertex;
@@ -48,23 +49,24 @@ struct OutlineEdge {
   std::int32_t across(const ScreenPoint& point) const { return is_steep ? point.column : point.row; }
 };
 
-// The rays of one line on both sides of the outline.
+// The rays of one line on both sides of the silhouette.
 class Across {
  public:
-  Across(const FrameView& view, const RenderedSurface& surface, const OutlineTable& table,
+  Across(const FrameView& view, const RenderedSurface& surface, const SilhouetteTable& table,
          std::int32_t sigma_q8)
       : view_(view),
         surface_(surface),
         table_(table),
         reach_((3 * sigma_q8) / (256 / kScreenRay) + kScreenRay),
-        steps_per_distance_q16_((OutlineTable::kPerSigma << 24) / (sigma_q8 * kScreenRay)),
+        steps_per_distance_q16_((SilhouetteTable::kPerSigma << 24) / (sigma_q8 * kScreenRay)),
         behind_(static_cast<std::int32_t>(
             divide(std::int64_t{kBehind_um} << view.shift, view.reference_depth_um))) {}
 
-  // On which side of an edge between two triangles nothing returns: 1 or -1 as OutlineEdge::outward, 0 if
-  // both sides are dark or bright, or something nearer hides them. Its middle decides. An edge next to the
-  // silhouette counts, too: the outline is trusted more where surfaces are dark (docs/numerics.md).
-  int dark_side(const OutlineEdge& edge) const {
+  // On which side of an edge between two triangles nothing returns: 1 or -1 as SilhouetteEdge::outward, 0 if
+  // both sides are dark or bright, or something nearer hides them. Its middle decides. An edge next to one
+  // beside which nothing is drawn counts, too: the silhouette is trusted more where surfaces are dark
+  // (docs/numerics.md).
+  int dark_side(const SilhouetteEdge& edge) const {
     const Line at{edge.is_steep, (edge.line(edge.from) + edge.line(edge.to)) >> (kScreenBits + 1),
                   view_.rays};
     const int across = (edge.across(edge.from) + edge.across(edge.to)) >> (kScreenBits + 1);
@@ -76,11 +78,11 @@ class Across {
     return is_before ? 1 : -1;
   }
 
-  // The whole look, in three parts: the rays next to the outline must agree with it, then outwards and
-  // inwards until the rendering changes. `place`: where the outline crosses the line, in 1/64 of a ray;
+  // The whole look, in three parts: the rays next to the silhouette must agree with it, then outwards and
+  // inwards until the rendering changes. `place`: where the silhouette crosses the line, in 1/64 of a ray;
   // `cosine_q14`: of its angle to the perpendicular of the line.
   // `looked_at` grows by the rays.
-  bool look_across(const OutlineEdge& edge, int line, std::int32_t place, std::int32_t nearness,
+  bool look_across(const SilhouetteEdge& edge, int line, std::int32_t place, std::int32_t nearness,
                    std::int32_t cosine_q14, Rays& rays, int& looked_at) const {
     const Line at{edge.is_steep, line, view_.rays};
     const int outer = edge.outward > 0 ? (place + kScreenRay / 2 - 1) >> kScreenBits
@@ -124,14 +126,14 @@ class Across {
   bool is_filled(const Line& line, int across) const {
     return line.is_row ? surface_.is_filled(line.number, across) : surface_.is_filled(across, line.number);
   }
-  // A ray at `distance` outside the outline, in 1/64 of a ray. False: it is hidden.
+  // A ray at `distance` outside the silhouette, in 1/64 of a ray. False: it is hidden.
   bool add(const Line& line, int across, std::int32_t distance, Rays& rays) const {
     const int row = line.is_row ? line.number : across, column = line.is_row ? across : line.number;
     if (view_.is_hidden(row, column)) return false;
-    constexpr int kMiddle = OutlineTable::kSteps / 2;
+    constexpr int kMiddle = SilhouetteTable::kSteps / 2;
     const int step = kMiddle + ((distance * steps_per_distance_q16_ + (1 << 15)) >> 16);
     const auto at =
-        static_cast<std::size_t>(min_small(max_small(step, 0), std::int32_t{OutlineTable::kSteps - 1}));
+        static_cast<std::size_t>(min_small(max_small(step, 0), std::int32_t{SilhouetteTable::kSteps - 1}));
     rays.derivative += view_.is_returned(row, column) ? table_.if_hit[at] : table_.if_missed[at];
     rays.information += table_.information[at];
     return true;
@@ -139,7 +141,7 @@ class Across {
 
   const FrameView& view_;
   const RenderedSurface& surface_;
-  const OutlineTable& table_;
+  const SilhouetteTable& table_;
   std::int32_t reach_;  // in 1/64 of a ray
   std::int32_t steps_per_distance_q16_;
   std::int32_t behind_;
@@ -152,10 +154,10 @@ struct Place {
   std::int32_t nearness;
 };
 
-// The row of the equations for a move of the outline outwards, per radius at the reference depth, Q14.
-class OutlineRows {
+// The row of the equations for a move of the silhouette outwards, per radius at the reference depth, Q14.
+class SilhouetteRows {
  public:
-  OutlineRows(const FrameView& view, const Pose& pose)
+  SilhouetteRows(const FrameView& view, const Pose& pose)
       : turn_(pose.r_lrf_trf), middle_(view.rays * (kScreenRay / 2)), shift_(view.shift) {
     slope_q30_ = static_cast<std::int32_t>(divide(view.tan_half_fov_q30, middle_));
   }
@@ -186,8 +188,9 @@ class OutlineRows {
 
 // Adds the places where an edge crosses the middles of the lines, of `every` line one; returns the number of
 // lines. `found`: whether one was added.
-int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const OutlineRows& equation_rows,
-             const Across& across, int rays, OutlineFit& fit, WorkBudget& budget, bool& found) {
+int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, int every,
+             const SilhouetteRows& equation_rows, const Across& across, int rays, SilhouetteFit& fit,
+             WorkBudget& budget, bool& found) {
   // Between the first end and before the second one: a line through both of two edges is of one of them.
   int first = max_small(0, (edge.line(edge.from) + kScreenRay / 2 - 1) >> kScreenBits);
   const int end = min_small(rays, (edge.line(edge.to) + kScreenRay / 2 - 1) >> kScreenBits);
@@ -200,7 +203,7 @@ int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const 
   const std::int32_t cosine = cosine_q14(min_small(abs(slope_q14), 1 << 14));
   const std::int32_t out_across = edge.outward * cosine;
   const std::int32_t out_along = -((out_across * slope_q14) >> 14);
-  // Length of the outline per line: 1 / cosine = cosine (1 + slope^2).
+  // Length of the silhouette per line: 1 / cosine = cosine (1 + slope^2).
   const std::int32_t length_q8 =
       (every * ((cosine * ((1 << 14) + ((slope_q14 * slope_q14) >> 14))) >> 14)) >> 6;
 
@@ -219,7 +222,7 @@ int add_edge(const SurfaceMesh& mesh, const OutlineEdge& edge, int every, const 
     const Place place{between(edge.from.column, edge.to.column), between(edge.from.row, edge.to.row),
                       edge.is_steep ? out_across : out_along, edge.is_steep ? out_along : out_across,
                       between(edge.from.nearness, edge.to.nearness)};
-    // Every ray of the lines counts once, so that the slope of the outline does not matter.
+    // Every ray of the lines counts once, so that the slope of the silhouette does not matter.
     fit.equations.add(equation_rows.row_of(place, vertex), every * sum.information, every * sum.derivative);
     fit.length_q8 += places * length_q8;
     sum = {};
@@ -266,7 +269,7 @@ Sides sides_of(const SurfaceMesh& mesh, const RenderedSurface& surface, const Su
 }
 
 // `is_right`: the target is on the right of the way from the edge's first end to its second.
-OutlineEdge outline_edge(const ScreenVertices& vertices, const SurfaceMesh::Edge& edge, bool is_right) {
+SilhouetteEdge silhouette_edge(const ScreenVertices& vertices, const SurfaceMesh::Edge& edge, bool is_right) {
   const ScreenPoint &first = vertices[edge.first], &second = vertices[edge.second];
   const std::int32_t right_by = second.column - first.column, down_by = second.row - first.row;
   const bool is_steep = abs(down_by) >= abs(right_by);
@@ -284,13 +287,13 @@ OutlineEdge outline_edge(const ScreenVertices& vertices, const SurfaceMesh::Edge
 
 }  // namespace
 
-void make_outline_table(std::uint32_t fill_q16, OutlineTable& table) {
+void make_silhouette_table(std::uint32_t fill_q16, SilhouetteTable& table) {
   const Fixed fill =
       Fixed::from_raw(std::int64_t{clamp<std::uint32_t>(fill_q16, kLeastFill_q16, kWholeFill_q16)} << 8);
-  for (int i = 0; i < OutlineTable::kSteps; ++i) {
-    const int step = i - OutlineTable::kSteps / 2;
+  for (int i = 0; i < SilhouetteTable::kSteps; ++i) {
+    const int step = i - SilhouetteTable::kSteps / 2;
     const Fixed outside =
-        sigmoid(Fixed::from_raw(std::int64_t{step} * ((1 << 24) / OutlineTable::kPerSigma)));
+        sigmoid(Fixed::from_raw(std::int64_t{step} * ((1 << 24) / SilhouetteTable::kPerSigma)));
     const Fixed inside = Fixed(1.0) - outside;
     const Fixed missed = Fixed(1.0) - fill * inside;
     const Fixed derivative = fill * inside * outside / missed;
@@ -302,36 +305,36 @@ void make_outline_table(std::uint32_t fill_q16, OutlineTable& table) {
   }
 }
 
-void fit_outline(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose,
-                 const RenderedSurface& surface, const OutlineTable& table, std::int32_t sigma_q8,
-                 OutlineFit& fit, WorkBudget& budget, int every) {
+void fit_silhouette(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose,
+                    const RenderedSurface& surface, const SilhouetteTable& table, std::int32_t sigma_q8,
+                    SilhouetteFit& fit, WorkBudget& budget, int every) {
   fit = {};
-  budget.spend(work::kOutline + mesh.edges() * work::kEdge);
+  budget.spend(work::kSilhouette + mesh.edges() * work::kEdge);
   const Across across(view, surface, table, sigma_q8);
-  const OutlineRows rows(view, pose);
-  const auto follow = [&](const OutlineEdge& edge, bool& found) {
+  const SilhouetteRows rows(view, pose);
+  const auto follow = [&](const SilhouetteEdge& edge, bool& found) {
     return add_edge(mesh, edge, every, rows, across, view.rays, fit, budget, found);
   };
-  int silhouettes = 0, between = 0;  // places
+  int open = 0, between = 0;  // places
   for (int i = 0; i < mesh.edges() && !budget.is_exhausted(); ++i) {
     const SurfaceMesh::Edge edge = mesh.edge(i);
     const Sides sides = sides_of(mesh, surface, edge);
-    // Between a dark surface and another one is an outline, too.
+    // Between a dark surface and another one is a silhouette, too.
     if (!sides.are_drawn || (!sides.are_on_one_side && !surface.has_dark)) continue;
-    OutlineEdge outline = outline_edge(*surface.vertices, edge, sides.first_is_right);
-    budget.spend(work::kOutlineEdge);
+    SilhouetteEdge silhouette = silhouette_edge(*surface.vertices, edge, sides.first_is_right);
+    budget.spend(work::kSilhouetteEdge);
     bool found = false;
     if (!sides.are_on_one_side) {
-      outline.outward = across.dark_side(outline);
-      if (outline.outward != 0 && between < kMaxPlaces) between += follow(outline, found);
+      silhouette.outward = across.dark_side(silhouette);
+      if (silhouette.outward != 0 && between < kMaxPlaces) between += follow(silhouette, found);
       continue;
     }
-    if (silhouettes >= kMaxPlaces) continue;
-    silhouettes += follow(outline, found);
+    if (open >= kMaxPlaces) continue;
+    open += follow(silhouette, found);
     if (found || !surface.has_dark) continue;
     // A dark surface before a bright one.
-    outline.outward = -outline.outward;
-    silhouettes += follow(outline, found);
+    silhouette.outward = -silhouette.outward;
+    open += follow(silhouette, found);
   }
 }
 

@@ -1,6 +1,6 @@
 // Distances agree with the drawn shape. Dropouts inside it and edges of the chaser's own parts do not count
-// as outline.
-#include "sim/baseline/outline.hpp"
+// as silhouette.
+#include "sim/baseline/silhouette.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,41 +23,41 @@ std::unique_ptr<gnc::RangeImage> disc() {
   return frame;
 }
 
-TEST(OutlineField, MeasuresTheDistanceToADisc) {
-  const OutlineField outline(*scan_of(*disc()));
+TEST(SilhouetteField, MeasuresTheDistanceToADisc) {
+  const SilhouetteField silhouette(*scan_of(*disc()));
   for (const double radius : {8.0, 17.5, 19.0, 22.0, 30.0}) {
     for (int i = 0; i < 48; ++i) {
       const double angle = M_PI * i / 24;
-      OutlineField::Distance distance;
-      ASSERT_TRUE(outline.at(50 + radius * std::cos(angle), 50 - radius * std::sin(angle), distance));
+      SilhouetteField::Distance distance;
+      ASSERT_TRUE(silhouette.at(50 + radius * std::cos(angle), 50 - radius * std::sin(angle), distance));
       EXPECT_NEAR(distance.out_rays, radius - 20.25, 0.9) << radius << ' ' << i;
       EXPECT_GT(distance.outwards.dot(Eigen::Vector2d(std::cos(angle), std::sin(angle))),
-                0.69);  // 45 degrees: next to the outline a step goes to one of 8 neighbours
+                0.69);  // 45 degrees: next to the silhouette a step goes to one of 8 neighbours
     }
   }
 }
 
-TEST(OutlineField, FillsDropouts) {
+TEST(SilhouetteField, FillsDropouts) {
   auto frame = disc();
   frame->ranges[50 * 101 + 50] = 0;
   frame->ranges[50 * 101 + 53] = 0;
   const auto scan = scan_of(*frame);
   EXPECT_EQ(scan->kind[50 * 101 + 53], RayKind::kLost);
-  OutlineField::Distance distance;
-  ASSERT_TRUE(OutlineField(*scan).at(53, 50, distance));
+  SilhouetteField::Distance distance;
+  ASSERT_TRUE(SilhouetteField(*scan).at(53, 50, distance));
   EXPECT_NEAR(distance.out_rays, -17.0, 0.9);
 }
 
-TEST(OutlineField, IsUnknownBesideAPartOfTheChaserAndOutsideTheFrame) {
+TEST(SilhouetteField, IsUnknownBesideAPartOfTheChaserAndOutsideTheFrame) {
   auto frame = disc();
   for (int row = 0; row < 101; ++row) frame->ranges[row * 101 + 60] = 3 * 128;
-  const OutlineField outline(*scan_of(*frame));
-  OutlineField::Distance distance;
-  EXPECT_FALSE(outline.at(60, 50, distance));
-  EXPECT_FALSE(outline.at(58, 50, distance));
-  EXPECT_TRUE(outline.at(32, 50, distance));
-  EXPECT_FALSE(outline.at(-1, 50, distance));
-  EXPECT_FALSE(outline.at(50, 101, distance));
+  const SilhouetteField silhouette(*scan_of(*frame));
+  SilhouetteField::Distance distance;
+  EXPECT_FALSE(silhouette.at(60, 50, distance));
+  EXPECT_FALSE(silhouette.at(58, 50, distance));
+  EXPECT_TRUE(silhouette.at(32, 50, distance));
+  EXPECT_FALSE(silhouette.at(-1, 50, distance));
+  EXPECT_FALSE(silhouette.at(50, 101, distance));
 }
 
 }  // namespace
