@@ -43,27 +43,27 @@ RayCount all_rays(const FrameView& view, const RenderedSurface& surface) {
   return all;
 }
 
-// Whether a triangle is the nearest one at a ray: it wrote the nearness that is there.
-bool is_nearest(const RenderedSurface& surface, int row, int column, std::int32_t nearness,
+// Whether a triangle is the nearest one at a ray: it wrote the inverse depth that is there.
+bool is_nearest(const RenderedSurface& surface, int row, int column, std::int32_t inverse_depth,
                 const Plane& plane) {
-  const std::int32_t here = min_small(max_small(nearness >> 8, plane.lowest), plane.highest);
-  return here == surface.nearness[row * surface.rays + column];
+  const std::int32_t here = min_small(max_small(inverse_depth >> 8, plane.lowest), plane.highest);
+  return here == surface.inverse_depth[row * surface.rays + column];
 }
 
 // Counts the rays of a triangle that nothing nearer covers, and keeps its plane. A visitor of visit_spans().
 class Counter {
  public:
   Counter(const FrameView& view, const RenderedSurface& surface) : view_(view), surface_(surface) {}
-  void operator()(int row, int first, int last, std::int32_t nearness, const Plane& plane) {
+  void operator()(int row, int first, int last, std::int32_t inverse_depth, const Plane& plane) {
     if (rays_.drawn == 0) {
       row_ = row;
       column_ = first;
-      nearness_ = nearness;
+      inverse_depth_ = inverse_depth;
       per_column_ = plane.per_column;
       per_row_ = plane.per_row;
     }
-    for (int column = first; column <= last; ++column, nearness += plane.per_column) {
-      if (!is_nearest(surface_, row, column, nearness, plane) || view_.is_hidden(row, column)) continue;
+    for (int column = first; column <= last; ++column, inverse_depth += plane.per_column) {
+      if (!is_nearest(surface_, row, column, inverse_depth, plane) || view_.is_hidden(row, column)) continue;
       ++rays_.drawn;
       rays_.returned += view_.is_returned(row, column) ? 1 : 0;
     }
@@ -73,7 +73,7 @@ class Counter {
   // The class of the angle of incidence. 0: the triangle faces the sensor. `slope_per_half_ray_q24`: of the
   // screen.
   std::size_t angle(std::int32_t slope_per_half_ray_q24) const {
-    // The plane's nearness + 2^shift is (depth + right slope + up slope) times the reference depth per
+    // The plane's inverse depth + 2^shift is (depth + right slope + up slope) times the reference depth per
     // radius. So (right, depth, up) is along its normal, and the sum its product with the ray's direction.
     constexpr std::int64_t kMost = 1 << 21;
     const auto per_slope = [&](std::int32_t per_ray) {
@@ -84,7 +84,7 @@ class Counter {
     };
     const std::int64_t right = per_slope(per_column_), down = per_slope(per_row_);
     const std::int64_t right_q14 = slope_q14(column_), down_q14 = slope_q14(row_);
-    const std::int64_t whole = (std::int64_t{1} << view_.shift) + (nearness_ >> 8);
+    const std::int64_t whole = (std::int64_t{1} << view_.shift) + (inverse_depth_ >> 8);
     const std::int64_t along = (whole * view_.radius_over_depth_q30) >> 30;
     const std::int64_t depth = along - ((right * right_q14 + down * down_q14) >> 14);
     const std::int64_t normal_squared = right * right + down * down + depth * depth;
@@ -102,7 +102,7 @@ class Counter {
   const RenderedSurface& surface_;
   RayCount rays_;
   int row_ = 0, column_ = 0;  // of the first ray
-  std::int32_t nearness_ = 0, per_column_ = 0, per_row_ = 0;
+  std::int32_t inverse_depth_ = 0, per_column_ = 0, per_row_ = 0;
 };
 
 std::int32_t slope_per_half_ray_q24(const FrameView& view) {
@@ -113,10 +113,10 @@ std::int32_t slope_per_half_ray_q24(const FrameView& view) {
 class Remover {
  public:
   explicit Remover(RenderedSurface& surface) : surface_(surface) {}
-  void operator()(int row, int first, int last, std::int32_t nearness, const Plane& plane) {
+  void operator()(int row, int first, int last, std::int32_t inverse_depth, const Plane& plane) {
     const auto at = static_cast<std::size_t>(row);
-    for (int column = first; column <= last; ++column, nearness += plane.per_column) {
-      if (!is_nearest(surface_, row, column, nearness, plane)) continue;
+    for (int column = first; column <= last; ++column, inverse_depth += plane.per_column) {
+      if (!is_nearest(surface_, row, column, inverse_depth, plane)) continue;
       const auto word = static_cast<std::size_t>(column / RayMask::kColumnsPerWord);
       const std::uint32_t ray = 0x8000'0000U >> (column % RayMask::kColumnsPerWord);
       surface_.filled.rows[at][word] &= ~ray;

@@ -34,8 +34,8 @@ void measure_brightness(const SurfaceMesh& mesh, const FrameView& view, const Re
                         DarkSurfaces& dark, WorkBudget& budget);
 
 // `surface`: as render() left it; `dark`: of a pose nearby. Finds what is dark and moves its rays from
-// surface.filled to surface.dark; they keep their nearness. Sets surface.has_dark. Of a surface that was not
-// drawn whole nothing is dark. About the work of a rendering.
+// surface.filled to surface.dark; they keep their inverse depth. Sets surface.has_dark. Of a surface that was
+// not drawn whole nothing is dark. About the work of a rendering.
 void take_out_dark_surfaces(const SurfaceMesh& mesh, const FrameView& view, DarkSurfaces& dark,
                             RenderedSurface& surface, WorkBudget& budget);
 

@@ -82,9 +82,9 @@ std::uint16_t nearest_of(const RangeImage& frame, const RayMask& mask) {
 // Means over the blocks of two rows.
 class BlockMeans {
  public:
-  void add(int column, std::int32_t nearness) {
+  void add(int column, std::int32_t inverse_depth) {
     const auto block = static_cast<std::size_t>(column / 2);
-    sum_[block] += nearness;
+    sum_[block] += inverse_depth;
     ++count_[block];
   }
   // Begins again.
@@ -93,7 +93,7 @@ class BlockMeans {
     for (int block = 0; block < FrameView::kMaxBlocks; ++block) {
       const auto at = static_cast<std::size_t>(block);
       const std::int64_t mean_q16 = std::int64_t{sum_[at]} * kShare_q16[static_cast<std::size_t>(count_[at])];
-      view.block_nearness[block_row * FrameView::kMaxBlocks + block] =
+      view.block_inverse_depth[block_row * FrameView::kMaxBlocks + block] =
           static_cast<std::int16_t>((mean_q16 + (1 << 15)) >> 16);
       sum_[at] = count_[at] = 0;
     }
@@ -123,7 +123,7 @@ bool make_frame_view(const RangeImage& frame, const RayMask& mask, std::int32_t 
   view.reference_depth_um = reference_depth_um;
   view.target_radius_um = static_cast<std::int32_t>(radius_um);
   view.radius_over_depth_q30 = static_cast<std::int32_t>(divide(radius_um << 30, reference_depth_um));
-  // (depth - radius) / radius: the nearness of the nearest point before the shift is one over it.
+  // (depth - radius) / radius: the inverse depth of the nearest point before the shift is one over it.
   view.shift =
       13 + highest_bit(static_cast<std::uint64_t>(divide(reference_depth_um - radius_um, radius_um)));
   if (view.shift > kMostShift) return false;
@@ -144,14 +144,14 @@ bool make_frame_view(const RangeImage& frame, const RayMask& mask, std::int32_t 
     const std::int64_t slope = divide(view.tan_half_fov_q30 * (2 * i + 1 - frame.rays), frame.rays);
     slope_squared_q30[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(product_q30(slope, slope));
   }
-  const auto nearness_of = [&](int row, int column) {
+  const auto inverse_depth_of = [&](int row, int column) {
     const std::int32_t inverse_norm = inverse_norm_q30(slope_squared_q30[static_cast<std::size_t>(row)] +
                                                        slope_squared_q30[static_cast<std::size_t>(column)]);
     const std::uint16_t range = frame.ranges[row * frame.rays + column];
     const std::int32_t inverse_q28 = reciprocal_q28(depths.over_reference_q30(range, inverse_norm));
-    const std::int32_t nearness =
+    const std::int32_t inverse_depth =
         (short_product_q30(inverse_q28, unbiased_q30) - (1 << 28)) >> (28 - view.shift);
-    return min_small(max_small(nearness, -32'766), 32'767);
+    return min_small(max_small(inverse_depth, -32'766), 32'767);
   };
   view.returned = mask;
   view.hidden = {};
@@ -166,7 +166,7 @@ bool make_frame_view(const RangeImage& frame, const RayMask& mask, std::int32_t 
       for (int i = 0; i < count; ++i, of_target <<= 1) {
         hidden <<= 1;
         if ((of_target >> 31) != 0) {
-          means.add(first + i, nearness_of(row, first + i));
+          means.add(first + i, inverse_depth_of(row, first + i));
         } else {
           const std::uint16_t range = frame.ranges[row * frame.rays + first + i];
           hidden |= range != 0 && range + kHiddenCounts < nearest ? 1U : 0U;

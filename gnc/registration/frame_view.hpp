@@ -1,9 +1,9 @@
-// FrameView: what registration needs of a frame: which rays return, and a nearness, which is linear across a
-// plane on the screen, unlike a range.
+// FrameView: what registration needs of a frame: which rays return, and an inverse depth, which is linear
+// across a plane on the screen, unlike a range.
 //
 // The screen: columns to the right and rows downward, in 1/64 of a ray; the middle of ray k is at 64 k + 32.
-// Nearness of a point with depth Y along the boresight: (reference depth / Y - 1) 2^shift. The shift is such
-// that the target, one radius to either side of the reference depth, fills 14 bits with sign.
+// Inverse depth of a point with depth Y along the boresight: (reference depth / Y - 1) 2^shift. The shift is
+// such that the target, one radius to either side of the reference depth, fills 14 bits with sign.
 #pragma once
 
 #include <array>
@@ -27,18 +27,18 @@ struct FrameView {
   std::int32_t reference_depth_um = 0;
   std::int32_t target_radius_um = 0;
   std::int32_t radius_over_depth_q30 = 0;
-  int shift = 0;                        // of a nearness
-  std::int32_t noise_q8 = 0;            // standard deviation of a ray's nearness, in 1/256
+  int shift = 0;                        // of an inverse depth
+  std::int32_t noise_q8 = 0;            // standard deviation of a ray's inverse depth, in 1/256
   std::int32_t rays_per_radius_q8 = 0;  // at the reference depth
   RayMask returned;                     // returns of the target
   RayMask hidden;                       // with a return well in front of it: something hides it
-  // Mean nearness of the returns in a block of 2 x 2 rays; without a meaning where there is none.
-  std::array<std::int16_t, kMaxBlocks * kMaxBlocks> block_nearness;
+  // Mean inverse depth of the returns in a block of 2 x 2 rays; without a meaning where there is none.
+  std::array<std::int16_t, kMaxBlocks * kMaxBlocks> block_inverse_depth;
 
   bool is_returned(int row, int column) const { return returned.has(row, column); }
   bool is_hidden(int row, int column) const { return hidden.has(row, column); }
-  std::int16_t nearness_of_block(int block_row, int block_column) const {
-    return block_nearness[block_row * kMaxBlocks + block_column];
+  std::int16_t inverse_depth_of_block(int block_row, int block_column) const {
+    return block_inverse_depth[block_row * kMaxBlocks + block_column];
   }
 };
 

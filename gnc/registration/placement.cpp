@@ -15,14 +15,14 @@ constexpr int kReach = 9,
 constexpr std::int32_t kMoreOfDenominator = 16;
 constexpr std::int32_t kPlateauOfDenominator = 64;  // shifts that explain nearly as many as the best one
 
-// Sums over rays: their place and the mean nearness of the blocks that they are in.
+// Sums over rays: their place and the mean inverse depth of the blocks that they are in.
 struct Middle {
-  std::int64_t rays = 0, columns = 0, rows = 0, nearness = 0;
+  std::int64_t rays = 0, columns = 0, rows = 0, inverse_depth = 0;
   void add(int row, int column, int count, std::int32_t value) {
     rays += count;
     columns += std::int64_t{count} * column;
     rows += std::int64_t{count} * row;
-    nearness += std::int64_t{count} * value;
+    inverse_depth += std::int64_t{count} * value;
   }
   std::int64_t mean_q8(std::int64_t sum) const { return divide(sum * 256, max<std::int64_t>(rays, 1)); }
 };
@@ -103,7 +103,7 @@ Shift middle_of_plateau(const PlacementScratch& scratch, const Found& found) {
   return {kBlockRays * columns / divisor, kBlockRays * rows / divisor};
 }
 
-// By how much nearer the returns are than the surface where it is drawn after the shift [nearness].
+// By how much nearer the returns are than the surface where it is drawn after the shift [inverse depth].
 std::int32_t nearer_by(const FrameView& view, const RenderedSurface& surface, Shift shift) {
   std::int64_t sum = 0, rays = 0;
   for (int row = 0; row + 1 < view.rays; row += 2) {
@@ -111,7 +111,7 @@ std::int32_t nearer_by(const FrameView& view, const RenderedSurface& surface, Sh
       const int returns =
           rays_of_pair(view.returned.pair(row, column)) + rays_of_pair(view.returned.pair(row + 1, column));
       if (returns == 0 || !surface.is_filled(row - shift.rows, column - shift.columns)) continue;
-      sum += std::int64_t{returns} * (view.nearness_of_block(row / 2, column / 2) -
+      sum += std::int64_t{returns} * (view.inverse_depth_of_block(row / 2, column / 2) -
                                       surface.at(row - shift.rows, column - shift.columns));
       rays += returns;
     }
@@ -130,14 +130,14 @@ void place(const SurfaceMesh& mesh, const FrameView& view, RenderedSurface& surf
     for (int column = 0; column + 1 < view.rays; column += 2) {
       const int returns =
           rays_of_pair(view.returned.pair(row, column)) + rays_of_pair(view.returned.pair(row + 1, column));
-      seen.add(row, column, returns, view.nearness_of_block(row / 2, column / 2));
+      seen.add(row, column, returns, view.inverse_depth_of_block(row / 2, column / 2));
       if (surface.is_filled(row, column)) drawn.add(row, column, 1, surface.at(row, column));
     }
   }
   if (seen.rays == 0 || drawn.rays == 0) return;
   std::int64_t right_q8 = seen.mean_q8(seen.columns) - drawn.mean_q8(drawn.columns);
   std::int64_t down_q8 = seen.mean_q8(seen.rows) - drawn.mean_q8(drawn.rows);
-  std::int64_t nearer_q8 = seen.mean_q8(seen.nearness) - drawn.mean_q8(drawn.nearness);
+  std::int64_t nearer_q8 = seen.mean_q8(seen.inverse_depth) - drawn.mean_q8(drawn.inverse_depth);
 
   count_blocks(view.returned, scratch.seen);
   count_blocks(surface.filled, scratch.drawn);

@@ -11,7 +11,7 @@ constexpr int kMargin = 2;                   // rays between the silhouette and 
 constexpr std::int32_t kSteepest_q8 = 1250;  // tangent of the largest incidence that is used: 78 degrees
 
 struct Block {
-  std::int32_t nearness;                   // mean of the rendered rays
+  std::int32_t inverse_depth;              // mean of the rendered rays
   std::int32_t per_column_x2, per_row_x2;  // change per ray, doubled
   std::int32_t difference;                 // measured minus rendered, sum over `rays`
   std::int32_t rays;
@@ -20,7 +20,7 @@ struct Block {
 // `row`, `column`: of the upper left one of four rays that are filled. False if they do not lie on one plane
 // or none returned.
 bool take_block(const FrameView& view, const RenderedSurface& surface, int row, int column, Block& block) {
-  const std::int16_t* const upper = &surface.nearness[row * surface.rays + column];
+  const std::int16_t* const upper = &surface.inverse_depth[row * surface.rays + column];
   const std::int16_t* const lower = upper + surface.rays;
   const std::int32_t a = upper[0], b = upper[1], c = lower[0], d = lower[1];
   block = {(a + b + c + d) >> 2, (b - a) + (d - c), (c - a) + (d - b), 0, 0};
@@ -31,7 +31,7 @@ bool take_block(const FrameView& view, const RenderedSurface& surface, int row, 
   const std::int32_t expected = select(upper_pair >= 2, a, 0) + select((upper_pair & 1U) != 0, b, 0) +
                                 select(lower_pair >= 2, c, 0) + select((lower_pair & 1U) != 0, d, 0);
   block.rays = rays_of_pair(upper_pair) + rays_of_pair(lower_pair);
-  block.difference = block.rays * view.nearness_of_block(row / 2, column / 2) - expected;
+  block.difference = block.rays * view.inverse_depth_of_block(row / 2, column / 2) - expected;
   return block.rays > 0;
 }
 
@@ -60,17 +60,17 @@ class RangeRows {
     return ((2 * column - view_.rays) * slope_per_half_ray_q24_) >> 10;
   }
 
-  // The change of a nearness, in 1/256 standard deviation, by a motion of the target; false where the surface
-  // is too steep. `right`, `up`: slopes of the middle of the block, Q14.
+  // The change of an inverse depth, in 1/256 standard deviation, by a motion of the target; false where the
+  // surface is too steep. `right`, `up`: slopes of the middle of the block, Q14.
   bool row_of(const Block& block, std::int32_t right, std::int32_t up,
               std::array<std::int32_t, kUnknowns>& out) const {
-    // Nearness + 2^shift = depth_term + right_term right + up_term up, times the radius over the reference
-    // depth; 2^13 to 2^15.
+    // Inverse depth + 2^shift = depth_term + right_term right + up_term up, times the radius over the
+    // reference depth; 2^13 to 2^15.
     const std::int32_t right_term = product(block.per_column_x2, view_.rays_per_radius_q8, 9);
     const std::int32_t up_term = -product(block.per_row_x2, view_.rays_per_radius_q8, 9);
     constexpr std::int32_t kSteep = 1 << 17;
     if (abs(right_term) >= kSteep || abs(up_term) >= kSteep) return false;
-    const std::int32_t whole = (1 << view_.shift) + block.nearness;
+    const std::int32_t whole = (1 << view_.shift) + block.inverse_depth;
     const std::int32_t whole_term = high_product(2 * whole, 2 * view_.radius_over_depth_q30);
     const std::int32_t depth_term =
         whole_term -
@@ -85,7 +85,7 @@ class RangeRows {
     const std::array<std::int32_t, 3> arm{product(depth_q14, right, 14) - origin_q14_[0],
                                           depth_q14 - origin_q14_[1],
                                           product(depth_q14, up, 14) - origin_q14_[2]};
-    // A motion by m changes the nearness by -(terms . m) depth / reference depth ...
+    // A motion by m changes the inverse depth by -(terms . m) depth / reference depth ...
     const std::int32_t scale_q16 = -high_product(per_count_q16_[1] * 8, half_q30);
     std::array<std::int32_t, 3> along{right_term, depth_term, up_term};
     constexpr std::int64_t kLargest = 1 << 18;
@@ -120,7 +120,7 @@ class RangeRows {
   std::int32_t slope_per_half_ray_q24_;
   std::array<std::int32_t, 3> origin_q14_{};
   std::int32_t reference_q17_;  // reference depth in radii
-  // 1/256 standard deviation per count of nearness, over the number of rays.
+  // 1/256 standard deviation per count of inverse depth, over the number of rays.
   std::array<std::int32_t, 5> per_count_q16_{};
 };
 

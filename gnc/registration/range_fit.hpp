@@ -1,7 +1,7 @@
 // RangeFit: how the target has to move so that its surface lies where the returns are.
 //
-// The differences of measured and rendered nearness are averaged over blocks of 2 x 2 rays on one plane. The
-// plane's slope on the screen says how a motion of the target changes them. Large differences, in
+// The differences of measured and rendered inverse depth are averaged over blocks of 2 x 2 rays on one plane.
+// The plane's slope on the screen says how a motion of the target changes them. Large differences, in
 // standard deviations of one ray, count less (Geman and McClure).
 #pragma once
 

@@ -72,9 +72,9 @@ class Across {
     const int across = (edge.across(edge.from) + edge.across(edge.to)) >> (kScreenBits + 1);
     const bool is_before = is_filled(at, across - 1), is_after = is_filled(at, across + 1);
     if (is_before == is_after) return 0;
-    const std::int32_t nearness = (edge.from.nearness + edge.to.nearness) >> 1;
+    const std::int32_t inverse_depth = (edge.from.inverse_depth + edge.to.inverse_depth) >> 1;
     const int bright = is_before ? across - 1 : across + 1;
-    if (surface_.nearness[at.ray(bright)] > nearness + behind_) return 0;
+    if (surface_.inverse_depth[at.ray(bright)] > inverse_depth + behind_) return 0;
     return is_before ? 1 : -1;
   }
 
@@ -82,7 +82,7 @@ class Across {
   // inwards until the rendering changes. `place`: where the silhouette crosses the line, in 1/64 of a ray;
   // `cosine_q14`: of its angle to the perpendicular of the line.
   // `looked_at` grows by the rays.
-  bool look_across(const SilhouetteEdge& edge, int line, std::int32_t place, std::int32_t nearness,
+  bool look_across(const SilhouetteEdge& edge, int line, std::int32_t place, std::int32_t inverse_depth,
                    std::int32_t cosine_q14, Rays& rays, int& looked_at) const {
     const Line at{edge.is_steep, line, view_.rays};
     const int outer = edge.outward > 0 ? (place + kScreenRay / 2 - 1) >> kScreenBits
@@ -98,7 +98,7 @@ class Across {
                                  (outer_distance > 2 && is_filled(at, outer)) ||
                                  is_filled(at, outer + edge.outward);
     if (is_contradicted) return false;
-    if (is_inner_filled && surface_.nearness[at.ray(inner)] > nearness + behind_) return false;
+    if (is_inner_filled && surface_.inverse_depth[at.ray(inner)] > inverse_depth + behind_) return false;
     rays = {};
     std::int32_t distance = outer_distance;
     for (int k = 0; k < kMaxAcross && distance <= reach_; ++k, ++looked_at, distance += step) {
@@ -151,7 +151,7 @@ class Across {
 struct Place {
   std::int32_t column, row;          // in 1/64 of a ray
   std::int32_t out_right, out_down;  // the direction outwards, Q14
-  std::int32_t nearness;
+  std::int32_t inverse_depth;
 };
 
 // The row of the equations for a move of the silhouette outwards, per radius at the reference depth, Q14.
@@ -168,7 +168,7 @@ class SilhouetteRows {
     const std::int32_t right = slope_q14(place.column - middle_), up = slope_q14(middle_ - place.row);
     const std::int32_t out_right = place.out_right, out_up = -place.out_down;
     const std::int32_t nearer =
-        (1 << 14) + ((place.nearness * (1 << 14)) >> shift_);  // reference depth / depth
+        (1 << 14) + ((place.inverse_depth * (1 << 14)) >> shift_);  // reference depth / depth
     std::array<std::int32_t, 3> along{out_right, -((right * out_right + up * out_up) >> 14), out_up};
     for (std::int32_t& element : along) element = (element * nearer) >> 14;
     const Arm arm = turn_(vertex);
@@ -221,7 +221,7 @@ int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, int every,
     for (std::size_t k = 0; k < 3; ++k) vertex[k] = static_cast<std::int16_t>(between(from[k], to[k]));
     const Place place{between(edge.from.column, edge.to.column), between(edge.from.row, edge.to.row),
                       edge.is_steep ? out_across : out_along, edge.is_steep ? out_along : out_across,
-                      between(edge.from.nearness, edge.to.nearness)};
+                      between(edge.from.inverse_depth, edge.to.inverse_depth)};
     // Every ray of the lines counts once, so that the slope of the silhouette does not matter.
     fit.equations.add(equation_rows.row_of(place, vertex), every * sum.information, every * sum.derivative);
     fit.length_q8 += places * length_q8;
@@ -234,10 +234,11 @@ int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, int every,
     const std::int32_t past = line * kScreenRay + kScreenRay / 2 - edge.line(edge.from);
     const std::int32_t part_q15 = (past * (per_line_q28 >> 6)) >> 7;
     const std::int32_t place = edge.across(edge.from) + ((past * slope_q14 + (1 << 13)) >> 14);
-    const std::int32_t nearness =
-        edge.from.nearness + ((((edge.to.nearness - edge.from.nearness) >> 1) * part_q15) >> 14);
+    const std::int32_t inverse_depth =
+        edge.from.inverse_depth +
+        ((((edge.to.inverse_depth - edge.from.inverse_depth) >> 1) * part_q15) >> 14);
     Rays rays_across;
-    if (!across.look_across(edge, line, place, nearness, cosine, rays_across, looked_at)) continue;
+    if (!across.look_across(edge, line, place, inverse_depth, cosine, rays_across, looked_at)) continue;
     sum.derivative += rays_across.derivative;
     sum.information += rays_across.information;
     parts_q15 += part_q15;

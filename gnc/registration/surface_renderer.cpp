@@ -17,7 +17,7 @@ constexpr int kMostDrawn = 3 << 14;  // rays and rows of all triangles together
 class Camera {
  public:
   Camera(const FrameView& view, const Pose& pose)
-      : turn_(pose.r_lrf_trf), middle_(view.rays * (kScreenRay / 2)), nearness_shift_(28 - view.shift) {
+      : turn_(pose.r_lrf_trf), middle_(view.rays * (kScreenRay / 2)), inverse_depth_shift_(28 - view.shift) {
     constexpr std::int64_t kMost_um = 1'000'000'000, kOneQ29 = std::int64_t{1} << 29;
     std::array<std::int64_t, 3> origin_um{};
     for (std::size_t i = 0; i < 3; ++i)
@@ -59,8 +59,8 @@ class Camera {
     if (right > kFarthest || right < -kFarthest || up > kFarthest || up < -kFarthest) return point;
     point.column = static_cast<std::int16_t>(middle_ + right);
     point.row = static_cast<std::int16_t>(middle_ - up);
-    const std::int32_t nearness = (inverse_q28 - (1 << 28)) >> nearness_shift_;
-    point.nearness = static_cast<std::int16_t>(min_small(max_small(nearness, -32'767), 32'767));
+    const std::int32_t inverse_depth = (inverse_q28 - (1 << 28)) >> inverse_depth_shift_;
+    point.inverse_depth = static_cast<std::int16_t>(min_small(max_small(inverse_depth, -32'767), 32'767));
     return point;
   }
 
@@ -71,15 +71,15 @@ class Camera {
   std::int32_t right_ = 0, up_ = 0, screen_per_radius_ = 0;
   int bits_ = 0;
   std::int32_t middle_;  // of the screen
-  int nearness_shift_;
+  int inverse_depth_shift_;
 };
 
 // Rays of one row, from `first` to `last`.
-void fill_row(int row, int first, int last, std::int32_t nearness, const Plane& plane,
+void fill_row(int row, int first, int last, std::int32_t inverse_depth, const Plane& plane,
               RenderedSurface& surface) {
-  std::int16_t* out = &surface.nearness[row * surface.rays + first];
-  for (int column = first; column <= last; ++column, ++out, nearness += plane.per_column) {
-    std::int32_t here = nearness >> 8;
+  std::int16_t* out = &surface.inverse_depth[row * surface.rays + first];
+  for (int column = first; column <= last; ++column, ++out, inverse_depth += plane.per_column) {
+    std::int32_t here = inverse_depth >> 8;
     if (here < plane.lowest) here = plane.lowest;
     if (here > plane.highest) here = plane.highest;
     if (here > *out) *out = static_cast<std::int16_t>(here);
@@ -97,9 +97,9 @@ void clear(RenderedSurface& surface) {
   // Eight at a time, which compilers make one or two stores of.
   constexpr std::size_t kAtATime = 8;
   static_assert(RangeImage::kMaxReturns % kAtATime == 0);
-  for (std::size_t first = 0; first < surface.nearness.size(); first += kAtATime)
+  for (std::size_t first = 0; first < surface.inverse_depth.size(); first += kAtATime)
 #pragma GCC unroll 8
-    for (std::size_t i = 0; i < kAtATime; ++i) surface.nearness[first + i] = RenderedSurface::kEmpty;
+    for (std::size_t i = 0; i < kAtATime; ++i) surface.inverse_depth[first + i] = RenderedSurface::kEmpty;
   surface.filled = {};
   surface.dark = {};
 }
@@ -139,8 +139,8 @@ void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, Re
                     if (drawn > kMostDrawn) return false;
                     const int here = visit_spans(
                         a, b, c, whole, rows, columns,
-                        [&](int row, int first, int last, std::int32_t nearness, const Plane& plane) {
-                          fill_row(row, first, last, nearness, plane, surface);
+                        [&](int row, int first, int last, std::int32_t inverse_depth, const Plane& plane) {
+                          fill_row(row, first, last, inverse_depth, plane, surface);
                         });
                     drawn += here;
                     const int height = rows.last - rows.first + 1;

@@ -20,7 +20,7 @@ struct Pose {
 // A vertex on the screen of a FrameView.
 struct ScreenPoint {
   std::int16_t column, row;  // in 1/64 of a ray
-  std::int16_t nearness;
+  std::int16_t inverse_depth;
   bool is_outside() const { return column == kOutside; }
   static constexpr std::int16_t kOutside = -32768;
 };
@@ -41,14 +41,14 @@ struct RenderedSurface {
   bool is_complete = true;
   bool has_dark = false;               // surfaces are dark (dark_surfaces.hpp)
   ScreenVertices* vertices = nullptr;  // of the mesh; memory that the caller lends
-  alignas(8) std::array<std::int16_t, RangeImage::kMaxReturns> nearness;
+  alignas(8) std::array<std::int16_t, RangeImage::kMaxReturns> inverse_depth;
   RayMask filled;  // rays that are not kEmpty, and not dark
   RayMask dark;    // rays of dark surfaces
 
   // kEmpty outside the screen.
   std::int16_t at(int row, int column) const {
     if (row < 0 || column < 0 || row >= rays || column >= rays) return kEmpty;
-    return nearness[row * rays + column];
+    return inverse_depth[row * rays + column];
   }
   // False outside the screen.
   bool is_filled(int row, int column) const {

@@ -1,4 +1,4 @@
-// The rays of the screen that a triangle covers, row by row, with the nearness of its plane.
+// The rays of the screen that a triangle covers, row by row, with the inverse depth of its plane.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ class Crossing {
   std::int32_t column_, per_row_;
 };
 
-// The nearness of a triangle's plane, in 1/256.
+// The inverse depth of a triangle's plane, in 1/256.
 struct Plane {
   std::int32_t at_first;  // at the middle of the first ray of `rows` and `columns`
   std::int32_t per_column, per_row;
@@ -55,7 +55,7 @@ struct Plane {
 };
 inline Plane plane_of(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
                       const Bounds& rows, const Bounds& columns) {
-  const std::int32_t to_b = b.nearness - a.nearness, to_c = c.nearness - a.nearness;
+  const std::int32_t to_b = b.inverse_depth - a.inverse_depth, to_c = c.inverse_depth - a.inverse_depth;
   // 1 / whole, by a reciprocal of the number with 30 bits.
   const int shift = 29 - highest_bit_32(static_cast<std::uint32_t>(whole));
   const std::int32_t inverse_q28 = reciprocal_q28(whole * (1 << shift));
@@ -76,13 +76,13 @@ inline Plane plane_of(const ScreenPoint& a, const ScreenPoint& b, const ScreenPo
   constexpr std::int64_t kMost = 1 << 29;
   const std::int64_t from_a =
       (std::int64_t{plane.per_column} * right + std::int64_t{plane.per_row} * down) >> kScreenBits;
-  plane.at_first = a.nearness * 256 + 128 + static_cast<std::int32_t>(clamp(from_a, -kMost, kMost));
-  plane.lowest = min_small(a.nearness, min_small(b.nearness, c.nearness));
-  plane.highest = max_small(a.nearness, max_small(b.nearness, c.nearness));
+  plane.at_first = a.inverse_depth * 256 + 128 + static_cast<std::int32_t>(clamp(from_a, -kMost, kMost));
+  plane.lowest = min_small(a.inverse_depth, min_small(b.inverse_depth, c.inverse_depth));
+  plane.highest = max_small(a.inverse_depth, max_small(b.inverse_depth, c.inverse_depth));
   return plane;
 }
 
-// Calls visit(row, first column, last column, nearness at the first in 1/256, plane) for every row of a
+// Calls visit(row, first column, last column, inverse depth at the first in 1/256, plane) for every row of a
 // triangle with area(a, b, c) = whole > 0 in which it covers a ray. Returns the work: rays and rows.
 template <class Visit>
 inline int visit_spans(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
@@ -121,9 +121,9 @@ inline int visit_spans(const ScreenPoint& a, const ScreenPoint& b, const ScreenP
       if (first > last) continue;
       // Many triangles lie between the rays and need no plane.
       if (covered == 0) plane = plane_of(a, b, c, whole, rows, columns);
-      const std::int32_t nearness =
+      const std::int32_t inverse_depth =
           plane.at_first + plane.per_row * (row - rows.first) + plane.per_column * (first - columns.first);
-      visit(row, first, last, nearness, plane);
+      visit(row, first, last, inverse_depth, plane);
       covered += last - first + 1;
     }
   };

@@ -93,7 +93,7 @@ TEST_F(Dark, IsAPlateThatSendsNothingBack) {
 }
 
 // It still hides what is behind it.
-TEST_F(Dark, SurfacesKeepTheirNearness) {
+TEST_F(Dark, SurfacesKeepTheirInverseDepth) {
   see([](int, int column) { return !is_left(column); });
   EXPECT_EQ(count([&](int row, int column) {
               return drawn_.has(row, column) && surface_.at(row, column) == RenderedSurface::kEmpty;

@@ -64,8 +64,8 @@ TEST(ReciprocalQ28, IsWithin1e7OverItsWholeRange) {
   EXPECT_LT(worst, 1e-7);
 }
 
-// One count of nearness, and the error of the reciprocal.
-TEST(FrameView, NearnessIsThatOfTheClosedForm) {
+// One count of inverse depth, and the error of the reciprocal.
+TEST(FrameView, InverseDepthIsThatOfTheClosedForm) {
   Random random(2);
   for (const Case& at : cases()) {
     SCOPED_TRACE(name(at));
@@ -77,8 +77,8 @@ TEST(FrameView, NearnessIsThatOfTheClosedForm) {
       const double range_m =
           frame.image->ranges[static_cast<std::size_t>(row * at.sensor.rays + column)] / 128.0;
       if (!view->is_returned(row, column)) return;
-      sum +=
-          std::clamp(nearness_of(*view, range_m / ray(at.sensor, row, column).norm()), -32'766.0, 32'767.0);
+      sum += std::clamp(inverse_depth_of(*view, range_m / ray(at.sensor, row, column).norm()), -32'766.0,
+                        32'767.0);
       ++returns;
     };
     double worst = 0.0;
@@ -88,7 +88,8 @@ TEST(FrameView, NearnessIsThatOfTheClosedForm) {
         int returns = 0;
         for (int i = 0; i < 4; ++i) expected_of(row + i / 2, column + i % 2, sum, returns);
         if (returns > 0)
-          worst = std::max(worst, std::abs(view->nearness_of_block(row / 2, column / 2) - sum / returns));
+          worst =
+              std::max(worst, std::abs(view->inverse_depth_of_block(row / 2, column / 2) - sum / returns));
       }
     }
     EXPECT_LE(worst, bound + 0.5);
@@ -99,7 +100,7 @@ TEST(FrameView, TargetFillsFourteenBits) {
   for (const Case& at : cases()) {
     SCOPED_TRACE(name(at));
     const auto view = empty_view(at.sensor, at.depth_m, at.radius_m);
-    const double nearest = nearness_of(*view, at.depth_m - at.radius_m);
+    const double nearest = inverse_depth_of(*view, at.depth_m - at.radius_m);
     EXPECT_GT(nearest, 4095.0);
     EXPECT_LE(nearest, 8193.0);
     EXPECT_EQ(view->rays, at.sensor.rays);
@@ -128,7 +129,7 @@ TEST(FrameView, NoiseOfAPerfectSensorIsNotZero) {
 }
 
 // The mean of 1 / depth exceeds 1 / mean depth. 40 counts of bias in this case.
-TEST(FrameView, MeanNearnessOfNoisyRangesIsThatOfTheSurface) {
+TEST(FrameView, MeanInverseDepthOfNoisyRangesIsThatOfTheSurface) {
   const Case at{{128, 2.0}, 2.5, 20.0};
   constexpr RangeNoise kNoise{1'000, 1'000};
   const double sigma_m = 1.2;
@@ -142,8 +143,8 @@ TEST(FrameView, MeanNearnessOfNoisyRangesIsThatOfTheSurface) {
         frame.add(row, column, at.depth_m * ray(at.sensor, row, column).norm() + sigma_m * random.normal());
     const auto view = view_of(frame, at.depth_m, at.radius_m, kNoise);
     for (int block = 0; block < at.sensor.rays * at.sensor.rays / 4; ++block)
-      sum +=
-          4.0 * (view->nearness_of_block(block / (at.sensor.rays / 2), block % (at.sensor.rays / 2)) + 0.5);
+      sum += 4.0 *
+             (view->inverse_depth_of_block(block / (at.sensor.rays / 2), block % (at.sensor.rays / 2)) + 0.5);
     count += at.sensor.rays * at.sensor.rays;
   }
   const double scale = std::ldexp(1.0, view_of(Frame(at.sensor), at.depth_m, at.radius_m)->shift);
@@ -195,7 +196,7 @@ TEST(FrameView, ReturnFarFromTheReferenceDepthIsNeitherMissedNorHidden) {
     const auto view = view_of(frame, reference_m, 3.0);
     EXPECT_TRUE(view->is_returned(1, 1));
     EXPECT_TRUE(view->is_returned(2, 2));
-    EXPECT_GT(view->nearness_of_block(0, 0), view->nearness_of_block(1, 1));
+    EXPECT_GT(view->inverse_depth_of_block(0, 0), view->inverse_depth_of_block(1, 1));
   }
 }
 
@@ -227,7 +228,7 @@ TEST(FrameView, SameFrameGivesTheSameView) {
              second = view_of(frame, at.depth_m, at.radius_m);
   EXPECT_EQ(first->returned.rows, second->returned.rows);
   EXPECT_EQ(first->hidden.rows, second->hidden.rows);
-  EXPECT_EQ(first->block_nearness, second->block_nearness);
+  EXPECT_EQ(first->block_inverse_depth, second->block_inverse_depth);
 }
 
 }  // namespace

@@ -41,13 +41,13 @@ class RangeFitOfAPlate : public testing::Test {
     fit_ranges(*view_, pose_, *surface_, result, surface_->budget, every);
     return result;
   }
-  // Nearness of the plate, moved, on a ray in standard deviations.
-  double nearness(const Eigen::Vector3d& turn, const Eigen::Vector3d& move_m, double row,
-                  double column) const {
+  // Inverse depth of the plate, moved, on a ray in standard deviations.
+  double inverse_depth(const Eigen::Vector3d& turn, const Eigen::Vector3d& move_m, double row,
+                       double column) const {
     const ExactPose at = moved(exact(pose_), turn, move_m);
     const Eigen::Vector3d normal = at.r_lrf_trf.col(1);
     const double depth_m = normal.dot(at.origin_m) / normal.dot(ray(kSensor, row, column));
-    return nearness_of(*view_, depth_m) * 256.0 / view_->noise_q8;
+    return inverse_depth_of(*view_, depth_m) * 256.0 / view_->noise_q8;
   }
   // Its change by each unknown, in the middle of a block.
   Vector6 expected_row(int row, int column) const {
@@ -58,8 +58,8 @@ class RangeFitOfAPlate : public testing::Test {
       by(i % 3) = kStep;
       const Eigen::Vector3d turn = i < 3 ? by : Eigen::Vector3d(0.0, 0.0, 0.0);
       const Eigen::Vector3d move_m = i < 3 ? Eigen::Vector3d(0.0, 0.0, 0.0) : plate().radius_m * by;
-      change(i) = (nearness(turn, move_m, row + 0.5, column + 0.5) -
-                   nearness(-turn, -move_m, row + 0.5, column + 0.5)) /
+      change(i) = (inverse_depth(turn, move_m, row + 0.5, column + 0.5) -
+                   inverse_depth(-turn, -move_m, row + 0.5, column + 0.5)) /
                   (2.0 * kStep);
     }
     return change;
@@ -77,8 +77,8 @@ ExactPose facing() {
 }
 
 // A block that is a third of a standard deviation nearer; its rows have an error by the slope of the rendered
-// nearness, which is rounded to a count per ray.
-TEST_F(RangeFitOfAPlate, RowIsTheDerivativeOfTheNearness) {
+// inverse depth, which is rounded to a count per ray.
+TEST_F(RangeFitOfAPlate, RowIsTheDerivativeOfTheInverseDepth) {
   Random random(1);
   int blocks = 0;
   for (int i = 0; i < trials(300); ++i) {

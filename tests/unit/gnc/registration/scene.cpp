@@ -266,7 +266,7 @@ void show(const std::vector<std::int16_t>& rays, FrameView& view) {
   for (const auto& [block, values] : blocks) {
     double sum = 0.0;
     for (const double value : values) sum += value;
-    view.block_nearness[static_cast<std::size_t>(block.first * FrameView::kMaxBlocks + block.second)] =
+    view.block_inverse_depth[static_cast<std::size_t>(block.first * FrameView::kMaxBlocks + block.second)] =
         static_cast<std::int16_t>(std::lround(sum / static_cast<double>(values.size())));
   }
 }
@@ -281,7 +281,7 @@ void show_random_returns(Random& random, FrameView& view) {
   show(rays, view);
 }
 
-double nearness_of(const FrameView& view, double depth_m) {
+double inverse_depth_of(const FrameView& view, double depth_m) {
   return (1e-6 * view.reference_depth_um / depth_m - 1.0) * std::ldexp(1.0, view.shift);
 }
 

@@ -123,7 +123,7 @@ struct Rendering : RenderedSurface {
   Rendering() { vertices = &memory; }
 };
 
-// What a ray shows: its nearness, or one of these.
+// What a ray shows: its inverse depth, or one of these.
 inline constexpr std::int16_t kMissed = -32768, kHidden = -32767;
 // Makes `view` show these rays, row by row; its means of blocks are theirs, rounded.
 void show(const std::vector<std::int16_t>& rays, FrameView& view);
@@ -131,6 +131,6 @@ void show_all(std::int16_t shown, FrameView& view);
 // A view's rays with a return or without one, at random.
 void show_random_returns(Random& random, FrameView& view);
 // (reference depth / depth - 1) 2^shift.
-double nearness_of(const FrameView& view, double depth_m);
+double inverse_depth_of(const FrameView& view, double depth_m);
 
 }  // namespace tumblesight::gnc

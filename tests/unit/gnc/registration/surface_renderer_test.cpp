@@ -25,8 +25,8 @@ std::unique_ptr<Rendering> rendered(const Body& body, const FrameView& view, con
 }
 
 bool is_filled(const RenderedSurface& surface) {
-  return std::any_of(surface.nearness.begin(), surface.nearness.end(),
-                     [](std::int16_t nearness) { return nearness != RenderedSurface::kEmpty; });
+  return std::any_of(surface.inverse_depth.begin(), surface.inverse_depth.end(),
+                     [](std::int16_t inverse_depth) { return inverse_depth != RenderedSurface::kEmpty; });
 }
 
 // A body at a pose, in double precision.
@@ -53,7 +53,7 @@ class Expected {
     }
     return nearest;
   }
-  // Largest change of the nearness of any plane on a ray when the ray moves by `step_rays`.
+  // Largest change of the inverse depth of any plane on a ray when the ray moves by `step_rays`.
   double slope(const FrameView& view, int row, int column, double step_rays) const {
     double largest = 0.0;
     for (const auto& [a, b, c] : body_.triangles) {
@@ -63,11 +63,12 @@ class Expected {
       const std::array<int, 3> corners{a, b, c};
       if (!contains(corners, Eigen::Vector2d(column + 0.5, row + 0.5))) continue;
       const Eigen::Vector3d normal = (q - p).cross(r - p);
-      const auto nearness = [&](double at_row, double at_column) {
-        return nearness_of(view, normal.dot(p) / normal.dot(ray(sensor_, at_row, at_column)));
+      const auto inverse_depth = [&](double at_row, double at_column) {
+        return inverse_depth_of(view, normal.dot(p) / normal.dot(ray(sensor_, at_row, at_column)));
       };
-      largest = std::max(largest, std::abs(nearness(row + step_rays, column) - nearness(row, column)) +
-                                      std::abs(nearness(row, column + step_rays) - nearness(row, column)));
+      largest = std::max(largest,
+                         std::abs(inverse_depth(row + step_rays, column) - inverse_depth(row, column)) +
+                             std::abs(inverse_depth(row, column + step_rays) - inverse_depth(row, column)));
     }
     return largest;
   }
@@ -98,9 +99,9 @@ class Expected {
   std::vector<Eigen::Vector2d> places_;
 };
 
-// The silhouette is right within 1/64 of a ray and the rounding of the vertices; the nearness within 4 counts
-// and the change over that distance. Where a plane is nearly edge on, that rounding changes its slope too,
-// and only the silhouette is compared.
+// The silhouette is right within 1/64 of a ray and the rounding of the vertices; the inverse depth within 4
+// counts and the change over that distance. Where a plane is nearly edge on, that rounding changes its slope
+// too, and only the silhouette is compared.
 void expect_as_cast(const Body& exact_body, const Pose& pose, const Sensor& sensor, double depth_m) {
   const Body body = rounded(exact_body);
   const auto view = empty_view(sensor, depth_m, body.radius_m);
@@ -113,9 +114,9 @@ void expect_as_cast(const Body& exact_body, const Pose& pose, const Sensor& sens
   for (int row = 0; row < sensor.rays; ++row) {
     for (int column = 0; column < sensor.rays; ++column) {
       const double true_depth_m = expected.depth_m(row, column);
-      const std::int16_t nearness = surface->at(row, column);
+      const std::int16_t inverse_depth = surface->at(row, column);
       const bool is_wrong = surface->is_filled(row, column) != (true_depth_m != kNothing);
-      const double error = is_wrong ? 1e9 : nearness - nearness_of(*view, true_depth_m);
+      const double error = is_wrong ? 1e9 : inverse_depth - inverse_depth_of(*view, true_depth_m);
       if (!is_wrong && (true_depth_m == kNothing || std::abs(error) <= 4.0)) continue;
       if (expected.distance_from_edges(row, column) <= rounding_rays) continue;
       wrong += is_wrong ? 1 : 0;
@@ -124,7 +125,7 @@ void expect_as_cast(const Body& exact_body, const Pose& pose, const Sensor& sens
     }
   }
   EXPECT_EQ(wrong, 0) << "filled rays";
-  EXPECT_EQ(far_off, 0) << "nearness";
+  EXPECT_EQ(far_off, 0) << "inverse depth";
 }
 
 TEST(SurfaceRenderer, BodyIsAsARayCasterSeesIt) {
@@ -252,13 +253,13 @@ TEST(SurfaceRenderer, FrontsOfClosedBodiesAreEnough) {
     const auto fronts = rendered(body, *view, pose, MeshSection::Sides::kFront);
     ASSERT_TRUE(is_filled(*fronts));
     int different = 0;
-    for (std::size_t ray = 0; ray < both->nearness.size(); ++ray)
-      different += std::abs(both->nearness[ray] - fronts->nearness[ray]) > 1 ? 1 : 0;
+    for (std::size_t ray = 0; ray < both->inverse_depth.size(); ++ray)
+      different += std::abs(both->inverse_depth[ray] - fronts->inverse_depth[ray]) > 1 ? 1 : 0;
     EXPECT_LE(different, 8) << "on the silhouette of a face that shows its back";
   }
 }
 
-TEST(SurfaceRenderer, FilledRaysAreThoseWithANearness) {
+TEST(SurfaceRenderer, FilledRaysAreThoseWithAnInverseDepth) {
   Random random(11);
   for (const int rays : {16, 65, 128}) {
     const Body body = lopsided_body();
@@ -283,11 +284,11 @@ TEST(SurfaceRenderer, NearestSurfaceWinsInAnyOrderOfTheTriangles) {
     for (std::size_t k = body.triangles.size() - 1; k > 0; --k)
       std::swap(body.triangles[k],
                 body.triangles[static_cast<std::size_t>(random.below(static_cast<int>(k) + 1))]);
-    EXPECT_EQ(rendered(body, *view, pose)->nearness, first->nearness) << i;
+    EXPECT_EQ(rendered(body, *view, pose)->inverse_depth, first->inverse_depth) << i;
   }
 }
 
-// Up to one count, since a triangle's nearness is computed from its first corner.
+// Up to one count, since a triangle's inverse depth is computed from its first corner.
 TEST(SurfaceRenderer, OrderOfATrianglesCornersDoesNotMatter) {
   Body body = plate();
   const auto view = empty_view({64, 20.0}, 20.0, body.radius_m);
@@ -299,9 +300,9 @@ TEST(SurfaceRenderer, OrderOfATrianglesCornersDoesNotMatter) {
     const auto other = rendered(body, *view, pose);
     for (int ray = 0; ray < 64 * 64; ++ray) {
       const auto at = static_cast<std::size_t>(ray);
-      ASSERT_EQ(other->nearness[at] == RenderedSurface::kEmpty,
-                first->nearness[at] == RenderedSurface::kEmpty);
-      ASSERT_NEAR(other->nearness[at], first->nearness[at], 1.0);
+      ASSERT_EQ(other->inverse_depth[at] == RenderedSurface::kEmpty,
+                first->inverse_depth[at] == RenderedSurface::kEmpty);
+      ASSERT_NEAR(other->inverse_depth[at], first->inverse_depth[at], 1.0);
     }
   }
 }
@@ -319,7 +320,7 @@ TEST(SurfaceRenderer, VerticesAreOnTheScreenWhereTheyAreSeen) {
         const Eigen::Vector2d place = 64.0 * on_screen(sensor, point_m);
         ASSERT_NEAR(surface->memory[k].column, place.x(), 0.8);
         ASSERT_NEAR(surface->memory[k].row, place.y(), 0.8);
-        ASSERT_NEAR(surface->memory[k].nearness, nearness_of(*view, point_m.y()), 2.0);
+        ASSERT_NEAR(surface->memory[k].inverse_depth, inverse_depth_of(*view, point_m.y()), 2.0);
       }
     }
   }
@@ -387,8 +388,8 @@ TEST(SurfaceRenderer, WritesOnlyTheRaysOfTheFrame) {
       const auto surface = rendered(lopsided_body(), *view, fixed({random.rotation(), {0.1, 6.0, 0.2}}));
       ASSERT_EQ(surface->rays, rays);
       for (std::size_t k = static_cast<std::size_t>(rays) * static_cast<std::size_t>(rays);
-           k < surface->nearness.size(); ++k)
-        ASSERT_EQ(surface->nearness[k], RenderedSurface::kEmpty);
+           k < surface->inverse_depth.size(); ++k)
+        ASSERT_EQ(surface->inverse_depth[k], RenderedSurface::kEmpty);
     }
     const auto surface = rendered(lopsided_body(), *view, fixed({random.rotation(), {0.1, 6.0, 0.2}}));
     for (const int beyond : {-1000, -1, rays, 1000}) {
