@@ -218,7 +218,7 @@ void FrameHandler::report_attitude(const StepInputs& inputs, Validity validity) 
   attitude.q_lrf_trf_single_frame = estimate.q_lrf_trf_single_frame;
   attitude.predicted_error_urad = estimate.predicted_error_urad;
   attitude.predicted_error_single_frame_urad = estimate.predicted_error_single_frame_urad;
-  attitude.law = static_cast<std::uint8_t>(estimate.law);
+  attitude.law = static_cast<std::uint8_t>(estimate.motion_model);
   attitude.rate_lrf_urad_s = estimate.rate_lrf_urad_s;
   attitude.attitude_covariance_e8 = gnc::attitude_covariance(estimate.predicted_error_urad);
   attitude.rate_covariance_e8 = gnc::rate_covariance(

@@ -215,9 +215,10 @@ Motion<Real> turned(const Motion<Real>& motion, const Matrix3<Real>& r_now_last)
 }
 
 template <class Real>
-MotionLaws<Real> motion_laws(const Inertia<Real>& inertia) {
-  MotionLaws<Real> laws;
-  for (int law = kTumbleLaw; law < kLaws; ++law) laws[law] = inertia;
+MotionModels<Real> motion_models(const Inertia<Real>& inertia) {
+  MotionModels<Real> motion_models;
+  for (int motion_model = kTumbleModel; motion_model < kMotionModels; ++motion_model)
+    motion_models[motion_model] = inertia;
   for (int axis = 0; axis < 3; ++axis) {
     // S J S with S = diag(1, 1, sqrt(1/2)) (here for z): halves the moment and stays positive definite.
     Matrix3<Real> tensor_trf = inertia.tensor_trf;
@@ -226,11 +227,11 @@ MotionLaws<Real> motion_laws(const Inertia<Real>& inertia) {
       tensor_trf(axis, other) = tensor_trf(other, axis) = product_of_inertia;
     }
     tensor_trf(axis, axis) = constant<Real>(0.5) * inertia.tensor_trf(axis, axis);
-    // If the result is too close to the inertia of a rod, the law keeps the target's own inertia.
-    Inertia<Real>& law = laws[kTumbleLaw + 1 + axis];
-    if (!make_inertia<Real>(tensor_trf, law)) law = inertia;
+    // If the result is too close to the inertia of a rod, the motion model keeps the target's own inertia.
+    Inertia<Real>& motion_model = motion_models[kTumbleModel + 1 + axis];
+    if (!make_inertia<Real>(tensor_trf, motion_model)) motion_model = inertia;
   }
-  return laws;
+  return motion_models;
 }
 
 std::array<std::int32_t, 3> rate_urad_s(const Vector3<Fixed>& rate) {
@@ -252,7 +253,7 @@ std::array<std::int32_t, 3> rate_urad_s(const Vector3<Fixed>& rate) {
   template Vector3<Real> rotation_vector(const Matrix3<Real>&, Real);                       \
   template Motion<Real> propagate(const Motion<Real>&, const Inertia<Real>&, std::int64_t); \
   template Motion<Real> turned(const Motion<Real>&, const Matrix3<Real>&);                  \
-  template MotionLaws<Real> motion_laws(const Inertia<Real>&)
+  template MotionModels<Real> motion_models(const Inertia<Real>&)
 
 TUMBLESIGHT_INSTANTIATE(Fixed);
 #if TUMBLESIGHT_FLOAT32

@@ -80,20 +80,20 @@ Motion<Real> turned(const Motion<Real>& motion, const Matrix3<Real>& r_now_last)
 // A rate in microradians per second, rounded to the nearest.
 std::array<std::int32_t, 3> rate_urad_s(const Vector3<Fixed>& rate);
 
-// The laws of motion that the track follows in parallel. Each is torque-free rotation with its own inertia:
+// The motion models that the track follows in parallel. Each is torque-free rotation with its own inertia:
 //   0     that of a sphere: spin at a rate constant in the LRF
 //   1     that of the target
 //   2..4  that of the target with the moment about the TRF's x, y or z axis halved. They cover
 //         an inertia known only to a factor of two: fuel was spent, or an appendage broke off
 //         or did not deploy.
-inline constexpr int kLaws = 5;
-inline constexpr int kSpinLaw = 0;
-inline constexpr int kTumbleLaw = 1;
+inline constexpr int kMotionModels = 5;
+inline constexpr int kSpinModel = 0;
+inline constexpr int kTumbleModel = 1;
 template <class Real>
-using MotionLaws = std::array<Inertia<Real>, kLaws>;
-// The inertias of all laws for a target with `inertia`. A law whose halved moment would fall below
-// kSmallestMoment gets `inertia` itself.
+using MotionModels = std::array<Inertia<Real>, kMotionModels>;
+// The inertias of all motion models for a target with `inertia`. A motion model whose halved moment would
+// fall below kSmallestMoment gets `inertia` itself.
 template <class Real>
-MotionLaws<Real> motion_laws(const Inertia<Real>& inertia);
+MotionModels<Real> motion_models(const Inertia<Real>& inertia);
 
 }  // namespace tumblesight::gnc

@@ -119,7 +119,7 @@ void add_to(Crc32& crc, const PoseTrackerState& state) {
   add_to(crc, state.motion.turning.rate_lrf.data(), 3);
   add_to(crc, state.motion.origin_lrf_um);
   add_to(crc, state.motion.velocity_um_period);
-  crc.add_u32(static_cast<std::uint32_t>(state.law));
+  crc.add_u32(static_cast<std::uint32_t>(state.motion_model));
   crc.add_u32(static_cast<std::uint32_t>(state.challenger));
   crc.add_u32(static_cast<std::uint32_t>(state.advantage_q8));
   crc.add_u32(static_cast<std::uint32_t>(state.proven_q8));
@@ -133,7 +133,7 @@ ModelStatus AttitudeEstimator<N>::load(const std::uint8_t* image, std::size_t si
   const ModelStatus status =
       read_model_image<N>(image, size_bytes, expected_target, model_, network_.weights());
   if (status == ModelStatus::kOk) {
-    laws_ = motion_laws<Real>(converted<Real>(model_.inertia));
+    motion_models_ = motion_models<Real>(converted<Real>(model_.inertia));
     surface_ = surface_of<N>(image);
     mesh_ = surface_mesh_of<N>(image);
     has_model_ = true;
@@ -151,7 +151,7 @@ ModelStatus AttitudeEstimator<N>::check(const std::uint8_t* image, std::size_t s
 template <class N>
 void AttitudeEstimator<N>::reload(const std::uint8_t* image) {
   take_model_image<N>(image, model_, network_.weights());
-  laws_ = motion_laws<Real>(converted<Real>(model_.inertia));
+  motion_models_ = motion_models<Real>(converted<Real>(model_.inertia));
   surface_ = surface_of<N>(image);
   mesh_ = surface_mesh_of<N>(image);
   network_.use(fastest_kernels<N>());
@@ -182,7 +182,7 @@ template <class N>
 void AttitudeEstimator<N>::register_pose(const RangeImage& frame, const FrameInterval& interval,
                                          AttitudeEstimate& estimate) {
   if constexpr (N::kIsInteger) {
-    const Motion<Real>& motion = state_.track.motion[estimate.law];
+    const Motion<Real>& motion = state_.track.motion[estimate.motion_model];
     const PoseFrame pose_frame{frame,
                                mask_,
                                interval.elapsed_ns,
@@ -191,8 +191,8 @@ void AttitudeEstimator<N>::register_pose(const RangeImage& frame, const FrameInt
                                rotation_from_quaternion(estimate.q_lrf_trf_second),
                                estimate.second_odds_ppm,
                                estimate.centroid_lrf_mm,
-                               laws_,
-                               estimate.law};
+                               motion_models_,
+                               estimate.motion_model};
     track_pose({mesh_, model_.projection.target_radius_mm, model_.noise}, pose_frame, network_.pose_scratch(),
                screen_vertices(), state_.pose, estimate.pose);
     add_pose(estimate.pose, estimate.q_lrf_trf, estimate.evidence);
@@ -210,7 +210,7 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
   state_.track.forget_rate(interval.rate_is_unknown & !finds_no_rate(interval));
   network_.infer_frame(image, output);
   hypotheses = decode_hypotheses<Real>(output, converted<Real>(image.r_lrf_view));
-  prediction = predict<Real>(state_.track, laws_, hypotheses, interval);
+  prediction = predict<Real>(state_.track, motion_models_, hypotheses, interval);
   if (finds_no_rate(interval))
     reset_unless<N>(keep_confirmed<Real>(hypotheses, interval, prediction, state_.track), state_.lstm);
   fill_lstm_input<N>(network_.features(), hypotheses, prediction.r_lrf_trf(), input);
@@ -225,14 +225,14 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
   estimate.predicted_error_single_frame_urad =
       error_urad(single_frame, converted<Fixed>(hypotheses.predicted_error_rad));
   estimate.frames_since_reset = state_.track.frames;
-  const Motion<Real>& motion = state_.track.motion[state_.track.law()];
+  const Motion<Real>& motion = state_.track.motion[state_.track.motion_model()];
   const Vector3<Fixed> rate = converted<Fixed>(motion.rate_lrf);
   const QuaternionQ30 predicted = quaternion_from_rotation(converted<Fixed>(prediction.r_lrf_trf()));
   estimate.q_lrf_trf_predicted = select(prediction.has_track, predicted, kIdentityQ30);
   estimate.has_prediction = prediction.has_track;
   estimate.rate_lrf_urad_s = rate_urad_s(rate);
   estimate.rate_is_ambiguous = prediction.has_track & turns_too_far(rate, prediction.elapsed_periods);
-  estimate.law = state_.track.law();
+  estimate.motion_model = state_.track.motion_model();
   const Alternative second = second_of<Real>(hypotheses, tracked.r_lrf_trf);
   estimate.q_lrf_trf_second = second.q_lrf_trf;
   estimate.second_odds_ppm = second.odds_ppm;
@@ -257,10 +257,10 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
 
 template <class N>
 PropagatedMotion AttitudeEstimator<N>::propagated(const FrameInterval& interval) const {
-  const int law = state_.track.law();
-  const Motion<Real> later =
-      turned<Real>(propagate<Real>(state_.track.motion[law], laws_[law], interval.elapsed_ns),
-                   converted<Real>(rotation_from_quaternion(interval.q_now_last)));
+  const int motion_model = state_.track.motion_model();
+  const Motion<Real> later = turned<Real>(
+      propagate<Real>(state_.track.motion[motion_model], motion_models_[motion_model], interval.elapsed_ns),
+      converted<Real>(rotation_from_quaternion(interval.q_now_last)));
   return {quaternion_from_rotation(converted<Fixed>(later.r_lrf_trf)),
           rate_urad_s(converted<Fixed>(later.rate_lrf))};
 }
@@ -268,8 +268,8 @@ PropagatedMotion AttitudeEstimator<N>::propagated(const FrameInterval& interval)
 template <class N>
 PoseState AttitudeEstimator<N>::propagated_pose(const FrameInterval& interval) const {
   if constexpr (N::kIsInteger) {
-    return pose_state(
-        later_pose(state_.pose, laws_, interval.elapsed_ns, rotation_from_quaternion(interval.q_now_last)));
+    return pose_state(later_pose(state_.pose, motion_models_, interval.elapsed_ns,
+                                 rotation_from_quaternion(interval.q_now_last)));
   } else {
     return {};
   }
@@ -302,7 +302,7 @@ std::uint32_t AttitudeEstimator<N>::constants_crc32() const {
   }
   add(reinterpret_cast<std::uintptr_t>(&network_.kernels()));
   add(model_);
-  add(laws_);
+  add(motion_models_);
   add(surface_);
   add(mesh_);
   add(has_model_);

@@ -37,7 +37,7 @@ struct AttitudeEstimate {
   // The target has turned by more than kLargestTurn_rad since the last frame, so that the rate may be another
   // one that leads to the same attitude.
   bool rate_is_ambiguous = false;
-  int law = kSpinLaw;  // of motion, that gives the attitude and the rate
+  int motion_model = kSpinModel;  // of motion, that gives the attitude and the rate
   // The likeliest hypothesis of this frame that is another attitude than q_lrf_trf, and its probability over
   // that of the hypotheses that are the same attitude. Odds of 0: there is none.
   QuaternionQ30 q_lrf_trf_second = kIdentityQ30;
@@ -135,7 +135,7 @@ class AttitudeEstimator {
   State state_;
   Intermediates intermediates_;
   ModelHeader model_;
-  MotionLaws<Real> laws_;
+  MotionModels<Real> motion_models_;
   SurfaceModel surface_;  // in the model image, as is mesh_
   SurfaceMesh mesh_;
   RayMask mask_;  // of the frame

@@ -24,9 +24,9 @@ bool is_valid(const Motion<Real>& motion) {
 template <class Real>
 bool is_valid(const AttitudeTrack<Real>& track) {
   bool valid = true;
-  for (int law = 0; law < kLaws; ++law) {
-    valid &= is_valid<Real>(track.motion[law]);
-    valid &= is_finite(track.log_likelihood[law]);
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    valid &= is_valid<Real>(track.motion[motion_model]);
+    valid &= is_finite(track.log_likelihood[motion_model]);
   }
   return valid;
 }
@@ -78,9 +78,9 @@ Real probability_of(const Hypotheses<Real>& hypotheses, const Matrix3<Real>& r_l
   return probability;
 }
 
-// Squared angle between the attitude that a law predicted and the result, at most kLostTargetInnovation: the
-// law has lost the target. That is also the value if the hypotheses show nothing near the prediction, since
-// the result may then be the prediction itself.
+// Squared angle between the attitude that a motion model predicted and the result, at most
+// kLostTargetInnovation: the motion model has lost the target. That is also the value if the hypotheses show
+// nothing near the prediction, since the result may then be the prediction itself.
 template <class Real>
 Real squared_innovation(const Hypotheses<Real>& hypotheses, const Motion<Real>& predicted,
                         const Matrix3<Real>& r_lrf_trf) {
@@ -127,70 +127,74 @@ Motion<Real> corrected(const Motion<Real>& predicted, const Matrix3<Real>& r_lrf
   return {r_lrf_trf, predicted.rate_lrf + change};
 }
 
-// The value by which the laws are compared: log-likelihood minus required evidence.
+// The value by which the motion models are compared: log-likelihood minus required evidence.
 template <class Real>
-Real score(const AttitudeTrack<Real>& track, int law) {
-  constexpr std::array<Real, kLaws> kRequired{
+Real score(const AttitudeTrack<Real>& track, int motion_model) {
+  constexpr std::array<Real, kMotionModels> kRequired{
       constant<Real>(kRequiredEvidence[0]), constant<Real>(kRequiredEvidence[1]),
       constant<Real>(kRequiredEvidence[2]), constant<Real>(kRequiredEvidence[3]),
       constant<Real>(kRequiredEvidence[4])};
-  return track.log_likelihood[law] - kRequired[law];
+  return track.log_likelihood[motion_model] - kRequired[motion_model];
 }
 
-// Evidence of a frame against a law with this squared innovation.
+// Evidence of a frame against a motion model with this squared innovation.
 template <class Real>
 Real evidence_against(Real innovation_squared, Real evidence, Real variance_rad2) {
   return min(constant<Real>(kMaxEvidence), evidence * innovation_squared / variance_rad2);
 }
 
-// Lowers the log-likelihood of each law by the evidence against it. A law that has lost the target takes over
-// the motion of the best law that has not.
+// Lowers the log-likelihood of each motion model by the evidence against it. A motion model that has lost the
+// target takes over the motion of the best motion model that has not.
 template <class Real>
-void weigh_laws(const std::array<Real, kLaws>& innovation_squared, Real evidence, Real variance_rad2,
-                AttitudeTrack<Real>& track) {
+void weigh_motion_models(const std::array<Real, kMotionModels>& innovation_squared, Real evidence,
+                         Real variance_rad2, AttitudeTrack<Real>& track) {
   constexpr Real kLost = constant<Real>(kLostTargetInnovation);
-  for (int law = 0; law < kLaws; ++law) {
-    track.log_likelihood[law] = constant<Real>(kLikelihoodDecay) * track.log_likelihood[law] -
-                                evidence_against<Real>(innovation_squared[law], evidence, variance_rad2);
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    track.log_likelihood[motion_model] =
+        constant<Real>(kLikelihoodDecay) * track.log_likelihood[motion_model] -
+        evidence_against<Real>(innovation_squared[motion_model], evidence, variance_rad2);
   }
   Real likeliest = track.log_likelihood[0];
   for (const Real value : track.log_likelihood) likeliest = max(likeliest, value);
   int best = 0;
   bool any_follows = false;
-  for (int law = 0; law < kLaws; ++law) {
-    track.log_likelihood[law] = max(constant<Real>(kMinLogLikelihood), track.log_likelihood[law] - likeliest);
-    const bool follows = innovation_squared[law] < kLost;
-    best = select(follows & (!any_follows | (score(track, law) > score(track, best))), law, best);
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    track.log_likelihood[motion_model] =
+        max(constant<Real>(kMinLogLikelihood), track.log_likelihood[motion_model] - likeliest);
+    const bool follows = innovation_squared[motion_model] < kLost;
+    best = select(follows & (!any_follows | (score(track, motion_model) > score(track, best))), motion_model,
+                  best);
     any_follows |= follows;
   }
-  for (int law = 0; law < kLaws; ++law) {
-    const bool takes_over = any_follows & !(innovation_squared[law] < kLost);
-    track.motion[law] = track.motion[select(takes_over, best, law)];
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    const bool takes_over = any_follows & !(innovation_squared[motion_model] < kLost);
+    track.motion[motion_model] = track.motion[select(takes_over, best, motion_model)];
   }
 }
 
 }  // namespace
 
 template <class Real>
-int AttitudeTrack<Real>::law() const {
-  int best = kSpinLaw;
-  for (int law = 1; law < kLaws; ++law) best = select(score(*this, law) > score(*this, best), law, best);
+int AttitudeTrack<Real>::motion_model() const {
+  int best = kSpinModel;
+  for (int motion_model = 1; motion_model < kMotionModels; ++motion_model)
+    best = select(score(*this, motion_model) > score(*this, best), motion_model, best);
   return best;
 }
 
 template <class Real>
 void AttitudeTrack<Real>::forget_rate(bool forgets) {
-  const Motion<Real> at_rest{motion[this->law()].r_lrf_trf, Vector3<Real>::Zero()};
-  for (int law = 0; law < kLaws; ++law) {
-    const std::array<Motion<Real>, 2> choice{motion[law], at_rest};
-    motion[law] = choice[forgets];
-    log_likelihood[law] = select(forgets, Real{}, log_likelihood[law]);
+  const Motion<Real> at_rest{motion[this->motion_model()].r_lrf_trf, Vector3<Real>::Zero()};
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    const std::array<Motion<Real>, 2> choice{motion[motion_model], at_rest};
+    motion[motion_model] = choice[forgets];
+    log_likelihood[motion_model] = select(forgets, Real{}, log_likelihood[motion_model]);
   }
   frames = select(forgets, min<std::uint32_t>(frames, 1), frames);
 }
 
 template <class Real>
-Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
+Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionModels<Real>& motion_models,
                          const Hypotheses<Real>& hypotheses, const FrameInterval& interval) {
   const bool has_track = (track.frames > 0) & is_valid(track);
   // Without a track the motion is not used, and the time of one period is spent.
@@ -202,11 +206,12 @@ Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real
   std::array<Motion<Real>, 2> choice{};  // [0] without a track, [1] with a track
   choice[0] = {hypotheses.r_lrf_trf[hypotheses.likeliest], Vector3<Real>::Zero()};
   Prediction<Real> prediction;
-  for (int law = 0; law < kLaws; ++law) {
-    choice[1] = turned<Real>(propagate<Real>(track.motion[law], laws[law], elapsed_ns), r_now_last);
-    prediction.motion[law] = choice[has_track];
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    choice[1] = turned<Real>(
+        propagate<Real>(track.motion[motion_model], motion_models[motion_model], elapsed_ns), r_now_last);
+    prediction.motion[motion_model] = choice[has_track];
   }
-  prediction.law = select(has_track, track.law(), kSpinLaw);
+  prediction.motion_model = select(has_track, track.motion_model(), kSpinModel);
   prediction.elapsed_periods = in_periods(elapsed_ns);
   prediction.has_track = has_track;
   return prediction;
@@ -219,7 +224,7 @@ bool keep_confirmed(const Hypotheses<Real>& hypotheses, const FrameInterval& int
                          constant<Real>(kMinProbabilityNearPrediction);
   const Matrix3<Real> r_now_last = converted<Real>(rotation_from_quaternion(interval.q_now_last));
   const std::array<Motion<Real>, 2> last{prediction.motion[0],
-                                         turned<Real>(track.motion[track.law()], r_now_last)};
+                                         turned<Real>(track.motion[track.motion_model()], r_now_last)};
   const Motion<Real> at_rest{last[prediction.has_track].r_lrf_trf, Vector3<Real>::Zero()};
   const Motion<Real> first =
       corrected<Real>(at_rest, hypotheses.r_lrf_trf[hypotheses.likeliest],
@@ -231,7 +236,7 @@ bool keep_confirmed(const Hypotheses<Real>& hypotheses, const FrameInterval& int
   }
   const std::array<AttitudeTrack<Real>, 2> choice{AttitudeTrack<Real>{}, track};
   track = choice[confirmed];
-  prediction.law = select(confirmed, prediction.law, kSpinLaw);
+  prediction.motion_model = select(confirmed, prediction.motion_model, kSpinModel);
   prediction.has_track &= confirmed;
   return confirmed;
 }
@@ -270,27 +275,28 @@ TrackedAttitude<Real> advance(const Hypotheses<Real>& hypotheses, const Predicti
 
   std::array<Matrix3<Real>, kCandidates> candidates;
   std::copy(hypotheses.r_lrf_trf.begin(), hypotheses.r_lrf_trf.end(), candidates.begin());
-  std::array<Real, kLaws> innovation_squared;
-  for (int law = 0; law < kLaws; ++law) {
-    candidates[shape::kHypotheses] = prediction.motion[law].r_lrf_trf;
+  std::array<Real, kMotionModels> innovation_squared;
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    candidates[shape::kHypotheses] = prediction.motion[motion_model].r_lrf_trf;
     const Matrix3<Real> r_lrf_trf =
         mean_attitude<Real>(candidates.data(), weights.data(), kCandidates, anchor);
-    innovation_squared[law] = squared_innovation<Real>(hypotheses, prediction.motion[law], r_lrf_trf);
-    track.motion[law] = corrected<Real>(prediction.motion[law], r_lrf_trf, rate_correction);
+    innovation_squared[motion_model] =
+        squared_innovation<Real>(hypotheses, prediction.motion[motion_model], r_lrf_trf);
+    track.motion[motion_model] = corrected<Real>(prediction.motion[motion_model], r_lrf_trf, rate_correction);
   }
   const Real predicted_error_rad = constant<Real>(kPi) * sigmoid(corrections[2 * kCandidates + 1]);
   const Real variance_rad2 =
       max(constant<Real>(kMinVariance_rad2), predicted_error_rad * predicted_error_rad);
-  weigh_laws<Real>(innovation_squared, filter.evidence, variance_rad2, track);
+  weigh_motion_models<Real>(innovation_squared, filter.evidence, variance_rad2, track);
   ++track.frames;
-  return {track.motion[track.law()].r_lrf_trf, predicted_error_rad};
+  return {track.motion[track.motion_model()].r_lrf_trf, predicted_error_rad};
 }
 
 #define TUMBLESIGHT_INSTANTIATE(N)                                                                          \
   template struct AttitudeTrack<N::Real>;                                                                   \
   template bool keep_confirmed(const Hypotheses<N::Real>&, const FrameInterval&, Prediction<N::Real>&,      \
                                AttitudeTrack<N::Real>&);                                                    \
-  template Prediction<N::Real> predict(const AttitudeTrack<N::Real>&, const MotionLaws<N::Real>&,           \
+  template Prediction<N::Real> predict(const AttitudeTrack<N::Real>&, const MotionModels<N::Real>&,         \
                                        const Hypotheses<N::Real>&, const FrameInterval&);                   \
   template void fill_lstm_input<N>(const Features<N>&, const Hypotheses<N::Real>&, const Matrix3<N::Real>&, \
                                    LstmInput<N>&);                                                          \

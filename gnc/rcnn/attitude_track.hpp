@@ -12,11 +12,11 @@
 
 namespace tumblesight::gnc {
 
-// All laws of motion (motion.hpp) are followed in parallel, and the one that has predicted best so far gives
-// the result. A law needs this much more log-likelihood than the others: with less evidence the target is
-// assumed to spin, then to have its nominal inertia. Otherwise rounding would decide between laws that
-// predict the same.
-inline constexpr std::array<double, kLaws> kRequiredEvidence{0.0, 0.5, 2.0, 2.0, 2.0};
+// All motion models (motion.hpp) are followed in parallel, and the one that has predicted best so far gives
+// the result. A motion model needs this much more log-likelihood than the others: with less evidence the
+// target is assumed to spin, then to have its nominal inertia. Otherwise rounding would decide between motion
+// models that predict the same.
+inline constexpr std::array<double, kMotionModels> kRequiredEvidence{0.0, 0.5, 2.0, 2.0, 2.0};
 
 // From one frame to the next. Default: one nominal period of a chaser that does not turn.
 struct FrameInterval {
@@ -42,23 +42,25 @@ inline bool finds_no_rate(const FrameInterval& interval) {
 
 template <class Real>
 struct AttitudeTrack {
-  std::array<Motion<Real>, kLaws> motion;    // at the last frame, for each law; in the LRF of that frame
-  std::array<Real, kLaws> log_likelihood{};  // of each law: 0 for the likeliest, negative for the others
-  std::uint32_t frames = 0;                  // since reset
+  std::array<Motion<Real>, kMotionModels>
+      motion;  // at the last frame, for each motion model; in the LRF of that frame
+  std::array<Real, kMotionModels>
+      log_likelihood{};      // of each motion model: 0 for the likeliest, negative for the others
+  std::uint32_t frames = 0;  // since reset
 
-  int law() const;  // index of the law that gives the result
+  int motion_model() const;  // index of the motion model that gives the result
   // If `forgets`, begins again at the last attitude, as after the first frame.
   void forget_rate(bool forgets);
 };
 
-// The motion of each law, propagated to the current frame, in the LRF of that frame.
+// The motion of each motion model, propagated to the current frame, in the LRF of that frame.
 template <class Real>
 struct Prediction {
-  std::array<Motion<Real>, kLaws> motion;
-  int law = kSpinLaw;
+  std::array<Motion<Real>, kMotionModels> motion;
+  int motion_model = kSpinModel;
   Fixed elapsed_periods = constant<Fixed>(1.0);  // since the last frame
   bool has_track = false;                        // false: the prediction says nothing about this frame
-  const Matrix3<Real>& r_lrf_trf() const { return motion[law].r_lrf_trf; }
+  const Matrix3<Real>& r_lrf_trf() const { return motion[motion_model].r_lrf_trf; }
 };
 
 template <class Real>
@@ -71,7 +73,7 @@ struct TrackedAttitude {
 // valid track (before the first frame, or if the state is damaged: not finite, or not a rotation) the
 // prediction is the likeliest hypothesis, at rest.
 template <class Real>
-Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionLaws<Real>& laws,
+Prediction<Real> predict(const AttitudeTrack<Real>& track, const MotionModels<Real>& motion_models,
                          const Hypotheses<Real>& hypotheses, const FrameInterval& interval = {});
 
 // For a frame that finds_no_rate(). If the hypotheses do not confirm the prediction, the track starts anew:

@@ -66,7 +66,7 @@ struct ModelHeader {
   std::array<char, 32> target{};  // NUL-terminated name of the spacecraft the network was trained for
   DepthProjection projection;
   RangeNoise noise;        // of the sensor for which the network was calibrated
-  Inertia<Fixed> inertia;  // of the target, for its laws of motion
+  Inertia<Fixed> inertia;  // of the target, for its motion models
   // Identifies the mission that the network was trained for; 0: not known. For the ground: flight ignores it.
   std::uint32_t mission_crc32 = 0;
   // Identifies the image: it covers the header and, through the sections' CRCs, all weights. Set by the

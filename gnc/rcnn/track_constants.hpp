@@ -25,7 +25,7 @@ template <class Real>
 struct FilterGains {
   Real predicted_weight;  // of the predicted attitude relative to the hypotheses of a frame: (1 - a) / a
   Real rate_logit;        // logit of the ratio of the rate gain to the attitude gain
-  Real evidence;          // decrease of a law's log-likelihood per squared innovation: (1 - a) / (2 a^2)
+  Real evidence;  // decrease of a motion model's log-likelihood per squared innovation: (1 - a) / (2 a^2)
 };
 
 template <class Real>
@@ -43,10 +43,11 @@ constexpr std::array<FilterGains<Real>, kGains> kFilterGains{
 
 inline constexpr double kMinVariance_rad2 = 7e-4;  // of the attitude of a frame: (1.5 degrees)^2
 inline constexpr double kMinLogLikelihood = -6.0;
-inline constexpr double kMaxEvidence = 64.0;     // against a law by one frame
+inline constexpr double kMaxEvidence = 64.0;     // against a motion model by one frame
 inline constexpr double kLikelihoodDecay = 0.9;  // factor on the log-likelihoods per frame
 inline constexpr double kLostTargetInnovation = 2.0 * (1.0 - 0.93969262);  // squared innovation of 20 degrees
-// Sum over the hypotheses near the prediction of a law. With less, the law has lost the target.
+// Sum over the hypotheses near the prediction of a motion model. With less, the motion model has lost the
+// target.
 inline constexpr double kMinProbabilityNearPrediction = 0.1;
 
 }  // namespace tumblesight::gnc

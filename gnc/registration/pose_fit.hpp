@@ -1,9 +1,9 @@
 // PoseFit: the motion of the target that the last registered poses agree on.
 //
-// Least squares over up to ten poses, each with the information that its frame gave: turn and rate by a law
-// of torque-free motion, position and velocity on a straight line. A pose that does not agree counts less, so
-// that a frame that was registered wrong does not spoil the motion. Fitting all of them anew makes the result
-// independent of what was believed before.
+// Least squares over up to ten poses, each with the information that its frame gave: turn and rate by a
+// motion model of torque-free motion, position and velocity on a straight line. A pose that does not agree
+// counts less, so that a frame that was registered wrong does not spoil the motion. Fitting all of them anew
+// makes the result independent of what was believed before.
 #pragma once
 
 #include <array>

@@ -8,10 +8,10 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr int kTrackedPoses = 2;       // from so many on the motion predicts the next pose
-constexpr int kPosesOfALaw = 3;        // from so many on they tell laws of motion apart
+constexpr int kTrackedPoses = 2;         // from so many on the motion predicts the next pose
+constexpr int kPosesOfAMotionModel = 3;  // from so many on they tell motion models apart
 constexpr int kPosesOfALongTrack = 7;  // from so many on the predicted motion is a very good start of the fit
-constexpr std::int64_t kDisagreement_q8 = 90;  // from here on another law is tried
+constexpr std::int64_t kDisagreement_q8 = 90;  // from here on another motion model is tried
 
 // Limits of the verdict.
 constexpr int kVerifiedPoses = 3;
@@ -60,13 +60,13 @@ PoseMotion start_of_fit(const PoseFrame& frame, const PoseMotion& predicted, con
   return start;
 }
 
-// The law that is compared with the track's in this frame: the network's, or the next one of all.
+// The motion model that is compared with the track's in this frame: the network's, or the next one of all.
 int challenger_of(const PoseFrame& frame, PoseTrackerState& state) {
-  const int next = clamp(state.challenger, 0, 2 * kLaws) + 1;  // memory may be damaged
-  state.challenger = next < 2 * kLaws ? next : 0;
-  const int turn = clamp<int>(state.challenger / 2, 0, kLaws - 1);
-  const bool is_networks_turn = state.challenger % 2 == 0 && frame.network_law != state.law;
-  return clamp<int>(is_networks_turn ? frame.network_law : turn, 0, kLaws - 1);
+  const int next = clamp(state.challenger, 0, 2 * kMotionModels) + 1;  // memory may be damaged
+  state.challenger = next < 2 * kMotionModels ? next : 0;
+  const int turn = clamp<int>(state.challenger / 2, 0, kMotionModels - 1);
+  const bool is_networks_turn = state.challenger % 2 == 0 && frame.network_motion_model != state.motion_model;
+  return clamp<int>(is_networks_turn ? frame.network_motion_model : turn, 0, kMotionModels - 1);
 }
 
 // The rate that leads from one pose to the next; zero for more than 150 degrees.
@@ -80,54 +80,55 @@ Vector3<Fixed> rate_between(const PoseMeasurement& first, const PoseMeasurement&
   return rate;
 }
 
-// Fits the poses under the law of the track. What the frame has held back for it is enough, whatever the
-// rate; the rest is given back.
+// Fits the poses under the motion model of the track. What the frame has held back for it is enough, whatever
+// the rate; the rest is given back.
 void fit_by_reserve(const PoseFrame& frame, const PoseMotion& start, int iterations, PoseScratch& scratch,
                     const PoseTrackerState& state) {
-  const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
-  fit_motion(state.history, frame.laws[law], scratch.view.target_radius_um, start, iterations,
-             scratch.fit_reserve, scratch.fit);
+  const auto motion_model = static_cast<std::size_t>(clamp(state.motion_model, 0, kMotionModels - 1));
+  fit_motion(state.history, frame.motion_models[motion_model], scratch.view.target_radius_um, start,
+             iterations, scratch.fit_reserve, scratch.fit);
   scratch.refinement.budget.give_back(scratch.fit_reserve.left());
 }
 
-// Fits the poses under a law, into scratch.other_fit. False: the budget of the frame does not cover it.
-bool fit_by_budget(const PoseFrame& frame, int law, const PoseMotion& start, int iterations,
+// Fits the poses under a motion model, into scratch.other_fit. False: the budget of the frame does not cover
+// it.
+bool fit_by_budget(const PoseFrame& frame, int motion_model, const PoseMotion& start, int iterations,
                    PoseScratch& scratch, const PoseTrackerState& state) {
-  return fit_motion(state.history, frame.laws[static_cast<std::size_t>(clamp(law, 0, kLaws - 1))],
-                    scratch.view.target_radius_um, start, iterations, scratch.refinement.budget,
-                    scratch.other_fit);
+  return fit_motion(
+      state.history, frame.motion_models[static_cast<std::size_t>(clamp(motion_model, 0, kMotionModels - 1))],
+      scratch.view.target_radius_um, start, iterations, scratch.refinement.budget, scratch.other_fit);
 }
 
 int iterations_for(int poses) {
   return poses >= kPosesOfALongTrack ? 1 : poses >= kPosesOfARate ? 2 : kMostIterations;
 }
 
-// Under the law of the track. If the rate at the start does not lead back to the pose before, the rate
-// between these two is tried.
-void fit_under_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
-                   const PoseTrackerState& state) {
+// Under the motion model of the track. If the rate at the start does not lead back to the pose before, the
+// rate between these two is tried.
+void fit_under_motion_model(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
+                            const PoseTrackerState& state) {
   const int count = state.history.count;
   fit_by_reserve(frame, start, iterations_for(count), scratch, state);
   if (count < 2 || ((scratch.fit.against >> (count - 2)) & 1U) == 0) return;
   const auto newest = static_cast<std::size_t>(count - 1);
   PoseMotion other_start = start;
   other_start.turning.rate_lrf = rate_between(state.history.poses[newest - 1], state.history.poses[newest]);
-  if (!fit_by_budget(frame, state.law, other_start, kMostIterations, scratch, state)) return;
+  if (!fit_by_budget(frame, state.motion_model, other_start, kMostIterations, scratch, state)) return;
   if (scratch.other_fit.disagreement_q8 < scratch.fit.disagreement_q8) scratch.fit = scratch.other_fit;
 }
 
-// If the poses do not agree, another law is tried. The laws take turns.
-void try_other_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
-                   PoseTrackerState& state) {
-  if (state.history.count < kPosesOfALaw || scratch.fit.disagreement_q8 <= kDisagreement_q8) return;
+// If the poses do not agree, another motion model is tried. The motion models take turns.
+void try_other_motion_model(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
+                            PoseTrackerState& state) {
+  if (state.history.count < kPosesOfAMotionModel || scratch.fit.disagreement_q8 <= kDisagreement_q8) return;
   const int challenger_before = state.challenger;
-  const int law = challenger_of(frame, state);
-  if (!fit_by_budget(frame, law, start, kMostIterations, scratch, state)) {
+  const int motion_model = challenger_of(frame, state);
+  if (!fit_by_budget(frame, motion_model, start, kMostIterations, scratch, state)) {
     state.challenger = challenger_before;  // its turn comes again
     return;
   }
   if (scratch.other_fit.disagreement_q8 >= scratch.fit.disagreement_q8 * 3 / 4) return;
-  state.law = law;
+  state.motion_model = motion_model;
   scratch.fit = scratch.other_fit;
 }
 
@@ -135,15 +136,16 @@ void try_other_law(const PoseFrame& frame, const PoseMotion& start, PoseScratch&
 void forget(std::uint32_t poses, const PoseFrame& frame, PoseScratch& scratch, PoseTrackerState& state) {
   if (poses == 0) return;
   state.history.remove(poses);
-  if (fit_by_budget(frame, state.law, scratch.fit.motion, 1, scratch, state)) scratch.fit = scratch.other_fit;
+  if (fit_by_budget(frame, state.motion_model, scratch.fit.motion, 1, scratch, state))
+    scratch.fit = scratch.other_fit;
 }
 
 // Fits the motion to the poses and forgets those that do not agree with it, except the newest. False: the
 // newest does not agree.
 bool fit_track(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
                PoseTrackerState& state) {
-  fit_under_law(frame, start, scratch, state);
-  try_other_law(frame, start, scratch, state);
+  fit_under_motion_model(frame, start, scratch, state);
+  try_other_motion_model(frame, start, scratch, state);
   const std::uint32_t newest = std::uint32_t{1} << (state.history.count - 1);
   const bool newest_agrees = (scratch.fit.against & newest) == 0;
   forget(scratch.fit.against & ~newest, frame, scratch, state);
@@ -184,10 +186,10 @@ PoseState pose_state(const PoseMotion& motion) {
   return state;
 }
 
-PoseMotion later_pose(const PoseTrackerState& state, const MotionLaws<Fixed>& laws, std::int64_t elapsed_ns,
-                      const Matrix3<Fixed>& r_now_last) {
-  const auto law = static_cast<std::size_t>(clamp(state.law, 0, kLaws - 1));
-  return later_motion(state.motion, laws[law], elapsed_ns, r_now_last);
+PoseMotion later_pose(const PoseTrackerState& state, const MotionModels<Fixed>& motion_models,
+                      std::int64_t elapsed_ns, const Matrix3<Fixed>& r_now_last) {
+  const auto motion_model = static_cast<std::size_t>(clamp(state.motion_model, 0, kMotionModels - 1));
+  return later_motion(state.motion, motion_models[motion_model], elapsed_ns, r_now_last);
 }
 
 void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
@@ -200,7 +202,7 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   state.advantage_q8 = limited_advantage_q8(state.advantage_q8);
   state.proven_q8 = min(limited_advantage_q8(state.proven_q8), state.advantage_q8);
   if (state.history.count == 0) state.motion = {};
-  const PoseMotion predicted = later_pose(state, frame.laws, frame.elapsed_ns, frame.r_now_last);
+  const PoseMotion predicted = later_pose(state, frame.motion_models, frame.elapsed_ns, frame.r_now_last);
   state.history.advance(frame.elapsed_ns, frame.r_now_last);
   state.motion = predicted;
   const int poses_before = state.history.count;

@@ -78,15 +78,15 @@ struct PoseFrame {
   Matrix3<Fixed> second_r_lrf_trf;  // its second attitude
   std::uint32_t second_odds_ppm;    // against the first; 0: there is none
   std::array<std::int32_t, 3> centroid_lrf_mm;  // of the returns
-  const MotionLaws<Fixed>& laws;
-  int network_law;  // that the network's track follows
+  const MotionModels<Fixed>& motion_models;
+  int network_motion_model;  // that the network's track follows
 };
 
 struct PoseTrackerState {
   PoseHistory history;
   PoseMotion motion;              // at the last frame; valid if there is a pose
-  int law = kSpinLaw;             // under which the poses agree best, so far
-  int challenger = kTumbleLaw;    // the law that is compared with it next
+  int motion_model = kSpinModel;  // under which the poses agree best, so far
+  int challenger = kTumbleModel;  // the motion model that is compared with it next
   std::int32_t advantage_q8 = 0;  // of the attitude that it follows, over the others [nats]
   std::int32_t proven_q8 = 0;     // of that, how much is proven; never more [nats]
 };
@@ -108,8 +108,8 @@ struct PoseScratch {
 };
 
 // The motion of the track `elapsed_ns` after the last frame, in an LRF that has turned: `r_now_last`.
-PoseMotion later_pose(const PoseTrackerState& state, const MotionLaws<Fixed>& laws, std::int64_t elapsed_ns,
-                      const Matrix3<Fixed>& r_now_last);
+PoseMotion later_pose(const PoseTrackerState& state, const MotionModels<Fixed>& motion_models,
+                      std::int64_t elapsed_ns, const Matrix3<Fixed>& r_now_last);
 
 // Advances the track to a frame. `state` of a new track: PoseTrackerState(). A frame whose registration
 // exhausts `budget` counts as one that could not be registered.

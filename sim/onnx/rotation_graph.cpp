@@ -53,12 +53,12 @@ OnnxTensor angle_over_sine(const OnnxTensor& y) {
 }
 
 template <class Member>
-OnnxTensor matrices(GraphBuilder& graph, const gnc::MotionLaws<float>& laws, Member member) {
+OnnxTensor matrices(GraphBuilder& graph, const gnc::MotionModels<float>& motion_models, Member member) {
   std::vector<float> elements;
-  for (const gnc::Inertia<float>& law : laws) {
-    for (int i = 0; i < 9; ++i) elements.push_back((law.*member)(i / 3, i % 3));
+  for (const gnc::Inertia<float>& motion_model : motion_models) {
+    for (int i = 0; i < 9; ++i) elements.push_back((motion_model.*member)(i / 3, i % 3));
   }
-  return constant_tensor(graph, {gnc::kLaws, 3, 3}, elements);
+  return constant_tensor(graph, {gnc::kMotionModels, 3, 3}, elements);
 }
 
 // Angular rate of bodies with these inverse inertias and the angular momentum `momentum_lrf`.
@@ -158,11 +158,11 @@ MotionGraph turned(const MotionGraph& motion, const OnnxTensor& r_now_last) {
   return {product(r_now_last, motion.r_lrf_trf), product(r_now_last, motion.rate_lrf)};
 }
 
-MotionGraph propagated(const MotionGraph& motion, const gnc::MotionLaws<float>& laws,
+MotionGraph propagated(const MotionGraph& motion, const gnc::MotionModels<float>& motion_models,
                        const OnnxTensor& periods) {
   GraphBuilder& graph = periods.graph();
-  const OnnxTensor tensor_trf = matrices(graph, laws, &gnc::Inertia<float>::tensor_trf);
-  const OnnxTensor inverse_trf = matrices(graph, laws, &gnc::Inertia<float>::inverse_trf);
+  const OnnxTensor tensor_trf = matrices(graph, motion_models, &gnc::Inertia<float>::tensor_trf);
+  const OnnxTensor inverse_trf = matrices(graph, motion_models, &gnc::Inertia<float>::inverse_trf);
   const OnnxTensor parts = maximum(operation("Ceil", {periods - kRoundingOfPeriods}), 1.0);
   const OnnxTensor steps = kStepsPerPeriod * parts;
   const OnnxTensor step = periods / steps;
@@ -179,7 +179,8 @@ MotionGraph propagated(const MotionGraph& motion, const gnc::MotionLaws<float>& 
     };
     return turned_at(turned_at(r, 0.5), 1.0);
   };
-  const OnnxTensor r = repeated(as_integer(steps), motion.r_lrf_trf, {gnc::kLaws, 3, 3}, midpoint_step);
+  const OnnxTensor r =
+      repeated(as_integer(steps), motion.r_lrf_trf, {gnc::kMotionModels, 3, 3}, midpoint_step);
   return {r, rate_from_momentum(r, momentum_lrf, inverse_trf)};
 }
 

@@ -31,8 +31,9 @@ struct MotionGraph {
 MotionGraph where(const OnnxTensor& condition, const MotionGraph& yes, const MotionGraph& no);
 // gnc::turned()
 MotionGraph turned(const MotionGraph& motion, const OnnxTensor& r_now_last);
-// gnc::propagate() of each law's motion (K = gnc::kLaws), over `periods` [1, 1, 1], nominal periods.
-MotionGraph propagated(const MotionGraph& motion, const gnc::MotionLaws<float>& laws,
+// gnc::propagate() of each motion model's motion (K = gnc::kMotionModels), over `periods` [1, 1, 1], nominal
+// periods.
+MotionGraph propagated(const MotionGraph& motion, const gnc::MotionModels<float>& motion_models,
                        const OnnxTensor& periods);
 
 }  // namespace tumblesight::sim

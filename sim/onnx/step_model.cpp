@@ -13,7 +13,7 @@ namespace shape = gnc::shape;
 namespace {
 
 constexpr double kPeriod_s = 1e-9 * gnc::kNominalPeriod_ns;
-constexpr int kLaws = gnc::kLaws;
+constexpr int kMotionModels = gnc::kMotionModels;
 
 struct StepState {
   OnnxTensor h, c;  // [1, kLstm]
@@ -27,9 +27,9 @@ StepState unpacked(const OnnxTensor& state) {
     return slice(state, 1, next - count, next);
   };
   const OnnxTensor h = take(shape::kLstm), c = take(shape::kLstm);
-  const OnnxTensor r_lrf_trf = reshaped(take(9 * kLaws), {kLaws, 3, 3});
-  const OnnxTensor rate_lrf = reshaped(take(3 * kLaws), {kLaws, 3, 1});
-  const OnnxTensor log_likelihood = reshaped(take(kLaws), {kLaws, 1, 1});
+  const OnnxTensor r_lrf_trf = reshaped(take(9 * kMotionModels), {kMotionModels, 3, 3});
+  const OnnxTensor rate_lrf = reshaped(take(3 * kMotionModels), {kMotionModels, 3, 1});
+  const OnnxTensor log_likelihood = reshaped(take(kMotionModels), {kMotionModels, 1, 1});
   const OnnxTensor frames = reshaped(take(1), {1, 1, 1}), has_found_rate = reshaped(take(1), {1, 1, 1});
   return {h, c, {{r_lrf_trf, rate_lrf}, log_likelihood, frames, has_found_rate}};
 }
@@ -100,11 +100,11 @@ std::string step_as_onnx(const Float32Model& model) {
   layers.add_cnn(model.weights);
   const StepInputs inputs = describe_inputs(graph);
   const StepState state = unpacked(inputs.state);
-  const auto laws = gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia));
+  const auto motion_models = gnc::motion_models<float>(gnc::converted<float>(model.header.inertia));
 
   const HypothesesGraph hypotheses =
       decoded_hypotheses(OnnxTensor(graph, layers.cnn_output()), inputs.r_lrf_view);
-  const PredictionGraph prediction = predicted(state.track, laws, hypotheses, inputs.interval);
+  const PredictionGraph prediction = predicted(state.track, motion_models, hypotheses, inputs.interval);
 
   const OnnxTensor forgets = reshaped(prediction.starts_anew, {1, 1});
   layers.set_input("h", where(forgets, 0.0, state.h).name());

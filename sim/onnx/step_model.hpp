@@ -10,9 +10,10 @@
 
 namespace tumblesight::sim {
 
-// Values in the state, in this order: h, c of the LSTM; for each law of motion the attitude's matrix, row by
-// row, the rate and the log-likelihood, each for all laws; frames of the track; whether its rate is found.
-inline constexpr int kStepState = 2 * gnc::shape::kLstm + (9 + 3 + 1) * gnc::kLaws + 2;
+// Values in the state, in this order: h, c of the LSTM; for each motion model the attitude's matrix, row by
+// row, the rate and the log-likelihood, each for all motion models; frames of the track; whether its rate is
+// found.
+inline constexpr int kStepState = 2 * gnc::shape::kLstm + (9 + 3 + 1) * gnc::kMotionModels + 2;
 
 // A serialized model, the contents of an .onnx file. Doc strings describe inputs and outputs.
 //

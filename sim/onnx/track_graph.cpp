@@ -25,30 +25,31 @@ OnnxTensor same_attitude(const OnnxTensor& trace) {
   return trace > gnc::kTraceOfSameAttitude<double>;
 }
 
-// The value by which the laws are compared: log-likelihood minus required evidence.
+// The value by which the motion models are compared: log-likelihood minus required evidence.
 OnnxTensor scores(const OnnxTensor& log_likelihood) {
   const std::vector<float> required(gnc::kRequiredEvidence.begin(), gnc::kRequiredEvidence.end());
-  return log_likelihood - constant_tensor(log_likelihood.graph(), {gnc::kLaws, 1, 1}, required);
+  return log_likelihood - constant_tensor(log_likelihood.graph(), {gnc::kMotionModels, 1, 1}, required);
 }
 
-// Of the law that gives the result.
-OnnxTensor law_of(const OnnxTensor& log_likelihood) {
+// Of the motion model that gives the result.
+OnnxTensor motion_model_of(const OnnxTensor& log_likelihood) {
   return index_of_largest(scores(log_likelihood), 0);
 }
 
-MotionGraph picked(const MotionGraph& motion, const OnnxTensor& law) {
-  return {picked(motion.r_lrf_trf, law, 0), picked(motion.rate_lrf, law, 0)};
+MotionGraph picked(const MotionGraph& motion, const OnnxTensor& motion_model) {
+  return {picked(motion.r_lrf_trf, motion_model, 0), picked(motion.rate_lrf, motion_model, 0)};
 }
 
-MotionGraph of_all_laws(const MotionGraph& motion) {
-  return {expanded(motion.r_lrf_trf, {gnc::kLaws, 3, 3}), expanded(motion.rate_lrf, {gnc::kLaws, 3, 1})};
+MotionGraph of_all_motion_models(const MotionGraph& motion) {
+  return {expanded(motion.r_lrf_trf, {gnc::kMotionModels, 3, 3}),
+          expanded(motion.rate_lrf, {gnc::kMotionModels, 3, 1})};
 }
 
 MotionGraph at_rest(const OnnxTensor& r_lrf_trf) {
   return {r_lrf_trf, constant_tensor<float>(r_lrf_trf.graph(), {1, 3, 1}, {0, 0, 0})};
 }
 
-// Sum over the hypotheses that are the attitude of each law: [K, 1, 1].
+// Sum over the hypotheses that are the attitude of each motion model: [K, 1, 1].
 OnnxTensor probability_of(const HypothesesGraph& hypotheses, const OnnxTensor& r_lrf_trf) {
   const OnnxTensor elements = reshaped(hypotheses.r_lrf_trf, {1, shape::kHypotheses, 9});
   const OnnxTensor traces = product(elements, reshaped(r_lrf_trf, {-1, 9, 1}));  // [K, 8, 1]
@@ -58,9 +59,10 @@ OnnxTensor probability_of(const HypothesesGraph& hypotheses, const OnnxTensor& r
 
 // AttitudeTrack::forget_rate()
 TrackGraph without_rate(const TrackGraph& track, const OnnxTensor& forgets) {
-  const OnnxTensor last = picked(track.motion, law_of(track.log_likelihood)).r_lrf_trf;
-  return {where(forgets, of_all_laws(at_rest(last)), track.motion), where(forgets, 0.0, track.log_likelihood),
-          where(forgets, minimum(track.frames, 1.0), track.frames), track.has_found_rate};
+  const OnnxTensor last = picked(track.motion, motion_model_of(track.log_likelihood)).r_lrf_trf;
+  return {where(forgets, of_all_motion_models(at_rest(last)), track.motion),
+          where(forgets, 0.0, track.log_likelihood), where(forgets, minimum(track.frames, 1.0), track.frames),
+          track.has_found_rate};
 }
 
 // What an innovation means for the rate.
@@ -108,16 +110,18 @@ OnnxTensor candidate_weights(const HypothesesGraph& hypotheses, const OnnxTensor
   return reshaped(operation("Exp", {bounded - largest(bounded, 1)}) * prior, {1, shape::kCandidates, 1});
 }
 
-// For each law the weighted mean of the candidates that are the same attitude as the candidate `anchor`, with
-// its own prediction as the last candidate: [5, 3, 3].
+// For each motion model the weighted mean of the candidates that are the same attitude as the candidate
+// `anchor`, with its own prediction as the last candidate: [5, 3, 3].
 OnnxTensor mean_attitudes(const HypothesesGraph& hypotheses, const OnnxTensor& predicted_r_lrf_trf,
                           const OnnxTensor& weights, const OnnxTensor& anchor) {
   const OnnxTensor of_frame = expanded(reshaped(hypotheses.r_lrf_trf, {1, shape::kHypotheses, 9}),
-                                       {gnc::kLaws, shape::kHypotheses, 9});
-  const OnnxTensor candidates = joined({of_frame, reshaped(predicted_r_lrf_trf, {gnc::kLaws, 1, 9})}, 1);
+                                       {gnc::kMotionModels, shape::kHypotheses, 9});
+  const OnnxTensor candidates =
+      joined({of_frame, reshaped(predicted_r_lrf_trf, {gnc::kMotionModels, 1, 9})}, 1);
   const OnnxTensor traces = product(candidates, reshaped(picked(candidates, anchor, 1), {-1, 9, 1}));
   const OnnxTensor shares = where(same_attitude(traces), weights, 0.0);  // [5, 9, 1]
-  const OnnxTensor mean = reshaped(sum(shares / largest(shares, 1) * candidates, {1}), {gnc::kLaws, 3, 3});
+  const OnnxTensor mean =
+      reshaped(sum(shares / largest(shares, 1) * candidates, {1}), {gnc::kMotionModels, 3, 3});
   return rotation_from_columns(slice(mean, 2, 0, 1), slice(mean, 2, 1, 2));
 }
 
@@ -130,8 +134,8 @@ OnnxTensor squared_innovations(const HypothesesGraph& hypotheses, const OnnxTens
   return where(unseen, kLostInnovation, minimum(innovation, kLostInnovation));
 }
 
-// Lowers the log-likelihoods by the evidence; a law that has lost the target takes over the motion of the
-// best law that has not.
+// Lowers the log-likelihoods by the evidence; a motion model that has lost the target takes over the motion
+// of the best motion model that has not.
 TrackGraph weighed(const MotionGraph& motion, const OnnxTensor& log_likelihood_before,
                    const OnnxTensor& innovations, const OnnxTensor& evidence, const TrackGraph& before) {
   const OnnxTensor against = minimum(evidence * innovations, gnc::kMaxEvidence);
@@ -140,7 +144,7 @@ TrackGraph weighed(const MotionGraph& motion, const OnnxTensor& log_likelihood_b
   const OnnxTensor follows = innovations < kLostInnovation;
   const OnnxTensor best = index_of_largest(where(follows, scores(log_likelihood), kFarBelowAllScores), 0);
   const OnnxTensor any_follows = largest(as_number(follows), 0) > 0.5;
-  return {where(any_follows & !follows, of_all_laws(picked(motion, best)), motion), log_likelihood,
+  return {where(any_follows & !follows, of_all_motion_models(picked(motion, best)), motion), log_likelihood,
           1.0 + before.frames, before.has_found_rate};
 }
 
@@ -155,7 +159,7 @@ HypothesesGraph decoded_hypotheses(const OnnxTensor& cnn_output, const OnnxTenso
   return {r_lrf_trf, logits, softmax(logits, 1), picked(r_lrf_trf, index_of_largest(logits, 1), 0)};
 }
 
-PredictionGraph predicted(const TrackGraph& before, const gnc::MotionLaws<float>& laws,
+PredictionGraph predicted(const TrackGraph& before, const gnc::MotionModels<float>& motion_models,
                           const HypothesesGraph& hypotheses, const IntervalGraph& interval) {
   const OnnxTensor has_track = is_true(before.frames);
   const OnnxTensor rate_is_unknown = has_track & !is_true(before.has_found_rate);
@@ -166,25 +170,27 @@ PredictionGraph predicted(const TrackGraph& before, const gnc::MotionLaws<float>
   const OnnxTensor elapsed_s =
       where(has_track, clamped(interval.elapsed_s, kShortest_s, kLongest_s), kPeriod_s);
   const OnnxTensor periods = elapsed_s / kPeriod_s;
-  const MotionGraph propagated_motion = turned(propagated(track.motion, laws, periods), interval.r_now_last);
-  const MotionGraph motion = where(has_track, propagated_motion, of_all_laws(at_rest(hypotheses.likeliest)));
-  const OnnxTensor law = law_of(track.log_likelihood);
+  const MotionGraph propagated_motion =
+      turned(propagated(track.motion, motion_models, periods), interval.r_now_last);
+  const MotionGraph motion =
+      where(has_track, propagated_motion, of_all_motion_models(at_rest(hypotheses.likeliest)));
+  const OnnxTensor motion_model = motion_model_of(track.log_likelihood);
 
   // gnc::keep_confirmed()
   const OnnxTensor confirmed =
-      probability_of(hypotheses, picked(motion, law).r_lrf_trf) > gnc::kMinProbabilityNearPrediction;
+      probability_of(hypotheses, picked(motion, motion_model).r_lrf_trf) > gnc::kMinProbabilityNearPrediction;
   const OnnxTensor starts_anew = finds_no_rate & !confirmed;
-  const MotionGraph last = at_rest(picked(turned(track.motion, interval.r_now_last), law).r_lrf_trf);
+  const MotionGraph last = at_rest(picked(turned(track.motion, interval.r_now_last), motion_model).r_lrf_trf);
   GraphBuilder& graph = periods.graph();
   const OnnxTensor first_rate = corrected_rate(
       last, hypotheses.likeliest, {scalar(graph, 1.0), periods, scalar(graph, gnc::kVersineOf150Degrees)});
-  const MotionGraph first = of_all_laws({hypotheses.likeliest, first_rate});
+  const MotionGraph first = of_all_motion_models({hypotheses.likeliest, first_rate});
 
   const MotionGraph kept = where(starts_anew, first, motion);
   const OnnxTensor log_likelihood = where(starts_anew, 0.0, track.log_likelihood);
   return {
       {kept, log_likelihood, where(starts_anew, 0.0, track.frames), as_number(has_track & !finds_no_rate)},
-      picked(kept, law_of(log_likelihood)).r_lrf_trf,
+      picked(kept, motion_model_of(log_likelihood)).r_lrf_trf,
       periods,
       starts_anew};
 }
@@ -221,7 +227,7 @@ TrackedGraph advanced(const HypothesesGraph& hypotheses, const PredictionGraph& 
   const OnnxTensor variance = maximum(error_rad * error_rad, gnc::kMinVariance_rad2);
   const TrackGraph after =
       weighed({r_lrf_trf, rate_lrf}, before.log_likelihood, innovations, filter.evidence / variance, before);
-  return {after, picked(after.motion, law_of(after.log_likelihood)), reshaped(error_rad, {1, 1})};
+  return {after, picked(after.motion, motion_model_of(after.log_likelihood)), reshaped(error_rad, {1, 1})};
 }
 
 }  // namespace tumblesight::sim

@@ -2,7 +2,7 @@
 // (tests/unit/sim/bench/step_model_test.cpp). Left out are its repairs of a damaged state: an attitude that
 // is no rotation, numbers that are not finite.
 //
-// Shapes as in rotation_graph.hpp; 8 hypotheses, 9 candidates, 5 laws of motion. A truth value is [1, 1, 1].
+// Shapes as in rotation_graph.hpp; 8 hypotheses, 9 candidates, 5 motion models. A truth value is [1, 1, 1].
 #pragma once
 
 #include "gnc/rcnn/attitude_track.hpp"
@@ -22,7 +22,7 @@ HypothesesGraph decoded_hypotheses(const OnnxTensor& cnn_output, const OnnxTenso
 
 // What is carried from frame to frame, beside the LSTM's state. All zero before the first frame.
 struct TrackGraph {
-  MotionGraph motion;         // of each law, K = 5
+  MotionGraph motion;         // of each motion model, K = 5
   OnnxTensor log_likelihood;  // [5, 1, 1]
   OnnxTensor frames;          // [1, 1, 1]: since the track began
   OnnxTensor has_found_rate;  // [1, 1, 1]: 1 if the last two frames were close enough in time to tell it
@@ -35,13 +35,13 @@ struct IntervalGraph {
 
 struct PredictionGraph {
   TrackGraph track;        // motion: at this frame; all else: before it
-  OnnxTensor r_lrf_trf;    // [1, 3, 3]: of the law that gives the result
+  OnnxTensor r_lrf_trf;    // [1, 3, 3]: of the motion model that gives the result
   OnnxTensor periods;      // [1, 1, 1]: since the last frame
   OnnxTensor starts_anew;  // the state of the LSTM must be reset: gnc::keep_confirmed() is false
 };
 // AttitudeTrack::forget_rate(), predict() and keep_confirmed() of the flight code. What FrameTracker tells
 // the estimator about the rate, from which keep_confirmed() follows, is found here from `has_found_rate`.
-PredictionGraph predicted(const TrackGraph& track, const gnc::MotionLaws<float>& laws,
+PredictionGraph predicted(const TrackGraph& track, const gnc::MotionModels<float>& motion_models,
                           const HypothesesGraph& hypotheses, const IntervalGraph& interval);
 
 OnnxTensor lstm_input(const OnnxTensor& features, const HypothesesGraph& hypotheses,

@@ -54,7 +54,7 @@ namespace {
 // for every layer.
 template <class N, class Note>
 std::vector<gnc::Matrix3<typename N::Real>> follow(const gnc::NetworkWeights<N>& weights,
-                                                   const gnc::MotionLaws<typename N::Real>& laws,
+                                                   const gnc::MotionModels<typename N::Real>& motion_models,
                                                    const ImageSequence& sequence, Note&& note) {
   using Real = typename N::Real;
   const gnc::Kernels<N>& kernels = gnc::fastest_kernels<N>();
@@ -69,7 +69,7 @@ std::vector<gnc::Matrix3<typename N::Real>> follow(const gnc::NetworkWeights<N>&
     gnc::HeadOutput<Real> head;
     gnc::run_frame<N>(kernels, weights, image, *arena, features, output, note);
     const auto hypotheses = gnc::decode_hypotheses<Real>(output, gnc::converted<Real>(image.r_lrf_view));
-    const auto prediction = gnc::predict<Real>(track, laws, hypotheses);
+    const auto prediction = gnc::predict<Real>(track, motion_models, hypotheses);
     gnc::fill_lstm_input<N>(features, hypotheses, prediction.r_lrf_trf(), input);
     note("lstm_input", input);
     gnc::run_sequence<N>(kernels, weights, input, *arena, state, head, note);
@@ -81,26 +81,27 @@ std::vector<gnc::Matrix3<typename N::Real>> follow(const gnc::NetworkWeights<N>&
 }  // namespace
 
 template <class N>
-Observations observe(const gnc::NetworkWeights<N>& weights, const gnc::MotionLaws<typename N::Real>& laws,
+Observations observe(const gnc::NetworkWeights<N>& weights,
+                     const gnc::MotionModels<typename N::Real>& motion_models,
                      const ImageSequence& sequence) {
   Observations observations;
-  follow<N>(weights, laws, sequence,
+  follow<N>(weights, motion_models, sequence,
             [&observations](const char* layer, const auto& output) { append(output, observations[layer]); });
   return observations;
 }
 
 template <class N>
-std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(const gnc::NetworkWeights<N>& weights,
-                                                         const gnc::MotionLaws<typename N::Real>& laws,
-                                                         const ImageSequence& sequence) {
-  return follow<N>(weights, laws, sequence, [](const char*, const auto&) {});
+std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(
+    const gnc::NetworkWeights<N>& weights, const gnc::MotionModels<typename N::Real>& motion_models,
+    const ImageSequence& sequence) {
+  return follow<N>(weights, motion_models, sequence, [](const char*, const auto&) {});
 }
 
-#define TUMBLESIGHT_INSTANTIATE(N)                                                                 \
-  template Observations observe<N>(const gnc::NetworkWeights<N>&, const gnc::MotionLaws<N::Real>&, \
-                                   const ImageSequence&);                                          \
-  template std::vector<gnc::Matrix3<N::Real>> attitudes_of<N>(                                     \
-      const gnc::NetworkWeights<N>&, const gnc::MotionLaws<N::Real>&, const ImageSequence&)
+#define TUMBLESIGHT_INSTANTIATE(N)                                                                   \
+  template Observations observe<N>(const gnc::NetworkWeights<N>&, const gnc::MotionModels<N::Real>&, \
+                                   const ImageSequence&);                                            \
+  template std::vector<gnc::Matrix3<N::Real>> attitudes_of<N>(                                       \
+      const gnc::NetworkWeights<N>&, const gnc::MotionModels<N::Real>&, const ImageSequence&)
 TUMBLESIGHT_INSTANTIATE(gnc::Float32);
 TUMBLESIGHT_INSTANTIATE(gnc::FixedPoint);
 

@@ -30,13 +30,13 @@ using Observations = std::map<std::string, std::vector<double>>;
 // Runs one sequence through the steps of the estimator. Values are in the numerics of the network: integers
 // in fixed point.
 template <class N>
-Observations observe(const gnc::NetworkWeights<N>& weights, const gnc::MotionLaws<typename N::Real>& laws,
-                     const ImageSequence& sequence);
+Observations observe(const gnc::NetworkWeights<N>& weights,
+                     const gnc::MotionModels<typename N::Real>& motion_models, const ImageSequence& sequence);
 
 // The estimated attitudes (TRF to LRF), one per frame.
 template <class N>
-std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(const gnc::NetworkWeights<N>& weights,
-                                                         const gnc::MotionLaws<typename N::Real>& laws,
-                                                         const ImageSequence& sequence);
+std::vector<gnc::Matrix3<typename N::Real>> attitudes_of(
+    const gnc::NetworkWeights<N>& weights, const gnc::MotionModels<typename N::Real>& motion_models,
+    const ImageSequence& sequence);
 
 }  // namespace tumblesight::sim

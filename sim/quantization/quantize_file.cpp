@@ -40,12 +40,12 @@ struct Tally {
 std::vector<LayerReport> compare(const gnc::NetworkWeights<Float32>& reference,
                                  const QuantizedNetwork& network, const gnc::Inertia<gnc::Fixed>& inertia,
                                  const std::vector<ImageSequence>& sequences) {
-  const auto float_laws = gnc::motion_laws<float>(gnc::converted<float>(inertia));
-  const auto fixed_laws = gnc::motion_laws<gnc::Fixed>(inertia);
+  const auto float_models = gnc::motion_models<float>(gnc::converted<float>(inertia));
+  const auto fixed_models = gnc::motion_models<gnc::Fixed>(inertia);
   std::map<std::string, Tally> tallies;
   for (const ImageSequence& sequence : sequences) {
-    const Observations expected = observe<Float32>(reference, float_laws, sequence);
-    const Observations found = observe<FixedPoint>(network.weights, fixed_laws, sequence);
+    const Observations expected = observe<Float32>(reference, float_models, sequence);
+    const Observations found = observe<FixedPoint>(network.weights, fixed_models, sequence);
     for (const auto& [layer, values] : expected) {
       Tally& tally = tallies[layer];
       const std::vector<double>& scales = network.scales.at(layer);
@@ -83,12 +83,12 @@ Eigen::Quaterniond quaternion(const gnc::Matrix3<float>& rotation) {
 std::vector<double> differences_deg(const Float32Model& model, const gnc::NetworkWeights<FixedPoint>& fixed,
                                     const std::vector<ImageSequence>& sequences,
                                     const TargetSymmetry& symmetry) {
-  const auto float_laws = gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia));
-  const auto fixed_laws = gnc::motion_laws<gnc::Fixed>(model.header.inertia);
+  const auto float_models = gnc::motion_models<float>(gnc::converted<float>(model.header.inertia));
+  const auto fixed_models = gnc::motion_models<gnc::Fixed>(model.header.inertia);
   std::vector<double> differences;
   for (const ImageSequence& sequence : sequences) {
-    const auto expected = attitudes_of<Float32>(model.weights, float_laws, sequence);
-    const auto found = attitudes_of<FixedPoint>(fixed, fixed_laws, sequence);
+    const auto expected = attitudes_of<Float32>(model.weights, float_models, sequence);
+    const auto found = attitudes_of<FixedPoint>(fixed, fixed_models, sequence);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const Eigen::Quaterniond reference = quaternion(expected[i]);
       const Eigen::Quaterniond other =
@@ -156,7 +156,7 @@ QuantizationReport quantize_to_file(const Float32Model& model, const std::vector
   for (const EffectRanges& effects : sets) rendered.emplace_back(meshes, effects, model.header.target.data());
   const int held_back = sequences / kReportShare;
   Calibration calibration(model.weights,
-                          gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia)));
+                          gnc::motion_models<float>(gnc::converted<float>(model.header.inertia)));
   std::vector<ImageSequence> kept;
   std::size_t calibrating = 0, reported = 0;  // frames
   for (int i = 0; i < sequences; ++i) {

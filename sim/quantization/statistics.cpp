@@ -90,15 +90,16 @@ void add_samples(const gnc::LayerRow& row, const Observations& observations, std
 
 }  // namespace
 
-Calibration::Calibration(const gnc::NetworkWeights<Float32>& weights, const gnc::MotionLaws<float>& laws)
-    : weights_(weights), laws_(laws) {
+Calibration::Calibration(const gnc::NetworkWeights<Float32>& weights,
+                         const gnc::MotionModels<float>& motion_models)
+    : weights_(weights), motion_models_(motion_models) {
   for (const gnc::LayerRow& row : gnc::kLayers)
     statistics_.inputs.emplace(row.name, InputStatistics(inputs_per_sum(row)));
 }
 
 void Calibration::add(const ImageSequence& sequence) {
   if (sequence.empty()) return;
-  const Observations observations = observe<Float32>(weights_, laws_, sequence);
+  const Observations observations = observe<Float32>(weights_, motion_models_, sequence);
   for (const auto& [layer, values] : observations) {
     const auto channels = static_cast<std::size_t>(channels_of(layer));
     std::vector<Distribution>& outputs = statistics_.outputs[layer];

@@ -35,13 +35,14 @@ struct Statistics {
 class Calibration {
  public:
   // `weights` must outlive it.
-  Calibration(const gnc::NetworkWeights<gnc::Float32>& weights, const gnc::MotionLaws<float>& laws);
+  Calibration(const gnc::NetworkWeights<gnc::Float32>& weights,
+              const gnc::MotionModels<float>& motion_models);
   void add(const ImageSequence& sequence);
   const Statistics& statistics() const { return statistics_; }
 
  private:
   const gnc::NetworkWeights<gnc::Float32>& weights_;
-  gnc::MotionLaws<float> laws_;
+  gnc::MotionModels<float> motion_models_;
   Statistics statistics_;
 };
 

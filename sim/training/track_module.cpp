@@ -113,7 +113,7 @@ torch::Tensor turn_of(const torch::Tensor& r, const torch::Tensor& largest) {
 }
 
 struct MotionTensors {
-  torch::Tensor r_lrf_trf, rate_lrf;  // [B, laws, 3, 3], [B, laws, 3]
+  torch::Tensor r_lrf_trf, rate_lrf;  // [B, motion models, 3, 3], [B, motion models, 3]
 };
 
 MotionTensors spin(const MotionTensors& motion, const torch::Tensor& periods) {
@@ -122,7 +122,7 @@ MotionTensors spin(const MotionTensors& motion, const torch::Tensor& periods) {
 }
 
 // Calls the flight code for each motion. The gradient treats the turn as a constant.
-MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia<float>* laws,
+MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia<float>* motion_models,
                      const torch::Tensor& periods) {
   using RowMajor = Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>;
   const torch::Tensor before = motion.r_lrf_trf.detach().cpu().contiguous();
@@ -136,7 +136,7 @@ MotionTensors tumble(const MotionTensors& motion, const gnc::Inertia<float>* law
     m.rate_lrf = Eigen::Map<Eigen::Vector3f>(rate_before.data_ptr<float>() + 3 * i);
     const std::int64_t elapsed_ns =
         std::llround(static_cast<double>(times.data_ptr<float>()[i / count]) * gnc::kNominalPeriod_ns);
-    const gnc::Motion<float> after = gnc::propagate<float>(m, laws[i % count], elapsed_ns);
+    const gnc::Motion<float> after = gnc::propagate<float>(m, motion_models[i % count], elapsed_ns);
     RowMajor{turn.data_ptr<float>() + 9 * i} = after.r_lrf_trf * m.r_lrf_trf.transpose();
     Eigen::Map<Eigen::Vector3f>{rate.data_ptr<float>() + 3 * i} = after.rate_lrf;
   }
@@ -166,30 +166,31 @@ torch::Tensor TrackModule::standing() const {
   return log_likelihood_ - asked.to(log_likelihood_.device());
 }
 
-torch::Tensor TrackModule::law() const {
+torch::Tensor TrackModule::motion_model() const {
   return standing().argmax(-1);
 }
 
 void TrackModule::predict(const FrameHypotheses& frame) {
   if (frames_ == 0) {
     const std::int64_t rows = frame.logits.size(0);
-    r_lrf_trf_ = picked(frame.r_lrf_trf, frame.logits.argmax(-1)).unsqueeze(1).expand({-1, gnc::kLaws, 3, 3});
-    rate_lrf_ = torch::zeros({rows, gnc::kLaws, 3}, frame.logits.options());
-    log_likelihood_ = torch::zeros({rows, gnc::kLaws}, frame.logits.options());
+    r_lrf_trf_ =
+        picked(frame.r_lrf_trf, frame.logits.argmax(-1)).unsqueeze(1).expand({-1, gnc::kMotionModels, 3, 3});
+    rate_lrf_ = torch::zeros({rows, gnc::kMotionModels, 3}, frame.logits.options());
+    log_likelihood_ = torch::zeros({rows, gnc::kMotionModels}, frame.logits.options());
     return;
   }
-  // The first law is a spin: the gradient flows through it.
-  static_assert(gnc::kSpinLaw == 0);
-  constexpr int kOthers = gnc::kLaws - 1;
+  // The first motion model is a spin: the gradient flows through it.
+  static_assert(gnc::kSpinModel == 0);
+  constexpr int kOthers = gnc::kMotionModels - 1;
   const MotionTensors spun = spin({r_lrf_trf_.narrow(1, 0, 1), rate_lrf_.narrow(1, 0, 1)}, frame.periods);
   const MotionTensors tumbled = tumble({r_lrf_trf_.narrow(1, 1, kOthers), rate_lrf_.narrow(1, 1, kOthers)},
-                                       laws_.data() + 1, frame.periods);
+                                       motion_models_.data() + 1, frame.periods);
   r_lrf_trf_ = torch::cat({spun.r_lrf_trf, tumbled.r_lrf_trf}, 1);
   rate_lrf_ = torch::cat({spun.rate_lrf, tumbled.rate_lrf}, 1);
 }
 
 torch::Tensor TrackModule::lstm_input(const FrameHypotheses& frame) const {
-  const torch::Tensor predicted = picked(r_lrf_trf_, law());
+  const torch::Tensor predicted = picked(r_lrf_trf_, motion_model());
   const torch::Tensor relative = torch::matmul(predicted.transpose(-1, -2).unsqueeze(1), frame.r_lrf_trf);
   return torch::cat(
       {frame.features, two_columns(relative).flatten(1), frame.probabilities, two_columns(predicted)}, -1);
@@ -212,7 +213,7 @@ Fusion TrackModule::advance(const FrameHypotheses& frame, const torch::Tensor& h
 
   const torch::Tensor hypotheses = frame.r_lrf_trf.unsqueeze(1);  // [B, 1, 8, 3, 3]
   const torch::Tensor candidates =
-      torch::cat({hypotheses.expand({-1, gnc::kLaws, -1, -1, -1}), r_lrf_trf_.unsqueeze(2)}, 2);
+      torch::cat({hypotheses.expand({-1, gnc::kMotionModels, -1, -1, -1}), r_lrf_trf_.unsqueeze(2)}, 2);
   const torch::Tensor means = means_of_clusters(candidates, weights.unsqueeze(1));  // [B, 5, 9, 3, 3]
   const torch::Tensor answers = picked(means, anchor, 2);
   const torch::Tensor near =
@@ -233,14 +234,14 @@ Fusion TrackModule::advance(const FrameHypotheses& frame, const torch::Tensor& h
       (kPi * torch::sigmoid(error_logit)).square().clamp_min(kLeastVariance_rad2).detach().unsqueeze(1);
   log_likelihood_ = kMemory * log_likelihood_ - gains.evidence / variance * misses;
   log_likelihood_ = (log_likelihood_ - log_likelihood_.amax(-1, true)).clamp_min(kLeastLogLikelihood);
-  // A law that has lost the target continues from the state of the best law that has not.
+  // A motion model that has lost the target continues from the state of the best motion model that has not.
   const torch::Tensor lost = misses >= kMissOfLostTarget;
   const torch::Tensor best = standing().masked_fill(lost, -1e9).argmax(-1);
   const torch::Tensor moved = (lost & ~lost.all(-1, true)).unsqueeze(-1);
   r_lrf_trf_ = torch::where(moved.unsqueeze(-1), picked(answers, best).unsqueeze(1), answers);
   rate_lrf_ = torch::where(moved, picked(rate_lrf_, best).unsqueeze(1), rate_lrf_);
   ++frames_;
-  return {picked(r_lrf_trf_, law()), picked(means, law()), anchor_logits, error_logit};
+  return {picked(r_lrf_trf_, motion_model()), picked(means, motion_model()), anchor_logits, error_logit};
 }
 
 }  // namespace tumblesight::sim

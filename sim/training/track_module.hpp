@@ -2,7 +2,7 @@
 // (tests/unit/sim/training/export_test.cpp) as long as the chaser does not turn and two frames are close
 // enough in time to tell the rate (gnc::kLongestToFindRate_ns).
 //
-// Shapes: B rows of a batch, 8 hypotheses, 9 candidates, 5 laws of motion.
+// Shapes: B rows of a batch, 8 hypotheses, 9 candidates, 5 motion models.
 #pragma once
 
 #include <torch/torch.h>
@@ -37,7 +37,8 @@ struct Fusion {
 // One track per row of the batch. For every frame call predict(), lstm_input() and advance(), in this order.
 class TrackModule {
  public:
-  explicit TrackModule(const gnc::Inertia<float>& inertia) : laws_(gnc::motion_laws<float>(inertia)) {}
+  explicit TrackModule(const gnc::Inertia<float>& inertia)
+      : motion_models_(gnc::motion_models<float>(inertia)) {}
   void predict(const FrameHypotheses& frame);
   torch::Tensor lstm_input(const FrameHypotheses& frame) const;  // [B, 190]
   // `head_output`: of the recurrent head [B, 20].
@@ -45,12 +46,12 @@ class TrackModule {
 
  private:
   torch::Tensor standing()
-      const;                  // log-likelihood minus the evidence required (gnc::kRequiredEvidence) [B, 5]
-  torch::Tensor law() const;  // index of the law with the highest standing [B]
+      const;  // log-likelihood minus the evidence required (gnc::kRequiredEvidence) [B, 5]
+  torch::Tensor motion_model() const;  // index of the motion model with the highest standing [B]
 
-  gnc::MotionLaws<float> laws_;
+  gnc::MotionModels<float> motion_models_;
   int frames_ = 0;
-  // Per law of motion. After predict() they refer to the coming frame, after advance() to the frame just
+  // Per motion model. After predict() they refer to the coming frame, after advance() to the frame just
   // processed.
   torch::Tensor r_lrf_trf_, rate_lrf_;  // [B, 5, 3, 3], [B, 5, 3]
   torch::Tensor log_likelihood_;        // [B, 5]

@@ -65,7 +65,7 @@ struct Shown {
   gnc::Motion<Fixed> network;
   std::uint32_t odds_ppm = 0;
   std::array<std::int32_t, 3> centroid_mm{};
-  int law = 0;
+  int motion_model = 0;
 };
 
 // Runs of rays with one range each, with or without the rays of the target.
@@ -95,7 +95,7 @@ std::unique_ptr<Shown> shown_of(Input& input) {
   shown->odds_ppm = input.u32();
   for (std::int32_t& mm : shown->centroid_mm)
     mm = static_cast<std::int32_t>(input.u32() % 1'000'001) - 500'000;
-  shown->law = input.u8() % gnc::kLaws;
+  shown->motion_model = input.u8() % gnc::kMotionModels;
   shown->image.rays = static_cast<std::uint16_t>(16 + input.u8() % (gnc::RangeImage::kMaxRays - 15));
   shown->image.fov_urad = gnc::kMinFov_urad + input.u32() % (gnc::kMaxFov_urad - gnc::kMinFov_urad + 1);
   return shown;
@@ -117,19 +117,19 @@ std::vector<gnc::PoseEstimate> track(const std::vector<std::uint8_t>& section, c
                                      const std::vector<std::unique_ptr<Shown>>& frames) {
   static gnc::PoseScratch scratch;
   static gnc::ScreenVertices vertices;
-  const gnc::MotionLaws<Fixed> laws = gnc::motion_laws<Fixed>(gnc::Inertia<Fixed>());
+  const gnc::MotionModels<Fixed> motion_models = gnc::motion_models<Fixed>(gnc::Inertia<Fixed>());
   auto state = std::make_unique<gnc::PoseTrackerState>();
   const gnc::PoseTarget with_mesh{SurfaceMesh(section.data()), target.radius_mm, target.noise};
   std::vector<gnc::PoseEstimate> estimates;
   for (const auto& shown : frames) {
-    const gnc::PoseFrame frame{shown->image,   shown->mask,   shown->elapsed_ns, shown->turn,
-                               shown->network, shown->second, shown->odds_ppm,   shown->centroid_mm,
-                               laws,           shown->law};
+    const gnc::PoseFrame frame{shown->image,   shown->mask,        shown->elapsed_ns, shown->turn,
+                               shown->network, shown->second,      shown->odds_ppm,   shown->centroid_mm,
+                               motion_models,  shown->motion_model};
     track_pose(with_mesh, frame, scratch, vertices, *state, estimates.emplace_back());
     check(estimates.back());
     require(state->proven_q8 <= state->advantage_q8, "no more is proven than the advantage");
     const gnc::PoseMotion later =
-        later_pose(*state, laws, shown->elapsed_ns, gnc::Matrix3<Fixed>::Identity());
+        later_pose(*state, motion_models, shown->elapsed_ns, gnc::Matrix3<Fixed>::Identity());
     check_quaternion(pose_state(later).q_lrf_trf);
   }
   return estimates;

@@ -216,29 +216,29 @@ TEST(Propagate, DependsOnRatiosOfTheInertiaOnly) {
 }
 
 // Verifies TS-EST-140.
-TEST(MotionLaws, AreASpinTheInertiaAndEachOfItsMomentsHalved) {
+TEST(MotionModels, AreASpinTheInertiaAndEachOfItsMomentsHalved) {
   const Eigen::Matrix3f shape = tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F);
   Inertia<float> inertia;
   ASSERT_TRUE(make_inertia<float>(shape, inertia));
-  const MotionLaws<float> laws = motion_laws<float>(inertia);
-  EXPECT_EQ(laws[kSpinLaw].tensor_trf, Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
+  const MotionModels<float> motion_models = motion_models<float>(inertia);
+  EXPECT_EQ(motion_models[kSpinModel].tensor_trf, Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
   const Eigen::Matrix3f own = shape * (3.0F / shape.trace());
-  EXPECT_LT((laws[kTumbleLaw].tensor_trf - own).norm(), 1e-6F);
+  EXPECT_LT((motion_models[kTumbleModel].tensor_trf - own).norm(), 1e-6F);
   for (int axis = 0; axis < 3; ++axis) {
     Eigen::Matrix3f scale_half = Eigen::Matrix3f::Identity();
     scale_half(axis, axis) = std::sqrt(0.5F);
-    const Inertia<float>& halved = laws[2 + axis];
+    const Inertia<float>& halved = motion_models[2 + axis];
     const Eigen::Matrix3f expected = scale_half * shape * scale_half;
     EXPECT_LT((halved.tensor_trf - expected * (3.0F / expected.trace())).norm(), 1e-6F) << axis;
     EXPECT_LT((halved.inverse_trf * halved.tensor_trf - Eigen::Matrix3f::Identity()).norm(), 1e-5F) << axis;
   }
 }
 
-TEST(MotionLaws, KeepAnInertiaThatCannotBeHalved) {
+TEST(MotionModels, KeepAnInertiaThatCannotBeHalved) {
   Inertia<float> thinnest;
   for (float thin = 1.0F; make_inertia<float>(tensor(1.0F, 1.0F, thin), thinnest); thin *= 0.5F) {
   }
-  const Inertia<float> halved = motion_laws<float>(thinnest)[4];
+  const Inertia<float> halved = motion_models<float>(thinnest)[4];
   EXPECT_EQ(halved.tensor_trf, thinnest.tensor_trf);
   EXPECT_EQ(halved.inverse_trf, thinnest.inverse_trf);
 }

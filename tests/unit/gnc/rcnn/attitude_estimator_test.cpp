@@ -110,13 +110,16 @@ TEST(AttitudeEstimator, FollowsTheDoubleReferenceOverASequence) {
       estimator->save(state);
       EXPECT_LT(largest_difference(state.lstm.h.data(), network.h), 5e-4);
       EXPECT_LT(largest_difference(state.lstm.c.data(), network.c), 5e-4);
-      for (int law = 0; law < kLaws; ++law) {
-        const Motion<float>& motion = state.track.motion[law];
-        EXPECT_LT((motion.r_lrf_trf.cast<double>() - track.motion[law].attitude).norm(), 5e-4) << law;
-        EXPECT_LT((motion.rate_lrf.cast<double>() - track.motion[law].rate).norm(), 5e-4) << law;
-        EXPECT_NEAR(state.track.log_likelihood[law], track.log_likelihood[law], 0.02) << law;
+      for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+        const Motion<float>& motion = state.track.motion[motion_model];
+        EXPECT_LT((motion.r_lrf_trf.cast<double>() - track.motion[motion_model].attitude).norm(), 5e-4)
+            << motion_model;
+        EXPECT_LT((motion.rate_lrf.cast<double>() - track.motion[motion_model].rate).norm(), 5e-4)
+            << motion_model;
+        EXPECT_NEAR(state.track.log_likelihood[motion_model], track.log_likelihood[motion_model], 0.02)
+            << motion_model;
       }
-      EXPECT_LT(angle_between(estimate.q_lrf_trf, track.motion[track.law()].attitude), 5e-4);
+      EXPECT_LT(angle_between(estimate.q_lrf_trf, track.motion[track.motion_model()].attitude), 5e-4);
       EXPECT_LT(angle_between(estimate.q_lrf_trf_single_frame, track.single_frame()), 5e-5);
       EXPECT_NEAR(1e-6 * estimate.predicted_error_urad, track.error_rad, 5e-4);
       EXPECT_NEAR(1e-6 * estimate.predicted_error_single_frame_urad, track.single_frame_error_rad(), 5e-5);
@@ -147,10 +150,10 @@ TEST(AttitudeEstimator, CrcOfTheStateCoversEveryMember) {
   };
   add([](auto& s) { return s.lstm.h.data(); }, shape::kLstm);
   add([](auto& s) { return s.lstm.c.data(); }, shape::kLstm);
-  add([](auto& s) { return s.track.log_likelihood.data(); }, kLaws);
-  for (int law = 0; law < kLaws; ++law) {
-    add([law](auto& s) { return s.track.motion[law].r_lrf_trf.data(); }, 9);
-    add([law](auto& s) { return s.track.motion[law].rate_lrf.data(); }, 3);
+  add([](auto& s) { return s.track.log_likelihood.data(); }, kMotionModels);
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    add([motion_model](auto& s) { return s.track.motion[motion_model].r_lrf_trf.data(); }, 9);
+    add([motion_model](auto& s) { return s.track.motion[motion_model].rate_lrf.data(); }, 3);
   }
   std::set<std::uint32_t> crcs{estimator->state_crc32()};
   for (const auto& change : changes) {

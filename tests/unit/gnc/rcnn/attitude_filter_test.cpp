@@ -52,7 +52,7 @@ TEST(AttitudeFilter, FollowsAConstantRateAndLearnsIt) {
       const TrackedAttitude<float> tracked = follow(make_frame({{truth, 1.0F}}), kNoCorrection, track);
       EXPECT_LT(angle_between(tracked.r_lrf_trf, truth), k == 0 ? 1e-6 : 0.02 * kDegree) << k;
       if (k == 0) continue;
-      const Motion<float>& motion = track.motion[static_cast<int>(track.law())];
+      const Motion<float>& motion = track.motion[static_cast<int>(track.motion_model())];
       EXPECT_EQ(tracked.r_lrf_trf, motion.r_lrf_trf);
       const double rate_error = (motion.rate_lrf.cast<double>() - rate).norm();
       EXPECT_LT(rate_error, 0.1 * kDegree) << k;

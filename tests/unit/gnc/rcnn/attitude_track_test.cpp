@@ -33,7 +33,7 @@ Head head_with(int index, float value) {
 const Head kConfident = head_with(kErrorLogit, -6.0F);
 
 const Motion<float>& current_motion(const AttitudeTrack<float>& track) {
-  return track.motion[track.law()];
+  return track.motion[track.motion_model()];
 }
 
 double rate_error(const AttitudeTrack<float>& track, const Eigen::Vector3d& rate = kRate) {
@@ -94,18 +94,23 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
       ++compared;
       const TrackedAttitude<float> tracked =
           follow(decode_hypotheses<float>(output, r_lrf_view), head, track, inertia);
-      for (int law = 0; law < kLaws; ++law) {
-        ASSERT_LT((track.motion[law].r_lrf_trf.cast<double>() - reference.motion[law].attitude).norm(), 2e-5);
-        ASSERT_LT((track.motion[law].rate_lrf.cast<double>() - reference.motion[law].rate).norm(), 2e-5);
-        ASSERT_NEAR(track.log_likelihood[law], reference.log_likelihood[law], 5e-3);
+      for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+        ASSERT_LT(
+            (track.motion[motion_model].r_lrf_trf.cast<double>() - reference.motion[motion_model].attitude)
+                .norm(),
+            2e-5);
+        ASSERT_LT(
+            (track.motion[motion_model].rate_lrf.cast<double>() - reference.motion[motion_model].rate).norm(),
+            2e-5);
+        ASSERT_NEAR(track.log_likelihood[motion_model], reference.log_likelihood[motion_model], 5e-3);
       }
       if (reference.margin() > 0.01) {  // closer than that, rounding decides
-        ASSERT_EQ(track.law(), reference.law());
+        ASSERT_EQ(track.motion_model(), reference.motion_model());
       }
       ASSERT_EQ(tracked.r_lrf_trf, current_motion(track).r_lrf_trf);
       ASSERT_NEAR(tracked.predicted_error_rad, reference.error_rad, 1e-6);
     }
-    tumbling += reference.law() > 0 ? 1 : 0;
+    tumbling += reference.motion_model() > 0 ? 1 : 0;
     merged += reference.means_taken;
     corrected += reference.rates_corrected;
   }
@@ -118,7 +123,7 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
 TEST(AttitudeTrack, StartsWithTheLikeliestHypothesisAtRest) {
   const Hypotheses<float> frame = make_frame({{kStart, 0.6F}, {kStart * kSymmetry, 0.4F}});
   const Prediction<float> prediction =
-      predict<float>(AttitudeTrack<float>{}, motion_laws<float>(Inertia<float>{}), frame);
+      predict<float>(AttitudeTrack<float>{}, motion_models<float>(Inertia<float>{}), frame);
   for (const Motion<float>& motion : prediction.motion) {
     EXPECT_EQ(motion.r_lrf_trf, frame.r_lrf_trf[0]);
     EXPECT_EQ(motion.rate_lrf.norm(), 0.0F);
@@ -206,7 +211,7 @@ TEST(AttitudeTrack, KeepsItsRateWhenItChangesToASymmetricAttitude) {
   EXPECT_LT(angle_between(current_motion(track).r_lrf_trf, truth_after(12) * kSymmetry), 1e-5);
   EXPECT_LT(rate_error(track), 1e-4);
   const Prediction<float> next =
-      predict<float>(track, motion_laws<float>(Inertia<float>{}), make_frame({{kStart, 1.0F}}));
+      predict<float>(track, motion_models<float>(Inertia<float>{}), make_frame({{kStart, 1.0F}}));
   EXPECT_LT(angle_between(next.r_lrf_trf(), truth_after(13) * kSymmetry), 2e-4);
 }
 
@@ -252,7 +257,8 @@ TEST(AttitudeTrack, FindsTheRateAtAnyTimeBetweenFrames) {
 // A frame of the estimator when the rate of the track is not known, without the network.
 bool follow_without_rate(const Hypotheses<float>& frame, const FrameInterval& interval,
                          AttitudeTrack<float>& track) {
-  Prediction<float> prediction = predict<float>(track, motion_laws<float>(Inertia<float>{}), frame, interval);
+  Prediction<float> prediction =
+      predict<float>(track, motion_models<float>(Inertia<float>{}), frame, interval);
   const bool confirmed = keep_confirmed<float>(frame, interval, prediction, track);
   EXPECT_TRUE(confirmed || !prediction.has_track);
   advance<float>(frame, prediction, kNoCorrection, track);
@@ -287,8 +293,8 @@ TEST(AttitudeTrack, AWrongRateDoesNotSpoilTheAttitude) {
   const Eigen::Matrix3d last =
       turn(0.4, {0.0, 0.0, 1.0}) * Eigen::Matrix3d(current_motion(track).r_lrf_trf.cast<double>());
   EXPECT_FALSE(follow_without_rate(frame, interval, track));
-  advance<float>(frame, predict<float>(alone, motion_laws<float>(Inertia<float>{}), frame, {}), kNoCorrection,
-                 alone);
+  advance<float>(frame, predict<float>(alone, motion_models<float>(Inertia<float>{}), frame, {}),
+                 kNoCorrection, alone);
   EXPECT_EQ(current_motion(track).r_lrf_trf, current_motion(alone).r_lrf_trf);
   EXPECT_EQ(track.frames, 1U);
   const Eigen::Vector3d rate = current_motion(track).rate_lrf.cast<double>();
@@ -318,7 +324,7 @@ TEST(AttitudeTrack, CoastsOverGapsOfAnyLength) {
   for (const double gap : {0.3, 1.5, 2.0, 3.0, 7.0, 8.0}) {
     AttitudeTrack<float> track = converged_track(12);
     const Eigen::Matrix3d truth = turn((11.0 + gap) * kRate) * kStart;
-    const Prediction<float> prediction = predict<float>(track, motion_laws<float>(Inertia<float>{}),
+    const Prediction<float> prediction = predict<float>(track, motion_models<float>(Inertia<float>{}),
                                                         make_frame({{kStart, 1.0F}}), interval_of(gap));
     EXPECT_LT(angle_between(prediction.r_lrf_trf(), truth), 1e-3) << gap;
     follow(make_frame({{truth, 1.0F}}), kNoCorrection, track, {}, interval_of(gap));
@@ -364,14 +370,14 @@ TEST(AttitudeTrack, FollowsASpinFromATurningChaser) {
 }
 
 // Verifies TS-EST-140.
-TEST(AttitudeTrack, FindsTheLawOfMotion) {
-  const MotionLaws<float> laws = motion_laws<float>(slender_body());
-  for (int law = 0; law < kLaws; ++law) {
-    SCOPED_TRACE(law);
+TEST(AttitudeTrack, FindsTheMotionModel) {
+  const MotionModels<float> motion_models = motion_models<float>(slender_body());
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    SCOPED_TRACE(motion_model);
     Motion<float> truth{kStart.cast<float>(),
                         (20.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized()).cast<float>()};
     AttitudeTrack<float> track;
-    for (int k = 0; k < 12; ++k, truth = propagate<float>(truth, laws[law])) {
+    for (int k = 0; k < 12; ++k, truth = propagate<float>(truth, motion_models[motion_model])) {
       const Eigen::Matrix3d exact = truth.r_lrf_trf.cast<double>();
       const TrackedAttitude<float> tracked =
           follow(make_frame({{exact, 1.0F}}), kConfident, track, slender_body());
@@ -379,14 +385,14 @@ TEST(AttitudeTrack, FindsTheLawOfMotion) {
         EXPECT_LT(angle_between(tracked.r_lrf_trf, exact), 1.0 * kDegree) << k;
       }
     }
-    EXPECT_EQ(track.law(), law);
-    EXPECT_EQ(predict<float>(track, laws, make_frame({{kStart, 1.0F}})).law, law);
-    EXPECT_EQ(track.log_likelihood[law], 0.0F);
-    EXPECT_LT(track.log_likelihood[law == kSpinLaw ? kTumbleLaw : kSpinLaw], -2.0F);
+    EXPECT_EQ(track.motion_model(), motion_model);
+    EXPECT_EQ(predict<float>(track, motion_models, make_frame({{kStart, 1.0F}})).motion_model, motion_model);
+    EXPECT_EQ(track.log_likelihood[motion_model], 0.0F);
+    EXPECT_LT(track.log_likelihood[motion_model == kSpinModel ? kTumbleModel : kSpinModel], -2.0F);
   }
 }
 
-TEST(AttitudeTrack, FindsNoLawFromUncertainMeasurements) {
+TEST(AttitudeTrack, FindsNoMotionModelFromUncertainMeasurements) {
   const Inertia<float> inertia = slender_body();
   Motion<float> truth{kStart.cast<float>(), {0.1F, -0.08F, 0.2F}};
   AttitudeTrack<float> track;
@@ -394,7 +400,8 @@ TEST(AttitudeTrack, FindsNoLawFromUncertainMeasurements) {
     follow(make_frame({{truth.r_lrf_trf.cast<double>(), 1.0F}}), head_with(kErrorLogit, 0.0F), track,
            inertia);
   }
-  EXPECT_EQ(track.law(), kSpinLaw) << "an expected error of 90 degrees does not distinguish the laws";
+  EXPECT_EQ(track.motion_model(), kSpinModel)
+      << "an expected error of 90 degrees does not distinguish the motion_models";
 }
 
 // Verifies TS-EST-170.
@@ -456,8 +463,8 @@ TEST(AttitudeTrack, GivesUnitQuaternionsForAnyInput) {
     damage(head.data(), head.size());
     if (i % 2 == 0) damage(frame.r_lrf_trf[i % 8].data(), 9);
     if (i % 3 == 0) damage(frame.logit.data(), frame.logit.size());
-    if (i % 5 == 0) damage(track.motion[i % kLaws].r_lrf_trf.data(), 9);
-    if (i % 7 == 0) damage(track.motion[i % kLaws].rate_lrf.data(), 3);
+    if (i % 5 == 0) damage(track.motion[i % kMotionModels].r_lrf_trf.data(), 9);
+    if (i % 7 == 0) damage(track.motion[i % kMotionModels].rate_lrf.data(), 3);
     for (int k = 0; k < 3; ++k) {
       const TrackedAttitude<float> tracked = follow(frame, head, track);
       ASSERT_NEAR(to_double(quaternion_from_rotation(converted<Fixed>(tracked.r_lrf_trf))).norm(), 1.0, 1e-6);
@@ -467,17 +474,17 @@ TEST(AttitudeTrack, GivesUnitQuaternionsForAnyInput) {
   }
 }
 
-// The head may select the prediction while one law has lost the target. The result of that law then equals
-// its prediction, which must not count as a match.
+// The head may select the prediction while one motion model has lost the target. Its result then equals its
+// prediction, which must not count as a match.
 // Verifies TS-EST-140.
-TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
+TEST(AttitudeTrack, AMotionModelThatLostTheTargetDoesNotWinAndFindsItAgain) {
   const Inertia<float> inertia = slender_body();
   Motion<float> truth{kStart.cast<float>(),
                       (20.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized()).cast<float>()};
   AttitudeTrack<float> track;
   std::mt19937 engine(9);
   std::normal_distribution<double> normal(0.0, 1.5 * kDegree);
-  for (int k = 0; k < 40; ++k, truth = propagate<float>(truth, motion_laws<float>(inertia)[kSpinLaw])) {
+  for (int k = 0; k < 40; ++k, truth = propagate<float>(truth, motion_models<float>(inertia)[kSpinModel])) {
     const Eigen::Matrix3d exact = truth.r_lrf_trf.cast<double>();
     const double x = normal(engine);
     const double y = normal(engine);
@@ -490,7 +497,7 @@ TEST(AttitudeTrack, ALawThatLostTheTargetDoesNotWinAndFindsItAgain) {
       EXPECT_LT(angle_between(motion.r_lrf_trf, exact), 60.0 * kDegree) << "frame " << k;
     }
   }
-  EXPECT_EQ(track.law(), kSpinLaw);
+  EXPECT_EQ(track.motion_model(), kSpinModel);
 }
 
 // Verifies TS-EST-170.

@@ -65,14 +65,14 @@ ReferenceTrack::ReferenceTrack(const Eigen::Matrix3d& inertia_trf) {
   }
 }
 
-std::array<double, ReferenceTrack::kLaws> ReferenceTrack::scores() const {
-  std::array<double, kLaws> score = log_likelihood;
+std::array<double, ReferenceTrack::kMotionModels> ReferenceTrack::scores() const {
+  std::array<double, kMotionModels> score = log_likelihood;
   score[1] -= 0.5;
-  for (int law = 2; law < kLaws; ++law) score[law] -= 2.0;
+  for (int motion_model = 2; motion_model < kMotionModels; ++motion_model) score[motion_model] -= 2.0;
   return score;
 }
 
-int ReferenceTrack::law() const {
+int ReferenceTrack::motion_model() const {
   const auto score = scores();
   return static_cast<int>(std::max_element(score.begin(), score.end()) - score.begin());
 }
@@ -80,7 +80,7 @@ int ReferenceTrack::law() const {
 double ReferenceTrack::margin() const {
   auto score = scores();
   std::sort(score.begin(), score.end());
-  return score[kLaws - 1] - score[kLaws - 2];
+  return score[kMotionModels - 1] - score[kMotionModels - 2];
 }
 
 void ReferenceTrack::observe(const Values& output, const Eigen::Matrix3d& r_lrf_view) {
@@ -102,10 +102,10 @@ void ReferenceTrack::predict() {
     predicted_.fill({hypotheses_[likeliest_], Eigen::Vector3d::Zero()});
     return;
   }
-  for (int law = 0; law < kLaws; ++law) {
-    const Eigen::Matrix3d& inertia = inertia_[law];
-    Eigen::Matrix3d r = motion[law].attitude;
-    const Eigen::Vector3d momentum = r * inertia * r.transpose() * bounded(motion[law].rate);
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    const Eigen::Matrix3d& inertia = inertia_[motion_model];
+    Eigen::Matrix3d r = motion[motion_model].attitude;
+    const Eigen::Vector3d momentum = r * inertia * r.transpose() * bounded(motion[motion_model].rate);
     const auto rate_at = [&](const Eigen::Matrix3d& at) -> Eigen::Vector3d {
       return at * inertia.inverse() * at.transpose() * momentum;
     };
@@ -113,7 +113,7 @@ void ReferenceTrack::predict() {
       const Eigen::Matrix3d middle = rotation_from_vector(rate_at(r) / 8.0) * r;
       r = rotation_from_vector(rate_at(middle) / 4.0) * r;
     }
-    predicted_[law] = {r, rate_at(r)};
+    predicted_[motion_model] = {r, rate_at(r)};
   }
 }
 
@@ -128,34 +128,36 @@ ReferenceTrack::Values ReferenceTrack::lstm_input(const Values& dense2) const {
   const auto append = [&input](const Eigen::Matrix3d& rotation) {
     for (int i = 0; i < 6; ++i) input.push_back(rotation(i % 3, i / 3));
   };
-  const Eigen::Matrix3d& predicted = predicted_[law()].attitude;
+  const Eigen::Matrix3d& predicted = predicted_[motion_model()].attitude;
   for (const Eigen::Matrix3d& hypothesis : hypotheses_) append(predicted.transpose() * hypothesis);
   input.insert(input.end(), probability_.begin(), probability_.end());
   append(predicted);
   return input;
 }
 
-Eigen::Matrix3d ReferenceTrack::mean_around(int anchor, int law, const std::array<double, 9>& weights) {
+Eigen::Matrix3d ReferenceTrack::mean_around(int anchor, int motion_model,
+                                            const std::array<double, 9>& weights) {
   Eigen::Vector3d first = Eigen::Vector3d::Zero(), second = Eigen::Vector3d::Zero();
   int members = 0;
   for (int i = 0; i < 9; ++i) {
-    if (!same(candidate(i, law), candidate(anchor, law))) continue;
-    first += weights[i] * candidate(i, law).col(0);
-    second += weights[i] * candidate(i, law).col(1);
+    if (!same(candidate(i, motion_model), candidate(anchor, motion_model))) continue;
+    first += weights[i] * candidate(i, motion_model).col(0);
+    second += weights[i] * candidate(i, motion_model).col(1);
     ++members;
   }
   means_taken += members > 1 ? 1 : 0;
   return rotation_of(first, second);
 }
 
-void ReferenceTrack::correct(int law, int anchor, const std::array<double, 9>& weights,
+void ReferenceTrack::correct(int motion_model, int anchor, const std::array<double, 9>& weights,
                              double rate_correction) {
-  motion[law] = predicted_[law];
-  motion[law].attitude = mean_around(anchor, law, weights);
-  const Eigen::AngleAxisd turn(Eigen::Matrix3d(motion[law].attitude * predicted_[law].attitude.transpose()));
+  motion[motion_model] = predicted_[motion_model];
+  motion[motion_model].attitude = mean_around(anchor, motion_model, weights);
+  const Eigen::AngleAxisd turn(
+      Eigen::Matrix3d(motion[motion_model].attitude * predicted_[motion_model].attitude.transpose()));
   if (frames == 0 || turn.angle() >= M_PI / 3.0) return;
   const double prior = rate_gain_after(frames);
-  motion[law].rate +=
+  motion[motion_model].rate +=
       logistic(rate_correction + std::log(prior / (1.0 - prior))) * turn.angle() * turn.axis();
   ++rates_corrected;
 }
@@ -166,14 +168,14 @@ bool ReferenceTrack::same(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return angle_between_deg < 20.0;
 }
 
-double ReferenceTrack::squared_innovation(int law) {
+double ReferenceTrack::squared_innovation(int motion_model) {
   double probability_near = 0.0;
   for (int i = 0; i < 8; ++i) {
-    if (same(hypotheses_[i], predicted_[law].attitude)) probability_near += probability_[i];
+    if (same(hypotheses_[i], predicted_[motion_model].attitude)) probability_near += probability_[i];
   }
-  return probability_near < 0.1
-             ? kLost
-             : std::min(kLost, chord_square(motion[law].attitude, predicted_[law].attitude));
+  return probability_near < 0.1 ? kLost
+                                : std::min(kLost, chord_square(motion[motion_model].attitude,
+                                                               predicted_[motion_model].attitude));
 }
 
 void ReferenceTrack::advance(const Values& head) {
@@ -184,24 +186,28 @@ void ReferenceTrack::advance(const Values& head) {
                 std::exp(std::clamp(head.at(9 + i), -8.0, 8.0));
   }
   const int anchor = static_cast<int>(std::max_element(vote.begin(), vote.end()) - vote.begin());
-  for (int law = 0; law < kLaws; ++law) correct(law, anchor, weight, head.at(18));
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model)
+    correct(motion_model, anchor, weight, head.at(18));
   error_rad = M_PI * logistic(head.at(19));
   // Log-likelihood of Gaussian innovations; the first two frames are no evidence.
   const double a = attitude_gain_after(frames);
   const double variance = std::max(7e-4, error_rad * error_rad);
-  std::array<double, kLaws> innovation;
-  for (int law = 0; law < kLaws; ++law) {
-    innovation[law] = squared_innovation(law);
-    log_likelihood[law] *= 0.9;
-    if (frames >= 2) log_likelihood[law] -= (1.0 - a) / (2.0 * a * a) / variance * innovation[law];
+  std::array<double, kMotionModels> innovation;
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    innovation[motion_model] = squared_innovation(motion_model);
+    log_likelihood[motion_model] *= 0.9;
+    if (frames >= 2)
+      log_likelihood[motion_model] -= (1.0 - a) / (2.0 * a * a) / variance * innovation[motion_model];
   }
   const double best = *std::max_element(log_likelihood.begin(), log_likelihood.end());
   for (double& value : log_likelihood) value = std::max(-6.0, value - best);
-  std::array<double, kLaws> following = scores();
-  for (int law = 0; law < kLaws; ++law) following[law] -= innovation[law] < kLost ? 0.0 : 1e9;
-  const auto best_law = std::max_element(following.begin(), following.end()) - following.begin();
-  for (int law = 0; law < kLaws; ++law) {
-    if (innovation[law] >= kLost && innovation[best_law] < kLost) motion[law] = motion[best_law];
+  std::array<double, kMotionModels> following = scores();
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model)
+    following[motion_model] -= innovation[motion_model] < kLost ? 0.0 : 1e9;
+  const auto best_motion_model = std::max_element(following.begin(), following.end()) - following.begin();
+  for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
+    if (innovation[motion_model] >= kLost && innovation[best_motion_model] < kLost)
+      motion[motion_model] = motion[best_motion_model];
   }
   ++frames;
 }

@@ -10,7 +10,7 @@ namespace tumblesight::gnc {
 class ReferenceTrack {
  public:
   using Values = std::vector<double>;
-  static constexpr int kLaws = 5;
+  static constexpr int kMotionModels = 5;
   explicit ReferenceTrack(const Eigen::Matrix3d& inertia_trf);
 
   // A frame: the output of the CNN (57 values) and the view frame in which it states the attitudes.
@@ -27,11 +27,11 @@ class ReferenceTrack {
     Eigen::Matrix3d attitude;
     Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   };
-  // For each law: constant spin, torque-free rotation, and with the moment about x, y or z halved.
-  std::array<Motion, kLaws> motion;
-  std::array<double, kLaws> log_likelihood{};
-  int law() const;        // with the highest score
-  double margin() const;  // between its score and the next highest
+  // For each motion model: constant spin, torque-free rotation, and with the moment about x, y or z halved.
+  std::array<Motion, kMotionModels> motion;
+  std::array<double, kMotionModels> log_likelihood{};
+  int motion_model() const;  // with the highest score
+  double margin() const;     // between its score and the next highest
   double error_rad = 0.0;
   int frames = 0;
   int means_taken = 0;      // results that were the mean of several candidates
@@ -42,21 +42,21 @@ class ReferenceTrack {
 
  private:
   void predict();
-  std::array<double, kLaws> scores() const;
+  std::array<double, kMotionModels> scores() const;
   bool same(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
   double squared_innovation(
-      int law);  // squared angle between prediction and result, at most that of a lost target
-  void correct(int law, int anchor, const std::array<double, 9>& weights, double rate_correction);
+      int motion_model);  // squared angle between prediction and result, at most that of a lost target
+  void correct(int motion_model, int anchor, const std::array<double, 9>& weights, double rate_correction);
   // Weighted mean of the candidates near the anchor: the hypotheses of the frame and, last, the prediction of
-  // the law.
-  Eigen::Matrix3d mean_around(int anchor, int law, const std::array<double, 9>& weights);
-  const Eigen::Matrix3d& candidate(int i, int law) const {
-    return i < 8 ? hypotheses_[i] : predicted_[law].attitude;
+  // the motion model.
+  Eigen::Matrix3d mean_around(int anchor, int motion_model, const std::array<double, 9>& weights);
+  const Eigen::Matrix3d& candidate(int i, int motion_model) const {
+    return i < 8 ? hypotheses_[i] : predicted_[motion_model].attitude;
   }
 
-  std::array<Eigen::Matrix3d, kLaws> inertia_;
+  std::array<Eigen::Matrix3d, kMotionModels> inertia_;
   std::array<Eigen::Matrix3d, 8> hypotheses_;
-  std::array<Motion, kLaws> predicted_;
+  std::array<Motion, kMotionModels> predicted_;
   std::array<double, 8> logit_, probability_;
   int likeliest_ = 0;
   double single_frame_error_rad_ = 0.0;

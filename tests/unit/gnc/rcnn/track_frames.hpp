@@ -61,7 +61,7 @@ inline Hypotheses<float> make_frame(std::initializer_list<Alternative> alternati
 inline TrackedAttitude<float> follow(const Hypotheses<float>& frame, const HeadOutput<float>& head,
                                      AttitudeTrack<float>& track, const Inertia<float>& inertia = {},
                                      const FrameInterval& interval = {}) {
-  return advance<float>(frame, predict<float>(track, motion_laws<float>(inertia), frame, interval), head,
+  return advance<float>(frame, predict<float>(track, motion_models<float>(inertia), frame, interval), head,
                         track);
 }
 

@@ -1,4 +1,4 @@
-// How a frame is registered: where the fit starts, in how many steps, and under which laws of motion.
+// How a frame is registered: where the fit starts, in how many steps, and under which motion models.
 #include "tests/unit/gnc/registration/track_pose.hpp"
 
 namespace tumblesight::gnc {
@@ -13,7 +13,8 @@ class PoseSteps : public TrackPose {
  protected:
   // Tracks the frame; whether it was registered in these steps from the pose that the track predicted.
   bool tracks_in(const RefinementSettings& settings, const RefinementSettings* more = nullptr) {
-    const PoseMotion predicted = later_pose(*state_, laws_, period_ns_, fixed_rotation(turn_of_sensor_));
+    const PoseMotion predicted =
+        later_pose(*state_, motion_models_, period_ns_, fixed_rotation(turn_of_sensor_));
     const auto view = view_of(*frame_, 1e-6 * predicted.origin_lrf_um[1], body_.radius_m, stated_noise_);
     RefinementScratch& scratch = *expected_scratch_;
     scratch.surface.vertices = vertices_.get();
@@ -163,7 +164,7 @@ TEST_F(PoseSteps, OutOfViewTheFirstFrameStartsAtTheCentroid) {
             (std::array<std::int32_t, 3>{12'000'000, 20'000'000, 0}));
 }
 
-TEST_F(PoseSteps, PosesThatAgreeAreFittedOnceAndUnderOneLaw) {
+TEST_F(PoseSteps, PosesThatAgreeAreFittedOnceAndUnderOneMotionModel) {
   const PoseFitResult untouched = [this] {
     std::memset(static_cast<void*>(scratch_.get()), 0xA5, sizeof *scratch_);
     return scratch_->other_fit;
@@ -171,40 +172,41 @@ TEST_F(PoseSteps, PosesThatAgreeAreFittedOnceAndUnderOneLaw) {
   for (int k = 0; k < 8; ++k) {
     track_next();
     EXPECT_EQ(scratch_->other_fit.disagreement_q8, untouched.disagreement_q8) << k;
-    EXPECT_EQ(state_->challenger, kTumbleLaw) << k;
+    EXPECT_EQ(state_->challenger, kTumbleModel) << k;
   }
 }
 
-// Two poses that no rate joins tell nothing of the law.
-TEST_F(PoseSteps, TwoPosesAreFittedUnderOneLaw) {
+// Two poses that no rate joins tell nothing of the motion model.
+TEST_F(PoseSteps, TwoPosesAreFittedUnderOneMotionModel) {
   rate_ = Eigen::Vector3d::Zero();
   track_next();
   truth_.r_lrf_trf = rotation_of({0.0, 170.0 * kDegree, 0.0}) * truth_.r_lrf_trf;
   track_next();
-  EXPECT_EQ(state_->challenger, kTumbleLaw);
+  EXPECT_EQ(state_->challenger, kTumbleModel);
 }
 
-// A body that tumbles, in a track that takes it to spin. Between the challengers there is the network's law,
-// if it is another one than the track's.
-TEST_F(PoseSteps, LawsTakeTurnsWithTheNetworks) {
+// A body that tumbles, in a track that takes it to spin. Between the challengers there is the network's
+// motion model, if it is another one than the track's.
+TEST_F(PoseSteps, MotionModelsTakeTurnsWithTheNetworks) {
   tumble();
   for (int k = 0; k < 6; ++k) {
     state_->challenger = 0;  // the next one is the spin
     track_next();
   }
-  ASSERT_EQ(state_->law, kSpinLaw);
+  ASSERT_EQ(state_->motion_model, kSpinModel);
   see();
   const PoseTrackerState kept = *state_;
-  const auto law_after = [&](int challenger, int network_law) {
+  const auto motion_model_after = [&](int challenger, int network_motion_model) {
     *state_ = kept;
     state_->challenger = challenger;
-    network_law_ = network_law;
+    network_motion_model_ = network_motion_model;
     track_seen();
-    return state_->law;
+    return state_->motion_model;
   };
-  EXPECT_EQ(law_after(3, kTumbleLaw), kTumbleLaw);  // the network's turn
-  EXPECT_NE(law_after(4, kTumbleLaw), kTumbleLaw);  // that of law 2
-  EXPECT_EQ(law_after(1, kSpinLaw), kTumbleLaw);    // the network's, but the track follows that already
+  EXPECT_EQ(motion_model_after(3, kTumbleModel), kTumbleModel);  // the network's turn
+  EXPECT_NE(motion_model_after(4, kTumbleModel), kTumbleModel);  // that of motion model 2
+  EXPECT_EQ(motion_model_after(1, kSpinModel),
+            kTumbleModel);  // the network's, but the track follows that already
 }
 
 }  // namespace

@@ -141,11 +141,11 @@ TEST_F(TrackPose, AnotherBodyIsNotVerified) {
 
 // The network says that the target spins. Its poses tell that it tumbles.
 // Verifies TS-EST-206.
-TEST_F(TrackPose, FindsTheLawOfMotion) {
+TEST_F(TrackPose, FindsTheMotionModel) {
   tumble();
   PoseEstimate estimate;
   for (int k = 0; k < 10; ++k) estimate = track_next();
-  EXPECT_EQ(state_->law, kTumbleLaw);
+  EXPECT_EQ(state_->motion_model, kTumbleModel);
   EXPECT_EQ(estimate.doubts, 0U);
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(1e-6 * estimate.state.rate_lrf_urad_s[static_cast<std::size_t>(i)], rate_[i] / 2.7,
@@ -237,7 +237,7 @@ TEST_F(TrackPose, ADamagedStateIsUsedWithinItsLimits) {
   see();
   const PoseTrackerState kept = *state_;
   auto* const bytes = reinterpret_cast<std::uint8_t*>(state_.get());
-  constexpr std::size_t kSomeBits = 97, kFirst = 8 * offsetof(PoseTrackerState, law);
+  constexpr std::size_t kSomeBits = 97, kFirst = 8 * offsetof(PoseTrackerState, motion_model);
   for (std::size_t bit = 0; bit < 8 * sizeof(PoseTrackerState); bit += bit < kFirst ? kSomeBits : 1) {
     *state_ = kept;
     bytes[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
@@ -271,7 +271,7 @@ TEST_F(TrackPose, ADamagedSurfaceIsDrawnWithinItsVertices) {
 TEST_F(TrackPose, LaterPoseIsWhereTheTargetIsThen) {
   for (int k = 0; k < 6; ++k) track_next();
   const PoseState later =
-      pose_state(later_pose(*state_, laws_, kNominalPeriod_ns / 2, Matrix3<Fixed>::Identity()));
+      pose_state(later_pose(*state_, motion_models_, kNominalPeriod_ns / 2, Matrix3<Fixed>::Identity()));
   const Eigen::Matrix3d expected = rotation_of(0.5 * rate_) * truth_.r_lrf_trf;
   EXPECT_LT(angle_deg(to_double(later.q_lrf_trf).normalized().toRotationMatrix(), expected),
             kLargestError_deg);

@@ -100,7 +100,7 @@ class TrackPose : public testing::Test {
     for (int i = 0; i < 3; ++i) tensor(i, i) = Fixed(inertia_trf_(i, i));
     Inertia<Fixed> inertia;
     ASSERT_TRUE(make_inertia<Fixed>(tensor, inertia));
-    laws_ = motion_laws<Fixed>(inertia);
+    motion_models_ = motion_models<Fixed>(inertia);
     rate_ = {0.4, 0.3, -0.3};
   }
   // What is left of the time between two frames, of which see() passes a nominal period.
@@ -132,8 +132,8 @@ class TrackPose : public testing::Test {
         odds_ppm,
         {static_cast<std::int32_t>(1e3 * centroid_m_.x()), static_cast<std::int32_t>(1e3 * centroid_m_.y()),
          static_cast<std::int32_t>(1e3 * centroid_m_.z())},
-        laws_,
-        network_law_};
+        motion_models_,
+        network_motion_model_};
     // In flight other stages use this memory between the frames.
     std::memset(static_cast<void*>(scratch_.get()), left_in_scratch_, sizeof *scratch_);
     PoseEstimate estimate;
@@ -184,8 +184,8 @@ class TrackPose : public testing::Test {
   std::int64_t period_ns_ = kNominalPeriod_ns;
   std::int32_t budget_ = WorkBudget::kOfAFrame;
   int left_in_scratch_ = 0xA5;
-  int network_law_ = kSpinLaw;
-  MotionLaws<Fixed> laws_ = motion_laws<Fixed>(Inertia<Fixed>());
+  int network_motion_model_ = kSpinModel;
+  MotionModels<Fixed> motion_models_ = motion_models<Fixed>(Inertia<Fixed>());
   std::unique_ptr<PoseScratch> scratch_ = std::make_unique<PoseScratch>();
   std::unique_ptr<ScreenVertices> vertices_ = std::make_unique<ScreenVertices>();
   std::unique_ptr<PoseTrackerState> state_ = std::make_unique<PoseTrackerState>();

@@ -67,7 +67,7 @@ double true_rate_variance(int frames, double last_periods, double sigma_rad) {
           turn(error) * turn(Eigen::Vector3d(time * rate)) * turn(2.2, {1.0, -2.0, 0.5});
       follow(make_frame({{seen, 1.0F}}), {}, track, {}, interval);
     }
-    sum += ((track.motion[track.law()].rate_lrf.cast<double>() - rate) / 2.7).squaredNorm() / 3.0;
+    sum += ((track.motion[track.motion_model()].rate_lrf.cast<double>() - rate) / 2.7).squaredNorm() / 3.0;
   }
   return sum / kTracks;
 }

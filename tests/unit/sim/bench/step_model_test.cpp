@@ -30,7 +30,7 @@ constexpr std::uint32_t kSequences = 10;
 constexpr std::uint64_t kSeed = 11;
 
 // Of attitude, expected error and rate, in degrees and degrees/s, at every frame. Rounding alone gives
-// 0.0004. It can also decide between two laws of motion whose scores are equal within rounding: with other
+// 0.0004. It can also decide between two motion models whose scores are equal within rounding: with other
 // seeds 3 of 23,000 frames differed by more, by 1.9 degrees at most. These seeds have none of them.
 constexpr double kLargestDifference = 0.05;
 // Of 2,000 cells about 15 differ by more than 2 %: a return on the border of two cells falls into the other

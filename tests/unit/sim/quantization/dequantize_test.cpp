@@ -36,7 +36,7 @@ std::vector<ImageSequence> sequences(int first, int count) {
 // A network in fixed point with the scales of its activations.
 std::unique_ptr<QuantizedNetwork> quantized(const Float32Model& model) {
   Calibration calibration(model.weights,
-                          gnc::motion_laws<float>(gnc::converted<float>(model.header.inertia)));
+                          gnc::motion_models<float>(gnc::converted<float>(model.header.inertia)));
   for (const ImageSequence& sequence : sequences(0, 6)) calibration.add(sequence);
   return quantize(model.weights, calibration.statistics());
 }
@@ -122,15 +122,15 @@ ErrorSummary difference_from_fixed_point(const Float32Model& model,
   gnc::NetworkWeights<FixedPoint> weights;
   EXPECT_EQ(gnc::read_model_image<FixedPoint>(image.data(), image.size(), nullptr, header, weights),
             gnc::ModelStatus::kOk);
-  const auto float_laws = gnc::motion_laws<float>(gnc::converted<float>(header.inertia));
-  const auto fixed_laws = gnc::motion_laws<gnc::Fixed>(header.inertia);
+  const auto float_models = gnc::motion_models<float>(gnc::converted<float>(header.inertia));
+  const auto fixed_models = gnc::motion_models<gnc::Fixed>(header.inertia);
   const auto quaternion = [](const gnc::Matrix3<float>& rotation) {
     return Eigen::Quaterniond(rotation.cast<double>()).normalized();
   };
   std::vector<double> differences;
   for (const ImageSequence& sequence : sequences) {
-    const auto expected = attitudes_of<FixedPoint>(weights, fixed_laws, sequence);
-    const auto found = attitudes_of<Float32>(model.weights, float_laws, sequence);
+    const auto expected = attitudes_of<FixedPoint>(weights, fixed_models, sequence);
+    const auto found = attitudes_of<Float32>(model.weights, float_models, sequence);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       differences.push_back(kDegPerRad * angular_error_rad(quaternion(gnc::converted<float>(expected[i])),
                                                            quaternion(found[i])));
