@@ -54,7 +54,7 @@ struct CellResult {
 // Further runs, made under the condition `base`.
 struct Sweeps {
   Condition base = Condition::kNominal;
-  Curve by_rate_norm;                 // RateLaw::kNorm; cells use kComponents
+  Curve by_rate_norm;                 // RateDistribution::kNorm; cells use kComponents
   Curve by_hidden_share;              // at: share 0..1 of the target's returns that is hidden
   Curve long_run;                     // by frame
   std::uint32_t sweep_sequences = 0;  // per hidden share

@@ -44,7 +44,7 @@ std::vector<ExperimentRun> sweeps_of(const ExperimentSettings& settings) {
   const ExperimentRun base = plain_run(settings, settings.conditions.front());
   std::vector<ExperimentRun> runs{base};
   runs.back().kind = ExperimentRun::Kind::kRateNorm;
-  runs.back().scenario.rate_law = RateLaw::kNorm;
+  runs.back().scenario.rate_distribution = RateDistribution::kNorm;
   for (int step = 1; step <= kHiddenSteps; ++step) {
     runs.push_back(base);
     runs.back().kind = ExperimentRun::Kind::kHiddenShare;

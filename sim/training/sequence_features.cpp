@@ -41,7 +41,7 @@ Eigen::Matrix3d random_inertia(Random random) {
   return 0.5 * (inertia + inertia.transpose());
 }
 
-// Meshes, conditions, laws of the rate and sets of effects take turns, the meshes fastest.
+// Meshes, conditions, distributions of the rate and sets of effects take turns, the meshes fastest.
 std::uint64_t meshes_of(const TrainingTargets& targets) {
   return targets.effect_sets.front().lidars.size();
 }
@@ -88,7 +88,8 @@ ScenarioSettings scenario_of(const TrainingTargets& targets, std::uint64_t seed,
       scenario_of(targets, targets.conditions[turn % targets.conditions.size()],
                   effect_set_of(targets, number).effects, static_cast<int>(timing.frames.back()) + 1);
   settings.disturbances = timing.disturbances;
-  settings.rate_law = (turn / targets.conditions.size()) % 2 == 0 ? RateLaw::kComponents : RateLaw::kNorm;
+  settings.rate_distribution =
+      (turn / targets.conditions.size()) % 2 == 0 ? RateDistribution::kComponents : RateDistribution::kNorm;
   Random random(mix(mix(seed, number), 4));
   settings.inertia_kg_m2 = random.uniform() < 0.5 ? targets.inertia_kg_m2 : random_inertia(random);
   return settings;

@@ -32,12 +32,12 @@ FeatureSet rows_of(const FeatureSet& data, const torch::Tensor& rows, const torc
 
 class SequenceFeatures {
  public:
-  // Starts to compute sequences 0 .. count-1 of the seed. Meshes, conditions, rate laws and sets of
-  // effects are drawn in turn. A sequence keeps the strengths that it draws within the ranges of its set.
-  // Half of the tumbling bodies have a random inertia instead of the target's, so that the network does not
-  // rely on it. Half of the sequences come in the sensor's period, the others at other times or with single
-  // frames lost. Several ranks take turns, too: each sequence is computed by one of them. `targets` and
-  // `weights` must outlive this object.
+  // Starts to compute sequences 0 .. count-1 of the seed. Meshes, conditions, distributions of the rate and
+  // sets of effects are drawn in turn. A sequence keeps the strengths that it draws within the ranges of its
+  // set. Half of the tumbling bodies have a random inertia instead of the target's, so that the network does
+  // not rely on it. Half of the sequences come in the sensor's period, the others at other times or with
+  // single frames lost. Several ranks take turns, too: each sequence is computed by one of them. `targets`
+  // and `weights` must outlive this object.
   SequenceFeatures(const TrainingTargets& targets, const gnc::NetworkWeights<gnc::Float32>& weights,
                    std::uint64_t seed, std::int64_t count, int workers,
                    std::shared_ptr<Ranks> ranks = std::make_shared<Ranks>());

@@ -71,7 +71,7 @@ SensorSettings sensor_settings(Condition condition, const Effects& effects, cons
 }
 
 bool needs_inertia(Condition condition) {
-  return row_of(condition).rotation == RotationLaw::kTorqueFree;
+  return row_of(condition).rotation == RotationModel::kTorqueFree;
 }
 
 std::vector<Condition> all_training_conditions() {

@@ -17,7 +17,7 @@ namespace tumblesight::sim {
 // Append new ones at the end: the values are part of the fingerprints of training checkpoints.
 enum class Condition { kNominal, kDegraded, kOccluded, kTumbling, kStress, kOffset, kOutliers, kApproach };
 
-enum class RotationLaw {
+enum class RotationModel {
   kConstantRate,  // rate constant in the LiDAR frame (spin())
   kTorqueFree,    // rigid body with the target's inertia (Tumble)
 };
@@ -37,7 +37,7 @@ struct ConditionRow {
   const char* name;         // on the command line, in files and tables
   const char* explanation;  // one line, for help texts
   SensorSettings sensor;    // the paper's under it
-  RotationLaw rotation;
+  RotationModel rotation;
   double inertia_zz_factor;  // kTorqueFree: applied to the target's inertia about z
   bool occluded;             // a part of the chaser moves through the view
   double max_offset_swaths;  // the target lies off the boresight by up to this; 0: on it
@@ -59,21 +59,21 @@ inline constexpr SensorSettings kOutlierSensor{128, 0.0, 0.01};
 // clang-format off
 inline constexpr ConditionRow kConditions[] = {
     {Condition::kNominal, "nominal", "resolution FOV/128, range noise 0.1 m + 1 %",
-     kPaperSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, false, kBothRounds, true, true, kEveryTarget},
+     kPaperSensor, RotationModel::kConstantRate, 1.0, false, 0.0, false, kBothRounds, true, true, kEveryTarget},
     {Condition::kDegraded, "degraded", "resolution FOV/100, 10 % of the returns removed",
-     kDegradedSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, false, kBothRounds, true, true, kEveryTarget},
+     kDegradedSensor, RotationModel::kConstantRate, 1.0, false, 0.0, false, kBothRounds, true, true, kEveryTarget},
     {Condition::kOccluded, "occluded", "a part of the chaser hides 5 to 30 % of the target's returns",
-     kPaperSensor, RotationLaw::kConstantRate, 1.0, true, 0.0, false, kBothRounds, false, true, kEveryTarget},
+     kPaperSensor, RotationModel::kConstantRate, 1.0, true, 0.0, false, kBothRounds, false, true, kEveryTarget},
     {Condition::kTumbling, "tumbling", "torque-free rotation with the target's inertia",
-     kPaperSensor, RotationLaw::kTorqueFree, 1.0, false, 0.0, false, kBothRounds, false, false, kEveryTarget},
+     kPaperSensor, RotationModel::kTorqueFree, 1.0, false, 0.0, false, kBothRounds, false, false, kEveryTarget},
     {Condition::kStress, "stress", "tumbling with the inertia about z halved",
-     kPaperSensor, RotationLaw::kTorqueFree, 0.5, false, 0.0, false, kNotTrained, false, false, "near_shoemaker"},
+     kPaperSensor, RotationModel::kTorqueFree, 0.5, false, 0.0, false, kNotTrained, false, false, "near_shoemaker"},
     {Condition::kOffset, "offset", "target off the boresight by up to 20 % of the swath", kPaperSensor,
-     RotationLaw::kConstantRate, 1.0, false, kMaxOffset_swaths, false, kFirstRound, false, false, kEveryTarget},
+     RotationModel::kConstantRate, 1.0, false, kMaxOffset_swaths, false, kFirstRound, false, false, kEveryTarget},
     {Condition::kOutliers, "outliers", "1 % of the returns wrong by 5 sigma to 20 m",
-     kOutlierSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, false, kSecondRound, false, true, kEveryTarget},
+     kOutlierSensor, RotationModel::kConstantRate, 1.0, false, 0.0, false, kSecondRound, false, true, kEveryTarget},
     {Condition::kApproach, "approach", "the chaser closes in to 12 m at up to 0.5 m/s, drifts and turns",
-     kPaperSensor, RotationLaw::kConstantRate, 1.0, false, 0.0, true, kNotTrained, false, false, kNoTarget},
+     kPaperSensor, RotationModel::kConstantRate, 1.0, false, 0.0, true, kNotTrained, false, false, kNoTarget},
 };
 // clang-format on
 

@@ -38,7 +38,8 @@ Random stream_for(std::uint64_t seed, std::uint64_t index, std::uint64_t purpose
 Eigen::Vector3d apply_rate_settings(const ScenarioSettings& settings, Eigen::Vector3d rate, Random random) {
   const double largest_rad_s = settings.ranges.largest_rate_deg_s * kRadPerDeg;
   rate *= largest_rad_s / kMaxRate_rad_s;
-  if (settings.rate_law == RateLaw::kNorm) rate *= largest_rad_s * random.uniform() / rate.norm();
+  if (settings.rate_distribution == RateDistribution::kNorm)
+    rate *= largest_rad_s * random.uniform() / rate.norm();
   if (settings.rate_rad_s) rate *= *settings.rate_rad_s / rate.norm();
   return rate;
 }
@@ -158,7 +159,7 @@ Sequence make_sequence(const ScenarioSettings& settings, std::uint64_t seed, std
     sequence.frames.back().scene_seed = mix(sequence.noise_seed);
   }
   const ConditionRow& condition = row_of(settings.condition);
-  if (condition.rotation == RotationLaw::kTorqueFree) rotate_freely(settings, times_s, sequence.frames);
+  if (condition.rotation == RotationModel::kTorqueFree) rotate_freely(settings, times_s, sequence.frames);
   if (condition.occluded) add_occluder(settings, stream_for(seed, index, 2), sequence.frames);
   if (condition.max_offset_swaths > 0.0) {
     move_off_boresight(condition.max_offset_swaths, stream_for(seed, index, 3), sequence.frames);

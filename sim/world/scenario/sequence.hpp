@@ -16,7 +16,7 @@ namespace tumblesight::sim {
 inline constexpr int kFramesPerSequence = 10;
 
 // How the rate is drawn (paper, both strategies).
-enum class RateLaw {
+enum class RateDistribution {
   kComponents,  // components uniform, norm at most 20 deg/s
   kNorm,        // norm uniform on 0..20 deg/s, direction uniform
 };
@@ -37,7 +37,7 @@ std::string to_string(const RangeLimits& ranges);
 struct ScenarioSettings {
   Condition condition = Condition::kNominal;
   int frames = kFramesPerSequence;
-  RateLaw rate_law = RateLaw::kComponents;
+  RateDistribution rate_distribution = RateDistribution::kComponents;
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Identity();  // in the TRF; torque-free rotation only
   // Values that are fixed instead of drawn, for curves over them.
   std::optional<double> range_m{};

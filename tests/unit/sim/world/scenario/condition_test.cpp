@@ -77,7 +77,7 @@ TEST(Condition, ChangesWhatItsRowSaysAndNeitherAttitudeNorRangeNorRateNorNoise) 
       EXPECT_EQ(other.condition, condition);
       EXPECT_EQ(other.noise_seed, nominal.noise_seed) << name;
       ASSERT_EQ(other.frames.size(), nominal.frames.size());
-      const bool free = row.rotation == RotationLaw::kTorqueFree;
+      const bool free = row.rotation == RotationModel::kTorqueFree;
       for (std::size_t k = 0; k < nominal.frames.size(); ++k) {
         if (row.approaches) {
           if (k == 0) {

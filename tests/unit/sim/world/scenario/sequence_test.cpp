@@ -85,32 +85,32 @@ TEST(Sequence, IsTheSameWithEveryCompiler) {
 }
 
 // Norms relative to the largest possible one.
-std::vector<double> relative_norms(RateLaw law) {
+std::vector<double> relative_norms(RateDistribution distribution) {
   std::vector<double> norms;
   for (int i = 0; i < kMany; ++i) {
     ScenarioSettings settings;
     settings.frames = 1;
-    settings.rate_law = law;
+    settings.rate_distribution = distribution;
     norms.push_back(make_sequence(settings, 10, i).frames[0].rate_lrf_rad_s.norm() / (20.0 * kRadPerDeg));
   }
   return norms;
 }
 
-TEST(RateLaw, NormIsUniformUpTo20DegreesPerSecond) {
-  EXPECT_LT(unlikeliness(relative_norms(RateLaw::kNorm)), kUnlikely);
+TEST(RateDistribution, NormIsUniformUpTo20DegreesPerSecond) {
+  EXPECT_LT(unlikeliness(relative_norms(RateDistribution::kNorm)), kUnlikely);
 }
 
-TEST(RateLaw, ComponentsFillTheBallOf20DegreesPerSecondEvenly) {
-  std::vector<double> volumes = relative_norms(RateLaw::kComponents);
+TEST(RateDistribution, ComponentsFillTheBallOf20DegreesPerSecondEvenly) {
+  std::vector<double> volumes = relative_norms(RateDistribution::kComponents);
   for (double& v : volumes) v = v * v * v;
   EXPECT_LT(unlikeliness(volumes), kUnlikely);
 }
 
-// A mission may bound the rate; both laws keep the bound and draw the same directions.
-TEST(RateLaw, BothKeepALimitBelow20DegreesPerSecond) {
-  for (const RateLaw law : {RateLaw::kComponents, RateLaw::kNorm}) {
+// A mission may bound the rate; both distributions keep the bound and draw the same directions.
+TEST(RateDistribution, BothKeepALimitBelow20DegreesPerSecond) {
+  for (const RateDistribution distribution : {RateDistribution::kComponents, RateDistribution::kNorm}) {
     ScenarioSettings usual, slow;
-    usual.rate_law = slow.rate_law = law;
+    usual.rate_distribution = slow.rate_distribution = distribution;
     slow.ranges.largest_rate_deg_s = 5.0;
     EXPECT_FALSE(slow.ranges.are_the_papers());
     for (std::uint64_t i = 0; i < 300; ++i) {
@@ -122,10 +122,10 @@ TEST(RateLaw, BothKeepALimitBelow20DegreesPerSecond) {
   }
 }
 
-TEST(RateLaw, ChangesTheNormOnly) {
+TEST(RateDistribution, ChangesTheNormOnly) {
   ScenarioSettings settings;
   const Sequence components = make_sequence(settings, 11, 5);
-  settings.rate_law = RateLaw::kNorm;
+  settings.rate_distribution = RateDistribution::kNorm;
   const Sequence norm = make_sequence(settings, 11, 5);
   EXPECT_EQ(norm.frames[0].q_lrf_trf.coeffs(), components.frames[0].q_lrf_trf.coeffs());
   EXPECT_EQ(norm.frames[0].range_m, components.frames[0].range_m);
@@ -139,8 +139,8 @@ TEST(RateLaw, ChangesTheNormOnly) {
 TEST(Sequence, FixedValuesReplaceTheDrawnOnesAndChangeNoOtherDraw) {
   ScenarioSettings settings;
   settings.condition = Condition::kOccluded;
-  for (const RateLaw law : {RateLaw::kComponents, RateLaw::kNorm}) {
-    settings.rate_law = law;
+  for (const RateDistribution distribution : {RateDistribution::kComponents, RateDistribution::kNorm}) {
+    settings.rate_distribution = distribution;
     const Sequence drawn = make_sequence(settings, 12, 1);
     ScenarioSettings fixed_settings = settings;
     fixed_settings.range_m = 35.0;
@@ -189,10 +189,10 @@ TEST(Sequence, DrawsStrengthsWithinTheirRangesAndChangesNoOtherDraw) {
 
 TEST(Sequence, AtRateZeroTheTargetStandsStillUnderEveryLawAndCondition) {
   for (const std::string& name : condition_names()) {
-    for (const RateLaw law : {RateLaw::kComponents, RateLaw::kNorm}) {
+    for (const RateDistribution distribution : {RateDistribution::kComponents, RateDistribution::kNorm}) {
       ScenarioSettings settings;
       settings.condition = condition_from(name);
-      settings.rate_law = law;
+      settings.rate_distribution = distribution;
       settings.rate_rad_s = 0.0;
       const Sequence sequence = make_sequence(settings, 13, 2);
       for (const FrameTruth& frame : sequence.frames) {
