@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "gnc/tracking/chaser_attitude.hpp"
+#include "gnc/attitude/chaser_attitude.hpp"
 
 namespace tumblesight::hal {
 

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <vector>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "hal/posix/file_model_store.hpp"
 #include "hal/replay/recording.hpp"
 
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     recording.read_next(frame);
     // This example assumes frames 2.7 s apart and a chaser that does not turn, and starts again after a gap.
     // With step(frame, FrameInterval, estimate) the track lasts through gaps and turns:
-    // gnc/tracking/frame_tracker.hpp.
+    // gnc/estimation/frame_tracker.hpp.
     if (frame.exposure_time_ns - last_exposure_ns > 3'000'000'000) estimator.reset();
     gnc::AttitudeEstimate estimate;
     if (estimator.step(frame, estimate) != gnc::FrameStatus::kOk) continue;  // refused: nothing has changed

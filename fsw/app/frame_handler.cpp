@@ -1,7 +1,7 @@
 #include "fsw/app/frame_handler.hpp"
 
 #include "fsw/app/counter.hpp"
-#include "gnc/tracking/covariance.hpp"
+#include "gnc/estimation/covariance.hpp"
 
 namespace tumblesight::fsw {
 namespace {

@@ -5,10 +5,10 @@
 #include <cstdint>
 
 #include "fsw/config/limits.hpp"
+#include "gnc/attitude/chaser_attitude.hpp"
+#include "gnc/estimation/frame_gate.hpp"
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/lidar/range_image.hpp"
-#include "gnc/tracking/chaser_attitude.hpp"
-#include "gnc/tracking/frame_gate.hpp"
 #include "hal/link.hpp"
 #include "hal/messages/attitude_report.hpp"
 #include "hal/messages/command_packet.hpp"

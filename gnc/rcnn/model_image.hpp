@@ -26,8 +26,8 @@
 //        -     -  sections without gaps: the tensors in the order of for_each_tensor().
 //                 Fixed-point weights take one byte each, all other numbers four. In fixed point the last
 //                 two sections are the target's surface: points of it
-//                 (gnc/registration/surface_model.hpp), then its triangles
-//                 (gnc/registration/surface_mesh.hpp) and zeros up to SurfaceMesh::kMaxBytes
+//                 (gnc/surface/surface_model.hpp), then its triangles
+//                 (gnc/surface/surface_mesh.hpp) and zeros up to SurfaceMesh::kMaxBytes
 #pragma once
 
 #include <array>
@@ -36,10 +36,10 @@
 
 #include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
+#include "gnc/lidar/range_noise.hpp"
 #include "gnc/rcnn/network.hpp"
-#include "gnc/registration/explained_share.hpp"
-#include "gnc/registration/surface_mesh.hpp"
-#include "gnc/registration/surface_model.hpp"
+#include "gnc/surface/surface_mesh.hpp"
+#include "gnc/surface/surface_model.hpp"
 
 namespace tumblesight::gnc {
 

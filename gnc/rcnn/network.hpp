@@ -11,8 +11,6 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network_shape.hpp"
-#include "gnc/registration/explained_share.hpp"
-#include "gnc/registration/pose_tracker.hpp"
 
 namespace tumblesight::gnc {
 
@@ -138,44 +136,35 @@ Object& in_place(std::array<std::byte, kSize>& buffer) {
   return *reinterpret_cast<Object*>(buffer.data());
 }
 
-// Memory of the activations: two buffers for the layers' inputs, used in turn, and one for their sums. Each
-// buffer is as large as the largest object that it ever holds.
+// The activations: two buffers for the layers' inputs, used in turn, and one for their sums. Each buffer is
+// as large as the largest object that it ever holds.
 template <class N>
-class Arena {
+class Activations {
  public:
   // What layer kIndex reads. Its output is the input of layer kIndex + 1, in the other buffer.
   template <int kIndex>
   typename Layer<N, kIndex>::Input& input() {
     using Input = typename Layer<N, kIndex>::Input;
     if constexpr (kIndex % 2 == 0)
-      return in_place<Input>(buffers_.even);
+      return in_place<Input>(even_);
     else
-      return in_place<Input>(buffers_.odd);
+      return in_place<Input>(odd_);
   }
   template <int kIndex>
   typename Layer<N, kIndex>::Sums& sums() {
-    return in_place<typename Layer<N, kIndex>::Sums>(buffers_.sums);
+    return in_place<typename Layer<N, kIndex>::Sums>(sums_);
   }
-  // Over all three buffers.
-  DepthImageScratch& projection_scratch() { return in_place<DepthImageScratch>(all_); }
-  ExplainedShareScratch& explained_share_scratch() { return in_place<ExplainedShareScratch>(all_); }
-  PoseScratch& pose_scratch() { return in_place<PoseScratch>(all_); }
 
  private:
   using Totals = LayerTotals<N>;
-  struct Buffers {
-    alignas(64) std::array<std::byte, Totals::template kLargestInput<0>> even;
-    alignas(64) std::array<std::byte, Totals::kLargestSums> sums;
-    alignas(64) std::array<std::byte, Totals::template kLargestInput<1>> odd;
-  };
-  union {
-    Buffers buffers_;
-    alignas(64) std::array<std::byte, std::max(sizeof(DepthImageScratch), sizeof(PoseScratch))> all_;
-  };
+  alignas(64) std::array<std::byte, Totals::template kLargestInput<0>> even_;
+  alignas(64) std::array<std::byte, Totals::kLargestSums> sums_;
+  alignas(64) std::array<std::byte, Totals::template kLargestInput<1>> odd_;
 };
 
-// Weights (in fixed point they are read where the model image lies) and activations; place it in static
-// storage. Which instructions run does not depend on the image, the state or the weights.
+// The weights (in fixed point they are read where the model image lies) and the features of the last frame.
+// The caller holds the activations, in static storage. Which instructions run does not depend on the image,
+// the state or the weights.
 template <class N>
 class Network {
  public:
@@ -183,17 +172,10 @@ class Network {
   const NetworkWeights<N>& weights() const { return weights_; }
 
   // The CNN, on one image; no state.
-  void infer_frame(const DepthImage& image, OutputVector<typename N::Real>& out);
+  void infer_frame(const DepthImage& image, Activations<N>& activations, OutputVector<typename N::Real>& out);
   // LSTM and recurrent head. Advances `state` by one frame.
-  void infer_sequence(const LstmInput<N>& input, LstmState<N>& state, HeadOutput<typename N::Real>& out);
-
-  // Scratch for making the frame's depth image. It shares the memory of the activations: use it before
-  // infer_frame() only.
-  DepthImageScratch& projection_scratch() { return arena_.projection_scratch(); }
-  // The same for the check of the attitude: use it after infer_sequence() only.
-  ExplainedShareScratch& explained_share_scratch() { return arena_.explained_share_scratch(); }
-  // And for registration.
-  PoseScratch& pose_scratch() { return arena_.pose_scratch(); }
+  void infer_sequence(const LstmInput<N>& input, Activations<N>& activations, LstmState<N>& state,
+                      HeadOutput<typename N::Real>& out);
 
   // Of the last infer_frame(): the output of layer kFeatureLayer, after ReLU.
   const Features<N>& features() const { return features_; }
@@ -205,7 +187,6 @@ class Network {
  private:
   const Kernels<N>* kernels_ = &fastest_kernels<N>();
   NetworkWeights<N> weights_;
-  Arena<N> arena_;
   Features<N> features_{};
 };
 

@@ -34,53 +34,53 @@ template <class N>
 // One layer without state, from `in` to `out`.
 template <int kIndex, class N, class Out>
 [[gnu::always_inline]] inline void run_layer(const Kernels<N>& kernels, const NetworkWeights<N>& weights,
-                                             const typename Layer<N, kIndex>::Input& in, Arena<N>& arena,
-                                             Out& out) {
+                                             const typename Layer<N, kIndex>::Input& in,
+                                             Activations<N>& activations, Out& out) {
   constexpr LayerRow kRow = kLayers[kIndex];
-  LayerOfKind<kRow.kind>::template run<Layer<N, kIndex>, kRow.output>(kernels, layer_weights<kIndex>(weights),
-                                                                      in, arena.template sums<kIndex>(), out);
+  LayerOfKind<kRow.kind>::template run<Layer<N, kIndex>, kRow.output>(
+      kernels, layer_weights<kIndex>(weights), in, activations.template sums<kIndex>(), out);
 }
 
-// Layers kFirst to kLast, each from its input in the arena to the next one's. The last one writes `out`,
-// which is not observed.
+// Layers kFirst to kLast, each from its input among the activations to the next one's. The last one writes
+// `out`, which is not observed.
 template <int kFirst, int kLast, class N, class Out, class Observer>
 [[gnu::always_inline]] inline void run_layers(const Kernels<N>& kernels, const NetworkWeights<N>& weights,
-                                              Arena<N>& arena, Out& out, Observer&& observe) {
+                                              Activations<N>& activations, Out& out, Observer&& observe) {
   if constexpr (kFirst == kLast) {
-    run_layer<kLast>(kernels, weights, arena.template input<kLast>(), arena, out);
+    run_layer<kLast>(kernels, weights, activations.template input<kLast>(), activations, out);
   } else {
-    auto& next = arena.template input<kFirst + 1>();
-    run_layer<kFirst>(kernels, weights, arena.template input<kFirst>(), arena, next);
+    auto& next = activations.template input<kFirst + 1>();
+    run_layer<kFirst>(kernels, weights, activations.template input<kFirst>(), activations, next);
     observe(kLayers[kFirst].name, next);
-    run_layers<kFirst + 1, kLast>(kernels, weights, arena, out, observe);
+    run_layers<kFirst + 1, kLast>(kernels, weights, activations, out, observe);
   }
 }
 
 // The CNN. `features`: output of layer kFeatureLayer.
 template <class N, class Observer>
 void run_frame(const Kernels<N>& kernels, const NetworkWeights<N>& weights, const DepthImage& image,
-               Arena<N>& arena, Features<N>& features, OutputVector<typename N::Real>& out,
+               Activations<N>& activations, Features<N>& features, OutputVector<typename N::Real>& out,
                Observer&& observe) {
-  auto& folded = arena.template input<0>();
+  auto& folded = activations.template input<0>();
   space_to_depth<N>(image, folded);
   observe(kDepthInput, folded);
-  run_layers<0, kFeatureLayer>(kernels, weights, arena, features, observe);
+  run_layers<0, kFeatureLayer>(kernels, weights, activations, features, observe);
   observe(kLayers[kFeatureLayer].name, features);
-  run_layer<kCnnOutputLayer>(kernels, weights, features, arena, out);
+  run_layer<kCnnOutputLayer>(kernels, weights, features, activations, out);
 }
 
 // LSTM and recurrent head. Advances `state` by one frame.
 template <class N, class Observer>
 void run_sequence(const Kernels<N>& kernels, const NetworkWeights<N>& weights, const LstmInput<N>& input,
-                  Arena<N>& arena, LstmState<N>& state, HeadOutput<typename N::Real>& out,
+                  Activations<N>& activations, LstmState<N>& state, HeadOutput<typename N::Real>& out,
                   Observer&& observe) {
   Layer<N, kLstmLayer>::forward(kernels, layer_weights<kLstmLayer>(weights), input,
-                                arena.template sums<kLstmLayer>(), state);
+                                activations.template sums<kLstmLayer>(), state);
   observe(kLayers[kLstmLayer].name, state.h);
-  auto& head_input = arena.template input<kLstmLayer + 1>();
+  auto& head_input = activations.template input<kLstmLayer + 1>();
   const auto after_hidden = std::copy(state.h.begin(), state.h.end(), head_input.begin());
   std::copy(input.begin(), input.end(), after_hidden);
-  run_layers<kLstmLayer + 1, kHeadOutputLayer>(kernels, weights, arena, out, observe);
+  run_layers<kLstmLayer + 1, kHeadOutputLayer>(kernels, weights, activations, out, observe);
 }
 
 }  // namespace tumblesight::gnc

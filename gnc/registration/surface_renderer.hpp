@@ -6,8 +6,8 @@
 
 #include "gnc/attitude/rotation.hpp"
 #include "gnc/registration/frame_view.hpp"
-#include "gnc/registration/surface_mesh.hpp"
 #include "gnc/registration/work_budget.hpp"
+#include "gnc/surface/surface_mesh.hpp"
 
 namespace tumblesight::gnc {
 

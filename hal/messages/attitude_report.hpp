@@ -68,7 +68,7 @@ struct AttitudeReport {
   std::uint8_t doubts = 0;  // why the attitude is doubtful, or what is missing from it
   std::uint8_t law = 0;     // of motion, in use: gnc/attitude/motion.hpp
   // Angular rate of the target relative to the inertial frame, and the covariances of attitude and rate at
-  // the exposure: estimates from the expected error (gnc/tracking/covariance.hpp).
+  // the exposure: estimates from the expected error (gnc/estimation/covariance.hpp).
   std::array<std::int32_t, 3> rate_lrf_urad_s{};
   std::array<std::int32_t, 6> attitude_covariance_e8{};  // xx, xy, xz, yy, yz, zz [1e-8 rad^2]
   std::array<std::int32_t, 6> rate_covariance_e8{};      // [1e-8 rad^2/s^2]

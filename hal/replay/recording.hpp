@@ -20,8 +20,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "gnc/attitude/chaser_attitude.hpp"
 #include "gnc/lidar/range_image.hpp"
-#include "gnc/tracking/chaser_attitude.hpp"
 
 namespace tumblesight::hal::replay {
 

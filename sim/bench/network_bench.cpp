@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "gnc/lidar/depth_loops.hpp"
-#include "gnc/rcnn/attitude_estimator.hpp"
 #include "gnc/rcnn/network_flow.hpp"
 #include "sim/bench/peak.hpp"
 
@@ -120,15 +120,15 @@ class Bench {
     gnc::OutputVector<typename N::Real> output;
     gnc::HeadOutput<typename N::Real> head;
     return timed([&] {
-      estimator_->network().infer_frame(*images_[i % images_.size()], output);
-      estimator_->network().infer_sequence(lstm_input_, lstm_state_, head);
+      estimator_->network().infer_frame(*images_[i % images_.size()], *activations_, output);
+      estimator_->network().infer_sequence(lstm_input_, *activations_, lstm_state_, head);
     });
   }
   // From the depth image in the first layer's input to the last convolution's output.
   double convolutions_us(std::size_t i) {
     Clock::time_point begin, end;
     gnc::OutputVector<typename N::Real> output;
-    gnc::run_frame<N>(kernels_, estimator_->network().weights(), *images_[i % images_.size()], *arena_,
+    gnc::run_frame<N>(kernels_, estimator_->network().weights(), *images_[i % images_.size()], *activations_,
                       features_, output, [&](std::string_view name, const auto&) {
                         if (name == gnc::kDepthInput) begin = Clock::now();
                         if (name == gnc::kLayers[gnc::kImageLayerCount - 1].name) end = Clock::now();
@@ -143,7 +143,7 @@ class Bench {
   std::vector<std::unique_ptr<gnc::DepthImage>> images_;
   std::unique_ptr<gnc::AttitudeEstimator<N>> estimator_ = std::make_unique<gnc::AttitudeEstimator<N>>();
   std::unique_ptr<gnc::DepthImageScratch> scratch_ = std::make_unique<gnc::DepthImageScratch>();
-  std::unique_ptr<gnc::Arena<N>> arena_ = std::make_unique<gnc::Arena<N>>();
+  std::unique_ptr<gnc::Activations<N>> activations_ = std::make_unique<gnc::Activations<N>>();
   gnc::Features<N> features_{};
   gnc::LstmInput<N> lstm_input_{};
   gnc::LstmState<N> lstm_state_{};
@@ -217,11 +217,11 @@ class Comparison {
       gnc::OutputVector<float> their_output;
       gnc::HeadOutput<float> their_head;
       gnc::Features<gnc::Float32> features;
-      network_->infer_frame(*images_[i], our_output);
+      network_->infer_frame(*images_[i], *activations_, our_output);
       peer_.run_frame(their_images_[i], features, their_output);
       of_output.add(our_output, their_output);
       of_features.add(network_->features(), features);
-      network_->infer_sequence(lstm_input<N>(features), our_state, our_head);
+      network_->infer_sequence(lstm_input<N>(features), *activations_, our_state, our_head);
       peer_.run_sequence(lstm_input<gnc::Float32>(features), their_state, their_head);
       of_head.add(our_head, their_head);
     }
@@ -250,6 +250,7 @@ class Comparison {
 
   Peer& peer_;
   std::unique_ptr<gnc::Network<N>> network_;
+  std::unique_ptr<gnc::Activations<N>> activations_ = std::make_unique<gnc::Activations<N>>();
   std::vector<std::unique_ptr<gnc::DepthImage>> images_;
   std::vector<PeerImage> their_images_;
   gnc::LstmState<gnc::Float32> state_{};

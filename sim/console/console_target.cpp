@@ -1,7 +1,7 @@
 #include "sim/console/console_target.hpp"
 
 #include "gnc/rcnn/model_image.hpp"
-#include "gnc/registration/surface_mesh.hpp"
+#include "gnc/surface/surface_mesh.hpp"
 #include "sim/console/little_endian.hpp"
 #include "sim/model/model_file.hpp"
 

@@ -2,7 +2,7 @@
 // with fsw/config.
 #pragma once
 
-#include "gnc/tracking/frame_tracker.hpp"
+#include "gnc/estimation/frame_tracker.hpp"
 
 namespace tumblesight::sim {
 

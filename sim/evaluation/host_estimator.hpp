@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
-#include "gnc/tracking/frame_tracker.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
+#include "gnc/estimation/frame_tracker.hpp"
 
 namespace tumblesight::sim {
 

@@ -58,7 +58,7 @@ std::vector<gnc::Matrix3<typename N::Real>> follow(const gnc::NetworkWeights<N>&
                                                    const ImageSequence& sequence, Note&& note) {
   using Real = typename N::Real;
   const gnc::Kernels<N>& kernels = gnc::fastest_kernels<N>();
-  auto arena = std::make_unique<gnc::Arena<N>>();
+  auto activations = std::make_unique<gnc::Activations<N>>();
   gnc::LstmState<N> state;
   gnc::AttitudeTrack<Real> track;
   std::vector<gnc::Matrix3<Real>> attitudes;
@@ -67,12 +67,12 @@ std::vector<gnc::Matrix3<typename N::Real>> follow(const gnc::NetworkWeights<N>&
     gnc::OutputVector<Real> output;
     gnc::LstmInput<N> input;
     gnc::HeadOutput<Real> head;
-    gnc::run_frame<N>(kernels, weights, image, *arena, features, output, note);
+    gnc::run_frame<N>(kernels, weights, image, *activations, features, output, note);
     const auto hypotheses = gnc::decode_hypotheses<Real>(output, gnc::converted<Real>(image.r_lrf_view));
     const auto prediction = gnc::predict<Real>(track, motion_models, hypotheses);
     gnc::fill_lstm_input<N>(features, hypotheses, prediction.r_lrf_trf(), input);
     note("lstm_input", input);
-    gnc::run_sequence<N>(kernels, weights, input, *arena, state, head, note);
+    gnc::run_sequence<N>(kernels, weights, input, *activations, state, head, note);
     attitudes.push_back(gnc::advance<Real>(hypotheses, prediction, head, track).r_lrf_trf);
   }
   return attitudes;

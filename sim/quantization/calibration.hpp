@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "gnc/lidar/depth_image.hpp"
-#include "gnc/rcnn/attitude_estimator.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
+#include "gnc/attitude/chaser_attitude.hpp"
 #include "gnc/lidar/range_image.hpp"
-#include "gnc/tracking/chaser_attitude.hpp"
 #include "sim/recording/truth_file.hpp"
 #include "sim/world/frame_renderer.hpp"
 

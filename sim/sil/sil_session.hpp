@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "gnc/attitude/chaser_attitude.hpp"
 #include "gnc/lidar/range_image.hpp"
-#include "gnc/tracking/chaser_attitude.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/hello.hpp"
 #include "hal/dds/idl/peer_life.hpp"

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "gnc/attitude/chaser_attitude.hpp"
 #include "gnc/lidar/range_image.hpp"
-#include "gnc/tracking/chaser_attitude.hpp"
 #include "hal/dds/idl/topics.hpp"
 #include "sim/world/sensor/frame_truth.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "gnc/rcnn/model_format.hpp"
-#include "gnc/registration/surface_mesh.hpp"
+#include "gnc/surface/surface_mesh.hpp"
 #include "sim/surface/mesh_distance.hpp"
 #include "sim/surface/mesh_simplification.hpp"
 #include "sim/surface/outside_views.hpp"

@@ -1,4 +1,4 @@
-// The target's surface as triangles for the model image (gnc/registration/surface_mesh.hpp), simplified from
+// The target's surface as triangles for the model image (gnc/surface/surface_mesh.hpp), simplified from
 // its mesh.
 #pragma once
 

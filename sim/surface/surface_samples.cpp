@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "gnc/rcnn/model_format.hpp"
-#include "gnc/registration/surface_model.hpp"
+#include "gnc/surface/surface_model.hpp"
 #include "sim/surface/outside_views.hpp"
 #include "sim/world/math/random.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"

@@ -1,11 +1,11 @@
-// The target's surface for the model image (gnc/registration/surface_model.hpp), sampled from its mesh.
+// The target's surface for the model image (gnc/surface/surface_model.hpp), sampled from its mesh.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
-#include "gnc/registration/surface_model.hpp"
+#include "gnc/surface/surface_model.hpp"
 #include "sim/world/target/triangle_mesh.hpp"
 
 namespace tumblesight::sim {

@@ -25,6 +25,7 @@ struct Workspace {
   gnc::DepthImage image;
   gnc::DepthImageScratch scratch;
   gnc::Network<gnc::Float32> network;
+  gnc::Activations<gnc::Float32> activations;
   gnc::OutputVector<float> output;
 };
 
@@ -133,7 +134,7 @@ bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t in
     renderer.render(sequence, frame, work.frame);
     if (make_depth_image(work.frame, targets.projection, work.scratch, work.image) != gnc::FrameStatus::kOk)
       return false;
-    work.network.infer_frame(work.image, work.output);
+    work.network.infer_frame(work.image, work.activations, work.output);
     put_frame(work.network,
               gnc::decode_hypotheses<float>(work.output, gnc::converted<float>(work.image.r_lrf_view)),
               truth.q_lrf_trf.toRotationMatrix().cast<float>(), periods, index * kFrames + k, all);

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <memory>
 
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "gnc/numerics/crc.hpp"
-#include "gnc/rcnn/attitude_estimator.hpp"
 #include "tests/support/test_models.hpp"
 
 namespace tumblesight::gnc {

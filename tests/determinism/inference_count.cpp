@@ -11,7 +11,7 @@
 #include <random>
 #include <string>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "sim/world/frame_renderer.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/target/targets.hpp"

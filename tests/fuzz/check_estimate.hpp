@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace tumblesight::fuzz {

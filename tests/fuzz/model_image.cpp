@@ -3,7 +3,7 @@
 #include <cstring>
 #include <memory>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "tests/fuzz/check_estimate.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/patched_image.hpp"

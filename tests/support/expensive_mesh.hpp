@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "gnc/registration/surface_mesh.hpp"
+#include "gnc/surface/surface_mesh.hpp"
 
 namespace tumblesight::gnc {
 

@@ -9,9 +9,9 @@ import sys
 from decisions import decisions_in
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-SCOPE = ("fsw/app", "fsw/config", "gnc/tracking", "gnc/registration/pose_choice.cpp", "gnc/registration/pose_evidence.cpp",
+SCOPE = ("fsw/app", "fsw/config", "gnc/estimation", "gnc/registration/pose_choice.cpp", "gnc/registration/pose_evidence.cpp",
          "gnc/registration/pose_evidence.hpp", "gnc/registration/pose_tracker.cpp")
-TESTS = ("tests/unit/fsw/app", "tests/unit/gnc/tracking", "tests/unit/gnc/registration")
+TESTS = ("tests/unit/fsw/app", "tests/unit/gnc/estimation", "tests/unit/gnc/registration")
 _TEST = re.compile(r"^TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.M)
 _CASE = re.compile(r"(\w+\.\w+|none)(?: \([^()]+\))?")
 NONE = "none"

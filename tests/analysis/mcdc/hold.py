@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Forces each condition of docs/mcdc.md to its other value and checks that the tests in which it decides fail.
 
-  tests/analysis/mcdc/hold.py [--build FOLDER] [--rows gnc/tracking]     takes some minutes; needs CMake and Ninja
+  tests/analysis/mcdc/hold.py [--build FOLDER] [--rows gnc/estimation]     takes some minutes; needs CMake and Ninja
 """
 import argparse
 import concurrent.futures
@@ -55,7 +55,7 @@ def copy_with_handles(folder):
 
 
 # The program of each folder of tests.
-PROGRAMS = dict(zip(TESTS, ("test_fsw_app", "test_gnc_tracking", "test_gnc_registration")))
+PROGRAMS = dict(zip(TESTS, ("test_fsw_app", "test_gnc_estimation", "test_gnc_registration")))
 
 
 def passes(program, test, number=-1, value=False, timeout_s=120):

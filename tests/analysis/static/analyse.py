@@ -31,7 +31,7 @@ NOT_IN_C = ["-Wextra-semi", "-Wnon-virtual-dtor", "-Wold-style-cast", "-Woverloa
 # Not used:
 #   -Wsign-conversion    indexes are int and the standard library's sizes are not; a cast at each would hide more than it shows
 #   -Wuseless-cast       whether a cast to time_t or long is useless depends on the processor
-#   -Wcast-align=strict  the network's arena is aligned to cache lines, which its type (bytes) does not show
+#   -Wcast-align=strict  the activations' memory is aligned to cache lines, which its type (bytes) does not show
 #   -Wswitch-default     a default label keeps -Wswitch-enum from naming the missing cases
 #   -Wfloat-equal        the entries of a symmetric matrix are compared on purpose
 #   of -Weverything      padding, templates instantiated elsewhere, vtables: not defects

@@ -57,7 +57,7 @@ bool is_instruction_header(const std::string& path) {
 // into those of a frame.
 bool is_value_type(const std::string& path) {
   return starts_with_any(path, {"gnc/numerics/", "gnc/attitude/"}) || path == "gnc/lidar/range_image.hpp" ||
-         path == "gnc/lidar/frame_rays.hpp" || path == "gnc/tracking/chaser_attitude.hpp";
+         path == "gnc/lidar/frame_rays.hpp";
 }
 
 struct Verdict {
@@ -105,6 +105,8 @@ Verdict verdict_on_hal(const std::string& file, const std::string& path) {
 std::string project_objection(const std::string& file, const std::string& path) {
   Verdict verdict{true, ""};
   if (starts_with(file, "gnc/")) verdict = {starts_with(path, "gnc/"), "gnc may include only gnc"};
+  if (starts_with(file, "gnc/rcnn/") && starts_with_any(path, {"gnc/registration/", "gnc/estimation/"}))
+    return "the network may know nothing of registration and estimation";
   if (starts_with(file, "fsw/")) verdict = verdict_on_fsw(file, path);
   if (starts_with(file, "hal/")) verdict = verdict_on_hal(file, path);
   if (starts_with(file, "sim/")) {

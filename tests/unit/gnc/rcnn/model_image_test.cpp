@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "gnc/numerics/conversion.hpp"
 #include "gnc/numerics/crc.hpp"
-#include "gnc/rcnn/attitude_estimator.hpp"
 #include "tests/support/test_models.hpp"
 
 namespace tumblesight::gnc {

@@ -34,13 +34,14 @@ double largest_magnitude(const std::vector<double>& values) {
 // Verifies TS-NUM-090.
 TEST(Network, AgreesWithTheDoubleReferenceInEveryFrame) {
   auto network = std::make_unique<Network<Float32>>();
+  auto activations = std::make_unique<Activations<Float32>>();
   fill_random(network->weights(), 11);
   const ReferenceNetwork reference(network->weights());
   OutputVector<float> output;
   for (unsigned frame = 0; frame < 3; ++frame) {
     SCOPED_TRACE(frame);
     const DepthImage image = random_depth_image(100 + frame);
-    network->infer_frame(image, output);
+    network->infer_frame(image, *activations, output);
     const ReferenceNetwork::Frame expected = reference.infer_frame(image);
     EXPECT_GT(largest_magnitude(expected.output), 0.1);  // the weights do not suppress everything
     EXPECT_LT(largest_difference(network->features(), expected.features), 2e-5);
@@ -51,6 +52,7 @@ TEST(Network, AgreesWithTheDoubleReferenceInEveryFrame) {
 // Verifies TS-NUM-090.
 TEST(Network, AgreesWithTheDoubleReferenceOverASequence) {
   auto network = std::make_unique<Network<Float32>>();
+  auto activations = std::make_unique<Activations<Float32>>();
   fill_random(network->weights(), 13);
   ReferenceNetwork reference(network->weights());
   LstmState<Float32> state;
@@ -58,7 +60,7 @@ TEST(Network, AgreesWithTheDoubleReferenceOverASequence) {
   for (unsigned frame = 0; frame < 20; ++frame) {
     SCOPED_TRACE(frame);
     const LstmInput<Float32> input = random_lstm_input(frame);
-    network->infer_sequence(input, state, head);
+    network->infer_sequence(input, *activations, state, head);
     const std::vector<double> expected = reference.infer_sequence({input.begin(), input.end()});
     EXPECT_GT(largest_magnitude(expected), 0.1);
     EXPECT_LT(largest_difference(state.h, reference.h), 1e-4);
@@ -70,19 +72,20 @@ TEST(Network, AgreesWithTheDoubleReferenceOverASequence) {
 // Verifies TS-EST-160.
 TEST(Network, GivesTheSameBitsAfterAnyOtherInputs) {
   auto network = std::make_unique<Network<Float32>>();
+  auto activations = std::make_unique<Activations<Float32>>();
   fill_random(network->weights(), 12);
   LstmState<Float32> fresh, used, again;
   OutputVector<float> first_output, output;
   HeadOutput<float> first_head, head;
   const DepthImage image = random_depth_image(1);
-  network->infer_frame(image, first_output);
-  network->infer_sequence(random_lstm_input(1), fresh, first_head);
+  network->infer_frame(image, *activations, first_output);
+  network->infer_sequence(random_lstm_input(1), *activations, fresh, first_head);
   for (unsigned k = 0; k < 3; ++k) {
-    network->infer_frame(random_depth_image(50 + k), output);
-    network->infer_sequence(random_lstm_input(50 + k), used, head);
+    network->infer_frame(random_depth_image(50 + k), *activations, output);
+    network->infer_sequence(random_lstm_input(50 + k), *activations, used, head);
   }
-  network->infer_frame(image, output);
-  network->infer_sequence(random_lstm_input(1), again, head);
+  network->infer_frame(image, *activations, output);
+  network->infer_sequence(random_lstm_input(1), *activations, again, head);
   EXPECT_EQ(output, first_output);
   EXPECT_EQ(head, first_head);
   EXPECT_EQ(again.h, fresh.h);

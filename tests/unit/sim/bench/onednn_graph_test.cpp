@@ -29,7 +29,7 @@ struct Conv1 : testing::Test {
               gnc::ModelStatus::kOk);
     gnc::OutputVector<gnc::Fixed> out;
     gnc::run_frame<FixedPoint>(gnc::fastest_kernels<FixedPoint>(), weights, gnc::random_depth_image(3),
-                               *arena, features, out,
+                               *activations, features, out,
                                [&](std::string_view name, auto& values) { keep(name, values); });
   }
 
@@ -51,7 +51,8 @@ struct Conv1 : testing::Test {
     return values;
   }
 
-  std::unique_ptr<gnc::Arena<FixedPoint>> arena = std::make_unique<gnc::Arena<FixedPoint>>();
+  std::unique_ptr<gnc::Activations<FixedPoint>> activations =
+      std::make_unique<gnc::Activations<FixedPoint>>();
   gnc::NetworkWeights<FixedPoint> weights;
   gnc::Features<FixedPoint> features{};
   std::vector<int> input, expected;

@@ -26,6 +26,7 @@ struct Network {
   }
   Float32Model model;
   gnc::Network<Float32> ours;
+  gnc::Activations<Float32> activations;
 };
 
 template <class Numbers>
@@ -43,7 +44,7 @@ void expect_same_frames(Peer& peer, Network& network) {
     const gnc::DepthImage image = gnc::random_depth_image(seed);
     gnc::OutputVector<float> expected, out;
     gnc::Features<Float32> features;
-    network.ours.infer_frame(image, expected);
+    network.ours.infer_frame(image, network.activations, expected);
     peer.run_frame(PeerImage(image), features, out);
     expect_near(features, network.ours.features(), "features");
     expect_near(out, expected, "output of the CNN");
@@ -55,7 +56,7 @@ void expect_same_sequence(Peer& peer, Network& network) {
   for (unsigned seed = 0; seed < kFrames; ++seed) {
     const gnc::LstmInput<Float32> input = gnc::random_lstm_input(seed);
     gnc::HeadOutput<float> expected, out;
-    network.ours.infer_sequence(input, expected_state, expected);
+    network.ours.infer_sequence(input, network.activations, expected_state, expected);
     peer.run_sequence(input, state, out);
     expect_near(state.h, expected_state.h, "hidden state");
     expect_near(state.c, expected_state.c, "cells");

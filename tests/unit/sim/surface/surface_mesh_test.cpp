@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "gnc/registration/surface_mesh.hpp"
+#include "gnc/surface/surface_mesh.hpp"
 #include "sim/surface/mesh_distance.hpp"
 #include "sim/surface/mesh_simplification.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"

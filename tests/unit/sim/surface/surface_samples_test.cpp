@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gnc/registration/surface_model.hpp"
+#include "gnc/surface/surface_model.hpp"
 #include "sim/world/math/angles.hpp"
 
 namespace tumblesight::sim {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "gnc/rcnn/hypotheses.hpp"
 #include "gnc/rcnn/network_shape.hpp"
 #include "sim/model/model_file.hpp"
@@ -111,7 +111,7 @@ class ExportTest : public testing::Test {
     for (int k = 0; k < kFrames; ++k) {
       depth_image(sequence, k);
       gnc::OutputVector<float> output;
-      network->infer_frame(*image, output);
+      network->infer_frame(*image, *activations, output);
       const auto hypotheses = gnc::decode_hypotheses<float>(output, gnc::converted<float>(image->r_lrf_view));
       std::vector<torch::Tensor> turns;
       for (const Eigen::Matrix3f& r : hypotheses.r_lrf_trf) turns.push_back(tensor_of(r));
@@ -171,6 +171,8 @@ class ExportTest : public testing::Test {
   Cnn cnn;
   Recurrent recurrent{targets.inertia};
   std::unique_ptr<gnc::Network<gnc::Float32>> network = std::make_unique<gnc::Network<gnc::Float32>>();
+  std::unique_ptr<gnc::Activations<gnc::Float32>> activations =
+      std::make_unique<gnc::Activations<gnc::Float32>>();
   std::unique_ptr<gnc::DepthImage> image = std::make_unique<gnc::DepthImage>();
 };
 
@@ -181,7 +183,7 @@ TEST_F(ExportTest, TheFlightCnnEqualsTheOneInLibTorch) {
   for (int k = 0; k < kFrames; ++k) {
     depth_image(sequence, k);
     gnc::OutputVector<float> output;
-    network->infer_frame(*image, output);
+    network->infer_frame(*image, *activations, output);
     for (int i = 0; i < gnc::shape::kOutput; ++i) {
       ASSERT_NEAR(output[i], expected.output[k][i].item<float>(), 1e-5) << "frame " << k << " output " << i;
     }

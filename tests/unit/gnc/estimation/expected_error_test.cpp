@@ -1,4 +1,4 @@
-#include "gnc/rcnn/expected_error.hpp"
+#include "gnc/estimation/expected_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,82 +56,26 @@ TEST(ExpectedError, WithoutAPoseIsThatOfNetworkAndFrame) {
   });
 }
 
-// Verifies TS-EST-192. Each doubt by itself and the pairs that count.
-TEST(ExpectedError, WithAPoseGoesByItsDistanceAndItsDoubts) {
-  constexpr PoseDoubts kAll[] = {0,
-                                 kPoseRanges,
-                                 kPoseOutline,
-                                 kPoseAmbiguous,
-                                 kPoseMotion,
-                                 kPoseUncertain,
-                                 kPoseNetwork,
-                                 kPoseNetwork | kPoseRanges,
-                                 kPoseNetwork | kPoseOutline,
-                                 kPoseNetwork | kPoseMotion};
+// Verifies TS-EST-192. Everything that a pose can say.
+TEST(ExpectedError, WithAPoseGoesByItsDistanceAndWhatSpeaksAgainstIt) {
   for_each_evidence([&](const Evidence& e) {
-    for (const PoseDoubts doubts : kAll) {
+    for (unsigned bits = 0; bits < 16; ++bits) {
       ErrorEvidence evidence = fixed(e);
       evidence.has_pose = true;
-      evidence.pose_doubts = doubts;
+      evidence.ranges_disagree = (bits & 1) != 0;
+      evidence.silhouette_disagrees = (bits & 2) != 0;
+      evidence.lacks_motion = (bits & 4) != 0;
+      const bool far = evidence.is_far = (bits & 8) != 0;
       evidence.pose_error_rad = Fixed(0.03);
-      const bool far = (doubts & kPoseNetwork) != 0;
       double sum = 0.84 * logit(e) + 9.1 * e.misfit + 0.77 * innovation(e) + 1.6 * e.second_share - 5.62;
-      if ((doubts & kPoseMotion) != 0 && !far) sum += 2.33;
-      if ((doubts & kPoseOutline) != 0 && !far) sum += 0.56;
+      if (evidence.lacks_motion && !far) sum += 2.33;
+      if (evidence.silhouette_disagrees && !far) sum += 0.56;
       if (far) sum += 3.64;
-      if (far && (doubts & (kPoseRanges | kPoseOutline)) == 0) sum += 1.32;
+      if (far && !evidence.ranges_disagree && !evidence.silhouette_disagrees) sum += 1.32;
       EXPECT_NEAR(to_double(expected_error_rad(evidence)), blended(far ? e.network_rad : 0.03, sum), 1e-4)
-          << doubts << ' ' << e.network_rad << ' ' << e.misfit;
+          << bits << ' ' << e.network_rad << ' ' << e.misfit;
     }
   });
-}
-
-QuaternionQ30 turned_about_x(double angle_rad) {
-  return {static_cast<std::int32_t>(std::lround(std::ldexp(std::cos(angle_rad / 2.0), 30))),
-          static_cast<std::int32_t>(std::lround(std::ldexp(std::sin(angle_rad / 2.0), 30))), 0, 0};
-}
-
-// Verifies TS-EST-192.
-TEST(ExpectedError, OfAPoseIsTheAngleToItAndItsOwnUncertainty) {
-  PoseEstimate pose;
-  pose.doubts = kPoseMotion;
-  pose.state.q_lrf_trf = turned_about_x(0.4);
-  pose.covariance.sigma = {};
-  for (const double angle_rad : {0.0, 0.0005, 0.02, 0.1, 0.349}) {
-    for (const std::uint32_t sigma_urad : {0U, 525U, 20'000U}) {
-      pose.covariance.sigma[0] = pose.covariance.sigma[2] = sigma_urad;
-      ErrorEvidence evidence;
-      add_pose(pose, turned_about_x(0.4 + angle_rad), evidence);
-      EXPECT_TRUE(evidence.has_pose);
-      EXPECT_EQ(evidence.pose_doubts, kPoseMotion);
-      EXPECT_NEAR(to_double(evidence.pose_error_rad),
-                  std::hypot(angle_rad, std::sqrt(2.0) * 1e-6 * sigma_urad), 1e-4)
-          << angle_rad << ' ' << sigma_urad;
-    }
-  }
-}
-
-TEST(ExpectedError, TakesNothingOfAPoseThatIsNotKnownOrOnlyPredicted) {
-  for (const PoseDoubts doubts : {kPoseUnknown, kPoseCoasts, kPoseCoasts | kPoseMotion}) {
-    PoseEstimate pose;
-    pose.doubts = doubts;
-    ErrorEvidence evidence;
-    add_pose(pose, kIdentityQ30, evidence);
-    EXPECT_FALSE(evidence.has_pose);
-    EXPECT_EQ(evidence.pose_doubts, 0U);
-  }
-}
-
-// Whatever damaged memory holds.
-TEST(ExpectedError, OfADamagedPoseStaysWithinItsLimits) {
-  PoseEstimate pose;
-  pose.doubts = 0;
-  pose.covariance.sigma.fill(0xFFFF'FFFFU);
-  pose.state.q_lrf_trf = {0x7FFF'FFFF, -0x7FFF'FFFF, 0x7FFF'FFFF, 0x7FFF'FFFF};
-  ErrorEvidence evidence;
-  add_pose(pose, {-0x7FFF'FFFF, 0x7FFF'FFFF, -0x7FFF'FFFF, 0x7FFF'FFFF}, evidence);
-  EXPECT_GE(evidence.pose_error_rad.raw(), 0);
-  EXPECT_LT(evidence.pose_error_rad, Fixed(16.0));
 }
 
 // Whatever a damaged network or state says.

@@ -7,9 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "gnc/estimation/expected_error.hpp"
+#include "gnc/estimation/working_memory.hpp"
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/attitude_track.hpp"
-#include "gnc/rcnn/expected_error.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "gnc/rcnn/network.hpp"
 #include "gnc/registration/explained_share.hpp"
@@ -114,6 +115,13 @@ class AttitudeEstimator {
   Network<N>& network() { return network_; }
 
  private:
+  // The parts of a step. Network and track:
+  TrackedAttitude<Real> follow(const DepthImage& image, const FrameInterval& interval);
+  // What they say of the frame.
+  void describe(const DepthImage& image, const TrackedAttitude<Real>& tracked,
+                AttitudeEstimate& estimate) const;
+  // How well the target at the attitude explains the frame, and by how much the attitude may be wrong.
+  void judge(const DepthImage& image, const TrackedAttitude<Real>& tracked, AttitudeEstimate& estimate);
   // Registers the frame of `estimate`, whose depth image and mask are in use, and lets the pose judge its
   // attitude.
   void register_pose(const RangeImage& frame, const FrameInterval& interval, AttitudeEstimate& estimate);
@@ -132,6 +140,7 @@ class AttitudeEstimator {
   ScreenVertices& screen_vertices() { return in_place<ScreenVertices>(frame_memory_); }
 
   Network<N> network_;
+  WorkingMemory<N> memory_;
   State state_;
   Intermediates intermediates_;
   ModelHeader model_;

@@ -18,10 +18,10 @@
 #include <array>
 #include <cstdint>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
-#include "gnc/tracking/chaser_attitude.hpp"
-#include "gnc/tracking/frame_gate.hpp"
-#include "gnc/tracking/frame_signature.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
+#include "gnc/attitude/chaser_attitude.hpp"
+#include "gnc/estimation/frame_gate.hpp"
+#include "gnc/estimation/frame_signature.hpp"
 
 namespace tumblesight::gnc {
 

@@ -1,8 +1,9 @@
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 
 #include <algorithm>
 
 #include "gnc/attitude/quaternion.hpp"
+#include "gnc/estimation/pose_agreement.hpp"
 #include "gnc/lidar/depth_loops.hpp"
 #include "gnc/numerics/conversion.hpp"
 #include "gnc/numerics/crc.hpp"
@@ -168,9 +169,9 @@ FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, const FrameInter
                                        AttitudeEstimate& estimate) {
   const DepthLoops& loops = fastest_depth_loops(network_.kernels().set);
   const FrameStatus status =
-      make_depth_image(frame, model_.projection, network_.projection_scratch(), depth_image(), loops);
+      make_depth_image(frame, model_.projection, memory_.projection(), depth_image(), loops);
   if (status != FrameStatus::kOk) return status;
-  mask_ = network_.projection_scratch().mask;
+  mask_ = memory_.projection().mask;
   // That of a depth image, which returns nothing; cppcheck takes it for this function.
   // cppcheck-suppress ignoredReturnValue
   step(depth_image(), interval, estimate);
@@ -193,7 +194,7 @@ void AttitudeEstimator<N>::register_pose(const RangeImage& frame, const FrameInt
                                estimate.centroid_lrf_mm,
                                motion_models_,
                                estimate.motion_model};
-    track_pose({mesh_, model_.projection.target_radius_mm, model_.noise}, pose_frame, network_.pose_scratch(),
+    track_pose({mesh_, model_.projection.target_radius_mm, model_.noise}, pose_frame, memory_.pose(),
                screen_vertices(), state_.pose, estimate.pose);
     add_pose(estimate.pose, estimate.q_lrf_trf, estimate.evidence);
     const Matrix3<Fixed> attitude = rotation_from_quaternion(estimate.q_lrf_trf);
@@ -205,42 +206,60 @@ void AttitudeEstimator<N>::register_pose(const RangeImage& frame, const FrameInt
 template <class N>
 void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& interval,
                                 AttitudeEstimate& estimate) {
+  const TrackedAttitude<Real> tracked = follow(image, interval);
+  describe(image, tracked, estimate);
+  judge(image, tracked, estimate);
+}
+
+template <class N>
+TrackedAttitude<typename N::Real> AttitudeEstimator<N>::follow(const DepthImage& image,
+                                                               const FrameInterval& interval) {
   auto& [output, hypotheses, prediction, input, head] = intermediates_;
   if (interval.gives_up_track) reset();
   state_.track.forget_rate(interval.rate_is_unknown & !finds_no_rate(interval));
-  network_.infer_frame(image, output);
+  network_.infer_frame(image, memory_.activations(), output);
   hypotheses = decode_hypotheses<Real>(output, converted<Real>(image.r_lrf_view));
   prediction = predict<Real>(state_.track, motion_models_, hypotheses, interval);
   if (finds_no_rate(interval))
     reset_unless<N>(keep_confirmed<Real>(hypotheses, interval, prediction, state_.track), state_.lstm);
   fill_lstm_input<N>(network_.features(), hypotheses, prediction.r_lrf_trf(), input);
-  network_.infer_sequence(input, state_.lstm, head);
-  const TrackedAttitude<Real> tracked = advance<Real>(hypotheses, prediction, head, state_.track);
+  network_.infer_sequence(input, memory_.activations(), state_.lstm, head);
+  return advance<Real>(hypotheses, prediction, head, state_.track);
+}
 
-  const Matrix3<Fixed> attitude = converted<Fixed>(tracked.r_lrf_trf);
+template <class N>
+void AttitudeEstimator<N>::describe(const DepthImage& image, const TrackedAttitude<Real>& tracked,
+                                    AttitudeEstimate& estimate) const {
+  const Hypotheses<Real>& hypotheses = intermediates_.hypotheses;
+  const Prediction<Real>& prediction = intermediates_.prediction;
   const Matrix3<Fixed> single_frame = converted<Fixed>(mean_attitude<Real>(
       hypotheses.r_lrf_trf.data(), hypotheses.probability.data(), shape::kHypotheses, hypotheses.likeliest));
-  estimate.q_lrf_trf = quaternion_from_rotation(attitude);
+  estimate.q_lrf_trf = quaternion_from_rotation(converted<Fixed>(tracked.r_lrf_trf));
   estimate.q_lrf_trf_single_frame = quaternion_from_rotation(single_frame);
   estimate.predicted_error_single_frame_urad =
       error_urad(single_frame, converted<Fixed>(hypotheses.predicted_error_rad));
   estimate.frames_since_reset = state_.track.frames;
-  const Motion<Real>& motion = state_.track.motion[state_.track.motion_model()];
-  const Vector3<Fixed> rate = converted<Fixed>(motion.rate_lrf);
+  estimate.motion_model = state_.track.motion_model();
+  const Vector3<Fixed> rate = converted<Fixed>(state_.track.motion[estimate.motion_model].rate_lrf);
   const QuaternionQ30 predicted = quaternion_from_rotation(converted<Fixed>(prediction.r_lrf_trf()));
   estimate.q_lrf_trf_predicted = select(prediction.has_track, predicted, kIdentityQ30);
   estimate.has_prediction = prediction.has_track;
   estimate.rate_lrf_urad_s = rate_urad_s(rate);
   estimate.rate_is_ambiguous = prediction.has_track & turns_too_far(rate, prediction.elapsed_periods);
-  estimate.motion_model = state_.track.motion_model();
+  estimate.centroid_lrf_mm = position_lrf_mm(image);
+  estimate.pose = {};
+}
+
+template <class N>
+void AttitudeEstimator<N>::judge(const DepthImage& image, const TrackedAttitude<Real>& tracked,
+                                 AttitudeEstimate& estimate) {
+  const auto& [output, hypotheses, prediction, input, head] = intermediates_;
+  const Matrix3<Fixed> attitude = converted<Fixed>(tracked.r_lrf_trf);
   const Alternative second = second_of<Real>(hypotheses, tracked.r_lrf_trf);
   estimate.q_lrf_trf_second = second.q_lrf_trf;
   estimate.second_odds_ppm = second.odds_ppm;
-  estimate.centroid_lrf_mm = position_lrf_mm(image);
-  estimate.pose = {};
-  estimate.explained = explained_share(image, model_.projection, model_.noise, attitude, surface_,
-                                       network_.explained_share_scratch());
-
+  estimate.explained =
+      explained_share(image, model_.projection, model_.noise, attitude, surface_, memory_.explained_share());
   const Fixed innovation_squared =
       constant<Fixed>(3.0) - trace_of_product(converted<Fixed>(prediction.r_lrf_trf()), attitude);
   const Fixed network_error_rad = converted<Fixed>(tracked.predicted_error_rad);

@@ -5,8 +5,7 @@
 
 #include <cstdint>
 
-#include "gnc/attitude/quaternion.hpp"
-#include "gnc/registration/pose_tracker.hpp"
+#include "gnc/numerics/fixed.hpp"
 
 namespace tumblesight::gnc {
 
@@ -18,15 +17,16 @@ struct ErrorEvidence {
   Fixed second_share;        // of the second attitude in the probability of both, 0..1
   // Of a pose that was registered with the frame.
   bool has_pose = false;
-  PoseDoubts pose_doubts = 0;
-  Fixed pose_error_rad;  // of the attitude if the pose is right: root of the squared angle between them and
-                         // of the pose's variance; used below 20 degrees (kPoseNetwork)
+  bool ranges_disagree = false;       // the frame's ranges with it
+  bool silhouette_disagrees = false;  // the frame's silhouette with it
+  bool lacks_motion = false;          // too few poses, or they contradict one motion
+  bool is_far = false;                // the network's attitude is another one
+  // Of the attitude if the pose is right: root of the squared angle between them and of the pose's variance.
+  // Used unless the pose is far.
+  Fixed pose_error_rad;
 };
 
 // 0..pi [rad].
 Fixed expected_error_rad(const ErrorEvidence& evidence);
-
-// What a registered pose says of the attitude `q_lrf_trf`. Nothing if it is not known or only predicted.
-void add_pose(const PoseEstimate& pose, const QuaternionQ30& q_lrf_trf, ErrorEvidence& evidence);
 
 }  // namespace tumblesight::gnc

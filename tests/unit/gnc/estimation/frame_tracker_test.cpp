@@ -1,5 +1,5 @@
 // Verifies TS-FDIR-070 and TS-FDIR-170.
-#include "gnc/tracking/frame_tracker.hpp"
+#include "gnc/estimation/frame_tracker.hpp"
 
 #include <gtest/gtest.h>
 

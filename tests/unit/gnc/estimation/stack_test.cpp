@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "tests/support/test_models.hpp"
 
 namespace tumblesight::gnc {

@@ -1,5 +1,5 @@
 // Verifies TS-FDIR-170.
-#include "gnc/tracking/frame_signature.hpp"
+#include "gnc/estimation/frame_signature.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "gnc/registration/surface_mesh.hpp"
+#include "gnc/surface/surface_mesh.hpp"
 
 namespace tumblesight::gnc {
 

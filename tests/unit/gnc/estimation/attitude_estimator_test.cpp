@@ -1,4 +1,4 @@
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 
 #include <gtest/gtest.h>
 

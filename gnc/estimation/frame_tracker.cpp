@@ -1,4 +1,4 @@
-#include "gnc/tracking/frame_tracker.hpp"
+#include "gnc/estimation/frame_tracker.hpp"
 
 #include "gnc/attitude/quaternion.hpp"
 

@@ -1,4 +1,4 @@
-#include "gnc/tracking/frame_signature.hpp"
+#include "gnc/estimation/frame_signature.hpp"
 
 #include <cstddef>
 

@@ -1,11 +1,11 @@
-#include "gnc/tracking/covariance.hpp"
+#include "gnc/estimation/covariance.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "tests/support/trials.hpp"
 #include "tests/unit/gnc/rcnn/track_frames.hpp"
 

@@ -1,4 +1,4 @@
-#include "gnc/tracking/frame_gate.hpp"
+#include "gnc/estimation/frame_gate.hpp"
 
 #include "gnc/rcnn/attitude_track.hpp"
 

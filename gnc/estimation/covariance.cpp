@@ -1,7 +1,7 @@
-#include "gnc/tracking/covariance.hpp"
+#include "gnc/estimation/covariance.hpp"
 
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "gnc/numerics/division.hpp"
-#include "gnc/rcnn/attitude_estimator.hpp"
 #include "gnc/rcnn/attitude_track.hpp"
 
 namespace tumblesight::gnc {
