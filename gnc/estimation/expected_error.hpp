@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "gnc/numerics/fixed.hpp"
+#include "gnc/numerics/real.hpp"
 
 namespace tumblesight::gnc {
 
