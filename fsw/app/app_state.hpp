@@ -1,6 +1,6 @@
 // The state that the application keeps between cycles, except the estimator and the tables and copies of
-// MemoryGuard. Three copies are kept (voted.hpp). What the platform hands over by pointer to data is copied
-// into it.
+// MemoryScrubber. Three copies are kept (triple_redundant.hpp). What the platform hands over by pointer to
+// data is copied into it.
 #pragma once
 
 #include <array>

@@ -100,12 +100,12 @@ void AttitudeInitApp::init(const hal::Platform& platform, const char* expected_t
   if (TUMBLESIGHT_ASSERT(state.assertions, is_complete(platform))) {
     StateKeeper keeper(state, report);
     keeper.resume();
-    ModelManager(state, estimator_, guard_, report).boot(state.resumption.stored.bank);
+    ModelManager(state, estimator_, scrubber_, report).boot(state.resumption.stored.bank);
     modes.resume(state.has_model() ? keeper.boot_cause() : Cause::kNoModel, state.resumption.stored);
     state.boot_to_report = true;
     state.resumption.to_report = true;
   }
-  guard_.keep(estimator_, state);
+  scrubber_.keep(estimator_, state);
   state_.commit();
 }
 
@@ -138,7 +138,7 @@ void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, S
   AppState& state = *state_;
   const Reporter report(state, state.events);
   ModeManager modes(state, estimator_, report);
-  ModelManager models(state, estimator_, guard_, report);
+  ModelManager models(state, estimator_, scrubber_, report);
   const bool usable =
       TUMBLESIGHT_ASSERT(state.assertions, is_complete(state.platform) && keeps_limits(inputs));
   const std::uint64_t start_ns = usable ? state.platform.stopwatch->now_ns() : 0;
@@ -153,8 +153,8 @@ void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, S
   modes.go_safe_on_assertion();
   if (usable) {
     if (with_protections) {
-      if (!MemoryGuard::bound(estimator_, state)) modes.go_safe_after_corruption();
-      guard_.check(estimator_, state, report);
+      if (!MemoryScrubber::bound(estimator_, state)) modes.go_safe_after_corruption();
+      scrubber_.check(estimator_, state, report);
     }
     if (now_ns < previous_ns) modes.restart_sequence_after_time_jump();
     CommandHandler({state, state.events, modes, models, keeper, outputs, report}).run(inputs);
@@ -169,7 +169,7 @@ void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, S
   if (is_complete(state.platform)) keeper.end_step();
   state.counters.store_health = keeper.health();
   report_telemetry(outputs);
-  guard_.keep(estimator_, state);
+  scrubber_.keep(estimator_, state);
   state_.commit();
   outputs.duties_done = usable;
 }

@@ -2,8 +2,8 @@
 // its state and inputs.
 //
 // The stages of a step, in this order:
-//   1. memory       majority vote over the application's state; guards of estimator and model
-//                   (voted.hpp, memory_guard.hpp)
+//   1. memory       majority vote over the application's state; scrubber of estimator and model
+//                   (triple_redundant.hpp, memory_scrubber.hpp)
 //   2. commands     in the order in which they arrived (command_handler.hpp, commands.cpp)
 //   3. frame        gnc::FrameTracker: admission, estimator, checks (frame_handler.hpp); only in RUN
 //   4. supervision  persistence of faults and the responses to them (supervisor.hpp, fault_rules.hpp)
@@ -37,9 +37,9 @@
 
 #include "fsw/app/app_state.hpp"
 #include "fsw/app/frame_handler.hpp"
-#include "fsw/app/memory_guard.hpp"
+#include "fsw/app/memory_scrubber.hpp"
 #include "fsw/app/step_io.hpp"
-#include "fsw/app/voted.hpp"
+#include "fsw/app/triple_redundant.hpp"
 #include "fsw/config/limits.hpp"
 #include "hal/platform.hpp"
 
@@ -62,7 +62,7 @@ class AttitudeInitApp final {
   [[nodiscard]] bool use(const ParameterTable& table);
 
   // Before the frames of a cycle are chosen: corrects flipped bits, so that the three functions below decide
-  // by a voted state. The next step reports the corrections.
+  // by a triple-redundant state. The next step reports the corrections.
   void correct_state();
   // Whether a frame passes the rules for time and order in a cycle at `now_ns`. For the choice of the frame
   // that a step gets. The step judges it again, after the cycle's commands: they may change the limits, or
@@ -91,7 +91,7 @@ class AttitudeInitApp final {
  private:
   friend struct AppMemory;  // tests: the places where they flip bits, and a cycle without protections
 
-  // The vote and the guards against bit flips. An argument, because a flip in memory could switch off a
+  // The vote and the scrubber against bit flips. An argument, because a flip in memory could switch off a
   // setting that is kept there. Flight has only kOn.
   enum class Protections : std::uint8_t { kOn, kOff };
 
@@ -102,9 +102,9 @@ class AttitudeInitApp final {
   void report_telemetry(StepOutputs& outputs);
 
   Estimator estimator_;
-  MemoryGuard guard_;
+  MemoryScrubber scrubber_;
   FrameWorkspace frame_workspace_;
-  Voted<AppState> state_;
+  TripleRedundant<AppState> state_;
 };
 #if !TUMBLESIGHT_APP_FLOAT32
 static_assert(sizeof(AttitudeInitApp) <= config::kMaxAppBytes + gnc::kKernelScratchBytes,

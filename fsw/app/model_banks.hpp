@@ -39,7 +39,7 @@ struct BankDescriptor {
   void set(BankStatus value) { status = static_cast<std::uint32_t>(value); }
 };
 
-// The state of ModelBanks that is kept in three copies (voted.hpp).
+// The state of ModelBanks that is kept in three copies (triple_redundant.hpp).
 struct ModelBanksState {
   std::array<BankDescriptor, hal::kModelBanks> descriptor{};
   std::uint32_t in_use = 0;      // bank

@@ -23,7 +23,7 @@ void ModelManager::boot_bank(std::uint32_t bank) {
   if (status != gnc::ModelStatus::kOk) return;
   descriptor.set(BankStatus::kGood);
   descriptor.crc32 = gnc::model_image_crc32(memory.data);
-  guard_.bank_is_good(bank, state_);
+  scrubber_.bank_is_good(bank, state_);
 }
 
 void ModelManager::report_boot() {
@@ -54,7 +54,7 @@ gnc::ModelStatus ModelManager::validate(std::uint32_t size_bytes, std::uint32_t 
     status = gnc::ModelStatus::kBadHeaderCrc;
   if (status == gnc::ModelStatus::kOk) {
     state_.banks.descriptor[bank] = {size_bytes, crc32, static_cast<std::uint32_t>(BankStatus::kGood)};
-    guard_.bank_is_good(bank, state_);
+    scrubber_.bank_is_good(bank, state_);
   }
   return status;
 }
@@ -72,7 +72,7 @@ gnc::ModelStatus ModelManager::activate(std::uint32_t bank) {
   descriptor.crc32 = estimator_.model().crc32;
   state_.banks.in_use = bank;
   state_.tracking.forget_track();
-  guard_.model_activated(estimator_, state_);
+  scrubber_.model_activated(estimator_, state_);
   return status;
 }
 

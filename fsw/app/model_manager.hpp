@@ -5,15 +5,15 @@
 #include <cstdint>
 
 #include "fsw/app/app_state.hpp"
-#include "fsw/app/memory_guard.hpp"
+#include "fsw/app/memory_scrubber.hpp"
 #include "fsw/app/mode_manager.hpp"
 
 namespace tumblesight::fsw {
 
 class ModelManager {
  public:
-  ModelManager(AppState& state, Estimator& estimator, MemoryGuard& guard, const Reporter& report)
-      : state_(state), estimator_(estimator), guard_(guard), report_(report) {}
+  ModelManager(AppState& state, Estimator& estimator, MemoryScrubber& scrubber, const Reporter& report)
+      : state_(state), estimator_(estimator), scrubber_(scrubber), report_(report) {}
 
   // Activates the image of the first bank that passes every check, beginning with `preferred`. A good image
   // in the other bank is kept as the second copy or as a fallback. Without a good image `preferred` stays the
@@ -41,7 +41,7 @@ class ModelManager {
 
   AppState& state_;
   Estimator& estimator_;
-  MemoryGuard& guard_;
+  MemoryScrubber& scrubber_;
   const Reporter& report_;
 };
 

@@ -60,7 +60,7 @@ struct Telemetry {
   std::uint32_t events_waiting = 0;
   std::uint32_t events_waiting_max = 0;
 
-  std::uint32_t memory_corrections = 0;  // words of the voted state
+  std::uint32_t memory_corrections = 0;  // words of the triple-redundant state
   std::uint32_t states_restored = 0;     // estimator states restored from the copy
   std::uint32_t states_lost = 0;         // estimator states whose copy was corrupted too
   std::uint32_t constants_reloaded = 0;

@@ -187,7 +187,7 @@ def as_document(requirements, verified):
         f"processors (`tests/audit/run`) measures it, or a document shows it. **I** is an inspection ({counts['I']}) of the file.",
         "",
         "All tests run in full on the desktop. In the emulators of the onboard processors the tests of the algorithms and of the",
-        "application run with fewer random trials, and flip every seventh bit of the voted state (`tests/support/trials.hpp`).",
+        "application run with fewer random trials, and flip every seventh bit of the triple-redundant state (`tests/support/trials.hpp`).",
     ]
     for group, title in GROUPS.items():
         rows = sorted(one for one in requirements.values() if one.id.split("-")[1] == group)

@@ -5,7 +5,7 @@
 #include <future>
 
 #include "gnc/attitude/rotation.hpp"
-#include "hal/posix/painted_stack.hpp"
+#include "hal/posix/monitored_stack.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -171,8 +171,8 @@ TEST(Heap, TenThousandStepsWithoutAnAllocationOfTheFlightTask) {
   answer = conversation.finish();
   EXPECT_EQ(answer.telemetry.cycles, kSteps);
   EXPECT_EQ(answer.telemetry.heap_allocations, 0U);
-  EXPECT_GT(answer.telemetry.stack_left_min_bytes, hal::posix::PaintedStack::kBytes / 4);
-  EXPECT_LT(answer.telemetry.stack_left_min_bytes, hal::posix::PaintedStack::kBytes);
+  EXPECT_GT(answer.telemetry.stack_left_min_bytes, hal::posix::MonitoredStack::kBytes / 4);
+  EXPECT_LT(answer.telemetry.stack_left_min_bytes, hal::posix::MonitoredStack::kBytes);
   EXPECT_EQ(answer.telemetry.frames_bad, (kSteps - 2) / 97 + 1);
   EXPECT_EQ(answer.telemetry.frames_used, kSteps - answer.telemetry.frames_bad);
 }

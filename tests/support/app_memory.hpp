@@ -26,12 +26,12 @@ struct AppMemory {
 
   static AppState& state(App& app) { return *app.state_; }
   // All three copies of the state.
-  static Region voted_state(App& app) { return region_of(app.state_); }
+  static Region redundant_state(App& app) { return region_of(app.state_); }
   // The tables of block checksums and the copy of the estimator's state.
-  static Region guard(App& app) { return region_of(app.guard_); }
-  // The copy of the estimator's state alone, which is the last member of the guard.
+  static Region scrubber(App& app) { return region_of(app.scrubber_); }
+  // The copy of the estimator's state alone, which is the last member of the scrubber.
   static Region kept_state(App& app) {
-    const Region whole = guard(app);
+    const Region whole = scrubber(app);
     return {whole.data + whole.size - sizeof(Estimator::State), sizeof(Estimator::State)};
   }
   static Region workspace(App& app) { return region_of(app.frame_workspace_); }
@@ -54,7 +54,7 @@ struct AppMemory {
     region_of(state).flip(bit);
     app.estimator_.restore(state);
   }
-  // Also in the copy of the estimator's state and in its checksum, so that no guard sees a difference.
+  // Also in the copy of the estimator's state and in its checksum, so that no check sees a difference.
   static void set_pose_advantage(App& app, std::int32_t advantage_q8) {
     static Estimator::State state;
     app.estimator_.save(state);
@@ -64,7 +64,7 @@ struct AppMemory {
     app.state_->estimator_crc32 = Estimator::crc32_of(state);
     app.state_.commit();
   }
-  // A cycle without the vote and the guards.
+  // A cycle without the vote and the scrubber.
   static void step_unprotected(App& app, std::int64_t now_ns, const StepInputs& inputs,
                                StepOutputs& outputs) {
     app.run_cycle(now_ns, inputs, outputs, App::Protections::kOff);

@@ -42,7 +42,7 @@ std::int64_t MissionClock::at(std::int64_t release_ns) const {
 }
 
 FlightTask::FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsNavigation& navigation,
-                       hal::dds::DdsLink& link, CycleWorkspace& workspace, hal::posix::PaintedStack& stack)
+                       hal::dds::DdsLink& link, CycleWorkspace& workspace, hal::posix::MonitoredStack& stack)
     : lidar_(lidar), navigation_(navigation), link_(link), workspace_(workspace), stack_(stack) {
   sem_init(&go_, 0, 0);
   sem_init(&done_, 0, 0);

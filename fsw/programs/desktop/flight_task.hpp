@@ -14,7 +14,7 @@
 #include "hal/dds/dds_lidar.hpp"
 #include "hal/dds/dds_link.hpp"
 #include "hal/dds/dds_navigation.hpp"
-#include "hal/posix/painted_stack.hpp"
+#include "hal/posix/monitored_stack.hpp"
 #include "hal/task.hpp"
 
 namespace tumblesight::fsw::desktop {
@@ -33,7 +33,7 @@ struct MissionClock {
 class FlightTask {
  public:
   FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsNavigation& navigation, hal::dds::DdsLink& link,
-             CycleWorkspace& workspace, hal::posix::PaintedStack& stack);
+             CycleWorkspace& workspace, hal::posix::MonitoredStack& stack);
 
   // Starts the thread and returns when it is ready; false if the system provides no thread. A free-running
   // task requests a fixed priority and locked memory, which takes longer than a cycle: start it before the
@@ -74,7 +74,7 @@ class FlightTask {
   hal::dds::DdsNavigation& navigation_;
   hal::dds::DdsLink& link_;
   CycleWorkspace& workspace_;
-  hal::posix::PaintedStack& stack_;
+  hal::posix::MonitoredStack& stack_;
   // Written before go_ is posted for the first cycle.
   hal::PeriodicTask* timer_ = nullptr;
   MissionClock clock_;

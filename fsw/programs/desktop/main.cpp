@@ -17,9 +17,9 @@
 #include "hal/dds/packet_output.hpp"
 #include "hal/dds/stop_request.hpp"
 #include "hal/posix/file_persistent_store.hpp"
+#include "hal/posix/monitored_stack.hpp"
 #include "hal/posix/monotonic_stopwatch.hpp"
 #include "hal/posix/packet_file.hpp"
-#include "hal/posix/painted_stack.hpp"
 
 namespace {
 
@@ -34,7 +34,7 @@ hal::dds::Domain domain;
 hal::dds::FlightEndpoints endpoints;
 hal::dds::DdsLidar lidar;
 hal::dds::DdsNavigation navigation;
-hal::posix::PaintedStack stack;
+hal::posix::MonitoredStack stack;
 hal::dds::DdsLink link{{heap_allocations, [] { return stack.least_left_bytes(); }}};
 hal::dds::FlightBus bus{endpoints, lidar, navigation, link, stopwatch};
 hal::posix::PacketFile packet_file;

@@ -106,11 +106,11 @@ def document(totals, seed):
 Written by `tests/campaigns/fault/run`. The campaign flips bits in a running flight application: NEAR
 Shoemaker's model in fixed point, rendered sequences with known true attitudes, seed {seed}. Trials run
 in child processes, so that a crash is one of the outcomes. The same single flips are made twice. With the
-protections **on**, everything works as in flight. With the protections **off**, the vote, the guards and the
+protections **on**, everything works as in flight. With the protections **off**, the vote, the scrubber and the
 scrubbing are disabled and the limits of the attitude checks are at their widest, which shows what they
 contribute. Packets, frames and the quaternion's norm are checked in both cases. The last row flips two bits at
 once. After each trial with the protections on, one more cycle shows whether they still work: a bit of the
-voted state and one of the estimator's state are flipped, and both must be corrected and counted.
+triple-redundant state and one of the estimator's state are flipped, and both must be corrected and counted.
 
 {as_table(totals)}
 
@@ -140,7 +140,7 @@ few flips a rate above the goal may stay unseen.
 | surface | vertices, triangles and edges of the target's surface in the image in use, between two cycles; 30 cycles follow |
 | activations | all layers, in the middle of a step, before one of the network's products |
 | estimator state | LSTM, track of the attitude and track of the pose, between two cycles; 15 cycles follow, as in the rows below |
-| application state | all three copies of the voted state, the copy of the estimator's state, the checksums of the blocks |
+| application state | all three copies of the triple-redundant state, the copy of the estimator's state, the checksums of the blocks |
 | model descriptor | descriptors of the banks; biases, shifts and pointers that were set when the model was loaded |
 | command | the packet and its size |
 | frame | ranges, exposure time, sequence number, field of view, ray count |

@@ -167,7 +167,7 @@ void TrialRunner::flip_one(Place place, std::mt19937& engine) {
       AppMemory::flip_state_bit(*app_, engine() % AppMemory::kStateBits);
       break;
     case Place::kApplicationState: {
-      const Region regions[] = {AppMemory::voted_state(*app_), AppMemory::guard(*app_)};
+      const Region regions[] = {AppMemory::redundant_state(*app_), AppMemory::scrubber(*app_)};
       std::size_t bit = engine() % (8 * (regions[0].size + regions[1].size));
       for (const Region& region : regions) {
         if (bit < 8 * region.size) {
@@ -224,8 +224,8 @@ void TrialRunner::flip_two(std::mt19937& engine) {
 bool TrialRunner::corrects_further_flips(std::mt19937& engine) {
   constexpr std::size_t kBitOfLstm = 5;
   const hal::Telemetry before = outputs_->telemetry;
-  const Region voted = AppMemory::voted_state(*app_);
-  voted.flip(engine() % (8 * voted.size));
+  const Region redundant = AppMemory::redundant_state(*app_);
+  redundant.flip(engine() % (8 * redundant.size));
   AppMemory::flip_state_bit(*app_, kBitOfLstm);
   prepare(cycles_flown_);
   step(cycles_flown_);

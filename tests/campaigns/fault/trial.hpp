@@ -40,7 +40,7 @@ class TrialRunner {
   CycleResult fly(std::size_t cycle);
   void flip_one(Place place, std::mt19937& engine);
   void flip_two(std::mt19937& engine);
-  // Whether flips in the voted state and in the estimator's state are corrected in the next cycle.
+  // Whether flips in the triple-redundant state and in the estimator's state are corrected in the next cycle.
   bool corrects_further_flips(std::mt19937& engine);
   Trial judged(std::size_t first, const std::vector<CycleResult>& results) const;  // without the last cycle
   bool noticed() const;

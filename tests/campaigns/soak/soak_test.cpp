@@ -114,10 +114,10 @@ class Soak : public ::testing::Test {
   }
 
   void flip_a_bit() {
-    const Region regions[] = {AppMemory::voted_state(*app_),
+    const Region regions[] = {AppMemory::redundant_state(*app_),
                               AppMemory::constants(*app_),
                               AppMemory::activations(*app_),
-                              AppMemory::guard(*app_),
+                              AppMemory::scrubber(*app_),
                               {store_.banks[0].memory.data(), store_.banks[0].memory.size()},
                               {store_.banks[1].memory.data(), store_.banks[1].memory.size()}};
     const std::size_t which = engine_() % 7;

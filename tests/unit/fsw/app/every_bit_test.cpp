@@ -41,7 +41,7 @@ class EveryBit : public AppFixture {
 // Verifies TS-FDIR-010. One flip per cycle, so that each also shows that those before it have left the vote
 // in order.
 TEST_F(EveryBit, OfTheVotedStateIsCorrectedAndCountedAndSoIsTheNextOne) {
-  const Region region = AppMemory::voted_state(*app);
+  const Region region = AppMemory::redundant_state(*app);
   std::uint32_t flips = 0;
   for (std::size_t bit = 0; bit < 8 * region.size; bit += kBitStride) {
     region.flip(bit);

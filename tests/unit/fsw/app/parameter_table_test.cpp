@@ -253,7 +253,7 @@ TEST_F(Tables, GivenTableIsNotReplacedByAStoredOneThatIsReadLate) {
 
 TEST_F(Tables, BitFlipsThatAreFoundWhenATableIsGivenAreReported) {
   step_good();
-  AppMemory::voted_state(*app).flip(8 * sizeof(AppState) + 3);  // in the second copy
+  AppMemory::redundant_state(*app).flip(8 * sizeof(AppState) + 3);  // in the second copy
   ASSERT_TRUE(app->use(another_table()));
   step_good();
   EXPECT_EQ(argument(EventId::kMemoryCorrected, 0), 1);

@@ -16,9 +16,9 @@ bool is_allowed(std::size_t field, std::uint32_t value) {
   return first_wrong_field(table) == kTableFields;
 }
 
-class MemoryGuardTest : public AppFixture {
+class MemoryScrubberTest : public AppFixture {
  protected:
-  MemoryGuardTest() {
+  MemoryScrubberTest() {
     init_with_model();
     step_good();
     step_good();
@@ -96,7 +96,7 @@ class MemoryGuardTest : public AppFixture {
   }
   // Detected in the next cycle.
   void hit_table(std::size_t index = 0) {
-    AppMemory::guard(*app).flip(8 * (index * sizeof(ModelBanks) / 2 + 40));
+    AppMemory::scrubber(*app).flip(8 * (index * sizeof(ModelBanks) / 2 + 40));
   }
 
   std::vector<std::uint32_t> passed_over;  // sequence numbers
@@ -106,8 +106,8 @@ class MemoryGuardTest : public AppFixture {
 };
 
 // Verifies TS-FDIR-010.
-TEST_F(MemoryGuardTest, FlippedBitsOfTheVotedStateAreOutvotedAndCounted) {
-  const Region region = AppMemory::voted_state(*app);
+TEST_F(MemoryScrubberTest, FlippedBitsOfTheVotedStateAreOutvotedAndCounted) {
+  const Region region = AppMemory::redundant_state(*app);
   std::mt19937 engine(1);
   std::uint32_t corrections = 0;
   for (int i = 0; i < 30; ++i) {
@@ -121,7 +121,7 @@ TEST_F(MemoryGuardTest, FlippedBitsOfTheVotedStateAreOutvotedAndCounted) {
 }
 
 // Verifies TS-FDIR-020.
-TEST_F(MemoryGuardTest, FlippedBitsOfTheEstimatorsStateAreRestoredFromTheCopy) {
+TEST_F(MemoryScrubberTest, FlippedBitsOfTheEstimatorsStateAreRestoredFromTheCopy) {
   std::mt19937 engine(2);
   std::uint32_t restored = 0;
   for (int i = 0; i < 20; ++i) {
@@ -136,11 +136,11 @@ TEST_F(MemoryGuardTest, FlippedBitsOfTheEstimatorsStateAreRestoredFromTheCopy) {
 }
 
 // Verifies TS-FDIR-020.
-TEST_F(MemoryGuardTest, StateAndCopyHitTogetherStartANewSequence) {
+TEST_F(MemoryScrubberTest, StateAndCopyHitTogetherStartANewSequence) {
   AppMemory::flip_state_bit(*app, 5);
-  const Region guard = AppMemory::guard(*app);
+  const Region scrubber = AppMemory::scrubber(*app);
   constexpr std::size_t kStateBytes = AppMemory::kStateBits / 8;
-  guard.flip(8 * (guard.size - kStateBytes) + 5);  // the copy is its last member
+  scrubber.flip(8 * (scrubber.size - kStateBytes) + 5);  // the copy is its last member
   step_good();
   EXPECT_EQ(out->telemetry.states_lost, 1U);
   EXPECT_EQ(argument(EventId::kEstimatorResetByFault, 0), static_cast<int>(Fault::kStateLost));
@@ -152,7 +152,7 @@ TEST_F(MemoryGuardTest, StateAndCopyHitTogetherStartANewSequence) {
 }
 
 // Verifies TS-FDIR-030, TS-FDIR-190.
-TEST_F(MemoryGuardTest, FlippedBitsOfBiasesShiftsAndPointersAreReloadedFromTheBank) {
+TEST_F(MemoryScrubberTest, FlippedBitsOfBiasesShiftsAndPointersAreReloadedFromTheBank) {
   const Region region = AppMemory::constants(*app);
   std::mt19937 engine(3);
   std::uint32_t reloaded = 0;
@@ -168,7 +168,7 @@ TEST_F(MemoryGuardTest, FlippedBitsOfBiasesShiftsAndPointersAreReloadedFromTheBa
 }
 
 // Verifies TS-FDIR-040.
-TEST_F(MemoryGuardTest, FlippedWeightIsRepairedFromTheSecondCopyWithinAPass) {
+TEST_F(MemoryScrubberTest, FlippedWeightIsRepairedFromTheSecondCopyWithinAPass) {
   bank(0)[700'000] ^= 0x10;
   steps_of_a_pass();
   EXPECT_EQ(out->telemetry.model_blocks_repaired, 1U);
@@ -179,7 +179,7 @@ TEST_F(MemoryGuardTest, FlippedWeightIsRepairedFromTheSecondCopyWithinAPass) {
 }
 
 // Verifies TS-FDIR-040.
-TEST_F(MemoryGuardTest, FlippedBitOfTheSecondCopyIsRepairedFromTheBankInUse) {
+TEST_F(MemoryScrubberTest, FlippedBitOfTheSecondCopyIsRepairedFromTheBankInUse) {
   bank(1).back() ^= 0x80;
   steps_of_a_pass();
   EXPECT_EQ(out->telemetry.model_blocks_repaired, 1U);
@@ -187,7 +187,7 @@ TEST_F(MemoryGuardTest, FlippedBitOfTheSecondCopyIsRepairedFromTheBankInUse) {
 }
 
 // Verifies TS-FDIR-047.
-TEST_F(MemoryGuardTest, CorruptedReadOnlySecondCopyIsReportedAsLost) {
+TEST_F(MemoryScrubberTest, CorruptedReadOnlySecondCopyIsReportedAsLost) {
   store.banks[1].writable = false;
   bank(1)[0] ^= 1;
   steps_of_a_pass();
@@ -199,7 +199,7 @@ TEST_F(MemoryGuardTest, CorruptedReadOnlySecondCopyIsReportedAsLost) {
 }
 
 // Verifies TS-FDIR-047.
-TEST_F(MemoryGuardTest, CorruptedFallbackIsReportedWithinAPassAndNotUsed) {
+TEST_F(MemoryScrubberTest, CorruptedFallbackIsReportedWithinAPassAndNotUsed) {
   bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
   init(store);
   step_good();
@@ -223,7 +223,7 @@ TEST_F(MemoryGuardTest, CorruptedFallbackIsReportedWithinAPassAndNotUsed) {
 }
 
 // Verifies TS-FDIR-047.
-TEST_F(MemoryGuardTest, ModelThatIsNoLongerInUseStaysAFallbackThatIsChecked) {
+TEST_F(MemoryScrubberTest, ModelThatIsNoLongerInUseStaysAFallbackThatIsChecked) {
   const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
   bank(1) = other;
   init(store);
@@ -240,7 +240,7 @@ TEST_F(MemoryGuardTest, ModelThatIsNoLongerInUseStaysAFallbackThatIsChecked) {
 }
 
 // Verifies TS-FDIR-040, TS-FDIR-047.
-TEST_F(MemoryGuardTest, FlippedBitOfTheFallbacksTableIsRepairedUnlessTheFallbackIsLostToo) {
+TEST_F(MemoryScrubberTest, FlippedBitOfTheFallbacksTableIsRepairedUnlessTheFallbackIsLostToo) {
   bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
   init(store);
   step_good();
@@ -259,7 +259,7 @@ TEST_F(MemoryGuardTest, FlippedBitOfTheFallbacksTableIsRepairedUnlessTheFallback
 }
 
 // Verifies TS-FDIR-015. The vote cannot correct the same bit in two copies.
-TEST_F(MemoryGuardTest, ModeThatIsNoneGoesSafe) {
+TEST_F(MemoryScrubberTest, ModeThatIsNoneGoesSafe) {
   for (const int number : {4, 32, 255}) {
     init(store);
     step_good();
@@ -276,7 +276,7 @@ TEST_F(MemoryGuardTest, ModeThatIsNoneGoesSafe) {
 }
 
 // Verifies TS-FDIR-015.
-TEST_F(MemoryGuardTest, IndicesOutOfRangeAreBoundedAndGoSafe) {
+TEST_F(MemoryScrubberTest, IndicesOutOfRangeAreBoundedAndGoSafe) {
   for (const std::uint32_t bank : {2U, 0x8000'0000U}) {
     init(store);
     step_good();
@@ -297,7 +297,7 @@ TEST_F(MemoryGuardTest, IndicesOutOfRangeAreBoundedAndGoSafe) {
 }
 
 // Verifies TS-FDIR-015.
-TEST_F(MemoryGuardTest, FieldsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
+TEST_F(MemoryScrubberTest, FieldsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
   for (std::size_t field = 0; field < kTableFields; ++field) {
     std::vector<std::uint32_t> wrong{UINT32_MAX};
     if (field < kParameters)
@@ -317,7 +317,7 @@ TEST_F(MemoryGuardTest, FieldsOutOfRangeBecomeTheInitialOnesAndGoSafe) {
 }
 
 // Verifies TS-FDIR-015.
-TEST_F(MemoryGuardTest, TableWithEveryFieldOutOfRangeBecomesTheInitialOne) {
+TEST_F(MemoryScrubberTest, TableWithEveryFieldOutOfRangeBecomesTheInitialOne) {
   AppMemory::state(*app).table.fields.fill(UINT32_MAX);
   AppMemory::commit(*app);
   step_good();
@@ -326,9 +326,9 @@ TEST_F(MemoryGuardTest, TableWithEveryFieldOutOfRangeBecomesTheInitialOne) {
 }
 
 // Verifies TS-FDIR-040.
-TEST_F(MemoryGuardTest, FlippedBitsOfTheTableAreRepaired) {
-  const Region guard = AppMemory::guard(*app);
-  guard.flip(8 * 40 + 3);
+TEST_F(MemoryScrubberTest, FlippedBitsOfTheTableAreRepaired) {
+  const Region scrubber = AppMemory::scrubber(*app);
+  scrubber.flip(8 * 40 + 3);
   expect_undisturbed_step();
   EXPECT_EQ(out->telemetry.model_tables_rebuilt, 1U);
   EXPECT_EQ(events(EventId::kModelTableRebuilt), 1);
@@ -338,7 +338,7 @@ TEST_F(MemoryGuardTest, FlippedBitsOfTheTableAreRepaired) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, SameBlockHitInBothBanksSwitchesOrGoesSafe) {
+TEST_F(MemoryScrubberTest, SameBlockHitInBothBanksSwitchesOrGoesSafe) {
   bank(0)[700'000] ^= 0x10;
   bank(1)[700'001] ^= 0x10;
   for (int i = 0; i < 30 && app->mode() == Mode::kRun; ++i) step_good();
@@ -360,7 +360,7 @@ TEST_F(MemoryGuardTest, SameBlockHitInBothBanksSwitchesOrGoesSafe) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, DamagedModelWithoutSecondCopyFallsBackOnAnotherGoodOne) {
+TEST_F(MemoryScrubberTest, DamagedModelWithoutSecondCopyFallsBackOnAnotherGoodOne) {
   const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
   bank(1) = other;
   init(store);
@@ -377,7 +377,7 @@ TEST_F(MemoryGuardTest, DamagedModelWithoutSecondCopyFallsBackOnAnotherGoodOne) 
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, HitReadOnlyBankWithoutSecondCopyLeadsToSafe) {
+TEST_F(MemoryScrubberTest, HitReadOnlyBankWithoutSecondCopyLeadsToSafe) {
   store.banks[0].writable = false;
   store.banks[1] = {};
   init(store);
@@ -388,7 +388,7 @@ TEST_F(MemoryGuardTest, HitReadOnlyBankWithoutSecondCopyLeadsToSafe) {
 }
 
 // Verifies TS-FDIR-040.
-TEST_F(MemoryGuardTest, TableAndModelHitTogetherAreRepairedFromTheSecondCopy) {
+TEST_F(MemoryScrubberTest, TableAndModelHitTogetherAreRepairedFromTheSecondCopy) {
   hit_block(0, 200);
   hit_table();
   expect_undisturbed_step();
@@ -400,7 +400,7 @@ TEST_F(MemoryGuardTest, TableAndModelHitTogetherAreRepairedFromTheSecondCopy) {
 }
 
 // Verifies TS-FDIR-040, TS-FDIR-190. One repair in each cycle, whatever is hit.
-TEST_F(MemoryGuardTest, EveryCombinationOfTablesAndConstantsIsRepairedWithinTheMostRepairCycles) {
+TEST_F(MemoryScrubberTest, EveryCombinationOfTablesAndConstantsIsRepairedWithinTheMostRepairCycles) {
   int longest = 0;
   for (const bool has_fallback : {false, true}) {
     if (has_fallback) bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
@@ -426,11 +426,11 @@ TEST_F(MemoryGuardTest, EveryCombinationOfTablesAndConstantsIsRepairedWithinTheM
       EXPECT_EQ(out->telemetry.model_blocks_repaired + out->telemetry.model_blocks_lost, 0U) << hit;
     }
   }
-  EXPECT_EQ(longest, MemoryGuard::kMostRepairCycles);
+  EXPECT_EQ(longest, MemoryScrubber::kMostRepairCycles);
 }
 
 // Verifies TS-FDIR-190. The other flips of the vote and of the estimator's state are still corrected at once.
-TEST_F(MemoryGuardTest, WhatIsHitWhileARepairWaitsIsCorrectedToo) {
+TEST_F(MemoryScrubberTest, WhatIsHitWhileARepairWaitsIsCorrectedToo) {
   bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
   init(store);
   sequence_number = 100;
@@ -442,7 +442,7 @@ TEST_F(MemoryGuardTest, WhatIsHitWhileARepairWaitsIsCorrectedToo) {
   EXPECT_EQ(out->telemetry.constants_reloaded, 0U) << "it waits";
   passed_over.push_back(sequence_number);
   AppMemory::flip_state_bit(*app, 5);
-  AppMemory::voted_state(*app).flip(8 * offsetof(AppState, long_task));
+  AppMemory::redundant_state(*app).flip(8 * offsetof(AppState, long_task));
   hit_table(1);
   expect_repaired_after(2);
   EXPECT_EQ(out->telemetry.model_tables_rebuilt, 2U);
@@ -452,7 +452,7 @@ TEST_F(MemoryGuardTest, WhatIsHitWhileARepairWaitsIsCorrectedToo) {
 }
 
 // Verifies TS-FDIR-190.
-TEST_F(MemoryGuardTest, RepairsInStandbyAreSpreadTooAndRunWaitsForTheLast) {
+TEST_F(MemoryScrubberTest, RepairsInStandbyAreSpreadTooAndRunWaitsForTheLast) {
   step_commands({set_mode(Mode::kStandby)});
   hit_table(0);
   hit_table(1);
@@ -475,19 +475,19 @@ TEST_F(MemoryGuardTest, RepairsInStandbyAreSpreadTooAndRunWaitsForTheLast) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, TableAndModelHitTogetherLeadToSafeWithoutASecondCopy) {
+TEST_F(MemoryScrubberTest, TableAndModelHitTogetherLeadToSafeWithoutASecondCopy) {
   store.banks[1] = {};
   init(store);
   step_good();
   bank(0)[900'000] ^= 1;
-  AppMemory::guard(*app).flip(8 * 40);
+  AppMemory::scrubber(*app).flip(8 * 40);
   step_good();
   EXPECT_EQ(app->mode(), Mode::kSafe);
   EXPECT_EQ(out->telemetry.model_tables_rebuilt, 0U);
 }
 
 // Verifies TS-FDIR-030.
-TEST_F(MemoryGuardTest, ConstantsHitTogetherWithTheirImageAreReloadedAfterItsRepair) {
+TEST_F(MemoryScrubberTest, ConstantsHitTogetherWithTheirImageAreReloadedAfterItsRepair) {
   flip_a_constant();
   for (std::size_t at = 0; at < bank(0).size(); at += config::kModelBlockBytes) bank(0)[at + 64] ^= 1;
   expect_repaired_after(1);
@@ -496,7 +496,7 @@ TEST_F(MemoryGuardTest, ConstantsHitTogetherWithTheirImageAreReloadedAfterItsRep
 }
 
 // Verifies TS-FDIR-030.
-TEST_F(MemoryGuardTest, ConstantsThatNoBankHoldsLeadToSafe) {
+TEST_F(MemoryScrubberTest, ConstantsThatNoBankHoldsLeadToSafe) {
   store.banks[1] = {};
   init(store);
   step_good();
@@ -507,7 +507,7 @@ TEST_F(MemoryGuardTest, ConstantsThatNoBankHoldsLeadToSafe) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, HitReadOnlyBankIsReplacedByItsSecondCopy) {
+TEST_F(MemoryScrubberTest, HitReadOnlyBankIsReplacedByItsSecondCopy) {
   for (const std::uint32_t used : {0U, 1U}) {
     store.fill(test_model_image());
     store.banks[used].writable = false;
@@ -532,7 +532,7 @@ TEST_F(MemoryGuardTest, HitReadOnlyBankIsReplacedByItsSecondCopy) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, SameHitInBothBanksIsNotAccepted) {
+TEST_F(MemoryScrubberTest, SameHitInBothBanksIsNotAccepted) {
   hit_block(0, 100);
   hit_block(1, 100);
   steps_of_a_pass();
@@ -542,7 +542,7 @@ TEST_F(MemoryGuardTest, SameHitInBothBanksIsNotAccepted) {
 }
 
 // Verifies TS-FDIR-045.
-TEST_F(MemoryGuardTest, ScrubbingEndsAtTheFirstLostBlock) {
+TEST_F(MemoryScrubberTest, ScrubbingEndsAtTheFirstLostBlock) {
   store.banks[1] = {};
   init(store);
   step_good();
@@ -553,7 +553,7 @@ TEST_F(MemoryGuardTest, ScrubbingEndsAtTheFirstLostBlock) {
 }
 
 // Verifies TS-FDIR-030, TS-FDIR-045.
-TEST_F(MemoryGuardTest, ConstantsAreNotReloadedFromAnImageWithALostBlock) {
+TEST_F(MemoryScrubberTest, ConstantsAreNotReloadedFromAnImageWithALostBlock) {
   store.banks[1] = {};
   init(store);
   step_good();
@@ -567,7 +567,7 @@ TEST_F(MemoryGuardTest, ConstantsAreNotReloadedFromAnImageWithALostBlock) {
 }
 
 // Verifies TS-FDIR-045, TS-FDIR-090, TS-FDIR-190.
-TEST_F(MemoryGuardTest, FrameOfTheCycleThatLosesTheModelIsPassedOverAndCounted) {
+TEST_F(MemoryScrubberTest, FrameOfTheCycleThatLosesTheModelIsPassedOverAndCounted) {
   bank(1) = gnc::lasting_model_image<gnc::FixedPoint>(8);
   init(store);
   step_good();
@@ -586,7 +586,7 @@ TEST_F(MemoryGuardTest, FrameOfTheCycleThatLosesTheModelIsPassedOverAndCounted) 
 }
 
 // Verifies TS-FDIR-045. The vote cannot correct the same bits in two copies.
-TEST_F(MemoryGuardTest, WithoutAGoodModelNoFrameIsUsed) {
+TEST_F(MemoryScrubberTest, WithoutAGoodModelNoFrameIsUsed) {
   AppMemory::state(*app).banks.descriptor[0].set(BankStatus::kEmpty);
   AppMemory::commit(*app);
   step_good();
@@ -595,7 +595,7 @@ TEST_F(MemoryGuardTest, WithoutAGoodModelNoFrameIsUsed) {
 }
 
 // Verifies TS-FDIR-045, TS-FDIR-190.
-TEST_F(MemoryGuardTest, CommandsOfTheCycleThatLosesTheModelDoNotLengthenTheSwitch) {
+TEST_F(MemoryScrubberTest, CommandsOfTheCycleThatLosesTheModelDoNotLengthenTheSwitch) {
   const std::vector<std::uint8_t>& other = gnc::lasting_model_image<gnc::FixedPoint>(8);
   std::vector<std::uint8_t> arguments;
   append_u32(arguments, gnc::model_image_crc32(other.data()));
@@ -619,7 +619,7 @@ TEST_F(MemoryGuardTest, CommandsOfTheCycleThatLosesTheModelDoNotLengthenTheSwitc
 }
 
 // Verifies TS-FDIR-045, TS-MDL-020.
-TEST_F(MemoryGuardTest, UploadContinuesWhenTheModelInUseIsLost) {
+TEST_F(MemoryScrubberTest, UploadContinuesWhenTheModelInUseIsLost) {
   const auto load = [this](std::uint32_t offset) {
     std::vector<std::uint8_t> arguments;
     append_u32(arguments, offset);
@@ -638,20 +638,20 @@ TEST_F(MemoryGuardTest, UploadContinuesWhenTheModelInUseIsLost) {
 }
 
 // Verifies TS-FDIR-030.
-TEST_F(MemoryGuardTest, ConstantsThatDifferFromTheActivationSwitchBanks) {
-  const Region voted = AppMemory::voted_state(*app);
-  const std::size_t one = voted.size / 3;
+TEST_F(MemoryScrubberTest, ConstantsThatDifferFromTheActivationSwitchBanks) {
+  const Region redundant = AppMemory::redundant_state(*app);
+  const std::size_t one = redundant.size / 3;
   const auto offset = static_cast<std::size_t>(
-      reinterpret_cast<std::uint8_t*>(&AppMemory::state(*app).constants_crc32) - voted.data);
+      reinterpret_cast<std::uint8_t*>(&AppMemory::state(*app).constants_crc32) - redundant.data);
   for (const std::size_t copy : {std::size_t{0}, one})
-    voted.data[copy + offset] ^= 1;  // the same hit in two copies
+    redundant.data[copy + offset] ^= 1;  // the same hit in two copies
   step_good();
   EXPECT_EQ(app->mode(), Mode::kRun) << "the other bank is activated";
   EXPECT_EQ(out->telemetry.bank_switches, 1U);
 }
 
 // Verifies TS-FDIR-080.
-TEST_F(MemoryGuardTest, ActivationsAreRewritten) {
+TEST_F(MemoryScrubberTest, ActivationsAreRewritten) {
   const Region region = AppMemory::activations(*app);
   std::mt19937 engine(5);
   for (int i = 0; i < 20; ++i) {
@@ -661,7 +661,7 @@ TEST_F(MemoryGuardTest, ActivationsAreRewritten) {
 }
 
 // What tests/campaigns/fault compares with.
-TEST_F(MemoryGuardTest, WithoutProtectionsAFlipPersists) {
+TEST_F(MemoryScrubberTest, WithoutProtectionsAFlipPersists) {
   AppMemory::state(*app).mode = Mode::kSafe;
   now_ns = next_time_ns();
   AppMemory::step_unprotected(*app, now_ns, StepInputs{}, *out);

@@ -1,5 +1,5 @@
 // Verifies TS-FDIR-010.
-#include "fsw/app/voted.hpp"
+#include "fsw/app/triple_redundant.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,17 +13,17 @@ struct State {
   std::uint8_t filler[3] = {};
 };
 
-Voted<State> with_content() {
-  Voted<State> voted;
-  *voted = {0xDEADBEEF, -5, 7, {}};
-  voted.commit();
-  return voted;
+TripleRedundant<State> with_content() {
+  TripleRedundant<State> state;
+  *state = {0xDEADBEEF, -5, 7, {}};
+  state.commit();
+  return state;
 }
 
-TEST(Voted, EverySingleBitFlipInAnyCopyIsCorrected) {
-  const Voted<State> clean = with_content();
+TEST(TripleRedundant, EverySingleBitFlipInAnyCopyIsCorrected) {
+  const TripleRedundant<State> clean = with_content();
   for (std::size_t bit = 0; bit < 8 * sizeof clean; ++bit) {
-    Voted<State> hit = clean;
+    TripleRedundant<State> hit = clean;
     reinterpret_cast<std::uint8_t*>(&hit)[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
     ASSERT_EQ(hit.vote(), 1U) << bit;
     EXPECT_EQ(hit->number, 0xDEADBEEF);
@@ -33,8 +33,8 @@ TEST(Voted, EverySingleBitFlipInAnyCopyIsCorrected) {
   }
 }
 
-TEST(Voted, FlipsOfDifferentBitsInTwoCopiesAreCorrected) {
-  Voted<State> hit = with_content();
+TEST(TripleRedundant, FlipsOfDifferentBitsInTwoCopiesAreCorrected) {
+  TripleRedundant<State> hit = with_content();
   auto* const bytes = reinterpret_cast<std::uint8_t*>(&hit);
   bytes[0] ^= 1;
   bytes[sizeof(State)] ^= 2;
@@ -42,12 +42,12 @@ TEST(Voted, FlipsOfDifferentBitsInTwoCopiesAreCorrected) {
   EXPECT_EQ(hit->number, 0xDEADBEEF);
 }
 
-TEST(Voted, ChangesWithinACycleCountAfterCommit) {
-  Voted<State> voted = with_content();
-  voted->number = 1;
-  voted.commit();
-  EXPECT_EQ(voted.vote(), 0U);
-  EXPECT_EQ(voted->number, 1U);
+TEST(TripleRedundant, ChangesWithinACycleCountAfterCommit) {
+  TripleRedundant<State> state = with_content();
+  state->number = 1;
+  state.commit();
+  EXPECT_EQ(state.vote(), 0U);
+  EXPECT_EQ(state->number, 1U);
 }
 
 }  // namespace

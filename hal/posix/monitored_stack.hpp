@@ -1,5 +1,5 @@
-// PaintedStack: the stack of one thread in static memory, filled with a pattern that shows how much of it was
-// never used.
+// MonitoredStack: the stack of one thread in static memory, filled with a pattern that shows its
+// high-water mark: the deepest use so far.
 #pragma once
 
 #include <pthread.h>
@@ -10,7 +10,7 @@
 
 namespace tumblesight::hal::posix {
 
-class PaintedStack {
+class MonitoredStack {
  public:
   // A step needs a few KiB (docs/audit.md). The rest is for the C library.
 #ifdef __SANITIZE_THREAD__
@@ -19,11 +19,11 @@ class PaintedStack {
   static constexpr std::size_t kBytes = 256 * 1024;
 #endif
 
-  PaintedStack() {
+  MonitoredStack() {
     words_.fill(kPattern);
   }
-  PaintedStack(const PaintedStack&) = delete;
-  PaintedStack& operator=(const PaintedStack&) = delete;
+  MonitoredStack(const MonitoredStack&) = delete;
+  MonitoredStack& operator=(const MonitoredStack&) = delete;
 
   // Starts the thread that uses this stack, once. False if the system provides no thread.
   [[nodiscard]] bool start(pthread_t& thread, void* (*main)(void*), void* argument);

@@ -1,4 +1,4 @@
-#include "fsw/app/memory_guard.hpp"
+#include "fsw/app/memory_scrubber.hpp"
 
 #include <cstring>
 
@@ -13,16 +13,16 @@ hal::ModelBank memory_of(std::uint32_t bank, const AppState& state) {
 
 }  // namespace
 
-void MemoryGuard::bank_is_good(std::uint32_t bank, AppState& state) {
+void MemoryScrubber::bank_is_good(std::uint32_t bank, AppState& state) {
   banks_.make_table(bank, *state.platform.models, state.banks);
 }
 
-void MemoryGuard::model_activated(const Estimator& estimator, AppState& state) {
+void MemoryScrubber::model_activated(const Estimator& estimator, AppState& state) {
   bank_is_good(state.banks.in_use, state);
   state.constants_crc32 = estimator.constants_crc32();
 }
 
-bool MemoryGuard::bound(const Estimator& estimator, AppState& state) {
+bool MemoryScrubber::bound(const Estimator& estimator, AppState& state) {
   ModelBanksState& banks = state.banks;
   bool sound = is_mode(state.mode);
   if (banks.in_use >= hal::kModelBanks) {
@@ -42,13 +42,13 @@ bool MemoryGuard::bound(const Estimator& estimator, AppState& state) {
   return sound;
 }
 
-void MemoryGuard::keep(const Estimator& estimator, AppState& state) {
+void MemoryScrubber::keep(const Estimator& estimator, AppState& state) {
   std::memset(static_cast<void*>(&kept_), 0, sizeof kept_);  // the padding, too, so that no flip stays in it
   estimator.save(kept_);
   state.estimator_crc32 = estimator.state_crc32();
 }
 
-void MemoryGuard::check(Estimator& estimator, AppState& state, const Reporter& report) {
+void MemoryScrubber::check(Estimator& estimator, AppState& state, const Reporter& report) {
   check_state(estimator, state, report);
   if (!state.has_model()) return;
   if (!has_sound_table(state.banks.in_use, estimator, state, report)) return;
@@ -60,7 +60,7 @@ void MemoryGuard::check(Estimator& estimator, AppState& state, const Reporter& r
   if (state.has_model()) check_constants(estimator, state, report);
 }
 
-void MemoryGuard::check_state(Estimator& estimator, AppState& state, const Reporter& report) {
+void MemoryScrubber::check_state(Estimator& estimator, AppState& state, const Reporter& report) {
   if (estimator.state_crc32() == state.estimator_crc32) return;
   if (Estimator::crc32_of(kept_) == state.estimator_crc32) {
     estimator.restore(kept_);
@@ -74,7 +74,7 @@ void MemoryGuard::check_state(Estimator& estimator, AppState& state, const Repor
 }
 
 // Reloads the constants from the bank, after a check of all its blocks.
-void MemoryGuard::check_constants(Estimator& estimator, AppState& state, const Reporter& report) {
+void MemoryScrubber::check_constants(Estimator& estimator, AppState& state, const Reporter& report) {
   if (estimator.constants_crc32() == state.constants_crc32) return;
   if (!state.begin_long_task()) return;
   for (std::uint32_t i = 0; i < ModelBanks::kBlocks && state.has_model(); ++i) check_block(state, report);
@@ -88,8 +88,8 @@ void MemoryGuard::check_constants(Estimator& estimator, AppState& state, const R
   }
 }
 
-bool MemoryGuard::has_sound_table(std::uint32_t bank, const Estimator& estimator, AppState& state,
-                                  const Reporter& report) {
+bool MemoryScrubber::has_sound_table(std::uint32_t bank, const Estimator& estimator, AppState& state,
+                                     const Reporter& report) {
   if (banks_.table_is_sound(bank, state.banks)) return true;
   const bool restored = banks_.restore_table(bank, state.banks);
   if (!restored && !state.begin_long_task()) return false;
@@ -106,7 +106,7 @@ bool MemoryGuard::has_sound_table(std::uint32_t bank, const Estimator& estimator
   return false;
 }
 
-bool MemoryGuard::rebuild_table(std::uint32_t bank, const Estimator& estimator, AppState& state) {
+bool MemoryScrubber::rebuild_table(std::uint32_t bank, const Estimator& estimator, AppState& state) {
   const std::uint32_t size_bytes = state.banks.descriptor[bank].size_bytes;
   const gnc::ModelStatus status =
       estimator.check(memory_of(bank, state).data, size_bytes, state.expected_target.name());
@@ -115,7 +115,7 @@ bool MemoryGuard::rebuild_table(std::uint32_t bank, const Estimator& estimator, 
   return true;
 }
 
-void MemoryGuard::check_block(AppState& state, const Reporter& report) {
+void MemoryScrubber::check_block(AppState& state, const Reporter& report) {
   const BlockCheck checked = banks_.check_block(*state.platform.models, state.banks);
   if (state.banks.next_block == 0) count(state.counters.model_passes);
   const auto bank = static_cast<std::int32_t>(checked.bank), block = static_cast<std::int32_t>(checked.block);
@@ -141,13 +141,13 @@ void MemoryGuard::check_block(AppState& state, const Reporter& report) {
 
 // The switch to the other bank is the long task of this cycle, whether or not an attempt of a repair was made
 // before: both fit into half a period.
-void MemoryGuard::lose_model(AppState& state) {
+void MemoryScrubber::lose_model(AppState& state) {
   state.long_task = true;
   state.banks.descriptor[state.banks.in_use].set(BankStatus::kEmpty);
   state.faults_seen |= bit_of(Fault::kModelCorrupted);
 }
 
-void MemoryGuard::lose_fallback(AppState& state, const Reporter& report) {
+void MemoryScrubber::lose_fallback(AppState& state, const Reporter& report) {
   const std::uint32_t bank = state.banks.other();
   state.banks.descriptor[bank].set(BankStatus::kEmpty);
   report(EventId::kFallbackLost, static_cast<std::int32_t>(bank));

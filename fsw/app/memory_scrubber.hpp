@@ -1,7 +1,8 @@
-// MemoryGuard: finds bit flips in the estimator's memory since the last cycle and repairs them. Its time is
-// bounded: the parameter ScrubBlocks limits the model blocks checked per cycle, and a cycle has at most one
-// of the repairs marked *, AppState::begin_long_task(). What is still corrupted is found again and repaired
-// in the next cycle, and no frame is estimated meanwhile. Everything is repaired within kMostRepairCycles.
+// MemoryScrubber: finds bit flips in the estimator's memory since the last cycle and repairs them. Its time
+// is bounded: the parameter ScrubBlocks limits the model blocks checked per cycle, and a cycle has at most
+// one of the repairs marked *, AppState::begin_long_task(). What is still corrupted is found again and
+// repaired in the next cycle, and no frame is estimated meanwhile. Everything is repaired within
+// kMostRepairCycles.
 //
 //   corrupted                      found by                        repaired from
 //   state of LSTM and track        CRC of the last cycle           copy of the last cycle; reset if the copy
@@ -21,7 +22,7 @@
 
 namespace tumblesight::fsw {
 
-class MemoryGuard {
+class MemoryScrubber {
  public:
   // The tables of both banks and the constants, one in each cycle.
   static constexpr int kMostRepairCycles = 3;

@@ -1,5 +1,5 @@
 // Verifies TS-MEM-100.
-#include "hal/posix/painted_stack.hpp"
+#include "hal/posix/monitored_stack.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,20 +27,20 @@ void* stay_shallow(void*) {
 }
 
 std::uint32_t left_after(void* (*main)(void*)) {
-  const auto stack = std::make_unique<PaintedStack>();
-  EXPECT_EQ(stack->least_left_bytes(), PaintedStack::kBytes) << "before there is a thread";
+  const auto stack = std::make_unique<MonitoredStack>();
+  EXPECT_EQ(stack->least_left_bytes(), MonitoredStack::kBytes) << "before there is a thread";
   pthread_t thread{};
   EXPECT_TRUE(stack->start(thread, main, nullptr));
   EXPECT_EQ(pthread_join(thread, nullptr), 0);
   return stack->least_left_bytes();
 }
 
-TEST(PaintedStack, ShowsTheGreatestDepthOfItsThread) {
+TEST(MonitoredStack, ShowsTheGreatestDepthOfItsThread) {
   const std::uint32_t shallow = left_after(stay_shallow);
   const std::uint32_t deep = left_after(go_deep);
-  EXPECT_GT(shallow, PaintedStack::kBytes / 2);
-  EXPECT_LT(shallow, PaintedStack::kBytes);
-  EXPECT_LE(deep, PaintedStack::kBytes - kDeep);
+  EXPECT_GT(shallow, MonitoredStack::kBytes / 2);
+  EXPECT_LT(shallow, MonitoredStack::kBytes);
+  EXPECT_LE(deep, MonitoredStack::kBytes - kDeep);
   EXPECT_GT(deep, shallow - kDeep - kDeep / 10);
 }
 

@@ -1,5 +1,6 @@
-// Voted: three copies of a state that must survive a bit flip. Between two cycles the copies are equal. At
-// the start of a cycle a vote sets every bit to its majority. Within a cycle only the first copy changes.
+// TripleRedundant: a state that must survive a bit flip, in three copies (triple modular redundancy, TMR).
+// Between two cycles the copies are equal. At the start of a cycle a vote sets every bit to its majority.
+// Within a cycle only the first copy changes.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 namespace tumblesight::fsw {
 
 template <class State>
-class Voted {
+class TripleRedundant {
   static_assert(std::is_trivially_copyable_v<State> && sizeof(State) % 4 == 0);
 
  public:
