@@ -85,14 +85,12 @@ void FrameHandler::pass_over() {
 
 void FrameHandler::use(const StepInputs& inputs) {
   const gnc::RangeImage& frame = *inputs.frame;
-  const gnc::FrameTrackerLimits limits = state_.tracker_limits();
-  const std::int64_t last_exposure_time_ns = state_.tracking.gate.last_exposure_time_ns();
-  const std::uint32_t expected_number = state_.tracking.gate.last_sequence_number() + 1U;
   gnc::FrameOutcome& outcome = workspace_.outcome;
   hal::Telemetry& counters = state_.counters;
   hal::Stopwatch& stopwatch = *state_.platform.stopwatch;
   const std::uint64_t start_ns = stopwatch.now_ns();
-  tracker_.use(frame, inputs.chaser, state_.now_ns, limits, state_.tracking, outcome);
+  tracker_.step({frame, inputs.chaser, inputs.chaser_now, state_.now_ns}, state_.tracker_limits(),
+                state_.tracking, outcome);
   const std::uint64_t end_ns = stopwatch.now_ns();
   if (outcome.verdict == FrameVerdict::kBadContent) {
     note_bad_content(outcome.content, frame.sequence_number, frame.rays);
@@ -104,9 +102,8 @@ void FrameHandler::use(const StepInputs& inputs) {
   }
   counters.inference_us = elapsed_us(start_ns, end_ns);
   if (counters.inference_us > counters.inference_max_us) counters.inference_max_us = counters.inference_us;
-  note_use(frame, last_exposure_time_ns, expected_number);
-  tracker_.check(limits, state_.tracking, outcome);
-  report_attitude(inputs, note_doubts(frame));
+  note_use(frame);
+  report_attitude(frame, note_doubts(frame));
 }
 
 void FrameHandler::note_refusal(FrameVerdict verdict, std::uint32_t sequence_number,
@@ -165,8 +162,7 @@ void FrameHandler::note_bad_content(gnc::FrameStatus content, std::uint32_t sequ
   report_(EventId::kFrameBad, bits_of(sequence_number), static_cast<std::int32_t>(content), rays);
 }
 
-void FrameHandler::note_use(const gnc::RangeImage& frame, std::int64_t last_exposure_time_ns,
-                            std::uint32_t expected_number) {
+void FrameHandler::note_use(const gnc::RangeImage& frame) {
   const gnc::FrameOutcome& outcome = workspace_.outcome;
   hal::Telemetry& counters = state_.counters;
   // A frame that was superseded, passed over or dropped for lack of room did arrive.
@@ -174,12 +170,12 @@ void FrameHandler::note_use(const gnc::RangeImage& frame, std::int64_t last_expo
   if (outcome.numbers_skipped > state_.frames_unused) {
     const std::uint32_t skipped = went_back ? 1U : outcome.numbers_skipped - state_.frames_unused;
     count(counters.sequence_gaps, skipped);
-    report_(EventId::kSequenceSkipped, bits_of(expected_number), bits_of(frame.sequence_number),
+    report_(EventId::kSequenceSkipped, bits_of(outcome.expected_number), bits_of(frame.sequence_number),
             went_back ? -1 : bits_of(skipped));
   }
   if (outcome.frames_given_up > 0) {
     count(counters.estimator_resets);
-    report_(EventId::kEstimatorResetByGap, elapsed_ms(last_exposure_time_ns, frame.exposure_time_ns),
+    report_(EventId::kEstimatorResetByGap, elapsed_ms(outcome.last_exposure_time_ns, frame.exposure_time_ns),
             clamp_to_int32(outcome.frames_given_up), outcome.chaser_changed ? 1 : 0);
   }
   count(counters.frames_used);
@@ -204,9 +200,8 @@ Validity FrameHandler::note_doubts(const gnc::RangeImage& frame) {
   return Validity::kDoubtful;
 }
 
-void FrameHandler::report_attitude(const StepInputs& inputs, Validity validity) {
+void FrameHandler::report_attitude(const gnc::RangeImage& frame, Validity validity) {
   if (validity == Validity::kFrameRefused) return;
-  const gnc::RangeImage& frame = *inputs.frame;
   const gnc::FrameOutcome& outcome = workspace_.outcome;
   const gnc::AttitudeEstimate& estimate = outcome.estimate;
   hal::AttitudeReport& attitude = outputs_.attitude;
@@ -224,19 +219,16 @@ void FrameHandler::report_attitude(const StepInputs& inputs, Validity validity) 
   attitude.rate_covariance_e8 = gnc::rate_covariance(
       estimate.predicted_error_urad,
       (outcome.doubts & gnc::kRateAmbiguous) != 0 ? 1 : estimate.frames_since_reset, outcome.elapsed_ns);
-  gnc::Doubts doubts = outcome.doubts;
-  const gnc::PropagatedMotion now =
-      tracker_.motion_at(state_.now_ns, inputs.chaser_now, state_.tracker_limits(), state_.tracking, doubts);
-  attitude.doubts = static_cast<std::uint8_t>(doubts);
-  attitude.q_lrf_trf_now = now.q_lrf_trf;
-  attitude.rate_lrf_now_urad_s = now.rate_lrf_urad_s;
+  attitude.doubts = static_cast<std::uint8_t>(outcome.doubts);
+  attitude.q_lrf_trf_now = outcome.motion_now.q_lrf_trf;
+  attitude.rate_lrf_now_urad_s = outcome.motion_now.rate_lrf_urad_s;
   attitude.q_lrf_trf_second = estimate.q_lrf_trf_second;
   attitude.second_odds_ppm = estimate.second_odds_ppm;
   attitude.centroid_lrf_mm = estimate.centroid_lrf_mm;
-  report_pose(inputs);
+  report_pose();
 }
 
-void FrameHandler::report_pose(const StepInputs& inputs) {
+void FrameHandler::report_pose() {
   const gnc::PoseEstimate& pose = workspace_.outcome.estimate.pose;
   hal::AttitudeReport& report = outputs_.attitude;
   report.pose_doubts = static_cast<std::uint8_t>(pose.doubts);
@@ -249,8 +241,7 @@ void FrameHandler::report_pose(const StepInputs& inputs) {
   report.pose_velocity_lrf_um_s = pose.state.velocity_lrf_um_s;
   report.pose_sigma = pose.covariance.sigma;
   report.pose_correlation_q15 = pose.covariance.correlation_q15;
-  const gnc::PoseState now =
-      tracker_.pose_at(state_.now_ns, inputs.chaser_now, state_.tracker_limits(), state_.tracking);
+  const gnc::PoseState& now = workspace_.outcome.pose_now;
   report.pose_q_lrf_trf_now = now.q_lrf_trf;
   report.pose_origin_lrf_now_um = now.origin_lrf_um;
   report.pose_rate_lrf_now_urad_s = now.rate_lrf_urad_s;

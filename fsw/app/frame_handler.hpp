@@ -31,11 +31,10 @@ class FrameHandler {
   void use(const StepInputs& inputs);
   void note_refusal(gnc::FrameVerdict verdict, std::uint32_t sequence_number, std::int64_t exposure_time_ns);
   void note_bad_content(gnc::FrameStatus content, std::uint32_t sequence_number, std::int32_t rays);
-  void note_use(const gnc::RangeImage& frame, std::int64_t last_exposure_time_ns,
-                std::uint32_t expected_number);
+  void note_use(const gnc::RangeImage& frame);
   Validity note_doubts(const gnc::RangeImage& frame);
-  void report_attitude(const StepInputs& inputs, Validity validity);
-  void report_pose(const StepInputs& inputs);
+  void report_attitude(const gnc::RangeImage& frame, Validity validity);
+  void report_pose();
   void note_verdict(const gnc::PoseEstimate& pose);
 
   AppState& state_;

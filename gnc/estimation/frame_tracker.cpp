@@ -43,9 +43,20 @@ QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const Quater
 }
 
 template <class N>
-void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
-                          const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) {
-  outcome.verdict = state.gate.judge(frame, now_ns, limits.time);
+void FrameTracker<N>::step(const FrameInputs& inputs, const FrameTrackerLimits& limits,
+                           FrameTrackerState& state, FrameOutcome& outcome) {
+  use(inputs, limits, state, outcome);
+  if (!outcome.used()) return;
+  check_attitude(limits, state, outcome);
+  if ((outcome.doubts & kAttitudeUnsound) == 0) propagate(inputs, limits, state, outcome);
+}
+
+template <class N>
+void FrameTracker<N>::use(const FrameInputs& inputs, const FrameTrackerLimits& limits,
+                          FrameTrackerState& state, FrameOutcome& outcome) {
+  const RangeImage& frame = inputs.frame;
+  const ChaserAttitude& chaser = inputs.chaser;
+  outcome.verdict = state.gate.judge(frame, inputs.now_ns, limits.time);
   if (!outcome.used()) return;
   const FrameSignature signature = signature_of(frame);
   if (state.history.contains(signature)) {
@@ -54,6 +65,8 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   }
 
   FrameInterval interval;
+  outcome.last_exposure_time_ns = state.gate.last_exposure_time_ns();
+  outcome.expected_number = state.gate.last_sequence_number() + 1U;
   outcome.elapsed_ns = state.gate.elapsed_ns(frame);
   interval.elapsed_ns = outcome.elapsed_ns;
   const bool knows_chaser = holds_at(chaser, frame.exposure_time_ns, limits.chaser_time_tolerance_ns);
@@ -89,9 +102,7 @@ void FrameTracker<N>::use(const RangeImage& frame, const ChaserAttitude& chaser,
   state.history.add(signature);
 }
 
-template <class N>
-void FrameTracker<N>::check(const FrameTrackerLimits& limits, FrameTrackerState& state,
-                            FrameOutcome& outcome) const {
+void check_attitude(const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) {
   const AttitudeEstimate& estimate = outcome.estimate;
   // The estimator returns sound attitudes for any frame and any model. Corrupted memory can break this.
   if (!is_sound(estimate)) {
@@ -110,17 +121,12 @@ void FrameTracker<N>::check(const FrameTrackerLimits& limits, FrameTrackerState&
 }
 
 template <class N>
-PropagatedMotion FrameTracker<N>::motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
-                                            const FrameTrackerLimits& limits, const FrameTrackerState& state,
-                                            Doubts& doubts) const {
-  if (!knows_turn(chaser, time_ns, limits, state)) doubts |= kChaserNowUnknown;
-  return estimator_.propagated(interval_until(time_ns, chaser, limits, state));
-}
-
-template <class N>
-PoseState FrameTracker<N>::pose_at(std::int64_t time_ns, const ChaserAttitude& chaser,
-                                   const FrameTrackerLimits& limits, const FrameTrackerState& state) const {
-  return estimator_.propagated_pose(interval_until(time_ns, chaser, limits, state));
+void FrameTracker<N>::propagate(const FrameInputs& inputs, const FrameTrackerLimits& limits,
+                                const FrameTrackerState& state, FrameOutcome& outcome) const {
+  if (!knows_turn(inputs.chaser_now, inputs.now_ns, limits, state)) outcome.doubts |= kChaserNowUnknown;
+  const FrameInterval interval = interval_until(inputs.now_ns, inputs.chaser_now, limits, state);
+  outcome.motion_now = estimator_.propagated(interval);
+  if (outcome.estimate.pose.is_known()) outcome.pose_now = estimator_.propagated_pose(interval);
 }
 
 template class FrameTracker<FixedPoint>;

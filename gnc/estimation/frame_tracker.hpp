@@ -18,8 +18,8 @@
 #include <array>
 #include <cstdint>
 
-#include "gnc/estimation/attitude_estimator.hpp"
 #include "gnc/attitude/chaser_attitude.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
 #include "gnc/estimation/frame_gate.hpp"
 #include "gnc/estimation/frame_signature.hpp"
 
@@ -60,7 +60,7 @@ inline constexpr Doubts kAttitudeUnsound = 4;  // not a unit quaternion, or an e
 inline constexpr Doubts kRateAmbiguous =
     8;  // AttitudeEstimate::rate_is_ambiguous, or a track that cannot know its rate; the attitude is valid
 inline constexpr Doubts kChaserUnknown = 16;     // in the whole track; the attitude is valid
-inline constexpr Doubts kChaserNowUnknown = 32;  // motion_at() is in the LRF of the exposure
+inline constexpr Doubts kChaserNowUnknown = 32;  // motion_now is in the LRF of the exposure
 inline constexpr Doubts kUnexplained =
     64;  // the target at this attitude does not explain what the frame shows
 inline constexpr Doubts kAgainstAttitude = kErrorLarge | kAttitudeJump | kAttitudeUnsound | kUnexplained;
@@ -68,17 +68,32 @@ inline constexpr Doubts kAgainstAttitude = kErrorLarge | kAttitudeJump | kAttitu
 // Largest misfit_of() of an attitude that the frame confirms: docs/numerics.md has the figures behind it.
 inline constexpr std::uint32_t kLargestMisfit = 53 * kWholeShare / 100;
 
+// A frame and what is known with it.
+struct FrameInputs {
+  const RangeImage& frame;
+  const ChaserAttitude& chaser;      // at the exposure
+  const ChaserAttitude& chaser_now;  // at the time of the cycle
+  std::int64_t now_ns;               // time of the cycle
+};
+
+// Everything that is known of a frame after its step.
 struct FrameOutcome {
   FrameVerdict verdict = FrameVerdict::kPass;
   FrameStatus content = FrameStatus::kOk;  // if the verdict is kBadContent
   // The following are valid if the frame was used.
   Doubts doubts = 0;
-  std::int64_t elapsed_ns = 0;        // since the last used frame; 0: there is none
-  std::uint32_t numbers_skipped = 0;  // FrameGate::numbers_skipped()
-  std::uint32_t frames_given_up = 0;  // of the track that ends before this frame; 0: none does
-  bool finds_no_rate = false;         // finds_no_rate(): no jump check
+  std::int64_t last_exposure_time_ns = 0;  // of the last used frame before it
+  std::uint32_t expected_number = 0;       // sequence number after that of the last used frame
+  std::int64_t elapsed_ns = 0;             // since the last used frame; 0: there is none
+  std::uint32_t numbers_skipped = 0;       // FrameGate::numbers_skipped()
+  std::uint32_t frames_given_up = 0;       // of the track that ends before this frame; 0: none does
+  bool finds_no_rate = false;              // finds_no_rate(): no jump check
   bool chaser_changed = false;  // it ends because the chaser's attitude is known from now on, or no more
   AttitudeEstimate estimate;
+  // At the time of the cycle, in the LRF of that time; with kChaserNowUnknown in that of the exposure. Not if
+  // the attitude is unsound.
+  PropagatedMotion motion_now;
+  PoseState pose_now;  // if there is a pose
 
   bool used() const { return verdict == FrameVerdict::kPass; }
   bool valid() const { return used() && (doubts & kAgainstAttitude) == 0; }
@@ -87,35 +102,26 @@ struct FrameOutcome {
 // Turn of the LRF from `last` to `now`: v_lrf now = q v_lrf last.
 QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const QuaternionQ30& q_inertial_lrf_now);
 
+// Checks the attitude of a frame that was used: adds to its doubts.
+void check_attitude(const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome);
+
 template <class N>
 class FrameTracker {
  public:
   // `estimator` must have a model.
   explicit FrameTracker(AttitudeEstimator<N>& estimator) : estimator_(estimator) {}
 
-  // Uses or refuses one frame, then checks its attitude. A refused frame changes neither `state` nor the
-  // estimator. `chaser`: at the exposure. `now_ns`: time of the cycle.
-  void step(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
-            const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) {
-    use(frame, chaser, now_ns, limits, state, outcome);
-    if (outcome.used()) check(limits, state, outcome);
-  }
-  // The two halves of step(), for a caller that measures the time of the first. check() requires a frame that
-  // was used.
-  void use(const RangeImage& frame, const ChaserAttitude& chaser, std::int64_t now_ns,
-           const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome);
-  void check(const FrameTrackerLimits& limits, FrameTrackerState& state, FrameOutcome& outcome) const;
-  // The motion of the target at another time than that of the last used frame, in the LRF of that time.
-  // `chaser`: at that time. Without it or without that of the last used frame the motion is in the LRF of the
-  // exposure, and kChaserNowUnknown is added to `doubts`.
-  PropagatedMotion motion_at(std::int64_t time_ns, const ChaserAttitude& chaser,
-                             const FrameTrackerLimits& limits, const FrameTrackerState& state,
-                             Doubts& doubts) const;
-  // The registered pose at that time, in the same frame; requires one.
-  PoseState pose_at(std::int64_t time_ns, const ChaserAttitude& chaser, const FrameTrackerLimits& limits,
-                    const FrameTrackerState& state) const;
+  // Uses or refuses one frame, checks its attitude and propagates it to the time of the cycle. A refused
+  // frame changes neither `state` nor the estimator.
+  void step(const FrameInputs& inputs, const FrameTrackerLimits& limits, FrameTrackerState& state,
+            FrameOutcome& outcome);
 
  private:
+  void use(const FrameInputs& inputs, const FrameTrackerLimits& limits, FrameTrackerState& state,
+           FrameOutcome& outcome);
+  void propagate(const FrameInputs& inputs, const FrameTrackerLimits& limits, const FrameTrackerState& state,
+                 FrameOutcome& outcome) const;
+
   AttitudeEstimator<N>& estimator_;
 };
 

@@ -9,7 +9,8 @@ template <class N>
 gnc::FrameOutcome step_of(gnc::AttitudeEstimator<N>& estimator, const gnc::RangeImage& frame,
                           const gnc::ChaserAttitude& chaser, gnc::FrameTrackerState& state) {
   gnc::FrameOutcome outcome;
-  gnc::FrameTracker<N>(estimator).step(frame, chaser, frame.exposure_time_ns, kFlightLimits, state, outcome);
+  gnc::FrameTracker<N>(estimator).step({frame, chaser, chaser, frame.exposure_time_ns}, kFlightLimits, state,
+                                       outcome);
   return outcome;
 }
 

@@ -33,10 +33,14 @@ class Tracking : public ::testing::Test {
     frame.exposure_time_ns = now_ns += elapsed_ns;
     return frame;
   }
-  const FrameOutcome& step(const RangeImage& frame, const ChaserAttitude& chaser = {}) {
+  const FrameOutcome& step(const RangeImage& frame, const ChaserAttitude& chaser,
+                           const ChaserAttitude& chaser_now) {
     outcome = {};
-    FrameTracker<FixedPoint>(*estimator).step(frame, chaser, now_ns, limits, state, outcome);
+    FrameTracker<FixedPoint>(*estimator).step({frame, chaser, chaser_now, now_ns}, limits, state, outcome);
     return outcome;
+  }
+  const FrameOutcome& step(const RangeImage& frame, const ChaserAttitude& chaser = {}) {
+    return step(frame, chaser, chaser);
   }
   ChaserAttitude chaser(const Eigen::Quaterniond& q) const { return {now_ns, q30(q), true}; }
 
@@ -140,7 +144,7 @@ TEST_F(Tracking, AFrameThatTheTargetDoesNotExplainIsADoubt) {
   for (const std::uint32_t more : {0U, 1U}) {
     outcome.doubts = 0;
     outcome.estimate.explained = {true, kLargestMisfit + more, 0, 0};
-    FrameTracker<FixedPoint>(*estimator).check(limits, state, outcome);
+    check_attitude(limits, state, outcome);
     EXPECT_EQ(outcome.doubts, more == 0 ? 0 : kUnexplained);
     EXPECT_EQ(outcome.valid(), more == 0);
   }
@@ -173,17 +177,13 @@ TEST_F(Tracking, PredictionTurnsWithTheChaser) {
   const Eigen::Quaterniond first = to_double(outcome.estimate.q_lrf_trf);
   // The LRF turns by `turn`: a target at rest turns the other way in it.
   frame = next();
-  step(frame, chaser(turn));
-  EXPECT_EQ(outcome.doubts & kChaserUnknown, 0U);
+  const ChaserAttitude later{now_ns, q30(turn * turn), true};
+  step(frame, chaser(turn), later);
+  EXPECT_EQ(outcome.doubts & (kChaserUnknown | kChaserNowUnknown), 0U);
   EXPECT_NEAR(std::abs(to_double(outcome.estimate.q_lrf_trf_predicted).dot(turn.conjugate() * first)), 1.0,
               1e-6);
   const Eigen::Quaterniond second = to_double(outcome.estimate.q_lrf_trf);
-  const ChaserAttitude later{now_ns, q30(turn * turn), true};
-  Doubts doubts = 0;
-  const PropagatedMotion motion =
-      FrameTracker<FixedPoint>(*estimator).motion_at(now_ns, later, limits, state, doubts);
-  EXPECT_EQ(doubts, 0U);
-  EXPECT_NEAR(std::abs(to_double(motion.q_lrf_trf).dot(turn.conjugate() * second)), 1.0, 1e-6);
+  EXPECT_NEAR(std::abs(to_double(outcome.motion_now.q_lrf_trf).dot(turn.conjugate() * second)), 1.0, 1e-6);
 }
 
 // Verifies TS-EST-184.
@@ -204,25 +204,22 @@ TEST_F(Tracking, TheChasersAttitudeHoldsForAWholeTrackOrForNone) {
   EXPECT_EQ(outcome.frames_given_up, 3U);
   EXPECT_TRUE(outcome.chaser_changed);
   EXPECT_EQ(outcome.doubts & kChaserUnknown, kChaserUnknown);
-  step(next());
+  RangeImage frame = next();
+  step(frame, {}, chaser(turn));
   EXPECT_EQ(outcome.estimate.frames_since_reset, 2U);
   EXPECT_FALSE(outcome.chaser_changed);
   EXPECT_EQ(outcome.doubts & kChaserUnknown, kChaserUnknown);
   // The LRF is taken not to turn, also to the time of the cycle.
-  const FrameTracker<FixedPoint> tracker(*estimator);
-  Doubts doubts = 1;
-  EXPECT_EQ(tracker.motion_at(now_ns, chaser(turn), limits, state, doubts).q_lrf_trf,
-            outcome.estimate.q_lrf_trf);
-  EXPECT_EQ(doubts, 1U | kChaserNowUnknown);
-  const RangeImage frame = next();
-  step(frame, chaser(turn));
+  EXPECT_EQ(outcome.motion_now.q_lrf_trf, outcome.estimate.q_lrf_trf);
+  EXPECT_EQ(outcome.doubts & kChaserNowUnknown, kChaserNowUnknown);
+  frame = next();
+  step(frame, chaser(turn), {});
   EXPECT_EQ(outcome.estimate.frames_since_reset, 1U);
   EXPECT_EQ(outcome.frames_given_up, 2U);
   EXPECT_TRUE(outcome.chaser_changed);
   EXPECT_EQ(outcome.doubts & kChaserUnknown, 0U);
-  doubts = 1;
-  EXPECT_EQ(tracker.motion_at(now_ns, {}, limits, state, doubts).q_lrf_trf, outcome.estimate.q_lrf_trf);
-  EXPECT_EQ(doubts, 1U | kChaserNowUnknown);
+  EXPECT_EQ(outcome.motion_now.q_lrf_trf, outcome.estimate.q_lrf_trf);
+  EXPECT_EQ(outcome.doubts & kChaserNowUnknown, kChaserNowUnknown);
 }
 
 // Verifies TS-EST-184.
