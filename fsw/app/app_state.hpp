@@ -1,6 +1,6 @@
 // The state that the application keeps between cycles, except the estimator and the tables and copies of
-// MemoryGuard. Three copies are kept (voted.hpp). What the platform hands over by pointer to data is copied
-// into it.
+// MemoryGuard. Three copies are kept (voted.hpp). Data that the platform passes by pointer is copied into
+// this state.
 #pragma once
 
 #include <array>

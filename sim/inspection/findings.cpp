@@ -195,7 +195,7 @@ class Findings {
     const std::string what =
         fmt::format("{} of {} ({:.2g} % of the area) lie apart", counted(found_.strays.size(), "part"),
                     counted(triangles, "triangle"), percent(area_m2, found_.area_m2));
-    const bool enlarge = found_.radius_m > found_.core_radius_m;  // not with an origin far away
+    const bool enlarge = found_.radius_m > found_.core_radius_m;  // false if the origin is far away
     add("strays", Severity::kWarning,
         enlarge ? fmt::format(
                       "{} and enlarge the radius from {} to {}: the target covers {:.0f} % of the width of "
