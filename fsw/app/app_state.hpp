@@ -1,6 +1,6 @@
 // The state that the application keeps between cycles, except the estimator and the tables and copies of
-// MemoryScrubber. Three copies are kept (triple_redundant.hpp). What the platform hands over by pointer to
-// data is copied into it.
+// MemoryScrubber. Three copies are kept (triple_redundant.hpp). Data that the platform passes by pointer is
+// copied into this state.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@
 #include "fsw/app/parameter_table.hpp"
 #include "fsw/app/stored_state.hpp"
 #include "fsw/config/numerics.hpp"
-#include "gnc/estimation/attitude_estimator.hpp"
-#include "gnc/estimation/frame_tracker.hpp"
+#include "gnc/rcnn/attitude_estimator.hpp"
+#include "gnc/tracking/frame_tracker.hpp"
 #include "hal/messages/telemetry.hpp"
 #include "hal/platform.hpp"
 

@@ -14,8 +14,8 @@
 // rules for time and order, gnc::FrameStatus those for the content. Of several frames that wait for a cycle
 // the newest one that passes the gate is used; the older ones are superseded, which is counted. A cycle
 // without a frame is counted as missing; an event marks the start of an outage. Skipped sequence numbers are
-// counted, with an event, and the frame is used. A cycle with a long task, AppState::begin_long_task(),
-// passes its frame over, which is counted; the track coasts.
+// counted, with an event, and the frame is used. A cycle with a long task (AppState::begin_long_task()) skips
+// its frame, which is counted; the track coasts.
 //
 // The estimator is reset
 //   - on entering RUN, by RESET_SEQUENCE and by the response to a fault;
@@ -64,9 +64,9 @@ class AttitudeInitApp final {
   // Before the frames of a cycle are chosen: corrects flipped bits, so that the three functions below decide
   // by a triple-redundant state. The next step reports the corrections.
   void correct_state();
-  // Whether a frame passes the rules for time and order in a cycle at `now_ns`. For the choice of the frame
-  // that a step gets. The step judges it again, after the cycle's commands: they may change the limits, or
-  // reset the sequence, and a step must not depend on what its caller has checked.
+  // Whether a frame passes the rules for time and order in a cycle at `now_ns`. The caller chooses the frame
+  // of the step by it. The step checks the frame again, after the cycle's commands: they may change the
+  // limits or reset the sequence, and a step must not depend on what its caller has checked.
   [[nodiscard]] gnc::FrameVerdict judge(const gnc::RangeImage& frame, std::int64_t now_ns) const;
   // Whether a frame begins like one of the last used ones, and whether it repeats one. For the same choice.
   [[nodiscard]] bool has_used_alike(const gnc::SignatureStart& start) const {

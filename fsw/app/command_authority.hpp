@@ -1,5 +1,5 @@
-// CommandAuthority: who may command the application, and under which APID. It is a part of the
-// triple-redundant state, so that a bit flip in a key cannot make every command a forgery.
+// CommandAuthority: who may command the application, and under which APID. It is part of the
+// triple-redundant state: otherwise a bit flip in a key would make every genuine command look forged.
 #pragma once
 
 #include <cstdint>

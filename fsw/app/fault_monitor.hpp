@@ -1,5 +1,5 @@
-// FaultMonitor: keeps the last cycles of each fault and says when to respond. An intermittent fault counts as
-// well as a lasting one.
+// FaultMonitor: remembers in which of the last cycles each fault was present, and decides when to respond. An
+// intermittent fault counts like a lasting one.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ class FaultMonitor {
  public:
   enum class Change : std::uint8_t { kNone, kPersists, kOver };
 
-  // Once per cycle and fault. kPersists: the fault is present, and was in as many cycles of the window as its
-  // rule requires; then the window starts empty, so that the next kPersists needs as many again. kOver: a
-  // persisting fault has been absent for the good cycles of its rule.
+  // Once per cycle and fault. kPersists: the fault is present, and has been present in as many cycles of the
+  // window as its rule requires. The window then starts empty, so that the next kPersists needs as many
+  // again. kOver: a persisting fault has been absent for as many cycles as its rule requires.
   Change observe(const config::FaultRule& rule, bool present);
   // Instead of observe(), in a cycle in which the consequence of a fault remains: a persisting fault is not
   // over, and there is no new response.

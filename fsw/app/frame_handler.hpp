@@ -18,7 +18,7 @@ class FrameHandler {
                const Reporter& report)
       : state_(state), tracker_(estimator), workspace_(workspace), outputs_(outputs), report_(report) {}
 
-  // In RUN: the frame of the step is used, refused or passed over; the dropped ones are counted.
+  // In RUN: uses, refuses or skips the frame of the step. Counts the dropped ones.
   void take(const StepInputs& inputs);
   // In a cycle whose time does not advance: refuses all frames, with one event. `time_step_ms`: this cycle
   // minus the previous one.

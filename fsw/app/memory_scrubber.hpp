@@ -31,8 +31,8 @@ class MemoryScrubber {
   void bank_is_good(std::uint32_t bank, AppState& state);
   // Call after a model has been activated.
   void model_activated(const Estimator& estimator, AppState& state);
-  // Majority voting cannot correct the same bit in two copies. Bounds everything in the state that indexes an
-  // array or limits a loop. False: something, or the mode, was out of range.
+  // Resets what is out of range in the state and indexes an array or limits a loop, because majority voting
+  // cannot correct the same bit in two copies. False: something, or the mode, was out of range.
   [[nodiscard]] static bool bound(const Estimator& estimator, AppState& state);
   // At the start of a cycle. Damage that cannot be repaired is set in state.faults_seen.
   void check(Estimator& estimator, AppState& state, const Reporter& report);

@@ -11,16 +11,18 @@ class ModeManager {
   ModeManager(AppState& state, Estimator& estimator, const Reporter& report)
       : state_(state), estimator_(estimator), report_(report) {}
 
-  // Takes the transition. On entering RUN the estimator is reset and the last frame forgotten. On entering
-  // SAFE the telemetry records cause and fault. False: the table has no such transition.
+  // Changes the mode by the transition for `cause`. On entering RUN the estimator is reset and the last frame
+  // is forgotten. On entering SAFE the telemetry records cause and fault. False: the table has no such
+  // transition.
   bool enter(Cause cause, Fault fault = Fault::kStateLost);
-  // At boot: enters the first mode. A mode SAFE that was stored keeps its cause and fault in the telemetry.
+  // At boot: enters the first mode. If the stored mode is SAFE, the telemetry keeps its cause and fault.
   void resume(Cause cause, const StoredState& stored);
-  // SAFE because of a fault, with an event. No effect in a mode that has no such transition.
+  // Enters SAFE because of a fault, with an event. No effect in a mode without such a transition.
   void go_safe(Fault fault);
-  // SAFE from any mode, also from a number that is none, because the state is corrupted beyond the vote.
+  // Enters SAFE from any mode, and also from a value that is no mode. For a state so corrupted that the vote
+  // cannot repair it.
   void go_safe_after_corruption();
-  // SAFE if an assertion has failed since the last call, with an event.
+  // Enters SAFE, with an event, if an assertion has failed since the last call.
   void go_safe_on_assertion();
   // The next frame is the first of a new sequence. Counted.
   void reset_estimator();

@@ -91,9 +91,9 @@ class ModelBanks {
   // read-only or too small.
   [[nodiscard]] static bool begin(hal::ModelStore& store, ModelBanksState& state, UploadBase base);
   // Writes a segment of `count` bytes of the image that was begun. `offset` is a multiple of kSegmentBytes,
-  // and only the last segment of the image is shorter. A segment may come again. kRefused: it is none of the
-  // image. kBusy: send it again later. kFailed: the image is void, now or because an earlier segment could
-  // not be written.
+  // and only the last segment of the image is shorter. A segment may come again. kRefused: it is no segment
+  // of the image. kBusy: send it again later. kFailed: the image is void, now or because an earlier segment
+  // could not be written.
   [[nodiscard]] static hal::WriteStatus load(hal::ModelStore& store, ModelBanksState& state,
                                              std::uint32_t offset, const std::uint8_t* bytes,
                                              std::uint32_t count);

@@ -1,4 +1,4 @@
-// ParameterTable: what the ground can change without new software: the parameters of
+// ParameterTable: the values that the ground can change without new software. They are the parameters of
 // fsw/config/parameters.inc and the fault rules. One table is active. Another one is uplinked as a whole,
 // checked field by field, and activated.
 #pragma once

@@ -2,14 +2,14 @@
 // everything that it keeps is in AppState.
 //
 // Both copies of the store hold the newest record, one written after the other, so that a reset during a
-// write leaves a whole record and a later bit flip in one copy costs nothing. The copy that holds the newest
-// record is written last, also after several resets in a row. A write is read back. Every
+// write leaves one intact record, and a later bit flip in one copy does no harm. The copy that holds the
+// newest record is written last, also after several resets in a row. A write is read back. Every
 // kStoreCheck_cycles both copies are read again. A copy that does not hold the newest record is written
 // again: in each of the first kMostFailingCycles cycles, with each new record, and at each check.
 //
 // The store is given up when no copy could be written in kMostFailingCycles consecutive cycles. The
-// application then works as without a store, so that the ground can command it, and tries again at each
-// check. A change that a reset would undo meanwhile is reported.
+// application then works as if there were no store, so that the ground can command it, and tries again at
+// each check. Until a try succeeds, a change that a reset would undo is reported.
 //
 // At boot the counter is the highest one of all good heads, and the key slot that of the newest good head.
 // Everything else is that of the newest good body.
@@ -40,15 +40,15 @@ class StateKeeper {
   void resume();
   // The cause of the first mode, if a good model was found.
   Cause boot_cause() const;
-  // In the first step after it: reports the result of resume(). If no copy had a good head, it reads again
-  // and resumes what can be read by now, except for mode and bank.
+  // In the first step after it: reports the result of resume(). If no copy had a good head, it reads both
+  // again and resumes what can be read, except for mode and bank.
   void report_resumption();
 
   // Writes a new record now. False: no copy could be written. True without a store, or with one that was
   // given up.
   [[nodiscard]] bool store_now();
-  // At the end of a step: stores what has changed, and writes again what could not be written or has
-  // changed in the store. Measures its time.
+  // At the end of a step: stores what has changed, and rewrites a copy that could not be written or was
+  // corrupted in the store. Measures its time.
   void end_step();
   StoreHealth health() const;
 

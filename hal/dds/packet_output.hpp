@@ -1,4 +1,4 @@
-// PacketOutput: the published samples of a cycle once more, as telemetry packets.
+// PacketOutput: writes what a cycle publishes a second time, as telemetry packets.
 #pragma once
 
 #include "hal/dds/dds_link.hpp"

@@ -1,4 +1,4 @@
-// The events of the flight application and their severity, out of the rows of events.inc.
+// The events of the flight application and their severity, generated from the rows of events.inc.
 #pragma once
 
 #include <array>

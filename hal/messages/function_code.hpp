@@ -1,4 +1,4 @@
-// Function codes of the telecommands, 7 bits, out of the rows of telecommands.inc.
+// Function codes of the telecommands, 7 bits, generated from the rows of telecommands.inc.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// What of a message is in the digest of a run. Two runs with the same inputs have the same digest on every
-// processor, at any speed and load. Every field counts but those that the wall clock or the platform decides.
+// Which fields of a message enter the digest of a run. Two runs with the same inputs have the same digest on
+// every processor, at any speed and load. All fields do, except those that the wall clock or the platform
+// decides.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// What the application knows of the persistent store and of the records in it. The numbers are part of the
-// interface (docs/icd.md).
+// The state of the persistent store and of its records, as the application sees them. The numbers are part of
+// the interface (docs/icd.md).
 #pragma once
 
 #include <cstdint>

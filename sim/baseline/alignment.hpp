@@ -21,11 +21,9 @@ enum class AlignmentPairs {
 };
 
 // Iterates: renders the surface that is visible from the current pose, pairs the scan with it and moves the
-// pose by a damped Gauss-Newton step. There are two kinds of pairs, each weighted by the accuracy of the
-// sensor:
+// pose by a damped Gauss-Newton step. There are two kinds of pairs, weighted by the sensor's accuracy:
 //   along a ray: the measured and the rendered point (point to plane), sigma = the range noise;
-//   across the rays: a point of the rendered silhouette and the nearest measured silhouette, sigma = one ray
-//   spacing.
+//   across the rays: a rendered and the nearest measured point of the silhouette, sigma = one ray spacing.
 class Alignment {
  public:
   // `lidar` renders the target and must outlive this object. `swath_m`: of its renderings (sim::swath_m).

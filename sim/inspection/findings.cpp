@@ -192,17 +192,18 @@ class Findings {
       triangles += found_.parts[stray].triangles.size();
       area_m2 += found_.parts[stray].area_m2;
     }
-    const std::string what =
-        fmt::format("{} of {} ({:.2g} % of the area) lie apart", counted(found_.strays.size(), "part"),
-                    counted(triangles, "triangle"), percent(area_m2, found_.area_m2));
-    const bool enlarge = found_.radius_m > found_.core_radius_m;  // not with an origin far away
+    const std::string what = fmt::format("Detached from the rest: {} of {} ({:.2g} % of the area)",
+                                         counted(found_.strays.size(), "part"),
+                                         counted(triangles, "triangle"), percent(area_m2, found_.area_m2));
+    const bool enlarge = found_.radius_m > found_.core_radius_m;  // false if the origin is far away
     add("strays", Severity::kWarning,
-        enlarge ? fmt::format(
-                      "{} and enlarge the radius from {} to {}: the target covers {:.0f} % of the width of "
-                      "the image, and the rest of its resolution is lost.",
-                      what, length_text(found_.core_radius_m), length_text(found_.radius_m),
-                      percent(found_.core_radius_m, found_.radius_m))
-                : what + " from the rest, by more than three of its radii.",
+        enlarge
+            ? fmt::format(
+                  "{}. The radius grows from {} to {}: the target covers {:.0f} % of the width of the image, "
+                  "and the rest of its resolution is lost.",
+                  what, length_text(found_.core_radius_m), length_text(found_.radius_m),
+                  percent(found_.core_radius_m, found_.radius_m))
+            : what + ", more than three of the rest's radii away.",
         "If they are not of the spacecraft, --fix removes them.");
   }
 

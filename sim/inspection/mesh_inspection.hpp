@@ -1,4 +1,5 @@
-// MeshInspection: what a mesh of the user's own is like, and what of it a network would suffer from.
+// MeshInspection: the properties of a user's mesh, and the findings that would harm the training of a
+// network.
 #pragma once
 
 #include <Eigen/Geometry>

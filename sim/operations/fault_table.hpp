@@ -1,5 +1,5 @@
-// The faults that can be put into a run while it goes on, as a person gives them: by name, with a strength in
-// the unit of the table and a number of steps. docs/console.md explains them.
+// The faults that a user can inject into a running simulation. A fault is given by its name, a strength in
+// the unit of the table, and a number of steps. docs/console.md explains them.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ struct FaultRow {
   // Limits of the strength. Both 0: the fault has none, has_strength().
   double lowest = 0.0, highest = 0.0;
   bool must_be_whole = false;  // the strength
-  // Of what the sensor sees, so that frames have to be rendered with it: SceneFaults. Otherwise of the frames
-  // that it delivers: FrameFaults.
+  // True: it changes what the sensor sees, and frames are rendered with it (SceneFaults). False: it changes
+  // the frames that the sensor delivers (FrameFaults).
   bool is_of_scene = false;
 };
 
@@ -32,10 +32,10 @@ bool has_strength(const FaultRow& row);
 // "a number from 0.1 to 10 m"
 std::string strength_limits(const FaultRow& row);
 
-// Those of the frames, an occluder and a chaser that turns, and the effects of sim/world/sensor/effects.hpp
-// but those that change the target's body.
+// The faults of frames, an occluder, a chaser that turns, and the effects of sim/world/sensor/effects.hpp
+// except those that change the target's body.
 const std::vector<FaultRow>& fault_table();
-// Throws std::invalid_argument that lists the names if there is none of this name.
+// Throws std::invalid_argument, with all names, if no fault has this name.
 const FaultRow& fault_named(const std::string& name);
 // Throws std::invalid_argument that names fault, value and limits.
 void require_possible(const InjectedFault& fault);

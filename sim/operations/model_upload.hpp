@@ -1,5 +1,5 @@
-// ModelUpload: the ground's side of the upload of a model image: the telecommands, and which segments to
-// send.
+// ModelUpload: the ground side of the upload of a model image. It makes the telecommands and knows which
+// segments to send.
 //
 //   1. begin(), and wait until the telemetry has bank_status LOADING
 //   2. segment() of each of to_send(), in any order

@@ -1,6 +1,6 @@
-// RequestLine: what another program of the user asks of a run that goes on, as a line of JSON. The run reads
-// it with read_request_line(), and so does who asks, in order to say before what is wrong in it.
-// `run_control.hpp` has the lines.
+// RequestLine: a request from another program of the user to a running simulation, as a line of JSON. The run
+// parses it with read_request_line(). The program that asks calls the same function first, to report what is
+// wrong before it sends anything. `run_control.hpp` lists the requests.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ struct RequestLine {
   Telecommand command;  // without a fault
 };
 
-// Throws std::invalid_argument that says what no run would take, with the value.
+// Throws std::invalid_argument that names the value that no run accepts.
 RequestLine read_request_line(const std::string& line);
 
 }  // namespace tumblesight::sim

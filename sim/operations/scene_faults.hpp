@@ -1,5 +1,5 @@
-// SceneFaults: what is put into the simulated world while a run goes on: an occluder, effects of the sensor,
-// a chaser that turns. Frames have to be rendered with it.
+// SceneFaults: faults injected into the simulated world during a run: an occluder, effects of the sensor, a
+// chaser that turns. Frames are rendered with them.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ class SceneFaults {
   // `swath_m`: of the renderer.
   explicit SceneFaults(double swath_m) : swath_m_(swath_m) {}
 
-  // From step `first` on; it takes the place of one of the same name. `sequence_begin`: the step of the first
-  // frame of the sequence that is running. `seed`: what is drawn for the fault is drawn with it and `first`.
-  // `fault` must be possible (require_possible()) and of the scene.
+  // The fault acts from step `first` on. It replaces one of the same name. `sequence_begin`: the step of the
+  // first frame of the sequence that is running. `seed`: random numbers of the fault depend on it and on
+  // `first`. `fault` must be possible (require_possible()) and of the scene.
   void begin(const InjectedFault& fault, std::uint32_t first, std::uint32_t sequence_begin,
              std::uint64_t seed);
   bool empty() const { return active_.empty(); }

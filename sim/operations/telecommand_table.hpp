@@ -1,4 +1,4 @@
-// The telecommands with their arguments, as a person gives them: names and numbers instead of bytes.
+// The telecommands and their arguments as a user writes them: names and numbers instead of bytes.
 #pragma once
 
 #include <cstdint>

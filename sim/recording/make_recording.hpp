@@ -1,4 +1,4 @@
-// Frames as a recording: written one after the other, or rendered from the sequences of a scenario.
+// Makes recordings of frames. The frames are added one by one, or rendered from the sequences of a scenario.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tumblesight::sim {
 
-// RecordingWriter: frames as the bytes of a recording. hal/replay/recording.hpp has the format.
+// RecordingWriter: turns frames into the bytes of a recording. hal/replay/recording.hpp has the format.
 class RecordingWriter {
  public:
   // `rays` per side of every frame, `frames` in all.
@@ -38,9 +38,9 @@ struct MadeRecording {
   std::vector<RecordedTruth> truth;  // of each frame
 };
 
-// Sequences 0 .. sequences-1 of the seed, with the chaser's attitude at each exposure. Lost frames are not in
-// it. Between two sequences ten frames are missing, so that the application recognizes the second one as new.
-// `progress`: frames done so far.
+// Sequences 0 .. sequences-1 of the seed, with the chaser's attitude at each exposure. Lost frames are left
+// out. Ten frames are missing between two sequences, so that the application recognizes the second one as
+// new. `progress`: frames done so far.
 MadeRecording make_recording(const FrameRenderer& renderer, const RecordingSettings& settings,
                              const std::function<void(std::uint32_t)>& progress);
 

@@ -1,4 +1,4 @@
-// What reader and writer of MCAP files both go by (https://mcap.dev/spec).
+// The constants of MCAP files, shared by their reader and writer (https://mcap.dev/spec).
 #pragma once
 
 #include <array>

@@ -1,13 +1,14 @@
-// McapReader: recordings of messages in the format MCAP (mcap.dev/spec) without compression, whoever wrote
-// them: McapWriter, other programs, and programs that were killed before they wrote the end of the file.
+// McapReader: reads recordings of messages in the format MCAP (mcap.dev/spec) without compression. McapWriter
+// or another program wrote them. A program that was killed before it wrote the end of the file leaves a
+// readable recording, too.
 //
-// The file is mapped, not read into memory. A whole file is opened by its summary and its message indices,
-// so that opening touches little of it. A file whose end or whose indices are missing is read once from the
+// The file is mapped, not read into memory. A complete file is opened by its summary and its message indices,
+// so that opening reads little of it. A file whose end or whose indices are missing is read once from the
 // start to its last complete record, with all checksums.
 //
 // Nothing in the file is trusted: every length, offset, count and id is checked before it is used, and a
-// message of a chunk is given only if the chunk's checksum fits and the message is the one that the index
-// announces. A checksum of 0 means that the writer computed none.
+// message of a chunk is returned only if the chunk's checksum is right and the message is the one that the
+// index names. A checksum of 0 means that the writer computed none.
 #pragma once
 
 #include <atomic>
@@ -47,20 +48,20 @@ class McapReader {
     std::uint64_t time_ns;
   };
 
-  // Throws std::runtime_error, as all functions do, that names the file, what is wrong at which byte, and
-  // the remedy. The file may grow while it is mapped. One that has become shorter
-  // is refused from then on, unless it is cut off at the moment of a read.
+  // Throws std::runtime_error, as all functions do, that names the file, what is wrong at which byte, and the
+  // remedy. The file may grow while it is mapped. A file that has become shorter is refused, unless it is cut
+  // off during a read.
   explicit McapReader(const std::string& path);
   // The same from memory. `name`: stands for the file in messages.
   static McapReader from_bytes(std::vector<std::uint8_t> bytes, std::string name);
 
-  // False: the program that wrote the file was killed. What precedes the end is there.
+  // False: the program that wrote the file was killed. The messages before the missing end can be read.
   bool is_whole() const { return is_whole_; }
   const std::vector<Channel>& channels() const { return contents_.channels; }
   // The first channel of this topic; null if there is none.
   const Channel* find(const std::string& topic) const;
-  // In the order of the file. The messages are not read, so that damage in a chunk shows in read() only.
-  // Throws std::logic_error for an id that channels() does not have, as read() does.
+  // In the order of the file. The messages are not read: only read() finds a damaged chunk. Throws
+  // std::logic_error for an id that channels() does not have, as read() does.
   const std::vector<Entry>& entries(McapId channel) const;
   // Several threads may read at once. Checks a chunk when the first of its messages is read.
   Message read(McapId channel, const Entry& entry) const;

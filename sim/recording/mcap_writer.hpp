@@ -1,9 +1,9 @@
-// McapWriter: recordings of messages with times and schemas that Foxglove, Lichtblick, PlotJuggler and others
-// open. Format: MCAP (mcap.dev/spec), without compression, with indices and checksums.
+// McapWriter: writes recordings of messages with times and schemas. Foxglove, Lichtblick, PlotJuggler and
+// other programs open them. Format: MCAP (mcap.dev/spec), without compression, with indices and checksums.
 //
-// Messages are kept in chunks. A chunk is written when it has a mebibyte, or when its first message came a
-// second ago (write_due()), so that a program that is killed loses a second of a recording at most: what
-// precedes the end of the file can be read, and `mcap recover` adds the end.
+// Messages are collected in chunks. A chunk is written when it has reached a mebibyte, or when its first
+// message is a second old (write_due()). A program that is killed therefore loses at most one second of a
+// recording. Such a file has no end, but its messages can be read, and `mcap recover` adds the end.
 #pragma once
 
 #include <array>
@@ -25,23 +25,23 @@ using McapId = std::uint16_t;  // of a schema or a channel, from 1 on
 
 class McapWriter {
  public:
-  // Creates the file, or another one in place of it: who has the old one open keeps it. Throws
-  // std::runtime_error, as all functions do, that names the file and what is wrong. `library`: the program
-  // that writes.
+  // Creates the file. A file of that name is replaced, not overwritten: a program that has it open keeps the
+  // old content. Throws std::runtime_error, as all functions do, that names the file and what is wrong.
+  // `library`: name of the program that writes.
   McapWriter(std::string path, const std::string& library);
   ~McapWriter();  // closes as far as it can
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  // `encoding`: of the schema, as "jsonschema" or "omgidl".
+  // `encoding`: of the schema, such as "jsonschema" or "omgidl".
   McapId add_schema(const std::string& name, const std::string& encoding, std::string_view text);
-  // `encoding`: of the messages, as "json" or "cdr".
+  // `encoding`: of the messages, such as "json" or "cdr".
   McapId add_channel(const std::string& topic, const std::string& encoding, McapId schema);
   // `time_ns`: not negative. Messages may come in any order.
   void write(McapId channel, std::int64_t time_ns, const std::uint8_t* bytes, std::size_t size);
   void write(McapId channel, std::int64_t time_ns, std::string_view text);
-  // Writes the messages that came more than a second ago. To be called several times a second, also while no
-  // message comes.
+  // Writes the messages that came more than a second ago. Call it several times a second, also while no
+  // message arrives.
   void write_due();
   // Writes the last chunk and the summary. Nothing may be written afterwards.
   void close();

@@ -1,4 +1,4 @@
-// A recording that is read from a file, by whoever wrote it: hal/replay/recording.hpp has the format.
+// Reads a recording of frames from a file. hal/replay/recording.hpp has the format.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@ struct RecordingFile {
 };
 
 // Reads the file and every frame in it. Throws std::runtime_error that names file, reason and remedy if it is
-// no recording, is damaged, has no frame, or has fewer frames than its header says. What is no recording, and
-// one that is damaged, is not loaded into memory.
+// no recording, is damaged, has no frame, or has fewer frames than its header says. A file that is no
+// recording, or a damaged one, is not loaded into memory.
 RecordingFile read_recording(const std::string& path);
-// The same of bytes that are to be written to `path`, or were read from it.
+// The same for bytes that will be written to `path`, or were read from it.
 RecordingFile recording_of(std::vector<std::uint8_t> bytes, const std::string& path);
 
 // The truth of each frame, in the order of the recording; nothing where the table has no row. Throws

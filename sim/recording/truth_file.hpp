@@ -1,5 +1,5 @@
 // The truth of recorded frames: a text file beside the recording, a line per frame (CSV). docs/icd.md
-// describes it for whoever writes one from data of their own.
+// describes it for users who write one from their own data.
 //
 // The first line names the columns, in any order:
 //   sequence_number, exposure_time_ns          of the frame, as in the recording
@@ -7,8 +7,7 @@
 //   rate_lrf_x_rad_s, _y_, _z_                 of the target relative to inertial space; all three or none
 //   trf_origin_lrf_x_m, _y_, _z_               position of the TRF's origin; all three or none
 //   target                                     name of what the frames show; optional
-//   sensor, sensor_crc32                       that took them, as to_string(SensorDescription) has them;
-//   optional
+//   sensor, sensor_crc32                       the sensor, as in to_string(SensorDescription); optional
 #pragma once
 
 #include <Eigen/Geometry>
@@ -43,7 +42,7 @@ struct RecordedTruth {
 // By sequence number and exposure time.
 using TruthTable = std::map<std::pair<std::uint32_t, std::int64_t>, RecordedTruth>;
 
-// The path without ".tslr"; any other ending stays, so that run.1 and run.2 stay apart.
+// The path without ".tslr". Any other ending stays, so that run.1 and run.2 have different stems.
 std::string recording_stem(std::string recording_path);
 // frames.tslr -> frames.truth.csv; run.1 -> run.1.truth.csv
 std::string truth_path_of(const std::string& recording_path);

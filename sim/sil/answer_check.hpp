@@ -1,4 +1,5 @@
-// AnswerCheck: whether an answer of the flight program is to what was sent. It knows nothing of DDS.
+// AnswerCheck: checks whether an answer of the flight program belongs to a step that was sent. It does not
+// depend on DDS.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +15,13 @@ namespace tumblesight::sim {
 
 class AnswerCheck {
  public:
-  // Free-running: the flight program counts its own cycles, and an answer may be to any frame sent.
+  // Free-running: the flight program counts its own cycles, and its answer may belong to any frame that was
+  // sent.
   explicit AnswerCheck(bool free_running) : free_running_(free_running) {}
 
-  // Step `k` was sent. In lockstep the next answer must be to it.
+  // Step `k` was sent. In lockstep the next answer must belong to it.
   void sent(std::uint32_t k, std::int64_t time_ns, const std::vector<const gnc::RangeImage*>& frames);
-  // Empty, or what is wrong: step, times, or the frame of the attitude.
+  // Empty if the answer is right. Otherwise what is wrong: step, times, or the frame of the attitude.
   std::string fault_of(const StepAnswer& answer) const;
 
  private:

@@ -1,5 +1,5 @@
-// Samples of the bus out of their serialized form and into it, as recordings keep them: an encapsulation
-// header, then CDR.
+// Serializes and deserializes samples of the bus. Recordings keep this form: an encapsulation header, then
+// CDR.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
-// DomainLease: a DDS domain for one run only, so that concurrent runs on a machine do not interfere, whoever
-// starts them in whatever environment. It is held by a name of the machine (MachineName). The flight program
-// inherits it, so that the domain stays reserved while either process lives. The system frees it however they
-// end. Another user can hold domains, which then are taken, and no more.
+// DomainLease: reserves a DDS domain for one run, so that concurrent runs on a machine do not interfere. This
+// holds for all users and environments. The reservation is a name of the machine (MachineName). The flight
+// program inherits it, so that the domain stays reserved while either process lives. The system frees it
+// however they end. Another user can only reserve domains, not disturb the run in one.
 #pragma once
 
 #include <cstdint>

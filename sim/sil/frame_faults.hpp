@@ -1,5 +1,5 @@
-// FrameFaults: faults of the sensor that are put into a run while it goes on: what the flight program gets
-// differs from what the simulated sensor delivered.
+// FrameFaults: sensor faults injected during a run. They change, drop or delay frames between the simulated
+// sensor and the flight program.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@ class FrameFaults {
     kDelay,   // each frame a step late
   };
 
-  // For the next steps, at least 1. It takes the place of a fault that goes on.
+  // Injects a fault into the next steps, at least 1. It replaces the fault that is active.
   void begin(Kind kind, std::uint32_t steps);
-  // Changes what a step sends, and what the truth says of the frame. Frames that `input` then has are valid
-  // until the next call.
+  // Changes what a step sends, and what the truth says of the frame. The frames in `input` are valid until
+  // the next call.
   void apply(StepInput& input, FrameTruth& truth);
 
  private:

@@ -1,4 +1,5 @@
-// RecordedSteps: the steps of a recording, as the flight program would have met its frames on board.
+// RecordedSteps: turns recorded frames into steps, at the times at which the flight program would have
+// received them on board.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +19,9 @@ struct RecordedCycle {
 };
 
 // One cycle for each frame, at its exposure time. Between frames that are n nominal periods apart (rounded),
-// n - 1 cycles without a frame. A frame that is not exposed after the cycle before it has a cycle 1 ms after
-// that one. Throws std::runtime_error that names frame, value, limit and remedy if an exposure time is out
-// of range, or if there are more than a million cycles.
+// n - 1 cycles without a frame. A frame that was exposed no later than the cycle before it gets a cycle 1 ms
+// after that one. Throws std::runtime_error that names frame, value, limit and remedy if an exposure time is
+// out of range, or if there are more than a million cycles.
 std::vector<RecordedCycle> plan_cycles(const std::vector<FrameStamp>& frames);
 
 class RecordedSteps final : public StepSource {

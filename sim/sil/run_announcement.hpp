@@ -1,8 +1,8 @@
 // RunAnnouncement: tells the user's other programs on this machine how to join a run: its DDS domain and
 // partition. It is a file in the user's RuntimeFolder that only its owner can read, and that the simulator
 // keeps locked. The system releases the lock however the simulator ends, so that the file of a killed run is
-// not taken for the next run in its domain. Programs that only read the bus, as the console, find the run by
-// it.
+// not taken for the next run in its domain. Programs that only read the bus, such as the console, find the
+// run by this file.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace tumblesight::sim {
 
 class RunAnnouncement {
  public:
-  // Without a file if it cannot be written: the run goes on, and cannot be joined.
+  // If the file cannot be written, the run continues without it, and cannot be joined.
   RunAnnouncement(std::uint32_t domain, const hal::dds::RunSecret& secret);
   ~RunAnnouncement();  // removes the file
   RunAnnouncement(const RunAnnouncement&) = delete;

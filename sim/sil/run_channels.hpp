@@ -1,5 +1,5 @@
-// RunChannels: the channels of a recording of a run, whoever writes it: the topics of the bus as they are,
-// and what viewers show without set-up (foxglove_messages.hpp).
+// RunChannels: the channels that every recording of a run has: the topics of the bus, unchanged, and messages
+// that viewers show without set-up (foxglove_messages.hpp).
 #pragma once
 
 #include <map>

@@ -1,6 +1,6 @@
-// RunControl: takes requests of the user's other programs into a run that goes on: telecommands, which the
-// run numbers and signs, and faults of the sensor. It is a socket in the user's RuntimeFolder that only its
-// owner can use, beside the announcement of the run (RunAnnouncement).
+// RunControl: accepts requests from the user's other programs to a running simulation: telecommands, which
+// the run numbers and signs, and faults. It is a socket in the user's RuntimeFolder that only its owner can
+// use, beside the announcement of the run (RunAnnouncement).
 //
 // A request is a line of JSON, and so is its answer:
 //   {"function": 3, "arguments": "02"}      a function code and its arguments as hexadecimal digits
@@ -34,13 +34,13 @@ class RunControl {
   static constexpr std::size_t kMostCommands = 16;  // per step; half of what a step may carry
   static constexpr std::size_t kMostFaults = 16;    // per step
 
-  // Without a socket if it cannot be made: the run goes on, and takes no requests.
+  // If the socket cannot be made, the run continues without it, and accepts no requests.
   explicit RunControl(std::uint32_t domain);
   ~RunControl();  // removes the socket
   RunControl(const RunControl&) = delete;
   RunControl& operator=(const RunControl&) = delete;
 
-  // Why the run takes no requests, with the file and the remedy; empty: it does.
+  // Why the run accepts no requests, with the file and the remedy; empty: it does.
   const std::string& failure() const { return failure_; }
   // What was requested since the last call. Does not wait. `step`: of the answers, the next one of `source`.
   // Faults begin in `frames` or `source`.
@@ -69,7 +69,7 @@ class RunControl {
   std::vector<Client> clients_;
 };
 
-// More ask a run than it takes in time. Nothing was sent.
+// More programs ask a run than it can serve in time. Nothing was sent.
 class RunIsBusy : public SilFailure {
  public:
   using SilFailure::SilFailure;

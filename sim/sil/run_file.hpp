@@ -1,4 +1,5 @@
-// RunFile: the samples of a run in an MCAP file that RunRecorder wrote, of this interface.
+// RunFile: reads the samples of a run from an MCAP file that RunRecorder wrote with the same interface
+// (tumblesight.idl).
 #pragma once
 
 #include <stdexcept>

@@ -1,7 +1,7 @@
-// RunRecorder: a run as an MCAP file. It joins the bus as one more participant and keeps every sample of
-// every topic as it is (CDR, with tumblesight.idl as schema). Beside them it writes what viewers show without
-// set-up (foxglove_messages.hpp). The time of a message is the mission time of its step, counted from the
-// first step if that is before 0, which the format does not have.
+// RunRecorder: records a run in an MCAP file. It joins the bus as one more participant and keeps every sample
+// of every topic unchanged (CDR, with tumblesight.idl as schema). It also writes messages that viewers show
+// without set-up (foxglove_messages.hpp). The time of a message is the mission time of its step. MCAP has no
+// negative times: if the first step is before 0, times count from that step.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// RunSteps: the steps of a run that was recorded (RunFile), to be sent again as they were: frames, attitudes
-// of the chaser and signed telecommands. The flight program must come to the same states.
+// RunSteps: sends the steps of a recorded run (RunFile) again, unchanged: frames, attitudes of the chaser and
+// signed telecommands. The flight program must reach the same states.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
-// RuntimeFolder: where the user's runs and the user's other programs meet: $XDG_RUNTIME_DIR/tumblesight, or
-// /tmp/tumblesight-UID where that variable names no private folder of the user. TMPDIR does not matter, so
-// that all programs find the same one. Nobody but the user can place, replace or lock a file in it.
+// RuntimeFolder: the folder in which the runs and the other programs of one user find each other:
+// $XDG_RUNTIME_DIR/tumblesight, or /tmp/tumblesight-UID where that variable names no private folder of the
+// user. TMPDIR does not matter, so that all programs find the same one. Nobody but the user can place,
+// replace or lock a file in it.
 #pragma once
 
 #include <string>
@@ -18,10 +19,10 @@ class RuntimeFolder {
 
   int descriptor() const { return folder_; }
   std::string path_of(const std::string& name) const { return path_ + "/" + name; }
-  // A regular file of this user, for reading. -1: there is none of that name. Anything else that has the
-  // name, such as a FIFO, is not waited for.
+  // A regular file of this user, for reading. -1: there is none of that name. Does not block on anything else
+  // of that name, such as a FIFO.
   int open_file(const std::string& name) const;
-  // A new one, for writing, in place of what has the name; -1: errno.
+  // Creates a new one for writing and replaces what has the name. -1: see errno.
   int make_file(const std::string& name) const;
 
  private:

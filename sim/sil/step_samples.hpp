@@ -1,4 +1,4 @@
-// The samples of the bus in which the simulator sends a step.
+// Makes the bus samples of a step that the simulator sends.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct StepOfRun {
   std::uint32_t k = 0;
 };
 
-// In place, since a frame is large.
+// Fills the sample in place, since a frame is large.
 void fill(hal::dds::LidarFrameSample& sample, const StepOfRun& step, const gnc::RangeImage& frame);
 hal::dds::NavigationSample navigation_sample(const StepOfRun& step, const gnc::ChaserAttitude& attitude);
 // `sequence`, `frame`: indices. `time_ns`: of the step.

@@ -1,5 +1,5 @@
-// What viewers show of a frame and of a report: points and poses in the LiDAR frame (LRF): +x right,
-// +y boresight, +z up. Messages for Foxglove and for ROS 2 are made of them.
+// What viewers show of a frame and of a report: points and poses in the LiDAR frame (LRF): +x right, +y
+// boresight, +z up. Messages for Foxglove and for ROS 2 are made from them.
 #pragma once
 
 #include <Eigen/Geometry>

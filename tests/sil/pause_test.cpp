@@ -20,7 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The time after which DDS formerly gave up a program was 3 s.
+// Longer than the 3 s after which a short lease of DDS would give up a program.
 constexpr auto kPause = 4500ms;
 
 void pause(std::initializer_list<pid_t> processes) {

@@ -1,5 +1,4 @@
-// ROS 2 nodes beside the console: what a reader with their settings gets, as bytes that the test decodes
-// itself.
+// ROS 2 nodes beside the console: the test decodes the bytes that a reader with their settings gets.
 // Verifies TS-SIL-199.
 #include "sim/console/ros2_bridge.hpp"
 

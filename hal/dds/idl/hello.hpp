@@ -1,5 +1,5 @@
-// What a program says of itself in its hello, and whether the two programs of a run fit together: the same
-// interface definition, target and model image.
+// The hello of a program, and the check whether the two programs of a run match: they need the same interface
+// definition, target and model image.
 #pragma once
 
 #include "hal/dds/idl/topics.hpp"

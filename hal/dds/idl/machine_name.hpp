@@ -1,7 +1,7 @@
 // MachineName: a name that at most one process holds at a time. It is an abstract Unix socket, without a
-// file: who may write to which folder does not matter, opening it cannot block, and the kernel frees the name
-// however its holders end. It is one for all users of the network namespace, as the UDP ports of the DDS
-// domains are.
+// file: permissions of folders do not matter, opening it cannot block, and the kernel frees the name however
+// its holders end. All users of the network namespace share these names, like the UDP ports of the DDS
+// domains.
 #pragma once
 
 namespace tumblesight::hal::dds {

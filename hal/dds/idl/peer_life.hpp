@@ -1,7 +1,8 @@
-// PeerLife: how each side of a run notices that the other one was killed. DDS would tell after the lease of
-// the other one's participant, which is long so that a pause does not end a run (Domain). So each side holds
-// a name of the machine that its hello tells, and watches that of the other one. Where that is not possible,
-// as between two users, the time limits of the wait for the other side apply.
+// PeerLife: how each side of a run notices that the other one was killed. DDS would report it only after the
+// lease of the other participant, which is long so that a pause does not end a run (Domain). So each side
+// holds a name of the machine (MachineName), announces it in its hello, and watches the name of the other
+// side. Where that is not possible, as between two users, the time limits of the wait for the other side
+// apply.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // WaitLimit: a limit on a wait for the other side, without the time in which this process itself was paused
-// by Ctrl-Z, a debugger or a frozen container. Who waits looks many times a second, so a look that comes
-// later than kLongestLook_ns was paused, and counts as that long.
+// by Ctrl-Z, a debugger or a frozen container. A waiting program checks many times a second. If a check comes
+// later than kLongestLook_ns, the program was paused, and the time counts as kLongestLook_ns.
 #pragma once
 
 #include <cstdint>

@@ -6,8 +6,7 @@
 namespace tumblesight::sim {
 
 // Spin: rotation of the target at a constant rate.
-// Attitude after `time_s` at `rate_lrf_rad_s`, constant in the LiDAR frame (paper, sampling of the
-// sequences):
+// Attitude after `time_s` at `rate_lrf_rad_s`, constant in the LiDAR frame (paper, sampling of sequences):
 //   q(t) = [cos(|w| t / 2), w/|w| sin(|w| t / 2)] * q0
 // Returns q0 at rate zero, otherwise a unit quaternion.
 Eigen::Quaterniond spin(const Eigen::Quaterniond& q0_lrf_trf, const Eigen::Vector3d& rate_lrf_rad_s,

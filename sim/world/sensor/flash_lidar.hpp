@@ -1,8 +1,7 @@
 // FlashLidar: the sensor model. One exposure casts a square grid of rays (Embree, both sides of every face
 // reflect), puts the occluder in front, and applies effects (effects.hpp) and ray effects (ray_effects.hpp):
 //
-//   cast, occlude -> effects on returns -> losses and noise -> effects on readings -> counts -> rays of the
-//   frame
+//   cast, occlude -> effects on returns -> losses and noise -> effects on readings -> counts -> frame rays
 //
 // Assumptions and limits without effects: a static scene during the exposure; one return per ray at its
 // centre, no beam divergence; every surface reflects at every angle; no multipath and no crosstalk; ranges

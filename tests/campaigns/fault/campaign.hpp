@@ -20,8 +20,7 @@ enum class Place {
   kModelDescriptor,
   kCommand,
   kFrame,
-  kTwo,      // two bits at a time, each in the weights, the estimator's or the application's state or the
-             // descriptor
+  kTwo,      // two bits at a time: in weights, the estimator's or the application's state, the descriptor
   kSurface,  // vertices, triangles and edges of the target's surface in the model image
 };
 inline constexpr int kPlaces = 9;
@@ -32,8 +31,7 @@ enum class Outcome : std::uint8_t {
   kRecovered,     // detected; the mode is RUN, and the attitudes are correct again
   kSafe,          // detected; the mode is SAFE
   kFlaggedWrong,  // detected, but the attitudes are still wrong at the end
-  kSilentWrong,   // an attitude with an error above 20 degrees was flagged valid and was correct without the
-                  // flip
+  kSilentWrong,   // an attitude above 20 degrees off was flagged valid, and was correct without the flip
   kLostCount,     // a command was counted neither as accepted nor as refused
   kCrash,         // the process died
   kHang,          // a trial did not end

@@ -220,7 +220,7 @@ TEST(MotionModels, AreASpinTheInertiaAndEachOfItsMomentsHalved) {
   const Eigen::Matrix3f shape = tensor(3.0F, 5.0F, 6.0F, 0.4F, -0.2F, 0.1F);
   Inertia<float> inertia;
   ASSERT_TRUE(make_inertia<float>(shape, inertia));
-  const MotionModels<float> motion_models = motion_models<float>(inertia);
+  const MotionModels<float> motion_models = gnc::motion_models<float>(inertia);
   EXPECT_EQ(motion_models[kSpinModel].tensor_trf, Eigen::Matrix3f(Eigen::Matrix3f::Identity()));
   const Eigen::Matrix3f own = shape * (3.0F / shape.trace());
   EXPECT_LT((motion_models[kTumbleModel].tensor_trf - own).norm(), 1e-6F);

@@ -371,7 +371,7 @@ TEST(AttitudeTrack, FollowsASpinFromATurningChaser) {
 
 // Verifies TS-EST-140.
 TEST(AttitudeTrack, FindsTheMotionModel) {
-  const MotionModels<float> motion_models = motion_models<float>(slender_body());
+  const MotionModels<float> motion_models = gnc::motion_models<float>(slender_body());
   for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
     SCOPED_TRACE(motion_model);
     Motion<float> truth{kStart.cast<float>(),
