@@ -17,8 +17,8 @@
 #include "fsw/app/parameter_table.hpp"
 #include "fsw/app/stored_state.hpp"
 #include "fsw/config/numerics.hpp"
-#include "gnc/rcnn/attitude_estimator.hpp"
-#include "gnc/tracking/frame_tracker.hpp"
+#include "gnc/estimation/attitude_estimator.hpp"
+#include "gnc/estimation/frame_tracker.hpp"
 #include "hal/messages/telemetry.hpp"
 #include "hal/platform.hpp"
 

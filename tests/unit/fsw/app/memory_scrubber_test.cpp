@@ -106,7 +106,7 @@ class MemoryScrubberTest : public AppFixture {
 };
 
 // Verifies TS-FDIR-010.
-TEST_F(MemoryScrubberTest, FlippedBitsOfTheVotedStateAreOutvotedAndCounted) {
+TEST_F(MemoryScrubberTest, FlippedBitsOfTheRedundantStateAreOutvotedAndCounted) {
   const Region region = AppMemory::redundant_state(*app);
   std::mt19937 engine(1);
   std::uint32_t corrections = 0;
