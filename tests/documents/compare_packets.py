@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares packets, decoded by the XTCE database alone, with what was put into them.
 
-  compare_packets.py DATABASE TELEMETRY.bin TELEMETRY.json [--all] [--commands COMMANDS.bin COMMANDS.json]
+  compare_packets.py TELEMETRY.bin TELEMETRY.json [--all] [--commands COMMANDS.bin COMMANDS.json]
 
 TELEMETRY.json has a message per line: {"packet": name, "fields": {field: value, ...}} (tests/support/print_message.hpp).
 --all: every kind of packet that the database knows must occur, and every field must have had different values.
@@ -12,6 +12,7 @@ import json
 import pathlib
 import sys
 
+import xtce
 import xtce_decoder
 
 
@@ -96,13 +97,12 @@ def lines_of(path):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("database")
     parser.add_argument("packets")
     parser.add_argument("messages")
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--commands", nargs=2)
     options = parser.parse_args()
-    database = xtce_decoder.Database(options.database)
+    database = xtce_decoder.Database(xtce.document())
     packets = list(xtce_decoder.packets(pathlib.Path(options.packets).read_bytes()))
     seen = compare_telemetry(database, packets, lines_of(options.messages))
     if options.all:

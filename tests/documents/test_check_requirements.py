@@ -33,14 +33,14 @@ class Tree(unittest.TestCase):
         return status, out.getvalue().splitlines()
 
     def page(self):
-        return (self.root / "docs/verification.md").read_text(encoding="utf-8")
+        return (self.root / "verification.md").read_text(encoding="utf-8")
 
     def expect_good(self):
-        self.assertEqual(self.run_check("--write"), (0, []))
+        self.assertEqual(self.run_check("--write", str(self.root / "verification.md")), (0, []))
         self.assertEqual(self.run_check(), (0, []))
 
     def expect_one(self, *words):
-        status, lines = self.run_check("--write")
+        status, lines = self.run_check()
         self.assertEqual(status, 1)
         self.assertEqual(len(lines), 1, lines)
         for word in words:
@@ -130,15 +130,6 @@ class Others(Tree):
 
 
 class Page(Tree):
-    def test_missing_or_out_of_date(self):
-        self.assertEqual(self.run_check()[0], 1)
-        self.expect_good()
-        self.put("tests/unit/sum_test.cpp", CPP.replace("IsRight", "IsExact"))
-        status, lines = self.run_check()
-        self.assertEqual(status, 1)
-        self.assertIn("docs/verification.md is not up to date", lines[0])
-        self.expect_good()
-
     def test_names_every_kind_of_test(self):
         self.put("tests/unit/sum_test.cpp", "// Verifies TS-NUM-010.\n#ifdef A\n// Why.\n// Verifies TS-NUM-010,\n// TS-NUM-010. And more.\nTEST_F(Sum, A) {}\n"
                  "// Verifies TS-NUM-010.\n// Behind it.\nTYPED_TEST(SumOf, B) {}\n// Verifies TS-NUM-010.\nINSTANTIATE_TEST_SUITE_P(\n    All, Sums, x);\n")

@@ -12,7 +12,7 @@ XTCE = xtce_decoder.XTCE
 class XtceStructure(unittest.TestCase):
 
     def setUp(self):
-        self.database = xtce_decoder.Database(xtce.DOCUMENT)
+        self.database = xtce_decoder.Database(xtce.document())
 
     def test_every_reference_resolves_and_every_name_is_unique(self):
         root = self.database.root
@@ -63,7 +63,7 @@ class XtceStructure(unittest.TestCase):
 class XtceDecoder(unittest.TestCase):
 
     def setUp(self):
-        self.database = xtce_decoder.Database(xtce.DOCUMENT)
+        self.database = xtce_decoder.Database(xtce.document())
         # An event packet, laid out by hand from docs/icd.md: 2.5 s, id 53, severity 2, arguments 6, -1, 0.
         body = bytes.fromhex("09F3 C007 0020" "00000002 80000000" "00000000 9502F900" "0035 02" "00000006 FFFFFFFF 00000000")
         self.packet = body + binascii.crc_hqx(body, 0xFFFF).to_bytes(2, "big")

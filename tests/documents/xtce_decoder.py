@@ -1,5 +1,5 @@
 """Decodes packets by an XTCE 1.2 database and nothing else: no file of this project but the database is read. It knows the part
-of XTCE that docs/tumblesight.xtce.xml uses and raises an error for anything else, so that nothing is skipped silently.
+of XTCE that xtce.py uses and raises an error for anything else, so that nothing is skipped silently.
 
   xtce_decoder.py DATABASE FILE   prints the packets of a file, one line of JSON each
 """
@@ -38,8 +38,8 @@ class Bits:
 
 
 class Database:
-    def __init__(self, path):
-        self.root = ET.parse(path).getroot()
+    def __init__(self, document):
+        self.root = ET.fromstring(document.encode())
         self.types = {kind.get("name"): kind for section in ("ParameterTypeSet", "ArgumentTypeSet") for set_ in self.root.iter(XTCE + section)
                       for kind in set_}
         self.parameters = {one.get("name"): one.get("parameterTypeRef") for one in self.root.iter(XTCE + "Parameter")}
@@ -155,7 +155,8 @@ def packets(data):
 
 
 def main():
-    database = Database(sys.argv[1])
+    with open(sys.argv[1], encoding="utf-8") as file:
+        database = Database(file.read())
     with open(sys.argv[2], "rb") as file:
         for packet in packets(file.read()):
             name, values = database.telemetry(packet)
