@@ -86,7 +86,7 @@ packages_to_test=("${packages_to_train[@]}" "${packages_to_develop[@]}" "${packa
   chromium clang clang-format git openmpi-bin slurm-wlm valgrind)
 packages_to_fuzz=("${packages_to_run[@]}" clang libcivetweb-dev libclang-rt-dev python3)
 # The flight side only, with GCC's branch counts.
-packages_to_cover=(g++ cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev gcovr python3)
+packages_to_cover=(g++ clang-19 libclang-rt-19-dev llvm-19 cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev python3)
 packages_to_analyse=("${packages_to_run[@]}" libgtest-dev libgmock-dev clang clang-tidy cppcheck python3)
 # The processors of the audit: compilers, emulators, and GoogleTest's sources to build it for them.
 packages_to_audit=("${packages_to_run[@]}" gcc googletest python3

@@ -24,7 +24,8 @@ expect_match("Depends: [^\n]*libembree3")
 expect_match("Section: science\n")
 run_or_fail(dpkg-deb --contents ${programs})
 foreach(file bin/tumblesight bin/tumblesight-simulate bin/flight share/tumblesight/models/near_shoemaker.tsm share/tumblesight/missions/1_near_shoemaker.toml
-  share/tumblesight/sensors/paper.json share/doc/tumblesight/copyright)
+  share/tumblesight/sensors/paper.json share/doc/tumblesight/copyright
+  share/doc/tumblesight/docs/tumblesight.xtce.xml share/doc/tumblesight/docs/verification.md)
   expect_match("root/root[^\n]* \\./usr/${file}\n")
 endforeach()
 run_or_fail(dpkg-deb --field ${libraries})

@@ -1,7 +1,15 @@
-"""Prints the lines and branches executed, per file, from gcovr's JSON. Exit status 1 below the required share of branches."""
+"""Prints lines, branches and conditions executed, per file, from the JSON of llvm-cov. Exit status 1 below the required share
+of branches, or if a condition of a decision is not shown to decide it (masking MC/DC) and exceptions.csv does not say why.
+
+A template's branches and conditions are those of all instances together."""
+import bisect
+import csv
 import json
 import pathlib
 import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[2]
 
 # Kernels that run only on processors with the instruction set, by its name in /proc/cpuinfo. Kernels of other processor
 # families are not compiled here; the audit tests them in emulators.
@@ -29,50 +37,123 @@ class Count:
         return f"{self.taken:5}/{self.total:<5} {self.percent():5.1f} %" if self.total else f"{'-':>7}"
 
 
-def counted_lines(file):
-    return [line for line in file["lines"] if not line["gcovr/noncode"] and not line["gcovr/excluded"]]
+class File:
+    """What llvm-cov exports of one file. A place is (line, column, last line, last column)."""
+
+    def __init__(self, name, export, source):
+        self.name, self.source = name, source.splitlines()
+        self.lines = Count(export["summary"]["lines"]["covered"], export["summary"]["lines"]["count"])
+        self.outcomes = {}  # place: [times true, times false]
+        for *place, true, false, _, _, _ in export["branches"]:
+            outcome = self.outcomes.setdefault(tuple(place), [0, 0])
+            outcome[0] += true
+            outcome[1] += false
+        executed = self.executed(export["segments"])
+        # Without a count in code that runs: the compiler knows its value.
+        self.known = {place for place, outcome in self.outcomes.items() if outcome == [0, 0] and executed(place[:2])}
+        self.decisions = {}  # place: [whether each condition decides]
+        for *place, _, _, _, conditions in export.get("mcdc_records", []):
+            known = self.decisions.setdefault(tuple(place), [False] * len(conditions))
+            self.decisions[tuple(place)] = [a or b for a, b in zip(known, conditions)]
+
+    @staticmethod
+    def executed(segments):
+        """A function that tells whether the code at (line, column) ran. A segment is (line, column, count, has count, ...)."""
+        starts = [tuple(one[:2]) for one in segments]
+
+        def at(place):
+            index = bisect.bisect_right(starts, place) - 1
+            return index >= 0 and segments[index][3] and segments[index][2] > 0
+        return at
+
+    def branches(self):
+        counted = [outcome for place, outcome in self.outcomes.items() if place not in self.known]
+        return Count(sum((true > 0) + (false > 0) for true, false in counted), 2 * len(counted))
+
+    def conditions(self):
+        shown = [decides for _, _, decides in self.all_conditions()]
+        return Count(sum(shown), len(shown))
+
+    def text(self, place):
+        line, column, last_line, last_column = place
+        rows = self.source[line - 1:last_line]
+        rows[-1] = rows[-1][:last_column - 1]
+        rows[0] = rows[0][column - 1:]
+        return " ".join(" ".join(rows).split())
+
+    def never_taken(self):
+        for (line, *rest), (true, false) in sorted(self.outcomes.items()):
+            if (true == 0 or false == 0) and (line, *rest) not in self.known:
+                never = "true or false" if true == false else "true" if true == 0 else "false"
+                yield f"{self.name}:{line}: `{self.text((line, *rest))}` is never {never}"
+
+    def all_conditions(self):
+        """(place of the decision, place of the condition, whether some executions show that it alone decides)"""
+        for place, decides in sorted(self.decisions.items()):
+            inside = [one for one in sorted(self.outcomes) if place[:2] <= one[:2] and one[2:] <= place[2:]]
+            for one, shown in zip(inside, decides):
+                if one not in self.known:
+                    yield place, one, shown
+
+    def undecided(self):
+        """(line, decision, condition) of each condition that is not shown to decide."""
+        for decision, condition, shown in self.all_conditions():
+            if not shown:
+                yield decision[0], self.text(decision), self.text(condition)
 
 
-def lines_of(file):
-    lines = counted_lines(file)
-    return Count(sum(line["count"] > 0 for line in lines), len(lines))
+def read(export, root=ROOT):
+    files = []
+    for one in json.loads(export)["data"][0]["files"]:
+        path = pathlib.Path(one["filename"]).resolve()
+        files.append(File(path.relative_to(root).as_posix(), one, path.read_text(encoding="utf-8")))
+    return sorted(files, key=lambda file: file.name)
 
 
-def branches_of(line):
-    return Count(sum(branch["count"] > 0 for branch in line["branches"]), len(line["branches"]))
-
-
-def all_branches_of(file):
-    return sum((branches_of(line) for line in counted_lines(file)), Count())
-
-
-def missing(file):
-    """"FILE:LINE: N of M branches" for each line with branches never taken. A template's branches are those of all instances."""
-    for line in counted_lines(file):
-        branches = branches_of(line)
-        if branches.taken < branches.total:
-            yield f"{file['file']}:{line['line_number']}: {branches.total - branches.taken} of {branches.total} branches"
-
-
-def report(files, least):
-    width = max(len(file["file"]) for file in files)
-    print(f"  {'':{width}}  {'lines':^19}  {'branches':^19}")
+def unexplained(files, exceptions):
+    """(lines to print, of conditions without a reason and of reasons without a condition)"""
+    reasons = {(row["file"], row["decision"], row["condition"]): row["reason"] for row in exceptions}
+    wrong, used = [], set()
     for file in files:
-        print(f"  {file['file']:{width}}  {str(lines_of(file)):19}  {all_branches_of(file)}")
-    for file in files:
-        for words in missing(file):
-            print(f"  never taken: {words}")
+        for line, decision, condition in file.undecided():
+            key = (file.name, decision, condition)
+            if key in reasons:
+                used.add(key)
+            else:
+                wrong.append(f"{file.name}:{line}: no test shows that `{condition}` alone decides `{decision}`")
+    names = {file.name for file in files}
+    wrong += [f"exceptions.csv: {name}: `{condition}` of `{decision}` needs no exception: remove the row"
+              for name, decision, condition in reasons if (name, decision, condition) not in used and name in names]
+    return wrong
+
+
+def print_table(files):
+    width = max(len(file.name) for file in files)
+    print(f"  {'':{width}}  {'lines':^19}  {'branches':^19}  {'conditions':^19}")
     folders = {}
     for file in files:
-        folder = file["file"].split("/")[0] + "/"
-        lines, branches = folders.get(folder, (Count(), Count()))
-        folders[folder] = (lines + lines_of(file), branches + all_branches_of(file))
-    for folder, (lines, branches) in folders.items():
-        print(f"  {folder:{width}}  {str(lines):19}  {branches}")
-    total = sum((branches for _, branches in folders.values()), Count())
-    passed = total.total > 0 and total.percent() >= least
-    print(f"  {total.percent():.1f} % of {total.total} branches taken, {least:g} % required: {'passed' if passed else 'FAILED'}")
-    return passed
+        counts = (file.lines, file.branches(), file.conditions())
+        print(f"  {file.name:{width}}  {str(counts[0]):19}  {str(counts[1]):19}  {counts[2]}")
+        folder = file.name.split("/")[0] + "/"
+        folders[folder] = tuple(a + b for a, b in zip(folders.get(folder, (Count(), Count(), Count())), counts))
+    for folder, counts in folders.items():
+        print(f"  {folder:{width}}  {str(counts[0]):19}  {str(counts[1]):19}  {counts[2]}")
+    return tuple(sum((counts[i] for counts in folders.values()), Count()) for i in range(3))
+
+
+def report(files, exceptions, least):
+    for file in files:
+        for words in file.never_taken():
+            print(f"  {words}")
+    _, branches, conditions = print_table(files)
+    wrong = unexplained(files, exceptions)
+    for words in wrong:
+        print(f"  {words}")
+    enough = branches.total > 0 and branches.percent() >= least
+    print(f"  {branches.percent():.1f} % of {branches.total} branches taken, {least:g} % required: {'passed' if enough else 'FAILED'}")
+    print(f"  {conditions.taken} of {conditions.total} conditions decide alone, {conditions.total - conditions.taken - len(wrong)} by a "
+          f"stated exception do not: {'FAILED' if wrong else 'passed'}")
+    return enough and not wrong
 
 
 def main(path, least):
@@ -80,8 +161,10 @@ def main(path, least):
     lacking = [file for file, flag in NEEDS.items() if flag not in flags]
     for file in lacking:
         print(f"  not counted: {file}, since this processor has no {NEEDS[file]}")
-    files = [file for file in json.loads(pathlib.Path(path).read_text())["files"] if file["file"] not in lacking]
-    return 0 if files and report(files, float(least)) else 1
+    files = [file for file in read(pathlib.Path(path).read_text()) if file.name not in lacking]
+    with open(HERE / "exceptions.csv", encoding="utf-8", newline="") as rows:
+        exceptions = list(csv.DictReader(rows))
+    return 0 if files and report(files, exceptions, float(least)) else 1
 
 
 if __name__ == "__main__":
