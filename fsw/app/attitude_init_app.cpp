@@ -128,10 +128,10 @@ bool AttitudeInitApp::use(const ParameterTable& table) {
 }
 
 void AttitudeInitApp::step(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs) {
-  run_cycle(now_ns, inputs, outputs, Protections::kOn);
+  step_with(now_ns, inputs, outputs, Protections::kOn);
 }
 
-void AttitudeInitApp::run_cycle(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs,
+void AttitudeInitApp::step_with(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs,
                                 Protections protections) {
   const bool with_protections = protections == Protections::kOn;
   const std::uint32_t corrected_words = with_protections ? state_.vote() : 0;

@@ -95,7 +95,7 @@ class AttitudeInitApp final {
   // setting that is kept there. Flight has only kOn.
   enum class Protections : std::uint8_t { kOn, kOff };
 
-  void run_cycle(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs,
+  void step_with(std::int64_t now_ns, const StepInputs& inputs, StepOutputs& outputs,
                  Protections protections);
   void take_frames(const StepInputs& inputs, std::int64_t previous_ns, bool time_advances,
                    StepOutputs& outputs, const Reporter& report);

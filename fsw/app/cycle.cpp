@@ -23,7 +23,7 @@ class Contents {
  public:
   gnc::FrameStatus look_at(const gnc::RangeImage& frame) {
     if (bad_ >= config::kMaxBadContentsPerCycle) return last_bad_;
-    const gnc::FrameStatus status = gnc::content_of(frame);
+    const gnc::FrameStatus status = gnc::check_frame(frame);
     if (status != gnc::FrameStatus::kOk) {
       ++bad_;
       last_bad_ = status;

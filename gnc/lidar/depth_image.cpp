@@ -223,7 +223,7 @@ bool is_possible(const DepthProjection& projection) {
          projection.target_radius_mm <= kMaxTargetRadius_mm;
 }
 
-FrameStatus content_of(const RangeImage& frame) {
+FrameStatus check_frame(const RangeImage& frame) {
   const FrameStatus status = status_of(frame);
   if (status != FrameStatus::kOk) return status;
   const int rays = frame.rays * frame.rays;

@@ -99,7 +99,7 @@ inline constexpr std::uint32_t kMaxFov_urad = 698'132;  // 40 degrees
 
 // The status that make_depth_image() returns for this frame if all its returns are the target's. (It also
 // refuses a frame in which too few are.) Reads no more of the frame than it must.
-[[nodiscard]] FrameStatus content_of(const RangeImage& frame);
+[[nodiscard]] FrameStatus check_frame(const RangeImage& frame);
 
 // Selects the target's returns (target_selection.hpp), resamples them if the target covers few rays
 // (target_window.hpp), projects them onto the plane across the view axis (x right, z up, axis in the middle)

@@ -13,7 +13,7 @@ namespace tumblesight::sim {
 namespace {
 
 // None: there is no such file.
-std::optional<std::string> content_of(const std::string& path) {
+std::optional<std::string> text_of(const std::string& path) {
   constexpr InputKind kPlan{"plan of an adoption", 1'000'000};
   try {
     return read_text(path, kPlan);
@@ -42,7 +42,7 @@ void write_plan(const std::string& path, const AdoptionPlan& plan) {
 
 std::optional<AdoptionPlan> read_plan(const std::string& path, std::uint32_t mission_crc32, double minutes,
                                       std::uint64_t seed) {
-  const std::optional<std::string> text = content_of(path);
+  const std::optional<std::string> text = text_of(path);
   if (!text) return std::nullopt;
   AdoptionPlan plan;
   try {

@@ -1,4 +1,4 @@
-// The peer LibTorch: the network as TorchScript, frozen and optimized for inference. It runs on one thread if
+// LibTorch: the network as TorchScript, frozen and optimized for inference. It runs on one thread if
 // it is used by the thread that created it.
 #include <torch/script.h>
 #include <torch/version.h>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/bench/peer.hpp"
+#include "sim/bench/runtime.hpp"
 #include "sim/model/network_layers.hpp"
 #include "sim/training/export_model.hpp"
 #include "sim/training/stage.hpp"
@@ -121,12 +121,12 @@ torch::jit::Module optimized(const Float32Model& model, const char* name, const 
   return torch::jit::optimize_for_inference(frozen);
 }
 
-class LibTorch : public Peer {
+class LibTorch : public Runtime {
  public:
   explicit LibTorch(const Float32Model& model)
       : cnn_(optimized(model, "Cnn", cnn_script())),
         recurrent_(optimized(model, "Recurrent", recurrent_script())) {
-    const PeerImage image{gnc::DepthImage{}};
+    const RuntimeImage image{gnc::DepthImage{}};
     gnc::Features<gnc::Float32> features;
     gnc::OutputVector<float> out;
     gnc::LstmState<gnc::Float32> state;
@@ -139,7 +139,7 @@ class LibTorch : public Peer {
 
   std::string name() const override { return std::string("LibTorch ") + TORCH_VERSION; }
 
-  void run_frame(const PeerImage& image, gnc::Features<gnc::Float32>& features,
+  void run_frame(const RuntimeImage& image, gnc::Features<gnc::Float32>& features,
                  gnc::OutputVector<float>& out) override {
     const c10::InferenceMode no_gradients;
     const torch::Tensor input = torch::from_blob(const_cast<float*>(image.values.data()),
@@ -165,7 +165,7 @@ class LibTorch : public Peer {
 
 }  // namespace
 
-std::unique_ptr<Peer> make_libtorch(const Float32Model& model, std::string& reason) {
+std::unique_ptr<Runtime> make_libtorch(const Float32Model& model, std::string& reason) {
   keep_to_one_thread();
   try {
     return std::make_unique<LibTorch>(model);

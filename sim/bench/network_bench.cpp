@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kPeerMeasured_s = 0.6;
+constexpr double kRuntimeMeasured_s = 0.6;
 constexpr std::size_t kFewestRuns = 30;
 // Largest difference allowed, relative to the largest value of an output. In int8 activations behind conv3
 // have fewer bits than in fixed point.
@@ -189,13 +189,13 @@ class OutputDifference {
   double difference_ = 0.0, largest_ = 1e-9;
 };
 
-// Our network in numerics N and a peer's on the same frames, each with its own state.
+// Our network in numerics N and the same in a runtime, on the same frames, each with its own state.
 template <class N>
 class Comparison {
  public:
-  Comparison(Peer& peer, const gnc::ModelHeader& header, const gnc::NetworkWeights<N>& weights,
+  Comparison(Runtime& runtime, const gnc::ModelHeader& header, const gnc::NetworkWeights<N>& weights,
              const std::vector<gnc::RangeImage>& frames)
-      : peer_(peer), network_(std::make_unique<gnc::Network<N>>()) {
+      : runtime_(runtime), network_(std::make_unique<gnc::Network<N>>()) {
     network_->weights() = weights;
     const auto scratch = std::make_unique<gnc::DepthImageScratch>();
     for (const gnc::RangeImage& frame : frames) {
@@ -218,23 +218,23 @@ class Comparison {
       gnc::HeadOutput<float> their_head;
       gnc::Features<gnc::Float32> features;
       network_->infer_frame(*images_[i], *activations_, our_output);
-      peer_.run_frame(their_images_[i], features, their_output);
+      runtime_.run_frame(their_images_[i], features, their_output);
       of_output.add(our_output, their_output);
       of_features.add(network_->features(), features);
       network_->infer_sequence(lstm_input<N>(features), *activations_, our_state, our_head);
-      peer_.run_sequence(lstm_input<gnc::Float32>(features), their_state, their_head);
+      runtime_.run_sequence(lstm_input<gnc::Float32>(features), their_state, their_head);
       of_head.add(our_head, their_head);
     }
     return std::max({of_output.relative(), of_features.relative(), of_head.relative()});
   }
 
-  double peer_us(std::size_t i) {
+  double runtime_us(std::size_t i) {
     gnc::OutputVector<float> output;
     gnc::HeadOutput<float> head;
     gnc::Features<gnc::Float32> features;
     return timed([&] {
-      peer_.run_frame(their_images_[i % their_images_.size()], features, output);
-      peer_.run_sequence(lstm_input<gnc::Float32>(features), state_, head);
+      runtime_.run_frame(their_images_[i % their_images_.size()], features, output);
+      runtime_.run_sequence(lstm_input<gnc::Float32>(features), state_, head);
     });
   }
 
@@ -248,30 +248,35 @@ class Comparison {
     return input;
   }
 
-  Peer& peer_;
+  Runtime& runtime_;
   std::unique_ptr<gnc::Network<N>> network_;
   std::unique_ptr<gnc::Activations<N>> activations_ = std::make_unique<gnc::Activations<N>>();
   std::vector<std::unique_ptr<gnc::DepthImage>> images_;
-  std::vector<PeerImage> their_images_;
+  std::vector<RuntimeImage> their_images_;
   gnc::LstmState<gnc::Float32> state_{};
 };
 
 template <class N>
-BenchRow bench_with(Peer& peer, Comparison<N>& comparison, double limit) {
+BenchRow bench_with(Runtime& runtime, Comparison<N>& comparison, double limit) {
   const double difference = comparison.largest_difference();
   if (!(difference < limit)) {
     throw std::runtime_error(
         fmt::format("the outputs of {} differ from ours by {:.2g} of the largest output; the limit is {:g}",
-                    peer.name(), difference, limit));
+                    runtime.name(), difference, limit));
   }
-  const Times times = measured(kPeerMeasured_s, [&](std::size_t i) { return comparison.peer_us(i); });
-  return {peer.name(), peer.is_int8() ? "int8" : "float32", "", times.median_us, times.min_us, gnc::kMacCount,
+  const Times times = measured(kRuntimeMeasured_s, [&](std::size_t i) { return comparison.runtime_us(i); });
+  return {runtime.name(),
+          runtime.is_int8() ? "int8" : "float32",
+          "",
+          times.median_us,
+          times.min_us,
+          gnc::kMacCount,
           {}};
 }
 
 }  // namespace
 
-PeerImage::PeerImage(const gnc::DepthImage& image) {
+RuntimeImage::RuntimeImage(const gnc::DepthImage& image) {
   for (const std::uint16_t depth : image.depth) {
     gnc::to_conv_input(depth, values.emplace_back());
     gnc::to_conv_input(depth, counts.emplace_back());
@@ -285,19 +290,21 @@ std::vector<BenchRow> bench_numerics(const BenchSubject& subject,
              : bench_sets<gnc::FixedPoint>(subject, started);
 }
 
-BenchRow bench_peer(Peer& peer, const Float32Model& model, const std::vector<gnc::RangeImage>& frames) {
-  Comparison<gnc::Float32> comparison(peer, model.header, model.weights, frames);
-  return bench_with(peer, comparison, kSameOutput);
+BenchRow bench_runtime(Runtime& runtime, const Float32Model& model,
+                       const std::vector<gnc::RangeImage>& frames) {
+  Comparison<gnc::Float32> comparison(runtime, model.header, model.weights, frames);
+  return bench_with(runtime, comparison, kSameOutput);
 }
 
-BenchRow bench_peer(Peer& peer, const FixedPointModel& model, const std::vector<gnc::RangeImage>& frames) {
-  Comparison<gnc::FixedPoint> comparison(peer, model.header, model.weights, frames);
-  return bench_with(peer, comparison, kSameInt8Output);
+BenchRow bench_runtime(Runtime& runtime, const FixedPointModel& model,
+                       const std::vector<gnc::RangeImage>& frames) {
+  Comparison<gnc::FixedPoint> comparison(runtime, model.header, model.weights, frames);
+  return bench_with(runtime, comparison, kSameInt8Output);
 }
 
-double largest_difference(Peer& peer, const FixedPointModel& model,
+double largest_difference(Runtime& runtime, const FixedPointModel& model,
                           const std::vector<gnc::RangeImage>& frames) {
-  return Comparison<gnc::FixedPoint>(peer, model.header, model.weights, frames).largest_difference();
+  return Comparison<gnc::FixedPoint>(runtime, model.header, model.weights, frames).largest_difference();
 }
 
 }  // namespace tumblesight::sim

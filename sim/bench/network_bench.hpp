@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "gnc/lidar/range_image.hpp"
-#include "sim/bench/peer.hpp"
+#include "sim/bench/runtime.hpp"
 
 namespace tumblesight::sim {
 
 struct BenchRow {
-  std::string name;  // step, depth image, network or convolutions; or the peer's name
+  std::string name;  // step, depth image, network or convolutions; or the runtime's name
   std::string numerics;
   std::string isa;
   double median_us = 0.0;
@@ -37,15 +37,17 @@ struct BenchSubject {
 std::vector<BenchRow> bench_numerics(const BenchSubject& subject,
                                      const std::function<void(const std::string&)>& started);
 
-// Run time of the network in `peer`: CNN and recurrent part, without the depth image. The state is kept from
-// frame to frame. First compares the outputs with those of our network with the same weights, in float32 or
-// in fixed point (peers in int8), and throws std::runtime_error if they differ.
-BenchRow bench_peer(Peer& peer, const Float32Model& model, const std::vector<gnc::RangeImage>& frames);
-BenchRow bench_peer(Peer& peer, const FixedPointModel& model, const std::vector<gnc::RangeImage>& frames);
+// Run time of the network in `runtime`: CNN and recurrent part, without the depth image. The state is kept
+// from frame to frame. First compares the outputs with those of our network with the same weights, in float32
+// or in fixed point (runtimes in int8), and throws std::runtime_error if they differ.
+BenchRow bench_runtime(Runtime& runtime, const Float32Model& model,
+                       const std::vector<gnc::RangeImage>& frames);
+BenchRow bench_runtime(Runtime& runtime, const FixedPointModel& model,
+                       const std::vector<gnc::RangeImage>& frames);
 
-// Largest difference between the outputs of `peer` and ours in these frames, relative to the largest value of
-// that output. Outputs: of the CNN, features, and of the recurrent head.
-double largest_difference(Peer& peer, const FixedPointModel& model,
+// Largest difference between the outputs of `runtime` and ours in these frames, relative to the largest value
+// of that output. Outputs: of the CNN, features, and of the recurrent head.
+double largest_difference(Runtime& runtime, const FixedPointModel& model,
                           const std::vector<gnc::RangeImage>& frames);
 
 }  // namespace tumblesight::sim

@@ -1,11 +1,11 @@
-// The peer oneDNN: the CNN in int8, the products of the LSTM and of the recurrent head in float32. The gates'
+// oneDNN: the CNN in int8, the products of the LSTM and of the recurrent head in float32. The gates'
 // sigmoid and tanh are ours.
 #include <algorithm>
 #include <string>
 
 #include "gnc/nn/lstm.hpp"
 #include "sim/bench/onednn_graph.hpp"
-#include "sim/bench/peer.hpp"
+#include "sim/bench/runtime.hpp"
 
 namespace tumblesight::sim {
 namespace shape = gnc::shape;
@@ -32,7 +32,7 @@ void fold(const std::vector<std::uint8_t>& counts, std::uint8_t* out) {
   }
 }
 
-class Onednn : public Peer {
+class Onednn : public Runtime {
  public:
   explicit Onednn(const FixedPointModel& model) {
     dnnl::memory value = image_;
@@ -58,7 +58,7 @@ class Onednn : public Peer {
   }
   bool is_int8() const override { return true; }
 
-  void run_frame(const PeerImage& image, gnc::Features<gnc::Float32>& features,
+  void run_frame(const RuntimeImage& image, gnc::Features<gnc::Float32>& features,
                  gnc::OutputVector<float>& out) override {
     fold(image.counts, numbers<std::uint8_t>(image_));
     cnn_.run();
@@ -91,7 +91,7 @@ class Onednn : public Peer {
 
 }  // namespace
 
-std::unique_ptr<Peer> make_onednn_int8(const FixedPointModel& model, std::string& reason) {
+std::unique_ptr<Runtime> make_onednn_int8(const FixedPointModel& model, std::string& reason) {
   try {
     return std::make_unique<Onednn>(model);
   } catch (const dnnl::error& error) {

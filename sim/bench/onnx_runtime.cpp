@@ -1,4 +1,4 @@
-// The peer ONNX Runtime: in float32 with the models that `tumblesight export` writes, in int8 with the CNN of
+// ONNX Runtime: in float32 with the models that `tumblesight export` writes, in int8 with the CNN of
 // sim/onnx/int8_model.hpp.
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/bench/onnx_runtime_library.hpp"
-#include "sim/bench/peer.hpp"
+#include "sim/bench/runtime.hpp"
 #include "sim/model/int8_layers.hpp"
 #include "sim/onnx/int8_model.hpp"
 #include "sim/onnx/onnx_model.hpp"
@@ -59,16 +59,16 @@ struct OnnxModels {
   std::string cnn, recurrent;
 };
 
-const std::vector<float>& pixels(const PeerImage& image, float) {
+const std::vector<float>& pixels(const RuntimeImage& image, float) {
   return image.values;
 }
-const std::vector<std::uint8_t>& pixels(const PeerImage& image, std::uint8_t) {
+const std::vector<std::uint8_t>& pixels(const RuntimeImage& image, std::uint8_t) {
   return image.counts;
 }
 
 // Pixel: float, or std::uint8_t for a CNN in int8.
 template <class Pixel>
-class OnnxRuntime : public Peer {
+class OnnxRuntime : public Runtime {
  public:
   OnnxRuntime(const OnnxModels& models, std::unique_ptr<Library> library)
       : library_(std::move(library)),
@@ -89,7 +89,7 @@ class OnnxRuntime : public Peer {
   std::string name() const override { return "ONNX Runtime " + library_->version(); }
   bool is_int8() const override { return sizeof(Pixel) == 1; }
 
-  void run_frame(const PeerImage& image, gnc::Features<Float32>& features,
+  void run_frame(const RuntimeImage& image, gnc::Features<Float32>& features,
                  gnc::OutputVector<float>& out) override {
     std::copy_n(pixels(image, Pixel{}).data(), image_.size(), image_.begin());
     cnn_.run();
@@ -120,7 +120,8 @@ class OnnxRuntime : public Peer {
 };
 
 template <class Pixel>
-std::unique_ptr<Peer> make_peer(const OnnxModels& models, const std::string& library, std::string& reason) {
+std::unique_ptr<Runtime> make_runtime(const OnnxModels& models, const std::string& library,
+                                      std::string& reason) {
   auto found = Library::open(library, reason);
   if (found == nullptr) return nullptr;
   try {
@@ -133,15 +134,15 @@ std::unique_ptr<Peer> make_peer(const OnnxModels& models, const std::string& lib
 
 }  // namespace
 
-std::unique_ptr<Peer> make_onnx_runtime(const Float32Model& model, const std::string& library,
-                                        std::string& reason) {
-  return make_peer<float>({cnn_as_onnx(model), recurrent_as_onnx(model)}, library, reason);
+std::unique_ptr<Runtime> make_onnx_runtime(const Float32Model& model, const std::string& library,
+                                           std::string& reason) {
+  return make_runtime<float>({cnn_as_onnx(model), recurrent_as_onnx(model)}, library, reason);
 }
 
-std::unique_ptr<Peer> make_onnx_runtime_int8(const FixedPointModel& model, const std::string& library,
-                                             std::string& reason) {
+std::unique_ptr<Runtime> make_onnx_runtime_int8(const FixedPointModel& model, const std::string& library,
+                                                std::string& reason) {
   const auto recurrent = recurrent_in_float32(model.header, model.weights);
-  return make_peer<std::uint8_t>(
+  return make_runtime<std::uint8_t>(
       {int8_cnn_as_onnx(model.header, model.weights), recurrent_as_onnx(*recurrent)}, library, reason);
 }
 

@@ -58,24 +58,24 @@ std::unique_ptr<FixedPointModel> fixed_point_model(const std::vector<std::uint8_
   return model;
 }
 
-// A peer that is not installed is reported and left out; one whose outputs differ ends the run.
+// A runtime that is not installed is reported and left out; one whose outputs differ ends the run.
 template <class Model>
-void bench_one_peer(const std::unique_ptr<Peer>& peer, const std::string& reason, const Model& model,
+void bench_one_peer(const std::unique_ptr<Runtime>& runtime, const std::string& reason, const Model& model,
                     const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
-  if (peer == nullptr) {
+  if (runtime == nullptr) {
     print_note("left out: " + reason);
     return;
   }
-  print_measuring(peer->name() + (peer->is_int8() ? ", int8" : ", float32"));
-  rows.push_back(bench_peer(*peer, model, frames));
+  print_measuring(runtime->name() + (runtime->is_int8() ? ", int8" : ", float32"));
+  rows.push_back(bench_runtime(*runtime, model, frames));
 }
 
 void bench_peers(const BenchArguments& arguments, const BenchImages& images,
                  const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
   const std::unique_ptr<FixedPointModel> fixed = fixed_point_model(images.fixed);
   std::string reason;
-  const auto add = [&](const std::unique_ptr<Peer>& peer, const auto& model) {
-    bench_one_peer(peer, reason, model, frames, rows);
+  const auto add = [&](const std::unique_ptr<Runtime>& runtime, const auto& model) {
+    bench_one_peer(runtime, reason, model, frames, rows);
   };
   add(make_onnx_runtime_int8(*fixed, arguments.onnxruntime, reason), *fixed);
   add(make_onednn_int8(*fixed, reason), *fixed);

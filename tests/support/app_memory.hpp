@@ -67,7 +67,7 @@ struct AppMemory {
   // A cycle without the vote and the scrubber.
   static void step_unprotected(App& app, std::int64_t now_ns, const StepInputs& inputs,
                                StepOutputs& outputs) {
-    app.run_cycle(now_ns, inputs, outputs, App::Protections::kOff);
+    app.step_with(now_ns, inputs, outputs, App::Protections::kOff);
   }
   // Every attitude with a sound quaternion passes: no expected error and no jump is beyond its limit.
   static void widen_attitude_limits(App& app) {

@@ -44,7 +44,7 @@ std::string from_base64(const std::string& text, std::size_t begin, const std::s
   return bytes;
 }
 
-std::string content_of(const fs::path& folder, const std::string& uri, std::uint64_t size,
+std::string external_file(const fs::path& folder, const std::string& uri, std::uint64_t size,
                        const std::string& where) {
   const std::string named = where + " is the file " + shown_text(decoded_uri(uri)) + ", ";
   if (decoded_uri(uri).find('\0') != std::string::npos)
@@ -71,7 +71,7 @@ std::string content_of(const fs::path& folder, const std::string& uri, std::uint
 
 std::string content_of_uri(const fs::path& folder, const std::string& uri, std::uint64_t size,
                            const std::string& where) {
-  if (!is_data_uri(uri)) return content_of(folder, uri, size, where);
+  if (!is_data_uri(uri)) return external_file(folder, uri, size, where);
   const std::string kBase64 = ";base64";
   const std::size_t comma = std::min(uri.find(','), uri.size());
   const std::size_t mark = comma - std::min(comma, kBase64.size());

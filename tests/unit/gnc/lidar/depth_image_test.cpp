@@ -36,7 +36,7 @@ struct Projection {
   }
   FrameStatus make(const DepthProjection& projection = kProjection) {
     const FrameStatus status = make_depth_image(frame, projection, scratch, image);
-    EXPECT_EQ(content_of(frame), status);
+    EXPECT_EQ(check_frame(frame), status);
     return status;
   }
   double at(int row, int column) const { return image.depth[row * DepthImage::kSide + column] / 65536.0; }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sim/bench/onnx_runtime_library.hpp"
-#include "sim/bench/peer.hpp"
+#include "sim/bench/runtime.hpp"
 #include "sim/evaluation/host_estimator.hpp"
 #include "sim/onnx/image_model.hpp"
 #include "sim/world/chaser_navigation.hpp"
@@ -173,7 +173,7 @@ class StepModel : public ::testing::Test {
     gnc::DepthImage image;
     ASSERT_EQ(gnc::make_depth_image(frame_, estimator_->model().projection, scratch_, image),
               gnc::FrameStatus::kOk);
-    const PeerImage pixels(image);
+    const RuntimeImage pixels(image);
     std::copy(pixels.values.begin(), pixels.values.end(), values_.image.begin());
     for (int i = 0; i < 9; ++i)
       values_.r_lrf_view[static_cast<std::size_t>(i)] = gnc::converted<float>(image.r_lrf_view(i / 3, i % 3));

@@ -1,4 +1,4 @@
-// Peer: another runtime with the network in float32 or int8, for comparison.
+// Runtime: another program that runs networks, with ours in float32 or int8, for comparison.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@
 namespace tumblesight::sim {
 
 // A depth image of 100 x 100 values, row by row, as either network takes it.
-struct PeerImage {
-  explicit PeerImage(const gnc::DepthImage& image);
+struct RuntimeImage {
+  explicit RuntimeImage(const gnc::DepthImage& image);
   std::vector<float> values;         // depth / 65536
   std::vector<std::uint8_t> counts;  // depth / 256, rounded
 };
 
 // The features are real numbers in float32, and in int8 the fixed-point network's counts. All else is in real
 // numbers.
-class Peer {
+class Runtime {
  public:
-  virtual ~Peer() = default;
+  virtual ~Runtime() = default;
   virtual std::string name() const = 0;  // with its version
   virtual bool is_int8() const { return false; }
   // The CNN.
-  virtual void run_frame(const PeerImage& image, gnc::Features<gnc::Float32>& features,
+  virtual void run_frame(const RuntimeImage& image, gnc::Features<gnc::Float32>& features,
                          gnc::OutputVector<float>& out) = 0;
   // LSTM and recurrent head. Advances `state` by one frame. `input` is in the unit of the features.
   virtual void run_sequence(const gnc::LstmInput<gnc::Float32>& input, gnc::LstmState<gnc::Float32>& state,
@@ -41,11 +41,11 @@ struct FixedPointModel {
 
 // All run on one thread. They return nullptr and set `reason` if the runtime is not available.
 // `library`: path of libonnxruntime.so; empty: see OnnxRuntimeLibrary::open().
-std::unique_ptr<Peer> make_onnx_runtime(const Float32Model& model, const std::string& library,
-                                        std::string& reason);
-std::unique_ptr<Peer> make_onnx_runtime_int8(const FixedPointModel& model, const std::string& library,
-                                             std::string& reason);
-std::unique_ptr<Peer> make_onednn_int8(const FixedPointModel& model, std::string& reason);
-std::unique_ptr<Peer> make_libtorch(const Float32Model& model, std::string& reason);
+std::unique_ptr<Runtime> make_onnx_runtime(const Float32Model& model, const std::string& library,
+                                           std::string& reason);
+std::unique_ptr<Runtime> make_onnx_runtime_int8(const FixedPointModel& model, const std::string& library,
+                                                std::string& reason);
+std::unique_ptr<Runtime> make_onednn_int8(const FixedPointModel& model, std::string& reason);
+std::unique_ptr<Runtime> make_libtorch(const Float32Model& model, std::string& reason);
 
 }  // namespace tumblesight::sim

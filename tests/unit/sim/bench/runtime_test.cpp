@@ -1,5 +1,5 @@
 // Other runtimes compute the same as the flight network, in float32 or fixed point.
-#include "sim/bench/peer.hpp"
+#include "sim/bench/runtime.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,25 +39,25 @@ void expect_near(const Numbers& numbers, const Numbers& expected, const char* wh
   }
 }
 
-void expect_same_frames(Peer& peer, Network& network) {
+void expect_same_frames(Runtime& runtime, Network& network) {
   for (unsigned seed = 0; seed < kFrames; ++seed) {
     const gnc::DepthImage image = gnc::random_depth_image(seed);
     gnc::OutputVector<float> expected, out;
     gnc::Features<Float32> features;
     network.ours.infer_frame(image, network.activations, expected);
-    peer.run_frame(PeerImage(image), features, out);
+    runtime.run_frame(RuntimeImage(image), features, out);
     expect_near(features, network.ours.features(), "features");
     expect_near(out, expected, "output of the CNN");
   }
 }
 
-void expect_same_sequence(Peer& peer, Network& network) {
+void expect_same_sequence(Runtime& runtime, Network& network) {
   gnc::LstmState<Float32> expected_state, state;
   for (unsigned seed = 0; seed < kFrames; ++seed) {
     const gnc::LstmInput<Float32> input = gnc::random_lstm_input(seed);
     gnc::HeadOutput<float> expected, out;
     network.ours.infer_sequence(input, network.activations, expected_state, expected);
-    peer.run_sequence(input, state, out);
+    runtime.run_sequence(input, state, out);
     expect_near(state.h, expected_state.h, "hidden state");
     expect_near(state.c, expected_state.c, "cells");
     expect_near(out, expected, "output of the head");
@@ -68,10 +68,10 @@ void expect_same_sequence(Peer& peer, Network& network) {
 TEST(OnnxRuntime, ComputesTheSameAsTheFlightNetwork) {
   const auto network = std::make_unique<Network>();
   std::string reason;
-  const auto peer = make_onnx_runtime(network->model, "", reason);
-  if (peer == nullptr) GTEST_SKIP() << reason;
-  expect_same_frames(*peer, *network);
-  expect_same_sequence(*peer, *network);
+  const auto runtime = make_onnx_runtime(network->model, "", reason);
+  if (runtime == nullptr) GTEST_SKIP() << reason;
+  expect_same_frames(*runtime, *network);
+  expect_same_sequence(*runtime, *network);
 }
 
 TEST(OnnxRuntime, GivesAReasonIfTheLibraryIsMissing) {
@@ -99,30 +99,30 @@ struct FixedPointNetwork {
 TEST(OnnxRuntime, InInt8ComputesTheSameAsFixedPointWithinABound) {
   const auto network = std::make_unique<FixedPointNetwork>();
   std::string reason;
-  const auto peer = make_onnx_runtime_int8(network->model, "", reason);
-  if (peer == nullptr) GTEST_SKIP() << reason;
-  EXPECT_TRUE(peer->is_int8());
-  EXPECT_LT(largest_difference(*peer, network->model, network->frames), kInt8Tolerance);
+  const auto runtime = make_onnx_runtime_int8(network->model, "", reason);
+  if (runtime == nullptr) GTEST_SKIP() << reason;
+  EXPECT_TRUE(runtime->is_int8());
+  EXPECT_LT(largest_difference(*runtime, network->model, network->frames), kInt8Tolerance);
 }
 
 TEST(Onednn, InInt8ComputesTheSameAsFixedPointWithinABound) {
   const auto network = std::make_unique<FixedPointNetwork>();
   std::string reason;
-  const auto peer = make_onednn_int8(network->model, reason);
-  if (TUMBLESIGHT_HAS_ONEDNN == 0 && peer == nullptr) GTEST_SKIP() << reason;
-  ASSERT_NE(peer, nullptr) << reason;
-  EXPECT_TRUE(peer->is_int8());
-  EXPECT_LT(largest_difference(*peer, network->model, network->frames), kInt8Tolerance);
+  const auto runtime = make_onednn_int8(network->model, reason);
+  if (TUMBLESIGHT_HAS_ONEDNN == 0 && runtime == nullptr) GTEST_SKIP() << reason;
+  ASSERT_NE(runtime, nullptr) << reason;
+  EXPECT_TRUE(runtime->is_int8());
+  EXPECT_LT(largest_difference(*runtime, network->model, network->frames), kInt8Tolerance);
 }
 
 TEST(LibTorch, ComputesTheSameAsTheFlightNetwork) {
   const auto network = std::make_unique<Network>();
   std::string reason;
-  const auto peer = make_libtorch(network->model, reason);
-  if (TUMBLESIGHT_TRAINING == 0 && peer == nullptr) GTEST_SKIP() << reason;
-  ASSERT_NE(peer, nullptr) << reason;
-  expect_same_frames(*peer, *network);
-  expect_same_sequence(*peer, *network);
+  const auto runtime = make_libtorch(network->model, reason);
+  if (TUMBLESIGHT_TRAINING == 0 && runtime == nullptr) GTEST_SKIP() << reason;
+  ASSERT_NE(runtime, nullptr) << reason;
+  expect_same_frames(*runtime, *network);
+  expect_same_sequence(*runtime, *network);
 }
 
 }  // namespace
