@@ -1,0 +1,81 @@
+"""Tests of the report on what llvm-cov exports: a small source whose counts are known."""
+import contextlib
+import io
+import json
+import pathlib
+import tempfile
+import unittest
+
+import report
+
+SOURCE = """bool f(bool a, bool b, bool c) {
+  if (a && b) return true;
+  if (kFixed) return c;
+  return a || c;
+}
+"""
+# line, column, last line, last column; times true, times false; three numbers that are not used
+BRANCHES = [[2, 7, 2, 8, 3, 1, 0, 0, 6], [2, 12, 2, 13, 1, 2, 0, 0, 6], [3, 7, 3, 13, 0, 0, 0, 0, 4],
+            [4, 10, 4, 11, 1, 2, 0, 0, 6], [4, 15, 4, 16, 0, 2, 0, 0, 6]]
+DECISIONS = [[2, 7, 2, 13, 0, 0, 5, [True, True]], [4, 10, 4, 16, 0, 0, 5, [True, False]]]
+SEGMENTS = [[1, 32, 4, True, True, False], [3, 7, 3, True, True, False], [5, 2, 0, False, False, False]]
+
+
+class Coverage(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name).resolve()
+        (self.root / "gnc").mkdir()
+        (self.root / "gnc/f.cpp").write_text(SOURCE)
+
+    def read(self, branches=BRANCHES, decisions=DECISIONS, segments=SEGMENTS):
+        file = {"filename": str(self.root / "gnc/f.cpp"), "branches": branches, "mcdc_records": decisions, "segments": segments,
+                "summary": {"lines": {"count": 4, "covered": 4}}}
+        return report.read(json.dumps({"data": [{"files": [file]}]}), self.root)
+
+    def report(self, files, exceptions=(), least=0.0):
+        """(passed, what it prints)"""
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out):
+            passed = report.report(files, exceptions, least)
+        return passed, out.getvalue()
+
+    def test_counts_outcomes_but_none_that_the_compiler_knows(self):
+        file, = self.read()
+        self.assertEqual(str(file.branches()), str(report.Count(7, 8)))
+        self.assertEqual(list(file.never_taken()), ["gnc/f.cpp:4: `c` is never true"])
+
+    def test_code_that_never_ran_is_not_known(self):
+        file, = self.read(segments=[[1, 32, 0, True, True, False]])
+        self.assertEqual(str(file.branches()), str(report.Count(7, 10)))
+
+    def test_a_condition_that_decides_nowhere_fails_and_is_named(self):
+        passed, text = self.report(self.read())
+        self.assertFalse(passed)
+        self.assertIn("gnc/f.cpp:4: no test shows that `c` alone decides `a || c`", text)
+        self.assertIn("3 of 4 conditions", text)
+
+    def test_an_exception_with_a_reason_passes(self):
+        row = {"file": "gnc/f.cpp", "decision": "a || c", "condition": "c", "reason": "c follows from a"}
+        self.assertTrue(self.report(self.read(), [row])[0])
+
+    def test_an_exception_that_is_not_needed_fails(self):
+        row = {"file": "gnc/f.cpp", "decision": "a && b", "condition": "b", "reason": "none"}
+        other = {"file": "gnc/f.cpp", "decision": "a || c", "condition": "c", "reason": "c follows from a"}
+        passed, text = self.report(self.read(), [row, other])
+        self.assertFalse(passed)
+        self.assertIn("`b` of `a && b` needs no exception", text)
+
+    def test_the_instances_of_a_template_count_together(self):
+        other = [*DECISIONS, [4, 10, 4, 16, 0, 0, 5, [False, True]]]
+        self.assertTrue(self.report(self.read(decisions=other))[0])
+
+    def test_too_few_branches_fail(self):
+        other = [*DECISIONS, [4, 10, 4, 16, 0, 0, 5, [False, True]]]
+        self.assertTrue(self.report(self.read(decisions=other), least=87.5)[0])
+        self.assertFalse(self.report(self.read(decisions=other), least=88.0)[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
