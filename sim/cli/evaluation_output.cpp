@@ -13,8 +13,8 @@
 #include "sim/evaluation/checks.hpp"
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"
-#include "sim/report/results_files.hpp"
 #include "sim/report/error_tables.hpp"
+#include "sim/report/results_files.hpp"
 #include "sim/report/results_json.hpp"
 #include "sim/report/results_tables.hpp"
 

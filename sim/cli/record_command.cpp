@@ -72,13 +72,7 @@ void record(const RecordArguments& arguments) {
   const TargetSetup target = set_up_target_without_model(wanted);
   for (const std::string& warning : target.warnings) print_note(warning);
   RecordingSettings settings;
-  settings.scenario =
-      scenario_settings(condition_from(wanted.condition), wanted.frames, wanted.target, target.inertia_kg_m2);
-  settings.scenario.disturbances = wanted.disturbances;
-  settings.scenario.effects = wanted.effects;
-  settings.scenario.sensor = wanted.sensor.sensor.settings;
-  settings.scenario.ranges = target.ranges;
-  settings.scenario.swath_m = 1e-3 * target.projection.swath_mm;
+  settings.scenario = scenario_settings(wanted, target);
   settings.seed = wanted.seed;
   settings.sequences = wanted.sequences;
   const FlashLidar lidar(observed_bodies(wanted.effects, wanted.target, target.mesh));

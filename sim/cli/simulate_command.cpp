@@ -40,11 +40,8 @@ SilRunSetup run_setup(const SimulateArguments& arguments, const TargetSetup& tar
   setup.sequences = scenario.sequences;
   setup.only = arguments.only;
   setup.frames = scenario.frames;
-  setup.disturbances = scenario.disturbances;
-  setup.effects = scenario.effects;
-  setup.sensor = scenario.sensor.sensor;
-  setup.ranges = target.ranges;
-  setup.symmetry = scenario.symmetry;
+  static_cast<RunConditions&>(setup) = {scenario.disturbances, scenario.effects, scenario.sensor.sensor,
+                                        target.ranges, scenario.symmetry};
   setup.seed = scenario.seed;
   return setup;
 }
@@ -85,14 +82,7 @@ std::vector<Sequence> sequences_of(const SimulateArguments& arguments, const Sce
 SilRunResult run_sequences(const SimulateArguments& arguments, const TargetSetup& target,
                            const SilSettings& settings, Float32Reference& float32) {
   const ScenarioArguments& scenario = arguments.scenario;
-  ScenarioSettings sequence_settings = scenario_settings(condition_from(scenario.condition), scenario.frames,
-                                                         scenario.target, target.inertia_kg_m2);
-  sequence_settings.disturbances = scenario.disturbances;
-  sequence_settings.effects = scenario.effects;
-  sequence_settings.sensor = scenario.sensor.sensor.settings;
-  sequence_settings.ranges = target.ranges;
-  sequence_settings.swath_m = 1e-3 * target.projection.swath_mm;
-  const std::vector<Sequence> sequences = sequences_of(arguments, sequence_settings);
+  const std::vector<Sequence> sequences = sequences_of(arguments, scenario_settings(scenario, target));
   std::vector<TriangleMesh> bodies = observed_bodies(scenario.effects, scenario.target, target.mesh);
   for (TriangleMesh& body : bodies) mark_panels(body);  // for faults that come while the run goes on
   const FlashLidar lidar(bodies);

@@ -166,4 +166,15 @@ TargetSetup set_up_target_without_model(const ScenarioArguments& arguments) {
   return setup;
 }
 
+ScenarioSettings scenario_settings(const ScenarioArguments& arguments, const TargetSetup& target) {
+  ScenarioSettings settings = scenario_settings(condition_from(arguments.condition), arguments.frames,
+                                                arguments.target, target.inertia_kg_m2);
+  settings.disturbances = arguments.disturbances;
+  settings.effects = arguments.effects;
+  settings.sensor = arguments.sensor.sensor.settings;
+  settings.ranges = target.ranges;
+  settings.swath_m = 1e-3 * target.projection.swath_mm;
+  return settings;
+}
+
 }  // namespace tumblesight::sim

@@ -43,4 +43,7 @@ TargetSetup set_up_model_alone(const ScenarioArguments& arguments);
 // target. Without either the fields of the model stay empty, and the swath is that of the mesh.
 TargetSetup set_up_target_without_model(const ScenarioArguments& arguments);
 
+// The sequences that the arguments ask for. Throws as scenario_settings() of a condition.
+ScenarioSettings scenario_settings(const ScenarioArguments& arguments, const TargetSetup& target);
+
 }  // namespace tumblesight::sim

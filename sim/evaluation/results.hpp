@@ -12,22 +12,16 @@
 #include "sim/evaluation/paper.hpp"
 #include "sim/evaluation/rare_events.hpp"
 #include "sim/evaluation/reliability.hpp"
-#include "sim/world/scenario/sequence.hpp"
-#include "sim/world/sensor/sensor_description.hpp"
+#include "sim/evaluation/run_conditions.hpp"
 #include "sim/world/target/targets.hpp"
 
 namespace tumblesight::sim {
 
 // The figures of one condition: of last frames unless stated otherwise.
-struct CellResult {
+struct CellResult : RunConditions {
   Condition condition = Condition::kNominal;
   std::uint32_t sequences = 0;
   std::uint32_t frames = 0;  // per sequence
-  Disturbances disturbances;
-  Effects effects;
-  SensorDescription sensor;
-  RangeLimits ranges;
-  TargetSymmetry symmetry;  // all errors are modulo it
   ErrorSummary rcnn;
   ErrorSummary cnn;
   PoseSummary pose;                     // registered

@@ -24,11 +24,8 @@ CellResult cell_result(const ExperimentRun& run, const SubjectDescription& subje
   cell.condition = run.scenario.condition;
   cell.sequences = run.sequences;
   cell.frames = frames;
-  cell.disturbances = run.scenario.disturbances;
-  cell.effects = run.scenario.effects.low;
-  cell.sensor = subject.sensor;
-  cell.symmetry = subject.symmetry;
-  cell.ranges = run.scenario.ranges;
+  static_cast<RunConditions&>(cell) = {run.scenario.disturbances, run.scenario.effects.low, subject.sensor,
+                                       run.scenario.ranges, subject.symmetry};
   cell.rcnn = last_frame_summary(result.frames, frames, Estimator::kRcnn);
   cell.cnn = last_frame_summary(result.frames, frames, Estimator::kCnn);
   cell.pose = pose_summary(result.frames, frames - 1);

@@ -10,9 +10,8 @@
 #include "gnc/lidar/depth_image.hpp"
 #include "sim/evaluation/metrics.hpp"
 #include "sim/evaluation/paper.hpp"
+#include "sim/evaluation/run_conditions.hpp"
 #include "sim/report/data_table.hpp"
-#include "sim/world/scenario/sequence.hpp"
-#include "sim/world/sensor/sensor_description.hpp"
 
 namespace tumblesight::sim {
 
@@ -40,18 +39,13 @@ struct FlightSetup {
 };
 
 // The settings of a run with simulated sequences.
-struct SilRunSetup : FlightSetup {
+struct SilRunSetup : FlightSetup, RunConditions {
   std::string mesh_name;
   std::string condition;
   std::uint32_t sequences = 0;
   std::vector<std::uint32_t> only;  // their indices; empty: from 0
   std::uint32_t frames = 0;         // per sequence
   std::uint64_t seed = 0;
-  Disturbances disturbances;
-  Effects effects;
-  SensorDescription sensor;
-  RangeLimits ranges;
-  TargetSymmetry symmetry;  // errors are modulo it
 };
 
 struct RunReport {
