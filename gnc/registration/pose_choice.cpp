@@ -177,11 +177,11 @@ Advantage first_advantage(const PoseCandidate& first, const PoseCandidate& secon
 // Registers the frame at the pose that the motion of the track predicts. After a gap, or if a short
 // registration does not explain the frame, in more steps; if they do not explain it either, also from the
 // network's attitude, and the one that explains it better stays. True: the network's attitude was tried.
-bool follow_motion(const PoseTarget& target, const PoseFrame& frame, const PoseMotion& predicted,
-                   PoseScratch& scratch, const PoseTrackerState& state) {
+bool follow_motion(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+                   const PoseTrackerState& state) {
   PoseCandidate& best = scratch.best;
   PoseCandidate& other = scratch.other;
-  const Pose start{predicted.turning.r_lrf_trf, predicted.origin_lrf_um};
+  const Pose start{state.motion.turning.r_lrf_trf, state.motion.origin_lrf_um};
   if (state.history.count >= kPosesOfARate && frame.elapsed_ns <= kLongestStep_ns) {
     refine_candidate(target, start, kLongTrack, scratch, best);
     if (best.evidence.fits()) return false;
@@ -262,12 +262,12 @@ void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& 
   if (advantage_q8(best, other) < 0) exchange(best, other);
 }
 
-bool follow_track(const PoseTarget& target, const PoseFrame& frame, const PoseMotion& predicted,
-                  PoseScratch& scratch, PoseTrackerState& state) {
+bool follow_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+                  PoseTrackerState& state) {
   PoseCandidate& best = scratch.best;
   PoseCandidate& other = scratch.other;
   const std::int32_t left_before = scratch.refinement.budget.left();
-  const bool has_tried_network = follow_motion(target, frame, predicted, scratch, state);
+  const bool has_tried_network = follow_motion(target, frame, scratch, state);
   const std::int32_t work = left_before - scratch.refinement.budget.left();
   const Alternative alternative = alternative_to(best.refinement.pose.r_lrf_trf, frame);
   const bool was_tried = has_tried_network && alternative.is_network;

@@ -20,9 +20,9 @@ std::int32_t limited_advantage_q8(std::int32_t advantage_q8);
 void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
                  PoseTrackerState& state);
 
-// A frame of a track whose motion predicts `predicted`: `scratch.best` becomes the registered pose. False:
+// A frame of a track; `state.motion` predicts its pose. `scratch.best` becomes the registered pose. False:
 // the track was given up for another attitude.
-bool follow_track(const PoseTarget& target, const PoseFrame& frame, const PoseMotion& predicted,
-                  PoseScratch& scratch, PoseTrackerState& state);
+bool follow_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+                  PoseTrackerState& state);
 
 }  // namespace tumblesight::gnc
