@@ -37,7 +37,7 @@
 #include "gnc/attitude/motion.hpp"
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network.hpp"
-#include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/range_noise.hpp"
 #include "gnc/registration/surface_mesh.hpp"
 #include "gnc/registration/surface_model.hpp"
 

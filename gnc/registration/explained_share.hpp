@@ -15,6 +15,7 @@
 
 #include "gnc/attitude/rotation.hpp"
 #include "gnc/lidar/depth_image.hpp"
+#include "gnc/registration/range_noise.hpp"
 #include "gnc/registration/surface_model.hpp"
 
 namespace tumblesight::gnc {
@@ -35,15 +36,6 @@ struct ExplainedShare {
 inline std::uint32_t misfit_of(const ExplainedShare& share) {
   return share.unexplained + 5 * share.missing / 8 + share.depth_misfit / 2;
 }
-
-// Standard deviation of a range: constant + share of the range. The default is the paper's sensor.
-struct RangeNoise {
-  std::uint16_t constant_mm = 100;
-  std::uint16_t share_1e5 = 1000;  // in 1/100,000
-  friend bool operator==(const RangeNoise& a, const RangeNoise& b) {
-    return a.constant_mm == b.constant_mm && a.share_1e5 == b.share_1e5;
-  }
-};
 
 // Working memory. The caller holds it, so that nothing large is on the stack; it need not be initialized.
 struct ExplainedShareScratch {

@@ -3,6 +3,7 @@
 #include "gnc/numerics/division.hpp"
 #include "gnc/numerics/functions.hpp"
 #include "gnc/numerics/select.hpp"
+#include "gnc/registration/reciprocal.hpp"
 
 namespace tumblesight::gnc {
 namespace {
@@ -188,13 +189,6 @@ void add_row(const RangeImage& frame, int row, std::uint16_t nearest, const Inve
 }
 
 }  // namespace
-
-constexpr std::array<std::int32_t, 256> kReciprocal_q28 = [] {
-  std::array<std::int32_t, 256> guess{};
-  for (int i = 32; i < 256; ++i)
-    guess[static_cast<std::size_t>(i)] = static_cast<std::int32_t>((std::int64_t{256} << 28) / (2 * i + 1));
-  return guess;
-}();
 
 bool make_frame_view(const RangeImage& frame, const RayMask& mask, std::int32_t reference_depth_um,
                      std::uint32_t target_radius_mm, const RangeNoise& noise, FrameView& view) {

@@ -1,7 +1,7 @@
 // PoseChoice: which attitudes a frame is registered at, and which of them the track takes.
 #pragma once
 
-#include "gnc/registration/pose_tracker.hpp"
+#include "gnc/registration/pose_track.hpp"
 
 namespace tumblesight::gnc {
 

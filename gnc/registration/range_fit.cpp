@@ -3,6 +3,7 @@
 #include "gnc/numerics/division.hpp"
 #include "gnc/numerics/functions.hpp"
 #include "gnc/numerics/select.hpp"
+#include "gnc/registration/reciprocal.hpp"
 
 namespace tumblesight::gnc {
 namespace {

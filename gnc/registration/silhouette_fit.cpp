@@ -85,8 +85,7 @@ class Across {
   bool look_across(const SilhouetteEdge& edge, int line, std::int32_t place, std::int32_t inverse_depth,
                    std::int32_t cosine_q14, Rays& rays, int& looked_at) const {
     const Line at{edge.is_steep, line, view_.rays};
-    const int outer = edge.outward > 0 ? (place + kScreenRay / 2 - 1) >> kScreenBits
-                                       : (place - kScreenRay / 2) >> kScreenBits;
+    const int outer = edge.outward > 0 ? first_ray(place) : last_ray(place);
     const int inner = outer - edge.outward;
     if (inner < 0 || inner >= view_.rays) return false;
     const std::int32_t from_place = (outer * kScreenRay + kScreenRay / 2 - place) * edge.outward;
@@ -192,8 +191,8 @@ int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, int every,
              const SilhouetteRows& equation_rows, const Across& across, int rays, SilhouetteFit& fit,
              WorkBudget& budget, bool& found) {
   // Between the first end and before the second one: a line through both of two edges is of one of them.
-  int first = max_small(0, (edge.line(edge.from) + kScreenRay / 2 - 1) >> kScreenBits);
-  const int end = min_small(rays, (edge.line(edge.to) + kScreenRay / 2 - 1) >> kScreenBits);
+  int first = max_small(0, first_ray(edge.line(edge.from)));
+  const int end = min_small(rays, first_ray(edge.line(edge.to)));
   first += first & (every - 1);
   if (first >= end) return 0;
   const std::int32_t length = edge.line(edge.to) - edge.line(edge.from);
