@@ -10,8 +10,7 @@
 //   apart: less where an alternative does not explain a frame, since its registration may have gone astray.
 // - Motion: fitted to the last ten poses (pose_fit.hpp).
 // - Verdict: the frame must agree with the pose in ranges and silhouette, the advantage must be proven, and
-// the
-//   poses must agree with one motion.
+//   the poses must agree with one motion.
 //
 // Specification: docs/numerics.md.
 #pragma once
@@ -29,8 +28,8 @@ using PoseDoubts = std::uint32_t;
 inline constexpr PoseDoubts kPoseUnknown = 1;  // no surface in the image, the target too near, or no pose yet
 inline constexpr PoseDoubts kPoseCoasts = 2;   // predicted: the frame could not be registered
 inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the surface
-inline constexpr PoseDoubts kPoseOutline =
-    8;  // returns beside it, too many missing, or its silhouette elsewhere
+// Returns beside the surface, too many missing, or its silhouette elsewhere.
+inline constexpr PoseDoubts kPoseOutline = 8;
 inline constexpr PoseDoubts kPoseAmbiguous = 16;  // the advantage over the alternatives is not proven
 // Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
 inline constexpr PoseDoubts kPoseMotion = 32;
