@@ -238,8 +238,8 @@ void AttitudeEstimator<N>::step(const DepthImage& image, const FrameInterval& in
   estimate.second_odds_ppm = second.odds_ppm;
   estimate.centroid_lrf_mm = position_lrf_mm(image);
   estimate.pose = {};
-  estimate.explained = explained_share(image, model_.projection, model_.noise, attitude, surface_,
-                                       network_.explained_share_scratch());
+  estimate.explained = inlier_ratios(image, model_.projection, model_.noise, attitude, surface_,
+                                     network_.explained_share_scratch());
 
   const Fixed innovation_squared =
       constant<Fixed>(3.0) - trace_of_product(converted<Fixed>(prediction.r_lrf_trf()), attitude);

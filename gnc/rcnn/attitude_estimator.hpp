@@ -12,7 +12,7 @@
 #include "gnc/rcnn/expected_error.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "gnc/rcnn/network.hpp"
-#include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/inlier_ratios.hpp"
 #include "gnc/registration/pose_tracker.hpp"
 
 namespace tumblesight::gnc {
@@ -44,8 +44,8 @@ struct AttitudeEstimate {
   std::uint32_t second_odds_ppm = 0;
   std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
   ErrorEvidence evidence;                         // behind the expected error
-  ExplainedShare explained;  // of this frame, by the target at q_lrf_trf; not known in float32
-  PoseEstimate pose;         // registered; not known in float32
+  InlierRatios explained;  // of this frame, by the target at q_lrf_trf; not known in float32
+  PoseEstimate pose;       // registered; not known in float32
 };
 
 // The motion of the target in the LRF, in integers.

@@ -11,7 +11,7 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network_shape.hpp"
-#include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/inlier_ratios.hpp"
 #include "gnc/registration/pose_tracker.hpp"
 
 namespace tumblesight::gnc {
@@ -158,7 +158,7 @@ class Arena {
   }
   // Over all three buffers.
   DepthImageScratch& projection_scratch() { return in_place<DepthImageScratch>(all_); }
-  ExplainedShareScratch& explained_share_scratch() { return in_place<ExplainedShareScratch>(all_); }
+  InlierRatiosScratch& explained_share_scratch() { return in_place<InlierRatiosScratch>(all_); }
   PoseScratch& pose_scratch() { return in_place<PoseScratch>(all_); }
 
  private:
@@ -191,7 +191,7 @@ class Network {
   // infer_frame() only.
   DepthImageScratch& projection_scratch() { return arena_.projection_scratch(); }
   // The same for the check of the attitude: use it after infer_sequence() only.
-  ExplainedShareScratch& explained_share_scratch() { return arena_.explained_share_scratch(); }
+  InlierRatiosScratch& explained_share_scratch() { return arena_.explained_share_scratch(); }
   // And for registration.
   PoseScratch& pose_scratch() { return arena_.pose_scratch(); }
 
