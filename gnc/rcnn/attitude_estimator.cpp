@@ -121,8 +121,8 @@ void add_to(Crc32& crc, const PoseTrackerState& state) {
   add_to(crc, state.motion.velocity_um_period);
   crc.add_u32(static_cast<std::uint32_t>(state.motion_model));
   crc.add_u32(static_cast<std::uint32_t>(state.challenger));
-  crc.add_u32(static_cast<std::uint32_t>(state.advantage_q8));
-  crc.add_u32(static_cast<std::uint32_t>(state.proven_q8));
+  crc.add_u32(static_cast<std::uint32_t>(state.llr_q8));
+  crc.add_u32(static_cast<std::uint32_t>(state.conservative_llr_q8));
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ inline constexpr int kPosesOfARate = 4;
 // Whether two attitudes are 20 degrees apart or more.
 bool is_another_attitude(const Matrix3<Fixed>& a, const Matrix3<Fixed>& b);
 
-// An advantage, or the sum of two, within the limits of a track: 32 nats.
-std::int32_t limited_advantage_q8(std::int32_t advantage_q8);
+// A log-likelihood ratio, or the sum of two, within the limits of a track: 32 nats.
+std::int32_t limited_llr_q8(std::int32_t llr_q8);
 
 // The first frames of a track: `scratch.best` becomes the registered attitude of the network or its second
 // one. These two are functions of their own, so that their variables do not lie on the stack while the motion

@@ -37,8 +37,9 @@ struct PoseTrackerState {
   PoseMotion motion;              // at the last frame; valid if there is a pose
   int motion_model = kSpinModel;  // under which the poses agree best, so far
   int challenger = kTumbleModel;  // the motion model that is compared with it next
-  std::int32_t advantage_q8 = 0;  // of the attitude that it follows, over the others [nats]
-  std::int32_t proven_q8 = 0;     // of that, how much is proven; never more [nats]
+  // Log-likelihood ratio of the attitude that it follows to the others, and as much of it as is proven; never
+  // more [nats].
+  std::int32_t llr_q8 = 0, conservative_llr_q8 = 0;
 };
 
 // A pose with what speaks for it.

@@ -16,7 +16,7 @@ constexpr std::int64_t kDisagreement_q8 = 90;  // from here on another motion mo
 // Limits of the verdict.
 constexpr int kVerifiedPoses = 3;
 constexpr std::int64_t kLongestToTellRate_ns = 7'500'000'000;  // between poses; as of the network's track
-constexpr std::int32_t kLeastProven_q8 = 8 * 256;              // advantage of the track
+constexpr std::int32_t kLeastLlr_q8 = 8 * 256;                 // of the track, conservative
 constexpr std::int32_t kMostAgainstTrack_q8 = 6 * 256;         // in a frame
 constexpr std::int64_t kMostDisagreement_q8 = 3 * 256;
 constexpr std::uint32_t kLargestSigma_urad = 17'453;  // a degree
@@ -40,7 +40,7 @@ PoseDoubts doubts_of(const PoseFrame& frame, const Matrix3<Fixed>& r_lrf_trf, co
   PoseDoubts doubts = 0;
   if (!evidence.fits_ranges()) doubts |= kPoseRanges;
   if (!evidence.fits_returns() || !evidence.fits_silhouette()) doubts |= kPoseOutline;
-  if (estimate.proven_q8 < kLeastProven_q8) doubts |= kPoseAmbiguous;
+  if (estimate.conservative_llr_q8 < kLeastLlr_q8) doubts |= kPoseAmbiguous;
   if (estimate.poses < kVerifiedPoses || estimate.disagreement_q8 > kMostDisagreement_q8)
     doubts |= kPoseMotion;
   for (std::size_t i = 0; i < 3; ++i)
@@ -175,8 +175,8 @@ void make_coasting_covariance(const PoseFrame& frame, const PoseTrackerState& st
 // Memory may be damaged.
 void limit_damage(PoseTrackerState& state) {
   state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);
-  state.advantage_q8 = limited_advantage_q8(state.advantage_q8);
-  state.proven_q8 = min(limited_advantage_q8(state.proven_q8), state.advantage_q8);
+  state.llr_q8 = limited_llr_q8(state.llr_q8);
+  state.conservative_llr_q8 = min(limited_llr_q8(state.conservative_llr_q8), state.llr_q8);
   if (state.history.count == 0) state.motion = {};
 }
 
@@ -204,7 +204,7 @@ bool view_target(const PoseTarget& target, const PoseFrame& frame, bool is_track
 
 void forget_track(PoseTrackerState& state) {
   state.history.count = 0;
-  state.advantage_q8 = state.proven_q8 = 0;
+  state.llr_q8 = state.conservative_llr_q8 = 0;
 }
 
 // Registers the frame at the predicted pose or at the attitudes of the network. False: its motion is not that
@@ -212,7 +212,7 @@ void forget_track(PoseTrackerState& state) {
 bool register_frame(const PoseTarget& target, const PoseFrame& frame, bool is_tracked, PoseScratch& scratch,
                     PoseTrackerState& state, PoseEstimate& estimate) {
   const int poses_before = state.history.count;
-  const std::int32_t advantage_before_q8 = state.advantage_q8, proven_before_q8 = state.proven_q8;
+  const std::int32_t llr_before_q8 = state.llr_q8, conservative_before_q8 = state.conservative_llr_q8;
   if (is_tracked) {
     is_tracked = follow_track(target, frame, scratch, state);
   } else {
@@ -223,11 +223,11 @@ bool register_frame(const PoseTarget& target, const PoseFrame& frame, bool is_tr
   if (is_cut_short) {
     scratch.best.evidence = {};
     state.history.count = poses_before;
-    state.advantage_q8 = advantage_before_q8;
-    state.proven_q8 = proven_before_q8;
+    state.llr_q8 = llr_before_q8;
+    state.conservative_llr_q8 = conservative_before_q8;
   }
   estimate.evidence = scratch.best.evidence;
-  estimate.proven_q8 = state.proven_q8;
+  estimate.conservative_llr_q8 = state.conservative_llr_q8;
   estimate.doubts = is_cut_short ? kPoseAmbiguous : 0;
   return is_tracked;
 }
@@ -288,12 +288,12 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
     forget_track(state);
     return;
   }
-  const std::int32_t advantage_before_q8 = state.advantage_q8;
+  const std::int32_t llr_before_q8 = state.llr_q8;
   is_tracked = register_frame(target, frame, is_tracked, scratch, state, estimate);
   if (!estimate_motion(frame, is_tracked, scratch, state, estimate)) return;
   if (scratch.refinement.budget.is_exhausted()) estimate.doubts |= kPoseAmbiguous;
   if (!tells_rate(state.history)) estimate.doubts |= kPoseMotion;
-  if (advantage_before_q8 - state.advantage_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
+  if (llr_before_q8 - state.llr_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
   estimate.poses = state.history.count;
   estimate.state = pose_state(state.motion);
   estimate.doubts |= doubts_of(frame, state.motion.turning.r_lrf_trf, estimate);

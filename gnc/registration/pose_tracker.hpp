@@ -5,12 +5,13 @@
 // - Later frames: from two poses on, the motion predicts the next pose, which is registered. If it does not
 //   explain the frame, the network's attitude is registered as well. Another one that the network offers is
 //   registered shortly.
-// - Advantage: by how much the pose of the track explains the frames better than the alternatives, summed
-//   over the frames. If it is lost, the track starts anew at the alternative. What is proven of it is summed
-//   apart: less where an alternative does not explain a frame, since its registration may have gone astray.
+// - Log-likelihood ratio (LLR): by how much the pose of the track explains the frames better than the
+//   alternatives, summed over the frames. Below zero the track starts anew at the alternative. A conservative
+//   LLR is summed apart: it counts less where an alternative does not explain a frame, since its registration
+//   may have gone astray. In the report it is the proven advantage.
 // - Motion: fitted to the last ten poses (pose_fit.hpp).
-// - Verdict: the frame must agree with the pose in ranges and silhouette, the advantage must be proven, and
-//   the poses must agree with one motion.
+// - Verdict: the frame must agree with the pose in ranges and silhouette, the conservative LLR must be large,
+//   and the poses must agree with one motion.
 //
 // Specification: docs/numerics.md.
 #pragma once
@@ -30,7 +31,7 @@ inline constexpr PoseDoubts kPoseCoasts = 2;   // predicted: the frame could not
 inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the surface
 // Returns beside the surface, too many missing, or its silhouette elsewhere.
 inline constexpr PoseDoubts kPoseOutline = 8;
-inline constexpr PoseDoubts kPoseAmbiguous = 16;  // the advantage over the alternatives is not proven
+inline constexpr PoseDoubts kPoseAmbiguous = 16;  // the conservative LLR is small
 // Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
 inline constexpr PoseDoubts kPoseMotion = 32;
 inline constexpr PoseDoubts kPoseUncertain = 64;  // the attitude is known to a degree at best
@@ -49,10 +50,10 @@ struct PoseEstimate {
   PoseDoubts doubts = kPoseUnknown;  // none: verified
   PoseState state;                   // at the exposure, in the LRF of the exposure
   PoseCovariance covariance;
-  PoseEvidence evidence;             // of this frame at its registered pose
-  std::int32_t proven_q8 = 0;        // advantage over the alternatives, as far as it is proven [nats]
-  std::int64_t disagreement_q8 = 0;  // PoseFitResult
-  int poses = 0;                     // that the motion was fitted to
+  PoseEvidence evidence;                 // of this frame at its registered pose
+  std::int32_t conservative_llr_q8 = 0;  // over the alternatives, as far as it is proven [nats]
+  std::int64_t disagreement_q8 = 0;      // PoseFitResult
+  int poses = 0;                         // that the motion was fitted to
 
   bool is_known() const { return (doubts & kPoseUnknown) == 0; }
   bool is_verified() const { return doubts == 0; }

@@ -55,10 +55,10 @@ struct AppMemory {
     app.estimator_.restore(state);
   }
   // Also in the copy of the estimator's state and in its checksum, so that no guard sees a difference.
-  static void set_pose_advantage(App& app, std::int32_t advantage_q8) {
+  static void set_pose_advantage(App& app, std::int32_t llr_q8) {
     static Estimator::State state;
     app.estimator_.save(state);
-    state.pose.advantage_q8 = state.pose.proven_q8 = advantage_q8;
+    state.pose.llr_q8 = state.pose.conservative_llr_q8 = llr_q8;
     app.estimator_.restore(state);
     std::memcpy(kept_state(app).data, &state, sizeof state);
     app.state_->estimator_crc32 = Estimator::crc32_of(state);
