@@ -249,7 +249,7 @@ void FrameHandler::report_pose() {
   report.pose_mean_square_q8 = static_cast<std::uint32_t>(pose.evidence.mean_square_q8());
   report.pose_unexplained_ppm = pose.evidence.unexplained_ppm();
   report.pose_missing_ppm = pose.evidence.missing_ppm();
-  report.pose_advantage_q8 = pose.proven_q8;
+  report.pose_advantage_q8 = pose.conservative_llr_q8;
 }
 
 // Counts verified poses, and raises an event when the verdict changes.

@@ -122,8 +122,8 @@ void add_to(Crc32& crc, const PoseTrackerState& state) {
   add_to(crc, state.motion.velocity_um_period);
   crc.add_u32(static_cast<std::uint32_t>(state.motion_model));
   crc.add_u32(static_cast<std::uint32_t>(state.challenger));
-  crc.add_u32(static_cast<std::uint32_t>(state.advantage_q8));
-  crc.add_u32(static_cast<std::uint32_t>(state.proven_q8));
+  crc.add_u32(static_cast<std::uint32_t>(state.llr_q8));
+  crc.add_u32(static_cast<std::uint32_t>(state.conservative_llr_q8));
 }
 
 }  // namespace
@@ -259,7 +259,7 @@ void AttitudeEstimator<N>::judge(const DepthImage& image, const TrackedAttitude<
   estimate.q_lrf_trf_second = second.q_lrf_trf;
   estimate.second_odds_ppm = second.odds_ppm;
   estimate.explained =
-      explained_share(image, model_.projection, model_.noise, attitude, surface_, memory_.explained_share());
+      inlier_ratios(image, model_.projection, model_.noise, attitude, surface_, memory_.inlier_ratios());
   const Fixed innovation_squared =
       constant<Fixed>(3.0) - trace_of_product(converted<Fixed>(prediction.r_lrf_trf()), attitude);
   const Fixed network_error_rad = converted<Fixed>(tracked.predicted_error_rad);

@@ -13,7 +13,7 @@
 #include "gnc/rcnn/attitude_track.hpp"
 #include "gnc/rcnn/model_image.hpp"
 #include "gnc/rcnn/network.hpp"
-#include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/inlier_ratios.hpp"
 #include "gnc/registration/pose_tracker.hpp"
 
 namespace tumblesight::gnc {
@@ -45,8 +45,8 @@ struct AttitudeEstimate {
   std::uint32_t second_odds_ppm = 0;
   std::array<std::int32_t, 3> centroid_lrf_mm{};  // of the returns
   ErrorEvidence evidence;                         // behind the expected error
-  ExplainedShare explained;  // of this frame, by the target at q_lrf_trf; not known in float32
-  PoseEstimate pose;         // registered; not known in float32
+  InlierRatios explained;  // of this frame, by the target at q_lrf_trf; not known in float32
+  PoseEstimate pose;       // registered; not known in float32
 };
 
 // The motion of the target in the LRF, in integers.
@@ -113,6 +113,7 @@ class AttitudeEstimator {
   // of this processor: the value differs between processors.
   std::uint32_t constants_crc32() const;
   Network<N>& network() { return network_; }
+  WorkingMemory<N>& working_memory() { return memory_; }  // rewritten in every frame
 
  private:
   // The parts of a step. Network and track:

@@ -8,7 +8,7 @@
 
 #include "gnc/lidar/depth_image.hpp"
 #include "gnc/rcnn/network.hpp"
-#include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/inlier_ratios.hpp"
 #include "gnc/registration/pose_tracker.hpp"
 
 namespace tumblesight::gnc {
@@ -19,12 +19,12 @@ class WorkingMemory {
   // In the order of the stages.
   DepthImageScratch& projection() { return in_place<DepthImageScratch>(bytes_); }
   Activations<N>& activations() { return in_place<Activations<N>>(bytes_); }
-  ExplainedShareScratch& explained_share() { return in_place<ExplainedShareScratch>(bytes_); }
+  InlierRatiosScratch& inlier_ratios() { return in_place<InlierRatiosScratch>(bytes_); }
   PoseScratch& pose() { return in_place<PoseScratch>(bytes_); }
 
  private:
-  static constexpr std::size_t kBytes = std::max({sizeof(DepthImageScratch), sizeof(Activations<N>),
-                                                  sizeof(ExplainedShareScratch), sizeof(PoseScratch)});
+  static constexpr std::size_t kBytes = std::max(
+      {sizeof(DepthImageScratch), sizeof(Activations<N>), sizeof(InlierRatiosScratch), sizeof(PoseScratch)});
   alignas(64) std::array<std::byte, kBytes> bytes_;
 };
 

@@ -1,7 +1,6 @@
 // FrameView: what registration needs of a frame: which rays return, and an inverse depth, which is linear
-// across a plane on the screen, unlike a range.
+// across a plane on the screen (screen.hpp), unlike a range.
 //
-// The screen: columns to the right and rows downward, in 1/64 of a ray; the middle of ray k is at 64 k + 32.
 // Inverse depth of a point with depth Y along the boresight: (reference depth / Y - 1) 2^shift. The shift is
 // such that the target, one radius to either side of the reference depth, fills 14 bits with sign.
 #pragma once
@@ -10,14 +9,10 @@
 #include <cstdint>
 
 #include "gnc/lidar/range_image.hpp"
+#include "gnc/lidar/range_noise.hpp"
 #include "gnc/lidar/target_selection.hpp"
-#include "gnc/numerics/functions.hpp"
-#include "gnc/registration/explained_share.hpp"
 
 namespace tumblesight::gnc {
-
-inline constexpr int kScreenBits = 6;
-inline constexpr int kScreenRay = 1 << kScreenBits;
 
 struct FrameView {
   static constexpr int kMaxBlocks = RangeImage::kMaxRays / 2;  // of 2 x 2 rays, per side
@@ -41,20 +36,6 @@ struct FrameView {
     return block_inverse_depth[block_row * kMaxBlocks + block_column];
   }
 };
-
-// First guesses for reciprocal_q28(): 1 / the middle of the 128th in which x lies. The first 32 are not used.
-extern const std::array<std::int32_t, 256> kReciprocal_q28;
-
-// 1 / x with 28 fraction bits, relative error below 1e-7. x_q30: 1/4 to 2, without 2. By Newton's method in
-// 32 bits; inline, since every vertex needs one.
-inline std::int32_t reciprocal_q28(std::int32_t x_q30) {
-  std::int32_t r = kReciprocal_q28[static_cast<std::size_t>(x_q30 >> 23)];
-  for (int i = 0; i < 2; ++i) {
-    const std::int32_t missing_q26 = (1 << 26) - high_product(x_q30, r);  // 1 - x r, below 1/32
-    r += high_product(r, missing_q26 * (1 << 6));
-  }
-  return r;
-}
 
 // False if the reference depth is below two radii, where registration does not work, below 1 m or above 520
 // m, or if the target is smaller than a 10,000th of it.

@@ -9,8 +9,8 @@ namespace {
 
 using Blocks = PlacementScratch::Blocks;
 constexpr int kBlocks = PlacementScratch::kBlocks, kBlockRays = PlacementScratch::kBlockRays;
-constexpr int kReach = 9,
-              kStride = 3;  // of the search [blocks]: first every third shift, then those around the best
+// Of the search [blocks]: first every third shift, then those around the best.
+constexpr int kReach = 9, kStride = 3;
 // A shift has to explain this share more of the returns than the middles do.
 constexpr std::int32_t kMoreOfDenominator = 16;
 constexpr std::int32_t kPlateauOfDenominator = 64;  // shifts that explain nearly as many as the best one

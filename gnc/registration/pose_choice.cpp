@@ -34,7 +34,7 @@ constexpr Fixed kTraceOf20Degrees = constant<Fixed>(2.87938524);
 
 constexpr std::uint32_t kLeastOdds_ppm = 10'000;  // of a second attitude that is worth a look
 
-// Advantages [nats, Q8].
+// Log-likelihood ratios [nats, Q8].
 constexpr std::int32_t kMostOfAFrame_q8 = 16 * 256;
 constexpr std::int32_t kWithoutAlternative_q8 = 4 * 256;  // of a frame
 constexpr std::int32_t kNetworkDisagrees_q8 = 1 * 256;    // against the track, per frame
@@ -42,11 +42,12 @@ constexpr std::int32_t kMostOfNetwork_q8 = 4 * 256;       // its odds, in the fi
 constexpr std::int32_t kClear_q8 = 6 * 256;               // after kFirst, for the second attitude
 constexpr std::int32_t kMostOfATrack_q8 = 2 * kMostOfAFrame_q8;
 
-// Which part of a difference is proven, see proven_q8(): all of it, a 16th after a short registration, or a
-// 32nd.
-constexpr std::int32_t kMostProvenByAFit_q8 = 6 * 256;
+// Which part of a difference the conservative ratio counts, see conservative_llr_q8(): all of it, a 16th
+// after a short registration, or a 32nd.
+constexpr std::int32_t kMostByAFit_q8 = 6 * 256;
 constexpr int kFitShift = 0, kShortFitShift = 4, kMisfitShift = 5;
-constexpr std::int32_t kDisprovenByNetwork_q8 = 4 * 256;  // where it disagrees, per frame
+// Against the track where the network disagrees, per frame.
+constexpr std::int32_t kConservativelyDisagrees_q8 = 4 * 256;
 
 void exchange(PoseCandidate& a, PoseCandidate& b) {
   const PoseCandidate kept = a;
@@ -127,9 +128,9 @@ bool explains(const PoseCandidate& candidate) {
   return candidate.refinement.is_complete && candidate.evidence.fits();
 }
 
-// By how much the first explains the frame better, limited. One that was not drawn whole says nothing, except
-// that it cannot be used: then a second one that was, and that explains the frame, is taken.
-std::int32_t advantage_q8(const PoseCandidate& first, const PoseCandidate& second) {
+// Log-likelihood ratio of the first to the second by this frame, limited. One that was not drawn whole says
+// nothing, except that it cannot be used: then a second one that was, and that explains the frame, is taken.
+std::int32_t llr_q8(const PoseCandidate& first, const PoseCandidate& second) {
   if (are_whole(first, second))
     return clamp<std::int32_t>(second.evidence.cost_q8() - first.evidence.cost_q8(), -kMostOfAFrame_q8,
                                kMostOfAFrame_q8);
@@ -137,32 +138,32 @@ std::int32_t advantage_q8(const PoseCandidate& first, const PoseCandidate& secon
 }
 
 // What a frame says for the pose of the track against the alternatives [nats, Q8].
-struct Advantage {
-  std::int32_t more_q8;    // by the costs: which of them the track follows
-  std::int32_t proven_q8;  // of that, how much is proven: whether it is verified
+struct LogLikelihoodRatio {
+  std::int32_t full_q8;          // by the costs: which of them the track follows
+  std::int32_t conservative_q8;  // no more than is proven: whether it is verified
 };
-constexpr Advantage kWithoutAlternative{kWithoutAlternative_q8, kWithoutAlternative_q8};
+constexpr LogLikelihoodRatio kWithoutAlternative{kWithoutAlternative_q8, kWithoutAlternative_q8};
 
-// How much of the advantage of the first pose is proven. A negative one counts in full. If the second pose
-// explains the frame, the difference of the costs counts up to six nats. It is divided by 2^fit_shift before
-// that, since a pose that was registered shortly costs more. If the second pose does not explain the frame,
-// it may be the right attitude whose refinement went astray, so only a 32nd counts. With more rays its misfit
-// is larger, but then a wrong first pose would be a misfit, too.
-std::int32_t proven_q8(const PoseCandidate& first, const PoseCandidate& second, int fit_shift) {
-  const std::int32_t better_q8 = advantage_q8(first, second);
+// How much of the log-likelihood ratio of the first pose to the second one is proven. A negative one counts
+// in full. If the second pose explains the frame, the difference of the costs counts up to six nats. It is
+// divided by 2^fit_shift before that, since a pose that was registered shortly costs more. If the second pose
+// does not explain the frame, it may be the right attitude whose refinement went astray, so only a 32nd
+// counts. With more rays its misfit is larger, but then a wrong first pose would be a misfit, too.
+std::int32_t conservative_llr_q8(const PoseCandidate& first, const PoseCandidate& second, int fit_shift) {
+  const std::int32_t better_q8 = llr_q8(first, second);
   if (better_q8 <= 0) return better_q8;
   const std::int32_t difference_q8 = second.evidence.cost_q8() - first.evidence.cost_q8();
-  return second.evidence.fits() ? min(difference_q8 >> fit_shift, kMostProvenByAFit_q8)
+  return second.evidence.fits() ? min(difference_q8 >> fit_shift, kMostByAFit_q8)
                                 : min(difference_q8 >> kMisfitShift, kMostOfAFrame_q8);
 }
 
-void add_advantage(const Advantage& advantage, PoseTrackerState& state) {
-  state.advantage_q8 = limited_advantage_q8(state.advantage_q8 + advantage.more_q8);
-  state.proven_q8 = limited_advantage_q8(state.proven_q8 + advantage.proven_q8);
+void add_llr(const LogLikelihoodRatio& llr, PoseTrackerState& state) {
+  state.llr_q8 = limited_llr_q8(state.llr_q8 + llr.full_q8);
+  state.conservative_llr_q8 = limited_llr_q8(state.conservative_llr_q8 + llr.conservative_q8);
 }
 
 // What the network's odds say for its first attitude against its second one [nats, Q8], limited.
-std::int32_t network_advantage_q8(std::uint32_t second_odds_ppm) {
+std::int32_t network_llr_q8(std::uint32_t second_odds_ppm) {
   constexpr std::int32_t kNatsPerBit_q8 = 177;
   const int bits_below_one = 20 - highest_bit(second_odds_ppm);
   return clamp<std::int32_t>(bits_below_one * kNatsPerBit_q8, -kMostOfNetwork_q8, kMostOfNetwork_q8);
@@ -170,18 +171,20 @@ std::int32_t network_advantage_q8(std::uint32_t second_odds_ppm) {
 
 // Of the first frames, whose second attitude is registered shortly. `network_q8`: what the network says for
 // the first pose.
-Advantage first_advantage(const PoseCandidate& first, const PoseCandidate& second, std::int32_t network_q8) {
-  return {advantage_q8(first, second) + network_q8, proven_q8(first, second, kShortFitShift) + network_q8};
+LogLikelihoodRatio first_llr(const PoseCandidate& first, const PoseCandidate& second,
+                             std::int32_t network_q8) {
+  return {llr_q8(first, second) + network_q8,
+          conservative_llr_q8(first, second, kShortFitShift) + network_q8};
 }
 
 // Registers the frame at the pose that the motion of the track predicts. After a gap, or if a short
 // registration does not explain the frame, in more steps; if they do not explain it either, also from the
 // network's attitude, and the one that explains it better stays. True: the network's attitude was tried.
-bool follow_motion(const PoseTarget& target, const PoseFrame& frame, const PoseMotion& predicted,
-                   PoseScratch& scratch, const PoseTrackerState& state) {
+bool follow_motion(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+                   const PoseTrackerState& state) {
   PoseCandidate& best = scratch.best;
   PoseCandidate& other = scratch.other;
-  const Pose start{predicted.turning.r_lrf_trf, predicted.origin_lrf_um};
+  const Pose start{state.motion.turning.r_lrf_trf, state.motion.origin_lrf_um};
   if (state.history.count >= kPosesOfARate && frame.elapsed_ns <= kLongestStep_ns) {
     refine_candidate(target, start, kLongTrack, scratch, best);
     if (best.evidence.fits()) return false;
@@ -194,25 +197,26 @@ bool follow_motion(const PoseTarget& target, const PoseFrame& frame, const PoseM
   const Matrix3<Fixed>& of_network = frame.network.r_lrf_trf;
   if (is_another_attitude(best.refinement.pose.r_lrf_trf, of_network)) return false;
   refine_candidate(target, placed(target, frame, of_network, scratch), kSearch, scratch, other);
-  if (advantage_q8(best, other) < 0) exchange(best, other);
+  if (llr_q8(best, other) < 0) exchange(best, other);
   return true;
 }
 
-// Registers an attitude of the network at the position of the track. Returns the advantage of the track.
-// `work`: what the frame has taken so far.
-Advantage compare(const PoseTarget& target, const Alternative& alternative, std::int32_t work,
-                  PoseScratch& scratch) {
+// Registers an attitude of the network at the position of the track. Returns what the frame says for the pose
+// of the track. `work`: what the frame has taken so far.
+LogLikelihoodRatio compare(const PoseTarget& target, const Alternative& alternative, std::int32_t work,
+                           PoseScratch& scratch) {
   const Pose start{alternative.r_lrf_trf, scratch.best.refinement.pose.origin_lrf_um};
   const bool is_short = work > kMuchWork;
   const RefinementSettings& whole = scratch.best.evidence.fits() ? kFull : kSearch;
   refine_candidate(target, start, is_short ? kShortSearch : whole, scratch, scratch.other);
-  Advantage advantage{advantage_q8(scratch.best, scratch.other),
-                      proven_q8(scratch.best, scratch.other, is_short ? kShortFitShift : kFitShift)};
+  LogLikelihoodRatio llr{
+      llr_q8(scratch.best, scratch.other),
+      conservative_llr_q8(scratch.best, scratch.other, is_short ? kShortFitShift : kFitShift)};
   if (alternative.is_network) {
-    advantage.more_q8 -= kNetworkDisagrees_q8;
-    advantage.proven_q8 -= kDisprovenByNetwork_q8;
+    llr.full_q8 -= kNetworkDisagrees_q8;
+    llr.conservative_q8 -= kConservativelyDisagrees_q8;
   }
-  return advantage;
+  return llr;
 }
 
 }  // namespace
@@ -221,8 +225,8 @@ bool is_another_attitude(const Matrix3<Fixed>& a, const Matrix3<Fixed>& b) {
   return differs(a, b, kTraceOf20Degrees);
 }
 
-std::int32_t limited_advantage_q8(std::int32_t advantage_q8) {
-  return clamp(advantage_q8, -kMostOfATrack_q8, kMostOfATrack_q8);
+std::int32_t limited_llr_q8(std::int32_t llr_q8) {
+  return clamp(llr_q8, -kMostOfATrack_q8, kMostOfATrack_q8);
 }
 
 void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
@@ -234,13 +238,12 @@ void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& 
     refine_candidate(target, placed(target, frame, frame.second_r_lrf_trf, scratch), kFirstSecond, scratch,
                      other);
   refine_candidate(target, placed(target, frame, frame.network.r_lrf_trf, scratch), kFirst, scratch, best);
-  Advantage advantage = kWithoutAlternative;
-  if (has_second) advantage = first_advantage(best, other, network_advantage_q8(frame.second_odds_ppm));
-  const bool is_second = advantage.more_q8 < -kClear_q8;
+  LogLikelihoodRatio llr = kWithoutAlternative;
+  if (has_second) llr = first_llr(best, other, network_llr_q8(frame.second_odds_ppm));
+  const bool is_second = llr.full_q8 < -kClear_q8;
   if (is_second) {
-    advantage = {0, 0};
-    if (are_whole(best, other))
-      advantage = first_advantage(other, best, -network_advantage_q8(frame.second_odds_ppm));
+    llr = {0, 0};
+    if (are_whole(best, other)) llr = first_llr(other, best, -network_llr_q8(frame.second_odds_ppm));
     best = other;
     // The pose before, if any, is of the other attitude.
     state.history.count = 0;
@@ -248,8 +251,8 @@ void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& 
   // What spoke for another attitude does not speak for this one.
   const bool goes_on = state.history.count > 0 &&
                        !is_another_attitude(best.refinement.pose.r_lrf_trf, state.motion.turning.r_lrf_trf);
-  if (!goes_on) state.advantage_q8 = state.proven_q8 = 0;
-  add_advantage(advantage, state);
+  if (!goes_on) state.llr_q8 = state.conservative_llr_q8 = 0;
+  add_llr(llr, state);
   // Where surfaces are dark and the frame is not explained, the attitude may be far off: the search follows
   // at once, so that the first frame with dark surfaces takes no more steps than one without.
   const bool is_dark = best.evidence.dark_surfaces > 0, is_explained = best.evidence.fits();
@@ -259,35 +262,35 @@ void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& 
   }
   other = best;
   go_on(target, kLongSearch, is_second && is_dark, scratch, best);
-  if (advantage_q8(best, other) < 0) exchange(best, other);
+  if (llr_q8(best, other) < 0) exchange(best, other);
 }
 
-bool follow_track(const PoseTarget& target, const PoseFrame& frame, const PoseMotion& predicted,
-                  PoseScratch& scratch, PoseTrackerState& state) {
+bool follow_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+                  PoseTrackerState& state) {
   PoseCandidate& best = scratch.best;
   PoseCandidate& other = scratch.other;
   const std::int32_t left_before = scratch.refinement.budget.left();
-  const bool has_tried_network = follow_motion(target, frame, predicted, scratch, state);
+  const bool has_tried_network = follow_motion(target, frame, scratch, state);
   const std::int32_t work = left_before - scratch.refinement.budget.left();
   const Alternative alternative = alternative_to(best.refinement.pose.r_lrf_trf, frame);
   const bool was_tried = has_tried_network && alternative.is_network;
-  Advantage advantage = kWithoutAlternative;
+  LogLikelihoodRatio llr = kWithoutAlternative;
   if (alternative.exists && !was_tried) {
-    const Advantage compared = compare(target, alternative, work, scratch);
+    const LogLikelihoodRatio compared = compare(target, alternative, work, scratch);
     const bool is_another =
         differs(best.refinement.pose.r_lrf_trf, other.refinement.pose.r_lrf_trf, kTraceOf2Degrees);
-    if (is_another) advantage = compared;
+    if (is_another) llr = compared;
   }
-  if (!explains(best)) advantage.proven_q8 = min(advantage.proven_q8, 0);
-  add_advantage(advantage, state);
+  if (!explains(best)) llr.conservative_q8 = min(llr.conservative_q8, 0);
+  add_llr(llr, state);
   // A pose that this frame speaks against is not taken, whatever spoke against the track before.
-  if (advantage.more_q8 >= 0) return true;
+  if (llr.full_q8 >= 0) return true;
   const bool were_compared = are_whole(best, other);
   const bool is_lost = !explains(best) && explains(other);
-  if (state.advantage_q8 >= 0 && !is_lost) return true;
+  if (state.llr_q8 >= 0 && !is_lost) return true;
   best = other;
-  state.advantage_q8 = were_compared ? abs(state.advantage_q8) : 0;
-  state.proven_q8 = 0;
+  state.llr_q8 = were_compared ? abs(state.llr_q8) : 0;
+  state.conservative_llr_q8 = 0;
   state.history.count = 0;
   return false;
 }

@@ -26,19 +26,23 @@ std::int64_t scale_q8(const PoseFitResult& fit, int poses) {
 constexpr std::int64_t kTenthsPerPeriod = 27;
 constexpr std::int64_t kMostVariance = 4096;  // times that of an unknown whose neighbours are known
 
-}  // namespace
+using Unknowns = std::array<std::int64_t, kMotionUnknowns>;
+using Inverse = std::array<std::array<std::int32_t, kMotionUnknowns>, kMotionUnknowns>;  // its columns, Q18
 
-void make_covariance(const PoseFitResult& fit, int poses, std::int32_t target_radius_um,
-                     PoseCovariance& covariance) {
-  const std::array<std::int64_t, kMotionElements>& information_q4 = fit.information;
-  const std::int64_t scale_root_q8 = integer_sqrt(static_cast<std::uint64_t>(scale_q8(fit, poses) << 8));
-  // Scaled to a diagonal of ones. Root of the information about one unknown alone, Q10.
-  std::array<std::int64_t, kMotionUnknowns> root_q10{};
+// Root of the information about each unknown alone, Q10.
+Unknowns roots_q10(const std::array<std::int64_t, kMotionElements>& information_q4) {
+  Unknowns root_q10{};
   for (int i = 0; i < kMotionUnknowns; ++i) {
     const std::int64_t information =
         clamp<std::int64_t>(information_q4[element(i, i)], 1, std::int64_t{1} << 46);
     root_q10[static_cast<std::size_t>(i)] = integer_sqrt(static_cast<std::uint64_t>(information << 16));
   }
+  return root_q10;
+}
+
+// Of the information, scaled to a diagonal of ones.
+Inverse inverse_of(const std::array<std::int64_t, kMotionElements>& information_q4,
+                   const Unknowns& root_q10) {
   std::array<std::int64_t, kMotionElements> scaled{};
   for (int i = 0; i < kMotionUnknowns; ++i) {
     for (int k = 0; k < i; ++k) {
@@ -49,14 +53,19 @@ void make_covariance(const PoseFitResult& fit, int poses, std::int32_t target_ra
     }
     scaled[element(i, i)] = std::int64_t{1} << 26;
   }
-  // The columns of the inverse, Q18.
-  std::array<std::array<std::int32_t, kMotionUnknowns>, kMotionUnknowns> inverse{};
+  Inverse inverse{};
   for (std::size_t i = 0; i < kMotionUnknowns; ++i) {
-    std::array<std::int64_t, kMotionUnknowns> unit{};
+    Unknowns unit{};
     unit[i] = std::int64_t{1} << 20;
     inverse[i] = solve<kMotionUnknowns>(scaled, unit);
   }
-  std::array<std::int64_t, kMotionUnknowns> own_sigma{};  // without the floor
+  return inverse;
+}
+
+// Standard deviations without the floor. `scale_root_q8`: by which all of them are multiplied.
+Unknowns own_sigmas(const Inverse& inverse, const Unknowns& root_q10, std::int64_t scale_root_q8,
+                    std::int32_t target_radius_um) {
+  Unknowns own_sigma{};
   for (int i = 0; i < kMotionUnknowns; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const std::int64_t variance_q18 = clamp<std::int64_t>(inverse[at][at], 1 << 18, kMostVariance << 18);
@@ -68,10 +77,20 @@ void make_covariance(const PoseFitResult& fit, int poses, std::int32_t target_ra
     sigma = (sigma * scale_root_q8) >> 8;
     constexpr std::int64_t kHalfTurn_urad = 3'141'593;
     own_sigma[at] = clamp<std::int64_t>(sigma, 1, i < 3 ? kHalfTurn_urad : 1 << 30);
-    const std::int64_t floor = kFloor[static_cast<std::size_t>(i / 3)];
-    const auto square = static_cast<std::uint64_t>(own_sigma[at] * own_sigma[at] + floor * floor);
-    covariance.sigma[at] = integer_sqrt(square);
   }
+  return own_sigma;
+}
+
+void add_floor(const Unknowns& own_sigma, PoseCovariance& covariance) {
+  for (std::size_t i = 0; i < kMotionUnknowns; ++i) {
+    const std::int64_t floor = kFloor[i / 3];
+    const auto square = static_cast<std::uint64_t>(own_sigma[i] * own_sigma[i] + floor * floor);
+    covariance.sigma[i] = integer_sqrt(square);
+  }
+}
+
+// The floor of one unknown is independent of the others'.
+void correlate(const Inverse& inverse, const Unknowns& own_sigma, PoseCovariance& covariance) {
   std::size_t place = 0;
   for (std::size_t i = 1; i < kMotionUnknowns; ++i) {
     for (std::size_t k = 0; k < i; ++k) {
@@ -80,7 +99,6 @@ void make_covariance(const PoseFitResult& fit, int poses, std::int32_t target_ra
           integer_sqrt(static_cast<std::uint64_t>(max(inverse[k][k], 1)));
       const std::int64_t own_q15 =
           divide(std::int64_t{inverse[k][i]} * (1 << 15), max<std::int64_t>(roots, 1));
-      // The floor of one unknown is independent of the others'.
       const std::int64_t first_q15 = divide(own_sigma[i] << 15, covariance.sigma[i]);
       const std::int64_t second_q15 = divide(own_sigma[k] << 15, covariance.sigma[k]);
       const std::int64_t product =
@@ -88,6 +106,18 @@ void make_covariance(const PoseFitResult& fit, int poses, std::int32_t target_ra
       covariance.correlation_q15[place++] = static_cast<std::int16_t>(product);
     }
   }
+}
+
+}  // namespace
+
+void make_covariance(const PoseFitResult& fit, int poses, std::int32_t target_radius_um,
+                     PoseCovariance& covariance) {
+  const std::int64_t scale_root_q8 = integer_sqrt(static_cast<std::uint64_t>(scale_q8(fit, poses) << 8));
+  const Unknowns root_q10 = roots_q10(fit.information);
+  const Inverse inverse = inverse_of(fit.information, root_q10);
+  const Unknowns own_sigma = own_sigmas(inverse, root_q10, scale_root_q8, target_radius_um);
+  add_floor(own_sigma, covariance);
+  correlate(inverse, own_sigma, covariance);
 }
 
 }  // namespace tumblesight::gnc

@@ -190,6 +190,73 @@ void move(const std::array<std::int32_t, kMotionUnknowns>& step, std::int32_t ra
   }
 }
 
+// The poses that a motion is fitted to, from the newest to the oldest, and by what.
+struct FittedPoses {
+  FittedPoses(const PoseHistory& of, const Inertia<Fixed>& by, std::int32_t target_radius_um)
+      : history(of),
+        inertia(by),
+        radius_um(target_radius_um),
+        newest(static_cast<std::size_t>(clamp(of.count, 1, PoseHistory::kMost)) - 1) {}
+  // From a pose to the next later one.
+  std::int64_t gap_ns(std::size_t pose) const {
+    return pose == newest ? 0 : time_between(history.poses[pose], history.poses[pose + 1]);
+  }
+
+  const PoseHistory& history;
+  const Inertia<Fixed>& inertia;
+  std::int32_t radius_um;
+  std::size_t newest;
+};
+
+using Derivatives = std::array<Jacobian, PoseHistory::kMost>;
+
+// How turn and rate at the newest pose change the attitude at each pose. At the start of the fit only: the
+// motion moves too little for others. False: the budget was exhausted.
+bool differentiate(const FittedPoses& poses, const Motion<Fixed>& start, WorkBudget& budget,
+                   Derivatives& derivatives) {
+  Probes probes = probes_of(start);
+  for (std::size_t i = poses.newest + 1; i-- > 0;) {
+    const bool is_newest = i == poses.newest;
+    const std::int64_t gap_ns = poses.gap_ns(i);
+    const int periods = is_newest ? 0 : parts_of(gap_ns, std::int64_t{1});
+    if (!budget.spend(work::kFitPose + periods * work::kFitPeriod)) return false;
+    if (!is_newest)
+      for (Motion<Fixed>& probe : probes) probe = propagate<Fixed>(probe, poses.inertia, gap_ns);
+    derivatives[i] = derivatives_of(probes);
+  }
+  return true;
+}
+
+// Of add(), in an iteration before `left` others: poses far from a start with a wrong rate are not wrong yet.
+std::int64_t tolerance_before(int left) {
+  return left > 2 ? 4096 : left > 1 ? 16 : 1;
+}
+
+// Adds all poses, and sets how they agree with the motion of the result. False: the budget was exhausted.
+bool add_poses(const FittedPoses& poses, const Derivatives& derivatives, std::int64_t tolerance,
+               WorkBudget& budget, MotionEquations& equations, PoseFitResult& result) {
+  Motion<Fixed> expected = reversed(result.motion.turning);
+  std::int64_t squares_q8 = 0;
+  result.against = 0;
+  for (std::size_t i = poses.newest + 1; i-- > 0;) {
+    const bool is_newest = i == poses.newest;
+    const PoseMeasurement& measurement = poses.history.poses[i];
+    const std::int64_t gap_ns = poses.gap_ns(i);
+    const int parts = is_newest ? 0 : parts_of(gap_ns, expected.rate_lrf);
+    if (!budget.spend(work::kIterationPose + parts * work::kIterationPart)) return false;
+    if (!is_newest) expected = propagated(expected, poses.inertia, gap_ns, parts);
+    const std::int64_t elapsed_q24 =
+        divide(time_between(measurement, poses.history.poses[poses.newest]) * (1 << 24), kNominalPeriod_ns);
+    const PoseRow row =
+        row_of(measurement, expected.r_lrf_trf, derivatives[i], result.motion, elapsed_q24, poses.radius_um);
+    const std::int64_t mean_square_q8 = add(row, measurement.information, tolerance, equations);
+    if (mean_square_q8 > kAgainst_q8) result.against |= std::uint32_t{1} << i;
+    squares_q8 += mean_square_q8;
+  }
+  result.disagreement_q8 = divide(squares_q8, static_cast<std::int64_t>(poses.newest + 1));
+  return true;
+}
+
 }  // namespace
 
 PoseMotion later_motion(const PoseMotion& motion, const Inertia<Fixed>& inertia, std::int64_t elapsed_ns,
@@ -228,47 +295,18 @@ std::int32_t work_of_fit(const PoseHistory& history, int iterations) {
 bool fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::int32_t target_radius_um,
                 const PoseMotion& start, int iterations, WorkBudget& budget, PoseFitResult& result) {
   result.motion = start;
+  const FittedPoses poses(history, inertia, target_radius_um);
+  Derivatives derivatives{};
+  if (!differentiate(poses, start.turning, budget, derivatives)) return false;
   const int last = clamp(iterations, 1, kMostIterations);
-  const std::size_t count = static_cast<std::size_t>(clamp(history.count, 1, PoseHistory::kMost));
-  const std::size_t newest = count - 1;
-  // Of the start: the motion moves too little for others.
-  std::array<Jacobian, PoseHistory::kMost> derivatives{};
-  Probes probes = probes_of(start.turning);
-  for (std::size_t i = count; i-- > 0;) {
-    const std::int64_t gap_ns = i == newest ? 0 : time_between(history.poses[i], history.poses[i + 1]);
-    const int periods = i == newest ? 0 : parts_of(gap_ns, std::int64_t{1});
-    if (!budget.spend(work::kFitPose + periods * work::kFitPeriod)) return false;
-    if (i != newest)
-      for (Motion<Fixed>& probe : probes) probe = propagate<Fixed>(probe, inertia, gap_ns);
-    derivatives[i] = derivatives_of(probes);
-  }
   for (int iteration = 0; iteration <= last; ++iteration) {
     if (!budget.spend(work::kIteration)) return false;
-    // Poses far from a start with a wrong rate are not wrong yet.
-    const int left = last - iteration;
-    const std::int64_t tolerance = left > 2 ? 4096 : left > 1 ? 16 : 1;
     result.information = {};
     MotionEquations equations{result.information, {}};
     // Without a second pose nothing is known of rate and velocity: 1 rad and 1 radius per period.
     for (int i = 0; i < kMotionUnknowns; ++i) equations.information[element(i, i)] = 16;
-    Motion<Fixed> expected = reversed(result.motion.turning);
-    std::int64_t squares_q8 = 0;
-    result.against = 0;
-    for (std::size_t i = count; i-- > 0;) {
-      const PoseMeasurement& measurement = history.poses[i];
-      const std::int64_t gap_ns = i == newest ? 0 : time_between(measurement, history.poses[i + 1]);
-      const int parts = i == newest ? 0 : parts_of(gap_ns, expected.rate_lrf);
-      if (!budget.spend(work::kIterationPose + parts * work::kIterationPart)) return false;
-      if (i != newest) expected = propagated(expected, inertia, gap_ns, parts);
-      const std::int64_t elapsed_q24 =
-          divide(time_between(measurement, history.poses[newest]) * (1 << 24), kNominalPeriod_ns);
-      const PoseRow row = row_of(measurement, expected.r_lrf_trf, derivatives[i], result.motion, elapsed_q24,
-                                 target_radius_um);
-      const std::int64_t mean_square_q8 = add(row, measurement.information, tolerance, equations);
-      if (mean_square_q8 > kAgainst_q8) result.against |= std::uint32_t{1} << i;
-      squares_q8 += mean_square_q8;
-    }
-    result.disagreement_q8 = divide(squares_q8, static_cast<std::int64_t>(count));
+    if (!add_poses(poses, derivatives, tolerance_before(last - iteration), budget, equations, result))
+      return false;
     if (iteration == last) break;
     move(solve<kMotionUnknowns>(equations.information, equations.gradient), target_radius_um, result.motion);
   }

@@ -38,12 +38,12 @@ struct PoseFitResult {
   std::uint32_t against = 0;  // bit n: pose n does not agree at all, by a mean square above 16
 };
 
-// Requires history.count >= 1 and ages in descending order. The newest pose may be of an earlier time than
-// now; the motion is that of its exposure. `start`:
-// approximate motion at the last pose; its rate decides among rates that lead to the same attitudes, and has
-// to lead back to each of them within 60 degrees. `iterations`: 1 ... kMostIterations.
 inline constexpr int kMostIterations = 3;  // enough for a start that is a degree off
-// False: the budget was exhausted, and the result means nothing.
+
+// Requires history.count >= 1 and ages in descending order. The newest pose may be of an earlier time than
+// now; the motion is that of its exposure. `start`: approximate motion at the last pose; its rate decides
+// among rates that lead to the same attitudes, and has to lead back to each of them within 60 degrees.
+// `iterations`: 1 ... kMostIterations. False: the budget was exhausted, and the result means nothing.
 bool fit_motion(const PoseHistory& history, const Inertia<Fixed>& inertia, std::int32_t target_radius_um,
                 const PoseMotion& start, int iterations, WorkBudget& budget, PoseFitResult& result);
 // The most that a fit of these poses takes, and of another one of now (work_budget.hpp).

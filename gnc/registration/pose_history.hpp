@@ -6,7 +6,7 @@
 
 #include "gnc/attitude/motion.hpp"
 #include "gnc/registration/normal_equations.hpp"
-#include "gnc/registration/surface_renderer.hpp"
+#include "gnc/registration/pose.hpp"
 
 namespace tumblesight::gnc {
 

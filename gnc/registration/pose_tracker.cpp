@@ -16,7 +16,7 @@ constexpr std::int64_t kDisagreement_q8 = 90;  // from here on another motion mo
 // Limits of the verdict.
 constexpr int kVerifiedPoses = 3;
 constexpr std::int64_t kLongestToTellRate_ns = 7'500'000'000;  // between poses; as of the network's track
-constexpr std::int32_t kLeastProven_q8 = 8 * 256;              // advantage of the track
+constexpr std::int32_t kLeastLlr_q8 = 8 * 256;                 // of the track, conservative
 constexpr std::int32_t kMostAgainstTrack_q8 = 6 * 256;         // in a frame
 constexpr std::int64_t kMostDisagreement_q8 = 3 * 256;
 constexpr std::uint32_t kLargestSigma_urad = 17'453;  // a degree
@@ -40,7 +40,7 @@ PoseDoubts doubts_of(const PoseFrame& frame, const Matrix3<Fixed>& r_lrf_trf, co
   PoseDoubts doubts = 0;
   if (!evidence.fits_ranges()) doubts |= kPoseRanges;
   if (!evidence.fits_returns() || !evidence.fits_silhouette()) doubts |= kPoseOutline;
-  if (estimate.proven_q8 < kLeastProven_q8) doubts |= kPoseAmbiguous;
+  if (estimate.conservative_llr_q8 < kLeastLlr_q8) doubts |= kPoseAmbiguous;
   if (estimate.poses < kVerifiedPoses || estimate.disagreement_q8 > kMostDisagreement_q8)
     doubts |= kPoseMotion;
   for (std::size_t i = 0; i < 3; ++i)
@@ -172,6 +172,89 @@ void make_coasting_covariance(const PoseFrame& frame, const PoseTrackerState& st
   }
 }
 
+// Memory may be damaged.
+void limit_damage(PoseTrackerState& state) {
+  state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);
+  state.llr_q8 = limited_llr_q8(state.llr_q8);
+  state.conservative_llr_q8 = min(limited_llr_q8(state.conservative_llr_q8), state.llr_q8);
+  if (state.history.count == 0) state.motion = {};
+}
+
+// Poses and motion to the time of the frame.
+void advance(const PoseFrame& frame, PoseTrackerState& state) {
+  state.motion = later_pose(state, frame.motion_models, frame.elapsed_ns, frame.r_now_last);
+  state.history.advance(frame.elapsed_ns, frame.r_now_last);
+}
+
+// One fit is always made: of the pose of this frame, or of a track that coasts.
+void begin_budgets(const PoseTrackerState& state, std::int32_t budget, PoseScratch& scratch) {
+  const std::int32_t reserve = work_of_fit(state.history, iterations_for(state.history.count + 1));
+  scratch.fit_reserve.begin(reserve);
+  scratch.refinement.budget.begin(budget);
+  scratch.refinement.budget.spend(reserve);
+}
+
+// False: registration does not work in this frame.
+bool view_target(const PoseTarget& target, const PoseFrame& frame, bool is_tracked, PoseScratch& scratch,
+                 const PoseTrackerState& state) {
+  const std::int32_t depth_um = is_tracked ? state.motion.origin_lrf_um[1] : frame.centroid_lrf_mm[1] * 1000;
+  return target.mesh.is_known() &&
+         make_frame_view(frame.image, frame.mask, depth_um, target.radius_mm, target.noise, scratch.view);
+}
+
+void forget_track(PoseTrackerState& state) {
+  state.history.count = 0;
+  state.llr_q8 = state.conservative_llr_q8 = 0;
+}
+
+// Registers the frame at the predicted pose or at the attitudes of the network. False: its motion is not that
+// of the track.
+bool register_frame(const PoseTarget& target, const PoseFrame& frame, bool is_tracked, PoseScratch& scratch,
+                    PoseTrackerState& state, PoseEstimate& estimate) {
+  const int poses_before = state.history.count;
+  const std::int32_t llr_before_q8 = state.llr_q8, conservative_before_q8 = state.conservative_llr_q8;
+  if (is_tracked) {
+    is_tracked = follow_track(target, frame, scratch, state);
+  } else {
+    start_track(target, frame, scratch, state);
+  }
+  // Not all was compared: such a frame says nothing.
+  const bool is_cut_short = scratch.refinement.budget.is_exhausted();
+  if (is_cut_short) {
+    scratch.best.evidence = {};
+    state.history.count = poses_before;
+    state.llr_q8 = llr_before_q8;
+    state.conservative_llr_q8 = conservative_before_q8;
+  }
+  estimate.evidence = scratch.best.evidence;
+  estimate.conservative_llr_q8 = state.conservative_llr_q8;
+  estimate.doubts = is_cut_short ? kPoseAmbiguous : 0;
+  return is_tracked;
+}
+
+// Fits the motion to the poses with that of this frame, or lets the track coast if it has none. False: there
+// is no pose yet.
+bool estimate_motion(const PoseFrame& frame, bool is_tracked, PoseScratch& scratch, PoseTrackerState& state,
+                     PoseEstimate& estimate) {
+  const PoseCandidate& best = scratch.best;
+  const bool is_measured = best.refinement.is_complete && best.evidence.blocks > 0;
+  if (!is_measured) {
+    const bool is_known = state.history.count > 0;
+    estimate.doubts |= is_known ? kPoseCoasts : kPoseUnknown;
+    if (is_known) make_coasting_covariance(frame, state, scratch, estimate.covariance);
+    return is_known;
+  }
+  PoseMeasurement measurement = measured_pose(best.refinement.pose, best.refinement.equations);
+  discount(best.evidence, measurement);
+  state.history.add(measurement);
+  if (!fit_track(frame, start_of_fit(frame, state.motion, best.refinement.pose, is_tracked), scratch, state))
+    estimate.doubts |= kPoseMotion;
+  estimate.disagreement_q8 = scratch.fit.disagreement_q8;
+  make_covariance(scratch.fit, max(1, state.history.count), scratch.view.target_radius_um,
+                  estimate.covariance);
+  return true;
+}
+
 }  // namespace
 
 PoseState pose_state(const PoseMotion& motion) {
@@ -197,67 +280,20 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
                 std::int32_t budget) {
   estimate = {};
   scratch.refinement.surface.vertices = &vertices;
-  // Memory may be damaged.
-  state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);
-  state.advantage_q8 = limited_advantage_q8(state.advantage_q8);
-  state.proven_q8 = min(limited_advantage_q8(state.proven_q8), state.advantage_q8);
-  if (state.history.count == 0) state.motion = {};
-  const PoseMotion predicted = later_pose(state, frame.motion_models, frame.elapsed_ns, frame.r_now_last);
-  state.history.advance(frame.elapsed_ns, frame.r_now_last);
-  state.motion = predicted;
-  const int poses_before = state.history.count;
-  const std::int32_t advantage_before_q8 = state.advantage_q8, proven_before_q8 = state.proven_q8;
-  // One fit is always made: of the pose of this frame, or of a track that coasts.
-  const std::int32_t reserve = work_of_fit(state.history, iterations_for(poses_before + 1));
-  scratch.fit_reserve.begin(reserve);
-  WorkBudget& work_left = scratch.refinement.budget;
-  work_left.begin(budget);
-  work_left.spend(reserve);
+  limit_damage(state);
+  advance(frame, state);
+  begin_budgets(state, budget, scratch);
   bool is_tracked = state.history.count >= kTrackedPoses;
-  const std::int32_t depth_um = is_tracked ? predicted.origin_lrf_um[1] : frame.centroid_lrf_mm[1] * 1000;
-  if (!target.mesh.is_known() ||
-      !make_frame_view(frame.image, frame.mask, depth_um, target.radius_mm, target.noise, scratch.view)) {
-    state.history.count = 0;
-    state.advantage_q8 = state.proven_q8 = 0;
+  if (!view_target(target, frame, is_tracked, scratch, state)) {
+    forget_track(state);
     return;
   }
-  if (is_tracked) {
-    is_tracked = follow_track(target, frame, predicted, scratch, state);
-  } else {
-    start_track(target, frame, scratch, state);
-  }
-  // Not all was compared: such a frame says nothing.
-  const bool is_cut_short = work_left.is_exhausted();
-  if (is_cut_short) {
-    scratch.best.evidence = {};
-    state.history.count = poses_before;
-    state.advantage_q8 = advantage_before_q8;
-    state.proven_q8 = proven_before_q8;
-  }
-  estimate.evidence = scratch.best.evidence;
-  estimate.proven_q8 = state.proven_q8;
-  estimate.doubts = is_cut_short ? kPoseAmbiguous : 0;
-  const bool is_measured = scratch.best.refinement.is_complete && scratch.best.evidence.blocks > 0;
-  if (is_measured) {
-    const Pose& pose = scratch.best.refinement.pose;
-    PoseMeasurement measurement = measured_pose(pose, scratch.best.refinement.equations);
-    discount(scratch.best.evidence, measurement);
-    state.history.add(measurement);
-    if (!fit_track(frame, start_of_fit(frame, predicted, pose, is_tracked), scratch, state))
-      estimate.doubts |= kPoseMotion;
-    estimate.disagreement_q8 = scratch.fit.disagreement_q8;
-    make_covariance(scratch.fit, max(1, state.history.count), scratch.view.target_radius_um,
-                    estimate.covariance);
-  } else if (state.history.count == 0) {
-    estimate.doubts |= kPoseUnknown;
-    return;
-  } else {
-    estimate.doubts |= kPoseCoasts;
-    make_coasting_covariance(frame, state, scratch, estimate.covariance);
-  }
-  if (work_left.is_exhausted()) estimate.doubts |= kPoseAmbiguous;
+  const std::int32_t llr_before_q8 = state.llr_q8;
+  is_tracked = register_frame(target, frame, is_tracked, scratch, state, estimate);
+  if (!estimate_motion(frame, is_tracked, scratch, state, estimate)) return;
+  if (scratch.refinement.budget.is_exhausted()) estimate.doubts |= kPoseAmbiguous;
   if (!tells_rate(state.history)) estimate.doubts |= kPoseMotion;
-  if (advantage_before_q8 - state.advantage_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
+  if (llr_before_q8 - state.llr_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
   estimate.poses = state.history.count;
   estimate.state = pose_state(state.motion);
   estimate.doubts |= doubts_of(frame, state.motion.turning.r_lrf_trf, estimate);

@@ -5,13 +5,13 @@
 // - Later frames: from two poses on, the motion predicts the next pose, which is registered. If it does not
 //   explain the frame, the network's attitude is registered as well. Another one that the network offers is
 //   registered shortly.
-// - Advantage: by how much the pose of the track explains the frames better than the alternatives, summed
-//   over the frames. If it is lost, the track starts anew at the alternative. What is proven of it is summed
-//   apart: less where an alternative does not explain a frame, since its registration may have gone astray.
+// - Log-likelihood ratio (LLR): by how much the pose of the track explains the frames better than the
+//   alternatives, summed over the frames. Below zero the track starts anew at the alternative. A conservative
+//   LLR is summed apart: it counts less where an alternative does not explain a frame, since its registration
+//   may have gone astray. In the report it is the proven advantage.
 // - Motion: fitted to the last ten poses (pose_fit.hpp).
-// - Verdict: the frame must agree with the pose in ranges and silhouette, the advantage must be proven, and
-// the
-//   poses must agree with one motion.
+// - Verdict: the frame must agree with the pose in ranges and silhouette, the conservative LLR must be large,
+//   and the poses must agree with one motion.
 //
 // Specification: docs/numerics.md.
 #pragma once
@@ -19,11 +19,8 @@
 #include <array>
 #include <cstdint>
 
-#include "gnc/registration/placement.hpp"
 #include "gnc/registration/pose_covariance.hpp"
-#include "gnc/registration/pose_evidence.hpp"
-#include "gnc/registration/pose_fit.hpp"
-#include "gnc/registration/refinement.hpp"
+#include "gnc/registration/pose_track.hpp"
 
 namespace tumblesight::gnc {
 
@@ -32,9 +29,9 @@ using PoseDoubts = std::uint32_t;
 inline constexpr PoseDoubts kPoseUnknown = 1;  // no surface in the image, the target too near, or no pose yet
 inline constexpr PoseDoubts kPoseCoasts = 2;   // predicted: the frame could not be registered
 inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the surface
-inline constexpr PoseDoubts kPoseOutline =
-    8;  // returns beside it, too many missing, or its silhouette elsewhere
-inline constexpr PoseDoubts kPoseAmbiguous = 16;  // the advantage over the alternatives is not proven
+// Returns beside the surface, too many missing, or its silhouette elsewhere.
+inline constexpr PoseDoubts kPoseOutline = 8;
+inline constexpr PoseDoubts kPoseAmbiguous = 16;  // the conservative LLR is small
 // Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
 inline constexpr PoseDoubts kPoseMotion = 32;
 inline constexpr PoseDoubts kPoseUncertain = 64;  // the attitude is known to a degree at best
@@ -53,58 +50,13 @@ struct PoseEstimate {
   PoseDoubts doubts = kPoseUnknown;  // none: verified
   PoseState state;                   // at the exposure, in the LRF of the exposure
   PoseCovariance covariance;
-  PoseEvidence evidence;             // of this frame at its registered pose
-  std::int32_t proven_q8 = 0;        // advantage over the alternatives, as far as it is proven [nats]
-  std::int64_t disagreement_q8 = 0;  // PoseFitResult
-  int poses = 0;                     // that the motion was fitted to
+  PoseEvidence evidence;                 // of this frame at its registered pose
+  std::int32_t conservative_llr_q8 = 0;  // over the alternatives, as far as it is proven [nats]
+  std::int64_t disagreement_q8 = 0;      // PoseFitResult
+  int poses = 0;                         // that the motion was fitted to
 
   bool is_known() const { return (doubts & kPoseUnknown) == 0; }
   bool is_verified() const { return doubts == 0; }
-};
-
-// What is the same for all frames.
-struct PoseTarget {
-  SurfaceMesh mesh;
-  std::uint32_t radius_mm;
-  RangeNoise noise;
-};
-// One frame, and what the network says of it.
-struct PoseFrame {
-  const RangeImage& image;
-  const RayMask& mask;              // its returns of the target
-  std::int64_t elapsed_ns;          // since the last frame of the track
-  Matrix3<Fixed> r_now_last;        // turn of the LRF since then: v_lrf now = r_now_last v_lrf last
-  Motion<Fixed> network;            // its attitude and rate
-  Matrix3<Fixed> second_r_lrf_trf;  // its second attitude
-  std::uint32_t second_odds_ppm;    // against the first; 0: there is none
-  std::array<std::int32_t, 3> centroid_lrf_mm;  // of the returns
-  const MotionModels<Fixed>& motion_models;
-  int network_motion_model;  // that the network's track follows
-};
-
-struct PoseTrackerState {
-  PoseHistory history;
-  PoseMotion motion;              // at the last frame; valid if there is a pose
-  int motion_model = kSpinModel;  // under which the poses agree best, so far
-  int challenger = kTumbleModel;  // the motion model that is compared with it next
-  std::int32_t advantage_q8 = 0;  // of the attitude that it follows, over the others [nats]
-  std::int32_t proven_q8 = 0;     // of that, how much is proven; never more [nats]
-};
-
-// A pose with what speaks for it.
-struct PoseCandidate {
-  Refinement refinement;
-  PoseEvidence evidence;
-};
-// Working memory. The caller holds it, so that nothing large is on the stack; it need not be initialized.
-// The vertices of the drawn surface lie apart.
-struct PoseScratch {
-  FrameView view;
-  RefinementScratch refinement;
-  PlacementScratch placement;
-  PoseCandidate best, other;
-  WorkBudget fit_reserve;  // held back for the one fit that every frame makes
-  PoseFitResult fit, other_fit;
 };
 
 // The motion of the track `elapsed_ns` after the last frame, in an LRF that has turned: `r_now_last`.

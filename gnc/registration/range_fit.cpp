@@ -3,6 +3,7 @@
 #include "gnc/numerics/division.hpp"
 #include "gnc/numerics/functions.hpp"
 #include "gnc/numerics/select.hpp"
+#include "gnc/registration/reciprocal.hpp"
 
 namespace tumblesight::gnc {
 namespace {
@@ -174,8 +175,8 @@ void fit_ranges(const FrameView& view, const Pose& pose, const RenderedSurface& 
     for (int word = 0; word < RayMask::kWordsPerRow; ++word) {
       const std::uint32_t both =
           upper[static_cast<std::size_t>(word)] & lower[static_cast<std::size_t>(word)];
-      // Bit by bit from the left: pairs of columns that are filled.
-      // If every second one, in the pattern of a chessboard.
+      // Bit by bit from the left: pairs of columns that are filled. If every second one, in the pattern of a
+      // chessboard.
       const std::uint32_t wanted = every == 1 ? 0xAAAA'AAAAU : (row & 2) == 0 ? 0x8888'8888U : 0x2222'2222U;
       std::uint32_t pairs = both & (both << 1) & wanted;
       for (int column = word * RayMask::kColumnsPerWord; pairs != 0; column += 2, pairs <<= 2) {

@@ -8,8 +8,8 @@ namespace tumblesight::gnc {
 namespace {
 
 constexpr int kMaxAcross = 12;  // rays to either side of the silhouette
-constexpr int kMaxPlaces =
-    6144;                       // beside which nothing is drawn, and as many between dark and bright surfaces
+// Beside which nothing is drawn, and as many between dark and bright surfaces.
+constexpr int kMaxPlaces = 6144;
 constexpr int kMostPerRow = 4;  // places that share a row of the equations
 constexpr std::uint32_t kLeastFill_q16 = 32'768, kWholeFill_q16 = 64'880;  // 1/2 and 99 %
 constexpr std::int32_t kBehind_um = 250'000;  // an edge this far behind another surface is hidden
@@ -80,13 +80,11 @@ class Across {
 
   // The whole look, in three parts: the rays next to the silhouette must agree with it, then outwards and
   // inwards until the rendering changes. `place`: where the silhouette crosses the line, in 1/64 of a ray;
-  // `cosine_q14`: of its angle to the perpendicular of the line.
-  // `looked_at` grows by the rays.
+  // `cosine_q14`: of its angle to the perpendicular of the line. `looked_at` grows by the rays.
   bool look_across(const SilhouetteEdge& edge, int line, std::int32_t place, std::int32_t inverse_depth,
                    std::int32_t cosine_q14, Rays& rays, int& looked_at) const {
     const Line at{edge.is_steep, line, view_.rays};
-    const int outer = edge.outward > 0 ? (place + kScreenRay / 2 - 1) >> kScreenBits
-                                       : (place - kScreenRay / 2) >> kScreenBits;
+    const int outer = edge.outward > 0 ? first_ray(place) : last_ray(place);
     const int inner = outer - edge.outward;
     if (inner < 0 || inner >= view_.rays) return false;
     const std::int32_t from_place = (outer * kScreenRay + kScreenRay / 2 - place) * edge.outward;
@@ -192,8 +190,8 @@ int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, int every,
              const SilhouetteRows& equation_rows, const Across& across, int rays, SilhouetteFit& fit,
              WorkBudget& budget, bool& found) {
   // Between the first end and before the second one: a line through both of two edges is of one of them.
-  int first = max_small(0, (edge.line(edge.from) + kScreenRay / 2 - 1) >> kScreenBits);
-  const int end = min_small(rays, (edge.line(edge.to) + kScreenRay / 2 - 1) >> kScreenBits);
+  int first = max_small(0, first_ray(edge.line(edge.from)));
+  const int end = min_small(rays, first_ray(edge.line(edge.to)));
   first += first & (every - 1);
   if (first >= end) return 0;
   const std::int32_t length = edge.line(edge.to) - edge.line(edge.from);

@@ -20,8 +20,8 @@ namespace tumblesight::gnc {
 struct SilhouetteTable {
   static constexpr int kPerSigma = 8;
   static constexpr int kSteps = 2 * 6 * kPerSigma + 1;
-  std::array<std::int16_t, kSteps> if_hit,
-      if_missed;                                 // derivative by a silhouette that moves out [1 / sigma]
+  // Derivative by a silhouette that moves out [1 / sigma].
+  std::array<std::int16_t, kSteps> if_hit, if_missed;
   std::array<std::int16_t, kSteps> information;  // [1 / sigma^2]
 };
 // fill_q16: share of the rays on the target that return, limited to 1/2 to 99 %.

@@ -3,6 +3,7 @@
 #include "gnc/numerics/division.hpp"
 #include "gnc/numerics/functions.hpp"
 #include "gnc/numerics/select.hpp"
+#include "gnc/registration/reciprocal.hpp"
 #include "gnc/registration/triangle_spans.hpp"
 
 namespace tumblesight::gnc {

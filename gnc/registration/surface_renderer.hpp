@@ -6,32 +6,12 @@
 
 #include "gnc/attitude/rotation.hpp"
 #include "gnc/registration/frame_view.hpp"
+#include "gnc/registration/pose.hpp"
+#include "gnc/registration/screen.hpp"
 #include "gnc/registration/work_budget.hpp"
 #include "gnc/surface/surface_mesh.hpp"
 
 namespace tumblesight::gnc {
-
-// Where the target is and how it is turned, as the sensor sees it.
-struct Pose {
-  Matrix3<Fixed> r_lrf_trf = Matrix3<Fixed>::Identity();  // v_lrf = r_lrf_trf v_trf
-  std::array<std::int32_t, 3> origin_lrf_um{};            // origin of the TRF
-};
-
-// A vertex on the screen of a FrameView.
-struct ScreenPoint {
-  std::int16_t column, row;  // in 1/64 of a ray
-  std::int16_t inverse_depth;
-  bool is_outside() const { return column == kOutside; }
-  static constexpr std::int16_t kOutside = -32768;
-};
-
-// Twice the area of the triangle (a, b, p), positive if p is on the right of the way from a to b on a screen
-// whose rows run downward.
-inline std::int32_t area(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& p) {
-  return (b.column - a.column) * (p.row - a.row) - (b.row - a.row) * (p.column - a.column);
-}
-
-using ScreenVertices = std::array<ScreenPoint, SurfaceMesh::kMaxVertices>;
 
 struct RenderedSurface {
   static constexpr std::int16_t kEmpty = -32768;

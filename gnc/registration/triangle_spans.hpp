@@ -5,17 +5,10 @@
 
 #include "gnc/numerics/functions.hpp"
 #include "gnc/numerics/select.hpp"
-#include "gnc/registration/surface_renderer.hpp"
+#include "gnc/registration/reciprocal.hpp"
+#include "gnc/registration/screen.hpp"
 
 namespace tumblesight::gnc {
-
-// First ray whose middle is at `coordinate` or after it, and last one at it or before it.
-inline int first_ray(std::int32_t coordinate) {
-  return (coordinate + kScreenRay / 2 - 1) >> kScreenBits;
-}
-inline int last_ray(std::int32_t coordinate) {
-  return (coordinate - kScreenRay / 2) >> kScreenBits;
-}
 
 struct Bounds {
   int first, last;

@@ -127,7 +127,7 @@ std::vector<gnc::PoseEstimate> track(const std::vector<std::uint8_t>& section, c
                                motion_models,  shown->motion_model};
     track_pose(with_mesh, frame, scratch, vertices, *state, estimates.emplace_back());
     check(estimates.back());
-    require(state->proven_q8 <= state->advantage_q8, "no more is proven than the advantage");
+    require(state->conservative_llr_q8 <= state->llr_q8, "no more is proven than the advantage");
     const gnc::PoseMotion later =
         later_pose(*state, motion_models, shown->elapsed_ns, gnc::Matrix3<Fixed>::Identity());
     check_quaternion(pose_state(later).q_lrf_trf);
@@ -152,7 +152,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::vector<gnc::PoseEstimate> first = track(section, target, frames);
   const std::vector<gnc::PoseEstimate> again = track(section, target, frames);
   for (std::size_t i = 0; i < first.size(); ++i)
-    require(first[i].doubts == again[i].doubts && first[i].proven_q8 == again[i].proven_q8 &&
+    require(first[i].doubts == again[i].doubts &&
+                first[i].conservative_llr_q8 == again[i].conservative_llr_q8 &&
                 first[i].state.q_lrf_trf == again[i].state.q_lrf_trf &&
                 first[i].state.origin_lrf_um == again[i].state.origin_lrf_um &&
                 first[i].covariance.sigma == again[i].covariance.sigma,

@@ -42,10 +42,10 @@ struct AppMemory {
   static Region constants(App& app) { return region_of(app.estimator_.network().weights()); }
   // Memory that every frame rewrites.
   static Region activations(App& app) {
-    auto& network = app.estimator_.network();
-    const Region whole = region_of(network), weights = region_of(network.weights());
-    std::uint8_t* const end = whole.data + whole.size;
-    return {weights.data + weights.size, static_cast<std::size_t>(end - (weights.data + weights.size))};
+    const Region weights = region_of(app.estimator_.network().weights());
+    const Region working_memory = region_of(app.estimator_.working_memory());
+    std::uint8_t* const begin = weights.data + weights.size;  // of the network's features
+    return {begin, static_cast<std::size_t>(working_memory.data + working_memory.size - begin)};
   }
   // By a copy, because the estimator returns its state by value only.
   static void flip_state_bit(App& app, std::size_t bit) {
@@ -55,10 +55,10 @@ struct AppMemory {
     app.estimator_.restore(state);
   }
   // Also in the copy of the estimator's state and in its checksum, so that no check sees a difference.
-  static void set_pose_advantage(App& app, std::int32_t advantage_q8) {
+  static void set_pose_advantage(App& app, std::int32_t llr_q8) {
     static Estimator::State state;
     app.estimator_.save(state);
-    state.pose.advantage_q8 = state.pose.proven_q8 = advantage_q8;
+    state.pose.llr_q8 = state.pose.conservative_llr_q8 = llr_q8;
     app.estimator_.restore(state);
     std::memcpy(kept_state(app).data, &state, sizeof state);
     app.state_->estimator_crc32 = Estimator::crc32_of(state);

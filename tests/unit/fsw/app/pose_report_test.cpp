@@ -56,7 +56,7 @@ TEST_F(PoseReport, IsThatOfTheEstimate) {
   EXPECT_EQ(report.pose_mean_square_q8, static_cast<std::uint32_t>(pose().evidence.mean_square_q8()));
   EXPECT_EQ(report.pose_unexplained_ppm, pose().evidence.unexplained_ppm());
   EXPECT_EQ(report.pose_missing_ppm, pose().evidence.missing_ppm());
-  EXPECT_EQ(report.pose_advantage_q8, pose().proven_q8);
+  EXPECT_EQ(report.pose_advantage_q8, pose().conservative_llr_q8);
   // The cycle is at the time of the exposure.
   EXPECT_EQ(report.pose_origin_lrf_now_um, report.pose_origin_lrf_um);
   EXPECT_EQ(report.pose_velocity_lrf_now_um_s, report.pose_velocity_lrf_um_s);

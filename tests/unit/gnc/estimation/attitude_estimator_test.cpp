@@ -214,7 +214,7 @@ TEST(AttitudeEstimator, TakesTheEvidenceOfEachFrameIntoTheExpectedError) {
     network->step(sequence_image(k), expected);
     checked->step(sequence_image(k), found);
     ASSERT_EQ(found.q_lrf_trf, expected.q_lrf_trf);
-    EXPECT_EQ(found.explained.unexplained, kWholeShare);
+    EXPECT_EQ(found.explained.outliers, kWholeShare);
     const double cosine = std::abs(to_double(found.q_lrf_trf).dot(to_double(found.q_lrf_trf_predicted)));
     const double innovation_rad = found.has_prediction ? 2.0 * std::acos(std::min(1.0, cosine)) : 0.0;
     const double odds = 1e-6 * found.second_odds_ppm;

@@ -161,7 +161,7 @@ TEST_F(Tracking, AFrameThatTheTargetDoesNotExplainIsADoubt) {
   ASSERT_EQ(estimator->load(image.data(), image.size(), nullptr), ModelStatus::kOk);
   const std::uint32_t constants = estimator->constants_crc32();
   EXPECT_TRUE(step(next()).estimate.explained.is_known);
-  EXPECT_EQ(outcome.estimate.explained.unexplained, kWholeShare);
+  EXPECT_EQ(outcome.estimate.explained.outliers, kWholeShare);
   EXPECT_EQ(outcome.doubts & kUnexplained, kUnexplained);
   EXPECT_FALSE(outcome.valid());
   estimator->reload(image.data());

@@ -15,7 +15,7 @@ class PoseAlternatives : public TrackPose {
   void follow_a_wrong_attitude() {
     track_frames(4);
     truth_.r_lrf_trf = wrong();
-    state_->advantage_q8 = kMostOfATrack_q8;
+    state_->llr_q8 = kMostOfATrack_q8;
   }
   double error_deg(const PoseEstimate& estimate) const {
     return angle_deg(attitude_of(estimate), truth_.r_lrf_trf);
@@ -37,19 +37,19 @@ class PoseAlternatives : public TrackPose {
   void follow_a_half_turn_beside_the_right_attitude() {
     follow_a_box_with_a_knob();
     truth_.r_lrf_trf = rotation_of(half_turn()) * truth_.r_lrf_trf;
-    state_->advantage_q8 = state_->proven_q8 = kMostOfATrack_q8;
+    state_->llr_q8 = state_->conservative_llr_q8 = kMostOfATrack_q8;
   }
   // Of the next frame, in which the network offers a half turn as its second attitude. The frame is then
   // forgotten.
   std::int32_t proven_against_a_half_turn_q8() {
     const PoseTrackerState settled = *state_;
-    state_->proven_q8 = 0;
+    state_->conservative_llr_q8 = 0;
     see();
     track({0.0, 0.0, 0.0}, rotation_of(half_turn()) * truth_.r_lrf_trf, 500'000);
-    const std::int32_t proven_q8 = state_->proven_q8;
+    const std::int32_t conservative_llr_q8 = state_->conservative_llr_q8;
     EXPECT_EQ(state_->history.count, settled.history.count + 1);  // the track goes on
     *state_ = settled;
-    return proven_q8;
+    return conservative_llr_q8;
   }
   // By how much the pose of the track costs less than the alternative [nats, Q8].
   std::int32_t difference_q8() const {

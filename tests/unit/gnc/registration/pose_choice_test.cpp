@@ -16,23 +16,23 @@ TEST_F(PoseAlternatives, ASecondAttitudeWithin20DegreesIsNone) {
   see();
   const Eigen::Matrix3d second = rotation_of({0.0, 19.0 * kDegree, 0.0}) * truth_.r_lrf_trf;
   track({0.0, 0.0, 0.0}, second, 1'000'000);
-  EXPECT_EQ(state_->advantage_q8, kWithoutAlternative_q8);
+  EXPECT_EQ(state_->llr_q8, kWithoutAlternative_q8);
 }
 
 TEST_F(PoseAlternatives, FramesWithoutOneAddFourNatsEachUpTo32) {
   for (int k = 1; k < 10; ++k) {
-    EXPECT_EQ(track_next().proven_q8, std::min(k * kWithoutAlternative_q8, kMostOfATrack_q8)) << k;
-    EXPECT_EQ(state_->advantage_q8, state_->proven_q8) << k;
+    EXPECT_EQ(track_next().conservative_llr_q8, std::min(k * kWithoutAlternative_q8, kMostOfATrack_q8)) << k;
+    EXPECT_EQ(state_->llr_q8, state_->conservative_llr_q8) << k;
   }
 }
 
 // Registered from eight degrees off it ends at the pose of the track.
 TEST_F(PoseAlternatives, AnAttitudeThatLeadsToTheSamePoseIsNone) {
   track_frames(3);
-  const std::int32_t before_q8 = state_->advantage_q8;
+  const std::int32_t before_q8 = state_->llr_q8;
   network_turn_ = Eigen::Vector3d(0.0, 0.0, 8.0 * kDegree);
   track_next();
-  EXPECT_EQ(state_->advantage_q8, before_q8 + kWithoutAlternative_q8);
+  EXPECT_EQ(state_->llr_q8, before_q8 + kWithoutAlternative_q8);
 }
 
 // The network prefers the second attitude by four nats. The frame tells nothing, and the first stays, with
@@ -42,16 +42,16 @@ TEST_F(PoseAlternatives, AFirstAttitudeThatIsSlightlyWorseStays) {
   see();
   const Eigen::Matrix3d second = rotation_of(half_turn()) * truth_.r_lrf_trf;
   const PoseEstimate estimate = track({0.01, 0.0, 0.01}, second, 1'000'000'000);
-  EXPECT_LT(state_->advantage_q8, 0);
-  EXPECT_GE(state_->advantage_q8, -6 * kNat_q8);
-  EXPECT_LE(state_->proven_q8, state_->advantage_q8);
+  EXPECT_LT(state_->llr_q8, 0);
+  EXPECT_GE(state_->llr_q8, -6 * kNat_q8);
+  EXPECT_LE(state_->conservative_llr_q8, state_->llr_q8);
   EXPECT_LT(error_deg(estimate), 2.0);
 }
 
 TEST_F(PoseAlternatives, ASecondAttitudeThatIsTakenHasTheAdvantage) {
   see();
   track({0.0, 3.0, 0.0}, truth_.r_lrf_trf, 500'000);
-  EXPECT_GE(state_->advantage_q8, 6 * kNat_q8);
+  EXPECT_GE(state_->llr_q8, 6 * kNat_q8);
 }
 
 // A body with a plate beside it that sends nothing back.
@@ -127,8 +127,8 @@ TEST_F(PoseAlternatives, APoseThatIsNotDrawnWholeIsNotCompared) {
     track({0.0, 0.0, 0.0}, is_across ? along : across, kEvenOdds_ppm);
     EXPECT_EQ(scratch_->best.refinement.is_complete, !is_across);
     EXPECT_FALSE(scratch_->other.refinement.is_complete);
-    EXPECT_EQ(state_->advantage_q8, 0);
-    EXPECT_EQ(state_->proven_q8, 0);
+    EXPECT_EQ(state_->llr_q8, 0);
+    EXPECT_EQ(state_->conservative_llr_q8, 0);
   }
 }
 
@@ -149,8 +149,8 @@ TEST_F(PoseAlternatives, APoseThatIsDrawnWholeAndExplainsTheFrameIsTaken) {
       const PoseEstimate estimate = track(to_across, along, odds_ppm);
       ASSERT_EQ(estimate.poses, 1);
       EXPECT_LT(error_deg(estimate), kNear_deg);
-      EXPECT_EQ(state_->advantage_q8, 0);
-      EXPECT_EQ(state_->proven_q8, 0);
+      EXPECT_EQ(state_->llr_q8, 0);
+      EXPECT_EQ(state_->conservative_llr_q8, 0);
       see();
       EXPECT_LT(error_deg(track(to_across, along, odds_ppm)), kNear_deg);
     }
@@ -189,7 +189,7 @@ TEST_F(PoseAlternatives, AFrameThatTakesMoreThanSixNatsFromATrackIsADoubt) {
     see();
     const PoseEstimate estimate = track(to_the_track, truth_.r_lrf_trf, 10'000);
     const bool is_doubtful = (estimate.doubts & kPoseAmbiguous) != 0;
-    EXPECT_EQ(is_doubtful, kMostOfATrack_q8 - state_->advantage_q8 > 6 * kNat_q8) << lost_;
+    EXPECT_EQ(is_doubtful, kMostOfATrack_q8 - state_->llr_q8 > 6 * kNat_q8) << lost_;
     ++(is_doubtful ? doubtful : sure);
   }
   EXPECT_GT(doubtful, 0);
@@ -200,7 +200,7 @@ TEST_F(PoseAlternatives, ATrackIsNotComparedWithASecondAttitudeOfLessThanOnePerc
   track_frames(3);
   see();
   track({0.0, 0.0, 0.0}, wrong(), 9'999);
-  EXPECT_EQ(state_->advantage_q8, 4 * kWithoutAlternative_q8);
+  EXPECT_EQ(state_->llr_q8, 4 * kWithoutAlternative_q8);
 }
 
 // The poses are too old, but the attitude is where it was: nothing speaks for the new track yet.
@@ -210,8 +210,8 @@ TEST_F(PoseAlternatives, ATrackWithoutAPoseLeftBeginsWithoutAnAdvantage) {
   period_ns_ = PoseHistory::kOldest_ns + 1;
   const PoseEstimate estimate = track_next();
   EXPECT_EQ(estimate.poses, 1);
-  EXPECT_EQ(state_->advantage_q8, kWithoutAlternative_q8);
-  EXPECT_EQ(state_->proven_q8, kWithoutAlternative_q8);
+  EXPECT_EQ(state_->llr_q8, kWithoutAlternative_q8);
+  EXPECT_EQ(state_->conservative_llr_q8, kWithoutAlternative_q8);
 }
 
 // Both explain the frames. Of equals the network's choice counts.
@@ -219,11 +219,11 @@ TEST_F(PoseAlternatives, ATrackWhoseAdvantageIsLostIsGivenUp) {
   take_box();
   track_frames(4);
   see();
-  state_->advantage_q8 = -2 * kNat_q8;
+  state_->llr_q8 = -2 * kNat_q8;
   const PoseEstimate estimate = track(half_turn(), truth_.r_lrf_trf, 0);
   EXPECT_NEAR(error_deg(estimate), 180.0, 2.0);
   EXPECT_EQ(estimate.poses, 1);
-  EXPECT_GT(state_->advantage_q8, 0);
+  EXPECT_GT(state_->llr_q8, 0);
 }
 
 // The wrong attitude is compared, and this frame speaks against it. That so much spoke against the track
@@ -231,9 +231,9 @@ TEST_F(PoseAlternatives, ATrackWhoseAdvantageIsLostIsGivenUp) {
 TEST_F(PoseAlternatives, ATrackWithoutAdvantageIsNotGivenUpForAPoseThatCostsMore) {
   track_frames(4);
   see();
-  state_->advantage_q8 = -kMostOfATrack_q8;
+  state_->llr_q8 = -kMostOfATrack_q8;
   const PoseEstimate estimate = track({0.0, 0.0, 0.0}, wrong(), 500'000);
-  EXPECT_EQ(state_->advantage_q8, -kMostOfATrack_q8 + 16 * kNat_q8);
+  EXPECT_EQ(state_->llr_q8, -kMostOfATrack_q8 + 16 * kNat_q8);
   EXPECT_EQ(estimate.poses, 5);
   EXPECT_LT(error_deg(estimate), kLargestError_deg);
 }
@@ -246,11 +246,11 @@ TEST_F(PoseAlternatives, AFrameThatIsNotExplainedIsComparedWithTheSecondAttitude
   noise_ = 1.5;
   see();
   const Eigen::Matrix3d second = rotation_of(half_turn()) * truth_.r_lrf_trf;
-  const std::int32_t before_q8 = state_->advantage_q8 = 2 * kNat_q8;
+  const std::int32_t before_q8 = state_->llr_q8 = 2 * kNat_q8;
   const PoseEstimate estimate = track({0.01, 0.0, 0.01}, second, 500'000);
   ASSERT_GT(estimate.evidence.mean_square_q8(), 410);
   EXPECT_NEAR(angle_deg(exact(scratch_->other.refinement.pose).r_lrf_trf, truth_.r_lrf_trf), 180.0, 3.0);
-  EXPECT_NE(state_->advantage_q8 - before_q8, kWithoutAlternative_q8);
+  EXPECT_NE(state_->llr_q8 - before_q8, kWithoutAlternative_q8);
 }
 
 TEST_F(PoseAlternatives, ASettledTrackIsLostWhereOnlyTheNetworksAttitudeExplainsTheFrame) {
@@ -267,7 +267,7 @@ TEST_F(PoseAlternatives, ASettledTrackThatExplainsTheFrameStays) {
   see();
   const Eigen::Vector3d back = -half_turn();
   const PoseEstimate estimate = track({0.0, 0.0, 0.0}, rotation_of(back) * truth_.r_lrf_trf, 0);
-  EXPECT_LT(state_->advantage_q8, kMostOfATrack_q8 - 2 * kNat_q8);
+  EXPECT_LT(state_->llr_q8, kMostOfATrack_q8 - 2 * kNat_q8);
   EXPECT_NEAR(error_deg(estimate), 180.0, 3.0);
   EXPECT_EQ(estimate.poses, 5);
 }

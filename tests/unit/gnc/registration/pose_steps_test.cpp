@@ -53,7 +53,7 @@ TEST_F(PoseSteps, AfterAGapThreeAreNeeded) {
 // By noisy ranges, missing returns, returns beside the target or a silhouette that is too small.
 TEST_F(PoseSteps, AFrameThatIsNotExplainedIsRegisteredInTwoMore) {
   track_frames(4);
-  state_->advantage_q8 = 32 * 256;  // so that one frame does not end the track
+  state_->llr_q8 = 32 * 256;  // so that one frame does not end the track
   const PoseTrackerState kept = *state_;
   const ExactPose pose = truth_;
   for (int k = 0; k < 4; ++k) {

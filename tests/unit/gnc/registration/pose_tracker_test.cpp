@@ -41,7 +41,7 @@ TEST_F(TrackPose, KeepsTheFirstAttitudeWhereTheSecondIsWrong) {
   const Eigen::Matrix3d wrong = rotation_of({0.0, 0.0, 3.0}) * truth_.r_lrf_trf;
   const PoseEstimate estimate = track({0.01, 0.0, 0.01}, wrong, 900'000);
   EXPECT_LT(angle_deg(attitude_of(estimate), truth_.r_lrf_trf), kLargestError_deg);
-  EXPECT_GT(state_->advantage_q8, 5 * 256);
+  EXPECT_GT(state_->llr_q8, 5 * 256);
 }
 
 // A wrong start is left as soon as the network shows the right attitude.
@@ -88,7 +88,7 @@ TEST_F(TrackPose, FindsTheRateWhereTheNetworksIsWrong) {
 // frame.
 TEST_F(TrackPose, IsNotGivenUpInAFrameWithoutAnAlternative) {
   for (int k = 0; k < 2; ++k) track_next();
-  state_->advantage_q8 = state_->proven_q8 = -10 * 256;
+  state_->llr_q8 = state_->conservative_llr_q8 = -10 * 256;
   for (int k = 0; k < 2; ++k) {
     const PoseEstimate estimate = track_next();
     EXPECT_EQ(estimate.poses, 3 + k);
@@ -102,11 +102,11 @@ TEST_F(TrackPose, AnotherFirstAttitudeBeginsWithoutAnAdvantage) {
   see();
   const Eigen::Matrix3d wrong = rotation_of({0.0, 3.0, 0.0}) * truth_.r_lrf_trf;
   track({0.0, 0.01, 0.0}, wrong, 900'000);
-  EXPECT_GT(state_->advantage_q8, 5 * 256);
+  EXPECT_GT(state_->llr_q8, 5 * 256);
   see();
   track({0.0, 3.0, 0.0}, wrong, 0);
-  EXPECT_LE(state_->advantage_q8, 4 * 256);
-  EXPECT_LE(state_->proven_q8, 4 * 256);
+  EXPECT_LE(state_->llr_q8, 4 * 256);
+  EXPECT_LE(state_->conservative_llr_q8, 4 * 256);
 }
 
 // Frames far apart fit a rate that is one turn per period off as well.
@@ -243,9 +243,9 @@ TEST_F(TrackPose, ADamagedStateIsUsedWithinItsLimits) {
     bytes[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
     const PoseEstimate estimate = track({0.0, 0.0, 0.0}, truth_.r_lrf_trf, 0);
     EXPECT_LE(estimate.poses, 4) << bit;
-    EXPECT_LE(std::abs(state_->advantage_q8), 32 * 256) << bit;
-    EXPECT_LE(std::abs(state_->proven_q8), 32 * 256) << bit;
-    EXPECT_LE(state_->proven_q8, state_->advantage_q8) << bit;
+    EXPECT_LE(std::abs(state_->llr_q8), 32 * 256) << bit;
+    EXPECT_LE(std::abs(state_->conservative_llr_q8), 32 * 256) << bit;
+    EXPECT_LE(state_->conservative_llr_q8, state_->llr_q8) << bit;
     EXPECT_NEAR(to_double(estimate.state.q_lrf_trf).norm(), 1.0, 1e-6) << bit;
   }
 }

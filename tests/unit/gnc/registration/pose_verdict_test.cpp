@@ -60,9 +60,9 @@ TEST_F(PoseVerdict, TooManyMissingReturnsAreADoubt) {
 // Verifies TS-EST-202.
 TEST_F(PoseVerdict, TooSmallAProvenAdvantageIsADoubt) {
   verify();
-  state_->proven_q8 = 4 * 256 - 1;
+  state_->conservative_llr_q8 = 4 * 256 - 1;
   EXPECT_EQ(track_next().doubts, kPoseAmbiguous);
-  state_->proven_q8 = 4 * 256;
+  state_->conservative_llr_q8 = 4 * 256;
   EXPECT_EQ(track_next().doubts, 0U);
 }
 

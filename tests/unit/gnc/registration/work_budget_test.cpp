@@ -142,15 +142,17 @@ TEST_F(WorkOfAFrame, EndsARefinementThatItDoesNotCover) {
 // What a track knows.
 struct Known {
   explicit Known(const PoseTrackerState& state)
-      : advantage_q8(state.advantage_q8), proven_q8(state.proven_q8), origin_um(state.motion.origin_lrf_um) {
+      : llr_q8(state.llr_q8),
+        conservative_llr_q8(state.conservative_llr_q8),
+        origin_um(state.motion.origin_lrf_um) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(state.history.count); ++i)
       ages_ns.push_back(state.history.poses[i].age_ns);
   }
   bool operator==(const Known& other) const {
-    return advantage_q8 == other.advantage_q8 && proven_q8 == other.proven_q8 &&
+    return llr_q8 == other.llr_q8 && conservative_llr_q8 == other.conservative_llr_q8 &&
            origin_um == other.origin_um && ages_ns == other.ages_ns;
   }
-  std::int32_t advantage_q8, proven_q8;
+  std::int32_t llr_q8, conservative_llr_q8;
   std::array<std::int32_t, 3> origin_um;
   std::vector<std::int64_t> ages_ns;
 };
@@ -195,7 +197,7 @@ TEST_P(EveryBudget, GivesAWholeFrameOrNone) {
   const PoseEstimate none = track_with(0);
   const Known without_frame(*state_);
   EXPECT_EQ(without_frame.ages_ns.size(), static_cast<std::size_t>(begun_.history.count));
-  EXPECT_EQ(without_frame.advantage_q8, begun_.advantage_q8);
+  EXPECT_EQ(without_frame.llr_q8, begun_.llr_q8);
   EXPECT_EQ(none.doubts & kPoseAmbiguous, kPoseAmbiguous);
   EXPECT_NE(none.doubts & (kPoseCoasts | kPoseUnknown), 0U);
   const std::int32_t work = least_budget();
@@ -209,7 +211,7 @@ TEST_P(EveryBudget, GivesAWholeFrameOrNone) {
     // At the end only fits of the motion are left out.
     const bool is_measured = (estimate.doubts & (kPoseCoasts | kPoseUnknown)) == 0;
     if (is_measured) {
-      EXPECT_EQ(known.advantage_q8, with_frame.advantage_q8) << budget;
+      EXPECT_EQ(known.llr_q8, with_frame.llr_q8) << budget;
       EXPECT_EQ(estimate.evidence.cost_q8(), whole.evidence.cost_q8()) << budget;
     } else {
       EXPECT_EQ(known, without_frame) << budget;
@@ -233,8 +235,8 @@ TEST_F(WorkOfAFrame, ATrackCoastsOverExhaustedFrames) {
     see();
     const PoseEstimate estimate = track({0.5, 0.2, 0.0}, truth_.r_lrf_trf, 900'000);
     EXPECT_EQ(estimate.doubts & (kPoseCoasts | kPoseAmbiguous), kPoseCoasts | kPoseAmbiguous);
-    EXPECT_EQ(state_->advantage_q8, before.advantage_q8);
-    EXPECT_EQ(state_->proven_q8, before.proven_q8);
+    EXPECT_EQ(state_->llr_q8, before.llr_q8);
+    EXPECT_EQ(state_->conservative_llr_q8, before.conservative_llr_q8);
     EXPECT_EQ(static_cast<std::size_t>(state_->history.count), before.ages_ns.size());
   }
   budget_ = WorkBudget::kOfAFrame;

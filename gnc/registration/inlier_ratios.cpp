@@ -1,4 +1,4 @@
-#include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/inlier_ratios.hpp"
 
 #include "gnc/numerics/division.hpp"
 #include "gnc/numerics/functions.hpp"
@@ -6,7 +6,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-using Scratch = ExplainedShareScratch;
+using Scratch = InlierRatiosScratch;
 constexpr int kSide = Scratch::kSide;
 constexpr int kBorder = Scratch::kBorder;
 constexpr std::int16_t kEmpty = Scratch::kEmpty;
@@ -213,7 +213,7 @@ std::int32_t count_without(const Scratch::Rows& a, int a_down, const Scratch::Ro
 struct Fit {
   std::int32_t cost = 0x7FFFFFFF;
   std::int32_t right = 0, down = 0;  // by which the drawing is moved
-  std::int32_t unexplained = 0, missing = 0;
+  std::int32_t outliers = 0, missing = 0;
 };
 
 // Moves of the drawing: `count` to each side of (right, down), `step` cells apart.
@@ -241,15 +241,15 @@ void try_moves(const Moves& moves, std::int32_t seen, std::int32_t expected, Scr
     const std::int32_t right = moves.right + i * moves.step;
     for (int k = -moves.count; k <= moves.count; ++k) {
       const std::int32_t down = moves.down + k * moves.step;
-      const std::int32_t unexplained = count_without(scratch.seen_rows, 0, scratch.near_expected_rows, down);
+      const std::int32_t outliers = count_without(scratch.seen_rows, 0, scratch.near_expected_rows, down);
       const std::int32_t missing = count_without(scratch.expected_rows, down, scratch.near_seen_rows, 0);
-      const std::int32_t cost = 16 * unexplained * expected + 5 * missing * seen + abs(right) + abs(down);
+      const std::int32_t cost = 16 * outliers * expected + 5 * missing * seen + abs(right) + abs(down);
       const std::int32_t better = below_mask(cost, best.cost);
       const auto take = [better](std::int32_t now, std::int32_t& kept) { kept ^= (kept ^ now) & better; };
       take(cost, best.cost);
       take(right, best.right);
       take(down, best.down);
-      take(unexplained, best.unexplained);
+      take(outliers, best.outliers);
       take(missing, best.missing);
     }
     for (int row = 0; row < Scratch::kRows; ++row) {
@@ -329,18 +329,18 @@ std::int32_t depth_limit(const DepthImage& image, const DepthProjection& project
   return static_cast<std::int32_t>(clamp<std::int64_t>(limit, 1, 65535));
 }
 
-std::uint32_t share_of(std::int64_t part, std::int32_t whole) {
+std::uint32_t ratio_of(std::int64_t part, std::int32_t whole) {
   return static_cast<std::uint32_t>(divide(part * kWholeShare, max(whole, 1)));
 }
 
 }  // namespace
 
-ExplainedShare explained_share(const DepthImage& image, const DepthProjection& projection,
-                               const RangeNoise& noise, const Matrix3<Fixed>& r_lrf_trf,
-                               const SurfaceModel& surface, ExplainedShareScratch& scratch) {
-  ExplainedShare share;
-  share.is_known = surface.is_known();
-  if (!share.is_known) return share;
+InlierRatios inlier_ratios(const DepthImage& image, const DepthProjection& projection,
+                           const RangeNoise& noise, const Matrix3<Fixed>& r_lrf_trf,
+                           const SurfaceModel& surface, InlierRatiosScratch& scratch) {
+  InlierRatios ratios;
+  ratios.is_known = surface.is_known();
+  if (!ratios.is_known) return ratios;
   draw(make_drawing(image, projection, r_lrf_trf), surface, scratch);
   reduce(image, scratch.seen);
   take_centred(middle_of(scratch), scratch);
@@ -358,13 +358,13 @@ ExplainedShare explained_share(const DepthImage& image, const DepthProjection& p
   for_each_cell(fit, scratch, [&](std::int32_t difference, std::int32_t counts) {
     apart += min_small(abs(difference - median), limit) & counts;
   });
-  share.unexplained = share_of(fit.unexplained, seen);
-  share.missing = share_of(fit.missing, expected);
-  // Without a cell in common nothing is explained.
-  const std::uint32_t depth_misfit = share_of(divide(apart * 256, limit), both * 256);
-  share.depth_misfit =
+  ratios.outliers = ratio_of(fit.outliers, seen);
+  ratios.missing = ratio_of(fit.missing, expected);
+  // Without a cell in common nothing fits.
+  const std::uint32_t depth_misfit = ratio_of(divide(apart * 256, limit), both * 256);
+  ratios.depth_misfit =
       kWholeShare ^ ((kWholeShare ^ depth_misfit) & static_cast<std::uint32_t>(below_mask(0, both)));
-  return share;
+  return ratios;
 }
 
 }  // namespace tumblesight::gnc

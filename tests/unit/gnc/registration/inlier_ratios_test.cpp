@@ -1,5 +1,5 @@
 // Verifies TS-EST-190.
-#include "gnc/registration/explained_share.hpp"
+#include "gnc/registration/inlier_ratios.hpp"
 
 #include <gtest/gtest.h>
 
@@ -62,73 +62,73 @@ void show(DepthImage& image, double width_m, double height_m, double right_m = 0
   }
 }
 
-ExplainedShare explain(const DepthImage& image, const SurfaceModel& surface,
-                       const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity(),
-                       const RangeNoise& noise = {}) {
-  static const auto scratch = std::make_unique<ExplainedShareScratch>();
+InlierRatios explain(const DepthImage& image, const SurfaceModel& surface,
+                     const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity(),
+                     const RangeNoise& noise = {}) {
+  static const auto scratch = std::make_unique<InlierRatiosScratch>();
   Matrix3<Fixed> r_lrf_trf;
   for (int i = 0; i < 9; ++i) r_lrf_trf(i) = Fixed(rotation(i));
-  return explained_share(image, kProjection, noise, r_lrf_trf, surface, *scratch);
+  return inlier_ratios(image, kProjection, noise, r_lrf_trf, surface, *scratch);
 }
 
 double share(std::uint32_t q16) {
   return q16 / 65536.0;
 }
 
-TEST(ExplainedShare, IsNotKnownWithoutASurface) {
+TEST(InlierRatios, IsNotKnownWithoutASurface) {
   DepthImage image;
   show(image, 4.0, 2.0);
   EXPECT_FALSE(explain(image, SurfaceModel()).is_known);
   EXPECT_FALSE(explain(image, Surface().model()).is_known);
 }
 
-TEST(ExplainedShare, IsWholeForThePlateThatIsThere) {
+TEST(InlierRatios, IsWholeForThePlateThatIsThere) {
   Surface surface;
   surface.add_plate(4.0, 2.0, 0.5);
   DepthImage image;
   show(image, 4.0, 2.0);
-  const ExplainedShare found = explain(image, surface.model());
+  const InlierRatios found = explain(image, surface.model());
   EXPECT_TRUE(found.is_known);
-  EXPECT_EQ(found.unexplained, 0U);
+  EXPECT_EQ(found.outliers, 0U);
   EXPECT_EQ(found.missing, 0U);
   EXPECT_LT(share(found.depth_misfit), 0.05);
 }
 
 // The drawing is one or two cells larger than the plate, and a cell beside it still fits.
-TEST(ExplainedShare, CountsReturnsWhereTheTargetIsNot) {
+TEST(InlierRatios, CountsReturnsWhereTheTargetIsNot) {
   Surface surface;
   surface.add_plate(2.0, 2.0, 0.0);
   DepthImage image;
   show(image, 6.0, 2.0);
-  const ExplainedShare found = explain(image, surface.model());
-  EXPECT_NEAR(share(found.unexplained), (30.0 - 13.5) / 30.0, 1.0 / 30.0);
+  const InlierRatios found = explain(image, surface.model());
+  EXPECT_NEAR(share(found.outliers), (30.0 - 13.5) / 30.0, 1.0 / 30.0);
   EXPECT_LT(share(found.missing), 0.1) << "the rows above and below";
 }
 
-TEST(ExplainedShare, CountsTargetWhereNoReturnsAre) {
+TEST(InlierRatios, CountsTargetWhereNoReturnsAre) {
   Surface surface;
   surface.add_plate(4.0, 2.0, 0.0);
   DepthImage image;
   show(image, 2.0, 2.0);  // the half that is not hidden, in the middle of the image as its centroid is
-  const ExplainedShare found = explain(image, surface.model());
-  EXPECT_EQ(found.unexplained, 0U);
+  const InlierRatios found = explain(image, surface.model());
+  EXPECT_EQ(found.outliers, 0U);
   EXPECT_NEAR(share(found.missing), (20.0 - 11.0) / 20.0, 1.5 / 20.0);
 }
 
-TEST(ExplainedShare, FallsWithAnAttitudeThatIsWrong) {
+TEST(InlierRatios, FallsWithAnAttitudeThatIsWrong) {
   Surface surface;
   surface.add_plate(4.0, 1.0, 0.0);
   DepthImage image;
   show(image, 4.0, 1.0);
   const Eigen::Matrix3d quarter = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  const ExplainedShare right = explain(image, surface.model());
-  const ExplainedShare wrong = explain(image, surface.model(), quarter);
+  const InlierRatios right = explain(image, surface.model());
+  const InlierRatios wrong = explain(image, surface.model(), quarter);
   EXPECT_LT(misfit_of(right), kWholeShare / 20);
-  EXPECT_GT(share(wrong.unexplained), 0.5);
+  EXPECT_GT(share(wrong.outliers), 0.5);
   EXPECT_GT(share(wrong.missing), 0.5);
 }
 
-TEST(ExplainedShare, DoesNotDependOnWhereTheTargetIsUpToFourCells) {
+TEST(InlierRatios, DoesNotDependOnWhereTheTargetIsUpToFourCells) {
   Surface surface;
   surface.add_plate(3.0, 2.0, 0.0);
   // Three cells wider or higher than the plate, which the drawing with a cell around it covers in one place.
@@ -136,17 +136,17 @@ TEST(ExplainedShare, DoesNotDependOnWhereTheTargetIsUpToFourCells) {
     const int right = i % 9 - 4, down = i / 9 % 9 - 4;
     DepthImage image;
     show(image, i < 81 ? 3.6 : 3.0, i < 81 ? 2.0 : 2.6, 0.2 * right, 0.2 * down);
-    const ExplainedShare found = explain(image, surface.model());
-    EXPECT_EQ(found.unexplained, 0U) << right << ' ' << down;
+    const InlierRatios found = explain(image, surface.model());
+    EXPECT_EQ(found.outliers, 0U) << right << ' ' << down;
     EXPECT_EQ(found.missing, 0U) << right << ' ' << down;
   }
   DepthImage image;
   show(image, 3.0, 2.0, 2.0);
-  EXPECT_GT(explain(image, surface.model()).unexplained, kWholeShare / 4);
+  EXPECT_GT(explain(image, surface.model()).outliers, kWholeShare / 4);
 }
 
 // Half of the target is deeper by far more than 2.5 sigma than the median, which lies on the other half.
-TEST(ExplainedShare, ComparesDepths) {
+TEST(InlierRatios, ComparesDepths) {
   Surface surface;
   surface.add_plate(4.0, 2.0, 0.0);
   DepthImage image;
@@ -158,7 +158,7 @@ TEST(ExplainedShare, ComparesDepths) {
 }
 
 // A part of the returns is half a metre deeper than the others, where the target is flat.
-TEST(ExplainedShare, MeasuresDepthsByTheNoiseOfTheSensor) {
+TEST(InlierRatios, MeasuresDepthsByTheNoiseOfTheSensor) {
   Surface surface;
   surface.add_plate(4.0, 2.0, 0.0);
   DepthImage image;
@@ -178,7 +178,7 @@ TEST(ExplainedShare, MeasuresDepthsByTheNoiseOfTheSensor) {
   EXPECT_GT(misfit({0, 0}) - misfit({100, 4000}), 0.2);
 }
 
-TEST(ExplainedShare, ShowsTheNearestSurfaceOnly) {
+TEST(InlierRatios, ShowsTheNearestSurfaceOnly) {
   Surface surface;
   surface.add_plate(4.0, 2.0, 1.0);
   surface.add_plate(4.0, 2.0, -1.0);
@@ -187,30 +187,30 @@ TEST(ExplainedShare, ShowsTheNearestSurfaceOnly) {
   EXPECT_LT(share(explain(image, surface.model()).depth_misfit), 0.05);
 }
 
-TEST(ExplainedShare, DrawsOnlyWhatFacesTheSensor) {
+TEST(InlierRatios, DrawsOnlyWhatFacesTheSensor) {
   Surface surface;
   for (double x = -1.9; x < 2.0; x += 0.2) surface.add({x, 0.0, 0.0}, {0.0, 1.0, 0.0});
   DepthImage image;
   show(image, 4.0, 2.0);
-  const ExplainedShare found = explain(image, surface.model());
-  EXPECT_EQ(found.unexplained, kWholeShare);
+  const InlierRatios found = explain(image, surface.model());
+  EXPECT_EQ(found.outliers, kWholeShare);
   EXPECT_EQ(found.depth_misfit, kWholeShare) << "no cell in common";
   EXPECT_EQ(found.missing, 0U) << "of nothing";
 }
 
 // A wall beside the line of sight faces a near sensor, though its normal is across the boresight.
-TEST(ExplainedShare, KnowsTheDirectionFromTheSensor) {
+TEST(InlierRatios, KnowsTheDirectionFromTheSensor) {
   Surface surface;
   for (double z = -0.9; z < 1.0; z += 0.2) surface.add({3.5, 0.0, z}, {-1.0, 0.0, 0.0});
   DepthImage image;
   show(image, 0.2, 2.0);
   image.centroid_distance_mm = 12'000;
-  EXPECT_EQ(explain(image, surface.model()).unexplained, 0U);
+  EXPECT_EQ(explain(image, surface.model()).outliers, 0U);
   image.centroid_distance_mm = 100'000;
-  EXPECT_EQ(explain(image, surface.model()).unexplained, kWholeShare);
+  EXPECT_EQ(explain(image, surface.model()).outliers, kWholeShare);
 }
 
-TEST(ExplainedShare, StaysWithinItsRangeForAnyContent) {
+TEST(InlierRatios, StaysWithinItsRangeForAnyContent) {
   std::mt19937 engine(5);
   std::uniform_int_distribution<int> byte(0, 255);
   Surface surface;
@@ -222,32 +222,31 @@ TEST(ExplainedShare, StaysWithinItsRangeForAnyContent) {
     Matrix3<Fixed> matrix;
     for (int i = 0; i < 9; ++i)
       matrix(i) = Fixed::from_raw(run % 2 == 0 ? Fixed::kLargestRaw : -Fixed::kLargestRaw);
-    const auto scratch = std::make_unique<ExplainedShareScratch>();
+    const auto scratch = std::make_unique<InlierRatiosScratch>();
     for (const DepthProjection& projection : {DepthProjection{100, 100'000}, DepthProjection{100'000, 100}}) {
       const RangeNoise noise = run % 5 == 0 ? RangeNoise{0, 0} : RangeNoise{0xFFFF, 0xFFFF};
-      const ExplainedShare found =
-          explained_share(image, projection, noise, matrix, surface.model(), *scratch);
-      EXPECT_LE(found.unexplained, kWholeShare);
+      const InlierRatios found = inlier_ratios(image, projection, noise, matrix, surface.model(), *scratch);
+      EXPECT_LE(found.outliers, kWholeShare);
       EXPECT_LE(found.missing, kWholeShare);
       EXPECT_LE(found.depth_misfit, kWholeShare);
     }
   }
 }
 
-TEST(ExplainedShare, DoesNotReadTheScratchBeforeItIsWritten) {
+TEST(InlierRatios, DoesNotReadTheScratchBeforeItIsWritten) {
   Surface surface;
   surface.add_plate(4.0, 2.0, 0.0);
   DepthImage image;
   show(image, 3.0, 2.0);
   const Matrix3<Fixed> identity = Matrix3<Fixed>::Identity();
-  std::vector<ExplainedShare> found;
+  std::vector<InlierRatios> found;
   for (const int fill : {0x00, 0x5A, 0xFF}) {
-    const auto scratch = std::make_unique<ExplainedShareScratch>();
+    const auto scratch = std::make_unique<InlierRatiosScratch>();
     std::memset(scratch.get(), fill, sizeof *scratch);
-    found.push_back(explained_share(image, kProjection, RangeNoise{}, identity, surface.model(), *scratch));
+    found.push_back(inlier_ratios(image, kProjection, RangeNoise{}, identity, surface.model(), *scratch));
   }
-  for (const ExplainedShare& one : found) {
-    EXPECT_EQ(one.unexplained, found[0].unexplained);
+  for (const InlierRatios& one : found) {
+    EXPECT_EQ(one.outliers, found[0].outliers);
     EXPECT_EQ(one.missing, found[0].missing);
     EXPECT_EQ(one.depth_misfit, found[0].depth_misfit);
   }
