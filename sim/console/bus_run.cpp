@@ -6,9 +6,9 @@
 #include <exception>
 #include <utility>
 
-#include "sim/sil/cdr_sample.hpp"
+#include "sim/recording/cdr_sample.hpp"
+#include "sim/recording/run_channels.hpp"
 #include "sim/sil/failure.hpp"
-#include "sim/sil/run_channels.hpp"
 #include "sim/sil/run_control.hpp"
 
 namespace tumblesight::sim {

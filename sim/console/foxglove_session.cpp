@@ -9,8 +9,8 @@
 
 #include "sim/console/little_endian.hpp"
 #include "sim/json/json_text.hpp"
-#include "sim/sil/foxglove_messages.hpp"
-#include "sim/sil/sil_run.hpp"
+#include "sim/recording/foxglove_messages.hpp"
+#include "sim/recording/run_step.hpp"
 
 namespace tumblesight::sim {
 namespace {

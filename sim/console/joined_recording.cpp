@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "sim/sil/foxglove_messages.hpp"
+#include "sim/recording/foxglove_messages.hpp"
 
 namespace tumblesight::sim {
 namespace {

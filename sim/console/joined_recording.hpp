@@ -10,7 +10,7 @@
 
 #include "sim/console/foxglove_session.hpp"
 #include "sim/recording/mcap_writer.hpp"
-#include "sim/sil/run_channels.hpp"
+#include "sim/recording/run_channels.hpp"
 
 namespace tumblesight::sim {
 

@@ -7,9 +7,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "sim/recording/cdr_sample.hpp"
+#include "sim/recording/foxglove_messages.hpp"
+#include "sim/recording/run_step.hpp"
 #include "sim/sil/failure.hpp"
-#include "sim/sil/foxglove_messages.hpp"
-#include "sim/sil/sil_run.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -15,8 +15,8 @@
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/topics.hpp"
 #include "sim/recording/mcap_writer.hpp"
+#include "sim/recording/run_channels.hpp"
 #include "sim/sil/answer_collector.hpp"
-#include "sim/sil/run_channels.hpp"
 #include "sim/world/sensor/frame_truth.hpp"
 
 namespace tumblesight::sim {

@@ -13,7 +13,7 @@
 #include "hal/dds/idl/wait_limit.hpp"
 #include "sim/host/interruption.hpp"
 #include "sim/host/text.hpp"
-#include "sim/sil/step_samples.hpp"
+#include "sim/recording/step_samples.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "sim/console/step_log.hpp"
-#include "sim/sil/cdr_sample.hpp"
-#include "sim/sil/foxglove_messages.hpp"
-#include "sim/sil/run_channels.hpp"
+#include "sim/recording/cdr_sample.hpp"
+#include "sim/recording/foxglove_messages.hpp"
+#include "sim/recording/run_channels.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace tumblesight::fuzz {

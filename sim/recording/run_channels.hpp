@@ -38,7 +38,4 @@ struct RunChannels {
   McapId points, transforms, log, figures;
 };
 
-// The oldest sample of a reader as it came: encapsulation header and CDR. False: there is none.
-bool take_cdr(dds_entity_t reader, std::vector<std::uint8_t>& bytes);
-
 }  // namespace tumblesight::sim

@@ -1,4 +1,4 @@
-#include "sim/sil/step_samples.hpp"
+#include "sim/recording/step_samples.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "sim/sil/recorded_steps.hpp"
+#include "sim/recording/recorded_steps.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "sim/sil/run_steps.hpp"
+#include "sim/recording/run_steps.hpp"
 
 #include <algorithm>
 #include <limits>

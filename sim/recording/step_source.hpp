@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "sim/operations/fault_table.hpp"
-#include "sim/sil/sil_session.hpp"
+#include "sim/recording/run_step.hpp"
 
 namespace tumblesight::sim {
 

@@ -21,6 +21,9 @@ template <class Sample>
   return read_cdr(hal::dds::topic_of<Sample>(), bytes, size, &sample);
 }
 
+// The oldest sample of a reader as it came: encapsulation header and CDR. False: there is none.
+bool take_cdr(dds_entity_t reader, std::vector<std::uint8_t>& bytes);
+
 // Little-endian.
 std::vector<std::uint8_t> cdr_of(const hal::dds::Topic& topic, const void* sample);
 template <class Sample>

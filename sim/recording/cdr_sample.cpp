@@ -1,6 +1,7 @@
-#include "sim/sil/cdr_sample.hpp"
+#include "sim/recording/cdr_sample.hpp"
 
 #include <dds/ddsi/ddsi_cdrstream.h>
+#include <dds/ddsi/ddsi_serdata.h>
 
 #include <algorithm>
 #include <cstring>
@@ -38,6 +39,20 @@ bool read_cdr(const hal::dds::Topic& topic, const std::uint8_t* bytes, std::size
   dds_istream_init(&stream, content, copy.get(), kXcdrVersion);
   dds_stream_read(&stream, static_cast<char*>(sample), topic.type->m_ops);
   return true;
+}
+
+bool take_cdr(dds_entity_t reader, std::vector<std::uint8_t>& bytes) {
+  for (;;) {
+    ddsi_serdata* sample = nullptr;
+    dds_sample_info_t info;
+    if (dds_takecdr(reader, &sample, 1, &info, DDS_ANY_STATE) <= 0) return false;
+    if (info.valid_data) {
+      bytes.resize(ddsi_serdata_size(sample));
+      ddsi_serdata_to_ser(sample, 0, bytes.size(), bytes.data());
+    }
+    ddsi_serdata_unref(sample);
+    if (info.valid_data) return true;
+  }
 }
 
 std::vector<std::uint8_t> cdr_of(const hal::dds::Topic& topic, const void* sample) {

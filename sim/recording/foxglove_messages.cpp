@@ -1,12 +1,12 @@
-#include "sim/sil/foxglove_messages.hpp"
+#include "sim/recording/foxglove_messages.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "hal/messages/event_text.hpp"
-#include "sim/sil/sil_run.hpp"
-#include "sim/sil/viewed_frame.hpp"
+#include "sim/recording/run_step.hpp"
+#include "sim/recording/viewed_frame.hpp"
 
 namespace tumblesight::sim {
 namespace {

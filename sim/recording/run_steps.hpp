@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/sil/run_file.hpp"
-#include "sim/sil/step_source.hpp"
+#include "sim/recording/run_file.hpp"
+#include "sim/recording/step_source.hpp"
 #include "sim/world/frame_renderer.hpp"
 
 namespace tumblesight::sim {

@@ -1,9 +1,7 @@
-#include "sim/sil/run_channels.hpp"
-
-#include <dds/ddsi/ddsi_serdata.h>
+#include "sim/recording/run_channels.hpp"
 
 #include "hal/dds/idl/icd_hash.hpp"
-#include "sim/sil/foxglove_messages.hpp"
+#include "sim/recording/foxglove_messages.hpp"
 
 namespace tumblesight::sim {
 
@@ -21,20 +19,6 @@ RunChannels::RunChannels(McapWriter& file) {
   transforms = show(kTransformsTopic, transforms_schema());
   log = show(kLogTopic, log_schema());
   figures = show(kFiguresTopic, figures_schema());
-}
-
-bool take_cdr(dds_entity_t reader, std::vector<std::uint8_t>& bytes) {
-  for (;;) {
-    ddsi_serdata* sample = nullptr;
-    dds_sample_info_t info;
-    if (dds_takecdr(reader, &sample, 1, &info, DDS_ANY_STATE) <= 0) return false;
-    if (info.valid_data) {
-      bytes.resize(ddsi_serdata_size(sample));
-      ddsi_serdata_to_ser(sample, 0, bytes.size(), bytes.data());
-    }
-    ddsi_serdata_unref(sample);
-    if (info.valid_data) return true;
-  }
 }
 
 }  // namespace tumblesight::sim

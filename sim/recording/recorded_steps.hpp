@@ -8,7 +8,7 @@
 
 #include "gnc/lidar/range_image.hpp"
 #include "sim/recording/recording_file.hpp"
-#include "sim/sil/step_source.hpp"
+#include "sim/recording/step_source.hpp"
 
 namespace tumblesight::sim {
 

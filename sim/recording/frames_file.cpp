@@ -1,4 +1,4 @@
-#include "sim/sil/frames_file.hpp"
+#include "sim/recording/frames_file.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -7,11 +7,11 @@
 #include "hal/dds/idl/hello.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
 #include "hal/dds/idl/step_content.hpp"
+#include "sim/recording/cdr_sample.hpp"
+#include "sim/recording/foxglove_messages.hpp"
 #include "sim/recording/mcap_writer.hpp"
-#include "sim/sil/cdr_sample.hpp"
-#include "sim/sil/foxglove_messages.hpp"
-#include "sim/sil/run_channels.hpp"
-#include "sim/sil/step_samples.hpp"
+#include "sim/recording/run_channels.hpp"
+#include "sim/recording/step_samples.hpp"
 
 namespace tumblesight::sim {
 namespace {
